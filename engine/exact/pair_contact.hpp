@@ -1,0 +1,39 @@
+#pragma once
+/// What two faces that meet have in common, with exact combinatorics and coordinates rounded to double.
+
+#include <array>
+#include <cstdint>
+
+#include <Eigen/Core>
+
+#include "engine/exact/simplex_test.hpp"
+
+namespace lrb::exact {
+
+/// A part of a simplex: corner i (`dim` 0), the edge from corner i to corner i + 1 mod n (`dim` 1), or its interior
+/// (`dim` 2, index 0). Of the features that hold a point this is the one of least dimension.
+struct Feature {
+  std::uint8_t dim = 2;
+  std::uint8_t index = 0;
+  friend bool operator==(const Feature&, const Feature&) = default;
+};
+
+/// A corner of the intersection of two simplices.
+struct ContactCorner {
+  Eigen::Vector3d x;  ///< world frame; the exact point, rounded
+  Feature on_a, on_b; ///< where it lies on each; exact
+};
+
+/// The intersection of two simplices, a convex set: a point, a segment or a coplanar polygon.
+struct PairContact {
+  Meet meet = Meet::disjoint;
+  bool coplanar = false;     ///< both lie in one plane (in 2D: on one line)
+  std::uint8_t corner_count = 0;              ///< 0 none, 1 point, 2 segment, 3 to 6 polygon (in order round it)
+  std::array<ContactCorner, 6> corners;       ///< the first corner_count
+};
+
+PairContact contact_of_triangles(const double* const a[3], const double* const b[3]);
+/// Segments in the plane; corners have z = 0.
+PairContact contact_of_segments(const double* const a[2], const double* const b[2]);
+
+}  // namespace lrb::exact

@@ -1,0 +1,131 @@
+#pragma once
+/// The LRB-rep: a body as a complex of cells (C. Gonzalez-Ochoa, "2-Body Collision Detection using LRB-reps",
+/// section 2).
+///
+/// Cells are the *solid*, the *outside* and the *regions* between them. Every face has one cell on each side: its
+/// inner cell behind it and its outer cell in front of it (the side its normal points to; its corners run
+/// counter-clockwise seen from there). *Real* faces, those of the mesh, have the solid behind them; *pseudo* faces
+/// have a region behind them and hide what is in it. A region's *face-collector* lists its faces: its *lids*
+/// (the faces it stands behind) and its *floor* (the faces it stands in front of). A region may have zero volume.
+///
+/// Static once built; const and without caches, so that threads and bodies can share one.
+///
+/// Departure from the paper: cells keep "inner" and "outer" per face instead of an unordered pair, which costs
+/// nothing and makes "which cell hides which" a look-up. A mesh that cannot be abstracted (open, non-manifold) is
+/// held as an LRB-rep without regions: it can be queried exactly, but only a closed one has an inside.
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "engine/ids.hpp"
+#include "engine/mesh/mesh.hpp"
+#include "engine/query/block_tree.hpp"
+
+namespace lrb {
+
+/// The plain arrays of an LRB-rep: what a builder fills in and a file stores.
+struct LrbData {
+  int dim = 3;
+  std::vector<Eigen::Vector3d> vertices;          ///< (|V| x 3): the mesh's, then those of pseudo faces
+  std::vector<std::uint32_t> face_offsets = {0};  ///< (|F| + 1)
+  std::vector<VertexId> face_vertices;
+  std::uint32_t real_face_count = 0;              ///< faces [0, real_face_count) are real, in the mesh's order
+  std::vector<CellId> inner_cell;                 ///< (|F|): kSolid (real) or a region (pseudo)
+  std::vector<CellId> outer_cell;                 ///< (|F|): a region or kOutside
+  std::vector<std::uint16_t> region_layer;        ///< (|R|): the builder's pass that made it; 0 lies on the solid
+  bool closed = false;                            ///< the real faces bound a solid: inside has a meaning
+  bool self_intersecting = false;                 ///< real faces cross each other (inside is then by parity)
+  std::string name;
+
+  std::size_t face_count() const { return face_offsets.size() - 1; }
+  std::span<const VertexId> face(FaceId f) const {
+    return {face_vertices.data() + face_offsets[f], face_offsets[f + 1] - face_offsets[f]};
+  }
+};
+
+class LrbRep {
+ public:
+  /// Checks the arrays against each other (throws InputError naming the element), derives collectors, parents and
+  /// the query's tree.
+  explicit LrbRep(LrbData data);
+  /// A body without regions: its outermost wrapper is itself. `closed` as found by check_mesh().
+  static LrbRep without_regions(const Mesh& mesh, bool closed, bool self_intersecting);
+
+  int dim() const { return d_.dim; }
+  bool closed() const { return d_.closed; }
+  bool self_intersecting() const { return d_.self_intersecting; }
+  const std::string& name() const { return d_.name; }
+  const LrbData& data() const { return d_; }
+
+  std::span<const Eigen::Vector3d> vertices() const { return d_.vertices; }
+  std::uint32_t face_count() const { return static_cast<std::uint32_t>(d_.face_count()); }
+  std::uint32_t real_face_count() const { return d_.real_face_count; }
+  bool is_real(FaceId f) const { return f < d_.real_face_count; }
+  std::span<const VertexId> face(FaceId f) const { return d_.face(f); }
+  CellId inner_cell(FaceId f) const { return d_.inner_cell[f]; }
+  CellId outer_cell(FaceId f) const { return d_.outer_cell[f]; }
+  /// Faces in front of which lies the outside: the boundary of the outermost wrapper.
+  std::span<const FaceId> outermost_faces() const { return outermost_; }
+
+  std::uint32_t region_count() const { return static_cast<std::uint32_t>(d_.region_layer.size()); }
+  /// All faces of a region: its lids, then its floor.
+  std::span<const FaceId> collector(RegionId r) const {
+    return {collector_faces_.data() + collector_offsets_[r], collector_offsets_[r + 1] - collector_offsets_[r]};
+  }
+  /// Faces that hide the region (it is their inner cell).
+  std::span<const FaceId> lids(RegionId r) const { return collector(r).first(lid_count_[r]); }
+  /// Faces that the region hides (it is their outer cell).
+  std::span<const FaceId> floor(RegionId r) const { return collector(r).subspan(lid_count_[r]); }
+  std::uint16_t layer(RegionId r) const { return d_.region_layer[r]; }
+  /// Number of builder's passes: 1 + the largest layer, 0 without regions.
+  std::uint32_t layer_count() const { return layer_count_; }
+  /// The outer neighbour (a region or kOutside) with the most lid area in common.
+  CellId parent(RegionId r) const { return parent_[r]; }
+  /// Steps from the outside along parents: 1 for a region whose parent is the outside.
+  std::uint32_t depth(RegionId r) const { return depth_[r]; }
+
+  /// Simplices: the triangles of each face's fan from its first corner (2D: its segment), numbered face by face,
+  /// so that those of real faces come first and in the order of the mesh's file.
+  std::uint32_t simplex_count() const;
+  std::uint32_t real_simplex_count() const;
+  /// Corners per simplex: 3, or 2 in 2D.
+  int simplex_size() const { return d_.dim; }
+  FaceId face_of_simplex(SimplexId s) const { return face_of_simplex_.empty() ? s : face_of_simplex_[s]; }
+  SimplexId first_simplex(FaceId f) const {
+    return face_of_simplex_.empty() ? f : d_.face_offsets[f] - 2 * f;  // a fan has two triangles less than corners
+  }
+  /// Writes the simplex's corners (3, or 2 in 2D) to out.
+  void simplex(SimplexId s, VertexId out[3]) const {
+    const FaceId f = face_of_simplex(s);
+    const VertexId* corners = d_.face_vertices.data() + d_.face_offsets[f];
+    const std::uint32_t i = s - first_simplex(f);
+    out[0] = corners[0];
+    out[1] = corners[i + 1];
+    if (d_.dim == 3) out[2] = corners[i + 2];
+  }
+
+  const BlockTree& tree() const { return tree_; }
+  /// FNV-1a 64 over the arrays: names this very complex in traces and files.
+  std::uint64_t hash() const { return hash_; }
+  /// Bytes held, all arrays and the tree.
+  std::size_t memory_bytes() const;
+
+ private:
+  LrbData d_;
+  std::vector<FaceId> outermost_;
+  std::vector<std::uint32_t> collector_offsets_;  ///< (|R| + 1)
+  std::vector<FaceId> collector_faces_;
+  std::vector<std::uint32_t> lid_count_;          ///< (|R|)
+  std::vector<CellId> parent_;                    ///< (|R|)
+  std::vector<std::uint32_t> depth_;              ///< (|R|)
+  std::vector<FaceId> face_of_simplex_;           ///< empty if every face is one simplex
+  std::uint32_t layer_count_ = 0;
+  std::uint64_t hash_ = 0;
+  BlockTree tree_;
+};
+
+}  // namespace lrb

@@ -1,0 +1,65 @@
+#pragma once
+/// What is wrong with a mesh, by name: nothing is repaired silently.
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "engine/mesh/mesh.hpp"
+
+namespace lrb {
+
+/// Every fault a mesh can have. MESH_FAULT(enumerator, what it says, can still be built?, can still be queried?)
+#define LRB_MESH_FAULTS(MESH_FAULT)                                                               \
+  MESH_FAULT(no_faces, "the mesh has no faces", false, false)                                     \
+  MESH_FAULT(non_finite_vertex, "a coordinate is not finite", false, false)                       \
+  MESH_FAULT(index_out_of_range, "a face names a vertex that is not there", false, false)         \
+  MESH_FAULT(repeated_corner, "a face names a vertex twice", false, true)                         \
+  MESH_FAULT(zero_area_face, "a face has no area", false, true)                                   \
+  MESH_FAULT(non_planar_face, "a polygon's corners do not lie in one plane", true, true)          \
+  MESH_FAULT(non_convex_face, "a polygon is not convex", false, true)                             \
+  MESH_FAULT(duplicate_face, "two faces have the same corners", false, true)                      \
+  MESH_FAULT(open_edge, "an edge has a face on one side only", false, true)                       \
+  MESH_FAULT(non_manifold_edge, "an edge has more than two faces", false, true)                   \
+  MESH_FAULT(flipped_face, "two neighbouring faces run along their edge in one direction", false, true) \
+  MESH_FAULT(non_manifold_vertex, "a vertex joins two fans of faces", true, true)                 \
+  MESH_FAULT(inside_out, "the body is inside out", true, true)                                    \
+  MESH_FAULT(self_intersection, "two faces meet outside shared parts", true, true)                \
+  MESH_FAULT(unused_vertex, "no face uses a vertex", true, true)
+
+enum class MeshFault : std::uint8_t {
+#define MESH_FAULT(name, text, build, query) name,
+  LRB_MESH_FAULTS(MESH_FAULT)
+#undef MESH_FAULT
+  count_
+};
+inline constexpr std::size_t kMeshFaultCount = static_cast<std::size_t>(MeshFault::count_);
+
+struct MeshFinding {
+  std::uint64_t count = 0;
+  std::vector<std::array<std::uint32_t, 2>> first;  ///< elements (faces, vertices or edges by their vertices), a few
+};
+
+struct MeshReport {
+  std::array<MeshFinding, kMeshFaultCount> findings;
+  std::uint32_t components = 0;   ///< edge-connected pieces of the surface
+  int genus = -1;                 ///< sum over closed components; -1 if not closed and manifold
+  bool closed = false;            ///< every edge has exactly two faces, in opposite directions
+  bool self_intersections_checked = false;
+
+  const MeshFinding& operator[](MeshFault f) const { return findings[static_cast<std::size_t>(f)]; }
+  bool buildable() const;         ///< no finding that forbids an LRB-rep
+  bool queryable() const;
+  /// One line per fault found, with its first offenders.
+  std::vector<std::string> lines(const Mesh& mesh) const;
+};
+
+/// Checks everything; self-intersections exactly and by a box tree, only if asked (they take the longest).
+MeshReport check_mesh(const Mesh& mesh, bool self_intersections = true);
+
+/// Turns every component that is inside out so that the solid lies behind its faces. A component directly inside an
+/// odd number of others is a void and must face the other way; this is decided by parity. Returns the number turned.
+std::uint32_t orient_outward(Mesh& mesh);
+
+}  // namespace lrb

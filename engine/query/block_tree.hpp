@@ -1,0 +1,5 @@
+#pragma once
+
+namespace lrb {
+class BlockTree {};
+}  // namespace lrb

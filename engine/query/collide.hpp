@@ -1,0 +1,98 @@
+#pragma once
+/// The two-body query: do two bodies meet, which real faces do, and how do the bodies lie to each other?
+///
+/// Two algorithms. `complete` never misses: a tree over blocks of real faces whose bounds hold everything beneath,
+/// so that every pair that meets is reached, and an exact test at the leaves (see tree_query.hpp for the proof).
+/// `paper` is section 4 of the paper to the letter: recursion through lids that hit. It misses contacts under lids
+/// that nothing touches, and is kept to reproduce the paper's figures and to show where it fails.
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "engine/lrb/lrb_rep.hpp"
+#include "engine/lrb/pose.hpp"
+#include "engine/lrb/wrapper.hpp"
+#include "engine/query/contact.hpp"
+#include "engine/query/probe.hpp"
+
+namespace lrb {
+
+enum class Mode : std::uint8_t { all_pairs, first_pair };
+
+enum class Recursion : std::uint8_t {
+  complete,
+  paper,         ///< each pair of regions is recursed into once
+  paper_strict,  ///< each region is refined once; its new faces meet only the new faces of what it hit
+};
+
+struct CollideRequest {
+  Mode mode = Mode::all_pairs;
+  Recursion recursion = Recursion::complete;
+  WrapperMode wrapper = WrapperMode::regularised;
+  bool contacts = false;          ///< fill CollideResult::contacts and ::regions (all_pairs only)
+  bool interiors_overlap = false; ///< decide CollideResult::interiors_overlap for touching bodies
+};
+
+/// How two bodies lie to each other.
+enum class Relation : std::uint8_t {
+  separate,    ///< no point in common
+  crossing,    ///< at least two faces pass through each other's interior
+  touching,    ///< surfaces meet, but no two faces cross
+  a_inside_b,  ///< no surface contact; B holds A
+  b_inside_a,
+  undefined,   ///< no surface contact, and a body that is not closed: inside has no meaning
+};
+const char* to_string(Relation r);
+
+enum class Answer : std::uint8_t { no, yes, unknown };
+const char* to_string(Answer a);
+
+/// A pair of real simplices that meet (see LrbRep::face_of_simplex for the faces).
+struct SimplexPair {
+  SimplexId a, b;
+  friend auto operator<=>(const SimplexPair&, const SimplexPair&) = default;
+};
+
+/// What the query did. All are numbers of operations.
+struct Counters {
+  std::uint64_t face_tests = 0;       ///< exact comparisons of two simplices, pseudo or real (best: pairs found)
+  std::uint64_t real_tests = 0;       ///< of these, both real
+  std::uint64_t exact_fallbacks = 0;  ///< predicates that floating point could not decide
+  std::uint64_t node_pairs = 0;       ///< complete: pairs of tree nodes expanded
+  std::uint64_t box_tests = 0;        ///< complete: box against box
+  std::uint64_t prefilter_tests = 0;  ///< complete: simplex pairs that reached the box and plane tests of a leaf pair
+  std::uint64_t refinements = 0;      ///< paper: refine operations; complete: equal to regions_opened
+  std::uint64_t regions_opened = 0;   ///< regions excluded from either wrapper at the end
+  std::vector<std::uint32_t> face_tests_by_level;  ///< by max(depth of a, depth of b) of the compared faces
+};
+
+struct CollideResult {
+  Relation relation = Relation::separate;
+  Answer interiors_overlap = Answer::unknown;  ///< crossing, inside: yes; separate: no; touching: if requested
+  Recursion recursion = Recursion::complete;   ///< the one that was used
+  Mode mode = Mode::all_pairs;
+  std::vector<SimplexPair> pairs;              ///< ascending; in first_pair mode at most one
+  std::vector<exact::Meet> meets;              ///< (|pairs|) touch or cross
+  std::vector<PairContactRecord> contacts;     ///< (|pairs|) if requested
+  std::vector<ContactRegion> regions;          ///< connected groups of contacts, if requested
+  std::array<std::vector<RegionId>, 2> opened; ///< regions refined, A's and B's, in order
+  Counters counters;
+};
+
+/// FNV-1a 64 over the pairs, each as u32 a, u32 b little-endian; cbf29ce484222325 for none.
+std::uint64_t fingerprint(const std::vector<SimplexPair>& pairs);
+
+/// Memory that a query needs and the next one can use again. One per thread.
+class QueryContext;
+
+/// Body `a` at pose_a against body `b` at pose_b; both 3D or both 2D (else InputError). Poses must be finite.
+template <class Probe>
+CollideResult collide(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
+                      const CollideRequest& request, QueryContext& context, Probe& probe);
+
+/// The same without a probe, and with a context of its own.
+CollideResult collide(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
+                      const CollideRequest& request = {});
+
+}  // namespace lrb
