@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include <Eigen/Geometry>
+
 #include "engine/exact/predicates.hpp"
 
 namespace lrb {
