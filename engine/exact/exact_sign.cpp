@@ -77,7 +77,6 @@ int orient3d_integer(const std::array<std::array<double, 4>, 3>& x) {
   return det.sign();
 }
 
-
 /// u0 * v1 - u1 * v0.
 Expansion<16> minor(const Expansion<2>& u0, const Expansion<2>& u1, const Expansion<2>& v0,
                     const Expansion<2>& v1) {
