@@ -1,36 +1,15 @@
 // Contacts of triangles without area: all in rational arithmetic, for they are rare.
 
-#include <optional>
 #include <utility>
 #include <vector>
 
 #include "engine/exact/contact_parts.hpp"
 #include "engine/exact/degenerate.hpp"
 #include "engine/exact/predicates.hpp"
-#include "engine/exact/rational.hpp"
+#include "engine/exact/rational_interval.hpp"
 
 namespace lrb::exact {
 namespace {
-
-/// A part of a segment: parameters from 0 to 1, exact.
-struct Interval {
-  Rational low = 0, high = 1;
-  bool empty = false;
-
-  /// Keeps what satisfies f >= 0 for a function that is linear along the segment, given at both its ends.
-  void keep_positive(const Rational& at_start, const Rational& at_end) {
-    if (at_start < 0 && at_end < 0) empty = true;
-    if (empty || (at_start >= 0 && at_end >= 0)) return;
-    const Rational t = at_start / (at_start - at_end);
-    if (at_start < 0 && t > low) low = t;
-    if (at_end < 0 && t < high) high = t;
-    empty = low > high;
-  }
-  void keep_zero(const Rational& at_start, const Rational& at_end) {
-    keep_positive(at_start, at_end);
-    keep_positive(-at_start, -at_end);
-  }
-};
 
 struct RationalHull {
   std::vector<RationalVec> corner;
@@ -42,7 +21,7 @@ RationalHull rational_hull(const Hull& h) {
   return r;
 }
 
-void clip_by_triangle(Interval& part, const RationalHull& t, const Axes& axes, const RationalVec& s,
+void clip_by_triangle(RationalInterval& part, const RationalHull& t, const Axes& axes, const RationalVec& s,
                       const RationalVec& e) {
   const auto& c = t.corner;
   part.keep_zero(volume_determinant(c[0], c[1], c[2], s), volume_determinant(c[0], c[1], c[2], e));
@@ -53,7 +32,7 @@ void clip_by_triangle(Interval& part, const RationalHull& t, const Axes& axes, c
   }
 }
 
-void clip_by_segment(Interval& part, const RationalVec& p, const RationalVec& q, const RationalVec& s,
+void clip_by_segment(RationalInterval& part, const RationalVec& p, const RationalVec& q, const RationalVec& s,
                      const RationalVec& e) {
   for (int x = 0; x < 3; ++x) {
     const int y = (x + 1) % 3;
@@ -67,7 +46,7 @@ void clip_by_segment(Interval& part, const RationalVec& p, const RationalVec& q,
 }
 
 bool on_segment(const RationalVec& x, const RationalVec& p, const RationalVec& q) {
-  Interval part;
+  RationalInterval part;
   clip_by_segment(part, p, q, x, x);
   return !part.empty;
 }
@@ -104,7 +83,7 @@ PairContact contact_of_degenerate(const double* const a[3], const double* const 
   r.meet = Meet::touch;
   const RationalHull outer = rational_hull(big);
   const RationalVec s = to_rational(small.corner[0]), e = to_rational(small.corner[small.dim]);
-  Interval part;
+  RationalInterval part;
   if (big.dim == 2) {
     clip_by_triangle(part, outer, axes_for(big.corner[0], big.corner[1], big.corner[2]), s, e);
   } else {

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
 
 #include <boost/multiprecision/cpp_int.hpp>
@@ -64,7 +63,15 @@ int orient2d_integer(const std::array<double, 3>& x, const std::array<double, 3>
   return (left > right) - (left < right);
 }
 
-int orient3d_integer(const std::array<std::array<double, 4>, 3>& x) {
+/// u0 * v1 - u1 * v0.
+Expansion<16> minor(const Expansion<2>& u0, const Expansion<2>& u1, const Expansion<2>& v0,
+                    const Expansion<2>& v1) {
+  return sum(product(u0, v1), product(-u1, v0));
+}
+
+}  // namespace
+
+int orient3d_integer(const Coordinates4& x) {
   std::array<std::array<cpp_int, 3>, 3> m;  // rows b - a, c - a, d - a
   for (std::size_t k = 0; k < 3; ++k) {
     const auto p = scaled_to_integers(x[k]);
@@ -77,13 +84,11 @@ int orient3d_integer(const std::array<std::array<double, 4>, 3>& x) {
   return det.sign();
 }
 
-/// u0 * v1 - u1 * v0.
-Expansion<16> minor(const Expansion<2>& u0, const Expansion<2>& u1, const Expansion<2>& v0,
-                    const Expansion<2>& v1) {
-  return sum(product(u0, v1), product(-u1, v0));
+bool expansions_apply(const Coordinates4& p) {
+  return all_in_range(p[0]) && all_in_range(p[1]) && all_in_range(p[2]);
 }
 
-int orient3d_expansion(const std::array<std::array<double, 4>, 3>& p) {
+int orient3d_expansion(const Coordinates4& p) {
   std::array<Expansion<2>, 3> u, v, w;
   for (std::size_t k = 0; k < 3; ++k) {
     u[k] = difference(p[k][1], p[k][0]);
@@ -95,8 +100,6 @@ int orient3d_expansion(const std::array<std::array<double, 4>, 3>& p) {
   const auto z = product(minor(u[0], u[1], v[0], v[1]), w[2]);
   return sum(sum(x, y), z).sign();
 }
-
-}  // namespace
 
 std::uint64_t exact_fallbacks() {
   return fallback_count;
@@ -125,13 +128,12 @@ int orient3d_exact(const double* a, const double* b, const double* c, const doub
   if (same_point(a, d) || same_point(b, d) || same_point(c, d)) return 0;
   if (same_point(a, b) || same_point(b, c) || same_point(a, c)) return 0;
   ++fallback_count;
-  std::array<std::array<double, 4>, 3> p;
+  Coordinates4 p;
   for (std::size_t k = 0; k < 3; ++k) p[k] = {a[k], b[k], c[k], d[k]};
   std::array<std::array<std::int64_t, 4>, 3> f;
   if (to_fixed_point(p[0], f[0]) && to_fixed_point(p[1], f[1]) && to_fixed_point(p[2], f[2]))
     return orient3d_fixed(f);
-  if (!all_in_range(p[0]) || !all_in_range(p[1]) || !all_in_range(p[2])) return orient3d_integer(p);
-  return orient3d_expansion(p);
+  return expansions_apply(p) ? orient3d_expansion(p) : orient3d_integer(p);
 }
 
 }  // namespace lrb::exact
