@@ -6,7 +6,6 @@
 #include "engine/error.hpp"
 #include "trace/hex.hpp"
 #include "trace/names.hpp"
-#include "trace/replay.hpp"
 
 namespace lrb::trace {
 
@@ -34,35 +33,35 @@ Cursor::Cursor(const Trace& trace, const LrbRep& a, const LrbRep& b)
 
 Cursor::Cursor(const Trace& trace, const LrbRep& a) : Cursor(trace, std::vector<const LrbRep*>{&a}) {}
 
-Cursor::Cursor(const Trace& trace, std::vector<const LrbRep*> reps) : trace_(&trace) {
+Cursor::Cursor(const Trace& trace, std::vector<const LrbRep*> reps)
+    : trace_(&trace), replay_(reps, trace.header.request.wrapper) {
   check_trace(trace, "trace");
   if (reps.size() != trace.header.bodies.size())
-    throw InputError("trace: recorded with " + std::to_string(trace.header.bodies.size()) + " bodies, given " +
-                     std::to_string(reps.size()) + "; replay needs the same ones");
-  for (std::size_t i = 0; i < reps.size(); ++i) {
+    throw InputError("trace: recorded with " + std::to_string(trace.header.bodies.size()) +
+                     " bodies, given " + std::to_string(reps.size()) + "; replay needs the same ones");
+  for (std::size_t i = 0; i < reps.size(); ++i)
     require_same_body(trace.header.bodies[i], *reps[i], static_cast<Side>(i));
-    wrappers_.emplace_back(*reps[i], trace.header.request.wrapper);
-  }
   for (EventId e = 0; e < trace.events.size(); ++e) {
     const EventKind kind = trace.events[e].kind;
-    if (kind == EventKind::step || kind == EventKind::refine || kind == EventKind::coarsen) changes_.push_back(e);
+    if (kind == EventKind::step || kind == EventKind::refine || kind == EventKind::coarsen)
+      changes_.push_back(e);
   }
 }
 
 void Cursor::apply_to(EventId event) {
   const Event& e = trace_->events[event];
-  if (!apply(e, trace_->events, wrappers_)) return;
-  const std::uint32_t size = wrapper(e.side).boundary_size();
+  if (!replay_.apply(e, trace_->events)) return;
+  const std::uint32_t size = replay_.boundary_size(e.side);
   if (e.boundary == kNull || e.boundary == size) return;
   rewind();
-  throw InputError("trace: event " + std::to_string(event) + " (" + std::string(name_of(e.kind)) + " region " +
-                   std::to_string(e.a) + " of " + std::string(name_of(e.side)) + "): the wrapper has " +
-                   std::to_string(size) + " faces, recorded were " + std::to_string(e.boundary) +
-                   "; the trace is damaged: record it again");
+  throw InputError("trace: event " + std::to_string(event) + " (" + std::string(name_of(e.kind)) +
+                   " region " + std::to_string(e.a) + " of " + std::string(name_of(e.side)) +
+                   "): the wrapper has " + std::to_string(size) + " faces, recorded were " +
+                   std::to_string(e.boundary) + "; the trace is damaged: record it again");
 }
 
 void Cursor::rewind() {
-  for (Wrapper& w : wrappers_) w.reset();
+  replay_.reset();
   applied_ = step_ = 0;
   position_ = kNull;
 }
@@ -78,7 +77,8 @@ void Cursor::seek(EventId event) {
   };
   const std::size_t target = count_up_to(event);
   if (target != applied_) {
-    // Each step begins afresh, so nothing before the target's step matters; backward means from its beginning.
+    // Each step begins afresh, so nothing before the target's step matters; backward means from its
+    // beginning.
     const std::size_t begin = count_up_to(trace_->steps[step].first_event) - 1;
     for (std::size_t i = target > applied_ ? std::max(applied_, begin) : begin; i < target; ++i)
       apply_to(changes_[i]);
@@ -116,7 +116,7 @@ Pose Cursor::pose(Side side) const {
 }
 
 std::optional<TestedPair> Cursor::pair_under_test() const {
-  if (at_start() || wrappers_.size() < 2) return std::nullopt;
+  if (at_start() || body_count() < 2) return std::nullopt;
   EventId id = position_;
   const auto is_pair = [&](EventId e) {
     const EventKind kind = trace_->events[e].kind;

@@ -1,10 +1,12 @@
 #pragma once
-/// Replay: the state of a recorded run after any of its events, rebuilt from the trace and the LRB-reps alone.
+/// Replay: the state of a recorded run after any of its events, rebuilt from the trace and the LRB-reps
+/// alone.
 
 #include <optional>
 #include <vector>
 
 #include "engine/lrb/wrapper.hpp"
+#include "trace/replay.hpp"
 #include "trace/trace.hpp"
 
 namespace lrb::trace {
@@ -36,9 +38,9 @@ class Cursor {
   /// The event that the cursor stands after; kNull: before the first.
   EventId position() const { return position_; }
 
-  /// Stands after `event`, forward or backward; kNull: before the first. Costs the wrapper events in between, or,
-  /// backward over one, those of the step so far. Throws std::out_of_range for an event that was not stored, and
-  /// InputError if a wrapper does not come out as recorded (the cursor is then at_start()).
+  /// Stands after `event`, forward or backward; kNull: before the first. Costs the wrapper events in between,
+  /// or, backward over one, those of the step so far. Throws std::out_of_range for an event that was not
+  /// stored, and InputError if a wrapper does not come out as recorded (the cursor is then at_start()).
   void seek(EventId event);
   bool next();      ///< false at the end
   bool previous();  ///< false before the first event
@@ -54,12 +56,15 @@ class Cursor {
   /// Identity at_start().
   Pose pose(Side side) const;
 
-  const Wrapper& wrapper(Side side) const { return wrappers_[static_cast<std::size_t>(side)]; }
-  std::size_t body_count() const { return wrappers_.size(); }
-  /// The pair being compared: of the event if it is a face test or a contact, of its cause if it is a refinement.
+  std::size_t body_count() const { return replay_.body_count(); }
+  const Wrapper& wrapper(Side side) const { return replay_.wrapper(side); }
+  /// Faces on the wrapper's boundary, in O(1).
+  std::uint32_t boundary_size(Side side) const { return replay_.boundary_size(side); }
+  /// The pair being compared: of the event if it is a face test or a contact, of its cause if it is a
+  /// refinement.
   std::optional<TestedPair> pair_under_test() const;
-  /// Regions that the event refined: itself and its neighbours with the same cause, up to the cursor. Empty unless
-  /// the event is a refinement.
+  /// Regions that the event refined: itself and its neighbours with the same cause, up to the cursor. Empty
+  /// unless the event is a refinement.
   std::vector<RefinedRegion> refined() const;
 
  private:
@@ -68,7 +73,7 @@ class Cursor {
   void rewind();
 
   const Trace* trace_;
-  std::vector<Wrapper> wrappers_;
+  Replay replay_;
   std::vector<EventId> changes_;  ///< events that change a wrapper (step, refine, coarsen), ascending
   std::size_t applied_ = 0;       ///< how many of them the wrappers have seen
   EventId position_ = kNull;

@@ -3,7 +3,6 @@
 #include <stdexcept>
 
 #include "engine/error.hpp"
-#include "engine/lrb/wrapper.hpp"
 #include "trace/replay.hpp"
 
 namespace lrb::trace {
@@ -56,7 +55,7 @@ void Recorder::begin_step(std::uint32_t index, const Pose& pose_a, const Pose& p
   Step step;
   step.index = index;
   step.pose_a = pose_a;
-  step.pose_b = pose_b;
+  if (reps_[1]) step.pose_b = pose_b;
   step.first_event = step_event_;
   trace_.steps.push_back(std::move(step));
   push({.a = index, .kind = EventKind::step});
@@ -78,16 +77,13 @@ void Recorder::end_step(const CollideResult& result) {
 }
 
 Trace Recorder::take() {
-  if (seen_ > 0 && (trace_.steps.empty() || (!trace_.events.empty() && trace_.steps.front().first_event != 0)))
+  if (seen_ > 0 &&
+      (trace_.steps.empty() || (!trace_.events.empty() && trace_.steps.front().first_event != 0)))
     throw std::logic_error("Recorder: events came before begin_step()");
   close_step();
-  std::vector<Wrapper> wrappers;
-  for (const LrbRep* rep : reps_)
-    if (rep) wrappers.emplace_back(*rep, settings_.request.wrapper);
-  for (Event& event : trace_.events) {
-    if (!apply(event, trace_.events, wrappers)) continue;
-    event.boundary = wrappers[static_cast<std::size_t>(event.side)].boundary_size();
-  }
+  Replay replay(reps_, settings_.request.wrapper);
+  for (Event& event : trace_.events)
+    if (replay.apply(event, trace_.events)) event.boundary = replay.boundary_size(event.side);
   Trace out = std::move(trace_);
   start_over();
   return out;

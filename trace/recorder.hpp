@@ -7,8 +7,8 @@
 ///     recorder.end_step(collide(a, pose_a, b, pose_b, request, context, recorder));
 ///   Trace trace = recorder.take();
 ///
-/// Cost: some ns an event on the event clock (tests/bench/trace_bench.cpp measures it); the wall clock adds one
-/// steady_clock read.
+/// Cost: some ns an event on the event clock (tests/bench/trace_bench.cpp measures it); the wall clock adds
+/// one steady_clock read.
 
 #include <algorithm>
 #include <array>
@@ -22,7 +22,7 @@
 namespace lrb::trace {
 
 struct RecorderSettings {
-  std::string scenario;             ///< name
+  std::string scenario;  ///< name
   std::uint64_t scenario_hash = 0;
   std::array<std::string, 2> sources;  ///< where the bodies came from, as the user gave it
   CollideRequest request;
@@ -60,7 +60,8 @@ class Recorder {
   void refine(Side side, RegionId region, std::uint32_t faces_added) {
     const EventId id =
         push({.a = region, .b = faces_added, .cause = last_hit_, .kind = EventKind::refine, .side = side});
-    // In unregularised mode a region's second lid brings in no faces: the first one's refinement stays the cause.
+    // In unregularised mode a region's second lid brings in no faces: the first one's refinement stays the
+    // cause.
     if (faces_added != 0 && id != kNull) refined_by_[static_cast<std::size_t>(side)][region] = id + 1;
   }
 
@@ -76,8 +77,9 @@ class Recorder {
   std::uint64_t events_seen() const { return seen_; }
   std::uint64_t events_stored() const { return trace_.events.size(); }
 
-  /// Replays what was recorded to fill in Event::boundary and hands it over. The recorder is then empty: it can
-  /// begin another run with the same settings. Throws std::logic_error if events came before the first step.
+  /// Replays what was recorded to fill in Event::boundary and hands it over. The recorder is then empty: it
+  /// can begin another run with the same settings. Throws std::logic_error if events came before the first
+  /// step.
   Trace take();
 
  private:
@@ -115,7 +117,8 @@ class Recorder {
   std::array<const LrbRep*, 2> reps_{};
   RecorderSettings settings_;
   Trace trace_;
-  std::array<std::vector<std::uint32_t>, 2> refined_by_;  ///< (regions) 1 + refine event, of this step or an old one
+  std::array<std::vector<std::uint32_t>, 2>
+      refined_by_;  ///< (regions) 1 + refine event, of this step or an old one
   std::uint64_t seen_ = 0;
   std::uint64_t seen_before_step_ = 0;
   EventId step_event_ = 0;    ///< first event of the current step

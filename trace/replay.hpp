@@ -1,7 +1,9 @@
 #pragma once
-/// What one event does to the wrappers. The recorder and the cursor both go through here, so that a replay is the
+/// What events do to the wrappers. The recorder and the cursor both go through here, so that a replay is the
 /// recording's twin.
 
+#include <array>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -10,31 +12,28 @@
 
 namespace lrb::trace {
 
-/// Step: resets all wrappers. Refine, coarsen: does so to the event's wrapper. Other kinds: nothing.
-/// True for refine and coarsen.
-///
-/// In unregularised mode a wrapper is refined face by face: a refinement takes away the face that its cause, a face
-/// test of the same step, compared. Without a cause the whole region is refined.
-inline bool apply(const Event& event, std::span<const Event> events, std::vector<Wrapper>& wrappers) {
-  if (event.kind == EventKind::step)
-    for (Wrapper& w : wrappers) w.reset();
-  if (event.kind != EventKind::refine && event.kind != EventKind::coarsen) return false;
-  Wrapper& wrapper = wrappers[static_cast<std::size_t>(event.side)];
-  if (event.kind == EventKind::coarsen) {
-    wrapper.coarsen(event.a);
-  } else if (wrapper.mode() == WrapperMode::unregularised && event.cause != kNull &&
-             events[event.cause].kind == EventKind::face_test) {
-    const Event& test = events[event.cause];
-    const LrbRep& rep = wrapper.rep();
-    const FaceId face = rep.face_of_simplex(event.side == Side::a ? test.a : test.b);
-    if (rep.inner_cell(face) == event.a)
-      wrapper.refine_face(face);
-    else
-      wrapper.refine(event.a);
-  } else {
-    wrapper.refine(event.a);
-  }
-  return true;
-}
+/// The wrappers of one or two bodies and how many faces each has.
+class Replay {
+ public:
+  Replay(std::span<const LrbRep* const> reps, WrapperMode mode);
+
+  /// All wrappers are the outermost ones again.
+  void reset();
+  /// Step: reset(). Refine, coarsen: does so to the event's wrapper. Other kinds: nothing. True for refine
+  /// and coarsen. `events` are all of the trace, for causes; indices must be in range (check_trace).
+  ///
+  /// In unregularised mode a wrapper is refined face by face: a refinement takes away the face that its
+  /// cause, a face test, compared. Without such a cause the whole region is refined.
+  bool apply(const Event& event, std::span<const Event> events);
+
+  std::size_t body_count() const { return wrappers_.size(); }
+  const Wrapper& wrapper(Side side) const { return wrappers_[static_cast<std::size_t>(side)]; }
+  /// Faces on the boundary; kept up to date, so O(1).
+  std::uint32_t boundary_size(Side side) const { return sizes_[static_cast<std::size_t>(side)]; }
+
+ private:
+  std::vector<Wrapper> wrappers_;
+  std::array<std::uint32_t, 2> sizes_{};
+};
 
 }  // namespace lrb::trace

@@ -8,7 +8,9 @@
 
 namespace lrb::trace {
 
-const char* lrbscope_version() { return LRB_VERSION; }
+const char* lrbscope_version() {
+  return LRB_VERSION;
+}
 
 BodyInfo describe_body(const LrbRep& rep, std::string source) {
   BodyInfo info;
@@ -22,6 +24,7 @@ BodyInfo describe_body(const LrbRep& rep, std::string source) {
   info.outer_faces = static_cast<std::uint32_t>(rep.outermost_faces().size());
   info.regions = rep.region_count();
   info.layers = rep.layer_count();
+  info.real_simplices = rep.real_simplex_count();
   info.simplices = rep.simplex_count();
   return info;
 }
@@ -127,10 +130,12 @@ class Checker {
   void check_step(std::size_t i) const {
     const Step& s = t_.steps[i];
     const std::string name = "step " + std::to_string(i);
-    if (!s.pose_a.r.allFinite() || !s.pose_a.t.allFinite() || !s.pose_b.r.allFinite() || !s.pose_b.t.allFinite())
+    if (!s.pose_a.r.allFinite() || !s.pose_a.t.allFinite() || !s.pose_b.r.allFinite() ||
+        !s.pose_b.t.allFinite())
       fail(name + ": its poses are not finite");
     if (s.first_event > t_.events.size()) fail(name + ": its first event does not exist");
-    if (i > 0 && s.first_event < t_.steps[i - 1].first_event) fail(name + ": begins before the step before it");
+    if (i > 0 && s.first_event < t_.steps[i - 1].first_event)
+      fail(name + ": begins before the step before it");
     if (i > 0 && s.index <= t_.steps[i - 1].index) fail(name + ": its number does not ascend");
     if (s.first_event < t_.events.size()) {
       const Event& e = t_.events[s.first_event];
@@ -164,7 +169,8 @@ class Checker {
       case EventKind::result:
         if (e.a >= std::size(Names<Relation>::values)) bad("unknown relation");
         break;
-      case EventKind::step: break;
+      case EventKind::step:
+        break;
     }
   }
 
@@ -181,6 +187,8 @@ bool operator==(const Trace& x, const Trace& y) {
          x.events == y.events && x.wall_ns == y.wall_ns && x.events_seen == y.events_seen;
 }
 
-void check_trace(const Trace& trace, const std::string& where) { Checker(trace, where).run(); }
+void check_trace(const Trace& trace, const std::string& where) {
+  Checker(trace, where).run();
+}
 
 }  // namespace lrb::trace

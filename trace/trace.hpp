@@ -1,6 +1,6 @@
 #pragma once
-/// A recorded run: header, time steps and events as flat arrays. It is the source of truth for replay (cursor.hpp),
-/// numbers (counters.hpp), pictures (render/) and files (trace_json.hpp).
+/// A recorded run: header, time steps and events as flat arrays. It is the source of truth for replay
+/// (cursor.hpp), numbers (counters.hpp), pictures (render/) and files (trace_json.hpp).
 
 #include <cstddef>
 #include <cstdint>
@@ -30,13 +30,13 @@ using EventId = std::uint32_t;
 struct Event {
   std::uint32_t a = 0;
   std::uint32_t b = 0;
-  EventId cause = kNull;             ///< an earlier event; refine, coarsen, contact: the face test that hit before
-                                     ///< them; face test: the refinement that brought in the later of its faces
-  std::uint32_t boundary = kNull;    ///< refine, coarsen: faces of that wrapper afterwards; kNull: not known
-  std::uint16_t depth_a = 0;         ///< face test: regions between A's face and the outside (65535: that or more)
-  std::uint16_t depth_b = 0;         ///< the same for B
+  EventId cause = kNull;  ///< an earlier event; refine, coarsen, contact: the face test that hit before
+                          ///< them; face test: the refinement that brought in the later of its faces
+  std::uint32_t boundary = kNull;  ///< refine, coarsen: faces of that wrapper afterwards; kNull: not known
+  std::uint16_t depth_a = 0;  ///< face test: regions between A's face and the outside (65535: that or more)
+  std::uint16_t depth_b = 0;  ///< the same for B
   EventKind kind = EventKind::step;
-  Side side = Side::a;               ///< refine, coarsen: whose wrapper
+  Side side = Side::a;                       ///< refine, coarsen: whose wrapper
   exact::Meet meet = exact::Meet::disjoint;  ///< face test, contact
   std::uint8_t unused = 0;
 
@@ -53,8 +53,8 @@ enum class Clock : std::uint8_t {
 /// What a trace says about a body, enough to refuse another one.
 struct BodyInfo {
   std::string name;
-  std::string source;            ///< the file or generator, as given
-  std::uint64_t hash = 0;        ///< LrbRep::hash()
+  std::string source;      ///< the file or generator, as given
+  std::uint64_t hash = 0;  ///< LrbRep::hash()
   std::uint32_t dim = 3;
   bool closed = false;
   std::uint32_t real_faces = 0;
@@ -62,7 +62,8 @@ struct BodyInfo {
   std::uint32_t outer_faces = 0;  ///< faces of the outermost wrapper
   std::uint32_t regions = 0;
   std::uint32_t layers = 0;
-  std::uint32_t simplices = 0;    ///< of all faces
+  std::uint32_t real_simplices = 0;
+  std::uint32_t simplices = 0;  ///< of all faces
 
   friend bool operator==(const BodyInfo&, const BodyInfo&) = default;
 };
@@ -95,15 +96,16 @@ struct TraceHeader {
   std::vector<BodyInfo> bodies;     ///< A and B, or A alone
   CollideRequest request;
   Clock clock = Clock::event;
-  std::uint32_t event_cap = 0;      ///< events stored at most
+  std::uint32_t event_cap = 0;  ///< events stored at most
 };
 
 struct Trace {
   TraceHeader header;
   std::vector<Step> steps;
   std::vector<Event> events;
-  std::vector<std::uint64_t> wall_ns;  ///< (|events|), strictly ascending, since the recorder began; event clock: empty
-  std::uint64_t events_seen = 0;       ///< more than events.size() if the cap cut the recording
+  std::vector<std::uint64_t>
+      wall_ns;  ///< (|events|), strictly ascending, since the recorder began; event clock: empty
+  std::uint64_t events_seen = 0;  ///< more than events.size() if the cap cut the recording
 
   bool truncated() const { return events_seen > events.size(); }
   /// Stored events of a step.
@@ -119,7 +121,8 @@ bool equal(const StepResult& x, const StepResult& y);
 bool equal(const CollideRequest& x, const CollideRequest& y);
 bool equal(const Pose& x, const Pose& y);
 
-/// Checks that all indices are in range and steps and events fit together. Throws InputError: "`where`: event 12:
+/// Checks that all indices are in range and steps and events fit together. Throws InputError: "`where`: event
+/// 12:
 /// ...". A trace that passes cannot lead a reader of it out of bounds.
 void check_trace(const Trace& trace, const std::string& where);
 
