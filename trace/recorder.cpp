@@ -81,6 +81,7 @@ Trace Recorder::take() {
       (trace_.steps.empty() || (!trace_.events.empty() && trace_.steps.front().first_event != 0)))
     throw std::logic_error("Recorder: events came before begin_step()");
   close_step();
+  trace_.events_seen = seen_;
   Replay replay(reps_, settings_.request.wrapper);
   for (Event& event : trace_.events)
     if (replay.apply(event, trace_.events)) event.boundary = replay.boundary_size(event.side);
