@@ -4,6 +4,7 @@
 #include <stdexcept>
 
 #include "engine/error.hpp"
+#include "engine/mesh/file_bytes.hpp"
 #include "trace/hex.hpp"
 #include "trace/names.hpp"
 
@@ -12,7 +13,7 @@ namespace lrb::trace {
 namespace {
 
 std::string describe(const BodyInfo& info) {
-  return "\"" + info.name + "\" (" + std::to_string(info.total_faces) + " faces, " +
+  return "\"" + printable_name(info.name) + "\" (" + std::to_string(info.total_faces) + " faces, " +
          std::to_string(info.regions) + " regions, hash " + to_hex(info.hash) + ")";
 }
 

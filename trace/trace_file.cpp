@@ -10,8 +10,9 @@
 
 #include <zlib.h>
 
-#include "engine/atomic_file.hpp"
 #include "engine/error.hpp"
+#include "engine/mesh/atomic_file.hpp"
+#include "engine/mesh/file_bytes.hpp"
 #include "trace/trace_json.hpp"
 
 namespace lrb::trace {
@@ -68,7 +69,8 @@ struct GzClose {
 };
 
 [[noreturn]] void fail_to_read(const std::string& path, const std::string& why) {
-  throw InputError(path + ": cannot be read: " + why + "; give a trace.json or trace.json.gz");
+  throw InputError(printable_name(path) + ": cannot be read: " + why +
+                   "; give a trace.json or trace.json.gz");
 }
 
 /// All bytes of a file, decompressed if they are gzip's.
@@ -112,7 +114,7 @@ void save_trace(const Trace& trace, const std::string& path) {
 }
 
 Trace load_trace(const std::string& path, const ReadLimits& limits) {
-  return trace_from_json(read_all(path, limits.max_bytes), path);
+  return trace_from_json(read_all(path, limits.max_bytes), printable_name(path));
 }
 
 }  // namespace lrb::trace

@@ -26,7 +26,8 @@ namespace lrb::trace {
 /// Writes to a sink. Throws what the sink throws.
 void write_trace(const Trace& trace, ByteSink& sink);
 std::string trace_to_json(const Trace& trace);
-/// Writes `path`, compressed if it ends in ".gz", whole or not at all. Throws EnvironmentError.
+/// Writes `path`, compressed if it ends in ".gz", whole or not at all. Throws
+/// EnvironmentError (disk full, ...) or InputError (no such folder, ...).
 void save_trace(const Trace& trace, const std::string& path);
 
 struct ReadLimits {

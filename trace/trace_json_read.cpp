@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "engine/error.hpp"
+#include "engine/mesh/file_bytes.hpp"
 #include "trace/hex.hpp"
 #include "trace/names.hpp"
 #include "trace/trace_json.hpp"
@@ -202,7 +203,7 @@ class Reader {
     const auto version = metadata.at("version").integer<std::uint32_t>();
     if (version > kTraceVersion)
       throw InputError(name_ + ": /metadata/version: written in format " + std::to_string(version) +
-                       " by lrbscope " + metadata.at("lrbscope").string() +
+                       " by lrbscope " + printable_name(metadata.at("lrbscope").string()) +
                        ", but this one reads up to format " + std::to_string(kTraceVersion) +
                        "; use that version or a newer one");
     if (version == 0) metadata.at("version").fail("a version from 1");

@@ -14,7 +14,7 @@
 #include <doctest/doctest.h>
 #include <nlohmann/json.hpp>
 
-#include "engine/atomic_file.hpp"
+#include "engine/mesh/atomic_file.hpp"
 #include "engine/error.hpp"
 #include "tests/trace/runs.hpp"
 
@@ -137,8 +137,8 @@ TEST_CASE("files: plain, compressed, replaced whole, or not at all") {
   CHECK(bytes_of(gz).substr(0, 2) == "\x1f\x8b");
   CHECK(4 * fs::file_size(gz) < fs::file_size(plain));
   CHECK(folder.count() == 2);
-  CHECK_THROWS_AS(save_trace(t, folder.file("no/such/folder.json")), EnvironmentError);
-  CHECK_THROWS_AS(save_trace(t, folder.path.string()), EnvironmentError);
+  CHECK_THROWS_AS(save_trace(t, folder.file("no/such/folder.json")), InputError);
+  CHECK_THROWS_AS(save_trace(t, folder.path.string()), InputError);
   CHECK(folder.count() == 2);
   if (fs::exists("/dev/full")) CHECK_THROWS_AS(save_trace(t, "/dev/full"), EnvironmentError);
 }
