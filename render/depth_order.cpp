@@ -15,6 +15,8 @@ constexpr std::size_t kLeaf = 24;
 /// A corner this close to a plane lies on it; a share of the scene's size. Wrong by so little, a cut does not
 /// show.
 constexpr double kOnPlane = 1e-9;
+/// Planes of the axes are used as long as neither side keeps more than this share of the polygons.
+constexpr double kWorthIt = 0.75;
 /// Ends the recursion where cutting does not get anywhere (many polygons through one point).
 constexpr int kMaxDepth = 64;
 
@@ -39,12 +41,8 @@ class Sorter {
       return;
     }
     Plane plane;
-    if (polygons.size() > kLeaf) {
-      plane = median_plane(polygons);
-    } else if (!best_own_plane(polygons, plane)) {
-      for (EyePolygon& p : polygons) out_.push_back(std::move(p));
-      return;
-    }
+    const bool by_axis = polygons.size() > kLeaf && median_plane(polygons, plane);
+    if (!by_axis) plane = best_own_plane(polygons);
     Sides sides;
     for (EyePolygon& p : polygons) split(std::move(p), plane, sides);
     polygons.clear();
@@ -61,7 +59,8 @@ class Sorter {
     return sum / static_cast<double>(p.x.size());
   }
 
-  static Plane median_plane(const std::vector<EyePolygon>& polygons) {
+  /// False if the plane would cut so many polygons that little is won.
+  bool median_plane(const std::vector<EyePolygon>& polygons, Plane& plane) const {
     Vector3d lo = Vector3d::Constant(std::numeric_limits<double>::infinity()), hi = -lo;
     for (const EyePolygon& p : polygons) {
       const Vector3d c = centre(p);
@@ -73,31 +72,42 @@ class Sorter {
     for (const EyePolygon& p : polygons) at.push_back(centre(p)[axis]);
     const auto middle = at.begin() + static_cast<std::ptrdiff_t>(at.size() / 2);
     std::nth_element(at.begin(), middle, at.end());
-    return {Vector3d::Unit(axis), *middle};
+    plane = {Vector3d::Unit(axis), *middle};
+    const Count n = count(polygons, plane);
+    return static_cast<double>(std::max(n.front, n.back) + n.cut) <=
+           kWorthIt * static_cast<double>(polygons.size());
   }
 
-  /// The polygon whose plane cuts the fewest others, the most even one of these. False if all are degenerate.
-  bool best_own_plane(const std::vector<EyePolygon>& polygons, Plane& best) const {
+  /// Of the first few polygons, the one whose plane cuts the fewest others, and then the most even one.
+  Plane best_own_plane(const std::vector<EyePolygon>& polygons) const {
+    Plane best{};
     std::size_t least = std::numeric_limits<std::size_t>::max();
-    for (const EyePolygon& p : polygons) {
-      const double length = p.normal.norm();
-      if (!(length > 0)) continue;
-      Plane plane{p.normal / length, 0};
-      plane.offset = plane.normal.dot(centre(p));
-      std::size_t cut = 0, front = 0, back = 0;
-      for (const EyePolygon& q : polygons) {
-        const auto [low, high] = heights(q, plane);
-        if (low < -tolerance_ && high > tolerance_)
-          ++cut;
-        else if (high > tolerance_)
-          ++front;
-        else if (low < -tolerance_)
-          ++back;
-      }
-      const std::size_t cost = cut * polygons.size() + (front > back ? front - back : back - front);
+    for (std::size_t i = 0; i < std::min(polygons.size(), kLeaf); ++i) {
+      Plane plane{polygons[i].normal.normalized(), 0};
+      plane.offset = plane.normal.dot(centre(polygons[i]));
+      const Count n = count(polygons, plane);
+      const std::size_t cost =
+          n.cut * polygons.size() + (n.front > n.back ? n.front - n.back : n.back - n.front);
       if (cost < least) least = cost, best = plane;
     }
-    return least != std::numeric_limits<std::size_t>::max();
+    return best;
+  }
+
+  struct Count {
+    std::size_t front = 0, back = 0, cut = 0;
+  };
+  Count count(const std::vector<EyePolygon>& polygons, const Plane& plane) const {
+    Count n;
+    for (const EyePolygon& p : polygons) {
+      const auto [low, high] = heights(p, plane);
+      if (low < -tolerance_ && high > tolerance_)
+        ++n.cut;
+      else if (high > tolerance_)
+        ++n.front;
+      else if (low < -tolerance_)
+        ++n.back;
+    }
+    return n;
   }
 
   static std::pair<double, double> heights(const EyePolygon& p, const Plane& plane) {
@@ -143,6 +153,7 @@ class Sorter {
 }  // namespace
 
 std::vector<EyePolygon> back_to_front(std::vector<EyePolygon> polygons, bool orthographic) {
+  std::erase_if(polygons, [](const EyePolygon& p) { return !(p.normal.squaredNorm() > 0); });
   double size = 0;
   for (const EyePolygon& p : polygons) {
     for (const Vector3d& x : p.x) size = std::max(size, x.cwiseAbs().maxCoeff());

@@ -17,12 +17,12 @@ namespace lrb {
 /// A convex polygon in the eye's frame (x right, y up, z = distance in front of the eye).
 struct EyePolygon {
   std::vector<Eigen::Vector3d> x;
-  Eigen::Vector3d normal;    ///< of any length; zero for degenerate polygons
+  Eigen::Vector3d normal;    ///< of any length
   std::uint32_t source = 0;  ///< whatever the caller likes; kept by the pieces
 };
 
-/// Farthest first. Polygons in one plane stay in the order given. The viewer stands at the origin;
-/// orthographic: infinitely far away, looking along +z.
+/// Farthest first. Polygons in one plane stay in the order given; those without area (normal zero) are left
+/// out. The viewer stands at the origin; orthographic: infinitely far away, looking along +z.
 std::vector<EyePolygon> back_to_front(std::vector<EyePolygon> polygons, bool orthographic);
 
 }  // namespace lrb

@@ -64,7 +64,7 @@ struct DrawLine {
   float halo_width = 0;  ///< pixels on each side, under the line
   Layer layer =
       Layer::opaque;  ///< `translucent` means: drawn after the translucent triangles, hidden by opaque ones
-  std::int8_t nudge = 1;
+  std::int8_t nudge = 4;
 };
 
 struct DrawPoint {
@@ -74,7 +74,7 @@ struct DrawPoint {
   Rgba halo = kTransparent;
   float halo_width = 0;
   Layer layer = Layer::opaque;
-  std::int8_t nudge = 1;
+  std::int8_t nudge = 4;
 };
 
 /// Text beside a point; always on top.
@@ -88,7 +88,7 @@ struct DrawLabel {
 };
 
 struct DrawList {
-  std::vector<EdgeStyle> edge_styles = {EdgeStyle{}};
+  std::vector<EdgeStyle> edge_styles = std::vector<EdgeStyle>(1);  ///< the first is the default
   std::vector<DrawFill> fills;
   std::vector<DrawTriangle> triangles;
   std::vector<DrawLine> lines;

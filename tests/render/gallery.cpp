@@ -5,6 +5,9 @@
 #include <filesystem>
 #include <string>
 
+#include "render/montage.hpp"
+#include "render/overlay.hpp"
+#include "render/palette.hpp"
 #include "render/png.hpp"
 #include "render/rasterize.hpp"
 #include "tests/render/shapes.hpp"
@@ -79,5 +82,55 @@ int main(int argc, char** argv) {
   save("two_bodies_ortho", list, fit_camera(points, o.width, o.height, fit), o);
   fit.orthographic = false;
   save("contact", list, fit_contact(list.lines[0].points, bounds(list), o.width, o.height, fit), o);
+
+  Overlay overlay;
+  overlay.title = "Ball against ball, step 12 of 60";
+  overlay.event = "Event 1 204: face test, pseudo face 17 of A against real face 5 120 of B: they cross";
+  overlay.event_colour = palette::event(EventKind::face_test);
+  overlay.counters = {{"face tests", group_digits(1204)},
+                      {"refinements", group_digits(87)},
+                      {"wrapper A", "112 faces"},
+                      {"wrapper B", "98 faces"},
+                      {"contacts", group_digits(23)}};
+  using Mark = LegendItem::Mark;
+  overlay.key = {{Mark::solid, palette::body(Side::a), "A, real faces"},
+                 {Mark::translucent, palette::body(Side::a), "A, pseudo faces"},
+                 {Mark::solid, palette::body(Side::b), "B, real faces"},
+                 {Mark::translucent, palette::body(Side::b), "B, pseudo faces"},
+                 {Mark::solid, palette::kRefining, "region being refined"},
+                 {Mark::solid, palette::kUnderTest, "pair under test"},
+                 {Mark::line, palette::kContact, "contact"},
+                 {Mark::dashed, palette::kContact, "contact, hidden"}};
+  overlay.scale = ScaleBar{"face tests per face", 0, 1234};
+  fit = {};
+  for (const auto& [w, h] : {std::pair{640, 360}, {1280, 720}, {1920, 1080}, {600, 800}}) {
+    const OverlayLayout layout = lay_out(overlay, w, h);
+    o.width = layout.picture.width, o.height = layout.picture.height;
+    const Image picture = r.draw(list, fit_camera(points, o.width, o.height, fit), o);
+    write_png(compose_frame(picture, layout.picture, overlay, w, h),
+              folder + "/frame_" + std::to_string(w) + ".png");
+  }
+  o.width = 480, o.height = 360;
+  std::vector<Panel> panels;
+  for (int i = 0; i < 4; ++i) {
+    fit.view = view_from_angles(-0.8 + i * 0.7, 0.4);
+    panels.push_back(
+        {r.draw(list, fit_camera(points, o.width, o.height, fit), o), "seen from " + std::to_string(i)});
+  }
+  panels[2].caption = "a caption that is long enough to need a second line, to see how it wraps";
+  write_png(montage(panels), folder + "/montage.png");
+
+  Image colours(900, 300);
+  for (int i = 0; i < 60; ++i)
+    colours.fill({i * 15, 0, 15, 60}, palette::category(static_cast<std::uint32_t>(i)));
+  for (int x = 0; x < 900; ++x) colours.fill({x, 70, 1, 60}, palette::viridis(x / 899.0));
+  const Rgba named[] = {palette::body(Side::a), palette::body(Side::b), palette::kContact,
+                        palette::kRefining,     palette::kUnderTest,    palette::kPurple};
+  for (int i = 0; i < 6; ++i) {
+    colours.fill({i * 150, 140, 150, 70}, named[i]);
+    const auto grey = static_cast<std::uint8_t>(luma(named[i]));
+    colours.fill({i * 150, 215, 150, 70}, {grey, grey, grey});
+  }
+  write_png(colours, folder + "/colours.png");
   return 0;
 }
