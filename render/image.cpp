@@ -4,6 +4,7 @@
 #include <string>
 
 #include "engine/error.hpp"
+#include "engine/lrb/fnv.hpp"
 
 namespace lrb {
 
@@ -47,15 +48,12 @@ void Image::paste(const Image& image, int x, int y) {
 }
 
 std::uint64_t hash(const Image& image) {
-  std::uint64_t h = 0xcbf29ce484222325;
-  const auto add = [&h](std::uint8_t byte) { h = (h ^ byte) * 0x100000001b3; };
-  for (const int side : {image.width(), image.height()}) {
-    for (int shift = 0; shift < 32; shift += 8) add(static_cast<std::uint8_t>(side >> shift));
-  }
-  for (const Rgba p : image.pixels()) {
-    add(p.r), add(p.g), add(p.b), add(p.a);
-  }
-  return h;
+  static_assert(sizeof(Rgba) == 4);
+  Fnv64 h;
+  h.add_value(image.width());
+  h.add_value(image.height());
+  h.add_bytes(image.pixels().data(), image.pixels().size() * sizeof(Rgba));
+  return h.value();
 }
 
 }  // namespace lrb

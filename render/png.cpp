@@ -2,9 +2,7 @@
 
 #include <algorithm>
 #include <array>
-#include <cerrno>
 #include <cmath>
-#include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
@@ -16,6 +14,7 @@
 #include <zlib.h>
 
 #include "engine/error.hpp"
+#include "engine/mesh/atomic_file.hpp"
 
 namespace {
 
@@ -176,25 +175,9 @@ DecodedPng decode_png(std::span<const std::uint8_t> bytes, const std::string& na
   return out;
 }
 
-void write_file(const std::string& path, std::span<const std::uint8_t> bytes) {
-  const std::string beside = path + ".part" + std::to_string(getpid());
-  const auto fail = [&](const char* what) {
-    const int error = errno;
-    std::remove(beside.c_str());
-    throw EnvironmentError(path + ": " + what + ": " + std::strerror(error));
-  };
-  std::FILE* file = std::fopen(beside.c_str(), "wb");
-  if (file == nullptr) fail("cannot create the file");
-  const bool written = std::fwrite(bytes.data(), 1, bytes.size(), file) == bytes.size();
-  const int error = errno;
-  const bool closed = std::fclose(file) == 0;
-  if (!written) errno = error;
-  if (!written || !closed) fail("cannot write the file");
-  if (std::rename(beside.c_str(), path.c_str()) != 0) fail("cannot give the written file its name");
-}
-
 void write_png(const Image& image, const std::string& path, const PngOptions& options) {
-  write_file(path, encode_png(image, options));
+  const Bytes bytes = encode_png(image, options);
+  write_file(path, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
 }
 
 DecodedPng read_png(const std::string& path) {

@@ -31,9 +31,8 @@ struct DecodedPng {
 /// Throws InputError with `name` in it if the bytes are no PNG, or a damaged one.
 DecodedPng decode_png(std::span<const std::uint8_t> bytes, const std::string& name = "PNG");
 
-/// Writes beside the file and renames, so that no half-written file is ever seen under its name.
-/// Throws EnvironmentError.
-void write_file(const std::string& path, std::span<const std::uint8_t> bytes);
+/// Whole or not at all (AtomicFile): no half-written picture is ever seen under its name. Throws InputError
+/// if the path is at fault, EnvironmentError if the machine is.
 void write_png(const Image& image, const std::string& path, const PngOptions& options = {});
 /// Throws InputError if the file cannot be read.
 DecodedPng read_png(const std::string& path);

@@ -91,9 +91,9 @@ TEST_CASE("files appear whole or not at all") {
   write_png(image, folder / "a.png", {{{"k", "v"}}, 0});
   CHECK(read_png(folder / "a.png").image == image);
   CHECK(folder.files() == 1);
-  CHECK_THROWS_AS(write_png(image, folder / "missing/a.png"), EnvironmentError);
+  CHECK_THROWS_AS(write_png(image, folder / "missing/a.png"), InputError);
   fs::create_directories(folder / "taken.png");
-  CHECK_THROWS_AS(write_png(image, folder / "taken.png"), EnvironmentError);
+  CHECK_THROWS_AS(write_png(image, folder / "taken.png"), InputError);
   CHECK(folder.files() == 2);
   CHECK_THROWS_AS(read_png(folder / "absent.png"), InputError);
 }
@@ -112,7 +112,7 @@ TEST_CASE("the frame writer writes all frames and reports its errors") {
   CHECK(read_png(folder / "last.png").image == image);
   FrameWriter writer;
   writer.push(folder / "missing/f.png", image);
-  CHECK_THROWS_AS(writer.finish(), EnvironmentError);
+  CHECK_THROWS_AS(writer.finish(), InputError);
   writer.push(folder / "after.png", image);
   writer.finish();
   CHECK(fs::exists(folder / "after.png"));
