@@ -212,7 +212,9 @@ TEST_CASE("the file keeps the rules by which Perfetto and chrome://tracing show 
     CHECK(threads.size() == 5);
     REQUIRE_FALSE(flows.empty());
     std::size_t longest = 0;
-    for (const auto& [id, points] : flows) {
+    for (const auto& flow : flows) {
+      const std::uint64_t id = flow.first;
+      const std::vector<Point>& points = flow.second;
       CAPTURE(id);
       CHECK(t.events[id].kind == EventKind::refine);
       longest = std::max(longest, points.size());
