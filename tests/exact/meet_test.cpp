@@ -20,7 +20,7 @@ void for_each_kind(std::uint64_t seed, int rounds, int grid_factor, Check check)
     const Kind kind = static_cast<Kind>(k);
     const bool is_grid = kind == Kind::grid || kind == Kind::tiny_grid;
     test::Rng rng(seed + static_cast<std::uint64_t>(k));
-    const int n = test::effort(rounds) * (is_grid ? grid_factor : 1);
+    const int n = test::rounds_for(kind, rounds) * (is_grid ? grid_factor : 1);
     int wrong = 0;
     for (int i = 0; i < n; ++i) wrong += check(test::random_pair(rng, kind)) ? 0 : 1;
     CHECK_MESSAGE(wrong == 0, test::name_of(kind) << ": " << wrong << " of " << n << " disagree");

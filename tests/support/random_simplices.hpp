@@ -49,6 +49,11 @@ enum class Kind {
   count
 };
 
+/// Rounds for one kind: the oracle's integers are thousands of bits long for the extreme ones.
+inline int rounds_for(Kind k, int standard) {
+  return effort(k == Kind::extreme ? (standard + 4) / 5 : standard);
+}
+
 inline std::string name_of(Kind k) {
   static constexpr const char* kNames[] = {"grid",   "tiny_grid", "nudged_grid", "real",
                                            "shared", "coplanar",  "far_grid",    "scaled",
