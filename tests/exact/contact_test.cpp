@@ -151,3 +151,24 @@ TEST_CASE("a star of two coplanar triangles has six corners") {
   CHECK(c.coplanar);
   CHECK(c.meet == exact::Meet::touch);
 }
+
+TEST_CASE("coordinates keep their accuracy where the planes are nearly parallel") {
+  test::Rng rng(33);
+  int met = 0;
+  std::string fault;
+  for (int i = 0; i < test::effort(600) && fault.empty(); ++i) {
+    test::SimplexPair s;
+    test::fill_real(rng, s);
+    const double angle = std::ldexp(1.0, -test::random_int(rng, 10, 53));
+    for (std::size_t j = 0; j < 6; ++j) {
+      auto& p = s.p[j];
+      p[2] = 0.3 * p[0] + 0.7 * p[1] + (j < 3 ? 0 : angle * (p[2] - 0.5));
+    }
+    const auto a = s.a(), b = s.b();
+    if (exact::meet_triangles(a.data(), b.data()) != exact::Meet::cross) continue;
+    ++met;
+    fault = compare(s, 3);
+  }
+  CHECK_MESSAGE(fault.empty(), fault);
+  CHECK(met > 0);
+}
