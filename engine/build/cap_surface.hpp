@@ -76,6 +76,10 @@ class CapSurface {
   int collapse_to_new(const Star& star, const Eigen::Vector3d& x);
   void collapse_onto_ring(const Star& star);
 
+  /// A polygon of the mesh has one face in the complex, so its triangles must all stay or all be covered: covers those
+  /// that stayed alone, by flipping an edge outward. False if that cannot be done.
+  bool keep_polygons_whole(const HullMesh& hull, const Patch& patch);
+
   /// Calls visit(neighbour) for the vertices round an interior vertex.
   template <class Visit>
   void for_each_neighbour(int u, Visit&& visit) const {
@@ -105,6 +109,8 @@ class CapSurface {
   int count_marked_neighbours_of_ring(int r) const;
   void replace(const Star& star, int w);
   void set_across(int code, int a, int b, int f);
+  bool are_neighbours(int a, int b) const;
+  bool flip_outward(int f, int i);
 
   std::vector<HullMesh::Point> points_;
   std::vector<HullMesh::Corner> corners_;  ///< (old vertices)

@@ -124,6 +124,7 @@ void HullMesh::remove(std::span<const Slot> slots) {
 }
 
 void HullMesh::add(Slot s, const Triangle& t) {
+  if (s == slot_count()) triangles_.emplace_back();
   triangles_[s] = t;
   for (const Corner v : t.v) {
     slot_of_[v] = s;

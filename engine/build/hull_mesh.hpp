@@ -83,11 +83,12 @@ class HullMesh {
 
   /// Removes triangles without closing the gap: add() must follow.
   void remove(std::span<const Slot> slots);
-  /// Fills an empty slot. Neighbours are as given; the other side is to be set with link().
+  /// Fills an empty slot, or the next one after the last. Neighbours are as given; the other side is to be set with
+  /// link().
   void add(Slot s, const Triangle& t);
   /// Makes t the neighbour of s over the edge of s that starts at `from`.
   void link(Slot s, Corner from, Slot t) { triangles_[s].across[index_of(s, from)] = t; }
-  void set_face(Slot s, FaceId face) { triangles_[s].face = face; }
+  void set_component(Slot s, std::uint32_t component) { triangles_[s].component = component; }
 
   std::vector<Slot> alive_slots() const;
   /// Six times the volume behind a set of triangles that is closed.

@@ -116,7 +116,7 @@ std::optional<Vector3> PatchCap::place(double radius, const Vector3& centre) {
   const double length = outward.norm();
   if (!(length > 0)) return std::nullopt;
   collect_half_spaces(centre, margin);
-  const Vector3 target = outward * (-radius / length);
+  const Vector3 target = outward * (-limits_.depth * radius / length);
   auto w = nearest_point(target, half_spaces_, slack);
   if (!w) return std::nullopt;
   const double reach = 2 * radius;

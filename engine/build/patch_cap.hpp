@@ -19,6 +19,7 @@ class PatchCap {
   struct Limits {
     double volume = 0;         ///< that one collapse may add, or rather its cost; unit cubed
     int faces = 0;             ///< stop when the cap has no more
+    double depth = 1;          ///< of the point that is projected, below the star's centre; in radii of the star
     EmbedCheck* check = nullptr;  ///< if set, every collapse must pass it
   };
 

@@ -1,148 +1,98 @@
 #include "engine/build/region_split.hpp"
 
 #include <algorithm>
-#include <utility>
 
 #include <Eigen/Geometry>
 
+#include "engine/ids.hpp"
 #include "engine/mesh/disjoint_sets.hpp"
 
 namespace lrb {
 namespace {
 
-using Vector3 = Eigen::Vector3d;
+std::uint64_t edge_key(std::uint32_t a, std::uint32_t b) { return std::uint64_t{a} << 32 | b; }
 
-class Splitter {
- public:
-  Splitter(const HullMesh& hull, const Patch& patch, const CapSurface& cap)
-      : hull_(hull), patch_(patch), cap_(cap), old_count_(static_cast<std::uint32_t>(patch.slots.size())),
-        sets_(patch.slots.size() + cap.faces().size()) {
-    out_.of_old.assign(patch.slots.size(), 0);
-    out_.of_new.assign(cap.faces().size(), kNull);
-    for (std::uint32_t f = 0; f < cap.faces().size(); ++f) {
-      const auto& face = cap.faces()[f];
-      if (!face.alive) continue;
-      if (face.kept >= 0)
-        out_.of_old[face.kept] = kNull;
-      else
-        out_.of_new[f] = 0;
+/// Joins over edges: old triangles first, then the added ones.
+DisjointSets connect(std::span<const PointTriangle> old, std::span<const PointTriangle> added) {
+  const auto old_count = static_cast<std::uint32_t>(old.size());
+  DisjointSets sets(old.size() + added.size());
+  const EdgeIndex old_edges(old), added_edges(added);
+  for (std::uint32_t i = 0; i < added.size(); ++i) {
+    for (int k = 0; k < 3; ++k) {
+      const std::uint32_t a = added[i][k], b = added[i][(k + 1) % 3];
+      if (const std::uint32_t below = old_edges.find(a, b); below != kNull)
+        sets.join(below, old_count + i);
+      else if (const std::uint32_t beside = added_edges.find(b, a); beside != kNull)
+        sets.join(old_count + beside, old_count + i);
     }
   }
-
-  RegionPieces run() {
-    join_new();
-    join_old();
-    number();
-    merge_shells();
-    return std::move(out_);
+  for (std::uint32_t i = 0; i < old_count; ++i) {
+    for (int k = 0; k < 3; ++k) {
+      const std::uint32_t a = old[i][k], b = old[i][(k + 1) % 3];
+      if (added_edges.find(a, b) != kNull) continue;
+      if (const std::uint32_t beside = old_edges.find(b, a); beside != kNull) sets.join(beside, i);
+    }
   }
+  return sets;
+}
 
- private:
-  struct Edge {
-    std::uint64_t key;
-    std::uint32_t face;
-    bool operator<(const Edge& other) const { return key < other.key; }
+std::vector<double> volumes_of(const RegionPieces& pieces, std::span<const PointTriangle> old,
+                               std::span<const PointTriangle> added, std::span<const Eigen::Vector3d> points) {
+  const Eigen::Vector3d origin = points[added.empty() ? old[0][0] : added[0][0]];
+  const auto volume = [&](const PointTriangle& t) {
+    return (points[t[0]] - origin).dot((points[t[1]] - origin).cross(points[t[2]] - origin));
   };
+  std::vector<double> volumes(pieces.count, 0);
+  for (std::size_t i = 0; i < added.size(); ++i) volumes[pieces.of_added[i]] += volume(added[i]);
+  for (std::size_t i = 0; i < old.size(); ++i) volumes[pieces.of_old[i]] -= volume(old[i]);
+  return volumes;
+}
 
-  /// Vertices of both surfaces in one numbering.
-  std::uint64_t name(int v) const { return v < cap_.first_new() ? cap_.corner(v) : hull_.point_count() + static_cast<std::uint32_t>(v); }
-  static std::uint64_t key(std::uint64_t a, std::uint64_t b) { return a << 32 | b; }
-
-  void join_new() {
-    for (std::uint32_t f = 0; f < out_.of_new.size(); ++f) {
-      if (out_.of_new[f] == kNull) continue;
-      for (int i = 0; i < 3; ++i)
-        edges_.push_back({key(name(cap_.faces()[f].v[i]), name(cap_.faces()[f].v[(i + 1) % 3])), f});
-    }
-    std::sort(edges_.begin(), edges_.end());
-    met_.assign(edges_.size(), false);
-  }
-
-  void join_old() {
-    for (std::uint32_t i = 0; i < old_count_; ++i) {
-      if (out_.of_old[i] == kNull) continue;
-      const auto& t = hull_[patch_.slots[i]];
-      for (int j = 0; j < 3; ++j) {
-        const Edge wanted{key(t.v[j], t.v[(j + 1) % 3]), 0};
-        const auto e = std::lower_bound(edges_.begin(), edges_.end(), wanted);
-        if (e != edges_.end() && e->key == wanted.key) {
-          sets_.join(i, old_count_ + e->face);
-          met_[static_cast<std::size_t>(e - edges_.begin())] = true;
-        } else if (const int other = cap_.local_face(patch_, t.across[j]); other >= 0) {
-          sets_.join(i, static_cast<std::uint32_t>(other));
-        }
-      }
-      if (hull_.has_polygons()) {
-        const auto unit = hull_.unit(patch_.slots[i]);
-        for (HullMesh::Slot s = unit.first; s < unit.last; ++s)
-          if (const int other = cap_.local_face(patch_, s); other >= 0 && out_.of_old[other] != kNull)
-            sets_.join(i, static_cast<std::uint32_t>(other));
-      }
-    }
-    for (std::size_t e = 0; e < edges_.size(); ++e) {
-      if (met_[e]) continue;  // its triangle goes on in the patch there
-      const auto& face = cap_.faces()[edges_[e].face];
-      for (int j = 0; j < 3; ++j)
-        if (key(name(face.v[j]), name(face.v[(j + 1) % 3])) == edges_[e].key && face.across[j] >= 0)
-          sets_.join(old_count_ + edges_[e].face, old_count_ + static_cast<std::uint32_t>(face.across[j]));
-    }
-  }
-
-  void number() {
-    std::vector<std::uint32_t> number(old_count_ + out_.of_new.size(), kNull);
-    const auto assign = [&](std::uint32_t& piece, std::uint32_t node) {
-      if (piece == kNull) return;
-      std::uint32_t& n = number[sets_.leader(node)];
-      if (n == kNull) n = out_.count++;
-      piece = n;
-    };
-    for (std::uint32_t i = 0; i < old_count_; ++i) assign(out_.of_old[i], i);
-    for (std::uint32_t f = 0; f < out_.of_new.size(); ++f) assign(out_.of_new[f], old_count_ + f);
-  }
-
-  void merge_shells() {
-    if (out_.count <= 1) return;
-    const Vector3 origin = hull_.x(hull_[patch_.slots[0]].v[0]);
-    const auto volume = [&](const Vector3& a, const Vector3& b, const Vector3& c) {
-      return (a - origin).dot((b - origin).cross(c - origin));
-    };
-    std::vector<double> volumes(out_.count, 0);
-    for (std::uint32_t f = 0; f < out_.of_new.size(); ++f) {
-      const auto& v = cap_.faces()[f].v;
-      if (out_.of_new[f] != kNull) volumes[out_.of_new[f]] += volume(cap_.x(v[0]), cap_.x(v[1]), cap_.x(v[2]));
-    }
-    for (std::uint32_t i = 0; i < old_count_; ++i) {
-      const auto& v = hull_[patch_.slots[i]].v;
-      if (out_.of_old[i] != kNull) volumes[out_.of_old[i]] -= volume(hull_.x(v[0]), hull_.x(v[1]), hull_.x(v[2]));
-    }
-    const auto largest =
-        static_cast<std::uint32_t>(std::max_element(volumes.begin(), volumes.end()) - volumes.begin());
-    std::vector<std::uint32_t> renumbered(out_.count);
-    std::uint32_t next = 0;
-    for (std::uint32_t p = 0; p < out_.count; ++p)
-      if (volumes[p] > 0 || p == largest) renumbered[p] = next++;
-    for (std::uint32_t p = 0; p < out_.count; ++p)
-      if (!(volumes[p] > 0) && p != largest) renumbered[p] = renumbered[largest];
-    out_.count = next;
-    for (auto* pieces : {&out_.of_old, &out_.of_new})
-      for (std::uint32_t& p : *pieces)
-        if (p != kNull) p = renumbered[p];
-  }
-
-  const HullMesh& hull_;
-  const Patch& patch_;
-  const CapSurface& cap_;
-  const std::uint32_t old_count_;
-  DisjointSets sets_;  ///< the patch's triangles, then the cap's
-  std::vector<Edge> edges_;
-  std::vector<bool> met_;
-  RegionPieces out_;
-};
+void merge_shells(RegionPieces& pieces, const std::vector<double>& volumes) {
+  const auto largest =
+      static_cast<std::uint32_t>(std::max_element(volumes.begin(), volumes.end()) - volumes.begin());
+  const auto stays = [&](std::uint32_t p) { return volumes[p] > 0 || p == largest; };
+  std::vector<std::uint32_t> renumbered(pieces.count);
+  std::uint32_t next = 0;
+  for (std::uint32_t p = 0; p < pieces.count; ++p)
+    if (stays(p)) renumbered[p] = next++;
+  for (std::uint32_t p = 0; p < pieces.count; ++p)
+    if (!stays(p)) renumbered[p] = renumbered[largest];
+  pieces.count = next;
+  for (auto* list : {&pieces.of_old, &pieces.of_added})
+    for (std::uint32_t& p : *list) p = renumbered[p];
+}
 
 }  // namespace
 
-RegionPieces split_region(const HullMesh& hull, const Patch& patch, const CapSurface& cap) {
-  return Splitter(hull, patch, cap).run();
+EdgeIndex::EdgeIndex(std::span<const PointTriangle> triangles) {
+  edges_.reserve(3 * triangles.size());
+  for (std::uint32_t i = 0; i < triangles.size(); ++i)
+    for (int k = 0; k < 3; ++k) edges_.push_back({edge_key(triangles[i][k], triangles[i][(k + 1) % 3]), i});
+  std::sort(edges_.begin(), edges_.end(), [](const Edge& e, const Edge& f) { return e.key < f.key; });
+}
+
+std::uint32_t EdgeIndex::find(std::uint32_t a, std::uint32_t b) const {
+  const std::uint64_t key = edge_key(a, b);
+  const auto e = std::lower_bound(edges_.begin(), edges_.end(), key,
+                                  [](const Edge& edge, std::uint64_t wanted) { return edge.key < wanted; });
+  return e != edges_.end() && e->key == key ? e->triangle : kNull;
+}
+
+RegionPieces split_region(std::span<const PointTriangle> old, std::span<const std::uint32_t> old_face,
+                          std::span<const PointTriangle> added, std::span<const Eigen::Vector3d> points) {
+  DisjointSets sets = connect(old, added);
+  for (std::uint32_t i = 1; i < old.size(); ++i)
+    if (old_face[i] == old_face[i - 1]) sets.join(i - 1, i);
+  RegionPieces pieces;
+  std::vector<std::uint32_t> number(old.size() + added.size(), kNull);
+  for (std::uint32_t i = 0; i < number.size(); ++i) {
+    std::uint32_t& n = number[sets.leader(i)];
+    if (n == kNull) n = pieces.count++;
+    (i < old.size() ? pieces.of_old : pieces.of_added).push_back(n);
+  }
+  if (pieces.count > 1) merge_shells(pieces, volumes_of(pieces, old, added, points));
+  return pieces;
 }
 
 }  // namespace lrb
