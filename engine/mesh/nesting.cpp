@@ -56,16 +56,15 @@ class Nesting {
   }
 
   /// Is a vertex of `inner` inside `outer`? One that lies on the surface says nothing: then the next is
-  /// tried.
+  /// tried. If all do, the two have their surface in common and neither is a void of the other.
   bool starts_inside(std::uint32_t inner, std::uint32_t outer) const {
-    static constexpr int kTries = 16;  // faces, so up to three times as many vertices
-    PointSide side{};
-    for (std::size_t i = 0; i < faces_[inner].size() && i < kTries; ++i)
+    static constexpr std::size_t kTries = 16;  // faces, so up to three times as many vertices
+    for (std::size_t i = 0; i < std::min(kTries, faces_[inner].size()); ++i)
       for (const VertexId v : mesh_.face(faces_[inner][i])) {
-        side = point_side(mesh_, faces_[outer], mesh_.vertices[v]);
-        if (!side.on_surface) return side.inside;
+        const PointSide side = point_side(mesh_, faces_[outer], mesh_.vertices[v]);
+        if (side != PointSide::on_surface) return side == PointSide::inside;
       }
-    return side.inside;
+    return false;
   }
 
   void drop_crossing(std::vector<Pair>& nested) const {
