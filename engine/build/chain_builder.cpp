@@ -36,8 +36,9 @@ class ChainBuilder {
 
   LrbData run() {
     plan_polygon();
-    simplify();
-    if (outer_size() > max_outer_ && bridge()) simplify();
+    simplify(kCapWorth);
+    simplify(kLastCapWorth);
+    if (outer_size() > max_outer_ && bridge()) simplify(kLastCapWorth);
     fill_voids();
     if (outer_size() > max_outer_) close();
     return complex_.finish(true, false);
@@ -92,17 +93,17 @@ class ChainBuilder {
     }
   }
 
-  void simplify() {
+  void simplify(double worth) {
     for (;;) {
       const std::uint32_t before = hull_.segment_count();
       if (before <= max_outer_) return;
-      pass();
+      pass(worth);
       if (hull_.segment_count() > kLeastGain * before) return;
     }
   }
 
   /// Takes the caps that add least area for each segment they save, on chains that do not overlap.
-  void pass() {
+  void pass(double worth) {
     const std::vector<Slot> slots = hull_.alive_slots();
     std::vector<Box> slot_boxes(hull_.slot_count());
     for (const Slot s : slots) slot_boxes[s] = box_of(hull_, s);
@@ -122,6 +123,7 @@ class ChainBuilder {
         const auto cap = find_cap(hull_, s, length, bounds_, kCapVolumeLimit);
         if (!cap || (cap->apex && length < 3)) continue;
         const double saved = length - (cap->apex ? 2.0 : 1.0);
+        if ((cap->apex ? 2.0 : 1.0) > worth * length) continue;
         proposals.push_back({cap->area / saved, *cap});
       }
     }
@@ -237,6 +239,8 @@ class ChainBuilder {
 
   std::uint16_t layer() const { return static_cast<std::uint16_t>(pass_); }
   void end_pass() {
+    if (complex_.region_count() == regions_) return;
+    regions_ = complex_.region_count();
     ++pass_;
     if (options_.progress) options_.progress(pass_, hull_.segment_count());
   }
@@ -253,7 +257,8 @@ class ChainBuilder {
   std::vector<std::uint32_t> home_;  ///< (components)
   std::vector<Vector3> polygon_;
   std::vector<HalfSpace> bounds_;
-  std::uint32_t pass_ = 0;
+  std::uint32_t pass_ = 0;     ///< the number of the next
+  std::uint32_t regions_ = 0;  ///< before it
 };
 
 }  // namespace
