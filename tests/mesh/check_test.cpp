@@ -76,7 +76,8 @@ TEST_CASE("bodies of the tests are closed, manifold, outward and free of self-in
            {l_shape_2d(), 1, 0},
            {ring_2d(9), 2, 0},
            {several({torus(9, 6), translated(torus(7, 5), {9, 0, 0}), icosphere(1, 0.2)}), 3, 2}}) {
-    CAPTURE(mesh.name);
+    const std::string& body = mesh.name;
+    CAPTURE(body);
     const MeshReport report = check_mesh(mesh);
     CHECK(report.lines(mesh).empty());
     CHECK(report.closed);
@@ -183,7 +184,8 @@ TEST_CASE("convexity of polygons, whatever plane they lie in") {
           }
           if (turned) std::reverse(face.begin(), face.end());
           const MeshReport report = check_mesh(mesh_of(vertices, {face}), false);
-          CAPTURE(corners.size());
+          const std::size_t size_of_face = face.size();
+          CAPTURE(size_of_face);
           CAPTURE(plane);
           CHECK(report[MeshFault::non_planar_face].count == 0);
           CHECK(report[MeshFault::non_convex_face].count == (convex ? 0 : 1));
@@ -205,6 +207,7 @@ TEST_CASE("open edges") {
   const MeshReport report = check_mesh(m);
   check_faults(report, {{MeshFault::open_edge, 4}});
   CHECK_FALSE(report.closed);
+  CHECK_FALSE(report.bounds_solid);
   CHECK_FALSE(report.buildable());
   CHECK(report.queryable());
   CHECK(report.genus == -1);
@@ -219,6 +222,7 @@ TEST_CASE("two cubes that share an edge, or a vertex") {
   check_faults(report, {{MeshFault::non_manifold_edge, 1}});
   CHECK(report.components == 1);
   CHECK_FALSE(report.closed);
+  CHECK(report.bounds_solid);  // inside still has a meaning
   CHECK_FALSE(report.buildable());
   const auto [a, b] = report[MeshFault::non_manifold_edge].first.at(0);
   CHECK(edge.vertices[a].head<2>() == Eigen::Vector2d(1, 1));
