@@ -168,8 +168,8 @@ bool EmbedCheck::swallows_component(const Patch& patch, const CapSurface& cap, c
     bool decided = false;
     for (const HullMesh::Corner c : hull_[stranger].v) {
       const PointSide where = point_side(region, faces, hull_.x(c));
-      if (where.on_surface) continue;
-      if (where.inside) return true;
+      if (where == PointSide::on_surface) continue;
+      if (where == PointSide::inside) return true;
       decided = true;
       break;
     }
