@@ -2,17 +2,19 @@
 /// The LRB-rep: a body as a complex of cells (C. Gonzalez-Ochoa, "2-Body Collision Detection using LRB-reps",
 /// section 2).
 ///
-/// Cells are the *solid*, the *outside* and the *regions* between them. Every face has one cell on each side: its
-/// inner cell behind it and its outer cell in front of it (the side its normal points to; its corners run
-/// counter-clockwise seen from there). *Real* faces, those of the mesh, have the solid behind them; *pseudo* faces
-/// have a region behind them and hide what is in it. A region's *face-collector* lists its faces: its *lids*
-/// (the faces it stands behind) and its *floor* (the faces it stands in front of). A region may have zero volume.
+/// Cells are the *solid*, the *outside* and the *regions* between them. Every face has one cell on each side:
+/// its inner cell behind it and its outer cell in front of it (the side its normal points to; its corners run
+/// counter-clockwise seen from there). *Real* faces, those of the mesh, have the solid behind them; *pseudo*
+/// faces have a region behind them and hide what is in it. A region's *face-collector* lists its faces: its
+/// *lids* (the faces it stands behind) and its *floor* (the faces it stands in front of). A region may have
+/// zero volume.
 ///
 /// Static once built; const and without caches, so that threads and bodies can share one.
 ///
-/// Departure from the paper: cells keep "inner" and "outer" per face instead of an unordered pair, which costs
-/// nothing and makes "which cell hides which" a look-up. A mesh that cannot be abstracted (open, non-manifold) is
-/// held as an LRB-rep without regions: it can be queried exactly, but only a closed one has an inside.
+/// Departure from the paper: cells keep "inner" and "outer" per face instead of an unordered pair, which
+/// costs nothing and makes "which cell hides which" a look-up. A mesh that cannot be abstracted (open,
+/// non-manifold) is held as an LRB-rep without regions: it can be queried exactly, but only a closed one has
+/// an inside.
 
 #include <cstdint>
 #include <span>
@@ -33,12 +35,12 @@ struct LrbData {
   std::vector<Eigen::Vector3d> vertices;          ///< (|V| x 3): the mesh's, then those of pseudo faces
   std::vector<std::uint32_t> face_offsets = {0};  ///< (|F| + 1)
   std::vector<VertexId> face_vertices;
-  std::uint32_t real_face_count = 0;              ///< faces [0, real_face_count) are real, in the mesh's order
-  std::vector<CellId> inner_cell;                 ///< (|F|): kSolid (real) or a region (pseudo)
-  std::vector<CellId> outer_cell;                 ///< (|F|): a region or kOutside
-  std::vector<std::uint16_t> region_layer;        ///< (|R|): the builder's pass that made it; 0 lies on the solid
-  bool closed = false;                            ///< the real faces bound a solid: inside has a meaning
-  bool self_intersecting = false;                 ///< real faces cross each other (inside is then by parity)
+  std::uint32_t real_face_count = 0;        ///< faces [0, real_face_count) are real, in the mesh's order
+  std::vector<CellId> inner_cell;           ///< (|F|): kSolid (real) or a region (pseudo)
+  std::vector<CellId> outer_cell;           ///< (|F|): a region or kOutside
+  std::vector<std::uint16_t> region_layer;  ///< (|R|): the builder's pass that made it; 0 lies on the solid
+  bool closed = false;                      ///< the real faces bound a solid: inside has a meaning
+  bool self_intersecting = false;           ///< real faces cross each other (inside is then by parity)
   std::string name;
 
   std::size_t face_count() const { return face_offsets.size() - 1; }
@@ -47,10 +49,13 @@ struct LrbData {
   }
 };
 
+/// FNV-1a 64 over the arrays.
+std::uint64_t hash_of(const LrbData& data);
+
 class LrbRep {
  public:
-  /// Checks the arrays against each other (throws InputError naming the element), derives collectors, parents and
-  /// the query's tree.
+  /// Checks the arrays against each other (throws InputError naming the element), derives collectors, parents
+  /// and the query's tree.
   explicit LrbRep(LrbData data);
   /// A body without regions: its outermost wrapper is itself. `closed` as found by check_mesh().
   static LrbRep without_regions(const Mesh& mesh, bool closed, bool self_intersecting);
@@ -74,7 +79,8 @@ class LrbRep {
   std::uint32_t region_count() const { return static_cast<std::uint32_t>(d_.region_layer.size()); }
   /// All faces of a region: its lids, then its floor.
   std::span<const FaceId> collector(RegionId r) const {
-    return {collector_faces_.data() + collector_offsets_[r], collector_offsets_[r + 1] - collector_offsets_[r]};
+    return {collector_faces_.data() + collector_offsets_[r],
+            collector_offsets_[r + 1] - collector_offsets_[r]};
   }
   /// Faces that hide the region (it is their inner cell).
   std::span<const FaceId> lids(RegionId r) const { return collector(r).first(lid_count_[r]); }
@@ -88,15 +94,17 @@ class LrbRep {
   /// Steps from the outside along parents: 1 for a region whose parent is the outside.
   std::uint32_t depth(RegionId r) const { return depth_[r]; }
 
-  /// Simplices: the triangles of each face's fan from its first corner (2D: its segment), numbered face by face,
-  /// so that those of real faces come first and in the order of the mesh's file.
+  /// Simplices: the triangles of each face's fan from its first corner (2D: its segment), numbered face by
+  /// face, so that those of real faces come first and in the order of the mesh's file.
   std::uint32_t simplex_count() const;
   std::uint32_t real_simplex_count() const;
   /// Corners per simplex: 3, or 2 in 2D.
   int simplex_size() const { return d_.dim; }
   FaceId face_of_simplex(SimplexId s) const { return face_of_simplex_.empty() ? s : face_of_simplex_[s]; }
   SimplexId first_simplex(FaceId f) const {
-    return face_of_simplex_.empty() ? f : d_.face_offsets[f] - 2 * f;  // a fan has two triangles less than corners
+    return face_of_simplex_.empty()
+               ? f
+               : d_.face_offsets[f] - 2 * f;  // a fan has two triangles less than corners
   }
   /// Writes the simplex's corners (3, or 2 in 2D) to out.
   void simplex(SimplexId s, VertexId out[3]) const {
@@ -109,20 +117,23 @@ class LrbRep {
   }
 
   const BlockTree& tree() const { return tree_; }
-  /// FNV-1a 64 over the arrays: names this very complex in traces and files.
+  /// hash_of(data()): names this very complex in traces and files.
   std::uint64_t hash() const { return hash_; }
   /// Bytes held, all arrays and the tree.
   std::size_t memory_bytes() const;
 
  private:
+  void link_faces_to_regions();
+  void find_parents();
+
   LrbData d_;
   std::vector<FaceId> outermost_;
   std::vector<std::uint32_t> collector_offsets_;  ///< (|R| + 1)
   std::vector<FaceId> collector_faces_;
-  std::vector<std::uint32_t> lid_count_;          ///< (|R|)
-  std::vector<CellId> parent_;                    ///< (|R|)
-  std::vector<std::uint32_t> depth_;              ///< (|R|)
-  std::vector<FaceId> face_of_simplex_;           ///< empty if every face is one simplex
+  std::vector<std::uint32_t> lid_count_;  ///< (|R|)
+  std::vector<CellId> parent_;            ///< (|R|)
+  std::vector<std::uint32_t> depth_;      ///< (|R|)
+  std::vector<FaceId> face_of_simplex_;   ///< empty if every face is one simplex
   std::uint32_t layer_count_ = 0;
   std::uint64_t hash_ = 0;
   BlockTree tree_;

@@ -1,9 +1,9 @@
 #pragma once
 /// The wrapper: which regions of an LRB-rep currently count as part of the body (the paper's section 3).
 ///
-/// Its boundary is the approximation that a query works on. All regions included: the outermost wrapper, a handful
-/// of faces. All excluded: exactly the real faces. Refining a region excludes it; nothing in the LRB-rep changes.
-/// State is a stamp per region, so that reset() costs O(1) and a query O(what it opened).
+/// Its boundary is the approximation that a query works on. All regions included: the outermost wrapper, a
+/// handful of faces. All excluded: exactly the real faces. Refining a region excludes it; nothing in the
+/// LRB-rep changes. State is a stamp per region, so that reset() costs O(1) and a query O(what it opened).
 
 #include <cstdint>
 #include <vector>
@@ -15,8 +15,8 @@ namespace lrb {
 /// The two ways to read the paper's "if desired, a regularized approximation".
 enum class WrapperMode : std::uint8_t {
   regularised,    ///< the boundary of the union of solid and included regions: always closed
-  unregularised,  ///< refining a face discards that face alone and adds its region's floor; the region's other lids
-                  ///< stay until they are refined themselves
+  unregularised,  ///< refining a face discards that face alone and adds its region's floor; the region's
+                  ///< other lids stay until they are refined themselves
 };
 
 class Wrapper {
@@ -31,31 +31,33 @@ class Wrapper {
   bool included(CellId cell) const;  ///< the solid always is, the outside never
   /// Excludes a region; false if it was excluded already.
   bool refine(RegionId r);
-  /// Refines the region behind a face. regularised: refine(inner_cell(f)). unregularised: discards f; adds the
-  /// floor if this is the first of the region's lids. False if f is real or not on the boundary.
+  /// Refines the region behind a face. regularised: refine(inner_cell(f)). unregularised: discards f; adds
+  /// the floor if this is the first of the region's lids. False if f is real or not on the boundary.
   bool refine_face(FaceId f);
-  /// Takes a region back in: the reverse of refine(). False if it is included already. In unregularised mode its
-  /// floor is discarded and all its lids that have an excluded cell or the outside in front come back.
+  /// Takes a region back in: the reverse of refine(). False if it is included already. In unregularised mode
+  /// its lids come back and its floor goes.
   bool coarsen(RegionId r);
   void refine_all();
 
   bool on_boundary(FaceId f) const;
-  std::uint32_t boundary_size() const { return boundary_size_; }
-  /// The faces of the boundary, ascending. O(outermost faces + faces of the excluded regions).
+  /// The faces of the boundary, ascending. O(n log n) in the outermost faces and those of the excluded
+  /// regions.
   std::vector<FaceId> boundary() const;
+  /// How many those are. Counted anew at each call: refine() stays O(1), which is what a query needs.
+  std::size_t boundary_size() const { return boundary().size(); }
   /// The excluded regions in the order in which they were refined.
-  std::vector<RegionId> excluded() const;
+  const std::vector<RegionId>& excluded() const { return order_; }
   std::uint32_t excluded_count() const { return excluded_count_; }
 
  private:
   const LrbRep* rep_;
   WrapperMode mode_;
   std::uint32_t epoch_ = 1;
-  std::uint32_t boundary_size_ = 0;
   std::uint32_t excluded_count_ = 0;
-  std::vector<std::uint32_t> region_stamp_;  ///< == epoch_: excluded
-  std::vector<std::uint32_t> face_stamp_;    ///< unregularised only: == epoch_ | discarded bit, see wrapper.cpp
-  std::vector<RegionId> order_;              ///< regions refined since reset, some perhaps coarsened again
+  std::vector<std::uint32_t> region_stamp_;  ///< (|R|) == epoch_: excluded
+  std::vector<std::uint32_t>
+      discarded_stamp_;          ///< (|F|) unregularised only; == epoch_: this lid was discarded
+  std::vector<RegionId> order_;  ///< the excluded regions, as they were refined
 };
 
 }  // namespace lrb

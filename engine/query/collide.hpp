@@ -1,10 +1,11 @@
 #pragma once
 /// The two-body query: do two bodies meet, which real faces do, and how do the bodies lie to each other?
 ///
-/// Two algorithms. `complete` never misses: a tree over blocks of real faces whose bounds hold everything beneath,
-/// so that every pair that meets is reached, and an exact test at the leaves (see tree_query.hpp for the proof).
-/// `paper` is section 4 of the paper to the letter: recursion through lids that hit. It misses contacts under lids
-/// that nothing touches, and is kept to reproduce the paper's figures and to show where it fails.
+/// Two algorithms. `complete` never misses: a tree over blocks of real faces whose bounds hold everything
+/// beneath, so that every pair that meets is reached, and an exact test at the leaves (see tree_query.hpp for
+/// the proof). `paper` is section 4 of the paper to the letter: recursion through lids that hit. It misses
+/// contacts under lids that nothing touches, and is kept to reproduce the paper's figures and to show where
+/// it fails.
 
 #include <array>
 #include <cstdint>
@@ -30,8 +31,8 @@ struct CollideRequest {
   Mode mode = Mode::all_pairs;
   Recursion recursion = Recursion::complete;
   WrapperMode wrapper = WrapperMode::regularised;
-  bool contacts = false;          ///< fill CollideResult::contacts and ::regions (all_pairs only)
-  bool interiors_overlap = false; ///< decide CollideResult::interiors_overlap for touching bodies
+  bool contacts = false;           ///< fill CollideResult::contacts and ::regions (all_pairs only)
+  bool interiors_overlap = false;  ///< decide CollideResult::interiors_overlap for touching bodies
 };
 
 /// How two bodies lie to each other.
@@ -41,7 +42,7 @@ enum class Relation : std::uint8_t {
   touching,    ///< surfaces meet, but no two faces cross
   a_inside_b,  ///< no surface contact; B holds A
   b_inside_a,
-  undefined,   ///< no surface contact, and a body that is not closed: inside has no meaning
+  undefined,  ///< no surface contact, and a body that is not closed: inside has no meaning
 };
 const char* to_string(Relation r);
 
@@ -56,27 +57,29 @@ struct SimplexPair {
 
 /// What the query did. All are numbers of operations.
 struct Counters {
-  std::uint64_t face_tests = 0;       ///< exact comparisons of two simplices, pseudo or real (best: pairs found)
-  std::uint64_t real_tests = 0;       ///< of these, both real
+  std::uint64_t face_tests = 0;  ///< exact comparisons of two simplices, pseudo or real (best: pairs found)
+  std::uint64_t real_tests = 0;  ///< of these, both real
   std::uint64_t exact_fallbacks = 0;  ///< predicates that floating point could not decide
   std::uint64_t node_pairs = 0;       ///< complete: pairs of tree nodes expanded
   std::uint64_t box_tests = 0;        ///< complete: box against box
-  std::uint64_t prefilter_tests = 0;  ///< complete: simplex pairs that reached the box and plane tests of a leaf pair
-  std::uint64_t refinements = 0;      ///< paper: refine operations; complete: equal to regions_opened
-  std::uint64_t regions_opened = 0;   ///< regions excluded from either wrapper at the end
+  std::uint64_t prefilter_tests =
+      0;  ///< complete: simplex pairs that reached the box and plane tests of a leaf pair
+  std::uint64_t refinements = 0;     ///< paper: refine operations; complete: equal to regions_opened
+  std::uint64_t regions_opened = 0;  ///< regions excluded from either wrapper at the end
   std::vector<std::uint32_t> face_tests_by_level;  ///< by max(depth of a, depth of b) of the compared faces
 };
 
 struct CollideResult {
   Relation relation = Relation::separate;
-  Answer interiors_overlap = Answer::unknown;  ///< crossing, inside: yes; separate: no; touching: if requested
-  Recursion recursion = Recursion::complete;   ///< the one that was used
+  Answer interiors_overlap =
+      Answer::unknown;                        ///< crossing, inside: yes; separate: no; touching: if requested
+  Recursion recursion = Recursion::complete;  ///< the one that was used
   Mode mode = Mode::all_pairs;
-  std::vector<SimplexPair> pairs;              ///< ascending; in first_pair mode at most one
-  std::vector<exact::Meet> meets;              ///< (|pairs|) touch or cross
-  std::vector<PairContactRecord> contacts;     ///< (|pairs|) if requested
-  std::vector<ContactRegion> regions;          ///< connected groups of contacts, if requested
-  std::array<std::vector<RegionId>, 2> opened; ///< regions refined, A's and B's, in order
+  std::vector<SimplexPair> pairs;               ///< ascending; in first_pair mode at most one
+  std::vector<exact::Meet> meets;               ///< (|pairs|) touch or cross
+  std::vector<PairContactRecord> contacts;      ///< (|pairs|) if requested
+  std::vector<ContactRegion> regions;           ///< connected groups of contacts, if requested
+  std::array<std::vector<RegionId>, 2> opened;  ///< regions refined, A's and B's, in order
   Counters counters;
 };
 

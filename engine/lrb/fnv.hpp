@@ -1,0 +1,34 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <vector>
+
+namespace lrb {
+
+/// FNV-1a, 64 bit (Fowler, Noll, Vo): fingerprints of results and checksums of files. Bytes are taken as they
+/// lie in memory; lrbscope's formats and fingerprints are little-endian, as are all machines it runs on.
+class Fnv64 {
+ public:
+  void add_bytes(const void* data, std::size_t size) {
+    const auto* bytes = static_cast<const unsigned char*>(data);
+    for (std::size_t i = 0; i < size; ++i) h_ = (h_ ^ bytes[i]) * 0x100000001b3u;
+  }
+  template <class T>
+  void add_value(const T& value) {
+    add_bytes(&value, sizeof value);
+  }
+  /// Length, then elements.
+  template <class T>
+  void add_array(const std::vector<T>& v) {
+    add_value(static_cast<std::uint64_t>(v.size()));
+    add_bytes(v.data(), v.size() * sizeof(T));
+  }
+  std::uint64_t value() const { return h_; }
+
+ private:
+  std::uint64_t h_ = 0xcbf29ce484222325u;
+};
+
+}  // namespace lrb

@@ -1,0 +1,168 @@
+#include "engine/lrb/lrb_rep.hpp"
+
+#include <algorithm>
+#include <map>
+
+#include <Eigen/Geometry>
+
+#include "engine/error.hpp"
+#include "engine/lrb/fnv.hpp"
+
+namespace lrb {
+namespace {
+
+[[noreturn]] void refuse(const LrbData& d, const std::string& what) {
+  throw InputError((d.name.empty() ? std::string("LRB-rep") : d.name) + ": " + what +
+                   "; rebuild the LRB-rep from its mesh");
+}
+
+void check_face(const LrbData& d, FaceId f) {
+  const auto corners = d.face(f);
+  const std::string face = "face " + std::to_string(f);
+  if (d.dim == 2 ? corners.size() != 2 : corners.size() < 3)
+    refuse(d, face + " has " + std::to_string(corners.size()) + " corners");
+  for (const VertexId v : corners)
+    if (v >= d.vertices.size())
+      refuse(d, face + " names vertex " + std::to_string(v) + ", which is not there");
+  const CellId inner = d.inner_cell[f], outer = d.outer_cell[f];
+  const auto is_known = [&](CellId c) { return !is_region(c) || c < d.region_layer.size(); };
+  if (!is_known(inner) || !is_known(outer)) refuse(d, face + " names a region that is not there");
+  if ((inner == kSolid) != (f < d.real_face_count))
+    refuse(d, face + " must have the solid behind it if and only if it is real");
+  if (inner == kOutside || outer == kSolid || inner == outer || outer == kNull || inner == kNull)
+    refuse(d, face + " has its cells the wrong way round");
+}
+
+void check(const LrbData& d) {
+  if (d.dim != 2 && d.dim != 3) refuse(d, "dimension " + std::to_string(d.dim) + " is neither 2 nor 3");
+  const std::size_t faces = d.face_count();
+  if (d.vertices.size() > kMaxId || d.face_vertices.size() > kMaxId)
+    refuse(d, "more than 2^32 - 4 vertices or corners");
+  if (d.inner_cell.size() != faces || d.outer_cell.size() != faces || d.real_face_count > faces)
+    refuse(d, "the arrays of faces and of their cells differ in length");
+  if (d.face_offsets.front() != 0 || d.face_offsets.back() != d.face_vertices.size() ||
+      !std::is_sorted(d.face_offsets.begin(), d.face_offsets.end()))
+    refuse(d, "the offsets of the faces' corners are not ascending");
+  for (std::size_t v = 0; v < d.vertices.size(); ++v)
+    if (!d.vertices[v].allFinite()) refuse(d, "vertex " + std::to_string(v) + " is not finite");
+  for (FaceId f = 0; f < faces; ++f) check_face(d, f);
+}
+
+/// Area of a face (2D: length), for comparing lids; unit squared (2D: unit).
+double face_size(const LrbData& d, FaceId f) {
+  const auto c = d.face(f);
+  if (d.dim == 2) return (d.vertices[c[1]] - d.vertices[c[0]]).norm();
+  Eigen::Vector3d twice = Eigen::Vector3d::Zero();
+  for (std::size_t i = 1; i + 1 < c.size(); ++i)
+    twice += (d.vertices[c[i]] - d.vertices[c[0]]).cross(d.vertices[c[i + 1]] - d.vertices[c[0]]);
+  return 0.5 * twice.norm();
+}
+
+}  // namespace
+
+LrbRep::LrbRep(LrbData data) : d_(std::move(data)) {
+  check(d_);
+  link_faces_to_regions();
+  find_parents();
+  if (d_.dim == 3 && d_.face_vertices.size() != 3 * d_.face_count())
+    for (FaceId f = 0; f < face_count(); ++f)
+      face_of_simplex_.insert(face_of_simplex_.end(), Mesh::simplices_of(d_.face(f).size(), 3), f);
+  hash_ = hash_of(d_);
+  tree_ = BlockTree(*this);
+}
+
+LrbRep LrbRep::without_regions(const Mesh& mesh, bool closed, bool self_intersecting) {
+  LrbData d;
+  d.dim = mesh.dim;
+  d.vertices = mesh.vertices;
+  d.face_offsets = mesh.face_offsets;
+  d.face_vertices = mesh.face_vertices;
+  d.real_face_count = static_cast<std::uint32_t>(mesh.face_count());
+  d.inner_cell.assign(mesh.face_count(), kSolid);
+  d.outer_cell.assign(mesh.face_count(), kOutside);
+  d.closed = closed;
+  d.self_intersecting = self_intersecting;
+  d.name = mesh.name;
+  return LrbRep(std::move(d));
+}
+
+void LrbRep::link_faces_to_regions() {
+  const std::uint32_t regions = region_count();
+  std::vector<std::uint32_t> floor_count(regions, 0);
+  lid_count_.assign(regions, 0);
+  for (FaceId f = 0; f < face_count(); ++f) {
+    if (is_region(inner_cell(f))) ++lid_count_[inner_cell(f)];
+    if (is_region(outer_cell(f))) ++floor_count[outer_cell(f)];
+    if (outer_cell(f) == kOutside) outermost_.push_back(f);
+  }
+  collector_offsets_.assign(regions + 1, 0);
+  for (RegionId r = 0; r < regions; ++r)
+    collector_offsets_[r + 1] = collector_offsets_[r] + lid_count_[r] + floor_count[r];
+  collector_faces_.resize(collector_offsets_.back());
+  std::vector<std::uint32_t> next_lid(collector_offsets_.begin(), collector_offsets_.end() - 1),
+      next_floor(regions);
+  for (RegionId r = 0; r < regions; ++r) next_floor[r] = next_lid[r] + lid_count_[r];
+  for (FaceId f = 0; f < face_count(); ++f) {
+    if (is_region(inner_cell(f))) collector_faces_[next_lid[inner_cell(f)]++] = f;
+    if (is_region(outer_cell(f))) collector_faces_[next_floor[outer_cell(f)]++] = f;
+  }
+}
+
+void LrbRep::find_parents() {
+  const std::uint32_t regions = region_count();
+  parent_.assign(regions, kOutside);
+  for (RegionId r = 0; r < regions; ++r) {
+    layer_count_ = std::max(layer_count_, d_.region_layer[r] + 1u);
+    std::map<CellId, double> shared;  // ordered: ties go to the smaller id on every machine
+    for (const FaceId lid : lids(r)) shared[outer_cell(lid)] += face_size(d_, lid);
+    double most = -1;
+    for (const auto& [cell, size] : shared)
+      if (size > most) {
+        most = size;
+        parent_[r] = cell;
+      }
+  }
+  depth_.assign(regions, 0);
+  std::vector<RegionId> path;
+  for (RegionId r = 0; r < regions; ++r) {
+    CellId c = r;
+    for (; is_region(c) && depth_[c] == 0; c = parent_[c]) {
+      path.push_back(c);
+      if (path.size() > regions) refuse(d_, "region " + std::to_string(r) + " is hidden by itself");
+    }
+    std::uint32_t depth = is_region(c) ? depth_[c] : 0;
+    for (; !path.empty(); path.pop_back()) depth_[path.back()] = ++depth;
+  }
+}
+
+std::uint32_t LrbRep::simplex_count() const {
+  return d_.dim == 2 ? face_count() : static_cast<std::uint32_t>(d_.face_vertices.size()) - 2 * face_count();
+}
+
+std::uint32_t LrbRep::real_simplex_count() const {
+  return d_.dim == 2 ? d_.real_face_count : d_.face_offsets[d_.real_face_count] - 2 * d_.real_face_count;
+}
+
+std::size_t LrbRep::memory_bytes() const {
+  const auto bytes = [](const auto& v) { return v.capacity() * sizeof(v[0]); };
+  return sizeof(*this) + bytes(d_.vertices) + bytes(d_.face_offsets) + bytes(d_.face_vertices) +
+         bytes(d_.inner_cell) + bytes(d_.outer_cell) + bytes(d_.region_layer) + bytes(outermost_) +
+         bytes(collector_offsets_) + bytes(collector_faces_) + bytes(lid_count_) + bytes(parent_) +
+         bytes(depth_) + bytes(face_of_simplex_) + tree_.memory_bytes();
+}
+
+std::uint64_t hash_of(const LrbData& d) {
+  Fnv64 h;
+  h.add_value(static_cast<std::uint32_t>(d.dim));
+  h.add_array(d.vertices);
+  h.add_array(d.face_offsets);
+  h.add_array(d.face_vertices);
+  h.add_value(d.real_face_count);
+  h.add_array(d.inner_cell);
+  h.add_array(d.outer_cell);
+  h.add_array(d.region_layer);
+  h.add_value(static_cast<std::uint32_t>(d.closed) + 2u * static_cast<std::uint32_t>(d.self_intersecting));
+  return h.value();
+}
+
+}  // namespace lrb

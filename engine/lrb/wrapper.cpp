@@ -1,0 +1,86 @@
+#include "engine/lrb/wrapper.hpp"
+
+#include <algorithm>
+
+namespace lrb {
+
+Wrapper::Wrapper(const LrbRep& rep, WrapperMode mode)
+    : rep_(&rep),
+      mode_(mode),
+      region_stamp_(rep.region_count(), 0),
+      discarded_stamp_(mode == WrapperMode::unregularised ? rep.face_count() : 0, 0) {}
+
+void Wrapper::reset() {
+  order_.clear();
+  excluded_count_ = 0;
+  if (++epoch_ == 0) {  // after 2^32 resets the stamps of the first epoch would look fresh
+    std::fill(region_stamp_.begin(), region_stamp_.end(), 0);
+    std::fill(discarded_stamp_.begin(), discarded_stamp_.end(), 0);
+    epoch_ = 1;
+  }
+}
+
+bool Wrapper::included(CellId cell) const {
+  return is_region(cell) ? region_stamp_[cell] != epoch_ : cell == kSolid;
+}
+
+bool Wrapper::refine(RegionId r) {
+  if (!included(r)) return false;
+  region_stamp_[r] = epoch_;
+  order_.push_back(r);
+  ++excluded_count_;
+  if (mode_ == WrapperMode::unregularised)
+    for (const FaceId lid : rep_->lids(r)) discarded_stamp_[lid] = epoch_;
+  return true;
+}
+
+bool Wrapper::refine_face(FaceId f) {
+  if (rep_->is_real(f) || !on_boundary(f)) return false;
+  const RegionId r = rep_->inner_cell(f);
+  if (mode_ == WrapperMode::regularised) return refine(r);
+  discarded_stamp_[f] = epoch_;
+  if (included(r)) {
+    region_stamp_[r] = epoch_;
+    order_.push_back(r);
+    ++excluded_count_;
+  }
+  return true;
+}
+
+bool Wrapper::coarsen(RegionId r) {
+  if (included(r)) return false;
+  region_stamp_[r] = 0;
+  --excluded_count_;
+  if (mode_ == WrapperMode::unregularised)
+    for (const FaceId lid : rep_->lids(r)) discarded_stamp_[lid] = 0;
+  // Usually the last one refined is taken back first.
+  const auto last = std::find(order_.rbegin(), order_.rend(), r);
+  order_.erase(std::next(last).base());
+  return true;
+}
+
+void Wrapper::refine_all() {
+  for (RegionId r = 0; r < rep_->region_count(); ++r) refine(r);
+}
+
+bool Wrapper::on_boundary(FaceId f) const {
+  if (mode_ == WrapperMode::regularised)
+    return included(rep_->inner_cell(f)) != included(rep_->outer_cell(f));
+  // A lid is there as long as what it lies in was brought in and it was not discarded itself.
+  return !included(rep_->outer_cell(f)) && (rep_->is_real(f) || discarded_stamp_[f] != epoch_);
+}
+
+std::vector<FaceId> Wrapper::boundary() const {
+  std::vector<FaceId> faces;
+  const auto add = [&](std::span<const FaceId> some) {
+    for (const FaceId f : some)
+      if (on_boundary(f)) faces.push_back(f);
+  };
+  add(rep_->outermost_faces());
+  for (const RegionId r : order_) add(rep_->collector(r));
+  std::sort(faces.begin(), faces.end());
+  faces.erase(std::unique(faces.begin(), faces.end()), faces.end());
+  return faces;
+}
+
+}  // namespace lrb
