@@ -1,6 +1,7 @@
 #include "engine/lrb/lrb_rep.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <map>
 
 #include <Eigen/Geometry>
@@ -68,6 +69,8 @@ LrbRep::LrbRep(LrbData data) : d_(std::move(data)) {
     for (FaceId f = 0; f < face_count(); ++f)
       face_of_simplex_.insert(face_of_simplex_.end(), Mesh::simplices_of(d_.face(f).size(), 3), f);
   hash_ = hash_of(d_);
+  static std::atomic<std::uint64_t> next_serial{1};
+  serial_ = next_serial++;
   tree_ = BlockTree(*this);
 }
 

@@ -119,6 +119,9 @@ class LrbRep {
   const BlockTree& tree() const { return tree_; }
   /// hash_of(data()): names this very complex in traces and files.
   std::uint64_t hash() const { return hash_; }
+  /// Differs between any two LRB-reps made in this process (copies share it): lets caches notice a new body at an
+  /// old address.
+  std::uint64_t serial() const { return serial_; }
   /// Bytes held, all arrays and the tree.
   std::size_t memory_bytes() const;
 
@@ -136,6 +139,7 @@ class LrbRep {
   std::vector<FaceId> face_of_simplex_;   ///< empty if every face is one simplex
   std::uint32_t layer_count_ = 0;
   std::uint64_t hash_ = 0;
+  std::uint64_t serial_ = 0;
   BlockTree tree_;
 };
 

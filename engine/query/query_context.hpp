@@ -1,0 +1,73 @@
+#pragma once
+
+#include <memory>
+#include <unordered_set>
+#include <vector>
+
+#include "engine/lrb/wrapper.hpp"
+#include "engine/query/collide.hpp"
+#include "engine/query/tree_kernel.hpp"
+#include "engine/query/world_vertices.hpp"
+
+namespace lrb {
+
+/// One body during a query.
+struct QueryBody {
+  WorldVertices world;
+  std::unique_ptr<Wrapper> wrapper;
+  std::uint64_t wrapper_serial = 0;  ///< of the LRB-rep that the wrapper was made for
+
+  const LrbRep& rep() const { return world.rep(); }
+
+  void begin(const LrbRep& rep, const Pose& pose, WrapperMode mode) {
+    world.begin(rep, pose);
+    if (!wrapper || wrapper_serial != rep.serial() || &wrapper->rep() != &rep || wrapper->mode() != mode) {
+      wrapper = std::make_unique<Wrapper>(rep, mode);
+      wrapper_serial = rep.serial();
+    }
+    wrapper->reset();
+  }
+
+  /// Regions between a face and the outside along parents.
+  std::uint32_t depth_of(FaceId f) const {
+    const CellId outer = rep().outer_cell(f);
+    return is_region(outer) ? rep().depth(outer) : 0;
+  }
+};
+
+class QueryContext {
+ public:
+  QueryBody body[2];
+  std::vector<NodePair> stack;
+  std::vector<Candidate> candidates;
+  std::vector<RegionId> path;
+  std::unordered_set<std::uint64_t> visited[3];  ///< paper: region x region, face x region, region x face
+
+  QueryBody& operator[](Side s) { return body[static_cast<int>(s)]; }
+};
+
+/// Exact test of two simplices in the world frame.
+inline exact::Meet test_simplices(QueryContext& ctx, SimplexId a, SimplexId b) {
+  const double *ca[3], *cb[3];
+  ctx.body[0].world.corners(a, ca);
+  ctx.body[1].world.corners(b, cb);
+  return ctx.body[0].rep().dim() == 3 ? exact::meet_triangles(ca, cb) : exact::meet_segments(ca, cb);
+}
+
+inline void count_face_test(QueryContext& ctx, FaceId fa, FaceId fb, Counters& c) {
+  ++c.face_tests;
+  if (ctx.body[0].rep().is_real(fa) && ctx.body[1].rep().is_real(fb)) ++c.real_tests;
+  const std::uint32_t level = std::max(ctx.body[0].depth_of(fa), ctx.body[1].depth_of(fb));
+  if (c.face_tests_by_level.size() <= level) c.face_tests_by_level.resize(level + 1);
+  ++c.face_tests_by_level[level];
+}
+
+/// Appends a pair of the answer.
+template <class Probe>
+void record_pair(CollideResult& result, Probe& probe, SimplexId a, SimplexId b, exact::Meet meet) {
+  result.pairs.push_back({a, b});
+  result.meets.push_back(meet);
+  if constexpr (Probe::kEnabled) probe.contact(a, b, meet);
+}
+
+}  // namespace lrb

@@ -1,0 +1,46 @@
+#pragma once
+/// The inner loop of the complete query: two trees of blocks against each other, in eight-wide float
+/// arithmetic whose every error is bounded, so that it drops a pair of simplices only if they cannot meet.
+///
+/// Plain structures only: this header is compiled once per instruction set (tree_kernel_*.cpp).
+
+#include <cstdint>
+
+#include "engine/query/block_tree.hpp"
+
+namespace lrb {
+
+struct NodePair {
+  std::uint32_t a, b;
+};
+
+/// A pair of real simplices that float arithmetic could not prove apart.
+struct Candidate {
+  SimplexId a, b;
+};
+
+/// One traversal. All lengths are in the query's unit: the larger of the two trees' units.
+struct TreeKernel {
+  const TreeNode* nodes_a;
+  const TreeNode* nodes_b;
+  const LeafBlock* blocks_a;
+  const LeafBlock* blocks_b;
+  float ratio_a, ratio_b;  ///< tree's unit / query's unit, powers of two, at most 1
+  double m[3][3];          ///< A's axes <- B's axes
+  double t[3];             ///< B's origin seen from A's, in A's axes
+  float slack;   ///< absolute: errors of poses and of the rounding of world coordinates (see tree_query.cpp)
+  float m_size;  ///< >= 1 and >= the largest row sum of |m| / sqrt(3)
+
+  NodePair* stack;  ///< room for 64 * (height of A + height of B) + 64 pairs
+  std::uint32_t stack_size;
+  Candidate* out;
+  std::uint32_t out_capacity;  ///< at least 64
+  std::uint32_t out_size;
+
+  std::uint64_t node_pairs, box_tests, prefilter_tests;
+};
+
+/// Goes on until the stack is empty or fewer than 64 places are left in `out`.
+void run_tree_kernel(TreeKernel& k);
+
+}  // namespace lrb

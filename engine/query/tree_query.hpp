@@ -1,0 +1,90 @@
+#pragma once
+/// The complete query: a dual traversal of the two trees of blocks.
+///
+/// Why it never misses. If real simplices s of A and t of B meet at a point of the world, then in every pair
+/// of tree nodes above them each node's bounds hold one of the two, so the bounds, grown by all errors,
+/// overlap: by induction the traversal, which drops a pair only when its bounds are proved apart, reaches the
+/// pair of leaves that hold s and t; there the pair (s, t) is dropped only when boxes or a plane are proved
+/// to separate the two; and what is left is tested exactly. The proof uses neither the nesting of regions nor
+/// that the LRB-rep is embedded: a poor LRB-rep can cost time, never a contact.
+///
+/// What "proved apart" has to cover is in set_up_kernel().
+
+#include "engine/query/query_context.hpp"
+
+namespace lrb {
+
+/// Fills in all of a kernel but its buffers.
+TreeKernel set_up_kernel(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b);
+
+template <class Probe>
+class TreeQuery {
+ public:
+  TreeQuery(QueryContext& ctx, Mode mode, CollideResult& result, Probe& probe)
+      : ctx_(ctx), mode_(mode), result_(result), probe_(probe) {}
+
+  void run() {
+    const LrbRep &a = ctx_[Side::a].rep(), &b = ctx_[Side::b].rep();
+    if (a.tree().empty() || b.tree().empty()) return;
+    TreeKernel k = set_up_kernel(a, ctx_[Side::a].world.pose(), b, ctx_[Side::b].world.pose());
+    ctx_.stack.resize(64 * (a.tree().height() + b.tree().height()) + 64);
+    // A small buffer where one pair may be enough, so that little is searched beyond it.
+    ctx_.candidates.resize(mode_ == Mode::all_pairs ? 1024 : 64);
+    k.stack = ctx_.stack.data();
+    k.stack[0] = {0, 0};
+    k.stack_size = 1;
+    k.out = ctx_.candidates.data();
+    k.out_capacity = static_cast<std::uint32_t>(ctx_.candidates.size());
+    bool done = false;
+    while (k.stack_size != 0 && !done) {
+      k.out_size = 0;
+      run_tree_kernel(k);
+      for (std::uint32_t i = 0; i < k.out_size && !done; ++i) done = test(k.out[i]);
+    }
+    result_.counters.node_pairs = k.node_pairs;
+    result_.counters.box_tests = k.box_tests;
+    result_.counters.prefilter_tests = k.prefilter_tests;
+  }
+
+ private:
+  /// True if the answer is complete. One pair is enough in first_pair mode if it crosses; a pair that only
+  /// touches is kept while a crossing one is looked for, so that the relation is exact in that mode too.
+  bool test(Candidate c) {
+    const FaceId fa = ctx_[Side::a].rep().face_of_simplex(c.a), fb = ctx_[Side::b].rep().face_of_simplex(c.b);
+    open_regions(Side::a, fa);
+    open_regions(Side::b, fb);
+    const exact::Meet meet = test_simplices(ctx_, c.a, c.b);
+    count_face_test(ctx_, fa, fb, result_.counters);
+    if constexpr (Probe::kEnabled)
+      probe_.face_test(c.a, c.b, meet, ctx_[Side::a].depth_of(fa), ctx_[Side::b].depth_of(fb));
+    if (meet == exact::Meet::disjoint) return false;
+    if (mode_ == Mode::first_pair && !result_.pairs.empty()) {
+      if (meet != exact::Meet::cross) return false;
+      result_.pairs.clear();
+      result_.meets.clear();
+    }
+    record_pair(result_, probe_, c.a, c.b, meet);
+    return mode_ == Mode::first_pair && meet == exact::Meet::cross;
+  }
+
+  /// Refines the wrapper until the face shows: the regions from the outside inward that hide it.
+  void open_regions(Side side, FaceId f) {
+    QueryBody& body = ctx_[side];
+    const LrbRep& rep = body.rep();
+    for (CellId c = rep.outer_cell(f); is_region(c) && body.wrapper->included(c); c = rep.parent(c))
+      ctx_.path.push_back(c);
+    for (; !ctx_.path.empty(); ctx_.path.pop_back()) {
+      body.wrapper->refine(ctx_.path.back());
+      ++result_.counters.refinements;
+      if constexpr (Probe::kEnabled)
+        probe_.refine(side, ctx_.path.back(), static_cast<std::uint32_t>(rep.floor(ctx_.path.back()).size()));
+    }
+  }
+
+  QueryContext& ctx_;
+  Mode mode_;
+  CollideResult& result_;
+  Probe& probe_;
+};
+
+}  // namespace lrb

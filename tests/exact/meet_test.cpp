@@ -1,0 +1,83 @@
+#include <cstdint>
+
+#include <doctest/doctest.h>
+
+#include "engine/exact/predicates.hpp"
+#include "engine/exact/simplex_test.hpp"
+#include "tests/support/random_simplices.hpp"
+#include "tests/support/rational_oracle.hpp"
+
+using namespace lrb;
+using lrb::test::Kind;
+
+namespace {
+
+/// Calls check(pair) for `rounds` random pairs of each kind; grids, whose oracle is fast, get `grid_factor`
+/// more.
+template <class Check>
+void for_each_kind(std::uint64_t seed, int rounds, int grid_factor, Check check) {
+  for (int k = 0; k < static_cast<int>(Kind::count); ++k) {
+    const Kind kind = static_cast<Kind>(k);
+    const bool is_grid = kind == Kind::grid || kind == Kind::tiny_grid;
+    test::Rng rng(seed + static_cast<std::uint64_t>(k));
+    const int n = test::effort(rounds) * (is_grid ? grid_factor : 1);
+    int wrong = 0;
+    for (int i = 0; i < n; ++i) wrong += check(test::random_pair(rng, kind)) ? 0 : 1;
+    CHECK_MESSAGE(wrong == 0, test::name_of(kind) << ": " << wrong << " of " << n << " disagree");
+  }
+}
+
+bool same_for_all_roles(const test::SimplexPair& s, int expected) {
+  // Roles and corner order must not matter: one rotation, one reflection, one exchange.
+  const auto a = s.a(), b = s.b();
+  const double* const turned[3] = {a[1], a[2], a[0]};
+  const double* const reflected[3] = {b[0], b[2], b[1]};
+  return static_cast<int>(exact::meet_triangles(a.data(), b.data())) == expected &&
+         static_cast<int>(exact::meet_triangles(b.data(), turned)) == expected &&
+         static_cast<int>(exact::meet_triangles(turned, reflected)) == expected;
+}
+
+}  // namespace
+
+TEST_CASE("triangles meet as the rational oracle says") {
+  for_each_kind(11, 4000, 40, [](const test::SimplexPair& s) {
+    return same_for_all_roles(s, oracle::meet_of_simplices(s.a().data(), s.b().data(), 3));
+  });
+}
+
+TEST_CASE("segments in the plane meet as the rational oracle says") {
+  for_each_kind(12, 3000, 20, [](const test::SimplexPair& s) {
+    const auto a = s.a(), b = s.b();
+    const int expected = oracle::meet_of_simplices(a.data(), b.data(), 2);
+    const double* const flipped[2] = {a[1], a[0]};
+    return static_cast<int>(exact::meet_segments(a.data(), b.data())) == expected &&
+           static_cast<int>(exact::meet_segments(b.data(), flipped)) == expected;
+  });
+}
+
+TEST_CASE("orientations have the sign of the rational determinant") {
+  for_each_kind(13, 3000, 3, [](const test::SimplexPair& s) {
+    const double *a = s.p[0].data(), *b = s.p[1].data(), *c = s.p[2].data(), *d = s.p[3].data();
+    const int in_space = oracle::orientation({a, b, c, d});
+    const int in_plane = oracle::orientation({a, b, c});
+    const bool line = oracle::affine_dimension(oracle::to_integers({{a, b, c}}, 3)[0]) < 2;
+    return exact::orient3d(a, b, c, d) == in_space && exact::orient3d(b, a, c, d) == -in_space &&
+           exact::orient2d(a, b, c) == in_plane && exact::orient2d(a, c, b) == -in_plane &&
+           exact::collinear3d(a, b, c) == line;
+  });
+}
+
+TEST_CASE("orientation follows the convention") {
+  const double o[3] = {0, 0, 0}, x[3] = {1, 0, 0}, y[3] = {0, 1, 0}, z[3] = {0, 0, 1};
+  CHECK(exact::orient2d(o, x, y) == 1);
+  CHECK(exact::orient3d(o, x, y, z) == 1);
+}
+
+TEST_CASE("the counter of exact fallbacks counts what the filter leaves") {
+  const double a[2] = {0, 0}, b[2] = {0.1, 0.1}, c[2] = {0.3, 0.3}, d[2] = {0.3, 0.7};
+  const auto before = exact::exact_fallbacks();
+  CHECK(exact::orient2d(a, b, d) == 1);
+  CHECK(exact::exact_fallbacks() == before);
+  CHECK(exact::orient2d(a, b, c) == 0);
+  CHECK(exact::exact_fallbacks() == before + 1);
+}

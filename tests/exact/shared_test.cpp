@@ -1,0 +1,97 @@
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include <doctest/doctest.h>
+
+#include "engine/exact/simplex_test.hpp"
+#include "tests/support/random_simplices.hpp"
+#include "tests/support/rational_oracle.hpp"
+
+using namespace lrb;
+using lrb::test::Kind;
+
+namespace {
+
+using Ids = std::array<std::uint32_t, 3>;
+
+/// Gives b some of a's vertices, by index and by coordinates.
+Ids share_vertices(test::Rng& rng, test::SimplexPair& s, std::size_t n) {
+  Ids ids{3, 4, 5};
+  std::array<bool, 3> used{};
+  for (std::size_t j = 0; j < n; ++j) {
+    const auto i = static_cast<std::size_t>(test::random_int(rng, 0, 5));
+    if (i >= n || used[i]) continue;
+    used[i] = true;
+    ids[j] = static_cast<std::uint32_t>(i);
+    s.p[3 + j] = s.p[i];
+  }
+  return ids;
+}
+
+/// Nothing but the shared face: the hulls stay apart if any of the corners that are not shared is given a
+/// positive weight. That is asked of a linear program for each such corner, so no geometry is used.
+bool only_in_shared(const test::SimplexPair& s, const Ids& ids, std::size_t n) {
+  const auto a = s.a(), b = s.b();
+  const auto p = oracle::to_integers({{a.begin(), a.begin() + static_cast<std::ptrdiff_t>(n)},
+                                      {b.begin(), b.begin() + static_cast<std::ptrdiff_t>(n)}},
+                                     n);
+  const int dim = static_cast<int>(n) - 1;
+  if (oracle::affine_dimension(p[0]) < dim || oracle::affine_dimension(p[1]) < dim) return false;
+  std::vector<bool> a_shared(n, false);
+  std::vector<bool> b_shared(n, false);
+  for (std::size_t j = 0; j < n; ++j) {
+    b_shared[j] = ids[j] < n;
+    if (b_shared[j]) a_shared[ids[j]] = true;
+  }
+  if (std::count(b_shared.begin(), b_shared.end(), true) == static_cast<std::ptrdiff_t>(n)) return false;
+  for (std::size_t side = 0; side < 2; ++side) {
+    for (std::size_t i = 0; i < n; ++i) {
+      if (side == 0 ? a_shared[i] : b_shared[i]) continue;
+      if (oracle::meet_with_positive_weight(p[0], p[1], side * n + i)) return false;
+    }
+  }
+  return true;
+}
+
+void compare(std::uint64_t seed, std::size_t n, int rounds) {
+  for (int k = 0; k < static_cast<int>(Kind::count); ++k) {
+    test::Rng rng(seed + static_cast<std::uint64_t>(k));
+    int wrong = 0, positive = 0;
+    const int total = test::effort(rounds);
+    for (int i = 0; i < total; ++i) {
+      test::SimplexPair s = test::random_pair(rng, static_cast<Kind>(k));
+      const Ids ib = share_vertices(rng, s, n);
+      const Ids ia{0, 1, 2};
+      const bool expected = only_in_shared(s, ib, n);
+      const auto a = s.a(), b = s.b();
+      const bool got = n == 3 ? exact::meet_only_in_shared(a.data(), ia.data(), b.data(), ib.data())
+                              : exact::meet_only_in_shared_2d(a.data(), ia.data(), b.data(), ib.data());
+      const bool swapped = n == 3 ? exact::meet_only_in_shared(b.data(), ib.data(), a.data(), ia.data())
+                                  : exact::meet_only_in_shared_2d(b.data(), ib.data(), a.data(), ia.data());
+      wrong += got != expected || swapped != expected;
+      positive += expected;
+    }
+    CHECK_MESSAGE(wrong == 0, test::name_of(static_cast<Kind>(k)) << ": " << wrong << " of " << total);
+    CHECK(positive < total);
+  }
+}
+
+}  // namespace
+
+TEST_CASE("triangles of a complex meet only in shared corners and edges") {
+  compare(21, 3, 4000);
+}
+TEST_CASE("segments of a complex meet only in shared corners") {
+  compare(22, 2, 3000);
+}
+
+TEST_CASE("a triangle that names a vertex twice is no triangle") {
+  const double o[3] = {0, 0, 0}, x[3] = {1, 0, 0}, y[3] = {0, 1, 0}, z[3] = {0, 0, 1};
+  const double* const a[3] = {o, o, x};
+  const double* const b[3] = {o, y, z};
+  const std::uint32_t ia[3] = {0, 0, 1}, ib[3] = {0, 2, 3};
+  CHECK_FALSE(exact::meet_only_in_shared(a, ia, b, ib));
+  CHECK_FALSE(exact::meet_only_in_shared(b, ib, a, ia));
+}

@@ -1,0 +1,166 @@
+#pragma once
+/// Random simplices of every awkward kind, reproducible from a seed.
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <cstdlib>
+#include <limits>
+#include <random>
+#include <string>
+
+namespace lrb::test {
+
+using Rng = std::mt19937_64;
+
+inline int random_int(Rng& rng, int low, int high) {
+  return low + static_cast<int>(rng() % static_cast<std::uint64_t>(high - low + 1));
+}
+inline double random_unit(Rng& rng) {
+  return static_cast<double>(rng() >> 11) * 0x1p-53;
+}
+
+/// How many rounds to run: `standard` times LRB_EXACT_EFFORT (a number, 1 if unset).
+inline int effort(int standard) {
+  const char* text = std::getenv("LRB_EXACT_EFFORT");
+  const double factor = text == nullptr ? 1 : std::atof(text);
+  return static_cast<int>(standard * factor);
+}
+
+/// Two triangles (3 coordinates each point), or two segments (the first two corners, z ignored).
+struct SimplexPair {
+  std::array<std::array<double, 3>, 6> p{};
+  std::array<const double*, 3> a() const { return {p[0].data(), p[1].data(), p[2].data()}; }
+  std::array<const double*, 3> b() const { return {p[3].data(), p[4].data(), p[5].data()}; }
+};
+
+enum class Kind {
+  grid,         ///< coordinates 0 .. 3: all degeneracies
+  tiny_grid,    ///< coordinates 0 .. 1
+  nudged_grid,  ///< a grid, some coordinates moved by one unit in the last place
+  real,         ///< random doubles in [0, 1)
+  shared,       ///< random doubles; corners of b copied from a, or affine combinations of them, rounded
+  coplanar,     ///< random doubles in a plane, rounded
+  far_grid,     ///< a nudged grid moved by 1e8 or 1e16
+  scaled,       ///< nudged or real, each axis scaled by up to 1e-150 .. 1e150
+  sliver,       ///< thin triangles along nearly one line
+  extreme,      ///< denormals, zeros and 1e308 mixed
+  count
+};
+
+inline std::string name_of(Kind k) {
+  static constexpr const char* kNames[] = {"grid",     "tiny_grid", "nudged_grid", "real",   "shared",
+                                           "coplanar", "far_grid",  "scaled",      "sliver", "extreme"};
+  return kNames[static_cast<int>(k)];
+}
+
+inline double nudge(Rng& rng, double x) {
+  const int r = random_int(rng, 0, 5);
+  if (r == 0) return std::nextafter(x, std::numeric_limits<double>::infinity());
+  if (r == 1) return std::nextafter(x, -std::numeric_limits<double>::infinity());
+  return x;
+}
+
+inline void fill_grid(Rng& rng, SimplexPair& s, int high) {
+  for (auto& p : s.p) {
+    for (double& x : p) x = random_int(rng, 0, high);
+  }
+}
+
+inline void fill_real(Rng& rng, SimplexPair& s) {
+  for (auto& p : s.p) {
+    for (double& x : p) x = random_unit(rng);
+  }
+}
+
+/// Replaces some corners of b by corners of a or by rounded points of a.
+inline void share_corners(Rng& rng, SimplexPair& s) {
+  for (std::size_t j = 3; j < 6; ++j) {
+    const int r = random_int(rng, 0, 3);
+    if (r == 0) s.p[j] = s.p[static_cast<std::size_t>(random_int(rng, 0, 2))];
+    if (r != 1) continue;
+    const double u = random_unit(rng), v = random_int(rng, 0, 1) * random_unit(rng);
+    for (std::size_t k = 0; k < 3; ++k)
+      s.p[j][k] = s.p[0][k] + u * (s.p[1][k] - s.p[0][k]) + v * (s.p[2][k] - s.p[0][k]);
+  }
+}
+
+inline void fill_coplanar(Rng& rng, SimplexPair& s) {
+  const double f = random_unit(rng), g = random_unit(rng);
+  const bool lattice = random_int(rng, 0, 1) == 1;
+  for (auto& p : s.p) {
+    p[0] = lattice ? random_int(rng, 0, 3) : random_unit(rng);
+    p[1] = lattice ? random_int(rng, 0, 3) : random_unit(rng);
+    p[2] = p[0] * f + p[1] * g;
+    const double x = p[0];
+    p[0] = 0.8 * x - 0.6 * p[1];
+    p[1] = 0.6 * x + 0.8 * p[1];
+  }
+}
+
+inline void fill_sliver(Rng& rng, SimplexPair& s) {
+  const std::array<double, 3> d{random_unit(rng), random_unit(rng), random_unit(rng)};
+  for (auto& p : s.p) {
+    const double t = random_unit(rng) * 4 - 2;
+    for (std::size_t k = 0; k < 3; ++k) p[k] = nudge(rng, d[k] * t);
+  }
+}
+
+inline void fill_extreme(Rng& rng, SimplexPair& s) {
+  for (auto& p : s.p) {
+    for (double& x : p) {
+      static constexpr double kValues[] = {0, 1, 4.9e-324, 2.2e-308, 1e-160, 1e160, 8e307, 1.7e308};
+      x = kValues[random_int(rng, 0, 7)] * (random_int(rng, 0, 1) == 0 ? 1 : -1);
+    }
+  }
+}
+
+inline SimplexPair random_pair(Rng& rng, Kind kind) {
+  SimplexPair s;
+  switch (kind) {
+    case Kind::grid:
+      fill_grid(rng, s, 3);
+      break;
+    case Kind::tiny_grid:
+      fill_grid(rng, s, 1);
+      break;
+    case Kind::real:
+      fill_real(rng, s);
+      break;
+    case Kind::shared:
+      fill_real(rng, s);
+      share_corners(rng, s);
+      break;
+    case Kind::coplanar:
+      fill_coplanar(rng, s);
+      break;
+    case Kind::sliver:
+      fill_sliver(rng, s);
+      break;
+    case Kind::extreme:
+      fill_extreme(rng, s);
+      break;
+    case Kind::nudged_grid:
+    case Kind::far_grid:
+    case Kind::scaled:
+    case Kind::count:
+      fill_grid(rng, s, 3);
+      break;
+  }
+  if (kind == Kind::scaled && random_int(rng, 0, 1) == 0) fill_real(rng, s);
+  if (kind == Kind::nudged_grid || kind == Kind::far_grid || kind == Kind::scaled) {
+    const double far = random_int(rng, 0, 1) == 0 ? 1e8 : 1e16;
+    for (auto& p : s.p) {
+      for (double& x : p) x = nudge(rng, kind == Kind::far_grid ? x * 2 + far : x);
+    }
+  }
+  if (kind == Kind::scaled) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const double factor = std::ldexp(1.0, random_int(rng, -498, 498));
+      for (auto& p : s.p) p[k] *= factor;
+    }
+  }
+  return s;
+}
+
+}  // namespace lrb::test
