@@ -26,12 +26,12 @@ function startPlayer() {
   });
 
   let timer = null;
-  const pause = () => { clearInterval(timer); timer = null; play.textContent = "▶"; play.setAttribute("aria-label", "Play"); };
+  const pause = () => { clearInterval(timer); timer = null; play.classList.remove("playing"); play.setAttribute("aria-label", "Play"); };
   const start = () => {
     if (current === data.frames.length - 1) show(0);
     clearInterval(timer);
     timer = setInterval(() => { show(current + 1); if (current === data.frames.length - 1) pause(); }, 1000 / byId("speed").value);
-    play.textContent = "⏸"; play.setAttribute("aria-label", "Pause");
+    play.classList.add("playing"); play.setAttribute("aria-label", "Pause");
   };
   const toggle = () => (timer ? pause() : start());
   const go = (index) => { pause(); show(index); };

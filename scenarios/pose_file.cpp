@@ -1,4 +1,4 @@
-#include "scenarios/cli/pose_file.hpp"
+#include "scenarios/pose_file.hpp"
 
 #include <charconv>
 #include <cmath>
