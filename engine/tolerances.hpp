@@ -16,19 +16,34 @@ inline constexpr double kTreeRounding = 0x1p-21;
 /// The same for the rounding of a difference of coordinates, which are at most 1 in units.
 inline constexpr double kTreeRoundingUnits = 0x1p-50;
 
-/// Error of a coordinate that the tree kernel has taken from one node's frame to the other's, relative to the sizes
-/// involved (radii and distance of the nodes). Derivation, with u = 2^-24: the relative rotation is a product of
-/// three matrices with entries rounded to float and rows of length 1, at most 16 u off per entry; a node's axes are
-/// orthonormal to 8 u, which the inverse by transposition sees; the offset is rounded to float and turned once or
-/// twice, 8 u; boxes are decoded with 3 u; products and sums of three terms add 4 u. Together under 48 u < 2^-18.
+/// Error of a coordinate that the tree kernel has taken from one node's frame to the other's, relative to the
+/// sizes involved (radii and distance of the nodes). Derivation, with u = 2^-24: the relative rotation is a
+/// product of three matrices with entries rounded to float and rows of length 1, at most 16 u off per entry;
+/// a node's axes are orthonormal to 8 u, which the inverse by transposition sees; the offset is rounded to
+/// float and turned once or twice, 8 u; boxes are decoded with 3 u; products and sums of three terms add 4 u.
+/// Together under 48 u < 2^-18.
 inline constexpr float kKernelRounding = 0x1p-18f;
 /// Added to bounds so that float underflow (absolute error 2^-149 an operation) cannot decide anything.
 inline constexpr float kKernelTiny = 0x1p-120f;
 
-/// Rounding of world coordinates and of the relative pose, relative to the largest term that occurs: 4 u for each
-/// body's coordinates and 16 u for the relative pose, u = 2^-53.
+/// Rounding of world coordinates and of the relative pose, relative to the largest term that occurs: 4 u for
+/// each body's coordinates and 16 u for the relative pose, u = 2^-53.
 inline constexpr double kWorldRounding = 0x1p-48;
 /// Safety on the sum of the pose's errors, for the change of norms; see set_up_kernel().
 inline constexpr double kPoseSafety = 4;
+
+/// Volumes that should be equal may differ by this much of the outermost wrapper's volume: the rounding of
+/// sums over up to millions of faces. Only validate() looks at it, beside exact checks. Smaller: false alarms
+/// on large bodies.
+inline constexpr double kVolumeRounding = 0x1p-33;
+
+/// A contact region's average normal is given only if the weighted normals do not cancel to less than this
+/// share of their weight. Without unit. Smaller: normals made of rounding errors.
+inline constexpr double kContactNormalLeast = 0x1p-20;
+
+/// Most cells that interiors_overlap() samples in one face, and in all, before it answers "unknown". Larger:
+/// rare configurations with thousands of contacts on one face are decided too, in minutes instead of never.
+inline constexpr unsigned kInteriorCellsPerFace = 256;
+inline constexpr unsigned kInteriorCells = 20000;
 
 }  // namespace lrb

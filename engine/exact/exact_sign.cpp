@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
 
 #include <boost/multiprecision/cpp_int.hpp>
 
 #include "engine/exact/expansion.hpp"
+#include "engine/exact/fixed_point.hpp"
 #include "engine/exact/simplex_test.hpp"
 
 namespace lrb::exact {
@@ -22,9 +22,12 @@ thread_local std::uint64_t fallback_count = 0;
 constexpr double kSmallest = 0x1p-300;
 constexpr double kLargest = 0x1p+300;
 
-bool in_range(double x) {
-  const double m = std::fabs(x);
-  return m <= kLargest && (m >= kSmallest || m == 0);
+template <std::size_t N>
+bool all_in_range(const std::array<double, N>& x) {
+  return std::all_of(x.begin(), x.end(), [](double v) {
+    const double m = std::fabs(v);
+    return m <= kLargest && (m >= kSmallest || m == 0);
+  });
 }
 
 /// Coordinates of up to four points along one axis as integers: multiplied by a common power of two, which
@@ -52,29 +55,12 @@ std::array<cpp_int, N> scaled_to_integers(const std::array<double, N>& x) {
   return r;
 }
 
-int orient2d_integer(const double* a, const double* b, const double* c, int x, int y) {
-  const auto px = scaled_to_integers<3>({a[x], b[x], c[x]});
-  const auto py = scaled_to_integers<3>({a[y], b[y], c[y]});
+int orient2d_integer(const std::array<double, 3>& x, const std::array<double, 3>& y) {
+  const auto px = scaled_to_integers(x);
+  const auto py = scaled_to_integers(y);
   const cpp_int left = (px[1] - px[0]) * (py[2] - py[0]);
   const cpp_int right = (py[1] - py[0]) * (px[2] - px[0]);
-  return left.compare(right);
-}
-
-int orient3d_integer(const double* a, const double* b, const double* c, const double* d) {
-  std::array<std::array<cpp_int, 3>, 3> m;  // rows b - a, c - a, d - a
-  for (std::size_t k = 0; k < 3; ++k) {
-    const auto p = scaled_to_integers<4>({a[k], b[k], c[k], d[k]});
-    for (std::size_t i = 0; i < 3; ++i) m[i][k] = p[i + 1] - p[0];
-  }
-  const cpp_int nx = m[0][1] * m[1][2] - m[0][2] * m[1][1];
-  const cpp_int ny = m[0][2] * m[1][0] - m[0][0] * m[1][2];
-  const cpp_int nz = m[0][0] * m[1][1] - m[0][1] * m[1][0];
-  const cpp_int det = nx * m[2][0] + ny * m[2][1] + nz * m[2][2];
-  return det.sign();
-}
-
-int sign_of(int comparison) {
-  return (comparison > 0) - (comparison < 0);
+  return (left > right) - (left < right);
 }
 
 /// u0 * v1 - u1 * v0.
@@ -84,6 +70,36 @@ Expansion<16> minor(const Expansion<2>& u0, const Expansion<2>& u1, const Expans
 }
 
 }  // namespace
+
+int orient3d_integer(const Coordinates4& x) {
+  std::array<std::array<cpp_int, 3>, 3> m;  // rows b - a, c - a, d - a
+  for (std::size_t k = 0; k < 3; ++k) {
+    const auto p = scaled_to_integers(x[k]);
+    for (std::size_t i = 0; i < 3; ++i) m[i][k] = p[i + 1] - p[0];
+  }
+  const cpp_int nx = m[0][1] * m[1][2] - m[0][2] * m[1][1];
+  const cpp_int ny = m[0][2] * m[1][0] - m[0][0] * m[1][2];
+  const cpp_int nz = m[0][0] * m[1][1] - m[0][1] * m[1][0];
+  const cpp_int det = nx * m[2][0] + ny * m[2][1] + nz * m[2][2];
+  return det.sign();
+}
+
+bool expansions_apply(const Coordinates4& p) {
+  return all_in_range(p[0]) && all_in_range(p[1]) && all_in_range(p[2]);
+}
+
+int orient3d_expansion(const Coordinates4& p) {
+  std::array<Expansion<2>, 3> u, v, w;
+  for (std::size_t k = 0; k < 3; ++k) {
+    u[k] = difference(p[k][1], p[k][0]);
+    v[k] = difference(p[k][2], p[k][0]);
+    w[k] = difference(p[k][3], p[k][0]);
+  }
+  const auto x = product(minor(u[1], u[2], v[1], v[2]), w[0]);
+  const auto y = product(minor(u[2], u[0], v[2], v[0]), w[1]);
+  const auto z = product(minor(u[0], u[1], v[0], v[1]), w[2]);
+  return sum(sum(x, y), z).sign();
+}
 
 std::uint64_t exact_fallbacks() {
   return fallback_count;
@@ -96,10 +112,12 @@ int orient2d_exact(const double* a, const double* b, const double* c, int x, int
   if ((a[x] == b[x] && a[y] == b[y]) || (b[x] == c[x] && b[y] == c[y]) || (a[x] == c[x] && a[y] == c[y]))
     return 0;
   ++fallback_count;
-  const bool safe = in_range(a[x]) && in_range(b[x]) && in_range(c[x]) && in_range(a[y]) && in_range(b[y]) &&
-                    in_range(c[y]);
-  if (!safe) return sign_of(orient2d_integer(a, b, c, x, y));
-  return minor(difference(b[x], a[x]), difference(b[y], a[y]), difference(c[x], a[x]), difference(c[y], a[y]))
+  const std::array<double, 3> px{a[x], b[x], c[x]}, py{a[y], b[y], c[y]};
+  std::array<std::int64_t, 3> fx, fy;
+  if (to_fixed_point(px, fx) && to_fixed_point(py, fy)) return orient2d_fixed(fx, fy);
+  if (!all_in_range(px) || !all_in_range(py)) return orient2d_integer(px, py);
+  return minor(difference(px[1], px[0]), difference(py[1], py[0]), difference(px[2], px[0]),
+               difference(py[2], py[0]))
       .sign();
 }
 
@@ -110,21 +128,12 @@ int orient3d_exact(const double* a, const double* b, const double* c, const doub
   if (same_point(a, d) || same_point(b, d) || same_point(c, d)) return 0;
   if (same_point(a, b) || same_point(b, c) || same_point(a, c)) return 0;
   ++fallback_count;
-  for (int k = 0; k < 3; ++k) {
-    if (!(in_range(a[k]) && in_range(b[k]) && in_range(c[k]) && in_range(d[k])))
-      return orient3d_integer(a, b, c, d);
-  }
-  std::array<Expansion<2>, 3> u, v, w;
-  for (int k = 0; k < 3; ++k) {
-    const auto i = static_cast<std::size_t>(k);
-    u[i] = difference(b[k], a[k]);
-    v[i] = difference(c[k], a[k]);
-    w[i] = difference(d[k], a[k]);
-  }
-  const auto x = product(minor(u[1], u[2], v[1], v[2]), w[0]);
-  const auto y = product(minor(u[2], u[0], v[2], v[0]), w[1]);
-  const auto z = product(minor(u[0], u[1], v[0], v[1]), w[2]);
-  return sum(sum(x, y), z).sign();
+  Coordinates4 p;
+  for (std::size_t k = 0; k < 3; ++k) p[k] = {a[k], b[k], c[k], d[k]};
+  std::array<std::array<std::int64_t, 4>, 3> f;
+  if (to_fixed_point(p[0], f[0]) && to_fixed_point(p[1], f[1]) && to_fixed_point(p[2], f[2]))
+    return orient3d_fixed(f);
+  return expansions_apply(p) ? orient3d_expansion(p) : orient3d_integer(p);
 }
 
 }  // namespace lrb::exact

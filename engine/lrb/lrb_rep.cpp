@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <atomic>
 #include <map>
+#include <numeric>
 
 #include <Eigen/Geometry>
 
@@ -65,6 +66,7 @@ LrbRep::LrbRep(LrbData data) : d_(std::move(data)) {
   check(d_);
   link_faces_to_regions();
   find_parents();
+  find_components();
   if (d_.dim == 3 && d_.face_vertices.size() != 3 * d_.face_count())
     for (FaceId f = 0; f < face_count(); ++f)
       face_of_simplex_.insert(face_of_simplex_.end(), Mesh::simplices_of(d_.face(f).size(), 3), f);
@@ -138,6 +140,26 @@ void LrbRep::find_parents() {
   }
 }
 
+void LrbRep::find_components() {
+  std::vector<VertexId> leader(d_.vertices.size());
+  std::iota(leader.begin(), leader.end(), 0u);
+  const auto find = [&](VertexId v) {
+    while (leader[v] != v) v = leader[v] = leader[leader[v]];
+    return v;
+  };
+  for (FaceId f = 0; f < d_.real_face_count; ++f)
+    for (const VertexId v : face(f)) {
+      const VertexId x = find(face(f)[0]), y = find(v);
+      leader[std::max(x, y)] = std::min(x, y);  // the leader is the least vertex, whatever the order
+    }
+  std::vector<bool> seen(d_.vertices.size(), false);
+  for (FaceId f = 0; f < d_.real_face_count; ++f) {
+    const VertexId v = find(face(f)[0]);
+    if (!seen[v]) component_vertices_.push_back(v);
+    seen[v] = true;
+  }
+}
+
 std::uint32_t LrbRep::simplex_count() const {
   return d_.dim == 2 ? face_count() : static_cast<std::uint32_t>(d_.face_vertices.size()) - 2 * face_count();
 }
@@ -150,8 +172,8 @@ std::size_t LrbRep::memory_bytes() const {
   const auto bytes = [](const auto& v) { return v.capacity() * sizeof(v[0]); };
   return sizeof(*this) + bytes(d_.vertices) + bytes(d_.face_offsets) + bytes(d_.face_vertices) +
          bytes(d_.inner_cell) + bytes(d_.outer_cell) + bytes(d_.region_layer) + bytes(outermost_) +
-         bytes(collector_offsets_) + bytes(collector_faces_) + bytes(lid_count_) + bytes(parent_) +
-         bytes(depth_) + bytes(face_of_simplex_) + tree_.memory_bytes();
+         bytes(component_vertices_) + bytes(collector_offsets_) + bytes(collector_faces_) +
+         bytes(lid_count_) + bytes(parent_) + bytes(depth_) + bytes(face_of_simplex_) + tree_.memory_bytes();
 }
 
 std::uint64_t hash_of(const LrbData& d) {

@@ -73,6 +73,8 @@ class LrbRep {
   std::span<const VertexId> face(FaceId f) const { return d_.face(f); }
   CellId inner_cell(FaceId f) const { return d_.inner_cell[f]; }
   CellId outer_cell(FaceId f) const { return d_.outer_cell[f]; }
+  /// One real vertex of each connected piece of the real surface (pieces joined by a vertex count as one).
+  std::span<const VertexId> component_vertices() const { return component_vertices_; }
   /// Faces in front of which lies the outside: the boundary of the outermost wrapper.
   std::span<const FaceId> outermost_faces() const { return outermost_; }
 
@@ -119,8 +121,8 @@ class LrbRep {
   const BlockTree& tree() const { return tree_; }
   /// hash_of(data()): names this very complex in traces and files.
   std::uint64_t hash() const { return hash_; }
-  /// Differs between any two LRB-reps made in this process (copies share it): lets caches notice a new body at an
-  /// old address.
+  /// Differs between any two LRB-reps made in this process (copies share it): lets caches notice a new body
+  /// at an old address.
   std::uint64_t serial() const { return serial_; }
   /// Bytes held, all arrays and the tree.
   std::size_t memory_bytes() const;
@@ -128,9 +130,11 @@ class LrbRep {
  private:
   void link_faces_to_regions();
   void find_parents();
+  void find_components();
 
   LrbData d_;
   std::vector<FaceId> outermost_;
+  std::vector<VertexId> component_vertices_;
   std::vector<std::uint32_t> collector_offsets_;  ///< (|R| + 1)
   std::vector<FaceId> collector_faces_;
   std::vector<std::uint32_t> lid_count_;  ///< (|R|)

@@ -3,6 +3,7 @@
 /// builders.
 
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -12,26 +13,36 @@ namespace lrb {
 
 struct ValidateOptions {
   bool embedding = true;               ///< test every pair of faces of the complex exactly
-  std::uint32_t wrapper_states = 100;  ///< random wrapper states checked for closedness and enclosure
+  std::uint32_t wrapper_states = 100;  ///< random wrapper states checked for closedness, volume and enclosure
   std::uint64_t seed = 1;
   std::uint32_t max_messages = 20;
 };
 
 struct ValidateReport {
-  bool valid = false;                   ///< no violation below; faults of the input are not violations
+  bool valid = true;                    ///< no violation below; faults of the input are not violations
   std::vector<std::string> violations;  ///< one line each, naming region and faces; at most max_messages
   std::uint64_t violation_count = 0;
-  std::uint64_t real_pairs_crossing =
-      0;  ///< pairs of real faces that meet outside shared parts: the input's fault
-  std::uint64_t embedding_pairs = 0;                              ///< pairs tested exactly
+  std::uint64_t real_pairs_meeting =
+      0;  ///< pairs of real simplices that meet outside shared parts: the input's fault
+  std::uint64_t flat_pairs = 0;  ///< lids that lie on a face they hide, in one plane: zero volume, allowed
+  std::uint64_t embedding_pairs = 0;                              ///< pairs of simplices tested exactly
+  std::uint32_t states = 0;                                       ///< wrapper states checked
   double volume_solid = 0, volume_regions = 0, volume_outer = 0;  ///< unit cubed (2D: squared)
-  double volume_error = 0;                                        ///< |solid + regions - outer| / outer
-  std::uint32_t negative_regions = 0;  ///< regions with volume below rounding's reach of zero
+  double volume_error = 0;  ///< |solid + regions - outer| / outer; rounding only, as the sum telescopes
 };
 
+/// Invariants, weakest first: every region and the solid closed, with volume >= 0 (to rounding); volumes of
+/// solid and regions add up to the outermost wrapper's; no two faces of the complex meet but in shared
+/// vertices and edges (this is the proof of embedding; a lid that lies flat on a face it hides is counted
+/// apart); every random wrapper state is closed, has the volume of its cells, and holds real vertices that it
+/// does not touch strictly inside.
 ValidateReport validate(const LrbRep& rep, const ValidateOptions& options = {});
 
-/// Signed volume (2D: area) behind a set of faces, each taken with its normal outward.
-double enclosed_volume(const LrbRep& rep, const std::vector<FaceId>& faces);
+/// Signed volume (2D: area) behind a closed set of faces: those of `outward` taken with their normal outward,
+/// those of `inward` seen from their other side; unit cubed (2D: squared).
+double enclosed_volume(const LrbRep& rep, std::span<const FaceId> outward,
+                       std::span<const FaceId> inward = {});
+/// Volume of a region: behind its lids and in front of its floor.
+double region_volume(const LrbRep& rep, RegionId r);
 
 }  // namespace lrb

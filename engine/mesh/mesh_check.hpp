@@ -38,7 +38,9 @@ inline constexpr std::size_t kMeshFaultCount = static_cast<std::size_t>(MeshFaul
 
 struct MeshFinding {
   std::uint64_t count = 0;
-  std::vector<std::array<std::uint32_t, 2>> first;  ///< elements (faces, vertices or edges by their vertices), a few
+  /// The first few offenders, ascending: a vertex, face or component (by its first face) and kNull; two faces; a face
+  /// and its vertex; an edge by its vertices (2D: the vertex and kNull).
+  std::vector<std::array<std::uint32_t, 2>> first;
 };
 
 struct MeshReport {
@@ -55,11 +57,15 @@ struct MeshReport {
   std::vector<std::string> lines(const Mesh& mesh) const;
 };
 
-/// Checks everything; self-intersections exactly and by a box tree, only if asked (they take the longest).
+/// Checks everything; self-intersections exactly and by a box tree, only if asked (they take the longest). Faces
+/// without area count as zero_area_face only, and what they touch is no self-intersection. In 2D vertices are judged
+/// as edges are in 3D: one segment must lead to each and one away from it.
 MeshReport check_mesh(const Mesh& mesh, bool self_intersections = true);
 
 /// Turns every component that is inside out so that the solid lies behind its faces. A component directly inside an
-/// odd number of others is a void and must face the other way; this is decided by parity. Returns the number turned.
+/// odd number of others is a void and must face the other way; this is decided by parity. Components that are not
+/// closed stay as they are. Returns the number turned. The triangles of a turned triangle or quad keep their numbers,
+/// those of a larger polygon's fan are numbered the other way round.
 std::uint32_t orient_outward(Mesh& mesh);
 
 }  // namespace lrb

@@ -1,6 +1,9 @@
 #pragma once
 /// Mesh files in, and out again for other tools.
 
+#include <array>
+#include <cstdint>
+#include <span>
 #include <string>
 
 #include "engine/mesh/mesh.hpp"
@@ -15,7 +18,11 @@ Mesh read_mesh(const std::string& path);
 /// The same from memory; `name` stands for the file in messages, its extension helps where content does not tell.
 Mesh read_mesh(const std::string& bytes, const std::string& name);
 
-/// As PLY (binary little-endian, uchar/int face lists, optional colours per face) or OBJ, by extension.
-void write_mesh(const Mesh& mesh, const std::string& path);
+using FaceColour = std::array<std::uint8_t, 3>;  ///< red, green, blue
+
+/// As PLY (binary little-endian, uchar/int face lists, optional colours per face) or OBJ, by extension; OBJ has no
+/// place for colours and 2D bodies are written as OBJ only. The file is there whole or not at all. Throws InputError
+/// (extension, path, as many colours as faces or none) or EnvironmentError (disk full and the like).
+void write_mesh(const Mesh& mesh, const std::string& path, std::span<const FaceColour> face_colours = {});
 
 }  // namespace lrb

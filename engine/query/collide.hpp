@@ -27,6 +27,8 @@ enum class Recursion : std::uint8_t {
   paper_strict,  ///< each region is refined once; its new faces meet only the new faces of what it hit
 };
 
+const char* to_string(Recursion r);
+
 struct CollideRequest {
   Mode mode = Mode::all_pairs;
   Recursion recursion = Recursion::complete;

@@ -6,6 +6,7 @@
 
 #include "engine/lrb/wrapper.hpp"
 #include "engine/query/collide.hpp"
+#include "engine/query/surface_graph.hpp"
 #include "engine/query/tree_kernel.hpp"
 #include "engine/query/world_vertices.hpp"
 
@@ -28,11 +29,24 @@ struct QueryBody {
     wrapper->reset();
   }
 
+  /// Made when first asked for, kept as long as the body stays the same.
+  const SurfaceGraph& surface_graph() {
+    if (!graph_ || graph_serial_ != rep().serial()) {
+      graph_ = std::make_unique<SurfaceGraph>(rep());
+      graph_serial_ = rep().serial();
+    }
+    return *graph_;
+  }
+
   /// Regions between a face and the outside along parents.
   std::uint32_t depth_of(FaceId f) const {
     const CellId outer = rep().outer_cell(f);
     return is_region(outer) ? rep().depth(outer) : 0;
   }
+
+ private:
+  std::unique_ptr<SurfaceGraph> graph_;
+  std::uint64_t graph_serial_ = 0;
 };
 
 class QueryContext {

@@ -40,13 +40,13 @@ bool same_for_all_roles(const test::SimplexPair& s, int expected) {
 }  // namespace
 
 TEST_CASE("triangles meet as the rational oracle says") {
-  for_each_kind(11, 4000, 40, [](const test::SimplexPair& s) {
+  for_each_kind(11, 1500, 40, [](const test::SimplexPair& s) {
     return same_for_all_roles(s, oracle::meet_of_simplices(s.a().data(), s.b().data(), 3));
   });
 }
 
 TEST_CASE("segments in the plane meet as the rational oracle says") {
-  for_each_kind(12, 3000, 20, [](const test::SimplexPair& s) {
+  for_each_kind(12, 1500, 20, [](const test::SimplexPair& s) {
     const auto a = s.a(), b = s.b();
     const int expected = oracle::meet_of_simplices(a.data(), b.data(), 2);
     const double* const flipped[2] = {a[1], a[0]};
@@ -56,7 +56,7 @@ TEST_CASE("segments in the plane meet as the rational oracle says") {
 }
 
 TEST_CASE("orientations have the sign of the rational determinant") {
-  for_each_kind(13, 3000, 3, [](const test::SimplexPair& s) {
+  for_each_kind(13, 1500, 3, [](const test::SimplexPair& s) {
     const double *a = s.p[0].data(), *b = s.p[1].data(), *c = s.p[2].data(), *d = s.p[3].data();
     const int in_space = oracle::orientation({a, b, c, d});
     const int in_plane = oracle::orientation({a, b, c});

@@ -81,10 +81,10 @@ void compare(std::uint64_t seed, std::size_t n, int rounds) {
 }  // namespace
 
 TEST_CASE("triangles of a complex meet only in shared corners and edges") {
-  compare(21, 3, 4000);
+  compare(21, 3, 1500);
 }
 TEST_CASE("segments of a complex meet only in shared corners") {
-  compare(22, 2, 3000);
+  compare(22, 2, 1500);
 }
 
 TEST_CASE("a triangle that names a vertex twice is no triangle") {

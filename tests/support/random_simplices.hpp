@@ -44,13 +44,15 @@ enum class Kind {
   far_grid,     ///< a nudged grid moved by 1e8 or 1e16
   scaled,       ///< nudged or real, each axis scaled by up to 1e-150 .. 1e150
   sliver,       ///< thin triangles along nearly one line
+  wide,         ///< as shared, some coordinates 1e-17 instead of 0: too far apart for 64-bit fixed point
   extreme,      ///< denormals, zeros and 1e308 mixed
   count
 };
 
 inline std::string name_of(Kind k) {
-  static constexpr const char* kNames[] = {"grid",     "tiny_grid", "nudged_grid", "real",   "shared",
-                                           "coplanar", "far_grid",  "scaled",      "sliver", "extreme"};
+  static constexpr const char* kNames[] = {"grid",   "tiny_grid", "nudged_grid", "real",
+                                           "shared", "coplanar",  "far_grid",    "scaled",
+                                           "sliver", "wide",      "extreme"};
   return kNames[static_cast<int>(k)];
 }
 
@@ -106,6 +108,17 @@ inline void fill_sliver(Rng& rng, SimplexPair& s) {
   }
 }
 
+inline void fill_wide(Rng& rng, SimplexPair& s) {
+  fill_grid(rng, s, 2);
+  for (auto& p : s.p) {
+    for (double& x : p) {
+      if (x == 0) x = random_int(rng, 0, 2) * 1e-17;
+      if (x == 1) x = random_int(rng, 0, 1) == 0 ? 1 : 0.1;
+    }
+  }
+  share_corners(rng, s);
+}
+
 inline void fill_extreme(Rng& rng, SimplexPair& s) {
   for (auto& p : s.p) {
     for (double& x : p) {
@@ -136,6 +149,9 @@ inline SimplexPair random_pair(Rng& rng, Kind kind) {
       break;
     case Kind::sliver:
       fill_sliver(rng, s);
+      break;
+    case Kind::wide:
+      fill_wide(rng, s);
       break;
     case Kind::extreme:
       fill_extreme(rng, s);

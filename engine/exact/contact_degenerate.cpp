@@ -1,0 +1,101 @@
+// Contacts of triangles without area: all in rational arithmetic, for they are rare.
+
+#include <utility>
+#include <vector>
+
+#include "engine/exact/contact_parts.hpp"
+#include "engine/exact/degenerate.hpp"
+#include "engine/exact/predicates.hpp"
+#include "engine/exact/rational_interval.hpp"
+
+namespace lrb::exact {
+namespace {
+
+struct RationalHull {
+  std::vector<RationalVec> corner;
+};
+
+RationalHull rational_hull(const Hull& h) {
+  RationalHull r;
+  for (int i = 0; i <= h.dim; ++i) r.corner.push_back(to_rational(h.corner[i]));
+  return r;
+}
+
+void clip_by_triangle(RationalInterval& part, const RationalHull& t, const Axes& axes, const RationalVec& s,
+                      const RationalVec& e) {
+  const auto& c = t.corner;
+  part.keep_zero(volume_determinant(c[0], c[1], c[2], s), volume_determinant(c[0], c[1], c[2], e));
+  for (std::size_t i = 0; i < 3; ++i) {
+    const RationalVec &p = c[i], &q = c[(i + 1) % 3];
+    part.keep_positive(axes.turn * area_determinant(p, q, s, axes.x, axes.y),
+                       axes.turn * area_determinant(p, q, e, axes.x, axes.y));
+  }
+}
+
+void clip_by_segment(RationalInterval& part, const RationalVec& p, const RationalVec& q, const RationalVec& s,
+                     const RationalVec& e) {
+  for (int x = 0; x < 3; ++x) {
+    const int y = (x + 1) % 3;
+    part.keep_zero(area_determinant(p, q, s, x, y), area_determinant(p, q, e, x, y));
+  }
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Rational &low = p[k] < q[k] ? p[k] : q[k], &high = p[k] < q[k] ? q[k] : p[k];
+    part.keep_positive(s[k] - low, e[k] - low);
+    part.keep_positive(high - s[k], high - e[k]);
+  }
+}
+
+bool on_segment(const RationalVec& x, const RationalVec& p, const RationalVec& q) {
+  RationalInterval part;
+  clip_by_segment(part, p, q, x, x);
+  return !part.empty;
+}
+
+/// The least feature of triangle t, which may be degenerate, that holds its point x.
+Feature feature_of(const RationalVec& x, const double* const t[3]) {
+  for (int i = 0; i < 3; ++i) {
+    if (x == to_rational(t[i])) return corner(i);
+  }
+  for (int i = 0; i < 3; ++i) {
+    if (on_segment(x, to_rational(t[i]), to_rational(t[(i + 1) % 3]))) return edge_between(i, (i + 1) % 3);
+  }
+  return {2, 0};
+}
+
+bool in_one_plane(const Hull& a, const Hull& b) {
+  std::vector<const double*> p(a.corner, a.corner + a.dim + 1);
+  p.insert(p.end(), b.corner, b.corner + b.dim + 1);
+  for (std::size_t i = 3; i < p.size();
+       ++i) {  // at most a triangle first and two more points, or two segments
+    if (orient3d(p[0], p[1], p[2], p[i]) != 0) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+PairContact contact_of_degenerate(const double* const a[3], const double* const b[3]) {
+  Hull big = hull_of(a), small = hull_of(b);
+  if (big.dim < small.dim) std::swap(big, small);
+  PairContact r;
+  r.coplanar = in_one_plane(big, small);
+  if (!hulls_meet(big, small)) return r;
+  r.meet = Meet::touch;
+  const RationalHull outer = rational_hull(big);
+  const RationalVec s = to_rational(small.corner[0]), e = to_rational(small.corner[small.dim]);
+  RationalInterval part;
+  if (big.dim == 2) {
+    clip_by_triangle(part, outer, axes_for(big.corner[0], big.corner[1], big.corner[2]), s, e);
+  } else {
+    clip_by_segment(part, outer.corner.front(), outer.corner.back(), s, e);
+  }
+  const bool is_point = part.low == part.high || small.dim == 0;
+  for (const Rational& t : {part.low, part.high}) {
+    const RationalVec x = between(s, e, t);
+    append(r, {rounded(x), feature_of(x, a), feature_of(x, b)});
+    if (is_point) break;
+  }
+  return r;
+}
+
+}  // namespace lrb::exact

@@ -1,0 +1,171 @@
+// Contacts of coplanar triangles and of segments in the plane.
+
+#include <algorithm>
+#include <utility>
+
+#include "engine/exact/contact_parts.hpp"
+#include "engine/exact/degenerate.hpp"
+#include "engine/exact/orient_axes.hpp"
+#include "engine/exact/predicates.hpp"
+
+namespace lrb::exact {
+namespace {
+
+/// sides[i][k]: side of corner k of one triangle on the directed edge i of the other, +1 inside.
+struct EdgeSides {
+  int side[3][3];
+};
+
+EdgeSides edge_sides(const double* const edges[3], const double* const corners[3], const Axes& axes) {
+  const int turn = orient_axes(edges[0], edges[1], edges[2], axes.x, axes.y);
+  EdgeSides r;
+  for (int i = 0; i < 3; ++i) {
+    for (int k = 0; k < 3; ++k) {
+      r.side[i][k] = turn * orient_axes(edges[i], edges[(i + 1) % 3], corners[k], axes.x, axes.y);
+    }
+  }
+  return r;
+}
+
+/// Where corner k lies in the triangle of the edges; false if outside.
+bool locate_corner(const EdgeSides& s, int k, Feature& f) {
+  int zeros = 0, zero_edge = 0;
+  for (int i = 0; i < 3; ++i) {
+    if (s.side[i][k] < 0) return false;
+    if (s.side[i][k] > 0) continue;
+    ++zeros;
+    zero_edge = i;
+  }
+  if (zeros == 0) f = {2, 0};
+  if (zeros == 1) f = {1, static_cast<std::uint8_t>(zero_edge)};
+  // On edges i and i + 1 it is the corner between them, i + 1.
+  if (zeros == 2) f = corner(s.side[0][k] != 0 ? 2 : s.side[1][k] != 0 ? 0 : 1);
+  return true;
+}
+
+bool on_edge(const Feature& f, int edge) {
+  return f.dim == 1 ? f.index == edge : f.dim == 0 && (f.index == edge || f.index == (edge + 1) % 3);
+}
+
+/// Corners of a convex polygon on one edge of either triangle are neighbours, because that edge's line
+/// supports it.
+bool are_neighbours(const ContactCorner& p, const ContactCorner& q) {
+  for (int i = 0; i < 3; ++i) {
+    if (on_edge(p.on_a, i) && on_edge(q.on_a, i)) return true;
+    if (on_edge(p.on_b, i) && on_edge(q.on_b, i)) return true;
+  }
+  return false;
+}
+
+/// Brings the corners into an order round the polygon.
+void order_round(PairContact& r) {
+  for (int i = 1; i < r.corner_count; ++i) {
+    const auto from = r.corners.begin() + i;
+    const auto end = r.corners.begin() + r.corner_count;
+    const auto next =
+        std::find_if(from, end, [&](const ContactCorner& q) { return are_neighbours(*(from - 1), q); });
+    if (next != end) std::swap(*from, *next);
+  }
+}
+
+ContactCorner at_corner(const double* p, Feature on_a, Feature on_b) {
+  return {as_vector(p), on_a, on_b};
+}
+
+/// Edges i of a and j of b cross in a point that is no corner of either.
+bool edges_cross(const EdgeSides& b_in_a, const EdgeSides& a_in_b, int i, int j) {
+  return b_in_a.side[i][j] * b_in_a.side[i][(j + 1) % 3] < 0 &&
+         a_in_b.side[j][i] * a_in_b.side[j][(i + 1) % 3] < 0;
+}
+
+Eigen::Vector3d planar(const double* p) {
+  return {p[0], p[1], 0};
+}
+
+Feature end_or_inside(int side_of_0, int side_of_1) {
+  return side_of_0 == 0 ? corner(0) : side_of_1 == 0 ? corner(1) : Feature{1, 0};
+}
+
+/// Where point p of the line of segment s lies on it; false if beyond its ends.
+bool locate_on_segment(const double* p, const double* const s[2], Feature& f) {
+  for (int i = 0; i < 2; ++i) {
+    if (p[0] == s[i][0] && p[1] == s[i][1]) {
+      f = corner(i);
+      return true;
+    }
+  }
+  for (int k = 0; k < 2; ++k) {
+    const auto [low, high] = std::minmax(s[0][k], s[1][k]);
+    if (p[k] < low || p[k] > high) return false;
+  }
+  f = {1, 0};
+  return true;
+}
+
+/// Segments (or points) on one line: the ends that lie on the other.
+PairContact contact_on_one_line(const double* const a[2], const double* const b[2]) {
+  PairContact r;
+  r.coplanar = true;
+  const auto add = [&](const double* p, Feature on_a, Feature on_b) {
+    for (int i = 0; i < r.corner_count; ++i) {
+      const Eigen::Vector3d& x = r.corners[static_cast<std::size_t>(i)].x;
+      if (x[0] == p[0] && x[1] == p[1]) return;
+    }
+    append(r, {planar(p), on_a, on_b});
+  };
+  Feature f;
+  for (int i = 0; i < 2; ++i) {
+    if (locate_on_segment(a[i], b, f)) add(a[i], corner(i), f);
+  }
+  for (int j = 0; j < 2; ++j) {
+    if (locate_on_segment(b[j], a, f)) add(b[j], f, corner(j));
+  }
+  r.meet = r.corner_count > 0 ? Meet::touch : Meet::disjoint;
+  return r;
+}
+
+}  // namespace
+
+PairContact contact_in_plane(const double* const a[3], const double* const b[3]) {
+  PairContact r;
+  r.coplanar = true;
+  const Axes axes = axes_for(a[0], a[1], a[2]);
+  const EdgeSides b_in_a = edge_sides(a, b, axes), a_in_b = edge_sides(b, a, axes);
+  Feature f;
+  for (int k = 0; k < 3; ++k) {
+    if (locate_corner(a_in_b, k, f)) append(r, at_corner(a[k], corner(k), f));
+  }
+  for (int k = 0; k < 3; ++k) {  // a corner of both is there already
+    if (locate_corner(b_in_a, k, f) && f.dim != 0) append(r, at_corner(b[k], f, corner(k)));
+  }
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) {
+      if (!edges_cross(b_in_a, a_in_b, i, j)) continue;
+      const Eigen::Vector3d x = cut_by_line(a[i], a[(i + 1) % 3], b[j], b[(j + 1) % 3], axes.x, axes.y, 3);
+      append(r, {x, edge_between(i, (i + 1) % 3), edge_between(j, (j + 1) % 3)});
+    }
+  }
+  order_round(r);
+  r.meet = r.corner_count > 0 ? Meet::touch : Meet::disjoint;
+  return r;
+}
+
+PairContact contact_of_segments(const double* const a[2], const double* const b[2]) {
+  const int b0 = orient2d(a[0], a[1], b[0]), b1 = orient2d(a[0], a[1], b[1]);
+  const int a0 = orient2d(b[0], b[1], a[0]), a1 = orient2d(b[0], b[1], a[1]);
+  if (a0 == 0 && a1 == 0 && b0 == 0 && b1 == 0) return contact_on_one_line(a, b);
+  PairContact r;
+  if (a0 * a1 > 0 || b0 * b1 > 0) return r;
+  r.meet = a0 * a1 < 0 && b0 * b1 < 0 ? Meet::cross : Meet::touch;
+  const Feature on_a = end_or_inside(a0, a1), on_b = end_or_inside(b0, b1);
+  if (on_a.dim == 0) {
+    append(r, {planar(a[on_a.index]), on_a, on_b});
+  } else if (on_b.dim == 0) {
+    append(r, {planar(b[on_b.index]), on_a, on_b});
+  } else {
+    append(r, {cut_by_line(a[0], a[1], b[0], b[1], 0, 1, 2), on_a, on_b});
+  }
+  return r;
+}
+
+}  // namespace lrb::exact

@@ -1,0 +1,139 @@
+#include "engine/exact/locate.hpp"
+
+#include <algorithm>
+
+#include "engine/exact/degenerate.hpp"
+#include "engine/exact/orient_axes.hpp"
+#include "engine/exact/predicates.hpp"
+#include "engine/exact/rational_point.hpp"
+
+namespace lrb::exact {
+namespace {
+
+constexpr int kX = 0, kY = 1, kZ = 2;
+
+/// One point, asked for signs: of doubles here, of rationals below.
+struct DoubleProbe {
+  const double* p;
+
+  int compare(int axis, double x) const { return (p[axis] > x) - (p[axis] < x); }
+  bool surely_below(int axis, double x) const { return p[axis] < x; }
+  bool surely_above(int axis, double x) const { return p[axis] > x; }
+  int orient(const double* a, const double* b, int x, int y) const { return orient_axes(a, b, p, x, y); }
+  int side(const double* const t[3]) const { return orient3d(t[0], t[1], t[2], p); }
+};
+
+struct RationalProbe {
+  const RationalPoint::Coordinates& p;
+
+  int compare(int axis, double x) const {
+    if (surely_below(axis, x)) return -1;
+    if (surely_above(axis, x)) return 1;
+    const Rational& own = p.x[static_cast<std::size_t>(axis)];
+    const Rational other = to_rational(x);
+    return (own > other) - (own < other);
+  }
+  bool surely_below(int axis, double x) const { return p.high[static_cast<std::size_t>(axis)] < x; }
+  bool surely_above(int axis, double x) const { return p.low[static_cast<std::size_t>(axis)] > x; }
+  int orient(const double* a, const double* b, int x, int y) const {
+    const int dim = std::max(x, y) + 1;
+    return area_determinant(to_rational(a, dim), to_rational(b, dim), p.x, x, y).sign();
+  }
+  int side(const double* const t[3]) const {
+    return volume_determinant(to_rational(t[0]), to_rational(t[1]), to_rational(t[2]), p.x).sign();
+  }
+};
+
+template <class Probe>
+bool in_box_of_segment(const Probe& p, const double* a, const double* b, int dim) {
+  for (int k = 0; k < dim; ++k) {
+    if (p.compare(k, std::min(a[k], b[k])) < 0 || p.compare(k, std::max(a[k], b[k])) > 0) return false;
+  }
+  return true;
+}
+
+/// For a point in the plane of the triangle, or a triangle without area: is it on the triangle?
+template <class Probe>
+bool on_flat_triangle(const Probe& p, const double* const t[3]) {
+  const Axes axes = axes_for(t[0], t[1], t[2]);
+  if (axes.turn != 0) {
+    return p.orient(t[0], t[1], axes.x, axes.y) != -axes.turn &&
+           p.orient(t[1], t[2], axes.x, axes.y) != -axes.turn &&
+           p.orient(t[2], t[0], axes.x, axes.y) != -axes.turn;
+  }
+  const Hull h = hull_of(t);
+  const double *a = h.corner[0], *b = h.corner[h.dim];
+  return in_box_of_segment(p, a, b, 3) && p.orient(a, b, kX, kY) == 0 && p.orient(a, b, kY, kZ) == 0 &&
+         p.orient(a, b, kZ, kX) == 0;
+}
+
+/// True if the ray and its start pass the triangle's box by.
+template <class Probe>
+bool passes_box(const Probe& p, const double* const t[3]) {
+  for (int k : {kY, kZ}) {
+    if (p.surely_below(k, std::min({t[0][k], t[1][k], t[2][k]}))) return true;
+    if (p.surely_above(k, std::max({t[0][k], t[1][k], t[2][k]}))) return true;
+  }
+  return p.surely_above(kX, std::max({t[0][kX], t[1][kX], t[2][kX]}));
+}
+
+/// Side of the moved point on the line a, b seen along x, where its own side is `side`. The determinant grows
+/// with eps by -(b_z - a_z), and with eps^2 by b_y - a_y.
+int moved_side(int side, const double* a, const double* b) {
+  if (side != 0) return side;
+  if (a[kZ] != b[kZ]) return b[kZ] < a[kZ] ? 1 : -1;
+  return (b[kY] > a[kY]) - (b[kY] < a[kY]);
+}
+
+template <class Probe>
+RayHit ray_triangle(const Probe& p, const double* const t[3]) {
+  if (passes_box(p, t)) return RayHit::misses;
+  int s[3];
+  bool left = false, right = false;
+  for (int i = 0; i < 3; ++i) {
+    s[i] = p.orient(t[i], t[(i + 1) % 3], kY, kZ);
+    left |= s[i] > 0;
+    right |= s[i] < 0;
+  }
+  // Off the triangle seen along x, by more than eps.
+  if (left && right) return RayHit::misses;
+  const int side = p.side(t);
+  if (side == 0 && on_flat_triangle(p, t)) return RayHit::on_face;
+  if (side == 0) return RayHit::misses;
+  const int turn = moved_side(s[0], t[0], t[1]);
+  if (turn == 0 || moved_side(s[1], t[1], t[2]) != turn || moved_side(s[2], t[2], t[0]) != turn) {
+    return RayHit::misses;
+  }
+  // Seen along x the triangle turns as its normal's x component: the plane lies ahead if p is behind it.
+  return side == -turn ? RayHit::crosses : RayHit::misses;
+}
+
+template <class Probe>
+RayHit ray_segment(const Probe& p, const double* const s[2]) {
+  const double* lower = s[0][kY] <= s[1][kY] ? s[0] : s[1];
+  const double* upper = s[0][kY] <= s[1][kY] ? s[1] : s[0];
+  if (p.surely_below(kY, lower[kY]) || p.surely_above(kY, upper[kY])) return RayHit::misses;
+  if (p.surely_above(kX, std::max(s[0][kX], s[1][kX]))) return RayHit::misses;
+  const int left = p.orient(lower, upper, kX, kY);
+  if (left == 0 && in_box_of_segment(p, lower, upper, 2)) return RayHit::on_face;
+  // The moved point is above whatever is level with it.
+  const bool spans = p.compare(kY, lower[kY]) >= 0 && p.compare(kY, upper[kY]) < 0;
+  return spans && left > 0 ? RayHit::crosses : RayHit::misses;
+}
+
+}  // namespace
+
+RayHit ray_crosses(const double p[3], const double* const tri[3]) {
+  return ray_triangle(DoubleProbe{p}, tri);
+}
+RayHit ray_crosses(const RationalPoint& p, const double* const tri[3]) {
+  return ray_triangle(RationalProbe{p.coordinates()}, tri);
+}
+RayHit ray_crosses_2d(const double p[2], const double* const seg[2]) {
+  return ray_segment(DoubleProbe{p}, seg);
+}
+RayHit ray_crosses_2d(const RationalPoint& p, const double* const seg[2]) {
+  return ray_segment(RationalProbe{p.coordinates()}, seg);
+}
+
+}  // namespace lrb::exact

@@ -1,0 +1,64 @@
+#pragma once
+/// Rational coordinates. Private to engine/exact, because it includes Boost.
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+
+#include <Eigen/Core>
+#include <boost/multiprecision/cpp_int.hpp>
+
+namespace lrb::exact {
+
+using Rational = boost::multiprecision::cpp_rational;
+/// Without expression templates' references to temporaries in the way: x, y, z.
+using RationalVec = std::array<Rational, 3>;
+
+/// The double's exact value.
+inline Rational to_rational(double x) {
+  constexpr int kMantissaBits = 53;
+  int exponent = 0;
+  const double mantissa = std::ldexp(std::frexp(x, &exponent), kMantissaBits);
+  boost::multiprecision::cpp_int n = static_cast<std::int64_t>(mantissa);
+  boost::multiprecision::cpp_int d = 1;
+  const int shift = exponent - kMantissaBits;
+  if (shift >= 0) {
+    n <<= shift;
+  } else {
+    d <<= -shift;
+  }
+  return Rational(n, d);
+}
+
+inline RationalVec to_rational(const double* p, int dim = 3) {
+  RationalVec r;
+  for (int k = 0; k < dim; ++k) r[static_cast<std::size_t>(k)] = to_rational(p[k]);
+  return r;
+}
+
+inline Eigen::Vector3d rounded(const RationalVec& p) {
+  return {p[0].convert_to<double>(), p[1].convert_to<double>(), p[2].convert_to<double>()};
+}
+
+/// a + t (b - a).
+inline RationalVec between(const RationalVec& a, const RationalVec& b, const Rational& t) {
+  RationalVec r;
+  for (std::size_t k = 0; k < 3; ++k) r[k] = a[k] + t * (b[k] - a[k]);
+  return r;
+}
+
+/// (b - a) x (c - a) in the coordinates x and y: orient2d's determinant.
+inline Rational area_determinant(const RationalVec& a, const RationalVec& b, const RationalVec& c, int x,
+                                 int y) {
+  const auto i = static_cast<std::size_t>(x), j = static_cast<std::size_t>(y);
+  return (b[i] - a[i]) * (c[j] - a[j]) - (b[j] - a[j]) * (c[i] - a[i]);
+}
+
+/// det[b - a; c - a; d - a]: orient3d's determinant.
+inline Rational volume_determinant(const RationalVec& a, const RationalVec& b, const RationalVec& c,
+                                   const RationalVec& d) {
+  return area_determinant(a, b, c, 1, 2) * (d[0] - a[0]) + area_determinant(a, b, c, 2, 0) * (d[1] - a[1]) +
+         area_determinant(a, b, c, 0, 1) * (d[2] - a[2]);
+}
+
+}  // namespace lrb::exact

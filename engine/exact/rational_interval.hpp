@@ -1,0 +1,28 @@
+#pragma once
+/// Clipping of a segment by linear conditions, exactly. Private to engine/exact, because it includes Boost.
+
+#include "engine/exact/rational.hpp"
+
+namespace lrb::exact {
+
+/// A part of a segment: parameters from 0 to 1.
+struct RationalInterval {
+  Rational low = 0, high = 1;
+  bool empty = false;
+
+  /// Keeps what satisfies f >= 0 for a function that is linear along the segment, given at both its ends.
+  void keep_positive(const Rational& at_start, const Rational& at_end) {
+    if (at_start < 0 && at_end < 0) empty = true;
+    if (empty || (at_start >= 0 && at_end >= 0)) return;
+    const Rational t = at_start / (at_start - at_end);
+    if (at_start < 0 && t > low) low = t;
+    if (at_end < 0 && t < high) high = t;
+    empty = low > high;
+  }
+  void keep_zero(const Rational& at_start, const Rational& at_end) {
+    keep_positive(at_start, at_end);
+    keep_positive(-at_start, -at_end);
+  }
+};
+
+}  // namespace lrb::exact

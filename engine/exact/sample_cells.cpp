@@ -1,0 +1,274 @@
+// One point in each cell of a face that others cut.
+
+#include <algorithm>
+#include <utility>
+
+#include "engine/exact/degenerate.hpp"
+#include "engine/exact/locate.hpp"
+#include "engine/exact/plane_side.hpp"
+#include "engine/exact/planes_cross.hpp"
+#include "engine/exact/predicates.hpp"
+#include "engine/exact/rational_interval.hpp"
+#include "engine/exact/rational_point.hpp"
+
+namespace lrb::exact {
+namespace {
+
+/// A point of the triangle's projection.
+struct Planar {
+  Rational x, y;
+  friend bool operator==(const Planar&, const Planar&) = default;
+  friend bool operator<(const Planar& a, const Planar& b) { return a.x != b.x ? a.x < b.x : a.y < b.y; }
+};
+
+/// From the left (or lower) to the right (or upper) end.
+struct Cut {
+  Planar from, to;
+  bool is_vertical() const { return from.x == to.x; }
+  Rational y_at(const Rational& x) const { return from.y + (to.y - from.y) * (x - from.x) / (to.x - from.x); }
+};
+
+Rational cross(const Planar& a, const Planar& b, const Planar& c) {
+  return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
+}
+
+/// The triangle, its projection, and what cuts it.
+class CutTriangle {
+ public:
+  CutTriangle(const double* const tri[3], const Axes& axes) : axes_(axes), plane_(tri[0], tri[1], tri[2]) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      exact_[i] = to_rational(tri[i]);
+      corner_[i] = project(exact_[i]);
+    }
+    for (std::size_t i = 0; i < 3; ++i) add(corner_[i], corner_[(i + 1) % 3]);
+  }
+
+  void cut_by(const double* const other[3]) {
+    const Sides sides = sides_of(plane_, other);
+    if (sides.all_strictly_same()) return;
+    std::vector<Planar> points;
+    for (int i = 0; i < 3; ++i) {
+      const int j = (i + 1) % 3;
+      if (sides.s[i] == 0) points.push_back(project(to_rational(other[i])));
+      if (sides.s[i] * sides.s[j] < 0)
+        points.push_back(where_edge_cuts(to_rational(other[i]), to_rational(other[j])));
+    }
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      for (std::size_t j = i + 1; j < points.size(); ++j) add_clipped(points[i], points[j]);
+    }
+  }
+
+  const std::vector<Cut>& cuts() const { return cuts_; }
+
+  /// The point of the triangle's plane with this projection.
+  RationalPoint lift(const Planar& p) const {
+    const Rational area = cross(corner_[0], corner_[1], corner_[2]);
+    const Rational u = cross(corner_[0], p, corner_[2]) / area, v = cross(corner_[0], corner_[1], p) / area;
+    RationalVec r;
+    for (std::size_t k = 0; k < 3; ++k) {
+      r[k] = exact_[0][k] + u * (exact_[1][k] - exact_[0][k]) + v * (exact_[2][k] - exact_[0][k]);
+    }
+    return make_point(std::move(r));
+  }
+
+ private:
+  Planar project(const RationalVec& p) const {
+    return {p[static_cast<std::size_t>(axes_.x)], p[static_cast<std::size_t>(axes_.y)]};
+  }
+
+  Planar where_edge_cuts(const RationalVec& p, const RationalVec& q) const {
+    const Rational hp = volume_determinant(exact_[0], exact_[1], exact_[2], p);
+    const Rational hq = volume_determinant(exact_[0], exact_[1], exact_[2], q);
+    return project(between(p, q, hp / (hp - hq)));
+  }
+
+  void add_clipped(const Planar& p, const Planar& q) {
+    RationalInterval part;
+    for (std::size_t i = 0; i < 3 && !part.empty; ++i) {
+      const Planar &a = corner_[i], &b = corner_[(i + 1) % 3];
+      part.keep_positive(axes_.turn * cross(a, b, p), axes_.turn * cross(a, b, q));
+    }
+    if (part.empty) return;
+    const auto at = [&](const Rational& t) { return Planar{p.x + t * (q.x - p.x), p.y + t * (q.y - p.y)}; };
+    add(at(part.low), at(part.high));
+  }
+
+  void add(const Planar& p, const Planar& q) {
+    if (p == q) return;  // a point cuts nothing
+    cuts_.push_back(p < q ? Cut{p, q} : Cut{q, p});
+  }
+
+  Axes axes_;
+  PlaneSide plane_;
+  std::array<RationalVec, 3> exact_;
+  std::array<Planar, 3> corner_;
+  std::vector<Cut> cuts_;
+};
+
+/// Adds the abscissa where two cuts cross (overlapping ones have their ends as events anyway).
+void add_crossing(const Cut& a, const Cut& b, std::vector<Rational>& events) {
+  const Rational b_from = cross(a.from, a.to, b.from), b_to = cross(a.from, a.to, b.to);
+  if (b_from * b_to > 0 || (b_from == 0 && b_to == 0)) return;
+  const Rational a_from = cross(b.from, b.to, a.from), a_to = cross(b.from, b.to, a.to);
+  if (a_from * a_to > 0) return;
+  events.push_back(a.from.x + (a.to.x - a.from.x) * a_from / (a_from - a_to));
+}
+
+std::vector<Rational> events_of(const std::vector<Cut>& cuts) {
+  std::vector<Rational> events;
+  for (std::size_t i = 0; i < cuts.size(); ++i) {
+    events.push_back(cuts[i].from.x);
+    events.push_back(cuts[i].to.x);
+    for (std::size_t j = 0; j < i; ++j) add_crossing(cuts[i], cuts[j], events);
+  }
+  std::sort(events.begin(), events.end());
+  events.erase(std::unique(events.begin(), events.end()), events.end());
+  return events;
+}
+
+/// The cuts that span a slab, upwards; of those that run together the first stands for all.
+struct Layer {
+  Rational y;  ///< at the slab's middle
+  std::size_t cut;
+};
+
+std::vector<Layer> layers_between(const std::vector<Cut>& cuts, const Rational& left, const Rational& right) {
+  std::vector<Layer> layers;
+  const Rational middle = (left + right) / 2;
+  for (std::size_t i = 0; i < cuts.size(); ++i) {
+    if (!cuts[i].is_vertical() && cuts[i].from.x <= left && cuts[i].to.x >= right) {
+      layers.push_back({cuts[i].y_at(middle), i});
+    }
+  }
+  std::sort(layers.begin(), layers.end(),
+            [](const Layer& a, const Layer& b) { return a.y != b.y ? a.y < b.y : a.cut < b.cut; });
+  const auto same = [](const Layer& a, const Layer& b) { return a.y == b.y; };
+  layers.erase(std::unique(layers.begin(), layers.end(), same), layers.end());
+  return layers;
+}
+
+/// A trapezoid of a slab, between two cuts; gaps of one cell are linked towards the first of them.
+struct Gap {
+  std::size_t below, above;
+  Planar middle;
+  std::size_t link;
+};
+
+/// The slabs from left to right, and which of their gaps are of one cell.
+class Slabs {
+ public:
+  explicit Slabs(const std::vector<Cut>& cuts) : cuts_(cuts) {
+    const std::vector<Rational> events = events_of(cuts);
+    std::size_t previous = 0;
+    for (std::size_t e = 0; e + 1 < events.size(); ++e) {
+      const std::size_t first = gaps_.size();
+      add_gaps(events[e], events[e + 1]);
+      for (std::size_t i = previous; i < first; ++i) {
+        for (std::size_t j = first; j < gaps_.size(); ++j) join(i, j, events[e]);
+      }
+      previous = first;
+    }
+  }
+
+  /// One point of each cell.
+  std::vector<Planar> middles() const {
+    std::vector<Planar> r;
+    for (std::size_t i = 0; i < gaps_.size(); ++i) {
+      if (gaps_[i].link == i) r.push_back(gaps_[i].middle);
+    }
+    return r;
+  }
+
+ private:
+  void add_gaps(const Rational& left, const Rational& right) {
+    const std::vector<Layer> layers = layers_between(cuts_, left, right);
+    for (std::size_t i = 0; i + 1 < layers.size(); ++i) {
+      const Planar middle{(left + right) / 2, (layers[i].y + layers[i + 1].y) / 2};
+      gaps_.push_back({layers[i].cut, layers[i + 1].cut, middle, gaps_.size()});
+    }
+  }
+
+  std::size_t first_of(std::size_t i) const {
+    while (gaps_[i].link != i) i = gaps_[i].link;
+    return i;
+  }
+
+  /// Gaps of neighbouring slabs are of one cell if they open to each other at x.
+  void join(std::size_t left, std::size_t right, const Rational& x) {
+    const Gap &l = gaps_[left], &r = gaps_[right];
+    const Rational low = std::max(cuts_[l.below].y_at(x), cuts_[r.below].y_at(x));
+    const Rational high = std::min(cuts_[l.above].y_at(x), cuts_[r.above].y_at(x));
+    if (low >= high || walled_off(x, low, high)) return;
+    const std::size_t a = first_of(left), b = first_of(right);
+    gaps_[std::max(a, b)].link = std::min(a, b);
+  }
+
+  /// True if vertical cuts at x cover all from low to high.
+  bool walled_off(const Rational& x, Rational low, const Rational& high) const {
+    std::vector<const Cut*> walls;
+    for (const Cut& c : cuts_) {
+      if (c.is_vertical() && c.from.x == x) walls.push_back(&c);
+    }
+    std::sort(walls.begin(), walls.end(), [](const Cut* a, const Cut* b) { return a->from.y < b->from.y; });
+    for (const Cut* c : walls) {
+      if (c->from.y <= low) low = std::max(low, c->to.y);
+    }
+    return low >= high;
+  }
+
+  const std::vector<Cut>& cuts_;
+  std::vector<Gap> gaps_;
+};
+
+}  // namespace
+
+std::optional<std::vector<RationalPoint>> sample_cells(const double* const tri[3],
+                                                       std::span<const std::array<const double*, 3>> others,
+                                                       std::size_t limit) {
+  std::vector<RationalPoint> samples;
+  const Axes axes = axes_for(tri[0], tri[1], tri[2]);
+  if (axes.turn == 0) return samples;
+  CutTriangle triangle(tri, axes);
+  for (const auto& other : others) {
+    triangle.cut_by(other.data());
+    if (triangle.cuts().size() > limit + 3) return std::nullopt;  // 3: its own edges
+  }
+  const std::vector<Planar> middles = Slabs(triangle.cuts()).middles();
+  if (middles.size() > limit) return std::nullopt;
+  for (const Planar& p : middles) samples.push_back(triangle.lift(p));
+  return samples;
+}
+
+std::optional<std::vector<RationalPoint>> sample_cells_2d(
+    const double* const seg[2], std::span<const std::array<const double*, 2>> others, std::size_t limit) {
+  std::vector<RationalPoint> samples;
+  const int axis = seg[0][0] != seg[1][0] ? 0 : 1;
+  if (seg[0][axis] == seg[1][axis]) return samples;
+  const RationalVec s = to_rational(seg[0], 2), e = to_rational(seg[1], 2);
+  std::vector<Rational> cuts{Rational(0), Rational(1)};
+  const auto add = [&](const Rational& t) {
+    if (t > 0 && t < 1) cuts.push_back(t);
+  };
+  for (const auto& other : others) {
+    const int side0 = orient2d(seg[0], seg[1], other[0]), side1 = orient2d(seg[0], seg[1], other[1]);
+    if (side0 * side1 > 0) continue;
+    const RationalVec p = to_rational(other[0], 2), q = to_rational(other[1], 2);
+    if (side0 == 0 && side1 == 0) {
+      const auto k = static_cast<std::size_t>(axis);
+      add((p[k] - s[k]) / (e[k] - s[k]));
+      add((q[k] - s[k]) / (e[k] - s[k]));
+    } else {
+      const Rational hs = area_determinant(p, q, s, 0, 1), he = area_determinant(p, q, e, 0, 1);
+      add(hs / (hs - he));
+    }
+  }
+  std::sort(cuts.begin(), cuts.end());
+  cuts.erase(std::unique(cuts.begin(), cuts.end()), cuts.end());
+  if (cuts.size() > limit + 1) return std::nullopt;
+  for (std::size_t i = 0; i + 1 < cuts.size(); ++i) {
+    samples.push_back(make_point(between(s, e, (cuts[i] + cuts[i + 1]) / 2)));
+  }
+  return samples;
+}
+
+}  // namespace lrb::exact

@@ -1,0 +1,63 @@
+#include "engine/lrb/boundary_sum.hpp"
+
+#include <algorithm>
+#include <numeric>
+
+namespace lrb {
+
+BoundarySum::BoundarySum(const LrbRep& rep) : rep_(rep) {
+  const LrbData& d = rep.data();
+  const std::size_t corners = d.face_vertices.size();
+  edge_of_corner_.resize(corners);
+  direction_.resize(corners);
+  // The ends of the edge that starts at each corner; in 2D a "corner" stands for itself, leaving or entering.
+  std::vector<std::pair<VertexId, VertexId>> ends(corners);
+  for (FaceId f = 0; f < rep.face_count(); ++f) {
+    const auto face = rep.face(f);
+    for (std::size_t i = 0; i < face.size(); ++i) {
+      const std::size_t c = d.face_offsets[f] + i;
+      const VertexId v = face[i], w = face[(i + 1) % face.size()];
+      ends[c] = rep.dim() == 2 ? std::pair{v, v} : std::pair{std::min(v, w), std::max(v, w)};
+      direction_[c] = rep.dim() == 2 ? (i == 0 ? 1 : -1) : (v < w ? 1 : -1);
+    }
+  }
+  std::vector<std::uint32_t> order(corners);
+  std::iota(order.begin(), order.end(), 0u);
+  std::sort(order.begin(), order.end(),
+            [&](auto x, auto y) { return ends[x] != ends[y] ? ends[x] < ends[y] : x < y; });
+  for (std::size_t k = 0; k < corners; ++k) {
+    if (k == 0 || ends[order[k]] != ends[order[k - 1]]) corner_of_edge_.push_back(order[k]);
+    edge_of_corner_[order[k]] = static_cast<std::uint32_t>(corner_of_edge_.size() - 1);
+  }
+  sum_.assign(corner_of_edge_.size(), 0);
+}
+
+void BoundarySum::change(FaceId f, int sign) {
+  const auto& offsets = rep_.data().face_offsets;
+  for (std::uint32_t c = offsets[f]; c < offsets[f + 1]; ++c) {
+    sum_[edge_of_corner_[c]] += sign * direction_[c];
+    touched_.push_back(edge_of_corner_[c]);
+  }
+}
+
+bool BoundarySum::take_closed(VertexId open_at[2]) {
+  bool closed = true;
+  for (const std::uint32_t e : touched_) {
+    if (sum_[e] != 0 && closed) {
+      closed = false;
+      const auto& d = rep_.data();
+      const std::uint32_t c = corner_of_edge_[e];
+      const auto f = static_cast<FaceId>(std::upper_bound(d.face_offsets.begin(), d.face_offsets.end(), c) -
+                                         d.face_offsets.begin() - 1);
+      const auto face = rep_.face(f);
+      const std::size_t i = c - d.face_offsets[f];
+      open_at[0] = face[i];
+      open_at[1] = rep_.dim() == 2 ? face[i] : face[(i + 1) % face.size()];
+    }
+    sum_[e] = 0;
+  }
+  touched_.clear();
+  return closed;
+}
+
+}  // namespace lrb

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <vector>
+
+#include "engine/lrb/lrb_rep.hpp"
+
+namespace lrb {
+
+/// Tells whether a set of oriented faces is closed: whether along every edge (2D: at every vertex) as many
+/// run one way as the other. Edges are numbered once; each question then costs O(faces asked about).
+class BoundarySum {
+ public:
+  explicit BoundarySum(const LrbRep& rep);
+
+  void add(FaceId f) { change(f, +1); }
+  /// The face seen from its other side.
+  void add_reversed(FaceId f) { change(f, -1); }
+  /// Whether what was added since the last call is closed; an edge where it is not is named in `open_at`.
+  bool take_closed(VertexId open_at[2]);
+
+ private:
+  void change(FaceId f, int sign);
+
+  const LrbRep& rep_;
+  std::vector<std::uint32_t>
+      edge_of_corner_;  ///< (sum of corners) number of the edge from this corner to the next
+  std::vector<std::int8_t>
+      direction_;  ///< (sum of corners) +1 if it runs from the smaller vertex to the larger
+  std::vector<std::uint32_t> corner_of_edge_;  ///< one corner of each edge, to name it
+  std::vector<std::int32_t> sum_;              ///< (edges)
+  std::vector<std::uint32_t> touched_;
+};
+
+}  // namespace lrb

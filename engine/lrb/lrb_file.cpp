@@ -1,0 +1,152 @@
+#include "engine/lrb/lrb_file.hpp"
+
+#include <cstring>
+#include <vector>
+
+#include "engine/error.hpp"
+#include "engine/lrb/fnv.hpp"
+#include "engine/mesh/atomic_file.hpp"
+#include "engine/mesh/file_bytes.hpp"
+
+namespace lrb {
+namespace {
+
+/// As PNG's: a byte beyond ASCII and line ends show a file that was sent as text.
+constexpr std::string_view kMagic("\x89LRB\r\n\x1a\n", 8);
+
+std::uint64_t checksum(std::string_view bytes) {
+  Fnv64 h;
+  h.add_bytes(bytes.data(), bytes.size());
+  return h.value();
+}
+
+class Writer {
+ public:
+  template <class T>
+  void value(const T& x) {
+    bytes_.append(reinterpret_cast<const char*>(&x), sizeof x);
+  }
+  template <class T>
+  void array(const T* x, std::size_t count) {
+    value(static_cast<std::uint64_t>(count));
+    bytes_.append(reinterpret_cast<const char*>(x), count * sizeof(T));
+  }
+  template <class T>
+  void array(const std::vector<T>& x) {
+    array(x.data(), x.size());
+  }
+  std::string& bytes() { return bytes_; }
+
+ private:
+  std::string bytes_;
+};
+
+class Reader {
+ public:
+  Reader(std::string_view bytes, const std::string& name) : bytes_(bytes), name_(name) {}
+
+  [[noreturn]] void refuse(const std::string& what) const {
+    throw InputError(printable_name(name_) + ": byte " + std::to_string(at_) + ": " + what +
+                     "; build it again from its mesh");
+  }
+
+  template <class T>
+  T value() {
+    need(sizeof(T));
+    T x;
+    std::memcpy(&x, bytes_.data() + at_, sizeof x);
+    at_ += sizeof x;
+    return x;
+  }
+
+  template <class T>
+  std::vector<T> array() {
+    const auto count = value<std::uint64_t>();
+    if (count > (bytes_.size() - at_) / sizeof(T))
+      refuse("an array of " + std::to_string(count) + " elements does not fit into what is left of the file");
+    std::vector<T> x(count);
+    if (count != 0) std::memcpy(static_cast<void*>(x.data()), bytes_.data() + at_, count * sizeof(T));
+    at_ += count * sizeof(T);
+    return x;
+  }
+
+  std::size_t at() const { return at_; }
+
+ private:
+  void need(std::size_t size) const {
+    if (bytes_.size() - at_ < size) refuse("the file ends in the middle of a number");
+  }
+
+  std::string_view bytes_;
+  const std::string& name_;
+  std::size_t at_ = kMagic.size();
+};
+
+}  // namespace
+
+void save_lrb(const LrbRep& rep, const std::string& path) {
+  const LrbData& d = rep.data();
+  Writer w;
+  w.bytes().append(kMagic);
+  w.value(kLrbFileVersion);
+  w.value(static_cast<std::uint32_t>(d.dim));
+  w.value(d.real_face_count);
+  w.value(static_cast<std::uint32_t>(d.closed) | static_cast<std::uint32_t>(d.self_intersecting) << 1);
+  w.array(d.name.data(), d.name.size());
+  w.array(d.vertices);
+  w.array(d.face_offsets);
+  w.array(d.face_vertices);
+  w.array(d.inner_cell);
+  w.array(d.outer_cell);
+  w.array(d.region_layer);
+  w.value(checksum(w.bytes()));
+  write_file(path, w.bytes());
+}
+
+bool looks_like_lrb(std::string_view bytes) {
+  return bytes.substr(0, kMagic.size()) == kMagic;
+}
+
+LrbRep load_lrb(std::string_view bytes, const std::string& name) {
+  if (!looks_like_lrb(bytes))
+    throw InputError(printable_name(name) +
+                     ": byte 0: this is not a .lrb file; build one with `lrbscope build MESH -o FILE.lrb`");
+  Reader r(bytes, name);
+  const auto version = r.value<std::uint32_t>();
+  if (version > kLrbFileVersion)
+    throw InputError(printable_name(name) + ": byte 8: the file has version " + std::to_string(version) +
+                     ", this program reads up to " + std::to_string(kLrbFileVersion) +
+                     "; use a newer lrbscope");
+  if (bytes.size() < r.at() + sizeof(std::uint64_t)) r.refuse("the file is cut short");
+  std::uint64_t stored;
+  std::memcpy(&stored, bytes.data() + bytes.size() - sizeof stored, sizeof stored);
+  if (stored != checksum(bytes.substr(0, bytes.size() - sizeof stored)))
+    r.refuse("the checksum does not match: the file is damaged or cut short");
+  LrbData d;
+  d.dim = static_cast<int>(r.value<std::uint32_t>());
+  d.real_face_count = r.value<std::uint32_t>();
+  const auto flags = r.value<std::uint32_t>();
+  d.closed = flags & 1u;
+  d.self_intersecting = flags & 2u;
+  const std::vector<char> stored_name = r.array<char>();
+  d.name.assign(stored_name.begin(), stored_name.end());
+  d.vertices = r.array<Eigen::Vector3d>();
+  d.face_offsets = r.array<std::uint32_t>();
+  d.face_vertices = r.array<VertexId>();
+  d.inner_cell = r.array<CellId>();
+  d.outer_cell = r.array<CellId>();
+  d.region_layer = r.array<std::uint16_t>();
+  if (r.at() + sizeof stored != bytes.size()) r.refuse("there is more than a .lrb file holds");
+  if (d.face_offsets.empty()) r.refuse("the offsets of the faces are missing");
+  try {
+    return LrbRep(std::move(d));
+  } catch (const InputError& e) {
+    throw InputError(printable_name(name) + ": " + e.what());
+  }
+}
+
+LrbRep load_lrb(const std::string& path) {
+  return load_lrb(std::string_view(read_file(path)), path);
+}
+
+}  // namespace lrb

@@ -1,0 +1,213 @@
+#include "engine/lrb/validate.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include "engine/exact/locate.hpp"
+#include "engine/exact/predicates.hpp"
+#include "engine/exact/simplex_test.hpp"
+#include "engine/lrb/boundary_sum.hpp"
+#include "engine/lrb/wrapper.hpp"
+#include "engine/query/self_pairs.hpp"
+#include "engine/tolerances.hpp"
+
+namespace lrb {
+namespace {
+
+class Validator {
+ public:
+  Validator(const LrbRep& rep, const ValidateOptions& options) : rep_(rep), options_(options), sum_(rep) {}
+
+  ValidateReport run() {
+    check_cells();
+    if (options_.embedding) check_embedding();
+    if (report_.valid || report_.violation_count < options_.max_messages) check_wrapper_states();
+    return std::move(report_);
+  }
+
+ private:
+  void violation(const std::string& text) {
+    report_.valid = false;
+    if (report_.violation_count++ < options_.max_messages) report_.violations.push_back(text);
+  }
+
+  void check_closed(const std::string& what) {
+    VertexId at[2];
+    if (!sum_.take_closed(at))
+      violation(what + " is open at edge (" + std::to_string(at[0]) + ", " + std::to_string(at[1]) + ")");
+  }
+
+  void check_cells() {
+    std::vector<FaceId> real(rep_.real_face_count());
+    for (FaceId f = 0; f < real.size(); ++f) {
+      real[f] = f;
+      sum_.add(f);
+    }
+    if (rep_.closed())
+      check_closed("the solid");
+    else
+      sum_.take_closed(unused_);
+    report_.volume_solid = enclosed_volume(rep_, real);
+    report_.volume_outer = enclosed_volume(rep_, rep_.outermost_faces());
+    const double noise = kVolumeRounding * std::abs(report_.volume_outer);
+    for (RegionId r = 0; r < rep_.region_count(); ++r) {
+      for (const FaceId f : rep_.lids(r)) sum_.add(f);
+      for (const FaceId f : rep_.floor(r)) sum_.add_reversed(f);
+      check_closed("region " + std::to_string(r));
+      volume_.push_back(region_volume(rep_, r));
+      report_.volume_regions += volume_.back();
+      if (volume_.back() < -noise)
+        violation("region " + std::to_string(r) + " has the negative volume " +
+                  std::to_string(volume_.back()));
+    }
+    for (const FaceId f : rep_.outermost_faces()) sum_.add(f);
+    if (rep_.closed())
+      check_closed("the outermost wrapper");
+    else
+      sum_.take_closed(unused_);
+    const double gap = std::abs(report_.volume_solid + report_.volume_regions - report_.volume_outer);
+    report_.volume_error = report_.volume_outer != 0 ? gap / std::abs(report_.volume_outer) : gap;
+    if (rep_.region_count() > 0 && report_.volume_error > kVolumeRounding)
+      violation("volumes of solid and regions miss the outermost wrapper's by " + std::to_string(gap));
+  }
+
+  /// All faces of the complex as one body's real faces.
+  LrbRep complex_as_soup() const {
+    LrbData d = rep_.data();
+    d.real_face_count = rep_.face_count();
+    d.inner_cell.assign(rep_.face_count(), kSolid);
+    d.outer_cell.assign(rep_.face_count(), kOutside);
+    d.region_layer.clear();
+    return LrbRep(std::move(d));
+  }
+
+  void check_embedding() {
+    const LrbRep soup = complex_as_soup();
+    for_each_self_pair(soup, [&](SimplexId s, SimplexId t) {
+      VertexId vs[3], vt[3];
+      soup.simplex(s, vs);
+      soup.simplex(t, vt);
+      const double *cs[3], *ct[3];
+      for (int k = 0; k < soup.simplex_size(); ++k) {
+        cs[k] = rep_.vertices()[vs[k]].data();
+        ct[k] = rep_.vertices()[vt[k]].data();
+      }
+      ++report_.embedding_pairs;
+      const bool good = rep_.dim() == 3 ? exact::meet_only_in_shared(cs, vs, ct, vt)
+                                        : exact::meet_only_in_shared_2d(cs, vs, ct, vt);
+      if (!good) judge_meeting(soup.face_of_simplex(s), soup.face_of_simplex(t), cs, ct);
+    });
+  }
+
+  void judge_meeting(FaceId f, FaceId g, const double* const* cf, const double* const* cg) {
+    if (rep_.is_real(f) && rep_.is_real(g)) {
+      ++report_.real_pairs_meeting;
+    } else if (lies_flat_on(f, g, cf, cg) || lies_flat_on(g, f, cg, cf)) {
+      ++report_.flat_pairs;
+    } else {
+      violation("faces " + std::to_string(f) + (rep_.is_real(f) ? " (real)" : " (pseudo)") + " and " +
+                std::to_string(g) + (rep_.is_real(g) ? " (real)" : " (pseudo)") +
+                " meet outside shared parts");
+    }
+  }
+
+  /// The lid hides the face and both lie in one plane: the zero-volume part of a region.
+  bool lies_flat_on(FaceId lid, FaceId face, const double* const* cl, const double* const* cf) const {
+    if (!is_region(rep_.inner_cell(lid)) || rep_.inner_cell(lid) != rep_.outer_cell(face)) return false;
+    if (rep_.dim() == 2)
+      return exact::orient2d(cl[0], cl[1], cf[0]) == 0 && exact::orient2d(cl[0], cl[1], cf[1]) == 0;
+    return exact::orient3d(cl[0], cl[1], cl[2], cf[0]) == 0 &&
+           exact::orient3d(cl[0], cl[1], cl[2], cf[1]) == 0 &&
+           exact::orient3d(cl[0], cl[1], cl[2], cf[2]) == 0;
+  }
+
+  void check_wrapper_states() {
+    if (rep_.region_count() == 0 || !rep_.closed()) return;
+    std::mt19937_64 random(options_.seed);
+    for (std::uint32_t state = 0; state < options_.wrapper_states; ++state) {
+      // Shares of excluded regions from almost none to all, so that states near both ends occur.
+      const double share = std::pow(std::generate_canonical<double, 53>(random), 2);
+      Wrapper w(rep_);
+      double volume = report_.volume_outer;
+      for (RegionId r = 0; r < rep_.region_count(); ++r)
+        if (std::generate_canonical<double, 53>(random) < share) {
+          w.refine(r);
+          volume -= volume_[r];
+        }
+      check_state(w.boundary(), w, volume, random);
+      ++report_.states;
+    }
+  }
+
+  void check_state(const std::vector<FaceId>& boundary, const Wrapper& w, double volume,
+                   std::mt19937_64& random) {
+    std::vector<bool> touched(rep_.vertices().size(), false);
+    std::vector<FaceId> as_is, reversed;
+    for (const FaceId f : boundary) {
+      // With a region included in front of a face but not behind it, the wrapper's boundary shows the face's
+      // back.
+      const bool outward = w.included(rep_.inner_cell(f));
+      outward ? sum_.add(f) : sum_.add_reversed(f);
+      (outward ? as_is : reversed).push_back(f);
+      for (const VertexId v : rep_.face(f)) touched[v] = true;
+    }
+    const std::string name = "wrapper state " + std::to_string(report_.states);
+    check_closed(name);
+    if (std::abs(enclosed_volume(rep_, as_is, reversed) - volume) >
+        kVolumeRounding * std::abs(report_.volume_outer))
+      violation(name + " encloses a volume other than that of its cells");
+    // A self-intersecting solid has vertices inside itself that parity calls outside.
+    if (!rep_.self_intersecting()) check_enclosure(boundary, touched, name, random);
+  }
+
+  void check_enclosure(const std::vector<FaceId>& boundary, const std::vector<bool>& touched,
+                       const std::string& name, std::mt19937_64& random) {
+    for (int sample = 0; sample < kEnclosureSamples; ++sample) {
+      const FaceId f = static_cast<FaceId>(random() % rep_.real_face_count());
+      const VertexId v = rep_.face(f)[0];
+      if (touched[v]) continue;
+      if (!holds(boundary, v)) violation(name + " leaves real vertex " + std::to_string(v) + " outside");
+    }
+  }
+
+  /// The vertex lies behind the boundary or on it.
+  bool holds(const std::vector<FaceId>& boundary, VertexId v) const {
+    const double* p = rep_.vertices()[v].data();
+    bool inside = false, on_face = false;
+    const auto note = [&](exact::RayHit hit) {
+      inside ^= hit == exact::RayHit::crosses;
+      on_face |= hit == exact::RayHit::on_face;
+    };
+    for (const FaceId g : boundary) {
+      const auto corners = rep_.face(g);
+      const auto at = [&](std::size_t i) { return rep_.vertices()[corners[i]].data(); };
+      if (rep_.dim() == 2) {
+        const double* c[2] = {at(0), at(1)};
+        note(exact::ray_crosses_2d(p, c));
+      }
+      for (std::size_t i = 1; i + 1 < corners.size(); ++i) {
+        const double* c[3] = {at(0), at(i), at(i + 1)};
+        note(exact::ray_crosses(p, c));
+      }
+    }
+    return inside || on_face;
+  }
+
+  static constexpr int kEnclosureSamples = 8;
+
+  const LrbRep& rep_;
+  const ValidateOptions& options_;
+  BoundarySum sum_;
+  ValidateReport report_;
+  std::vector<double> volume_;
+  VertexId unused_[2] = {};
+};
+
+}  // namespace
+
+ValidateReport validate(const LrbRep& rep, const ValidateOptions& options) {
+  return Validator(rep, options).run();
+}
+
+}  // namespace lrb

@@ -1,0 +1,34 @@
+#include <Eigen/Geometry>
+
+#include "engine/lrb/validate.hpp"
+
+namespace lrb {
+namespace {
+
+/// Volume of the cone from `origin` over a face (2D: area of the triangle), positive if the face looks away
+/// from it. The origin is near the faces, so that bodies far from zero keep their digits.
+double cone(const LrbRep& rep, FaceId f, const Eigen::Vector3d& origin) {
+  const auto corners = rep.face(f);
+  const auto at = [&](std::size_t i) -> Eigen::Vector3d { return rep.vertices()[corners[i]] - origin; };
+  if (rep.dim() == 2) return 0.5 * (at(0).x() * at(1).y() - at(0).y() * at(1).x());
+  double sum = 0;
+  for (std::size_t i = 1; i + 1 < corners.size(); ++i) sum += at(0).dot(at(i).cross(at(i + 1)));
+  return sum / 6;
+}
+
+}  // namespace
+
+double enclosed_volume(const LrbRep& rep, std::span<const FaceId> outward, std::span<const FaceId> inward) {
+  if (outward.empty() && inward.empty()) return 0;
+  const Eigen::Vector3d origin = rep.vertices()[rep.face(outward.empty() ? inward[0] : outward[0])[0]];
+  double sum = 0;
+  for (const FaceId f : outward) sum += cone(rep, f, origin);
+  for (const FaceId f : inward) sum -= cone(rep, f, origin);
+  return sum;
+}
+
+double region_volume(const LrbRep& rep, RegionId r) {
+  return enclosed_volume(rep, rep.lids(r), rep.floor(r));
+}
+
+}  // namespace lrb

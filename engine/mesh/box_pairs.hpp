@@ -1,0 +1,104 @@
+#pragma once
+/// All pairs of boxes of one set that meet: a balanced tree of boxes descended against itself.
+
+#include <algorithm>
+#include <cstdint>
+#include <numeric>
+#include <vector>
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+
+namespace lrb {
+
+using Box = Eigen::AlignedBox3d;
+
+class BoxTree {
+ public:
+  /// Empty boxes meet nothing and are left out.
+  explicit BoxTree(const std::vector<Box>& boxes) : boxes_(boxes) {
+    for (std::uint32_t i = 0; i < boxes.size(); ++i)
+      if (!boxes[i].isEmpty()) items_.push_back(i);
+    if (!items_.empty()) build(0, static_cast<std::uint32_t>(items_.size()));
+  }
+
+  /// Calls visit(i, j), i < j, once for every two boxes that meet (closed sets), in no order to rely on.
+  template <class Visit>
+  void for_each_pair(Visit&& visit) const {
+    if (!nodes_.empty()) within(0, visit);
+  }
+
+ private:
+  static constexpr std::uint32_t kLeafSize = 4;
+  struct Node {
+    Box box;
+    std::uint32_t first, last;  ///< items
+    std::uint32_t right;        ///< child; the left one follows its parent. 0: leaf
+  };
+
+  std::uint32_t build(std::uint32_t first, std::uint32_t last) {
+    const auto index = static_cast<std::uint32_t>(nodes_.size());
+    nodes_.push_back({{}, first, last, 0});
+    Box box;
+    for (std::uint32_t i = first; i < last; ++i) box.extend(boxes_[items_[i]]);
+    nodes_[index].box = box;
+    if (last - first <= kLeafSize) return index;
+    int axis = 0;
+    box.sizes().maxCoeff(&axis);
+    const std::uint32_t middle = first + (last - first) / 2;
+    std::nth_element(items_.begin() + first, items_.begin() + middle, items_.begin() + last,
+                     [&](std::uint32_t i, std::uint32_t j) {
+                       // Halved before they are added: no overflow.
+                       const double a = boxes_[i].min()[axis] / 2 + boxes_[i].max()[axis] / 2;
+                       const double b = boxes_[j].min()[axis] / 2 + boxes_[j].max()[axis] / 2;
+                       return a != b ? a < b : i < j;
+                     });
+    build(first, middle);
+    nodes_[index].right = build(middle, last);
+    return index;
+  }
+
+  template <class Visit>
+  void within(std::uint32_t n, Visit& visit) const {
+    const Node& node = nodes_[n];
+    if (node.right == 0) {
+      for (std::uint32_t i = node.first; i < node.last; ++i)
+        for (std::uint32_t j = i + 1; j < node.last; ++j) try_pair(items_[i], items_[j], visit);
+      return;
+    }
+    within(n + 1, visit);
+    within(node.right, visit);
+    between(n + 1, node.right, visit);
+  }
+
+  template <class Visit>
+  void between(std::uint32_t m, std::uint32_t n, Visit& visit) const {
+    const Node &a = nodes_[m], &b = nodes_[n];
+    if (!a.box.intersects(b.box)) return;
+    if (a.right == 0 && b.right == 0) {
+      for (std::uint32_t i = a.first; i < a.last; ++i)
+        if (boxes_[items_[i]].intersects(b.box))
+          for (std::uint32_t j = b.first; j < b.last; ++j) try_pair(items_[i], items_[j], visit);
+      return;
+    }
+    // Descend into the node with more items, so that both reach their leaves together.
+    if (b.right == 0 || (a.right != 0 && a.last - a.first >= b.last - b.first)) {
+      between(m + 1, n, visit);
+      between(a.right, n, visit);
+    } else {
+      between(m, n + 1, visit);
+      between(m, b.right, visit);
+    }
+  }
+
+  template <class Visit>
+  void try_pair(std::uint32_t i, std::uint32_t j, Visit& visit) const {
+    if (boxes_[i].intersects(boxes_[j])) visit(std::min(i, j), std::max(i, j));
+  }
+
+  const std::vector<Box>& boxes_;
+  std::vector<std::uint32_t> items_;
+  std::vector<Node> nodes_;
+};
+
+}  // namespace lrb

@@ -1,0 +1,140 @@
+#include "engine/mesh/face_checks.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <optional>
+#include <span>
+
+#include "engine/exact/predicates.hpp"
+#include "engine/mesh/polygon_shape.hpp"
+
+namespace lrb {
+namespace {
+
+/// Offenders kept per fault: enough to find the place, few enough to read.
+constexpr std::size_t kKept = 8;
+
+/// The first vertex that a face names twice, kNull if there is none.
+VertexId repeated_corner(std::span<const VertexId> corners, std::vector<VertexId>& sorted) {
+  if (corners.size() == 3) {  // nearly every face there is
+    if (corners[0] == corners[1] || corners[0] == corners[2]) return corners[0];
+    return corners[1] == corners[2] ? corners[1] : kNull;
+  }
+  sorted.assign(corners.begin(), corners.end());
+  std::sort(sorted.begin(), sorted.end());
+  const auto twice = std::adjacent_find(sorted.begin(), sorted.end());
+  return twice == sorted.end() ? kNull : *twice;
+}
+
+FaceUse check_segment(const Mesh& mesh, FaceId f, MeshReport& report) {
+  const auto corners = mesh.face(f);
+  if (corners.size() == 2 && mesh.vertices[corners[0]].head<2>() != mesh.vertices[corners[1]].head<2>())
+    return FaceUse::convex;
+  note(report, MeshFault::zero_area_face, f);
+  return FaceUse::points;
+}
+
+FaceUse check_polygon(const Mesh& mesh, FaceId f, MeshReport& report) {
+  const auto corners = mesh.face(f);
+  const auto triple = spanning_corners(mesh, corners);
+  if (!triple) {
+    note(report, MeshFault::zero_area_face, f);
+    return FaceUse::points;
+  }
+  if (corners.size() == 3) return FaceUse::convex;
+  const bool planar = is_planar(mesh, corners, *triple), convex = is_convex(mesh, corners);
+  if (!planar) note(report, MeshFault::non_planar_face, f);
+  if (!convex) note(report, MeshFault::non_convex_face, f);
+  return planar && convex ? FaceUse::convex : FaceUse::area;
+}
+
+FaceUse check_face(const Mesh& mesh, FaceId f, const std::vector<bool>& finite,
+                   std::vector<VertexId>& scratch, MeshReport& report) {
+  const auto corners = mesh.face(f);
+  for (const VertexId v : corners) {
+    if (v < mesh.vertices.size()) continue;
+    note(report, MeshFault::index_out_of_range, f, v);
+    return FaceUse::nothing;
+  }
+  const VertexId twice = repeated_corner(corners, scratch);
+  if (twice != kNull) note(report, MeshFault::repeated_corner, f, twice);
+  if (!std::all_of(corners.begin(), corners.end(), [&](VertexId v) { return finite[v]; }))
+    return FaceUse::topology;
+  const FaceUse use = mesh.dim == 2 ? check_segment(mesh, f, report) : check_polygon(mesh, f, report);
+  return twice == kNull ? use : std::min(use, FaceUse::area);
+}
+
+/// Faces in order of their sorted corners: equal ones become neighbours, the earlier one first.
+class CornerSets {
+ public:
+  CornerSets(const Mesh& mesh, const std::vector<FaceUse>& use) : offsets_(mesh.face_offsets) {
+    sorted_ = mesh.face_vertices;
+    for (FaceId f = 0; f < mesh.face_count(); ++f) {
+      std::sort(sorted_.begin() + offsets_[f], sorted_.begin() + offsets_[f + 1]);
+      if (use[f] != FaceUse::nothing && offsets_[f] != offsets_[f + 1]) order_.push_back(f);
+    }
+    std::sort(order_.begin(), order_.end(), [&](FaceId f, FaceId g) {
+      const auto a = set(f), b = set(g);
+      const auto difference = std::lexicographical_compare_three_way(a.begin(), a.end(), b.begin(), b.end());
+      return difference != 0 ? difference < 0 : f < g;
+    });
+  }
+
+  const std::vector<FaceId>& order() const { return order_; }
+  bool same(FaceId f, FaceId g) const { return std::ranges::equal(set(f), set(g)); }
+
+ private:
+  std::span<const VertexId> set(FaceId f) const {
+    return {sorted_.data() + offsets_[f], offsets_[f + 1] - offsets_[f]};
+  }
+
+  const std::vector<std::uint32_t>& offsets_;
+  std::vector<VertexId> sorted_;
+  std::vector<FaceId> order_;
+};
+
+}  // namespace
+
+void note(MeshReport& report, MeshFault fault, std::uint32_t first, std::uint32_t second) {
+  MeshFinding& finding = report.findings[static_cast<std::size_t>(fault)];
+  ++finding.count;
+  const std::array<std::uint32_t, 2> element = {first, second};
+  auto& kept = finding.first;
+  if (kept.size() == kKept && !(element < kept.back())) return;
+  kept.insert(std::upper_bound(kept.begin(), kept.end(), element), element);
+  if (kept.size() > kKept) kept.pop_back();
+}
+
+std::vector<FaceUse> check_faces(const Mesh& mesh, MeshReport& report) {
+  std::vector<bool> finite(mesh.vertices.size());
+  for (VertexId v = 0; v < mesh.vertices.size(); ++v) {
+    finite[v] = mesh.vertices[v].allFinite();
+    if (!finite[v]) note(report, MeshFault::non_finite_vertex, v);
+  }
+  std::vector<FaceUse> use(mesh.face_count());
+  std::vector<VertexId> scratch;
+  for (FaceId f = 0; f < use.size(); ++f) use[f] = check_face(mesh, f, finite, scratch, report);
+  return use;
+}
+
+void check_duplicates(const Mesh& mesh, const std::vector<FaceUse>& use, MeshReport& report) {
+  const CornerSets sets(mesh, use);
+  const auto& order = sets.order();
+  for (std::size_t first = 0, i = 1; i < order.size(); ++i) {
+    if (sets.same(order[first], order[i]))
+      note(report, MeshFault::duplicate_face, order[first], order[i]);
+    else
+      first = i;
+  }
+}
+
+void check_unused(const Mesh& mesh, MeshReport& report) {
+  std::vector<bool> used(mesh.vertices.size());
+  for (const VertexId v : mesh.face_vertices)
+    if (v < used.size()) used[v] = true;
+  for (VertexId v = 0; v < used.size(); ++v)
+    if (!used[v]) note(report, MeshFault::unused_vertex, v);
+}
+
+}  // namespace lrb

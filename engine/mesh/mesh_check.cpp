@@ -1,0 +1,57 @@
+#include "engine/mesh/mesh_check.hpp"
+
+#include <algorithm>
+
+#include "engine/mesh/face_checks.hpp"
+#include "engine/mesh/nesting.hpp"
+#include "engine/mesh/self_intersections.hpp"
+#include "engine/mesh/surface_topology.hpp"
+
+namespace lrb {
+namespace {
+
+/// Turns a face round. A triangle keeps its first corner and a quad starts at its third, so that the
+/// triangles of its fan keep their numbers; those of larger polygons are numbered from the other end.
+void turn(Mesh& mesh, FaceId f) {
+  const auto first = mesh.face_vertices.begin() + mesh.face_offsets[f];
+  const auto last = mesh.face_vertices.begin() + mesh.face_offsets[f + 1];
+  if (mesh.dim == 2) {
+    std::reverse(first, last);
+    return;
+  }
+  std::reverse(first + 1, last);
+  if (last - first == 4) std::rotate(first, first + 2, last);
+}
+
+}  // namespace
+
+MeshReport check_mesh(const Mesh& mesh, bool self_intersections) {
+  MeshReport report;
+  if (mesh.face_count() == 0) ++report.findings[static_cast<std::size_t>(MeshFault::no_faces)].count;
+  const std::vector<FaceUse> use = check_faces(mesh, report);
+  check_duplicates(mesh, use, report);
+  check_unused(mesh, report);
+  const SurfaceTopology topology = analyse_topology(mesh, use, report);
+  report.components = topology.components;
+  report.closed = topology.closed;
+  report.genus = topology.genus;
+  for (const auto& faces : wrongly_facing_components(mesh, use, topology))
+    note(report, MeshFault::inside_out, faces.front());
+  if (self_intersections) {
+    find_self_intersections(mesh, use,
+                            [&](FaceId f, FaceId g) { note(report, MeshFault::self_intersection, f, g); });
+    report.self_intersections_checked = true;
+  }
+  return report;
+}
+
+std::uint32_t orient_outward(Mesh& mesh) {
+  MeshReport unused;
+  const std::vector<FaceUse> use = check_faces(mesh, unused);
+  const auto wrong = wrongly_facing_components(mesh, use, analyse_topology(mesh, use, unused));
+  for (const auto& faces : wrong)
+    for (const FaceId f : faces) turn(mesh, f);
+  return static_cast<std::uint32_t>(wrong.size());
+}
+
+}  // namespace lrb

@@ -1,0 +1,106 @@
+#include "engine/mesh/nesting.hpp"
+
+#include <algorithm>
+#include <set>
+#include <utility>
+
+#include "engine/mesh/box_pairs.hpp"
+#include "engine/mesh/point_inside.hpp"
+#include "engine/mesh/self_intersections.hpp"
+#include "engine/mesh/volume_sign.hpp"
+
+namespace lrb {
+namespace {
+
+using Pair = std::pair<std::uint32_t, std::uint32_t>;  ///< (inner component, outer component)
+
+class Nesting {
+ public:
+  Nesting(const Mesh& mesh, const std::vector<FaceUse>& use, const SurfaceTopology& topology)
+      : mesh_(mesh),
+        use_(use),
+        topology_(topology),
+        faces_(topology.components),
+        boxes_(topology.components),
+        usable_(topology.component_closed),
+        depth_(topology.components, 0) {
+    for (FaceId f = 0; f < mesh.face_count(); ++f) {
+      const std::uint32_t c = topology.component_of_face[f];
+      if (c == kNull) continue;
+      if (use[f] < FaceUse::points) usable_[c] = false;
+      faces_[c].push_back(f);
+      for (const VertexId v : mesh.face(f)) boxes_[c].extend(mesh.vertices[v]);
+    }
+  }
+
+  std::vector<std::vector<FaceId>> wrongly_facing() {
+    std::vector<Pair> nested = find_nested();
+    drop_crossing(nested);
+    for (const Pair& p : nested) ++depth_[p.first];
+    std::vector<std::vector<FaceId>> wrong;
+    for (std::uint32_t c = 0; c < faces_.size(); ++c)
+      if (usable_[c] && volume_sign(mesh_, faces_[c]) == (depth_[c] % 2 == 0 ? -1 : 1))
+        wrong.push_back(faces_[c]);
+    return wrong;
+  }
+
+ private:
+  std::vector<Pair> find_nested() const {
+    std::vector<Pair> nested;
+    for (std::uint32_t inner = 0; inner < faces_.size(); ++inner)
+      for (std::uint32_t outer = 0; outer < faces_.size(); ++outer)
+        if (inner != outer && usable_[inner] && usable_[outer] && boxes_[outer].contains(boxes_[inner]) &&
+            starts_inside(inner, outer))
+          nested.emplace_back(inner, outer);
+    return nested;
+  }
+
+  /// Is a vertex of `inner` inside `outer`? One that lies on the surface says nothing: then the next is
+  /// tried. If all do, the two have their surface in common and neither is a void of the other.
+  bool starts_inside(std::uint32_t inner, std::uint32_t outer) const {
+    static constexpr std::size_t kTries = 16;  // faces, so up to three times as many vertices
+    for (std::size_t i = 0; i < std::min(kTries, faces_[inner].size()); ++i)
+      for (const VertexId v : mesh_.face(faces_[inner][i])) {
+        const PointSide side = point_side(mesh_, faces_[outer], mesh_.vertices[v]);
+        if (side != PointSide::on_surface) return side == PointSide::inside;
+      }
+    return false;
+  }
+
+  void drop_crossing(std::vector<Pair>& nested) const {
+    if (nested.empty()) return;
+    const std::set<Pair> candidates(nested.begin(), nested.end());
+    std::set<Pair> crossing;
+    const auto components = [&](FaceId f, FaceId g) {
+      return Pair(topology_.component_of_face[f], topology_.component_of_face[g]);
+    };
+    const auto wanted = [&](FaceId f, FaceId g) {
+      const auto [a, b] = components(f, g);
+      return a != b && (candidates.contains({a, b}) || candidates.contains({b, a})) &&
+             !crossing.contains({a, b});
+    };
+    find_crossings(mesh_, use_, wanted, [&](FaceId f, FaceId g) {
+      const auto [a, b] = components(f, g);
+      crossing.insert({a, b});
+      crossing.insert({b, a});
+    });
+    std::erase_if(nested, [&](const Pair& p) { return crossing.contains(p); });
+  }
+
+  const Mesh& mesh_;
+  const std::vector<FaceUse>& use_;
+  const SurfaceTopology& topology_;
+  std::vector<std::vector<FaceId>> faces_;  ///< (components)
+  std::vector<Box> boxes_;                  ///< (components)
+  std::vector<bool> usable_;                ///< closed, all coordinates finite
+  std::vector<std::uint32_t> depth_;        ///< components around it
+};
+
+}  // namespace
+
+std::vector<std::vector<FaceId>> wrongly_facing_components(const Mesh& mesh, const std::vector<FaceUse>& use,
+                                                           const SurfaceTopology& topology) {
+  return Nesting(mesh, use, topology).wrongly_facing();
+}
+
+}  // namespace lrb

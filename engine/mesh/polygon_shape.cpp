@@ -1,0 +1,137 @@
+#include "engine/mesh/polygon_shape.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/Geometry>
+
+#include "engine/exact/predicates.hpp"
+
+namespace lrb {
+namespace {
+
+const double* point(const Mesh& mesh, VertexId v) {
+  return mesh.vertices[v].data();
+}
+
+/// The axes, that nearest to the polygon's normal (Newell's, of the polygon scaled to size 1) first.
+std::array<int, 3> axes_by_normal(const Mesh& mesh, std::span<const VertexId> corners) {
+  double size = 0;
+  for (const VertexId v : corners) size = std::max(size, mesh.vertices[v].cwiseAbs().maxCoeff());
+  const Eigen::Vector3d origin = mesh.vertices[corners[0]] / size;
+  Eigen::Vector3d sum(0, 0, 0);
+  for (std::size_t i = 1; i + 1 < corners.size(); ++i)
+    sum += (mesh.vertices[corners[i]] / size - origin).cross(mesh.vertices[corners[i + 1]] / size - origin);
+  std::array<int, 3> axes = {0, 1, 2};
+  std::sort(axes.begin(), axes.end(), [&](int i, int j) { return std::abs(sum[i]) > std::abs(sum[j]); });
+  return axes;
+}
+
+/// Sign of the order of two points of the plane, by x and then by y.
+int order(const double* a, const double* b) {
+  for (int i = 0; i < 2; ++i)
+    if (a[i] != b[i]) return a[i] < b[i] ? 1 : -1;
+  return 0;
+}
+
+/// The corners without coordinate `axis`, consecutive equal ones once.
+std::vector<Eigen::Vector2d> seen_along(int axis, const Mesh& mesh, std::span<const VertexId> corners) {
+  std::vector<Eigen::Vector2d> seen;
+  for (const VertexId v : corners) {
+    const Eigen::Vector2d p(mesh.vertices[v][(axis + 1) % 3], mesh.vertices[v][(axis + 2) % 3]);
+    if (seen.empty() || p != seen.back()) seen.push_back(p);
+  }
+  while (seen.size() > 1 && seen.front() == seen.back()) seen.pop_back();
+  return seen;
+}
+
+/// How a polygon of the plane runs round.
+struct Round {
+  bool left = false, right = false;  ///< it turns that way somewhere
+  int changes = 0;                   ///< of its sides' order (by x, then y); 2 if it goes round once
+
+  bool has_turns() const { return left || right; }
+  bool is_convex() const { return left != right && changes == 2; }
+};
+
+Round go_round(const std::vector<Eigen::Vector2d>& p) {
+  Round round;
+  for (std::size_t i = 0; i < p.size(); ++i) {
+    const auto &a = p[i], &b = p[(i + 1) % p.size()], &c = p[(i + 2) % p.size()];
+    const int turn = exact::orient2d(a.data(), b.data(), c.data());
+    round.left |= turn > 0;
+    round.right |= turn < 0;
+    round.changes += order(a.data(), b.data()) != order(b.data(), c.data());
+  }
+  return round;
+}
+
+bool is_straight(const Mesh& mesh, VertexId a, VertexId b, VertexId c) {
+  return exact::collinear3d(point(mesh, a), point(mesh, b), point(mesh, c));
+}
+
+bool fan_has_area(const Mesh& mesh, std::span<const VertexId> corners) {
+  for (std::size_t i = 1; i + 1 < corners.size(); ++i)
+    if (is_straight(mesh, corners[0], corners[i], corners[i + 1])) return false;
+  return true;
+}
+
+/// An ear whose loss leaves the rest with area. There is one: with four or more proper corners any of them,
+/// with three any that stands next to a straight one.
+std::size_t find_ear(const Mesh& mesh, const std::vector<VertexId>& ring) {
+  const std::size_t n = ring.size();
+  std::vector<VertexId> rest;
+  for (std::size_t i = 0; i < n; ++i) {
+    if (is_straight(mesh, ring[(i + n - 1) % n], ring[i], ring[(i + 1) % n])) continue;
+    rest = ring;
+    rest.erase(rest.begin() + static_cast<std::ptrdiff_t>(i));
+    if (spanning_corners(mesh, rest)) return i;
+  }
+  return 0;
+}
+
+}  // namespace
+
+std::optional<std::array<VertexId, 3>> spanning_corners(const Mesh& mesh, std::span<const VertexId> corners) {
+  if (corners.size() < 3) return std::nullopt;
+  const VertexId a = corners[0];
+  std::size_t i = 1;
+  while (i < corners.size() && mesh.vertices[corners[i]] == mesh.vertices[a]) ++i;
+  for (std::size_t k = i + 1; k < corners.size(); ++k)
+    if (!is_straight(mesh, a, corners[i], corners[k])) return std::array{a, corners[i], corners[k]};
+  return std::nullopt;
+}
+
+bool is_planar(const Mesh& mesh, std::span<const VertexId> corners, const std::array<VertexId, 3>& plane) {
+  return std::all_of(corners.begin(), corners.end(), [&](VertexId v) {
+    return exact::orient3d(point(mesh, plane[0]), point(mesh, plane[1]), point(mesh, plane[2]),
+                           point(mesh, v)) == 0;
+  });
+}
+
+bool is_convex(const Mesh& mesh, std::span<const VertexId> corners) {
+  for (const int axis : axes_by_normal(mesh, corners)) {
+    const Round round = go_round(seen_along(axis, mesh, corners));
+    if (round.has_turns()) return round.is_convex();  // otherwise the polygon is seen edge-on
+  }
+  return false;
+}
+
+void triangulate_convex(const Mesh& mesh, std::span<const VertexId> corners,
+                        std::vector<std::array<VertexId, 3>>& triangles) {
+  triangles.clear();
+  if (corners.size() == 3 || fan_has_area(mesh, corners)) {
+    for (std::size_t i = 1; i + 1 < corners.size(); ++i)
+      triangles.push_back({corners[0], corners[i], corners[i + 1]});
+    return;
+  }
+  std::vector<VertexId> ring(corners.begin(), corners.end());
+  while (ring.size() > 3) {
+    const std::size_t n = ring.size(), i = find_ear(mesh, ring);
+    triangles.push_back({ring[(i + n - 1) % n], ring[i], ring[(i + 1) % n]});
+    ring.erase(ring.begin() + static_cast<std::ptrdiff_t>(i));
+  }
+  triangles.push_back({ring[0], ring[1], ring[2]});
+}
+
+}  // namespace lrb

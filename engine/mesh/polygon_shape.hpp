@@ -1,0 +1,29 @@
+#pragma once
+/// Exact answers about the shape of one polygon in space.
+
+#include <array>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "engine/mesh/mesh.hpp"
+
+namespace lrb {
+
+/// Three corners that span a plane; none if all corners lie on one line (the polygon has no area).
+std::optional<std::array<VertexId, 3>> spanning_corners(const Mesh& mesh, std::span<const VertexId> corners);
+
+/// Do all corners lie in the plane of these three?
+bool is_planar(const Mesh& mesh, std::span<const VertexId> corners, const std::array<VertexId, 3>& plane);
+
+/// Is the polygon convex, seen along the axis nearest to its normal? Corners in the middle of a straight side
+/// are allowed, sides that turn back are not. For a polygon with area.
+bool is_convex(const Mesh& mesh, std::span<const VertexId> corners);
+
+/// Triangles that make up a planar convex polygon with area, each with area: the fan from the first corner
+/// unless corners in the middle of straight sides would give that fan triangles without area; then ears are
+/// cut off so that what is left keeps its area.
+void triangulate_convex(const Mesh& mesh, std::span<const VertexId> corners,
+                        std::vector<std::array<VertexId, 3>>& triangles);
+
+}  // namespace lrb

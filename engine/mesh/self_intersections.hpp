@@ -1,0 +1,24 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+#include "engine/mesh/face_checks.hpp"
+#include "engine/mesh/mesh.hpp"
+
+namespace lrb {
+
+/// Calls found(f, g), f < g, for every two faces that meet in more than the vertices and edges they share.
+/// Faces without area are left out (they have a finding of their own), and a polygon is not tested against
+/// itself. Exact.
+void find_self_intersections(const Mesh& mesh, const std::vector<FaceUse>& use,
+                             const std::function<void(FaceId, FaceId)>& found);
+
+/// Calls found(f, g), f < g, for every two faces for which wanted(f, g) holds and that cross: each passes
+/// through the other's interior.
+void find_crossings(const Mesh& mesh, const std::vector<FaceUse>& use,
+                    const std::function<bool(FaceId, FaceId)>& wanted,
+                    const std::function<void(FaceId, FaceId)>& found);
+
+}  // namespace lrb

@@ -1,0 +1,160 @@
+#include "engine/mesh/surface_topology.hpp"
+
+#include <algorithm>
+#include <span>
+
+#include "engine/mesh/disjoint_sets.hpp"
+
+namespace lrb {
+namespace {
+
+/// One side of a face at an edge (in 2D: one end of a segment at a vertex).
+struct SideUse {
+  std::uint64_t key;  ///< the edge: smaller vertex, larger vertex (2D: the vertex)
+  FaceId face;
+  std::uint32_t corner;  ///< at which the side starts, into Mesh::face_vertices
+  bool forward;          ///< it runs from the smaller to the larger vertex (2D: it leaves the vertex)
+};
+
+bool has_different_corners(std::span<const VertexId> corners, int needed) {
+  int found = 0;
+  for (std::size_t i = 0; i < corners.size() && found < needed; ++i)
+    found += std::find(corners.begin(), corners.begin() + i, corners[i]) == corners.begin() + i;
+  return found >= needed;
+}
+
+class Analysis {
+ public:
+  Analysis(const Mesh& mesh, const std::vector<FaceUse>& use, MeshReport& report)
+      : mesh_(mesh),
+        report_(report),
+        faces_(mesh.face_count()),
+        corners_(mesh.face_vertices.size()),
+        fans_(mesh.vertices.size(), 0) {
+    out_.component_of_face.assign(mesh.face_count(), kNull);
+    all_usable_ = true;
+    for (FaceId f = 0; f < mesh.face_count(); ++f) {
+      all_usable_ &= use[f] != FaceUse::nothing;
+      if (use[f] != FaceUse::nothing && has_different_corners(mesh.face(f), mesh.dim)) add_sides(f);
+    }
+    std::sort(sides_.begin(), sides_.end(), [](const SideUse& a, const SideUse& b) {
+      return a.key != b.key ? a.key < b.key : a.corner < b.corner;
+    });
+  }
+
+  SurfaceTopology run() {
+    for_each_edge([&](std::span<const SideUse> edge) { join(edge); });
+    number_components();
+    for_each_edge([&](std::span<const SideUse> edge) { judge(edge); });
+    const bool manifold = judge_fans();
+    out_.closed = all_usable_ && out_.components > 0 &&
+                  std::find(out_.component_closed.begin(), out_.component_closed.end(), false) ==
+                      out_.component_closed.end();
+    if (out_.closed && manifold) out_.genus = mesh_.dim == 2 ? 0 : genus();
+    return std::move(out_);
+  }
+
+ private:
+  void add_sides(FaceId f) {
+    const auto corners = mesh_.face(f);
+    const std::uint32_t first = mesh_.face_offsets[f];
+    out_.component_of_face[f] = f;  // for now: a face in use
+    ++faces_used_;
+    for (const VertexId v : corners) ++fans_[v];
+    for (std::uint32_t i = 0; i < corners.size(); ++i) {
+      const VertexId a = corners[i], b = corners[(i + 1) % corners.size()];
+      if (mesh_.dim == 2)
+        sides_.push_back({a, f, first + i, i == 0});
+      else if (a != b)
+        sides_.push_back({std::uint64_t{std::min(a, b)} << 32 | std::max(a, b), f, first + i, a < b});
+    }
+  }
+
+  template <class Visit>
+  void for_each_edge(Visit visit) {
+    for (std::size_t i = 0, end = 0; i < sides_.size(); i = end) {
+      while (end < sides_.size() && sides_[end].key == sides_[i].key) ++end;
+      visit(std::span<const SideUse>(sides_).subspan(i, end - i));
+    }
+  }
+
+  /// The corner of the same face after this one.
+  std::uint32_t next_corner(const SideUse& s) const {
+    return s.corner + 1 == mesh_.face_offsets[s.face + 1] ? mesh_.face_offsets[s.face] : s.corner + 1;
+  }
+
+  void join(std::span<const SideUse> edge) {
+    ++edges_;
+    for (const SideUse& s : edge.subspan(1)) {
+      faces_.join(edge[0].face, s.face);
+      if (mesh_.dim == 3) join_fans(edge[0], s);
+    }
+  }
+
+  /// Two faces at an edge are in one fan at both of its ends.
+  void join_fans(const SideUse& s, const SideUse& t) {
+    const std::uint32_t low_s = s.forward ? s.corner : next_corner(s),
+                        high_s = s.forward ? next_corner(s) : s.corner;
+    const std::uint32_t low_t = t.forward ? t.corner : next_corner(t),
+                        high_t = t.forward ? next_corner(t) : t.corner;
+    if (corners_.join(low_s, low_t)) --fans_[mesh_.face_vertices[low_s]];
+    if (corners_.join(high_s, high_t)) --fans_[mesh_.face_vertices[high_s]];
+  }
+
+  void number_components() {
+    for (FaceId f = 0; f < mesh_.face_count(); ++f) {
+      auto& number = out_.component_of_face[f];
+      if (number == kNull) continue;
+      const std::uint32_t leader = faces_.leader(f);  // the smallest face of its set, so already numbered
+      number = leader == f ? out_.components++ : out_.component_of_face[leader];
+    }
+    out_.component_closed.assign(out_.components, true);
+  }
+
+  void judge(std::span<const SideUse> edge) {
+    const bool opposite = edge.size() == 2 && edge[0].forward != edge[1].forward;
+    if (opposite) return;
+    out_.component_closed[out_.component_of_face[edge[0].face]] = false;
+    if (edge.size() == 2) return note(report_, MeshFault::flipped_face, edge[0].face, edge[1].face);
+    const MeshFault fault = edge.size() == 1 ? MeshFault::open_edge : MeshFault::non_manifold_edge;
+    if (mesh_.dim == 2) return note(report_, fault, static_cast<VertexId>(edge[0].key));
+    note(report_, fault, static_cast<VertexId>(edge[0].key >> 32), static_cast<VertexId>(edge[0].key));
+  }
+
+  /// True if no vertex joins two fans. (In 2D the vertices are the edges, and judged as such.)
+  bool judge_fans() {
+    if (mesh_.dim == 2) return true;
+    bool manifold = true;
+    for (VertexId v = 0; v < fans_.size(); ++v) {
+      vertices_used_ += fans_[v] > 0;
+      if (fans_[v] <= 1) continue;
+      manifold = false;
+      note(report_, MeshFault::non_manifold_vertex, v);
+    }
+    return manifold;
+  }
+
+  /// Euler: V - E + F = 2 C - 2 G.
+  int genus() const {
+    const std::int64_t euler = vertices_used_ - edges_ + faces_used_;
+    return static_cast<int>((2 * std::int64_t{out_.components} - euler) / 2);
+  }
+
+  const Mesh& mesh_;
+  MeshReport& report_;
+  SurfaceTopology out_;
+  std::vector<SideUse> sides_;
+  DisjointSets faces_;               ///< joined over edges
+  DisjointSets corners_;             ///< of all faces, joined round their vertex: each set is a fan
+  std::vector<std::uint32_t> fans_;  ///< (|V|) fans at a vertex: corners less joins
+  bool all_usable_ = false;
+  std::int64_t vertices_used_ = 0, edges_ = 0, faces_used_ = 0;
+};
+
+}  // namespace
+
+SurfaceTopology analyse_topology(const Mesh& mesh, const std::vector<FaceUse>& use, MeshReport& report) {
+  return Analysis(mesh, use, report).run();
+}
+
+}  // namespace lrb

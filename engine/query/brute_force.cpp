@@ -1,0 +1,75 @@
+#include "engine/query/brute_force.hpp"
+
+#include <algorithm>
+
+#include "engine/exact/locate.hpp"
+
+namespace lrb {
+namespace {
+
+struct WorldBody {
+  WorldBody(const LrbRep& r, const Pose& pose) : rep(r) {
+    for (const auto& v : r.vertices()) x.push_back(pose.apply(v));
+  }
+  void corners(SimplexId s, const double* out[3]) const {
+    VertexId v[3];
+    rep.simplex(s, v);
+    for (int k = 0; k < rep.simplex_size(); ++k) out[k] = x[v[k]].data();
+  }
+  bool holds(const double* point) const {
+    int crossings = 0;
+    const double* c[3];
+    for (SimplexId s = 0; s < rep.real_simplex_count(); ++s) {
+      corners(s, c);
+      const exact::RayHit hit =
+          rep.dim() == 3 ? exact::ray_crosses(point, c) : exact::ray_crosses_2d(point, c);
+      crossings += hit == exact::RayHit::crosses;
+    }
+    return crossings % 2 != 0;
+  }
+  const LrbRep& rep;
+  std::vector<Eigen::Vector3d> x;
+};
+
+/// Of the components of `inner`, how many lie in `outer`.
+std::size_t held(const WorldBody& inner, const WorldBody& outer) {
+  const auto vertices = inner.rep.component_vertices();
+  return static_cast<std::size_t>(std::count_if(vertices.begin(), vertices.end(),
+                                                [&](VertexId v) { return outer.holds(inner.x[v].data()); }));
+}
+
+Relation relation_without_contact(const WorldBody& a, const WorldBody& b) {
+  if (!a.rep.closed() || !b.rep.closed()) return Relation::undefined;
+  const std::size_t a_in_b = held(a, b), b_in_a = held(b, a);
+  if (a_in_b > 0 &&
+      (a_in_b == a.rep.component_vertices().size() || b_in_a != b.rep.component_vertices().size()))
+    return Relation::a_inside_b;
+  return b_in_a > 0 ? Relation::b_inside_a : Relation::separate;
+}
+
+}  // namespace
+
+BruteForceResult brute_force(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b) {
+  const WorldBody wa(a, pose_a), wb(b, pose_b);
+  BruteForceResult result;
+  bool crosses = false;
+  const double *ca[3], *cb[3];
+  for (SimplexId s = 0; s < a.real_simplex_count(); ++s) {
+    wa.corners(s, ca);
+    for (SimplexId t = 0; t < b.real_simplex_count(); ++t) {
+      wb.corners(t, cb);
+      const exact::Meet meet = a.dim() == 3 ? exact::meet_triangles(ca, cb) : exact::meet_segments(ca, cb);
+      if (meet == exact::Meet::disjoint) continue;
+      result.pairs.push_back({s, t});
+      result.meets.push_back(meet);
+      crosses |= meet == exact::Meet::cross;
+    }
+  }
+  if (result.pairs.empty())
+    result.relation = relation_without_contact(wa, wb);
+  else
+    result.relation = crosses ? Relation::crossing : Relation::touching;
+  return result;
+}
+
+}  // namespace lrb

@@ -1,0 +1,92 @@
+#include "engine/query/collide.hpp"
+
+#include "engine/lrb/fnv.hpp"
+#include "engine/query/collide_impl.hpp"
+
+namespace lrb {
+
+const char* to_string(Relation r) {
+  switch (r) {
+    case Relation::separate:
+      return "separate";
+    case Relation::crossing:
+      return "crossing";
+    case Relation::touching:
+      return "touching";
+    case Relation::a_inside_b:
+      return "a_inside_b";
+    case Relation::b_inside_a:
+      return "b_inside_a";
+    case Relation::undefined:
+      return "undefined";
+  }
+  return "";
+}
+
+const char* to_string(Answer a) {
+  return a == Answer::yes ? "yes" : a == Answer::no ? "no" : "unknown";
+}
+
+const char* to_string(Recursion r) {
+  switch (r) {
+    case Recursion::complete:
+      return "complete";
+    case Recursion::paper:
+      return "paper";
+    case Recursion::paper_strict:
+      return "paper-strict";
+  }
+  return "";
+}
+
+void sort_pairs(CollideResult& result) {
+  if (std::is_sorted(result.pairs.begin(), result.pairs.end())) return;
+  std::vector<std::uint32_t> order(result.pairs.size());
+  std::iota(order.begin(), order.end(), 0u);
+  std::sort(order.begin(), order.end(), [&](auto i, auto j) { return result.pairs[i] < result.pairs[j]; });
+  std::vector<SimplexPair> pairs;
+  std::vector<exact::Meet> meets;
+  for (const std::uint32_t i : order) {
+    if (!pairs.empty() && pairs.back() == result.pairs[i]) continue;
+    pairs.push_back(result.pairs[i]);
+    meets.push_back(result.meets[i]);
+  }
+  result.pairs.swap(pairs);
+  result.meets.swap(meets);
+}
+
+void check_query(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b) {
+  if (a.dim() != b.dim())
+    throw InputError("a " + std::to_string(a.dim()) + "D body cannot meet a " + std::to_string(b.dim()) +
+                     "D body; give two of the same dimension");
+  for (const Pose* p : {&pose_a, &pose_b}) {
+    if (!p->r.allFinite() || !p->t.allFinite())
+      throw InputError("a pose has a number that is not finite; give twelve finite numbers");
+    const bool flat =
+        p->r(0, 2) == 0 && p->r(1, 2) == 0 && p->r(2, 0) == 0 && p->r(2, 1) == 0 && p->t.z() == 0;
+    if (a.dim() == 2 && !flat)
+      throw InputError(
+          "the pose of a 2D body leaves the plane z = 0; rotate about z and translate in x and y only");
+  }
+}
+
+std::uint64_t fingerprint(const std::vector<SimplexPair>& pairs) {
+  Fnv64 h;
+  for (const SimplexPair& p : pairs) {
+    h.add_value(p.a);
+    h.add_value(p.b);
+  }
+  return h.value();
+}
+
+template CollideResult collide<NullProbe>(const LrbRep&, const Pose&, const LrbRep&, const Pose&,
+                                          const CollideRequest&, QueryContext&, NullProbe&);
+
+CollideResult collide(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
+                      const CollideRequest& request) {
+  QueryContext context;
+  NullProbe probe;
+  return collide(a, pose_a, b, pose_b, request, context, probe);
+}
+
+}  // namespace lrb

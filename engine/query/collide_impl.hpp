@@ -1,0 +1,47 @@
+#pragma once
+/// Definition of collide() for any probe; include it where a probe of your own is used.
+
+#include <algorithm>
+#include <numeric>
+
+#include "engine/error.hpp"
+#include "engine/query/collide.hpp"
+#include "engine/query/paper_query.hpp"
+#include "engine/query/relation.hpp"
+#include "engine/query/tree_query.hpp"
+
+namespace lrb {
+
+/// Sorts the pairs (and what belongs to them) and removes repetitions.
+void sort_pairs(CollideResult& result);
+/// Throws InputError if the query cannot be asked.
+void check_query(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b);
+/// Fills in interiors_overlap, contacts and regions as requested.
+void describe_contact(QueryContext& context, const CollideRequest& request, CollideResult& result);
+
+template <class Probe>
+CollideResult collide(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
+                      const CollideRequest& request, QueryContext& context, Probe& probe) {
+  check_query(a, pose_a, b, pose_b);
+  CollideResult result;
+  result.recursion = request.recursion;
+  result.mode = request.mode;
+  context.body[0].begin(a, pose_a, request.wrapper);
+  context.body[1].begin(b, pose_b, request.wrapper);
+  const std::uint64_t fallbacks = exact::exact_fallbacks();
+  if (request.recursion == Recursion::complete)
+    TreeQuery<Probe>(context, request.mode, result, probe).run();
+  else
+    PaperQuery<Probe>(context, request, result, probe).run();
+  sort_pairs(result);
+  decide_relation(context, result);
+  describe_contact(context, request, result);
+  for (int side = 0; side < 2; ++side) {
+    result.opened[side] = context.body[side].wrapper->excluded();
+    result.counters.regions_opened += result.opened[side].size();
+  }
+  result.counters.exact_fallbacks = exact::exact_fallbacks() - fallbacks;
+  return result;
+}
+
+}  // namespace lrb

@@ -1,0 +1,141 @@
+#include "engine/query/relation.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/exact/locate.hpp"
+#include "engine/tolerances.hpp"
+
+namespace lrb {
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+
+/// Walks the tree along the ray from a point (doubles, or exact::RationalPoint) in direction +x and counts
+/// the simplices that it crosses. `near` is the point rounded to doubles, for the boxes.
+template <class Point>
+class RayWalk {
+ public:
+  RayWalk(QueryBody& body, const Point& point, const Vector3d& near)
+      : body_(body), tree_(body.rep().tree()), point_(point), p_(near) {
+    const Pose& pose = body.world.pose();
+    const double turn = pose.r.cwiseAbs().rowwise().sum().maxCoeff();
+    const double size = turn * tree_.extent() + pose.t.cwiseAbs().maxCoeff();
+    margin_ = kWorldRounding * (size + near.cwiseAbs().maxCoeff());
+    turn_ = std::max(1.0, turn);
+  }
+
+  Where run() {
+    visit(0);
+    return on_surface_ ? Where::on_surface : crossings_ % 2 ? Where::inside : Where::outside;
+  }
+
+ private:
+  void visit(std::uint32_t index) {
+    const TreeNode& n = tree_.nodes()[index];
+    if (n.is_leaf) {
+      const LeafBlock& block = tree_.blocks()[n.first];
+      for (int k = 0; k < n.count && !on_surface_; ++k) cross(block.simplex[k]);
+      return;
+    }
+    // World axes of the node's axes, and the world box of each child: conservative, as the kernel's boxes
+    // are.
+    const Pose& pose = body_.world.pose();
+    const double unit = tree_.unit();
+    Matrix3d axes;
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j) axes(j, i) = n.frame[i][j];
+    axes = pose.r * axes * unit;
+    const Vector3d origin = pose.r * (Vector3d(n.origin[0], n.origin[1], n.origin[2]) * unit) + pose.t;
+    const double grow = margin_ + kKernelRounding * turn_ * (static_cast<double>(n.radius) * unit);
+    for (std::uint32_t k = 0; k < n.count && !on_surface_; ++k) {
+      Vector3d centre, half;
+      for (int i = 0; i < 3; ++i) {
+        const double base = n.base[i], scale = n.scale[i];
+        centre[i] = base + scale * 0.5 * (n.lo[i][k] + n.hi[i][k]);
+        half[i] = scale * 0.5 * (n.hi[i][k] - n.lo[i][k]);
+      }
+      const Vector3d c = origin + axes * centre;
+      const Vector3d h = axes.cwiseAbs() * half + Vector3d::Constant(grow);
+      const bool missed = c.x() + h.x() < p_[0] || std::abs(c.y() - p_[1]) > h.y() ||
+                          (body_.rep().dim() == 3 && std::abs(c.z() - p_[2]) > h.z());
+      if (!missed) visit(n.first + k);
+    }
+  }
+
+  void cross(SimplexId s) {
+    const double* corners[3];
+    body_.world.corners(s, corners);
+    const exact::RayHit hit =
+        body_.rep().dim() == 3 ? exact::ray_crosses(point_, corners) : exact::ray_crosses_2d(point_, corners);
+    on_surface_ |= hit == exact::RayHit::on_face;
+    crossings_ += hit == exact::RayHit::crosses;
+  }
+
+  QueryBody& body_;
+  const BlockTree& tree_;
+  const Point& point_;
+  Vector3d p_;
+  double margin_, turn_;
+  int crossings_ = 0;
+  bool on_surface_ = false;
+};
+
+struct Swallowed {
+  std::size_t inside = 0, components = 0;
+  bool all() const { return inside == components && components > 0; }
+  bool some() const { return inside > 0; }
+};
+
+/// How many components of `inner` lie inside `outer`, given that the surfaces do not meet.
+Swallowed components_inside(QueryBody& inner, QueryBody& outer) {
+  Swallowed s;
+  for (const VertexId v : inner.rep().component_vertices()) {
+    ++s.components;
+    s.inside += locate(outer, inner.world(v)) == Where::inside;
+  }
+  return s;
+}
+
+}  // namespace
+
+Where locate(QueryBody& body, const double* point) {
+  if (body.rep().tree().empty()) return Where::outside;
+  return RayWalk<const double*>(body, point, {point[0], point[1], body.rep().dim() == 3 ? point[2] : 0})
+      .run();
+}
+
+Where locate(QueryBody& body, const exact::RationalPoint& point) {
+  return body.rep().tree().empty() ? Where::outside : RayWalk(body, point, point.rounded()).run();
+}
+
+void decide_relation(QueryContext& ctx, CollideResult& result) {
+  if (!result.pairs.empty()) {
+    const bool crosses =
+        std::find(result.meets.begin(), result.meets.end(), exact::Meet::cross) != result.meets.end();
+    result.relation = crosses ? Relation::crossing : Relation::touching;
+    result.interiors_overlap = crosses ? Answer::yes : Answer::unknown;
+    return;
+  }
+  QueryBody &a = ctx[Side::a], &b = ctx[Side::b];
+  if (!a.rep().closed() || !b.rep().closed()) {
+    result.relation = Relation::undefined;
+    result.interiors_overlap = Answer::unknown;
+    return;
+  }
+  const Swallowed a_in_b = components_inside(a, b), b_in_a = components_inside(b, a);
+  if (a_in_b.all())
+    result.relation = Relation::a_inside_b;
+  else if (b_in_a.all())
+    result.relation = Relation::b_inside_a;
+  else if (a_in_b.some())
+    result.relation = Relation::a_inside_b;
+  else if (b_in_a.some())
+    result.relation = Relation::b_inside_a;
+  else
+    result.relation = Relation::separate;
+  result.interiors_overlap = result.relation == Relation::separate ? Answer::no : Answer::yes;
+}
+
+}  // namespace lrb

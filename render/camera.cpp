@@ -1,0 +1,206 @@
+#include "render/camera.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "engine/error.hpp"
+
+namespace lrb {
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+
+/// Of the distance to the far end, the nearest depth that is still drawn when the camera stands within the
+/// scene.
+constexpr double kNearShare = 1e-4;
+/// By how much the range of depths exceeds the scene, as a share of it: room for lines nudged towards the
+/// viewer.
+constexpr double kDepthSlack = 0.01;
+/// A scene that is a point still gets a picture: half a unit of its coordinates' size across.
+constexpr double kLeastExtent = 1e-9;
+constexpr double kSteepest = 0.49 * std::numbers::pi;  ///< as far as orbit() lifts a camera
+
+/// Rows: right, up, forward.
+Matrix3d axes_of(const Vector3d& forward, const Vector3d& up) {
+  Matrix3d axes;
+  const Vector3d f = forward.normalized();
+  Vector3d right = f.cross(up);
+  if (!(right.squaredNorm() > 0)) right = f.cross(Vector3d::UnitY());
+  if (!(right.squaredNorm() > 0)) right = f.cross(Vector3d::UnitX());
+  right.normalize();
+  axes << right.transpose(), right.cross(f).transpose(), f.transpose();
+  return axes;
+}
+
+void check_points(std::span<const Vector3d> points) {
+  if (points.empty()) throw InputError("a camera cannot be fitted to nothing: the scene has no points");
+  for (const Vector3d& p : points) {
+    if (!p.allFinite()) throw InputError("a camera cannot be fitted: a point of the scene is not finite");
+  }
+}
+
+/// Upper bounds of a.x + b.z and -a.x + b.z over points: the two planes of a frustum that touch them.
+struct Support {
+  double plus = -std::numeric_limits<double>::infinity(), minus = plus;
+  void add(double across, double slope_depth) {
+    plus = std::max(plus, across + slope_depth);
+    minus = std::max(minus, -across + slope_depth);
+  }
+  double middle() const { return 0.5 * (plus - minus); }
+  double half() const { return 0.5 * (plus + minus); }
+};
+
+std::array<Vector3d, 8> corners_of(const Eigen::AlignedBox3d& box) {
+  std::array<Vector3d, 8> out;
+  for (int i = 0; i < 8; ++i) out[i] = box.corner(static_cast<Eigen::AlignedBox3d::CornerType>(i));
+  return out;
+}
+
+}  // namespace
+
+ViewDirection view_from_angles(double azimuth, double elevation) {
+  const double c = std::cos(elevation);
+  return {{c * std::cos(azimuth), c * std::sin(azimuth), std::sin(elevation)}, {0, 0, 1}};
+}
+
+Camera fit_camera(std::span<const Vector3d> points, double width, double height, const FitOptions& options) {
+  check_points(points);
+  if (!(options.view.from.squaredNorm() > 0)) throw InputError("a camera's direction must not be zero");
+  const Matrix3d axes = axes_of(-options.view.from, options.view.up);
+  Vector3d origin =
+      Vector3d::Zero();  // points are measured from their middle, to keep digits far from the origin
+  Eigen::AlignedBox3d box;
+  for (const Vector3d& p : points) box.extend(p);
+  origin = box.center();
+
+  const double free = options.margin * std::min(width, height);
+  const double inner_x = std::max(0.05, 1 - 2 * free / width),
+               inner_y = std::max(0.05, 1 - 2 * free / height);
+  const double tan_y = options.orthographic ? 0 : std::tan(0.5 * options.fov_y);
+  const double slope_x = tan_y * width / height * inner_x, slope_y = tan_y * inner_y;
+  Support x, y, z;
+  for (const Vector3d& p : points) {
+    const Vector3d e = axes * (p - origin);
+    x.add(e.x(), -slope_x * e.z());
+    y.add(e.y(), -slope_y * e.z());
+    z.add(e.z(), 0);
+  }
+  const double size = std::max({box.diagonal().norm(), kLeastExtent * origin.cwiseAbs().maxCoeff(), 1e-30});
+
+  Camera camera;
+  camera.up = options.view.up;
+  camera.orthographic = options.orthographic;
+  camera.fov_y = options.fov_y;
+  Vector3d eye{x.middle(), y.middle(), 0};
+  if (options.orthographic) {
+    camera.half_height = std::max({y.half() / inner_y, x.half() / inner_x * height / width, 1e-3 * size});
+    eye.z() = -z.minus - size;
+  } else {
+    // The eye lies back from z = 0 by at least what each pair of planes needs, and stays in front of the
+    // points.
+    eye.z() = -std::max({x.half() / slope_x, y.half() / slope_y, z.minus + 0.05 * size});
+    camera.half_height = 0.5 * size;
+  }
+  camera.eye = origin + axes.transpose() * eye;
+  camera.target = origin + axes.transpose() * Vector3d(eye.x(), eye.y(), z.middle());
+  return camera;
+}
+
+Camera fit_camera(const Eigen::AlignedBox3d& box, double width, double height, const FitOptions& options) {
+  if (box.isEmpty()) throw InputError("a camera cannot be fitted to nothing: the scene is empty");
+  return fit_camera(corners_of(box), width, height, options);
+}
+
+Camera fit_top(std::span<const Vector3d> points, double width, double height, double margin) {
+  FitOptions options;
+  options.view = {{0, 0, 1}, {0, 1, 0}};
+  options.orthographic = true;
+  options.margin = margin;
+  return fit_camera(points, width, height, options);
+}
+
+Camera fit_contact(std::span<const Vector3d> contact, const Eigen::AlignedBox3d& scene, double width,
+                   double height, const FitOptions& options, double context, double least) {
+  check_points(contact);
+  Eigen::AlignedBox3d box;
+  for (const Vector3d& p : contact) box.extend(p);
+  const double radius =
+      std::max(0.5 * context * box.diagonal().norm(), 0.5 * least * scene.diagonal().norm());
+  const Vector3d r = Vector3d::Constant(radius / std::sqrt(3.0));
+  FitOptions fit = options;
+  fit.margin = 0;
+  return fit_camera(Eigen::AlignedBox3d(box.center() - r, box.center() + r), width, height, fit);
+}
+
+Camera orbit(const Camera& camera, double azimuth, double elevation) {
+  const Vector3d up = camera.up.normalized();
+  Vector3d arm = Eigen::AngleAxisd(azimuth, up) * (camera.eye - camera.target);
+  if (elevation != 0) {
+    const double now = std::asin(std::clamp(arm.normalized().dot(up), -1.0, 1.0));
+    const double then = std::clamp(now + elevation, -kSteepest, kSteepest);
+    const Vector3d side = arm.cross(up);
+    if (side.squaredNorm() > 0) arm = Eigen::AngleAxisd(then - now, side.normalized()) * arm;
+  }
+  Camera out = camera;
+  out.eye = camera.target + arm;
+  return out;
+}
+
+Projection::Projection(const Camera& camera, double width, double height, const Eigen::AlignedBox3d& scene)
+    : eye_(camera.eye), width_(width), height_(height), orthographic_(camera.orthographic) {
+  const Vector3d forward = camera.target - camera.eye;
+  if (!forward.allFinite() || !(forward.squaredNorm() > 0)) {
+    throw InputError("the camera's eye and target must be finite and differ");
+  }
+  axes_ = axes_of(forward, camera.up);
+  focal_ = 0.5 * height / (orthographic_ ? camera.half_height : std::tan(0.5 * camera.fov_y));
+  if (!std::isfinite(focal_) || !(focal_ > 0))
+    throw InputError("the camera's opening must be finite and positive");
+  double lo = 1, hi = 2;
+  if (!scene.isEmpty()) {
+    lo = std::numeric_limits<double>::infinity(), hi = -lo;
+    for (const Vector3d& c : corners_of(scene)) {
+      const double z = to_eye(c).z();
+      lo = std::min(lo, z), hi = std::max(hi, z);
+    }
+  }
+  const double slack = kDepthSlack * std::max(hi - lo, 1e-12 * std::abs(hi)) + 1e-30;
+  far_ = hi + slack;
+  near_ = lo - slack;
+  if (!orthographic_) {
+    if (!(far_ > 0)) far_ = 1;
+    near_ = std::max(near_, kNearShare * far_);
+  }
+}
+
+Vector3d Projection::to_screen(const Vector3d& e) const {
+  if (orthographic_) {
+    return {0.5 * width_ + focal_ * e.x(), 0.5 * height_ + focal_ * e.y(),
+            (2 * e.z() - far_ - near_) / (far_ - near_)};
+  }
+  // Depth is linear in 1 / z, and so linear over the picture along a plane.
+  return {0.5 * width_ + focal_ * e.x() / e.z(), 0.5 * height_ + focal_ * e.y() / e.z(),
+          (far_ + near_ - 2 * far_ * near_ / e.z()) / (far_ - near_)};
+}
+
+std::optional<Eigen::Vector2d> Projection::to_pixel(const Vector3d& world) const {
+  const Vector3d e = to_eye(world);
+  if (!orthographic_ && e.z() < near_) return std::nullopt;
+  const Vector3d s = to_screen(e);
+  return Eigen::Vector2d(s.x(), height_ - s.y());
+}
+
+double Projection::unit_per_pixel(const Vector3d& world) const {
+  return (orthographic_ ? 1.0 : std::max(to_eye(world).z(), near_)) / focal_;
+}
+
+Vector3d Projection::towards_viewer(const Vector3d& world) const {
+  if (orthographic_) return -axes_.row(2).transpose();
+  return (eye_ - world).normalized();
+}
+
+}  // namespace lrb

@@ -1,0 +1,41 @@
+#pragma once
+/// Pictures side by side: figures with (a), (b), (c), whole and close-up in one frame.
+
+#include <string>
+#include <vector>
+
+#include "render/image.hpp"
+
+namespace lrb {
+
+struct Panel {
+  Image image;
+  std::string caption;  ///< below the panel, after its letter; may be empty
+};
+
+struct MontageOptions {
+  int columns = 0;      ///< 0: as many as make the montage closest to 4:3
+  int gutter = -1;      ///< between and around panels, pixels; -1: a twenty-fourth of a panel's smaller side
+  bool letters = true;  ///< (a), (b), ... below each panel
+  bool frame = false;   ///< a thin line round each panel
+  float text_height = 0;  ///< pixels; 0: a twentieth of the panels' height, at least 12
+  Rgba background = kWhite;
+};
+
+struct MontageLayout {
+  int width = 0, height = 0;
+  std::vector<PixelRect> panels;                ///< where the images go
+  std::vector<PixelRect> captions;              ///< room below each
+  std::vector<std::vector<std::string>> lines;  ///< their text, wrapped
+  float text_height = 0;
+};
+
+/// Panels row by row; images of different sizes are centred in cells of one width per column, one height per
+/// row. Throws InputError without panels.
+MontageLayout lay_out(const std::vector<Panel>& panels, const MontageOptions& options = {});
+Image montage(const std::vector<Panel>& panels, const MontageOptions& options = {});
+
+/// "(a)" .. "(z)", "(aa)" ...
+std::string panel_letter(std::size_t index);
+
+}  // namespace lrb

@@ -1,0 +1,140 @@
+#include "render/offscreen.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstdlib>
+#include <cstring>
+#include <string_view>
+
+#include <GL/osmesa.h>
+
+#include "engine/error.hpp"
+#include "render/text.hpp"
+
+namespace lrb {
+
+/// OSMesa draws into memory of ours; we draw into framebuffer objects instead (whose pixels do not depend on
+/// the number of threads), so that this is only what makes the context current.
+struct Offscreen::Context {
+  static constexpr int kSide = 16;
+  OSMesaContext handle = nullptr;
+  std::array<std::uint8_t, kSide * kSide * 4> buffer{};
+
+  Context() {
+    const int attributes[] = {OSMESA_FORMAT,
+                              OSMESA_RGBA,
+                              OSMESA_DEPTH_BITS,
+                              0,
+                              OSMESA_STENCIL_BITS,
+                              0,
+                              OSMESA_PROFILE,
+                              OSMESA_CORE_PROFILE,
+                              OSMESA_CONTEXT_MAJOR_VERSION,
+                              3,
+                              OSMESA_CONTEXT_MINOR_VERSION,
+                              3,
+                              0};
+    handle = OSMesaCreateContextAttribs(attributes, nullptr);
+    if (handle == nullptr) {
+      throw EnvironmentError(
+          "no off-screen OpenGL 3.3 context: OSMesa refused it; install libosmesa6 (Mesa 17 to 25.0) and try "
+          "again");
+    }
+  }
+  ~Context() { OSMesaDestroyContext(handle); }
+  Context(const Context&) = delete;
+  Context& operator=(const Context&) = delete;
+};
+
+Offscreen::Offscreen() {
+  for (const Finding& f : check_gl_environment()) {
+    if (f.level == Finding::Level::error) throw EnvironmentError(f.what + ": " + f.detail);
+  }
+  context_ = std::make_unique<Context>();
+  make_current();
+#define LRB_GL(TYPE, Name)                                                          \
+  gl_.Name = reinterpret_cast<PFNGL##TYPE##PROC>(OSMesaGetProcAddress("gl" #Name)); \
+  if (gl_.Name == nullptr)                                                          \
+    throw EnvironmentError("OSMesa has no function gl" #Name ": its version is too old");
+  LRB_GL_FUNCTIONS(LRB_GL)
+#undef LRB_GL
+  GLint texture = 0;
+  std::array<GLint, 2> viewport{};
+  gl_.GetIntegerv(GL_MAX_TEXTURE_SIZE, &texture);
+  gl_.GetIntegerv(GL_MAX_VIEWPORT_DIMS, viewport.data());
+  max_size_ = std::min({texture, viewport[0], viewport[1]});
+}
+
+Offscreen::~Offscreen() = default;
+
+void Offscreen::make_current() const {
+  if (OSMesaMakeCurrent(context_->handle, context_->buffer.data(), GL_UNSIGNED_BYTE, Context::kSide,
+                        Context::kSide) != GL_TRUE) {
+    throw EnvironmentError("the off-screen OpenGL context cannot be used on this thread");
+  }
+}
+
+void Offscreen::check(const char* where) const {
+  const GLenum error = gl_.GetError();
+  if (error == GL_NO_ERROR) return;
+  throw EnvironmentError(std::string("OpenGL failed while ") + where + " (error " + std::to_string(error) +
+                         (error == GL_OUT_OF_MEMORY ? ", out of memory: draw a smaller picture)" : ")"));
+}
+
+std::string Offscreen::version() const {
+  const auto text = [&](GLenum what) {
+    const GLubyte* s = gl_.GetString(what);
+    return s == nullptr ? std::string("unknown") : std::string(reinterpret_cast<const char*>(s));
+  };
+  return text(GL_VERSION) + ", " + text(GL_RENDERER);
+}
+
+std::vector<Finding> check_gl_environment() {
+  using Level = Finding::Level;
+  std::vector<Finding> out;
+  const auto value = [](const char* name) {
+    const char* v = std::getenv(name);
+    return std::string(v == nullptr ? "" : v);
+  };
+  const std::string driver = value("GALLIUM_DRIVER"), width = value("LP_NATIVE_VECTOR_WIDTH");
+  if (!driver.empty() && driver != "llvmpipe" && driver != "softpipe") {
+    out.push_back(
+        {Level::error, "GALLIUM_DRIVER",
+         "is '" + driver + "', which crashes Mesa off screen; unset it, or use llvmpipe or softpipe"});
+  }
+  if (driver == "softpipe") {
+    out.push_back(
+        {Level::warning, "GALLIUM_DRIVER", "is softpipe: pictures are slow and may differ from llvmpipe's"});
+  }
+  if (!width.empty() && width != "128" && width != "256") {
+    out.push_back({Level::error, "LP_NATIVE_VECTOR_WIDTH",
+                   "is '" + width + "', which can crash Mesa; unset it, or use 128 or 256"});
+  }
+  if (!value("MESA_GL_VERSION_OVERRIDE").empty()) {
+    out.push_back({Level::warning, "MESA_GL_VERSION_OVERRIDE", "is set; unset it if contexts are refused"});
+  }
+  return out;
+}
+
+std::vector<Finding> check_rendering() {
+  using Level = Finding::Level;
+  std::vector<Finding> out = check_gl_environment();
+  try {
+    const Offscreen context;
+    out.push_back({Level::ok, "off-screen OpenGL", context.version()});
+    out.push_back({Level::ok, "largest picture", std::to_string(context.max_size()) + " pixels a side"});
+  } catch (const EnvironmentError& e) {
+    out.push_back({Level::error, "off-screen OpenGL", e.what()});
+  }
+  for (const bool bold : {false, true}) {
+    const char* what = bold ? "bold font" : "font";
+    try {
+      out.push_back({Level::ok, what, find_font(bold)});
+    } catch (const EnvironmentError& e) {
+      out.push_back({Level::error, what, e.what()});
+    }
+  }
+  return out;
+}
+
+}  // namespace lrb

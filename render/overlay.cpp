@@ -1,0 +1,281 @@
+#include "render/overlay.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "engine/error.hpp"
+#include "render/palette.hpp"
+#include "render/text.hpp"
+
+namespace lrb {
+namespace {
+
+constexpr double kTextShare = 0.0275;  ///< height of text, as a share of the frame's
+constexpr float kLeastText = 10.5F, kMostText = 44;
+constexpr double kPictureShare = 0.5;  ///< of the frame's height, at least
+constexpr const char* kNarrowSpace = "\u202f";
+constexpr const char* kRoom = "0\u202f000";
+
+/// Places things one after the other from the left, in as many rows as they need.
+class Flow {
+ public:
+  Flow(int left, int right, int top, int row_height, int gap)
+      : left_(left), right_(right), x_(left), y_(top), row_height_(row_height), gap_(gap) {}
+
+  /// The place of something `width` wide; on a new row if it does not fit on this one.
+  PixelRect place(int width) {
+    if (x_ > left_ && x_ + width > right_) new_row();
+    const PixelRect r{x_, y_, width, row_height_};
+    x_ += width + gap_;
+    used_ = true;
+    return r;
+  }
+  void new_row() {
+    if (!used_) return;
+    y_ += row_height_;
+    x_ = left_;
+    used_ = false;
+  }
+  int bottom() const { return used_ ? y_ + row_height_ : y_; }
+
+ private:
+  int left_, right_, x_, y_, row_height_, gap_;
+  bool used_ = false;
+};
+
+/// Lays out with a given text height.
+class Layouter {
+ public:
+  Layouter(const Overlay& overlay, int width, int height, float text_height)
+      : o_(overlay), width_(width), height_(height) {
+    style_.height = text_height;
+    out_.text_height = text_height;
+    row_ = static_cast<int>(std::ceil(1.35F * text_height));
+    margin_ = static_cast<int>(std::ceil(0.7F * text_height));
+    mark_ = static_cast<int>(std::lround(0.72F * text_height));
+  }
+
+  OverlayLayout run() {
+    const int top = header();
+    const int below = footer(0);
+    const int bottom = below == 0 ? height_ : height_ - below - margin_;
+    footer(bottom);
+    out_.picture = {0, top, width_, bottom - top};
+    return std::move(out_);
+  }
+
+ private:
+  int text_width(const std::string& text, bool bold = false) const {
+    TextStyle style = style_;
+    style.bold = bold;
+    return default_font().measure(text, style).width;
+  }
+
+  void add_text(const PixelRect& row, int x, const std::string& text, bool bold = false, bool faint = false) {
+    out_.texts.push_back({{x, row.y, text_width(text, bold), row.height}, text, bold, faint});
+  }
+
+  /// Returns where it ends.
+  int header() {
+    int y = o_.title.empty() && o_.event.empty() ? 0 : margin_ / 2;
+    y = lines(o_.title, y, true, 0);
+    if (!o_.event.empty()) {
+      const bool marked = o_.event_colour.a > 0;
+      if (marked) out_.event_mark = {margin_, y + (row_ - mark_) / 2, mark_, mark_};
+      y = lines(o_.event, y, false, marked ? mark_ + margin_ / 2 : 0);
+    }
+    return y;
+  }
+
+  int lines(const std::string& text, int y, bool bold, int indent) {
+    TextStyle style = style_;
+    style.bold = bold;
+    for (const std::string& line : default_font().wrap(text, width_ - 2 * margin_ - indent, style)) {
+      add_text({0, y, width_, row_}, margin_ + indent, line, bold);
+      y += row_;
+    }
+    return y;
+  }
+
+  /// Measures when y = 0 (and forgets), else places. Returns its height.
+  int footer(int y) {
+    const bool measuring = y == 0;
+    const std::size_t texts = out_.texts.size();
+    out_.key_marks.clear();
+    const int scale_width = o_.scale ? place_scale(y) : 0;
+    const int right = width_ - margin_ - (scale_width > 0 ? scale_width + 2 * margin_ : 0);
+    Flow flow(margin_, right, y, row_, 2 * margin_);
+    for (const OverlayCounter& c : o_.counters) place_counter(flow, c);
+    flow.new_row();
+    for (const LegendItem& item : o_.key) place_key(flow, item);
+    const int bottom = std::max(flow.bottom(), o_.scale ? y + scale_rows() * row_ : y);
+    if (measuring) out_.texts.resize(texts);
+    return bottom - y;
+  }
+
+  void place_counter(Flow& flow, const OverlayCounter& c) {
+    // Room for four digits, so that counters stand still while they count.
+    const int name = text_width(c.name + " "), value = std::max(text_width(c.value), text_width(kRoom));
+    const PixelRect r = flow.place(std::min(name + value, width_ - 2 * margin_));
+    add_text(r, r.x, c.name, false, true);
+    add_text(r, r.x + name, c.value);
+  }
+
+  void place_key(Flow& flow, const LegendItem& item) {
+    const int mark = mark_width(item);
+    const PixelRect r = flow.place(mark + margin_ / 2 + text_width(item.text));
+    out_.key_marks.push_back({r.x, r.y + (row_ - mark_) / 2, mark, mark_});
+    add_text(r, r.x + mark + margin_ / 2, item.text);
+  }
+
+  int mark_width(const LegendItem& item) const {
+    const bool line = item.mark == LegendItem::Mark::line || item.mark == LegendItem::Mark::dashed;
+    return line ? 2 * mark_ : mark_;
+  }
+
+  static int scale_rows() { return 2; }
+
+  /// Quantity above, then low end, bar, high end; at the right. Returns its width.
+  int place_scale(int y) {
+    const std::string low = short_number(o_.scale->low), high = short_number(o_.scale->high);
+    const int low_width = text_width(low), high_width = text_width(high), gap = margin_ / 2;
+    const int bar = std::max(8 * mark_, text_width(o_.scale->text) - low_width - high_width - 2 * gap);
+    const int total = low_width + high_width + bar + 2 * gap, left = width_ - margin_ - total;
+    add_text({0, y, width_, row_}, left + (total - text_width(o_.scale->text)) / 2, o_.scale->text);
+    const PixelRect row{0, y + row_, width_, row_};
+    add_text(row, left, low);
+    out_.scale = {left + low_width + gap, row.y + (row_ - mark_) / 2, bar, mark_};
+    add_text(row, out_.scale.right() + gap, high);
+    return total;
+  }
+
+  const Overlay& o_;
+  int width_, height_;
+  TextStyle style_;
+  int row_ = 0, margin_ = 0, mark_ = 0;
+  OverlayLayout out_;
+};
+
+bool fits(const OverlayLayout& layout, int width, int height) {
+  if (layout.picture.height < kPictureShare * height) return false;
+  const PixelRect frame{0, 0, width, height};
+  return std::all_of(layout.texts.begin(), layout.texts.end(),
+                     [&](const auto& t) { return frame.contains(t.box); });
+}
+
+void draw_mark(Image& image, const PixelRect& r, const LegendItem& item) {
+  const int thick = std::max(2, r.height / 5);
+  switch (item.mark) {
+    case LegendItem::Mark::solid:
+      image.fill(r, item.colour);
+      image.stroke(r, palette::edge_of(item.colour));
+      break;
+    case LegendItem::Mark::translucent:
+      image.fill(r, with_alpha(item.colour, 80));
+      image.stroke(r, mix(item.colour, palette::kInk, 0.3), std::max(1, thick / 2));
+      break;
+    case LegendItem::Mark::line:
+      image.fill({r.x, r.y + (r.height - thick) / 2, r.width, thick}, item.colour);
+      break;
+    case LegendItem::Mark::dashed:
+      for (int part = 0; part < 5; part += 2) {
+        const int x0 = r.x + r.width * part / 5, x1 = r.x + r.width * (part + 1) / 5;
+        image.fill({x0, r.y + (r.height - thick) / 2, x1 - x0, thick}, item.colour);
+      }
+      break;
+    case LegendItem::Mark::point: {
+      const double radius = 0.42 * r.height, cx = r.x + 0.5 * r.width, cy = r.y + 0.5 * r.height;
+      for (int y = r.y; y < r.bottom(); ++y) {
+        for (int x = r.x; x < r.right(); ++x) {
+          const double inside =
+              radius + 0.5 - std::sqrt((x + 0.5 - cx) * (x + 0.5 - cx) + (y + 0.5 - cy) * (y + 0.5 - cy));
+          image.blend(x, y, item.colour, static_cast<int>(255 * std::clamp(inside, 0.0, 1.0)));
+        }
+      }
+      break;
+    }
+  }
+}
+
+}  // namespace
+
+OverlayLayout lay_out(const Overlay& overlay, int width, int height) {
+  if (overlay.empty()) {
+    OverlayLayout layout;
+    layout.picture = {0, 0, width, height};
+    return layout;
+  }
+  // Text by the frame's smaller extent: a portrait frame has no more room for a line than its width.
+  const double side = std::min<double>(height, width * 0.75);
+  float text = std::clamp(static_cast<float>(std::round(2 * kTextShare * side) / 2), kLeastText, kMostText);
+  for (;; text -= 0.5F) {
+    OverlayLayout layout = Layouter(overlay, width, height, text).run();
+    if (fits(layout, width, height)) return layout;
+    if (text <= kLeastText) break;
+  }
+  throw InputError("a frame of " + std::to_string(width) + "x" + std::to_string(height) +
+                   " is too small for its title, counters and legend: make it larger or leave some out");
+}
+
+PixelRect common_picture(std::span<const OverlayLayout> layouts) {
+  if (layouts.empty()) return {};
+  PixelRect out = layouts[0].picture;
+  for (const OverlayLayout& l : layouts) {
+    const int top = std::max(out.y, l.picture.y), bottom = std::min(out.bottom(), l.picture.bottom());
+    out.y = top;
+    out.height = std::max(1, bottom - top);
+  }
+  return out;
+}
+
+void draw_overlay(Image& image, const Overlay& overlay, const OverlayLayout& layout) {
+  if (layout.event_mark.width > 0) {
+    image.fill(layout.event_mark, overlay.event_colour);
+    image.stroke(layout.event_mark, palette::edge_of(overlay.event_colour));
+  }
+  for (std::size_t i = 0; i < layout.key_marks.size(); ++i)
+    draw_mark(image, layout.key_marks[i], overlay.key[i]);
+  for (int x = 0; x < layout.scale.width; ++x) {
+    const double t = layout.scale.width > 1 ? static_cast<double>(x) / (layout.scale.width - 1) : 0;
+    image.fill({layout.scale.x + x, layout.scale.y, 1, layout.scale.height}, palette::viridis(t));
+  }
+  for (const OverlayLayout::Text& t : layout.texts) {
+    TextStyle style;
+    style.height = layout.text_height;
+    style.bold = t.bold;
+    style.colour = t.faint ? palette::kFaint : palette::kInk;
+    const int height = default_font().measure(t.text, style).height;
+    default_font().draw(image, t.text, t.box.x, t.box.y + (t.box.height - height) / 2, style);
+  }
+}
+
+Image compose_frame(const Image& picture, const PixelRect& place, const Overlay& overlay, int width,
+                    int height, Rgba background) {
+  Image frame(width, height, background);
+  frame.paste(picture, place.x, place.y);
+  draw_overlay(frame, overlay, lay_out(overlay, width, height));
+  return frame;
+}
+
+std::string group_digits(std::uint64_t n) {
+  const std::string digits = std::to_string(n);
+  std::string out;
+  for (std::size_t i = 0; i < digits.size(); ++i) {
+    if (i > 0 && (digits.size() - i) % 3 == 0) out += kNarrowSpace;
+    out += digits[i];
+  }
+  return out;
+}
+
+std::string short_number(double value) {
+  if (value == std::floor(value) && std::abs(value) < 1e6) {
+    const std::string digits = group_digits(static_cast<std::uint64_t>(std::abs(value)));
+    return value < 0 ? std::string("-").append(digits) : digits;
+  }
+  char text[32];
+  std::snprintf(text, sizeof text, "%.3g", value);
+  return text;
+}
+
+}  // namespace lrb

@@ -1,0 +1,74 @@
+#pragma once
+/// Every colour of the project, in one place. Categories are from Okabe and Ito's palette, which people with
+/// any common colour vision tell apart (M. Okabe, K. Ito, "Color Universal Design", 2008); scalars are
+/// viridis. What must be told apart also differs in brightness, for print in grey.
+
+#include <cstdint>
+
+#include "engine/ids.hpp"
+#include "engine/query/probe.hpp"
+#include "render/colour.hpp"
+
+namespace lrb::palette {
+
+inline constexpr Rgba kOrange{230, 159, 0};
+inline constexpr Rgba kSkyBlue{86, 180, 233};
+inline constexpr Rgba kGreen{0, 158, 115};
+inline constexpr Rgba kYellow{240, 228, 66};
+inline constexpr Rgba kBlue{0, 114, 178};
+inline constexpr Rgba kVermillion{213, 94, 0};
+inline constexpr Rgba kPurple{204, 121, 167};
+
+/// Text, and what is less important.
+inline constexpr Rgba kInk{28, 30, 34};
+inline constexpr Rgba kFaint{110, 114, 120};
+inline constexpr Rgba kRule{205, 208, 212};
+
+/// Contacts: darker than vermillion, so that they stand out from both bodies also in grey.
+inline constexpr Rgba kContact{196, 18, 48};
+inline constexpr Rgba kRefining = kGreen;
+inline constexpr Rgba kUnderTest = kYellow;
+
+/// The two bodies: blue and orange, far apart in brightness too.
+constexpr Rgba body(Side side) {
+  return side == Side::a ? Rgba{52, 126, 190} : Rgba{236, 168, 52};
+}
+/// Edges of real faces: the body's colour, much darker.
+constexpr Rgba edge_of(Rgba c) {
+  return mix(c, {18, 20, 24}, 0.72);
+}
+/// A solid under pseudo faces in 2D is darker than the regions round it (the paper's figure 1).
+constexpr Rgba solid_2d(Rgba c) {
+  return mix(c, {10, 14, 20}, 0.28);
+}
+constexpr Rgba region_2d(Rgba c) {
+  return mix(c, kWhite, 0.62);
+}
+
+/// One colour per event kind.
+constexpr Rgba event(EventKind kind) {
+  switch (kind) {
+    case EventKind::step:
+      return kFaint;
+    case EventKind::face_test:
+      return kUnderTest;
+    case EventKind::refine:
+      return kRefining;
+    case EventKind::coarsen:
+      return kPurple;
+    case EventKind::contact:
+      return kContact;
+    case EventKind::result:
+      return kInk;
+  }
+  return kInk;
+}
+
+/// t in [0, 1] (clamped; not a number counts as 0) to viridis, dark blue to yellow, brighter all the way.
+Rgba viridis(double t);
+
+/// A colour for each of many categories: hues go round by the golden angle, brightness in three steps, so
+/// that numbers that are close get colours that are not.
+Rgba category(std::uint32_t index);
+
+}  // namespace lrb::palette

@@ -1,0 +1,348 @@
+#include "render/rasterize.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <string>
+
+#include "engine/error.hpp"
+#include "render/gl_objects.hpp"
+#include "render/offscreen.hpp"
+#include "render/shaders.hpp"
+#include "render/text.hpp"
+
+namespace lrb {
+namespace {
+
+constexpr int kGhostStrength = 96;  ///< of hidden faces on top, in 1/256
+constexpr int kFullStrength = 256;
+
+const void* offset(std::size_t bytes) {
+  return reinterpret_cast<const void*>(bytes);
+}
+
+/// Averages blocks of n x n premultiplied samples (rows from the bottom) to straight pixels (rows from the
+/// top).
+Image downsample(const std::vector<std::uint8_t>& samples, int width, int height, int n) {
+  Image out(width, height);
+  const std::size_t stride = static_cast<std::size_t>(width) * n * 4;
+  const int count = n * n;
+  for (int y = 0; y < height; ++y) {
+    const std::uint8_t* block_row = samples.data() + static_cast<std::size_t>(height - 1 - y) * n * stride;
+    for (int x = 0; x < width; ++x) {
+      int r = 0, g = 0, b = 0, a = 0;
+      for (int j = 0; j < n; ++j) {
+        const std::uint8_t* s = block_row + j * stride + static_cast<std::size_t>(x) * n * 4;
+        for (int i = 0; i < n; ++i, s += 4) r += s[0], g += s[1], b += s[2], a += s[3];
+      }
+      if (a == 0) {
+        out.at(x, y) = kTransparent;
+      } else {
+        const auto straight = [a](int c) {
+          return static_cast<std::uint8_t>(std::min(255, (c * 255 + a / 2) / a));
+        };
+        out.at(x, y) = {straight(r), straight(g), straight(b),
+                        static_cast<std::uint8_t>((a + count / 2) / count)};
+      }
+    }
+  }
+  return out;
+}
+
+}  // namespace
+
+struct Rasterizer::State {
+  struct Target {
+    GlObject colour, depth, framebuffer;
+  };
+  struct Mesh {
+    GlObject array, buffer;
+  };
+
+  Offscreen context;
+  const Gl& gl = context.gl();
+  GlProgram face, ghost, id, line;
+  Mesh faces, lines;
+  int width = 0, height = 0;
+  Target scene;
+  std::vector<std::uint8_t> samples;
+
+  State() {
+    const std::string common = shaders::kFaceCommon;
+    face = make_program(gl, "face", shaders::kFaceVertex, common + shaders::kFaceFragment);
+    ghost = make_program(gl, "ghost", shaders::kFaceVertex, common + shaders::kGhostFragment);
+    id = make_program(gl, "id", shaders::kFaceVertex, shaders::kIdFragment);
+    line = make_program(gl, "line", shaders::kLineVertex, shaders::kLineFragment);
+    faces = make_mesh();
+    using F = FaceVertex;
+    const GLsizei f = sizeof(F);
+    gl.VertexAttribPointer(0, 3, GL_FLOAT, GL_FALSE, f, offset(offsetof(F, x)));
+    gl.VertexAttribPointer(1, 3, GL_FLOAT, GL_FALSE, f, offset(offsetof(F, edge)));
+    gl.VertexAttribPointer(2, 4, GL_UNSIGNED_BYTE, GL_TRUE, f, offset(offsetof(F, colour)));
+    gl.VertexAttribPointer(3, 4, GL_UNSIGNED_BYTE, GL_TRUE, f, offset(offsetof(F, edge_colour)));
+    gl.VertexAttribPointer(4, 1, GL_FLOAT, GL_FALSE, f, offset(offsetof(F, half_width)));
+    gl.VertexAttribIPointer(5, 1, GL_UNSIGNED_INT, f, offset(offsetof(F, id)));
+    for (GLuint i = 0; i < 6; ++i) gl.EnableVertexAttribArray(i);
+    lines = make_mesh();
+    using L = LineVertex;
+    const GLsizei l = sizeof(L);
+    gl.VertexAttribPointer(0, 3, GL_FLOAT, GL_FALSE, l, offset(offsetof(L, x)));
+    gl.VertexAttribPointer(1, 2, GL_FLOAT, GL_FALSE, l, offset(offsetof(L, along)));
+    gl.VertexAttribPointer(2, 4, GL_FLOAT, GL_FALSE, l, offset(offsetof(L, length)));
+    gl.VertexAttribPointer(3, 4, GL_UNSIGNED_BYTE, GL_TRUE, l, offset(offsetof(L, colour)));
+    for (GLuint i = 0; i < 4; ++i) gl.EnableVertexAttribArray(i);
+    context.check("setting up");
+  }
+
+  Mesh make_mesh() {
+    Mesh m{make_vertex_array(gl), make_buffer(gl)};
+    gl.BindVertexArray(m.array);
+    gl.BindBuffer(GL_ARRAY_BUFFER, m.buffer);
+    return m;
+  }
+
+  template <class Vertex>
+  void upload(const Mesh& mesh, const std::vector<Vertex>& vertices) {
+    gl.BindBuffer(GL_ARRAY_BUFFER, mesh.buffer);
+    gl.BufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(vertices.size() * sizeof(Vertex)), vertices.data(),
+                  GL_STREAM_DRAW);
+  }
+
+  void draw(const Mesh& mesh, const VertexRange& range) {
+    if (range.count == 0) return;
+    gl.BindVertexArray(mesh.array);
+    gl.DrawArrays(GL_TRIANGLES, static_cast<GLint>(range.first), static_cast<GLsizei>(range.count));
+  }
+
+  void set(const GlProgram& program, const char* name, int value) {
+    gl.UseProgram(program);
+    gl.Uniform1i(gl.GetUniformLocation(program, name), value);
+  }
+
+  // ---- targets
+
+  GlObject texture(GLenum internal, GLenum format, GLenum type, int w, int h) {
+    GlObject t = make_texture(gl);
+    gl.BindTexture(GL_TEXTURE_2D, t);
+    gl.TexImage2D(GL_TEXTURE_2D, 0, static_cast<GLint>(internal), w, h, 0, format, type, nullptr);
+    for (const GLenum filter : {GL_TEXTURE_MIN_FILTER, GL_TEXTURE_MAG_FILTER}) {
+      gl.TexParameteri(GL_TEXTURE_2D, filter, GL_NEAREST);
+    }
+    return t;
+  }
+
+  Target scene_target(GLenum internal, GLenum format, GLenum type, int w, int h) {
+    Target t;
+    t.colour = texture(internal, format, type, w, h);
+    t.depth = texture(GL_DEPTH32F_STENCIL8, GL_DEPTH_STENCIL, GL_FLOAT_32_UNSIGNED_INT_24_8_REV, w, h);
+    t.framebuffer = make_framebuffer(gl);
+    gl.BindFramebuffer(GL_FRAMEBUFFER, t.framebuffer);
+    gl.FramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, t.colour, 0);
+    gl.FramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_STENCIL_ATTACHMENT, GL_TEXTURE_2D, t.depth, 0);
+    if (gl.CheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE) {
+      throw EnvironmentError("OpenGL cannot draw into a picture of our format and size: draw a smaller one");
+    }
+    return t;
+  }
+
+  void check_size(int w, int h) {
+    if (w < 1 || h < 1 || w > context.max_size() || h > context.max_size()) {
+      throw InputError("a picture of " + std::to_string(w) + "x" + std::to_string(h) +
+                       " samples cannot be drawn: each side must be 1 to " +
+                       std::to_string(context.max_size()));
+    }
+  }
+
+  void resize(int w, int h) {
+    check_size(w, h);
+    if (w == width && h == height) return;
+    scene = scene_target(GL_RGBA8, GL_RGBA, GL_UNSIGNED_BYTE, w, h);
+    width = w, height = h;
+    context.check("making room for the picture");
+  }
+
+  // ---- passes
+
+  void begin(const Target& target, int w, int h) {
+    gl.BindFramebuffer(GL_FRAMEBUFFER, target.framebuffer);
+    gl.Viewport(0, 0, w, h);
+    gl.Disable(GL_SCISSOR_TEST);
+    gl.Disable(GL_BLEND);
+    gl.Disable(GL_CULL_FACE);
+    gl.ColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+    gl.DepthMask(GL_TRUE);
+    gl.ClearBufferfi(GL_DEPTH_STENCIL, 0, 1, 0);
+  }
+
+  void blend_over() {
+    gl.Enable(GL_BLEND);
+    gl.BlendFuncSeparate(GL_ONE, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
+  }
+
+  /// Even-odd: the fan flips a bit for every triangle; the bit is set inside. Cover paints there and clears
+  /// it.
+  void draw_fills(const ScreenMesh& mesh, bool blend) {
+    if (mesh.fills.empty()) return;
+    gl.Disable(GL_DEPTH_TEST);
+    gl.Enable(GL_STENCIL_TEST);
+    if (blend) blend_over();
+    for (const FillRange& fill : mesh.fills) {
+      gl.ColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
+      gl.StencilFunc(GL_ALWAYS, 0, 1);
+      gl.StencilOp(GL_INVERT, GL_INVERT, GL_INVERT);
+      draw(faces, fill.fan);
+      gl.ColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+      gl.StencilFunc(GL_NOTEQUAL, 0, 1);
+      gl.StencilOp(GL_ZERO, GL_ZERO, GL_ZERO);
+      draw(faces, fill.cover);
+    }
+    gl.Disable(GL_STENCIL_TEST);
+    gl.Disable(GL_BLEND);
+  }
+
+  void draw_opaque(const ScreenMesh& mesh) {
+    const auto layer = static_cast<std::size_t>(Layer::opaque);
+    gl.Enable(GL_DEPTH_TEST);
+    gl.DepthFunc(GL_LESS);
+    gl.UseProgram(face);
+    draw(faces, mesh.face_layers[layer]);
+    draw_lines(mesh.line_layers[layer], GL_LEQUAL, true, false);
+  }
+
+  void draw_lines(const VertexRange& range, GLenum depth, bool write, bool ghosted) {
+    if (range.count == 0) return;
+    blend_over();
+    gl.Enable(GL_DEPTH_TEST);
+    gl.DepthFunc(depth);
+    gl.DepthMask(write ? GL_TRUE : GL_FALSE);
+    set(line, "ghost", ghosted ? 1 : 0);
+    draw(lines, range);
+    gl.DepthMask(GL_TRUE);
+    gl.Disable(GL_BLEND);
+  }
+
+  /// The faces come in painting order (depth_order.hpp), so one pass blends all layers.
+  void draw_translucent(const ScreenMesh& mesh) {
+    const auto layer = static_cast<std::size_t>(Layer::translucent);
+    if (mesh.face_layers[layer].count > 0) {
+      blend_over();
+      gl.Enable(GL_DEPTH_TEST);
+      gl.DepthFunc(GL_LESS);
+      gl.DepthMask(GL_FALSE);
+      gl.UseProgram(face);
+      draw(faces, mesh.face_layers[layer]);
+      gl.DepthMask(GL_TRUE);
+    }
+    draw_lines(mesh.line_layers[layer], GL_LEQUAL, false, false);
+  }
+
+  /// First what is hidden, ghosted, then what is seen.
+  void draw_on_top(const ScreenMesh& mesh) {
+    const auto layer = static_cast<std::size_t>(Layer::on_top);
+    for (const bool hidden : {true, false}) {
+      if (mesh.face_layers[layer].count > 0) {
+        blend_over();
+        gl.Enable(GL_DEPTH_TEST);
+        gl.DepthMask(GL_FALSE);
+        gl.DepthFunc(hidden ? GL_GREATER : GL_LEQUAL);
+        set(ghost, "strength", hidden ? kGhostStrength : kFullStrength);
+        draw(faces, mesh.face_layers[layer]);
+        gl.DepthMask(GL_TRUE);
+      }
+    }
+    for (const bool hidden : {true, false}) {
+      draw_lines(mesh.line_layers[layer], hidden ? GL_GREATER : GL_LEQUAL, false, hidden);
+    }
+  }
+
+  Image draw_list(const DrawList& list, const Camera& camera, const RasterOptions& options) {
+    const int n = options.supersample;
+    if (n < 1 || n > 4) throw InputError("supersampling must be 1 to 4 samples per pixel and axis");
+    check_size(options.width * n, options.height * n);
+    context.make_current();
+    const Projection projection(camera, options.width * n, options.height * n, bounds(list));
+    const ScreenMesh mesh = make_screen_mesh(list, projection, n, options.lighting);
+    resize(options.width * n, options.height * n);
+    upload(faces, mesh.faces);
+    upload(lines, mesh.lines);
+    begin(scene, width, height);
+    const Rgba back = options.background ? with_alpha(*options.background, 255) : kTransparent;
+    const std::array<float, 4> clear{static_cast<float>(back.r) / 255, static_cast<float>(back.g) / 255,
+                                     static_cast<float>(back.b) / 255, static_cast<float>(back.a) / 255};
+    gl.ClearBufferfv(GL_COLOR, 0, clear.data());
+    gl.UseProgram(face);
+    draw_fills(mesh, true);
+    draw_opaque(mesh);
+    draw_translucent(mesh);
+    draw_on_top(mesh);
+    samples.resize(static_cast<std::size_t>(width) * height * 4);
+    gl.PixelStorei(GL_PACK_ALIGNMENT, 4);
+    gl.ReadPixels(0, 0, width, height, GL_RGBA, GL_UNSIGNED_BYTE, samples.data());
+    context.check("drawing");
+    return downsample(samples, options.width, options.height, n);
+  }
+
+  IdImage draw_ids(const DrawList& list, const Camera& camera, int w, int h, bool translucent) {
+    check_size(w, h);
+    context.make_current();
+    const Projection projection(camera, w, h, bounds(list));
+    const ScreenMesh mesh = make_screen_mesh(list, projection, 1);
+    const Target target = scene_target(GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, w, h);
+    upload(faces, mesh.faces);
+    begin(target, w, h);
+    const std::array<GLuint, 4> none{kNoId, 0, 0, 0};
+    gl.ClearBufferuiv(GL_COLOR, 0, none.data());
+    gl.UseProgram(id);
+    draw_fills(mesh, false);
+    gl.Enable(GL_DEPTH_TEST);
+    gl.DepthFunc(GL_LESS);
+    draw(faces, mesh.face_layers[static_cast<std::size_t>(Layer::opaque)]);
+    if (translucent) draw(faces, mesh.face_layers[static_cast<std::size_t>(Layer::translucent)]);
+    std::vector<std::uint32_t> rows(static_cast<std::size_t>(w) * h);
+    gl.PixelStorei(GL_PACK_ALIGNMENT, 4);
+    gl.ReadPixels(0, 0, w, h, GL_RED_INTEGER, GL_UNSIGNED_INT, rows.data());
+    context.check("drawing ids");
+    IdImage out{w, h, {}};
+    out.ids.reserve(rows.size());
+    for (int y = h - 1; y >= 0; --y) {
+      out.ids.insert(out.ids.end(), rows.begin() + static_cast<std::ptrdiff_t>(y) * w,
+                     rows.begin() + static_cast<std::ptrdiff_t>(y + 1) * w);
+    }
+    return out;
+  }
+};
+
+Rasterizer::Rasterizer() : state_(std::make_unique<State>()) {}
+Rasterizer::~Rasterizer() {
+  state_->context.make_current();
+}
+
+Image Rasterizer::draw(const DrawList& list, const Camera& camera, const RasterOptions& options) {
+  Image image = state_->draw_list(list, camera, options);
+  if (options.labels && !list.labels.empty()) draw_labels(image, list, camera);
+  return image;
+}
+
+IdImage Rasterizer::ids(const DrawList& list, const Camera& camera, int width, int height, bool translucent) {
+  return state_->draw_ids(list, camera, width, height, translucent);
+}
+
+void draw_labels(Image& image, const DrawList& list, const Camera& camera) {
+  const Projection projection(camera, image.width(), image.height(), bounds(list));
+  for (const DrawLabel& label : list.labels) {
+    const std::optional<Eigen::Vector2d> at = projection.to_pixel(label.x);
+    if (!at || !(at->cwiseAbs().maxCoeff() < Image::kMaxSide)) continue;
+    TextStyle style;
+    style.height = label.height;
+    style.colour = label.colour;
+    style.halo = label.halo;
+    style.halo_width = 0.14F * label.height;
+    style.align = Align::centre;
+    const TextSize size = default_font().measure(label.text, style);
+    const int x = static_cast<int>(std::lround(at->x() + label.dx));
+    const int y = static_cast<int>(std::lround(at->y() + label.dy)) - size.height / 2;
+    default_font().draw(image, label.text, x, y, style);
+  }
+}
+
+}  // namespace lrb

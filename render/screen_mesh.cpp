@@ -1,0 +1,349 @@
+#include "render/screen_mesh.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "render/depth_order.hpp"
+
+namespace lrb {
+namespace {
+
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+
+/// Corners are rounded to 1/256 pixel, the grid of Mesa's rasterizer: it then has nothing to round.
+constexpr double kSnap = 256;
+/// One step of DrawTriangle::nudge, as a share of the range of depths (-1 to 1). Small enough not to show
+/// what lies visibly behind, large enough to keep a line on the face it runs along.
+constexpr double kNudge = 3e-4;
+/// A line's halo lies this share of a step behind the line.
+constexpr double kHaloNudge = 0.25;
+/// Corners farther outside than this many picture sizes are clipped, to keep float coordinates fine.
+constexpr double kGuard = 8;
+/// Edges fade out where a face is so thin that they would cover it: from this many edge widths down to ...
+constexpr double kEdgesFull = 7, kEdgesGone = 2.5;
+/// How much weaker the shading of translucent faces is than that of opaque ones.
+constexpr double kSoften = 0.6;
+/// Room for the soft rim of lines, pixels.
+constexpr double kRim = 1;
+
+std::array<std::uint8_t, 4> bytes(Rgba c) {
+  return {c.r, c.g, c.b, c.a};
+}
+
+double snap(double pixels) {
+  return std::nearbyint(pixels * kSnap) / kSnap;
+}
+
+/// Homogeneous picture coordinates about the middle: pixel = (x, y) / w.
+Vector3d homogeneous(const Projection& p, const Vector3d& eye) {
+  return {p.focal() * eye.x(), p.focal() * eye.y(), p.orthographic() ? 1.0 : eye.z()};
+}
+
+class Builder {
+ public:
+  Builder(const DrawList& list, const Projection& projection, double scale, const Lighting& lighting)
+      : list_(list), p_(projection), scale_(scale), lighting_(lighting), soft_(lighting) {
+    soft_.ambient = lighting.ambient + kSoften * (1 - lighting.ambient);
+    for (double* share : {&soft_.head, &soft_.key, &soft_.fill}) *share *= 1 - kSoften;
+  }
+
+  ScreenMesh build() {
+    for (const DrawFill& f : list_.fills) add_fill(f);
+    for (int layer = 0; layer < kLayers; ++layer) add_layer(static_cast<Layer>(layer));
+    return std::move(mesh_);
+  }
+
+ private:
+  void add_layer(Layer layer) {
+    const auto index = static_cast<std::size_t>(layer);
+    mesh_.face_layers[index].first = mesh_.faces.size();
+    if (layer == Layer::opaque) {
+      for (const DrawTriangle& t : list_.triangles) {
+        if (t.layer == layer) add_face(t, visible_part(t));
+      }
+    } else {
+      add_blended(layer);
+    }
+    mesh_.face_layers[index].count = mesh_.faces.size() - mesh_.face_layers[index].first;
+
+    mesh_.line_layers[index].first = mesh_.lines.size();
+    for (const DrawLine& l : list_.lines) {
+      if (l.layer == layer) add_line(l);
+    }
+    for (const DrawPoint& d : list_.points) {
+      if (d.layer == layer) add_point(d);
+    }
+    mesh_.line_layers[index].count = mesh_.lines.size() - mesh_.line_layers[index].first;
+  }
+
+  /// Faces that let others shine through, in the order in which they must be painted.
+  void add_blended(Layer layer) {
+    std::vector<EyePolygon> polygons;
+    for (std::uint32_t i = 0; i < list_.triangles.size(); ++i) {
+      if (list_.triangles[i].layer != layer) continue;
+      EyePolygon p{visible_part(list_.triangles[i]), Vector3d::Zero(), i};
+      if (p.x.size() < 3) continue;
+      for (std::size_t j = 1; j + 1 < p.x.size(); ++j)
+        p.normal += (p.x[j] - p.x[0]).cross(p.x[j + 1] - p.x[0]);
+      polygons.push_back(std::move(p));
+    }
+    for (const EyePolygon& p : back_to_front(std::move(polygons), p_.orthographic())) {
+      add_face(list_.triangles[p.source], p.x);
+    }
+  }
+
+  // ---- faces
+
+  std::array<float, 3> device(const Vector3d& screen, double nudge) const {
+    const double z = std::clamp(screen.z() - nudge * kNudge, -1.0, 1.0);
+    return {static_cast<float>(2 * screen.x() / p_.width() - 1),
+            static_cast<float>(2 * screen.y() / p_.height() - 1), static_cast<float>(z)};
+  }
+
+  Vector3d snapped_screen(const Vector3d& eye) const {
+    Vector3d s = p_.to_screen(eye);
+    s.x() = snap(s.x());
+    s.y() = snap(s.y());
+    return s;
+  }
+
+  /// Distance from a corner to a clipping plane, positive inside.
+  double inside(const Vector3d& e, int plane) const {
+    const double z = p_.orthographic() ? 1.0 : e.z();
+    switch (plane) {
+      case 0:
+        return e.z() - p_.near_depth();
+      case 1:
+        return kGuard * p_.width() * z - p_.focal() * e.x();
+      case 2:
+        return kGuard * p_.width() * z + p_.focal() * e.x();
+      case 3:
+        return kGuard * p_.height() * z - p_.focal() * e.y();
+      default:
+        return kGuard * p_.height() * z + p_.focal() * e.y();
+    }
+  }
+  static constexpr int kPlanes = 5;
+
+  void clip(std::vector<Vector3d>& polygon) const {
+    for (int plane = 0; plane < kPlanes && !polygon.empty(); ++plane) {
+      std::vector<Vector3d> out;
+      for (std::size_t i = 0; i < polygon.size(); ++i) {
+        const Vector3d &a = polygon[i], &b = polygon[(i + 1) % polygon.size()];
+        const double da = inside(a, plane), db = inside(b, plane);
+        if (da >= 0) out.push_back(a);
+        if ((da >= 0) != (db >= 0)) out.push_back(a + (b - a) * (da / (da - db)));
+      }
+      polygon = std::move(out);
+    }
+  }
+
+  /// The line of an edge on the screen: (a, b, c) with a x + b y + c w = distance in pixels times w.
+  static Vector3d edge_line(const Vector3d& p, const Vector3d& q) {
+    const Vector3d line = p.cross(q);
+    const double norm = std::hypot(line.x(), line.y());
+    return norm > 0 ? Vector3d(line / norm) : Vector3d::Zero();
+  }
+
+  /// The part of a triangle that may be seen, in the eye's frame; fewer than three corners if there is none.
+  std::vector<Vector3d> visible_part(const DrawTriangle& t) const {
+    std::vector<Vector3d> polygon;
+    for (const Vector3d& x : t.x) polygon.push_back(p_.to_eye(x));
+    const bool crosses = std::any_of(polygon.begin(), polygon.end(), [&](const Vector3d& e) {
+      for (int plane = 0; plane < kPlanes; ++plane) {
+        if (inside(e, plane) < 0) return true;
+      }
+      return false;
+    });
+    if (crosses) clip(polygon);
+    return polygon;
+  }
+
+  /// Emits a convex part of a triangle, given in the eye's frame.
+  void add_face(const DrawTriangle& t, const std::vector<Vector3d>& polygon) {
+    if (polygon.size() < 3) return;
+    const Vector3d normal = (t.x[1] - t.x[0]).cross(t.x[2] - t.x[0]);
+    const double length = normal.norm();
+    FaceVertex v;
+    Rgba colour = t.layer == Layer::opaque ? with_alpha(t.colour, 255) : t.colour;
+    if (t.lit && length > 0) {
+      const Lighting& lighting = t.layer == Layer::opaque ? lighting_ : soft_;
+      colour = shade(colour, normal / length, p_.axes(), lighting);
+    }
+    v.colour = bytes(colour);
+    v.id = t.id;
+    const std::array<Vector3d, 3> h = {homogeneous(p_, p_.to_eye(t.x[0])), homogeneous(p_, p_.to_eye(t.x[1])),
+                                       homogeneous(p_, p_.to_eye(t.x[2]))};
+    const std::array<Vector3d, 3> lines = edge_lines(t, h, v);
+    corners_.clear();
+    for (const Vector3d& e : polygon) {
+      const Vector3d at = homogeneous(p_, e);
+      v.x = device(snapped_screen(e), t.nudge);
+      for (int i = 0; i < 3; ++i) {
+        v.edge[i] =
+            (t.edges >> i & 1) != 0 ? static_cast<float>(std::abs(lines[i].dot(at) / at.z())) : kNoEdge;
+      }
+      corners_.push_back(v);
+    }
+    for (std::size_t i = 1; i + 1 < corners_.size(); ++i) {
+      mesh_.faces.insert(mesh_.faces.end(), {corners_[0], corners_[i], corners_[i + 1]});
+    }
+  }
+
+  /// Lines of the three edges; sets the vertex's edge style, faded where the face is thin on the screen.
+  std::array<Vector3d, 3> edge_lines(const DrawTriangle& t, const std::array<Vector3d, 3>& h,
+                                     FaceVertex& v) const {
+    std::array<Vector3d, 3> lines;
+    for (int i = 0; i < 3; ++i) lines[i] = edge_line(h[i], h[(i + 1) % 3]);
+    if (t.edges == 0) return lines;
+    const EdgeStyle& style = list_.edge_styles[t.edge_style];
+    const double width = style.width * scale_;
+    v.half_width = static_cast<float>(0.5 * width);
+    double thinnest = kGuard * p_.width();
+    for (int i = 0; i < 3; ++i) {
+      const Vector3d& apex = h[(i + 2) % 3];
+      if (apex.z() > 0) thinnest = std::min(thinnest, std::abs(lines[i].dot(apex) / apex.z()));
+    }
+    const double fade = std::clamp((thinnest / width - kEdgesGone) / (kEdgesFull - kEdgesGone), 0.0, 1.0);
+    v.edge_colour = bytes(with_alpha(style.colour, static_cast<std::uint8_t>(style.colour.a * fade + 0.5)));
+    if (t.layer != Layer::opaque) return lines;
+    // An opaque face stays opaque under its edges: blend them here, where it is exact.
+    const Rgba face{v.colour[0], v.colour[1], v.colour[2], 255};
+    const Rgba edge{v.edge_colour[0], v.edge_colour[1], v.edge_colour[2], v.edge_colour[3]};
+    v.edge_colour = bytes(over(edge, face));
+    return lines;
+  }
+
+  // ---- fills
+
+  void add_fill(const DrawFill& fill) {
+    if (fill.segments.empty()) return;
+    FillRange range;
+    FaceVertex v;
+    v.edge = {kNoEdge, kNoEdge, kNoEdge};
+    v.edge_colour = v.colour = bytes(fill.colour);
+    v.id = fill.id;
+    range.fan.first = mesh_.faces.size();
+    const auto corner = [&](const Vector3d& x) {
+      const Vector3d e = p_.to_eye(x);
+      Vector3d s = snapped_screen(e);
+      s.z() = 0;
+      return device(s, 0);
+    };
+    const std::array<float, 3> pivot = corner(fill.segments[0][0]);
+    std::array<float, 4> box{1, 1, -1, -1};
+    for (const auto& [a, b] : fill.segments) {
+      for (const auto& x : {pivot, corner(a), corner(b)}) {
+        v.x = x;
+        mesh_.faces.push_back(v);
+        box = {std::min(box[0], x[0]), std::min(box[1], x[1]), std::max(box[2], x[0]),
+               std::max(box[3], x[1])};
+      }
+    }
+    range.fan.count = mesh_.faces.size() - range.fan.first;
+    for (float& side : box) side = std::clamp(side, -1.0F, 1.0F);
+    range.cover.first = mesh_.faces.size();
+    for (const auto& [i, j] : {std::array{0, 1}, {2, 1}, {2, 3}, {0, 1}, {2, 3}, {0, 3}}) {
+      v.x = {box[i], box[j], 0};
+      mesh_.faces.push_back(v);
+    }
+    range.cover.count = 6;
+    mesh_.fills.push_back(range);
+  }
+
+  // ---- lines and points
+
+  void add_line(const DrawLine& l) {
+    if (l.points.empty()) return;
+    if (l.halo.a > 0 && l.halo_width > 0) {
+      add_polyline(l, l.halo, l.width + 2 * l.halo_width, kNeverDashed, l.nudge - kHaloNudge);
+    }
+    add_polyline(l, l.colour, l.width, l.dash, l.nudge);
+  }
+
+  void add_polyline(const DrawLine& l, Rgba colour, double width, double dash, double nudge) {
+    LineVertex v;
+    v.colour = bytes(colour);
+    v.half_width = static_cast<float>(0.5 * width * scale_);
+    v.dash = static_cast<float>(dash > 0 ? dash * scale_ : dash);
+    double before = 0;
+    const std::size_t n = l.points.size(), segments = l.closed && n > 2 ? n : std::max<std::size_t>(n - 1, 1);
+    for (std::size_t i = 0; i < segments; ++i) {
+      v.dash_start = static_cast<float>(before);
+      before += add_segment(l.points[i], l.points[n == 1 ? 0 : (i + 1) % n], v, nudge);
+    }
+  }
+
+  void add_point(const DrawPoint& d) {
+    LineVertex v;
+    v.dash = v.dash_start = 0;
+    if (d.halo.a > 0 && d.halo_width > 0) {
+      v.colour = bytes(d.halo);
+      v.half_width = static_cast<float>((d.radius + d.halo_width) * scale_);
+      add_segment(d.x, d.x, v, d.nudge - kHaloNudge);
+    }
+    v.colour = bytes(d.colour);
+    v.half_width = static_cast<float>(d.radius * scale_);
+    add_segment(d.x, d.x, v, d.nudge);
+  }
+
+  /// Returns the segment's length on the screen.
+  double add_segment(const Vector3d& from, const Vector3d& to, LineVertex v, double nudge) {
+    Vector3d a = p_.to_eye(from), b = p_.to_eye(to);
+    for (int plane = 0; plane < kPlanes; ++plane) {
+      const double da = inside(a, plane), db = inside(b, plane);
+      if (da < 0 && db < 0) return 0;
+      if (da < 0) a += (b - a) * (da / (da - db));
+      if (db < 0) b += (a - b) * (db / (db - da));
+    }
+    const Vector3d sa = snapped_screen(a), sb = snapped_screen(b);
+    const Vector2d d = (sb - sa).head<2>();
+    const double length = d.norm();
+    const Vector2d u = length > 0 ? Vector2d(d / length) : Vector2d::UnitX();
+    const Vector2d side(-u.y(), u.x());
+    const double reach = v.half_width + kRim;
+    v.length = static_cast<float>(length);
+    std::array<LineVertex, 4> corner;
+    for (int i = 0; i < 4; ++i) {
+      const double along = i == 1 || i == 2 ? length + reach : -reach, across = i < 2 ? -reach : reach;
+      const Vector2d at = sa.head<2>() + along * u + across * side;
+      v.along = static_cast<float>(along);
+      v.across = static_cast<float>(across);
+      // Depth is held at the ends beyond them: a round end must not sink into what it ends on.
+      v.x = device({at.x(), at.y(), along < 0 ? sa.z() : sb.z()}, nudge);
+      corner[i] = v;
+    }
+    mesh_.lines.insert(mesh_.lines.end(), {corner[0], corner[1], corner[2], corner[0], corner[2], corner[3]});
+    return length;
+  }
+
+  const DrawList& list_;
+  const Projection& p_;
+  double scale_;
+  const Lighting& lighting_;
+  Lighting soft_;  ///< of faces that let others shine through: they are to tint, not to darken
+  ScreenMesh mesh_;
+  std::vector<FaceVertex> corners_;
+};
+
+}  // namespace
+
+Rgba shade(Rgba colour, const Vector3d& normal, const Eigen::Matrix3d& axes, const Lighting& lighting) {
+  Vector3d n(axes.row(0).dot(normal), axes.row(1).dot(normal), -axes.row(2).dot(normal));
+  if (n.z() < 0) n = -n;
+  const auto from = [&](const Vector3d& light) { return std::max(0.0, n.dot(light.normalized())); };
+  const double light = lighting.ambient + lighting.head * n.z() + lighting.key * from(lighting.key_from) +
+                       lighting.fill * from(lighting.fill_from);
+  const Rgba dark{0, 0, 0, colour.a}, bright{255, 255, 255, colour.a};
+  // Above one the colour goes on towards white, so that bright faces keep their differences.
+  return light <= 1 ? mix(dark, colour, light) : mix(colour, bright, std::min(1.0, light - 1));
+}
+
+ScreenMesh make_screen_mesh(const DrawList& list, const Projection& projection, double scale,
+                            const Lighting& lighting) {
+  return Builder(list, projection, scale, lighting).build();
+}
+
+}  // namespace lrb

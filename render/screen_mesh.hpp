@@ -1,0 +1,72 @@
+#pragma once
+/// Draw list -> triangles on the screen, all on the CPU in double: projection, clipping, shading, snapping.
+/// What reaches the graphics library has w = 1, colours that are final and corners on a grid of 1/256 pixel,
+/// so that rasterizers of different processors and thread counts have no freedom left to disagree. No
+/// graphics library here.
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "render/camera.hpp"
+#include "render/draw_list.hpp"
+
+namespace lrb {
+
+/// A corner of a face. Interpolated linearly over the screen: position and edge distances.
+struct FaceVertex {
+  std::array<float, 3> x;     ///< normalised device coordinates
+  std::array<float, 3> edge;  ///< distance from the lines of the three edges, pixels; kNoEdge where not drawn
+  std::array<std::uint8_t, 4> colour, edge_colour;
+  float half_width = 0;  ///< of edges, pixels
+  std::uint32_t id = kNoId;
+};
+inline constexpr float kNoEdge = 1e6F;
+inline constexpr float kNeverDashed = -1;  ///< as dash length: solid even where the line is ghosted
+
+/// A corner of the rectangle round a line segment, a capsule. A point is a segment of no length.
+struct LineVertex {
+  std::array<float, 3> x;
+  float along, across;  ///< from the segment's start, along it and to its left, pixels
+  float length, half_width;
+  float dash, dash_start;  ///< dash length (0: solid) and the length of line before this segment, pixels
+  std::array<std::uint8_t, 4> colour;
+};
+
+struct VertexRange {
+  std::size_t first = 0, count = 0;
+};
+
+/// Even-odd fill: `fan` flips a stencil bit, `cover` paints where it is set.
+struct FillRange {
+  VertexRange fan, cover;
+};
+
+struct ScreenMesh {
+  std::vector<FaceVertex> faces;
+  std::vector<LineVertex> lines;
+  std::vector<FillRange> fills;
+  std::array<VertexRange, kLayers> face_layers, line_layers;
+};
+
+/// How faces are shaded: flat, from their normal, by lights that go with the camera. Shares of the face's
+/// colour. Directions are in the camera's frame (right, up, towards the viewer) and made unit.
+struct Lighting {
+  double ambient = 0.52;
+  double head = 0.18;  ///< from the viewer
+  double key = 0.42;   ///< from above, left
+  double fill = 0.10;  ///< from the right, below
+  Eigen::Vector3d key_from{-0.45, 0.75, 0.48};
+  Eigen::Vector3d fill_from{0.80, -0.35, 0.49};
+};
+
+/// The colour of a face with the given unit normal; both sides are lit alike. `axes` as in
+/// Projection::axes().
+Rgba shade(Rgba colour, const Eigen::Vector3d& normal, const Eigen::Matrix3d& axes, const Lighting& lighting);
+
+/// `scale`: device pixels per pixel of the final image (supersampling); `projection` is in device pixels.
+ScreenMesh make_screen_mesh(const DrawList& list, const Projection& projection, double scale,
+                            const Lighting& lighting = {});
+
+}  // namespace lrb

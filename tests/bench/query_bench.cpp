@@ -1,0 +1,174 @@
+// The complete query against FCL on the same bodies and poses, both compiled here with the same flags (FCL's
+// headers are instantiated in this file), one core. Times are the best of a few repeats of one warm query;
+// what to believe is the ratio. Also, with --verify: against brute force.
+//
+//   query_bench A.obj B.obj [--scale-b S] [--poses N] [--verify]
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+
+#include "engine/build/build.hpp"
+#include "engine/mesh/mesh_io.hpp"
+#include "engine/query/brute_force.hpp"
+#include "engine/query/collide_impl.hpp"
+#include "tests/support/random_pose.hpp"
+
+#ifdef LRB_WITH_FCL
+#include <fcl/fcl.h>
+#endif
+
+using namespace lrb;
+
+namespace {
+
+struct PoseClass {
+  const char* name;
+  double depth;  ///< how far B goes beyond first contact, in diagonals of the larger body; negative: apart
+};
+constexpr PoseClass kClasses[] = {
+    {"shallow 1 %", 0.01}, {"deep 10 %", 0.1}, {"0.1 % apart", -0.001}, {"0.5 % apart", -0.005}};
+
+template <class F>
+double best_microseconds(int repeats, F&& f) {
+  double best = 1e300;
+  for (int i = 0; i < repeats; ++i) {
+    const auto start = std::chrono::steady_clock::now();
+    f();
+    best = std::min(
+        best, std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - start).count());
+  }
+  return best;
+}
+
+double median(std::vector<double> x) {
+  std::nth_element(x.begin(), x.begin() + static_cast<std::ptrdiff_t>(x.size() / 2), x.end());
+  return x[x.size() / 2];
+}
+
+#ifdef LRB_WITH_FCL
+class Fcl {
+ public:
+  explicit Fcl(const LrbRep& rep) : model_(std::make_shared<fcl::BVHModel<fcl::OBBRSSd>>()) {
+    std::vector<fcl::Vector3d> points(rep.vertices().begin(), rep.vertices().end());
+    std::vector<fcl::Triangle> triangles;
+    for (SimplexId s = 0; s < rep.real_simplex_count(); ++s) {
+      VertexId v[3];
+      rep.simplex(s, v);
+      triangles.emplace_back(v[0], v[1], v[2]);
+    }
+    model_->beginModel();
+    model_->addSubModel(points, triangles);
+    model_->endModel();
+  }
+  static std::size_t pairs(const Fcl& a, const Fcl& b, const Pose& p, bool all) {
+    fcl::Transform3d t = fcl::Transform3d::Identity();
+    t.linear() = p.r;
+    t.translation() = p.t;
+    fcl::CollisionResultd result;
+    fcl::collide(a.model_.get(), fcl::Transform3d::Identity(), b.model_.get(), t,
+                 fcl::CollisionRequestd(all ? 100000000 : 1, false), result);
+    return result.numContacts();
+  }
+
+ private:
+  std::shared_ptr<fcl::BVHModel<fcl::OBBRSSd>> model_;
+};
+#endif
+
+/// Poses of B at first contact along random directions, with random rotations.
+struct Approach {
+  Pose contact;
+  Eigen::Vector3d direction;
+};
+
+std::vector<Approach> approaches(const LrbRep& a, const LrbRep& b, double diagonal, int count) {
+  test::Random random(1);
+  QueryContext context;
+  NullProbe probe;
+  CollideRequest first;
+  first.mode = Mode::first_pair;
+  std::vector<Approach> list;
+  while (static_cast<int>(list.size()) < count) {
+    Pose p;
+    p.r = test::random_rotation(random);
+    const Eigen::Vector3d d = test::random_direction(random);
+    const auto meets = [&](double s) {
+      p.t = s * d;
+      return !collide(a, Pose{}, b, p, first, context, probe).pairs.empty();
+    };
+    double near = 2 * diagonal, step = 0.005 * diagonal;
+    while (near > -2 * diagonal && !meets(near)) near -= step;
+    if (near <= -2 * diagonal) continue;
+    for (int i = 0; i < 40; ++i) (meets(near + (step /= 2)) ? near += step : near);
+    p.t = near * d;
+    list.push_back({p, d});
+  }
+  return list;
+}
+
+int verify(const LrbRep& a, const LrbRep& b, const Pose& p, const CollideResult& result) {
+  const BruteForceResult expected = brute_force(a, Pose{}, b, p);
+  return expected.pairs != result.pairs || expected.meets != result.meets ||
+         expected.relation != result.relation;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  if (argc < 3) {
+    std::fprintf(stderr, "usage: query_bench A B [--scale-b S] [--poses N] [--verify]\n");
+    return 2;
+  }
+  double scale = 1;
+  int count = 50;
+  bool with_verify = false;
+  for (int i = 3; i < argc; ++i) {
+    if (!std::strcmp(argv[i], "--scale-b") && i + 1 < argc) scale = std::atof(argv[++i]);
+    if (!std::strcmp(argv[i], "--poses") && i + 1 < argc) count = std::atoi(argv[++i]);
+    if (!std::strcmp(argv[i], "--verify")) with_verify = true;
+  }
+  Mesh mesh_b = read_mesh(argv[2]);
+  for (auto& v : mesh_b.vertices) v *= scale;
+  const LrbRep a = build_lrb(read_mesh(argv[1])), b = build_lrb(mesh_b);
+  const double diagonal = std::max(test::box_of(a).diagonal().norm(), test::box_of(b).diagonal().norm());
+  std::printf("%u x %u faces, %.0f and %.0f bytes a real face, %d poses a class\n", a.real_face_count(),
+              b.real_face_count(), static_cast<double>(a.memory_bytes()) / a.real_face_count(),
+              static_cast<double>(b.memory_bytes()) / b.real_face_count(), count);
+#ifdef LRB_WITH_FCL
+  const Fcl fcl_a(a), fcl_b(b);
+#endif
+  QueryContext context;
+  NullProbe probe;
+  int differences = 0;
+  for (const PoseClass& c : kClasses)
+    for (const Mode mode : {Mode::all_pairs, Mode::first_pair}) {
+      std::vector<double> ours, theirs, ratios;
+      double pairs = 0, node_pairs = 0, tests = 0;
+      for (const Approach& approach : approaches(a, b, diagonal, count)) {
+        Pose p = approach.contact;
+        p.t -= c.depth * diagonal * approach.direction;
+        CollideRequest request;
+        request.mode = mode;
+        CollideResult result;
+        ours.push_back(
+            best_microseconds(5, [&] { result = collide(a, Pose{}, b, p, request, context, probe); }));
+        pairs += static_cast<double>(result.pairs.size());
+        node_pairs += static_cast<double>(result.counters.node_pairs);
+        tests += static_cast<double>(result.counters.face_tests);
+        if (with_verify && mode == Mode::all_pairs) differences += verify(a, b, p, result);
+#ifdef LRB_WITH_FCL
+        theirs.push_back(best_microseconds(3, [&] { Fcl::pairs(fcl_a, fcl_b, p, mode == Mode::all_pairs); }));
+        ratios.push_back(theirs.back() / ours.back());
+#endif
+      }
+      std::printf("%-11s %-5s  %9.2f us  %7.0f pairs %8.0f node pairs %7.0f face tests", c.name,
+                  mode == Mode::all_pairs ? "all" : "first", median(ours), pairs / count, node_pairs / count,
+                  tests / count);
+      if (!ratios.empty()) std::printf("   FCL %9.2f us, %5.2fx", median(theirs), median(ratios));
+      std::printf("\n");
+    }
+  if (with_verify) std::printf("%d differences from brute force\n", differences);
+  return differences == 0 ? 0 : 1;
+}

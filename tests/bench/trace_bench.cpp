@@ -1,0 +1,187 @@
+/// What recording and writing cost, per event. Run: build/tests/trace_bench --benchmark_repetitions=5
+
+#include <random>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <benchmark/benchmark.h>
+
+#include "tests/support/lrb_shapes.hpp"
+#include "trace/cursor.hpp"
+#include "trace/recorder.hpp"
+#include "trace/trace_json.hpp"
+
+namespace {
+
+using namespace lrb;
+using namespace lrb::trace;
+
+/// A body of `notches` notched plates side by side: as many regions as a real one, so that look-ups miss
+/// caches as they do there.
+LrbRep big_body(VertexId notches) {
+  const LrbData one = shapes::notched_plate();
+  LrbData all;
+  all.dim = 2;
+  all.name = "many plates";
+  all.closed = true;
+  for (VertexId n = 0; n < notches; ++n)
+    for (const auto& v : one.vertices) all.vertices.push_back(v + Eigen::Vector3d(10.0 * n, 0, 0));
+  const auto add = [&](FaceId from, FaceId to) {
+    const auto shifted = [](CellId cell, VertexId n) { return is_region(cell) ? cell + 3 * n : cell; };
+    for (VertexId n = 0; n < notches; ++n)
+      for (FaceId f = from; f < to; ++f) {
+        const auto corners = one.face(f);
+        const auto offset = static_cast<VertexId>(one.vertices.size()) * n;
+        shapes::add_face(all, {corners[0] + offset, corners[1] + offset}, shifted(one.inner_cell[f], n),
+                         shifted(one.outer_cell[f], n));
+      }
+  };
+  add(0, one.real_face_count);
+  all.real_face_count = one.real_face_count * notches;
+  add(one.real_face_count, static_cast<FaceId>(one.face_count()));
+  for (VertexId n = 0; n < notches; ++n) all.region_layer.insert(all.region_layer.end(), {0, 1, 2});
+  return LrbRep(std::move(all));
+}
+
+/// A call of the probe.
+struct Call {
+  EventKind kind;
+  Side side;
+  std::uint32_t a, b;
+  exact::Meet meet;
+};
+
+constexpr std::size_t kEvents = 200'000;
+
+const LrbRep& body() {
+  static const LrbRep rep = big_body(2000);  // 26,000 faces, 6,000 regions
+  return rep;
+}
+
+/// A mixture as in the paper's runs: mostly tests, every tenth event a refinement, every hundredth a contact.
+const std::vector<Call>& calls() {
+  static const std::vector<Call> all = [] {
+    std::mt19937 random(1);
+    std::vector<Call> out;
+    const auto below = [&](std::uint32_t n) { return static_cast<std::uint32_t>(random() % n); };
+    for (std::size_t i = 0; i < kEvents; ++i) {
+      const std::uint32_t dice = below(100);
+      const EventKind kind = dice < 89   ? EventKind::face_test
+                             : dice < 99 ? EventKind::refine
+                                         : EventKind::contact;
+      const bool refine = kind == EventKind::refine;
+      out.push_back({kind, static_cast<Side>(below(2)),
+                     below(refine ? body().region_count() : body().face_count()),
+                     refine ? 2 + below(4) : below(body().face_count()), static_cast<exact::Meet>(below(3))});
+    }
+    return out;
+  }();
+  return all;
+}
+
+template <class Probe>
+void replay_calls(Probe& probe) {
+  for (const Call& c : calls()) {
+    if (c.kind == EventKind::face_test)
+      probe.face_test(c.a, c.b, c.meet, 1, 2);
+    else if (c.kind == EventKind::refine)
+      probe.refine(c.side, c.a, c.b);
+    else
+      probe.contact(c.a, c.b, c.meet);
+  }
+}
+
+Trace recorded(Clock clock) {
+  RecorderSettings settings;
+  settings.clock = clock;
+  Recorder recorder(body(), body(), settings);
+  recorder.begin_step(0, {}, {});
+  replay_calls(recorder);
+  return recorder.take();
+}
+
+void report(benchmark::State& state) {
+  state.counters["per_event"] = benchmark::Counter(static_cast<double>(state.iterations()) * kEvents,
+                                                   benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
+}
+
+/// The calls alone, with a probe that only adds up: subtract it.
+void calls_alone(benchmark::State& state) {
+  struct Sum {
+    std::uint64_t sum = 0;
+    void face_test(SimplexId a, SimplexId b, exact::Meet m, std::uint32_t, std::uint32_t) {
+      sum += a + b + static_cast<std::uint32_t>(m);
+    }
+    void refine(Side s, RegionId r, std::uint32_t n) { sum += static_cast<std::uint32_t>(s) + r + n; }
+    void contact(SimplexId a, SimplexId b, exact::Meet m) { sum += a + b + static_cast<std::uint32_t>(m); }
+  };
+  calls();
+  for (auto _ : state) {
+    Sum sum;
+    replay_calls(sum);
+    benchmark::DoNotOptimize(sum.sum);
+  }
+  report(state);
+}
+BENCHMARK(calls_alone);
+
+void record(benchmark::State& state) {
+  RecorderSettings settings;
+  settings.clock = static_cast<Clock>(state.range(0));
+  calls();
+  for (auto _ : state) {
+    state.PauseTiming();
+    {
+      Recorder recorder(body(), body(), settings);
+      recorder.begin_step(0, {}, {});
+      state.ResumeTiming();
+      replay_calls(recorder);
+      benchmark::DoNotOptimize(recorder.events_stored());
+      state.PauseTiming();
+    }
+    state.ResumeTiming();
+  }
+  report(state);
+}
+BENCHMARK(record)->ArgName("wall")->Arg(0)->Arg(1);
+
+/// Bytes that go nowhere.
+struct Nowhere final : ByteSink {
+  void write(std::string_view bytes) override { size += bytes.size(); }
+  std::size_t size = 0;
+};
+
+void write_json(benchmark::State& state) {
+  const Trace trace = recorded(static_cast<Clock>(state.range(0)));
+  Nowhere sink;
+  for (auto _ : state) {
+    sink.size = 0;
+    write_trace(trace, sink);
+  }
+  report(state);
+  state.counters["bytes_per_event"] = static_cast<double>(sink.size) / kEvents;
+}
+BENCHMARK(write_json)->ArgName("wall")->Arg(0)->Arg(1)->Unit(benchmark::kMillisecond);
+
+void read_json(benchmark::State& state) {
+  const std::string text = trace_to_json(recorded(Clock::event));
+  for (auto _ : state) benchmark::DoNotOptimize(trace_from_json(text, "bench").events.size());
+  report(state);
+}
+BENCHMARK(read_json)->Unit(benchmark::kMillisecond);
+
+void replay(benchmark::State& state) {
+  const Trace trace = recorded(Clock::event);
+  for (auto _ : state) {
+    Cursor cursor(trace, body(), body());
+    cursor.seek(static_cast<EventId>(trace.events.size() - 1));
+    benchmark::DoNotOptimize(cursor.boundary_size(Side::a));
+  }
+  report(state);
+}
+BENCHMARK(replay)->Unit(benchmark::kMillisecond);
+
+}  // namespace
+
+BENCHMARK_MAIN();

@@ -1,0 +1,151 @@
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <doctest/doctest.h>
+
+#include "engine/exact/pair_contact.hpp"
+#include "tests/support/contact_oracle.hpp"
+#include "tests/support/random_simplices.hpp"
+
+using namespace lrb;
+using exact::ContactCorner;
+using exact::Feature;
+using exact::PairContact;
+using lrb::test::Kind;
+using Simplex = std::vector<oracle::RationalPoint>;
+
+namespace {
+
+/// A feature as a bit set of corners.
+unsigned corners_of(const Feature& f, std::size_t n) {
+  if (f.dim == 0) return 1u << f.index;
+  if (f.dim == 1) return 1u << f.index | 1u << ((f.index + 1u) % n);
+  return (1u << n) - 1;
+}
+
+/// Least dimension: a face with fewer corners must not hold the point.
+bool is_least_feature(const Simplex& s, const Feature& f, const oracle::RationalPoint& x) {
+  const unsigned face = corners_of(f, s.size());
+  if (!oracle::holds(s, face, x)) return false;
+  for (unsigned other = 1; other < (1u << s.size()); ++other) {
+    if (std::popcount(other) < std::popcount(face) && oracle::holds(s, other, x)) return false;
+  }
+  return true;
+}
+
+/// Within the accuracy promised, taking the largest extent of both simplices along the axis.
+bool is_close(const ContactCorner& c, const oracle::RationalPoint& x, const test::SimplexPair& s) {
+  for (std::size_t k = 0; k < x.size(); ++k) {
+    const auto [low, high] = std::minmax_element(s.p.begin(), s.p.end(),
+                                                 [k](const auto& p, const auto& q) { return p[k] < q[k]; });
+    const oracle::cpp_rational extent = oracle::cpp_rational((*high)[k]) - oracle::cpp_rational((*low)[k]);
+    const double size = std::max(std::fabs((*low)[k]), std::fabs((*high)[k]));
+    const oracle::cpp_rational bound = extent * oracle::cpp_rational(1e-13) +
+                                       oracle::cpp_rational(size) * oracle::cpp_rational(0x1p-52) +
+                                       oracle::cpp_rational(4.9e-324);
+    if (!std::isfinite(c.x[static_cast<Eigen::Index>(k)])) return false;
+    if (abs(oracle::cpp_rational(c.x[static_cast<Eigen::Index>(k)]) - x[k]) > bound) return false;
+  }
+  return true;
+}
+
+/// The extreme points of the intersection. Of degenerate simplices it is a point or segment, of which every
+/// point that was found may be listed, so the lexicographic extremes are kept.
+std::vector<oracle::RationalPoint> extreme_points(const Simplex& a, const Simplex& b, bool degenerate) {
+  std::vector<oracle::RationalPoint> r;
+  for (const auto& c : oracle::intersection_corners(a, b)) r.push_back(c.x);
+  std::sort(r.begin(), r.end());
+  r.erase(std::unique(r.begin(), r.end()), r.end());
+  if (degenerate && r.size() > 2) r = {r.front(), r.back()};
+  return r;
+}
+
+/// The corner of the contact that is this point: closest, and with the right features.
+bool has_corner(const PairContact& c, const oracle::RationalPoint& x, const Simplex& a, const Simplex& b,
+                const test::SimplexPair& s) {
+  return std::any_of(c.corners.begin(), c.corners.begin() + c.corner_count, [&](const ContactCorner& k) {
+    return is_close(k, x, s) && is_least_feature(a, k.on_a, x) && is_least_feature(b, k.on_b, x);
+  });
+}
+
+/// Every two neighbours lie on a common edge.
+bool is_ordered(const PairContact& c, std::size_t n) {
+  if (c.corner_count < 4) return true;
+  const auto count = static_cast<std::size_t>(c.corner_count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const ContactCorner &p = c.corners[i], &q = c.corners[(i + 1) % count];
+    const unsigned a = corners_of(p.on_a, n) | corners_of(q.on_a, n);
+    const unsigned b = corners_of(p.on_b, n) | corners_of(q.on_b, n);
+    if (std::popcount(a) > 2 && std::popcount(b) > 2) return false;
+  }
+  return true;
+}
+
+std::string compare(const test::SimplexPair& s, std::size_t n) {
+  const auto ca = s.a(), cb = s.b();
+  const PairContact c = n == 3 ? exact::contact_of_triangles(ca.data(), cb.data())
+                               : exact::contact_of_segments(ca.data(), cb.data());
+  const exact::Meet meet =
+      n == 3 ? exact::meet_triangles(ca.data(), cb.data()) : exact::meet_segments(ca.data(), cb.data());
+  if (c.meet != meet) return "meet";
+  if ((meet == exact::Meet::disjoint) != (c.corner_count == 0))
+    return "corners without contact, or contact without";
+  const auto p = oracle::to_integers({{ca.data(), ca.data() + n}, {cb.data(), cb.data() + n}}, n);
+  oracle::Points<oracle::cpp_int> both = p[0];
+  both.insert(both.end(), p[1].begin(), p[1].end());
+  if (c.coplanar != (oracle::affine_dimension(both) < static_cast<int>(n))) return "coplanar";
+  if (meet == exact::Meet::disjoint) return "";
+  Simplex a, b;
+  for (std::size_t i = 0; i < n; ++i) {
+    a.push_back(oracle::to_rational_point(ca[i], n));
+    b.push_back(oracle::to_rational_point(cb[i], n));
+  }
+  const int full = static_cast<int>(n) - 1;
+  const auto expected =
+      extreme_points(a, b, oracle::affine_dimension(p[0]) < full || oracle::affine_dimension(p[1]) < full);
+  if (expected.size() != c.corner_count) return "number of corners";
+  for (const auto& x : expected) {
+    if (!has_corner(c, x, a, b, s)) return "a corner";
+  }
+  return is_ordered(c, n) ? "" : "order";
+}
+
+void compare_kinds(std::uint64_t seed, std::size_t n, int meeting_pairs) {
+  for (int k = 0; k < static_cast<int>(Kind::count); ++k) {
+    test::Rng rng(seed + static_cast<std::uint64_t>(k));
+    int met = 0;
+    std::string fault;
+    for (int i = 0; i < test::effort(meeting_pairs); ++i) {
+      const test::SimplexPair s = test::random_pair(rng, static_cast<Kind>(k));
+      const auto a = s.a(), b = s.b();
+      met += (n == 3 ? exact::meet_triangles(a.data(), b.data())
+                     : exact::meet_segments(a.data(), b.data())) != exact::Meet::disjoint;
+      if (fault.empty()) fault = compare(s, n);
+    }
+    CHECK_MESSAGE(fault.empty(), test::name_of(static_cast<Kind>(k)) << ": " << fault);
+    CHECK(met > 0);
+  }
+}
+
+}  // namespace
+
+TEST_CASE("contacts of triangles have the corners, features and order of the rational oracle") {
+  compare_kinds(31, 3, 60);
+}
+TEST_CASE("contacts of segments have the corners and features of the rational oracle") {
+  compare_kinds(32, 2, 100);
+}
+
+TEST_CASE("a star of two coplanar triangles has six corners") {
+  const double p[6][3] = {{0, 0, 1}, {4, 0, 1}, {2, 3, 1}, {0, 2, 1}, {2, -1, 1}, {4, 2, 1}};
+  const double* const a[3] = {p[0], p[1], p[2]};
+  const double* const b[3] = {p[3], p[4], p[5]};
+  const PairContact c = exact::contact_of_triangles(a, b);
+  CHECK(c.corner_count == 6);
+  CHECK(c.coplanar);
+  CHECK(c.meet == exact::Meet::touch);
+}

@@ -1,0 +1,77 @@
+#include "engine/lrb/wrapper.hpp"
+
+#include <random>
+
+#include <doctest/doctest.h>
+
+#include "tests/support/hand_made.hpp"
+
+using namespace lrb;
+
+namespace {
+std::vector<FaceId> faces(std::initializer_list<FaceId> list) {
+  return list;
+}
+}  // namespace
+
+TEST_CASE("refining goes from the outermost wrapper to the real faces and back") {
+  const LrbRep rep = test::stairs_2d();
+  Wrapper w(rep);
+  const auto outermost = faces({0, 1, 8, 9, 11, 12});
+  CHECK(w.boundary() == outermost);
+  CHECK(w.refine(1));
+  CHECK_FALSE(w.refine(1));
+  CHECK(w.boundary() == faces({0, 1, 2, 3, 6, 7, 8, 9, 10}));
+  CHECK(w.refine(0));
+  CHECK(w.boundary() == faces({0, 1, 2, 3, 4, 5, 6, 7, 8, 9}));
+  CHECK(w.excluded() == std::vector<RegionId>{1, 0});
+  CHECK(w.coarsen(0));
+  CHECK(w.coarsen(1));
+  CHECK_FALSE(w.coarsen(1));
+  CHECK(w.boundary() == outermost);
+}
+
+TEST_CASE("any set of regions is legal: a region may go before the one that hides it") {
+  const LrbRep rep = test::stairs_2d();
+  Wrapper w(rep);
+  w.refine(0);  // a bubble under region 1: its lid is there, seen from behind
+  CHECK(w.boundary() == faces({0, 1, 4, 5, 8, 9, 10, 11, 12}));
+}
+
+TEST_CASE("refine_all gives exactly the real faces; reset gives the outermost wrapper") {
+  for (const WrapperMode mode : {WrapperMode::regularised, WrapperMode::unregularised}) {
+    const LrbRep rep = test::dented_box();
+    Wrapper w(rep, mode);
+    const auto outermost = w.boundary();
+    w.refine_all();
+    std::vector<FaceId> real(rep.real_face_count());
+    for (FaceId f = 0; f < real.size(); ++f) real[f] = f;
+    CHECK(w.boundary() == real);
+    w.reset();
+    CHECK(w.boundary() == outermost);
+    CHECK(w.excluded_count() == 0);
+  }
+}
+
+TEST_CASE("the two modes differ in what happens to a region's other lids") {
+  const LrbRep rep = test::dented_box();
+  Wrapper regularised(rep), unregularised(rep, WrapperMode::unregularised);
+  CHECK(regularised.refine_face(28));
+  CHECK_FALSE(regularised.refine_face(29));  // gone with the region
+  CHECK(unregularised.refine_face(28));
+  CHECK_FALSE(unregularised.on_boundary(28));
+  CHECK(unregularised.on_boundary(29));  // stays until refined itself
+  CHECK(unregularised.on_boundary(18));  // the floor is there already
+  CHECK(unregularised.boundary_size() == regularised.boundary_size() + 1);
+  CHECK(unregularised.refine_face(29));
+  CHECK(unregularised.boundary() == regularised.boundary());
+  CHECK(unregularised.coarsen(0));
+  CHECK(unregularised.boundary() == Wrapper(rep).boundary());
+}
+
+TEST_CASE("real faces cannot be refined") {
+  const LrbRep rep = test::dented_box();
+  Wrapper w(rep);
+  CHECK_FALSE(w.refine_face(0));
+  CHECK_FALSE(w.refine_face(20));
+}

@@ -1,0 +1,306 @@
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include <doctest/doctest.h>
+
+#include "engine/mesh/mesh_check.hpp"
+#include "tests/support/shapes.hpp"
+
+namespace lrb::test {
+namespace {
+
+using Offenders = std::vector<std::array<std::uint32_t, 2>>;
+
+Mesh mesh_of(std::vector<Eigen::Vector3d> vertices, const std::vector<std::vector<VertexId>>& faces,
+             int dim = 3) {
+  Mesh m;
+  m.dim = dim;
+  m.vertices = std::move(vertices);
+  m.name = "m";
+  for (const auto& f : faces) m.add_face(f);
+  return m;
+}
+
+/// Checks that the report has these faults and no others.
+void check_faults(const MeshReport& report,
+                  const std::vector<std::pair<MeshFault, std::uint64_t>>& expected) {
+  std::array<std::uint64_t, kMeshFaultCount> counts{};
+  for (const auto& [fault, count] : expected) counts[static_cast<std::size_t>(fault)] = count;
+  for (std::size_t i = 0; i < kMeshFaultCount; ++i) {
+    CAPTURE(i);
+    CHECK(report.findings[i].count == counts[i]);
+  }
+}
+
+Mesh without_face(const Mesh& m, FaceId skipped) {
+  Mesh out;
+  out.dim = m.dim;
+  out.vertices = m.vertices;
+  for (FaceId f = 0; f < m.face_count(); ++f)
+    if (f != skipped) out.add_face(m.face(f));
+  return out;
+}
+
+Mesh with_face_turned(Mesh m, FaceId f) {
+  std::swap(m.face_vertices[m.face_offsets[f]], m.face_vertices[m.face_offsets[f] + 1]);
+  return m;
+}
+
+}  // namespace
+
+TEST_CASE("bodies of the tests are closed, manifold, outward and free of self-intersections") {
+  struct Expected {
+    Mesh mesh;
+    std::uint32_t components;
+    int genus;
+  };
+  for (const auto& [mesh, components, genus] : std::vector<Expected>{
+           {tetrahedron(), 1, 0},
+           {box(), 1, 0},
+           {quad_box({-1, -2, -3}, {1, 2, 3}), 1, 0},
+           {l_shape(), 1, 0},
+           {comb(4), 1, 0},
+           {box_with_void(), 2, 0},
+           {icosphere(0), 1, 0},
+           {icosphere(3), 1, 0},
+           {bumpy_sphere(3, 1), 1, 0},
+           {uv_sphere(12, 5), 1, 0},
+           {bowl(16, 6), 1, 0},
+           {torus(12, 8), 1, 1},
+           {circle(7), 1, 0},
+           {star(5), 1, 0},
+           {gear(9), 1, 0},
+           {comb_2d(4), 1, 0},
+           {l_shape_2d(), 1, 0},
+           {ring_2d(9), 2, 0},
+           {several({torus(9, 6), translated(torus(7, 5), {9, 0, 0}), icosphere(1, 0.2)}), 3, 2}}) {
+    CAPTURE(mesh.name);
+    const MeshReport report = check_mesh(mesh);
+    CHECK(report.lines(mesh).empty());
+    CHECK(report.closed);
+    CHECK(report.components == components);
+    CHECK(report.genus == genus);
+    CHECK(report.buildable());
+    CHECK(report.queryable());
+    CHECK(report.self_intersections_checked);
+    Mesh turned = turned_inside_out(mesh);
+    CHECK(check_mesh(turned)[MeshFault::inside_out].count == components);
+    CHECK(orient_outward(turned) == components);
+    CHECK(check_mesh(turned).lines(turned).empty());
+  }
+  CHECK_FALSE(check_mesh(box(), false).self_intersections_checked);
+}
+
+TEST_CASE("a mesh without faces") {
+  const Mesh m = mesh_of({{0, 0, 0}}, {});
+  const MeshReport report = check_mesh(m);
+  check_faults(report, {{MeshFault::no_faces, 1}, {MeshFault::unused_vertex, 1}});
+  CHECK_FALSE(report.closed);
+  CHECK_FALSE(report.buildable());
+  CHECK_FALSE(report.queryable());
+}
+
+TEST_CASE("coordinates that are not finite, indices out of range") {
+  Mesh m = tetrahedron();
+  m.vertices[2].y() = std::numeric_limits<double>::quiet_NaN();
+  MeshReport report = check_mesh(m);
+  check_faults(report, {{MeshFault::non_finite_vertex, 1}});
+  CHECK(report[MeshFault::non_finite_vertex].first == Offenders{{2, kNull}});
+  CHECK_FALSE(report.queryable());
+
+  m = tetrahedron();
+  m.face_vertices[4] = 4;  // of face 1: its three edges lose a face
+  report = check_mesh(m);
+  check_faults(report, {{MeshFault::index_out_of_range, 1}, {MeshFault::open_edge, 3}});
+  CHECK(report[MeshFault::index_out_of_range].first == Offenders{{1, 4}});
+  CHECK_FALSE(report.closed);
+  CHECK_FALSE(report.queryable());
+}
+
+TEST_CASE("repeated corners and faces without area") {
+  Mesh m = tetrahedron();
+  m.add_face(std::array<VertexId, 3>{1, 1, 2});  // no boundary: the body stays closed
+  MeshReport report = check_mesh(m);
+  check_faults(report, {{MeshFault::repeated_corner, 1}, {MeshFault::zero_area_face, 1}});
+  CHECK(report[MeshFault::repeated_corner].first == Offenders{{4, 1}});
+  CHECK(report.closed);
+  CHECK_FALSE(report.buildable());
+  CHECK(report.queryable());
+
+  // A needle of an ulp's width has area, a straight one has none.
+  for (const auto& [z, faults] : {std::pair{0.3125, 1u}, std::pair{std::nextafter(0.3125, 1), 0u}}) {
+    m = mesh_of({{0, 0, 0}, {3, 3, 3 * 0.3125}, {1, 1, z}}, {{0, 1, 2}});
+    CHECK(check_mesh(m)[MeshFault::zero_area_face].count == faults);
+  }
+  m = mesh_of({{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {3, 0, 0}}, {{0, 1, 2, 3}});
+  CHECK(check_mesh(m)[MeshFault::zero_area_face].count == 1);
+  m = mesh_of({{0, 0, 0}, {0, 0, 0}, {2, 0, 0}, {2, 1, 0}}, {{0, 1, 2, 3}});
+  check_faults(check_mesh(m), {{MeshFault::open_edge, 4}});
+}
+
+TEST_CASE("polygons that are not planar can still be built") {
+  Mesh m = quad_box();
+  check_faults(check_mesh(m), {});
+  m.vertices[7].x() = std::nextafter(m.vertices[7].x(), 2);  // within the planes of two of its quads
+  const MeshReport report = check_mesh(m);
+  check_faults(report, {{MeshFault::non_planar_face, 1}});
+  CHECK(report.buildable());
+  CHECK(report.closed);
+}
+
+TEST_CASE("convexity of polygons, whatever plane they lie in") {
+  struct Polygon {
+    std::vector<Eigen::Vector2d> corners;
+    bool convex;
+  };
+  const std::vector<Polygon> polygons = {
+      {{{0, 0}, {1, 0}, {1, 1}, {0, 1}}, true},
+      {{{0, 0}, {1, 0}, {2, 0}, {2, 2}, {1, 2}, {0, 2}}, true},     // corners in the middle of sides
+      {{{0, 0}, {4, 0}, {1, 1}, {0, 4}}, false},                    // an arrow
+      {{{0, 0}, {1, 1}, {1, 0}, {0, 1}}, false},                    // a bow tie, area 0
+      {{{0, 0}, {3, 1}, {3, 0}, {0, 2}}, false},                    // a bow tie with area
+      {{{0, 0}, {2, 0}, {1, 0}, {1, 1}}, false},                    // a side that turns back
+      {{{0, 2}, {-1, -2}, {2, 1}, {-2, 1}, {1, -2}}, false},        // a pentagram: goes round twice
+      {{{0, 0}, {1, 0}, {1, 1}, {0, 0}, {1, 0}, {1, 1}}, false},    // a triangle, twice
+      {{{0, 0}, {1, 0}, {1 + 0x1p-52, 1}, {1, 2}, {0, 2}}, true},   // hardly convex
+      {{{0, 0}, {1, 0}, {1 - 0x1p-53, 1}, {1, 2}, {0, 2}}, false},  // hardly concave
+  };
+  for (const auto& [corners, convex] : polygons)
+    for (const bool turned : {false, true})
+      for (int plane = 0; plane < 4; ++plane)
+        for (const double size : {1.0, 0x1p-400, 0x1p400}) {
+          std::vector<Eigen::Vector3d> vertices;
+          std::vector<VertexId> face;
+          for (const auto& c : corners) {
+            const double x = size * c.x(), y = size * c.y();
+            face.push_back(static_cast<VertexId>(vertices.size()));
+            vertices.push_back(plane == 0   ? Eigen::Vector3d(x, y, 3 * size)
+                               : plane == 1 ? Eigen::Vector3d(0, x, y)
+                               : plane == 2 ? Eigen::Vector3d(y, -size, x)
+                                            : Eigen::Vector3d(x, y, -4 * x));
+          }
+          if (turned) std::reverse(face.begin(), face.end());
+          const MeshReport report = check_mesh(mesh_of(vertices, {face}), false);
+          CAPTURE(corners.size());
+          CAPTURE(plane);
+          CHECK(report[MeshFault::non_planar_face].count == 0);
+          CHECK(report[MeshFault::non_convex_face].count == (convex ? 0 : 1));
+        }
+}
+
+TEST_CASE("duplicate faces, whatever their first corner and orientation") {
+  Mesh m = tetrahedron();
+  m.add_face(std::array<VertexId, 3>{3, 1, 0});
+  m.add_face(std::array<VertexId, 3>{0, 3, 1});
+  const MeshReport report = check_mesh(m, false);
+  CHECK(report[MeshFault::duplicate_face].first == Offenders{{1, 4}, {1, 5}});
+  CHECK(report[MeshFault::non_manifold_edge].count == 3);
+  CHECK_FALSE(report.buildable());
+}
+
+TEST_CASE("open edges") {
+  const Mesh m = without_face(quad_box(), 3);
+  const MeshReport report = check_mesh(m);
+  check_faults(report, {{MeshFault::open_edge, 4}});
+  CHECK_FALSE(report.closed);
+  CHECK_FALSE(report.buildable());
+  CHECK(report.queryable());
+  CHECK(report.genus == -1);
+  CHECK(report.components == 1);
+  check_faults(check_mesh(open_cylinder(11)), {{MeshFault::open_edge, 22}});
+  check_faults(check_mesh(without_face(circle(6), 2)), {{MeshFault::open_edge, 2}});
+}
+
+TEST_CASE("two cubes that share an edge, or a vertex") {
+  const Mesh edge = voxels(2, 2, 1, [](int i, int j, int) { return i == j; });
+  MeshReport report = check_mesh(edge);
+  check_faults(report, {{MeshFault::non_manifold_edge, 1}});
+  CHECK(report.components == 1);
+  CHECK_FALSE(report.closed);
+  CHECK_FALSE(report.buildable());
+  const auto [a, b] = report[MeshFault::non_manifold_edge].first.at(0);
+  CHECK(edge.vertices[a].head<2>() == Eigen::Vector2d(1, 1));
+  CHECK(edge.vertices[b].head<2>() == Eigen::Vector2d(1, 1));
+
+  const Mesh vertex = voxels(2, 2, 2, [](int i, int j, int k) { return i == j && j == k; });
+  report = check_mesh(vertex);
+  check_faults(report, {{MeshFault::non_manifold_vertex, 1}});
+  CHECK(vertex.vertices[report[MeshFault::non_manifold_vertex].first.at(0)[0]] == Eigen::Vector3d(1, 1, 1));
+  CHECK(report.components == 2);
+  CHECK(report.closed);
+  CHECK(report.genus == -1);
+  CHECK(report.buildable());
+
+  // In the plane: two squares that share a corner.
+  const Mesh squares = mesh_of({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {2, 1, 0}, {2, 2, 0}, {1, 2, 0}},
+                               {{0, 1}, {1, 2}, {2, 3}, {3, 0}, {2, 4}, {4, 5}, {5, 6}, {6, 2}}, 2);
+  report = check_mesh(squares);
+  check_faults(report, {{MeshFault::non_manifold_edge, 1}});
+  CHECK(report[MeshFault::non_manifold_edge].first == Offenders{{2, kNull}});
+}
+
+TEST_CASE("faces turned against their neighbours") {
+  const MeshReport report = check_mesh(with_face_turned(icosphere(1), 17));
+  check_faults(report, {{MeshFault::flipped_face, 3}});
+  CHECK_FALSE(report.closed);
+  CHECK_FALSE(report.buildable());
+  for (const auto& pair : report[MeshFault::flipped_face].first) CHECK((pair[0] == 17 || pair[1] == 17));
+
+  Mesh moebius;  // a strip of quads closed with half a turn: wherever it is cut, one pair runs the same way
+  for (int i = 0; i < 9; ++i) {
+    const double u = 2 * std::numbers::pi * i / 9, half = u / 2;
+    for (const double w : {-0.3, 0.3})
+      moebius.vertices.emplace_back((1 + w * std::cos(half)) * std::cos(u),
+                                    (1 + w * std::cos(half)) * std::sin(u), w * std::sin(half));
+  }
+  for (VertexId i = 0; i < 8; ++i) {
+    moebius.add_face(std::array<VertexId, 3>{2 * i, 2 * i + 2, 2 * i + 1});
+    moebius.add_face(std::array<VertexId, 3>{2 * i + 1, 2 * i + 2, 2 * i + 3});
+  }
+  moebius.add_face(std::array<VertexId, 3>{16, 1, 17});
+  moebius.add_face(std::array<VertexId, 3>{17, 1, 0});
+  check_faults(check_mesh(moebius), {{MeshFault::flipped_face, 1}, {MeshFault::open_edge, 18}});
+
+  Mesh flat = circle(5);
+  std::swap(flat.face_vertices[4], flat.face_vertices[5]);
+  check_faults(check_mesh(flat), {{MeshFault::flipped_face, 2}});
+}
+
+TEST_CASE("unused vertices") {
+  Mesh m = box();
+  m.vertices.emplace_back(5, 5, 5);
+  const MeshReport report = check_mesh(m);
+  check_faults(report, {{MeshFault::unused_vertex, 1}});
+  CHECK(report.closed);
+  CHECK(report.genus == 0);
+  CHECK(report.buildable());
+}
+
+TEST_CASE("findings say what, how often and where, in one line each") {
+  Mesh m = without_face(box(), 0);
+  m.name = "box.obj";
+  const std::vector<std::string> lines = check_mesh(m).lines(m);
+  REQUIRE(lines.size() == 1);
+  CHECK(lines[0] ==
+        "box.obj: an edge has a face on one side only (3 times): edge (by its vertices) 0-2, 0-3, 2-3, "
+        "counted from 0 "
+        "in file order; close the hole");
+  const Mesh many = open_cylinder(50);
+  const MeshReport report = check_mesh(many);
+  const std::string line = report.lines(many).at(0);
+  CHECK(report[MeshFault::open_edge].count == 100);
+  CHECK(report[MeshFault::open_edge].first.size() == 8);
+  CHECK(line.find("(100 times)") != std::string::npos);
+  CHECK(line.find(", ..., counted from 0") != std::string::npos);
+  for (const Mesh& bad :
+       {mesh_of({{0, 0, 0}}, {}), mesh_of({{0, 0, 0}, {0, 0, 0}}, {{0, 1}, {0, 0}, {0, 7}}, 2),
+        turned_inside_out(box()), mesh_of({{0, 0, 0}}, {{0, 0, 0}, {0, 0, 9}, {0, 0, 0}})})
+    for (const std::string& text : check_mesh(bad).lines(bad)) {
+      CHECK(text.find('\n') == std::string::npos);
+      CHECK(text.find("; ") != std::string::npos);
+    }
+}
+
+}  // namespace lrb::test

@@ -1,0 +1,141 @@
+#include <algorithm>
+#include <random>
+
+#include <doctest/doctest.h>
+
+#include "engine/mesh/mesh_check.hpp"
+#include "tests/support/rational_oracle.hpp"
+#include "tests/support/shapes.hpp"
+
+namespace lrb::test {
+namespace {
+
+using Pairs = std::vector<std::array<std::uint32_t, 2>>;
+
+/// Every pair of triangles without a common vertex that meets, by linear programming over all pairs.
+Pairs meeting_strangers(const Mesh& m) {
+  Pairs found;
+  const std::size_t n = static_cast<std::size_t>(m.dim);
+  for (FaceId f = 0; f < m.face_count(); ++f)
+    for (FaceId g = f + 1; g < m.face_count(); ++g) {
+      const auto a = m.face(f), b = m.face(g);
+      if (std::find_first_of(a.begin(), a.end(), b.begin(), b.end()) != a.end()) continue;
+      const double *pa[3], *pb[3];
+      for (std::size_t i = 0; i < n; ++i) {
+        pa[i] = m.vertices[a[i]].data();
+        pb[i] = m.vertices[b[i]].data();
+      }
+      if (oracle::meet_of_simplices(pa, pb, n) != 0) found.push_back({f, g});
+    }
+  return found;
+}
+
+void check_against_oracle(const Mesh& m) {
+  const Pairs expected = meeting_strangers(m);
+  const MeshFinding finding = check_mesh(m)[MeshFault::self_intersection];
+  CHECK(finding.count == expected.size());
+  CHECK(finding.first ==
+        Pairs(expected.begin(), expected.begin() + std::min<std::size_t>(8, expected.size())));
+}
+
+Mesh random_soup(std::uint64_t seed, int triangles, int dim) {
+  std::mt19937_64 random(seed);
+  Mesh m;
+  m.dim = dim;
+  while (m.face_count() < static_cast<std::size_t>(triangles)) {
+    std::vector<VertexId> corners;
+    for (int i = 0; i < dim; ++i) {
+      corners.push_back(static_cast<VertexId>(m.vertices.size()));
+      m.vertices.emplace_back(random() % 8, random() % 8, dim == 3 ? random() % 8 : 0);
+    }
+    Mesh one;
+    one.dim = dim;
+    one.vertices = m.vertices;
+    one.add_face(corners);
+    if (check_mesh(one, false)[MeshFault::zero_area_face].count == 0) m.add_face(corners);
+  }
+  return m;
+}
+
+}  // namespace
+
+TEST_CASE("self-intersections: as many as an oracle finds over all pairs") {
+  check_against_oracle(several({icosphere(1), translated(icosphere(1), {1, 0.25, 0})}));
+  check_against_oracle(several({box(), translated(box(), {0.5, 0.5, 0.5})}));
+  check_against_oracle(several({box(), translated(box(), {1, 0, 0})}));          // two faces in one place
+  check_against_oracle(several({box(), translated(box(), {1, 1, 0.5})}));        // an edge on an edge
+  check_against_oracle(several({box(), translated(tetrahedron(), {1, 1, 1})}));  // a corner on a corner
+  check_against_oracle(several({torus(9, 6), scaled(torus(9, 6), 1.2)}));
+  check_against_oracle(several({star(7), star(6)}));
+  for (std::uint64_t seed = 0; seed < 6; ++seed) {
+    check_against_oracle(random_soup(seed, 40, 3));
+    check_against_oracle(random_soup(seed, 40, 2));
+  }
+}
+
+TEST_CASE("self-intersections among neighbours") {
+  // A fin folded back onto its neighbour: they share an edge and overlap in the plane.
+  Mesh m;
+  m.vertices = {{0, 0, 0}, {2, 0, 0}, {1, 1, 0}, {1, 2, 0}};
+  m.add_face(std::array<VertexId, 3>{0, 1, 2});
+  m.add_face(std::array<VertexId, 3>{1, 0, 3});
+  CHECK(check_mesh(m)[MeshFault::self_intersection].first == Pairs{{0, 1}});
+  m.vertices[3] = {1, 2, 0x1p-1000};  // lifted by next to nothing
+  CHECK(check_mesh(m)[MeshFault::self_intersection].count == 0);
+  m.vertices[3] = {1, -1, 0};
+  CHECK(check_mesh(m)[MeshFault::self_intersection].count == 0);
+
+  // Two triangles with one common vertex that cross each other beyond it.
+  m = {};
+  m.vertices = {{0, 0, 0}, {2, -1, 0}, {2, 1, 0}, {2, 0, -1}, {2, 0, 1}};
+  m.add_face(std::array<VertexId, 3>{0, 1, 2});
+  m.add_face(std::array<VertexId, 3>{0, 3, 4});
+  CHECK(check_mesh(m)[MeshFault::self_intersection].count == 1);
+  m.vertices[3] = {2, 0, 0.5};
+  CHECK(check_mesh(m)[MeshFault::self_intersection].count == 0);
+}
+
+TEST_CASE("self-intersections of polygons are counted by face") {
+  const Mesh cubes = several({quad_box(), translated(quad_box(), {0.5, 0.5, 0.5})});
+  CHECK(check_mesh(cubes)[MeshFault::self_intersection].count ==
+        6);  // three faces of each cut two of the other
+  const Mesh apart = several({quad_box(), translated(quad_box(), {1.5, 0, 0})});
+  CHECK(check_mesh(apart)[MeshFault::self_intersection].count == 0);
+}
+
+TEST_CASE("corners in the middle of straight sides are no self-intersections") {
+  // A slab whose top and bottom have them on every side: their plain fans hold triangles without area.
+  for (int shift = 0; shift < 8; ++shift) {
+    Mesh m;
+    m.vertices = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {2, 1, 0}, {2, 2, 0}, {1, 2, 0}, {0, 2, 0}, {0, 1, 0}};
+    for (VertexId v = 0; v < 8; ++v) m.vertices.push_back(m.vertices[v] + Eigen::Vector3d(0, 0, 1));
+    std::vector<VertexId> top, bottom;
+    for (int i = 0; i < 8; ++i) {
+      top.push_back(static_cast<VertexId>(8 + (i + shift) % 8));
+      bottom.push_back(static_cast<VertexId>((8 - i + shift) % 8));
+    }
+    m.add_face(top);
+    m.add_face(bottom);
+    for (VertexId i = 0; i < 8; ++i)
+      m.add_face(std::array<VertexId, 4>{i, (i + 1) % 8, 8 + (i + 1) % 8, 8 + i});
+    CHECK(check_mesh(m).lines(m).empty());
+  }
+  Mesh three_sided;  // only three proper corners
+  three_sided.vertices = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {4, 0, 0},
+                          {2, 2, 0}, {0, 4, 0}, {0, 1, 0}, {0, 0, 3}};
+  three_sided.add_face(std::array<VertexId, 7>{0, 6, 5, 4, 3, 2, 1});
+  for (VertexId i = 0; i < 7; ++i) three_sided.add_face(std::array<VertexId, 3>{i, (i + 1) % 7, 7});
+  CHECK(check_mesh(three_sided).lines(three_sided).empty());
+}
+
+TEST_CASE("real-looking bodies that pass through themselves") {
+  Mesh m = bumpy_sphere(2, 3);
+  CHECK(check_mesh(m)[MeshFault::self_intersection].count == 0);
+  m.vertices[5] *= -2;  // one vertex through to the other side
+  const MeshReport report = check_mesh(m);
+  CHECK(report[MeshFault::self_intersection].count == meeting_strangers(m).size());
+  CHECK(report[MeshFault::self_intersection].count > 0);
+  CHECK(report.buildable());
+}
+
+}  // namespace lrb::test

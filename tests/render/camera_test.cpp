@@ -1,0 +1,136 @@
+#include "render/camera.hpp"
+
+#include <limits>
+#include <random>
+
+#include <doctest/doctest.h>
+
+#include "engine/error.hpp"
+
+using namespace lrb;
+using Eigen::Vector3d;
+
+namespace {
+
+std::vector<Vector3d> cloud(std::mt19937& random, const Vector3d& centre, const Vector3d& size) {
+  std::uniform_real_distribution<double> u(-0.5, 0.5);
+  std::vector<Vector3d> out;
+  for (int i = 0; i < 60; ++i)
+    out.push_back(centre + Vector3d(u(random), u(random), u(random)).cwiseProduct(size));
+  return out;
+}
+
+Eigen::AlignedBox3d box_of(const std::vector<Vector3d>& points) {
+  Eigen::AlignedBox3d box;
+  for (const Vector3d& p : points) box.extend(p);
+  return box;
+}
+
+}  // namespace
+
+TEST_CASE("a fitted camera shows every point, within the margin, and wastes no room") {
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> angle(-3.1, 3.1);
+  for (int i = 0; i < 400; ++i) {
+    const double scale = std::pow(10.0, i % 7 - 3);
+    const auto points = cloud(random, scale * Vector3d(angle(random), angle(random), angle(random)) * 10,
+                              scale * Vector3d(1, 0.2 + i % 3, i % 5));
+    FitOptions options;
+    options.view = view_from_angles(angle(random), 0.45 * angle(random));
+    options.orthographic = i % 2 == 0;
+    const double width = 1280, height = i % 3 == 0 ? 720 : 1500,
+                 free = options.margin * std::min(width, height);
+    const Camera camera = fit_camera(points, width, height, options);
+    const Projection projection(camera, width, height, box_of(points));
+    double tightest = std::numeric_limits<double>::infinity();
+    for (const Vector3d& p : points) {
+      const auto at = projection.to_pixel(p);
+      REQUIRE(at.has_value());
+      const double room = std::min({at->x(), width - at->x(), at->y(), height - at->y()});
+      tightest = std::min(tightest, room);
+      const double depth = projection.to_screen(projection.to_eye(p)).z();
+      CHECK(depth >= -1);
+      CHECK(depth <= 1);
+    }
+    CHECK(tightest >= free - 1e-6 * width);
+    CHECK(tightest <= free + 1e-6 * width);
+  }
+}
+
+TEST_CASE("single points, flat and far scenes can be fitted") {
+  for (const Vector3d& at : {Vector3d(0, 0, 0), Vector3d(1e6, -1e6, 3), Vector3d(1e-8, 0, 0)}) {
+    for (const bool orthographic : {false, true}) {
+      FitOptions options;
+      options.orthographic = orthographic;
+      const std::vector<Vector3d> points{at};
+      const Camera camera = fit_camera(points, 640, 360, options);
+      const Projection projection(camera, 640, 360, box_of(points));
+      const auto pixel = projection.to_pixel(at);
+      REQUIRE(pixel.has_value());
+      CHECK((*pixel - Eigen::Vector2d(320, 180)).norm() < 1);
+    }
+  }
+  CHECK_THROWS_AS(fit_camera(std::vector<Vector3d>{}, 640, 360), InputError);
+  CHECK_THROWS_AS(fit_camera(std::vector<Vector3d>{{0, 0, std::nan("")}}, 640, 360), InputError);
+}
+
+TEST_CASE("the view from above keeps x to the right and y up") {
+  const std::vector<Vector3d> points{{0, 0, 0}, {4, 0, 0}, {4, 2, 0}, {0, 2, 0}};
+  const Camera camera = fit_top(points, 800, 400, 0.1);
+  const Projection projection(camera, 800, 400, box_of(points));
+  const Eigen::Vector2d origin = *projection.to_pixel({0, 0, 0}), right = *projection.to_pixel({1, 0, 0}),
+                        up = *projection.to_pixel({0, 1, 0});
+  CHECK(right.x() > origin.x());
+  CHECK(right.y() == doctest::Approx(origin.y()));
+  CHECK(up.y() < origin.y());
+  CHECK(up.x() == doctest::Approx(origin.x()));
+  CHECK(right.x() - origin.x() == doctest::Approx(origin.y() - up.y()));  // no distortion
+  CHECK(origin.y() == doctest::Approx(360));                              // 0.1 * 400 free below
+}
+
+TEST_CASE("a camera on the contact holds it with its surroundings") {
+  const std::vector<Vector3d> contact{{1, 1, 1}, {1.1, 1, 1}, {1.05, 1.04, 1.02}};
+  Eigen::AlignedBox3d scene(Vector3d(-2, -2, -2), Vector3d(2, 2, 2));
+  for (const bool orthographic : {false, true}) {
+    FitOptions options;
+    options.orthographic = orthographic;
+    const Camera camera = fit_contact(contact, scene, 800, 600, options, 3.0, 0.01);
+    const Projection projection(camera, 800, 600, scene);
+    Eigen::AlignedBox2d seen;
+    for (const Vector3d& p : contact) seen.extend(*projection.to_pixel(p));
+    CHECK(seen.min().minCoeff() > 100);
+    CHECK(seen.max().x() < 700);
+    CHECK(seen.max().y() < 500);
+    CHECK(seen.diagonal().norm() > 60);
+  }
+  // A contact in one point is shown at the least size asked for.
+  const Camera near = fit_contact(std::vector<Vector3d>{{1, 1, 1}}, scene, 800, 600, {}, 3.0, 0.01);
+  const Camera wide = fit_contact(std::vector<Vector3d>{{1, 1, 1}}, scene, 800, 600, {}, 3.0, 0.1);
+  CHECK((wide.eye - wide.target).norm() > 5 * (near.eye - near.target).norm());
+}
+
+TEST_CASE("orbit keeps target, distance and height") {
+  const Camera camera = fit_camera(Eigen::AlignedBox3d(Vector3d(-1, -1, -1), Vector3d(1, 1, 1)), 640, 360);
+  Camera turned = camera;
+  for (int i = 0; i < 12; ++i) turned = orbit(turned, 2 * 3.14159265358979323846 / 12);
+  CHECK((turned.eye - camera.eye).norm() < 1e-12);
+  const Camera quarter = orbit(camera, 1.5);
+  CHECK(quarter.eye.z() == doctest::Approx(camera.eye.z()));
+  CHECK((quarter.eye - quarter.target).norm() == doctest::Approx((camera.eye - camera.target).norm()));
+  CHECK((quarter.eye - camera.eye).norm() > 1);
+  const Camera lifted = orbit(camera, 0, 0.3);
+  CHECK(lifted.eye.z() > camera.eye.z());
+  CHECK((lifted.eye - lifted.target).norm() == doctest::Approx((camera.eye - camera.target).norm()));
+  const Camera top = orbit(camera, 0, 9);  // stops short of the vertical
+  CHECK((top.eye - top.target).cross(top.up).norm() > 0.01);
+}
+
+TEST_CASE("cameras without a direction or an opening are refused") {
+  Camera camera;
+  camera.eye = camera.target;
+  const Eigen::AlignedBox3d scene(Vector3d(-1, -1, -1), Vector3d(1, 1, 1));
+  CHECK_THROWS_AS(Projection(camera, 10, 10, scene), InputError);
+  camera.eye = {0, 0, 5};
+  camera.fov_y = 0;
+  CHECK_THROWS_AS(Projection(camera, 10, 10, scene), InputError);
+}

@@ -1,0 +1,24 @@
+#pragma once
+/// Tests that write need a font; without one they are left out, and say so.
+
+#include <string>
+
+#include <doctest/doctest.h>
+
+#include "engine/error.hpp"
+#include "render/text.hpp"
+
+namespace lrb::test {
+
+inline bool have_font() {
+  try {
+    find_font(false);
+    find_font(true);
+    return true;
+  } catch (const EnvironmentError& e) {
+    MESSAGE("left out: " << std::string(e.what()));
+    return false;
+  }
+}
+
+}  // namespace lrb::test

@@ -1,0 +1,385 @@
+#include "render/rasterize.hpp"
+
+#include <array>
+#include <cstdio>
+#include <cstdlib>
+#include <set>
+#include <string>
+
+#include <doctest/doctest.h>
+
+#include "engine/error.hpp"
+#include "render/offscreen.hpp"
+#include "tests/render/font_guard.hpp"
+#include "tests/render/shapes.hpp"
+
+using namespace lrb;
+using Eigen::Vector3d;
+
+namespace {
+
+Rasterizer& rasterizer() {
+  static Rasterizer r;
+  return r;
+}
+
+/// One pixel per unit, origin in the lower left corner, seen from above.
+Camera pixel_camera(int width, int height) {
+  Camera c;
+  c.eye = {0.5 * width, 0.5 * height, 100};
+  c.target = {0.5 * width, 0.5 * height, 0};
+  c.up = {0, 1, 0};
+  c.orthographic = true;
+  c.half_height = 0.5 * height;
+  return c;
+}
+
+DrawTriangle flat(Rgba colour, Layer layer = Layer::opaque) {
+  DrawTriangle t;
+  t.colour = colour;
+  t.layer = layer;
+  t.lit = false;
+  return t;
+}
+
+/// A square in the plane z, as two triangles.
+void square(DrawList& list, double x0, double y0, double x1, double y1, double z, DrawTriangle like) {
+  list.add_polygon({{x0, y0, z}, {x1, y0, z}, {x1, y1, z}, {x0, y1, z}}, like);
+}
+
+RasterOptions size(int width, int height, int supersample = 2) {
+  RasterOptions o;
+  o.width = width;
+  o.height = height;
+  o.supersample = supersample;
+  return o;
+}
+
+constexpr Rgba kRed{255, 0, 0}, kGreen{0, 255, 0}, kBlue{0, 0, 255};
+
+bool near(Rgba a, Rgba b, int by = 2) {
+  return std::abs(a.r - b.r) <= by && std::abs(a.g - b.g) <= by && std::abs(a.b - b.b) <= by &&
+         std::abs(a.a - b.a) <= by;
+}
+
+}  // namespace
+
+TEST_CASE("faces are where they should be, nearer ones in front, rows from the top") {
+  DrawList list;
+  square(list, 10, 10, 50, 40, 0, flat(kRed));
+  square(list, 30, 20, 60, 60, 1, flat(kGreen));
+  const Image image = rasterizer().draw(list, pixel_camera(80, 64), size(80, 64));
+  CHECK(image.at(5, 5) == kWhite);
+  CHECK(image.at(10, 64 - 1 - 10) == kRed);
+  CHECK(image.at(9, 64 - 1 - 10) == kWhite);
+  CHECK(image.at(29, 64 - 1 - 39) == kRed);
+  CHECK(image.at(30, 64 - 1 - 20) == kGreen);
+  CHECK(image.at(49, 64 - 1 - 30) == kGreen);
+  CHECK(image.at(59, 64 - 1 - 59) == kGreen);
+  CHECK(image.at(60, 64 - 1 - 59) == kWhite);
+}
+
+TEST_CASE("supersampling averages in integers; the background may be transparent") {
+  DrawList list;
+  square(list, 10, 10, 20.5, 20, 0, flat(kRed));
+  RasterOptions o = size(32, 32);
+  Image image = rasterizer().draw(list, pixel_camera(32, 32), o);
+  CHECK(image.at(20, 31 - 15) == Rgba{255, 128, 128});
+  o.background.reset();
+  image = rasterizer().draw(list, pixel_camera(32, 32), o);
+  CHECK(image.at(15, 31 - 15) == kRed);
+  CHECK(image.at(0, 0) == kTransparent);
+  CHECK(near(image.at(20, 31 - 15), {255, 0, 0, 128}));
+  o.background = Rgba{7, 8, 9};
+  CHECK(rasterizer().draw({}, pixel_camera(32, 32), o).at(3, 3) == Rgba{7, 8, 9});
+}
+
+TEST_CASE("edges are drawn with their width, and only those asked for") {
+  for (const int supersample : {1, 2, 4}) {
+    DrawList list;
+    DrawTriangle t = flat(kWhite);
+    t.edges = 7;
+    t.edge_style = list.edge_style({kBlack, 8});
+    square(list, 10, 10, 90, 90, 0, t);
+    const Image image = rasterizer().draw(list, pixel_camera(100, 100), size(100, 100, supersample));
+    CHECK(image.at(11, 50) == kBlack);  // half of the width lies on this face: pixels 10 to 13
+    CHECK(image.at(13, 50) == kBlack);
+    CHECK(near(image.at(15, 50), kWhite));
+    CHECK(image.at(88, 50) == kBlack);
+    CHECK(image.at(50, 12) == kBlack);
+    CHECK(image.at(50, 87) == kBlack);
+    CHECK(image.at(50, 50) == kWhite);  // on the diagonal of the fan: no edge
+    CHECK(image.at(40, 60) == kWhite);
+  }
+}
+
+TEST_CASE("edges fade where they would cover the face") {
+  DrawList list;
+  DrawTriangle t = flat(kGreen);
+  t.edges = 7;
+  t.edge_style = list.edge_style({kBlack, 1});
+  for (int i = 0; i < 40; ++i) square(list, 10 + i, 10, 11 + i, 50, 0, t);
+  const Image image = rasterizer().draw(list, pixel_camera(64, 64), size(64, 64));
+  CHECK(image.at(30, 30) == kGreen);
+}
+
+TEST_CASE("translucent faces blend by depth, whatever their order, also where they cross") {
+  for (const bool swapped : {false, true}) {
+    DrawList list;
+    square(list, 0, 0, 40, 40, -5, flat(kWhite));
+    DrawTriangle red = flat({255, 0, 0, 128}, Layer::translucent),
+                 blue = flat({0, 0, 255, 128}, Layer::translucent);
+    // Two planes that cross at x = 20: left of it red is nearer, right of it blue.
+    const auto add_red = [&] { list.add_polygon({{5, 5, 2}, {35, 5, -2}, {35, 35, -2}, {5, 35, 2}}, red); };
+    const auto add_blue = [&] { list.add_polygon({{5, 5, -2}, {35, 5, 2}, {35, 35, 2}, {5, 35, -2}}, blue); };
+    if (swapped) {
+      add_blue(), add_red();
+    } else {
+      add_red(), add_blue();
+    }
+    const Image image = rasterizer().draw(list, pixel_camera(40, 40), size(40, 40));
+    CHECK(near(image.at(10, 20), {191, 64, 128}));
+    CHECK(near(image.at(30, 20), {128, 64, 191}));
+    CHECK(image.at(2, 2) == kWhite);
+  }
+}
+
+TEST_CASE("what is opaque hides translucent faces behind it") {
+  DrawList list;
+  square(list, 0, 0, 20, 40, 1, flat(kGreen));
+  square(list, 0, 0, 40, 40, 0, flat({255, 0, 0, 128}, Layer::translucent));
+  const Image image = rasterizer().draw(list, pixel_camera(40, 40), size(40, 40));
+  CHECK(image.at(10, 20) == kGreen);
+  CHECK(near(image.at(30, 20), {255, 127, 127}));
+}
+
+TEST_CASE("a nudge settles what lies in one plane") {
+  DrawList list;
+  DrawTriangle lid = flat(kBlue);
+  lid.nudge = 1;
+  list.add_polygon({{0, 0, 0}, {40, 0, 13}, {40, 40, 13}, {0, 40, 0}}, flat(kRed));
+  list.add_polygon({{0, 0, 0}, {20, 0, 6.5}, {40, 0, 13}, {40, 20, 13}, {40, 40, 13}, {0, 40, 0}}, lid);
+  const Image image = rasterizer().draw(list, pixel_camera(40, 40), size(40, 40));
+  for (int y = 1; y < 39; ++y) {
+    for (int x = 1; x < 39; ++x) REQUIRE(image.at(x, y) == kBlue);
+  }
+}
+
+TEST_CASE("lines have their width, round ends, dashes and halos") {
+  DrawList list;
+  DrawLine line;
+  line.points = {{20, 30, 0}, {80, 30, 0}};
+  line.colour = kBlack;
+  line.width = 6;
+  line.halo = kRed;
+  line.halo_width = 3;
+  list.lines.push_back(line);
+  line.halo_width = 0;
+  line.dash = 10;
+  line.points = {{20, 60, 0}, {50, 60, 0}, {80, 60, 0}};
+  list.lines.push_back(line);
+  square(list, 0, 0, 100, 100, -1, flat(kWhite));
+  const Image image = rasterizer().draw(list, pixel_camera(100, 100), size(100, 100));
+  const auto at = [&](int x, int y) { return image.at(x, 99 - y); };
+  CHECK(at(50, 28) == kBlack);
+  CHECK(at(50, 31) == kBlack);
+  CHECK(near(at(50, 34), kRed));
+  CHECK(near(at(50, 25), kRed));
+  CHECK(near(at(50, 37), kWhite));
+  CHECK(near(at(18, 30), kBlack));  // the round end reaches half a width beyond the point
+  CHECK(near(at(15, 30), kRed));
+  CHECK(near(at(12, 30), kWhite));
+  CHECK(near(at(14, 36), kWhite));  // ... and is round
+  for (const int x : {25, 45, 65}) CHECK(near(at(x, 60), kBlack));
+  for (const int x : {35, 55, 75}) CHECK(near(at(x, 60), kWhite));
+}
+
+TEST_CASE("what is on top shines through, ghosted") {
+  DrawList list;
+  square(list, 0, 0, 50, 100, 5, flat(kWhite));  // hides the left half
+  square(list, 0, 0, 100, 100, -5, flat(kWhite));
+  DrawLine line;
+  line.points = {{10, 50, 0}, {90, 50, 0}};
+  line.colour = kRed;
+  line.width = 4;
+  line.layer = Layer::on_top;
+  list.lines.push_back(line);
+  square(list, 10, 70, 90, 90, 0, flat(kBlue, Layer::on_top));
+  list.points.push_back({{30, 20, 0}, kGreen, 8, kTransparent, 0, Layer::on_top, 1});
+  list.points.push_back({{70, 20, 0}, kGreen, 8, kTransparent, 0, Layer::on_top, 1});
+  const Image image = rasterizer().draw(list, pixel_camera(100, 100), size(100, 100));
+  int hidden = 0, seen = 0;
+  for (int x = 12; x < 48; ++x) hidden += near(image.at(x, 49), kRed);
+  for (int x = 52; x < 88; ++x) seen += near(image.at(x, 49), kRed);
+  CHECK(seen == 36);
+  CHECK(hidden > 6);
+  CHECK(hidden < 30);
+  CHECK(image.at(70, 20) == kBlue);
+  const Rgba ghost = image.at(30, 20);
+  CHECK(ghost.r > 100);
+  CHECK(ghost.r < 200);
+  CHECK(ghost.b == 255);
+  CHECK(near(image.at(70, 79), kGreen));
+  CHECK(near(image.at(30, 79), kWhite));  // a ring
+  CHECK(near(image.at(30, 79 - 6), kGreen, 90));
+}
+
+TEST_CASE("fills follow the even-odd rule, with holes and in any order of segments") {
+  DrawList list;
+  DrawFill fill;
+  fill.colour = kBlue;
+  fill.id = 7;
+  const auto loop = [&](std::vector<Vector3d> p) {
+    for (std::size_t i = 0; i < p.size(); ++i) fill.segments.push_back({p[i], p[(i + 1) % p.size()]});
+  };
+  loop({{10, 10, 0}, {90, 10, 0}, {90, 90, 0}, {50, 55, 0}, {10, 90, 0}});  // not convex
+  loop({{30, 20, 0}, {60, 20, 0}, {60, 40, 0}, {30, 40, 0}});               // a hole
+  loop({{40, 25, 0}, {50, 25, 0}, {50, 35, 0}, {40, 35, 0}});               // an island in it
+  std::swap(fill.segments[1], fill.segments[6]);
+  std::swap(fill.segments[2][0], fill.segments[2][1]);
+  list.fills.push_back(fill);
+  const Image image = rasterizer().draw(list, pixel_camera(100, 100), size(100, 100));
+  const auto at = [&](int x, int y) { return image.at(x, 99 - y); };
+  CHECK(at(15, 50) == kBlue);
+  CHECK(at(85, 80) == kBlue);
+  CHECK(at(50, 70) == kWhite);
+  CHECK(at(32, 30) == kWhite);
+  CHECK(at(45, 30) == kBlue);
+  CHECK(at(70, 30) == kBlue);
+  CHECK(at(5, 5) == kWhite);
+  const IdImage ids = rasterizer().ids(list, pixel_camera(100, 100), 100, 100);
+  CHECK(ids.at(45, 99 - 30) == 7);
+  CHECK(ids.at(32, 99 - 30) == kNoId);
+}
+
+TEST_CASE("cells that share segments leave no gap between them") {
+  DrawList list;
+  const std::vector<Vector3d> zigzag = {{50.3, 5, 0}, {42.7, 31.4, 0}, {61.2, 55.5, 0}, {48.8, 95, 0}};
+  for (const bool left : {true, false}) {
+    DrawFill fill;
+    fill.colour = left ? kBlue : kGreen;
+    std::vector<Vector3d> p = zigzag;
+    const double x = left ? 5 : 95;
+    p.emplace_back(x, 95, 0);
+    p.emplace_back(x, 5, 0);
+    for (std::size_t i = 0; i < p.size(); ++i) fill.segments.push_back({p[i], p[(i + 1) % p.size()]});
+    list.fills.push_back(fill);
+  }
+  RasterOptions o = size(100, 100);
+  o.background = kRed;
+  const Image image = rasterizer().draw(list, pixel_camera(100, 100), o);
+  for (int y = 10; y < 90; ++y) {
+    for (int x = 10; x < 90; ++x) REQUIRE(image.at(x, y).r == 0);
+  }
+}
+
+TEST_CASE("ids name the face seen at each pixel") {
+  DrawList list;
+  DrawTriangle t;
+  test::add(list, test::icosphere(3), t, 1000);
+  const auto points = extent_points(list);
+  const Camera camera = fit_camera(points, 300, 200);
+  const Projection projection(camera, 300, 200, bounds(list));
+  const IdImage ids = rasterizer().ids(list, camera, 300, 200);
+  int facing = 0, found = 0;
+  for (const DrawTriangle& f : list.triangles) {
+    const Vector3d middle = (f.x[0] + f.x[1] + f.x[2]) / 3;
+    const double cosine =
+        (f.x[1] - f.x[0]).cross(f.x[2] - f.x[0]).normalized().dot(projection.towards_viewer(middle));
+    if (cosine < 0.5) continue;
+    ++facing;
+    const Eigen::Vector2d at = *projection.to_pixel(middle);
+    found += ids.at(static_cast<int>(at.x()), static_cast<int>(at.y())) == f.id;
+  }
+  CHECK(facing > 200);
+  CHECK(found == facing);
+  CHECK(ids.at(0, 0) == kNoId);
+}
+
+TEST_CASE("shading is flat, brightest towards the light, the same on both sides") {
+  const Camera camera = pixel_camera(10, 10);
+  const Projection projection(camera, 10, 10, Eigen::AlignedBox3d(Vector3d(0, 0, -1), Vector3d(10, 10, 1)));
+  const Lighting lighting;
+  const Rgba c{100, 150, 200};
+  const auto lit = [&](Vector3d n) { return luma(shade(c, n.normalized(), projection.axes(), lighting)); };
+  CHECK(lit({-0.3, 0.6, 1}) > lit({0, 0, 1}));
+  CHECK(lit({0, 0, 1}) > lit({0.8, -0.9, 0.2}));
+  CHECK(lit({0, 0, 1}) == lit({0, 0, -1}));
+  CHECK(lit({1, -1, 0.01}) > 0.3 * luma(c));
+}
+
+TEST_CASE("the same picture twice is the same to the byte, also after others and by another rasterizer") {
+  DrawList list;
+  DrawTriangle t;
+  t.edges = 7;
+  test::add(list, test::icosphere(3), t);
+  t.layer = Layer::translucent;
+  t.colour = {0, 90, 200, 70};
+  test::add(list, test::icosphere(1, 1.3), t);
+  const Camera camera = fit_camera(extent_points(list), 320, 240);
+  const Image first = rasterizer().draw(list, camera, size(320, 240));
+  rasterizer().draw(list, camera, size(111, 97, 1));
+  CHECK(rasterizer().draw(list, camera, size(320, 240)) == first);
+  Rasterizer other;
+  CHECK(other.draw(list, camera, size(320, 240)) == first);
+  CHECK(rasterizer().draw(list, camera, size(320, 240)) == first);
+}
+
+TEST_CASE("the number of rasterizer threads does not change a byte") {
+  std::set<std::string> outputs;
+  for (const char* threads : {"0", "1", "2", "5"}) {
+    const std::string command = std::string("LP_NUM_THREADS=") + threads + " '" + LRB_RENDER_HASH + "'";
+    std::FILE* pipe = popen(command.c_str(), "r");
+    REQUIRE(pipe != nullptr);
+    std::array<char, 512> buffer{};
+    std::string output;
+    while (std::fgets(buffer.data(), buffer.size(), pipe) != nullptr) output += buffer.data();
+    REQUIRE(pclose(pipe) == 0);
+    CHECK(output.size() > 60);
+    outputs.insert(output);
+  }
+  CHECK(outputs.size() == 1);
+}
+
+TEST_CASE("labels are written at their points") {
+  if (!test::have_font()) return;
+  DrawList list;
+  square(list, 0, 0, 200, 100, 0, flat({60, 60, 160}));
+  list.labels.push_back({{100, 50, 0}, "label", kBlack, 20, 0, -20, kWhite});
+  RasterOptions o = size(200, 100);
+  const Image with = rasterizer().draw(list, pixel_camera(200, 100), o);
+  o.labels = false;
+  const Image without = rasterizer().draw(list, pixel_camera(200, 100), o);
+  Eigen::AlignedBox2d changed;
+  for (int y = 0; y < 100; ++y) {
+    for (int x = 0; x < 200; ++x) {
+      if (with.at(x, y) != without.at(x, y)) changed.extend(Eigen::Vector2d(x, y));
+    }
+  }
+  CHECK(changed.center().x() == doctest::Approx(100).epsilon(0.03));
+  CHECK(changed.center().y() == doctest::Approx(30).epsilon(0.15));
+}
+
+TEST_CASE("impossible sizes are refused") {
+  CHECK_THROWS_AS(rasterizer().draw({}, pixel_camera(8, 8), size(0, 8)), InputError);
+  CHECK_THROWS_AS(rasterizer().draw({}, pixel_camera(8, 8), size(20000, 8)), InputError);
+  CHECK_THROWS_AS(rasterizer().draw({}, pixel_camera(8, 8), size(8, 8, 9)), InputError);
+}
+
+TEST_CASE("the environment is looked at before Mesa sees it") {
+  using Level = Finding::Level;
+  bool context = false;
+  for (const Finding& f : check_rendering()) {
+    if (f.what == "off-screen OpenGL")
+      context = f.level == Level::ok && f.detail.find("llvmpipe") != std::string::npos;
+  }
+  CHECK(context);
+  setenv("LP_NATIVE_VECTOR_WIDTH", "512", 1);
+  CHECK_THROWS_AS(Rasterizer(), EnvironmentError);
+  unsetenv("LP_NATIVE_VECTOR_WIDTH");
+  setenv("GALLIUM_DRIVER", "nonsense", 1);
+  REQUIRE(check_gl_environment().size() == 1);
+  CHECK(check_gl_environment()[0].level == Level::error);
+  CHECK_THROWS_AS(Rasterizer(), EnvironmentError);
+  unsetenv("GALLIUM_DRIVER");
+}

@@ -1,0 +1,167 @@
+#include "trace/cursor.hpp"
+
+#include <algorithm>
+#include <random>
+#include <stdexcept>
+
+#include <doctest/doctest.h>
+
+#include "engine/error.hpp"
+#include "tests/trace/runs.hpp"
+
+using namespace lrb;
+using namespace lrb::trace;
+
+namespace {
+
+void check_state(const Cursor& cursor, const runs::Run& run) {
+  CAPTURE(cursor.position());
+  const runs::Snapshot& real = run.after[cursor.position()];
+  CHECK(cursor.wrapper(Side::a).boundary() == real.a);
+  CHECK(cursor.wrapper(Side::b).boundary() == real.b);
+  CHECK(cursor.boundary_size(Side::a) == real.a.size());
+  CHECK(cursor.boundary_size(Side::b) == real.b.size());
+}
+
+void check_run(const LrbRep& a, const LrbRep& b, const std::vector<Eigen::Vector3d>& poses,
+               WrapperMode mode) {
+  RecorderSettings settings;
+  settings.request.wrapper = mode;
+  const runs::Run run = runs::record(a, b, poses, settings);
+  REQUIRE(run.after.size() == run.trace.events.size());
+  const auto refinements = std::count_if(run.trace.events.begin(), run.trace.events.end(),
+                                         [](const Event& e) { return e.kind == EventKind::refine; });
+  REQUIRE(refinements >= 3);  // else this would test little
+  Cursor cursor(run.trace, a, b);
+  CHECK(cursor.at_start());
+  EventId event = 0;
+  for (; cursor.next(); ++event) {
+    REQUIRE(cursor.position() == event);
+    check_state(cursor, run);
+  }
+  CHECK(event == run.trace.events.size());
+  for (; cursor.previous() && !cursor.at_start();) check_state(cursor, run);
+  CHECK(cursor.at_start());
+  std::mt19937 random(1);
+  for (int i = 0; i < 300; ++i) {
+    cursor.seek(static_cast<EventId>(random() % run.trace.events.size()));
+    check_state(cursor, run);
+  }
+}
+
+}  // namespace
+
+TEST_CASE("a replay equals the wrappers that were there, after every event, in any order") {
+  const LrbRep plate(shapes::notched_plate()), box(shapes::dented_box());
+  for (const WrapperMode mode : {WrapperMode::regularised, WrapperMode::unregularised}) {
+    CAPTURE(static_cast<int>(mode));
+    check_run(plate, plate, runs::kPlatePoses, mode);
+    check_run(box, box, runs::kBoxPoses, mode);
+  }
+}
+
+TEST_CASE("the cursor knows its step, pose, pair and regions") {
+  const LrbRep box(shapes::dented_box());
+  const runs::Run run = runs::record(box, box, runs::kBoxPoses);
+  Cursor cursor(run.trace, box, box);
+  CHECK(cursor.step() == nullptr);
+  CHECK_FALSE(cursor.pair_under_test());
+  CHECK(cursor.refined().empty());
+  std::size_t refinements = 0;
+  while (cursor.next()) {
+    const std::size_t step = run.trace.step_of(cursor.position());
+    REQUIRE(cursor.step() == &run.trace.steps[step]);
+    CHECK(cursor.step_number() == step);
+    CHECK(equal(cursor.pose(Side::b), run.trace.steps[step].pose_b));
+    const Event& e = cursor.event();
+    const auto pair = cursor.pair_under_test();
+    if (e.kind == EventKind::face_test) {
+      REQUIRE(pair);
+      CHECK(pair->event == cursor.position());
+      CHECK(pair->simplex_a == e.a);
+      CHECK(pair->face_b == box.face_of_simplex(e.b));
+      CHECK(pair->meet == e.meet);
+    }
+    if (e.kind != EventKind::refine) {
+      CHECK(cursor.refined().empty());
+      continue;
+    }
+    ++refinements;
+    REQUIRE(pair);
+    CHECK(pair->event == e.cause);
+    const FaceId hit = e.side == Side::a ? pair->face_a : pair->face_b;
+    CHECK(box.inner_cell(hit) == e.a);
+    const std::vector<RefinedRegion> regions = cursor.refined();
+    REQUIRE_FALSE(regions.empty());
+    CHECK(regions.back().region == e.a);
+    CHECK(regions.back().side == e.side);
+    for (const RefinedRegion& r : regions) CHECK(run.trace.events[r.event].cause == e.cause);
+    CHECK(regions.size() == cursor.position() - e.cause);
+  }
+  CHECK(refinements > 0);
+  cursor.seek(kNull);
+  std::size_t found = 0;
+  while (cursor.next(EventKind::refine)) {
+    CHECK(cursor.event().kind == EventKind::refine);
+    ++found;
+  }
+  CHECK(found == refinements);
+}
+
+TEST_CASE("one body alone: refining and coarsening") {
+  const LrbRep plate(shapes::notched_plate());
+  Recorder recorder(plate, RecorderSettings{});
+  recorder.begin_step(0, {});
+  for (const RegionId r : {2u, 1u, 0u}) recorder.refine(Side::a, r, 3);
+  recorder.coarsen(Side::a, 0, 2);
+  const Trace t = recorder.take();
+  REQUIRE(t.header.bodies.size() == 1);
+  Cursor cursor(t, plate);
+  std::vector<std::size_t> sizes;
+  while (cursor.next()) sizes.push_back(cursor.wrapper(Side::a).boundary().size());
+  CHECK(sizes == std::vector<std::size_t>{5, 6, 8, 9, 8});
+  cursor.seek(3);
+  std::vector<FaceId> real(9);
+  for (FaceId f = 0; f < 9; ++f) real[f] = f;
+  CHECK(cursor.wrapper(Side::a).boundary() == real);
+}
+
+TEST_CASE("a replay refuses another body and another number of bodies") {
+  const LrbRep plate(shapes::notched_plate());
+  LrbData moved = shapes::notched_plate();
+  moved.vertices[5].y() += 0.25;
+  const LrbRep other(std::move(moved));
+  const Trace t = runs::record(plate, plate, runs::kPlatePoses).trace;
+  CHECK_NOTHROW(Cursor(t, plate, plate));
+  CHECK_THROWS_WITH_AS(Cursor(t, plate, other), doctest::Contains("body B was recorded as"), InputError);
+  CHECK_THROWS_WITH_AS(Cursor(t, other, plate), doctest::Contains("body A was recorded as"), InputError);
+  CHECK_THROWS_AS(Cursor(t, plate), InputError);
+}
+
+TEST_CASE("a replay notices refinements that are not those recorded") {
+  const LrbRep plate(shapes::notched_plate());
+  const runs::Run run = runs::record(plate, plate, runs::kPlatePoses);
+  Trace t = run.trace;
+  const auto refinement = std::find_if(t.events.begin(), t.events.end(),
+                                       [](const Event& e) { return e.kind == EventKind::refine; });
+  REQUIRE(refinement != t.events.end());
+  refinement->boundary += 1;
+  Cursor cursor(t, plate, plate);
+  const auto event = static_cast<EventId>(refinement - t.events.begin());
+  CHECK_THROWS_WITH_AS(cursor.seek(event), doctest::Contains("the trace is damaged"), InputError);
+  CHECK(cursor.at_start());
+  cursor.seek(event - 1);
+  check_state(cursor, run);
+  CHECK_THROWS_AS(cursor.seek(static_cast<EventId>(t.events.size())), std::out_of_range);
+}
+
+TEST_CASE("a truncated trace replays as far as it goes") {
+  const LrbRep box(shapes::dented_box());
+  RecorderSettings settings;
+  settings.event_cap = 40;
+  const runs::Run run = runs::record(box, box, runs::kBoxPoses, settings);
+  REQUIRE(run.trace.truncated());
+  Cursor cursor(run.trace, box, box);
+  while (cursor.next()) check_state(cursor, run);
+  CHECK(cursor.position() == 39);
+}

@@ -1,0 +1,114 @@
+#include "trace/divergence.hpp"
+
+#include <utility>
+
+#include <doctest/doctest.h>
+
+#include "tests/trace/runs.hpp"
+
+using namespace lrb;
+using namespace lrb::trace;
+
+namespace {
+
+Trace box_run(const std::vector<Eigen::Vector3d>& poses = runs::kBoxPoses, Clock clock = Clock::event) {
+  static const LrbRep box(shapes::dented_box());
+  RecorderSettings settings;
+  settings.clock = clock;
+  return runs::record(box, box, poses, settings).trace;
+}
+
+EventId first_of(const Trace& t, EventKind kind) {
+  for (EventId e = 0; e < t.events.size(); ++e)
+    if (t.events[e].kind == kind) return e;
+  FAIL("no such event");
+  return kNull;
+}
+
+std::string difference(const Trace& x, const Trace& y) {
+  const auto d = first_divergence(x, y);
+  return d ? d->message() : "none";
+}
+
+}  // namespace
+
+TEST_CASE("equal runs do not diverge, whatever the clock or the names") {
+  CHECK(difference(box_run(), box_run()) == "none");
+  Trace other = box_run(runs::kBoxPoses, Clock::wall);
+  other.header.scenario = "renamed";
+  other.header.bodies[0].source = "elsewhere.obj";
+  other.header.lrbscope = "9.9";
+  CHECK(difference(box_run(), other) == "none");
+}
+
+TEST_CASE("the first divergent event is named, with the field and both values") {
+  const Trace x = box_run();
+  Trace y = x;
+  const EventId contact = first_of(x, EventKind::contact);
+  y.events[contact].meet = exact::Meet::disjoint;
+  y.events[contact + 3].a += 1;
+  auto d = first_divergence(x, y);
+  REQUIRE(d);
+  CHECK(d->event == contact);
+  CHECK(d->step == x.step_of(contact));
+  CHECK(d->what == "meet");
+  CHECK(d->expected == "cross");
+  CHECK(d->actual == "disjoint");
+
+  y = x;
+  const EventId refine = first_of(x, EventKind::refine);
+  y.events[refine].a ^= 1;
+  d = first_divergence(x, y);
+  REQUIRE(d);
+  CHECK(d->message() == "event " + std::to_string(refine) + " (step " + std::to_string(*d->step) +
+                            "): region: expected " + std::to_string(x.events[refine].a) + ", found " +
+                            std::to_string(y.events[refine].a));
+}
+
+TEST_CASE("two events swapped, one lost, one too many") {
+  const Trace x = box_run();
+  const EventId contact = first_of(x, EventKind::contact);
+  Trace y = x;
+  std::swap(y.events[contact], y.events[contact - 1]);
+  auto d = first_divergence(x, y);
+  REQUIRE(d);
+  CHECK(d->event == contact - 1);
+  CHECK(d->what == "kind");
+
+  const LrbRep plate(shapes::notched_plate());
+  const auto record = [&](int tests) {
+    Recorder recorder(plate, plate, {});
+    recorder.begin_step(0, {}, {});
+    for (int i = 0; i < tests; ++i) recorder.face_test(0, 0, exact::Meet::disjoint, 0, 0);
+    return recorder.take();
+  };
+  d = first_divergence(record(3), record(2));
+  REQUIRE(d);
+  CHECK(d->event == 3);
+  CHECK(d->what == "event");
+  CHECK(d->actual == "the end of the step");
+  d = first_divergence(record(2), record(3));
+  REQUIRE(d);
+  CHECK(d->event == 3);
+  CHECK(d->expected == "the end of the step");
+}
+
+TEST_CASE("what is around the events is compared too") {
+  const Trace x = box_run();
+  Trace y = x;
+  y.header.bodies[1].hash ^= 1;
+  CHECK(difference(x, y).starts_with("run: hash of body B: expected "));
+  y = x;
+  y.header.request.recursion = Recursion::paper;
+  CHECK(difference(x, y) == "run: request: recursion: expected complete, found paper");
+  y = x;
+  y.steps[1].pose_b.t.x() += 1e-16 + 1e-15;
+  CHECK(difference(x, y).starts_with("step 1: pose of B: expected ("));
+  y = x;
+  y.steps[2].result.fingerprint ^= 1;
+  CHECK(difference(x, y).starts_with("step 2: fingerprint of the pairs"));
+  y = x;
+  y.steps[0].result.counters.box_tests += 1;
+  CHECK(difference(x, y) == "step 0: counter box_tests: expected 0, found 1");
+  CHECK(difference(x, box_run({runs::kBoxPoses[0]})) == "run: number of steps: expected 3, found 1");
+}

@@ -1,0 +1,174 @@
+#include <limits>
+#include <stdexcept>
+
+#include <doctest/doctest.h>
+
+#include "engine/error.hpp"
+#include "tests/trace/runs.hpp"
+
+using namespace lrb;
+using namespace lrb::trace;
+using exact::Meet;
+
+namespace {
+
+const LrbRep& plate() {
+  static const LrbRep rep(shapes::notched_plate());
+  return rep;
+}
+
+}  // namespace
+
+TEST_CASE("the recorder offers what NullProbe offers") {
+  Recorder recorder(plate(), plate(), {});
+  recorder.begin_step(0, {}, {});
+  recorder.face_test(1, 2, Meet::disjoint, 3, 4);
+  recorder.refine(Side::b, 2, 5);
+  recorder.contact(1, 2, Meet::touch);
+  const Trace t = recorder.take();
+  REQUIRE(t.events.size() == 4);
+  CHECK(t.events[0].kind == EventKind::step);
+  const Event test{.a = 1, .b = 2, .depth_a = 3, .depth_b = 4, .kind = EventKind::face_test};
+  CHECK(t.events[1] == test);
+  CHECK(t.events[2].kind == EventKind::refine);
+  CHECK(t.events[2].side == Side::b);
+  CHECK(t.events[2].a == 2);
+  CHECK(t.events[2].b == 5);
+  CHECK(t.events[3].kind == EventKind::contact);
+  CHECK(t.events[3].meet == Meet::touch);
+}
+
+TEST_CASE("a refinement is caused by the face test that hit before it, and by no other") {
+  Recorder recorder(plate(), plate(), {});
+  recorder.begin_step(0, {}, {});
+  recorder.refine(Side::a, 2, 3);                    // 1: nothing before it
+  recorder.face_test(11, 11, Meet::cross, 0, 0);     // 2
+  recorder.refine(Side::b, 2, 3);                    // 3
+  recorder.contact(0, 0, Meet::cross);               // 4
+  recorder.refine(Side::a, 1, 3);                    // 5
+  recorder.face_test(11, 12, Meet::disjoint, 0, 0);  // 6
+  recorder.refine(Side::b, 1, 3);                    // 7: the last test missed
+  recorder.begin_step(1, {}, {});                    // 8
+  recorder.refine(Side::a, 2, 3);                    // 9: the hit was in another step
+  const Trace t = recorder.take();
+  const EventId expected[] = {kNull, kNull, kNull, 2, 2, 2, kNull, kNull, kNull, kNull};
+  REQUIRE(t.events.size() == std::size(expected));
+  for (EventId e = 0; e < t.events.size(); ++e) {
+    CAPTURE(e);
+    if (t.events[e].kind != EventKind::face_test) CHECK(t.events[e].cause == expected[e]);
+  }
+}
+
+TEST_CASE("a face test is caused by the refinement that brought in the later of its faces") {
+  Recorder recorder(plate(), plate(), {});
+  recorder.begin_step(0, {}, {});
+  recorder.face_test(11, 0, Meet::cross, 0, 0);  // 1: lid of region 2, seen from outside
+  recorder.refine(Side::a, 2, 3);                // 2: brings in faces 2, 7, 10
+  recorder.face_test(10, 0, Meet::cross, 1, 0);  // 3: lid of region 1
+  recorder.refine(Side::a, 1, 3);                // 4
+  recorder.refine(Side::b, 2, 3);                // 5
+  recorder.face_test(3, 0, Meet::touch, 2, 0);   // 6: A's face came with 4, B's was there
+  recorder.face_test(2, 2, Meet::touch, 1, 1);   // 7: 2 and 5
+  recorder.face_test(0, 7, Meet::touch, 0, 1);   // 8: only B's
+  recorder.refine(Side::b, 2, 0);                // 9: another lid of it, no new faces
+  recorder.face_test(0, 7, Meet::touch, 0, 1);   // 10
+  recorder.begin_step(1, {}, {});                // 11
+  recorder.face_test(3, 7, Meet::touch, 2, 1);   // 12: nothing was refined in this step
+  const Trace t = recorder.take();
+  CHECK(t.events[1].cause == kNull);
+  CHECK(t.events[3].cause == 2);
+  CHECK(t.events[6].cause == 4);
+  CHECK(t.events[7].cause == 5);
+  CHECK(t.events[8].cause == 5);
+  CHECK(t.events[10].cause == 5);
+  CHECK(t.events[12].cause == kNull);
+}
+
+TEST_CASE("refinements carry the size of the wrapper they left") {
+  Recorder recorder(plate(), plate(), {});
+  recorder.begin_step(0, {}, {});
+  recorder.refine(Side::a, 2, 3);  // 5 outer faces: two lids go, three come
+  recorder.refine(Side::a, 1, 3);  // one goes, three come
+  recorder.refine(Side::a, 1, 3);  // again: nothing
+  recorder.coarsen(Side::a, 1, 3);
+  recorder.begin_step(1, {}, {});
+  recorder.refine(Side::b, 0, 2);  // out of order: its lid was not on the boundary
+  const Trace t = recorder.take();
+  REQUIRE(plate().outermost_faces().size() == 5);
+  CHECK(t.events[1].boundary == 6);
+  CHECK(t.events[2].boundary == 8);
+  CHECK(t.events[3].boundary == 8);
+  CHECK(t.events[4].boundary == 6);
+  CHECK(t.events[6].boundary == 8);  // 5, and the hole that region 0 leaves: its lid and its floor
+  CHECK(t.header.bodies[0].outer_faces == 5);
+}
+
+TEST_CASE("beyond the cap, events are counted and not stored") {
+  const LrbRep box(shapes::dented_box());
+  const runs::Run whole = runs::record(box, box, runs::kBoxPoses);
+  REQUIRE_FALSE(whole.trace.truncated());
+  for (const std::uint32_t cap : {0u, 1u, 7u, static_cast<std::uint32_t>(whole.trace.steps[2].first_event),
+                                  static_cast<std::uint32_t>(whole.trace.events.size()) - 1,
+                                  static_cast<std::uint32_t>(whole.trace.events.size())}) {
+    CAPTURE(cap);
+    RecorderSettings settings;
+    settings.event_cap = cap;
+    const Trace cut = runs::record(box, box, runs::kBoxPoses, settings).trace;
+    CHECK(cut.events.size() == cap);
+    CHECK(cut.events_seen == whole.trace.events_seen);
+    CHECK(cut.truncated() == (cap < whole.trace.events.size()));
+    CHECK(std::equal(cut.events.begin(), cut.events.end(), whole.trace.events.begin()));
+    REQUIRE(cut.steps.size() == 3);
+    for (std::size_t s = 0; s < 3; ++s) {
+      CHECK(cut.steps[s].events_seen == whole.trace.steps[s].events_seen);
+      CHECK(equal(cut.steps[s].result, whole.trace.steps[s].result));
+    }
+    CHECK_NOTHROW(check_trace(cut, "cut"));
+  }
+}
+
+TEST_CASE("the wall clock gives every event its own, later time") {
+  RecorderSettings settings;
+  settings.clock = Clock::wall;
+  Recorder recorder(plate(), plate(), settings);
+  recorder.begin_step(0, {}, {});
+  for (int i = 0; i < 1000; ++i) recorder.face_test(0, 0, Meet::disjoint, 0, 0);
+  const Trace t = recorder.take();
+  REQUIRE(t.wall_ns.size() == 1001);
+  CHECK(std::adjacent_find(t.wall_ns.begin(), t.wall_ns.end(), std::greater_equal<>()) == t.wall_ns.end());
+}
+
+TEST_CASE("depths beyond 16 bits are cut, not wrapped") {
+  Recorder recorder(plate(), plate(), {});
+  recorder.begin_step(0, {}, {});
+  recorder.face_test(0, 0, Meet::disjoint, 65534, 65536);
+  const Trace t = recorder.take();
+  CHECK(t.events[1].depth_a == 65534);
+  CHECK(t.events[1].depth_b == 65535);
+}
+
+TEST_CASE("misuse of the recorder is told") {
+  Recorder recorder(plate(), plate(), {});
+  Pose nowhere;
+  nowhere.t.x() = std::numeric_limits<double>::quiet_NaN();
+  CHECK_THROWS_AS(recorder.begin_step(0, nowhere, {}), InputError);
+  CHECK_THROWS_AS(recorder.end_step({}), std::logic_error);
+  recorder.face_test(0, 0, Meet::disjoint, 0, 0);
+  CHECK_THROWS_AS(recorder.take(), std::logic_error);
+  Recorder other(plate(), plate(), {});
+  other.begin_step(3, {}, {});
+  CHECK_THROWS_AS(other.begin_step(3, {}, {}), std::logic_error);
+}
+
+TEST_CASE("a recorder that was emptied begins anew") {
+  Recorder recorder(plate(), plate(), {});
+  const auto run = [&] {
+    recorder.begin_step(5, {}, {});
+    recorder.face_test(11, 0, Meet::cross, 0, 0);
+    recorder.refine(Side::a, 2, 3);
+    recorder.face_test(10, 0, Meet::cross, 1, 0);
+    return recorder.take();
+  };
+  const Trace first = run();
+  CHECK(first == run());
+}

@@ -1,0 +1,122 @@
+/// The schema in the repository against traces and broken traces, by an independent validator.
+
+#include <fstream>
+#include <functional>
+
+#include <doctest/doctest.h>
+#include <nlohmann/json.hpp>
+#include <valijson/adapters/nlohmann_json_adapter.hpp>
+#include <valijson/schema.hpp>
+#include <valijson/schema_parser.hpp>
+#include <valijson/validator.hpp>
+
+#include "tests/trace/runs.hpp"
+#include "trace/trace_json.hpp"
+
+using namespace lrb;
+using namespace lrb::trace;
+using Json = nlohmann::json;
+
+namespace {
+
+const valijson::Schema& schema() {
+  static const auto* parsed = [] {
+    std::ifstream file(LRB_TRACE_SCHEMA);
+    const Json json = Json::parse(file);
+    auto* out = new valijson::Schema;
+    valijson::SchemaParser parser(valijson::SchemaParser::kDraft7);
+    parser.populateSchema(valijson::adapters::NlohmannJsonAdapter(json), *out);
+    return out;
+  }();
+  return *parsed;
+}
+
+std::string complaint(const Json& document) {
+  valijson::Validator validator;
+  valijson::ValidationResults results;
+  if (validator.validate(schema(), valijson::adapters::NlohmannJsonAdapter(document), &results)) return "";
+  std::string out;
+  valijson::ValidationResults::Error error;
+  while (results.popError(error)) {
+    for (const std::string& part : error.context) out += part;
+    out += ": " + error.description + "\n";
+  }
+  return out;
+}
+
+Json box_run(Clock clock) {
+  static const LrbRep box(shapes::dented_box());
+  RecorderSettings settings;
+  settings.clock = clock;
+  return Json::parse(trace_to_json(runs::record(box, box, runs::kBoxPoses, settings).trace));
+}
+
+}  // namespace
+
+TEST_CASE("traces fulfil the schema") {
+  CHECK(complaint(box_run(Clock::event)) == "");
+  CHECK(complaint(box_run(Clock::wall)) == "");
+  const LrbRep plate(shapes::notched_plate());
+  RecorderSettings settings;
+  settings.event_cap = 30;
+  CHECK(complaint(
+            Json::parse(trace_to_json(runs::record(plate, plate, runs::kPlatePoses, settings).trace))) == "");
+  Recorder alone(plate, RecorderSettings{});
+  CHECK(complaint(Json::parse(trace_to_json(alone.take()))) == "");
+  alone.begin_step(0, {});
+  alone.refine(Side::a, 2, 3);
+  alone.coarsen(Side::a, 2, 3);
+  CHECK(complaint(Json::parse(trace_to_json(alone.take()))) == "");
+}
+
+TEST_CASE("broken traces do not fulfil the schema") {
+  const Json good = box_run(Clock::event);
+  const auto find = [](Json& document, const char* name, const char* phase) -> Json& {
+    for (Json& e : document["traceEvents"])
+      if (e["name"] == name && e["ph"] == phase) return e;
+    FAIL("no event " << name);
+    return document;
+  };
+  const auto test = [&](Json& d) -> Json& { return find(d, "face test", "X"); };
+  const auto refine = [&](Json& d) -> Json& { return find(d, "refine", "X"); };
+  const std::pair<const char*, std::function<void(Json&)>> breaks[] = {
+      {"no metadata", [](Json& d) { d.erase("metadata"); }},
+      {"no events", [](Json& d) { d.erase("traceEvents"); }},
+      {"another member", [](Json& d) { d["displayTimeUnit"] = "ns"; }},
+      {"a slice without duration", [&](Json& d) { test(d).erase("dur"); }},
+      {"a duration of 0", [&](Json& d) { test(d)["dur"] = 0; }},
+      {"a counter with a duration", [&](Json& d) { find(d, "work", "C")["dur"] = 1; }},
+      {"a counter of text", [&](Json& d) { find(d, "work", "C")["args"]["face tests"] = "3"; }},
+      {"a flow without id", [&](Json& d) { find(d, "cause", "s").erase("id"); }},
+      {"a flow without bp", [&](Json& d) { find(d, "cause", "f").erase("bp"); }},
+      {"no time", [&](Json& d) { test(d).erase("ts"); }},
+      {"no category", [&](Json& d) { test(d).erase("cat"); }},
+      {"another phase", [&](Json& d) { test(d)["ph"] = "B"; }},
+      {"an unknown kind", [&](Json& d) { test(d)["name"] = "box test"; }},
+      {"no number", [&](Json& d) { test(d)["args"].erase("event"); }},
+      {"an unknown meet", [&](Json& d) { test(d)["args"]["meet"] = "yes"; }},
+      {"a negative simplex", [&](Json& d) { test(d)["args"]["simplex of A"] = -1; }},
+      {"a fractional depth", [&](Json& d) { test(d)["args"]["depth of A"] = 0.5; }},
+      {"a depth beyond 16 bits", [&](Json& d) { test(d)["args"]["depth of B"] = 65536; }},
+      {"a side C", [&](Json& d) { refine(d)["args"]["side"] = "C"; }},
+      {"no region", [&](Json& d) { refine(d)["args"].erase("region"); }},
+      {"an unknown argument", [&](Json& d) { refine(d)["args"]["colour"] = 1; }},
+      {"another format", [](Json& d) { d["metadata"]["format"] = "other"; }},
+      {"a newer version", [](Json& d) { d["metadata"]["version"] = 2; }},
+      {"a short hash", [](Json& d) { d["metadata"]["bodies"][0]["hash"] = "abc"; }},
+      {"no body", [](Json& d) { d["metadata"]["bodies"] = Json::array(); }},
+      {"a fourth dimension", [](Json& d) { d["metadata"]["bodies"][1]["dim"] = 4; }},
+      {"a pose of 11 numbers", [](Json& d) { d["metadata"]["steps"][0]["pose_b"].erase(0); }},
+      {"a pose with null", [](Json& d) { d["metadata"]["steps"][0]["pose_a"][3] = nullptr; }},
+      {"an unknown relation", [](Json& d) { d["metadata"]["steps"][0]["result"]["relation"] = "near"; }},
+      {"no counters", [](Json& d) { d["metadata"]["steps"][0]["result"].erase("counters"); }},
+      {"an unknown clock", [](Json& d) { d["metadata"]["clock"] = "sun"; }},
+  };
+  REQUIRE(complaint(good) == "");
+  for (const auto& [name, damage] : breaks) {
+    CAPTURE(name);
+    Json bad = good;
+    damage(bad);
+    CHECK(complaint(bad) != "");
+  }
+}

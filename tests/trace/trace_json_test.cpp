@@ -1,0 +1,362 @@
+#include "trace/trace_json.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <limits>
+#include <map>
+#include <random>
+#include <set>
+
+#include <doctest/doctest.h>
+#include <nlohmann/json.hpp>
+
+#include "engine/mesh/atomic_file.hpp"
+#include "engine/error.hpp"
+#include "tests/trace/runs.hpp"
+
+using namespace lrb;
+using namespace lrb::trace;
+using Json = nlohmann::ordered_json;
+using namespace std::string_literals;
+namespace fs = std::filesystem;
+
+namespace {
+
+const LrbRep& plate() {
+  static const LrbRep rep(shapes::notched_plate());
+  return rep;
+}
+const LrbRep& box() {
+  static const LrbRep rep(shapes::dented_box());
+  return rep;
+}
+
+Trace box_run(Clock clock = Clock::event, WrapperMode mode = WrapperMode::regularised) {
+  RecorderSettings settings;
+  settings.clock = clock;
+  settings.request.wrapper = mode;
+  return runs::record(box(), box(), runs::kBoxPoses, settings).trace;
+}
+
+/// A folder of its own that goes away.
+struct TempFolder {
+  TempFolder() : path(fs::temp_directory_path() / ("lrb_trace_" + std::to_string(std::random_device{}()))) {
+    fs::create_directory(path);
+  }
+  ~TempFolder() { fs::remove_all(path); }
+  std::string file(const std::string& name) const { return (path / name).string(); }
+  std::size_t count() const {
+    return static_cast<std::size_t>(std::distance(fs::directory_iterator(path), fs::directory_iterator()));
+  }
+  fs::path path;
+};
+
+std::string bytes_of(const std::string& path) {
+  std::ifstream in(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+std::string replaced(std::string text, const std::string& what, const std::string& by) {
+  const std::size_t at = text.find(what);
+  REQUIRE(at != std::string::npos);
+  return text.replace(at, what.size(), by);
+}
+
+}  // namespace
+
+TEST_CASE("what is written reads back equal") {
+  for (const Clock clock : {Clock::event, Clock::wall})
+    for (const WrapperMode mode : {WrapperMode::regularised, WrapperMode::unregularised}) {
+      const Trace t = box_run(clock, mode);
+      CHECK(trace_from_json(trace_to_json(t), "t") == t);
+    }
+  RecorderSettings settings;
+  settings.request.recursion = Recursion::paper_strict;
+  settings.request.mode = Mode::first_pair;
+  settings.request.contacts = true;
+  settings.event_cap = 50;
+  const Trace cut = runs::record(plate(), plate(), runs::kPlatePoses, settings).trace;
+  CHECK(trace_from_json(trace_to_json(cut), "cut") == cut);
+  CHECK(trace_from_json(trace_to_json(Recorder(plate(), RecorderSettings{}).take()), "none").events.empty());
+}
+
+TEST_CASE("poses, counters and names survive to the last bit") {
+  RecorderSettings settings;
+  settings.scenario = "quotes \" \\ / \b \f \x01 \x7f tab\t and nul\0 inside, € 😀"s;
+  settings.sources[0] = "a\nb";
+  Recorder recorder(plate(), plate(), settings);
+  std::mt19937_64 random(7);
+  std::uint32_t index = 0;
+  const double special[] = {0.0,  -0.0, 5e-324, -2.2250738585072014e-308, 1.7976931348623157e308, 1.0, -3.0,
+                            1e22, 0.1,  1.0 / 3};
+  for (int i = 0; i < 200; ++i) {
+    Pose p;
+    for (int k = 0; k < 12; ++k) {
+      const std::uint64_t bits = random();
+      double x;
+      static_assert(sizeof x == sizeof bits);
+      std::memcpy(&x, &bits, sizeof x);
+      if (i < 20 || !std::isfinite(x)) x = special[random() % std::size(special)];
+      (k < 9 ? p.r.data()[k] : p.t.data()[k - 9]) = x;
+    }
+    recorder.begin_step(index++, p, p);
+    CollideResult result;
+    result.relation = static_cast<Relation>(i % 6);
+    result.interiors_overlap = static_cast<Answer>(i % 3);
+    result.counters.node_pairs = random();
+    result.counters.exact_fallbacks = std::numeric_limits<std::uint64_t>::max();
+    result.counters.face_tests_by_level = {0, 4294967295u, 3};
+    if (i % 4 != 0) recorder.end_step(result);
+  }
+  const Trace t = recorder.take();
+  CHECK(trace_from_json(trace_to_json(t), "t") == t);
+}
+
+TEST_CASE("the same run on the event clock gives the same bytes, plain and compressed") {
+  const std::string once = trace_to_json(box_run()), again = trace_to_json(box_run());
+  CHECK(once == again);
+  const TempFolder folder;
+  save_trace(box_run(), folder.file("1.json.gz"));
+  save_trace(box_run(), folder.file("2.json.gz"));
+  CHECK(bytes_of(folder.file("1.json.gz")) == bytes_of(folder.file("2.json.gz")));
+}
+
+TEST_CASE("files: plain, compressed, replaced whole, or not at all") {
+  const TempFolder folder;
+  const Trace t = box_run();
+  const std::string plain = folder.file("t.json"), gz = folder.file("t.json.gz");
+  save_trace(t, plain);
+  save_trace(t, gz);
+  CHECK(load_trace(plain) == t);
+  CHECK(load_trace(gz) == t);
+  CHECK(bytes_of(plain) == trace_to_json(t));
+  CHECK(bytes_of(gz).substr(0, 2) == "\x1f\x8b");
+  CHECK(4 * fs::file_size(gz) < fs::file_size(plain));
+  CHECK(folder.count() == 2);
+  CHECK_THROWS_AS(save_trace(t, folder.file("no/such/folder.json")), InputError);
+  CHECK_THROWS_AS(save_trace(t, folder.path.string()), InputError);
+  CHECK(folder.count() == 2);
+  if (fs::exists("/dev/full")) CHECK_THROWS_AS(save_trace(t, "/dev/full"), EnvironmentError);
+}
+
+TEST_CASE("a write that fails leaves what was there and nothing else") {
+  struct Full : ByteSink {
+    void write(std::string_view) override { throw EnvironmentError("full"); }
+  } full;
+  CHECK_THROWS_AS(write_trace(box_run(), full), EnvironmentError);
+  const TempFolder folder;
+  const std::string path = folder.file("t.json");
+  { std::ofstream(path) << "old"; }
+  try {
+    AtomicFile file(path);
+    file.write("half");
+    throw EnvironmentError("full");
+  } catch (const EnvironmentError&) {
+  }
+  CHECK(bytes_of(path) == "old");
+  CHECK(folder.count() == 1);
+}
+
+TEST_CASE("the file keeps the rules by which Perfetto and chrome://tracing show everything") {
+  for (const Clock clock : {Clock::event, Clock::wall}) {
+    const Trace t = box_run(clock);
+    const Json document = Json::parse(trace_to_json(t));
+    REQUIRE(document.size() == 2);
+    CHECK(document.begin().key() == "traceEvents");  // what is ours comes last
+    CHECK_FALSE(document.contains("displayTimeUnit"));
+    double last = 0;
+    std::size_t recorded = 0;
+    std::map<int, std::vector<double>> open;  // ends of the slices that are open on a thread
+    struct Point {
+      std::string phase;
+      double ts;
+      int tid;
+    };
+    std::map<std::uint64_t, std::vector<Point>> flows;
+    std::map<int, std::set<double>> begins;
+    std::set<std::string> counters, threads;
+    for (const Json& e : document["traceEvents"]) {
+      for (const char* key : {"name", "cat", "ph", "ts", "pid", "tid", "args"}) REQUIRE(e.contains(key));
+      REQUIRE(e["args"].is_object());
+      const double ts = e["ts"];
+      REQUIRE(ts >= last);
+      last = ts;
+      const int tid = e["tid"];
+      const std::string phase = e["ph"];
+      if (phase == "X") {
+        const double dur = e.at("dur");
+        REQUIRE(dur > 0);
+        constexpr double kHalfNanosecond = 0.0005;  // ts + dur of whole nanoseconds in microseconds, rounded
+        std::vector<double>& ends = open[tid];
+        while (!ends.empty() && ends.back() <= ts + kHalfNanosecond) ends.pop_back();
+        if (!ends.empty()) REQUIRE(ts + dur <= ends.back() + kHalfNanosecond);
+        ends.push_back(ts + dur);
+        begins[tid].insert(ts);
+        CHECK(e["args"]["event"] == recorded++);
+      } else if (phase == "C") {
+        counters.insert(e["name"]);
+        for (const auto& [name, value] : e["args"].items()) CHECK(value.is_number());
+      } else if (phase == "M") {
+        if (e["name"] == "thread_name") threads.insert(e["args"]["name"]);
+      } else {
+        CHECK(e["bp"] == "e");
+        flows[e["id"]].push_back({phase, ts, tid});
+      }
+    }
+    CHECK(recorded == t.events.size());
+    CHECK(counters == std::set<std::string>{"work", "wrapper"});
+    CHECK(threads.size() == 5);
+    REQUIRE_FALSE(flows.empty());
+    std::size_t longest = 0;
+    for (const auto& [id, points] : flows) {
+      CAPTURE(id);
+      CHECK(t.events[id].kind == EventKind::refine);
+      longest = std::max(longest, points.size());
+      REQUIRE(points.size() >= 2);
+      CHECK(points.front().phase == "s");
+      CHECK(points.back().phase == "f");
+      for (std::size_t i = 1; i + 1 < points.size(); ++i) CHECK(points[i].phase == "t");
+      for (const Point& p : points) CHECK(begins[p.tid].count(p.ts) == 1);  // each end sits on a slice
+    }
+    CHECK(longest == 3);  // test, refinement, next test
+  }
+}
+
+TEST_CASE("flows follow causes") {
+  Recorder recorder(plate(), plate(), {});
+  recorder.begin_step(0, {}, {});                         // 0
+  recorder.face_test(11, 11, exact::Meet::cross, 0, 0);   // 1
+  recorder.refine(Side::a, 2, 3);                         // 2
+  recorder.refine(Side::b, 2, 3);                         // 3
+  recorder.face_test(10, 0, exact::Meet::cross, 1, 0);    // 4: A's face came with 2
+  recorder.refine(Side::a, 1, 3);                         // 5
+  recorder.face_test(2, 0, exact::Meet::disjoint, 1, 0);  // 6: again 2, but not the first
+  const Json document = Json::parse(trace_to_json(recorder.take()));
+  std::vector<std::string> found;
+  for (const Json& e : document["traceEvents"])
+    if (e["cat"] == "flow")
+      found.push_back(e["ph"].get<std::string>() + e["id"].dump() + "@" + e["ts"].dump());
+  std::sort(found.begin(), found.end());
+  CHECK(found == std::vector<std::string>{"f2@4", "f3@3", "f5@5", "s2@1", "s3@1", "s5@4", "t2@2"});
+}
+
+TEST_CASE("counters show the wrappers of the step") {
+  const Trace t = box_run();
+  const Json document = Json::parse(trace_to_json(t));
+  std::map<double, Json> wrapper;
+  for (const Json& e : document["traceEvents"])
+    if (e["name"] == "wrapper" && e["ph"] == "C") wrapper[e["ts"]] = e["args"];
+  for (EventId i = 0; i < t.events.size(); ++i) {
+    const Event& e = t.events[i];
+    if (e.kind == EventKind::step) CHECK(wrapper.at(i)["faces of B"] == box().outermost_faces().size());
+    if (e.kind == EventKind::refine)
+      CHECK(wrapper.at(i)[e.side == Side::a ? "faces of A" : "faces of B"] == e.boundary);
+  }
+}
+
+TEST_CASE("bad files are refused with one line that says where and what") {
+  const std::string good = trace_to_json(box_run());
+  const auto complaint = [](const std::string& text) -> std::string {
+    try {
+      trace_from_json(text, "t.json");
+    } catch (const InputError& e) {
+      const std::string what = e.what();
+      CHECK(what.find('\n') == std::string::npos);
+      CHECK(what.starts_with("t.json: "));
+      return what;
+    }
+    return "accepted";
+  };
+  const auto names = [&](const std::string& text, const std::string& part) {
+    CHECK_MESSAGE(complaint(text).find(part) != std::string::npos, complaint(text), " should contain ", part);
+  };
+  names("", "line 1, column 1");
+  names("{\"traceEvents\": [\n  1,\n  tru]}", "line 3, column 6");
+  names(good.substr(0, good.size() / 2), "this is not JSON");
+  names("[]", "expected an object");
+  names("{\"traceEvents\": []}", "/metadata/format");
+  names("{\"traceEvents\": [], \"metadata\": 3}", "/metadata");
+  names("{\"traceEvents\": [{\"ph\": 1}]}", "/traceEvents/0/ph");
+  names("{\"traceEvents\": [{}]}", "/traceEvents/0/ph: expected a string, found nothing");
+  names(std::string(100000, '['), "nested");
+  names(replaced(good, "\"version\": 1", "\"version\": 2"), "/metadata/version: written in format 2");
+  names(replaced(good, "\"version\": 1", "\"version\": 0"), "/metadata/version");
+  names(replaced(good, "\"version\": 1", "\"version\": \"1\""), "expected an integer");
+  names(replaced(good, "lrbscope trace", "another trace"), "this is some other file");
+  names(replaced(good, "\"name\":\"refine\"", "\"name\":\"refin\""), "refine");
+  names(replaced(good, "\"meet\":\"cross\"", "\"meet\":\"crosses\""),
+        "/args/meet: expected disjoint, touch or cross");
+  names(replaced(good, "\"region\":1", "\"region\":2"), "there is no such region");
+  names(replaced(good, "\"region\":1", "\"region\":-1"), "/args/region: expected an integer from 0");
+  names(replaced(good, "\"region\":1", "\"region\":1.5"), "/args/region");
+  names(replaced(good, "\"region\":1", "\"region\":4294967296"), "/args/region");
+  names(replaced(good, "\"simplex of B\":", "\"simplex of B\":99999"), "B has no such simplex");
+  names(replaced(good, "\"event\":7,", "\"event\":8,"), "/args/event: expected 7");
+  names(replaced(good, "\"stored\": ", "\"stored\": 1"), "/metadata/events/stored");
+  names(replaced(good, "\"first_event\": 0", "\"first_event\": 1"),
+        "the first event does not begin the first step");
+  names(replaced(good, "\"hash\": \"fedc", "\"hash\": \"FEDC"), "/metadata/scenario/hash: expected a hash");
+  names(replaced(good, "\"pose_a\": [1.0, ", "\"pose_a\": ["),
+        "/metadata/steps/0/pose_a: expected 12 numbers");
+  names(replaced(good, "\"pose_a\": [1.0, ", "\"pose_a\": [null, "),
+        "/metadata/steps/0/pose_a/0: expected a number");
+  names(replaced(good, "\"pose_a\": [1.0, ", "\"pose_a\": [1e999, "), "too large");
+  names(replaced(good, "\"clock\": \"event\"", "\"clock\": \"wall\""), "wall clock");
+  names(replaced(good, "\"dim\": 3", "\"dim\": 4"), "/metadata/bodies/0/dim: expected 2 or 3");
+  names(replaced(good, "\"bodies\": [", "\"bodies\": [{}, {}, "),
+        "/metadata/bodies: expected one body or two");
+}
+
+TEST_CASE("no damage to a trace does more than a refusal") {
+  const std::string good = trace_to_json(runs::record(plate(), plate(), {runs::kPlatePoses[1]}).trace);
+  std::mt19937 random(3);
+  std::size_t refused = 0;
+  for (int i = 0; i < 1500; ++i) {
+    std::string bad = good;
+    for (std::size_t k = 0, edits = 1 + random() % 3; k < edits; ++k) {
+      const std::size_t at = random() % bad.size();
+      switch (random() % 4) {
+        case 0:
+          bad[at] = static_cast<char>(random());
+          break;
+        case 1:
+          bad.erase(at, random() % 40);
+          break;
+        case 2:
+          bad.insert(at, bad.substr(random() % bad.size(), random() % 40));
+          break;
+        case 3:
+          bad[at] = "0123456789-.eE{}[]\",:"[random() % 21];
+          break;
+      }
+    }
+    try {
+      check_trace(trace_from_json(bad, "bad"), "bad");
+    } catch (const InputError&) {
+      ++refused;
+    }
+  }
+  CHECK(refused > 500);
+}
+
+TEST_CASE("files that cannot be read are named") {
+  const TempFolder folder;
+  CHECK_THROWS_WITH_AS(load_trace(folder.file("none.json")), doctest::Contains("none.json: cannot be read"),
+                       InputError);
+  CHECK_THROWS_WITH_AS(load_trace(folder.path.string()), doctest::Contains("it is a folder"), InputError);
+  const std::string path = folder.file("t.json.gz");
+  save_trace(box_run(), path);
+  const std::string whole = bytes_of(path);
+  CHECK_THROWS_WITH_AS(load_trace(path, {.max_bytes = 1000}), doctest::Contains("more than 1000 bytes"),
+                       InputError);
+  std::ofstream(path, std::ios::binary) << whole.substr(0, whole.size() / 2);
+  CHECK_THROWS_WITH_AS(load_trace(path), doctest::Contains("ends too early"), InputError);
+  std::string flipped = whole;
+  flipped[whole.size() / 2] = static_cast<char>(flipped[whole.size() / 2] ^ 0x55);
+  std::ofstream(path, std::ios::binary) << flipped;
+  CHECK_THROWS_AS(load_trace(path), InputError);
+}

@@ -1,0 +1,256 @@
+#include "trace/counters.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <limits>
+#include <utility>
+
+namespace lrb::trace {
+
+namespace {
+
+bool is_hit(const Event& e) {
+  return e.kind == EventKind::face_test && e.meet != exact::Meet::disjoint;
+}
+
+double ratio(std::uint64_t part, double whole) {
+  return whole == 0 ? std::numeric_limits<double>::quiet_NaN() : static_cast<double>(part) / whole;
+}
+double ratio(std::uint64_t part, std::uint64_t whole) {
+  return ratio(part, static_cast<double>(whole));
+}
+
+/// The two wrappers' sizes, event after event.
+class WrapperSizes {
+ public:
+  explicit WrapperSizes(const Trace& trace) : trace_(&trace) { reset(); }
+
+  void take(const Event& e) {
+    if (e.kind == EventKind::step) reset();
+    const bool change = e.kind == EventKind::refine || e.kind == EventKind::coarsen;
+    if (change && e.boundary != kNull) faces[static_cast<std::size_t>(e.side)] = e.boundary;
+  }
+
+  std::array<std::uint32_t, 2> faces{};
+
+ private:
+  void reset() {
+    for (std::size_t i = 0; i < trace_->header.bodies.size(); ++i)
+      faces[i] = trace_->header.bodies[i].outer_faces;
+  }
+
+  const Trace* trace_;
+};
+
+std::array<std::uint32_t, 2> largest_wrappers(const Trace& trace, std::span<const Event> events) {
+  WrapperSizes sizes(trace);
+  std::array<std::uint32_t, 2> most = sizes.faces;
+  for (const Event& e : events) {
+    sizes.take(e);
+    for (std::size_t i = 0; i < 2; ++i) most[i] = std::max(most[i], sizes.faces[i]);
+  }
+  return most;
+}
+
+double seconds_of(const Trace& trace, EventId first, std::size_t count) {
+  if (trace.wall_ns.empty() || count == 0) return std::numeric_limits<double>::quiet_NaN();
+  constexpr double kNanosecond = 1e-9;
+  return static_cast<double>(trace.wall_ns[first + count - 1] - trace.wall_ns[first]) * kNanosecond;
+}
+
+}  // namespace
+
+Totals count_events(std::span<const Event> events) {
+  Totals t;
+  t.events = events.size();
+  for (const Event& e : events) {
+    const auto side = static_cast<std::size_t>(e.side);
+    switch (e.kind) {
+      case EventKind::face_test:
+        ++t.face_tests;
+        t.hits += is_hit(e);
+        t.crossings += e.meet == exact::Meet::cross;
+        break;
+      case EventKind::refine:
+        ++t.refinements[side];
+        t.faces_added += e.b;
+        break;
+      case EventKind::coarsen:
+        ++t.coarsenings[side];
+        break;
+      case EventKind::contact:
+        ++t.contacts;
+        break;
+      case EventKind::step:
+      case EventKind::result:
+        break;
+    }
+  }
+  return t;
+}
+
+std::vector<Statistic> statistics(const Trace& trace) {
+  const Totals t = count_events(trace.events);
+  const std::uint64_t refinements = t.refinements[0] + t.refinements[1];
+  const std::uint64_t steps = trace.steps.size();
+  std::vector<Statistic> out = {
+      {"tests_per_contact", ratio(t.face_tests, t.contacts), "", "face tests / contacts; best 1"},
+      {"hit_rate", ratio(t.hits, t.face_tests), "", "face tests that met / face tests; best 1"},
+      {"contact_rate", ratio(t.contacts, t.hits), "", "contacts / face tests that met; best 1"},
+      {"tests_per_refinement", ratio(t.face_tests, refinements), "",
+       "face tests / refinements; the work that opening a region causes"},
+      {"faces_per_refinement", ratio(t.faces_added, refinements), "faces",
+       "faces added / refinements; the size of the regions opened"},
+      {"tests_per_step", ratio(t.face_tests, steps), "", "face tests / time steps"},
+      {"refinements_per_step", ratio(refinements, steps), "", "refinements / time steps"},
+      {"contacts_per_step", ratio(t.contacts, steps), "", "contacts / time steps"},
+  };
+  constexpr std::string_view kShares[] = {"largest_wrapper_share_a", "largest_wrapper_share_b"};
+  const auto most = largest_wrappers(trace, trace.events);
+  double pairs = static_cast<double>(steps);
+  for (std::size_t i = 0; i < trace.header.bodies.size(); ++i) {
+    const BodyInfo& body = trace.header.bodies[i];
+    pairs *= body.real_simplices;
+    out.push_back({kShares[i], ratio(most[i], std::uint64_t{body.real_faces}), "",
+                   "most faces of the wrapper / real faces of the body; best near 0, 1 means all opened"});
+  }
+  if (trace.header.bodies.size() == 2)
+    out.push_back({"pair_share", ratio(t.face_tests, pairs), "",
+                   "face tests / (time steps x real simplices of A x real simplices of B); best near 0"});
+  if (!trace.wall_ns.empty())
+    out.push_back({"seconds", seconds_of(trace, 0, trace.events.size()), "s",
+                   "first to last event, recording included; best small"});
+  return out;
+}
+
+Histogram tests_by_depth(const Trace& trace) {
+  Histogram h{"tests_by_depth",
+              "regions to the outside",
+              "face tests by the depth of the deeper of the two faces; deeper means closer to the body",
+              {},
+              {}};
+  for (const Event& e : trace.events) {
+    if (e.kind != EventKind::face_test) continue;
+    const std::size_t depth = std::max(e.depth_a, e.depth_b);
+    if (depth >= h.counts.size()) h.counts.resize(depth + 1);
+    ++h.counts[depth];
+  }
+  for (std::size_t i = 0; i <= h.counts.size(); ++i) h.edges.push_back(static_cast<double>(i));
+  return h;
+}
+
+Histogram refinements_by_size(const Trace& trace) {
+  Histogram h{"refinements_by_size",
+              "faces added",
+              "refinements by the number of faces they added to the wrapper; bins double in width",
+              {},
+              {}};
+  for (const Event& e : trace.events) {
+    if (e.kind != EventKind::refine) continue;
+    const auto bin = static_cast<std::size_t>(std::bit_width(e.b));
+    if (bin >= h.counts.size()) h.counts.resize(bin + 1);
+    ++h.counts[bin];
+  }
+  h.edges.push_back(0);
+  for (std::size_t i = 0; i < h.counts.size(); ++i)
+    h.edges.push_back(static_cast<double>(std::uint64_t{1} << i));
+  return h;
+}
+
+Histogram steps_by_tests(const Trace& trace, std::size_t bins) {
+  Histogram h{"steps_by_tests",
+              "face tests",
+              "time steps by their number of face tests; best all at the left",
+              {},
+              std::vector<std::uint64_t>(bins)};
+  std::vector<std::uint64_t> tests;
+  for (std::size_t i = 0; i < trace.steps.size(); ++i)
+    tests.push_back(count_events(trace.events_of(i)).face_tests);
+  const std::uint64_t most = tests.empty() ? 0 : *std::max_element(tests.begin(), tests.end());
+  const std::uint64_t width = most / bins + 1;
+  for (const std::uint64_t n : tests) ++h.counts[n / width];
+  for (std::size_t i = 0; i <= bins; ++i) h.edges.push_back(static_cast<double>(i * width));
+  return h;
+}
+
+FaceCounts count_faces(const LrbRep& rep, Side side, std::span<const Event> events) {
+  const std::size_t n = rep.face_count();
+  FaceCounts counts{std::vector<std::uint32_t>(n), std::vector<std::uint32_t>(n),
+                    std::vector<std::uint32_t>(n), std::vector<std::uint32_t>(n)};
+  const auto face_of = [&](const Event& e) { return rep.face_of_simplex(side == Side::a ? e.a : e.b); };
+  for (const Event& e : events) {
+    if (e.kind == EventKind::face_test) {
+      const FaceId face = face_of(e);
+      ++counts.tests[face];
+      counts.hits[face] += is_hit(e);
+    } else if (e.kind == EventKind::contact) {
+      ++counts.contacts[face_of(e)];
+    } else if (e.kind == EventKind::refine && e.side == side) {
+      for (const FaceId lid : rep.lids(e.a)) ++counts.refinements[lid];
+      for (const FaceId face : rep.floor(e.a))
+        if (rep.is_real(face)) ++counts.refinements[face];
+    }
+  }
+  return counts;
+}
+
+Chart chart_over_events(const Trace& trace, std::size_t max_points) {
+  Chart chart{"event", {}, {}};
+  chart.series = {{"faces of wrapper A", "faces", "faces on the boundary of A's wrapper", {}},
+                  {"faces of wrapper B", "faces", "faces on the boundary of B's wrapper", {}},
+                  {"face tests", "", "exact comparisons in the time step so far", {}},
+                  {"hits", "", "face tests that met, in the time step so far", {}},
+                  {"refinements", "", "regions refined in the time step so far", {}},
+                  {"contacts", "", "real pairs found in the time step so far", {}}};
+  const std::size_t n = trace.events.size();
+  const std::size_t stride = std::max<std::size_t>(1, n / std::max<std::size_t>(max_points, 1));
+  WrapperSizes sizes(trace);
+  std::array<std::uint64_t, 4> work{};
+  for (std::size_t i = 0; i < n; ++i) {
+    const Event& e = trace.events[i];
+    sizes.take(e);
+    if (e.kind == EventKind::step) work = {};
+    work[0] += e.kind == EventKind::face_test;
+    work[1] += is_hit(e);
+    work[2] += e.kind == EventKind::refine;
+    work[3] += e.kind == EventKind::contact;
+    if (i % stride != 0 && i + 1 != n) continue;
+    chart.x.push_back(static_cast<double>(i));
+    for (std::size_t s = 0; s < 2; ++s) chart.series[s].values.push_back(sizes.faces[s]);
+    for (std::size_t s = 0; s < work.size(); ++s)
+      chart.series[2 + s].values.push_back(static_cast<double>(work[s]));
+  }
+  if (trace.header.bodies.size() < 2) chart.series.erase(chart.series.begin() + 1);
+  return chart;
+}
+
+Chart chart_over_steps(const Trace& trace) {
+  Chart chart{"time step", {}, {}};
+  chart.series = {{"face tests", "", "exact comparisons; best few", {}},
+                  {"hits", "", "face tests that met; best as many as contacts", {}},
+                  {"refinements", "", "regions refined; best few", {}},
+                  {"contacts", "", "real pairs that meet: the answer", {}},
+                  {"largest wrapper A", "faces", "most faces that A's wrapper had in the step; best few", {}},
+                  {"largest wrapper B", "faces", "most faces that B's wrapper had in the step; best few", {}},
+                  {"time", "ms", "first to last event of the step, recording included; best small", {}}};
+  constexpr double kMilliseconds = 1e3;
+  for (std::size_t i = 0; i < trace.steps.size(); ++i) {
+    const std::span<const Event> events = trace.events_of(i);
+    const Totals t = count_events(events);
+    const auto most = largest_wrappers(trace, events);
+    const double row[] = {static_cast<double>(t.face_tests),
+                          static_cast<double>(t.hits),
+                          static_cast<double>(t.refinements[0] + t.refinements[1]),
+                          static_cast<double>(t.contacts),
+                          static_cast<double>(most[0]),
+                          static_cast<double>(most[1]),
+                          kMilliseconds * seconds_of(trace, trace.steps[i].first_event, events.size())};
+    chart.x.push_back(trace.steps[i].index);
+    for (std::size_t s = 0; s < chart.series.size(); ++s) chart.series[s].values.push_back(row[s]);
+  }
+  if (trace.wall_ns.empty()) chart.series.pop_back();
+  if (trace.header.bodies.size() < 2) chart.series.erase(chart.series.begin() + 5);
+  return chart;
+}
+
+}  // namespace lrb::trace

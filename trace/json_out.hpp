@@ -1,0 +1,126 @@
+#pragma once
+/// JSON as text, appended to a buffer that empties itself into a sink: no tree, no allocation per value.
+
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace lrb::trace {
+
+/// Where bytes go.
+class ByteSink {
+ public:
+  virtual ~ByteSink() = default;
+  virtual void write(std::string_view bytes) = 0;
+};
+
+class StringSink final : public ByteSink {
+ public:
+  void write(std::string_view bytes) override { text.append(bytes); }
+  std::string text;
+};
+
+/// Unstructured: the caller writes brackets and commas. For the millions of events.
+class JsonOut {
+ public:
+  explicit JsonOut(ByteSink& sink) : sink_(&sink), buffer_(kBuffer) {}
+  JsonOut(const JsonOut&) = delete;
+  JsonOut& operator=(const JsonOut&) = delete;
+
+  void raw(std::string_view text) {
+    if (text.size() > buffer_.size() - used_) {
+      flush();
+      if (text.size() > buffer_.size()) return sink_->write(text);
+    }
+    std::memcpy(buffer_.data() + used_, text.data(), text.size());
+    used_ += text.size();
+  }
+  void raw(char c) { raw(std::string_view(&c, 1)); }
+
+  void number(std::uint64_t value) {
+    reserve_number();
+    char* const begin = buffer_.data() + used_;
+    used_ += static_cast<std::size_t>(std::to_chars(begin, begin + kNumber, value).ptr - begin);
+  }
+
+  /// The shortest decimal that reads back as the same double; null if it is not finite (JSON has no other
+  /// word). A point or exponent is always there, so that -0.0 stays a double.
+  void number(double value);
+
+  /// In quotes, escaped; bytes that are not UTF-8 become U+FFFD.
+  void string(std::string_view text);
+
+  void flush() {
+    sink_->write({buffer_.data(), used_});
+    used_ = 0;
+  }
+
+ private:
+  static constexpr std::size_t kBuffer = 1 << 16;
+  static constexpr std::size_t kNumber = 32;  ///< to_chars needs at most 24 for a double, 20 for an integer
+
+  void reserve_number() {
+    if (buffer_.size() - used_ < kNumber) flush();
+  }
+
+  ByteSink* sink_;
+  std::vector<char> buffer_;
+  std::size_t used_ = 0;
+};
+
+/// Structured: brackets, commas and line breaks come by themselves. For metadata and summaries.
+class JsonWriter {
+ public:
+  /// Containers nested deeper than `broken_levels` stay on one line. `indent` is where the outermost one
+  /// stands.
+  JsonWriter(JsonOut& out, int broken_levels, int indent = 0)
+      : out_(&out), broken_levels_(broken_levels), indent_(indent) {}
+
+  JsonWriter& begin_object() { return open('{'); }
+  JsonWriter& end_object() { return close('}'); }
+  JsonWriter& begin_array() { return open('['); }
+  JsonWriter& end_array() { return close(']'); }
+  JsonWriter& key(std::string_view name);
+
+  template <class T>
+  JsonWriter& value(const T& v) {
+    separate();
+    if constexpr (std::is_same_v<T, bool>)
+      out_->raw(v ? "true" : "false");
+    else if constexpr (std::is_floating_point_v<T>)
+      out_->number(static_cast<double>(v));
+    else if constexpr (std::is_unsigned_v<T>)
+      out_->number(static_cast<std::uint64_t>(v));
+    else
+      out_->string(v);
+    return *this;
+  }
+  template <class T>
+  JsonWriter& member(std::string_view name, const T& v) {
+    return key(name).value(v);
+  }
+
+ private:
+  struct Level {
+    bool empty = true;
+    bool broken = false;
+  };
+  JsonWriter& open(char bracket);
+  JsonWriter& close(char bracket);
+  void separate();
+  void break_line(std::size_t depth);
+
+  JsonOut* out_;
+  int broken_levels_;
+  int indent_;
+  bool after_key_ = false;
+  std::vector<Level> levels_;
+};
+
+}  // namespace lrb::trace

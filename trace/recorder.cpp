@@ -1,0 +1,93 @@
+#include "trace/recorder.hpp"
+
+#include <stdexcept>
+
+#include "engine/error.hpp"
+#include "trace/replay.hpp"
+
+namespace lrb::trace {
+
+Recorder::Recorder(const LrbRep& a, const LrbRep& b, RecorderSettings settings)
+    : reps_{&a, &b}, settings_(std::move(settings)) {
+  start_over();
+}
+
+Recorder::Recorder(const LrbRep& a, RecorderSettings settings)
+    : reps_{&a, nullptr}, settings_(std::move(settings)) {
+  start_over();
+}
+
+void Recorder::start_over() {
+  settings_.event_cap = std::min(settings_.event_cap, kMaxId);
+  trace_ = {};
+  TraceHeader& header = trace_.header;
+  header.scenario = settings_.scenario;
+  header.scenario_hash = settings_.scenario_hash;
+  header.request = settings_.request;
+  header.clock = settings_.clock;
+  header.event_cap = settings_.event_cap;
+  for (std::size_t side = 0; side < 2; ++side) {
+    if (!reps_[side]) continue;
+    header.bodies.push_back(describe_body(*reps_[side], settings_.sources[side]));
+    refined_by_[side].assign(reps_[side]->region_count(), 0);
+  }
+  seen_ = seen_before_step_ = last_ns_ = 0;
+  step_event_ = 0;
+  last_hit_ = kNull;
+  began_ = std::chrono::steady_clock::now();
+}
+
+void Recorder::close_step() {
+  if (!trace_.steps.empty()) trace_.steps.back().events_seen = seen_ - seen_before_step_;
+}
+
+void Recorder::begin_step(std::uint32_t index, const Pose& pose_a, const Pose& pose_b) {
+  for (const Pose* pose : {&pose_a, &pose_b})
+    if (!pose->r.allFinite() || !pose->t.allFinite())
+      throw InputError("time step " + std::to_string(index) +
+                       ": its pose has a number that is not finite; give 12 finite numbers");
+  if (!trace_.steps.empty() && index <= trace_.steps.back().index)
+    throw std::logic_error("Recorder::begin_step: indices must ascend");
+  close_step();
+  seen_before_step_ = seen_;
+  step_event_ = static_cast<EventId>(trace_.events.size());
+  last_hit_ = kNull;
+  Step step;
+  step.index = index;
+  step.pose_a = pose_a;
+  if (reps_[1]) step.pose_b = pose_b;
+  step.first_event = step_event_;
+  trace_.steps.push_back(std::move(step));
+  push({.a = index, .kind = EventKind::step});
+}
+
+void Recorder::end_step(const CollideResult& result) {
+  if (trace_.steps.empty()) throw std::logic_error("Recorder::end_step: no step was begun");
+  Step& step = trace_.steps.back();
+  step.finished = true;
+  step.result.relation = result.relation;
+  step.result.interiors_overlap = result.interiors_overlap;
+  step.result.pair_count = result.pairs.size();
+  step.result.fingerprint = fingerprint(result.pairs);
+  step.result.counters = result.counters;
+  push({.a = static_cast<std::uint32_t>(result.relation),
+        .b = static_cast<std::uint32_t>(result.pairs.size()),
+        .kind = EventKind::result});
+  last_hit_ = kNull;
+}
+
+Trace Recorder::take() {
+  if (seen_ > 0 &&
+      (trace_.steps.empty() || (!trace_.events.empty() && trace_.steps.front().first_event != 0)))
+    throw std::logic_error("Recorder: events came before begin_step()");
+  close_step();
+  trace_.events_seen = seen_;
+  Replay replay(reps_, settings_.request.wrapper);
+  for (Event& event : trace_.events)
+    if (replay.apply(event, trace_.events)) event.boundary = replay.boundary_size(event.side);
+  Trace out = std::move(trace_);
+  start_over();
+  return out;
+}
+
+}  // namespace lrb::trace

@@ -1,0 +1,194 @@
+#include "trace/trace.hpp"
+
+#include <algorithm>
+#include <bit>
+
+#include "engine/error.hpp"
+#include "trace/names.hpp"
+
+namespace lrb::trace {
+
+const char* lrbscope_version() {
+  return LRB_VERSION;
+}
+
+BodyInfo describe_body(const LrbRep& rep, std::string source) {
+  BodyInfo info;
+  info.name = rep.name();
+  info.source = std::move(source);
+  info.hash = rep.hash();
+  info.dim = static_cast<std::uint32_t>(rep.dim());
+  info.closed = rep.closed();
+  info.real_faces = rep.real_face_count();
+  info.total_faces = rep.face_count();
+  info.outer_faces = static_cast<std::uint32_t>(rep.outermost_faces().size());
+  info.regions = rep.region_count();
+  info.layers = rep.layer_count();
+  info.real_simplices = rep.real_simplex_count();
+  info.simplices = rep.simplex_count();
+  return info;
+}
+
+std::span<const Event> Trace::events_of(std::size_t step) const {
+  const std::size_t begin = std::min<std::size_t>(steps[step].first_event, events.size());
+  const std::size_t end = step + 1 < steps.size()
+                              ? std::min<std::size_t>(steps[step + 1].first_event, events.size())
+                              : events.size();
+  return {events.data() + begin, end - begin};
+}
+
+std::size_t Trace::step_of(EventId event) const {
+  const auto after = std::upper_bound(steps.begin(), steps.end(), event,
+                                      [](EventId e, const Step& s) { return e < s.first_event; });
+  return static_cast<std::size_t>(after - steps.begin()) - 1;
+}
+
+bool equal(const Pose& x, const Pose& y) {
+  const auto same = [](double p, double q) {
+    return std::bit_cast<std::uint64_t>(p) == std::bit_cast<std::uint64_t>(q);
+  };
+  return std::equal(x.r.data(), x.r.data() + 9, y.r.data(), same) &&
+         std::equal(x.t.data(), x.t.data() + 3, y.t.data(), same);
+}
+
+bool equal(const Counters& x, const Counters& y) {
+  return x.face_tests == y.face_tests && x.real_tests == y.real_tests &&
+         x.exact_fallbacks == y.exact_fallbacks && x.node_pairs == y.node_pairs &&
+         x.box_tests == y.box_tests && x.prefilter_tests == y.prefilter_tests &&
+         x.refinements == y.refinements && x.regions_opened == y.regions_opened &&
+         x.face_tests_by_level == y.face_tests_by_level;
+}
+
+bool equal(const StepResult& x, const StepResult& y) {
+  return x.relation == y.relation && x.interiors_overlap == y.interiors_overlap &&
+         x.pair_count == y.pair_count && x.fingerprint == y.fingerprint && equal(x.counters, y.counters);
+}
+
+bool equal(const CollideRequest& x, const CollideRequest& y) {
+  return x.mode == y.mode && x.recursion == y.recursion && x.wrapper == y.wrapper &&
+         x.contacts == y.contacts && x.interiors_overlap == y.interiors_overlap;
+}
+
+namespace {
+
+bool equal(const Step& x, const Step& y) {
+  return x.index == y.index && trace::equal(x.pose_a, y.pose_a) && trace::equal(x.pose_b, y.pose_b) &&
+         x.first_event == y.first_event && x.events_seen == y.events_seen && x.finished == y.finished &&
+         trace::equal(x.result, y.result);
+}
+
+bool equal(const TraceHeader& x, const TraceHeader& y) {
+  return x.lrbscope == y.lrbscope && x.scenario == y.scenario && x.scenario_hash == y.scenario_hash &&
+         x.bodies == y.bodies && trace::equal(x.request, y.request) && x.clock == y.clock &&
+         x.event_cap == y.event_cap;
+}
+
+/// Checks the parts of one trace; every failure is one line that names the event or step.
+class Checker {
+ public:
+  Checker(const Trace& t, const std::string& where) : t_(t), where_(where) {}
+
+  void run() {
+    check_sizes();
+    check_steps();
+    for (EventId e = 0; e < t_.events.size(); ++e) check_event(e);
+  }
+
+ private:
+  [[noreturn]] void fail(const std::string& what) const {
+    throw InputError(where_ + ": " + what + "; the trace is damaged: record it again");
+  }
+
+  void require(bool ok, const char* what) const {
+    if (!ok) fail(what);
+  }
+
+  void check_sizes() const {
+    require(t_.header.bodies.size() == 1 || t_.header.bodies.size() == 2, "expected one body or two");
+    require(t_.events.size() <= kMaxId, "too many events");
+    require(t_.events_seen >= t_.events.size(), "fewer events seen than stored");
+    require(t_.wall_ns.size() == (t_.header.clock == Clock::wall ? t_.events.size() : 0),
+            "wall clock: expected one time an event, event clock: none");
+    for (std::size_t i = 1; i < t_.wall_ns.size(); ++i)
+      if (t_.wall_ns[i] <= t_.wall_ns[i - 1])
+        fail("event " + std::to_string(i) + ": its time is not after the one before");
+    require(t_.events.empty() || (!t_.steps.empty() && t_.steps.front().first_event == 0),
+            "the first event does not begin the first step");
+  }
+
+  void check_steps() const {
+    std::uint64_t seen = 0;
+    for (std::size_t i = 0; i < t_.steps.size(); ++i) check_step(i), seen += t_.steps[i].events_seen;
+    if (seen != t_.events_seen) fail("the steps' events do not add up to all");
+    const auto begun = std::count_if(t_.events.begin(), t_.events.end(),
+                                     [](const Event& e) { return e.kind == EventKind::step; });
+    const auto stored = std::count_if(t_.steps.begin(), t_.steps.end(),
+                                      [&](const Step& s) { return s.first_event < t_.events.size(); });
+    if (begun != stored) fail("the number of step events is not that of the steps");
+  }
+
+  void check_step(std::size_t i) const {
+    const Step& s = t_.steps[i];
+    const std::string name = "step " + std::to_string(i);
+    if (!s.pose_a.r.allFinite() || !s.pose_a.t.allFinite() || !s.pose_b.r.allFinite() ||
+        !s.pose_b.t.allFinite())
+      fail(name + ": its poses are not finite");
+    if (s.first_event > t_.events.size()) fail(name + ": its first event does not exist");
+    if (i > 0 && s.first_event < t_.steps[i - 1].first_event)
+      fail(name + ": begins before the step before it");
+    if (i > 0 && s.index <= t_.steps[i - 1].index) fail(name + ": its number does not ascend");
+    if (s.first_event < t_.events.size()) {
+      const Event& e = t_.events[s.first_event];
+      if (e.kind != EventKind::step || e.a != s.index) fail(name + ": its first event does not begin it");
+    }
+    if (s.events_seen < t_.events_of(i).size()) fail(name + ": fewer events seen than stored");
+  }
+
+  void check_event(EventId id) const {
+    const Event& e = t_.events[id];
+    const auto bad = [&](const char* what) {
+      fail("event " + std::to_string(id) + " (" + std::string(name_of(e.kind)) + "): " + what);
+    };
+    if (static_cast<std::size_t>(e.kind) >= kEventKinds) bad("unknown kind");
+    if (e.side != Side::a && e.side != Side::b) bad("unknown side");
+    if (static_cast<std::size_t>(e.meet) >= std::size(Names<exact::Meet>::values)) bad("unknown meet");
+    if (e.cause != kNull && e.cause >= id) bad("its cause is not an earlier event");
+    const std::size_t bodies = t_.header.bodies.size();
+    switch (e.kind) {
+      case EventKind::face_test:
+      case EventKind::contact:
+        if (bodies < 2) bad("needs two bodies");
+        if (e.a >= t_.header.bodies[0].simplices) bad("A has no such simplex");
+        if (e.b >= t_.header.bodies[1].simplices) bad("B has no such simplex");
+        break;
+      case EventKind::refine:
+      case EventKind::coarsen:
+        if (static_cast<std::size_t>(e.side) >= bodies) bad("there is no such body");
+        if (e.a >= t_.header.bodies[static_cast<std::size_t>(e.side)].regions) bad("there is no such region");
+        break;
+      case EventKind::result:
+        if (e.a >= std::size(Names<Relation>::values)) bad("unknown relation");
+        break;
+      case EventKind::step:
+        break;
+    }
+  }
+
+  const Trace& t_;
+  const std::string& where_;
+};
+
+}  // namespace
+
+bool operator==(const Trace& x, const Trace& y) {
+  return equal(x.header, y.header) &&
+         std::equal(x.steps.begin(), x.steps.end(), y.steps.begin(), y.steps.end(),
+                    [](const Step& p, const Step& q) { return equal(p, q); }) &&
+         x.events == y.events && x.wall_ns == y.wall_ns && x.events_seen == y.events_seen;
+}
+
+void check_trace(const Trace& trace, const std::string& where) {
+  Checker(trace, where).run();
+}
+
+}  // namespace lrb::trace

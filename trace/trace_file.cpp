@@ -1,0 +1,120 @@
+/// Traces on disk: bytes in and out, compressed or not. What the bytes say is trace_json_*.cpp's affair.
+
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <system_error>
+#include <vector>
+
+#include <zlib.h>
+
+#include "engine/error.hpp"
+#include "engine/mesh/atomic_file.hpp"
+#include "engine/mesh/file_bytes.hpp"
+#include "trace/trace_json.hpp"
+
+namespace lrb::trace {
+
+namespace {
+
+class FileSink final : public ByteSink {
+ public:
+  explicit FileSink(AtomicFile& file) : file_(&file) {}
+  void write(std::string_view bytes) override { file_->write(bytes); }
+
+ private:
+  AtomicFile* file_;
+};
+
+/// gzip, level 1: traces are so repetitive that higher levels cost time and gain little. No name or time goes
+/// into the header, so that equal traces are equal files.
+class GzipSink final : public ByteSink {
+ public:
+  explicit GzipSink(ByteSink& next) : next_(&next), out_(kChunk) {
+    constexpr int kGzipHeader = 16;  // added to the window bits: gzip instead of zlib
+    constexpr int kMemLevel = 8;
+    if (deflateInit2(&stream_, 1, Z_DEFLATED, MAX_WBITS + kGzipHeader, kMemLevel, Z_DEFAULT_STRATEGY) != Z_OK)
+      throw EnvironmentError("zlib cannot begin to compress: out of memory?");
+  }
+  ~GzipSink() override { deflateEnd(&stream_); }
+  GzipSink(const GzipSink&) = delete;
+  GzipSink& operator=(const GzipSink&) = delete;
+
+  void write(std::string_view bytes) override { deflate_all(bytes, Z_NO_FLUSH); }
+  void finish() { deflate_all({}, Z_FINISH); }
+
+ private:
+  static constexpr std::size_t kChunk = 1 << 16;
+
+  void deflate_all(std::string_view bytes, int flush) {
+    stream_.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(bytes.data()));
+    stream_.avail_in = static_cast<uInt>(bytes.size());  // JsonOut hands over 64 kB at a time, or one string
+    do {
+      stream_.next_out = reinterpret_cast<Bytef*>(out_.data());
+      stream_.avail_out = static_cast<uInt>(out_.size());
+      deflate(&stream_, flush);
+      next_->write({out_.data(), out_.size() - stream_.avail_out});
+    } while (stream_.avail_out == 0);
+  }
+
+  ByteSink* next_;
+  std::vector<char> out_;
+  z_stream stream_{};
+};
+
+struct GzClose {
+  void operator()(gzFile file) const { gzclose_r(file); }
+};
+
+[[noreturn]] void fail_to_read(const std::string& path, const std::string& why) {
+  throw InputError(printable_name(path) + ": cannot be read: " + why +
+                   "; give a trace.json or trace.json.gz");
+}
+
+/// All bytes of a file, decompressed if they are gzip's.
+std::string read_all(const std::string& path, std::uint64_t max_bytes) {
+  std::error_code ignored;
+  if (std::filesystem::is_directory(path, ignored)) fail_to_read(path, "it is a folder");
+  const std::unique_ptr<gzFile_s, GzClose> file(gzopen(path.c_str(), "rb"));
+  if (!file) fail_to_read(path, std::strerror(errno));
+  constexpr unsigned kChunk = 1 << 18;
+  gzbuffer(file.get(), kChunk);
+  std::string text;
+  std::vector<char> chunk(kChunk);
+  for (;;) {
+    const int got = gzread(file.get(), chunk.data(), kChunk);
+    int code = Z_OK;
+    const char* why = gzerror(file.get(), &code);
+    if (got < 0 || (code != Z_OK && code != Z_STREAM_END))
+      fail_to_read(path, code == Z_ERRNO       ? std::strerror(errno)
+                         : code == Z_BUF_ERROR ? "the compressed file ends too early"
+                                               : why);
+    if (got == 0) return text;
+    if (text.size() + static_cast<std::size_t>(got) > max_bytes)
+      fail_to_read(path, "it has more than " + std::to_string(max_bytes) + " bytes of text");
+    text.append(chunk.data(), static_cast<std::size_t>(got));
+  }
+}
+
+}  // namespace
+
+void save_trace(const Trace& trace, const std::string& path) {
+  AtomicFile file(path);
+  FileSink sink(file);
+  if (path.ends_with(".gz")) {
+    GzipSink gzip(sink);
+    write_trace(trace, gzip);
+    gzip.finish();
+  } else {
+    write_trace(trace, sink);
+  }
+  file.commit();
+}
+
+Trace load_trace(const std::string& path, const ReadLimits& limits) {
+  return trace_from_json(read_all(path, limits.max_bytes), printable_name(path));
+}
+
+}  // namespace lrb::trace

@@ -1,0 +1,75 @@
+#include "trace/trace_metadata.hpp"
+
+#include <array>
+
+#include "trace/json_parts.hpp"
+
+namespace lrb::trace {
+
+namespace {
+
+/// Row-major 3x4, as in pose files.
+void write_pose(JsonWriter& w, const Pose& pose) {
+  w.begin_array();
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column < 3; ++column) w.value(pose.r(row, column));
+    w.value(pose.t(row));
+  }
+  w.end_array();
+}
+
+void write_step(JsonWriter& w, const Step& s, std::size_t bodies) {
+  w.begin_object();
+  w.member("index", s.index).member("first_event", s.first_event).member("events_seen", s.events_seen);
+  w.key("pose_a");
+  write_pose(w, s.pose_a);
+  if (bodies > 1) {
+    w.key("pose_b");
+    write_pose(w, s.pose_b);
+  }
+  if (s.finished) {
+    w.key("result").begin_object();
+    w.member("relation", name_of(s.result.relation));
+    w.member("interiors_overlap", name_of(s.result.interiors_overlap));
+    w.member("pairs", s.result.pair_count).member("fingerprint", to_hex(s.result.fingerprint));
+    w.key("counters");
+    write_json(w, s.result.counters);
+    w.end_object();
+  }
+  w.end_object();
+}
+
+void write_totals(JsonWriter& w, const Trace& t) {
+  std::array<std::uint64_t, kEventKinds> totals{};
+  for (const Event& e : t.events) ++totals[static_cast<std::size_t>(e.kind)];
+  w.begin_object();
+  for (std::size_t k = 0; k < kEventKinds; ++k) w.member(name_of(static_cast<EventKind>(k)), totals[k]);
+  w.end_object();
+}
+
+}  // namespace
+
+void write_metadata(const Trace& trace, JsonOut& out) {
+  const TraceHeader& h = trace.header;
+  JsonWriter w(out, 2);
+  w.begin_object();
+  w.member("format", "lrbscope trace").member("version", kTraceVersion).member("lrbscope", h.lrbscope);
+  w.key("scenario");
+  write_scenario(w, h);
+  w.member("clock", name_of(h.clock));
+  w.key("events");
+  write_event_counts(w, trace);
+  w.key("totals");
+  write_totals(w, trace);
+  w.key("request");
+  write_json(w, h.request);
+  w.key("bodies").begin_array();
+  for (const BodyInfo& b : h.bodies) write_json(w, b);
+  w.end_array();
+  w.key("steps").begin_array();
+  for (const Step& s : trace.steps) write_step(w, s, h.bodies.size());
+  w.end_array();
+  w.end_object();
+}
+
+}  // namespace lrb::trace
