@@ -27,6 +27,7 @@ inline constexpr Rgba kRule{205, 208, 212};
 /// Contacts: darker than vermillion, so that they stand out from both bodies also in grey.
 inline constexpr Rgba kContact{196, 18, 48};
 inline constexpr Rgba kRefining = kGreen;
+inline constexpr Rgba kRefining2d = mix(kGreen, kWhite, 0.4);  ///< as a fill, under lines
 inline constexpr Rgba kUnderTest = kYellow;
 
 /// The two bodies: blue and orange, far apart in brightness too.

@@ -7,7 +7,7 @@
 #include <doctest/doctest.h>
 
 #include "render/screen_mesh.hpp"
-#include "tests/render/shapes.hpp"
+#include "tests/render/triangles.hpp"
 
 using namespace lrb;
 using Eigen::Vector3d;
@@ -53,10 +53,10 @@ TEST_CASE("the summary counts by kind and layer") {
   DrawList list;
   DrawTriangle t;
   t.colour = {1, 2, 3};
-  test::add(list, test::box({0, 0, 0}, {1, 1, 1}), t);
+  test::add(list, test::box_triangles({0, 0, 0}, {1, 1, 1}), t);
   t.layer = Layer::translucent;
   t.colour = {4, 5, 6, 70};
-  test::add(list, test::box({0, 0, 0}, {2, 2, 2}), t);
+  test::add(list, test::box_triangles({0, 0, 0}, {2, 2, 2}), t);
   list.lines.push_back({{{0, 0, 0}, {1, 1, 1}}, false, {9, 9, 9}});
   list.labels.push_back({{0, 0, 0}, "origin"});
   CHECK(summary(list) ==
@@ -71,7 +71,7 @@ TEST_CASE("the summary counts by kind and layer") {
 
 TEST_CASE("corners lie on the grid of 1/256 pixel") {
   DrawList list;
-  test::add(list, test::icosphere(2), {});
+  test::add(list, test::sphere_triangles(2), {});
   const auto points = extent_points(list);
   const Camera camera = fit_camera(points, 641, 359);
   const Projection projection(camera, 641, 359, bounds(list));
@@ -103,7 +103,7 @@ TEST_CASE("edge distances are pixels on the screen") {
 
 TEST_CASE("what lies behind a camera within the scene is clipped") {
   DrawList list;
-  test::add(list, test::icosphere(2, 1), {});
+  test::add(list, test::sphere_triangles(2, 1), {});
   Camera camera;
   camera.eye = {0, 0, 0.2};
   camera.target = {0, 0, 0.9};

@@ -10,7 +10,8 @@
 #include "render/palette.hpp"
 #include "render/png.hpp"
 #include "render/rasterize.hpp"
-#include "tests/render/shapes.hpp"
+#include "tests/render/scene_gallery.hpp"
+#include "tests/render/triangles.hpp"
 
 using namespace lrb;
 using Eigen::Vector3d;
@@ -23,17 +24,17 @@ DrawList two_bodies() {
   solid.edges = 7;
   solid.edge_style = list.edge_style({{20, 20, 20, 150}, 0.9F});
   solid.colour = {86, 140, 200, 255};
-  test::add(list, test::icosphere(4, 1, {-0.7, 0, 0}), solid);
+  test::add(list, test::sphere_triangles(4, 1, {-0.7, 0, 0}), solid);
   solid.colour = {230, 170, 60, 255};
-  test::add(list, test::icosphere(3, 0.8, {0.8, 0.2, 0.2}), solid, 100000);
+  test::add(list, test::sphere_triangles(3, 0.8, {0.8, 0.2, 0.2}), solid, 100000);
   DrawTriangle lid = solid;
   lid.layer = Layer::translucent;
   lid.colour = {86, 140, 200, 60};
   lid.edge_style = list.edge_style({{30, 60, 110, 160}, 1.2F});
-  test::add(list, test::icosphere(0, 1.35, {-0.7, 0, 0}), lid);
+  test::add(list, test::sphere_triangles(0, 1.35, {-0.7, 0, 0}), lid);
   lid.colour = {230, 170, 60, 60};
   lid.edge_style = list.edge_style({{150, 100, 10, 160}, 1.2F});
-  test::add(list, test::icosphere(0, 1.1, {0.8, 0.2, 0.2}), lid);
+  test::add(list, test::sphere_triangles(0, 1.1, {0.8, 0.2, 0.2}), lid);
   DrawLine curve;
   curve.closed = true;
   const Vector3d d = Vector3d(1.5, 0.2, 0.2), n = d.normalized();
@@ -132,5 +133,6 @@ int main(int argc, char** argv) {
     colours.fill({i * 150, 215, 150, 70}, {grey, grey, grey});
   }
   write_png(colours, folder + "/colours.png");
+  test::scene_gallery(folder);
   return 0;
 }

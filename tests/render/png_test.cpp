@@ -27,7 +27,8 @@ Image noise(int width, int height, bool opaque) {
 }
 
 struct Folder {
-  fs::path path = fs::temp_directory_path() / std::string("lrb_png_test_").append(std::to_string(std::random_device()()));
+  fs::path path =
+      fs::temp_directory_path() / std::string("lrb_png_test_").append(std::to_string(std::random_device()()));
   Folder() { fs::create_directories(path); }
   ~Folder() { fs::remove_all(path); }
   std::string operator/(const char* name) const { return (path / name).string(); }

@@ -11,7 +11,7 @@
 #include "engine/error.hpp"
 #include "render/offscreen.hpp"
 #include "tests/render/font_guard.hpp"
-#include "tests/render/shapes.hpp"
+#include "tests/render/triangles.hpp"
 
 using namespace lrb;
 using Eigen::Vector3d;
@@ -276,7 +276,7 @@ TEST_CASE("cells that share segments leave no gap between them") {
 TEST_CASE("ids name the face seen at each pixel") {
   DrawList list;
   DrawTriangle t;
-  test::add(list, test::icosphere(3), t, 1000);
+  test::add(list, test::sphere_triangles(3), t, 1000);
   const auto points = extent_points(list);
   const Camera camera = fit_camera(points, 300, 200);
   const Projection projection(camera, 300, 200, bounds(list));
@@ -312,10 +312,10 @@ TEST_CASE("the same picture twice is the same to the byte, also after others and
   DrawList list;
   DrawTriangle t;
   t.edges = 7;
-  test::add(list, test::icosphere(3), t);
+  test::add(list, test::sphere_triangles(3), t);
   t.layer = Layer::translucent;
   t.colour = {0, 90, 200, 70};
-  test::add(list, test::icosphere(1, 1.3), t);
+  test::add(list, test::sphere_triangles(1, 1.3), t);
   const Camera camera = fit_camera(extent_points(list), 320, 240);
   const Image first = rasterizer().draw(list, camera, size(320, 240));
   rasterizer().draw(list, camera, size(111, 97, 1));

@@ -3,7 +3,7 @@
 #include <cstdio>
 
 #include "render/rasterize.hpp"
-#include "tests/render/shapes.hpp"
+#include "tests/render/triangles.hpp"
 
 using namespace lrb;
 
@@ -12,12 +12,12 @@ int main() {
   DrawTriangle t;
   t.edges = 7;
   t.colour = {52, 126, 190};
-  test::add(list, test::icosphere(3), t);
-  test::add(list, test::box({0.2, -0.4, -0.3}, {1.9, 0.7, 0.5}), t);
+  test::add(list, test::sphere_triangles(3), t);
+  test::add(list, test::box_triangles({0.2, -0.4, -0.3}, {1.9, 0.7, 0.5}), t);
   t.layer = Layer::translucent;
   t.colour = {230, 159, 0, 70};
-  test::add(list, test::icosphere(1, 1.3), t);
-  test::add(list, test::icosphere(1, 1.2, {0.5, 0.1, 0}), t);
+  test::add(list, test::sphere_triangles(1, 1.3), t);
+  test::add(list, test::sphere_triangles(1, 1.2, {0.5, 0.1, 0}), t);
   list.lines.push_back(
       {{{-1, -1, -1}, {1, 1, 1}, {1, -1, 0}}, true, {196, 18, 48}, 3, 5, kWhite, 1, Layer::on_top});
   list.points.push_back({{0, 1, 0}, {196, 18, 48}, 6, kWhite, 2, Layer::on_top});

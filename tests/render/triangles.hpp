@@ -14,7 +14,7 @@ namespace lrb::test {
 using Triangles = std::vector<std::array<Eigen::Vector3d, 3>>;
 
 /// A sphere of 20 * 4^levels triangles.
-inline Triangles icosphere(int levels, double radius = 1, const Eigen::Vector3d& centre = {0, 0, 0}) {
+inline Triangles sphere_triangles(int levels, double radius = 1, const Eigen::Vector3d& centre = {0, 0, 0}) {
   const double g = (1 + std::sqrt(5.0)) / 2;
   const std::array<Eigen::Vector3d, 12> v = {{{-1, g, 0},
                                               {1, g, 0},
@@ -48,7 +48,7 @@ inline Triangles icosphere(int levels, double radius = 1, const Eigen::Vector3d&
 }
 
 /// The twelve triangles of a box.
-inline Triangles box(const Eigen::Vector3d& lo, const Eigen::Vector3d& hi) {
+inline Triangles box_triangles(const Eigen::Vector3d& lo, const Eigen::Vector3d& hi) {
   const auto at = [&](int i) {
     return Eigen::Vector3d((i & 1) ? hi.x() : lo.x(), (i & 2) ? hi.y() : lo.y(), (i & 4) ? hi.z() : lo.z());
   };

@@ -1,0 +1,254 @@
+#include "render/scene.hpp"
+
+#include <algorithm>
+#include <map>
+
+#include "engine/error.hpp"
+#include "render/palette.hpp"
+#include "render/scene_parts.hpp"
+
+namespace lrb {
+namespace scene {
+
+std::string Context::name() const {
+  return body.name.empty() ? (side == Side::a ? "A" : "B") : body.name;
+}
+
+bool Context::isolating() const {
+  return !options.isolate[0].empty() || !options.isolate[1].empty();
+}
+
+bool Context::isolated(RegionId r) const {
+  return std::find(isolated().begin(), isolated().end(), r) != isolated().end();
+}
+
+bool Context::refining(RegionId r) const {
+  return std::find(refining().begin(), refining().end(), r) != refining().end();
+}
+
+std::vector<Eigen::Vector3d> Context::corners(FaceId f, const Eigen::Vector3d& moved) const {
+  std::vector<Eigen::Vector3d> x;
+  for (const VertexId v : body.rep->face(f)) x.push_back(body.pose.apply(body.rep->vertices()[v]) + moved);
+  return x;
+}
+
+Eigen::Vector3d Context::middle(std::span<const FaceId> faces) const {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  std::size_t count = 0;
+  for (const FaceId f : faces) {
+    for (const Eigen::Vector3d& x : corners(f)) sum += x;
+    count += body.rep->face(f).size();
+  }
+  return count > 0 ? Eigen::Vector3d(sum / static_cast<double>(count)) : sum;
+}
+
+Rgba Context::region_colour(RegionId r) const {
+  switch (options.colour_by) {
+    case ColourBy::layer:
+      return palette::viridis(layers > 1 ? static_cast<double>(body.rep->layer(r)) / (layers - 1) : 1.0);
+    case ColourBy::region:
+      return palette::category(r);
+    default:
+      return palette::body(side);
+  }
+}
+
+Rgba Context::colour_of(FaceId f, CellId cell) const {
+  if (options.colour_by == ColourBy::value) {
+    if (!has_value(f)) return mix(palette::body(side), kWhite, 0.78);
+    const double range = value_high - value_low;
+    return palette::viridis(range > 0 ? (body.face_values[f] - value_low) / range : 0);
+  }
+  if (is_region(cell)) return region_colour(cell);
+  return options.colour_by == ColourBy::kind ? palette::body(side) : mix(palette::body(side), kWhite, 0.75);
+}
+
+void Context::add_key(LegendItem::Mark mark, Rgba colour, const std::string& text) const {
+  const auto same = [&](const LegendItem& i) { return i.text == text; };
+  if (std::none_of(out.key.begin(), out.key.end(), same)) out.key.push_back({mark, colour, text});
+}
+
+std::vector<Chain> chains(const std::vector<std::array<VertexId, 2>>& segments) {
+  std::multimap<VertexId, std::size_t> from;
+  std::map<VertexId, int> balance;  // ends here minus starts here: a chain that does not close starts at -1
+  for (std::size_t i = 0; i < segments.size(); ++i) {
+    from.emplace(segments[i][0], i);
+    --balance[segments[i][0]];
+    ++balance[segments[i][1]];
+  }
+  std::vector<Chain> out;
+  const auto follow = [&](VertexId v) {
+    Chain chain{{v}, false};
+    for (auto next = from.find(v); next != from.end(); next = from.find(v)) {
+      v = segments[next->second][1];
+      from.erase(next);
+      if (v == chain.vertices.front()) {
+        chain.closed = true;
+        break;
+      }
+      chain.vertices.push_back(v);
+    }
+    out.push_back(std::move(chain));
+  };
+  for (const auto& [v, surplus] : balance) {
+    for (int i = surplus; i < 0; ++i) {
+      if (from.contains(v)) follow(v);
+    }
+  }
+  while (!from.empty()) follow(from.begin()->first);
+  return out;
+}
+
+}  // namespace scene
+
+namespace {
+
+using Mark = LegendItem::Mark;
+
+/// A contact smaller than this share of the scene gets a dot, so that it can be found.
+constexpr double kTinyContact = 0.01;
+
+void check(std::span<const SceneBody> bodies, const SceneHighlight& highlight, const SceneOptions& options) {
+  if (bodies.empty() || bodies.size() > 2) throw InputError("a scene needs one or two bodies");
+  for (std::size_t i = 0; i < 2; ++i) {
+    for (const auto* regions : {&highlight.refining[i], &options.isolate[i]}) {
+      for (const RegionId r : *regions) {
+        if (i < bodies.size() && r < bodies[i].rep->region_count()) continue;
+        throw InputError("body " + std::string(i == 0 ? "A" : "B") + " has no region " + std::to_string(r) +
+                         ": regions are numbered from 0");
+      }
+    }
+    if (!highlight.under_test) continue;
+    if (i >= bodies.size() || (*highlight.under_test)[i] >= bodies[i].rep->simplex_count()) {
+      throw InputError("the pair under test names simplex " + std::to_string((*highlight.under_test)[i]) +
+                       ", which the body does not have");
+    }
+  }
+  if (bodies.size() == 2 && bodies[0].rep->dim() != bodies[1].rep->dim()) {
+    throw InputError("a 2D body and a 3D body cannot be drawn into one scene");
+  }
+}
+
+/// Values of the scale bar: as asked for, else from zero to the largest there is.
+std::array<double, 2> value_range(std::span<const SceneBody> bodies, const SceneOptions& options) {
+  if (options.value_range) return *options.value_range;
+  double high = 0;
+  for (const SceneBody& b : bodies) {
+    for (const double v : b.face_values) high = std::max(high, v);
+  }
+  return {0, high};
+}
+
+void add_pair_under_test(std::span<const SceneBody> bodies, const SceneHighlight& highlight,
+                         const SceneOptions& options, Scene& out) {
+  for (std::size_t i = 0; i < 2; ++i) {
+    const SceneBody& body = bodies[i];
+    std::array<VertexId, 3> ids{};
+    body.rep->simplex((*highlight.under_test)[i], ids.data());
+    const auto corner = [&](int k) {
+      return body.pose.apply(body.rep->vertices()[ids[static_cast<std::size_t>(k)]]);
+    };
+    DrawLine outline;
+    const int n = body.rep->simplex_size();
+    for (int k = 0; k < n; ++k) outline.points.push_back(corner(k));
+    outline.closed = n == 3;
+    outline.colour = palette::edge_of(palette::body(static_cast<Side>(i)));
+    outline.width = 2.4F * options.scale;
+    outline.halo = palette::kUnderTest;
+    outline.halo_width = (n == 2 ? 3.0F : 1.4F) * options.scale;
+    outline.layer = Layer::on_top;
+    out.list.lines.push_back(outline);
+    if (n != 3) continue;
+    DrawTriangle t;
+    t.x = {corner(0), corner(1), corner(2)};
+    t.colour = with_alpha(palette::kUnderTest, 200);
+    t.layer = Layer::on_top;
+    t.lit = false;
+    t.nudge = 2;
+    out.list.triangles.push_back(t);
+  }
+  out.key.push_back({Mark::solid, palette::kUnderTest, "pair under test"});
+}
+
+void add_contacts(const SceneHighlight& highlight, const SceneOptions& options, double size, bool flat,
+                  Scene& out) {
+  DrawPoint dot;
+  dot.colour = palette::kContact;
+  dot.radius = 4.5F * options.scale;
+  dot.halo = kWhite;
+  dot.halo_width = 1.6F * options.scale;
+  dot.layer = Layer::on_top;
+  bool lines = false;
+  for (const ContactRegion& region : highlight.contacts) {
+    Eigen::AlignedBox3d curves;
+    for (const ContactLoop& loop : region.loops) {
+      if (loop.points.size() == 1) {
+        dot.x = loop.points[0];
+        out.list.points.push_back(dot);
+        continue;
+      }
+      for (const auto& x : loop.points) curves.extend(x);
+      DrawLine line;
+      line.points = loop.points;
+      line.closed = loop.closed;
+      line.colour = palette::kContact;
+      line.width = 3 * options.scale;
+      line.halo = kWhite;
+      line.halo_width = 1.5F * options.scale;
+      line.layer = Layer::on_top;
+      out.list.lines.push_back(line);
+      lines = true;
+    }
+    if (!curves.isEmpty() && curves.diagonal().norm() < kTinyContact * size) {
+      dot.x = curves.center();
+      out.list.points.push_back(dot);
+    }
+  }
+  if (highlight.contacts.empty()) return;
+  out.key.push_back({lines ? Mark::line : Mark::point, palette::kContact, "contact"});
+  if (lines && !flat) out.key.push_back({Mark::dashed, palette::kContact, "contact, hidden"});
+}
+
+}  // namespace
+
+Scene build_scene(std::span<const SceneBody> bodies, const SceneHighlight& highlight,
+                  const SceneOptions& options) {
+  check(bodies, highlight, options);
+  const auto [low, high] = value_range(bodies, options);
+  const bool flat = bodies[0].rep->dim() == 2;
+  std::uint32_t layers = 1;
+  for (const SceneBody& b : bodies) layers = std::max(layers, b.rep->layer_count());
+  Scene out;
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    const scene::Context context{bodies[i], static_cast<Side>(i), highlight, options, low, high, layers, out};
+    flat ? scene::add_body_2d(context) : scene::add_body_3d(context);
+  }
+  if (!highlight.refining[0].empty() || !highlight.refining[1].empty()) {
+    out.key.push_back(flat ? LegendItem{Mark::solid, palette::kRefining2d, "region being refined"}
+                           : LegendItem{Mark::translucent, palette::kRefining, "region being refined"});
+  }
+  const double size = bounds(out.list).isEmpty() ? 0 : bounds(out.list).diagonal().norm();
+  if (highlight.under_test) add_pair_under_test(bodies, highlight, options, out);
+  add_contacts(highlight, options, size, flat, out);
+  if (options.colour_by == ColourBy::value) out.scale = ScaleBar{options.value_name, low, high};
+  if (options.colour_by == ColourBy::layer) {
+    out.scale = ScaleBar{"layer, 0 lies on the solid", 0, static_cast<double>(layers - 1)};
+  }
+  return out;
+}
+
+std::vector<Eigen::Vector3d> body_points(const LrbRep& rep, const Pose& pose) {
+  std::vector<Eigen::Vector3d> out;
+  for (const auto& x : rep.vertices()) out.push_back(pose.apply(x));
+  return out;
+}
+
+std::vector<Eigen::Vector3d> contact_points(std::span<const ContactRegion> contacts) {
+  std::vector<Eigen::Vector3d> out;
+  for (const ContactRegion& r : contacts) {
+    for (const ContactLoop& loop : r.loops) out.insert(out.end(), loop.points.begin(), loop.points.end());
+  }
+  return out;
+}
+
+}  // namespace lrb

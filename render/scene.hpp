@@ -1,0 +1,86 @@
+#pragma once
+/// LRB-reps, wrapper states, poses and what is to be pointed out -> a draw list with its legend. Pure data in
+/// and out: no graphics library, no files.
+///
+/// 3D: real faces are solid, in full colour where the wrapper has come down to them and paler where it has
+/// not; pseudo faces of the wrapper's boundary are translucent, with outlines. 2D: the solid dark, included
+/// regions light (the paper's figure 1), the wrapper's boundary as a strong line.
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "engine/exact/simplex_test.hpp"
+#include "engine/lrb/lrb_rep.hpp"
+#include "engine/lrb/pose.hpp"
+#include "engine/lrb/wrapper.hpp"
+#include "engine/query/contact.hpp"
+#include "render/draw_list.hpp"
+#include "render/overlay.hpp"
+
+namespace lrb {
+
+struct SceneBody {
+  const LrbRep* rep = nullptr;
+  const Wrapper* wrapper = nullptr;  ///< null: the real faces alone
+  Pose pose;
+  std::span<const double> face_values;  ///< (|F|) for ColourBy::value; empty: none
+  std::string name;                     ///< in the legend; empty: "A", "B"
+};
+
+enum class ColourBy : std::uint8_t {
+  kind,    ///< body colours; real and pseudo faces told apart
+  layer,   ///< pseudo faces by the layer of the region they hide, viridis
+  region,  ///< pseudo faces by the region they hide, a category each
+  value,   ///< faces by SceneBody::face_values, viridis: face tests, refinements, ...
+};
+
+/// What the event at hand is about.
+struct SceneHighlight {
+  std::array<std::vector<RegionId>, 2> refining;       ///< of A and B
+  std::optional<std::array<SimplexId, 2>> under_test;  ///< a simplex of A, one of B
+  std::span<const ContactRegion> contacts;
+};
+
+struct SceneOptions {
+  ColourBy colour_by = ColourBy::kind;
+  std::string value_name = "face tests";             ///< ColourBy::value: for the scale bar
+  std::optional<std::array<double, 2>> value_range;  ///< nothing: from 0 to the largest value of the scene
+  std::array<std::vector<RegionId>, 2> isolate;  ///< of A and B; if any: only these, and the rest as ghosts
+  bool ghost_rest = true;                        ///< false: the rest is left out
+  double explode = 0;                            ///< included regions move outward by this share of their
+                                                 ///< distance from the body's centre; 0: in place, as lids
+  bool real_edges = true;
+  float scale = 1;  ///< of line widths and points: for large pictures and print
+};
+
+struct Scene {
+  DrawList list;
+  std::vector<LegendItem> key;
+  std::optional<ScaleBar> scale;
+};
+
+/// Triangles and fills carry the id face_id() (fills of regions: region_id()). One or two bodies of the same
+/// dimension; throws InputError otherwise, or if a highlight names what is not there.
+Scene build_scene(std::span<const SceneBody> bodies, const SceneHighlight& highlight = {},
+                  const SceneOptions& options = {});
+
+/// Ids in the id pass: the top bit tells the body, the next one regions from faces.
+constexpr std::uint32_t face_id(Side side, FaceId f) {
+  return (side == Side::b ? 1U << 31 : 0U) | f;
+}
+constexpr std::uint32_t region_id(Side side, RegionId r) {
+  return face_id(side, r) | 1U << 30;
+}
+
+/// All points that a body can show in any wrapper state, posed: what cameras of a whole sequence should be
+/// fitted to.
+std::vector<Eigen::Vector3d> body_points(const LrbRep& rep, const Pose& pose);
+
+/// All points of the contact regions.
+std::vector<Eigen::Vector3d> contact_points(std::span<const ContactRegion> contacts);
+
+}  // namespace lrb

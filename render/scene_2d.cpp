@@ -1,0 +1,142 @@
+#include <algorithm>
+#include <array>
+#include <vector>
+
+#include "render/palette.hpp"
+#include "render/scene_parts.hpp"
+
+namespace lrb::scene {
+namespace {
+
+using Eigen::Vector3d;
+using Mark = LegendItem::Mark;
+
+constexpr double kGhost = 0.82;  ///< how far ghosts are from their colour towards white
+
+class Builder {
+ public:
+  explicit Builder(const Context& c)
+      : c_(c), rep_(*c.body.rep), body_(palette::body(c.side)), scale_(c.options.scale) {}
+
+  void run() {
+    for (RegionId r = 0; r < rep_.region_count(); ++r) region(r);
+    solid();
+    if (c_.isolating() || c_.options.explode > 0) {
+      for (RegionId r = 0; r < rep_.region_count(); ++r) {
+        if (shown(r))
+          add_lines({rep_.collector(r).begin(), rep_.collector(r).end()}, palette::edge_of(body_), 1.4F, 0,
+                    moved(r));
+      }
+    } else if (c_.body.wrapper != nullptr) {
+      region_lines();
+      wrapper_line();
+    }
+  }
+
+ private:
+  bool shown(RegionId r) const {
+    return c_.isolating() ? c_.isolated(r) : c_.body.wrapper != nullptr && (c_.included(r) || c_.refining(r));
+  }
+
+  Vector3d moved(RegionId r) const {
+    if (!(c_.options.explode > 0)) return Vector3d::Zero();
+    return c_.options.explode * (c_.middle(rep_.collector(r)) - c_.middle(rep_.outermost_faces()));
+  }
+
+  void region(RegionId r) {
+    if (!shown(r)) return;
+    DrawFill fill;
+    fill.id = region_id(c_.side, r);
+    const bool telling = c_.options.colour_by == ColourBy::layer || c_.options.colour_by == ColourBy::region;
+    fill.colour = telling ? mix(c_.region_colour(r), kWhite, 0.35) : with_alpha(body_, 78);
+    if (c_.refining(r)) fill.colour = palette::kRefining2d;
+    for (const FaceId f : rep_.collector(r)) add_segment(fill, f, moved(r));
+    c_.out.list.fills.push_back(std::move(fill));
+    if (!telling && !c_.refining(r)) c_.add_key(Mark::translucent, body_, c_.name() + ", regions");
+    if (c_.options.colour_by == ColourBy::region)
+      c_.add_key(Mark::solid, palette::category(0), "regions, a colour each");
+  }
+
+  void solid() {
+    DrawFill fill;
+    fill.id = region_id(c_.side, 0) | ((1U << 30) - 1);
+    const bool ghost = c_.isolating();
+    fill.colour = palette::solid_2d(body_);
+    if (ghost && !c_.options.ghost_rest) return;
+    if (ghost) fill.colour = mix(fill.colour, kWhite, kGhost);
+    for (FaceId f = 0; f < rep_.real_face_count(); ++f) add_segment(fill, f, Vector3d::Zero());
+    c_.out.list.fills.push_back(std::move(fill));
+    c_.add_key(Mark::solid, palette::solid_2d(body_), c_.name() + ", the solid");
+    std::vector<FaceId> real(rep_.real_face_count());
+    for (FaceId f = 0; f < real.size(); ++f) real[f] = f;
+    if (c_.options.colour_by == ColourBy::value && !c_.body.face_values.empty()) {
+      for (const FaceId f : real) add_lines({f}, c_.colour_of(f, kSolid), 4, 0);
+    } else {
+      add_lines(real, mix(palette::edge_of(body_), kWhite, ghost ? 0.6 : 0.0), 1.2F, 0);
+    }
+  }
+
+  /// Thin lines between regions; of those refined away a dashed trace.
+  void region_lines() {
+    std::vector<FaceId> inside, gone;
+    for (FaceId f = rep_.real_face_count(); f < rep_.face_count(); ++f) {
+      const CellId in = rep_.inner_cell(f);
+      if (!is_region(in)) continue;
+      if (c_.refining(in)) {
+        add_lines({f}, palette::edge_of(palette::kRefining), 2.4F, 0);
+      } else if (c_.included(in) && !c_.on_boundary(f)) {
+        inside.push_back(f);
+      } else if (!c_.on_boundary(f)) {
+        gone.push_back(f);
+      }
+    }
+    add_lines(inside, mix(body_, kWhite, 0.15), 1.1F, 0);
+    add_lines(gone, mix(body_, kWhite, 0.45), 1, 5);
+    if (!gone.empty()) c_.add_key(Mark::dashed, mix(body_, kWhite, 0.45), c_.name() + ", refined away");
+  }
+
+  void wrapper_line() {
+    const std::vector<FaceId> boundary = c_.body.wrapper->boundary();
+    const Rgba colour = palette::edge_of(body_);
+    if (c_.options.colour_by == ColourBy::value && !c_.body.face_values.empty()) {
+      for (const FaceId f : boundary) add_lines({f}, c_.colour_of(f, kSolid), 4, 0);
+      return;
+    }
+    add_lines(boundary, colour, 3, 0);
+    c_.add_key(Mark::line, colour, c_.name() + ", wrapper");
+  }
+
+  void add_segment(DrawFill& fill, FaceId f, const Vector3d& by) const {
+    const std::vector<Vector3d> x = c_.corners(f, by);
+    fill.segments.push_back({x[0], x[1]});
+  }
+
+  void add_lines(const std::vector<FaceId>& faces, Rgba colour, float width, float dash,
+                 const Vector3d& by = Vector3d::Zero()) {
+    std::vector<std::array<VertexId, 2>> segments;
+    for (const FaceId f : faces) segments.push_back({rep_.face(f)[0], rep_.face(f)[1]});
+    for (const Chain& chain : chains(segments)) {
+      DrawLine line;
+      for (const VertexId v : chain.vertices)
+        line.points.push_back(c_.body.pose.apply(rep_.vertices()[v]) + by);
+      line.closed = chain.closed;
+      line.colour = colour;
+      line.width = width * scale_;
+      line.dash = dash * scale_;
+      c_.out.list.lines.push_back(std::move(line));
+    }
+  }
+
+  const Context& c_;
+  const LrbRep& rep_;
+  Rgba body_;
+  float scale_;
+};
+
+}  // namespace
+
+void add_body_2d(const Context& c) {
+  Builder(c).run();
+}
+
+}  // namespace lrb::scene

@@ -1,0 +1,222 @@
+#include <algorithm>
+#include <array>
+#include <vector>
+
+#include "render/palette.hpp"
+#include "render/scene_parts.hpp"
+
+namespace lrb::scene {
+namespace {
+
+using Eigen::Vector3d;
+using Mark = LegendItem::Mark;
+
+/// Pseudo faces: a whitish veil, so that what they cover looks paler than what lies bare.
+constexpr std::uint8_t kLidAlpha = 124;
+constexpr double kLidPale = 0.70;            ///< their colour, from the body's towards white
+constexpr std::uint8_t kTellingAlpha = 175;  ///< where their colour says something
+constexpr std::uint8_t kRefiningAlpha = 120;
+constexpr std::uint8_t kGhostAlpha = 14;
+constexpr double kLayerStep = 0.12;  ///< exploded: extra way per layer, as a share of the body's radius
+
+class Builder {
+ public:
+  explicit Builder(const Context& c) : c_(c), rep_(*c.body.rep) {
+    const Rgba body = palette::body(c.side);
+    const auto ink = palette::edge_of(body);
+    real_edges_ = c.out.list.edge_style({with_alpha(ink, 150), 0.9F * c.options.scale});
+    pale_edges_ = c.out.list.edge_style({with_alpha(ink, 90), 0.8F * c.options.scale});
+    lid_line_ = {with_alpha(mix(body, ink, 0.55), 235), 1.3F * c.options.scale};
+  }
+
+  void run() {
+    if (c_.isolating()) {
+      isolate();
+    } else if (c_.options.explode > 0) {
+      explode();
+    } else {
+      wrapper();
+    }
+    for (const RegionId r : c_.refining()) refining(r);
+  }
+
+ private:
+  // ---- the usual picture
+
+  void wrapper() {
+    real_faces();
+    if (c_.body.wrapper == nullptr) return;
+    std::vector<FaceId> lids;
+    for (const FaceId f : c_.body.wrapper->boundary()) {
+      if (!rep_.is_real(f) && !(is_region(rep_.inner_cell(f)) && c_.refining(rep_.inner_cell(f))))
+        lids.push_back(f);
+    }
+    const bool telling = c_.options.colour_by != ColourBy::kind;
+    for (const FaceId f : lids) add_face(f, translucent(lid_colour(f)));
+    add_outlines(lids, lid_line_);
+    if (lids.empty()) return;
+    if (!telling) c_.add_key(Mark::translucent, palette::body(c_.side), c_.name() + ", pseudo faces");
+    if (c_.options.colour_by == ColourBy::region) {
+      c_.add_key(Mark::translucent, palette::category(0), "pseudo faces, a colour for each region");
+    }
+  }
+
+  void real_faces() {
+    for (FaceId f = 0; f < rep_.real_face_count(); ++f) {
+      DrawTriangle t;
+      t.colour = c_.colour_of(f, kSolid);
+      if (is_region(rep_.outer_cell(f)) && c_.refining(rep_.outer_cell(f))) {
+        t.colour = mix(t.colour, palette::kRefining, 0.6);
+      }
+      t.edges = c_.options.real_edges ? 7 : 0;
+      t.edge_style = c_.body.wrapper != nullptr && !c_.on_boundary(f) ? pale_edges_ : real_edges_;
+      add_face(f, t);
+    }
+    if (c_.options.colour_by == ColourBy::value) {
+      c_.add_key(Mark::solid, mix(palette::body(c_.side), kWhite, 0.78),
+                 c_.name() + ", faces without " + c_.options.value_name);
+    } else {
+      c_.add_key(Mark::solid, c_.colour_of(0, kSolid), c_.name() + ", real faces");
+    }
+  }
+
+  Rgba lid_colour(FaceId f) const {
+    const Rgba colour = c_.colour_of(f, rep_.inner_cell(f));
+    switch (c_.options.colour_by) {
+      case ColourBy::kind:
+        return with_alpha(mix(colour, kWhite, kLidPale), kLidAlpha);
+      case ColourBy::value:
+        return with_alpha(colour, c_.has_value(f) ? kTellingAlpha : kLidAlpha);
+      default:
+        return with_alpha(colour, kTellingAlpha);
+    }
+  }
+
+  void refining(RegionId r) {
+    std::vector<FaceId> lids(rep_.lids(r).begin(), rep_.lids(r).end()), floor;
+    for (const FaceId f : rep_.floor(r)) {
+      if (!rep_.is_real(f)) floor.push_back(f);
+    }
+    for (const FaceId f : lids) add_face(f, translucent(with_alpha(palette::kRefining, kRefiningAlpha), 2));
+    add_outlines(lids, {palette::edge_of(palette::kRefining), 2.2F * c_.options.scale});
+    add_outlines(floor, {with_alpha(palette::edge_of(palette::kRefining), 200), 1.3F * c_.options.scale});
+  }
+
+  // ---- regions on their own
+
+  void isolate() {
+    for (const RegionId r : c_.isolated()) region(r, Vector3d::Zero(), true);
+    if (!c_.isolated().empty()) {
+      const Rgba colour = c_.region_colour(c_.isolated().front());
+      c_.add_key(Mark::solid, colour,
+                 c_.name() + ", region " + std::to_string(c_.isolated().front()) +
+                     (c_.isolated().size() > 1 ? " and others" : ""));
+    }
+    if (!c_.options.ghost_rest) return;
+    for (FaceId f = 0; f < rep_.real_face_count(); ++f) {
+      if (is_region(rep_.outer_cell(f)) && c_.isolated(rep_.outer_cell(f)))
+        continue;  // the region's floor is drawn
+      add_face(f, translucent(with_alpha(palette::body(c_.side), kGhostAlpha)));
+    }
+    c_.add_key(Mark::translucent, palette::body(c_.side), c_.name() + ", the rest");
+  }
+
+  void explode() {
+    real_faces();
+    const Vector3d centre = c_.middle(rep_.outermost_faces());
+    double radius = 0;
+    for (const FaceId f : rep_.outermost_faces()) {
+      for (const Vector3d& x : c_.corners(f)) radius = std::max(radius, (x - centre).norm());
+    }
+    bool any = false;
+    for (RegionId r = 0; r < rep_.region_count(); ++r) {
+      if (c_.body.wrapper != nullptr && !c_.included(r)) continue;
+      const Vector3d out = c_.middle(rep_.collector(r)) - centre;
+      const double length = out.norm();
+      const double way = length + kLayerStep * radius * (1 + rep_.layer(r));
+      region(r, length > 0 ? Vector3d(out * (c_.options.explode * way / length)) : Vector3d::Zero(), false);
+      any = true;
+    }
+    if (any) {
+      const bool each = c_.options.colour_by == ColourBy::region;
+      c_.add_key(Mark::solid, each ? palette::category(0) : mix(palette::body(c_.side), kWhite, 0.5),
+                 each ? "regions, a colour each" : c_.name() + ", regions");
+    }
+  }
+
+  /// A region as a thing of its own: its floor solid, its lids too, or translucent so that the floor shows.
+  void region(RegionId r, const Vector3d& moved, bool open) {
+    Rgba colour = c_.region_colour(r);
+    if (c_.options.colour_by == ColourBy::kind) colour = mix(colour, kWhite, 0.5);
+    const Rgba ink = palette::edge_of(colour);
+    const std::uint8_t edges = c_.out.list.edge_style({with_alpha(ink, 170), 0.9F * c_.options.scale});
+    for (const FaceId f : rep_.collector(r)) {
+      const bool lid = rep_.inner_cell(f) == r;
+      DrawTriangle t;
+      t.colour = c_.options.colour_by == ColourBy::value ? c_.colour_of(f, r) : colour;
+      if (open && lid) {
+        t = translucent(with_alpha(t.colour, kTellingAlpha));
+      } else {
+        t.edges = 7;
+        t.edge_style = edges;
+      }
+      add_face(f, t, moved);
+    }
+    if (open) {
+      const std::vector<FaceId> lids(rep_.lids(r).begin(), rep_.lids(r).end());
+      add_outlines(lids, {ink, 1.8F * c_.options.scale});
+    }
+  }
+
+  // ---- helpers
+
+  static DrawTriangle translucent(Rgba colour, std::int8_t nudge = 1) {
+    DrawTriangle t;
+    t.colour = colour;
+    t.layer = Layer::translucent;
+    t.nudge = nudge;  // a lid on a real face, in a region without volume, is seen
+    return t;
+  }
+
+  void add_face(FaceId f, DrawTriangle like, const Vector3d& moved = Vector3d::Zero()) {
+    like.id = face_id(c_.side, f);
+    c_.out.list.add_polygon(c_.corners(f, moved), like);
+  }
+
+  /// Edges of faces as lines, each once: they keep their width at outlines, where edges of faces show half of
+  /// it.
+  void add_outlines(const std::vector<FaceId>& faces, const EdgeStyle& style) {
+    std::vector<std::array<VertexId, 2>> edges;
+    for (const FaceId f : faces) {
+      const auto corners = rep_.face(f);
+      for (std::size_t i = 0; i < corners.size(); ++i) {
+        const VertexId a = corners[i], b = corners[(i + 1) % corners.size()];
+        edges.push_back({std::min(a, b), std::max(a, b)});
+      }
+    }
+    std::sort(edges.begin(), edges.end());
+    edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+    for (const auto& [a, b] : edges) {
+      DrawLine line;
+      line.points = {c_.body.pose.apply(rep_.vertices()[a]), c_.body.pose.apply(rep_.vertices()[b])};
+      line.colour = style.colour;
+      line.width = style.width;
+      line.layer = Layer::translucent;
+      line.nudge = 2;
+      c_.out.list.lines.push_back(std::move(line));
+    }
+  }
+
+  const Context& c_;
+  const LrbRep& rep_;
+  std::uint8_t real_edges_ = 0, pale_edges_ = 0;
+  EdgeStyle lid_line_;
+};
+
+}  // namespace
+
+void add_body_3d(const Context& c) {
+  Builder(c).run();
+}
+
+}  // namespace lrb::scene

@@ -1,0 +1,268 @@
+#include "render/scene.hpp"
+
+#include <algorithm>
+#include <map>
+#include <set>
+
+#include <doctest/doctest.h>
+
+#include "engine/error.hpp"
+#include "render/camera.hpp"
+#include "render/palette.hpp"
+#include "render/rasterize.hpp"
+#include "render/scene_parts.hpp"
+#include "tests/render/bodies.hpp"
+
+using namespace lrb;
+using Eigen::Vector3d;
+
+namespace {
+
+struct Counts {
+  std::size_t opaque = 0, translucent = 0, on_top = 0;
+};
+
+Counts count(const DrawList& list) {
+  Counts n;
+  for (const DrawTriangle& t : list.triangles) {
+    ++(t.layer == Layer::opaque ? n.opaque : t.layer == Layer::translucent ? n.translucent : n.on_top);
+  }
+  return n;
+}
+
+std::set<std::uint32_t> ids(const DrawList& list, Layer layer) {
+  std::set<std::uint32_t> out;
+  for (const DrawTriangle& t : list.triangles) {
+    if (t.layer == layer) out.insert(t.id);
+  }
+  return out;
+}
+
+bool has_key(const Scene& scene, const std::string& text) {
+  return std::any_of(scene.key.begin(), scene.key.end(), [&](const LegendItem& i) { return i.text == text; });
+}
+
+}  // namespace
+
+TEST_CASE("the picture follows the wrapper: all real faces, and the lids of its boundary") {
+  const LrbRep rep = test::dented(test::icosphere(0), 2);
+  Wrapper wrapper(rep);
+  const std::vector<SceneBody> body = {{&rep, &wrapper, {}, {}, ""}};
+  for (int step = 0; step < 12; ++step) {
+    const Scene scene = build_scene(body);
+    const Counts n = count(scene.list);
+    CHECK(n.opaque == rep.real_face_count());
+    std::set<std::uint32_t> lids;
+    for (const FaceId f : wrapper.boundary()) {
+      if (!rep.is_real(f)) lids.insert(face_id(Side::a, f));
+    }
+    CHECK(ids(scene.list, Layer::translucent) == lids);
+    CHECK(has_key(scene, "A, pseudo faces"));
+    wrapper.refine(static_cast<RegionId>(step * 3));
+  }
+  wrapper.refine_all();
+  const Scene bare = build_scene(body);
+  CHECK(count(bare.list).translucent == 0);
+  CHECK(bare.list.lines.empty());
+  CHECK(!has_key(bare, "A, pseudo faces"));
+}
+
+TEST_CASE("each outline of the lids is drawn once") {
+  const LrbRep rep = test::dented(test::icosphere(0), 1);
+  const Wrapper wrapper(rep);
+  const Scene scene = build_scene(std::vector<SceneBody>{{&rep, &wrapper, {}, {}, ""}});
+  CHECK(scene.list.lines.size() == 30);  // the edges of an icosahedron
+}
+
+TEST_CASE("poses move bodies, names and sides are told apart") {
+  const LrbRep rep = test::dented(test::icosphere(0), 1);
+  const Pose pose = Pose::rotation({0, 1, 0}, 0.4, {3, 0, 0});
+  const std::vector<SceneBody> bodies = {{&rep, nullptr, {}, {}, "bowl"}, {&rep, nullptr, pose, {}, ""}};
+  const Scene scene = build_scene(bodies);
+  CHECK(has_key(scene, "bowl, real faces"));
+  CHECK(has_key(scene, "B, real faces"));
+  Eigen::AlignedBox3d b;
+  for (const DrawTriangle& t : scene.list.triangles) {
+    if (t.id >> 31 == 0) continue;
+    for (const Vector3d& x : t.x) b.extend(x);
+    const auto corners = rep.face(t.id & 0x7fffffff);
+    CHECK(t.x[0] == pose.apply(rep.vertices()[corners[0]]));
+  }
+  CHECK(b.center().x() == doctest::Approx(3).epsilon(0.05));
+}
+
+TEST_CASE("what the event is about is highlighted") {
+  const LrbRep rep = test::dented(test::icosphere(0), 2);
+  Wrapper wrapper(rep);
+  const RegionId r = 3;
+  wrapper.refine(r);
+  const std::vector<SceneBody> bodies = {{&rep, &wrapper, {}, {}, ""},
+                                         {&rep, &wrapper, Pose::translation({2, 0, 0}), {}, ""}};
+  SceneHighlight highlight;
+  highlight.refining[0] = {r};
+  const SimplexId sa = rep.first_simplex(rep.outermost_faces()[0]), sb = 5;
+  highlight.under_test = {sa, sb};
+  ContactRegion curve, point;
+  curve.loops.push_back({{{1, 0, 0}, {1, 1, 0}, {1, 1, 1}}, true});
+  point.loops.push_back({{{1, 0, 2}}, false});
+  const std::vector<ContactRegion> contacts = {curve, point};
+  highlight.contacts = contacts;
+  const Scene scene = build_scene(bodies, highlight);
+  int green = 0, yellow = 0, red = 0;
+  for (const DrawTriangle& t : scene.list.triangles) {
+    green += t.layer == Layer::translucent && with_alpha(t.colour, 255) == palette::kRefining;
+    yellow += t.layer == Layer::on_top && with_alpha(t.colour, 255) == palette::kUnderTest;
+  }
+  for (const DrawLine& l : scene.list.lines) red += l.colour == palette::kContact && l.layer == Layer::on_top;
+  CHECK(green == static_cast<int>(rep.lids(r).size()));
+  CHECK(yellow == 2);
+  CHECK(red == 1);
+  REQUIRE(scene.list.points.size() == 1);
+  CHECK(scene.list.points[0].x == Vector3d(1, 0, 2));
+  for (const char* text : {"region being refined", "pair under test", "contact", "contact, hidden"}) {
+    CHECK(has_key(scene, text));
+  }
+  CHECK(contact_points(contacts).size() == 4);
+}
+
+TEST_CASE("layers, regions and values give faces their colours and the frame its scale") {
+  const LrbRep rep = test::dented(test::icosphere(0), 3);
+  Wrapper wrapper(rep);
+  wrapper.refine(0);
+  std::vector<double> values(rep.face_count(), 0.0);
+  values[rep.outermost_faces()[2]] = 40;
+  values[rep.outermost_faces()[5]] = 10;
+  const std::vector<SceneBody> body = {{&rep, &wrapper, {}, values, ""}};
+  SceneOptions options;
+  options.colour_by = ColourBy::layer;
+  Scene scene = build_scene(body, {}, options);
+  REQUIRE(scene.scale.has_value());
+  CHECK(scene.scale->high == 2);
+  for (const DrawTriangle& t : scene.list.triangles) {
+    if (t.layer != Layer::translucent) continue;
+    const std::uint16_t layer = rep.layer(rep.inner_cell(t.id));
+    CHECK(with_alpha(t.colour, 255) == palette::viridis(layer / 2.0));
+  }
+  options.colour_by = ColourBy::region;
+  scene = build_scene(body, {}, options);
+  for (const DrawTriangle& t : scene.list.triangles) {
+    if (t.layer == Layer::translucent)
+      CHECK(with_alpha(t.colour, 255) == palette::category(rep.inner_cell(t.id)));
+  }
+  options.colour_by = ColourBy::value;
+  scene = build_scene(body, {}, options);
+  CHECK(scene.scale->high == 40);
+  std::map<std::uint32_t, Rgba> colour;
+  for (const DrawTriangle& t : scene.list.triangles) colour[t.id] = with_alpha(t.colour, 255);
+  CHECK(colour[rep.outermost_faces()[2]] == palette::viridis(1));
+  CHECK(colour[rep.outermost_faces()[5]] == palette::viridis(0.25));
+  options.value_range = {{0.0, 20.0}};
+  CHECK(build_scene(body, {}, options).scale->high == 20);
+}
+
+TEST_CASE("isolated regions stand before ghosts, or alone") {
+  const LrbRep rep = test::dented(test::icosphere(0), 2);
+  const std::vector<SceneBody> body = {{&rep, nullptr, {}, {}, ""}};
+  SceneOptions options;
+  options.isolate[0] = {7};
+  options.ghost_rest = false;
+  Scene scene = build_scene(body, {}, options);
+  std::set<std::uint32_t> drawn = ids(scene.list, Layer::opaque);
+  for (const std::uint32_t id : ids(scene.list, Layer::translucent)) drawn.insert(id);
+  CHECK(drawn == std::set<std::uint32_t>(rep.collector(7).begin(), rep.collector(7).end()));
+  options.ghost_rest = true;
+  scene = build_scene(body, {}, options);
+  CHECK(count(scene.list).translucent >= rep.real_face_count());
+}
+
+TEST_CASE("exploded regions keep their shape and move outward") {
+  const LrbRep rep = test::dented(test::icosphere(0), 2);
+  const Wrapper wrapper(rep);
+  SceneOptions options;
+  options.explode = 1;
+  const Scene scene = build_scene(std::vector<SceneBody>{{&rep, &wrapper, {}, {}, ""}}, {}, options);
+  std::size_t in_regions = 0;
+  for (RegionId r = 0; r < rep.region_count(); ++r) in_regions += rep.collector(r).size();
+  CHECK(count(scene.list).opaque == rep.real_face_count() + in_regions);
+  for (const DrawTriangle& t : scene.list.triangles) {
+    const auto corners = rep.face(t.id);
+    const Vector3d before = rep.vertices()[corners[0]], moved = t.x[0] - before;
+    CHECK((t.x[1] - rep.vertices()[corners[1]] - moved).norm() < 1e-12);
+    if (moved.norm() > 0) CHECK(moved.dot(before) > 0);
+  }
+}
+
+TEST_CASE("2D: the solid dark, regions light, the wrapper as a line") {
+  const LrbRep rep = test::dented(test::circle(6), 2);
+  Wrapper wrapper(rep);
+  wrapper.refine(1);
+  const std::vector<SceneBody> body = {{&rep, &wrapper, {}, {}, ""}};
+  const Scene scene = build_scene(body);
+  REQUIRE(scene.list.fills.size() == rep.region_count());  // the solid, and all regions but one
+  CHECK(scene.list.fills.back().segments.size() == rep.real_face_count());
+  CHECK(has_key(scene, "A, wrapper"));
+  CHECK(has_key(scene, "A, refined away"));
+
+  Rasterizer rasterizer;
+  RasterOptions o;
+  o.width = 300, o.height = 300;
+  const Camera camera = fit_top(body_points(rep, {}), 300, 300);
+  const Image image = rasterizer.draw(scene.list, camera, o);
+  const IdImage picked = rasterizer.ids(scene.list, camera, 300, 300);
+  const Rgba dark = palette::solid_2d(palette::body(Side::a));
+  CHECK(image.at(150, 150) == dark);
+  const Projection projection(camera, 300, 300, bounds(scene.list));
+  const auto inside = [&](RegionId r) {  // the middle of a triangle
+    Vector3d sum = Vector3d::Zero();
+    for (const FaceId f : rep.collector(r))
+      sum += rep.vertices()[rep.face(f)[0]] + rep.vertices()[rep.face(f)[1]];
+    return *projection.to_pixel(sum / 6);
+  };
+  for (RegionId r = 0; r < 6; ++r) {
+    const Eigen::Vector2d at = inside(r);
+    const int x = static_cast<int>(at.x()), y = static_cast<int>(at.y());
+    if (r == 1) {
+      CHECK(image.at(x, y) == kWhite);
+      CHECK(picked.at(x, y) == kNoId);
+    } else {
+      CHECK(luma(image.at(x, y)) > luma(dark) + 60);
+      CHECK(image.at(x, y) != kWhite);
+      CHECK(picked.at(x, y) == region_id(Side::a, r));
+    }
+  }
+}
+
+TEST_CASE("segments become as few polylines as can be") {
+  using scene::chains;
+  auto found = chains({{0, 1}, {2, 0}, {1, 2}});
+  REQUIRE(found.size() == 1);
+  CHECK(found[0].closed);
+  CHECK(found[0].vertices.size() == 3);
+  found = chains({{5, 6}, {4, 5}, {6, 7}});
+  REQUIRE(found.size() == 1);
+  CHECK(!found[0].closed);
+  CHECK(found[0].vertices == std::vector<VertexId>{4, 5, 6, 7});
+  found = chains({{0, 1}, {1, 2}, {2, 0}, {0, 3}, {3, 4}, {4, 0}});  // an eight
+  std::size_t segments = 0;
+  for (const auto& chain : found) segments += chain.vertices.size() - (chain.closed ? 0 : 1);
+  CHECK(segments == 6);
+  CHECK(chains({}).empty());
+}
+
+TEST_CASE("scenes that make no sense are refused") {
+  const LrbRep solid = test::dented(test::icosphere(0), 1), flat = test::dented(test::circle(5), 1);
+  CHECK_THROWS_AS(build_scene({}), InputError);
+  CHECK_THROWS_AS(
+      build_scene(std::vector<SceneBody>{{&solid, nullptr, {}, {}, ""}, {&flat, nullptr, {}, {}, ""}}),
+      InputError);
+  const std::vector<SceneBody> body = {{&solid, nullptr, {}, {}, ""}};
+  SceneHighlight highlight;
+  highlight.refining[0] = {solid.region_count()};
+  CHECK_THROWS_AS(build_scene(body, highlight), InputError);
+  highlight = {};
+  highlight.under_test = {0, 0};
+  CHECK_THROWS_AS(build_scene(body, highlight), InputError);
+  SceneOptions options;
+  options.isolate[1] = {0};
+  CHECK_THROWS_AS(build_scene(body, {}, options), InputError);
+}
