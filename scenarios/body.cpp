@@ -31,10 +31,11 @@ void turn_outward(Mesh& mesh, std::vector<std::string>& notes) {
 }  // namespace
 
 bool is_lrb_file(const std::string& path) {
+  constexpr std::size_t kEnough = 64;  // bytes: more than any magic
   std::ifstream in(path, std::ios::binary);
-  std::string start(kLrbMagic.size(), '\0');
+  std::string start(kEnough, '\0');
   in.read(start.data(), static_cast<std::streamsize>(start.size()));
-  return in && start == kLrbMagic;
+  return looks_like_lrb(std::string_view(start).substr(0, static_cast<std::size_t>(in.gcount())));
 }
 
 LrbRep build_from_mesh(Mesh mesh, const BuildOptions& options, std::vector<std::string>& notes) {
@@ -57,7 +58,8 @@ LoadedBody body_of_mesh(Mesh mesh, const BuildOptions& options) {
     LrbRep rep = build_lrb(mesh, options);
     return {std::move(rep), std::move(notes), seconds_since(begin)};
   }
-  notes.push_back(mesh.name + ": queried without regions, because it cannot have any: " + joined(report.lines(mesh)));
+  notes.push_back(mesh.name +
+                  ": queried without regions, because it cannot have any: " + joined(report.lines(mesh)));
   return {LrbRep::without_regions(mesh, report.closed, self_intersecting), std::move(notes), 0};
 }
 

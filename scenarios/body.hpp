@@ -19,8 +19,8 @@ struct LoadedBody {
 /// Whether the file says it is an LRB-rep (its first bytes, not its name).
 bool is_lrb_file(const std::string& path);
 
-/// Reads a mesh and builds its LRB-rep, or reads an LRB-rep. A mesh that cannot have one (open, non-manifold) comes
-/// as a body without regions, and a note says why. Throws InputError if it cannot be queried at all.
+/// Reads a mesh and builds its LRB-rep, or reads an LRB-rep. A mesh that cannot have one (open, non-manifold)
+/// comes as a body without regions, and a note says why. Throws InputError if it cannot be queried at all.
 LoadedBody load_body(const std::string& path, const BuildOptions& options = {});
 LoadedBody body_of_mesh(Mesh mesh, const BuildOptions& options = {});
 

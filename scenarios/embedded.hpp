@@ -1,6 +1,6 @@
 #pragma once
-/// Text files compiled into the program (cmake/embed.cmake): the page's template, the charting library, the schemas
-/// and the shipped scenarios, so that one binary does everything wherever it is copied to.
+/// Text files compiled into the program (cmake/embed.cmake): the page's template, the charting library, the
+/// schemas and the shipped scenarios, so that one binary does everything wherever it is copied to.
 
 #include <span>
 #include <string_view>

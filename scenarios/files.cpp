@@ -1,7 +1,5 @@
 #include "scenarios/files.hpp"
 
-#include <unistd.h>
-
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
@@ -10,6 +8,7 @@
 #include <system_error>
 
 #include "engine/error.hpp"
+#include "engine/mesh/atomic_file.hpp"
 
 namespace lrb {
 namespace fs = std::filesystem;
@@ -30,26 +29,13 @@ void make_folder(const std::string& path) {
   std::error_code error;
   fs::create_directories(path, error);
   if (error || !fs::is_directory(path, error))
-    throw EnvironmentError(path + ": cannot be made a folder (" + (error ? error.message() : "a file is in the way") + ")");
+    throw EnvironmentError(path + ": cannot be made a folder (" +
+                           (error ? error.message() : "a file is in the way") + ")");
 }
 
 void write_text(const std::string& path, const std::string& text) {
   make_folder(fs::path(path).parent_path().string());
-  const std::string beside = path + ".part" + std::to_string(::getpid());
-  bool ok = false;
-  {
-    std::ofstream out(beside, std::ios::binary | std::ios::trunc);
-    out.write(text.data(), static_cast<std::streamsize>(text.size()));
-    out.close();
-    ok = !out.fail();
-  }
-  std::error_code error;
-  if (ok) fs::rename(beside, path, error);
-  if (!ok || error) {
-    const std::string reason = error ? error.message() : std::strerror(errno);
-    fs::remove(beside, error);
-    throw EnvironmentError(path + ": cannot be written (" + reason + ")");
-  }
+  write_file(path, text);
 }
 
 }  // namespace lrb

@@ -36,10 +36,12 @@ double number(std::string_view word, const std::string& where) {
   const std::string_view digits = word.substr(word[0] == '+' ? 1 : 0);  // from_chars knows no plus sign
   double x = 0;
   const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), x);
-  if (error == std::errc::result_out_of_range) throw InputError(where + shown(word) + " is beyond the range of a double");
+  if (error == std::errc::result_out_of_range)
+    throw InputError(where + shown(word) + " is beyond the range of a double");
   if (error != std::errc() || end != digits.data() + digits.size())
     throw InputError(where + shown(word) + " is not a number: expected 12 numbers a line");
-  if (!std::isfinite(x)) throw InputError(where + shown(word) + " is not finite: every number of a pose must be");
+  if (!std::isfinite(x))
+    throw InputError(where + shown(word) + " is not finite: every number of a pose must be");
   return x;
 }
 
@@ -57,7 +59,8 @@ std::vector<Pose> parse_poses(const std::string& text, const std::string& name) 
     double x[12];
     for (std::size_t i = 0; i < words.size() && i < 12; ++i) x[i] = number(words[i], where);
     if (words.size() != 12)
-      throw InputError(where + "expected 12 numbers (a row-major 3x4 pose), found " + std::to_string(words.size()));
+      throw InputError(where + "expected 12 numbers (a row-major 3x4 pose), found " +
+                       std::to_string(words.size()));
     Pose pose;
     for (int r = 0; r < 3; ++r) {
       for (int c = 0; c < 3; ++c) pose.r(r, c) = x[4 * r + c];
@@ -69,12 +72,15 @@ std::vector<Pose> parse_poses(const std::string& text, const std::string& name) 
   return poses;
 }
 
-std::vector<Pose> read_poses(const std::string& path) { return parse_poses(read_text(path), path); }
+std::vector<Pose> read_poses(const std::string& path) {
+  return parse_poses(read_text(path), path);
+}
 
 Eigen::Vector3d parse_vector(const std::string& text, const std::string& option) {
   const std::vector<std::string_view> words = words_of(text);
   if (words.size() != 3)
-    throw InputError(option + ": expected three numbers X,Y,Z, found " + std::to_string(words.size()) + " in \"" + text + "\"");
+    throw InputError(option + ": expected three numbers X,Y,Z, found " + std::to_string(words.size()) +
+                     " in \"" + text + "\"");
   const std::string where = option + ": ";
   return {number(words[0], where), number(words[1], where), number(words[2], where)};
 }

@@ -15,14 +15,17 @@
 namespace lrb {
 namespace {
 
-constexpr std::uint64_t kAnySeed = std::numeric_limits<std::int64_t>::max();  // what every JSON reader can hold
+constexpr std::uint64_t kAnySeed =
+    std::numeric_limits<std::int64_t>::max();  // what every JSON reader can hold
 
 BuildOptions read_build(const JsonNode& node, std::uint64_t seed) {
   node.object({"patch_interior", "max_outer_faces", "seed"});
   BuildOptions o;
   o.seed = seed;
-  if (const auto n = node.get("patch_interior")) o.patch_interior = static_cast<std::uint32_t>(n->integer(1, 1000));
-  if (const auto n = node.get("max_outer_faces")) o.max_outer_faces = static_cast<std::uint32_t>(n->integer(4, 1000));
+  if (const auto n = node.get("patch_interior"))
+    o.patch_interior = static_cast<std::uint32_t>(n->integer(1, 1000));
+  if (const auto n = node.get("max_outer_faces"))
+    o.max_outer_faces = static_cast<std::uint32_t>(n->integer(4, 1000));
   if (const auto n = node.get("seed")) o.seed = n->integer(0, kAnySeed);
   return o;
 }
@@ -35,7 +38,8 @@ GeneratorValues read_parameters(const JsonNode& node, const Generator& generator
   for (const GeneratorParameter& p : generator.parameters) {
     const auto n = node.get(p.name);
     if (!n) continue;
-    values[p.name] = p.whole ? static_cast<double>(n->integer(static_cast<std::uint64_t>(p.least), static_cast<std::uint64_t>(p.most)))
+    values[p.name] = p.whole ? static_cast<double>(n->integer(static_cast<std::uint64_t>(p.least),
+                                                              static_cast<std::uint64_t>(p.most)))
                              : n->number(p.least, p.most);
   }
   return values;
@@ -55,14 +59,16 @@ BodySpec read_body(const JsonNode& node, const std::filesystem::path& folder, st
     for (const Generator& g : generators()) known.emplace_back(g.name, &g);
     const Generator* generator = node.at("generator").choice(known);
     body.generator = generator->name;
-    if (const auto parameters = node.get("parameters")) body.parameters = read_parameters(*parameters, *generator);
+    if (const auto parameters = node.get("parameters"))
+      body.parameters = read_parameters(*parameters, *generator);
   }
   if (const auto build = node.get("build")) body.build = read_build(*build, seed);
   if (const auto pose = node.get("pose")) body.pose = read_pose(*pose);
   return body;
 }
 
-std::vector<BodySpec> read_bodies(const JsonNode& node, Show show, const std::filesystem::path& folder, std::uint64_t seed) {
+std::vector<BodySpec> read_bodies(const JsonNode& node, Show show, const std::filesystem::path& folder,
+                                  std::uint64_t seed) {
   node.object({"a", "b"});
   std::vector<BodySpec> bodies = {read_body(node.at("a"), folder, seed)};
   if (show == Show::collision)
@@ -75,10 +81,12 @@ std::vector<BodySpec> read_bodies(const JsonNode& node, Show show, const std::fi
 CollideRequest read_query(const JsonNode& node) {
   node.object({"mode", "recursion", "wrapper", "contacts", "interiors_overlap"});
   CollideRequest r;
-  if (const auto n = node.get("mode")) r.mode = n->choice<Mode>({{"all", Mode::all_pairs}, {"first", Mode::first_pair}});
+  if (const auto n = node.get("mode"))
+    r.mode = n->choice<Mode>({{"all", Mode::all_pairs}, {"first", Mode::first_pair}});
   if (const auto n = node.get("recursion"))
-    r.recursion = n->choice<Recursion>(
-        {{"complete", Recursion::complete}, {"paper", Recursion::paper}, {"paper_strict", Recursion::paper_strict}});
+    r.recursion = n->choice<Recursion>({{"complete", Recursion::complete},
+                                        {"paper", Recursion::paper},
+                                        {"paper_strict", Recursion::paper_strict}});
   if (const auto n = node.get("wrapper"))
     r.wrapper = n->choice<WrapperMode>(
         {{"regularised", WrapperMode::regularised}, {"unregularised", WrapperMode::unregularised}});
@@ -95,7 +103,8 @@ void read_trace(const JsonNode& node, Scenario& s) {
   node.object({"clock", "max_events", "gzip"});
   if (const auto n = node.get("clock"))
     s.clock = n->choice<trace::Clock>({{"event", trace::Clock::event}, {"wall", trace::Clock::wall}});
-  if (const auto n = node.get("max_events")) s.event_cap = static_cast<std::uint32_t>(n->integer(1, 50'000'000));
+  if (const auto n = node.get("max_events"))
+    s.event_cap = static_cast<std::uint32_t>(n->integer(1, 50'000'000));
   if (const auto n = node.get("gzip")) s.gzip = n->boolean();
 }
 
@@ -121,10 +130,9 @@ Expectation read_expectation(const JsonNode& node, const JsonText& text) {
 
 std::string read_name(const JsonNode& node) {
   const std::string name = node.string();
-  const bool plain = !name.empty() && name.size() <= 64 &&
-                     std::all_of(name.begin(), name.end(), [](char c) {
-                       return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-';
-                     });
+  const bool plain = !name.empty() && name.size() <= 64 && std::all_of(name.begin(), name.end(), [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-';
+  });
   if (!plain) node.fail("expected 1 to 64 letters, digits, - and _: the output folder is named after it");
   return name;
 }
@@ -134,21 +142,24 @@ std::string read_name(const JsonNode& node) {
 Scenario parse_scenario(const std::string& text, const std::string& file) {
   const JsonText json(text, file);
   const JsonNode root(json);
-  root.object({"$schema", "name", "purpose", "seed", "show", "bodies", "motion", "query", "trace", "frames", "expect"});
+  root.object({"$schema", "name", "purpose", "seed", "show", "bodies", "motion", "query", "trace", "frames",
+               "expect"});
   Scenario s;
   if (const auto n = root.get("$schema")) n->string();
   s.name = read_name(root.at("name"));
   s.purpose = root.at("purpose").string();
   if (const auto n = root.get("seed")) s.seed = n->integer(0, kAnySeed);
   if (const auto n = root.get("show"))
-    s.show = n->choice<Show>(
-        {{"collision", Show::collision}, {"refinement", Show::refinement}, {"construction", Show::construction}});
+    s.show = n->choice<Show>({{"collision", Show::collision},
+                              {"refinement", Show::refinement},
+                              {"construction", Show::construction}});
   s.bodies = read_bodies(root.at("bodies"), s.show, std::filesystem::path(file).parent_path(), s.seed);
   if (s.show == Show::collision) {
     s.motion = read_motion(root.at("motion"));
   } else {
     for (const char* key : {"motion", "query", "expect"})
-      if (root.has(key)) root.fail_key(key, "a refinement or a construction shows one body and asks nothing: remove it");
+      if (root.has(key))
+        root.fail_key(key, "a refinement or a construction shows one body and asks nothing: remove it");
   }
   s.request.contacts = true;
   if (const auto n = root.get("query")) s.request = read_query(*n);

@@ -10,8 +10,10 @@ FrameSpec::View read_view(const JsonNode& node) {
   node.object({"camera", "projection", "eye", "target", "from", "up", "turn_degrees", "zoom", "title"});
   FrameSpec::View v;
   if (const auto n = node.get("camera"))
-    v.camera = n->choice<Camera>(
-        {{"scene", Camera::scene}, {"contact", Camera::contact}, {"fixed", Camera::fixed}, {"orbit", Camera::orbit}});
+    v.camera = n->choice<Camera>({{"scene", Camera::scene},
+                                  {"contact", Camera::contact},
+                                  {"fixed", Camera::fixed},
+                                  {"orbit", Camera::orbit}});
   if (const auto n = node.get("projection"))
     v.orthographic = n->choice<bool>({{"perspective", false}, {"orthographic", true}});
   if ((v.camera == Camera::fixed) != (node.has("eye") && node.has("target")))
@@ -30,12 +32,15 @@ FrameSpec::View read_view(const JsonNode& node) {
 void read_moments(const JsonNode& node, FrameSpec& f) {
   using At = FrameSpec::At;
   if (const auto n = node.get("at"))
-    f.at = n->choice<At>({{"none", At::none}, {"step", At::step}, {"refinement", At::refinement}, {"event", At::every}});
+    f.at = n->choice<At>(
+        {{"none", At::none}, {"step", At::step}, {"refinement", At::refinement}, {"event", At::every}});
   if (const auto n = node.get("every")) f.every = static_cast<std::uint32_t>(n->integer(1, kMaxId));
   if (const auto n = node.get("events")) {
-    if (node.has("at") || node.has("every")) node.fail_key("events", "a list of events takes the place of \"at\" and \"every\"");
+    if (node.has("at") || node.has("every"))
+      node.fail_key("events", "a list of events takes the place of \"at\" and \"every\"");
     f.at = At::events;
-    for (const JsonNode& item : n->items(1)) f.events.push_back(static_cast<std::uint32_t>(item.integer(0, kMaxId)));
+    for (const JsonNode& item : n->items(1))
+      f.events.push_back(static_cast<std::uint32_t>(item.integer(0, kMaxId)));
   }
   if (const auto n = node.get("most")) f.most = static_cast<std::uint32_t>(n->integer(1, kMostFrames));
 }
@@ -44,8 +49,8 @@ void read_moments(const JsonNode& node, FrameSpec& f) {
 
 FrameSpec read_frames(const JsonNode& node, const FrameSpec& fallback) {
   using ColourBy = FrameSpec::ColourBy;
-  node.object({"at", "every", "events", "most", "size", "supersampling", "colour_by", "views", "transparent", "explode",
-               "montage"});
+  node.object({"at", "every", "events", "most", "size", "supersampling", "colour_by", "views", "transparent",
+               "explode", "montage"});
   FrameSpec f = fallback;
   read_moments(node, f);
   if (const auto n = node.get("size")) {

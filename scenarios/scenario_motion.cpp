@@ -1,7 +1,8 @@
 #include "scenarios/scenario_motion.hpp"
 
-#include <Eigen/Geometry>
 #include <numbers>
+
+#include <Eigen/Geometry>
 
 namespace lrb {
 namespace {
@@ -16,7 +17,9 @@ Eigen::Vector3d read_axis(const JsonNode& node) {
   return axis;
 }
 
-double read_degrees(const JsonNode& node) { return node.number(-kFar, kFar); }
+double read_degrees(const JsonNode& node) {
+  return node.number(-kFar, kFar);
+}
 
 std::uint32_t read_steps(const JsonNode& node, const char* key, std::uint32_t fallback, std::uint32_t least) {
   const auto n = node.get(key);
@@ -30,7 +33,8 @@ std::vector<Motion::Keyframe> read_keyframes(const JsonNode& node) {
     Motion::Keyframe k;
     k.step = static_cast<std::uint32_t>(item.at("step").integer(0, kMostSteps));
     if (out.empty() ? k.step != 0 : k.step <= out.back().step)
-      item.at("step").fail(out.empty() ? "the first keyframe is at step 0" : "keyframes come in order of their steps");
+      item.at("step").fail(out.empty() ? "the first keyframe is at step 0"
+                                       : "keyframes come in order of their steps");
     k.position = item.at("position").vector();
     if (const auto n = item.get("axis")) k.axis = read_axis(*n);
     if (const auto n = item.get("degrees")) k.degrees = read_degrees(*n);
@@ -79,7 +83,9 @@ std::vector<Pose> keyframe_poses(const std::vector<Motion::Keyframe>& keys) {
 
 }  // namespace
 
-Pose then(const Pose& first, const Pose& second) { return {second.r * first.r, second.r * first.t + second.t}; }
+Pose then(const Pose& first, const Pose& second) {
+  return {second.r * first.r, second.r * first.t + second.t};
+}
 
 Pose read_pose(const JsonNode& node) {
   if (node.is_array()) {
@@ -123,7 +129,9 @@ Motion read_motion(const JsonNode& node) {
       read_turn(node, m);
       m.steps = read_steps(node, "steps", 30, 1);
       break;
-    case Kind::approach: read_approach(node, m); break;
+    case Kind::approach:
+      read_approach(node, m);
+      break;
     case Kind::spin:
       node.object({"kind", "axis", "degrees", "steps"});
       m.degrees = 360;
@@ -137,8 +145,12 @@ Motion read_motion(const JsonNode& node) {
 std::vector<Pose> poses_of(const Motion& motion, const Pose& start) {
   std::vector<Pose> moves;
   switch (motion.kind) {
-    case Motion::Kind::poses: moves = motion.poses; break;
-    case Motion::Kind::keyframes: moves = keyframe_poses(motion.keyframes); break;
+    case Motion::Kind::poses:
+      moves = motion.poses;
+      break;
+    case Motion::Kind::keyframes:
+      moves = keyframe_poses(motion.keyframes);
+      break;
     case Motion::Kind::sweep:
       for (std::uint32_t i = 0; i < motion.steps; ++i) {
         const double t = motion.steps == 1 ? 0 : static_cast<double>(i) / (motion.steps - 1);
@@ -149,7 +161,8 @@ std::vector<Pose> poses_of(const Motion& motion, const Pose& start) {
       for (std::uint32_t i = 0; i < motion.steps; ++i)
         moves.push_back(turned(motion.axis, motion.degrees * i / motion.steps, {0, 0, 0}));
       break;
-    case Motion::Kind::approach: break;
+    case Motion::Kind::approach:
+      break;
   }
   for (Pose& move : moves) move = then(start, move);
   return moves;

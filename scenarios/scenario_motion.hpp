@@ -12,7 +12,8 @@ namespace lrb {
 Pose read_pose(const JsonNode& node);
 Motion read_motion(const JsonNode& node);
 
-/// Poses of B, one a step, for every kind but approach (approach.hpp). `start` is the body's own pose, applied first.
+/// Poses of B, one a step, for every kind but approach (approach.hpp). `start` is the body's own pose,
+/// applied first.
 std::vector<Pose> poses_of(const Motion& motion, const Pose& start);
 
 /// first, then second.

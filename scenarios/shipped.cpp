@@ -37,7 +37,8 @@ Scenario open_scenario(const std::string& name_or_path) {
   if (is_name && !std::filesystem::exists(name_or_path, error)) {
     std::vector<std::string> names;
     for (const ShippedScenario& s : shipped_scenarios()) names.push_back(s.name);
-    throw InputError(name_or_path + ": neither a shipped scenario nor a file" + suggestion(name_or_path, names));
+    throw InputError(name_or_path + ": neither a shipped scenario nor a file" +
+                     suggestion(name_or_path, names));
   }
   return parse_scenario(read_text(name_or_path), name_or_path);
 }

@@ -14,8 +14,8 @@ struct ShippedScenario {
 /// The scenarios that are compiled in, by name.
 std::vector<ShippedScenario> shipped_scenarios();
 
-/// A scenario by the name of a shipped one, or from a file. Throws InputError; for a word that is neither, with the
-/// nearest name.
+/// A scenario by the name of a shipped one, or from a file. Throws InputError; for a word that is neither,
+/// with the nearest name.
 Scenario open_scenario(const std::string& name_or_path);
 
 }  // namespace lrb

@@ -1,8 +1,9 @@
 #include <chrono>
 #include <filesystem>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <sstream>
+
+#include <nlohmann/json.hpp>
 
 #include "engine/error.hpp"
 #include "engine/lrb/lrb_file.hpp"
@@ -26,11 +27,12 @@ struct BuildCommandOptions {
 std::string as_text(const nlohmann::ordered_json& j, const ValidateReport* report) {
   std::ostringstream out;
   out << j["name"].get<std::string>() << "\n"
-      << "  faces    " << j["real_faces"] << " real + " << j["pseudo_faces"] << " pseudo = " << j["total_faces"] << " ("
-      << j["total_per_real"] << " per real face), " << j["outer_faces"] << " outermost\n"
+      << "  faces    " << j["real_faces"] << " real + " << j["pseudo_faces"]
+      << " pseudo = " << j["total_faces"] << " (" << j["total_per_real"] << " per real face), "
+      << j["outer_faces"] << " outermost\n"
       << "  regions  " << j["regions"] << " in " << j["layers"] << " layers\n"
-      << "  volume   solid " << j["volume_solid"] << ", outermost wrapper " << j["volume_outer"] << ", convex hull "
-      << j["volume_hull"] << "\n"
+      << "  volume   solid " << j["volume_solid"] << ", outermost wrapper " << j["volume_outer"]
+      << ", convex hull " << j["volume_hull"] << "\n"
       << "  memory   " << j["bytes_per_real_face"] << " bytes a real face\n"
       << "  built in " << j["seconds"] << " s\n";
   if (report != nullptr) {

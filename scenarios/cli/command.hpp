@@ -2,10 +2,11 @@
 /// The commands of `lrbscope`, one file each. stdout is data, stderr is for people.
 /// Exit codes: 0 ok, 1 mismatch, 2 usage or input, 3 environment.
 
-#include <CLI/CLI.hpp>
 #include <functional>
 #include <string>
 #include <vector>
+
+#include <CLI/CLI.hpp>
 
 namespace lrb::cli {
 

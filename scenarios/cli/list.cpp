@@ -1,6 +1,7 @@
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <sstream>
+
+#include <nlohmann/json.hpp>
 
 #include "scenarios/cli/command.hpp"
 #include "scenarios/generators/generators.hpp"
@@ -15,7 +16,8 @@ struct ListOptions {
 
 nlohmann::ordered_json scenarios_json() {
   nlohmann::ordered_json out = nlohmann::ordered_json::array();
-  for (const ShippedScenario& s : shipped_scenarios()) out.push_back({{"name", s.name}, {"purpose", s.purpose}});
+  for (const ShippedScenario& s : shipped_scenarios())
+    out.push_back({{"name", s.name}, {"purpose", s.purpose}});
   return out;
 }
 
@@ -24,9 +26,14 @@ nlohmann::ordered_json generators_json() {
   for (const Generator& g : generators()) {
     nlohmann::ordered_json parameters = nlohmann::ordered_json::array();
     for (const GeneratorParameter& p : g.parameters)
-      parameters.push_back({{"name", p.name}, {"default", p.fallback}, {"least", p.least}, {"most", p.most},
-                            {"whole", p.whole}, {"what", p.what}});
-    out.push_back({{"name", g.name}, {"dim", g.dim}, {"purpose", g.purpose}, {"parameters", std::move(parameters)}});
+      parameters.push_back({{"name", p.name},
+                            {"default", p.fallback},
+                            {"least", p.least},
+                            {"most", p.most},
+                            {"whole", p.whole},
+                            {"what", p.what}});
+    out.push_back(
+        {{"name", g.name}, {"dim", g.dim}, {"purpose", g.purpose}, {"parameters", std::move(parameters)}});
   }
   return out;
 }
@@ -35,11 +42,12 @@ std::string as_text(const nlohmann::ordered_json& list) {
   std::ostringstream out;
   for (const auto& item : list) {
     const auto name = item["name"].get<std::string>();
-    out << name << std::string(name.size() < 14 ? 14 - name.size() : 1, ' ') << item["purpose"].get<std::string>() << "\n";
+    out << name << std::string(name.size() < 14 ? 14 - name.size() : 1, ' ')
+        << item["purpose"].get<std::string>() << "\n";
     if (!item.contains("parameters")) continue;
     for (const auto& p : item["parameters"])
-      out << "    " << p["name"].get<std::string>() << " = " << p["default"] << " (" << p["least"] << " to " << p["most"]
-          << "): " << p["what"].get<std::string>() << "\n";
+      out << "    " << p["name"].get<std::string>() << " = " << p["default"] << " (" << p["least"] << " to "
+          << p["most"] << "): " << p["what"].get<std::string>() << "\n";
   }
   return out.str();
 }
@@ -53,7 +61,8 @@ int run_list(const ListOptions& o) {
 }  // namespace
 
 Command add_list(CLI::App& root, const Globals&) {
-  CLI::App* app = root.add_subcommand("list", "The shipped scenarios, or the generators and their parameters");
+  CLI::App* app =
+      root.add_subcommand("list", "The shipped scenarios, or the generators and their parameters");
   const auto o = std::make_shared<ListOptions>();
   app->add_flag("--generators", o->generators, "The generators of bodies instead");
   app->add_flag("--json", o->json, "As JSON");

@@ -11,8 +11,9 @@ namespace lrb::cli {
 namespace {
 
 std::string quoted(const std::string& word) {
-  const bool plain = !word.empty() && word.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ"
-                                                             "0123456789_-+=./,:@%") == std::string::npos;
+  const bool plain = !word.empty() && word.find_first_not_of(
+                                          "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ"
+                                          "0123456789_-+=./,:@%") == std::string::npos;
   if (plain) return word;
   std::string out = "'";
   for (const char c : word) out += c == '\'' ? std::string("'\\''") : std::string(1, c);
@@ -56,7 +57,8 @@ void note(const Globals& globals, const std::vector<std::string>& lines) {
 
 void print(const std::string& text) {
   std::fwrite(text.data(), 1, text.size(), stdout);
-  if (std::fflush(stdout) != 0 || std::ferror(stdout)) throw EnvironmentError("writing to stdout failed: is the disk full?");
+  if (std::fflush(stdout) != 0 || std::ferror(stdout))
+    throw EnvironmentError("writing to stdout failed: is the disk full?");
 }
 
 int main(int argc, char** argv) {
@@ -64,7 +66,9 @@ int main(int argc, char** argv) {
   app.set_version_flag("--version", std::string("lrbscope ") + trace::lrbscope_version());
   app.require_subcommand(1);
   app.fallthrough();
-  app.footer("Exit codes: 0 ok, 1 mismatch, 2 usage or input error, 3 environment. `lrbscope COMMAND --help` tells more.");
+  app.footer(
+      "Exit codes: 0 ok, 1 mismatch, 2 usage or input error, 3 environment. `lrbscope COMMAND --help` tells "
+      "more.");
   Globals globals;
   globals.command_line = command_line(argc, argv);
   app.add_flag("-q,--quiet", globals.quiet, "Nothing on stderr but errors");

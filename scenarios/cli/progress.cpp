@@ -1,9 +1,10 @@
 #include "scenarios/cli/progress.hpp"
 
-#include <unistd.h>
-
 #include <cstdlib>
 #include <iostream>
+#include <memory>
+
+#include <unistd.h>
 
 namespace lrb::cli {
 namespace {
@@ -12,7 +13,8 @@ namespace {
 bool colour_wanted() {
   const char* no_colour = std::getenv("NO_COLOR");
   const char* terminal = std::getenv("TERM");
-  return (no_colour == nullptr || *no_colour == '\0') && terminal != nullptr && std::string(terminal) != "dumb";
+  return (no_colour == nullptr || *no_colour == '\0') && terminal != nullptr &&
+         std::string(terminal) != "dumb";
 }
 
 }  // namespace
@@ -38,10 +40,12 @@ void Progress::set(std::uint64_t done, const std::string& detail) {
     const std::uint64_t full = std::min(kWidth, kWidth * done / total_);
     std::string bar;
     for (std::uint64_t i = 0; i < kWidth; ++i) bar += i < full ? "#" : ".";
-    line += (colour_ ? "\033[36m" + bar + "\033[0m" : bar) + " " + std::to_string(done) + "/" + std::to_string(total_);
+    line += (colour_ ? "\033[36m" + bar + "\033[0m" : bar) + " " + std::to_string(done) + "/" +
+            std::to_string(total_);
     const double elapsed = std::chrono::duration<double>(now - begin_).count();
     if (done > 0 && elapsed > 1) {
-      const double left = elapsed * static_cast<double>(total_ - std::min(done, total_)) / static_cast<double>(done);
+      const double left =
+          elapsed * static_cast<double>(total_ - std::min(done, total_)) / static_cast<double>(done);
       line += ", " + std::to_string(static_cast<int>(left + 0.5)) + " s left";
     }
   } else {
@@ -54,6 +58,21 @@ void Progress::set(std::uint64_t done, const std::string& detail) {
 void Progress::finish() {
   if (drawn_) std::cerr << "\r\033[K" << std::flush;
   drawn_ = false;
+}
+
+ProgressReport progress_report(bool quiet) {
+  struct Parts {
+    std::string what;
+    std::unique_ptr<Progress> bar;
+  };
+  return [quiet, parts = std::make_shared<Parts>()](const std::string& what, std::uint64_t done,
+                                                    std::uint64_t total) {
+    if (what != parts->what) {
+      parts->bar = std::make_unique<Progress>(what, total, quiet);
+      parts->what = what;
+    }
+    parts->bar->set(done);
+  };
 }
 
 }  // namespace lrb::cli

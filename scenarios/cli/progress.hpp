@@ -4,6 +4,8 @@
 #include <cstdint>
 #include <string>
 
+#include "scenarios/play/recording.hpp"
+
 namespace lrb::cli {
 
 /// A progress bar on stderr, drawn only on a terminal, and gone when the work is done.
@@ -25,5 +27,8 @@ class Progress {
   bool enabled_, colour_, drawn_ = false;
   std::chrono::steady_clock::time_point begin_, last_;
 };
+
+/// Draws the progress of a job of several parts, a bar for each.
+ProgressReport progress_report(bool quiet);
 
 }  // namespace lrb::cli

@@ -4,12 +4,12 @@
 #include <sstream>
 
 #include "engine/query/collide.hpp"
-#include "engine/query/query_context.hpp"
+#include "engine/query/collide_impl.hpp"
 #include "scenarios/body.hpp"
 #include "scenarios/cli/command.hpp"
 #include "scenarios/cli/options.hpp"
-#include "scenarios/pose_file.hpp"
 #include "scenarios/cli/progress.hpp"
+#include "scenarios/pose_file.hpp"
 #include "trace/hex.hpp"
 
 namespace lrb::cli {
@@ -23,7 +23,8 @@ struct QueryOptions {
 };
 
 /// Median microseconds of `repeat` runs of one query, in a warm context.
-double median_us(const LrbRep& a, const LrbRep& b, const Pose& pose, const QueryOptions& o, QueryContext& context) {
+double median_us(const LrbRep& a, const LrbRep& b, const Pose& pose, const QueryOptions& o,
+                 QueryContext& context) {
   std::vector<double> us;
   NullProbe probe;
   for (std::uint32_t i = 0; i < o.repeat; ++i) {
@@ -39,10 +40,12 @@ double median_us(const LrbRep& a, const LrbRep& b, const Pose& pose, const Query
 
 std::string line_of(std::size_t pose, const CollideResult& result, const QueryOptions& o, double us) {
   std::ostringstream out;
-  out << "{\"pose\":" << pose << ",\"relation\":\"" << to_string(result.relation) << "\",\"pairs\":" << result.pairs.size()
-      << ",\"fingerprint\":\"" << trace::to_hex(fingerprint(result.pairs)) << "\"";
+  out << "{\"pose\":" << pose << ",\"relation\":\"" << to_string(result.relation)
+      << "\",\"pairs\":" << result.pairs.size() << ",\"fingerprint\":\""
+      << trace::to_hex(fingerprint(result.pairs)) << "\"";
   if (o.request.recursion != Recursion::complete)
-    out << ",\"recursion\":\"" << (o.request.recursion == Recursion::paper ? "paper" : "paper_strict") << "\"";
+    out << ",\"recursion\":\"" << (o.request.recursion == Recursion::paper ? "paper" : "paper_strict")
+        << "\"";
   if (o.repeat > 0) out << ",\"us\":" << us;
   if (o.pairs) {
     out << ",\"list\":[";

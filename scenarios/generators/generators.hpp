@@ -32,8 +32,8 @@ std::span<const Generator> generators();
 /// Null if there is none of this name.
 const Generator* find_generator(const std::string& name);
 
-/// Makes a body with the generator's fallbacks where `values` is silent. Throws InputError for an unknown name or
-/// parameter and for a value out of range.
+/// Makes a body with the generator's fallbacks where `values` is silent. Throws InputError for an unknown
+/// name or parameter and for a value out of range.
 Mesh generate(const std::string& name, const GeneratorValues& values = {}, std::uint64_t seed = 1);
 
 }  // namespace lrb

@@ -7,9 +7,11 @@
 namespace lrb {
 namespace {
 
-/// Each edge gets a bay in its middle third, as in a Koch curve turned inside out; the bay's apex wanders a little, so
-/// that no two look alike. Depths below a third of an edge keep bays within the triangle that their edge owns.
-std::vector<Eigen::Vector2d> with_bays(const std::vector<Eigen::Vector2d>& outline, double depth, Random& random) {
+/// Each edge gets a bay in its middle third, as in a Koch curve turned inside out; the bay's apex wanders a
+/// little, so that no two look alike. Depths below a third of an edge keep bays within the triangle that
+/// their edge owns.
+std::vector<Eigen::Vector2d> with_bays(const std::vector<Eigen::Vector2d>& outline, double depth,
+                                       Random& random) {
   std::vector<Eigen::Vector2d> out;
   for (std::size_t i = 0; i < outline.size(); ++i) {
     const Eigen::Vector2d a = outline[i], b = outline[(i + 1) % outline.size()], along = b - a;
@@ -46,7 +48,8 @@ Mesh island(const GeneratorValues& v, std::uint64_t seed) {
     const double angle = 2 * std::numbers::pi * c[1];
     outline.emplace_back(v.at("radius") * c[0] * std::cos(angle), v.at("radius") * c[0] * std::sin(angle));
   }
-  for (int level = 0; level < static_cast<int>(v.at("levels")); ++level) outline = with_bays(outline, v.at("depth"), random);
+  for (int level = 0; level < static_cast<int>(v.at("levels")); ++level)
+    outline = with_bays(outline, v.at("depth"), random);
   return polygon_2d(outline);
 }
 

@@ -1,6 +1,7 @@
-#include <Eigen/Geometry>
 #include <cmath>
 #include <numbers>
+
+#include <Eigen/Geometry>
 
 #include "scenarios/generators/bodies.hpp"
 
@@ -38,7 +39,8 @@ Mesh knot(const GeneratorValues& v, std::uint64_t) {
     const Eigen::Vector3d w = tangent[i].cross(s);
     for (int j = 0; j < sides; ++j) {
       const double angle = 2 * std::numbers::pi * j / sides;
-      mesh.vertices.push_back(line(static_cast<double>(i) / n) + tube * (std::cos(angle) * s + std::sin(angle) * w));
+      mesh.vertices.push_back(line(static_cast<double>(i) / n) +
+                              tube * (std::cos(angle) * s + std::sin(angle) * w));
     }
   }
   const auto id = [&](int i, int j) { return static_cast<VertexId>((i % n) * sides + j % sides); };

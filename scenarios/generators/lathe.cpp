@@ -23,8 +23,8 @@ void arc(Profile& profile, double radius, double height, double from, double to,
   }
 }
 
-/// Turns a profile round the z axis. The solid lies on the left of the profile's direction seen with the axis on the
-/// left and z up; first and last points are put on the axis.
+/// Turns a profile round the z axis. The solid lies on the left of the profile's direction seen with the axis
+/// on the left and z up; first and last points are put on the axis.
 Mesh lathe(const Profile& profile, int segments) {
   Mesh mesh;
   const int rows = static_cast<int>(profile.size());
@@ -32,11 +32,14 @@ Mesh lathe(const Profile& profile, int segments) {
   for (int row = 1; row + 1 < rows; ++row) {
     for (int i = 0; i < segments; ++i) {
       const double angle = 2 * std::numbers::pi * (i + 0.5 * (row % 2)) / segments;
-      mesh.vertices.emplace_back(profile[row].x() * std::cos(angle), profile[row].x() * std::sin(angle), profile[row].y());
+      mesh.vertices.emplace_back(profile[row].x() * std::cos(angle), profile[row].x() * std::sin(angle),
+                                 profile[row].y());
     }
   }
   mesh.vertices.emplace_back(0, 0, profile.back().y());
-  const auto id = [&](int row, int i) { return static_cast<VertexId>(1 + (row - 1) * segments + i % segments); };
+  const auto id = [&](int row, int i) {
+    return static_cast<VertexId>(1 + (row - 1) * segments + i % segments);
+  };
   const auto last = static_cast<VertexId>(mesh.vertices.size() - 1);
   for (int i = 0; i < segments; ++i) add_triangle(mesh, 0, id(1, i + 1), id(1, i));
   for (int row = 1; row + 2 < rows; ++row) {
@@ -81,7 +84,8 @@ Mesh stick(const GeneratorValues& v, std::uint64_t) {
 }
 
 Mesh pot(const GeneratorValues& v, std::uint64_t) {
-  const double r = v.at("radius"), half = v.at("height") * r / 2, wall = v.at("wall") * r, mouth = v.at("mouth") * r;
+  const double r = v.at("radius"), half = v.at("height") * r / 2, wall = v.at("wall") * r,
+               mouth = v.at("mouth") * r;
   const int rows = static_cast<int>(v.at("rows"));
   Profile profile = {{0, -half}};
   line_to(profile, {r, -half}, rows);

@@ -4,8 +4,8 @@
 
 namespace lrb {
 
-/// SplitMix64 (Steele, Lea, Flood 2014): the same numbers on every machine and standard library, unlike <random>'s
-/// distributions.
+/// SplitMix64 (Steele, Lea, Flood 2014): the same numbers on every machine and standard library, unlike
+/// <random>'s distributions.
 class Random {
  public:
   explicit Random(std::uint64_t seed) : state_(seed) {}

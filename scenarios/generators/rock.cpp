@@ -1,9 +1,10 @@
 #include <array>
-#include <Eigen/Geometry>
 #include <cmath>
 #include <functional>
 #include <map>
 #include <numbers>
+
+#include <Eigen/Geometry>
 
 #include "scenarios/generators/bodies.hpp"
 #include "scenarios/generators/random.hpp"
@@ -11,17 +12,19 @@
 namespace lrb {
 namespace {
 
-/// An icosahedron whose edges are cut into `frequency` parts and whose vertices are put at radius(direction): a
-/// star-shaped surface for any positive radius, so that it cannot meet itself.
+/// An icosahedron whose edges are cut into `frequency` parts and whose vertices are put at radius(direction):
+/// a star-shaped surface for any positive radius, so that it cannot meet itself.
 class StarSurface {
  public:
-  StarSurface(int frequency, const std::function<double(const Eigen::Vector3d&)>& radius) : n_(frequency), radius_(radius) {
+  StarSurface(int frequency, const std::function<double(const Eigen::Vector3d&)>& radius)
+      : n_(frequency), radius_(radius) {
     const double g = std::numbers::phi;
-    const double corner[12][3] = {{-1, g, 0}, {1, g, 0}, {-1, -g, 0}, {1, -g, 0}, {0, -1, g}, {0, 1, g},
-                                  {0, -1, -g}, {0, 1, -g}, {g, 0, -1}, {g, 0, 1}, {-g, 0, -1}, {-g, 0, 1}};
-    const int face[20][3] = {{0, 11, 5}, {0, 5, 1},  {0, 1, 7},   {0, 7, 10}, {0, 10, 11}, {1, 5, 9}, {5, 11, 4},
-                             {11, 10, 2}, {10, 7, 6}, {7, 1, 8},  {3, 9, 4},  {3, 4, 2},   {3, 2, 6}, {3, 6, 8},
-                             {3, 8, 9},  {4, 9, 5},  {2, 4, 11}, {6, 2, 10}, {8, 6, 7},   {9, 8, 1}};
+    const double corner[12][3] = {{-1, g, 0},  {1, g, 0},  {-1, -g, 0}, {1, -g, 0}, {0, -1, g},  {0, 1, g},
+                                  {0, -1, -g}, {0, 1, -g}, {g, 0, -1},  {g, 0, 1},  {-g, 0, -1}, {-g, 0, 1}};
+    const int face[20][3] = {{0, 11, 5}, {0, 5, 1},  {0, 1, 7},   {0, 7, 10}, {0, 10, 11},
+                             {1, 5, 9},  {5, 11, 4}, {11, 10, 2}, {10, 7, 6}, {7, 1, 8},
+                             {3, 9, 4},  {3, 4, 2},  {3, 2, 6},   {3, 6, 8},  {3, 8, 9},
+                             {4, 9, 5},  {2, 4, 11}, {6, 2, 10},  {8, 6, 7},  {9, 8, 1}};
     for (const auto& f : face) add_face(corner[f[0]], corner[f[1]], corner[f[2]]);
   }
   Mesh take() { return std::move(mesh_); }
@@ -44,7 +47,8 @@ class StarSurface {
   VertexId vertex(const Eigen::Vector3d& on_icosahedron) {
     constexpr double kGrid = 1 << 24;  // far below the distance of two vertices, far above rounding
     const auto key = [&](int i) { return std::llround(on_icosahedron[i] * kGrid); };
-    const auto [it, is_new] = ids_.try_emplace({key(0), key(1), key(2)}, static_cast<VertexId>(mesh_.vertices.size()));
+    const auto [it, is_new] =
+        ids_.try_emplace({key(0), key(1), key(2)}, static_cast<VertexId>(mesh_.vertices.size()));
     if (is_new) {
       const Eigen::Vector3d direction = on_icosahedron.normalized();
       mesh_.vertices.push_back(radius_(direction) * direction);
@@ -75,7 +79,8 @@ Eigen::Vector3d random_direction(Random& random) {
 
 /// Height of a crater's profile at the cosine of the angle from its middle: a bowl inside a soft raised rim.
 double crater_height(const Crater& c, double cosine) {
-  const double t = (1 - cosine) / (1 - c.cos_rim);  // 0 in the middle, 1 on the rim, about the square of the angle
+  const double t =
+      (1 - cosine) / (1 - c.cos_rim);  // 0 in the middle, 1 on the rim, about the square of the angle
   if (t >= 2) return 0;
   const double rim = 0.25 * c.depth * std::exp(-8 * (t - 1) * (t - 1));
   return rim - (t < 1 ? c.depth * (1 - t) * (1 - t) * (1 + 2 * t) : 0);

@@ -40,7 +40,8 @@ void JsonNode::fail_choice(const std::vector<std::string>& known) const {
 const JsonNode& JsonNode::object(const std::vector<std::string>& keys) const {
   if (!value_->is_object()) fail_type("an object");
   for (const auto& [key, value] : value_->items())
-    if (std::find(keys.begin(), keys.end(), key) == keys.end()) fail_key(key, "unknown key" + suggestion(key, keys));
+    if (std::find(keys.begin(), keys.end(), key) == keys.end())
+      fail_key(key, "unknown key" + suggestion(key, keys));
   return *this;
 }
 
@@ -57,7 +58,8 @@ std::optional<JsonNode> JsonNode::get(const std::string& key) const {
 
 std::vector<JsonNode> JsonNode::items(std::size_t least) const {
   if (!value_->is_array()) fail_type("an array");
-  if (value_->size() < least) fail("expected at least " + std::to_string(least) + " items, found " + std::to_string(value_->size()));
+  if (value_->size() < least)
+    fail("expected at least " + std::to_string(least) + " items, found " + std::to_string(value_->size()));
   std::vector<JsonNode> out;
   for (std::size_t i = 0; i < value_->size(); ++i)
     out.push_back(JsonNode(*text_, (*value_)[i], pointer_ + "/" + std::to_string(i)));
@@ -67,7 +69,8 @@ std::vector<JsonNode> JsonNode::items(std::size_t least) const {
 double JsonNode::number(double least, double most) const {
   if (!value_->is_number()) fail_type("a number");
   const double x = value_->get<double>();
-  if (!std::isfinite(x) || x < least || x > most) fail("expected a number from " + shown(least) + " to " + shown(most) + ", found " + value_->dump());
+  if (!std::isfinite(x) || x < least || x > most)
+    fail("expected a number from " + shown(least) + " to " + shown(most) + ", found " + value_->dump());
   return x;
 }
 
@@ -75,7 +78,8 @@ std::uint64_t JsonNode::integer(std::uint64_t least, std::uint64_t most) const {
   const bool whole = value_->is_number_unsigned();
   if (!value_->is_number()) fail_type("a whole number");
   if (!whole || value_->get<std::uint64_t>() < least || value_->get<std::uint64_t>() > most)
-    fail("expected a whole number from " + std::to_string(least) + " to " + std::to_string(most) + ", found " + value_->dump());
+    fail("expected a whole number from " + std::to_string(least) + " to " + std::to_string(most) +
+         ", found " + value_->dump());
   return value_->get<std::uint64_t>();
 }
 
@@ -92,7 +96,8 @@ std::string JsonNode::string() const {
 std::vector<double> JsonNode::numbers(std::size_t count) const {
   constexpr double kAny = std::numeric_limits<double>::max();
   if (!value_->is_array()) fail_type("an array of numbers");
-  if (value_->size() != count) fail("expected " + std::to_string(count) + " numbers, found " + std::to_string(value_->size()));
+  if (value_->size() != count)
+    fail("expected " + std::to_string(count) + " numbers, found " + std::to_string(value_->size()));
   std::vector<double> out;
   for (const JsonNode& item : items()) out.push_back(item.number(-kAny, kAny));
   return out;

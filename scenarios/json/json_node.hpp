@@ -1,12 +1,14 @@
 #pragma once
-/// Reading a JsonText by what is expected in it: a wrong type, value or key is an InputError that names its place.
+/// Reading a JsonText by what is expected in it: a wrong type, value or key is an InputError that names its
+/// place.
 
-#include <Eigen/Core>
 #include <cstdint>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
+
+#include <Eigen/Core>
 
 #include "scenarios/json/json_text.hpp"
 

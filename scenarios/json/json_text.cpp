@@ -12,7 +12,8 @@ namespace {
 /// Walks a text that is known to be JSON and notes where values begin.
 class Walker {
  public:
-  Walker(const std::string& text, std::unordered_map<std::string, std::size_t>& offsets, std::string& duplicate)
+  Walker(const std::string& text, std::unordered_map<std::string, std::size_t>& offsets,
+         std::string& duplicate)
       : text_(text), offsets_(offsets), duplicate_(duplicate) {}
 
   void value(const std::string& pointer) {
@@ -27,7 +28,8 @@ class Walker {
     else if (text_[at_] == '"')
       string();
     else
-      while (at_ < text_.size() && std::string_view(",]} \t\r\n").find(text_[at_]) == std::string_view::npos) ++at_;
+      while (at_ < text_.size() && std::string_view(",]} \t\r\n").find(text_[at_]) == std::string_view::npos)
+        ++at_;
     --depth_;
   }
 
@@ -73,7 +75,8 @@ class Walker {
   }
 
   void skip_space() {
-    while (at_ < text_.size() && std::string_view(" \t\r\n").find(text_[at_]) != std::string_view::npos) ++at_;
+    while (at_ < text_.size() && std::string_view(" \t\r\n").find(text_[at_]) != std::string_view::npos)
+      ++at_;
   }
 
   const std::string& text_;
@@ -128,7 +131,9 @@ std::string pointer_part(const std::string& key) {
   return out;
 }
 
-JsonIndex::JsonIndex(const std::string& text) { Walker(text, offsets_, duplicate_).value(""); }
+JsonIndex::JsonIndex(const std::string& text) {
+  Walker(text, offsets_, duplicate_).value("");
+}
 
 std::size_t JsonIndex::offset(const std::string& pointer) const {
   const auto it = offsets_.find(pointer);
@@ -153,7 +158,8 @@ JsonText::JsonText(std::string text, std::string file) : text_(std::move(text)),
     throw InputError(file_ + ": " + e.what());
   }
   if (!index_->duplicate().empty())
-    throw InputError(where(index_->duplicate() + "#") + ": the key " + index_->duplicate() + " occurs twice: keep one");
+    throw InputError(where(index_->duplicate() + "#") + ": the key " + index_->duplicate() +
+                     " occurs twice: keep one");
 }
 
 std::string JsonText::where(const std::string& pointer) const {

@@ -3,9 +3,10 @@
 
 #include <cstddef>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <unordered_map>
+
+#include <nlohmann/json.hpp>
 
 namespace lrb {
 
@@ -15,8 +16,8 @@ struct TextPosition {
 };
 TextPosition position_in(const std::string& text, std::size_t offset);
 
-/// Offsets of the values of a JSON text by JSON pointer (RFC 6901), and of each member's key by the pointer with '#'
-/// behind it. Works on texts that a parser has accepted.
+/// Offsets of the values of a JSON text by JSON pointer (RFC 6901), and of each member's key by the pointer
+/// with '#' behind it. Works on texts that a parser has accepted.
 class JsonIndex {
  public:
   explicit JsonIndex(const std::string& text);

@@ -13,7 +13,8 @@ std::size_t edit_distance(const std::string& a, const std::string& b) {
         continue;
       }
       d[i][j] = std::min({d[i - 1][j] + 1, d[i][j - 1] + 1, d[i - 1][j - 1] + (a[i - 1] != b[j - 1])});
-      if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1]) d[i][j] = std::min(d[i][j], d[i - 2][j - 2] + 1);
+      if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1])
+        d[i][j] = std::min(d[i][j], d[i - 2][j - 2] + 1);
     }
   }
   return d[a.size()][b.size()];
@@ -38,7 +39,8 @@ std::string suggestion(const std::string& word, const std::vector<std::string>& 
   std::string out;
   const std::string near = nearest_word(word, known);
   if (!near.empty()) out += "; did you mean \"" + near + "\"?";
-  for (std::size_t i = 0; i < known.size(); ++i) out += (i == 0 ? (near.empty() ? "; known: " : " known: ") : ", ") + known[i];
+  for (std::size_t i = 0; i < known.size(); ++i)
+    out += (i == 0 ? (near.empty() ? "; known: " : " known: ") : ", ") + known[i];
   return out;
 }
 

@@ -39,7 +39,8 @@ Image halved(const Image& image) {
         int sum = 2;
         for (const int dy : {0, 1})
           for (const int dx : {0, 1})
-            sum += channel(image.at(std::min(2 * x + dx, image.width() - 1), std::min(2 * y + dy, image.height() - 1)));
+            sum += channel(
+                image.at(std::min(2 * x + dx, image.width() - 1), std::min(2 * y + dy, image.height() - 1)));
         return static_cast<std::uint8_t>(sum / 4);
       };
       half.at(x, y) = {mean([](const Rgba& c) { return c.r; }), mean([](const Rgba& c) { return c.g; }),

@@ -1,7 +1,8 @@
 #include "scenarios/page/page.hpp"
 
-#include <nlohmann/json.hpp>
 #include <string_view>
+
+#include <nlohmann/json.hpp>
 
 #include "scenarios/embedded.hpp"
 
@@ -14,11 +15,20 @@ std::string escaped(std::string_view text) {
   std::string out;
   for (const char c : text) {
     switch (c) {
-      case '&': out += "&amp;"; break;
-      case '<': out += "&lt;"; break;
-      case '>': out += "&gt;"; break;
-      case '"': out += "&quot;"; break;
-      default: out += c;
+      case '&':
+        out += "&amp;";
+        break;
+      case '<':
+        out += "&lt;";
+        break;
+      case '>':
+        out += "&gt;";
+        break;
+      case '"':
+        out += "&quot;";
+        break;
+      default:
+        out += c;
     }
   }
   return out;
@@ -28,15 +38,21 @@ std::string escaped(std::string_view text) {
 std::string script_safe(const json& value) {
   std::string out;
   for (const char c : value.dump(-1, ' ', false, json::error_handler_t::replace))
-    if (c == '<') out += "\\u003c"; else out += c;
+    if (c == '<')
+      out += "\\u003c";
+    else
+      out += c;
   return out;
 }
 
 const char* name_of(PageCursor cursor) {
   switch (cursor) {
-    case PageCursor::event: return "event";
-    case PageCursor::step: return "step";
-    case PageCursor::none: break;
+    case PageCursor::event:
+      return "event";
+    case PageCursor::step:
+      return "step";
+    case PageCursor::none:
+      break;
   }
   return "";
 }
@@ -45,19 +61,23 @@ json chart_json(const PageChart& chart) {
   json series = json::array();
   for (const PageSeries& s : chart.series) {
     json points = json::array();
-    for (std::size_t i = 0; i < s.x.size() && i < s.y.size(); ++i) points.push_back({{"x", s.x[i]}, {"y", s.y[i]}});
+    for (std::size_t i = 0; i < s.x.size() && i < s.y.size(); ++i)
+      points.push_back({{"x", s.x[i]}, {"y", s.y[i]}});
     series.push_back({{"label", s.label}, {"data", std::move(points)}});
   }
-  return {{"x", chart.x_label},      {"y", chart.y_label},     {"cursor", name_of(chart.cursor)},
-          {"logX", chart.log_x},     {"logY", chart.log_y},    {"stepped", chart.stepped},
+  return {{"x", chart.x_label},       {"y", chart.y_label},         {"cursor", name_of(chart.cursor)},
+          {"logX", chart.log_x},      {"logY", chart.log_y},        {"stepped", chart.stepped},
           {"scatter", chart.scatter}, {"series", std::move(series)}};
 }
 
 json page_json(const Page& page) {
   json frames = json::array(), charts = json::array();
   for (const PageFrame& f : page.frames)
-    frames.push_back(
-        {{"src", f.data_uri}, {"caption", f.caption}, {"file", f.file}, {"event", f.event}, {"step", f.step}});
+    frames.push_back({{"src", f.data_uri},
+                      {"caption", f.caption},
+                      {"file", f.file},
+                      {"event", f.event},
+                      {"step", f.step}});
   for (const PageChart& c : page.charts) charts.push_back(chart_json(c));
   return {{"frames", std::move(frames)}, {"charts", std::move(charts)}};
 }
@@ -88,8 +108,8 @@ std::string charts_html(const Page& page) {
     const PageChart& c = page.charts[i];
     out += "<figure class=\"chart\"><figcaption><h2>" + escaped(c.title) + "</h2>";
     if (!c.note.empty()) out += "<p>" + escaped(c.note) + "</p>";
-    out += "</figcaption><div class=\"plot\"><canvas id=\"chart-" + std::to_string(i) + "\" role=\"img\" aria-label=\"" +
-           escaped(c.title) + "\"></canvas></div></figure>\n";
+    out += "</figcaption><div class=\"plot\"><canvas id=\"chart-" + std::to_string(i) +
+           "\" role=\"img\" aria-label=\"" + escaped(c.title) + "\"></canvas></div></figure>\n";
   }
   return out + "</section>\n";
 }
@@ -123,7 +143,8 @@ std::string tables_html(const Page& page) {
 std::string source_html(const Page& page) {
   std::string out;
   if (!page.command.empty())
-    out += "<section><h2>Made by</h2>\n<pre class=\"command\"><code>" + escaped(page.command) + "</code></pre></section>\n";
+    out += "<section><h2>Made by</h2>\n<pre class=\"command\"><code>" + escaped(page.command) +
+           "</code></pre></section>\n";
   if (!page.links.empty()) {
     out += "<section><h2>Files</h2>\n<ul class=\"links\">\n";
     for (const PageLink& l : page.links) {
@@ -142,8 +163,10 @@ std::string page_html(const Page& page) {
   const std::string_view shape = embedded_file("page.html");
   const auto part = [&](std::string_view key) -> std::string {
     if (key == "title") return escaped(page.title);
-    if (key == "purpose") return page.purpose.empty() ? "" : "<p class=\"purpose\">" + escaped(page.purpose) + "</p>";
-    if (key == "verdict") return page.verdict.empty() ? "" : "<span class=\"verdict\">" + escaped(page.verdict) + "</span>";
+    if (key == "purpose")
+      return page.purpose.empty() ? "" : "<p class=\"purpose\">" + escaped(page.purpose) + "</p>";
+    if (key == "verdict")
+      return page.verdict.empty() ? "" : "<span class=\"verdict\">" + escaped(page.verdict) + "</span>";
     if (key == "style") return std::string(embedded_file("page.css"));
     if (key == "numbers") return numbers_html(page);
     if (key == "player") return player_html(page);

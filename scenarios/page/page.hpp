@@ -1,6 +1,6 @@
 #pragma once
-/// Every HTML page and chart of the project: one file that opens from disk, with style, script, charting library and
-/// pictures inside, and nothing fetched from anywhere.
+/// Every HTML page and chart of the project: one file that opens from disk, with style, script, charting
+/// library and pictures inside, and nothing fetched from anywhere.
 
 #include <string>
 #include <vector>
@@ -17,9 +17,9 @@ struct PageNumber {
 struct PageFrame {
   std::string data_uri;  ///< see inline_image.hpp
   std::string caption;
-  std::string file;      ///< link to the full picture, relative to the page; may be empty
-  double event = -1;     ///< where it stands on charts over events; negative: nowhere
-  double step = -1;      ///< where it stands on charts over time steps; negative: nowhere
+  std::string file;   ///< link to the full picture, relative to the page; may be empty
+  double event = -1;  ///< where it stands on charts over events; negative: nowhere
+  double step = -1;   ///< where it stands on charts over time steps; negative: nowhere
 };
 
 struct PageSeries {
@@ -29,14 +29,15 @@ struct PageSeries {
 
 enum class PageCursor { none, event, step };
 
-/// A chart of lines, or of points if `scatter`. The frame on show is marked on it, and a click goes to a frame.
+/// A chart of lines, or of points if `scatter`. The frame on show is marked on it, and a click goes to a
+/// frame.
 struct PageChart {
   std::string title, x_label, y_label;
-  std::string note;            ///< one sentence on how to read it; may be empty
+  std::string note;  ///< one sentence on how to read it; may be empty
   std::vector<PageSeries> series;
   PageCursor cursor = PageCursor::none;  ///< what x counts
   bool log_x = false, log_y = false;
-  bool stepped = false;        ///< values hold until the next point
+  bool stepped = false;  ///< values hold until the next point
   bool scatter = false;
 };
 

@@ -4,7 +4,7 @@
 #include <numeric>
 
 #include "engine/error.hpp"
-#include "engine/query/query_context.hpp"
+#include "engine/query/collide_impl.hpp"
 #include "scenarios/play/approach.hpp"
 #include "scenarios/scenario_motion.hpp"
 #include "trace/hex.hpp"
@@ -13,7 +13,9 @@
 namespace lrb {
 namespace {
 
-std::string source_of(const BodySpec& spec) { return spec.file.empty() ? "generator " + spec.generator : spec.file; }
+std::string source_of(const BodySpec& spec) {
+  return spec.file.empty() ? "generator " + spec.generator : spec.file;
+}
 
 trace::RecorderSettings recorder_settings(const Scenario& s) {
   trace::RecorderSettings settings;
@@ -28,7 +30,8 @@ trace::RecorderSettings recorder_settings(const Scenario& s) {
 
 std::vector<Pose> poses_of_b(const Scenario& s, Recording& r) {
   if (s.motion.kind != Motion::Kind::approach) return poses_of(s.motion, s.bodies[1].pose);
-  Approach approach = find_approach(r.bodies[0].rep, s.bodies[0].pose, r.bodies[1].rep, s.bodies[1].pose, s.motion);
+  Approach approach =
+      find_approach(r.bodies[0].rep, s.bodies[0].pose, r.bodies[1].rep, s.bodies[1].pose, s.motion);
   r.notes.push_back(approach.met ? "first contact at step " + std::to_string(approach.first_contact)
                                  : "the bodies did not meet on the way");
   return std::move(approach.poses);
@@ -52,10 +55,10 @@ void record_collision(const Scenario& s, Recording& r, const ProgressReport& pro
 std::vector<RegionId> outside_in(const LrbRep& rep) {
   std::vector<RegionId> order(rep.region_count());
   std::iota(order.begin(), order.end(), RegionId{0});
-  std::stable_sort(order.begin(), order.end(), [&](RegionId x, RegionId y) { return rep.layer(x) > rep.layer(y); });
+  std::stable_sort(order.begin(), order.end(),
+                   [&](RegionId x, RegionId y) { return rep.layer(x) > rep.layer(y); });
   return order;
 }
-
 
 void record_wrapper(const Scenario& s, Recording& r) {
   const LrbRep& rep = r.bodies[0].rep;
@@ -84,12 +87,18 @@ LoadedBody make_body(const BodySpec& spec) {
 }
 
 Recording record(const Scenario& scenario, const ProgressReport& progress) {
-  Recording r;
+  std::vector<LoadedBody> bodies;
   for (std::size_t i = 0; i < scenario.bodies.size(); ++i) {
     progress("build", i, scenario.bodies.size());
-    r.bodies.push_back(make_body(scenario.bodies[i]));
-    for (const std::string& note : r.bodies.back().notes) r.notes.push_back(note);
+    bodies.push_back(make_body(scenario.bodies[i]));
   }
+  return record(scenario, std::move(bodies), progress);
+}
+
+Recording record(const Scenario& scenario, std::vector<LoadedBody> bodies, const ProgressReport& progress) {
+  Recording r;
+  r.bodies = std::move(bodies);
+  for (const LoadedBody& body : r.bodies) r.notes.insert(r.notes.end(), body.notes.begin(), body.notes.end());
   if (scenario.show == Show::collision)
     record_collision(scenario, r, progress);
   else
@@ -111,11 +120,14 @@ std::vector<std::string> mismatches(const Scenario& scenario, const Recording& r
     const CollideResult& result = r.results[e.step];
     const std::uint64_t print = fingerprint(result.pairs);
     if (e.relation && *e.relation != result.relation)
-      out.push_back(where + "expected relation " + to_string(*e.relation) + ", found " + to_string(result.relation));
+      out.push_back(where + "expected relation " + to_string(*e.relation) + ", found " +
+                    to_string(result.relation));
     if (e.pairs && *e.pairs != result.pairs.size())
-      out.push_back(where + "expected " + std::to_string(*e.pairs) + " pairs, found " + std::to_string(result.pairs.size()));
+      out.push_back(where + "expected " + std::to_string(*e.pairs) + " pairs, found " +
+                    std::to_string(result.pairs.size()));
     if (e.fingerprint && *e.fingerprint != print)
-      out.push_back(where + "expected fingerprint " + trace::to_hex(*e.fingerprint) + ", found " + trace::to_hex(print));
+      out.push_back(where + "expected fingerprint " + trace::to_hex(*e.fingerprint) + ", found " +
+                    trace::to_hex(print));
   }
   return out;
 }
