@@ -9,8 +9,8 @@ target_include_directories(lrb_options INTERFACE ${PROJECT_SOURCE_DIR})
 target_compile_options(lrb_options INTERFACE -ffp-contract=off)
 
 # -Wrestrict of gcc 12 is wrong about inlined std::string::replace and operator+ (gcc bug 105329).
-target_compile_options(lrb_options INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion
-                                             $<$<CXX_COMPILER_ID:GNU>:-Wno-psabi -Wno-restrict>)
+target_compile_options(lrb_options INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion -Wno-psabi
+                                             $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>)
 if(LRB_WARNINGS_AS_ERRORS)
   target_compile_options(lrb_options INTERFACE -Werror)
 endif()

@@ -25,7 +25,7 @@ struct RecorderSettings {
   std::string scenario;  ///< name
   std::uint64_t scenario_hash = 0;
   std::array<std::string, 2> sources;  ///< where the bodies came from, as the user gave it
-  CollideRequest request;
+  CollideRequest request;              ///< what collide() is given: it decides what can cause a refinement
   Clock clock = Clock::event;
   std::uint32_t event_cap = 1'000'000;  ///< events beyond are counted, not stored (at most kMaxId)
 };
@@ -58,8 +58,11 @@ class Recorder {
   }
 
   void refine(Side side, RegionId region, std::uint32_t faces_added) {
-    const EventId id =
-        push({.a = region, .b = faces_added, .cause = last_hit_, .kind = EventKind::refine, .side = side});
+    const EventId id = push({.a = region,
+                             .b = faces_added,
+                             .cause = cause_of_refinement(),
+                             .kind = EventKind::refine,
+                             .side = side});
     // In unregularised mode a region's second lid brings in no faces: the first one's refinement stays the
     // cause.
     if (faces_added != 0 && id != kNull) refined_by_[static_cast<std::size_t>(side)][region] = id + 1;
@@ -67,7 +70,11 @@ class Recorder {
 
   /// Not an event of the query: for runs that show a wrapper growing back.
   void coarsen(Side side, RegionId region, std::uint32_t faces_removed) {
-    push({.a = region, .b = faces_removed, .cause = last_hit_, .kind = EventKind::coarsen, .side = side});
+    push({.a = region,
+          .b = faces_removed,
+          .cause = cause_of_refinement(),
+          .kind = EventKind::coarsen,
+          .side = side});
   }
 
   void contact(SimplexId a, SimplexId b, exact::Meet meet) {
@@ -85,6 +92,13 @@ class Recorder {
  private:
   static std::uint16_t saturated(std::uint32_t depth) {
     return static_cast<std::uint16_t>(std::min(depth, std::uint32_t{0xffff}));
+  }
+
+  /// In the paper's recursion, a face test that hit. The complete query opens regions before it tests what
+  /// they hide, because bounds overlap: no event is the cause, least of all the test that happened to come
+  /// before.
+  EventId cause_of_refinement() const {
+    return settings_.request.recursion == Recursion::complete ? kNull : last_hit_;
   }
 
   /// 1 + the refine event of this step that put the simplex's face on the boundary; 0: none.

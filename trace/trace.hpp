@@ -30,8 +30,9 @@ using EventId = std::uint32_t;
 struct Event {
   std::uint32_t a = 0;
   std::uint32_t b = 0;
-  EventId cause = kNull;  ///< an earlier event; refine, coarsen, contact: the face test that hit before
-                          ///< them; face test: the refinement that brought in the later of its faces
+  EventId cause = kNull;  ///< an earlier event. Contact: the face test that found it. Refine: the face test
+                          ///< that hit before it (none in the complete query, which opens regions ahead of
+                          ///< tests). Face test: the refinement that brought in the later of its faces
   std::uint32_t boundary = kNull;  ///< refine, coarsen: faces of that wrapper afterwards; kNull: not known
   std::uint16_t depth_a = 0;  ///< face test: regions between A's face and the outside (65535: that or more)
   std::uint16_t depth_b = 0;  ///< the same for B

@@ -76,18 +76,22 @@ bool fan_has_area(const Mesh& mesh, std::span<const VertexId> corners) {
   return true;
 }
 
-/// An ear whose loss leaves the rest with area. There is one: with four or more proper corners any of them,
-/// with three any that stands next to a straight one.
-std::size_t find_ear(const Mesh& mesh, const std::vector<VertexId>& ring) {
-  const std::size_t n = ring.size();
-  std::vector<VertexId> rest;
-  for (std::size_t i = 0; i < n; ++i) {
-    if (is_straight(mesh, ring[(i + n - 1) % n], ring[i], ring[(i + 1) % n])) continue;
-    rest = ring;
-    rest.erase(rest.begin() + static_cast<std::ptrdiff_t>(i));
-    if (spanning_corners(mesh, rest)) return i;
-  }
-  return 0;
+/// The corners in order from a proper one on, and where the first and last other proper ones are. Corners in
+/// the middle of a straight side are not proper. No ring if fewer than three are.
+struct ProperRing {
+  std::vector<VertexId> ring;
+  std::size_t first = 0, last = 0;
+};
+
+ProperRing proper_ring(const Mesh& mesh, std::span<const VertexId> corners) {
+  const std::size_t n = corners.size();
+  std::vector<std::size_t> proper;
+  for (std::size_t i = 0; i < n; ++i)
+    if (!is_straight(mesh, corners[(i + n - 1) % n], corners[i], corners[(i + 1) % n])) proper.push_back(i);
+  if (proper.size() < 3) return {};
+  ProperRing out{{corners.begin(), corners.end()}, proper[1] - proper[0], proper.back() - proper[0]};
+  std::rotate(out.ring.begin(), out.ring.begin() + static_cast<std::ptrdiff_t>(proper[0]), out.ring.end());
+  return out;
 }
 
 }  // namespace
@@ -120,18 +124,24 @@ bool is_convex(const Mesh& mesh, std::span<const VertexId> corners) {
 void triangulate_convex(const Mesh& mesh, std::span<const VertexId> corners,
                         std::vector<std::array<VertexId, 3>>& triangles) {
   triangles.clear();
-  if (corners.size() == 3 || fan_has_area(mesh, corners)) {
+  const ProperRing p =
+      corners.size() == 3 || fan_has_area(mesh, corners) ? ProperRing{} : proper_ring(mesh, corners);
+  if (p.ring.empty()) {
     for (std::size_t i = 1; i + 1 < corners.size(); ++i)
       triangles.push_back({corners[0], corners[i], corners[i + 1]});
     return;
   }
-  std::vector<VertexId> ring(corners.begin(), corners.end());
-  while (ring.size() > 3) {
-    const std::size_t n = ring.size(), i = find_ear(mesh, ring);
-    triangles.push_back({ring[(i + n - 1) % n], ring[i], ring[(i + 1) % n]});
-    ring.erase(ring.begin() + static_cast<std::ptrdiff_t>(i));
-  }
-  triangles.push_back({ring[0], ring[1], ring[2]});
+  const auto add = [&](std::size_t i, std::size_t j, std::size_t k) {
+    triangles.push_back({p.ring[i], p.ring[j], p.ring[k % p.ring.size()]});
+  };
+  // Corner 0 sees all sides but the two it lies on: a fan over those. The two are seen from the corner next
+  // to their far end; where that is the far end of the other one, the second is seen from the first corner of
+  // the first.
+  for (std::size_t i = p.first + 1; i + 1 < p.last; ++i) add(0, i, i + 1);
+  const bool one_side_between = p.last == p.first + 1;
+  for (std::size_t i = one_side_between ? 1 : 0; i < p.first; ++i) add(p.first + 1, i, i + 1);
+  const std::size_t eye = one_side_between ? 1 : p.last - 1;
+  for (std::size_t i = p.last; i < p.ring.size(); ++i) add(eye, i, i + 1);
 }
 
 }  // namespace lrb

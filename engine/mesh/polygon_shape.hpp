@@ -20,9 +20,9 @@ bool is_planar(const Mesh& mesh, std::span<const VertexId> corners, const std::a
 /// are allowed, sides that turn back are not. For a polygon with area.
 bool is_convex(const Mesh& mesh, std::span<const VertexId> corners);
 
-/// Triangles that make up a planar convex polygon with area, each with area: the fan from the first corner
-/// unless corners in the middle of straight sides would give that fan triangles without area; then ears are
-/// cut off so that what is left keeps its area.
+/// Triangles that make up a planar convex polygon with area. The fan from the first corner, unless corners in
+/// the middle of straight sides would give that fan triangles without area; then others that all have area.
+/// (Corners that lie in one place can still make triangles without area.)
 void triangulate_convex(const Mesh& mesh, std::span<const VertexId> corners,
                         std::vector<std::array<VertexId, 3>>& triangles);
 

@@ -1,5 +1,6 @@
-/// What recording and writing cost, per event. Run: build/tests/trace_bench --benchmark_repetitions=5
+/// What recording and writing cost, per event. Run: build/tests/bench/trace_bench --benchmark_repetitions=5
 
+#include <filesystem>
 #include <random>
 #include <string>
 #include <utility>
@@ -95,6 +96,7 @@ void replay_calls(Probe& probe) {
 Trace recorded(Clock clock) {
   RecorderSettings settings;
   settings.clock = clock;
+  settings.request.recursion = Recursion::paper;
   Recorder recorder(body(), body(), settings);
   recorder.begin_step(0, {}, {});
   replay_calls(recorder);
@@ -129,6 +131,7 @@ BENCHMARK(calls_alone);
 void record(benchmark::State& state) {
   RecorderSettings settings;
   settings.clock = static_cast<Clock>(state.range(0));
+  settings.request.recursion = Recursion::paper;
   calls();
   for (auto _ : state) {
     state.PauseTiming();
@@ -163,6 +166,17 @@ void write_json(benchmark::State& state) {
   state.counters["bytes_per_event"] = static_cast<double>(sink.size) / kEvents;
 }
 BENCHMARK(write_json)->ArgName("wall")->Arg(0)->Arg(1)->Unit(benchmark::kMillisecond);
+
+void save_file(benchmark::State& state) {
+  const Trace trace = recorded(Clock::event);
+  const auto path =
+      std::filesystem::temp_directory_path() / (state.range(0) ? "lrb_bench.json.gz" : "lrb_bench.json");
+  for (auto _ : state) save_trace(trace, path.string());
+  report(state);
+  state.counters["bytes_per_event"] = static_cast<double>(std::filesystem::file_size(path)) / kEvents;
+  std::filesystem::remove(path);
+}
+BENCHMARK(save_file)->ArgName("gz")->Arg(0)->Arg(1)->Unit(benchmark::kMillisecond);
 
 void read_json(benchmark::State& state) {
   const std::string text = trace_to_json(recorded(Clock::event));

@@ -103,7 +103,7 @@ TEST_CASE(
     "the parity of the moved ray is right for every point of a grid and every tetrahedron, flat ones too") {
   test::Rng rng(41);
   int wrong = 0, inside = 0, on = 0;
-  for (int i = 0; i < test::effort(3000); ++i) {
+  for (int i = 0; i < test::effort(1500); ++i) {
     std::array<Vec, 4> p;
     fill(rng, p, i % 3 == 0);
     Vec x;
@@ -124,7 +124,7 @@ TEST_CASE(
 TEST_CASE("the parity of the moved ray is right for triangles in the plane") {
   test::Rng rng(42);
   int wrong = 0, inside = 0;
-  for (int i = 0; i < test::effort(3000); ++i) {
+  for (int i = 0; i < test::effort(1500); ++i) {
     std::array<Vec, 4> p;
     fill(rng, p, i % 3 == 0);
     const double x[2] = {test::random_int(rng, 0, 6) * 0.5, test::random_int(rng, 0, 6) * 0.5};

@@ -59,7 +59,7 @@ void compare(std::uint64_t seed, std::size_t n, int rounds) {
   for (int k = 0; k < static_cast<int>(Kind::count); ++k) {
     test::Rng rng(seed + static_cast<std::uint64_t>(k));
     int wrong = 0, positive = 0;
-    const int total = test::effort(rounds);
+    const int total = test::rounds_for(static_cast<Kind>(k), rounds);
     for (int i = 0; i < total; ++i) {
       test::SimplexPair s = test::random_pair(rng, static_cast<Kind>(k));
       const Ids ib = share_vertices(rng, s, n);

@@ -76,7 +76,8 @@ TEST_CASE("bodies of the tests are closed, manifold, outward and free of self-in
            {l_shape_2d(), 1, 0},
            {ring_2d(9), 2, 0},
            {several({torus(9, 6), translated(torus(7, 5), {9, 0, 0}), icosphere(1, 0.2)}), 3, 2}}) {
-    CAPTURE(mesh.name);
+    const std::string& body = mesh.name;
+    CAPTURE(body);
     const MeshReport report = check_mesh(mesh);
     CHECK(report.lines(mesh).empty());
     CHECK(report.closed);
@@ -183,7 +184,8 @@ TEST_CASE("convexity of polygons, whatever plane they lie in") {
           }
           if (turned) std::reverse(face.begin(), face.end());
           const MeshReport report = check_mesh(mesh_of(vertices, {face}), false);
-          CAPTURE(corners.size());
+          const std::size_t size_of_face = face.size();
+          CAPTURE(size_of_face);
           CAPTURE(plane);
           CHECK(report[MeshFault::non_planar_face].count == 0);
           CHECK(report[MeshFault::non_convex_face].count == (convex ? 0 : 1));

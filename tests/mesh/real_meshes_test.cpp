@@ -21,8 +21,9 @@ TEST_CASE("real meshes are closed, manifold and clean") {
        {Expected{"cheburashka.obj", 6669, 13334, 0}, Expected{"fandisk.obj", 6475, 12946, 0},
         Expected{"homer.obj", 6002, 12000, 0}, Expected{"nefertiti.obj", 49971, 99938, 0},
         Expected{"rocker-arm.obj", 10044, 20088, 1}, Expected{"spot.obj", 2930, 5856, 0}}) {
-    CAPTURE(name);
-    Mesh mesh = read_mesh((directory / name).string());
+    const std::string file = name;
+    CAPTURE(file);
+    Mesh mesh = read_mesh((directory / file).string());
     CHECK(mesh.vertices.size() == vertices);
     CHECK(mesh.face_count() == faces);
     const MeshReport report = check_mesh(mesh);

@@ -37,6 +37,8 @@ struct SimplexPair {
 enum class Kind {
   grid,         ///< coordinates 0 .. 3: all degeneracies
   tiny_grid,    ///< coordinates 0 .. 1
+  collinear,    ///< a grid; corners of many triangles are on one line or equal
+  underflow,    ///< real or nudged, scaled so that determinants are about the least double
   nudged_grid,  ///< a grid, some coordinates moved by one unit in the last place
   real,         ///< random doubles in [0, 1)
   shared,       ///< random doubles; corners of b copied from a, or affine combinations of them, rounded
@@ -49,9 +51,14 @@ enum class Kind {
   count
 };
 
+/// Rounds for one kind: the oracle's integers are thousands of bits long for the extreme ones.
+inline int rounds_for(Kind k, int standard) {
+  return effort(k == Kind::extreme ? (standard + 4) / 5 : standard);
+}
+
 inline std::string name_of(Kind k) {
-  static constexpr const char* kNames[] = {"grid",   "tiny_grid", "nudged_grid", "real",
-                                           "shared", "coplanar",  "far_grid",    "scaled",
+  static constexpr const char* kNames[] = {"grid",   "tiny_grid", "collinear", "underflow", "nudged_grid",
+                                           "real",   "shared",    "coplanar",  "far_grid",  "scaled",
                                            "sliver", "wide",      "extreme"};
   return kNames[static_cast<int>(k)];
 }
@@ -108,6 +115,27 @@ inline void fill_sliver(Rng& rng, SimplexPair& s) {
   }
 }
 
+inline void fill_collinear(Rng& rng, SimplexPair& s) {
+  fill_grid(rng, s, 2);
+  for (std::size_t first : {std::size_t{0}, std::size_t{3}}) {
+    if (random_int(rng, 0, 3) == 0) continue;
+    const int t = random_int(rng, -1, 2);
+    for (std::size_t k = 0; k < 3; ++k)
+      s.p[first + 2][k] = s.p[first][k] + t * (s.p[first + 1][k] - s.p[first][k]);
+    std::swap(s.p[first + 2], s.p[first + static_cast<std::size_t>(random_int(rng, 0, 2))]);
+  }
+}
+
+inline void scale_to_underflow(Rng& rng, SimplexPair& s) {
+  if (random_int(rng, 0, 1) == 0) fill_real(rng, s);
+  share_corners(rng, s);
+  const bool in_plane = random_int(rng, 0, 1) == 0;  // then products of two factors are
+  const double factor = std::ldexp(1.0, random_int(rng, 0, 18) - (in_plane ? 541 : 361));
+  for (auto& p : s.p) {
+    for (double& x : p) x = nudge(rng, x) * factor;
+  }
+}
+
 inline void fill_wide(Rng& rng, SimplexPair& s) {
   fill_grid(rng, s, 2);
   for (auto& p : s.p) {
@@ -149,6 +177,13 @@ inline SimplexPair random_pair(Rng& rng, Kind kind) {
       break;
     case Kind::sliver:
       fill_sliver(rng, s);
+      break;
+    case Kind::collinear:
+      fill_collinear(rng, s);
+      break;
+    case Kind::underflow:
+      fill_grid(rng, s, 3);
+      scale_to_underflow(rng, s);
       break;
     case Kind::wide:
       fill_wide(rng, s);

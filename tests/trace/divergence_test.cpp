@@ -99,8 +99,8 @@ TEST_CASE("what is around the events is compared too") {
   y.header.bodies[1].hash ^= 1;
   CHECK(difference(x, y).starts_with("run: hash of body B: expected "));
   y = x;
-  y.header.request.recursion = Recursion::paper;
-  CHECK(difference(x, y) == "run: request: recursion: expected complete, found paper");
+  y.header.request.recursion = Recursion::paper_strict;
+  CHECK(difference(x, y) == "run: request: recursion: expected paper, found paper_strict");
   y = x;
   y.steps[1].pose_b.t.x() += 1e-16 + 1e-15;
   CHECK(difference(x, y).starts_with("step 1: pose of B: expected ("));

@@ -17,6 +17,12 @@ const LrbRep& plate() {
   return rep;
 }
 
+RecorderSettings paper() {
+  RecorderSettings settings;
+  settings.request.recursion = Recursion::paper;
+  return settings;
+}
+
 }  // namespace
 
 TEST_CASE("the recorder offers what NullProbe offers") {
@@ -39,7 +45,7 @@ TEST_CASE("the recorder offers what NullProbe offers") {
 }
 
 TEST_CASE("a refinement is caused by the face test that hit before it, and by no other") {
-  Recorder recorder(plate(), plate(), {});
+  Recorder recorder(plate(), plate(), paper());
   recorder.begin_step(0, {}, {});
   recorder.refine(Side::a, 2, 3);                    // 1: nothing before it
   recorder.face_test(11, 11, Meet::cross, 0, 0);     // 2
@@ -59,8 +65,21 @@ TEST_CASE("a refinement is caused by the face test that hit before it, and by no
   }
 }
 
-TEST_CASE("a face test is caused by the refinement that brought in the later of its faces") {
+TEST_CASE("the complete query's refinements have no cause among the events, its contacts have") {
   Recorder recorder(plate(), plate(), {});
+  recorder.begin_step(0, {}, {});
+  recorder.face_test(0, 0, Meet::cross, 0, 0);  // 1
+  recorder.contact(0, 0, Meet::cross);          // 2
+  recorder.refine(Side::a, 2, 3);               // 3: for the next test
+  recorder.face_test(2, 0, Meet::cross, 1, 0);  // 4
+  const Trace t = recorder.take();
+  CHECK(t.events[2].cause == 1);
+  CHECK(t.events[3].cause == kNull);
+  CHECK(t.events[4].cause == 3);
+}
+
+TEST_CASE("a face test is caused by the refinement that brought in the later of its faces") {
+  Recorder recorder(plate(), plate(), paper());
   recorder.begin_step(0, {}, {});
   recorder.face_test(11, 0, Meet::cross, 0, 0);  // 1: lid of region 2, seen from outside
   recorder.refine(Side::a, 2, 3);                // 2: brings in faces 2, 7, 10

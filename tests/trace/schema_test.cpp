@@ -113,10 +113,10 @@ TEST_CASE("broken traces do not fulfil the schema") {
       {"an unknown clock", [](Json& d) { d["metadata"]["clock"] = "sun"; }},
   };
   REQUIRE(complaint(good) == "");
-  for (const auto& [name, damage] : breaks) {
-    CAPTURE(name);
+  for (const auto& broken : breaks) {
+    CAPTURE(broken.first);
     Json bad = good;
-    damage(bad);
+    broken.second(bad);
     CHECK(complaint(bad) != "");
   }
 }

@@ -14,8 +14,8 @@
 #include <doctest/doctest.h>
 #include <nlohmann/json.hpp>
 
-#include "engine/mesh/atomic_file.hpp"
 #include "engine/error.hpp"
+#include "engine/mesh/atomic_file.hpp"
 #include "tests/trace/runs.hpp"
 
 using namespace lrb;
@@ -212,7 +212,9 @@ TEST_CASE("the file keeps the rules by which Perfetto and chrome://tracing show 
     CHECK(threads.size() == 5);
     REQUIRE_FALSE(flows.empty());
     std::size_t longest = 0;
-    for (const auto& [id, points] : flows) {
+    for (const auto& flow : flows) {
+      const std::uint64_t id = flow.first;
+      const std::vector<Point>& points = flow.second;
       CAPTURE(id);
       CHECK(t.events[id].kind == EventKind::refine);
       longest = std::max(longest, points.size());
@@ -227,7 +229,9 @@ TEST_CASE("the file keeps the rules by which Perfetto and chrome://tracing show 
 }
 
 TEST_CASE("flows follow causes") {
-  Recorder recorder(plate(), plate(), {});
+  RecorderSettings settings;
+  settings.request.recursion = Recursion::paper;
+  Recorder recorder(plate(), plate(), settings);
   recorder.begin_step(0, {}, {});                         // 0
   recorder.face_test(11, 11, exact::Meet::cross, 0, 0);   // 1
   recorder.refine(Side::a, 2, 3);                         // 2

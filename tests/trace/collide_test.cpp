@@ -1,0 +1,140 @@
+/// The recorder on the real query.
+
+#include <algorithm>
+
+#include <doctest/doctest.h>
+
+#include "engine/query/collide_impl.hpp"
+#include "tests/support/hand_made.hpp"
+#include "tests/support/lrb_shapes.hpp"
+#include "tests/support/random_pose.hpp"
+#include "trace/counters.hpp"
+#include "trace/cursor.hpp"
+#include "trace/divergence.hpp"
+#include "trace/names.hpp"
+#include "trace/recorder.hpp"
+#include "trace/trace_json.hpp"
+
+using namespace lrb;
+using namespace lrb::trace;
+
+namespace {
+
+struct Bodies {
+  const LrbRep *a, *b;
+};
+
+std::vector<Bodies> all_bodies() {
+  static const LrbRep plate(shapes::notched_plate()), box(shapes::dented_box());
+  static const LrbRep dent = test::dented_box(), stairs = test::stairs_2d();
+  return {{&plate, &plate}, {&plate, &stairs}, {&box, &box}, {&dent, &box}};
+}
+
+std::vector<CollideRequest> all_requests() {
+  std::vector<CollideRequest> out;
+  for (const Recursion recursion : {Recursion::complete, Recursion::paper, Recursion::paper_strict})
+    for (const WrapperMode wrapper : {WrapperMode::regularised, WrapperMode::unregularised})
+      for (const Mode mode : {Mode::all_pairs, Mode::first_pair})
+        out.push_back({.mode = mode, .recursion = recursion, .wrapper = wrapper});
+  return out;
+}
+
+struct Recorded {
+  Trace trace;
+  std::vector<CollideResult> results;
+};
+
+/// Each step also runs without the recorder and must come out the same.
+Recorded record(const Bodies& bodies, const CollideRequest& request, int steps) {
+  RecorderSettings settings;
+  settings.request = request;
+  Recorder recorder(*bodies.a, *bodies.b, settings);
+  QueryContext context;
+  test::Random random(11);
+  Recorded out;
+  for (int i = 0; i < steps; ++i) {
+    const Pose pose = test::random_pose(random, *bodies.a, *bodies.b, test::uniform(random, 0, 1.1));
+    recorder.begin_step(static_cast<std::uint32_t>(i), {}, pose);
+    out.results.push_back(collide(*bodies.a, {}, *bodies.b, pose, request, context, recorder));
+    recorder.end_step(out.results.back());
+    const CollideResult plain = collide(*bodies.a, {}, *bodies.b, pose, request);
+    CHECK(plain.pairs == out.results.back().pairs);
+    CHECK(plain.relation == out.results.back().relation);
+    CHECK(plain.opened == out.results.back().opened);
+    CHECK(equal(plain.counters, out.results.back().counters));
+  }
+  out.trace = recorder.take();
+  return out;
+}
+
+}  // namespace
+
+TEST_CASE("recording changes no answer, misses nothing and replays to the wrappers the query left") {
+  std::size_t refinements = 0, contacts = 0;
+  for (const CollideRequest& request : all_requests())
+    for (const Bodies& bodies : all_bodies()) {
+      CAPTURE(std::string(name_of(request.recursion)));
+      CAPTURE(std::string(name_of(request.wrapper)));
+      CAPTURE(std::string(name_of(request.mode)));
+      CAPTURE(bodies.b->name());
+      const Recorded run = record(bodies, request, 25);
+      CHECK(trace_from_json(trace_to_json(run.trace), "run") == run.trace);
+      Cursor cursor(run.trace, *bodies.a, *bodies.b);
+      for (std::size_t step = 0; step < run.results.size(); ++step) {
+        const CollideResult& result = run.results[step];
+        const std::span<const Event> events = run.trace.events_of(step);
+        const Totals totals = count_events(events);
+        CHECK(totals.face_tests == result.counters.face_tests);
+        CHECK(totals.refinements[0] + totals.refinements[1] == result.counters.refinements);
+        if (request.mode == Mode::all_pairs) CHECK(totals.contacts == result.pairs.size());
+        cursor.seek(run.trace.steps[step].first_event + static_cast<EventId>(events.size()) - 1);
+        CHECK(cursor.event().kind == EventKind::result);
+        for (const Side side : {Side::a, Side::b})
+          CHECK(cursor.wrapper(side).excluded() == result.opened[static_cast<std::size_t>(side)]);
+        refinements += result.counters.refinements;
+        contacts += totals.contacts;
+      }
+    }
+  CHECK(refinements > 1000);
+  CHECK(contacts > 1000);
+}
+
+TEST_CASE(
+    "a face test comes after the refinement that brought in its face, which the trace names as its cause") {
+  for (const CollideRequest& request : all_requests())
+    for (const Bodies& bodies : all_bodies()) {
+      const Recorded run = record(bodies, request, 10);
+      for (const Event& e : run.trace.events) {
+        if (e.kind == EventKind::refine) {
+          CHECK((request.recursion == Recursion::complete) == (e.cause == kNull));
+          if (e.cause == kNull) continue;
+          const Event& test = run.trace.events[e.cause];
+          const LrbRep& rep = e.side == Side::a ? *bodies.a : *bodies.b;
+          CHECK(rep.inner_cell(rep.face_of_simplex(e.side == Side::a ? test.a : test.b)) == e.a);
+        }
+        if (e.kind == EventKind::contact) {
+          REQUIRE(e.cause != kNull);
+          CHECK(run.trace.events[e.cause].kind == EventKind::face_test);
+        }
+        if (e.kind != EventKind::face_test) continue;
+        const CellId cover_a = bodies.a->outer_cell(bodies.a->face_of_simplex(e.a));
+        const CellId cover_b = bodies.b->outer_cell(bodies.b->face_of_simplex(e.b));
+        CHECK((e.cause == kNull) == (!is_region(cover_a) && !is_region(cover_b)));
+        if (e.cause == kNull) continue;
+        const Event& refinement = run.trace.events[e.cause];
+        CHECK(refinement.a == (refinement.side == Side::a ? cover_a : cover_b));
+      }
+    }
+}
+
+TEST_CASE("the same query twice gives the same trace, and the names agree with the engine's") {
+  for (const Bodies& bodies : all_bodies()) {
+    const Trace once = record(bodies, {}, 10).trace, again = record(bodies, {}, 10).trace;
+    CHECK_FALSE(first_divergence(once, again));
+    CHECK(trace_to_json(once) == trace_to_json(again));
+  }
+  for (std::size_t i = 0; i < std::size(Names<Relation>::values); ++i)
+    CHECK(name_of(static_cast<Relation>(i)) == to_string(static_cast<Relation>(i)));
+  for (std::size_t i = 0; i < std::size(Names<Answer>::values); ++i)
+    CHECK(name_of(static_cast<Answer>(i)) == to_string(static_cast<Answer>(i)));
+}
