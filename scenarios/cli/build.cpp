@@ -64,7 +64,7 @@ int run_build(const BuildCommandOptions& o, const Globals& globals) {
   } else {
     report = validate(rep);
     j["valid"] = report.valid;
-    j["real_pairs_crossing"] = report.real_pairs_crossing;
+    j["real_pairs_meeting"] = report.real_pairs_meeting;
     j["violations"] = report.violations;
   }
   if (!o.out.empty()) {
