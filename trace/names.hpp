@@ -1,8 +1,10 @@
 #pragma once
 /// The names that enumerators have in files, one table for both directions.
 
-#include <array>
+#include <cstddef>
+#include <iterator>
 #include <optional>
+#include <string>
 #include <string_view>
 
 #include "engine/query/collide.hpp"

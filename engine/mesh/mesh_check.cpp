@@ -1,6 +1,8 @@
 #include "engine/mesh/mesh_check.hpp"
 
 #include <algorithm>
+#include <array>
+#include <map>
 
 #include "engine/mesh/face_checks.hpp"
 #include "engine/mesh/nesting.hpp"
@@ -23,6 +25,24 @@ void turn(Mesh& mesh, FaceId f) {
   if (last - first == 4) std::rotate(first, first + 2, last);
 }
 
+/// Whether the directed edges (2D: ends of segments) cancel: the boundary of the faces, as a sum, is empty.
+bool is_cycle(const Mesh& mesh, const std::vector<FaceUse>& use) {
+  std::map<std::array<VertexId, 2>, std::int64_t> sum;
+  for (FaceId f = 0; f < mesh.face_count(); ++f) {
+    if (use[f] == FaceUse::nothing) return false;
+    const auto c = mesh.face(f);
+    if (mesh.dim == 2) {
+      ++sum[{c[0], c[0]}];
+      --sum[{c[1], c[1]}];
+    }
+    for (std::size_t i = 0; mesh.dim == 3 && i < c.size(); ++i) {
+      const VertexId v = c[i], w = c[(i + 1) % c.size()];
+      if (v != w) sum[{std::min(v, w), std::max(v, w)}] += v < w ? 1 : -1;
+    }
+  }
+  return !sum.empty() && std::all_of(sum.begin(), sum.end(), [](const auto& edge) { return edge.second == 0; });
+}
+
 }  // namespace
 
 MeshReport check_mesh(const Mesh& mesh, bool self_intersections) {
@@ -34,6 +54,7 @@ MeshReport check_mesh(const Mesh& mesh, bool self_intersections) {
   const SurfaceTopology topology = analyse_topology(mesh, use, report);
   report.components = topology.components;
   report.closed = topology.closed;
+  report.bounds_solid = report.closed || is_cycle(mesh, use);
   report.genus = topology.genus;
   for (const auto& faces : wrongly_facing_components(mesh, use, topology))
     note(report, MeshFault::inside_out, faces.front());

@@ -48,6 +48,8 @@ struct MeshReport {
   std::uint32_t components = 0;   ///< edge-connected pieces of the surface
   int genus = -1;                 ///< sum over closed components; -1 if not closed and manifold
   bool closed = false;            ///< every edge has exactly two faces, in opposite directions
+  bool bounds_solid = false;      ///< every edge is run through as often one way as the other: weaker than closed (bodies
+                                  ///< may share edges), and enough for "inside" to have a meaning, by parity
   bool self_intersections_checked = false;
 
   const MeshFinding& operator[](MeshFault f) const { return findings[static_cast<std::size_t>(f)]; }

@@ -207,6 +207,7 @@ TEST_CASE("open edges") {
   const MeshReport report = check_mesh(m);
   check_faults(report, {{MeshFault::open_edge, 4}});
   CHECK_FALSE(report.closed);
+  CHECK_FALSE(report.bounds_solid);
   CHECK_FALSE(report.buildable());
   CHECK(report.queryable());
   CHECK(report.genus == -1);
@@ -221,6 +222,7 @@ TEST_CASE("two cubes that share an edge, or a vertex") {
   check_faults(report, {{MeshFault::non_manifold_edge, 1}});
   CHECK(report.components == 1);
   CHECK_FALSE(report.closed);
+  CHECK(report.bounds_solid);  // inside still has a meaning
   CHECK_FALSE(report.buildable());
   const auto [a, b] = report[MeshFault::non_manifold_edge].first.at(0);
   CHECK(edge.vertices[a].head<2>() == Eigen::Vector2d(1, 1));

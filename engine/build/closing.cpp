@@ -1,0 +1,157 @@
+#include "engine/build/closing.hpp"
+
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include <Eigen/Geometry>
+
+#include "engine/build/body_bounds.hpp"
+#include "engine/build/cap_surface.hpp"
+#include "engine/build/convex_hull.hpp"
+#include "engine/build/hull_mesh.hpp"
+#include "engine/build/patch_cap.hpp"
+#include "engine/build/random.hpp"
+#include "engine/exact/predicates.hpp"
+#include "engine/tolerances.hpp"
+
+namespace lrb {
+namespace {
+
+using Vector3 = Eigen::Vector3d;
+
+/// A number from 0 to 1, the same sequence on every machine.
+double fraction(Random& random) { return static_cast<double>(random.below(1u << 16)) * 0x1p-16; }
+
+/// The points on the convex hull, and perhaps some that lie within `distance` of it; they leave all others within that
+/// distance of their own hull. (Moved a little, points are in general position, so that the hull is quick to find.)
+std::vector<Vector3> outermost(std::span<const Vector3> points, double distance) {
+  Random random(1);
+  std::vector<Vector3> moved;
+  for (const Vector3& p : points) {
+    const double dx = fraction(random), dy = fraction(random), dz = fraction(random);
+    moved.push_back(p + distance / 2 * Vector3(dx, dy, dz));
+  }
+  std::vector<bool> used(points.size(), false);
+  const auto hull = convex_hull(moved);
+  for (const auto& t : hull)
+    for (const std::uint32_t v : t) used[v] = true;
+  std::vector<Vector3> out;
+  for (std::size_t i = 0; i < points.size(); ++i)
+    if (used[i] || hull.empty()) out.push_back(points[i]);
+  return out;
+}
+
+/// Four points about each: their hull holds every point by at least a quarter of `distance`, and they are in general
+/// position.
+std::vector<Vector3> tetrahedra_about(std::span<const Vector3> points, double distance) {
+  static const Vector3 kCorners[4] = {{1, 1, 1}, {1, -1, -1}, {-1, 1, -1}, {-1, -1, 1}};
+  Random random(1);
+  std::vector<Vector3> out;
+  for (const Vector3& p : points)
+    for (const Vector3& c : kCorners) {
+      const double dx = fraction(random), dy = fraction(random), dz = fraction(random);
+      out.push_back(p + distance * (c + 0.1 * Vector3(dx, dy, dz)));
+    }
+  return out;
+}
+
+Mesh mesh_of(std::span<const Vector3> points, const std::vector<std::array<std::uint32_t, 3>>& triangles) {
+  Mesh mesh;
+  std::vector<VertexId> used(points.size(), kNull);
+  for (const auto& t : triangles) {
+    VertexId corners[3];
+    for (int i = 0; i < 3; ++i) {
+      VertexId& v = used[t[i]];
+      if (v == kNull) {
+        v = static_cast<VertexId>(mesh.vertices.size());
+        mesh.vertices.push_back(points[t[i]]);
+      }
+      corners[i] = v;
+    }
+    mesh.add_face(corners);
+  }
+  return mesh;
+}
+
+Mesh box_about(const Eigen::AlignedBox3d& box) {
+  std::vector<Vector3> corners;
+  for (int i = 0; i < 8; ++i)
+    corners.emplace_back(i & 1 ? box.max().x() : box.min().x(), i & 2 ? box.max().y() : box.min().y(),
+                         i & 4 ? box.max().z() : box.min().z());
+  return mesh_of(corners, {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
+                           {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}});
+}
+
+/// The convex surface collapsed to at most `max_faces` triangles, or to as few as it goes.
+Mesh simplified(const Mesh& convex, std::uint32_t max_faces, double swell, double depth) {
+  const HullMesh hull(convex);
+  Patch all;
+  all.slots = hull.alive_slots();
+  for (HullMesh::Corner v = 0; v < hull.point_count(); ++v) all.interior.push_back(v);
+  CapSurface cap;
+  cap.load(hull, all, 0);
+  const BodyBounds bounds(convex.vertices, swell);
+  PatchCap collapse(cap, bounds);
+  PatchCap::Limits limits;
+  limits.volume = std::numeric_limits<double>::infinity();
+  limits.faces = static_cast<int>(max_faces);
+  limits.depth = depth;
+  collapse.simplify(all, limits);
+  std::vector<Vector3> points;
+  for (int v = 0; v < cap.vertex_count(); ++v) points.push_back(cap.x(v));
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+  for (const auto& f : cap.faces())
+    if (f.alive) triangles.push_back({VertexId(f.v[0]), VertexId(f.v[1]), VertexId(f.v[2])});
+  return mesh_of(points, triangles);
+}
+
+}  // namespace
+
+double volume_of(const Mesh& mesh) {
+  double sixfold = 0;
+  const Vector3 origin = mesh.vertices[0];
+  for (FaceId f = 0; f < mesh.face_count(); ++f) {
+    const auto c = mesh.face(f);
+    sixfold += (mesh.vertices[c[0]] - origin)
+                   .dot((mesh.vertices[c[1]] - origin).cross(mesh.vertices[c[2]] - origin));
+  }
+  return sixfold / 6;
+}
+
+bool holds(const Mesh& convex, const Vector3& point) {
+  for (FaceId f = 0; f < convex.face_count(); ++f) {
+    const auto c = convex.face(f);
+    const auto at = [&](int i) { return convex.vertices[c[i]].data(); };
+    if (exact::orient3d(at(0), at(1), at(2), point.data()) >= 0) return false;
+  }
+  return true;
+}
+
+Mesh enclosing_polytope(std::span<const Vector3> points, std::uint32_t max_faces, double distance) {
+  Eigen::AlignedBox3d box;
+  for (const Vector3& p : points) box.extend(p);
+  distance *= box.sizes().maxCoeff();
+  box.min().array() -= distance;
+  box.max().array() += distance;
+  if (!std::isfinite(box.volume() * box.volume())) return {};
+  Mesh best = box_about(box);
+  double least = volume_of(best);
+  const auto around = tetrahedra_about(outermost(points, distance / 8), distance);
+  const Mesh convex = mesh_of(around, convex_hull(around));
+  if (convex.face_count() == 0) return best;
+  for (const double depth : {2.0, 4.0, 8.0, 30.0}) {
+    for (const double swell : {0.2, 0.4}) {
+      const Mesh m = simplified(convex, max_faces, swell, depth);
+      const Mesh hull = mesh_of(m.vertices, convex_hull(m.vertices));
+      const double volume = volume_of(hull);
+      if (hull.face_count() <= max_faces && volume < least) {
+        least = volume;
+        best = hull;
+      }
+    }
+  }
+  return best;
+}
+
+}  // namespace lrb
