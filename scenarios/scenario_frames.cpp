@@ -1,5 +1,7 @@
 #include "scenarios/scenario_frames.hpp"
 
+#include <Eigen/Geometry>
+
 namespace lrb {
 namespace {
 
