@@ -9,7 +9,8 @@ constexpr std::uint64_t kMostFrames = 10'000;
 
 FrameSpec::View read_view(const JsonNode& node) {
   using Camera = FrameSpec::Camera;
-  node.object({"camera", "projection", "eye", "target", "from", "up", "turn_degrees", "zoom", "title"});
+  node.object(
+      {"camera", "projection", "eye", "target", "from", "up", "turn_degrees", "zoom", "draw", "title"});
   FrameSpec::View v;
   if (const auto n = node.get("camera"))
     v.camera = n->choice<Camera>({{"scene", Camera::scene},
@@ -26,6 +27,7 @@ FrameSpec::View read_view(const JsonNode& node) {
   if (const auto n = node.get("up")) v.up = n->vector();
   if (const auto n = node.get("turn_degrees")) v.turn_degrees = n->number(-36000, 36000);
   if (const auto n = node.get("zoom")) v.zoom = n->number(0.01, 1000);
+  if (const auto n = node.get("draw")) v.wrapper = n->choice<bool>({{"wrapper", true}, {"body", false}});
   if (const auto n = node.get("title")) v.title = n->string();
   if (!(v.from.cross(v.up).squaredNorm() > 0)) node.fail("\"from\" and \"up\" must not lie along one line");
   return v;

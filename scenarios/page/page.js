@@ -73,7 +73,7 @@ const cursorPlugin = {
 
 function axis(title, log) {
   return {
-    type: log ? "logarithmic" : "linear", title: { display: true, text: title, color: style("--soft") },
+    type: log ? "logarithmic" : "linear", bounds: "data", title: { display: true, text: title, color: style("--soft") },
     grid: { color: style("--grid"), borderColor: style("--line") }, ticks: { color: style("--soft"), maxRotation: 0, precision: log ? undefined : 0 },
   };
 }
@@ -97,7 +97,7 @@ function makeChart(spec, canvas) {
     options: {
       animation: false, parsing: false, normalized: true, maintainAspectRatio: false,
       interaction: { mode: spec.scatter ? "nearest" : "index", intersect: false },
-      scales: { x: axis(spec.x, spec.logX), y: { ...axis(spec.y, spec.logY), beginAtZero: !spec.logY } },
+      scales: { x: axis(spec.x, spec.logX), y: { ...axis(spec.y, spec.logY), bounds: "ticks", beginAtZero: !spec.logY } },
       plugins: {
         legend: { display: datasets.length > 1, position: "bottom", labels: { color: style("--ink"), boxWidth: 14, boxHeight: 2 } },
         decimation: { enabled: !spec.scatter, algorithm: "min-max" },

@@ -81,7 +81,7 @@ class Painter {
     picture_ = Image(picture.width, picture.height);
   }
 
-  const Image& paint(const Scene& scene, double progress) {
+  const Image& paint(const Stage& stage, double progress) {
     const Rgba back = spec_.transparent ? kTransparent : kWhite;
     picture_.pixels().assign(picture_.pixels().size(),
                              views_.size() > 1 && !spec_.transparent ? palette::kRule : back);
@@ -92,6 +92,7 @@ class Painter {
       options.height = place.height;
       options.supersample = spec_.supersampling;
       if (spec_.transparent) options.background.reset();
+      const Scene scene = stage.scene(views_[i].wrapper);
       Image view = rasterizer_.draw(
           scene.list, camera_for(views_[i], framing_, place.width, place.height, progress), options);
       if (!views_[i].title.empty()) write_title(view, views_[i].title);
@@ -143,7 +144,8 @@ DrawnFrames draw_frames(const Performance& performance, const FrameSpec& spec, c
   static const std::vector<CollideResult> kNoResults;
   const std::vector<CollideResult>& results =
       performance.results != nullptr ? *performance.results : kNoResults;
-  Stage stage(*performance.trace, performance.reps, results, spec);
+  const bool each_refinement = performance.milestones.empty() && spec.at != FrameSpec::At::step;
+  Stage stage(*performance.trace, performance.reps, results, spec, each_refinement);
   const Script script = write_script(stage, events, performance.title, spec);
   Painter painter(spec, script.picture, frame_sequence(performance.reps, *performance.trace, results));
   const std::vector<std::size_t> in_montage =
@@ -155,7 +157,7 @@ DrawnFrames draw_frames(const Performance& performance, const FrameSpec& spec, c
     stage.seek(events[i]);
     const double passed =
         events.size() > 1 ? static_cast<double>(i) / static_cast<double>(events.size() - 1) : 0;
-    const Image& picture = painter.paint(stage.scene(), passed);
+    const Image& picture = painter.paint(stage, passed);
     PngOptions png;
     png.text = text;
     png.text.emplace_back("lrbscope:event", std::to_string(events[i]));
@@ -164,10 +166,7 @@ DrawnFrames draw_frames(const Performance& performance, const FrameSpec& spec, c
                 compose_frame(picture, script.picture, script.overlays[i], spec.width, spec.height, back),
                 png);
     if (std::find(in_montage.begin(), in_montage.end(), i) != in_montage.end()) {
-      std::string counters;
-      for (const OverlayCounter& c : script.overlays[i].counters)
-        counters += (counters.empty() ? "" : ", ") + c.name + ": " + c.value;
-      panels.push_back({picture, counters});
+      panels.push_back({picture, stage.short_caption()});
     }
     out.frames.push_back({file_name(i), stage.caption(), events[i], stage.step()});
   }

@@ -61,6 +61,12 @@ std::vector<PageNumber> wrapper_numbers(const LrbRep& rep) {
       {"Regions", group_digits(rep.region_count()), "in " + std::to_string(rep.layer_count()) + " layers"}};
 }
 
+/// In the complete query only real faces are compared: what hits is a contact, and one curve is enough.
+bool same_as_contacts(const trace::Series& hits, const trace::Chart& chart) {
+  return std::any_of(chart.series.begin(), chart.series.end(),
+                     [&](const trace::Series& s) { return s.name == "contacts" && s.values == hits.values; });
+}
+
 /// Curves of the trace by unit: faces of the wrappers in one chart, counts in the other.
 std::vector<PageChart> charts_of(const trace::Chart& chart, PageCursor cursor, const char* faces_title,
                                  const char* counts_title, bool stepped) {
@@ -71,6 +77,7 @@ std::vector<PageChart> charts_of(const trace::Chart& chart, PageCursor cursor, c
   counts.y_label = "number in the step";
   for (const trace::Series& s : chart.series) {
     if (s.unit == "ms") continue;
+    if (s.name == "hits" && same_as_contacts(s, chart)) continue;
     PageChart& target = s.unit == "faces" ? faces : counts;
     // A body that is not there, or a kind of event that never came, is no curve.
     if (std::none_of(s.values.begin(), s.values.end(), [](double v) { return v > 0; })) continue;

@@ -29,11 +29,12 @@ std::string counted(std::uint64_t n, const char* one, const char* many) {
 }  // namespace
 
 Stage::Stage(const trace::Trace& trace, std::vector<const LrbRep*> reps,
-             const std::vector<CollideResult>& results, const FrameSpec& spec)
+             const std::vector<CollideResult>& results, const FrameSpec& spec, bool point_out_refined)
     : trace_(trace),
       reps_(std::move(reps)),
       results_(results),
       spec_(spec),
+      point_out_refined_(point_out_refined),
       cursor_(make_cursor(trace, reps_)) {}
 
 void Stage::seek(trace::EventId event) {
@@ -65,7 +66,7 @@ std::vector<double> Stage::values_of(Side side) const {
   return {chosen.begin(), chosen.end()};
 }
 
-Scene Stage::scene() const {
+Scene Stage::scene(bool wrapper) const {
   std::vector<SceneBody> bodies;
   const std::vector<double> values[2] = {values_of(Side::a),
                                          reps_.size() > 1 ? values_of(Side::b) : std::vector<double>()};
@@ -73,7 +74,7 @@ Scene Stage::scene() const {
     const Side side = static_cast<Side>(i);
     SceneBody body;
     body.rep = reps_[i];
-    body.wrapper = &cursor_.wrapper(side);
+    body.wrapper = wrapper ? &cursor_.wrapper(side) : nullptr;
     body.pose = cursor_.pose(side);
     body.face_values = values[i];
     body.name =
@@ -81,10 +82,10 @@ Scene Stage::scene() const {
     bodies.push_back(std::move(body));
   }
   SceneHighlight highlight;
-  if (spec_.at != FrameSpec::At::step)
+  if (wrapper && point_out_refined_)
     for (const trace::RefinedRegion& r : cursor_.refined())
       highlight.refining[static_cast<std::size_t>(r.side)].push_back(r.region);
-  if (const auto pair = cursor_.pair_under_test(); pair && !at_step_end())
+  if (const auto pair = cursor_.pair_under_test(); wrapper && pair && !at_step_end())
     highlight.under_test = {pair->simplex_a, pair->simplex_b};
   if (const CollideResult* result = result_here()) highlight.contacts = result->regions;
   SceneOptions options;
@@ -154,6 +155,11 @@ Overlay Stage::overlay(const std::string& title) const {
                   {"contacts", group_digits(t.contacts)}};
   }
   return o;
+}
+
+std::string Stage::short_caption() const {
+  if (reps_.size() == 1) return counted(cursor_.boundary_size(Side::a), "face", "faces");
+  return "step " + std::to_string(step()) + ": " + event_text();
 }
 
 std::string Stage::caption() const {

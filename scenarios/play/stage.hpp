@@ -17,15 +17,18 @@ class Stage {
  public:
   /// `results`: one a step, for contact regions; may be empty. All must outlive the stage.
   Stage(const trace::Trace& trace, std::vector<const LrbRep*> reps, const std::vector<CollideResult>& results,
-        const FrameSpec& spec);
+        const FrameSpec& spec, bool point_out_refined);
 
   void seek(trace::EventId event);
 
-  Scene scene() const;
+  /// `wrapper` false: the bodies alone.
+  Scene scene(bool wrapper = true) const;
   /// The text of a frame; no key or scale.
   Overlay overlay(const std::string& title) const;
   /// The same in one sentence, for the page.
   std::string caption() const;
+  /// In a few words, for a panel of a montage.
+  std::string short_caption() const;
   std::uint32_t step() const { return cursor_.step()->index; }
   Pose pose(Side side) const { return cursor_.pose(side); }
   const std::vector<const LrbRep*>& reps() const { return reps_; }
@@ -41,6 +44,7 @@ class Stage {
   std::vector<const LrbRep*> reps_;
   const std::vector<CollideResult>& results_;
   const FrameSpec& spec_;
+  bool point_out_refined_;  ///< frames follow refinements, so that the last one is news
   trace::Cursor cursor_;
 };
 
