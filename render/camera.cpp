@@ -20,8 +20,14 @@ constexpr double kNearShare = 1e-4;
 /// By how much the range of depths exceeds the scene, as a share of it: room for lines nudged towards the
 /// viewer.
 constexpr double kDepthSlack = 0.01;
-/// A scene that is a point still gets a picture: half a unit of its coordinates' size across.
+/// A scene that is a point still gets a picture: this share of its coordinates, or this length, across.
 constexpr double kLeastExtent = 1e-9;
+constexpr double kLeastLength = 1e-30;
+/// A flat scene seen from its edge gets a picture this much lower than it is wide.
+constexpr double kFlattest = 1e-3;
+/// The eye keeps this share of the scene's size in front of it.
+constexpr double kClearance = 0.05;
+constexpr double kNearlyVertical = 1e-3;  ///< view_beside(): sine of the angle between axis and vertical
 constexpr double kSteepest = 0.49 * std::numbers::pi;  ///< as far as orbit() lifts a camera
 
 /// Rows: right, up, forward.
@@ -67,6 +73,17 @@ ViewDirection view_from_angles(double azimuth, double elevation) {
   return {{c * std::cos(azimuth), c * std::sin(azimuth), std::sin(elevation)}, {0, 0, 1}};
 }
 
+ViewDirection view_beside(const Vector3d& axis, const Vector3d& up, double elevation) {
+  const Vector3d vertical = up.normalized();
+  Vector3d side = axis.cross(vertical);
+  // An axis that is nearly vertical tells no side: a hair's turn of it would turn the picture round.
+  if (!(side.norm() > kNearlyVertical * axis.norm())) {
+    side = Vector3d::UnitX() - vertical * vertical.x();
+    if (!(side.norm() > kNearlyVertical)) side = Vector3d::UnitY();
+  }
+  return {std::cos(elevation) * side.normalized() + std::sin(elevation) * vertical, up};
+}
+
 Camera fit_camera(std::span<const Vector3d> points, double width, double height, const FitOptions& options) {
   check_points(points);
   if (!(options.view.from.squaredNorm() > 0)) throw InputError("a camera's direction must not be zero");
@@ -89,7 +106,8 @@ Camera fit_camera(std::span<const Vector3d> points, double width, double height,
     y.add(e.y(), -slope_y * e.z());
     z.add(e.z(), 0);
   }
-  const double size = std::max({box.diagonal().norm(), kLeastExtent * origin.cwiseAbs().maxCoeff(), 1e-30});
+  const double size =
+      std::max({box.diagonal().norm(), kLeastExtent * origin.cwiseAbs().maxCoeff(), kLeastLength});
 
   Camera camera;
   camera.up = options.view.up;
@@ -97,12 +115,13 @@ Camera fit_camera(std::span<const Vector3d> points, double width, double height,
   camera.fov_y = options.fov_y;
   Vector3d eye{x.middle(), y.middle(), 0};
   if (options.orthographic) {
-    camera.half_height = std::max({y.half() / inner_y, x.half() / inner_x * height / width, 1e-3 * size});
+    camera.half_height =
+        std::max({y.half() / inner_y, x.half() / inner_x * height / width, kFlattest * size});
     eye.z() = -z.minus - size;
   } else {
     // The eye lies back from z = 0 by at least what each pair of planes needs, and stays in front of the
     // points.
-    eye.z() = -std::max({x.half() / slope_x, y.half() / slope_y, z.minus + 0.05 * size});
+    eye.z() = -std::max({x.half() / slope_x, y.half() / slope_y, z.minus + kClearance * size});
     camera.half_height = 0.5 * size;
   }
   camera.eye = origin + axes.transpose() * eye;
@@ -168,7 +187,7 @@ Projection::Projection(const Camera& camera, double width, double height, const 
       lo = std::min(lo, z), hi = std::max(hi, z);
     }
   }
-  const double slack = kDepthSlack * std::max(hi - lo, 1e-12 * std::abs(hi)) + 1e-30;
+  const double slack = kDepthSlack * std::max(hi - lo, kLeastExtent * std::abs(hi)) + kLeastLength;
   far_ = hi + slack;
   near_ = lo - slack;
   if (!orthographic_) {

@@ -28,6 +28,12 @@ struct ViewDirection {
 /// A direction by angles: azimuth from +x towards +y, elevation from the plane z = 0 towards +z, radians.
 ViewDirection view_from_angles(double azimuth, double elevation);
 
+/// Looks across an axis, from slightly above: with the axis from one body to the other, or a contact's
+/// normal, both bodies stand side by side and what is between them is seen. An axis along `up` is looked at
+/// from +x.
+ViewDirection view_beside(const Eigen::Vector3d& axis, const Eigen::Vector3d& up = {0, 0, 1},
+                          double elevation = 0.45);
+
 struct FitOptions {
   ViewDirection view;
   bool orthographic = false;

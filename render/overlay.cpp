@@ -164,6 +164,18 @@ bool fits(const OverlayLayout& layout, int width, int height) {
                      [&](const auto& t) { return frame.contains(t.box); });
 }
 
+/// Is there more than one colour along the rim?
+bool runs_over(const Image& picture) {
+  const Rgba first = picture.at(0, 0);
+  for (int x = 0; x < picture.width(); ++x) {
+    if (picture.at(x, 0) != first || picture.at(x, picture.height() - 1) != first) return true;
+  }
+  for (int y = 0; y < picture.height(); ++y) {
+    if (picture.at(0, y) != first || picture.at(picture.width() - 1, y) != first) return true;
+  }
+  return false;
+}
+
 void draw_mark(Image& image, const PixelRect& r, const LegendItem& item) {
   const int thick = std::max(2, r.height / 5);
   switch (item.mark) {
@@ -254,6 +266,7 @@ Image compose_frame(const Image& picture, const PixelRect& place, const Overlay&
                     int height, Rgba background) {
   Image frame(width, height, background);
   frame.paste(picture, place.x, place.y);
+  if (runs_over(picture)) frame.stroke(place, palette::kRule);
   draw_overlay(frame, overlay, lay_out(overlay, width, height));
   return frame;
 }

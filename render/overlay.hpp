@@ -64,7 +64,8 @@ PixelRect common_picture(std::span<const OverlayLayout> layouts);
 /// Draws everything but the picture; the image must have the size that was laid out for.
 void draw_overlay(Image& image, const Overlay& overlay, const OverlayLayout& layout);
 
-/// A whole frame: background, the picture in its place (it must have the rectangle's size), the overlay.
+/// A whole frame: background, the picture in its place (it must have the rectangle's size), the overlay. A
+/// picture that runs over its rim, such as a close-up, gets a thin frame.
 Image compose_frame(const Image& picture, const PixelRect& place, const Overlay& overlay, int width,
                     int height, Rgba background = kWhite);
 

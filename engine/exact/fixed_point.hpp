@@ -1,6 +1,7 @@
 #pragma once
-/// Determinants in 64-bit fixed point: exact, without branches, and some ten times faster than expansions,
-/// for points whose coordinates share an exponent range, as those of neighbouring faces nearly always do.
+/// Determinants in 64-bit fixed point: exact, almost without branches, and about ten times faster than
+/// expansions, for points whose coordinates share an exponent range, as those of neighbouring faces nearly
+/// always do.
 
 #include <algorithm>
 #include <array>

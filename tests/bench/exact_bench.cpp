@@ -1,4 +1,4 @@
-// Exact tests by kind of pair; an iteration is 1000 pairs, so that Time in ns is picoseconds a pair. Build
+// Exact tests by kind of pair; an iteration is 1000 pairs, so that Time in ns is picoseconds per pair. Build
 // with -DLRB_BUILD_BENCHMARKS=ON, run build/tests/exact_bench.
 
 #include <array>

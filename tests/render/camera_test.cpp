@@ -109,6 +109,18 @@ TEST_CASE("a camera on the contact holds it with its surroundings") {
   CHECK((wide.eye - wide.target).norm() > 5 * (near.eye - near.target).norm());
 }
 
+TEST_CASE("a view from beside puts both ends of the axis side by side") {
+  for (const Vector3d& up : {Vector3d(0, 0, 1), Vector3d(0, 1, 0)}) {
+    for (const Vector3d& axis :
+         {Vector3d(1, 0.3, 0.2), Vector3d(-0.1, 2, 5), Vector3d(0, -1, 0.2), Vector3d(0, 0, 7)}) {
+      const ViewDirection view = view_beside(axis, up);
+      if (axis.cross(up).norm() > 0) CHECK(std::abs(view.from.dot(axis - axis.dot(up) * up)) < 1e-12);
+      CHECK(view.from.norm() == doctest::Approx(1));
+      CHECK(view.from.dot(up) > 0.3);
+    }
+  }
+}
+
 TEST_CASE("orbit keeps target, distance and height") {
   const Camera camera = fit_camera(Eigen::AlignedBox3d(Vector3d(-1, -1, -1), Vector3d(1, 1, 1)), 640, 360);
   Camera turned = camera;
