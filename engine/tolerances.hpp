@@ -55,10 +55,10 @@ inline constexpr double kCapWorth = 0.45;
 inline constexpr double kLastCapWorth = 0.8;
 /// Early hulls stay in the polytope of 26 directions about the body moved outward by this share of the body's width.
 /// Larger: passes go on to fewer faces, but hulls swell and the outermost wrapper around them with them.
-inline constexpr double kHullSwell = 0.05;
+inline constexpr double kHullSwell = 0.02;
 /// Distance of the outermost wrapper from the hull it is planned around, relative to the body's largest extent.
 /// Larger: looser; smaller: later hulls have no room to grow where it touches.
-inline constexpr double kPolytopeDistance = 0.01;
+inline constexpr double kPolytopeDistance = 0.003;
 /// Distance that later hulls keep from the outermost wrapper, relative to its largest extent. Smaller: confirmation
 /// that it holds them fails on rounding, and another one is put around.
 inline constexpr double kHullDistance = 1e-6;
