@@ -8,9 +8,10 @@ target_include_directories(lrb_options INTERFACE ${PROJECT_SOURCE_DIR})
 # operation, and its error bounds are derived for that order. With contraction, compilers would disagree.
 target_compile_options(lrb_options INTERFACE -ffp-contract=off)
 
-# -Wrestrict of gcc 12 is wrong about inlined std::string::replace and operator+ (gcc bug 105329).
+# gcc 12 is wrong about inlined std::string::replace and operator+ (-Wrestrict, gcc bug 105329) and, with
+# -march=native, about Boost.Multiprecision's integers (-Wstringop-overflow).
 target_compile_options(lrb_options INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion -Wno-psabi
-                                             $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>)
+                                             $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict -Wno-stringop-overflow>)
 if(LRB_WARNINGS_AS_ERRORS)
   target_compile_options(lrb_options INTERFACE -Werror)
 endif()
