@@ -21,7 +21,8 @@ inline double uniform(Random& random, double low, double high) {
 
 inline Eigen::Vector3d random_direction(Random& random) {
   while (true) {
-    const Eigen::Vector3d d(uniform(random, -1, 1), uniform(random, -1, 1), uniform(random, -1, 1));
+    // Braces: evaluated in order, so that every compiler draws the same numbers.
+    const Eigen::Vector3d d{uniform(random, -1, 1), uniform(random, -1, 1), uniform(random, -1, 1)};
     if (d.norm() > 0.1 && d.norm() <= 1) return d.normalized();
   }
 }
