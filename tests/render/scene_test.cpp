@@ -77,7 +77,7 @@ TEST_CASE("lids have their edges; those of a region being refined are lines, eac
   }
   CHECK(scene.list.lines.empty());
   SceneHighlight highlight;
-  for (RegionId r = 0; r < rep.region_count(); ++r) highlight.refining[0] = {r};
+  highlight.refining[0] = {4};
   scene = build_scene(body, highlight);
   CHECK(scene.list.lines.size() == 3);  // one triangular lid over three real faces
 }
@@ -198,6 +198,15 @@ TEST_CASE("exploded regions keep their shape and move outward") {
     CHECK((t.x[1] - rep.vertices()[corners[1]] - moved).norm() < 1e-12);
     if (moved.norm() > 0) CHECK(moved.dot(before) > 0);
   }
+}
+
+TEST_CASE("bodies of many regions can be exploded by region") {
+  const LrbRep rep = test::dented(test::icosphere(1), 3);
+  REQUIRE(rep.region_count() > 256);
+  SceneOptions options;
+  options.explode = 0.5;
+  options.colour_by = ColourBy::region;
+  CHECK(!build_scene(std::vector<SceneBody>{{&rep, nullptr, {}, {}, ""}}, {}, options).list.empty());
 }
 
 TEST_CASE("2D: the solid dark, regions light, the wrapper as a line") {
