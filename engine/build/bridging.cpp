@@ -70,7 +70,7 @@ bool bridge_concavities(HullMesh& hull, ComplexBuilder& complex, const std::vect
     else
       removed.push_back(s);
   }
-  if (static_cast<double>(added.size()) > kCapWorth * static_cast<double>(slots.size())) return false;
+  if (static_cast<double>(added.size()) > kLastCapWorth * static_cast<double>(slots.size())) return false;
   std::sort(kept.begin(), kept.end());
   std::erase_if(added, [&](const PointTriangle& t) { return std::binary_search(kept.begin(), kept.end(), t); });
   if (removed.empty() || !are_clear(hull, added)) return false;

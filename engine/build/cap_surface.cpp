@@ -172,6 +172,16 @@ void CapSurface::collapse_onto_ring(const Star& star) {
   replace(star, star.v);
 }
 
+void CapSurface::move(int v, const Eigen::Vector3d& position) {
+  points_[v].x = position;
+  int f = face_of_[v];
+  do {
+    const int i = index_of(f, v);
+    faces_[f].plane = plane_of(faces_[f].v[0], faces_[f].v[1], faces_[f].v[2]);
+    f = faces_[f].across[(i + 2) % 3];
+  } while (f != face_of_[v]);
+}
+
 /// The star's triangles make room for a fan from w over its rim. New faces take the places of old ones.
 void CapSurface::replace(const Star& star, int w) {
   for (const int f : star.faces) {

@@ -80,6 +80,9 @@ class CapSurface {
   /// that stayed alone, by flipping an edge outward. False if that cannot be done.
   bool keep_polygons_whole(const HullMesh& hull, const Patch& patch);
 
+  /// Moves an interior vertex.
+  void move(int v, const Eigen::Vector3d& x);
+
   /// Calls visit(neighbour) for the vertices round an interior vertex.
   template <class Visit>
   void for_each_neighbour(int u, Visit&& visit) const {
@@ -87,6 +90,16 @@ class CapSurface {
     do {
       const int i = index_of(f, u);
       visit(faces_[f].v[(i + 1) % 3]);
+      f = faces_[f].across[(i + 2) % 3];
+    } while (f != face_of_[u]);
+  }
+  /// Calls visit(a, b) for the edges of the polygon round an interior vertex.
+  template <class Visit>
+  void for_each_rim_edge(int u, Visit&& visit) const {
+    int f = face_of_[u];
+    do {
+      const int i = index_of(f, u);
+      visit(faces_[f].v[(i + 1) % 3], faces_[f].v[(i + 2) % 3]);
       f = faces_[f].across[(i + 2) % 3];
     } while (f != face_of_[u]);
   }

@@ -1,19 +1,14 @@
 #include "engine/build/closing.hpp"
 
+#include <algorithm>
 #include <cmath>
-#include <limits>
-#include <optional>
 
 #include <Eigen/Geometry>
 
-#include "engine/build/body_bounds.hpp"
-#include "engine/build/cap_surface.hpp"
 #include "engine/build/convex_hull.hpp"
-#include "engine/build/hull_mesh.hpp"
-#include "engine/build/patch_cap.hpp"
+#include "engine/build/polytope_simplify.hpp"
 #include "engine/build/random.hpp"
 #include "engine/exact/predicates.hpp"
-#include "engine/tolerances.hpp"
 
 namespace lrb {
 namespace {
@@ -83,29 +78,6 @@ Mesh box_about(const Eigen::AlignedBox3d& box) {
                            {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}});
 }
 
-/// The convex surface collapsed to at most `max_faces` triangles, or to as few as it goes.
-Mesh simplified(const Mesh& convex, std::uint32_t max_faces, double swell, double depth) {
-  const HullMesh hull(convex);
-  Patch all;
-  all.slots = hull.alive_slots();
-  for (HullMesh::Corner v = 0; v < hull.point_count(); ++v) all.interior.push_back(v);
-  CapSurface cap;
-  cap.load(hull, all, 0);
-  const BodyBounds bounds(convex.vertices, swell);
-  PatchCap collapse(cap, bounds);
-  PatchCap::Limits limits;
-  limits.volume = std::numeric_limits<double>::infinity();
-  limits.faces = static_cast<int>(max_faces);
-  limits.depth = depth;
-  collapse.simplify(all, limits);
-  std::vector<Vector3> points;
-  for (int v = 0; v < cap.vertex_count(); ++v) points.push_back(cap.x(v));
-  std::vector<std::array<std::uint32_t, 3>> triangles;
-  for (const auto& f : cap.faces())
-    if (f.alive) triangles.push_back({VertexId(f.v[0]), VertexId(f.v[1]), VertexId(f.v[2])});
-  return mesh_of(points, triangles);
-}
-
 }  // namespace
 
 double volume_of(const Mesh& mesh) {
@@ -136,20 +108,17 @@ Mesh enclosing_polytope(std::span<const Vector3> points, std::uint32_t max_faces
   box.max().array() += distance;
   if (!std::isfinite(box.volume() * box.volume())) return {};
   Mesh best = box_about(box);
-  double least = volume_of(best);
   const auto around = tetrahedra_about(outermost(points, distance / 8), distance);
   const Mesh convex = mesh_of(around, convex_hull(around));
   if (convex.face_count() == 0) return best;
+  double least = volume_of(best);
   for (const double depth : {2.0, 4.0, 8.0, 30.0}) {
-    for (const double swell : {0.2, 0.4}) {
-      const Mesh m = simplified(convex, max_faces, swell, depth);
-      const Mesh hull = mesh_of(m.vertices, convex_hull(m.vertices));
-      const double volume = volume_of(hull);
-      if (hull.face_count() <= max_faces && volume < least) {
-        least = volume;
-        best = hull;
-      }
-    }
+    const Mesh few = simplify_polytope(convex, max_faces, depth);
+    const Mesh polytope = mesh_of(few.vertices, convex_hull(few.vertices));
+    if (polytope.face_count() == 0 || polytope.face_count() > max_faces || volume_of(polytope) >= least) continue;
+    if (!std::all_of(points.begin(), points.end(), [&](const Vector3& p) { return holds(polytope, p); })) continue;
+    least = volume_of(polytope);
+    best = polytope;
   }
   return best;
 }

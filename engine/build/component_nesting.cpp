@@ -26,12 +26,11 @@ std::vector<Component> components_of(const HullMesh& hull) {
 
 bool is_inside(const Mesh& mesh, const Component& inner, const Component& outer) {
   if (!outer.box.contains(inner.box)) return false;
-  PointSide side = PointSide::on_surface;
   for (const FaceId f : inner.faces) {
-    side = point_side(mesh, outer.faces, mesh.vertices[mesh.face(f)[0]]);
-    if (side != PointSide::on_surface) break;
+    const PointSide side = point_side(mesh, outer.faces, mesh.vertices[mesh.face(f)[0]]);
+    if (side != PointSide::on_surface) return side == PointSide::inside;
   }
-  return side == PointSide::inside;
+  return false;
 }
 
 }  // namespace

@@ -21,7 +21,7 @@ using Corner = HullMesh::Corner;
 
 class PatchBuilder {
  public:
-  PatchBuilder(const Mesh& mesh, const std::vector<FaceId>& crossing, const BuildOptions& options)
+  PatchBuilder(const Mesh& mesh, const std::vector<FaceId>& meeting, const BuildOptions& options)
       : options_(options),
         hull_(mesh),
         complex_(mesh),
@@ -30,16 +30,17 @@ class PatchBuilder {
         random_(options.seed),
         frozen_(mesh.face_count(), false),
         component_boxes_(hull_.component_count()) {
-    for (const FaceId f : crossing) frozen_[f] = true;
+    for (const FaceId f : meeting) frozen_[f] = true;
     for (Slot s = 0; s < hull_.slot_count(); ++s) component_boxes_[hull_[s].component].extend(box_of(hull_, s));
   }
 
   LrbData run() {
-    simplify();
-    if (outer_size() > options_.max_outer_faces && bridge()) simplify();
+    simplify(kCapWorth);
+    simplify(kLastCapWorth);
+    if (outer_size() > options_.max_outer_faces && bridge()) simplify(kLastCapWorth);
     fill_voids();
     if (outer_size() > options_.max_outer_faces) close();
-    return complex_.finish(true, std::find(frozen_.begin(), frozen_.end(), true) != frozen_.end());
+    return complex_.finish(true, false);
   }
 
  private:
@@ -58,8 +59,8 @@ class PatchBuilder {
     return points;
   }
 
-  /// Passes until they no longer help.
-  void simplify() {
+  /// Passes until they no longer help. `worth`: largest share of triangles that a cap may have.
+  void simplify(double worth) {
     for (;;) {
       const std::uint32_t before = hull_.triangle_count();
       if (before <= options_.max_outer_faces) return;
@@ -68,7 +69,7 @@ class PatchBuilder {
       const std::uint32_t interior =
           std::max(kLeastInterior, std::min(options_.patch_interior, before / kLeastPatches));
       PatchPass(hull_, complex_, bounds_, frozen_, component_boxes_)
-          .run({interior, std::max(4 * interior, kLeastTriangles)}, layer(), random_);
+          .run({interior, std::max(4 * interior, kLeastTriangles)}, worth, layer(), random_);
       end_pass();
       if (hull_.triangle_count() > kLeastGain * before) return;
     }
@@ -156,8 +157,8 @@ class PatchBuilder {
 
 }  // namespace
 
-LrbData build_by_patches(const Mesh& mesh, const std::vector<FaceId>& crossing, const BuildOptions& options) {
-  return PatchBuilder(mesh, crossing, options).run();
+LrbData build_by_patches(const Mesh& mesh, const std::vector<FaceId>& meeting, const BuildOptions& options) {
+  return PatchBuilder(mesh, meeting, options).run();
 }
 
 }  // namespace lrb

@@ -15,8 +15,8 @@
 
 namespace lrb {
 
-/// `mesh` as MeshReport::buildable() wants it, in 3D and not inside out. `crossing`: its faces that meet others in
+/// `mesh` as MeshReport::buildable() wants it, in 3D and not inside out. `meeting`: its faces that meet others in
 /// more than they share, ascending; nothing is abstracted there but by the outermost region.
-LrbData build_by_patches(const Mesh& mesh, const std::vector<FaceId>& crossing, const BuildOptions& options);
+LrbData build_by_patches(const Mesh& mesh, const std::vector<FaceId>& meeting, const BuildOptions& options);
 
 }  // namespace lrb

@@ -28,7 +28,7 @@ PatchPass::PatchPass(HullMesh& hull, ComplexBuilder& complex, const BodyBounds& 
   check_.set_component_boxes(component_boxes);
 }
 
-void PatchPass::run(const GrowLimits& limits, std::uint16_t layer, Random& random) {
+void PatchPass::run(const GrowLimits& limits, double worth, std::uint16_t layer, Random& random) {
   PatchGrower grower(hull_, limits);
   for (Slot s = 0; s < hull_.slot_count(); ++s)
     if (hull_.alive(s) && hull_[s].face < frozen_.size() && frozen_[hull_[s].face]) grower.take(s);
@@ -37,7 +37,7 @@ void PatchPass::run(const GrowLimits& limits, std::uint16_t layer, Random& rando
   for (const Corner seed : seeds_of(hull_, random)) {
     if (tried[seed] || hull_.degree(seed) == 0 || !grower.grow(seed, patch)) continue;
     for (const Corner v : patch.interior) tried[v] = true;
-    if (!make_cap(patch)) continue;
+    if (!make_cap(patch, worth)) continue;
     std::size_t new_count = 0;
     const std::vector<Slot> slots = cover(hull_, complex_, patch, cap_, layer, new_count);
     for (std::size_t i = 0; i < slots.size(); ++i) {
@@ -49,7 +49,7 @@ void PatchPass::run(const GrowLimits& limits, std::uint16_t layer, Random& rando
 
 /// First without looking at anything but the patch itself; if that cap turns out to hit something, again with a proof
 /// for each collapse.
-bool PatchPass::make_cap(const Patch& patch) {
+bool PatchPass::make_cap(const Patch& patch, double worth) {
   for (const bool careful : {false, true}) {
     cap_.load(hull_, patch, static_cast<VertexId>(complex_.vertices().size()));
     const double area = cap_.patch_area();
@@ -60,7 +60,7 @@ bool PatchPass::make_cap(const Patch& patch) {
     if (!cap_.keep_polygons_whole(hull_, patch)) return false;
     const int kept = cap_.alive_faces() - cap_.new_faces();
     const int removed = static_cast<int>(patch.slots.size()) - kept;
-    if (cap_.new_faces() > kCapWorth * removed || removed == 0) return false;
+    if (cap_.new_faces() > worth * removed || removed == 0) return false;
     if (check_.cap_is_clear(patch, cap_)) return true;
   }
   return false;

@@ -24,11 +24,12 @@ class PatchPass {
   PatchPass(HullMesh& hull, ComplexBuilder& complex, const BodyBounds& bounds, const std::vector<bool>& frozen,
             const std::vector<Eigen::AlignedBox3d>& component_boxes);
 
-  /// Covers what it can with regions of this layer, seeds in random order.
-  void run(const GrowLimits& limits, std::uint16_t layer, Random& random);
+  /// Covers what it can with regions of this layer, seeds in random order. `worth`: largest share of the triangles it
+  /// covers that a cap may have.
+  void run(const GrowLimits& limits, double worth, std::uint16_t layer, Random& random);
 
  private:
-  bool make_cap(const Patch& patch);
+  bool make_cap(const Patch& patch, double worth);
 
   HullMesh& hull_;
   ComplexBuilder& complex_;

@@ -1,0 +1,45 @@
+#!/usr/bin/env bash
+# packages.sh PART...: installs the Debian packages of the named parts of packages.txt that are missing. As root, or
+# through sudo where that asks for no password it cannot get; else says what to install and exits 3.
+set -euo pipefail
+list="$(dirname "${BASH_SOURCE[0]}")/../packages.txt"
+
+if ! command -v dpkg-query >/dev/null || ! command -v apt-get >/dev/null; then
+  echo "packages.sh: not a Debian system: install the equivalents of the packages in packages.txt yourself" >&2
+  exit 0 # CMake names whatever is missing
+fi
+
+missing=()
+part=""
+while IFS= read -r line; do
+  case "$line" in
+    "" | "#"*) ;;
+    "["*"]") part="${line:1:-1}" ;;
+    *)
+      for wanted in "$@"; do
+        if [ "$part" = "$wanted" ] && ! dpkg-query -W -f '${db:Status-Status}' "$line" 2>/dev/null | grep -qx installed; then
+          missing+=("$line")
+        fi
+      done
+      ;;
+  esac
+done <"$list"
+[ ${#missing[@]} -gt 0 ] || exit 0
+
+as_root=()
+if [ "$(id -u)" != 0 ]; then
+  if command -v sudo >/dev/null && { sudo -n true 2>/dev/null || [ -t 0 ]; }; then
+    as_root=(sudo)
+  else
+    printf 'These Debian packages are missing:\n\n  apt-get install -y --no-install-recommends %s\n\nRun that as root, then this again.\n' "${missing[*]}" >&2
+    exit 3
+  fi
+fi
+
+echo "Installing ${missing[*]}" >&2
+install=("${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y -q --no-install-recommends "${missing[@]}")
+# A bare machine has no package lists, and an old list names files that are gone: look again once.
+if ! "${install[@]}" >/dev/null 2>&1; then
+  "${as_root[@]}" apt-get update -q >&2 || { echo "packages.sh: apt-get update failed: is the network up?" >&2; exit 3; }
+  "${install[@]}" >&2 || { echo "packages.sh: could not install ${missing[*]}" >&2; exit 3; }
+fi

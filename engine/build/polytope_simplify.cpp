@@ -1,0 +1,153 @@
+#include "engine/build/polytope_simplify.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <vector>
+
+#include <Eigen/Geometry>
+
+#include "engine/build/body_bounds.hpp"
+#include "engine/build/cap_surface.hpp"
+#include "engine/build/patch_cap.hpp"
+#include "engine/build/placement.hpp"
+#include "engine/tolerances.hpp"
+
+namespace lrb {
+namespace {
+
+using Vector3 = Eigen::Vector3d;
+
+class PolytopeSimplifier {
+ public:
+  explicit PolytopeSimplifier(const Mesh& convex) : points_(convex.vertices), hull_(convex) {
+    all_.slots = hull_.alive_slots();
+    for (HullMesh::Corner v = 0; v < hull_.point_count(); ++v) all_.interior.push_back(v);
+  }
+
+  /// False if there is no way to so few triangles.
+  bool run(std::uint32_t max_faces, double depth) {
+    surface_.load(hull_, all_, 0);
+    const BodyBounds bounds(points_, kSwell);
+    PatchCap::Limits limits;
+    limits.volume = std::numeric_limits<double>::infinity();
+    limits.faces = static_cast<int>(max_faces);
+    limits.depth = depth;
+    PatchCap(surface_, bounds).simplify(all_, limits);
+    tighten();
+    return surface_.alive_faces() <= limits.faces;
+  }
+
+  Mesh result() const {
+    Mesh mesh;
+    std::vector<VertexId> number(surface_.vertex_count(), kNull);
+    for (const auto& f : surface_.faces()) {
+      if (!f.alive) continue;
+      VertexId corners[3];
+      for (int i = 0; i < 3; ++i) {
+        VertexId& v = number[f.v[i]];
+        if (v == kNull) {
+          v = static_cast<VertexId>(mesh.vertices.size());
+          mesh.vertices.push_back(surface_.x(f.v[i]));
+        }
+        corners[i] = v;
+      }
+      mesh.add_face(corners);
+    }
+    return mesh;
+  }
+
+ private:
+  struct Edge {
+    Vector3 a, b;
+  };
+
+  void tighten() {
+    for (int round = 0; round < kRounds; ++round) {
+      double gain = 0;
+      for (int v = 0; v < surface_.vertex_count(); ++v) {
+        if (!surface_.is_used(v)) continue;
+        rim_.clear();
+        surface_.for_each_rim_edge(v, [&](int a, int b) { rim_.push_back({surface_.x(a), surface_.x(b)}); });
+        const auto w = place();
+        const double change = w ? cone_volume(*w) - cone_volume(surface_.x(v)) : 0;
+        if (!(change < 0)) continue;
+        surface_.move(v, *w);
+        gain -= change;
+      }
+      if (gain < kLeastGain * volume()) return;
+    }
+  }
+
+  double volume() const {
+    double sixfold = 0;
+    const Vector3& origin = points_[0];
+    for (const auto& f : surface_.faces())
+      if (f.alive)
+        sixfold += (surface_.x(f.v[0]) - origin)
+                       .dot((surface_.x(f.v[1]) - origin).cross(surface_.x(f.v[2]) - origin));
+    return sixfold / 6;
+  }
+
+  double cone_volume(const Vector3& w) const {
+    double sixfold = 0;
+    for (const Edge& e : rim_) sixfold += (w - rim_[0].a).dot((e.a - rim_[0].a).cross(e.b - rim_[0].a));
+    return sixfold / 6;
+  }
+
+  /// Where the cone over the rim has least volume: volume falls against the sum of the rim's area vectors, so a point
+  /// far down that way is projected onto what is allowed.
+  std::optional<Vector3> place() {
+    Vector3 centre = Vector3::Zero(), area = Vector3::Zero();
+    for (const Edge& e : rim_) centre += e.a;
+    centre /= static_cast<double>(rim_.size());
+    double radius_sq = 0;
+    half_spaces_.clear();
+    for (const Edge& e : rim_) {
+      area += (e.a - centre).cross(e.b - centre);
+      radius_sq = std::max(radius_sq, (e.a - centre).squaredNorm());
+      for (const Vector3& n : touching_normals(e)) half_spaces_.push_back({n, n.dot(e.a - centre)});
+    }
+    const double radius = std::sqrt(radius_sq), length = area.norm();
+    if (!(length > 0)) return std::nullopt;
+    const auto w = nearest_point(area * (-kDepth * radius / length), half_spaces_, kPlacementSlack * radius);
+    if (!w) return std::nullopt;
+    return Vector3(*w + centre);
+  }
+
+  /// Of the two planes that contain the edge a, b and touch the points. All points are behind a face a, b, w if for
+  /// each of them w is in front of the plane a, b, p; of these planes the two outermost count.
+  std::array<Vector3, 2> touching_normals(const Edge& e) const {
+    const Vector3 along = e.b - e.a;
+    std::array<Vector3, 2> normals = {Vector3::Zero(), Vector3::Zero()};
+    for (const Vector3& p : points_) {
+      const Vector3 to = p - e.a;
+      if (normals[0].dot(to) > 0 || normals[0].isZero(0)) normals[0] = along.cross(to);
+      if (normals[1].dot(to) < 0 || normals[1].isZero(0)) normals[1] = along.cross(to);
+    }
+    return {normals[0].normalized(), normals[1].normalized()};
+  }
+
+  static constexpr double kSwell = 0.4;       ///< see BodyBounds; here only to keep vertices from far off
+  static constexpr double kDepth = 8;         ///< of the point projected in tightening, in radii of the rim
+  static constexpr int kRounds = 30;          ///< of tightening, at most
+  static constexpr double kLeastGain = 1e-3;  ///< share of the volume for which another round is worth while
+
+  const std::vector<Vector3>& points_;
+  HullMesh hull_;
+  Patch all_;
+  CapSurface surface_;
+  std::vector<Edge> rim_;
+  std::vector<HalfSpace> half_spaces_;
+};
+
+}  // namespace
+
+Mesh simplify_polytope(const Mesh& convex, std::uint32_t max_faces, double depth) {
+  PolytopeSimplifier simplifier(convex);
+  return simplifier.run(max_faces, depth) ? simplifier.result() : Mesh();
+}
+
+}  // namespace lrb

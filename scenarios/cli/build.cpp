@@ -1,0 +1,92 @@
+#include <chrono>
+#include <filesystem>
+#include <memory>
+#include <sstream>
+
+#include <nlohmann/json.hpp>
+
+#include "engine/error.hpp"
+#include "engine/lrb/lrb_file.hpp"
+#include "engine/lrb/validate.hpp"
+#include "engine/mesh/mesh_io.hpp"
+#include "scenarios/body.hpp"
+#include "scenarios/body_figures.hpp"
+#include "scenarios/cli/command.hpp"
+#include "scenarios/cli/options.hpp"
+#include "scenarios/cli/progress.hpp"
+
+namespace lrb::cli {
+namespace {
+
+struct BuildCommandOptions {
+  std::string mesh, out;
+  BuildOptions build;
+  bool json = false, no_validate = false;
+};
+
+std::string as_text(const nlohmann::ordered_json& j, const ValidateReport* report) {
+  std::ostringstream out;
+  out << j["name"].get<std::string>() << "\n"
+      << "  faces    " << j["real_faces"] << " real + " << j["pseudo_faces"]
+      << " pseudo = " << j["total_faces"] << " (" << j["total_per_real"] << " per real face), "
+      << j["outer_faces"] << " outermost\n"
+      << "  regions  " << j["regions"] << " in " << j["layers"] << " layers\n"
+      << "  volume   solid " << j["volume_solid"] << ", outermost wrapper " << j["volume_outer"]
+      << ", convex hull " << j["volume_hull"] << "\n"
+      << "  memory   " << j["bytes_per_real_face"] << " bytes a real face\n"
+      << "  built in " << j["seconds"] << " s\n";
+  if (report != nullptr) {
+    out << "  valid    " << (report->valid ? "yes" : "NO") << "\n";
+    for (const std::string& line : report->violations) out << "    " << line << "\n";
+  }
+  return out.str();
+}
+
+int run_build(const BuildCommandOptions& o, const Globals& globals) {
+  Mesh mesh = read_mesh(o.mesh);
+  std::vector<std::string> notes;
+  BuildOptions options = o.build;
+  Progress progress("build", 0, globals.quiet);
+  options.progress = [&](std::uint32_t pass, std::uint32_t faces) {
+    progress.set(pass, "hull of " + std::to_string(faces) + " faces");
+  };
+  const auto begin = std::chrono::steady_clock::now();
+  const LrbRep rep = build_from_mesh(std::move(mesh), options, notes);
+  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  progress.finish();
+  note(globals, notes);
+
+  nlohmann::ordered_json j = body_figures(rep);
+  j["seconds"] = seconds;
+  ValidateReport report;
+  if (o.no_validate) {
+    j["valid"] = nullptr;
+  } else {
+    report = validate(rep);
+    j["valid"] = report.valid;
+    j["real_pairs_meeting"] = report.real_pairs_meeting;
+    j["violations"] = report.violations;
+  }
+  if (!o.out.empty()) {
+    save_lrb(rep, o.out);
+    j["file"] = o.out;
+    note(globals, {"wrote " + o.out});
+  }
+  print(o.json ? j.dump() + "\n" : as_text(j, o.no_validate ? nullptr : &report));
+  return o.no_validate || report.valid ? kOk : kMismatch;
+}
+
+}  // namespace
+
+Command add_build(CLI::App& root, const Globals& globals) {
+  CLI::App* app = root.add_subcommand("build", "Mesh to LRB-rep: build it, prove it, save it");
+  const auto o = std::make_shared<BuildCommandOptions>();
+  app->add_option("MESH", o->mesh, "OBJ, STL, PLY or OFF")->required();
+  app->add_option("-o,--output", o->out, "Write the LRB-rep here")->type_name("FILE.lrb");
+  add_build_options(*app, o->build);
+  app->add_flag("--json", o->json, "The figures as one JSON object");
+  app->add_flag("--no-validate", o->no_validate, "Skip the proof that the LRB-rep keeps its promises");
+  return {app, [o, &globals] { return run_build(*o, globals); }};
+}
+
+}  // namespace lrb::cli

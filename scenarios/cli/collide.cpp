@@ -1,0 +1,120 @@
+#include <filesystem>
+#include <memory>
+
+#include <Eigen/Geometry>
+
+#include "engine/error.hpp"
+#include "engine/lrb/fnv.hpp"
+#include "scenarios/cli/command.hpp"
+#include "scenarios/cli/options.hpp"
+#include "scenarios/cli/progress.hpp"
+#include "scenarios/play/run.hpp"
+#include "scenarios/pose_file.hpp"
+
+namespace lrb::cli {
+namespace {
+
+struct CollideOptions {
+  std::string a, b, folder, poses, from;
+  CollideRequest request;
+  PictureOptions picture;
+  bool json = false;
+};
+
+Eigen::AlignedBox3d box_of(const LrbRep& rep) {
+  Eigen::AlignedBox3d box;
+  for (FaceId f = 0; f < rep.real_face_count(); ++f)
+    for (const VertexId v : rep.face(f)) box.extend(rep.vertices()[v]);
+  return box;
+}
+
+/// B's middle heads for A's, from clear of it, and goes on for a while after the first contact.
+Motion approach_from(const Eigen::Vector3d& direction, const LrbRep& a, const LrbRep& b) {
+  const Eigen::AlignedBox3d box_a = box_of(a), box_b = box_of(b);
+  Motion m;
+  m.kind = Motion::Kind::approach;
+  m.target = box_a.center() - box_b.center();
+  constexpr double kClear = 1.02;  // of the distance at which balls round both boxes touch
+  m.from = direction.normalized() * kClear * (box_a.diagonal().norm() + box_b.diagonal().norm()) / 2;
+  m.step_length = 0.004;
+  m.steps = 100'000;
+  m.before = 12;
+  m.into = 18;
+  return m;
+}
+
+Scenario make_scenario(const CollideOptions& o, const std::vector<LoadedBody>& bodies) {
+  Scenario s;
+  s.name = std::filesystem::path(o.a).stem().string() + "-" + std::filesystem::path(o.b).stem().string();
+  s.bodies = {{}, {}};
+  s.bodies[0].file = o.a;
+  s.bodies[1].file = o.b;
+  s.request = o.request;
+  s.request.contacts = o.request.mode == Mode::all_pairs;
+  s.frames.montage = 6;
+  FrameSpec::View whole, contact;
+  whole.title = "Whole";
+  contact.title = "Contact";
+  contact.camera = FrameSpec::Camera::contact;
+  s.frames.views = {whole, contact};
+  if (!o.poses.empty()) {
+    s.motion.kind = Motion::Kind::poses;
+    s.motion.poses = read_poses(o.poses);
+  } else {
+    // Aslant by default: along an axis, bodies that are lined up with it would meet in whole faces first.
+    Eigen::Vector3d direction(1, 0.35, 0.25);
+    if (!o.from.empty()) direction = parse_vector(o.from, "--from");
+    if (!(direction.squaredNorm() > 0)) throw InputError("--from: expected a direction that is not zero");
+    if (bodies[0].rep.dim() == 2) direction.z() = 0;
+    s.motion = approach_from(direction, bodies[0].rep, bodies[1].rep);
+  }
+  Fnv64 hash;
+  for (const LoadedBody& body : bodies) hash.add_value(body.rep.hash());
+  for (const Pose& pose : s.motion.poses) {
+    hash.add_bytes(pose.r.data(), sizeof(double) * 9);
+    hash.add_bytes(pose.t.data(), sizeof(double) * 3);
+  }
+  hash.add_bytes(s.motion.from.data(), sizeof(double) * 3);
+  s.hash = hash.value();
+  apply(o.picture, s.frames);
+  return s;
+}
+
+int run_collide(const CollideOptions& o, const Globals& globals) {
+  if (!o.poses.empty()) read_poses(o.poses);  // a typing error there should not cost a build
+  const ProgressReport progress = progress_report(globals.quiet);
+  std::vector<LoadedBody> bodies;
+  for (const std::string& path : {o.a, o.b}) {
+    progress("build", bodies.size(), 2);
+    bodies.push_back(load_body(path));
+  }
+  if (bodies[0].rep.dim() != bodies[1].rep.dim())
+    throw InputError(o.a + " and " + o.b + ": one is 2D, the other 3D: give two of a kind");
+  const Scenario scenario = make_scenario(o, bodies);
+  const std::string folder = o.folder.empty() ? "out/" + scenario.name : o.folder;
+  const Recording recording = record(scenario, std::move(bodies), progress);
+  return report_outcome(write_run(scenario, recording, folder, globals.command_line, progress), folder,
+                        o.json, globals);
+}
+
+}  // namespace
+
+Command add_collide(CLI::App& root, const Globals& globals) {
+  CLI::App* app =
+      root.add_subcommand("collide", "Two bodies of yours: an approach until contact, drawn and explained");
+  const auto o = std::make_shared<CollideOptions>();
+  app->add_option("A", o->a, "Mesh or .lrb file; stays put")->required();
+  app->add_option("B", o->b, "Mesh or .lrb file; moves")->required();
+  app->add_option("-o,--output", o->folder, "Folder to write to [out/A-B]")->type_name("DIR");
+  auto* poses =
+      app->add_option("--poses", o->poses, "Poses of B, one a step: lines of 12 numbers")->type_name("FILE");
+  app->add_option("--from", o->from, "Direction that B comes from, seen from A")
+      ->type_name("X,Y,Z")
+      ->excludes(poses);
+  add_request_options(*app, o->request);
+  add_picture_options(*app, o->picture);
+  app->add_flag("--json", o->json, "Print the summary instead of the page's path");
+  return {app, [o, &globals] { return run_collide(*o, globals); }};
+}
+
+}  // namespace lrb::cli

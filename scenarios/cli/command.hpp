@@ -1,0 +1,44 @@
+#pragma once
+/// The commands of `lrbscope`, one file each. stdout is data, stderr is for people.
+/// Exit codes: 0 ok, 1 mismatch, 2 usage or input, 3 environment.
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+
+namespace lrb::cli {
+
+inline constexpr int kOk = 0, kMismatch = 1, kBadInput = 2, kEnvironment = 3;
+
+/// What every command obeys.
+struct Globals {
+  bool quiet = false;        ///< nothing on stderr but errors
+  std::string command_line;  ///< as it was given, quoted for a shell
+};
+
+struct Command {
+  CLI::App* app;
+  std::function<int()> run;
+};
+
+Command add_run(CLI::App& root, const Globals& globals);
+Command add_build(CLI::App& root, const Globals& globals);
+Command add_inspect(CLI::App& root, const Globals& globals);
+Command add_collide(CLI::App& root, const Globals& globals);
+Command add_query(CLI::App& root, const Globals& globals);
+Command add_render(CLI::App& root, const Globals& globals);
+Command add_doctor(CLI::App& root, const Globals& globals);
+Command add_list(CLI::App& root, const Globals& globals);
+
+/// Parses, runs, and turns exceptions into one line on stderr and an exit code.
+int main(int argc, char** argv);
+
+/// Lines for people, unless quiet.
+void note(const Globals& globals, const std::vector<std::string>& lines);
+
+/// Writes to stdout and makes sure that it arrived. Throws EnvironmentError.
+void print(const std::string& text);
+
+}  // namespace lrb::cli

@@ -1,0 +1,137 @@
+#include <filesystem>
+#include <memory>
+#include <sstream>
+
+#include <Eigen/Geometry>
+#include <nlohmann/json.hpp>
+
+#include "engine/error.hpp"
+#include "engine/lrb/lrb_file.hpp"
+#include "engine/lrb/validate.hpp"
+#include "engine/mesh/mesh_check.hpp"
+#include "engine/mesh/mesh_io.hpp"
+#include "scenarios/body.hpp"
+#include "scenarios/body_figures.hpp"
+#include "scenarios/cli/command.hpp"
+#include "scenarios/files.hpp"
+#include "scenarios/play/portrait.hpp"
+
+namespace lrb::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct InspectOptions {
+  std::string file, picture;
+  bool validate = false, render = false, json = false;
+};
+
+Json box_json(const std::vector<Eigen::Vector3d>& vertices) {
+  Eigen::AlignedBox3d box;
+  for (const Eigen::Vector3d& v : vertices) box.extend(v);
+  if (box.isEmpty()) return nullptr;
+  return {{"low", {box.min().x(), box.min().y(), box.min().z()}},
+          {"high", {box.max().x(), box.max().y(), box.max().z()}}};
+}
+
+Json mesh_json(const Mesh& mesh, const MeshReport& report) {
+  Json j;
+  j["file"] = mesh.name;
+  j["kind"] = "mesh";
+  j["dim"] = mesh.dim;
+  j["vertices"] = mesh.vertices.size();
+  j["faces"] = mesh.face_count();
+  j["box"] = box_json(mesh.vertices);
+  j["components"] = report.components;
+  j["genus"] = report.genus >= 0 ? Json(report.genus) : Json(nullptr);
+  j["closed"] = report.closed;
+  j["buildable"] = report.buildable();
+  j["queryable"] = report.queryable();
+  j["findings"] = report.lines(mesh);
+  return j;
+}
+
+Json layers_json(const LrbRep& rep) {
+  std::vector<std::array<std::uint64_t, 3>> layers(rep.layer_count());
+  for (RegionId r = 0; r < rep.region_count(); ++r) {
+    layers[rep.layer(r)][0] += 1;
+    layers[rep.layer(r)][1] += rep.lids(r).size();
+    layers[rep.layer(r)][2] += rep.floor(r).size();
+  }
+  Json out = Json::array();
+  for (const auto& l : layers) out.push_back({{"regions", l[0]}, {"lids", l[1]}, {"floor_faces", l[2]}});
+  return out;
+}
+
+std::string as_text(const Json& j) {
+  std::ostringstream out;
+  for (const auto& [key, value] : j.items()) {
+    if (value.is_array() && (key == "findings" || key == "violations")) {
+      out << key << (value.empty() ? ": none\n" : ":\n");
+      for (const auto& line : value) out << "  " << line.get<std::string>() << "\n";
+    } else if (key == "layers_from_the_solid") {
+      out << "layers, from the solid outward:\n";
+      for (const auto& l : value)
+        out << "  " << l["regions"] << " regions, " << l["lids"] << " lids over " << l["floor_faces"]
+            << " faces\n";
+    } else {
+      out << key << ": " << (value.is_string() ? value.get<std::string>() : value.dump()) << "\n";
+    }
+  }
+  return out.str();
+}
+
+int run_inspect(const InspectOptions& o, const Globals& globals) {
+  Json j;
+  std::unique_ptr<LrbRep> rep;
+  std::vector<std::string> notes;
+  if (is_lrb_file(o.file)) {
+    rep = std::make_unique<LrbRep>(load_lrb(o.file));
+    j["file"] = o.file;
+    j["kind"] = "LRB-rep";
+    j.update(body_figures(*rep));
+    j["layers_from_the_solid"] = layers_json(*rep);
+  } else {
+    Mesh mesh = read_mesh(o.file);
+    const MeshReport report = check_mesh(mesh);
+    j = mesh_json(mesh, report);
+    if (o.validate)
+      rep = std::make_unique<LrbRep>(build_from_mesh(std::move(mesh), {}, notes));
+    else if (o.render)
+      rep = std::make_unique<LrbRep>(body_of_mesh(std::move(mesh)).rep);
+  }
+  bool valid = true;
+  if (o.validate) {
+    const ValidateReport report = validate(*rep);
+    valid = report.valid;
+    j["valid"] = report.valid;
+    j["violations"] = report.violations;
+    j["volume_error"] = report.volume_error;
+  }
+  if (o.render) {
+    const std::string picture =
+        o.picture.empty() ? "out/" + std::filesystem::path(o.file).stem().string() + ".png" : o.picture;
+    make_folder(std::filesystem::path(picture).parent_path().string());
+    draw_portrait(*rep, picture);
+    j["picture"] = picture;
+  }
+  note(globals, notes);
+  print(o.json ? j.dump() + "\n" : as_text(j));
+  return valid ? kOk : kMismatch;
+}
+
+}  // namespace
+
+Command add_inspect(CLI::App& root, const Globals& globals) {
+  CLI::App* app = root.add_subcommand("inspect", "What a mesh or an LRB-rep is, and what is wrong with it");
+  const auto o = std::make_shared<InspectOptions>();
+  app->add_option("FILE", o->file, "Mesh or .lrb file")->required();
+  app->add_flag("--validate", o->validate,
+                "Prove the LRB-rep's promises (a mesh is built first); exit 1 if one is broken");
+  app->add_flag("--render", o->render, "Draw it: the body, its layers, its outermost wrapper");
+  app->add_option("-o,--output", o->picture, "Picture to write [out/NAME.png]")->type_name("FILE.png");
+  app->add_flag("--json", o->json, "As one JSON object");
+  return {app, [o, &globals] { return run_inspect(*o, globals); }};
+}
+
+}  // namespace lrb::cli

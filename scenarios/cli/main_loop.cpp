@@ -1,0 +1,89 @@
+#include <cstdio>
+#include <exception>
+#include <iostream>
+#include <new>
+
+#include "engine/error.hpp"
+#include "scenarios/cli/command.hpp"
+#include "trace/trace.hpp"
+
+namespace lrb::cli {
+namespace {
+
+std::string quoted(const std::string& word) {
+  const bool plain = !word.empty() && word.find_first_not_of(
+                                          "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ"
+                                          "0123456789_-+=./,:@%") == std::string::npos;
+  if (plain) return word;
+  std::string out = "'";
+  for (const char c : word) out += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return out + "'";
+}
+
+std::string command_line(int argc, char** argv) {
+  std::string out = "lrbscope";
+  for (int i = 1; i < argc; ++i) out += " " + quoted(argv[i]);
+  return out;
+}
+
+int complain(const char* kind, const std::string& message, int code) {
+  std::string line = message;
+  for (char& c : line)
+    if (c == '\n' || c == '\r') c = ' ';
+  std::cerr << "lrbscope: " << kind << line << std::endl;
+  return code;
+}
+
+int run_guarded(const Command& command) {
+  try {
+    return command.run();
+  } catch (const InputError& e) {
+    return complain("", e.what(), kBadInput);
+  } catch (const EnvironmentError& e) {
+    return complain("", e.what(), kEnvironment);
+  } catch (const std::bad_alloc&) {
+    return complain("", "out of memory: try a smaller input or a larger machine", kEnvironment);
+  } catch (const std::exception& e) {
+    return complain("internal error, please report it: ", e.what(), kEnvironment);
+  }
+}
+
+}  // namespace
+
+void note(const Globals& globals, const std::vector<std::string>& lines) {
+  if (globals.quiet) return;
+  for (const std::string& line : lines) std::cerr << "note: " << line << "\n";
+}
+
+void print(const std::string& text) {
+  std::fwrite(text.data(), 1, text.size(), stdout);
+  if (std::fflush(stdout) != 0 || std::ferror(stdout))
+    throw EnvironmentError("writing to stdout failed: is the disk full?");
+}
+
+int main(int argc, char** argv) {
+  CLI::App app("An exact two-body collision engine that can be watched.", "lrbscope");
+  app.set_version_flag("--version", std::string("lrbscope ") + trace::lrbscope_version());
+  app.require_subcommand(1);
+  app.fallthrough();
+  app.footer(
+      "Exit codes: 0 ok, 1 mismatch, 2 usage or input error, 3 environment. `lrbscope COMMAND --help` tells "
+      "more.");
+  Globals globals;
+  globals.command_line = command_line(argc, argv);
+  app.add_flag("-q,--quiet", globals.quiet, "Nothing on stderr but errors");
+  const Command commands[] = {add_run(app, globals),    add_collide(app, globals), add_query(app, globals),
+                              add_build(app, globals),  add_inspect(app, globals), add_render(app, globals),
+                              add_doctor(app, globals), add_list(app, globals)};
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& e) {
+    if (e.get_exit_code() == 0) return app.exit(e);  // --help, --version
+    return complain("", std::string(e.what()) + " (see lrbscope --help)", kBadInput);
+  }
+  for (const Command& command : commands)
+    if (command.app->parsed()) return run_guarded(command);
+  return kBadInput;
+}
+
+}  // namespace lrb::cli

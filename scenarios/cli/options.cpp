@@ -1,0 +1,92 @@
+#include "scenarios/cli/options.hpp"
+
+#include <charconv>
+#include <map>
+
+#include "engine/error.hpp"
+
+namespace lrb::cli {
+namespace {
+
+/// An option that takes one of a few words.
+template <class T, class Target>
+void add_choice(CLI::App& app, const std::string& name, Target& target, const std::map<std::string, T>& words,
+                const std::string& type_name, const std::string& what) {
+  app.add_option_function<std::string>(
+         name, [&target, words](const std::string& word) { target = words.at(word); }, what)
+      ->check(CLI::IsMember(words).description(""))
+      ->type_name(type_name);
+}
+
+}  // namespace
+
+void add_request_options(CLI::App& app, CollideRequest& request) {
+  add_choice<Mode>(app, "--mode", request.mode, {{"all", Mode::all_pairs}, {"first", Mode::first_pair}},
+                   "all|first", "All pairs, or the first found");
+  add_choice<Recursion>(app, "--recursion", request.recursion,
+                        {{"complete", Recursion::complete},
+                         {"paper", Recursion::paper},
+                         {"paper_strict", Recursion::paper_strict}},
+                        "complete|paper|paper_strict", "complete never misses; paper is the paper's own");
+}
+
+void add_build_options(CLI::App& app, BuildOptions& options) {
+  app.add_option("--patch", options.patch_interior, "Interior vertices a patch aims at")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str()
+      ->type_name("N");
+  app.add_option("--max-outer", options.max_outer_faces, "Faces the outermost wrapper should have at most")
+      ->check(CLI::Range(4, 1000))
+      ->capture_default_str()
+      ->type_name("N");
+  app.add_option("--seed", options.seed, "Of the order in which patches grow")
+      ->capture_default_str()
+      ->type_name("N");
+}
+
+void add_picture_options(CLI::App& app, PictureOptions& options) {
+  using At = FrameSpec::At;
+  using ColourBy = FrameSpec::ColourBy;
+  app.add_option("--size", options.size, "Of the frames, pixels")->type_name("WxH");
+  add_choice<At>(
+      app, "--frames", options.at,
+      {{"none", At::none}, {"step", At::step}, {"refinement", At::refinement}, {"event", At::every}},
+      "none|step|refinement|event", "When to draw one");
+  app.add_option("--every", options.every, "Draw every N-th of these")
+      ->check(CLI::Range(1, 1000000000))
+      ->type_name("N");
+  app.add_option("--most", options.most, "Frames at most, evenly chosen")
+      ->check(CLI::Range(1, 10000))
+      ->type_name("N");
+  add_choice<ColourBy>(app, "--colour-by", options.colour_by,
+                       {{"kind", ColourBy::kind},
+                        {"layer", ColourBy::layer},
+                        {"region", ColourBy::region},
+                        {"face_tests", ColourBy::face_tests},
+                        {"refinements", ColourBy::refinements}},
+                       "kind|layer|region|face_tests|refinements", "What colours mean");
+}
+
+void apply(const PictureOptions& options, FrameSpec& spec) {
+  if (!options.size.empty()) {
+    const char* end = options.size.data() + options.size.size();
+    const auto [x, e1] = std::from_chars(options.size.data(), end, spec.width);
+    const bool has_x = e1 == std::errc() && x != end && *x == 'x';
+    const auto [last, e2] = has_x ? std::from_chars(x + 1, end, spec.height)
+                                  : std::from_chars_result{x, std::errc::invalid_argument};
+    constexpr int kLeast = 64, kMost = 8192;
+    if (e2 != std::errc() || last != end || spec.width < kLeast || spec.height < kLeast ||
+        spec.width > kMost || spec.height > kMost)
+      throw InputError("--size: expected WIDTHxHEIGHT from 64x64 to 8192x8192, found \"" + options.size +
+                       "\"");
+  }
+  if (options.at) {
+    spec.at = *options.at;
+    spec.every = 1;
+  }
+  if (options.every) spec.every = *options.every;
+  if (options.most) spec.most = *options.most;
+  if (options.colour_by) spec.colour_by = *options.colour_by;
+}
+
+}  // namespace lrb::cli

@@ -1,0 +1,32 @@
+#pragma once
+/// Options that several commands have.
+
+#include <optional>
+
+#include "engine/build/build.hpp"
+#include "engine/query/collide.hpp"
+#include "scenarios/cli/command.hpp"
+#include "scenarios/play/run.hpp"
+#include "scenarios/scenario.hpp"
+
+namespace lrb::cli {
+
+/// --mode and --recursion.
+void add_request_options(CLI::App& app, CollideRequest& request);
+/// --patch, --max-outer and --seed.
+void add_build_options(CLI::App& app, BuildOptions& options);
+
+/// --size, --frames, --most and --colour-by, over what a scenario says.
+struct PictureOptions {
+  std::string size;
+  std::optional<FrameSpec::At> at;
+  std::optional<std::uint32_t> every, most;
+  std::optional<FrameSpec::ColourBy> colour_by;
+};
+void add_picture_options(CLI::App& app, PictureOptions& options);
+void apply(const PictureOptions& options, FrameSpec& spec);
+
+/// Prints the end of a run; its exit code.
+int report_outcome(const RunOutcome& outcome, const std::string& folder, bool json, const Globals& globals);
+
+}  // namespace lrb::cli

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <string>
+
+#include "scenarios/play/recording.hpp"
+
+namespace lrb::cli {
+
+/// A progress bar on stderr, drawn only on a terminal, and gone when the work is done.
+class Progress {
+ public:
+  /// total 0: not known, a counter instead of a bar.
+  Progress(std::string label, std::uint64_t total, bool quiet);
+  ~Progress() { finish(); }
+  Progress(const Progress&) = delete;
+  Progress& operator=(const Progress&) = delete;
+
+  void set(std::uint64_t done, const std::string& detail = {});
+  void set_total(std::uint64_t total) { total_ = total; }
+  void finish();
+
+ private:
+  std::string label_;
+  std::uint64_t total_;
+  bool enabled_, colour_, drawn_ = false;
+  std::chrono::steady_clock::time_point begin_, last_;
+};
+
+/// Draws the progress of a job of several parts, a bar for each.
+ProgressReport progress_report(bool quiet);
+
+}  // namespace lrb::cli

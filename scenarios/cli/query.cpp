@@ -1,0 +1,93 @@
+#include <algorithm>
+#include <chrono>
+#include <memory>
+#include <sstream>
+
+#include "engine/query/collide.hpp"
+#include "engine/query/collide_impl.hpp"
+#include "scenarios/body.hpp"
+#include "scenarios/cli/command.hpp"
+#include "scenarios/cli/options.hpp"
+#include "scenarios/cli/progress.hpp"
+#include "scenarios/pose_file.hpp"
+#include "trace/hex.hpp"
+
+namespace lrb::cli {
+namespace {
+
+struct QueryOptions {
+  std::string a, b, poses;
+  CollideRequest request;
+  bool pairs = false;
+  std::uint32_t repeat = 0;
+};
+
+/// Median microseconds of `repeat` runs of one query, in a warm context.
+double median_us(const LrbRep& a, const LrbRep& b, const Pose& pose, const QueryOptions& o,
+                 QueryContext& context) {
+  std::vector<double> us;
+  NullProbe probe;
+  for (std::uint32_t i = 0; i < o.repeat; ++i) {
+    const auto begin = std::chrono::steady_clock::now();
+    const CollideResult result = collide(a, Pose{}, b, pose, o.request, context, probe);
+    us.push_back(std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - begin).count());
+    if (result.mode != o.request.mode) throw std::logic_error("the query changed its mode");
+  }
+  const std::size_t middle = us.size() / 2;
+  std::nth_element(us.begin(), us.begin() + static_cast<std::ptrdiff_t>(middle), us.end());
+  return us[middle];
+}
+
+std::string line_of(std::size_t pose, const CollideResult& result, const QueryOptions& o, double us) {
+  std::ostringstream out;
+  out << "{\"pose\":" << pose << ",\"relation\":\"" << to_string(result.relation)
+      << "\",\"pairs\":" << result.pairs.size() << ",\"fingerprint\":\""
+      << trace::to_hex(fingerprint(result.pairs)) << "\"";
+  if (o.request.recursion != Recursion::complete)
+    out << ",\"recursion\":\"" << (o.request.recursion == Recursion::paper ? "paper" : "paper_strict")
+        << "\"";
+  if (o.repeat > 0) out << ",\"us\":" << us;
+  if (o.pairs) {
+    out << ",\"list\":[";
+    for (std::size_t i = 0; i < result.pairs.size(); ++i)
+      out << (i > 0 ? "," : "") << "[" << result.pairs[i].a << "," << result.pairs[i].b << "]";
+    out << "]";
+  }
+  out << "}\n";
+  return out.str();
+}
+
+int run_query(const QueryOptions& o, const Globals& globals) {
+  const std::vector<Pose> poses = read_poses(o.poses);  // all of them, before anything is printed
+  const LoadedBody a = load_body(o.a), b = load_body(o.b);
+  note(globals, a.notes);
+  note(globals, b.notes);
+  QueryContext context;
+  NullProbe probe;
+  Progress progress("query", poses.size(), globals.quiet);
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    const CollideResult result = collide(a.rep, Pose{}, b.rep, poses[i], o.request, context, probe);
+    const double us = o.repeat > 0 ? median_us(a.rep, b.rep, poses[i], o, context) : 0;
+    print(line_of(i, result, o, us));
+    progress.set(i + 1);
+  }
+  return kOk;
+}
+
+}  // namespace
+
+Command add_query(CLI::App& root, const Globals& globals) {
+  CLI::App* app = root.add_subcommand("query", "Exact answers for a list of poses of B, one JSON line each");
+  const auto o = std::make_shared<QueryOptions>();
+  app->add_option("A", o->a, "Mesh or .lrb file; stays put")->required();
+  app->add_option("B", o->b, "Mesh or .lrb file; the poses are applied to it")->required();
+  app->add_option("--poses", o->poses, "File of lines of 12 numbers (row-major 3x4)")->required();
+  add_request_options(*app, o->request);
+  app->add_flag("--pairs", o->pairs, "Add the sorted list of pairs");
+  app->add_option("--repeat", o->repeat, "Add the median microseconds of N repeats of each pose's query")
+      ->check(CLI::Range(1, 1000000))
+      ->type_name("N");
+  return {app, [o, &globals] { return run_query(*o, globals); }};
+}
+
+}  // namespace lrb::cli

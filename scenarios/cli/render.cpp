@@ -1,0 +1,120 @@
+#include <filesystem>
+#include <memory>
+
+#include "engine/error.hpp"
+#include "engine/query/collide.hpp"
+#include "scenarios/body.hpp"
+#include "scenarios/cli/command.hpp"
+#include "scenarios/cli/options.hpp"
+#include "scenarios/cli/progress.hpp"
+#include "scenarios/files.hpp"
+#include "scenarios/play/frames.hpp"
+#include "scenarios/play/report.hpp"
+#include "trace/hex.hpp"
+#include "trace/trace_json.hpp"
+
+namespace lrb::cli {
+namespace {
+
+struct RenderOptions {
+  std::string trace, folder;
+  std::vector<std::string> bodies;
+  std::vector<std::uint32_t> events;
+  PictureOptions picture;
+  std::uint32_t montage = 0;
+  bool close_up = false;
+};
+
+/// The bodies that were recorded: named on the command line, or a.lrb and b.lrb beside the trace.
+std::vector<LoadedBody> find_bodies(const RenderOptions& o, const trace::Trace& trace) {
+  const std::size_t count = trace.header.bodies.size();
+  std::vector<std::string> paths = o.bodies;
+  if (paths.empty()) {
+    const std::filesystem::path beside = std::filesystem::path(o.trace).parent_path();
+    for (std::size_t i = 0; i < count; ++i) paths.push_back((beside / (i == 0 ? "a.lrb" : "b.lrb")).string());
+  }
+  if (paths.size() != count)
+    throw InputError(o.trace + ": has " + std::to_string(count) + " bodies, --bodies names " +
+                     std::to_string(paths.size()));
+  std::vector<LoadedBody> out;
+  for (const std::string& path : paths) out.push_back(load_body(path));
+  return out;
+}
+
+/// A trace holds pairs, not where they meet: the contact regions of each step are computed anew.
+std::vector<CollideResult> contacts_of(const trace::Trace& trace, const std::vector<LoadedBody>& bodies) {
+  std::vector<CollideResult> out;
+  if (bodies.size() < 2 || trace.header.request.mode != Mode::all_pairs) return out;
+  CollideRequest request = trace.header.request;
+  request.contacts = true;
+  for (const trace::Step& step : trace.steps)
+    out.push_back(collide(bodies[0].rep, step.pose_a, bodies[1].rep, step.pose_b, request));
+  return out;
+}
+
+FrameSpec frame_spec(const RenderOptions& o, bool two_bodies) {
+  FrameSpec spec;
+  spec.at = two_bodies ? FrameSpec::At::step : FrameSpec::At::refinement;
+  apply(o.picture, spec);
+  if (!o.events.empty()) {
+    spec.at = FrameSpec::At::events;
+    spec.events = o.events;
+  }
+  spec.montage = o.montage;
+  if (o.close_up) {
+    FrameSpec::View whole, contact;
+    whole.title = "Whole";
+    contact.title = "Contact";
+    contact.camera = FrameSpec::Camera::contact;
+    spec.views = {whole, contact};
+  }
+  return spec;
+}
+
+int run_render(const RenderOptions& o, const Globals& globals) {
+  const trace::Trace trace = trace::load_trace(o.trace);
+  const std::vector<LoadedBody> bodies = find_bodies(o, trace);
+  const std::vector<CollideResult> results = contacts_of(trace, bodies);
+  Performance p;
+  p.title = trace.header.scenario;
+  p.trace = &trace;
+  p.results = &results;
+  for (const LoadedBody& body : bodies) p.reps.push_back(&body.rep);
+  const std::string folder =
+      o.folder.empty() ? "out/" + std::filesystem::path(o.trace).parent_path().filename().string() + "-render"
+                       : o.folder;
+  const FrameSpec spec = frame_spec(o, bodies.size() == 2);
+  const std::vector<std::pair<std::string, std::string>> text = {
+      {"Software", "lrbscope " + trace.header.lrbscope},
+      {"lrbscope:scenario", trace.header.scenario},
+      {"lrbscope:scenario_hash", trace::to_hex(trace.header.scenario_hash)},
+  };
+  const DrawnFrames drawn = draw_frames(p, spec, folder, text, progress_report(globals.quiet));
+  const std::string trace_link = std::filesystem::relative(o.trace, folder).generic_string();
+  ReportText report{
+      trace.header.scenario, "Drawn from a recorded run.", globals.command_line, trace_link, {}};
+  Page page = run_page(p, drawn, folder, report);
+  std::erase_if(page.links, [](const PageLink& l) { return l.target == "summary.json"; });
+  write_text(folder + "/index.html", page_html(page));
+  print(folder + "/index.html\n");
+  return kOk;
+}
+
+}  // namespace
+
+Command add_render(CLI::App& root, const Globals& globals) {
+  CLI::App* app = root.add_subcommand("render", "Pictures of a recorded run, without running it again");
+  const auto o = std::make_shared<RenderOptions>();
+  app->add_option("TRACE", o->trace, "trace.json or trace.json.gz")->required();
+  app->add_option("-o,--output", o->folder, "Folder to write to")->type_name("DIR");
+  app->add_option("--bodies", o->bodies, "The bodies that were recorded [a.lrb and b.lrb beside the trace]")
+      ->type_name("FILE")
+      ->expected(1, 2);
+  app->add_option("--events", o->events, "Draw after these events")->delimiter(',')->type_name("N,N,...");
+  app->add_option("--montage", o->montage, "Panels of a montage")->check(CLI::Range(1, 26))->type_name("N");
+  app->add_flag("--close-up", o->close_up, "A second view on the contact");
+  add_picture_options(*app, o->picture);
+  return {app, [o, &globals] { return run_render(*o, globals); }};
+}
+
+}  // namespace lrb::cli

@@ -1,0 +1,17 @@
+#pragma once
+
+#include <string>
+
+namespace lrb {
+
+/// The whole of a file. Throws InputError naming the file if it cannot be read or is a folder.
+std::string read_text(const std::string& path);
+
+/// Writes beside the file and renames, so that no half-written file is ever seen under its name. Makes the
+/// folder if it is missing. Throws EnvironmentError.
+void write_text(const std::string& path, const std::string& text);
+
+/// Makes a folder and those above it. Throws EnvironmentError if that fails or a file is in the way.
+void make_folder(const std::string& path);
+
+}  // namespace lrb

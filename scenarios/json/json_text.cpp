@@ -1,0 +1,170 @@
+#include "scenarios/json/json_text.hpp"
+
+#include <algorithm>
+#include <set>
+#include <vector>
+
+#include "engine/error.hpp"
+
+namespace lrb {
+namespace {
+
+/// Walks a text that is known to be JSON and notes where values begin.
+class Walker {
+ public:
+  Walker(const std::string& text, std::unordered_map<std::string, std::size_t>& offsets,
+         std::string& duplicate)
+      : text_(text), offsets_(offsets), duplicate_(duplicate) {}
+
+  void value(const std::string& pointer) {
+    constexpr int kDeepest = 64;  // levels: this walks by recursion, and no file of ours needs ten
+    if (++depth_ > kDeepest) throw InputError("nested more than 64 levels deep");
+    skip_space();
+    offsets_.emplace(pointer, at_);
+    if (text_[at_] == '{')
+      object(pointer);
+    else if (text_[at_] == '[')
+      array(pointer);
+    else if (text_[at_] == '"')
+      string();
+    else
+      while (at_ < text_.size() && std::string_view(",]} \t\r\n").find(text_[at_]) == std::string_view::npos)
+        ++at_;
+    --depth_;
+  }
+
+ private:
+  void object(const std::string& pointer) {
+    std::set<std::string> keys;
+    ++at_;
+    for (skip_space(); text_[at_] != '}'; skip_space()) {
+      if (text_[at_] == ',') {
+        ++at_;
+        skip_space();
+      }
+      const std::size_t key_at = at_;
+      const std::string key = string();
+      const std::string child = pointer + "/" + pointer_part(key);
+      if (!keys.insert(key).second && duplicate_.empty()) {
+        duplicate_ = child;
+        offsets_[child + "#"] = key_at;
+      }
+      offsets_.emplace(child + "#", key_at);
+      skip_space();
+      ++at_;  // the colon
+      value(child);
+    }
+    ++at_;
+  }
+
+  void array(const std::string& pointer) {
+    std::size_t i = 0;
+    ++at_;
+    for (skip_space(); text_[at_] != ']'; skip_space()) {
+      if (text_[at_] == ',') ++at_;
+      value(pointer + "/" + std::to_string(i++));
+    }
+    ++at_;
+  }
+
+  std::string string() {
+    const std::size_t begin = at_++;
+    while (text_[at_] != '"') at_ += text_[at_] == '\\' ? 2 : 1;
+    ++at_;
+    return nlohmann::json::parse(text_.substr(begin, at_ - begin)).get<std::string>();
+  }
+
+  void skip_space() {
+    while (at_ < text_.size() && std::string_view(" \t\r\n").find(text_[at_]) != std::string_view::npos)
+      ++at_;
+  }
+
+  const std::string& text_;
+  std::unordered_map<std::string, std::size_t>& offsets_;
+  std::string& duplicate_;
+  std::size_t at_ = 0;
+  int depth_ = 0;
+};
+
+/// nlohmann's message without its own name, number and position.
+std::string plain_reason(const std::string& what) {
+  const std::size_t colon = what.find(": ");
+  std::string reason = colon == std::string::npos ? what : what.substr(colon + 2);
+  for (const char* mark : {"syntax error while parsing ", "parsing "}) {
+    const std::size_t at = reason.find(mark);
+    if (at == 0) reason.erase(0, std::string_view(mark).size());
+  }
+  const std::size_t last_read = reason.find("; last read: ");
+  if (last_read != std::string::npos) {  // keeps "expected ..." where there is one
+    const std::size_t expected = reason.find("; expected ", last_read);
+    reason = reason.substr(0, last_read) + (expected == std::string::npos ? "" : reason.substr(expected));
+  }
+  std::replace(reason.begin(), reason.end(), '\n', ' ');
+  return reason;
+}
+
+}  // namespace
+
+TextPosition position_in(const std::string& text, std::size_t offset) {
+  TextPosition p;
+  for (std::size_t i = 0; i < std::min(offset, text.size()); ++i) {
+    if (text[i] == '\n') {
+      ++p.line;
+      p.column = 1;
+    } else if ((static_cast<unsigned char>(text[i]) & 0xC0u) != 0x80u) {  // not a continuation byte of UTF-8
+      ++p.column;
+    }
+  }
+  return p;
+}
+
+std::string pointer_part(const std::string& key) {
+  std::string out;
+  for (const char c : key) {
+    if (c == '~')
+      out += "~0";
+    else if (c == '/')
+      out += "~1";
+    else
+      out += c;
+  }
+  return out;
+}
+
+JsonIndex::JsonIndex(const std::string& text) {
+  Walker(text, offsets_, duplicate_).value("");
+}
+
+std::size_t JsonIndex::offset(const std::string& pointer) const {
+  const auto it = offsets_.find(pointer);
+  return it == offsets_.end() ? 0 : it->second;
+}
+
+JsonText::JsonText(std::string text, std::string file) : text_(std::move(text)), file_(std::move(file)) {
+  const auto at = [&](std::size_t offset) {
+    const TextPosition p = position_in(text_, offset);
+    return file_ + ":" + std::to_string(p.line) + ":" + std::to_string(p.column) + ": ";
+  };
+  try {
+    root_ = nlohmann::json::parse(text_);
+  } catch (const nlohmann::json::parse_error& e) {
+    throw InputError(at(e.byte > 0 ? e.byte - 1 : 0) + "not JSON: " + plain_reason(e.what()));
+  } catch (const nlohmann::json::exception& e) {
+    throw InputError(file_ + ": not usable JSON: " + plain_reason(e.what()));
+  }
+  try {
+    index_ = std::make_unique<JsonIndex>(text_);
+  } catch (const InputError& e) {
+    throw InputError(file_ + ": " + e.what());
+  }
+  if (!index_->duplicate().empty())
+    throw InputError(where(index_->duplicate() + "#") + ": the key " + index_->duplicate() +
+                     " occurs twice: keep one");
+}
+
+std::string JsonText::where(const std::string& pointer) const {
+  const TextPosition p = position_in(text_, index_->offset(pointer));
+  return file_ + ":" + std::to_string(p.line) + ":" + std::to_string(p.column);
+}
+
+}  // namespace lrb

@@ -1,0 +1,133 @@
+"use strict";
+const data = JSON.parse(document.getElementById("data").textContent);
+const byId = (id) => document.getElementById(id);
+const style = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
+
+// ---- the frames: one index, and everybody who wants to know when it changes
+let current = 0;
+const listeners = [];
+function show(index) {
+  current = Math.max(0, Math.min(data.frames.length - 1, index));
+  for (const listener of listeners) listener(data.frames[current], current);
+}
+
+function startPlayer() {
+  const image = byId("frame"), link = byId("frame-link"), scrub = byId("scrub"), play = byId("play");
+  const images = data.frames.map((f) => { const i = new Image(); i.src = f.src; return i; }); // decoded ahead of use
+  scrub.max = data.frames.length - 1;
+  listeners.push((frame, index) => {
+    image.src = images[index].src;
+    image.alt = frame.caption;
+    if (frame.file) link.href = frame.file; else link.removeAttribute("href");
+    byId("caption").textContent = frame.caption;
+    byId("count").textContent = `${index + 1} / ${data.frames.length}`;
+    scrub.value = index;
+    history.replaceState(null, "", `#${index + 1}`);
+  });
+
+  let timer = null;
+  const pause = () => { clearInterval(timer); timer = null; play.classList.remove("playing"); play.setAttribute("aria-label", "Play"); };
+  const start = () => {
+    if (current === data.frames.length - 1) show(0);
+    clearInterval(timer);
+    timer = setInterval(() => { show(current + 1); if (current === data.frames.length - 1) pause(); }, 1000 / byId("speed").value);
+    play.classList.add("playing"); play.setAttribute("aria-label", "Pause");
+  };
+  const toggle = () => (timer ? pause() : start());
+  const go = (index) => { pause(); show(index); };
+  play.onclick = toggle;
+  byId("first").onclick = () => go(0);
+  byId("back").onclick = () => go(current - 1);
+  byId("next").onclick = () => go(current + 1);
+  byId("last").onclick = () => go(data.frames.length - 1);
+  byId("speed").onchange = () => { if (timer) start(); };
+  scrub.oninput = () => go(Number(scrub.value));
+  const keys = {
+    ArrowLeft: (e) => go(current - (e.shiftKey ? 10 : 1)), ArrowRight: (e) => go(current + (e.shiftKey ? 10 : 1)),
+    Home: () => go(0), End: () => go(data.frames.length - 1), " ": toggle,
+  };
+  document.addEventListener("keydown", (e) => {
+    if (!keys[e.key] || e.ctrlKey || e.metaKey || e.altKey || e.target.tagName === "SELECT") return;
+    if (e.key === " " && e.target.tagName === "BUTTON") return; // space presses the button that has the focus
+    e.preventDefault();
+    keys[e.key](e);
+  });
+  const asked = parseInt(location.hash.slice(1), 10);
+  show(asked > 0 ? asked - 1 : 0);
+}
+
+// ---- the charts
+/** Marks where the frame on show stands. */
+const cursorPlugin = {
+  id: "cursor",
+  afterDatasetsDraw(chart) {
+    const at = chart.config.options.cursorAt;
+    if (at === undefined || at < 0) return;
+    const { left, right, top, bottom } = chart.chartArea, x = chart.scales.x.getPixelForValue(at);
+    if (x < left - 1 || x > right + 1) return;
+    const c = chart.ctx;
+    c.save(); c.strokeStyle = style("--soft"); c.setLineDash([4, 3]);
+    c.beginPath(); c.moveTo(x, top); c.lineTo(x, bottom); c.stroke(); c.restore();
+  },
+};
+
+function axis(title, log) {
+  return {
+    type: log ? "logarithmic" : "linear", bounds: "data", title: { display: true, text: title, color: style("--soft") },
+    grid: { color: style("--grid"), borderColor: style("--line") }, ticks: { color: style("--soft"), maxRotation: 0, precision: log ? undefined : 0 },
+  };
+}
+
+function nearestFrame(key, value) {
+  let best = -1;
+  data.frames.forEach((f, i) => {
+    if (f[key] >= 0 && (best < 0 || Math.abs(f[key] - value) < Math.abs(data.frames[best][key] - value))) best = i;
+  });
+  return best;
+}
+
+function makeChart(spec, canvas) {
+  const datasets = spec.series.map((s, i) => ({
+    label: s.label, data: s.data, borderColor: style(`--s${i % 7}`), backgroundColor: style(`--s${i % 7}`),
+    borderWidth: 1.8, stepped: spec.stepped ? "before" : false, showLine: !spec.scatter,
+    pointRadius: spec.scatter ? 4 : s.data.length > 80 ? 0 : 2.2, pointHitRadius: 8,
+  }));
+  const chart = new Chart(canvas, {
+    type: spec.scatter ? "scatter" : "line", data: { datasets }, plugins: [cursorPlugin],
+    options: {
+      animation: false, parsing: false, normalized: true, maintainAspectRatio: false,
+      interaction: { mode: spec.scatter ? "nearest" : "index", intersect: false },
+      scales: { x: axis(spec.x, spec.logX), y: { ...axis(spec.y, spec.logY), bounds: "ticks", beginAtZero: !spec.logY } },
+      plugins: {
+        legend: { display: datasets.length > 1, position: "bottom", labels: { color: style("--ink"), boxWidth: 14, boxHeight: 2 } },
+        decimation: { enabled: !spec.scatter, algorithm: "min-max" },
+        tooltip: { callbacks: { title: (items) => (items.length ? `${spec.x} ${items[0].parsed.x.toLocaleString()}` : "") } },
+      },
+      onClick(e) {
+        if (!spec.cursor) return;
+        const frame = nearestFrame(spec.cursor, chart.scales.x.getValueForPixel(e.x));
+        if (frame >= 0) show(frame);
+      },
+    },
+  });
+  if (spec.cursor) listeners.push((frame) => { chart.options.cursorAt = frame[spec.cursor]; chart.draw(); });
+  return chart;
+}
+
+function startCharts() {
+  if (!data.charts.length) return;
+  Chart.defaults.font.family = getComputedStyle(document.body).fontFamily;
+  const base = listeners.length;
+  let charts = [];
+  const draw = () => {
+    charts.forEach((c) => c.destroy());
+    listeners.length = base;
+    charts = data.charts.map((spec, i) => makeChart(spec, byId(`chart-${i}`)));
+    if (data.frames.length) show(current);
+  };
+  draw();
+  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", draw); // colours are read when drawn
+}
+
+if (data.frames.length) startPlayer();
+startCharts();

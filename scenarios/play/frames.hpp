@@ -1,0 +1,37 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "scenarios/play/recording.hpp"
+#include "scenarios/scenario.hpp"
+
+namespace lrb {
+
+/// A recorded run as the renderer sees it; `render` makes one from a trace file, `run` from what it recorded.
+struct Performance {
+  std::string title;
+  std::vector<const LrbRep*> reps;
+  const trace::Trace* trace = nullptr;
+  const std::vector<CollideResult>* results = nullptr;  ///< one a step, or none
+  std::vector<trace::EventId> milestones;
+};
+
+struct DrawnFrame {
+  std::string file;  ///< relative to the output folder
+  std::string caption;
+  trace::EventId event = 0;
+  std::uint32_t step = 0;
+};
+
+struct DrawnFrames {
+  std::vector<DrawnFrame> frames;
+  std::string montage;  ///< relative to the output folder; empty: none
+};
+
+/// Draws into folder/frames/ and, if asked, folder/montage.png. `text` goes into every PNG.
+DrawnFrames draw_frames(const Performance& performance, const FrameSpec& spec, const std::string& folder,
+                        const std::vector<std::pair<std::string, std::string>>& text,
+                        const ProgressReport& progress);
+
+}  // namespace lrb

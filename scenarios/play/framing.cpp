@@ -1,0 +1,77 @@
+#include "scenarios/play/framing.hpp"
+
+#include <algorithm>
+#include <numbers>
+
+#include "render/scene.hpp"
+
+namespace lrb {
+namespace {
+
+/// Of many points, some that span nearly the same: the extreme ones in a few dozen directions.
+std::vector<Eigen::Vector3d> extremes(const std::vector<Eigen::Vector3d>& points) {
+  constexpr int kTurns = 24, kRows = 7;
+  std::vector<Eigen::Vector3d> out;
+  if (points.empty()) return out;
+  for (int row = 0; row < kRows; ++row) {
+    for (int turn = 0; turn < kTurns; ++turn) {
+      const double azimuth = 2 * std::numbers::pi * turn / kTurns;
+      const double elevation = std::numbers::pi * (row - kRows / 2) / (kRows - 1);
+      const Eigen::Vector3d d(std::cos(azimuth) * std::cos(elevation),
+                              std::sin(azimuth) * std::cos(elevation), std::sin(elevation));
+      out.push_back(*std::max_element(points.begin(), points.end(),
+                                      [&](const auto& p, const auto& q) { return p.dot(d) < q.dot(d); }));
+    }
+  }
+  return out;
+}
+
+}  // namespace
+
+Framing frame_sequence(const std::vector<const LrbRep*>& reps, const trace::Trace& trace,
+                       const std::vector<CollideResult>& results) {
+  Framing f;
+  f.dim = reps[0]->dim();
+  for (std::size_t i = 0; i < reps.size(); ++i) {
+    const std::vector<Eigen::Vector3d> body = extremes(body_points(*reps[i], Pose{}));
+    for (const trace::Step& step : trace.steps) {
+      const Pose& pose = i == 0 ? step.pose_a : step.pose_b;
+      for (const Eigen::Vector3d& p : body) f.points.push_back(pose.apply(p));
+    }
+  }
+  for (const CollideResult& result : results)
+    for (const Eigen::Vector3d& p : contact_points(result.regions)) f.contacts.push_back(p);
+  return f;
+}
+
+Camera camera_for(const FrameSpec::View& view, const Framing& framing, double width, double height,
+                  double progress) {
+  using Kind = FrameSpec::Camera;
+  const bool close = view.camera == Kind::contact && !framing.contacts.empty();
+  Camera camera;
+  if (view.camera == Kind::fixed) {
+    camera.eye = view.eye;
+    camera.target = view.target;
+    camera.up = view.up;
+    camera.orthographic = view.orthographic;
+    camera.half_height = (view.eye - view.target).norm() * std::tan(camera.fov_y / 2);
+  } else if (framing.dim == 2) {
+    camera = fit_top(close ? framing.contacts : framing.points, width, height);
+  } else {
+    FitOptions options;
+    options.view = {view.from, view.up};
+    options.orthographic = view.orthographic;
+    Eigen::AlignedBox3d box;
+    for (const Eigen::Vector3d& p : framing.points) box.extend(p);
+    constexpr double kContext = 1.6;  // of the contacts' size around them
+    camera = close ? fit_contact(framing.contacts, box, width, height, options, kContext)
+                   : fit_camera(framing.points, width, height, options);
+    if (view.camera == Kind::orbit)
+      camera = orbit(camera, view.turn_degrees * progress * std::numbers::pi / 180);
+  }
+  camera.half_height /= view.zoom;
+  if (!camera.orthographic) camera.eye = camera.target + (camera.eye - camera.target) / view.zoom;
+  return camera;
+}
+
+}  // namespace lrb

@@ -1,0 +1,201 @@
+#include "scenarios/play/report.hpp"
+
+#include <algorithm>
+
+#include "render/overlay.hpp"
+#include "scenarios/files.hpp"
+#include "scenarios/page/inline_image.hpp"
+#include "trace/counters.hpp"
+#include "trace/hex.hpp"
+#include "trace/names.hpp"
+
+namespace lrb {
+namespace {
+
+std::string vector_text(const Eigen::Vector3d& v) {
+  return "(" + short_number(v.x()) + ", " + short_number(v.y()) + ", " + short_number(v.z()) + ")";
+}
+
+std::string words(Relation r) {
+  std::string out = to_string(r);
+  std::replace(out.begin(), out.end(), '_', ' ');
+  return out;
+}
+
+/// The step with the most to say: the last one.
+const trace::Step* last_step(const trace::Trace& trace) {
+  return trace.steps.empty() || !trace.steps.back().finished ? nullptr : &trace.steps.back();
+}
+
+std::vector<PageNumber> collision_numbers(const Performance& p, const trace::Step& step) {
+  const trace::StepResult& r = step.result;
+  const auto at = "at step " + std::to_string(step.index);
+  std::uint64_t regions = 0, faces = 0;
+  std::string each;
+  for (const LrbRep* rep : p.reps) {
+    regions += rep->region_count();
+    faces += rep->real_face_count();
+    each += (each.empty() ? "" : " + ") + group_digits(rep->real_face_count());
+  }
+  std::vector<PageNumber> out = {{"Relation", words(r.relation), at},
+                                 {"Pairs of faces that meet", group_digits(r.pair_count), at}};
+  if (p.results != nullptr && !p.results->empty())
+    out.push_back({"Contact regions", group_digits(p.results->back().regions.size()), at});
+  out.push_back(
+      {"Face tests", group_digits(r.counters.face_tests),
+       at + "; all pairs would be " +
+           group_digits(std::uint64_t{p.reps[0]->real_simplex_count()} * p.reps[1]->real_simplex_count())});
+  out.push_back(
+      {"Regions opened", group_digits(r.counters.regions_opened), "of " + group_digits(regions) + ", " + at});
+  out.push_back({"Real faces", group_digits(faces), each});
+  return out;
+}
+
+std::vector<PageNumber> wrapper_numbers(const LrbRep& rep) {
+  const std::uint32_t real = rep.real_face_count();
+  return {
+      {"Real faces", group_digits(real), ""},
+      {"Pseudo faces", group_digits(rep.face_count() - real),
+       short_number(static_cast<double>(rep.face_count()) / real) + " faces in all per real one"},
+      {"Outermost wrapper", group_digits(rep.outermost_faces().size()) + " faces", ""},
+      {"Regions", group_digits(rep.region_count()), "in " + std::to_string(rep.layer_count()) + " layers"}};
+}
+
+/// In the complete query only real faces are compared: what hits is a contact, and one curve is enough.
+bool same_as_contacts(const trace::Series& hits, const trace::Chart& chart) {
+  return std::any_of(chart.series.begin(), chart.series.end(),
+                     [&](const trace::Series& s) { return s.name == "contacts" && s.values == hits.values; });
+}
+
+/// Curves of the trace by unit: faces of the wrappers in one chart, counts in the other.
+std::vector<PageChart> charts_of(const trace::Chart& chart, PageCursor cursor, const char* faces_title,
+                                 const char* counts_title, bool stepped) {
+  PageChart faces, counts;
+  faces.title = faces_title;
+  counts.title = counts_title;
+  faces.y_label = "faces";
+  counts.y_label = "number in the step";
+  for (const trace::Series& s : chart.series) {
+    if (s.unit == "ms") continue;
+    if (s.name == "hits" && same_as_contacts(s, chart)) continue;
+    PageChart& target = s.unit == "faces" ? faces : counts;
+    // A body that is not there, or a kind of event that never came, is no curve.
+    if (std::none_of(s.values.begin(), s.values.end(), [](double v) { return v > 0; })) continue;
+    target.series.push_back({std::string(s.name), chart.x, s.values});
+  }
+  std::vector<PageChart> out;
+  for (PageChart* c : {&faces, &counts}) {
+    if (c->series.empty()) continue;
+    c->x_label = std::string(chart.x_name);
+    c->cursor = cursor;
+    c->stepped = stepped;
+    out.push_back(std::move(*c));
+  }
+  return out;
+}
+
+PageTable contact_table(const CollideResult& result, std::uint32_t step) {
+  PageTable t;
+  t.title = "Contact regions at step " + std::to_string(step);
+  t.columns = {"region", "pairs", "curves", "length", "area", "depth", "centroid", "normal, A to B"};
+  constexpr std::size_t kMostRows = 30;
+  for (std::size_t i = 0; i < std::min(result.regions.size(), kMostRows); ++i) {
+    const ContactRegion& r = result.regions[i];
+    const auto closed =
+        std::count_if(r.loops.begin(), r.loops.end(), [](const ContactLoop& l) { return l.closed; });
+    t.rows.push_back({std::to_string(i + 1), group_digits(r.pairs.size()),
+                      std::to_string(closed) + " closed, " +
+                          std::to_string(r.loops.size() - static_cast<std::size_t>(closed)) + " open",
+                      short_number(r.length), short_number(r.area), short_number(r.depth),
+                      vector_text(r.centroid), vector_text(r.normal)});
+  }
+  t.note =
+      "World frame; lengths in the meshes' unit. Depth is an estimate: how far B must move along the normal "
+      "to leave the region.";
+  if (result.regions.size() > kMostRows)
+    t.note += " " + std::to_string(result.regions.size() - kMostRows) + " more are left out here.";
+  return t;
+}
+
+PageTable steps_table(const trace::Trace& trace) {
+  PageTable t;
+  t.title = "Every time step";
+  t.columns = {"step", "relation", "pairs", "face tests", "refinements", "fingerprint"};
+  for (const trace::Step& s : trace.steps)
+    t.rows.push_back({std::to_string(s.index), words(s.result.relation), group_digits(s.result.pair_count),
+                      group_digits(s.result.counters.face_tests), group_digits(s.result.counters.refinements),
+                      trace::to_hex(s.result.fingerprint)});
+  t.note = "The fingerprint is FNV-1a 64 over the sorted pairs: equal answers, equal fingerprints.";
+  return t;
+}
+
+void add_frames(Page& page, const DrawnFrames& drawn, const std::string& folder) {
+  std::vector<PngBytes> pngs;
+  for (const DrawnFrame& f : drawn.frames) {
+    const std::string bytes = read_text(folder + "/" + f.file);
+    pngs.emplace_back(bytes.begin(), bytes.end());
+  }
+  InlinedImages images = inline_pngs(pngs);
+  page.frames_note = images.note;
+  for (std::size_t i = 0; i < drawn.frames.size(); ++i) {
+    const DrawnFrame& f = drawn.frames[i];
+    page.frames.push_back({std::move(images.uris[i]), f.caption, f.file, static_cast<double>(f.event),
+                           static_cast<double>(f.step)});
+  }
+}
+
+void add_links(Page& page, const DrawnFrames& drawn, const ReportText& text) {
+  page.links.push_back({text.trace_file, text.trace_file,
+                        "every event; drag it onto ui.perfetto.dev or chrome://tracing to walk through it"});
+  page.links.push_back({"summary.json", "summary.json", "totals, statistics and every time step as JSON"});
+  if (!drawn.montage.empty())
+    page.links.push_back({drawn.montage, drawn.montage, "panels (a), (b), (c), ... as one picture"});
+  if (!drawn.frames.empty())
+    page.links.push_back(
+        {"frames/", "frames/", std::to_string(drawn.frames.size()) + " full pictures (PNG)"});
+}
+
+}  // namespace
+
+Page run_page(const Performance& p, const DrawnFrames& drawn, const std::string& folder,
+              const ReportText& text) {
+  Page page;
+  page.title = text.title;
+  page.purpose = text.purpose;
+  page.command = text.command;
+  const bool two = p.reps.size() == 2;
+  if (const trace::Step* step = last_step(*p.trace); two && step != nullptr) {
+    page.verdict = words(step->result.relation);
+    page.numbers = collision_numbers(p, *step);
+  } else if (!two) {
+    page.numbers = wrapper_numbers(*p.reps[0]);
+  }
+  if (two && p.trace->header.request.recursion != Recursion::complete)
+    page.purpose += " (The paper's recursion was asked for: it can miss contacts.)";
+  if (!text.mismatches.empty()) {
+    PageTable t;
+    t.title = "Not as expected";
+    t.columns = {"expectation"};
+    for (const std::string& m : text.mismatches) t.rows.push_back({m});
+    page.tables.push_back(std::move(t));
+    page.verdict = "not as expected";
+  }
+  add_frames(page, drawn, folder);
+  if (p.trace->steps.size() > 1)
+    page.charts = charts_of(trace::chart_over_steps(*p.trace), PageCursor::step,
+                            "Largest wrappers, step by step", "Work and answer, step by step", false);
+  for (PageChart& c : charts_of(trace::chart_over_events(*p.trace), PageCursor::event,
+                                two ? "Wrappers, event by event" : "The wrapper, event by event",
+                                two ? "Work and answer, event by event" : "Refinements", true))
+    page.charts.push_back(std::move(c));
+  if (two && p.results != nullptr && !p.results->empty() && !p.results->back().regions.empty())
+    page.tables.push_back(contact_table(p.results->back(), p.trace->steps.back().index));
+  constexpr std::size_t kMostSteps = 200;
+  if (two && p.trace->steps.size() <= kMostSteps) page.tables.push_back(steps_table(*p.trace));
+  add_links(page, drawn, text);
+  page.footer =
+      "lrbscope " + p.trace->header.lrbscope + ". This page holds all it needs and fetches nothing.";
+  return page;
+}
+
+}  // namespace lrb

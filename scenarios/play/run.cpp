@@ -1,0 +1,56 @@
+#include "scenarios/play/run.hpp"
+
+#include <filesystem>
+
+#include "engine/lrb/lrb_file.hpp"
+#include "scenarios/files.hpp"
+#include "scenarios/play/frames.hpp"
+#include "scenarios/play/report.hpp"
+#include "trace/hex.hpp"
+#include "trace/summary_json.hpp"
+#include "trace/trace_json.hpp"
+
+namespace lrb {
+
+RunOutcome write_run(const Scenario& scenario, const Recording& recording, const std::string& folder,
+                     const std::string& command, const ProgressReport& progress) {
+  make_folder(folder);
+  const std::string trace_file = scenario.gzip ? "trace.json.gz" : "trace.json";
+  std::error_code error;
+  std::filesystem::remove(folder + (scenario.gzip ? "/trace.json" : "/trace.json.gz"),
+                          error);  // of an earlier run
+  trace::save_trace(recording.trace, folder + "/" + trace_file);
+  RunOutcome out;
+  out.notes = recording.notes;
+  out.mismatches = mismatches(scenario, recording);
+  out.summary = trace::summary_json(recording.trace);
+  write_text(folder + "/summary.json", out.summary);
+
+  Performance performance;
+  performance.title = scenario.name;
+  performance.trace = &recording.trace;
+  performance.results = &recording.results;
+  performance.milestones = recording.milestones;
+  for (std::size_t i = 0; i < recording.bodies.size(); ++i) {
+    performance.reps.push_back(&recording.bodies[i].rep);
+    save_lrb(recording.bodies[i].rep, folder + (i == 0 ? "/a.lrb" : "/b.lrb"));
+  }
+  const std::vector<std::pair<std::string, std::string>> text = {
+      {"Software", "lrbscope " + recording.trace.header.lrbscope},
+      {"lrbscope:scenario", scenario.name},
+      {"lrbscope:scenario_hash", trace::to_hex(scenario.hash)},
+  };
+  const DrawnFrames drawn = draw_frames(performance, scenario.frames, folder, text, progress);
+  out.frames = drawn.frames.size();
+  progress("page", 0, 1);
+  const ReportText report{scenario.name, scenario.purpose, command, trace_file, out.mismatches};
+  write_text(folder + "/index.html", page_html(run_page(performance, drawn, folder, report)));
+  return out;
+}
+
+RunOutcome run_scenario(const Scenario& scenario, const std::string& folder, const std::string& command,
+                        const ProgressReport& progress) {
+  return write_run(scenario, record(scenario, progress), folder, command, progress);
+}
+
+}  // namespace lrb

@@ -1,0 +1,178 @@
+#include "scenarios/play/stage.hpp"
+
+#include "render/palette.hpp"
+#include "scenarios/play/moments.hpp"
+#include "trace/names.hpp"
+
+namespace lrb {
+namespace {
+
+trace::Cursor make_cursor(const trace::Trace& trace, const std::vector<const LrbRep*>& reps) {
+  return reps.size() == 1 ? trace::Cursor(trace, *reps[0]) : trace::Cursor(trace, *reps[0], *reps[1]);
+}
+
+std::string relation_words(Relation r) {
+  switch (r) {
+    case Relation::a_inside_b:
+      return "A inside B";
+    case Relation::b_inside_a:
+      return "B inside A";
+    default:
+      return to_string(r);
+  }
+}
+
+std::string counted(std::uint64_t n, const char* one, const char* many) {
+  return group_digits(n) + " " + (n == 1 ? one : many);
+}
+
+}  // namespace
+
+Stage::Stage(const trace::Trace& trace, std::vector<const LrbRep*> reps,
+             const std::vector<CollideResult>& results, const FrameSpec& spec, bool point_out_refined)
+    : trace_(trace),
+      reps_(std::move(reps)),
+      results_(results),
+      spec_(spec),
+      point_out_refined_(point_out_refined),
+      cursor_(make_cursor(trace, reps_)) {}
+
+void Stage::seek(trace::EventId event) {
+  cursor_.seek(event);
+}
+
+bool Stage::at_step_end() const {
+  return cursor_.position() == last_event(trace_, cursor_.step_number());
+}
+
+const CollideResult* Stage::result_here() const {
+  return at_step_end() && cursor_.step_number() < results_.size() ? &results_[cursor_.step_number()]
+                                                                  : nullptr;
+}
+
+trace::Totals Stage::totals() const {
+  const trace::EventId first = cursor_.step()->first_event;
+  return trace::count_events({trace_.events.data() + first, cursor_.position() + std::size_t{1} - first});
+}
+
+std::vector<double> Stage::values_of(Side side) const {
+  const bool tests = spec_.colour_by == FrameSpec::ColourBy::face_tests;
+  if (!tests && spec_.colour_by != FrameSpec::ColourBy::refinements) return {};
+  const trace::EventId first = cursor_.step()->first_event;
+  const trace::FaceCounts counts =
+      trace::count_faces(*reps_[static_cast<std::size_t>(side)], side,
+                         {trace_.events.data() + first, cursor_.position() + std::size_t{1} - first});
+  const std::vector<std::uint32_t>& chosen = tests ? counts.tests : counts.refinements;
+  return {chosen.begin(), chosen.end()};
+}
+
+Scene Stage::scene(bool wrapper) const {
+  std::vector<SceneBody> bodies;
+  const std::vector<double> values[2] = {values_of(Side::a),
+                                         reps_.size() > 1 ? values_of(Side::b) : std::vector<double>()};
+  for (std::size_t i = 0; i < reps_.size(); ++i) {
+    const Side side = static_cast<Side>(i);
+    SceneBody body;
+    body.rep = reps_[i];
+    body.wrapper = wrapper ? &cursor_.wrapper(side) : nullptr;
+    body.pose = cursor_.pose(side);
+    body.face_values = values[i];
+    body.name =
+        reps_.size() == 1 ? reps_[i]->name() : std::string(i == 0 ? "A" : "B") + " " + reps_[i]->name();
+    bodies.push_back(std::move(body));
+  }
+  SceneHighlight highlight;
+  if (wrapper && point_out_refined_)
+    for (const trace::RefinedRegion& r : cursor_.refined())
+      highlight.refining[static_cast<std::size_t>(r.side)].push_back(r.region);
+  if (const auto pair = cursor_.pair_under_test(); wrapper && pair && !at_step_end())
+    highlight.under_test = {pair->simplex_a, pair->simplex_b};
+  if (const CollideResult* result = result_here()) highlight.contacts = result->regions;
+  SceneOptions options;
+  switch (spec_.colour_by) {
+    case FrameSpec::ColourBy::kind:
+      break;
+    case FrameSpec::ColourBy::layer:
+      options.colour_by = ColourBy::layer;
+      break;
+    case FrameSpec::ColourBy::region:
+      options.colour_by = ColourBy::region;
+      break;
+    case FrameSpec::ColourBy::face_tests:
+      options.colour_by = ColourBy::value;
+      break;
+    case FrameSpec::ColourBy::refinements:
+      options.colour_by = ColourBy::value;
+      options.value_name = "refinements";
+      break;
+  }
+  options.explode = spec_.explode;
+  return build_scene(bodies, highlight, options);
+}
+
+std::string Stage::event_text() const {
+  const trace::Event& e = cursor_.event();
+  const std::string side = e.side == Side::a ? "A" : "B";
+  const std::string region =
+      reps_.size() == 1 ? "region " + std::to_string(e.a) : "region " + std::to_string(e.a) + " of " + side;
+  switch (e.kind) {
+    case EventKind::step:
+      return reps_.size() == 1 ? "the outermost wrapper" : "both wrappers are the outermost ones";
+    case EventKind::face_test:
+      return "face test " + std::to_string(e.a) + " against " + std::to_string(e.b) + ": " +
+             std::string(trace::name_of(e.meet));
+    case EventKind::refine:
+      return "refine " + region + ": " + counted(e.b, "face", "faces") + " under it";
+    case EventKind::coarsen:
+      return region + " added";
+    case EventKind::contact:
+      return "contact: face " + std::to_string(e.a) + " of A meets face " + std::to_string(e.b) + " of B";
+    case EventKind::result: {
+      const trace::StepResult& r = cursor_.step()->result;
+      return relation_words(r.relation) + ": " +
+             counted(r.pair_count, "pair of faces meets", "pairs of faces meet");
+    }
+  }
+  return {};
+}
+
+Overlay Stage::overlay(const std::string& title) const {
+  Overlay o;
+  o.title = title;
+  if (reps_.size() > 1) o.title += "  ·  step " + std::to_string(step());
+  o.event = event_text();
+  o.event_colour = palette::event(cursor_.event().kind);
+  const trace::Totals t = totals();
+  if (reps_.size() == 1) {
+    o.counters = {{"wrapper", group_digits(cursor_.boundary_size(Side::a)) + " faces"},
+                  {"refined", group_digits(t.refinements[0] - t.coarsenings[0]) + " of " +
+                                  group_digits(reps_[0]->region_count()) + " regions"}};
+  } else {
+    o.counters = {{"wrapper A", group_digits(cursor_.boundary_size(Side::a))},
+                  {"wrapper B", group_digits(cursor_.boundary_size(Side::b))},
+                  {"refined", group_digits(t.refinements[0]) + " + " + group_digits(t.refinements[1])},
+                  {"face tests", group_digits(t.face_tests)},
+                  {"contacts", group_digits(t.contacts)}};
+  }
+  return o;
+}
+
+std::string Stage::short_caption() const {
+  if (reps_.size() == 1) return counted(cursor_.boundary_size(Side::a), "face", "faces");
+  return "step " + std::to_string(step()) + ": " + event_text();
+}
+
+std::string Stage::caption() const {
+  const trace::Totals t = totals();
+  std::string out = reps_.size() > 1 ? "Step " + std::to_string(step()) + ", event " : "Event ";
+  out += std::to_string(cursor_.position()) + ": " + event_text() + ". ";
+  out += reps_.size() == 1
+             ? "Wrapper: " + group_digits(cursor_.boundary_size(Side::a)) + " faces."
+             : "Wrappers: " + group_digits(cursor_.boundary_size(Side::a)) + " + " +
+                   group_digits(cursor_.boundary_size(Side::b)) + " faces; " +
+                   counted(t.face_tests, "face test", "face tests") + ", " +
+                   counted(t.refinements[0] + t.refinements[1], "refinement", "refinements") + ".";
+  return out;
+}
+
+}  // namespace lrb

@@ -1,0 +1,51 @@
+#pragma once
+/// A recorded run on stage: what is to be seen, and what is to be said, after any of its events.
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/query/collide.hpp"
+#include "render/scene.hpp"
+#include "scenarios/scenario.hpp"
+#include "trace/counters.hpp"
+#include "trace/cursor.hpp"
+
+namespace lrb {
+
+class Stage {
+ public:
+  /// `results`: one a step, for contact regions; may be empty. All must outlive the stage.
+  Stage(const trace::Trace& trace, std::vector<const LrbRep*> reps, const std::vector<CollideResult>& results,
+        const FrameSpec& spec, bool point_out_refined);
+
+  void seek(trace::EventId event);
+
+  /// `wrapper` false: the bodies alone.
+  Scene scene(bool wrapper = true) const;
+  /// The text of a frame; no key or scale.
+  Overlay overlay(const std::string& title) const;
+  /// The same in one sentence, for the page.
+  std::string caption() const;
+  /// In a few words, for a panel of a montage.
+  std::string short_caption() const;
+  std::uint32_t step() const { return cursor_.step()->index; }
+  Pose pose(Side side) const { return cursor_.pose(side); }
+  const std::vector<const LrbRep*>& reps() const { return reps_; }
+
+ private:
+  bool at_step_end() const;
+  const CollideResult* result_here() const;  ///< the step's answer, once its last event has come
+  std::vector<double> values_of(Side side) const;
+  std::string event_text() const;
+  trace::Totals totals() const;  ///< of the step so far
+
+  const trace::Trace& trace_;
+  std::vector<const LrbRep*> reps_;
+  const std::vector<CollideResult>& results_;
+  const FrameSpec& spec_;
+  bool point_out_refined_;  ///< frames follow refinements, so that the last one is news
+  trace::Cursor cursor_;
+};
+
+}  // namespace lrb

@@ -1,0 +1,177 @@
+#include "scenarios/scenario.hpp"
+
+#include <algorithm>
+#include <filesystem>
+#include <numbers>
+
+#include "engine/error.hpp"
+#include "engine/lrb/fnv.hpp"
+#include "scenarios/json/json_node.hpp"
+#include "scenarios/json/suggest.hpp"
+#include "scenarios/scenario_frames.hpp"
+#include "scenarios/scenario_motion.hpp"
+#include "trace/hex.hpp"
+
+namespace lrb {
+namespace {
+
+constexpr std::uint64_t kAnySeed =
+    std::numeric_limits<std::int64_t>::max();  // what every JSON reader can hold
+
+BuildOptions read_build(const JsonNode& node, std::uint64_t seed) {
+  node.object({"patch_interior", "max_outer_faces", "seed"});
+  BuildOptions o;
+  o.seed = seed;
+  if (const auto n = node.get("patch_interior"))
+    o.patch_interior = static_cast<std::uint32_t>(n->integer(1, 1000));
+  if (const auto n = node.get("max_outer_faces"))
+    o.max_outer_faces = static_cast<std::uint32_t>(n->integer(4, 1000));
+  if (const auto n = node.get("seed")) o.seed = n->integer(0, kAnySeed);
+  return o;
+}
+
+GeneratorValues read_parameters(const JsonNode& node, const Generator& generator) {
+  std::vector<std::string> known;
+  for (const GeneratorParameter& p : generator.parameters) known.emplace_back(p.name);
+  node.object(known);
+  GeneratorValues values;
+  for (const GeneratorParameter& p : generator.parameters) {
+    const auto n = node.get(p.name);
+    if (!n) continue;
+    values[p.name] = p.whole ? static_cast<double>(n->integer(static_cast<std::uint64_t>(p.least),
+                                                              static_cast<std::uint64_t>(p.most)))
+                             : n->number(p.least, p.most);
+  }
+  return values;
+}
+
+BodySpec read_body(const JsonNode& node, const std::filesystem::path& folder, std::uint64_t seed) {
+  node.object({"file", "generator", "parameters", "build", "pose"});
+  BodySpec body;
+  body.build.seed = seed;
+  if (node.has("file") == node.has("generator")) node.fail("expected either \"file\" or \"generator\"");
+  if (const auto file = node.get("file")) {
+    if (node.has("parameters")) node.fail_key("parameters", "only a generator has parameters: remove it");
+    if (file->string().empty()) file->fail("expected the name of a mesh or .lrb file");
+    body.file = (folder / file->string()).lexically_normal().string();
+  } else {
+    std::vector<std::pair<std::string, const Generator*>> known;
+    for (const Generator& g : generators()) known.emplace_back(g.name, &g);
+    const Generator* generator = node.at("generator").choice(known);
+    body.generator = generator->name;
+    if (const auto parameters = node.get("parameters"))
+      body.parameters = read_parameters(*parameters, *generator);
+  }
+  if (const auto build = node.get("build")) body.build = read_build(*build, seed);
+  if (const auto pose = node.get("pose")) body.pose = read_pose(*pose);
+  return body;
+}
+
+std::vector<BodySpec> read_bodies(const JsonNode& node, Show show, const std::filesystem::path& folder,
+                                  std::uint64_t seed) {
+  node.object({"a", "b"});
+  std::vector<BodySpec> bodies = {read_body(node.at("a"), folder, seed)};
+  if (show == Show::collision)
+    bodies.push_back(read_body(node.at("b"), folder, seed));
+  else if (node.has("b"))
+    node.fail_key("b", "a scenario that shows a refinement or a construction has body a only: remove it");
+  return bodies;
+}
+
+CollideRequest read_query(const JsonNode& node) {
+  node.object({"mode", "recursion", "wrapper", "contacts", "interiors_overlap"});
+  CollideRequest r;
+  if (const auto n = node.get("mode"))
+    r.mode = n->choice<Mode>({{"all", Mode::all_pairs}, {"first", Mode::first_pair}});
+  if (const auto n = node.get("recursion"))
+    r.recursion = n->choice<Recursion>({{"complete", Recursion::complete},
+                                        {"paper", Recursion::paper},
+                                        {"paper_strict", Recursion::paper_strict}});
+  if (const auto n = node.get("wrapper"))
+    r.wrapper = n->choice<WrapperMode>(
+        {{"regularised", WrapperMode::regularised}, {"unregularised", WrapperMode::unregularised}});
+  r.contacts = r.mode == Mode::all_pairs;
+  if (const auto n = node.get("contacts")) {
+    r.contacts = n->boolean();
+    if (r.contacts && r.mode == Mode::first_pair) n->fail("contacts need \"mode\": \"all\"");
+  }
+  if (const auto n = node.get("interiors_overlap")) r.interiors_overlap = n->boolean();
+  return r;
+}
+
+void read_trace(const JsonNode& node, Scenario& s) {
+  node.object({"clock", "max_events", "gzip"});
+  if (const auto n = node.get("clock"))
+    s.clock = n->choice<trace::Clock>({{"event", trace::Clock::event}, {"wall", trace::Clock::wall}});
+  if (const auto n = node.get("max_events"))
+    s.event_cap = static_cast<std::uint32_t>(n->integer(1, 50'000'000));
+  if (const auto n = node.get("gzip")) s.gzip = n->boolean();
+}
+
+Expectation read_expectation(const JsonNode& node, const JsonText& text) {
+  node.object({"step", "relation", "pairs", "fingerprint"});
+  Expectation e;
+  e.step = static_cast<std::uint32_t>(node.at("step").integer(0, kMaxId));
+  e.place = text.where(node.pointer());
+  if (const auto n = node.get("relation"))
+    e.relation = n->choice<Relation>({{"separate", Relation::separate},
+                                      {"crossing", Relation::crossing},
+                                      {"touching", Relation::touching},
+                                      {"a_inside_b", Relation::a_inside_b},
+                                      {"b_inside_a", Relation::b_inside_a},
+                                      {"undefined", Relation::undefined}});
+  if (const auto n = node.get("pairs")) e.pairs = n->integer(0, kAnySeed);
+  if (const auto n = node.get("fingerprint")) {
+    e.fingerprint = trace::from_hex(n->string());
+    if (!e.fingerprint) n->fail("expected 16 lower-case hexadecimal digits");
+  }
+  return e;
+}
+
+std::string read_name(const JsonNode& node) {
+  const std::string name = node.string();
+  const bool plain = !name.empty() && name.size() <= 64 && std::all_of(name.begin(), name.end(), [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-';
+  });
+  if (!plain) node.fail("expected 1 to 64 letters, digits, - and _: the output folder is named after it");
+  return name;
+}
+
+}  // namespace
+
+Scenario parse_scenario(const std::string& text, const std::string& file) {
+  const JsonText json(text, file);
+  const JsonNode root(json);
+  root.object({"$schema", "name", "purpose", "seed", "show", "bodies", "motion", "query", "trace", "frames",
+               "expect"});
+  Scenario s;
+  if (const auto n = root.get("$schema")) n->string();
+  s.name = read_name(root.at("name"));
+  s.purpose = root.at("purpose").string();
+  if (const auto n = root.get("seed")) s.seed = n->integer(0, kAnySeed);
+  if (const auto n = root.get("show"))
+    s.show = n->choice<Show>({{"collision", Show::collision},
+                              {"refinement", Show::refinement},
+                              {"construction", Show::construction}});
+  s.bodies = read_bodies(root.at("bodies"), s.show, std::filesystem::path(file).parent_path(), s.seed);
+  if (s.show == Show::collision) {
+    s.motion = read_motion(root.at("motion"));
+  } else {
+    for (const char* key : {"motion", "query", "expect"})
+      if (root.has(key))
+        root.fail_key(key, "a refinement or a construction shows one body and asks nothing: remove it");
+  }
+  s.request.contacts = true;
+  if (const auto n = root.get("query")) s.request = read_query(*n);
+  if (const auto n = root.get("trace")) read_trace(*n, s);
+  s.frames.at = s.show == Show::collision ? FrameSpec::At::step : FrameSpec::At::refinement;
+  if (const auto n = root.get("frames")) s.frames = read_frames(*n, s.frames);
+  if (const auto n = root.get("expect"))
+    for (const JsonNode& item : n->items()) s.expect.push_back(read_expectation(item, json));
+  Fnv64 hash;
+  hash.add_bytes(text.data(), text.size());
+  s.hash = hash.value();
+  return s;
+}
+
+}  // namespace lrb

@@ -1,0 +1,11 @@
+#pragma once
+
+#include "scenarios/json/json_node.hpp"
+#include "scenarios/scenario.hpp"
+
+namespace lrb {
+
+/// The "frames" part of a scenario, over `fallback`.
+FrameSpec read_frames(const JsonNode& node, const FrameSpec& fallback);
+
+}  // namespace lrb
