@@ -8,15 +8,16 @@ target_include_directories(lrb_options INTERFACE ${PROJECT_SOURCE_DIR})
 # operation, and its error bounds are derived for that order. With contraction, compilers would disagree.
 target_compile_options(lrb_options INTERFACE -ffp-contract=off)
 
-# gcc 12 is wrong about inlined std::string::replace and operator+ (-Wrestrict, gcc bug 105329) and, with
-# -march=native, about Boost.Multiprecision's integers (-Wstringop-overflow).
+# -Wrestrict of gcc 12 is wrong about inlined std::string::replace and operator+ (gcc bug 105329).
 target_compile_options(lrb_options INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion -Wno-psabi
-                                             $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict -Wno-stringop-overflow>)
+                                             $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>)
 if(LRB_WARNINGS_AS_ERRORS)
   target_compile_options(lrb_options INTERFACE -Werror)
 endif()
 if(LRB_NATIVE)
-  target_compile_options(lrb_options INTERFACE -march=native)
+  # With it gcc 12 misjudges the sizes of Boost.Multiprecision's integers.
+  target_compile_options(lrb_options INTERFACE -march=native $<$<CXX_COMPILER_ID:GNU>:-Wno-stringop-overflow
+                                               -Wno-array-bounds -Wno-maybe-uninitialized>)
 endif()
 if(LRB_SANITIZE)
   target_compile_options(lrb_options INTERFACE -fsanitize=${LRB_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
