@@ -131,6 +131,8 @@ class PatchBuilder {
 
   std::uint16_t layer() const { return static_cast<std::uint16_t>(pass_); }
   void end_pass() {
+    if (complex_.region_count() == regions_) return;
+    regions_ = complex_.region_count();
     ++pass_;
     if (options_.progress) options_.progress(pass_, hull_.triangle_count());
   }
@@ -152,7 +154,8 @@ class PatchBuilder {
   std::vector<bool> frozen_;  ///< (|real faces|) they meet others
   std::vector<Eigen::AlignedBox3d> component_boxes_;
   Mesh polytope_;             ///< empty until planned
-  std::uint32_t pass_ = 0;
+  std::uint32_t pass_ = 0;     ///< the number of the next
+  std::uint32_t regions_ = 0;  ///< before it
 };
 
 }  // namespace

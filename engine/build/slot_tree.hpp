@@ -19,6 +19,8 @@ class SlotTree {
   using Box = Eigen::AlignedBox3d;
 
   explicit SlotTree(const HullMesh& hull);
+  /// Of any slots; `boxes` (slot count) is asked for those only.
+  SlotTree(std::vector<Slot> slots, std::span<const Box> boxes);
 
   /// The slot has a new triangle (not called for slots that become empty: their boxes stay and are ignored by the
   /// caller, who looks at HullMesh::alive()).
