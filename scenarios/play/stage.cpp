@@ -1,5 +1,7 @@
 #include "scenarios/play/stage.hpp"
 
+#include <filesystem>
+
 #include "render/palette.hpp"
 #include "scenarios/play/moments.hpp"
 #include "trace/names.hpp"
@@ -20,6 +22,11 @@ std::string relation_words(Relation r) {
     default:
       return to_string(r);
   }
+}
+
+/// A mesh's name without folder and extension.
+std::string short_name(const LrbRep& rep) {
+  return std::filesystem::path(rep.name()).stem().string();
 }
 
 std::string counted(std::uint64_t n, const char* one, const char* many) {
