@@ -85,7 +85,7 @@ Scene Stage::scene(bool wrapper) const {
     body.pose = cursor_.pose(side);
     body.face_values = values[i];
     body.name =
-        reps_.size() == 1 ? reps_[i]->name() : std::string(i == 0 ? "A" : "B") + " " + reps_[i]->name();
+        reps_.size() == 1 ? short_name(*reps_[i]) : std::string(i == 0 ? "A " : "B ") + short_name(*reps_[i]);
     bodies.push_back(std::move(body));
   }
   SceneHighlight highlight;
