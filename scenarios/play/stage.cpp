@@ -73,7 +73,7 @@ std::vector<double> Stage::values_of(Side side) const {
   return {chosen.begin(), chosen.end()};
 }
 
-Scene Stage::scene(bool wrapper) const {
+Scene Stage::scene(bool wrapper, bool plain) const {
   std::vector<SceneBody> bodies;
   const std::vector<double> values[2] = {values_of(Side::a),
                                          reps_.size() > 1 ? values_of(Side::b) : std::vector<double>()};
@@ -89,10 +89,10 @@ Scene Stage::scene(bool wrapper) const {
     bodies.push_back(std::move(body));
   }
   SceneHighlight highlight;
-  if (wrapper && point_out_refined_)
+  if (wrapper && !plain && point_out_refined_)
     for (const trace::RefinedRegion& r : cursor_.refined())
       highlight.refining[static_cast<std::size_t>(r.side)].push_back(r.region);
-  if (const auto pair = cursor_.pair_under_test(); wrapper && pair && !at_step_end())
+  if (const auto pair = cursor_.pair_under_test(); wrapper && !plain && pair && !at_step_end())
     highlight.under_test = {pair->simplex_a, pair->simplex_b};
   if (const CollideResult* result = result_here()) highlight.contacts = result->regions;
   SceneOptions options;
