@@ -10,8 +10,8 @@
 namespace lrb {
 
 struct BuildOptions {
-  std::uint32_t patch_interior = 16;  ///< interior vertices a patch aims at: small makes the paper's
-                                      ///< recursion cheap, large makes the structure small
+  std::uint32_t patch_interior = 16;   ///< interior vertices a patch aims at: small makes the paper's
+                                       ///< recursion cheap, large makes the structure small
   std::uint32_t max_outer_faces = 20;  ///< aim for the outermost wrapper
   std::uint64_t seed = 1;              ///< of the order in which patches grow
   /// Called after each pass: pass number, faces of the hull, seconds so far. May be empty.

@@ -139,6 +139,7 @@ bool chain_cap_is_clear(const HullLoops& hull, const SlotTree& tree, const Chain
   if (!in_sector(b, hull.start(back), hull.end(hull[back].next), *added.back().a)) return false;
   Eigen::AlignedBox3d box = added.front().box;
   box.extend(added.back().box);
+  for (const Slot s : chain) box.extend(box_of(hull, s));  // another component may lie in the middle
   bool clear = true;
   tree.for_each_in(box, [&](Slot s) {
     if (!clear || !hull.alive(s)) return;

@@ -59,6 +59,8 @@ bool EmbedCheck::cap_is_clear(const Patch& patch, const CapSurface& cap) {
     for (std::size_t j = 0; j < i; ++j)
       if (!added_[i].clear_of(added_[j])) return false;
   add_patch(patch);
+  if (component_boxes_.size() > 1)  // another component may lie in the middle, under the cap and clear of it
+    for (const CheckedTriangle& t : obstacles_) box.extend(t.box);
   gather_hull(patch, cap, box);
   return added_are_clear() && !swallows_component(patch, cap, box);
 }

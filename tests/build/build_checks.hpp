@@ -1,11 +1,12 @@
 #pragma once
 /// What every LRB-rep that a builder makes must be, found out without the builders' own means.
 
-#include <doctest/doctest.h>
-
 #include <array>
 #include <cstdint>
+#include <string>
 #include <vector>
+
+#include <doctest/doctest.h>
 
 #include "engine/build/build.hpp"
 #include "engine/exact/simplex_test.hpp"
@@ -14,7 +15,8 @@
 
 namespace lrb::test {
 
-/// Pairs of simplices, at least one of them of a pseudo face, that meet in more than they share: all against all.
+/// Pairs of simplices, at least one of them of a pseudo face, that meet in more than they share: all against
+/// all.
 inline std::uint64_t bad_pairs_by_brute_force(const LrbRep& rep) {
   std::uint64_t bad = 0;
   for (SimplexId s = 0; s < rep.simplex_count(); ++s) {
@@ -39,7 +41,8 @@ inline void check_valid(const LrbRep& rep, std::uint32_t states = 20) {
   options.wrapper_states = states;
   const ValidateReport report = validate(rep, options);
   CAPTURE(rep.name());
-  if (!report.violations.empty()) CAPTURE(report.violations.front());
+  const std::string first_violation = report.violations.empty() ? "" : report.violations.front();
+  CAPTURE(first_violation);
   CHECK(report.valid);
   CHECK(report.flat_pairs == 0);  // the builders put every lid strictly in front
 }

@@ -1,6 +1,6 @@
-#include <doctest/doctest.h>
-
 #include <cmath>
+
+#include <doctest/doctest.h>
 
 #include "engine/error.hpp"
 #include "tests/build/build_checks.hpp"
@@ -21,10 +21,17 @@ Mesh coast(int corners) {
 }
 
 TEST_CASE("2D bodies: valid, embedded by brute force, few outer segments") {
-  const Mesh meshes[] = {circle(64),  star(7),     gear(16),
-                         comb_2d(6),  l_shape_2d(), ring_2d(40),
-                         coast(90),   coast(400),  several({coast(90), translated(star(9), {2.2, 1.5, 0})}),
-                         several({circle(40, 3), turned_inside_out(circle(30, 2)), star(5)})};
+  const Mesh meshes[] = {circle(64),
+                         star(7),
+                         gear(16),
+                         comb_2d(6),
+                         l_shape_2d(),
+                         ring_2d(40),
+                         coast(90),
+                         coast(400),
+                         several({coast(90), translated(star(9), {2.2, 1.5, 0})}),
+                         several({circle(40, 3), turned_inside_out(circle(30, 2)), star(5)}),
+                         several({comb_2d(4), translated(circle(12, 0.2), {1.5, 1.5, 0})})};
   for (const Mesh& mesh : meshes) {
     CAPTURE(mesh.name);
     CAPTURE(mesh.face_count());
@@ -53,9 +60,11 @@ TEST_CASE("chains of every length") {
 }
 
 TEST_CASE("outlines that cross or touch themselves") {
-  const Mesh bow = polygon({{0, 0}, {4, 2}, {4, 0}, {0, 3}, {-1, 2}, {-1, 1}, {-2, 2}, {-3, 1}, {-2, 0}, {-1, -1}});
+  const Mesh bow =
+      polygon({{0, 0}, {4, 2}, {4, 0}, {0, 3}, {-1, 2}, {-1, 1}, {-2, 2}, {-3, 1}, {-2, 0}, {-1, -1}});
   const Mesh overlap = several({circle(40), translated(circle(40), {1, 0.1, 0})});
-  const Mesh beside = several({polygon({{0, 0}, {1, 0}, {1, 1}, {0, 1}}), polygon({{1, 0}, {2, 0}, {2, 1}, {1, 1}})});
+  const Mesh beside =
+      several({polygon({{0, 0}, {1, 0}, {1, 1}, {0, 1}}), polygon({{1, 0}, {2, 0}, {2, 1}, {1, 1}})});
   for (const Mesh& mesh : {bow, overlap, beside}) {
     const LrbRep rep = build_lrb(mesh);
     check_valid(rep);

@@ -1,7 +1,7 @@
-#include <doctest/doctest.h>
-
 #include <map>
 #include <random>
+
+#include <doctest/doctest.h>
 
 #include "engine/build/closing.hpp"
 #include "engine/build/convex_hull.hpp"
@@ -52,7 +52,9 @@ TEST_CASE("there is no convex hull of points in a plane") {
   CHECK(convex_hull(random_points(3, 1, {1, 1, 1})).empty());
 }
 
-TEST_CASE("the outermost polytope is closed, has few faces, holds all points and is not much larger than their hull") {
+TEST_CASE(
+    "the outermost polytope is closed, has few faces, holds all points and is not much larger than their "
+    "hull") {
   struct {
     Mesh mesh;
     double ratio;  // a measured bound
@@ -83,8 +85,8 @@ TEST_CASE("the outermost polytope of flat sets, single points and huge coordinat
 }
 
 TEST_CASE("the convex outline keeps points in the middle of its sides and turns left") {
-  const std::vector<Vector3> points = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {2, 1, 0}, {2, 2, 0}, {1, 2, 0},
-                                       {0, 2, 0}, {0, 1, 0}, {1, 1, 0}, {0, 0, 0}};
+  const std::vector<Vector3> points = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {2, 1, 0}, {2, 2, 0},
+                                       {1, 2, 0}, {0, 2, 0}, {0, 1, 0}, {1, 1, 0}, {0, 0, 0}};
   const auto outline = convex_outline(points);
   CHECK(outline == std::vector<std::uint32_t>{0, 1, 2, 3, 4, 5, 6, 7});
   for (int round = 0; round < 20; ++round) {
@@ -92,8 +94,8 @@ TEST_CASE("the convex outline keeps points in the middle of its sides and turns 
     const auto corners = convex_outline(cloud);
     for (std::size_t i = 0; i < corners.size(); ++i)
       for (const Vector3& p : cloud)
-        REQUIRE(exact::orient2d(cloud[corners[i]].data(), cloud[corners[(i + 1) % corners.size()]].data(), p.data()) >=
-                0);
+        REQUIRE(exact::orient2d(cloud[corners[i]].data(), cloud[corners[(i + 1) % corners.size()]].data(),
+                                p.data()) >= 0);
   }
   CHECK(convex_outline(random_points(10, 1, {1, 0, 0})).size() < 3);
 }

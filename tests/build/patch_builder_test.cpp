@@ -9,19 +9,21 @@ namespace lrb::test {
 namespace {
 
 TEST_CASE("small bodies: valid, embedded by brute force, few outer faces") {
-  const Mesh meshes[] = {tetrahedron(),
-                         box(),
-                         quad_box(),
-                         l_shape(),
-                         comb(5),
-                         icosphere(2),
-                         bumpy_sphere(3, 1, 0.4),
-                         uv_sphere(16, 8),
-                         bowl(16, 8),
-                         torus(16, 8),
-                         quad_torus(16, 8),
-                         voxels(6, 6, 3, [](int x, int y, int z) { return z == 0 || (x / 2 + y) % 3 == 0; }, true),
-                         revolve({{0, -1}, {1, -1}, {0.2, 0}, {1, 1}, {0, 1}}, 24)};
+  const Mesh meshes[] = {
+      tetrahedron(),
+      box(),
+      quad_box(),
+      l_shape(),
+      comb(5),
+      icosphere(2),
+      bumpy_sphere(3, 1, 0.4),
+      uv_sphere(16, 8),
+      bowl(16, 8),
+      torus(16, 8),
+      quad_torus(16, 8),
+      voxels(
+          6, 6, 3, [](int x, int y, int z) { return z == 0 || (x / 2 + y) % 3 == 0; }, true),
+      revolve({{0, -1}, {1, -1}, {0.2, 0}, {1, 1}, {0, 1}}, 24)};
   for (const Mesh& mesh : meshes) {
     CAPTURE(mesh.name);
     if (!check_mesh(mesh).buildable()) continue;
@@ -73,7 +75,8 @@ TEST_CASE("polygons are covered whole: no face of the mesh borders two cells") {
 }
 
 TEST_CASE("several components share one outermost wrapper") {
-  const Mesh apart = several({icosphere(2), translated(icosphere(2), {3, 0, 0}), translated(torus(12, 8), {0, 4, 1})});
+  const Mesh apart =
+      several({icosphere(2), translated(icosphere(2), {3, 0, 0}), translated(torus(12, 8), {0, 4, 1})});
   const Mesh small_beside_large = several({icosphere(3, 10), translated(icosphere(2, 0.3), {10.5, 0, 0})});
   for (const Mesh& mesh : {apart, small_beside_large}) {
     const LrbRep rep = build_lrb(mesh);
@@ -85,8 +88,8 @@ TEST_CASE("several components share one outermost wrapper") {
 }
 
 TEST_CASE("voids have regions of their own, and a solid in a void has its wrapper there") {
-  const Mesh mesh =
-      several({icosphere(3, 3), turned_inside_out(icosphere(3, 2)), translated(icosphere(2, 0.5), {0.7, 0, 0})});
+  const Mesh mesh = several(
+      {icosphere(3, 3), turned_inside_out(icosphere(3, 2)), translated(icosphere(2, 0.5), {0.7, 0, 0})});
   const LrbRep rep = build_lrb(mesh);
   check_keeps_mesh(rep, mesh);
   check_valid(rep);
@@ -97,6 +100,17 @@ TEST_CASE("voids have regions of their own, and a solid in a void has its wrappe
   for (const FaceId f : rep.outermost_faces())
     for (const VertexId v : rep.face(f)) CHECK(rep.vertices()[v].norm() > 2.9);
   check_valid(build_lrb(box_with_void()));
+}
+
+/// Once a cap over the bowl's hollow was only checked against components in the cap's own box, so that a
+/// component deep in the hollow came to lie in a region that knew nothing of it: crossing faces, negative
+/// volumes.
+TEST_CASE("a component in another one's hollow is not buried under a cap") {
+  const Mesh ball_in_bowl = several({bowl(24, 10, 0.1), translated(icosphere(1, 0.1), {0.1, 0, -0.3})});
+  const LrbRep rep = build_lrb(ball_in_bowl);
+  check_keeps_mesh(rep, ball_in_bowl);
+  check_valid(rep);
+  CHECK(bad_pairs_by_brute_force(rep) == 0);
 }
 
 TEST_CASE("components that touch or cross: new faces still meet nothing") {

@@ -1,9 +1,9 @@
 #include "engine/build/patch_grow.hpp"
 
-#include <doctest/doctest.h>
-
 #include <algorithm>
 #include <set>
+
+#include <doctest/doctest.h>
 
 #include "tests/support/shapes.hpp"
 

@@ -1,18 +1,18 @@
 #include "engine/build/placement.hpp"
 
-#include <doctest/doctest.h>
-
-#include <Eigen/LU>
 #include <limits>
 #include <random>
+
+#include <Eigen/LU>
+#include <doctest/doctest.h>
 
 namespace lrb {
 namespace {
 
 using Vector3 = Eigen::Vector3d;
 
-/// The nearest of the points that are nearest to the target on the target itself, on a plane, on a line of two planes
-/// or at a corner of three, and that all half-spaces hold.
+/// The nearest of the points that are nearest to the target on the target itself, on a plane, on a line of
+/// two planes or at a corner of three, and that all half-spaces hold.
 double distance_by_brute_force(const Vector3& target, const std::vector<HalfSpace>& hs) {
   double best = std::numeric_limits<double>::infinity();
   const auto consider = [&](const Vector3& p) {
