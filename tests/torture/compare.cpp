@@ -130,12 +130,16 @@ class Comparison {
                got + ", interiors_overlap " + to_string(all_.interiors_overlap) + " is wrong");
   }
 
-  static bool is_finite(const ContactRegion& r) {
-    bool finite = std::isfinite(r.length) && std::isfinite(r.area) && std::isfinite(r.depth) &&
-                  r.centroid.allFinite() && r.normal.allFinite();
+  /// Areas of bodies over 1e150 in size, and lengths near 1e308, are no doubles: infinity is their right
+  /// value.
+  bool is_sound(const ContactRegion& r) const {
+    bool sound = r.centroid.allFinite() && r.normal.allFinite();
+    const Eigen::AlignedBox3d box = box_of(r);
+    const bool large = box.max().cwiseAbs().cwiseMax(box.min().cwiseAbs()).maxCoeff() > 1e140;
+    for (const double x : {r.length, r.area, r.depth}) sound &= large ? !std::isnan(x) : std::isfinite(x);
     for (const ContactLoop& loop : r.loops)
-      for (const auto& p : loop.points) finite &= p.allFinite();
-    return finite;
+      for (const auto& p : loop.points) sound &= p.allFinite();
+    return sound;
   }
 
   /// Records for all pairs, regions that share them out, numbers that are numbers, centroids where the bodies
@@ -149,7 +153,7 @@ class Comparison {
     for (const ContactRegion& r : all_.regions) {
       seen.insert(seen.end(), r.pairs.begin(), r.pairs.end());
       const double n = r.normal.norm();
-      if (!is_finite(r)) complain(t_.wrong_lists, "a contact region with a number that is not finite");
+      if (!is_sound(r)) complain(t_.wrong_lists, "a contact region with a number that is not finite");
       if (r.area < 0 || r.length < 0 || r.depth < 0 || (n != 0 && std::abs(n - 1) > 1e-9))
         complain(t_.wrong_lists, "a contact region with an impossible number");
       if (!near_its_points(r)) complain(t_.wrong_lists, "a contact region whose centroid is off");
@@ -160,13 +164,19 @@ class Comparison {
     if (!each_once) complain(t_.wrong_lists, "contact regions do not share out the pairs");
   }
 
-  bool near_its_points(const ContactRegion& r) const {
+  Eigen::AlignedBox3d box_of(const ContactRegion& r) const {
     Eigen::AlignedBox3d box;
     for (const std::uint32_t i : r.pairs)
       for (int k = 0; k < all_.contacts[i].corner_count; ++k) box.extend(all_.contacts[i].corners[k].x);
-    const Eigen::Vector3d slack = 1e-9 * (box.max().cwiseAbs().cwiseMax(box.min().cwiseAbs()) + box.sizes());
-    return ((r.centroid - box.min() + slack).array() >= 0).all() &&
-           ((box.max() - r.centroid + slack).array() >= 0).all();
+    return box;
+  }
+
+  bool near_its_points(const ContactRegion& r) const {
+    const Eigen::AlignedBox3d box = box_of(r);
+    Eigen::Vector3d slack = 1e-9 * box.max().cwiseAbs().cwiseMax(box.min().cwiseAbs());
+    slack.array() += 1e-320;  // denormals are rounded to their last place
+    return (r.centroid.array() >= (box.min() - slack).array()).all() &&
+           (r.centroid.array() <= (box.max() + slack).array()).all();
   }
 
   /// Asks about some pairs: half of them from the answer, the others whose boxes meet but are not in it.
