@@ -9,6 +9,11 @@ namespace lrb {
 /// tessellation.
 inline constexpr double kFrameCornerWeight = 1e-12;
 
+/// A node's axes, rounded to float, must be orthonormal to this (largest row sum; without unit): 8 u, u =
+/// 2^-24, of which rounding uses 5.2. Larger: kKernelRounding does not hold; smaller: nodes lose their own
+/// axes.
+inline constexpr double kFrameDefect = 0x1p-21;
+
 /// Growth of quantized boxes, relative to the box's coordinates: covers the rounding of three products, two
 /// sums and one difference in double (under 2^-50) and of the decoding in float (under 2^-22). Smaller: a box
 /// could lose a corner by a rounding error; larger: more pairs to test.
@@ -29,6 +34,9 @@ inline constexpr float kKernelTiny = 0x1p-120f;
 /// Rounding of world coordinates and of the relative pose, relative to the largest term that occurs: 4 u for
 /// each body's coordinates and 16 u for the relative pose, u = 2^-53.
 inline constexpr double kWorldRounding = 0x1p-48;
+/// World coordinates below this size are rounded as if they were this large: it is the least normal double.
+/// Unit: the mesh's. Smaller: contacts of bodies made of denormals could be missed.
+inline constexpr double kWorldUnderflow = 0x1p-1022;
 /// Safety on the sum of the pose's errors, for the change of norms; see set_up_kernel().
 inline constexpr double kPoseSafety = 4;
 
