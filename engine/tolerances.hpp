@@ -9,6 +9,11 @@ namespace lrb {
 /// tessellation.
 inline constexpr double kFrameCornerWeight = 1e-12;
 
+/// A node's axes, rounded to float, must be orthonormal to this (largest row sum; without unit): 8 u, u =
+/// 2^-24, of which rounding uses 5.2. Larger: kKernelRounding does not hold; smaller: nodes lose their own
+/// axes.
+inline constexpr double kFrameDefect = 0x1p-21;
+
 /// Growth of quantized boxes, relative to the box's coordinates: covers the rounding of three products, two
 /// sums and one difference in double (under 2^-50) and of the decoding in float (under 2^-22). Smaller: a box
 /// could lose a corner by a rounding error; larger: more pairs to test.
@@ -29,38 +34,46 @@ inline constexpr float kKernelTiny = 0x1p-120f;
 /// Rounding of world coordinates and of the relative pose, relative to the largest term that occurs: 4 u for
 /// each body's coordinates and 16 u for the relative pose, u = 2^-53.
 inline constexpr double kWorldRounding = 0x1p-48;
+/// World coordinates below this size are rounded as if they were this large: it is the least normal double.
+/// Unit: the mesh's. Smaller: contacts of bodies made of denormals could be missed.
+inline constexpr double kWorldUnderflow = 0x1p-1022;
 /// Safety on the sum of the pose's errors, for the change of norms; see set_up_kernel().
 inline constexpr double kPoseSafety = 4;
 
 /// The builders. None of these decides whether an LRB-rep is right: what they propose is confirmed exactly.
 
-/// Squared sine of the angle under which planes count as parallel when a new vertex is placed (10^-7 rad). Larger:
-/// corners between flat neighbours are not found; smaller: they are found far off, where rounding puts them.
+/// Squared sine of the angle under which planes count as parallel when a new vertex is placed (10^-7 rad).
+/// Larger: corners between flat neighbours are not found; smaller: they are found far off, where rounding
+/// puts them.
 inline constexpr double kParallelSineSq = 1e-14;
-/// Distance that a new vertex keeps from the planes it must be in front of, relative to the radius of the star it
-/// replaces. Smaller: exact confirmation fails on rounding; larger: hulls swell, layer by layer.
+/// Distance that a new vertex keeps from the planes it must be in front of, relative to the radius of the
+/// star it replaces. Smaller: exact confirmation fails on rounding; larger: hulls swell, layer by layer.
 inline constexpr double kPlacementMargin = 1e-6;
-/// Slack of the placement's own comparisons, relative to the same radius: well under the margin, above rounding.
+/// Slack of the placement's own comparisons, relative to the same radius: well under the margin, above
+/// rounding.
 inline constexpr double kPlacementSlack = 1e-9;
-/// A cap's collapse may add this much volume, relative to the patch's area to the power 1.5. Larger: simpler hulls
-/// that stand further off; smaller: more layers.
+/// A cap's collapse may add this much volume, relative to the patch's area to the power 1.5. Larger: simpler
+/// hulls that stand further off; smaller: more layers.
 inline constexpr double kCapVolumeLimit = 0.1;
 /// Weight of the worst new triangle's shape against volume in the cost of a collapse: needles cost
 /// kCapShapeWeight area^1.5 / quality.
 inline constexpr double kCapShapeWeight = 1e-4;
-/// A cap must have at most this share of the triangles it covers, as long as passes find such. Larger: more regions and
-/// faces in all (measured on six bodies: 1.55 faces per real one at 0.8, 1.49 at 0.45); smaller: passes stop early.
+/// A cap must have at most this share of the triangles it covers, as long as passes find such. Larger: more
+/// regions and faces in all (measured on six bodies: 1.55 faces per real one at 0.8, 1.49 at 0.45); smaller:
+/// passes stop early.
 inline constexpr double kCapWorth = 0.45;
 /// The same for the last passes, and for bridging.
 inline constexpr double kLastCapWorth = 0.8;
-/// Early hulls stay in the polytope of 26 directions about the body moved outward by this share of the body's width.
-/// Larger: passes go on to fewer faces, but hulls swell and the outermost wrapper around them with them.
-inline constexpr double kHullSwell = 0.02;
-/// Distance of the outermost wrapper from the hull it is planned around, relative to the body's largest extent.
-/// Larger: looser; smaller: later hulls have no room to grow where it touches.
-inline constexpr double kPolytopeDistance = 0.003;
-/// Distance that later hulls keep from the outermost wrapper, relative to its largest extent. Smaller: confirmation
-/// that it holds them fails on rounding, and another one is put around.
+/// Early hulls of large bodies stay in the polytope of 26 directions about the body moved outward by this
+/// share of the body's width. Larger: hulls swell, and the outermost wrapper, which is planned around one of
+/// them, with them.
+inline constexpr double kHullSwell = 0.01;
+/// Distance of the outermost wrapper from the hull it is planned around, relative to the body's largest
+/// extent. Larger: looser (measured on six bodies: 1.1-1.2 times the convex hull's volume at 0.003, 1.2-1.4
+/// at 0.01); smaller: later hulls have no room to grow where it touches.
+inline constexpr double kPolytopeDistance = 0.005;
+/// Distance that later hulls keep from the outermost wrapper, relative to its largest extent. Smaller:
+/// confirmation that it holds them fails on rounding, and another one is put around.
 inline constexpr double kHullDistance = 1e-6;
 
 /// Volumes that should be equal may differ by this much of the outermost wrapper's volume: the rounding of

@@ -198,7 +198,8 @@ class ChainBuilder {
     for (const Slot s : hull_.alive_slots()) slot_boxes[s] = box_of(hull_, s);
     const SlotTree tree(hull_.alive_slots(), slot_boxes);
     for (std::size_t i = 0; i < corners.size(); ++i) {
-      const std::uint32_t next = i + 1 < corners.size() ? corners[i + 1] : corners[0] + static_cast<std::uint32_t>(points.size());
+      const std::uint32_t next =
+          i + 1 < corners.size() ? corners[i + 1] : corners[0] + static_cast<std::uint32_t>(points.size());
       const ChainCap cap{outline[corners[i]], next - corners[i], std::nullopt, 0};
       if (cap.length < 2) continue;
       if (!chain_cap_is_clear(hull_, tree, cap, boxes_)) return false;
@@ -221,8 +222,8 @@ class ChainBuilder {
   void close() {
     const auto points = outer_points();
     const auto holds_all = [&] {
-      return !polygon_.empty() &&
-             std::all_of(points.begin(), points.end(), [&](const Vector3& p) { return holds_2d(polygon_, p); });
+      return !polygon_.empty() && std::all_of(points.begin(), points.end(),
+                                              [&](const Vector3& p) { return holds_2d(polygon_, p); });
     };
     if (!holds_all()) polygon_ = enclosing_polygon(points, max_outer_, kPolytopeDistance);
     if (!holds_all()) return;
@@ -246,7 +247,7 @@ class ChainBuilder {
   }
 
   static constexpr std::uint32_t kMostOuter = 8;  ///< segments of the outermost wrapper
-  static constexpr double kLeastGain = 0.95;      ///< a pass that leaves a larger share of segments is the last
+  static constexpr double kLeastGain = 0.95;  ///< a pass that leaves a larger share of segments is the last
 
   const BuildOptions& options_;
   const std::uint32_t max_outer_;

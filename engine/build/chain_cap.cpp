@@ -18,7 +18,9 @@ int turn(const Vector3& a, const Vector3& b, const Vector3& c) {
   return exact::orient2d(a.data(), b.data(), c.data());
 }
 
-double cross_2d(const Vector3& a, const Vector3& b) { return a.x() * b.y() - a.y() * b.x(); }
+double cross_2d(const Vector3& a, const Vector3& b) {
+  return a.x() * b.y() - a.y() * b.x();
+}
 
 /// In front (to the right) of the line through a segment by `margin`; relative to `origin`.
 HalfSpace in_front(const Vector3& a, const Vector3& b, const Vector3& origin, double margin) {
@@ -26,7 +28,8 @@ HalfSpace in_front(const Vector3& a, const Vector3& b, const Vector3& origin, do
   return {n, n.dot(a - origin) + margin};
 }
 
-/// Strictly within the sector that a ray from `centre` through `from` sweeps counter-clockwise on its way to `to`.
+/// Strictly within the sector that a ray from `centre` through `from` sweeps counter-clockwise on its way to
+/// `to`.
 bool in_sector(const Vector3& centre, const Vector3& from, const Vector3& to, const Vector3& p) {
   const int sector = turn(centre, from, to);
   if (sector > 0) return turn(centre, from, p) > 0 && turn(centre, p, to) > 0;
@@ -54,8 +57,8 @@ CheckedSegment checked(const HullLoops& hull, Slot s) {
   return {hull.start(s), hull[s].a, hull.end(s), hull[s].b};
 }
 
-bool region_holds(const HullLoops& hull, const std::vector<Slot>& chain, const std::vector<CheckedSegment>& cap,
-                  const Vector3& p) {
+bool region_holds(const HullLoops& hull, const std::vector<Slot>& chain,
+                  const std::vector<CheckedSegment>& cap, const Vector3& p) {
   bool inside = false;
   const auto cast = [&](const Vector3& a, const Vector3& b) {
     const double* segment[2] = {a.data(), b.data()};

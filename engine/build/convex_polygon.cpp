@@ -14,10 +14,12 @@ namespace {
 
 using Vector3 = Eigen::Vector3d;
 
-double cross_2d(const Vector3& a, const Vector3& b) { return a.x() * b.y() - a.y() * b.x(); }
+double cross_2d(const Vector3& a, const Vector3& b) {
+  return a.x() * b.y() - a.y() * b.x();
+}
 
-/// Where two sides p0 -> p1 and q0 -> q1 meet when they are made longer, and the area that this adds beyond p1, q0; none
-/// (infinite area) if they do not converge.
+/// Where two sides p0 -> p1 and q0 -> q1 meet when they are made longer, and the area that this adds beyond
+/// p1, q0; none (infinite area) if they do not converge.
 struct Corner {
   Vector3 x;
   double area;
@@ -64,7 +66,8 @@ std::vector<std::uint32_t> convex_outline(std::span<const Vector3> points) {
   return outline;
 }
 
-std::vector<Vector3> enclosing_polygon(std::span<const Vector3> points, std::uint32_t max_sides, double distance) {
+std::vector<Vector3> enclosing_polygon(std::span<const Vector3> points, std::uint32_t max_sides,
+                                       double distance) {
   Eigen::AlignedBox3d box;
   for (const Vector3& p : points) box.extend(p);
   distance *= box.sizes().maxCoeff();
@@ -96,13 +99,16 @@ std::vector<Vector3> enclosing_polygon(std::span<const Vector3> points, std::uin
     return polygon.size() <= std::max(max_sides, 4u) &&
            std::all_of(points.begin(), points.end(), [&](const Vector3& p) { return holds_2d(polygon, p); });
   };
-  if (!is_good()) polygon = {{low.x(), low.y(), 0}, {high.x(), low.y(), 0}, {high.x(), high.y(), 0}, {low.x(), high.y(), 0}};
+  if (!is_good())
+    polygon = {
+        {low.x(), low.y(), 0}, {high.x(), low.y(), 0}, {high.x(), high.y(), 0}, {low.x(), high.y(), 0}};
   return polygon;
 }
 
 bool holds_2d(std::span<const Vector3> polygon, const Vector3& point) {
   for (std::size_t i = 0; i < polygon.size(); ++i)
-    if (exact::orient2d(polygon[i].data(), polygon[(i + 1) % polygon.size()].data(), point.data()) <= 0) return false;
+    if (exact::orient2d(polygon[i].data(), polygon[(i + 1) % polygon.size()].data(), point.data()) <= 0)
+      return false;
   return true;
 }
 

@@ -13,7 +13,8 @@ HullLoops::HullLoops(const Mesh& mesh) : points_(mesh.vertices) {
   for (Slot s = 0; s < slot_count(); ++s) join(s, leaving[segments_[s].b]);
   for (Slot first = 0; first < slot_count(); ++first) {
     if (segments_[first].component != kNull) continue;
-    for (Slot s = first; segments_[s].component == kNull; s = segments_[s].next) segments_[s].component = components_;
+    for (Slot s = first; segments_[s].component == kNull; s = segments_[s].next)
+      segments_[s].component = components_;
     ++components_;
   }
 }

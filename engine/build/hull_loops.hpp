@@ -11,8 +11,8 @@
 
 namespace lrb {
 
-/// Closed loops of segments with the solid on their left. Segments live in numbered slots; an empty slot is used again
-/// when a chain is replaced by its cap. Vertices are those of the complex.
+/// Closed loops of segments with the solid on their left. Segments live in numbered slots; an empty slot is
+/// used again when a chain is replaced by its cap. Vertices are those of the complex.
 class HullLoops {
  public:
   using Slot = std::uint32_t;

@@ -20,7 +20,8 @@ SlotTree::SlotTree(const HullMesh& hull) : SlotTree(hull.alive_slots(), boxes_of
 SlotTree::SlotTree(std::vector<Slot> slots, std::span<const Box> boxes)
     : slots_(std::move(slots)), centres_(boxes.size()), place_(boxes.size(), kNull) {
   if (slots_.empty()) return;
-  for (const Slot s : slots_) centres_[s] = boxes[s].min() / 2 + boxes[s].max() / 2;  // halved first: no overflow
+  for (const Slot s : slots_)
+    centres_[s] = boxes[s].min() / 2 + boxes[s].max() / 2;  // halved first: no overflow
   leaf_.resize(slots_.size());
   nodes_.reserve(slots_.size());
   build(0, static_cast<std::uint32_t>(slots_.size()), kNull);
@@ -50,10 +51,11 @@ std::uint32_t SlotTree::build(std::uint32_t first, std::uint32_t last, std::uint
   int axis = 0;
   spread.sizes().maxCoeff(&axis);
   const std::uint32_t middle = first + (last - first) / 2;
-  std::nth_element(slots_.begin() + first, slots_.begin() + middle, slots_.begin() + last, [&](Slot s, Slot t) {
-    const double a = centres_[s][axis], b = centres_[t][axis];
-    return a != b ? a < b : s < t;
-  });
+  std::nth_element(slots_.begin() + first, slots_.begin() + middle, slots_.begin() + last,
+                   [&](Slot s, Slot t) {
+                     const double a = centres_[s][axis], b = centres_[t][axis];
+                     return a != b ? a < b : s < t;
+                   });
   build(first, middle, index);
   const std::uint32_t right = build(middle, last, index);
   nodes_[index].right = right;

@@ -24,6 +24,7 @@ struct Planar {
 /// From the left (or lower) to the right (or upper) end.
 struct Cut {
   Planar from, to;
+  friend bool operator==(const Cut&, const Cut&) = default;
   bool is_vertical() const { return from.x == to.x; }
   Rational y_at(const Rational& x) const { return from.y + (to.y - from.y) * (x - from.x) / (to.x - from.x); }
 };
@@ -95,7 +96,9 @@ class CutTriangle {
 
   void add(const Planar& p, const Planar& q) {
     if (p == q) return;  // a point cuts nothing
-    cuts_.push_back(p < q ? Cut{p, q} : Cut{q, p});
+    Cut cut = p < q ? Cut{p, q} : Cut{q, p};
+    // Faces that share an edge both bring it, and work grows with the third power.
+    if (std::find(cuts_.begin(), cuts_.end(), cut) == cuts_.end()) cuts_.push_back(std::move(cut));
   }
 
   Axes axes_;

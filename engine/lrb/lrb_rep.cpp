@@ -9,12 +9,13 @@
 
 #include "engine/error.hpp"
 #include "engine/lrb/fnv.hpp"
+#include "engine/mesh/file_bytes.hpp"
 
 namespace lrb {
 namespace {
 
 [[noreturn]] void refuse(const LrbData& d, const std::string& what) {
-  throw InputError((d.name.empty() ? std::string("LRB-rep") : d.name) + ": " + what +
+  throw InputError((d.name.empty() ? std::string("LRB-rep") : printable_name(d.name)) + ": " + what +
                    "; rebuild the LRB-rep from its mesh");
 }
 
@@ -45,8 +46,12 @@ void check(const LrbData& d) {
   if (d.face_offsets.front() != 0 || d.face_offsets.back() != d.face_vertices.size() ||
       !std::is_sorted(d.face_offsets.begin(), d.face_offsets.end()))
     refuse(d, "the offsets of the faces' corners are not ascending");
-  for (std::size_t v = 0; v < d.vertices.size(); ++v)
+  for (std::size_t v = 0; v < d.vertices.size(); ++v) {
     if (!d.vertices[v].allFinite()) refuse(d, "vertex " + std::to_string(v) + " is not finite");
+    // The predicates of the plane do not look at z, but the tree's boxes do.
+    if (d.dim == 2 && d.vertices[v].z() != 0)
+      refuse(d, "vertex " + std::to_string(v) + " of a 2D body is not in the plane z = 0");
+  }
   for (FaceId f = 0; f < faces; ++f) check_face(d, f);
 }
 

@@ -158,6 +158,12 @@ Matrix3d rounded_to_float(const Matrix3d& m) {
   return m.cast<float>().cast<double>();
 }
 
+/// Whether rows are as orthonormal as kKernelRounding takes them to be. NaN is not.
+bool is_orthonormal(const Matrix3d& axes) {
+  return (axes * axes.transpose() - Matrix3d::Identity()).cwiseAbs().rowwise().sum().maxCoeff() <=
+         kFrameDefect;
+}
+
 /// Box of a range of simplices in a frame.
 Box box_in_frame(const Soup& soup, std::uint32_t begin, std::uint32_t end, const Frame& f) {
   Box box;
@@ -190,7 +196,7 @@ Frame fit_frame(const Soup& soup, std::uint32_t begin, std::uint32_t end, const 
   const Matrix3d covariance = moment / weight - mean * mean.transpose();
   const Eigen::SelfAdjointEigenSolver<Matrix3d> eigen(covariance);
   Frame principal{rounded_to_float(eigen.eigenvectors().transpose()), frame.origin};
-  if (!principal.axes.allFinite()) return frame;
+  if (!principal.axes.allFinite() || !is_orthonormal(principal.axes)) return frame;
   const Box turned = box_in_frame(soup, begin, end, principal);
   return half_area(turned) < half_area(bounds) ? principal : frame;
 }

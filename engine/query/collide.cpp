@@ -1,5 +1,8 @@
 #include "engine/query/collide.hpp"
 
+#include <cmath>
+#include <limits>
+
 #include "engine/lrb/fnv.hpp"
 #include "engine/query/collide_impl.hpp"
 
@@ -55,6 +58,25 @@ void sort_pairs(CollideResult& result) {
   result.meets.swap(meets);
 }
 
+namespace {
+
+/// World coordinates must be doubles. Few poses come near overflow: vertices are looked at only then.
+void check_world(const LrbRep& rep, const Pose& pose, char name) {
+  const double size =
+      pose.r.cwiseAbs().rowwise().sum().maxCoeff() * rep.tree().extent() + pose.t.cwiseAbs().maxCoeff();
+  if (size <= 0.5 * std::numeric_limits<double>::max()) return;
+  const auto vertices = rep.vertices();
+  for (std::size_t v = 0; v < vertices.size(); ++v) {
+    const Eigen::Vector3d x = pose.apply(vertices[v]);
+    for (int axis = 0; axis < 3; ++axis)
+      if (!std::isfinite(x[axis]))
+        throw InputError("body " + std::string(1, name) + ", vertex " + std::to_string(v) + ": its " +
+                         "xyz"[axis] + " in the world is beyond 1.8e308; scale the bodies and the pose down");
+  }
+}
+
+}  // namespace
+
 void check_query(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b) {
   if (a.dim() != b.dim())
     throw InputError("a " + std::to_string(a.dim()) + "D body cannot meet a " + std::to_string(b.dim()) +
@@ -68,6 +90,8 @@ void check_query(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pos
       throw InputError(
           "the pose of a 2D body leaves the plane z = 0; rotate about z and translate in x and y only");
   }
+  check_world(a, pose_a, 'A');
+  check_world(b, pose_b, 'B');
 }
 
 std::uint64_t fingerprint(const std::vector<SimplexPair>& pairs) {

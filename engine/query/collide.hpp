@@ -91,7 +91,8 @@ std::uint64_t fingerprint(const std::vector<SimplexPair>& pairs);
 /// Memory that a query needs and the next one can use again. One per thread.
 class QueryContext;
 
-/// Body `a` at pose_a against body `b` at pose_b; both 3D or both 2D (else InputError). Poses must be finite.
+/// Body `a` at pose_a against body `b` at pose_b; both 3D or both 2D (else InputError). Poses must be finite,
+/// and so must be the world coordinates of every vertex (else InputError, naming it).
 template <class Probe>
 CollideResult collide(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
                       const CollideRequest& request, QueryContext& context, Probe& probe);

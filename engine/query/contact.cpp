@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
 
 #include <Eigen/Geometry>
 
@@ -18,14 +19,26 @@ namespace {
 
 using Eigen::Vector3d;
 
+/// The power of two by which to divide points so that no product of two or three coordinates overflows or
+/// vanishes: areas of bodies of size 1e-120 or 1e120 are no doubles once they are multiplied by a coordinate.
+double unit_for(std::span<const Vector3d> points) {
+  double most = 0;
+  for (const Vector3d& p : points) most = std::max(most, p.cwiseAbs().maxCoeff());
+  return most > 0 ? std::ldexp(1.0, std::clamp(std::ilogb(most), -1022, 1023)) : 1;
+}
+
 /// Unit normal of a real simplex in the world, out of the solid; zero for a degenerate one.
 Vector3d world_normal(QueryBody& body, SimplexId s) {
   const double* c[3];
   body.world.corners(s, c);
-  const auto at = [&](int k) { return Vector3d(c[k][0], c[k][1], c[k][2]); };
+  const int dim = body.rep().dim();
+  std::array<Vector3d, 3> x = {Vector3d::Zero(), Vector3d::Zero(), Vector3d::Zero()};
+  for (int k = 0; k < dim; ++k) x[k] = Vector3d(c[k][0], c[k][1], c[k][2]);
+  const double unit = unit_for({x.data(), static_cast<std::size_t>(dim)});
+  const auto at = [&](int k) { return Vector3d(x[k] / unit); };
   // In 2D the solid lies on the left of a segment's direction, so the outside is on its right.
-  const Vector3d n = body.rep().dim() == 2 ? Vector3d(c[1][1] - c[0][1], c[0][0] - c[1][0], 0)
-                                           : (at(1) - at(0)).cross(at(2) - at(0)).eval();
+  const Vector3d along = at(1) - at(0);
+  const Vector3d n = dim == 2 ? Vector3d(along.y(), -along.x(), 0) : along.cross(at(2) - at(0)).eval();
   return n.stableNormalized();
 }
 
@@ -63,7 +76,7 @@ double loop_length(const ContactLoop& loop) {
   return sum;
 }
 
-/// Builds the regions from the graph.
+/// Builds the regions from the graph. Computes in `unit_`; results are turned back at the end.
 class RegionMaker {
  public:
   RegionMaker(QueryContext& ctx, const CollideResult& result)
@@ -71,7 +84,10 @@ class RegionMaker {
         result_(result),
         graph_(contact_graph(ctx, result)),
         a_in_b_(ctx, Side::a, result),
-        b_in_a_(ctx, Side::b, result) {}
+        b_in_a_(ctx, Side::b, result),
+        unit_(unit_for(graph_.points)) {
+    for (Vector3d& p : graph_.points) p /= unit_;
+  }
 
   std::vector<ContactRegion> run() {
     std::vector<ContactRegion> regions(graph_.component_count);
@@ -89,10 +105,20 @@ class RegionMaker {
       if (rank[r] == 2) regions[r].area = spanned_area(regions[r]);
       regions[r].depth = penetration(regions[r]);
     }
+    for (ContactRegion& region : regions) leave_unit(region);
     return regions;
   }
 
  private:
+  void leave_unit(ContactRegion& region) const {
+    for (ContactLoop& loop : region.loops)
+      for (Vector3d& p : loop.points) p *= unit_;
+    region.centroid *= unit_;
+    region.length *= unit_;
+    region.depth *= unit_;
+    region.area = region.area * unit_ * unit_;
+  }
+
   std::vector<Vector3d> points_of(const ContactGraph::Piece& piece) const {
     std::vector<Vector3d> x;
     for (const std::uint32_t p : piece.points) x.push_back(graph_.points[p]);
@@ -154,12 +180,13 @@ class RegionMaker {
     return std::max(0.0, a_reaches - b_reaches);
   }
 
-  Vector3d world(Side side, VertexId v) { return Eigen::Map<const Vector3d>(ctx_[side].world(v)); }
+  Vector3d world(Side side, VertexId v) { return Eigen::Map<const Vector3d>(ctx_[side].world(v)) / unit_; }
 
   QueryContext& ctx_;
   const CollideResult& result_;
   ContactGraph graph_;
   SwallowedVertices a_in_b_, b_in_a_;
+  double unit_;
 };
 
 exact::PairContact contact_of(QueryContext& ctx, SimplexPair pair) {

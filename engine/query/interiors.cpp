@@ -15,6 +15,8 @@
 namespace lrb {
 namespace {
 
+using Corners = std::array<const double*, 3>;
+
 /// Sign of the rotation's determinant: a reflection turns surfaces inside out.
 int handedness(const Pose& pose) {
   return pose.r.determinant() < 0 ? -1 : 1;
@@ -33,6 +35,63 @@ bool same_direction_3d(const double* const a[3], const double* const b[3]) {
   }
   return false;
 }
+
+/// Side of the line p, q on which r lies, seen along the first axis on which the triangle `face`, in whose
+/// plane all of them lie, keeps its area.
+int side_in_plane(const double* const face[3], const double* p, const double* q, const double* r) {
+  for (int axis = 0; axis < 3; ++axis) {
+    const int u = (axis + 1) % 3, v = (axis + 2) % 3;
+    const auto turn = [&](const double* a, const double* b, const double* c) {
+      const double x[2] = {a[u], a[v]}, y[2] = {b[u], b[v]}, z[2] = {c[u], c[v]};
+      return exact::orient2d(x, y, z);
+    };
+    if (turn(face[0], face[1], face[2]) != 0) return turn(p, q, r);
+  }
+  return 0;
+}
+
+/// What cuts a face into cells that are each inside or outside of the holder or on its surface. Of the
+/// holder's triangles in the face's plane only the outline does: an edge with one of them on either side is
+/// left out, since both its sides are on the surface. Without this a fan of n triangles on another would be
+/// n^2 cells.
+class Cutters {
+ public:
+  Cutters(const double* const face[3], QueryBody& holder)
+      : face_{face[0], face[1], face[2]}, holder_(holder) {}
+
+  void add(SimplexId t) {
+    const double* c[3];
+    holder_.world.corners(t, c);
+    for (const double* corner : c)
+      if (exact::orient3d(face_[0], face_[1], face_[2], corner) != 0) {
+        triangles_.push_back({c[0], c[1], c[2]});
+        return;
+      }
+    VertexId v[3];
+    holder_.rep().simplex(t, v);
+    for (int k = 0; k < 3; ++k)
+      flat_edges_[std::minmax(v[k], v[(k + 1) % 3])].push_back({c[k], c[(k + 1) % 3], c[(k + 2) % 3]});
+  }
+
+  /// Triangles, and edges as triangles without area.
+  std::vector<Corners> all() const {
+    std::vector<Corners> r = triangles_;
+    for (const auto& [ids, uses] : flat_edges_) {
+      const double *p = uses[0][0], *q = uses[0][1];
+      const bool is_inner =
+          uses.size() == 2 &&
+          side_in_plane(face_, p, q, uses[0][2]) * side_in_plane(face_, p, q, uses[1][2]) < 0;
+      if (!is_inner) r.push_back({p, q, q});
+    }
+    return r;
+  }
+
+ private:
+  const double* face_[3];
+  QueryBody& holder_;
+  std::vector<Corners> triangles_;
+  std::map<std::pair<VertexId, VertexId>, std::vector<Corners>> flat_edges_;  ///< each with its third corner
+};
 
 /// Collinear segments of positive length: compared along a coordinate in which the first advances.
 bool same_direction_2d(const double* const a[2], const double* const b[2]) {
@@ -141,15 +200,12 @@ class Decider {
                                                           const std::vector<SimplexId>& partners) {
     const double* own_corners[3];
     body.world.corners(s, own_corners);
-    const double* c[3];
     if (dim_ == 3) {
-      std::vector<std::array<const double*, 3>> others;
-      for (const SimplexId t : partners) {
-        holder.world.corners(t, c);
-        others.push_back({c[0], c[1], c[2]});
-      }
-      return exact::sample_cells(own_corners, others, kInteriorCellsPerFace);
+      Cutters cutters(own_corners, holder);
+      for (const SimplexId t : partners) cutters.add(t);
+      return exact::sample_cells(own_corners, cutters.all(), kInteriorCellsPerFace);
     }
+    const double* c[2];
     std::vector<std::array<const double*, 2>> others;
     for (const SimplexId t : partners) {
       holder.world.corners(t, c);

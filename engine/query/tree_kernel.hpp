@@ -29,7 +29,7 @@ struct TreeKernel {
   double m[3][3];          ///< A's axes <- B's axes
   double t[3];             ///< B's origin seen from A's, in A's axes
   float slack;   ///< absolute: errors of poses and of the rounding of world coordinates (see tree_query.cpp)
-  float m_size;  ///< >= 1 and >= the largest row sum of |m| / sqrt(3)
+  float m_size;  ///< >= 1 and >= the Euclidean norm of m
 
   NodePair* stack;  ///< room for 64 * (height of A + height of B) + 64 pairs
   std::uint32_t stack_size;

@@ -252,10 +252,11 @@ struct Corners {
 
 /// Which of eight simplices lie strictly on one side of the plane of simplex i of `planes`.
 ///
-/// Every corner is off by at most `error` in each coordinate, so an edge by 2 error, the normal n = e1 x e2
-/// by at most 4 error (E + error) in each component, where E = max|e1| + max|e2|, and n . (p - v0) by at most
-/// 2 error |n|_1 + 12 error (E + error) reach. Rounding in float is below 2^-21 E^2 reach, which is smaller
-/// than the second term because error >= kKernelRounding * reach and E <= 4 reach.
+/// Every corner is off by at most `error` in each coordinate, so an edge by 2 error, and the normal n = e1 x e2 by
+/// at most 4 error (E + 2 error) in each component, where E = max|e1| + max|e2|. A difference p - v0 is at most
+/// reach, and off by 2 error, so that n . (p - v0) is off by at most 2 error |n|_1 + 12 error (E + 2 error)
+/// (reach + 2 error). Rounding in float is below 10 u E^2 reach, u = 2^-24, for which there is room in the second
+/// term: error holds kKernelRounding reach = 64 u reach, of which less than 48 u can occur, and E <= 4 reach.
 inline std::uint32_t on_one_side(const Corners& planes, int i, const Corners& points, float reach,
                                  float error) {
   float v0[3], e1[3], e2[3];
@@ -270,7 +271,8 @@ inline std::uint32_t on_one_side(const Corners& planes, int i, const Corners& po
   const float n[3] = {e1[1] * e2[2] - e1[2] * e2[1], e1[2] * e2[0] - e1[0] * e2[2],
                       e1[0] * e2[1] - e1[1] * e2[0]};
   const float n_size = __builtin_fabsf(n[0]) + __builtin_fabsf(n[1]) + __builtin_fabsf(n[2]);
-  const float bound = 2 * error * n_size + 12 * error * (e1_max + e2_max + error) * reach + kKernelTiny;
+  const float bound =
+      2 * error * n_size + 12 * error * (e1_max + e2_max + 2 * error) * (reach + 2 * error) + kKernelTiny;
   Int8 above = Int8{} - 1, below = Int8{} - 1;
   for (int corner = 0; corner < 3; ++corner) {
     const Float8 height = splat(n[0]) * (points.x[corner][0] - splat(v0[0])) +

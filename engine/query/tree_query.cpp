@@ -13,25 +13,26 @@ double world_size(const Pose& p, double extent) {
   return p.r.cwiseAbs().rowwise().sum().maxCoeff() * extent + p.t.cwiseAbs().maxCoeff();
 }
 
-/// How far r^T r is from the identity, largest row sum.
+/// How far r^T r is from the identity, largest row sum: a bound of the Euclidean norm, the matrix being
+/// symmetric.
 double defect(const Eigen::Matrix3d& r) {
   return (r.transpose() * r - Eigen::Matrix3d::Identity()).cwiseAbs().rowwise().sum().maxCoeff();
 }
 
 }  // namespace
 
-/// The kernel compares boxes after the map w -> r_a^T (w - t_a), a linear functional of world coordinates w
-/// on each axis (and on B's axes likewise with r_b), so what it proves apart there is apart in the world. It
-/// computes with m = r_a^T r_b and t = r_a^T (t_b - t_a) and takes A's own points as they are. The
-/// differences, all bounded by `slack`:
-/// - world coordinates are rounded: at most 4 u times the sizes of their terms (u = 2^-53), turned by r_a^T;
-/// - r_a^T r_a is the identity only to `defect`, so A's points and the offset are off by defect times their
-/// sizes;
-///   the same for B on B's axes;
-/// - m, t and the offsets between nodes are rounded to double: another 16 u of the same sizes.
-/// The factor kPoseSafety covers the change between the largest coordinate and the Euclidean length, and the
-/// turning by matrices whose rows are a little longer than 1. The bound holds for any matrix; for one that is
-/// not a rotation it is merely so large that little is culled.
+/// The kernel compares boxes on A's axes and on B's. Let w_a = r_a x_a + t_a + rounding and w_b likewise be
+/// the world coordinates of a point of each body. If they are equal, then, with m = r_a^T r_b, t = r_a^T (t_b
+/// - t_a) and Euclidean norms,
+/// - on A's axes, where the kernel takes x_a as it is and m x_b + t for x_b, these differ by at most
+///     on_a = D(r_a) |x_a| + |r_a| |rounding|,   D(r) = |r^T r - 1|;
+/// - on B's axes, where it takes x_b as it is and m^T (x_a - t) for x_a, by at most
+///     on_b = D(m) |x_b| + |m| on_a, seen from any point of B (then x_b is a distance of two of its points).
+/// |r|^2 <= 1 + D(r). World coordinates are rounded by at most 4 u times the sizes of their terms (u =
+/// 2^-53), m, t and the offsets between nodes by another 16 u of the same sizes. The factor kPoseSafety
+/// covers the change from the largest coordinate to the Euclidean length (sqrt 3), and from a distance to an
+/// extent (2). The bounds hold for any matrix; for one that is far from a rotation they are merely so large
+/// that little is culled. Overflow makes them infinite or not a number: then nothing is.
 TreeKernel set_up_kernel(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b) {
   TreeKernel k{};
   k.nodes_a = a.tree().nodes().data();
@@ -48,16 +49,15 @@ TreeKernel set_up_kernel(const LrbRep& a, const Pose& pose_a, const LrbRep& b, c
     for (int j = 0; j < 3; ++j) k.m[i][j] = m(i, j);
     k.t[i] = t[i];
   }
-  const double size = (world_size(pose_a, a.tree().extent()) + world_size(pose_b, b.tree().extent())) / unit;
-  const double turn = std::max({1.0, pose_a.r.cwiseAbs().maxCoeff(), pose_b.r.cwiseAbs().maxCoeff()});
-  const double offset = (pose_b.t - pose_a.t).cwiseAbs().maxCoeff() / unit;
-  const double own = (a.tree().extent() + b.tree().extent()) / unit;
-  const double slack =
-      kPoseSafety * turn *
-      (kWorldRounding * size + (defect(pose_a.r) + defect(pose_b.r)) * (own + turn * offset));
-  k.slack = static_cast<float>(slack) * (1 + 0x1p-20f) + kKernelTiny;
-  const double row_sum = m.cwiseAbs().rowwise().sum().maxCoeff();
-  k.m_size = static_cast<float>(std::max(1.0, row_sum / std::sqrt(3.0))) * (1 + 0x1p-20f);
+  const double size =
+      (world_size(pose_a, a.tree().extent()) + world_size(pose_b, b.tree().extent()) + kWorldUnderflow) /
+      unit;
+  const double defect_a = defect(pose_a.r), defect_m = defect(m);
+  const double turn_a = std::sqrt(1 + defect_a), turn_m = std::sqrt(1 + defect_m);
+  const double on_a = defect_a * (a.tree().extent() / unit) + turn_a * kWorldRounding * size;
+  const double on_b = defect_m * (b.tree().extent() / unit) + turn_m * on_a;
+  k.slack = static_cast<float>(kPoseSafety * (on_a + on_b)) * (1 + 0x1p-20f) + kKernelTiny;
+  k.m_size = static_cast<float>(turn_m) * (1 + 0x1p-20f);
   return k;
 }
 

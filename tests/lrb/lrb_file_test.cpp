@@ -1,0 +1,203 @@
+// What comes back from a .lrb file is what went in, and nothing else is taken for one.
+#include "engine/lrb/lrb_file.hpp"
+
+#include <algorithm>
+#include <cstring>
+
+#include <doctest/doctest.h>
+
+#include "engine/build/build.hpp"
+#include "engine/error.hpp"
+#include "engine/lrb/fnv.hpp"
+#include "engine/query/collide.hpp"
+#include "tests/mesh/encode.hpp"
+#include "tests/support/hand_made.hpp"
+#include "tests/support/random_pose.hpp"
+#include "tests/support/shapes.hpp"
+
+using namespace lrb;
+using test::Random;
+
+namespace {
+
+std::string bytes_of(const LrbRep& rep) {
+  const test::TemporaryDirectory directory;
+  const std::string path = directory.file("body.lrb");
+  save_lrb(rep, path);
+  CHECK(directory.entries() == 1);
+  return test::load_bytes(path);
+}
+
+/// The complaint about bytes, or nothing if they are taken.
+std::string complaint(const std::string& bytes) {
+  try {
+    load_lrb(std::string_view(bytes), "body.lrb");
+    return "";
+  } catch (const InputError& e) {
+    return e.what();
+  }
+}
+
+bool is_one_line(const std::string& text) {
+  return std::none_of(text.begin(), text.end(), [](char c) { return static_cast<unsigned char>(c) < ' '; });
+}
+
+std::string with_right_checksum(std::string bytes) {
+  Fnv64 h;
+  h.add_bytes(bytes.data(), bytes.size() - 8);
+  const std::uint64_t value = h.value();
+  std::memcpy(bytes.data() + bytes.size() - 8, &value, 8);
+  return bytes;
+}
+
+template <class T>
+std::string with(std::string bytes, std::size_t at, T value) {
+  std::memcpy(bytes.data() + at, &value, sizeof value);
+  return with_right_checksum(bytes);
+}
+
+constexpr std::size_t kVersionAt = 8, kDimAt = 12, kRealFacesAt = 16, kNameAt = 24;
+
+}  // namespace
+
+TEST_CASE("a file gives back the same LRB-rep") {
+  for (const LrbRep& rep : {test::dented_box(), test::stairs_2d(), build_lrb(test::bumpy_sphere(2, 1)),
+                            LrbRep::without_regions(test::open_cylinder(8), false, true)}) {
+    const LrbRep back = load_lrb(std::string_view(bytes_of(rep)), "body.lrb");
+    CHECK(back.hash() == rep.hash());
+    CHECK(back.name() == rep.name());
+    CHECK(back.data().vertices == rep.data().vertices);
+    CHECK(back.data().face_vertices == rep.data().face_vertices);
+    CHECK(back.data().inner_cell == rep.data().inner_cell);
+    CHECK(back.data().region_layer == rep.data().region_layer);
+    CHECK(back.closed() == rep.closed());
+    CHECK(back.self_intersecting() == rep.self_intersecting());
+    CHECK(bytes_of(back) == bytes_of(rep));
+  }
+}
+
+TEST_CASE("a body from a file gives the same answers") {
+  Random random(1);
+  const LrbRep a = build_lrb(test::torus(12, 8)), b = build_lrb(test::bumpy_sphere(1, 2));
+  const LrbRep a_back = load_lrb(std::string_view(bytes_of(a)), "a.lrb");
+  const LrbRep b_back = load_lrb(std::string_view(bytes_of(b)), "b.lrb");
+  for (int i = 0; i < 100; ++i) {
+    const Pose p = test::random_pose(random, a, b, test::uniform(random, 0, 1));
+    const CollideResult before = collide(a, Pose{}, b, p), after = collide(a_back, Pose{}, b_back, p);
+    CHECK(before.pairs == after.pairs);
+    CHECK(before.meets == after.meets);
+    CHECK(before.relation == after.relation);
+    CHECK(before.opened == after.opened);
+    CHECK(before.counters.box_tests == after.counters.box_tests);
+  }
+}
+
+TEST_CASE("every file that is cut short is refused in one line") {
+  const std::string whole = bytes_of(test::dented_box());
+  for (std::size_t size = 0; size < whole.size(); ++size) {
+    const std::string text = complaint(whole.substr(0, size));
+    REQUIRE_FALSE(text.empty());
+    REQUIRE(is_one_line(text));
+    // A cut whose end looks right must be caught by what is read, not by the checksum.
+    if (size > 20) REQUIRE_FALSE(complaint(with_right_checksum(whole.substr(0, size))).empty());
+  }
+  REQUIRE_FALSE(complaint(whole + '\0').empty());
+  REQUIRE_FALSE(complaint(with_right_checksum(whole + std::string(8, '\0'))).empty());
+}
+
+TEST_CASE("every changed byte is noticed") {
+  const std::string whole = bytes_of(test::stairs_2d());
+  for (std::size_t at = 0; at < whole.size(); ++at)
+    for (const int change : {1, 0x80, 0xff}) {
+      std::string damaged = whole;
+      damaged[at] = static_cast<char>(damaged[at] ^ change);
+      REQUIRE_FALSE(complaint(damaged).empty());
+    }
+}
+
+TEST_CASE("a newer version is refused politely, before anything else is looked at") {
+  std::string newer = bytes_of(test::stairs_2d());
+  newer[kVersionAt] = static_cast<char>(kLrbFileVersion + 1);
+  CHECK(complaint(newer) ==
+        "body.lrb: byte 8: the file has version 2, this program reads up to 1; use a newer lrbscope");
+}
+
+TEST_CASE("lengths beyond the file are refused before memory is taken") {
+  const LrbRep rep = test::stairs_2d();
+  const std::string whole = bytes_of(rep);
+  std::size_t at = kNameAt;
+  const auto skip = [&](std::size_t size) { at += 8 + size; };
+  const LrbData& d = rep.data();
+  const std::size_t sizes[] = {
+      d.name.size(),           d.vertices.size() * 24,  d.face_offsets.size() * 4, d.face_vertices.size() * 4,
+      d.inner_cell.size() * 4, d.outer_cell.size() * 4, d.region_layer.size() * 2};
+  for (const std::size_t size : sizes) {
+    for (const std::uint64_t length : {~std::uint64_t{0}, std::uint64_t{1} << 62, std::uint64_t{1} << 61,
+                                       std::uint64_t{1} << 40, std::uint64_t{0}}) {
+      std::uint64_t there;
+      std::memcpy(&there, whole.data() + at, 8);
+      if (length == there) continue;
+      CAPTURE(at);
+      CAPTURE(length);
+      CHECK_FALSE(complaint(with(whole, at, length)).empty());
+    }
+    skip(size);
+  }
+  CHECK(at + 8 == whole.size());
+}
+
+TEST_CASE("numbers that make no LRB-rep are refused, whatever the checksum says") {
+  const std::string whole = bytes_of(test::dented_box());
+  CHECK_FALSE(complaint(with(whole, kDimAt, std::uint32_t{0})).empty());
+  CHECK_FALSE(complaint(with(whole, kDimAt, std::uint32_t{2})).empty());
+  CHECK_FALSE(complaint(with(whole, kDimAt, ~std::uint32_t{0})).empty());
+  CHECK_FALSE(complaint(with(whole, kRealFacesAt, ~std::uint32_t{0})).empty());
+  CHECK_FALSE(complaint(with(whole, kRealFacesAt, std::uint32_t{0})).empty());
+}
+
+TEST_CASE("a name with control characters does not break a message into lines") {
+  LrbData d = test::stairs_2d().data();
+  d.name = "two\nlines\x1b[31m";
+  const std::string whole = bytes_of(LrbRep(d));
+  CHECK(load_lrb(std::string_view(whole), "body.lrb").name() == d.name);
+  const std::string text = complaint(with(whole, kDimAt, std::uint32_t{7}));
+  CHECK_FALSE(text.empty());
+  CHECK(is_one_line(text));
+}
+
+TEST_CASE("a 2D body lies in the plane") {
+  LrbData d = test::stairs_2d().data();
+  d.vertices[0].z() = 1;
+  CHECK_THROWS_AS(LrbRep{d}, InputError);
+}
+
+// Damage that a checksum would hide from us: either refused, or an LRB-rep that can be walked and queried.
+TEST_CASE("damaged files with a right checksum are refused or harmless") {
+  Random random(9);
+  int taken = 0, refused = 0;
+  for (const LrbRep& rep : {test::dented_box(), test::stairs_2d()}) {
+    const std::string whole = bytes_of(rep);
+    for (int i = 0; i < 4000; ++i) {
+      std::string damaged = whole;
+      for (int k = 0; k < 1 + i % 3; ++k) {
+        const std::size_t at = kDimAt + random() % (whole.size() - 8 - kDimAt);
+        damaged[at] = static_cast<char>(random() % 2 ? random() : random() % 4 ? 0 : 0xff);
+      }
+      try {
+        const LrbRep back = load_lrb(std::string_view(with_right_checksum(damaged)), "body.lrb");
+        Wrapper w(back);
+        w.refine_all();
+        CHECK(w.boundary().size() <= back.face_count());
+        CollideRequest request;
+        request.contacts = request.interiors_overlap = true;
+        collide(back, Pose{}, back, Pose::translation({0.5, 0.25, 0}), request);
+        ++taken;
+      } catch (const InputError& e) {
+        CHECK(is_one_line(e.what()));
+        ++refused;
+      }
+    }
+  }
+  CHECK(taken > 100);
+  CHECK(refused > 100);
+}

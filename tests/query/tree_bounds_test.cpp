@@ -1,0 +1,203 @@
+// Every bound of the tree and of its kernel, against arithmetic of 100 digits: boxes hold what lies beneath
+// them, and what the kernel adds to boxes covers all that transforms and rounding do.
+#include <cmath>
+
+#include <Eigen/Geometry>
+#include <boost/multiprecision/cpp_bin_float.hpp>
+#include <doctest/doctest.h>
+
+#include "engine/query/tree_query.hpp"
+#include "tests/support/random_pose.hpp"
+#include "tests/support/shapes.hpp"
+
+// The kernel itself, to look at what is inside it.
+#define LRB_KERNEL_NAME run_tree_kernel_under_test
+namespace lrb {
+void run_tree_kernel_under_test(TreeKernel& k);
+}
+#include "engine/query/tree_kernel.inl"
+
+using namespace lrb;
+using test::Random;
+
+namespace {
+
+using Real =
+    boost::multiprecision::number<boost::multiprecision::cpp_bin_float<100>, boost::multiprecision::et_off>;
+using Real3 = std::array<Real, 3>;
+
+Real3 to_real(const Eigen::Vector3d& x) {
+  return {x.x(), x.y(), x.z()};
+}
+
+Eigen::Vector3d vertex(const LrbRep& rep, SimplexId s, int corner) {
+  VertexId v[3];
+  rep.simplex(s, v);
+  return rep.vertices()[v[std::min(corner, rep.dim() - 1)]];
+}
+
+/// A node's coordinates of a point in units.
+Real3 in_node(const TreeNode& n, const Real3& x) {
+  Real3 y;
+  for (int i = 0; i < 3; ++i) {
+    y[i] = 0;
+    for (int j = 0; j < 3; ++j) y[i] += Real(n.frame[i][j]) * (x[j] - Real(n.origin[j]));
+  }
+  return y;
+}
+
+void simplices_under(const BlockTree& t, std::uint32_t node, std::vector<SimplexId>& out) {
+  const TreeNode& n = t.nodes()[node];
+  for (std::uint32_t k = 0; k < n.count; ++k) {
+    if (n.is_leaf)
+      out.push_back(t.blocks()[n.first].simplex[k]);
+    else
+      simplices_under(t, n.first + k, out);
+  }
+}
+
+/// Box k of a node must hold the simplices beneath it, as the kernel decodes it; the ball everything.
+void check_node(const LrbRep& rep, std::uint32_t index) {
+  const BlockTree& t = rep.tree();
+  const TreeNode& n = t.nodes()[index];
+  const Boxes boxes = decode(n, 1);
+  for (std::uint32_t k = 0; k < n.count; ++k) {
+    std::vector<SimplexId> below;
+    if (n.is_leaf)
+      below.push_back(t.blocks()[n.first].simplex[k]);
+    else
+      simplices_under(t, n.first + k, below);
+    for (const SimplexId s : below)
+      for (int corner = 0; corner < 3; ++corner) {
+        Real3 x = to_real(vertex(rep, s, corner));
+        for (Real& c : x) c /= t.unit();
+        const Real3 y = in_node(n, x);
+        Real square = 0;
+        for (int i = 0; i < 3; ++i) {
+          REQUIRE(abs(y[i] - Real(boxes.centre[i][k])) <= Real(boxes.half[i][k]));
+          REQUIRE(abs(y[i] - Real(boxes.whole_centre[i])) <= Real(boxes.whole_half[i]));
+          square += y[i] * y[i];
+        }
+        REQUIRE(square <= Real(n.radius) * n.radius);
+      }
+  }
+}
+
+void check_tree(const LrbRep& rep) {
+  for (std::uint32_t i = 0; i < rep.tree().nodes().size(); ++i) check_node(rep, i);
+}
+
+/// r^T (w - t) / unit in a node's coordinates: what the kernel's boxes are about.
+Real3 functional(const Pose& pose, const TreeNode& n, double own_unit, double unit,
+                 const Eigen::Vector3d& world) {
+  Real3 local;
+  for (int j = 0; j < 3; ++j) {
+    local[j] = 0;
+    for (int i = 0; i < 3; ++i) local[j] += Real(pose.r(i, j)) * (Real(world[i]) - Real(pose.t[i]));
+    local[j] /= own_unit;
+  }
+  Real3 y = in_node(n, local);
+  for (Real& c : y) c *= Real(own_unit) / Real(unit);
+  return y;
+}
+
+struct Scene {
+  LrbRep a, b;
+  Pose pose_a, pose_b;
+};
+
+/// Greatest deviation of the corners that a leaf pair computes with from the functionals, over the error that
+/// the kernel reckons with.
+double worst_share(const Scene& s, Random& random, int pairs) {
+  const TreeKernel k = set_up_kernel(s.a, s.pose_a, s.b, s.pose_b);
+  const double unit = std::max(s.a.tree().unit(), s.b.tree().unit());
+  double worst = 0;
+  const auto leaf = [&](const LrbRep& rep) -> const TreeNode& {
+    while (true) {
+      const TreeNode& n = rep.tree().nodes()[random() % rep.tree().nodes().size()];
+      if (n.is_leaf) return n;
+    }
+  };
+  for (int i = 0; i < pairs; ++i) {
+    const TreeNode &na = leaf(s.a), &nb = leaf(s.b);
+    const Between w = between(k, na, nb);
+    if (!(w.error < 1e30f)) continue;  // overflow: nothing is culled
+    const auto ka = random() % na.count, kb = random() % nb.count;
+    const LeafBlock &ba = s.a.tree().blocks()[na.first], &bb = s.b.tree().blocks()[nb.first];
+    const int corner = static_cast<int>(random() % 3);
+    const Eigen::Vector3d wa = s.pose_a.apply(vertex(s.a, ba.simplex[ka], corner)),
+                          wb = s.pose_b.apply(vertex(s.b, bb.simplex[kb], corner));
+    const Real3 a_on_a = functional(s.pose_a, na, s.a.tree().unit(), unit, wa);
+    const Real3 b_on_a = functional(s.pose_a, na, s.a.tree().unit(), unit, wb);
+    float own[3];
+    for (int j = 0; j < 3; ++j) own[j] = bb.corner[corner][j][kb] * k.ratio_b;
+    for (int axis = 0; axis < 3; ++axis) {
+      const float a_got = ba.corner[corner][axis][ka] * k.ratio_a;
+      const float b_got = w.t[axis] + w.r[axis][0] * own[0] + w.r[axis][1] * own[1] + w.r[axis][2] * own[2];
+      // Both count: boxes are grown by the error once for the two of them.
+      const Real off = abs(a_on_a[axis] - Real(a_got)) + abs(b_on_a[axis] - Real(b_got));
+      worst = std::max(worst, static_cast<double>(off / Real(w.error)));
+    }
+  }
+  return worst;
+}
+
+LrbRep closed(const Mesh& mesh) {
+  return LrbRep::without_regions(mesh, true, false);
+}
+
+Mesh stretched(Mesh m, const Eigen::Vector3d& by) {
+  for (auto& v : m.vertices) v = v.cwiseProduct(by);
+  return m;
+}
+
+}  // namespace
+
+TEST_CASE("boxes and balls hold all simplices beneath them, at any scale, aspect and offset") {
+  const double kScales[] = {1, 1e-12, 1e120, 1e-120, 1e-310, 1e-320, 1e300};
+  for (const Mesh& m : {test::bumpy_sphere(2, 1), test::comb(5), test::torus(12, 8), test::gear(20)})
+    for (const double scale : kScales) {
+      check_tree(closed(test::scaled(m, scale)));
+      check_tree(closed(stretched(m, Eigen::Vector3d(1, 1e-8, m.dim == 2 ? 0 : 1e-4) * scale)));
+      if (m.dim == 3) check_tree(closed(test::translated(m, {1e8, -1e16 * (scale < 1), 3})));
+    }
+}
+
+TEST_CASE("a tree of simplices that all are one point, or on one line") {
+  check_tree(closed(test::scaled(test::icosphere(1), 0)));
+  check_tree(closed(stretched(test::icosphere(1), {1, 0, 0})));
+  check_tree(closed(test::translated(stretched(test::icosphere(1), {0, 0, 1e-15}), {1, 1, 1})));
+}
+
+TEST_CASE("the kernel's error covers rotation, translation, rounding and odd matrices") {
+  Random random(7);
+  double worst = 0;
+  for (int i = 0; i < 400; ++i) {
+    const double kSizes[] = {1, 1, 1e-12, 1e12, 1e-60};
+    const Mesh m = test::bumpy_sphere(1, static_cast<std::uint64_t>(i % 5));
+    const double size = kSizes[i % 5];
+    Scene s{closed(m), closed(test::scaled(test::comb(3), size)), {}, {}};
+    s.pose_a.r = test::random_rotation(random);
+    s.pose_b.r = test::random_rotation(random);
+    const double far = std::pow(10, test::uniform(random, -2, 16));
+    s.pose_b.t = 3 * test::random_direction(random);
+    if (i % 2) {
+      const Eigen::Vector3d away = far * test::random_direction(random);
+      s.pose_a.t += away;
+      s.pose_b.t += away;
+    }
+    if (i % 3 == 0) s.pose_b.t += far * test::random_direction(random);
+    if (i % 7 == 0) {
+      for (Pose* p : {&s.pose_a, &s.pose_b}) {
+        p->r *= std::pow(10, test::uniform(random, -3, 3));
+        p->r(0, 1) += test::uniform(random, -1, 1);
+      }
+    }
+    CAPTURE(i);
+    const double share = worst_share(s, random, 30);
+    REQUIRE(share < 1);
+    worst = std::max(worst, share);
+  }
+  MESSAGE("largest share of the error bound that was used: " << worst);
+  CHECK(worst > 1e-3);  // else nothing was tested
+}

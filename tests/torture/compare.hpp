@@ -1,0 +1,37 @@
+#pragma once
+/// One case, asked every way and compared with everything that knows the answer.
+
+#include <cstdint>
+#include <string>
+
+#include "tests/torture/families.hpp"
+
+namespace lrb::torture {
+
+/// Sums over the cases of a class. Plain, so that a child process can send it through a pipe.
+struct Tally {
+  std::uint64_t poses = 0;
+  std::uint64_t in_contact = 0, inside = 0;
+  std::uint64_t false_negatives = 0, false_positives = 0;  ///< pairs of simplices
+  std::uint64_t wrong_lists =
+      0;  ///< repeated or misordered pairs, touch for cross, modes or contacts at odds
+  std::uint64_t wrong_relations = 0;  ///< interiors_overlap included
+  std::uint64_t undecided = 0;        ///< interiors_overlap unknown for bodies where it should be decided
+  std::uint64_t refusals = 0, crashes = 0;
+  std::uint64_t oracle_pairs = 0, cgal_pairs = 0, parity_checks = 0;
+
+  Tally& operator+=(const Tally& t);
+  std::uint64_t differences() const {
+    return false_negatives + false_positives + wrong_lists + wrong_relations + undecided + crashes;
+  }
+};
+
+struct Effort {
+  std::size_t oracle_pairs = 3;  ///< pairs of a case that the rational oracle is asked
+  int parity_every = 8;          ///< one case in so many has its relation checked by the parity oracle
+};
+
+/// `trouble` gets a line for each difference.
+Tally check(const Case& c, Random& random, const Effort& effort, std::string& trouble);
+
+}  // namespace lrb::torture

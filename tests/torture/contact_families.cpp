@@ -1,0 +1,245 @@
+// Families in which bodies share points, edges, faces, or come as near to it as doubles allow.
+#include <cmath>
+#include <numbers>
+
+#include <Eigen/Geometry>
+
+#include "tests/support/shapes.hpp"
+#include "tests/torture/families.hpp"
+
+namespace lrb::torture {
+namespace {
+
+using Eigen::Vector3d;
+
+bool in_contact(const Case& c) {
+  CollideRequest request;
+  request.mode = Mode::first_pair;
+  return !collide(*c.a, c.pose_a, *c.b, c.pose_b, request).pairs.empty();
+}
+
+/// The corners of a random real simplex.
+std::array<Vector3d, 3> any_triangle(Random& random, const LrbRep& rep) {
+  VertexId v[3];
+  rep.simplex(static_cast<SimplexId>(random() % rep.real_simplex_count()), v);
+  return {rep.vertices()[v[0]], rep.vertices()[v[1]], rep.vertices()[v[2]]};
+}
+
+Mesh tetrahedron(const std::array<Vector3d, 4>& p) {
+  Mesh m = test::tetrahedron();
+  m.vertices.assign(p.begin(), p.end());
+  const bool inside_out = (p[1] - p[0]).cross(p[2] - p[0]).dot(p[3] - p[0]) < 0;
+  return inside_out ? test::turned_inside_out(m) : m;
+}
+
+void nudge_coordinates(Random& random, Vector3d& x, int ulps) {
+  for (int k = 0; k < 3; ++k) x[k] = nudged(x[k], pick(random, -ulps, ulps));
+}
+
+/// A prism of `layers` turned slices about z, whose section is an `n`-gon of radius r: the core of a screw.
+std::vector<Vector3d> twisted_rings(int n, int layers, double r, double twist, double height) {
+  std::vector<Vector3d> x;
+  for (int j = 0; j <= layers; ++j)
+    for (int i = 0; i < n; ++i) {
+      const double angle = 2 * std::numbers::pi * i / n + twist * j / layers;
+      x.emplace_back(r * std::cos(angle), r * std::sin(angle), height * j / layers);
+    }
+  return x;
+}
+
+void add_mantle(Mesh& m, VertexId base, int n, int layers, bool inward) {
+  const auto at = [&](int i, int j) { return base + static_cast<VertexId>(j * n + i % n); };
+  const auto add = [&](VertexId p, VertexId q, VertexId r) {
+    const VertexId f[3] = {p, inward ? r : q, inward ? q : r};
+    m.add_face(f);
+  };
+  for (int j = 0; j < layers; ++j)
+    for (int i = 0; i < n; ++i) {
+      add(at(i, j), at(i + 1, j), at(i + 1, j + 1));
+      add(at(i, j), at(i + 1, j + 1), at(i, j + 1));
+    }
+}
+
+Mesh screw(int n, int layers, double twist) {
+  Mesh m;
+  m.name = "screw";
+  m.vertices = twisted_rings(n, layers, 0.5, twist, 2);
+  add_mantle(m, 0, n, layers, false);
+  std::vector<VertexId> low, high;
+  for (int i = 0; i < n; ++i) {
+    low.push_back(static_cast<VertexId>(n - 1 - i));
+    high.push_back(static_cast<VertexId>(layers * n + i));
+  }
+  m.add_face(low);
+  m.add_face(high);
+  return m;
+}
+
+Mesh nut(int n, int layers, double twist) {
+  Mesh m;
+  m.name = "nut";
+  m.vertices = twisted_rings(n, layers, 0.5, twist, 2);
+  const std::vector<Vector3d> outer = twisted_rings(n, layers, 1, twist, 2);
+  const auto count = static_cast<VertexId>(outer.size());
+  m.vertices.insert(m.vertices.end(), outer.begin(), outer.end());
+  add_mantle(m, 0, n, layers, true);
+  add_mantle(m, count, n, layers, false);
+  for (const bool top : {false, true})
+    for (int i = 0; i < n; ++i) {
+      const auto ring = static_cast<VertexId>(top ? layers * n : 0);
+      const VertexId p = ring + static_cast<VertexId>(i), q = ring + static_cast<VertexId>((i + 1) % n);
+      const VertexId low[4] = {p, q, count + q, count + p}, high[4] = {p, count + p, count + q, q};
+      if (top)
+        m.add_face(high);
+      else
+        m.add_face(low);
+    }
+  return m;
+}
+
+Mesh cone(int n, double height) {
+  return test::revolve({{0, 0}, {1, height}, {0, height}}, n);
+}
+
+}  // namespace
+
+Case make_touch(Random& random, double dial) {
+  Case c{any_body(random), any_body(random), {}, any_pose(random), {}, {}};
+  if (pick(random, 0, 3) == 0) c.pose_a = any_pose(random);
+  const Vector3d away = test::random_direction(random), start = c.pose_b.t;
+  double near = 0, far = 12;
+  if (!in_contact(c)) near = -12;  // through and out on the other side
+  const int steps = static_cast<int>(6 + 54 * dial);
+  for (int i = 0; i < steps; ++i) {
+    const double middle = 0.5 * (near + far);
+    c.pose_b.t = start + middle * away;
+    (in_contact(c) ? near : far) = middle;
+  }
+  c.pose_b.t = start + (random() % 2 ? near : far) * away;
+  return c;
+}
+
+Case make_shared(Random& random, double dial) {
+  Case c;
+  c.a = any_body(random);
+  std::array<Vector3d, 3> t = any_triangle(random, *c.a);
+  const Vector3d n = (t[1] - t[0]).cross(t[2] - t[0]).normalized();
+  const auto off = [&] {
+    const Vector3d v = t[0] + uniform(random, -1, 1) * (t[1] - t[0]) + uniform(random, -1, 1) * (t[2] - t[0]);
+    return Vector3d(v + uniform(random, -0.2, 1) * n);
+  };
+  const int shared = pick(random, 1, 3);
+  std::array<Vector3d, 4> p = {t[0], off(), off(), off()};
+  for (int i = 0; i < shared; ++i) p[i] = t[i];
+  const int ulps = static_cast<int>(std::floor(3 * (1 - dial)));
+  for (int i = 0; i < shared; ++i) nudge_coordinates(random, p[i], ulps);
+  c.b = body(tetrahedron(p));
+  if (random() % 2) c.pose_a = c.pose_b = any_pose(random);
+  return c;
+}
+
+Case make_coplanar(Random& random, double dial) {
+  static const std::vector<Body> kFlat = {body(test::box()), body(test::l_shape()), body(test::comb(3)),
+                                          body(test::quad_box()), body(test::tetrahedron(2))};
+  Case c{kFlat[random() % kFlat.size()], kFlat[random() % 4], {}, {}, {}, {}};
+  const int turn = pick(random, 0, 2);
+  const double angle = turn == 0   ? std::pow(10, -17 * dial)
+                       : turn == 1 ? uniform(random, 0, 6.3)
+                                   : pick(random, 0, 3) * std::numbers::pi / 2;
+  c.pose_b = Pose::rotation({0, 0, 1}, angle);
+  if (turn == 2) c.pose_b.r = c.pose_b.r.array().round();
+  if (pick(random, 0, 2) == 0) {
+    const double tilt = std::pow(10, -9 - 8 * dial);
+    c.pose_b.r = Pose::rotation({1, uniform(random), 0}, tilt).r * c.pose_b.r;
+  }
+  const double step = random() % 2 ? 0.5 : 1.0 / 3;
+  c.pose_b.t = {step * pick(random, -3, 3), step * pick(random, -3, 3),
+                static_cast<double>(pick(random, -1, 1))};
+  c.pose_b.t.z() = nudged(c.pose_b.t.z(), pick(random, -1, 1));
+  if (pick(random, 0, 2) == 0) c.pose_b.t.x() = nudged(c.pose_b.t.x(), pick(random, -1, 1));
+  if (pick(random, 0, 3) == 0) move_both(c, any_pose(random));
+  return c;
+}
+
+Case make_identical(Random& random, double dial) {
+  Case c;
+  c.a = c.b = any_body(random);
+  c.pose_a = any_pose(random);
+  const int kind = pick(random, 0, 3);
+  if (kind == 0) c.pose_a = Pose{};
+  c.pose_b = c.pose_a;
+  if (kind == 1) {  // about the middle of the unit cube
+    const Eigen::Matrix3d r = grid_turn(random);
+    const Vector3d middle(0.5, 0.5, 0.5);
+    c.pose_a = Pose{};
+    c.pose_b = {r, middle - r * middle};
+  }
+  if (kind == 2) c.pose_b.r = c.pose_a.r * grid_turn(random);
+  if (pick(random, 0, 2) == 0) {
+    const int k = pick(random, 0, 2);
+    c.pose_b.t[k] = nudged(c.pose_b.t[k], pick(random, -2, 2));
+  } else if (pick(random, 0, 2) == 0) {
+    c.pose_b.t += std::pow(10, -17 * dial) * test::random_direction(random);
+  }
+  return c;
+}
+
+Case make_hub(Random& random, double dial) {
+  const int n = 3 + static_cast<int>(97 * dial);
+  static const Body kPoly = body(screw(64, 1, 0));
+  Case c{body(cone(n, 1)), body(cone(pick(random, 3, n), 1)), {}, {}, {}, {}};
+  const int kind = pick(random, 0, 3);
+  if (kind == 0) c.pose_b.r = Vector3d(1, -1, -1).asDiagonal();  // tip on tip
+  if (kind == 1) c.pose_b = any_pose(random, 0);                 // tips in one point, any directions
+  if (kind == 2) {
+    c.b = kPoly;
+    c.pose_b = {grid_turn(random), {0, 0, static_cast<double>(pick(random, -2, 2))}};
+  }
+  if (kind == 3) c.pose_b.t = {0, 0, static_cast<double>(pick(random, -2, 2)) / 2};
+  const int k = pick(random, 0, 2);
+  if (random() % 2) c.pose_b.t[k] = nudged(c.pose_b.t[k], pick(random, -1, 1));
+  return c;
+}
+
+Case make_interlock(Random& random, double dial) {
+  static const Body kComb = body(test::comb(4, 3)), kScrew = body(screw(5, 6, 2)), kNut = body(nut(5, 6, 2));
+  static const Body kLink =
+      body(test::voxels(5, 3, 1, [](int i, int j, int) { return j != 1 || i % 4 == 0; }));
+  Case c;
+  const int kind = pick(random, 0, 2);
+  const double slip = dial > 0.5 ? 0 : std::pow(10, -16 * dial - 1) * uniform(random, -1, 1);
+  if (kind == 0) {  // comb (width 7, depth 4) turned by half about z, teeth into the gaps
+    c.a = c.b = kComb;
+    c.pose_b.r = Vector3d(-1, -1, 1).asDiagonal();
+    c.pose_b.t = {8 + slip, static_cast<double>(pick(random, 4, 8)),
+                  static_cast<double>(pick(random, -1, 1))};
+  } else if (kind == 1) {  // a bar of one link through the slot of the other
+    c.a = c.b = kLink;
+    c.pose_b.r << 1, 0, 0, 0, 0, -1, 0, 1, 0;
+    c.pose_b.t = {static_cast<double>(pick(random, -4, 4)) / (1 + static_cast<int>(random() % 2)) + slip,
+                  2 + slip, static_cast<double>(pick(random, -3, 1))};
+  } else {
+    c.a = kNut;
+    c.b = kScrew;
+    const double height = slip + (random() % 2 ? 0 : uniform(random, -1, 1));
+    c.pose_b = Pose::rotation({0, 0, 1}, random() % 4 ? height : 0, {0, 0, height});
+  }
+  if (pick(random, 0, 3) == 0) move_both(c, any_pose(random));
+  return c;
+}
+
+Case make_quadratic(Random& random, double dial) {
+  const int n = 2 + static_cast<int>(4 * dial);
+  std::vector<Mesh> across, along;
+  for (int i = 0; i < n; ++i) {
+    across.push_back(test::box({i + 0.25, 0, 0}, {i + 0.5, static_cast<double>(n), 1}));
+    along.push_back(test::box({0, i + 0.25, 0}, {static_cast<double>(n), i + 0.5, 1}));
+  }
+  Case c{body(test::several(across)), body(test::several(along)), {}, {}, {}, {}};
+  c.pose_b.t = {0, 0, random() % 2 ? 0 : uniform(random, -1, 1)};
+  if (random() % 2) c.pose_b.r = Pose::rotation({1, 0, 0}, uniform(random, 0, 0.3)).r;
+  if (pick(random, 0, 3) == 0) move_both(c, any_pose(random));
+  return c;
+}
+
+}  // namespace lrb::torture

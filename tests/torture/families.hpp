@@ -1,0 +1,68 @@
+#pragma once
+/// Families of cases that break collision engines, each with a dial from benign (0) to degenerate (1).
+
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+
+#include "engine/query/collide.hpp"
+#include "tests/support/random_pose.hpp"
+
+namespace lrb::torture {
+
+using test::Random;
+using test::uniform;
+using Body = std::shared_ptr<const LrbRep>;
+
+/// Two bodies at two poses, and what is known of the answer from the way they were made.
+struct Case {
+  Body a, b;
+  Pose pose_a, pose_b;
+  std::optional<Relation> relation;
+  std::optional<bool> interiors_overlap;
+};
+
+struct Family {
+  const char* name;  ///< the class in the table
+  const char* what;
+  Case (*make)(Random& random, double dial);
+};
+
+std::span<const Family> families();
+const Family* find_family(const std::string& name);
+
+// Each in its file.
+Case make_touch(Random&, double);        // contact_families.cpp: approach to within an ulp of contact
+Case make_shared(Random&, double);       // a face, an edge or a vertex in common, ulps off
+Case make_coplanar(Random&, double);     // faces on faces, shifted, turned, tilted
+Case make_identical(Random&, double);    // the same body, under its symmetries
+Case make_hub(Random&, double);          // hundreds of faces in a point; faces of many corners
+Case make_interlock(Random&, double);    // combs, chain links, screw in nut
+Case make_quadratic(Random&, double);    // every plate through every plate
+Case make_sliver(Random&, double);       // scale_families.cpp: aspect to 1e8, sheets 1e-8 thick
+Case make_far(Random&, double);          // 1e6 to 1e16 from the origin
+Case make_scale(Random&, double);        // 1e-120 to 1e120
+Case make_extreme(Random&, double);      // denormals to 1e308: an exact answer or a refusal
+Case make_ratio(Random&, double);        // sizes 1e12 and 1e60 apart
+Case make_matrix(Random&, double);       // poses that are no rotations
+Case make_lattice(Random&, double);      // body_families.cpp: lattices, Menger, Koch
+Case make_dented(Random&, double);       // bodies with regions, by hand and by the builder
+Case make_containment(Random&, double);  // inside, in a cavity, in a wall, swallowed
+Case make_voxels(Random&, double);       // random cells on one grid: interiors overlap if a cell is shared
+Case make_plane(Random&, double);        // 2D, random cells too
+Case make_dirty(Random&, double);        // open, duplicated, without area, crossing themselves
+
+// What the files share.
+Body body(const Mesh& mesh,
+          bool self_intersecting = false);           ///< without regions; closed if it bounds a solid
+Body any_body(Random& random);                       ///< one of a dozen small closed bodies
+Pose any_pose(Random& random, double distance = 3);  ///< random rotation and translation
+/// The same motion in front of both poses. Rounds, so that exact contact becomes nearly exact contact.
+void move_both(Case& c, const Pose& by);
+double nudged(double x, int ulps);
+int pick(Random& random, int low, int high);  ///< low to high, both included
+/// An exact rotation (or, if asked, perhaps a reflection) of the grid.
+Eigen::Matrix3d grid_turn(Random& random, bool reflections = false);
+
+}  // namespace lrb::torture
