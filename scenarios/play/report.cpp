@@ -172,6 +172,9 @@ Page run_page(const Performance& p, const DrawnFrames& drawn, const std::string&
   }
   if (two && p.trace->header.request.recursion != Recursion::complete)
     page.purpose += " (The paper's recursion was asked for: it can miss contacts.)";
+  if (p.trace->truncated())
+    page.purpose += " (The trace was cut: it holds " + group_digits(p.trace->events.size()) + " of " +
+                    group_digits(p.trace->events_seen) + " events, and so do frames and charts.)";
   if (!text.mismatches.empty()) {
     PageTable t;
     t.title = "Not as expected";
