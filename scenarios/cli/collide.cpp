@@ -43,6 +43,16 @@ Motion approach_from(const Eigen::Vector3d& direction, const LrbRep& a, const Lr
   return m;
 }
 
+/// Stands beside the way on which B comes, a little on B's side and above: the gap between the bodies is
+/// seen.
+void look_from_the_side(const Eigen::Vector3d& coming_from, std::vector<FrameSpec::View>& views) {
+  for (FrameSpec::View& view : views) {
+    const Eigen::Vector3d up = view.up.normalized(), side = coming_from.cross(up);
+    if (!(side.squaredNorm() > 0)) continue;  // B comes from above or below: any side will do
+    view.from = 0.8 * side.normalized() + 0.3 * coming_from.normalized() + 0.45 * up;
+  }
+}
+
 Scenario make_scenario(const CollideOptions& o, const std::vector<LoadedBody>& bodies) {
   Scenario s;
   s.name = std::filesystem::path(o.a).stem().string() + "-" + std::filesystem::path(o.b).stem().string();
@@ -73,6 +83,7 @@ Scenario make_scenario(const CollideOptions& o, const std::vector<LoadedBody>& b
   hash.add_bytes(s.motion.from.data(), sizeof(double) * 3);
   s.hash = hash.value();
   apply(o.picture, s.frames);
+  if (s.motion.kind == Motion::Kind::approach) look_from_the_side(s.motion.from, s.frames.views);
   return s;
 }
 

@@ -18,6 +18,15 @@ void add_choice(CLI::App& app, const std::string& name, Target& target, const st
       ->type_name(type_name);
 }
 
+template <class Target>
+void add_recursion(CLI::App& app, Target& recursion) {
+  add_choice<Recursion>(app, "--recursion", recursion,
+                        {{"complete", Recursion::complete},
+                         {"paper", Recursion::paper},
+                         {"paper_strict", Recursion::paper_strict}},
+                        "complete|paper|paper_strict", "complete never misses; paper is the paper's own");
+}
+
 /// Makes an axis (0, 1, 2) the upward one, and stands where one stood with z upward.
 void turn_up(FrameSpec& spec, int axis) {
   if (spec.views.empty()) spec.views.emplace_back();
@@ -34,14 +43,14 @@ void turn_up(FrameSpec& spec, int axis) {
 
 }  // namespace
 
+void add_recursion_option(CLI::App& app, std::optional<Recursion>& recursion) {
+  add_recursion(app, recursion);
+}
+
 void add_request_options(CLI::App& app, CollideRequest& request) {
   add_choice<Mode>(app, "--mode", request.mode, {{"all", Mode::all_pairs}, {"first", Mode::first_pair}},
                    "all|first", "All pairs, or the first found");
-  add_choice<Recursion>(app, "--recursion", request.recursion,
-                        {{"complete", Recursion::complete},
-                         {"paper", Recursion::paper},
-                         {"paper_strict", Recursion::paper_strict}},
-                        "complete|paper|paper_strict", "complete never misses; paper is the paper's own");
+  add_recursion(app, request.recursion);
 }
 
 void add_build_options(CLI::App& app, BuildOptions& options) {

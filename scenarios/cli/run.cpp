@@ -14,12 +14,14 @@ namespace {
 struct RunCommandOptions {
   std::string scenario, folder;
   PictureOptions picture;
+  std::optional<Recursion> recursion;
   bool json = false;
 };
 
 int run_run(const RunCommandOptions& o, const Globals& globals) {
   Scenario scenario = open_scenario(o.scenario);
   apply(o.picture, scenario.frames);
+  if (o.recursion) scenario.request.recursion = *o.recursion;
   const std::string folder = o.folder.empty() ? "out/" + scenario.name : o.folder;
   RunOutcome outcome = run_scenario(scenario, folder, globals.command_line, progress_report(globals.quiet));
   return report_outcome(outcome, folder, o.json, globals);
@@ -40,6 +42,7 @@ Command add_run(CLI::App& root, const Globals& globals) {
   app->add_option("SCENARIO", o->scenario, "A shipped scenario (see lrbscope list), or a JSON file")
       ->required();
   app->add_option("-o,--output", o->folder, "Folder to write to [out/NAME]")->type_name("DIR");
+  add_recursion_option(*app, o->recursion);
   add_picture_options(*app, o->picture);
   app->add_flag("--json", o->json, "Print the summary instead of the page's path");
   return {app, [o, &globals] { return run_run(*o, globals); }};

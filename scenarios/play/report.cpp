@@ -172,6 +172,9 @@ Page run_page(const Performance& p, const DrawnFrames& drawn, const std::string&
   }
   if (two && p.trace->header.request.recursion != Recursion::complete)
     page.purpose += " (The paper's recursion was asked for: it can miss contacts.)";
+  if (p.trace->truncated())
+    page.purpose += " (The trace was cut: it holds " + group_digits(p.trace->events.size()) + " of " +
+                    group_digits(p.trace->events_seen) + " events, and so do frames and charts.)";
   if (!text.mismatches.empty()) {
     PageTable t;
     t.title = "Not as expected";
@@ -184,10 +187,13 @@ Page run_page(const Performance& p, const DrawnFrames& drawn, const std::string&
   if (p.trace->steps.size() > 1)
     page.charts = charts_of(trace::chart_over_steps(*p.trace), PageCursor::step,
                             "Largest wrappers, step by step", "Work and answer, step by step", false);
-  for (PageChart& c : charts_of(trace::chart_over_events(*p.trace), PageCursor::event,
-                                two ? "Wrappers, event by event" : "The wrapper, event by event",
-                                two ? "Work and answer, event by event" : "Refinements", true))
-    page.charts.push_back(std::move(c));
+  std::vector<PageChart> by_event =
+      charts_of(trace::chart_over_events(*p.trace), PageCursor::event,
+                two ? "Wrappers, event by event" : "The wrapper, event by event",
+                "Work and answer, event by event", true);
+  if (!two)
+    by_event.resize(std::min<std::size_t>(by_event.size(), 1));  // one refinement an event: nothing to count
+  for (PageChart& c : by_event) page.charts.push_back(std::move(c));
   if (two && p.results != nullptr && !p.results->empty() && !p.results->back().regions.empty())
     page.tables.push_back(contact_table(p.results->back(), p.trace->steps.back().index));
   constexpr std::size_t kMostSteps = 200;

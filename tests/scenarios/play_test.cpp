@@ -2,12 +2,14 @@
 #include <doctest/doctest.h>
 
 #include "engine/lrb/validate.hpp"
+#include "engine/query/brute_force.hpp"
 #include "scenarios/body.hpp"
 #include "scenarios/generators/generators.hpp"
 #include "scenarios/hull_volume.hpp"
 #include "scenarios/play/approach.hpp"
 #include "scenarios/play/moments.hpp"
 #include "scenarios/play/recording.hpp"
+#include "scenarios/shipped.hpp"
 
 using namespace lrb;
 
@@ -123,4 +125,19 @@ TEST_CASE("hull volumes of bodies whose hull is known") {
         doctest::Approx(enclosed_volume(rep, faces)));  // a convex body is its own hull
   std::vector<Eigen::Vector3d> square = {{0, 0, 0}, {2, 0, 0}, {1, 1, 0}, {2, 2, 0}, {0, 2, 0}, {1, 0, 0}};
   CHECK(hull_area(square) == doctest::Approx(4));
+}
+
+TEST_CASE("the shipped collisions come out as they promise, and as brute force has it") {
+  for (const ShippedScenario& shipped : shipped_scenarios()) {
+    const Scenario s = open_scenario(shipped.name);
+    if (s.show != Show::collision) continue;
+    CAPTURE(s.name);
+    CHECK_FALSE(s.expect.empty());
+    const Recording r = record(s, kSilent);
+    for (const std::string& line : mismatches(s, r)) FAIL_CHECK(line);
+    const trace::Step& last = r.trace.steps.back();
+    const BruteForceResult truth = brute_force(r.bodies[0].rep, last.pose_a, r.bodies[1].rep, last.pose_b);
+    CHECK(truth.pairs == r.results.back().pairs);
+    CHECK(truth.relation == r.results.back().relation);
+  }
 }

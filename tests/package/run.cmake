@@ -1,0 +1,16 @@
+# Installs the build in BUILD to a folder beside it, builds the user there, and runs it.
+set(prefix "${BUILD}/package test")
+file(REMOVE_RECURSE "${prefix}")
+function(run)
+  execute_process(COMMAND ${ARGN} RESULT_VARIABLE code OUTPUT_VARIABLE out ERROR_VARIABLE out)
+  if(NOT code EQUAL 0)
+    message(FATAL_ERROR "${ARGN}\n${out}")
+  endif()
+endfunction()
+run(${CMAKE_COMMAND} --install "${BUILD}" --prefix "${prefix}")
+run(${CMAKE_COMMAND} -S "${SOURCE}" -B "${prefix}/user" -G "${GENERATOR}" "-DCMAKE_PREFIX_PATH=${prefix}"
+    "-DCMAKE_CXX_COMPILER=${COMPILER}" "-DCMAKE_CXX_FLAGS=${FLAGS}")
+run(${CMAKE_COMMAND} --build "${prefix}/user")
+run("${prefix}/user/user")
+run("${prefix}/bin/lrbscope" --version)
+file(REMOVE_RECURSE "${prefix}")
