@@ -74,7 +74,7 @@ struct Counters {
 struct CollideResult {
   Relation relation = Relation::separate;
   Answer interiors_overlap =
-      Answer::unknown;                        ///< crossing, inside: yes; separate: no; touching: if requested
+      Answer::unknown;                        ///< crossing, inside: yes; separate: no; touching: if requested; unknown if a body is not closed
   Recursion recursion = Recursion::complete;  ///< the one that was used
   Mode mode = Mode::all_pairs;
   std::vector<SimplexPair> pairs;               ///< ascending; in first_pair mode at most one
