@@ -15,7 +15,9 @@ if(LRB_WARNINGS_AS_ERRORS)
   target_compile_options(lrb_options INTERFACE -Werror)
 endif()
 if(LRB_NATIVE)
-  target_compile_options(lrb_options INTERFACE -march=native)
+  # With it gcc 12 misjudges the sizes of Boost.Multiprecision's integers.
+  target_compile_options(lrb_options INTERFACE -march=native $<$<CXX_COMPILER_ID:GNU>:-Wno-stringop-overflow
+                                               -Wno-array-bounds -Wno-maybe-uninitialized>)
 endif()
 if(LRB_SANITIZE)
   target_compile_options(lrb_options INTERFACE -fsanitize=${LRB_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)

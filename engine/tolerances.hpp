@@ -64,13 +64,14 @@ inline constexpr double kCapShapeWeight = 1e-4;
 inline constexpr double kCapWorth = 0.45;
 /// The same for the last passes, and for bridging.
 inline constexpr double kLastCapWorth = 0.8;
-/// Early hulls stay in the polytope of 26 directions about the body moved outward by this share of the body's
-/// width. Larger: passes go on to fewer faces, but hulls swell and the outermost wrapper around them with
-/// them.
-inline constexpr double kHullSwell = 0.02;
+/// Early hulls of large bodies stay in the polytope of 26 directions about the body moved outward by this
+/// share of the body's width. Larger: hulls swell, and the outermost wrapper, which is planned around one of
+/// them, with them.
+inline constexpr double kHullSwell = 0.01;
 /// Distance of the outermost wrapper from the hull it is planned around, relative to the body's largest
-/// extent. Larger: looser; smaller: later hulls have no room to grow where it touches.
-inline constexpr double kPolytopeDistance = 0.003;
+/// extent. Larger: looser (measured on six bodies: 1.1-1.2 times the convex hull's volume at 0.003, 1.2-1.4
+/// at 0.01); smaller: later hulls have no room to grow where it touches.
+inline constexpr double kPolytopeDistance = 0.005;
 /// Distance that later hulls keep from the outermost wrapper, relative to its largest extent. Smaller:
 /// confirmation that it holds them fails on rounding, and another one is put around.
 inline constexpr double kHullDistance = 1e-6;

@@ -51,7 +51,6 @@ namespace lrb {
   LRB_GL(LINKPROGRAM, LinkProgram)                         \
   LRB_GL(PIXELSTOREI, PixelStorei)                         \
   LRB_GL(READPIXELS, ReadPixels)                           \
-  LRB_GL(SCISSOR, Scissor)                                 \
   LRB_GL(SHADERSOURCE, ShaderSource)                       \
   LRB_GL(STENCILFUNC, StencilFunc)                         \
   LRB_GL(STENCILOP, StencilOp)                             \

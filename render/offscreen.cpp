@@ -13,6 +13,8 @@
 
 namespace lrb {
 
+void suppress_mesa_leaks();  // mesa_leaks.cpp
+
 /// OSMesa draws into memory of ours; we draw into framebuffer objects instead (whose pixels do not depend on
 /// the number of threads), so that this is only what makes the context current.
 struct Offscreen::Context {
@@ -50,6 +52,7 @@ Offscreen::Offscreen() {
   for (const Finding& f : check_gl_environment()) {
     if (f.level == Finding::Level::error) throw EnvironmentError(f.what + ": " + f.detail);
   }
+  suppress_mesa_leaks();
   context_ = std::make_unique<Context>();
   make_current();
 #define LRB_GL(TYPE, Name)                                                          \

@@ -180,6 +180,10 @@ void add_contacts(const SceneHighlight& highlight, const SceneOptions& options, 
   dot.layer = Layer::on_top;
   bool lines = false;
   for (const ContactRegion& region : highlight.contacts) {
+    if (region.loops.empty()) {  // bodies that meet in a point have no curve there
+      dot.x = region.centroid;
+      out.list.points.push_back(dot);
+    }
     Eigen::AlignedBox3d curves;
     for (const ContactLoop& loop : region.loops) {
       if (loop.points.size() == 1) {
@@ -247,6 +251,7 @@ std::vector<Eigen::Vector3d> contact_points(std::span<const ContactRegion> conta
   std::vector<Eigen::Vector3d> out;
   for (const ContactRegion& r : contacts) {
     for (const ContactLoop& loop : r.loops) out.insert(out.end(), loop.points.begin(), loop.points.end());
+    if (r.loops.empty()) out.push_back(r.centroid);
   }
   return out;
 }

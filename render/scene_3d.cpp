@@ -26,7 +26,8 @@ class Builder {
     const auto ink = palette::edge_of(body);
     real_edges_ = c.out.list.edge_style({with_alpha(ink, 150), 0.9F * c.options.scale});
     pale_edges_ = c.out.list.edge_style({with_alpha(ink, 90), 0.8F * c.options.scale});
-    lid_line_ = {with_alpha(mix(body, ink, 0.55), 235), 1.3F * c.options.scale};
+    cell_edges_ = c.out.list.edge_style({with_alpha(palette::kInk, 150), 0.9F * c.options.scale});
+    lid_edges_ = c.out.list.edge_style({with_alpha(mix(body, ink, 0.7), 230), 1.7F * c.options.scale});
   }
 
   void run() {
@@ -52,8 +53,13 @@ class Builder {
         lids.push_back(f);
     }
     const bool telling = c_.options.colour_by != ColourBy::kind;
-    for (const FaceId f : lids) add_face(f, translucent(lid_colour(f)));
-    add_outlines(lids, lid_line_);
+    for (const FaceId f : lids) {
+      DrawTriangle t = translucent(lid_colour(f));
+      t.edges =
+          7;  // edges of faces, not lines: those behind other lids are to show through them, not on them
+      t.edge_style = lid_edges_;
+      add_face(f, t);
+    }
     if (lids.empty()) return;
     if (!telling) c_.add_key(Mark::translucent, palette::body(c_.side), c_.name() + ", pseudo faces");
     if (c_.options.colour_by == ColourBy::region) {
@@ -148,8 +154,6 @@ class Builder {
   void region(RegionId r, const Vector3d& moved, bool open) {
     Rgba colour = c_.region_colour(r);
     if (c_.options.colour_by == ColourBy::kind) colour = mix(colour, kWhite, 0.5);
-    const Rgba ink = palette::edge_of(colour);
-    const std::uint8_t edges = c_.out.list.edge_style({with_alpha(ink, 170), 0.9F * c_.options.scale});
     for (const FaceId f : rep_.collector(r)) {
       const bool lid = rep_.inner_cell(f) == r;
       DrawTriangle t;
@@ -158,13 +162,13 @@ class Builder {
         t = translucent(with_alpha(t.colour, kTellingAlpha));
       } else {
         t.edges = 7;
-        t.edge_style = edges;
+        t.edge_style = cell_edges_;
       }
       add_face(f, t, moved);
     }
     if (open) {
       const std::vector<FaceId> lids(rep_.lids(r).begin(), rep_.lids(r).end());
-      add_outlines(lids, {ink, 1.8F * c_.options.scale});
+      add_outlines(lids, {palette::edge_of(colour), 1.8F * c_.options.scale});
     }
   }
 
@@ -209,8 +213,7 @@ class Builder {
 
   const Context& c_;
   const LrbRep& rep_;
-  std::uint8_t real_edges_ = 0, pale_edges_ = 0;
-  EdgeStyle lid_line_;
+  std::uint8_t real_edges_ = 0, pale_edges_ = 0, lid_edges_ = 0, cell_edges_ = 0;
 };
 
 }  // namespace

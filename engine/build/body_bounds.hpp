@@ -15,8 +15,8 @@ namespace lrb {
 /// A convex region that holds a body.
 class BodyBounds {
  public:
-  /// The polytope whose 26 faces look along the axes and their diagonals, moved outward by `swell` times the body's
-  /// width in each direction.
+  /// The polytope whose 26 faces look along the axes and their diagonals, moved outward by `swell` times the
+  /// body's width in each direction.
   BodyBounds(std::span<const Eigen::Vector3d> points, double swell);
   /// Behind all faces of a convex mesh of triangles by `distance`.
   BodyBounds(const Mesh& convex, double distance);

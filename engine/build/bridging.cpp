@@ -36,7 +36,8 @@ PointTriangle smallest_first(const PointTriangle& t) {
 bool are_clear(const HullMesh& hull, const std::vector<PointTriangle>& added) {
   const SlotTree tree(hull);
   std::vector<CheckedTriangle> checked;
-  for (const PointTriangle& t : added) checked.emplace_back(hull.point(t[0]), hull.point(t[1]), hull.point(t[2]));
+  for (const PointTriangle& t : added)
+    checked.emplace_back(hull.point(t[0]), hull.point(t[1]), hull.point(t[2]));
   for (std::size_t i = 0; i < checked.size(); ++i) {
     for (std::size_t j = 0; j < i; ++j)
       if (!checked[i].clear_of(checked[j])) return false;
@@ -72,7 +73,8 @@ bool bridge_concavities(HullMesh& hull, ComplexBuilder& complex, const std::vect
   }
   if (static_cast<double>(added.size()) > kLastCapWorth * static_cast<double>(slots.size())) return false;
   std::sort(kept.begin(), kept.end());
-  std::erase_if(added, [&](const PointTriangle& t) { return std::binary_search(kept.begin(), kept.end(), t); });
+  std::erase_if(added,
+                [&](const PointTriangle& t) { return std::binary_search(kept.begin(), kept.end(), t); });
   if (removed.empty() || !are_clear(hull, added)) return false;
   const std::uint32_t component = hull[slots[0]].component;
   for (const Slot s : slots) hull.set_component(s, component);

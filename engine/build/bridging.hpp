@@ -9,10 +9,10 @@
 
 namespace lrb {
 
-/// Covers the concavities of a set of components with the faces of their convex hull: the pockets between become
-/// regions of this layer, and the components one. `joined` (components): those to cover. False, and nothing happens,
-/// if that would not make the surface simpler, or if faces of the convex hull would meet others (vertices in one
-/// plane).
+/// Covers the concavities of a set of components with the faces of their convex hull: the pockets between
+/// become regions of this layer, and the components one. `joined` (components): those to cover. False, and
+/// nothing happens, if that would not make the surface simpler, or if faces of the convex hull would meet
+/// others (vertices in one plane).
 bool bridge_concavities(HullMesh& hull, ComplexBuilder& complex, const std::vector<bool>& joined,
                         std::uint16_t layer);
 

@@ -42,7 +42,8 @@ LrbRep build_lrb(const Mesh& mesh, const BuildOptions& options) {
         mesh, use, [&](FaceId f, FaceId g) { return !crossing && meets(f) && meets(g); },
         [&](FaceId, FaceId) { crossing = true; });
   }
-  LrbData data = mesh.dim == 2 ? build_by_chains(mesh, meeting, options) : build_by_patches(mesh, meeting, options);
+  LrbData data =
+      mesh.dim == 2 ? build_by_chains(mesh, meeting, options) : build_by_patches(mesh, meeting, options);
   data.self_intersecting = crossing;
   return LrbRep(std::move(data));
 }

@@ -10,16 +10,17 @@
 namespace lrb {
 
 struct BuildOptions {
-  std::uint32_t patch_interior = 16;  ///< interior vertices a patch aims at: small makes the paper's recursion cheap,
-                                      ///< large makes the structure small
-  std::uint32_t max_outer_faces = 20; ///< aim for the outermost wrapper
-  std::uint64_t seed = 1;             ///< of the order in which patches grow
+  std::uint32_t patch_interior = 16;  ///< interior vertices a patch aims at: small makes the paper's
+                                      ///< recursion cheap, large makes the structure small
+  std::uint32_t max_outer_faces = 20;  ///< aim for the outermost wrapper
+  std::uint64_t seed = 1;              ///< of the order in which patches grow
   /// Called after each pass: pass number, faces of the hull, seconds so far. May be empty.
   std::function<void(std::uint32_t pass, std::uint32_t hull_faces)> progress;
 };
 
-/// Builds by patch caps on progressive hulls (patch_builder.hpp). The mesh must be closed, manifold and oriented:
-/// InputError names the offenders otherwise. 2D meshes go through chain_builder.hpp. Deterministic for a seed.
+/// Builds by patch caps on progressive hulls (patch_builder.hpp). The mesh must be closed, manifold and
+/// oriented: InputError names the offenders otherwise. 2D meshes go through chain_builder.hpp. Deterministic
+/// for a seed.
 LrbRep build_lrb(const Mesh& mesh, const BuildOptions& options = {});
 
 }  // namespace lrb

@@ -42,8 +42,8 @@ bool CapSurface::are_neighbours(int a, int b) const {
   });
 }
 
-/// Replaces the edge a, b that face f (a, b, c) has in common with a new face g (b, a, w) by c, w, if w lies in front
-/// of f: the tetrahedron between goes under the cap.
+/// Replaces the edge a, b that face f (a, b, c) has in common with a new face g (b, a, w) by c, w, if w lies
+/// in front of f: the tetrahedron between goes under the cap.
 bool CapSurface::flip_outward(int f, int i) {
   Face& face = faces_[f];
   const int g = face.across[i];
@@ -51,7 +51,8 @@ bool CapSurface::flip_outward(int f, int i) {
   Face& other = faces_[g];
   const int a = face.v[i], b = face.v[(i + 1) % 3], c = face.v[(i + 2) % 3];
   const int j = index_of(g, b), w = other.v[(j + 2) % 3];
-  if (exact::orient3d(x(face.v[0]).data(), x(face.v[1]).data(), x(face.v[2]).data(), x(w).data()) <= 0) return false;
+  if (exact::orient3d(x(face.v[0]).data(), x(face.v[1]).data(), x(face.v[2]).data(), x(w).data()) <= 0)
+    return false;
   if (are_neighbours(c, w) || (is_ring(c) && is_ring(w) && chord_outside(c, w))) return false;
   const int beyond_bc = face.across[(i + 1) % 3], beyond_ca = face.across[(i + 2) % 3];
   const int beyond_aw = other.across[(j + 1) % 3], beyond_wb = other.across[(j + 2) % 3];

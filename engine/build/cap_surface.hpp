@@ -12,20 +12,21 @@
 
 namespace lrb {
 
-/// A disk with a fixed ring, or a closed surface. Vertices have local numbers: first the ring in its order, then the
-/// patch's interior, then new ones.
+/// A disk with a fixed ring, or a closed surface. Vertices have local numbers: first the ring in its order,
+/// then the patch's interior, then new ones.
 class CapSurface {
  public:
   struct Plane {
-    Eigen::Vector3d n;   ///< length 1, or 0 for a triangle without area
-    double d;            ///< n.x = d on the plane
+    Eigen::Vector3d n;  ///< length 1, or 0 for a triangle without area
+    double d;           ///< n.x = d on the plane
     double area;
   };
   struct Face {
     std::array<int, 3> v;
-    std::array<int, 3> across;  ///< face over the edge v[i], v[i + 1]; beyond the ring: -1 - (index of the ring edge)
+    std::array<int, 3>
+        across;  ///< face over the edge v[i], v[i + 1]; beyond the ring: -1 - (index of the ring edge)
     Plane plane;
-    int kept;                   ///< the patch's triangle that it still is (index into Patch::slots), or -1
+    int kept;  ///< the patch's triangle that it still is (index into Patch::slots), or -1
     bool alive;
   };
   /// The triangles round an interior vertex u, or round an edge u, v, and the polygon about them.
@@ -37,8 +38,9 @@ class CapSurface {
     };
     int u = -1, v = -1;
     std::vector<int> faces;
-    std::vector<Rim> rim;       ///< in order; an open chain from v back to v if v is on the ring
-    int across_first = -1, across_last = -1;  ///< open chain: beyond the edges v, rim.front().a and rim.back().b, v
+    std::vector<Rim> rim;  ///< in order; an open chain from v back to v if v is on the ring
+    int across_first = -1,
+        across_last = -1;  ///< open chain: beyond the edges v, rim.front().a and rim.back().b, v
   };
 
   /// `first_id`: number in the complex of the first new vertex.
@@ -68,16 +70,16 @@ class CapSurface {
     return f >= 0 && static_cast<std::size_t>(f) < patch.slots.size() && patch.slots[f] == s ? f : -1;
   }
 
-  /// The star for collapsing edge u, v (u interior) to a new vertex or, if v is on the ring, onto v. False if the
-  /// collapse would not leave a surface (link condition), or if it would make an edge between ring vertices that the
-  /// hull has already.
+  /// The star for collapsing edge u, v (u interior) to a new vertex or, if v is on the ring, onto v. False if
+  /// the collapse would not leave a surface (link condition), or if it would make an edge between ring
+  /// vertices that the hull has already.
   bool find_star(int u, int v, Star& star);
   /// Collapses u and v into a new vertex at x. Returns its number.
   int collapse_to_new(const Star& star, const Eigen::Vector3d& x);
   void collapse_onto_ring(const Star& star);
 
-  /// A polygon of the mesh has one face in the complex, so its triangles must all stay or all be covered: covers those
-  /// that stayed alone, by flipping an edge outward. False if that cannot be done.
+  /// A polygon of the mesh has one face in the complex, so its triangles must all stay or all be covered:
+  /// covers those that stayed alone, by flipping an edge outward. False if that cannot be done.
   bool keep_polygons_whole(const HullMesh& hull, const Patch& patch);
 
   /// Moves an interior vertex.
@@ -127,12 +129,12 @@ class CapSurface {
 
   std::vector<HullMesh::Point> points_;
   std::vector<HullMesh::Corner> corners_;  ///< (old vertices)
-  std::vector<int> face_of_;               ///< (|points|) any face; of a ring vertex: that of its ring edge; -1: unused
+  std::vector<int> face_of_;  ///< (|points|) any face; of a ring vertex: that of its ring edge; -1: unused
   std::vector<Face> faces_;
-  std::vector<int> ring_face_;             ///< (|ring|) the face at the ring edge
-  std::vector<Beyond> beyond_;             ///< (|ring|)
-  std::vector<bool> chords_;               ///< (|ring| x |ring|) the hull has this edge outside the patch
-  std::vector<std::uint32_t> mark_;        ///< (|points|)
+  std::vector<int> ring_face_;       ///< (|ring|) the face at the ring edge
+  std::vector<Beyond> beyond_;       ///< (|ring|)
+  std::vector<bool> chords_;         ///< (|ring| x |ring|) the hull has this edge outside the patch
+  std::vector<std::uint32_t> mark_;  ///< (|points|)
   std::uint32_t marker_ = 0;
   VertexId next_id_ = 0;
   int ring_size_ = 0, first_new_ = 0, alive_ = 0, kept_ = 0;

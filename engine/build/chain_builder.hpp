@@ -1,8 +1,8 @@
 #pragma once
 /// The builder for bodies in the plane: the idea of patch_builder.hpp, one dimension down.
 ///
-/// A patch is a chain of segments, its ring the chain's two ends; the cap is the chord between them where the chain
-/// lies behind it, else two segments whose common vertex lies in front of all the chain's lines.
+/// A patch is a chain of segments, its ring the chain's two ends; the cap is the chord between them where the
+/// chain lies behind it, else two segments whose common vertex lies in front of all the chain's lines.
 
 #include "engine/build/build.hpp"
 #include "engine/lrb/lrb_rep.hpp"
@@ -10,8 +10,8 @@
 
 namespace lrb {
 
-/// `mesh` as MeshReport::buildable() wants it, in 2D and not inside out. `meeting`: its faces that meet others in more
-/// than they share, ascending.
+/// `mesh` as MeshReport::buildable() wants it, in 2D and not inside out. `meeting`: its faces that meet
+/// others in more than they share, ascending.
 LrbData build_by_chains(const Mesh& mesh, const std::vector<FaceId>& meeting, const BuildOptions& options);
 
 }  // namespace lrb

@@ -16,10 +16,13 @@ namespace {
 using Vector3 = Eigen::Vector3d;
 
 /// A number from 0 to 1, the same sequence on every machine.
-double fraction(Random& random) { return static_cast<double>(random.below(1u << 16)) * 0x1p-16; }
+double fraction(Random& random) {
+  return static_cast<double>(random.below(1u << 16)) * 0x1p-16;
+}
 
-/// The points on the convex hull, and perhaps some that lie within `distance` of it; they leave all others within that
-/// distance of their own hull. (Moved a little, points are in general position, so that the hull is quick to find.)
+/// The points on the convex hull, and perhaps some that lie within `distance` of it; they leave all others
+/// within that distance of their own hull. (Moved a little, points are in general position, so that the hull
+/// is quick to find.)
 std::vector<Vector3> outermost(std::span<const Vector3> points, double distance) {
   Random random(1);
   std::vector<Vector3> moved;
@@ -37,8 +40,8 @@ std::vector<Vector3> outermost(std::span<const Vector3> points, double distance)
   return out;
 }
 
-/// Four points about each: their hull holds every point by at least a quarter of `distance`, and they are in general
-/// position.
+/// Four points about each: their hull holds every point by at least a quarter of `distance`, and they are in
+/// general position.
 std::vector<Vector3> tetrahedra_about(std::span<const Vector3> points, double distance) {
   static const Vector3 kCorners[4] = {{1, 1, 1}, {1, -1, -1}, {-1, 1, -1}, {-1, -1, 1}};
   Random random(1);
@@ -51,31 +54,27 @@ std::vector<Vector3> tetrahedra_about(std::span<const Vector3> points, double di
   return out;
 }
 
-Mesh mesh_of(std::span<const Vector3> points, const std::vector<std::array<std::uint32_t, 3>>& triangles) {
-  Mesh mesh;
-  std::vector<VertexId> used(points.size(), kNull);
-  for (const auto& t : triangles) {
-    VertexId corners[3];
-    for (int i = 0; i < 3; ++i) {
-      VertexId& v = used[t[i]];
-      if (v == kNull) {
-        v = static_cast<VertexId>(mesh.vertices.size());
-        mesh.vertices.push_back(points[t[i]]);
-      }
-      corners[i] = v;
-    }
-    mesh.add_face(corners);
-  }
-  return mesh;
-}
-
 Mesh box_about(const Eigen::AlignedBox3d& box) {
   std::vector<Vector3> corners;
   for (int i = 0; i < 8; ++i)
     corners.emplace_back(i & 1 ? box.max().x() : box.min().x(), i & 2 ? box.max().y() : box.min().y(),
                          i & 4 ? box.max().z() : box.min().z());
-  return mesh_of(corners, {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
-                           {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}});
+  Mesh mesh;
+  mesh.vertices = corners;
+  for (const std::array<VertexId, 3>& t : std::array<std::array<VertexId, 3>, 12>{{{0, 2, 1},
+                                                                                   {1, 2, 3},
+                                                                                   {4, 5, 6},
+                                                                                   {5, 7, 6},
+                                                                                   {0, 1, 4},
+                                                                                   {1, 5, 4},
+                                                                                   {2, 6, 3},
+                                                                                   {3, 6, 7},
+                                                                                   {0, 4, 2},
+                                                                                   {2, 4, 6},
+                                                                                   {1, 3, 5},
+                                                                                   {3, 7, 5}}})
+    mesh.add_face(t);
+  return mesh;
 }
 
 }  // namespace
@@ -108,17 +107,16 @@ Mesh enclosing_polytope(std::span<const Vector3> points, std::uint32_t max_faces
   box.max().array() += distance;
   if (!std::isfinite(box.volume() * box.volume())) return {};
   Mesh best = box_about(box);
-  const auto around = tetrahedra_about(outermost(points, distance / 8), distance);
-  const Mesh convex = mesh_of(around, convex_hull(around));
+  const Mesh convex = convex_hull_mesh(tetrahedra_about(outermost(points, distance / 8), distance));
   if (convex.face_count() == 0) return best;
   double least = volume_of(best);
-  for (const double depth : {2.0, 4.0, 8.0, 30.0}) {
-    const Mesh few = simplify_polytope(convex, max_faces, depth);
-    const Mesh polytope = mesh_of(few.vertices, convex_hull(few.vertices));
-    if (polytope.face_count() == 0 || polytope.face_count() > max_faces || volume_of(polytope) >= least) continue;
-    if (!std::all_of(points.begin(), points.end(), [&](const Vector3& p) { return holds(polytope, p); })) continue;
+  for (const double depth : {2.0, 8.0}) {
+    Mesh polytope = simplify_polytope(convex, max_faces, depth);
+    if (polytope.face_count() == 0 || volume_of(polytope) >= least) continue;
+    if (!std::all_of(points.begin(), points.end(), [&](const Vector3& p) { return holds(polytope, p); }))
+      continue;
     least = volume_of(polytope);
-    best = polytope;
+    best = std::move(polytope);
   }
   return best;
 }

@@ -47,7 +47,8 @@ LrbData ComplexBuilder::finish(bool closed, bool self_intersecting) {
   ComplexBuilder sorted(d_.dim);
   for (const bool real : {true, false}) {
     for (FaceId f = 0; f < face_count(); ++f)
-      if ((d_.inner_cell[f] == kSolid) == real) sorted.add_face(d_.face(f), d_.inner_cell[f], d_.outer_cell[f]);
+      if ((d_.inner_cell[f] == kSolid) == real)
+        sorted.add_face(d_.face(f), d_.inner_cell[f], d_.outer_cell[f]);
     if (real) d_.real_face_count = sorted.face_count();
   }
   d_.face_offsets = std::move(sorted.d_.face_offsets);

@@ -1,5 +1,6 @@
 #pragma once
-/// Puts the arrays of an LRB-rep together, face by face: for builders, and for generators that know their regions.
+/// Puts the arrays of an LRB-rep together, face by face: for builders, and for generators that know their
+/// regions.
 
 #include <cstdint>
 #include <span>
@@ -11,8 +12,8 @@
 
 namespace lrb {
 
-/// Vertices, regions and faces are numbered from 0 in the order in which they are added. finish() moves the real
-/// faces to the front, as LrbData wants it; both kinds keep their order.
+/// Vertices, regions and faces are numbered from 0 in the order in which they are added. finish() moves the
+/// real faces to the front, as LrbData wants it; both kinds keep their order.
 class ComplexBuilder {
  public:
   explicit ComplexBuilder(int dim, std::string name = {});

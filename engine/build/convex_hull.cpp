@@ -35,7 +35,8 @@ class Hull {
     for (d = c + 1; d < count && (side = exact::orient3d(at(0), at(b), at(c), at(d))) == 0;) ++d;
     if (side == 0) return false;
     if (side > 0) std::swap(b, c);
-    for (const Triangle& t : {Triangle{0, b, c}, Triangle{0, d, b}, Triangle{b, d, c}, Triangle{c, d, 0}}) push(t);
+    for (const Triangle& t : {Triangle{0, b, c}, Triangle{0, d, b}, Triangle{b, d, c}, Triangle{c, d, 0}})
+      push(t);
     return true;
   }
 
@@ -74,6 +75,24 @@ class Hull {
 
 std::vector<Triangle> convex_hull(std::span<const Eigen::Vector3d> points) {
   return points.size() < 4 ? std::vector<Triangle>() : Hull(points).run();
+}
+
+Mesh convex_hull_mesh(std::span<const Eigen::Vector3d> points) {
+  Mesh mesh;
+  std::vector<VertexId> number(points.size(), kNull);
+  for (const Triangle& t : convex_hull(points)) {
+    VertexId corners[3];
+    for (int i = 0; i < 3; ++i) {
+      VertexId& v = number[t[i]];
+      if (v == kNull) {
+        v = static_cast<VertexId>(mesh.vertices.size());
+        mesh.vertices.push_back(points[t[i]]);
+      }
+      corners[i] = v;
+    }
+    mesh.add_face(corners);
+  }
+  return mesh;
 }
 
 }  // namespace lrb

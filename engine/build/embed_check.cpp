@@ -12,14 +12,16 @@ namespace {
 using Box = Eigen::AlignedBox3d;
 using Vector3 = Eigen::Vector3d;
 
-HullMesh::Point point_of(const CapSurface& cap, int v) { return {cap.x(v), cap.id(v)}; }
+HullMesh::Point point_of(const CapSurface& cap, int v) {
+  return {cap.x(v), cap.id(v)};
+}
 
 int side(const Vector3& a, const Vector3& b, const Vector3& c, const Vector3& d) {
   return exact::orient3d(a.data(), b.data(), c.data(), d.data());
 }
 
-/// Turning round the edge a, b from the old triangle (a, b, p) through what lies in front of it, does one reach the
-/// new triangle (a, b, w) before the neighbour (b, a, q)?
+/// Turning round the edge a, b from the old triangle (a, b, p) through what lies in front of it, does one
+/// reach the new triangle (a, b, w) before the neighbour (b, a, q)?
 bool turns_outward(const Vector3& a, const Vector3& b, const Vector3& p, const Vector3& w, const Vector3& q) {
   const int new_side = side(a, b, p, w), far_side = side(a, b, p, q);
   if (new_side > 0) return far_side <= 0 || side(a, b, w, q) > 0;
@@ -99,7 +101,8 @@ void EmbedCheck::gather_hull(const Patch& patch, const CapSurface& cap, const Bo
     const auto& t = hull_[s];
     obstacles_.emplace_back(hull_.point(t.v[0]), hull_.point(t.v[1]), hull_.point(t.v[2]));
     const auto same = [&](HullMesh::Slot other) { return hull_[other].component == t.component; };
-    if (t.component != own && std::none_of(strangers_.begin(), strangers_.end(), same)) strangers_.push_back(s);
+    if (t.component != own && std::none_of(strangers_.begin(), strangers_.end(), same))
+      strangers_.push_back(s);
   });
 }
 
@@ -110,8 +113,8 @@ bool EmbedCheck::added_are_clear() const {
   return true;
 }
 
-/// With one neighbour outside, all of the patch's component is: it is connected and meets the region's boundary in
-/// the ring only.
+/// With one neighbour outside, all of the patch's component is: it is connected and meets the region's
+/// boundary in the ring only.
 bool EmbedCheck::ring_turns_outward(const Patch& patch, const CapSurface& cap) const {
   const int size = cap.ring_size();
   for (int k = 0; k < size; ++k) {
@@ -123,13 +126,15 @@ bool EmbedCheck::ring_turns_outward(const Patch& patch, const CapSurface& cap) c
     };
     const HullMesh::Slot beyond = patch.outside[k];
     const auto& old = hull_[hull_[beyond].across[hull_.index_of(beyond, b)]];
-    if (!turns_outward(hull_.x(a), hull_.x(b), hull_.x(third(old, a)), cap.x(third(face, k)), cap.tip_beyond(k)))
+    if (!turns_outward(hull_.x(a), hull_.x(b), hull_.x(third(old, a)), cap.x(third(face, k)),
+                       cap.tip_beyond(k)))
       return false;
   }
   return true;
 }
 
-bool EmbedCheck::rim_turns_outward(const CapSurface& cap, const CapSurface::Star& star, const Vector3& w) const {
+bool EmbedCheck::rim_turns_outward(const CapSurface& cap, const CapSurface::Star& star,
+                                   const Vector3& w) const {
   const auto third = [&](int f, int a, int b) {
     const auto& v = cap.faces()[f].v;
     return v[0] != a && v[0] != b ? v[0] : v[1] != a && v[1] != b ? v[1] : v[2];

@@ -28,14 +28,16 @@ struct CheckedTriangle {
 class EmbedCheck {
  public:
   EmbedCheck(const HullMesh& hull, const SlotTree& tree) : hull_(hull), tree_(tree) {}
-  /// Boxes of the components (in the hull's numbering), so that a cap over a patch of one never hides another.
+  /// Boxes of the components (in the hull's numbering), so that a cap over a patch of one never hides
+  /// another.
   void set_component_boxes(std::vector<Eigen::AlignedBox3d> boxes) { component_boxes_ = std::move(boxes); }
 
-  /// Nothing may meet the cap's new triangles: not the hull outside the patch, not the patch, not each other. And all
-  /// of the hull that is outside the patch must lie outside the region between patch and cap.
+  /// Nothing may meet the cap's new triangles: not the hull outside the patch, not the patch, not each other.
+  /// And all of the hull that is outside the patch must lie outside the region between patch and cap.
   bool cap_is_clear(const Patch& patch, const CapSurface& cap);
   /// The same for a fan from w that is about to replace a star of the cap.
-  bool fan_is_clear(const Patch& patch, const CapSurface& cap, const CapSurface::Star& star, const HullMesh::Point& w);
+  bool fan_is_clear(const Patch& patch, const CapSurface& cap, const CapSurface::Star& star,
+                    const HullMesh::Point& w);
 
  private:
   void gather_hull(const Patch& patch, const CapSurface& cap, const Eigen::AlignedBox3d& box);

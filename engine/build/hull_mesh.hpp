@@ -12,19 +12,19 @@
 
 namespace lrb {
 
-/// A closed triangle surface with neighbours. Triangles live in numbered slots; a slot may be empty, and is used
-/// again when a patch is replaced by its cap. Every vertex has exactly one fan of triangles: a vertex of the mesh
-/// that joins several fans stands here once for each of them.
+/// A closed triangle surface with neighbours. Triangles live in numbered slots; a slot may be empty, and is
+/// used again when a patch is replaced by its cap. Every vertex has exactly one fan of triangles: a vertex of
+/// the mesh that joins several fans stands here once for each of them.
 class HullMesh {
  public:
   using Slot = std::uint32_t;    ///< a triangle
   using Corner = std::uint32_t;  ///< a vertex of the hull
 
   struct Triangle {
-    std::array<Corner, 3> v;     ///< counter-clockwise seen from outside
-    std::array<Slot, 3> across;  ///< neighbour over the edge v[i], v[i + 1]
-    FaceId face = kNull;         ///< of the complex; kNull: the slot is empty
-    std::uint32_t component = 0; ///< of the mesh's surface
+    std::array<Corner, 3> v;      ///< counter-clockwise seen from outside
+    std::array<Slot, 3> across;   ///< neighbour over the edge v[i], v[i + 1]
+    FaceId face = kNull;          ///< of the complex; kNull: the slot is empty
+    std::uint32_t component = 0;  ///< of the mesh's surface
   };
 
   /// A vertex's position and its number in the complex.
@@ -33,8 +33,8 @@ class HullMesh {
     VertexId id;
   };
 
-  /// `mesh` must be closed, manifold but for vertices with several fans, and oriented. Polygons become triangles;
-  /// those of one polygon stand in neighbouring slots and have the same face.
+  /// `mesh` must be closed, manifold but for vertices with several fans, and oriented. Polygons become
+  /// triangles; those of one polygon stand in neighbouring slots and have the same face.
   explicit HullMesh(const Mesh& mesh);
 
   Slot slot_count() const { return static_cast<Slot>(triangles_.size()); }
@@ -83,8 +83,8 @@ class HullMesh {
 
   /// Removes triangles without closing the gap: add() must follow.
   void remove(std::span<const Slot> slots);
-  /// Fills an empty slot, or the next one after the last. Neighbours are as given; the other side is to be set with
-  /// link().
+  /// Fills an empty slot, or the next one after the last. Neighbours are as given; the other side is to be
+  /// set with link().
   void add(Slot s, const Triangle& t);
   /// Makes t the neighbour of s over the edge of s that starts at `from`.
   void link(Slot s, Corner from, Slot t) { triangles_[s].across[index_of(s, from)] = t; }

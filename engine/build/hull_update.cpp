@@ -53,7 +53,8 @@ std::vector<Slot> cover(HullMesh& hull, ComplexBuilder& complex, std::span<const
 
   std::vector<Slot> slots;
   for (std::size_t i = 0; i < added.size(); ++i)
-    slots.push_back(i < removed.size() ? removed[i] : hull.slot_count() + static_cast<Slot>(i - removed.size()));
+    slots.push_back(i < removed.size() ? removed[i]
+                                       : hull.slot_count() + static_cast<Slot>(i - removed.size()));
   // Beyond an edge lies another new triangle or, at the boundary, what lay beyond the old one.
   const EdgeIndex old_edges(sheets.old), added_edges(sheets.added);
   std::vector<HullMesh::Triangle> triangles(added.size());

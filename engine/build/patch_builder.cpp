@@ -31,7 +31,8 @@ class PatchBuilder {
         frozen_(mesh.face_count(), false),
         component_boxes_(hull_.component_count()) {
     for (const FaceId f : meeting) frozen_[f] = true;
-    for (Slot s = 0; s < hull_.slot_count(); ++s) component_boxes_[hull_[s].component].extend(box_of(hull_, s));
+    for (Slot s = 0; s < hull_.slot_count(); ++s)
+      component_boxes_[hull_[s].component].extend(box_of(hull_, s));
   }
 
   LrbData run() {
@@ -131,15 +132,18 @@ class PatchBuilder {
 
   std::uint16_t layer() const { return static_cast<std::uint16_t>(pass_); }
   void end_pass() {
+    if (complex_.region_count() == regions_) return;
+    regions_ = complex_.region_count();
     ++pass_;
     if (options_.progress) options_.progress(pass_, hull_.triangle_count());
   }
 
-  /// The outermost wrapper is planned when the hull has no more triangles: few enough to be quick, and still close to
-  /// the mesh.
-  static constexpr std::uint32_t kPolytopeFrom = 1500;
-  static constexpr double kLeastGain = 0.85;            ///< a pass that leaves a larger share of triangles is the last
-  static constexpr std::uint32_t kLeastPatches = 24;    ///< triangles of the hull per interior vertex of a patch
+  /// The outermost wrapper is planned when the hull has no more triangles than this: few enough to be quick,
+  /// and still close to the mesh.
+  static constexpr std::uint32_t kPolytopeFrom = 30000;
+  static constexpr double kLeastGain = 0.85;  ///< a pass that leaves a larger share of triangles is the last
+  static constexpr std::uint32_t kLeastPatches =
+      24;  ///< triangles of the hull per interior vertex of a patch
   static constexpr std::uint32_t kLeastInterior = 3;
   static constexpr std::uint32_t kLeastTriangles = 16;  ///< that a patch may have
 
@@ -151,8 +155,9 @@ class PatchBuilder {
   Random random_;
   std::vector<bool> frozen_;  ///< (|real faces|) they meet others
   std::vector<Eigen::AlignedBox3d> component_boxes_;
-  Mesh polytope_;             ///< empty until planned
-  std::uint32_t pass_ = 0;
+  Mesh polytope_;              ///< empty until planned
+  std::uint32_t pass_ = 0;     ///< the number of the next
+  std::uint32_t regions_ = 0;  ///< before it
 };
 
 }  // namespace

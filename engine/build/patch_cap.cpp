@@ -106,9 +106,9 @@ std::optional<PatchCap::Candidate> PatchCap::evaluate(int u, int v) {
   return c;
 }
 
-/// The projection onto the planes' polyhedron of a point one radius behind the star's centre: so the new vertex comes
-/// to lie above the middle of the star, as low as it may. (The lowest vertex by a linear program slides away sideways
-/// where the star is flat.)
+/// The projection onto the planes' polyhedron of a point one radius behind the star's centre: so the new
+/// vertex comes to lie above the middle of the star, as low as it may. (The lowest vertex by a linear program
+/// slides away sideways where the star is flat.)
 std::optional<Vector3> PatchCap::place(double radius, const Vector3& centre) {
   const double margin = kPlacementMargin * radius, slack = kPlacementSlack * radius;
   Vector3 outward = Vector3::Zero();
@@ -183,7 +183,8 @@ bool PatchCap::confirm(const Candidate& c) const {
     if (exact::PlaneSide(cap_.x(v[0]).data(), cap_.x(v[1]).data(), cap_.x(v[2]).data()).side(c.w.data()) <= 0)
       return false;
   }
-  return !limits_.check || limits_.check->fan_is_clear(*patch_, cap_, star_, {c.w, cap_.is_ring(c.v) ? cap_.id(c.v) : kNull});
+  return !limits_.check ||
+         limits_.check->fan_is_clear(*patch_, cap_, star_, {c.w, cap_.is_ring(c.v) ? cap_.id(c.v) : kNull});
 }
 
 }  // namespace lrb

@@ -11,15 +11,15 @@
 
 namespace lrb {
 
-/// Every collapse leaves a surface that lies in front of the one before (progressive hulls: Sander, Gu, Gortler,
-/// Hoppe and Snyder, "Silhouette Clipping", 2000, whose linear program is replaced by a projection: see
-/// place()).
+/// Every collapse leaves a surface that lies in front of the one before (progressive hulls: Sander, Gu,
+/// Gortler, Hoppe and Snyder, "Silhouette Clipping", 2000, whose linear program is replaced by a projection:
+/// see place()).
 class PatchCap {
  public:
   struct Limits {
-    double volume = 0;         ///< that one collapse may add, or rather its cost; unit cubed
-    int faces = 0;             ///< stop when the cap has no more
-    double depth = 1;          ///< of the point that is projected, below the star's centre; in radii of the star
+    double volume = 0;  ///< that one collapse may add, or rather its cost; unit cubed
+    int faces = 0;      ///< stop when the cap has no more
+    double depth = 1;   ///< of the point that is projected, below the star's centre; in radii of the star
     EmbedCheck* check = nullptr;  ///< if set, every collapse must pass it
   };
 

@@ -41,9 +41,9 @@ bool PatchGrower::grow(Corner seed, Patch& patch) {
   return true;
 }
 
-/// Adds the polygons at v that are not in the patch yet, if the patch remains a disk. It does exactly if its Euler
-/// characteristic stays what it is (from nothing: becomes 1): the new triangles hang together round v, and share an
-/// edge with the patch.
+/// Adds the polygons at v that are not in the patch yet, if the patch remains a disk. It does exactly if its
+/// Euler characteristic stays what it is (from nothing: becomes 1): the new triangles hang together round v,
+/// and share an edge with the patch.
 bool PatchGrower::add_star(Corner v, Patch& patch) {
   added_.clear();
   bool allowed = true;
@@ -81,7 +81,8 @@ bool PatchGrower::add_star(Corner v, Patch& patch) {
         inner += in_patch(t) && std::find(added_.begin(), added_.end(), t) != added_.end();
     const std::size_t shared_with_old = old_edges - inner;
     const std::size_t new_edges = 3 * added_.size() - inner / 2 - shared_with_old;
-    const auto change = static_cast<std::int64_t>(new_points + added_.size()) - static_cast<std::int64_t>(new_edges);
+    const auto change =
+        static_cast<std::int64_t>(new_points + added_.size()) - static_cast<std::int64_t>(new_edges);
     allowed = change == (patch.slots.empty() ? 1 : 0);
     if (!allowed)
       for (const Slot s : added_)
@@ -111,8 +112,7 @@ Corner PatchGrower::best_candidate(Corner seed, double reach_sq, const Patch& pa
     if (refused_[v] == stamp_) continue;
     const std::uint32_t missing = hull_.degree(v) - inside_[v];
     if (patch.slots.size() + missing > limits_.triangles) continue;
-    const double score =
-        missing + kDistancePenalty * ((hull_.x(v) - hull_.x(seed)).squaredNorm() / reach_sq);
+    const double score = missing + kDistancePenalty * ((hull_.x(v) - hull_.x(seed)).squaredNorm() / reach_sq);
     if (best == kNull || score < least || (score == least && v < best)) {
       best = v;
       least = score;

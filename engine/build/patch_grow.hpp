@@ -27,9 +27,9 @@ class PatchGrower {
  public:
   PatchGrower(const HullMesh& hull, const GrowLimits& limits);
 
-  /// Grows a disk about the seed: the star of the seed first, then the star of the ring vertex that needs fewest new
-  /// triangles (with a penalty on its distance from the seed), as long as the patch remains a disk. Polygons of the
-  /// mesh are taken whole. False if not even the seed's star will do.
+  /// Grows a disk about the seed: the star of the seed first, then the star of the ring vertex that needs
+  /// fewest new triangles (with a penalty on its distance from the seed), as long as the patch remains a
+  /// disk. Polygons of the mesh are taken whole. False if not even the seed's star will do.
   bool grow(HullMesh::Corner seed, Patch& patch);
   void take(HullMesh::Slot s) { taken_[s] = true; }
   bool is_taken(HullMesh::Slot s) const { return taken_[s]; }
@@ -50,7 +50,7 @@ class PatchGrower {
   std::vector<std::uint32_t> refused_;      ///< == stamp_: the vertex's star cannot be added
   std::uint32_t stamp_ = 0;
   std::vector<HullMesh::Slot> added_;
-  std::vector<HullMesh::Corner> rim_;       ///< vertices of the patch, some of them interior by now
+  std::vector<HullMesh::Corner> rim_;  ///< vertices of the patch, some of them interior by now
 };
 
 }  // namespace lrb

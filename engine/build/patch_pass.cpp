@@ -24,7 +24,12 @@ std::vector<Corner> seeds_of(const HullMesh& hull, Random& random) {
 
 PatchPass::PatchPass(HullMesh& hull, ComplexBuilder& complex, const BodyBounds& bounds,
                      const std::vector<bool>& frozen, const std::vector<Eigen::AlignedBox3d>& component_boxes)
-    : hull_(hull), complex_(complex), frozen_(frozen), tree_(hull), check_(hull, tree_), collapse_(cap_, bounds) {
+    : hull_(hull),
+      complex_(complex),
+      frozen_(frozen),
+      tree_(hull),
+      check_(hull, tree_),
+      collapse_(cap_, bounds) {
   check_.set_component_boxes(component_boxes);
 }
 
@@ -47,8 +52,8 @@ void PatchPass::run(const GrowLimits& limits, double worth, std::uint16_t layer,
   }
 }
 
-/// First without looking at anything but the patch itself; if that cap turns out to hit something, again with a proof
-/// for each collapse.
+/// First without looking at anything but the patch itself; if that cap turns out to hit something, again with
+/// a proof for each collapse.
 bool PatchPass::make_cap(const Patch& patch, double worth) {
   for (const bool careful : {false, true}) {
     cap_.load(hull_, patch, static_cast<VertexId>(complex_.vertices().size()));

@@ -19,13 +19,13 @@ namespace lrb {
 
 class PatchPass {
  public:
-  /// `frozen` (|real faces|): not to be covered. `component_boxes`: of the hull's components, or of parts of them that
-  /// tell whether the component is somewhere as a whole.
-  PatchPass(HullMesh& hull, ComplexBuilder& complex, const BodyBounds& bounds, const std::vector<bool>& frozen,
-            const std::vector<Eigen::AlignedBox3d>& component_boxes);
+  /// `frozen` (|real faces|): not to be covered. `component_boxes`: of the hull's components, or of parts of
+  /// them that tell whether the component is somewhere as a whole.
+  PatchPass(HullMesh& hull, ComplexBuilder& complex, const BodyBounds& bounds,
+            const std::vector<bool>& frozen, const std::vector<Eigen::AlignedBox3d>& component_boxes);
 
-  /// Covers what it can with regions of this layer, seeds in random order. `worth`: largest share of the triangles it
-  /// covers that a cap may have.
+  /// Covers what it can with regions of this layer, seeds in random order. `worth`: largest share of the
+  /// triangles it covers that a cap may have.
   void run(const GrowLimits& limits, double worth, std::uint16_t layer, Random& random);
 
  private:

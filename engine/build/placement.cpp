@@ -42,8 +42,8 @@ HalfPlane cut(const HalfSpace& h, const Frame& f) {
 }
 
 /// The point nearest to the origin on the edge of half-plane `last` (count of those before it).
-std::optional<Vector2> nearest_on_line(const HalfPlane& edge, std::span<const HalfSpace> before, const Frame& frame,
-                                       double slack) {
+std::optional<Vector2> nearest_on_line(const HalfPlane& edge, std::span<const HalfSpace> before,
+                                       const Frame& frame, double slack) {
   const double length_sq = edge.a.squaredNorm();
   const Vector2 start = edge.a * (edge.b / length_sq);
   const Vector2 along = Vector2(-edge.a.y(), edge.a.x()) / std::sqrt(length_sq);
@@ -81,7 +81,8 @@ std::optional<Vector3> nearest_on_plane(const HalfSpace& last, std::span<const H
 
 }  // namespace
 
-std::optional<Vector3> nearest_point(const Vector3& target, std::span<const HalfSpace> half_spaces, double slack) {
+std::optional<Vector3> nearest_point(const Vector3& target, std::span<const HalfSpace> half_spaces,
+                                     double slack) {
   Vector3 p = target;
   for (std::size_t i = 0; i < half_spaces.size(); ++i) {
     const HalfSpace& h = half_spaces[i];

@@ -10,7 +10,9 @@
 namespace lrb {
 namespace {
 
-std::uint64_t edge_key(std::uint32_t a, std::uint32_t b) { return std::uint64_t{a} << 32 | b; }
+std::uint64_t edge_key(std::uint32_t a, std::uint32_t b) {
+  return std::uint64_t{a} << 32 | b;
+}
 
 /// Joins over edges: old triangles first, then the added ones.
 DisjointSets connect(std::span<const PointTriangle> old, std::span<const PointTriangle> added) {
@@ -37,7 +39,8 @@ DisjointSets connect(std::span<const PointTriangle> old, std::span<const PointTr
 }
 
 std::vector<double> volumes_of(const RegionPieces& pieces, std::span<const PointTriangle> old,
-                               std::span<const PointTriangle> added, std::span<const Eigen::Vector3d> points) {
+                               std::span<const PointTriangle> added,
+                               std::span<const Eigen::Vector3d> points) {
   const Eigen::Vector3d origin = points[added.empty() ? old[0][0] : added[0][0]];
   const auto volume = [&](const PointTriangle& t) {
     return (points[t[0]] - origin).dot((points[t[1]] - origin).cross(points[t[2]] - origin));

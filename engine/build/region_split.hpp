@@ -20,10 +20,11 @@ struct RegionPieces {
   std::vector<std::uint32_t> of_added;  ///< (|added|)
 };
 
-/// `added` lies in front of `old`, and together they bound the space between. (Triangles that are in both sheets are
-/// in neither list.) `old_face`: triangles of one polygon have the same entry, and neighbours in the list. Pieces hang
-/// together over edges; where the sheets touch in an edge, the space to its left and the space to its right are
-/// different pieces. A piece without volume is the inner shell of another one: it is joined to the largest.
+/// `added` lies in front of `old`, and together they bound the space between. (Triangles that are in both
+/// sheets are in neither list.) `old_face`: triangles of one polygon have the same entry, and neighbours in
+/// the list. Pieces hang together over edges; where the sheets touch in an edge, the space to its left and
+/// the space to its right are different pieces. A piece without volume is the inner shell of another one: it
+/// is joined to the largest.
 RegionPieces split_region(std::span<const PointTriangle> old, std::span<const std::uint32_t> old_face,
                           std::span<const PointTriangle> added, std::span<const Eigen::Vector3d> points);
 

@@ -4,20 +4,31 @@
 
 namespace lrb {
 
-SlotTree::SlotTree(const HullMesh& hull) : slots_(hull.alive_slots()), centres_(hull.slot_count()) {
-  place_.assign(hull.slot_count(), kNull);
-  for (const Slot s : slots_) {
-    const auto box = box_of(hull, s);
-    centres_[s] = box.min() / 2 + box.max() / 2;  // halved first: no overflow
-  }
+namespace {
+
+std::vector<Eigen::AlignedBox3d> boxes_of(const HullMesh& hull) {
+  std::vector<Eigen::AlignedBox3d> boxes(hull.slot_count());
+  for (HullMesh::Slot s = 0; s < hull.slot_count(); ++s)
+    if (hull.alive(s)) boxes[s] = box_of(hull, s);
+  return boxes;
+}
+
+}  // namespace
+
+SlotTree::SlotTree(const HullMesh& hull) : SlotTree(hull.alive_slots(), boxes_of(hull)) {}
+
+SlotTree::SlotTree(std::vector<Slot> slots, std::span<const Box> boxes)
+    : slots_(std::move(slots)), centres_(boxes.size()), place_(boxes.size(), kNull) {
   if (slots_.empty()) return;
+  for (const Slot s : slots_)
+    centres_[s] = boxes[s].min() / 2 + boxes[s].max() / 2;  // halved first: no overflow
   leaf_.resize(slots_.size());
   nodes_.reserve(slots_.size());
   build(0, static_cast<std::uint32_t>(slots_.size()), kNull);
   boxes_.resize(slots_.size());
   for (std::uint32_t i = 0; i < slots_.size(); ++i) {
     place_[slots_[i]] = i;
-    boxes_[i] = box_of(hull, slots_[i]);
+    boxes_[i] = boxes[slots_[i]];
   }
   for (std::size_t n = nodes_.size(); n-- > 0;) {
     Node& node = nodes_[n];
@@ -40,10 +51,11 @@ std::uint32_t SlotTree::build(std::uint32_t first, std::uint32_t last, std::uint
   int axis = 0;
   spread.sizes().maxCoeff(&axis);
   const std::uint32_t middle = first + (last - first) / 2;
-  std::nth_element(slots_.begin() + first, slots_.begin() + middle, slots_.begin() + last, [&](Slot s, Slot t) {
-    const double a = centres_[s][axis], b = centres_[t][axis];
-    return a != b ? a < b : s < t;
-  });
+  std::nth_element(slots_.begin() + first, slots_.begin() + middle, slots_.begin() + last,
+                   [&](Slot s, Slot t) {
+                     const double a = centres_[s][axis], b = centres_[t][axis];
+                     return a != b ? a < b : s < t;
+                   });
   build(first, middle, index);
   const std::uint32_t right = build(middle, last, index);
   nodes_[index].right = right;

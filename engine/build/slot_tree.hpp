@@ -11,17 +11,19 @@
 
 namespace lrb {
 
-/// Built anew for each pass. In between, a slot that gets a new triangle keeps its place in the tree, and the boxes
-/// above it grow as far as needed: caps lie close to the patches whose slots they take over.
+/// Built anew for each pass. In between, a slot that gets a new triangle keeps its place in the tree, and the
+/// boxes above it grow as far as needed: caps lie close to the patches whose slots they take over.
 class SlotTree {
  public:
   using Slot = HullMesh::Slot;
   using Box = Eigen::AlignedBox3d;
 
   explicit SlotTree(const HullMesh& hull);
+  /// Of any slots; `boxes` (slot count) is asked for those only.
+  SlotTree(std::vector<Slot> slots, std::span<const Box> boxes);
 
-  /// The slot has a new triangle (not called for slots that become empty: their boxes stay and are ignored by the
-  /// caller, who looks at HullMesh::alive()).
+  /// The slot has a new triangle (not called for slots that become empty: their boxes stay and are ignored by
+  /// the caller, who looks at HullMesh::alive()).
   void update(Slot s, const Box& box);
 
   /// Calls visit(slot) for every slot whose box meets `box` (closed).
@@ -58,10 +60,10 @@ class SlotTree {
   std::uint32_t build(std::uint32_t first, std::uint32_t last, std::uint32_t parent);
 
   std::vector<Slot> slots_;
-  std::vector<Box> boxes_;               ///< beside slots_
-  std::vector<Eigen::Vector3d> centres_; ///< by slot, while building
-  std::vector<std::uint32_t> place_;     ///< of a slot in slots_
-  std::vector<std::uint32_t> leaf_;      ///< of a place
+  std::vector<Box> boxes_;                ///< beside slots_
+  std::vector<Eigen::Vector3d> centres_;  ///< by slot, while building
+  std::vector<std::uint32_t> place_;      ///< of a slot in slots_
+  std::vector<std::uint32_t> leaf_;       ///< of a place
   std::vector<Node> nodes_;
 };
 

@@ -52,11 +52,7 @@ Scenario make_scenario(const CollideOptions& o, const std::vector<LoadedBody>& b
   s.request = o.request;
   s.request.contacts = o.request.mode == Mode::all_pairs;
   s.frames.montage = 6;
-  FrameSpec::View whole, contact;
-  whole.title = "Whole";
-  contact.title = "Contact";
-  contact.camera = FrameSpec::Camera::contact;
-  s.frames.views = {whole, contact};
+  s.frames.views = whole_and_contact();
   if (!o.poses.empty()) {
     s.motion.kind = Motion::Kind::poses;
     s.motion.poses = read_poses(o.poses);

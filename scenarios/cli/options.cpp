@@ -18,6 +18,20 @@ void add_choice(CLI::App& app, const std::string& name, Target& target, const st
       ->type_name(type_name);
 }
 
+/// Makes an axis (0, 1, 2) the upward one, and stands where one stood with z upward.
+void turn_up(FrameSpec& spec, int axis) {
+  if (spec.views.empty()) spec.views.emplace_back();
+  const auto turned = [axis](const Eigen::Vector3d& v) {
+    Eigen::Vector3d out;
+    for (int i = 0; i < 3; ++i) out[(i + axis + 1) % 3] = v[i];
+    return out;
+  };
+  for (FrameSpec::View& view : spec.views) {
+    view.from = turned(view.from);
+    view.up = turned(view.up);
+  }
+}
+
 }  // namespace
 
 void add_request_options(CLI::App& app, CollideRequest& request) {
@@ -58,6 +72,9 @@ void add_picture_options(CLI::App& app, PictureOptions& options) {
   app.add_option("--most", options.most, "Frames at most, evenly chosen")
       ->check(CLI::Range(1, 10000))
       ->type_name("N");
+  app.add_option("--up", options.up, "Axis that points up in the pictures [z]")
+      ->check(CLI::IsMember({"x", "y", "z"}).description(""))
+      ->type_name("x|y|z");
   add_choice<ColourBy>(app, "--colour-by", options.colour_by,
                        {{"kind", ColourBy::kind},
                         {"layer", ColourBy::layer},
@@ -87,6 +104,16 @@ void apply(const PictureOptions& options, FrameSpec& spec) {
   if (options.every) spec.every = *options.every;
   if (options.most) spec.most = *options.most;
   if (options.colour_by) spec.colour_by = *options.colour_by;
+  if (!options.up.empty()) turn_up(spec, options.up[0] - 'x');
+}
+
+std::vector<FrameSpec::View> whole_and_contact() {
+  FrameSpec::View whole, contact;
+  whole.title = "Whole, with wrappers";
+  contact.title = "Contact, bodies alone";
+  contact.camera = FrameSpec::Camera::contact;
+  contact.wrapper = false;
+  return {whole, contact};
 }
 
 }  // namespace lrb::cli

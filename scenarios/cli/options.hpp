@@ -16,15 +16,19 @@ void add_request_options(CLI::App& app, CollideRequest& request);
 /// --patch, --max-outer and --seed.
 void add_build_options(CLI::App& app, BuildOptions& options);
 
-/// --size, --frames, --most and --colour-by, over what a scenario says.
+/// --size, --frames, --every, --most, --colour-by and --up, over what a scenario says.
 struct PictureOptions {
   std::string size;
   std::optional<FrameSpec::At> at;
   std::optional<std::uint32_t> every, most;
   std::optional<FrameSpec::ColourBy> colour_by;
+  std::string up;
 };
 void add_picture_options(CLI::App& app, PictureOptions& options);
 void apply(const PictureOptions& options, FrameSpec& spec);
+
+/// Two views side by side: the whole scene with the wrappers, and the contact with the bodies alone.
+std::vector<FrameSpec::View> whole_and_contact();
 
 /// Prints the end of a run; its exit code.
 int report_outcome(const RunOutcome& outcome, const std::string& folder, bool json, const Globals& globals);

@@ -55,19 +55,13 @@ std::vector<CollideResult> contacts_of(const trace::Trace& trace, const std::vec
 FrameSpec frame_spec(const RenderOptions& o, bool two_bodies) {
   FrameSpec spec;
   spec.at = two_bodies ? FrameSpec::At::step : FrameSpec::At::refinement;
+  if (o.close_up) spec.views = whole_and_contact();
   apply(o.picture, spec);
   if (!o.events.empty()) {
     spec.at = FrameSpec::At::events;
     spec.events = o.events;
   }
   spec.montage = o.montage;
-  if (o.close_up) {
-    FrameSpec::View whole, contact;
-    whole.title = "Whole";
-    contact.title = "Contact";
-    contact.camera = FrameSpec::Camera::contact;
-    spec.views = {whole, contact};
-  }
   return spec;
 }
 

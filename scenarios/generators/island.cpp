@@ -42,7 +42,7 @@ Mesh island(const GeneratorValues& v, std::uint64_t seed) {
   Random random(seed);
   // The coarse outline: wide capes and one deep gulf, non-convex before any detail is cut into it.
   const double cape[][2] = {{1.00, 0.04}, {0.93, 0.10}, {0.98, 0.24}, {0.90, 0.37}, {0.38, 0.47},
-                            {0.95, 0.58}, {1.00, 0.70}, {0.72, 0.80}, {1.00, 0.91}};  // radius, turn
+                            {0.95, 0.58}, {1.00, 0.70}, {0.45, 0.80}, {1.00, 0.91}};  // radius, turn
   std::vector<Eigen::Vector2d> outline;
   for (const auto& c : cape) {
     const double angle = 2 * std::numbers::pi * c[1];

@@ -81,7 +81,8 @@ class Painter {
     picture_ = Image(picture.width, picture.height);
   }
 
-  const Image& paint(const Stage& stage, double progress) {
+  /// `plain`: see Stage::scene().
+  const Image& paint(const Stage& stage, double progress, bool plain = false) {
     const Rgba back = spec_.transparent ? kTransparent : kWhite;
     picture_.pixels().assign(picture_.pixels().size(),
                              views_.size() > 1 && !spec_.transparent ? palette::kRule : back);
@@ -92,7 +93,7 @@ class Painter {
       options.height = place.height;
       options.supersample = spec_.supersampling;
       if (spec_.transparent) options.background.reset();
-      const Scene scene = stage.scene(views_[i].wrapper);
+      const Scene scene = stage.scene(views_[i].wrapper, plain);
       Image view = rasterizer_.draw(
           scene.list, camera_for(views_[i], framing_, place.width, place.height, progress), options);
       if (!views_[i].title.empty()) write_title(view, views_[i].title);
@@ -166,7 +167,7 @@ DrawnFrames draw_frames(const Performance& performance, const FrameSpec& spec, c
                 compose_frame(picture, script.picture, script.overlays[i], spec.width, spec.height, back),
                 png);
     if (std::find(in_montage.begin(), in_montage.end(), i) != in_montage.end()) {
-      panels.push_back({picture, stage.short_caption()});
+      panels.push_back({painter.paint(stage, passed, true), stage.short_caption()});
     }
     out.frames.push_back({file_name(i), stage.caption(), events[i], stage.step()});
   }

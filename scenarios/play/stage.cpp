@@ -1,5 +1,7 @@
 #include "scenarios/play/stage.hpp"
 
+#include <filesystem>
+
 #include "render/palette.hpp"
 #include "scenarios/play/moments.hpp"
 #include "trace/names.hpp"
@@ -20,6 +22,11 @@ std::string relation_words(Relation r) {
     default:
       return to_string(r);
   }
+}
+
+/// A mesh's name without folder and extension.
+std::string short_name(const LrbRep& rep) {
+  return std::filesystem::path(rep.name()).stem().string();
 }
 
 std::string counted(std::uint64_t n, const char* one, const char* many) {
@@ -66,7 +73,7 @@ std::vector<double> Stage::values_of(Side side) const {
   return {chosen.begin(), chosen.end()};
 }
 
-Scene Stage::scene(bool wrapper) const {
+Scene Stage::scene(bool wrapper, bool plain) const {
   std::vector<SceneBody> bodies;
   const std::vector<double> values[2] = {values_of(Side::a),
                                          reps_.size() > 1 ? values_of(Side::b) : std::vector<double>()};
@@ -78,14 +85,14 @@ Scene Stage::scene(bool wrapper) const {
     body.pose = cursor_.pose(side);
     body.face_values = values[i];
     body.name =
-        reps_.size() == 1 ? reps_[i]->name() : std::string(i == 0 ? "A" : "B") + " " + reps_[i]->name();
+        reps_.size() == 1 ? short_name(*reps_[i]) : std::string(i == 0 ? "A " : "B ") + short_name(*reps_[i]);
     bodies.push_back(std::move(body));
   }
   SceneHighlight highlight;
-  if (wrapper && point_out_refined_)
+  if (wrapper && !plain && point_out_refined_)
     for (const trace::RefinedRegion& r : cursor_.refined())
       highlight.refining[static_cast<std::size_t>(r.side)].push_back(r.region);
-  if (const auto pair = cursor_.pair_under_test(); wrapper && pair && !at_step_end())
+  if (const auto pair = cursor_.pair_under_test(); wrapper && !plain && pair && !at_step_end())
     highlight.under_test = {pair->simplex_a, pair->simplex_b};
   if (const CollideResult* result = result_here()) highlight.contacts = result->regions;
   SceneOptions options;

@@ -21,8 +21,8 @@ class Stage {
 
   void seek(trace::EventId event);
 
-  /// `wrapper` false: the bodies alone.
-  Scene scene(bool wrapper = true) const;
+  /// `wrapper` false: the bodies alone. `plain`: a state, not an event: nothing is pointed out but contacts.
+  Scene scene(bool wrapper = true, bool plain = false) const;
   /// The text of a frame; no key or scale.
   Overlay overlay(const std::string& title) const;
   /// The same in one sentence, for the page.

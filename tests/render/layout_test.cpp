@@ -42,8 +42,9 @@ TEST_CASE("in frames of the usual sizes nothing overlaps or is cut off") {
   Overlay overlay = full_overlay();
   for (const bool scale : {true, false}) {
     if (!scale) overlay.scale.reset();
-    for (const auto& [w, h] :
+    for (const std::pair<int, int>& size :
          {std::pair{640, 360}, {1280, 720}, {1920, 1080}, {3840, 2160}, {600, 800}, {500, 500}}) {
+      const int w = size.first, h = size.second;
       CAPTURE(w);
       const OverlayLayout layout = lay_out(overlay, w, h);
       const auto all = boxes(layout);

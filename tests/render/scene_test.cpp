@@ -67,11 +67,19 @@ TEST_CASE("the picture follows the wrapper: all real faces, and the lids of its 
   CHECK(!has_key(bare, "A, pseudo faces"));
 }
 
-TEST_CASE("each outline of the lids is drawn once") {
+TEST_CASE("lids have their edges; those of a region being refined are lines, each once") {
   const LrbRep rep = test::dented(test::icosphere(0), 1);
   const Wrapper wrapper(rep);
-  const Scene scene = build_scene(std::vector<SceneBody>{{&rep, &wrapper, {}, {}, ""}});
-  CHECK(scene.list.lines.size() == 30);  // the edges of an icosahedron
+  const std::vector<SceneBody> body = {{&rep, &wrapper, {}, {}, ""}};
+  Scene scene = build_scene(body);
+  for (const DrawTriangle& t : scene.list.triangles) {
+    if (t.layer == Layer::translucent) CHECK(t.edges == 7);
+  }
+  CHECK(scene.list.lines.empty());
+  SceneHighlight highlight;
+  highlight.refining[0] = {4};
+  scene = build_scene(body, highlight);
+  CHECK(scene.list.lines.size() == 3);  // one triangular lid over three real faces
 }
 
 TEST_CASE("poses move bodies, names and sides are told apart") {
@@ -190,6 +198,15 @@ TEST_CASE("exploded regions keep their shape and move outward") {
     CHECK((t.x[1] - rep.vertices()[corners[1]] - moved).norm() < 1e-12);
     if (moved.norm() > 0) CHECK(moved.dot(before) > 0);
   }
+}
+
+TEST_CASE("bodies of many regions can be exploded by region") {
+  const LrbRep rep = test::dented(test::icosphere(1), 3);
+  REQUIRE(rep.region_count() > 256);
+  SceneOptions options;
+  options.explode = 0.5;
+  options.colour_by = ColourBy::region;
+  CHECK(!build_scene(std::vector<SceneBody>{{&rep, nullptr, {}, {}, ""}}, {}, options).list.empty());
 }
 
 TEST_CASE("2D: the solid dark, regions light, the wrapper as a line") {

@@ -1,0 +1,71 @@
+#include "engine/build/patch_grow.hpp"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <set>
+
+#include "tests/support/shapes.hpp"
+
+namespace lrb {
+namespace {
+
+/// V - E + F of a set of triangles.
+int euler(const HullMesh& hull, const std::vector<HullMesh::Slot>& slots) {
+  std::set<HullMesh::Corner> vertices;
+  std::set<std::pair<HullMesh::Corner, HullMesh::Corner>> edges;
+  for (const auto s : slots)
+    for (int i = 0; i < 3; ++i) {
+      vertices.insert(hull[s].v[i]);
+      edges.insert(std::minmax(hull[s].v[i], hull[s].v[(i + 1) % 3]));
+    }
+  return static_cast<int>(vertices.size() + slots.size()) - static_cast<int>(edges.size());
+}
+
+void check_patches(const Mesh& mesh, std::uint32_t interior) {
+  CAPTURE(mesh.name);
+  const HullMesh hull(mesh);
+  PatchGrower grower(hull, {interior, 4 * interior});
+  std::set<HullMesh::Slot> all;
+  Patch patch;
+  for (HullMesh::Corner seed = 0; seed < hull.point_count(); ++seed) {
+    if (!grower.grow(seed, patch)) continue;
+    CHECK(euler(hull, patch.slots) == 1);
+    CHECK(std::set(patch.ring.begin(), patch.ring.end()).size() == patch.ring.size());
+    CHECK(patch.slots.size() == 2 * patch.interior.size() + patch.ring.size() - 2);
+    for (std::size_t i = 0; i < patch.ring.size(); ++i) {
+      const auto& outside = hull[patch.outside[i]];
+      const int from = hull.index_of(patch.outside[i], patch.ring[(i + 1) % patch.ring.size()]);
+      CHECK(outside.v[(from + 1) % 3] == patch.ring[i]);
+      CHECK(std::find(patch.slots.begin(), patch.slots.end(), outside.across[from]) != patch.slots.end());
+    }
+    for (const auto s : patch.slots) {
+      CHECK(all.insert(s).second);
+      const auto unit = hull.unit(s);
+      for (auto t = unit.first; t < unit.last; ++t)
+        CHECK(std::find(patch.slots.begin(), patch.slots.end(), t) != patch.slots.end());
+      grower.take(s);
+    }
+  }
+  CHECK(all.size() * 4 > hull.triangle_count());
+}
+
+TEST_CASE("patches are disks with a simple ring, of whole polygons, and do not overlap") {
+  check_patches(test::icosphere(3), 16);
+  check_patches(test::torus(12, 8), 16);
+  check_patches(test::torus(4, 3), 8);  // rings close round the tube
+  check_patches(test::quad_torus(12, 8), 16);
+  check_patches(test::comb(4), 4);
+  check_patches(test::tetrahedron(), 16);
+  check_patches(test::box_with_void(), 16);
+}
+
+TEST_CASE("a vertex that joins two fans stands twice in the hull") {
+  const Mesh mesh = test::voxels(2, 2, 2, [](int x, int y, int z) { return x == y && y == z; });
+  const HullMesh hull(mesh);
+  CHECK(hull.point_count() == mesh.vertices.size() + 1);
+  CHECK(hull.component_count() == 2);
+}
+
+}  // namespace
+}  // namespace lrb

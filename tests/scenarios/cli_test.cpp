@@ -1,0 +1,305 @@
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <string>
+
+#include <doctest/doctest.h>
+#include <nlohmann/json.hpp>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "engine/query/collide.hpp"
+#include "render/png.hpp"
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+namespace {
+
+/// A folder of its own for each test, gone afterwards.
+struct Folder {
+  fs::path path;
+  Folder() {
+    std::string name =
+        (fs::temp_directory_path() / "lrbscope cli XXXXXX").string();  // with spaces: they must not hurt
+    path = mkdtemp(name.data());
+  }
+  ~Folder() { fs::remove_all(path); }
+  std::string operator/(const std::string& name) const { return (path / name).string(); }
+  std::string write(const std::string& name, const std::string& text) const {
+    std::ofstream(path / name, std::ios::binary) << text;
+    return (path / name).string();
+  }
+};
+
+std::string slurp(const std::string& path) {
+  std::ostringstream out;
+  out << std::ifstream(path, std::ios::binary).rdbuf();
+  return out.str();
+}
+
+struct Outcome {
+  int code = -1;
+  std::string out, err;
+  std::size_t error_lines() const {
+    return static_cast<std::size_t>(std::count(err.begin(), err.end(), '\n'));
+  }
+};
+
+/// Runs the program in the folder; arguments are quoted for the shell.
+Outcome run(const Folder& folder, const std::vector<std::string>& arguments) {
+  std::string line = "cd '" + folder.path.string() + "' && '" LRBSCOPE_BINARY "'";
+  for (const std::string& a : arguments) line += " '" + a + "'";
+  line += " >'" + folder / "stdout" + "' 2>'" + folder / "stderr" + "' </dev/null";
+  const int status = std::system(line.c_str());
+  Outcome o;
+  o.code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  o.out = slurp(folder / "stdout");
+  o.err = slurp(folder / "stderr");
+  fs::remove(folder / "stdout");
+  fs::remove(folder / "stderr");
+  return o;
+}
+
+const char* kCube =
+    "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\n"
+    "f 1 4 3 2\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n";
+const char* kTriangle = "v 0.5 0.5 -1\nv 0.5 0.6 2\nv 0.6 0.5 2\nf 1 2 3\n";
+const char* kApart = "1 0 0 3 0 1 0 0 0 0 1 0\n";
+
+std::size_t files_in(const Folder& folder) {
+  return static_cast<std::size_t>(
+      std::distance(fs::directory_iterator(folder.path), fs::directory_iterator()));
+}
+
+}  // namespace
+
+TEST_CASE("fingerprints: the two fixed values") {
+  CHECK(lrb::fingerprint({}) == 0xcbf29ce484222325u);
+  CHECK(lrb::fingerprint({{1, 2}, {3, 4}}) == 0x84c39a079fc08121u);
+}
+
+TEST_CASE("query: a JSON line per pose") {
+  const Folder folder;
+  folder.write("a.obj", kCube);
+  folder.write("p.txt", std::string("# apart, then overlapping, then the same\n") + kApart +
+                            "1 0 0 0.5 0 1 0 0.25 0 0 1 0.125\n\n0.1 0 0 0.4 0 0.1 0 0.4 0 0 0.1 0.4\n");
+  const Outcome o = run(folder, {"query", "a.obj", "a.obj", "--poses", "p.txt", "--pairs", "--repeat", "3"});
+  CAPTURE(o.err);
+  REQUIRE(o.code == 0);
+  std::istringstream lines(o.out);
+  std::vector<json> answers;
+  for (std::string line; std::getline(lines, line);) answers.push_back(json::parse(line));
+  REQUIRE(answers.size() == 3);
+  CHECK(answers[0]["pose"] == 0);
+  CHECK(answers[0]["relation"] == "separate");
+  CHECK(answers[0]["pairs"] == 0);
+  CHECK(answers[0]["fingerprint"] == "cbf29ce484222325");
+  CHECK(answers[1]["relation"] == "crossing");
+  CHECK(answers[1]["pairs"] == answers[1]["list"].size());
+  CHECK(answers[1]["pairs"] > 0);
+  CHECK(answers[1]["us"] > 0);
+  CHECK(answers[2]["relation"] == "b_inside_a");
+}
+
+TEST_CASE("query: without --pairs and --repeat there is nothing but the four keys") {
+  const Folder folder;
+  folder.write("a.obj", kCube);
+  folder.write("p.txt", kApart);
+  CHECK(run(folder, {"query", "a.obj", "a.obj", "--poses", "p.txt"}).out ==
+        "{\"pose\":0,\"relation\":\"separate\",\"pairs\":0,\"fingerprint\":\"cbf29ce484222325\"}\n");
+}
+
+TEST_CASE("query: first finds one pair, the paper's recursion says that it is not the complete one") {
+  const Folder folder;
+  folder.write("a.obj", kCube);
+  folder.write("p.txt", "1 0 0 0.5 0 1 0 0.25 0 0 1 0.125\n");
+  const json first =
+      json::parse(run(folder, {"query", "a.obj", "a.obj", "--poses", "p.txt", "--mode", "first"}).out);
+  CHECK(first["pairs"] == 1);
+  const json paper =
+      json::parse(run(folder, {"query", "a.obj", "a.obj", "--poses", "p.txt", "--recursion", "paper"}).out);
+  CHECK(paper["recursion"] == "paper");
+}
+
+TEST_CASE("query: an open mesh is queried all the same, and inside has no meaning then") {
+  const Folder folder;
+  folder.write("a.obj", kCube);
+  folder.write("b.obj", kTriangle);
+  folder.write("p.txt", std::string("1 0 0 0 0 1 0 0 0 0 1 0\n") + kApart);
+  const Outcome o = run(folder, {"query", "a.obj", "b.obj", "--poses", "p.txt"});
+  CHECK(o.code == 0);
+  CHECK(o.err.find("without regions") != std::string::npos);
+  CHECK(o.out.find("\"crossing\"") != std::string::npos);
+  CHECK(o.out.find("\"undefined\"") != std::string::npos);
+  CHECK(run(folder, {"--quiet", "query", "a.obj", "b.obj", "--poses", "p.txt"}).err.empty());
+}
+
+TEST_CASE("bad input: one line on stderr, exit 2, nothing on stdout, nothing left behind") {
+  const Folder folder;
+  folder.write("a.obj", kCube);
+  folder.write("good.txt", kApart);
+  folder.write("eleven.txt", std::string(kApart) + "1 0 0 3 0 1 0 0 0 0 1\n");
+  folder.write("nan.txt", std::string(kApart) + "1 0 0 nan 0 1 0 0 0 0 1 0\n");
+  folder.write("broken.obj", "v 0 0 0\nv 1 0 x\n");
+  folder.write("empty.obj", "");
+  folder.write("open.obj", kTriangle);
+  folder.write("bad.json", "{\n  \"name\": \"x\",\n  \"porpose\": 1\n}");
+  folder.write("flat.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nl 1 2 3 4 1\n");
+  const std::size_t before = files_in(folder);
+  const std::vector<std::vector<std::string>> bad = {
+      {"query", "a.obj", "a.obj", "--poses", "eleven.txt"},
+      {"query", "a.obj", "a.obj", "--poses", "nan.txt"},
+      {"query", "a.obj", "a.obj", "--poses", "missing.txt"},
+      {"query", "a.obj", "a.obj", "--poses", "."},
+      {"query", "a.obj", "broken.obj", "--poses", "good.txt"},
+      {"query", "a.obj", "missing.obj", "--poses", "good.txt"},
+      {"query", "a.obj", "empty.obj", "--poses", "good.txt"},
+      {"query", "a.obj", "flat.obj", "--poses", "good.txt"},
+      {"query", "a.obj", "a.obj"},
+      {"query", "a.obj", "a.obj", "--poses", "good.txt", "--mode", "some"},
+      {"query", "a.obj", "a.obj", "--poses", "good.txt", "--repeat", "0"},
+      {"build", "broken.obj", "-o", "x.lrb"},
+      {"build", "open.obj", "-o", "x.lrb"},
+      {"build", "missing.obj"},
+      {"inspect", "broken.obj"},
+      {"run", "bad.json", "-o", "out"},
+      {"run", "colision", "-o", "out"},
+      {"run", "collision", "--size", "12", "-o", "out"},
+      {"collide", "a.obj", "broken.obj", "-o", "out"},
+      {"collide", "a.obj", "flat.obj", "-o", "out"},
+      {"collide", "a.obj", "a.obj", "--from", "0,0,0", "-o", "out"},
+      {"collide", "a.obj", "a.obj", "--poses", "eleven.txt", "-o", "out"},
+      {"render", "missing.json"},
+      {"render", "bad.json"},
+      {"frobnicate"},
+      {},
+  };
+  for (const auto& arguments : bad) {
+    std::string shown;
+    for (const std::string& a : arguments) shown += a + " ";
+    CAPTURE(shown);
+    const Outcome o = run(folder, arguments);
+    CAPTURE(o.err);
+    CHECK(o.code == 2);
+    CHECK(o.out.empty());
+    CHECK(o.error_lines() == 1);
+    CHECK(files_in(folder) == before);
+  }
+  CHECK(run(folder, {"query", "a.obj", "a.obj", "--poses", "eleven.txt"})
+            .err.find("eleven.txt:2: expected 12 numbers (a row-major 3x4 pose), found 11") !=
+        std::string::npos);
+  CHECK(run(folder, {"run", "bad.json"})
+            .err.find("bad.json:3:3: /porpose: unknown key; did you mean \"purpose\"?") != std::string::npos);
+}
+
+TEST_CASE("build: the figures, the proof, and a file that can be used in the mesh's place") {
+  const Folder folder;
+  folder.write("a.obj", kCube);
+  folder.write("p.txt", "1 0 0 0.5 0 1 0 0.25 0 0 1 0.125\n");
+  const Outcome o = run(folder, {"build", "a.obj", "-o", "a.lrb", "--json"});
+  CAPTURE(o.err);
+  REQUIRE(o.code == 0);
+  const json j = json::parse(o.out);
+  for (const char* key : {"real_faces", "pseudo_faces", "total_faces", "outer_faces", "regions", "layers",
+                          "volume_solid", "volume_outer", "volume_hull", "seconds", "valid"}) {
+    CAPTURE(key);
+    CHECK(j.contains(key));
+  }
+  CHECK(j["real_faces"] == 6);
+  CHECK(j["valid"] == true);
+  CHECK(j["volume_solid"] == doctest::Approx(1));
+  CHECK(j["volume_hull"] == doctest::Approx(1));
+  CHECK(j["total_faces"] == j["real_faces"].get<int>() + j["pseudo_faces"].get<int>());
+  CHECK(run(folder, {"query", "a.lrb", "a.lrb", "--poses", "p.txt"}).out ==
+        run(folder, {"query", "a.obj", "a.obj", "--poses", "p.txt"}).out);
+  CHECK(run(folder, {"inspect", "a.lrb", "--validate"}).code == 0);
+}
+
+TEST_CASE("inspect: faults are findings, not errors") {
+  const Folder folder;
+  folder.write("open.obj", kTriangle);
+  const Outcome o = run(folder, {"inspect", "open.obj", "--json"});
+  REQUIRE(o.code == 0);
+  const json j = json::parse(o.out);
+  CHECK(j["closed"] == false);
+  CHECK(j["buildable"] == false);
+  CHECK(j["queryable"] == true);
+  CHECK(j["findings"].size() >= 1);
+}
+
+TEST_CASE("run: page, trace, summary and frames; twice the same bytes; a mismatch ends with 1") {
+  const Folder folder;
+  json s = {{"name", "small"},
+            {"purpose", "two balls"},
+            {"bodies",
+             {{"a", {{"generator", "ball"}, {"parameters", {{"frequency", 3}}}}},
+              {"b", {{"generator", "ball"}, {"parameters", {{"frequency", 2}}}}}}},
+            {"motion", {{"kind", "approach"}, {"from", {3, 0.1, 0.2}}, {"before", 1}, {"into", 1}}},
+            {"frames", {{"size", {320, 240}}, {"montage", {{"panels", 2}}}}},
+            {"expect", json::array({{{"step", 0}, {"relation", "separate"}},
+                                    {{"step", 1}, {"relation", "crossing"}}})}};
+  folder.write("s.json", s.dump(1));
+  const Outcome first = run(folder, {"run", "s.json", "-o", "one"});
+  CAPTURE(first.err);
+  REQUIRE(first.code == 0);
+  CHECK(first.out == "one/index.html\n");
+  REQUIRE(run(folder, {"run", "s.json", "-o", "two"}).code == 0);
+  for (const char* file : {"trace.json", "summary.json", "a.lrb", "b.lrb", "montage.png",
+                           "frames/frame_0000.png", "frames/frame_0001.png", "frames/frame_0002.png"}) {
+    CAPTURE(file);
+    CHECK(fs::file_size(folder.path / "one" / file) > 0);
+    CHECK(slurp(folder / ("one/" + std::string(file))) == slurp(folder / ("two/" + std::string(file))));
+  }
+  const lrb::DecodedPng png = lrb::read_png(folder / "one/frames/frame_0000.png");
+  CHECK(png.image.width() == 320);
+  CHECK(png.image.height() == 240);
+  CHECK(slurp(folder / "one/index.html").find("data:image/png;base64,") != std::string::npos);
+
+  const Outcome again = run(folder, {"render", "one/trace.json", "-o", "three", "--size", "320x240"});
+  CAPTURE(again.err);
+  REQUIRE(again.code == 0);  // drawn from the trace alone: the same pictures
+  CHECK(lrb::read_png(folder / "three/frames/frame_0002.png").image ==
+        lrb::read_png(folder / "one/frames/frame_0002.png").image);
+
+  s["expect"][0]["relation"] = "touching";
+  folder.write("s.json", s.dump(1));
+  const Outcome wrong = run(folder, {"run", "s.json", "-o", "four", "--frames", "none"});
+  CHECK(wrong.code == 1);
+  CHECK(wrong.err.find("expected relation touching, found separate") != std::string::npos);
+}
+
+TEST_CASE("collide: two files of the user's own") {
+  const Folder folder;
+  folder.write("a cube.obj", kCube);
+  const Outcome o = run(folder, {"collide", "a cube.obj", "a cube.obj", "-o", "out dir", "--size", "320x240",
+                                 "--most", "3", "--from", "0.3,0.2,1"});
+  CAPTURE(o.err);
+  REQUIRE(o.code == 0);
+  CHECK(fs::exists(folder / "out dir/index.html"));
+  CHECK(fs::exists(folder / "out dir/frames/frame_0002.png"));
+  const json summary = json::parse(slurp(folder / "out dir/summary.json"));
+  CHECK(summary["steps"].back()["relation"] == "crossing");
+}
+
+TEST_CASE("an output folder that cannot be made is the environment's fault") {
+  const Folder folder;
+  folder.write("a.obj", kCube);
+  folder.write("in_the_way", "x");
+  const Outcome o = run(folder, {"collide", "a.obj", "a.obj", "-o", "in_the_way/out", "--frames", "none"});
+  CHECK(o.code == 3);
+  CHECK(o.error_lines() == 1);
+  CHECK(o.out.empty());
+}
+
+TEST_CASE("list, help and version go to stdout") {
+  const Folder folder;
+  CHECK(run(folder, {"list"}).out.find("figure2") != std::string::npos);
+  CHECK(json::parse(run(folder, {"list", "--generators", "--json"}).out).size() >= 8);
+  CHECK(run(folder, {"--help"}).code == 0);
+  CHECK(run(folder, {"query", "--help"}).out.find("--poses") != std::string::npos);
+  CHECK(run(folder, {"--version"}).out.rfind("lrbscope ", 0) == 0);
+}

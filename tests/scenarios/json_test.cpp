@@ -1,0 +1,82 @@
+#include <string>
+
+#include <doctest/doctest.h>
+
+#include "engine/error.hpp"
+#include "scenarios/json/json_node.hpp"
+#include "scenarios/json/json_text.hpp"
+#include "scenarios/json/suggest.hpp"
+
+using namespace lrb;
+
+namespace {
+
+std::string error_of(const std::string& text) {
+  try {
+    const JsonText json(text, "file.json");
+  } catch (const InputError& e) {
+    return e.what();
+  }
+  return {};
+}
+
+}  // namespace
+
+TEST_CASE("values are found again by their pointers") {
+  const JsonText json("{\n  \"a\": [1,\n    {\"b/c\": \"x\\\"y\"}],\n \"~\": true }", "f");
+  CHECK(json.where("") == "f:1:1");
+  CHECK(json.where("/a") == "f:2:8");
+  CHECK(json.where("/a#") == "f:2:3");
+  CHECK(json.where("/a/0") == "f:2:9");
+  CHECK(json.where("/a/1/b~1c") == "f:3:13");
+  CHECK(json.where("/~0") == "f:4:7");
+}
+
+TEST_CASE("columns count characters, not bytes") {
+  const JsonText json("{\"\xc3\xa4\xc3\xb6\": 1}", "f");
+  CHECK(json.where("/\xc3\xa4\xc3\xb6") == "f:1:8");
+}
+
+TEST_CASE("bad syntax names line and column in one line") {
+  for (const char* text : {"{\n  \"a\": 1,,\n}", "{\"a\" 1}", "[1, 2", "", "{\"a\": nul}", "\xff\xfe",
+                           "<!DOCTYPE html>", "{} {}"}) {
+    CAPTURE(text);
+    const std::string error = error_of(text);
+    CHECK(error.rfind("file.json:", 0) == 0);
+    CHECK(error.find('\n') == std::string::npos);
+  }
+  CHECK(error_of("{\n  \"a\": 1,,\n}").rfind("file.json:2:10:", 0) == 0);
+  CHECK(error_of("[1e999]").rfind("file.json:", 0) == 0);
+}
+
+TEST_CASE("a repeated key is an error at its second place") {
+  CHECK(error_of("{\"a\": 1,\n \"a\": 2}").find("occurs twice") != std::string::npos);
+}
+
+TEST_CASE("absurd nesting is refused, not crashed on") {
+  const std::string deep(100'000, '[');
+  CHECK(error_of(deep + std::string(100'000, ']')).find("levels") != std::string::npos);
+}
+
+TEST_CASE("near words are suggested, far ones are not") {
+  const std::vector<std::string> known = {"motion", "query", "frames"};
+  CHECK(nearest_word("moton", known) == "motion");
+  CHECK(nearest_word("qurey", known) == "query");
+  CHECK(nearest_word("banana", known).empty());
+  CHECK(nearest_word(std::string(100'000, 'x'), known).empty());
+  CHECK(edit_distance("kitten", "sitting") == 3);
+  CHECK(edit_distance("ab", "ba") == 1);
+}
+
+TEST_CASE("readers say what they expected and where") {
+  const JsonText json("{\"n\": -1, \"s\": \"x\", \"v\": [1, 2], \"big\": 1e300, \"f\": 1.5}", "f");
+  const JsonNode root(json);
+  CHECK_THROWS_WITH_AS(root.at("n").integer(0, 9), "f:1:7: /n: expected a whole number from 0 to 9, found -1",
+                       InputError);
+  CHECK_THROWS_WITH_AS(root.at("f").integer(0, 9),
+                       "f:1:53: /f: expected a whole number from 0 to 9, found 1.5", InputError);
+  CHECK_THROWS_WITH_AS(root.at("s").number(0, 1), "f:1:16: /s: expected a number, found string", InputError);
+  CHECK_THROWS_WITH_AS(root.at("v").vector(), "f:1:26: /v: expected 3 numbers, found 2", InputError);
+  CHECK_THROWS_WITH_AS(root.at("w"), "f:1:1: the key \"w\" is missing: add it", InputError);
+  CHECK_THROWS_AS(root.at("big").number(-1, 1), InputError);
+}

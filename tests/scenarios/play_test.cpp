@@ -1,0 +1,126 @@
+#include <Eigen/Geometry>
+#include <doctest/doctest.h>
+
+#include "engine/lrb/validate.hpp"
+#include "scenarios/body.hpp"
+#include "scenarios/generators/generators.hpp"
+#include "scenarios/hull_volume.hpp"
+#include "scenarios/play/approach.hpp"
+#include "scenarios/play/moments.hpp"
+#include "scenarios/play/recording.hpp"
+
+using namespace lrb;
+
+namespace {
+
+const ProgressReport kSilent = [](const std::string&, std::uint64_t, std::uint64_t) {};
+
+Scenario two_balls() {
+  Scenario s;
+  s.name = "two_balls";
+  s.bodies.resize(2);
+  for (BodySpec& body : s.bodies) {
+    body.generator = "ball";
+    body.parameters = {{"frequency", 4}};
+  }
+  s.motion.kind = Motion::Kind::approach;
+  s.motion.from = {3, 0.2, 0.1};
+  s.motion.steps = 1000;
+  s.motion.before = 3;
+  s.motion.into = 4;
+  return s;
+}
+
+}  // namespace
+
+TEST_CASE("an approach ends in contact: apart before, together from then on") {
+  const Recording r = record(two_balls(), kSilent);
+  REQUIRE(r.results.size() == 8);
+  for (std::size_t step = 0; step < 3; ++step) CHECK(r.results[step].relation == Relation::separate);
+  for (std::size_t step = 3; step < 8; ++step) CHECK(r.results[step].relation == Relation::crossing);
+  CHECK(r.trace.steps.size() == 8);
+}
+
+TEST_CASE("an approach that misses says so and still shows the way") {
+  Scenario s = two_balls();
+  s.motion.target = {0, 5, 0};
+  const Recording r = record(s, kSilent);
+  CHECK(r.results.size() >= 2);
+  for (const CollideResult& result : r.results) CHECK(result.relation == Relation::separate);
+  REQUIRE(r.notes.size() == 1);
+  CHECK(r.notes[0].find("did not meet") != std::string::npos);
+}
+
+TEST_CASE("expectations that are not met are named, those that are met are not") {
+  Scenario s = two_balls();
+  const Recording r = record(s, kSilent);
+  Expectation e;
+  e.step = 3;
+  e.relation = Relation::crossing;
+  e.pairs = r.results[3].pairs.size();
+  e.fingerprint = fingerprint(r.results[3].pairs);
+  s.expect = {e};
+  CHECK(mismatches(s, r).empty());
+  s.expect[0].pairs = *e.pairs + 1;
+  s.expect[0].relation = Relation::touching;
+  s.expect[0].fingerprint = *e.fingerprint + 1;
+  CHECK(mismatches(s, r).size() == 3);
+  s.expect[0].step = 99;
+  CHECK(mismatches(s, r).size() == 1);
+}
+
+TEST_CASE("refinement goes from the outermost wrapper to the body, construction back again") {
+  Scenario s;
+  s.name = "one";
+  s.bodies.resize(1);
+  s.bodies[0].generator = "rock";
+  s.bodies[0].parameters = {{"frequency", 6}};
+  s.show = Show::refinement;
+  const Recording down = record(s, kSilent);
+  const LrbRep& rep = down.bodies[0].rep;
+  CHECK(down.trace.events.size() == 1 + rep.region_count());
+  CHECK(down.trace.events.back().boundary == rep.real_face_count());
+
+  s.show = Show::construction;
+  const Recording up = record(s, kSilent);
+  REQUIRE(up.milestones.size() == rep.layer_count() + 1);
+  CHECK(up.trace.events[up.milestones.front()].boundary == rep.real_face_count());
+  CHECK(up.trace.events[up.milestones.back()].boundary == rep.outermost_faces().size());
+  CHECK(up.milestones.back() + 1 == up.trace.events.size());
+}
+
+TEST_CASE("moments: first and last are always there, never too many") {
+  const Recording r = record(two_balls(), kSilent);
+  FrameSpec spec;
+  CHECK(moments(spec, r.trace).size() == 8);
+  spec.most = 3;
+  const std::vector<trace::EventId> three = moments(spec, r.trace);
+  REQUIRE(three.size() == 3);
+  CHECK(three.front() == last_event(r.trace, 0));
+  CHECK(three.back() == r.trace.events.size() - 1);
+  spec.at = FrameSpec::At::none;
+  CHECK(moments(spec, r.trace).empty());
+  spec.at = FrameSpec::At::refinement;
+  spec.most = 100'000;
+  for (const trace::EventId e : moments(spec, r.trace))
+    CHECK((r.trace.events[e].kind == EventKind::refine || r.trace.events[e].kind == EventKind::step));
+  CHECK(evenly(10, 4) == std::vector<std::size_t>{0, 3, 6, 9});
+  CHECK(evenly(2, 9) == std::vector<std::size_t>{0, 1});
+}
+
+TEST_CASE("hull volumes of bodies whose hull is known") {
+  std::vector<Eigen::Vector3d> cube;
+  for (int i = 0; i < 27; ++i)
+    cube.emplace_back(i % 3, i / 3 % 3, i / 9);  // with points on faces, edges and inside
+  CHECK(hull_volume(cube) == doctest::Approx(8));
+  CHECK(hull_volume(std::vector<Eigen::Vector3d>(cube.begin(), cube.begin() + 9)) == 0);  // flat
+  CHECK(hull_volume({}) == 0);
+  const Mesh ball = generate("ball", {{"frequency", 6}});
+  const LrbRep rep = LrbRep::without_regions(ball, true, false);
+  std::vector<FaceId> faces(rep.real_face_count());
+  for (FaceId f = 0; f < faces.size(); ++f) faces[f] = f;
+  CHECK(hull_volume(ball.vertices) ==
+        doctest::Approx(enclosed_volume(rep, faces)));  // a convex body is its own hull
+  std::vector<Eigen::Vector3d> square = {{0, 0, 0}, {2, 0, 0}, {1, 1, 0}, {2, 2, 0}, {0, 2, 0}, {1, 0, 0}};
+  CHECK(hull_area(square) == doctest::Approx(4));
+}

@@ -1,0 +1,49 @@
+#include "scenarios/pose_file.hpp"
+
+#include <doctest/doctest.h>
+
+#include "engine/error.hpp"
+
+using namespace lrb;
+
+TEST_CASE("poses: blank lines, comments, commas, CRLF, plus signs") {
+  const std::vector<Pose> poses = parse_poses(
+      "# a comment\r\n\r\n1 0 0 5  0 1 0 6  0 0 1 7\r\n  1,0,0,-1.5, 0,+1,0,2e3, 0,0,1,.25 # behind it\n\n",
+      "p.txt");
+  REQUIRE(poses.size() == 2);
+  CHECK(poses[0].r == Eigen::Matrix3d::Identity());
+  CHECK(poses[0].t == Eigen::Vector3d(5, 6, 7));
+  CHECK(poses[1].t == Eigen::Vector3d(-1.5, 2000, 0.25));
+}
+
+TEST_CASE("poses: row-major") {
+  const Pose p = parse_poses("1 2 3 4 5 6 7 8 9 10 11 12", "p")[0];
+  CHECK(p.r(0, 1) == 2);
+  CHECK(p.r(1, 0) == 5);
+  CHECK(p.t == Eigen::Vector3d(4, 8, 12));
+}
+
+TEST_CASE("poses: what is wrong is said with file and line") {
+  const auto fails = [](const std::string& text, const char* message) {
+    CAPTURE(text);
+    CHECK_THROWS_WITH_AS(parse_poses(text, "p.txt"), message, InputError);
+  };
+  fails("1 0 0 5  0 1 0 6  0 0 1 7\n\n1 2 3", "p.txt:3: expected 12 numbers (a row-major 3x4 pose), found 3");
+  fails("1 2 3 4 5 6 7 8 9 10 11 12 13", "p.txt:1: expected 12 numbers (a row-major 3x4 pose), found 13");
+  fails("1 0 0 x 0 1 0 0 0 0 1 0", "p.txt:1: \"x\" is not a number: expected 12 numbers a line");
+  fails("1 0 0 nan 0 1 0 0 0 0 1 0", "p.txt:1: \"nan\" is not finite: every number of a pose must be");
+  fails("1 0 0 -inf 0 1 0 0 0 0 1 0", "p.txt:1: \"-inf\" is not finite: every number of a pose must be");
+  fails("1 0 0 1e999 0 1 0 0 0 0 1 0", "p.txt:1: \"1e999\" is beyond the range of a double");
+  fails("1 0 0 0x10 0 1 0 0 0 0 1 0", "p.txt:1: \"0x10\" is not a number: expected 12 numbers a line");
+  fails("", "p.txt: no poses: expected lines of 12 numbers (row-major 3x4)");
+  fails("# nothing\n", "p.txt: no poses: expected lines of 12 numbers (row-major 3x4)");
+  fails(std::string("1 0 0 \0 0 1 0 0 0 0 1 0", 23),
+        "p.txt:1: \"?\" is not a number: expected 12 numbers a line");
+}
+
+TEST_CASE("vectors of options") {
+  CHECK(parse_vector("1,-2,3.5", "--from") == Eigen::Vector3d(1, -2, 3.5));
+  CHECK_THROWS_WITH_AS(parse_vector("1,2", "--from"),
+                       "--from: expected three numbers X,Y,Z, found 2 in \"1,2\"", InputError);
+  CHECK_THROWS_AS(parse_vector("1,2,inf", "--from"), InputError);
+}

@@ -1,0 +1,169 @@
+#include "scenarios/scenario.hpp"
+
+#include <string>
+
+#include <doctest/doctest.h>
+#include <nlohmann/json.hpp>
+#include <valijson/adapters/nlohmann_json_adapter.hpp>
+#include <valijson/schema.hpp>
+#include <valijson/schema_parser.hpp>
+#include <valijson/validator.hpp>
+
+#include "engine/error.hpp"
+#include "scenarios/embedded.hpp"
+#include "scenarios/generators/generators.hpp"
+#include "scenarios/scenario_motion.hpp"
+#include "scenarios/shipped.hpp"
+
+using namespace lrb;
+using nlohmann::json;
+
+namespace {
+
+/// Whether an independent validator accepts a scenario by our schema.
+bool schema_accepts(const std::string& text) {
+  static const json document = json::parse(embedded_file("scenario.schema.json"));
+  valijson::Schema schema;
+  valijson::SchemaParser(valijson::SchemaParser::kDraft7)
+      .populateSchema(valijson::adapters::NlohmannJsonAdapter(document), schema);
+  const json scenario = json::parse(text);
+  return valijson::Validator().validate(schema, valijson::adapters::NlohmannJsonAdapter(scenario), nullptr);
+}
+
+std::string error_of(const std::string& text) {
+  try {
+    parse_scenario(text, "dir/s.json");
+  } catch (const InputError& e) {
+    return e.what();
+  }
+  return {};
+}
+
+/// A good scenario to spoil.
+json good() {
+  return json::parse(R"({"name": "n", "purpose": "p",
+    "bodies": {"a": {"generator": "ball"}, "b": {"generator": "rock", "parameters": {"frequency": 3}}},
+    "motion": {"kind": "approach", "from": [3, 0, 0]}})");
+}
+
+std::string with(const std::string& pointer, const json& value) {
+  json s = good();
+  s[json::json_pointer(pointer)] = value;
+  return s.dump(1);
+}
+
+}  // namespace
+
+TEST_CASE("every shipped scenario is valid by the schema and by the reader, and says why it is there") {
+  int count = 0;
+  for (const EmbeddedFile& file : embedded_files()) {
+    if (!file.name.ends_with(".scenario.json")) continue;
+    CAPTURE(std::string(file.name));
+    CHECK(schema_accepts(std::string(file.text)));
+    const Scenario s = parse_scenario(std::string(file.text), std::string(file.name));
+    CHECK(s.name + ".scenario.json" == file.name);
+    CHECK(s.purpose.size() > 30);
+    ++count;
+  }
+  CHECK(count >= 6);
+}
+
+TEST_CASE("schema and reader agree on good and bad files") {
+  const std::string scenarios[] = {
+      good().dump(),
+      with("/name", "../escape"),
+      with("/name", ""),
+      with("/seed", -1),
+      with("/seed", 1.5),
+      with("/motoin", 1),
+      with("/show", "refinement"),
+      with("/bodies/a/generator", "bal"),
+      with("/bodies/a/file", "x.obj"),
+      with("/bodies/b/parameters/frequency", "3"),
+      with("/bodies/b/build", json{{"patch_interior", 0}}),
+      with("/bodies/a/pose", json{1, 2, 3}),
+      with("/bodies/a/pose", json{{"position", {1, 2, 3}}, {"degrees", 90}}),
+      with("/motion/from", json{1, 2}),
+      with("/motion/steps", 3),
+      with("/motion", json{{"kind", "sweep"}, {"from", {1, 2, 3}}, {"to", {0, 0, 0}}}),
+      with("/motion", json{{"kind", "sweep"}, {"from", {1, 2, 3}}}),
+      with("/motion", json{{"kind", "spin"}}),
+      with("/motion", json{{"kind", "poses"}, {"poses", json::array()}}),
+      with("/motion", json{{"kind", "keyframes"}, {"keyframes", {{{"step", 0}, {"position", {0, 0, 0}}}}}}),
+      with("/query", json{{"recursion", "paper"}, {"wrapper", "unregularised"}}),
+      with("/query", json{{"recursion", "papr"}}),
+      with("/trace", json{{"clock", "wall"}, {"gzip", true}, {"max_events", 10}}),
+      with("/trace", json{{"max_events", 0}}),
+      with("/frames",
+           json{{"at", "refinement"}, {"every", 3}, {"size", {320, 200}}, {"montage", {{"panels", 4}}}}),
+      with("/frames", json{{"size", {320}}}),
+      with("/frames", json{{"size", {32, 200}}}),
+      with("/frames", json{{"colour_by", "colour"}}),
+      with("/frames", json{{"views", json::array()}}),
+      with("/expect",
+           json::array(
+               {{{"step", 3}, {"relation", "crossing"}, {"pairs", 4}, {"fingerprint", "cbf29ce484222325"}}})),
+      with("/expect", json::array({{{"step", 3}, {"relation", "cross"}}})),
+      with("/expect", json::array({{{"step", 3}, {"fingerprint", "CBF29CE484222325"}}})),
+  };
+  for (const std::string& text : scenarios) {
+    CAPTURE(text);
+    CAPTURE(error_of(text));
+    CHECK(schema_accepts(text) == error_of(text).empty());
+  }
+}
+
+TEST_CASE("errors name file, line, column and the nearest known word") {
+  CHECK(error_of("{\n \"name\": \"n\",\n \"purpos\": \"p\"}")
+            .rfind("dir/s.json:3:2: /purpos: unknown key; did you mean \"purpose\"?", 0) == 0);
+  const std::string kind = error_of(with("/motion/kind", "aproach"));
+  CHECK(kind.find("/motion/kind: \"aproach\" is not known here; did you mean \"approach\"?") !=
+        std::string::npos);
+  const std::string generator = error_of(with("/bodies/a/generator", "bal"));
+  CHECK(generator.find("did you mean \"ball\"?") != std::string::npos);
+  const std::string parameter = error_of(with("/bodies/b/parameters/freqency", 3));
+  CHECK(parameter.find("did you mean \"frequency\"?") != std::string::npos);
+  CHECK(error_of(with("/bodies/a/pose", json{1, 2, 3})).find("expected 12 numbers, found 3") !=
+        std::string::npos);
+}
+
+TEST_CASE("body files are looked up from the scenario's folder") {
+  json s = good();
+  s["bodies"]["a"] = {{"file", "../meshes/x.obj"}};
+  CHECK(parse_scenario(s.dump(), "some/dir/s.json").bodies[0].file == "some/meshes/x.obj");
+}
+
+TEST_CASE("a word that is neither scenario nor file gets the nearest name") {
+  CHECK_THROWS_WITH_AS(open_scenario("colision"), doctest::Contains("did you mean \"collision\"?"),
+                       InputError);
+  CHECK_THROWS_AS(open_scenario("no/such/file.json"), InputError);
+}
+
+TEST_CASE("motions pass through what they name") {
+  Motion m;
+  m.kind = Motion::Kind::sweep;
+  m.from = {0, 0, 0};
+  m.to = {4, 0, 2};
+  m.steps = 5;
+  const std::vector<Pose> sweep = poses_of(m, Pose{});
+  REQUIRE(sweep.size() == 5);
+  CHECK(sweep.front().t == Eigen::Vector3d(0, 0, 0));
+  CHECK(sweep[2].t == Eigen::Vector3d(2, 0, 1));
+  CHECK(sweep.back().t == Eigen::Vector3d(4, 0, 2));
+  CHECK(sweep[2].r == Eigen::Matrix3d::Identity());
+
+  m.kind = Motion::Kind::keyframes;
+  m.keyframes = {{0, {0, 0, 0}, {0, 0, 1}, 0}, {4, {4, 0, 0}, {0, 0, 1}, 90}};
+  const std::vector<Pose> keys = poses_of(m, Pose{});
+  REQUIRE(keys.size() == 5);
+  CHECK(keys[2].t.x() == doctest::Approx(2));
+  CHECK(keys[2].r(0, 0) == doctest::Approx(std::sqrt(0.5)));
+  CHECK(keys[4].r(1, 0) == doctest::Approx(1));
+
+  m.kind = Motion::Kind::spin;
+  m.degrees = 360;
+  m.steps = 4;
+  const std::vector<Pose> spin = poses_of(m, Pose::translation({1, 2, 3}));
+  REQUIRE(spin.size() == 4);
+  CHECK(spin[1].t.x() == doctest::Approx(-2));  // the body's own pose comes first, the motion after it
+}
