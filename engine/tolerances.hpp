@@ -85,6 +85,10 @@ inline constexpr double kVolumeRounding = 0x1p-33;
 /// share of their weight. Without unit. Smaller: normals made of rounding errors.
 inline constexpr double kContactNormalLeast = 0x1p-20;
 
+/// How far from a coplanar contact interiors_overlap() looks for a point inside both bodies, as shares of the
+/// contact's size. Only such a point counts, wherever it is found. Fewer: "unknown" for thinner wedges.
+inline constexpr double kInteriorProbes[] = {0x1p-4, 0x1p-20, 0x1p-52, 0x1p-80};
+
 /// Most cells that interiors_overlap() samples in one face, and in all, before it answers "unknown". Larger:
 /// rare configurations with thousands of contacts on one face are decided too, in minutes instead of never.
 inline constexpr unsigned kInteriorCellsPerFace = 256;

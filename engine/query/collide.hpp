@@ -73,8 +73,8 @@ struct Counters {
 
 struct CollideResult {
   Relation relation = Relation::separate;
-  Answer interiors_overlap =
-      Answer::unknown;                        ///< crossing, inside: yes; separate: no; touching: if requested
+  /// crossing, inside: yes; separate: no; touching: if requested; a body that is not closed: unknown.
+  Answer interiors_overlap = Answer::unknown;
   Recursion recursion = Recursion::complete;  ///< the one that was used
   Mode mode = Mode::all_pairs;
   std::vector<SimplexPair> pairs;               ///< ascending; in first_pair mode at most one

@@ -109,7 +109,8 @@ class Decider {
       const LrbRep& rep = ctx_[side].rep();
       if (!rep.closed() || rep.self_intersecting()) return Answer::unknown;
     }
-    if (surfaces_coincide()) return Answer::yes;
+    const Answer between = between_coinciding_faces();
+    if (between == Answer::yes) return between;
     for (const Side side : {Side::a, Side::b}) {
       group_pairs(side);
       if (free_patch_inside(side)) return Answer::yes;
@@ -118,13 +119,16 @@ class Decider {
       group_pairs(side);
       if (const Answer answer = touched_face_inside(side); answer != Answer::no) return answer;
     }
-    return Answer::no;
+    return between;
   }
 
  private:
-  /// Some coplanar pair overlaps in an area (2D: a length) and faces the same way.
-  bool surfaces_coincide() {
+  /// Behind coplanar faces that overlap in an area (2D: a length) and face the same way lie both solids. A
+  /// point there that is inside both proves it; where none is found, rounding has folded a body in the world
+  /// (far from the origin thin walls become flat) and faces need not face out any more: unknown.
+  Answer between_coinciding_faces() {
     const bool mirrored = handedness(ctx_[Side::a].world.pose()) * handedness(ctx_[Side::b].world.pose()) < 0;
+    Answer answer = Answer::no;
     for (const SimplexPair& pair : result_.pairs) {
       const double *a[3], *b[3];
       ctx_[Side::a].world.corners(pair.a, a);
@@ -132,9 +136,46 @@ class Decider {
       const exact::PairContact contact =
           dim_ == 3 ? exact::contact_of_triangles(a, b) : exact::contact_of_segments(a, b);
       if (!contact.coplanar || contact.corner_count < dim_) continue;
-      if ((dim_ == 3 ? same_direction_3d(a, b) : same_direction_2d(a, b)) != mirrored) return true;
+      if ((dim_ == 3 ? same_direction_3d(a, b) : same_direction_2d(a, b)) == mirrored) continue;
+      if (inside_both_near(contact, a)) return Answer::yes;
+      answer = Answer::unknown;
+    }
+    return answer;
+  }
+
+  /// Looks on both sides of the middle of a coplanar contact, ever nearer: there is no telling how far the
+  /// next faces are. A point on one of them is as good as none.
+  bool inside_both_near(const exact::PairContact& contact, const double* const face[3]) {
+    std::vector<exact::RationalPoint> corners;
+    Eigen::AlignedBox3d box;
+    for (int k = 0; k < contact.corner_count; ++k) {
+      corners.emplace_back(contact.corners[k].x.data());
+      box.extend(contact.corners[k].x);
+    }
+    const auto middle = exact::RationalPoint::combination(corners, std::vector<double>(corners.size(), 1));
+    const Eigen::Vector3d normal = normal_of(face);
+    for (const double side : {-1.0, 1.0}) {
+      const Eigen::Vector3d off = middle.rounded() + side * box.sizes().maxCoeff() * normal;
+      const exact::RationalPoint ends[] = {middle, exact::RationalPoint(off.data())};
+      for (const double share : kInteriorProbes) {
+        const double weights[] = {1 - share, share};
+        const auto p = exact::RationalPoint::combination(ends, weights);
+        if (locate(ctx_[Side::a], p) == Where::inside && locate(ctx_[Side::b], p) == Where::inside)
+          return true;
+      }
     }
     return false;
+  }
+
+  /// Of length about 1; need not be accurate.
+  Eigen::Vector3d normal_of(const double* const face[3]) const {
+    const auto edge = [&](int k) {
+      Eigen::Vector3d e = Eigen::Vector3d::Zero();
+      for (int i = 0; i < dim_; ++i) e[i] = face[k][i] - face[0][i];
+      return e.stableNormalized();
+    };
+    const Eigen::Vector3d e = edge(1);
+    return dim_ == 2 ? Eigen::Vector3d(e.y(), -e.x(), 0) : e.cross(edge(2)).stableNormalized();
   }
 
   SimplexId own(Side side, const SimplexPair& p) const { return side == Side::a ? p.a : p.b; }

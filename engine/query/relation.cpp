@@ -115,7 +115,8 @@ void decide_relation(QueryContext& ctx, CollideResult& result) {
     const bool crosses =
         std::find(result.meets.begin(), result.meets.end(), exact::Meet::cross) != result.meets.end();
     result.relation = crosses ? Relation::crossing : Relation::touching;
-    result.interiors_overlap = crosses ? Answer::yes : Answer::unknown;
+    const bool solids = ctx[Side::a].rep().closed() && ctx[Side::b].rep().closed();
+    result.interiors_overlap = crosses && solids ? Answer::yes : Answer::unknown;
     return;
   }
   QueryBody &a = ctx[Side::a], &b = ctx[Side::b];

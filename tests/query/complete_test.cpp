@@ -146,6 +146,9 @@ TEST_CASE("an open body has no inside: without contact the relation is undefined
   const LrbRep ball = closed(test::icosphere(0, 0.1));
   CHECK(collide(open, Pose{}, ball, Pose{}).relation == Relation::undefined);
   CHECK(collide(ball, Pose{}, open, Pose::translation({50, 0, 0})).relation == Relation::undefined);
+  const CollideResult through = collide(open, Pose{}, ball, Pose::translation({1, 0, 0.5}));
+  CHECK(through.relation == Relation::crossing);
+  CHECK(through.interiors_overlap == Answer::unknown);
 }
 
 TEST_CASE("swapping the bodies transposes the pairs") {

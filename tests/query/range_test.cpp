@@ -109,3 +109,27 @@ TEST_CASE("a power of two scales contact regions exactly") {
     }
   }
 }
+
+// At 1e16 doubles are 2 apart: a plate of thickness 1 becomes a sheet with two faces, one of which faces as
+// the box behind it does. That was taken for solids that lie on the same side.
+TEST_CASE("a plate that rounding has made flat has no interior to overlap") {
+  CollideRequest request;
+  request.interiors_overlap = true;
+  const LrbRep plate = closed(test::box({0, 0, 0}, {1, 4, 4})),
+               box = closed(test::box({-4, 1, 1}, {0, 2, 2}));
+  const Pose far = Pose::translation({1e16, 0, 0});
+  const CollideResult r = collide(plate, far, box, far, request);
+  CHECK(r.relation == Relation::touching);
+  CHECK(r.interiors_overlap != Answer::yes);
+  CHECK(collide(plate, Pose{}, box, Pose{}, request).interiors_overlap == Answer::no);
+  CHECK(collide(plate, Pose{}, box, Pose::translation({1, 0, 0}), request).interiors_overlap == Answer::yes);
+}
+
+TEST_CASE("boxes that overlap in one ulp overlap") {
+  CollideRequest request;
+  request.interiors_overlap = true;
+  const LrbRep a = closed(test::box()), b = closed(test::box({std::nextafter(1.0, 0.0), 0, 0}, {2, 1, 1}));
+  const CollideResult r = collide(a, Pose{}, b, Pose{}, request);
+  CHECK(r.relation == Relation::touching);
+  CHECK(r.interiors_overlap == Answer::yes);
+}

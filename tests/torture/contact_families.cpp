@@ -20,7 +20,7 @@ bool in_contact(const Case& c) {
 
 /// The corners of a random real simplex.
 std::array<Vector3d, 3> any_triangle(Random& random, const LrbRep& rep) {
-  VertexId v[3];
+  VertexId v[3] = {};
   rep.simplex(static_cast<SimplexId>(random() % rep.real_simplex_count()), v);
   return {rep.vertices()[v[0]], rep.vertices()[v[1]], rep.vertices()[v[2]]};
 }

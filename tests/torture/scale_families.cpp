@@ -111,7 +111,7 @@ Case make_ratio(Random& random, double dial) {
   const double by = std::pow(10, -(random() % 3 ? 12 : 60) * dial);
   Case c{any_body(random), any_body(random), {}, {}, {}, {}};
   c.b = stretched(*c.b, Vector3d::Constant(by));
-  VertexId v[3];
+  VertexId v[3] = {};
   c.a->simplex(static_cast<SimplexId>(random() % c.a->real_simplex_count()), v);
   const Vector3d p = c.a->vertices()[v[0]], q = c.a->vertices()[v[1]], r = c.a->vertices()[v[2]];
   const double s = random() % 2 ? uniform(random) : 0, t = random() % 2 ? uniform(random, 0, 1 - s) : 0;

@@ -1,0 +1,174 @@
+// What must hold for any body and pose, tried on random ones.
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/Geometry>
+#include <doctest/doctest.h>
+
+#include "engine/build/build.hpp"
+#include "engine/exact/locate.hpp"
+#include "engine/lrb/boundary_sum.hpp"
+#include "engine/lrb/wrapper.hpp"
+#include "engine/query/collide_impl.hpp"
+#include "tests/support/hand_made.hpp"
+#include "tests/support/shapes.hpp"
+#include "tests/torture/families.hpp"
+
+using namespace lrb;
+using torture::pick;
+using torture::Random;
+
+namespace {
+
+/// Coordinates on a grid of 2^-20: whole translations of up to 2^20 move them without rounding.
+torture::Body on_grid(Mesh m) {
+  for (auto& v : m.vertices) v = (v * 0x1p20).array().round() * 0x1p-20;
+  return torture::body(m);
+}
+
+std::vector<LrbRep> built() {
+  std::vector<LrbRep> list;
+  list.push_back(test::dented_box());
+  list.push_back(test::stairs_2d());
+  for (const Mesh& m : {test::bumpy_sphere(2, 4, 0.5), test::torus(12, 8), test::comb(4), test::bowl(10, 4)})
+    list.push_back(build_lrb(m));
+  list.push_back(build_lrb(test::gear(12)));
+  return list;
+}
+
+bool is_closed(const Wrapper& w) {
+  BoundarySum sum(w.rep());
+  for (const FaceId f : w.boundary()) {
+    // A face of an included region under an excluded one shows its other side.
+    if (w.included(w.rep().inner_cell(f)))
+      sum.add(f);
+    else
+      sum.add_reversed(f);
+  }
+  VertexId at[2];
+  return sum.take_closed(at);
+}
+
+/// A point of the solid's boundary is in the wrapper or on it, exactly.
+bool holds(const Wrapper& w, const Eigen::Vector3d& p) {
+  const LrbRep& rep = w.rep();
+  int crossings = 0;
+  for (const FaceId f : w.boundary()) {
+    const SimplexId first = rep.first_simplex(f);
+    const auto count = static_cast<SimplexId>(Mesh::simplices_of(rep.face(f).size(), rep.dim()));
+    for (SimplexId s = first; s < first + count; ++s) {
+      VertexId v[3];
+      rep.simplex(s, v);
+      const double* c[3];
+      for (int k = 0; k < rep.dim(); ++k) c[k] = rep.vertices()[v[k]].data();
+      const exact::RayHit hit =
+          rep.dim() == 3 ? exact::ray_crosses(p.data(), c) : exact::ray_crosses_2d(p.data(), c);
+      if (hit == exact::RayHit::on_face) return true;
+      crossings += hit == exact::RayHit::crosses;
+    }
+  }
+  return crossings % 2 != 0;
+}
+
+std::vector<RegionId> shuffled_regions(Random& random, const LrbRep& rep) {
+  std::vector<RegionId> order(rep.region_count());
+  for (RegionId r = 0; r < order.size(); ++r) order[r] = r;
+  for (std::size_t i = order.size(); i > 1; --i) std::swap(order[i - 1], order[random() % i]);
+  return order;
+}
+
+}  // namespace
+
+TEST_CASE("moving both bodies by the same exact translation changes nothing") {
+  Random random(1);
+  const torture::Body bodies[] = {on_grid(test::bumpy_sphere(2, 3)), on_grid(test::torus(12, 8)),
+                                  on_grid(test::comb(4)), on_grid(test::box_with_void())};
+  int in_contact = 0;
+  for (int i = 0; i < 400; ++i) {
+    const LrbRep &a = *bodies[random() % 4], &b = *bodies[random() % 4];
+    Pose pa, pb{torture::grid_turn(random), Eigen::Vector3d(pick(random, -4, 4), pick(random, -4, 4), 0) / 2};
+    CollideRequest request;
+    request.contacts = request.interiors_overlap = true;
+    const CollideResult before = collide(a, pa, b, pb, request);
+    const Eigen::Vector3d by(pick(random, -1000000, 1000000), pick(random, -1000000, 1000000),
+                             pick(random, -9, 9));
+    pa.t += by;
+    pb.t += by;
+    const CollideResult after = collide(a, pa, b, pb, request);
+    REQUIRE(before.pairs == after.pairs);
+    REQUIRE(before.meets == after.meets);
+    REQUIRE(before.relation == after.relation);
+    REQUIRE(before.interiors_overlap == after.interiors_overlap);
+    REQUIRE(before.regions.size() == after.regions.size());
+    in_contact += !before.pairs.empty();
+  }
+  CHECK(in_contact > 100);
+}
+
+TEST_CASE("a query leaves nothing behind: the same context, asked again, gives the same answer") {
+  Random random(2);
+  QueryContext context;
+  NullProbe probe;
+  for (int i = 0; i < 200; ++i) {
+    const torture::Case c = torture::make_dented(random, 0.5);
+    const CollideResult fresh = collide(*c.a, c.pose_a, *c.b, c.pose_b);
+    for (int repeat = 0; repeat < 2; ++repeat) {
+      const CollideResult again = collide(*c.a, c.pose_a, *c.b, c.pose_b, {}, context, probe);
+      REQUIRE(again.pairs == fresh.pairs);
+      REQUIRE(again.opened == fresh.opened);
+      REQUIRE(again.counters.box_tests == fresh.counters.box_tests);
+    }
+  }
+}
+
+TEST_CASE("refining and coarsening again is the identity") {
+  Random random(3);
+  for (const LrbRep& rep : built())
+    for (const WrapperMode mode : {WrapperMode::regularised, WrapperMode::unregularised}) {
+      Wrapper w(rep, mode);
+      const std::vector<FaceId> outermost = w.boundary();
+      std::vector<RegionId> open;
+      for (int i = 0; i < 200 && rep.region_count() > 0; ++i) {
+        const std::vector<FaceId> before = w.boundary();
+        const auto r = static_cast<RegionId>(random() % rep.region_count());
+        if (!w.refine(r)) continue;
+        const std::vector<FaceId> refined = w.boundary();
+        REQUIRE(w.coarsen(r));
+        REQUIRE(w.boundary() == before);
+        REQUIRE(w.refine(r));
+        REQUIRE(w.boundary() == refined);
+        open.push_back(r);
+      }
+      for (const RegionId r : open) REQUIRE(w.coarsen(r));
+      CHECK(w.boundary() == outermost);
+      w.refine_all();
+      w.reset();
+      CHECK(w.boundary() == outermost);
+    }
+}
+
+TEST_CASE(
+    "any order of refinement reaches the same solid, and every state on the way is closed and encloses it") {
+  Random random(4);
+  for (const LrbRep& rep : built()) {
+    CAPTURE(rep.name());
+    std::vector<FaceId> real(rep.real_face_count());
+    for (FaceId f = 0; f < real.size(); ++f) real[f] = f;
+    for (int round = 0; round < 3; ++round) {
+      Wrapper w(rep);
+      const std::vector<RegionId> order = shuffled_regions(random, rep);
+      const std::size_t every = 1 + order.size() / 8;
+      for (std::size_t i = 0; i < order.size(); ++i) {
+        if (i % every == 0) {
+          REQUIRE(is_closed(w));
+          for (int k = 0; k < 10; ++k) {
+            const auto corners = rep.face(static_cast<FaceId>(random() % rep.real_face_count()));
+            REQUIRE(holds(w, rep.vertices()[corners[random() % corners.size()]]));
+          }
+        }
+        REQUIRE(w.refine(order[i]));
+      }
+      CHECK(w.boundary() == real);
+    }
+  }
+}
