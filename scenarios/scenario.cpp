@@ -145,7 +145,6 @@ Scenario parse_scenario(const std::string& text, const std::string& file) {
   root.object({"$schema", "name", "purpose", "seed", "show", "bodies", "motion", "query", "trace", "frames",
                "expect"});
   Scenario s;
-  s.file = file;
   if (const auto n = root.get("$schema")) n->string();
   s.name = read_name(root.at("name"));
   s.purpose = root.at("purpose").string();

@@ -67,7 +67,7 @@ struct FrameSpec {
     Eigen::Vector3d up{0, 0, 1};
     double turn_degrees = 0;  ///< orbit: over all frames
     double zoom = 1;          ///< above 1: closer
-    bool wrapper = true;      ///< false: the bodies alone, without the lids of their wrappers
+    bool wrapper = true;                      ///< false: the bodies alone, without the lids of their wrappers
     std::string title;
   };
   At at = At::step;
@@ -93,7 +93,6 @@ struct Expectation {
 };
 
 struct Scenario {
-  std::string file;  ///< it was read from; for messages
   std::string name, purpose;
   std::uint64_t seed = 1;
   Show show = Show::collision;

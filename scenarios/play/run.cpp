@@ -21,8 +21,7 @@ void check_moments(const Scenario& scenario, const Recording& recording) {
   try {
     static_cast<void>(moments(scenario.frames, recording.trace, recording.milestones));
   } catch (const InputError& e) {
-    if (scenario.file.empty()) throw;
-    throw InputError(scenario.file + ": " + e.what());
+    throw InputError("scenario " + scenario.name + ": " + e.what());
   }
 }
 

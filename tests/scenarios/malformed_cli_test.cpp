@@ -244,7 +244,6 @@ TEST_CASE("malformed scenarios") {
              {scenario("[3, 0, 0]", "[3, 0]"), "4:"},
              {scenario("[3, 0, 0]", "[3, 0, 1e999]"), "4:"},
              {scenario("[320, 240]", "[320, 240000]"), "5:"},
-             {scenario("\"at\": \"none\"", "\"events\": [99999]"), " frames: event 99999"},
              {scenario("}\n}", "}"), "5:"},
              {scenario("}\n}", "}\n}\n}"), "7:"},
              {scenario("}\n}", "}\n}\0"s), "6:2: "},
@@ -257,6 +256,18 @@ TEST_CASE("malformed scenarios") {
              {"", "1:1: "},
              {"// a comment\n", "1:1: "},
              {"[]", "1:1: "}});
+}
+
+TEST_CASE("a scenario that asks for a picture of an event that there is not writes nothing") {
+  const Folder folder;
+  folder.write("cube.obj", kCube);
+  folder.write("s.json", scenario("\"at\": \"none\"", "\"events\": [99999]"));
+  const std::vector<std::string> before = folder.tree();
+  const Outcome o = run(folder, {"run", "s.json", "-o", "out"});
+  CHECK(o.code == 2);
+  CHECK(o.error_lines() == 1);
+  CHECK(o.err.find("lrbscope: scenario x: frames: event 99999") != std::string::npos);
+  CHECK(folder.tree() == before);
 }
 
 TEST_CASE("malformed traces") {
