@@ -107,6 +107,7 @@ if [ "$(id -u)" = 0 ] && mkdir tiny && mount -t tmpfs -o size=128k tmpfs tiny 2>
   expect 3 "a full file system" "$bin" run short.json -o tiny/out
   all_whole tiny "a full file system"
   no_temporaries "a full file system"
+  cat /dev/zero >tiny/rest 2>/dev/null
   expect 3 "a full file system, again" "$bin" build cube.obj -o tiny/x.lrb
   [ ! -e tiny/x.lrb ] || whole tiny/x.lrb "a full file system, again"
   umount tiny
