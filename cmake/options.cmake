@@ -30,3 +30,18 @@ if(LRB_SANITIZE)
   target_compile_options(lrb_own_options INTERFACE -fsanitize=${LRB_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
   target_link_options(lrb_own_options INTERFACE -fsanitize=${LRB_SANITIZE})
 endif()
+if(LRB_HARDEN)
+  # Checked copies, guarded stacks, addresses that are random and tables that are read-only once loaded.
+  target_compile_options(lrb_options INTERFACE -fstack-protector-strong -fPIE
+                                               $<$<NOT:$<CONFIG:Debug>>:-U_FORTIFY_SOURCE -D_FORTIFY_SOURCE=2>)
+  # With it gcc 12 misjudges the sizes of Boost.Multiprecision's integers.
+  target_compile_options(lrb_options INTERFACE $<$<CXX_COMPILER_ID:GNU>:-Wno-stringop-overflow -Wno-array-bounds>)
+  target_link_options(lrb_options INTERFACE LINKER:-z,relro LINKER:-z,now
+                                            $<$<STREQUAL:$<TARGET_PROPERTY:TYPE>,EXECUTABLE>:-pie>)
+endif()
+if(LRB_FUZZ)
+  if(NOT CMAKE_CXX_COMPILER_ID STREQUAL "Clang")
+    message(FATAL_ERROR "LRB_FUZZ needs clang and its libFuzzer: configure with -DCMAKE_CXX_COMPILER=clang++")
+  endif()
+  target_compile_options(lrb_options INTERFACE -fsanitize=fuzzer-no-link)
+endif()

@@ -1,27 +1,22 @@
 #include "scenarios/files.hpp"
 
 #include <cerrno>
-#include <cstring>
 #include <filesystem>
-#include <fstream>
-#include <sstream>
 #include <system_error>
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <unistd.h>
 
 #include "engine/error.hpp"
 #include "engine/mesh/atomic_file.hpp"
+#include "engine/mesh/file_bytes.hpp"
 
 namespace lrb {
 namespace fs = std::filesystem;
 
 std::string read_text(const std::string& path) {
-  std::error_code error;
-  if (fs::is_directory(path, error)) throw InputError(path + ": is a folder: expected a file");
-  std::ifstream in(path, std::ios::binary);
-  if (!in) throw InputError(path + ": cannot be read (" + std::strerror(errno) + "): check the name");
-  std::ostringstream text;
-  if (in.peek() != std::ifstream::traits_type::eof()) text << in.rdbuf();
-  if (in.bad() || text.fail()) throw InputError(path + ": reading it failed");
-  return std::move(text).str();
+  return read_file(path);
 }
 
 void make_folder(const std::string& path) {
@@ -36,6 +31,20 @@ void make_folder(const std::string& path) {
 void write_text(const std::string& path, const std::string& text) {
   make_folder(fs::path(path).parent_path().string());
   write_file(path, text);
+}
+
+FolderLock::FolderLock(const std::string& path)
+    : folder_(open(path.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
+  if (folder_ < 0) return;  // written to, but not to be listed: there is nothing to lock it by
+  if (flock(folder_, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK) return;
+  close(folder_);
+  throw EnvironmentError(
+      printable_name(path) +
+      ": another lrbscope is writing to this folder; wait for it, or name another with -o");
+}
+
+FolderLock::~FolderLock() {
+  if (folder_ >= 0) close(folder_);
 }
 
 }  // namespace lrb

@@ -14,4 +14,17 @@ void write_text(const std::string& path, const std::string& text);
 /// Makes a folder and those above it. Throws EnvironmentError if that fails or a file is in the way.
 void make_folder(const std::string& path);
 
+/// Keeps other processes that ask for the same folder's lock out of it, until it goes. Ends with the process,
+/// however that ends, and leaves no file. Throws EnvironmentError if another one has it.
+class FolderLock {
+ public:
+  explicit FolderLock(const std::string& path);
+  ~FolderLock();
+  FolderLock(const FolderLock&) = delete;
+  FolderLock& operator=(const FolderLock&) = delete;
+
+ private:
+  int folder_;
+};
+
 }  // namespace lrb

@@ -5,6 +5,8 @@
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
+#include <mutex>
+#include <set>
 
 #include <fcntl.h>
 #include <sys/stat.h>
@@ -36,10 +38,32 @@ std::string temporary_name(const std::string& target) {
   return target + ".tmp-" + std::to_string(getpid()) + "-" + std::to_string(counter++);
 }
 
+/// Temporary files that exist. Never destroyed: threads may outlive main().
+struct Unfinished {
+  std::mutex mutex;
+  std::set<std::string> files;
+};
+
+Unfinished& unfinished() {
+  static auto* const all = new Unfinished;
+  return *all;
+}
+
+int create_temporary(const std::string& name) {
+  static constexpr mode_t kAll = 0666;  // less the umask
+  Unfinished& all = unfinished();
+  const std::lock_guard lock(all.mutex);
+  const auto entry = all.files.insert(name).first;
+  const int file = open(name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, kAll);
+  const int reason = errno;
+  if (file < 0) all.files.erase(entry);
+  errno = reason;
+  return file;
+}
+
 }  // namespace
 
 AtomicFile::AtomicFile(const std::string& path) : path_(path), target_(behind_links(path)) {
-  static constexpr mode_t kAll = 0666;  // less the umask
   struct stat status {};
   const bool exists = stat(target_.c_str(), &status) == 0;
   if (exists && S_ISDIR(status.st_mode)) fail("write", EISDIR);
@@ -47,7 +71,7 @@ AtomicFile::AtomicFile(const std::string& path) : path_(path), target_(behind_li
     file_ = open(path_.c_str(), O_WRONLY | O_CLOEXEC);
   } else {
     temporary_ = temporary_name(target_);
-    file_ = open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, kAll);
+    file_ = create_temporary(temporary_);
   }
   if (file_ < 0) {
     const int reason = errno;
@@ -60,7 +84,10 @@ AtomicFile::AtomicFile(const std::string& path) : path_(path), target_(behind_li
 
 AtomicFile::~AtomicFile() {
   if (file_ >= 0) close(file_);
-  if (!temporary_.empty()) unlink(temporary_.c_str());
+  if (temporary_.empty()) return;
+  const std::lock_guard lock(unfinished().mutex);
+  unlink(temporary_.c_str());
+  unfinished().files.erase(temporary_);
 }
 
 void AtomicFile::write(std::string_view bytes) {
@@ -86,7 +113,11 @@ void AtomicFile::commit() {
   file_ = -1;
   if (close(file) != 0) fail("write", errno);
   if (temporary_.empty()) return;
-  if (std::rename(temporary_.c_str(), target_.c_str()) != 0) fail("replace", errno);
+  {
+    const std::lock_guard lock(unfinished().mutex);
+    if (std::rename(temporary_.c_str(), target_.c_str()) != 0) fail("replace", errno);
+    unfinished().files.erase(temporary_);
+  }
   temporary_.clear();
 }
 
@@ -95,6 +126,12 @@ void AtomicFile::fail(const char* doing, int reason) const {
                               std::strerror(reason) + "); check the path, its permissions and the space left";
   if (is_machines_fault(reason)) throw EnvironmentError(message);
   throw InputError(message);
+}
+
+void abandon_atomic_files() {
+  Unfinished& all = unfinished();
+  all.mutex.lock();
+  for (const std::string& file : all.files) unlink(file.c_str());
 }
 
 void write_file(const std::string& path, std::string_view bytes) {

@@ -35,6 +35,10 @@ class AtomicFile {
   int file_ = -1;
 };
 
+/// Removes the temporary files of all AtomicFiles, and lets none begin or end any more: for a process that is
+/// about to end without running destructors. Takes a lock for good; not for use in a signal handler.
+void abandon_atomic_files();
+
 /// The whole file in one go.
 void write_file(const std::string& path, std::string_view bytes);
 

@@ -72,7 +72,7 @@ int run_build(const BuildCommandOptions& o, const Globals& globals) {
     j["file"] = o.out;
     note(globals, {"wrote " + o.out});
   }
-  print(o.json ? j.dump() + "\n" : as_text(j, o.no_validate ? nullptr : &report));
+  print(o.json ? one_line(j) : as_text(j, o.no_validate ? nullptr : &report));
   return o.no_validate || report.valid ? kOk : kMismatch;
 }
 

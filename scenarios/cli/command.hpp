@@ -7,6 +7,7 @@
 #include <vector>
 
 #include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
 
 namespace lrb::cli {
 
@@ -37,6 +38,9 @@ int main(int argc, char** argv);
 
 /// Lines for people, unless quiet.
 void note(const Globals& globals, const std::vector<std::string>& lines);
+
+/// As JSON on a line. Bytes that are not UTF-8, which a file's name may have, become U+FFFD.
+std::string one_line(const nlohmann::ordered_json& value);
 
 /// Writes to stdout and makes sure that it arrived. Throws EnvironmentError.
 void print(const std::string& text);

@@ -116,7 +116,7 @@ int run_inspect(const InspectOptions& o, const Globals& globals) {
     j["picture"] = picture;
   }
   note(globals, notes);
-  print(o.json ? j.dump() + "\n" : as_text(j));
+  print(o.json ? one_line(j) : as_text(j));
   return valid ? kOk : kMismatch;
 }
 

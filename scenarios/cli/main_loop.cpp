@@ -1,10 +1,17 @@
+#include <cerrno>
 #include <cstdio>
+#include <cstring>
 #include <exception>
 #include <iostream>
 #include <new>
+#include <sstream>
+#include <stdexcept>
+#include <system_error>
 
 #include "engine/error.hpp"
+#include "engine/mesh/file_bytes.hpp"
 #include "scenarios/cli/command.hpp"
+#include "scenarios/cli/signals.hpp"
 #include "trace/trace.hpp"
 
 namespace lrb::cli {
@@ -27,22 +34,25 @@ std::string command_line(int argc, char** argv) {
 }
 
 int complain(const char* kind, const std::string& message, int code) {
-  std::string line = message;
-  for (char& c : line)
-    if (c == '\n' || c == '\r') c = ' ';
-  std::cerr << "lrbscope: " << kind << line << std::endl;
+  std::cerr << "lrbscope: " << kind << printable_name(message)
+            << std::endl;  // one line, no control characters
   return code;
 }
 
-int run_guarded(const Command& command) {
+template <class Run>
+int guarded(const Run& run) {
   try {
-    return command.run();
+    return run();
   } catch (const InputError& e) {
     return complain("", e.what(), kBadInput);
   } catch (const EnvironmentError& e) {
     return complain("", e.what(), kEnvironment);
   } catch (const std::bad_alloc&) {
     return complain("", "out of memory: try a smaller input or a larger machine", kEnvironment);
+  } catch (const std::length_error&) {  // a container that no memory can hold
+    return complain("", "out of memory: try a smaller input or a larger machine", kEnvironment);
+  } catch (const std::system_error& e) {
+    return complain("", std::string("the system refused: ") + e.what(), kEnvironment);
   } catch (const std::exception& e) {
     return complain("internal error, please report it: ", e.what(), kEnvironment);
   }
@@ -55,13 +65,31 @@ void note(const Globals& globals, const std::vector<std::string>& lines) {
   for (const std::string& line : lines) std::cerr << "note: " << line << "\n";
 }
 
-void print(const std::string& text) {
-  std::fwrite(text.data(), 1, text.size(), stdout);
-  if (std::fflush(stdout) != 0 || std::ferror(stdout))
-    throw EnvironmentError("writing to stdout failed: is the disk full?");
+std::string one_line(const nlohmann::ordered_json& value) {
+  return value.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
 }
 
-int main(int argc, char** argv) {
+void print(const std::string& text) {
+  errno = 0;
+  const bool written = std::fwrite(text.data(), 1, text.size(), stdout) == text.size();
+  if (written && std::fflush(stdout) == 0) return;
+  const int reason = errno;
+  if (reason == EPIPE) end_as_by_closed_pipe();
+  throw EnvironmentError(std::string("stdout: cannot be written (") + std::strerror(reason) +
+                         "); check where it leads and the space left there");
+}
+
+namespace {
+
+/// What CLI11 says for --help and --version.
+int print_help(CLI::App& app, const CLI::ParseError& request) {
+  std::ostringstream text;
+  app.exit(request, text, text);
+  print(text.str());
+  return kOk;
+}
+
+int parse_and_run(int argc, char** argv) {
   CLI::App app("An exact two-body collision engine that can be watched.", "lrbscope");
   app.set_version_flag("--version", std::string("lrbscope ") + trace::lrbscope_version());
   app.require_subcommand(1);
@@ -78,12 +106,19 @@ int main(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {
-    if (e.get_exit_code() == 0) return app.exit(e);  // --help, --version
+    if (e.get_exit_code() == 0) return print_help(app, e);
     return complain("", std::string(e.what()) + " (see lrbscope --help)", kBadInput);
   }
   for (const Command& command : commands)
-    if (command.app->parsed()) return run_guarded(command);
+    if (command.app->parsed()) return command.run();
   return kBadInput;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  end_cleanly_on_signals();
+  return guarded([&] { return parse_and_run(argc, argv); });
 }
 
 }  // namespace lrb::cli

@@ -40,6 +40,7 @@ double median_us(const LrbRep& a, const LrbRep& b, const Pose& pose, const Query
 
 std::string line_of(std::size_t pose, const CollideResult& result, const QueryOptions& o, double us) {
   std::ostringstream out;
+  out.exceptions(std::ios::badbit);  // out of memory must not cut a line short
   out << "{\"pose\":" << pose << ",\"relation\":\"" << to_string(result.relation)
       << "\",\"pairs\":" << result.pairs.size() << ",\"fingerprint\":\""
       << trace::to_hex(fingerprint(result.pairs)) << "\"";

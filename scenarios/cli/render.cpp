@@ -2,6 +2,7 @@
 #include <memory>
 
 #include "engine/error.hpp"
+#include "engine/mesh/file_bytes.hpp"
 #include "engine/query/collide.hpp"
 #include "scenarios/body.hpp"
 #include "scenarios/cli/command.hpp"
@@ -9,7 +10,9 @@
 #include "scenarios/cli/progress.hpp"
 #include "scenarios/files.hpp"
 #include "scenarios/play/frames.hpp"
+#include "scenarios/play/moments.hpp"
 #include "scenarios/play/report.hpp"
+#include "trace/cursor.hpp"
 #include "trace/hex.hpp"
 #include "trace/trace_json.hpp"
 
@@ -41,6 +44,17 @@ std::vector<LoadedBody> find_bodies(const RenderOptions& o, const trace::Trace& 
   return out;
 }
 
+/// Throws, before anything is drawn or written, if the trace cannot have come from these bodies.
+void check_events(const RenderOptions& o, const trace::Trace& trace, const std::vector<LoadedBody>& bodies) {
+  try {
+    trace::Cursor cursor = bodies.size() == 1 ? trace::Cursor(trace, bodies[0].rep)
+                                              : trace::Cursor(trace, bodies[0].rep, bodies[1].rep);
+    if (!trace.events.empty()) cursor.seek(static_cast<trace::EventId>(trace.events.size() - 1));
+  } catch (const InputError& e) {
+    throw InputError(printable_name(o.trace) + ": " + e.what());
+  }
+}
+
 /// A trace holds pairs, not where they meet: the contact regions of each step are computed anew.
 std::vector<CollideResult> contacts_of(const trace::Trace& trace, const std::vector<LoadedBody>& bodies) {
   std::vector<CollideResult> out;
@@ -68,6 +82,7 @@ FrameSpec frame_spec(const RenderOptions& o, bool two_bodies) {
 int run_render(const RenderOptions& o, const Globals& globals) {
   const trace::Trace trace = trace::load_trace(o.trace);
   const std::vector<LoadedBody> bodies = find_bodies(o, trace);
+  check_events(o, trace, bodies);
   const std::vector<CollideResult> results = contacts_of(trace, bodies);
   Performance p;
   p.title = trace.header.scenario;
@@ -83,6 +98,9 @@ int run_render(const RenderOptions& o, const Globals& globals) {
       {"lrbscope:scenario", trace.header.scenario},
       {"lrbscope:scenario_hash", trace::to_hex(trace.header.scenario_hash)},
   };
+  static_cast<void>(moments(spec, trace, {}));  // throws before anything is written
+  make_folder(folder);
+  const FolderLock lock(folder);
   const DrawnFrames drawn = draw_frames(p, spec, folder, text, progress_report(globals.quiet));
   const std::string trace_link = std::filesystem::relative(o.trace, folder).generic_string();
   ReportText report{

@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "engine/error.hpp"
+#include "engine/mesh/file_bytes.hpp"
 #include "scenarios/json/suggest.hpp"
 
 namespace lrb {
@@ -19,12 +20,13 @@ std::string shown(double x) {
 }  // namespace
 
 void JsonNode::fail(const std::string& message) const {
-  throw InputError(text_->where(pointer_) + ": " + (pointer_.empty() ? "" : pointer_ + ": ") + message);
+  throw InputError(text_->where(pointer_) + ": " +
+                   printable_name((pointer_.empty() ? "" : pointer_ + ": ") + message));
 }
 
 void JsonNode::fail_key(const std::string& key, const std::string& message) const {
   const std::string member = pointer_ + "/" + pointer_part(key);
-  throw InputError(text_->where(member + "#") + ": " + member + ": " + message);
+  throw InputError(text_->where(member + "#") + ": " + printable_name(member + ": " + message));
 }
 
 void JsonNode::fail_type(const char* expected) const {

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "engine/error.hpp"
+#include "engine/mesh/file_bytes.hpp"
 
 namespace lrb {
 namespace {
@@ -16,6 +17,12 @@ class Walker {
          std::string& duplicate)
       : text_(text), offsets_(offsets), duplicate_(duplicate) {}
 
+  void document() {
+    if (text_.starts_with("\xef\xbb\xbf")) at_ = 3;  // a byte order mark, which the parser passes over
+    value("");
+  }
+
+ private:
   void value(const std::string& pointer) {
     constexpr int kDeepest = 64;  // levels: this walks by recursion, and no file of ours needs ten
     if (++depth_ > kDeepest) throw InputError("nested more than 64 levels deep");
@@ -33,7 +40,6 @@ class Walker {
     --depth_;
   }
 
- private:
   void object(const std::string& pointer) {
     std::set<std::string> keys;
     ++at_;
@@ -99,15 +105,15 @@ std::string plain_reason(const std::string& what) {
     const std::size_t expected = reason.find("; expected ", last_read);
     reason = reason.substr(0, last_read) + (expected == std::string::npos ? "" : reason.substr(expected));
   }
-  std::replace(reason.begin(), reason.end(), '\n', ' ');
-  return reason;
+  return printable_name(reason);  // one line, whatever is quoted in it
 }
 
 }  // namespace
 
-TextPosition position_in(const std::string& text, std::size_t offset) {
-  TextPosition p;
-  for (std::size_t i = 0; i < std::min(offset, text.size()); ++i) {
+namespace {
+
+void advance(TextPosition& p, const std::string& text, std::size_t from, std::size_t to) {
+  for (std::size_t i = from; i < std::min(to, text.size()); ++i) {
     if (text[i] == '\n') {
       ++p.line;
       p.column = 1;
@@ -115,6 +121,13 @@ TextPosition position_in(const std::string& text, std::size_t offset) {
       ++p.column;
     }
   }
+}
+
+}  // namespace
+
+TextPosition position_in(const std::string& text, std::size_t offset) {
+  TextPosition p;
+  advance(p, text, 0, offset);
   return p;
 }
 
@@ -132,7 +145,7 @@ std::string pointer_part(const std::string& key) {
 }
 
 JsonIndex::JsonIndex(const std::string& text) {
-  Walker(text, offsets_, duplicate_).value("");
+  Walker(text, offsets_, duplicate_).document();
 }
 
 std::size_t JsonIndex::offset(const std::string& pointer) const {
@@ -145,6 +158,10 @@ JsonText::JsonText(std::string text, std::string file) : text_(std::move(text)),
     const TextPosition p = position_in(text_, offset);
     return file_ + ":" + std::to_string(p.line) + ":" + std::to_string(p.column) + ": ";
   };
+  // nlohmann-json takes a NUL for the end of the text and would not look at what follows.
+  const std::size_t nul = text_.find('\0');
+  if (nul != std::string::npos)
+    throw InputError(at(nul) + "not JSON: found a NUL byte, expected text (UTF-8)");
   try {
     root_ = nlohmann::json::parse(text_);
   } catch (const nlohmann::json::parse_error& e) {
@@ -158,13 +175,19 @@ JsonText::JsonText(std::string text, std::string file) : text_(std::move(text)),
     throw InputError(file_ + ": " + e.what());
   }
   if (!index_->duplicate().empty())
-    throw InputError(where(index_->duplicate() + "#") + ": the key " + index_->duplicate() +
+    throw InputError(where(index_->duplicate() + "#") + ": the key " + printable_name(index_->duplicate()) +
                      " occurs twice: keep one");
 }
 
 std::string JsonText::where(const std::string& pointer) const {
-  const TextPosition p = position_in(text_, index_->offset(pointer));
-  return file_ + ":" + std::to_string(p.line) + ":" + std::to_string(p.column);
+  const std::size_t offset = index_->offset(pointer);
+  if (offset < last_offset_) {
+    last_ = {};
+    last_offset_ = 0;
+  }
+  advance(last_, text_, last_offset_, offset);
+  last_offset_ = offset;
+  return file_ + ":" + std::to_string(last_.line) + ":" + std::to_string(last_.column);
 }
 
 }  // namespace lrb

@@ -42,6 +42,8 @@ class JsonText {
 
  private:
   std::string text_, file_;
+  mutable TextPosition last_;  ///< of the place asked for last: asking in order costs one walk in all
+  mutable std::size_t last_offset_ = 0;
   nlohmann::json root_;
   std::unique_ptr<JsonIndex> index_;
 };

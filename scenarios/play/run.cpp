@@ -2,9 +2,11 @@
 
 #include <filesystem>
 
+#include "engine/error.hpp"
 #include "engine/lrb/lrb_file.hpp"
 #include "scenarios/files.hpp"
 #include "scenarios/play/frames.hpp"
+#include "scenarios/play/moments.hpp"
 #include "scenarios/play/report.hpp"
 #include "trace/hex.hpp"
 #include "trace/summary_json.hpp"
@@ -12,9 +14,24 @@
 
 namespace lrb {
 
+namespace {
+
+/// Throws, before anything is written, if a frame is asked for that there is not.
+void check_moments(const Scenario& scenario, const Recording& recording) {
+  try {
+    static_cast<void>(moments(scenario.frames, recording.trace, recording.milestones));
+  } catch (const InputError& e) {
+    throw InputError("scenario " + scenario.name + ": " + e.what());
+  }
+}
+
+}  // namespace
+
 RunOutcome write_run(const Scenario& scenario, const Recording& recording, const std::string& folder,
                      const std::string& command, const ProgressReport& progress) {
+  check_moments(scenario, recording);
   make_folder(folder);
+  const FolderLock lock(folder);
   const std::string trace_file = scenario.gzip ? "trace.json.gz" : "trace.json";
   std::error_code error;
   std::filesystem::remove(folder + (scenario.gzip ? "/trace.json" : "/trace.json.gz"),

@@ -1,74 +1,21 @@
-#include <algorithm>
-#include <cstdio>
-#include <cstdlib>
 #include <filesystem>
-#include <fstream>
 #include <sstream>
 #include <string>
 
 #include <doctest/doctest.h>
 #include <nlohmann/json.hpp>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include "engine/query/collide.hpp"
 #include "render/png.hpp"
+#include "tests/scenarios/program.hpp"
 
 namespace fs = std::filesystem;
 using nlohmann::json;
+using namespace lrb::test;
 
 namespace {
 
-/// A folder of its own for each test, gone afterwards.
-struct Folder {
-  fs::path path;
-  Folder() {
-    std::string name =
-        (fs::temp_directory_path() / "lrbscope cli XXXXXX").string();  // with spaces: they must not hurt
-    path = mkdtemp(name.data());
-  }
-  ~Folder() { fs::remove_all(path); }
-  std::string operator/(const std::string& name) const { return (path / name).string(); }
-  std::string write(const std::string& name, const std::string& text) const {
-    std::ofstream(path / name, std::ios::binary) << text;
-    return (path / name).string();
-  }
-};
-
-std::string slurp(const std::string& path) {
-  std::ostringstream out;
-  out << std::ifstream(path, std::ios::binary).rdbuf();
-  return out.str();
-}
-
-struct Outcome {
-  int code = -1;
-  std::string out, err;
-  std::size_t error_lines() const {
-    return static_cast<std::size_t>(std::count(err.begin(), err.end(), '\n'));
-  }
-};
-
-/// Runs the program in the folder; arguments are quoted for the shell.
-Outcome run(const Folder& folder, const std::vector<std::string>& arguments) {
-  std::string line = "cd '" + folder.path.string() + "' && '" LRBSCOPE_BINARY "'";
-  for (const std::string& a : arguments) line += " '" + a + "'";
-  line += " >'" + folder / "stdout" + "' 2>'" + folder / "stderr" + "' </dev/null";
-  const int status = std::system(line.c_str());
-  Outcome o;
-  o.code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-  o.out = slurp(folder / "stdout");
-  o.err = slurp(folder / "stderr");
-  fs::remove(folder / "stdout");
-  fs::remove(folder / "stderr");
-  return o;
-}
-
-const char* kCube =
-    "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\n"
-    "f 1 4 3 2\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n";
 const char* kTriangle = "v 0.5 0.5 -1\nv 0.5 0.6 2\nv 0.6 0.5 2\nf 1 2 3\n";
-const char* kApart = "1 0 0 3 0 1 0 0 0 0 1 0\n";
 
 std::size_t files_in(const Folder& folder) {
   return static_cast<std::size_t>(

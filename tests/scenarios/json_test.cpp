@@ -80,3 +80,15 @@ TEST_CASE("readers say what they expected and where") {
   CHECK_THROWS_WITH_AS(root.at("w"), "f:1:1: the key \"w\" is missing: add it", InputError);
   CHECK_THROWS_AS(root.at("big").number(-1, 1), InputError);
 }
+
+TEST_CASE("a byte order mark moves no place, and nothing may follow a NUL byte") {
+  CHECK(error_of("\xef\xbb\xbf{\"a\": 1,\n \"a\": 2}").find("file.json:2:2: ") == 0);
+  CHECK(error_of(std::string("{}\0{", 4)).find("file.json:1:3: not JSON: found a NUL byte") == 0);
+}
+
+TEST_CASE("messages stay one line, whatever stands in the file") {
+  const JsonText json("{\"a\\nb\": 1, \"c\": \"\\u001b[2J\\n\"}", "f");
+  const JsonNode root(json);
+  CHECK_THROWS_WITH_AS(root.object({"c"}), doctest::Contains("/a\\x0ab: unknown key"), InputError);
+  CHECK_THROWS_WITH_AS(root.at("c").choice<int>({{"x", 1}}), doctest::Contains("\\x1b[2J\\x0a"), InputError);
+}

@@ -1,0 +1,74 @@
+#include "scenarios/cli/signals.hpp"
+
+#include <csignal>
+#include <string>
+#include <system_error>
+#include <thread>
+
+#include <unistd.h>
+
+#include "engine/mesh/atomic_file.hpp"
+
+namespace lrb::cli {
+namespace {
+
+bool pipes_end_us = false;
+
+bool is_ignored(int signal) {
+  struct sigaction now {};
+  return sigaction(signal, nullptr, &now) == 0 && now.sa_handler == SIG_IGN;
+}
+
+/// Ends the process by the signal itself.
+void die_of(int signal) {
+  sigset_t only;
+  sigemptyset(&only);
+  sigaddset(&only, signal);
+  std::signal(signal, SIG_DFL);
+  pthread_sigmask(SIG_UNBLOCK, &only, nullptr);
+  std::raise(signal);
+}
+
+std::string farewell(int signal) {
+  const char* name = signal == SIGINT ? "SIGINT" : signal == SIGTERM ? "SIGTERM" : "SIGHUP";
+  const char* clear = isatty(STDERR_FILENO) == 1 ? "\r\033[K" : "";  // a progress bar may stand there
+  return std::string(clear) + "lrbscope: interrupted by " + name +
+         ": files written so far are whole, the others are missing; run it again\n";
+}
+
+/// A thread may take locks and allocate, as a signal handler may not.
+void wait_for(const sigset_t& signals) {
+  int signal = 0;
+  if (sigwait(&signals, &signal) != 0) return;
+  abandon_atomic_files();
+  const std::string line = farewell(signal);
+  if (write(STDERR_FILENO, line.data(), line.size()) < 0) {
+    // There is nobody left to tell.
+  }
+  die_of(signal);
+}
+
+}  // namespace
+
+void end_cleanly_on_signals() {
+  pipes_end_us = !is_ignored(SIGPIPE);
+  std::signal(SIGPIPE, SIG_IGN);  // writing fails with EPIPE instead, where we can act on it
+  sigset_t signals, before;
+  sigemptyset(&signals);
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP})
+    if (!is_ignored(signal)) sigaddset(&signals, signal);
+  pthread_sigmask(SIG_BLOCK, &signals, &before);
+  try {
+    std::thread(wait_for, signals).detach();
+  } catch (const std::system_error&) {  // no thread to be had: then they end us at once, as ever
+    pthread_sigmask(SIG_SETMASK, &before, nullptr);
+  }
+}
+
+void end_as_by_closed_pipe() {
+  if (!pipes_end_us) return;
+  abandon_atomic_files();
+  die_of(SIGPIPE);
+}
+
+}  // namespace lrb::cli

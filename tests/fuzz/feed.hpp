@@ -1,0 +1,28 @@
+#pragma once
+/// What fuzzers and the mutation test feed bytes to: one function per format that a stranger's file can have.
+/// Each reads the bytes as its format and, if they are accepted, uses the result. An InputError is the right
+/// answer to bad bytes, provided that it is one line that begins with the file's name; anything else (another
+/// exception, a bad message, a reader that contradicts its writer) ends the process by throwing.
+
+#include <string_view>
+
+namespace lrb::fuzz {
+
+/// The first byte chooses the extension of the name, the rest are the file.
+bool feed_mesh(std::string_view bytes);
+/// The first byte says whether the checksum is put right, the rest are the file.
+bool feed_lrb(std::string_view bytes);
+bool feed_poses(std::string_view bytes);
+bool feed_scenario(std::string_view bytes);
+bool feed_trace(std::string_view bytes);
+
+/// Throws std::logic_error unless an InputError's message is one line that begins with `name` and a colon.
+void judge_message(std::string_view message, std::string_view name);
+
+/// Runs `read`, which throws InputError for bad bytes. Returns whether they were accepted.
+template <class Read>
+bool accepted(std::string_view name, const Read& read);
+
+}  // namespace lrb::fuzz
+
+#include "tests/fuzz/feed.inl"

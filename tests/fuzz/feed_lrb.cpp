@@ -1,0 +1,43 @@
+#include "engine/lrb/fnv.hpp"
+#include "engine/lrb/lrb_file.hpp"
+#include "engine/lrb/validate.hpp"
+#include "engine/query/collide.hpp"
+#include "tests/fuzz/feed.hpp"
+
+namespace lrb::fuzz {
+namespace {
+
+constexpr std::size_t kChecksum = sizeof(std::uint64_t);
+
+/// Without it the checksum would stop nearly every mutation, and what is behind it would never be tried.
+void put_checksum_right(std::string& file) {
+  if (file.size() < kChecksum) return;
+  Fnv64 sum;
+  sum.add_bytes(file.data(), file.size() - kChecksum);
+  const std::uint64_t value = sum.value();
+  file.replace(file.size() - kChecksum, kChecksum, reinterpret_cast<const char*>(&value), kChecksum);
+}
+
+/// A file that is accepted may be nonsense as a body, but using it must be safe.
+void use(const LrbRep& rep) {
+  static constexpr std::size_t kSmall = 100;  // corners
+  if (rep.data().face_vertices.size() > kSmall) return;
+  static_cast<void>(collide(rep, Pose{}, rep, Pose::translation({0.5, 0.25, 0})));
+  CollideRequest paper;
+  paper.recursion = Recursion::paper;
+  static_cast<void>(collide(rep, Pose{}, rep, Pose::translation({0.5, 0.25, 0}), paper));
+  ValidateOptions options;
+  options.wrapper_states = 2;
+  static_cast<void>(validate(rep, options));
+}
+
+}  // namespace
+
+bool feed_lrb(std::string_view bytes) {
+  if (bytes.empty()) return false;
+  std::string file(bytes.substr(1));
+  if (bytes[0] & 1) put_checksum_right(file);
+  return accepted("m.lrb", [&] { use(load_lrb(file, "m.lrb")); });
+}
+
+}  // namespace lrb::fuzz

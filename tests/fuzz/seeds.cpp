@@ -1,0 +1,106 @@
+#include "tests/fuzz/seeds.hpp"
+
+#include <algorithm>
+
+#include "engine/lrb/lrb_file.hpp"
+#include "tests/fuzz/feed.hpp"
+#include "tests/mesh/encode.hpp"
+#include "tests/support/hand_made.hpp"
+#include "tests/support/lrb_shapes.hpp"
+#include "tests/support/shapes.hpp"
+#include "tests/trace/runs.hpp"
+#include "trace/trace_json.hpp"
+
+namespace lrb::fuzz {
+namespace {
+
+std::vector<std::string> meshes() {
+  const Mesh body = test::tetrahedron(), box = test::quad_box();
+  const std::string points = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1 1\n";
+  std::vector<std::string> out;
+  for (const Mesh& m : {body, box})
+    for (const std::string& file :
+         {test::to_ply_ascii(m), test::to_ply_binary(m, false), test::to_ply_binary(m, true, false)})
+      out.push_back('\2' + file);
+  out.push_back('\1' + test::to_stl_ascii(body));
+  out.push_back('\1' + test::to_stl_binary(body));
+  for (const Mesh& m : {body, box}) out.push_back('\3' + test::to_off(m));
+  out.push_back(
+      '\3' +
+      std::string("COFF # colours\n3 1 0\n0 0 0 1 0 0 1\n1 0 0 1 0 0 1\n0 1 0 1 0 0 1\n3 0 1 2 255 0 0\n"));
+  out.push_back(
+      '\0' + points +
+      "# note\nvn 0 0 1\nvt 0 0\ng x\nusemtl y\nf 1 3 2\nf 1/1 2/1 4/1\nf 2//1 3//1 4//1\nf -4/1/1 -1 -2\n");
+  out.push_back('\0' + std::string("v 0 0 0\nv 1 0 0\nv 1 1 0\nl 1 2 \\\n3 1\n"));
+  return out;
+}
+
+std::vector<std::string> lrb_files() {
+  const test::TemporaryDirectory folder;
+  std::vector<std::string> out;
+  for (const LrbRep& rep : {LrbRep(shapes::notched_plate()), LrbRep(shapes::dented_box()), test::dented_box(),
+                            test::stairs_2d(), LrbRep::without_regions(test::tetrahedron(), true, false)}) {
+    save_lrb(rep, folder.file("x.lrb"));
+    out.push_back('\1' + test::load_bytes(folder.file("x.lrb")));
+  }
+  return out;
+}
+
+std::vector<std::string> poses() {
+  return {"1 0 0 3 0 1 0 0 0 0 1 0\n",
+          "# note\r\n1,0,0,+3,0,1,0,-0,0,0,1,1e-300\n\n.5 0 0 1e3 0 1 0 0 0 0 1 0 # end"};
+}
+
+const char* const kBodies =
+    R"("bodies": {"a": {"generator": "ball", "parameters": {"frequency": 3}, "pose": {"position": [1, 2, 3], "axis": [0, 0, 1], "degrees": 30}},
+ "b": {"file": "b.obj", "build": {"patch_interior": 5, "max_outer_faces": 20, "seed": 3}, "pose": [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0]}})";
+
+std::vector<std::string> scenarios() {
+  std::vector<std::string> out;
+  for (const auto& entry : std::filesystem::directory_iterator(LRB_SOURCE_DIR "/scenarios/shipped"))
+    out.push_back(test::load_bytes(entry.path().string()));
+  std::sort(out.begin(), out.end());
+  const std::string begin =
+      std::string(R"({"name": "x", "purpose": "y", "seed": 7, )") + kBodies + R"(, "motion": )";
+  out.push_back(
+      begin +
+      R"({"kind": "poses", "poses": [{"position": [0, 0, 1]}, [1, 0, 0, 3, 0, 1, 0, 0, 0, 0, 1, 0]]}, "query": {"mode": "all", "recursion": "paper", "wrapper": "unregularised", "contacts": true, "interiors_overlap": true}, "trace": {"clock": "wall", "max_events": 1000, "gzip": true}, "expect": [{"step": 0, "relation": "separate", "pairs": 0, "fingerprint": "cbf29ce484222325"}]})");
+  out.push_back(
+      begin +
+      R"({"kind": "keyframes", "keyframes": [{"step": 0, "position": [0, 0, 1]}, {"step": 4, "position": [0, 1, 1], "axis": [1, 1, 0], "degrees": 45}]}, "frames": {"at": "event", "every": 2, "most": 5, "size": [320, 200], "supersampling": 1, "colour_by": "layer", "transparent": true, "explode": 0.5, "montage": {"panels": 4, "columns": 2}, "views": [{"camera": "fixed", "eye": [1, 2, 3], "target": [0, 0, 0], "projection": "orthographic"}, {"camera": "orbit", "from": [1, 0, 0], "up": [0, 0, 1], "turn_degrees": 90, "zoom": 2, "draw": "body", "title": "t"}]}})");
+  out.push_back(
+      begin +
+      R"({"kind": "sweep", "from": [0, 0, 0], "to": [1, 1, 1], "axis": [0, 1, 0], "degrees": 90, "steps": 5}, "frames": {"events": [1, 5]}})");
+  out.push_back(begin + R"({"kind": "spin", "axis": [0, 1, 0], "degrees": 90, "steps": 5}})");
+  return out;
+}
+
+std::vector<std::string> traces() {
+  std::vector<std::string> out;
+  const LrbRep box(shapes::dented_box()), plate(shapes::notched_plate());
+  for (const trace::Clock clock : {trace::Clock::event, trace::Clock::wall}) {
+    trace::RecorderSettings settings;
+    settings.clock = clock;
+    settings.event_cap = 25;  // seeds are best small
+    out.push_back(
+        trace::trace_to_json(trace::runs::record(box, box, trace::runs::kBoxPoses, settings).trace));
+  }
+  trace::Recorder recorder(plate, {});
+  recorder.begin_step(0, Pose{});
+  recorder.refine(Side::a, 2, 4);
+  recorder.coarsen(Side::a, 2, 4);
+  out.push_back(trace::trace_to_json(recorder.take()));
+  return out;
+}
+
+}  // namespace
+
+std::vector<Format> formats() {
+  return {{"mesh", feed_mesh, meshes()},
+          {"lrb", feed_lrb, lrb_files()},
+          {"poses", feed_poses, poses()},
+          {"scenario", feed_scenario, scenarios()},
+          {"trace", feed_trace, traces()}};
+}
+
+}  // namespace lrb::fuzz
