@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include <glm/common.hpp>
+
 #include "render/depth_order.hpp"
 
 namespace lrb {
@@ -27,10 +29,6 @@ constexpr double kEdgesFull = 7, kEdgesGone = 2.5;
 constexpr double kSoften = 0.6;
 /// Room for the soft rim of lines, pixels.
 constexpr double kRim = 1;
-
-std::array<std::uint8_t, 4> bytes(Rgba c) {
-  return {c.r, c.g, c.b, c.a};
-}
 
 double snap(double pixels) {
   return std::nearbyint(pixels * kSnap) / kSnap;
@@ -96,10 +94,9 @@ class Builder {
 
   // ---- faces
 
-  std::array<float, 3> device(const Vector3d& screen, double nudge) const {
+  glm::vec3 device(const Vector3d& screen, double nudge) const {
     const double z = std::clamp(screen.z() - nudge * kNudge, -1.0, 1.0);
-    return {static_cast<float>(2 * screen.x() / p_.width() - 1),
-            static_cast<float>(2 * screen.y() / p_.height() - 1), static_cast<float>(z)};
+    return to_float(Vector3d(2 * screen.x() / p_.width() - 1, 2 * screen.y() / p_.height() - 1, z));
   }
 
   Vector3d snapped_screen(const Vector3d& eye) const {
@@ -172,7 +169,7 @@ class Builder {
       const Lighting& lighting = t.layer == Layer::opaque ? lighting_ : soft_;
       colour = shade(colour, normal / length, p_.axes(), lighting);
     }
-    v.colour = bytes(colour);
+    v.colour = to_bytes(colour);
     v.id = t.id;
     const std::array<Vector3d, 3> h = {homogeneous(p_, p_.to_eye(t.x[0])), homogeneous(p_, p_.to_eye(t.x[1])),
                                        homogeneous(p_, p_.to_eye(t.x[2]))};
@@ -182,8 +179,7 @@ class Builder {
       const Vector3d at = homogeneous(p_, e);
       v.x = device(snapped_screen(e), t.nudge);
       for (int i = 0; i < 3; ++i) {
-        v.edge[i] =
-            (t.edges >> i & 1) != 0 ? static_cast<float>(std::abs(lines[i].dot(at) / at.z())) : kNoEdge;
+        v.edge[i] = (t.edges >> i & 1) != 0 ? to_float(std::abs(lines[i].dot(at) / at.z())) : kNoEdge;
       }
       corners_.push_back(v);
     }
@@ -200,19 +196,18 @@ class Builder {
     if (t.edges == 0) return lines;
     const EdgeStyle& style = list_.edge_styles[t.edge_style];
     const double width = style.width * scale_;
-    v.half_width = static_cast<float>(0.5 * width);
+    v.half_width = to_float(0.5 * width);
     double thinnest = kGuard * p_.width();
     for (int i = 0; i < 3; ++i) {
       const Vector3d& apex = h[(i + 2) % 3];
       if (apex.z() > 0) thinnest = std::min(thinnest, std::abs(lines[i].dot(apex) / apex.z()));
     }
     const double fade = std::clamp((thinnest / width - kEdgesGone) / (kEdgesFull - kEdgesGone), 0.0, 1.0);
-    v.edge_colour = bytes(with_alpha(style.colour, static_cast<std::uint8_t>(style.colour.a * fade + 0.5)));
+    v.edge_colour =
+        to_bytes(with_alpha(style.colour, static_cast<std::uint8_t>(style.colour.a * fade + 0.5)));
     if (t.layer != Layer::opaque) return lines;
     // An opaque face stays opaque under its edges: blend them here, where it is exact.
-    const Rgba face{v.colour[0], v.colour[1], v.colour[2], 255};
-    const Rgba edge{v.edge_colour[0], v.edge_colour[1], v.edge_colour[2], v.edge_colour[3]};
-    v.edge_colour = bytes(over(edge, face));
+    v.edge_colour = to_bytes(over(to_rgba(v.edge_colour), with_alpha(to_rgba(v.colour), 255)));
     return lines;
   }
 
@@ -222,8 +217,8 @@ class Builder {
     if (fill.segments.empty()) return;
     FillRange range;
     FaceVertex v;
-    v.edge = {kNoEdge, kNoEdge, kNoEdge};
-    v.edge_colour = v.colour = bytes(fill.colour);
+    v.edge = glm::vec3(kNoEdge);
+    v.edge_colour = v.colour = to_bytes(fill.colour);
     v.id = fill.id;
     range.fan.first = mesh_.faces.size();
     const auto corner = [&](const Vector3d& x) {
@@ -232,21 +227,22 @@ class Builder {
       s.z() = 0;
       return device(s, 0);
     };
-    const std::array<float, 3> pivot = corner(fill.segments[0][0]);
-    std::array<float, 4> box{1, 1, -1, -1};
+    const glm::vec3 pivot = corner(fill.segments[0][0]);
+    glm::vec2 low(1), high(-1);
     for (const auto& [a, b] : fill.segments) {
-      for (const auto& x : {pivot, corner(a), corner(b)}) {
+      for (const glm::vec3& x : {pivot, corner(a), corner(b)}) {
         v.x = x;
         mesh_.faces.push_back(v);
-        box = {std::min(box[0], x[0]), std::min(box[1], x[1]), std::max(box[2], x[0]),
-               std::max(box[3], x[1])};
+        low = glm::min(low, glm::vec2(x));
+        high = glm::max(high, glm::vec2(x));
       }
     }
     range.fan.count = mesh_.faces.size() - range.fan.first;
-    for (float& side : box) side = std::clamp(side, -1.0F, 1.0F);
+    low = glm::clamp(low, -1.0F, 1.0F);
+    high = glm::clamp(high, -1.0F, 1.0F);
     range.cover.first = mesh_.faces.size();
-    for (const auto& [i, j] : {std::array{0, 1}, {2, 1}, {2, 3}, {0, 1}, {2, 3}, {0, 3}}) {
-      v.x = {box[i], box[j], 0};
+    for (const glm::vec2 at : {low, {high.x, low.y}, high, low, high, {low.x, high.y}}) {
+      v.x = {at, 0};
       mesh_.faces.push_back(v);
     }
     range.cover.count = 6;
@@ -265,13 +261,13 @@ class Builder {
 
   void add_polyline(const DrawLine& l, Rgba colour, double width, double dash, double nudge) {
     LineVertex v;
-    v.colour = bytes(colour);
-    v.half_width = static_cast<float>(0.5 * width * scale_);
-    v.dash = static_cast<float>(dash > 0 ? dash * scale_ : dash);
+    v.colour = to_bytes(colour);
+    v.half_width = to_float(0.5 * width * scale_);
+    v.dash = to_float(dash > 0 ? dash * scale_ : dash);
     double before = 0;
     const std::size_t n = l.points.size(), segments = l.closed && n > 2 ? n : std::max<std::size_t>(n - 1, 1);
     for (std::size_t i = 0; i < segments; ++i) {
-      v.dash_start = static_cast<float>(before);
+      v.dash_start = to_float(before);
       before += add_segment(l.points[i], l.points[n == 1 ? 0 : (i + 1) % n], v, nudge);
     }
   }
@@ -280,12 +276,12 @@ class Builder {
     LineVertex v;
     v.dash = v.dash_start = 0;
     if (d.halo.a > 0 && d.halo_width > 0) {
-      v.colour = bytes(d.halo);
-      v.half_width = static_cast<float>((d.radius + d.halo_width) * scale_);
+      v.colour = to_bytes(d.halo);
+      v.half_width = to_float((d.radius + d.halo_width) * scale_);
       add_segment(d.x, d.x, v, d.nudge - kHaloNudge);
     }
-    v.colour = bytes(d.colour);
-    v.half_width = static_cast<float>(d.radius * scale_);
+    v.colour = to_bytes(d.colour);
+    v.half_width = to_float(d.radius * scale_);
     add_segment(d.x, d.x, v, d.nudge);
   }
 
@@ -304,13 +300,12 @@ class Builder {
     const Vector2d u = length > 0 ? Vector2d(d / length) : Vector2d::UnitX();
     const Vector2d side(-u.y(), u.x());
     const double reach = v.half_width + kRim;
-    v.length = static_cast<float>(length);
+    v.length = to_float(length);
     std::array<LineVertex, 4> corner;
     for (int i = 0; i < 4; ++i) {
       const double along = i == 1 || i == 2 ? length + reach : -reach, across = i < 2 ? -reach : reach;
       const Vector2d at = sa.head<2>() + along * u + across * side;
-      v.along = static_cast<float>(along);
-      v.across = static_cast<float>(across);
+      v.at = to_float(Vector2d(along, across));
       // Depth is held at the ends beyond them: a round end must not sink into what it ends on.
       v.x = device({at.x(), at.y(), along < 0 ? sa.z() : sb.z()}, nudge);
       corner[i] = v;
