@@ -13,7 +13,10 @@ using Mark = LegendItem::Mark;
 
 /// Pseudo faces: a whitish veil, so that what they cover looks paler than what lies bare.
 constexpr std::uint8_t kLidAlpha = 124;
-constexpr double kLidPale = 0.70;            ///< their colour, from the body's towards white
+constexpr double kLidPale = 0.70;  ///< their colour, from the body's towards white
+constexpr std::uint8_t kLidEdgeAlpha = 220;
+/// Of edges on the far side little is left: else a refined wrapper, with hundreds of faces, is a tangle.
+constexpr float kLidEdgeBack = 0.3F;
 constexpr std::uint8_t kTellingAlpha = 175;  ///< where their colour says something
 constexpr std::uint8_t kRefiningAlpha = 120;
 constexpr std::uint8_t kGhostAlpha = 14;
@@ -27,7 +30,8 @@ class Builder {
     real_edges_ = c.out.list.edge_style({with_alpha(ink, 150), 0.9F * c.options.scale});
     pale_edges_ = c.out.list.edge_style({with_alpha(ink, 90), 0.8F * c.options.scale});
     cell_edges_ = c.out.list.edge_style({with_alpha(palette::kInk, 150), 0.9F * c.options.scale});
-    lid_edges_ = c.out.list.edge_style({with_alpha(mix(body, ink, 0.7), 230), 1.7F * c.options.scale});
+    lid_edges_ = c.out.list.edge_style(
+        {with_alpha(mix(body, ink, 0.7), kLidEdgeAlpha), 1.5F * c.options.scale, kLidEdgeBack});
   }
 
   void run() {

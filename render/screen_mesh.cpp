@@ -7,6 +7,7 @@
 #include <glm/common.hpp>
 
 #include "render/depth_order.hpp"
+#include "render/edge_room.hpp"
 
 namespace lrb {
 namespace {
@@ -16,15 +17,18 @@ using Eigen::Vector3d;
 
 /// Corners are rounded to 1/256 pixel, the grid of Mesa's rasterizer: it then has nothing to round.
 constexpr double kSnap = 256;
-/// One step of DrawTriangle::nudge, as a share of the range of depths (-1 to 1). Small enough not to show
-/// what lies visibly behind, large enough to keep a line on the face it runs along.
-constexpr double kNudge = 3e-4;
+/// One step of DrawTriangle::nudge, as a share of the picture's height at that depth. Small enough not to
+/// show what lies visibly behind, large enough to keep a line on the face it runs along.
+constexpr double kNudge = 1.2e-4;
 /// A line's halo lies this share of a step behind the line.
 constexpr double kHaloNudge = 0.25;
 /// Corners farther outside than this many picture sizes are clipped, to keep float coordinates fine.
 constexpr double kGuard = 8;
-/// Edges fade out where a face is so thin that they would cover it: from this many edge widths down to ...
-constexpr double kEdgesFull = 7, kEdgesGone = 2.5;
+/// Edges fade out where faces are so small that they would cover them: from this many edge widths (of room,
+/// see edge_room.hpp) down to ...
+constexpr double kEdgesFull = 9, kEdgesGone = 1.5;
+/// ... and are this share of their width where they vanish.
+constexpr double kLeastWidth = 0.6;
 /// How much weaker the shading of translucent faces is than that of opaque ones.
 constexpr double kSoften = 0.6;
 /// Room for the soft rim of lines, pixels.
@@ -43,6 +47,7 @@ class Builder {
  public:
   Builder(const DrawList& list, const Projection& projection, double scale, const Lighting& lighting)
       : list_(list), p_(projection), scale_(scale), lighting_(lighting), soft_(lighting) {
+    room_ = edge_room(list, projection);
     soft_.ambient = lighting.ambient + kSoften * (1 - lighting.ambient);
     for (double* share : {&soft_.head, &soft_.key, &soft_.fill}) *share *= 1 - kSoften;
   }
@@ -95,7 +100,7 @@ class Builder {
   // ---- faces
 
   glm::vec3 device(const Vector3d& screen, double nudge) const {
-    const double z = std::clamp(screen.z() - nudge * kNudge, -1.0, 1.0);
+    const double z = std::clamp(p_.nearer(screen.z(), nudge * kNudge), -1.0, 1.0);
     return to_float(Vector3d(2 * screen.x() / p_.width() - 1, 2 * screen.y() / p_.height() - 1, z));
   }
 
@@ -188,23 +193,24 @@ class Builder {
     }
   }
 
-  /// Lines of the three edges; sets the vertex's edge style, faded where the face is thin on the screen.
+  bool shows_back(const DrawTriangle& t) const {
+    const Vector3d normal = (t.x[1] - t.x[0]).cross(t.x[2] - t.x[0]);
+    return normal.dot(p_.towards_viewer(t.x[0])) < 0;
+  }
+
+  /// Lines of the three edges; sets the vertex's edge style, faded where faces are small on the screen.
   std::array<Vector3d, 3> edge_lines(const DrawTriangle& t, const std::array<Vector3d, 3>& h,
                                      FaceVertex& v) const {
     std::array<Vector3d, 3> lines;
     for (int i = 0; i < 3; ++i) lines[i] = edge_line(h[i], h[(i + 1) % 3]);
     if (t.edges == 0) return lines;
     const EdgeStyle& style = list_.edge_styles[t.edge_style];
-    const double width = style.width * scale_;
-    v.half_width = to_float(0.5 * width);
-    double thinnest = kGuard * p_.width();
-    for (int i = 0; i < 3; ++i) {
-      const Vector3d& apex = h[(i + 2) % 3];
-      if (apex.z() > 0) thinnest = std::min(thinnest, std::abs(lines[i].dot(apex) / apex.z()));
-    }
-    const double fade = std::clamp((thinnest / width - kEdgesGone) / (kEdgesFull - kEdgesGone), 0.0, 1.0);
+    const double room = room_[static_cast<std::size_t>(&t - list_.triangles.data())] / (style.width * scale_);
+    const double fade = fade_between(room, kEdgesGone, kEdgesFull), back = shows_back(t) ? style.back : 1;
+    const double width = style.width * (kLeastWidth + (1 - kLeastWidth) * fade) * (0.5 + 0.5 * back);
+    v.half_width = to_float(0.5 * width * scale_);
     v.edge_colour =
-        to_bytes(with_alpha(style.colour, static_cast<std::uint8_t>(style.colour.a * fade + 0.5)));
+        to_bytes(with_alpha(style.colour, static_cast<std::uint8_t>(style.colour.a * fade * back + 0.5)));
     if (t.layer != Layer::opaque) return lines;
     // An opaque face stays opaque under its edges: blend them here, where it is exact.
     v.edge_colour = to_bytes(over(to_rgba(v.edge_colour), with_alpha(to_rgba(v.colour), 255)));
@@ -253,10 +259,18 @@ class Builder {
 
   void add_line(const DrawLine& l) {
     if (l.points.empty()) return;
+    const double nudge = l.nudge + lift(l.layer, 0.5 * l.width + l.halo_width);
     if (l.halo.a > 0 && l.halo_width > 0) {
-      add_polyline(l, l.halo, l.width + 2 * l.halo_width, kNeverDashed, l.nudge - kHaloNudge);
+      add_polyline(l, l.halo, l.width + 2 * l.halo_width, kNeverDashed, nudge - kHaloNudge);
     }
-    add_polyline(l, l.colour, l.width, l.dash, l.nudge);
+    add_polyline(l, l.colour, l.width, l.dash, nudge);
+  }
+
+  /// Steps of nudge that bring the whole width of a line in front of a face that it runs along, if the face
+  /// is not seen under less than 45 degrees; a dot is as thick as it is wide. `half_width` in pixels of the
+  /// final image. Opaque lines stay where they are: of two, the wider one is not to hide the later one.
+  double lift(Layer layer, double half_width) const {
+    return layer == Layer::opaque ? 0 : half_width * scale_ / p_.height() / kNudge;
   }
 
   void add_polyline(const DrawLine& l, Rgba colour, double width, double dash, double nudge) {
@@ -274,15 +288,15 @@ class Builder {
 
   void add_point(const DrawPoint& d) {
     LineVertex v;
-    v.dash = v.dash_start = 0;
+    const double nudge = d.nudge + lift(d.layer, d.radius + d.halo_width);
     if (d.halo.a > 0 && d.halo_width > 0) {
       v.colour = to_bytes(d.halo);
       v.half_width = to_float((d.radius + d.halo_width) * scale_);
-      add_segment(d.x, d.x, v, d.nudge - kHaloNudge);
+      add_segment(d.x, d.x, v, nudge - kHaloNudge);
     }
     v.colour = to_bytes(d.colour);
     v.half_width = to_float(d.radius * scale_);
-    add_segment(d.x, d.x, v, d.nudge);
+    add_segment(d.x, d.x, v, nudge);
   }
 
   /// Returns the segment's length on the screen.
@@ -318,7 +332,8 @@ class Builder {
   const Projection& p_;
   double scale_;
   const Lighting& lighting_;
-  Lighting soft_;  ///< of faces that let others shine through: they are to tint, not to darken
+  Lighting soft_;             ///< of faces that let others shine through: they are to tint, not to darken
+  std::vector<double> room_;  ///< see edge_room(): by triangle
   ScreenMesh mesh_;
   std::vector<FaceVertex> corners_;
 };
