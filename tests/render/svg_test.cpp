@@ -1,7 +1,9 @@
 #include "render/svg.hpp"
 
+#include <algorithm>
 #include <cmath>
-#include <regex>
+#include <sstream>
+#include <string>
 #include <vector>
 
 #include <doctest/doctest.h>
@@ -47,20 +49,33 @@ struct PathFill {
   }
 };
 
+/// The value of an attribute of an element; empty if it has none.
+std::string attribute(const std::string& element, const std::string& name) {
+  const std::size_t at = element.find(" " + name + "=\"");
+  if (at == std::string::npos) return {};
+  const std::size_t first = at + name.size() + 3;
+  return element.substr(first, element.find('"', first) - first);
+}
+
 std::vector<PathFill> fills_in(const std::string& text) {
   std::vector<PathFill> out;
-  const std::regex fill(
-      R"re(<path d="([^"]*)" fill="#(..)(..)(..)"(?: fill-opacity="([^"]*)")? fill-rule="evenodd"/>)re");
-  const std::regex command(R"re(([MLZ])(?:([-0-9.]+) ([-0-9.]+))?)re");
-  for (std::sregex_iterator it(text.begin(), text.end(), fill), end; it != end; ++it) {
-    const auto byte = [&](int i) { return static_cast<std::uint8_t>(std::stoi((*it)[i], nullptr, 16)); };
+  std::istringstream lines(text);
+  for (std::string element; std::getline(lines, element);) {
+    if (attribute(element, "fill-rule") != "evenodd") continue;
     PathFill f;
-    const double alpha = (*it)[5].matched ? std::stod((*it)[5]) : 1;
-    f.colour = {byte(2), byte(3), byte(4), static_cast<std::uint8_t>(std::lround(255 * alpha))};
-    const std::string d = (*it)[1];
-    for (std::sregex_iterator c(d.begin(), d.end(), command); c != end; ++c) {
-      if ((*c)[1] == "M") f.loops.emplace_back();
-      if ((*c)[1] != "Z") f.loops.back().emplace_back(std::stod((*c)[2]), std::stod((*c)[3]));
+    const unsigned long rgb = std::stoul(attribute(element, "fill").substr(1), nullptr, 16);
+    const std::string opacity = attribute(element, "fill-opacity");
+    const double alpha = opacity.empty() ? 1 : std::stod(opacity);
+    f.colour = {static_cast<std::uint8_t>(rgb >> 16), static_cast<std::uint8_t>(rgb >> 8 & 255),
+                static_cast<std::uint8_t>(rgb & 255), static_cast<std::uint8_t>(std::lround(255 * alpha))};
+    std::istringstream d(attribute(element, "d"));
+    for (char command = 0; d >> command;) {
+      if (command == 'Z') continue;
+      REQUIRE((command == 'M' || command == 'L'));
+      if (command == 'M') f.loops.emplace_back();
+      double x = 0, y = 0;
+      d >> x >> y;
+      f.loops.back().emplace_back(x, y);
     }
     out.push_back(f);
   }
