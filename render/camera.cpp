@@ -17,6 +17,8 @@ using Eigen::Vector3d;
 /// Of the distance to the far end, the nearest depth that is still drawn when the camera stands within the
 /// scene.
 constexpr double kNearShare = 1e-4;
+/// The same, of the distance to the target: in a close-up depths are to be told apart there.
+constexpr double kNearFocus = 0.02;
 /// By how much the range of depths exceeds the scene, as a share of it: room for lines nudged towards the
 /// viewer.
 constexpr double kDepthSlack = 0.01;
@@ -147,12 +149,24 @@ Camera fit_contact(std::span<const Vector3d> contact, const Eigen::AlignedBox3d&
   check_points(contact);
   Eigen::AlignedBox3d box;
   for (const Vector3d& p : contact) box.extend(p);
-  const double radius =
-      std::max(0.5 * context * box.diagonal().norm(), 0.5 * least * scene.diagonal().norm());
+  const double radius = 0.5 * (context * box.diagonal().norm() + least * scene.diagonal().norm());
   const Vector3d r = Vector3d::Constant(radius / std::sqrt(3.0));
   FitOptions fit = options;
   fit.margin = 0;
-  return fit_camera(Eigen::AlignedBox3d(box.center() - r, box.center() + r), width, height, fit);
+  Camera camera = fit_camera(Eigen::AlignedBox3d(box.center() - r, box.center() + r), width, height, fit);
+  // What is in the middle of the box need not be in the middle of what is seen of the contact.
+  const Projection projection(camera, width, height, box);
+  Eigen::AlignedBox2d seen;
+  for (const Vector3d& p : contact) {
+    if (const auto at = projection.to_pixel(p)) seen.extend(*at);
+  }
+  if (seen.isEmpty()) return camera;
+  const Eigen::Vector2d off =
+      (seen.center() - Eigen::Vector2d(0.5 * width, 0.5 * height)) * projection.unit_per_pixel(box.center());
+  const Vector3d move = projection.axes().row(0) * off.x() - projection.axes().row(1) * off.y();
+  camera.eye += move;
+  camera.target += move;
+  return camera;
 }
 
 Camera orbit(const Camera& camera, double azimuth, double elevation) {
@@ -192,7 +206,7 @@ Projection::Projection(const Camera& camera, double width, double height, const 
   near_ = lo - slack;
   if (!orthographic_) {
     if (!(far_ > 0)) far_ = 1;
-    near_ = std::max(near_, kNearShare * far_);
+    near_ = std::max({near_, kNearShare * far_, std::min(kNearFocus * forward.norm(), 0.5 * far_)});
   }
 }
 
@@ -204,6 +218,13 @@ Vector3d Projection::to_screen(const Vector3d& e) const {
   // Depth is linear in 1 / z, and so linear over the picture along a plane.
   return {0.5 * width_ + focal_ * e.x() / e.z(), 0.5 * height_ + focal_ * e.y() / e.z(),
           (far_ + near_ - 2 * far_ * near_ / e.z()) / (far_ - near_)};
+}
+
+double Projection::nearer(double depth, double heights) const {
+  const double way = heights * height_ / focal_;  // perspective: at distance 1
+  if (orthographic_) return depth - 2 * way / (far_ - near_);
+  const double infinite = (far_ + near_) / (far_ - near_);
+  return infinite - (infinite - depth) / (1 - way);
 }
 
 std::optional<Eigen::Vector2d> Projection::to_pixel(const Vector3d& world) const {

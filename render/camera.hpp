@@ -51,10 +51,10 @@ Camera fit_camera(const Eigen::AlignedBox3d& box, double width, double height,
 /// Looks straight down on the plane z = 0, orthographic, x to the right: for 2D bodies.
 Camera fit_top(std::span<const Eigen::Vector3d> points, double width, double height, double margin = 0.06);
 
-/// The points in the middle of the picture and, around them, `context` times their size; where they are tiny
-/// (a single point), at least `least` times the scene's diagonal.
+/// The points in the middle of the picture and, around them, `context` times their size and `least` times the
+/// scene's diagonal: something of the bodies is always seen, even where the contact is one point.
 Camera fit_contact(std::span<const Eigen::Vector3d> contact, const Eigen::AlignedBox3d& scene, double width,
-                   double height, const FitOptions& options = {}, double context = 2.5, double least = 0.06);
+                   double height, const FitOptions& options = {}, double context = 2.5, double least = 0.1);
 
 /// The same camera carried round the vertical through its target by `azimuth`, and lifted by `elevation`
 /// (radians; stopped short of the vertical).
@@ -76,6 +76,9 @@ class Projection {
   Eigen::Vector3d to_screen(const Eigen::Vector3d& eye) const;
   /// World to pixels from the top left, y down; nothing if it lies behind the eye.
   std::optional<Eigen::Vector2d> to_pixel(const Eigen::Vector3d& world) const;
+  /// The depth in [-1, 1] of what lies closer to the viewer than something of that depth, by a share of the
+  /// height that the picture shows there.
+  double nearer(double depth, double heights) const;
   double near_depth() const { return near_; }
   double far_depth() const { return far_; }
   double focal() const { return focal_; }  ///< pixels per unit of x / z (orthographic: of x)

@@ -55,7 +55,9 @@ std::string lines_by_layer(const std::string& kind, const Items& items) {
 }  // namespace
 
 std::uint8_t DrawList::edge_style(const EdgeStyle& style) {
-  const auto same = [&](const EdgeStyle& s) { return s.colour == style.colour && s.width == style.width; };
+  const auto same = [&](const EdgeStyle& s) {
+    return s.colour == style.colour && s.width == style.width && s.back == style.back;
+  };
   const auto found = std::find_if(edge_styles.begin(), edge_styles.end(), same);
   const auto index = static_cast<std::size_t>(found - edge_styles.begin());
   if (found == edge_styles.end()) {

@@ -31,6 +31,7 @@ inline constexpr std::uint32_t kNoId = std::numeric_limits<std::uint32_t>::max()
 struct EdgeStyle {
   Rgba colour{30, 30, 30, 255};
   float width = 1;  ///< pixels, over both faces of the edge: half is drawn on each
+  float back = 1;   ///< how much of alpha is left on faces that show their back; width shrinks half as much
 };
 
 struct DrawTriangle {

@@ -5,6 +5,9 @@
 #include <cmath>
 #include <numbers>
 
+#include <glm/mat3x3.hpp>
+#include <glm/vec3.hpp>
+
 namespace lrb::palette {
 
 Rgba viridis(double t) {
@@ -38,20 +41,21 @@ Rgba category(std::uint32_t index) {
   constexpr double kChroma = 0.115;
   const double hue = 2 * std::numbers::pi * std::fmod(0.08 + kGolden * index, 1.0);
   const double l = kLightness[index % kLightness.size()];
-  const double a = kChroma * std::cos(hue), b = kChroma * std::sin(hue);
-  // Oklab to linear RGB (B. Ottosson, "A perceptual color space for image processing", 2020).
-  const auto cube = [](double x) { return x * x * x; };
-  const double lms_l = cube(l + 0.3963377774 * a + 0.2158037573 * b);
-  const double lms_m = cube(l - 0.1055613458 * a - 0.0638541728 * b);
-  const double lms_s = cube(l - 0.0894841775 * a - 1.2914855480 * b);
+  const glm::dvec3 lab(l, kChroma * std::cos(hue), kChroma * std::sin(hue));
+  // Oklab to linear RGB (B. Ottosson, "A perceptual color space for image processing", 2020). Matrices by
+  // columns.
+  constexpr glm::dmat3 kLabToRoots(1, 1, 1, 0.3963377774, -0.1055613458, -0.0894841775, 0.2158037573,
+                                   -0.0638541728, -1.2914855480);
+  constexpr glm::dmat3 kLmsToRgb(4.0767416621, -1.2684380046, -0.0041960863, -3.3077115913, 2.6097574011,
+                                 -0.7034186147, 0.2309699292, -0.3413193965, 1.7076147010);
+  const glm::dvec3 roots = kLabToRoots * lab;
+  const glm::dvec3 rgb = kLmsToRgb * (roots * roots * roots);
   const auto byte = [](double linear) {
     const double c = std::clamp(linear, 0.0, 1.0);
     const double s = c <= 0.0031308 ? 12.92 * c : 1.055 * std::pow(c, 1 / 2.4) - 0.055;
     return static_cast<std::uint8_t>(255 * s + 0.5);
   };
-  return {byte(4.0767416621 * lms_l - 3.3077115913 * lms_m + 0.2309699292 * lms_s),
-          byte(-1.2684380046 * lms_l + 2.6097574011 * lms_m - 0.3413193965 * lms_s),
-          byte(-0.0041960863 * lms_l - 0.7034186147 * lms_m + 1.7076147010 * lms_s)};
+  return {byte(rgb.r), byte(rgb.g), byte(rgb.b)};
 }
 
 }  // namespace lrb::palette

@@ -5,7 +5,10 @@
 #include <cstddef>
 #include <string>
 
+#include <glm/gtc/type_ptr.hpp>
+
 #include "engine/error.hpp"
+#include "render/convert.hpp"
 #include "render/gl_objects.hpp"
 #include "render/offscreen.hpp"
 #include "render/shaders.hpp"
@@ -87,7 +90,7 @@ struct Rasterizer::State {
     using L = LineVertex;
     const GLsizei l = sizeof(L);
     gl.VertexAttribPointer(0, 3, GL_FLOAT, GL_FALSE, l, offset(offsetof(L, x)));
-    gl.VertexAttribPointer(1, 2, GL_FLOAT, GL_FALSE, l, offset(offsetof(L, along)));
+    gl.VertexAttribPointer(1, 2, GL_FLOAT, GL_FALSE, l, offset(offsetof(L, at)));
     gl.VertexAttribPointer(2, 4, GL_FLOAT, GL_FALSE, l, offset(offsetof(L, length)));
     gl.VertexAttribPointer(3, 4, GL_UNSIGNED_BYTE, GL_TRUE, l, offset(offsetof(L, colour)));
     for (GLuint i = 0; i < 4; ++i) gl.EnableVertexAttribArray(i);
@@ -267,9 +270,7 @@ struct Rasterizer::State {
     upload(lines, mesh.lines);
     begin(scene, width, height);
     const Rgba back = options.background ? with_alpha(*options.background, 255) : kTransparent;
-    const std::array<float, 4> clear{static_cast<float>(back.r) / 255, static_cast<float>(back.g) / 255,
-                                     static_cast<float>(back.b) / 255, static_cast<float>(back.a) / 255};
-    gl.ClearBufferfv(GL_COLOR, 0, clear.data());
+    gl.ClearBufferfv(GL_COLOR, 0, glm::value_ptr(to_unit(back)));
     gl.UseProgram(face);
     draw_fills(mesh, true);
     draw_opaque(mesh);
@@ -290,8 +291,7 @@ struct Rasterizer::State {
     const Target target = scene_target(GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, w, h);
     upload(faces, mesh.faces);
     begin(target, w, h);
-    const std::array<GLuint, 4> none{kNoId, 0, 0, 0};
-    gl.ClearBufferuiv(GL_COLOR, 0, none.data());
+    gl.ClearBufferuiv(GL_COLOR, 0, glm::value_ptr(glm::uvec4(kNoId, 0, 0, 0)));
     gl.UseProgram(id);
     draw_fills(mesh, false);
     gl.Enable(GL_DEPTH_TEST);

@@ -13,7 +13,10 @@ using Mark = LegendItem::Mark;
 
 /// Pseudo faces: a whitish veil, so that what they cover looks paler than what lies bare.
 constexpr std::uint8_t kLidAlpha = 124;
-constexpr double kLidPale = 0.70;            ///< their colour, from the body's towards white
+constexpr double kLidPale = 0.70;  ///< their colour, from the body's towards white
+constexpr std::uint8_t kLidEdgeAlpha = 220;
+/// Of edges on the far side little is left: else a refined wrapper, with hundreds of faces, is a tangle.
+constexpr float kLidEdgeBack = 0.3F;
 constexpr std::uint8_t kTellingAlpha = 175;  ///< where their colour says something
 constexpr std::uint8_t kRefiningAlpha = 120;
 constexpr std::uint8_t kGhostAlpha = 14;
@@ -27,10 +30,15 @@ class Builder {
     real_edges_ = c.out.list.edge_style({with_alpha(ink, 150), 0.9F * c.options.scale});
     pale_edges_ = c.out.list.edge_style({with_alpha(ink, 90), 0.8F * c.options.scale});
     cell_edges_ = c.out.list.edge_style({with_alpha(palette::kInk, 150), 0.9F * c.options.scale});
-    lid_edges_ = c.out.list.edge_style({with_alpha(mix(body, ink, 0.7), 230), 1.7F * c.options.scale});
+    lid_edges_ = c.out.list.edge_style(
+        {with_alpha(mix(body, ink, 0.7), kLidEdgeAlpha), 1.5F * c.options.scale, kLidEdgeBack});
   }
 
   void run() {
+    if (!c_.refining().empty()) {
+      const Rgba dark = with_alpha(palette::edge_of(palette::kRefining), kLidEdgeAlpha);
+      refining_edges_ = c_.out.list.edge_style({dark, 1.4F * c_.options.scale, 0.5F});
+    }
     if (c_.isolating()) {
       isolate();
     } else if (c_.options.explode > 0) {
@@ -103,9 +111,14 @@ class Builder {
     for (const FaceId f : rep_.floor(r)) {
       if (!rep_.is_real(f)) floor.push_back(f);
     }
-    for (const FaceId f : lids) add_face(f, translucent(with_alpha(palette::kRefining, kRefiningAlpha), 2));
-    add_outlines(lids, {palette::edge_of(palette::kRefining), 2.2F * c_.options.scale});
-    add_outlines(floor, {with_alpha(palette::edge_of(palette::kRefining), 200), 1.3F * c_.options.scale});
+    // Edges of faces fade where there are many; of a small region the rim alone is left, and its colour.
+    DrawTriangle t = translucent(with_alpha(palette::kRefining, kRefiningAlpha), 2);
+    t.edges = 7;
+    t.edge_style = refining_edges_;
+    for (const FaceId f : lids) add_face(f, t);
+    t.colour = with_alpha(t.colour, 0);
+    for (const FaceId f : floor) add_face(f, t);
+    add_outlines(lids, {mix(palette::kRefining, palette::kInk, 0.4), 2 * c_.options.scale}, true);
   }
 
   // ---- regions on their own
@@ -188,8 +201,8 @@ class Builder {
   }
 
   /// Edges of faces as lines, each once: they keep their width at outlines, where edges of faces show half of
-  /// it.
-  void add_outlines(const std::vector<FaceId>& faces, const EdgeStyle& style) {
+  /// it. `rim`: only those of one face alone, and to be found through everything.
+  void add_outlines(const std::vector<FaceId>& faces, const EdgeStyle& style, bool rim = false) {
     std::vector<std::array<VertexId, 2>> edges;
     for (const FaceId f : faces) {
       const auto corners = rep_.face(f);
@@ -199,13 +212,16 @@ class Builder {
       }
     }
     std::sort(edges.begin(), edges.end());
-    edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
-    for (const auto& [a, b] : edges) {
+    std::size_t end = 0;
+    for (std::size_t first = 0; first < edges.size(); first = end) {
+      const auto [a, b] = edges[first];
+      for (end = first; end < edges.size() && edges[end] == edges[first];) ++end;
+      if (rim && end - first > 1) continue;
       DrawLine line;
       line.points = {c_.body.pose.apply(rep_.vertices()[a]), c_.body.pose.apply(rep_.vertices()[b])};
       line.colour = style.colour;
       line.width = style.width;
-      line.layer = Layer::translucent;
+      line.layer = rim ? Layer::on_top : Layer::translucent;
       line.nudge = 2;
       c_.out.list.lines.push_back(std::move(line));
     }
@@ -213,7 +229,7 @@ class Builder {
 
   const Context& c_;
   const LrbRep& rep_;
-  std::uint8_t real_edges_ = 0, pale_edges_ = 0, lid_edges_ = 0, cell_edges_ = 0;
+  std::uint8_t real_edges_ = 0, pale_edges_ = 0, lid_edges_ = 0, cell_edges_ = 0, refining_edges_ = 0;
 };
 
 }  // namespace

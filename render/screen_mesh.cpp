@@ -4,7 +4,10 @@
 #include <cmath>
 #include <utility>
 
+#include <glm/common.hpp>
+
 #include "render/depth_order.hpp"
+#include "render/edge_room.hpp"
 
 namespace lrb {
 namespace {
@@ -14,23 +17,22 @@ using Eigen::Vector3d;
 
 /// Corners are rounded to 1/256 pixel, the grid of Mesa's rasterizer: it then has nothing to round.
 constexpr double kSnap = 256;
-/// One step of DrawTriangle::nudge, as a share of the range of depths (-1 to 1). Small enough not to show
-/// what lies visibly behind, large enough to keep a line on the face it runs along.
-constexpr double kNudge = 3e-4;
+/// One step of DrawTriangle::nudge, as a share of the picture's height at that depth. Small enough not to
+/// show what lies visibly behind, large enough to keep a line on the face it runs along.
+constexpr double kNudge = 1.2e-4;
 /// A line's halo lies this share of a step behind the line.
 constexpr double kHaloNudge = 0.25;
 /// Corners farther outside than this many picture sizes are clipped, to keep float coordinates fine.
 constexpr double kGuard = 8;
-/// Edges fade out where a face is so thin that they would cover it: from this many edge widths down to ...
-constexpr double kEdgesFull = 7, kEdgesGone = 2.5;
+/// Edges fade out where faces are so small that they would cover them: from this many edge widths (of room,
+/// see edge_room.hpp) down to ...
+constexpr double kEdgesFull = 9, kEdgesGone = 1.5;
+/// ... and are this share of their width where they vanish.
+constexpr double kLeastWidth = 0.6;
 /// How much weaker the shading of translucent faces is than that of opaque ones.
 constexpr double kSoften = 0.6;
 /// Room for the soft rim of lines, pixels.
 constexpr double kRim = 1;
-
-std::array<std::uint8_t, 4> bytes(Rgba c) {
-  return {c.r, c.g, c.b, c.a};
-}
 
 double snap(double pixels) {
   return std::nearbyint(pixels * kSnap) / kSnap;
@@ -45,6 +47,7 @@ class Builder {
  public:
   Builder(const DrawList& list, const Projection& projection, double scale, const Lighting& lighting)
       : list_(list), p_(projection), scale_(scale), lighting_(lighting), soft_(lighting) {
+    room_ = edge_room(list, projection);
     soft_.ambient = lighting.ambient + kSoften * (1 - lighting.ambient);
     for (double* share : {&soft_.head, &soft_.key, &soft_.fill}) *share *= 1 - kSoften;
   }
@@ -96,10 +99,9 @@ class Builder {
 
   // ---- faces
 
-  std::array<float, 3> device(const Vector3d& screen, double nudge) const {
-    const double z = std::clamp(screen.z() - nudge * kNudge, -1.0, 1.0);
-    return {static_cast<float>(2 * screen.x() / p_.width() - 1),
-            static_cast<float>(2 * screen.y() / p_.height() - 1), static_cast<float>(z)};
+  glm::vec3 device(const Vector3d& screen, double nudge) const {
+    const double z = std::clamp(p_.nearer(screen.z(), nudge * kNudge), -1.0, 1.0);
+    return to_float(Vector3d(2 * screen.x() / p_.width() - 1, 2 * screen.y() / p_.height() - 1, z));
   }
 
   Vector3d snapped_screen(const Vector3d& eye) const {
@@ -172,7 +174,7 @@ class Builder {
       const Lighting& lighting = t.layer == Layer::opaque ? lighting_ : soft_;
       colour = shade(colour, normal / length, p_.axes(), lighting);
     }
-    v.colour = bytes(colour);
+    v.colour = to_bytes(colour);
     v.id = t.id;
     const std::array<Vector3d, 3> h = {homogeneous(p_, p_.to_eye(t.x[0])), homogeneous(p_, p_.to_eye(t.x[1])),
                                        homogeneous(p_, p_.to_eye(t.x[2]))};
@@ -182,8 +184,7 @@ class Builder {
       const Vector3d at = homogeneous(p_, e);
       v.x = device(snapped_screen(e), t.nudge);
       for (int i = 0; i < 3; ++i) {
-        v.edge[i] =
-            (t.edges >> i & 1) != 0 ? static_cast<float>(std::abs(lines[i].dot(at) / at.z())) : kNoEdge;
+        v.edge[i] = (t.edges >> i & 1) != 0 ? to_float(std::abs(lines[i].dot(at) / at.z())) : kNoEdge;
       }
       corners_.push_back(v);
     }
@@ -192,27 +193,27 @@ class Builder {
     }
   }
 
-  /// Lines of the three edges; sets the vertex's edge style, faded where the face is thin on the screen.
+  bool shows_back(const DrawTriangle& t) const {
+    const Vector3d normal = (t.x[1] - t.x[0]).cross(t.x[2] - t.x[0]);
+    return normal.dot(p_.towards_viewer(t.x[0])) < 0;
+  }
+
+  /// Lines of the three edges; sets the vertex's edge style, faded where faces are small on the screen.
   std::array<Vector3d, 3> edge_lines(const DrawTriangle& t, const std::array<Vector3d, 3>& h,
                                      FaceVertex& v) const {
     std::array<Vector3d, 3> lines;
     for (int i = 0; i < 3; ++i) lines[i] = edge_line(h[i], h[(i + 1) % 3]);
     if (t.edges == 0) return lines;
     const EdgeStyle& style = list_.edge_styles[t.edge_style];
-    const double width = style.width * scale_;
-    v.half_width = static_cast<float>(0.5 * width);
-    double thinnest = kGuard * p_.width();
-    for (int i = 0; i < 3; ++i) {
-      const Vector3d& apex = h[(i + 2) % 3];
-      if (apex.z() > 0) thinnest = std::min(thinnest, std::abs(lines[i].dot(apex) / apex.z()));
-    }
-    const double fade = std::clamp((thinnest / width - kEdgesGone) / (kEdgesFull - kEdgesGone), 0.0, 1.0);
-    v.edge_colour = bytes(with_alpha(style.colour, static_cast<std::uint8_t>(style.colour.a * fade + 0.5)));
+    const double room = room_[static_cast<std::size_t>(&t - list_.triangles.data())] / (style.width * scale_);
+    const double fade = fade_between(room, kEdgesGone, kEdgesFull), back = shows_back(t) ? style.back : 1;
+    const double width = style.width * (kLeastWidth + (1 - kLeastWidth) * fade) * (0.5 + 0.5 * back);
+    v.half_width = to_float(0.5 * width * scale_);
+    v.edge_colour =
+        to_bytes(with_alpha(style.colour, static_cast<std::uint8_t>(style.colour.a * fade * back + 0.5)));
     if (t.layer != Layer::opaque) return lines;
     // An opaque face stays opaque under its edges: blend them here, where it is exact.
-    const Rgba face{v.colour[0], v.colour[1], v.colour[2], 255};
-    const Rgba edge{v.edge_colour[0], v.edge_colour[1], v.edge_colour[2], v.edge_colour[3]};
-    v.edge_colour = bytes(over(edge, face));
+    v.edge_colour = to_bytes(over(to_rgba(v.edge_colour), with_alpha(to_rgba(v.colour), 255)));
     return lines;
   }
 
@@ -222,8 +223,8 @@ class Builder {
     if (fill.segments.empty()) return;
     FillRange range;
     FaceVertex v;
-    v.edge = {kNoEdge, kNoEdge, kNoEdge};
-    v.edge_colour = v.colour = bytes(fill.colour);
+    v.edge = glm::vec3(kNoEdge);
+    v.edge_colour = v.colour = to_bytes(fill.colour);
     v.id = fill.id;
     range.fan.first = mesh_.faces.size();
     const auto corner = [&](const Vector3d& x) {
@@ -232,21 +233,22 @@ class Builder {
       s.z() = 0;
       return device(s, 0);
     };
-    const std::array<float, 3> pivot = corner(fill.segments[0][0]);
-    std::array<float, 4> box{1, 1, -1, -1};
+    const glm::vec3 pivot = corner(fill.segments[0][0]);
+    glm::vec2 low(1), high(-1);
     for (const auto& [a, b] : fill.segments) {
-      for (const auto& x : {pivot, corner(a), corner(b)}) {
+      for (const glm::vec3& x : {pivot, corner(a), corner(b)}) {
         v.x = x;
         mesh_.faces.push_back(v);
-        box = {std::min(box[0], x[0]), std::min(box[1], x[1]), std::max(box[2], x[0]),
-               std::max(box[3], x[1])};
+        low = glm::min(low, glm::vec2(x));
+        high = glm::max(high, glm::vec2(x));
       }
     }
     range.fan.count = mesh_.faces.size() - range.fan.first;
-    for (float& side : box) side = std::clamp(side, -1.0F, 1.0F);
+    low = glm::clamp(low, -1.0F, 1.0F);
+    high = glm::clamp(high, -1.0F, 1.0F);
     range.cover.first = mesh_.faces.size();
-    for (const auto& [i, j] : {std::array{0, 1}, {2, 1}, {2, 3}, {0, 1}, {2, 3}, {0, 3}}) {
-      v.x = {box[i], box[j], 0};
+    for (const glm::vec2 at : {low, {high.x, low.y}, high, low, high, {low.x, high.y}}) {
+      v.x = {at, 0};
       mesh_.faces.push_back(v);
     }
     range.cover.count = 6;
@@ -257,36 +259,44 @@ class Builder {
 
   void add_line(const DrawLine& l) {
     if (l.points.empty()) return;
+    const double nudge = l.nudge + lift(l.layer, 0.5 * l.width + l.halo_width);
     if (l.halo.a > 0 && l.halo_width > 0) {
-      add_polyline(l, l.halo, l.width + 2 * l.halo_width, kNeverDashed, l.nudge - kHaloNudge);
+      add_polyline(l, l.halo, l.width + 2 * l.halo_width, kNeverDashed, nudge - kHaloNudge);
     }
-    add_polyline(l, l.colour, l.width, l.dash, l.nudge);
+    add_polyline(l, l.colour, l.width, l.dash, nudge);
+  }
+
+  /// Steps of nudge that bring the whole width of a line in front of a face that it runs along, if the face
+  /// is not seen under less than 45 degrees; a dot is as thick as it is wide. `half_width` in pixels of the
+  /// final image. Opaque lines stay where they are: of two, the wider one is not to hide the later one.
+  double lift(Layer layer, double half_width) const {
+    return layer == Layer::opaque ? 0 : half_width * scale_ / p_.height() / kNudge;
   }
 
   void add_polyline(const DrawLine& l, Rgba colour, double width, double dash, double nudge) {
     LineVertex v;
-    v.colour = bytes(colour);
-    v.half_width = static_cast<float>(0.5 * width * scale_);
-    v.dash = static_cast<float>(dash > 0 ? dash * scale_ : dash);
+    v.colour = to_bytes(colour);
+    v.half_width = to_float(0.5 * width * scale_);
+    v.dash = to_float(dash > 0 ? dash * scale_ : dash);
     double before = 0;
     const std::size_t n = l.points.size(), segments = l.closed && n > 2 ? n : std::max<std::size_t>(n - 1, 1);
     for (std::size_t i = 0; i < segments; ++i) {
-      v.dash_start = static_cast<float>(before);
+      v.dash_start = to_float(before);
       before += add_segment(l.points[i], l.points[n == 1 ? 0 : (i + 1) % n], v, nudge);
     }
   }
 
   void add_point(const DrawPoint& d) {
     LineVertex v;
-    v.dash = v.dash_start = 0;
+    const double nudge = d.nudge + lift(d.layer, d.radius + d.halo_width);
     if (d.halo.a > 0 && d.halo_width > 0) {
-      v.colour = bytes(d.halo);
-      v.half_width = static_cast<float>((d.radius + d.halo_width) * scale_);
-      add_segment(d.x, d.x, v, d.nudge - kHaloNudge);
+      v.colour = to_bytes(d.halo);
+      v.half_width = to_float((d.radius + d.halo_width) * scale_);
+      add_segment(d.x, d.x, v, nudge - kHaloNudge);
     }
-    v.colour = bytes(d.colour);
-    v.half_width = static_cast<float>(d.radius * scale_);
-    add_segment(d.x, d.x, v, d.nudge);
+    v.colour = to_bytes(d.colour);
+    v.half_width = to_float(d.radius * scale_);
+    add_segment(d.x, d.x, v, nudge);
   }
 
   /// Returns the segment's length on the screen.
@@ -304,13 +314,12 @@ class Builder {
     const Vector2d u = length > 0 ? Vector2d(d / length) : Vector2d::UnitX();
     const Vector2d side(-u.y(), u.x());
     const double reach = v.half_width + kRim;
-    v.length = static_cast<float>(length);
+    v.length = to_float(length);
     std::array<LineVertex, 4> corner;
     for (int i = 0; i < 4; ++i) {
       const double along = i == 1 || i == 2 ? length + reach : -reach, across = i < 2 ? -reach : reach;
       const Vector2d at = sa.head<2>() + along * u + across * side;
-      v.along = static_cast<float>(along);
-      v.across = static_cast<float>(across);
+      v.at = to_float(Vector2d(along, across));
       // Depth is held at the ends beyond them: a round end must not sink into what it ends on.
       v.x = device({at.x(), at.y(), along < 0 ? sa.z() : sb.z()}, nudge);
       corner[i] = v;
@@ -323,7 +332,8 @@ class Builder {
   const Projection& p_;
   double scale_;
   const Lighting& lighting_;
-  Lighting soft_;  ///< of faces that let others shine through: they are to tint, not to darken
+  Lighting soft_;             ///< of faces that let others shine through: they are to tint, not to darken
+  std::vector<double> room_;  ///< see edge_room(): by triangle
   ScreenMesh mesh_;
   std::vector<FaceVertex> corners_;
 };

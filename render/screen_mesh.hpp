@@ -10,15 +10,16 @@
 #include <vector>
 
 #include "render/camera.hpp"
+#include "render/convert.hpp"
 #include "render/draw_list.hpp"
 
 namespace lrb {
 
 /// A corner of a face. Interpolated linearly over the screen: position and edge distances.
 struct FaceVertex {
-  std::array<float, 3> x;     ///< normalised device coordinates
-  std::array<float, 3> edge;  ///< distance from the lines of the three edges, pixels; kNoEdge where not drawn
-  std::array<std::uint8_t, 4> colour, edge_colour;
+  glm::vec3 x{0};     ///< normalised device coordinates
+  glm::vec3 edge{0};  ///< distance from the lines of the three edges, pixels; kNoEdge where not drawn
+  ByteColour colour{0}, edge_colour{0};
   float half_width = 0;  ///< of edges, pixels
   std::uint32_t id = kNoId;
 };
@@ -27,11 +28,12 @@ inline constexpr float kNeverDashed = -1;  ///< as dash length: solid even where
 
 /// A corner of the rectangle round a line segment, a capsule. A point is a segment of no length.
 struct LineVertex {
-  std::array<float, 3> x;
-  float along, across;  ///< from the segment's start, along it and to its left, pixels
-  float length, half_width;
-  float dash, dash_start;  ///< dash length (0: solid) and the length of line before this segment, pixels
-  std::array<std::uint8_t, 4> colour;
+  glm::vec3 x{0};   ///< normalised device coordinates
+  glm::vec2 at{0};  ///< from the segment's start, along it and to its left, pixels
+  float length = 0, half_width = 0;
+  float dash = 0,
+        dash_start = 0;  ///< length of dashes (0: solid) and of the line before this segment, pixels
+  ByteColour colour{0};
 };
 
 struct VertexRange {

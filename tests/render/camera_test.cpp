@@ -103,10 +103,35 @@ TEST_CASE("a camera on the contact holds it with its surroundings") {
     CHECK(seen.max().y() < 500);
     CHECK(seen.diagonal().norm() > 60);
   }
+  // In the middle is what is seen of the contact, also where its near side looks larger.
+  std::vector<Vector3d> deep;
+  for (int i = 0; i < 40; ++i) deep.push_back(Vector3d(std::sin(i * 0.157), 0.1, 3 * std::cos(i * 0.157)));
+  deep.emplace_back(0, 0, 4);
+  FitOptions wide_angle;
+  wide_angle.fov_y = 1.2;
+  const Camera middle = fit_contact(deep, scene, 800, 600, wide_angle);
+  Eigen::AlignedBox2d extent;
+  for (const Vector3d& p : deep) extent.extend(*Projection(middle, 800, 600, scene).to_pixel(p));
+  CHECK((extent.center() - Eigen::Vector2d(400, 300)).norm() < 0.05 * extent.diagonal().norm());
   // A contact in one point is shown at the least size asked for.
   const Camera near = fit_contact(std::vector<Vector3d>{{1, 1, 1}}, scene, 800, 600, {}, 3.0, 0.01);
   const Camera wide = fit_contact(std::vector<Vector3d>{{1, 1, 1}}, scene, 800, 600, {}, 3.0, 0.1);
   CHECK((wide.eye - wide.target).norm() > 5 * (near.eye - near.target).norm());
+}
+
+TEST_CASE("nearer in depth is nearer in the world, by shares of the picture's height") {
+  for (const bool orthographic : {false, true}) {
+    Camera camera;
+    camera.eye = {0, 0, 5};
+    camera.orthographic = orthographic;
+    camera.half_height = 1.5;
+    const Projection p(camera, 400, 300, Eigen::AlignedBox3d(Vector3d(-1, -1, -8), Vector3d(1, 1, 2)));
+    const Vector3d at(0.3, 0.2, -4);
+    const double height = p.unit_per_pixel(at) * 300;
+    const Vector3d eye = p.to_eye(at);
+    const double expected = p.to_screen(eye - Vector3d(0, 0, 0.1 * height)).z();
+    CHECK(p.nearer(p.to_screen(eye).z(), 0.1) == doctest::Approx(expected).epsilon(1e-12));
+  }
 }
 
 TEST_CASE("a view from beside puts both ends of the axis side by side") {

@@ -113,7 +113,7 @@ TEST_CASE("what lies behind a camera within the scene is clipped") {
   CHECK(mesh.faces.size() > 30);
   CHECK(mesh.faces.size() % 3 == 0);
   for (const FaceVertex& v : mesh.faces) {
-    for (const float c : v.x) CHECK(std::abs(c) <= 18);
+    for (int i = 0; i < 3; ++i) CHECK(std::abs(v.x[i]) <= 18);
     CHECK(std::isfinite(v.edge[0]));
   }
 }

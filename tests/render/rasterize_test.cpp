@@ -99,12 +99,12 @@ TEST_CASE("edges are drawn with their width, and only those asked for") {
     DrawList list;
     DrawTriangle t = flat(kWhite);
     t.edges = 7;
-    t.edge_style = list.edge_style({kBlack, 8});
+    t.edge_style = list.edge_style({kBlack, 6});
     square(list, 10, 10, 90, 90, 0, t);
     const Image image = rasterizer().draw(list, pixel_camera(100, 100), size(100, 100, supersample));
-    CHECK(image.at(11, 50) == kBlack);  // half of the width lies on this face: pixels 10 to 13
-    CHECK(image.at(13, 50) == kBlack);
-    CHECK(near(image.at(15, 50), kWhite));
+    CHECK(image.at(10, 50) == kBlack);  // half of the width lies on this face: pixels 10 to 12
+    CHECK(image.at(12, 50) == kBlack);
+    CHECK(near(image.at(14, 50), kWhite));
     CHECK(image.at(88, 50) == kBlack);
     CHECK(image.at(50, 12) == kBlack);
     CHECK(image.at(50, 87) == kBlack);
@@ -121,6 +121,52 @@ TEST_CASE("edges fade where they would cover the face") {
   for (int i = 0; i < 40; ++i) square(list, 10 + i, 10, 11 + i, 50, 0, t);
   const Image image = rasterizer().draw(list, pixel_camera(64, 64), size(64, 64));
   CHECK(image.at(30, 30) == kGreen);
+}
+
+TEST_CASE("edges of faces that show their back are paler where their style says so") {
+  DrawList list;
+  DrawTriangle t = flat(kWhite, Layer::translucent);
+  t.edges = 7;
+  t.edge_style = list.edge_style({kBlack, 6, 0.4F});
+  square(list, 10, 10, 90, 90, 0, t);
+  list.add_polygon({{110, 10, 0}, {110, 90, 0}, {190, 90, 0}, {190, 10, 0}}, t);  // the other way round
+  const Image image = rasterizer().draw(list, pixel_camera(200, 100), size(200, 100));
+  CHECK(image.at(11, 50) == kBlack);
+  CHECK(near(image.at(111, 50), {153, 153, 153}));
+  CHECK(image.at(12, 50) == kBlack);
+  CHECK(image.at(112, 50).r > 220);  // 0.7 of the width
+}
+
+TEST_CASE("in a close-up among large bodies, lines on top know what hides them") {
+  // A slope across the view, a line on it and one as far behind it as it is wide, and then some.
+  DrawList list;
+  DrawTriangle t = flat(kGreen);
+  list.add_polygon({{-1, -1, -0.7}, {1, -1, -0.7}, {1, 1, 0.7}, {-1, 1, 0.7}}, t);
+  list.add_polygon({{-90, -90, -200}, {90, -90, -200}, {0, 90, -200}}, t);
+  list.add_polygon({{-90, -90, 50}, {90, -90, 50}, {0, 90, 50}}, t);  // behind the eye
+  DrawLine line;
+  line.colour = kRed;
+  line.width = 6;
+  line.layer = Layer::on_top;
+  line.points = {{-0.6, 0, 0}, {0.6, 0, 0}};
+  list.lines.push_back(line);
+  line.points = {{-0.6, 0.4, 0.16}, {0.6, 0.4, 0.16}};  // the slope is at 0.28 there
+  list.lines.push_back(line);
+  Camera camera;
+  camera.eye = {0, 0, 4};
+  camera.target = Vector3d::Zero();
+  camera.fov_y = 0.5;
+  const Image image = rasterizer().draw(list, camera, size(300, 300));
+  const auto red = [&](int x0, int y0, int x1, int y1) {
+    int n = 0;
+    for (int y = y0; y < y1; ++y) {
+      for (int x = x0; x < x1; ++x) n += near(image.at(x, y), kRed) ? 1 : 0;
+    }
+    return n;
+  };
+  CHECK(red(100, 140, 200, 160) >= 590);  // its whole width, without a gap
+  CHECK(red(100, 60, 200, 130) > 100);    // thinner, and dashed
+  CHECK(red(100, 60, 200, 130) < 300);
 }
 
 TEST_CASE("translucent faces blend by depth, whatever their order, also where they cross") {
@@ -196,7 +242,8 @@ TEST_CASE("lines have their width, round ends, dashes and halos") {
 
 TEST_CASE("what is on top shines through, ghosted") {
   DrawList list;
-  square(list, 0, 0, 50, 100, 5, flat(kWhite));  // hides the left half
+  square(list, 0, 0, 50, 100, 15,
+         flat(kWhite));  // hides the left half, and is farther off than dots are thick
   square(list, 0, 0, 100, 100, -5, flat(kWhite));
   DrawLine line;
   line.points = {{10, 50, 0}, {90, 50, 0}};

@@ -116,12 +116,18 @@ TEST_CASE("what the event is about is highlighted") {
   const std::vector<ContactRegion> contacts = {curve, point};
   highlight.contacts = contacts;
   const Scene scene = build_scene(bodies, highlight);
-  int green = 0, yellow = 0, red = 0;
+  int green = 0, yellow = 0, red = 0, rim = 0;
   for (const DrawTriangle& t : scene.list.triangles) {
-    green += t.layer == Layer::translucent && with_alpha(t.colour, 255) == palette::kRefining;
+    green +=
+        t.layer == Layer::translucent && t.colour.a > 0 && with_alpha(t.colour, 255) == palette::kRefining;
     yellow += t.layer == Layer::on_top && with_alpha(t.colour, 255) == palette::kUnderTest;
   }
-  for (const DrawLine& l : scene.list.lines) red += l.colour == palette::kContact && l.layer == Layer::on_top;
+  for (const DrawLine& l : scene.list.lines) {
+    red += l.colour == palette::kContact && l.layer == Layer::on_top;
+    rim += l.points.size() == 2 && l.layer == Layer::on_top;
+  }
+  REQUIRE(rep.lids(r).size() == 1);
+  CHECK(rim == 3);  // of the region's lid, a triangle
   CHECK(green == static_cast<int>(rep.lids(r).size()));
   CHECK(yellow == 2);
   CHECK(red == 1);

@@ -1,0 +1,23 @@
+#pragma once
+/// Draw list + camera -> SVG: pictures of 2D scenes for print, sharp at any size, with text that stays text.
+
+#include <optional>
+#include <string>
+
+#include "render/camera.hpp"
+#include "render/draw_list.hpp"
+
+namespace lrb {
+
+struct SvgOptions {
+  double width = 1280, height = 720;  ///< of the view box; widths and radii of the list are in its units
+  std::optional<Rgba> background = kWhite;  ///< nothing: transparent
+  std::string title;                        ///< for readers that cannot see it; empty: none
+};
+
+/// The same picture as Rasterizer::draw() gives of a scene without depth: fills, then lines and points layer
+/// by layer in the order of the list, then labels. The same bytes on every machine. Throws InputError if the
+/// list has triangles (what hides what is decided pixel by pixel there), and where Projection does.
+std::string svg(const DrawList& list, const Camera& camera, const SvgOptions& options = {});
+
+}  // namespace lrb

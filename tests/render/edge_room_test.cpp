@@ -1,0 +1,80 @@
+#include "render/edge_room.hpp"
+
+#include <algorithm>
+
+#include <doctest/doctest.h>
+
+#include "tests/render/triangles.hpp"
+
+using namespace lrb;
+using Eigen::Vector3d;
+
+namespace {
+
+double altitude(const DrawTriangle& t, const Projection& projection) {
+  double lowest = 1e9;
+  for (int i = 0; i < 3; ++i) {
+    const Eigen::Vector2d a = *projection.to_pixel(t.x[i]), b = *projection.to_pixel(t.x[(i + 1) % 3]);
+    const Eigen::Vector2d c = *projection.to_pixel(t.x[(i + 2) % 3]), u = (b - a).normalized();
+    lowest = std::min(lowest, std::abs(u.x() * (c - a).y() - u.y() * (c - a).x()));
+  }
+  return lowest;
+}
+
+/// Every triangle with every other.
+double brute_room(const DrawList& list, const DrawTriangle& t, const Projection& projection) {
+  double sum = 0;
+  for (const Vector3d& x : t.x) {
+    double here = 0;
+    int count = 0;
+    for (const DrawTriangle& o : list.triangles) {
+      if (o.edges == 0 || o.edge_style != t.edge_style || std::count(o.x.begin(), o.x.end(), x) == 0)
+        continue;
+      here += altitude(o, projection);
+      ++count;
+    }
+    sum += here / count;
+  }
+  return sum / 3;
+}
+
+}  // namespace
+
+TEST_CASE("the room of edges is the mean altitude round about, of triangles of one style") {
+  DrawList list;
+  DrawTriangle t;
+  t.edges = 7;
+  test::add(list, test::sphere_triangles(2), t);
+  t.edge_style = list.edge_style({kBlack, 3});
+  test::add(list, test::sphere_triangles(1), t);  // shares corners with the first, not the style
+  t.edges = 0;
+  test::add(list, test::sphere_triangles(1, 1.5), t);
+  const auto points = extent_points(list);
+  const Projection projection(fit_camera(points, 640, 480), 640, 480, bounds(list));
+  const std::vector<double> room = edge_room(list, projection);
+  REQUIRE(room.size() == list.triangles.size());
+  for (std::size_t i = 0; i < room.size(); ++i) {
+    const DrawTriangle& triangle = list.triangles[i];
+    const double expected = triangle.edges == 0 ? 0 : brute_room(list, triangle, projection);
+    CHECK(room[i] == doctest::Approx(expected).epsilon(1e-6));
+  }
+}
+
+TEST_CASE("what comes up to the eye has room") {
+  DrawList list;
+  DrawTriangle t;
+  t.edges = 7;
+  t.x = {Vector3d(-1, -1, -3), {1, -1, -3}, {0, 1, 9}};
+  list.triangles.push_back(t);
+  Camera camera;
+  camera.eye = Vector3d::Zero();
+  camera.target = {0, 0, -1};
+  CHECK(edge_room(list, Projection(camera, 300, 200, bounds(list)))[0] == doctest::Approx(200));
+}
+
+TEST_CASE("fading is smooth between its ends") {
+  CHECK(fade_between(1, 2, 4) == 0);
+  CHECK(fade_between(3, 2, 4) == doctest::Approx(0.5));
+  CHECK(fade_between(5, 2, 4) == 1);
+  CHECK(fade_between(2.01, 2, 4) < 0.001);
+}

@@ -1,0 +1,165 @@
+#include "render/svg.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include <doctest/doctest.h>
+
+#include "engine/error.hpp"
+#include "render/rasterize.hpp"
+#include "render/scene.hpp"
+#include "tests/render/bodies.hpp"
+
+using namespace lrb;
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+
+namespace {
+
+struct PathFill {
+  std::vector<std::vector<Vector2d>> loops;
+  Rgba colour;
+
+  /// By the even-odd rule: how many edges does a ray to the right cross?
+  bool inside(const Vector2d& p) const {
+    bool in = false;
+    for (const auto& loop : loops) {
+      for (std::size_t i = 0; i < loop.size(); ++i) {
+        const Vector2d &a = loop[i], &b = loop[(i + 1) % loop.size()];
+        if ((a.y() > p.y()) == (b.y() > p.y())) continue;
+        if (a.x() + (p.y() - a.y()) / (b.y() - a.y()) * (b.x() - a.x()) > p.x()) in = !in;
+      }
+    }
+    return in;
+  }
+  /// Distance to the nearest edge.
+  double distance(const Vector2d& p) const {
+    double least = 1e9;
+    for (const auto& loop : loops) {
+      for (std::size_t i = 0; i < loop.size(); ++i) {
+        const Vector2d a = loop[i], u = loop[(i + 1) % loop.size()] - a;
+        const double t = u.squaredNorm() > 0 ? std::clamp((p - a).dot(u) / u.squaredNorm(), 0.0, 1.0) : 0;
+        least = std::min(least, (p - a - t * u).norm());
+      }
+    }
+    return least;
+  }
+};
+
+/// The value of an attribute of an element; empty if it has none.
+std::string attribute(const std::string& element, const std::string& name) {
+  const std::size_t at = element.find(" " + name + "=\"");
+  if (at == std::string::npos) return {};
+  const std::size_t first = at + name.size() + 3;
+  return element.substr(first, element.find('"', first) - first);
+}
+
+std::vector<PathFill> fills_in(const std::string& text) {
+  std::vector<PathFill> out;
+  std::istringstream lines(text);
+  for (std::string element; std::getline(lines, element);) {
+    if (attribute(element, "fill-rule") != "evenodd") continue;
+    PathFill f;
+    const unsigned long rgb = std::stoul(attribute(element, "fill").substr(1), nullptr, 16);
+    const std::string opacity = attribute(element, "fill-opacity");
+    const double alpha = opacity.empty() ? 1 : std::stod(opacity);
+    f.colour = {static_cast<std::uint8_t>(rgb >> 16), static_cast<std::uint8_t>(rgb >> 8 & 255),
+                static_cast<std::uint8_t>(rgb & 255), static_cast<std::uint8_t>(std::lround(255 * alpha))};
+    std::istringstream d(attribute(element, "d"));
+    for (char command = 0; d >> command;) {
+      if (command == 'Z') continue;
+      REQUIRE((command == 'M' || command == 'L'));
+      if (command == 'M') f.loops.emplace_back();
+      double x = 0, y = 0;
+      d >> x >> y;
+      f.loops.back().emplace_back(x, y);
+    }
+    out.push_back(f);
+  }
+  return out;
+}
+
+std::size_t count(const std::string& text, const std::string& what) {
+  std::size_t n = 0;
+  for (std::size_t at = text.find(what); at != std::string::npos; at = text.find(what, at + 1)) ++n;
+  return n;
+}
+
+}  // namespace
+
+TEST_CASE("fills of an SVG cover what the rasterizer paints") {
+  const LrbRep rep = test::dented(test::circle(12), 1);
+  const Wrapper wrapper(rep);
+  DrawList list = build_scene(std::vector<SceneBody>{{&rep, &wrapper, {}, {}, ""}}).list;
+  list.lines.clear();
+  constexpr int kWidth = 200, kHeight = 150;
+  const auto points = extent_points(list);
+  const Camera camera = fit_top(points, kWidth, kHeight);
+  SvgOptions options;
+  options.width = kWidth, options.height = kHeight;
+  const std::vector<PathFill> fills = fills_in(svg(list, camera, options));
+  REQUIRE(fills.size() == list.fills.size());
+  RasterOptions raster;
+  raster.width = kWidth, raster.height = kHeight;
+  Rasterizer rasterizer;
+  const Image image = rasterizer.draw(list, camera, raster);
+  int compared = 0, painted = 0;
+  for (int y = 0; y < kHeight; ++y) {
+    for (int x = 0; x < kWidth; ++x) {
+      const Vector2d p(x + 0.5, y + 0.5);
+      Rgba expected = kWhite;
+      bool near_edge = false;
+      for (const PathFill& f : fills) {
+        near_edge = near_edge || f.distance(p) < 1;
+        if (f.inside(p)) expected = over(f.colour, expected);
+      }
+      if (near_edge) continue;
+      const Rgba got = image.at(x, y);
+      const int off = std::max(
+          {std::abs(got.r - expected.r), std::abs(got.g - expected.g), std::abs(got.b - expected.b)});
+      if (off > 2) FAIL("pixel ", x, " ", y, " is off by ", off);
+      ++compared;
+      painted += got == kWhite ? 0 : 1;
+    }
+  }
+  CHECK(compared > kWidth * kHeight / 2);
+  CHECK(painted > 2000);
+}
+
+TEST_CASE("lines, points and labels of an SVG") {
+  DrawList list;
+  list.lines.push_back({{{0, 0, 0}, {4, 0, 0}, {4, 2, 0}}, true, {1, 2, 3, 51}, 2.5F, 5, kWhite, 1.5F});
+  list.points.push_back({{2, 1, 0}, {255, 0, 0}, 3, kWhite, 1});
+  list.labels.push_back({{0, 2, 0}, "a < b & \"c\"", kBlack, 11.64F, 0, -4});
+  Camera camera;
+  camera.eye = {2, 1, 5};
+  camera.target = {2, 1, 0};
+  camera.orthographic = true;
+  SvgOptions options;
+  options.width = 400, options.height = 200, options.title = "R&D";
+  const std::string text = svg(list, camera, options);
+  CHECK(text.starts_with("<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"400\" height=\"200\""));
+  CHECK(text.ends_with("</svg>\n"));
+  CHECK(count(text, "<title>R&amp;D</title>") == 1);
+  const std::string path = "<path d=\"M0 200L400 200L400 0Z\" fill=\"none\"";
+  CHECK(count(text, path + " stroke=\"#ffffff\" stroke-width=\"5.5\"") == 1);
+  CHECK(count(text, path + " stroke=\"#010203\" stroke-opacity=\"0.2\" stroke-width=\"2.5\" "
+                           "stroke-linejoin=\"round\" stroke-dasharray=\"5\"/>") == 1);
+  CHECK(text.find("stroke=\"#ffffff\"") < text.find("stroke=\"#010203\""));
+  CHECK(count(text, "<circle cx=\"200\" cy=\"100\" r=\"4\" fill=\"#ffffff\"/>") == 1);
+  CHECK(count(text, "<circle cx=\"200\" cy=\"100\" r=\"3\" fill=\"#ff0000\"/>") == 1);
+  CHECK(count(text, "<text x=\"0\" y=\"-4\"") == 1);
+  CHECK(count(text, "font-size=\"10\"") == 1);
+  CHECK(count(text, ">a &lt; b &amp; &quot;c&quot;</text>") == 1);
+  options.background.reset();
+  CHECK(count(svg(list, camera, options), "<rect") == 0);
+}
+
+TEST_CASE("an SVG has no depth: triangles are refused") {
+  DrawList list;
+  list.triangles.emplace_back();
+  CHECK_THROWS_AS(svg(list, Camera{}), InputError);
+}
