@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "engine/error.hpp"
+#include "render/markup.hpp"
 
 namespace lrb {
 namespace {
@@ -43,29 +44,6 @@ std::string paint(const std::string& what, Rgba c) {
   std::snprintf(hex.data(), hex.size(), "#%02x%02x%02x", c.r, c.g, c.b);
   std::string out = attribute(what, hex.data());
   if (c.a < 255) out += attribute(what + "-opacity", number(c.a / 255.0));
-  return out;
-}
-
-std::string escaped(const std::string& text) {
-  std::string out;
-  for (const char c : text) {
-    switch (c) {
-      case '&':
-        out += "&amp;";
-        break;
-      case '<':
-        out += "&lt;";
-        break;
-      case '>':
-        out += "&gt;";
-        break;
-      case '"':
-        out += "&quot;";
-        break;
-      default:
-        out += c;
-    }
-  }
   return out;
 }
 
@@ -112,7 +90,7 @@ class Writer {
     const std::string w = number(options_.width), h = number(options_.height);
     out_ = "<svg xmlns=\"http://www.w3.org/2000/svg\"" + attribute("width", w) + attribute("height", h) +
            attribute("viewBox", "0 0 " + w + " " + h) + ">\n";
-    if (!options_.title.empty()) out_ += "<title>" + escaped(options_.title) + "</title>\n";
+    if (!options_.title.empty()) out_ += "<title>" + escape_markup(options_.title) + "</title>\n";
     if (options_.background) {
       out_ += "<rect" + attribute("width", w) + attribute("height", h) + paint("fill", *options_.background) +
               "/>\n";
@@ -187,7 +165,7 @@ class Writer {
       out_ += paint("stroke", l.halo) + attribute("stroke-width", number(2 * kLabelHalo * l.height)) +
               attribute("stroke-linejoin", "round") + attribute("paint-order", "stroke");
     }
-    out_ += ">" + escaped(l.text) + "</text>\n";
+    out_ += ">" + escape_markup(l.text) + "</text>\n";
   }
 
   const DrawList& list_;

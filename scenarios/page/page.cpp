@@ -4,35 +4,13 @@
 
 #include <nlohmann/json.hpp>
 
+#include "render/markup.hpp"
 #include "scenarios/embedded.hpp"
 
 namespace lrb {
 namespace {
 
 using nlohmann::json;
-
-std::string escaped(std::string_view text) {
-  std::string out;
-  for (const char c : text) {
-    switch (c) {
-      case '&':
-        out += "&amp;";
-        break;
-      case '<':
-        out += "&lt;";
-        break;
-      case '>':
-        out += "&gt;";
-        break;
-      case '"':
-        out += "&quot;";
-        break;
-      default:
-        out += c;
-    }
-  }
-  return out;
-}
 
 /// JSON that can stand in a script element: nothing in it can end the element.
 std::string script_safe(const json& value) {
@@ -86,8 +64,8 @@ std::string numbers_html(const Page& page) {
   if (page.numbers.empty()) return {};
   std::string out = "<dl class=\"numbers\">\n";
   for (const PageNumber& n : page.numbers) {
-    out += "<div><dt>" + escaped(n.label) + "</dt><dd>" + escaped(n.value);
-    if (!n.note.empty()) out += "<small>" + escaped(n.note) + "</small>";
+    out += "<div><dt>" + escape_markup(n.label) + "</dt><dd>" + escape_markup(n.value);
+    if (!n.note.empty()) out += "<small>" + escape_markup(n.note) + "</small>";
     out += "</dd></div>\n";
   }
   return out + "</dl>\n";
@@ -97,7 +75,7 @@ std::string player_html(const Page& page) {
   if (page.frames.empty()) return {};
   std::string out(embedded_file("player.html"));
   const std::string mark = "{{note}}";
-  out.replace(out.find(mark), mark.size(), escaped(page.frames_note));
+  out.replace(out.find(mark), mark.size(), escape_markup(page.frames_note));
   return out;
 }
 
@@ -106,10 +84,10 @@ std::string charts_html(const Page& page) {
   std::string out = "<section class=\"charts\">\n";
   for (std::size_t i = 0; i < page.charts.size(); ++i) {
     const PageChart& c = page.charts[i];
-    out += "<figure class=\"chart\"><figcaption><h2>" + escaped(c.title) + "</h2>";
-    if (!c.note.empty()) out += "<p>" + escaped(c.note) + "</p>";
+    out += "<figure class=\"chart\"><figcaption><h2>" + escape_markup(c.title) + "</h2>";
+    if (!c.note.empty()) out += "<p>" + escape_markup(c.note) + "</p>";
     out += "</figcaption><div class=\"plot\"><canvas id=\"chart-" + std::to_string(i) +
-           "\" role=\"img\" aria-label=\"" + escaped(c.title) + "\"></canvas></div></figure>\n";
+           "\" role=\"img\" aria-label=\"" + escape_markup(c.title) + "\"></canvas></div></figure>\n";
   }
   return out + "</section>\n";
 }
@@ -121,20 +99,20 @@ bool looks_numeric(std::string_view cell) {
 std::string tables_html(const Page& page) {
   std::string out;
   for (const PageTable& t : page.tables) {
-    out += "<section><h2>" + escaped(t.title) + "</h2>\n<div class=\"scroll\"><table><thead><tr>";
+    out += "<section><h2>" + escape_markup(t.title) + "</h2>\n<div class=\"scroll\"><table><thead><tr>";
     for (std::size_t c = 0; c < t.columns.size(); ++c) {
       const bool numeric = !t.rows.empty() && c < t.rows[0].size() && looks_numeric(t.rows[0][c]);
-      out += std::string(numeric ? "<th class=\"n\">" : "<th>") + escaped(t.columns[c]) + "</th>";
+      out += std::string(numeric ? "<th class=\"n\">" : "<th>") + escape_markup(t.columns[c]) + "</th>";
     }
     out += "</tr></thead><tbody>\n";
     for (const auto& row : t.rows) {
       out += "<tr>";
       for (const std::string& cell : row)
-        out += std::string(looks_numeric(cell) ? "<td class=\"n\">" : "<td>") + escaped(cell) + "</td>";
+        out += std::string(looks_numeric(cell) ? "<td class=\"n\">" : "<td>") + escape_markup(cell) + "</td>";
       out += "</tr>\n";
     }
     out += "</tbody></table></div>";
-    if (!t.note.empty()) out += "<p class=\"note\">" + escaped(t.note) + "</p>";
+    if (!t.note.empty()) out += "<p class=\"note\">" + escape_markup(t.note) + "</p>";
     out += "</section>\n";
   }
   return out;
@@ -143,13 +121,13 @@ std::string tables_html(const Page& page) {
 std::string source_html(const Page& page) {
   std::string out;
   if (!page.command.empty())
-    out += "<section><h2>Made by</h2>\n<pre class=\"command\"><code>" + escaped(page.command) +
+    out += "<section><h2>Made by</h2>\n<pre class=\"command\"><code>" + escape_markup(page.command) +
            "</code></pre></section>\n";
   if (!page.links.empty()) {
     out += "<section><h2>Files</h2>\n<ul class=\"links\">\n";
     for (const PageLink& l : page.links) {
-      out += "<li><a href=\"" + escaped(l.target) + "\">" + escaped(l.text) + "</a>";
-      if (!l.note.empty()) out += " <span>" + escaped(l.note) + "</span>";
+      out += "<li><a href=\"" + escape_markup(l.target) + "\">" + escape_markup(l.text) + "</a>";
+      if (!l.note.empty()) out += " <span>" + escape_markup(l.note) + "</span>";
       out += "</li>\n";
     }
     out += "</ul></section>\n";
@@ -162,18 +140,18 @@ std::string source_html(const Page& page) {
 std::string page_html(const Page& page) {
   const std::string_view shape = embedded_file("page.html");
   const auto part = [&](std::string_view key) -> std::string {
-    if (key == "title") return escaped(page.title);
+    if (key == "title") return escape_markup(page.title);
     if (key == "purpose")
-      return page.purpose.empty() ? "" : "<p class=\"purpose\">" + escaped(page.purpose) + "</p>";
+      return page.purpose.empty() ? "" : "<p class=\"purpose\">" + escape_markup(page.purpose) + "</p>";
     if (key == "verdict")
-      return page.verdict.empty() ? "" : "<span class=\"verdict\">" + escaped(page.verdict) + "</span>";
+      return page.verdict.empty() ? "" : "<span class=\"verdict\">" + escape_markup(page.verdict) + "</span>";
     if (key == "style") return std::string(embedded_file("page.css"));
     if (key == "numbers") return numbers_html(page);
     if (key == "player") return player_html(page);
     if (key == "charts") return charts_html(page);
     if (key == "tables") return tables_html(page);
     if (key == "source") return source_html(page);
-    if (key == "footer") return escaped(page.footer);
+    if (key == "footer") return escape_markup(page.footer);
     if (key == "data") return script_safe(page_json(page));
     if (key == "library") return page.charts.empty() ? "" : std::string(embedded_file("chart.min.js"));
     if (key == "script") return std::string(embedded_file("page.js"));
