@@ -123,6 +123,37 @@ void advance(TextPosition& p, const std::string& text, std::size_t from, std::si
   }
 }
 
+/// Accepts everything and remembers where the parser gave up: its exceptions say so for errors of syntax
+/// only, not for numbers beyond a double's range.
+class ErrorFinder : public nlohmann::json_sax<nlohmann::json> {
+ public:
+  std::size_t offset = 0;
+
+  bool null() override { return true; }
+  bool boolean(bool) override { return true; }
+  bool number_integer(number_integer_t) override { return true; }
+  bool number_unsigned(number_unsigned_t) override { return true; }
+  bool number_float(number_float_t, const string_t&) override { return true; }
+  bool string(string_t&) override { return true; }
+  bool binary(binary_t&) override { return true; }
+  bool start_object(std::size_t) override { return true; }
+  bool key(string_t&) override { return true; }
+  bool end_object() override { return true; }
+  bool start_array(std::size_t) override { return true; }
+  bool end_array() override { return true; }
+  bool parse_error(std::size_t position, const std::string& token,
+                   const nlohmann::json::exception&) override {
+    offset = position - std::min(position, token.size());
+    return false;
+  }
+};
+
+std::size_t offset_of_error(const std::string& text) {
+  ErrorFinder finder;
+  nlohmann::json::sax_parse(text, &finder);
+  return finder.offset;
+}
+
 }  // namespace
 
 TextPosition position_in(const std::string& text, std::size_t offset) {
@@ -167,7 +198,7 @@ JsonText::JsonText(std::string text, std::string file) : text_(std::move(text)),
   } catch (const nlohmann::json::parse_error& e) {
     throw InputError(at(e.byte > 0 ? e.byte - 1 : 0) + "not JSON: " + plain_reason(e.what()));
   } catch (const nlohmann::json::exception& e) {
-    throw InputError(file_ + ": not usable JSON: " + plain_reason(e.what()));
+    throw InputError(at(offset_of_error(text_)) + "not usable JSON: " + plain_reason(e.what()));
   }
   try {
     index_ = std::make_unique<JsonIndex>(text_);

@@ -91,13 +91,13 @@ TEST_CASE("malformed STL") {
   std::memcpy(many.data() + 80, &too_many, 4);
   check_all("m.stl", {"inspect", "FILE"},
             {{ascii.substr(0, ascii.size() / 2), ""},
-             {replaced(ascii, "endloop", "endlop"), "6: "},
+             {replaced(ascii, "endloop", "endlop"), "7: "},
              {replaced(ascii, "vertex 0 ", "vertex nan "), ""},
              {replaced(ascii, "facet", "facit"), "2: "},
              {"solid\n", ""},
              {binary.substr(0, binary.size() - 7), ""},
              {binary.substr(0, 40), ""},
-             {nan, " byte 96"},
+             {nan, " triangle 0 (byte 96)"},
              {many, ""},
              {"", "1: "},
              {kHtml, "1: "}});
@@ -126,7 +126,7 @@ TEST_CASE("malformed OFF") {
   const std::string good = to_off(tetrahedron());
   check_all("m.off", {"collide", "FILE", "cube.obj", "-o", "out"},
             {{"OFF\n", "2: "},
-             {"OFF\n4 4\n0 0", "3: "},
+             {"OFF\n4 4\n0 0", "2: "},
              {replaced(good, "4 4 0", "-4 4 0"), "2: "},
              {replaced(good, "4 4 0", "4000000000 4 0"), "2: "},
              {replaced(good, "4 4 0", "18446744073709551620 4 0"), "2: "},
@@ -135,7 +135,7 @@ TEST_CASE("malformed OFF") {
              {replaced(good, "\n3 ", "\n4 "), "7: "},
              {replaced(good, "1 0 0", "1 0 infinity"), "4: "},
              {good + "3 0 1 2\n", "11: "},
-             {good.substr(0, good.size() - 3), "10: "},
+             {good.substr(0, good.size() - 3), "2: "},
              {"OFF BINARY\n", "1: "},
              {kPng, "1: "}});
 }
@@ -164,7 +164,7 @@ TEST_CASE("malformed .lrb") {
   const std::string good = seeds("lrb").at(1).substr(1);
   const std::size_t name = 8 + 4 * 4, vertices = name + 8 + std::strlen("dented box"),
                     offsets = vertices + 8 + 13 * 24, corners = offsets + 8 + 16 * 4,
-                    inner = corners + 8 + 52 * 4;
+                    inner = corners + 8 + 56 * 4;
   std::string flipped = good;
   flipped[vertices + 20] ^= 1;
   check_all("m.lrb", {"inspect", "FILE", "--validate", "--render", "-o", "new/x.png"},
@@ -228,8 +228,8 @@ TEST_CASE("malformed scenarios") {
              {scenario("\"x\"", "\"..\""), "2:10: /name: "},
              {scenario("\"x\"", "\"\""), "2:10: /name: "},
              {scenario("\"x\"", "\"a\\u0000b\""), "2:10: /name: "},
-             {scenario("\"seed\": 7", "\"seed\": -7"), "2:38: /seed: "},
-             {scenario("\"seed\": 7", "\"seed\": 18446744073709551616"), "2:38: /seed: "},
+             {scenario("\"seed\": 7", "\"seed\": -7"), "2:39: /seed: "},
+             {scenario("\"seed\": 7", "\"seed\": 18446744073709551616"), "2:39: /seed: "},
              {scenario("\"seed\": 7", "\"seed\": 1e999"), "2:"},
              {scenario("\"seed\": 7", "\"seed\": NaN"), "2:"},
              {scenario("\"seed\": 7", "\"name\": \"z\""), "2:"},
@@ -251,7 +251,7 @@ TEST_CASE("malformed scenarios") {
              {"\xef\xbb\xbf" + scenario("\"steps\": 3", "\"stops\": 3"), "4:"},
              {std::string(100000, '['), "1:"},
              {std::string(1000, '[') + std::string(1000, ']'), " nested"},
-             {utf16("{}"), "1:1: "},
+             {utf16("{}"), "1:4: "},
              {kHtml, "1:1: "},
              {"", "1:1: "},
              {"// a comment\n", "1:1: "},
