@@ -45,6 +45,7 @@ Json mesh_json(const Mesh& mesh, const MeshReport& report) {
   j["components"] = report.components;
   j["genus"] = report.genus >= 0 ? Json(report.genus) : Json(nullptr);
   j["closed"] = report.closed;
+  j["bounds_solid"] = report.bounds_solid;
   j["buildable"] = report.buildable();
   j["queryable"] = report.queryable();
   j["findings"] = report.lines(mesh);
@@ -75,7 +76,8 @@ std::string as_text(const Json& j) {
         out << "  " << l["regions"] << " regions, " << l["lids"] << " lids over " << l["floor_faces"]
             << " faces\n";
     } else {
-      out << key << ": " << (value.is_string() ? value.get<std::string>() : value.dump()) << "\n";
+      constexpr int kDigits = 6;  // of coordinates
+      out << key << ": " << for_people(value, kDigits) << "\n";
     }
   }
   return out.str();

@@ -1,4 +1,5 @@
 #include <cerrno>
+#include <cmath>
 #include <cstdio>
 #include <cstring>
 #include <exception>
@@ -63,6 +64,24 @@ int guarded(const Run& run) {
 void note(const Globals& globals, const std::vector<std::string>& lines) {
   if (globals.quiet) return;
   for (const std::string& line : lines) std::cerr << "note: " << line << "\n";
+}
+
+std::string for_people(const nlohmann::ordered_json& value, int digits) {
+  if (value.is_string()) return value.get<std::string>();
+  if (value.is_number_float()) {
+    if (!std::isfinite(value.get<double>())) return "beyond 1.8e308";
+    char text[32];
+    std::snprintf(text, sizeof text, "%.*g", digits, value.get<double>());
+    return text;
+  }
+  if (!value.is_structured()) return value.dump();
+  std::string out;
+  for (const auto& [key, item] : value.items()) {
+    out += out.empty() ? "" : ", ";
+    if (value.is_object()) out += key + " ";
+    out += for_people(item, digits);
+  }
+  return value.is_array() ? "(" + out + ")" : out;
 }
 
 std::string one_line(const nlohmann::ordered_json& value) {
