@@ -49,7 +49,7 @@ TEST_CASE("the picture shows each kind of dirt in its colour") {
            {"open", without_faces(ball, {7}), {palette::kVermillion}},
            {"fin",
             with_face(ball, {{2, 0, 0}}, {ball.face(0)[0], ball.face(0)[1], n}),
-            {palette::kVermillion, palette::kPurple, palette::kOrange, palette::kContact}},
+            {palette::kVermillion, palette::kPurple, palette::kOrange}},
            {"vertex", welded(several({box(), box({1, 1, 1}, {2, 2, 2})})), {palette::kPurple}},
            {"flipped", with_flipped(ball, {7}), {palette::kBlue}},
            {"doubled", with_doubled(ball, {7}), {palette::kGreen}},
