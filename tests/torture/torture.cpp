@@ -18,6 +18,7 @@
 #include "tests/torture/compare.hpp"
 
 using namespace lrb;
+using namespace lrb::families;
 using namespace lrb::torture;
 
 namespace {
@@ -114,7 +115,7 @@ int usage(const std::string& complaint) {
   std::fprintf(
       stderr,
       "usage: torture [--poses N] [--class NAME] [--seed S] [--only POSE] [--oracle PAIRS]\nclasses:\n");
-  for (const Family& f : families()) std::fprintf(stderr, "  %-12s %s\n", f.name, f.what);
+  for (const Family& f : all_families()) std::fprintf(stderr, "  %-12s %s\n", f.name, f.what);
   return 2;
 }
 
@@ -148,7 +149,7 @@ int main(int argc, char** argv) {
   const auto seconds_since = [](auto start) {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   };
-  for (const Family& family : families()) {
+  for (const Family& family : all_families()) {
     if (!o.name.empty() && o.name != family.name) continue;
     const auto start = std::chrono::steady_clock::now();
     Tally t;

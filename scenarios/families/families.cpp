@@ -1,14 +1,14 @@
-#include "tests/torture/families.hpp"
+#include "scenarios/families/families.hpp"
 
 #include <array>
 #include <cmath>
 #include <limits>
 
 #include "engine/mesh/mesh_check.hpp"
-#include "tests/support/hand_made.hpp"
-#include "tests/support/shapes.hpp"
+#include "scenarios/shapes/hand_made.hpp"
+#include "scenarios/shapes/shapes.hpp"
 
-namespace lrb::torture {
+namespace lrb::families {
 namespace {
 
 constexpr Family kFamilies[] = {
@@ -36,7 +36,7 @@ constexpr Family kFamilies[] = {
 
 }  // namespace
 
-std::span<const Family> families() {
+std::span<const Family> all_families() {
   return kFamilies;
 }
 
@@ -53,16 +53,18 @@ Body body(const Mesh& mesh, bool self_intersecting) {
 
 Body any_body(Random& random) {
   static const std::vector<Body> kBodies = {
-      body(test::tetrahedron()),   body(test::box()),        body(test::l_shape()),
-      body(test::icosphere(0)),    body(test::icosphere(1)), body(test::bumpy_sphere(1, 5, 0.4)),
-      body(test::torus(8, 5)),     body(test::comb(3)),      body(test::quad_box()),
-      body(test::box_with_void()), body(test::bowl(7, 3)),   std::make_shared<LrbRep>(test::dented_box()),
+      body(shapes::tetrahedron()), body(shapes::box()),
+      body(shapes::l_shape()),     body(shapes::icosphere(0)),
+      body(shapes::icosphere(1)),  body(shapes::bumpy_sphere(1, 5, 0.4)),
+      body(shapes::torus(8, 5)),   body(shapes::comb(3)),
+      body(shapes::quad_box()),    body(shapes::box_with_void()),
+      body(shapes::bowl(7, 3)),    std::make_shared<LrbRep>(shapes::dented_box()),
   };
   return kBodies[random() % kBodies.size()];
 }
 
 Pose any_pose(Random& random, double distance) {
-  return {test::random_rotation(random), distance * uniform(random) * test::random_direction(random)};
+  return {shapes::random_rotation(random), distance * uniform(random) * shapes::random_direction(random)};
 }
 
 void move_both(Case& c, const Pose& by) {
@@ -88,4 +90,4 @@ Eigen::Matrix3d grid_turn(Random& random, bool reflections) {
   return r;
 }
 
-}  // namespace lrb::torture
+}  // namespace lrb::families

@@ -7,12 +7,12 @@
 #include <string>
 
 #include "engine/query/collide.hpp"
-#include "tests/support/random_pose.hpp"
+#include "scenarios/shapes/random_pose.hpp"
 
-namespace lrb::torture {
+namespace lrb::families {
 
-using test::Random;
-using test::uniform;
+using shapes::Random;
+using shapes::uniform;
 using Body = std::shared_ptr<const LrbRep>;
 
 /// Two bodies at two poses, and what is known of the answer from the way they were made.
@@ -29,7 +29,7 @@ struct Family {
   Case (*make)(Random& random, double dial);
 };
 
-std::span<const Family> families();
+std::span<const Family> all_families();
 const Family* find_family(const std::string& name);
 
 // Each in its file.
@@ -65,4 +65,4 @@ int pick(Random& random, int low, int high);  ///< low to high, both included
 /// An exact rotation (or, if asked, perhaps a reflection) of the grid.
 Eigen::Matrix3d grid_turn(Random& random, bool reflections = false);
 
-}  // namespace lrb::torture
+}  // namespace lrb::families
