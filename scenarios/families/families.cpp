@@ -2,8 +2,11 @@
 
 #include <array>
 #include <cmath>
+#include <cstring>
 #include <limits>
 
+#include "engine/error.hpp"
+#include "engine/lrb/fnv.hpp"
 #include "engine/mesh/mesh_check.hpp"
 #include "scenarios/shapes/hand_made.hpp"
 #include "scenarios/shapes/shapes.hpp"
@@ -44,6 +47,26 @@ const Family* find_family(const std::string& name) {
   for (const Family& f : kFamilies)
     if (name == f.name) return &f;
   return nullptr;
+}
+
+double dial_value(int setting) {
+  return static_cast<double>(setting) / (kDialSettings - 1);
+}
+
+Random case_random(const Family& family, std::uint64_t seed, std::uint64_t index) {
+  Fnv64 h;
+  h.add_bytes(family.name, std::strlen(family.name));
+  h.add_value(seed);
+  h.add_value(index);
+  return Random(h.value());
+}
+
+Case make_case(const Family& family, std::uint64_t seed, int dial, std::uint64_t index) {
+  if (dial < 0 || dial >= kDialSettings)
+    throw InputError("dial setting " + std::to_string(dial) + ": use 0 (benign) to " +
+                     std::to_string(kDialSettings - 1) + " (degenerate)");
+  Random random = case_random(family, seed, index);
+  return family.make(random, dial_value(dial));
 }
 
 Body body(const Mesh& mesh, bool self_intersecting) {

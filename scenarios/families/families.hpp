@@ -1,6 +1,7 @@
 #pragma once
 /// Families of cases that break collision engines, each with a dial from benign (0) to degenerate (1).
 
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <span>
@@ -31,6 +32,18 @@ struct Family {
 
 std::span<const Family> all_families();
 const Family* find_family(const std::string& name);
+
+/// Settings of a family's dial, evenly from benign (0) to degenerate (kDialSettings - 1).
+inline constexpr int kDialSettings = 11;
+double dial_value(int setting);  ///< 0 .. 1
+
+/// The numbers that a case is drawn from. They do not depend on the dial: a case is the same at all its
+/// settings, but for what the dial turns.
+Random case_random(const Family& family, std::uint64_t seed, std::uint64_t index);
+
+/// Case `index` of the family at a dial setting, the same on every machine. Throws InputError if there is no
+/// such setting.
+Case make_case(const Family& family, std::uint64_t seed, int dial, std::uint64_t index);
 
 // Each in its file.
 Case make_touch(Random&, double);        // contact_families.cpp: approach to within an ulp of contact
