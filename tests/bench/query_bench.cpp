@@ -13,7 +13,7 @@
 #include "engine/mesh/mesh_io.hpp"
 #include "engine/query/brute_force.hpp"
 #include "engine/query/collide_impl.hpp"
-#include "tests/support/random_pose.hpp"
+#include "scenarios/shapes/random_pose.hpp"
 
 #ifdef LRB_WITH_FCL
 #include <fcl/fcl.h>
@@ -84,7 +84,7 @@ struct Approach {
 };
 
 std::vector<Approach> approaches(const LrbRep& a, const LrbRep& b, double diagonal, int count) {
-  test::Random random(1);
+  shapes::Random random(1);
   QueryContext context;
   NullProbe probe;
   CollideRequest first;
@@ -92,8 +92,8 @@ std::vector<Approach> approaches(const LrbRep& a, const LrbRep& b, double diagon
   std::vector<Approach> list;
   while (static_cast<int>(list.size()) < count) {
     Pose p;
-    p.r = test::random_rotation(random);
-    const Eigen::Vector3d d = test::random_direction(random);
+    p.r = shapes::random_rotation(random);
+    const Eigen::Vector3d d = shapes::random_direction(random);
     const auto meets = [&](double s) {
       p.t = s * d;
       return !collide(a, Pose{}, b, p, first, context, probe).pairs.empty();
@@ -132,7 +132,7 @@ int main(int argc, char** argv) {
   Mesh mesh_b = read_mesh(argv[2]);
   for (auto& v : mesh_b.vertices) v *= scale;
   const LrbRep a = build_lrb(read_mesh(argv[1])), b = build_lrb(mesh_b);
-  const double diagonal = std::max(test::box_of(a).diagonal().norm(), test::box_of(b).diagonal().norm());
+  const double diagonal = std::max(shapes::box_of(a).diagonal().norm(), shapes::box_of(b).diagonal().norm());
   std::printf("%u x %u faces, %.0f and %.0f bytes a real face, %d poses a class\n", a.real_face_count(),
               b.real_face_count(), static_cast<double>(a.memory_bytes()) / a.real_face_count(),
               static_cast<double>(b.memory_bytes()) / b.real_face_count(), count);

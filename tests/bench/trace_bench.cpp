@@ -21,7 +21,7 @@ using namespace lrb::trace;
 /// A body of `notches` notched plates side by side: as many regions as a real one, so that look-ups miss
 /// caches as they do there.
 LrbRep big_body(VertexId notches) {
-  const LrbData one = shapes::notched_plate();
+  const LrbData one = toy::notched_plate();
   LrbData all;
   all.dim = 2;
   all.name = "many plates";
@@ -34,8 +34,8 @@ LrbRep big_body(VertexId notches) {
       for (FaceId f = from; f < to; ++f) {
         const auto corners = one.face(f);
         const auto offset = static_cast<VertexId>(one.vertices.size()) * n;
-        shapes::add_face(all, {corners[0] + offset, corners[1] + offset}, shifted(one.inner_cell[f], n),
-                         shifted(one.outer_cell[f], n));
+        toy::add_face(all, {corners[0] + offset, corners[1] + offset}, shifted(one.inner_cell[f], n),
+                      shifted(one.outer_cell[f], n));
       }
   };
   add(0, one.real_face_count);

@@ -3,10 +3,12 @@
 #include <doctest/doctest.h>
 
 #include "engine/error.hpp"
+#include "scenarios/shapes/shapes.hpp"
 #include "tests/build/build_checks.hpp"
-#include "tests/support/shapes.hpp"
 
 namespace lrb::test {
+
+using namespace shapes;
 namespace {
 
 /// A closed curve with bumps on bumps.

@@ -3,13 +3,13 @@
 #include <doctest/doctest.h>
 
 #include "engine/lrb/validate.hpp"
-#include "tests/support/shapes.hpp"
+#include "scenarios/shapes/shapes.hpp"
 
 namespace lrb {
 namespace {
 
 TEST_CASE("a complex by construction: a box in a box, faces in any order") {
-  const Mesh inner = test::quad_box({1, 1, 1}, {2, 2, 2}), outer = test::quad_box({0, 0, 0}, {3, 3, 3});
+  const Mesh inner = shapes::quad_box({1, 1, 1}, {2, 2, 2}), outer = shapes::quad_box({0, 0, 0}, {3, 3, 3});
   ComplexBuilder builder(3, "boxes");
   for (const auto& v : inner.vertices) builder.add_vertex(v);
   for (const auto& v : outer.vertices) builder.add_vertex(v);

@@ -7,7 +7,7 @@
 #include "engine/build/convex_hull.hpp"
 #include "engine/build/convex_polygon.hpp"
 #include "engine/exact/predicates.hpp"
-#include "tests/support/shapes.hpp"
+#include "scenarios/shapes/shapes.hpp"
 
 namespace lrb {
 namespace {
@@ -58,11 +58,11 @@ TEST_CASE(
   struct {
     Mesh mesh;
     double ratio;  // a measured bound
-  } cases[] = {{test::icosphere(4), 1.4},
-               {test::bumpy_sphere(4, 3, 0.4), 1.5},
-               {test::scaled(test::torus(40, 20), 1e6), 1.4},
-               {test::box(), 1.4},
-               {test::box({0, 0, 0}, {1, 1, 1e-4}), 1e3}};
+  } cases[] = {{shapes::icosphere(4), 1.4},
+               {shapes::bumpy_sphere(4, 3, 0.4), 1.5},
+               {shapes::scaled(shapes::torus(40, 20), 1e6), 1.4},
+               {shapes::box(), 1.4},
+               {shapes::box({0, 0, 0}, {1, 1, 1e-4}), 1e3}};
   for (const auto& c : cases) {
     CAPTURE(c.mesh.name);
     const Mesh polytope = enclosing_polytope(c.mesh.vertices, 20, 0.005);
@@ -101,7 +101,7 @@ TEST_CASE("the convex outline keeps points in the middle of its sides and turns 
 }
 
 TEST_CASE("the outermost polygon has few sides and holds all points") {
-  for (const Mesh& mesh : {test::circle(100), test::star(9), test::comb_2d(5)}) {
+  for (const Mesh& mesh : {shapes::circle(100), shapes::star(9), shapes::comb_2d(5)}) {
     const auto polygon = enclosing_polygon(mesh.vertices, 8, 0.005);
     CHECK(polygon.size() >= 3);
     CHECK(polygon.size() <= 8);

@@ -1,9 +1,11 @@
 #include <doctest/doctest.h>
 
 #include "engine/build/build.hpp"
-#include "tests/support/shapes.hpp"
+#include "scenarios/shapes/shapes.hpp"
 
 namespace lrb::test {
+
+using namespace shapes;
 namespace {
 
 TEST_CASE("the same seed gives the same complex, another seed another one") {

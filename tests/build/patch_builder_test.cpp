@@ -2,10 +2,12 @@
 
 #include "engine/error.hpp"
 #include "engine/mesh/mesh_check.hpp"
+#include "scenarios/shapes/shapes.hpp"
 #include "tests/build/build_checks.hpp"
-#include "tests/support/shapes.hpp"
 
 namespace lrb::test {
+
+using namespace shapes;
 namespace {
 
 TEST_CASE("small bodies: valid, embedded by brute force, few outer faces") {

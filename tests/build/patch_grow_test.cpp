@@ -5,7 +5,7 @@
 
 #include <doctest/doctest.h>
 
-#include "tests/support/shapes.hpp"
+#include "scenarios/shapes/shapes.hpp"
 
 namespace lrb {
 namespace {
@@ -51,17 +51,17 @@ void check_patches(const Mesh& mesh, std::uint32_t interior) {
 }
 
 TEST_CASE("patches are disks with a simple ring, of whole polygons, and do not overlap") {
-  check_patches(test::icosphere(3), 16);
-  check_patches(test::torus(12, 8), 16);
-  check_patches(test::torus(4, 3), 8);  // rings close round the tube
-  check_patches(test::quad_torus(12, 8), 16);
-  check_patches(test::comb(4), 4);
-  check_patches(test::tetrahedron(), 16);
-  check_patches(test::box_with_void(), 16);
+  check_patches(shapes::icosphere(3), 16);
+  check_patches(shapes::torus(12, 8), 16);
+  check_patches(shapes::torus(4, 3), 8);  // rings close round the tube
+  check_patches(shapes::quad_torus(12, 8), 16);
+  check_patches(shapes::comb(4), 4);
+  check_patches(shapes::tetrahedron(), 16);
+  check_patches(shapes::box_with_void(), 16);
 }
 
 TEST_CASE("a vertex that joins two fans stands twice in the hull") {
-  const Mesh mesh = test::voxels(2, 2, 2, [](int x, int y, int z) { return x == y && y == z; });
+  const Mesh mesh = shapes::voxels(2, 2, 2, [](int x, int y, int z) { return x == y && y == z; });
   const HullMesh hull(mesh);
   CHECK(hull.point_count() == mesh.vertices.size() + 1);
   CHECK(hull.component_count() == 2);

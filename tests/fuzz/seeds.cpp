@@ -3,11 +3,11 @@
 #include <algorithm>
 
 #include "engine/lrb/lrb_file.hpp"
+#include "scenarios/shapes/hand_made.hpp"
+#include "scenarios/shapes/shapes.hpp"
 #include "tests/fuzz/feed.hpp"
 #include "tests/mesh/encode.hpp"
-#include "tests/support/hand_made.hpp"
 #include "tests/support/lrb_shapes.hpp"
-#include "tests/support/shapes.hpp"
 #include "tests/trace/runs.hpp"
 #include "trace/trace_json.hpp"
 
@@ -15,7 +15,7 @@ namespace lrb::fuzz {
 namespace {
 
 std::vector<std::string> meshes() {
-  const Mesh body = test::tetrahedron(), box = test::quad_box();
+  const Mesh body = shapes::tetrahedron(), box = shapes::quad_box();
   const std::string points = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1 1\n";
   std::vector<std::string> out;
   for (const Mesh& m : {body, box})
@@ -38,8 +38,9 @@ std::vector<std::string> meshes() {
 std::vector<std::string> lrb_files() {
   const test::TemporaryDirectory folder;
   std::vector<std::string> out;
-  for (const LrbRep& rep : {LrbRep(shapes::notched_plate()), LrbRep(shapes::dented_box()), test::dented_box(),
-                            test::stairs_2d(), LrbRep::without_regions(test::tetrahedron(), true, false)}) {
+  for (const LrbRep& rep :
+       {LrbRep(toy::notched_plate()), LrbRep(toy::dented_box()), shapes::dented_box(), shapes::stairs_2d(),
+        LrbRep::without_regions(shapes::tetrahedron(), true, false)}) {
     save_lrb(rep, folder.file("x.lrb"));
     out.push_back('\1' + test::load_bytes(folder.file("x.lrb")));
   }
@@ -64,7 +65,7 @@ std::vector<std::string> scenarios() {
       std::string(R"({"name": "x", "purpose": "y", "seed": 7, )") + kBodies + R"(, "motion": )";
   out.push_back(
       begin +
-      R"({"kind": "poses", "poses": [{"position": [0, 0, 1]}, [1, 0, 0, 3, 0, 1, 0, 0, 0, 0, 1, 0]]}, "query": {"mode": "all", "recursion": "paper", "wrapper": "unregularised", "contacts": true, "interiors_overlap": true}, "trace": {"clock": "wall", "max_events": 1000, "gzip": true}, "expect": [{"step": 0, "relation": "separate", "pairs": 0, "fingerprint": "cbf29ce484222325"}]})");
+      R"({"kind": "poses", "poses": [{"position": [0, 0, 1]}, [1, 0, 0, 3, 0, 1, 0, 0, 0, 0, 1, 0]]}, "query": {"mode": "all", "recursion": "paper", "predicates": "floating", "wrapper": "unregularised", "contacts": true, "interiors_overlap": true}, "trace": {"clock": "wall", "max_events": 1000, "gzip": true}, "expect": [{"step": 0, "relation": "separate", "pairs": 0, "fingerprint": "cbf29ce484222325"}]})");
   out.push_back(
       begin +
       R"({"kind": "keyframes", "keyframes": [{"step": 0, "position": [0, 0, 1]}, {"step": 4, "position": [0, 1, 1], "axis": [1, 1, 0], "degrees": 45}]}, "frames": {"at": "event", "every": 2, "most": 5, "size": [320, 200], "supersampling": 1, "colour_by": "layer", "transparent": true, "explode": 0.5, "montage": {"panels": 4, "columns": 2}, "views": [{"camera": "fixed", "eye": [1, 2, 3], "target": [0, 0, 0], "projection": "orthographic"}, {"camera": "orbit", "from": [1, 0, 0], "up": [0, 0, 1], "turn_degrees": 90, "zoom": 2, "draw": "body", "title": "t"}]}})");
@@ -77,7 +78,7 @@ std::vector<std::string> scenarios() {
 
 std::vector<std::string> traces() {
   std::vector<std::string> out;
-  const LrbRep box(shapes::dented_box()), plate(shapes::notched_plate());
+  const LrbRep box(toy::dented_box()), plate(toy::notched_plate());
   for (const trace::Clock clock : {trace::Clock::event, trace::Clock::wall}) {
     trace::RecorderSettings settings;
     settings.clock = clock;

@@ -10,13 +10,13 @@
 #include "engine/error.hpp"
 #include "engine/lrb/fnv.hpp"
 #include "engine/query/collide.hpp"
+#include "scenarios/shapes/hand_made.hpp"
+#include "scenarios/shapes/random_pose.hpp"
+#include "scenarios/shapes/shapes.hpp"
 #include "tests/mesh/encode.hpp"
-#include "tests/support/hand_made.hpp"
-#include "tests/support/random_pose.hpp"
-#include "tests/support/shapes.hpp"
 
 using namespace lrb;
-using test::Random;
+using shapes::Random;
 
 namespace {
 
@@ -61,8 +61,8 @@ constexpr std::size_t kVersionAt = 8, kDimAt = 12, kRealFacesAt = 16, kNameAt = 
 }  // namespace
 
 TEST_CASE("a file gives back the same LRB-rep") {
-  for (const LrbRep& rep : {test::dented_box(), test::stairs_2d(), build_lrb(test::bumpy_sphere(2, 1)),
-                            LrbRep::without_regions(test::open_cylinder(8), false, true)}) {
+  for (const LrbRep& rep : {shapes::dented_box(), shapes::stairs_2d(), build_lrb(shapes::bumpy_sphere(2, 1)),
+                            LrbRep::without_regions(shapes::open_cylinder(8), false, true)}) {
     const LrbRep back = load_lrb(std::string_view(bytes_of(rep)), "body.lrb");
     CHECK(back.hash() == rep.hash());
     CHECK(back.name() == rep.name());
@@ -78,11 +78,11 @@ TEST_CASE("a file gives back the same LRB-rep") {
 
 TEST_CASE("a body from a file gives the same answers") {
   Random random(1);
-  const LrbRep a = build_lrb(test::torus(12, 8)), b = build_lrb(test::bumpy_sphere(1, 2));
+  const LrbRep a = build_lrb(shapes::torus(12, 8)), b = build_lrb(shapes::bumpy_sphere(1, 2));
   const LrbRep a_back = load_lrb(std::string_view(bytes_of(a)), "a.lrb");
   const LrbRep b_back = load_lrb(std::string_view(bytes_of(b)), "b.lrb");
   for (int i = 0; i < 100; ++i) {
-    const Pose p = test::random_pose(random, a, b, test::uniform(random, 0, 1));
+    const Pose p = shapes::random_pose(random, a, b, shapes::uniform(random, 0, 1));
     const CollideResult before = collide(a, Pose{}, b, p), after = collide(a_back, Pose{}, b_back, p);
     CHECK(before.pairs == after.pairs);
     CHECK(before.meets == after.meets);
@@ -93,7 +93,7 @@ TEST_CASE("a body from a file gives the same answers") {
 }
 
 TEST_CASE("every file that is cut short is refused in one line") {
-  const std::string whole = bytes_of(test::dented_box());
+  const std::string whole = bytes_of(shapes::dented_box());
   for (std::size_t size = 0; size < whole.size(); ++size) {
     const std::string text = complaint(whole.substr(0, size));
     REQUIRE_FALSE(text.empty());
@@ -106,7 +106,7 @@ TEST_CASE("every file that is cut short is refused in one line") {
 }
 
 TEST_CASE("every changed byte is noticed") {
-  const std::string whole = bytes_of(test::stairs_2d());
+  const std::string whole = bytes_of(shapes::stairs_2d());
   for (std::size_t at = 0; at < whole.size(); ++at)
     for (const int change : {1, 0x80, 0xff}) {
       std::string damaged = whole;
@@ -116,14 +116,14 @@ TEST_CASE("every changed byte is noticed") {
 }
 
 TEST_CASE("a newer version is refused politely, before anything else is looked at") {
-  std::string newer = bytes_of(test::stairs_2d());
+  std::string newer = bytes_of(shapes::stairs_2d());
   newer[kVersionAt] = static_cast<char>(kLrbFileVersion + 1);
   CHECK(complaint(newer) ==
         "body.lrb: byte 8: the file has version 2, this program reads up to 1; use a newer lrbscope");
 }
 
 TEST_CASE("lengths beyond the file are refused before memory is taken") {
-  const LrbRep rep = test::stairs_2d();
+  const LrbRep rep = shapes::stairs_2d();
   const std::string whole = bytes_of(rep);
   std::size_t at = kNameAt;
   const auto skip = [&](std::size_t size) { at += 8 + size; };
@@ -147,7 +147,7 @@ TEST_CASE("lengths beyond the file are refused before memory is taken") {
 }
 
 TEST_CASE("numbers that make no LRB-rep are refused, whatever the checksum says") {
-  const std::string whole = bytes_of(test::dented_box());
+  const std::string whole = bytes_of(shapes::dented_box());
   CHECK_FALSE(complaint(with(whole, kDimAt, std::uint32_t{0})).empty());
   CHECK_FALSE(complaint(with(whole, kDimAt, std::uint32_t{2})).empty());
   CHECK_FALSE(complaint(with(whole, kDimAt, ~std::uint32_t{0})).empty());
@@ -156,7 +156,7 @@ TEST_CASE("numbers that make no LRB-rep are refused, whatever the checksum says"
 }
 
 TEST_CASE("a name with control characters does not break a message into lines") {
-  LrbData d = test::stairs_2d().data();
+  LrbData d = shapes::stairs_2d().data();
   d.name = "two\nlines\x1b[31m";
   const std::string whole = bytes_of(LrbRep(d));
   CHECK(load_lrb(std::string_view(whole), "body.lrb").name() == d.name);
@@ -166,7 +166,7 @@ TEST_CASE("a name with control characters does not break a message into lines") 
 }
 
 TEST_CASE("a 2D body lies in the plane") {
-  LrbData d = test::stairs_2d().data();
+  LrbData d = shapes::stairs_2d().data();
   d.vertices[0].z() = 1;
   CHECK_THROWS_AS(LrbRep{d}, InputError);
 }
@@ -175,7 +175,7 @@ TEST_CASE("a 2D body lies in the plane") {
 TEST_CASE("damaged files with a right checksum are refused or harmless") {
   Random random(9);
   int taken = 0, refused = 0;
-  for (const LrbRep& rep : {test::dented_box(), test::stairs_2d()}) {
+  for (const LrbRep& rep : {shapes::dented_box(), shapes::stairs_2d()}) {
     const std::string whole = bytes_of(rep);
     for (int i = 0; i < 4000; ++i) {
       std::string damaged = whole;

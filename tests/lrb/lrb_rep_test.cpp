@@ -3,13 +3,13 @@
 #include <doctest/doctest.h>
 
 #include "engine/error.hpp"
-#include "tests/support/hand_made.hpp"
-#include "tests/support/shapes.hpp"
+#include "scenarios/shapes/hand_made.hpp"
+#include "scenarios/shapes/shapes.hpp"
 
 using namespace lrb;
 
 TEST_CASE("an LRB-rep knows its regions' lids and floors") {
-  const LrbRep rep = test::dented_box();
+  const LrbRep rep = shapes::dented_box();
   REQUIRE(rep.region_count() == 1);
   CHECK(rep.real_face_count() == 28);
   CHECK(rep.face_count() == 30);
@@ -22,7 +22,7 @@ TEST_CASE("an LRB-rep knows its regions' lids and floors") {
 }
 
 TEST_CASE("parents and depths follow the lids outward") {
-  const LrbRep rep = test::stairs_2d();
+  const LrbRep rep = shapes::stairs_2d();
   CHECK(rep.parent(0) == 1);
   CHECK(rep.parent(1) == kOutside);
   CHECK(rep.depth(0) == 2);
@@ -31,7 +31,7 @@ TEST_CASE("parents and depths follow the lids outward") {
 }
 
 TEST_CASE("simplices of polygons are numbered face by face") {
-  const LrbRep quads = LrbRep::without_regions(test::quad_box(), true, false);
+  const LrbRep quads = LrbRep::without_regions(shapes::quad_box(), true, false);
   CHECK(quads.real_simplex_count() == 12);
   for (SimplexId s = 0; s < 12; ++s) CHECK(quads.face_of_simplex(s) == s / 2);
   VertexId v[3];
@@ -42,13 +42,13 @@ TEST_CASE("simplices of polygons are numbered face by face") {
 }
 
 TEST_CASE("components are pieces joined by vertices") {
-  CHECK(LrbRep::without_regions(test::box(), true, false).component_vertices().size() == 1);
-  CHECK(LrbRep::without_regions(test::box_with_void(), true, false).component_vertices().size() == 2);
+  CHECK(LrbRep::without_regions(shapes::box(), true, false).component_vertices().size() == 1);
+  CHECK(LrbRep::without_regions(shapes::box_with_void(), true, false).component_vertices().size() == 2);
 }
 
 TEST_CASE("arrays that do not fit together are refused by name") {
   const auto message = [](auto change) -> std::string {
-    LrbData d = test::dented_box().data();
+    LrbData d = shapes::dented_box().data();
     change(d);
     try {
       LrbRep rep(std::move(d));
@@ -71,7 +71,7 @@ TEST_CASE("arrays that do not fit together are refused by name") {
 }
 
 TEST_CASE("the hash names the complex") {
-  const LrbRep a = test::dented_box(), b = test::dented_box();
+  const LrbRep a = shapes::dented_box(), b = shapes::dented_box();
   CHECK(a.hash() == b.hash());
   CHECK(a.serial() != b.serial());
   LrbData d = a.data();

@@ -2,8 +2,8 @@
 
 #include <doctest/doctest.h>
 
-#include "tests/support/hand_made.hpp"
-#include "tests/support/shapes.hpp"
+#include "scenarios/shapes/hand_made.hpp"
+#include "scenarios/shapes/shapes.hpp"
 
 using namespace lrb;
 
@@ -18,21 +18,21 @@ bool names(const ValidateReport& report, const std::string& part) {
 }  // namespace
 
 TEST_CASE("clean LRB-reps pass, with the volumes known by heart") {
-  const ValidateReport box = validate(test::dented_box());
+  const ValidateReport box = validate(shapes::dented_box());
   CHECK(box.valid);
   CHECK(box.volume_solid == doctest::Approx(28));
   CHECK(box.volume_regions == doctest::Approx(4));
   CHECK(box.volume_outer == doctest::Approx(32));
   CHECK(box.embedding_pairs > 0);
   CHECK(box.states == 100);
-  const ValidateReport stairs = validate(test::stairs_2d());
+  const ValidateReport stairs = validate(shapes::stairs_2d());
   CHECK_MESSAGE(stairs.valid, (stairs.violations.empty() ? "" : stairs.violations[0]));
   CHECK(stairs.volume_solid == doctest::Approx(10));
   CHECK(stairs.volume_outer == doctest::Approx(16));
 }
 
 TEST_CASE("a region that is open is named") {
-  LrbData d = test::dented_box().data();
+  LrbData d = shapes::dented_box().data();
   d.outer_cell[18] = kOutside;  // a face of the dent leaves the region's collector
   const ValidateReport report = validate(LrbRep(d));
   CHECK_FALSE(report.valid);
@@ -40,14 +40,14 @@ TEST_CASE("a region that is open is named") {
 }
 
 TEST_CASE("faces that cross are found, and told apart by whose fault they are") {
-  LrbData d = test::dented_box().data();
+  LrbData d = shapes::dented_box().data();
   for (VertexId v = 12; v < 16; ++v)
     d.vertices[v].z() = -1;  // the dent goes through the bottom: real against real
   const ValidateReport input = validate(LrbRep(d));
   CHECK(input.real_pairs_meeting > 0);
   CHECK_FALSE(names(input, "pseudo"));
 
-  LrbData lid = test::dented_box().data();
+  LrbData lid = shapes::dented_box().data();
   // The lid gets a corner of its own, below the floor of the dent.
   lid.vertices.push_back({2, 2, 0.5});
   const auto last = static_cast<VertexId>(lid.vertices.size() - 1);
@@ -58,7 +58,7 @@ TEST_CASE("faces that cross are found, and told apart by whose fault they are") 
 }
 
 TEST_CASE("a lid that lies flat on what it hides is allowed and counted") {
-  LrbData d = test::dented_box().data();
+  LrbData d = shapes::dented_box().data();
   for (VertexId v = 12; v < 16; ++v)
     d.vertices[v].z() = 2;  // the dent has depth 0: its floor lies in the lid's plane
   // The walls of the dent are gone flat too; only the floor (faces 26, 27) and walls overlap the lid.
@@ -69,7 +69,7 @@ TEST_CASE("a lid that lies flat on what it hides is allowed and counted") {
 }
 
 TEST_CASE("a negative region is refused") {
-  LrbData d = test::dented_box().data();
+  LrbData d = shapes::dented_box().data();
   for (VertexId v = 12; v < 16; ++v) d.vertices[v].z() = 3;  // a bump through the lid
   const ValidateReport report = validate(LrbRep(d));
   CHECK_FALSE(report.valid);

@@ -4,7 +4,7 @@
 
 #include <doctest/doctest.h>
 
-#include "tests/support/hand_made.hpp"
+#include "scenarios/shapes/hand_made.hpp"
 
 using namespace lrb;
 
@@ -15,7 +15,7 @@ std::vector<FaceId> faces(std::initializer_list<FaceId> list) {
 }  // namespace
 
 TEST_CASE("refining goes from the outermost wrapper to the real faces and back") {
-  const LrbRep rep = test::stairs_2d();
+  const LrbRep rep = shapes::stairs_2d();
   Wrapper w(rep);
   const auto outermost = faces({0, 1, 8, 9, 11, 12});
   CHECK(w.boundary() == outermost);
@@ -32,7 +32,7 @@ TEST_CASE("refining goes from the outermost wrapper to the real faces and back")
 }
 
 TEST_CASE("any set of regions is legal: a region may go before the one that hides it") {
-  const LrbRep rep = test::stairs_2d();
+  const LrbRep rep = shapes::stairs_2d();
   Wrapper w(rep);
   w.refine(0);  // a bubble under region 1: its lid is there, seen from behind
   CHECK(w.boundary() == faces({0, 1, 4, 5, 8, 9, 10, 11, 12}));
@@ -40,7 +40,7 @@ TEST_CASE("any set of regions is legal: a region may go before the one that hide
 
 TEST_CASE("refine_all gives exactly the real faces; reset gives the outermost wrapper") {
   for (const WrapperMode mode : {WrapperMode::regularised, WrapperMode::unregularised}) {
-    const LrbRep rep = test::dented_box();
+    const LrbRep rep = shapes::dented_box();
     Wrapper w(rep, mode);
     const auto outermost = w.boundary();
     w.refine_all();
@@ -54,7 +54,7 @@ TEST_CASE("refine_all gives exactly the real faces; reset gives the outermost wr
 }
 
 TEST_CASE("the two modes differ in what happens to a region's other lids") {
-  const LrbRep rep = test::dented_box();
+  const LrbRep rep = shapes::dented_box();
   Wrapper regularised(rep), unregularised(rep, WrapperMode::unregularised);
   CHECK(regularised.refine_face(28));
   CHECK_FALSE(regularised.refine_face(29));  // gone with the region
@@ -70,7 +70,7 @@ TEST_CASE("the two modes differ in what happens to a region's other lids") {
 }
 
 TEST_CASE("real faces cannot be refined") {
-  const LrbRep rep = test::dented_box();
+  const LrbRep rep = shapes::dented_box();
   Wrapper w(rep);
   CHECK_FALSE(w.refine_face(0));
   CHECK_FALSE(w.refine_face(20));

@@ -6,9 +6,11 @@
 #include <doctest/doctest.h>
 
 #include "engine/mesh/mesh_check.hpp"
-#include "tests/support/shapes.hpp"
+#include "scenarios/shapes/shapes.hpp"
 
 namespace lrb::test {
+
+using namespace shapes;
 namespace {
 
 using Offenders = std::vector<std::array<std::uint32_t, 2>>;

@@ -4,10 +4,12 @@
 
 #include "engine/error.hpp"
 #include "engine/mesh/mesh_io.hpp"
+#include "scenarios/shapes/shapes.hpp"
 #include "tests/mesh/encode.hpp"
-#include "tests/support/shapes.hpp"
 
 namespace lrb::test {
+
+using namespace shapes;
 namespace {
 
 /// The message of the error; empty if the file is read.

@@ -6,9 +6,11 @@
 #include "engine/mesh/mesh_check.hpp"
 #include "engine/mesh/point_inside.hpp"
 #include "engine/mesh/volume_sign.hpp"
-#include "tests/support/shapes.hpp"
+#include "scenarios/shapes/shapes.hpp"
 
 namespace lrb::test {
+
+using namespace shapes;
 namespace {
 
 std::vector<FaceId> all_faces(const Mesh& m) {

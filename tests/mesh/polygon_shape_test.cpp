@@ -6,9 +6,11 @@
 #include <doctest/doctest.h>
 
 #include "engine/exact/predicates.hpp"
-#include "tests/support/shapes.hpp"
+#include "scenarios/shapes/shapes.hpp"
 
 namespace lrb::test {
+
+using namespace shapes;
 
 TEST_CASE("a convex polygon with corners in the middle of its sides falls into triangles with area") {
   const std::vector<std::vector<Point2>> shapes = {{{0, 0}, {840, 0}, {0, 840}},

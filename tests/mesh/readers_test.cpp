@@ -6,10 +6,12 @@
 #include "engine/error.hpp"
 #include "engine/mesh/mesh_check.hpp"
 #include "engine/mesh/mesh_io.hpp"
+#include "scenarios/shapes/shapes.hpp"
 #include "tests/mesh/encode.hpp"
-#include "tests/support/shapes.hpp"
 
 namespace lrb::test {
+
+using namespace shapes;
 namespace {
 
 void check_same(const Mesh& a, const Mesh& b) {

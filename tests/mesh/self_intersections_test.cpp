@@ -7,10 +7,12 @@
 #include <doctest/doctest.h>
 
 #include "engine/mesh/mesh_check.hpp"
+#include "scenarios/shapes/shapes.hpp"
 #include "tests/support/rational_oracle.hpp"
-#include "tests/support/shapes.hpp"
 
 namespace lrb::test {
+
+using namespace shapes;
 namespace {
 
 using Pairs = std::vector<std::array<std::uint32_t, 2>>;

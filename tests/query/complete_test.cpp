@@ -3,12 +3,12 @@
 
 #include "engine/query/brute_force.hpp"
 #include "engine/query/collide_impl.hpp"
-#include "tests/support/hand_made.hpp"
-#include "tests/support/random_pose.hpp"
-#include "tests/support/shapes.hpp"
+#include "scenarios/shapes/hand_made.hpp"
+#include "scenarios/shapes/random_pose.hpp"
+#include "scenarios/shapes/shapes.hpp"
 
 using namespace lrb;
-using test::Random;
+using shapes::Random;
 
 namespace {
 
@@ -49,21 +49,21 @@ LrbRep closed(const Mesh& mesh) {
 
 std::vector<Bodies> bodies() {
   std::vector<Bodies> list;
-  list.push_back({"spheres", closed(test::icosphere(1)), closed(test::icosphere(1, 0.7))});
-  list.push_back({"bumps", closed(test::bumpy_sphere(2, 7, 0.3)), closed(test::bumpy_sphere(1, 8, 0.3))});
-  list.push_back({"ball in bowl", closed(test::bowl(12, 6)), closed(test::icosphere(1, 0.5))});
-  list.push_back({"void", closed(test::box_with_void()), closed(test::icosphere(1, 0.3))});
-  list.push_back({"tori", closed(test::torus(12, 8)), closed(test::torus(10, 6, 1, 0.3))});
-  list.push_back({"combs", closed(test::comb(5)), closed(test::comb(4))});
-  list.push_back({"quads", closed(test::quad_box()), closed(test::quad_torus(8, 6))});
-  list.push_back(
-      {"tiny in large", closed(test::bumpy_sphere(2, 9)), closed(test::scaled(test::tetrahedron(), 1e-3))});
-  list.push_back({"far and small", closed(test::translated(test::icosphere(1), {1e7, -2e7, 3e6})),
-                  closed(test::icosphere(1, 0.6))});
-  list.push_back({"gears 2D", closed(test::gear(9)), closed(test::gear(7, 0.9, 0.6))});
-  list.push_back({"ring 2D", closed(test::ring_2d(30)), closed(test::star(5, 0.3, 0.1))});
-  list.push_back({"regions 2D", test::stairs_2d(), test::stairs_2d()});
-  list.push_back({"regions", test::dented_box(), closed(test::icosphere(1, 0.7))});
+  list.push_back({"spheres", closed(shapes::icosphere(1)), closed(shapes::icosphere(1, 0.7))});
+  list.push_back({"bumps", closed(shapes::bumpy_sphere(2, 7, 0.3)), closed(shapes::bumpy_sphere(1, 8, 0.3))});
+  list.push_back({"ball in bowl", closed(shapes::bowl(12, 6)), closed(shapes::icosphere(1, 0.5))});
+  list.push_back({"void", closed(shapes::box_with_void()), closed(shapes::icosphere(1, 0.3))});
+  list.push_back({"tori", closed(shapes::torus(12, 8)), closed(shapes::torus(10, 6, 1, 0.3))});
+  list.push_back({"combs", closed(shapes::comb(5)), closed(shapes::comb(4))});
+  list.push_back({"quads", closed(shapes::quad_box()), closed(shapes::quad_torus(8, 6))});
+  list.push_back({"tiny in large", closed(shapes::bumpy_sphere(2, 9)),
+                  closed(shapes::scaled(shapes::tetrahedron(), 1e-3))});
+  list.push_back({"far and small", closed(shapes::translated(shapes::icosphere(1), {1e7, -2e7, 3e6})),
+                  closed(shapes::icosphere(1, 0.6))});
+  list.push_back({"gears 2D", closed(shapes::gear(9)), closed(shapes::gear(7, 0.9, 0.6))});
+  list.push_back({"ring 2D", closed(shapes::ring_2d(30)), closed(shapes::star(5, 0.3, 0.1))});
+  list.push_back({"regions 2D", shapes::stairs_2d(), shapes::stairs_2d()});
+  list.push_back({"regions", shapes::dented_box(), closed(shapes::icosphere(1, 0.7))});
   return list;
 }
 
@@ -78,7 +78,7 @@ TEST_CASE("complete equals brute force on random poses, from deep inside to near
     for (int i = 0; i < 800; ++i) {
       CAPTURE(i);
       compare(pair.a, Pose{}, pair.b,
-              test::random_pose(random, pair.a, pair.b, test::uniform(random, 0, 1.1)), context, total);
+              shapes::random_pose(random, pair.a, pair.b, shapes::uniform(random, 0, 1.1)), context, total);
     }
   }
   MESSAGE(total.poses << " poses: " << total.in_contact << " in contact, " << total.inside << " inside, "
@@ -93,12 +93,12 @@ TEST_CASE("complete equals brute force when both bodies move") {
   Random random(5);
   QueryContext context;
   Tally total;
-  const LrbRep a = closed(test::bumpy_sphere(1, 3)), b = closed(test::torus(9, 6));
+  const LrbRep a = closed(shapes::bumpy_sphere(1, 3)), b = closed(shapes::torus(9, 6));
   for (int i = 0; i < 200; ++i) {
     Pose frame;
-    frame.r = test::random_rotation(random);
-    frame.t = 1e3 * test::random_direction(random);
-    const Pose relative = test::random_pose(random, a, b, test::uniform(random, 0, 1.1));
+    frame.r = shapes::random_rotation(random);
+    frame.t = 1e3 * shapes::random_direction(random);
+    const Pose relative = shapes::random_pose(random, a, b, shapes::uniform(random, 0, 1.1));
     const Pose pose_b{frame.r * relative.r, frame.r * relative.t + frame.t};
     compare(a, frame, b, pose_b, context, total);
   }
@@ -109,10 +109,10 @@ TEST_CASE("complete equals brute force on identical bodies and grid-aligned cont
   Random random(6);
   QueryContext context;
   Tally total;
-  const std::vector<LrbRep> list = {closed(test::box()),          closed(test::comb(4)),
-                                    closed(test::l_shape()),      closed(test::icosphere(1)),
-                                    closed(test::quad_box()),     closed(test::box_with_void()),
-                                    closed(test::tetrahedron(1)), test::dented_box()};
+  const std::vector<LrbRep> list = {closed(shapes::box()),          closed(shapes::comb(4)),
+                                    closed(shapes::l_shape()),      closed(shapes::icosphere(1)),
+                                    closed(shapes::quad_box()),     closed(shapes::box_with_void()),
+                                    closed(shapes::tetrahedron(1)), shapes::dented_box()};
   const double quarter_turns[4][2] = {{1, 0}, {0, 1}, {-1, 0}, {0, -1}};
   for (const LrbRep& a : list)
     for (const LrbRep& b : list)
@@ -131,19 +131,19 @@ TEST_CASE("any matrix is answered exactly, rotation or not") {
   Random random(8);
   QueryContext context;
   Tally total;
-  const LrbRep a = closed(test::icosphere(1)), b = closed(test::box({-0.5, -0.5, -0.5}, {0.5, 0.5, 0.5}));
+  const LrbRep a = closed(shapes::icosphere(1)), b = closed(shapes::box({-0.5, -0.5, -0.5}, {0.5, 0.5, 0.5}));
   for (int i = 0; i < 100; ++i) {
-    Pose p = test::random_pose(random, a, b, test::uniform(random, 0, 1));
-    p.r *= test::uniform(random, 0.5, 2);
-    p.r(0, 1) += test::uniform(random, -0.5, 0.5);
+    Pose p = shapes::random_pose(random, a, b, shapes::uniform(random, 0, 1));
+    p.r *= shapes::uniform(random, 0.5, 2);
+    p.r(0, 1) += shapes::uniform(random, -0.5, 0.5);
     compare(a, Pose{}, b, p, context, total);
   }
   CHECK(total.in_contact > 20);
 }
 
 TEST_CASE("an open body has no inside: without contact the relation is undefined") {
-  const LrbRep open = LrbRep::without_regions(test::open_cylinder(12), false, false);
-  const LrbRep ball = closed(test::icosphere(0, 0.1));
+  const LrbRep open = LrbRep::without_regions(shapes::open_cylinder(12), false, false);
+  const LrbRep ball = closed(shapes::icosphere(0, 0.1));
   CHECK(collide(open, Pose{}, ball, Pose{}).relation == Relation::undefined);
   CHECK(collide(ball, Pose{}, open, Pose::translation({50, 0, 0})).relation == Relation::undefined);
   const CollideResult through = collide(open, Pose{}, ball, Pose::translation({1, 0, 0.5}));
@@ -153,9 +153,9 @@ TEST_CASE("an open body has no inside: without contact the relation is undefined
 
 TEST_CASE("swapping the bodies transposes the pairs") {
   Random random(11);
-  const LrbRep a = closed(test::bumpy_sphere(2, 1)), b = closed(test::comb(3));
+  const LrbRep a = closed(shapes::bumpy_sphere(2, 1)), b = closed(shapes::comb(3));
   for (int i = 0; i < 50; ++i) {
-    const Pose p = test::random_pose(random, a, b, test::uniform(random, 0, 0.8));
+    const Pose p = shapes::random_pose(random, a, b, shapes::uniform(random, 0, 0.8));
     const CollideResult ab = collide(a, Pose{}, b, p), ba = collide(b, p, a, Pose{});
     std::vector<SimplexPair> transposed;
     for (const SimplexPair& q : ba.pairs) transposed.push_back({q.b, q.a});

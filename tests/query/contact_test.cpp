@@ -2,8 +2,8 @@
 #include <doctest/doctest.h>
 
 #include "engine/query/collide.hpp"
-#include "tests/support/random_pose.hpp"
-#include "tests/support/shapes.hpp"
+#include "scenarios/shapes/random_pose.hpp"
+#include "scenarios/shapes/shapes.hpp"
 
 using namespace lrb;
 
@@ -28,7 +28,7 @@ bool near(const Eigen::Vector3d& x, const Eigen::Vector3d& y, double by = 1e-12)
 
 TEST_CASE("a box on a box: one coplanar region with its area, centre and direction") {
   const CollideResult r =
-      contact(closed(test::box()), closed(test::box()), Pose::translation({0.25, 0.5, 1}));
+      contact(closed(shapes::box()), closed(shapes::box()), Pose::translation({0.25, 0.5, 1}));
   CHECK(r.relation == Relation::touching);
   CHECK(r.interiors_overlap == Answer::no);
   REQUIRE(r.regions.size() == 1);
@@ -47,8 +47,8 @@ TEST_CASE("a tip through a face: one closed loop with its length, area and depth
   Pose p;
   p.r = Eigen::Vector3d(1, -1, -1).asDiagonal();
   p.t = {0.5, 0.5, 0.75};
-  Mesh spike = test::tetrahedron(4);
-  const LrbRep box = closed(test::box({-9, -9, 0}, {9, 9, 1}));
+  Mesh spike = shapes::tetrahedron(4);
+  const LrbRep box = closed(shapes::box({-9, -9, 0}, {9, 9, 1}));
   p.r = Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d(1, 1, 1).normalized(), Eigen::Vector3d::UnitZ())
             .toRotationMatrix();
   const CollideResult r = contact(box, closed(spike), p);
@@ -67,10 +67,11 @@ TEST_CASE("a tip through a face: one closed loop with its length, area and depth
 }
 
 TEST_CASE("a corner on a face touches in a point; an edge on a face in a segment") {
-  const LrbRep floor = closed(test::box({-5, -5, -1}, {5, 5, 0}));
+  const LrbRep floor = closed(shapes::box({-5, -5, -1}, {5, 5, 0}));
   Pose on_corner;
   on_corner.r = Eigen::Matrix3d::Identity();
-  const CollideResult corner = contact(floor, closed(test::tetrahedron()), Pose::translation({0.1, 0.2, 0}));
+  const CollideResult corner =
+      contact(floor, closed(shapes::tetrahedron()), Pose::translation({0.1, 0.2, 0}));
   CHECK(corner.relation == Relation::touching);  // the tetrahedron stands on its face z = 0
   REQUIRE(corner.regions.size() == 1);
   CHECK(corner.regions[0].area == doctest::Approx(0.5));
@@ -97,8 +98,8 @@ TEST_CASE("a corner on a face touches in a point; an edge on a face in a segment
 }
 
 TEST_CASE("a stick through both walls of a bowl has four regions, each a closed loop") {
-  const LrbRep bowl = closed(test::bowl(24, 12, 0.2));
-  const LrbRep stick = closed(test::box({-3, -0.05, -0.45}, {3, 0.04, -0.36}));
+  const LrbRep bowl = closed(shapes::bowl(24, 12, 0.2));
+  const LrbRep stick = closed(shapes::box({-3, -0.05, -0.45}, {3, 0.04, -0.36}));
   const CollideResult r = contact(bowl, stick, Pose{});
   CHECK(r.relation == Relation::crossing);
   REQUIRE(r.regions.size() == 4);
@@ -107,7 +108,7 @@ TEST_CASE("a stick through both walls of a bowl has four regions, each a closed 
 }
 
 TEST_CASE("two spheres meet in one circle") {
-  const LrbRep ball = closed(test::icosphere(4));
+  const LrbRep ball = closed(shapes::icosphere(4));
   Pose p = Pose::rotation({1, 2, 3}, 0.3, {1.6, 0, 0});
   const CollideResult r = contact(ball, ball, p);
   REQUIRE(r.regions.size() == 1);
@@ -126,16 +127,16 @@ TEST_CASE("interiors: inscribed bodies overlap, kissing bodies do not, though no
   inscribed.vertices = {{0, 0, 0}, {1, 1, 0}, {1, 0, 1}, {0, 1, 1}};
   for (const auto& f : std::vector<std::array<VertexId, 3>>{{0, 1, 2}, {0, 3, 1}, {0, 2, 3}, {1, 3, 2}})
     inscribed.add_face(f);
-  const CollideResult in = contact(closed(test::box()), closed(inscribed), Pose{});
+  const CollideResult in = contact(closed(shapes::box()), closed(inscribed), Pose{});
   CHECK(in.relation == Relation::touching);
   CHECK(in.interiors_overlap == Answer::yes);
 
-  const CollideResult same = contact(closed(test::icosphere(1)), closed(test::icosphere(1)), Pose{});
+  const CollideResult same = contact(closed(shapes::icosphere(1)), closed(shapes::icosphere(1)), Pose{});
   CHECK(same.relation == Relation::touching);
   CHECK(same.interiors_overlap == Answer::yes);
 
   const CollideResult corner =
-      contact(closed(test::box()), closed(test::box()), Pose::translation({1, 1, 1}));
+      contact(closed(shapes::box()), closed(shapes::box()), Pose::translation({1, 1, 1}));
   CHECK(corner.relation == Relation::touching);
   CHECK(corner.interiors_overlap == Answer::no);
   REQUIRE(corner.regions.size() == 1);
@@ -143,18 +144,18 @@ TEST_CASE("interiors: inscribed bodies overlap, kissing bodies do not, though no
 
   // A smaller box inside a larger one, standing on its inner side of the floor.
   const CollideResult standing =
-      contact(closed(test::box({0, 0, 0}, {3, 3, 3})), closed(test::box()), Pose::translation({1, 1, 0}));
+      contact(closed(shapes::box({0, 0, 0}, {3, 3, 3})), closed(shapes::box()), Pose::translation({1, 1, 0}));
   CHECK(standing.relation == Relation::touching);
   CHECK(standing.interiors_overlap == Answer::yes);
 
   const CollideResult in_void =
-      contact(closed(test::box_with_void()), closed(test::box()), Pose::translation({1, 1, 1}));
+      contact(closed(shapes::box_with_void()), closed(shapes::box()), Pose::translation({1, 1, 1}));
   CHECK(in_void.relation == Relation::touching);  // fills the void exactly: every wall in contact
   CHECK(in_void.interiors_overlap == Answer::no);
 }
 
 TEST_CASE("2D: segments cross in points and touch along lengths") {
-  const LrbRep square = closed(test::polygon({{0, 0}, {1, 0}, {1, 1}, {0, 1}}));
+  const LrbRep square = closed(shapes::polygon({{0, 0}, {1, 0}, {1, 1}, {0, 1}}));
   const CollideResult beside = contact(square, square, Pose::translation({1, 0.25, 0}));
   CHECK(beside.relation == Relation::touching);
   CHECK(beside.interiors_overlap == Answer::no);

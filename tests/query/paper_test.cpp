@@ -2,9 +2,9 @@
 #include <doctest/doctest.h>
 
 #include "engine/query/collide_impl.hpp"
-#include "tests/support/hand_made.hpp"
-#include "tests/support/random_pose.hpp"
-#include "tests/support/shapes.hpp"
+#include "scenarios/shapes/hand_made.hpp"
+#include "scenarios/shapes/random_pose.hpp"
+#include "scenarios/shapes/shapes.hpp"
 
 using namespace lrb;
 
@@ -21,17 +21,17 @@ CollideResult ask(const LrbRep& a, const LrbRep& b, const Pose& p, Recursion rec
 }  // namespace
 
 TEST_CASE("the result says which recursion it used") {
-  const LrbRep a = test::dented_box();
+  const LrbRep a = shapes::dented_box();
   CHECK(ask(a, a, Pose{}, Recursion::paper).recursion == Recursion::paper);
   CHECK(ask(a, a, Pose{}, Recursion::complete).recursion == Recursion::complete);
 }
 
 TEST_CASE("without regions the paper's query is brute force, and finds all") {
-  const LrbRep a = LrbRep::without_regions(test::icosphere(1), true, false);
-  const LrbRep b = LrbRep::without_regions(test::comb(3), true, false);
-  test::Random random(3);
+  const LrbRep a = LrbRep::without_regions(shapes::icosphere(1), true, false);
+  const LrbRep b = LrbRep::without_regions(shapes::comb(3), true, false);
+  shapes::Random random(3);
   for (int i = 0; i < 20; ++i) {
-    const Pose p = test::random_pose(random, a, b, 0.4);
+    const Pose p = shapes::random_pose(random, a, b, 0.4);
     const CollideResult paper = ask(a, b, p, Recursion::paper);
     CHECK(paper.pairs == ask(a, b, p, Recursion::complete).pairs);
     CHECK(paper.counters.face_tests == std::uint64_t{a.face_count()} * b.face_count());
@@ -39,8 +39,8 @@ TEST_CASE("without regions the paper's query is brute force, and finds all") {
 }
 
 TEST_CASE("a rod that comes in through the lid is found") {
-  const LrbRep a = test::dented_box();
-  const LrbRep rod = LrbRep::without_regions(test::box({1.6, 1.7, 0.5}, {2.1, 2.2, 3}), true, false);
+  const LrbRep a = shapes::dented_box();
+  const LrbRep rod = LrbRep::without_regions(shapes::box({1.6, 1.7, 0.5}, {2.1, 2.2, 3}), true, false);
   const CollideResult paper = ask(a, rod, Pose{}, Recursion::paper),
                       complete = ask(a, rod, Pose{}, Recursion::complete);
   CHECK(!complete.pairs.empty());
@@ -51,10 +51,10 @@ TEST_CASE("a rod that comes in through the lid is found") {
 TEST_CASE(
     "a contact under a lid that nothing touches is missed by the paper's recursion, never by the complete "
     "one") {
-  const LrbRep a = test::dented_box();
+  const LrbRep a = shapes::dented_box();
   // In the dent, below the lid at z = 2, its corner through the dent's floor at z = 1: the lid is not
   // touched.
-  const LrbRep pebble = LrbRep::without_regions(test::box({1.6, 1.7, 0.9}, {2.1, 2.2, 1.5}), true, false);
+  const LrbRep pebble = LrbRep::without_regions(shapes::box({1.6, 1.7, 0.9}, {2.1, 2.2, 1.5}), true, false);
   const CollideResult complete = ask(a, pebble, Pose{}, Recursion::complete);
   CHECK(complete.relation == Relation::crossing);
   CHECK(complete.opened[0] == std::vector<RegionId>{0});
@@ -66,11 +66,11 @@ TEST_CASE(
 }
 
 TEST_CASE("the strict reading finds no more than the other, and no pair that is not there") {
-  test::Random random(4);
-  const LrbRep a = test::dented_box();
+  shapes::Random random(4);
+  const LrbRep a = shapes::dented_box();
   std::size_t strict_total = 0, paper_total = 0, complete_total = 0;
   for (int i = 0; i < 200; ++i) {
-    const Pose p = test::random_pose(random, a, a, test::uniform(random, 0.3, 0.9));
+    const Pose p = shapes::random_pose(random, a, a, shapes::uniform(random, 0.3, 0.9));
     const auto complete = ask(a, a, p, Recursion::complete).pairs;
     const auto paper = ask(a, a, p, Recursion::paper).pairs;
     const auto strict = ask(a, a, p, Recursion::paper_strict).pairs;
@@ -85,16 +85,16 @@ TEST_CASE("the strict reading finds no more than the other, and no pair that is 
 }
 
 TEST_CASE("first_pair stops at the first real pair") {
-  const LrbRep a = test::dented_box();
-  const LrbRep rod = LrbRep::without_regions(test::box({1.6, 1.7, 0.5}, {2.1, 2.2, 3}), true, false);
+  const LrbRep a = shapes::dented_box();
+  const LrbRep rod = LrbRep::without_regions(shapes::box({1.6, 1.7, 0.5}, {2.1, 2.2, 3}), true, false);
   const CollideResult one = ask(a, rod, Pose{}, Recursion::paper, Mode::first_pair);
   CHECK(one.pairs.size() == 1);
   CHECK(one.counters.face_tests < ask(a, rod, Pose{}, Recursion::paper).counters.face_tests);
 }
 
 TEST_CASE("2D bodies run through the same query") {
-  const LrbRep a = test::stairs_2d();
-  const LrbRep b = LrbRep::without_regions(test::polygon({{2.2, 1.8}, {5, 1.9}, {5, 2.4}}), true, false);
+  const LrbRep a = shapes::stairs_2d();
+  const LrbRep b = LrbRep::without_regions(shapes::polygon({{2.2, 1.8}, {5, 1.9}, {5, 2.4}}), true, false);
   const CollideResult paper = ask(a, b, Pose{}, Recursion::paper),
                       complete = ask(a, b, Pose{}, Recursion::complete);
   CHECK(complete.pairs == paper.pairs);

@@ -6,11 +6,11 @@
 #include "engine/error.hpp"
 #include "engine/query/brute_force.hpp"
 #include "engine/query/collide.hpp"
-#include "tests/support/random_pose.hpp"
-#include "tests/support/shapes.hpp"
+#include "scenarios/shapes/random_pose.hpp"
+#include "scenarios/shapes/shapes.hpp"
 
 using namespace lrb;
-using test::Random;
+using shapes::Random;
 
 namespace {
 
@@ -33,14 +33,14 @@ std::string complaint(const LrbRep& a, const Pose& pose_a, const LrbRep& b, cons
 // of which the bound once covered the third. 23 pairs of 192 were missed.
 TEST_CASE("two matrices that scale miss nothing") {
   Random random(3);
-  const LrbRep a = closed(test::icosphere(1)), b = closed(test::bumpy_sphere(1, 2));
+  const LrbRep a = closed(shapes::icosphere(1)), b = closed(shapes::bumpy_sphere(1, 2));
   int in_contact = 0;
   for (int i = 0; i < 300; ++i) {
     Pose pose_a, pose_b;
-    const double scale = std::pow(10, test::uniform(random, -3, 3));
-    pose_a.r = scale * test::random_rotation(random);
-    pose_b.r = scale * test::random_rotation(random);
-    pose_b.t = test::uniform(random, 0, 2.2) * scale * test::random_direction(random);
+    const double scale = std::pow(10, shapes::uniform(random, -3, 3));
+    pose_a.r = scale * shapes::random_rotation(random);
+    pose_b.r = scale * shapes::random_rotation(random);
+    pose_b.t = shapes::uniform(random, 0, 2.2) * scale * shapes::random_direction(random);
     const BruteForceResult expected = brute_force(a, pose_a, b, pose_b);
     CHECK(collide(a, pose_a, b, pose_b).pairs == expected.pairs);
     in_contact += !expected.pairs.empty();
@@ -52,13 +52,13 @@ TEST_CASE("bodies made of denormals miss nothing") {
   Random random(4);
   int in_contact = 0;
   for (int i = 0; i < 300; ++i) {
-    const double scale = std::ldexp(1.0, test::uniform(random) < 0.5 ? -1060 : -1040);
-    const LrbRep a = closed(test::scaled(test::icosphere(1), scale));
-    const LrbRep b = closed(test::scaled(test::bumpy_sphere(1, 2), scale));
+    const double scale = std::ldexp(1.0, shapes::uniform(random) < 0.5 ? -1060 : -1040);
+    const LrbRep a = closed(shapes::scaled(shapes::icosphere(1), scale));
+    const LrbRep b = closed(shapes::scaled(shapes::bumpy_sphere(1, 2), scale));
     Pose pose_a, pose_b;
-    pose_a.r = test::random_rotation(random);
-    pose_b.r = test::random_rotation(random);
-    pose_b.t = test::uniform(random, 0, 2.2) * scale * test::random_direction(random);
+    pose_a.r = shapes::random_rotation(random);
+    pose_b.r = shapes::random_rotation(random);
+    pose_b.t = shapes::uniform(random, 0, 2.2) * scale * shapes::random_direction(random);
     const BruteForceResult expected = brute_force(a, pose_a, b, pose_b);
     CHECK(collide(a, pose_a, b, pose_b).pairs == expected.pairs);
     in_contact += !expected.pairs.empty();
@@ -67,7 +67,7 @@ TEST_CASE("bodies made of denormals miss nothing") {
 }
 
 TEST_CASE("world coordinates that overflow are refused by name") {
-  const LrbRep box = closed(test::box());
+  const LrbRep box = closed(shapes::box());
   Pose far;
   far.r *= 1.5e308;
   far.t.y() = 1e308;
@@ -84,18 +84,18 @@ TEST_CASE("a power of two scales contact regions exactly") {
   Random random(5);
   CollideRequest request;
   request.contacts = true;
-  const Mesh mesh_a = test::l_shape(), mesh_b = test::box();
+  const Mesh mesh_a = shapes::l_shape(), mesh_b = shapes::box();
   for (int i = 0; i < 100; ++i) {
     Pose pose;
-    if (i % 2) pose.r = test::random_rotation(random);
-    pose.t = {test::uniform(random, -1, 1), test::uniform(random, -1, 1), i % 3 ? 1 : 0.5};
+    if (i % 2) pose.r = shapes::random_rotation(random);
+    pose.t = {shapes::uniform(random, -1, 1), shapes::uniform(random, -1, 1), i % 3 ? 1 : 0.5};
     const CollideResult plain = collide(closed(mesh_a), Pose{}, closed(mesh_b), pose, request);
     for (const int exponent : {-400, 400}) {
       const double by = std::ldexp(1.0, exponent);
       Pose scaled_pose = pose;
       scaled_pose.t *= by;
-      const CollideResult scaled = collide(closed(test::scaled(mesh_a, by)), Pose{},
-                                           closed(test::scaled(mesh_b, by)), scaled_pose, request);
+      const CollideResult scaled = collide(closed(shapes::scaled(mesh_a, by)), Pose{},
+                                           closed(shapes::scaled(mesh_b, by)), scaled_pose, request);
       REQUIRE(scaled.pairs == plain.pairs);
       REQUIRE(scaled.regions.size() == plain.regions.size());
       for (std::size_t r = 0; r < plain.regions.size(); ++r) {
@@ -115,8 +115,8 @@ TEST_CASE("a power of two scales contact regions exactly") {
 TEST_CASE("a plate that rounding has made flat has no interior to overlap") {
   CollideRequest request;
   request.interiors_overlap = true;
-  const LrbRep plate = closed(test::box({0, 0, 0}, {1, 4, 4})),
-               box = closed(test::box({-4, 1, 1}, {0, 2, 2}));
+  const LrbRep plate = closed(shapes::box({0, 0, 0}, {1, 4, 4})),
+               box = closed(shapes::box({-4, 1, 1}, {0, 2, 2}));
   const Pose far = Pose::translation({1e16, 0, 0});
   const CollideResult r = collide(plate, far, box, far, request);
   CHECK(r.relation == Relation::touching);
@@ -128,7 +128,8 @@ TEST_CASE("a plate that rounding has made flat has no interior to overlap") {
 TEST_CASE("boxes that overlap in one ulp overlap") {
   CollideRequest request;
   request.interiors_overlap = true;
-  const LrbRep a = closed(test::box()), b = closed(test::box({std::nextafter(1.0, 0.0), 0, 0}, {2, 1, 1}));
+  const LrbRep a = closed(shapes::box()),
+               b = closed(shapes::box({std::nextafter(1.0, 0.0), 0, 0}, {2, 1, 1}));
   const CollideResult r = collide(a, Pose{}, b, Pose{}, request);
   CHECK(r.relation == Relation::touching);
   CHECK(r.interiors_overlap == Answer::yes);

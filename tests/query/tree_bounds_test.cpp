@@ -7,8 +7,8 @@
 #include <doctest/doctest.h>
 
 #include "engine/query/tree_query.hpp"
-#include "tests/support/random_pose.hpp"
-#include "tests/support/shapes.hpp"
+#include "scenarios/shapes/random_pose.hpp"
+#include "scenarios/shapes/shapes.hpp"
 
 // The kernel itself, to look at what is inside it.
 #define LRB_KERNEL_NAME run_tree_kernel_under_test
@@ -18,7 +18,7 @@ void run_tree_kernel_under_test(TreeKernel& k);
 #include "engine/query/tree_kernel.inl"
 
 using namespace lrb;
-using test::Random;
+using shapes::Random;
 
 namespace {
 
@@ -165,18 +165,18 @@ Mesh stretched(Mesh m, const Eigen::Vector3d& by) {
 
 TEST_CASE("boxes and balls hold all simplices beneath them, at any scale, aspect and offset") {
   const double kScales[] = {1, 1e-12, 1e120, 1e-120, 1e-310, 1e-320, 1e300};
-  for (const Mesh& m : {test::bumpy_sphere(2, 1), test::comb(5), test::torus(12, 8), test::gear(20)})
+  for (const Mesh& m : {shapes::bumpy_sphere(2, 1), shapes::comb(5), shapes::torus(12, 8), shapes::gear(20)})
     for (const double scale : kScales) {
-      check_tree(closed(test::scaled(m, scale)));
+      check_tree(closed(shapes::scaled(m, scale)));
       check_tree(closed(stretched(m, Eigen::Vector3d(1, 1e-8, m.dim == 2 ? 0 : 1e-4) * scale)));
-      if (m.dim == 3) check_tree(closed(test::translated(m, {1e8, -1e16 * (scale < 1), 3})));
+      if (m.dim == 3) check_tree(closed(shapes::translated(m, {1e8, -1e16 * (scale < 1), 3})));
     }
 }
 
 TEST_CASE("a tree of simplices that all are one point, or on one line") {
-  check_tree(closed(test::scaled(test::icosphere(1), 0)));
-  check_tree(closed(stretched(test::icosphere(1), {1, 0, 0})));
-  check_tree(closed(test::translated(stretched(test::icosphere(1), {0, 0, 1e-15}), {1, 1, 1})));
+  check_tree(closed(shapes::scaled(shapes::icosphere(1), 0)));
+  check_tree(closed(stretched(shapes::icosphere(1), {1, 0, 0})));
+  check_tree(closed(shapes::translated(stretched(shapes::icosphere(1), {0, 0, 1e-15}), {1, 1, 1})));
 }
 
 TEST_CASE("the kernel's error covers rotation, translation, rounding and odd matrices") {
@@ -184,23 +184,23 @@ TEST_CASE("the kernel's error covers rotation, translation, rounding and odd mat
   double worst = 0;
   for (int i = 0; i < 400; ++i) {
     const double kSizes[] = {1, 1, 1e-12, 1e12, 1e-60};
-    const Mesh m = test::bumpy_sphere(1, static_cast<std::uint64_t>(i % 5));
+    const Mesh m = shapes::bumpy_sphere(1, static_cast<std::uint64_t>(i % 5));
     const double size = kSizes[i % 5];
-    Scene s{closed(m), closed(test::scaled(test::comb(3), size)), {}, {}, i % 7 != 0};
-    s.pose_a.r = test::random_rotation(random);
-    s.pose_b.r = test::random_rotation(random);
-    const double far = std::pow(10, test::uniform(random, -2, 16));
-    s.pose_b.t = 3 * test::random_direction(random);
+    Scene s{closed(m), closed(shapes::scaled(shapes::comb(3), size)), {}, {}, i % 7 != 0};
+    s.pose_a.r = shapes::random_rotation(random);
+    s.pose_b.r = shapes::random_rotation(random);
+    const double far = std::pow(10, shapes::uniform(random, -2, 16));
+    s.pose_b.t = 3 * shapes::random_direction(random);
     if (i % 2) {
-      const Eigen::Vector3d away = far * test::random_direction(random);
+      const Eigen::Vector3d away = far * shapes::random_direction(random);
       s.pose_a.t += away;
       s.pose_b.t += away;
     }
-    if (i % 3 == 0) s.pose_b.t += far * test::random_direction(random);
+    if (i % 3 == 0) s.pose_b.t += far * shapes::random_direction(random);
     if (!s.rotations) {
       for (Pose* p : {&s.pose_a, &s.pose_b}) {
-        p->r *= std::pow(10, test::uniform(random, -3, 3));
-        p->r(0, 1) += test::uniform(random, -1, 1);
+        p->r *= std::pow(10, shapes::uniform(random, -3, 3));
+        p->r(0, 1) += shapes::uniform(random, -1, 1);
       }
     }
     CAPTURE(i);

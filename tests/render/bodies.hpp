@@ -7,9 +7,11 @@
 #include <Eigen/Geometry>
 
 #include "engine/lrb/lrb_rep.hpp"
-#include "tests/support/shapes.hpp"
+#include "scenarios/shapes/shapes.hpp"
 
 namespace lrb::test {
+
+using namespace shapes;
 
 /// A convex body whose every face is a lid over a dent (a pyramid pressed inward, 2D: a notch), whose faces
 /// are again lids over smaller dents, and so on: `levels` layers of regions, the outermost has the highest

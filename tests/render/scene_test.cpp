@@ -45,7 +45,7 @@ bool has_key(const Scene& scene, const std::string& text) {
 }  // namespace
 
 TEST_CASE("the picture follows the wrapper: all real faces, and the lids of its boundary") {
-  const LrbRep rep = test::dented(test::icosphere(0), 2);
+  const LrbRep rep = test::dented(shapes::icosphere(0), 2);
   Wrapper wrapper(rep);
   const std::vector<SceneBody> body = {{&rep, &wrapper, {}, {}, ""}};
   for (int step = 0; step < 12; ++step) {
@@ -68,7 +68,7 @@ TEST_CASE("the picture follows the wrapper: all real faces, and the lids of its 
 }
 
 TEST_CASE("lids have their edges; those of a region being refined are lines, each once") {
-  const LrbRep rep = test::dented(test::icosphere(0), 1);
+  const LrbRep rep = test::dented(shapes::icosphere(0), 1);
   const Wrapper wrapper(rep);
   const std::vector<SceneBody> body = {{&rep, &wrapper, {}, {}, ""}};
   Scene scene = build_scene(body);
@@ -83,7 +83,7 @@ TEST_CASE("lids have their edges; those of a region being refined are lines, eac
 }
 
 TEST_CASE("poses move bodies, names and sides are told apart") {
-  const LrbRep rep = test::dented(test::icosphere(0), 1);
+  const LrbRep rep = test::dented(shapes::icosphere(0), 1);
   const Pose pose = Pose::rotation({0, 1, 0}, 0.4, {3, 0, 0});
   const std::vector<SceneBody> bodies = {{&rep, nullptr, {}, {}, "bowl"}, {&rep, nullptr, pose, {}, ""}};
   const Scene scene = build_scene(bodies);
@@ -100,7 +100,7 @@ TEST_CASE("poses move bodies, names and sides are told apart") {
 }
 
 TEST_CASE("what the event is about is highlighted") {
-  const LrbRep rep = test::dented(test::icosphere(0), 2);
+  const LrbRep rep = test::dented(shapes::icosphere(0), 2);
   Wrapper wrapper(rep);
   const RegionId r = 3;
   wrapper.refine(r);
@@ -140,7 +140,7 @@ TEST_CASE("what the event is about is highlighted") {
 }
 
 TEST_CASE("layers, regions and values give faces their colours and the frame its scale") {
-  const LrbRep rep = test::dented(test::icosphere(0), 3);
+  const LrbRep rep = test::dented(shapes::icosphere(0), 3);
   Wrapper wrapper(rep);
   wrapper.refine(0);
   std::vector<double> values(rep.face_count(), 0.0);
@@ -175,7 +175,7 @@ TEST_CASE("layers, regions and values give faces their colours and the frame its
 }
 
 TEST_CASE("isolated regions stand before ghosts, or alone") {
-  const LrbRep rep = test::dented(test::icosphere(0), 2);
+  const LrbRep rep = test::dented(shapes::icosphere(0), 2);
   const std::vector<SceneBody> body = {{&rep, nullptr, {}, {}, ""}};
   SceneOptions options;
   options.isolate[0] = {7};
@@ -190,7 +190,7 @@ TEST_CASE("isolated regions stand before ghosts, or alone") {
 }
 
 TEST_CASE("exploded regions keep their shape and move outward") {
-  const LrbRep rep = test::dented(test::icosphere(0), 2);
+  const LrbRep rep = test::dented(shapes::icosphere(0), 2);
   const Wrapper wrapper(rep);
   SceneOptions options;
   options.explode = 1;
@@ -207,7 +207,7 @@ TEST_CASE("exploded regions keep their shape and move outward") {
 }
 
 TEST_CASE("bodies of many regions can be exploded by region") {
-  const LrbRep rep = test::dented(test::icosphere(1), 3);
+  const LrbRep rep = test::dented(shapes::icosphere(1), 3);
   REQUIRE(rep.region_count() > 256);
   SceneOptions options;
   options.explode = 0.5;
@@ -216,7 +216,7 @@ TEST_CASE("bodies of many regions can be exploded by region") {
 }
 
 TEST_CASE("2D: the solid dark, regions light, the wrapper as a line") {
-  const LrbRep rep = test::dented(test::circle(6), 2);
+  const LrbRep rep = test::dented(shapes::circle(6), 2);
   Wrapper wrapper(rep);
   wrapper.refine(1);
   const std::vector<SceneBody> body = {{&rep, &wrapper, {}, {}, ""}};
@@ -273,7 +273,7 @@ TEST_CASE("segments become as few polylines as can be") {
 }
 
 TEST_CASE("scenes that make no sense are refused") {
-  const LrbRep solid = test::dented(test::icosphere(0), 1), flat = test::dented(test::circle(5), 1);
+  const LrbRep solid = test::dented(shapes::icosphere(0), 1), flat = test::dented(shapes::circle(5), 1);
   CHECK_THROWS_AS(build_scene({}), InputError);
   CHECK_THROWS_AS(
       build_scene(std::vector<SceneBody>{{&solid, nullptr, {}, {}, ""}, {&flat, nullptr, {}, {}, ""}}),

@@ -91,7 +91,7 @@ std::size_t count(const std::string& text, const std::string& what) {
 }  // namespace
 
 TEST_CASE("fills of an SVG cover what the rasterizer paints") {
-  const LrbRep rep = test::dented(test::circle(12), 1);
+  const LrbRep rep = test::dented(shapes::circle(12), 1);
   const Wrapper wrapper(rep);
   DrawList list = build_scene(std::vector<SceneBody>{{&rep, &wrapper, {}, {}, ""}}).list;
   list.lines.clear();

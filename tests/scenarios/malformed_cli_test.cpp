@@ -5,12 +5,14 @@
 #include <doctest/doctest.h>
 
 #include "engine/lrb/fnv.hpp"
+#include "scenarios/shapes/shapes.hpp"
 #include "tests/fuzz/seeds.hpp"
 #include "tests/mesh/encode.hpp"
 #include "tests/scenarios/program.hpp"
-#include "tests/support/shapes.hpp"
 
 namespace lrb::test {
+
+using namespace shapes;
 namespace {
 
 using namespace std::string_literals;

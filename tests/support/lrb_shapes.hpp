@@ -7,7 +7,7 @@
 
 #include "engine/lrb/lrb_rep.hpp"
 
-namespace lrb::shapes {
+namespace lrb::toy {
 
 inline void add_face(LrbData& d, std::initializer_list<VertexId> corners, CellId inner, CellId outer) {
   d.face_vertices.insert(d.face_vertices.end(), corners);
@@ -70,4 +70,4 @@ inline LrbData dented_box() {
   return d;
 }
 
-}  // namespace lrb::shapes
+}  // namespace lrb::toy

@@ -4,9 +4,11 @@
 #include <cstdint>
 #include <string>
 
-#include "tests/torture/families.hpp"
+#include "scenarios/families/families.hpp"
 
 namespace lrb::torture {
+
+using namespace families;
 
 /// Sums over the cases of a class. Plain, so that a child process can send it through a pipe.
 struct Tally {

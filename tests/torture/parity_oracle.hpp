@@ -11,7 +11,7 @@
 
 #include "engine/lrb/lrb_rep.hpp"
 #include "engine/query/collide.hpp"
-#include "tests/support/random_pose.hpp"
+#include "scenarios/shapes/random_pose.hpp"
 #include "tests/support/rational_oracle.hpp"
 
 namespace lrb::torture {
@@ -61,12 +61,12 @@ class ParityOracle {
     }
   }
 
-  bool holds(const WorldPoint& p, test::Random& random) const {
+  bool holds(const WorldPoint& p, shapes::Random& random) const {
     for (int attempt = 0;; ++attempt) {
       if (attempt == 100) throw std::logic_error("no segment to the far avoids all edges");
       WorldPoint far;
       for (int k = 0; k < 3; ++k)
-        far[k] = std::max(reach_, std::fabs(p[k])) * test::uniform(random, -1, 1) *
+        far[k] = std::max(reach_, std::fabs(p[k])) * shapes::uniform(random, -1, 1) *
                  (rep_.dim() == 2 && k == 2 ? 0 : 1);
       const int k = static_cast<int>(random() % static_cast<unsigned>(rep_.dim()));
       far[k] = (random() % 2 ? 4 : -4) * std::max({reach_, std::fabs(p[k]), 1e-300});
@@ -76,7 +76,7 @@ class ParityOracle {
     }
   }
 
-  std::size_t held_pieces(const ParityOracle& inner, test::Random& random) const {
+  std::size_t held_pieces(const ParityOracle& inner, shapes::Random& random) const {
     std::size_t n = 0;
     for (const VertexId v : inner.rep_.component_vertices()) n += holds(inner.x_[v], random);
     return n;
@@ -121,7 +121,7 @@ class ParityOracle {
 
 /// For bodies without a pair that meets.
 inline Relation relation_by_parity(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
-                                   test::Random& random) {
+                                   shapes::Random& random) {
   if (!a.closed() || !b.closed()) return Relation::undefined;
   const ParityOracle oa(a, pose_a), ob(b, pose_b);
   const std::size_t a_in_b = ob.held_pieces(oa, random), b_in_a = oa.held_pieces(ob, random);

@@ -10,29 +10,29 @@
 #include "engine/lrb/boundary_sum.hpp"
 #include "engine/lrb/wrapper.hpp"
 #include "engine/query/collide_impl.hpp"
-#include "tests/support/hand_made.hpp"
-#include "tests/support/shapes.hpp"
-#include "tests/torture/families.hpp"
+#include "scenarios/families/families.hpp"
+#include "scenarios/shapes/hand_made.hpp"
+#include "scenarios/shapes/shapes.hpp"
 
 using namespace lrb;
-using torture::pick;
-using torture::Random;
+using namespace lrb::families;
 
 namespace {
 
 /// Coordinates on a grid of 2^-20: whole translations of up to 2^20 move them without rounding.
-torture::Body on_grid(Mesh m) {
+Body on_grid(Mesh m) {
   for (auto& v : m.vertices) v = (v * 0x1p20).array().round() * 0x1p-20;
-  return torture::body(m);
+  return body(m);
 }
 
 std::vector<LrbRep> built() {
   std::vector<LrbRep> list;
-  list.push_back(test::dented_box());
-  list.push_back(test::stairs_2d());
-  for (const Mesh& m : {test::bumpy_sphere(2, 4, 0.5), test::torus(12, 8), test::comb(4), test::bowl(10, 4)})
+  list.push_back(shapes::dented_box());
+  list.push_back(shapes::stairs_2d());
+  for (const Mesh& m :
+       {shapes::bumpy_sphere(2, 4, 0.5), shapes::torus(12, 8), shapes::comb(4), shapes::bowl(10, 4)})
     list.push_back(build_lrb(m));
-  list.push_back(build_lrb(test::gear(12)));
+  list.push_back(build_lrb(shapes::gear(12)));
   return list;
 }
 
@@ -81,12 +81,12 @@ std::vector<RegionId> shuffled_regions(Random& random, const LrbRep& rep) {
 
 TEST_CASE("moving both bodies by the same exact translation changes nothing") {
   Random random(1);
-  const torture::Body bodies[] = {on_grid(test::bumpy_sphere(2, 3)), on_grid(test::torus(12, 8)),
-                                  on_grid(test::comb(4)), on_grid(test::box_with_void())};
+  const Body bodies[] = {on_grid(shapes::bumpy_sphere(2, 3)), on_grid(shapes::torus(12, 8)),
+                         on_grid(shapes::comb(4)), on_grid(shapes::box_with_void())};
   int in_contact = 0;
   for (int i = 0; i < 400; ++i) {
     const LrbRep &a = *bodies[random() % 4], &b = *bodies[random() % 4];
-    Pose pa, pb{torture::grid_turn(random), Eigen::Vector3d(pick(random, -4, 4), pick(random, -4, 4), 0) / 2};
+    Pose pa, pb{grid_turn(random), Eigen::Vector3d(pick(random, -4, 4), pick(random, -4, 4), 0) / 2};
     CollideRequest request;
     request.contacts = request.interiors_overlap = true;
     const CollideResult before = collide(a, pa, b, pb, request);
@@ -110,7 +110,7 @@ TEST_CASE("a query leaves nothing behind: the same context, asked again, gives t
   QueryContext context;
   NullProbe probe;
   for (int i = 0; i < 200; ++i) {
-    const torture::Case c = torture::make_dented(random, 0.5);
+    const Case c = make_dented(random, 0.5);
     const CollideResult fresh = collide(*c.a, c.pose_a, *c.b, c.pose_b);
     for (int repeat = 0; repeat < 2; ++repeat) {
       const CollideResult again = collide(*c.a, c.pose_a, *c.b, c.pose_b, {}, context, probe);

@@ -5,9 +5,9 @@
 #include <doctest/doctest.h>
 
 #include "engine/query/collide_impl.hpp"
-#include "tests/support/hand_made.hpp"
+#include "scenarios/shapes/hand_made.hpp"
+#include "scenarios/shapes/random_pose.hpp"
 #include "tests/support/lrb_shapes.hpp"
-#include "tests/support/random_pose.hpp"
 #include "trace/counters.hpp"
 #include "trace/cursor.hpp"
 #include "trace/divergence.hpp"
@@ -25,8 +25,8 @@ struct Bodies {
 };
 
 std::vector<Bodies> all_bodies() {
-  static const LrbRep plate(shapes::notched_plate()), box(shapes::dented_box());
-  static const LrbRep dent = test::dented_box(), stairs = test::stairs_2d();
+  static const LrbRep plate(toy::notched_plate()), box(toy::dented_box());
+  static const LrbRep dent = shapes::dented_box(), stairs = shapes::stairs_2d();
   return {{&plate, &plate}, {&plate, &stairs}, {&box, &box}, {&dent, &box}};
 }
 
@@ -50,10 +50,10 @@ Recorded record(const Bodies& bodies, const CollideRequest& request, int steps) 
   settings.request = request;
   Recorder recorder(*bodies.a, *bodies.b, settings);
   QueryContext context;
-  test::Random random(11);
+  shapes::Random random(11);
   Recorded out;
   for (int i = 0; i < steps; ++i) {
-    const Pose pose = test::random_pose(random, *bodies.a, *bodies.b, test::uniform(random, 0, 1.1));
+    const Pose pose = shapes::random_pose(random, *bodies.a, *bodies.b, shapes::uniform(random, 0, 1.1));
     recorder.begin_step(static_cast<std::uint32_t>(i), {}, pose);
     out.results.push_back(collide(*bodies.a, {}, *bodies.b, pose, request, context, recorder));
     recorder.end_step(out.results.back());

@@ -52,7 +52,7 @@ void check_run(const LrbRep& a, const LrbRep& b, const std::vector<Eigen::Vector
 }  // namespace
 
 TEST_CASE("a replay equals the wrappers that were there, after every event, in any order") {
-  const LrbRep plate(shapes::notched_plate()), box(shapes::dented_box());
+  const LrbRep plate(toy::notched_plate()), box(toy::dented_box());
   for (const WrapperMode mode : {WrapperMode::regularised, WrapperMode::unregularised}) {
     CAPTURE(static_cast<int>(mode));
     check_run(plate, plate, runs::kPlatePoses, mode);
@@ -61,7 +61,7 @@ TEST_CASE("a replay equals the wrappers that were there, after every event, in a
 }
 
 TEST_CASE("the cursor knows its step, pose, pair and regions") {
-  const LrbRep box(shapes::dented_box());
+  const LrbRep box(toy::dented_box());
   const runs::Run run = runs::record(box, box, runs::kBoxPoses);
   Cursor cursor(run.trace, box, box);
   CHECK(cursor.step() == nullptr);
@@ -109,7 +109,7 @@ TEST_CASE("the cursor knows its step, pose, pair and regions") {
 }
 
 TEST_CASE("one body alone: refining and coarsening") {
-  const LrbRep plate(shapes::notched_plate());
+  const LrbRep plate(toy::notched_plate());
   Recorder recorder(plate, RecorderSettings{});
   recorder.begin_step(0, {});
   for (const RegionId r : {2u, 1u, 0u}) recorder.refine(Side::a, r, 3);
@@ -127,8 +127,8 @@ TEST_CASE("one body alone: refining and coarsening") {
 }
 
 TEST_CASE("a replay refuses another body and another number of bodies") {
-  const LrbRep plate(shapes::notched_plate());
-  LrbData moved = shapes::notched_plate();
+  const LrbRep plate(toy::notched_plate());
+  LrbData moved = toy::notched_plate();
   moved.vertices[5].y() += 0.25;
   const LrbRep other(std::move(moved));
   const Trace t = runs::record(plate, plate, runs::kPlatePoses).trace;
@@ -139,7 +139,7 @@ TEST_CASE("a replay refuses another body and another number of bodies") {
 }
 
 TEST_CASE("a replay notices refinements that are not those recorded") {
-  const LrbRep plate(shapes::notched_plate());
+  const LrbRep plate(toy::notched_plate());
   const runs::Run run = runs::record(plate, plate, runs::kPlatePoses);
   Trace t = run.trace;
   const auto refinement = std::find_if(t.events.begin(), t.events.end(),
@@ -156,7 +156,7 @@ TEST_CASE("a replay notices refinements that are not those recorded") {
 }
 
 TEST_CASE("a truncated trace replays as far as it goes") {
-  const LrbRep box(shapes::dented_box());
+  const LrbRep box(toy::dented_box());
   RecorderSettings settings;
   settings.event_cap = 40;
   const runs::Run run = runs::record(box, box, runs::kBoxPoses, settings);

@@ -12,7 +12,7 @@ using namespace lrb::trace;
 namespace {
 
 Trace box_run(const std::vector<Eigen::Vector3d>& poses = runs::kBoxPoses, Clock clock = Clock::event) {
-  static const LrbRep box(shapes::dented_box());
+  static const LrbRep box(toy::dented_box());
   RecorderSettings settings;
   settings.clock = clock;
   return runs::record(box, box, poses, settings).trace;
@@ -75,7 +75,7 @@ TEST_CASE("two events swapped, one lost, one too many") {
   CHECK(d->event == contact - 1);
   CHECK(d->what == "kind");
 
-  const LrbRep plate(shapes::notched_plate());
+  const LrbRep plate(toy::notched_plate());
   const auto record = [&](int tests) {
     Recorder recorder(plate, plate, {});
     recorder.begin_step(0, {}, {});

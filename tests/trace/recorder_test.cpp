@@ -13,7 +13,7 @@ using exact::Meet;
 namespace {
 
 const LrbRep& plate() {
-  static const LrbRep rep(shapes::notched_plate());
+  static const LrbRep rep(toy::notched_plate());
   return rep;
 }
 
@@ -123,7 +123,7 @@ TEST_CASE("refinements carry the size of the wrapper they left") {
 }
 
 TEST_CASE("beyond the cap, events are counted and not stored") {
-  const LrbRep box(shapes::dented_box());
+  const LrbRep box(toy::dented_box());
   const runs::Run whole = runs::record(box, box, runs::kBoxPoses);
   REQUIRE_FALSE(whole.trace.truncated());
   for (const std::uint32_t cap : {0u, 1u, 7u, static_cast<std::uint32_t>(whole.trace.steps[2].first_event),

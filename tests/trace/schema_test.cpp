@@ -45,7 +45,7 @@ std::string complaint(const Json& document) {
 }
 
 Json box_run(Clock clock) {
-  static const LrbRep box(shapes::dented_box());
+  static const LrbRep box(toy::dented_box());
   RecorderSettings settings;
   settings.clock = clock;
   return Json::parse(trace_to_json(runs::record(box, box, runs::kBoxPoses, settings).trace));
@@ -56,7 +56,7 @@ Json box_run(Clock clock) {
 TEST_CASE("traces fulfil the schema") {
   CHECK(complaint(box_run(Clock::event)) == "");
   CHECK(complaint(box_run(Clock::wall)) == "");
-  const LrbRep plate(shapes::notched_plate());
+  const LrbRep plate(toy::notched_plate());
   RecorderSettings settings;
   settings.event_cap = 30;
   CHECK(complaint(

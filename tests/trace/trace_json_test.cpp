@@ -27,11 +27,11 @@ namespace fs = std::filesystem;
 namespace {
 
 const LrbRep& plate() {
-  static const LrbRep rep(shapes::notched_plate());
+  static const LrbRep rep(toy::notched_plate());
   return rep;
 }
 const LrbRep& box() {
-  static const LrbRep rep(shapes::dented_box());
+  static const LrbRep rep(toy::dented_box());
   return rep;
 }
 

@@ -1,18 +1,19 @@
 #pragma once
 /// Families of cases that break collision engines, each with a dial from benign (0) to degenerate (1).
 
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <span>
 #include <string>
 
 #include "engine/query/collide.hpp"
-#include "tests/support/random_pose.hpp"
+#include "scenarios/shapes/random_pose.hpp"
 
-namespace lrb::torture {
+namespace lrb::families {
 
-using test::Random;
-using test::uniform;
+using shapes::Random;
+using shapes::uniform;
 using Body = std::shared_ptr<const LrbRep>;
 
 /// Two bodies at two poses, and what is known of the answer from the way they were made.
@@ -29,8 +30,20 @@ struct Family {
   Case (*make)(Random& random, double dial);
 };
 
-std::span<const Family> families();
+std::span<const Family> all_families();
 const Family* find_family(const std::string& name);
+
+/// Settings of a family's dial, evenly from benign (0) to degenerate (kDialSettings - 1).
+inline constexpr int kDialSettings = 11;
+double dial_value(int setting);  ///< 0 .. 1
+
+/// The numbers that a case is drawn from. They do not depend on the dial: a case is the same at all its
+/// settings, but for what the dial turns.
+Random case_random(const Family& family, std::uint64_t seed, std::uint64_t index);
+
+/// Case `index` of the family at a dial setting, the same on every machine. Throws InputError if there is no
+/// such setting.
+Case make_case(const Family& family, std::uint64_t seed, int dial, std::uint64_t index);
 
 // Each in its file.
 Case make_touch(Random&, double);        // contact_families.cpp: approach to within an ulp of contact
@@ -65,4 +78,4 @@ int pick(Random& random, int low, int high);  ///< low to high, both included
 /// An exact rotation (or, if asked, perhaps a reflection) of the grid.
 Eigen::Matrix3d grid_turn(Random& random, bool reflections = false);
 
-}  // namespace lrb::torture
+}  // namespace lrb::families

@@ -3,7 +3,7 @@
 
 #include "engine/lrb/lrb_rep.hpp"
 
-namespace lrb::test {
+namespace lrb::shapes {
 
 /// A box [0, 4] x [0, 4] x [0, 2] whose top has a dent [1, 3] x [1, 3], 1 deep, under a lid: one region of
 /// volume 4. Triangles; real volume 28, outermost wrapper 32.
@@ -13,4 +13,4 @@ LrbRep dented_box();
 /// area 10 real, 10.5 with region 0, 16 with both.
 LrbRep stairs_2d();
 
-}  // namespace lrb::test
+}  // namespace lrb::shapes

@@ -7,7 +7,7 @@
 #include "engine/lrb/lrb_rep.hpp"
 #include "engine/lrb/pose.hpp"
 
-namespace lrb::test {
+namespace lrb::shapes {
 
 using Random = std::mt19937_64;
 
@@ -54,4 +54,4 @@ inline Pose random_pose(Random& random, const LrbRep& a, const LrbRep& b, double
   return p;
 }
 
-}  // namespace lrb::test
+}  // namespace lrb::shapes

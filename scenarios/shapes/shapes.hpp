@@ -10,7 +10,7 @@
 
 #include "engine/mesh/mesh.hpp"
 
-namespace lrb::test {
+namespace lrb::shapes {
 
 using Point2 = Eigen::Vector2d;
 using Point3 = Eigen::Vector3d;
@@ -56,4 +56,4 @@ Mesh turned_inside_out(Mesh mesh);
 Mesh translated(Mesh mesh, const Point3& by);
 Mesh scaled(Mesh mesh, double by);  ///< by > 0
 
-}  // namespace lrb::test
+}  // namespace lrb::shapes

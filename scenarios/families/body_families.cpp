@@ -5,11 +5,11 @@
 #include <numbers>
 
 #include "engine/build/build.hpp"
-#include "tests/support/hand_made.hpp"
-#include "tests/support/shapes.hpp"
-#include "tests/torture/families.hpp"
+#include "scenarios/families/families.hpp"
+#include "scenarios/shapes/hand_made.hpp"
+#include "scenarios/shapes/shapes.hpp"
 
-namespace lrb::torture {
+namespace lrb::families {
 namespace {
 
 using Eigen::Vector3d;
@@ -19,7 +19,7 @@ bool middle_of_three(int i) {
 }
 
 Mesh menger() {
-  return test::voxels(3, 3, 3, [](int i, int j, int k) {
+  return shapes::voxels(3, 3, 3, [](int i, int j, int k) {
     return middle_of_three(i) + middle_of_three(j) + middle_of_three(k) < 2;
   });
 }
@@ -27,14 +27,14 @@ Mesh menger() {
 /// A cube of 3^3 cells with a smaller cube on the middle of every face.
 Mesh koch_cube() {
   const auto in = [](int i, int low, int high) { return i >= low && i < high; };
-  return test::voxels(5, 5, 5, [=](int i, int j, int k) {
+  return shapes::voxels(5, 5, 5, [=](int i, int j, int k) {
     const int core = in(i, 1, 4) + in(j, 1, 4) + in(k, 1, 4), middle = (i == 2) + (j == 2) + (k == 2);
     return core == 3 || (core == 2 && middle >= 2);
   });
 }
 
 Mesh lattice() {
-  return test::voxels(5, 5, 3, [](int i, int j, int k) { return i % 2 + j % 2 + k % 2 < 2; });
+  return shapes::voxels(5, 5, 3, [](int i, int j, int k) { return i % 2 + j % 2 + k % 2 < 2; });
 }
 
 /// The Koch snowflake with `levels` subdivisions, counter-clockwise.
@@ -50,9 +50,9 @@ Mesh koch_snowflake(int levels) {
     }
     p.swap(next);
   }
-  std::vector<test::Point2> corners;
+  std::vector<shapes::Point2> corners;
   for (const Vector3d& x : p) corners.emplace_back(x.x(), x.y());
-  return test::polygon(corners);
+  return shapes::polygon(corners);
 }
 
 /// A random set of cells of an nx x ny x nz grid.
@@ -70,7 +70,7 @@ struct Cells {
     return i >= 0 && j >= 0 && k >= 0 && i < n[0] && j < n[1] && k < n[2] && solid[(i * n[1] + j) * n[2] + k];
   }
   Mesh mesh(bool quads) const {
-    return test::voxels(
+    return shapes::voxels(
         n[0], n[1], n[2], [&](int i, int j, int k) { return holds(i, j, k); }, quads);
   }
   /// The boundary of the layer k = 0 in the plane.
@@ -156,16 +156,16 @@ Case make_lattice(Random& random, double dial) {
               step * Vector3d(pick(random, -4, 4), pick(random, -4, 4), pick(random, -4, 4))};
   c.pose_b.t += c.pose_b.r.cwiseMin(0).rowwise().sum() * -3;  // back over A
   if (pick(random, 0, 3) == 0) move_both(c, any_pose(random));
-  if (pick(random, 0, 3) == 0) c.pose_b.r = test::random_rotation(random);
+  if (pick(random, 0, 3) == 0) c.pose_b.r = shapes::random_rotation(random);
   return c;
 }
 
 Case make_dented(Random& random, double dial) {
   static const std::vector<Body> kBodies = {
-      std::make_shared<LrbRep>(test::dented_box()),
-      std::make_shared<LrbRep>(build_lrb(test::bumpy_sphere(1, 3, 0.4))),
-      std::make_shared<LrbRep>(build_lrb(test::torus(8, 6))),
-      std::make_shared<LrbRep>(build_lrb(test::comb(3))),
+      std::make_shared<LrbRep>(shapes::dented_box()),
+      std::make_shared<LrbRep>(build_lrb(shapes::bumpy_sphere(1, 3, 0.4))),
+      std::make_shared<LrbRep>(build_lrb(shapes::torus(8, 6))),
+      std::make_shared<LrbRep>(build_lrb(shapes::comb(3))),
       std::make_shared<LrbRep>(build_lrb(koch_cube())),
   };
   Case c{kBodies[random() % kBodies.size()], kBodies[random() % kBodies.size()], {}, {}, {}, {}};
@@ -176,13 +176,14 @@ Case make_dented(Random& random, double dial) {
 }
 
 Case make_containment(Random& random, double dial) {
-  static const Body kBall = body(test::icosphere(1, 4)), kVoid = body(test::scaled(test::box_with_void(), 4));
-  static const Body kShells = body(test::several({test::box({-6, -6, -6}, {6, 6, 6}),
-                                                  test::turned_inside_out(test::box({-4, -4, -4}, {4, 4, 4})),
-                                                  test::box({-2, -2, -2}, {2, 2, 2})}));
+  static const Body kBall = body(shapes::icosphere(1, 4)),
+                    kVoid = body(shapes::scaled(shapes::box_with_void(), 4));
+  static const Body kShells = body(shapes::several(
+      {shapes::box({-6, -6, -6}, {6, 6, 6}), shapes::turned_inside_out(shapes::box({-4, -4, -4}, {4, 4, 4})),
+       shapes::box({-2, -2, -2}, {2, 2, 2})}));
   const auto small = [&](double reach) {
-    return body(random() % 2 ? test::icosphere(0, reach)
-                             : test::box({-reach, -reach, -reach}, {reach, reach, reach}));
+    return body(random() % 2 ? shapes::icosphere(0, reach)
+                             : shapes::box({-reach, -reach, -reach}, {reach, reach, reach}));
   };
   const double near = 1 - std::pow(10, -1 - 13 * dial);  // how much of the room is used
   Case c;
@@ -203,17 +204,18 @@ Case make_containment(Random& random, double dial) {
       c.interiors_overlap = false;
     }
   } else if (kind == 4) {  // one of three pieces is swallowed
-    const Mesh piece = test::icosphere(0, 0.5);
+    const Mesh piece = shapes::icosphere(0, 0.5);
     c = {kBall,
-         body(test::several({test::translated(piece, {9, 0, 0}), piece, test::translated(piece, {0, 9, 0})})),
+         body(shapes::several(
+             {shapes::translated(piece, {9, 0, 0}), piece, shapes::translated(piece, {0, 9, 0})})),
          {},
          any_pose(random, 1),
          Relation::b_inside_a,
          true};
   } else {  // each holds a piece of the other: A is named first
-    const Mesh big = test::icosphere(1, 3), tiny = test::icosphere(0, 0.5);
-    c = {body(test::several({big, test::translated(tiny, {20, 0, 0})})),
-         body(test::several({test::translated(big, {20, 0, 0}), tiny})),
+    const Mesh big = shapes::icosphere(1, 3), tiny = shapes::icosphere(0, 0.5);
+    c = {body(shapes::several({big, shapes::translated(tiny, {20, 0, 0})})),
+         body(shapes::several({shapes::translated(big, {20, 0, 0}), tiny})),
          {},
          {},
          Relation::a_inside_b,
@@ -239,13 +241,13 @@ Case make_voxels(Random& random, double dial) {
 }
 
 Case make_plane(Random& random, double dial) {
-  static const std::vector<Body> kBodies = {body(test::star(5)),
-                                            body(test::gear(6)),
-                                            body(test::comb_2d(3)),
-                                            body(test::ring_2d(12)),
+  static const std::vector<Body> kBodies = {body(shapes::star(5)),
+                                            body(shapes::gear(6)),
+                                            body(shapes::comb_2d(3)),
+                                            body(shapes::ring_2d(12)),
                                             body(koch_snowflake(2)),
-                                            body(test::l_shape_2d()),
-                                            std::make_shared<LrbRep>(test::stairs_2d())};
+                                            body(shapes::l_shape_2d()),
+                                            std::make_shared<LrbRep>(shapes::stairs_2d())};
   Case c{kBodies[random() % kBodies.size()], kBodies[random() % kBodies.size()], {}, {}, {}, {}};
   if (random() % 2) {
     const int most = 2 + static_cast<int>(4 * dial);
@@ -257,7 +259,7 @@ Case make_plane(Random& random, double dial) {
     return c;
   }
   if (random() % 2) {
-    c.pose_b.r = test::random_rotation(random, 2);
+    c.pose_b.r = shapes::random_rotation(random, 2);
     c.pose_b.t = {uniform(random, -2, 2), uniform(random, -2, 2), 0};
   } else {
     const double angle = std::numbers::pi / 3 * pick(random, 0, 5);
@@ -285,12 +287,13 @@ Case make_dirty(Random& random, double dial) {
     if (out.face_count() == 0) out.add_face(m.face(0));
     return out;
   };
-  const Mesh ball = test::icosphere(1);
-  const Mesh crossing = test::several({test::icosphere(0), test::icosphere(0, 1, {0.7, 0.1, 0.2})});
-  const Mesh meshes[] = {spoil(ball), spoil(test::box()), crossing, test::open_cylinder(6), spoil(crossing)};
+  const Mesh ball = shapes::icosphere(1);
+  const Mesh crossing = shapes::several({shapes::icosphere(0), shapes::icosphere(0, 1, {0.7, 0.1, 0.2})});
+  const Mesh meshes[] = {spoil(ball), spoil(shapes::box()), crossing, shapes::open_cylinder(6),
+                         spoil(crossing)};
   Case c{body(meshes[random() % 5], true), body(meshes[random() % 5], true), {}, any_pose(random, 2), {}, {}};
   if (random() % 2) c.pose_b = {grid_turn(random), Vector3d(pick(random, -2, 2), pick(random, -1, 1), 0)};
   return c;
 }
 
-}  // namespace lrb::torture
+}  // namespace lrb::families

@@ -3,10 +3,10 @@
 
 #include <Eigen/Geometry>
 
-#include "tests/support/shapes.hpp"
-#include "tests/torture/families.hpp"
+#include "scenarios/families/families.hpp"
+#include "scenarios/shapes/shapes.hpp"
 
-namespace lrb::torture {
+namespace lrb::families {
 namespace {
 
 using Eigen::Vector3d;
@@ -26,7 +26,7 @@ Body stretched(const LrbRep& rep, const Vector3d& by) {
 }
 
 Body moved(const LrbRep& rep, const Vector3d& by) {
-  return body(test::translated(mesh_of(rep), by));
+  return body(shapes::translated(mesh_of(rep), by));
 }
 
 Vector3d random_sign_vector(Random& random, double size) {
@@ -46,7 +46,7 @@ Case make_sliver(Random& random, double dial) {
   Case c{stretched(*any_body(random), shape()), stretched(*any_body(random), shape()), {}, {}, {}, {}};
   const int kind = pick(random, 0, 2);
   if (kind == 0) c.pose_b = any_pose(random, 0.5);
-  if (kind == 1) c.pose_b.t = thin * 3 * uniform(random) * test::random_direction(random);
+  if (kind == 1) c.pose_b.t = thin * 3 * uniform(random) * shapes::random_direction(random);
   if (kind == 2) c.pose_b = {grid_turn(random), random_sign_vector(random, 0.5)};
   if (pick(random, 0, 2) == 0) move_both(c, any_pose(random));
   return c;
@@ -62,13 +62,13 @@ Case make_far(Random& random, double dial) {
   c.pose_b =
       random() % 2 ? any_pose(random, 2 * size) : Pose{grid_turn(random), random_sign_vector(random, size)};
   const Vector3d away =
-      random() % 2 ? random_sign_vector(random, offset) : Vector3d(offset * test::random_direction(random));
+      random() % 2 ? random_sign_vector(random, offset) : Vector3d(offset * shapes::random_direction(random));
   const int kind = pick(random, 0, 3);
   if (kind == 0) {
     c.pose_a.t += away;
     c.pose_b.t += away;
   } else if (kind == 1) {
-    move_both(c, {test::random_rotation(random), away});
+    move_both(c, {shapes::random_rotation(random), away});
   } else if (kind == 2) {  // far from their own origins, near the world's
     c.a = moved(*c.a, away);
     c.b = moved(*c.b, away);
@@ -103,7 +103,7 @@ Case make_extreme(Random& random, double dial) {
   c.a = stretched(*stretched(*c.a, Vector3d::Constant(0.125)), Vector3d::Constant(by));
   c.b = stretched(*stretched(*c.b, Vector3d::Constant(0.125)), Vector3d::Constant(by_b));
   c.pose_b.t *= random() % 4 ? 0.25 * by : by;  // the second overflows sometimes: a refusal
-  if (pick(random, 0, 2) == 0) c.pose_a.r = test::random_rotation(random);
+  if (pick(random, 0, 2) == 0) c.pose_a.r = shapes::random_rotation(random);
   return c;
 }
 
@@ -115,8 +115,8 @@ Case make_ratio(Random& random, double dial) {
   c.a->simplex(static_cast<SimplexId>(random() % c.a->real_simplex_count()), v);
   const Vector3d p = c.a->vertices()[v[0]], q = c.a->vertices()[v[1]], r = c.a->vertices()[v[2]];
   const double s = random() % 2 ? uniform(random) : 0, t = random() % 2 ? uniform(random, 0, 1 - s) : 0;
-  c.pose_b.r = random() % 2 ? test::random_rotation(random) : grid_turn(random);
-  c.pose_b.t = p + s * (q - p) + t * (r - p) + by * uniform(random, 0, 2) * test::random_direction(random);
+  c.pose_b.r = random() % 2 ? shapes::random_rotation(random) : grid_turn(random);
+  c.pose_b.t = p + s * (q - p) + t * (r - p) + by * uniform(random, 0, 2) * shapes::random_direction(random);
   if (pick(random, 0, 2) == 0) move_both(c, any_pose(random));
   if (random() % 2) {
     std::swap(c.a, c.b);
@@ -129,7 +129,7 @@ Case make_matrix(Random& random, double dial) {
   Case c{any_body(random), any_body(random), {}, {}, {}, {}};
   const double strength = std::pow(10, 6 * dial - 3);
   const auto matrix = [&]() -> Eigen::Matrix3d {
-    const Eigen::Matrix3d r = test::random_rotation(random);
+    const Eigen::Matrix3d r = shapes::random_rotation(random);
     const int kind = pick(random, 0, 5);
     if (kind == 0) return r * (1 + strength);
     if (kind == 1) return r * Vector3d(1, 1 + strength, 1 / (1 + strength)).asDiagonal() * r.transpose();
@@ -143,8 +143,8 @@ Case make_matrix(Random& random, double dial) {
   // Aims a vertex of one at a vertex of the other, more or less.
   const Vector3d x = c.pose_a.r * c.a->vertices()[random() % c.a->vertices().size()];
   const Vector3d y = c.pose_b.r * c.b->vertices()[random() % c.b->vertices().size()];
-  c.pose_b.t = x - y + 0.3 * uniform(random) * x.norm() * test::random_direction(random);
+  c.pose_b.t = x - y + 0.3 * uniform(random) * x.norm() * shapes::random_direction(random);
   return c;
 }
 
-}  // namespace lrb::torture
+}  // namespace lrb::families

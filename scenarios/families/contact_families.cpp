@@ -4,10 +4,10 @@
 
 #include <Eigen/Geometry>
 
-#include "tests/support/shapes.hpp"
-#include "tests/torture/families.hpp"
+#include "scenarios/families/families.hpp"
+#include "scenarios/shapes/shapes.hpp"
 
-namespace lrb::torture {
+namespace lrb::families {
 namespace {
 
 using Eigen::Vector3d;
@@ -26,10 +26,10 @@ std::array<Vector3d, 3> any_triangle(Random& random, const LrbRep& rep) {
 }
 
 Mesh tetrahedron(const std::array<Vector3d, 4>& p) {
-  Mesh m = test::tetrahedron();
+  Mesh m = shapes::tetrahedron();
   m.vertices.assign(p.begin(), p.end());
   const bool inside_out = (p[1] - p[0]).cross(p[2] - p[0]).dot(p[3] - p[0]) < 0;
-  return inside_out ? test::turned_inside_out(m) : m;
+  return inside_out ? shapes::turned_inside_out(m) : m;
 }
 
 void nudge_coordinates(Random& random, Vector3d& x, int ulps) {
@@ -98,7 +98,7 @@ Mesh nut(int n, int layers, double twist) {
 }
 
 Mesh cone(int n, double height) {
-  return test::revolve({{0, 0}, {1, height}, {0, height}}, n);
+  return shapes::revolve({{0, 0}, {1, height}, {0, height}}, n);
 }
 
 }  // namespace
@@ -106,7 +106,7 @@ Mesh cone(int n, double height) {
 Case make_touch(Random& random, double dial) {
   Case c{any_body(random), any_body(random), {}, any_pose(random), {}, {}};
   if (pick(random, 0, 3) == 0) c.pose_a = any_pose(random);
-  const Vector3d away = test::random_direction(random), start = c.pose_b.t;
+  const Vector3d away = shapes::random_direction(random), start = c.pose_b.t;
   double near = 0, far = 12;
   if (!in_contact(c)) near = -12;  // through and out on the other side
   const int steps = static_cast<int>(6 + 54 * dial);
@@ -139,8 +139,8 @@ Case make_shared(Random& random, double dial) {
 }
 
 Case make_coplanar(Random& random, double dial) {
-  static const std::vector<Body> kFlat = {body(test::box()), body(test::l_shape()), body(test::comb(3)),
-                                          body(test::quad_box()), body(test::tetrahedron(2))};
+  static const std::vector<Body> kFlat = {body(shapes::box()), body(shapes::l_shape()), body(shapes::comb(3)),
+                                          body(shapes::quad_box()), body(shapes::tetrahedron(2))};
   Case c{kFlat[random() % kFlat.size()], kFlat[random() % 4], {}, {}, {}, {}};
   const int turn = pick(random, 0, 2);
   const double angle = turn == 0   ? std::pow(10, -17 * dial)
@@ -179,7 +179,7 @@ Case make_identical(Random& random, double dial) {
     const int k = pick(random, 0, 2);
     c.pose_b.t[k] = nudged(c.pose_b.t[k], pick(random, -2, 2));
   } else if (pick(random, 0, 2) == 0) {
-    c.pose_b.t += std::pow(10, -17 * dial) * test::random_direction(random);
+    c.pose_b.t += std::pow(10, -17 * dial) * shapes::random_direction(random);
   }
   return c;
 }
@@ -202,9 +202,10 @@ Case make_hub(Random& random, double dial) {
 }
 
 Case make_interlock(Random& random, double dial) {
-  static const Body kComb = body(test::comb(4, 3)), kScrew = body(screw(5, 6, 2)), kNut = body(nut(5, 6, 2));
+  static const Body kComb = body(shapes::comb(4, 3)), kScrew = body(screw(5, 6, 2)),
+                    kNut = body(nut(5, 6, 2));
   static const Body kLink =
-      body(test::voxels(5, 3, 1, [](int i, int j, int) { return j != 1 || i % 4 == 0; }));
+      body(shapes::voxels(5, 3, 1, [](int i, int j, int) { return j != 1 || i % 4 == 0; }));
   Case c;
   const int kind = pick(random, 0, 2);
   const double slip = dial > 0.5 ? 0 : std::pow(10, -16 * dial - 1) * uniform(random, -1, 1);
@@ -232,14 +233,14 @@ Case make_quadratic(Random& random, double dial) {
   const int n = 2 + static_cast<int>(4 * dial);
   std::vector<Mesh> across, along;
   for (int i = 0; i < n; ++i) {
-    across.push_back(test::box({i + 0.25, 0, 0}, {i + 0.5, static_cast<double>(n), 1}));
-    along.push_back(test::box({0, i + 0.25, 0}, {static_cast<double>(n), i + 0.5, 1}));
+    across.push_back(shapes::box({i + 0.25, 0, 0}, {i + 0.5, static_cast<double>(n), 1}));
+    along.push_back(shapes::box({0, i + 0.25, 0}, {static_cast<double>(n), i + 0.5, 1}));
   }
-  Case c{body(test::several(across)), body(test::several(along)), {}, {}, {}, {}};
+  Case c{body(shapes::several(across)), body(shapes::several(along)), {}, {}, {}, {}};
   c.pose_b.t = {0, 0, random() % 2 ? 0 : uniform(random, -1, 1)};
   if (random() % 2) c.pose_b.r = Pose::rotation({1, 0, 0}, uniform(random, 0, 0.3)).r;
   if (pick(random, 0, 3) == 0) move_both(c, any_pose(random));
   return c;
 }
 
-}  // namespace lrb::torture
+}  // namespace lrb::families

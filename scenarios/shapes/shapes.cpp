@@ -1,4 +1,4 @@
-#include "tests/support/shapes.hpp"
+#include "scenarios/shapes/shapes.hpp"
 
 #include <algorithm>
 #include <array>
@@ -8,7 +8,7 @@
 #include <random>
 #include <utility>
 
-namespace lrb::test {
+namespace lrb::shapes {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
@@ -337,4 +337,4 @@ Mesh scaled(Mesh mesh, double by) {
   return mesh;
 }
 
-}  // namespace lrb::test
+}  // namespace lrb::shapes

@@ -1,14 +1,17 @@
-#include "tests/torture/families.hpp"
+#include "scenarios/families/families.hpp"
 
 #include <array>
 #include <cmath>
+#include <cstring>
 #include <limits>
 
+#include "engine/error.hpp"
+#include "engine/lrb/fnv.hpp"
 #include "engine/mesh/mesh_check.hpp"
-#include "tests/support/hand_made.hpp"
-#include "tests/support/shapes.hpp"
+#include "scenarios/shapes/hand_made.hpp"
+#include "scenarios/shapes/shapes.hpp"
 
-namespace lrb::torture {
+namespace lrb::families {
 namespace {
 
 constexpr Family kFamilies[] = {
@@ -36,7 +39,7 @@ constexpr Family kFamilies[] = {
 
 }  // namespace
 
-std::span<const Family> families() {
+std::span<const Family> all_families() {
   return kFamilies;
 }
 
@@ -46,6 +49,26 @@ const Family* find_family(const std::string& name) {
   return nullptr;
 }
 
+double dial_value(int setting) {
+  return static_cast<double>(setting) / (kDialSettings - 1);
+}
+
+Random case_random(const Family& family, std::uint64_t seed, std::uint64_t index) {
+  Fnv64 h;
+  h.add_bytes(family.name, std::strlen(family.name));
+  h.add_value(seed);
+  h.add_value(index);
+  return Random(h.value());
+}
+
+Case make_case(const Family& family, std::uint64_t seed, int dial, std::uint64_t index) {
+  if (dial < 0 || dial >= kDialSettings)
+    throw InputError("dial setting " + std::to_string(dial) + ": use 0 (benign) to " +
+                     std::to_string(kDialSettings - 1) + " (degenerate)");
+  Random random = case_random(family, seed, index);
+  return family.make(random, dial_value(dial));
+}
+
 Body body(const Mesh& mesh, bool self_intersecting) {
   return std::make_shared<LrbRep>(
       LrbRep::without_regions(mesh, check_mesh(mesh, false).bounds_solid, self_intersecting));
@@ -53,16 +76,18 @@ Body body(const Mesh& mesh, bool self_intersecting) {
 
 Body any_body(Random& random) {
   static const std::vector<Body> kBodies = {
-      body(test::tetrahedron()),   body(test::box()),        body(test::l_shape()),
-      body(test::icosphere(0)),    body(test::icosphere(1)), body(test::bumpy_sphere(1, 5, 0.4)),
-      body(test::torus(8, 5)),     body(test::comb(3)),      body(test::quad_box()),
-      body(test::box_with_void()), body(test::bowl(7, 3)),   std::make_shared<LrbRep>(test::dented_box()),
+      body(shapes::tetrahedron()), body(shapes::box()),
+      body(shapes::l_shape()),     body(shapes::icosphere(0)),
+      body(shapes::icosphere(1)),  body(shapes::bumpy_sphere(1, 5, 0.4)),
+      body(shapes::torus(8, 5)),   body(shapes::comb(3)),
+      body(shapes::quad_box()),    body(shapes::box_with_void()),
+      body(shapes::bowl(7, 3)),    std::make_shared<LrbRep>(shapes::dented_box()),
   };
   return kBodies[random() % kBodies.size()];
 }
 
 Pose any_pose(Random& random, double distance) {
-  return {test::random_rotation(random), distance * uniform(random) * test::random_direction(random)};
+  return {shapes::random_rotation(random), distance * uniform(random) * shapes::random_direction(random)};
 }
 
 void move_both(Case& c, const Pose& by) {
@@ -88,4 +113,4 @@ Eigen::Matrix3d grid_turn(Random& random, bool reflections) {
   return r;
 }
 
-}  // namespace lrb::torture
+}  // namespace lrb::families

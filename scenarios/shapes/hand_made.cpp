@@ -1,6 +1,6 @@
-#include "tests/support/hand_made.hpp"
+#include "scenarios/shapes/hand_made.hpp"
 
-namespace lrb::test {
+namespace lrb::shapes {
 namespace {
 
 void add(LrbData& d, std::initializer_list<VertexId> corners, CellId inner, CellId outer) {
@@ -67,4 +67,4 @@ LrbRep stairs_2d() {
   return LrbRep(std::move(d));
 }
 
-}  // namespace lrb::test
+}  // namespace lrb::shapes
