@@ -7,11 +7,13 @@
 #include "render/dirt.hpp"
 #include "render/palette.hpp"
 #include "render/png.hpp"
+#include "scenarios/shapes/shapes.hpp"
 #include "tests/scenarios/program.hpp"
 #include "tests/support/dirt.hpp"
-#include "tests/support/shapes.hpp"
 
 namespace lrb::test {
+
+using namespace shapes;
 namespace {
 
 using nlohmann::json;

@@ -10,13 +10,15 @@
 #include "engine/mesh/mesh_io.hpp"
 #include "engine/query/brute_force.hpp"
 #include "engine/query/collide.hpp"
+#include "scenarios/shapes/shapes.hpp"
 #include "tests/scenarios/program.hpp"
 #include "tests/support/dirt.hpp"
-#include "tests/support/shapes.hpp"
 #include "tests/support/shared_meshes.hpp"
 #include "trace/hex.hpp"
 
 namespace lrb::test {
+
+using namespace shapes;
 namespace {
 
 using nlohmann::json;
