@@ -71,6 +71,14 @@ std::string numbers_html(const Page& page) {
   return out + "</dl>\n";
 }
 
+std::string texts_html(const Page& page) {
+  if (page.texts.empty()) return {};
+  std::string out = "<div class=\"texts\">\n";
+  for (const PageText& t : page.texts)
+    out += "<div><h2>" + escape_markup(t.title) + "</h2><p>" + escape_markup(t.text) + "</p></div>\n";
+  return out + "</div>\n";
+}
+
 std::string player_html(const Page& page) {
   if (page.frames.empty()) return {};
   std::string out(embedded_file("player.html"));
@@ -145,7 +153,11 @@ std::string page_html(const Page& page) {
       return page.purpose.empty() ? "" : "<p class=\"purpose\">" + escape_markup(page.purpose) + "</p>";
     if (key == "verdict")
       return page.verdict.empty() ? "" : "<span class=\"verdict\">" + escape_markup(page.verdict) + "</span>";
-    if (key == "style") return std::string(embedded_file("page.css"));
+    if (key == "style")
+      return std::string(embedded_file("page.css")) +
+             (page.grid.empty() ? "" : std::string(embedded_file("grid.css")));
+    if (key == "texts") return texts_html(page);
+    if (key == "grid") return grid_html(page.grid);
     if (key == "numbers") return numbers_html(page);
     if (key == "player") return player_html(page);
     if (key == "charts") return charts_html(page);
@@ -154,7 +166,9 @@ std::string page_html(const Page& page) {
     if (key == "footer") return escape_markup(page.footer);
     if (key == "data") return script_safe(page_json(page));
     if (key == "library") return page.charts.empty() ? "" : std::string(embedded_file("chart.min.js"));
-    if (key == "script") return std::string(embedded_file("page.js"));
+    if (key == "script")
+      return std::string(embedded_file("page.js")) +
+             (page.grid.empty() ? "" : std::string(embedded_file("grid.js")));
     return {};
   };
   // One pass over the template, so that marks within what is put in stay what they are.
