@@ -31,6 +31,10 @@ constexpr double kMostRoom = 75 * std::numbers::pi / 180;
 constexpr double kWallRoom = 30 * std::numbers::pi / 180;
 constexpr double kSteepest = 60 * std::numbers::pi / 180;
 
+// How unevenly detail is spread: a face waits as if it were up to this many powers of two broader or
+// narrower.
+constexpr double kUneven = 2.5;
+
 struct Polygon {
   std::vector<VertexId> corners;  ///< counter-clockwise seen from outside
   std::vector<double> room;  ///< angle between the face and what it may use of the solid, at edge (i, i + 1)
@@ -145,7 +149,7 @@ class Carver {
   void add(std::vector<VertexId> corners, std::vector<double> room, CellId outer, int level) {
     faces_.push_back({std::move(corners), std::move(room), kSolid, outer, level});
     const auto f = static_cast<FaceId>(faces_.size() - 1);
-    waiting_.push({breadth(faces_[f]) * std::exp2(random_.in(-1, 1)), f});
+    waiting_.push({breadth(faces_[f]) * std::exp2(random_.in(-kUneven, kUneven)), f});
   }
 
   /// Whether some dents make up these numbers: a margin is kept while there are many, none is needed at the

@@ -5,8 +5,8 @@
 #include <Eigen/Geometry>
 
 #include "engine/lrb/fnv.hpp"
-#include "engine/query/query_context.hpp"
 #include "engine/query/collide_impl.hpp"
+#include "engine/query/query_context.hpp"
 #include "scenarios/shapes/random_pose.hpp"
 
 namespace lrb {
@@ -52,7 +52,8 @@ LrbRep scaled(const LrbRep& rep, double by) {
 }
 
 std::vector<ContactStep> run_collision(const LrbRep& a, const LrbRep& x, const std::string& object,
-                                       std::uint32_t collision, const PaperProtocol& protocol, QueryContext& context) {
+                                       std::uint32_t collision, const PaperProtocol& protocol,
+                                       QueryContext& context) {
   Fnv64 seed;
   seed.add_value(protocol.seed);
   seed.add_bytes(object.data(), object.size());
@@ -71,7 +72,8 @@ std::vector<ContactStep> run_collision(const LrbRep& a, const LrbRep& x, const s
   NullProbe probe;
   std::uint32_t since_contact = 0;
   bool met = false;
-  for (std::uint32_t i = 0; i * protocol.step * unit < 2 * start && since_contact <= protocol.steps_after; ++i) {
+  for (std::uint32_t i = 0; i * protocol.step * unit < 2 * start && since_contact <= protocol.steps_after;
+       ++i) {
     pose_x.t = (start - i * protocol.step * unit) * from - centre_x;
     const CollideResult result = collide(a, pose_a, x, pose_x, {}, context, probe);
     met |= !result.pairs.empty();

@@ -2,11 +2,11 @@
 /// The experiment of the paper's section 4: object A against another one, 100 collisions, the number of face
 /// comparisons at every time step with a face contact.
 ///
-/// What the paper leaves open is decided here. Both bodies get a random rotation, the other one comes from a random
-/// direction on a line through the centres of both bounding boxes, in steps of a fixed share of the diagonal of A's
-/// bounding box, from where their bounding spheres touch. The other body is scaled to the same diagonal. Counting
-/// begins at the first step at which real faces meet, and goes on for `steps_after` steps; steps among them without
-/// a contact of real faces are not counted.
+/// What the paper leaves open is decided here. Both bodies get a random rotation, the other one comes from a
+/// random direction on a line through the centres of both bounding boxes, in steps of a fixed share of the
+/// diagonal of A's bounding box, from where their bounding spheres touch. The other body is scaled to the
+/// same diagonal. Counting begins at the first step at which real faces meet, and goes on for `steps_after`
+/// steps; steps among them without a contact of real faces are not counted.
 
 #include <array>
 #include <cstdint>
@@ -48,8 +48,9 @@ struct ContactStep {
 
 /// The steps of one collision. `scale_x`: X's coordinates are multiplied by it. The numbers drawn depend on
 /// protocol.seed, the object's name and the collision's number alone. Reuses `context`.
-std::vector<ContactStep> run_collision(const LrbRep& a, const LrbRep& x, const std::string& object, std::uint32_t collision,
-                                       const PaperProtocol& protocol, QueryContext& context);
+std::vector<ContactStep> run_collision(const LrbRep& a, const LrbRep& x, const std::string& object,
+                                       std::uint32_t collision, const PaperProtocol& protocol,
+                                       QueryContext& context);
 
 /// The same body with its coordinates multiplied.
 LrbRep scaled(const LrbRep& rep, double by);

@@ -119,8 +119,9 @@ std::vector<ContactStep> merged(std::vector<ContactStep> steps) {
   std::sort(steps.begin(), steps.end(), [&](const auto& x, const auto& y) { return key(x) < key(y); });
   for (std::size_t i = 1; i < steps.size(); ++i)
     if (key(steps[i - 1]) == key(steps[i]))
-      throw InputError("object " + steps[i].object + ", collision " + std::to_string(steps[i].collision) + ", step " +
-                       std::to_string(steps[i].step) + " is there twice; give each shard's records once");
+      throw InputError("object " + steps[i].object + ", collision " + std::to_string(steps[i].collision) +
+                       ", step " + std::to_string(steps[i].step) +
+                       " is there twice; give each shard's records once");
   return steps;
 }
 

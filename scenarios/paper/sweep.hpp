@@ -1,6 +1,6 @@
 #pragma once
-/// All collisions of the experiment, shared out over threads and, as shards, over processes and machines. Which of
-/// them computes a collision changes nothing in its result.
+/// All collisions of the experiment, shared out over threads and, as shards, over processes and machines.
+/// Which of them computes a collision changes nothing in its result.
 
 #include <cstdint>
 #include <functional>
@@ -28,8 +28,8 @@ struct SweepOptions {
   std::uint32_t jobs = 1;  ///< threads
 };
 
-/// objects[0] against each of the others; steps in the order (object, collision, step). `progress(done, of)` is
-/// called from one thread at a time.
+/// objects[0] against each of the others; steps in the order (object, collision, step). `progress(done, of)`
+/// is called from one thread at a time.
 std::vector<ContactStep> run_sweep(std::span<const PaperObject> objects, const SweepOptions& options,
                                    const std::function<void(std::uint64_t, std::uint64_t)>& progress);
 

@@ -85,7 +85,8 @@ std::string tables_json(std::span<const PaperObject> objects, std::span<const Ob
                    {"steps_after_first_contact", protocol.steps_after},
                    {"seed", protocol.seed}};
   for (const PaperObject& o : objects)
-    j["table1_object_sizes"][o.name] = {{"real_faces", o.rep.real_face_count()}, {"total_faces", o.rep.face_count()}};
+    j["table1_object_sizes"][o.name] = {{"real_faces", o.rep.real_face_count()},
+                                        {"total_faces", o.rep.face_count()}};
   for (std::size_t i = 0; i < kRecursions.size(); ++i) {
     std::string key = "table2_face_comparisons_of_object_A_with";
     if (kRecursions[i] != Recursion::paper) key += "_" + std::string(trace::name_of(kRecursions[i]));

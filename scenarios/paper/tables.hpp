@@ -24,9 +24,9 @@ struct RecursionRow {
 struct ObjectRow {
   std::string object;
   std::uint32_t real_faces = 0, total_faces = 0;
-  std::uint64_t steps = 0;                  ///< counted time steps
-  std::array<RecursionRow, 3> recursions;   ///< in the order of kRecursions
-  double n_log_n = 0, n_squared = 0;        ///< the paper's: total(X) log2(total(A)), total(A) total(X)
+  std::uint64_t steps = 0;                 ///< counted time steps
+  std::array<RecursionRow, 3> recursions;  ///< in the order of kRecursions
+  double n_log_n = 0, n_squared = 0;       ///< the paper's: total(X) log2(total(A)), total(A) total(X)
 };
 
 /// A row of each object but the first, which the others met.
