@@ -30,6 +30,7 @@ Command add_inspect(CLI::App& root, const Globals& globals);
 Command add_collide(CLI::App& root, const Globals& globals);
 Command add_query(CLI::App& root, const Globals& globals);
 Command add_render(CLI::App& root, const Globals& globals);
+Command add_paper(CLI::App& root, const Globals& globals);
 Command add_doctor(CLI::App& root, const Globals& globals);
 Command add_list(CLI::App& root, const Globals& globals);
 
