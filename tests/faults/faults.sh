@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# tests/faults/faults.sh LRBSCOPE: what the program does when the machine fails it or somebody stops it. Nothing
+# tests/faults/faults.sh LRBSCOPE [unlimited]: what the program does when the machine fails it or somebody stops it. Nothing
 # half-written may ever be seen under a final name, nothing temporary may stay, and the message is one line.
+# "unlimited" leaves out what sets a limit on memory, below which ASan's shadow of it would not fit.
 set -u
 bin=$(realpath "$1")
 dir=$(mktemp -d)
@@ -124,22 +125,28 @@ else
 fi
 
 # --- no memory
-awk 'BEGIN { n = 400; for (i = 0; i <= n; ++i) for (j = 0; j <= n; ++j) print "v", i, j, sin(i * j);
-  for (i = 0; i < n; ++i) for (j = 0; j < n; ++j) { a = i * (n + 1) + j + 1; print "f", a, a + n + 1, a + 1 } }' >big.obj
-echo "1 0 0 0.5 0 1 0 0.25 0 0 1 0.125" >pose.txt
-need=0  # kB that the program needs only to start
-for need in $(seq 20000 4000 400000); do
-  (ulimit -v "$need"; "$bin" --version >/dev/null 2>&1) && break
-done
-for extra in 4000 12000 30000; do
-  limit=$((need + extra))
-  for command in "build big.obj -o big.lrb" "query big.obj big.obj --poses pose.txt" "inspect big.obj"; do
-    # shellcheck disable=SC2086
-    expect 3 "$command within $limit kB" bash -c "ulimit -v $limit; exec '$bin' $command"
-    [ ! -e big.lrb ] || fail "$command within $limit kB: left big.lrb"
+no_memory() {
+  awk 'BEGIN { n = 400; for (i = 0; i <= n; ++i) for (j = 0; j <= n; ++j) print "v", i, j, sin(i * j);
+    for (i = 0; i < n; ++i) for (j = 0; j < n; ++j) { a = i * (n + 1) + j + 1; print "f", a, a + n + 1, a + 1 } }' >big.obj
+  echo "1 0 0 0.5 0 1 0 0.25 0 0 1 0.125" >pose.txt
+  # A long array of small objects, as any large trace is.
+  awk 'BEGIN { printf "{\"traceEvents\": ["; for (i = 0; i < 600000; ++i) printf "{\"name\":\"step\",\"args\":{\"event\":%d}},\n", i; print "{}]}" }' >big.json
+  local need limit extra command
+  for need in $(seq 20000 4000 400000); do  # kB that the program needs only to start
+    (ulimit -v "$need"; "$bin" --version >/dev/null 2>&1) && break
   done
-done
-no_temporaries "no memory"
+  for extra in 4000 12000 30000; do
+    limit=$((need + extra))
+    for command in "build big.obj -o big.lrb" "query big.obj big.obj --poses pose.txt" "inspect big.obj" \
+      "render big.json -o drawn"; do
+      # shellcheck disable=SC2086
+      expect 3 "$command within $limit kB" bash -c "ulimit -v $limit; exec '$bin' $command"
+      [ ! -e big.lrb ] || fail "$command within $limit kB: left big.lrb"
+    done
+  done
+  no_temporaries "no memory"
+}
+[ "${2:-}" = unlimited ] || no_memory
 
 # --- stopped in the middle
 # stop SIGNAL SECONDS NAME COMMAND...
