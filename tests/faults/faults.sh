@@ -124,6 +124,34 @@ else
   echo "not run: an unwritable folder (root may write everywhere)"
 fi
 
+# --- nothing is written outside of the output folder
+mkdir -p jail/out
+# short_as NAME: the short scenario under another name, in jail/named.json
+short_as() {
+  sed "s|\"short\"|\"$1\"|" short.json >jail/named.json
+}
+for name in ../escaped ../../escaped "$dir/escaped" .. . a/../../escaped; do
+  short_as "$name"
+  expect 2 "a scenario called $name" bash -c "cd jail && '$bin' run named.json --frames none"
+done
+"$bin" run short.json -o good --frames none >/dev/null 2>&1
+cp good/*.lrb jail
+sed 's|"name": "short"|"name": "../../escaped"|' good/trace.json >jail/trace.json
+grep -q escaped jail/trace.json || fail "the trace's scenario could not be renamed"
+expect 0 "a trace of a scenario called ../../escaped" bash -c "cd jail && '$bin' render trace.json -o out/drawn"
+[ ! -e "$dir/escaped" ] && [ -z "$(find . -name '*escaped*')" ] || fail "written outside: $(find . -name '*escaped*')"
+mkdir victim
+for link in index.html summary.json trace.json frames frames/frame_0000.png; do
+  rm -rf linked && mkdir linked && [ "${link%/*}" = "$link" ] || mkdir -p "linked/${link%/*}"
+  ln -s "$dir/victim/$(basename $link)" "linked/$link"
+  [ $link != frames ] || { rm linked/frames && ln -s "$dir/victim" linked/frames; }
+  expect 3 "an output folder where $link is a link" "$bin" run short.json -o linked
+  expect 3 "a folder to draw into where $link is a link" "$bin" render good/trace.json -o linked
+done
+[ -z "$(ls victim)" ] || fail "written through a link: $(ls victim)"
+ln -s victim link_to_folder
+expect 0 "an output folder that is a link itself" "$bin" run short.json -o link_to_folder --frames none
+
 # --- no memory
 no_memory() {
   awk 'BEGIN { n = 400; for (i = 0; i <= n; ++i) for (j = 0; j <= n; ++j) print "v", i, j, sin(i * j);
@@ -156,6 +184,8 @@ stop() {
   # A shell starts background jobs with SIGINT ignored; env gives it back.
   env --default-signal=INT "$@" >out.txt 2>err </dev/null &
   pid=$!
+  # Before it has taken the signals into its own hands, they end it without a word: wait until it blocks them.
+  for _ in $(seq 200); do grep -q 'SigBlk:.*[1-9a-f]' "/proc/$pid/status" 2>/dev/null && break; sleep 0.05; done
   sleep "$seconds"
   if ! kill -s "$signal" "$pid" 2>/dev/null; then
     wait "$pid"
