@@ -137,6 +137,7 @@ int parse_and_run(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   end_cleanly_on_signals();
+  end_cleanly_on_terminate();
   return guarded([&] { return parse_and_run(argc, argv); });
 }
 
