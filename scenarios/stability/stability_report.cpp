@@ -82,7 +82,7 @@ const char* words(Outcome o) {
 std::string answer_text(const Record& r) {
   std::string out = words(r.outcome);
   if (r.missed + r.extra > 0)
-    out += ": " + group_digits(r.missed) + " pairs missed, " + group_digits(r.extra) + " in excess";
+    out += ": " + group_digits(r.missed) + " missed, " + group_digits(r.extra) + " in excess";
   else if (r.outcome == Outcome::wrong && r.relation != r.expected_relation)
     out += ": " + r.relation + " instead of " + r.expected_relation;
   if (!r.message.empty()) out += ": " + r.message;
@@ -110,7 +110,7 @@ PageGridDetail page_detail(const Grid& grid, std::size_t f, std::size_t m, const
   d.facts.emplace_back("Dial", std::to_string(r.dial) + " of 0 to " + std::to_string(kDialSettings - 1));
   d.facts.emplace_back("Case, seed", group_digits(r.case_index) + ", " + std::to_string(r.seed));
   if (answered) d.facts.emplace_back("Query", short_number(r.microseconds) + " \u00b5s");
-  d.facts.emplace_back("In this cell", sentence(s));
+  d.note = "Of this family, with this method: " + sentence(s) + ".";
   if (options.command) d.command = options.command(r);
   return d;
 }

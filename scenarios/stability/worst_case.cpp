@@ -21,7 +21,7 @@ constexpr double kSmall = 0.35;
 /// So do marks all over the bodies, if each is smaller than this.
 constexpr double kTiny = 0.04;
 /// What a close-up shows, in units of what it is about.
-constexpr double kContext = 1.5;
+constexpr double kContext = 2.4;
 /// Bodies are cut where close-ups cannot see them any more, in units of what they show.
 constexpr double kReach = 6;
 
@@ -32,6 +32,10 @@ Rgba colour_of(Mark m) {
 }
 
 using Pairs = std::vector<SimplexPair>;
+
+Side side(std::size_t body) {
+  return body == 0 ? Side::a : Side::b;
+}
 
 struct Answer {
   Pairs found, missed, extra;
@@ -74,6 +78,15 @@ struct Subject {
   }
 
   bool flat() const { return bodies[0].dim() == 2; }
+  /// Marks all over the bodies would hide one another.
+  bool crowded() const {
+    std::size_t marked = 0, all = 0;
+    for (const std::vector<Mark>& m : marks) {
+      all += m.size();
+      marked += m.size() - static_cast<std::size_t>(std::count(m.begin(), m.end(), Mark::none));
+    }
+    return 4 * marked > all;
+  }
 
  private:
   void mark(const Pairs& pairs, Mark m) {
@@ -161,35 +174,39 @@ ViewDirection best_view(const Subject& s, const PictureFrame& frame) {
 
 // ---- what to draw
 
-void add_mark(DrawList& list, const Piece& p, Mark m, std::size_t body) {
-  const Rgba colour = colour_of(m);
-  // What lies in one plane: the worse mark in front.
-  const auto nudge = static_cast<std::int8_t>(2 * static_cast<int>(m) + static_cast<int>(body));
-  if (p.corners.size() > 2) {
-    DrawTriangle like;
-    like.colour = colour;
-    like.nudge = nudge;
-    for (std::size_t k = 2; k < p.corners.size(); ++k) {
-      DrawTriangle t = like;
-      t.x = {p.corners[0], p.corners[k - 1], p.corners[k]};
-      list.triangles.push_back(t);
-    }
-  }
-  // The outline too: needles and faces without area have nothing else.
+/// Outlines tell the bodies apart; needles and faces without area have nothing else to show.
+void add_outline(DrawList& list, const Piece& p, Rgba colour, float width, std::int8_t nudge) {
   for (std::size_t k = 0; k < p.corners.size(); ++k) {
     if (p.corners.size() == 2 && k == 1) break;
     DrawLine line;
     line.points = {p.corners[k], p.corners[(k + 1) % p.corners.size()]};
-    line.colour = mix(colour, kBlack, 0.3);
-    line.width = p.corners.size() == 2 ? 4.5F : 1.6F;
-    if (p.corners.size() == 2) line.colour = colour;
-    line.nudge = static_cast<std::int8_t>(nudge + 2);
+    line.colour = colour;
+    line.width = width;
+    line.nudge = nudge;
     list.lines.push_back(std::move(line));
   }
 }
 
+void add_mark(DrawList& list, const Piece& p, Mark m, std::size_t body, bool see_through) {
+  const Rgba colour = colour_of(m);
+  // What lies in one plane: the worse mark in front.
+  const auto nudge = static_cast<std::int8_t>(2 * static_cast<int>(m) + static_cast<int>(body));
+  for (std::size_t k = 2; k < p.corners.size(); ++k) {
+    DrawTriangle t;
+    t.x = {p.corners[0], p.corners[k - 1], p.corners[k]};
+    t.colour = see_through ? with_alpha(colour, m == Mark::found ? 80 : 165) : colour;
+    t.layer = see_through ? Layer::translucent : Layer::opaque;
+    t.nudge = nudge;
+    list.triangles.push_back(t);
+  }
+  constexpr float kSegment = 4.5F, kOutline = 1.6F;
+  const bool flat = p.corners.size() == 2;
+  add_outline(list, p, flat ? colour : mix(colour, palette::edge_of(palette::body(side(body))), 0.6),
+              flat ? kSegment : kOutline, static_cast<std::int8_t>(nudge + 2));
+}
+
 void add_body(DrawList& list, const Piece& p, std::size_t body, std::uint8_t style) {
-  const Rgba colour = palette::body(body == 0 ? Side::a : Side::b);
+  const Rgba colour = palette::body(side(body));
   if (p.corners.size() == 2) {
     DrawLine line;
     line.points = p.corners;
@@ -210,10 +227,25 @@ void add_body(DrawList& list, const Piece& p, std::size_t body, std::uint8_t sty
   }
 }
 
+/// The inside of a 2D body, unless it is too large for this picture to be filled in doubles.
+void add_fill(DrawList& list, const PosedBody& body, std::size_t i, const PictureFrame& frame) {
+  constexpr double kLargest = 1e6;
+  DrawFill fill;
+  fill.colour = with_alpha(palette::body(side(i)), 56);
+  for (SimplexId f = 0; f < body.size(); ++f) {
+    const Piece p = body.simplex(f);
+    fill.segments.push_back({frame(p.corners[0]), frame(p.corners[1])});
+    if (!(fill.segments.back()[0].cwiseAbs().maxCoeff() < kLargest)) return;
+  }
+  list.fills.push_back(std::move(fill));
+}
+
 DrawList draw_list(const Subject& s, const PictureFrame& frame, double reach) {
   DrawList list;
+  const bool see_through = s.crowded();
   for (std::size_t i = 0; i < 2; ++i) {
-    const Rgba edge = palette::edge_of(palette::body(i == 0 ? Side::a : Side::b));
+    if (s.flat()) add_fill(list, s.bodies[i], i, frame);
+    const Rgba edge = palette::edge_of(palette::body(side(i)));
     const std::uint8_t style = list.edge_style({with_alpha(edge, 120), 1, 0.5F});
     for (SimplexId f = 0; f < s.marks[i].size(); ++f) {
       const Piece p = frame.cut(s.bodies[i].simplex(f), reach);
@@ -221,7 +253,7 @@ DrawList draw_list(const Subject& s, const PictureFrame& frame, double reach) {
       if (s.marks[i][f] == Mark::none)
         add_body(list, p, i, style);
       else
-        add_mark(list, p, s.marks[i][f], i);
+        add_mark(list, p, s.marks[i][f], i, see_through);
     }
   }
   return list;
@@ -288,9 +320,11 @@ std::vector<Eigen::Vector3d> all_points(const Subject& s, const PictureFrame& fr
 void write_caption(Image& image, const std::string& text) {
   TextStyle style;
   style.height = 17;
-  style.colour = palette::kFaint;
-  style.halo = kWhite;
-  style.halo_width = 2;
+  style.colour = palette::kInk;
+  const TextSize size = default_font().measure(text, style);
+  const PixelRect back{0, 0, std::min(image.width(), size.width + 20), size.height + 12};
+  for (int y = 0; y < back.height; ++y)
+    for (int x = 0; x < back.width; ++x) image.blend(x, y, with_alpha(kWhite, 225));
   default_font().draw(image, text, 10, 6, style);
 }
 
@@ -353,7 +387,7 @@ Overlay overlay_of(const Answer& answer, const WorstCaseText& text) {
   const Mark worst = !answer.missed.empty()  ? Mark::missed
                      : !answer.extra.empty() ? Mark::extra
                                              : Mark::found;
-  o.event_colour = answer.listed && worst != Mark::found ? colour_of(worst) : palette::kInk;
+  o.event_colour = answer.listed && worst != Mark::found ? colour_of(worst) : kTransparent;
   o.counters = text.counters;
   const auto count = [](const Pairs& p) { return group_digits(p.size()); };
   if (answer.listed) {
