@@ -17,7 +17,7 @@ namespace {
 
 constexpr int kWidth = 1280, kHeight = 720, kGap = 4;
 /// Marks that take up less of the scene than this get a close-up.
-constexpr double kSmall = 0.35;
+constexpr double kSmall = 0.25;
 /// So do marks all over the bodies, if each is smaller than this.
 constexpr double kTiny = 0.04;
 /// What a close-up shows, in units of what it is about.
@@ -78,6 +78,10 @@ struct Subject {
   }
 
   bool flat() const { return bodies[0].dim() == 2; }
+  bool shows(Mark m) const {
+    return std::any_of(marks.begin(), marks.end(),
+                       [m](const auto& of) { return std::find(of.begin(), of.end(), m) != of.end(); });
+  }
   /// Marks all over the bodies would hide one another.
   bool crowded() const {
     std::size_t marked = 0, all = 0;
@@ -380,7 +384,7 @@ Image both_views(const Subject& s, const Answer& answer, int width, int height, 
   return out;
 }
 
-Overlay overlay_of(const Answer& answer, const WorstCaseText& text) {
+Overlay overlay_of(const Subject& s, const Answer& answer, const WorstCaseText& text) {
   Overlay o;
   o.title = text.title;
   o.event = text.answer;
@@ -399,12 +403,12 @@ Overlay overlay_of(const Answer& answer, const WorstCaseText& text) {
   }
   o.key = {{LegendItem::Mark::translucent, with_alpha(palette::body(Side::a), 110), "A"},
            {LegendItem::Mark::translucent, with_alpha(palette::body(Side::b), 110), "B"}};
-  const auto add = [&](const Pairs& p, Mark m, const char* name) {
-    if (!p.empty()) o.key.push_back({LegendItem::Mark::solid, colour_of(m), name});
+  const auto add = [&](Mark m, const char* name) {
+    if (s.shows(m)) o.key.push_back({LegendItem::Mark::solid, colour_of(m), name});
   };
-  add(answer.found, Mark::found, answer.listed ? "found: expected and answered" : "expected");
-  add(answer.missed, Mark::missed, "missed: expected, not answered");
-  add(answer.extra, Mark::extra, "extra: answered, not expected");
+  add(Mark::found, answer.listed ? "found: expected and answered" : "expected");
+  add(Mark::missed, "missed: expected, not answered");
+  add(Mark::extra, "extra: answered, not expected");
   return o;
 }
 
@@ -425,7 +429,7 @@ Image worst_case_picture(const families::Case& c, std::span<const SimplexPair> e
                          Rasterizer& rasterizer) {
   const Answer answer = compare(expected, answered);
   const Subject subject(c, answer);
-  const Overlay overlay = overlay_of(answer, text);
+  const Overlay overlay = overlay_of(subject, answer, text);
   const PixelRect place = lay_out(overlay, kWidth, kHeight).picture;
   return compose_frame(both_views(subject, answer, place.width, place.height, rasterizer), place, overlay,
                        kWidth, kHeight);
