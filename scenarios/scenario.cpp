@@ -79,7 +79,7 @@ std::vector<BodySpec> read_bodies(const JsonNode& node, Show show, const std::fi
 }
 
 CollideRequest read_query(const JsonNode& node) {
-  node.object({"mode", "recursion", "wrapper", "contacts", "interiors_overlap"});
+  node.object({"mode", "recursion", "predicates", "wrapper", "contacts", "interiors_overlap"});
   CollideRequest r;
   if (const auto n = node.get("mode"))
     r.mode = n->choice<Mode>({{"all", Mode::all_pairs}, {"first", Mode::first_pair}});
@@ -87,6 +87,8 @@ CollideRequest read_query(const JsonNode& node) {
     r.recursion = n->choice<Recursion>({{"complete", Recursion::complete},
                                         {"paper", Recursion::paper},
                                         {"paper_strict", Recursion::paper_strict}});
+  if (const auto n = node.get("predicates"))
+    r.predicates = n->choice<Predicates>({{"exact", Predicates::exact}, {"floating", Predicates::floating}});
   if (const auto n = node.get("wrapper"))
     r.wrapper = n->choice<WrapperMode>(
         {{"regularised", WrapperMode::regularised}, {"unregularised", WrapperMode::unregularised}});

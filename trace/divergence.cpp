@@ -79,6 +79,7 @@ void compare_bodies(Comparison& c, const TraceHeader& x, const TraceHeader& y) {
 void compare_requests(Comparison& c, const CollideRequest& x, const CollideRequest& y) {
   c.same("request: mode", x.mode, y.mode);
   c.same("request: recursion", x.recursion, y.recursion);
+  c.same("request: predicates", x.predicates, y.predicates);
   c.same("request: wrapper", x.wrapper, y.wrapper);
 }
 

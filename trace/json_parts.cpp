@@ -26,7 +26,7 @@ void write_json(JsonWriter& w, const Counters& c) {
 void write_json(JsonWriter& w, const CollideRequest& r) {
   w.begin_object();
   w.member("mode", name_of(r.mode)).member("recursion", name_of(r.recursion));
-  w.member("wrapper", name_of(r.wrapper));
+  w.member("predicates", name_of(r.predicates)).member("wrapper", name_of(r.wrapper));
   w.member("contacts", r.contacts).member("interiors_overlap", r.interiors_overlap);
   w.end_object();
 }

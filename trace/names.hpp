@@ -43,6 +43,10 @@ struct Names<Recursion> {
   static constexpr std::string_view values[] = {"complete", "paper", "paper_strict"};
 };
 template <>
+struct Names<Predicates> {
+  static constexpr std::string_view values[] = {"exact", "floating"};
+};
+template <>
 struct Names<WrapperMode> {
   static constexpr std::string_view values[] = {"regularised", "unregularised"};
 };

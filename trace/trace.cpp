@@ -65,8 +65,8 @@ bool equal(const StepResult& x, const StepResult& y) {
 }
 
 bool equal(const CollideRequest& x, const CollideRequest& y) {
-  return x.mode == y.mode && x.recursion == y.recursion && x.wrapper == y.wrapper &&
-         x.contacts == y.contacts && x.interiors_overlap == y.interiors_overlap;
+  return x.mode == y.mode && x.recursion == y.recursion && x.predicates == y.predicates &&
+         x.wrapper == y.wrapper && x.contacts == y.contacts && x.interiors_overlap == y.interiors_overlap;
 }
 
 namespace {

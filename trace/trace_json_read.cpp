@@ -219,6 +219,7 @@ class Reader {
     const Node request = metadata.at("request");
     h.request.mode = request.at("mode").named<Mode>();
     h.request.recursion = request.at("recursion").named<Recursion>();
+    h.request.predicates = request.at("predicates").named<Predicates>();
     h.request.wrapper = request.at("wrapper").named<WrapperMode>();
     h.request.contacts = request.at("contacts").boolean();
     h.request.interiors_overlap = request.at("interiors_overlap").boolean();

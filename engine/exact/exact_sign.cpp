@@ -8,6 +8,7 @@
 
 #include "engine/exact/expansion.hpp"
 #include "engine/exact/fixed_point.hpp"
+#include "engine/exact/predicates.hpp"
 #include "engine/exact/simplex_test.hpp"
 
 namespace lrb::exact {
@@ -16,6 +17,26 @@ namespace {
 using boost::multiprecision::cpp_int;
 
 thread_local std::uint64_t fallback_count = 0;
+thread_local bool floating_only = false;
+
+int sign(double x) {
+  return (x > 0) - (x < 0);
+}
+
+int orient2d_floating(const double* a, const double* b, const double* c, int x, int y) {
+  return sign((b[x] - a[x]) * (c[y] - a[y]) - (b[y] - a[y]) * (c[x] - a[x]));
+}
+
+int orient3d_floating(const double* a, const double* b, const double* c, const double* d) {
+  double u[3], v[3], w[3];
+  for (int k = 0; k < 3; ++k) {
+    u[k] = b[k] - a[k];
+    v[k] = c[k] - a[k];
+    w[k] = d[k] - a[k];
+  }
+  return sign((u[1] * v[2] - u[2] * v[1]) * w[0] + (u[2] * v[0] - u[0] * v[2]) * w[1] +
+              (u[0] * v[1] - u[1] * v[0]) * w[2]);
+}
 
 // A coordinate is either 0 or has a magnitude in [2^-300, 2^300]: then for products of up to three factors
 // expansion.hpp's conditions hold: 3 * (300 + 53) = 1059 <= 1074 and 3 * 301 + 30 = 933 <= 1023.
@@ -101,11 +122,20 @@ int orient3d_expansion(const Coordinates4& p) {
   return sum(sum(x, y), z).sign();
 }
 
+FloatingPredicates::FloatingPredicates(bool on) : before_(floating_only) {
+  floating_only = on;
+}
+
+FloatingPredicates::~FloatingPredicates() {
+  floating_only = before_;
+}
+
 std::uint64_t exact_fallbacks() {
   return fallback_count;
 }
 
 int orient2d_exact(const double* a, const double* b, const double* c, int x, int y) {
+  if (floating_only) return orient2d_floating(a, b, c, x, y);
   // Points with equal coordinates on one axis, or points that coincide.
   if (a[x] == b[x] && a[x] == c[x]) return 0;
   if (a[y] == b[y] && a[y] == c[y]) return 0;
@@ -122,6 +152,7 @@ int orient2d_exact(const double* a, const double* b, const double* c, int x, int
 }
 
 int orient3d_exact(const double* a, const double* b, const double* c, const double* d) {
+  if (floating_only) return orient3d_floating(a, b, c, d);
   for (int k = 0; k < 3; ++k) {
     if (a[k] == b[k] && a[k] == c[k] && a[k] == d[k]) return 0;
   }

@@ -29,9 +29,16 @@ enum class Recursion : std::uint8_t {
 
 const char* to_string(Recursion r);
 
+enum class Predicates : std::uint8_t {
+  exact,
+  floating,  ///< without the exact fallback: the answer can be wrong; to measure what exactness costs and
+             ///< saves
+};
+
 struct CollideRequest {
   Mode mode = Mode::all_pairs;
   Recursion recursion = Recursion::complete;
+  Predicates predicates = Predicates::exact;  ///< for pairs and relation; contacts are always exact
   WrapperMode wrapper = WrapperMode::regularised;
   bool contacts = false;           ///< fill CollideResult::contacts and ::regions (all_pairs only)
   bool interiors_overlap = false;  ///< decide CollideResult::interiors_overlap for touching bodies

@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "engine/error.hpp"
+#include "engine/exact/predicates.hpp"
 #include "engine/query/collide.hpp"
 #include "engine/query/paper_query.hpp"
 #include "engine/query/relation.hpp"
@@ -29,12 +30,15 @@ CollideResult collide(const LrbRep& a, const Pose& pose_a, const LrbRep& b, cons
   context.body[0].begin(a, pose_a, request.wrapper);
   context.body[1].begin(b, pose_b, request.wrapper);
   const std::uint64_t fallbacks = exact::exact_fallbacks();
-  if (request.recursion == Recursion::complete)
-    TreeQuery<Probe>(context, request.mode, result, probe).run();
-  else
-    PaperQuery<Probe>(context, request, result, probe).run();
-  sort_pairs(result);
-  decide_relation(context, result);
+  {
+    const exact::FloatingPredicates floating(request.predicates == Predicates::floating);
+    if (request.recursion == Recursion::complete)
+      TreeQuery<Probe>(context, request.mode, result, probe).run();
+    else
+      PaperQuery<Probe>(context, request, result, probe).run();
+    sort_pairs(result);
+    decide_relation(context, result);
+  }
   describe_contact(context, request, result);
   for (int side = 0; side < 2; ++side) {
     result.opened[side] = context.body[side].wrapper->excluded();

@@ -51,6 +51,9 @@ void add_request_options(CLI::App& app, CollideRequest& request) {
   add_choice<Mode>(app, "--mode", request.mode, {{"all", Mode::all_pairs}, {"first", Mode::first_pair}},
                    "all|first", "All pairs, or the first found");
   add_recursion(app, request.recursion);
+  add_choice<Predicates>(app, "--predicates", request.predicates,
+                         {{"exact", Predicates::exact}, {"floating", Predicates::floating}}, "exact|floating",
+                         "floating: without the exact fallback, wrong where doubles cannot decide");
 }
 
 void add_build_options(CLI::App& app, BuildOptions& options) {

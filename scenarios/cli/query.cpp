@@ -47,6 +47,7 @@ std::string line_of(std::size_t pose, const CollideResult& result, const QueryOp
   if (o.request.recursion != Recursion::complete)
     out << ",\"recursion\":\"" << (o.request.recursion == Recursion::paper ? "paper" : "paper_strict")
         << "\"";
+  if (o.request.predicates != Predicates::exact) out << ",\"predicates\":\"floating\"";
   if (o.repeat > 0) out << ",\"us\":" << us;
   if (o.pairs) {
     out << ",\"list\":[";

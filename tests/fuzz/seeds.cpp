@@ -65,7 +65,7 @@ std::vector<std::string> scenarios() {
       std::string(R"({"name": "x", "purpose": "y", "seed": 7, )") + kBodies + R"(, "motion": )";
   out.push_back(
       begin +
-      R"({"kind": "poses", "poses": [{"position": [0, 0, 1]}, [1, 0, 0, 3, 0, 1, 0, 0, 0, 0, 1, 0]]}, "query": {"mode": "all", "recursion": "paper", "wrapper": "unregularised", "contacts": true, "interiors_overlap": true}, "trace": {"clock": "wall", "max_events": 1000, "gzip": true}, "expect": [{"step": 0, "relation": "separate", "pairs": 0, "fingerprint": "cbf29ce484222325"}]})");
+      R"({"kind": "poses", "poses": [{"position": [0, 0, 1]}, [1, 0, 0, 3, 0, 1, 0, 0, 0, 0, 1, 0]]}, "query": {"mode": "all", "recursion": "paper", "predicates": "floating", "wrapper": "unregularised", "contacts": true, "interiors_overlap": true}, "trace": {"clock": "wall", "max_events": 1000, "gzip": true}, "expect": [{"step": 0, "relation": "separate", "pairs": 0, "fingerprint": "cbf29ce484222325"}]})");
   out.push_back(
       begin +
       R"({"kind": "keyframes", "keyframes": [{"step": 0, "position": [0, 0, 1]}, {"step": 4, "position": [0, 1, 1], "axis": [1, 1, 0], "degrees": 45}]}, "frames": {"at": "event", "every": 2, "most": 5, "size": [320, 200], "supersampling": 1, "colour_by": "layer", "transparent": true, "explode": 0.5, "montage": {"panels": 4, "columns": 2}, "views": [{"camera": "fixed", "eye": [1, 2, 3], "target": [0, 0, 0], "projection": "orthographic"}, {"camera": "orbit", "from": [1, 0, 0], "up": [0, 0, 1], "turn_degrees": 90, "zoom": 2, "draw": "body", "title": "t"}]}})");

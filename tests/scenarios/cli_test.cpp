@@ -70,6 +70,10 @@ TEST_CASE("query: first finds one pair, the paper's recursion says that it is no
   const json paper =
       json::parse(run(folder, {"query", "a.obj", "a.obj", "--poses", "p.txt", "--recursion", "paper"}).out);
   CHECK(paper["recursion"] == "paper");
+  CHECK(!paper.contains("predicates"));
+  const json floating = json::parse(
+      run(folder, {"query", "a.obj", "a.obj", "--poses", "p.txt", "--predicates", "floating"}).out);
+  CHECK(floating["predicates"] == "floating");
 }
 
 TEST_CASE("query: an open mesh is queried all the same, and inside has no meaning then") {

@@ -92,6 +92,8 @@ TEST_CASE("schema and reader agree on good and bad files") {
       with("/motion", json{{"kind", "keyframes"}, {"keyframes", {{{"step", 0}, {"position", {0, 0, 0}}}}}}),
       with("/query", json{{"recursion", "paper"}, {"wrapper", "unregularised"}}),
       with("/query", json{{"recursion", "papr"}}),
+      with("/query", json{{"predicates", "floating"}}),
+      with("/query", json{{"predicates", "floatin"}}),
       with("/trace", json{{"clock", "wall"}, {"gzip", true}, {"max_events", 10}}),
       with("/trace", json{{"max_events", 0}}),
       with("/frames",
