@@ -3,14 +3,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <iterator>
+#include <limits>
 #include <numbers>
 
-#include "engine/error.hpp"
 #include "render/palette.hpp"
 #include "render/png.hpp"
 #include "render/text.hpp"
 #include "scenarios/stability/picture_frame.hpp"
+#include "scenarios/stability/subject.hpp"
 
 namespace lrb::stability {
 namespace {
@@ -25,95 +25,19 @@ constexpr double kContext = 2.4;
 /// Bodies are cut where close-ups cannot see them any more, in units of what they show.
 constexpr double kReach = 6;
 
-enum class Mark : std::uint8_t { none, found, extra, missed };
-
-Rgba colour_of(Mark m) {
-  return m == Mark::missed ? missed_colour() : m == Mark::extra ? extra_colour() : found_colour();
-}
-
-using Pairs = std::vector<SimplexPair>;
-
-Side side(std::size_t body) {
-  return body == 0 ? Side::a : Side::b;
-}
-
-struct Answer {
-  Pairs found, missed, extra;
-  bool listed = false;
-
-  const Pairs& wrong() const { return !missed.empty() ? missed : !extra.empty() ? extra : found; }
-};
-
-Answer compare(std::span<const SimplexPair> expected, const std::optional<Pairs>& answered) {
-  Pairs e(expected.begin(), expected.end());
-  std::sort(e.begin(), e.end());
-  Answer out;
-  out.listed = answered.has_value();
-  if (!out.listed) {
-    out.found = e;
-    return out;
-  }
-  Pairs a = *answered;
-  std::sort(a.begin(), a.end());
-  a.erase(std::unique(a.begin(), a.end()), a.end());
-  std::set_intersection(e.begin(), e.end(), a.begin(), a.end(), std::back_inserter(out.found));
-  std::set_difference(e.begin(), e.end(), a.begin(), a.end(), std::back_inserter(out.missed));
-  std::set_difference(a.begin(), a.end(), e.begin(), e.end(), std::back_inserter(out.extra));
-  return out;
-}
-
-/// The two bodies in world coordinates, and the mark of every simplex.
-struct Subject {
-  std::array<PosedBody, 2> bodies;
-  std::array<std::vector<Mark>, 2> marks;
-  Eigen::AlignedBox3d box;
-
-  Subject(const families::Case& c, const Answer& answer)
-      : bodies{PosedBody(*c.a, c.pose_a), PosedBody(*c.b, c.pose_b)} {
-    box = bodies[0].box().merged(bodies[1].box());
-    for (std::size_t i = 0; i < 2; ++i) marks[i].resize(bodies[i].size(), Mark::none);
-    mark(answer.found, Mark::found);
-    mark(answer.extra, Mark::extra);
-    mark(answer.missed, Mark::missed);
-  }
-
-  bool flat() const { return bodies[0].dim() == 2; }
-  bool shows(Mark m) const {
-    return std::any_of(marks.begin(), marks.end(),
-                       [m](const auto& of) { return std::find(of.begin(), of.end(), m) != of.end(); });
-  }
-  /// Marks all over the bodies would hide one another.
-  bool crowded() const {
-    std::size_t marked = 0, all = 0;
-    for (const std::vector<Mark>& m : marks) {
-      all += m.size();
-      marked += m.size() - static_cast<std::size_t>(std::count(m.begin(), m.end(), Mark::none));
-    }
-    return 4 * marked > all;
-  }
-
- private:
-  void mark(const Pairs& pairs, Mark m) {
-    for (const SimplexPair& p : pairs) {
-      if (p.a >= marks[0].size() || p.b >= marks[1].size())
-        throw InputError("pair (" + std::to_string(p.a) + ", " + std::to_string(p.b) + "): there are only " +
-                         std::to_string(marks[0].size()) + " and " + std::to_string(marks[1].size()) +
-                         " real simplices");
-      marks[0][p.a] = std::max(marks[0][p.a], m);
-      marks[1][p.b] = std::max(marks[1][p.b], m);
-    }
-  }
-};
-
 // ---- where to look
+
+/// Halves first: sums of the largest doubles overflow.
+Eigen::Vector3d middle_of(const Eigen::AlignedBox3d& box) {
+  return box.min() / 2 + box.max() / 2;
+}
 
 /// Around where two simplices meet, or the smaller one if they do not.
 Eigen::AlignedBox3d place_of(const Subject& s, const SimplexPair& p) {
   const Eigen::AlignedBox3d a = s.bodies[0].box(p.a), b = s.bodies[1].box(p.b);
   const Eigen::AlignedBox3d& smaller = diagonal(a) < diagonal(b) ? a : b;
   const Eigen::AlignedBox3d common = a.intersection(b);
-  const Eigen::Vector3d middle =
-      common.isEmpty() ? smaller.center() : Eigen::Vector3d(common.min() / 2 + common.max() / 2);
+  const Eigen::Vector3d middle = middle_of(common.isEmpty() ? smaller : common);
   const double half = diagonal(smaller) / 4;
   Eigen::AlignedBox3d out(middle - Eigen::Vector3d::Constant(half), middle + Eigen::Vector3d::Constant(half));
   return common.isEmpty() ? out.merged(smaller) : out.merged(common);
@@ -124,16 +48,16 @@ struct CloseUp {
   std::string caption;
 };
 
-std::optional<CloseUp> close_up(const Subject& s, const Answer& answer) {
+std::optional<CloseUp> close_up(const Subject& s, const Verdict& verdict) {
   const double whole = diagonal(s.box);
-  const Pairs& pairs = answer.wrong();
+  const Pairs& pairs = verdict.worst();
   if (pairs.empty()) {
     const Eigen::AlignedBox3d &a = s.bodies[0].box(), &b = s.bodies[1].box();
     const Eigen::AlignedBox3d& smaller = diagonal(a) < diagonal(b) ? a : b;
     if (diagonal(smaller) < kTiny * whole) return CloseUp{smaller, "close-up of the smaller body"};
     return std::nullopt;
   }
-  const char* kind = !answer.missed.empty() ? "missed" : !answer.extra.empty() ? "in excess" : "expected";
+  const char* kind = !verdict.missed.empty() ? "missed" : !verdict.extra.empty() ? "in excess" : "expected";
   Eigen::AlignedBox3d all;
   const Eigen::AlignedBox3d* smallest = nullptr;
   std::vector<Eigen::AlignedBox3d> places;
@@ -174,110 +98,6 @@ ViewDirection best_view(const Subject& s, const PictureFrame& frame) {
       }
     }
   return best;
-}
-
-// ---- what to draw
-
-/// Outlines tell the bodies apart; needles and faces without area have nothing else to show.
-void add_outline(DrawList& list, const Piece& p, Rgba colour, float width, std::int8_t nudge) {
-  for (std::size_t k = 0; k < p.corners.size(); ++k) {
-    if (p.corners.size() == 2 && k == 1) break;
-    DrawLine line;
-    line.points = {p.corners[k], p.corners[(k + 1) % p.corners.size()]};
-    line.colour = colour;
-    line.width = width;
-    line.nudge = nudge;
-    list.lines.push_back(std::move(line));
-  }
-}
-
-void add_mark(DrawList& list, const Piece& p, Mark m, std::size_t body, bool see_through) {
-  const Rgba colour = colour_of(m);
-  // What lies in one plane: the worse mark in front.
-  const auto nudge = static_cast<std::int8_t>(2 * static_cast<int>(m) + static_cast<int>(body));
-  for (std::size_t k = 2; k < p.corners.size(); ++k) {
-    DrawTriangle t;
-    t.x = {p.corners[0], p.corners[k - 1], p.corners[k]};
-    t.colour = see_through ? with_alpha(colour, m == Mark::found ? 80 : 165) : colour;
-    t.layer = see_through ? Layer::translucent : Layer::opaque;
-    t.nudge = nudge;
-    list.triangles.push_back(t);
-  }
-  constexpr float kSegment = 4.5F, kOutline = 1.6F;
-  const bool flat = p.corners.size() == 2;
-  add_outline(list, p, flat ? colour : mix(colour, palette::edge_of(palette::body(side(body))), 0.6),
-              flat ? kSegment : kOutline, static_cast<std::int8_t>(nudge + 2));
-}
-
-void add_body(DrawList& list, const Piece& p, std::size_t body, std::uint8_t style) {
-  const Rgba colour = palette::body(side(body));
-  if (p.corners.size() == 2) {
-    DrawLine line;
-    line.points = p.corners;
-    line.colour = colour;
-    line.width = 2;
-    list.lines.push_back(std::move(line));
-    return;
-  }
-  for (std::size_t k = 2; k < p.corners.size(); ++k) {
-    DrawTriangle t;
-    t.x = {p.corners[0], p.corners[k - 1], p.corners[k]};
-    t.colour = with_alpha(colour, 56);
-    t.layer = Layer::translucent;
-    t.edge_style = style;
-    t.edges = static_cast<std::uint8_t>((k == 2 && p.edges[0] ? 1 : 0) | (p.edges[k - 1] ? 2 : 0) |
-                                        (k + 1 == p.corners.size() && p.edges[k] ? 4 : 0));
-    list.triangles.push_back(t);
-  }
-}
-
-/// The inside of a 2D body, unless it is too large for this picture to be filled in doubles.
-void add_fill(DrawList& list, const PosedBody& body, std::size_t i, const PictureFrame& frame) {
-  constexpr double kLargest = 1e6;
-  DrawFill fill;
-  fill.colour = with_alpha(palette::body(side(i)), 56);
-  for (SimplexId f = 0; f < body.size(); ++f) {
-    const Piece p = body.simplex(f);
-    fill.segments.push_back({frame(p.corners[0]), frame(p.corners[1])});
-    if (!(fill.segments.back()[0].cwiseAbs().maxCoeff() < kLargest)) return;
-  }
-  list.fills.push_back(std::move(fill));
-}
-
-DrawList draw_list(const Subject& s, const PictureFrame& frame, double reach) {
-  DrawList list;
-  const bool see_through = s.crowded();
-  for (std::size_t i = 0; i < 2; ++i) {
-    if (s.flat()) add_fill(list, s.bodies[i], i, frame);
-    const Rgba edge = palette::edge_of(palette::body(side(i)));
-    const std::uint8_t style = list.edge_style({with_alpha(edge, 120), 1, 0.5F});
-    for (SimplexId f = 0; f < s.marks[i].size(); ++f) {
-      const Piece p = frame.cut(s.bodies[i].simplex(f), reach);
-      if (p.corners.size() < 2) continue;
-      if (s.marks[i][f] == Mark::none)
-        add_body(list, p, i, style);
-      else
-        add_mark(list, p, s.marks[i][f], i, see_through);
-    }
-  }
-  return list;
-}
-
-/// A mark too small to see in this picture becomes a dot.
-void add_dots(DrawList& list, const Subject& s, const PictureFrame& frame, double reach, double least) {
-  for (std::size_t i = 0; i < 2; ++i)
-    for (SimplexId f = 0; f < s.marks[i].size(); ++f) {
-      if (s.marks[i][f] == Mark::none) continue;
-      const Piece p = frame.cut(s.bodies[i].simplex(f), reach);
-      Eigen::AlignedBox3d box;
-      for (const Eigen::Vector3d& x : p.corners) box.extend(x);
-      if (p.corners.empty() || diagonal(box) > least) continue;
-      DrawPoint dot;
-      dot.x = box.center();
-      dot.colour = colour_of(s.marks[i][f]);
-      dot.radius = 3.5F;
-      list.points.push_back(dot);
-    }
 }
 
 // ---- pictures
@@ -349,8 +169,8 @@ void frame_place(Image& image, const Camera& camera, const std::vector<Eigen::Ve
   image.stroke(r, palette::kInk, 2);
 }
 
-Image both_views(const Subject& s, const Answer& answer, int width, int height, Rasterizer& rasterizer) {
-  const std::optional<CloseUp> close = close_up(s, answer);
+Image both_views(const Subject& s, const Verdict& verdict, int width, int height, Rasterizer& rasterizer) {
+  const std::optional<CloseUp> close = close_up(s, verdict);
   const PictureFrame whole_frame(s.box);
   std::optional<PictureFrame> near_frame;
   if (close) near_frame.emplace(close->box);
@@ -384,29 +204,29 @@ Image both_views(const Subject& s, const Answer& answer, int width, int height, 
   return out;
 }
 
-Overlay overlay_of(const Subject& s, const Answer& answer, const WorstCaseText& text) {
+Overlay overlay_of(const Subject& s, const Verdict& verdict, const WorstCaseText& text) {
   Overlay o;
   o.title = text.title;
   o.event = text.answer;
-  const Mark worst = !answer.missed.empty()  ? Mark::missed
-                     : !answer.extra.empty() ? Mark::extra
-                                             : Mark::found;
-  o.event_colour = answer.listed && worst != Mark::found ? colour_of(worst) : kTransparent;
+  const Mark worst = !verdict.missed.empty()  ? Mark::missed
+                     : !verdict.extra.empty() ? Mark::extra
+                                              : Mark::found;
+  o.event_colour = verdict.listed && worst != Mark::found ? colour_of(worst) : kTransparent;
   o.counters = text.counters;
   const auto count = [](const Pairs& p) { return group_digits(p.size()); };
-  if (answer.listed) {
-    o.counters.push_back({"found", count(answer.found)});
-    o.counters.push_back({"missed", count(answer.missed)});
-    o.counters.push_back({"extra", count(answer.extra)});
+  if (verdict.listed) {
+    o.counters.push_back({"found", count(verdict.found)});
+    o.counters.push_back({"missed", count(verdict.missed)});
+    o.counters.push_back({"extra", count(verdict.extra)});
   } else {
-    o.counters.push_back({"pairs that meet", count(answer.found)});
+    o.counters.push_back({"pairs that meet", count(verdict.found)});
   }
   o.key = {{LegendItem::Mark::translucent, with_alpha(palette::body(Side::a), 110), "A"},
            {LegendItem::Mark::translucent, with_alpha(palette::body(Side::b), 110), "B"}};
   const auto add = [&](Mark m, const char* name) {
     if (s.shows(m)) o.key.push_back({LegendItem::Mark::solid, colour_of(m), name});
   };
-  add(Mark::found, answer.listed ? "found: expected and answered" : "expected");
+  add(Mark::found, verdict.listed ? "found: expected and answered" : "expected");
   add(Mark::missed, "missed: expected, not answered");
   add(Mark::extra, "extra: answered, not expected");
   return o;
@@ -414,24 +234,14 @@ Overlay overlay_of(const Subject& s, const Answer& answer, const WorstCaseText& 
 
 }  // namespace
 
-Rgba found_colour() {
-  return palette::kGreen;
-}
-Rgba missed_colour() {
-  return palette::kContact;
-}
-Rgba extra_colour() {
-  return {150, 60, 170};
-}
-
 Image worst_case_picture(const families::Case& c, std::span<const SimplexPair> expected,
                          const std::optional<Pairs>& answered, const WorstCaseText& text,
                          Rasterizer& rasterizer) {
-  const Answer answer = compare(expected, answered);
-  const Subject subject(c, answer);
-  const Overlay overlay = overlay_of(subject, answer, text);
+  const Verdict verdict = compare(expected, answered);
+  const Subject subject(c, verdict);
+  const Overlay overlay = overlay_of(subject, verdict, text);
   const PixelRect place = lay_out(overlay, kWidth, kHeight).picture;
-  return compose_frame(both_views(subject, answer, place.width, place.height, rasterizer), place, overlay,
+  return compose_frame(both_views(subject, verdict, place.width, place.height, rasterizer), place, overlay,
                        kWidth, kHeight);
 }
 
