@@ -79,16 +79,6 @@ const char* words(Outcome o) {
   return "";
 }
 
-std::string answer_text(const Record& r) {
-  std::string out = words(r.outcome);
-  if (r.missed + r.extra > 0)
-    out += ": " + group_digits(r.missed) + " missed, " + group_digits(r.extra) + " in excess";
-  else if (r.outcome == Outcome::wrong && r.relation != r.expected_relation)
-    out += ": " + r.relation + " instead of " + r.expected_relation;
-  if (!r.message.empty()) out += ": " + r.message;
-  return out;
-}
-
 PageGridDetail page_detail(const Grid& grid, std::size_t f, std::size_t m, const ReportOptions& options) {
   const Record& r = *grid.at(f, m).worst;
   const FamilyRow& family = grid.families[f];
@@ -212,6 +202,16 @@ void check(const Grid& grid) {
 }
 
 }  // namespace
+
+std::string answer_text(const Record& r) {
+  std::string out = words(r.outcome);
+  if (r.missed + r.extra > 0)
+    out += ": " + group_digits(r.missed) + " missed, " + group_digits(r.extra) + " in excess";
+  else if (r.outcome == Outcome::wrong && r.relation != r.expected_relation)
+    out += ": " + r.relation + " instead of " + r.expected_relation;
+  if (!r.message.empty()) out += ": " + r.message;
+  return out;
+}
 
 Page stability_page(const Grid& grid, const std::string& folder, const ReportOptions& options) {
   check(grid);

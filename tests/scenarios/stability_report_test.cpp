@@ -18,7 +18,9 @@
 #include "scenarios/shapes/shapes.hpp"
 #include "scenarios/stability/cell_summary.hpp"
 #include "scenarios/stability/print.hpp"
+#include "scenarios/stability/subject.hpp"
 #include "scenarios/stability/worst_case.hpp"
+#include "scenarios/stability/worst_pictures.hpp"
 #include "tests/scenarios/made_up_grid.hpp"
 
 using namespace lrb;
@@ -309,6 +311,33 @@ TEST_CASE("what cannot be drawn is refused") {
   c = boxes();
   const std::vector<SimplexPair> wild = {{0, 99999}};
   CHECK_THROWS_AS(worst_case_picture(c, wild, std::nullopt, {}, rasterizer), InputError);
+}
+
+TEST_CASE("every cell that failed gets a picture, and the old ones go") {
+  const std::string folder = scratch_folder("worst");
+  std::filesystem::create_directories(folder + "/worst");
+  write_text(folder + "/worst/of-an-earlier-run.png", "old");
+  Grid grid = made_up_grid();
+  for (std::size_t i = 0; i < grid.cells.size(); ++i)
+    if (i / grid.methods.size() > 2) grid.cells[i].worst.reset();  // few are enough
+  grid.cells[1].worst->family = "none of ours";
+  std::size_t asked = 0;
+  const std::vector<std::string> pictures = draw_worst_cases(grid, folder, [&](const Record& r) {
+    ++asked;
+    const families::Case c =
+        families::make_case(*families::find_family(r.family), r.seed, r.dial, r.case_index);
+    return AnsweredPairs{brute_force(*c.a, c.pose_a, *c.b, c.pose_b).pairs, Pairs{}};
+  });
+  REQUIRE(pictures.size() == grid.cells.size());
+  std::size_t drawn = 0;
+  for (std::size_t i = 0; i < pictures.size(); ++i) {
+    CHECK(pictures[i].empty() == (!grid.cells[i].worst || i == 1));
+    if (!pictures[i].empty()) CHECK(read_png(folder + "/" + pictures[i]).image.width() > 1000);
+    drawn += pictures[i].empty() ? 0 : 1;
+  }
+  CHECK(drawn > 5);
+  CHECK(asked == drawn);
+  CHECK_FALSE(std::filesystem::exists(folder + "/worst/of-an-earlier-run.png"));
 }
 
 TEST_CASE("every family's cases can be drawn at both ends of the dial") {
