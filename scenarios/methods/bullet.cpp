@@ -51,6 +51,9 @@ class Bullet : public Method {
  public:
   Bullet() : dispatcher_(&configuration_), world_(&dispatcher_, &broadphase_, &configuration_) {
     btGImpactCollisionAlgorithm::registerAlgorithm(&dispatcher_);
+    // That is not enough: contactPairTest() looks in a second table, and answers "nothing" if it finds
+    // nothing.
+    dispatcher_.registerClosestPointsCreateFunc(GIMPACT_SHAPE_PROXYTYPE, GIMPACT_SHAPE_PROXYTYPE, &create_);
   }
 
   std::unique_ptr<MethodBody> build(const LrbRep& rep) override {
@@ -94,6 +97,7 @@ class Bullet : public Method {
   }
 
  private:
+  btGImpactCollisionAlgorithm::CreateFunc create_;
   btDefaultCollisionConfiguration configuration_;
   btCollisionDispatcher dispatcher_;
   btDbvtBroadphase broadphase_;
@@ -109,9 +113,11 @@ MethodEntry bullet() {
                std::to_string(BT_BULLET_VERSION % 100) + ", GImpact, " + (kSingle ? "float" : "double");
   info.remark =
       std::string(
-          "All pairs: contactPairTest() of two btGImpactMeshShapes with margin 0; a pair for "
-          "every contact point's triangles. ") +
-      (kSingle ? "Single precision, as Bullet is by default; coordinates beyond its range are not asked. "
+          "All pairs: contactPairTest() of two btGImpactMeshShapes with margin 0; a pair for the triangles "
+          "of each "
+          "contact point. Contact means penetration to it: triangles that lie behind each other are "
+          "reported too, and count as wrong. ") +
+      (kSingle ? "Single precision, Bullet's default; beyond its range it is not asked. "
                : "Debian's build in double precision. ") +
       "Does not look for bodies inside bodies; 3D only.";
   return {info, []() -> std::unique_ptr<Method> { return std::make_unique<Bullet>(); }};
