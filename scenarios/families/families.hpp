@@ -28,6 +28,9 @@ struct Family {
   const char* name;  ///< the class in the table
   const char* what;
   Case (*make)(Random& random, double dial);
+  const char* benign = "";      ///< what dial 0 means: "1e-1 apart"
+  const char* degenerate = "";  ///< what dial 1 means: "exactly in contact"
+  bool both_ways = false;       ///< the question is whether exchanging A and B transposes the answer
 };
 
 std::span<const Family> all_families();
