@@ -84,8 +84,8 @@ std::string breakable(const std::string& text) {
 }
 
 std::string column_html(const PageGridHead& head) {
-  std::string out = std::string("<th scope=\"col\"") + (head.faint ? " class=\"faint\"" : "") + "><b>" +
-                    breakable(head.title) + "</b>";
+  std::string out = std::string("<th scope=\"col\"") + (head.faint ? " class=\"faint\"" : "") + " title=\"" +
+                    escape_markup(head.text) + "\"><b>" + breakable(head.title) + "</b>";
   if (!head.text.empty()) out += "<small>" + escape_markup(head.text) + "</small>";
   return out + "</th>";
 }
@@ -164,6 +164,11 @@ std::string grid_html(const PageGrid& grid) {
     out += "</tr>\n";
   }
   out += "</tbody></table></div>\n";
+  out += "<dl class=\"columns\">";  // in full, what the heads have no room for
+  for (const PageGridHead& c : grid.columns)
+    if (!c.text.empty())
+      out += "<div><dt>" + breakable(c.title) + "</dt><dd>" + escape_markup(c.text) + "</dd></div>";
+  out += "</dl>\n";
   if (!grid.note.empty()) out += "<p class=\"note\">" + escape_markup(grid.note) + "</p>\n";
   out += "</section>\n";
   if (!grid.details.empty())

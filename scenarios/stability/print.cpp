@@ -122,7 +122,8 @@ void add_cell(Sheet& sheet, const Cell& cell, double x, double y) {
   const CellSummary s = summarise(cell);
   sheet.rect(x + kGap, y + kGap, x + 1 - kGap, y + 1 - kGap,
              s.only_refused() ? kOnlyRefused : kLevels[static_cast<std::size_t>(s.level())]);
-  sheet.text(x + 0.06, y + 0.8, Sheet::small, std::to_string(s.failures()) + "/" + std::to_string(s.cases));
+  sheet.text(x + 0.06, y + 0.8, Sheet::small,
+             std::to_string(s.failures()) + "/" + std::to_string(s.answered()));
   std::string marks;
   const auto mark = [&](std::uint64_t n, const char* sign) {
     if (n > 0) marks += (marks.empty() ? "" : " ") + (sign + std::to_string(n));
@@ -136,11 +137,14 @@ void add_cell(Sheet& sheet, const Cell& cell, double x, double y) {
   add_bars(sheet, cell, x, y);
 }
 
+std::string ends_of(const FamilyRow& family) {
+  if (family.benign.empty() && family.degenerate.empty()) return " ";
+  return family.benign + " \u2192 " + family.degenerate;
+}
+
 void add_row_head(Sheet& sheet, const FamilyRow& family, double y) {
   sheet.text(-0.08, y + 0.68, Sheet::bold, family.name);
-  if (!family.benign.empty() || !family.degenerate.empty())
-    sheet.text(-0.08, y + 0.3, Sheet::small_right, family.benign + " \u2192 " + family.degenerate,
-               palette::kFaint);
+  sheet.text(-0.08, y + 0.3, Sheet::small_right, ends_of(family), palette::kFaint);
 }
 
 void add_column_head(Sheet& sheet, const MethodColumn& method, double x) {
@@ -172,7 +176,7 @@ void add_legend(Sheet& sheet, double y, double columns) {
   item(kTimedOut, "\u25f7 timed out");
   item(kRefused, "\u2298 refused");
   sheet.text(-kLeft + 0.1, y - 0.42, Sheet::small,
-             "Failures of cases; bars: share of cases along the dial, benign to degenerate.",
+             "Failures/cases not refused; bars: share of cases along the dial, benign to degenerate.",
              palette::kFaint);
 }
 
@@ -197,8 +201,8 @@ std::string margins(double left, double right, double bottom, double top) {
 
 std::string panel_heading(const FamilyRow& family, bool first) {
   std::string out = "set title " + gnuplot_text(family.name) + " font 'DejaVu Sans Bold,6.5' offset 0,-0.6\n";
-  out += "set xlabel " + gnuplot_text(family.benign + " \u2192 " + family.degenerate) +
-         " offset 0,0.8 font 'DejaVu Sans,5' tc rgb '#62676e'\n";
+  out +=
+      "set xlabel " + gnuplot_text(ends_of(family)) + " offset 0,0.8 font 'DejaVu Sans,5' tc rgb '#62676e'\n";
   return out + (first ? "set ylabel 'failures, %' offset 1.5,0\n" : "unset ylabel\n");
 }
 

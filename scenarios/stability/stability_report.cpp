@@ -19,7 +19,7 @@ std::string count_of(std::uint64_t n, const char* one, const char* many) {
 }
 
 std::string sentence(const CellSummary& s) {
-  std::string out = group_digits(s.failures()) + " of " + count_of(s.cases, "case fails", "cases fail");
+  std::string out = group_digits(s.failures()) + " of " + count_of(s.answered(), "case fails", "cases fail");
   const auto add = [&](std::uint64_t n, const std::string& what) {
     if (n > 0) out += ", " + group_digits(n) + " " + what;
   };
@@ -38,7 +38,7 @@ PageGridCell page_cell(const Cell& cell, const std::string& where) {
   PageGridCell out;
   out.level = s.only_refused() ? PageGridCell::kOnlyRefused : s.level();
   out.count = group_digits(s.failures());
-  out.of = "of " + group_digits(s.cases);
+  out.of = s.answered() > 0 ? "of " + group_digits(s.answered()) : "refused";
   const auto mark = [](std::uint64_t n) { return n > 0 ? group_digits(n) : std::string(); };
   out.marks = {"", mark(s.crashed), mark(s.timed_out), mark(s.refused)};
   out.label = where + ": " + sentence(s);
@@ -156,7 +156,8 @@ PageGrid page_grid(const Grid& grid, const std::string& folder, const ReportOpti
     out.cells.push_back(std::move(cell));
   }
   out.note =
-      "In each cell: failures of cases, and below them one bar per setting of the dial, benign on the left, "
+      "In each cell: failures of the cases that were not refused, and below them one bar per setting of the "
+      "dial, benign on the left, "
       "degenerate on the right; its height is the share of that setting's cases. A cell that leads to its "
       "worst "
       "case can be clicked; arrow keys then go from case to case.";
