@@ -37,8 +37,8 @@ PageGridCell page_cell(const Cell& cell, const std::string& where) {
   const CellSummary s = summarise(cell);
   PageGridCell out;
   out.level = s.only_refused() ? PageGridCell::kOnlyRefused : s.level();
-  out.count = group_digits(s.failures());
-  out.of = s.answered() > 0 ? "of " + group_digits(s.answered()) : "refused";
+  out.count = s.answered() > 0 ? group_digits(s.failures()) : "\u2013";
+  out.of = s.answered() > 0 ? "of " + group_digits(s.answered()) : "all refused";
   const auto mark = [](std::uint64_t n) { return n > 0 ? group_digits(n) : std::string(); };
   out.marks = {"", mark(s.crashed), mark(s.timed_out), mark(s.refused)};
   out.label = where + ": " + sentence(s);
