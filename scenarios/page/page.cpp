@@ -100,8 +100,11 @@ std::string charts_html(const Page& page) {
   return out + "</section>\n";
 }
 
+constexpr std::size_t kProse = 60;  // characters: longer cells are broken into lines
+
 bool looks_numeric(std::string_view cell) {
-  return !cell.empty() && cell.find_first_not_of("0123456789.,+-eE %x") == std::string_view::npos;
+  return cell.find_first_of("0123456789") != std::string_view::npos &&
+         cell.find_first_not_of("0123456789.,+-eE %x") == std::string_view::npos;
 }
 
 std::string tables_html(const Page& page) {
@@ -115,8 +118,11 @@ std::string tables_html(const Page& page) {
     out += "</tr></thead><tbody>\n";
     for (const auto& row : t.rows) {
       out += "<tr>";
-      for (const std::string& cell : row)
-        out += std::string(looks_numeric(cell) ? "<td class=\"n\">" : "<td>") + escape_markup(cell) + "</td>";
+      for (const std::string& cell : row) const bool prose = cell.size() > kProse;
+      out += std::string(looks_numeric(cell) ? "<td class=\"n\">"
+                         : prose             ? "<td class=\"prose\">"
+                                             : "<td>") +
+             escape_markup(cell) + "</td>";
       out += "</tr>\n";
     }
     out += "</tbody></table></div>";
