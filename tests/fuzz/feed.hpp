@@ -10,7 +10,8 @@ namespace lrb::fuzz {
 
 /// The first byte chooses the extension of the name, the rest are the file.
 bool feed_mesh(std::string_view bytes);
-/// The first byte says whether the checksum is put right, the rest are the file.
+/// The first byte says whether the checksum is put right (its lowest bit) and what is then done with the body
+/// (the next two), the rest are the file.
 bool feed_lrb(std::string_view bytes);
 bool feed_poses(std::string_view bytes);
 bool feed_scenario(std::string_view bytes);

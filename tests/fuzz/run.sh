@@ -23,8 +23,8 @@ cmake --build "$build" --target fuzz_seeds "${formats[@]/#/fuzz_}"
 mkdir -p "$dir/found"
 for format in "${formats[@]}"; do
   mkdir -p "$dir/corpus/$format"
-  options=(-timeout=10 -rss_limit_mb=2048 -max_len=2048 -print_final_stats=1 -verbosity=0 "$bound")
-  [ "$format" = trace ] && options+=(-max_len=10240)
+  options=(-timeout=10 -rss_limit_mb=2048 -max_len=1536 -print_final_stats=1 -verbosity=0 "$bound")
+  [ "$format" = trace ] && options+=(-max_len=4096)
   [ -f "tests/fuzz/$format.dict" ] && options+=(-dict="tests/fuzz/$format.dict")
   begin=$SECONDS
   if ! "$build/tests/fuzz_$format" "${options[@]}" -artifact_prefix="$dir/found/$format-" "$dir/corpus/$format" \
