@@ -11,7 +11,9 @@
 #include "scenarios/files.hpp"
 #include "scenarios/stability/experiment.hpp"
 #include "scenarios/stability/record_json.hpp"
+#include "scenarios/stability/stability_report.hpp"
 #include "scenarios/stability/table.hpp"
+#include "scenarios/stability/worst_pictures.hpp"
 
 namespace lrb::cli {
 namespace {
@@ -129,6 +131,37 @@ Grid run_grid(const StabilityOptions& o, const std::vector<WorkerMethod>& method
   return grid;
 }
 
+std::string command_of(const Record& r) {
+  return "lrbscope stability --family " + r.family + " --method " + r.method + " --dial " +
+         std::to_string(r.dial) + " --only " + std::to_string(r.case_index) + " --seed " +
+         std::to_string(r.seed) + " --pairs";
+}
+
+/// The page and its pictures, for which the worst cases are asked again.
+void write_report(const StabilityOptions& o, const std::vector<WorkerMethod>& methods, const Grid& grid,
+                  const Globals& globals) {
+  Progress bar("pictures", 0, globals.quiet);
+  ReportOptions report;
+  report.pictures = draw_worst_cases(
+      grid, o.folder,
+      [&](const Record& r) {
+        const auto method = std::find_if(methods.begin(), methods.end(),
+                                         [&](const WorkerMethod& m) { return m.column.name == r.method; });
+        Replay again = replay(*method, r.family, r.dial, r.case_index, r.seed, o.timeout);
+        return AnsweredPairs{std::move(again.expected), std::move(again.answered)};
+      },
+      [&](std::size_t done, std::size_t total) {
+        bar.set_total(total);
+        bar.set(done, "worst cases");
+      });
+  bar.finish();
+  report.command = command_of;
+  report.links = {{"records.jsonl", "records.jsonl", "every answer of every method, one JSON object a line"}};
+  const ReportFiles files = write_stability_report(grid, o.folder, report);
+  if (!files.missing.empty()) std::cerr << "lrbscope: " << files.missing << "\n";
+  for (const std::string& f : files.written) print(o.folder + "/" + f + "\n");
+}
+
 /// Ours must not fail; others may.
 bool ours_failed(const Grid& grid) {
   for (std::size_t m = 0; m < grid.methods.size(); ++m)
@@ -148,6 +181,7 @@ int run_stability(const StabilityOptions& o, const Globals& globals) {
   const Grid grid = run_grid(o, methods, families, globals);
   print(table(grid));
   print(o.folder + "/records.jsonl\n");
+  write_report(o, methods, grid, globals);
   if (!ours_failed(grid)) return kOk;
   std::cerr << "lrbscope: mismatch: our own answers differ from exact brute force\n";
   return kMismatch;
