@@ -249,6 +249,19 @@ TEST_CASE("judging") {
   CHECK(r.missed == 1);
   CHECK(r.extra == 1);
 
+  info.loose = true;  // pairs too many are no fault of a list that is meant to have them
+  judge(r, info, answer, expected);
+  CHECK(r.outcome == Outcome::wrong);
+  answer.pairs = {{0, 1}, {2, 3}, {4, 4}};
+  judge(r, info, answer, expected);
+  CHECK(r.outcome == Outcome::right);
+  CHECK(r.extra == 1);
+  judge(r, info, answer, Expected{});
+  CHECK(r.outcome == Outcome::wrong);
+  info.loose = false;
+  judge(r, info, answer, expected);
+  CHECK(r.outcome == Outcome::wrong);
+
   info.pairs = false;  // only yes or no, and that is right
   answer.inside = false;
   judge(r, info, answer, expected);
