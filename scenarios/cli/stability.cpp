@@ -202,12 +202,14 @@ Command add_stability(CLI::App& root, const Globals& globals) {
   app->add_option("--cases", o->cases, "Cases for each setting [100]")
       ->check(CLI::Range(1, 1000000))
       ->type_name("N");
-  app->add_option("--seed", o->seed, "Of the cases [1]")->type_name("S");
+  app->add_option("--seed", o->seed, "Of the cases [1]")->check(CLI::NonNegativeNumber)->type_name("S");
   app->add_option("--jobs", o->jobs, "Processes at a time [2]")->check(CLI::Range(1, 256))->type_name("N");
   app->add_option("--timeout", o->timeout, "Seconds that a method has for a case [5]")
       ->check(CLI::Range(0.1, 3600.0))
       ->type_name("S");
-  app->add_option("--only", o->only, "Ask this case again and say what came out")->type_name("CASE");
+  app->add_option("--only", o->only, "Ask this case again and say what came out")
+      ->check(CLI::NonNegativeNumber)
+      ->type_name("CASE");
   app->add_flag("--pairs", o->pairs, "With --only: the pairs expected and answered");
   return {app, [o, &globals] { return run_stability(*o, globals); }};
 }

@@ -116,7 +116,8 @@ Case make_touch(Random& random, double dial) {
     c.pose_b.t = start + middle * away;
     (in_contact(c) ? near : far) = middle;
   }
-  c.pose_b.t = start + (random() % 2 ? near : far) * away;
+  // Vertex on vertex, from where it began, is another family's.
+  c.pose_b.t = start + (random() % 2 && near > 0 ? near : far) * away;
   return c;
 }
 

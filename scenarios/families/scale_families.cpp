@@ -173,7 +173,7 @@ Case make_matrix(Random& random, double dial) {
   // Aims a vertex of one at a vertex of the other, more or less.
   const Vector3d x = c.pose_a.r * c.a->vertices()[random() % c.a->vertices().size()];
   const Vector3d y = c.pose_b.r * c.b->vertices()[random() % c.b->vertices().size()];
-  c.pose_b.t = x - y + 0.3 * uniform(random) * x.norm() * shapes::random_direction(random);
+  c.pose_b.t = x - y + uniform(random, 0.02, 0.3) * (0.5 + x.norm()) * shapes::random_direction(random);
   return c;
 }
 

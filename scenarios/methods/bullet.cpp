@@ -111,12 +111,13 @@ MethodEntry bullet() {
   info.name = kSingle ? "bullet" : "bullet-double";
   info.title = "Bullet " + std::to_string(BT_BULLET_VERSION / 100) + "." +
                std::to_string(BT_BULLET_VERSION % 100) + ", GImpact, " + (kSingle ? "float" : "double");
+  info.loose = true;
   info.remark =
       std::string(
           "All pairs: contactPairTest() of two btGImpactMeshShapes with margin 0; a pair for the triangles "
-          "of each "
-          "contact point. Contact means penetration to it: triangles that lie behind each other are "
-          "reported too, and count as wrong. ") +
+          "of "
+          "each contact point. Contact means penetration to it, so that it lists triangles behind each other "
+          "too: those are counted, but wrong only where the bodies do not meet. ") +
       (kSingle ? "Single precision, Bullet's default; beyond its range it is not asked. "
                : "Debian's build in double precision. ") +
       "Does not look for bodies inside bodies; 3D only.";

@@ -24,7 +24,10 @@ struct MethodInfo {
   std::string title;   ///< for people, with the version: "FCL 0.7.0, OBBRSS, double"
   std::string remark;  ///< what it answers, and how it was asked
   bool present = true;
-  bool pairs = true;          ///< lists the pairs; else it says only whether the surfaces meet
+  bool pairs = true;  ///< lists the pairs; else it says only whether the surfaces meet
+  /// Its list is of pairs that are near or behind each other too, by what contact means to it: pairs too many
+  /// are counted, but wrong only where the bodies do not meet at all.
+  bool loose = false;
   Says says = Says::nothing;  ///< besides
   bool plane = false;         ///< takes 2D bodies
   /// Moves vertices exactly as Pose::apply does. The others can be given the same question only with world

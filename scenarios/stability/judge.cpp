@@ -40,8 +40,8 @@ void compare_contact(Record& record, bool answered, bool expected) {
   record.extra = answered && !expected;
 }
 
-void conclude(Record& record, bool relation_matters) {
-  const bool right = record.missed == 0 && record.extra == 0 &&
+void conclude(Record& record, bool relation_matters, bool extra_matters = true) {
+  const bool right = record.missed == 0 && (record.extra == 0 || !extra_matters) &&
                      (!relation_matters || record.relation == record.expected_relation);
   record.outcome = right ? Outcome::right : Outcome::wrong;
 }
@@ -67,7 +67,8 @@ void judge(Record& record, const MethodInfo& info, const MethodAnswer& answer, c
     record.expected_relation = in_brief(!expected.pairs.empty(), is_inside(expected.relation));
   }
   // Of bodies that are not closed only the surfaces can be asked about.
-  conclude(record, answer.relation || expected.relation != Relation::undefined);
+  conclude(record, answer.relation || expected.relation != Relation::undefined,
+           !info.loose || expected.pairs.empty());
 }
 
 void judge_swapped(Record& record, const MethodInfo& info, const MethodAnswer& answer,
