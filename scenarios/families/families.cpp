@@ -35,6 +35,11 @@ constexpr Family kFamilies[] = {
     {"voxels", "random cells of one grid: interiors overlap exactly if a cell is shared", make_voxels},
     {"plane", "2D bodies, random cells of one grid among them", make_plane},
     {"dirty", "open, duplicated, zero-area, turned and crossing faces", make_dirty},
+    {"kiss", "cubes that share a face, an edge, a vertex; the same a gap apart, a gap inside", make_kiss},
+    {"nested", "shell in shell in shell, solid by parity, with pieces in the walls and between them",
+     make_nested},
+    {"polygon", "faces with thousands of corners, convex and not", make_polygon},
+    {"fractal", "sponges, dented cubes and hubs of hundreds of faces against plugs that fit", make_fractal},
 };
 
 }  // namespace
