@@ -165,8 +165,8 @@ Case make_polygon(Random& random, double dial) {
   Case c{bodies[std::min(largest, static_cast<std::size_t>(4 * dial))], any_body(random), {}, {}, {}, {}};
   const int kind = pick(random, 0, 3);
   if (kind == 0) {  // one many-cornered end on another's: the answer is quadratic
-    c.a = bodies[random() % 16 == 0];
-    c.b = bodies[random() % 16 == 0];
+    c.a = bodies[random() % 64 == 0];
+    c.b = bodies[random() % 64 == 0];
     c.pose_b =
         Pose::rotation({0, 0, 1}, random() % 2 ? 0 : uniform(random), {0, 0, pick(random, -1, 1) * 1.0});
   } else if (kind == 1) {  // something stands on an end

@@ -34,7 +34,11 @@ class Comparison {
     ++t_.poses;
     try {
       CollideRequest everything;
-      everything.contacts = everything.interiors_overlap = true;
+      everything.contacts = true;
+      // For large bodies this takes longer than all else together.
+      everything.interiors_overlap = c_.interiors_overlap.has_value() ||
+                                     simplex_pairs() <= effort_.small_pairs ||
+                                     random_() % effort_.interiors_every == 0;
       all_ = ask(everything, false);
     } catch (const InputError& e) {
       ++t_.refusals;
@@ -82,10 +86,12 @@ class Comparison {
       complain(t_.crashes, "a refusal must name the vertex in one line: " + what);
   }
 
+  std::uint64_t simplex_pairs() const {
+    return std::uint64_t{c_.a->real_simplex_count()} * std::uint64_t{c_.b->real_simplex_count()};
+  }
+
   void ask_brute_force() {
-    const std::uint64_t pairs =
-        std::uint64_t{c_.a->real_simplex_count()} * std::uint64_t{c_.b->real_simplex_count()};
-    const bool small = pairs <= effort_.brute_force_pairs;
+    const bool small = simplex_pairs() <= effort_.brute_force_pairs;
     if (small) brute_ = brute_force(*c_.a, c_.pose_a, *c_.b, c_.pose_b);
     const bool both = small && random_() % 8 == 0;
     if (small && !both) return;

@@ -37,6 +37,10 @@ struct Effort {
   std::uint32_t regions_most_simplices = 700;
   /// Above so many pairs of simplices brute force sorts boxes first (sweep_oracle.hpp).
   std::uint64_t brute_force_pairs = 20000;
+  /// Above so many pairs of simplices one case in so many is asked whether interiors overlap, unless it is
+  /// known.
+  std::uint64_t small_pairs = 200;
+  std::uint64_t interiors_every = 8;
 };
 
 /// `trouble` gets a line for each difference.
