@@ -24,6 +24,10 @@ inline constexpr Rgba kInk{28, 30, 34};
 inline constexpr Rgba kFaint{110, 114, 120};
 inline constexpr Rgba kRule{205, 208, 212};
 
+/// Faces that are not what the picture is about: their fronts, and their backs.
+inline constexpr Rgba kPaleFront{233, 235, 238};
+inline constexpr Rgba kPaleBack{178, 170, 160};
+
 /// Contacts: darker than vermillion, so that they stand out from both bodies also in grey.
 inline constexpr Rgba kContact{196, 18, 48};
 inline constexpr Rgba kRefining = kGreen;

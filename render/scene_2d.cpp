@@ -66,7 +66,8 @@ class Builder {
     if (ghost) fill.colour = mix(fill.colour, kWhite, kGhost);
     for (FaceId f = 0; f < rep_.real_face_count(); ++f) add_segment(fill, f, Vector3d::Zero());
     c_.out.list.fills.push_back(std::move(fill));
-    c_.add_key(Mark::solid, palette::solid_2d(body_), c_.name() + ", the solid");
+    c_.add_key(Mark::solid, c_.out.list.fills.back().colour,
+               c_.name() + (ghost ? ", the rest" : ", the solid"));
     std::vector<FaceId> real(rep_.real_face_count());
     for (FaceId f = 0; f < real.size(); ++f) real[f] = f;
     if (c_.options.colour_by == ColourBy::value && !c_.body.face_values.empty()) {

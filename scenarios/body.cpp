@@ -15,9 +15,12 @@ double seconds_since(std::chrono::steady_clock::time_point begin) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 }
 
-std::string joined(const std::vector<std::string>& lines) {
+/// A mesh's findings on one line, its name said once, before them.
+std::string joined(const Mesh& mesh, const std::vector<std::string>& lines) {
+  const std::string name = mesh.name + ": ";
   std::string out;
-  for (const std::string& line : lines) out += (out.empty() ? "" : "; ") + line;
+  for (const std::string& line : lines)
+    out += (out.empty() ? "" : " | ") + (line.starts_with(name) ? line.substr(name.size()) : line);
   return out;
 }
 
@@ -41,15 +44,16 @@ bool is_lrb_file(const std::string& path) {
 LrbRep build_from_mesh(Mesh mesh, const BuildOptions& options, std::vector<std::string>& notes) {
   const MeshReport report = check_mesh(mesh, false);
   if (!report.buildable())
-    throw InputError(mesh.name + ": cannot be an LRB-rep: " + joined(report.lines(mesh)) +
-                     "; it can still be queried, not built");
+    throw InputError(mesh.name + ": cannot be an LRB-rep: " + joined(mesh, report.obstacles(mesh)) +
+                     " | it can still be queried, not built");
   turn_outward(mesh, notes);
   return build_lrb(mesh, options);
 }
 
 LoadedBody body_of_mesh(Mesh mesh, const BuildOptions& options) {
   const MeshReport report = check_mesh(mesh);
-  if (!report.queryable()) throw InputError(mesh.name + ": cannot be queried: " + joined(report.lines(mesh)));
+  if (!report.queryable())
+    throw InputError(mesh.name + ": cannot be queried: " + joined(mesh, report.lines(mesh)));
   const bool self_intersecting = report[MeshFault::self_intersection].count > 0;
   std::vector<std::string> notes;
   if (report.buildable()) {
@@ -58,9 +62,9 @@ LoadedBody body_of_mesh(Mesh mesh, const BuildOptions& options) {
     LrbRep rep = build_lrb(mesh, options);
     return {std::move(rep), std::move(notes), seconds_since(begin)};
   }
-  notes.push_back(mesh.name +
-                  ": queried without regions, because it cannot have any: " + joined(report.lines(mesh)));
-  return {LrbRep::without_regions(mesh, report.closed, self_intersecting), std::move(notes), 0};
+  notes.push_back(mesh.name + ": queried without regions, because it cannot have any: " +
+                  joined(mesh, report.obstacles(mesh)));
+  return {LrbRep::without_regions(mesh, report.bounds_solid, self_intersecting), std::move(notes), 0};
 }
 
 LoadedBody load_body(const std::string& path, const BuildOptions& options) {

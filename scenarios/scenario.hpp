@@ -2,6 +2,7 @@
 /// A scenario: two bodies (or one), how they move, what is asked, recorded and drawn, and what must come out.
 /// The file format is described by schema/scenario.schema.json.
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -67,7 +68,7 @@ struct FrameSpec {
     Eigen::Vector3d up{0, 0, 1};
     double turn_degrees = 0;  ///< orbit: over all frames
     double zoom = 1;          ///< above 1: closer
-    bool wrapper = true;                      ///< false: the bodies alone, without the lids of their wrappers
+    bool wrapper = true;      ///< false: the bodies alone, without the lids of their wrappers
     std::string title;
   };
   At at = At::step;
@@ -79,9 +80,12 @@ struct FrameSpec {
   ColourBy colour_by = ColourBy::kind;
   std::vector<View> views;  ///< side by side; none: one of the whole scene
   bool transparent = false;
-  double explode = 0;                 ///< regions moved outward by this share of their distance
-  std::uint32_t montage = 0;          ///< panels of the montage, evenly chosen; 0: no montage
-  std::uint32_t montage_columns = 0;  ///< 0: nearly square
+  std::array<std::vector<RegionId>, 2> isolate;  ///< regions of A and B to show alone; none: everything
+  bool ghost_rest = true;                        ///< of the rest, where some are: a ghost, or nothing
+  bool svg = false;                              ///< each view of a frame as SVG as well (2D)
+  double explode = 0;                            ///< regions moved outward by this share of their distance
+  std::uint32_t montage = 0;                     ///< panels of the montage, evenly chosen; 0: no montage
+  std::uint32_t montage_columns = 0;             ///< 0: nearly square
 };
 
 struct Expectation {

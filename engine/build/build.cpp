@@ -1,7 +1,5 @@
 #include "engine/build/build.hpp"
 
-#include <algorithm>
-
 #include "engine/build/chain_builder.hpp"
 #include "engine/build/patch_builder.hpp"
 #include "engine/error.hpp"
@@ -14,13 +12,10 @@ namespace {
 
 /// All that forbids an LRB-rep, on one line.
 std::string refusal(const Mesh& mesh, const MeshReport& report) {
+  std::vector<std::string> lines = report.obstacles(mesh);
+  if (lines.empty()) lines = report.lines(mesh);  // inside out: can be built, but not as it is
   std::string text;
-  for (std::size_t i = 0; i < kMeshFaultCount; ++i) {
-    MeshReport alone;
-    alone.findings[i] = report.findings[i];
-    if (alone.buildable() && static_cast<MeshFault>(i) != MeshFault::inside_out) continue;
-    for (const std::string& line : alone.lines(mesh)) text += (text.empty() ? "" : " | ") + line;
-  }
+  for (const std::string& line : lines) text += (text.empty() ? "" : " | ") + line;
   return text;
 }
 
@@ -31,20 +26,17 @@ LrbRep build_lrb(const Mesh& mesh, const BuildOptions& options) {
   if (!report.buildable() || report[MeshFault::inside_out].count > 0) throw InputError(refusal(mesh, report));
   MeshReport unused;
   const std::vector<FaceUse> use = check_faces(mesh, unused);
-  std::vector<FaceId> meeting;
-  find_self_intersections(mesh, use, [&](FaceId f, FaceId g) { meeting.insert(meeting.end(), {f, g}); });
-  std::sort(meeting.begin(), meeting.end());
-  meeting.erase(std::unique(meeting.begin(), meeting.end()), meeting.end());
-  bool crossing = false;
+  const std::vector<FaceId> meeting = self_intersecting_faces(mesh, use);
+  bool overlapping = false;
   if (!meeting.empty()) {
     const auto meets = [&](FaceId f) { return std::binary_search(meeting.begin(), meeting.end(), f); };
-    find_crossings(
-        mesh, use, [&](FaceId f, FaceId g) { return !crossing && meets(f) && meets(g); },
-        [&](FaceId, FaceId) { crossing = true; });
+    find_overlaps(
+        mesh, use, [&](FaceId f, FaceId g) { return !overlapping && meets(f) && meets(g); },
+        [&](FaceId, FaceId) { overlapping = true; });
   }
   LrbData data =
       mesh.dim == 2 ? build_by_chains(mesh, meeting, options) : build_by_patches(mesh, meeting, options);
-  data.self_intersecting = crossing;
+  data.self_intersecting = overlapping;
   return LrbRep(std::move(data));
 }
 

@@ -40,7 +40,7 @@ struct LrbData {
   std::vector<CellId> outer_cell;           ///< (|F|): a region or kOutside
   std::vector<std::uint16_t> region_layer;  ///< (|R|): the builder's pass that made it; 0 lies on the solid
   bool closed = false;                      ///< the real faces bound a solid: inside has a meaning
-  bool self_intersecting = false;           ///< real faces cross each other (inside is then by parity)
+  bool self_intersecting = false;           ///< the solid overlaps itself (inside is then by parity)
   std::string name;
 
   std::size_t face_count() const { return face_offsets.size() - 1; }

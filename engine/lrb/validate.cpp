@@ -104,7 +104,7 @@ class Validator {
   void judge_meeting(FaceId f, FaceId g, const double* const* cf, const double* const* cg) {
     if (rep_.is_real(f) && rep_.is_real(g)) {
       ++report_.real_pairs_meeting;
-    } else if (lies_flat_on(f, g, cf, cg) || lies_flat_on(g, f, cg, cf)) {
+    } else if (touches_from_behind(f, g, cf, cg) || touches_from_behind(g, f, cg, cf)) {
       ++report_.flat_pairs;
     } else {
       violation("faces " + std::to_string(f) + (rep_.is_real(f) ? " (real)" : " (pseudo)") + " and " +
@@ -113,14 +113,23 @@ class Validator {
     }
   }
 
-  /// The lid hides the face and both lie in one plane: the zero-volume part of a region.
-  bool lies_flat_on(FaceId lid, FaceId face, const double* const* cl, const double* const* cf) const {
-    if (!is_region(rep_.inner_cell(lid)) || rep_.inner_cell(lid) != rep_.outer_cell(face)) return false;
-    if (rep_.dim() == 2)
-      return exact::orient2d(cl[0], cl[1], cf[0]) == 0 && exact::orient2d(cl[0], cl[1], cf[1]) == 0;
-    return exact::orient3d(cl[0], cl[1], cl[2], cf[0]) == 0 &&
-           exact::orient3d(cl[0], cl[1], cl[2], cf[1]) == 0 &&
-           exact::orient3d(cl[0], cl[1], cl[2], cf[2]) == 0;
+  /// The lid hides the face, which touches it from behind and goes nowhere beyond its plane: where a rim lies
+  /// in the lid's plane, what lies behind has no thickness there.
+  bool touches_from_behind(FaceId lid, FaceId face, const double* const* cl, const double* const* cf) const {
+    if (!hides(lid, face)) return false;
+    for (int k = 0; k < rep_.dim(); ++k) {
+      const int side = rep_.dim() == 2 ? -exact::orient2d(cl[0], cl[1], cf[k])
+                                       : exact::orient3d(cl[0], cl[1], cl[2], cf[k]);
+      if (side > 0) return false;
+    }
+    return true;
+  }
+
+  bool hides(FaceId lid, FaceId face) const {
+    if (rep_.is_real(lid)) return false;
+    CellId c = rep_.outer_cell(face);
+    while (is_region(c) && c != rep_.inner_cell(lid)) c = rep_.parent(c);
+    return is_region(c);
   }
 
   void check_wrapper_states() {

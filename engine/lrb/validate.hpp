@@ -24,7 +24,8 @@ struct ValidateReport {
   std::uint64_t violation_count = 0;
   std::uint64_t real_pairs_meeting =
       0;  ///< pairs of real simplices that meet outside shared parts: the input's fault
-  std::uint64_t flat_pairs = 0;  ///< lids that lie on a face they hide, in one plane: zero volume, allowed
+  std::uint64_t flat_pairs =
+      0;  ///< faces that touch, but do not pass, a lid that hides them: zero volume, allowed
   std::uint64_t embedding_pairs = 0;                              ///< pairs of simplices tested exactly
   std::uint32_t states = 0;                                       ///< wrapper states checked
   double volume_solid = 0, volume_regions = 0, volume_outer = 0;  ///< unit cubed (2D: squared)
@@ -33,9 +34,9 @@ struct ValidateReport {
 
 /// Invariants, weakest first: every region and the solid closed, with volume >= 0 (to rounding); volumes of
 /// solid and regions add up to the outermost wrapper's; no two faces of the complex meet but in shared
-/// vertices and edges (this is the proof of embedding; a lid that lies flat on a face it hides is counted
-/// apart); every random wrapper state is closed, has the volume of its cells, and holds real vertices that it
-/// does not touch strictly inside.
+/// vertices and edges (this is the proof of embedding; a face that touches a lid which hides it, and stays
+/// behind it, is counted apart); every random wrapper state is closed, has the volume of its cells, and holds
+/// real vertices that it does not touch strictly inside.
 ValidateReport validate(const LrbRep& rep, const ValidateOptions& options = {});
 
 /// Signed volume (2D: area) behind a closed set of faces: those of `outward` taken with their normal outward,

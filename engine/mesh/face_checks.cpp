@@ -129,12 +129,27 @@ void check_duplicates(const Mesh& mesh, const std::vector<FaceUse>& use, MeshRep
   }
 }
 
-void check_unused(const Mesh& mesh, MeshReport& report) {
+void check_vertices(const Mesh& mesh, MeshReport& report) {
   std::vector<bool> used(mesh.vertices.size());
   for (const VertexId v : mesh.face_vertices)
     if (v < used.size()) used[v] = true;
   for (VertexId v = 0; v < used.size(); ++v)
     if (!used[v]) note(report, MeshFault::unused_vertex, v);
+  const auto& x = mesh.vertices;
+  std::vector<VertexId> order;
+  for (VertexId v = 0; v < x.size(); ++v)
+    if (x[v].allFinite()) order.push_back(v);
+  std::sort(order.begin(), order.end(), [&](VertexId v, VertexId w) {
+    for (int axis = 0; axis < 3; ++axis)
+      if (x[v][axis] != x[w][axis]) return x[v][axis] < x[w][axis];
+    return v < w;
+  });
+  for (std::size_t first = 0, i = 1; i < order.size(); ++i) {
+    if (x[order[first]] == x[order[i]])
+      note(report, MeshFault::duplicate_vertex, order[first], order[i]);
+    else
+      first = i;
+  }
 }
 
 }  // namespace lrb

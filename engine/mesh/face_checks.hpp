@@ -25,8 +25,8 @@ std::vector<FaceUse> check_faces(const Mesh& mesh, MeshReport& report);
 /// Notes faces that have the same set of corners as an earlier one.
 void check_duplicates(const Mesh& mesh, const std::vector<FaceUse>& use, MeshReport& report);
 
-/// Notes vertices that no face names.
-void check_unused(const Mesh& mesh, MeshReport& report);
+/// Notes vertices that no face names, and those with the coordinates of an earlier one.
+void check_vertices(const Mesh& mesh, MeshReport& report);
 
 /// Counts a finding and keeps the element(s) if it is among the first few.
 void note(MeshReport& report, MeshFault fault, std::uint32_t first, std::uint32_t second = kNull);

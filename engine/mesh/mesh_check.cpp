@@ -40,7 +40,8 @@ bool is_cycle(const Mesh& mesh, const std::vector<FaceUse>& use) {
       if (v != w) sum[{std::min(v, w), std::max(v, w)}] += v < w ? 1 : -1;
     }
   }
-  return !sum.empty() && std::all_of(sum.begin(), sum.end(), [](const auto& edge) { return edge.second == 0; });
+  return !sum.empty() &&
+         std::all_of(sum.begin(), sum.end(), [](const auto& edge) { return edge.second == 0; });
 }
 
 }  // namespace
@@ -50,7 +51,7 @@ MeshReport check_mesh(const Mesh& mesh, bool self_intersections) {
   if (mesh.face_count() == 0) ++report.findings[static_cast<std::size_t>(MeshFault::no_faces)].count;
   const std::vector<FaceUse> use = check_faces(mesh, report);
   check_duplicates(mesh, use, report);
-  check_unused(mesh, report);
+  check_vertices(mesh, report);
   const SurfaceTopology topology = analyse_topology(mesh, use, report);
   report.components = topology.components;
   report.closed = topology.closed;

@@ -20,7 +20,16 @@ constexpr std::array<FaultText, kMeshFaultCount> kFaults = {{
 }};
 
 /// What the two numbers of an offender are.
-enum class Offender : std::uint8_t { none, vertex, face, face_and_vertex, two_faces, edge, component };
+enum class Offender : std::uint8_t {
+  none,
+  vertex,
+  face,
+  face_and_vertex,
+  two_faces,
+  two_vertices,
+  edge,
+  component
+};
 
 struct Help {
   Offender offender;
@@ -57,6 +66,8 @@ Help help_for(MeshFault fault) {
       return {Offender::component, "it can be turned without loss"};
     case MeshFault::self_intersection:
       return {Offender::two_faces, "inside is then decided by parity"};
+    case MeshFault::duplicate_vertex:
+      return {Offender::two_vertices, "merge them if the surface is to hang together there"};
     default:
       return {Offender::vertex, "it can be removed without loss"};
   }
@@ -68,6 +79,7 @@ std::string shown(Offender kind, const std::array<std::uint32_t, 2>& element) {
     case Offender::face_and_vertex:
       return first + " (vertex " + second + ")";
     case Offender::two_faces:
+    case Offender::two_vertices:
       return first + " and " + second;
     case Offender::edge:
       return element[1] == kNull ? first : first + "-" + second;
@@ -79,6 +91,7 @@ std::string shown(Offender kind, const std::array<std::uint32_t, 2>& element) {
 std::string_view noun(Offender kind, int dim) {
   switch (kind) {
     case Offender::vertex:
+    case Offender::two_vertices:
       return "vertex";
     case Offender::edge:
       return dim == 2 ? "vertex" : "edge (by its vertices)";
@@ -153,6 +166,14 @@ std::vector<std::string> MeshReport::lines(const Mesh& mesh) const {
   std::vector<std::string> out;
   for (std::size_t i = 0; i < kMeshFaultCount; ++i)
     if (findings[i].count > 0) out.push_back(line_for(mesh, static_cast<MeshFault>(i), findings[i]));
+  return out;
+}
+
+std::vector<std::string> MeshReport::obstacles(const Mesh& mesh) const {
+  std::vector<std::string> out;
+  for (std::size_t i = 0; i < kMeshFaultCount; ++i)
+    if (findings[i].count > 0 && !kFaults[i].build)
+      out.push_back(line_for(mesh, static_cast<MeshFault>(i), findings[i]));
   return out;
 }
 

@@ -2,6 +2,7 @@
 
 #include <array>
 
+#include "engine/exact/orient_axes.hpp"
 #include "engine/exact/predicates.hpp"
 #include "engine/exact/simplex_test.hpp"
 #include "engine/mesh/box_pairs.hpp"
@@ -11,6 +12,45 @@ namespace lrb {
 namespace {
 
 using Triangle = std::array<VertexId, 3>;
+
+/// Two triangles in one plane that face the same way and share more than points and lines.
+bool cover_each_other(const double* const a[3], const double* const b[3]) {
+  for (int x = 0; x < 3; ++x) {
+    const int y = (x + 1) % 3;
+    const int turn = exact::orient_axes(a[0], a[1], a[2], x, y);
+    if (turn == 0) continue;
+    if (exact::orient_axes(b[0], b[1], b[2], x, y) != turn) return false;
+    // Two convex figures with nothing in common but their rims: a side of one has the other beyond it.
+    const auto parted = [&](const double* const p[3], const double* const q[3]) {
+      for (int i = 0; i < 3; ++i) {
+        bool beyond = true;
+        for (int k = 0; k < 3; ++k)
+          beyond &= exact::orient_axes(p[i], p[(i + 1) % 3], q[k], x, y) * turn <= 0;
+        if (beyond) return true;
+      }
+      return false;
+    };
+    return !parted(a, b) && !parted(b, a);
+  }
+  return false;
+}
+
+bool overlap_3d(const double* const a[3], const double* const b[3]) {
+  for (int k = 0; k < 3; ++k)
+    if (exact::orient3d(a[0], a[1], a[2], b[k]) != 0)
+      return exact::meet_triangles(a, b) == exact::Meet::cross;
+  return cover_each_other(a, b);
+}
+
+/// Segments, with the solid on their left.
+bool overlap_2d(const double* const a[2], const double* const b[2]) {
+  if (exact::orient2d(a[0], a[1], b[0]) != 0 || exact::orient2d(a[0], a[1], b[1]) != 0)
+    return exact::meet_segments(a, b) == exact::Meet::cross;
+  const int k = a[0][0] != a[1][0] ? 0 : 1;
+  const bool forward = a[0][k] < a[1][k];
+  if (forward != (b[0][k] < b[1][k])) return false;
+  return forward ? a[0][k] < b[1][k] && b[0][k] < a[1][k] : a[0][k] > b[1][k] && b[0][k] > a[1][k];
+}
 
 /// The faces as triangles with area (2D: as segments), and their boxes.
 class Pieces {
@@ -40,6 +80,19 @@ class Pieces {
         f, g, [](const double* const a[3], const Triangle& ia, const double* const b[3], const Triangle& ib) {
           return !exact::meet_only_in_shared(a, ia.data(), b, ib.data());
         });
+  }
+
+  bool overlap(FaceId f, FaceId g) const {
+    if (mesh_.dim == 2) {
+      const auto a = mesh_.face(f), b = mesh_.face(g);
+      const double* const pa[2] = {point(a[0]), point(a[1])};
+      const double* const pb[2] = {point(b[0]), point(b[1])};
+      return overlap_2d(pa, pb);
+    }
+    return any_pair(f, g,
+                    [](const double* const a[3], const Triangle&, const double* const b[3], const Triangle&) {
+                      return overlap_3d(a, b);
+                    });
   }
 
   bool cross(FaceId f, FaceId g) const {
@@ -101,12 +154,33 @@ void find_self_intersections(const Mesh& mesh, const std::vector<FaceUse>& use,
   });
 }
 
+std::vector<FaceId> self_intersecting_faces(const Mesh& mesh, const std::vector<FaceUse>& use) {
+  const Pieces pieces(mesh, use);
+  std::vector<bool> meets(mesh.face_count(), false);
+  BoxTree(pieces.boxes()).for_each_pair([&](FaceId f, FaceId g) {
+    if (!(meets[f] && meets[g]) && pieces.meet_outside_shared(f, g)) meets[f] = meets[g] = true;
+  });
+  std::vector<FaceId> faces;
+  for (FaceId f = 0; f < meets.size(); ++f)
+    if (meets[f]) faces.push_back(f);
+  return faces;
+}
+
 void find_crossings(const Mesh& mesh, const std::vector<FaceUse>& use,
                     const std::function<bool(FaceId, FaceId)>& wanted,
                     const std::function<void(FaceId, FaceId)>& found) {
   const Pieces pieces(mesh, use);
   BoxTree(pieces.boxes()).for_each_pair([&](FaceId f, FaceId g) {
     if (wanted(f, g) && pieces.cross(f, g)) found(f, g);
+  });
+}
+
+void find_overlaps(const Mesh& mesh, const std::vector<FaceUse>& use,
+                   const std::function<bool(FaceId, FaceId)>& wanted,
+                   const std::function<void(FaceId, FaceId)>& found) {
+  const Pieces pieces(mesh, use);
+  BoxTree(pieces.boxes()).for_each_pair([&](FaceId f, FaceId g) {
+    if (wanted(f, g) && pieces.overlap(f, g)) found(f, g);
   });
 }
 

@@ -15,10 +15,21 @@ namespace lrb {
 void find_self_intersections(const Mesh& mesh, const std::vector<FaceUse>& use,
                              const std::function<void(FaceId, FaceId)>& found);
 
+/// The faces that find_self_intersections() would name, ascending: sooner, and in memory for the faces alone,
+/// where there are millions of pairs.
+std::vector<FaceId> self_intersecting_faces(const Mesh& mesh, const std::vector<FaceUse>& use);
+
 /// Calls found(f, g), f < g, for every two faces for which wanted(f, g) holds and that cross: each passes
 /// through the other's interior.
 void find_crossings(const Mesh& mesh, const std::vector<FaceUse>& use,
                     const std::function<bool(FaceId, FaceId)>& wanted,
                     const std::function<void(FaceId, FaceId)>& found);
+
+/// The same for faces that cross, or cover each other in one plane and face the same way: those of a solid
+/// that overlaps itself, while faces of one that only touches itself do neither. (An overlap in which no face
+/// does either is not found: its parts would have to pass exactly through each other's rims everywhere.)
+void find_overlaps(const Mesh& mesh, const std::vector<FaceUse>& use,
+                   const std::function<bool(FaceId, FaceId)>& wanted,
+                   const std::function<void(FaceId, FaceId)>& found);
 
 }  // namespace lrb

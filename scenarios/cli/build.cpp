@@ -25,16 +25,17 @@ struct BuildCommandOptions {
 };
 
 std::string as_text(const nlohmann::ordered_json& j, const ValidateReport* report) {
+  const auto figure = [&](const char* key) { return for_people(j[key], 4); };
   std::ostringstream out;
   out << j["name"].get<std::string>() << "\n"
-      << "  faces    " << j["real_faces"] << " real + " << j["pseudo_faces"]
-      << " pseudo = " << j["total_faces"] << " (" << j["total_per_real"] << " per real face), "
-      << j["outer_faces"] << " outermost\n"
-      << "  regions  " << j["regions"] << " in " << j["layers"] << " layers\n"
-      << "  volume   solid " << j["volume_solid"] << ", outermost wrapper " << j["volume_outer"]
-      << ", convex hull " << j["volume_hull"] << "\n"
-      << "  memory   " << j["bytes_per_real_face"] << " bytes a real face\n"
-      << "  built in " << j["seconds"] << " s\n";
+      << "  faces    " << figure("real_faces") << " real + " << figure("pseudo_faces")
+      << " pseudo = " << figure("total_faces") << " (" << figure("total_per_real") << " per real face), "
+      << figure("outer_faces") << " outermost\n"
+      << "  regions  " << figure("regions") << " in " << figure("layers") << " layers\n"
+      << "  volume   solid " << figure("volume_solid") << ", outermost wrapper " << figure("volume_outer")
+      << ", convex hull " << figure("volume_hull") << "\n"
+      << "  memory   " << figure("bytes_per_real_face") << " bytes a real face\n"
+      << "  built in " << figure("seconds") << " s\n";
   if (report != nullptr) {
     out << "  valid    " << (report->valid ? "yes" : "NO") << "\n";
     for (const std::string& line : report->violations) out << "    " << line << "\n";
@@ -58,6 +59,7 @@ int run_build(const BuildCommandOptions& o, const Globals& globals) {
 
   nlohmann::ordered_json j = body_figures(rep);
   j["seconds"] = seconds;
+  j["notes"] = notes;  // what was done to the mesh: nothing is, in silence
   ValidateReport report;
   if (o.no_validate) {
     j["valid"] = nullptr;

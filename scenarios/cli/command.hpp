@@ -30,6 +30,7 @@ Command add_inspect(CLI::App& root, const Globals& globals);
 Command add_collide(CLI::App& root, const Globals& globals);
 Command add_query(CLI::App& root, const Globals& globals);
 Command add_render(CLI::App& root, const Globals& globals);
+Command add_paper(CLI::App& root, const Globals& globals);
 Command add_doctor(CLI::App& root, const Globals& globals);
 Command add_list(CLI::App& root, const Globals& globals);
 
@@ -41,6 +42,9 @@ void note(const Globals& globals, const std::vector<std::string>& lines);
 
 /// As JSON on a line. Bytes that are not UTF-8, which a file's name may have, become U+FFFD.
 std::string one_line(const nlohmann::ordered_json& value);
+
+/// A value as people read it: numbers that are not whole, with so many significant digits.
+std::string for_people(const nlohmann::ordered_json& value, int digits);
 
 /// Writes to stdout and makes sure that it arrived. Throws EnvironmentError.
 void print(const std::string& text);

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <filesystem>
 #include <memory>
 #include <sstream>
@@ -8,21 +9,22 @@
 #include "engine/error.hpp"
 #include "engine/lrb/lrb_file.hpp"
 #include "engine/lrb/validate.hpp"
+#include "engine/mesh/file_bytes.hpp"
 #include "engine/mesh/mesh_check.hpp"
 #include "engine/mesh/mesh_io.hpp"
 #include "scenarios/body.hpp"
 #include "scenarios/body_figures.hpp"
 #include "scenarios/cli/command.hpp"
 #include "scenarios/files.hpp"
+#include "scenarios/play/dirt_picture.hpp"
 #include "scenarios/play/portrait.hpp"
-
 namespace lrb::cli {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
 struct InspectOptions {
-  std::string file, picture;
+  std::string file, picture, drawing;
   bool validate = false, render = false, json = false;
 };
 
@@ -45,6 +47,7 @@ Json mesh_json(const Mesh& mesh, const MeshReport& report) {
   j["components"] = report.components;
   j["genus"] = report.genus >= 0 ? Json(report.genus) : Json(nullptr);
   j["closed"] = report.closed;
+  j["bounds_solid"] = report.bounds_solid;
   j["buildable"] = report.buildable();
   j["queryable"] = report.queryable();
   j["findings"] = report.lines(mesh);
@@ -75,10 +78,25 @@ std::string as_text(const Json& j) {
         out << "  " << l["regions"] << " regions, " << l["lids"] << " lids over " << l["floor_faces"]
             << " faces\n";
     } else {
-      out << key << ": " << (value.is_string() ? value.get<std::string>() : value.dump()) << "\n";
+      constexpr int kDigits = 6;  // of coordinates
+      out << key << ": " << for_people(value, kDigits) << "\n";
     }
   }
   return out.str();
+}
+
+void draw_findings(const Mesh& mesh, const MeshReport& report, const std::string& path, Json& j,
+                   std::vector<std::string>& notes) {
+  const std::string folder = std::filesystem::path(path).parent_path().string();
+  const bool any = std::any_of(report.findings.begin(), report.findings.end(),
+                               [](const MeshFinding& f) { return f.count > 0; });
+  if (any && !folder.empty()) make_folder(folder);
+  if (any && draw_dirt(mesh, report, path)) {
+    j["drawing"] = path;
+    return;
+  }
+  j["drawing"] = nullptr;
+  notes.push_back(mesh.name + ": nothing to draw: there are no findings; " + path + " was not written");
 }
 
 int run_inspect(const InspectOptions& o, const Globals& globals) {
@@ -86,6 +104,10 @@ int run_inspect(const InspectOptions& o, const Globals& globals) {
   std::unique_ptr<LrbRep> rep;
   std::vector<std::string> notes;
   if (is_lrb_file(o.file)) {
+    if (!o.drawing.empty())
+      throw InputError(
+          printable_name(o.file) +
+          ": is an LRB-rep, which has no findings to draw; give its mesh, or draw it with --render");
     rep = std::make_unique<LrbRep>(load_lrb(o.file));
     j["file"] = o.file;
     j["kind"] = "LRB-rep";
@@ -95,6 +117,7 @@ int run_inspect(const InspectOptions& o, const Globals& globals) {
     Mesh mesh = read_mesh(o.file);
     const MeshReport report = check_mesh(mesh);
     j = mesh_json(mesh, report);
+    if (!o.drawing.empty()) draw_findings(mesh, report, o.drawing, j, notes);
     if (o.validate)
       rep = std::make_unique<LrbRep>(build_from_mesh(std::move(mesh), {}, notes));
     else if (o.render)
@@ -129,6 +152,8 @@ Command add_inspect(CLI::App& root, const Globals& globals) {
   app->add_flag("--validate", o->validate,
                 "Prove the LRB-rep's promises (a mesh is built first); exit 1 if one is broken");
   app->add_flag("--render", o->render, "Draw it: the body, its layers, its outermost wrapper");
+  app->add_option("--draw", o->drawing, "Draw what is wrong with a mesh: the first offenders, pointed out")
+      ->type_name("FILE.png");
   app->add_option("-o,--output", o->picture, "Picture to write [out/NAME.png]")->type_name("FILE.png");
   app->add_flag("--json", o->json, "As one JSON object");
   return {app, [o, &globals] { return run_inspect(*o, globals); }};

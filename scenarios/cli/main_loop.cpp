@@ -1,4 +1,5 @@
 #include <cerrno>
+#include <cmath>
 #include <cstdio>
 #include <cstring>
 #include <exception>
@@ -65,6 +66,24 @@ void note(const Globals& globals, const std::vector<std::string>& lines) {
   for (const std::string& line : lines) std::cerr << "note: " << line << "\n";
 }
 
+std::string for_people(const nlohmann::ordered_json& value, int digits) {
+  if (value.is_string()) return value.get<std::string>();
+  if (value.is_number_float()) {
+    if (!std::isfinite(value.get<double>())) return "beyond 1.8e308";
+    char text[32];
+    std::snprintf(text, sizeof text, "%.*g", digits, value.get<double>());
+    return text;
+  }
+  if (!value.is_structured()) return value.dump();
+  std::string out;
+  for (const auto& [key, item] : value.items()) {
+    out += out.empty() ? "" : ", ";
+    if (value.is_object()) out += key + " ";
+    out += for_people(item, digits);
+  }
+  return value.is_array() ? "(" + out + ")" : out;
+}
+
 std::string one_line(const nlohmann::ordered_json& value) {
   return value.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
 }
@@ -100,9 +119,9 @@ int parse_and_run(int argc, char** argv) {
   Globals globals;
   globals.command_line = command_line(argc, argv);
   app.add_flag("-q,--quiet", globals.quiet, "Nothing on stderr but errors");
-  const Command commands[] = {add_run(app, globals),    add_collide(app, globals), add_query(app, globals),
-                              add_build(app, globals),  add_inspect(app, globals), add_render(app, globals),
-                              add_doctor(app, globals), add_list(app, globals)};
+  const Command commands[] = {add_run(app, globals),   add_collide(app, globals), add_query(app, globals),
+                              add_build(app, globals), add_inspect(app, globals), add_render(app, globals),
+                              add_paper(app, globals), add_doctor(app, globals),  add_list(app, globals)};
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {
@@ -118,6 +137,7 @@ int parse_and_run(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   end_cleanly_on_signals();
+  end_cleanly_on_terminate();
   return guarded([&] { return parse_and_run(argc, argv); });
 }
 

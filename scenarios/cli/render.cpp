@@ -1,3 +1,4 @@
+#include <charconv>
 #include <filesystem>
 #include <memory>
 
@@ -25,7 +26,8 @@ struct RenderOptions {
   std::vector<std::uint32_t> events;
   PictureOptions picture;
   std::uint32_t montage = 0;
-  bool close_up = false;
+  bool close_up = false, svg = false, hide_rest = false;
+  std::vector<std::string> regions;
 };
 
 /// The bodies that were recorded: named on the command line, or a.lrb and b.lrb beside the trace.
@@ -66,6 +68,28 @@ std::vector<CollideResult> contacts_of(const trace::Trace& trace, const std::vec
   return out;
 }
 
+/// "12" and "a12" are region 12 of A, "b12" is one of B.
+void isolate(const RenderOptions& o, const std::vector<LoadedBody>& bodies, FrameSpec& spec) {
+  for (const std::string& text : o.regions) {
+    const bool named = text.starts_with('a') || text.starts_with('b');
+    const std::size_t body = text.starts_with('b') ? 1 : 0;
+    const char *first = text.data() + (named ? 1 : 0), *last = text.data() + text.size();
+    RegionId region = 0;
+    const auto [end, error] = std::from_chars(first, last, region);
+    if (error != std::errc() || end != last)
+      throw InputError("--region: expected a region's number, or a or b and the number, found " +
+                       printable_name(text));
+    if (body >= bodies.size() || region >= bodies[body].rep.region_count())
+      throw InputError("--region " + text + ": " +
+                       (body < bodies.size()
+                            ? "the body has " + std::to_string(bodies[body].rep.region_count()) +
+                                  " regions, numbered from 0"
+                            : "there is no body B in this trace"));
+    spec.isolate[body].push_back(region);
+  }
+  spec.ghost_rest = !o.hide_rest;
+}
+
 FrameSpec frame_spec(const RenderOptions& o, bool two_bodies) {
   FrameSpec spec;
   spec.at = two_bodies ? FrameSpec::At::step : FrameSpec::At::refinement;
@@ -92,7 +116,13 @@ int run_render(const RenderOptions& o, const Globals& globals) {
   const std::string folder =
       o.folder.empty() ? "out/" + std::filesystem::path(o.trace).parent_path().filename().string() + "-render"
                        : o.folder;
-  const FrameSpec spec = frame_spec(o, bodies.size() == 2);
+  FrameSpec spec = frame_spec(o, bodies.size() == 2);
+  isolate(o, bodies, spec);
+  if (o.svg && bodies[0].rep.dim() != 2)
+    throw InputError(
+        printable_name(o.trace) +
+        ": --format svg is for 2D bodies, and these are 3D; leave it out, and ask for a larger --size");
+  spec.svg = o.svg;
   const std::vector<std::pair<std::string, std::string>> text = {
       {"Software", "lrbscope " + trace.header.lrbscope},
       {"lrbscope:scenario", trace.header.scenario},
@@ -101,6 +131,7 @@ int run_render(const RenderOptions& o, const Globals& globals) {
   static_cast<void>(moments(spec, trace, {}));  // throws before anything is written
   make_folder(folder);
   const FolderLock lock(folder);
+  refuse_links(folder);
   const DrawnFrames drawn = draw_frames(p, spec, folder, text, progress_report(globals.quiet));
   const std::string trace_link = std::filesystem::relative(o.trace, folder).generic_string();
   ReportText report{
@@ -125,6 +156,16 @@ Command add_render(CLI::App& root, const Globals& globals) {
   app->add_option("--events", o->events, "Draw after these events")->delimiter(',')->type_name("N,N,...");
   app->add_option("--montage", o->montage, "Panels of a montage")->check(CLI::Range(1, 26))->type_name("N");
   app->add_flag("--close-up", o->close_up, "A second view on the contact");
+  app->add_option("--region", o->regions,
+                  "Show these regions alone: N or aN of A, bN of B; the rest as a ghost")
+      ->delimiter(',')
+      ->type_name("N,N,...");
+  app->add_flag("--no-ghost", o->hide_rest, "Leave out the rest where regions are shown alone");
+  app->add_option_function<std::string>(
+         "--format", [o](const std::string& format) { o->svg = format == "svg"; },
+         "svg: each frame as SVG as well, for 2D bodies")
+      ->check(CLI::IsMember({"png", "svg"}).description(""))
+      ->type_name("png|svg");
   add_picture_options(*app, o->picture);
   return {app, [o, &globals] { return run_render(*o, globals); }};
 }

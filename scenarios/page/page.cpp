@@ -71,6 +71,14 @@ std::string numbers_html(const Page& page) {
   return out + "</dl>\n";
 }
 
+std::string texts_html(const Page& page) {
+  if (page.texts.empty()) return {};
+  std::string out = "<div class=\"texts\">\n";
+  for (const PageText& t : page.texts)
+    out += "<div><h2>" + escape_markup(t.title) + "</h2><p>" + escape_markup(t.text) + "</p></div>\n";
+  return out + "</div>\n";
+}
+
 std::string player_html(const Page& page) {
   if (page.frames.empty()) return {};
   std::string out(embedded_file("player.html"));
@@ -92,8 +100,11 @@ std::string charts_html(const Page& page) {
   return out + "</section>\n";
 }
 
+constexpr std::size_t kProse = 60;  // characters: longer cells are broken into lines
+
 bool looks_numeric(std::string_view cell) {
-  return !cell.empty() && cell.find_first_not_of("0123456789.,+-eE %x") == std::string_view::npos;
+  return cell.find_first_of("0123456789") != std::string_view::npos &&
+         cell.find_first_not_of("0123456789.,+-eE %x") == std::string_view::npos;
 }
 
 std::string tables_html(const Page& page) {
@@ -107,8 +118,11 @@ std::string tables_html(const Page& page) {
     out += "</tr></thead><tbody>\n";
     for (const auto& row : t.rows) {
       out += "<tr>";
-      for (const std::string& cell : row)
-        out += std::string(looks_numeric(cell) ? "<td class=\"n\">" : "<td>") + escape_markup(cell) + "</td>";
+      for (const std::string& cell : row) const bool prose = cell.size() > kProse;
+      out += std::string(looks_numeric(cell) ? "<td class=\"n\">"
+                         : prose             ? "<td class=\"prose\">"
+                                             : "<td>") +
+             escape_markup(cell) + "</td>";
       out += "</tr>\n";
     }
     out += "</tbody></table></div>";
@@ -145,7 +159,11 @@ std::string page_html(const Page& page) {
       return page.purpose.empty() ? "" : "<p class=\"purpose\">" + escape_markup(page.purpose) + "</p>";
     if (key == "verdict")
       return page.verdict.empty() ? "" : "<span class=\"verdict\">" + escape_markup(page.verdict) + "</span>";
-    if (key == "style") return std::string(embedded_file("page.css"));
+    if (key == "style")
+      return std::string(embedded_file("page.css")) +
+             (page.grid.empty() ? "" : std::string(embedded_file("grid.css")));
+    if (key == "texts") return texts_html(page);
+    if (key == "grid") return grid_html(page.grid);
     if (key == "numbers") return numbers_html(page);
     if (key == "player") return player_html(page);
     if (key == "charts") return charts_html(page);
@@ -154,7 +172,9 @@ std::string page_html(const Page& page) {
     if (key == "footer") return escape_markup(page.footer);
     if (key == "data") return script_safe(page_json(page));
     if (key == "library") return page.charts.empty() ? "" : std::string(embedded_file("chart.min.js"));
-    if (key == "script") return std::string(embedded_file("page.js"));
+    if (key == "script")
+      return std::string(embedded_file("page.js")) +
+             (page.grid.empty() ? "" : std::string(embedded_file("grid.js")));
     return {};
   };
   // One pass over the template, so that marks within what is put in stay what they are.

@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "scenarios/page/grid.hpp"
+
 namespace lrb {
 
 /// A number worth reading first.
@@ -48,6 +50,11 @@ struct PageTable {
   std::string note;
 };
 
+/// A heading and a paragraph.
+struct PageText {
+  std::string title, text;
+};
+
 struct PageLink {
   std::string text, target;  ///< target: relative to the page
   std::string note;
@@ -56,9 +63,11 @@ struct PageLink {
 /// What a page shows, from top to bottom; empty parts are left out.
 struct Page {
   std::string title;
-  std::string purpose;  ///< one or two sentences under the title
-  std::string verdict;  ///< a short word beside the title, such as the relation of the bodies
+  std::string purpose;          ///< one or two sentences under the title
+  std::string verdict;          ///< a short word beside the title, such as the relation of the bodies
+  std::vector<PageText> texts;  ///< what a reader should know first, side by side
   std::vector<PageNumber> numbers;
+  PageGrid grid;
   std::vector<PageFrame> frames;
   std::string frames_note;
   std::vector<PageChart> charts;

@@ -10,6 +10,7 @@
 #include "render/montage.hpp"
 #include "render/palette.hpp"
 #include "render/rasterize.hpp"
+#include "render/svg.hpp"
 #include "render/text.hpp"
 #include "scenarios/files.hpp"
 #include "scenarios/play/framing.hpp"
@@ -19,10 +20,14 @@
 namespace lrb {
 namespace {
 
-std::string file_name(std::size_t frame) {
+std::string numbered(std::size_t frame) {
   std::ostringstream out;
-  out << "frames/frame_" << std::setw(4) << std::setfill('0') << frame << ".png";
+  out << "frames/frame_" << std::setw(4) << std::setfill('0') << frame;
   return out.str();
+}
+
+std::string file_name(std::size_t frame) {
+  return numbered(frame) + ".png";
 }
 
 /// Texts first, for all frames: they decide how much room the pictures get, which is the same in every frame.
@@ -103,6 +108,21 @@ class Painter {
     return picture_;
   }
 
+  /// Each view as SVG, in files called `name`.svg, or `name`_1.svg and so on.
+  void write_svg(const Stage& stage, double progress, const std::string& name,
+                 const std::string& title) const {
+    for (std::size_t i = 0; i < views_.size(); ++i) {
+      SvgOptions options;
+      options.width = places_[i].width;
+      options.height = places_[i].height;
+      options.title = title;
+      if (spec_.transparent) options.background.reset();
+      const Camera camera = camera_for(views_[i], framing_, options.width, options.height, progress);
+      const std::string number = views_.size() > 1 ? "_" + std::to_string(i + 1) : "";
+      write_text(name + number + ".svg", svg(stage.scene(views_[i].wrapper).list, camera, options));
+    }
+  }
+
  private:
   void write_title(Image& view, const std::string& title) const {
     TextStyle style;
@@ -126,7 +146,8 @@ void remove_old_frames(const std::string& folder) {
   std::error_code error;
   for (const auto& entry : std::filesystem::directory_iterator(folder + "/frames", error)) {
     const std::string name = entry.path().filename().string();
-    if (name.starts_with("frame_") && name.ends_with(".png")) std::filesystem::remove(entry.path(), error);
+    if (name.starts_with("frame_") && (name.ends_with(".png") || name.ends_with(".svg")))
+      std::filesystem::remove(entry.path(), error);
   }
   std::filesystem::remove(folder + "/montage.png", error);
 }
@@ -148,7 +169,7 @@ DrawnFrames draw_frames(const Performance& performance, const FrameSpec& spec, c
   const bool each_refinement = performance.milestones.empty() && spec.at != FrameSpec::At::step;
   Stage stage(*performance.trace, performance.reps, results, spec, each_refinement);
   const Script script = write_script(stage, events, performance.title, spec);
-  Painter painter(spec, script.picture, frame_sequence(performance.reps, *performance.trace, results));
+  Painter painter(spec, script.picture, frame_sequence(performance.reps, *performance.trace, results, spec));
   const std::vector<std::size_t> in_montage =
       spec.montage > 0 ? evenly(events.size(), spec.montage) : std::vector<std::size_t>();
   std::vector<Panel> panels;
@@ -158,6 +179,7 @@ DrawnFrames draw_frames(const Performance& performance, const FrameSpec& spec, c
     stage.seek(events[i]);
     const double passed =
         events.size() > 1 ? static_cast<double>(i) / static_cast<double>(events.size() - 1) : 0;
+    if (spec.svg) painter.write_svg(stage, passed, folder + "/" + numbered(i), stage.caption());
     const Image& picture = painter.paint(stage, passed);
     PngOptions png;
     png.text = text;

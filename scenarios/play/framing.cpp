@@ -29,11 +29,17 @@ std::vector<Eigen::Vector3d> extremes(const std::vector<Eigen::Vector3d>& points
 }  // namespace
 
 Framing frame_sequence(const std::vector<const LrbRep*>& reps, const trace::Trace& trace,
-                       const std::vector<CollideResult>& results) {
+                       const std::vector<CollideResult>& results, const FrameSpec& spec) {
+  const bool regions_alone = !spec.ghost_rest && !(spec.isolate[0].empty() && spec.isolate[1].empty());
   Framing f;
   f.dim = reps[0]->dim();
   for (std::size_t i = 0; i < reps.size(); ++i) {
-    const std::vector<Eigen::Vector3d> body = extremes(body_points(*reps[i], Pose{}));
+    std::vector<Eigen::Vector3d> shown;
+    for (const RegionId r : spec.isolate[i])
+      for (const FaceId face : reps[i]->collector(r))
+        for (const VertexId v : reps[i]->face(face)) shown.push_back(reps[i]->vertices()[v]);
+    if (!regions_alone) shown = body_points(*reps[i], Pose{});
+    const std::vector<Eigen::Vector3d> body = extremes(shown);
     for (const trace::Step& step : trace.steps) {
       const Pose& pose = i == 0 ? step.pose_a : step.pose_b;
       for (const Eigen::Vector3d& p : body) f.points.push_back(pose.apply(p));

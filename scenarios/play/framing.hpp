@@ -17,8 +17,9 @@ struct Framing {
   int dim = 3;
 };
 
+/// Where `spec` shows regions alone and no ghosts, those regions are what is to be held.
 Framing frame_sequence(const std::vector<const LrbRep*>& reps, const trace::Trace& trace,
-                       const std::vector<CollideResult>& results);
+                       const std::vector<CollideResult>& results, const FrameSpec& spec);
 
 /// `progress` in [0, 1]: how much of the sequence has passed, for orbits.
 Camera camera_for(const FrameSpec::View& view, const Framing& framing, double width, double height,

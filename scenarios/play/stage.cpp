@@ -114,6 +114,8 @@ Scene Stage::scene(bool wrapper, bool plain) const {
       break;
   }
   options.explode = spec_.explode;
+  options.isolate = spec_.isolate;
+  options.ghost_rest = spec_.ghost_rest;
   return build_scene(bodies, highlight, options);
 }
 

@@ -128,6 +128,9 @@ TEST_CASE("components that touch or cross: new faces still meet nothing") {
     CHECK(rep.outermost_faces().size() <= 20);
   }
   CHECK(build_lrb(crossing).self_intersecting());
+  const LrbRep twice = build_lrb(several({icosphere(2), icosphere(2)}));  // no face passes through another
+  check_valid(twice);
+  CHECK(twice.self_intersecting());
   CHECK_FALSE(build_lrb(touching_in_a_face).self_intersecting());
   CHECK_THROWS_WITH_AS(build_lrb(one_in_the_other), doctest::Contains("inside out"), InputError);
 }

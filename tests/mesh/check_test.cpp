@@ -140,7 +140,7 @@ TEST_CASE("repeated corners and faces without area") {
   m = mesh_of({{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {3, 0, 0}}, {{0, 1, 2, 3}});
   CHECK(check_mesh(m)[MeshFault::zero_area_face].count == 1);
   m = mesh_of({{0, 0, 0}, {0, 0, 0}, {2, 0, 0}, {2, 1, 0}}, {{0, 1, 2, 3}});
-  check_faults(check_mesh(m), {{MeshFault::open_edge, 4}});
+  check_faults(check_mesh(m), {{MeshFault::open_edge, 4}, {MeshFault::duplicate_vertex, 1}});
 }
 
 TEST_CASE("polygons that are not planar can still be built") {
@@ -282,6 +282,17 @@ TEST_CASE("unused vertices") {
   CHECK(report.closed);
   CHECK(report.genus == 0);
   CHECK(report.buildable());
+}
+
+TEST_CASE("vertices in one place, whatever the sign of their zeros") {
+  Mesh m = box();
+  for (const double x : {0.0, -0.0, 1.0}) m.vertices.emplace_back(x, 0, 0);
+  const MeshReport report = check_mesh(m);
+  check_faults(report, {{MeshFault::duplicate_vertex, 3}, {MeshFault::unused_vertex, 3}});
+  CHECK(report[MeshFault::duplicate_vertex].first.size() == 3);
+  for (const auto& [v, w] : report[MeshFault::duplicate_vertex].first) CHECK(m.vertices[v] == m.vertices[w]);
+  CHECK(report.buildable());
+  CHECK(report.obstacles(m).empty());
 }
 
 TEST_CASE("findings say what, how often and where, in one line each") {

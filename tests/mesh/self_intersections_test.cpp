@@ -1,5 +1,8 @@
+#include "engine/mesh/self_intersections.hpp"
+
 #include <algorithm>
 #include <random>
+#include <set>
 
 #include <doctest/doctest.h>
 
@@ -36,8 +39,22 @@ void check_against_oracle(const Mesh& m) {
   const Pairs expected = meeting_strangers(m);
   const MeshFinding finding = check_mesh(m)[MeshFault::self_intersection];
   CHECK(finding.count == expected.size());
+  std::set<FaceId> faces;
+  for (const auto& pair : expected) faces.insert(pair.begin(), pair.end());
+  MeshReport unused;
+  CHECK(self_intersecting_faces(m, check_faces(m, unused)) ==
+        std::vector<FaceId>(faces.begin(), faces.end()));
   CHECK(finding.first ==
         Pairs(expected.begin(), expected.begin() + std::min<std::size_t>(8, expected.size())));
+}
+
+/// Do faces overlap as those of solids that touch do not?
+bool overlaps(const Mesh& m) {
+  MeshReport unused;
+  std::uint64_t found = 0;
+  find_overlaps(
+      m, check_faces(m, unused), [](FaceId, FaceId) { return true; }, [&](FaceId, FaceId) { ++found; });
+  return found > 0;
 }
 
 Mesh random_soup(std::uint64_t seed, int triangles, int dim) {
@@ -138,6 +155,37 @@ TEST_CASE("real-looking bodies that pass through themselves") {
   CHECK(report[MeshFault::self_intersection].count == meeting_strangers(m).size());
   CHECK(report[MeshFault::self_intersection].count > 0);
   CHECK(report.buildable());
+}
+
+TEST_CASE("solids that overlap, and those that only touch") {
+  struct Case {
+    Mesh a, b;
+    bool overlap;
+  };
+  const Mesh square = polygon({{0, 0}, {1, 0}, {1, 1}, {0, 1}});
+  for (const Case& c : std::vector<Case>{
+           {box(), box({1, 0, 0}, {2, 1, 1}), false},                  // face on face
+           {box(), box({1, 0.5, 0.25}, {2, 2, 2}), false},             // part of a face on part of a face
+           {box(), box({1, 1, 0}, {2, 2, 1}), false},                  // edge on edge
+           {box(), box({1, 1, 1}, {2, 2, 2}), false},                  // corner on corner
+           {box(), translated(tetrahedron(), {0.25, 0.5, 1}), false},  // standing on it
+           {box(), turned_inside_out(box({0, 0, 0}, {0.5, 0.5, 0.5})),
+            false},  // a notch, flush with three walls
+           {box(), box(), true},
+           {box(), box({0, 0, 0.5}, {1, 1, 1.5}), true},          // flush with four walls
+           {box(), box({0.25, 0.25, 0}, {0.5, 0.5, 0.5}), true},  // standing within, on the floor
+           {box(), translated(box(), {0.5, 0.5, 0.5}), true},
+           {square, translated(square, {1, 0, 0}), false},
+           {square, translated(square, {1, 0.5, 0}), false},
+           {square, square, true},
+           {square, translated(square, {0.5, 0, 0}), true},
+           {square, translated(square, {0.5, 0.5, 0}), true}}) {
+    CAPTURE(c.b.vertices[0].transpose());
+    CHECK(check_mesh(several({c.a, c.b}))[MeshFault::self_intersection].count > 0);
+    CHECK(overlaps(several({c.a, c.b})) == c.overlap);
+    CHECK(overlaps(several({c.b, c.a})) == c.overlap);
+  }
+  for (const Mesh& clean : {comb(4), torus(12, 8), box_with_void(), gear(9)}) CHECK_FALSE(overlaps(clean));
 }
 
 }  // namespace lrb::test

@@ -1,0 +1,231 @@
+#include "render/dirt.hpp"
+
+#include <algorithm>
+#include <set>
+
+#include "render/dirt_parts.hpp"
+#include "render/palette.hpp"
+
+namespace lrb::dirt {
+namespace {
+
+using Eigen::Vector3d;
+using Mark = LegendItem::Mark;
+
+/// An unused vertex farther from the faces than this many of their sizes is not in the picture.
+constexpr double kNear = 1.0;
+/// Nor, beyond this many, are the faces in its close-up.
+constexpr double kFar = 20;
+/// Of the default direction added to a normal, so that a close-up does not look flat.
+constexpr double kTilt = 0.35;
+
+struct Look {
+  const char *one, *many, *one_2d, *many_2d;
+  Rgba colour;
+  Mark mark;
+};
+
+Look look_of(MeshFault kind) {
+  switch (kind) {
+    case MeshFault::open_edge:
+      return {"open edge", "open edges", "loose end", "loose ends", palette::kVermillion, Mark::line};
+    case MeshFault::non_manifold_edge:
+      return {"edge with more than two faces",
+              "edges with more than two faces",
+              "branching vertex",
+              "branching vertices",
+              palette::kPurple,
+              Mark::line};
+    case MeshFault::non_manifold_vertex:
+      return {
+          "vertex with several fans", "vertices with several fans", "", "", palette::kPurple, Mark::point};
+    case MeshFault::flipped_face:
+      return {"pair of neighbours that contradict each other",
+              "pairs of neighbours that contradict each other",
+              "pair of neighbours that contradict each other",
+              "pairs of neighbours that contradict each other",
+              palette::kBlue,
+              Mark::solid};
+    case MeshFault::duplicate_face:
+      return {"doubled face",     "doubled faces", "doubled segment",
+              "doubled segments", palette::kGreen, Mark::solid};
+    case MeshFault::self_intersection:
+      return {"pair of faces that meet",     "pairs of faces that meet", "pair of segments that meet",
+              "pairs of segments that meet", palette::kOrange,           Mark::solid};
+    case MeshFault::non_planar_face:
+      return {
+          "polygon that is not flat", "polygons that are not flat", "", "", palette::kYellow, Mark::solid};
+    case MeshFault::non_convex_face:
+      return {"concave polygon", "concave polygons", "", "", palette::kYellow, Mark::solid};
+    case MeshFault::repeated_corner:
+      return {"face with a corner twice", "faces with a corner twice", "", "", palette::kYellow, Mark::solid};
+    case MeshFault::zero_area_face:
+      return {"face without area",       "faces without area", "segment without length",
+              "segments without length", palette::kYellow,     Mark::line};
+    case MeshFault::inside_out:
+      return {"piece that is inside out", "pieces that are inside out",
+              "piece that is inside out", "pieces that are inside out",
+              palette::kSkyBlue,          Mark::solid};
+    case MeshFault::duplicate_vertex:
+      return {"pair of vertices in one place",
+              "pairs of vertices in one place",
+              "pair of vertices in one place",
+              "pairs of vertices in one place",
+              palette::kGreen,
+              Mark::point};
+    default:
+      return {"unused vertex",   "unused vertices", "unused vertex",
+              "unused vertices", palette::kInk,     Mark::point};
+  }
+}
+
+bool is_edge_kind(MeshFault kind) {
+  return kind == MeshFault::open_edge || kind == MeshFault::non_manifold_edge;
+}
+
+/// Faces at the offender: its own, or those that use its vertices (both, of an edge).
+std::vector<FaceId> faces_at(const Mesh& mesh, const Parts& parts) {
+  if (!parts.faces.empty()) return parts.faces;
+  std::vector<FaceId> out;
+  for (FaceId f = 0; f < mesh.face_count(); ++f) {
+    const auto c = mesh.face(f);
+    const auto uses = [&](VertexId v) { return std::find(c.begin(), c.end(), v) != c.end(); };
+    const bool any = std::any_of(parts.vertices.begin(), parts.vertices.end(), uses);
+    if (parts.edge ? std::all_of(parts.vertices.begin(), parts.vertices.end(), uses) : any) out.push_back(f);
+  }
+  return out;
+}
+
+bool is_inside_out(const Mesh& mesh, const MeshReport& report, FaceId f) {
+  const auto& pieces = report[MeshFault::inside_out].first;
+  return std::any_of(pieces.begin(), pieces.end(), [&](const Element& piece) {
+    const std::vector<FaceId> faces = component(mesh, piece[0]);
+    return std::binary_search(faces.begin(), faces.end(), f);
+  });
+}
+
+Eigen::AlignedBox3d box_of_faces(const Mesh& mesh) {
+  Eigen::AlignedBox3d box;
+  for (const VertexId v : mesh.face_vertices) box.extend(mesh.vertices[v]);
+  return box;
+}
+
+}  // namespace
+
+std::vector<MeshFault> kinds(const MeshReport& report) {
+  const auto& flat = report[MeshFault::zero_area_face].first;
+  std::vector<MeshFault> out;
+  for (std::size_t i = 0; i < kMeshFaultCount; ++i) {
+    const auto kind = static_cast<MeshFault>(i);
+    const auto& first = report.findings[i].first;
+    if (first.empty() || kind == MeshFault::no_faces || kind == MeshFault::non_finite_vertex ||
+        kind == MeshFault::index_out_of_range)
+      continue;
+    const auto is_flat = [&](const Element& e) {
+      return std::find(flat.begin(), flat.end(), Element{e[0], kNull}) != flat.end();
+    };
+    if (kind == MeshFault::repeated_corner && std::all_of(first.begin(), first.end(), is_flat)) continue;
+    const MeshFinding& doubled = report[MeshFault::duplicate_face];
+    if (kind == MeshFault::self_intersection && report.findings[i].count == doubled.count &&
+        first == doubled.first)
+      continue;
+    out.push_back(kind);
+  }
+  return out;
+}
+
+LegendItem key(MeshFault kind, int dim) {
+  const Look look = look_of(kind);
+  const bool point = dim == 2 && is_edge_kind(kind);
+  const bool line = dim == 2 && look.mark == Mark::solid;
+  return {point  ? Mark::point
+          : line ? Mark::line
+                 : look.mark,
+          look.colour, dim == 2 ? look.one_2d : look.one};
+}
+
+std::string caption(MeshFault kind, const MeshFinding& finding, int dim) {
+  const Look look = look_of(kind);
+  const bool one = finding.count == 1;
+  std::string out = group_digits(finding.count) + " " +
+                    (dim == 2 ? (one ? look.one_2d : look.many_2d) : (one ? look.one : look.many)) + ": ";
+  for (std::size_t i = 0; i < finding.first.size(); ++i)
+    out += (i > 0 ? ", " : "") + number_of(kind, finding.first[i]);
+  return out + (finding.count > finding.first.size() ? ", …" : "");
+}
+
+Mesh to_unit_size(const Mesh& mesh) {
+  Eigen::AlignedBox3d box = box_of_faces(mesh);
+  Mesh out = mesh;
+  if (box.isEmpty()) return out;
+  const Vector3d centre = 0.5 * box.min() + 0.5 * box.max();
+  const double half = (0.5 * box.max() - 0.5 * box.min()).maxCoeff();
+  for (Vector3d& x : out.vertices) x = half > 0 ? Vector3d((x - centre) / half) : Vector3d(x - centre);
+  return out;
+}
+
+std::vector<Vector3d> whole(const Mesh& mesh, const MeshReport& report) {
+  std::vector<Vector3d> out;
+  for (const VertexId v : mesh.face_vertices) out.push_back(mesh.vertices[v]);
+  const Eigen::AlignedBox3d box = box_of_faces(mesh);
+  for (const Element& e : report[MeshFault::unused_vertex].first)
+    if (box.exteriorDistance(mesh.vertices[e[0]]) <= kNear * box.diagonal().norm())
+      out.push_back(mesh.vertices[e[0]]);
+  return out;
+}
+
+CloseUp close_up(const Mesh& mesh, const MeshReport& report, MeshFault kind) {
+  const Parts parts = parts_of(mesh, kind, report[kind].first.front());
+  const std::vector<FaceId> at = faces_at(mesh, parts);
+  const bool doubtful = kind == MeshFault::flipped_face || kind == MeshFault::duplicate_face;
+  CloseUp out;
+  Vector3d n = Vector3d::Zero(), middle = Vector3d::Zero();
+  std::set<VertexId> own(parts.vertices.begin(), parts.vertices.end());
+  for (const FaceId f : at) {
+    const Vector3d m = normal(mesh, f);
+    n += doubtful && n.dot(m) < 0 ? -m : m;
+    if (!parts.faces.empty()) own.insert(mesh.face(f).begin(), mesh.face(f).end());
+  }
+  std::set<VertexId> around = own;
+  if (kind != MeshFault::self_intersection && kind != MeshFault::inside_out)
+    for (FaceId f = 0; f < mesh.face_count(); ++f) {
+      const auto c = mesh.face(f);
+      if (std::any_of(c.begin(), c.end(), [&](VertexId v) { return own.contains(v); }))
+        around.insert(c.begin(), c.end());
+    }
+  for (const VertexId v : own) middle += mesh.vertices[v] / static_cast<double>(own.size());
+  for (const VertexId v : around) out.points.push_back(mesh.vertices[v]);
+  if (kind == MeshFault::unused_vertex) {
+    const std::vector<Vector3d> all = whole(mesh, {});
+    if (box_of_faces(mesh).exteriorDistance(out.points[0]) <= kFar * box_of_faces(mesh).diagonal().norm())
+      out.points.insert(out.points.end(), all.begin(), all.end());
+  }
+  if (kind == MeshFault::inside_out || kind == MeshFault::unused_vertex) return out;
+  if (!at.empty() && is_inside_out(mesh, report, at[0])) n = -n;
+  if (doubtful && n.dot(middle) < 0) n = -n;
+  if (!(n.norm() > 0)) n = middle;
+  if (!(n.norm() > 0)) return out;
+  out.view.from = n.normalized() + kTilt * ViewDirection{}.from.normalized();
+  constexpr double kSteep = 0.9;  // of a unit vector along z: there y is up
+  if (std::abs(out.view.from.normalized().z()) > kSteep) out.view.up = {0, 1, 0};
+  return out;
+}
+
+std::vector<LegendItem> legend(const MeshReport& report, int dim) {
+  std::vector<LegendItem> out;
+  if (dim == 3) {
+    out.push_back({Mark::solid, palette::kPaleFront, "front of a face"});
+    out.push_back({Mark::solid, palette::kPaleBack, "its back"});
+  }
+  for (const MeshFault kind : kinds(report)) {
+    out.push_back(key(kind, dim));
+    if (kind == MeshFault::self_intersection) {
+      out.back().text = dim == 2 ? "segment that meets others" : "face that meets others";
+      out.push_back({out.back().mark, palette::kSkyBlue, "one that it meets"});
+      out.push_back({dim == 3 ? Mark::line : Mark::point, palette::kContact, "where they cross"});
+    }
+  }
+  return out;
+}
+
+}  // namespace lrb::dirt

@@ -1,0 +1,247 @@
+#include <algorithm>
+#include <map>
+#include <set>
+
+#include "render/dirt.hpp"
+#include "render/dirt_parts.hpp"
+#include "render/palette.hpp"
+
+namespace lrb::dirt {
+namespace {
+
+using Eigen::Vector3d;
+
+/// Towards white: the neighbour of a face that is turned the wrong way.
+constexpr double kNeighbourPale = 0.6;
+/// Of faces in front of what a close-up is about.
+constexpr std::uint8_t kVeil = 50;
+/// Of the way to an offender: its own faces do not hide it.
+constexpr double kJustBefore = 0.999;
+
+class Builder {
+ public:
+  Builder(const Mesh& mesh, const MeshReport& report, const Camera& camera, const Options& options)
+      : mesh_(mesh), report_(report), camera_(camera), o_(options) {}
+
+  DrawList run() {
+    std::vector<MeshFault> all = kinds(report_);
+    // Whole pieces last: what is wrong with some of their faces is to be seen on them.
+    std::stable_partition(all.begin(), all.end(), [](MeshFault k) { return k != MeshFault::inside_out; });
+    for (const MeshFault kind : all)
+      for (const Element& e : report_[kind].first) choose_colours(kind, e);
+    veiled_ = o_.focus && (*o_.focus == MeshFault::inside_out || is_hidden(*o_.focus));
+    mesh_.dim == 2 ? segments() : faces();
+    std::vector<MeshFault> marked = kinds(report_);
+    // What the picture is about last, over the others.
+    std::stable_partition(marked.begin(), marked.end(),
+                          [&](MeshFault k) { return !o_.focus || k != *o_.focus; });
+    for (const MeshFault kind : marked)
+      for (const Element& e : report_[kind].first) mark(kind, e);
+    Eigen::AlignedBox3d scene = bounds(out_);
+    projection_.emplace(camera_, o_.width, o_.height, scene);
+    char letter = 'b';
+    for (const MeshFault kind : kinds(report_)) {
+      if (!o_.focus)
+        point_at(kind, std::string(1, letter++));
+      else if (*o_.focus == kind)
+        for (const Element& e : report_[kind].first)
+          if (o_.near.isEmpty() || o_.near.contains(place(kind, e)))
+            label(place(kind, e), number_of(kind, e), 0);
+    }
+    return std::move(out_);
+  }
+
+ private:
+  Rgba colour(MeshFault kind) const { return key(kind, mesh_.dim).colour; }
+
+  /// A face with several faults has the colour of the first, but what a close-up is about goes first.
+  void choose_colours(MeshFault kind, const Element& e) {
+    const bool first = o_.focus && *o_.focus == kind;
+    const auto give = [&](FaceId f, Rgba c) {
+      if (first && !chosen_.contains(f)) {
+        chosen_.insert(f);
+        colours_[f] = c;
+      } else {
+        colours_.emplace(f, c);
+      }
+    };
+    if (kind == MeshFault::zero_area_face) return;
+    if (kind == MeshFault::inside_out && o_.focus && !first)
+      return;  // it would hide what the picture is about
+    if (kind == MeshFault::self_intersection) {
+      give(e[0], palette::kOrange);
+      give(e[1], palette::kSkyBlue);
+      return;
+    }
+    if (kind == MeshFault::flipped_face) {
+      const FaceId turned = turned_of(e);
+      give(turned, colour(kind));
+      give(turned == e[0] ? e[1] : e[0], mix(colour(kind), kWhite, kNeighbourPale));
+      return;
+    }
+    for (const FaceId f : parts_of(mesh_, kind, e).faces) give(f, colour(kind));
+  }
+
+  /// Of two that contradict each other, the one that contradicts more of its neighbours.
+  FaceId turned_of(const Element& e) const {
+    std::map<FaceId, int> times;
+    for (const Element& other : report_[MeshFault::flipped_face].first) {
+      ++times[other[0]];
+      ++times[other[1]];
+    }
+    return times[e[0]] > times[e[1]] ? e[0] : e[1];
+  }
+
+  bool seen_from_back(FaceId f) const {
+    const Vector3d n = normal(mesh_, f);
+    return n.dot(camera_.orthographic ? camera_.eye - camera_.target
+                                      : camera_.eye - mesh_.vertices[mesh_.face(f)[0]]) < 0;
+  }
+
+  /// Whether faces lie between the eye and the first offender.
+  bool is_hidden(MeshFault kind) const {
+    const Vector3d to = camera_.eye + kJustBefore * (place(kind, report_[kind].first.front()) - camera_.eye);
+    for (FaceId f = 0; f < mesh_.face_count() && mesh_.dim == 3; ++f)
+      if (!colours_.contains(f) && passes_through(mesh_, f, camera_.eye, to)) return true;
+    return false;
+  }
+
+  void faces() {
+    const std::uint8_t thin = out_.edge_style({with_alpha(palette::kInk, 90), 0.9F * o_.scale});
+    const std::uint8_t strong = out_.edge_style({palette::kInk, 1.8F * o_.scale});
+    for (FaceId f = 0; f < mesh_.face_count(); ++f) {
+      const auto c = colours_.find(f);
+      DrawTriangle t;
+      t.colour = seen_from_back(f) ? palette::kPaleBack : palette::kPaleFront;
+      t.edge_style = thin;
+      t.edges = 7;
+      if (c != colours_.end()) {
+        t.colour = c->second;
+        t.edge_style = strong;
+        t.nudge = 1;  // over another face in the same place
+      } else if (veiled_) {
+        t.layer = Layer::translucent;
+        t.colour.a = kVeil;
+      }
+      t.id = f;
+      out_.add_polygon(corners(mesh_, f), t);
+    }
+  }
+
+  void segments() {
+    for (const bool marked : {false, true})
+      for (FaceId f = 0; f < mesh_.face_count(); ++f) {
+        const auto c = colours_.find(f);
+        if ((c != colours_.end()) == marked)
+          line(corners(mesh_, f), marked ? c->second : palette::kFaint, marked ? 5.0F : 2.0F, marked);
+      }
+  }
+
+  void line(const std::vector<Vector3d>& points, Rgba colour, float width, bool strong,
+            Rgba halo = palette::kInk) {
+    DrawLine l;
+    l.points = points;
+    l.colour = colour;
+    l.width = width * o_.scale;
+    if (strong) {
+      l.halo = halo;
+      l.halo_width = 1.2F * o_.scale;
+      l.layer = Layer::on_top;
+    }
+    out_.lines.push_back(std::move(l));
+  }
+
+  void dot(const Vector3d& x, Rgba colour, float radius) {
+    DrawPoint p;
+    p.x = x;
+    p.colour = colour;
+    p.radius = radius * o_.scale;
+    p.halo = colour == palette::kInk ? kWhite : palette::kInk;
+    p.halo_width = 1.4F * o_.scale;
+    p.layer = Layer::on_top;
+    out_.points.push_back(p);
+  }
+
+  /// Edges, vertices, faces without area and cuts: what faces' colours cannot show.
+  void mark(MeshFault kind, const Element& e) {
+    const Parts parts = parts_of(mesh_, kind, e);
+    if (parts.edge) line({mesh_.vertices[e[0]], mesh_.vertices[e[1]]}, colour(kind), 5, true);
+    if (!parts.edge && !parts.vertices.empty()) dot(mesh_.vertices[e[0]], colour(kind), 6);
+    if (kind == MeshFault::zero_area_face) {
+      std::vector<Vector3d> x = corners(mesh_, e[0]);
+      const bool one_place = std::all_of(x.begin(), x.end(), [&](const Vector3d& p) { return p == x[0]; });
+      if (one_place) return dot(x[0], colour(kind), 6);
+      x.push_back(x[0]);
+      line(x, colour(kind), 4, true);
+    }
+    if (kind == MeshFault::self_intersection) {
+      const std::vector<Vector3d> x = cut(mesh_, e[0], e[1]);
+      if (x.size() == 1) dot(x[0], palette::kContact, 5);
+      if (x.size() == 2) line(x, palette::kContact, 4, true, kWhite);
+    }
+  }
+
+  Vector3d place(MeshFault kind, const Element& e) const {
+    const Parts parts = parts_of(mesh_, kind, e);
+    std::vector<Vector3d> x;
+    for (const VertexId v : parts.vertices) x.push_back(mesh_.vertices[v]);
+    if (x.empty()) {
+      if (kind == MeshFault::self_intersection) x = cut(mesh_, e[0], e[1]);
+      if (x.empty()) x = corners(mesh_, e[0]);
+    }
+    Vector3d sum = Vector3d::Zero();
+    for (const Vector3d& p : x) sum += p / static_cast<double>(x.size());
+    return sum;
+  }
+
+  /// A letter for a kind, at its first offender.
+  void point_at(MeshFault kind, const std::string& letter) {
+    const Vector3d x = place(kind, report_[kind].first.front());
+    dot(x, colour(kind), 5);
+    label(x, letter, 1);
+  }
+
+  /// Above its point, unless it would cover another label or leave the picture.
+  void label(const Vector3d& x, const std::string& text, int sideways) {
+    const auto at = projection_->to_pixel(x);
+    if (!at) return;
+    DrawLabel l;
+    l.x = x;
+    l.text = text;
+    l.colour = palette::kInk;
+    l.height = 17 * o_.scale;
+    const double half = 0.3 * l.height * static_cast<double>(text.size()) + 2, rise = 0.6 * l.height;
+    for (const auto& [dx, dy] : {std::pair{sideways, -1}, {1, -1}, {-1, -1}, {1, 1}, {-1, 1}, {0, 1}}) {
+      l.dx = static_cast<float>(dx * (half + 6));
+      l.dy = 1.1F * static_cast<float>(dy) * l.height;
+      const Eigen::Vector2d c = *at + Eigen::Vector2d(l.dx, l.dy);
+      const Eigen::AlignedBox2d box(c - Eigen::Vector2d(half, rise), c + Eigen::Vector2d(half, rise));
+      const bool in = box.min().minCoeff() >= 0 && box.max().x() <= o_.width && box.max().y() <= o_.height;
+      const bool free =
+          std::none_of(taken_.begin(), taken_.end(), [&](const auto& b) { return b.intersects(box); });
+      if (!in || !free) continue;
+      taken_.push_back(box);
+      out_.labels.push_back(l);
+      return;
+    }
+  }
+
+  const Mesh& mesh_;
+  const MeshReport& report_;
+  const Camera& camera_;
+  const Options& o_;
+  DrawList out_;
+  std::map<FaceId, Rgba> colours_;
+  std::set<FaceId> chosen_;
+  bool veiled_ = false;  ///< faces without offence are see-through
+  std::optional<Projection> projection_;
+  std::vector<Eigen::AlignedBox2d> taken_;
+};
+
+}  // namespace
+
+DrawList list(const Mesh& mesh, const MeshReport& report, const Camera& camera, const Options& options) {
+  return Builder(mesh, report, camera, options).run();
+}
+
+}  // namespace lrb::dirt

@@ -1,0 +1,41 @@
+// Sheets of the grid: opened by the address, so that one can be linked to; stepped through by the arrow keys.
+(function () {
+  const sheets = [...document.querySelectorAll("dialog.detail")];
+  const opened = () => sheets.find((s) => s.open);
+  const leave = () => history.pushState(null, "", location.pathname + location.search);
+  function follow() {
+    const wanted = sheets.find((s) => "#" + s.id === location.hash);
+    for (const s of sheets) if (s !== wanted && s.open) s.close();
+    if (wanted && !wanted.open) { wanted.showModal(); wanted.scrollTop = 0; }
+  }
+  for (const s of sheets) {
+    s.addEventListener("cancel", leave); // Escape
+    s.addEventListener("click", (e) => { if (e.target === s) { s.close(); leave(); } }); // beside the sheet
+    s.querySelector(".close").addEventListener("click", (e) => { e.preventDefault(); s.close(); leave(); });
+  }
+  document.addEventListener("keydown", (e) => {
+    const at = sheets.indexOf(opened()), step = { ArrowLeft: -1, ArrowRight: 1 }[e.key];
+    if (at < 0 || !step || e.ctrlKey || e.metaKey || e.altKey) return;
+    location.replace("#" + sheets[(at + step + sheets.length) % sheets.length].id);
+  });
+  addEventListener("hashchange", follow);
+  addEventListener("popstate", follow);
+  follow();
+})();
+
+for (const block of document.querySelectorAll("pre.command")) {
+  const button = document.createElement("button"), text = block.textContent;
+  button.className = "copy";
+  button.textContent = "Copy";
+  button.onclick = async () => {
+    try {
+      await navigator.clipboard.writeText(text);
+    } catch { // pages from disk may have no clipboard: select it instead
+      getSelection().selectAllChildren(block.querySelector("code"));
+      if (!document.execCommand("copy")) return;
+    }
+    button.textContent = "Copied";
+    setTimeout(() => { button.textContent = "Copy"; }, 1500);
+  };
+  block.prepend(button);
+}

@@ -1,0 +1,94 @@
+#include "scenarios/paper/figures.hpp"
+
+#include <algorithm>
+#include <map>
+
+namespace lrb {
+namespace {
+
+constexpr std::size_t kPaper = 0;  // of kRecursions
+constexpr double kBinWidth = 250;  // comparisons
+
+// Okabe and Ito's colours, which survive colour blindness; dash and point types survive greyscale.
+constexpr const char* kColours[] = {"#0072B2", "#E69F00", "#009E73", "#D55E00",
+                                    "#56B4E9", "#CC79A7", "#000000"};
+
+std::string number(double x) {
+  std::string s = std::to_string(x);
+  s.erase(s.find_last_not_of('0') + 1);
+  if (s.back() == '.') s.pop_back();
+  return s;
+}
+
+}  // namespace
+
+Gnuplot figure_3_1(std::span<const ObjectRow> rows) {
+  std::vector<std::string> measured, published, names;
+  for (const ObjectRow& row : rows) {
+    const Spread& s = row.recursions[kPaper].comparisons;
+    measured.push_back(std::to_string(row.total_faces) + " " + number(s.average) + " " + number(s.min) + " " +
+                       number(s.max));
+    for (const PublishedRow& p : published_table2())
+      if (row.object == p.object)
+        published.push_back(std::to_string(row.total_faces * 1.06) + " " + number(p.average) + " " +
+                            number(p.min) + " " + number(p.max));
+    double top = s.max;
+    for (const PublishedRow& p : published_table2())
+      if (row.object == p.object) top = std::max(top, p.max);
+    names.push_back(std::to_string(row.total_faces) + " " + number(top) + " " +
+                    gnuplot_data_text(row.object));
+  }
+  Gnuplot g;
+  g.add_data("measured", measured);
+  g.add_data("published", published);
+  g.add_data("names", names);
+  g.script += R"(set logscale x
+set xrange [80:90000]
+set yrange [0:*]
+set offsets 0, 0, graph 0.05, 0
+set xlabel 'size of the object that A meets: real and pseudo faces'
+set ylabel 'face comparisons in a time step'
+set key top left reverse Left
+set grid y lc rgb '#dddddd'
+set border 3
+set tics nomirror out
+plot $measured using 1:2:3:4 with yerrorbars lw 1.5 pt 7 ps 0.6 lc rgb '#0072B2' title 'measured: average, minimum, maximum', \
+     $measured using 1:2 with lines lw 1.5 lc rgb '#0072B2' notitle, \
+     $published using 1:2:3:4 with yerrorbars lw 1.5 pt 5 ps 0.6 lc rgb '#D55E00' title 'published', \
+     $published using 1:2 with lines dt 2 lw 1.5 lc rgb '#D55E00' notitle, \
+     $names using 1:2:3 with labels offset 0.3, 0.7 tc rgb '#555555' notitle
+)";
+  return g;
+}
+
+Gnuplot figure_3_2(std::span<const ObjectRow> rows, std::span<const ContactStep> steps) {
+  Gnuplot g;
+  std::string plot = "plot ";
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    std::map<std::uint64_t, int> bins;
+    for (const ContactStep& s : steps)
+      if (s.object == rows[i].object)
+        ++bins[static_cast<std::uint64_t>(static_cast<double>(s.counts[kPaper].comparisons) / kBinWidth)];
+    std::vector<std::string> points;
+    const std::uint64_t last = bins.empty() ? 0 : bins.rbegin()->first;
+    for (std::uint64_t b = 0; b <= last; ++b)
+      points.push_back(number((static_cast<double>(b) + 0.5) * kBinWidth) + " " + std::to_string(bins[b]));
+    g.add_data("object_" + rows[i].object, points);
+    plot += (i > 0 ? ", " : "") + std::string("$object_") + rows[i].object +
+            " using 1:2 with lines lw 1.5 dt " + std::to_string(i % 5 + 1) + " lc rgb '" +
+            kColours[i % std::size(kColours)] + "' title " +
+            gnuplot_text(rows[i].object + ": " + std::to_string(rows[i].total_faces) + " faces");
+  }
+  g.script += "set xlabel 'face comparisons in a time step (bins of " + number(kBinWidth) + ")'\n";
+  g.script += R"(set ylabel 'time steps'
+set xrange [0:8000]
+set yrange [0:*]
+set key top right
+set grid y lc rgb '#dddddd'
+set border 3
+set tics nomirror out
+)" + plot + "\n";
+  return g;
+}
+
+}  // namespace lrb

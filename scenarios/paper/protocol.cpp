@@ -1,0 +1,92 @@
+#include "scenarios/paper/protocol.hpp"
+
+#include <algorithm>
+
+#include <Eigen/Geometry>
+
+#include "engine/lrb/fnv.hpp"
+#include "engine/query/collide_impl.hpp"
+#include "engine/query/query_context.hpp"
+#include "scenarios/shapes/random_pose.hpp"
+
+namespace lrb {
+namespace {
+
+RecursionCount count_of(const CollideResult& result, const std::vector<SimplexPair>& all) {
+  RecursionCount n;
+  n.comparisons = result.counters.face_tests;
+  n.refinements = result.counters.refinements;
+  n.pairs = result.pairs.size();
+  n.missed = static_cast<std::uint64_t>(std::count_if(all.begin(), all.end(), [&](const SimplexPair& p) {
+    return !std::binary_search(result.pairs.begin(), result.pairs.end(), p);
+  }));
+  n.bound_tests = result.counters.box_tests + result.counters.prefilter_tests;
+  return n;
+}
+
+ContactStep count_step(const LrbRep& a, const Pose& pose_a, const LrbRep& x, const Pose& pose_x,
+                       const CollideResult& complete, QueryContext& context) {
+  ContactStep step;
+  step.relation = complete.relation;
+  NullProbe probe;
+  for (std::size_t i = 0; i < kRecursions.size(); ++i) {
+    CollideRequest request;
+    request.recursion = kRecursions[i];
+    step.counts[i] = kRecursions[i] == Recursion::complete
+                         ? count_of(complete, complete.pairs)
+                         : count_of(collide(a, pose_a, x, pose_x, request, context, probe), complete.pairs);
+  }
+  return step;
+}
+
+}  // namespace
+
+double diagonal(const LrbRep& rep) {
+  return shapes::box_of(rep).diagonal().norm();
+}
+
+LrbRep scaled(const LrbRep& rep, double by) {
+  LrbData data = rep.data();
+  for (Eigen::Vector3d& v : data.vertices) v *= by;
+  return LrbRep(std::move(data));
+}
+
+std::vector<ContactStep> run_collision(const LrbRep& a, const LrbRep& x, const std::string& object,
+                                       std::uint32_t collision, const PaperProtocol& protocol,
+                                       QueryContext& context) {
+  Fnv64 seed;
+  seed.add_value(protocol.seed);
+  seed.add_bytes(object.data(), object.size());
+  seed.add_value(collision);
+  shapes::Random random(seed.value());
+  const Eigen::AlignedBox3d box_a = shapes::box_of(a), box_x = shapes::box_of(x);
+  const double unit = box_a.diagonal().norm();
+  Pose pose_a, pose_x;
+  pose_a.r = shapes::random_rotation(random);
+  pose_a.t = -(pose_a.r * box_a.center());
+  pose_x.r = shapes::random_rotation(random);
+  const Eigen::Vector3d from = shapes::random_direction(random), centre_x = pose_x.r * box_x.center();
+  const double start = 0.5 * (unit + box_x.diagonal().norm());
+
+  std::vector<ContactStep> steps;
+  NullProbe probe;
+  std::uint32_t since_contact = 0;
+  bool met = false;
+  for (std::uint32_t i = 0; i * protocol.step * unit < 2 * start && since_contact <= protocol.steps_after;
+       ++i) {
+    pose_x.t = (start - i * protocol.step * unit) * from - centre_x;
+    const CollideResult result = collide(a, pose_a, x, pose_x, {}, context, probe);
+    met |= !result.pairs.empty();
+    if (!result.pairs.empty()) {
+      ContactStep step = count_step(a, pose_a, x, pose_x, result, context);
+      step.object = object;
+      step.collision = collision;
+      step.step = since_contact;
+      steps.push_back(std::move(step));
+    }
+    since_contact += met;
+  }
+  return steps;
+}
+
+}  // namespace lrb

@@ -1,0 +1,205 @@
+#include "scenarios/paper/report.hpp"
+
+#include <cmath>
+#include <iomanip>
+#include <sstream>
+
+#include "scenarios/files.hpp"
+#include "scenarios/page/inline_image.hpp"
+#include "scenarios/page/page.hpp"
+#include "scenarios/paper/figures.hpp"
+
+namespace lrb {
+namespace {
+
+constexpr std::array<const char*, 3> kTitles = {"the paper's recursion, each pair of regions once",
+                                                "the paper's recursion, each region once (strict)",
+                                                "complete"};
+
+std::string whole(double x) {
+  return std::to_string(std::llround(x));
+}
+
+std::string fixed(double x, int digits) {
+  std::ostringstream out;
+  out << std::fixed << std::setprecision(digits) << x;
+  return out.str();
+}
+
+const PublishedRow* published(const std::string& object) {
+  for (const PublishedRow& p : published_table2())
+    if (object == p.object) return &p;
+  return nullptr;
+}
+
+PageTable table1(const PaperReport& r) {
+  PageTable t{
+      "Table 1: object sizes",
+      {"object", "real faces", "total faces", "outermost wrapper"},
+      {},
+      "Equal to the paper's, face by face: the generator is given its numbers. The bodies' shapes are ours: "
+      "the paper says only that they are fractal, with a basic non-convex shape."};
+  for (const PaperObject& o : r.objects)
+    t.rows.push_back({o.name, std::to_string(o.rep.real_face_count()), std::to_string(o.rep.face_count()),
+                      std::to_string(o.rep.outermost_faces().size()) + " faces"});
+  return t;
+}
+
+PageTable table2(std::span<const ObjectRow> rows, std::size_t recursion) {
+  PageTable t;
+  t.title = std::string("Table 2, ") + kTitles[recursion];
+  t.columns = {"A against", "steps", "minimum",           "average",      "maximum", "published min",
+               "avg",       "max",   "refinements (avg)", "pairs missed", "n log n", "n²"};
+  if (kRecursions[recursion] == Recursion::complete)
+    t.columns.insert(t.columns.begin() + 9, "bound tests (avg)");
+  for (const ObjectRow& row : rows) {
+    const RecursionRow& x = row.recursions[recursion];
+    const PublishedRow* p = published(row.object);
+    std::vector<std::string> cells = {row.object, std::to_string(row.steps), whole(x.comparisons.min),
+                                      whole(x.comparisons.average), whole(x.comparisons.max)};
+    for (const double n : {p ? p->min : 0, p ? p->average : 0, p ? p->max : 0})
+      cells.push_back(p ? whole(n) : "–");
+    cells.push_back(fixed(x.refinements.average, 1));
+    if (kRecursions[recursion] == Recursion::complete) cells.push_back(whole(x.bound_tests));
+    const auto all = static_cast<double>(x.pairs + x.missed);
+    cells.push_back(all > 0 ? fixed(100 * static_cast<double>(x.missed) / all, 2) + " %" : "–");
+    cells.push_back(whole(row.n_log_n));
+    cells.push_back(whole(row.n_squared));
+    t.rows.push_back(std::move(cells));
+  }
+  t.note = kRecursions[recursion] == Recursion::complete
+               ? "Comparisons of triangles, exact; what decides before them are the bound tests. Nothing is "
+                 "missed."
+               : "Comparisons of faces, exact, over the time steps with a contact of real faces.";
+  return t;
+}
+
+/// What a reader must know before he compares.
+std::vector<std::string> differences(std::span<const ObjectRow> rows) {
+  std::vector<std::string> out;
+  const RecursionRow &first = rows.front().recursions[0], &last = rows.back().recursions[0];
+  std::string over;
+  for (const ObjectRow& row : rows)
+    if (const PublishedRow* p = published(row.object);
+        p && row.recursions[0].comparisons.average > p->average)
+      over += (over.empty() ? "" : ", ") + row.object;
+  out.push_back(
+      over.empty()
+          ? "The averages of the paper's recursion are at or under the published ones for all objects."
+          : "The averages of the paper's recursion are above the published ones for " + over + ".");
+  out.push_back("From " + rows.front().object + " to " + rows.back().object + " the average grows " +
+                fixed(last.comparisons.average / first.comparisons.average, 2) +
+                "-fold (published: 2.18), the maximum " +
+                fixed(last.comparisons.max / first.comparisons.max, 2) +
+                "-fold (published: 3.57 to its highest row).");
+  std::string missed;
+  for (const ObjectRow& row : rows)
+    missed += (missed.empty() ? "" : ", ") + row.object + " " + std::to_string(row.recursions[0].missed) +
+              "/" + std::to_string(row.recursions[1].missed);
+  out.push_back("Pairs that the paper's recursion misses, in its two readings: " + missed +
+                ". The paper does not count misses.");
+  out.push_back(
+      "The shapes, the approach and the depth of contact are not in the paper; they decide the numbers as "
+      "much as the algorithm does. See the protocol.");
+  return out;
+}
+
+std::string protocol_text(const PaperProtocol& p) {
+  return std::to_string(p.collisions) +
+         " collisions per object; random rotations of both bodies, equal diagonals; the "
+         "other body comes in along a random line through both centres in steps of " +
+         fixed(100 * p.step, 2) +
+         " % of the diagonal; every step with a contact of real faces counts, from the first one through " +
+         std::to_string(p.steps_after) + " more; seed " + std::to_string(p.seed) + ".";
+}
+
+void add_markdown(std::string& md, const PageTable& t) {
+  md += "\n## " + t.title + "\n\n|";
+  for (const std::string& c : t.columns) md += " " + c + " |";
+  md += "\n|";
+  for (std::size_t i = 0; i < t.columns.size(); ++i) md += i == 0 ? " --- |" : " ---: |";
+  for (const auto& row : t.rows) {
+    md += "\n|";
+    for (const std::string& c : row) md += " " + c + " |";
+  }
+  md += "\n\n" + t.note + "\n";
+}
+
+}  // namespace
+
+std::vector<std::string> write_paper_report(const PaperReport& r, const std::string& folder) {
+  const std::vector<ObjectRow> rows = make_table(r.objects, r.steps);
+  std::vector<std::string> notes;
+  write_text(folder + "/records.jsonl", to_json_lines(r.steps));
+  write_text(folder + "/tables.json", tables_json(r.objects, rows, r.protocol));
+
+  const bool figures = has_gnuplot();
+  if (figures) {
+    for (const char* ending : {".svg", ".png"}) {
+      draw(figure_3_1(rows), folder + "/figure3-1" + ending);
+      draw(figure_3_2(rows, r.steps), folder + "/figure3-2" + ending);
+    }
+  } else {
+    notes.push_back("figures 3.1 and 3.2 were not drawn: gnuplot is missing (Debian: gnuplot-nox)");
+  }
+
+  Page page;
+  page.title = "The paper's experiment";
+  page.purpose =
+      "C. Gonzalez-Ochoa, \"2-Body Collision Detection using LRB-reps\", tables 1 and 2 and figures 3.1 and "
+      "3.2, measured beside the published numbers.";
+  const std::vector<std::string> remarks = differences(rows);
+  std::string md = "# " + page.title + "\n\n" + page.purpose + "\n\nProtocol: " + protocol_text(r.protocol) +
+                   "\n\nMade by `" + r.command + "`.\n\n## What differs\n\n";
+  PageTable what{"What differs", {"remark"}, {}, "Protocol: " + protocol_text(r.protocol)};
+  for (const std::string& s : remarks) {
+    md += "- " + s + "\n";
+    what.rows.push_back({s});
+  }
+  page.tables.push_back(what);
+  page.tables.push_back(table1(r));
+  for (std::size_t i = 0; i < kRecursions.size(); ++i) page.tables.push_back(table2(rows, i));
+  for (std::size_t i = 1; i < page.tables.size(); ++i) add_markdown(md, page.tables[i]);
+
+  PageChart sizes{"Object size against comparisons",
+                  "real and pseudo faces of the other object",
+                  "comparisons",
+                  "Figure 3.1: the paper's recursion, measured and published.",
+                  {},
+                  PageCursor::none,
+                  true,
+                  false,
+                  false,
+                  false};
+  PageSeries measured{"measured average", {}, {}}, most{"measured maximum", {}, {}},
+      paper{"published average", {}, {}}, paper_most{"published maximum", {}, {}};
+  for (const ObjectRow& row : rows) {
+    const double size = row.total_faces;
+    measured.x.push_back(size);
+    measured.y.push_back(row.recursions[0].comparisons.average);
+    most.x.push_back(size);
+    most.y.push_back(row.recursions[0].comparisons.max);
+    if (const PublishedRow* p = published(row.object)) {
+      paper.x.push_back(size);
+      paper.y.push_back(p->average);
+      paper_most.x.push_back(size);
+      paper_most.y.push_back(p->max);
+    }
+  }
+  sizes.series = {measured, paper, most, paper_most};
+  page.charts.push_back(sizes);
+  if (figures) {
+    md += "\n## Figures\n\n![Figure 3.1](figure3-1.svg)\n\n![Figure 3.2](figure3-2.svg)\n";
+    for (const char* name : {"figure3-1", "figure3-2"})
+      for (const char* ending : {".svg", ".png"})
+        page.links.push_back({std::string(name) + ending, std::string(name) + ending, ""});
+  }
+  page.links.push_back({"records.jsonl", "records.jsonl", "every counted time step"});
+  page.links.push_back({"tables.json", "tables.json", "both tables as data"});
+  page.command = r.command;
+  write_text(folder + "/report.md", md);
+  write_text(folder + "/index.html", page_html(page));
+  return notes;
+}
+
+}  // namespace lrb

@@ -1,0 +1,21 @@
+#pragma once
+/// The paper's experiment, reported: tables beside the published ones, figures, and what differs.
+
+#include <string>
+
+#include "scenarios/paper/tables.hpp"
+
+namespace lrb {
+
+struct PaperReport {
+  std::span<const PaperObject> objects;  ///< A first
+  std::span<const ContactStep> steps;
+  PaperProtocol protocol;
+  std::string command;  ///< that made it
+};
+
+/// Writes records.jsonl, tables.json, report.md, index.html and, with gnuplot, figure3-1 and figure3-2 as SVG
+/// and PNG. Returns lines for people (what could not be drawn). Throws EnvironmentError.
+std::vector<std::string> write_paper_report(const PaperReport& report, const std::string& folder);
+
+}  // namespace lrb

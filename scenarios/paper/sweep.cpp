@@ -1,0 +1,128 @@
+#include "scenarios/paper/sweep.hpp"
+
+#include <atomic>
+#include <exception>
+#include <mutex>
+#include <thread>
+#include <tuple>
+
+#include <nlohmann/json.hpp>
+
+#include "engine/error.hpp"
+#include "engine/mesh/file_bytes.hpp"
+#include "engine/query/query_context.hpp"
+#include "trace/names.hpp"
+
+namespace lrb {
+namespace {
+
+using nlohmann::json;
+using nlohmann::ordered_json;
+
+ordered_json to_json(const ContactStep& s) {
+  ordered_json j = {{"object", s.object},
+                    {"collision", s.collision},
+                    {"step", s.step},
+                    {"relation", trace::name_of(s.relation)}};
+  for (std::size_t i = 0; i < kRecursions.size(); ++i) {
+    const RecursionCount& n = s.counts[i];
+    j[std::string(trace::name_of(kRecursions[i]))] = {{"comparisons", n.comparisons},
+                                                      {"refinements", n.refinements},
+                                                      {"pairs", n.pairs},
+                                                      {"missed", n.missed},
+                                                      {"bound_tests", n.bound_tests}};
+  }
+  return j;
+}
+
+ContactStep from_json(const json& j) {
+  ContactStep s;
+  s.object = j.at("object").get<std::string>();
+  s.collision = j.at("collision").get<std::uint32_t>();
+  s.step = j.at("step").get<std::uint32_t>();
+  const auto relation = trace::from_name<Relation>(j.at("relation").get<std::string>());
+  if (!relation) throw InputError("\"relation\" must be " + trace::all_names<Relation>());
+  s.relation = *relation;
+  for (std::size_t i = 0; i < kRecursions.size(); ++i) {
+    const json& n = j.at(std::string(trace::name_of(kRecursions[i])));
+    const auto at = [&](const char* key) { return n.at(key).get<std::uint64_t>(); };
+    s.counts[i] = {at("comparisons"), at("refinements"), at("pairs"), at("missed"), at("bound_tests")};
+  }
+  return s;
+}
+
+}  // namespace
+
+std::vector<ContactStep> run_sweep(std::span<const PaperObject> objects, const SweepOptions& options,
+                                   const std::function<void(std::uint64_t, std::uint64_t)>& progress) {
+  std::vector<std::pair<std::size_t, std::uint32_t>> tasks;  // object, collision
+  std::uint64_t number = 0;
+  for (std::size_t k = 1; k < objects.size(); ++k)
+    for (std::uint32_t c = 0; c < options.protocol.collisions; ++c)
+      if (number++ % options.shard.count == options.shard.index) tasks.emplace_back(k, c);
+
+  std::vector<std::vector<ContactStep>> found(tasks.size());
+  std::atomic<std::size_t> next = 0;
+  std::mutex one_at_a_time;
+  std::uint64_t done = 0;
+  std::exception_ptr failure;
+  const auto work = [&] {
+    QueryContext context;
+    for (std::size_t i = next++; i < tasks.size(); i = next++) try {
+        const PaperObject& x = objects[tasks[i].first];
+        found[i] = run_collision(objects[0].rep, x.rep, x.name, tasks[i].second, options.protocol, context);
+        const std::lock_guard lock(one_at_a_time);
+        if (progress) progress(++done, tasks.size());
+      } catch (...) {
+        const std::lock_guard lock(one_at_a_time);
+        failure = std::current_exception();
+        next = tasks.size();
+      }
+  };
+  {
+    std::vector<std::jthread> threads;
+    for (std::uint32_t j = 1; j < options.jobs; ++j) threads.emplace_back(work);
+    work();
+  }
+  if (failure) std::rethrow_exception(failure);
+  std::vector<ContactStep> steps;
+  for (auto& part : found) std::move(part.begin(), part.end(), std::back_inserter(steps));
+  return steps;
+}
+
+std::string to_json_lines(std::span<const ContactStep> steps) {
+  std::string out;
+  for (const ContactStep& s : steps) out += to_json(s).dump() + "\n";
+  return out;
+}
+
+std::vector<ContactStep> read_json_lines(const std::string& text, const std::string& file) {
+  std::vector<ContactStep> steps;
+  std::size_t line = 1;
+  for (std::size_t begin = 0; begin < text.size(); ++line) {
+    const std::size_t end = std::min(text.find('\n', begin), text.size());
+    try {
+      steps.push_back(from_json(json::parse(text.begin() + static_cast<std::ptrdiff_t>(begin),
+                                            text.begin() + static_cast<std::ptrdiff_t>(end))));
+    } catch (const std::exception& e) {
+      throw InputError(printable_name(file) + ":" + std::to_string(line) +
+                       ": not a record of `lrbscope paper`: " + printable_name(e.what()) +
+                       "; give the records.jsonl files that its shards wrote");
+    }
+    begin = end + 1;
+  }
+  return steps;
+}
+
+std::vector<ContactStep> merged(std::vector<ContactStep> steps) {
+  const auto key = [](const ContactStep& s) { return std::tie(s.object, s.collision, s.step); };
+  std::sort(steps.begin(), steps.end(), [&](const auto& x, const auto& y) { return key(x) < key(y); });
+  for (std::size_t i = 1; i < steps.size(); ++i)
+    if (key(steps[i - 1]) == key(steps[i]))
+      throw InputError("object " + steps[i].object + ", collision " + std::to_string(steps[i].collision) +
+                       ", step " + std::to_string(steps[i].step) +
+                       " is there twice; give each shard's records once");
+  return steps;
+}
+
+}  // namespace lrb

@@ -1,0 +1,287 @@
+#include "scenarios/stability/print.hpp"
+
+#include <array>
+#include <iomanip>
+#include <sstream>
+
+#include "render/overlay.hpp"
+#include "render/palette.hpp"
+#include "scenarios/stability/cell_summary.hpp"
+
+namespace lrb::stability {
+namespace {
+
+// ---- the grid: drawn in units of one cell, x to the right, y up, the first row's top at 0
+
+constexpr double kCellWidth = 17, kCellHeight = 9.5;  // millimetres
+constexpr double kLeft = 2.9, kTop = 1.35, kBottom = 1.5;
+constexpr double kFont = 6.5, kSmall = 0.78;  // points; share of it
+
+constexpr Rgba kWrong = palette::kVermillion;
+constexpr Rgba kCrashed{20, 22, 26};
+constexpr Rgba kTimedOut{160, 69, 138};
+constexpr Rgba kRefused{154, 160, 166};
+constexpr Rgba kAbsent{247, 247, 246};
+constexpr Rgba kOnlyRefused{228, 230, 232};
+/// As on the page: pale blue where nothing fails, then ever more orange.
+constexpr std::array<Rgba, 5> kLevels = {Rgba{226, 238, 246}, Rgba{253, 241, 220}, Rgba{251, 220, 174},
+                                         Rgba{245, 180, 107}, Rgba{232, 138, 60}};
+
+std::string number(double x) {
+  std::ostringstream out;
+  out << std::setprecision(7) << x;
+  return out.str();
+}
+
+std::string colour(Rgba c) {
+  return std::to_string((static_cast<unsigned>(c.r) << 16) + (static_cast<unsigned>(c.g) << 8) + c.b);
+}
+
+/// Rectangles and texts, and the commands that draw them in this order.
+class Sheet {
+ public:
+  void rect(double x0, double y0, double x1, double y1, Rgba c) {
+    rects_.push_back(number((x0 + x1) / 2) + " " + number((y0 + y1) / 2) + " " + number(x0) + " " +
+                     number(x1) + " " + number(y0) + " " + number(y1) + " " + colour(c));
+  }
+  enum Style { normal, bold, small, small_right, small_centre, kStyles };
+  void text(double x, double y, Style style, const std::string& s, Rgba c = palette::kInk) {
+    if (!s.empty())
+      texts_[style].push_back(number(x) + " " + number(y) + " " + gnuplot_data_text(s) + " " + colour(c));
+  }
+  void write(Gnuplot& chart) const {
+    static constexpr std::array<const char*, kStyles> kNames = {"normal", "bold", "small", "small_right",
+                                                                "small_centre"};
+    static constexpr std::array<const char*, kStyles> kAligns = {"left", "right", "left", "right", "center"};
+    chart.add_data("rects", rects_);
+    std::string plot = "plot $rects using 1:2:3:4:5:6:7 with boxxyerror lc rgb variable";
+    for (std::size_t i = 0; i < kStyles; ++i) {
+      if (texts_[i].empty()) continue;
+      chart.add_data(kNames[i], texts_[i]);
+      const std::string font = i == bold ? "DejaVu Sans Bold," + number(kFont)
+                                         : "DejaVu Sans," + number(i == normal ? kFont : kFont * kSmall);
+      plot += ", $" + std::string(kNames[i]) + " using 1:2:3:4 with labels " + kAligns[i] + " font '" + font +
+              "' tc rgb variable";
+    }
+    chart.script += plot + "\n";
+  }
+
+ private:
+  std::vector<std::string> rects_;
+  std::array<std::vector<std::string>, kStyles> texts_;
+};
+
+/// Breaks at spaces so that lines hold about `width` characters.
+std::vector<std::string> wrap(const std::string& text, std::size_t width) {
+  std::vector<std::string> lines;
+  std::istringstream in(text);
+  for (std::string word; in >> word;)
+    if (!lines.empty() && lines.back().size() + word.size() < width)
+      lines.back() += " " + word;
+    else
+      lines.push_back(word);
+  return lines;
+}
+
+void add_bars(Sheet& sheet, const Cell& cell, double x, double y) {
+  constexpr double kFrom = 0.07, kTo = 0.93, kLow = 0.1, kHigh = 0.56, kLeast = 0.05;
+  sheet.rect(x + kFrom - 0.02, y + kLow - 0.03, x + kTo + 0.02, y + kHigh + 0.03, kWhite);
+  const double step = (kTo - kFrom) / kDialSettings;
+  for (std::size_t i = 0; i < kDialSettings; ++i) {
+    if (cell.cases[i] == 0) continue;
+    const double left = x + kFrom + step * (static_cast<double>(i) + 0.1), right = left + 0.8 * step;
+    sheet.rect(left, y + kLow - 0.012, right, y + kLow, palette::kRule);
+    double at = y + kLow;
+    const auto part = [&](std::uint64_t n, Rgba c) {
+      if (n == 0) return;
+      const double share = static_cast<double>(n) / static_cast<double>(cell.cases[i]);
+      const double top = std::min(y + kHigh, at + std::max(kLeast, (kHigh - kLow) * share));
+      sheet.rect(left, at, right, top, c);
+      at = top;
+    };
+    part(cell.wrong[i], kWrong);
+    part(cell.crashed[i], kCrashed);
+    part(cell.timed_out[i], kTimedOut);
+    part(cell.refused[i], kRefused);
+  }
+}
+
+void add_cell(Sheet& sheet, const Cell& cell, double x, double y) {
+  constexpr double kGap = 0.02;
+  const CellSummary s = summarise(cell);
+  sheet.rect(x + kGap, y + kGap, x + 1 - kGap, y + 1 - kGap,
+             s.only_refused() ? kOnlyRefused : kLevels[static_cast<std::size_t>(s.level())]);
+  sheet.text(x + 0.06, y + 0.78, Sheet::small, group_digits(s.failures()) + " of " + group_digits(s.cases));
+  std::string marks;
+  const auto mark = [&](std::uint64_t n, const char* sign) {
+    if (n > 0) marks += (marks.empty() ? "" : " ") + (sign + group_digits(n));
+  };
+  mark(s.crashed, "\u2715");
+  mark(s.timed_out, "\u25f7");
+  mark(s.refused, "\u2298");
+  sheet.text(x + 0.95, y + 0.78, Sheet::small_right, marks);
+  add_bars(sheet, cell, x, y);
+}
+
+void add_row_head(Sheet& sheet, const FamilyRow& family, double y) {
+  sheet.text(-0.08, y + 0.68, Sheet::bold, family.name);
+  if (!family.benign.empty() || !family.degenerate.empty())
+    sheet.text(-0.08, y + 0.3, Sheet::small_right, family.benign + " \u2192 " + family.degenerate,
+               palette::kFaint);
+}
+
+void add_column_head(Sheet& sheet, const MethodColumn& method, double x) {
+  const std::vector<std::string> lines = wrap(method.title, 17);
+  for (std::size_t i = 0; i < lines.size(); ++i)
+    sheet.text(x + 0.5, 0.22 + 0.29 * static_cast<double>(lines.size() - 1 - i), Sheet::small_centre,
+               lines[i], method.present ? palette::kInk : palette::kFaint);
+}
+
+void add_legend(Sheet& sheet, double y, double columns) {
+  double x = -kLeft + 0.1;
+  const auto item = [&](Rgba c, const std::string& text) {
+    constexpr double kCharacter = 0.073;
+    const double needed = 0.35 + kCharacter * static_cast<double>(text.size()) + 0.2;
+    if (x + needed > columns) {
+      x = -kLeft + 0.1;
+      y -= 0.42;
+    }
+    sheet.rect(x, y - 0.12, x + 0.22, y + 0.12, c);
+    sheet.text(x + 0.29, y, Sheet::small, text);
+    x += needed;
+  };
+  for (std::size_t i = 0; i < kLevels.size(); ++i) item(kLevels[i], kLevelNames[i]);
+  item(kOnlyRefused, "refusals alone");
+  item(kWrong, "wrong answer");
+  item(kCrashed, "\u2715 crashed");
+  item(kTimedOut, "\u25f7 timed out");
+  item(kRefused, "\u2298 refused");
+  sheet.text(-kLeft + 0.1, y - 0.42, Sheet::small,
+             "Failures of cases; bars: share of cases along the dial, benign to degenerate.",
+             palette::kFaint);
+}
+
+// ---- the profiles
+
+constexpr int kProfileColumns = 4;
+
+/// Lines that differ in colour, dash and mark.
+std::string line_style(std::size_t i) {
+  static constexpr std::array<const char*, 8> kColours = {"#0072b2", "#d55e00", "#009e73", "#cc79a7",
+                                                          "#1d1f22", "#56b4e9", "#e69f00", "#7a5195"};
+  static constexpr std::array<int, 8> kPoints = {7, 5, 9, 11, 13, 6, 4, 8};
+  return "lc rgb '" + std::string(kColours[i % kColours.size()]) + "' pt " +
+         std::to_string(kPoints[i % kPoints.size()]) + " ps 0.35 dt " +
+         std::to_string(1 + i / kColours.size()) + " lw 1.1";
+}
+
+std::vector<std::string> profile_rows(const Cell& cell, double shift) {
+  std::vector<std::string> rows;
+  for (std::size_t i = 0; i < kDialSettings; ++i) {
+    if (cell.cases[i] == 0) continue;
+    const double failed = static_cast<double>(cell.wrong[i] + cell.crashed[i] + cell.timed_out[i]);
+    rows.push_back(number(static_cast<double>(i) + shift) + " " +
+                   number(100 * failed / static_cast<double>(cell.cases[i])));
+  }
+  return rows;
+}
+
+}  // namespace
+
+Gnuplot grid_chart(const Grid& grid) {
+  const double columns = static_cast<double>(grid.methods.size());
+  const double rows = static_cast<double>(grid.families.size()) + 1.1;  // a little room above the sums
+  Gnuplot chart;
+  chart.width = kCellWidth * (kLeft + columns + 0.1);
+  chart.height = kCellHeight * (kTop + rows + kBottom);
+  chart.font = kFont;
+  Sheet sheet;
+  for (std::size_t m = 0; m < grid.methods.size(); ++m) {
+    const double x = static_cast<double>(m);
+    add_column_head(sheet, grid.methods[m], x);
+    for (std::size_t f = 0; f < grid.families.size(); ++f) {
+      const double y = -1 - static_cast<double>(f);
+      if (grid.methods[m].present) {
+        add_cell(sheet, grid.at(f, m), x, y);
+      } else {
+        sheet.rect(x + 0.02, y + 0.02, x + 0.98, y + 0.98, kAbsent);
+        sheet.text(x + 0.5, y + 0.5, Sheet::small_centre, "absent", palette::kFaint);
+      }
+    }
+    if (grid.methods[m].present) add_cell(sheet, sum_of_column(grid, m), x, -rows);
+  }
+  for (std::size_t f = 0; f < grid.families.size(); ++f)
+    add_row_head(sheet, grid.families[f], -1 - static_cast<double>(f));
+  sheet.text(-0.08, -rows + 0.5, Sheet::bold, "all families");
+  add_legend(sheet, -rows - 0.35, columns);
+
+  chart.script =
+      "unset border\nunset tics\nunset key\nset style fill solid 1 noborder\n"
+      "set lmargin at screen 0\nset rmargin at screen 1\nset tmargin at screen 1\nset bmargin at screen 0\n";
+  chart.script += "set xrange [" + number(-kLeft) + ":" + number(columns + 0.1) + "]\nset yrange [" +
+                  number(-rows - kBottom) + ":" + number(kTop) + "]\n";
+  sheet.write(chart);
+  return chart;
+}
+
+Gnuplot profile_chart(const Grid& grid) {
+  const int panels = static_cast<int>(grid.families.size()) + 1;  // the key has one
+  const int rows = (panels + kProfileColumns - 1) / kProfileColumns;
+  Gnuplot chart;
+  chart.width = 180;
+  chart.height = 36.0 * rows;
+  chart.font = 6;
+  std::string plots;
+  std::string key =
+      "unset border\nunset tics\nunset title\nunset xlabel\nunset ylabel\nset key at graph 0, graph 1 left "
+      "top Left reverse samplen 2.5 spacing 1.05\nset xrange [0:1]\nset yrange [0:1]\nplot ";
+  std::size_t present = 0;
+  for (const MethodColumn& m : grid.methods) present += m.present ? 1 : 0;
+  for (std::size_t f = 0; f < grid.families.size(); ++f) {
+    const FamilyRow& family = grid.families[f];
+    plots += "set title " + gnuplot_text(family.name) + " font 'DejaVu Sans Bold,6.5' offset 0,-0.7\n";
+    plots += "set xlabel " + gnuplot_text(family.benign + "  \u2192  " + family.degenerate) +
+             " offset 0,0.9 font ',5' tc rgb '#62676e'\n";
+    plots += std::string("set ylabel ") + (f % kProfileColumns == 0 ? "'failures, %'" : "' '") +
+             " offset 2.2,0\nplot ";
+    std::size_t line = 0;
+    for (std::size_t m = 0; m < grid.methods.size(); ++m) {
+      if (!grid.methods[m].present) continue;
+      const std::string name = "f" + std::to_string(f) + "m" + std::to_string(m);
+      // Side by side where lines would hide each other.
+      constexpr double kApart = 0.07;
+      const double shift = kApart * (static_cast<double>(line) - static_cast<double>(present - 1) / 2);
+      chart.add_data(name, profile_rows(grid.at(f, m), shift));
+      plots +=
+          (line > 0 ? ", $" : "$") + name + " using 1:2 with linespoints " + line_style(line) + " notitle";
+      if (f == 0)
+        key += std::string(line > 0 ? ", " : "") + "NaN with linespoints " + line_style(line) + " title " +
+               gnuplot_text(grid.methods[m].title);
+      ++line;
+    }
+    plots += "\n";
+  }
+  chart.script += "set multiplot layout " + std::to_string(rows) + "," + std::to_string(kProfileColumns) +
+                  " margins char 4.5, char 1.5, char 2, char 1.5 spacing char 4, char 3.6\n";
+  chart.script +=
+      "unset key\nset border 3 lw 0.6 lc rgb '#8a8f95'\nset xrange [-0.6:10.6]\nset yrange [-3:103]\n"
+      "set ytics 0,50,100 nomirror scale 0.4 offset 0.6,0\nset xtics 0,1,10 nomirror scale 0.4 format ''\n"
+      "set grid ytics lw 0.4 lc rgb '#d8dadc' dt 1\n";
+  chart.script += plots + key + "\nunset multiplot\n";
+  return chart;
+}
+
+std::vector<PrintFile> print_stability(const Grid& grid, const std::string& folder) {
+  const Gnuplot whole = grid_chart(grid), profiles = profile_chart(grid);
+  std::vector<PrintFile> files;
+  for (const char* ending : {".svg", ".png"}) {
+    draw(whole, folder + "/stability" + ending);
+    files.push_back({std::string("stability") + ending, "the grid, for print"});
+    draw(profiles, folder + "/stability-profiles" + ending);
+    files.push_back(
+        {std::string("stability-profiles") + ending, "share of failures along each family's dial"});
+  }
+  return files;
+}
+
+}  // namespace lrb::stability

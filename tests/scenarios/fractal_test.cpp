@@ -1,0 +1,57 @@
+#include "scenarios/generators/fractal.hpp"
+
+#include <doctest/doctest.h>
+
+#include "engine/error.hpp"
+#include "engine/exact/predicates.hpp"
+#include "engine/lrb/validate.hpp"
+
+using namespace lrb;
+
+TEST_CASE("the paper's objects: table 1's numbers of faces exactly, closed, embedded, few outer faces") {
+  for (const FractalSpec& spec : paper_objects()) {
+    CAPTURE(spec.name);
+    const LrbRep rep = fractal_body(spec);
+    CHECK(rep.real_face_count() == spec.real_faces);
+    CHECK(rep.face_count() == spec.total_faces);
+    CHECK(rep.outermost_faces().size() < 10);
+    ValidateOptions options;
+    options.wrapper_states = 5;
+    const ValidateReport report = validate(rep, options);
+    CHECK(report.valid);
+    CHECK(report.real_pairs_meeting == 0);
+    CHECK(report.volume_solid > 0.5 * report.volume_outer);
+    CHECK(report.volume_solid < 0.9 * report.volume_outer);
+  }
+}
+
+TEST_CASE("fractal bodies: every face is flat, exactly") {
+  const LrbRep rep = fractal_body(paper_objects()[3]);
+  std::size_t quads = 0;
+  for (FaceId f = 0; f < rep.face_count(); ++f) {
+    const auto v = rep.face(f);
+    const auto x = [&](std::size_t i) { return rep.vertices()[v[i]].data(); };
+    for (std::size_t i = 3; i < v.size(); ++i) CHECK(exact::orient3d(x(0), x(1), x(2), x(i)) == 0);
+    quads += v.size() == 4;
+  }
+  CHECK(quads > 100);
+}
+
+TEST_CASE("fractal bodies: the seed alone decides, and other numbers of faces work") {
+  const FractalSpec small{"small", 500, 600, 3};
+  FractalSpec other = small;
+  other.seed = 4;
+  CHECK(hash_of(fractal_body(small).data()) == hash_of(fractal_body(small).data()));
+  CHECK(hash_of(fractal_body(small).data()) != hash_of(fractal_body(other).data()));
+  for (const std::uint32_t pseudo : {71u, 72u, 100u, 197u}) {
+    const LrbRep rep = fractal_body({"body", 500, 500 + pseudo, 5});
+    CHECK(rep.face_count() == 500 + pseudo);
+    CHECK(rep.real_face_count() == 500);
+  }
+  CHECK(fractal_body({"prism", 7, 7, 1}).face_count() == 7);
+}
+
+TEST_CASE("fractal bodies: numbers that no dents make are refused") {
+  for (const auto& [real, total] : {std::pair{500u, 400u}, {500u, 501u}, {500u, 900u}, {6u, 6u}, {8u, 9u}})
+    CHECK_THROWS_AS(fractal_body({"body", real, total, 1}), InputError);
+}

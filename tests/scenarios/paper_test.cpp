@@ -1,0 +1,127 @@
+#include <doctest/doctest.h>
+#include <nlohmann/json.hpp>
+
+#include "engine/error.hpp"
+#include "engine/query/query_context.hpp"
+#include "scenarios/generators/fractal.hpp"
+#include "scenarios/paper/tables.hpp"
+#include "tests/scenarios/program.hpp"
+
+using namespace lrb;
+
+namespace {
+
+std::vector<PaperObject> few_objects() {
+  std::vector<PaperObject> objects;
+  for (const std::size_t i : {3u, 1u, 2u})
+    objects.push_back({paper_objects()[i].name, fractal_body(paper_objects()[i])});
+  return objects;
+}
+
+SweepOptions few_collisions() {
+  SweepOptions o;
+  o.protocol.collisions = 6;
+  return o;
+}
+
+}  // namespace
+
+TEST_CASE("the paper's sweep: jobs and shards change nothing") {
+  const auto objects = few_objects();
+  SweepOptions options = few_collisions();
+  const std::string whole = to_json_lines(run_sweep(objects, options, {}));
+  options.jobs = 3;
+  std::uint64_t calls = 0;
+  CHECK(to_json_lines(run_sweep(objects, options,
+                                [&](std::uint64_t, std::uint64_t of) { calls += of == 12; })) == whole);
+  CHECK(calls == 12);
+  std::vector<ContactStep> parts;
+  for (std::uint32_t i = 0; i < 5; ++i) {
+    options.shard = {4 - i, 5};
+    for (ContactStep& s : run_sweep(objects, options, {})) parts.push_back(std::move(s));
+  }
+  CHECK(to_json_lines(merged(parts)) == whole);
+  parts.push_back(parts.front());
+  CHECK_THROWS_AS(merged(parts), InputError);
+}
+
+TEST_CASE("the paper's sweep: every collision ends in contact, and the complete recursion misses nothing") {
+  const auto objects = few_objects();
+  const auto steps = run_sweep(objects, few_collisions(), {});
+  std::vector<std::uint32_t> firsts;
+  for (const ContactStep& s : steps) {
+    CHECK(s.step <= 5);
+    CHECK((s.relation == Relation::crossing || s.relation == Relation::touching));
+    CHECK(s.counts[2].missed == 0);
+    CHECK(s.counts[2].pairs > 0);
+    for (std::size_t i = 0; i < 2; ++i) CHECK(s.counts[i].pairs + s.counts[i].missed == s.counts[2].pairs);
+    CHECK(s.counts[1].pairs <= s.counts[0].pairs);
+    if (s.step == 0) firsts.push_back(s.collision);
+  }
+  CHECK(firsts.size() == 12);
+}
+
+TEST_CASE("the paper's records: as JSON Lines and back; what is none of them is refused by line") {
+  const auto steps = run_sweep(few_objects(), few_collisions(), {});
+  const std::string text = to_json_lines(steps);
+  CHECK(to_json_lines(read_json_lines(text, "r.jsonl")) == text);
+  for (const std::string bad : {"{}", "[1]", "{\"object\":\"B\"", "\xff", ""}) {
+    try {
+      read_json_lines(to_json_lines({steps.data(), 2}) + bad + "\n", "r.jsonl");
+      FAIL("accepted: " << bad);
+    } catch (const InputError& e) {
+      CHECK(std::string(e.what()).rfind("r.jsonl:3: ", 0) == 0);
+    }
+  }
+}
+
+TEST_CASE("the paper's tables: averages, and the paper's own columns") {
+  const auto objects = few_objects();
+  std::vector<ContactStep> steps(3);
+  for (std::size_t i = 0; i < 3; ++i) {
+    steps[i].object = "B";
+    steps[i].counts[0].comparisons = 10 * (i + 1);
+    steps[i].counts[0].missed = i;
+  }
+  const auto rows = make_table(objects, steps);
+  REQUIRE(rows.size() == 2);
+  CHECK(rows[0].object == "B");
+  CHECK(rows[0].steps == 3);
+  CHECK(rows[0].recursions[0].comparisons.min == 10);
+  CHECK(rows[0].recursions[0].comparisons.average == 20);
+  CHECK(rows[0].recursions[0].comparisons.max == 30);
+  CHECK(rows[0].recursions[0].missed == 3);
+  CHECK(rows[0].n_squared == 2532.0 * 168);
+  CHECK(rows[1].steps == 0);
+  const auto j = nlohmann::json::parse(tables_json(objects, rows, {}));
+  CHECK(j["table1_object_sizes"]["D"]["total_faces"] == 2532);
+  CHECK(j["table2_face_comparisons_of_object_A_with"]["B"]["avg"] == 20);
+  CHECK(j["table2_face_comparisons_of_object_A_with_complete"].contains("C"));
+}
+
+TEST_CASE("the paper's experiment: counts that must not change unnoticed") {
+  const LrbRep a = fractal_body(paper_objects()[0]), e = fractal_body(paper_objects()[4]);
+  QueryContext context;
+  const auto steps = run_collision(a, e, "E", 0, {}, context);
+  REQUIRE(steps.size() == 6);
+  CHECK(steps[5].counts[0].comparisons == 879);
+  CHECK(steps[5].counts[1].comparisons == 133);
+  CHECK(steps[5].counts[2].comparisons == 838);
+}
+
+TEST_CASE("paper: the program's shards make the report of the whole, and bad input is refused") {
+  const test::Folder folder;
+  const auto run = [&](std::vector<std::string> args) { return test::run(folder, std::move(args)); };
+  CHECK(run({"paper", "--collisions", "2", "-o", "whole", "--jobs", "2"}).code == 0);
+  for (const char* i : {"0/2", "1/2"})
+    CHECK(run({"paper", "--collisions", "2", "--shard", i, "-o", std::string("part") + i[0]}).code == 0);
+  CHECK(run({"paper", "--collisions", "2", "--merge", "part1/records.jsonl", "part0/records.jsonl", "-o",
+             "all"})
+            .code == 0);
+  for (const char* file : {"/records.jsonl", "/tables.json"})
+    CHECK(test::slurp(folder / (std::string("all") + file)) ==
+          test::slurp(folder / (std::string("whole") + file)));
+  CHECK(run({"paper", "--merge", "part1/records.jsonl", "part1/records.jsonl", "-o", "twice"}).code == 2);
+  for (const char* bad : {"2/2", "x", "1", "0/0", "-1/2", "0/2x"})
+    CHECK(run({"paper", "--shard", bad, "-o", "none"}).code == 2);
+}

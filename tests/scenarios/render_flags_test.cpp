@@ -1,0 +1,95 @@
+/// What `render` can be asked for: regions alone, ghosts, SVG.
+
+#include <doctest/doctest.h>
+
+#include "render/png.hpp"
+#include "tests/scenarios/program.hpp"
+
+namespace lrb::test {
+namespace {
+
+std::string scenario(const std::string& generator) {
+  return R"({"name": "x", "purpose": "y", "show": "refinement", "bodies": {"a": {"generator": ")" +
+         generator + R"("}}, "frames": {"at": "none"}})";
+}
+
+/// Pixels of the picture that are not white, without the texts above and below it.
+std::size_t painted(const Folder& folder, const std::string& out) {
+  const Image image = read_png(folder / (out + "/frames/frame_0000.png")).image;
+  const auto height = static_cast<std::size_t>(image.height()),
+             width = static_cast<std::size_t>(image.width());
+  std::size_t count = 0;
+  for (std::size_t i = height / 6 * width; i < height * 4 / 5 * width; ++i)
+    count += image.pixels()[i] != kWhite;
+  return count;
+}
+
+}  // namespace
+
+TEST_CASE("render --region: alone, with a ghost of the rest or without") {
+  const Folder folder;
+  for (const char* generator : {"knot", "island"}) {
+    CAPTURE(std::string(generator));
+    folder.write("s.json", scenario(generator));
+    REQUIRE(run(folder, {"run", "s.json", "-o", "run"}).code == 0);
+    const auto render = [&](std::vector<std::string> more) {
+      std::vector<std::string> all = {"render", "run/trace.json", "--most", "1", "--size", "480x360"};
+      all.insert(all.end(), more.begin(), more.end());
+      const Outcome o = run(folder, all);
+      CAPTURE(o.err);
+      REQUIRE(o.code == 0);
+    };
+    render({"-o", "all"});
+    render({"-o", "ghost", "--region", "0,a1"});
+    render({"-o", "alone", "--region", "0", "--no-ghost"});
+    const std::string all = slurp(folder / "all/frames/frame_0000.png"),
+                      ghost = slurp(folder / "ghost/frames/frame_0000.png");
+    CHECK(all != ghost);
+    CHECK(ghost != slurp(folder / "alone/frames/frame_0000.png"));
+    for (const char* out : {"all", "ghost", "alone"}) {
+      CAPTURE(std::string(out));
+      CHECK(painted(folder, out) > 500);
+    }
+  }
+}
+
+TEST_CASE("render --format svg: each frame, of 2D bodies") {
+  const Folder folder;
+  folder.write("s.json", scenario("island"));
+  REQUIRE(run(folder, {"run", "s.json", "-o", "run"}).code == 0);
+  REQUIRE(run(folder, {"render", "run/trace.json", "-o", "svg", "--format", "svg", "--most", "2"}).code == 0);
+  for (const char* frame : {"svg/frames/frame_0000.svg", "svg/frames/frame_0001.svg"}) {
+    const std::string text = slurp(folder / frame);
+    CHECK(text.starts_with("<svg xmlns=\"http://www.w3.org/2000/svg\""));
+    CHECK(text.ends_with("</svg>\n"));
+    CHECK(text.find("<path") != std::string::npos);
+  }
+  REQUIRE(run(folder, {"render", "run/trace.json", "-o", "svg", "--most", "2"}).code == 0);
+  CHECK_FALSE(std::filesystem::exists(folder / "svg/frames/frame_0000.svg"));  // of the former run
+}
+
+TEST_CASE("render: flags that do not fit are refused before anything is written") {
+  const Folder folder;
+  folder.write("s.json", scenario("ball"));
+  REQUIRE(run(folder, {"run", "s.json", "-o", "run"}).code == 0);
+  const std::vector<std::string> before = folder.tree();
+  for (const std::vector<std::string>& flags : {std::vector<std::string>{"--format", "svg"},
+                                                {"--format", "gif"},
+                                                {"--region", "99999"},
+                                                {"--region", "b0"},
+                                                {"--region", "c0"},
+                                                {"--region", "-1"},
+                                                {"--region", "4294967296"},
+                                                {"--region", "0x"}}) {
+    std::vector<std::string> all = {"render", "run/trace.json", "-o", "out"};
+    all.insert(all.end(), flags.begin(), flags.end());
+    const Outcome o = run(folder, all);
+    CAPTURE(o.err);
+    CHECK(o.code == 2);
+    CHECK(o.error_lines() == 1);
+    CHECK(o.out.empty());
+    CHECK(folder.tree() == before);
+  }
+}
+
+}  // namespace lrb::test
