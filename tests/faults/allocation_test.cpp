@@ -11,15 +11,17 @@
 #include "engine/mesh/mesh_check.hpp"
 #include "engine/mesh/mesh_io.hpp"
 #include "engine/query/collide_impl.hpp"
+#include "scenarios/shapes/hand_made.hpp"
+#include "scenarios/shapes/shapes.hpp"
 #include "tests/faults/failing_new.hpp"
 #include "tests/mesh/encode.hpp"
-#include "tests/support/hand_made.hpp"
 #include "tests/support/lrb_shapes.hpp"
-#include "tests/support/shapes.hpp"
 #include "trace/recorder.hpp"
 #include "trace/trace_json.hpp"
 
 namespace lrb::test {
+
+using namespace shapes;
 namespace {
 
 /// Runs `work`, which says whether its answer is right, with its first allocation failing, then its second,
@@ -126,8 +128,8 @@ TEST_CASE("a .lrb that is saved while memory runs out leaves no file, or a whole
   CHECK(fail_each_allocation([&] { return load_lrb(path).hash() == rep.hash(); }, [] {}) > 5);
 }
 
-// Not the reading of traces: the destructors of nlohmann-json 3.11 allocate, and end the process if they cannot
-// (lrbscope then says what it says for std::bad_alloc, see scenarios/cli/signals.cpp).
+// Not the reading of traces: the destructors of nlohmann-json 3.11 allocate, and end the process if they
+// cannot (lrbscope then says what it says for std::bad_alloc, see scenarios/cli/signals.cpp).
 TEST_CASE("a run that is recorded while memory runs out") {
   Asked q;
   const auto record = [&] {
