@@ -93,5 +93,8 @@ inline constexpr double kInteriorProbes[] = {0x1p-4, 0x1p-20, 0x1p-52, 0x1p-80};
 /// rare configurations with thousands of contacts on one face are decided too, in minutes instead of never.
 inline constexpr unsigned kInteriorCellsPerFace = 256;
 inline constexpr unsigned kInteriorCells = 20000;
+/// Pairs of crossing faces among which interiors_overlap looks for a proof. One in two is one; fewer:
+/// "unknown" for bodies that touch themselves nearly everywhere.
+inline constexpr unsigned kCrossingsTried = 256;
 
 }  // namespace lrb

@@ -40,8 +40,9 @@ struct CollideRequest {
   Recursion recursion = Recursion::complete;
   Predicates predicates = Predicates::exact;  ///< for pairs and relation; contacts are always exact
   WrapperMode wrapper = WrapperMode::regularised;
-  bool contacts = false;           ///< fill CollideResult::contacts and ::regions (all_pairs only)
-  bool interiors_overlap = false;  ///< decide CollideResult::interiors_overlap for touching bodies
+  bool contacts = false;  ///< fill CollideResult::contacts and ::regions (all_pairs only)
+  bool interiors_overlap =
+      false;  ///< decide CollideResult::interiors_overlap for bodies that meet (all_pairs)
 };
 
 /// How two bodies lie to each other.
@@ -80,7 +81,9 @@ struct Counters {
 
 struct CollideResult {
   Relation relation = Relation::separate;
-  /// crossing, inside: yes; separate: no; touching: if requested; a body that is not closed: unknown.
+  /// crossing, inside: yes; separate: no; touching: if requested; a body that is not closed: unknown. Yes
+  /// takes for granted that rounding leaves the bodies a volume in the world. If requested, a crossing is yes
+  /// only where that is proved, else unknown; a body inside another is not asked whether it has become flat.
   Answer interiors_overlap = Answer::unknown;
   Recursion recursion = Recursion::complete;  ///< the one that was used
   Mode mode = Mode::all_pairs;

@@ -203,6 +203,8 @@ void describe_contact(QueryContext& context, const CollideRequest& request, Coll
   if (result.pairs.empty() || request.mode != Mode::all_pairs) return;
   if (request.interiors_overlap && result.relation == Relation::touching)
     result.interiors_overlap = interiors_overlap(context, result);
+  if (request.interiors_overlap && result.relation == Relation::crossing)
+    result.interiors_overlap = crossing_interiors_overlap(context, result);
   if (!request.contacts) return;
   for (const SimplexPair& pair : result.pairs) result.contacts.push_back(contact_of(context, pair));
   result.regions = RegionMaker(context, result).run();

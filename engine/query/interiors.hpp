@@ -17,4 +17,9 @@ namespace lrb {
 /// Unknown: a body that is not closed or intersects itself, or more cells than kInteriorCells.
 Answer interiors_overlap(QueryContext& context, const CollideResult& result);
 
+/// The same for closed bodies that cross: yes, with a proof, or unknown. Faces of a body that rounding has
+/// made flat in the world pass through the other's faces too, but nothing lies between them: a crossing
+/// counts only where no other face of either body lies. All pairs must be in `result`.
+Answer crossing_interiors_overlap(QueryContext& context, const CollideResult& result);
+
 }  // namespace lrb

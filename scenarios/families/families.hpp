@@ -70,6 +70,10 @@ Case make_plane(Random&, double);        // 2D, random cells too
 Case make_zero_area(Random&, double);    // faces that collapse to segments and points
 Case make_swapped(Random&, double);      // families.cpp: cases of the others
 Case make_dirty(Random&, double);        // open, duplicated, without area, crossing themselves
+Case make_kiss(Random&, double);         // large_families.cpp: cubes that share a face, edge or vertex: known
+Case make_nested(Random&, double);       // shell in shell: solid by parity, known
+Case make_polygon(Random&, double);      // faces with thousands of corners
+Case make_fractal(Random&, double);      // thousands of faces: sponges, dented cubes, hubs
 
 // What the files share.
 Body body(const Mesh& mesh,

@@ -125,6 +125,44 @@ TEST_CASE("a plate that rounding has made flat has no interior to overlap") {
   CHECK(collide(plate, Pose{}, box, Pose::translation({1, 0, 0}), request).interiors_overlap == Answer::yes);
 }
 
+// The same plate, pierced by a rod: its two flat faces cross the rod's, yet there is nothing between them.
+TEST_CASE("a crossing proves that interiors overlap only where the bodies have a volume") {
+  CollideRequest request;
+  request.interiors_overlap = true;
+  const LrbRep plate = closed(shapes::box({0, 0, 0}, {1, 4, 4})),
+               rod = closed(shapes::box({-4, 1, 1}, {4, 2, 2})), ball = closed(shapes::icosphere(1, 2));
+  const Pose far = Pose::translation({1e16, 0, 0});
+  const CollideResult r = collide(plate, far, rod, far, request);
+  CHECK(r.relation == Relation::crossing);
+  CHECK(r.interiors_overlap == Answer::unknown);
+  CHECK(collide(plate, Pose{}, rod, Pose{}, request).interiors_overlap == Answer::yes);
+  CHECK(collide(ball, Pose{}, rod, Pose{}, request).interiors_overlap == Answer::yes);
+  const LrbRep flat = closed(shapes::gear(5)),
+               bar = closed(shapes::polygon({{-3, -0.5}, {3, -0.5}, {3, 0.5}, {-3, 0.5}}));
+  CHECK(collide(flat, Pose{}, bar, Pose{}, request).interiors_overlap == Answer::yes);
+  const Pose far_2d = Pose::translation({0, 1e17, 0});
+  const CollideResult thin = collide(bar, far_2d, bar, Pose{far_2d.r, {1, 1e17, 0}}, request);
+  CHECK(thin.interiors_overlap != Answer::yes);
+}
+
+TEST_CASE("crossings of ordinary bodies are all proved") {
+  CollideRequest request;
+  request.interiors_overlap = true;
+  const LrbRep bodies[] = {closed(shapes::bumpy_sphere(2, 3, 0.5)), closed(shapes::torus(12, 8)),
+                           closed(shapes::comb(4)), closed(shapes::bowl(12, 6))};
+  shapes::Random random(3);
+  int crossings = 0;
+  for (int i = 0; i < 300; ++i) {
+    const LrbRep &a = bodies[i % 4], &b = bodies[random() % 4];
+    const Pose pose = shapes::random_pose(random, a, b, shapes::uniform(random, 0, 1));
+    const CollideResult r = collide(a, Pose{}, b, pose, request);
+    if (r.relation != Relation::crossing) continue;
+    ++crossings;
+    CHECK(r.interiors_overlap == Answer::yes);
+  }
+  CHECK(crossings > 100);
+}
+
 TEST_CASE("boxes that overlap in one ulp overlap") {
   CollideRequest request;
   request.interiors_overlap = true;

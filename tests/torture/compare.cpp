@@ -10,6 +10,7 @@
 #include "tests/support/rational_oracle.hpp"
 #include "tests/torture/cgal_oracle.hpp"
 #include "tests/torture/parity_oracle.hpp"
+#include "tests/torture/sweep_oracle.hpp"
 
 namespace lrb::torture {
 namespace {
@@ -33,14 +34,18 @@ class Comparison {
     ++t_.poses;
     try {
       CollideRequest everything;
-      everything.contacts = everything.interiors_overlap = true;
+      everything.contacts = true;
+      // For large bodies this takes longer than all else together.
+      everything.interiors_overlap = c_.interiors_overlap.has_value() ||
+                                     simplex_pairs() <= effort_.small_pairs ||
+                                     random_() % effort_.interiors_every == 0;
       all_ = ask(everything, false);
     } catch (const InputError& e) {
       ++t_.refusals;
       check_refusal(e.what());
       return t_;
     }
-    brute_ = brute_force(*c_.a, c_.pose_a, *c_.b, c_.pose_b);
+    ask_brute_force();
     t_.in_contact += !brute_.pairs.empty();
     t_.inside += holds_each_other(brute_.relation);
     compare_pairs();
@@ -79,6 +84,22 @@ class Comparison {
     if (finite) complain(t_.crashes, "refused finite coordinates: " + what);
     if (what.find('\n') != std::string::npos || what.find("vertex") == std::string::npos)
       complain(t_.crashes, "a refusal must name the vertex in one line: " + what);
+  }
+
+  std::uint64_t simplex_pairs() const {
+    return std::uint64_t{c_.a->real_simplex_count()} * std::uint64_t{c_.b->real_simplex_count()};
+  }
+
+  void ask_brute_force() {
+    const bool small = simplex_pairs() <= effort_.brute_force_pairs;
+    if (small) brute_ = brute_force(*c_.a, c_.pose_a, *c_.b, c_.pose_b);
+    const bool both = small && random_() % 8 == 0;
+    if (small && !both) return;
+    const BruteForceResult swept = swept_brute_force(*c_.a, c_.pose_a, *c_.b, c_.pose_b);
+    if (both &&
+        (swept.pairs != brute_.pairs || swept.meets != brute_.meets || swept.relation != brute_.relation))
+      complain(t_.wrong_lists, "the two brute forces disagree");
+    brute_ = swept;
   }
 
   void compare_pairs() {
@@ -260,6 +281,7 @@ Tally& Tally::operator+=(const Tally& t) {
   poses += t.poses;
   in_contact += t.in_contact;
   inside += t.inside;
+  with_regions += t.with_regions;
   false_negatives += t.false_negatives;
   false_positives += t.false_positives;
   wrong_lists += t.wrong_lists;

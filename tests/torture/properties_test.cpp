@@ -13,6 +13,7 @@
 #include "scenarios/families/families.hpp"
 #include "scenarios/shapes/hand_made.hpp"
 #include "scenarios/shapes/shapes.hpp"
+#include "tests/support/rational_oracle.hpp"
 
 using namespace lrb;
 using namespace lrb::families;
@@ -169,6 +170,87 @@ TEST_CASE(
         REQUIRE(w.refine(order[i]));
       }
       CHECK(w.boundary() == real);
+    }
+  }
+}
+
+namespace {
+
+struct Simplices {
+  std::vector<std::array<const double*, 3>> corners;
+  std::vector<Eigen::AlignedBox3d> boxes;
+
+  void add(const LrbRep& rep, FaceId f) {
+    const SimplexId first = rep.first_simplex(f);
+    const auto count = static_cast<SimplexId>(Mesh::simplices_of(rep.face(f).size(), rep.dim()));
+    for (SimplexId s = first; s < first + count; ++s) {
+      VertexId v[3];
+      rep.simplex(s, v);
+      corners.emplace_back();
+      boxes.emplace_back();
+      for (int k = 0; k < rep.dim(); ++k) {
+        corners.back()[k] = rep.vertices()[v[k]].data();
+        boxes.back().extend(rep.vertices()[v[k]]);
+      }
+    }
+  }
+};
+
+/// No real face passes through a lid of the wrapper, by the rational oracle: with all real vertices in or on
+/// the wrapper, the whole of the solid's surface is.
+std::uint64_t lids_crossed(const Wrapper& w, const Simplices& real) {
+  const LrbRep& rep = w.rep();
+  Simplices lids;
+  for (const FaceId f : w.boundary())
+    if (!rep.is_real(f)) lids.add(rep, f);
+  std::uint64_t crossed = 0;
+  for (std::size_t i = 0; i < lids.boxes.size(); ++i)
+    for (std::size_t j = 0; j < real.boxes.size(); ++j)
+      if (lids.boxes[i].intersects(real.boxes[j]))
+        crossed += oracle::meet_of_simplices(lids.corners[i].data(), real.corners[j].data(),
+                                             static_cast<std::size_t>(rep.dim())) == 2;
+  return crossed;
+}
+
+std::uint64_t vertices_outside(const Wrapper& w) {
+  std::vector<bool> asked(w.rep().vertices().size(), false);
+  std::uint64_t outside = 0;
+  for (FaceId f = 0; f < w.rep().real_face_count(); ++f)
+    for (const VertexId v : w.rep().face(f)) {
+      if (asked[v]) continue;
+      asked[v] = true;
+      outside += !holds(w, w.rep().vertices()[v]);
+    }
+  return outside;
+}
+
+}  // namespace
+
+TEST_CASE("the lids of every region alone, and of any set of regions, enclose the whole solid exactly") {
+  Random random(5);
+  for (const LrbRep& rep : built()) {
+    CAPTURE(rep.name());
+    Simplices real;
+    for (FaceId f = 0; f < rep.real_face_count(); ++f) real.add(rep, f);
+    Wrapper w(rep);
+    const auto check = [&] {
+      REQUIRE(is_closed(w));
+      REQUIRE(vertices_outside(w) == 0);
+      REQUIRE(lids_crossed(w, real) == 0);
+    };
+    check();
+    w.refine_all();
+    for (RegionId r = 0; r < rep.region_count(); ++r) {
+      CAPTURE(r);
+      REQUIRE(w.coarsen(r));
+      check();
+      REQUIRE(w.refine(r));
+    }
+    for (int i = 0; i < 5; ++i) {
+      w.reset();
+      for (RegionId r = 0; r < rep.region_count(); ++r)
+        if (random() % 2) w.refine(r);
+      check();
     }
   }
 }

@@ -1,0 +1,321 @@
+// Whatever the query leaves out is exactly apart: the boxes of every pair of tree nodes, as the kernel turns
+// them from one body's axes to the other's and grows them, against exact arithmetic on the world coordinates
+// that the answer is about.
+#include <cmath>
+#include <set>
+
+#include <boost/multiprecision/cpp_int.hpp>
+#include <doctest/doctest.h>
+
+#include "engine/query/tree_query.hpp"
+#include "scenarios/families/families.hpp"
+#include "scenarios/shapes/shapes.hpp"
+#include "tests/support/rational_oracle.hpp"
+
+#define LRB_KERNEL_NAME run_tree_kernel_for_enclosure
+namespace lrb {
+void run_tree_kernel_for_enclosure(TreeKernel& k);
+}
+#include "engine/query/tree_kernel.inl"
+
+using namespace lrb;
+using families::Random;
+
+namespace {
+
+using boost::multiprecision::cpp_int;
+
+/// mantissa * 2^exponent: sums and products of doubles without rounding.
+class Exact {
+ public:
+  Exact() = default;
+  Exact(double x) {
+    int e;
+    mantissa_ = static_cast<std::int64_t>(std::ldexp(std::frexp(x, &e), 53));
+    exponent_ = e - 53;
+  }
+  friend Exact operator+(const Exact& x, const Exact& y) {
+    if (x.mantissa_ == 0) return y;
+    if (y.mantissa_ == 0) return x;
+    const long low = std::min(x.exponent_, y.exponent_);
+    return {(x.mantissa_ << (x.exponent_ - low)) + (y.mantissa_ << (y.exponent_ - low)), low};
+  }
+  friend Exact operator-(const Exact& x, const Exact& y) { return x + Exact(-y.mantissa_, y.exponent_); }
+  friend Exact operator*(const Exact& x, const Exact& y) {
+    return {x.mantissa_ * y.mantissa_, x.exponent_ + y.exponent_};
+  }
+  friend bool operator<(const Exact& x, const Exact& y) { return (x - y).mantissa_ < 0; }
+  Exact times_power_of_two(int e) const { return {mantissa_, exponent_ + e}; }
+
+ private:
+  Exact(cpp_int mantissa, long exponent) : mantissa_(std::move(mantissa)), exponent_(exponent) {}
+  cpp_int mantissa_ = 0;
+  long exponent_ = 0;
+};
+
+using Exact3 = std::array<Exact, 3>;
+
+struct Range {
+  Exact low, high;
+  bool empty = true;
+  void extend(const Exact& x) {
+    if (empty || x < low) low = x;
+    if (empty || high < x) high = x;
+    empty = false;
+  }
+  void extend(const Range& r) {
+    if (r.empty) return;
+    extend(r.low);
+    extend(r.high);
+  }
+};
+using Range3 = std::array<Range, 3>;
+
+struct Scene {
+  const LrbRep *a, *b;
+  Pose pose_a, pose_b;
+};
+
+void simplices_under(const BlockTree& t, std::uint32_t node, std::vector<SimplexId>& out) {
+  const TreeNode& n = t.nodes()[node];
+  for (std::uint32_t k = 0; k < n.count; ++k) {
+    if (n.is_leaf)
+      out.push_back(t.blocks()[n.first].simplex[k]);
+    else
+      simplices_under(t, n.first + k, out);
+  }
+}
+
+/// The simplices that each box of a node must hold.
+std::vector<std::vector<SimplexId>> contents(const LrbRep& rep, std::uint32_t node) {
+  const TreeNode& n = rep.tree().nodes()[node];
+  std::vector<std::vector<SimplexId>> r(n.count);
+  for (std::uint32_t k = 0; k < n.count; ++k) {
+    if (n.is_leaf)
+      r[k].push_back(rep.tree().blocks()[n.first].simplex[k]);
+    else
+      simplices_under(rep.tree(), n.first + k, r[k]);
+  }
+  return r;
+}
+
+/// World coordinates of one body seen on A's axes, in query units: r_a^T (w - t_a) / unit.
+class Seen {
+ public:
+  Seen(const LrbRep& rep, const Pose& pose, const Pose& pose_a, double unit) : rep_(rep) {
+    const int e = -std::ilogb(unit);
+    for (const auto& v : rep.vertices()) {
+      const Eigen::Vector3d w = pose.apply(v);
+      Exact3 x;
+      for (int j = 0; j < 3; ++j)
+        for (int i = 0; i < 3; ++i)
+          x[j] = x[j] + (Exact(pose_a.r(i, j)) * (Exact(w[i]) - Exact(pose_a.t[i]))).times_power_of_two(e);
+      on_a_.push_back(x);
+    }
+  }
+  /// To B's axes: m^T (x - t), with the kernel's m and t.
+  void turn(const TreeKernel& k) {
+    for (Exact3& x : on_a_) {
+      Exact3 y;
+      for (int j = 0; j < 3; ++j)
+        for (int i = 0; i < 3; ++i) y[j] = y[j] + Exact(k.m[i][j]) * (x[i] - Exact(k.t[i]));
+      x = y;
+    }
+  }
+  /// Of every real simplex, in a node's coordinates.
+  std::vector<Range3> in_node(const TreeNode& n, float ratio) const {
+    std::vector<Exact3> y(on_a_.size());
+    for (std::size_t v = 0; v < y.size(); ++v)
+      for (int i = 0; i < 3; ++i)
+        for (int j = 0; j < 3; ++j)
+          y[v][i] = y[v][i] + Exact(n.frame[i][j]) * (on_a_[v][j] - Exact(n.origin[j]) * Exact(ratio));
+    std::vector<Range3> r(rep_.real_simplex_count());
+    for (SimplexId s = 0; s < r.size(); ++s) {
+      VertexId v[3];
+      rep_.simplex(s, v);
+      for (int corner = 0; corner < rep_.dim(); ++corner)
+        for (int i = 0; i < 3; ++i) r[s][i].extend(y[v[corner]][i]);
+    }
+    return r;
+  }
+
+ private:
+  const LrbRep& rep_;
+  std::vector<Exact3> on_a_;
+};
+
+Range3 united(const std::vector<Range3>& of, const std::vector<SimplexId>& list) {
+  Range3 r;
+  for (const SimplexId s : list)
+    for (int i = 0; i < 3; ++i) r[i].extend(of[s][i]);
+  return r;
+}
+
+/// How far content reaches out of a box; not below 0.
+Exact outside(const Range& r, float centre, const Exact& half) {
+  Exact most(0.0);
+  for (const Exact& over : {Exact(centre) - half - r.low, r.high - Exact(centre) - half})
+    if (most < over) most = over;
+  return most;
+}
+
+struct Share {
+  std::uint64_t boxes = 0, culled = 0;
+  std::uint64_t too_small = 0;  ///< boxes that, grown by the error, do not hold what they must
+  std::uint64_t wrong = 0;      ///< culled, but not apart
+};
+
+/// One set of axes: boxes that are at home there, and boxes turned into it and grown by the error.
+void check_axes(const std::vector<Range3>& home, const std::vector<Range3>& guest, const Boxes& home_boxes,
+                const Turned& guest_boxes, float error, Share& share) {
+  for (int axis = 0; axis < 3; ++axis) {
+    std::vector<Exact> home_off, guest_off;
+    for (std::size_t i = 0; i < home.size(); ++i)
+      home_off.push_back(outside(home[i][axis], home_boxes.centre[axis][i], Exact(home_boxes.half[axis][i])));
+    for (std::size_t j = 0; j < guest.size(); ++j)
+      guest_off.push_back(outside(guest[j][axis], guest_boxes.centre[axis][j],
+                                  Exact(guest_boxes.half[axis][j]) - Exact(error)));
+    for (std::size_t i = 0; i < home.size(); ++i)
+      for (std::size_t j = 0; j < guest.size(); ++j) {
+        ++share.boxes;
+        // Both boxes, grown once by the error, hold their contents.
+        share.too_small += Exact(error) < home_off[i] + guest_off[j];
+        // And as the kernel decides, rounding included: what it drops is apart.
+        const float gap = std::fabs(guest_boxes.centre[axis][j] - home_boxes.centre[axis][i]);
+        if (!(gap > guest_boxes.half[axis][j] + home_boxes.half[axis][i])) continue;
+        ++share.culled;
+        share.wrong += !(home[i][axis].high < guest[j][axis].low || guest[j][axis].high < home[i][axis].low);
+      }
+  }
+}
+
+Share check_nodes(const Scene& s) {
+  Share share;
+  const TreeKernel k = set_up_kernel(*s.a, s.pose_a, *s.b, s.pose_b);
+  const double unit = std::max(s.a->tree().unit(), s.b->tree().unit());
+  Seen a(*s.a, s.pose_a, s.pose_a, unit), b(*s.b, s.pose_b, s.pose_a, unit);
+  Seen a_turned = a, b_turned = b;
+  a_turned.turn(k);
+  b_turned.turn(k);
+  const auto &nodes_a = s.a->tree().nodes(), &nodes_b = s.b->tree().nodes();
+  struct View {
+    std::vector<Range3> of_a, of_b;
+  };
+  std::vector<View> on_a, on_b;
+  for (const TreeNode& n : nodes_a) on_a.push_back({a.in_node(n, k.ratio_a), b.in_node(n, k.ratio_a)});
+  for (const TreeNode& n : nodes_b)
+    on_b.push_back({a_turned.in_node(n, k.ratio_b), b_turned.in_node(n, k.ratio_b)});
+  for (std::uint32_t p = 0; p < nodes_a.size(); ++p)
+    for (std::uint32_t q = 0; q < nodes_b.size(); ++q) {
+      const Between w = between(k, nodes_a[p], nodes_b[q]);
+      if (!(w.error < 1e30f)) continue;  // overflow: nothing is culled
+      const Boxes boxes_a = decode(nodes_a[p], k.ratio_a), boxes_b = decode(nodes_b[q], k.ratio_b);
+      std::vector<Range3> a_on_a, b_on_a, a_on_b, b_on_b;
+      for (const auto& list : contents(*s.a, p)) {
+        a_on_a.push_back(united(on_a[p].of_a, list));
+        a_on_b.push_back(united(on_b[q].of_a, list));
+      }
+      for (const auto& list : contents(*s.b, q)) {
+        b_on_a.push_back(united(on_a[p].of_b, list));
+        b_on_b.push_back(united(on_b[q].of_b, list));
+      }
+      check_axes(a_on_a, b_on_a, boxes_a, turn_b(boxes_b, w), w.error, share);
+      check_axes(b_on_b, a_on_b, boxes_b, turn_a(boxes_a, w), w.error, share);
+    }
+  return share;
+}
+
+/// Pairs that boxes or planes have dropped do not meet, says the rational oracle.
+int check_dropped(const Scene& s, Random& random, int most) {
+  TreeKernel k = set_up_kernel(*s.a, s.pose_a, *s.b, s.pose_b);
+  std::vector<NodePair> stack(64 * (s.a->tree().height() + s.b->tree().height()) + 64);
+  std::vector<Candidate> out(64 + std::size_t{s.a->real_simplex_count()} * s.b->real_simplex_count());
+  k.stack = stack.data();
+  k.stack[0] = {0, 0};
+  k.stack_size = 1;
+  k.out = out.data();
+  k.out_capacity = static_cast<std::uint32_t>(out.size());
+  run_tree_kernel_for_enclosure(k);
+  REQUIRE(k.stack_size == 0);
+  std::set<std::pair<SimplexId, SimplexId>> kept;
+  for (std::uint32_t i = 0; i < k.out_size; ++i) kept.insert({out[i].a, out[i].b});
+  int asked = 0;
+  for (int i = 0; i < 20 * most && asked < most; ++i) {
+    const auto sa = static_cast<SimplexId>(random() % s.a->real_simplex_count()),
+               sb = static_cast<SimplexId>(random() % s.b->real_simplex_count());
+    if (kept.contains({sa, sb})) continue;
+    VertexId va[3], vb[3];
+    s.a->simplex(sa, va);
+    s.b->simplex(sb, vb);
+    Eigen::Vector3d x[6];
+    Eigen::AlignedBox3d box[2];
+    for (int c = 0; c < 3; ++c) {
+      box[0].extend(x[c] = s.pose_a.apply(s.a->vertices()[va[c]]));
+      box[1].extend(x[3 + c] = s.pose_b.apply(s.b->vertices()[vb[c]]));
+    }
+    if (!box[0].intersects(box[1])) continue;
+    ++asked;
+    const double *pa[3] = {x[0].data(), x[1].data(), x[2].data()},
+                 *pb[3] = {x[3].data(), x[4].data(), x[5].data()};
+    REQUIRE(oracle::meet_of_simplices(pa, pb, 3) == 0);
+  }
+  return asked;
+}
+
+LrbRep closed(const Mesh& mesh, double size = 1) {
+  return LrbRep::without_regions(shapes::scaled(mesh, size), true, false);
+}
+
+/// Moves that strain the error terms: far off, an ulp from each other, no rotations.
+void spoil(Scene& s, Random& random, int kind) {
+  const Eigen::Vector3d far = std::pow(10, families::pick(random, 0, 16)) * shapes::random_direction(random);
+  if (kind == 1) s.pose_b = s.pose_a;
+  if (kind == 2 || kind == 3) {
+    s.pose_a.t += far;
+    s.pose_b.t += far;
+  }
+  if (kind == 3) s.pose_b = s.pose_a;
+  if (kind == 4) s.pose_b.t += far;
+  if (kind == 5 || kind == 6)
+    for (Pose* p : {&s.pose_a, &s.pose_b}) {
+      p->r *= std::pow(10, shapes::uniform(random, -3, 3));
+      if (kind == 6) p->r(0, 1) += shapes::uniform(random, -1, 1);
+    }
+  if (kind == 7) s.pose_a.r = shapes::random_rotation(random) * Eigen::Vector3d(1, 1, 0).asDiagonal();
+  if (kind % 2)
+    for (int i = 0; i < 3; ++i)
+      s.pose_b.t[i] = families::nudged(s.pose_b.t[i], families::pick(random, -1, 1));
+}
+
+}  // namespace
+
+TEST_CASE("whatever boxes leave out is apart in exact arithmetic: random and adversarial poses") {
+  Random random(31);
+  const double kSizes[] = {1, 1, 1e-12, 1e12, 1e-60, 1e100, 1e-308};
+  Share total;
+  int asked = 0;
+  for (int i = 0; i < 56; ++i) {
+    CAPTURE(i);
+    const double size = kSizes[i % 7];
+    const bool both = i % 3 != 0;
+    const LrbRep a = closed(i % 2 ? shapes::bumpy_sphere(1, 3) : shapes::comb(3), both ? size : 1),
+                 b = closed(i % 5 ? shapes::icosphere(1) : shapes::torus(6, 5), size);
+    Scene s{&a, &b, families::any_pose(random), {}};
+    s.pose_a.t *= both ? size : 1;
+    s.pose_b = shapes::random_pose(random, a, b, shapes::uniform(random, 0, 1.1));
+    s.pose_b.t = s.pose_a.apply(s.pose_b.t);
+    s.pose_b.r = s.pose_a.r * s.pose_b.r;
+    spoil(s, random, i % 8);
+    const Share share = check_nodes(s);
+    REQUIRE(share.too_small == 0);
+    REQUIRE(share.wrong == 0);
+    total.boxes += share.boxes;
+    total.culled += share.culled;
+    asked += check_dropped(s, random, 20);
+  }
+  CHECK(total.boxes > 1000000);
+  CHECK(total.culled > total.boxes / 20);  // else nothing was tested
+  CHECK(asked > 100);
+  MESSAGE(total.boxes << " pairs of boxes on an axis, " << total.culled << " culled; " << asked
+                      << " dropped pairs asked again");
+}

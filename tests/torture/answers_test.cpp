@@ -1,0 +1,158 @@
+// What must hold of answers for any case of any family. RapidCheck draws the cases and, where one fails,
+// looks for the most benign setting of the dial that fails too. ctest fixes its seed; by hand each run draws
+// others (RC_PARAMS="seed=... max_success=...").
+#include <algorithm>
+#include <filesystem>
+#include <string>
+
+#include <doctest/doctest.h>
+#include <rapidcheck.h>
+#include <unistd.h>
+
+#include "engine/error.hpp"
+#include "engine/lrb/lrb_file.hpp"
+#include "engine/query/collide_impl.hpp"
+#include "tests/torture/regions.hpp"
+#include "tests/torture/sweep_oracle.hpp"
+#include "trace/cursor.hpp"
+#include "trace/recorder.hpp"
+
+using namespace lrb;
+using namespace lrb::families;
+
+namespace {
+
+constexpr std::uint32_t kMostSimplices = 300;  // the builder is asked often
+
+/// A case of any family whose coordinates are finite. Discards bodies too large for so many rounds.
+Case any_case() {
+  const auto families = all_families();
+  const Family& family = families[*rc::gen::inRange<std::size_t>(0, families.size()).as("family")];
+  const int dial = *rc::gen::inRange(0, kDialSettings).as("dial");
+  const auto index = *rc::gen::inRange<std::uint64_t>(0, 1000000).as("index");
+  Case c = make_case(family, 1, dial, index);
+  RC_TAG(std::string(family.name));
+  RC_PRE(c.a->real_simplex_count() <= 4 * kMostSimplices && c.b->real_simplex_count() <= 4 * kMostSimplices);
+  for (const auto& [rep, pose] : {std::pair{c.a, c.pose_a}, std::pair{c.b, c.pose_b}})
+    for (const auto& v : rep->vertices()) RC_PRE(pose.apply(v).allFinite());
+  return c;
+}
+
+/// The same with regions, where the builder takes the mesh; often.
+Case any_case_with_regions() {
+  Case c = any_case();
+  Random random(*rc::gen::arbitrary<std::uint64_t>().as("regions"));
+  torture::give_regions(c, random, kMostSimplices);
+  return c;
+}
+
+CollideResult ask(const Case& c, const CollideRequest& request = {}) {
+  return collide(*c.a, c.pose_a, *c.b, c.pose_b, request);
+}
+
+CollideRequest any_request() {
+  CollideRequest r;
+  r.mode = *rc::gen::element(Mode::all_pairs, Mode::first_pair);
+  r.recursion =
+      *rc::gen::element(Recursion::complete, Recursion::complete, Recursion::paper, Recursion::paper_strict);
+  r.wrapper = *rc::gen::element(WrapperMode::regularised, WrapperMode::unregularised);
+  return r;
+}
+
+void assert_same(const CollideResult& x, const CollideResult& y) {
+  RC_ASSERT(x.pairs == y.pairs);
+  RC_ASSERT(x.meets == y.meets);
+  RC_ASSERT(x.relation == y.relation);
+}
+
+Body saved_and_loaded(const LrbRep& rep) {
+  const auto file =
+      std::filesystem::temp_directory_path() / ("lrb-answers-" + std::to_string(getpid()) + ".lrb");
+  save_lrb(rep, file.string());
+  auto back = std::make_shared<LrbRep>(load_lrb(file.string()));
+  std::filesystem::remove(file);
+  return back;
+}
+
+Relation mirrored(Relation r) {
+  if (r == Relation::a_inside_b) return Relation::b_inside_a;
+  return r == Relation::b_inside_a ? Relation::a_inside_b : r;
+}
+
+}  // namespace
+
+TEST_CASE("the complete query equals brute force, with regions and without") {
+  CHECK(rc::check([] {
+    const Case c = any_case_with_regions();
+    const CollideResult r = ask(c);
+    const BruteForceResult expected = torture::swept_brute_force(*c.a, c.pose_a, *c.b, c.pose_b);
+    RC_ASSERT(r.pairs == expected.pairs);
+    RC_ASSERT(r.meets == expected.meets);
+    RC_ASSERT(r.relation == expected.relation);
+    RC_CLASSIFY(!r.pairs.empty(), "in contact");
+  }));
+}
+
+TEST_CASE("swapping the bodies transposes the list and mirrors the relation") {
+  CHECK(rc::check([] {
+    const Case c = any_case();
+    const CollideResult r = ask(c), swapped = ask({c.b, c.a, c.pose_b, c.pose_a, {}, {}});
+    std::vector<SimplexPair> back;
+    for (const SimplexPair& p : swapped.pairs) back.push_back({p.b, p.a});
+    std::sort(back.begin(), back.end());
+    RC_ASSERT(back == r.pairs);
+    // Bodies that each hold a piece of the other: the first is named as the one inside.
+    const bool mutual = r.relation == Relation::a_inside_b && swapped.relation == Relation::a_inside_b;
+    RC_ASSERT(mutual || swapped.relation == mirrored(r.relation));
+  }));
+}
+
+TEST_CASE("regions change no answer") {
+  CHECK(rc::check([] {
+    Case c = any_case();
+    const CollideResult bare = ask(c);
+    Random random(*rc::gen::arbitrary<std::uint64_t>().as("regions"));
+    RC_CLASSIFY(torture::give_regions(c, random, kMostSimplices) > 0, "with regions");
+    assert_same(ask(c), bare);
+  }));
+}
+
+TEST_CASE("a body from a file gives the same answers") {
+  CHECK(rc::check([] {
+    const Case c = any_case_with_regions();
+    const Case loaded{saved_and_loaded(*c.a), saved_and_loaded(*c.b), c.pose_a, c.pose_b, {}, {}};
+    const CollideRequest request = any_request();
+    const CollideResult before = ask(c, request), after = ask(loaded, request);
+    assert_same(before, after);
+    RC_ASSERT(before.opened == after.opened);
+    RC_ASSERT(before.counters.face_tests == after.counters.face_tests);
+    RC_ASSERT(before.counters.box_tests == after.counters.box_tests);
+  }));
+}
+
+TEST_CASE("recording changes no answer, and the trace replays to the wrappers that the query left") {
+  CHECK(rc::check([] {
+    const Case c = any_case_with_regions();
+    trace::RecorderSettings settings;
+    settings.request = any_request();
+    settings.event_cap = 100000;
+    trace::Recorder recorder(*c.a, *c.b, settings);
+    QueryContext context;
+    recorder.begin_step(0, c.pose_a, c.pose_b);
+    const CollideResult recorded =
+        collide(*c.a, c.pose_a, *c.b, c.pose_b, settings.request, context, recorder);
+    recorder.end_step(recorded);
+    RC_PRE(recorder.events_seen() <= settings.event_cap);
+    const CollideResult plain = ask(c, settings.request);
+    assert_same(recorded, plain);
+    RC_ASSERT(recorded.opened == plain.opened);
+    const trace::Trace trace = recorder.take();
+    trace::Cursor cursor(trace, *c.a, *c.b);
+    cursor.seek(static_cast<trace::EventId>(trace.events.size()) - 1);
+    for (const Side side : {Side::a, Side::b}) {
+      RC_ASSERT(cursor.wrapper(side).excluded() == plain.opened[static_cast<std::size_t>(side)]);
+      RC_ASSERT(cursor.wrapper(side).boundary() == context[side].wrapper->boundary());
+    }
+    RC_CLASSIFY(!plain.opened[0].empty() || !plain.opened[1].empty(), "wrappers refined");
+  }));
+}

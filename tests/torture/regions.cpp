@@ -1,0 +1,60 @@
+#include "tests/torture/regions.hpp"
+
+#include <unordered_map>
+
+#include "engine/build/build.hpp"
+#include "engine/error.hpp"
+
+namespace lrb::torture {
+namespace {
+
+using families::Body;
+using families::Random;
+
+Mesh mesh_of(const LrbRep& rep) {
+  Mesh m;
+  m.dim = rep.dim();
+  m.name = rep.name();
+  m.vertices.assign(rep.vertices().begin(), rep.vertices().end());
+  for (FaceId f = 0; f < rep.real_face_count(); ++f) m.add_face(rep.face(f));
+  return m;
+}
+
+/// Null if the builder refuses the mesh.
+Body built(const LrbRep& rep, Random& random) {
+  BuildOptions options;
+  options.patch_interior = static_cast<std::uint32_t>(families::pick(random, 2, 16));
+  options.seed = random();
+  try {
+    return std::make_shared<LrbRep>(build_lrb(mesh_of(rep), options));
+  } catch (const InputError&) {
+    return nullptr;
+  }
+}
+
+bool give(Body& body, Random& random, std::uint32_t most_simplices) {
+  if (body->region_count() > 0 || body->real_simplex_count() > most_simplices) return false;
+  // Drawn always, so that what follows does not depend on what is kept.
+  Random own(random());
+  static std::unordered_map<std::uint64_t, Body> kept;  // many families draw from a dozen bodies
+  const std::uint64_t key = body->hash() * 8 + own() % 8;
+  if (kept.size() > 1000) kept.clear();
+  const auto [it, fresh] = kept.try_emplace(key);
+  if (fresh) {
+    Random options(key);
+    it->second = built(*body, options);
+  }
+  if (!it->second) return false;
+  body = it->second;
+  return body->region_count() > 0;
+}
+
+}  // namespace
+
+int give_regions(families::Case& c, families::Random& random, std::uint32_t most_simplices) {
+  int count = give(c.a, random, most_simplices);
+  count += give(c.b, random, most_simplices);
+  return count;
+}
+
+}  // namespace lrb::torture
