@@ -118,11 +118,13 @@ std::string tables_html(const Page& page) {
     out += "</tr></thead><tbody>\n";
     for (const auto& row : t.rows) {
       out += "<tr>";
-      for (const std::string& cell : row) const bool prose = cell.size() > kProse;
-      out += std::string(looks_numeric(cell) ? "<td class=\"n\">"
-                         : prose             ? "<td class=\"prose\">"
-                                             : "<td>") +
-             escape_markup(cell) + "</td>";
+      for (const std::string& cell : row) {
+        const bool prose = cell.size() > kProse;
+        out += std::string(looks_numeric(cell) ? "<td class=\"n\">"
+                           : prose             ? "<td class=\"prose\">"
+                                               : "<td>") +
+               escape_markup(cell) + "</td>";
+      }
       out += "</tr>\n";
     }
     out += "</tbody></table></div>";
