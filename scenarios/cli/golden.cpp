@@ -57,6 +57,7 @@ std::string as_json(const GoldenResult& r) {
                                  {"steps", r.steps},      {"events", r.events},
                                  {"divergence", nullptr}, {"images", std::move(images)}};
   if (r.verdict.divergence) line["divergence"] = r.verdict.divergence->message();
+  if (!r.verdict.diagnosis.empty()) line["diagnosis"] = r.verdict.diagnosis;
   if (!r.verdict.passed()) line["approve"] = r.approve;
   return one_line(line);
 }

@@ -6,6 +6,7 @@
 #include <unordered_map>
 
 #include "render/image_diff.hpp"
+#include "scenarios/golden/diagnosis.hpp"
 
 namespace lrb {
 namespace {
@@ -48,14 +49,38 @@ std::string text_of(const DecodedPng& png, const std::string& key) {
   return {};
 }
 
+std::vector<std::string> parts_of(const std::string& words) {
+  const std::string between = "; ";
+  std::vector<std::string> out;
+  for (std::size_t at = 0;;) {
+    const std::size_t end = words.find(between, at);
+    out.push_back(words.substr(at, end - at));
+    if (end == std::string::npos) return out;
+    at = end + between.size();
+  }
+}
+
+/// Of two cameras in words, the first part that differs, and how many more do.
+std::string moved_words(const std::string& expected, const std::string& actual) {
+  const std::vector<std::string> x = parts_of(expected), y = parts_of(actual);
+  if (x.size() != y.size()) return "the camera changed: there were other views";
+  std::size_t first = x.size(), more = 0;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    if (x[i] == y[i]) continue;
+    if (first < x.size()) ++more;
+    first = std::min(first, i);
+  }
+  return "the camera moved: expected " + x[first] + ", found " + y[first] +
+         (more > 0 ? ", and " + std::to_string(more) + " more such changes" : "");
+}
+
 /// What is behind a difference: another moment, another camera, or else other colours or shapes.
 std::string explain(const DecodedPng& expected, const PaintedFrame& actual) {
   std::string out;
   const std::string event = text_of(expected, "lrbscope:event"), found = std::to_string(actual.event);
   if (!event.empty() && event != found) out += "drawn after event " + found + " instead of " + event + "; ";
   const std::string camera = text_of(expected, kCameraText), now = camera_words(actual.cameras);
-  if (!camera.empty() && camera != now)
-    return out + "the camera moved: expected " + camera + ", found " + now;
+  if (!camera.empty() && camera != now) return out + moved_words(camera, now);
   if (!camera.empty()) out += "the camera is the same; ";
   return out + commonest_change(expected.image, actual.image);
 }
@@ -109,6 +134,7 @@ bool GoldenVerdict::images_passed() const {
 GoldenVerdict check_golden(const Golden& golden, const GoldenRun& run) {
   GoldenVerdict out;
   out.divergence = trace::first_divergence(golden.trace, run.recording.trace);
+  if (out.divergence) out.diagnosis = diagnose(golden.trace, run.recording.trace, *out.divergence);
   out.scenario_changed = golden.trace.header.scenario_hash != run.scenario.hash;
   static const std::vector<GoldenImage> kNone;
   for (std::size_t i = 0; i < run.frames.size(); ++i)

@@ -24,6 +24,7 @@ struct ImageVerdict {
 
 struct GoldenVerdict {
   std::optional<trace::Divergence> divergence;
+  std::string diagnosis;  ///< of the divergence: what was swapped, lost or added; may be empty
   std::vector<ImageVerdict> images;
   bool scenario_changed = false;  ///< its file is not the one that was approved: a hint, not a failure
   bool images_passed() const;

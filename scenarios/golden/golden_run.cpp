@@ -23,11 +23,11 @@ std::string words(const Eigen::Vector3d& v) {
 std::string words(const Camera& c) {
   std::ostringstream out;
   out.precision(6);
-  out << "eye " << words(c.eye) << ", target " << words(c.target) << ", up " << words(c.up);
+  out << "eye " << words(c.eye) << "; target " << words(c.target) << "; up " << words(c.up) << "; ";
   if (c.orthographic)
-    out << ", half height " << c.half_height;
+    out << "half height " << c.half_height;
   else
-    out << ", " << c.fov_y * 180 / std::numbers::pi << " degrees high";
+    out << c.fov_y * 180 / std::numbers::pi << " degrees high";
   return out.str();
 }
 

@@ -27,7 +27,7 @@ Performance performance_of(const GoldenRun& run);
 std::vector<PngText> golden_text(const GoldenRun& run, std::size_t frame);
 
 inline const char* const kCameraText = "lrbscope:camera";
-/// The cameras of a frame in words, a view after the other.
+/// The cameras of a frame in words, a view after the other; "; " stands between the parts.
 std::string camera_words(const std::vector<Camera>& cameras);
 
 /// Size of a golden's pictures unless one is asked for: of the scenario's shape, small enough to be kept, and

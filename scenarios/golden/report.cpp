@@ -35,7 +35,9 @@ void add_divergence(GoldenResult& result, const Golden& golden, const GoldenRun&
   PageComparison c;
   c.id = result.name + "-" + kDivergence;
   c.title = result.name + ": where the runs part";
-  c.text = result.verdict.divergence->message() + (pictures.note.empty() ? "" : ". " + pictures.note);
+  c.text = result.verdict.divergence->message();
+  if (!result.verdict.diagnosis.empty()) c.text += ". " + result.verdict.diagnosis;
+  c.text += (pictures.note.empty() ? "" : ". " + pictures.note);
   c.captions = {pictures.expected_caption, pictures.actual_caption};
   c.command = result.approve;
   add_comparison(result, std::move(c), pictures.expected, pictures.actual);
@@ -182,6 +184,7 @@ std::string result_text(const GoldenResult& r) {
       (v.divergence ? "events or counters differ" : counted(r.events, "event", "events") + " equal") +
       "; images: " + images_words(v) + "\n";
   if (v.divergence) out += "      " + v.divergence->message() + "\n";
+  if (!v.diagnosis.empty()) out += "      " + v.diagnosis + "\n";
   for (const ImageVerdict& image : v.images)
     if (!image.passed) out += "      " + image.file + ": " + image.text + "\n";
   if (!v.passed() && v.scenario_changed)
