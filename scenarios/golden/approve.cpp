@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <optional>
 
 #include "engine/error.hpp"
 #include "scenarios/files.hpp"
@@ -57,7 +58,18 @@ class Approval {
   const GoldenRun& run_;
 };
 
-std::vector<std::string> approve_all(Approval approval, const GoldenRun& run) {
+/// Nothing where files are missing or damaged and that `may_fail`: approving puts sound ones in their place.
+std::optional<Golden> load_if_sound(const std::string& goldens, const std::string& name, bool may_fail) {
+  try {
+    return load_golden(goldens, name);
+  } catch (const InputError&) {
+    if (!may_fail) throw;
+    return std::nullopt;
+  }
+}
+
+std::vector<std::string> approve_all(Approval approval, const GoldenRun& run, const std::string& folder) {
+  approval.remove(image_files_from(folder, 0));
   approval.trace();
   for (std::size_t i = 0; i < run.frames.size(); ++i) approval.frame(i, {});
   return std::move(approval.done);
@@ -89,11 +101,12 @@ std::vector<std::string> approve_golden(const std::string& goldens, const Golden
     throw InputError(name + ": has no golden yet; approve it first, without --variant");
   make_folder(folder);
   const FolderLock lock(folder);
-  if (!known || !fs::exists(fs::path(folder) / kGoldenTrace)) {
+  const std::optional<Golden> old = known ? load_if_sound(goldens, name, variant.empty()) : std::nullopt;
+  if (!old) {
     write_golden_spec(goldens, name, spec);
-    return approve_all({folder, run}, run);
+    return approve_all({folder, run}, run, folder);
   }
-  const Golden golden = load_golden(goldens, name);
+  const Golden& golden = *old;
   const GoldenVerdict verdict = check_golden(golden, run);
   if (!variant.empty()) return approve_variant({folder, run}, verdict, name, variant);
   if (!same(golden.spec, spec)) write_golden_spec(goldens, name, spec);

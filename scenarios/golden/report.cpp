@@ -50,7 +50,6 @@ void add_image(GoldenResult& result, const Golden& golden, const GoldenRun& run,
   c.title = result.name + ": " + v.file;
   c.text = v.text;
   c.passed = v.passed;
-  if (v.has_actual) c.captions[1] = run.frames[v.frame].caption;
   if (!v.passed) c.command = result.approve;
   add_comparison(result, std::move(c), v.has_expected ? golden.frames[v.frame][v.variant].png.image : Image(),
                  v.has_actual ? run.frames[v.frame].image : Image());

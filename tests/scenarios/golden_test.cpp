@@ -321,6 +321,8 @@ TEST_CASE("goldens: what cannot be tested ends with code 2 and one line") {
   CHECK(has(run(folder, {"golden", "test", "other.scenario.json"}).err, "lrbscope golden approve"));
   folder.write("goldens/balls/frame_1.png", "no picture");
   CHECK(folder.test().code == 2);
+  CHECK(run(folder, {"golden", "approve"}).code == 0);  // which puts a sound one in its place
+  CHECK(folder.test().code == 0);
   folder.write("goldens/balls/golden.json", "{\"scenario\": \"balls\", \"size\": [1]}");
   CHECK(has(folder.test().err, "golden.json:1:"));
 }
