@@ -14,6 +14,25 @@
 
 namespace lrb {
 namespace fs = std::filesystem;
+namespace {
+
+bool is_written(const fs::path& name) {
+  if (name == "frames") return true;
+  for (const char* ending : {".html", ".json", ".gz", ".lrb", ".png"})
+    if (name.extension() == ending) return true;
+  return false;
+}
+
+void refuse_links_in(const fs::path& folder) {
+  std::error_code error;
+  for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error))
+    if (fs::is_symlink(entry->symlink_status()) && is_written(entry->path().filename()))
+      throw EnvironmentError(printable_name(entry->path().string()) +
+                             ": a symbolic link stands where a file of the run goes, and could lead out of "
+                             "the folder; remove it, or name another folder with -o");
+}
+
+}  // namespace
 
 std::string read_text(const std::string& path) {
   return read_file(path);
@@ -31,6 +50,11 @@ void make_folder(const std::string& path) {
 void write_text(const std::string& path, const std::string& text) {
   make_folder(fs::path(path).parent_path().string());
   write_file(path, text);
+}
+
+void refuse_links(const std::string& folder) {
+  refuse_links_in(folder);  // frames, if it is a link itself, ends here
+  refuse_links_in(fs::path(folder) / "frames");
 }
 
 FolderLock::FolderLock(const std::string& path)

@@ -14,6 +14,11 @@ void write_text(const std::string& path, const std::string& text);
 /// Makes a folder and those above it. Throws EnvironmentError if that fails or a file is in the way.
 void make_folder(const std::string& path);
 
+/// What is written into an output folder stays in it: throws EnvironmentError, naming it, if a symbolic link
+/// stands in the folder, or in its frames folder, under a name that a run writes (a page, numbers, a trace,
+/// an LRB-rep, a picture, or frames itself). The folder's own path may lead through links: it was asked for.
+void refuse_links(const std::string& folder);
+
 /// Keeps other processes that ask for the same folder's lock out of it, until it goes. Ends with the process,
 /// however that ends, and leaves no file. Throws EnvironmentError if another one has it.
 class FolderLock {

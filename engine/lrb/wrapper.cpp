@@ -26,8 +26,8 @@ bool Wrapper::included(CellId cell) const {
 
 bool Wrapper::refine(RegionId r) {
   if (!included(r)) return false;
+  order_.push_back(r);  // first: it may throw
   region_stamp_[r] = epoch_;
-  order_.push_back(r);
   ++excluded_count_;
   if (mode_ == WrapperMode::unregularised)
     for (const FaceId lid : rep_->lids(r)) discarded_stamp_[lid] = epoch_;
@@ -38,12 +38,12 @@ bool Wrapper::refine_face(FaceId f) {
   if (rep_->is_real(f) || !on_boundary(f)) return false;
   const RegionId r = rep_->inner_cell(f);
   if (mode_ == WrapperMode::regularised) return refine(r);
-  discarded_stamp_[f] = epoch_;
   if (included(r)) {
-    region_stamp_[r] = epoch_;
     order_.push_back(r);
+    region_stamp_[r] = epoch_;
     ++excluded_count_;
   }
+  discarded_stamp_[f] = epoch_;
   return true;
 }
 

@@ -71,6 +71,7 @@ class TreeQuery {
   void open_regions(Side side, FaceId f) {
     QueryBody& body = ctx_[side];
     const LrbRep& rep = body.rep();
+    ctx_.path.clear();  // a query that ended by an exception may have left some
     for (CellId c = rep.outer_cell(f); is_region(c) && body.wrapper->included(c); c = rep.parent(c))
       ctx_.path.push_back(c);
     for (; !ctx_.path.empty(); ctx_.path.pop_back()) {

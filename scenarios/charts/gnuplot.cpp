@@ -96,21 +96,20 @@ std::string number(double x) {
 
 /// The command that sets the terminal. Fonts: DejaVu Sans everywhere, as in the pictures.
 std::string terminal(const Gnuplot& chart, const std::string& ending) {
-  constexpr double kInch = 25.4, kPointsPerInch = 72, kDpi = 300;
-  const auto font = [&](double scale) { return " font 'DejaVu Sans," + number(chart.font * scale) + "'"; };
+  constexpr double kInch = 25.4, kPointsPerInch = 72, kDpi = 300, kPngDpi = 96;
+  const std::string font = " font 'DejaVu Sans," + number(chart.font) + "'";
   const auto size = [&](double dpi) {
     return " size " + number(std::round(chart.width / kInch * dpi)) + "," +
            number(std::round(chart.height / kInch * dpi));
   };
   if (ending == ".svg")
-    return "svg noenhanced" + size(kPointsPerInch) + font(1) + " linewidth 0.75 background '#ffffff'";
+    return "svg noenhanced" + size(kPointsPerInch) + font + " linewidth 0.75 background '#ffffff'";
   if (ending == ".pdf")
     return "pdfcairo noenhanced size " + number(chart.width / kInch) + "," + number(chart.height / kInch) +
-           font(1) + " linewidth 0.75";
-  if (ending == ".png")  // its fonts and lines are for 72 dpi
-    return "pngcairo noenhanced" + size(kDpi) + " fontscale " + number(kDpi / kPointsPerInch) + font(1) +
-           " linewidth " + number(0.75 * kDpi / kPointsPerInch) + " pointscale " +
-           number(kDpi / kPointsPerInch);
+           font + " linewidth 0.75";
+  if (ending == ".png")  // its fonts and lines are for 96 dpi
+    return "pngcairo noenhanced" + size(kDpi) + " fontscale " + number(kDpi / kPngDpi) + font +
+           " linewidth " + number(kDpi / kPngDpi) + " pointscale " + number(kDpi / kPngDpi);
   throw InputError(ending + ": charts are written as .svg, .png or .pdf");
 }
 

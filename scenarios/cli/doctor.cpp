@@ -9,6 +9,7 @@
 #include "render/offscreen.hpp"
 #include "render/rasterize.hpp"
 #include "scenarios/body.hpp"
+#include "scenarios/charts/gnuplot.hpp"
 #include "scenarios/cli/command.hpp"
 #include "scenarios/embedded.hpp"
 #include "scenarios/files.hpp"
@@ -74,6 +75,10 @@ int run_doctor(bool json) {
     return std::to_string(embedded_file("chart.min.js").size() / 1000) +
            " kB of charting library compiled in";
   }));
+  findings.push_back(has_gnuplot()
+                         ? Finding{Level::ok, "gnuplot", "there"}
+                         : Finding{Level::warning, "gnuplot",
+                                   "not there: charts for print are left out; install gnuplot-nox"});
   bool well = true;
   nlohmann::ordered_json list = nlohmann::ordered_json::array();
   std::string text;

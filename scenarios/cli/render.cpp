@@ -131,6 +131,7 @@ int run_render(const RenderOptions& o, const Globals& globals) {
   static_cast<void>(moments(spec, trace, {}));  // throws before anything is written
   make_folder(folder);
   const FolderLock lock(folder);
+  refuse_links(folder);
   const DrawnFrames drawn = draw_frames(p, spec, folder, text, progress_report(globals.quiet));
   const std::string trace_link = std::filesystem::relative(o.trace, folder).generic_string();
   ReportText report{

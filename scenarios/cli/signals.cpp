@@ -1,16 +1,23 @@
 #include "scenarios/cli/signals.hpp"
 
 #include <csignal>
+#include <exception>
+#include <new>
 #include <string>
+#include <string_view>
 #include <system_error>
 #include <thread>
 
 #include <unistd.h>
 
 #include "engine/mesh/atomic_file.hpp"
+#include "scenarios/cli/command.hpp"
 
 namespace lrb::cli {
 namespace {
+
+constexpr std::string_view kOutOfMemoryLine =
+    "lrbscope: out of memory: try a smaller input or a larger machine\n";
 
 bool pipes_end_us = false;
 
@@ -48,7 +55,28 @@ void wait_for(const sigset_t& signals) {
   die_of(signal);
 }
 
+/// There may be no memory: nothing here takes any.
+[[noreturn]] void say_why_and_end() {
+  std::string_view line = "lrbscope: internal error, please report it: std::terminate was called\n";
+  try {
+    if (std::current_exception()) throw;
+  } catch (const std::bad_alloc&) {
+    line = kOutOfMemoryLine;
+  } catch (...) {
+    // The line above says all we know.
+  }
+  abandon_atomic_files();
+  if (write(STDERR_FILENO, line.data(), line.size()) < 0) {
+    // There is nobody left to tell.
+  }
+  _exit(kEnvironment);
+}
+
 }  // namespace
+
+void end_cleanly_on_terminate() {
+  std::set_terminate(say_why_and_end);
+}
 
 void end_cleanly_on_signals() {
   pipes_end_us = !is_ignored(SIGPIPE);

@@ -8,6 +8,10 @@ namespace lrb::cli {
 /// stay. Signals that the caller ignores stay ignored. Call it once, before any thread is started.
 void end_cleanly_on_signals();
 
+/// From now on an exception that nobody can catch, which is a std::bad_alloc in a destructor of nlohmann-json
+/// (they allocate), removes the files that were begun and ends the program with a line and code 3.
+void end_cleanly_on_terminate();
+
 /// Nobody reads our stdout any more: ends the program silently as SIGPIPE does, or returns if the caller had
 /// that signal ignored.
 void end_as_by_closed_pipe();

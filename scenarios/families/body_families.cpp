@@ -113,7 +113,8 @@ struct Cells {
   }
 };
 
-/// Whether a cell of `a` and a cell of `b`, moved by `shift`, have inner points in common.
+/// Whether a cell of `a` and a cell of `b`, moved by `shift`, have inner points in common; the faces of B's
+/// cells lie where rounding puts them.
 bool share_a_cell(const Cells& a, const Cells& b, const Vector3d& shift) {
   const auto each = [](const Cells& c, auto visit) {
     for (int i = 0; i < c.n[0]; ++i)
@@ -123,7 +124,10 @@ bool share_a_cell(const Cells& a, const Cells& b, const Vector3d& shift) {
     return false;
   };
   return each(a, [&](const Vector3d& x) {
-    return each(b, [&](const Vector3d& y) { return ((x - y - shift).cwiseAbs().array() < 1).all(); });
+    return each(b, [&](const Vector3d& y) {
+      const Vector3d low = y + shift, high = (y + Vector3d::Ones()) + shift;
+      return (low.array() < x.array() + 1).all() && (x.array() < high.array()).all();
+    });
   });
 }
 
@@ -150,11 +154,12 @@ void move_exactly(Random& random, Case& c) {
 Case make_lattice(Random& random, double dial) {
   static const std::vector<Body> kBodies = {body(menger()), body(koch_cube()), body(lattice())};
   Case c{kBodies[random() % 3], kBodies[random() % 3], {}, {}, {}, {}};
-  const double steps[] = {1, 0.5, 1.0 / 3, std::pow(10, -17 * dial)};
+  const double steps[] = {1, 0.5, 1.0 / 3, slack(dial)};
   const double step = steps[random() % 4];
   c.pose_b = {grid_turn(random),
               step * Vector3d(pick(random, -4, 4), pick(random, -4, 4), pick(random, -4, 4))};
   c.pose_b.t += c.pose_b.r.cwiseMin(0).rowwise().sum() * -3;  // back over A
+  loosen(random, c, slack(dial));
   if (pick(random, 0, 3) == 0) move_both(c, any_pose(random));
   if (pick(random, 0, 3) == 0) c.pose_b.r = shapes::random_rotation(random);
   return c;
@@ -171,7 +176,7 @@ Case make_dented(Random& random, double dial) {
   Case c{kBodies[random() % kBodies.size()], kBodies[random() % kBodies.size()], {}, {}, {}, {}};
   c.pose_b = random() % 2 ? any_pose(random, 2)
                           : Pose{grid_turn(random), Vector3d(pick(random, -3, 3), pick(random, -3, 3), 1)};
-  c.pose_b.t *= 1 + std::pow(10, -17 * dial);
+  loosen(random, c, slack(dial));
   return c;
 }
 
@@ -234,9 +239,9 @@ Case make_voxels(Random& random, double dial) {
   const int most = 2 + static_cast<int>(2 * dial);
   const Cells a(random, most, most, uniform(random, 0.2, 1)), b(random, most, most, uniform(random, 0.2, 1));
   Case c{body(a.mesh(random() % 2)), body(b.mesh(random() % 2)), {}, {}, {}, {}};
-  c.pose_b.t = grid_shift(random, most, false);
+  c.pose_b.t = grid_shift(random, most, false) + slack(dial) * shapes::random_direction(random);
   c.interiors_overlap = share_a_cell(a, b, c.pose_b.t);
-  if (random() % 2) move_exactly(random, c);
+  if (random() % 2 && slack(dial) == 0) move_exactly(random, c);
   return c;
 }
 
@@ -254,7 +259,8 @@ Case make_plane(Random& random, double dial) {
     const Cells a(random, most, 1, uniform(random, 0.2, 1)), b(random, most, 1, uniform(random, 0.2, 1));
     c.a = body(a.outline());
     c.b = body(b.outline());
-    c.pose_b.t = grid_shift(random, most, true);
+    c.pose_b.t = grid_shift(random, most, true) + slack(dial) * shapes::random_direction(random);
+    c.pose_b.t.z() = 0;
     c.interiors_overlap = share_a_cell(a, b, c.pose_b.t);
     return c;
   }
@@ -267,6 +273,7 @@ Case make_plane(Random& random, double dial) {
     if (random() % 2) c.pose_b = Pose::translation(c.pose_b.t);
   }
   if (random() % 2) c.pose_b.t.x() = nudged(c.pose_b.t.x(), pick(random, -1, 1));
+  loosen(random, c, slack(dial));
   return c;
 }
 
@@ -293,6 +300,7 @@ Case make_dirty(Random& random, double dial) {
                          spoil(crossing)};
   Case c{body(meshes[random() % 5], true), body(meshes[random() % 5], true), {}, any_pose(random, 2), {}, {}};
   if (random() % 2) c.pose_b = {grid_turn(random), Vector3d(pick(random, -2, 2), pick(random, -1, 1), 0)};
+  loosen(random, c, slack(dial));
   return c;
 }
 

@@ -32,10 +32,6 @@ Mesh tetrahedron(const std::array<Vector3d, 4>& p) {
   return inside_out ? shapes::turned_inside_out(m) : m;
 }
 
-void nudge_coordinates(Random& random, Vector3d& x, int ulps) {
-  for (int k = 0; k < 3; ++k) x[k] = nudged(x[k], pick(random, -ulps, ulps));
-}
-
 /// A prism of `layers` turned slices about z, whose section is an `n`-gon of radius r: the core of a screw.
 std::vector<Vector3d> twisted_rings(int n, int layers, double r, double twist, double height) {
   std::vector<Vector3d> x;
@@ -106,9 +102,14 @@ Mesh cone(int n, double height) {
 Case make_touch(Random& random, double dial) {
   Case c{any_body(random), any_body(random), {}, any_pose(random), {}, {}};
   if (pick(random, 0, 3) == 0) c.pose_a = any_pose(random);
-  const Vector3d away = shapes::random_direction(random), start = c.pose_b.t;
-  double near = 0, far = 12;
-  if (!in_contact(c)) near = -12;  // through and out on the other side
+  const Vector3d away = shapes::random_direction(random);
+  const auto vertex = [&](const LrbRep& rep, const Pose& pose) {
+    return pose.apply(rep.vertices()[random() % rep.vertices().size()]);
+  };
+  const Vector3d onto = vertex(*c.a, c.pose_a) - vertex(*c.b, c.pose_b);
+  if (!in_contact(c)) c.pose_b.t += onto;  // vertex on vertex
+  const Vector3d start = c.pose_b.t;
+  double near = 0, far = 12;  // no body is wider
   const int steps = static_cast<int>(6 + 54 * dial);
   for (int i = 0; i < steps; ++i) {
     const double middle = 0.5 * (near + far);
@@ -131,8 +132,7 @@ Case make_shared(Random& random, double dial) {
   const int shared = pick(random, 1, 3);
   std::array<Vector3d, 4> p = {t[0], off(), off(), off()};
   for (int i = 0; i < shared; ++i) p[i] = t[i];
-  const int ulps = static_cast<int>(std::floor(3 * (1 - dial)));
-  for (int i = 0; i < shared; ++i) nudge_coordinates(random, p[i], ulps);
+  for (int i = 0; i < shared; ++i) p[i] += slack(dial) * shapes::random_direction(random);
   c.b = body(tetrahedron(p));
   if (random() % 2) c.pose_a = c.pose_b = any_pose(random);
   return c;
@@ -143,20 +143,19 @@ Case make_coplanar(Random& random, double dial) {
                                           body(shapes::quad_box()), body(shapes::tetrahedron(2))};
   Case c{kFlat[random() % kFlat.size()], kFlat[random() % 4], {}, {}, {}, {}};
   const int turn = pick(random, 0, 2);
-  const double angle = turn == 0   ? std::pow(10, -17 * dial)
+  const double angle = turn == 0   ? slack(dial)
                        : turn == 1 ? uniform(random, 0, 6.3)
                                    : pick(random, 0, 3) * std::numbers::pi / 2;
   c.pose_b = Pose::rotation({0, 0, 1}, angle);
   if (turn == 2) c.pose_b.r = c.pose_b.r.array().round();
-  if (pick(random, 0, 2) == 0) {
-    const double tilt = std::pow(10, -9 - 8 * dial);
-    c.pose_b.r = Pose::rotation({1, uniform(random), 0}, tilt).r * c.pose_b.r;
-  }
+  if (pick(random, 0, 2) == 0)
+    c.pose_b.r = Pose::rotation({1, uniform(random), 0}, slack(dial)).r * c.pose_b.r;
   const double step = random() % 2 ? 0.5 : 1.0 / 3;
   c.pose_b.t = {step * pick(random, -3, 3), step * pick(random, -3, 3),
                 static_cast<double>(pick(random, -1, 1))};
   c.pose_b.t.z() = nudged(c.pose_b.t.z(), pick(random, -1, 1));
   if (pick(random, 0, 2) == 0) c.pose_b.t.x() = nudged(c.pose_b.t.x(), pick(random, -1, 1));
+  loosen(random, c, slack(dial));
   if (pick(random, 0, 3) == 0) move_both(c, any_pose(random));
   return c;
 }
@@ -178,9 +177,8 @@ Case make_identical(Random& random, double dial) {
   if (pick(random, 0, 2) == 0) {
     const int k = pick(random, 0, 2);
     c.pose_b.t[k] = nudged(c.pose_b.t[k], pick(random, -2, 2));
-  } else if (pick(random, 0, 2) == 0) {
-    c.pose_b.t += std::pow(10, -17 * dial) * shapes::random_direction(random);
   }
+  loosen(random, c, slack(dial));
   return c;
 }
 
@@ -198,6 +196,7 @@ Case make_hub(Random& random, double dial) {
   if (kind == 3) c.pose_b.t = {0, 0, static_cast<double>(pick(random, -2, 2)) / 2};
   const int k = pick(random, 0, 2);
   if (random() % 2) c.pose_b.t[k] = nudged(c.pose_b.t[k], pick(random, -1, 1));
+  loosen(random, c, slack(dial));
   return c;
 }
 
@@ -208,23 +207,22 @@ Case make_interlock(Random& random, double dial) {
       body(shapes::voxels(5, 3, 1, [](int i, int j, int) { return j != 1 || i % 4 == 0; }));
   Case c;
   const int kind = pick(random, 0, 2);
-  const double slip = dial > 0.5 ? 0 : std::pow(10, -16 * dial - 1) * uniform(random, -1, 1);
   if (kind == 0) {  // comb (width 7, depth 4) turned by half about z, teeth into the gaps
     c.a = c.b = kComb;
     c.pose_b.r = Vector3d(-1, -1, 1).asDiagonal();
-    c.pose_b.t = {8 + slip, static_cast<double>(pick(random, 4, 8)),
-                  static_cast<double>(pick(random, -1, 1))};
+    c.pose_b.t = {8, static_cast<double>(pick(random, 4, 8)), static_cast<double>(pick(random, -1, 1))};
   } else if (kind == 1) {  // a bar of one link through the slot of the other
     c.a = c.b = kLink;
     c.pose_b.r << 1, 0, 0, 0, 0, -1, 0, 1, 0;
-    c.pose_b.t = {static_cast<double>(pick(random, -4, 4)) / (1 + static_cast<int>(random() % 2)) + slip,
-                  2 + slip, static_cast<double>(pick(random, -3, 1))};
+    c.pose_b.t = {static_cast<double>(pick(random, -4, 4)) / (1 + static_cast<int>(random() % 2)), 2,
+                  static_cast<double>(pick(random, -3, 1))};
   } else {
     c.a = kNut;
     c.b = kScrew;
-    const double height = slip + (random() % 2 ? 0 : uniform(random, -1, 1));
+    const double height = random() % 2 ? 0 : uniform(random, -1, 1);
     c.pose_b = Pose::rotation({0, 0, 1}, random() % 4 ? height : 0, {0, 0, height});
   }
+  loosen(random, c, slack(dial));
   if (pick(random, 0, 3) == 0) move_both(c, any_pose(random));
   return c;
 }
@@ -239,6 +237,7 @@ Case make_quadratic(Random& random, double dial) {
   Case c{body(shapes::several(across)), body(shapes::several(along)), {}, {}, {}, {}};
   c.pose_b.t = {0, 0, random() % 2 ? 0 : uniform(random, -1, 1)};
   if (random() % 2) c.pose_b.r = Pose::rotation({1, 0, 0}, uniform(random, 0, 0.3)).r;
+  loosen(random, c, slack(dial));
   if (pick(random, 0, 3) == 0) move_both(c, any_pose(random));
   return c;
 }

@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 #include <cstring>
+#include <iterator>
 #include <limits>
 
 #include "engine/error.hpp"
@@ -15,26 +16,44 @@ namespace lrb::families {
 namespace {
 
 constexpr Family kFamilies[] = {
-    {"touch", "random bodies stopped within an ulp of contact", make_touch},
-    {"shared", "a face, edge or vertex in common, exactly or ulps off", make_shared},
-    {"coplanar", "face on face: shifted, turned in the plane, tilted by 1e-9 to 1e-17", make_coplanar},
-    {"identical", "the same body at the same pose, or under a symmetry", make_identical},
-    {"hub", "hundreds of faces in a point; faces of a hundred corners", make_hub},
-    {"interlock", "combs with all flanks in contact, chain links, screw in nut", make_interlock},
-    {"quadratic", "every plate of one through every plate of the other", make_quadratic},
-    {"sliver", "needles to aspect 1e8, sheets to 1e-8", make_sliver},
-    {"far", "1e6, 1e8 and 1e16 from the world's or the bodies' own origin", make_far},
-    {"scale", "1e-120 to 1e120", make_scale},
-    {"extreme", "denormals to 1e308", make_extreme},
-    {"ratio", "sizes 1e12 and 1e60 apart", make_ratio},
-    {"matrix", "poses that scale, shear, reflect or flatten", make_matrix},
-    {"lattice", "lattices, Menger and Koch bodies on their grid", make_lattice},
-    {"dented", "bodies with regions, made by hand and by the builder", make_dented},
+    {"touch", "random bodies stopped within an ulp of contact", make_touch, "0.2 from first contact",
+     "an ulp from first contact"},
+    {"shared", "a face, edge or vertex in common, exactly or nearly", make_shared, "0.1 off",
+     "in common exactly"},
+    {"coplanar", "face on face: shifted, turned in the plane, tilted", make_coplanar,
+     "0.1 off and tilted by 0.1", "in one plane, or an ulp off"},
+    {"identical", "the same body at the same pose, or under a symmetry", make_identical, "0.1 off",
+     "the same pose, or an ulp off"},
+    {"hub", "many faces in a point; faces of many corners", make_hub, "3 faces, 0.1 off",
+     "100 faces, exactly in the point"},
+    {"interlock", "combs with all flanks in contact, chain links, screw in nut", make_interlock, "0.1 off",
+     "all flanks in contact"},
+    {"quadratic", "every plate of one through every plate of the other", make_quadratic, "2 plates, 0.1 off",
+     "6 plates, faces in one plane"},
+    {"sliver", "needles and sheets", make_sliver, "aspect 1", "aspect 1e8"},
+    {"zero-area", "faces that collapse to segments and points", make_zero_area, "corners 0.1 from collapse",
+     "no area at all"},
+    {"far", "far from the world's or the bodies' own origin", make_far, "1 from the origin",
+     "1e16 from the origin"},
+    {"scale", "tiny and huge", make_scale, "size 1", "size 1e-120 or 1e120"},
+    {"extreme", "tiny and huge to the ends of double, and beyond", make_extreme, "size 1",
+     "size 4e-322 or 1.6e308"},
+    {"ratio", "bodies of different sizes", make_ratio, "equal sizes", "sizes 1e12 or 1e60 apart"},
+    {"matrix", "poses that scale, shear, reflect or flatten", make_matrix, "by 1e-3", "by 1e3, or flat"},
+    {"lattice", "lattices, Menger and Koch bodies on their grid", make_lattice, "0.1 off the grid",
+     "on the grid"},
+    {"dented", "bodies with regions, made by hand and by the builder", make_dented, "0.1 off the grid",
+     "on the grid"},
     {"containment", "inside, in a cavity, in the wall around one, nested shells, swallowed pieces",
-     make_containment},
-    {"voxels", "random cells of one grid: interiors overlap exactly if a cell is shared", make_voxels},
-    {"plane", "2D bodies, random cells of one grid among them", make_plane},
-    {"dirty", "open, duplicated, zero-area, turned and crossing faces", make_dirty},
+     make_containment, "0.1 of the room left", "1e-14 of the room left"},
+    {"voxels", "random cells of one grid: interiors overlap exactly if a cell is shared", make_voxels,
+     "0.1 off the grid", "on the grid, or on half of it"},
+    {"plane", "2D bodies, random cells of one grid among them", make_plane, "0.1 off",
+     "edges on edges, corners on corners"},
+    {"dirty", "open, duplicated, zero-area, turned and crossing faces", make_dirty,
+     "clean but for crossings, 0.1 off", "a third of the faces bad"},
+    {"swapped", "cases of the others, asked both ways: is B against A the transpose of A against B?",
+     make_swapped, "as theirs", "as theirs", true},
 };
 
 }  // namespace
@@ -92,6 +111,28 @@ Pose any_pose(Random& random, double distance) {
 
 void move_both(Case& c, const Pose& by) {
   for (Pose* p : {&c.pose_a, &c.pose_b}) *p = Pose{by.r * p->r, by.r * p->t + by.t};
+}
+
+double slack(double dial) {
+  return dial >= 1 ? 0 : 0.1 * std::pow(10, -15 * dial / 0.9);
+}
+
+void loosen(Random& random, Case& c, double by) {
+  const bool flat = c.a->dim() == 2;
+  Eigen::Vector3d away = shapes::random_direction(random);
+  const Eigen::Vector3d axis = flat ? Eigen::Vector3d::UnitZ() : shapes::random_direction(random);
+  const double angle = by * uniform(random, -1, 1);
+  if (by == 0) return;
+  if (flat) away.z() = 0;
+  c.pose_b.r = Pose::rotation(axis, angle).r * c.pose_b.r;
+  c.pose_b.t += by * away;
+}
+
+Case make_swapped(Random& random, double dial) {
+  while (true) {  // one of the other families
+    const Family& f = kFamilies[random() % std::size(kFamilies)];
+    if (!f.both_ways) return f.make(random, dial);
+  }
 }
 
 double nudged(double x, int ulps) {

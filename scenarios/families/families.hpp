@@ -28,6 +28,9 @@ struct Family {
   const char* name;  ///< the class in the table
   const char* what;
   Case (*make)(Random& random, double dial);
+  const char* benign = "";      ///< what dial 0 means: "1e-1 apart"
+  const char* degenerate = "";  ///< what dial 1 means: "exactly in contact"
+  bool both_ways = false;       ///< the question is whether exchanging A and B transposes the answer
 };
 
 std::span<const Family> all_families();
@@ -64,6 +67,8 @@ Case make_dented(Random&, double);       // bodies with regions, by hand and by 
 Case make_containment(Random&, double);  // inside, in a cavity, in a wall, swallowed
 Case make_voxels(Random&, double);       // random cells on one grid: interiors overlap if a cell is shared
 Case make_plane(Random&, double);        // 2D, random cells too
+Case make_zero_area(Random&, double);    // faces that collapse to segments and points
+Case make_swapped(Random&, double);      // families.cpp: cases of the others
 Case make_dirty(Random&, double);        // open, duplicated, without area, crossing themselves
 
 // What the files share.
@@ -73,6 +78,12 @@ Body any_body(Random& random);                       ///< one of a dozen small c
 Pose any_pose(Random& random, double distance = 3);  ///< random rotation and translation
 /// The same motion in front of both poses. Rounds, so that exact contact becomes nearly exact contact.
 void move_both(Case& c, const Pose& by);
+/// How far a case is from the configuration that its family is about: 0.1 at dial 0, 1e-16 at 0.9, nothing at
+/// 1. In units of the bodies, which are a few wide.
+double slack(double dial);
+/// Moves B by `by` in a random direction and turns it by up to as much (radians). Draws as many numbers for
+/// 0, which moves nothing at all.
+void loosen(Random& random, Case& c, double by);
 double nudged(double x, int ulps);
 int pick(Random& random, int low, int high);  ///< low to high, both included
 /// An exact rotation (or, if asked, perhaps a reflection) of the grid.

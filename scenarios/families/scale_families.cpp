@@ -48,19 +48,45 @@ Case make_sliver(Random& random, double dial) {
   if (kind == 0) c.pose_b = any_pose(random, 0.5);
   if (kind == 1) c.pose_b.t = thin * 3 * uniform(random) * shapes::random_direction(random);
   if (kind == 2) c.pose_b = {grid_turn(random), random_sign_vector(random, 0.5)};
+  loosen(random, c, 0.1 * thin);
   if (pick(random, 0, 2) == 0) move_both(c, any_pose(random));
   return c;
 }
 
+Case make_zero_area(Random& random, double dial) {
+  const auto collapsed = [&](const LrbRep& rep) {
+    Mesh m = mesh_of(rep);
+    for (int times = pick(random, 1, 4); times > 0; --times) {
+      const auto corners = m.face(static_cast<FaceId>(random() % m.face_count()));
+      const std::size_t k = random() % corners.size();
+      Vector3d& v = m.vertices[corners[k]];
+      const Vector3d next = m.vertices[corners[(k + 1) % corners.size()]],
+                     last = m.vertices[corners[(k + 2) % corners.size()]];
+      const Vector3d onto = random() % 2 ? next : Vector3d((next + last) / 2);  // a point or a segment
+      v = onto + slack(dial) * (v - onto);
+    }
+    return body(m, true);
+  };
+  Case c{collapsed(*any_body(random)), collapsed(*any_body(random)), {}, {}, {}, {}};
+  if (random() % 2) c.pose_a = any_pose(random);
+  c.pose_b.r = random() % 2 ? shapes::random_rotation(random) : grid_turn(random);
+  // A vertex of one on a vertex of the other, a little off.
+  const Vector3d x = c.pose_a.apply(c.a->vertices()[random() % c.a->vertices().size()]);
+  const Vector3d y = c.pose_b.r * c.b->vertices()[random() % c.b->vertices().size()];
+  c.pose_b.t = x - y + slack(dial) * shapes::random_direction(random);
+  if (random() % 2) c.pose_b.t += 0.3 * shapes::random_direction(random);
+  return c;
+}
+
 Case make_far(Random& random, double dial) {
-  static constexpr double kOffsets[] = {1e6, 1e8, 1e12, 1e15, 1e16};
-  const double offset = kOffsets[std::min(4, static_cast<int>(5 * dial))];
+  const double offset = std::pow(10, 16 * dial);
   Case c{any_body(random), any_body(random), {}, {}, {}, {}};
   const double size = random() % 2 ? 4 : 1;  // at 1e16 an ulp is 2: small faces collapse
   c.a = stretched(*c.a, Vector3d::Constant(size));
   c.b = stretched(*c.b, Vector3d::Constant(size));
   c.pose_b =
       random() % 2 ? any_pose(random, 2 * size) : Pose{grid_turn(random), random_sign_vector(random, size)};
+  loosen(random, c, 0.1);  // the dial is the distance alone: rounding brings exact contact back
   const Vector3d away =
       random() % 2 ? random_sign_vector(random, offset) : Vector3d(offset * shapes::random_direction(random));
   const int kind = pick(random, 0, 3);
@@ -85,6 +111,7 @@ Case make_scale(Random& random, double dial) {
   const double by = random() % 2 ? std::pow(10, exponent) : std::exp2(std::floor(exponent * 3.3));
   Case c{any_body(random), any_body(random), {}, {}, {}, {}};
   c.pose_b = random() % 2 ? any_pose(random, 1.5) : Pose{grid_turn(random), random_sign_vector(random, 0.5)};
+  loosen(random, c, std::max(1e-12, 0.1 * (1 - dial)));
   c.a = stretched(*c.a, Vector3d::Constant(by));
   c.b = stretched(*c.b, Vector3d::Constant(by));
   c.pose_b.t *= by;
@@ -92,17 +119,20 @@ Case make_scale(Random& random, double dial) {
 }
 
 Case make_extreme(Random& random, double dial) {
-  static constexpr double kSizes[] = {1e-150, 1e150, 1e-200, 1e200, 1e-290, 1e290,
-                                      1e-305, 1e305, 1e-308, 1e307, 1e-310, 4e307,
-                                      1e-315, 8e307, 1e-319, 5e307, 4e-322, 1.6e308};
-  const auto size = [&] { return kSizes[pick(random, 0, static_cast<int>(17 * dial))]; };
+  static constexpr double kSizes[] = {8,     1e-30,  1e30,  1e-90,  1e90,  1e-150, 1e150,  1e-200,
+                                      1e200, 1e-290, 1e290, 1e-305, 1e305, 1e-308, 1e307,  1e-310,
+                                      4e307, 1e-315, 8e307, 1e-319, 5e307, 4e-322, 1.6e308};
+  static constexpr int kLast = static_cast<int>(std::size(kSizes)) - 1, kWindow = 6;
+  const int most = static_cast<int>(kLast * dial);
+  const auto size = [&] { return kSizes[pick(random, std::max(0, most - kWindow), most)]; };
   const double by = size(), by_b = pick(random, 0, 3) ? by : size();
   Case c{any_body(random), any_body(random), {}, {}, {}, {}};
   c.pose_b = random() % 2 ? any_pose(random, 1) : Pose{grid_turn(random), random_sign_vector(random, 0.5)};
+  loosen(random, c, slack(dial));
   // The bodies are up to 7 wide: divided first, so that the meshes themselves stay finite.
   c.a = stretched(*stretched(*c.a, Vector3d::Constant(0.125)), Vector3d::Constant(by));
   c.b = stretched(*stretched(*c.b, Vector3d::Constant(0.125)), Vector3d::Constant(by_b));
-  c.pose_b.t *= random() % 4 ? 0.25 * by : by;  // the second overflows sometimes: a refusal
+  c.pose_b.t *= random() % 4 ? 0.125 * by : by;  // the second overflows sometimes: a refusal
   if (pick(random, 0, 2) == 0) c.pose_a.r = shapes::random_rotation(random);
   return c;
 }

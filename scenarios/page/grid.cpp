@@ -73,9 +73,19 @@ std::string cell_html(const PageGrid& grid, const PageGridCell& cell) {
   return out + "</span>" + (linked ? "</a>" : "</div>") + "</td>";
 }
 
+/// Long names of functions break at their underscores.
+std::string breakable(const std::string& text) {
+  std::string out;
+  for (const char c : escape_markup(text)) {
+    out += c;
+    if (c == '_') out += "<wbr>";
+  }
+  return out;
+}
+
 std::string column_html(const PageGridHead& head) {
-  std::string out = std::string("<th scope=\"col\"") + (head.faint ? " class=\"faint\"" : "") + "><b>" +
-                    escape_markup(head.title) + "</b>";
+  std::string out = std::string("<th scope=\"col\"") + (head.faint ? " class=\"faint\"" : "") + " title=\"" +
+                    escape_markup(head.text) + "\"><b>" + breakable(head.title) + "</b>";
   if (!head.text.empty()) out += "<small>" + escape_markup(head.text) + "</small>";
   return out + "</th>";
 }
@@ -84,9 +94,18 @@ std::string row_html(const PageGridHead& head) {
   std::string out = "<th scope=\"row\"><b>" + escape_markup(head.title) + "</b>";
   if (!head.text.empty()) out += "<small>" + escape_markup(head.text) + "</small>";
   if (!head.low.empty() || !head.high.empty())
-    out += "<small class=\"dial\"><span>" + escape_markup(head.low) +
-           "</span><i aria-label=\"to\">\u2192</i><span>" + escape_markup(head.high) + "</span></small>";
+    out += "<small class=\"dial\"><span>" + escape_markup(head.low) + "</span> \u2192 <span>" +
+           escape_markup(head.high) + "</span></small>";
   return out + "</th>";
+}
+
+/// Where all columns fit the page scrolls as a whole, under heads that stay; else the table scrolls in a
+/// frame.
+std::string wide_style(const PageGrid& grid) {
+  constexpr double kHead = 15, kColumn = 7.6, kMargins = 3.5;  // as in grid.css, rem
+  return "<style>@media (min-width: " +
+         number(kHead + kMargins + kColumn * static_cast<double>(grid.columns.size())) +
+         "rem) { .frame { overflow: visible; max-height: none; } }</style>\n";
 }
 
 std::string legend_html(const PageGrid& grid) {
@@ -120,6 +139,7 @@ std::string detail_html(const PageGridDetail& d) {
       out += "<div><dt>" + escape_markup(name) + "</dt><dd>" + escape_markup(value) + "</dd></div>";
     out += "</dl>\n";
   }
+  if (!d.note.empty()) out += "<p class=\"note\">" + escape_markup(d.note) + "</p>\n";
   if (!d.command.empty())
     out += "<h3>See it again</h3><pre class=\"command\"><code>" + escape_markup(d.command) + "</code></pre>";
   return out + "</dialog>\n";
@@ -130,9 +150,10 @@ std::string detail_html(const PageGridDetail& d) {
 std::string grid_html(const PageGrid& grid) {
   if (grid.empty()) return {};
   std::string out = "<section class=\"grid\" id=\"grid\"><h2>" + escape_markup(grid.title) + "</h2>\n";
-  out += legend_html(grid);
+  out += wide_style(grid) + legend_html(grid);
   out += "<div class=\"frame\" tabindex=\"0\" role=\"region\" aria-label=\"" + escape_markup(grid.title) +
-         "\"><table><thead><tr><th class=\"corner\">" + escape_markup(grid.corner) + "</th>";
+         "\"><table style=\"--columns:" + std::to_string(grid.columns.size()) +
+         "\"><thead><tr><th class=\"corner\">" + escape_markup(grid.corner) + "</th>";
   for (const PageGridHead& c : grid.columns) out += column_html(c);
   out += "</tr></thead><tbody>\n";
   for (std::size_t r = 0; r < grid.rows.size(); ++r) {
@@ -143,6 +164,11 @@ std::string grid_html(const PageGrid& grid) {
     out += "</tr>\n";
   }
   out += "</tbody></table></div>\n";
+  out += "<dl class=\"columns\">";  // in full, what the heads have no room for
+  for (const PageGridHead& c : grid.columns)
+    if (!c.text.empty())
+      out += "<div><dt>" + breakable(c.title) + "</dt><dd>" + escape_markup(c.text) + "</dd></div>";
+  out += "</dl>\n";
   if (!grid.note.empty()) out += "<p class=\"note\">" + escape_markup(grid.note) + "</p>\n";
   out += "</section>\n";
   if (!grid.details.empty())

@@ -38,6 +38,7 @@ struct PageGridDetail {
   std::string data_uri;  ///< of its picture; may be empty
   std::string file;      ///< link to the full picture; may be empty
   std::vector<std::pair<std::string, std::string>> facts;
+  std::string note;
   std::string command;
 };
 

@@ -32,6 +32,7 @@ RunOutcome write_run(const Scenario& scenario, const Recording& recording, const
   check_moments(scenario, recording);
   make_folder(folder);
   const FolderLock lock(folder);
+  refuse_links(folder);
   const std::string trace_file = scenario.gzip ? "trace.json.gz" : "trace.json";
   std::error_code error;
   std::filesystem::remove(folder + (scenario.gzip ? "/trace.json" : "/trace.json.gz"),

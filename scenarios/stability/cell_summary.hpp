@@ -14,8 +14,9 @@ struct CellSummary {
 
   /// A refusal is none: it gives no wrong answer. It has a mark of its own.
   std::uint64_t failures() const { return wrong + crashed + timed_out; }
+  std::uint64_t answered() const { return cases - refused; }
   double failure_share() const {
-    return cases == 0 ? 0 : static_cast<double>(failures()) / static_cast<double>(cases);
+    return answered() == 0 ? 0 : static_cast<double>(failures()) / static_cast<double>(answered());
   }
   /// How bad, from 0 (no failure) to 4; see kLevelNames.
   int level() const {

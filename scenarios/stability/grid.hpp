@@ -56,6 +56,12 @@ struct Record {
 struct Cell {
   std::array<std::uint64_t, kDialSettings> cases{}, wrong{}, refused{}, crashed{}, timed_out{};
   std::optional<Record> worst;  ///< of those that failed; the one with the lowest dial setting among equals
+
+  static std::uint64_t sum(const std::array<std::uint64_t, kDialSettings>& counts);
+  /// Refusals are no failures.
+  std::uint64_t failures() const { return sum(wrong) + sum(crashed) + sum(timed_out); }
+  /// Without those that were refused.
+  std::uint64_t answered() const { return sum(cases) - sum(refused); }
 };
 
 struct Grid {
@@ -69,5 +75,9 @@ struct Grid {
     return cells[family * methods.size() + method];
   }
 };
+
+/// Counts records. Those of other methods and families are passed over.
+Grid count_grid(std::vector<MethodColumn> methods, std::vector<FamilyRow> families,
+                const std::vector<Record>& records);
 
 }  // namespace lrb::stability

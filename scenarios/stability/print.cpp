@@ -1,5 +1,6 @@
 #include "scenarios/stability/print.hpp"
 
+#include <algorithm>
 #include <array>
 #include <iomanip>
 #include <sstream>
@@ -13,9 +14,9 @@ namespace {
 
 // ---- the grid: drawn in units of one cell, x to the right, y up, the first row's top at 0
 
-constexpr double kCellWidth = 17, kCellHeight = 9.5;  // millimetres
-constexpr double kLeft = 2.9, kTop = 1.35, kBottom = 1.5;
-constexpr double kFont = 6.5, kSmall = 0.78;  // points; share of it
+constexpr double kCellWidth = 17, kCellHeight = 10.5;  // millimetres
+constexpr double kLeft = 2.9, kBottom = 1.5;
+constexpr double kFont = 6.5, kSmall = 0.8, kLine = 0.24;  // points; share of it
 
 constexpr Rgba kWrong = palette::kVermillion;
 constexpr Rgba kCrashed{20, 22, 26};
@@ -71,20 +72,30 @@ class Sheet {
   std::array<std::vector<std::string>, kStyles> texts_;
 };
 
-/// Breaks at spaces so that lines hold about `width` characters.
+/// Breaks at spaces, and at underscores where a word is longer than a line.
 std::vector<std::string> wrap(const std::string& text, std::size_t width) {
   std::vector<std::string> lines;
   std::istringstream in(text);
-  for (std::string word; in >> word;)
-    if (!lines.empty() && lines.back().size() + word.size() < width)
+  for (std::string word; in >> word;) {
+    for (std::size_t cut; word.size() > width && (cut = word.rfind('_', width - 1)) != std::string::npos;) {
+      lines.push_back(word.substr(0, cut + 1));
+      word.erase(0, cut + 1);
+    }
+    if (!lines.empty() && lines.back().back() != '_' && lines.back().size() + word.size() < width)
       lines.back() += " " + word;
     else
       lines.push_back(word);
+  }
   return lines;
 }
 
+std::vector<std::string> title_lines(const MethodColumn& method) {
+  constexpr std::size_t kCharacters = 16;
+  return wrap(method.title, kCharacters);
+}
+
 void add_bars(Sheet& sheet, const Cell& cell, double x, double y) {
-  constexpr double kFrom = 0.07, kTo = 0.93, kLow = 0.1, kHigh = 0.56, kLeast = 0.05;
+  constexpr double kFrom = 0.07, kTo = 0.93, kLow = 0.1, kHigh = 0.5, kLeast = 0.05;
   sheet.rect(x + kFrom - 0.02, y + kLow - 0.03, x + kTo + 0.02, y + kHigh + 0.03, kWhite);
   const double step = (kTo - kFrom) / kDialSettings;
   for (std::size_t i = 0; i < kDialSettings; ++i) {
@@ -111,37 +122,45 @@ void add_cell(Sheet& sheet, const Cell& cell, double x, double y) {
   const CellSummary s = summarise(cell);
   sheet.rect(x + kGap, y + kGap, x + 1 - kGap, y + 1 - kGap,
              s.only_refused() ? kOnlyRefused : kLevels[static_cast<std::size_t>(s.level())]);
-  sheet.text(x + 0.06, y + 0.78, Sheet::small, group_digits(s.failures()) + " of " + group_digits(s.cases));
+  sheet.text(x + 0.06, y + 0.8, Sheet::small,
+             std::to_string(s.failures()) + "/" + std::to_string(s.answered()));
   std::string marks;
   const auto mark = [&](std::uint64_t n, const char* sign) {
-    if (n > 0) marks += (marks.empty() ? "" : " ") + (sign + group_digits(n));
+    if (n > 0) marks += (marks.empty() ? "" : " ") + (sign + std::to_string(n));
   };
   mark(s.crashed, "\u2715");
   mark(s.timed_out, "\u25f7");
   mark(s.refused, "\u2298");
-  sheet.text(x + 0.95, y + 0.78, Sheet::small_right, marks);
+  // Many marks have a line of their own.
+  constexpr std::size_t kBeside = 10;  // bytes; a mark has three
+  sheet.text(x + 0.95, y + (marks.size() > kBeside ? 0.6 : 0.8), Sheet::small_right, marks);
   add_bars(sheet, cell, x, y);
+}
+
+std::string ends_of(const FamilyRow& family) {
+  if (family.benign.empty() && family.degenerate.empty()) return " ";
+  return family.benign + " \u2192 " + family.degenerate;
 }
 
 void add_row_head(Sheet& sheet, const FamilyRow& family, double y) {
   sheet.text(-0.08, y + 0.68, Sheet::bold, family.name);
-  if (!family.benign.empty() || !family.degenerate.empty())
-    sheet.text(-0.08, y + 0.3, Sheet::small_right, family.benign + " \u2192 " + family.degenerate,
-               palette::kFaint);
+  sheet.text(-0.08, y + 0.3, Sheet::small_right, ends_of(family), palette::kFaint);
 }
 
 void add_column_head(Sheet& sheet, const MethodColumn& method, double x) {
-  const std::vector<std::string> lines = wrap(method.title, 17);
+  const std::vector<std::string> lines = title_lines(method);
   for (std::size_t i = 0; i < lines.size(); ++i)
-    sheet.text(x + 0.5, 0.22 + 0.29 * static_cast<double>(lines.size() - 1 - i), Sheet::small_centre,
+    sheet.text(x + 0.5, 0.2 + kLine * static_cast<double>(lines.size() - 1 - i), Sheet::small_centre,
                lines[i], method.present ? palette::kInk : palette::kFaint);
 }
 
 void add_legend(Sheet& sheet, double y, double columns) {
   double x = -kLeft + 0.1;
   const auto item = [&](Rgba c, const std::string& text) {
-    constexpr double kCharacter = 0.073;
-    const double needed = 0.35 + kCharacter * static_cast<double>(text.size()) + 0.2;
+    constexpr double kCharacter = 0.066;
+    const auto characters =
+        std::count_if(text.begin(), text.end(), [](char byte) { return (byte & 0xC0) != 0x80; });  // of UTF-8
+    const double needed = 0.35 + kCharacter * static_cast<double>(characters) + 0.2;
     if (x + needed > columns) {
       x = -kLeft + 0.1;
       y -= 0.42;
@@ -157,7 +176,7 @@ void add_legend(Sheet& sheet, double y, double columns) {
   item(kTimedOut, "\u25f7 timed out");
   item(kRefused, "\u2298 refused");
   sheet.text(-kLeft + 0.1, y - 0.42, Sheet::small,
-             "Failures of cases; bars: share of cases along the dial, benign to degenerate.",
+             "Failures/cases not refused; bars: share of cases along the dial, benign to degenerate.",
              palette::kFaint);
 }
 
@@ -173,6 +192,18 @@ std::string line_style(std::size_t i) {
   return "lc rgb '" + std::string(kColours[i % kColours.size()]) + "' pt " +
          std::to_string(kPoints[i % kPoints.size()]) + " ps 0.35 dt " +
          std::to_string(1 + i / kColours.size()) + " lw 1.1";
+}
+
+std::string margins(double left, double right, double bottom, double top) {
+  return "set lmargin at screen " + number(left) + "\nset rmargin at screen " + number(right) +
+         "\nset bmargin at screen " + number(bottom) + "\nset tmargin at screen " + number(top) + "\n";
+}
+
+std::string panel_heading(const FamilyRow& family, bool first) {
+  std::string out = "set title " + gnuplot_text(family.name) + " font 'DejaVu Sans Bold,6.5' offset 0,-0.6\n";
+  out +=
+      "set xlabel " + gnuplot_text(ends_of(family)) + " offset 0,0.8 font 'DejaVu Sans,5' tc rgb '#62676e'\n";
+  return out + (first ? "set ylabel 'failures, %' offset 1.5,0\n" : "unset ylabel\n");
 }
 
 std::vector<std::string> profile_rows(const Cell& cell, double shift) {
@@ -191,9 +222,12 @@ std::vector<std::string> profile_rows(const Cell& cell, double shift) {
 Gnuplot grid_chart(const Grid& grid) {
   const double columns = static_cast<double>(grid.methods.size());
   const double rows = static_cast<double>(grid.families.size()) + 1.1;  // a little room above the sums
+  std::size_t most_lines = 1;
+  for (const MethodColumn& m : grid.methods) most_lines = std::max(most_lines, title_lines(m).size());
+  const double top = 0.2 + kLine * static_cast<double>(most_lines);
   Gnuplot chart;
   chart.width = kCellWidth * (kLeft + columns + 0.1);
-  chart.height = kCellHeight * (kTop + rows + kBottom);
+  chart.height = kCellHeight * (top + rows + kBottom);
   chart.font = kFont;
   Sheet sheet;
   for (std::size_t m = 0; m < grid.methods.size(); ++m) {
@@ -219,55 +253,66 @@ Gnuplot grid_chart(const Grid& grid) {
       "unset border\nunset tics\nunset key\nset style fill solid 1 noborder\n"
       "set lmargin at screen 0\nset rmargin at screen 1\nset tmargin at screen 1\nset bmargin at screen 0\n";
   chart.script += "set xrange [" + number(-kLeft) + ":" + number(columns + 0.1) + "]\nset yrange [" +
-                  number(-rows - kBottom) + ":" + number(kTop) + "]\n";
+                  number(-rows - kBottom) + ":" + number(top) + "]\n";
   sheet.write(chart);
   return chart;
 }
 
 Gnuplot profile_chart(const Grid& grid) {
-  const int panels = static_cast<int>(grid.families.size()) + 1;  // the key has one
-  const int rows = (panels + kProfileColumns - 1) / kProfileColumns;
+  const auto families = static_cast<int>(grid.families.size());
+  const int rows = (families + kProfileColumns - 1) / kProfileColumns;
+  std::vector<std::size_t> present;
+  for (std::size_t m = 0; m < grid.methods.size(); ++m)
+    if (grid.methods[m].present) present.push_back(m);
+  constexpr int kKeyColumns = 2;
+  const int key_rows = std::max(1, (static_cast<int>(present.size()) + kKeyColumns - 1) / kKeyColumns);
+  constexpr double kPanelHeight = 34, kKeyLine = 3.6;  // millimetres
   Gnuplot chart;
   chart.width = 180;
-  chart.height = 36.0 * rows;
+  chart.height = kPanelHeight * rows + kKeyLine * key_rows + 3;
   chart.font = 6;
+
   std::string plots;
-  std::string key =
-      "unset border\nunset tics\nunset title\nunset xlabel\nunset ylabel\nset key at graph 0, graph 1 left "
-      "top Left reverse samplen 2.5 spacing 1.05\nset xrange [0:1]\nset yrange [0:1]\nplot ";
-  std::size_t present = 0;
-  for (const MethodColumn& m : grid.methods) present += m.present ? 1 : 0;
   for (std::size_t f = 0; f < grid.families.size(); ++f) {
-    const FamilyRow& family = grid.families[f];
-    plots += "set title " + gnuplot_text(family.name) + " font 'DejaVu Sans Bold,6.5' offset 0,-0.7\n";
-    plots += "set xlabel " + gnuplot_text(family.benign + "  \u2192  " + family.degenerate) +
-             " offset 0,0.9 font ',5' tc rgb '#62676e'\n";
-    plots += std::string("set ylabel ") + (f % kProfileColumns == 0 ? "'failures, %'" : "' '") +
-             " offset 2.2,0\nplot ";
-    std::size_t line = 0;
-    for (std::size_t m = 0; m < grid.methods.size(); ++m) {
-      if (!grid.methods[m].present) continue;
-      const std::string name = "f" + std::to_string(f) + "m" + std::to_string(m);
+    const int row = static_cast<int>(f) / kProfileColumns, column = static_cast<int>(f) % kProfileColumns;
+    // Of the panel: what axis, title and labels need at its sides.
+    constexpr double kLeftSide = 0.045, kPanelWidth = (1 - kLeftSide) / kProfileColumns;
+    plots += margins(kLeftSide + (column + 0.1) * kPanelWidth, kLeftSide + (column + 0.97) * kPanelWidth,
+                     1 - (row + 0.8) * kPanelHeight / chart.height,
+                     1 - (row + 0.15) * kPanelHeight / chart.height);
+    plots += panel_heading(grid.families[f], column == 0);
+    for (std::size_t line = 0; line < present.size(); ++line) {
+      const std::string name = "f" + std::to_string(f) + "m" + std::to_string(present[line]);
       // Side by side where lines would hide each other.
       constexpr double kApart = 0.07;
-      const double shift = kApart * (static_cast<double>(line) - static_cast<double>(present - 1) / 2);
-      chart.add_data(name, profile_rows(grid.at(f, m), shift));
-      plots +=
-          (line > 0 ? ", $" : "$") + name + " using 1:2 with linespoints " + line_style(line) + " notitle";
-      if (f == 0)
-        key += std::string(line > 0 ? ", " : "") + "NaN with linespoints " + line_style(line) + " title " +
-               gnuplot_text(grid.methods[m].title);
-      ++line;
+      const double shift = kApart * (static_cast<double>(line) - static_cast<double>(present.size() - 1) / 2);
+      chart.add_data(name, profile_rows(grid.at(f, present[line]), shift));
+      plots += (line > 0 ? ", $" : "plot $") + name + " using 1:2 with linespoints " + line_style(line);
     }
     plots += "\n";
   }
-  chart.script += "set multiplot layout " + std::to_string(rows) + "," + std::to_string(kProfileColumns) +
-                  " margins char 4.5, char 1.5, char 2, char 1.5 spacing char 4, char 3.6\n";
+  // The key: lines and titles in a panel of their own, in units of its columns and lines.
+  plots += margins(0.03, 1, 0, kKeyLine * key_rows / chart.height) +
+           "unset border\nunset tics\nunset title\nunset xlabel\nunset ylabel\nset xrange [0:" +
+           std::to_string(kKeyColumns) + "]\nset yrange [0:" + std::to_string(key_rows) + "]\n";
+  std::vector<std::string> titles;
+  for (std::size_t line = 0; line < present.size(); ++line) {
+    const double x = static_cast<double>(static_cast<int>(line) / key_rows);
+    const double y = key_rows - 0.5 - static_cast<int>(line) % key_rows;
+    const std::string name = "key" + std::to_string(line);
+    chart.add_data(name, {number(x) + " " + number(y), number(x + 0.12) + " " + number(y)});
+    titles.push_back(number(x + 0.15) + " " + number(y) + " " +
+                     gnuplot_data_text(grid.methods[present[line]].title));
+    plots += (line > 0 ? ", $" : "plot $") + name + " using 1:2 with linespoints " + line_style(line);
+  }
+  chart.add_data("titles", titles);
+  plots += std::string(present.empty() ? "plot" : ",") + " $titles using 1:2:3 with labels left";
+
   chart.script +=
-      "unset key\nset border 3 lw 0.6 lc rgb '#8a8f95'\nset xrange [-0.6:10.6]\nset yrange [-3:103]\n"
-      "set ytics 0,50,100 nomirror scale 0.4 offset 0.6,0\nset xtics 0,1,10 nomirror scale 0.4 format ''\n"
-      "set grid ytics lw 0.4 lc rgb '#d8dadc' dt 1\n";
-  chart.script += plots + key + "\nunset multiplot\n";
+      "set multiplot\nunset key\nset border 3 lw 0.6 lc rgb '#8a8f95'\nset yrange [-3:103]\nset ytics "
+      "0,50,100 nomirror scale 0.4 offset 0.6,0 tc rgb '#1c1e22'\n"
+      "set xtics 0,1 nomirror scale 0.4 format ''\nset grid ytics lw 0.4 lc rgb '#d8dadc' dt 1\n";
+  chart.script += "set xrange [-0.6:" + number(kDialSettings - 0.4) + "]\n" + plots + "\nunset multiplot\n";
   return chart;
 }
 

@@ -19,7 +19,7 @@ std::string count_of(std::uint64_t n, const char* one, const char* many) {
 }
 
 std::string sentence(const CellSummary& s) {
-  std::string out = group_digits(s.failures()) + " of " + count_of(s.cases, "case fails", "cases fail");
+  std::string out = group_digits(s.failures()) + " of " + count_of(s.answered(), "case fails", "cases fail");
   const auto add = [&](std::uint64_t n, const std::string& what) {
     if (n > 0) out += ", " + group_digits(n) + " " + what;
   };
@@ -37,8 +37,8 @@ PageGridCell page_cell(const Cell& cell, const std::string& where) {
   const CellSummary s = summarise(cell);
   PageGridCell out;
   out.level = s.only_refused() ? PageGridCell::kOnlyRefused : s.level();
-  out.count = group_digits(s.failures());
-  out.of = "of " + group_digits(s.cases);
+  out.count = s.answered() > 0 ? group_digits(s.failures()) : "\u2013";
+  out.of = s.answered() > 0 ? "of " + group_digits(s.answered()) : "all refused";
   const auto mark = [](std::uint64_t n) { return n > 0 ? group_digits(n) : std::string(); };
   out.marks = {"", mark(s.crashed), mark(s.timed_out), mark(s.refused)};
   out.label = where + ": " + sentence(s);
@@ -79,16 +79,6 @@ const char* words(Outcome o) {
   return "";
 }
 
-std::string answer_text(const Record& r) {
-  std::string out = words(r.outcome);
-  if (r.missed + r.extra > 0)
-    out += ": " + group_digits(r.missed) + " pairs missed, " + group_digits(r.extra) + " in excess";
-  else if (r.outcome == Outcome::wrong && r.relation != r.expected_relation)
-    out += ": " + r.relation + " instead of " + r.expected_relation;
-  if (!r.message.empty()) out += ": " + r.message;
-  return out;
-}
-
 PageGridDetail page_detail(const Grid& grid, std::size_t f, std::size_t m, const ReportOptions& options) {
   const Record& r = *grid.at(f, m).worst;
   const FamilyRow& family = grid.families[f];
@@ -110,7 +100,7 @@ PageGridDetail page_detail(const Grid& grid, std::size_t f, std::size_t m, const
   d.facts.emplace_back("Dial", std::to_string(r.dial) + " of 0 to " + std::to_string(kDialSettings - 1));
   d.facts.emplace_back("Case, seed", group_digits(r.case_index) + ", " + std::to_string(r.seed));
   if (answered) d.facts.emplace_back("Query", short_number(r.microseconds) + " \u00b5s");
-  d.facts.emplace_back("In this cell", sentence(s));
+  d.note = "Of this family, with this method: " + sentence(s) + ".";
   if (options.command) d.command = options.command(r);
   return d;
 }
@@ -166,7 +156,8 @@ PageGrid page_grid(const Grid& grid, const std::string& folder, const ReportOpti
     out.cells.push_back(std::move(cell));
   }
   out.note =
-      "In each cell: failures of cases, and below them one bar per setting of the dial, benign on the left, "
+      "In each cell: failures of the cases that were not refused, and below them one bar per setting of the "
+      "dial, benign on the left, "
       "degenerate on the right; its height is the share of that setting's cases. A cell that leads to its "
       "worst "
       "case can be clicked; arrow keys then go from case to case.";
@@ -212,6 +203,16 @@ void check(const Grid& grid) {
 }
 
 }  // namespace
+
+std::string answer_text(const Record& r) {
+  std::string out = words(r.outcome);
+  if (r.missed + r.extra > 0)
+    out += ": " + group_digits(r.missed) + " missed, " + group_digits(r.extra) + " in excess";
+  else if (r.outcome == Outcome::wrong && r.relation != r.expected_relation)
+    out += ": " + r.relation + " instead of " + r.expected_relation;
+  if (!r.message.empty()) out += ": " + r.message;
+  return out;
+}
 
 Page stability_page(const Grid& grid, const std::string& folder, const ReportOptions& options) {
   check(grid);

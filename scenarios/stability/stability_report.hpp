@@ -29,6 +29,9 @@ struct ReportFiles {
 ReportFiles write_stability_report(const Grid& grid, const std::string& folder,
                                    const ReportOptions& options = {});
 
+/// What became of a case, in words.
+std::string answer_text(const Record& r);
+
 /// The page alone, with pictures read from the folder.
 Page stability_page(const Grid& grid, const std::string& folder, const ReportOptions& options = {});
 

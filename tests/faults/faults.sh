@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# tests/faults/faults.sh LRBSCOPE: what the program does when the machine fails it or somebody stops it. Nothing
+# tests/faults/faults.sh LRBSCOPE [unlimited]: what the program does when the machine fails it or somebody stops it. Nothing
 # half-written may ever be seen under a final name, nothing temporary may stay, and the message is one line.
+# "unlimited" leaves out what sets a limit on memory, below which ASan's shadow of it would not fit.
 set -u
 bin=$(realpath "$1")
 dir=$(mktemp -d)
@@ -123,23 +124,57 @@ else
   echo "not run: an unwritable folder (root may write everywhere)"
 fi
 
+# --- nothing is written outside of the output folder
+mkdir -p jail/out
+# short_as NAME: the short scenario under another name, in jail/named.json
+short_as() {
+  sed "s|\"short\"|\"$1\"|" short.json >jail/named.json
+}
+for name in ../escaped ../../escaped "$dir/escaped" .. . a/../../escaped; do
+  short_as "$name"
+  expect 2 "a scenario called $name" bash -c "cd jail && '$bin' run named.json --frames none"
+done
+"$bin" run short.json -o good --frames none >/dev/null 2>&1
+cp good/*.lrb jail
+sed 's|"name": "short"|"name": "../../escaped"|' good/trace.json >jail/trace.json
+grep -q escaped jail/trace.json || fail "the trace's scenario could not be renamed"
+expect 0 "a trace of a scenario called ../../escaped" bash -c "cd jail && '$bin' render trace.json -o out/drawn"
+[ ! -e "$dir/escaped" ] && [ -z "$(find . -name '*escaped*')" ] || fail "written outside: $(find . -name '*escaped*')"
+mkdir victim
+for link in index.html summary.json trace.json frames frames/frame_0000.png; do
+  rm -rf linked && mkdir linked && [ "${link%/*}" = "$link" ] || mkdir -p "linked/${link%/*}"
+  ln -s "$dir/victim/$(basename $link)" "linked/$link"
+  [ $link != frames ] || { rm linked/frames && ln -s "$dir/victim" linked/frames; }
+  expect 3 "an output folder where $link is a link" "$bin" run short.json -o linked
+  expect 3 "a folder to draw into where $link is a link" "$bin" render good/trace.json -o linked
+done
+[ -z "$(ls victim)" ] || fail "written through a link: $(ls victim)"
+ln -s victim link_to_folder
+expect 0 "an output folder that is a link itself" "$bin" run short.json -o link_to_folder --frames none
+
 # --- no memory
-awk 'BEGIN { n = 400; for (i = 0; i <= n; ++i) for (j = 0; j <= n; ++j) print "v", i, j, sin(i * j);
-  for (i = 0; i < n; ++i) for (j = 0; j < n; ++j) { a = i * (n + 1) + j + 1; print "f", a, a + n + 1, a + 1 } }' >big.obj
-echo "1 0 0 0.5 0 1 0 0.25 0 0 1 0.125" >pose.txt
-need=0  # kB that the program needs only to start
-for need in $(seq 20000 4000 400000); do
-  (ulimit -v "$need"; "$bin" --version >/dev/null 2>&1) && break
-done
-for extra in 4000 12000 30000; do
-  limit=$((need + extra))
-  for command in "build big.obj -o big.lrb" "query big.obj big.obj --poses pose.txt" "inspect big.obj"; do
-    # shellcheck disable=SC2086
-    expect 3 "$command within $limit kB" bash -c "ulimit -v $limit; exec '$bin' $command"
-    [ ! -e big.lrb ] || fail "$command within $limit kB: left big.lrb"
+no_memory() {
+  awk 'BEGIN { n = 400; for (i = 0; i <= n; ++i) for (j = 0; j <= n; ++j) print "v", i, j, sin(i * j);
+    for (i = 0; i < n; ++i) for (j = 0; j < n; ++j) { a = i * (n + 1) + j + 1; print "f", a, a + n + 1, a + 1 } }' >big.obj
+  echo "1 0 0 0.5 0 1 0 0.25 0 0 1 0.125" >pose.txt
+  # A long array of small objects, as any large trace is.
+  awk 'BEGIN { printf "{\"traceEvents\": ["; for (i = 0; i < 600000; ++i) printf "{\"name\":\"step\",\"args\":{\"event\":%d}},\n", i; print "{}]}" }' >big.json
+  local need limit extra command
+  for need in $(seq 20000 4000 400000); do  # kB that the program needs only to start
+    (ulimit -v "$need"; "$bin" --version >/dev/null 2>&1) && break
   done
-done
-no_temporaries "no memory"
+  for extra in 4000 12000 30000; do
+    limit=$((need + extra))
+    for command in "build big.obj -o big.lrb" "query big.obj big.obj --poses pose.txt" "inspect big.obj" \
+      "render big.json -o drawn"; do
+      # shellcheck disable=SC2086
+      expect 3 "$command within $limit kB" bash -c "ulimit -v $limit; exec '$bin' $command"
+      [ ! -e big.lrb ] || fail "$command within $limit kB: left big.lrb"
+    done
+  done
+  no_temporaries "no memory"
+}
+[ "${2:-}" = unlimited ] || no_memory
 
 # --- stopped in the middle
 # stop SIGNAL SECONDS NAME COMMAND...
@@ -149,6 +184,8 @@ stop() {
   # A shell starts background jobs with SIGINT ignored; env gives it back.
   env --default-signal=INT "$@" >out.txt 2>err </dev/null &
   pid=$!
+  # Before it has taken the signals into its own hands, they end it without a word: wait until it blocks them.
+  for _ in $(seq 200); do grep -q 'SigBlk:.*[1-9a-f]' "/proc/$pid/status" 2>/dev/null && break; sleep 0.05; done
   sleep "$seconds"
   if ! kill -s "$signal" "$pid" 2>/dev/null; then
     wait "$pid"

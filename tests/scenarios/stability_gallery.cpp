@@ -4,6 +4,7 @@
 #include <cstdio>
 
 #include "engine/query/brute_force.hpp"
+#include "render/montage.hpp"
 #include "render/png.hpp"
 #include "scenarios/files.hpp"
 #include "scenarios/stability/stability_report.hpp"
@@ -42,6 +43,7 @@ int main(int argc, char** argv) {
            std::to_string(r.seed);
   };
   std::size_t f = 0;
+  std::vector<Panel> sheet;
   for (const families::Family& family : families::all_families()) {
     for (const int dial : {2, 10}) {
       const families::Case c = families::make_case(family, 1, dial, 3);
@@ -54,13 +56,19 @@ int main(int argc, char** argv) {
              "wrong on purpose",
              {{"dial", std::to_string(dial) + " of 10"}, {"relation", to_string(right.relation)}}},
             folder + "/" + file, rasterizer);
+        if (dial == 10) sheet.push_back({read_png(folder + "/" + file).image, ""});
         for (std::size_t m = 0; m < grid.methods.size(); ++m)
           options.pictures[f * grid.methods.size() + m] = file;
       } catch (const std::exception& e) {
         std::printf("%s %d: %s\n", family.name, dial, e.what());
       }
     }
-    ++f;
+    if (++f % 6 == 0 || f == grid.families.size()) {
+      MontageOptions layout;
+      layout.columns = 2;
+      write_png(montage(sheet, layout), folder + "/sheet-" + std::to_string(f) + ".png");
+      sheet.clear();
+    }
   }
   options.links = {{"records.jsonl", "records.jsonl", "every answer, one line each"}};
   const ReportFiles files = write_stability_report(grid, folder, options);

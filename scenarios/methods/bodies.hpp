@@ -1,0 +1,46 @@
+#pragma once
+/// What the methods' bodies are made of.
+
+#include <array>
+#include <chrono>
+#include <cstdint>
+#include <vector>
+
+#include "engine/lrb/lrb_rep.hpp"
+#include "engine/lrb/pose.hpp"
+#include "engine/mesh/mesh.hpp"
+
+namespace lrb::methods {
+
+/// The corners of real simplex s are vertices[triangles[s]].
+struct Triangles {
+  std::vector<Eigen::Vector3d> vertices;
+  std::vector<std::array<VertexId, 3>> triangles;
+};
+
+/// The real triangles of a 3D body. Throws InputError for a 2D one, as methods for 3D bodies do.
+Triangles triangles_of(const LrbRep& rep);
+
+/// Throws InputError if a coordinate is no float, however rounded.
+void check_fits_float(const Triangles& t);
+
+/// Throws InputError unless the pose is a rotation and a translation, as most engines expect.
+void check_rigid(const Pose& pose);
+
+/// The real faces in their order, with the vertices that they use.
+Mesh real_mesh(const LrbRep& rep);
+
+/// The same body with its world coordinates as coordinates: without regions.
+LrbRep at_pose(const LrbRep& rep, const Pose& pose);
+
+class Stopwatch {
+ public:
+  double microseconds() const {
+    return std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - begin_).count();
+  }
+
+ private:
+  std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+};
+
+}  // namespace lrb::methods

@@ -1,0 +1,88 @@
+#pragma once
+/// One interface for everything that finds the pairs of triangles in which two bodies meet: ours, brute
+/// force, and engines of others. Bodies are built once and asked at many poses; what a query needs besides is
+/// kept from one to the next.
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/query/collide.hpp"
+
+namespace lrb::methods {
+
+/// What a method says of two bodies whose surfaces do not meet.
+enum class Says : std::uint8_t {
+  nothing,   ///< only whether and where surfaces meet
+  inside,    ///< whether one body lies in the other
+  relation,  ///< all of Relation
+};
+
+struct MethodInfo {
+  std::string name;    ///< for the command line: "fcl"
+  std::string title;   ///< for people, with the version: "FCL 0.7.0, OBBRSS, double"
+  std::string remark;  ///< what it answers, and how it was asked
+  bool present = true;
+  bool pairs = true;          ///< lists the pairs; else it says only whether the surfaces meet
+  Says says = Says::nothing;  ///< besides
+  bool plane = false;         ///< takes 2D bodies
+  /// Moves vertices exactly as Pose::apply does. The others can be given the same question only with world
+  /// coordinates in the body and poses that move nothing.
+  bool moves_exactly = false;
+};
+
+/// A body in a method's own form.
+class MethodBody {
+ public:
+  virtual ~MethodBody() = default;
+};
+
+struct MethodAnswer {
+  bool contact = false;              ///< the surfaces meet
+  std::vector<SimplexPair> pairs;    ///< ascending, each once; in Mode::first_pair at most one
+  std::optional<bool> inside;        ///< no contact, and one body lies in the other; unless it says nothing
+  std::optional<Relation> relation;  ///< if it says that
+  double microseconds = 0;           ///< of the query alone
+};
+
+/// Not for two threads at once.
+class Method {
+ public:
+  virtual ~Method() = default;
+  /// The real simplices of a body. Throws InputError if the method cannot take it: a refusal.
+  virtual std::unique_ptr<MethodBody> build(const LrbRep& rep) = 0;
+  /// Two bodies, different objects, built by this very method. Poses that are no rotations are refused by
+  /// most (InputError).
+  virtual MethodAnswer query(const MethodBody& a, const Pose& pose_a, const MethodBody& b, const Pose& pose_b,
+                             Mode mode) = 0;
+};
+
+/// A method that may be there or not.
+struct MethodEntry {
+  MethodInfo info;
+  std::unique_ptr<Method> (*make)() = nullptr;  ///< of those that are present
+};
+
+/// A method whose Debian package was not found when this was built.
+inline MethodEntry absent(const char* name, const char* title, const char* package) {
+  MethodInfo info;
+  info.name = name;
+  info.title = title;
+  info.remark = std::string("Not there when this was built: install Debian's ") + package;
+  info.present = false;
+  return {info};
+}
+
+// Each in its file; absent if it was not found when this was built.
+MethodEntry ours();
+MethodEntry ours_floating();  ///< without the exact fallback
+MethodEntry ours_paper();     ///< the paper's recursion
+MethodEntry plain_double();   ///< brute force with an epsilon
+MethodEntry fcl_double();
+MethodEntry fcl_float();
+MethodEntry cgal_rigid();
+MethodEntry cgal_pairs();
+MethodEntry bullet();  ///< in the precision of the Bullet that this was built with
+
+}  // namespace lrb::methods

@@ -1,0 +1,94 @@
+#include "scenarios/stability/judge.hpp"
+
+#include <algorithm>
+#include <iterator>
+
+namespace lrb::stability {
+namespace {
+
+using methods::MethodAnswer;
+using methods::MethodInfo;
+using methods::Says;
+
+bool is_inside(Relation r) {
+  return r == Relation::a_inside_b || r == Relation::b_inside_a;
+}
+
+Relation mirrored(Relation r) {
+  if (r == Relation::a_inside_b) return Relation::b_inside_a;
+  if (r == Relation::b_inside_a) return Relation::a_inside_b;
+  return r;
+}
+
+const char* in_brief(bool contact, bool inside) {
+  return contact ? "contact" : inside ? "inside" : "separate";
+}
+
+void compare_pairs(Record& record, const std::vector<SimplexPair>& answered,
+                   const std::vector<SimplexPair>& expected) {
+  std::vector<SimplexPair> missed, extra;
+  std::set_difference(expected.begin(), expected.end(), answered.begin(), answered.end(),
+                      std::back_inserter(missed));
+  std::set_difference(answered.begin(), answered.end(), expected.begin(), expected.end(),
+                      std::back_inserter(extra));
+  record.missed = missed.size();
+  record.extra = extra.size();
+}
+
+void compare_contact(Record& record, bool answered, bool expected) {
+  record.missed = expected && !answered;
+  record.extra = answered && !expected;
+}
+
+void conclude(Record& record, bool relation_matters) {
+  const bool right = record.missed == 0 && record.extra == 0 &&
+                     (!relation_matters || record.relation == record.expected_relation);
+  record.outcome = right ? Outcome::right : Outcome::wrong;
+}
+
+}  // namespace
+
+void judge(Record& record, const MethodInfo& info, const MethodAnswer& answer, const Expected& expected) {
+  if (!expected.refusal.empty()) {
+    record.outcome = Outcome::wrong;
+    record.message = "answered, although " + expected.refusal;
+    return;
+  }
+  record.expected = expected.pairs.size();
+  if (info.pairs)
+    compare_pairs(record, answer.pairs, expected.pairs);
+  else
+    compare_contact(record, answer.contact, !expected.pairs.empty());
+  if (answer.relation) {
+    record.relation = to_string(*answer.relation);
+    record.expected_relation = to_string(expected.relation);
+  } else if (answer.inside) {
+    record.relation = in_brief(answer.contact, *answer.inside);
+    record.expected_relation = in_brief(!expected.pairs.empty(), is_inside(expected.relation));
+  }
+  // Of bodies that are not closed only the surfaces can be asked about.
+  conclude(record, answer.relation || expected.relation != Relation::undefined);
+}
+
+void judge_swapped(Record& record, const MethodInfo& info, const MethodAnswer& answer,
+                   const MethodAnswer& swapped, bool several) {
+  std::vector<SimplexPair> back;
+  for (const SimplexPair& p : swapped.pairs) back.push_back({p.b, p.a});
+  std::sort(back.begin(), back.end());
+  if (info.pairs)
+    compare_pairs(record, back, answer.pairs);
+  else
+    compare_contact(record, swapped.contact, answer.contact);
+  bool relation_matters = true;
+  if (answer.relation && swapped.relation) {
+    record.relation = to_string(mirrored(*swapped.relation));
+    record.expected_relation = to_string(*answer.relation);
+    relation_matters = !(several && is_inside(*answer.relation) && is_inside(*swapped.relation));
+  } else if (answer.inside && swapped.inside) {
+    record.relation = in_brief(swapped.contact, *swapped.inside);
+    record.expected_relation = in_brief(answer.contact, *answer.inside);
+  }
+  conclude(record, relation_matters);
+}
+
+}  // namespace lrb::stability

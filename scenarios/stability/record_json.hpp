@@ -1,0 +1,22 @@
+#pragma once
+/// Records as JSON Lines: what the experiment leaves behind, and what everything else is counted from.
+
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "scenarios/stability/grid.hpp"
+
+namespace lrb::stability {
+
+nlohmann::ordered_json to_json(const Record& r);
+/// Throws InputError saying what is wrong with the value.
+Record record_from(const nlohmann::json& value);
+
+/// A line each.
+std::string to_lines(const std::vector<Record>& records);
+/// Throws InputError naming file and line.
+std::vector<Record> read_records(const std::string& path);
+
+}  // namespace lrb::stability

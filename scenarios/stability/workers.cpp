@@ -1,0 +1,70 @@
+#include "scenarios/stability/workers.hpp"
+
+#include <cstdlib>
+#include <filesystem>
+
+#include <nlohmann/json.hpp>
+#include <unistd.h>
+
+#include "engine/error.hpp"
+#include "engine/mesh/file_bytes.hpp"
+#include "scenarios/families/families.hpp"
+#include "scenarios/stability/child.hpp"
+
+namespace lrb::stability {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kPrograms[] = {"lrbscope-methods", "lrbscope-methods-double"};
+constexpr std::chrono::seconds kListLimit(20);
+
+fs::path folder_of_workers() {
+  if (const char* given = std::getenv("LRBSCOPE_METHODS")) return given;
+  std::error_code error;
+  const fs::path self = fs::read_symlink("/proc/self/exe", error);
+  return error ? fs::path(".") : self.parent_path();
+}
+
+void add_methods(const std::string& program, std::vector<WorkerMethod>& methods) {
+  const std::vector<std::string> lines = lines_of({program, "--list"}, kListLimit);
+  for (const std::string& line : lines) {
+    const auto value = nlohmann::json::parse(line, nullptr, false);
+    if (!value.is_object()) break;
+    WorkerMethod m;
+    m.column.name = value.value("name", "");
+    m.column.title = value.value("title", "");
+    m.column.remark = value.value("remark", "");
+    m.column.present = value.value("present", false);
+    m.program = program;
+    methods.push_back(m);
+  }
+  if (lines.empty())
+    throw EnvironmentError(printable_name(program) + ": did not say which methods it has; build it again");
+}
+
+}  // namespace
+
+std::vector<WorkerMethod> find_methods() {
+  const fs::path folder = folder_of_workers();
+  std::vector<WorkerMethod> methods;
+  for (const char* name : kPrograms) {
+    const std::string program = (folder / name).string();
+    if (access(program.c_str(), X_OK) == 0) add_methods(program, methods);
+  }
+  if (methods.empty())
+    throw EnvironmentError(
+        printable_name((folder / kPrograms[0]).string()) +
+        ": not found; it is built beside lrbscope and not installed: run lrbscope from its "
+        "build folder, or name that in LRBSCOPE_METHODS");
+  return methods;
+}
+
+std::vector<FamilyRow> family_rows() {
+  std::vector<FamilyRow> rows;
+  for (const families::Family& f : families::all_families())
+    rows.push_back({f.name, f.what, f.benign, f.degenerate});
+  return rows;
+}
+
+}  // namespace lrb::stability

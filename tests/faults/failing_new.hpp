@@ -1,0 +1,16 @@
+#pragma once
+/// Memory that runs out when a test says so: the executable that has failing_new.cpp allocates through it.
+
+#include <cstdint>
+
+namespace lrb::test {
+
+/// From now on, in this thread: `count` allocations succeed and the next one fails, once. Never: the argument
+/// kNoFailure.
+inline constexpr std::uint64_t kNoFailure = ~std::uint64_t{0};
+void fail_allocation_after(std::uint64_t count);
+
+/// Whether the failure that was asked for has come.
+bool allocation_has_failed();
+
+}  // namespace lrb::test

@@ -1,0 +1,34 @@
+#!/usr/bin/env bash
+# tests/repeat/repeat.sh: are answers the same to the last bit? Builds engine, traces and generators with gcc and with
+# clang at -O0, -O2 and -O3, runs tests/repeat/fingerprints.cpp with and without AVX2 and on 1 and 2 threads, and
+# prints a table; exits 1 if a line of output differs from that of the first run. COMPILERS and LEVELS may name fewer.
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/../.."
+top=build/repeat
+launcher=()
+if command -v ccache >/dev/null; then launcher=(-DCMAKE_CXX_COMPILER_LAUNCHER=ccache); fi
+first=""
+differ=0
+printf '%-8s %-5s %-9s %-8s %-7s %s\n' compiler level vectors threads lines answer
+for compiler in ${COMPILERS:-g++ clang++}; do
+  for level in ${LEVELS:-0 2 3}; do
+    build=$top/$compiler-O$level
+    # What the release preset has beside its level of optimisation.
+    cmake -S . -B "$build" -G Ninja -DCMAKE_CXX_COMPILER="$compiler" -DCMAKE_BUILD_TYPE=Release \
+      -DCMAKE_CXX_FLAGS_RELEASE="-O$level" -DLRB_HARDEN=$([ "$level" = 0 ] && echo OFF || echo ON) \
+      -DLRB_BUILD_TESTS=ON "${launcher[@]}" >/dev/null
+    cmake --build "$build" --target fingerprints >"$build.log" 2>&1 || { cat "$build.log"; exit 1; }
+    for vectors in best baseline; do
+      for threads in 1 2; do
+        out=$build-$vectors-$threads.txt
+        LRB_SIMD=$vectors "$build/tests/repeat/fingerprints" "$threads" >"$out"
+        [ -n "$first" ] || first=$out
+        answer=same
+        cmp -s "$first" "$out" || { answer="DIFFERS from $first" && differ=1; }
+        printf '%-8s %-5s %-9s %-8s %-7s %s\n' "$compiler" -O"$level" "$vectors" "$threads" "$(wc -l <"$out")" "$answer"
+        [ "$answer" = same ] || diff "$first" "$out" | grep '^>' | head -5 || true
+      done
+    done
+  done
+done
+exit $differ
