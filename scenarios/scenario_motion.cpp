@@ -67,14 +67,16 @@ Pose turned(const Eigen::Vector3d& axis, double degrees, const Eigen::Vector3d& 
 
 std::vector<Pose> keyframe_poses(const std::vector<Motion::Keyframe>& keys) {
   const auto rotation = [](const Motion::Keyframe& k) {
-    return Eigen::Quaterniond(Eigen::AngleAxisd(k.degrees * kDegree, k.axis.normalized()));
+    // In long double throughout, slerp as well: see engine/steady_math.hpp.
+    return Eigen::Quaternion<long double>(
+        Eigen::AngleAxis<long double>(k.degrees * kDegree, k.axis.normalized().cast<long double>()));
   };
   std::vector<Pose> out = {turned(keys[0].axis, keys[0].degrees, keys[0].position)};
   for (std::size_t i = 1; i < keys.size(); ++i) {
     const std::uint32_t span = keys[i].step - keys[i - 1].step;
     for (std::uint32_t s = 1; s <= span; ++s) {
       const double t = static_cast<double>(s) / span;
-      out.push_back({rotation(keys[i - 1]).slerp(t, rotation(keys[i])).toRotationMatrix(),
+      out.push_back({rotation(keys[i - 1]).slerp(t, rotation(keys[i])).toRotationMatrix().cast<double>(),
                      keys[i - 1].position + t * (keys[i].position - keys[i - 1].position)});
     }
   }

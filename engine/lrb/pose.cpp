@@ -1,11 +1,11 @@
 #include "engine/lrb/pose.hpp"
 
-#include <Eigen/Geometry>
+#include "engine/steady_math.hpp"
 
 namespace lrb {
 
 Pose Pose::rotation(const Eigen::Vector3d& axis, double angle, const Eigen::Vector3d& t) {
-  return {Eigen::AngleAxisd(angle, axis.normalized()).toRotationMatrix(), t};
+  return {steady::rotation(axis.normalized(), angle), t};
 }
 
 }  // namespace lrb

@@ -31,6 +31,7 @@ Command add_collide(CLI::App& root, const Globals& globals);
 Command add_query(CLI::App& root, const Globals& globals);
 Command add_render(CLI::App& root, const Globals& globals);
 Command add_paper(CLI::App& root, const Globals& globals);
+Command add_golden(CLI::App& root, const Globals& globals);
 Command add_doctor(CLI::App& root, const Globals& globals);
 Command add_stability(CLI::App& root, const Globals& globals);
 Command add_list(CLI::App& root, const Globals& globals);
@@ -40,6 +41,9 @@ int main(int argc, char** argv);
 
 /// Lines for people, unless quiet.
 void note(const Globals& globals, const std::vector<std::string>& lines);
+
+/// A word as it can stand in a shell's command line.
+std::string quoted(const std::string& word);
 
 /// As JSON on a line. Bytes that are not UTF-8, which a file's name may have, become U+FFFD.
 std::string one_line(const nlohmann::ordered_json& value);

@@ -18,16 +18,6 @@
 namespace lrb::cli {
 namespace {
 
-std::string quoted(const std::string& word) {
-  const bool plain = !word.empty() && word.find_first_not_of(
-                                          "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ"
-                                          "0123456789_-+=./,:@%") == std::string::npos;
-  if (plain) return word;
-  std::string out = "'";
-  for (const char c : word) out += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return out + "'";
-}
-
 std::string command_line(int argc, char** argv) {
   std::string out = "lrbscope";
   for (int i = 1; i < argc; ++i) out += " " + quoted(argv[i]);
@@ -60,6 +50,16 @@ int guarded(const Run& run) {
 }
 
 }  // namespace
+
+std::string quoted(const std::string& word) {
+  const bool plain = !word.empty() && word.find_first_not_of(
+                                          "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ"
+                                          "0123456789_-+=./,:@%") == std::string::npos;
+  if (plain) return word;
+  std::string out = "'";
+  for (const char c : word) out += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return out + "'";
+}
 
 void note(const Globals& globals, const std::vector<std::string>& lines) {
   if (globals.quiet) return;
@@ -119,10 +119,11 @@ int parse_and_run(int argc, char** argv) {
   Globals globals;
   globals.command_line = command_line(argc, argv);
   app.add_flag("-q,--quiet", globals.quiet, "Nothing on stderr but errors");
-  const Command commands[] = {add_run(app, globals),      add_collide(app, globals), add_query(app, globals),
-                              add_build(app, globals),    add_inspect(app, globals), add_render(app, globals),
-                              add_paper(app, globals),    add_doctor(app, globals),  add_list(app, globals),
-                              add_stability(app, globals)};
+  const Command commands[] = {
+      add_run(app, globals),    add_collide(app, globals), add_query(app, globals),
+      add_build(app, globals),  add_inspect(app, globals), add_render(app, globals),
+      add_paper(app, globals),  add_golden(app, globals),  add_stability(app, globals),
+      add_doctor(app, globals), add_list(app, globals)};
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "engine/steady_math.hpp"
 #include "scenarios/generators/bodies.hpp"
 
 namespace lrb {
@@ -10,7 +11,7 @@ namespace {
 /// Distance of a gear's outline from its axis, at a fraction of a tooth's pitch: steep flanks, flat tops and
 /// feet.
 double tooth_radius(double pitch_fraction, double depth) {
-  const double s = std::cos(2 * std::numbers::pi * pitch_fraction);
+  const double s = steady::cos(2 * std::numbers::pi * pitch_fraction);
   return 1 + 0.5 * depth * std::clamp(2.2 * s, -1.0, 1.0);
 }
 
@@ -20,7 +21,7 @@ std::vector<Eigen::Vector2d> outline(const GeneratorValues& v) {
   for (int i = 0; i < teeth * points; ++i) {
     const double angle = 2 * std::numbers::pi * i / (teeth * points);
     const double r = v.at("radius") * tooth_radius((i % points + 0.5) / points, v.at("depth"));
-    out.emplace_back(r * std::cos(angle), r * std::sin(angle));
+    out.emplace_back(r * steady::cos(angle), r * steady::sin(angle));
   }
   return out;
 }

@@ -1,6 +1,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "engine/steady_math.hpp"
 #include "scenarios/generators/bodies.hpp"
 #include "scenarios/generators/random.hpp"
 
@@ -46,7 +47,8 @@ Mesh island(const GeneratorValues& v, std::uint64_t seed) {
   std::vector<Eigen::Vector2d> outline;
   for (const auto& c : cape) {
     const double angle = 2 * std::numbers::pi * c[1];
-    outline.emplace_back(v.at("radius") * c[0] * std::cos(angle), v.at("radius") * c[0] * std::sin(angle));
+    outline.emplace_back(v.at("radius") * c[0] * steady::cos(angle),
+                         v.at("radius") * c[0] * steady::sin(angle));
   }
   for (int level = 0; level < static_cast<int>(v.at("levels")); ++level)
     outline = with_bays(outline, v.at("depth"), random);

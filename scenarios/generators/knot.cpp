@@ -3,6 +3,7 @@
 
 #include <Eigen/Geometry>
 
+#include "engine/steady_math.hpp"
 #include "scenarios/generators/bodies.hpp"
 
 namespace lrb {
@@ -13,8 +14,8 @@ struct KnotLine {
   double p, q, radius, swing;
   Eigen::Vector3d operator()(double t) const {
     const double u = 2 * std::numbers::pi * t;
-    const double r = radius * (1 + swing * std::cos(q * u));
-    return {r * std::cos(p * u), r * std::sin(p * u), radius * swing * std::sin(q * u)};
+    const double r = radius * (1 + swing * steady::cos(q * u));
+    return {r * steady::cos(p * u), r * steady::sin(p * u), radius * swing * steady::sin(q * u)};
   }
 };
 
@@ -31,16 +32,16 @@ Mesh knot(const GeneratorValues& v, std::uint64_t) {
   side[0] = tangent[0].unitOrthogonal();
   for (int i = 0; i < n; ++i)
     side[i + 1] = Eigen::Quaterniond::FromTwoVectors(tangent[i], tangent[(i + 1) % n]) * side[i];
-  const double gap = std::atan2(side[n].cross(side[0]).dot(tangent[0]), side[n].dot(side[0]));
+  const double gap = steady::atan2(side[n].cross(side[0]).dot(tangent[0]), side[n].dot(side[0]));
 
   Mesh mesh;
   for (int i = 0; i < n; ++i) {
-    const Eigen::Vector3d s = Eigen::AngleAxisd(gap * i / n, tangent[i]) * side[i];
+    const Eigen::Vector3d s = steady::rotation(tangent[i], gap * i / n) * side[i];
     const Eigen::Vector3d w = tangent[i].cross(s);
     for (int j = 0; j < sides; ++j) {
       const double angle = 2 * std::numbers::pi * j / sides;
       mesh.vertices.push_back(line(static_cast<double>(i) / n) +
-                              tube * (std::cos(angle) * s + std::sin(angle) * w));
+                              tube * (steady::cos(angle) * s + steady::sin(angle) * w));
     }
   }
   const auto id = [&](int i, int j) { return static_cast<VertexId>((i % n) * sides + j % sides); };

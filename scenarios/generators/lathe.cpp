@@ -1,6 +1,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "engine/steady_math.hpp"
 #include "scenarios/generators/bodies.hpp"
 
 namespace lrb {
@@ -19,7 +20,7 @@ void line_to(Profile& profile, const Eigen::Vector2d& end, int rows) {
 void arc(Profile& profile, double radius, double height, double from, double to, int rows) {
   for (int i = profile.empty() ? 0 : 1; i <= rows; ++i) {
     const double angle = from + (to - from) * i / rows;
-    profile.emplace_back(radius * std::sin(angle), height - radius * std::cos(angle));
+    profile.emplace_back(radius * steady::sin(angle), height - radius * steady::cos(angle));
   }
 }
 
@@ -32,7 +33,7 @@ Mesh lathe(const Profile& profile, int segments) {
   for (int row = 1; row + 1 < rows; ++row) {
     for (int i = 0; i < segments; ++i) {
       const double angle = 2 * std::numbers::pi * (i + 0.5 * (row % 2)) / segments;
-      mesh.vertices.emplace_back(profile[row].x() * std::cos(angle), profile[row].x() * std::sin(angle),
+      mesh.vertices.emplace_back(profile[row].x() * steady::cos(angle), profile[row].x() * steady::sin(angle),
                                  profile[row].y());
     }
   }

@@ -6,6 +6,7 @@
 
 #include <Eigen/Geometry>
 
+#include "engine/steady_math.hpp"
 #include "scenarios/generators/bodies.hpp"
 #include "scenarios/generators/random.hpp"
 
@@ -74,7 +75,7 @@ struct Crater {
 
 Eigen::Vector3d random_direction(Random& random) {
   const double z = random.in(-1, 1), angle = random.in(0, 2 * std::numbers::pi), s = std::sqrt(1 - z * z);
-  return {s * std::cos(angle), s * std::sin(angle), z};
+  return {s * steady::cos(angle), s * steady::sin(angle), z};
 }
 
 /// Height of a crater's profile at the cosine of the angle from its middle: a bowl inside a soft raised rim.
@@ -82,7 +83,7 @@ double crater_height(const Crater& c, double cosine) {
   const double t =
       (1 - cosine) / (1 - c.cos_rim);  // 0 in the middle, 1 on the rim, about the square of the angle
   if (t >= 2) return 0;
-  const double rim = 0.25 * c.depth * std::exp(-8 * (t - 1) * (t - 1));
+  const double rim = 0.25 * c.depth * steady::exp(-8 * (t - 1) * (t - 1));
   return rim - (t < 1 ? c.depth * (1 - t) * (1 - t) * (1 + 2 * t) : 0);
 }
 
@@ -94,7 +95,7 @@ Mesh rock(const GeneratorValues& v, std::uint64_t seed) {
   std::vector<Wave> waves;
   double height = bumps;
   for (int octave = 0; octave < 4; ++octave) {
-    const double frequency = 1.7 * std::pow(2.0, octave);
+    const double frequency = 1.7 * std::exp2(octave);
     for (int i = 0; i < 6; ++i)
       waves.push_back({random_direction(random) * frequency, random.in(0, 2 * std::numbers::pi), height / 3});
     height *= 0.45;
@@ -102,12 +103,12 @@ Mesh rock(const GeneratorValues& v, std::uint64_t seed) {
   std::vector<Crater> craters;
   for (int i = 0; i < static_cast<int>(v.at("craters")); ++i) {
     const double angle = random.in(0.15, 0.5);
-    craters.push_back({random_direction(random), std::cos(angle), 0.28 * angle});
+    craters.push_back({random_direction(random), steady::cos(angle), 0.28 * angle});
   }
   const double radius = v.at("radius");
   const std::function<double(const Eigen::Vector3d&)> at = [&](const Eigen::Vector3d& d) {
     double r = 1;
-    for (const Wave& w : waves) r += w.height * std::cos(w.direction.dot(d) + w.phase);
+    for (const Wave& w : waves) r += w.height * steady::cos(w.direction.dot(d) + w.phase);
     for (const Crater& c : craters) r += crater_height(c, c.direction.dot(d));
     return radius * std::max(r, 0.2);
   };

@@ -163,20 +163,23 @@ std::string page_html(const Page& page) {
       return page.verdict.empty() ? "" : "<span class=\"verdict\">" + escape_markup(page.verdict) + "</span>";
     if (key == "style")
       return std::string(embedded_file("page.css")) +
-             (page.grid.empty() ? "" : std::string(embedded_file("grid.css")));
+             (page.grid.empty() ? "" : std::string(embedded_file("grid.css"))) +
+             (page.comparisons.empty() ? "" : std::string(embedded_file("comparison.css")));
     if (key == "texts") return texts_html(page);
     if (key == "grid") return grid_html(page.grid);
     if (key == "numbers") return numbers_html(page);
     if (key == "player") return player_html(page);
     if (key == "charts") return charts_html(page);
     if (key == "tables") return tables_html(page);
+    if (key == "comparisons") return comparisons_html(page.comparisons);
     if (key == "source") return source_html(page);
     if (key == "footer") return escape_markup(page.footer);
     if (key == "data") return script_safe(page_json(page));
     if (key == "library") return page.charts.empty() ? "" : std::string(embedded_file("chart.min.js"));
     if (key == "script")
       return std::string(embedded_file("page.js")) +
-             (page.grid.empty() ? "" : std::string(embedded_file("grid.js")));
+             (page.grid.empty() ? "" : std::string(embedded_file("grid.js"))) +
+             (page.comparisons.empty() ? "" : std::string(embedded_file("comparison.js")));
     return {};
   };
   // One pass over the template, so that marks within what is put in stay what they are.

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "scenarios/page/comparison.hpp"
 #include "scenarios/page/grid.hpp"
 
 namespace lrb {
@@ -68,6 +69,7 @@ struct Page {
   std::vector<PageText> texts;  ///< what a reader should know first, side by side
   std::vector<PageNumber> numbers;
   PageGrid grid;
+  std::vector<PageComparison> comparisons;
   std::vector<PageFrame> frames;
   std::string frames_note;
   std::vector<PageChart> charts;

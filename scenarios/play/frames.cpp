@@ -99,13 +99,18 @@ class Painter {
       options.supersample = spec_.supersampling;
       if (spec_.transparent) options.background.reset();
       const Scene scene = stage.scene(views_[i].wrapper, plain);
-      Image view = rasterizer_.draw(
-          scene.list, camera_for(views_[i], framing_, place.width, place.height, progress), options);
+      Image view = rasterizer_.draw(scene.list, camera(i, progress), options);
       if (!views_[i].title.empty()) write_title(view, views_[i].title);
       for (int y = 0; y < place.height; ++y)
         std::copy_n(&view.at(0, y), place.width, &picture_.at(place.x, place.y + y));
     }
     return picture_;
+  }
+
+  std::vector<Camera> cameras(double progress) const {
+    std::vector<Camera> out;
+    for (std::size_t i = 0; i < views_.size(); ++i) out.push_back(camera(i, progress));
+    return out;
   }
 
   /// Each view as SVG, in files called `name`.svg, or `name`_1.svg and so on.
@@ -117,13 +122,18 @@ class Painter {
       options.height = places_[i].height;
       options.title = title;
       if (spec_.transparent) options.background.reset();
-      const Camera camera = camera_for(views_[i], framing_, options.width, options.height, progress);
       const std::string number = views_.size() > 1 ? "_" + std::to_string(i + 1) : "";
-      write_text(name + number + ".svg", svg(stage.scene(views_[i].wrapper).list, camera, options));
+      write_text(name + number + ".svg",
+                 svg(stage.scene(views_[i].wrapper).list, camera(i, progress), options));
     }
   }
 
  private:
+  Camera camera(std::size_t view, double progress) const {
+    const PixelRect& place = places_[view];
+    return camera_for(views_[view], framing_, place.width, place.height, progress);
+  }
+
   void write_title(Image& view, const std::string& title) const {
     TextStyle style;
     style.height = std::max(13.0F, static_cast<float>(spec_.height) / 42);
@@ -142,6 +152,42 @@ class Painter {
   Image picture_;
 };
 
+const std::vector<CollideResult>& results_of(const Performance& performance) {
+  static const std::vector<CollideResult> kNoResults;
+  return performance.results != nullptr ? *performance.results : kNoResults;
+}
+
+/// What all frames of a performance have in common. At least one event.
+struct Production {
+  const FrameSpec& spec;
+  std::vector<trace::EventId> events;
+  Stage stage;
+  Script script;
+  Painter painter;
+
+  Production(const Performance& p, const FrameSpec& s, std::vector<trace::EventId> at, Framing framing)
+      : spec(s),
+        events(std::move(at)),
+        stage(*p.trace, p.reps, results_of(p), s, p.milestones.empty() && s.at != FrameSpec::At::step),
+        script(write_script(stage, events, p.title, s)),
+        painter(s, script.picture, std::move(framing)) {}
+
+  /// How much of the sequence has passed at frame i, for orbits.
+  double passed(std::size_t i) const {
+    return events.size() > 1 ? static_cast<double>(i) / static_cast<double>(events.size() - 1) : 0;
+  }
+  /// Frame i, at which the stage stands.
+  Image frame(std::size_t i) {
+    const Rgba back = spec.transparent ? kTransparent : kWhite;
+    return compose_frame(painter.paint(stage, passed(i)), script.picture, script.overlays[i], spec.width,
+                         spec.height, back);
+  }
+};
+
+Framing framing_of(const Performance& p, const FrameSpec& spec) {
+  return frame_sequence(p.reps, *p.trace, results_of(p), spec);
+}
+
 void remove_old_frames(const std::string& folder) {
   std::error_code error;
   for (const auto& entry : std::filesystem::directory_iterator(folder + "/frames", error)) {
@@ -154,6 +200,22 @@ void remove_old_frames(const std::string& folder) {
 
 }  // namespace
 
+std::vector<PaintedFrame> paint_frames(const Performance& performance, const FrameSpec& spec,
+                                       const ProgressReport& progress, const Framing* framing) {
+  std::vector<PaintedFrame> out;
+  const std::vector<trace::EventId> events = moments(spec, *performance.trace, performance.milestones);
+  if (events.empty()) return out;
+  Production production(performance, spec, events,
+                        framing != nullptr ? *framing : framing_of(performance, spec));
+  for (std::size_t i = 0; i < events.size(); ++i) {
+    progress("draw", i, events.size());
+    production.stage.seek(events[i]);
+    out.push_back({production.frame(i), production.stage.caption(), events[i],
+                   production.painter.cameras(production.passed(i))});
+  }
+  return out;
+}
+
 DrawnFrames draw_frames(const Performance& performance, const FrameSpec& spec, const std::string& folder,
                         const std::vector<std::pair<std::string, std::string>>& text,
                         const ProgressReport& progress) {
@@ -163,13 +225,9 @@ DrawnFrames draw_frames(const Performance& performance, const FrameSpec& spec, c
   const std::vector<trace::EventId> events = moments(spec, *performance.trace, performance.milestones);
   if (events.empty()) return out;
 
-  static const std::vector<CollideResult> kNoResults;
-  const std::vector<CollideResult>& results =
-      performance.results != nullptr ? *performance.results : kNoResults;
-  const bool each_refinement = performance.milestones.empty() && spec.at != FrameSpec::At::step;
-  Stage stage(*performance.trace, performance.reps, results, spec, each_refinement);
-  const Script script = write_script(stage, events, performance.title, spec);
-  Painter painter(spec, script.picture, frame_sequence(performance.reps, *performance.trace, results, spec));
+  Production production(performance, spec, events, framing_of(performance, spec));
+  Stage& stage = production.stage;
+  Painter& painter = production.painter;
   const std::vector<std::size_t> in_montage =
       spec.montage > 0 ? evenly(events.size(), spec.montage) : std::vector<std::size_t>();
   std::vector<Panel> panels;
@@ -177,17 +235,12 @@ DrawnFrames draw_frames(const Performance& performance, const FrameSpec& spec, c
   for (std::size_t i = 0; i < events.size(); ++i) {
     progress("draw", i, events.size());
     stage.seek(events[i]);
-    const double passed =
-        events.size() > 1 ? static_cast<double>(i) / static_cast<double>(events.size() - 1) : 0;
+    const double passed = production.passed(i);
     if (spec.svg) painter.write_svg(stage, passed, folder + "/" + numbered(i), stage.caption());
-    const Image& picture = painter.paint(stage, passed);
     PngOptions png;
     png.text = text;
     png.text.emplace_back("lrbscope:event", std::to_string(events[i]));
-    const Rgba back = spec.transparent ? kTransparent : kWhite;
-    writer.push(folder + "/" + file_name(i),
-                compose_frame(picture, script.picture, script.overlays[i], spec.width, spec.height, back),
-                png);
+    writer.push(folder + "/" + file_name(i), production.frame(i), png);
     if (std::find(in_montage.begin(), in_montage.end(), i) != in_montage.end()) {
       panels.push_back({painter.paint(stage, passed, true), stage.short_caption()});
     }

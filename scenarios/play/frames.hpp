@@ -3,6 +3,8 @@
 #include <string>
 #include <vector>
 
+#include "render/image.hpp"
+#include "scenarios/play/framing.hpp"
 #include "scenarios/play/recording.hpp"
 #include "scenarios/scenario.hpp"
 
@@ -28,6 +30,19 @@ struct DrawnFrames {
   std::vector<DrawnFrame> frames;
   std::string montage;  ///< relative to the output folder; empty: none
 };
+
+/// A frame that has not been written.
+struct PaintedFrame {
+  Image image;
+  std::string caption;
+  trace::EventId event = 0;
+  std::vector<Camera> cameras;  ///< one a view
+};
+
+/// The same frames as draw_frames() makes, in memory: no montage, no SVG. `framing`: what the cameras hold,
+/// instead of what the performance itself shows.
+std::vector<PaintedFrame> paint_frames(const Performance& performance, const FrameSpec& spec,
+                                       const ProgressReport& progress, const Framing* framing = nullptr);
 
 /// Draws into folder/frames/ and, if asked, folder/montage.png. `text` goes into every PNG.
 DrawnFrames draw_frames(const Performance& performance, const FrameSpec& spec, const std::string& folder,

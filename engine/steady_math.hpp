@@ -1,0 +1,35 @@
+#pragma once
+/// Functions that give the same double on every x86-64 processor.
+///
+/// glibc's sin, cos, exp and others for double choose code by processor, with or without fused multiply-add,
+/// and differ in the last bit here and there: enough for another body, and so for another run. Its functions
+/// for long double have one code for all. Rounded to double, their results are the exact ones rounded, but
+/// for one in about two thousand. Measured by running the goldens with
+/// GLIBC_TUNABLES=glibc.cpu.hwcaps=-FMA,-AVX2.
+
+#include <cmath>
+
+#include <Eigen/Geometry>
+
+namespace lrb::steady {
+
+inline double sin(double x) {
+  return static_cast<double>(std::sin(static_cast<long double>(x)));
+}
+inline double cos(double x) {
+  return static_cast<double>(std::cos(static_cast<long double>(x)));
+}
+inline double exp(double x) {
+  return static_cast<double>(std::exp(static_cast<long double>(x)));
+}
+inline double atan2(double y, double x) {
+  return static_cast<double>(std::atan2(static_cast<long double>(y), static_cast<long double>(x)));
+}
+
+/// About a unit vector; angle in radians.
+inline Eigen::Matrix3d rotation(const Eigen::Vector3d& axis, double angle) {
+  using Turn = Eigen::AngleAxis<long double>;
+  return Turn(angle, axis.cast<long double>()).toRotationMatrix().cast<double>();
+}
+
+}  // namespace lrb::steady

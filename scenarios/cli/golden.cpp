@@ -1,0 +1,179 @@
+#include <filesystem>
+#include <memory>
+#include <optional>
+
+#include "engine/error.hpp"
+#include "scenarios/cli/command.hpp"
+#include "scenarios/cli/options.hpp"
+#include "scenarios/cli/progress.hpp"
+#include "scenarios/files.hpp"
+#include "scenarios/golden/approve.hpp"
+#include "scenarios/golden/report.hpp"
+#include "scenarios/shipped.hpp"
+
+namespace lrb::cli {
+namespace {
+
+struct GoldenOptions {
+  std::vector<std::string> scenarios;
+  std::string goldens = "goldens", folder = "out/golden", variant, size;
+  std::optional<std::uint32_t> frames;
+  bool json = false;
+};
+
+std::string approve_command(const GoldenOptions& o, const std::string& name) {
+  return "lrbscope golden approve --goldens " + quoted(o.goldens) + " " + name;
+}
+
+struct NamedGolden {
+  std::string name;
+  std::optional<Scenario> scenario;  ///< opened already
+};
+
+/// A golden by its own name, or by the scenario's: a shipped one's, or a file.
+NamedGolden find_golden(const GoldenOptions& o, const std::string& word) {
+  if (has_golden(o.goldens, word)) return {word, std::nullopt};
+  Scenario scenario = open_scenario(word);
+  if (!has_golden(o.goldens, scenario.name))
+    throw InputError(word + ": no golden in " + o.goldens +
+                     " yet; make it with: lrbscope golden approve --goldens " + quoted(o.goldens) + " " +
+                     quoted(word));
+  return {scenario.name, std::move(scenario)};
+}
+
+std::vector<NamedGolden> goldens_to_test(const GoldenOptions& o) {
+  std::vector<NamedGolden> out;
+  if (o.scenarios.empty())
+    for (const std::string& name : golden_names(o.goldens)) out.push_back({name, std::nullopt});
+  for (const std::string& word : o.scenarios) out.push_back(find_golden(o, word));
+  return out;
+}
+
+std::string as_json(const GoldenResult& r) {
+  nlohmann::ordered_json images = nlohmann::ordered_json::array();
+  for (const ImageVerdict& v : r.verdict.images)
+    images.push_back({{"file", v.file}, {"passed", v.passed}, {"equal", v.equal}, {"text", v.text}});
+  nlohmann::ordered_json line = {{"scenario", r.name},    {"passed", r.verdict.passed()},
+                                 {"steps", r.steps},      {"events", r.events},
+                                 {"divergence", nullptr}, {"images", std::move(images)}};
+  if (r.verdict.divergence) line["divergence"] = r.verdict.divergence->message();
+  if (!r.verdict.diagnosis.empty()) line["diagnosis"] = r.verdict.diagnosis;
+  if (!r.verdict.passed()) line["approve"] = r.approve;
+  return one_line(line);
+}
+
+/// `report`: a page in any case, with every picture on it.
+int run_test(const GoldenOptions& o, const Globals& globals, bool report) {
+  const std::vector<NamedGolden> todo = goldens_to_test(o);
+  std::vector<std::string> names;
+  for (const NamedGolden& g : todo) names.push_back(g.name);
+  std::optional<FolderLock> lock;
+  const auto lock_folder = [&] {
+    make_folder(o.folder);
+    if (!lock) lock.emplace(o.folder);
+  };
+  if (report || std::filesystem::exists(o.folder)) lock_folder();
+  clear_golden_report(o.folder, names);
+  std::vector<GoldenResult> results;
+  bool passed = true;
+  for (const NamedGolden& g : todo) {
+    const Golden golden = load_golden(o.goldens, g.name);
+    Scenario scenario = g.scenario ? *g.scenario : golden_scenario(o.goldens, g.name, golden.spec);
+    const GoldenRun run = play_golden(std::move(scenario), golden.spec, progress_report(globals.quiet));
+    results.push_back(test_golden(golden, run, approve_command(o, g.name), report));
+    passed = passed && results.back().verdict.passed();
+    if (!passed) lock_folder();
+    write_failures(results.back(), run, o.folder);
+    print(o.json ? as_json(results.back()) : result_text(results.back()));
+  }
+  if (report || !passed) {
+    write_golden_page(results, o.folder, globals.command_line);
+    if (!o.json) print(o.folder + "/index.html\n");
+  }
+  return passed ? kOk : kMismatch;
+}
+
+GoldenSpec spec_to_approve(const GoldenOptions& o, const std::string& name, const Scenario& scenario,
+                           const std::string& word) {
+  GoldenSpec spec;
+  if (has_golden(o.goldens, name)) {
+    spec = read_golden_spec(o.goldens, name);
+    if (name != word) spec.scenario = scenario_reference(o.goldens, scenario, word);
+  } else {
+    set_default_size(spec, scenario.frames);
+    spec.scenario = scenario_reference(o.goldens, scenario, word);
+  }
+  if (!o.size.empty()) {
+    PictureOptions picture;
+    picture.size = o.size;
+    FrameSpec frames;
+    apply(picture, frames);
+    spec.width = frames.width;
+    spec.height = frames.height;
+  }
+  if (o.frames) spec.frames = *o.frames;
+  return spec;
+}
+
+int run_approve(const GoldenOptions& o, const Globals& globals) {
+  const std::vector<std::string> words = o.scenarios.empty() ? golden_names(o.goldens) : o.scenarios;
+  for (const std::string& word : words) {
+    Scenario scenario = has_golden(o.goldens, word)
+                            ? golden_scenario(o.goldens, word, read_golden_spec(o.goldens, word))
+                            : open_scenario(word);
+    const std::string name = scenario.name;
+    const GoldenSpec spec = spec_to_approve(o, name, scenario, word);
+    const GoldenRun run = play_golden(std::move(scenario), spec, progress_report(globals.quiet));
+    const std::vector<std::string> done = approve_golden(o.goldens, spec, run, o.variant);
+    for (const std::string& line : done) print(line + "\n");
+    if (done.empty()) print("unchanged " + name + "\n");
+  }
+  return kOk;
+}
+
+CLI::App* add_part(CLI::App& golden, const std::string& name, const std::string& what,
+                   const std::shared_ptr<GoldenOptions>& o, const std::string& none) {
+  CLI::App* app = golden.add_subcommand(name, what);
+  app->add_option("SCENARIO", o->scenarios, "Shipped scenarios, or JSON files [" + none + "]");
+  app->add_option("--goldens", o->goldens, "Folder of what is approved")
+      ->type_name("DIR")
+      ->capture_default_str();
+  return app;
+}
+
+void add_output(CLI::App& app, const std::shared_ptr<GoldenOptions>& o) {
+  app.add_option("-o,--output", o->folder, "Folder for the page and for what differs")
+      ->type_name("DIR")
+      ->capture_default_str();
+  app.add_flag("--json", o->json, "A line of JSON per scenario");
+}
+
+}  // namespace
+
+Command add_golden(CLI::App& root, const Globals& globals) {
+  CLI::App* app = root.add_subcommand("golden", "Runs against approved traces and pictures");
+  const auto o = std::make_shared<GoldenOptions>();
+  app->require_subcommand(1);
+  CLI::App* test = add_part(
+      *app, "test", "Exit code 1 where events, counters or pictures differ; then a page", o, "all goldens");
+  add_output(*test, o);
+  CLI::App* approve =
+      add_part(*app, "approve", "Makes today's runs the goldens, where they differ", o, "all goldens");
+  approve->add_option("--variant", o->variant, "Put pictures that differ beside the approved ones")
+      ->type_name("NAME");
+  approve->add_option("--size", o->size, "Of the pictures [480 wide, of the scenario's shape]")
+      ->type_name("WxH");
+  approve->add_option("--frames", o->frames, "Pictures, evenly chosen from the scenario's [3]")
+      ->check(CLI::Range(1, 1000))
+      ->type_name("N");
+  CLI::App* report =
+      add_part(*app, "report", "The same as test, with a page of every picture", o, "all goldens");
+  add_output(*report, o);
+  return {app, [o, &globals, test, report] {
+            if (test->parsed()) return run_test(*o, globals, false);
+            if (report->parsed()) return run_test(*o, globals, true);
+            return run_approve(*o, globals);
+          }};
+}
+
+}  // namespace lrb::cli

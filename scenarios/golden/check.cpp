@@ -1,0 +1,154 @@
+#include "scenarios/golden/check.hpp"
+
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <unordered_map>
+
+#include "render/image_diff.hpp"
+#include "scenarios/golden/diagnosis.hpp"
+
+namespace lrb {
+namespace {
+
+std::string size_words(const Image& image) {
+  return std::to_string(image.width()) + "x" + std::to_string(image.height());
+}
+
+std::string hex_colour(std::uint32_t rgb) {
+  char text[8];
+  std::snprintf(text, sizeof text, "#%06x", static_cast<unsigned>(rgb));
+  return text;
+}
+
+std::uint32_t packed(Rgba c) {
+  return static_cast<std::uint32_t>(c.r) << 16 | static_cast<std::uint32_t>(c.g) << 8 | c.b;
+}
+
+/// The change of colour that most of the strongly different pixels have in common.
+std::string commonest_change(const Image& expected, const Image& actual) {
+  const int large = ImageTolerance{}.large;
+  std::unordered_map<std::uint64_t, std::uint64_t> counts;
+  for (std::size_t i = 0; i < expected.pixels().size(); ++i) {
+    const Rgba e = expected.pixels()[i], a = actual.pixels()[i];
+    if (std::max({std::abs(e.r - a.r), std::abs(e.g - a.g), std::abs(e.b - a.b)}) > large)
+      ++counts[static_cast<std::uint64_t>(packed(e)) << 32 | packed(a)];
+  }
+  std::uint64_t change = 0, most = 0;
+  for (const auto& [key, count] : counts)
+    if (count > most || (count == most && key < change)) change = key, most = count;
+  if (most == 0) return {};
+  return "most often " + hex_colour(static_cast<std::uint32_t>(change >> 32)) + " became " +
+         hex_colour(static_cast<std::uint32_t>(change)) + " (" + std::to_string(most) +
+         (most == 1 ? " pixel)" : " pixels)");
+}
+
+std::string text_of(const DecodedPng& png, const std::string& key) {
+  for (const auto& [name, value] : png.text)
+    if (name == key) return value;
+  return {};
+}
+
+std::vector<std::string> parts_of(const std::string& words) {
+  const std::string between = "; ";
+  std::vector<std::string> out;
+  for (std::size_t at = 0;;) {
+    const std::size_t end = words.find(between, at);
+    out.push_back(words.substr(at, end - at));
+    if (end == std::string::npos) return out;
+    at = end + between.size();
+  }
+}
+
+/// Of two cameras in words, the first part that differs, and how many more do.
+std::string moved_words(const std::string& expected, const std::string& actual) {
+  const std::vector<std::string> x = parts_of(expected), y = parts_of(actual);
+  if (x.size() != y.size()) return "the camera changed: there were other views";
+  std::size_t first = x.size(), more = 0;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    if (x[i] == y[i]) continue;
+    if (first < x.size()) ++more;
+    first = std::min(first, i);
+  }
+  return "the camera moved: expected " + x[first] + ", found " + y[first] +
+         (more > 0 ? ", and " + std::to_string(more) + " more such changes" : "");
+}
+
+/// What is behind a difference: another moment, another camera, or else other colours or shapes.
+std::string explain(const DecodedPng& expected, const PaintedFrame& actual) {
+  std::string out;
+  const std::string event = text_of(expected, "lrbscope:event"), found = std::to_string(actual.event);
+  if (!event.empty() && event != found) out += "drawn after event " + found + " instead of " + event + "; ";
+  const std::string camera = text_of(expected, kCameraText), now = camera_words(actual.cameras);
+  if (!camera.empty() && camera != now) return out + moved_words(camera, now);
+  if (!camera.empty()) out += "the camera is the same; ";
+  return out + commonest_change(expected.image, actual.image);
+}
+
+ImageVerdict check_frame(const std::vector<GoldenImage>& variants, const PaintedFrame& actual,
+                         std::size_t frame) {
+  ImageVerdict best;
+  best.frame = frame;
+  best.has_actual = true;
+  best.file = golden_image_file(frame);
+  if (variants.empty()) {
+    best.text = "not approved yet";
+    return best;
+  }
+  best.has_expected = true;
+  const std::uint64_t print = hash(actual.image);
+  ImageDifference least;
+  for (std::size_t i = 0; i < variants.size(); ++i) {
+    const Image& expected = variants[i].png.image;
+    const bool equal = hash(expected) == print;
+    const ImageDifference d = equal ? ImageDifference{} : compare(expected, actual.image);
+    const bool passed = equal || d.within();
+    const bool nearer = passed != best.passed            ? passed
+                        : d.same_size != least.same_size ? d.same_size
+                                                         : d.large < least.large;
+    if (i > 0 && !equal && !nearer) continue;
+    least = d;
+    best.variant = i;
+    best.file = variants[i].file;
+    best.passed = passed;
+    best.equal = equal;
+    best.text = equal ? "the images are equal"
+                : d.same_size
+                    ? d.text()
+                    : "expected " + size_words(expected) + " pixels, found " + size_words(actual.image);
+    if (equal) return best;
+  }
+  if (!best.passed && least.same_size) {
+    const std::string why = explain(variants[best.variant].png, actual);
+    if (!why.empty()) best.text += "; " + why;
+  }
+  return best;
+}
+
+}  // namespace
+
+bool GoldenVerdict::images_passed() const {
+  return std::all_of(images.begin(), images.end(), [](const ImageVerdict& v) { return v.passed; });
+}
+
+GoldenVerdict check_golden(const Golden& golden, const GoldenRun& run) {
+  GoldenVerdict out;
+  out.divergence = trace::first_divergence(golden.trace, run.recording.trace);
+  if (out.divergence) out.diagnosis = diagnose(golden.trace, run.recording.trace, *out.divergence);
+  out.scenario_changed = golden.trace.header.scenario_hash != run.scenario.hash;
+  static const std::vector<GoldenImage> kNone;
+  for (std::size_t i = 0; i < run.frames.size(); ++i)
+    out.images.push_back(check_frame(i < golden.frames.size() ? golden.frames[i] : kNone, run.frames[i], i));
+  for (std::size_t i = run.frames.size(); i < golden.frames.size(); ++i) {
+    if (golden.frames[i].empty()) continue;
+    ImageVerdict missing;
+    missing.frame = i;
+    missing.file = golden.frames[i][0].file;
+    missing.has_expected = true;
+    missing.text = "approved, but the run has " + std::to_string(run.frames.size()) + " frames only";
+    out.images.push_back(missing);
+  }
+  return out;
+}
+
+}  // namespace lrb

@@ -1,0 +1,146 @@
+#include "scenarios/golden/divergence_picture.hpp"
+
+#include <algorithm>
+#include <optional>
+
+#include "engine/error.hpp"
+#include "render/scene.hpp"
+#include "scenarios/play/moments.hpp"
+#include "trace/cursor.hpp"
+
+namespace lrb {
+namespace {
+
+constexpr int kWidth = 1000, kHeight = 560;
+
+const CollideResult* find_result(const GoldenRun& run, std::size_t step) {
+  return step < run.recording.results.size() ? &run.recording.results[step] : nullptr;
+}
+
+/// The step that the runs part in: the one that was named, or, where they differ as a whole (the request, the
+/// number of steps), that of the first event that differs.
+std::optional<std::size_t> step_of(const trace::Trace& x, const trace::Trace& y, const trace::Divergence& d,
+                                   std::optional<trace::EventId>& event) {
+  if (d.step) return d.step;
+  const auto [p, q] = std::mismatch(x.events.begin(), x.events.end(), y.events.begin(), y.events.end());
+  if (p == x.events.end() || q == y.events.end()) return std::nullopt;
+  event = static_cast<trace::EventId>(p - x.events.begin());
+  return std::min(x.step_of(*event), y.step_of(*event));
+}
+
+/// The event to show of a run: a step that has ended before shows its end.
+trace::EventId event_to_show(const trace::Trace& trace, std::size_t step,
+                             std::optional<trace::EventId> event) {
+  const trace::EventId last = last_event(trace, step);
+  return event ? std::min(*event, last) : last;
+}
+
+/// One of the two runs. What it does not share with the other one is its trace.
+struct SideShown {
+  const trace::Trace& trace;
+  trace::EventId event;
+};
+
+/// The corners of what an event is about: the pair that it compares, or the regions that it opens.
+std::vector<Eigen::Vector3d> subject_of(const SideShown& side, const std::vector<const LrbRep*>& reps) {
+  trace::Cursor cursor =
+      reps.size() == 1 ? trace::Cursor(side.trace, *reps[0]) : trace::Cursor(side.trace, *reps[0], *reps[1]);
+  cursor.seek(side.event);
+  std::vector<Eigen::Vector3d> out;
+  const auto add = [&](Side s, VertexId v) {
+    out.push_back(cursor.pose(s).apply(reps[static_cast<std::size_t>(s)]->vertices()[v]));
+  };
+  if (const auto pair = cursor.pair_under_test()) {
+    for (const Side s : {Side::a, Side::b}) {
+      const LrbRep& rep = *reps[static_cast<std::size_t>(s)];
+      VertexId corners[3];
+      rep.simplex(s == Side::a ? pair->simplex_a : pair->simplex_b, corners);
+      for (int i = 0; i < rep.simplex_size(); ++i) add(s, corners[i]);
+    }
+  }
+  const trace::Event& e = cursor.event();
+  if (e.kind == EventKind::refine || e.kind == EventKind::coarsen)
+    for (const FaceId f : reps[static_cast<std::size_t>(e.side)]->collector(e.a))
+      for (const VertexId v : reps[static_cast<std::size_t>(e.side)]->face(f)) add(e.side, v);
+  return out;
+}
+
+FrameSpec spec_for(const GoldenRun& run, bool close_up) {
+  FrameSpec spec;
+  spec.at = FrameSpec::At::events;
+  spec.width = kWidth;
+  spec.height = kHeight;
+  FrameSpec::View whole;
+  if (!run.scenario.frames.views.empty()) {  // stand where the scenario stands
+    whole.from = run.scenario.frames.views[0].from;
+    whole.up = run.scenario.frames.views[0].up;
+  }
+  whole.title = "Whole, with wrappers";
+  spec.views = {whole};
+  if (close_up) {
+    FrameSpec::View close = whole;
+    close.camera = FrameSpec::Camera::contact;
+    close.title = "Close up, with wrappers";
+    spec.views.push_back(close);
+  }
+  return spec;
+}
+
+PaintedFrame paint(const GoldenRun& run, const SideShown& side, FrameSpec spec, const Framing& framing,
+                   const std::string& title) {
+  Performance p = performance_of(run);
+  p.title = run.scenario.name + ", " + title;
+  p.trace = &side.trace;
+  p.milestones.clear();
+  spec.events = {side.event};
+  const ProgressReport silent = [](const std::string&, std::uint64_t, std::uint64_t) {};
+  return paint_frames(p, spec, silent, &framing).at(0);
+}
+
+bool same_bodies(const trace::Trace& x, const trace::Trace& y) {
+  const auto same = [](const trace::BodyInfo& p, const trace::BodyInfo& q) { return p.hash == q.hash; };
+  return std::equal(x.header.bodies.begin(), x.header.bodies.end(), y.header.bodies.begin(),
+                    y.header.bodies.end(), same);
+}
+
+}  // namespace
+
+DivergencePictures draw_divergence(const Golden& golden, const GoldenRun& run,
+                                   const trace::Divergence& divergence) {
+  DivergencePictures out;
+  const trace::Trace &expected = golden.trace, &actual = run.recording.trace;
+  if (!same_bodies(expected, actual)) {
+    out.note = "A body itself has changed: the approved run cannot be replayed on it.";
+    return out;
+  }
+  std::optional<trace::EventId> event = divergence.event;
+  const std::optional<std::size_t> step = step_of(expected, actual, divergence, event);
+  if (!step || *step >= expected.steps.size() || *step >= actual.steps.size()) {
+    out.note = "One run goes on where the other one ends: there is no event to draw on both sides.";
+    return out;
+  }
+  const SideShown sides[2] = {{expected, event_to_show(expected, *step, event)},
+                              {actual, event_to_show(actual, *step, event)}};
+  const std::vector<const LrbRep*> reps = performance_of(run).reps;
+  try {
+    // Around the step alone: both runs' bodies, and what both events are about.
+    Framing framing = frame_sequence(reps, actual, run.recording.results, run.scenario.frames);
+    framing.contacts.clear();
+    for (const SideShown& side : sides)
+      for (const Eigen::Vector3d& p : subject_of(side, reps)) framing.contacts.push_back(p);
+    if (const CollideResult* result = find_result(run, *step); framing.contacts.empty() && result != nullptr)
+      framing.contacts = contact_points(result->regions);
+    const FrameSpec spec = spec_for(run, !framing.contacts.empty());
+    PaintedFrame pictures[2] = {paint(run, sides[0], spec, framing, "approved"),
+                                paint(run, sides[1], spec, framing, "found")};
+    out.expected = std::move(pictures[0].image);
+    out.actual = std::move(pictures[1].image);
+    out.expected_caption = pictures[0].caption;
+    out.actual_caption = pictures[1].caption;
+  } catch (const InputError& e) {
+    out.note = std::string("Cannot be drawn: ") + e.what();
+  }
+  return out;
+}
+
+}  // namespace lrb

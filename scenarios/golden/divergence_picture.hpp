@@ -1,0 +1,22 @@
+#pragma once
+
+#include <string>
+
+#include "scenarios/golden/golden.hpp"
+#include "scenarios/golden/golden_run.hpp"
+#include "trace/divergence.hpp"
+
+namespace lrb {
+
+/// The two runs where they part: at the first event that differs, or at the end of the step that does, whole
+/// and close up, through the same cameras.
+struct DivergencePictures {
+  Image expected, actual;  ///< empty if there is nothing to draw
+  std::string expected_caption, actual_caption;
+  std::string note;  ///< why there is nothing to draw
+};
+
+DivergencePictures draw_divergence(const Golden& golden, const GoldenRun& run,
+                                   const trace::Divergence& divergence);
+
+}  // namespace lrb

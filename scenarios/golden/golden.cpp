@@ -1,0 +1,144 @@
+#include "scenarios/golden/golden.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <filesystem>
+#include <optional>
+
+#include <nlohmann/json.hpp>
+
+#include "engine/error.hpp"
+#include "engine/mesh/file_bytes.hpp"
+#include "scenarios/files.hpp"
+#include "scenarios/json/json_node.hpp"
+#include "scenarios/shipped.hpp"
+#include "trace/trace_json.hpp"
+
+namespace lrb {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr const char* kSpecFile = "golden.json";
+constexpr std::string_view kFrame = "frame_", kPng = ".png";
+constexpr std::uint64_t kMostFrames = 1000;
+
+std::string folder_of(const std::string& goldens, const std::string& name) {
+  return (fs::path(goldens) / name).string();
+}
+
+/// Of "frame_12.png" and "frame_12.variant.png": 11; of other names: nothing.
+std::optional<std::size_t> frame_of_file(std::string_view file) {
+  if (!file.starts_with(kFrame) || !file.ends_with(kPng)) return std::nullopt;
+  const char *first = file.data() + kFrame.size(), *last = file.data() + file.size();
+  std::size_t number = 0;
+  const auto [end, error] = std::from_chars(first, last, number);
+  if (error != std::errc() || number == 0 || *end != '.') return std::nullopt;
+  return number - 1;
+}
+
+template <class Wanted>
+std::vector<std::string> image_files(const std::string& folder, const Wanted& wanted) {
+  std::vector<std::string> out;
+  std::error_code error;
+  for (const auto& entry : fs::directory_iterator(folder, error)) {
+    const std::string file = entry.path().filename().string();
+    if (const auto frame = frame_of_file(file); frame && wanted(*frame)) out.push_back(file);
+  }
+  // The one without a variant is the shortest of its frame.
+  std::sort(out.begin(), out.end(), [](const std::string& x, const std::string& y) {
+    return x.size() != y.size() ? x.size() < y.size() : x < y;
+  });
+  return out;
+}
+
+}  // namespace
+
+std::string golden_image_file(std::size_t frame, const std::string& variant) {
+  return std::string(kFrame) + std::to_string(frame + 1) + (variant.empty() ? "" : "." + variant) +
+         std::string(kPng);
+}
+
+std::vector<std::string> image_files_of(const std::string& folder, std::size_t frame) {
+  return image_files(folder, [frame](std::size_t f) { return f == frame; });
+}
+
+std::vector<std::string> image_files_from(const std::string& folder, std::size_t first_frame) {
+  return image_files(folder, [first_frame](std::size_t f) { return f >= first_frame; });
+}
+
+bool has_golden(const std::string& goldens, const std::string& name) {
+  std::error_code error;
+  return !name.empty() && name.find('/') == std::string::npos &&
+         fs::is_regular_file(fs::path(goldens) / name / kSpecFile, error);
+}
+
+std::vector<std::string> golden_names(const std::string& goldens) {
+  std::vector<std::string> out;
+  std::error_code error;
+  for (const auto& entry : fs::directory_iterator(goldens, error))
+    if (has_golden(goldens, entry.path().filename().string()))
+      out.push_back(entry.path().filename().string());
+  if (out.empty())
+    throw InputError(printable_name(goldens) +
+                     ": no goldens there; make some with lrbscope golden approve SCENARIO, or name another "
+                     "folder with --goldens");
+  std::sort(out.begin(), out.end());
+  return out;
+}
+
+GoldenSpec read_golden_spec(const std::string& goldens, const std::string& name) {
+  const std::string file = (fs::path(goldens) / name / kSpecFile).string();
+  const JsonText json(read_text(file), file);
+  const JsonNode root(json);
+  root.object({"scenario", "size", "frames"});
+  GoldenSpec spec;
+  spec.scenario = root.at("scenario").string();
+  const std::vector<JsonNode> size = root.at("size").items();
+  if (size.size() != 2) root.at("size").fail("expected [width, height]");
+  spec.width = static_cast<int>(size[0].integer(64, 8192));
+  spec.height = static_cast<int>(size[1].integer(64, 8192));
+  spec.frames = static_cast<std::uint32_t>(root.at("frames").integer(1, kMostFrames));
+  return spec;
+}
+
+void write_golden_spec(const std::string& goldens, const std::string& name, const GoldenSpec& spec) {
+  const nlohmann::ordered_json json = {
+      {"scenario", spec.scenario}, {"size", {spec.width, spec.height}}, {"frames", spec.frames}};
+  write_text((fs::path(goldens) / name / kSpecFile).string(), json.dump() + "\n");
+}
+
+std::string scenario_reference(const std::string& goldens, const Scenario& scenario,
+                               const std::string& name_or_path) {
+  if (name_or_path == scenario.name) return name_or_path;  // files end in .json, which no name does
+  std::error_code error;
+  const fs::path from = fs::absolute(fs::path(goldens) / scenario.name, error).lexically_normal();
+  return fs::absolute(name_or_path, error).lexically_normal().lexically_relative(from).generic_string();
+}
+
+Scenario golden_scenario(const std::string& goldens, const std::string& name, const GoldenSpec& spec) {
+  const bool shipped = spec.scenario.find_first_of("./\\") == std::string::npos;
+  Scenario scenario = open_scenario(
+      shipped ? spec.scenario : (fs::path(goldens) / name / spec.scenario).lexically_normal().string());
+  if (scenario.name != name)
+    throw InputError(printable_name(folder_of(goldens, name)) + ": " + kSpecFile +
+                     " leads to a scenario that is called " + scenario.name +
+                     "; rename the folder, or remove it and approve the scenario anew");
+  return scenario;
+}
+
+Golden load_golden(const std::string& goldens, const std::string& name) {
+  Golden golden;
+  golden.name = name;
+  golden.spec = read_golden_spec(goldens, name);
+  const std::string folder = folder_of(goldens, name);
+  golden.trace = trace::load_trace(folder + "/" + kGoldenTrace);
+  for (const std::string& file : image_files_from(folder, 0)) {
+    const std::size_t frame = *frame_of_file(file);
+    if (frame >= kMostFrames) continue;
+    if (golden.frames.size() <= frame) golden.frames.resize(frame + 1);
+    golden.frames[frame].push_back({file, read_png(folder + "/" + file)});
+  }
+  return golden;
+}
+
+}  // namespace lrb

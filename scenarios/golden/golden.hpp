@@ -1,0 +1,62 @@
+#pragma once
+/// Goldens on disk: what has been approved of a scenario's run. A folder of goldens has a folder for each
+/// scenario, with
+///
+///   golden.json            which scenario, drawn how
+///   trace.json.gz          the run, on the event clock
+///   frame_1.png ...        its pictures
+///   frame_1.VARIANT.png    further pictures that are right as well, of other processors or drivers
+
+#include <string>
+#include <vector>
+
+#include "render/png.hpp"
+#include "scenarios/scenario.hpp"
+#include "trace/trace.hpp"
+
+namespace lrb {
+
+/// golden.json
+struct GoldenSpec {
+  std::string scenario;  ///< name of a shipped one, or a file, found from the golden's own folder
+  int width = 0, height = 0;
+  std::uint32_t frames = 3;  ///< at most, evenly chosen from those of the scenario
+};
+
+/// A picture that was approved.
+struct GoldenImage {
+  std::string file;  ///< without its folder
+  DecodedPng png;
+};
+
+struct Golden {
+  std::string name;  ///< of the scenario, and of its folder
+  GoldenSpec spec;
+  trace::Trace trace;
+  std::vector<std::vector<GoldenImage>> frames;  ///< the variants of each; the one without a name first
+};
+
+/// Names of the goldens in a folder, sorted. Throws InputError if there is none.
+std::vector<std::string> golden_names(const std::string& goldens);
+
+bool has_golden(const std::string& goldens, const std::string& name);
+/// Throws InputError if it is missing or damaged.
+GoldenSpec read_golden_spec(const std::string& goldens, const std::string& name);
+Golden load_golden(const std::string& goldens, const std::string& name);
+/// The scenario that a golden is of.
+Scenario golden_scenario(const std::string& goldens, const std::string& name, const GoldenSpec& spec);
+
+/// What golden.json says of a scenario opened as `name_or_path`.
+std::string scenario_reference(const std::string& goldens, const Scenario& scenario,
+                               const std::string& name_or_path);
+void write_golden_spec(const std::string& goldens, const std::string& name, const GoldenSpec& spec);
+
+/// "frame_2.png", or "frame_2.avx512.png"; frames count from 0 here, from 1 in names.
+std::string golden_image_file(std::size_t frame, const std::string& variant = {});
+/// Files of a golden's pictures: all of those of a frame, or of frames that are not there any more.
+std::vector<std::string> image_files_of(const std::string& folder, std::size_t frame);
+std::vector<std::string> image_files_from(const std::string& folder, std::size_t first_frame);
+
+inline const char* const kGoldenTrace = "trace.json.gz";
+
+}  // namespace lrb

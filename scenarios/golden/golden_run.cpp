@@ -1,0 +1,86 @@
+#include "scenarios/golden/golden_run.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <numbers>
+#include <sstream>
+
+#include "trace/hex.hpp"
+
+namespace lrb {
+namespace {
+
+constexpr int kDefaultWidth = 480, kLeastHeight = 320;
+
+std::string words(const Eigen::Vector3d& v) {
+  std::ostringstream out;
+  out.precision(6);
+  out << "(" << v.x() + 0.0 << ", " << v.y() + 0.0 << ", " << v.z() + 0.0 << ")";
+  return out.str();
+}
+
+std::string words(const Camera& c) {
+  std::ostringstream out;
+  out.precision(6);
+  out << "eye " << words(c.eye) << "; target " << words(c.target) << "; up " << words(c.up) << "; ";
+  if (c.orthographic)
+    out << "half height " << c.half_height;
+  else
+    out << c.fov_y * 180 / std::numbers::pi << " degrees high";
+  return out.str();
+}
+
+}  // namespace
+
+void set_default_size(GoldenSpec& spec, const FrameSpec& frames) {
+  spec.width = kDefaultWidth;
+  spec.height =
+      std::clamp(static_cast<int>(std::lround(double{kDefaultWidth} * frames.height / frames.width)),
+                 kLeastHeight, 4 * kDefaultWidth);
+}
+
+GoldenRun play_golden(Scenario scenario, const GoldenSpec& spec, const ProgressReport& progress) {
+  GoldenRun run;
+  run.scenario = std::move(scenario);
+  run.scenario.clock = trace::Clock::event;
+  FrameSpec& frames = run.scenario.frames;
+  frames.width = spec.width;
+  frames.height = spec.height;
+  frames.most = spec.frames;
+  run.recording = record(run.scenario, progress);
+  for (trace::BodyInfo& body : run.recording.trace.header.bodies)  // no folder of this machine
+    if (body.source.find('/') != std::string::npos)
+      body.source = std::filesystem::path(body.source).filename().string();
+  run.frames = paint_frames(performance_of(run), frames, progress);
+  return run;
+}
+
+Performance performance_of(const GoldenRun& run) {
+  Performance p;
+  p.title = run.scenario.name;
+  p.trace = &run.recording.trace;
+  p.results = &run.recording.results;
+  p.milestones = run.recording.milestones;
+  for (const LoadedBody& body : run.recording.bodies) p.reps.push_back(&body.rep);
+  return p;
+}
+
+std::string camera_words(const std::vector<Camera>& cameras) {
+  std::string out;
+  for (std::size_t i = 0; i < cameras.size(); ++i) {
+    if (i > 0) out += "; ";
+    if (cameras.size() > 1) out += "view " + std::to_string(i + 1) + ": ";
+    out += words(cameras[i]);
+  }
+  return out;
+}
+
+std::vector<PngText> golden_text(const GoldenRun& run, std::size_t frame) {
+  return {{"lrbscope:scenario", run.scenario.name},
+          {"lrbscope:scenario_hash", trace::to_hex(run.scenario.hash)},
+          {"lrbscope:event", std::to_string(run.frames[frame].event)},
+          {kCameraText, camera_words(run.frames[frame].cameras)}};
+}
+
+}  // namespace lrb
