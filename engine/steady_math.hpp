@@ -22,6 +22,18 @@ inline double cos(double x) {
 inline double exp(double x) {
   return static_cast<double>(std::exp(static_cast<long double>(x)));
 }
+inline double exp2(double x) {
+  return static_cast<double>(std::exp2(static_cast<long double>(x)));
+}
+inline double tan(double x) {
+  return static_cast<double>(std::tan(static_cast<long double>(x)));
+}
+inline double atan(double x) {
+  return static_cast<double>(std::atan(static_cast<long double>(x)));
+}
+inline double acos(double x) {
+  return static_cast<double>(std::acos(static_cast<long double>(x)));
+}
 inline double atan2(double y, double x) {
   return static_cast<double>(std::atan2(static_cast<long double>(y), static_cast<long double>(x)));
 }

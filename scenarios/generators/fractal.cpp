@@ -11,6 +11,7 @@
 #include <Eigen/Geometry>
 
 #include "engine/error.hpp"
+#include "engine/steady_math.hpp"
 #include "scenarios/generators/random.hpp"
 
 namespace lrb {
@@ -90,7 +91,7 @@ class Carver {
       for (std::size_t i = 0; i < f.corners.size(); ++i)
         for (const Polygon& g : faces_)
           if (&f != &g && has_edge(g, f.corners[(i + 1) % f.corners.size()], f.corners[i]))
-            f.room.push_back((std::numbers::pi - std::acos(normal(f).dot(normal(g)))) / 2);
+            f.room.push_back((std::numbers::pi - steady::acos(normal(f).dot(normal(g)))) / 2);
   }
 
   static bool has_edge(const Polygon& f, VertexId a, VertexId b) {
@@ -149,7 +150,7 @@ class Carver {
   void add(std::vector<VertexId> corners, std::vector<double> room, CellId outer, int level) {
     faces_.push_back({std::move(corners), std::move(room), kSolid, outer, level});
     const auto f = static_cast<FaceId>(faces_.size() - 1);
-    waiting_.push({breadth(faces_[f]) * std::exp2(random_.in(-kUneven, kUneven)), f});
+    waiting_.push({breadth(faces_[f]) * steady::exp2(random_.in(-kUneven, kUneven)), f});
   }
 
   /// Whether some dents make up these numbers: a margin is kept while there are many, none is needed at the
@@ -243,10 +244,10 @@ Slope slope_of(const std::vector<double>& distance, const std::vector<double>& r
                double floor) {
   Slope s{std::numeric_limits<double>::infinity(), {}};
   for (std::size_t i = 0; i < room.size(); ++i) {
-    s.depth = std::min(s.depth, floor * distance[i] * std::tan(kShare * room[i]));
-    s.depth = std::min(s.depth, (floor - rim) * distance[i] * std::tan(kSteepest));
+    s.depth = std::min(s.depth, floor * distance[i] * steady::tan(kShare * room[i]));
+    s.depth = std::min(s.depth, (floor - rim) * distance[i] * steady::tan(kSteepest));
   }
-  for (const double d : distance) s.angle.push_back(std::atan(s.depth / ((floor - rim) * d)));
+  for (const double d : distance) s.angle.push_back(steady::atan(s.depth / ((floor - rim) * d)));
   return s;
 }
 

@@ -6,6 +6,7 @@
 
 #include "engine/lrb/lrb_rep.hpp"
 #include "engine/lrb/pose.hpp"
+#include "engine/steady_math.hpp"
 
 namespace lrb::shapes {
 
@@ -29,8 +30,7 @@ inline Eigen::Vector3d random_direction(Random& random) {
 
 inline Eigen::Matrix3d random_rotation(Random& random, int dim = 3) {
   const double angle = uniform(random, 0, 6.283185307179586);
-  return Eigen::AngleAxisd(angle, dim == 2 ? Eigen::Vector3d::UnitZ() : random_direction(random))
-      .toRotationMatrix();
+  return steady::rotation(dim == 2 ? Eigen::Vector3d::UnitZ() : random_direction(random), angle);
 }
 
 inline Eigen::AlignedBox3d box_of(const LrbRep& rep) {

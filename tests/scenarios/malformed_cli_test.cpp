@@ -351,11 +351,13 @@ TEST_CASE("what a scenario or trace says cannot lead out of the output folder") 
   for (const std::string& name : folder.tree())
     CHECK((std::find(before.begin(), before.end(), name) != before.end() || name.starts_with("drawn")));
   CHECK(slurp(folder / "drawn/index.html").find("escaped</script>") == std::string::npos);
-  // Frames of an earlier run are links that somebody planted: they are replaced, and what they lead to stays.
+  // Frames of an earlier run are links that somebody planted: refused, and what they lead to stays.
   folder.write("precious", "keep me");
   std::filesystem::create_symlink(folder / "precious", folder / "out/inside/frames/frame_0000.png");
   std::filesystem::create_symlink(folder / "precious", folder / "out/inside/montage.png");
-  REQUIRE(run(folder, {"run", "s.json", "--frames", "step", "--most", "1"}).code == 0);
+  const Outcome refused = run(folder, {"run", "s.json", "--frames", "step", "--most", "1"});
+  CHECK(refused.code == 3);
+  CHECK(refused.error_lines() == 1);
   CHECK(slurp(folder / "precious") == "keep me");
 }
 
