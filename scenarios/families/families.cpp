@@ -56,7 +56,7 @@ constexpr Family kFamilies[] = {
      "gap 1/16", "gap 1 ulp"},
     {"nested", "shell in shell in shell, solid by parity, with pieces in the walls and between them",
      make_nested, "2 walls, 0.1 of the room left", "32 walls, 1e-14 of the room left"},
-    {"polygon", "faces with thousands of corners, convex and not", make_polygon, "8 corners", "4096 corners"},
+    {"polygon", "faces with thousands of corners, convex and not", make_polygon, "8 corners, anywhere", "4096 corners, end to end"},
     {"fractal", "sponges, dented cubes and hubs of hundreds of faces against plugs that fit", make_fractal,
      "1 off the grid", "on the grid"},
     {"swapped", "cases of the others, asked both ways: is B against A the transpose of A against B?",

@@ -91,10 +91,10 @@ Case make_kiss(Random& random, double dial) {
   bool apart = false, touch = false;
   for (int k = 0; k < 3; ++k) {
     if (k >= axes) {
-      c.pose_b.t[k] = pick(random, -3, 3) / 4.0;
+      c.pose_b.t[k] = (2 * pick(random, -4, 3) + 1) / 8.0;  // no sides in one plane
       continue;
     }
-    const int gaps = pick(random, -1, 1);
+    const int gaps = uniform(random) < dial ? pick(random, -1, 1) : random() % 2 ? 1 : -1;
     c.pose_b.t[k] = 1 + gaps * gap;
     apart |= gaps > 0;
     touch |= gaps == 0;
@@ -103,7 +103,8 @@ Case make_kiss(Random& random, double dial) {
   if (!apart && touch) c.relation = Relation::touching;
   c.interiors_overlap = !apart && !touch;
   // Exact: a permutation of the axes, a change of signs, a power of two.
-  const Pose by{std::exp2(pick(random, -40, 40)) * grid_turn(random, true), Vector3d::Zero()};
+  const Pose by{std::exp2(std::round(40 * dial * uniform(random, -1, 1))) * grid_turn(random, true),
+                Vector3d::Zero()};
   if (random() % 2) move_both(c, by);
   if (random() % 2) {
     std::swap(c.a, c.b);
@@ -161,9 +162,9 @@ Case make_polygon(Random& random, double dial) {
   }();
   // The largest takes a hundred times as long as the others: seldom.
   const std::size_t largest = random() % 16 == 0 ? 3 : 2;
-  const auto& bodies = random() % 2 ? kRound : kComb;
+  const auto& bodies = uniform(random) < 0.5 * dial ? kComb : kRound;
   Case c{bodies[std::min(largest, static_cast<std::size_t>(4 * dial))], any_body(random), {}, {}, {}, {}};
-  const int kind = pick(random, 0, 3);
+  const int kind = uniform(random) < dial ? pick(random, 0, 2) : 3;
   if (kind == 0) {  // one many-cornered end on another's: the answer is quadratic
     c.a = bodies[random() % 64 == 0];
     c.b = bodies[random() % 64 == 0];
@@ -179,7 +180,7 @@ Case make_polygon(Random& random, double dial) {
   } else {
     c.pose_b = any_pose(random, 2);
   }
-  if (random() % 2) c.pose_b.t.z() = nudged(c.pose_b.t.z(), pick(random, -1, 1));
+  if (kind != 3 && random() % 2) c.pose_b.t.z() = nudged(c.pose_b.t.z(), pick(random, -1, 1));
   if (pick(random, 0, 3) == 0) move_both(c, any_pose(random));
   return c;
 }

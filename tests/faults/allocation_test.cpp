@@ -48,7 +48,7 @@ std::uint64_t fail_each_allocation(const Work& work, const After& after) {
 }
 
 struct Asked {
-  LrbRep a{shapes::dented_box()}, b{shapes::dented_box()};
+  LrbRep a{toy::dented_box()}, b{toy::dented_box()};
   Pose pose_b = Pose::translation({1.75, 1.25, 2.5});
   CollideRequest request;
   QueryContext context;
