@@ -122,8 +122,8 @@ void add_cell(Sheet& sheet, const Cell& cell, double x, double y) {
   const CellSummary s = summarise(cell);
   sheet.rect(x + kGap, y + kGap, x + 1 - kGap, y + 1 - kGap,
              s.only_refused() ? kOnlyRefused : kLevels[static_cast<std::size_t>(s.level())]);
-  sheet.text(x + 0.06, y + 0.8, Sheet::small,
-             std::to_string(s.failures()) + "/" + std::to_string(s.answered()));
+  const std::string failures = std::to_string(s.failures()) + "/" + std::to_string(s.answered());
+  sheet.text(x + 0.06, y + 0.8, Sheet::small, failures);
   std::string marks;
   const auto mark = [&](std::uint64_t n, const char* sign) {
     if (n > 0) marks += (marks.empty() ? "" : " ") + (sign + std::to_string(n));
@@ -131,9 +131,10 @@ void add_cell(Sheet& sheet, const Cell& cell, double x, double y) {
   mark(s.crashed, "\u2715");
   mark(s.timed_out, "\u25f7");
   mark(s.refused, "\u2298");
-  // Many marks have a line of their own.
-  constexpr std::size_t kBeside = 10;  // bytes; a mark has three
-  sheet.text(x + 0.95, y + (marks.size() > kBeside ? 0.6 : 0.8), Sheet::small_right, marks);
+  // What does not fit beside the failures has a line of its own.
+  constexpr std::size_t kBeside = 16;  // bytes; a mark's sign has three
+  sheet.text(x + 0.95, y + (failures.size() + marks.size() > kBeside ? 0.61 : 0.8), Sheet::small_right,
+             marks);
   add_bars(sheet, cell, x, y);
 }
 
@@ -143,8 +144,10 @@ std::string ends_of(const FamilyRow& family) {
 }
 
 void add_row_head(Sheet& sheet, const FamilyRow& family, double y) {
-  sheet.text(-0.08, y + 0.68, Sheet::bold, family.name);
-  sheet.text(-0.08, y + 0.3, Sheet::small_right, ends_of(family), palette::kFaint);
+  sheet.text(-0.08, y + 0.76, Sheet::bold, family.name);
+  if (family.benign.empty() && family.degenerate.empty()) return;
+  sheet.text(-0.08, y + 0.46, Sheet::small_right, family.benign + " \u2192", palette::kFaint);
+  sheet.text(-0.08, y + 0.2, Sheet::small_right, family.degenerate, palette::kFaint);
 }
 
 void add_column_head(Sheet& sheet, const MethodColumn& method, double x) {
