@@ -409,7 +409,9 @@ TEST_CASE("real models, spoiled: no crash, exact pairs, built or refused in one 
   const Mesh speck = icosphere(0, 1);
   for (const char* name : {"spot", "cheburashka"}) {
     const Mesh model = read_mesh((meshes / (std::string(name) + ".obj")).string());
-    for (const auto& [how, mesh] : spoil(model, 5)) {
+    for (const auto& spoiled : spoil(model, 5)) {
+      const auto& how = spoiled.first;  // named: clang 14 captures no structured binding
+      const auto& mesh = spoiled.second;
       CAPTURE(std::string(name));
       CAPTURE(std::string(how));
       const Folder folder;
