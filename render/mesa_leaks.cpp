@@ -14,6 +14,10 @@ extern "C" const char* __lsan_default_suppressions();  // NOLINT: the sanitizer'
 extern "C" const char* __lsan_default_suppressions() {
   return "leak:libOSMesa\n";
 }
+extern "C" const char* __lsan_default_options();  // NOLINT: the sanitizer's name
+extern "C" const char* __lsan_default_options() {
+  return "print_suppressions=0";  // stderr is for what the program says
+}
 #endif
 
 namespace lrb {

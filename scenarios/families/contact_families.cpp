@@ -127,7 +127,8 @@ Case make_shared(Random& random, double dial) {
   std::array<Vector3d, 3> t = any_triangle(random, *c.a);
   const Vector3d n = (t[1] - t[0]).cross(t[2] - t[0]).normalized();
   const auto off = [&] {
-    const Vector3d v = t[0] + uniform(random, -1, 1) * (t[1] - t[0]) + uniform(random, -1, 1) * (t[2] - t[0]);
+    const double along = uniform(random, -1, 1), across = uniform(random, -1, 1);
+    const Vector3d v = t[0] + along * (t[1] - t[0]) + across * (t[2] - t[0]);
     return Vector3d(v + uniform(random, -0.2, 1) * n);
   };
   const int shared = pick(random, 1, 3);

@@ -56,7 +56,8 @@ constexpr Family kFamilies[] = {
      "gap 1/16", "gap 1 ulp"},
     {"nested", "shell in shell in shell, solid by parity, with pieces in the walls and between them",
      make_nested, "2 walls, 0.1 of the room left", "32 walls, 1e-14 of the room left"},
-    {"polygon", "faces with thousands of corners, convex and not", make_polygon, "8 corners, anywhere", "4096 corners, end to end"},
+    {"polygon", "faces with thousands of corners, convex and not", make_polygon, "8 corners, anywhere",
+     "4096 corners, end to end"},
     {"fractal", "sponges, dented cubes and hubs of hundreds of faces against plugs that fit", make_fractal,
      "1 off the grid", "on the grid"},
     {"swapped", "cases of the others, asked both ways: is B against A the transpose of A against B?",
@@ -113,7 +114,10 @@ Body any_body(Random& random) {
 }
 
 Pose any_pose(Random& random, double distance) {
-  return {shapes::random_rotation(random), distance * uniform(random) * shapes::random_direction(random)};
+  // One after the other: compilers order operands differently.
+  const Eigen::Matrix3d turn = shapes::random_rotation(random);
+  const Eigen::Vector3d direction = shapes::random_direction(random);
+  return {turn, distance * uniform(random) * direction};
 }
 
 void move_both(Case& c, const Pose& by) {

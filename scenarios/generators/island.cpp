@@ -19,7 +19,9 @@ std::vector<Eigen::Vector2d> with_bays(const std::vector<Eigen::Vector2d>& outli
     const Eigen::Vector2d inward(-along.y(), along.x());  // the solid is on the left
     out.push_back(a);
     out.push_back(a + along * random.in(0.30, 0.38));
-    out.push_back(a + along * random.in(0.44, 0.56) + inward * depth * random.in(0.7, 1.0));
+    // Drawn one after the other: compilers order operands differently.
+    const double reach = random.in(0.7, 1.0), middle = random.in(0.44, 0.56);
+    out.push_back(a + along * middle + inward * depth * reach);
     out.push_back(a + along * random.in(0.62, 0.70));
   }
   return out;

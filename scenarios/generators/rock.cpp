@@ -38,8 +38,13 @@ class StarSurface {
     };
     for (int i = 0; i < n_; ++i) {
       for (int j = 0; i + j < n_; ++j) {
-        add_triangle(mesh_, id(i, j), id(i + 1, j), id(i, j + 1));
-        if (i + j + 1 < n_) add_triangle(mesh_, id(i + 1, j), id(i + 1, j + 1), id(i, j + 1));
+        // Asked for one after the other, because id() numbers new vertices: compilers order arguments
+        // differently.
+        const VertexId up = id(i, j + 1), along = id(i + 1, j), here = id(i, j);
+        add_triangle(mesh_, here, along, up);
+        if (i + j + 1 >= n_) continue;
+        const VertexId across = id(i + 1, j + 1);
+        add_triangle(mesh_, along, across, up);
       }
     }
   }

@@ -29,8 +29,10 @@ using boost::multiprecision::cpp_int;
 class Exact {
  public:
   Exact() = default;
+  /// Floats that overflowed count as 0 here: the kernel culls nothing by them, so that they bound nothing.
   Exact(double x) {
-    int e;
+    if (!std::isfinite(x)) return;
+    int e = 0;
     mantissa_ = static_cast<std::int64_t>(std::ldexp(std::frexp(x, &e), 53));
     exponent_ = e - 53;
   }
@@ -151,9 +153,12 @@ Range3 united(const std::vector<Range3>& of, const std::vector<SimplexId>& list)
   return r;
 }
 
-/// How far content reaches out of a box; not below 0.
-Exact outside(const Range& r, float centre, const Exact& half) {
+/// How far content reaches out of a box less `error`; not below 0. Where floats overflowed nothing is
+/// outside, and nothing is culled.
+Exact outside(const Range& r, float centre, float half_size, float error) {
   Exact most(0.0);
+  if (!std::isfinite(centre) || !std::isfinite(half_size)) return most;
+  const Exact half = Exact(half_size) - Exact(error);
   for (const Exact& over : {Exact(centre) - half - r.low, r.high - Exact(centre) - half})
     if (most < over) most = over;
   return most;
@@ -168,13 +173,14 @@ struct Share {
 /// One set of axes: boxes that are at home there, and boxes turned into it and grown by the error.
 void check_axes(const std::vector<Range3>& home, const std::vector<Range3>& guest, const Boxes& home_boxes,
                 const Turned& guest_boxes, float error, Share& share) {
+  if (!std::isfinite(error)) return;  // every box is grown to hold all
   for (int axis = 0; axis < 3; ++axis) {
     std::vector<Exact> home_off, guest_off;
     for (std::size_t i = 0; i < home.size(); ++i)
-      home_off.push_back(outside(home[i][axis], home_boxes.centre[axis][i], Exact(home_boxes.half[axis][i])));
+      home_off.push_back(outside(home[i][axis], home_boxes.centre[axis][i], home_boxes.half[axis][i], 0));
     for (std::size_t j = 0; j < guest.size(); ++j)
-      guest_off.push_back(outside(guest[j][axis], guest_boxes.centre[axis][j],
-                                  Exact(guest_boxes.half[axis][j]) - Exact(error)));
+      guest_off.push_back(
+          outside(guest[j][axis], guest_boxes.centre[axis][j], guest_boxes.half[axis][j], error));
     for (std::size_t i = 0; i < home.size(); ++i)
       for (std::size_t j = 0; j < guest.size(); ++j) {
         ++share.boxes;

@@ -410,8 +410,8 @@ TEST_CASE("real models, spoiled: no crash, exact pairs, built or refused in one 
   for (const char* name : {"spot", "cheburashka"}) {
     const Mesh model = read_mesh((meshes / (std::string(name) + ".obj")).string());
     for (const auto& spoiled : spoil(model, 5)) {
-      const auto& how = spoiled.first;  // named: clang 14 captures no structured binding
-      const auto& mesh = spoiled.second;
+      const auto& [name_of_dirt, mesh] = spoiled;
+      const auto& how = name_of_dirt;  // clang 14 captures no structured binding
       CAPTURE(std::string(name));
       CAPTURE(std::string(how));
       const Folder folder;
