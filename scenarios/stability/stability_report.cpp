@@ -1,5 +1,6 @@
 #include "scenarios/stability/stability_report.hpp"
 
+#include <algorithm>
 #include <cctype>
 
 #include "engine/error.hpp"
@@ -63,20 +64,11 @@ std::string plain(const std::string& text) {
   return out;
 }
 
-const char* words(Outcome o) {
-  switch (o) {
-    case Outcome::right:
-      return "right";
-    case Outcome::wrong:
-      return "wrong";
-    case Outcome::refused:
-      return "refused";
-    case Outcome::crashed:
-      return "crashed";
-    case Outcome::timed_out:
-      return "timed out";
-  }
-  return "";
+/// An outcome's name, for people.
+std::string words(Outcome o) {
+  std::string name = to_string(o);
+  std::replace(name.begin(), name.end(), '_', ' ');
+  return name;
 }
 
 PageGridDetail page_detail(const Grid& grid, std::size_t f, std::size_t m, const ReportOptions& options) {
