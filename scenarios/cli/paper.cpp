@@ -1,6 +1,5 @@
-#include <iostream>
+#include <cstdio>
 #include <memory>
-#include <thread>
 
 #include "engine/error.hpp"
 #include "scenarios/cli/command.hpp"

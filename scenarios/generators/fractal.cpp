@@ -116,13 +116,12 @@ class Carver {
     return static_cast<VertexId>(points_.size() - 1);
   }
 
-  Vector3d normal(const Polygon& f) const { return area_vector(f).normalized(); }
-  Vector3d area_vector(const Polygon& f) const {
+  Vector3d normal(const Polygon& f) const {
     Vector3d n = Vector3d::Zero();
     for (std::size_t i = 1; i + 1 < f.corners.size(); ++i)
       n += (position(f.corners[i]) - position(f.corners[0]))
                .cross(position(f.corners[i + 1]) - position(f.corners[0]));
-    return n / 2;
+    return n.normalized();
   }
 
   /// Distances of the mean of the corners from the edges.
@@ -158,7 +157,7 @@ class Carver {
   static bool fits(std::int64_t lids, std::int64_t gain) {
     if (lids < 0 || gain < 0) return false;
     if (lids == 0) return gain == 0;
-    if (lids <= 2) return gain >= 2 * lids && gain <= 8 * lids && !(lids == 1 && gain > 8);
+    if (lids <= 2) return gain >= 2 * lids && gain <= 8 * lids;
     return 2 * gain >= 5 * lids && gain <= 7 * lids;
   }
 
@@ -187,7 +186,7 @@ class Carver {
     for (const Kind& k : kKinds) {
       if (!fits(lids_left_ - k.lids(), gain_left_ - k.gain(m))) continue;
       const double off = static_cast<double>(k.gain(m)) / k.lids() - wanted;
-      sum += std::exp(-off * off / 2) + 1e-3;
+      sum += steady::exp(-off * off / 2) + 1e-3;
       choice.emplace_back(sum, &k);
     }
     if (choice.empty()) return false;

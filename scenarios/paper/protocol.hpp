@@ -46,7 +46,7 @@ struct ContactStep {
   std::array<RecursionCount, 3> counts;  ///< in the order of kRecursions
 };
 
-/// The steps of one collision. `scale_x`: X's coordinates are multiplied by it. The numbers drawn depend on
+/// The steps of one collision. The numbers drawn depend on
 /// protocol.seed, the object's name and the collision's number alone. Reuses `context`.
 std::vector<ContactStep> run_collision(const LrbRep& a, const LrbRep& x, const std::string& object,
                                        std::uint32_t collision, const PaperProtocol& protocol,

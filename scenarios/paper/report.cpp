@@ -5,7 +5,6 @@
 #include <sstream>
 
 #include "scenarios/files.hpp"
-#include "scenarios/page/inline_image.hpp"
 #include "scenarios/page/page.hpp"
 #include "scenarios/paper/figures.hpp"
 
@@ -24,12 +23,6 @@ std::string fixed(double x, int digits) {
   std::ostringstream out;
   out << std::fixed << std::setprecision(digits) << x;
   return out.str();
-}
-
-const PublishedRow* published(const std::string& object) {
-  for (const PublishedRow& p : published_table2())
-    if (object == p.object) return &p;
-  return nullptr;
 }
 
 PageTable table1(const PaperReport& r) {

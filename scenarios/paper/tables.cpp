@@ -76,6 +76,12 @@ std::span<const PublishedRow> published_table2() {
   return rows;
 }
 
+const PublishedRow* published(const std::string& object) {
+  for (const PublishedRow& p : published_table2())
+    if (object == p.object) return &p;
+  return nullptr;
+}
+
 std::string tables_json(std::span<const PaperObject> objects, std::span<const ObjectRow> rows,
                         const PaperProtocol& protocol) {
   nlohmann::ordered_json j;

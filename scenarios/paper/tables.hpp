@@ -38,6 +38,8 @@ struct PublishedRow {
   double min, average, max;
 };
 std::span<const PublishedRow> published_table2();
+/// The row of an object; null for one that the paper does not have.
+const PublishedRow* published(const std::string& object);
 
 /// Both tables as JSON: "table1_object_sizes", and "table2_face_comparisons_of_object_A_with" by the paper's
 /// recursion; the same with the suffixes "_paper_strict" and "_complete" by the others.
