@@ -5,6 +5,7 @@
 
 #include "engine/exact/predicates.hpp"
 #include "engine/exact/simplex_test.hpp"
+#include "tests/support/meet_roles.hpp"
 #include "tests/support/random_simplices.hpp"
 #include "tests/support/rational_oracle.hpp"
 
@@ -28,31 +29,17 @@ void for_each_kind(std::uint64_t seed, int rounds, int grid_factor, Check check)
   }
 }
 
-bool same_for_all_roles(const test::SimplexPair& s, int expected) {
-  // Roles and corner order must not matter: one rotation, one reflection, one exchange.
-  const auto a = s.a(), b = s.b();
-  const double* const turned[3] = {a[1], a[2], a[0]};
-  const double* const reflected[3] = {b[0], b[2], b[1]};
-  return static_cast<int>(exact::meet_triangles(a.data(), b.data())) == expected &&
-         static_cast<int>(exact::meet_triangles(b.data(), turned)) == expected &&
-         static_cast<int>(exact::meet_triangles(turned, reflected)) == expected;
-}
-
 }  // namespace
 
 TEST_CASE("triangles meet as the rational oracle says") {
   for_each_kind(11, 1500, 30, [](const test::SimplexPair& s) {
-    return same_for_all_roles(s, oracle::meet_of_simplices(s.a().data(), s.b().data(), 3));
+    return test::triangles_meet_as(s, oracle::meet_of_simplices(s.a().data(), s.b().data(), 3));
   });
 }
 
 TEST_CASE("segments in the plane meet as the rational oracle says") {
   for_each_kind(12, 1500, 20, [](const test::SimplexPair& s) {
-    const auto a = s.a(), b = s.b();
-    const int expected = oracle::meet_of_simplices(a.data(), b.data(), 2);
-    const double* const flipped[2] = {a[1], a[0]};
-    return static_cast<int>(exact::meet_segments(a.data(), b.data())) == expected &&
-           static_cast<int>(exact::meet_segments(b.data(), flipped)) == expected;
+    return test::segments_meet_as(s, oracle::meet_of_simplices(s.a().data(), s.b().data(), 2));
   });
 }
 

@@ -17,6 +17,7 @@ namespace lrb {
 void run_tree_kernel_for_enclosure(TreeKernel& k);
 }
 #include "engine/query/tree_kernel.inl"
+#include "tests/support/tree_content.hpp"
 
 using namespace lrb;
 using families::Random;
@@ -78,16 +79,6 @@ struct Scene {
   Pose pose_a, pose_b;
 };
 
-void simplices_under(const BlockTree& t, std::uint32_t node, std::vector<SimplexId>& out) {
-  const TreeNode& n = t.nodes()[node];
-  for (std::uint32_t k = 0; k < n.count; ++k) {
-    if (n.is_leaf)
-      out.push_back(t.blocks()[n.first].simplex[k]);
-    else
-      simplices_under(t, n.first + k, out);
-  }
-}
-
 /// The simplices that each box of a node must hold.
 std::vector<std::vector<SimplexId>> contents(const LrbRep& rep, std::uint32_t node) {
   const TreeNode& n = rep.tree().nodes()[node];
@@ -96,7 +87,7 @@ std::vector<std::vector<SimplexId>> contents(const LrbRep& rep, std::uint32_t no
     if (n.is_leaf)
       r[k].push_back(rep.tree().blocks()[n.first].simplex[k]);
     else
-      simplices_under(rep.tree(), n.first + k, r[k]);
+      test::simplices_under(rep.tree(), n.first + k, r[k]);
   }
   return r;
 }

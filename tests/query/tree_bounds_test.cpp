@@ -16,6 +16,7 @@ namespace lrb {
 void run_tree_kernel_under_test(TreeKernel& k);
 }
 #include "engine/query/tree_kernel.inl"
+#include "tests/support/tree_content.hpp"
 
 using namespace lrb;
 using shapes::Random;
@@ -46,16 +47,6 @@ Real3 in_node(const TreeNode& n, const Real3& x) {
   return y;
 }
 
-void simplices_under(const BlockTree& t, std::uint32_t node, std::vector<SimplexId>& out) {
-  const TreeNode& n = t.nodes()[node];
-  for (std::uint32_t k = 0; k < n.count; ++k) {
-    if (n.is_leaf)
-      out.push_back(t.blocks()[n.first].simplex[k]);
-    else
-      simplices_under(t, n.first + k, out);
-  }
-}
-
 /// Box k of a node must hold the simplices beneath it, as the kernel decodes it; the ball everything.
 void check_node(const LrbRep& rep, std::uint32_t index) {
   const BlockTree& t = rep.tree();
@@ -66,7 +57,7 @@ void check_node(const LrbRep& rep, std::uint32_t index) {
     if (n.is_leaf)
       below.push_back(t.blocks()[n.first].simplex[k]);
     else
-      simplices_under(t, n.first + k, below);
+      test::simplices_under(t, n.first + k, below);
     for (const SimplexId s : below)
       for (int corner = 0; corner < 3; ++corner) {
         Real3 x = to_real(vertex(rep, s, corner));

@@ -5,6 +5,7 @@
 
 #include "engine/exact/simplex_test.hpp"
 #include "engine/lrb/fnv.hpp"
+#include "tests/support/meet_roles.hpp"
 #include "tests/support/random_simplices.hpp"
 #include "tests/support/rational_oracle.hpp"
 #include "tests/torture/cgal_oracle.hpp"
@@ -31,23 +32,6 @@ struct PairTally {
   std::uint64_t differences() const { return wrong + cgal_wrong + crashes; }
 };
 
-/// Roles and the order of corners must not matter: one rotation, one reflection, one exchange.
-bool triangles_as(const test::SimplexPair& s, int expected) {
-  const auto a = s.a(), b = s.b();
-  const double* const turned[3] = {a[1], a[2], a[0]};
-  const double* const reflected[3] = {b[0], b[2], b[1]};
-  return static_cast<int>(exact::meet_triangles(a.data(), b.data())) == expected &&
-         static_cast<int>(exact::meet_triangles(b.data(), turned)) == expected &&
-         static_cast<int>(exact::meet_triangles(turned, reflected)) == expected;
-}
-
-bool segments_as(const test::SimplexPair& s, int expected) {
-  const auto a = s.a(), b = s.b();
-  const double* const flipped[2] = {a[1], a[0]};
-  return static_cast<int>(exact::meet_segments(a.data(), b.data())) == expected &&
-         static_cast<int>(exact::meet_segments(b.data(), flipped)) == expected;
-}
-
 PairTally batch_of_pairs(Kind kind, int dim, std::uint64_t seed, Batch batch) {
   PairTally t;
   for (std::uint64_t i = batch.begin; i < batch.end; ++i) {
@@ -60,7 +44,7 @@ PairTally batch_of_pairs(Kind kind, int dim, std::uint64_t seed, Batch batch) {
     const int expected = oracle::meet_of_simplices(a.data(), b.data(), static_cast<std::size_t>(dim));
     ++t.pairs;
     ++t.meet[expected];
-    const bool right = dim == 3 ? triangles_as(s, expected) : segments_as(s, expected);
+    const bool right = dim == 3 ? test::triangles_meet_as(s, expected) : test::segments_meet_as(s, expected);
     if (!right && t.wrong++ < 3)
       std::fprintf(stderr, "%s, %dD, seed %llu, pair %llu: the oracle says %s\n", test::name_of(kind).c_str(),
                    dim, static_cast<unsigned long long>(seed), static_cast<unsigned long long>(i),
