@@ -14,35 +14,6 @@ namespace {
 using Eigen::Vector3d;
 using Corners = std::array<Vector3d, 3>;
 
-/// Looks for the widest slab between two simplices. Any direction can be tried, however it came about; one too
-/// short to be told from rounding proves nothing, nor does an overflow.
-class SlabSearch {
- public:
-  SlabSearch(const Corners& a, const Corners& b, double margin, double enough)
-      : a_(a), b_(b), margin_(margin), enough_(enough) {}
-
-  double widest() const { return widest_; }
-
-  /// True if that is enough.
-  bool across(const Vector3d& d) {
-    const double length_sq = d.squaredNorm();
-    if (!std::isnormal(length_sq)) return false;
-    const double length = std::sqrt(length_sq), least = margin_ * length;
-    if (!std::isnormal(least)) return false;
-    const double a0 = d.dot(a_[0]), a1 = d.dot(a_[1]), a2 = d.dot(a_[2]);
-    const double b0 = d.dot(b_[0]), b1 = d.dot(b_[1]), b2 = d.dot(b_[2]);
-    const double width = std::max(std::min({b0, b1, b2}) - std::max({a0, a1, a2}),
-                                  std::min({a0, a1, a2}) - std::max({b0, b1, b2}));
-    if (width > least) widest_ = std::max(widest_, width / length);
-    return widest_ > enough_;
-  }
-
- private:
-  const Corners &a_, &b_;
-  double margin_, enough_;
-  double widest_ = 0;
-};
-
 Corners relative_to(const double* origin, const double* const x[3], int dim) {
   Corners c;
   for (int k = 0; k < 3; ++k) {
@@ -52,81 +23,142 @@ Corners relative_to(const double* origin, const double* const x[3], int dim) {
   return c;
 }
 
-bool search_in_space(SlabSearch& search, const Corners& a, const Corners& b) {
-  Vector3d edge_a[3], edge_b[3];
-  for (int k = 0; k < 3; ++k) {
-    edge_a[k] = a[(k + 1) % 3] - a[k];
-    edge_b[k] = b[(k + 1) % 3] - b[k];
+/// Looks for the widest slab between two simplices. Any direction can be tried, however it came about; one
+/// too short to be told from rounding proves nothing, nor does an overflow.
+class SlabSearch {
+ public:
+  SlabSearch(int dim, const Corners& a, const Corners& b, double margin)
+      : dim_(dim), a_(a), b_(b), margin_(margin) {}
+
+  static constexpr int kLikely = 3;
+  int directions() const { return dim_ == 3 ? 21 : 7; }
+
+  /// Width of the slab across a direction; 0 if there is none wider than the margin.
+  double width(int direction) const {
+    const Vector3d d = dim_ == 3 ? in_space(direction) : in_plane(direction);
+    const double length_sq = d.squaredNorm();
+    if (!std::isnormal(length_sq)) return 0;
+    const double length = std::sqrt(length_sq), least = margin_ * length;
+    if (!std::isnormal(least)) return 0;
+    const double a0 = d.dot(a_[0]), a1 = d.dot(a_[1]), a2 = d.dot(a_[2]);
+    const double b0 = d.dot(b_[0]), b1 = d.dot(b_[1]), b2 = d.dot(b_[2]);
+    const double w = std::max(std::min({b0, b1, b2}) - std::max({a0, a1, a2}),
+                              std::min({a0, a1, a2}) - std::max({b0, b1, b2}));
+    return w > least ? w / length : 0;
   }
-  const Vector3d n_a = edge_a[0].cross(edge_a[1]), n_b = edge_b[0].cross(edge_b[1]);
-  if (search.across(n_a) || search.across(n_b)) return true;
-  for (const Vector3d& e : edge_a)
-    for (const Vector3d& f : edge_b)
-      if (search.across(e.cross(f))) return true;
-  for (int k = 0; k < 3; ++k)
-    if (search.across(n_a.cross(edge_a[k])) || search.across(n_b.cross(edge_b[k]))) return true;
-  return false;
+
+ private:
+  static Vector3d edge(const Corners& c, int k) { return c[(k + 1) % 3] - c[k]; }
+  static Vector3d normal(const Corners& c) { return edge(c, 0).cross(edge(c, 1)); }
+  Vector3d middles() const { return (b_[0] + b_[1] + b_[2]) - (a_[0] + a_[1] + a_[2]); }
+
+  /// The line between the middles; normals; edge x edge; in the planes, across edges; the axes.
+  Vector3d in_space(int i) const {
+    if (i == 0) return middles();
+    if (i < 3) return normal(i == 1 ? a_ : b_);
+    if (i < 12) return edge(a_, (i - 3) / 3).cross(edge(b_, (i - 3) % 3));
+    if (i < 15) return normal(a_).cross(edge(a_, i - 12));
+    if (i < 18) return normal(b_).cross(edge(b_, i - 15));
+    return Vector3d::Unit(i - 18);
+  }
+  Vector3d in_plane(int i) const {
+    if (i == 0) return middles();
+    if (i > 4) return Vector3d::Unit(i - 5);
+    const Vector3d e = edge(i % 2 != 0 ? a_ : b_, 0);
+    return i < 3 ? Vector3d(-e.y(), e.x(), 0) : e;
+  }
+
+  int dim_;
+  const Corners &a_, &b_;
+  double margin_;
+};
+
+/// Width of the slab across d between a range and a value, or two ranges; negative if they overlap.
+double between(double low, double high, double other_low, double other_high) {
+  return std::max(other_low - high, low - other_high);
 }
 
-bool search_in_plane(SlabSearch& search, const Corners& a, const Corners& b) {
-  for (const Vector3d& e : {Vector3d(a[1] - a[0]), Vector3d(b[1] - b[0])})
-    if (search.across({-e.y(), e.x(), 0}) || search.across(e)) return true;
-  return false;
-}
-
-/// The least of: the height of one triangle's corner over the other's plane, and the distances of an edge that
-/// passes through that plane from the lines of the other's edges. The best over the edges that pass through.
-double piercing_depth(const Corners& t, const Corners& edges_of, double best) {
+/// The least of: the slabs between an edge's ends and a triangle, which must lie on opposite sides of it, and
+/// those between that edge and the triangle's edges, which it must pass all on the same hand. Slabs, because
+/// they are right for any direction, however badly rounded. 0 if the edge does not pass through, beyond
+/// doubt.
+double piercing_depth(const Corners& t, const Vector3d& p, const Vector3d& p2) {
   const Vector3d n = (t[1] - t[0]).cross(t[2] - t[0]);
   const double size = n.norm();
-  if (!std::isnormal(size)) return best;
-  double height[3];
-  for (int k = 0; k < 3; ++k) height[k] = n.dot(edges_of[k] - t[0]) / size;
-  for (int k = 0; k < 3; ++k) {
-    const int m = (k + 1) % 3;
-    double depth = std::min(std::abs(height[k]), std::abs(height[m]));
-    if ((height[k] > 0) == (height[m] > 0) || !(depth > best)) continue;
-    const Vector3d& p = edges_of[k];
-    const Vector3d along = edges_of[m] - p;
-    int turns = 0;
-    for (int side = 0; side < 3 && depth > best; ++side) {
-      const Vector3d across = (t[(side + 1) % 3] - t[side]).cross(along);
-      const double length = across.norm(), volume = across.dot(t[side] - p);
-      if (!std::isnormal(length)) depth = 0;
-      turns += volume > 0 ? 1 : -1;
-      depth = std::min(depth, std::abs(volume) / length);
-    }
-    if (depth > best && std::abs(turns) == 3) best = depth;
+  if (!std::isnormal(size)) return 0;
+  const double t0 = n.dot(t[0]), t1 = n.dot(t[1]), t2 = n.dot(t[2]), h = n.dot(p), h2 = n.dot(p2);
+  const double low = std::min({t0, t1, t2}), high = std::max({t0, t1, t2});
+  if ((h > high) == (h2 > high)) return 0;
+  double depth = std::min(between(low, high, h, h), between(low, high, h2, h2)) / size;
+  const Vector3d along = p2 - p;
+  int turns = 0;
+  for (int side = 0; side < 3 && depth > 0; ++side) {
+    const Vector3d &q = t[side], &r = t[(side + 1) % 3];
+    const Vector3d across = (r - q).cross(along);
+    const double length = across.norm(), volume = across.dot(q - p);
+    const double doubt = kWrapperMargin * (r - q).norm() * along.norm() * (q - p).norm();
+    if (!std::isnormal(length) || !(std::abs(volume) > doubt)) return 0;
+    turns += volume > 0 ? 1 : -1;
+    const double pa = across.dot(p), pb = across.dot(p2), qa = across.dot(q), qb = across.dot(r);
+    depth = std::min(
+        depth, between(std::min(pa, pb), std::max(pa, pb), std::min(qa, qb), std::max(qa, qb)) / length);
   }
-  return best;
+  return std::abs(turns) == 3 ? std::max(depth, 0.0) : 0;
 }
 
 /// The least height of a triangle: what keeps it from becoming a segment.
 double least_height(const Corners& t) {
-  const double longest =
-      std::max({(t[1] - t[0]).norm(), (t[2] - t[1]).norm(), (t[0] - t[2]).norm()});
+  const double longest = std::max({(t[1] - t[0]).norm(), (t[2] - t[1]).norm(), (t[0] - t[2]).norm()});
   return longest > 0 ? (t[1] - t[0]).cross(t[2] - t[0]).norm() / longest : 0;
 }
 
 }  // namespace
 
-double gap_between(double margin, double enough, int dim, const double* const a[3], const double* const b[3]) {
+double gap_between(double margin, double enough, int dim, const double* const a[3], const double* const b[3],
+                   std::uint8_t& hint) {
   const Corners x = relative_to(a[0], a, dim), y = relative_to(a[0], b, dim);
-  SlabSearch search(x, y, margin, enough);
-  if (search.across((y[0] + y[1] + y[2]) - (x[0] + x[1] + x[2]))) return search.widest();
-  dim == 3 ? search_in_space(search, x, y) : search_in_plane(search, x, y);
-  for (int axis = 0; axis < dim && !(search.widest() > enough); ++axis) search.across(Vector3d::Unit(axis));
-  return search.widest();
+  const SlabSearch search(dim, x, y, margin);
+  double widest = search.width(hint);
+  for (int i = 0, tried = hint; i < search.directions() && !(widest > enough); ++i) {
+    if (i == tried) continue;
+    const double width = search.width(i);
+    if (!(width > widest)) continue;
+    widest = width;
+    hint = static_cast<std::uint8_t>(i);
+  }
+  return widest;
+}
+
+double likely_gap(double margin, double enough, int dim, const double* const a[3], const double* const b[3]) {
+  const Corners x = relative_to(a[0], a, dim), y = relative_to(a[0], b, dim);
+  const SlabSearch search(dim, x, y, margin);
+  double widest = 0;
+  for (int i = 0; i < SlabSearch::kLikely && !(widest > enough); ++i)
+    widest = std::max(widest, search.width(i));
+  return widest;
 }
 
 bool apart_by(double margin, int dim, const double* const a[3], const double* const b[3]) {
-  return gap_between(margin, margin, dim, a, b) > margin;
+  std::uint8_t hint = 0;
+  return gap_between(margin, margin, dim, a, b, hint) > margin;
 }
 
-double crossing_depth(const double* const a[3], const double* const b[3]) {
+double crossing_depth(double enough, const double* const a[3], const double* const b[3], std::uint8_t& hint) {
   const Corners x = relative_to(a[0], a, 3), y = relative_to(a[0], b, 3);
-  const double depth = piercing_depth(y, x, piercing_depth(x, y, 0));
-  return std::min({depth, least_height(x) / 4, least_height(y) / 4});
+  const auto depth_of = [&](int i) {
+    const Corners& edges = i < 3 ? y : x;
+    return piercing_depth(i < 3 ? x : y, edges[i % 3], edges[(i + 1) % 3]);
+  };
+  double deepest = depth_of(hint);
+  for (int i = 0, tried = hint; i < 6 && !(deepest > enough); ++i) {
+    if (i == tried) continue;
+    const double depth = depth_of(i);
+    if (!(depth > deepest)) continue;
+    deepest = depth;
+    hint = static_cast<std::uint8_t>(i);
+  }
+  // Triangles that rounding could flatten do not cross.
+  return std::min({deepest, least_height(x) / 4, least_height(y) / 4});
 }
 
 double world_size(const Pose& pose, const BlockTree& tree) {
@@ -138,7 +170,8 @@ double wrapper_margin(const Pose& pose_a, const BlockTree& a, const Pose& pose_b
 }
 
 double stretch(const Pose& pose) {
-  return std::sqrt((pose.r.transpose() * pose.r).cwiseAbs().rowwise().sum().maxCoeff()) * (1 + kWrapperMargin);
+  return std::sqrt((pose.r.transpose() * pose.r).cwiseAbs().rowwise().sum().maxCoeff()) *
+         (1 + kWrapperMargin);
 }
 
 }  // namespace lrb

@@ -24,7 +24,8 @@ void check_coarse_request(const CollideRequest& request) {
     throw InputError("a tolerance or limit needs the complete recursion; leave \"paper\" out");
   if (request.contacts || request.interiors_overlap)
     throw InputError(
-        "contacts and interiors_overlap are exact: they cannot be had with a tolerance or limit; leave out one "
+        "contacts and interiors_overlap are exact: they cannot be had with a tolerance or limit; leave out "
+        "one "
         "of the two");
   if (request.wrapper != WrapperMode::regularised)
     throw InputError("a tolerance or limit needs regularised wrappers");

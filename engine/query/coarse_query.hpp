@@ -2,11 +2,12 @@
 /// Queries that do no more than a scene needs: between wrappers as coarse as a tolerance allows, or coarsest
 /// first until a limit is reached.
 ///
-/// Why they never call bodies separate that meet. Each wrapper encloses its body (wrapper_level.hpp), so bodies
-/// whose wrappers share no point share none. Two wrappers share no point if no two faces of theirs meet and no
-/// connected piece of either one's boundary has a point in the other: pairs of faces are found as the complete
-/// query finds them, and pieces are located exactly. In the world, rounding moves hidden vertices and lids
-/// separately: faces therefore count as apart only where they keep wrapper_margin(), in which all that has room.
+/// Why they never call bodies separate that meet. Each wrapper encloses its body (wrapper_level.hpp), so
+/// bodies whose wrappers share no point share none. Two wrappers share no point if no two faces of theirs
+/// meet and no connected piece of either one's boundary has a point in the other: pairs of faces are found as
+/// the complete query finds them, and pieces are located exactly. In the world, rounding moves hidden
+/// vertices and lids separately: faces therefore count as apart only where they keep wrapper_margin(), in
+/// which all that has room.
 
 #include <chrono>
 #include <limits>
@@ -40,9 +41,7 @@ struct CoarseRules {
   bool stopped = false;  ///< a limit was reached
   bool near = false;     ///< real faces do not meet, but came within the margin
 
-  bool must_stop() {
-    return stopped |= has_deadline && Clock::now() >= deadline;
-  }
+  bool must_stop() { return stopped |= has_deadline && Clock::now() >= deadline; }
   /// Asked only when there is one to be done: the last one that is allowed may be the last one needed.
   bool no_test_left(std::uint64_t tests) { return stopped |= max_tests > 0 && tests >= max_tests; }
   bool one_is_enough() const { return !exact; }

@@ -51,7 +51,7 @@ struct CollideRequest {
   /// needed of a body is made, and kept in the context, when it is first asked for; that is not counted.
   double tolerance = 0;         ///< regions no thicker than this stay closed; unit: the meshes'
   std::uint64_t max_tests = 0;  ///< face tests at most; 0: as many as it takes
-  double max_time = 0;  ///< seconds at most, looked at every few face tests; 0: as long as it takes
+  double max_time = 0;          ///< seconds at most, looked at every few face tests; 0: as long as it takes
   /// For separate bodies: find CollideResult::separation. Takes longer than the query.
   bool separation = false;
 
@@ -65,7 +65,7 @@ enum class Relation : std::uint8_t {
   touching,    ///< surfaces meet, but no two faces cross
   a_inside_b,  ///< no surface contact; B holds A
   b_inside_a,
-  undefined,  ///< no surface contact, and a body that is not closed: inside has no meaning
+  undefined,   ///< no surface contact, and a body that is not closed: inside has no meaning
   unresolved,  ///< a coarse query did not prove the bodies apart; they are closer than the error bound, or
                ///< meet
 };
@@ -80,11 +80,11 @@ struct SimplexPair {
   friend auto operator<=>(const SimplexPair&, const SimplexPair&) = default;
 };
 
-/// A certificate that two closed bodies are apart: their outermost wrappers, with these regions refined in this
-/// order, meet nowhere, and none has a point in the other. No region can be taken back in without the proof
-/// failing.
+/// A certificate that two closed bodies are apart: their outermost wrappers, with these regions refined in
+/// this order, meet nowhere, and none has a point in the other. No region can be taken back in without the
+/// proof failing.
 struct Separation {
-  std::array<std::vector<RegionId>, 2> refined;     ///< A's and B's
+  std::array<std::vector<RegionId>, 2> refined;      ///< A's and B's
   std::array<std::uint32_t, 2> face_count = {0, 0};  ///< of the two wrappers
 };
 
@@ -117,8 +117,8 @@ struct CollideResult {
   std::vector<PairContactRecord> contacts;      ///< (|pairs|) if requested
   std::vector<ContactRegion> regions;           ///< connected groups of contacts, if requested
   std::array<std::vector<RegionId>, 2> opened;  ///< regions refined, A's and B's, in order
-  /// 0: the answer is exact. Else the pairs are those of wrappers that are off the bodies by no more than this,
-  /// both together, in the world: unresolved bodies are no further apart. Infinite: nothing is known.
+  /// 0: the answer is exact. Else the pairs are those of wrappers that are off the bodies by no more than
+  /// this, both together, in the world: unresolved bodies are no further apart. Infinite: nothing is known.
   double error_bound = 0;
   bool finished = true;  ///< false: a limit was reached before the tolerance (or the exact answer) was
   std::optional<Separation> separation;  ///< if requested, separate, and not nearer than rounding

@@ -5,8 +5,8 @@
 
 #include <Eigen/Geometry>
 
-#include "engine/lrb/pieces.hpp"
 #include "engine/exact/locate.hpp"
+#include "engine/lrb/pieces.hpp"
 #include "engine/lrb/validate.hpp"
 #include "engine/query/apart.hpp"
 
@@ -136,7 +136,8 @@ class SeparationFinder {
       const int side = done_[0] < half_[0].size() ? 0 : 1;
       const std::size_t i = done_[side]++;
       for (std::size_t j = 0; j < done_[1 - side] && half_[side].is_there(i); ++j)
-        if (half_[1 - side].is_there(j) && !half_[side].apart(i, half_[1 - side], j) && !refine_one(side, i, j))
+        if (half_[1 - side].is_there(j) && !half_[side].apart(i, half_[1 - side], j) &&
+            !refine_one(side, i, j))
           return false;
     }
     return true;

@@ -161,8 +161,8 @@ class ThicknessFinder {
       VertexId v[3];
       rep_.simplex(rep_.first_simplex(f) + i, v);
       if (rep_.dim() == 2) v[2] = v[1];
-      visit(
-          Triangle{rep_.vertices()[v[0]] / unit_, rep_.vertices()[v[1]] / unit_, rep_.vertices()[v[2]] / unit_});
+      visit(Triangle{rep_.vertices()[v[0]] / unit_, rep_.vertices()[v[1]] / unit_,
+                     rep_.vertices()[v[2]] / unit_});
     }
   }
 

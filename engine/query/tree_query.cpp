@@ -44,8 +44,7 @@ TreeKernel set_up_kernel(const BlockTree& a, const Pose& pose_a, const BlockTree
     for (int j = 0; j < 3; ++j) k.m[i][j] = m(i, j);
     k.t[i] = t[i];
   }
-  const double size =
-      (world_size(pose_a, a) + world_size(pose_b, b) + kWorldUnderflow) / unit;
+  const double size = (world_size(pose_a, a) + world_size(pose_b, b) + kWorldUnderflow) / unit;
   const double defect_a = defect(pose_a.r), defect_m = defect(m);
   const double turn_a = std::sqrt(1 + defect_a), turn_m = std::sqrt(1 + defect_m);
   const double on_a = defect_a * (a.extent() / unit) + turn_a * kWorldRounding * size;

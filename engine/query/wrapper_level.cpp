@@ -13,7 +13,8 @@ namespace {
 
 constexpr std::size_t kMostLevels = 24;  // kept; a sweep over tolerances would hold one more each
 
-/// The largest thickness among a region and all that it hides: in the order of a worklist until nothing grows.
+/// The largest thickness among a region and all that it hides: in the order of a worklist until nothing
+/// grows.
 std::vector<double> needed_tolerances(const LrbRep& rep) {
   std::vector<double> needed = region_thickness(rep);
   std::vector<RegionId> work(rep.region_count());

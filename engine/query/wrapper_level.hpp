@@ -5,8 +5,8 @@
 #include <memory>
 #include <vector>
 
-#include "engine/query/block_tree.hpp"
 #include "engine/lrb/lrb_rep.hpp"
+#include "engine/query/block_tree.hpp"
 
 namespace lrb {
 
@@ -18,11 +18,11 @@ struct WrapperLevel {
   std::uint32_t face_count = 0, pseudo_count = 0;
 };
 
-/// The levels of one body, each made when it is first asked for. An LRB-rep without regions, of a body that is
-/// not closed or that intersects itself has only one: itself.
+/// The levels of one body, each made when it is first asked for. An LRB-rep without regions, of a body that
+/// is not closed or that intersects itself has only one: itself.
 ///
-/// A region is included only with all that it hides, so that the wrapper encloses the body; that it does rests
-/// on the LRB-rep being embedded (validate.hpp), which what the builders make is.
+/// A region is included only with all that it hides, so that the wrapper encloses the body; that it does
+/// rests on the LRB-rep being embedded (validate.hpp), which what the builders make is.
 class WrapperLevels {
  public:
   explicit WrapperLevels(const LrbRep& rep);

@@ -51,7 +51,8 @@ std::string list(const std::vector<RegionId>& regions) {
 std::string picture_name(const std::string& path, std::size_t pose, std::size_t poses) {
   if (poses == 1) return path;
   const std::filesystem::path p(path);
-  return (p.parent_path() / (p.stem().string() + "-" + std::to_string(pose) + p.extension().string())).string();
+  return (p.parent_path() / (p.stem().string() + "-" + std::to_string(pose) + p.extension().string()))
+      .string();
 }
 
 std::string line_of(std::size_t pose, const CollideResult& result, const QueryOptions& o, double us,

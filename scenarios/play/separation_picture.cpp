@@ -42,7 +42,8 @@ void draw_separation(const LrbRep& a, const LrbRep& b, const Pose& pose, const S
     bodies[1].rep = &b;
     bodies[1].wrapper = &wrapper_b;
     bodies[1].pose = pose;
-    return Panel{rasterizer.draw(build_scene(bodies).list, camera, options), caption(what, wrapper_a, wrapper_b)};
+    return Panel{rasterizer.draw(build_scene(bodies).list, camera, options),
+                 caption(what, wrapper_a, wrapper_b)};
   };
   std::vector<Panel> panels = {panel("outermost wrappers")};
   for (const RegionId r : separation.refined[0]) wrapper_a.refine(r);

@@ -1,7 +1,8 @@
-// Coarse queries and certificates of separation against exact brute force and against distances measured here.
-#include <doctest/doctest.h>
-
+// Coarse queries and certificates of separation against exact brute force and against distances measured
+// here.
 #include <cmath>
+
+#include <doctest/doctest.h>
 
 #include "engine/build/build.hpp"
 #include "engine/error.hpp"
@@ -25,7 +26,8 @@ struct Bodies {
 
 std::vector<Bodies> bodies() {
   std::vector<Bodies> list;
-  list.push_back({"bumps", build_lrb(shapes::bumpy_sphere(2, 7, 0.3)), build_lrb(shapes::bumpy_sphere(2, 8, 0.3))});
+  list.push_back(
+      {"bumps", build_lrb(shapes::bumpy_sphere(2, 7, 0.3)), build_lrb(shapes::bumpy_sphere(2, 8, 0.3))});
   list.push_back({"ball in bowl", build_lrb(shapes::bowl(16, 8)), build_lrb(shapes::icosphere(2, 0.5))});
   list.push_back({"tori", build_lrb(shapes::torus(16, 10)), build_lrb(shapes::torus(14, 8, 1, 0.25))});
   list.push_back({"comb, no regions", build_lrb(shapes::comb(5)),
@@ -60,7 +62,8 @@ CollideResult ask(const Bodies& pair, const Pose& p, const CollideRequest& reque
 }
 
 /// What a coarse answer claims, against the truth.
-void check_claims(const Bodies& pair, const Pose& p, const CollideResult& coarse, const BruteForceResult& truth) {
+void check_claims(const Bodies& pair, const Pose& p, const CollideResult& coarse,
+                  const BruteForceResult& truth) {
   if (coarse.relation == Relation::separate) REQUIRE(truth.relation == Relation::separate);
   if (coarse.relation == Relation::crossing) REQUIRE(truth.relation == Relation::crossing);
   if (coarse.relation == Relation::unresolved) {

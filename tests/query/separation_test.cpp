@@ -1,5 +1,5 @@
-// The certificate of separation, checked without the query and its predicates: two wrappers, every face of one
-// against every face of the other and every corner against the other as a whole, in rational arithmetic.
+// The certificate of separation, checked without the query and its predicates: two wrappers, every face of
+// one against every face of the other and every corner against the other as a whole, in rational arithmetic.
 #include <doctest/doctest.h>
 
 #include "engine/build/build.hpp"
@@ -23,7 +23,10 @@ struct Wrapped {
   torture::ParityOracle parity;
 
   Wrapped(const LrbRep& r, const Pose& pose, const std::vector<RegionId>& refined)
-      : rep(r), x(torture::world_points(r, pose)), simplices(boundary(r, refined)), parity(r, pose, simplices) {}
+      : rep(r),
+        x(torture::world_points(r, pose)),
+        simplices(boundary(r, refined)),
+        parity(r, pose, simplices) {}
 
   static std::vector<SimplexId> boundary(const LrbRep& rep, const std::vector<RegionId>& refined) {
     std::vector<bool> open(rep.region_count(), false);
@@ -65,7 +68,8 @@ bool are_apart(const Wrapped& a, const Wrapped& b, Random& random) {
         p[k] = a.x[v[k]].data();
         q[k] = b.x[w[k]].data();
       }
-      if (!boxes_apart(p, q, n) && oracle::meet_of_simplices(p, q, static_cast<std::size_t>(n)) != 0) return false;
+      if (!boxes_apart(p, q, n) && oracle::meet_of_simplices(p, q, static_cast<std::size_t>(n)) != 0)
+        return false;
     }
   const auto has_corner_in = [&](const Wrapped& inner, const Wrapped& outer) {
     std::vector<bool> seen(inner.x.size(), false);
@@ -90,7 +94,8 @@ struct Bodies {
 
 std::vector<Bodies> bodies() {
   std::vector<Bodies> list;
-  list.push_back({"bumps", build_lrb(shapes::bumpy_sphere(3, 7, 0.3)), build_lrb(shapes::bumpy_sphere(2, 8, 0.3)), 0.6});
+  list.push_back(
+      {"bumps", build_lrb(shapes::bumpy_sphere(3, 7, 0.3)), build_lrb(shapes::bumpy_sphere(2, 8, 0.3)), 0.6});
   list.push_back({"ball in bowl", build_lrb(shapes::bowl(16, 8)), build_lrb(shapes::icosphere(2, 0.3)), 0.3});
   list.push_back({"tori", build_lrb(shapes::torus(16, 10)), build_lrb(shapes::torus(14, 8, 1, 0.25)), 0.4});
   list.push_back({"void", build_lrb(shapes::box_with_void()), build_lrb(shapes::icosphere(1, 0.2)), 0.1});
@@ -130,7 +135,8 @@ TEST_CASE("certificates of separation hold, and hold no region too many open") {
           minimal += !(side == 0 ? are_apart(larger, b, random) : are_apart(a, larger, random));
         }
     }
-    MESSAGE(std::string(pair.name) << ": " << certified << " certificates, " << refined << " regions refined in all");
+    MESSAGE(std::string(pair.name) << ": " << certified << " certificates, " << refined
+                                   << " regions refined in all");
     CHECK(certified >= 5);
     CHECK(minimal == trials);
   }
@@ -148,8 +154,8 @@ TEST_CASE("the checker can say no: wrappers as they come do not prove close bodi
   REQUIRE(r.relation == Relation::separate);
   CHECK(!are_apart(Wrapped(bowl, Pose{}, {}), Wrapped(ball, inside, {}), random));
   REQUIRE(r.separation);
-  CHECK(are_apart(Wrapped(bowl, Pose{}, r.separation->refined[0]), Wrapped(ball, inside, r.separation->refined[1]),
-                  random));
+  CHECK(are_apart(Wrapped(bowl, Pose{}, r.separation->refined[0]),
+                  Wrapped(ball, inside, r.separation->refined[1]), random));
   CHECK(r.separation->face_count[0] > 0);
 }
 

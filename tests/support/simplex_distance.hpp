@@ -1,5 +1,6 @@
 #pragma once
-/// Distances between points, segments and triangles, by the textbook and slowly: shares no code with the engine.
+/// Distances between points, segments and triangles, by the textbook and slowly: shares no code with the
+/// engine.
 
 #include <algorithm>
 #include <cmath>
@@ -44,8 +45,7 @@ inline double segment_segment(const Eigen::Vector3d& a, const Eigen::Vector3d& b
 inline double point_triangle(const Eigen::Vector3d& p, const Points& t) {
   const Eigen::Vector3d n = (t[1] - t[0]).cross(t[2] - t[0]);
   bool over = n.norm() > 0;
-  for (int k = 0; k < 3 && over; ++k)
-    over = n.dot((t[(k + 1) % 3] - t[k]).cross(p - t[k])) >= 0;
+  for (int k = 0; k < 3 && over; ++k) over = n.dot((t[(k + 1) % 3] - t[k]).cross(p - t[k])) >= 0;
   if (over) return std::abs(n.dot(p - t[0])) / n.norm();
   return std::min({point_segment(p, t[0], t[1]), point_segment(p, t[1], t[2]), point_segment(p, t[2], t[0])});
 }
