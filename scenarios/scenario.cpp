@@ -62,7 +62,13 @@ BodySpec read_body(const JsonNode& node, const std::filesystem::path& folder, st
     if (const auto parameters = node.get("parameters"))
       body.parameters = read_parameters(*parameters, *generator);
   }
-  if (const auto build = node.get("build")) body.build = read_build(*build, seed);
+  if (const auto build = node.get("build")) {
+    body.build = read_build(*build, seed);
+    const Generator* generator = find_generator(body.generator);
+    for (const char* key : {"patch_interior", "max_outer_faces"})
+      if (generator != nullptr && generator->make_rep != nullptr && build->has(key))
+        build->fail_key(key, "the regions of this body are known by construction: remove it");
+  }
   if (const auto pose = node.get("pose")) body.pose = read_pose(*pose);
   return body;
 }

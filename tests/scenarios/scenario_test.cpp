@@ -81,6 +81,8 @@ TEST_CASE("schema and reader agree on good and bad files") {
       with("/bodies/a/file", "x.obj"),
       with("/bodies/b/parameters/frequency", "3"),
       with("/bodies/b/build", json{{"patch_interior", 0}}),
+      with("/bodies/b", json{{"generator", "fractal"}, {"build", {{"seed", 3}}}}),
+      with("/bodies/b", json{{"generator", "fractal"}, {"build", {{"patch_interior", 3}}}}),
       with("/bodies/a/pose", json{1, 2, 3}),
       with("/bodies/a/pose", json{{"position", {1, 2, 3}}, {"degrees", 90}}),
       with("/motion/from", json{1, 2}),
