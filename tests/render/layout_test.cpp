@@ -31,7 +31,7 @@ std::vector<PixelRect> boxes(const OverlayLayout& layout) {
   for (const auto& t : layout.texts) out.push_back(t.box);
   out.insert(out.end(), layout.key_marks.begin(), layout.key_marks.end());
   if (layout.event_mark.width > 0) out.push_back(layout.event_mark);
-  if (layout.scale.width > 0) out.push_back(layout.scale);
+  if (layout.bar.width > 0) out.push_back(layout.bar);
   return out;
 }
 
@@ -71,7 +71,7 @@ TEST_CASE("the overlay draws where it was laid out, the rest stays") {
   }
   const PixelRect& m = layout.event_mark;
   CHECK(frame.at(m.x + m.width / 2, m.y + m.height / 2) == palette::kYellow);
-  const PixelRect& s = layout.scale;
+  const PixelRect& s = layout.bar;
   CHECK(frame.at(s.x, s.y + 2) == palette::viridis(0));
   CHECK(frame.at(s.right() - 1, s.y + 2) == palette::viridis(1));
   for (const auto& t : layout.texts) {
