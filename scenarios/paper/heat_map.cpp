@@ -1,12 +1,13 @@
 #include "scenarios/paper/heat_map.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "render/montage.hpp"
 #include "render/overlay.hpp"
+#include "render/palette.hpp"
 #include "render/rasterize.hpp"
 #include "render/scene.hpp"
-#include "scenarios/play/moments.hpp"
 #include "trace/counters.hpp"
 #include "trace/cursor.hpp"
 
@@ -15,14 +16,17 @@ namespace {
 
 constexpr int kPanelWidth = 560, kPanelHeight = 500;
 constexpr double kAside = 0.45;  ///< how far from the other body's place one looks, over the distance
-constexpr float kThin = 0.6F;    ///< lines: bodies of tens of thousands of faces are small here
+
+/// Shape is seen, and colours stay those of the scale.
+const Lighting kSoft{.ambient = 0.78, .head = 0.1, .key = 0.16, .fill = 0.05};
 
 /// What one panel shows.
 struct Sitter {
   Side side;
   const CloseUp* collision;
-  const char* which;  ///< easiest or hardest
-  bool near;          ///< where the tests are, else the whole body
+  const CollideResult* contact;  ///< of its last time step
+  const char* which;             ///< easiest or hardest
+  bool near;                     ///< where the bodies meet, else the whole body
 };
 
 std::vector<double> tests_of(const PaperPair& pair, const Sitter& s) {
@@ -53,74 +57,81 @@ ViewDirection view_of(const PaperPair& pair, const Sitter& s) {
   return {from + kAside * (aside + 0.7 * up), up};
 }
 
-/// Corners of the real faces that were tested; of all faces tested if no real one was.
-std::vector<Eigen::Vector3d> tested_points(const LrbRep& rep, const Pose& pose,
-                                           const std::vector<double>& tests) {
-  std::vector<Eigen::Vector3d> out;
-  for (const FaceId end : {rep.real_face_count(), rep.face_count()}) {
-    for (FaceId f = 0; f < end; ++f)
-      if (tests[f] > 0)
-        for (const VertexId v : rep.face(f)) out.push_back(pose.apply(rep.vertices()[v]));
-    if (!out.empty()) break;
-  }
-  return out;
+/// Where the bodies meet in the last time step.
+CollideResult contact_of(const PaperPair& pair, const CloseUp& c) {
+  CollideRequest request;
+  request.contacts = true;
+  return collide(pair.a.rep, c.steps.back().pose_a, pair.x.rep, c.steps.back().pose_x, request);
 }
 
-Camera camera_of(const PaperPair& pair, const Sitter& s, const std::vector<double>& tests) {
+Camera camera_of(const PaperPair& pair, const Sitter& s) {
   const LrbRep& rep = pair.rep(s.side);
-  const Pose pose = pose_of(s);
   FitOptions fit;
   fit.view = view_of(pair, s);
-  constexpr double kAround = 1.1, kLeast = 0.05;  // of the tested faces' size, of the body's
-  return s.near ? fit_contact(tested_points(rep, pose, tests), box_of(rep, pose), kPanelWidth, kPanelHeight,
-                              fit, kAround, kLeast)
-                : fit_camera(body_points(rep, pose), kPanelWidth, kPanelHeight, fit);
+  constexpr double kAround = 1.2, kLeast = 0.12;  // of the contact's size, of the body's
+  return s.near ? fit_contact(contact_points(s.contact->regions), box_of(rep, pose_of(s)), kPanelWidth,
+                              kPanelHeight, fit, kAround, kLeast)
+                : fit_camera(body_points(rep, pose_of(s)), kPanelWidth, kPanelHeight, fit);
 }
 
-Panel draw_panel(Rasterizer& rasterizer, const PaperPair& pair, const Sitter& s, double most, Scene& legend) {
+/// The scale: logarithmic, because a few faces get most of the tests. 0 for none, 1 for the most of all.
+double share(double tests, double most) {
+  return most > 0 ? std::log1p(tests) / std::log1p(most) : 0;
+}
+
+/// The wrapper as the last time step left it, without anything translucent, so that colours are those of the
+/// scale; and where the bodies meet.
+DrawList wrapper_list(const PaperPair& pair, const Sitter& s, double most) {
+  const LrbRep& rep = pair.rep(s.side);
   const std::vector<double> tests = tests_of(pair, s);
   trace::Cursor cursor(s.collision->trace, pair.a.rep, pair.x.rep);
   cursor.seek(static_cast<trace::EventId>(s.collision->trace.events.size() - 1));
-  SceneBody body;
-  body.rep = &pair.rep(s.side);
-  body.wrapper = &cursor.wrapper(s.side);
-  body.pose = pose_of(s);
-  body.face_values = tests;
-  body.name = pair.name(s.side);
-  SceneOptions options;
-  options.colour_by = ColourBy::value;
-  options.value_name = "face tests of a face";
-  options.value_range = {0, most};
-  options.scale = kThin;
-  options.real_edges = s.near;
-  const Scene scene = build_scene(std::span(&body, 1), {}, options);
-  legend.scale = scene.scale;
-  for (const LegendItem& item : scene.key) legend.key.push_back(item);
+  DrawList list;
+  list.edge_styles[0] = {with_alpha(kWhite, 110), 0.8F};
+  for (const FaceId f : cursor.wrapper(s.side).boundary()) {
+    DrawTriangle t;
+    t.colour = tests[f] > 0 ? palette::viridis(share(tests[f], most)) : palette::kPaleFront;
+    t.edges = 7;
+    std::vector<Eigen::Vector3d> corners;
+    for (const VertexId v : rep.face(f)) corners.push_back(pose_of(s).apply(rep.vertices()[v]));
+    list.add_polygon(corners, t);
+  }
+  for (const ContactRegion& region : s.contact->regions)
+    for (const ContactLoop& loop : region.loops) {
+      DrawLine line;
+      line.points = loop.points;
+      line.closed = loop.closed;
+      line.colour = palette::kContact;
+      line.width = 3;
+      line.halo = kWhite;
+      line.halo_width = 1;
+      line.layer = Layer::on_top;
+      list.lines.push_back(line);
+    }
+  return list;
+}
+
+Panel draw_panel(Rasterizer& rasterizer, const PaperPair& pair, const Sitter& s, double most) {
   RasterOptions raster;
   raster.width = kPanelWidth;
   raster.height = kPanelHeight;
-  const std::string what = s.near ? ", close up"
-                                  : ", " + std::string(s.which) + " collision (" +
-                                        group_digits(s.collision->comparisons) + " face tests)";
-  return {rasterizer.draw(scene.list, camera_of(pair, s, tests), raster), pair.name(s.side) + what};
-}
-
-/// Key items that are there once.
-std::vector<LegendItem> without_repeats(const std::vector<LegendItem>& items) {
-  std::vector<LegendItem> out;
-  for (const LegendItem& item : items)
-    if (std::none_of(out.begin(), out.end(), [&](const LegendItem& o) { return o.text == item.text; }))
-      out.push_back(item);
-  return out;
+  raster.lighting = kSoft;
+  const std::string what =
+      s.near ? ", close up"
+             : ", " + std::string(s.which) + ": " + group_digits(s.collision->comparisons) + " face tests";
+  return {rasterizer.draw(wrapper_list(pair, s, most), camera_of(pair, s), raster), pair.name(s.side) + what};
 }
 
 }  // namespace
 
 Image draw_heat_maps(const PaperPair& pair, const CloseUp& easiest, const CloseUp& hardest) {
+  const CollideResult contacts[2] = {contact_of(pair, easiest), contact_of(pair, hardest)};
   std::vector<Sitter> sitters;
-  for (const auto& [collision, which] : {std::pair{&easiest, "easiest"}, {&hardest, "hardest"}})
+  for (const bool hard : {false, true})
     for (const Side side : {Side::a, Side::b})
-      for (const bool near : {false, true}) sitters.push_back({side, collision, which, near});
+      for (const bool near : {false, true})
+        sitters.push_back(
+            {side, hard ? &hardest : &easiest, &contacts[hard ? 1 : 0], hard ? "hardest" : "easiest", near});
   double most = 0;
   for (const Sitter& s : sitters) {
     const std::vector<double> tests = tests_of(pair, s);
@@ -128,21 +139,20 @@ Image draw_heat_maps(const PaperPair& pair, const CloseUp& easiest, const CloseU
   }
   Rasterizer rasterizer;
   std::vector<Panel> panels;
-  Scene legend;
-  for (const Sitter& s : sitters) panels.push_back(draw_panel(rasterizer, pair, s, most, legend));
+  for (const Sitter& s : sitters) panels.push_back(draw_panel(rasterizer, pair, s, most));
   MontageOptions options;
   options.columns = 4;
-  options.text_height = 22;
+  options.text_height = 28;
   const Image all = montage(panels, options);
 
   Overlay overlay;
-  overlay.key = without_repeats(legend.key);
-  overlay.scale = legend.scale;
+  overlay.key = {{LegendItem::Mark::line, palette::kContact, "where the bodies meet"},
+                 {LegendItem::Mark::dashed, palette::kContact, "the same, hidden"}};
+  overlay.scale = ScaleBar{"face tests of a face (log scale)", 0, most};
   constexpr int kRoom = 400;  // more than the legend needs; what it does not need is not drawn
   const OverlayLayout tentative = lay_out(overlay, all.width(), all.height() + kRoom);
   const int height = all.height() + (all.height() + kRoom - tentative.picture.height);
-  const PixelRect place{0, 0, all.width(), all.height()};
-  return compose_frame(all, place, overlay, all.width(), height);
+  return compose_frame(all, all.rect(), overlay, all.width(), height);
 }
 
 }  // namespace lrb

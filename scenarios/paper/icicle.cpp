@@ -20,7 +20,7 @@ constexpr double kWidth = 1200, kMargin = 16, kRow = 24, kText = 15, kTitle = 18
 constexpr double kRule = 0.7, kRuleShare = 0.2;  ///< white between boxes: pixels, of the box at most
 constexpr double kRoomForText = 2.5;             ///< box widths over the text's height that take a number
 
-enum class State : std::uint8_t { refined, tested, untouched };  // in the order of the boxes
+enum class State : std::uint8_t { refined, tested, real_tested, untouched };  // in the order of the boxes
 
 Rgba colour_of(State s) {
   switch (s) {
@@ -28,6 +28,8 @@ Rgba colour_of(State s) {
       return palette::kGreen;
     case State::tested:
       return palette::kOrange;
+    case State::real_tested:
+      return palette::kSkyBlue;
     case State::untouched:
       break;
   }
@@ -66,16 +68,16 @@ class Tree {
     Node n;
     for (const RegionId r : inside_[slot(cell)]) n.inside.push_back(node(r));
     const auto floor = is_region(cell) ? rep_.floor(cell) : rep_.outermost_faces();
-    for (const State state : {State::tested, State::untouched}) {
+    for (const State state : {State::real_tested, State::untouched}) {
       const auto count = std::count_if(floor.begin(), floor.end(), [&](FaceId f) {
-        return rep_.is_real(f) && (tests_[f] > 0) == (state == State::tested);
+        return rep_.is_real(f) && (tests_[f] > 0) == (state == State::real_tested);
       });
       if (count == 0) continue;
       Node faces;
       faces.state = state;
       faces.width = static_cast<double>(count);
       faces.what = std::to_string(count) + " real face" + (count == 1 ? "" : "s") +
-                   (state == State::tested ? ", tested" : ", not tested");
+                   (state == State::real_tested ? ", tested" : ", not tested");
       n.inside.push_back(std::move(faces));
     }
     std::stable_sort(n.inside.begin(), n.inside.end(),
@@ -96,6 +98,25 @@ class Tree {
     n.name = std::to_string(r);
     n.what = "region " + n.name + (refined ? ", refined: " : ": ") + std::to_string(rep_.floor(r).size()) +
              " faces under it, " + std::to_string(tests) + " face tests of its lids";
+    if (n.state == State::tested) n.inside.push_back(hidden(r, n.width));
+    return n;
+  }
+
+  /// All that lies under a lid that was not opened, as one box.
+  Node hidden(RegionId r, double width) const {
+    std::uint64_t regions = 0, faces = 0;
+    std::vector<RegionId> left = {r};
+    while (!left.empty()) {
+      const RegionId at = left.back();
+      left.pop_back();
+      for (const FaceId f : rep_.floor(at)) faces += rep_.is_real(f);
+      regions += inside_[at].size();
+      left.insert(left.end(), inside_[at].begin(), inside_[at].end());
+    }
+    Node n;
+    n.width = width;
+    n.what = "untouched, under region " + std::to_string(r) + ": " + std::to_string(regions) + " regions, " +
+             std::to_string(faces) + " real faces";
     return n;
   }
 
@@ -134,13 +155,13 @@ class Writer {
     double x = kMargin;
     for (const auto& [state, words] : {std::pair{State::refined, "refined"},
                                        {State::tested, "tested, not refined"},
-                                       {State::untouched, "neither"}}) {
+                                       {State::real_tested, "real faces, tested"},
+                                       {State::untouched, "untouched"}}) {
       out += rect(x, y - kText / 2, kText, kText, colour_of(state)) + "/>\n";
       out += text(x + 1.5 * kText, y, kText, words, "start", palette::kInk);
-      x += 1.5 * kText + 0.62 * kText * static_cast<double>(std::string_view(words).size()) + 2 * kText;
+      x += 1.5 * kText + 0.55 * kText * static_cast<double>(std::string_view(words).size()) + 2 * kText;
     }
-    out += text(kWidth - kMargin, y, kText, "all widths: faces of the wrapper at the end", "end",
-                palette::kFaint);
+    out += text(kWidth - kMargin, y, kText, "widths: faces of the final wrapper", "end", palette::kFaint);
   }
 
   std::string out;

@@ -29,21 +29,21 @@ std::string heat_caption(const PaperPair& pair, const CloseUp& easiest, const Cl
   return "Face tests of each face of " + pair.a.name + " and of " + pair.x.name +
          " by the paper's recursion, in the easiest of their " + group_digits(collisions) + " collisions (" +
          collision_words(easiest) + ") and in the hardest (" + collision_words(hardest) +
-         "). Each body stands alone, seen from where the other one is; drawn are its wrapper as the last "
-         "time "
-         "step left it and, under pseudo faces, the body. One scale for all panels.";
+         "). Each body stands alone, seen from where the other one is, as the wrapper that the last time "
+         "step "
+         "left of it: lids that stayed closed, and bare real faces. One logarithmic scale for all panels.";
 }
 
 std::string tree_caption(const PaperPair& pair, const CloseUp& c) {
   const ContactStep& step = c.steps[busiest_step(c)];
-  return "The refinement tree of one collision: " + pair.a.name + " against " + pair.x.name + ", collision " +
-         std::to_string(c.collision) + ", time step " + std::to_string(step.step) +
-         " after the first contact, " + group_digits(step.counts[0].comparisons) +
+  return pair.a.name + " against " + pair.x.name + ", collision " + std::to_string(c.collision) +
+         ", time step " + std::to_string(step.step) + " after the first contact, " +
+         group_digits(step.counts[0].comparisons) +
          " face tests by the paper's recursion. A row is a depth, from the outermost wrapper down; a box is "
          "a "
-         "region, under the one that hid it, and at the bottom real faces. A box is as wide as the faces of "
-         "the final wrapper that lie in it. Green: refined; orange: tested, not refined; grey: neither. Open "
-         "the file and point at a box to read what it is.";
+         "region, under the one that hid it; at the ends, real faces, or all that a closed region hides. A "
+         "box is as wide as the faces of the final wrapper in it are many. Open the file and point at a box "
+         "to read what it is.";
 }
 
 }  // namespace
