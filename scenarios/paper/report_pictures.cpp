@@ -75,6 +75,12 @@ void add_figure(Page& page, const std::string& folder, const std::string& title,
 }
 
 void check_records(const PaperReport& r) {
+  for (const ContactStep& s : r.steps)
+    if (s.collision >= r.experiment.protocol.collisions)
+      throw InputError("the records hold collision " + std::to_string(s.collision) + " with " + s.object +
+                       ", numbered from 0, but the experiment has " +
+                       std::to_string(r.experiment.protocol.collisions) +
+                       ": give the options that the records were made with, such as --collisions");
   static_cast<void>(close_ups_of(r));
 }
 

@@ -10,7 +10,8 @@ namespace lrb {
 void add_figure(Page& page, const std::string& folder, const std::string& title, const std::string& caption,
                 const std::string& file);
 
-/// Throws InputError if the steps are not those of the experiment, as far as its close-ups tell.
+/// Throws InputError if the steps are not those of the experiment, as far as numbers of collisions and its
+/// close-ups tell.
 void check_records(const PaperReport& report);
 
 /// Heat maps of the easiest and the hardest collision, and the refinement tree of the hardest one's busiest

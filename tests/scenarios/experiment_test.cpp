@@ -238,6 +238,9 @@ TEST_CASE("paper --experiment: only what is asked for, on bodies of one's own; p
           test::slurp(folder / (std::string("again") + file)));
   CHECK(run({"paper", "--experiment", "mine.json", "--seed", "9", "--merge", "mine/records.jsonl", "-o", "x"})
             .code == 2);
+  CHECK(run({"paper", "--experiment", "mine.json", "--collisions", "2", "--merge", "mine/records.jsonl", "-o",
+             "x"})
+            .code == 2);
   CHECK_FALSE(std::filesystem::exists(folder / "x"));
   for (const std::vector<std::string>& bad : {std::vector<std::string>{"--experiment", "none.json"},
                                               {"--experiment", "tabel1"},
