@@ -23,13 +23,13 @@ inline TreeKernel set_up_kernel(const LrbRep& a, const Pose& pose_a, const LrbRe
   return set_up_kernel(a.tree(), pose_a, b.tree(), pose_b);
 }
 
-/// Refines the wrapper of a body until a face shows: the regions from the outside inward that hide it.
 template <class Probe>
-void open_regions(QueryContext& ctx, Side side, FaceId f, CollideResult& result, Probe& probe) {
+[[gnu::noinline]] void open_regions_from(QueryContext& ctx, Side side, CellId innermost,
+                                         CollideResult& result, Probe& probe) {
   QueryBody& body = ctx[side];
   const LrbRep& rep = body.rep();
   ctx.path.clear();  // a query that ended by an exception may have left some
-  for (CellId c = rep.outer_cell(f); is_region(c) && body.wrapper->included(c); c = rep.parent(c))
+  for (CellId c = innermost; is_region(c) && body.wrapper->included(c); c = rep.parent(c))
     ctx.path.push_back(c);
   for (; !ctx.path.empty(); ctx.path.pop_back()) {
     body.wrapper->refine(ctx.path.back());
@@ -37,6 +37,15 @@ void open_regions(QueryContext& ctx, Side side, FaceId f, CollideResult& result,
     if constexpr (Probe::kEnabled)
       probe.refine(side, ctx.path.back(), static_cast<std::uint32_t>(rep.floor(ctx.path.back()).size()));
   }
+}
+
+/// Refines the wrapper of a body until a face shows: the regions from the outside inward that hide it. Mostly
+/// there are none left.
+template <class Probe>
+inline void open_regions(QueryContext& ctx, Side side, FaceId f, CollideResult& result, Probe& probe) {
+  const CellId outer = ctx[side].rep().outer_cell(f);
+  if (is_region(outer) && ctx[side].wrapper->included(outer))
+    open_regions_from(ctx, side, outer, result, probe);
 }
 
 /// Rules of the exact query; coarse_query.hpp has others.

@@ -142,7 +142,7 @@ TEST_CASE("a query with a tolerance never calls bodies separate that meet, and k
       }
     }
   }
-  CHECK(unresolved > 80);
+  CHECK(unresolved > 30);
   CHECK(crossing > 25);
   CHECK(separate_with_lids > 25);
   CHECK(with_pseudo > 300);
