@@ -1,8 +1,10 @@
+#include <chrono>
 #include <cstdio>
 #include <memory>
 
 #include "engine/error.hpp"
 #include "scenarios/cli/command.hpp"
+#include "scenarios/cli/paper_series.hpp"
 #include "scenarios/cli/progress.hpp"
 #include "scenarios/files.hpp"
 #include "scenarios/generators/fractal.hpp"
@@ -15,6 +17,7 @@ struct PaperOptions {
   std::string folder = "out/paper", shard;
   std::vector<std::string> merge;
   SweepOptions sweep;
+  PaperSeriesOptions series;
   bool json = false;
 };
 
@@ -44,26 +47,54 @@ std::vector<ContactStep> read_shards(const std::vector<std::string>& files) {
   return merged(std::move(steps));
 }
 
+/// Runs a part of the command, and notes what it took.
+class Clock {
+ public:
+  template <class Part>
+  auto run(const std::string& name, const Part& part) {
+    const auto begin = std::chrono::steady_clock::now();
+    auto result = part();
+    taken.emplace_back(name, std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
+    return result;
+  }
+  std::vector<std::pair<std::string, double>> taken;
+};
+
+std::vector<ContactStep> sweep_objects(std::span<const PaperObject> objects, const SweepOptions& sweep,
+                                       const Globals& globals) {
+  Progress progress("paper", 0, globals.quiet);
+  return run_sweep(objects, sweep, [&](std::uint64_t done, std::uint64_t of) {
+    progress.set_total(of);
+    progress.set(done);
+  });
+}
+
 int run_paper(const PaperOptions& o, const Globals& globals) {
   SweepOptions sweep = o.sweep;
   if (!o.shard.empty()) sweep.shard = read_shard(o.shard);
-  std::vector<ContactStep> steps = read_shards(o.merge);
+  const bool merging = !o.merge.empty(), with_series = o.series.resolutions.most > 0;
+  std::vector<ContactStep> steps = read_shards(o.merge), series_steps;
+  if (merging && with_series) series_steps = read_series_shards(o.merge);
   make_folder(o.folder);
   const FolderLock lock(o.folder);
-  const std::vector<PaperObject> objects = make_objects();
-  if (o.merge.empty()) {
-    Progress progress("paper", 0, globals.quiet);
-    steps = run_sweep(objects, sweep, [&](std::uint64_t done, std::uint64_t of) {
-      progress.set_total(of);
-      progress.set(done);
-    });
-  }
-  if (sweep.shard.count > 1 && o.merge.empty()) {
+  Clock clock;
+  const std::vector<PaperObject> objects = clock.run("objects A to H", make_objects);
+  const LrbRep& a = objects[0].rep;
+  if (!merging) steps = clock.run("their collisions", [&] { return sweep_objects(objects, sweep, globals); });
+  const std::vector<SeriesObject> series =
+      clock.run("bodies at several resolutions", [&] { return make_series(o.series, a, globals); });
+  if (!merging && with_series)
+    series_steps = clock.run("their collisions", [&] { return run_series(a, series, sweep, globals); });
+  if (sweep.shard.count > 1 && !merging) {
     write_text(o.folder + "/records.jsonl", to_json_lines(steps));
+    if (with_series) write_series_shard(series_steps, o.folder);
     print(o.folder + "/records.jsonl\n");
     return kOk;
   }
-  note(globals, write_paper_report({objects, steps, sweep.protocol, globals.command_line}, o.folder));
+  const SeriesReport series_report{a, series, series_steps, sweep.jobs};
+  note(globals, write_paper_report({objects, steps, sweep.protocol, globals.command_line,
+                                    with_series ? &series_report : nullptr, clock.taken},
+                                   o.folder));
   print(o.json ? read_text(o.folder + "/tables.json") : o.folder + "/index.html\n");
   return kOk;
 }
@@ -71,7 +102,8 @@ int run_paper(const PaperOptions& o, const Globals& globals) {
 }  // namespace
 
 Command add_paper(CLI::App& root, const Globals& globals) {
-  CLI::App* app = root.add_subcommand("paper", "The paper's experiment: tables 1 and 2, figures 3.1 and 3.2");
+  CLI::App* app = root.add_subcommand(
+      "paper", "The paper's experiment: tables 1 and 2, figures 3.1 and 3.2; and on meshes");
   const auto o = std::make_shared<PaperOptions>();
   PaperProtocol& p = o->sweep.protocol;
   app->add_option("-o,--output", o->folder, "Folder to write to")->type_name("DIR")->capture_default_str();
@@ -92,12 +124,13 @@ Command add_paper(CLI::App& root, const Globals& globals) {
       ->check(CLI::Range(1u, 1024u))
       ->type_name("N")
       ->capture_default_str();
-  CLI::Option* shard = app->add_option("--shard", o->shard,
-                                       "Part i (from 0) of n of the collisions: writes records.jsonl alone")
-                           ->type_name("i/n");
+  CLI::Option* shard =
+      app->add_option("--shard", o->shard, "Part i (from 0) of n of the collisions: writes records alone")
+          ->type_name("i/n");
   app->add_option("--merge", o->merge, "Report these records instead of computing any")
       ->type_name("records.jsonl...")
       ->excludes(shard);
+  add_series_options(*app, o->series);
   app->add_flag("--json", o->json, "Print the tables instead of the page's path");
   return {app, [o, &globals] { return run_paper(*o, globals); }};
 }

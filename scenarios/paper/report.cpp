@@ -106,6 +106,17 @@ std::string protocol_text(const PaperProtocol& p) {
          std::to_string(p.steps_after) + " more; seed " + std::to_string(p.seed) + ".";
 }
 
+PageTable time_table(const std::vector<std::pair<std::string, double>>& seconds) {
+  PageTable t{"What it took", {"part", "seconds"}, {}, "Of the clock on the wall."};
+  double sum = 0;
+  for (const auto& [part, took] : seconds) {
+    t.rows.push_back({part, fixed(took, 1)});
+    sum += took;
+  }
+  t.rows.push_back({"together", fixed(sum, 1)});
+  return t;
+}
+
 void add_markdown(std::string& md, const PageTable& t) {
   md += "\n## " + t.title + "\n\n|";
   for (const std::string& c : t.columns) md += " " + c + " |";
@@ -152,6 +163,8 @@ std::vector<std::string> write_paper_report(const PaperReport& r, const std::str
   page.tables.push_back(what);
   page.tables.push_back(table1(r));
   for (std::size_t i = 0; i < kRecursions.size(); ++i) page.tables.push_back(table2(rows, i));
+  const std::string series = r.series ? add_series(*r.series, folder, figures, page) : "";
+  if (!r.seconds.empty()) page.tables.push_back(time_table(r.seconds));
   for (std::size_t i = 1; i < page.tables.size(); ++i) add_markdown(md, page.tables[i]);
 
   PageChart sizes{"Object size against comparisons",
@@ -182,7 +195,7 @@ std::vector<std::string> write_paper_report(const PaperReport& r, const std::str
   sizes.series = {measured, paper, most, paper_most};
   page.charts.push_back(sizes);
   if (figures) {
-    md += "\n## Figures\n\n![Figure 3.1](figure3-1.svg)\n\n![Figure 3.2](figure3-2.svg)\n";
+    md += "\n## Figures\n\n![Figure 3.1](figure3-1.svg)\n\n![Figure 3.2](figure3-2.svg)\n" + series;
     for (const char* name : {"figure3-1", "figure3-2"})
       for (const char* ending : {".svg", ".png"})
         page.links.push_back({std::string(name) + ending, std::string(name) + ending, ""});
