@@ -9,6 +9,7 @@
 #include "scenarios/files.hpp"
 #include "scenarios/generators/fractal.hpp"
 #include "scenarios/paper/report.hpp"
+#include "scenarios/paper/shard_file.hpp"
 
 namespace lrb::cli {
 namespace {
@@ -69,10 +70,16 @@ std::vector<ContactStep> sweep_objects(std::span<const PaperObject> objects, con
   });
 }
 
-int run_paper(const PaperOptions& o, const Globals& globals) {
-  SweepOptions sweep = o.sweep;
+int run_paper(PaperOptions o, const Globals& globals) {
+  SweepOptions& sweep = o.sweep;
   if (!o.shard.empty()) sweep.shard = read_shard(o.shard);
-  const bool merging = !o.merge.empty(), with_series = o.series.resolutions.most > 0;
+  const bool merging = !o.merge.empty();
+  if (merging) {
+    const ShardFile whole = read_shard_files(o.merge);
+    sweep.protocol = whole.protocol;
+    o.series.resolutions = whole.resolutions;
+  }
+  const bool with_series = o.series.resolutions.most > 0;
   std::vector<ContactStep> steps = read_shards(o.merge), series_steps;
   if (merging && with_series) series_steps = read_series_shards(o.merge);
   make_folder(o.folder);
@@ -85,7 +92,8 @@ int run_paper(const PaperOptions& o, const Globals& globals) {
       clock.run("bodies at several resolutions", [&] { return make_series(o.series, a, globals); });
   if (!merging && with_series)
     series_steps = clock.run("their collisions", [&] { return run_series(a, series, sweep, globals); });
-  if (sweep.shard.count > 1 && !merging) {
+  if (!o.shard.empty()) {
+    write_shard_file({sweep.shard, sweep.protocol, o.series.resolutions}, o.folder);
     write_text(o.folder + "/records.jsonl", to_json_lines(steps));
     if (with_series) write_series_shard(series_steps, o.folder);
     print(o.folder + "/records.jsonl\n");
@@ -127,10 +135,15 @@ Command add_paper(CLI::App& root, const Globals& globals) {
   CLI::Option* shard =
       app->add_option("--shard", o->shard, "Part i (from 0) of n of the collisions: writes records alone")
           ->type_name("i/n");
-  app->add_option("--merge", o->merge, "Report these records instead of computing any")
-      ->type_name("records.jsonl...")
-      ->excludes(shard);
+  CLI::Option* merge = app->add_option("--merge", o->merge,
+                                       "Report the records of all shards instead of computing any; with the "
+                                       "shards' --meshes, if they had any")
+                           ->type_name("records.jsonl...")
+                           ->excludes(shard);
   add_series_options(*app, o->series);
+  for (const char* of_shards :
+       {"--collisions", "--step", "--steps-after", "--seed", "--resolutions", "--subdivide"})
+    merge->excludes(app->get_option(of_shards));
   app->add_flag("--json", o->json, "Print the tables instead of the page's path");
   return {app, [o, &globals] { return run_paper(*o, globals); }};
 }

@@ -117,21 +117,37 @@ TEST_CASE("the paper's experiment: counts that must not change unnoticed") {
 TEST_CASE("paper: the program's shards make the report of the whole, and bad input is refused") {
   const test::Folder folder;
   const auto run = [&](std::vector<std::string> args) {
-    args.insert(args.end(), {"--resolutions", "0"});
+    args.insert(args.begin(), "paper");
     return test::run(folder, std::move(args));
   };
-  CHECK(run({"paper", "--collisions", "2", "-o", "whole", "--jobs", "2"}).code == 0);
-  for (const char* i : {"0/2", "1/2"})
-    CHECK(run({"paper", "--collisions", "2", "--shard", i, "-o", std::string("part") + i[0]}).code == 0);
-  CHECK(run({"paper", "--collisions", "2", "--merge", "part1/records.jsonl", "part0/records.jsonl", "-o",
-             "all"})
-            .code == 0);
+  const auto shard = [&](const char* collisions, const std::string& i, const std::string& out) {
+    CHECK(run({"--collisions", collisions, "--resolutions", "0", "--shard", i, "-o", out}).code == 0);
+  };
+  CHECK(run({"--collisions", "2", "--resolutions", "0", "-o", "whole", "--jobs", "2"}).code == 0);
+  shard("2", "0/2", "part0");
+  shard("2", "1/2", "part1");
+  shard("3", "1/2", "other");
+  CHECK(run({"--merge", "part1/records.jsonl", "part0/records.jsonl", "-o", "all"}).code == 0);
   for (const char* file : {"/records.jsonl", "/tables.json"})
     CHECK(test::slurp(folder / (std::string("all") + file)) ==
           test::slurp(folder / (std::string("whole") + file)));
-  CHECK(run({"paper", "--merge", "part1/records.jsonl", "part1/records.jsonl", "-o", "twice"}).code == 2);
+  const auto refused = [&](std::vector<std::string> args, const char* why) {
+    args.insert(args.end(), {"-o", "none"});
+    const auto o = run(args);
+    CHECK(o.code == 2);
+    CHECK(o.err.find(why) != std::string::npos);
+  };
+  refused({"--merge", "part1/records.jsonl", "part1/records.jsonl"}, "shard 0/2 is missing");
+  refused({"--merge", "part0/records.jsonl", "part1/records.jsonl", "part1/records.jsonl"},
+          "1/2 is there twice");
+  refused({"--merge", "part1/records.jsonl"}, "shard 0/2 is missing");
+  refused({"--merge", "part0/records.jsonl", "other/records.jsonl"}, "another experiment");
+  refused({"--merge", "whole/records.jsonl"}, "whole/shard.json");
+  refused({"--collisions", "2", "--merge", "part0/records.jsonl"}, "--collisions");
+  folder.write("part0/shard.json", "{\"shard\": -1}");
+  refused({"--merge", "part0/records.jsonl", "part1/records.jsonl"}, "part0/shard.json");
   for (const char* bad : {"2/2", "x", "1", "0/0", "-1/2", "0/2x"})
-    CHECK(run({"paper", "--shard", bad, "-o", "none"}).code == 2);
+    CHECK(run({"--shard", bad, "-o", "none"}).code == 2);
 }
 
 TEST_CASE("the series: the power of exact powers is found, and the error of others") {
@@ -192,11 +208,14 @@ TEST_CASE("the series: rows and powers from records; records of other bodies are
 
 TEST_CASE("paper: meshes at several resolutions, in shards and as a whole") {
   const test::Folder folder;
-  const auto run = [&](const std::string& meshes, std::vector<std::string> more) {
-    std::vector<std::string> args = {"paper", "--collisions", "2", "--meshes", meshes, "--resolutions",
-                                     "2",     "--subdivide",  "1"};
+  const auto paper = [&](const std::string& meshes, std::vector<std::string> more) {
+    std::vector<std::string> args = {"paper", "--meshes", meshes};
     args.insert(args.end(), more.begin(), more.end());
     return test::run(folder, args);
+  };
+  const auto run = [&](const std::string& meshes, std::vector<std::string> more) {
+    more.insert(more.end(), {"--collisions", "2", "--resolutions", "2", "--subdivide", "1"});
+    return paper(meshes, std::move(more));
   };
   std::filesystem::create_directory(folder.path / "meshes");
   Mesh ball = generate("ball", {{"frequency", 4}});
@@ -221,11 +240,13 @@ TEST_CASE("paper: meshes at several resolutions, in shards and as a whole") {
   CHECK(j["powers_of_total_faces"].size() == 12);
   CHECK(test::slurp(folder / "whole/report.md").find("Growth with the resolution") != std::string::npos);
   const auto refused = [&](const std::string& meshes, std::vector<std::string> more, const char* why) {
-    const auto o = run(meshes, std::move(more));
+    const auto o = paper(meshes, std::move(more));
     CHECK(o.code == 2);
     CHECK(o.err.find(why) != std::string::npos);
   };
-  refused("meshes/ball.ply", {"--merge", "part0/records.jsonl", "-o", "x"}, "not in the series");
+  refused("meshes/ball.ply",
+          {"--merge", "part0/records.jsonl", "part1/records.jsonl", "part2/records.jsonl", "-o", "x"},
+          "not in the series");
   refused("meshes/open.obj", {"-o", "x"}, "no mesh that an LRB-rep can be built of");
   refused("none.obj", {"-o", "x"}, "none.obj");
   std::filesystem::create_directory(folder.path / "other");
