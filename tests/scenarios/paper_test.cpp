@@ -227,8 +227,8 @@ TEST_CASE("paper: meshes at several resolutions, in shards and as a whole") {
   CHECK(whole.err.find("open.obj: left out") != std::string::npos);
   for (const char* i : {"0/3", "1/3", "2/3"})
     CHECK(run("meshes", {"--shard", i, "-o", std::string("part") + i[0], "--jobs", "2"}).code == 0);
-  CHECK(run("meshes",
-            {"--merge", "part2/records.jsonl", "part0/records.jsonl", "part1/records.jsonl", "-o", "all"})
+  CHECK(paper("meshes",
+              {"--merge", "part2/records.jsonl", "part0/records.jsonl", "part1/records.jsonl", "-o", "all"})
             .code == 0);
   for (const char* file : {"/records.jsonl", "/tables.json", "/series.jsonl", "/series.json"})
     CHECK(test::slurp(folder / (std::string("all") + file)) ==
