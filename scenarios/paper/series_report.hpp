@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "scenarios/page/page.hpp"
-#include "scenarios/paper/power_fit.hpp"
+#include "scenarios/series/power_fit.hpp"
 #include "scenarios/paper/series.hpp"
 
 namespace lrb {

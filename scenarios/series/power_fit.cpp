@@ -1,4 +1,4 @@
-#include "scenarios/paper/power_fit.hpp"
+#include "scenarios/series/power_fit.hpp"
 
 #include <algorithm>
 #include <cmath>
