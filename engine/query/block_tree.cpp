@@ -321,6 +321,7 @@ class BlockTreeBuilder {
   BinaryBuilder binary_;
 };
 
+<<<<<<< HEAD
 BlockTree::BlockTree(const LrbRep& rep) {
   std::vector<SimplexId> all(rep.real_simplex_count());
   std::iota(all.begin(), all.end(), SimplexId{0});
@@ -329,16 +330,33 @@ BlockTree::BlockTree(const LrbRep& rep) {
 
 BlockTree::BlockTree(const LrbRep& rep, std::span<const SimplexId> simplices) {
   for (const SimplexId s : simplices) {
+=======
+void BlockTree::measure(const LrbRep& rep) {
+  for (SimplexId s = 0; s < rep.real_simplex_count(); ++s) {
+>>>>>>> main
     VertexId v[3];
     rep.simplex(s, v);
     for (int k = 0; k < rep.dim(); ++k)
       extent_ = std::max(extent_, rep.vertices()[v[k]].cwiseAbs().maxCoeff());
   }
+<<<<<<< HEAD
   if (simplices.empty()) return;
   int exponent = 0;
   std::frexp(extent_, &exponent);
   unit_ = std::ldexp(1.0, std::clamp(exponent, -1022, 1023));
   Soup soup = make_soup(rep, simplices, unit_);
+=======
+  if (rep.real_simplex_count() == 0) return;
+  int exponent = 0;
+  std::frexp(extent_, &exponent);
+  unit_ = std::ldexp(1.0, std::clamp(exponent, -1022, 1023));
+}
+
+BlockTree::BlockTree(const LrbRep& rep) {
+  measure(rep);
+  if (rep.real_simplex_count() == 0) return;
+  Soup soup = make_soup(rep, unit_);
+>>>>>>> main
   BlockTreeBuilder(*this, soup);
   nodes_.shrink_to_fit();
   blocks_.shrink_to_fit();
