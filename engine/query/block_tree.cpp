@@ -151,6 +151,12 @@ class BinaryBuilder {
   Soup& soup_;
 };
 
+std::vector<SimplexId> all_real(const LrbRep& rep) {
+  std::vector<SimplexId> all(rep.real_simplex_count());
+  std::iota(all.begin(), all.end(), SimplexId{0});
+  return all;
+}
+
 struct Frame {
   Matrix3d axes;  ///< rows; rounded to float, so that what is measured is what the query uses
   Vector3d origin;
@@ -321,42 +327,29 @@ class BlockTreeBuilder {
   BinaryBuilder binary_;
 };
 
-<<<<<<< HEAD
-BlockTree::BlockTree(const LrbRep& rep) {
-  std::vector<SimplexId> all(rep.real_simplex_count());
-  std::iota(all.begin(), all.end(), SimplexId{0});
-  *this = BlockTree(rep, all);
-}
-
-BlockTree::BlockTree(const LrbRep& rep, std::span<const SimplexId> simplices) {
+void BlockTree::measure(const LrbRep& rep, std::span<const SimplexId> simplices) {
   for (const SimplexId s : simplices) {
-=======
-void BlockTree::measure(const LrbRep& rep) {
-  for (SimplexId s = 0; s < rep.real_simplex_count(); ++s) {
->>>>>>> main
     VertexId v[3];
     rep.simplex(s, v);
     for (int k = 0; k < rep.dim(); ++k)
       extent_ = std::max(extent_, rep.vertices()[v[k]].cwiseAbs().maxCoeff());
   }
-<<<<<<< HEAD
   if (simplices.empty()) return;
-  int exponent = 0;
-  std::frexp(extent_, &exponent);
-  unit_ = std::ldexp(1.0, std::clamp(exponent, -1022, 1023));
-  Soup soup = make_soup(rep, simplices, unit_);
-=======
-  if (rep.real_simplex_count() == 0) return;
   int exponent = 0;
   std::frexp(extent_, &exponent);
   unit_ = std::ldexp(1.0, std::clamp(exponent, -1022, 1023));
 }
 
-BlockTree::BlockTree(const LrbRep& rep) {
-  measure(rep);
-  if (rep.real_simplex_count() == 0) return;
-  Soup soup = make_soup(rep, unit_);
->>>>>>> main
+void BlockTree::measure(const LrbRep& rep) {
+  measure(rep, all_real(rep));
+}
+
+BlockTree::BlockTree(const LrbRep& rep) : BlockTree(rep, all_real(rep)) {}
+
+BlockTree::BlockTree(const LrbRep& rep, std::span<const SimplexId> simplices) {
+  measure(rep, simplices);
+  if (simplices.empty()) return;
+  Soup soup = make_soup(rep, simplices, unit_);
   BlockTreeBuilder(*this, soup);
   nodes_.shrink_to_fit();
   blocks_.shrink_to_fit();
