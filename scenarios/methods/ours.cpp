@@ -44,6 +44,7 @@ class Ours : public Method {
     answer.pairs = std::move(result.pairs);
     answer.inside = result.relation == Relation::a_inside_b || result.relation == Relation::b_inside_a;
     answer.relation = result.relation;
+    answer.face_tests = result.counters.face_tests;
     return answer;
   }
 
@@ -58,7 +59,7 @@ MethodInfo our_info(const char* name, const char* title, const char* remark) {
   info.title = title;
   info.remark = remark;
   info.says = Says::relation;
-  info.plane = info.moves_exactly = true;
+  info.plane = info.moves_exactly = info.own_rep = true;
   return info;
 }
 
