@@ -98,6 +98,9 @@ MethodEntry fcl_float();
 MethodEntry cgal_rigid();
 MethodEntry cgal_pairs();
 MethodEntry fcl_headers();  ///< FCL's headers compiled with our flags
+MethodEntry fcl_octree();   ///< approximate: cells
+MethodEntry fcl_gjk();      ///< convex hulls
+MethodEntry spheres();      ///< approximate: a sphere tree, by level
 MethodEntry embree();       ///< its tree refitted to the moved body, and then rtcCollide
 MethodEntry embree_rebuilt();
 MethodEntry ode();

@@ -25,9 +25,11 @@ if(fcl_FOUND)
 endif()
 lrb_add_peer(lrb_peer_fcl methods/fcl.cpp LRB_HAS_FCL ${fcl_library})
 if(LRB_NATIVE)  # as packaged, and not half of it for another processor; the file's options come after the target's
-  set_source_files_properties(methods/fcl.cpp PROPERTIES COMPILE_OPTIONS -march=x86-64)
+  set_source_files_properties(methods/fcl.cpp methods/fcl_solids.cpp PROPERTIES COMPILE_OPTIONS -march=x86-64)
 endif()
 lrb_add_peer(lrb_peer_fcl_headers methods/fcl_headers.cpp LRB_HAS_FCL ${fcl_library})
+
+lrb_add_peer(lrb_peer_fcl_solids methods/fcl_solids.cpp LRB_HAS_FCL ${fcl_library})
 
 find_package(embree 3.13 QUIET)
 set(embree_library "")
@@ -70,7 +72,7 @@ target_link_libraries(lrb_worker PUBLIC lrb::stability lrb::measure CLI11::CLI11
 
 add_executable(lrbscope-methods stability/worker_main.cpp)
 target_link_libraries(lrbscope-methods PRIVATE lrb_worker lrb_peer_fcl lrb_peer_cgal lrb_peer_bullet lrb_peer_embree
-                                               lrb_peer_ode)
+                                               lrb_peer_fcl_solids lrb_peer_ode)
 # Bullet in double precision has the names of Bullet in single: a program of its own.
 add_executable(lrbscope-methods-double stability/worker_double_main.cpp)
 target_link_libraries(lrbscope-methods-double PRIVATE lrb_worker lrb_peer_bullet_double)

@@ -5,5 +5,5 @@ int main(int argc, char** argv) {
   return lrb::stability::worker_main(argc, argv,
                                      {ours(), ours_floating(), ours_paper(), plain_double(), fcl_double(),
                                       fcl_float(), cgal_rigid(), cgal_pairs(), bullet(), embree(),
-                                      embree_rebuilt(), ode()});
+                                      embree_rebuilt(), ode(), spheres(), fcl_octree(), fcl_gjk()});
 }
