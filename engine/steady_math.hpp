@@ -25,6 +25,9 @@ inline double exp(double x) {
 inline double exp2(double x) {
   return static_cast<double>(std::exp2(static_cast<long double>(x)));
 }
+inline double pow10(double x) {
+  return static_cast<double>(std::pow(10.0L, static_cast<long double>(x)));
+}
 inline double tan(double x) {
   return static_cast<double>(std::tan(static_cast<long double>(x)));
 }

@@ -83,7 +83,7 @@ std::vector<Vector3> enclosing_polygon(std::span<const Vector3> points, std::uin
   while (polygon.size() > std::max(max_sides, 4u)) {
     const std::size_t n = polygon.size();
     std::size_t best = 0;
-    Corner least{{}, std::numeric_limits<double>::infinity()};
+    Corner least{Eigen::Vector3d::Zero(), std::numeric_limits<double>::infinity()};
     for (std::size_t i = 0; i < n; ++i) {  // the side from i + 1 to i + 2 goes
       const Corner c = meet(polygon[i], polygon[(i + 1) % n], polygon[(i + 2) % n], polygon[(i + 3) % n]);
       if (c.area < least.area) {

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "engine/build/build.hpp"
+#include "engine/steady_math.hpp"
 #include "scenarios/families/families.hpp"
 #include "scenarios/shapes/hand_made.hpp"
 #include "scenarios/shapes/shapes.hpp"
@@ -143,9 +144,8 @@ Vector3d grid_shift(Random& random, int n, bool flat) {
 
 /// Exact motions keep the answer: turns of the grid, whole translations and powers of two.
 void move_exactly(Random& random, Case& c) {
-  const double size = std::exp2(pick(random, -3, 3));
-  const Pose by{size * grid_turn(random, true),
-                Vector3d(pick(random, -9, 9), pick(random, -9, 9), pick(random, -9, 9))};
+  const double size = steady::exp2(pick(random, -3, 3));
+  const Pose by{size * grid_turn(random, true), pick_point(random, {-9, -9, -9}, {9, 9, 9})};
   move_both(c, by);
 }
 
@@ -156,8 +156,7 @@ Case make_lattice(Random& random, double dial) {
   Case c{kBodies[random() % 3], kBodies[random() % 3], {}, {}, {}, {}};
   const double steps[] = {1, 0.5, 1.0 / 3, slack(dial)};
   const double step = steps[random() % 4];
-  c.pose_b = {grid_turn(random),
-              step * Vector3d(pick(random, -4, 4), pick(random, -4, 4), pick(random, -4, 4))};
+  c.pose_b = {grid_turn(random), step * pick_point(random, {-4, -4, -4}, {4, 4, 4})};
   c.pose_b.t += c.pose_b.r.cwiseMin(0).rowwise().sum() * -3;  // back over A
   loosen(random, c, slack(dial));
   if (pick(random, 0, 3) == 0) move_both(c, any_pose(random));
@@ -175,7 +174,7 @@ Case make_dented(Random& random, double dial) {
   };
   Case c{kBodies[random() % kBodies.size()], kBodies[random() % kBodies.size()], {}, {}, {}, {}};
   c.pose_b = random() % 2 ? any_pose(random, 2)
-                          : Pose{grid_turn(random), Vector3d(pick(random, -3, 3), pick(random, -3, 3), 1)};
+                          : Pose{grid_turn(random), pick_point(random, {-3, -3, 1}, {3, 3, 1})};
   loosen(random, c, slack(dial));
   return c;
 }
@@ -190,7 +189,7 @@ Case make_containment(Random& random, double dial) {
     return body(random() % 2 ? shapes::icosphere(0, reach)
                              : shapes::box({-reach, -reach, -reach}, {reach, reach, reach}));
   };
-  const double near = 1 - std::pow(10, -1 - 13 * dial);  // how much of the room is used
+  const double near = 1 - steady::pow10(-1 - 13 * dial);  // how much of the room is used
   Case c;
   const int kind = pick(random, 0, 5);
   if (kind == 0) {
@@ -239,7 +238,8 @@ Case make_voxels(Random& random, double dial) {
   const int most = 2 + static_cast<int>(2 * dial);
   const Cells a(random, most, most, uniform(random, 0.2, 1)), b(random, most, most, uniform(random, 0.2, 1));
   Case c{body(a.mesh(random() % 2)), body(b.mesh(random() % 2)), {}, {}, {}, {}};
-  c.pose_b.t = grid_shift(random, most, false) + slack(dial) * shapes::random_direction(random);
+  c.pose_b.t = grid_shift(random, most, false);
+  c.pose_b.t += slack(dial) * shapes::random_direction(random);
   c.interiors_overlap = share_a_cell(a, b, c.pose_b.t);
   if (random() % 2 && slack(dial) == 0) move_exactly(random, c);
   return c;
@@ -259,7 +259,8 @@ Case make_plane(Random& random, double dial) {
     const Cells a(random, most, 1, uniform(random, 0.2, 1)), b(random, most, 1, uniform(random, 0.2, 1));
     c.a = body(a.outline());
     c.b = body(b.outline());
-    c.pose_b.t = grid_shift(random, most, true) + slack(dial) * shapes::random_direction(random);
+    c.pose_b.t = grid_shift(random, most, true);
+    c.pose_b.t += slack(dial) * shapes::random_direction(random);
     c.pose_b.t.z() = 0;
     c.interiors_overlap = share_a_cell(a, b, c.pose_b.t);
     return c;
@@ -299,7 +300,7 @@ Case make_dirty(Random& random, double dial) {
   const Mesh meshes[] = {spoil(ball), spoil(shapes::box()), crossing, shapes::open_cylinder(6),
                          spoil(crossing)};
   Case c{body(meshes[random() % 5], true), body(meshes[random() % 5], true), {}, any_pose(random, 2), {}, {}};
-  if (random() % 2) c.pose_b = {grid_turn(random), Vector3d(pick(random, -2, 2), pick(random, -1, 1), 0)};
+  if (random() % 2) c.pose_b = {grid_turn(random), pick_point(random, {-2, -1, 0}, {2, 1, 0})};
   loosen(random, c, slack(dial));
   return c;
 }

@@ -1,9 +1,9 @@
 // Families in which bodies share points, edges, faces, or come as near to it as doubles allow.
-#include <cmath>
 #include <numbers>
 
 #include <Eigen/Geometry>
 
+#include "engine/steady_math.hpp"
 #include "scenarios/families/families.hpp"
 #include "scenarios/shapes/shapes.hpp"
 
@@ -38,7 +38,7 @@ std::vector<Vector3d> twisted_rings(int n, int layers, double r, double twist, d
   for (int j = 0; j <= layers; ++j)
     for (int i = 0; i < n; ++i) {
       const double angle = 2 * std::numbers::pi * i / n + twist * j / layers;
-      x.emplace_back(r * std::cos(angle), r * std::sin(angle), height * j / layers);
+      x.emplace_back(r * steady::cos(angle), r * steady::sin(angle), height * j / layers);
     }
   return x;
 }
@@ -106,7 +106,7 @@ Case make_touch(Random& random, double dial) {
   const auto vertex = [&](const LrbRep& rep, const Pose& pose) {
     return pose.apply(rep.vertices()[random() % rep.vertices().size()]);
   };
-  const Vector3d onto = vertex(*c.a, c.pose_a) - vertex(*c.b, c.pose_b);
+  const Vector3d from = vertex(*c.b, c.pose_b), onto = vertex(*c.a, c.pose_a) - from;
   if (!in_contact(c)) c.pose_b.t += onto;  // vertex on vertex
   const Vector3d start = c.pose_b.t;
   double near = 0, far = 12;  // no body is wider
@@ -217,8 +217,8 @@ Case make_interlock(Random& random, double dial) {
   } else if (kind == 1) {  // a bar of one link through the slot of the other
     c.a = c.b = kLink;
     c.pose_b.r << 1, 0, 0, 0, 0, -1, 0, 1, 0;
-    c.pose_b.t = {static_cast<double>(pick(random, -4, 4)) / (1 + static_cast<int>(random() % 2)), 2,
-                  static_cast<double>(pick(random, -3, 1))};
+    const double step = random() % 2 ? 0.5 : 1;
+    c.pose_b.t = {step * pick(random, -4, 4), 2, static_cast<double>(pick(random, -3, 1))};
   } else {
     c.a = kNut;
     c.b = kScrew;

@@ -9,6 +9,7 @@
 #include "engine/error.hpp"
 #include "engine/lrb/fnv.hpp"
 #include "engine/mesh/mesh_check.hpp"
+#include "engine/steady_math.hpp"
 #include "scenarios/shapes/hand_made.hpp"
 #include "scenarios/shapes/shapes.hpp"
 
@@ -125,7 +126,7 @@ void move_both(Case& c, const Pose& by) {
 }
 
 double slack(double dial) {
-  return dial >= 1 ? 0 : 0.1 * std::pow(10, -15 * dial / 0.9);
+  return dial >= 1 ? 0 : 0.1 * steady::pow10(-15 * dial / 0.9);
 }
 
 void loosen(Random& random, Case& c, double by) {
@@ -154,6 +155,12 @@ double nudged(double x, int ulps) {
 
 int pick(Random& random, int low, int high) {
   return low + static_cast<int>(random() % static_cast<std::uint64_t>(high - low + 1));
+}
+
+Eigen::Vector3d pick_point(Random& random, const Eigen::Vector3i& low, const Eigen::Vector3i& high) {
+  Eigen::Vector3d x;
+  for (int k = 0; k < 3; ++k) x[k] = pick(random, low[k], high[k]);
+  return x;
 }
 
 Eigen::Matrix3d grid_turn(Random& random, bool reflections) {

@@ -1,5 +1,9 @@
 #pragma once
 /// Families of cases that break collision engines, each with a dial from benign (0) to degenerate (1).
+///
+/// A case is the same whatever the compiler and the processor: no expression draws two random numbers without
+/// an order between them (arguments and operands have none; initializers in braces have), and functions that
+/// round differently from one processor to another come from engine/steady_math.hpp.
 
 #include <cstdint>
 #include <memory>
@@ -90,6 +94,8 @@ double slack(double dial);
 void loosen(Random& random, Case& c, double by);
 double nudged(double x, int ulps);
 int pick(Random& random, int low, int high);  ///< low to high, both included
+/// A point of the grid, each coordinate from low to high, both included.
+Eigen::Vector3d pick_point(Random& random, const Eigen::Vector3i& low, const Eigen::Vector3i& high);
 /// An exact rotation (or, if asked, perhaps a reflection) of the grid.
 Eigen::Matrix3d grid_turn(Random& random, bool reflections = false);
 

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "engine/steady_math.hpp"
 #include "scenarios/families/families.hpp"
 #include "scenarios/shapes/shapes.hpp"
 
@@ -33,7 +34,7 @@ std::vector<shapes::Point2> circle_section(int corners) {
   std::vector<shapes::Point2> p;
   for (int i = 0; i < corners; ++i) {
     const double angle = 2 * std::numbers::pi * i / corners;
-    p.emplace_back(std::cos(angle), std::sin(angle));
+    p.emplace_back(steady::cos(angle), steady::sin(angle));
   }
   return p;
 }
@@ -85,7 +86,7 @@ Mesh cone(int n) {
 
 Case make_kiss(Random& random, double dial) {
   static const std::vector<Body> kCubes = {body(shapes::box()), body(shapes::quad_box())};
-  const double gap = std::exp2(-std::round(4 + 48 * dial));  // at the end of the dial an ulp of 1
+  const double gap = steady::exp2(-std::round(4 + 48 * dial));  // at the end of the dial an ulp of 1
   Case c{kCubes[random() % 2], kCubes[random() % 2], {}, {}, {}, {}};
   const int axes = pick(random, 1, 3);  // in contact along: a face, an edge, a vertex
   bool apart = false, touch = false;
@@ -103,8 +104,8 @@ Case make_kiss(Random& random, double dial) {
   if (!apart && touch) c.relation = Relation::touching;
   c.interiors_overlap = !apart && !touch;
   // Exact: a permutation of the axes, a change of signs, a power of two.
-  const Pose by{std::exp2(std::round(40 * dial * uniform(random, -1, 1))) * grid_turn(random, true),
-                Vector3d::Zero()};
+  const double size = steady::exp2(std::round(40 * dial * uniform(random, -1, 1)));
+  const Pose by{size * grid_turn(random, true), Vector3d::Zero()};
   if (random() % 2) move_both(c, by);
   if (random() % 2) {
     std::swap(c.a, c.b);
@@ -122,7 +123,7 @@ Case make_nested(Random& random, double dial) {
                                     : shapes::quad_box({-reach, -reach, -reach}, {reach, reach, reach});
     shells.push_back(i % 2 ? shapes::turned_inside_out(shell) : shell);
   }
-  const double near = 1 - std::pow(10, -1 - 13 * dial);  // how much of the room is used
+  const double near = 1 - steady::pow10(-1 - 13 * dial);  // how much of the room is used
   const double reach = 0.5 * near;
   const int layer = pick(random, 0, walls);  // 0: outside of all
   const double middle = walls - layer + 0.5;
@@ -168,8 +169,8 @@ Case make_polygon(Random& random, double dial) {
   if (kind == 0) {  // one many-cornered end on another's: the answer is quadratic
     c.a = bodies[random() % 64 == 0];
     c.b = bodies[random() % 64 == 0];
-    c.pose_b =
-        Pose::rotation({0, 0, 1}, random() % 2 ? 0 : uniform(random), {0, 0, pick(random, -1, 1) * 1.0});
+    const double angle = random() % 2 ? 0 : uniform(random);
+    c.pose_b = Pose::rotation({0, 0, 1}, angle, {0, 0, pick(random, -1, 1) * 1.0});
   } else if (kind == 1) {  // something stands on an end
     c.pose_b = {grid_turn(random), {uniform(random, -1, 1), uniform(random, -1, 1), 1}};
   } else if (kind == 2) {  // at a corner of the section
@@ -193,18 +194,16 @@ Case make_fractal(Random& random, double dial) {
                                             body(shapes::scaled(shapes::icosphere(0), 0.1))};
   Case c{kSponge, kProbes[random() % 3], {}, {}, {}, {}};
   const int kind = pick(random, 0, 15);
-  const double fine = std::pow(10, -17 * dial);
+  const double fine = steady::pow10(-17 * dial);
   if (kind < 8) {  // a plug for a hole of the sponge, of a dented cube
     if (kind % 2) c.a = kDented[random() % 3];
     const double cell = 1.0 / (kind % 2 ? 7 : 9);
-    c.pose_b = {grid_turn(random),
-                cell * Vector3d(pick(random, -1, 9), pick(random, -1, 9), pick(random, -1, 9))};
+    c.pose_b = {grid_turn(random), cell * pick_point(random, {-1, -1, -1}, {9, 9, 9})};
     c.pose_b.t += fine * shapes::random_direction(random);
   } else if (kind < 14) {  // cube in dent, on the grid or nearly
     c.a = kDented[random() % 3];
     c.b = kDented[random() % 3];
-    c.pose_b = {grid_turn(random),
-                Vector3d(pick(random, 4, 8), pick(random, -8, 8), pick(random, -8, 8)) / 7};
+    c.pose_b = {grid_turn(random), pick_point(random, {4, -8, -8}, {8, 8, 8}) / 7};
     c.pose_b.t += fine * shapes::random_direction(random);
   } else if (kind == 14) {  // hundreds of faces in a point, one of the other's corners in it
     c.a = kHub;

@@ -3,6 +3,7 @@
 
 #include <Eigen/Geometry>
 
+#include "engine/steady_math.hpp"
 #include "scenarios/families/families.hpp"
 #include "scenarios/shapes/shapes.hpp"
 
@@ -29,6 +30,12 @@ Body moved(const LrbRep& rep, const Vector3d& by) {
   return body(shapes::translated(mesh_of(rep), by));
 }
 
+/// In any direction, `low` to `high` long.
+Vector3d random_step(Random& random, double low, double high) {
+  const double length = uniform(random, low, high);
+  return length * shapes::random_direction(random);
+}
+
 Vector3d random_sign_vector(Random& random, double size) {
   Vector3d v;
   for (int k = 0; k < 3; ++k) v[k] = size * pick(random, -1, 1);
@@ -38,15 +45,19 @@ Vector3d random_sign_vector(Random& random, double size) {
 }  // namespace
 
 Case make_sliver(Random& random, double dial) {
-  const double thin = std::pow(10, -8 * dial);
+  const double thin = steady::pow10(-8 * dial);
   const auto shape = [&] {
     const int kind = pick(random, 0, 2);
     return kind == 0 ? Vector3d(1, 1, thin) : kind == 1 ? Vector3d(1, thin, thin) : Vector3d(1, thin, 1);
   };
-  Case c{stretched(*any_body(random), shape()), stretched(*any_body(random), shape()), {}, {}, {}, {}};
+  const auto any_stretched = [&] {
+    const Body straight = any_body(random);
+    return stretched(*straight, shape());
+  };
+  Case c{any_stretched(), any_stretched(), {}, {}, {}, {}};
   const int kind = pick(random, 0, 2);
   if (kind == 0) c.pose_b = any_pose(random, 0.5);
-  if (kind == 1) c.pose_b.t = thin * 3 * uniform(random) * shapes::random_direction(random);
+  if (kind == 1) c.pose_b.t = random_step(random, 0, 3 * thin);
   if (kind == 2) c.pose_b = {grid_turn(random), random_sign_vector(random, 0.5)};
   loosen(random, c, 0.1 * thin);
   if (pick(random, 0, 2) == 0) move_both(c, any_pose(random));
@@ -79,7 +90,7 @@ Case make_zero_area(Random& random, double dial) {
 }
 
 Case make_far(Random& random, double dial) {
-  const double offset = std::pow(10, 16 * dial);
+  const double offset = steady::pow10(16 * dial);
   Case c{any_body(random), any_body(random), {}, {}, {}, {}};
   const double size = random() % 2 ? 4 : 1;  // at 1e16 an ulp is 2: small faces collapse
   c.a = stretched(*c.a, Vector3d::Constant(size));
@@ -108,7 +119,7 @@ Case make_far(Random& random, double dial) {
 
 Case make_scale(Random& random, double dial) {
   const double exponent = 120 * dial * (random() % 2 ? 1 : -1);
-  const double by = random() % 2 ? std::pow(10, exponent) : std::exp2(std::floor(exponent * 3.3));
+  const double by = random() % 2 ? steady::pow10(exponent) : steady::exp2(std::floor(exponent * 3.3));
   Case c{any_body(random), any_body(random), {}, {}, {}, {}};
   c.pose_b = random() % 2 ? any_pose(random, 1.5) : Pose{grid_turn(random), random_sign_vector(random, 0.5)};
   loosen(random, c, std::max(1e-12, 0.1 * (1 - dial)));
@@ -138,7 +149,7 @@ Case make_extreme(Random& random, double dial) {
 }
 
 Case make_ratio(Random& random, double dial) {
-  const double by = std::pow(10, -(random() % 3 ? 12 : 60) * dial);
+  const double by = steady::pow10(-(random() % 3 ? 12 : 60) * dial);
   Case c{any_body(random), any_body(random), {}, {}, {}, {}};
   c.b = stretched(*c.b, Vector3d::Constant(by));
   VertexId v[3] = {};
@@ -146,7 +157,7 @@ Case make_ratio(Random& random, double dial) {
   const Vector3d p = c.a->vertices()[v[0]], q = c.a->vertices()[v[1]], r = c.a->vertices()[v[2]];
   const double s = random() % 2 ? uniform(random) : 0, t = random() % 2 ? uniform(random, 0, 1 - s) : 0;
   c.pose_b.r = random() % 2 ? shapes::random_rotation(random) : grid_turn(random);
-  c.pose_b.t = p + s * (q - p) + t * (r - p) + by * uniform(random, 0, 2) * shapes::random_direction(random);
+  c.pose_b.t = p + s * (q - p) + t * (r - p) + random_step(random, 0, 2 * by);
   if (pick(random, 0, 2) == 0) move_both(c, any_pose(random));
   if (random() % 2) {
     std::swap(c.a, c.b);
@@ -157,7 +168,7 @@ Case make_ratio(Random& random, double dial) {
 
 Case make_matrix(Random& random, double dial) {
   Case c{any_body(random), any_body(random), {}, {}, {}, {}};
-  const double strength = std::pow(10, 6 * dial - 3);
+  const double strength = steady::pow10(6 * dial - 3);
   const auto matrix = [&]() -> Eigen::Matrix3d {
     const Eigen::Matrix3d r = shapes::random_rotation(random);
     const int kind = pick(random, 0, 5);
@@ -173,7 +184,7 @@ Case make_matrix(Random& random, double dial) {
   // Aims a vertex of one at a vertex of the other, more or less.
   const Vector3d x = c.pose_a.r * c.a->vertices()[random() % c.a->vertices().size()];
   const Vector3d y = c.pose_b.r * c.b->vertices()[random() % c.b->vertices().size()];
-  c.pose_b.t = x - y + uniform(random, 0.02, 0.3) * (0.5 + x.norm()) * shapes::random_direction(random);
+  c.pose_b.t = x - y + (0.5 + x.norm()) * random_step(random, 0.02, 0.3);
   return c;
 }
 
