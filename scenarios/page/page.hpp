@@ -29,10 +29,10 @@ struct PageSeries {
   std::string label;
   std::vector<double> x, y;  ///< of one length, x ascending
   // Scatter charts alone:
-  std::string colour, shape;         ///< #rrggbb and Chart.js's name of a shape; empty: the page chooses
-  bool line = false;                 ///< joined by steps, without points
-  std::vector<std::string> notes;    ///< (|x|) what is said of a point, in lines; or none
-  std::vector<std::string> targets;  ///< (|x|) where a click on it leads, relative to the page; or none
+  std::string colour = {}, shape = {};    ///< #rrggbb and Chart.js's name of a shape; empty: the page chooses
+  bool line = false;                      ///< joined by steps, without points
+  std::vector<std::string> notes = {};    ///< (|x|) what is said of a point, in lines; or none
+  std::vector<std::string> targets = {};  ///< (|x|) where a click on it leads, relative to the page; or none
 };
 
 enum class PageCursor { none, event, step };
