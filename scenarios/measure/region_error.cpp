@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+
+#include <Eigen/Geometry>
 
 #include "engine/exact/simplex_test.hpp"
 
