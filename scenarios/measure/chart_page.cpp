@@ -41,7 +41,7 @@ PageChart chart_of(const DataSet& set, PoseClass c, const std::vector<Point>& po
   const std::vector<const Point*> here = panel(points, set.name, c);
   PageChart chart;
   chart.title = set.name + ", " + title(c);
-  chart.x_label = "error of the contact region / diagonal (left end: none)";
+  chart.x_label = "error of the contact region / diagonal";
   chart.y_label = "median, \u00b5s";
   chart.log_x = chart.log_y = chart.scatter = true;
   chart.least_x = kNoError;

@@ -8,7 +8,7 @@
 namespace lrb::measure {
 namespace {
 
-constexpr double kPanelWidth = 50, kPanelHeight = 46, kLeft = 15, kTop = 7, kBottom = 11, kKeyHeight = 16;  // mm
+constexpr double kPanelWidth = 50, kPanelHeight = 46, kLeft = 19, kTop = 7, kBottom = 12, kKeyHeight = 16;  // mm
 constexpr int kKeyColumns = 5;
 
 std::string number(double x) {
@@ -107,13 +107,13 @@ Gnuplot accuracy_chart(const std::vector<DataSet>& sets, const std::vector<Point
       plots += layout.margins(x0, x0 + kPanelWidth - 2, y1 - kPanelHeight + 3, y1);
       plots += row == 0 ? "set title " + gnuplot_text(title(kPoseClasses[column])) + " offset 0,-0.6\n" : "unset title\n";
       plots += row + 1 == sets.size()
-                   ? "set xlabel 'error of the contact region / diagonal' offset 0,0.8\n"
+                   ? "set xlabel 'error of the contact region / diagonal' offset 0,0.2\n"
                      "set xtics ('0' 1e-7, '1e-5' 1e-5, '1e-3' 1e-3, '0.1' 0.1, '1' 1) nomirror\n"
                    : "unset xlabel\nset xtics ('' 1e-7, '' 1e-5, '' 1e-3, '' 0.1, '' 1) nomirror\n";
-      plots += column == 0 ? "set ylabel " + gnuplot_text(sets[row].name + ": median, microseconds") +
-                                 " offset 1.6,0\nset ytics 10 format '%g' nomirror\n"
+      plots += column == 0 ? "set ylabel " + gnuplot_text(sets[row].name + ": median, µs") +
+                                 " offset 0.4,0\nset ytics 10 format '%g' nomirror\n"
                            : "unset ylabel\nset ytics 10 format '' nomirror\n";
-      plots += "set yrange [0.5:" + number(10 * slowest) + "]\n";
+      plots += "set yrange [0.05:" + number(6 * slowest) + "]\n";
       plots += plots_of(chart, "r" + std::to_string(row) + "c" + std::to_string(column), here, slowest);
     }
   }

@@ -11,18 +11,19 @@ struct Family {
   Look look;
 };
 
-constexpr std::array<Family, 11> kFamilies = {{
+constexpr std::array<Family, 12> kFamilies = {{
     {"ours", {"lrbscope, exact", "#0072b2", "circle", 7}},
     {"ours-", {"lrbscope, variants", "#4aa3dc", "circle", 6}},
     {"plain", {"brute force", "#6b6b6b", "crossRot", 2}},
     {"fcl", {"FCL", "#d55e00", "rect", 5}},
-    {"cgal", {"CGAL", "#009e73", "triangle", 9}},
+    {"cgal", {"CGAL, yes or no", "#009e73", "triangle", 8}},
+    {"cgal-pairs", {"CGAL, pairs", "#009e73", "triangle", 9}},
     {"bullet", {"Bullet", "#cc79a7", "rectRot", 13}},
     {"embree", {"Embree", "#b58900", "rectRounded", 11}},
     {"ode", {"ODE", "#7f3c8d", "cross", 1}},
     {"spheres", {"sphere tree, by level", "#1c1e22", "star", 3}},
     {"fcl-octree", {"octree (FCL), by cells", "#8a5a2b", "rect", 4}},
-    {"fcl-gjk", {"convex hulls, GJK (FCL)", "#a3132f", "triangle", 8}},
+    {"fcl-gjk", {"convex hulls, GJK (FCL)", "#a3132f", "triangle", 10}},
 }};
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <iterator>
 #include <map>
+#include <tuple>
 
 #include "engine/lrb/lrb_file.hpp"
 #include "scenarios/measure/region_error.hpp"
@@ -140,12 +141,14 @@ Point finished(Gathered g) {
   return p;
 }
 
-/// Nothing is both as fast and as right, and better in one of the two. What answered nothing has no time.
+/// Nothing is both as fast and as right, and better in one of the two. What answered nothing has no time, and what says
+/// only yes or no does not answer the same question.
 void mark_frontiers(std::vector<Point>& points) {
   for (Point& p : points) {
-    p.frontier = p.median > 0;
+    const auto takes_part = [](const Point& x) { return x.median > 0 && x.gives_region(); };
+    p.frontier = takes_part(p);
     for (const Point& other : points) {
-      if (other.set != p.set || other.pose_class != p.pose_class || other.median <= 0) continue;
+      if (other.set != p.set || other.pose_class != p.pose_class || !takes_part(other)) continue;
       const bool no_worse = other.median <= p.median && other.error() <= p.error();
       if (no_worse && (other.median < p.median || other.error() < p.error())) p.frontier = false;
     }
@@ -173,7 +176,7 @@ std::vector<Point> measure_points(const std::vector<DataSet>& sets, const std::v
   for (const DataSet& set : sets) {
     std::vector<LrbRep> bodies;
     for (const BodyFile& b : set.bodies) bodies.push_back(load_lrb(set.folder + "/" + b.file));
-    std::map<std::pair<PoseClass, std::string>, Gathered> gathered;
+    std::map<std::tuple<PoseClass, std::string, std::optional<double>>, Gathered> gathered;
     for (std::uint64_t k = 0; k < set.questions.size(); ++k) {
       const Question& q = set.questions[k];
       Judge judge(set, q, bodies.at(q.a), bodies.at(q.b));
@@ -181,7 +184,7 @@ std::vector<Point> measure_points(const std::vector<DataSet>& sets, const std::v
         const auto info = std::find_if(methods.begin(), methods.end(),
                                        [&](const methods::MethodInfo& m) { return m.name == r->method; });
         if (info == methods.end()) continue;
-        Gathered& g = gathered[{q.pose_class, name_of(*r)}];
+        Gathered& g = gathered[{q.pose_class, r->method, r->setting}];
         g.point.set = set.name;
         g.point.method = r->method;
         g.point.setting = r->setting;

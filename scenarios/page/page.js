@@ -78,6 +78,13 @@ function axis(title, log) {
   };
 }
 
+/** An axis with fixed ends, the left one of which stands for 0. */
+function ends(spec) {
+  const power = (v) => Math.round(Math.log10(v) * 1e6) / 1e6;
+  const label = (v) => (v <= spec.leastX * 1.001 ? "0" : power(v) % 2 === 0 ? v.toExponential(0) : "");
+  return { min: spec.leastX, max: spec.mostX, ticks: { color: style("--soft"), maxRotation: 0, autoSkip: false, callback: label } };
+}
+
 function nearestFrame(key, value) {
   let best = -1;
   data.frames.forEach((f, i) => {
@@ -98,7 +105,7 @@ function makeChart(spec, canvas) {
     options: {
       animation: false, parsing: false, normalized: true, maintainAspectRatio: false,
       interaction: { mode: spec.scatter ? "nearest" : "index", intersect: false },
-      scales: { x: { ...axis(spec.x, spec.logX), ...(spec.mostX > spec.leastX ? { min: spec.leastX, max: spec.mostX } : {}) }, y: { ...axis(spec.y, spec.logY), bounds: "ticks", beginAtZero: !spec.logY } },
+      scales: { x: { ...axis(spec.x, spec.logX), ...(spec.mostX > spec.leastX ? ends(spec) : {}) }, y: { ...axis(spec.y, spec.logY), bounds: "ticks", beginAtZero: !spec.logY } },
       plugins: {
         legend: { display: datasets.length > 1, position: "bottom", labels: { color: style("--ink"), boxWidth: 14, boxHeight: spec.series.some((s) => s.shape) ? 6 : 2, usePointStyle: spec.series.some((s) => s.shape) } },
         decimation: { enabled: !spec.scatter, algorithm: "min-max" },
