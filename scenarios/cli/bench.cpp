@@ -82,11 +82,15 @@ Command add_bench(CLI::App& root, const Globals& globals) {
   app->add_option("-o,--output", o->folder, "Folder to write to; goes on with what is there [out/bench]")
       ->type_name("DIR");
   app->add_option("--models", o->models, "Meshes to collide, too, each with the next one")->type_name("DIR");
-  app->add_option("--faces", o->faces, "Sizes of generated bodies: all kinds of the first, rocks of the others; 0: none [20000 100000]")
+  app->add_option(
+         "--faces", o->faces,
+         "Sizes of generated bodies: all kinds of the first, rocks of the others; 0: none [20000 100000]")
       ->check(CLI::Range(0, 2000000))
       ->type_name("N");
   app->add_option("--method", o->methods, "These methods alone")->type_name("NAME");
-  app->add_option("--poses", o->set.poses, "Poses of each class [12]")->check(CLI::Range(1, 10000))->type_name("N");
+  app->add_option("--poses", o->set.poses, "Poses of each class [12]")
+      ->check(CLI::Range(1, 10000))
+      ->type_name("N");
   app->add_option("--seed", o->set.seed, "Of the poses [1]")->check(CLI::NonNegativeNumber)->type_name("S");
   app->add_option("--timeout", o->timeout, "Seconds that a method has for a pose [20]")
       ->check(CLI::Range(0.1, 3600.0))

@@ -132,7 +132,9 @@ Command add_chart(CLI::App& root, const Globals& globals) {
       ->check(CLI::Range(0, 200000))
       ->type_name("N");
   app->add_option("--method", o->methods, "These methods alone")->type_name("NAME");
-  app->add_option("--poses", o->set.poses, "Poses of each class [12]")->check(CLI::Range(1, 10000))->type_name("N");
+  app->add_option("--poses", o->set.poses, "Poses of each class [12]")
+      ->check(CLI::Range(1, 10000))
+      ->type_name("N");
   app->add_option("--seed", o->set.seed, "Of the poses [1]")->check(CLI::NonNegativeNumber)->type_name("S");
   app->add_option("--timeout", o->timeout, "Seconds that a method has for a pose [20]")
       ->check(CLI::Range(0.1, 3600.0))

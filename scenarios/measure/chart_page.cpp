@@ -107,7 +107,8 @@ PageTable table_of_metrics() {
     const MetricInfo& info = metric_info(static_cast<Metric>(m));
     t.rows.push_back({info.name, info.what, short_number(info.worst)});
   }
-  t.note = "A crash, a refusal and a time-out score the worst value of every error that the method answers for.";
+  t.note =
+      "A crash, a refusal and a time-out score the worst value of every error that the method answers for.";
   return t;
 }
 
@@ -128,16 +129,21 @@ Page accuracy_page(const std::vector<DataSet>& sets, const std::vector<Point>& p
   Page page;
   page.title = "Speed against accuracy";
   page.purpose =
-      "Every method at every setting of its knob, on the same bodies and poses: how long the median query takes, and "
+      "Every method at every setting of its knob, on the same bodies and poses: how long the median query "
+      "takes, and "
       "how far what it calls the contact is from the exact contact.";
   page.texts = {
       {"How to read it",
-       "Down is faster, left is more accurate; what has no error stands at the left end. The frontier joins what "
-       "nothing beats in both. Hover for all numbers; a click leads to the scene of the panel, with its trace and "
+       "Down is faster, left is more accurate; what has no error stands at the left end. The frontier joins "
+       "what "
+       "nothing beats in both. Hover for all numbers; a click leads to the scene of the panel, with its "
+       "trace and "
        "pictures."},
       {"What counts as error",
-       "The Hausdorff distance between the exact contact region and that of the answer, over the larger body's "
-       "diagonal, averaged over poses; for methods that say only yes or no, the share of wrong ones. Contact where "
+       "The Hausdorff distance between the exact contact region and that of the answer, over the larger "
+       "body's "
+       "diagonal, averaged over poses; for methods that say only yes or no, the share of wrong ones. Contact "
+       "where "
        "there is none, or none where there is, counts as one whole diagonal, and so does what is no answer."},
   };
   for (const DataSet& set : sets)

@@ -8,7 +8,8 @@
 namespace lrb::measure {
 namespace {
 
-constexpr double kPanelWidth = 50, kPanelHeight = 46, kLeft = 19, kTop = 7, kBottom = 12, kKeyHeight = 16;  // mm
+constexpr double kPanelWidth = 50, kPanelHeight = 46, kLeft = 19, kTop = 7, kBottom = 12,
+                 kKeyHeight = 16;  // mm
 constexpr int kKeyColumns = 5;
 
 std::string number(double x) {
@@ -18,7 +19,8 @@ std::string number(double x) {
 }
 
 std::string style(std::size_t i, double size) {
-  return std::string(" lc rgb '") + look(i).colour + "' pt " + std::to_string(look(i).point) + " ps " + number(size);
+  return std::string(" lc rgb '") + look(i).colour + "' pt " + std::to_string(look(i).point) + " ps " +
+         number(size);
 }
 
 /// Sizes of the whole, in millimetres from the lower left corner.
@@ -26,12 +28,14 @@ struct Layout {
   double width, height;
   std::string margins(double x0, double x1, double y0, double y1) const {
     return "set lmargin at screen " + number(x0 / width) + "\nset rmargin at screen " + number(x1 / width) +
-           "\nset bmargin at screen " + number(y0 / height) + "\nset tmargin at screen " + number(y1 / height) + "\n";
+           "\nset bmargin at screen " + number(y0 / height) + "\nset tmargin at screen " +
+           number(y1 / height) + "\n";
   }
 };
 
 /// One panel: faint points, the frontier over them, and crosses where something failed.
-std::string plots_of(Gnuplot& chart, const std::string& id, const std::vector<const Point*>& panel, double slowest) {
+std::string plots_of(Gnuplot& chart, const std::string& id, const std::vector<const Point*>& panel,
+                     double slowest) {
   std::vector<std::vector<std::string>> rows(look_count());
   std::vector<std::string> failed, best;
   std::string last;
@@ -45,7 +49,8 @@ std::string plots_of(Gnuplot& chart, const std::string& id, const std::vector<co
   }
   for (const Point* p : frontier(panel)) best.push_back(number(drawn_error(*p)) + " " + number(p->median));
   std::string plots;
-  const auto add = [&](const std::string& name, const std::vector<std::string>& data, const std::string& how) {
+  const auto add = [&](const std::string& name, const std::vector<std::string>& data,
+                       const std::string& how) {
     if (data.empty()) return;
     chart.add_data(name, data);
     plots += (plots.empty() ? "plot $" : ", $") + name + " using 1:2 with " + how;
@@ -60,10 +65,11 @@ std::string plots_of(Gnuplot& chart, const std::string& id, const std::vector<co
 std::string key_of(Gnuplot& chart, const Layout& layout) {
   const auto n = static_cast<int>(look_count()) + 2;
   const int lines = (n + kKeyColumns - 1) / kKeyColumns;
-  std::string out = layout.margins(2, layout.width - 2, 1, kKeyHeight - 1) +
-                    "unset border\nunset tics\nunset title\nunset xlabel\nunset ylabel\nunset logscale\nunset grid\n"
-                    "set xrange [0:" +
-                    std::to_string(kKeyColumns) + "]\nset yrange [0:" + std::to_string(lines) + "]\n";
+  std::string out =
+      layout.margins(2, layout.width - 2, 1, kKeyHeight - 1) +
+      "unset border\nunset tics\nunset title\nunset xlabel\nunset ylabel\nunset logscale\nunset grid\n"
+      "set xrange [0:" +
+      std::to_string(kKeyColumns) + "]\nset yrange [0:" + std::to_string(lines) + "]\n";
   std::vector<std::string> titles;
   std::string plots;
   for (int i = 0; i < n; ++i) {
@@ -105,7 +111,8 @@ Gnuplot accuracy_chart(const std::vector<DataSet>& sets, const std::vector<Point
       const double x0 = kLeft + static_cast<double>(column) * kPanelWidth;
       const double y1 = layout.height - kTop - static_cast<double>(row) * kPanelHeight;
       plots += layout.margins(x0, x0 + kPanelWidth - 2, y1 - kPanelHeight + 3, y1);
-      plots += row == 0 ? "set title " + gnuplot_text(title(kPoseClasses[column])) + " offset 0,-0.6\n" : "unset title\n";
+      plots += row == 0 ? "set title " + gnuplot_text(title(kPoseClasses[column])) + " offset 0,-0.6\n"
+                        : "unset title\n";
       plots += row + 1 == sets.size()
                    ? "set xlabel 'error of the contact region / diagonal' offset 0,0.2\n"
                      "set xtics ('0' 1e-7, '1e-5' 1e-5, '1e-3' 1e-3, '0.1' 0.1, '1' 1) nomirror\n"

@@ -86,9 +86,10 @@ DataSet read_data_set(const std::string& path) {
       set.bodies.push_back({b.at("file").get<std::string>(), b.at("faces").get<std::uint32_t>(),
                             b.at("build_s").get<double>()});
     for (const json& q : value.at("questions"))
-      set.questions.push_back({pose_class_from(q.at("class").get<std::string>()), q.at("a").get<std::size_t>(),
-                               q.at("b").get<std::size_t>(), pose_from(q.at("pose_a")),
-                               pose_from(q.at("pose_b")), pairs_from(q.at("expected"))});
+      set.questions.push_back({pose_class_from(q.at("class").get<std::string>()),
+                               q.at("a").get<std::size_t>(), q.at("b").get<std::size_t>(),
+                               pose_from(q.at("pose_a")), pose_from(q.at("pose_b")),
+                               pairs_from(q.at("expected"))});
     return set;
   } catch (const json::exception& e) {
     throw InputError(printable_name(path) + ": not a data set of lrbscope bench or chart (" + e.what() +

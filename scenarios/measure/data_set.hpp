@@ -32,8 +32,8 @@ struct Question {
 };
 
 struct DataSet {
-  std::string name;  ///< for files and the command line: "rocks"
-  std::string what;  ///< for people: "two rocks of 20,480 faces"
+  std::string name;     ///< for files and the command line: "rocks"
+  std::string what;     ///< for people: "two rocks of 20,480 faces"
   double diagonal = 0;  ///< of the larger body's box
   std::vector<BodyFile> bodies;
   std::vector<Question> questions;

@@ -9,7 +9,8 @@ std::string machine() {
   std::ifstream in("/proc/cpuinfo");
   std::string model = "unknown processor";
   for (std::string line; std::getline(in, line);)
-    if (const std::size_t colon = line.find(": "); colon != std::string::npos && line.rfind("model name", 0) == 0) {
+    if (const std::size_t colon = line.find(": ");
+        colon != std::string::npos && line.rfind("model name", 0) == 0) {
       model = line.substr(colon + 2);
       break;
     }

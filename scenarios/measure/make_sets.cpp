@@ -41,8 +41,7 @@ class Approaches {
       Pose p;
       p.r = shapes::random_rotation(random_);
       const Eigen::Vector3d d = shapes::random_direction(random_);
-      const Eigen::Vector3d middle =
-          shapes::box_of(a_).center() - p.r * shapes::box_of(b_).center();
+      const Eigen::Vector3d middle = shapes::box_of(a_).center() - p.r * shapes::box_of(b_).center();
       const auto meets = [&](double s) {
         p.t = middle + s * d;
         NullProbe probe;
@@ -181,8 +180,8 @@ std::vector<BodyPair> pairs_of_models(const std::string& folder) {
 }
 
 DataSet make_data_set(const BodyPair& pair, const SetOptions& options, const std::string& folder) {
-  const std::string mark = " (" + std::to_string(options.poses) + " poses a class, seed " +
-                           std::to_string(options.seed) + ")";
+  const std::string mark =
+      " (" + std::to_string(options.poses) + " poses a class, seed " + std::to_string(options.seed) + ")";
   const std::string path = folder + "/" + pair.name + ".set.json";
   if (fs::exists(path)) {
     DataSet set = read_data_set(path);

@@ -25,8 +25,8 @@ struct SetOptions {
   std::uint64_t seed = 1;
 };
 
-/// Writes the data set and its bodies into a folder and returns the set, or reads what is there if it was made
-/// of the same bodies and options. Throws InputError if a body cannot be an LRB-rep.
+/// Writes the data set and its bodies into a folder and returns the set, or reads what is there if it was
+/// made of the same bodies and options. Throws InputError if a body cannot be an LRB-rep.
 DataSet make_data_set(const BodyPair& pair, const SetOptions& options, const std::string& folder);
 
 }  // namespace lrb::measure

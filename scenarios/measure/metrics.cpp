@@ -24,9 +24,9 @@ constexpr MetricInfo kInfos[kMetrics] = {
     {"depth", "error of the largest depth, over the diagonal", 1},
 };
 
-constexpr Metric kAll[kMetrics] = {Metric::contact, Metric::precision, Metric::recall,
-                                   Metric::hausdorff, Metric::length, Metric::area,
-                                   Metric::centroid, Metric::normal, Metric::depth};
+constexpr Metric kAll[kMetrics] = {Metric::contact,   Metric::precision, Metric::recall,
+                                   Metric::hausdorff, Metric::length,    Metric::area,
+                                   Metric::centroid,  Metric::normal,    Metric::depth};
 
 std::optional<double>& at(Errors& e, Metric m) {
   return e[static_cast<std::size_t>(m)];
@@ -67,7 +67,10 @@ double share(std::size_t part, std::size_t whole) {
 class Judge {
  public:
   Judge(const DataSet& set, const Question& q, const LrbRep& a, const LrbRep& b)
-      : diagonal_(set.diagonal), q_(q), maker_(a, q.pose_a, b, q.pose_b), exact_(maker_.of_pairs(q.expected)) {}
+      : diagonal_(set.diagonal),
+        q_(q),
+        maker_(a, q.pose_a, b, q.pose_b),
+        exact_(maker_.of_pairs(q.expected)) {}
 
   Errors errors(const methods::MethodInfo& info, const Record& r) {
     if (r.outcome != Outcome::answered) return worst_of(info);
@@ -87,9 +90,9 @@ class Judge {
   RegionError error(const Region& found) const { return region_error(exact_, found, diagonal_); }
 
   static void set_region(Errors& e, const methods::MethodInfo& info, const RegionError& r) {
-    const std::pair<Metric, double> values[] = {{Metric::hausdorff, r.hausdorff}, {Metric::length, r.length},
-                                                {Metric::area, r.area},           {Metric::centroid, r.centroid},
-                                                {Metric::normal, r.normal},       {Metric::depth, r.depth}};
+    const std::pair<Metric, double> values[] = {
+        {Metric::hausdorff, r.hausdorff}, {Metric::length, r.length}, {Metric::area, r.area},
+        {Metric::centroid, r.centroid},   {Metric::normal, r.normal}, {Metric::depth, r.depth}};
     for (const auto& [m, value] : values)
       if (applies(info, m)) at(e, m) = value;
   }
@@ -115,7 +118,8 @@ void add(Gathered& g, const Record& r, const Errors& e) {
   p.crashed += r.outcome == Outcome::crashed;
   p.timed_out += r.outcome == Outcome::timed_out;
   for (const Metric m : kAll)
-    if (const auto& value = e[static_cast<std::size_t>(m)]) at(g.sums, m) = at(g.sums, m).value_or(0) + *value;
+    if (const auto& value = e[static_cast<std::size_t>(m)])
+      at(g.sums, m) = at(g.sums, m).value_or(0) + *value;
   Point one;
   one.errors = e;
   if (one.error() > g.worst) {
@@ -141,8 +145,8 @@ Point finished(Gathered g) {
   return p;
 }
 
-/// Nothing is both as fast and as right, and better in one of the two. What answered nothing has no time, and what says
-/// only yes or no does not answer the same question.
+/// Nothing is both as fast and as right, and better in one of the two. What answered nothing has no time, and
+/// what says only yes or no does not answer the same question.
 void mark_frontiers(std::vector<Point>& points) {
   for (Point& p : points) {
     const auto takes_part = [](const Point& x) { return x.median > 0 && x.gives_region(); };
@@ -167,7 +171,8 @@ double Point::error() const {
   return region ? *region : contact.value_or(metric_info(Metric::contact).worst);
 }
 
-std::vector<Point> measure_points(const std::vector<DataSet>& sets, const std::vector<methods::MethodInfo>& methods,
+std::vector<Point> measure_points(const std::vector<DataSet>& sets,
+                                  const std::vector<methods::MethodInfo>& methods,
                                   const std::vector<Record>& records, const MetricProgress& progress) {
   std::map<std::pair<std::string, std::uint64_t>, std::vector<const Record*>> by_question;
   for (const Record& r : records) by_question[{r.set, r.question}].push_back(&r);

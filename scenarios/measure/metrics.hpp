@@ -1,6 +1,6 @@
 #pragma once
-/// What is computed from records: one point for each method, at each setting, on each data set (two bodies at one
-/// class of poses).
+/// What is computed from records: one point for each method, at each setting, on each data set (two bodies at
+/// one class of poses).
 
 #include <functional>
 #include <optional>
@@ -41,15 +41,16 @@ struct Point {
   std::optional<double> setting;
   PoseClass pose_class = PoseClass::apart;
   std::size_t questions = 0, refused = 0, crashed = 0, timed_out = 0;
-  Errors errors;                                 ///< means over the questions
-  double median = 0, p95 = 0, p99 = 0;           ///< microseconds, hot, all pairs, of those answered
-  double build_seconds = 0, bytes = 0;           ///< both bodies
-  double face_tests = 0;                         ///< mean; 0: not counted
-  std::uint64_t worst_question = 0;              ///< the one with the largest error
-  bool frontier = false;                         ///< of its data set: nothing is both faster and less wrong
+  Errors errors;                        ///< means over the questions
+  double median = 0, p95 = 0, p99 = 0;  ///< microseconds, hot, all pairs, of those answered
+  double build_seconds = 0, bytes = 0;  ///< both bodies
+  double face_tests = 0;                ///< mean; 0: not counted
+  std::uint64_t worst_question = 0;     ///< the one with the largest error
+  bool frontier = false;                ///< of its data set: nothing is both faster and less wrong
 
   std::size_t failed() const { return refused + crashed + timed_out; }
-  /// The error that stands on the chart: of the contact region where the method gives one, else of its yes or no.
+  /// The error that stands on the chart: of the contact region where the method gives one, else of its yes or
+  /// no.
   double error() const;
   bool gives_region() const { return errors[static_cast<std::size_t>(Metric::hausdorff)].has_value(); }
 };
@@ -57,7 +58,8 @@ struct Point {
 using MetricProgress = std::function<void(std::size_t done, std::size_t total)>;
 
 /// Points of all methods on all data sets, with their Pareto frontiers over time and error.
-std::vector<Point> measure_points(const std::vector<DataSet>& sets, const std::vector<methods::MethodInfo>& methods,
+std::vector<Point> measure_points(const std::vector<DataSet>& sets,
+                                  const std::vector<methods::MethodInfo>& methods,
                                   const std::vector<Record>& records, const MetricProgress& progress = {});
 
 /// As JSON, a line each.

@@ -14,12 +14,12 @@ struct WorldBody {
     for (SimplexId s = 0; s < r.real_simplex_count(); ++s) whole.extend(box(s));
   }
   void corners(SimplexId s, const double* out[3]) const {
-    VertexId v[3];
+    VertexId v[3] = {};
     rep.simplex(s, v);
     for (int k = 0; k < 3; ++k) out[k] = x[v[k]].data();
   }
   Box box(SimplexId s) const {
-    VertexId v[3];
+    VertexId v[3] = {};
     rep.simplex(s, v);
     Box b;
     for (const VertexId i : v) b.extend(x[i]);
@@ -32,7 +32,8 @@ struct WorldBody {
 
 }  // namespace
 
-std::vector<SimplexPair> exact_pairs(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b) {
+std::vector<SimplexPair> exact_pairs(const LrbRep& a, const Pose& pose_a, const LrbRep& b,
+                                     const Pose& pose_b) {
   const WorldBody wa(a, pose_a), wb(b, pose_b);
   const std::uint32_t first_of_b = a.real_simplex_count();
   std::vector<Box> boxes(first_of_b + b.real_simplex_count());

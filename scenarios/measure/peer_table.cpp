@@ -85,9 +85,10 @@ std::string padded(const std::string& word, std::size_t width, bool left = false
 
 std::string ratios_of(const PeerTable& t, Mode mode) {
   constexpr std::size_t kSet = 18, kClass = 16, kNumber = 10;
-  std::string out = mode == Mode::all_pairs
-                        ? "ALL PAIRS. Microseconds of ours, hot; then how many times as long others take, hot\n"
-                        : "FIRST PAIR (boolean). The same\n";
+  std::string out =
+      mode == Mode::all_pairs
+          ? "ALL PAIRS. Microseconds of ours, hot; then how many times as long others take, hot\n"
+          : "FIRST PAIR (boolean). The same\n";
   out += padded("bodies", kSet, true) + padded("pose", kClass, true) + padded("pairs", kNumber) +
          padded("ours us", kNumber) + padded("p95", kNumber);
   for (const methods::MethodInfo& m : t.methods)
@@ -97,8 +98,9 @@ std::string ratios_of(const PeerTable& t, Mode mode) {
     for (const PoseClass c : kPoseClasses) {
       const PeerCell* ours = t.find(set, kOurs, c, mode);
       if (ours == nullptr || ours->questions == 0) continue;
-      out += padded(set, kSet, true) + padded(title(c), kClass, true) + padded(text("%.0f", ours->pairs), kNumber) +
-             padded(text("%.1f", ours->hot), kNumber) + padded(text("%.1f", ours->hot_p95), kNumber);
+      out += padded(set, kSet, true) + padded(title(c), kClass, true) +
+             padded(text("%.0f", ours->pairs), kNumber) + padded(text("%.1f", ours->hot), kNumber) +
+             padded(text("%.1f", ours->hot_p95), kNumber);
       for (const methods::MethodInfo& m : t.methods) {
         if (m.name == kOurs || !m.present) continue;
         const PeerCell* cell = t.find(set, m.name, c, mode);
@@ -120,7 +122,8 @@ double mean_ratio(const PeerTable& t, const std::string& method, Mode mode, bool
 
 std::string means_of(const PeerTable& t) {
   constexpr std::size_t kName = 16, kNumber = 11;
-  std::string out = "GEOMETRIC MEANS of the ratios over bodies and classes of poses\n" + padded("", kName, true);
+  std::string out =
+      "GEOMETRIC MEANS of the ratios over bodies and classes of poses\n" + padded("", kName, true);
   for (const char* head : {"all pairs", "cold", "boolean", "cold", "apart", "cold", "missed", "extra"})
     out += padded(head, kNumber);
   out += "\n";
@@ -150,7 +153,8 @@ std::string means_of(const PeerTable& t) {
   return out + "\n";
 }
 
-/// By class of poses and mode, all peers that are faster somewhere, and by how much at most: "2.1x (cold 1.3x)".
+/// By class of poses and mode, all peers that are faster somewhere, and by how much at most: "2.1x
+/// (cold 1.3x)".
 std::string ahead_of(const PeerTable& t) {
   std::string out;
   std::size_t compared = 0, behind = 0;
@@ -171,8 +175,8 @@ std::string ahead_of(const PeerTable& t) {
           if (cell->missed + cell->extra > 0) peers += ", not exact";
         }
         if (!peers.empty())
-          out += "    " + set + ", " + title(c) + (mode == Mode::all_pairs ? ", all pairs: " : ", boolean: ") + peers +
-                 "\n";
+          out += "    " + set + ", " + title(c) +
+                 (mode == Mode::all_pairs ? ", all pairs: " : ", boolean: ") + peers + "\n";
       }
   if (out.empty()) return text("  No peer is ahead in any of %zu cells, hot or cold.\n", compared);
   return text("WHERE A PEER IS AHEAD, in %zu of %zu cells, by how much\n", behind, compared) + out;
@@ -203,14 +207,16 @@ std::string price_of(const PeerTable& t) {
       identical += text("%s%.2f", identical.empty() ? "" : ", ", 1 / c.ratio);
   }
   if (ordinary.empty()) return "";
-  return text("THE PRICE OF EXACTNESS: ours takes %.3f times as long as without the exact fallback on ordinary "
-              "poses (geometric mean; aim: at most 1.10);\n  identical poses, all pairs: %s\n",
-              geometric_mean(ordinary), identical.c_str());
+  return text(
+      "THE PRICE OF EXACTNESS: ours takes %.3f times as long as without the exact fallback on ordinary "
+      "poses (geometric mean; aim: at most 1.10);\n  identical poses, all pairs: %s\n",
+      geometric_mean(ordinary), identical.c_str());
 }
 
 }  // namespace
 
-const PeerCell* PeerTable::find(const std::string& set, const std::string& method, PoseClass c, Mode mode) const {
+const PeerCell* PeerTable::find(const std::string& set, const std::string& method, PoseClass c,
+                                Mode mode) const {
   for (const PeerCell& cell : cells)
     if (cell.set == set && cell.method == method && cell.pose_class == c && cell.mode == mode) return &cell;
   return nullptr;
@@ -240,15 +246,16 @@ std::string in_brief(const PeerTable& t) {
 }
 
 std::string in_full(const PeerTable& t) {
-  std::string out = text("%-20s %-16s %-6s %-15s %9s %9s %9s %9s %8s %8s %9s %8s %8s\n", "bodies", "pose", "mode",
-                         "method", "hot us", "p95", "cold us", "p95", "x ours", "cold", "pairs", "missed", "extra");
+  std::string out =
+      text("%-20s %-16s %-6s %-15s %9s %9s %9s %9s %8s %8s %9s %8s %8s\n", "bodies", "pose", "mode", "method",
+           "hot us", "p95", "cold us", "p95", "x ours", "cold", "pairs", "missed", "extra");
   for (const PeerCell& c : t.cells) {
     if (c.questions == 0) continue;
     out += text("%-20s %-16s %-6s %-15s ", c.set.c_str(), title(c.pose_class),
                 c.mode == Mode::all_pairs ? "all" : "first", c.method.c_str());
     if (c.answered > 0)
-      out += text("%9.1f %9.1f %9.1f %9.1f %8.2f %8.2f %9.1f %8llu %8llu", c.hot, c.hot_p95, c.cold, c.cold_p95,
-                  c.ratio, c.cold_ratio, c.pairs, static_cast<unsigned long long>(c.missed),
+      out += text("%9.1f %9.1f %9.1f %9.1f %8.2f %8.2f %9.1f %8llu %8llu", c.hot, c.hot_p95, c.cold,
+                  c.cold_p95, c.ratio, c.cold_ratio, c.pairs, static_cast<unsigned long long>(c.missed),
                   static_cast<unsigned long long>(c.extra));
     if (c.answered < c.questions)
       out += text(" %zu of %zu answered, %zu crashed, %zu timed out", c.answered, c.questions, c.crashed,

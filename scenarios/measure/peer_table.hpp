@@ -22,8 +22,8 @@ struct PeerCell {
 };
 
 struct PeerTable {
-  std::vector<std::string> sets;              ///< names
-  std::vector<methods::MethodInfo> methods;   ///< in the order of columns; ours first
+  std::vector<std::string> sets;             ///< names
+  std::vector<methods::MethodInfo> methods;  ///< in the order of columns; ours first
   std::vector<PeerCell> cells;
 
   const PeerCell* find(const std::string& set, const std::string& method, PoseClass c, Mode mode) const;

@@ -14,8 +14,8 @@ using nlohmann::json;
 using nlohmann::ordered_json;
 
 ordered_json reply_json(const Reply& r) {
-  ordered_json out = {{"contact", r.contact}, {"count", r.count},     {"missed", r.missed},
-                      {"extra", r.extra},     {"cold_us", r.cold_us}, {"hot_us", r.hot_us},
+  ordered_json out = {{"contact", r.contact},      {"count", r.count},     {"missed", r.missed},
+                      {"extra", r.extra},          {"cold_us", r.cold_us}, {"hot_us", r.hot_us},
                       {"face_tests", r.face_tests}};
   if (!r.pairs.empty()) out["pairs"] = flat(r.pairs);
   for (const Eigen::Vector3d& p : r.points) out["points"].push_back({p.x(), p.y(), p.z()});

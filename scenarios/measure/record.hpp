@@ -20,13 +20,13 @@ const char* to_string(Outcome o);
 /// The answer in one mode.
 struct Reply {
   bool contact = false;
-  std::uint64_t count = 0;                ///< pairs
-  std::uint64_t missed = 0, extra = 0;    ///< against the exact list
-  double cold_us = 0;                     ///< the first time, caches swept
-  double hot_us = 0;                      ///< the best of a few repeats
+  std::uint64_t count = 0;              ///< pairs
+  std::uint64_t missed = 0, extra = 0;  ///< against the exact list
+  double cold_us = 0;                   ///< the first time, caches swept
+  double hot_us = 0;                    ///< the best of a few repeats
   std::uint64_t face_tests = 0;
-  std::vector<SimplexPair> pairs;         ///< if they are kept
-  std::vector<Eigen::Vector3d> points;    ///< if they are kept, and the method gives them
+  std::vector<SimplexPair> pairs;       ///< if they are kept
+  std::vector<Eigen::Vector3d> points;  ///< if they are kept, and the method gives them
 };
 
 struct Record {

@@ -73,7 +73,8 @@ Region RegionMaker::of_pairs(const std::vector<SimplexPair>& pairs) {
       continue;
     }
     Eigen::Vector3d sum(0, 0, 0);
-    for (int k = 0; k < 3; ++k) sum += Eigen::Map<const Eigen::Vector3d>(a[k]) + Eigen::Map<const Eigen::Vector3d>(b[k]);
+    for (int k = 0; k < 3; ++k)
+      sum += Eigen::Map<const Eigen::Vector3d>(a[k]) + Eigen::Map<const Eigen::Vector3d>(b[k]);
     out.points.push_back(sum / 6);
   }
   describe_contact(context_, request, result);

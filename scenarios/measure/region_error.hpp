@@ -1,6 +1,6 @@
 #pragma once
-/// How far what a method calls the contact is from the exact contact: of two posed bodies, the region that a list
-/// of pairs spans, or points that a method gave in place of pairs.
+/// How far what a method calls the contact is from the exact contact: of two posed bodies, the region that a
+/// list of pairs spans, or points that a method gave in place of pairs.
 
 #include <memory>
 #include <optional>
@@ -32,7 +32,8 @@ struct RegionError {
 class RegionMaker {
  public:
   RegionMaker(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b);
-  /// Pairs that do not meet are left out of all but the points, where their triangles' middles stand for them.
+  /// Pairs that do not meet are left out of all but the points, where their triangles' middles stand for
+  /// them.
   Region of_pairs(const std::vector<SimplexPair>& pairs);
 
  private:

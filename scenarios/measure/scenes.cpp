@@ -56,8 +56,9 @@ std::string scenario_text(const DataSet& set, std::uint64_t k, const std::string
 
 }  // namespace
 
-std::map<SceneKey, std::string> write_scenes(const std::vector<DataSet>& sets, const std::vector<Point>& points,
-                                             const std::string& folder, const ProgressReport& progress) {
+std::map<SceneKey, std::string> write_scenes(const std::vector<DataSet>& sets,
+                                             const std::vector<Point>& points, const std::string& folder,
+                                             const ProgressReport& progress) {
   std::map<SceneKey, std::string> pages;
   std::uint64_t done = 0;
   for (const DataSet& set : sets)

@@ -16,9 +16,10 @@ namespace lrb::measure {
 using SceneKey = std::pair<std::string, PoseClass>;
 
 /// For each data set and class of poses the question that most methods answer worst. Writes
-/// folder/scenes/SET-CLASS.scenario.json and, played, folder/scenes/SET-CLASS/; those that are there are kept.
-/// Gives their pages, relative to the folder.
-std::map<SceneKey, std::string> write_scenes(const std::vector<DataSet>& sets, const std::vector<Point>& points,
-                                             const std::string& folder, const ProgressReport& progress);
+/// folder/scenes/SET-CLASS.scenario.json and, played, folder/scenes/SET-CLASS/; those that are there are
+/// kept. Gives their pages, relative to the folder.
+std::map<SceneKey, std::string> write_scenes(const std::vector<DataSet>& sets,
+                                             const std::vector<Point>& points, const std::string& folder,
+                                             const ProgressReport& progress);
 
 }  // namespace lrb::measure

@@ -40,8 +40,7 @@ class Survey {
     for (const DataSet& set : o_.sets) {
       // Questions of a class stand together.
       for (std::uint64_t begin = 0, end = 0; begin < set.questions.size(); begin = end) {
-        while (end < set.questions.size() &&
-               set.questions[end].pose_class == set.questions[begin].pose_class)
+        while (end < set.questions.size() && set.questions[end].pose_class == set.questions[begin].pose_class)
           ++end;
         for (const Contestant& c : o_.contestants) ask(set, c, begin, end);
       }
@@ -57,8 +56,8 @@ class Survey {
     for (; begin < end && known_.count({set.name, name, begin}) != 0; ++begin) tell(set.name + ", " + name);
     if (begin == end) return;
     stability::Job::Task task;
-    task.command = {c.method.program, "--questions", o_.folder + "/" + set.name + ".set.json",
-                    "--method",       c.method.column.name};
+    task.command = {c.method.program, "--questions", o_.folder + "/" + set.name + ".set.json", "--method",
+                    c.method.column.name};
     if (c.setting) task.command.insert(task.command.end(), {"--setting", exactly(*c.setting)});
     if (o_.keep) task.command.push_back("--pairs");
     task.begin = begin;

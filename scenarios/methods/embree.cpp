@@ -1,6 +1,6 @@
-// Embree's rtcCollide: two trees of boxes round triangles, descended against each other; what their leaves hold
-// comes by callback, and the triangles are tested there, as Embree's own example does. Its boxes live in the
-// world: when a body moves its tree is refitted, or built again, before it can be asked.
+// Embree's rtcCollide: two trees of boxes round triangles, descended against each other; what their leaves
+// hold comes by callback, and the triangles are tested there, as Embree's own example does. Its boxes live in
+// the world: when a body moves its tree is refitted, or built again, before it can be asked.
 #include "scenarios/methods/method.hpp"
 
 #ifdef LRB_HAS_EMBREE
@@ -146,11 +146,12 @@ MethodEntry entry(const char* name, const char* how, const char* remark, std::un
   MethodInfo info;
   info.name = name;
   info.title = std::string("Embree " RTC_VERSION_STRING ", rtcCollide, ") + how;
-  info.remark = std::string(
-                    "All pairs: rtcCollide() of two scenes of triangles' boxes, the triangles tested in the "
-                    "callback in double with an epsilon; it has no way to stop at the first pair. Body B moves "
-                    "at every query, ") +
-                remark;
+  info.remark =
+      std::string(
+          "All pairs: rtcCollide() of two scenes of triangles' boxes, the triangles tested in the "
+          "callback in double with an epsilon; it has no way to stop at the first pair. Body B moves "
+          "at every query, ") +
+      remark;
   info.hard_cases = false;
   return {info, make};
 }
@@ -158,13 +159,13 @@ MethodEntry entry(const char* name, const char* how, const char* remark, std::un
 }  // namespace
 
 MethodEntry embree() {
-  return entry("embree", "refitted", "and its tree is refitted, which counts.", []() -> std::unique_ptr<Method> {
-    return std::make_unique<Embree>(RTC_BUILD_QUALITY_REFIT);
-  });
+  return entry("embree", "refitted", "and its tree is refitted, which counts.",
+               []() -> std::unique_ptr<Method> { return std::make_unique<Embree>(RTC_BUILD_QUALITY_REFIT); });
 }
 
 MethodEntry embree_rebuilt() {
-  return entry("embree-rebuilt", "rebuilt", "and its tree is built again by the fastest builder, which counts.",
+  return entry("embree-rebuilt", "rebuilt",
+               "and its tree is built again by the fastest builder, which counts.",
                []() -> std::unique_ptr<Method> { return std::make_unique<Embree>(RTC_BUILD_QUALITY_LOW); });
 }
 

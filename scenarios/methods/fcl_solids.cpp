@@ -1,5 +1,5 @@
-// FCL with other forms of bodies than meshes: an octree of cells against a mesh, with the size of cells as a knob, and
-// the convex hulls of both by GJK (libccd).
+// FCL with other forms of bodies than meshes: an octree of cells against a mesh, with the size of cells as a
+// knob, and the convex hulls of both by GJK (libccd).
 #include "scenarios/methods/method.hpp"
 
 #ifdef LRB_HAS_FCL
@@ -61,9 +61,9 @@ std::shared_ptr<octomap::OcTree> cells_of(const Triangles& t, double cell) {
     for (int i = 0; i <= n; ++i)
       for (int j = 0; i + j <= n; ++j) {
         const Eigen::Vector3d x = p + (q - p) * i / n + (r - p) * j / n;
-        tree->updateNode(octomap::point3d(static_cast<float>(x.x()), static_cast<float>(x.y()),
-                                          static_cast<float>(x.z())),
-                         true, true);
+        tree->updateNode(
+            octomap::point3d(static_cast<float>(x.x()), static_cast<float>(x.y()), static_cast<float>(x.z())),
+            true, true);
       }
   }
   tree->updateInnerOccupancy();
@@ -97,8 +97,8 @@ class Octree : public Method {
                      Mode mode) override {
     check_rigid(pose_a);
     check_rigid(pose_b);
-    return ask(*static_cast<const OctreeBody&>(a).cells, pose_a, static_cast<const OctreeBody&>(b).mesh, pose_b,
-               mode);
+    return ask(*static_cast<const OctreeBody&>(a).cells, pose_a, static_cast<const OctreeBody&>(b).mesh,
+               pose_b, mode);
   }
 
  private:
@@ -137,7 +137,8 @@ class Gjk : public Method {
                      Mode mode) override {
     check_rigid(pose_a);
     check_rigid(pose_b);
-    return ask(*static_cast<const HullBody&>(a).hull, pose_a, *static_cast<const HullBody&>(b).hull, pose_b, mode);
+    return ask(*static_cast<const HullBody&>(a).hull, pose_a, *static_cast<const HullBody&>(b).hull, pose_b,
+               mode);
   }
 };
 
@@ -148,7 +149,8 @@ MethodEntry fcl_octree() {
   info.name = "fcl-octree";
   info.title = "FCL " FCL_VERSION ", octree against mesh";
   info.remark =
-      "Contact, and points of it: A as an octree (OctoMap) of the cells that its surface goes through, B as a mesh. "
+      "Contact, and points of it: A as an octree (OctoMap) of the cells that its surface goes through, B as "
+      "a mesh. "
       "The knob is the number of cells along A's diagonal.";
   info.pairs = false;
   info.hard_cases = false;
@@ -163,7 +165,8 @@ MethodEntry fcl_gjk() {
   info.name = "fcl-gjk";
   info.title = "FCL " FCL_VERSION ", GJK of convex hulls";
   info.remark =
-      "Contact, and a point of it: the convex hulls of both bodies by GJK and EPA (libccd). Right where bodies are "
+      "Contact, and a point of it: the convex hulls of both bodies by GJK and EPA (libccd). Right where "
+      "bodies are "
       "convex and neither lies in the other.";
   info.pairs = false;
   info.hard_cases = false;

@@ -91,9 +91,11 @@ class Ode : public Method {
 MethodEntry ode() {
   MethodInfo info;
   info.name = "ode";
-  info.title = sizeof(dReal) == sizeof(double) ? "ODE, triangle meshes, double" : "ODE, triangle meshes, float";
+  info.title =
+      sizeof(dReal) == sizeof(double) ? "ODE, triangle meshes, double" : "ODE, triangle meshes, float";
   info.remark =
-      "Pairs of the contact points of dCollide(), at most 65535, where one may stand for several pairs: its list "
+      "Pairs of the contact points of dCollide(), at most 65535, where one may stand for several pairs: its "
+      "list "
       "is not meant to be complete. Trees and vertices in float.";
   info.loose = true;
   info.hard_cases = false;

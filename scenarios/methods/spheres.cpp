@@ -1,7 +1,7 @@
-// Two trees of spheres, descended together and stopped at a level: an answer in time, and an approximate one (P. M.
-// Hubbard, "Collision Detection for Interactive Graphics Applications", PhD thesis, Brown University, 1994: the
-// paper's Hub94). Spheres hold the triangles beneath them, so that nothing is missed; what overlaps at the last
-// level is taken for contact.
+// Two trees of spheres, descended together and stopped at a level: an answer in time, and an approximate one
+// (P. M. Hubbard, "Collision Detection for Interactive Graphics Applications", PhD thesis, Brown University,
+// 1994: the paper's Hub94). Spheres hold the triangles beneath them, so that nothing is missed; what overlaps
+// at the last level is taken for contact.
 #include <algorithm>
 
 #include <Eigen/Geometry>
@@ -130,7 +130,8 @@ MethodEntry spheres() {
   info.name = "spheres";
   info.title = "sphere tree, stopped at a level";
   info.remark =
-      "Contact, and points of it: two binary trees of spheres round triangles, descended to a level; what still "
+      "Contact, and points of it: two binary trees of spheres round triangles, descended to a level; what "
+      "still "
       "overlaps there counts as contact. Never misses, often cries wolf.";
   info.pairs = false;
   info.hard_cases = false;

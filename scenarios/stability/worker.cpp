@@ -46,8 +46,7 @@ std::string dump(const ordered_json& value) {
 }
 
 void list_methods(const std::vector<methods::MethodEntry>& entries, Lines& out) {
-  for (const methods::MethodEntry& e : entries)
-    out.say(dump(to_json(e.info)));
+  for (const methods::MethodEntry& e : entries) out.say(dump(to_json(e.info)));
 }
 
 const families::Family& family_of(const WorkerOptions& o) {

@@ -2,8 +2,8 @@
 
 int main(int argc, char** argv) {
   using namespace lrb::methods;
-  return lrb::stability::worker_main(argc, argv,
-                                     {ours(), ours_floating(), ours_paper(), plain_double(), fcl_double(),
-                                      fcl_float(), cgal_rigid(), cgal_pairs(), bullet(), embree(),
-                                      embree_rebuilt(), ode(), spheres(), fcl_octree(), fcl_gjk()});
+  return lrb::stability::worker_main(
+      argc, argv,
+      {ours(), ours_floating(), ours_paper(), plain_double(), fcl_double(), fcl_float(), cgal_rigid(),
+       cgal_pairs(), bullet(), embree(), embree_rebuilt(), ode(), spheres(), fcl_octree(), fcl_gjk()});
 }

@@ -1,5 +1,6 @@
-// A few queries for guard.sh to count the instructions of, under callgrind, which this program tells where a query
-// begins and ends. Alone it runs them and counts nothing. Prints the compiler first: counts depend on it.
+// A few queries for guard.sh to count the instructions of, under callgrind, which this program tells where a
+// query begins and ends. Alone it runs them and counts nothing. Prints the compiler first: counts depend on
+// it.
 #include <cstdio>
 #include <string>
 

@@ -118,8 +118,8 @@ TEST_CASE("a body a hundredth of the diagonal apart is not nearer and hardly far
   const LrbRep a = build_lrb(shapes::bumpy_sphere(2, 1)), b = build_lrb(shapes::bumpy_sphere(2, 2));
   for (const Question& q : set.questions) {
     if (q.pose_class != PoseClass::apart) continue;
-    // Pushed by a little more than the gap along some direction it must meet; along the line of centres it does
-    // for bodies this round.
+    // Pushed by a little more than the gap along some direction it must meet; along the line of centres it
+    // does for bodies this round.
     Pose nearer = q.pose_b;
     nearer.t -= 0.03 * set.diagonal * q.pose_b.t.normalized();
     CHECK_FALSE(exact_pairs(a, Pose{}, b, nearer).empty());
@@ -198,7 +198,10 @@ TEST_CASE("points: what fails scores the worst, and the frontier is what nothing
   std::vector<Record> records;
   for (std::uint64_t q = 0; q < set.questions.size(); ++q)
     for (const methods::MethodInfo& m : infos) {
-      Record r = answer(m.name, q, set.questions[q].pose_class, m.name == "slow" ? 9 : m.name == "blind" ? 1 : 2);
+      Record r = answer(m.name, q, set.questions[q].pose_class,
+                        m.name == "slow"    ? 9
+                        : m.name == "blind" ? 1
+                                            : 2);
       r.set = set.name;
       if (m.name != "blind") r.all.pairs = set.questions[q].expected;
       r.all.contact = !r.all.pairs.empty();
@@ -252,8 +255,8 @@ TEST_CASE("a sphere tree misses nothing, and is closer to the truth at deeper le
 
 TEST_CASE("the commands: records, table, charts; what is there is not asked again") {
   const Folder folder;
-  const std::vector<std::string> bench = {"bench", "--faces", "320", "--poses", "1", "--method", "ours",
-                                          "--method", "ours-floating", "-o", "b"};
+  const std::vector<std::string> bench = {"bench", "--faces",  "320",           "--poses", "1", "--method",
+                                          "ours",  "--method", "ours-floating", "-o",      "b"};
   const auto first = run(folder, bench);
   CHECK(first.code == 0);
   CHECK(first.out.find("ours-floating") != std::string::npos);
