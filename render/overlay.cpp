@@ -145,8 +145,8 @@ class Layouter {
     add_text({0, y, width_, row_}, left + (total - text_width(o_.scale->text)) / 2, o_.scale->text);
     const PixelRect row{0, y + row_, width_, row_};
     add_text(row, left, low);
-    out_.scale = {left + low_width + gap, row.y + (row_ - mark_) / 2, bar, mark_};
-    add_text(row, out_.scale.right() + gap, high);
+    out_.bar = {left + low_width + gap, row.y + (row_ - mark_) / 2, bar, mark_};
+    add_text(row, out_.bar.right() + gap, high);
     return total;
   }
 
@@ -176,16 +176,21 @@ bool runs_over(const Image& picture) {
   return false;
 }
 
-void draw_mark(Image& image, const PixelRect& r, const LegendItem& item) {
+/// A line as thin as a screen's pixel.
+int hairline(float scale) {
+  return std::max(1, static_cast<int>(std::lround(scale)));
+}
+
+void draw_mark(Image& image, const PixelRect& r, const LegendItem& item, int thin) {
   const int thick = std::max(2, r.height / 5);
   switch (item.mark) {
     case LegendItem::Mark::solid:
       image.fill(r, item.colour);
-      image.stroke(r, palette::edge_of(item.colour));
+      image.stroke(r, palette::edge_of(item.colour), thin);
       break;
     case LegendItem::Mark::translucent:
       image.fill(r, with_alpha(item.colour, 80));
-      image.stroke(r, mix(item.colour, palette::kInk, 0.3), std::max(1, thick / 2));
+      image.stroke(r, mix(item.colour, palette::kInk, 0.3), std::max(thin, thick / 2));
       break;
     case LegendItem::Mark::line:
       image.fill({r.x, r.y + (r.height - thick) / 2, r.width, thick}, item.colour);
@@ -212,17 +217,19 @@ void draw_mark(Image& image, const PixelRect& r, const LegendItem& item) {
 
 }  // namespace
 
-OverlayLayout lay_out(const Overlay& overlay, int width, int height) {
+OverlayLayout lay_out(const Overlay& overlay, int width, int height, float scale) {
   if (overlay.empty()) {
     OverlayLayout layout;
     layout.picture = {0, 0, width, height};
+    layout.scale = scale;
     return layout;
   }
   // Text by the frame's smaller extent: a portrait frame has no more room for a line than its width.
-  const double side = std::min<double>(height, width * 0.75);
+  const double side = std::min<double>(height, width * 0.75) / scale;
   float text = std::clamp(static_cast<float>(std::round(2 * kTextShare * side) / 2), kLeastText, kMostText);
   for (;; text -= 0.5F) {
-    OverlayLayout layout = Layouter(overlay, width, height, text).run();
+    OverlayLayout layout = Layouter(overlay, width, height, text * scale).run();
+    layout.scale = scale;
     if (fits(layout, width, height)) return layout;
     if (text <= kLeastText) break;
   }
@@ -244,13 +251,13 @@ PixelRect common_picture(std::span<const OverlayLayout> layouts) {
 void draw_overlay(Image& image, const Overlay& overlay, const OverlayLayout& layout) {
   if (layout.event_mark.width > 0) {
     image.fill(layout.event_mark, overlay.event_colour);
-    image.stroke(layout.event_mark, palette::edge_of(overlay.event_colour));
+    image.stroke(layout.event_mark, palette::edge_of(overlay.event_colour), hairline(layout.scale));
   }
   for (std::size_t i = 0; i < layout.key_marks.size(); ++i)
-    draw_mark(image, layout.key_marks[i], overlay.key[i]);
-  for (int x = 0; x < layout.scale.width; ++x) {
-    const double t = layout.scale.width > 1 ? static_cast<double>(x) / (layout.scale.width - 1) : 0;
-    image.fill({layout.scale.x + x, layout.scale.y, 1, layout.scale.height}, palette::viridis(t));
+    draw_mark(image, layout.key_marks[i], overlay.key[i], hairline(layout.scale));
+  for (int x = 0; x < layout.bar.width; ++x) {
+    const double t = layout.bar.width > 1 ? static_cast<double>(x) / (layout.bar.width - 1) : 0;
+    image.fill({layout.bar.x + x, layout.bar.y, 1, layout.bar.height}, palette::viridis(t));
   }
   for (const OverlayLayout::Text& t : layout.texts) {
     TextStyle style;
@@ -263,11 +270,11 @@ void draw_overlay(Image& image, const Overlay& overlay, const OverlayLayout& lay
 }
 
 Image compose_frame(const Image& picture, const PixelRect& place, const Overlay& overlay, int width,
-                    int height, Rgba background) {
+                    int height, Rgba background, float scale) {
   Image frame(width, height, background);
   frame.paste(picture, place.x, place.y);
-  if (runs_over(picture)) frame.stroke(place, palette::kRule);
-  draw_overlay(frame, overlay, lay_out(overlay, width, height));
+  if (runs_over(picture)) frame.stroke(place, palette::kRule, hairline(scale));
+  draw_overlay(frame, overlay, lay_out(overlay, width, height, scale));
   return frame;
 }
 

@@ -47,15 +47,17 @@ struct OverlayLayout {
   };
   PixelRect picture;      ///< what is left for the picture
   float text_height = 0;  ///< pixels
+  float scale = 1;        ///< of lines
   std::vector<Text> texts;
   PixelRect event_mark;              ///< empty: none
   std::vector<PixelRect> key_marks;  ///< one per key item
-  PixelRect scale;                   ///< the colour bar itself; empty: none
+  PixelRect bar;                     ///< the scale's colour bar itself; empty: none
 };
 
 /// Lays out for a frame of the given size. Text shrinks, down to what can still be read, until at least half
-/// of the height is left for the picture. Throws InputError if it does not fit even so.
-OverlayLayout lay_out(const Overlay& overlay, int width, int height);
+/// of the height is left for the picture. `scale`: pixels per pixel of a screen; the same frame with more of
+/// them looks the same. Throws InputError if it does not fit even so.
+OverlayLayout lay_out(const Overlay& overlay, int width, int height, float scale = 1);
 
 /// The largest picture that all these layouts leave free: what a sequence of frames should use, so that the
 /// picture stands still.
@@ -67,7 +69,7 @@ void draw_overlay(Image& image, const Overlay& overlay, const OverlayLayout& lay
 /// A whole frame: background, the picture in its place (it must have the rectangle's size), the overlay. A
 /// picture that runs over its rim, such as a close-up, gets a thin frame.
 Image compose_frame(const Image& picture, const PixelRect& place, const Overlay& overlay, int width,
-                    int height, Rgba background = kWhite);
+                    int height, Rgba background = kWhite, float scale = 1);
 
 /// 1234567 as "1 234 567", with narrow spaces.
 std::string group_digits(std::uint64_t n);

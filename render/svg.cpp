@@ -11,41 +11,16 @@
 
 #include "engine/error.hpp"
 #include "render/markup.hpp"
+#include "render/svg_text.hpp"
 
 namespace lrb {
 namespace {
 
+using namespace svg_text;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-/// Height of DejaVu Sans from ascent to descent, in font sizes.
-constexpr double kHeightOfFont = 1.164;
 constexpr double kLabelHalo = 0.14;  ///< on each side, as a share of the label's height; as in draw_labels()
-
-/// With two decimals at most, whatever the locale.
-std::string number(double x) {
-  std::array<char, 64> text{};
-  const double hundredths = std::round(x * 100);
-  const auto end = std::to_chars(text.data(), text.data() + text.size(), hundredths / 100 + 0.0,
-                                 std::chars_format::fixed, 2);
-  std::string out(text.data(), end.ptr);
-  out.erase(out.find_last_not_of('0') + 1);
-  if (out.back() == '.') out.pop_back();
-  return out == "-0" ? "0" : out;
-}
-
-std::string attribute(const std::string& name, const std::string& value) {
-  return " " + name + "=\"" + value + "\"";
-}
-
-/// `what` is fill or stroke.
-std::string paint(const std::string& what, Rgba c) {
-  std::array<char, 8> hex{};
-  std::snprintf(hex.data(), hex.size(), "#%02x%02x%02x", c.r, c.g, c.b);
-  std::string out = attribute(what, hex.data());
-  if (c.a < 255) out += attribute(what + "-opacity", number(c.a / 255.0));
-  return out;
-}
 
 struct Less {
   bool operator()(const Vector3d& a, const Vector3d& b) const {
@@ -88,8 +63,7 @@ class Writer {
 
   std::string write() {
     const std::string w = number(options_.width), h = number(options_.height);
-    out_ = "<svg xmlns=\"http://www.w3.org/2000/svg\"" + attribute("width", w) + attribute("height", h) +
-           attribute("viewBox", "0 0 " + w + " " + h) + ">\n";
+    out_ = svg_open(options_.width, options_.height, options_.units_per_pixel);
     if (!options_.title.empty()) out_ += "<title>" + escape_markup(options_.title) + "</title>\n";
     if (options_.background) {
       out_ += "<rect" + attribute("width", w) + attribute("height", h) + paint("fill", *options_.background) +
@@ -158,9 +132,8 @@ class Writer {
     const auto at = projection_.to_pixel(l.x);
     if (!at) return;
     out_ += "<text" + attribute("x", number(at->x() + l.dx)) + attribute("y", number(at->y() + l.dy)) +
-            attribute("font-family", "DejaVu Sans, sans-serif") +
-            attribute("font-size", number(l.height / kHeightOfFont)) + attribute("text-anchor", "middle") +
-            attribute("dominant-baseline", "central") + paint("fill", l.colour);
+            font(l.height) + attribute("text-anchor", "middle") + attribute("dominant-baseline", "central") +
+            paint("fill", l.colour);
     if (l.halo.a > 0) {
       out_ += paint("stroke", l.halo) + attribute("stroke-width", number(2 * kLabelHalo * l.height)) +
               attribute("stroke-linejoin", "round") + attribute("paint-order", "stroke");

@@ -13,6 +13,7 @@ struct SvgOptions {
   double width = 1280, height = 720;  ///< of the view box; widths and radii of the list are in its units
   std::optional<Rgba> background = kWhite;  ///< nothing: transparent
   std::string title;                        ///< for readers that cannot see it; empty: none
+  double units_per_pixel = 1;  ///< of the view box, per pixel of a screen (1/96 inch): the size on paper
 };
 
 /// The same picture as Rasterizer::draw() gives of a scene without depth: fills, then lines and points layer

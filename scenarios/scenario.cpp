@@ -8,64 +8,13 @@
 #include "engine/lrb/fnv.hpp"
 #include "scenarios/json/json_node.hpp"
 #include "scenarios/json/suggest.hpp"
+#include "scenarios/scenario_body.hpp"
 #include "scenarios/scenario_frames.hpp"
 #include "scenarios/scenario_motion.hpp"
 #include "trace/hex.hpp"
 
 namespace lrb {
 namespace {
-
-constexpr std::uint64_t kAnySeed =
-    std::numeric_limits<std::int64_t>::max();  // what every JSON reader can hold
-
-BuildOptions read_build(const JsonNode& node, std::uint64_t seed) {
-  node.object({"patch_interior", "max_outer_faces", "seed"});
-  BuildOptions o;
-  o.seed = seed;
-  if (const auto n = node.get("patch_interior"))
-    o.patch_interior = static_cast<std::uint32_t>(n->integer(1, 1000));
-  if (const auto n = node.get("max_outer_faces"))
-    o.max_outer_faces = static_cast<std::uint32_t>(n->integer(4, 1000));
-  if (const auto n = node.get("seed")) o.seed = n->integer(0, kAnySeed);
-  return o;
-}
-
-GeneratorValues read_parameters(const JsonNode& node, const Generator& generator) {
-  std::vector<std::string> known;
-  for (const GeneratorParameter& p : generator.parameters) known.emplace_back(p.name);
-  node.object(known);
-  GeneratorValues values;
-  for (const GeneratorParameter& p : generator.parameters) {
-    const auto n = node.get(p.name);
-    if (!n) continue;
-    values[p.name] = p.whole ? static_cast<double>(n->integer(static_cast<std::uint64_t>(p.least),
-                                                              static_cast<std::uint64_t>(p.most)))
-                             : n->number(p.least, p.most);
-  }
-  return values;
-}
-
-BodySpec read_body(const JsonNode& node, const std::filesystem::path& folder, std::uint64_t seed) {
-  node.object({"file", "generator", "parameters", "build", "pose"});
-  BodySpec body;
-  body.build.seed = seed;
-  if (node.has("file") == node.has("generator")) node.fail("expected either \"file\" or \"generator\"");
-  if (const auto file = node.get("file")) {
-    if (node.has("parameters")) node.fail_key("parameters", "only a generator has parameters: remove it");
-    if (file->string().empty()) file->fail("expected the name of a mesh or .lrb file");
-    body.file = (folder / file->string()).lexically_normal().string();
-  } else {
-    std::vector<std::pair<std::string, const Generator*>> known;
-    for (const Generator& g : generators()) known.emplace_back(g.name, &g);
-    const Generator* generator = node.at("generator").choice(known);
-    body.generator = generator->name;
-    if (const auto parameters = node.get("parameters"))
-      body.parameters = read_parameters(*parameters, *generator);
-  }
-  if (const auto build = node.get("build")) body.build = read_build(*build, seed);
-  if (const auto pose = node.get("pose")) body.pose = read_pose(*pose);
-  return body;
-}
 
 std::vector<BodySpec> read_bodies(const JsonNode& node, Show show, const std::filesystem::path& folder,
                                   std::uint64_t seed) {
@@ -128,15 +77,6 @@ Expectation read_expectation(const JsonNode& node, const JsonText& text) {
     if (!e.fingerprint) n->fail("expected 16 lower-case hexadecimal digits");
   }
   return e;
-}
-
-std::string read_name(const JsonNode& node) {
-  const std::string name = node.string();
-  const bool plain = !name.empty() && name.size() <= 64 && std::all_of(name.begin(), name.end(), [](char c) {
-    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-';
-  });
-  if (!plain) node.fail("expected 1 to 64 letters, digits, - and _: the output folder is named after it");
-  return name;
 }
 
 }  // namespace

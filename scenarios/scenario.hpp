@@ -75,7 +75,8 @@ struct FrameSpec {
   std::uint32_t every = 1;            ///< steps, refinements or events between two frames
   std::vector<std::uint32_t> events;  ///< events: event numbers
   std::uint32_t most = 120;           ///< frames at most; beyond, evenly chosen ones are drawn
-  int width = 1280, height = 720;
+  int width = 1280, height = 720;     ///< pixels of a screen, 1/96 inch each
+  double dpi = 0;                     ///< pixels per inch of what is printed; 0: as on a screen, and not said
   int supersampling = 2;
   ColourBy colour_by = ColourBy::kind;
   std::vector<View> views;  ///< side by side; none: one of the whole scene
@@ -86,6 +87,10 @@ struct FrameSpec {
   double explode = 0;                            ///< regions moved outward by this share of their distance
   std::uint32_t montage = 0;                     ///< panels of the montage, evenly chosen; 0: no montage
   std::uint32_t montage_columns = 0;             ///< 0: nearly square
+
+  static constexpr double kScreenDpi = 96;  ///< of CSS, by definition
+  /// Pixels per pixel of a screen.
+  double scale() const { return dpi > 0 ? dpi / kScreenDpi : 1; }
 };
 
 struct Expectation {

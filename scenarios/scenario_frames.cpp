@@ -53,8 +53,8 @@ void read_moments(const JsonNode& node, FrameSpec& f) {
 
 FrameSpec read_frames(const JsonNode& node, const FrameSpec& fallback) {
   using ColourBy = FrameSpec::ColourBy;
-  node.object({"at", "every", "events", "most", "size", "supersampling", "colour_by", "views", "transparent",
-               "explode", "montage"});
+  node.object({"at", "every", "events", "most", "size", "dpi", "format", "supersampling", "colour_by",
+               "views", "transparent", "explode", "montage"});
   FrameSpec f = fallback;
   read_moments(node, f);
   if (const auto n = node.get("size")) {
@@ -63,6 +63,8 @@ FrameSpec read_frames(const JsonNode& node, const FrameSpec& fallback) {
     f.width = static_cast<int>(size[0].integer(64, 8192));
     f.height = static_cast<int>(size[1].integer(64, 8192));
   }
+  if (const auto n = node.get("dpi")) f.dpi = n->number(kLeastDpi, kMostDpi);
+  if (const auto n = node.get("format")) f.svg = n->choice<bool>({{"png", false}, {"svg", true}});
   if (const auto n = node.get("supersampling")) f.supersampling = static_cast<int>(n->integer(1, 4));
   if (const auto n = node.get("colour_by"))
     f.colour_by = n->choice<ColourBy>({{"kind", ColourBy::kind},

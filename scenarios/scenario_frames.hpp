@@ -5,6 +5,8 @@
 
 namespace lrb {
 
+inline constexpr double kLeastDpi = 24, kMostDpi = 2400;
+
 /// The "frames" part of a scenario, over `fallback`.
 FrameSpec read_frames(const JsonNode& node, const FrameSpec& fallback);
 

@@ -4,6 +4,7 @@
 #include <map>
 
 #include "engine/error.hpp"
+#include "scenarios/scenario_frames.hpp"
 
 namespace lrb::cli {
 namespace {
@@ -74,6 +75,14 @@ void add_picture_options(CLI::App& app, PictureOptions& options) {
   using At = FrameSpec::At;
   using ColourBy = FrameSpec::ColourBy;
   app.add_option("--size", options.size, "Of the frames, pixels")->type_name("WxH");
+  app.add_option(
+         "--dpi", options.dpi,
+         "For print: the size that --size has at 96 dpi, in more pixels; lines and texts grow with them")
+      ->check(CLI::Range(kLeastDpi, kMostDpi))
+      ->type_name("N");
+  app.add_flag("--transparent", options.transparent, "No background");
+  add_choice<bool>(app, "--format", options.svg, {{"png", false}, {"svg", true}}, "png|svg",
+                   "svg: frames and montage as SVG as well, for 2D bodies");
   add_choice<At>(
       app, "--frames", options.at,
       {{"none", At::none}, {"step", At::step}, {"refinement", At::refinement}, {"event", At::every}},
@@ -109,6 +118,9 @@ void apply(const PictureOptions& options, FrameSpec& spec) {
       throw InputError("--size: expected WIDTHxHEIGHT from 64x64 to 8192x8192, found \"" + options.size +
                        "\"");
   }
+  if (options.dpi) spec.dpi = *options.dpi;
+  if (options.svg) spec.svg = *options.svg;
+  spec.transparent |= options.transparent;
   if (options.at) {
     spec.at = *options.at;
     spec.every = 1;

@@ -18,9 +18,13 @@ void add_recursion_option(CLI::App& app, std::optional<Recursion>& recursion);
 /// --patch, --max-outer and --seed.
 void add_build_options(CLI::App& app, BuildOptions& options);
 
-/// --size, --frames, --every, --most, --colour-by and --up, over what a scenario says.
+/// --size, --dpi, --transparent, --format, --frames, --every, --most, --colour-by and --up, over what a
+/// scenario says.
 struct PictureOptions {
   std::string size;
+  std::optional<double> dpi;
+  std::optional<bool> svg;
+  bool transparent = false;
   std::optional<FrameSpec::At> at;
   std::optional<std::uint32_t> every, most;
   std::optional<FrameSpec::ColourBy> colour_by;

@@ -11,7 +11,6 @@
 #include "scenarios/cli/progress.hpp"
 #include "scenarios/files.hpp"
 #include "scenarios/play/frames.hpp"
-#include "scenarios/play/moments.hpp"
 #include "scenarios/play/report.hpp"
 #include "trace/cursor.hpp"
 #include "trace/hex.hpp"
@@ -26,7 +25,7 @@ struct RenderOptions {
   std::vector<std::uint32_t> events;
   PictureOptions picture;
   std::uint32_t montage = 0;
-  bool close_up = false, svg = false, hide_rest = false;
+  bool close_up = false, hide_rest = false;
   std::vector<std::string> regions;
 };
 
@@ -118,17 +117,12 @@ int run_render(const RenderOptions& o, const Globals& globals) {
                        : o.folder;
   FrameSpec spec = frame_spec(o, bodies.size() == 2);
   isolate(o, bodies, spec);
-  if (o.svg && bodies[0].rep.dim() != 2)
-    throw InputError(
-        printable_name(o.trace) +
-        ": --format svg is for 2D bodies, and these are 3D; leave it out, and ask for a larger --size");
-  spec.svg = o.svg;
   const std::vector<std::pair<std::string, std::string>> text = {
       {"Software", "lrbscope " + trace.header.lrbscope},
       {"lrbscope:scenario", trace.header.scenario},
       {"lrbscope:scenario_hash", trace::to_hex(trace.header.scenario_hash)},
   };
-  static_cast<void>(moments(spec, trace, {}));  // throws before anything is written
+  check_frames(p, spec);  // throws before anything is written
   make_folder(folder);
   const FolderLock lock(folder);
   refuse_links(folder);
@@ -161,11 +155,6 @@ Command add_render(CLI::App& root, const Globals& globals) {
       ->delimiter(',')
       ->type_name("N,N,...");
   app->add_flag("--no-ghost", o->hide_rest, "Leave out the rest where regions are shown alone");
-  app->add_option_function<std::string>(
-         "--format", [o](const std::string& format) { o->svg = format == "svg"; },
-         "svg: each frame as SVG as well, for 2D bodies")
-      ->check(CLI::IsMember({"png", "svg"}).description(""))
-      ->type_name("png|svg");
   add_picture_options(*app, o->picture);
   return {app, [o, &globals] { return run_render(*o, globals); }};
 }

@@ -5,15 +5,17 @@
 
 namespace lrb {
 
-Mesh rock(const GeneratorValues& v, std::uint64_t seed);    // rock.cpp
-Mesh ball(const GeneratorValues& v, std::uint64_t seed);    // rock.cpp
-Mesh knot(const GeneratorValues& v, std::uint64_t seed);    // knot.cpp
-Mesh gear(const GeneratorValues& v, std::uint64_t seed);    // gear.cpp
-Mesh cog2d(const GeneratorValues& v, std::uint64_t seed);   // gear.cpp
-Mesh bowl(const GeneratorValues& v, std::uint64_t seed);    // lathe.cpp
-Mesh stick(const GeneratorValues& v, std::uint64_t seed);   // lathe.cpp
-Mesh pot(const GeneratorValues& v, std::uint64_t seed);     // lathe.cpp
-Mesh island(const GeneratorValues& v, std::uint64_t seed);  // island.cpp
+Mesh rock(const GeneratorValues& v, std::uint64_t seed);     // rock.cpp
+Mesh ball(const GeneratorValues& v, std::uint64_t seed);     // rock.cpp
+Mesh knot(const GeneratorValues& v, std::uint64_t seed);     // knot.cpp
+Mesh gear(const GeneratorValues& v, std::uint64_t seed);     // gear.cpp
+Mesh cog2d(const GeneratorValues& v, std::uint64_t seed);    // gear.cpp
+Mesh bowl(const GeneratorValues& v, std::uint64_t seed);     // lathe.cpp
+Mesh stick(const GeneratorValues& v, std::uint64_t seed);    // lathe.cpp
+Mesh pot(const GeneratorValues& v, std::uint64_t seed);      // lathe.cpp
+Mesh island(const GeneratorValues& v, std::uint64_t seed);   // island.cpp
+Mesh fractal(const GeneratorValues& v, std::uint64_t seed);  // fractal_generator.cpp
+LrbRep fractal_rep(const GeneratorValues& v, std::uint64_t seed);
 
 /// Adds a triangle.
 inline void add_triangle(Mesh& mesh, VertexId a, VertexId b, VertexId c) {

@@ -90,6 +90,14 @@ std::vector<Generator> make_generators() {
         {"depth", 0.25, 0.02, 0.8, false, "height of the teeth over the radius"},
         {"points", 6, 4, 200, true, "points of a tooth's outline"}},
        cog2d},
+      {"fractal",
+       "a fractal body of the paper: dents in dents, with its regions known by construction",
+       3,
+       {{"real_faces", 2004, 7, 200000, true, "faces of the body; object D's by default"},
+        {"total_faces", 2532, 7, 300000, true,
+         "real and pseudo faces; real_faces - 7 over the pseudo faces must lie between 2.5 and 7"}},
+       fractal,
+       fractal_rep},
   };
 }
 
@@ -107,6 +115,28 @@ double checked(const Generator& g, const GeneratorParameter& p, double x) {
   throw InputError(message.str());
 }
 
+const Generator& known_generator(const std::string& name) {
+  if (const Generator* g = find_generator(name)) return *g;
+  std::vector<std::string> known;
+  for (const Generator& k : generators()) known.emplace_back(k.name);
+  throw InputError("no generator is called \"" + name + "\"" + suggestion(name, known));
+}
+
+/// With the fallbacks where `values` is silent; throws for what the generator does not know or take.
+GeneratorValues all_values(const Generator& g, const GeneratorValues& values) {
+  const std::vector<std::string> known = names_of(g.parameters);
+  for (const auto& [key, value] : values)
+    if (std::find(known.begin(), known.end(), key) == known.end())
+      throw InputError(std::string("generator ") + g.name + ": unknown parameter \"" + key + "\"" +
+                       suggestion(key, known));
+  GeneratorValues all;
+  for (const GeneratorParameter& p : g.parameters) {
+    const auto it = values.find(p.name);
+    all[p.name] = checked(g, p, it == values.end() ? p.fallback : it->second);
+  }
+  return all;
+}
+
 }  // namespace
 
 std::span<const Generator> generators() {
@@ -121,24 +151,17 @@ const Generator* find_generator(const std::string& name) {
 }
 
 Mesh generate(const std::string& name, const GeneratorValues& values, std::uint64_t seed) {
-  const Generator* g = find_generator(name);
-  if (g == nullptr) {
-    std::vector<std::string> known;
-    for (const Generator& k : generators()) known.emplace_back(k.name);
-    throw InputError("no generator is called \"" + name + "\"" + suggestion(name, known));
-  }
-  const std::vector<std::string> known = names_of(g->parameters);
-  for (const auto& [key, value] : values)
-    if (std::find(known.begin(), known.end(), key) == known.end())
-      throw InputError("generator " + name + ": unknown parameter \"" + key + "\"" + suggestion(key, known));
-  GeneratorValues all;
-  for (const GeneratorParameter& p : g->parameters) {
-    const auto it = values.find(p.name);
-    all[p.name] = checked(*g, p, it == values.end() ? p.fallback : it->second);
-  }
-  Mesh mesh = g->make(all, seed);
+  const Generator& g = known_generator(name);
+  Mesh mesh = g.make(all_values(g, values), seed);
   mesh.name = name;
   return mesh;
+}
+
+std::optional<LrbRep> generate_rep(const std::string& name, const GeneratorValues& values,
+                                   std::uint64_t seed) {
+  const Generator& g = known_generator(name);
+  if (g.make_rep == nullptr) return std::nullopt;
+  return g.make_rep(all_values(g, values), seed);
 }
 
 }  // namespace lrb

@@ -47,6 +47,7 @@ GoldenRun play_golden(Scenario scenario, const GoldenSpec& spec, const ProgressR
   FrameSpec& frames = run.scenario.frames;
   frames.width = spec.width;
   frames.height = spec.height;
+  frames.dpi = 0;
   frames.most = spec.frames;
   run.recording = record(run.scenario, progress);
   for (trace::BodyInfo& body : run.recording.trace.header.bodies)  // no folder of this machine

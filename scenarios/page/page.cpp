@@ -142,6 +142,15 @@ std::string tables_html(const Page& page) {
   return out;
 }
 
+std::string figures_html(const Page& page) {
+  std::string out;
+  for (const PageFigure& f : page.figures)
+    out += "<section class=\"figure\"><h2>" + escape_markup(f.title) + "</h2>\n<figure><a href=\"" +
+           escape_markup(f.file) + "\"><img src=\"" + f.data_uri + "\" alt=\"" + escape_markup(f.title) +
+           "\"></a><figcaption>" + escape_markup(f.caption) + "</figcaption></figure></section>\n";
+  return out;
+}
+
 std::string source_html(const Page& page) {
   std::string out;
   if (!page.command.empty())
@@ -179,6 +188,7 @@ std::string page_html(const Page& page) {
     if (key == "player") return player_html(page);
     if (key == "charts") return charts_html(page);
     if (key == "tables") return tables_html(page);
+    if (key == "figures") return figures_html(page);
     if (key == "comparisons") return comparisons_html(page.comparisons);
     if (key == "source") return source_html(page);
     if (key == "footer") return escape_markup(page.footer);

@@ -57,6 +57,13 @@ struct PageTable {
   std::string note;
 };
 
+/// A picture with its caption.
+struct PageFigure {
+  std::string title, caption;
+  std::string data_uri;  ///< see inline_image.hpp
+  std::string file;      ///< link to the full picture, relative to the page; may be empty
+};
+
 /// A heading and a paragraph.
 struct PageText {
   std::string title, text;
@@ -80,6 +87,7 @@ struct Page {
   std::string frames_note;
   std::vector<PageChart> charts;
   std::vector<PageTable> tables;
+  std::vector<PageFigure> figures;
   std::string command;  ///< that made it, ready to copy
   std::vector<PageLink> links;
   std::string footer;

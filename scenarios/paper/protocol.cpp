@@ -82,6 +82,8 @@ std::vector<ContactStep> run_collision(const LrbRep& a, const LrbRep& x, const s
       step.object = object;
       step.collision = collision;
       step.step = since_contact;
+      step.pose_a = pose_a;
+      step.pose_x = pose_x;
       steps.push_back(std::move(step));
     }
     since_contact += met;

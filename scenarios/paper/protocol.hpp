@@ -24,6 +24,8 @@ struct PaperProtocol {
   double step = 0.005;  ///< of the diagonal
   std::uint64_t seed = 1;
 };
+inline constexpr std::uint32_t kMostCollisions = 100'000, kMostStepsAfter = 1000;
+inline constexpr double kLeastStep = 1e-5, kMostStep = 0.5;
 
 inline constexpr std::array<Recursion, 3> kRecursions = {Recursion::paper, Recursion::paper_strict,
                                                          Recursion::complete};
@@ -44,6 +46,7 @@ struct ContactStep {
   std::uint32_t step = 0;       ///< after the first contact
   Relation relation = Relation::separate;
   std::array<RecursionCount, 3> counts;  ///< in the order of kRecursions
+  Pose pose_a, pose_x;                   ///< of no record
 };
 
 /// The steps of one collision. The numbers drawn depend on

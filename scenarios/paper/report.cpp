@@ -1,12 +1,15 @@
 #include "scenarios/paper/report.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <iomanip>
 #include <sstream>
 
 #include "scenarios/files.hpp"
+#include "scenarios/generators/fractal.hpp"
 #include "scenarios/page/page.hpp"
 #include "scenarios/paper/figures.hpp"
+#include "scenarios/paper/report_pictures.hpp"
 
 namespace lrb {
 namespace {
@@ -25,13 +28,24 @@ std::string fixed(double x, int digits) {
   return out.str();
 }
 
+/// Whether an object of the paper has these very numbers of faces.
+bool as_published(const PaperObject& o) {
+  const auto published = paper_objects();
+  return std::any_of(published.begin(), published.end(), [&](const FractalSpec& p) {
+    return p.name == o.name && p.real_faces == o.rep.real_face_count() && p.total_faces == o.rep.face_count();
+  });
+}
+
+bool all_as_published(const PaperReport& r) {
+  return std::all_of(r.objects.begin(), r.objects.end(), as_published);
+}
+
 PageTable table1(const PaperReport& r) {
-  PageTable t{
-      "Table 1: object sizes",
-      {"object", "real faces", "total faces", "outermost wrapper"},
-      {},
-      "Equal to the paper's, face by face: the generator is given its numbers. The bodies' shapes are ours: "
-      "the paper says only that they are fractal, with a basic non-convex shape."};
+  PageTable t{"Table 1: object sizes", {"object", "real faces", "total faces", "outermost wrapper"}, {}, {}};
+  t.note = all_as_published(r)
+               ? "Equal to the paper's, face by face: the generator is given its numbers. The bodies' shapes "
+                 "are ours: the paper says only that they are fractal, with a basic non-convex shape."
+               : "Not the paper's objects, or not all of them.";
   for (const PaperObject& o : r.objects)
     t.rows.push_back({o.name, std::to_string(o.rep.real_face_count()), std::to_string(o.rep.face_count()),
                       std::to_string(o.rep.outermost_faces().size()) + " faces"});
@@ -68,8 +82,10 @@ PageTable table2(std::span<const ObjectRow> rows, std::size_t recursion) {
 }
 
 /// What a reader must know before he compares.
-std::vector<std::string> differences(std::span<const ObjectRow> rows) {
+std::vector<std::string> differences(const PaperReport& r, std::span<const ObjectRow> rows) {
   std::vector<std::string> out;
+  if (!all_as_published(r))
+    out.push_back("Not the paper's objects, or not all of them: what is published is of its own.");
   const RecursionRow &first = rows.front().recursions[0], &last = rows.back().recursions[0];
   std::string over;
   for (const ObjectRow& row : rows)
@@ -80,11 +96,12 @@ std::vector<std::string> differences(std::span<const ObjectRow> rows) {
       over.empty()
           ? "The averages of the paper's recursion are at or under the published ones for all objects."
           : "The averages of the paper's recursion are above the published ones for " + over + ".");
-  out.push_back("From " + rows.front().object + " to " + rows.back().object + " the average grows " +
-                fixed(last.comparisons.average / first.comparisons.average, 2) +
-                "-fold (published: 2.18), the maximum " +
-                fixed(last.comparisons.max / first.comparisons.max, 2) +
-                "-fold (published: 3.57 to its highest row).");
+  if (first.comparisons.max > 0 && rows.size() > 1)
+    out.push_back("From " + rows.front().object + " to " + rows.back().object + " the average grows " +
+                  fixed(last.comparisons.average / first.comparisons.average, 2) +
+                  "-fold (published: 2.18), the maximum " +
+                  fixed(last.comparisons.max / first.comparisons.max, 2) +
+                  "-fold (published: 3.57 to its highest row).");
   std::string missed;
   for (const ObjectRow& row : rows)
     missed += (missed.empty() ? "" : ", ") + row.object + " " + std::to_string(row.recursions[0].missed) +
@@ -118,42 +135,7 @@ void add_markdown(std::string& md, const PageTable& t) {
   md += "\n\n" + t.note + "\n";
 }
 
-}  // namespace
-
-std::vector<std::string> write_paper_report(const PaperReport& r, const std::string& folder) {
-  const std::vector<ObjectRow> rows = make_table(r.objects, r.steps);
-  std::vector<std::string> notes;
-  write_text(folder + "/records.jsonl", to_json_lines(r.steps));
-  write_text(folder + "/tables.json", tables_json(r.objects, rows, r.protocol));
-
-  const bool figures = has_gnuplot();
-  if (figures) {
-    for (const char* ending : {".svg", ".png"}) {
-      draw(figure_3_1(rows), folder + "/figure3-1" + ending);
-      draw(figure_3_2(rows, r.steps), folder + "/figure3-2" + ending);
-    }
-  } else {
-    notes.push_back("figures 3.1 and 3.2 were not drawn: gnuplot is missing (Debian: gnuplot-nox)");
-  }
-
-  Page page;
-  page.title = "The paper's experiment";
-  page.purpose =
-      "C. Gonzalez-Ochoa, \"2-Body Collision Detection using LRB-reps\", tables 1 and 2 and figures 3.1 and "
-      "3.2, measured beside the published numbers.";
-  const std::vector<std::string> remarks = differences(rows);
-  std::string md = "# " + page.title + "\n\n" + page.purpose + "\n\nProtocol: " + protocol_text(r.protocol) +
-                   "\n\nMade by `" + r.command + "`.\n\n## What differs\n\n";
-  PageTable what{"What differs", {"remark"}, {}, "Protocol: " + protocol_text(r.protocol)};
-  for (const std::string& s : remarks) {
-    md += "- " + s + "\n";
-    what.rows.push_back({s});
-  }
-  page.tables.push_back(what);
-  page.tables.push_back(table1(r));
-  for (std::size_t i = 0; i < kRecursions.size(); ++i) page.tables.push_back(table2(rows, i));
-  for (std::size_t i = 1; i < page.tables.size(); ++i) add_markdown(md, page.tables[i]);
-
+PageChart sizes_chart(std::span<const ObjectRow> rows) {
   PageChart sizes{"Object size against comparisons",
                   "real and pseudo faces of the other object",
                   "comparisons",
@@ -180,14 +162,76 @@ std::vector<std::string> write_paper_report(const PaperReport& r, const std::str
     }
   }
   sizes.series = {measured, paper, most, paper_most};
-  page.charts.push_back(sizes);
-  if (figures) {
-    md += "\n## Figures\n\n![Figure 3.1](figure3-1.svg)\n\n![Figure 3.2](figure3-2.svg)\n";
-    for (const char* name : {"figure3-1", "figure3-2"})
-      for (const char* ending : {".svg", ".png"})
-        page.links.push_back({std::string(name) + ending, std::string(name) + ending, ""});
+  return sizes;
+}
+
+/// Figures 3.1 and 3.2, as far as they are wanted and gnuplot is there.
+void draw_charts(const PaperReport& r, std::span<const ObjectRow> rows, const std::string& folder, Page& page,
+                 std::vector<std::string>& notes) {
+  struct Figure {
+    PaperPart part;
+    const char *name, *title, *caption;
+  };
+  for (const Figure& f :
+       {Figure{PaperPart::figure_3_1, "figure3-1", "Figure 3.1",
+               "Size of the object that A meets, real and pseudo faces, against face comparisons in a time "
+               "step by the paper's recursion: average, minimum and maximum, measured and published."},
+        Figure{PaperPart::figure_3_2, "figure3-2", "Figure 3.2",
+               "In how many time steps so many face comparisons were needed by the paper's recursion, a line "
+               "for each object."}}) {
+    if (!r.experiment.reports(f.part)) continue;
+    if (!has_gnuplot()) {
+      notes.push_back(std::string(f.title) + " was not drawn: gnuplot is missing (Debian: gnuplot-nox)");
+      continue;
+    }
+    const Gnuplot chart = f.part == PaperPart::figure_3_1 ? figure_3_1(rows) : figure_3_2(rows, r.steps);
+    for (const char* ending : {".svg", ".png"}) draw(chart, folder + "/" + f.name + ending);
+    add_figure(page, folder, f.title, f.caption, std::string(f.name) + ".svg");
+    page.links.push_back({std::string(f.name) + ".png", std::string(f.name) + ".png", "300 dpi"});
   }
-  page.links.push_back({"records.jsonl", "records.jsonl", "every counted time step"});
+}
+
+}  // namespace
+
+std::vector<std::string> write_paper_report(const PaperReport& r, const std::string& folder) {
+  const auto wants = [&](PaperPart part) { return r.experiment.reports(part); };
+  const std::vector<ObjectRow> rows =
+      r.experiment.collides() ? make_table(r.objects, r.steps) : std::vector<ObjectRow>();
+  std::vector<std::string> notes;
+  write_text(folder + "/tables.json", tables_json(r.objects, rows, r.experiment.protocol));
+
+  Page page;
+  page.title = "The paper's experiment";
+  page.purpose =
+      "C. Gonzalez-Ochoa, \"2-Body Collision Detection using LRB-reps\", tables 1 and 2 and figures 3.1 and "
+      "3.2, measured beside the published numbers.";
+  if (r.experiment.name != "paper") page.purpose = r.experiment.purpose;
+  const std::string protocol = protocol_text(r.experiment.protocol);
+  std::string md = "# " + page.title + "\n\n" + page.purpose + "\n\n";
+  if (!rows.empty()) {
+    md += "Protocol: " + protocol + "\n\nMade by `" + r.command + "`.\n\n## What differs\n\n";
+    PageTable what{"What differs", {"remark"}, {}, "Protocol: " + protocol};
+    for (const std::string& s : differences(r, rows)) {
+      md += "- " + s + "\n";
+      what.rows.push_back({s});
+    }
+    page.tables.push_back(what);
+  }
+  const std::size_t said = page.tables.size();
+  if (wants(PaperPart::table1)) page.tables.push_back(table1(r));
+  if (wants(PaperPart::table2))
+    for (std::size_t i = 0; i < kRecursions.size(); ++i) page.tables.push_back(table2(rows, i));
+  for (std::size_t i = said; i < page.tables.size(); ++i) add_markdown(md, page.tables[i]);
+
+  if (wants(PaperPart::figure_3_1)) page.charts.push_back(sizes_chart(rows));
+  draw_charts(r, rows, folder, page, notes);
+  draw_close_ups(r, folder, page, notes);
+  for (const PageFigure& f : page.figures)
+    md += "\n## " + f.title + "\n\n![" + f.title + "](" + f.file + ")\n\n" + f.caption + "\n";
+  if (!rows.empty()) {
+    write_text(folder + "/records.jsonl", to_json_lines(r.steps));
+    page.links.push_back({"records.jsonl", "records.jsonl", "every counted time step"});
+  }
   page.links.push_back({"tables.json", "tables.json", "both tables as data"});
   page.command = r.command;
   write_text(folder + "/report.md", md);

@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include "scenarios/paper/experiment.hpp"
 #include "scenarios/paper/tables.hpp"
 
 namespace lrb {
@@ -10,12 +11,13 @@ namespace lrb {
 struct PaperReport {
   std::span<const PaperObject> objects;  ///< A first
   std::span<const ContactStep> steps;
-  PaperProtocol protocol;
+  const PaperExperiment& experiment;
   std::string command;  ///< that made it
 };
 
 /// Writes records.jsonl, tables.json, report.md, index.html and, with gnuplot, figure3-1 and figure3-2 as SVG
-/// and PNG. Returns lines for people (what could not be drawn). Throws EnvironmentError.
+/// and PNG; heat_maps.png and refinement_tree.svg: all as far as the experiment reports them. Returns lines
+/// for people (what could not be drawn). Throws EnvironmentError.
 std::vector<std::string> write_paper_report(const PaperReport& report, const std::string& folder);
 
 }  // namespace lrb

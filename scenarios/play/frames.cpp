@@ -1,6 +1,7 @@
 #include "scenarios/play/frames.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <iomanip>
 #include <sstream>
@@ -11,6 +12,7 @@
 #include "render/palette.hpp"
 #include "render/rasterize.hpp"
 #include "render/svg.hpp"
+#include "render/svg_montage.hpp"
 #include "render/text.hpp"
 #include "scenarios/files.hpp"
 #include "scenarios/play/framing.hpp"
@@ -57,21 +59,20 @@ Script write_script(Stage& stage, const std::vector<trace::EventId>& events, con
   std::vector<OverlayLayout> layouts;
   for (Overlay& overlay : script.overlays) {
     overlay.key = key;
-    layouts.push_back(lay_out(overlay, spec.width, spec.height));
+    layouts.push_back(lay_out(overlay, spec.width, spec.height, static_cast<float>(spec.scale())));
   }
   script.picture = common_picture(layouts);
   return script;
 }
 
 /// The views' places in the picture, side by side along its longer side.
-std::vector<PixelRect> places(const PixelRect& picture, std::size_t views) {
-  constexpr int kGap = 4;
-  const int n = static_cast<int>(views);
+std::vector<PixelRect> places(const PixelRect& picture, std::size_t views, double scale) {
+  const int gap = static_cast<int>(std::lround(4 * scale)), n = static_cast<int>(views);
   const bool columns = picture.width >= picture.height;
-  const int whole = columns ? picture.width : picture.height, each = (whole - kGap * (n - 1)) / n;
+  const int whole = columns ? picture.width : picture.height, each = (whole - gap * (n - 1)) / n;
   std::vector<PixelRect> out;
   for (int i = 0; i < n; ++i) {
-    const int at = i * (each + kGap), size = i + 1 == n ? whole - at : each;
+    const int at = i * (each + gap), size = i + 1 == n ? whole - at : each;
     out.push_back(columns ? PixelRect{at, 0, size, picture.height} : PixelRect{0, at, picture.width, size});
   }
   return out;
@@ -82,7 +83,7 @@ class Painter {
   Painter(const FrameSpec& spec, const PixelRect& picture, Framing framing)
       : spec_(spec), views_(spec.views), framing_(std::move(framing)) {
     if (views_.empty()) views_.emplace_back();
-    places_ = places(picture, views_.size());
+    places_ = places(picture, views_.size(), spec.scale());
     picture_ = Image(picture.width, picture.height);
   }
 
@@ -113,19 +114,28 @@ class Painter {
     return out;
   }
 
-  /// Each view as SVG, in files called `name`.svg, or `name`_1.svg and so on.
-  void write_svg(const Stage& stage, double progress, const std::string& name,
-                 const std::string& title) const {
+  /// Each view as SVG. `plain`: see Stage::scene().
+  std::vector<std::string> svgs(const Stage& stage, double progress, const std::string& title,
+                                bool plain = false) const {
+    std::vector<std::string> out;
     for (std::size_t i = 0; i < views_.size(); ++i) {
       SvgOptions options;
       options.width = places_[i].width;
       options.height = places_[i].height;
       options.title = title;
+      options.units_per_pixel = spec_.scale();
       if (spec_.transparent) options.background.reset();
-      const std::string number = views_.size() > 1 ? "_" + std::to_string(i + 1) : "";
-      write_text(name + number + ".svg",
-                 svg(stage.scene(views_[i].wrapper).list, camera(i, progress), options));
+      out.push_back(svg(stage.scene(views_[i].wrapper, plain).list, camera(i, progress), options));
     }
+    return out;
+  }
+
+  /// In files called `name`.svg, or `name`_1.svg and so on.
+  void write_svg(const Stage& stage, double progress, const std::string& name,
+                 const std::string& title) const {
+    const std::vector<std::string> all = svgs(stage, progress, title);
+    for (std::size_t i = 0; i < all.size(); ++i)
+      write_text(name + (all.size() > 1 ? "_" + std::to_string(i + 1) : "") + ".svg", all[i]);
   }
 
  private:
@@ -136,10 +146,11 @@ class Painter {
 
   void write_title(Image& view, const std::string& title) const {
     TextStyle style;
-    style.height = std::max(13.0F, static_cast<float>(spec_.height) / 42);
+    const auto scale = static_cast<float>(spec_.scale());
+    style.height = std::max(13.0F * scale, static_cast<float>(spec_.height) / 42);
     style.colour = palette::kFaint;
     style.halo = kWhite;
-    style.halo_width = 2;
+    style.halo_width = 2 * scale;
     default_font().draw(view, title, static_cast<int>(style.height / 2), static_cast<int>(style.height / 3),
                         style);
   }
@@ -180,7 +191,7 @@ struct Production {
   Image frame(std::size_t i) {
     const Rgba back = spec.transparent ? kTransparent : kWhite;
     return compose_frame(painter.paint(stage, passed(i)), script.picture, script.overlays[i], spec.width,
-                         spec.height, back);
+                         spec.height, back, static_cast<float>(spec.scale()));
   }
 };
 
@@ -195,13 +206,69 @@ void remove_old_frames(const std::string& folder) {
     if (name.starts_with("frame_") && (name.ends_with(".png") || name.ends_with(".svg")))
       std::filesystem::remove(entry.path(), error);
   }
-  std::filesystem::remove(folder + "/montage.png", error);
+  for (const char* file : {"/montage.png", "/montage.svg", "/caption.txt"})
+    std::filesystem::remove(folder + file, error);
 }
+
+/// The same with its size in pixels of the file.
+FrameSpec in_pixels(FrameSpec spec) {
+  spec.width = static_cast<int>(std::lround(spec.width * spec.scale()));
+  spec.height = static_cast<int>(std::lround(spec.height * spec.scale()));
+  return spec;
+}
+
+/// The panels of a montage, gathered while the frames are drawn.
+struct Montage {
+  std::vector<Panel> panels;
+  std::vector<std::string> svgs;  ///< of panels with one view; else none
+
+  std::vector<std::string> write(const Performance& p, const FrameSpec& spec, const std::string& folder,
+                                 const PngOptions& png, FrameWriter& writer) const {
+    MontageOptions options;
+    options.columns = static_cast<int>(spec.montage_columns);
+    options.letters = panels.size() > 1;
+    if (spec.transparent) options.background = kTransparent;
+    std::vector<std::string> files = {"montage.png", "caption.txt"};
+    writer.push(folder + "/montage.png", montage(panels, options), png);
+    const std::string words = caption(p.purpose.empty() ? p.title + "." : p.purpose);
+    write_text(folder + "/caption.txt", words + "\n");
+    if (svgs.empty()) return files;
+    SvgMontageOptions svg_options;
+    svg_options.title = words;
+    svg_options.transparent = spec.transparent;
+    svg_options.units_per_pixel = spec.scale();
+    write_text(folder + "/montage.svg", svg_montage(svgs, lay_out(panels, options), svg_options));
+    files.insert(files.begin() + 1, "montage.svg");
+    return files;
+  }
+
+ private:
+  /// What a paper prints under the figure.
+  std::string caption(std::string text) const {
+    for (std::size_t i = 0; i < panels.size(); ++i)
+      text += (i == 0 ? " " : "; ") + (panels.size() > 1 ? panel_letter(i) + " " : "") + panels[i].caption;
+    return text + ".";
+  }
+};
 
 }  // namespace
 
-std::vector<PaintedFrame> paint_frames(const Performance& performance, const FrameSpec& spec,
+void check_frames(const Performance& performance, const FrameSpec& spec) {
+  constexpr int kMost = 8192;
+  static_cast<void>(moments(spec, *performance.trace, performance.milestones));
+  if (spec.svg && performance.reps[0]->dim() != 2)
+    throw InputError(
+        "frames as SVG are for 2D bodies, and these are 3D: leave svg out, and ask for a higher --dpi");
+  const FrameSpec in_file = in_pixels(spec);
+  if (in_file.width > kMost || in_file.height > kMost)
+    throw InputError("frames of " + std::to_string(spec.width) + "x" + std::to_string(spec.height) +
+                     " would have " + std::to_string(in_file.width) + "x" + std::to_string(in_file.height) +
+                     " pixels at this dpi, and 8192 a side is the most: lower --dpi or --size");
+}
+
+std::vector<PaintedFrame> paint_frames(const Performance& performance, const FrameSpec& given,
                                        const ProgressReport& progress, const Framing* framing) {
+  const FrameSpec spec = in_pixels(given);
   std::vector<PaintedFrame> out;
   const std::vector<trace::EventId> events = moments(spec, *performance.trace, performance.milestones);
   if (events.empty()) return out;
@@ -216,9 +283,10 @@ std::vector<PaintedFrame> paint_frames(const Performance& performance, const Fra
   return out;
 }
 
-DrawnFrames draw_frames(const Performance& performance, const FrameSpec& spec, const std::string& folder,
+DrawnFrames draw_frames(const Performance& performance, const FrameSpec& given, const std::string& folder,
                         const std::vector<std::pair<std::string, std::string>>& text,
                         const ProgressReport& progress) {
+  const FrameSpec spec = in_pixels(given);
   DrawnFrames out;
   make_folder(folder + "/frames");
   remove_old_frames(folder);
@@ -230,30 +298,25 @@ DrawnFrames draw_frames(const Performance& performance, const FrameSpec& spec, c
   Painter& painter = production.painter;
   const std::vector<std::size_t> in_montage =
       spec.montage > 0 ? evenly(events.size(), spec.montage) : std::vector<std::size_t>();
-  std::vector<Panel> panels;
+  Montage together;
   FrameWriter writer;
   for (std::size_t i = 0; i < events.size(); ++i) {
     progress("draw", i, events.size());
     stage.seek(events[i]);
     const double passed = production.passed(i);
     if (spec.svg) painter.write_svg(stage, passed, folder + "/" + numbered(i), stage.caption());
-    PngOptions png;
-    png.text = text;
+    PngOptions png{text, spec.dpi};
     png.text.emplace_back("lrbscope:event", std::to_string(events[i]));
     writer.push(folder + "/" + file_name(i), production.frame(i), png);
     if (std::find(in_montage.begin(), in_montage.end(), i) != in_montage.end()) {
-      panels.push_back({painter.paint(stage, passed, true), stage.short_caption()});
+      together.panels.push_back({painter.paint(stage, passed, true), stage.short_caption()});
+      if (spec.svg && spec.views.size() <= 1)
+        together.svgs.push_back(painter.svgs(stage, passed, stage.caption(), true).front());
     }
     out.frames.push_back({file_name(i), stage.caption(), events[i], stage.step()});
   }
-  if (!panels.empty()) {
-    MontageOptions options;
-    options.columns = static_cast<int>(spec.montage_columns);
-    PngOptions png;
-    png.text = text;
-    out.montage = "montage.png";
-    writer.push(folder + "/" + out.montage, montage(panels, options), png);
-  }
+  if (!together.panels.empty())
+    out.montage = together.write(performance, spec, folder, {text, spec.dpi}, writer);
   writer.finish();
   return out;
 }

@@ -13,6 +13,7 @@ namespace lrb {
 /// A recorded run as the renderer sees it; `render` makes one from a trace file, `run` from what it recorded.
 struct Performance {
   std::string title;
+  std::string purpose;  ///< what the pictures are there to show; may be empty
   std::vector<const LrbRep*> reps;
   const trace::Trace* trace = nullptr;
   const std::vector<CollideResult>* results = nullptr;  ///< one a step, or none
@@ -28,7 +29,7 @@ struct DrawnFrame {
 
 struct DrawnFrames {
   std::vector<DrawnFrame> frames;
-  std::string montage;  ///< relative to the output folder; empty: none
+  std::vector<std::string> montage;  ///< montage.png, montage.svg, caption.txt; none: no montage
 };
 
 /// A frame that has not been written.
@@ -39,12 +40,16 @@ struct PaintedFrame {
   std::vector<Camera> cameras;  ///< one a view
 };
 
+/// Throws InputError for frames that cannot be drawn: of events that there are not, as SVG in 3D, too large.
+void check_frames(const Performance& performance, const FrameSpec& spec);
+
 /// The same frames as draw_frames() makes, in memory: no montage, no SVG. `framing`: what the cameras hold,
 /// instead of what the performance itself shows.
 std::vector<PaintedFrame> paint_frames(const Performance& performance, const FrameSpec& spec,
                                        const ProgressReport& progress, const Framing* framing = nullptr);
 
-/// Draws into folder/frames/ and, if asked, folder/montage.png. `text` goes into every PNG.
+/// Draws into folder/frames/ and, if asked, folder/montage.png with folder/caption.txt. `text` goes into
+/// every PNG.
 DrawnFrames draw_frames(const Performance& performance, const FrameSpec& spec, const std::string& folder,
                         const std::vector<std::pair<std::string, std::string>>& text,
                         const ProgressReport& progress);

@@ -83,6 +83,8 @@ void record_wrapper(const Scenario& s, Recording& r) {
 
 LoadedBody make_body(const BodySpec& spec) {
   if (!spec.file.empty()) return load_body(spec.file, spec.build);
+  if (std::optional<LrbRep> rep = generate_rep(spec.generator, spec.parameters, spec.build.seed))
+    return {std::move(*rep), {}, 0};
   return body_of_mesh(generate(spec.generator, spec.parameters, spec.build.seed), spec.build);
 }
 

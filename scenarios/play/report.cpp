@@ -148,8 +148,10 @@ void add_links(Page& page, const DrawnFrames& drawn, const ReportText& text) {
   page.links.push_back({text.trace_file, text.trace_file,
                         "every event; drag it onto ui.perfetto.dev or chrome://tracing to walk through it"});
   page.links.push_back({"summary.json", "summary.json", "totals, statistics and every time step as JSON"});
-  if (!drawn.montage.empty())
-    page.links.push_back({drawn.montage, drawn.montage, "panels (a), (b), (c), ... as one picture"});
+  for (const std::string& file : drawn.montage)
+    page.links.push_back({file, file,
+                          file.ends_with(".txt") ? "what to print under the montage"
+                                                 : "panels (a), (b), (c), ... as one picture"});
   if (!drawn.frames.empty())
     page.links.push_back(
         {"frames/", "frames/", std::to_string(drawn.frames.size()) + " full pictures (PNG)"});

@@ -6,7 +6,6 @@
 #include "engine/lrb/lrb_file.hpp"
 #include "scenarios/files.hpp"
 #include "scenarios/play/frames.hpp"
-#include "scenarios/play/moments.hpp"
 #include "scenarios/play/report.hpp"
 #include "trace/hex.hpp"
 #include "trace/summary_json.hpp"
@@ -16,10 +15,21 @@ namespace lrb {
 
 namespace {
 
-/// Throws, before anything is written, if a frame is asked for that there is not.
-void check_moments(const Scenario& scenario, const Recording& recording) {
+Performance performance_of(const Scenario& scenario, const Recording& recording) {
+  Performance p;
+  p.title = scenario.name;
+  p.purpose = scenario.purpose;
+  p.trace = &recording.trace;
+  p.results = &recording.results;
+  p.milestones = recording.milestones;
+  for (const LoadedBody& body : recording.bodies) p.reps.push_back(&body.rep);
+  return p;
+}
+
+/// Throws, before anything is written, if a frame is asked for that cannot be drawn.
+void check(const Scenario& scenario, const Performance& performance) {
   try {
-    static_cast<void>(moments(scenario.frames, recording.trace, recording.milestones));
+    check_frames(performance, scenario.frames);
   } catch (const InputError& e) {
     throw InputError("scenario " + scenario.name + ": " + e.what());
   }
@@ -29,7 +39,8 @@ void check_moments(const Scenario& scenario, const Recording& recording) {
 
 RunOutcome write_run(const Scenario& scenario, const Recording& recording, const std::string& folder,
                      const std::string& command, const ProgressReport& progress) {
-  check_moments(scenario, recording);
+  const Performance performance = performance_of(scenario, recording);
+  check(scenario, performance);
   make_folder(folder);
   const FolderLock lock(folder);
   refuse_links(folder);
@@ -44,15 +55,8 @@ RunOutcome write_run(const Scenario& scenario, const Recording& recording, const
   out.summary = trace::summary_json(recording.trace);
   write_text(folder + "/summary.json", out.summary);
 
-  Performance performance;
-  performance.title = scenario.name;
-  performance.trace = &recording.trace;
-  performance.results = &recording.results;
-  performance.milestones = recording.milestones;
-  for (std::size_t i = 0; i < recording.bodies.size(); ++i) {
-    performance.reps.push_back(&recording.bodies[i].rep);
+  for (std::size_t i = 0; i < recording.bodies.size(); ++i)
     save_lrb(recording.bodies[i].rep, folder + (i == 0 ? "/a.lrb" : "/b.lrb"));
-  }
   const std::vector<std::pair<std::string, std::string>> text = {
       {"Software", "lrbscope " + recording.trace.header.lrbscope},
       {"lrbscope:scenario", scenario.name},

@@ -114,6 +114,7 @@ Scene Stage::scene(bool wrapper, bool plain) const {
       break;
   }
   options.explode = spec_.explode;
+  options.scale = static_cast<float>(spec_.scale());
   options.isolate = spec_.isolate;
   options.ghost_rest = spec_.ghost_rest;
   return build_scene(bodies, highlight, options);
@@ -167,7 +168,15 @@ Overlay Stage::overlay(const std::string& title) const {
 }
 
 std::string Stage::short_caption() const {
-  if (reps_.size() == 1) return counted(cursor_.boundary_size(Side::a), "face", "faces");
+  if (reps_.size() == 1) {
+    const trace::Totals t = totals();
+    const std::uint64_t refined = t.refinements[0] - t.coarsenings[0], all = reps_[0]->region_count();
+    const std::string state =
+        refined == 0     ? "outermost wrapper"
+        : refined == all ? "the body itself"
+                         : group_digits(refined) + " of " + counted(all, "region", "regions") + " refined";
+    return state + ", " + counted(cursor_.boundary_size(Side::a), "face", "faces");
+  }
   return "step " + std::to_string(step()) + ": " + event_text();
 }
 

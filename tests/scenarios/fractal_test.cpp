@@ -5,6 +5,7 @@
 #include "engine/error.hpp"
 #include "engine/exact/predicates.hpp"
 #include "engine/lrb/validate.hpp"
+#include "scenarios/generators/generators.hpp"
 
 using namespace lrb;
 
@@ -54,4 +55,23 @@ TEST_CASE("fractal bodies: the seed alone decides, and other numbers of faces wo
 TEST_CASE("fractal bodies: numbers that no dents make are refused") {
   for (const auto& [real, total] : {std::pair{500u, 400u}, {500u, 501u}, {500u, 900u}, {6u, 6u}, {8u, 9u}})
     CHECK_THROWS_AS(fractal_body({"body", real, total, 1}), InputError);
+}
+
+TEST_CASE("fractal bodies: as a generator, with their own regions; as a mesh, the real faces alone") {
+  const FractalSpec object = paper_objects()[3];
+  const GeneratorValues values = {{"real_faces", object.real_faces}, {"total_faces", object.total_faces}};
+  const std::optional<LrbRep> rep = generate_rep("fractal", values, object.seed);
+  REQUIRE(rep);
+  FractalSpec named = object;
+  named.name = rep->name();
+  CHECK(rep->hash() == fractal_body(named).hash());
+  CHECK_FALSE(generate_rep("rock"));
+  const Mesh mesh = generate("fractal", values, object.seed);
+  REQUIRE(mesh.face_count() == object.real_faces);
+  for (FaceId f = 0; f < mesh.face_count(); ++f) {
+    REQUIRE(mesh.face(f).size() == rep->face(f).size());
+    for (std::size_t i = 0; i < mesh.face(f).size(); ++i)
+      CHECK(mesh.vertices[mesh.face(f)[i]] == rep->vertices()[rep->face(f)[i]]);
+  }
+  CHECK_THROWS_AS(generate("fractal", {{"total_faces", 2005}}), InputError);
 }

@@ -1,0 +1,158 @@
+#include "scenarios/paper/experiment.hpp"
+
+#include <algorithm>
+#include <filesystem>
+
+#include "engine/error.hpp"
+#include "scenarios/embedded.hpp"
+#include "scenarios/files.hpp"
+#include "scenarios/json/json_node.hpp"
+#include "scenarios/json/suggest.hpp"
+#include "scenarios/play/recording.hpp"
+#include "scenarios/scenario_body.hpp"
+
+namespace lrb {
+namespace {
+
+constexpr std::string_view kEnding = ".experiment.json";
+
+constexpr std::array<PaperPart, 6> kAllParts = {PaperPart::table1,     PaperPart::table2,
+                                                PaperPart::figure_3_1, PaperPart::figure_3_2,
+                                                PaperPart::heat_maps,  PaperPart::refinement_tree};
+
+PaperProtocol read_protocol(const JsonNode& node) {
+  node.object({"collisions", "steps_after", "step", "seed"});
+  PaperProtocol p;
+  if (const auto n = node.get("collisions"))
+    p.collisions = static_cast<std::uint32_t>(n->integer(1, kMostCollisions));
+  if (const auto n = node.get("steps_after"))
+    p.steps_after = static_cast<std::uint32_t>(n->integer(0, kMostStepsAfter));
+  if (const auto n = node.get("step")) p.step = n->number(kLeastStep, kMostStep);
+  if (const auto n = node.get("seed")) p.seed = n->integer(0, kAnySeed);
+  return p;
+}
+
+std::vector<PaperPart> read_report(const JsonNode& node) {
+  std::vector<PaperPart> parts;
+  for (const JsonNode& item : node.items(1)) {
+    const auto part = item.choice<PaperPart>({{"table1", PaperPart::table1},
+                                              {"table2", PaperPart::table2},
+                                              {"figure3.1", PaperPart::figure_3_1},
+                                              {"figure3.2", PaperPart::figure_3_2},
+                                              {"heat_maps", PaperPart::heat_maps},
+                                              {"refinement_tree", PaperPart::refinement_tree}});
+    if (std::find(parts.begin(), parts.end(), part) != parts.end()) item.fail("is there twice: remove one");
+    parts.push_back(part);
+  }
+  std::sort(parts.begin(), parts.end());
+  return parts;
+}
+
+/// Names stand in records, in charts' data blocks and in file names.
+std::string read_object_name(const JsonNode& node) {
+  const std::string name = read_name(node);
+  if (name.find('-') != std::string::npos) node.fail("expected letters, digits and _ only");
+  return name;
+}
+
+std::vector<PaperExperiment::Object> read_objects(const JsonNode& node, const std::filesystem::path& folder) {
+  constexpr std::size_t kMostObjects = 100;
+  std::vector<PaperExperiment::Object> objects;
+  for (const JsonNode& item : node.items(1)) {
+    item.object({"name", "body"});
+    PaperExperiment::Object o;
+    o.name = read_object_name(item.at("name"));
+    for (const auto& other : objects)
+      if (other.name == o.name) item.at("name").fail("another object is called " + o.name + ": rename one");
+    const JsonNode body = item.at("body");
+    o.body = read_body(body, folder, 1);
+    if (body.has("pose")) body.fail_key("pose", "the protocol places the bodies: remove it");
+    objects.push_back(std::move(o));
+  }
+  if (objects.size() > kMostObjects) node.fail("expected at most 100 objects");
+  return objects;
+}
+
+/// The object that the close-up shows: as named, or the last.
+std::string read_close_up(const JsonNode& root, const std::vector<PaperExperiment::Object>& objects) {
+  const auto n = root.get("close_up");
+  if (!n) return objects.back().name;
+  std::vector<std::pair<std::string, std::string>> known;
+  for (std::size_t i = 1; i < objects.size(); ++i) known.emplace_back(objects[i].name, objects[i].name);
+  return n->choice(known);
+}
+
+std::vector<std::pair<std::string, std::string>> shipped_texts() {
+  std::vector<std::pair<std::string, std::string>> out;
+  for (const EmbeddedFile& file : embedded_files())
+    if (file.name.ends_with(kEnding))
+      out.emplace_back(file.name.substr(0, file.name.size() - kEnding.size()), file.text);
+  return out;
+}
+
+}  // namespace
+
+bool PaperExperiment::reports(PaperPart part) const {
+  return std::find(report.begin(), report.end(), part) != report.end();
+}
+
+bool PaperExperiment::collides() const {
+  return std::any_of(report.begin(), report.end(), [](PaperPart p) { return p != PaperPart::table1; });
+}
+
+PaperExperiment parse_experiment(const std::string& text, const std::string& file) {
+  const JsonText json(text, file);
+  const JsonNode root(json);
+  root.object({"$schema", "name", "purpose", "report", "protocol", "close_up", "objects"});
+  PaperExperiment e;
+  if (const auto n = root.get("$schema")) n->string();
+  e.name = read_name(root.at("name"));
+  e.purpose = root.at("purpose").string();
+  e.report.assign(kAllParts.begin(), kAllParts.end());
+  if (const auto n = root.get("report")) e.report = read_report(*n);
+  if (const auto n = root.get("protocol")) e.protocol = read_protocol(*n);
+  e.objects = read_objects(root.at("objects"), std::filesystem::path(file).parent_path());
+  e.close_up = read_close_up(root, e.objects);
+  if (e.collides() && e.objects.size() < 2)
+    root.at("objects").fail(
+        "expected a second object for the first one to meet, or \"report\": [\"table1\"]");
+  return e;
+}
+
+std::vector<std::string> shipped_experiments() {
+  std::vector<std::string> out;
+  for (const auto& [name, text] : shipped_texts()) out.push_back(name);
+  return out;
+}
+
+std::string shipped_experiment(const std::string& name) {
+  for (const auto& [known, text] : shipped_texts())
+    if (known == name) return text;
+  throw InputError("no experiment is called \"" + name + "\"" + suggestion(name, shipped_experiments()));
+}
+
+PaperExperiment open_experiment(const std::string& name_or_path) {
+  std::error_code error;
+  const bool is_name = name_or_path.find_first_of("./\\") == std::string::npos;
+  const std::vector<std::string> names = shipped_experiments();
+  const bool shipped = std::find(names.begin(), names.end(), name_or_path) != names.end();
+  if (shipped || (is_name && !std::filesystem::exists(name_or_path, error)))
+    return parse_experiment(shipped_experiment(name_or_path), name_or_path + std::string(kEnding));
+  return parse_experiment(read_text(name_or_path), name_or_path);
+}
+
+std::vector<PaperObject> make_objects(const PaperExperiment& experiment, std::vector<std::string>& notes) {
+  std::vector<PaperObject> objects;
+  for (const PaperExperiment::Object& o : experiment.objects) {
+    LoadedBody body = make_body(o.body);
+    notes.insert(notes.end(), body.notes.begin(), body.notes.end());
+    if (body.rep.dim() != 3)
+      throw InputError("experiment " + experiment.name + ": object " + o.name +
+                       " is a 2D body: give one in 3D");
+    const double by = objects.empty() ? 1 : diagonal(objects[0].rep) / diagonal(body.rep);
+    objects.push_back({o.name, by == 1 ? std::move(body.rep) : scaled(body.rep, by)});
+  }
+  return objects;
+}
+
+}  // namespace lrb

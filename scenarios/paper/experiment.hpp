@@ -1,0 +1,45 @@
+#pragma once
+/// The paper's experiment as a file: which bodies, by which protocol, and what is reported of them. The
+/// format is described by schema/experiment.schema.json; shipped/*.experiment.json hold the published
+/// numbers.
+
+#include <string>
+#include <vector>
+
+#include "scenarios/paper/sweep.hpp"
+#include "scenarios/scenario.hpp"
+
+namespace lrb {
+
+/// Parts of the report.
+enum class PaperPart : std::uint8_t { table1, table2, figure_3_1, figure_3_2, heat_maps, refinement_tree };
+
+struct PaperExperiment {
+  struct Object {
+    std::string name;
+    BodySpec body;
+  };
+  std::string name, purpose;
+  PaperProtocol protocol;
+  std::vector<Object> objects;    ///< the first one meets all others
+  std::vector<PaperPart> report;  ///< in the order of the enum
+  std::string close_up;           ///< the object of heat maps and refinement tree
+
+  bool reports(PaperPart part) const;
+  /// Whether any part needs a collision.
+  bool collides() const;
+};
+
+/// Throws InputError: "file:line:column: pointer: what is wrong, what is known".
+PaperExperiment parse_experiment(const std::string& text, const std::string& file);
+/// By the name of a shipped one, or from a file.
+PaperExperiment open_experiment(const std::string& name_or_path);
+/// The text of a shipped one, to be changed. Throws InputError for another name.
+std::string shipped_experiment(const std::string& name);
+std::vector<std::string> shipped_experiments();
+
+/// Its bodies, all of the first one's diagonal. `notes` gets what was done to them. Throws InputError for
+/// bodies that are not 3D.
+std::vector<PaperObject> make_objects(const PaperExperiment& experiment, std::vector<std::string>& notes);
+
+}  // namespace lrb

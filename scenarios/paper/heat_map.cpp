@@ -1,0 +1,167 @@
+#include "scenarios/paper/heat_map.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "render/montage.hpp"
+#include "render/overlay.hpp"
+#include "render/palette.hpp"
+#include "render/rasterize.hpp"
+#include "render/scene.hpp"
+#include "trace/counters.hpp"
+#include "trace/cursor.hpp"
+
+namespace lrb {
+namespace {
+
+constexpr int kPanelWidth = 560, kPanelHeight = 500;
+constexpr double kAside = 0.45;  ///< how far from the other body's place one looks, over the distance
+
+/// Shape is seen, and colours stay those of the scale.
+const Lighting kSoft{.ambient = 0.78, .head = 0.1, .key = 0.16, .fill = 0.05};
+
+/// What one panel shows.
+struct Sitter {
+  Side side;
+  const CloseUp* collision;
+  const CollideResult* contact;  ///< of its last time step
+  const char* which;             ///< easiest or hardest
+  bool near;                     ///< where the bodies meet, else the whole body
+};
+
+std::vector<double> tests_of(const PaperPair& pair, const Sitter& s) {
+  const trace::FaceCounts counts = trace::count_faces(pair.rep(s.side), s.side, s.collision->trace.events);
+  return {counts.tests.begin(), counts.tests.end()};
+}
+
+Pose pose_of(const Sitter& s) {
+  const ContactStep& last = s.collision->steps.back();
+  return s.side == Side::a ? last.pose_a : last.pose_x;
+}
+
+Eigen::AlignedBox3d box_of(const LrbRep& rep, const Pose& pose) {
+  Eigen::AlignedBox3d box;
+  for (const Eigen::Vector3d& p : body_points(rep, pose)) box.extend(p);
+  return box;
+}
+
+/// From where the other body is, a little aside: onto the faces that it met.
+ViewDirection view_of(const PaperPair& pair, const Sitter& s) {
+  const ContactStep& last = s.collision->steps.back();
+  const Eigen::Vector3d way =
+      box_of(pair.x.rep, last.pose_x).center() - box_of(pair.a.rep, last.pose_a).center();
+  const Eigen::Vector3d from = (s.side == Side::a ? way : -way).normalized();
+  int flat = 0;  // the axis that the direction leans to least
+  from.cwiseAbs().minCoeff(&flat);
+  const Eigen::Vector3d up = Eigen::Vector3d::Unit(flat), aside = from.cross(up).normalized();
+  return {from + kAside * (aside + 0.7 * up), up};
+}
+
+/// Where the bodies meet in the last time step.
+CollideResult contact_of(const PaperPair& pair, const CloseUp& c) {
+  CollideRequest request;
+  request.contacts = true;
+  return collide(pair.a.rep, c.steps.back().pose_a, pair.x.rep, c.steps.back().pose_x, request);
+}
+
+/// The contact region with most pairs of faces.
+std::vector<Eigen::Vector3d> largest_contact(const CollideResult& contact) {
+  const auto less = [](const ContactRegion& p, const ContactRegion& q) {
+    return p.pairs.size() < q.pairs.size();
+  };
+  const auto largest = std::max_element(contact.regions.begin(), contact.regions.end(), less);
+  return contact_points(std::span(&*largest, 1));
+}
+
+Camera camera_of(const PaperPair& pair, const Sitter& s) {
+  const LrbRep& rep = pair.rep(s.side);
+  FitOptions fit;
+  fit.view = view_of(pair, s);
+  constexpr double kAround = 1.2, kLeast = 0.12;  // of the contact's size, of the body's
+  return s.near ? fit_contact(largest_contact(*s.contact), box_of(rep, pose_of(s)), kPanelWidth, kPanelHeight,
+                              fit, kAround, kLeast)
+                : fit_camera(body_points(rep, pose_of(s)), kPanelWidth, kPanelHeight, fit);
+}
+
+/// The scale: logarithmic, because a few faces get most of the tests. 0 for none, 1 for the most of all.
+double share(double tests, double most) {
+  return most > 0 ? std::log1p(tests) / std::log1p(most) : 0;
+}
+
+/// The wrapper as the last time step left it, without anything translucent, so that colours are those of the
+/// scale; and where the bodies meet.
+DrawList wrapper_list(const PaperPair& pair, const Sitter& s, double most) {
+  const LrbRep& rep = pair.rep(s.side);
+  const std::vector<double> tests = tests_of(pair, s);
+  trace::Cursor cursor(s.collision->trace, pair.a.rep, pair.x.rep);
+  cursor.seek(static_cast<trace::EventId>(s.collision->trace.events.size() - 1));
+  DrawList list;
+  list.edge_styles[0] = {with_alpha(kWhite, 110), 0.8F};
+  for (const FaceId f : cursor.wrapper(s.side).boundary()) {
+    DrawTriangle t;
+    t.colour = tests[f] > 0 ? palette::viridis(share(tests[f], most)) : palette::kPaleFront;
+    t.edges = 7;
+    std::vector<Eigen::Vector3d> corners;
+    for (const VertexId v : rep.face(f)) corners.push_back(pose_of(s).apply(rep.vertices()[v]));
+    list.add_polygon(corners, t);
+  }
+  for (const ContactRegion& region : s.contact->regions)
+    for (const ContactLoop& loop : region.loops) {
+      DrawLine line;
+      line.points = loop.points;
+      line.closed = loop.closed;
+      line.colour = palette::kContact;
+      line.width = 3;
+      line.halo = kWhite;
+      line.halo_width = 1;
+      line.layer = Layer::on_top;
+      list.lines.push_back(line);
+    }
+  return list;
+}
+
+Panel draw_panel(Rasterizer& rasterizer, const PaperPair& pair, const Sitter& s, double most) {
+  RasterOptions raster;
+  raster.width = kPanelWidth;
+  raster.height = kPanelHeight;
+  raster.lighting = kSoft;
+  const std::string what =
+      s.near ? ", close up"
+             : ", " + std::string(s.which) + ": " + group_digits(s.collision->comparisons) + " face tests";
+  return {rasterizer.draw(wrapper_list(pair, s, most), camera_of(pair, s), raster), pair.name(s.side) + what};
+}
+
+}  // namespace
+
+Image draw_heat_maps(const PaperPair& pair, const CloseUp& easiest, const CloseUp& hardest) {
+  const CollideResult contacts[2] = {contact_of(pair, easiest), contact_of(pair, hardest)};
+  std::vector<Sitter> sitters;
+  for (const bool hard : {false, true})
+    for (const Side side : {Side::a, Side::b})
+      for (const bool near : {false, true})
+        sitters.push_back(
+            {side, hard ? &hardest : &easiest, &contacts[hard ? 1 : 0], hard ? "hardest" : "easiest", near});
+  double most = 0;
+  for (const Sitter& s : sitters) {
+    const std::vector<double> tests = tests_of(pair, s);
+    most = std::max(most, *std::max_element(tests.begin(), tests.end()));
+  }
+  Rasterizer rasterizer;
+  std::vector<Panel> panels;
+  for (const Sitter& s : sitters) panels.push_back(draw_panel(rasterizer, pair, s, most));
+  MontageOptions options;
+  options.columns = 4;
+  options.text_height = 28;
+  const Image all = montage(panels, options);
+
+  Overlay overlay;
+  overlay.key = {{LegendItem::Mark::line, palette::kContact, "where the bodies meet in the end"},
+                 {LegendItem::Mark::dashed, palette::kContact, "the same, hidden"}};
+  overlay.scale = ScaleBar{"face tests of a face (log scale)", 0, most};
+  constexpr int kRoom = 400;  // more than the legend needs; what it does not need is not drawn
+  const OverlayLayout tentative = lay_out(overlay, all.width(), all.height() + kRoom);
+  const int height = all.height() + (all.height() + kRoom - tentative.picture.height);
+  return compose_frame(all, all.rect(), overlay, all.width(), height);
+}
+
+}  // namespace lrb

@@ -1,0 +1,228 @@
+#include "scenarios/paper/icicle.hpp"
+
+#include <algorithm>
+#include <numeric>
+
+#include "render/markup.hpp"
+#include "render/overlay.hpp"
+#include "render/palette.hpp"
+#include "render/svg_text.hpp"
+#include "scenarios/play/moments.hpp"
+#include "trace/counters.hpp"
+#include "trace/cursor.hpp"
+
+namespace lrb {
+namespace {
+
+using namespace svg_text;
+
+constexpr double kWidth = 1200, kMargin = 16, kRow = 24, kText = 15, kTitle = 18, kGap = 34;  // pixels
+constexpr double kRule = 0.7, kRuleShare = 0.2;  ///< white between boxes: pixels, of the box at most
+constexpr double kRoomForText = 2.5;             ///< box widths over the text's height that take a number
+
+enum class State : std::uint8_t { refined, tested, real_tested, untouched };  // in the order of the boxes
+
+Rgba colour_of(State s) {
+  switch (s) {
+    case State::refined:
+      return palette::kGreen;
+    case State::tested:
+      return palette::kOrange;
+    case State::real_tested:
+      return palette::kSkyBlue;
+    case State::untouched:
+      break;
+  }
+  return palette::kRule;
+}
+
+/// A region, or the real faces of one that share a state.
+struct Node {
+  State state = State::untouched;
+  double width = 0;  ///< faces
+  std::string name, what;
+  std::vector<Node> inside;
+};
+
+/// The nodes of one body after one step.
+class Tree {
+ public:
+  Tree(const LrbRep& rep, const Wrapper& wrapper, const std::vector<std::uint32_t>& tests)
+      : rep_(rep), wrapper_(wrapper), tests_(tests), inside_(rep.region_count() + std::size_t{1}) {
+    for (RegionId r = 0; r < rep.region_count(); ++r) inside_[slot(rep.parent(r))].push_back(r);
+  }
+
+  Node root(const std::string& name) const {
+    Node n = open(kOutside);
+    n.state = State::refined;
+    n.name = name + ": outermost wrapper, " + std::to_string(rep_.outermost_faces().size()) + " faces";
+    n.what = n.name;
+    return n;
+  }
+
+ private:
+  std::size_t slot(CellId cell) const { return is_region(cell) ? cell : rep_.region_count(); }
+
+  /// What lies under an opened region, or under the outside.
+  Node open(CellId cell) const {
+    Node n;
+    for (const RegionId r : inside_[slot(cell)]) n.inside.push_back(node(r));
+    const auto floor = is_region(cell) ? rep_.floor(cell) : rep_.outermost_faces();
+    for (const State state : {State::real_tested, State::untouched}) {
+      const auto count = std::count_if(floor.begin(), floor.end(), [&](FaceId f) {
+        return rep_.is_real(f) && (tests_[f] > 0) == (state == State::real_tested);
+      });
+      if (count == 0) continue;
+      Node faces;
+      faces.state = state;
+      faces.width = static_cast<double>(count);
+      faces.what = std::to_string(count) + " real face" + (count == 1 ? "" : "s") +
+                   (state == State::real_tested ? ", tested" : ", not tested");
+      n.inside.push_back(std::move(faces));
+    }
+    std::stable_sort(n.inside.begin(), n.inside.end(),
+                     [](const Node& p, const Node& q) { return p.state < q.state; });
+    for (const Node& child : n.inside) n.width += child.width;
+    return n;
+  }
+
+  Node node(RegionId r) const {
+    const auto lids = rep_.lids(r);
+    const auto tests = std::accumulate(lids.begin(), lids.end(), std::uint64_t{0},
+                                       [&](std::uint64_t sum, FaceId f) { return sum + tests_[f]; });
+    Node n;
+    const bool refined = !wrapper_.included(r);
+    if (refined) n = open(r);
+    if (!refined) n.width = static_cast<double>(lids.size());
+    n.state = refined ? State::refined : tests > 0 ? State::tested : State::untouched;
+    n.name = std::to_string(r);
+    n.what = "region " + n.name + (refined ? ", refined: " : ": ") + std::to_string(rep_.floor(r).size()) +
+             " faces under it, " + std::to_string(tests) + " face tests of its lids";
+    if (n.state == State::tested) n.inside.push_back(hidden(r, n.width));
+    return n;
+  }
+
+  /// All that lies under a lid that was not opened, as one box.
+  Node hidden(RegionId r, double width) const {
+    std::uint64_t regions = 0, faces = 0;
+    std::vector<RegionId> left = {r};
+    while (!left.empty()) {
+      const RegionId at = left.back();
+      left.pop_back();
+      for (const FaceId f : rep_.floor(at)) faces += rep_.is_real(f);
+      regions += inside_[at].size();
+      left.insert(left.end(), inside_[at].begin(), inside_[at].end());
+    }
+    Node n;
+    n.width = width;
+    n.what = "untouched, under region " + std::to_string(r) + ": " + std::to_string(regions) + " regions, " +
+             std::to_string(faces) + " real faces";
+    return n;
+  }
+
+  const LrbRep& rep_;
+  const Wrapper& wrapper_;
+  const std::vector<std::uint32_t>& tests_;
+  std::vector<std::vector<RegionId>> inside_;  ///< by parent; the last: the outside
+};
+
+int depth_of(const Node& n) {
+  int deepest = 0;
+  for (const Node& child : n.inside) deepest = std::max(deepest, depth_of(child));
+  return 1 + deepest;
+}
+
+std::string text(double x, double y, double height, const std::string& words, const char* anchor, Rgba colour,
+                 bool bold = false) {
+  return "<text" + attribute("x", number(x)) + attribute("y", number(y)) + font(height) +
+         attribute("text-anchor", anchor) + attribute("dominant-baseline", "central") +
+         paint("fill", colour) + (bold ? attribute("font-weight", "bold") : "") + ">" + escape_markup(words) +
+         "</text>\n";
+}
+
+class Writer {
+ public:
+  /// Returns the height it took.
+  double tree(const Node& root, double y) {
+    unit_ = (kWidth - 2 * kMargin) / root.width;
+    box(root, kMargin, y);
+    return depth_of(root) * kRow;
+  }
+  void heading(const std::string& words, double y) {
+    out += text(kMargin, y, kTitle, words, "start", palette::kInk, true);
+  }
+  void legend(double y) {
+    double x = kMargin;
+    for (const auto& [state, words] : {std::pair{State::refined, "refined"},
+                                       {State::tested, "tested, not refined"},
+                                       {State::real_tested, "real faces, tested"},
+                                       {State::untouched, "untouched"}}) {
+      out += rect(x, y - kText / 2, kText, kText, colour_of(state)) + "/>\n";
+      out += text(x + 1.5 * kText, y, kText, words, "start", palette::kInk);
+      x += 1.5 * kText + 0.55 * kText * static_cast<double>(std::string_view(words).size()) + 2 * kText;
+    }
+    out += text(kWidth - kMargin, y, kText, "widths: faces of the final wrapper", "end", palette::kFaint);
+  }
+
+  std::string out;
+
+ private:
+  static std::string rect(double x, double y, double width, double height, Rgba colour) {
+    return "<rect" + attribute("x", number(x)) + attribute("y", number(y)) +
+           attribute("width", number(width)) + attribute("height", number(height)) + paint("fill", colour);
+  }
+
+  void box(const Node& n, double x, double y) {
+    const double width = n.width * unit_, rule = std::min(kRule, kRuleShare * width);
+    out += rect(x, y, width - rule, kRow - kRule, colour_of(n.state)) + "><title>" + escape_markup(n.what) +
+           "</title></rect>\n";
+    if (width > kRoomForText * kText && !n.name.empty())
+      out += text(x + width / 2, y + kRow / 2, kText * 0.8, n.name, "middle",
+                  n.state == State::refined ? kWhite : palette::kInk);
+    for (const Node& child : n.inside) {
+      box(child, x, y + kRow);
+      x += child.width * unit_;
+    }
+  }
+
+  double unit_ = 1;
+};
+
+}  // namespace
+
+std::size_t busiest_step(const CloseUp& c) {
+  const auto most = std::max_element(c.steps.begin(), c.steps.end(), [](const auto& p, const auto& q) {
+    return p.counts[0].comparisons < q.counts[0].comparisons;
+  });
+  return static_cast<std::size_t>(most - c.steps.begin());
+}
+
+std::string icicle_svg(const PaperPair& pair, const CloseUp& collision) {
+  const std::size_t step = busiest_step(collision);
+  const trace::Trace& t = collision.trace;
+  trace::Cursor cursor(t, pair.a.rep, pair.x.rep);
+  const trace::EventId first = t.steps[step].first_event, last = last_event(t, step);
+  cursor.seek(last);
+  const std::span events(t.events.data() + first, last - first + std::size_t{1});
+  Writer writer;
+  double y = kMargin + kTitle / 2;
+  for (const Side side : {Side::a, Side::b}) {
+    const LrbRep& rep = pair.rep(side);
+    const std::vector<std::uint32_t> tests = trace::count_faces(rep, side, events).tests;
+    const trace::Totals totals = trace::count_events(events);
+    const std::string& name = pair.name(side);
+    writer.heading(name + ": " + group_digits(totals.refinements[static_cast<std::size_t>(side)]) + " of " +
+                       group_digits(rep.region_count()) + " regions refined, wrapper of " +
+                       group_digits(cursor.boundary_size(side)) + " faces",
+                   y);
+    y += kTitle;
+    y += writer.tree(Tree(rep, cursor.wrapper(side), tests).root(name), y) + kGap;
+  }
+  writer.legend(y - kGap / 3);
+  const double height = y + kMargin;
+  return svg_open(kWidth, height) + "<title>The refinement tree of one collision</title>\n<rect" +
+         attribute("width", number(kWidth)) + attribute("height", number(height)) + paint("fill", kWhite) +
+         "/>\n" + writer.out + "</svg>\n";
+}
+
+}  // namespace lrb

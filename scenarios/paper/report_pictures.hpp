@@ -1,0 +1,22 @@
+#pragma once
+/// Pictures of the paper's report: written as files, and put into its page.
+
+#include "scenarios/page/page.hpp"
+#include "scenarios/paper/report.hpp"
+
+namespace lrb {
+
+/// A picture that is in the folder already, .svg or .png.
+void add_figure(Page& page, const std::string& folder, const std::string& title, const std::string& caption,
+                const std::string& file);
+
+/// Throws InputError if the steps are not those of the experiment, as far as numbers of collisions and its
+/// close-ups tell.
+void check_records(const PaperReport& report);
+
+/// Heat maps of the easiest and the hardest collision, and the refinement tree of the hardest one's busiest
+/// step, as far as the experiment reports them. `notes` gets what could not be drawn.
+void draw_close_ups(const PaperReport& report, const std::string& folder, Page& page,
+                    std::vector<std::string>& notes);
+
+}  // namespace lrb

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <filesystem>
+#include <limits>
+
+#include "scenarios/json/json_node.hpp"
+#include "scenarios/scenario.hpp"
+
+namespace lrb {
+
+/// What every JSON reader can hold.
+inline constexpr std::uint64_t kAnySeed = std::numeric_limits<std::int64_t>::max();
+
+/// A body of a scenario or an experiment; files are looked up in `folder`, and `seed` is for whatever has
+/// none of its own.
+BodySpec read_body(const JsonNode& node, const std::filesystem::path& folder, std::uint64_t seed);
+
+/// A name after which a folder can be called.
+std::string read_name(const JsonNode& node);
+
+}  // namespace lrb
