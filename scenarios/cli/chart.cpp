@@ -27,7 +27,7 @@ struct ChartOptions {
   std::string folder = "out/chart", models;
   std::uint32_t faces = 2000;
   std::vector<std::string> methods;
-  SetOptions set;
+  SetOptions set{8, 1};
   double timeout = 20;
   bool scenes = true;
 };
@@ -132,7 +132,7 @@ Command add_chart(CLI::App& root, const Globals& globals) {
       ->check(CLI::Range(0, 200000))
       ->type_name("N");
   app->add_option("--method", o->methods, "These methods alone")->type_name("NAME");
-  app->add_option("--poses", o->set.poses, "Poses of each class [12]")
+  app->add_option("--poses", o->set.poses, "Poses of each class [8]")
       ->check(CLI::Range(1, 10000))
       ->type_name("N");
   app->add_option("--seed", o->set.seed, "Of the poses [1]")->check(CLI::NonNegativeNumber)->type_name("S");
