@@ -40,6 +40,21 @@ inline constexpr double kWorldUnderflow = 0x1p-1022;
 /// Safety on the sum of the pose's errors, for the change of norms; see set_up_kernel().
 inline constexpr double kPoseSafety = 4;
 
+/// Added to distances that bound a region's thickness, in units (coordinates are at most about 1): covers the
+/// rounding of a dozen operations on them, which is under 2^-46. Smaller: an error bound could be exceeded by
+/// a rounding error; larger: it is that much looser.
+inline constexpr double kThicknessRounding = 0x1p-40;
+/// Distance that faces of two wrappers must keep to count as apart, relative to the largest term of any world
+/// coordinate: what is hidden may stand out of its lid by the rounding of world coordinates (under 2^-50 for
+/// both bodies), and the distance is found with less than that. Smaller: a touch under a flat lid could be
+/// missed; larger: bodies this close are refined further, or not proved apart.
+inline constexpr double kWrapperMargin = 0x1p-44;
+
+/// How far a matrix may be from a rotation (largest row sum of r^T r - 1) for coherent queries to take its
+/// motion for rigid: the rounding of a rotation is below 2^-50, and this, times a body's size, has room in
+/// kWrapperMargin. Larger: proofs of apartness over time could fail by it.
+inline constexpr double kRigid = 0x1p-47;
+
 /// The builders. None of these decides whether an LRB-rep is right: what they propose is confirmed exactly.
 
 /// Squared sine of the angle under which planes count as parallel when a new vertex is placed (10^-7 rad).

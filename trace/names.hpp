@@ -53,7 +53,7 @@ struct Names<WrapperMode> {
 template <>
 struct Names<Relation> {
   static constexpr std::string_view values[] = {"separate",   "crossing",   "touching",
-                                                "a_inside_b", "b_inside_a", "undefined"};
+                                                "a_inside_b", "b_inside_a", "undefined", "unresolved"};
 };
 template <>
 struct Names<Answer> {

@@ -9,6 +9,7 @@
 
 #include "engine/error.hpp"
 #include "engine/lrb/fnv.hpp"
+#include "engine/lrb/pieces.hpp"
 #include "engine/mesh/file_bytes.hpp"
 
 namespace lrb {
@@ -146,23 +147,9 @@ void LrbRep::find_parents() {
 }
 
 void LrbRep::find_components() {
-  std::vector<VertexId> leader(d_.vertices.size());
-  std::iota(leader.begin(), leader.end(), 0u);
-  const auto find = [&](VertexId v) {
-    while (leader[v] != v) v = leader[v] = leader[leader[v]];
-    return v;
-  };
-  for (FaceId f = 0; f < d_.real_face_count; ++f)
-    for (const VertexId v : face(f)) {
-      const VertexId x = find(face(f)[0]), y = find(v);
-      leader[std::max(x, y)] = std::min(x, y);  // the leader is the least vertex, whatever the order
-    }
-  std::vector<bool> seen(d_.vertices.size(), false);
-  for (FaceId f = 0; f < d_.real_face_count; ++f) {
-    const VertexId v = find(face(f)[0]);
-    if (!seen[v]) component_vertices_.push_back(v);
-    seen[v] = true;
-  }
+  std::vector<FaceId> real(d_.real_face_count);
+  std::iota(real.begin(), real.end(), FaceId{0});
+  component_vertices_ = piece_vertices(*this, real);
 }
 
 std::uint32_t LrbRep::simplex_count() const {

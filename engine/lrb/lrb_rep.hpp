@@ -100,6 +100,7 @@ class LrbRep {
   /// face, so that those of real faces come first and in the order of the mesh's file.
   std::uint32_t simplex_count() const;
   std::uint32_t real_simplex_count() const;
+  bool is_real_simplex(SimplexId s) const { return is_real(face_of_simplex(s)); }
   /// Corners per simplex: 3, or 2 in 2D.
   int simplex_size() const { return d_.dim; }
   FaceId face_of_simplex(SimplexId s) const { return face_of_simplex_.empty() ? s : face_of_simplex_[s]; }

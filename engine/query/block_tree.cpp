@@ -22,30 +22,32 @@ double half_area(const Box& b) {
   return e.x() * e.y() + e.y() * e.z() + e.z() * e.x();
 }
 
-/// The real simplices of a body in units, in the order of the tree's leaves.
+/// Simplices in units, by their place in the list that was given, and in the order of the tree's leaves.
 struct Soup {
-  std::vector<std::array<Vector3d, 3>> corners;  ///< by SimplexId
-  std::vector<Vector3d> centre;                  ///< by SimplexId: of the box
-  std::vector<Box> box;                          ///< by SimplexId
-  std::vector<SimplexId> order;
+  std::span<const SimplexId> simplices;
+  std::vector<std::array<Vector3d, 3>> corners;
+  std::vector<Vector3d> centre;  ///< of the box
+  std::vector<Box> box;
+  std::vector<std::uint32_t> order;
 };
 
-Soup make_soup(const LrbRep& rep, double unit) {
+Soup make_soup(const LrbRep& rep, std::span<const SimplexId> simplices, double unit) {
   int exponent = 0;
   std::frexp(unit, &exponent);
   const auto to_units = [e = 1 - exponent](const Vector3d& x) -> Vector3d {
     return {std::ldexp(x.x(), e), std::ldexp(x.y(), e), std::ldexp(x.z(), e)};
   };
   Soup soup;
-  const std::uint32_t n = rep.real_simplex_count();
+  soup.simplices = simplices;
+  const auto n = static_cast<std::uint32_t>(simplices.size());
   soup.corners.resize(n);
   soup.box.resize(n);
   soup.centre.resize(n);
   soup.order.resize(n);
   std::iota(soup.order.begin(), soup.order.end(), 0u);
-  for (SimplexId s = 0; s < n; ++s) {
+  for (std::uint32_t s = 0; s < n; ++s) {
     VertexId v[3];
-    rep.simplex(s, v);
+    rep.simplex(simplices[s], v);
     if (rep.dim() == 2) v[2] = v[1];
     for (int k = 0; k < 3; ++k) {
       soup.corners[s][k] = to_units(rep.vertices()[v[k]]);
@@ -102,7 +104,7 @@ class BinaryBuilder {
     std::uint32_t left = (best_left + kTreeWidth / 2) / kTreeWidth * kTreeWidth;
     left = std::clamp(left, kTreeWidth, (n - 1) / kTreeWidth * kTreeWidth);
     const auto first = soup_.order.begin() + begin;
-    std::nth_element(first, first + left, first + n, [&](SimplexId s, SimplexId t) {
+    std::nth_element(first, first + left, first + n, [&](std::uint32_t s, std::uint32_t t) {
       const double x = soup_.centre[s][best_axis], y = soup_.centre[t][best_axis];
       return x != y ? x < y : s < t;
     });
@@ -116,7 +118,7 @@ class BinaryBuilder {
     std::array<Box, kBins> bin_box;
     std::array<std::uint32_t, kBins> bin_count{};
     for (std::uint32_t i = begin; i < end; ++i) {
-      const SimplexId s = soup_.order[i];
+      const std::uint32_t s = soup_.order[i];
       const int b = std::min(kBins - 1, static_cast<int>(kBins * ((soup_.centre[s][axis] - from) / width)));
       bin_box[b].extend(soup_.box[s]);
       ++bin_count[b];
@@ -258,13 +260,13 @@ class BlockTreeBuilder {
     LeafBlock block{};
     std::fill(std::begin(block.simplex), std::end(block.simplex), kNull);
     for (std::uint32_t k = 0; k < kTreeWidth; ++k) {
-      const SimplexId s = soup_.order[std::min(b.begin + k, b.end - 1)];
+      const std::uint32_t s = soup_.order[std::min(b.begin + k, b.end - 1)];
       for (int corner = 0; corner < 3; ++corner) {
         const Vector3d x = frame.axes * (soup_.corners[s][corner] - frame.origin);
         for (int axis = 0; axis < 3; ++axis) block.corner[corner][axis][k] = static_cast<float>(x[axis]);
       }
       if (b.begin + k < b.end) {
-        block.simplex[k] = s;
+        block.simplex[k] = soup_.simplices[s];
         boxes.push_back(box_in_frame(soup_, b.begin + k, b.begin + k + 1, frame));
       }
     }
@@ -320,18 +322,23 @@ class BlockTreeBuilder {
 };
 
 BlockTree::BlockTree(const LrbRep& rep) {
-  const std::uint32_t n = rep.real_simplex_count();
-  for (SimplexId s = 0; s < n; ++s) {
+  std::vector<SimplexId> all(rep.real_simplex_count());
+  std::iota(all.begin(), all.end(), SimplexId{0});
+  *this = BlockTree(rep, all);
+}
+
+BlockTree::BlockTree(const LrbRep& rep, std::span<const SimplexId> simplices) {
+  for (const SimplexId s : simplices) {
     VertexId v[3];
     rep.simplex(s, v);
     for (int k = 0; k < rep.dim(); ++k)
       extent_ = std::max(extent_, rep.vertices()[v[k]].cwiseAbs().maxCoeff());
   }
-  if (n == 0) return;
+  if (simplices.empty()) return;
   int exponent = 0;
   std::frexp(extent_, &exponent);
   unit_ = std::ldexp(1.0, std::clamp(exponent, -1022, 1023));
-  Soup soup = make_soup(rep, unit_);
+  Soup soup = make_soup(rep, simplices, unit_);
   BlockTreeBuilder(*this, soup);
   nodes_.shrink_to_fit();
   blocks_.shrink_to_fit();

@@ -12,6 +12,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "engine/ids.hpp"
@@ -50,13 +51,15 @@ static_assert(sizeof(LeafBlock) == 320);
 class BlockTree {
  public:
   BlockTree() = default;
-  explicit BlockTree(const LrbRep& rep);
+  explicit BlockTree(const LrbRep& rep);  ///< of all real simplices
+  /// Of some simplices, real or pseudo: then "real" above means these.
+  BlockTree(const LrbRep& rep, std::span<const SimplexId> simplices);
 
   bool empty() const { return nodes_.empty(); }
   const std::vector<TreeNode>& nodes() const { return nodes_; }  ///< the root is node 0
   const std::vector<LeafBlock>& blocks() const { return blocks_; }
   double unit() const { return unit_; }      ///< a power of two; coordinates / unit are in units
-  double extent() const { return extent_; }  ///< largest absolute coordinate of a real vertex, mesh's unit
+  double extent() const { return extent_; }  ///< largest absolute coordinate of a corner, mesh's unit
   std::uint32_t height() const { return height_; }
   std::size_t memory_bytes() const {
     return nodes_.capacity() * sizeof(TreeNode) + blocks_.capacity() * sizeof(LeafBlock);

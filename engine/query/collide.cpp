@@ -22,6 +22,8 @@ const char* to_string(Relation r) {
       return "b_inside_a";
     case Relation::undefined:
       return "undefined";
+    case Relation::unresolved:
+      return "unresolved";
   }
   return "";
 }

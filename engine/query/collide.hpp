@@ -9,6 +9,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "engine/lrb/lrb_rep.hpp"
@@ -43,6 +44,18 @@ struct CollideRequest {
   bool contacts = false;  ///< fill CollideResult::contacts and ::regions (all_pairs only)
   bool interiors_overlap =
       false;  ///< decide CollideResult::interiors_overlap for bodies that meet (all_pairs)
+
+  /// No more than a scene needs. With any of these three the answer may be about wrappers instead of the
+  /// bodies, and says so (CollideResult::error_bound). It never calls bodies separate that meet. Only
+  /// `complete`, without contacts, interiors_overlap or unregularised wrappers (else InputError). What is
+  /// needed of a body is made, and kept in the context, when it is first asked for; that is not counted.
+  double tolerance = 0;         ///< regions no thicker than this stay closed; unit: the meshes'
+  std::uint64_t max_tests = 0;  ///< face tests at most; 0: as many as it takes
+  double max_time = 0;          ///< seconds at most, looked at every few face tests; 0: as long as it takes
+  /// For separate bodies: find CollideResult::separation. Takes longer than the query.
+  bool separation = false;
+
+  bool is_coarse() const { return tolerance > 0 || max_tests > 0 || max_time > 0; }
 };
 
 /// How two bodies lie to each other.
@@ -52,7 +65,9 @@ enum class Relation : std::uint8_t {
   touching,    ///< surfaces meet, but no two faces cross
   a_inside_b,  ///< no surface contact; B holds A
   b_inside_a,
-  undefined,  ///< no surface contact, and a body that is not closed: inside has no meaning
+  undefined,   ///< no surface contact, and a body that is not closed: inside has no meaning
+  unresolved,  ///< a coarse query did not prove the bodies apart; they are closer than the error bound, or
+               ///< meet
 };
 const char* to_string(Relation r);
 
@@ -63,6 +78,14 @@ const char* to_string(Answer a);
 struct SimplexPair {
   SimplexId a, b;
   friend auto operator<=>(const SimplexPair&, const SimplexPair&) = default;
+};
+
+/// A certificate that two closed bodies are apart: their outermost wrappers, with these regions refined in
+/// this order, meet nowhere, and none has a point in the other. No region can be taken back in without the
+/// proof failing.
+struct Separation {
+  std::array<std::vector<RegionId>, 2> refined;      ///< A's and B's
+  std::array<std::uint32_t, 2> face_count = {0, 0};  ///< of the two wrappers
 };
 
 /// What the query did. All are numbers of operations.
@@ -87,11 +110,18 @@ struct CollideResult {
   Answer interiors_overlap = Answer::unknown;
   Recursion recursion = Recursion::complete;  ///< the one that was used
   Mode mode = Mode::all_pairs;
-  std::vector<SimplexPair> pairs;               ///< ascending; in first_pair mode at most one
+  /// Ascending; in first_pair mode at most one. Coarse queries: with pseudo simplices (LrbRep::
+  /// is_real_simplex()) where lids stayed closed; those meet or come within rounding of it.
+  std::vector<SimplexPair> pairs;
   std::vector<exact::Meet> meets;               ///< (|pairs|) touch or cross
   std::vector<PairContactRecord> contacts;      ///< (|pairs|) if requested
   std::vector<ContactRegion> regions;           ///< connected groups of contacts, if requested
   std::array<std::vector<RegionId>, 2> opened;  ///< regions refined, A's and B's, in order
+  /// 0: the answer is exact. Else the pairs are those of wrappers that are off the bodies by no more than
+  /// this, both together, in the world: unresolved bodies are no further apart. Infinite: nothing is known.
+  double error_bound = 0;
+  bool finished = true;  ///< false: a limit was reached before the tolerance (or the exact answer) was
+  std::optional<Separation> separation;  ///< if requested, separate, and not nearer than rounding
   Counters counters;
 };
 

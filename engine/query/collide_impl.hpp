@@ -6,15 +6,15 @@
 
 #include "engine/error.hpp"
 #include "engine/exact/predicates.hpp"
+#include "engine/query/coarse_query.hpp"
 #include "engine/query/collide.hpp"
 #include "engine/query/paper_query.hpp"
 #include "engine/query/relation.hpp"
+#include "engine/query/separation.hpp"
 #include "engine/query/tree_query.hpp"
 
 namespace lrb {
 
-/// Sorts the pairs (and what belongs to them) and removes repetitions.
-void sort_pairs(CollideResult& result);
 /// Throws InputError if the query cannot be asked.
 void check_query(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b);
 /// Fills in interiors_overlap, contacts and regions as requested.
@@ -24,6 +24,7 @@ template <class Probe>
 CollideResult collide(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
                       const CollideRequest& request, QueryContext& context, Probe& probe) {
   check_query(a, pose_a, b, pose_b);
+  if (request.is_coarse()) check_coarse_request(request);
   CollideResult result;
   result.recursion = request.recursion;
   result.mode = request.mode;
@@ -32,13 +33,19 @@ CollideResult collide(const LrbRep& a, const Pose& pose_a, const LrbRep& b, cons
   const std::uint64_t fallbacks = exact::exact_fallbacks();
   {
     const exact::FloatingPredicates floating(request.predicates == Predicates::floating);
-    if (request.recursion == Recursion::complete)
-      TreeQuery<Probe>(context, request.mode, result, probe).run();
-    else
-      PaperQuery<Probe>(context, request, result, probe).run();
-    sort_pairs(result);
-    decide_relation(context, result);
+    if (request.is_coarse()) {
+      CoarseQuery<Probe>(context, request, result, probe).run();
+    } else {
+      if (request.recursion == Recursion::complete)
+        TreeQuery<Probe>(context, request.mode, result, probe).run();
+      else
+        PaperQuery<Probe>(context, request, result, probe).run();
+      sort_pairs(result);
+      decide_relation(context, result);
+    }
   }
+  if (request.separation && result.relation == Relation::separate)
+    result.separation = find_separation(context);
   describe_contact(context, request, result);
   for (int side = 0; side < 2; ++side) {
     result.opened[side] = context.body[side].wrapper->excluded();

@@ -9,6 +9,7 @@
 #include "engine/query/surface_graph.hpp"
 #include "engine/query/tree_kernel.hpp"
 #include "engine/query/world_vertices.hpp"
+#include "engine/query/wrapper_level.hpp"
 
 namespace lrb {
 
@@ -19,14 +20,37 @@ struct QueryBody {
   std::uint64_t wrapper_serial = 0;  ///< of the LRB-rep that the wrapper was made for
 
   const LrbRep& rep() const { return world.rep(); }
+  /// What is queried: the body, or a level of it.
+  const BlockTree& tree() const { return *tree_; }
+  std::span<const VertexId> component_vertices() const { return component_vertices_; }
 
   void begin(const LrbRep& rep, const Pose& pose, WrapperMode mode) {
     world.begin(rep, pose);
+    query_body();
     if (!wrapper || wrapper_serial != rep.serial() || &wrapper->rep() != &rep || wrapper->mode() != mode) {
       wrapper = std::make_unique<Wrapper>(rep, mode);
       wrapper_serial = rep.serial();
     }
     wrapper->reset();
+  }
+
+  void query_body() {
+    tree_ = &rep().tree();
+    component_vertices_ = rep().component_vertices();
+  }
+  void query_level(const WrapperLevel& level) {
+    tree_ = &level.tree;
+    component_vertices_ = level.component_vertices;
+  }
+
+  /// Made when first asked for, kept as long as the body stays the same.
+  WrapperLevels& levels() {
+    if (!levels_ || levels_serial_ != rep().serial() || levels_rep_ != &rep()) {
+      levels_ = std::make_unique<WrapperLevels>(rep());
+      levels_serial_ = rep().serial();
+      levels_rep_ = &rep();
+    }
+    return *levels_;
   }
 
   /// Made when first asked for, kept as long as the body stays the same.
@@ -45,6 +69,11 @@ struct QueryBody {
   }
 
  private:
+  const BlockTree* tree_ = nullptr;
+  std::span<const VertexId> component_vertices_;
+  std::unique_ptr<WrapperLevels> levels_;
+  std::uint64_t levels_serial_ = 0;
+  const LrbRep* levels_rep_ = nullptr;
   std::unique_ptr<SurfaceGraph> graph_;
   std::uint64_t graph_serial_ = 0;
 };

@@ -18,7 +18,7 @@ template <class Point>
 class RayWalk {
  public:
   RayWalk(QueryBody& body, const Point& point, const Vector3d& near)
-      : body_(body), tree_(body.rep().tree()), point_(point), p_(near) {
+      : body_(body), tree_(body.tree()), point_(point), p_(near) {
     const Pose& pose = body.world.pose();
     const double turn = pose.r.cwiseAbs().rowwise().sum().maxCoeff();
     const double size = turn * tree_.extent() + pose.t.cwiseAbs().maxCoeff();
@@ -91,7 +91,7 @@ struct Swallowed {
 /// How many components of `inner` lie inside `outer`, given that the surfaces do not meet.
 Swallowed components_inside(QueryBody& inner, QueryBody& outer) {
   Swallowed s;
-  for (const VertexId v : inner.rep().component_vertices()) {
+  for (const VertexId v : inner.component_vertices()) {
     ++s.components;
     s.inside += locate(outer, inner.world(v)) == Where::inside;
   }
@@ -101,13 +101,13 @@ Swallowed components_inside(QueryBody& inner, QueryBody& outer) {
 }  // namespace
 
 Where locate(QueryBody& body, const double* point) {
-  if (body.rep().tree().empty()) return Where::outside;
+  if (body.tree().empty()) return Where::outside;
   return RayWalk<const double*>(body, point, {point[0], point[1], body.rep().dim() == 3 ? point[2] : 0})
       .run();
 }
 
 Where locate(QueryBody& body, const exact::RationalPoint& point) {
-  return body.rep().tree().empty() ? Where::outside : RayWalk(body, point, point.rounded()).run();
+  return body.tree().empty() ? Where::outside : RayWalk(body, point, point.rounded()).run();
 }
 
 void decide_relation(QueryContext& ctx, CollideResult& result) {

@@ -30,6 +30,7 @@ struct TreeKernel {
   double t[3];             ///< B's origin seen from A's, in A's axes
   float slack;   ///< absolute: errors of poses and of the rounding of world coordinates (see tree_query.cpp)
   float m_size;  ///< >= 1 and >= the Euclidean norm of m
+  float margin;  ///< 0; else pairs are kept that may meet once the points of either have moved this far
 
   NodePair* stack;  ///< room for 64 * (height of A + height of B) + 64 pairs
   std::uint32_t stack_size;

@@ -92,8 +92,12 @@ struct Between {
   float r[3][3], abs_r[3][3], t[3], back[3];
   float reach;  ///< bound of every coordinate difference that occurs
   float error;  ///< bound of the error of every transformed coordinate
+  float grow;   ///< of boxes: the error, and the margin
 };
 
+/// kMargin: whether k.margin counts. Simplices that come to meet at a point after a motion have points now
+/// that are no further apart than it is long: boxes and planes that are, part them.
+template <bool kMargin = false>
 inline Between between(const TreeKernel& k, const TreeNode& a, const TreeNode& b) {
   Between w;
   double d[3];
@@ -119,6 +123,7 @@ inline Between between(const TreeKernel& k, const TreeNode& a, const TreeNode& b
   w.reach = k.m_size * (a.radius * k.ratio_a + b.radius * k.ratio_b + __builtin_fabsf(df[0]) +
                         __builtin_fabsf(df[1]) + __builtin_fabsf(df[2]));
   w.error = k.slack + kKernelRounding * w.reach;
+  w.grow = kMargin ? w.error + k.margin : w.error;
   return w;
 }
 
@@ -132,7 +137,7 @@ inline Turned turn_b(const Boxes& b, const Between& w) {
   for (int i = 0; i < 3; ++i) {
     o.centre[i] = splat(w.t[i]) + splat(w.r[i][0]) * b.centre[0] + splat(w.r[i][1]) * b.centre[1] +
                   splat(w.r[i][2]) * b.centre[2];
-    o.half[i] = splat(w.error) + splat(w.abs_r[i][0]) * b.half[0] + splat(w.abs_r[i][1]) * b.half[1] +
+    o.half[i] = splat(w.grow) + splat(w.abs_r[i][0]) * b.half[0] + splat(w.abs_r[i][1]) * b.half[1] +
                 splat(w.abs_r[i][2]) * b.half[2];
   }
   return o;
@@ -143,7 +148,7 @@ inline Turned turn_a(const Boxes& a, const Between& w) {
   for (int j = 0; j < 3; ++j) {
     o.centre[j] = splat(w.back[j]) + splat(w.r[0][j]) * a.centre[0] + splat(w.r[1][j]) * a.centre[1] +
                   splat(w.r[2][j]) * a.centre[2];
-    o.half[j] = splat(w.error) + splat(w.abs_r[0][j]) * a.half[0] + splat(w.abs_r[1][j]) * a.half[1] +
+    o.half[j] = splat(w.grow) + splat(w.abs_r[0][j]) * a.half[0] + splat(w.abs_r[1][j]) * a.half[1] +
                 splat(w.abs_r[2][j]) * a.half[2];
   }
   return o;
@@ -197,10 +202,11 @@ inline void push(TreeKernel& k, std::uint32_t a, std::uint32_t b) {
 }
 
 /// Both inner: descend both.
+template <bool kMargin>
 inline void inner_pair(TreeKernel& k, const TreeNode& na, const TreeNode& nb) {
   std::uint32_t mask[8];
   const std::uint32_t rows =
-      pair_masks(k, na, nb, decode(na, k.ratio_a), decode(nb, k.ratio_b), between(k, na, nb), mask);
+      pair_masks(k, na, nb, decode(na, k.ratio_a), decode(nb, k.ratio_b), between<kMargin>(k, na, nb), mask);
   for (std::uint32_t r = rows; r != 0; r &= r - 1) {
     const std::uint32_t i = static_cast<std::uint32_t>(__builtin_ctz(r));
     for (std::uint32_t c = mask[i]; c != 0; c &= c - 1)
@@ -209,15 +215,16 @@ inline void inner_pair(TreeKernel& k, const TreeNode& na, const TreeNode& nb) {
 }
 
 /// One inner (its boxes against the leaf's whole box), in both frames.
+template <bool kMargin>
 inline void inner_a_leaf_b(TreeKernel& k, const TreeNode& na, const TreeNode& nb, std::uint32_t b_index) {
   const Boxes a = decode(na, k.ratio_a), b = decode(nb, k.ratio_b);
-  const Between w = between(k, na, nb);
+  const Between w = between<kMargin>(k, na, nb);
   const Turned at = turn_a(a, w);
   float centre[3], half[3];
   for (int i = 0; i < 3; ++i) {
     centre[i] = w.t[i] + w.r[i][0] * b.whole_centre[0] + w.r[i][1] * b.whole_centre[1] +
                 w.r[i][2] * b.whole_centre[2];
-    half[i] = w.error + w.abs_r[i][0] * b.whole_half[0] + w.abs_r[i][1] * b.whole_half[1] +
+    half[i] = w.grow + w.abs_r[i][0] * b.whole_half[0] + w.abs_r[i][1] * b.whole_half[1] +
               w.abs_r[i][2] * b.whole_half[2];
   }
   const Int8 gap =
@@ -227,15 +234,16 @@ inline void inner_a_leaf_b(TreeKernel& k, const TreeNode& na, const TreeNode& nb
     push(k, na.first + static_cast<std::uint32_t>(__builtin_ctz(c)), b_index);
 }
 
+template <bool kMargin>
 inline void leaf_a_inner_b(TreeKernel& k, const TreeNode& na, const TreeNode& nb, std::uint32_t a_index) {
   const Boxes a = decode(na, k.ratio_a), b = decode(nb, k.ratio_b);
-  const Between w = between(k, na, nb);
+  const Between w = between<kMargin>(k, na, nb);
   const Turned bt = turn_b(b, w);
   float centre[3], half[3];
   for (int j = 0; j < 3; ++j) {
     centre[j] = w.back[j] + w.r[0][j] * a.whole_centre[0] + w.r[1][j] * a.whole_centre[1] +
                 w.r[2][j] * a.whole_centre[2];
-    half[j] = w.error + w.abs_r[0][j] * a.whole_half[0] + w.abs_r[1][j] * a.whole_half[1] +
+    half[j] = w.grow + w.abs_r[0][j] * a.whole_half[0] + w.abs_r[1][j] * a.whole_half[1] +
               w.abs_r[2][j] * a.whole_half[2];
   }
   const Int8 gap =
@@ -252,13 +260,14 @@ struct Corners {
 
 /// Which of eight simplices lie strictly on one side of the plane of simplex i of `planes`.
 ///
-/// Every corner is off by at most `error` in each coordinate, so an edge by 2 error, and the normal n = e1 x e2 by
-/// at most 4 error (E + 2 error) in each component, where E = max|e1| + max|e2|. A difference p - v0 is at most
-/// reach, and off by 2 error, so that n . (p - v0) is off by at most 2 error |n|_1 + 12 error (E + 2 error)
-/// (reach + 2 error). Rounding in float is below 10 u E^2 reach, u = 2^-24, for which there is room in the second
-/// term: error holds kKernelRounding reach = 64 u reach, of which less than 48 u can occur, and E <= 4 reach.
+/// Every corner is off by at most `error` in each coordinate, so an edge by 2 error, and the normal n = e1 x
+/// e2 by at most 4 error (E + 2 error) in each component, where E = max|e1| + max|e2|. A difference p - v0 is
+/// at most reach, and off by 2 error, so that n . (p - v0) is off by at most 2 error |n|_1 + 12 error (E + 2
+/// error) (reach + 2 error). Rounding in float is below 10 u E^2 reach, u = 2^-24, for which there is room in
+/// the second term: error holds kKernelRounding reach = 64 u reach, of which less than 48 u can occur, and E
+/// <= 4 reach.
 inline std::uint32_t on_one_side(const Corners& planes, int i, const Corners& points, float reach,
-                                 float error) {
+                                 float error, float margin = 0) {
   float v0[3], e1[3], e2[3];
   float e1_max = 0, e2_max = 0;
   for (int axis = 0; axis < 3; ++axis) {
@@ -271,8 +280,10 @@ inline std::uint32_t on_one_side(const Corners& planes, int i, const Corners& po
   const float n[3] = {e1[1] * e2[2] - e1[2] * e2[1], e1[2] * e2[0] - e1[0] * e2[2],
                       e1[0] * e2[1] - e1[1] * e2[0]};
   const float n_size = __builtin_fabsf(n[0]) + __builtin_fabsf(n[1]) + __builtin_fabsf(n[2]);
-  const float bound =
+  const float rounding =
       2 * error * n_size + 12 * error * (e1_max + e2_max + 2 * error) * (reach + 2 * error) + kKernelTiny;
+  const float bound =
+      rounding + margin * n_size;  // which is more than n's length; without margin it vanishes
   Int8 above = Int8{} - 1, below = Int8{} - 1;
   for (int corner = 0; corner < 3; ++corner) {
     const Float8 height = splat(n[0]) * (points.x[corner][0] - splat(v0[0])) +
@@ -284,8 +295,9 @@ inline std::uint32_t on_one_side(const Corners& planes, int i, const Corners& po
   return bits(above | below);
 }
 
+template <bool kMargin>
 inline void leaf_pair(TreeKernel& k, const TreeNode& na, const TreeNode& nb) {
-  const Between w = between(k, na, nb);
+  const Between w = between<kMargin>(k, na, nb);
   std::uint32_t mask[8];
   std::uint32_t rows = pair_masks(k, na, nb, decode(na, k.ratio_a), decode(nb, k.ratio_b), w, mask);
   if (rows == 0) return;
@@ -306,13 +318,13 @@ inline void leaf_pair(TreeKernel& k, const TreeNode& na, const TreeNode& nb) {
   for (std::uint32_t r = rows; r != 0; r &= r - 1) {
     const int i = __builtin_ctz(r);
     k.prefilter_tests += static_cast<unsigned>(__builtin_popcount(mask[i]));
-    mask[i] &= ~on_one_side(a, i, b, w.reach, w.error);
+    mask[i] &= ~on_one_side(a, i, b, w.reach, w.error, kMargin ? k.margin : 0);
     columns |= mask[i];
   }
   std::uint32_t apart_rows[8] = {};
   for (std::uint32_t c = columns; c != 0; c &= c - 1) {
     const int j = __builtin_ctz(c);
-    const std::uint32_t off = on_one_side(b, j, a, w.reach, w.error);
+    const std::uint32_t off = on_one_side(b, j, a, w.reach, w.error, kMargin ? k.margin : 0);
     for (int i = 0; i < 8; ++i) apart_rows[i] |= (off >> i & 1u) << j;
   }
   for (; rows != 0; rows &= rows - 1) {
@@ -322,19 +334,24 @@ inline void leaf_pair(TreeKernel& k, const TreeNode& na, const TreeNode& nb) {
   }
 }
 
-}  // namespace
-
-void LRB_KERNEL_NAME(TreeKernel& k) {
+template <bool kMargin>
+void run(TreeKernel& k) {
   while (k.stack_size != 0 && k.out_capacity - k.out_size >= 64) {
     const NodePair p = k.stack[--k.stack_size];
     const TreeNode& a = k.nodes_a[p.a];
     const TreeNode& b = k.nodes_b[p.b];
     ++k.node_pairs;
     if (a.is_leaf)
-      b.is_leaf ? leaf_pair(k, a, b) : leaf_a_inner_b(k, a, b, p.a);
+      b.is_leaf ? leaf_pair<kMargin>(k, a, b) : leaf_a_inner_b<kMargin>(k, a, b, p.a);
     else
-      b.is_leaf ? inner_a_leaf_b(k, a, b, p.b) : inner_pair(k, a, b);
+      b.is_leaf ? inner_a_leaf_b<kMargin>(k, a, b, p.b) : inner_pair<kMargin>(k, a, b);
   }
+}
+
+}  // namespace
+
+void LRB_KERNEL_NAME(TreeKernel& k) {
+  k.margin > 0 ? run<true>(k) : run<false>(k);
 }
 
 }  // namespace lrb

@@ -2,16 +2,11 @@
 
 #include <cmath>
 
+#include "engine/query/apart.hpp"
 #include "engine/tolerances.hpp"
 
 namespace lrb {
 namespace {
-
-/// Largest |r|-row-sum times extent, plus |t|: a bound of every world coordinate and of every term on the way
-/// to it.
-double world_size(const Pose& p, double extent) {
-  return p.r.cwiseAbs().rowwise().sum().maxCoeff() * extent + p.t.cwiseAbs().maxCoeff();
-}
 
 /// How far r^T r is from the identity, largest row sum: a bound of the Euclidean norm, the matrix being
 /// symmetric.
@@ -33,15 +28,15 @@ double defect(const Eigen::Matrix3d& r) {
 /// covers the change from the largest coordinate to the Euclidean length (sqrt 3), and from a distance to an
 /// extent (2). The bounds hold for any matrix; for one that is far from a rotation they are merely so large
 /// that little is culled. Overflow makes them infinite or not a number: then nothing is.
-TreeKernel set_up_kernel(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b) {
+TreeKernel set_up_kernel(const BlockTree& a, const Pose& pose_a, const BlockTree& b, const Pose& pose_b) {
   TreeKernel k{};
-  k.nodes_a = a.tree().nodes().data();
-  k.nodes_b = b.tree().nodes().data();
-  k.blocks_a = a.tree().blocks().data();
-  k.blocks_b = b.tree().blocks().data();
-  const double unit = std::max(a.tree().unit(), b.tree().unit());
-  k.ratio_a = static_cast<float>(a.tree().unit() / unit);
-  k.ratio_b = static_cast<float>(b.tree().unit() / unit);
+  k.nodes_a = a.nodes().data();
+  k.nodes_b = b.nodes().data();
+  k.blocks_a = a.blocks().data();
+  k.blocks_b = b.blocks().data();
+  const double unit = std::max(a.unit(), b.unit());
+  k.ratio_a = static_cast<float>(a.unit() / unit);
+  k.ratio_b = static_cast<float>(b.unit() / unit);
 
   const Eigen::Matrix3d m = pose_a.r.transpose() * pose_b.r;
   const Eigen::Vector3d t = pose_a.r.transpose() * (pose_b.t - pose_a.t) / unit;
@@ -49,13 +44,11 @@ TreeKernel set_up_kernel(const LrbRep& a, const Pose& pose_a, const LrbRep& b, c
     for (int j = 0; j < 3; ++j) k.m[i][j] = m(i, j);
     k.t[i] = t[i];
   }
-  const double size =
-      (world_size(pose_a, a.tree().extent()) + world_size(pose_b, b.tree().extent()) + kWorldUnderflow) /
-      unit;
+  const double size = (world_size(pose_a, a) + world_size(pose_b, b) + kWorldUnderflow) / unit;
   const double defect_a = defect(pose_a.r), defect_m = defect(m);
   const double turn_a = std::sqrt(1 + defect_a), turn_m = std::sqrt(1 + defect_m);
-  const double on_a = defect_a * (a.tree().extent() / unit) + turn_a * kWorldRounding * size;
-  const double on_b = defect_m * (b.tree().extent() / unit) + turn_m * on_a;
+  const double on_a = defect_a * (a.extent() / unit) + turn_a * kWorldRounding * size;
+  const double on_b = defect_m * (b.extent() / unit) + turn_m * on_a;
   k.slack = static_cast<float>(kPoseSafety * (on_a + on_b)) * (1 + 0x1p-20f) + kKernelTiny;
   k.m_size = static_cast<float>(turn_m) * (1 + 0x1p-20f);
   return k;

@@ -14,22 +14,61 @@
 
 namespace lrb {
 
+/// Sorts the pairs (and what belongs to them) and removes repetitions.
+void sort_pairs(CollideResult& result);
+
 /// Fills in all of a kernel but its buffers.
-TreeKernel set_up_kernel(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b);
+TreeKernel set_up_kernel(const BlockTree& a, const Pose& pose_a, const BlockTree& b, const Pose& pose_b);
+inline TreeKernel set_up_kernel(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b) {
+  return set_up_kernel(a.tree(), pose_a, b.tree(), pose_b);
+}
 
 template <class Probe>
+[[gnu::noinline]] void open_regions_from(QueryContext& ctx, Side side, CellId innermost,
+                                         CollideResult& result, Probe& probe) {
+  QueryBody& body = ctx[side];
+  const LrbRep& rep = body.rep();
+  ctx.path.clear();  // a query that ended by an exception may have left some
+  for (CellId c = innermost; is_region(c) && body.wrapper->included(c); c = rep.parent(c))
+    ctx.path.push_back(c);
+  for (; !ctx.path.empty(); ctx.path.pop_back()) {
+    body.wrapper->refine(ctx.path.back());
+    ++result.counters.refinements;
+    if constexpr (Probe::kEnabled)
+      probe.refine(side, ctx.path.back(), static_cast<std::uint32_t>(rep.floor(ctx.path.back()).size()));
+  }
+}
+
+/// Refines the wrapper of a body until a face shows: the regions from the outside inward that hide it. Mostly
+/// there are none left.
+template <class Probe>
+inline void open_regions(QueryContext& ctx, Side side, FaceId f, CollideResult& result, Probe& probe) {
+  const CellId outer = ctx[side].rep().outer_cell(f);
+  if (is_region(outer) && ctx[side].wrapper->included(outer))
+    open_regions_from(ctx, side, outer, result, probe);
+}
+
+/// Rules of the exact query; coarse_query.hpp has others.
+struct ExactRules {
+  static constexpr bool kCoarse = false;
+};
+
+template <class Probe, class Rules = ExactRules>
 class TreeQuery {
  public:
-  TreeQuery(QueryContext& ctx, Mode mode, CollideResult& result, Probe& probe)
-      : ctx_(ctx), mode_(mode), result_(result), probe_(probe) {}
+  TreeQuery(QueryContext& ctx, Mode mode, CollideResult& result, Probe& probe, Rules rules = {})
+      : ctx_(ctx), mode_(mode), result_(result), probe_(probe), rules_(rules) {}
+
+  const Rules& rules() const { return rules_; }
 
   void run() {
-    const LrbRep &a = ctx_[Side::a].rep(), &b = ctx_[Side::b].rep();
-    if (a.tree().empty() || b.tree().empty()) return;
+    const BlockTree &a = ctx_[Side::a].tree(), &b = ctx_[Side::b].tree();
+    if (a.empty() || b.empty()) return;
     TreeKernel k = set_up_kernel(a, ctx_[Side::a].world.pose(), b, ctx_[Side::b].world.pose());
-    ctx_.stack.resize(64 * (a.tree().height() + b.tree().height()) + 64);
-    // A small buffer where one pair may be enough, so that little is searched beyond it.
-    ctx_.candidates.resize(mode_ == Mode::all_pairs ? 1024 : 64);
+    ctx_.stack.resize(64 * (a.height() + b.height()) + 64);
+    // A small buffer where one pair may be enough, or time may run out, so that little is searched beyond it.
+    ctx_.candidates.resize(mode_ == Mode::all_pairs && !Rules::kCoarse ? 1024 : 64);
+    if constexpr (Rules::kCoarse) k.slack *= 2;  // what the kernel drops is then apart by more than rounding
     k.stack = ctx_.stack.data();
     k.stack[0] = {0, 0};
     k.stack_size = 1;
@@ -39,21 +78,26 @@ class TreeQuery {
     while (k.stack_size != 0 && !done) {
       k.out_size = 0;
       run_tree_kernel(k);
+      if constexpr (Rules::kCoarse) done = rules_.must_stop();
       for (std::uint32_t i = 0; i < k.out_size && !done; ++i) done = test(k.out[i]);
     }
-    result_.counters.node_pairs = k.node_pairs;
-    result_.counters.box_tests = k.box_tests;
-    result_.counters.prefilter_tests = k.prefilter_tests;
+    result_.counters.node_pairs += k.node_pairs;
+    result_.counters.box_tests += k.box_tests;
+    result_.counters.prefilter_tests += k.prefilter_tests;
   }
 
  private:
   /// True if the answer is complete. One pair is enough in first_pair mode if it crosses; a pair that only
   /// touches is kept while a crossing one is looked for, so that the relation is exact in that mode too.
   bool test(Candidate c) {
+    if constexpr (Rules::kCoarse)
+      if (rules_.no_test_left(result_.counters.face_tests)) return true;
     const FaceId fa = ctx_[Side::a].rep().face_of_simplex(c.a), fb = ctx_[Side::b].rep().face_of_simplex(c.b);
-    open_regions(Side::a, fa);
-    open_regions(Side::b, fb);
-    const exact::Meet meet = test_simplices(ctx_, c.a, c.b);
+    open_regions(ctx_, Side::a, fa, result_, probe_);
+    open_regions(ctx_, Side::b, fb, result_, probe_);
+    exact::Meet meet = test_simplices(ctx_, c.a, c.b);
+    if constexpr (Rules::kCoarse)
+      if (meet == exact::Meet::disjoint) meet = rules_.meet_of_near(ctx_, c.a, c.b);
     count_face_test(ctx_, fa, fb, result_.counters);
     if constexpr (Probe::kEnabled)
       probe_.face_test(c.a, c.b, meet, ctx_[Side::a].depth_of(fa), ctx_[Side::b].depth_of(fb));
@@ -64,28 +108,16 @@ class TreeQuery {
       result_.meets.clear();
     }
     record_pair(result_, probe_, c.a, c.b, meet);
+    if constexpr (Rules::kCoarse)
+      if (mode_ == Mode::first_pair && rules_.one_is_enough()) return true;
     return mode_ == Mode::first_pair && meet == exact::Meet::cross;
-  }
-
-  /// Refines the wrapper until the face shows: the regions from the outside inward that hide it.
-  void open_regions(Side side, FaceId f) {
-    QueryBody& body = ctx_[side];
-    const LrbRep& rep = body.rep();
-    ctx_.path.clear();  // a query that ended by an exception may have left some
-    for (CellId c = rep.outer_cell(f); is_region(c) && body.wrapper->included(c); c = rep.parent(c))
-      ctx_.path.push_back(c);
-    for (; !ctx_.path.empty(); ctx_.path.pop_back()) {
-      body.wrapper->refine(ctx_.path.back());
-      ++result_.counters.refinements;
-      if constexpr (Probe::kEnabled)
-        probe_.refine(side, ctx_.path.back(), static_cast<std::uint32_t>(rep.floor(ctx_.path.back()).size()));
-    }
   }
 
   QueryContext& ctx_;
   Mode mode_;
   CollideResult& result_;
   Probe& probe_;
+  Rules rules_;
 };
 
 }  // namespace lrb

@@ -57,6 +57,19 @@ void add_request_options(CLI::App& app, CollideRequest& request) {
                          "floating: without the exact fallback, wrong where doubles cannot decide");
 }
 
+void add_coarse_options(CLI::App& app, CollideRequest& request) {
+  app.add_option("--tolerance", request.tolerance,
+                 "Keep regions closed that are no thicker; a length in the meshes' unit")
+      ->check(CLI::NonNegativeNumber)
+      ->type_name("LENGTH");
+  app.add_option("--max-tests", request.max_tests, "Face tests at most, coarsest first")
+      ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1} << 62).description(""))
+      ->type_name("N");
+  app.add_option("--max-time", request.max_time, "Seconds at most, coarsest first")
+      ->check(CLI::PositiveNumber)
+      ->type_name("S");
+}
+
 void add_build_options(CLI::App& app, BuildOptions& options) {
   app.add_option("--patch", options.patch_interior, "Interior vertices a patch aims at")
       ->check(CLI::Range(1, 1000))

@@ -13,6 +13,8 @@ namespace lrb::cli {
 
 /// --mode and --recursion.
 void add_request_options(CLI::App& app, CollideRequest& request);
+/// --tolerance, --max-tests and --max-time.
+void add_coarse_options(CLI::App& app, CollideRequest& request);
 /// --recursion, over what a scenario says.
 void add_recursion_option(CLI::App& app, std::optional<Recursion>& recursion);
 /// --patch, --max-outer and --seed.

@@ -1,5 +1,7 @@
 #include <algorithm>
 #include <chrono>
+#include <cmath>
+#include <filesystem>
 #include <memory>
 #include <sstream>
 
@@ -9,6 +11,7 @@
 #include "scenarios/cli/command.hpp"
 #include "scenarios/cli/options.hpp"
 #include "scenarios/cli/progress.hpp"
+#include "scenarios/play/separation_picture.hpp"
 #include "scenarios/pose_file.hpp"
 #include "trace/hex.hpp"
 
@@ -16,7 +19,7 @@ namespace lrb::cli {
 namespace {
 
 struct QueryOptions {
-  std::string a, b, poses;
+  std::string a, b, poses, draw;
   CollideRequest request;
   bool pairs = false;
   std::uint32_t repeat = 0;
@@ -38,7 +41,22 @@ double median_us(const LrbRep& a, const LrbRep& b, const Pose& pose, const Query
   return us[middle];
 }
 
-std::string line_of(std::size_t pose, const CollideResult& result, const QueryOptions& o, double us) {
+std::string list(const std::vector<RegionId>& regions) {
+  std::string out = "[";
+  for (const RegionId r : regions) out.append(out.size() > 1 ? "," : "").append(std::to_string(r));
+  return out + "]";
+}
+
+/// PICTURE, or PICTURE with the pose's number where there are several.
+std::string picture_name(const std::string& path, std::size_t pose, std::size_t poses) {
+  if (poses == 1) return path;
+  const std::filesystem::path p(path);
+  return (p.parent_path() / (p.stem().string() + "-" + std::to_string(pose) + p.extension().string()))
+      .string();
+}
+
+std::string line_of(std::size_t pose, const CollideResult& result, const QueryOptions& o, double us,
+                    const LrbRep& a, const LrbRep& b) {
   std::ostringstream out;
   out.exceptions(std::ios::badbit);  // out of memory must not cut a line short
   out << "{\"pose\":" << pose << ",\"relation\":\"" << to_string(result.relation)
@@ -48,12 +66,27 @@ std::string line_of(std::size_t pose, const CollideResult& result, const QueryOp
     out << ",\"recursion\":\"" << (o.request.recursion == Recursion::paper ? "paper" : "paper_strict")
         << "\"";
   if (o.request.predicates != Predicates::exact) out << ",\"predicates\":\"floating\"";
+  if (o.request.is_coarse()) {
+    out << ",\"finished\":" << (result.finished ? "true" : "false") << ",\"error_bound\":";
+    std::isfinite(result.error_bound) ? out << result.error_bound : out << "null";
+  }
+  if (o.request.separation && result.separation)
+    out << ",\"separation\":{\"faces\":[" << result.separation->face_count[0] << ","
+        << result.separation->face_count[1] << "],\"refined\":[" << list(result.separation->refined[0]) << ","
+        << list(result.separation->refined[1]) << "]}";
   if (o.repeat > 0) out << ",\"us\":" << us;
   if (o.pairs) {
     out << ",\"list\":[";
     for (std::size_t i = 0; i < result.pairs.size(); ++i)
       out << (i > 0 ? "," : "") << "[" << result.pairs[i].a << "," << result.pairs[i].b << "]";
     out << "]";
+    if (o.request.is_coarse()) {
+      out << ",\"pseudo\":[";
+      for (std::size_t i = 0; i < result.pairs.size(); ++i)
+        out << (i > 0 ? "," : "") << "[" << (a.is_real_simplex(result.pairs[i].a) ? 0 : 1) << ","
+            << (b.is_real_simplex(result.pairs[i].b) ? 0 : 1) << "]";
+      out << "]";
+    }
   }
   out << "}\n";
   return out.str();
@@ -70,7 +103,9 @@ int run_query(const QueryOptions& o, const Globals& globals) {
   for (std::size_t i = 0; i < poses.size(); ++i) {
     const CollideResult result = collide(a.rep, Pose{}, b.rep, poses[i], o.request, context, probe);
     const double us = o.repeat > 0 ? median_us(a.rep, b.rep, poses[i], o, context) : 0;
-    print(line_of(i, result, o, us));
+    print(line_of(i, result, o, us, a.rep, b.rep));
+    if (!o.draw.empty() && result.separation)
+      draw_separation(a.rep, b.rep, poses[i], *result.separation, picture_name(o.draw, i, poses.size()));
     progress.set(i + 1);
   }
   return kOk;
@@ -85,6 +120,12 @@ Command add_query(CLI::App& root, const Globals& globals) {
   app->add_option("B", o->b, "Mesh or .lrb file; the poses are applied to it")->required();
   app->add_option("--poses", o->poses, "File of lines of 12 numbers (row-major 3x4)")->required();
   add_request_options(*app, o->request);
+  add_coarse_options(*app, o->request);
+  auto* separation = app->add_flag("--separation", o->request.separation,
+                                   "For separate bodies, the coarsest wrappers that prove it");
+  app->add_option("--draw-separation", o->draw, "Draw these wrappers: the picture's name")
+      ->needs(separation)
+      ->type_name("PNG");
   app->add_flag("--pairs", o->pairs, "Add the sorted list of pairs");
   app->add_option("--repeat", o->repeat, "Add the median microseconds of N repeats of each pose's query")
       ->check(CLI::Range(1, 1000000))

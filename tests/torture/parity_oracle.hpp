@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 #include <stdexcept>
 #include <vector>
 
@@ -52,8 +53,11 @@ inline int side_of(const WorldPoint& a, const WorldPoint& b, const WorldPoint& c
 
 class ParityOracle {
  public:
-  ParityOracle(const LrbRep& rep, const Pose& pose) : rep_(rep), x_(world_points(rep, pose)) {
-    for (SimplexId s = 0; s < rep.real_simplex_count(); ++s) {
+  ParityOracle(const LrbRep& rep, const Pose& pose) : ParityOracle(rep, pose, all_real(rep)) {}
+  /// Of another closed surface than the body's: some simplices of it.
+  ParityOracle(const LrbRep& rep, const Pose& pose, std::vector<SimplexId> simplices)
+      : rep_(rep), simplices_(std::move(simplices)), x_(world_points(rep, pose)) {
+    for (const SimplexId s : simplices_) {
       VertexId v[3];
       rep.simplex(s, v);
       for (int k = 0; k < rep.dim(); ++k)
@@ -71,7 +75,8 @@ class ParityOracle {
       const int k = static_cast<int>(random() % static_cast<unsigned>(rep_.dim()));
       far[k] = (random() % 2 ? 4 : -4) * std::max({reach_, std::fabs(p[k]), 1e-300});
       bool grazes = false, odd = false;
-      for (SimplexId s = 0; s < rep_.real_simplex_count() && !grazes; ++s) odd ^= crosses(p, far, s, grazes);
+      for (std::size_t i = 0; i < simplices_.size() && !grazes; ++i)
+        odd ^= crosses(p, far, simplices_[i], grazes);
       if (!grazes) return odd;
     }
   }
@@ -83,6 +88,12 @@ class ParityOracle {
   }
 
  private:
+  static std::vector<SimplexId> all_real(const LrbRep& rep) {
+    std::vector<SimplexId> all(rep.real_simplex_count());
+    std::iota(all.begin(), all.end(), SimplexId{0});
+    return all;
+  }
+
   bool crosses(const WorldPoint& p, const WorldPoint& q, SimplexId s, bool& grazes) const {
     VertexId v[3];
     rep_.simplex(s, v);
@@ -115,6 +126,7 @@ class ParityOracle {
   }
 
   const LrbRep& rep_;
+  std::vector<SimplexId> simplices_;
   std::vector<WorldPoint> x_;
   double reach_ = 0;
 };

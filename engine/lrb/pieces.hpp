@@ -1,0 +1,16 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "engine/ids.hpp"
+
+namespace lrb {
+
+class LrbRep;
+
+/// One vertex of each connected piece of some faces, in the order of the faces. Faces joined by a vertex
+/// count as one piece.
+std::vector<VertexId> piece_vertices(const LrbRep& rep, std::span<const FaceId> faces);
+
+}  // namespace lrb

@@ -1,0 +1,55 @@
+#include "scenarios/play/separation_picture.hpp"
+
+#include <vector>
+
+#include "engine/lrb/wrapper.hpp"
+#include "render/montage.hpp"
+#include "render/overlay.hpp"
+#include "render/png.hpp"
+#include "render/rasterize.hpp"
+#include "render/scene.hpp"
+
+namespace lrb {
+namespace {
+
+constexpr int kWidth = 900, kHeight = 720;
+
+Camera camera_of(const LrbRep& a, const LrbRep& b, const Pose& pose) {
+  std::vector<Eigen::Vector3d> points = body_points(a, Pose{});
+  const std::vector<Eigen::Vector3d> of_b = body_points(b, pose);
+  points.insert(points.end(), of_b.begin(), of_b.end());
+  return a.dim() == 2 ? fit_top(points, kWidth, kHeight) : fit_camera(points, kWidth, kHeight);
+}
+
+std::string caption(const std::string& what, const Wrapper& a, const Wrapper& b) {
+  return what + ": " + group_digits(a.boundary_size()) + " and " + group_digits(b.boundary_size()) + " faces";
+}
+
+}  // namespace
+
+void draw_separation(const LrbRep& a, const LrbRep& b, const Pose& pose, const Separation& separation,
+                     const std::string& path) {
+  const Camera camera = camera_of(a, b, pose);
+  RasterOptions options;
+  options.width = kWidth;
+  options.height = kHeight;
+  Rasterizer rasterizer;
+  Wrapper wrapper_a(a), wrapper_b(b);
+  const auto panel = [&](const std::string& what) {
+    std::vector<SceneBody> bodies(2);
+    bodies[0].rep = &a;
+    bodies[0].wrapper = &wrapper_a;
+    bodies[1].rep = &b;
+    bodies[1].wrapper = &wrapper_b;
+    bodies[1].pose = pose;
+    return Panel{rasterizer.draw(build_scene(bodies).list, camera, options),
+                 caption(what, wrapper_a, wrapper_b)};
+  };
+  std::vector<Panel> panels = {panel("outermost wrappers")};
+  for (const RegionId r : separation.refined[0]) wrapper_a.refine(r);
+  for (const RegionId r : separation.refined[1]) wrapper_b.refine(r);
+  panels.push_back(panel("apart"));
+  write_png(montage(panels), path);
+}
+
+}  // namespace lrb

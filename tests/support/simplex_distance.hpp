@@ -1,0 +1,102 @@
+#pragma once
+/// Distances between points, segments and triangles, by the textbook and slowly: shares no code with the
+/// engine.
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include <Eigen/Geometry>
+
+#include "engine/lrb/lrb_rep.hpp"
+#include "engine/lrb/pose.hpp"
+#include "scenarios/shapes/random_pose.hpp"
+
+namespace lrb::test {
+
+using Points = std::vector<Eigen::Vector3d>;  // corners: 1, 2 or 3
+
+inline Points simplex_points(const LrbRep& rep, const Pose& pose, SimplexId s) {
+  VertexId v[3];
+  rep.simplex(s, v);
+  Points out;
+  for (int k = 0; k < rep.simplex_size(); ++k) out.push_back(pose.apply(rep.vertices()[v[k]]));
+  return out;
+}
+
+inline double point_segment(const Eigen::Vector3d& p, const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+  const Eigen::Vector3d d = b - a;
+  const double s = d.squaredNorm() > 0 ? std::clamp((p - a).dot(d) / d.squaredNorm(), 0.0, 1.0) : 0.0;
+  return (a + s * d - p).norm();
+}
+
+/// By golden section: the distance from a point that runs along one segment is convex.
+inline double segment_segment(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c,
+                              const Eigen::Vector3d& d) {
+  double low = 0, high = 1;
+  const auto at = [&](double s) { return point_segment(a + s * (b - a), c, d); };
+  for (int i = 0; i < 60; ++i) {
+    const double x = low + 0.382 * (high - low), y = low + 0.618 * (high - low);
+    (at(x) < at(y) ? high : low) = at(x) < at(y) ? y : x;
+  }
+  return at((low + high) / 2);
+}
+
+inline double point_triangle(const Eigen::Vector3d& p, const Points& t) {
+  const Eigen::Vector3d n = (t[1] - t[0]).cross(t[2] - t[0]);
+  bool over = n.norm() > 0;
+  for (int k = 0; k < 3 && over; ++k) over = n.dot((t[(k + 1) % 3] - t[k]).cross(p - t[k])) >= 0;
+  if (over) return std::abs(n.dot(p - t[0])) / n.norm();
+  return std::min({point_segment(p, t[0], t[1]), point_segment(p, t[1], t[2]), point_segment(p, t[2], t[0])});
+}
+
+/// Of simplices that do not pass through each other.
+inline double simplex_distance(const Points& s, const Points& t) {
+  double least = INFINITY;
+  const auto corners_to = [&least](const Points& from, const Points& to) {
+    for (const Eigen::Vector3d& p : from)
+      least = std::min(least, to.size() == 3   ? point_triangle(p, to)
+                              : to.size() == 2 ? point_segment(p, to[0], to[1])
+                                               : (p - to[0]).norm());
+  };
+  corners_to(s, t);
+  corners_to(t, s);
+  if (s.size() == 3 && t.size() == 3)
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j)
+        least = std::min(least, segment_segment(s[i], s[(i + 1) % 3], t[j], t[(j + 1) % 3]));
+  return least;
+}
+
+inline Eigen::Vector3d random_point_of(shapes::Random& random, const Points& s) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  double weights = 0;
+  for (const Eigen::Vector3d& x : s) {
+    const double w = shapes::uniform(random);
+    sum += w * x;
+    weights += w;
+  }
+  return sum / weights;
+}
+
+/// In floating point: for points that were chosen at random.
+inline bool inside_by_parity(const std::vector<Points>& surface, const Eigen::Vector3d& p, int dim) {
+  const Eigen::Vector3d ray = dim == 2 ? Eigen::Vector3d(1, 0.1234, 0) : Eigen::Vector3d(1, 0.1234, 0.0567);
+  int crossings = 0;
+  for (const Points& s : surface) {
+    if (dim == 2) {
+      const Eigen::Vector3d u = s[0] - p, v = s[1] - p;
+      const double cu = ray.cross(u).z(), cv = ray.cross(v).z();
+      if ((cu > 0) != (cv > 0)) crossings += (u + cu / (cu - cv) * (v - u)).dot(ray) > 0;
+    } else {
+      const Eigen::Vector3d e = s[1] - s[0], f = s[2] - s[0], h = ray.cross(f), w = p - s[0], q = w.cross(e);
+      const double det = e.dot(h);
+      if (det == 0) continue;
+      const double x = w.dot(h) / det, y = ray.dot(q) / det, t = f.dot(q) / det;
+      crossings += x > 0 && y > 0 && x + y < 1 && t > 0;
+    }
+  }
+  return crossings % 2 != 0;
+}
+
+}  // namespace lrb::test
