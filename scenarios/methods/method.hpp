@@ -90,9 +90,11 @@ inline MethodEntry absent(const char* name, const char* title, const char* packa
 
 // Each in its file; absent if it was not found when this was built.
 MethodEntry ours();
-MethodEntry ours_floating();  ///< without the exact fallback
-MethodEntry ours_paper();     ///< the paper's recursion
-MethodEntry plain_double();   ///< brute force with an epsilon
+MethodEntry ours_floating();   ///< without the exact fallback
+MethodEntry ours_paper();      ///< the paper's recursion
+MethodEntry ours_tolerance();  ///< approximate: to a tolerance
+MethodEntry ours_budget();     ///< approximate: within a number of face tests
+MethodEntry plain_double();    ///< brute force with an epsilon
 MethodEntry fcl_double();
 MethodEntry fcl_float();
 MethodEntry cgal_rigid();
