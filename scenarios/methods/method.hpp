@@ -92,6 +92,7 @@ inline MethodEntry absent(const char* name, const char* title, const char* packa
 MethodEntry ours();
 MethodEntry ours_floating();   ///< without the exact fallback
 MethodEntry ours_paper();      ///< the paper's recursion
+MethodEntry ours_coherent();   ///< after a few small steps
 MethodEntry ours_tolerance();  ///< approximate: to a tolerance
 MethodEntry ours_budget();     ///< approximate: within a number of face tests
 MethodEntry plain_double();    ///< brute force with an epsilon
