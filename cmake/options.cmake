@@ -45,3 +45,10 @@ if(LRB_FUZZ)
   endif()
   target_compile_options(lrb_options INTERFACE -fsanitize=fuzzer-no-link)
 endif()
+
+# What all is optimised with, for programs that say it beside their timings.
+string(TOUPPER "${CMAKE_BUILD_TYPE}" lrb_build_type)
+set(lrb_flags "${CMAKE_CXX_FLAGS_${lrb_build_type}}")
+if(LRB_NATIVE)
+  string(APPEND lrb_flags " -march=native")
+endif()

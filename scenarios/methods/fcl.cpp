@@ -1,6 +1,12 @@
 // FCL's BVHModel with OBBRSS nodes, as its README asks for the collision of two meshes: collide() with as
-// many contacts as there may be, and without their positions.
+// many contacts as there may be, and without their positions. Compiled twice: against the packaged library,
+// with the flags of the packages, and (LRB_FCL_HEADERS) with all of FCL's templates instantiated here, with
+// our flags.
 #include "scenarios/methods/method.hpp"
+
+#ifdef LRB_FCL_HEADERS
+#include "scenarios/methods/fcl_instantiated.hpp"
+#endif
 
 #ifdef LRB_HAS_FCL
 
@@ -58,13 +64,13 @@ class Fcl : public Method {
     fcl::CollisionResult<S> result;
     fcl::collide(&model_a, transform<S>(pose_a), &model_b, transform<S>(pose_b), request, result);
     MethodAnswer answer;
+    answer.microseconds = watch.microseconds();
     for (std::size_t i = 0; i < result.numContacts(); ++i) {
       const fcl::Contact<S>& c = result.getContact(i);
       answer.pairs.push_back({static_cast<SimplexId>(c.b1), static_cast<SimplexId>(c.b2)});
     }
     std::sort(answer.pairs.begin(), answer.pairs.end());
     answer.pairs.erase(std::unique(answer.pairs.begin(), answer.pairs.end()), answer.pairs.end());
-    answer.microseconds = watch.microseconds();
     answer.contact = result.isCollision();
     return answer;
   }
@@ -80,6 +86,19 @@ MethodInfo fcl_info(const char* name, const char* scalar, const char* remark) {
 
 }  // namespace
 
+#ifdef LRB_FCL_HEADERS
+
+MethodEntry fcl_headers() {
+  MethodEntry entry = {
+      fcl_info("fcl-headers", "double, compiled with our flags",
+               "As fcl, but for its code, which is instantiated from its headers with our compiler's flags."),
+      []() -> std::unique_ptr<Method> { return std::make_unique<Fcl<double>>(); }};
+  entry.info.hard_cases = false;
+  return entry;
+}
+
+#else
+
 MethodEntry fcl_double() {
   return {
       fcl_info("fcl", "double",
@@ -94,11 +113,23 @@ MethodEntry fcl_float() {
           []() -> std::unique_ptr<Method> { return std::make_unique<Fcl<float>>(); }};
 }
 
+#endif
+
 }  // namespace lrb::methods
 
 #else
 
 namespace lrb::methods {
+
+#ifdef LRB_FCL_HEADERS
+
+MethodEntry fcl_headers() {
+  MethodEntry entry = absent("fcl-headers", "FCL, compiled with our flags", "libfcl-dev");
+  entry.info.hard_cases = false;
+  return entry;
+}
+
+#else
 
 MethodEntry fcl_double() {
   return absent("fcl", "FCL, OBBRSS, double", "libfcl-dev");
@@ -107,6 +138,8 @@ MethodEntry fcl_double() {
 MethodEntry fcl_float() {
   return absent("fcl-float", "FCL, OBBRSS, float", "libfcl-dev");
 }
+
+#endif
 
 }  // namespace lrb::methods
 

@@ -33,6 +33,13 @@ struct MethodInfo {
   /// Moves vertices exactly as Pose::apply does. The others can be given the same question only with world
   /// coordinates in the body and poses that move nothing.
   bool moves_exactly = false;
+  bool hard_cases = true;  ///< takes part in `stability`; else in `bench` and `chart` alone
+  /// Pairs, or points of contact, up to an error that a knob trades for time.
+  bool approximate = false;
+  bool convex = false;           ///< answers for the bodies' convex hulls
+  bool own_rep = false;          ///< works on the LRB-rep as it comes: building a body means building that
+  std::string knob;              ///< what `settings` set: "level"; empty: there is nothing to set
+  std::vector<double> settings;  ///< those worth a sweep, from coarse to fine
 };
 
 /// A body in a method's own form.
@@ -46,13 +53,17 @@ struct MethodAnswer {
   std::vector<SimplexPair> pairs;    ///< ascending, each once; in Mode::first_pair at most one
   std::optional<bool> inside;        ///< no contact, and one body lies in the other; unless it says nothing
   std::optional<Relation> relation;  ///< if it says that
-  double microseconds = 0;           ///< of the query alone
+  double microseconds = 0;           ///< of the query alone; not of sorting what a method found
+  std::uint64_t face_tests = 0;      ///< comparisons of two faces (or spheres), if it counts them
+  std::vector<Eigen::Vector3d> points;  ///< in the world, where it says where but not which faces
 };
 
 /// Not for two threads at once.
 class Method {
  public:
   virtual ~Method() = default;
+  /// Turns the knob, for the queries that follow.
+  virtual void set(double) {}
   /// The real simplices of a body. Throws InputError if the method cannot take it: a refusal.
   virtual std::unique_ptr<MethodBody> build(const LrbRep& rep) = 0;
   /// Two bodies, different objects, built by this very method. Poses that are no rotations are refused by
@@ -79,13 +90,23 @@ inline MethodEntry absent(const char* name, const char* title, const char* packa
 
 // Each in its file; absent if it was not found when this was built.
 MethodEntry ours();
-MethodEntry ours_floating();  ///< without the exact fallback
-MethodEntry ours_paper();     ///< the paper's recursion
-MethodEntry plain_double();   ///< brute force with an epsilon
+MethodEntry ours_floating();   ///< without the exact fallback
+MethodEntry ours_paper();      ///< the paper's recursion
+MethodEntry ours_coherent();   ///< after a few small steps
+MethodEntry ours_tolerance();  ///< approximate: to a tolerance
+MethodEntry ours_budget();     ///< approximate: within a number of face tests
+MethodEntry plain_double();    ///< brute force with an epsilon
 MethodEntry fcl_double();
 MethodEntry fcl_float();
 MethodEntry cgal_rigid();
 MethodEntry cgal_pairs();
+MethodEntry fcl_headers();  ///< FCL's headers compiled with our flags
+MethodEntry fcl_octree();   ///< approximate: cells
+MethodEntry fcl_gjk();      ///< convex hulls
+MethodEntry spheres();      ///< approximate: a sphere tree, by level
+MethodEntry embree();       ///< its tree refitted to the moved body, and then rtcCollide
+MethodEntry embree_rebuilt();
+MethodEntry ode();
 MethodEntry bullet();  ///< in the precision of the Bullet that this was built with
 
 }  // namespace lrb::methods

@@ -1,5 +1,9 @@
+#include <Eigen/Geometry>
+
 #include "engine/build/build.hpp"
 #include "engine/error.hpp"
+#include "engine/exact/pair_contact.hpp"
+#include "engine/query/coherent_query.hpp"
 #include "engine/query/collide_impl.hpp"
 #include "scenarios/methods/bodies.hpp"
 #include "scenarios/methods/method.hpp"
@@ -44,11 +48,98 @@ class Ours : public Method {
     answer.pairs = std::move(result.pairs);
     answer.inside = result.relation == Relation::a_inside_b || result.relation == Relation::b_inside_a;
     answer.relation = result.relation;
+    answer.face_tests = result.counters.face_tests;
     return answer;
   }
 
  private:
   CollideRequest request_;
+  QueryContext context_;
+};
+
+double diagonal_of(const LrbRep& rep) {
+  Eigen::AlignedBox3d box;
+  for (const Eigen::Vector3d& v : rep.vertices()) box.extend(v);
+  return box.diagonal().norm();
+}
+
+/// As the next of a few small steps: the query that keeps what it knows from one to the next. Only the last
+/// is timed.
+class OursCoherent : public Method {
+ public:
+  std::unique_ptr<MethodBody> build(const LrbRep& rep) override { return std::make_unique<OurBody>(rep); }
+
+  MethodAnswer query(const MethodBody& a, const Pose& pose_a, const MethodBody& b, const Pose& pose_b,
+                     Mode mode) override {
+    const LrbRep &rep_a = static_cast<const OurBody&>(a).rep, &rep_b = static_cast<const OurBody&>(b).rep;
+    CollideRequest request;
+    request.mode = mode;
+    CoherentQuery coherent(rep_a, rep_b, request);
+    constexpr int kSteps = 8;
+    constexpr double kStep = 1e-3;  // of A's diagonal
+    const Eigen::Vector3d step = kStep * diagonal_of(rep_a) * Eigen::Vector3d(1, 2, 2) / 3;
+    for (int i = kSteps; i > 0; --i) coherent.collide(pose_a, {pose_b.r, pose_b.t + i * step});
+    const Stopwatch watch;
+    const CollideResult& result = coherent.collide(pose_a, pose_b);
+    MethodAnswer answer;
+    answer.microseconds = watch.microseconds();
+    answer.contact = !result.pairs.empty();
+    answer.pairs = result.pairs;
+    answer.relation = result.relation;
+    answer.face_tests = result.counters.face_tests;
+    return answer;
+  }
+};
+
+/// No more than was asked for: to a tolerance, or within a number of face tests. Its pairs are of wrappers'
+/// faces; what it gives is where these meet.
+class OursCoarse : public Method {
+ public:
+  explicit OursCoarse(bool by_tests) : by_tests_(by_tests) {}
+  void set(double setting) override { setting_ = setting; }
+
+  std::unique_ptr<MethodBody> build(const LrbRep& rep) override { return std::make_unique<OurBody>(rep); }
+
+  MethodAnswer query(const MethodBody& a, const Pose& pose_a, const MethodBody& b, const Pose& pose_b,
+                     Mode mode) override {
+    const LrbRep &rep_a = static_cast<const OurBody&>(a).rep, &rep_b = static_cast<const OurBody&>(b).rep;
+    CollideRequest request;
+    request.mode = mode;
+    if (by_tests_)
+      request.max_tests = static_cast<std::uint64_t>(setting_);
+    else
+      request.tolerance = setting_ * diagonal_of(rep_a);
+    NullProbe probe;
+    const Stopwatch watch;
+    const CollideResult result = collide(rep_a, pose_a, rep_b, pose_b, request, context_, probe);
+    MethodAnswer answer;
+    answer.microseconds = watch.microseconds();
+    answer.contact = !result.pairs.empty();
+    answer.face_tests = result.counters.face_tests;
+    if (mode == Mode::all_pairs)
+      for (const SimplexPair& p : result.pairs) add_points(rep_a, pose_a, rep_b, pose_b, p, answer.points);
+    return answer;
+  }
+
+ private:
+  /// Corners of the intersection; of faces that only come within rounding of each other, the middle.
+  static void add_points(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
+                         const SimplexPair& pair, std::vector<Eigen::Vector3d>& points) {
+    Eigen::Vector3d p[3], q[3];
+    VertexId v[3];
+    a.simplex(pair.a, v);
+    for (int k = 0; k < 3; ++k) p[k] = pose_a.apply(a.vertices()[v[k]]);
+    b.simplex(pair.b, v);
+    for (int k = 0; k < 3; ++k) q[k] = pose_b.apply(b.vertices()[v[k]]);
+    const double* const pp[3] = {p[0].data(), p[1].data(), p[2].data()};
+    const double* const qq[3] = {q[0].data(), q[1].data(), q[2].data()};
+    const exact::PairContact c = exact::contact_of_triangles(pp, qq);
+    for (std::uint8_t i = 0; i < c.corner_count; ++i) points.push_back(c.corners[i].x);
+    if (c.corner_count == 0) points.push_back((p[0] + p[1] + p[2] + q[0] + q[1] + q[2]) / 6);
+  }
+
+  bool by_tests_;
+  double setting_ = 0;
   QueryContext context_;
 };
 
@@ -58,8 +149,14 @@ MethodInfo our_info(const char* name, const char* title, const char* remark) {
   info.title = title;
   info.remark = remark;
   info.says = Says::relation;
-  info.plane = info.moves_exactly = true;
+  info.plane = info.moves_exactly = info.own_rep = true;
   return info;
+}
+
+void coarse(MethodInfo& info) {
+  info.pairs = info.hard_cases = false;
+  info.approximate = true;
+  info.says = Says::nothing;
 }
 
 }  // namespace
@@ -90,6 +187,36 @@ MethodEntry ours_paper() {
       []() -> std::unique_ptr<Method> {
         return std::make_unique<Ours>(Recursion::paper, Predicates::exact);
       }};
+}
+
+MethodEntry ours_coherent() {
+  MethodInfo info = our_info(
+      "ours-coherent", "lrbscope, coherent",
+      "As ours, at the last of nine poses that are 0.1 % of A's diagonal apart; the others are not timed.");
+  info.hard_cases = false;
+  return {info, []() -> std::unique_ptr<Method> { return std::make_unique<OursCoherent>(); }};
+}
+
+MethodEntry ours_tolerance() {
+  MethodInfo info =
+      our_info("ours-tolerance", "lrbscope, to a tolerance",
+               "Regions no thicker than the tolerance stay closed: contact, and where wrappers meet. The "
+               "knob is the tolerance over A's diagonal. Never calls bodies apart that meet.");
+  coarse(info);
+  info.knob = "tolerance";
+  info.settings = {0.1, 0.03, 0.01, 0.003, 0.001};
+  return {info, []() -> std::unique_ptr<Method> { return std::make_unique<OursCoarse>(false); }};
+}
+
+MethodEntry ours_budget() {
+  MethodInfo info =
+      our_info("ours-budget", "lrbscope, within a number of face tests",
+               "An answer in time: contact, and where the wrappers reached so far meet. The knob is the "
+               "number of face tests. Never calls bodies apart that meet.");
+  coarse(info);
+  info.knob = "tests";
+  info.settings = {16, 64, 256, 1024, 4096};
+  return {info, []() -> std::unique_ptr<Method> { return std::make_unique<OursCoarse>(true); }};
 }
 
 }  // namespace lrb::methods

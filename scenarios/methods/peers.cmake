@@ -24,6 +24,27 @@ if(fcl_FOUND)
   set(fcl_library fcl)
 endif()
 lrb_add_peer(lrb_peer_fcl methods/fcl.cpp LRB_HAS_FCL ${fcl_library})
+if(LRB_NATIVE)  # as packaged, and not half of it for another processor; the file's options come after the target's
+  set_source_files_properties(methods/fcl.cpp methods/fcl_solids.cpp PROPERTIES COMPILE_OPTIONS -march=x86-64)
+endif()
+lrb_add_peer(lrb_peer_fcl_headers methods/fcl_headers.cpp LRB_HAS_FCL ${fcl_library})
+
+lrb_add_peer(lrb_peer_fcl_solids methods/fcl_solids.cpp LRB_HAS_FCL ${fcl_library})
+
+find_package(embree 3.13 QUIET)
+set(embree_library "")
+if(embree_FOUND AND embree_VERSION VERSION_LESS 4)
+  set(embree_library embree)
+endif()
+lrb_add_peer(lrb_peer_embree methods/embree.cpp LRB_HAS_EMBREE ${embree_library})
+
+find_path(LRB_ODE_INCLUDE ode/ode.h DOC "ODE's headers")
+find_library(LRB_ODE ode DOC "ODE")
+set(ode_library "")
+if(LRB_ODE_INCLUDE AND LRB_ODE)
+  set(ode_library ${LRB_ODE})
+endif()
+lrb_add_peer(lrb_peer_ode methods/ode.cpp LRB_HAS_ODE ${ode_library})
 
 set(cgal_library "")
 if(CGAL_FOUND)
@@ -47,10 +68,14 @@ lrb_add_bullet(lrb_peer_bullet_double -float64)
 target_compile_definitions(lrb_peer_bullet_double PRIVATE BT_USE_DOUBLE_PRECISION)
 
 add_library(lrb_worker STATIC stability/fake_methods.cpp stability/worker.cpp)
-target_link_libraries(lrb_worker PUBLIC lrb::stability CLI11::CLI11 lrb_options)
+target_link_libraries(lrb_worker PUBLIC lrb::stability lrb::measure CLI11::CLI11 lrb_options)
 
 add_executable(lrbscope-methods stability/worker_main.cpp)
-target_link_libraries(lrbscope-methods PRIVATE lrb_worker lrb_peer_fcl lrb_peer_cgal lrb_peer_bullet)
+target_link_libraries(lrbscope-methods PRIVATE lrb_worker lrb_peer_fcl lrb_peer_cgal lrb_peer_bullet lrb_peer_embree
+                                               lrb_peer_fcl_solids lrb_peer_ode)
 # Bullet in double precision has the names of Bullet in single: a program of its own.
 add_executable(lrbscope-methods-double stability/worker_double_main.cpp)
 target_link_libraries(lrbscope-methods-double PRIVATE lrb_worker lrb_peer_bullet_double)
+# FCL with our flags has the names of FCL as packaged: one, too.
+add_executable(lrbscope-methods-fcl stability/worker_fcl_main.cpp)
+target_link_libraries(lrbscope-methods-fcl PRIVATE lrb_worker lrb_peer_fcl_headers)

@@ -39,13 +39,21 @@ json chart_json(const PageChart& chart) {
   json series = json::array();
   for (const PageSeries& s : chart.series) {
     json points = json::array();
-    for (std::size_t i = 0; i < s.x.size() && i < s.y.size(); ++i)
+    for (std::size_t i = 0; i < s.x.size() && i < s.y.size(); ++i) {
       points.push_back({{"x", s.x[i]}, {"y", s.y[i]}});
-    series.push_back({{"label", s.label}, {"data", std::move(points)}});
+      if (i < s.notes.size()) points.back()["note"] = s.notes[i];
+      if (i < s.targets.size() && !s.targets[i].empty()) points.back()["target"] = s.targets[i];
+    }
+    series.push_back({{"label", s.label},
+                      {"data", std::move(points)},
+                      {"colour", s.colour},
+                      {"shape", s.shape},
+                      {"line", s.line}});
   }
   return {{"x", chart.x_label},       {"y", chart.y_label},         {"cursor", name_of(chart.cursor)},
           {"logX", chart.log_x},      {"logY", chart.log_y},        {"stepped", chart.stepped},
-          {"scatter", chart.scatter}, {"series", std::move(series)}};
+          {"scatter", chart.scatter}, {"series", std::move(series)}, {"leastX", chart.least_x},
+          {"mostX", chart.most_x}};
 }
 
 json page_json(const Page& page) {

@@ -28,6 +28,11 @@ struct PageFrame {
 struct PageSeries {
   std::string label;
   std::vector<double> x, y;  ///< of one length, x ascending
+  // Scatter charts alone:
+  std::string colour = {}, shape = {};    ///< #rrggbb and Chart.js's name of a shape; empty: the page chooses
+  bool line = false;                      ///< joined by steps, without points
+  std::vector<std::string> notes = {};    ///< (|x|) what is said of a point, in lines; or none
+  std::vector<std::string> targets = {};  ///< (|x|) where a click on it leads, relative to the page; or none
 };
 
 enum class PageCursor { none, event, step };
@@ -42,6 +47,7 @@ struct PageChart {
   bool log_x = false, log_y = false;
   bool stepped = false;  ///< values hold until the next point
   bool scatter = false;
+  double least_x = 0, most_x = 0;  ///< ends of the x axis; equal: as the data have it
 };
 
 struct PageTable {

@@ -78,6 +78,13 @@ function axis(title, log) {
   };
 }
 
+/** An axis with fixed ends, the left one of which stands for 0. */
+function ends(spec) {
+  const power = (v) => Math.round(Math.log10(v) * 1e6) / 1e6;
+  const label = (v) => (v <= spec.leastX * 1.001 ? "0" : power(v) % 2 === 0 ? v.toExponential(0) : "");
+  return { min: spec.leastX, max: spec.mostX, ticks: { color: style("--soft"), maxRotation: 0, autoSkip: false, callback: label } };
+}
+
 function nearestFrame(key, value) {
   let best = -1;
   data.frames.forEach((f, i) => {
@@ -88,22 +95,29 @@ function nearestFrame(key, value) {
 
 function makeChart(spec, canvas) {
   const datasets = spec.series.map((s, i) => ({
-    label: s.label, data: s.data, borderColor: style(`--s${i % 7}`), backgroundColor: style(`--s${i % 7}`),
-    borderWidth: 1.8, stepped: spec.stepped ? "before" : false, showLine: !spec.scatter,
-    pointRadius: spec.scatter ? 4 : s.data.length > 80 ? 0 : 2.2, pointHitRadius: 8,
+    label: s.label, data: s.data, borderColor: s.colour || style(`--s${i % 7}`), backgroundColor: s.colour || style(`--s${i % 7}`),
+    borderWidth: 1.8, stepped: spec.stepped || s.line ? "before" : false, showLine: !spec.scatter || s.line,
+    pointRadius: s.line ? 0 : spec.scatter ? 4 : s.data.length > 80 ? 0 : 2.2, pointHitRadius: s.line ? 0 : 8,
+    pointStyle: s.shape || "circle", clip: 12,
   }));
   const chart = new Chart(canvas, {
     type: spec.scatter ? "scatter" : "line", data: { datasets }, plugins: [cursorPlugin],
     options: {
       animation: false, parsing: false, normalized: true, maintainAspectRatio: false,
       interaction: { mode: spec.scatter ? "nearest" : "index", intersect: false },
-      scales: { x: axis(spec.x, spec.logX), y: { ...axis(spec.y, spec.logY), bounds: "ticks", beginAtZero: !spec.logY } },
+      scales: { x: { ...axis(spec.x, spec.logX), ...(spec.mostX > spec.leastX ? ends(spec) : {}) }, y: { ...axis(spec.y, spec.logY), bounds: "ticks", beginAtZero: !spec.logY } },
       plugins: {
-        legend: { display: datasets.length > 1, position: "bottom", labels: { color: style("--ink"), boxWidth: 14, boxHeight: 2 } },
+        legend: { display: datasets.length > 1, position: "bottom", labels: { color: style("--ink"), boxWidth: 14, boxHeight: spec.series.some((s) => s.shape) ? 6 : 2, usePointStyle: spec.series.some((s) => s.shape) } },
         decimation: { enabled: !spec.scatter, algorithm: "min-max" },
-        tooltip: { callbacks: { title: (items) => (items.length ? `${spec.x} ${items[0].parsed.x.toLocaleString()}` : "") } },
+        tooltip: { callbacks: {
+          title: (items) => (!items.length ? "" : items[0].raw.note ? items[0].dataset.label : `${spec.x} ${items[0].parsed.x.toLocaleString()}`),
+          label: (item) => (item.raw.note ? item.raw.note.split("\n") : `${item.dataset.label}: ${item.formattedValue}`),
+        } },
       },
       onClick(e) {
+        const hit = chart.getElementsAtEventForMode(e, "nearest", { intersect: true }, false);
+        const point = hit.map((p) => datasets[p.datasetIndex].data[p.index]).find((p) => p.target);
+        if (point) location.href = point.target;
         if (!spec.cursor) return;
         const frame = nearestFrame(spec.cursor, chart.scales.x.getValueForPixel(e.x));
         if (frame >= 0) show(frame);

@@ -227,15 +227,7 @@ Replay replay(const WorkerMethod& method, const std::string& family, int dial, s
   const auto run = [&](Job::Task task) {
     task.begin = k;
     task.end = k + 1;
-    Job job(std::move(task));
-    while (!job.done()) {
-      pollfd waiting{job.output(), POLLIN, 0};
-      const auto left = std::chrono::ceil<std::chrono::milliseconds>(job.deadline() - Job::Clock::now());
-      if (poll(&waiting, 1, static_cast<int>(std::max<std::int64_t>(0, left.count()))) > 0)
-        job.receive();
-      else if (Job::Clock::now() > job.deadline())
-        job.expire();
-    }
+    run_to_end(Job(std::move(task)));
   };
   Job::Task expected;
   expected.command = command_of(method.program, family, cases, seed);

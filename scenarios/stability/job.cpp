@@ -1,8 +1,10 @@
 #include "scenarios/stability/job.hpp"
 
+#include <algorithm>
 #include <cstring>
 
 #include <nlohmann/json.hpp>
+#include <poll.h>
 
 #include "engine/error.hpp"
 
@@ -74,6 +76,17 @@ void Job::go_on(const Mishap& mishap) {
       task_.on_mishap(next_++, {true, "not asked: " + mishap.message + " for " + std::to_string(kPatience) +
                                           " cases in a row"});
   start();
+}
+
+void run_to_end(Job job) {
+  while (!job.done()) {
+    pollfd waiting{job.output(), POLLIN, 0};
+    const auto left = std::chrono::ceil<std::chrono::milliseconds>(job.deadline() - Job::Clock::now());
+    if (poll(&waiting, 1, static_cast<int>(std::max<std::int64_t>(0, left.count()))) > 0)
+      job.receive();
+    else if (Job::Clock::now() > job.deadline())
+      job.expire();
+  }
 }
 
 }  // namespace lrb::stability

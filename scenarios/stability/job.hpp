@@ -54,4 +54,7 @@ class Job {
   Clock::time_point deadline_;
 };
 
+/// Waits for all of a job's lines and mishaps.
+void run_to_end(Job job);
+
 }  // namespace lrb::stability

@@ -10,8 +10,10 @@
 #include <unistd.h>
 
 #include "engine/error.hpp"
+#include "scenarios/measure/ask.hpp"
 #include "scenarios/stability/asker.hpp"
 #include "scenarios/stability/fake_methods.hpp"
+#include "scenarios/stability/method_json.hpp"
 #include "scenarios/stability/record_json.hpp"
 
 namespace lrb::stability {
@@ -21,7 +23,8 @@ using nlohmann::ordered_json;
 
 struct WorkerOptions {
   bool list = false, pairs = false;
-  std::string family, method, expected;
+  std::string family, method, expected, questions;
+  std::optional<double> setting;
   std::uint64_t seed = 1, cases = 1, begin = 0, end = 0;
 };
 
@@ -43,11 +46,7 @@ std::string dump(const ordered_json& value) {
 }
 
 void list_methods(const std::vector<methods::MethodEntry>& entries, Lines& out) {
-  for (const methods::MethodEntry& e : entries)
-    out.say(dump({{"name", e.info.name},
-                  {"title", e.info.title},
-                  {"remark", e.info.remark},
-                  {"present", e.info.present}}));
+  for (const methods::MethodEntry& e : entries) out.say(dump(to_json(e.info)));
 }
 
 const families::Family& family_of(const WorkerOptions& o) {
@@ -107,7 +106,10 @@ void work(const WorkerOptions& o, const std::vector<methods::MethodEntry>& entri
                                   [&](const methods::MethodEntry& e) { return e.info.name == o.method; });
   if (entry == entries.end() || !entry->info.present)
     throw InputError("there is no method '" + o.method + "' here");
-  say_records(o, *entry, out);
+  if (o.questions.empty()) return say_records(o, *entry, out);
+  const measure::DataSet set = measure::read_data_set(o.questions);
+  measure::Asker asker(*entry, o.setting, set, o.pairs);
+  for (std::uint64_t k = o.begin; k < o.end; ++k) out.say(dump(to_json(asker.ask(k))));
 }
 
 }  // namespace
@@ -128,6 +130,8 @@ int worker_main(int argc, char** argv, std::vector<methods::MethodEntry> entries
   app.add_option("--end", o.end);
   app.add_option("--expected", o.expected);
   app.add_flag("--pairs", o.pairs);
+  app.add_option("--questions", o.questions);
+  app.add_option("--setting", o.setting);
   CLI11_PARSE(app, argc, argv);
   Lines out;
   try {

@@ -10,6 +10,8 @@
 ///   ... --method M [--expected FILE] [--pairs]
 ///                         a record for each; the right answers are read from the file's lines, the first of
 ///                         which is case 0's, or found here; with --pairs the lists as well
+///   --questions FILE --method M [--setting X] [--pairs] --begin K --end L
+///                         a measure::Record for each of a data set's questions K .. L - 1
 /// Exit codes: 0, or 2 with the line {"error": "..."}.
 
 #include <vector>

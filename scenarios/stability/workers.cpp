@@ -10,13 +10,14 @@
 #include "engine/mesh/file_bytes.hpp"
 #include "scenarios/families/families.hpp"
 #include "scenarios/stability/child.hpp"
+#include "scenarios/stability/method_json.hpp"
 
 namespace lrb::stability {
 namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kPrograms[] = {"lrbscope-methods", "lrbscope-methods-double"};
+constexpr const char* kPrograms[] = {"lrbscope-methods", "lrbscope-methods-double", "lrbscope-methods-fcl"};
 constexpr std::chrono::seconds kListLimit(20);
 
 fs::path folder_of_workers() {
@@ -32,10 +33,8 @@ void add_methods(const std::string& program, std::vector<WorkerMethod>& methods)
     const auto value = nlohmann::json::parse(line, nullptr, false);
     if (!value.is_object()) break;
     WorkerMethod m;
-    m.column.name = value.value("name", "");
-    m.column.title = value.value("title", "");
-    m.column.remark = value.value("remark", "");
-    m.column.present = value.value("present", false);
+    m.info = method_info_from(value);
+    m.column = {m.info.name, m.info.title, m.info.remark, m.info.present};
     m.program = program;
     methods.push_back(m);
   }
@@ -46,6 +45,12 @@ void add_methods(const std::string& program, std::vector<WorkerMethod>& methods)
 }  // namespace
 
 std::vector<WorkerMethod> find_methods() {
+  std::vector<WorkerMethod> methods = find_all_methods();
+  std::erase_if(methods, [](const WorkerMethod& m) { return !m.info.hard_cases; });
+  return methods;
+}
+
+std::vector<WorkerMethod> find_all_methods() {
   const fs::path folder = folder_of_workers();
   std::vector<WorkerMethod> methods;
   for (const char* name : kPrograms) {

@@ -1,0 +1,101 @@
+#include <algorithm>
+#include <memory>
+
+#include "engine/error.hpp"
+#include "scenarios/cli/choice.hpp"
+#include "scenarios/cli/command.hpp"
+#include "scenarios/cli/progress.hpp"
+#include "scenarios/files.hpp"
+#include "scenarios/measure/machine.hpp"
+#include "scenarios/measure/make_sets.hpp"
+#include "scenarios/measure/peer_table.hpp"
+#include "scenarios/measure/survey.hpp"
+
+namespace lrb::cli {
+namespace {
+
+using namespace lrb::measure;
+using stability::WorkerMethod;
+
+struct BenchOptions {
+  std::string folder = "out/bench", models;
+  std::vector<std::uint32_t> faces = {20000, 100000};
+  std::vector<std::string> methods;
+  SetOptions set;
+  double timeout = 20;
+};
+
+/// Peers are engines that answer the same question: no approximation, no textbook loop over all pairs, which
+/// takes minutes here, and not the paper's recursion, which misses contacts.
+bool is_peer(const WorkerMethod& m) {
+  return !m.info.approximate && !m.info.convex && m.info.name != "plain" && m.info.name != "ours-paper";
+}
+
+int run_bench(const BenchOptions& o, const Globals& globals) {
+  std::vector<WorkerMethod> methods = stability::find_all_methods();
+  std::erase_if(methods, [](const WorkerMethod& m) { return !is_peer(m); });
+  methods = chosen(methods, o.methods, "method", [](const WorkerMethod& m) { return m.info.name; });
+  make_folder(o.folder);
+  const FolderLock lock(o.folder);
+  std::vector<BodyPair> pairs;
+  if (!o.models.empty()) pairs = pairs_of_models(o.models);
+  for (const std::uint32_t n : o.faces)
+    if (n > 0)
+      for (BodyPair& p : generated_pairs(n)) {
+        pairs.push_back(std::move(p));
+        if (n != o.faces.front()) break;
+      }
+  SurveyOptions survey_options;
+  survey_options.folder = o.folder;
+  survey_options.timeout = o.timeout;
+  survey_options.contestants = contestants(methods);
+  {
+    Progress bar("bodies", pairs.size(), globals.quiet);
+    for (const BodyPair& p : pairs) {
+      bar.set(survey_options.sets.size(), p.what);
+      survey_options.sets.push_back(make_data_set(p, o.set, o.folder));
+    }
+  }
+  Progress bar("bench", 0, globals.quiet);
+  const std::vector<Record> records =
+      survey(survey_options, [&](std::uint64_t done, std::uint64_t total, const std::string& what) {
+        bar.set_total(total);
+        bar.set(done, what);
+      });
+  bar.finish();
+  std::vector<methods::MethodInfo> infos;
+  for (const WorkerMethod& m : methods) infos.push_back(m.info);
+  const PeerTable table = peer_table(survey_options.sets, infos, records);
+  const std::string head = machine() + "; built with " + build_flags() + "\n\n";
+  print(head + in_brief(table));
+  write_text(o.folder + "/peers.txt", head + in_brief(table) + "\n" + in_full(table));
+  print(o.folder + "/peers.txt\n" + o.folder + "/records.jsonl\n");
+  return kOk;
+}
+
+}  // namespace
+
+Command add_bench(CLI::App& root, const Globals& globals) {
+  CLI::App* app = root.add_subcommand(
+      "bench", "Ours beside other engines, on the same bodies and poses: how many times as long they take");
+  const auto o = std::make_shared<BenchOptions>();
+  app->add_option("-o,--output", o->folder, "Folder to write to; goes on with what is there [out/bench]")
+      ->type_name("DIR");
+  app->add_option("--models", o->models, "Meshes to collide, too, each with the next one")->type_name("DIR");
+  app->add_option(
+         "--faces", o->faces,
+         "Sizes of generated bodies: all kinds of the first, rocks of the others; 0: none [20000 100000]")
+      ->check(CLI::Range(0, 2000000))
+      ->type_name("N");
+  app->add_option("--method", o->methods, "These methods alone")->type_name("NAME");
+  app->add_option("--poses", o->set.poses, "Poses of each class [12]")
+      ->check(CLI::Range(1, 10000))
+      ->type_name("N");
+  app->add_option("--seed", o->set.seed, "Of the poses [1]")->check(CLI::NonNegativeNumber)->type_name("S");
+  app->add_option("--timeout", o->timeout, "Seconds that a method has for a pose [20]")
+      ->check(CLI::Range(0.1, 3600.0))
+      ->type_name("S");
+  return {app, [o, &globals] { return run_bench(*o, globals); }};
+}
+
+}  // namespace lrb::cli

@@ -1,0 +1,67 @@
+// A few queries for guard.sh to count the instructions of, under callgrind, which this program tells where a
+// query begins and ends. Alone it runs them and counts nothing. Prints the compiler first: counts depend on
+// it.
+#include <cstdio>
+#include <string>
+
+#include <valgrind/callgrind.h>
+
+#include "engine/build/build.hpp"
+#include "engine/query/collide_impl.hpp"
+#include "scenarios/shapes/random_pose.hpp"
+#include "scenarios/shapes/shapes.hpp"
+
+using namespace lrb;
+
+namespace {
+
+struct Guarded {
+  const char* name;
+  double share;  ///< of the distance at which round bodies just miss each other; 0: the same pose
+  Mode mode;
+  Predicates predicates;
+};
+
+constexpr Guarded kGuarded[] = {
+    {"apart", 1.05, Mode::all_pairs, Predicates::exact},
+    {"shallow", 0.85, Mode::all_pairs, Predicates::exact},
+    {"shallow_boolean", 0.85, Mode::first_pair, Predicates::exact},
+    {"shallow_floating", 0.85, Mode::all_pairs, Predicates::floating},
+    {"deep", 0.4, Mode::all_pairs, Predicates::exact},
+    {"identical", 0, Mode::all_pairs, Predicates::exact},
+};
+
+constexpr int kPoses = 5;
+
+void ask(const Guarded& g, const LrbRep& a, const LrbRep& b) {
+  CollideRequest request;
+  request.mode = g.mode;
+  request.predicates = g.predicates;
+  QueryContext context;
+  NullProbe probe;
+  shapes::Random random(1);
+  std::size_t pairs = 0;
+  CALLGRIND_ZERO_STATS;
+  for (int i = 0; i < kPoses; ++i) {
+    const Pose pose = g.share > 0 ? shapes::random_pose(random, a, b, 0.55 * g.share) : Pose{};
+    const LrbRep& other = g.share > 0 ? b : a;
+    collide(a, Pose{}, other, pose, request, context, probe);  // warm: no memory is taken in what is counted
+    CALLGRIND_START_INSTRUMENTATION;
+    pairs += collide(a, Pose{}, other, pose, request, context, probe).pairs.size();
+    CALLGRIND_STOP_INSTRUMENTATION;
+  }
+  CALLGRIND_DUMP_STATS_AT(g.name);
+  std::printf("%s %zu\n", g.name, pairs);
+}
+
+}  // namespace
+
+int main() {
+#ifdef __clang__
+  std::printf("compiler clang-%d %s\n", __clang_major__, LRB_FLAGS);
+#else
+  std::printf("compiler gcc-%d %s\n", __GNUC__, LRB_FLAGS);
+#endif
+  const LrbRep a = build_lrb(shapes::bumpy_sphere(4, 1)), b = build_lrb(shapes::bumpy_sphere(4, 2));
+  for (const Guarded& g : kGuarded) ask(g, a, b);
+}
