@@ -238,7 +238,7 @@ TEST_CASE("a sphere tree misses nothing, and is closer to the truth at deeper le
   shapes::Random random(7);
   std::size_t wolves[2] = {0, 0}, met = 0;
   for (int i = 0; i < 60; ++i) {
-    const Pose p = shapes::random_pose(random, a, a, 0.6 + 0.01 * i);
+    const Pose p = shapes::random_pose(random, a, a, 0.3 + 0.01 * i);
     const bool meets = !exact_pairs(a, Pose{}, a, p).empty();
     met += meets;
     int k = 0;
