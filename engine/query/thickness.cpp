@@ -158,7 +158,7 @@ class ThicknessFinder {
   void for_each_triangle(FaceId f, Visit visit) const {
     const auto count = static_cast<SimplexId>(Mesh::simplices_of(rep_.face(f).size(), rep_.dim()));
     for (SimplexId i = 0; i < count; ++i) {
-      VertexId v[3];
+      VertexId v[3] = {};
       rep_.simplex(rep_.first_simplex(f) + i, v);
       if (rep_.dim() == 2) v[2] = v[1];
       visit(Triangle{rep_.vertices()[v[0]] / unit_, rep_.vertices()[v[1]] / unit_,
