@@ -31,7 +31,8 @@ CollideRequest read_query(const JsonNode& node) {
   node.object({"mode", "recursion", "predicates", "wrapper", "contacts", "interiors_overlap"});
   CollideRequest r;
   if (const auto n = node.get("mode"))
-    r.mode = n->choice<Mode>({{"all", Mode::all_pairs}, {"first", Mode::first_pair}});
+    r.mode =
+        n->choice<Mode>({{"all", Mode::all_pairs}, {"first", Mode::first_pair}, {"any", Mode::any_pair}});
   if (const auto n = node.get("recursion"))
     r.recursion = n->choice<Recursion>({{"complete", Recursion::complete},
                                         {"paper", Recursion::paper},
@@ -44,7 +45,7 @@ CollideRequest read_query(const JsonNode& node) {
   r.contacts = r.mode == Mode::all_pairs;
   if (const auto n = node.get("contacts")) {
     r.contacts = n->boolean();
-    if (r.contacts && r.mode == Mode::first_pair) n->fail("contacts need \"mode\": \"all\"");
+    if (r.contacts && r.mode != Mode::all_pairs) n->fail("contacts need \"mode\": \"all\"");
   }
   if (const auto n = node.get("interiors_overlap")) r.interiors_overlap = n->boolean();
   return r;

@@ -36,7 +36,7 @@ struct Names<Clock> {
 };
 template <>
 struct Names<Mode> {
-  static constexpr std::string_view values[] = {"all", "first"};
+  static constexpr std::string_view values[] = {"all", "first", "any"};
 };
 template <>
 struct Names<Recursion> {

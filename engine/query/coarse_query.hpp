@@ -145,7 +145,7 @@ class CoarseQuery {
         continue;
       level.relation = Relation::crossing;
       level.interiors_overlap = Answer::yes;
-      if (request_.mode == Mode::first_pair) level.error_bound = 0;
+      if (request_.mode != Mode::all_pairs) level.error_bound = 0;
       return;
     }
   }

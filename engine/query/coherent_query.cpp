@@ -91,7 +91,7 @@ const CollideResult& CoherentQuery::collide(const Pose& pose_a, const Pose& pose
   if (has_list_ && path_ <= valid_to_) {
     query_list(step);
     step_time_ += seconds_since(began);
-  } else if (request_.mode == Mode::first_pair && still_crosses()) {
+  } else if (request_.mode != Mode::all_pairs && still_crosses()) {
     has_list_ = false;
   } else if (list_pays() && make_list()) {
     list_time_ = seconds_since(began);
@@ -145,7 +145,7 @@ void CoherentQuery::show_opened() {
   }
 }
 
-/// first_pair: the pair found last time, if it crosses, is as good as any.
+/// Where one pair is enough: that found last time, if it crosses, is as good as any.
 bool CoherentQuery::still_crosses() {
   if (result_.pairs.size() != 1 || result_.meets[0] != exact::Meet::cross) return false;
   ++result_.counters.face_tests;
@@ -321,6 +321,7 @@ void CoherentQuery::answer_from_list() {
   result_.meets.clear();
   for (std::size_t i = 0; i < list_.size(); ++i) {
     if (meets_[i] == exact::Meet::disjoint) continue;
+    if (request_.mode == Mode::any_pair && !result_.pairs.empty()) break;
     if (request_.mode == Mode::first_pair && !result_.pairs.empty()) {
       if (meets_[i] != exact::Meet::cross || result_.meets[0] == exact::Meet::cross) continue;
       result_.pairs.clear();

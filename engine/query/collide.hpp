@@ -20,7 +20,12 @@
 
 namespace lrb {
 
-enum class Mode : std::uint8_t { all_pairs, first_pair };
+enum class Mode : std::uint8_t {
+  all_pairs,
+  first_pair,  ///< one pair that crosses, if there is one; the relation is exact
+  any_pair,    ///< do the surfaces meet? The first pair that does ends the query, and Relation::touching then
+               ///< says no more than that this pair touches: others may cross
+};
 
 enum class Recursion : std::uint8_t {
   complete,
@@ -110,7 +115,7 @@ struct CollideResult {
   Answer interiors_overlap = Answer::unknown;
   Recursion recursion = Recursion::complete;  ///< the one that was used
   Mode mode = Mode::all_pairs;
-  /// Ascending; in first_pair mode at most one. Coarse queries: with pseudo simplices (LrbRep::
+  /// Ascending; at most one but for all_pairs. Coarse queries: with pseudo simplices (LrbRep::
   /// is_real_simplex()) where lids stayed closed; those meet or come within rounding of it.
   std::vector<SimplexPair> pairs;
   std::vector<exact::Meet> meets;               ///< (|pairs|) touch or cross

@@ -69,7 +69,7 @@ class PaperQuery {
       // to the contact analysis module. If the application requires to know only whether the objects are in
       // collision, then the algorithm exits declaring a collision."
       record(fa, fb);
-      done_ = request_.mode == Mode::first_pair;
+      done_ = request_.mode != Mode::all_pairs;
     }
   }
 
@@ -113,7 +113,7 @@ class PaperQuery {
     for_each_simplex_pair(fa, fb, [&](SimplexId a, SimplexId b) {
       const exact::Meet meet = test_simplices(ctx_, a, b);
       if (meet != exact::Meet::disjoint) record_pair(result_, probe_, a, b, meet);
-      return request_.mode == Mode::first_pair && !result_.pairs.empty();
+      return request_.mode != Mode::all_pairs && !result_.pairs.empty();
     });
   }
 

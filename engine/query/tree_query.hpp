@@ -87,7 +87,7 @@ class TreeQuery {
   }
 
  private:
-  /// True if the answer is complete. One pair is enough in first_pair mode if it crosses; a pair that only
+  /// True if the answer is complete. One pair is enough in any_pair mode, in first_pair mode if it crosses; a pair that only
   /// touches is kept while a crossing one is looked for, so that the relation is exact in that mode too.
   bool test(Candidate c) {
     if constexpr (Rules::kCoarse)
@@ -109,8 +109,8 @@ class TreeQuery {
     }
     record_pair(result_, probe_, c.a, c.b, meet);
     if constexpr (Rules::kCoarse)
-      if (mode_ == Mode::first_pair && rules_.one_is_enough()) return true;
-    return mode_ == Mode::first_pair && meet == exact::Meet::cross;
+      if (mode_ != Mode::all_pairs && rules_.one_is_enough()) return true;
+    return mode_ == Mode::any_pair || (mode_ == Mode::first_pair && meet == exact::Meet::cross);
   }
 
   QueryContext& ctx_;

@@ -49,8 +49,9 @@ void add_recursion_option(CLI::App& app, std::optional<Recursion>& recursion) {
 }
 
 void add_request_options(CLI::App& app, CollideRequest& request) {
-  add_choice<Mode>(app, "--mode", request.mode, {{"all", Mode::all_pairs}, {"first", Mode::first_pair}},
-                   "all|first", "All pairs, or the first found");
+  add_choice<Mode>(app, "--mode", request.mode,
+                   {{"all", Mode::all_pairs}, {"first", Mode::first_pair}, {"any", Mode::any_pair}},
+                   "all|first|any", "All pairs; one, crossing if any does; or the first that meets");
   add_recursion(app, request.recursion);
   add_choice<Predicates>(app, "--predicates", request.predicates,
                          {{"exact", Predicates::exact}, {"floating", Predicates::floating}}, "exact|floating",

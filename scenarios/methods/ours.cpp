@@ -38,7 +38,7 @@ class Ours : public Method {
                      Mode mode) override {
     const LrbRep& rep_a = static_cast<const OurBody&>(a).rep;
     const LrbRep& rep_b = static_cast<const OurBody&>(b).rep;
-    request_.mode = mode;
+    request_.mode = mode == Mode::all_pairs ? mode : Mode::any_pair;  // what the peers are asked too
     NullProbe probe;
     const Stopwatch watch;
     CollideResult result = collide(rep_a, pose_a, rep_b, pose_b, request_, context_, probe);
@@ -73,7 +73,7 @@ class OursCoherent : public Method {
                      Mode mode) override {
     const LrbRep &rep_a = static_cast<const OurBody&>(a).rep, &rep_b = static_cast<const OurBody&>(b).rep;
     CollideRequest request;
-    request.mode = mode;
+    request.mode = mode == Mode::all_pairs ? mode : Mode::any_pair;
     CoherentQuery coherent(rep_a, rep_b, request);
     constexpr int kSteps = 8;
     constexpr double kStep = 1e-3;  // of A's diagonal
@@ -104,7 +104,7 @@ class OursCoarse : public Method {
                      Mode mode) override {
     const LrbRep &rep_a = static_cast<const OurBody&>(a).rep, &rep_b = static_cast<const OurBody&>(b).rep;
     CollideRequest request;
-    request.mode = mode;
+    request.mode = mode == Mode::all_pairs ? mode : Mode::any_pair;
     if (by_tests_)
       request.max_tests = static_cast<std::uint64_t>(setting_);
     else

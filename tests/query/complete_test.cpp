@@ -31,6 +31,13 @@ void compare(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& p
   REQUIRE(one.pairs.size() == std::min<std::size_t>(1, expected.pairs.size()));
   if (!one.pairs.empty())
     REQUIRE(std::binary_search(expected.pairs.begin(), expected.pairs.end(), one.pairs[0]));
+  first.mode = Mode::any_pair;
+  const CollideResult any = collide(a, pose_a, b, pose_b, first, context, probe);
+  REQUIRE(any.pairs.size() == one.pairs.size());
+  if (any.pairs.empty())
+    REQUIRE(any.relation == expected.relation);
+  else
+    REQUIRE(std::binary_search(expected.pairs.begin(), expected.pairs.end(), any.pairs[0]));
   ++t.poses;
   t.in_contact += !expected.pairs.empty();
   t.touching += expected.relation == Relation::touching;
@@ -139,6 +146,19 @@ TEST_CASE("any matrix is answered exactly, rotation or not") {
     compare(a, Pose{}, b, p, context, total);
   }
   CHECK(total.in_contact > 20);
+}
+
+TEST_CASE("any_pair ends at the first pair that meets, where first_pair looks for one that crosses") {
+  const LrbRep ball = closed(shapes::icosphere(3));
+  CollideRequest request;
+  request.mode = Mode::first_pair;
+  const CollideResult first = collide(ball, Pose{}, ball, Pose{}, request);
+  request.mode = Mode::any_pair;
+  const CollideResult any = collide(ball, Pose{}, ball, Pose{}, request);
+  CHECK(first.relation == Relation::touching);
+  CHECK(any.relation == Relation::touching);
+  CHECK(first.counters.face_tests > ball.real_face_count());
+  CHECK(any.counters.face_tests < 100);
 }
 
 TEST_CASE("an open body has no inside: without contact the relation is undefined") {
