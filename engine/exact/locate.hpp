@@ -58,8 +58,8 @@ RayHit ray_crosses_2d(const RationalPoint& p, const double* const seg[2]);
 /// triangles; none lies on any of them, except that a cell covered by a coplanar triangle has its point on
 /// that triangle. By vertical slabs between all end points and crossings of the cuts, in the projection along
 /// an axis in which the triangle keeps its area. None if tri has no area. Gives up (empty optional) if there
-/// would be more than `limit` points, or if there are more than `limit` cuts: the work is cubic in their
-/// number.
+/// would be more than `limit` points, more than `limit` cuts, or too many slabs: the work is cubic in the
+/// number of cuts.
 std::optional<std::vector<RationalPoint>> sample_cells(const double* const tri[3],
                                                        std::span<const std::array<const double*, 3>> others,
                                                        std::size_t limit);

@@ -14,6 +14,10 @@
 namespace lrb::exact {
 namespace {
 
+/// Every end and crossing of cuts divides cells further, into gaps, on which the work is done. Larger: faces
+/// with a hundred cuts are decided too, in minutes each.
+constexpr std::size_t kGapsPerCell = 16;
+
 /// A point of the triangle's projection.
 struct Planar {
   Rational x, y;
@@ -160,18 +164,20 @@ struct Gap {
 /// The slabs from left to right, and which of their gaps are of one cell.
 class Slabs {
  public:
-  explicit Slabs(const std::vector<Cut>& cuts) : cuts_(cuts) {
+  /// Gives up at more than `limit` gaps.
+  Slabs(const std::vector<Cut>& cuts, std::size_t limit) : cuts_(cuts) {
     const std::vector<Rational> events = events_of(cuts);
     std::size_t previous = 0;
-    for (std::size_t e = 0; e + 1 < events.size(); ++e) {
+    for (std::size_t e = 0; e + 1 < events.size() && gaps_.size() <= limit; ++e) {
       const std::size_t first = gaps_.size();
       add_gaps(events[e], events[e + 1]);
-      for (std::size_t i = previous; i < first; ++i) {
-        for (std::size_t j = first; j < gaps_.size(); ++j) join(i, j, events[e]);
-      }
+      join_neighbours(previous, first, events[e]);
       previous = first;
     }
+    whole_ = gaps_.size() <= limit;
   }
+
+  bool whole() const { return whole_; }
 
   /// One point of each cell.
   std::vector<Planar> middles() const {
@@ -183,6 +189,11 @@ class Slabs {
   }
 
  private:
+  /// What is open of a gap at one end of its slab.
+  struct Opening {
+    Rational low, high;
+  };
+
   void add_gaps(const Rational& left, const Rational& right) {
     const std::vector<Layer> layers = layers_between(cuts_, left, right);
     for (std::size_t i = 0; i + 1 < layers.size(); ++i) {
@@ -196,23 +207,44 @@ class Slabs {
     return i;
   }
 
-  /// Gaps of neighbouring slabs are of one cell if they open to each other at x.
-  void join(std::size_t left, std::size_t right, const Rational& x) {
-    const Gap &l = gaps_[left], &r = gaps_[right];
-    const Rational low = std::max(cuts_[l.below].y_at(x), cuts_[r.below].y_at(x));
-    const Rational high = std::min(cuts_[l.above].y_at(x), cuts_[r.above].y_at(x));
-    if (low >= high || walled_off(x, low, high)) return;
-    const std::size_t a = first_of(left), b = first_of(right);
-    gaps_[std::max(a, b)].link = std::min(a, b);
+  std::vector<Opening> openings(std::size_t begin, std::size_t end, const Rational& x) const {
+    std::vector<Opening> r;
+    for (std::size_t i = begin; i < end; ++i) {
+      r.push_back({cuts_[gaps_[i].below].y_at(x), cuts_[gaps_[i].above].y_at(x)});
+    }
+    return r;
   }
 
-  /// True if vertical cuts at x cover all from low to high.
-  bool walled_off(const Rational& x, Rational low, const Rational& high) const {
+  /// The slab of gaps [left, middle) and that of [middle, end) meet at x: gaps that open to each other there
+  /// are of one cell. Both run upwards, so one walk through both finds all.
+  void join_neighbours(std::size_t left, std::size_t middle, const Rational& x) {
+    const std::vector<Opening> l = openings(left, middle, x), r = openings(middle, gaps_.size(), x);
+    const std::vector<const Cut*> walls = walls_at(x);
+    for (std::size_t i = 0, j = 0; i < l.size() && j < r.size();) {
+      const Rational &low = std::max(l[i].low, r[j].low), &high = std::min(l[i].high, r[j].high);
+      if (low < high && !walled_off(walls, low, high)) {
+        const std::size_t a = first_of(left + i), b = first_of(middle + j);
+        gaps_[std::max(a, b)].link = std::min(a, b);
+      }
+      if (l[i].high <= r[j].high)
+        ++i;
+      else
+        ++j;
+    }
+  }
+
+  /// The vertical cuts at x, upwards.
+  std::vector<const Cut*> walls_at(const Rational& x) const {
     std::vector<const Cut*> walls;
     for (const Cut& c : cuts_) {
       if (c.is_vertical() && c.from.x == x) walls.push_back(&c);
     }
     std::sort(walls.begin(), walls.end(), [](const Cut* a, const Cut* b) { return a->from.y < b->from.y; });
+    return walls;
+  }
+
+  /// True if walls cover all from low to high.
+  static bool walled_off(const std::vector<const Cut*>& walls, Rational low, const Rational& high) {
     for (const Cut* c : walls) {
       if (c->from.y <= low) low = std::max(low, c->to.y);
     }
@@ -221,6 +253,7 @@ class Slabs {
 
   const std::vector<Cut>& cuts_;
   std::vector<Gap> gaps_;
+  bool whole_ = false;
 };
 
 }  // namespace
@@ -236,8 +269,9 @@ std::optional<std::vector<RationalPoint>> sample_cells(const double* const tri[3
     triangle.cut_by(other.data());
     if (triangle.cuts().size() > limit + 3) return std::nullopt;  // 3: its own edges
   }
-  const std::vector<Planar> middles = Slabs(triangle.cuts()).middles();
-  if (middles.size() > limit) return std::nullopt;
+  const Slabs slabs(triangle.cuts(), kGapsPerCell * limit);
+  const std::vector<Planar> middles = slabs.middles();
+  if (!slabs.whole() || middles.size() > limit) return std::nullopt;
   for (const Planar& p : middles) samples.push_back(triangle.lift(p));
   return samples;
 }

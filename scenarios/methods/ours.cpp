@@ -126,7 +126,7 @@ class OursCoarse : public Method {
   static void add_points(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
                          const SimplexPair& pair, std::vector<Eigen::Vector3d>& points) {
     Eigen::Vector3d p[3], q[3];
-    VertexId v[3];
+    VertexId v[3] = {};
     a.simplex(pair.a, v);
     for (int k = 0; k < 3; ++k) p[k] = pose_a.apply(a.vertices()[v[k]]);
     b.simplex(pair.b, v);
