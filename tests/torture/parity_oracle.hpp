@@ -95,7 +95,7 @@ class ParityOracle {
   }
 
   bool crosses(const WorldPoint& p, const WorldPoint& q, SimplexId s, bool& grazes) const {
-    VertexId v[3];
+    VertexId v[3] = {};
     rep_.simplex(s, v);
     const auto& a = x_[v[0]];
     const auto& b = x_[v[1]];
