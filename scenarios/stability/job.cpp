@@ -9,6 +9,7 @@
 namespace lrb::stability {
 namespace {
 
+constexpr int kPatience = 3;                        // cases in a row on which a method may hang
 constexpr int kBadInput = 2, kNoSuchProgram = 127;  // exit codes that are no crash
 
 std::string epitaph(int status) {
@@ -44,6 +45,7 @@ void Job::receive() {
     if (!error.empty()) throw EnvironmentError(task_.command.front() + ": " + error);
     if (next_ == task_.end) break;
     task_.on_line(next_++, line);
+    hung_ = 0;
   }
   if (!lines.empty()) deadline_ = Clock::now() + task_.limit;
   if (more) return;
@@ -66,6 +68,11 @@ void Job::expire() {
 
 void Job::go_on(const Mishap& mishap) {
   task_.on_mishap(next_++, mishap);
+  hung_ = mishap.timed_out ? hung_ + 1 : 0;
+  if (hung_ == kPatience)
+    while (next_ < task_.end)
+      task_.on_mishap(next_++, {true, "not asked: " + mishap.message + " for " + std::to_string(kPatience) +
+                                          " cases in a row"});
   start();
 }
 

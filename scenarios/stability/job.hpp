@@ -1,6 +1,7 @@
 #pragma once
 /// One family in the hands of one method, or of exact brute force, as a chain of worker processes: where one
-/// dies or hangs the next begins behind the case it was at.
+/// dies or hangs the next begins behind the case it was at. One that hangs on several cases in a row is not
+/// asked the others, so that a run ends in time whatever a method does: they count as time-outs.
 
 #include <chrono>
 #include <functional>
@@ -48,6 +49,7 @@ class Job {
 
   Task task_;
   std::uint64_t next_;  ///< the case whose line comes next
+  int hung_ = 0;        ///< cases in a row
   std::optional<Child> child_;
   Clock::time_point deadline_;
 };

@@ -96,10 +96,26 @@ TEST_CASE("what becomes of a method that misbehaves") {
   };
   CHECK(outcome_of_contact("ours", 20) == Outcome::right);
   CHECK(outcome_of_contact("fake-crash", 20) == Outcome::crashed);
-  CHECK(outcome_of_contact("fake-hang", 0.4) == Outcome::timed_out);
   CHECK(outcome_of_contact("fake-refuse", 20) == Outcome::refused);
   CHECK(outcome_of_contact("fake-throw", 20) == Outcome::crashed);
   CHECK(outcome_of_contact("fake-miss", 20) == Outcome::wrong);
+}
+
+TEST_CASE("a method that hangs on three cases in a row is not asked the others of its family") {
+  const Workers workers;
+  std::map<std::string, int> in_a_row, asked;
+  for (const Record& r : ask({"fake-hang"}, 12, 0.4)) {
+    const bool given_up = in_a_row[r.family] == 3, hung = r.outcome == Outcome::timed_out;
+    CHECK((r.message.compare(0, 9, "not asked") == 0) == given_up);
+    CHECK(hung == (given_up || r.expected > 0));
+    if (given_up) continue;
+    ++asked[r.family];
+    in_a_row[r.family] = hung ? in_a_row[r.family] + 1 : 0;
+  }
+  for (const char* family : {"shared", "identical"}) {
+    CHECK(in_a_row[family] == 3);
+    CHECK(asked[family] < 12);
+  }
 }
 
 TEST_CASE("every case has its record, in order, whatever died and however many ran at a time") {
