@@ -9,6 +9,10 @@
 namespace lrb {
 namespace {
 
+/// Up to so many corners, looking at all is quicker. Measured: 2.4 ns a corner; the tree takes 8 to 15 us for
+/// bodies of 1,400 to 2,600 corners, 53 us for one of 49,000.
+constexpr std::size_t kFewCorners = 16384;
+
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// The real corner whose world coordinate on one axis, times `sign`, is greatest.
@@ -97,13 +101,16 @@ bool stays_finite(const LrbRep& rep, const Pose& pose) {
   return size <= 0.25 * std::numeric_limits<double>::max();
 }
 
+Eigen::AlignedBox3d everything() {
+  return {Eigen::Vector3d::Constant(-kInfinity), Eigen::Vector3d::Constant(kInfinity)};
+}
+
 }  // namespace
 
 Eigen::AlignedBox3d world_box(const LrbRep& rep, const Pose& pose, ExtremeVertices* last) {
   Eigen::AlignedBox3d box;
   if (rep.tree().empty()) return box;
-  if (!stays_finite(rep, pose))
-    return {Eigen::Vector3d::Constant(-kInfinity), Eigen::Vector3d::Constant(kInfinity)};
+  if (!stays_finite(rep, pose)) return everything();
   for (int axis = 0; axis < 3; ++axis) {
     // All of a 2D body lies at one height: any corner tells.
     const bool level = rep.dim() == 2 && pose.r(axis, 0) == 0 && pose.r(axis, 1) == 0;
@@ -119,6 +126,24 @@ Eigen::AlignedBox3d world_box(const LrbRep& rep, const Pose& pose, ExtremeVertic
       if (last != nullptr) last->vertex[slot] = search.vertex();
     }
   }
+  return box;
+}
+
+BodyExtent::BodyExtent(const LrbRep& rep) : rep_(&rep) {
+  std::vector<bool> is_corner(rep.vertices().size());
+  for (FaceId f = 0; f < rep.real_face_count(); ++f)
+    for (const VertexId v : rep.face(f)) is_corner[v] = true;
+  const auto count = static_cast<std::size_t>(std::count(is_corner.begin(), is_corner.end(), true));
+  if (count > kFewCorners) return;
+  for (VertexId v = 0; v < is_corner.size(); ++v)
+    if (is_corner[v]) corners_.push_back(rep.vertices()[v]);
+}
+
+Eigen::AlignedBox3d BodyExtent::in_world(const Pose& pose, ExtremeVertices* last) const {
+  if (corners_.empty()) return world_box(*rep_, pose, last);
+  if (!stays_finite(*rep_, pose)) return everything();
+  Eigen::AlignedBox3d box;
+  for (const Eigen::Vector3d& x : corners_) box.extend(pose.apply(x));
   return box;
 }
 

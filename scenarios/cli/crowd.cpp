@@ -1,7 +1,7 @@
+#include <algorithm>
 #include <memory>
 #include <thread>
 
-#include "engine/error.hpp"
 #include "scenarios/cli/command.hpp"
 #include "scenarios/cli/options.hpp"
 #include "scenarios/cli/progress.hpp"
@@ -15,14 +15,14 @@ struct CrowdOptions {
   std::uint32_t jobs = 0;  ///< 0: all cores
   std::optional<std::uint32_t> steps;
   std::optional<trace::Clock> clock;
-  bool frames = true, json = false;
+  bool no_frames = false, json = false;
 };
 
 int run_crowd_command(const CrowdOptions& o, const Globals& globals) {
   Crowd crowd = open_crowd(o.crowd);
   if (o.steps) crowd.steps = *o.steps;
   if (o.clock) crowd.clock = *o.clock;
-  if (!o.frames) crowd.frames.at = FrameSpec::At::none;
+  if (o.no_frames) crowd.frames.at = FrameSpec::At::none;
   const std::string folder = o.folder.empty() ? "out/" + crowd.name : o.folder;
   const std::uint32_t jobs = o.jobs > 0 ? o.jobs : std::max(1U, std::thread::hardware_concurrency());
   const ProgressReport progress = progress_report(globals.quiet);
@@ -58,7 +58,7 @@ Command add_crowd(CLI::App& root, const Globals& globals) {
          "Of the trace: event, the same for any number of threads, a track a body; wall, a track a thread")
       ->check(CLI::IsMember({"event", "wall"}).description(""))
       ->type_name("event|wall");
-  app->add_flag("!--no-frames", o->frames, "Draw nothing");
+  app->add_flag("--no-frames", o->no_frames, "Draw nothing");
   app->add_flag("--json", o->json, "Print the summary instead of the page's path");
   return {app, [o, &globals] { return run_crowd_command(*o, globals); }};
 }

@@ -45,7 +45,9 @@ class Player {
         poses_(run.motion.body_count()),
         boxes_(run.motion.body_count()),
         extremes_(run.motion.body_count()),
-        began_(Clock::now()) {}
+        began_(Clock::now()) {
+    for (const LoadedBody& kind : run.kinds) extents_.emplace_back(kind.rep);
+  }
 
   /// Plays a step; `moment`: what is to be seen of it, or null.
   CrowdStep play(std::uint32_t number, CrowdMoment* moment) {
@@ -54,7 +56,7 @@ class Player {
     pool_.run(poses_.size(), [&](std::uint32_t, std::size_t i) {
       const auto body = static_cast<std::uint32_t>(i);
       poses_[i] = run_.motion.pose(body, number);
-      boxes_[i] = world_box(run_.rep(body), poses_[i], &extremes_[i]);
+      boxes_[i] = extents_[run_.motion.kind(body)].in_world(poses_[i], &extremes_[i]);
     });
     const std::uint64_t boxed = now();
     const std::vector<BodyPair>& pairs = sweep_.update(boxes_);
@@ -143,6 +145,7 @@ class Player {
   std::vector<QueryContext> contexts_;  ///< one a thread
   std::vector<Pose> poses_;
   std::vector<Eigen::AlignedBox3d> boxes_;
+  std::vector<BodyExtent> extents_;  ///< one a kind
   std::vector<ExtremeVertices> extremes_;
   SweepAndPrune sweep_;
   Clock::time_point began_;

@@ -1,4 +1,6 @@
+#include <algorithm>
 #include <string_view>
+#include <vector>
 
 #include "scenarios/crowd/crowd_json.hpp"
 #include "trace/hex.hpp"
@@ -88,7 +90,11 @@ class Writer {
     step_slice(s, index, {clock_, length});
     broad_phase(s, broad);
     counters(s);
-    for (const CrowdQuery& q : s.queries) {
+    std::vector<CrowdQuery> queries = s.queries;
+    if (wall_)
+      std::sort(queries.begin(), queries.end(),
+                [](const CrowdQuery& x, const CrowdQuery& y) { return x.begin_ns < y.begin_ns; });
+    for (const CrowdQuery& q : queries) {
       const std::uint32_t slices = wall_ ? 1 : 2;
       seen_ += slices;
       const Span span = wall_ ? Span{static_cast<double>(q.begin_ns) / 1000,

@@ -28,6 +28,9 @@ void check_box(const LrbRep& rep, const Pose& pose, ExtremeVertices* last = null
   const Box slow = box_of_all_vertices(rep, pose), fast = world_box(rep, pose, last);
   CHECK(slow.min() == fast.min());
   CHECK(slow.max() == fast.max());
+  const Box either = BodyExtent(rep).in_world(pose, last);
+  CHECK(slow.min() == either.min());
+  CHECK(slow.max() == either.max());
 }
 
 std::vector<BodyPair> all_pairs(const std::vector<Box>& boxes) {
@@ -83,6 +86,20 @@ TEST_CASE("pseudo faces and what is left of the last step do not change a world 
   ExtremeVertices last;
   for (int i = 0; i < 100; ++i)
     check_box(rep, Pose::rotation({1, 2, 3}, i < 90 ? 0.02 * i : 1.9 * i, {0.01 * i, 0, 0}), &last);
+}
+
+TEST_CASE("a large body's world box comes from its tree") {
+  const LrbRep rep = LrbRep::without_regions(shapes::bumpy_sphere(6, 1), true, false);
+  REQUIRE(rep.vertices().size() > 40'000);
+  ExtremeVertices last;
+  const BodyExtent extent(rep);
+  for (int i = 0; i < 5; ++i) {
+    const Pose pose = Pose::rotation({1, -2, 3}, i, {0, 0.1 * i, 0});
+    const Box slow = box_of_all_vertices(rep, pose), fast = extent.in_world(pose, &last);
+    CHECK(slow.min() == fast.min());
+    CHECK(slow.max() == fast.max());
+    CHECK(last.vertex[0] != kNull);
+  }
 }
 
 TEST_CASE("a body that may leave the range of doubles meets every box") {
