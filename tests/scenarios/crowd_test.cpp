@@ -33,8 +33,8 @@ const ProgressReport kSilent = [](const std::string&, std::uint64_t, std::uint64
 json good() {
   return json::parse(R"({"name": "few", "purpose": "p", "seed": 3, "room": [3, 3, 3], "arrangement": "random",
     "bodies": [
-      {"name": "ball", "body": {"generator": "ball", "parameters": {"frequency": 3, "radius": 0.7}}, "count": 3},
-      {"name": "bead", "body": {"generator": "ball", "parameters": {"frequency": 2, "radius": 0.15}}, "count": 4},
+      {"name": "ball", "body": {"generator": "ball", "parameters": {"frequency": 3, "radius": 1.1}}, "count": 3},
+      {"name": "bead", "body": {"generator": "ball", "parameters": {"frequency": 2, "radius": 0.1}}, "count": 4},
       {"name": "bowl", "body": {"generator": "bowl", "parameters": {"segments": 10, "rows": 4}}, "count": 2},
       {"name": "stick", "body": {"generator": "stick", "parameters": {"segments": 6, "rows": 3},
                                  "pose": {"position": [0, 0, 0.4], "axis": [1, 0, 0], "degrees": 20}}, "count": 3}],
