@@ -7,6 +7,7 @@
 #include "scenarios/files.hpp"
 #include "scenarios/paper/experiment.hpp"
 #include "scenarios/paper/report.hpp"
+#include "scenarios/paper/report_pictures.hpp"
 
 namespace lrb::cli {
 namespace {
@@ -58,11 +59,12 @@ int run_paper(const PaperOptions& o, const Globals& globals) {
     throw InputError("experiment " + experiment.name +
                      ": nothing collides in it; leave out --shard and --merge");
   std::vector<ContactStep> steps = read_shards(o.merge);
-  make_folder(o.folder);
-  const FolderLock lock(o.folder);
   std::vector<std::string> notes;
   const std::vector<PaperObject> objects = make_objects(experiment, notes);
   note(globals, notes);
+  if (!o.merge.empty()) check_records({objects, steps, experiment, globals.command_line});
+  make_folder(o.folder);
+  const FolderLock lock(o.folder);
   if (o.merge.empty() && experiment.collides()) {
     Progress progress("paper", 0, globals.quiet);
     steps = run_sweep(objects, sweep, [&](std::uint64_t done, std::uint64_t of) {

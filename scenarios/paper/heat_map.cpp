@@ -64,13 +64,22 @@ CollideResult contact_of(const PaperPair& pair, const CloseUp& c) {
   return collide(pair.a.rep, c.steps.back().pose_a, pair.x.rep, c.steps.back().pose_x, request);
 }
 
+/// The contact region with most pairs of faces.
+std::vector<Eigen::Vector3d> largest_contact(const CollideResult& contact) {
+  const auto less = [](const ContactRegion& p, const ContactRegion& q) {
+    return p.pairs.size() < q.pairs.size();
+  };
+  const auto largest = std::max_element(contact.regions.begin(), contact.regions.end(), less);
+  return contact_points(std::span(&*largest, 1));
+}
+
 Camera camera_of(const PaperPair& pair, const Sitter& s) {
   const LrbRep& rep = pair.rep(s.side);
   FitOptions fit;
   fit.view = view_of(pair, s);
   constexpr double kAround = 1.2, kLeast = 0.12;  // of the contact's size, of the body's
-  return s.near ? fit_contact(contact_points(s.contact->regions), box_of(rep, pose_of(s)), kPanelWidth,
-                              kPanelHeight, fit, kAround, kLeast)
+  return s.near ? fit_contact(largest_contact(*s.contact), box_of(rep, pose_of(s)), kPanelWidth, kPanelHeight,
+                              fit, kAround, kLeast)
                 : fit_camera(body_points(rep, pose_of(s)), kPanelWidth, kPanelHeight, fit);
 }
 
@@ -146,7 +155,7 @@ Image draw_heat_maps(const PaperPair& pair, const CloseUp& easiest, const CloseU
   const Image all = montage(panels, options);
 
   Overlay overlay;
-  overlay.key = {{LegendItem::Mark::line, palette::kContact, "where the bodies meet"},
+  overlay.key = {{LegendItem::Mark::line, palette::kContact, "where the bodies meet in the end"},
                  {LegendItem::Mark::dashed, palette::kContact, "the same, hidden"}};
   overlay.scale = ScaleBar{"face tests of a face (log scale)", 0, most};
   constexpr int kRoom = 400;  // more than the legend needs; what it does not need is not drawn

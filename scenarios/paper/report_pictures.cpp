@@ -1,6 +1,7 @@
 #include "scenarios/paper/report_pictures.hpp"
 
 #include <algorithm>
+#include <optional>
 
 #include "engine/error.hpp"
 #include "render/overlay.hpp"
@@ -46,6 +47,21 @@ std::string tree_caption(const PaperPair& pair, const CloseUp& c) {
          "to read what it is.";
 }
 
+struct CloseUps {
+  PaperPair pair;
+  CloseUp easiest, hardest;
+};
+
+/// Nothing if the experiment reports none.
+std::optional<CloseUps> close_ups_of(const PaperReport& r) {
+  if (!r.experiment.reports(PaperPart::heat_maps) && !r.experiment.reports(PaperPart::refinement_tree))
+    return std::nullopt;
+  const PaperPair pair{r.objects.front(), object_called(r, r.experiment.close_up)};
+  const auto [least, most] = easiest_and_hardest(r.steps, pair.x.name);
+  return CloseUps{pair, close_up(pair, least, r.experiment.protocol, r.steps),
+                  close_up(pair, most, r.experiment.protocol, r.steps)};
+}
+
 }  // namespace
 
 void add_figure(Page& page, const std::string& folder, const std::string& title, const std::string& caption,
@@ -58,25 +74,31 @@ void add_figure(Page& page, const std::string& folder, const std::string& title,
   page.links.push_back({file, file, title});
 }
 
+void check_records(const PaperReport& r) {
+  for (const ContactStep& s : r.steps)
+    if (s.collision >= r.experiment.protocol.collisions)
+      throw InputError("the records hold collision " + std::to_string(s.collision) + " with " + s.object +
+                       ", numbered from 0, but the experiment has " +
+                       std::to_string(r.experiment.protocol.collisions) +
+                       ": give the options that the records were made with, such as --collisions");
+  static_cast<void>(close_ups_of(r));
+}
+
 void draw_close_ups(const PaperReport& r, const std::string& folder, Page& page,
                     std::vector<std::string>& notes) {
-  const bool heat_maps = r.experiment.reports(PaperPart::heat_maps);
-  const bool tree = r.experiment.reports(PaperPart::refinement_tree);
-  if (!heat_maps && !tree) return;
-  const PaperPair pair{r.objects.front(), object_called(r, r.experiment.close_up)};
-  const auto [least, most] = easiest_and_hardest(r.steps, pair.x.name);
-  const CloseUp hardest = close_up(pair, most, r.experiment.protocol, r.steps);
-  if (heat_maps) try {
-      const CloseUp easiest = close_up(pair, least, r.experiment.protocol, r.steps);
-      write_png(draw_heat_maps(pair, easiest, hardest), folder + "/heat_maps.png");
+  const std::optional<CloseUps> c = close_ups_of(r);
+  if (!c) return;
+  if (r.experiment.reports(PaperPart::heat_maps)) try {
+      write_png(draw_heat_maps(c->pair, c->easiest, c->hardest), folder + "/heat_maps.png");
       add_figure(page, folder, "Face tests over the bodies",
-                 heat_caption(pair, easiest, hardest, r.experiment.protocol.collisions), "heat_maps.png");
+                 heat_caption(c->pair, c->easiest, c->hardest, r.experiment.protocol.collisions),
+                 "heat_maps.png");
     } catch (const EnvironmentError& e) {
       notes.push_back(std::string("heat maps were not drawn: ") + e.what());
     }
-  if (tree) {
-    write_text(folder + "/refinement_tree.svg", icicle_svg(pair, hardest));
-    add_figure(page, folder, "The refinement tree of one collision", tree_caption(pair, hardest),
+  if (r.experiment.reports(PaperPart::refinement_tree)) {
+    write_text(folder + "/refinement_tree.svg", icicle_svg(c->pair, c->hardest));
+    add_figure(page, folder, "The refinement tree of one collision", tree_caption(c->pair, c->hardest),
                "refinement_tree.svg");
   }
 }

@@ -10,6 +10,10 @@ namespace lrb {
 void add_figure(Page& page, const std::string& folder, const std::string& title, const std::string& caption,
                 const std::string& file);
 
+/// Throws InputError if the steps are not those of the experiment, as far as numbers of collisions and its
+/// close-ups tell.
+void check_records(const PaperReport& report);
+
 /// Heat maps of the easiest and the hardest collision, and the refinement tree of the hardest one's busiest
 /// step, as far as the experiment reports them. `notes` gets what could not be drawn.
 void draw_close_ups(const PaperReport& report, const std::string& folder, Page& page,

@@ -60,6 +60,19 @@ TEST_CASE("in frames of the usual sizes nothing overlaps or is cut off") {
   CHECK_THROWS_AS(lay_out(overlay, 100, 60), InputError);
 }
 
+TEST_CASE("more pixels an inch change nothing but the number of pixels") {
+  if (!test::have_font()) return;
+  const Overlay overlay = full_overlay();
+  const OverlayLayout screen = lay_out(overlay, 1280, 720), print = lay_out(overlay, 3840, 2160, 3);
+  CHECK(print.text_height == 3 * screen.text_height);
+  REQUIRE(print.texts.size() == screen.texts.size());
+  for (std::size_t i = 0; i < print.texts.size(); ++i) {
+    CHECK(print.texts[i].text == screen.texts[i].text);
+    CHECK(std::abs(print.texts[i].box.y - 3 * screen.texts[i].box.y) < 3 * 12);
+  }
+  CHECK(std::abs(print.picture.height - 3 * screen.picture.height) < 3 * 12);
+}
+
 TEST_CASE("the overlay draws where it was laid out, the rest stays") {
   if (!test::have_font()) return;
   const Overlay overlay = full_overlay();

@@ -430,3 +430,34 @@ TEST_CASE("the environment is looked at before Mesa sees it") {
   CHECK_THROWS_AS(Rasterizer(), EnvironmentError);
   unsetenv("GALLIUM_DRIVER");
 }
+
+TEST_CASE(
+    "a transparent picture laid on a colour is the picture drawn on that colour: no fringe at any edge") {
+  DrawList list;
+  square(list, 10, 10, 70, 50, 0, flat({240, 240, 240}));
+  square(list, 30.4, 20.3, 90, 58.7, 1, flat({255, 60, 0, 120}, Layer::translucent));
+  square(list, 5, 40, 60.5, 57, 2, flat({0, 80, 255, 20}, Layer::translucent));
+  list.lines.push_back({{{3, 3, 3}, {95, 57, 3}, {95, 5, 3}}, true, {250, 250, 210, 200}, 2.3F});
+  const Camera camera = pixel_camera(100, 60);
+  for (const int supersample : {1, 2, 3}) {
+    RasterOptions options = size(100, 60, supersample);
+    options.background.reset();
+    const Image transparent = rasterizer().draw(list, camera, options);
+    for (const Rgba back : {kWhite, kBlack, Rgba{200, 40, 160}}) {
+      options.background = back;
+      const Image expected = rasterizer().draw(list, camera, options);
+      int worst = 0;
+      for (int y = 0; y < 60; ++y)
+        for (int x = 0; x < 100; ++x) {
+          const Rgba got = over(transparent.at(x, y), back), want = expected.at(x, y);
+          worst =
+              std::max({worst, std::abs(got.r - want.r), std::abs(got.g - want.g), std::abs(got.b - want.b)});
+        }
+      CHECK(worst <= 2);
+    }
+    bool partly = false;
+    for (const Rgba p : transparent.pixels()) partly |= p.a > 0 && p.a < 255;
+    CHECK(partly);
+    CHECK(transparent.at(99, 59) == kTransparent);
+  }
+}

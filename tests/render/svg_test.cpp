@@ -11,7 +11,9 @@
 #include "engine/error.hpp"
 #include "render/rasterize.hpp"
 #include "render/scene.hpp"
+#include "render/svg_montage.hpp"
 #include "tests/render/bodies.hpp"
+#include "tests/render/font_guard.hpp"
 
 using namespace lrb;
 using Eigen::Vector2d;
@@ -162,4 +164,41 @@ TEST_CASE("an SVG has no depth: triangles are refused") {
   DrawList list;
   list.triangles.emplace_back();
   CHECK_THROWS_AS(svg(list, Camera{}), InputError);
+}
+
+TEST_CASE("an SVG keeps its size on paper, whatever its units") {
+  DrawList list;
+  list.lines.push_back({{{0, 0, 0}, {1, 0, 0}}, false, kBlack, 1});
+  SvgOptions options;
+  options.width = 1250, options.height = 625, options.units_per_pixel = 3.125;
+  const std::string text = svg(list, Camera{}, options);
+  CHECK(count(text, " width=\"400\" height=\"200\" viewBox=\"0 0 1250 625\"") == 1);
+}
+
+TEST_CASE("a montage of SVG: panels where the pixels would be, captions as text") {
+  if (!test::have_font()) return;
+  DrawList list;
+  list.lines.push_back({{{0, 0, 0}, {1, 0, 0}}, false, kBlack, 1});
+  SvgOptions each;
+  each.width = 300, each.height = 200;
+  const std::string panel = svg(list, Camera{}, each);
+  const std::vector<Panel> panels = {{Image(300, 200), "one < two"}, {Image(300, 200), "more"}};
+  MontageOptions columns;
+  columns.columns = 2;
+  const MontageLayout layout = lay_out(panels, columns);
+  SvgMontageOptions options;
+  options.title = "A & B";
+  const std::string text = svg_montage({panel, panel}, layout, options);
+  for (const PixelRect& r : layout.panels)
+    CHECK(count(text, "<svg x=\"" + std::to_string(r.x) + "\" y=\"" + std::to_string(r.y) +
+                          "\" width=\"300\" height=\"200\" viewBox=\"0 0 300 200\"") == 1);
+  CHECK(count(text, "<svg") == 3);
+  CHECK(count(text, "</svg>") == 3);
+  CHECK(count(text, ">(a) one &lt; two</text>") == 1);
+  CHECK(count(text, ">(b) more</text>") == 1);
+  CHECK(count(text, "<title>A &amp; B</title>") == 1);
+  CHECK(count(text, "<rect") == 3);
+  options.transparent = true;
+  CHECK(count(svg_montage({panel, panel}, layout, options), "<rect") == 2);
+  CHECK_THROWS_AS(svg_montage({"no picture", panel}, layout), InputError);
 }

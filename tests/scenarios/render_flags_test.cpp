@@ -68,6 +68,70 @@ TEST_CASE("render --format svg: each frame, of 2D bodies") {
   CHECK_FALSE(std::filesystem::exists(folder / "svg/frames/frame_0000.svg"));  // of the former run
 }
 
+TEST_CASE("--dpi: the same size on paper in more pixels, said in the file; lines and texts grow with them") {
+  const Folder folder;
+  folder.write("s.json", scenario("island"));
+  REQUIRE(run(folder, {"run", "s.json", "-o", "run"}).code == 0);
+  const auto frame = [&](const std::string& out, std::vector<std::string> more) {
+    std::vector<std::string> all = {"render", "run/trace.json", "-o",      out,        "--most",
+                                    "1",      "--size",         "480x360", "--format", "svg"};
+    all.insert(all.end(), more.begin(), more.end());
+    REQUIRE(run(folder, all).code == 0);
+    return read_png(folder / (out + "/frames/frame_0000.png"));
+  };
+  const DecodedPng screen = frame("screen", {}), print = frame("print", {"--dpi", "288"});
+  CHECK(screen.dpi == 0);
+  CHECK(print.dpi == doctest::Approx(288).epsilon(0.001));
+  REQUIRE(print.image.width() == 3 * screen.image.width());
+  REQUIRE(print.image.height() == 3 * screen.image.height());
+  // Ink per area is the same only if everything has grown alike.
+  const auto ink = [](const Image& image) {
+    double sum = 0;
+    for (const Rgba p : image.pixels()) sum += 255 - luma(p);
+    return sum / (255.0 * image.width() * image.height());
+  };
+  CHECK(ink(print.image) == doctest::Approx(ink(screen.image)).epsilon(0.03));
+  const std::string text = slurp(folder / "print/frames/frame_0000.svg");
+  CHECK(text.find("width=\"480\"") != std::string::npos);
+  CHECK(text.find("viewBox=\"0 0 1440 ") != std::string::npos);
+}
+
+TEST_CASE("--transparent: no background in PNG and SVG; laid on white, the usual frame") {
+  const Folder folder;
+  folder.write("s.json", scenario("island"));
+  REQUIRE(run(folder, {"run", "s.json", "-o", "run"}).code == 0);
+  REQUIRE(run(folder, {"render", "run/trace.json", "-o", "clear", "--most", "1", "--size", "480x360",
+                       "--format", "svg", "--montage", "1", "--transparent"})
+              .code == 0);
+  REQUIRE(run(folder, {"render", "run/trace.json", "-o", "white", "--most", "1", "--size", "480x360"}).code ==
+          0);
+  const Image white = read_png(folder / "white/frames/frame_0000.png").image,
+              clear = read_png(folder / "clear/frames/frame_0000.png").image;
+  CHECK(white.opaque());
+  CHECK(clear.at(0, 0) == kTransparent);
+  int worst = 0;
+  for (std::size_t i = 0; i < white.pixels().size(); ++i) {
+    const Rgba got = over(clear.pixels()[i], kWhite), want = white.pixels()[i];
+    worst = std::max({worst, std::abs(got.r - want.r), std::abs(got.g - want.g), std::abs(got.b - want.b)});
+  }
+  CHECK(worst <= 3);
+  CHECK(slurp(folder / "clear/montage.svg").find("<rect") == std::string::npos);
+  CHECK(read_png(folder / "clear/montage.png").image.at(0, 0) == kTransparent);
+}
+
+TEST_CASE("run --format svg: frames, montage and caption; the former run's are gone") {
+  const Folder folder;
+  REQUIRE(run(folder, {"run", "figure2", "-o", "two", "--most", "4"}).code == 0);
+  const std::string montage = slurp(folder / "two/montage.svg"), caption = slurp(folder / "two/caption.txt");
+  CHECK(caption.find("(a) outermost wrapper, 7 faces; (b) ") != std::string::npos);
+  CHECK(caption.find("(d) the body itself, 144 faces.") != std::string::npos);
+  CHECK(montage.find(">(a) outermost wrapper, 7 faces</text>") != std::string::npos);
+  CHECK(std::filesystem::exists(folder / "two/frames/frame_0003.svg"));
+  REQUIRE(run(folder, {"run", "figure2", "-o", "two", "--most", "2", "--format", "png"}).code == 0);
+  for (const char* gone : {"two/montage.svg", "two/frames/frame_0000.svg"})
+    CHECK_FALSE(std::filesystem::exists(folder / gone));
+}
+
 TEST_CASE("render: flags that do not fit are refused before anything is written") {
   const Folder folder;
   folder.write("s.json", scenario("ball"));
@@ -75,6 +139,9 @@ TEST_CASE("render: flags that do not fit are refused before anything is written"
   const std::vector<std::string> before = folder.tree();
   for (const std::vector<std::string>& flags : {std::vector<std::string>{"--format", "svg"},
                                                 {"--format", "gif"},
+                                                {"--dpi", "2400"},
+                                                {"--dpi", "0"},
+                                                {"--dpi", "x"},
                                                 {"--region", "99999"},
                                                 {"--region", "b0"},
                                                 {"--region", "c0"},
