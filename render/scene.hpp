@@ -29,9 +29,9 @@ struct SceneBody {
   Pose pose;
   std::span<const double> face_values;  ///< (|F|) for ColourBy::value; empty: none
   std::string name;                     ///< in the legend; empty: "A", "B"
-  std::optional<Rgba> colour;           ///< nothing: the side's
-  std::span<const std::uint8_t>
-      in_contact;  ///< (|real F|), not 0: drawn in the contacts' colour; empty: none
+  std::optional<Rgba> colour = {};      ///< nothing: the side's
+  /// (|real F|), not 0: drawn in the contacts' colour; empty: none.
+  std::span<const std::uint8_t> in_contact = {};
 };
 
 enum class ColourBy : std::uint8_t {

@@ -1,6 +1,7 @@
 #include "scenarios/crowd/crowd_report.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 
 #include "engine/mesh/atomic_file.hpp"
@@ -35,16 +36,19 @@ std::vector<PageNumber> numbers(const Crowd& crowd, const CrowdRun& run) {
     tests += sum(s).face_tests;
   }
   for (std::uint32_t i = 0; i < n; ++i) faces += run.rep(i).real_face_count();
-  const auto steps = static_cast<double>(run.steps.size());
-  const auto a_step = [&](std::uint64_t x) { return short_number(static_cast<double>(x) / steps); };
-  return {
-      {"Bodies", group_digits(n),
-       "of " + std::to_string(crowd.kinds.size()) + (crowd.kinds.size() == 1 ? " kind, " : " kinds, ") +
-           group_digits(faces) + " real faces"},
-      {"Time steps", group_digits(run.steps.size()), ""},
-      {"Boxes that meet", a_step(asked) + " pairs a step", "of " + group_digits(all) + " pairs of bodies"},
-      {"Bodies that meet", a_step(met) + " pairs a step", ""},
-      {"Face tests", a_step(tests) + " a step", "exact comparisons of two faces"}};
+  const auto a_step = [&](std::uint64_t x) {
+    const double mean = static_cast<double>(x) / static_cast<double>(run.steps.size());
+    constexpr double kWholeFrom = 1000;
+    return mean < kWholeFrom ? short_number(mean)
+                             : group_digits(static_cast<std::uint64_t>(std::round(mean)));
+  };
+  return {{"Bodies", group_digits(n),
+           "of " + std::to_string(crowd.kinds.size()) + (crowd.kinds.size() == 1 ? " kind, " : " kinds, ") +
+               group_digits(faces) + " real faces"},
+          {"Time steps", group_digits(run.steps.size()), ""},
+          {"Boxes that meet", a_step(asked), "of " + group_digits(all) + " pairs of bodies, a step"},
+          {"Bodies that meet", a_step(met), "pairs a step"},
+          {"Face tests", a_step(tests), "exact comparisons of two faces, a step"}};
 }
 
 PageChart chart(const char* title, const char* y_label) {
@@ -100,12 +104,14 @@ std::string words(Relation r) {
   return out;
 }
 
-PageTable last_queries(const CrowdRun& run) {
+PageTable last_queries(const Crowd& crowd, const CrowdRun& run) {
   constexpr std::size_t kMostRows = 200;
   PageTable t;
   t.title = "Bodies that meet at step " + std::to_string(run.steps.size() - 1);
   t.columns = {"A",          "B",           "relation",   "pairs of faces", "contact regions",
                "face tests", "refinements", "fingerprint"};
+  const bool regions = crowd.request.contacts;
+  if (!regions) t.columns.erase(t.columns.begin() + 4);
   std::size_t left_out = 0;
   for (const CrowdQuery& q : run.steps.back().queries) {
     if (!q.meets()) continue;
@@ -118,6 +124,7 @@ PageTable last_queries(const CrowdRun& run) {
                       group_digits(r.pair_count), group_digits(q.contact_regions),
                       group_digits(r.counters.face_tests), group_digits(r.counters.refinements),
                       trace::to_hex(r.fingerprint)});
+    if (!regions) t.rows.back().erase(t.rows.back().begin() + 4);
   }
   t.note = "Of pairs whose boxes do not meet nothing is asked: they have no point in common.";
   if (left_out > 0) t.note += " " + std::to_string(left_out) + " more are left out here.";
@@ -134,7 +141,7 @@ Page crowd_page(const Crowd& crowd, const CrowdRun& run, const DrawnFrames& draw
   page.numbers = numbers(crowd, run);
   add_frames(page, drawn, folder);
   page.charts = charts(run);
-  page.tables.push_back(last_queries(run));
+  page.tables.push_back(last_queries(crowd, run));
   page.links = {{"trace.json", "trace.json",
                  crowd.clock == trace::Clock::event
                      ? "every query on the tracks of its bodies; drag it onto ui.perfetto.dev"

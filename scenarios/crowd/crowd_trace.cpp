@@ -154,7 +154,8 @@ class Writer {
     begin(name, trace::name_of(r.relation), "X", track, span);
     w_.member("A", run_.names[q.bodies.i]).member("B", run_.names[q.bodies.j]);
     w_.member("relation", trace::name_of(r.relation)).member("pairs", r.pair_count);
-    w_.member("fingerprint", trace::to_hex(r.fingerprint)).member("contact regions", q.contact_regions);
+    w_.member("fingerprint", trace::to_hex(r.fingerprint));
+    if (crowd_.request.contacts) w_.member("contact regions", q.contact_regions);
     w_.member("face tests", c.face_tests).member("refinements", c.refinements);
     w_.member("regions opened", c.regions_opened).member("node pairs", c.node_pairs);
     w_.member("box tests", c.box_tests).member("exact fallbacks", c.exact_fallbacks);
