@@ -31,4 +31,24 @@ class Fnv64 {
   std::uint64_t h_ = 0xcbf29ce484222325u;
 };
 
+/// A checksum like it that is read at the speed of memory: eight sums side by side, of 64-bit words, and one
+/// over them and the bytes that are left. Any change within eight bytes changes it.
+inline std::uint64_t fnv64_of_words(const void* data, std::size_t size) {
+  constexpr std::size_t kLanes = 8, kWord = sizeof(std::uint64_t);
+  const auto* bytes = static_cast<const unsigned char*>(data);
+  std::uint64_t lane[kLanes];
+  for (std::size_t k = 0; k < kLanes; ++k) lane[k] = 0xcbf29ce484222325u + k;
+  std::size_t at = 0;
+  for (; at + kLanes * kWord <= size; at += kLanes * kWord) {
+    std::uint64_t word[kLanes];
+    std::memcpy(word, bytes + at, sizeof word);
+    for (std::size_t k = 0; k < kLanes; ++k) lane[k] = (lane[k] ^ word[k]) * 0x100000001b3u;
+  }
+  Fnv64 all;
+  all.add_value(static_cast<std::uint64_t>(size));
+  all.add_bytes(lane, sizeof lane);
+  all.add_bytes(bytes + at, size - at);
+  return all.value();
+}
+
 }  // namespace lrb

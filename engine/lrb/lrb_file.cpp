@@ -14,11 +14,8 @@ namespace {
 /// As PNG's: a byte beyond ASCII and line ends show a file that was sent as text.
 constexpr std::string_view kMagic("\x89LRB\r\n\x1a\n", 8);
 
-std::uint64_t checksum(std::string_view bytes) {
-  Fnv64 h;
-  h.add_bytes(bytes.data(), bytes.size());
-  return h.value();
-}
+/// The first version that holds the hash and the tree.
+constexpr std::uint32_t kFirstWithTree = 2;
 
 class Writer {
  public:
@@ -84,6 +81,13 @@ class Reader {
 
 }  // namespace
 
+std::uint64_t lrb_checksum(std::string_view bytes, std::uint32_t version) {
+  if (version >= kFirstWithTree) return fnv64_of_words(bytes.data(), bytes.size());
+  Fnv64 h;
+  h.add_bytes(bytes.data(), bytes.size());
+  return h.value();
+}
+
 void save_lrb(const LrbRep& rep, const std::string& path) {
   const LrbData& d = rep.data();
   Writer w;
@@ -99,7 +103,10 @@ void save_lrb(const LrbRep& rep, const std::string& path) {
   w.array(d.inner_cell);
   w.array(d.outer_cell);
   w.array(d.region_layer);
-  w.value(checksum(w.bytes()));
+  w.value(rep.hash());
+  w.array(rep.tree().nodes());
+  w.array(rep.tree().blocks());
+  w.value(lrb_checksum(w.bytes()));
   write_file(path, w.bytes());
 }
 
@@ -120,7 +127,7 @@ LrbRep load_lrb(std::string_view bytes, const std::string& name) {
   if (bytes.size() < r.at() + sizeof(std::uint64_t)) r.refuse("the file is cut short");
   std::uint64_t stored;
   std::memcpy(&stored, bytes.data() + bytes.size() - sizeof stored, sizeof stored);
-  if (stored != checksum(bytes.substr(0, bytes.size() - sizeof stored)))
+  if (stored != lrb_checksum(bytes.substr(0, bytes.size() - sizeof stored), version))
     r.refuse("the checksum does not match: the file is damaged or cut short");
   LrbData d;
   d.dim = static_cast<int>(r.value<std::uint32_t>());
@@ -136,10 +143,14 @@ LrbRep load_lrb(std::string_view bytes, const std::string& name) {
   d.inner_cell = r.array<CellId>();
   d.outer_cell = r.array<CellId>();
   d.region_layer = r.array<std::uint16_t>();
+  const bool with_tree = version >= kFirstWithTree;
+  const auto hash = with_tree ? r.value<std::uint64_t>() : 0;
+  auto nodes = with_tree ? r.array<TreeNode>() : std::vector<TreeNode>();
+  auto blocks = with_tree ? r.array<LeafBlock>() : std::vector<LeafBlock>();
   if (r.at() + sizeof stored != bytes.size()) r.refuse("there is more than a .lrb file holds");
   if (d.face_offsets.empty()) r.refuse("the offsets of the faces are missing");
   try {
-    return LrbRep(std::move(d));
+    return with_tree ? LrbRep(std::move(d), std::move(nodes), std::move(blocks), hash) : LrbRep(std::move(d));
   } catch (const InputError& e) {
     throw InputError(printable_name(name) + ": " + e.what());
   }

@@ -68,6 +68,19 @@ double face_size(const LrbData& d, FaceId f) {
 }  // namespace
 
 LrbRep::LrbRep(LrbData data) : d_(std::move(data)) {
+  derive();
+  hash_ = hash_of(d_);
+  tree_ = BlockTree(*this);
+}
+
+LrbRep::LrbRep(LrbData data, std::vector<TreeNode> nodes, std::vector<LeafBlock> blocks, std::uint64_t hash)
+    : d_(std::move(data)), hash_(hash) {
+  derive();
+  tree_ = BlockTree(*this, std::move(nodes), std::move(blocks));
+}
+
+/// All but the tree and the hash.
+void LrbRep::derive() {
   check(d_);
   link_faces_to_regions();
   find_parents();
@@ -75,10 +88,8 @@ LrbRep::LrbRep(LrbData data) : d_(std::move(data)) {
   if (d_.dim == 3 && d_.face_vertices.size() != 3 * d_.face_count())
     for (FaceId f = 0; f < face_count(); ++f)
       face_of_simplex_.insert(face_of_simplex_.end(), Mesh::simplices_of(d_.face(f).size(), 3), f);
-  hash_ = hash_of(d_);
   static std::atomic<std::uint64_t> next_serial{1};
   serial_ = next_serial++;
-  tree_ = BlockTree(*this);
 }
 
 LrbRep LrbRep::without_regions(const Mesh& mesh, bool closed, bool self_intersecting) {

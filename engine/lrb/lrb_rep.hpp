@@ -57,6 +57,9 @@ class LrbRep {
   /// Checks the arrays against each other (throws InputError naming the element), derives collectors, parents
   /// and the query's tree.
   explicit LrbRep(LrbData data);
+  /// The same with what took long to derive, stored: the tree's nodes and blocks, and hash_of(data). Both are
+  /// checked only as far as safety goes (see BlockTree); that they belong to the data is the caller's word.
+  LrbRep(LrbData data, std::vector<TreeNode> nodes, std::vector<LeafBlock> blocks, std::uint64_t hash);
   /// A body without regions: its outermost wrapper is itself. `closed` as found by check_mesh().
   static LrbRep without_regions(const Mesh& mesh, bool closed, bool self_intersecting);
 
@@ -128,6 +131,7 @@ class LrbRep {
   std::size_t memory_bytes() const;
 
  private:
+  void derive();
   void link_faces_to_regions();
   void find_parents();
   void find_components();

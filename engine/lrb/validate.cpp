@@ -21,6 +21,7 @@ class Validator {
 
   ValidateReport run() {
     check_cells();
+    check_derived();
     if (options_.embedding) check_embedding();
     if (report_.valid || report_.violation_count < options_.max_messages) check_wrapper_states();
     return std::move(report_);
@@ -30,6 +31,12 @@ class Validator {
   void violation(const std::string& text) {
     report_.valid = false;
     if (report_.violation_count++ < options_.max_messages) report_.violations.push_back(text);
+  }
+
+  /// What a file stores beside the complex.
+  void check_derived() {
+    if (!rep_.tree().bounds_hold(rep_)) violation("the query's tree has bounds that do not hold its faces");
+    if (hash_of(rep_.data()) != rep_.hash()) violation("the stored hash is not that of the complex");
   }
 
   void check_closed(const std::string& what) {

@@ -36,7 +36,8 @@ struct ValidateReport {
 /// solid and regions add up to the outermost wrapper's; no two faces of the complex meet but in shared
 /// vertices and edges (this is the proof of embedding; a face that touches a lid which hides it, and stays
 /// behind it, is counted apart); every random wrapper state is closed, has the volume of its cells, and holds
-/// real vertices that it does not touch strictly inside.
+/// real vertices that it does not touch strictly inside. Beside them, what a file stores to save time: the
+/// hash, and the bounds of the query's tree.
 ValidateReport validate(const LrbRep& rep, const ValidateOptions& options = {});
 
 /// Signed volume (2D: area) behind a closed set of faces: those of `outward` taken with their normal outward,

@@ -319,18 +319,22 @@ class BlockTreeBuilder {
   BinaryBuilder binary_;
 };
 
-BlockTree::BlockTree(const LrbRep& rep) {
-  const std::uint32_t n = rep.real_simplex_count();
-  for (SimplexId s = 0; s < n; ++s) {
+void BlockTree::measure(const LrbRep& rep) {
+  for (SimplexId s = 0; s < rep.real_simplex_count(); ++s) {
     VertexId v[3];
     rep.simplex(s, v);
     for (int k = 0; k < rep.dim(); ++k)
       extent_ = std::max(extent_, rep.vertices()[v[k]].cwiseAbs().maxCoeff());
   }
-  if (n == 0) return;
+  if (rep.real_simplex_count() == 0) return;
   int exponent = 0;
   std::frexp(extent_, &exponent);
   unit_ = std::ldexp(1.0, std::clamp(exponent, -1022, 1023));
+}
+
+BlockTree::BlockTree(const LrbRep& rep) {
+  measure(rep);
+  if (rep.real_simplex_count() == 0) return;
   Soup soup = make_soup(rep, unit_);
   BlockTreeBuilder(*this, soup);
   nodes_.shrink_to_fit();

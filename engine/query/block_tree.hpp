@@ -51,6 +51,12 @@ class BlockTree {
  public:
   BlockTree() = default;
   explicit BlockTree(const LrbRep& rep);
+  /// As it was when it was stored. Throws InputError unless it can be walked safely and its leaves hold every
+  /// real simplex once. That its bounds are right is taken for granted: bounds_hold() tells.
+  BlockTree(const LrbRep& rep, std::vector<TreeNode> nodes, std::vector<LeafBlock> blocks);
+
+  /// Whether every node's boxes hold what lies beneath: what the query's completeness rests on.
+  bool bounds_hold(const LrbRep& rep) const;
 
   bool empty() const { return nodes_.empty(); }
   const std::vector<TreeNode>& nodes() const { return nodes_; }  ///< the root is node 0
@@ -64,6 +70,8 @@ class BlockTree {
 
  private:
   friend class BlockTreeBuilder;
+  void measure(const LrbRep& rep);  ///< sets unit and extent
+
   std::vector<TreeNode> nodes_;
   std::vector<LeafBlock> blocks_;
   double unit_ = 1;

@@ -4,6 +4,7 @@
 #include <sstream>
 
 #include <nlohmann/json.hpp>
+#include <sys/resource.h>
 
 #include "engine/error.hpp"
 #include "engine/lrb/lrb_file.hpp"
@@ -24,6 +25,15 @@ struct BuildCommandOptions {
   bool json = false, no_validate = false;
 };
 
+constexpr double kMega = 1e6;
+
+/// Most memory that this process ever held, in bytes.
+std::uint64_t peak_bytes() {
+  rusage use{};
+  getrusage(RUSAGE_SELF, &use);
+  return 1024 * static_cast<std::uint64_t>(use.ru_maxrss);
+}
+
 std::string as_text(const nlohmann::ordered_json& j, const ValidateReport* report) {
   const auto figure = [&](const char* key) { return for_people(j[key], 4); };
   std::ostringstream out;
@@ -34,7 +44,8 @@ std::string as_text(const nlohmann::ordered_json& j, const ValidateReport* repor
       << "  regions  " << figure("regions") << " in " << figure("layers") << " layers\n"
       << "  volume   solid " << figure("volume_solid") << ", outermost wrapper " << figure("volume_outer")
       << ", convex hull " << figure("volume_hull") << "\n"
-      << "  memory   " << figure("bytes_per_real_face") << " bytes a real face\n"
+      << "  memory   " << figure("bytes_per_real_face") << " bytes a real face; the program held "
+      << for_people(j["peak_bytes"].get<double>() / kMega, 3) << " MB at most\n"
       << "  built in " << figure("seconds") << " s\n";
   if (report != nullptr) {
     out << "  valid    " << (report->valid ? "yes" : "NO") << "\n";
@@ -59,6 +70,7 @@ int run_build(const BuildCommandOptions& o, const Globals& globals) {
 
   nlohmann::ordered_json j = body_figures(rep);
   j["seconds"] = seconds;
+  j["peak_bytes"] = peak_bytes();
   j["notes"] = notes;  // what was done to the mesh: nothing is, in silence
   ValidateReport report;
   if (o.no_validate) {

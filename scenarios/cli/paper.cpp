@@ -1,13 +1,16 @@
+#include <chrono>
 #include <cstdio>
 #include <memory>
 
 #include "engine/error.hpp"
 #include "scenarios/cli/command.hpp"
+#include "scenarios/cli/paper_series.hpp"
 #include "scenarios/cli/progress.hpp"
 #include "scenarios/files.hpp"
 #include "scenarios/paper/experiment.hpp"
 #include "scenarios/paper/report.hpp"
 #include "scenarios/paper/report_pictures.hpp"
+#include "scenarios/paper/shard_file.hpp"
 
 namespace lrb::cli {
 namespace {
@@ -19,6 +22,7 @@ struct PaperOptions {
   std::optional<double> step;
   std::optional<std::uint64_t> seed;
   std::uint32_t jobs = 1;
+  PaperSeriesOptions series;
   bool json = false, print = false;
 };
 
@@ -47,37 +51,76 @@ std::vector<ContactStep> read_shards(const std::vector<std::string>& files) {
   return merged(std::move(steps));
 }
 
-int run_paper(const PaperOptions& o, const Globals& globals) {
+/// Runs a part of the command, and notes what it took.
+class Clock {
+ public:
+  template <class Part>
+  auto run(const std::string& name, const Part& part) {
+    const auto begin = std::chrono::steady_clock::now();
+    auto result = part();
+    taken.emplace_back(name, std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
+    return result;
+  }
+  std::vector<std::pair<std::string, double>> taken;
+};
+
+std::vector<ContactStep> sweep_objects(std::span<const PaperObject> objects, const SweepOptions& sweep,
+                                       const Globals& globals) {
+  Progress progress("paper", 0, globals.quiet);
+  return run_sweep(objects, sweep, [&](std::uint64_t done, std::uint64_t of) {
+    progress.set_total(of);
+    progress.set(done);
+  });
+}
+
+int run_paper(PaperOptions o, const Globals& globals) {
   if (o.print) {
     print(shipped_experiment(o.experiment));
     return kOk;
   }
-  const PaperExperiment experiment = experiment_of(o);
-  SweepOptions sweep{experiment.protocol, {}, o.jobs};
-  if (!o.shard.empty()) sweep.shard = read_shard(o.shard);
+  PaperExperiment experiment = experiment_of(o);
   if (!experiment.collides() && (!o.shard.empty() || !o.merge.empty()))
     throw InputError("experiment " + experiment.name +
                      ": nothing collides in it; leave out --shard and --merge");
-  std::vector<ContactStep> steps = read_shards(o.merge);
+  const bool merging = !o.merge.empty();
+  if (merging) {
+    const ShardFile whole = read_shard_files(o.merge);
+    experiment.protocol = whole.protocol;
+    o.series.resolutions = whole.resolutions;
+  } else if (!experiment.collides() || (experiment.name != "paper" && o.series.meshes.empty())) {
+    o.series.resolutions.most = 0;  // other experiments have a series only with meshes for it
+  }
+  SweepOptions sweep{experiment.protocol, {}, o.jobs};
+  if (!o.shard.empty()) sweep.shard = read_shard(o.shard);
+  const bool with_series = o.series.resolutions.most > 0;
+  std::vector<ContactStep> steps = read_shards(o.merge), series_steps;
+  if (merging && with_series) series_steps = read_series_shards(o.merge);
+  Clock clock;
   std::vector<std::string> notes;
-  const std::vector<PaperObject> objects = make_objects(experiment, notes);
+  const std::vector<PaperObject> objects =
+      clock.run("the paper's objects", [&] { return make_objects(experiment, notes); });
   note(globals, notes);
-  if (!o.merge.empty()) check_records({objects, steps, experiment, globals.command_line});
+  if (merging) check_records({objects, steps, experiment, globals.command_line});
   make_folder(o.folder);
   const FolderLock lock(o.folder);
-  if (o.merge.empty() && experiment.collides()) {
-    Progress progress("paper", 0, globals.quiet);
-    steps = run_sweep(objects, sweep, [&](std::uint64_t done, std::uint64_t of) {
-      progress.set_total(of);
-      progress.set(done);
-    });
-  }
-  if (sweep.shard.count > 1 && o.merge.empty()) {
+  const LrbRep& a = objects[0].rep;
+  if (!merging && experiment.collides())
+    steps = clock.run("their collisions", [&] { return sweep_objects(objects, sweep, globals); });
+  const std::vector<SeriesObject> series =
+      clock.run("bodies at several resolutions", [&] { return make_series(o.series, a, globals); });
+  if (!merging && with_series)
+    series_steps = clock.run("their collisions", [&] { return run_series(a, series, sweep, globals); });
+  if (!o.shard.empty()) {
+    write_shard_file({sweep.shard, sweep.protocol, o.series.resolutions}, o.folder);
     write_text(o.folder + "/records.jsonl", to_json_lines(steps));
+    if (with_series) write_series_shard(series_steps, o.folder);
     print(o.folder + "/records.jsonl\n");
     return kOk;
   }
-  note(globals, write_paper_report({objects, steps, experiment, globals.command_line}, o.folder));
+  const SeriesReport series_report{a, series, series_steps, sweep.jobs};
+  note(globals, write_paper_report({objects, steps, experiment, globals.command_line,
+                                    with_series ? &series_report : nullptr, clock.taken},
+                                   o.folder));
   print(o.json ? read_text(o.folder + "/tables.json") : o.folder + "/index.html\n");
   return kOk;
 }
@@ -85,8 +128,9 @@ int run_paper(const PaperOptions& o, const Globals& globals) {
 }  // namespace
 
 Command add_paper(CLI::App& root, const Globals& globals) {
-  CLI::App* app = root.add_subcommand(
-      "paper", "The paper's experiment: its tables and figures, and close-ups of single collisions");
+  CLI::App* app = root.add_subcommand("paper",
+                                      "The paper's experiment: its tables and figures, close-ups of single "
+                                      "collisions, and the same on meshes");
   const auto o = std::make_shared<PaperOptions>();
   app->add_option("-o,--output", o->folder, "Folder to write to")->type_name("DIR")->capture_default_str();
   app->add_option(
@@ -109,12 +153,18 @@ Command add_paper(CLI::App& root, const Globals& globals) {
       ->check(CLI::Range(1u, 1024u))
       ->type_name("N")
       ->capture_default_str();
-  CLI::Option* shard = app->add_option("--shard", o->shard,
-                                       "Part i (from 0) of n of the collisions: writes records.jsonl alone")
-                           ->type_name("i/n");
-  app->add_option("--merge", o->merge, "Report these records instead of computing any")
-      ->type_name("records.jsonl...")
-      ->excludes(shard);
+  CLI::Option* shard =
+      app->add_option("--shard", o->shard, "Part i (from 0) of n of the collisions: writes records alone")
+          ->type_name("i/n");
+  CLI::Option* merge = app->add_option("--merge", o->merge,
+                                       "Report the records of all shards instead of computing any; with the "
+                                       "shards' --meshes, if they had any")
+                           ->type_name("records.jsonl...")
+                           ->excludes(shard);
+  add_series_options(*app, o->series);
+  for (const char* of_shards :
+       {"--collisions", "--step", "--steps-after", "--seed", "--resolutions", "--subdivide"})
+    merge->excludes(app->get_option(of_shards));
   app->add_flag("--json", o->json, "Print the tables instead of the page's path");
   return {app, [o, &globals] { return run_paper(*o, globals); }};
 }

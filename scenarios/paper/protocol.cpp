@@ -1,6 +1,7 @@
 #include "scenarios/paper/protocol.hpp"
 
 #include <algorithm>
+#include <chrono>
 
 #include <Eigen/Geometry>
 
@@ -24,17 +25,32 @@ RecursionCount count_of(const CollideResult& result, const std::vector<SimplexPa
   return n;
 }
 
+template <class Query>
+CollideResult timed(const Query& query, std::uint64_t& nanoseconds) {
+  const auto begin = std::chrono::steady_clock::now();
+  CollideResult result = query();
+  const std::chrono::nanoseconds taken = std::chrono::steady_clock::now() - begin;
+  nanoseconds = static_cast<std::uint64_t>(taken.count());
+  return result;
+}
+
 ContactStep count_step(const LrbRep& a, const Pose& pose_a, const LrbRep& x, const Pose& pose_x,
-                       const CollideResult& complete, QueryContext& context) {
+                       const CollideResult& complete, std::uint64_t nanoseconds, QueryContext& context) {
   ContactStep step;
   step.relation = complete.relation;
   NullProbe probe;
   for (std::size_t i = 0; i < kRecursions.size(); ++i) {
     CollideRequest request;
     request.recursion = kRecursions[i];
-    step.counts[i] = kRecursions[i] == Recursion::complete
-                         ? count_of(complete, complete.pairs)
-                         : count_of(collide(a, pose_a, x, pose_x, request, context, probe), complete.pairs);
+    if (kRecursions[i] != Recursion::complete) {
+      std::uint64_t taken = 0;
+      const auto ask = [&] { return collide(a, pose_a, x, pose_x, request, context, probe); };
+      step.counts[i] = count_of(timed(ask, taken), complete.pairs);
+      step.counts[i].nanoseconds = taken;
+    } else {
+      step.counts[i] = count_of(complete, complete.pairs);
+      step.counts[i].nanoseconds = nanoseconds;
+    }
   }
   return step;
 }
@@ -75,10 +91,12 @@ std::vector<ContactStep> run_collision(const LrbRep& a, const LrbRep& x, const s
   for (std::uint32_t i = 0; i * protocol.step * unit < 2 * start && since_contact <= protocol.steps_after;
        ++i) {
     pose_x.t = (start - i * protocol.step * unit) * from - centre_x;
-    const CollideResult result = collide(a, pose_a, x, pose_x, {}, context, probe);
+    std::uint64_t nanoseconds = 0;
+    const CollideResult result =
+        timed([&] { return collide(a, pose_a, x, pose_x, {}, context, probe); }, nanoseconds);
     met |= !result.pairs.empty();
     if (!result.pairs.empty()) {
-      ContactStep step = count_step(a, pose_a, x, pose_x, result, context);
+      ContactStep step = count_step(a, pose_a, x, pose_x, result, nanoseconds, context);
       step.object = object;
       step.collision = collision;
       step.step = since_contact;

@@ -37,6 +37,7 @@ struct RecursionCount {
   std::uint64_t pairs = 0;        ///< of real triangles that it found to meet
   std::uint64_t missed = 0;       ///< pairs that meet, but that it did not find
   std::uint64_t bound_tests = 0;  ///< boxes and planes, eight to a test counted as eight (complete only)
+  std::uint64_t nanoseconds = 0;  ///< that it took, once; of no record, because it is never the same again
 };
 
 /// One time step with a face contact.

@@ -123,6 +123,17 @@ std::string protocol_text(const PaperProtocol& p) {
          std::to_string(p.steps_after) + " more; seed " + std::to_string(p.seed) + ".";
 }
 
+PageTable time_table(const std::vector<std::pair<std::string, double>>& seconds) {
+  PageTable t{"What it took", {"part", "seconds"}, {}, "Of the clock on the wall."};
+  double sum = 0;
+  for (const auto& [part, took] : seconds) {
+    t.rows.push_back({part, fixed(took, 1)});
+    sum += took;
+  }
+  t.rows.push_back({"together", fixed(sum, 1)});
+  return t;
+}
+
 void add_markdown(std::string& md, const PageTable& t) {
   md += "\n## " + t.title + "\n\n|";
   for (const std::string& c : t.columns) md += " " + c + " |";
@@ -221,6 +232,8 @@ std::vector<std::string> write_paper_report(const PaperReport& r, const std::str
   if (wants(PaperPart::table1)) page.tables.push_back(table1(r));
   if (wants(PaperPart::table2))
     for (std::size_t i = 0; i < kRecursions.size(); ++i) page.tables.push_back(table2(rows, i));
+  const std::string series = r.series ? add_series(*r.series, folder, has_gnuplot(), page) : "";
+  if (!r.seconds.empty()) page.tables.push_back(time_table(r.seconds));
   for (std::size_t i = said; i < page.tables.size(); ++i) add_markdown(md, page.tables[i]);
 
   if (wants(PaperPart::figure_3_1)) page.charts.push_back(sizes_chart(rows));
@@ -228,6 +241,7 @@ std::vector<std::string> write_paper_report(const PaperReport& r, const std::str
   draw_close_ups(r, folder, page, notes);
   for (const PageFigure& f : page.figures)
     md += "\n## " + f.title + "\n\n![" + f.title + "](" + f.file + ")\n\n" + f.caption + "\n";
+  md += series;
   if (!rows.empty()) {
     write_text(folder + "/records.jsonl", to_json_lines(r.steps));
     page.links.push_back({"records.jsonl", "records.jsonl", "every counted time step"});

@@ -70,7 +70,9 @@ std::vector<ContactStep> run_sweep(std::span<const PaperObject> objects, const S
     QueryContext context;
     for (std::size_t i = next++; i < tasks.size(); i = next++) try {
         const PaperObject& x = objects[tasks[i].first];
-        found[i] = run_collision(objects[0].rep, x.rep, x.name, tasks[i].second, options.protocol, context);
+        found[i] = run_collision(objects[0].rep, x.rep, x.draws.empty() ? x.name : x.draws, tasks[i].second,
+                                 options.protocol, context);
+        for (ContactStep& s : found[i]) s.object = x.name;
         const std::lock_guard lock(one_at_a_time);
         if (progress) progress(++done, tasks.size());
       } catch (...) {

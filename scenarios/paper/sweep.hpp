@@ -15,6 +15,7 @@ namespace lrb {
 struct PaperObject {
   std::string name;
   LrbRep rep;
+  std::string draws = {};  ///< the object whose directions and rotations it gets; empty: its own
 };
 
 /// Part `index` of `count`: the collisions whose number over all objects is index modulo count.

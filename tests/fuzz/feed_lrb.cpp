@@ -1,4 +1,3 @@
-#include "engine/lrb/fnv.hpp"
 #include "engine/lrb/lrb_file.hpp"
 #include "engine/lrb/validate.hpp"
 #include "engine/query/collide.hpp"
@@ -12,9 +11,7 @@ constexpr std::size_t kChecksum = sizeof(std::uint64_t);
 /// Without it the checksum would stop nearly every mutation, and what is behind it would never be tried.
 void put_checksum_right(std::string& file) {
   if (file.size() < kChecksum) return;
-  Fnv64 sum;
-  sum.add_bytes(file.data(), file.size() - kChecksum);
-  const std::uint64_t value = sum.value();
+  const std::uint64_t value = lrb_checksum(std::string_view(file).substr(0, file.size() - kChecksum));
   file.replace(file.size() - kChecksum, kChecksum, reinterpret_cast<const char*>(&value), kChecksum);
 }
 

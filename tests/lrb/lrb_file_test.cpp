@@ -3,12 +3,14 @@
 
 #include <algorithm>
 #include <cstring>
+#include <limits>
 
 #include <doctest/doctest.h>
 
 #include "engine/build/build.hpp"
 #include "engine/error.hpp"
 #include "engine/lrb/fnv.hpp"
+#include "engine/lrb/validate.hpp"
 #include "engine/query/collide.hpp"
 #include "scenarios/shapes/hand_made.hpp"
 #include "scenarios/shapes/random_pose.hpp"
@@ -43,9 +45,7 @@ bool is_one_line(const std::string& text) {
 }
 
 std::string with_right_checksum(std::string bytes) {
-  Fnv64 h;
-  h.add_bytes(bytes.data(), bytes.size() - 8);
-  const std::uint64_t value = h.value();
+  const std::uint64_t value = lrb_checksum(std::string_view(bytes).substr(0, bytes.size() - 8));
   std::memcpy(bytes.data() + bytes.size() - 8, &value, 8);
   return bytes;
 }
@@ -119,19 +119,31 @@ TEST_CASE("a newer version is refused politely, before anything else is looked a
   std::string newer = bytes_of(shapes::stairs_2d());
   newer[kVersionAt] = static_cast<char>(kLrbFileVersion + 1);
   CHECK(complaint(newer) ==
-        "body.lrb: byte 8: the file has version 2, this program reads up to 1; use a newer lrbscope");
+        "body.lrb: byte 8: the file has version 3, this program reads up to 2; use a newer lrbscope");
 }
 
 TEST_CASE("lengths beyond the file are refused before memory is taken") {
   const LrbRep rep = shapes::stairs_2d();
   const std::string whole = bytes_of(rep);
+  constexpr std::size_t kHash = ~std::size_t{0};  // a number, no array
   std::size_t at = kNameAt;
   const auto skip = [&](std::size_t size) { at += 8 + size; };
   const LrbData& d = rep.data();
-  const std::size_t sizes[] = {
-      d.name.size(),           d.vertices.size() * 24,  d.face_offsets.size() * 4, d.face_vertices.size() * 4,
-      d.inner_cell.size() * 4, d.outer_cell.size() * 4, d.region_layer.size() * 2};
+  const std::size_t sizes[] = {d.name.size(),
+                               d.vertices.size() * 24,
+                               d.face_offsets.size() * 4,
+                               d.face_vertices.size() * 4,
+                               d.inner_cell.size() * 4,
+                               d.outer_cell.size() * 4,
+                               d.region_layer.size() * 2,
+                               kHash,
+                               rep.tree().nodes().size() * sizeof(TreeNode),
+                               rep.tree().blocks().size() * sizeof(LeafBlock)};
   for (const std::size_t size : sizes) {
+    if (size == kHash) {
+      at += 8;
+      continue;
+    }
     for (const std::uint64_t length : {~std::uint64_t{0}, std::uint64_t{1} << 62, std::uint64_t{1} << 61,
                                        std::uint64_t{1} << 40, std::uint64_t{0}}) {
       std::uint64_t there;
@@ -200,4 +212,97 @@ TEST_CASE("damaged files with a right checksum are refused or harmless") {
   }
   CHECK(taken > 100);
   CHECK(refused > 100);
+}
+
+namespace {
+
+/// As version 1 was written.
+std::string in_version_1(const LrbRep& rep) {
+  std::string out = bytes_of(rep).substr(0, kNameAt);
+  out[kVersionAt] = 1;
+  const auto array = [&](const auto& x) {
+    const auto count = static_cast<std::uint64_t>(x.size());
+    out.append(reinterpret_cast<const char*>(&count), 8);
+    out.append(reinterpret_cast<const char*>(x.data()), x.size() * sizeof(x[0]));
+  };
+  const LrbData& d = rep.data();
+  array(d.name);
+  array(d.vertices);
+  array(d.face_offsets);
+  array(d.face_vertices);
+  array(d.inner_cell);
+  array(d.outer_cell);
+  array(d.region_layer);
+  Fnv64 h;
+  h.add_bytes(out.data(), out.size());
+  const std::uint64_t sum = h.value();
+  return out.append(reinterpret_cast<const char*>(&sum), 8);
+}
+
+/// A body's tree with something changed.
+template <class Change>
+std::pair<std::vector<TreeNode>, std::vector<LeafBlock>> changed(const LrbRep& rep, Change change) {
+  std::pair<std::vector<TreeNode>, std::vector<LeafBlock>> tree{rep.tree().nodes(), rep.tree().blocks()};
+  change(tree.first, tree.second);
+  return tree;
+}
+
+}  // namespace
+
+TEST_CASE("files of version 1 are read, and written as this version's") {
+  const LrbRep rep = build_lrb(shapes::bumpy_sphere(2, 1));
+  const LrbRep back = load_lrb(std::string_view(in_version_1(rep)), "body.lrb");
+  CHECK(back.hash() == rep.hash());
+  CHECK(bytes_of(back) == bytes_of(rep));
+  std::string damaged = in_version_1(rep);
+  damaged[60] ^= 1;
+  CHECK(complaint(damaged).find("checksum") != std::string::npos);
+}
+
+TEST_CASE("a stored tree is the one that would be built, and its bounds hold") {
+  for (const LrbRep& rep : {shapes::dented_box(), shapes::stairs_2d(), build_lrb(shapes::torus(40, 30)),
+                            build_lrb(shapes::scaled(shapes::bumpy_sphere(3, 1), 1e-200))}) {
+    const LrbRep back = load_lrb(std::string_view(bytes_of(rep)), "body.lrb");
+    CHECK(back.tree().bounds_hold(back));
+    CHECK(back.tree().height() == rep.tree().height());
+    CHECK(back.tree().unit() == rep.tree().unit());
+    CHECK(back.tree().extent() == rep.tree().extent());
+    CHECK(std::memcmp(back.tree().nodes().data(), rep.tree().nodes().data(),
+                      rep.tree().nodes().size() * sizeof(TreeNode)) == 0);
+  }
+}
+
+TEST_CASE("a stored tree that is not the body's: unsafe ones are refused, wrong bounds are found") {
+  const LrbRep rep = build_lrb(shapes::torus(40, 30));
+  using Nodes = std::vector<TreeNode>;
+  using Blocks = std::vector<LeafBlock>;
+  const auto make = [&](auto change) {
+    auto [nodes, blocks] = changed(rep, change);
+    return LrbRep(rep.data(), nodes, blocks, rep.hash());
+  };
+  CHECK_THROWS_AS(make([](Nodes& n, Blocks&) { n[0].first = 0; }), InputError);
+  CHECK_THROWS_AS(make([](Nodes& n, Blocks&) { n[0].first = ~0u; }), InputError);
+  CHECK_THROWS_AS(make([](Nodes& n, Blocks&) { n[0].count = 9; }), InputError);
+  CHECK_THROWS_AS(make([](Nodes& n, Blocks&) { n[0].count = 0; }), InputError);
+  CHECK_THROWS_AS(make([](Nodes& n, Blocks&) { --n[0].count; }), InputError);
+  CHECK_THROWS_AS(make([](Nodes& n, Blocks&) { n.back().first = ~0u; }), InputError);
+  CHECK_THROWS_AS(make([](Nodes& n, Blocks&) { n.back().is_leaf = 7; }), InputError);
+  CHECK_THROWS_AS(make([](Nodes& n, Blocks&) { n.clear(); }), InputError);
+  CHECK_THROWS_AS(make([](Nodes& n, Blocks&) { n.push_back(n.back()); }), InputError);
+  CHECK_THROWS_AS(make([](Nodes&, Blocks& b) { b[0].simplex[0] = kNull; }), InputError);
+  CHECK_THROWS_AS(make([](Nodes&, Blocks& b) { b[0].simplex[0] = b[1].simplex[0]; }), InputError);
+  CHECK_THROWS_AS(make([](Nodes&, Blocks& b) { b.pop_back(); }), InputError);
+  const auto found = [&](auto change) {
+    const LrbRep wrong = make(change);
+    return !wrong.tree().bounds_hold(wrong) && !validate(wrong).valid;
+  };
+  CHECK(found([](Nodes& n, Blocks&) { n[0].hi[1][0] = n[0].lo[1][0]; }));
+  CHECK(found([](Nodes& n, Blocks&) { n.back().origin[2] += 1; }));
+  CHECK(found([](Nodes& n, Blocks&) { n[1].radius /= 4; }));
+  CHECK(found([](Nodes& n, Blocks&) { n[2].frame[0][0] *= 2; }));
+  CHECK(found([](Nodes&, Blocks& b) { b[3].corner[1][0][2] += 0.01f; }));
+  CHECK(found([](Nodes& n, Blocks&) { n[0].base[0] = std::numeric_limits<float>::quiet_NaN(); }));
+  CHECK_FALSE(found([](Nodes&, Blocks&) {}));
+  const LrbRep misnamed(rep.data(), rep.tree().nodes(), rep.tree().blocks(), rep.hash() + 1);
+  CHECK_FALSE(validate(misnamed).valid);
 }

@@ -1,9 +1,14 @@
+#include <cmath>
+
 #include <doctest/doctest.h>
 #include <nlohmann/json.hpp>
 
 #include "engine/error.hpp"
+#include "engine/mesh/mesh_io.hpp"
 #include "engine/query/query_context.hpp"
 #include "scenarios/generators/fractal.hpp"
+#include "scenarios/generators/generators.hpp"
+#include "scenarios/paper/series_report.hpp"
 #include "scenarios/paper/tables.hpp"
 #include "tests/scenarios/program.hpp"
 
@@ -111,17 +116,141 @@ TEST_CASE("the paper's experiment: counts that must not change unnoticed") {
 
 TEST_CASE("paper: the program's shards make the report of the whole, and bad input is refused") {
   const test::Folder folder;
-  const auto run = [&](std::vector<std::string> args) { return test::run(folder, std::move(args)); };
-  CHECK(run({"paper", "--collisions", "2", "-o", "whole", "--jobs", "2"}).code == 0);
-  for (const char* i : {"0/2", "1/2"})
-    CHECK(run({"paper", "--collisions", "2", "--shard", i, "-o", std::string("part") + i[0]}).code == 0);
-  CHECK(run({"paper", "--collisions", "2", "--merge", "part1/records.jsonl", "part0/records.jsonl", "-o",
-             "all"})
-            .code == 0);
+  const auto run = [&](std::vector<std::string> args) {
+    args.insert(args.begin(), "paper");
+    return test::run(folder, std::move(args));
+  };
+  const auto shard = [&](const char* collisions, const std::string& i, const std::string& out) {
+    CHECK(run({"--collisions", collisions, "--resolutions", "0", "--shard", i, "-o", out}).code == 0);
+  };
+  CHECK(run({"--collisions", "2", "--resolutions", "0", "-o", "whole", "--jobs", "2"}).code == 0);
+  shard("2", "0/2", "part0");
+  shard("2", "1/2", "part1");
+  shard("3", "1/2", "other");
+  CHECK(run({"--merge", "part1/records.jsonl", "part0/records.jsonl", "-o", "all"}).code == 0);
   for (const char* file : {"/records.jsonl", "/tables.json"})
     CHECK(test::slurp(folder / (std::string("all") + file)) ==
           test::slurp(folder / (std::string("whole") + file)));
-  CHECK(run({"paper", "--merge", "part1/records.jsonl", "part1/records.jsonl", "-o", "twice"}).code == 2);
+  const auto refused = [&](std::vector<std::string> args, const char* why) {
+    args.insert(args.end(), {"-o", "none"});
+    const auto o = run(args);
+    CHECK(o.code == 2);
+    CHECK(o.err.find(why) != std::string::npos);
+  };
+  refused({"--merge", "part1/records.jsonl", "part1/records.jsonl"}, "shard 0/2 is missing");
+  refused({"--merge", "part0/records.jsonl", "part1/records.jsonl", "part1/records.jsonl"},
+          "1/2 is there twice");
+  refused({"--merge", "part1/records.jsonl"}, "shard 0/2 is missing");
+  refused({"--merge", "part0/records.jsonl", "other/records.jsonl"}, "another experiment");
+  refused({"--merge", "whole/records.jsonl"}, "whole/shard.json");
+  refused({"--collisions", "2", "--merge", "part0/records.jsonl"}, "--collisions");
+  folder.write("part0/shard.json", "{\"shard\": -1}");
+  refused({"--merge", "part0/records.jsonl", "part1/records.jsonl"}, "part0/shard.json");
   for (const char* bad : {"2/2", "x", "1", "0/0", "-1/2", "0/2x"})
-    CHECK(run({"paper", "--shard", bad, "-o", "none"}).code == 2);
+    CHECK(run({"--shard", bad, "-o", "none"}).code == 2);
+}
+
+TEST_CASE("the series: the power of exact powers is found, and the error of others") {
+  const double x[] = {1, 10, 100, 1000}, exact[] = {3, 3 * std::sqrt(10.0), 30, 30 * std::sqrt(10.0)};
+  CHECK(fit_power(x, exact).exponent == doctest::Approx(0.5));
+  CHECK(fit_power(x, exact).factor == doctest::Approx(3));
+  CHECK(fit_power(x, exact).error < 1e-7);
+  // By hand: logarithms to base 10 are 0, 1, 1, 2 at 0, 1, 2, 3: slope 0.6, residuals -0.1, 0.3, -0.3, 0.1,
+  // error sqrt(0.2 / 2 / 5).
+  const double y[] = {1, 10, 10, 100};
+  CHECK(fit_power(x, y).exponent == doctest::Approx(0.6));
+  CHECK(fit_power(x, y).error == doctest::Approx(std::sqrt(0.02)));
+}
+
+TEST_CASE("the series: rows and powers from records; records of other bodies are refused") {
+  const LrbRep a = fractal_body(paper_objects()[1]);
+  const Mesh rock = [] {
+    Mesh m = generate("rock", {{"frequency", 10}});
+    m.name = "rock";
+    return m;
+  }();
+  const auto objects = make_series({&rock, 1}, {0, 3, 100}, diagonal(a), {});
+  REQUIRE(objects.size() == 3);
+  CHECK(objects[0].rep.real_face_count() == 2000);
+  CHECK(objects[2].rep.real_face_count() == 500);
+  CHECK(diagonal(objects[2].rep) == doctest::Approx(diagonal(a)));
+  SweepOptions options;
+  options.protocol.collisions = 3;
+  auto steps = run_series(a, objects, options, {});
+  const std::string whole = to_json_lines(steps);
+  options.jobs = 3;
+  CHECK(to_json_lines(run_series(a, objects, options, {})) == whole);
+  const auto rows = series_rows(a, objects, steps);
+  REQUIRE(rows.size() == 6);
+  for (const SeriesRow& row : rows) {
+    CHECK(row.counts.steps == 18);
+    CHECK(row.counts.recursions[2].missed == 0);
+    CHECK(row.microseconds[2] > 0);
+  }
+  CHECK(rows[3].partner == SeriesPartner::itself);
+  CHECK(rows[3].counts.n_squared == std::pow(rows[0].counts.total_faces, 2));
+  const auto fits = series_fits(rows);
+  REQUIRE(fits.size() == 6);
+  CHECK(fits[5].comparisons->exponent > 0.1);  // complete, against itself: about the square root
+  CHECK(fits[5].comparisons->exponent < 0.9);
+
+  auto again = steps;
+  for (ContactStep& s : again)
+    for (RecursionCount& n : s.counts) n.nanoseconds = 0;
+  read_times(times_to_json_lines(steps), "t.jsonl", again);
+  CHECK(times_to_json_lines(again) == times_to_json_lines(steps));
+  CHECK_THROWS_AS(read_times("{}\n", "t.jsonl", again), InputError);
+  again.pop_back();
+  CHECK_THROWS_AS(read_times(times_to_json_lines(steps), "t.jsonl", again), InputError);
+  steps[0].object = "another/2000/A";
+  CHECK_THROWS_AS(series_rows(a, objects, steps), InputError);
+}
+
+TEST_CASE("paper: meshes at several resolutions, in shards and as a whole") {
+  const test::Folder folder;
+  const auto paper = [&](const std::string& meshes, std::vector<std::string> more) {
+    std::vector<std::string> args = {"paper", "--meshes", meshes};
+    args.insert(args.end(), more.begin(), more.end());
+    return test::run(folder, args);
+  };
+  const auto run = [&](const std::string& meshes, std::vector<std::string> more) {
+    more.insert(more.end(), {"--collisions", "2", "--resolutions", "2", "--subdivide", "1"});
+    return paper(meshes, std::move(more));
+  };
+  std::filesystem::create_directory(folder.path / "meshes");
+  Mesh ball = generate("ball", {{"frequency", 4}});
+  write_mesh(ball, folder / "meshes/ball.ply");
+  write_mesh(generate("knot", {{"segments", 60}, {"sides", 6}}), folder / "meshes/knot.obj");
+  folder.write("meshes/open.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  const auto whole = run("meshes", {"-o", "whole"});
+  CHECK(whole.code == 0);
+  CHECK(whole.err.find("open.obj: left out") != std::string::npos);
+  for (const char* i : {"0/3", "1/3", "2/3"})
+    CHECK(run("meshes", {"--shard", i, "-o", std::string("part") + i[0], "--jobs", "2"}).code == 0);
+  CHECK(paper("meshes",
+              {"--merge", "part2/records.jsonl", "part0/records.jsonl", "part1/records.jsonl", "-o", "all"})
+            .code == 0);
+  for (const char* file : {"/records.jsonl", "/tables.json", "/series.jsonl", "/series.json"})
+    CHECK(test::slurp(folder / (std::string("all") + file)) ==
+          test::slurp(folder / (std::string("whole") + file)));
+  const auto j = nlohmann::json::parse(test::slurp(folder / "whole/series.json"));
+  CHECK(j["rows"].size() == 8);
+  CHECK(j["rows"][0]["body"] == "ball");
+  CHECK(j["rows"][0]["real_faces"] == 1280);
+  CHECK(j["powers_of_total_faces"].size() == 12);
+  CHECK(test::slurp(folder / "whole/report.md").find("Growth with the resolution") != std::string::npos);
+  const auto refused = [&](const std::string& meshes, std::vector<std::string> more, const char* why) {
+    const auto o = paper(meshes, std::move(more));
+    CHECK(o.code == 2);
+    CHECK(o.err.find(why) != std::string::npos);
+  };
+  refused("meshes/ball.ply",
+          {"--merge", "part0/records.jsonl", "part1/records.jsonl", "part2/records.jsonl", "-o", "x"},
+          "not in the series");
+  refused("meshes/open.obj", {"-o", "x"}, "no mesh that an LRB-rep can be built of");
+  refused("none.obj", {"-o", "x"}, "none.obj");
+  std::filesystem::create_directory(folder.path / "other");
+  write_mesh(ball, folder / "other/ball.ply");
+  write_mesh(ball, folder / "other/ball.obj");
+  refused("other", {"-o", "x"}, "another mesh is named ball");
 }

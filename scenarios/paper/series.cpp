@@ -1,0 +1,202 @@
+#include "scenarios/paper/series.hpp"
+
+#include <algorithm>
+#include <filesystem>
+#include <map>
+#include <set>
+#include <tuple>
+
+#include <nlohmann/json.hpp>
+
+#include "engine/build/build.hpp"
+#include "engine/error.hpp"
+#include "engine/mesh/file_bytes.hpp"
+#include "engine/mesh/mesh_check.hpp"
+#include "engine/mesh/mesh_io.hpp"
+#include "scenarios/generators/generators.hpp"
+
+namespace lrb {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Meshes in a folder, by name; other paths as they are.
+std::vector<std::string> files_of(const std::vector<std::string>& paths) {
+  std::vector<std::string> files;
+  for (const std::string& path : paths) {
+    std::error_code failure;
+    if (!fs::is_directory(path, failure)) {
+      files.push_back(path);
+      continue;
+    }
+    std::vector<std::string> found;
+    for (const auto& entry : fs::directory_iterator(path, failure)) {
+      const std::string ending = entry.path().extension().string();
+      if (ending == ".obj" || ending == ".ply" || ending == ".stl" || ending == ".off")
+        found.push_back(entry.path().string());
+    }
+    if (failure) throw InputError(printable_name(path) + ": cannot be read: " + failure.message());
+    std::sort(found.begin(), found.end());
+    files.insert(files.end(), found.begin(), found.end());
+  }
+  return files;
+}
+
+/// Why no series can be made of it; empty if one can.
+std::string obstacle(const Mesh& mesh) {
+  if (mesh.dim != 3) return "a body in the plane";
+  const MeshReport report = check_mesh(mesh, false);
+  return report.buildable() ? "" : "no LRB-rep can be built of it; see `lrbscope inspect`";
+}
+
+double median(std::vector<double> values) {
+  if (values.empty()) return 0;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+auto key(const ContactStep& s) {
+  return std::tie(s.object, s.collision, s.step);
+}
+
+}  // namespace
+
+std::string series_name(const SeriesObject& object, SeriesPartner partner) {
+  return object.body + "/" + std::to_string(object.rep.real_face_count()) +
+         (partner == SeriesPartner::a ? "/A" : "/itself");
+}
+
+std::vector<Mesh> own_series_bodies() {
+  std::vector<Mesh> bodies = {generate("rock", {{"frequency", 64}}),
+                              generate("knot", {{"segments", 1600}, {"sides", 24}})};
+  bodies[0].name = "rock";
+  bodies[1].name = "knot";
+  return bodies;
+}
+
+std::vector<Mesh> read_series_bodies(const std::vector<std::string>& paths, std::vector<std::string>& notes) {
+  std::vector<Mesh> bodies;
+  std::set<std::string> names;
+  for (const std::string& file : files_of(paths)) {
+    Mesh mesh = read_mesh(file);
+    mesh.name = fs::path(file).stem().string();
+    if (const std::string why = obstacle(mesh); !why.empty()) {
+      notes.push_back(printable_name(file) + ": left out: " + why);
+      continue;
+    }
+    if (!names.insert(mesh.name).second)
+      throw InputError(printable_name(file) + ": another mesh is named " + printable_name(mesh.name) +
+                       ", too; give each a name of its own");
+    bodies.push_back(std::move(mesh));
+  }
+  if (bodies.empty())
+    throw InputError(
+        "--meshes: no mesh that an LRB-rep can be built of; give OBJ, PLY, STL or OFF files of "
+        "closed bodies, or folders of them");
+  return bodies;
+}
+
+std::vector<SeriesObject> make_series(std::span<const Mesh> bodies, const ResolutionOptions& options,
+                                      double diagonal_of_a, const std::function<void()>& progress) {
+  std::vector<SeriesObject> objects;
+  for (const Mesh& body : bodies) {
+    for (const Mesh& mesh : resolutions(body, options)) {
+      const LrbRep rep = build_lrb(mesh);
+      objects.push_back({body.name, scaled(rep, diagonal_of_a / diagonal(rep))});
+      if (progress) progress();
+    }
+  }
+  return objects;
+}
+
+std::vector<ContactStep> run_series(const LrbRep& a, std::span<const SeriesObject> objects,
+                                    const SweepOptions& options,
+                                    const std::function<void(std::uint64_t, std::uint64_t)>& progress) {
+  std::vector<ContactStep> steps;
+  std::uint64_t sweeps = 0, done_before = 0;
+  for (const SeriesPartner partner : kSeriesPartners) {
+    for (const SeriesObject& object : objects) {
+      const LrbRep& first = partner == SeriesPartner::a ? a : object.rep;
+      const PaperObject pair[] = {{"", first}, {series_name(object, partner), object.rep, object.body}};
+      std::uint64_t last = 0;
+      for (ContactStep& s : run_sweep(pair, options, [&](std::uint64_t done, std::uint64_t of) {
+             last = of;  // each sweep has about as many
+             if (progress) progress(done_before + done, done_before + of * (2 * objects.size() - sweeps));
+           }))
+        steps.push_back(std::move(s));
+      done_before += last;
+      ++sweeps;
+    }
+  }
+  return merged(std::move(steps));
+}
+
+std::string times_to_json_lines(std::span<const ContactStep> steps) {
+  std::string out;
+  for (const ContactStep& s : steps) {
+    const nlohmann::ordered_json line = {
+        {"object", s.object},
+        {"collision", s.collision},
+        {"step", s.step},
+        {"nanoseconds", {s.counts[0].nanoseconds, s.counts[1].nanoseconds, s.counts[2].nanoseconds}}};
+    out += line.dump() + "\n";
+  }
+  return out;
+}
+
+void read_times(const std::string& text, const std::string& file, std::vector<ContactStep>& steps) {
+  const auto refuse = [&](std::size_t line, const std::string& why) {
+    throw InputError(printable_name(file) + ":" + std::to_string(line) + ": " + why +
+                     "; give the folders that the shards of one `lrbscope paper` wrote");
+  };
+  std::map<std::tuple<std::string, std::uint32_t, std::uint32_t>, ContactStep*> by_key;
+  for (ContactStep& s : steps) by_key[key(s)] = &s;
+  std::size_t number = 1;
+  for (std::size_t begin = 0; begin < text.size(); ++number) {
+    const std::size_t end = std::min(text.find('\n', begin), text.size());
+    try {
+      const auto j = nlohmann::json::parse(text.substr(begin, end - begin));
+      const auto found =
+          by_key.find({j.at("object").get<std::string>(), j.at("collision").get<std::uint32_t>(),
+                       j.at("step").get<std::uint32_t>()});
+      const auto ns = j.at("nanoseconds").get<std::array<std::uint64_t, 3>>();
+      if (found == by_key.end()) refuse(number, "the time of a step that has no record");
+      for (std::size_t i = 0; i < ns.size(); ++i) found->second->counts[i].nanoseconds = ns[i];
+    } catch (const nlohmann::json::exception& e) {
+      refuse(number, "not the time of a step: " + printable_name(e.what()));
+    }
+    begin = end + 1;
+  }
+}
+
+std::vector<SeriesRow> series_rows(const LrbRep& a, std::span<const SeriesObject> objects,
+                                   std::span<const ContactStep> steps) {
+  std::vector<SeriesRow> rows;
+  std::map<std::string, std::vector<ContactStep>> by_object;
+  for (const ContactStep& s : steps) by_object[s.object].push_back(s);
+  for (const SeriesPartner partner : kSeriesPartners) {
+    for (const SeriesObject& object : objects) {
+      const std::string name = series_name(object, partner);
+      const std::vector<ContactStep> own = std::move(by_object[name]);
+      by_object.erase(name);
+      const PaperObject pair[] = {{"", partner == SeriesPartner::a ? a : object.rep}, {name, object.rep}};
+      SeriesRow row{object.body, partner, object.rep.outermost_faces().size(), make_table(pair, own)[0], {}};
+      for (std::size_t i = 0; i < kRecursions.size(); ++i) {
+        std::vector<double> microseconds;
+        for (const ContactStep& s : own)
+          microseconds.push_back(static_cast<double>(s.counts[i].nanoseconds) / 1000);
+        row.microseconds[i] = median(std::move(microseconds));
+      }
+      rows.push_back(std::move(row));
+    }
+  }
+  if (!by_object.empty())
+    throw InputError(
+        "the records have an object " + printable_name(by_object.begin()->first) +
+        " that is not in the series; give the same --meshes, --resolutions and --subdivide as to "
+        "the shards");
+  return rows;
+}
+
+}  // namespace lrb
