@@ -14,6 +14,10 @@ std::string Context::name() const {
   return body.name.empty() ? (side == Side::a ? "A" : "B") : body.name;
 }
 
+Rgba Context::colour() const {
+  return body.colour.value_or(palette::body(side));
+}
+
 bool Context::isolating() const {
   return !options.isolate[0].empty() || !options.isolate[1].empty();
 }
@@ -49,18 +53,18 @@ Rgba Context::region_colour(RegionId r) const {
     case ColourBy::region:
       return palette::category(r);
     default:
-      return palette::body(side);
+      return colour();
   }
 }
 
 Rgba Context::colour_of(FaceId f, CellId cell) const {
   if (options.colour_by == ColourBy::value) {
-    if (!has_value(f)) return mix(palette::body(side), kWhite, 0.78);
+    if (!has_value(f)) return mix(colour(), kWhite, 0.78);
     const double range = value_high - value_low;
     return palette::viridis(range > 0 ? (body.face_values[f] - value_low) / range : 0);
   }
   if (is_region(cell)) return region_colour(cell);
-  return options.colour_by == ColourBy::kind ? palette::body(side) : mix(palette::body(side), kWhite, 0.75);
+  return options.colour_by == ColourBy::kind ? colour() : mix(colour(), kWhite, 0.75);
 }
 
 void Context::add_key(LegendItem::Mark mark, Rgba colour, const std::string& text) const {
@@ -109,7 +113,11 @@ using Mark = LegendItem::Mark;
 constexpr double kTinyContact = 0.01;
 
 void check(std::span<const SceneBody> bodies, const SceneHighlight& highlight, const SceneOptions& options) {
-  if (bodies.empty() || bodies.size() > 2) throw InputError("a scene needs one or two bodies");
+  if (bodies.empty()) throw InputError("a scene needs a body");
+  if (bodies.size() > 2 &&
+      (highlight.under_test || !highlight.refining[0].empty() || !highlight.refining[1].empty() ||
+       !options.isolate[0].empty() || !options.isolate[1].empty()))
+    throw InputError("regions and pairs can be pointed out among two bodies at most");
   for (std::size_t i = 0; i < 2; ++i) {
     for (const auto* regions : {&highlight.refining[i], &options.isolate[i]}) {
       for (const RegionId r : *regions) {
@@ -124,8 +132,9 @@ void check(std::span<const SceneBody> bodies, const SceneHighlight& highlight, c
                        ", which the body does not have");
     }
   }
-  if (bodies.size() == 2 && bodies[0].rep->dim() != bodies[1].rep->dim()) {
-    throw InputError("a 2D body and a 3D body cannot be drawn into one scene");
+  for (const SceneBody& b : bodies) {
+    if (b.rep->dim() != bodies[0].rep->dim())
+      throw InputError("a 2D body and a 3D body cannot be drawn into one scene");
   }
 }
 
@@ -224,7 +233,8 @@ Scene build_scene(std::span<const SceneBody> bodies, const SceneHighlight& highl
   for (const SceneBody& b : bodies) layers = std::max(layers, b.rep->layer_count());
   Scene out;
   for (std::size_t i = 0; i < bodies.size(); ++i) {
-    const scene::Context context{bodies[i], static_cast<Side>(i), highlight, options, low, high, layers, out};
+    const scene::Context context{bodies[i], i == 0 ? Side::a : Side::b, highlight, options, low, high, layers,
+                                 out};
     flat ? scene::add_body_2d(context) : scene::add_body_3d(context);
   }
   if (!highlight.refining[0].empty() || !highlight.refining[1].empty()) {

@@ -29,6 +29,9 @@ struct SceneBody {
   Pose pose;
   std::span<const double> face_values;  ///< (|F|) for ColourBy::value; empty: none
   std::string name;                     ///< in the legend; empty: "A", "B"
+  std::optional<Rgba> colour = {};      ///< nothing: the side's
+  /// (|real F|), not 0: drawn in the contacts' colour; empty: none.
+  std::span<const std::uint8_t> in_contact = {};
 };
 
 enum class ColourBy : std::uint8_t {
@@ -63,8 +66,9 @@ struct Scene {
   std::optional<ScaleBar> scale;
 };
 
-/// Triangles and fills carry the id face_id() (fills of regions: region_id()). One or two bodies of the same
-/// dimension; throws InputError otherwise, or if a highlight names what is not there.
+/// Triangles and fills carry the id face_id() (fills of regions: region_id()). Bodies of the same dimension;
+/// throws InputError otherwise, or if a highlight names what is not there. From the third on they carry B's
+/// ids, and then no region or pair can be pointed out.
 Scene build_scene(std::span<const SceneBody> bodies, const SceneHighlight& highlight = {},
                   const SceneOptions& options = {});
 

@@ -15,8 +15,7 @@ constexpr double kGhost = 0.82;  ///< how far ghosts are from their colour towar
 
 class Builder {
  public:
-  explicit Builder(const Context& c)
-      : c_(c), rep_(*c.body.rep), body_(palette::body(c.side)), scale_(c.options.scale) {}
+  explicit Builder(const Context& c) : c_(c), rep_(*c.body.rep), body_(c.colour()), scale_(c.options.scale) {}
 
   void run() {
     for (RegionId r = 0; r < rep_.region_count(); ++r) region(r);
@@ -74,6 +73,8 @@ class Builder {
       for (const FaceId f : real) add_lines({f}, c_.colour_of(f, kSolid), 4, 0);
     } else {
       add_lines(real, mix(palette::edge_of(body_), kWhite, ghost ? 0.6 : 0.0), 1.2F, 0);
+      std::erase_if(real, [&](FaceId f) { return !c_.in_contact(f); });
+      if (!real.empty()) add_lines(real, palette::kContact, 3.5F, 0);
     }
   }
 

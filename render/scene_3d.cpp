@@ -25,7 +25,7 @@ constexpr double kLayerStep = 0.12;  ///< exploded: extra way per layer, as a sh
 class Builder {
  public:
   explicit Builder(const Context& c) : c_(c), rep_(*c.body.rep) {
-    const Rgba body = palette::body(c.side);
+    const Rgba body = c.colour();
     const auto ink = palette::edge_of(body);
     real_edges_ = c.out.list.edge_style({with_alpha(ink, 150), 0.9F * c.options.scale});
     pale_edges_ = c.out.list.edge_style({with_alpha(ink, 90), 0.8F * c.options.scale});
@@ -69,7 +69,7 @@ class Builder {
       add_face(f, t);
     }
     if (lids.empty()) return;
-    if (!telling) c_.add_key(Mark::translucent, palette::body(c_.side), c_.name() + ", pseudo faces");
+    if (!telling) c_.add_key(Mark::translucent, c_.colour(), c_.name() + ", pseudo faces");
     if (c_.options.colour_by == ColourBy::region) {
       c_.add_key(Mark::translucent, palette::category(0), "pseudo faces, a colour for each region");
     }
@@ -78,7 +78,7 @@ class Builder {
   void real_faces() {
     for (FaceId f = 0; f < rep_.real_face_count(); ++f) {
       DrawTriangle t;
-      t.colour = c_.colour_of(f, kSolid);
+      t.colour = c_.in_contact(f) ? palette::kContact : c_.colour_of(f, kSolid);
       if (is_region(rep_.outer_cell(f)) && c_.refining(rep_.outer_cell(f))) {
         t.colour = mix(t.colour, palette::kRefining, 0.6);
       }
@@ -87,7 +87,7 @@ class Builder {
       add_face(f, t);
     }
     if (c_.options.colour_by == ColourBy::value) {
-      c_.add_key(Mark::solid, mix(palette::body(c_.side), kWhite, 0.78),
+      c_.add_key(Mark::solid, mix(c_.colour(), kWhite, 0.78),
                  c_.name() + ", faces without " + c_.options.value_name);
     } else {
       c_.add_key(Mark::solid, c_.colour_of(0, kSolid), c_.name() + ", real faces");
@@ -135,9 +135,9 @@ class Builder {
     for (FaceId f = 0; f < rep_.real_face_count(); ++f) {
       if (is_region(rep_.outer_cell(f)) && c_.isolated(rep_.outer_cell(f)))
         continue;  // the region's floor is drawn
-      add_face(f, translucent(with_alpha(palette::body(c_.side), kGhostAlpha)));
+      add_face(f, translucent(with_alpha(c_.colour(), kGhostAlpha)));
     }
-    c_.add_key(Mark::translucent, palette::body(c_.side), c_.name() + ", the rest");
+    c_.add_key(Mark::translucent, c_.colour(), c_.name() + ", the rest");
   }
 
   void explode() {
@@ -158,7 +158,7 @@ class Builder {
     }
     if (any) {
       const bool each = c_.options.colour_by == ColourBy::region;
-      c_.add_key(Mark::solid, each ? palette::category(0) : mix(palette::body(c_.side), kWhite, 0.5),
+      c_.add_key(Mark::solid, each ? palette::category(0) : mix(c_.colour(), kWhite, 0.5),
                  each ? "regions, a colour each" : c_.name() + ", regions");
     }
   }

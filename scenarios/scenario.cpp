@@ -27,30 +27,6 @@ std::vector<BodySpec> read_bodies(const JsonNode& node, Show show, const std::fi
   return bodies;
 }
 
-CollideRequest read_query(const JsonNode& node) {
-  node.object({"mode", "recursion", "predicates", "wrapper", "contacts", "interiors_overlap"});
-  CollideRequest r;
-  if (const auto n = node.get("mode"))
-    r.mode =
-        n->choice<Mode>({{"all", Mode::all_pairs}, {"first", Mode::first_pair}, {"any", Mode::any_pair}});
-  if (const auto n = node.get("recursion"))
-    r.recursion = n->choice<Recursion>({{"complete", Recursion::complete},
-                                        {"paper", Recursion::paper},
-                                        {"paper_strict", Recursion::paper_strict}});
-  if (const auto n = node.get("predicates"))
-    r.predicates = n->choice<Predicates>({{"exact", Predicates::exact}, {"floating", Predicates::floating}});
-  if (const auto n = node.get("wrapper"))
-    r.wrapper = n->choice<WrapperMode>(
-        {{"regularised", WrapperMode::regularised}, {"unregularised", WrapperMode::unregularised}});
-  r.contacts = r.mode == Mode::all_pairs;
-  if (const auto n = node.get("contacts")) {
-    r.contacts = n->boolean();
-    if (r.contacts && r.mode != Mode::all_pairs) n->fail("contacts need \"mode\": \"all\"");
-  }
-  if (const auto n = node.get("interiors_overlap")) r.interiors_overlap = n->boolean();
-  return r;
-}
-
 void read_trace(const JsonNode& node, Scenario& s) {
   node.object({"clock", "max_events", "gzip"});
   if (const auto n = node.get("clock"))
@@ -81,6 +57,30 @@ Expectation read_expectation(const JsonNode& node, const JsonText& text) {
 }
 
 }  // namespace
+
+CollideRequest read_query(const JsonNode& node) {
+  node.object({"mode", "recursion", "predicates", "wrapper", "contacts", "interiors_overlap"});
+  CollideRequest r;
+  if (const auto n = node.get("mode"))
+    r.mode =
+        n->choice<Mode>({{"all", Mode::all_pairs}, {"first", Mode::first_pair}, {"any", Mode::any_pair}});
+  if (const auto n = node.get("recursion"))
+    r.recursion = n->choice<Recursion>({{"complete", Recursion::complete},
+                                        {"paper", Recursion::paper},
+                                        {"paper_strict", Recursion::paper_strict}});
+  if (const auto n = node.get("predicates"))
+    r.predicates = n->choice<Predicates>({{"exact", Predicates::exact}, {"floating", Predicates::floating}});
+  if (const auto n = node.get("wrapper"))
+    r.wrapper = n->choice<WrapperMode>(
+        {{"regularised", WrapperMode::regularised}, {"unregularised", WrapperMode::unregularised}});
+  r.contacts = r.mode == Mode::all_pairs;
+  if (const auto n = node.get("contacts")) {
+    r.contacts = n->boolean();
+    if (r.contacts && r.mode != Mode::all_pairs) n->fail("contacts need \"mode\": \"all\"");
+  }
+  if (const auto n = node.get("interiors_overlap")) r.interiors_overlap = n->boolean();
+  return r;
+}
 
 Scenario parse_scenario(const std::string& text, const std::string& file) {
   const JsonText json(text, file);

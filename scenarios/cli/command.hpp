@@ -28,6 +28,7 @@ Command add_run(CLI::App& root, const Globals& globals);
 Command add_build(CLI::App& root, const Globals& globals);
 Command add_inspect(CLI::App& root, const Globals& globals);
 Command add_collide(CLI::App& root, const Globals& globals);
+Command add_crowd(CLI::App& root, const Globals& globals);
 Command add_query(CLI::App& root, const Globals& globals);
 Command add_render(CLI::App& root, const Globals& globals);
 Command add_paper(CLI::App& root, const Globals& globals);

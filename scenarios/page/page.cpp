@@ -111,8 +111,9 @@ std::string charts_html(const Page& page) {
 constexpr std::size_t kProse = 60;  // characters: longer cells are broken into lines
 
 bool looks_numeric(std::string_view cell) {
+  // The last three bytes: a narrow space, between groups of digits.
   return cell.find_first_of("0123456789") != std::string_view::npos &&
-         cell.find_first_not_of("0123456789.,+-eE %x") == std::string_view::npos;
+         cell.find_first_not_of("0123456789.,+-eE %x\xE2\x80\xAF") == std::string_view::npos;
 }
 
 std::string tables_html(const Page& page) {

@@ -2,19 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
-#include <iomanip>
-#include <sstream>
 
 #include "engine/error.hpp"
 #include "render/frame_writer.hpp"
 #include "render/montage.hpp"
-#include "render/palette.hpp"
 #include "render/rasterize.hpp"
 #include "render/svg.hpp"
 #include "render/svg_montage.hpp"
-#include "render/text.hpp"
 #include "scenarios/files.hpp"
+#include "scenarios/play/frame_files.hpp"
 #include "scenarios/play/framing.hpp"
 #include "scenarios/play/moments.hpp"
 #include "scenarios/play/stage.hpp"
@@ -22,28 +18,11 @@
 namespace lrb {
 namespace {
 
-std::string numbered(std::size_t frame) {
-  std::ostringstream out;
-  out << "frames/frame_" << std::setw(4) << std::setfill('0') << frame;
-  return out.str();
-}
-
-std::string file_name(std::size_t frame) {
-  return numbered(frame) + ".png";
-}
-
 /// Texts first, for all frames: they decide how much room the pictures get, which is the same in every frame.
 struct Script {
   std::vector<Overlay> overlays;
   PixelRect picture;
 };
-
-void merge_key(std::vector<LegendItem>& all, const std::vector<LegendItem>& some) {
-  for (const LegendItem& item : some)
-    if (std::none_of(all.begin(), all.end(),
-                     [&](const LegendItem& known) { return known.text == item.text; }))
-      all.push_back(item);
-}
 
 Script write_script(Stage& stage, const std::vector<trace::EventId>& events, const std::string& title,
                     const FrameSpec& spec) {
@@ -65,46 +44,21 @@ Script write_script(Stage& stage, const std::vector<trace::EventId>& events, con
   return script;
 }
 
-/// The views' places in the picture, side by side along its longer side.
-std::vector<PixelRect> places(const PixelRect& picture, std::size_t views, double scale) {
-  const int gap = static_cast<int>(std::lround(4 * scale)), n = static_cast<int>(views);
-  const bool columns = picture.width >= picture.height;
-  const int whole = columns ? picture.width : picture.height, each = (whole - gap * (n - 1)) / n;
-  std::vector<PixelRect> out;
-  for (int i = 0; i < n; ++i) {
-    const int at = i * (each + gap), size = i + 1 == n ? whole - at : each;
-    out.push_back(columns ? PixelRect{at, 0, size, picture.height} : PixelRect{0, at, picture.width, size});
-  }
-  return out;
-}
-
 class Painter {
  public:
   Painter(const FrameSpec& spec, const PixelRect& picture, Framing framing)
       : spec_(spec), views_(spec.views), framing_(std::move(framing)) {
     if (views_.empty()) views_.emplace_back();
-    places_ = places(picture, views_.size(), spec.scale());
+    places_ = view_places(picture, views_.size(), spec.scale());
     picture_ = Image(picture.width, picture.height);
   }
 
   /// `plain`: see Stage::scene().
   const Image& paint(const Stage& stage, double progress, bool plain = false) {
-    const Rgba back = spec_.transparent ? kTransparent : kWhite;
-    picture_.pixels().assign(picture_.pixels().size(),
-                             views_.size() > 1 && !spec_.transparent ? palette::kRule : back);
-    for (std::size_t i = 0; i < views_.size(); ++i) {
-      const PixelRect& place = places_[i];
-      RasterOptions options;
-      options.width = place.width;
-      options.height = place.height;
-      options.supersample = spec_.supersampling;
-      if (spec_.transparent) options.background.reset();
-      const Scene scene = stage.scene(views_[i].wrapper, plain);
-      Image view = rasterizer_.draw(scene.list, camera(i, progress), options);
-      if (!views_[i].title.empty()) write_title(view, views_[i].title);
-      for (int y = 0; y < place.height; ++y)
-        std::copy_n(&view.at(0, y), place.width, &picture_.at(place.x, place.y + y));
-    }
+    paint_views(
+        rasterizer_, spec_, views_, places_,
+        [&](const FrameSpec::View& view) { return stage.scene(view.wrapper, plain).list; },
+        [&](std::size_t view) { return camera(view, progress); }, picture_);
     return picture_;
   }
 
@@ -142,17 +96,6 @@ class Painter {
   Camera camera(std::size_t view, double progress) const {
     const PixelRect& place = places_[view];
     return camera_for(views_[view], framing_, place.width, place.height, progress);
-  }
-
-  void write_title(Image& view, const std::string& title) const {
-    TextStyle style;
-    const auto scale = static_cast<float>(spec_.scale());
-    style.height = std::max(13.0F * scale, static_cast<float>(spec_.height) / 42);
-    style.colour = palette::kFaint;
-    style.halo = kWhite;
-    style.halo_width = 2 * scale;
-    default_font().draw(view, title, static_cast<int>(style.height / 2), static_cast<int>(style.height / 3),
-                        style);
   }
 
   const FrameSpec& spec_;
@@ -197,24 +140,6 @@ struct Production {
 
 Framing framing_of(const Performance& p, const FrameSpec& spec) {
   return frame_sequence(p.reps, *p.trace, results_of(p), spec);
-}
-
-void remove_old_frames(const std::string& folder) {
-  std::error_code error;
-  for (const auto& entry : std::filesystem::directory_iterator(folder + "/frames", error)) {
-    const std::string name = entry.path().filename().string();
-    if (name.starts_with("frame_") && (name.ends_with(".png") || name.ends_with(".svg")))
-      std::filesystem::remove(entry.path(), error);
-  }
-  for (const char* file : {"/montage.png", "/montage.svg", "/caption.txt"})
-    std::filesystem::remove(folder + file, error);
-}
-
-/// The same with its size in pixels of the file.
-FrameSpec in_pixels(FrameSpec spec) {
-  spec.width = static_cast<int>(std::lround(spec.width * spec.scale()));
-  spec.height = static_cast<int>(std::lround(spec.height * spec.scale()));
-  return spec;
 }
 
 /// The panels of a montage, gathered while the frames are drawn.
@@ -304,16 +229,16 @@ DrawnFrames draw_frames(const Performance& performance, const FrameSpec& given, 
     progress("draw", i, events.size());
     stage.seek(events[i]);
     const double passed = production.passed(i);
-    if (spec.svg) painter.write_svg(stage, passed, folder + "/" + numbered(i), stage.caption());
+    if (spec.svg) painter.write_svg(stage, passed, folder + "/" + numbered_frame(i), stage.caption());
     PngOptions png{text, spec.dpi};
     png.text.emplace_back("lrbscope:event", std::to_string(events[i]));
-    writer.push(folder + "/" + file_name(i), production.frame(i), png);
+    writer.push(folder + "/" + frame_file(i), production.frame(i), png);
     if (std::find(in_montage.begin(), in_montage.end(), i) != in_montage.end()) {
       together.panels.push_back({painter.paint(stage, passed, true), stage.short_caption()});
       if (spec.svg && spec.views.size() <= 1)
         together.svgs.push_back(painter.svgs(stage, passed, stage.caption(), true).front());
     }
-    out.frames.push_back({file_name(i), stage.caption(), events[i], stage.step()});
+    out.frames.push_back({frame_file(i), stage.caption(), events[i], stage.step()});
   }
   if (!together.panels.empty())
     out.montage = together.write(performance, spec, folder, {text, spec.dpi}, writer);

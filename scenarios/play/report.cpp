@@ -129,21 +129,6 @@ PageTable steps_table(const trace::Trace& trace) {
   return t;
 }
 
-void add_frames(Page& page, const DrawnFrames& drawn, const std::string& folder) {
-  std::vector<PngBytes> pngs;
-  for (const DrawnFrame& f : drawn.frames) {
-    const std::string bytes = read_text(folder + "/" + f.file);
-    pngs.emplace_back(bytes.begin(), bytes.end());
-  }
-  InlinedImages images = inline_pngs(pngs);
-  page.frames_note = images.note;
-  for (std::size_t i = 0; i < drawn.frames.size(); ++i) {
-    const DrawnFrame& f = drawn.frames[i];
-    page.frames.push_back({std::move(images.uris[i]), f.caption, f.file, static_cast<double>(f.event),
-                           static_cast<double>(f.step)});
-  }
-}
-
 void add_links(Page& page, const DrawnFrames& drawn, const ReportText& text) {
   page.links.push_back({text.trace_file, text.trace_file,
                         "every event; drag it onto ui.perfetto.dev or chrome://tracing to walk through it"});
@@ -158,6 +143,21 @@ void add_links(Page& page, const DrawnFrames& drawn, const ReportText& text) {
 }
 
 }  // namespace
+
+void add_frames(Page& page, const DrawnFrames& drawn, const std::string& folder) {
+  std::vector<PngBytes> pngs;
+  for (const DrawnFrame& f : drawn.frames) {
+    const std::string bytes = read_text(folder + "/" + f.file);
+    pngs.emplace_back(bytes.begin(), bytes.end());
+  }
+  InlinedImages images = inline_pngs(pngs);
+  page.frames_note = images.note;
+  for (std::size_t i = 0; i < drawn.frames.size(); ++i) {
+    const DrawnFrame& f = drawn.frames[i];
+    page.frames.push_back({std::move(images.uris[i]), f.caption, f.file, static_cast<double>(f.event),
+                           static_cast<double>(f.step)});
+  }
+}
 
 Page run_page(const Performance& p, const DrawnFrames& drawn, const std::string& folder,
               const ReportText& text) {

@@ -15,6 +15,9 @@ struct ReportText {
   std::vector<std::string> mismatches;
 };
 
+/// Puts frames, whose files are in `folder`, into a page.
+void add_frames(Page& page, const DrawnFrames& drawn, const std::string& folder);
+
 /// The page of a run whose files are in `folder`.
 Page run_page(const Performance& performance, const DrawnFrames& drawn, const std::string& folder,
               const ReportText& text);

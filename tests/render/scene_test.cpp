@@ -272,6 +272,41 @@ TEST_CASE("segments become as few polylines as can be") {
   CHECK(chains({}).empty());
 }
 
+TEST_CASE("many bodies: each in its colour, faces in contact in that of contacts") {
+  const LrbRep solid = test::dented(shapes::icosphere(0), 1), flat = test::dented(shapes::circle(5), 1);
+  for (const LrbRep* rep : {&solid, &flat}) {
+    const std::vector<std::uint8_t> marks = {0, 1, 1};
+    std::vector<SceneBody> bodies;
+    for (std::uint32_t i = 0; i < 3; ++i) {
+      SceneBody body;
+      body.rep = rep;
+      body.pose = Pose::translation({3.0 * i, 0, 0});
+      body.colour = palette::category(i);
+      if (i == 2) body.in_contact = marks;
+      bodies.push_back(body);
+    }
+    const DrawList list = build_scene(bodies).list;
+    std::map<std::uint32_t, std::size_t> faces;  // by colour, as one number
+    const auto number = [](Rgba c) { return c.r << 16 | c.g << 8 | c.b; };
+    for (const DrawTriangle& t : list.triangles) ++faces[static_cast<std::uint32_t>(number(t.colour))];
+    std::size_t marked_lines = 0;
+    for (const DrawLine& l : list.lines) marked_lines += l.colour == palette::kContact ? 1 : 0;
+    if (rep == &solid) {
+      CHECK(faces[static_cast<std::uint32_t>(number(palette::category(0)))] == solid.real_face_count());
+      CHECK(faces[static_cast<std::uint32_t>(number(palette::category(1)))] == solid.real_face_count());
+      CHECK(faces[static_cast<std::uint32_t>(number(palette::category(2)))] == solid.real_face_count() - 2);
+      CHECK(faces[static_cast<std::uint32_t>(number(palette::kContact))] == 2);
+    } else {
+      CHECK(list.fills.size() == 3);
+      CHECK(list.fills[1].colour == palette::solid_2d(palette::category(1)));
+      CHECK(marked_lines == 1);
+    }
+    SceneHighlight highlight;
+    highlight.refining[0] = {0};
+    CHECK_THROWS_AS(build_scene(bodies, highlight), InputError);
+  }
+}
+
 TEST_CASE("scenes that make no sense are refused") {
   const LrbRep solid = test::dented(shapes::icosphere(0), 1), flat = test::dented(shapes::circle(5), 1);
   CHECK_THROWS_AS(build_scene({}), InputError);

@@ -40,6 +40,14 @@ std::size_t count(const std::string& text, const std::string& word) {
 
 }  // namespace
 
+TEST_CASE("numbers in tables are aligned right, with their digits in groups, too") {
+  Page page = full_page();
+  page.tables = {{"table", {"a", "b", "c"}, {{"1\u202f234", "0.5", "gear 3"}}, ""}};
+  const std::string html = page_html(page);
+  CHECK(html.find("<td class=\"n\">1\u202f234</td><td class=\"n\">0.5</td><td>gear 3</td>") !=
+        std::string::npos);
+}
+
 TEST_CASE("a page fetches nothing: no address outside, all scripts and pictures inside") {
   std::string html = page_html(full_page());
   // The charting library's own banner names its home page; nothing is loaded from there.

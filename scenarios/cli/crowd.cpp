@@ -1,0 +1,66 @@
+#include <algorithm>
+#include <memory>
+#include <thread>
+
+#include "scenarios/cli/command.hpp"
+#include "scenarios/cli/options.hpp"
+#include "scenarios/cli/progress.hpp"
+#include "scenarios/crowd/crowd_report.hpp"
+
+namespace lrb::cli {
+namespace {
+
+struct CrowdOptions {
+  std::string crowd, folder;
+  std::uint32_t jobs = 0;  ///< 0: all cores
+  std::optional<std::uint32_t> steps;
+  std::optional<trace::Clock> clock;
+  bool no_frames = false, json = false;
+};
+
+int run_crowd_command(const CrowdOptions& o, const Globals& globals) {
+  Crowd crowd = open_crowd(o.crowd);
+  if (o.steps) crowd.steps = *o.steps;
+  if (o.clock) crowd.clock = *o.clock;
+  if (o.no_frames) crowd.frames.at = FrameSpec::At::none;
+  const std::string folder = o.folder.empty() ? "out/" + crowd.name : o.folder;
+  const std::uint32_t jobs = o.jobs > 0 ? o.jobs : std::max(1U, std::thread::hardware_concurrency());
+  const ProgressReport progress = progress_report(globals.quiet);
+  const CrowdRun run = run_crowd(crowd, jobs, progress);
+  note(globals, run.notes);
+  note(globals, {crowd_speed(run)});
+  const std::string summary = write_crowd(crowd, run, folder, globals.command_line, progress);
+  print(o.json ? summary : folder + "/index.html\n");
+  return kOk;
+}
+
+}  // namespace
+
+Command add_crowd(CLI::App& root, const Globals& globals) {
+  CLI::App* app = root.add_subcommand(
+      "crowd", "Many bodies: a query for each pair whose boxes meet, step by step, on all cores");
+  const auto o = std::make_shared<CrowdOptions>();
+  app->add_option("CROWD", o->crowd, "The shipped crowd, or a JSON file")
+      ->type_name("NAME|FILE")
+      ->default_val("crowd");
+  app->add_option("-o,--output", o->folder, "Folder to write to [out/NAME]")->type_name("DIR");
+  app->add_option("--jobs", o->jobs, "Threads [all cores]; the result does not depend on it")
+      ->check(CLI::Range(1u, 1024u))
+      ->type_name("N");
+  app->add_option("--steps", o->steps, "Time steps, over what the crowd says")
+      ->check(CLI::Range(1u, 100000u))
+      ->type_name("N");
+  app->add_option_function<std::string>(
+         "--clock",
+         [o](const std::string& word) {
+           o->clock = word == "wall" ? trace::Clock::wall : trace::Clock::event;
+         },
+         "Of the trace: event, the same for any number of threads, a track a body; wall, a track a thread")
+      ->check(CLI::IsMember({"event", "wall"}).description(""))
+      ->type_name("event|wall");
+  app->add_flag("--no-frames", o->no_frames, "Draw nothing");
+  app->add_flag("--json", o->json, "Print the summary instead of the page's path");
+  return {app, [o, &globals] { return run_crowd_command(*o, globals); }};
+}
+
+}  // namespace lrb::cli

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "engine/lrb/lrb_rep.hpp"
+#include "scenarios/crowd/crowd.hpp"
+
+namespace lrb {
+
+/// Where every body of a crowd is at every step: straight on, thrown back by the walls of the room, in closed
+/// form, so that steps can be asked for in any order.
+class CrowdMotion {
+ public:
+  /// `reps`: one a kind, of one dimension.
+  CrowdMotion(const Crowd& crowd, std::span<const LrbRep* const> reps);
+
+  /// Bodies are numbered kind by kind.
+  std::uint32_t body_count() const { return static_cast<std::uint32_t>(movers_.size()); }
+  std::uint32_t kind(std::uint32_t body) const { return movers_[body].kind; }
+  Pose pose(std::uint32_t body, std::uint32_t step) const;
+
+ private:
+  struct Mover {
+    std::uint32_t kind;
+    Eigen::Vector3d start, speed, axis;
+    Eigen::Vector3d reach;  ///< how far from the room's middle its origin may go, so that it stays inside
+    Eigen::Matrix3d turned;
+    double spin;  ///< radians a step
+    Pose own;     ///< of its kind, applied first
+  };
+  std::vector<Mover> movers_;
+};
+
+}  // namespace lrb

@@ -1,0 +1,200 @@
+#include "scenarios/crowd/crowd_report.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+#include "engine/mesh/atomic_file.hpp"
+#include "render/overlay.hpp"
+#include "scenarios/crowd/crowd_frames.hpp"
+#include "scenarios/crowd/crowd_json.hpp"
+#include "scenarios/files.hpp"
+#include "scenarios/page/page.hpp"
+#include "scenarios/play/report.hpp"
+#include "trace/hex.hpp"
+
+namespace lrb {
+namespace {
+
+class FileSink final : public trace::ByteSink {
+ public:
+  explicit FileSink(const std::string& path) : file_(path) {}
+  void write(std::string_view bytes) override { file_.write(bytes); }
+  void commit() { file_.commit(); }
+
+ private:
+  AtomicFile file_;
+};
+
+std::vector<PageNumber> numbers(const Crowd& crowd, const CrowdRun& run) {
+  const std::uint64_t n = run.motion.body_count(), all = n * (n - 1) / 2;
+  std::uint64_t asked = 0, met = 0, faces = 0, tests = 0;
+  for (const CrowdStep& s : run.steps) {
+    asked += s.queries.size();
+    met += static_cast<std::uint64_t>(
+        std::count_if(s.queries.begin(), s.queries.end(), [](const CrowdQuery& q) { return q.meets(); }));
+    tests += sum(s).face_tests;
+  }
+  for (std::uint32_t i = 0; i < n; ++i) faces += run.rep(i).real_face_count();
+  const auto a_step = [&](std::uint64_t x) {
+    const double mean = static_cast<double>(x) / static_cast<double>(run.steps.size());
+    constexpr double kWholeFrom = 1000;
+    return mean < kWholeFrom ? short_number(mean)
+                             : group_digits(static_cast<std::uint64_t>(std::round(mean)));
+  };
+  return {{"Bodies", group_digits(n),
+           "of " + std::to_string(crowd.kinds.size()) + (crowd.kinds.size() == 1 ? " kind, " : " kinds, ") +
+               group_digits(faces) + " real faces"},
+          {"Time steps", group_digits(run.steps.size()), ""},
+          {"Boxes that meet", a_step(asked), "of " + group_digits(all) + " pairs of bodies, a step"},
+          {"Bodies that meet", a_step(met), "pairs a step"},
+          {"Face tests", a_step(tests), "exact comparisons of two faces, a step"}};
+}
+
+PageChart chart(const char* title, const char* y_label) {
+  PageChart c;
+  c.title = title;
+  c.x_label = "time step";
+  c.y_label = y_label;
+  c.cursor = PageCursor::step;
+  return c;
+}
+
+void add_series(PageChart& c, const CrowdRun& run, const char* label,
+                const std::function<double(const CrowdStep&)>& value) {
+  PageSeries s;
+  s.label = label;
+  for (std::size_t i = 0; i < run.steps.size(); ++i) {
+    s.x.push_back(static_cast<double>(i));
+    s.y.push_back(value(run.steps[i]));
+  }
+  if (std::any_of(s.y.begin(), s.y.end(), [](double y) { return y > 0; })) c.series.push_back(std::move(s));
+}
+
+std::vector<PageChart> charts(const CrowdRun& run) {
+  const std::size_t n = run.motion.body_count();
+  const auto number = [](std::size_t x) { return static_cast<double>(x); };
+  PageChart bodies = chart("Pairs of bodies, step by step", "pairs in the step");
+  add_series(bodies, run, "boxes meet", [&](const CrowdStep& s) { return number(s.queries.size()); });
+  add_series(bodies, run, "crossing",
+             [&](const CrowdStep& s) { return number(count(s, Relation::crossing)); });
+  add_series(bodies, run, "touching",
+             [&](const CrowdStep& s) { return number(count(s, Relation::touching)); });
+  add_series(bodies, run, "one inside the other", [&](const CrowdStep& s) {
+    return number(count(s, Relation::a_inside_b) + count(s, Relation::b_inside_a));
+  });
+  add_series(bodies, run, "bodies in contact",
+             [&](const CrowdStep& s) { return number(bodies_in_contact(s, n)); });
+  PageChart work = chart("Work, step by step", "number in the step");
+  add_series(work, run, "face tests", [&](const CrowdStep& s) { return number(sum(s).face_tests); });
+  add_series(work, run, "refinements", [&](const CrowdStep& s) { return number(sum(s).refinements); });
+  PageChart broad = chart("Broad phase, step by step", "number in the step");
+  add_series(broad, run, "box tests", [&](const CrowdStep& s) { return number(s.broad_phase.box_tests); });
+  add_series(broad, run, "swaps in the order",
+             [&](const CrowdStep& s) { return number(s.broad_phase.swaps); });
+  std::vector<PageChart> out;
+  for (PageChart* c : {&bodies, &work, &broad})
+    if (run.steps.size() > 1 && !c->series.empty()) out.push_back(std::move(*c));
+  return out;
+}
+
+std::string words(Relation r) {
+  std::string out = to_string(r);
+  std::replace(out.begin(), out.end(), '_', ' ');
+  return out;
+}
+
+PageTable last_queries(const Crowd& crowd, const CrowdRun& run) {
+  constexpr std::size_t kMostRows = 200;
+  PageTable t;
+  t.title = "Bodies that meet at step " + std::to_string(run.steps.size() - 1);
+  t.columns = {"A",          "B",           "relation",   "pairs of faces", "contact regions",
+               "face tests", "refinements", "fingerprint"};
+  const bool regions = crowd.request.contacts;
+  if (!regions) t.columns.erase(t.columns.begin() + 4);
+  std::size_t left_out = 0;
+  for (const CrowdQuery& q : run.steps.back().queries) {
+    if (!q.meets()) continue;
+    if (t.rows.size() == kMostRows) {
+      ++left_out;
+      continue;
+    }
+    const trace::StepResult& r = q.result;
+    t.rows.push_back({run.names[q.bodies.i], run.names[q.bodies.j], words(r.relation),
+                      group_digits(r.pair_count), group_digits(q.contact_regions),
+                      group_digits(r.counters.face_tests), group_digits(r.counters.refinements),
+                      trace::to_hex(r.fingerprint)});
+    if (!regions) t.rows.back().erase(t.rows.back().begin() + 4);
+  }
+  t.note = "Of pairs whose boxes do not meet nothing is asked: they have no point in common.";
+  if (left_out > 0) t.note += " " + std::to_string(left_out) + " more are left out here.";
+  return t;
+}
+
+Page crowd_page(const Crowd& crowd, const CrowdRun& run, const DrawnFrames& drawn, const std::string& folder,
+                const std::string& command) {
+  Page page;
+  page.title = crowd.name;
+  page.purpose = crowd.purpose;
+  page.verdict = std::to_string(run.motion.body_count()) + " bodies";
+  page.command = command;
+  page.numbers = numbers(crowd, run);
+  add_frames(page, drawn, folder);
+  page.charts = charts(run);
+  page.tables.push_back(last_queries(crowd, run));
+  page.links = {{"trace.json", "trace.json",
+                 crowd.clock == trace::Clock::event
+                     ? "every query on the tracks of its bodies; drag it onto ui.perfetto.dev"
+                     : "every query on the track of its thread; drag it onto ui.perfetto.dev"},
+                {"summary.json", "summary.json", "every step and every answer as JSON"},
+                {"timing.json", "timing.json", "how long each step took"}};
+  if (!drawn.frames.empty())
+    page.links.push_back(
+        {"frames/", "frames/", std::to_string(drawn.frames.size()) + " full pictures (PNG)"});
+  page.footer = std::string("lrbscope ") + trace::lrbscope_version() +
+                ". This page holds all it needs and fetches nothing.";
+  return page;
+}
+
+}  // namespace
+
+std::string write_crowd(const Crowd& crowd, const CrowdRun& run, const std::string& folder,
+                        const std::string& command, const ProgressReport& progress) {
+  make_folder(folder);
+  const FolderLock lock(folder);
+  refuse_links(folder);
+  FileSink sink(folder + "/trace.json");
+  write_crowd_trace(crowd, run, sink);
+  sink.commit();
+  const std::string summary = crowd_summary(crowd, run);
+  write_text(folder + "/summary.json", summary);
+  write_text(folder + "/timing.json", crowd_timing(run));
+  const std::vector<std::pair<std::string, std::string>> text = {
+      {"Software", std::string("lrbscope ") + trace::lrbscope_version()},
+      {"lrbscope:crowd", crowd.name},
+      {"lrbscope:crowd_hash", trace::to_hex(crowd.hash)},
+  };
+  const DrawnFrames drawn = draw_crowd(crowd, run, folder, text, progress);
+  progress("page", 0, 1);
+  write_text(folder + "/index.html", page_html(crowd_page(crowd, run, drawn, folder, command)));
+  return summary;
+}
+
+std::string crowd_speed(const CrowdRun& run) {
+  std::vector<double> boxes, sweeps, queries;
+  for (const CrowdStep& s : run.steps) {
+    boxes.push_back(static_cast<double>(s.boxes_ns) / 1000);
+    sweeps.push_back(static_cast<double>(s.sweep_ns) / 1000);
+    queries.push_back(static_cast<double>(s.queries_ns) / 1000);
+  }
+  const auto median = [](std::vector<double>& x) {
+    const auto middle = x.begin() + static_cast<std::ptrdiff_t>(x.size() / 2);
+    std::nth_element(x.begin(), middle, x.end());
+    return short_number(*middle) + " us";
+  };
+  return "a step takes (medians): boxes " + median(boxes) + ", sort and sweep " + median(sweeps) +
+         ", queries " + median(queries) + ", on " + std::to_string(run.threads) +
+         (run.threads == 1 ? " thread" : " threads");
+}
+
+}  // namespace lrb

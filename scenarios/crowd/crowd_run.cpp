@@ -1,0 +1,188 @@
+#include "scenarios/crowd/crowd_run.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <numeric>
+#include <tuple>
+
+#include "engine/error.hpp"
+#include "engine/query/query_context.hpp"
+#include "engine/query/world_box.hpp"
+#include "scenarios/crowd/task_pool.hpp"
+#include "scenarios/play/moments.hpp"
+
+namespace lrb {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+std::vector<LoadedBody> make_kinds(const Crowd& crowd, const ProgressReport& progress) {
+  std::vector<LoadedBody> kinds;
+  for (const CrowdKind& kind : crowd.kinds) {
+    progress("build", kinds.size(), crowd.kinds.size());
+    kinds.push_back(make_body(kind.body));
+    if (kinds.back().rep.dim() != kinds[0].rep.dim())
+      throw InputError("crowd " + crowd.name + ": " + kind.name + " is " +
+                       std::to_string(kinds.back().rep.dim()) + "D and " + crowd.kinds[0].name + " is " +
+                       std::to_string(kinds[0].rep.dim()) + "D; give bodies of one dimension");
+  }
+  return kinds;
+}
+
+std::vector<const LrbRep*> reps_of(const std::vector<LoadedBody>& kinds) {
+  std::vector<const LrbRep*> out;
+  for (const LoadedBody& kind : kinds) out.push_back(&kind.rep);
+  return out;
+}
+
+class Player {
+ public:
+  Player(const Crowd& crowd, CrowdRun& run)
+      : crowd_(crowd),
+        run_(run),
+        pool_(run.threads),
+        contexts_(run.threads),
+        poses_(run.motion.body_count()),
+        boxes_(run.motion.body_count()),
+        extremes_(run.motion.body_count()),
+        began_(Clock::now()) {
+    for (const LoadedBody& kind : run.kinds) extents_.emplace_back(kind.rep);
+  }
+
+  /// Plays a step; `moment`: what is to be seen of it, or null.
+  CrowdStep play(std::uint32_t number, CrowdMoment* moment) {
+    CrowdStep step;
+    const std::uint64_t begin = now();
+    pool_.run(poses_.size(), [&](std::uint32_t, std::size_t i) {
+      const auto body = static_cast<std::uint32_t>(i);
+      poses_[i] = run_.motion.pose(body, number);
+      boxes_[i] = extents_[run_.motion.kind(body)].in_world(poses_[i], &extremes_[i]);
+    });
+    const std::uint64_t boxed = now();
+    const std::vector<BodyPair>& pairs = sweep_.update(boxes_);
+    step.broad_phase = sweep_.work();
+    const std::uint64_t swept = now();
+    std::vector<CollideResult> results(moment != nullptr ? pairs.size() : 0);
+    step.queries.resize(pairs.size());
+    const std::vector<std::uint32_t> order = by_kinds(pairs);
+    pool_.run(pairs.size(), [&](std::uint32_t thread, std::size_t k) {
+      const std::uint32_t at = order[k];
+      CollideResult result = ask(pairs[at], thread, step.queries[at]);
+      if (moment != nullptr) results[at] = std::move(result);
+    });
+    step.begin_ns = begin;
+    step.boxes_ns = boxed - begin;
+    step.sweep_ns = swept - boxed;
+    step.queries_ns = now() - swept;
+    if (moment != nullptr) remember(pairs, results, *moment);
+    return step;
+  }
+
+ private:
+  std::uint64_t now() const {
+    return static_cast<std::uint64_t>(
+        std::chrono::duration_cast<std::chrono::nanoseconds>(Clock::now() - began_).count());
+  }
+
+  /// Queries of the same two LRB-reps one after the other: their contexts stay as they are.
+  std::vector<std::uint32_t> by_kinds(const std::vector<BodyPair>& pairs) const {
+    std::vector<std::uint32_t> order(pairs.size());
+    std::iota(order.begin(), order.end(), 0U);
+    std::sort(order.begin(), order.end(), [&](std::uint32_t x, std::uint32_t y) {
+      const auto key = [&](std::uint32_t p) {
+        return std::tuple(run_.motion.kind(pairs[p].i), run_.motion.kind(pairs[p].j), p);
+      };
+      return key(x) < key(y);
+    });
+    return order;
+  }
+
+  CollideResult ask(const BodyPair& pair, std::uint32_t thread, CrowdQuery& query) {
+    NullProbe probe;
+    query.bodies = pair;
+    query.thread = thread;
+    query.begin_ns = now();
+    CollideResult r;
+    try {
+      r = collide(run_.rep(pair.i), poses_[pair.i], run_.rep(pair.j), poses_[pair.j], crowd_.request,
+                  contexts_[thread], probe);
+    } catch (const InputError& e) {
+      throw InputError("crowd " + crowd_.name + ", " + run_.names[pair.i] + " (A) and " + run_.names[pair.j] +
+                       " (B): " + e.what());
+    }
+    query.end_ns = now();
+    query.result = {r.relation, r.interiors_overlap, r.pairs.size(), fingerprint(r.pairs), r.counters};
+    query.contact_regions = r.regions.size();
+    return r;
+  }
+
+  void remember(const std::vector<BodyPair>& pairs, std::vector<CollideResult>& results,
+                CrowdMoment& moment) const {
+    moment.opened.resize(poses_.size());
+    moment.in_contact.resize(poses_.size());
+    for (std::size_t k = 0; k < pairs.size(); ++k) {
+      const std::uint32_t body[2] = {pairs[k].i, pairs[k].j};
+      for (const int side : {0, 1}) {
+        const std::vector<RegionId>& opened = results[k].opened[static_cast<std::size_t>(side)];
+        std::vector<RegionId>& all = moment.opened[body[side]];
+        all.insert(all.end(), opened.begin(), opened.end());
+        std::vector<std::uint8_t>& marks = moment.in_contact[body[side]];
+        const LrbRep& rep = run_.rep(body[side]);
+        if (!results[k].pairs.empty()) marks.resize(rep.real_face_count());
+        for (const SimplexPair& p : results[k].pairs) marks[rep.face_of_simplex(side == 0 ? p.a : p.b)] = 1;
+      }
+      std::move(results[k].regions.begin(), results[k].regions.end(), std::back_inserter(moment.contacts));
+    }
+    for (std::vector<RegionId>& all : moment.opened) {
+      std::sort(all.begin(), all.end());
+      all.erase(std::unique(all.begin(), all.end()), all.end());
+    }
+  }
+
+  const Crowd& crowd_;
+  CrowdRun& run_;
+  TaskPool pool_;
+  std::vector<QueryContext> contexts_;  ///< one a thread
+  std::vector<Pose> poses_;
+  std::vector<Eigen::AlignedBox3d> boxes_;
+  std::vector<BodyExtent> extents_;  ///< one a kind
+  std::vector<ExtremeVertices> extremes_;
+  SweepAndPrune sweep_;
+  Clock::time_point began_;
+};
+
+}  // namespace
+
+std::vector<std::uint32_t> drawn_steps(const FrameSpec& spec, std::uint32_t steps) {
+  std::vector<std::uint32_t> all;
+  if (spec.at == FrameSpec::At::none) return all;
+  for (std::uint32_t s = 0; s < steps; ++s)
+    if (s % spec.every == 0 || s + 1 == steps) all.push_back(s);
+  std::vector<std::uint32_t> out;
+  for (const std::size_t i : evenly(all.size(), spec.most)) out.push_back(all[i]);
+  return out;
+}
+
+CrowdRun run_crowd(const Crowd& crowd, std::uint32_t threads, const ProgressReport& progress) {
+  std::vector<LoadedBody> kinds = make_kinds(crowd, progress);
+  CrowdMotion motion(crowd, reps_of(kinds));
+  CrowdRun run{std::move(kinds), {}, std::move(motion), {}, {}, {}, threads};
+  for (std::size_t k = 0; k < run.kinds.size(); ++k) {
+    for (const std::string& note : run.kinds[k].notes) run.notes.push_back(crowd.kinds[k].name + ": " + note);
+    for (std::uint32_t i = 1; i <= crowd.kinds[k].count; ++i)
+      run.names.push_back(crowd.kinds[k].name + " " + std::to_string(i));
+  }
+  const std::vector<std::uint32_t> drawn = drawn_steps(crowd.frames, crowd.steps);
+  Player player(crowd, run);
+  for (std::uint32_t step = 0; step < crowd.steps; ++step) {
+    progress("query", step, crowd.steps);
+    const bool is_drawn = std::binary_search(drawn.begin(), drawn.end(), step);
+    CrowdMoment moment;
+    moment.step = step;
+    run.steps.push_back(player.play(step, is_drawn ? &moment : nullptr));
+    if (is_drawn) run.moments.push_back(std::move(moment));
+  }
+  return run;
+}
+
+}  // namespace lrb

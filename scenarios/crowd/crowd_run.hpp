@@ -1,0 +1,68 @@
+#pragma once
+/// A crowd, played: at every step the broad phase, then a query for each pair of bodies whose boxes meet, on
+/// all threads. Nothing is drawn or written here.
+
+#include <cstdint>
+#include <vector>
+
+#include "engine/query/broad_phase.hpp"
+#include "engine/query/collide.hpp"
+#include "scenarios/body.hpp"
+#include "scenarios/crowd/crowd.hpp"
+#include "scenarios/crowd/crowd_motion.hpp"
+#include "scenarios/play/recording.hpp"
+
+namespace lrb {
+
+/// One query of two bodies: A is the one of the lower number.
+struct CrowdQuery {
+  BodyPair bodies{0, 0};
+  trace::StepResult result;
+  std::uint64_t contact_regions = 0;       ///< 0 if contacts were not asked for
+  std::uint32_t thread = 0;                ///< which one asked it; the rest does not depend on it
+  std::uint64_t begin_ns = 0, end_ns = 0;  ///< steady clock, since the run began
+
+  bool meets() const {
+    return result.relation != Relation::separate && result.relation != Relation::undefined;
+  }
+  /// Events that the trace of this query alone would have: step, face tests, refinements, contacts, result.
+  std::uint64_t events() const {
+    return 2 + result.counters.face_tests + result.counters.refinements + result.pair_count;
+  }
+};
+
+struct CrowdStep {
+  SweepAndPrune::Work broad_phase;
+  std::vector<CrowdQuery> queries;  ///< ascending by bodies
+  std::uint64_t begin_ns = 0;       ///< since the run began
+  std::uint64_t boxes_ns = 0, sweep_ns = 0, queries_ns = 0;
+};
+
+/// What a picture of one step needs.
+struct CrowdMoment {
+  std::uint32_t step = 0;
+  std::vector<std::vector<RegionId>> opened;          ///< by body: in any of its queries, ascending
+  std::vector<std::vector<std::uint8_t>> in_contact;  ///< by body (|real F|): met a face of another; or empty
+  std::vector<ContactRegion> contacts;
+};
+
+struct CrowdRun {
+  std::vector<LoadedBody> kinds;   ///< one a kind
+  std::vector<std::string> names;  ///< of bodies: "gear 3"
+  CrowdMotion motion;
+  std::vector<CrowdStep> steps;
+  std::vector<CrowdMoment> moments;  ///< of the steps to be drawn
+  std::vector<std::string> notes;    ///< for people
+  std::uint32_t threads = 1;
+
+  const LrbRep& rep(std::uint32_t body) const { return kinds[motion.kind(body)].rep; }
+};
+
+/// The steps that `spec` wants drawn.
+std::vector<std::uint32_t> drawn_steps(const FrameSpec& spec, std::uint32_t steps);
+
+/// Builds the bodies and plays. Everything but threads and times is the same for any number of threads, at
+/// least 1. Throws InputError for bodies of different dimensions and for what collide() refuses.
+CrowdRun run_crowd(const Crowd& crowd, std::uint32_t threads, const ProgressReport& progress);
+
+}  // namespace lrb

@@ -1,0 +1,38 @@
+#pragma once
+/// What all sequences of frames have in common: sizes, names, places of the views.
+
+#include <cstddef>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "render/image.hpp"
+#include "render/overlay.hpp"
+#include "render/rasterize.hpp"
+#include "scenarios/scenario.hpp"
+
+namespace lrb {
+
+/// "frames/frame_0012", and the same with ".png".
+std::string numbered_frame(std::size_t frame);
+std::string frame_file(std::size_t frame);
+
+/// Of an earlier run: frames, montage and its caption.
+void remove_old_frames(const std::string& folder);
+
+/// The same frames with their size in pixels of the file.
+FrameSpec in_pixels(FrameSpec spec);
+
+/// The views' places in a picture, side by side along its longer side.
+std::vector<PixelRect> view_places(const PixelRect& picture, std::size_t views, double scale);
+
+/// Draws each view, with its title, in its place of `picture`.
+void paint_views(Rasterizer& rasterizer, const FrameSpec& spec, const std::vector<FrameSpec::View>& views,
+                 const std::vector<PixelRect>& places,
+                 const std::function<DrawList(const FrameSpec::View&)>& list_of,
+                 const std::function<Camera(std::size_t)>& camera_of, Image& picture);
+
+/// Adds the items that are not there yet.
+void merge_key(std::vector<LegendItem>& all, const std::vector<LegendItem>& some);
+
+}  // namespace lrb

@@ -1,0 +1,269 @@
+// Crowds: what the broad phase leaves out is apart, what it keeps is answered as brute force answers it, and
+// the number of threads shows in times alone.
+#include <atomic>
+#include <filesystem>
+#include <map>
+#include <set>
+#include <string>
+
+#include <doctest/doctest.h>
+#include <nlohmann/json.hpp>
+#include <valijson/adapters/nlohmann_json_adapter.hpp>
+#include <valijson/schema.hpp>
+#include <valijson/schema_parser.hpp>
+#include <valijson/validator.hpp>
+
+#include "engine/error.hpp"
+#include "engine/query/brute_force.hpp"
+#include "scenarios/crowd/crowd_frames.hpp"
+#include "scenarios/crowd/crowd_json.hpp"
+#include "scenarios/crowd/crowd_report.hpp"
+#include "scenarios/crowd/task_pool.hpp"
+#include "scenarios/embedded.hpp"
+#include "scenarios/files.hpp"
+
+using namespace lrb;
+using nlohmann::json;
+
+namespace {
+
+const ProgressReport kSilent = [](const std::string&, std::uint64_t, std::uint64_t) {};
+
+/// A dozen small bodies, close together: some cross, some lie in others.
+json good() {
+  return json::parse(R"({"name": "few", "purpose": "p", "seed": 3, "room": [3, 3, 3], "arrangement": "random",
+    "bodies": [
+      {"name": "ball", "body": {"generator": "ball", "parameters": {"frequency": 3, "radius": 1.1}}, "count": 3},
+      {"name": "bead", "body": {"generator": "ball", "parameters": {"frequency": 2, "radius": 0.1}}, "count": 4},
+      {"name": "bowl", "body": {"generator": "bowl", "parameters": {"segments": 10, "rows": 4}}, "count": 2},
+      {"name": "stick", "body": {"generator": "stick", "parameters": {"segments": 6, "rows": 3},
+                                 "pose": {"position": [0, 0, 0.4], "axis": [1, 0, 0], "degrees": 20}}, "count": 3}],
+    "motion": {"steps": 5, "speed": [0.05, 0.2], "spin": 7},
+    "frames": {"at": "step", "every": 4, "size": [320, 240], "supersampling": 1}})");
+}
+
+json good_2d() {
+  return json::parse(R"({"name": "flat", "purpose": "p", "room": [6, 4, 0],
+    "bodies": [
+      {"name": "island", "body": {"generator": "island", "parameters": {"levels": 2, "radius": 0.8}}, "count": 5},
+      {"name": "cog", "body": {"generator": "cog2d", "parameters": {"radius": 0.6}}, "count": 6}],
+    "motion": {"steps": 4, "speed": 0.1, "spin": [2, 9]},
+    "frames": {"at": "step", "every": 3, "size": [320, 240], "supersampling": 1}})");
+}
+
+Crowd crowd_of(const json& j) {
+  return parse_crowd(j.dump(1), "dir/c.json");
+}
+
+json with(const std::string& pointer, const json& value) {
+  json j = good();
+  j[json::json_pointer(pointer)] = value;
+  return j;
+}
+
+std::string error_of(const json& j) {
+  try {
+    crowd_of(j);
+  } catch (const InputError& e) {
+    return e.what();
+  }
+  return {};
+}
+
+bool schema_accepts(const json& j) {
+  static const json document = json::parse(embedded_file("crowd.schema.json"));
+  static const json scenario = json::parse(embedded_file("scenario.schema.json"));
+  const auto fetch = [](const std::string&) { return &scenario; };
+  const auto release = [](const json*) {};
+  valijson::Schema schema;
+  valijson::SchemaParser(valijson::SchemaParser::kDraft7)
+      .populateSchema(valijson::adapters::NlohmannJsonAdapter(document), schema, fetch, release);
+  return valijson::Validator().validate(schema, valijson::adapters::NlohmannJsonAdapter(j), nullptr);
+}
+
+std::string trace_of(const Crowd& crowd, const CrowdRun& run) {
+  trace::StringSink sink;
+  write_crowd_trace(crowd, run, sink);
+  return sink.text;
+}
+
+void check_against_brute_force(const CrowdRun& run, std::set<Relation>& seen) {
+  const std::uint32_t n = run.motion.body_count();
+  for (std::uint32_t step = 0; step < run.steps.size(); ++step) {
+    const std::vector<CrowdQuery>& queries = run.steps[step].queries;
+    auto next = queries.begin();
+    for (std::uint32_t i = 0; i < n; ++i)
+      for (std::uint32_t j = i + 1; j < n; ++j) {
+        const BruteForceResult slow =
+            brute_force(run.rep(i), run.motion.pose(i, step), run.rep(j), run.motion.pose(j, step));
+        const bool asked = next != queries.end() && next->bodies == BodyPair{i, j};
+        CAPTURE(step);
+        CAPTURE(i);
+        CAPTURE(j);
+        CHECK(slow.relation == (asked ? next->result.relation : Relation::separate));
+        CHECK(fingerprint(slow.pairs) == (asked ? next->result.fingerprint : fingerprint({})));
+        if (asked) seen.insert(slow.relation);
+        next += asked;
+      }
+    CHECK(next == queries.end());  // each asked once, in order
+  }
+}
+
+}  // namespace
+
+TEST_CASE("all pairs of a crowd, asked or not, are answered as brute force answers them") {
+  std::set<Relation> seen;
+  const CrowdRun run = run_crowd(crowd_of(good()), 2, kSilent);
+  check_against_brute_force(run, seen);
+  CHECK(seen.contains(Relation::crossing));
+  CHECK(seen.contains(Relation::b_inside_a));  // or the test shows little
+  std::size_t asked = 0;
+  for (const CrowdStep& s : run.steps) asked += s.queries.size();
+  CHECK(asked < run.steps.size() * 12 * 11 / 2);
+}
+
+TEST_CASE("a crowd of 2D bodies, too") {
+  std::set<Relation> seen;
+  const CrowdRun run = run_crowd(crowd_of(good_2d()), 2, kSilent);
+  check_against_brute_force(run, seen);
+  CHECK(seen.contains(Relation::crossing));
+}
+
+TEST_CASE("the number of threads does not show in trace, numbers or pictures") {
+  for (const json& j : {good(), good_2d()}) {
+    const Crowd crowd = crowd_of(j);
+    const auto folder = std::filesystem::temp_directory_path() / "lrbscope_crowd_test";
+    std::string trace, summary;
+    std::vector<std::string> frames;
+    for (const std::uint32_t threads : {1U, 2U, 5U}) {
+      const CrowdRun run = run_crowd(crowd, threads, kSilent);
+      const std::string out = (folder / std::to_string(threads)).string();
+      const std::string text = write_crowd(crowd, run, out, "lrbscope crowd", kSilent);
+      std::vector<std::string> files;
+      for (const char* f : {"frame_0000.png", "frame_0001.png"})
+        files.push_back(read_text(out + "/frames/" + f));
+      if (threads == 1) {
+        trace = read_text(out + "/trace.json");
+        summary = text;
+        frames = files;
+      }
+      CHECK(read_text(out + "/trace.json") == trace);
+      CHECK(text == summary);
+      CHECK((files == frames));
+      CHECK(read_text(out + "/index.html").find("<html") != std::string::npos);
+    }
+    std::filesystem::remove_all(folder);
+  }
+}
+
+TEST_CASE("slices of a track lie one after the other, and say what was asked and answered") {
+  Crowd crowd = crowd_of(good());
+  for (const trace::Clock clock : {trace::Clock::event, trace::Clock::wall}) {
+    crowd.clock = clock;
+    const CrowdRun run = run_crowd(crowd, 2, kSilent);
+    const json trace = json::parse(trace_of(crowd, run));
+    std::size_t queries = 0, slices = 0;
+    for (const CrowdStep& s : run.steps) queries += s.queries.size();
+    std::map<int, double> ends;
+    for (const json& e : trace["traceEvents"]) {
+      for (const char* key : {"name", "cat", "ph", "ts", "pid", "tid", "args"}) REQUIRE(e.contains(key));
+      if (e["ph"] != "X") continue;
+      const int track = e["tid"];
+      CHECK(e["ts"].get<double>() >= doctest::Approx(ends[track]));
+      ends[track] = e["ts"].get<double>() + e["dur"].get<double>();
+      if (!e["args"].contains("relation")) continue;
+      ++slices;
+      CHECK(e["args"]["fingerprint"].get<std::string>().size() == 16);
+    }
+    CHECK(slices == queries * (clock == trace::Clock::event ? 2 : 1));
+    CHECK(trace["metadata"]["query_slices"]["truncated"] == false);
+  }
+  crowd.max_events = 3;
+  const json cut = json::parse(trace_of(crowd, run_crowd(crowd, 1, kSilent)));
+  CHECK(cut["metadata"]["query_slices"]["truncated"] == true);
+  CHECK(cut["metadata"]["query_slices"]["stored"] == 3);
+}
+
+TEST_CASE("bodies stay in the room as far as they fit") {
+  for (const json& j : {good(), good_2d()}) {
+    Crowd crowd = crowd_of(j);
+    crowd.speed = {0.5, 2};
+    crowd.frames.at = FrameSpec::At::none;
+    crowd.steps = 1;
+    const CrowdRun run = run_crowd(crowd, 1, kSilent);
+    for (std::uint32_t step = 0; step < 40; ++step)
+      for (std::uint32_t i = 0; i < run.motion.body_count(); ++i)
+        for (FaceId f = 0; f < run.rep(i).real_face_count(); ++f)
+          for (const VertexId v : run.rep(i).face(f)) {
+            const Eigen::Vector3d x = run.motion.pose(i, step).apply(run.rep(i).vertices()[v]);
+            REQUIRE(((x.cwiseAbs() - crowd.room / 2).array() <= 0x1p-40).all());
+          }
+  }
+}
+
+TEST_CASE("the shipped crowd is valid and has about forty bodies") {
+  const Crowd crowd = open_crowd("crowd");
+  CHECK(crowd.body_count() == 40);
+  CHECK(schema_accepts(json::parse(embedded_file("crowd.crowd.json"))));
+}
+
+TEST_CASE("schema and reader agree on good and bad crowds") {
+  const json texts[] = {good(),
+                        good_2d(),
+                        with("/arrangement", "grid"),
+                        with("/arrangement", "circle"),
+                        with("/room", {1, 2}),
+                        with("/room", {1, 2, -1}),
+                        with("/bodies", json::array()),
+                        with("/bodies/0/count", 0),
+                        with("/bodies/0/body/generator", "bal"),
+                        with("/bodies/0/name", "a b"),
+                        with("/bodies/0/colour", "red"),
+                        with("/motion/steps", 0),
+                        with("/motion/speed", {1, 2, 3}),
+                        with("/motion/speed", -1),
+                        with("/query", {{"contacts", false}}),
+                        with("/query/mode", "some"),
+                        with("/trace", {{"clock", "wall"}, {"max_events", 10}}),
+                        with("/trace/gzip", true),
+                        with("/frames/at", "none"),
+                        with("/frames/at", "refinement"),
+                        with("/frames/montage", {{"panels", 3}}),
+                        with("/frames/views", json::array({{{"camera", "orbit"}, {"turn_degrees", 90}}}))};
+  for (const json& j : texts) {
+    CAPTURE(j.dump());
+    CHECK(schema_accepts(j) == error_of(j).empty());
+  }
+}
+
+TEST_CASE("what is wrong with a crowd is said with its place") {
+  CHECK(error_of(with("/arrangement", "grd")).find("did you mean \"grid\"?") != std::string::npos);
+  CHECK(error_of(with("/motion/speed", {2, 1})).find("/motion/speed: expected 0 <= least <= most") !=
+        std::string::npos);
+  CHECK(error_of(with("/bodies/1/name", "ball")).find("other bodies are called ball") != std::string::npos);
+  json mixed = good();
+  mixed["bodies"].push_back({{"name", "flat"}, {"body", {{"generator", "island"}}}});
+  CHECK_THROWS_WITH_AS(static_cast<void>(run_crowd(crowd_of(mixed), 1, kSilent)),
+                       "crowd few: flat is 2D and ball is 3D; give bodies of one dimension", InputError);
+  CHECK_THROWS_WITH_AS(static_cast<void>(open_crowd("crowds")),
+                       "crowds: neither a shipped crowd nor a file; did you mean \"crowd\"? known: crowd",
+                       InputError);
+}
+
+TEST_CASE("a pool does every task once; of what is thrown, the lowest comes out, and the pool goes on") {
+  TaskPool pool(3);
+  for (const std::size_t count : {0U, 1U, 2U, 1000U}) {
+    std::vector<std::atomic<int>> done(count);
+    pool.run(count, [&](std::uint32_t thread, std::size_t i) {
+      CHECK_MESSAGE(thread < 3, "thread");
+      ++done[i];
+    });
+    for (const auto& d : done) CHECK(d == 1);
+  }
+  const auto failing = [&] {
+    pool.run(100, [](std::uint32_t, std::size_t i) {
+      if (i % 10 == 7) throw InputError(std::to_string(i));
+    });
+  };
+  for (int i = 0; i < 20; ++i) CHECK_THROWS_WITH_AS(failing(), "7", InputError);
+}
