@@ -62,7 +62,8 @@ const char* const kBodies =
 std::vector<std::string> scenarios() {
   std::vector<std::string> out;
   for (const auto& entry : std::filesystem::directory_iterator(LRB_SOURCE_DIR "/scenarios/shipped"))
-    out.push_back(test::load_bytes(entry.path().string()));
+    if (entry.path().string().ends_with(".scenario.json"))
+      out.push_back(test::load_bytes(entry.path().string()));
   std::sort(out.begin(), out.end());
   const std::string begin =
       std::string(R"({"name": "x", "purpose": "y", "seed": 7, )") + kBodies + R"(, "motion": )";

@@ -4,7 +4,7 @@
 
 #include <doctest/doctest.h>
 
-#include "engine/lrb/fnv.hpp"
+#include "engine/lrb/lrb_file.hpp"
 #include "scenarios/shapes/shapes.hpp"
 #include "tests/fuzz/seeds.hpp"
 #include "tests/mesh/encode.hpp"
@@ -148,9 +148,7 @@ namespace {
 template <class T>
 std::string patched(std::string lrb, std::size_t at, T value) {
   std::memcpy(lrb.data() + at, &value, sizeof value);
-  Fnv64 sum;
-  sum.add_bytes(lrb.data(), lrb.size() - 8);
-  const std::uint64_t right = sum.value();
+  const std::uint64_t right = lrb_checksum(std::string_view(lrb).substr(0, lrb.size() - 8));
   std::memcpy(lrb.data() + lrb.size() - 8, &right, 8);
   return lrb;
 }

@@ -233,7 +233,7 @@ TEST_CASE("points: what fails scores the worst, and the frontier is what nothing
 
 TEST_CASE("a sphere tree misses nothing, and is closer to the truth at deeper levels") {
   const auto spheres = methods::spheres().make();
-  const LrbRep a = build_lrb(shapes::bumpy_sphere(2, 1));
+  const LrbRep a = build_lrb(shapes::torus(32, 12));  // far from its own outermost sphere
   const auto body_a = spheres->build(a), body_b = spheres->build(a);
   shapes::Random random(7);
   std::size_t wolves[2] = {0, 0}, met = 0;
