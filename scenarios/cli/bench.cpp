@@ -4,10 +4,10 @@
 #include "engine/error.hpp"
 #include "scenarios/cli/choice.hpp"
 #include "scenarios/cli/command.hpp"
+#include "scenarios/cli/measure_options.hpp"
 #include "scenarios/cli/progress.hpp"
 #include "scenarios/files.hpp"
 #include "scenarios/measure/machine.hpp"
-#include "scenarios/measure/make_sets.hpp"
 #include "scenarios/measure/peer_table.hpp"
 #include "scenarios/measure/survey.hpp"
 
@@ -17,12 +17,9 @@ namespace {
 using namespace lrb::measure;
 using stability::WorkerMethod;
 
-struct BenchOptions {
-  std::string folder = "out/bench", models;
+struct BenchOptions : MeasureOptions {
+  BenchOptions() { folder = "out/bench"; }
   std::vector<std::uint32_t> faces = {20000, 100000};
-  std::vector<std::string> methods;
-  SetOptions set;
-  double timeout = 20;
 };
 
 /// Peers are engines that answer the same question: no approximation, no textbook loop over all pairs, which
@@ -79,22 +76,12 @@ Command add_bench(CLI::App& root, const Globals& globals) {
   CLI::App* app = root.add_subcommand(
       "bench", "Ours beside other engines, on the same bodies and poses: how many times as long they take");
   const auto o = std::make_shared<BenchOptions>();
-  app->add_option("-o,--output", o->folder, "Folder to write to; goes on with what is there [out/bench]")
-      ->type_name("DIR");
-  app->add_option("--models", o->models, "Meshes to collide, too, each with the next one")->type_name("DIR");
+  add_measure_options(*app, *o);
   app->add_option(
          "--faces", o->faces,
          "Sizes of generated bodies: all kinds of the first, rocks of the others; 0: none [20000 100000]")
       ->check(CLI::Range(0, 2000000))
       ->type_name("N");
-  app->add_option("--method", o->methods, "These methods alone")->type_name("NAME");
-  app->add_option("--poses", o->set.poses, "Poses of each class [12]")
-      ->check(CLI::Range(1, 10000))
-      ->type_name("N");
-  app->add_option("--seed", o->set.seed, "Of the poses [1]")->check(CLI::NonNegativeNumber)->type_name("S");
-  app->add_option("--timeout", o->timeout, "Seconds that a method has for a pose [20]")
-      ->check(CLI::Range(0.1, 3600.0))
-      ->type_name("S");
   return {app, [o, &globals] { return run_bench(*o, globals); }};
 }
 

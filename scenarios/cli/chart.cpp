@@ -8,12 +8,12 @@
 #include "scenarios/charts/gnuplot.hpp"
 #include "scenarios/cli/choice.hpp"
 #include "scenarios/cli/command.hpp"
+#include "scenarios/cli/measure_options.hpp"
 #include "scenarios/cli/progress.hpp"
 #include "scenarios/files.hpp"
 #include "scenarios/measure/chart_page.hpp"
 #include "scenarios/measure/chart_print.hpp"
 #include "scenarios/measure/machine.hpp"
-#include "scenarios/measure/make_sets.hpp"
 #include "scenarios/measure/scenes.hpp"
 #include "scenarios/measure/survey.hpp"
 
@@ -23,12 +23,12 @@ namespace {
 using namespace lrb::measure;
 using stability::WorkerMethod;
 
-struct ChartOptions {
-  std::string folder = "out/chart", models;
+struct ChartOptions : MeasureOptions {
+  ChartOptions() {
+    folder = "out/chart";
+    set.poses = 8;
+  }
   std::uint32_t faces = 2000;
-  std::vector<std::string> methods;
-  SetOptions set{8, 1};
-  double timeout = 20;
   bool scenes = true;
 };
 
@@ -125,20 +125,10 @@ Command add_chart(CLI::App& root, const Globals& globals) {
   CLI::App* measures =
       app->add_subcommand("measure", "Ask only: raw records, added to what is there")->fallthrough();
   CLI::App* draws = app->add_subcommand("draw", "From the records: errors, charts, page")->fallthrough();
-  app->add_option("-o,--output", o->folder, "Folder to write to; goes on with what is there [out/chart]")
-      ->type_name("DIR");
-  app->add_option("--models", o->models, "Meshes to collide, too, each with the next one")->type_name("DIR");
+  add_measure_options(*app, *o);
   app->add_option("--faces", o->faces, "Size of the generated bodies; 0: none [2000]")
       ->check(CLI::Range(0, 200000))
       ->type_name("N");
-  app->add_option("--method", o->methods, "These methods alone")->type_name("NAME");
-  app->add_option("--poses", o->set.poses, "Poses of each class [8]")
-      ->check(CLI::Range(1, 10000))
-      ->type_name("N");
-  app->add_option("--seed", o->set.seed, "Of the poses [1]")->check(CLI::NonNegativeNumber)->type_name("S");
-  app->add_option("--timeout", o->timeout, "Seconds that a method has for a pose [20]")
-      ->check(CLI::Range(0.1, 3600.0))
-      ->type_name("S");
   app->add_flag("!--no-scenes", o->scenes, "Do not play the scenes that points lead to");
   return {app, [o, &globals, measures, draws] {
             return run_chart(*o, !draws->parsed(), !measures->parsed(), globals);

@@ -15,16 +15,6 @@ namespace {
 using nlohmann::json;
 using nlohmann::ordered_json;
 
-/// The 3x4 matrix, row by row.
-ordered_json pose_json(const Pose& p) {
-  ordered_json out = ordered_json::array();
-  for (int i = 0; i < 3; ++i) {
-    for (int j = 0; j < 3; ++j) out.push_back(p.r(i, j));
-    out.push_back(p.t[i]);
-  }
-  return out;
-}
-
 Pose pose_from(const json& value) {
   Pose p;
   for (int i = 0; i < 3; ++i) {
@@ -41,6 +31,15 @@ PoseClass pose_class_from(const std::string& word) {
 }
 
 }  // namespace
+
+nlohmann::ordered_json pose_json(const Pose& p) {
+  ordered_json out = ordered_json::array();
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) out.push_back(p.r(i, j));
+    out.push_back(p.t[i]);
+  }
+  return out;
+}
 
 const char* to_string(PoseClass c) {
   static constexpr const char* kNames[] = {"apart", "shallow", "deep", "identical", "small"};

@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include <nlohmann/json_fwd.hpp>
+
 #include "engine/query/collide.hpp"
 
 namespace lrb::measure {
@@ -39,6 +41,9 @@ struct DataSet {
   std::vector<Question> questions;
   std::string folder;  ///< that it was read from; not in the file
 };
+
+/// The 3x4 matrix, row by row.
+nlohmann::ordered_json pose_json(const Pose& p);
 
 /// Writes folder/name.set.json; its path.
 std::string write_data_set(const DataSet& set, const std::string& folder);

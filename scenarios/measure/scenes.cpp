@@ -12,15 +12,6 @@ namespace {
 
 using nlohmann::ordered_json;
 
-ordered_json pose_json(const Pose& p) {
-  ordered_json out = ordered_json::array();
-  for (int i = 0; i < 3; ++i) {
-    for (int j = 0; j < 3; ++j) out.push_back(p.r(i, j));
-    out.push_back(p.t[i]);
-  }
-  return out;
-}
-
 /// The question that most points call their worst; the first of the class if none has an error.
 std::uint64_t question_of(const DataSet& set, const std::vector<const Point*>& panel, PoseClass c) {
   std::map<std::uint64_t, std::size_t> votes;

@@ -9,6 +9,7 @@
 #include "scenarios/generators/fractal.hpp"
 #include "scenarios/page/page.hpp"
 #include "scenarios/paper/figures.hpp"
+#include "scenarios/paper/number_text.hpp"
 #include "scenarios/paper/report_pictures.hpp"
 
 namespace lrb {
@@ -17,16 +18,6 @@ namespace {
 constexpr std::array<const char*, 3> kTitles = {"the paper's recursion, each pair of regions once",
                                                 "the paper's recursion, each region once (strict)",
                                                 "complete"};
-
-std::string whole(double x) {
-  return std::to_string(std::llround(x));
-}
-
-std::string fixed(double x, int digits) {
-  std::ostringstream out;
-  out << std::fixed << std::setprecision(digits) << x;
-  return out.str();
-}
 
 /// Whether an object of the paper has these very numbers of faces.
 bool as_published(const PaperObject& o) {

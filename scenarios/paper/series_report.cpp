@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "scenarios/files.hpp"
+#include "scenarios/paper/number_text.hpp"
 #include "scenarios/paper/series_figures.hpp"
 #include "trace/names.hpp"
 
@@ -19,16 +20,6 @@ constexpr std::array<const char*, 3> kTitles = {"the paper's recursion", "the pa
 
 const char* against(SeriesPartner p) {
   return p == SeriesPartner::a ? "A" : "itself";
-}
-
-std::string whole(double x) {
-  return std::to_string(std::llround(x));
-}
-
-std::string fixed(double x, int digits) {
-  std::ostringstream out;
-  out << std::fixed << std::setprecision(digits) << x;
-  return out.str();
 }
 
 std::string text_of(const std::optional<PowerFit>& fit) {

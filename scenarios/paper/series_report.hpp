@@ -4,8 +4,8 @@
 #include <optional>
 
 #include "scenarios/page/page.hpp"
-#include "scenarios/series/power_fit.hpp"
 #include "scenarios/paper/series.hpp"
+#include "scenarios/series/power_fit.hpp"
 
 namespace lrb {
 
