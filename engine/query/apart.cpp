@@ -161,17 +161,4 @@ double crossing_depth(double enough, const double* const a[3], const double* con
   return std::min({deepest, least_height(x) / 4, least_height(y) / 4});
 }
 
-double world_size(const Pose& pose, const BlockTree& tree) {
-  return pose.r.cwiseAbs().rowwise().sum().maxCoeff() * tree.extent() + pose.t.cwiseAbs().maxCoeff();
-}
-
-double wrapper_margin(const Pose& pose_a, const BlockTree& a, const Pose& pose_b, const BlockTree& b) {
-  return kWrapperMargin * (world_size(pose_a, a) + world_size(pose_b, b) + kWorldUnderflow);
-}
-
-double stretch(const Pose& pose) {
-  return std::sqrt((pose.r.transpose() * pose.r).cwiseAbs().rowwise().sum().maxCoeff()) *
-         (1 + kWrapperMargin);
-}
-
 }  // namespace lrb

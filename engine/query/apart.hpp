@@ -2,9 +2,6 @@
 
 #include <cstdint>
 
-#include "engine/lrb/pose.hpp"
-#include "engine/query/block_tree.hpp"
-
 namespace lrb {
 
 /// Proves two simplices (triangles, or segments in the plane) further apart than `margin`: a plane between
@@ -25,14 +22,5 @@ double likely_gap(double margin, double enough, int dim, const double* const a[3
 /// other, and still will when points of either have moved by less than that; 0: not proved. `enough` and
 /// `hint` as above.
 double crossing_depth(double enough, const double* const a[3], const double* const b[3], std::uint8_t& hint);
-
-/// A bound of every world coordinate of a tree's simplices, and of every term on the way to it.
-double world_size(const Pose& pose, const BlockTree& tree);
-
-/// The distance that wrappers must keep to prove what is in them apart: see kWrapperMargin.
-double wrapper_margin(const Pose& pose_a, const BlockTree& a, const Pose& pose_b, const BlockTree& b);
-
-/// A bound of how much the pose stretches distances; 1 for rotations, but for rounding.
-double stretch(const Pose& pose);
 
 }  // namespace lrb

@@ -8,6 +8,7 @@
 #include <Eigen/Geometry>
 
 #include "engine/lrb/lrb_rep.hpp"
+#include "engine/query/pose_bounds.hpp"
 #include "engine/tolerances.hpp"
 
 namespace lrb {
@@ -168,8 +169,7 @@ Matrix3d rounded_to_float(const Matrix3d& m) {
 
 /// Whether rows are as orthonormal as kKernelRounding takes them to be. NaN is not.
 bool is_orthonormal(const Matrix3d& axes) {
-  return (axes * axes.transpose() - Matrix3d::Identity()).cwiseAbs().rowwise().sum().maxCoeff() <=
-         kFrameDefect;
+  return rotation_defect(axes.transpose()) <= kFrameDefect;
 }
 
 /// Box of a range of simplices in a frame.

@@ -73,8 +73,8 @@ class BlockTree {
 
  private:
   friend class BlockTreeBuilder;
-  void measure(const LrbRep& rep, std::span<const SimplexId> simplices);
-  void measure(const LrbRep& rep);  ///< of all real simplices  ///< sets unit and extent
+  void measure(const LrbRep& rep, std::span<const SimplexId> simplices);  ///< sets unit and extent
+  void measure(const LrbRep& rep);                                        ///< of all real simplices
 
   std::vector<TreeNode> nodes_;
   std::vector<LeafBlock> blocks_;

@@ -5,6 +5,7 @@
 #include "engine/error.hpp"
 #include "engine/lrb/lrb_rep.hpp"
 #include "engine/query/block_tree.hpp"
+#include "engine/query/pose_bounds.hpp"
 #include "engine/tolerances.hpp"
 
 namespace lrb {
@@ -90,8 +91,7 @@ bool is_orthonormal(const TreeNode& node) {
   Eigen::Matrix3d axes;
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j < 3; ++j) axes(i, j) = static_cast<double>(node.frame[i][j]);
-  return (axes * axes.transpose() - Eigen::Matrix3d::Identity()).cwiseAbs().rowwise().sum().maxCoeff() <=
-         kFrameDefect;
+  return rotation_defect(axes.transpose()) <= kFrameDefect;
 }
 
 }  // namespace

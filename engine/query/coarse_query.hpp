@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "engine/query/apart.hpp"
+#include "engine/query/pose_bounds.hpp"
 #include "engine/query/relation.hpp"
 #include "engine/query/tree_query.hpp"
 #include "engine/tolerances.hpp"

@@ -7,7 +7,9 @@
 
 #include <Eigen/LU>
 
+#include "engine/query/apart.hpp"
 #include "engine/query/collide_impl.hpp"
+#include "engine/query/pose_bounds.hpp"
 #include "engine/tolerances.hpp"
 
 namespace lrb {
@@ -27,10 +29,6 @@ constexpr std::uint32_t kPausesBetween = 4;
 /// as long is a jump, which says nothing about the steps to come, unless another one follows.
 constexpr double kForget = 0.7, kJump = 8;
 constexpr std::uint32_t kProofsOffFor = 8;
-
-double defect(const Eigen::Matrix3d& r) {
-  return (r.transpose() * r - Eigen::Matrix3d::Identity()).cwiseAbs().rowwise().sum().maxCoeff();
-}
 
 using Clock = std::chrono::steady_clock;
 
@@ -105,8 +103,8 @@ const CollideResult& CoherentQuery::collide(const Pose& pose_a, const Pose& pose
 }
 
 bool CoherentQuery::is_rigid(const Pose& pose_a, const Pose& pose_b) const {
-  return defect(pose_a.r) <= kRigid && defect(pose_b.r) <= kRigid && pose_a.r.determinant() > 0 &&
-         pose_b.r.determinant() > 0;
+  return rotation_defect(pose_a.r) <= kRigid && rotation_defect(pose_b.r) <= kRigid &&
+         pose_a.r.determinant() > 0 && pose_b.r.determinant() > 0;
 }
 
 /// An upper bound of how far any point of B has moved on A's axes.
@@ -199,16 +197,8 @@ bool CoherentQuery::list_pays() {
 bool CoherentQuery::make_list() {
   const double margin = steps_a_list_ * usual_step_ + 4 * rounding_;
   for (QueryBody& body : context_.body) body.begin(body.rep(), body.world.pose(), request_.wrapper);
-  TreeKernel k =
-      set_up_kernel(a_.tree(), context_[Side::a].world.pose(), b_.tree(), context_[Side::b].world.pose());
+  TreeKernel k = start_kernel(context_, 1024);
   k.margin = static_cast<float>(margin / std::max(a_.tree().unit(), b_.tree().unit())) * (1 + 0x1p-20f);
-  context_.stack.resize(64 * (a_.tree().height() + b_.tree().height()) + 64);
-  context_.candidates.resize(1024);
-  k.stack = context_.stack.data();
-  k.stack[0] = {0, 0};
-  k.stack_size = 1;
-  k.out = context_.candidates.data();
-  k.out_capacity = static_cast<std::uint32_t>(context_.candidates.size());
   list_.clear();
   step_time_ = 0;
   steps_ = 0;

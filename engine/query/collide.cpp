@@ -5,6 +5,7 @@
 
 #include "engine/lrb/fnv.hpp"
 #include "engine/query/collide_impl.hpp"
+#include "engine/query/pose_bounds.hpp"
 
 namespace lrb {
 
@@ -64,9 +65,7 @@ namespace {
 
 /// World coordinates must be doubles. Few poses come near overflow: vertices are looked at only then.
 void check_world(const LrbRep& rep, const Pose& pose, char name) {
-  const double size =
-      pose.r.cwiseAbs().rowwise().sum().maxCoeff() * rep.tree().extent() + pose.t.cwiseAbs().maxCoeff();
-  if (size <= 0.5 * std::numeric_limits<double>::max()) return;
+  if (world_size(pose, rep.tree()) <= 0.5 * std::numeric_limits<double>::max()) return;
   const auto vertices = rep.vertices();
   for (std::size_t v = 0; v < vertices.size(); ++v) {
     const Eigen::Vector3d x = pose.apply(vertices[v]);

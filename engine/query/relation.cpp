@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "engine/exact/locate.hpp"
+#include "engine/query/pose_bounds.hpp"
 #include "engine/tolerances.hpp"
 
 namespace lrb {
@@ -20,10 +21,8 @@ class RayWalk {
   RayWalk(QueryBody& body, const Point& point, const Vector3d& near)
       : body_(body), tree_(body.tree()), point_(point), p_(near) {
     const Pose& pose = body.world.pose();
-    const double turn = pose.r.cwiseAbs().rowwise().sum().maxCoeff();
-    const double size = turn * tree_.extent() + pose.t.cwiseAbs().maxCoeff();
-    margin_ = kWorldRounding * (size + near.cwiseAbs().maxCoeff());
-    turn_ = std::max(1.0, turn);
+    margin_ = kWorldRounding * (world_size(pose, tree_) + near.cwiseAbs().maxCoeff());
+    turn_ = std::max(1.0, pose.r.cwiseAbs().rowwise().sum().maxCoeff());
   }
 
   Where run() {

@@ -9,6 +9,7 @@
 #include "engine/lrb/pieces.hpp"
 #include "engine/lrb/validate.hpp"
 #include "engine/query/apart.hpp"
+#include "engine/query/pose_bounds.hpp"
 
 namespace lrb {
 namespace {

@@ -2,20 +2,10 @@
 
 #include <cmath>
 
-#include "engine/query/apart.hpp"
+#include "engine/query/pose_bounds.hpp"
 #include "engine/tolerances.hpp"
 
 namespace lrb {
-namespace {
-
-/// How far r^T r is from the identity, largest row sum: a bound of the Euclidean norm, the matrix being
-/// symmetric.
-double defect(const Eigen::Matrix3d& r) {
-  return (r.transpose() * r - Eigen::Matrix3d::Identity()).cwiseAbs().rowwise().sum().maxCoeff();
-}
-
-}  // namespace
-
 /// The kernel compares boxes on A's axes and on B's. Let w_a = r_a x_a + t_a + rounding and w_b likewise be
 /// the world coordinates of a point of each body. If they are equal, then, with m = r_a^T r_b, t = r_a^T (t_b
 /// - t_a) and Euclidean norms,
@@ -45,12 +35,25 @@ TreeKernel set_up_kernel(const BlockTree& a, const Pose& pose_a, const BlockTree
     k.t[i] = t[i];
   }
   const double size = (world_size(pose_a, a) + world_size(pose_b, b) + kWorldUnderflow) / unit;
-  const double defect_a = defect(pose_a.r), defect_m = defect(m);
+  const double defect_a = rotation_defect(pose_a.r), defect_m = rotation_defect(m);
   const double turn_a = std::sqrt(1 + defect_a), turn_m = std::sqrt(1 + defect_m);
   const double on_a = defect_a * (a.extent() / unit) + turn_a * kWorldRounding * size;
   const double on_b = defect_m * (b.extent() / unit) + turn_m * on_a;
   k.slack = static_cast<float>(kPoseSafety * (on_a + on_b)) * (1 + 0x1p-20f) + kKernelTiny;
   k.m_size = static_cast<float>(turn_m) * (1 + 0x1p-20f);
+  return k;
+}
+
+TreeKernel start_kernel(QueryContext& ctx, std::size_t capacity) {
+  const BlockTree &a = ctx[Side::a].tree(), &b = ctx[Side::b].tree();
+  TreeKernel k = set_up_kernel(a, ctx[Side::a].world.pose(), b, ctx[Side::b].world.pose());
+  ctx.stack.resize(64 * (a.height() + b.height()) + 64);
+  ctx.candidates.resize(capacity);
+  k.stack = ctx.stack.data();
+  k.stack[0] = {0, 0};
+  k.stack_size = 1;
+  k.out = ctx.candidates.data();
+  k.out_capacity = static_cast<std::uint32_t>(capacity);
   return k;
 }
 

@@ -39,6 +39,10 @@ template <class Probe>
   }
 }
 
+/// A kernel at the roots of what is queried of both bodies, with the context's buffers: `capacity`
+/// candidates.
+TreeKernel start_kernel(QueryContext& ctx, std::size_t capacity);
+
 /// Refines the wrapper of a body until a face shows: the regions from the outside inward that hide it. Mostly
 /// there are none left.
 template <class Probe>
@@ -64,16 +68,9 @@ class TreeQuery {
   void run() {
     const BlockTree &a = ctx_[Side::a].tree(), &b = ctx_[Side::b].tree();
     if (a.empty() || b.empty()) return;
-    TreeKernel k = set_up_kernel(a, ctx_[Side::a].world.pose(), b, ctx_[Side::b].world.pose());
-    ctx_.stack.resize(64 * (a.height() + b.height()) + 64);
     // A small buffer where one pair may be enough, or time may run out, so that little is searched beyond it.
-    ctx_.candidates.resize(mode_ == Mode::all_pairs && !Rules::kCoarse ? 1024 : 64);
+    TreeKernel k = start_kernel(ctx_, mode_ == Mode::all_pairs && !Rules::kCoarse ? 1024 : 64);
     if constexpr (Rules::kCoarse) k.slack *= 2;  // what the kernel drops is then apart by more than rounding
-    k.stack = ctx_.stack.data();
-    k.stack[0] = {0, 0};
-    k.stack_size = 1;
-    k.out = ctx_.candidates.data();
-    k.out_capacity = static_cast<std::uint32_t>(ctx_.candidates.size());
     bool done = false;
     while (k.stack_size != 0 && !done) {
       k.out_size = 0;
@@ -87,8 +84,9 @@ class TreeQuery {
   }
 
  private:
-  /// True if the answer is complete. One pair is enough in any_pair mode, in first_pair mode if it crosses; a pair that only
-  /// touches is kept while a crossing one is looked for, so that the relation is exact in that mode too.
+  /// True if the answer is complete. One pair is enough in any_pair mode, in first_pair mode if it crosses; a
+  /// pair that only touches is kept while a crossing one is looked for, so that the relation is exact in that
+  /// mode too.
   bool test(Candidate c) {
     if constexpr (Rules::kCoarse)
       if (rules_.no_test_left(result_.counters.face_tests)) return true;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "engine/query/pose_bounds.hpp"
 #include "engine/tolerances.hpp"
 
 namespace lrb {
@@ -96,9 +97,7 @@ class Search {
 
 /// No coordinate, and no term on the way to one, can overflow.
 bool stays_finite(const LrbRep& rep, const Pose& pose) {
-  const double size =
-      pose.r.cwiseAbs().rowwise().sum().maxCoeff() * rep.tree().extent() + pose.t.cwiseAbs().maxCoeff();
-  return size <= 0.25 * std::numeric_limits<double>::max();
+  return world_size(pose, rep.tree()) <= 0.25 * std::numeric_limits<double>::max();
 }
 
 Eigen::AlignedBox3d everything() {
