@@ -11,36 +11,44 @@
 namespace lrb {
 namespace {
 
-constexpr std::string_view kEnding = ".scenario.json";
+constexpr std::string_view kScenario = ".scenario.json";
 
 }  // namespace
 
+std::vector<std::string> shipped_names(std::string_view ending) {
+  std::vector<std::string> names;
+  for (const EmbeddedFile& file : embedded_files())
+    if (file.name.ends_with(ending)) names.emplace_back(file.name.substr(0, file.name.size() - ending.size()));
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+NamedText open_named(const std::string& name_or_path, std::string_view ending, std::string_view what) {
+  const bool is_name = name_or_path.find_first_of("./\\") == std::string::npos;
+  if (is_name) {
+    const std::string shipped = name_or_path + std::string(ending);
+    for (const EmbeddedFile& file : embedded_files())
+      if (file.name == shipped) return {std::string(file.text), shipped};
+    std::error_code error;
+    if (!std::filesystem::exists(name_or_path, error))
+      throw InputError(name_or_path + ": neither a shipped " + std::string(what) + " nor a file" +
+                       suggestion(name_or_path, shipped_names(ending)));
+  }
+  return {read_text(name_or_path), name_or_path};
+}
+
 std::vector<ShippedScenario> shipped_scenarios() {
   std::vector<ShippedScenario> out;
-  for (const EmbeddedFile& file : embedded_files()) {
-    if (!file.name.ends_with(kEnding)) continue;
-    const Scenario s = parse_scenario(std::string(file.text), std::string(file.name));
+  for (const std::string& name : shipped_names(kScenario)) {
+    const Scenario s = open_scenario(name);
     out.push_back({s.name, s.purpose});
   }
-  std::sort(out.begin(), out.end(), [](const auto& x, const auto& y) { return x.name < y.name; });
   return out;
 }
 
 Scenario open_scenario(const std::string& name_or_path) {
-  std::error_code error;
-  const bool is_name = name_or_path.find_first_of("./\\") == std::string::npos;
-  if (is_name) {
-    for (const EmbeddedFile& file : embedded_files())
-      if (file.name == name_or_path + std::string(kEnding))
-        return parse_scenario(std::string(file.text), std::string(file.name));
-  }
-  if (is_name && !std::filesystem::exists(name_or_path, error)) {
-    std::vector<std::string> names;
-    for (const ShippedScenario& s : shipped_scenarios()) names.push_back(s.name);
-    throw InputError(name_or_path + ": neither a shipped scenario nor a file" +
-                     suggestion(name_or_path, names));
-  }
-  return parse_scenario(read_text(name_or_path), name_or_path);
+  const NamedText scenario = open_named(name_or_path, kScenario, "scenario");
+  return parse_scenario(scenario.text, scenario.file);
 }
 
 }  // namespace lrb

@@ -5,17 +5,13 @@
 
 #include "engine/error.hpp"
 #include "engine/lrb/fnv.hpp"
-#include "scenarios/embedded.hpp"
-#include "scenarios/files.hpp"
 #include "scenarios/json/json_node.hpp"
-#include "scenarios/json/suggest.hpp"
 #include "scenarios/scenario_body.hpp"
 #include "scenarios/scenario_frames.hpp"
 
 namespace lrb {
 namespace {
 
-constexpr std::string_view kEnding = ".crowd.json";
 constexpr std::uint32_t kMostBodies = 10'000, kMostSteps = 100'000;
 constexpr double kFar = 1e150;  // coordinates whose squares are still finite
 
@@ -111,21 +107,6 @@ Crowd parse_crowd(const std::string& text, const std::string& file) {
   hash.add_bytes(text.data(), text.size());
   c.hash = hash.value();
   return c;
-}
-
-Crowd open_crowd(const std::string& name_or_path) {
-  std::vector<std::string> names;
-  for (const EmbeddedFile& file : embedded_files()) {
-    if (!file.name.ends_with(kEnding)) continue;
-    if (file.name == name_or_path + std::string(kEnding))
-      return parse_crowd(std::string(file.text), std::string(file.name));
-    names.emplace_back(file.name.substr(0, file.name.size() - kEnding.size()));
-  }
-  std::error_code error;
-  const bool is_name = name_or_path.find_first_of("./\\") == std::string::npos;
-  if (is_name && !std::filesystem::exists(name_or_path, error))
-    throw InputError(name_or_path + ": neither a shipped crowd nor a file" + suggestion(name_or_path, names));
-  return parse_crowd(read_text(name_or_path), name_or_path);
 }
 
 }  // namespace lrb

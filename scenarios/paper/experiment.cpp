@@ -3,18 +3,11 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "engine/error.hpp"
-#include "scenarios/embedded.hpp"
-#include "scenarios/files.hpp"
 #include "scenarios/json/json_node.hpp"
-#include "scenarios/json/suggest.hpp"
-#include "scenarios/play/recording.hpp"
 #include "scenarios/scenario_body.hpp"
 
 namespace lrb {
 namespace {
-
-constexpr std::string_view kEnding = ".experiment.json";
 
 constexpr std::array<PaperPart, 6> kAllParts = {PaperPart::table1,     PaperPart::table2,
                                                 PaperPart::figure_3_1, PaperPart::figure_3_2,
@@ -82,14 +75,6 @@ std::string read_close_up(const JsonNode& root, const std::vector<PaperExperimen
   return n->choice(known);
 }
 
-std::vector<std::pair<std::string, std::string>> shipped_texts() {
-  std::vector<std::pair<std::string, std::string>> out;
-  for (const EmbeddedFile& file : embedded_files())
-    if (file.name.ends_with(kEnding))
-      out.emplace_back(file.name.substr(0, file.name.size() - kEnding.size()), file.text);
-  return out;
-}
-
 }  // namespace
 
 bool PaperExperiment::reports(PaperPart part) const {
@@ -117,42 +102,6 @@ PaperExperiment parse_experiment(const std::string& text, const std::string& fil
     root.at("objects").fail(
         "expected a second object for the first one to meet, or \"report\": [\"table1\"]");
   return e;
-}
-
-std::vector<std::string> shipped_experiments() {
-  std::vector<std::string> out;
-  for (const auto& [name, text] : shipped_texts()) out.push_back(name);
-  return out;
-}
-
-std::string shipped_experiment(const std::string& name) {
-  for (const auto& [known, text] : shipped_texts())
-    if (known == name) return text;
-  throw InputError("no experiment is called \"" + name + "\"" + suggestion(name, shipped_experiments()));
-}
-
-PaperExperiment open_experiment(const std::string& name_or_path) {
-  std::error_code error;
-  const bool is_name = name_or_path.find_first_of("./\\") == std::string::npos;
-  const std::vector<std::string> names = shipped_experiments();
-  const bool shipped = std::find(names.begin(), names.end(), name_or_path) != names.end();
-  if (shipped || (is_name && !std::filesystem::exists(name_or_path, error)))
-    return parse_experiment(shipped_experiment(name_or_path), name_or_path + std::string(kEnding));
-  return parse_experiment(read_text(name_or_path), name_or_path);
-}
-
-std::vector<PaperObject> make_objects(const PaperExperiment& experiment, std::vector<std::string>& notes) {
-  std::vector<PaperObject> objects;
-  for (const PaperExperiment::Object& o : experiment.objects) {
-    LoadedBody body = make_body(o.body);
-    notes.insert(notes.end(), body.notes.begin(), body.notes.end());
-    if (body.rep.dim() != 3)
-      throw InputError("experiment " + experiment.name + ": object " + o.name +
-                       " is a 2D body: give one in 3D");
-    const double by = objects.empty() ? 1 : diagonal(objects[0].rep) / diagonal(body.rep);
-    objects.push_back({o.name, by == 1 ? std::move(body.rep) : scaled(body.rep, by)});
-  }
-  return objects;
 }
 
 }  // namespace lrb

@@ -1,9 +1,20 @@
+#include "scenarios/crowd/crowd.hpp"
+#include "scenarios/paper/experiment.hpp"
 #include "scenarios/pose_file.hpp"
 #include "scenarios/scenario.hpp"
 #include "scenarios/scenario_motion.hpp"
 #include "tests/fuzz/feed.hpp"
 
 namespace lrb::fuzz {
+namespace {
+
+/// Names become names of files and folders.
+void judge_name(const std::string& name) {
+  if (name.empty() || name.find_first_of("/.\\") != std::string::npos)
+    throw std::logic_error("a name could lead out of the output folder: " + name);
+}
+
+}  // namespace
 
 bool feed_poses(std::string_view bytes) {
   return accepted("p.txt", [&] {
@@ -15,9 +26,26 @@ bool feed_poses(std::string_view bytes) {
 bool feed_scenario(std::string_view bytes) {
   return accepted("s.json", [&] {
     const Scenario s = parse_scenario(std::string(bytes), "s.json");
-    if (s.name.empty() || s.name.find_first_of("/.\\") != std::string::npos)
-      throw std::logic_error("the scenario's name could lead out of the output folder: " + s.name);
+    judge_name(s.name);
     if (s.show == Show::collision) static_cast<void>(poses_of(s.motion, s.bodies.at(1).pose));
+  });
+}
+
+bool feed_crowd(std::string_view bytes) {
+  return accepted("c.json", [&] {
+    const Crowd c = parse_crowd(std::string(bytes), "c.json");
+    judge_name(c.name);
+    for (const CrowdKind& kind : c.kinds) judge_name(kind.name);
+    if (!c.room.allFinite() || c.body_count() == 0) throw std::logic_error("a crowd that cannot be");
+  });
+}
+
+bool feed_experiment(std::string_view bytes) {
+  return accepted("e.json", [&] {
+    const PaperExperiment e = parse_experiment(std::string(bytes), "e.json");
+    judge_name(e.name);
+    for (const PaperExperiment::Object& object : e.objects) judge_name(object.name);
+    if (e.collides() && e.objects.size() < 2) throw std::logic_error("an experiment that cannot be");
   });
 }
 

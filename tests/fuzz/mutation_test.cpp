@@ -66,6 +66,10 @@ TEST_CASE("damaged pose files are refused or read") {
 TEST_CASE("damaged scenarios are refused or read") {
   mutate("scenario", 700);
 }
+TEST_CASE("damaged crowds and experiments are refused or read") {
+  mutate("crowd", 1500);
+  mutate("experiment", 500);
+}
 TEST_CASE("damaged traces are refused or read") {
   mutate("trace", 250);
 }

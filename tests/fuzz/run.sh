@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # tests/fuzz/run.sh [--runs N | --seconds N] [FORMAT...]: builds the fuzzers (clang, address and undefined-behaviour
 # sanitizers: the preset asan-ubsan) and runs each for 20 seconds, or as long as it is told; --runs 1000000 is the full
-# run. Formats: mesh (OBJ, STL, PLY and OFF) lrb poses scenario trace. What runs learn stays in
+# run. Formats: mesh (OBJ, STL, PLY and OFF) lrb poses scenario crowd experiment trace. What runs learn stays in
 # build/asan-ubsan/fuzz/corpus; an input that crashes, or takes over 10 s, is left in .../found and ends the script.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
@@ -12,7 +12,7 @@ case "${1:-}" in
   -*) sed -n '2,5s/^# //p' "${BASH_SOURCE[0]}" >&2 && exit 2 ;;
 esac
 formats=("$@")
-[ ${#formats[@]} -gt 0 ] || formats=(mesh lrb poses scenario trace)
+[ ${#formats[@]} -gt 0 ] || formats=(mesh lrb poses scenario crowd experiment trace)
 build=build/asan-ubsan
 dir=$build/fuzz
 launcher=()
@@ -25,7 +25,9 @@ for format in "${formats[@]}"; do
   mkdir -p "$dir/corpus/$format"
   options=(-timeout=10 -rss_limit_mb=2048 -max_len=1536 -print_final_stats=1 -verbosity=0 "$bound")
   [ "$format" = trace ] && options+=(-max_len=4096)
-  [ -f "tests/fuzz/$format.dict" ] && options+=(-dict="tests/fuzz/$format.dict")
+  dictionary=tests/fuzz/$format.dict
+  case "$format" in crowd | experiment) dictionary=tests/fuzz/scenario.dict ;; esac
+  [ -f "$dictionary" ] && options+=(-dict="$dictionary")
   begin=$SECONDS
   if ! "$build/tests/fuzz_$format" "${options[@]}" -artifact_prefix="$dir/found/$format-" "$dir/corpus/$format" \
     "$dir/seeds/$format" >"$dir/$format.log" 2>&1; then

@@ -59,12 +59,16 @@ const char* const kBodies =
     R"("bodies": {"a": {"generator": "ball", "parameters": {"frequency": 3}, "pose": {"position": [1, 2, 3], "axis": [0, 0, 1], "degrees": 30}},
  "b": {"file": "b.obj", "build": {"patch_interior": 5, "max_outer_faces": 20, "seed": 3}, "pose": [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0]}})";
 
-std::vector<std::string> scenarios() {
+std::vector<std::string> shipped(const std::string& ending) {
   std::vector<std::string> out;
   for (const auto& entry : std::filesystem::directory_iterator(LRB_SOURCE_DIR "/scenarios/shipped"))
-    if (entry.path().string().ends_with(".scenario.json"))
-      out.push_back(test::load_bytes(entry.path().string()));
+    if (entry.path().string().ends_with(ending)) out.push_back(test::load_bytes(entry.path().string()));
   std::sort(out.begin(), out.end());
+  return out;
+}
+
+std::vector<std::string> scenarios() {
+  std::vector<std::string> out = shipped(".scenario.json");
   const std::string begin =
       std::string(R"({"name": "x", "purpose": "y", "seed": 7, )") + kBodies + R"(, "motion": )";
   out.push_back(
@@ -104,6 +108,8 @@ std::vector<Format> formats() {
           {"lrb", feed_lrb, lrb_files()},
           {"poses", feed_poses, poses()},
           {"scenario", feed_scenario, scenarios()},
+          {"crowd", feed_crowd, shipped(".crowd.json")},
+          {"experiment", feed_experiment, shipped(".experiment.json")},
           {"trace", feed_trace, traces()}};
 }
 
