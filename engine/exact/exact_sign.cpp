@@ -130,6 +130,10 @@ FloatingPredicates::~FloatingPredicates() {
   floating_only = before_;
 }
 
+bool only_floating() {
+  return floating_only;
+}
+
 std::uint64_t exact_fallbacks() {
   return fallback_count;
 }

@@ -28,4 +28,7 @@ class FloatingPredicates {
   bool before_;
 };
 
+/// Whether one lives on this thread.
+bool only_floating();
+
 }  // namespace lrb::exact

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "engine/exact/degenerate.hpp"
+#include "engine/exact/exact_sign.hpp"
 #include "engine/exact/plane_side.hpp"
 #include "engine/exact/planes_cross.hpp"
 #include "engine/exact/predicates.hpp"
@@ -24,12 +25,39 @@ Meet meet_degenerate(const double* const a[3], const double* const b[3]) {
   return hulls_meet(hull_of(a), hull_of(b)) ? Meet::touch : Meet::disjoint;
 }
 
-Meet meet_by_planes(const PlaneSide& plane_a, const double* const a[3], const PlaneSide& plane_b,
-                    const double* const b[3]) {
-  const Sides b_sides = sides_of(plane_a, b);
+/// Corners that two triangles have in common: number k of the first is number with[k] of the second, -1 if
+/// none.
+struct Shared {
+  int with[3] = {-1, -1, -1};
+  int count = 0;
+
+  Shared(const double* const a[3], const double* const b[3]) {
+    bool taken[3] = {};
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3 && with[i] < 0; ++j) {
+        if (a[i][0] != b[j][0] || taken[j] || !same_point(a[i], b[j])) continue;
+        with[i] = j;
+        taken[j] = true;
+        ++count;
+      }
+  }
+};
+
+/// Sides of the corners, of which those that are the plane's own need not be asked about.
+Sides sides_of(const PlaneSide& plane, const double* const t[3], const bool own[3]) {
+  Sides sides{};
+  for (int i = 0; i < 3; ++i) sides.s[i] = own[i] ? 0 : plane.side(t[i]);
+  return sides;
+}
+
+Meet meet_by_planes(const double* const a[3], const bool shared_a[3], const double* const b[3],
+                    const bool shared_b[3]) {
+  const PlaneSide plane_a(a[0], a[1], a[2]);
+  const Sides b_sides = sides_of(plane_a, b, shared_b);
   if (b_sides.all_strictly_same()) return Meet::disjoint;
   if (b_sides.all_zero()) return meet_degenerate(a, b);
-  const Sides a_sides = sides_of(plane_b, a);
+  const PlaneSide plane_b(b[0], b[1], b[2]);
+  const Sides a_sides = sides_of(plane_b, a, shared_a);
   if (a_sides.all_strictly_same()) return Meet::disjoint;
   if (a_sides.all_zero()) return meet_degenerate(a, b);
   return meet_on_line(CrossingPlanes(a, a_sides, b, b_sides),
@@ -39,9 +67,19 @@ Meet meet_by_planes(const PlaneSide& plane_a, const double* const a[3], const Pl
 }  // namespace
 
 Meet meet_triangles(const double* const a[3], const double* const b[3]) {
-  const PlaneSide plane_a(a[0], a[1], a[2]);
-  const PlaneSide plane_b(b[0], b[1], b[2]);
-  return meet_by_planes(plane_a, a, plane_b, b);
+  bool shared_a[3] = {}, shared_b[3] = {};
+  if (!only_floating()) {
+    const Shared shared(a, b);
+    // Two corners: the triangles have an edge in common, and meet only there or lie in one plane; or one of
+    // them has no area.
+    if (shared.count >= 2) return Meet::touch;
+    for (int i = 0; i < 3; ++i) {
+      if (shared.with[i] < 0) continue;
+      shared_a[i] = true;
+      shared_b[shared.with[i]] = true;
+    }
+  }
+  return meet_by_planes(a, shared_a, b, shared_b);
 }
 
 Meet meet_segments(const double* const a[2], const double* const b[2]) {
