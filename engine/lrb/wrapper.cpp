@@ -20,10 +20,6 @@ void Wrapper::reset() {
   }
 }
 
-bool Wrapper::included(CellId cell) const {
-  return is_region(cell) ? region_stamp_[cell] != epoch_ : cell == kSolid;
-}
-
 bool Wrapper::refine(RegionId r) {
   if (!included(r)) return false;
   order_.push_back(r);  // first: it may throw

@@ -28,7 +28,9 @@ class Wrapper {
 
   /// Back to the outermost wrapper, in O(1).
   void reset();
-  bool included(CellId cell) const;  ///< the solid always is, the outside never
+  bool included(CellId cell) const {  ///< the solid always is, the outside never
+    return is_region(cell) ? region_stamp_[cell] != epoch_ : cell == kSolid;
+  }
   /// Excludes a region; false if it was excluded already.
   bool refine(RegionId r);
   /// Refines the region behind a face. regularised: refine(inner_cell(f)). unregularised: discards f; adds

@@ -295,9 +295,10 @@ class BlockTreeBuilder {
       node.origin[i] = frame.origin[i];
       const double lo = all.min()[i] - 2 * margin, hi = all.max()[i] + 2 * margin;
       node.base[i] = std::nextafter(static_cast<float>(lo), -INFINITY);
-      node.scale[i] = std::nextafter(static_cast<float>((hi - node.base[i]) / 255), INFINITY);
+      node.scale[i] = std::nextafter(static_cast<float>((hi - node.base[i]) / kQuantizedMost), INFINITY);
       for (std::uint32_t k = 0; k < kTreeWidth; ++k) {
-        node.lo[i][k] = k < boxes.size() ? quantize_down(node, i, boxes[k].min()[i] - margin) : 255;
+        node.lo[i][k] =
+            k < boxes.size() ? quantize_down(node, i, boxes[k].min()[i] - margin) : kQuantizedMost;
         node.hi[i][k] = k < boxes.size() ? quantize_up(node, i, boxes[k].max()[i] + margin) : 0;
       }
     }
@@ -312,13 +313,13 @@ class BlockTreeBuilder {
     return node.base[axis] + node.scale[axis] * static_cast<float>(q);
   }
   static std::uint8_t quantize_down(const TreeNode& node, int axis, double x) {
-    int q = std::clamp(static_cast<int>((x - node.base[axis]) / node.scale[axis]) + 1, 0, 255);
+    int q = std::clamp(static_cast<int>((x - node.base[axis]) / node.scale[axis]) + 1, 0, kQuantizedMost);
     while (q > 0 && decode(node, axis, q) > x) --q;
     return static_cast<std::uint8_t>(q);
   }
   static std::uint8_t quantize_up(const TreeNode& node, int axis, double x) {
-    int q = std::clamp(static_cast<int>((x - node.base[axis]) / node.scale[axis]) - 1, 0, 255);
-    while (q < 255 && decode(node, axis, q) < x) ++q;
+    int q = std::clamp(static_cast<int>((x - node.base[axis]) / node.scale[axis]) - 1, 0, kQuantizedMost);
+    while (q < kQuantizedMost && decode(node, axis, q) < x) ++q;
     return static_cast<std::uint8_t>(q);
   }
 

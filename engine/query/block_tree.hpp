@@ -22,6 +22,7 @@ namespace lrb {
 class LrbRep;
 
 inline constexpr std::uint32_t kTreeWidth = 8;  ///< children of a node, simplices of a block
+inline constexpr int kQuantizedMost = 255;      ///< end of a node's box on its quantized axes
 
 /// A node, inner or leaf: an oriented frame and up to eight boxes in it (of its children, or of its
 /// simplices). A point x (units, body axes) has node coordinates frame * (x - origin). Box k spans, on axis

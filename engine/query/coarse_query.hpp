@@ -115,7 +115,7 @@ class CoarseQuery {
     query.run();
     result_.counters = std::move(level.counters);
     if (query.rules().stopped) return false;
-    sort_pairs(level);
+    ctx_.pair_order.sort(level);
     decide(level, query.rules(), la.bound * stretch(a.world.pose()) + lb.bound * stretch(b.world.pose()));
     result_.pairs.swap(level.pairs);
     result_.meets.swap(level.meets);

@@ -128,7 +128,7 @@ void CoherentQuery::query_from_scratch() {
   const std::uint64_t fallbacks = exact::exact_fallbacks();
   NullProbe probe;
   TreeQuery<NullProbe>(context_, request_.mode, result_, probe).run();
-  sort_pairs(result_);
+  context_.pair_order.sort(result_);
   decide_relation(context_, result_);
   describe_contact(context_, request_, result_);
   show_opened();
@@ -239,8 +239,8 @@ bool CoherentQuery::make_list() {
     list_[kept] = list_[i];
     test_pair(kept, 0);
     if (meets_[kept] == exact::Meet::disjoint && due_[kept] > valid_to_) continue;
-    open_regions(context_, Side::a, a_.face_of_simplex(list_[i].a), result_, probe);
-    open_regions(context_, Side::b, b_.face_of_simplex(list_[i].b), result_, probe);
+    show_face(context_, Side::a, a_.face_of_simplex(list_[i].a), result_, probe);
+    show_face(context_, Side::b, b_.face_of_simplex(list_[i].b), result_, probe);
     ++kept;
   }
   list_.resize(kept);

@@ -45,22 +45,6 @@ const char* to_string(Recursion r) {
   return "";
 }
 
-void sort_pairs(CollideResult& result) {
-  if (std::is_sorted(result.pairs.begin(), result.pairs.end())) return;
-  std::vector<std::uint32_t> order(result.pairs.size());
-  std::iota(order.begin(), order.end(), 0u);
-  std::sort(order.begin(), order.end(), [&](auto i, auto j) { return result.pairs[i] < result.pairs[j]; });
-  std::vector<SimplexPair> pairs;
-  std::vector<exact::Meet> meets;
-  for (const std::uint32_t i : order) {
-    if (!pairs.empty() && pairs.back() == result.pairs[i]) continue;
-    pairs.push_back(result.pairs[i]);
-    meets.push_back(result.meets[i]);
-  }
-  result.pairs.swap(pairs);
-  result.meets.swap(meets);
-}
-
 namespace {
 
 /// World coordinates must be doubles. Few poses come near overflow: vertices are looked at only then.

@@ -40,7 +40,7 @@ CollideResult collide(const LrbRep& a, const Pose& pose_a, const LrbRep& b, cons
         TreeQuery<Probe>(context, request.mode, result, probe).run();
       else
         PaperQuery<Probe>(context, request, result, probe).run();
-      sort_pairs(result);
+      context.pair_order.sort(result);
       decide_relation(context, result);
     }
   }

@@ -103,9 +103,10 @@ class PaperQuery {
       }
       return best == exact::Meet::cross;
     });
-    count_face_test(ctx_, fa, fb, result_.counters);
-    if constexpr (Probe::kEnabled)
-      probe_.face_test(which.a, which.b, best, ctx_[Side::a].depth_of(fa), ctx_[Side::b].depth_of(fb));
+    const std::uint32_t depth_a = ctx_[Side::a].depth_of(fa), depth_b = ctx_[Side::b].depth_of(fb);
+    const bool real = ctx_[Side::a].rep().is_real(fa) && ctx_[Side::b].rep().is_real(fb);
+    count_face_test(real, std::max(depth_a, depth_b), result_.counters);
+    if constexpr (Probe::kEnabled) probe_.face_test(which.a, which.b, best, depth_a, depth_b);
     return best != exact::Meet::disjoint;
   }
 

@@ -6,6 +6,7 @@
 
 #include "engine/lrb/wrapper.hpp"
 #include "engine/query/collide.hpp"
+#include "engine/query/pair_order.hpp"
 #include "engine/query/surface_graph.hpp"
 #include "engine/query/tree_kernel.hpp"
 #include "engine/query/world_vertices.hpp"
@@ -84,6 +85,7 @@ class QueryContext {
   std::vector<NodePair> stack;
   std::vector<Candidate> candidates;
   std::vector<RegionId> path;
+  PairOrder pair_order;
   std::unordered_set<std::uint64_t> visited[3];  ///< paper: region x region, face x region, region x face
 
   QueryBody& operator[](Side s) { return body[static_cast<int>(s)]; }
@@ -97,10 +99,9 @@ inline exact::Meet test_simplices(QueryContext& ctx, SimplexId a, SimplexId b) {
   return ctx.body[0].rep().dim() == 3 ? exact::meet_triangles(ca, cb) : exact::meet_segments(ca, cb);
 }
 
-inline void count_face_test(QueryContext& ctx, FaceId fa, FaceId fb, Counters& c) {
+inline void count_face_test(bool real, std::uint32_t level, Counters& c) {
   ++c.face_tests;
-  if (ctx.body[0].rep().is_real(fa) && ctx.body[1].rep().is_real(fb)) ++c.real_tests;
-  const std::uint32_t level = std::max(ctx.body[0].depth_of(fa), ctx.body[1].depth_of(fb));
+  c.real_tests += real;
   if (c.face_tests_by_level.size() <= level) c.face_tests_by_level.resize(level + 1);
   ++c.face_tests_by_level[level];
 }

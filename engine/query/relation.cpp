@@ -26,11 +26,53 @@ class RayWalk {
   }
 
   Where run() {
-    visit(0);
+    if (!misses_all()) visit(0);
     return on_surface_ ? Where::on_surface : crossings_ % 2 ? Where::inside : Where::outside;
   }
 
  private:
+  /// A node's axes and origin in the world.
+  struct Frame {
+    Matrix3d axes;
+    Vector3d origin;
+    double grow;  ///< of boxes: all errors
+  };
+
+  Frame frame_of(const TreeNode& n) const {
+    const Pose& pose = body_.world.pose();
+    const double unit = tree_.unit();
+    Frame f;
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j) f.axes(j, i) = n.frame[i][j];
+    f.axes = pose.r * f.axes * unit;
+    f.origin = pose.r * (Vector3d(n.origin[0], n.origin[1], n.origin[2]) * unit) + pose.t;
+    f.grow = margin_ + kKernelRounding * turn_ * (static_cast<double>(n.radius) * unit);
+    return f;
+  }
+
+  /// Whether the ray certainly misses a box, of which `lo` and `hi` give the quantized ends. Conservative, as
+  /// the kernel's boxes are.
+  template <class Lo, class Hi>
+  bool misses(const TreeNode& n, const Frame& f, const Lo& lo, const Hi& hi) const {
+    Vector3d centre, half;
+    for (int i = 0; i < 3; ++i) {
+      const double base = n.base[i], scale = n.scale[i];
+      centre[i] = base + scale * 0.5 * (lo(i) + hi(i));
+      half[i] = scale * 0.5 * (hi(i) - lo(i));
+    }
+    const Vector3d c = f.origin + f.axes * centre;
+    const Vector3d h = f.axes.cwiseAbs() * half + Vector3d::Constant(f.grow);
+    return c.x() + h.x() < p_[0] || std::abs(c.y() - p_[1]) > h.y() ||
+           (body_.rep().dim() == 3 && std::abs(c.z() - p_[2]) > h.z());
+  }
+
+  /// Most rays miss the whole body.
+  bool misses_all() const {
+    const TreeNode& root = tree_.nodes()[0];
+    return misses(
+        root, frame_of(root), [](int) { return 0; }, [](int) { return kQuantizedMost; });
+  }
+
   void visit(std::uint32_t index) {
     const TreeNode& n = tree_.nodes()[index];
     if (n.is_leaf) {
@@ -38,29 +80,11 @@ class RayWalk {
       for (int k = 0; k < n.count && !on_surface_; ++k) cross(block.simplex[k]);
       return;
     }
-    // World axes of the node's axes, and the world box of each child: conservative, as the kernel's boxes
-    // are.
-    const Pose& pose = body_.world.pose();
-    const double unit = tree_.unit();
-    Matrix3d axes;
-    for (int i = 0; i < 3; ++i)
-      for (int j = 0; j < 3; ++j) axes(j, i) = n.frame[i][j];
-    axes = pose.r * axes * unit;
-    const Vector3d origin = pose.r * (Vector3d(n.origin[0], n.origin[1], n.origin[2]) * unit) + pose.t;
-    const double grow = margin_ + kKernelRounding * turn_ * (static_cast<double>(n.radius) * unit);
-    for (std::uint32_t k = 0; k < n.count && !on_surface_; ++k) {
-      Vector3d centre, half;
-      for (int i = 0; i < 3; ++i) {
-        const double base = n.base[i], scale = n.scale[i];
-        centre[i] = base + scale * 0.5 * (n.lo[i][k] + n.hi[i][k]);
-        half[i] = scale * 0.5 * (n.hi[i][k] - n.lo[i][k]);
-      }
-      const Vector3d c = origin + axes * centre;
-      const Vector3d h = axes.cwiseAbs() * half + Vector3d::Constant(grow);
-      const bool missed = c.x() + h.x() < p_[0] || std::abs(c.y() - p_[1]) > h.y() ||
-                          (body_.rep().dim() == 3 && std::abs(c.z() - p_[2]) > h.z());
-      if (!missed) visit(n.first + k);
-    }
+    const Frame f = frame_of(n);
+    for (std::uint32_t k = 0; k < n.count && !on_surface_; ++k)
+      if (!misses(
+              n, f, [&](int i) { return n.lo[i][k]; }, [&](int i) { return n.hi[i][k]; }))
+        visit(n.first + k);
   }
 
   void cross(SimplexId s) {

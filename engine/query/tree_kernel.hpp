@@ -14,9 +14,13 @@ struct NodePair {
   std::uint32_t a, b;
 };
 
-/// A pair of real simplices that float arithmetic could not prove apart.
+/// How two simplices meet, as far as float arithmetic is certain of it.
+enum class Certainty : std::uint32_t { none, disjoint, cross };
+
+/// A pair of real simplices that boxes and planes could not prove apart.
 struct Candidate {
   SimplexId a, b;
+  Certainty certainty;  ///< none where there is a margin
 };
 
 /// One traversal. All lengths are in the query's unit: the larger of the two trees' units.
@@ -25,12 +29,14 @@ struct TreeKernel {
   const TreeNode* nodes_b;
   const LeafBlock* blocks_a;
   const LeafBlock* blocks_b;
-  float ratio_a, ratio_b;  ///< tree's unit / query's unit, powers of two, at most 1
-  double m[3][3];          ///< A's axes <- B's axes
-  double t[3];             ///< B's origin seen from A's, in A's axes
+  float ratio_a, ratio_b;      ///< tree's unit / query's unit, powers of two, at most 1
+  alignas(32) double m[3][4];  ///< A's axes <- B's axes, its columns (m[column][row])
+  alignas(32) double t[4];     ///< B's origin seen from A's, in A's axes
+  float m_rows[3][3];          ///< m[column][row] rounded, by rows: m_rows[row][column]
   float slack;   ///< absolute: errors of poses and of the rounding of world coordinates (see tree_query.cpp)
   float m_size;  ///< >= 1 and >= the Euclidean norm of m
   float margin;  ///< 0; else pairs are kept that may meet once the points of either have moved this far
+  bool nearest_first;  ///< without a margin: descend first where boxes overlap most
 
   NodePair* stack;  ///< room for 64 * (height of A + height of B) + 64 pairs
   std::uint32_t stack_size;

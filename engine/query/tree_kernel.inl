@@ -17,9 +17,24 @@ namespace {
 
 using Float8 = float __attribute__((vector_size(32)));
 using Int8 = std::int32_t __attribute__((vector_size(32)));
+using Float4 = float __attribute__((vector_size(16)));
+using Int4 = std::int32_t __attribute__((vector_size(16)));
+using Double4 = double __attribute__((vector_size(32)));
 
 inline Float8 splat(float x) {
   return Float8{x, x, x, x, x, x, x, x};
+}
+
+inline Float4 splat4(float x) {
+  return Float4{x, x, x, x};
+}
+
+inline Double4 splat4d(double x) {
+  return Double4{x, x, x, x};
+}
+
+inline Float4 abs4(Float4 x) {
+  return reinterpret_cast<Float4>(reinterpret_cast<Int4>(x) & (Int4{} + 0x7fffffff));
 }
 
 inline Float8 abs8(Float8 x) {
@@ -27,8 +42,34 @@ inline Float8 abs8(Float8 x) {
   return reinterpret_cast<Float8>(reinterpret_cast<Int8>(x) & mask);
 }
 
-/// Bit k: lane k is true (all ones).
-inline std::uint32_t bits(Int8 lanes) {
+// A truth for each of eight lanes: a bit each where the processor compares into bits, else all or none of a
+// lane's bits.
+#if defined(__AVX512VL__) && defined(__AVX512DQ__)
+using Lanes = std::uint8_t;
+constexpr Lanes kAllLanes = 255, kNoLanes = 0;
+
+inline Lanes greater(Float8 x, Float8 y) {
+  return _mm256_cmp_ps_mask(reinterpret_cast<__m256>(x), reinterpret_cast<__m256>(y), _CMP_GT_OQ);
+}
+
+inline std::uint32_t bits(Lanes lanes) {
+  return lanes;
+}
+
+inline Float8 select(Lanes which, Float8 x, Float8 y) {
+  return reinterpret_cast<Float8>(
+      _mm256_mask_mov_ps(reinterpret_cast<__m256>(y), which, reinterpret_cast<__m256>(x)));
+}
+#else
+using Lanes = Int8;
+constexpr Lanes kAllLanes = {-1, -1, -1, -1, -1, -1, -1, -1}, kNoLanes = {};
+
+inline Lanes greater(Float8 x, Float8 y) {
+  return x > y;
+}
+
+/// Bit k: lane k is true.
+inline std::uint32_t bits(Lanes lanes) {
 #if defined(__AVX__)
   return static_cast<std::uint32_t>(_mm256_movemask_ps(reinterpret_cast<__m256>(lanes)));
 #elif defined(__SSE2__)
@@ -41,23 +82,50 @@ inline std::uint32_t bits(Int8 lanes) {
 #endif
 }
 
-inline Float8 bytes_to_float(const std::uint8_t* q) {
+inline Float8 select(Lanes which, Float8 x, Float8 y) {
+#if defined(__AVX__)
+  return reinterpret_cast<Float8>(_mm256_blendv_ps(reinterpret_cast<__m256>(y), reinterpret_cast<__m256>(x),
+                                                   reinterpret_cast<__m256>(which)));
+#else
+  return reinterpret_cast<Float8>((reinterpret_cast<Int8>(x) & which) | (reinterpret_cast<Int8>(y) & ~which));
+#endif
+}
+#endif
+
+inline Lanes both(Lanes x, Lanes y) {
+  return static_cast<Lanes>(x & y);
+}
+inline Lanes either(Lanes x, Lanes y) {
+  return static_cast<Lanes>(x | y);
+}
+inline Lanes equal(Lanes x, Lanes y) {
+  return static_cast<Lanes>(~(x ^ y));
+}
+/// x where `which`, else y.
+inline Lanes select(Lanes which, Lanes x, Lanes y) {
+  return static_cast<Lanes>((x & which) | (y & ~which));
+}
+
+inline Float8 larger(Float8 x, Float8 y) {
+  return select(greater(x, y), x, y);
+}
+
+inline Int8 bytes_to_int(const std::uint8_t* q) {
 #if defined(__AVX2__)
-  return reinterpret_cast<Float8>(
-      _mm256_cvtepi32_ps(_mm256_cvtepu8_epi32(_mm_loadl_epi64(reinterpret_cast<const __m128i*>(q)))));
+  return reinterpret_cast<Int8>(_mm256_cvtepu8_epi32(_mm_loadl_epi64(reinterpret_cast<const __m128i*>(q))));
 #elif defined(__SSE2__)
   const __m128i zero = _mm_setzero_si128();
   const __m128i words = _mm_unpacklo_epi8(_mm_loadl_epi64(reinterpret_cast<const __m128i*>(q)), zero);
   union {
-    __m128 half[2];
-    Float8 all;
+    __m128i half[2];
+    Int8 all;
   } u;
-  u.half[0] = _mm_cvtepi32_ps(_mm_unpacklo_epi16(words, zero));
-  u.half[1] = _mm_cvtepi32_ps(_mm_unpackhi_epi16(words, zero));
+  u.half[0] = _mm_unpacklo_epi16(words, zero);
+  u.half[1] = _mm_unpackhi_epi16(words, zero);
   return u.all;
 #else
-  Float8 x;
-  for (int k = 0; k < 8; ++k) x[k] = static_cast<float>(q[k]);
+  Int8 x;
+  for (int k = 0; k < 8; ++k) x[k] = q[k];
   return x;
 #endif
 }
@@ -66,60 +134,99 @@ inline Float8 load8(const float* x) {
   return *reinterpret_cast<const Float8*>(x);
 }
 
-/// The boxes of a node in its own frame, query units: centres and half sizes, and the box around them all.
+/// The box of a node in its own frame, query units.
+struct Whole {
+  float centre[3], half[3];
+};
+
+inline Whole whole_of(const TreeNode& n, float ratio) {
+  Whole w;
+  for (int i = 0; i < 3; ++i) {
+    w.half[i] = n.scale[i] * ratio * 127.5f;
+    w.centre[i] = n.base[i] * ratio + w.half[i];
+  }
+  return w;
+}
+
+/// The boxes of what a node holds, in its own frame, query units.
 struct Boxes {
   Float8 centre[3], half[3];
-  float whole_centre[3], whole_half[3];
 };
 
 inline Boxes decode(const TreeNode& n, float ratio) {
   Boxes b;
   for (int i = 0; i < 3; ++i) {
-    const float base = n.base[i] * ratio, scale = n.scale[i] * ratio;
-    const Float8 lo = splat(base) + splat(scale) * bytes_to_float(n.lo[i]);
-    const Float8 hi = splat(base) + splat(scale) * bytes_to_float(n.hi[i]);
-    b.centre[i] = (lo + hi) * splat(0.5f);
-    b.half[i] = (hi - lo) * splat(0.5f);
-    b.whole_half[i] = scale * 127.5f;
-    b.whole_centre[i] = base + b.whole_half[i];
+    const float base = n.base[i] * ratio, half_scale = n.scale[i] * ratio * 0.5f;
+    const Int8 lo = bytes_to_int(n.lo[i]), hi = bytes_to_int(n.hi[i]);
+    b.centre[i] = splat(base) + splat(half_scale) * __builtin_convertvector(lo + hi, Float8);
+    b.half[i] = splat(half_scale) * __builtin_convertvector(hi - lo, Float8);
   }
   return b;
 }
 
 /// How two nodes lie to each other: coordinates in A's node = r * (coordinates in B's node) + t, and back
-/// r^T * (coordinates in A's node) + back.
+/// r^T * (coordinates in A's node) + back. The fourth of each four is nothing.
 struct Between {
-  float r[3][3], abs_r[3][3], t[3], back[3];
+  alignas(16) float r[3][4], abs_r[3][4], t[4], back[4];
   float reach;  ///< bound of every coordinate difference that occurs
   float error;  ///< bound of the error of every transformed coordinate
   float grow;   ///< of boxes: the error, and the margin
 };
+
+/// Row i of a node's frame; the fourth is what follows it in the node.
+inline Float4 frame_row(const TreeNode& n, int i) {
+  static_assert(__builtin_offsetof(TreeNode, base) == sizeof(n.frame));
+  Float4 row;
+  __builtin_memcpy(&row, reinterpret_cast<const char*>(&n) + static_cast<unsigned>(i) * 3 * sizeof(float),
+                   sizeof row);
+  return row;
+}
+
+struct Columns {
+  Float4 c[3];
+};
+
+inline Columns columns_of(Float4 row0, Float4 row1, Float4 row2) {
+  const Float4 low = __builtin_shufflevector(row0, row1, 0, 4, 1, 5);
+  const Float4 high = __builtin_shufflevector(row0, row1, 2, 6, 2, 6);
+  return {{__builtin_shufflevector(low, row2, 0, 1, 4, 4), __builtin_shufflevector(low, row2, 2, 3, 5, 5),
+           __builtin_shufflevector(high, row2, 0, 1, 6, 6)}};
+}
+
+/// x[0] of column 0 + x[1] of column 1 + x[2] of column 2.
+inline Float4 combine(const float* x, const Float4* column) {
+  return splat4(x[0]) * column[0] + splat4(x[1]) * column[1] + splat4(x[2]) * column[2];
+}
 
 /// kMargin: whether k.margin counts. Simplices that come to meet at a point after a motion have points now
 /// that are no further apart than it is long: boxes and planes that are, part them.
 template <bool kMargin = false>
 inline Between between(const TreeKernel& k, const TreeNode& a, const TreeNode& b) {
   Between w;
-  double d[3];
-  for (int i = 0; i < 3; ++i)
-    d[i] = (((k.m[i][0] * b.origin[0] + k.m[i][1] * b.origin[1]) + k.m[i][2] * b.origin[2]) * k.ratio_b +
-            k.t[i]) -
-           a.origin[i] * k.ratio_a;
-  const float df[3] = {static_cast<float>(d[0]), static_cast<float>(d[1]), static_cast<float>(d[2])};
-  float mb[3][3];  // m * (axes of B)
+  const Double4* m = reinterpret_cast<const Double4*>(k.m);
+  const Double4 origin_a{a.origin[0], a.origin[1], a.origin[2], 0};
+  const Double4 d =
+      (((m[0] * splat4d(b.origin[0]) + m[1] * splat4d(b.origin[1])) + m[2] * splat4d(b.origin[2])) *
+           splat4d(k.ratio_b) +
+       *reinterpret_cast<const Double4*>(k.t)) -
+      origin_a * splat4d(k.ratio_a);
+  const Float4 offset = __builtin_convertvector(d, Float4);
+  const float df[3] = {offset[0], offset[1], offset[2]};
+  const Columns b_columns = columns_of(frame_row(b, 0), frame_row(b, 1), frame_row(b, 2));
+  const Columns a_columns = columns_of(frame_row(a, 0), frame_row(a, 1), frame_row(a, 2));
+  Float4 mb[3], r[3];  // rows of m * (axes of B), and of r
+  for (int i = 0; i < 3; ++i) mb[i] = combine(k.m_rows[i], b_columns.c);
   for (int i = 0; i < 3; ++i) {
-    const float m0 = static_cast<float>(k.m[i][0]), m1 = static_cast<float>(k.m[i][1]),
-                m2 = static_cast<float>(k.m[i][2]);
-    for (int j = 0; j < 3; ++j) mb[i][j] = m0 * b.frame[j][0] + m1 * b.frame[j][1] + m2 * b.frame[j][2];
+    r[i] = combine(a.frame[i], mb);
+    __builtin_memcpy(w.r[i], &r[i], sizeof r[i]);
+    const Float4 size = abs4(r[i]);
+    __builtin_memcpy(w.abs_r[i], &size, sizeof size);
   }
-  for (int i = 0; i < 3; ++i) {
-    for (int j = 0; j < 3; ++j) {
-      w.r[i][j] = a.frame[i][0] * mb[0][j] + a.frame[i][1] * mb[1][j] + a.frame[i][2] * mb[2][j];
-      w.abs_r[i][j] = __builtin_fabsf(w.r[i][j]);
-    }
-    w.t[i] = a.frame[i][0] * df[0] + a.frame[i][1] * df[1] + a.frame[i][2] * df[2];
-  }
-  for (int j = 0; j < 3; ++j) w.back[j] = -(w.r[0][j] * w.t[0] + w.r[1][j] * w.t[1] + w.r[2][j] * w.t[2]);
+  const Float4 t = combine(df, a_columns.c);
+  __builtin_memcpy(w.t, &t, sizeof t);
+  const float t_parts[3] = {t[0], t[1], t[2]};
+  const Float4 back = -combine(t_parts, r);
+  __builtin_memcpy(w.back, &back, sizeof back);
   w.reach = k.m_size * (a.radius * k.ratio_a + b.radius * k.ratio_b + __builtin_fabsf(df[0]) +
                         __builtin_fabsf(df[1]) + __builtin_fabsf(df[2]));
   w.error = k.slack + kKernelRounding * w.reach;
@@ -155,11 +262,11 @@ inline Turned turn_a(const Boxes& a, const Between& w) {
 }
 
 /// Lanes whose boxes are apart on some axis. Written so that NaN (an overflow) counts as "not apart".
-inline Int8 apart(const Float8* centre, const Float8* half, const float* other_centre,
-                  const float* other_half) {
-  Int8 result{};
+inline Lanes apart(const Float8* centre, const Float8* half, const float* other_centre,
+                   const float* other_half) {
+  Lanes result = kNoLanes;
   for (int i = 0; i < 3; ++i)
-    result |= abs8(centre[i] - splat(other_centre[i])) > half[i] + splat(other_half[i]);
+    result |= greater(abs8(centre[i] - splat(other_centre[i])), half[i] + splat(other_half[i]));
   return result;
 }
 
@@ -167,18 +274,39 @@ inline std::uint32_t present(const TreeNode& n) {
   return (1u << n.count) - 1;
 }
 
-/// Which of A's boxes meet which of B's: mask[k] has the bits of B's boxes that A's box k may meet.
-inline std::uint32_t pair_masks(TreeKernel& k, const TreeNode& na, const TreeNode& nb, const Boxes& a,
-                                const Boxes& b, const Between& w, std::uint32_t mask[8]) {
-  const Turned bt = turn_b(b, w), at = turn_a(a, w);
-  const std::uint32_t mask_b = ~bits(apart(bt.centre, bt.half, a.whole_centre, a.whole_half)) & present(nb);
-  const std::uint32_t mask_a = ~bits(apart(at.centre, at.half, b.whole_centre, b.whole_half)) & present(na);
+/// How far boxes are apart on the axis on which they are furthest apart; negative: by how much they overlap.
+inline Float8 gap_between(const Float8* centre, const Float8* half, const float* other_centre,
+                          const float* other_half) {
+  Float8 gap = abs8(centre[0] - splat(other_centre[0])) - (half[0] + splat(other_half[0]));
+  for (int i = 1; i < 3; ++i)
+    gap = larger(gap, abs8(centre[i] - splat(other_centre[i])) - (half[i] + splat(other_half[i])));
+  return gap;
+}
+
+/// Of pairs of boxes: how far apart (see gap_between()) box i of A is from those of B.
+struct Gaps {
+  Float8 of[8];
+};
+
+/// Which of A's boxes meet which of B's: mask[k] has the bits of B's boxes that A's box k may meet. Most
+/// pairs of nodes are apart, and most of these show it in the first test.
+inline std::uint32_t pair_masks(TreeKernel& k, const TreeNode& na, const TreeNode& nb, const Between& w,
+                                std::uint32_t mask[8], Gaps* gaps = nullptr) {
   k.box_tests += na.count + nb.count;
-  if (mask_a == 0 || mask_b == 0) return 0;
+  const Whole whole_a = whole_of(na, k.ratio_a);
+  const Boxes b = decode(nb, k.ratio_b);
+  const Turned bt = turn_b(b, w);
+  const std::uint32_t mask_b = ~bits(apart(bt.centre, bt.half, whole_a.centre, whole_a.half)) & present(nb);
+  if (mask_b == 0) return 0;
+  const Whole whole_b = whole_of(nb, k.ratio_b);
+  const Boxes a = decode(na, k.ratio_a);
+  const Turned at = turn_a(a, w);
+  const std::uint32_t mask_a = ~bits(apart(at.centre, at.half, whole_b.centre, whole_b.half)) & present(na);
   const auto* a_centre = reinterpret_cast<const float*>(a.centre);
   const auto* a_half = reinterpret_cast<const float*>(a.half);
   const auto* at_centre = reinterpret_cast<const float*>(at.centre);
   const auto* at_half = reinterpret_cast<const float*>(at.half);
+  const auto in_mask_b = static_cast<unsigned>(__builtin_popcount(mask_b));
   std::uint32_t rows = 0;
   for (std::uint32_t todo = mask_a; todo != 0; todo &= todo - 1) {
     const int i = __builtin_ctz(todo);
@@ -186,49 +314,91 @@ inline std::uint32_t pair_masks(TreeKernel& k, const TreeNode& na, const TreeNod
     const float own_half[3] = {a_half[i], a_half[8 + i], a_half[16 + i]};
     const float turned_centre[3] = {at_centre[i], at_centre[8 + i], at_centre[16 + i]};
     const float turned_half[3] = {at_half[i], at_half[8 + i], at_half[16 + i]};
-    const Int8 gap =
+    const Lanes gap =
         apart(bt.centre, bt.half, own_centre, own_half) | apart(b.centre, b.half, turned_centre, turned_half);
     mask[i] = ~bits(gap) & mask_b;
     rows |= static_cast<std::uint32_t>(mask[i] != 0) << i;
-    k.box_tests += static_cast<unsigned>(__builtin_popcount(mask_b));
+    k.box_tests += in_mask_b;
+    if (gaps && mask[i] != 0)
+      gaps->of[i] = larger(gap_between(bt.centre, bt.half, own_centre, own_half),
+                           gap_between(b.centre, b.half, turned_centre, turned_half));
   }
   return rows;
 }
 
+/// All lines of a node.
+inline void prefetch(const TreeNode& n) {
+  constexpr std::size_t kLine = 64;
+  for (std::size_t at = 0; at < sizeof n; at += kLine)
+    __builtin_prefetch(reinterpret_cast<const char*>(&n) + at);
+}
+
 inline void push(TreeKernel& k, std::uint32_t a, std::uint32_t b) {
-  __builtin_prefetch(&k.nodes_a[a]);
-  __builtin_prefetch(&k.nodes_b[b]);
+  prefetch(k.nodes_a[a]);
+  prefetch(k.nodes_b[b]);
   k.stack[k.stack_size++] = {a, b};
 }
 
-/// Both inner: descend both.
-template <bool kMargin>
+/// Sorts what was pushed last, the pair with the least gap last; of many only that one is moved.
+inline void nearest_last(NodePair* pairs, float* gaps, std::uint32_t size) {
+  constexpr std::uint32_t kFew = 8;
+  if (size <= kFew) {
+    for (std::uint32_t i = 1; i < size; ++i) {
+      const NodePair pair = pairs[i];
+      const float gap = gaps[i];
+      std::uint32_t at = i;
+      for (; at > 0 && gaps[at - 1] < gap; --at) {
+        gaps[at] = gaps[at - 1];
+        pairs[at] = pairs[at - 1];
+      }
+      gaps[at] = gap;
+      pairs[at] = pair;
+    }
+    return;
+  }
+  std::uint32_t nearest = 0;
+  for (std::uint32_t i = 1; i < size; ++i)
+    if (gaps[i] < gaps[nearest]) nearest = i;
+  const NodePair last = pairs[size - 1];
+  pairs[size - 1] = pairs[nearest];
+  pairs[nearest] = last;
+}
+
+/// Both inner: descend both. kNearest: into the pair first whose boxes overlap most, for where one pair of
+/// simplices is enough it is likely to be there.
+template <bool kMargin, bool kNearest>
 inline void inner_pair(TreeKernel& k, const TreeNode& na, const TreeNode& nb) {
   std::uint32_t mask[8];
+  Gaps gaps;
   const std::uint32_t rows =
-      pair_masks(k, na, nb, decode(na, k.ratio_a), decode(nb, k.ratio_b), between<kMargin>(k, na, nb), mask);
+      pair_masks(k, na, nb, between<kMargin>(k, na, nb), mask, kNearest ? &gaps : nullptr);
+  if (rows == 0) return;
+  float gap_of[64];
+  const std::uint32_t bottom = k.stack_size;
   for (std::uint32_t r = rows; r != 0; r &= r - 1) {
     const std::uint32_t i = static_cast<std::uint32_t>(__builtin_ctz(r));
-    for (std::uint32_t c = mask[i]; c != 0; c &= c - 1)
-      push(k, na.first + i, nb.first + static_cast<std::uint32_t>(__builtin_ctz(c)));
+    for (std::uint32_t c = mask[i]; c != 0; c &= c - 1) {
+      const int j = __builtin_ctz(c);
+      if constexpr (kNearest) gap_of[k.stack_size - bottom] = gaps.of[i][j];
+      push(k, na.first + i, nb.first + static_cast<std::uint32_t>(j));
+    }
   }
+  if constexpr (kNearest) nearest_last(k.stack + bottom, gap_of, k.stack_size - bottom);
 }
 
 /// One inner (its boxes against the leaf's whole box), in both frames.
 template <bool kMargin>
 inline void inner_a_leaf_b(TreeKernel& k, const TreeNode& na, const TreeNode& nb, std::uint32_t b_index) {
-  const Boxes a = decode(na, k.ratio_a), b = decode(nb, k.ratio_b);
+  const Boxes a = decode(na, k.ratio_a);
+  const Whole b = whole_of(nb, k.ratio_b);
   const Between w = between<kMargin>(k, na, nb);
   const Turned at = turn_a(a, w);
   float centre[3], half[3];
   for (int i = 0; i < 3; ++i) {
-    centre[i] = w.t[i] + w.r[i][0] * b.whole_centre[0] + w.r[i][1] * b.whole_centre[1] +
-                w.r[i][2] * b.whole_centre[2];
-    half[i] = w.grow + w.abs_r[i][0] * b.whole_half[0] + w.abs_r[i][1] * b.whole_half[1] +
-              w.abs_r[i][2] * b.whole_half[2];
+    centre[i] = w.t[i] + w.r[i][0] * b.centre[0] + w.r[i][1] * b.centre[1] + w.r[i][2] * b.centre[2];
+    half[i] = w.grow + w.abs_r[i][0] * b.half[0] + w.abs_r[i][1] * b.half[1] + w.abs_r[i][2] * b.half[2];
   }
-  const Int8 gap =
-      apart(at.centre, at.half, b.whole_centre, b.whole_half) | apart(a.centre, a.half, centre, half);
+  const Lanes gap = apart(at.centre, at.half, b.centre, b.half) | apart(a.centre, a.half, centre, half);
   k.box_tests += na.count;
   for (std::uint32_t c = ~bits(gap) & present(na); c != 0; c &= c - 1)
     push(k, na.first + static_cast<std::uint32_t>(__builtin_ctz(c)), b_index);
@@ -236,18 +406,16 @@ inline void inner_a_leaf_b(TreeKernel& k, const TreeNode& na, const TreeNode& nb
 
 template <bool kMargin>
 inline void leaf_a_inner_b(TreeKernel& k, const TreeNode& na, const TreeNode& nb, std::uint32_t a_index) {
-  const Boxes a = decode(na, k.ratio_a), b = decode(nb, k.ratio_b);
+  const Whole a = whole_of(na, k.ratio_a);
+  const Boxes b = decode(nb, k.ratio_b);
   const Between w = between<kMargin>(k, na, nb);
   const Turned bt = turn_b(b, w);
   float centre[3], half[3];
   for (int j = 0; j < 3; ++j) {
-    centre[j] = w.back[j] + w.r[0][j] * a.whole_centre[0] + w.r[1][j] * a.whole_centre[1] +
-                w.r[2][j] * a.whole_centre[2];
-    half[j] = w.grow + w.abs_r[0][j] * a.whole_half[0] + w.abs_r[1][j] * a.whole_half[1] +
-              w.abs_r[2][j] * a.whole_half[2];
+    centre[j] = w.back[j] + w.r[0][j] * a.centre[0] + w.r[1][j] * a.centre[1] + w.r[2][j] * a.centre[2];
+    half[j] = w.grow + w.abs_r[0][j] * a.half[0] + w.abs_r[1][j] * a.half[1] + w.abs_r[2][j] * a.half[2];
   }
-  const Int8 gap =
-      apart(bt.centre, bt.half, a.whole_centre, a.whole_half) | apart(b.centre, b.half, centre, half);
+  const Lanes gap = apart(bt.centre, bt.half, a.centre, a.half) | apart(b.centre, b.half, centre, half);
   k.box_tests += nb.count;
   for (std::uint32_t c = ~bits(gap) & present(nb); c != 0; c &= c - 1)
     push(k, a_index, nb.first + static_cast<std::uint32_t>(__builtin_ctz(c)));
@@ -258,51 +426,168 @@ struct Corners {
   Float8 x[3][3];  // [corner][axis]
 };
 
-/// Which of eight simplices lie strictly on one side of the plane of simplex i of `planes`.
+/// What float arithmetic makes of (u x v) . d, lane by lane, and a bound of its error.
 ///
-/// Every corner is off by at most `error` in each coordinate, so an edge by 2 error, and the normal n = e1 x
-/// e2 by at most 4 error (E + 2 error) in each component, where E = max|e1| + max|e2|. A difference p - v0 is
-/// at most reach, and off by 2 error, so that n . (p - v0) is off by at most 2 error |n|_1 + 12 error (E + 2
-/// error) (reach + 2 error). Rounding in float is below 10 u E^2 reach, u = 2^-24, for which there is room in
-/// the second term: error holds kKernelRounding reach = 64 u reach, of which less than 48 u can occur, and E
-/// <= 4 reach.
-inline std::uint32_t on_one_side(const Corners& planes, int i, const Corners& points, float reach,
-                                 float error, float margin = 0) {
-  float v0[3], e1[3], e2[3];
-  float e1_max = 0, e2_max = 0;
-  for (int axis = 0; axis < 3; ++axis) {
-    v0[axis] = planes.x[0][axis][i];
-    e1[axis] = planes.x[1][axis][i] - v0[axis];
-    e2[axis] = planes.x[2][axis][i] - v0[axis];
-    e1_max = __builtin_fabsf(e1[axis]) > e1_max ? __builtin_fabsf(e1[axis]) : e1_max;
-    e2_max = __builtin_fabsf(e2[axis]) > e2_max ? __builtin_fabsf(e2[axis]) : e2_max;
+/// Every corner is off by at most `error` in each coordinate, so an edge by 2 error, and the normal n = u x v
+/// of two edges by at most 4 error (E + 2 error) in each component, where E = max|u| + max|v|. A difference d
+/// of two corners is at most reach, and off by 2 error, so that n . d is off by at most 2 error |n|_1 + 12
+/// error (E + 2 error) (reach + 2 error). Rounding in float is below 10 u E^2 reach, u = 2^-24, for which
+/// there is room in the second term: error holds kKernelRounding reach = 64 u reach, of which less than 48 u
+/// can occur, and E <= 4 reach.
+struct Normal {
+  Float8 n[3], size, bound;
+
+  Normal(const Float8* u, const Float8* v, float reach, float error) {
+    Float8 u_max{}, v_max{};
+    for (int axis = 0; axis < 3; ++axis) {
+      u_max = larger(abs8(u[axis]), u_max);
+      v_max = larger(abs8(v[axis]), v_max);
+    }
+    for (int x = 0; x < 3; ++x) {
+      const int y = (x + 1) % 3, z = (x + 2) % 3;
+      n[x] = u[y] * v[z] - u[z] * v[y];
+    }
+    size = abs8(n[0]) + abs8(n[1]) + abs8(n[2]);
+    bound = splat(2 * error) * size +
+            splat(12 * error) * (u_max + v_max + splat(2 * error)) * splat(reach + 2 * error) +
+            splat(kKernelTiny);
   }
-  const float n[3] = {e1[1] * e2[2] - e1[2] * e2[1], e1[2] * e2[0] - e1[0] * e2[2],
-                      e1[0] * e2[1] - e1[1] * e2[0]};
-  const float n_size = __builtin_fabsf(n[0]) + __builtin_fabsf(n[1]) + __builtin_fabsf(n[2]);
-  const float rounding =
-      2 * error * n_size + 12 * error * (e1_max + e2_max + 2 * error) * (reach + 2 * error) + kKernelTiny;
-  const float bound =
-      rounding + margin * n_size;  // which is more than n's length; without margin it vanishes
-  Int8 above = Int8{} - 1, below = Int8{} - 1;
+
+  Float8 dot(const Float8* d) const { return n[0] * d[0] + n[1] * d[1] + n[2] * d[2]; }
+};
+
+inline void subtract(const Float8* x, const Float8* y, Float8* difference) {
+  for (int axis = 0; axis < 3; ++axis) difference[axis] = x[axis] - y[axis];
+}
+
+/// On which side of other simplices' planes the corners of eight simplices lie, lane by lane.
+struct SideLanes {
+  Lanes positive[3];  ///< certainly in front, by more than the margin
+  Lanes certain;      ///< each corner certainly in front or behind
+  Lanes parted;       ///< all in front, or all behind
+};
+
+inline SideLanes sides_of_planes(const Corners& planes, const Corners& points, float reach, float error,
+                                 float margin) {
+  Float8 e1[3], e2[3];
+  subtract(planes.x[1], planes.x[0], e1);
+  subtract(planes.x[2], planes.x[0], e2);
+  const Normal n(e1, e2, reach, error);
+  // The size is more than the normal's length; without a margin it vanishes.
+  const Float8 bound = n.bound + splat(margin) * n.size;
+  SideLanes sides;
+  Lanes above = kAllLanes, below = kAllLanes;
+  sides.certain = kAllLanes;
   for (int corner = 0; corner < 3; ++corner) {
-    const Float8 height = splat(n[0]) * (points.x[corner][0] - splat(v0[0])) +
-                          splat(n[1]) * (points.x[corner][1] - splat(v0[1])) +
-                          splat(n[2]) * (points.x[corner][2] - splat(v0[2]));
-    above &= height > splat(bound);
-    below &= height < splat(-bound);
+    Float8 d[3];
+    subtract(points.x[corner], planes.x[0], d);
+    const Float8 height = n.dot(d);
+    const Lanes negative = greater(-bound, height);
+    sides.positive[corner] = greater(height, bound);
+    above &= sides.positive[corner];
+    below &= negative;
+    sides.certain = both(sides.certain, either(sides.positive[corner], negative));
   }
-  return bits(above | below);
+  sides.parted = either(above, below);
+  return sides;
+}
+
+/// Triangles turned so that corner 0, the tip, is alone on its side of the other's plane.
+struct TipFirst {
+  Corners t;
+  Lanes positive;  ///< the tip's side
+
+  TipFirst(const Corners& from, const SideLanes& s) {
+    const Lanes first = equal(s.positive[1], s.positive[2]), second = equal(s.positive[0], s.positive[2]);
+    for (int corner = 0; corner < 3; ++corner)
+      for (int axis = 0; axis < 3; ++axis)
+        t.x[corner][axis] =
+            select(first, from.x[corner][axis],
+                   select(second, from.x[(corner + 1) % 3][axis], from.x[(corner + 2) % 3][axis]));
+    positive = select(first, s.positive[0], select(second, s.positive[1], s.positive[2]));
+  }
+};
+
+/// What is certain of pairs of triangles, lane by lane.
+struct Verdict {
+  Lanes cross, disjoint;
+};
+
+/// Of triangles each of which has corners certainly on both sides of the other's plane: do they overlap on
+/// the line in which the planes cross? As engine/exact/planes_cross.hpp decides it, whose orient3d(tip of a,
+/// end of a, tip of b, end of b) is -(edge of a x edge of b) . (tip of b - tip of a). A sign that is certain
+/// here is that of the world coordinates: a world point, seen in the leaf's frame, is an affine image, which
+/// may be mirrored but keeps what meets what, and every corner is within `error` of its own.
+inline Verdict overlap(const Corners& a, const SideLanes& a_sides, const Corners& b, const SideLanes& b_sides,
+                       float reach, float error) {
+  const TipFirst ta(a, a_sides), tb(b, b_sides);
+  const Lanes alike = equal(ta.positive, tb.positive);
+  Float8 between_tips[3], ua[2][3], ub[2][3];
+  subtract(tb.t.x[0], ta.t.x[0], between_tips);
+  for (int end = 0; end < 2; ++end) subtract(ta.t.x[1 + end], ta.t.x[0], ua[end]);
+  for (int end = 0; end < 2; ++end)
+    for (int axis = 0; axis < 3; ++axis)
+      ub[end][axis] = select(alike, tb.t.x[1 + end][axis], tb.t.x[2 - end][axis]) - tb.t.x[0][axis];
+  Lanes low[2], high[2];
+  for (int end = 0; end < 2; ++end) {
+    const Normal n(ua[end], ub[end], reach, error);
+    const Float8 value = n.dot(between_tips);
+    low[end] = greater(-n.bound, value);
+    high[end] = greater(value, n.bound);
+  }
+  const Lanes certain = both(a_sides.certain, b_sides.certain);
+  return {both(certain, select(tb.positive, both(high[0], low[1]), both(low[0], high[1]))),
+          both(certain, select(tb.positive, either(low[0], high[1]), either(high[0], low[1])))};
+}
+
+/// Simplices of a block, lane by lane: lane k gets number which[k].
+inline Corners pick(const Corners& from, const std::uint8_t* which) {
+  Corners to;
+#if defined(__AVX2__)
+  const __m256i lanes = _mm256_cvtepu8_epi32(_mm_loadl_epi64(reinterpret_cast<const __m128i*>(which)));
+  for (int corner = 0; corner < 3; ++corner)
+    for (int axis = 0; axis < 3; ++axis)
+      to.x[corner][axis] = reinterpret_cast<Float8>(
+          _mm256_permutevar8x32_ps(reinterpret_cast<__m256>(from.x[corner][axis]), lanes));
+#else
+  for (int corner = 0; corner < 3; ++corner)
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto* own = reinterpret_cast<const float*>(&from.x[corner][axis]);
+      for (int lane = 0; lane < 8; ++lane) to.x[corner][axis][lane] = own[which[lane]];
+    }
+#endif
+  return to;
+}
+
+/// Pairs of simplices of two blocks, by their numbers there. Room for eight at a time beyond the last.
+struct PairList {
+  std::uint8_t a[72], b[72];
+  std::uint32_t size = 0;
+};
+
+inline void list_pairs(std::uint32_t rows, const std::uint32_t mask[8], PairList& list) {
+  for (; rows != 0; rows &= rows - 1) {
+    const int i = __builtin_ctz(rows);
+    for (std::uint32_t c = mask[i]; c != 0; c &= c - 1) {
+      list.a[list.size] = static_cast<std::uint8_t>(i);
+      list.b[list.size++] = static_cast<std::uint8_t>(__builtin_ctz(c));
+    }
+  }
+  __builtin_memset(list.a + list.size, 0, 8);
+  __builtin_memset(list.b + list.size, 0, 8);
 }
 
 template <bool kMargin>
 inline void leaf_pair(TreeKernel& k, const TreeNode& na, const TreeNode& nb) {
   const Between w = between<kMargin>(k, na, nb);
   std::uint32_t mask[8];
-  std::uint32_t rows = pair_masks(k, na, nb, decode(na, k.ratio_a), decode(nb, k.ratio_b), w, mask);
+  const std::uint32_t rows = pair_masks(k, na, nb, w, mask);
   if (rows == 0) return;
   const LeafBlock& block_a = k.blocks_a[na.first];
   const LeafBlock& block_b = k.blocks_b[nb.first];
+  PairList list;
+  list_pairs(rows, mask, list);
+  k.prefilter_tests += list.size;
   Corners a, b;
   for (int corner = 0; corner < 3; ++corner) {
     Float8 own[3];
@@ -314,27 +599,32 @@ inline void leaf_pair(TreeKernel& k, const TreeNode& na, const TreeNode& nb) {
       b.x[corner][i] =
           splat(w.t[i]) + splat(w.r[i][0]) * own[0] + splat(w.r[i][1]) * own[1] + splat(w.r[i][2]) * own[2];
   }
-  std::uint32_t columns = 0;
-  for (std::uint32_t r = rows; r != 0; r &= r - 1) {
-    const int i = __builtin_ctz(r);
-    k.prefilter_tests += static_cast<unsigned>(__builtin_popcount(mask[i]));
-    mask[i] &= ~on_one_side(a, i, b, w.reach, w.error, kMargin ? k.margin : 0);
-    columns |= mask[i];
-  }
-  std::uint32_t apart_rows[8] = {};
-  for (std::uint32_t c = columns; c != 0; c &= c - 1) {
-    const int j = __builtin_ctz(c);
-    const std::uint32_t off = on_one_side(b, j, a, w.reach, w.error, kMargin ? k.margin : 0);
-    for (int i = 0; i < 8; ++i) apart_rows[i] |= (off >> i & 1u) << j;
-  }
-  for (; rows != 0; rows &= rows - 1) {
-    const int i = __builtin_ctz(rows);
-    for (std::uint32_t c = mask[i] & ~apart_rows[i]; c != 0; c &= c - 1)
-      k.out[k.out_size++] = {block_a.simplex[i], block_b.simplex[__builtin_ctz(c)]};
+  const float margin = kMargin ? k.margin : 0;
+  for (std::uint32_t begin = 0; begin < list.size; begin += 8) {
+    const Corners some_a = pick(a, list.a + begin), some_b = pick(b, list.b + begin);
+    const SideLanes b_sides = sides_of_planes(some_a, some_b, w.reach, w.error, margin);
+    const SideLanes a_sides = sides_of_planes(some_b, some_a, w.reach, w.error, margin);
+    const std::uint32_t here = list.size - begin < 8 ? (1u << (list.size - begin)) - 1 : 255u;
+    const std::uint32_t left = ~bits(either(a_sides.parted, b_sides.parted)) & here;
+    if (left == 0) continue;
+    std::uint32_t cross = 0, disjoint = 0;
+    if (!kMargin && (left & bits(both(a_sides.certain, b_sides.certain))) != 0) {
+      const Verdict v = overlap(some_a, a_sides, some_b, b_sides, w.reach, w.error);
+      cross = bits(v.cross);
+      disjoint = bits(v.disjoint);
+    }
+    for (std::uint32_t c = left; c != 0; c &= c - 1) {
+      const int lane = __builtin_ctz(c);
+      const std::uint32_t pair = begin + static_cast<std::uint32_t>(lane);
+      const Certainty verdict = (cross >> lane & 1) != 0      ? Certainty::cross
+                                : (disjoint >> lane & 1) != 0 ? Certainty::disjoint
+                                                              : Certainty::none;
+      k.out[k.out_size++] = {block_a.simplex[list.a[pair]], block_b.simplex[list.b[pair]], verdict};
+    }
   }
 }
 
-template <bool kMargin>
+template <bool kMargin, bool kNearest>
 void run(TreeKernel& k) {
   while (k.stack_size != 0 && k.out_capacity - k.out_size >= 64) {
     const NodePair p = k.stack[--k.stack_size];
@@ -344,14 +634,17 @@ void run(TreeKernel& k) {
     if (a.is_leaf)
       b.is_leaf ? leaf_pair<kMargin>(k, a, b) : leaf_a_inner_b<kMargin>(k, a, b, p.a);
     else
-      b.is_leaf ? inner_a_leaf_b<kMargin>(k, a, b, p.b) : inner_pair<kMargin>(k, a, b);
+      b.is_leaf ? inner_a_leaf_b<kMargin>(k, a, b, p.b) : inner_pair<kMargin, kNearest>(k, a, b);
   }
 }
 
 }  // namespace
 
 void LRB_KERNEL_NAME(TreeKernel& k) {
-  k.margin > 0 ? run<true>(k) : run<false>(k);
+  if (k.margin > 0)
+    run<true, false>(k);
+  else
+    k.nearest_first ? run<false, true>(k) : run<false, false>(k);
 }
 
 }  // namespace lrb

@@ -31,7 +31,10 @@ TreeKernel set_up_kernel(const BlockTree& a, const Pose& pose_a, const BlockTree
   const Eigen::Matrix3d m = pose_a.r.transpose() * pose_b.r;
   const Eigen::Vector3d t = pose_a.r.transpose() * (pose_b.t - pose_a.t) / unit;
   for (int i = 0; i < 3; ++i) {
-    for (int j = 0; j < 3; ++j) k.m[i][j] = m(i, j);
+    for (int j = 0; j < 3; ++j) {
+      k.m[j][i] = m(i, j);
+      k.m_rows[i][j] = static_cast<float>(m(i, j));
+    }
     k.t[i] = t[i];
   }
   const double size = (world_size(pose_a, a) + world_size(pose_b, b) + kWorldUnderflow) / unit;

@@ -10,12 +10,10 @@
 ///
 /// What "proved apart" has to cover is in set_up_kernel().
 
+#include "engine/exact/predicates.hpp"
 #include "engine/query/query_context.hpp"
 
 namespace lrb {
-
-/// Sorts the pairs (and what belongs to them) and removes repetitions.
-void sort_pairs(CollideResult& result);
 
 /// Fills in all of a kernel but its buffers.
 TreeKernel set_up_kernel(const BlockTree& a, const Pose& pose_a, const BlockTree& b, const Pose& pose_b);
@@ -44,12 +42,14 @@ template <class Probe>
 TreeKernel start_kernel(QueryContext& ctx, std::size_t capacity);
 
 /// Refines the wrapper of a body until a face shows: the regions from the outside inward that hide it. Mostly
-/// there are none left.
+/// there are none left. How many regions there are between the face and the outside.
 template <class Probe>
-inline void open_regions(QueryContext& ctx, Side side, FaceId f, CollideResult& result, Probe& probe) {
-  const CellId outer = ctx[side].rep().outer_cell(f);
-  if (is_region(outer) && ctx[side].wrapper->included(outer))
-    open_regions_from(ctx, side, outer, result, probe);
+inline std::uint32_t show_face(QueryContext& ctx, Side side, FaceId f, CollideResult& result, Probe& probe) {
+  const LrbRep& rep = ctx[side].rep();
+  const CellId outer = rep.outer_cell(f);
+  if (!is_region(outer)) return 0;
+  if (ctx[side].wrapper->included(outer)) open_regions_from(ctx, side, outer, result, probe);
+  return rep.depth(outer);
 }
 
 /// Rules of the exact query; coarse_query.hpp has others.
@@ -70,6 +70,7 @@ class TreeQuery {
     if (a.empty() || b.empty()) return;
     // A small buffer where one pair may be enough, or time may run out, so that little is searched beyond it.
     TreeKernel k = start_kernel(ctx_, mode_ == Mode::all_pairs && !Rules::kCoarse ? 1024 : 64);
+    k.nearest_first = mode_ != Mode::all_pairs;
     if constexpr (Rules::kCoarse) k.slack *= 2;  // what the kernel drops is then apart by more than rounding
     bool done = false;
     while (k.stack_size != 0 && !done) {
@@ -91,14 +92,14 @@ class TreeQuery {
     if constexpr (Rules::kCoarse)
       if (rules_.no_test_left(result_.counters.face_tests)) return true;
     const FaceId fa = ctx_[Side::a].rep().face_of_simplex(c.a), fb = ctx_[Side::b].rep().face_of_simplex(c.b);
-    open_regions(ctx_, Side::a, fa, result_, probe_);
-    open_regions(ctx_, Side::b, fb, result_, probe_);
-    exact::Meet meet = test_simplices(ctx_, c.a, c.b);
+    const std::uint32_t depth_a = show_face(ctx_, Side::a, fa, result_, probe_);
+    const std::uint32_t depth_b = show_face(ctx_, Side::b, fb, result_, probe_);
+    exact::Meet meet = meet_of(c);
     if constexpr (Rules::kCoarse)
       if (meet == exact::Meet::disjoint) meet = rules_.meet_of_near(ctx_, c.a, c.b);
-    count_face_test(ctx_, fa, fb, result_.counters);
-    if constexpr (Probe::kEnabled)
-      probe_.face_test(c.a, c.b, meet, ctx_[Side::a].depth_of(fa), ctx_[Side::b].depth_of(fb));
+    const bool real = ctx_[Side::a].rep().is_real(fa) && ctx_[Side::b].rep().is_real(fb);
+    count_face_test(real, std::max(depth_a, depth_b), result_.counters);
+    if constexpr (Probe::kEnabled) probe_.face_test(c.a, c.b, meet, depth_a, depth_b);
     if (meet == exact::Meet::disjoint) return false;
     if (mode_ == Mode::first_pair && !result_.pairs.empty()) {
       if (meet != exact::Meet::cross) return false;
@@ -111,11 +112,19 @@ class TreeQuery {
     return mode_ == Mode::any_pair || (mode_ == Mode::first_pair && meet == exact::Meet::cross);
   }
 
+  /// Most are certain: then no corner needs to be moved to the world.
+  exact::Meet meet_of(Candidate c) {
+    if (believes_kernel_ && c.certainty != Certainty::none)
+      return c.certainty == Certainty::cross ? exact::Meet::cross : exact::Meet::disjoint;
+    return test_simplices(ctx_, c.a, c.b);
+  }
+
   QueryContext& ctx_;
   Mode mode_;
   CollideResult& result_;
   Probe& probe_;
   Rules rules_;
+  const bool believes_kernel_ = !exact::only_floating();
 };
 
 }  // namespace lrb

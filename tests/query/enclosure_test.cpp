@@ -3,6 +3,7 @@
 // that the answer is about.
 #include <cmath>
 #include <set>
+#include <span>
 
 #include <boost/multiprecision/cpp_int.hpp>
 #include <doctest/doctest.h>
@@ -111,7 +112,7 @@ class Seen {
     for (Exact3& x : on_a_) {
       Exact3 y;
       for (int j = 0; j < 3; ++j)
-        for (int i = 0; i < 3; ++i) y[j] = y[j] + Exact(k.m[i][j]) * (x[i] - Exact(k.t[i]));
+        for (int i = 0; i < 3; ++i) y[j] = y[j] + Exact(k.m[j][i]) * (x[i] - Exact(k.t[i]));
       x = y;
     }
   }
@@ -222,8 +223,46 @@ Share check_nodes(const Scene& s) {
   return share;
 }
 
+/// How two simplices meet in the world, says the rational oracle.
+int oracle_meet(const Scene& s, SimplexId a, SimplexId b) {
+  VertexId va[3], vb[3];
+  s.a->simplex(a, va);
+  s.b->simplex(b, vb);
+  Eigen::Vector3d x[6];
+  for (int c = 0; c < 3; ++c) {
+    x[c] = s.pose_a.apply(s.a->vertices()[va[c]]);
+    x[3 + c] = s.pose_b.apply(s.b->vertices()[vb[c]]);
+  }
+  const double *pa[3] = {x[0].data(), x[1].data(), x[2].data()},
+               *pb[3] = {x[3].data(), x[4].data(), x[5].data()};
+  return oracle::meet_of_simplices(pa, pb, 3);
+}
+
+Eigen::AlignedBox3d world_box(const LrbRep& rep, const Pose& pose, SimplexId simplex) {
+  VertexId v[3];
+  rep.simplex(simplex, v);
+  Eigen::AlignedBox3d box;
+  for (const VertexId corner : v) box.extend(pose.apply(rep.vertices()[corner]));
+  return box;
+}
+
+struct Asked {
+  int dropped = 0, disjoint = 0, cross = 0;
+};
+
+/// What the kernel is certain of is what the rational oracle says.
+void check_certain(const Scene& s, std::span<const Candidate> found, Random& random, int most, Asked& asked) {
+  for (int i = 0; i < most && !found.empty(); ++i) {
+    const Candidate& c = found[random() % found.size()];
+    if (c.certainty == Certainty::none) continue;
+    const bool cross = c.certainty == Certainty::cross;
+    ++(cross ? asked.cross : asked.disjoint);
+    REQUIRE(oracle_meet(s, c.a, c.b) == (cross ? 2 : 0));
+  }
+}
+
 /// Pairs that boxes or planes have dropped do not meet, says the rational oracle.
-int check_dropped(const Scene& s, Random& random, int most) {
+void check_dropped(const Scene& s, Random& random, int most, Asked& asked) {
   TreeKernel k = set_up_kernel(*s.a, s.pose_a, *s.b, s.pose_b);
   std::vector<NodePair> stack(64 * (s.a->tree().height() + s.b->tree().height()) + 64);
   std::vector<Candidate> out(64 + std::size_t{s.a->real_simplex_count()} * s.b->real_simplex_count());
@@ -236,27 +275,16 @@ int check_dropped(const Scene& s, Random& random, int most) {
   REQUIRE(k.stack_size == 0);
   std::set<std::pair<SimplexId, SimplexId>> kept;
   for (std::uint32_t i = 0; i < k.out_size; ++i) kept.insert({out[i].a, out[i].b});
-  int asked = 0;
-  for (int i = 0; i < 20 * most && asked < most; ++i) {
+  for (int i = 0, compared = 0; i < 20 * most && compared < most; ++i) {
     const auto sa = static_cast<SimplexId>(random() % s.a->real_simplex_count()),
                sb = static_cast<SimplexId>(random() % s.b->real_simplex_count());
-    if (kept.contains({sa, sb})) continue;
-    VertexId va[3], vb[3];
-    s.a->simplex(sa, va);
-    s.b->simplex(sb, vb);
-    Eigen::Vector3d x[6];
-    Eigen::AlignedBox3d box[2];
-    for (int c = 0; c < 3; ++c) {
-      box[0].extend(x[c] = s.pose_a.apply(s.a->vertices()[va[c]]));
-      box[1].extend(x[3 + c] = s.pose_b.apply(s.b->vertices()[vb[c]]));
-    }
-    if (!box[0].intersects(box[1])) continue;
-    ++asked;
-    const double *pa[3] = {x[0].data(), x[1].data(), x[2].data()},
-                 *pb[3] = {x[3].data(), x[4].data(), x[5].data()};
-    REQUIRE(oracle::meet_of_simplices(pa, pb, 3) == 0);
+    if (kept.contains({sa, sb}) || !world_box(*s.a, s.pose_a, sa).intersects(world_box(*s.b, s.pose_b, sb)))
+      continue;
+    ++compared;
+    ++asked.dropped;
+    REQUIRE(oracle_meet(s, sa, sb) == 0);
   }
-  return asked;
+  check_certain(s, std::span(out).first(k.out_size), random, 5 * most, asked);
 }
 
 LrbRep closed(const Mesh& mesh, double size = 1) {
@@ -290,7 +318,7 @@ TEST_CASE("whatever boxes leave out is apart in exact arithmetic: random and adv
   Random random(31);
   const double kSizes[] = {1, 1, 1e-12, 1e12, 1e-60, 1e100, 1e-308};
   Share total;
-  int asked = 0;
+  Asked asked;
   for (int i = 0; i < 56; ++i) {
     CAPTURE(i);
     const double size = kSizes[i % 7];
@@ -308,11 +336,14 @@ TEST_CASE("whatever boxes leave out is apart in exact arithmetic: random and adv
     REQUIRE(share.wrong == 0);
     total.boxes += share.boxes;
     total.culled += share.culled;
-    asked += check_dropped(s, random, 20);
+    check_dropped(s, random, 20, asked);
   }
   CHECK(total.boxes > 1000000);
   CHECK(total.culled > total.boxes / 20);  // else nothing was tested
-  CHECK(asked > 100);
-  MESSAGE(total.boxes << " pairs of boxes on an axis, " << total.culled << " culled; " << asked
-                      << " dropped pairs asked again");
+  CHECK(asked.dropped > 100);
+  CHECK(asked.disjoint > 100);
+  CHECK(asked.cross > 100);
+  MESSAGE(total.boxes << " pairs of boxes on an axis, " << total.culled << " culled; " << asked.dropped
+                      << " dropped pairs asked again, " << asked.disjoint << " called disjoint, "
+                      << asked.cross << " called crossing");
 }

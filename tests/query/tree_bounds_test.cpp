@@ -52,6 +52,7 @@ void check_node(const LrbRep& rep, std::uint32_t index) {
   const BlockTree& t = rep.tree();
   const TreeNode& n = t.nodes()[index];
   const Boxes boxes = decode(n, 1);
+  const Whole whole = whole_of(n, 1);
   for (std::uint32_t k = 0; k < n.count; ++k) {
     std::vector<SimplexId> below;
     if (n.is_leaf)
@@ -66,7 +67,7 @@ void check_node(const LrbRep& rep, std::uint32_t index) {
         Real square = 0;
         for (int i = 0; i < 3; ++i) {
           REQUIRE(abs(y[i] - Real(boxes.centre[i][k])) <= Real(boxes.half[i][k]));
-          REQUIRE(abs(y[i] - Real(boxes.whole_centre[i])) <= Real(boxes.whole_half[i]));
+          REQUIRE(abs(y[i] - Real(whole.centre[i])) <= Real(whole.half[i]));
           square += y[i] * y[i];
         }
         REQUIRE(square <= Real(n.radius) * n.radius);

@@ -1,0 +1,39 @@
+#include "engine/query/pair_order.hpp"
+
+#include <algorithm>
+#include <random>
+
+#include <doctest/doctest.h>
+
+using namespace lrb;
+
+TEST_CASE("pairs are put in order with what belongs to them, by comparing and by digits") {
+  std::mt19937_64 random(1);
+  PairOrder order;
+  for (const std::size_t size : {std::size_t{0}, std::size_t{1}, std::size_t{2}, std::size_t{100},
+                                 std::size_t{2048}, std::size_t{2049}, std::size_t{50'000}})
+    for (const std::uint32_t most : {1u, 300u, 5'000'000u, kMaxId}) {
+      CollideResult result;
+      std::vector<std::pair<SimplexPair, exact::Meet>> expected;
+      for (std::size_t i = 0; i < size; ++i) {
+        SimplexPair p{};
+        p.a = static_cast<SimplexId>(random() % (std::uint64_t{most} + 1));
+        p.b = static_cast<SimplexId>(random() % (std::uint64_t{most} + 1));
+        const exact::Meet meet = (p.a ^ p.b) % 2 ? exact::Meet::cross : exact::Meet::touch;
+        result.pairs.push_back(p);
+        result.meets.push_back(meet);
+        expected.emplace_back(p, meet);
+      }
+      order.sort(result);
+      std::sort(expected.begin(), expected.end());
+      expected.erase(std::unique(expected.begin(), expected.end()), expected.end());
+      CAPTURE(size);
+      CAPTURE(most);
+      REQUIRE(result.pairs.size() == expected.size());
+      REQUIRE(result.meets.size() == expected.size());
+      bool same = true;
+      for (std::size_t i = 0; i < expected.size(); ++i)
+        same &= result.pairs[i] == expected[i].first && result.meets[i] == expected[i].second;
+      CHECK(same);
+    }
+}
