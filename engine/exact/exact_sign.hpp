@@ -1,6 +1,6 @@
 #pragma once
 /// The exact signs behind the predicates: what is called when a floating-point filter cannot decide.
-/// Private to engine/exact.
+/// Private to the engine.
 
 #include <array>
 

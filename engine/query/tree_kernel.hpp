@@ -15,12 +15,20 @@ struct NodePair {
 };
 
 /// How two simplices meet, as far as float arithmetic is certain of it.
-enum class Certainty : std::uint32_t { none, disjoint, cross };
+enum class Certainty : std::uint8_t {
+  none,
+  disjoint,
+  cross,
+  touch_if_shared,  ///< touch if some corners of one are corners of the other too; else nothing is certain
+};
 
 /// A pair of real simplices that boxes and planes could not prove apart.
 struct Candidate {
   SimplexId a, b;
   Certainty certainty;  ///< none where there is a margin
+  // For touch_if_shared:
+  Side side;             ///< the body whose simplex the corners are of
+  std::uint8_t corners;  ///< bit k: corner k
 };
 
 /// One traversal. All lengths are in the query's unit: the larger of the two trees' units.

@@ -314,8 +314,8 @@ inline std::uint32_t pair_masks(TreeKernel& k, const TreeNode& na, const TreeNod
     const float own_half[3] = {a_half[i], a_half[8 + i], a_half[16 + i]};
     const float turned_centre[3] = {at_centre[i], at_centre[8 + i], at_centre[16 + i]};
     const float turned_half[3] = {at_half[i], at_half[8 + i], at_half[16 + i]};
-    const Lanes gap =
-        apart(bt.centre, bt.half, own_centre, own_half) | apart(b.centre, b.half, turned_centre, turned_half);
+    const Lanes gap = either(apart(bt.centre, bt.half, own_centre, own_half),
+                             apart(b.centre, b.half, turned_centre, turned_half));
     mask[i] = ~bits(gap) & mask_b;
     rows |= static_cast<std::uint32_t>(mask[i] != 0) << i;
     k.box_tests += in_mask_b;
@@ -364,10 +364,10 @@ inline void nearest_last(NodePair* pairs, float* gaps, std::uint32_t size) {
   pairs[nearest] = last;
 }
 
-/// Both inner: descend both. kNearest: into the pair first whose boxes overlap most, for where one pair of
+/// Descends both nodes. kNearest: into the pair first whose boxes overlap most, for where one pair of
 /// simplices is enough it is likely to be there.
 template <bool kMargin, bool kNearest>
-inline void inner_pair(TreeKernel& k, const TreeNode& na, const TreeNode& nb) {
+inline void descend_both(TreeKernel& k, const TreeNode& na, const TreeNode& nb) {
   std::uint32_t mask[8];
   Gaps gaps;
   const std::uint32_t rows =
@@ -386,9 +386,9 @@ inline void inner_pair(TreeKernel& k, const TreeNode& na, const TreeNode& nb) {
   if constexpr (kNearest) nearest_last(k.stack + bottom, gap_of, k.stack_size - bottom);
 }
 
-/// One inner (its boxes against the leaf's whole box), in both frames.
+/// Descends A's node alone: its boxes against the whole box of B's, in both frames.
 template <bool kMargin>
-inline void inner_a_leaf_b(TreeKernel& k, const TreeNode& na, const TreeNode& nb, std::uint32_t b_index) {
+inline void descend_a(TreeKernel& k, const TreeNode& na, const TreeNode& nb, std::uint32_t b_index) {
   const Boxes a = decode(na, k.ratio_a);
   const Whole b = whole_of(nb, k.ratio_b);
   const Between w = between<kMargin>(k, na, nb);
@@ -398,14 +398,16 @@ inline void inner_a_leaf_b(TreeKernel& k, const TreeNode& na, const TreeNode& nb
     centre[i] = w.t[i] + w.r[i][0] * b.centre[0] + w.r[i][1] * b.centre[1] + w.r[i][2] * b.centre[2];
     half[i] = w.grow + w.abs_r[i][0] * b.half[0] + w.abs_r[i][1] * b.half[1] + w.abs_r[i][2] * b.half[2];
   }
-  const Lanes gap = apart(at.centre, at.half, b.centre, b.half) | apart(a.centre, a.half, centre, half);
+  const Lanes gap =
+      either(apart(at.centre, at.half, b.centre, b.half), apart(a.centre, a.half, centre, half));
   k.box_tests += na.count;
   for (std::uint32_t c = ~bits(gap) & present(na); c != 0; c &= c - 1)
     push(k, na.first + static_cast<std::uint32_t>(__builtin_ctz(c)), b_index);
 }
 
+/// Descends B's node alone.
 template <bool kMargin>
-inline void leaf_a_inner_b(TreeKernel& k, const TreeNode& na, const TreeNode& nb, std::uint32_t a_index) {
+inline void descend_b(TreeKernel& k, const TreeNode& na, const TreeNode& nb, std::uint32_t a_index) {
   const Whole a = whole_of(na, k.ratio_a);
   const Boxes b = decode(nb, k.ratio_b);
   const Between w = between<kMargin>(k, na, nb);
@@ -415,7 +417,8 @@ inline void leaf_a_inner_b(TreeKernel& k, const TreeNode& na, const TreeNode& nb
     centre[j] = w.back[j] + w.r[0][j] * a.centre[0] + w.r[1][j] * a.centre[1] + w.r[2][j] * a.centre[2];
     half[j] = w.grow + w.abs_r[0][j] * a.half[0] + w.abs_r[1][j] * a.half[1] + w.abs_r[2][j] * a.half[2];
   }
-  const Lanes gap = apart(bt.centre, bt.half, a.centre, a.half) | apart(b.centre, b.half, centre, half);
+  const Lanes gap =
+      either(apart(bt.centre, bt.half, a.centre, a.half), apart(b.centre, b.half, centre, half));
   k.box_tests += nb.count;
   for (std::uint32_t c = ~bits(gap) & present(nb); c != 0; c &= c - 1)
     push(k, a_index, nb.first + static_cast<std::uint32_t>(__builtin_ctz(c)));
@@ -462,9 +465,15 @@ inline void subtract(const Float8* x, const Float8* y, Float8* difference) {
 
 /// On which side of other simplices' planes the corners of eight simplices lie, lane by lane.
 struct SideLanes {
-  Lanes positive[3];  ///< certainly in front, by more than the margin
-  Lanes certain;      ///< each corner certainly in front or behind
-  Lanes parted;       ///< all in front, or all behind
+  Lanes positive[3], negative[3];  ///< certainly in front, or behind, by more than the margin
+  Lanes certain;                   ///< each corner certainly in front or behind
+  Lanes parted;                    ///< all in front, or all behind
+
+  /// Not certainly on both sides.
+  Lanes one_side() const {
+    return static_cast<Lanes>(
+        ~((positive[0] | positive[1] | positive[2]) & (negative[0] | negative[1] | negative[2])));
+  }
 };
 
 inline SideLanes sides_of_planes(const Corners& planes, const Corners& points, float reach, float error,
@@ -482,11 +491,11 @@ inline SideLanes sides_of_planes(const Corners& planes, const Corners& points, f
     Float8 d[3];
     subtract(points.x[corner], planes.x[0], d);
     const Float8 height = n.dot(d);
-    const Lanes negative = greater(-bound, height);
     sides.positive[corner] = greater(height, bound);
+    sides.negative[corner] = greater(-bound, height);
     above &= sides.positive[corner];
-    below &= negative;
-    sides.certain = both(sides.certain, either(sides.positive[corner], negative));
+    below &= sides.negative[corner];
+    sides.certain = both(sides.certain, either(sides.positive[corner], sides.negative[corner]));
   }
   sides.parted = either(above, below);
   return sides;
@@ -538,6 +547,50 @@ inline Verdict overlap(const Corners& a, const SideLanes& a_sides, const Corners
   const Lanes certain = both(a_sides.certain, b_sides.certain);
   return {both(certain, select(tb.positive, both(high[0], low[1]), both(low[0], high[1]))),
           both(certain, select(tb.positive, either(low[0], high[1]), either(high[0], low[1])))};
+}
+
+/// What is certain of eight pairs of triangles; a bit for each.
+struct EightCertainties {
+  std::uint32_t cross = 0, disjoint = 0, uncertain = 0;
+  std::uint32_t one_side[2] = {};   ///< of A's and B's: corners that are certain lie on one side
+  std::uint32_t unsure[2][3] = {};  ///< [A's, B's][corner]: may lie in the other's plane
+
+  void tell(int lane, Candidate& c) const {
+    const auto is = [lane](std::uint32_t lanes) { return (lanes >> lane & 1) != 0; };
+    if (is(cross)) c.certainty = Certainty::cross;
+    if (is(disjoint)) c.certainty = Certainty::disjoint;
+    if (!is(uncertain)) return;
+    // A triangle whose other corners are on one side of a plane meets it in the hull of those that may lie in
+    // it: if they are corners of the other triangle, that hull is an edge or a corner of it, or all of it.
+    for (int of = 0; of < 2; ++of) {
+      if (!is(one_side[of])) continue;
+      c.certainty = Certainty::touch_if_shared;
+      c.side = static_cast<Side>(of);
+      for (int corner = 0; corner < 3; ++corner)
+        c.corners |= static_cast<std::uint8_t>(is(unsure[of][corner]) << corner);
+      return;
+    }
+  }
+};
+
+inline EightCertainties certainties_of(const Corners& a, const SideLanes& a_sides, const Corners& b,
+                                       const SideLanes& b_sides, const Between& w, std::uint32_t which) {
+  EightCertainties c;
+  const std::uint32_t certain = bits(both(a_sides.certain, b_sides.certain)) & which;
+  if (certain != 0) {
+    const Verdict v = overlap(a, a_sides, b, b_sides, w.reach, w.error);
+    c.cross = bits(v.cross);
+    c.disjoint = bits(v.disjoint);
+  }
+  if (certain == which) return c;
+  c.uncertain = which & ~certain;
+  const SideLanes* const sides[2] = {&a_sides, &b_sides};
+  for (int of = 0; of < 2; ++of) {
+    c.one_side[of] = bits(sides[of]->one_side()) & ~bits(sides[of]->certain);
+    for (int corner = 0; corner < 3; ++corner)
+      c.unsure[of][corner] = ~bits(either(sides[of]->positive[corner], sides[of]->negative[corner]));
+  }
+  return c;
 }
 
 /// Simplices of a block, lane by lane: lane k gets number which[k].
@@ -607,22 +660,21 @@ inline void leaf_pair(TreeKernel& k, const TreeNode& na, const TreeNode& nb) {
     const std::uint32_t here = list.size - begin < 8 ? (1u << (list.size - begin)) - 1 : 255u;
     const std::uint32_t left = ~bits(either(a_sides.parted, b_sides.parted)) & here;
     if (left == 0) continue;
-    std::uint32_t cross = 0, disjoint = 0;
-    if (!kMargin && (left & bits(both(a_sides.certain, b_sides.certain))) != 0) {
-      const Verdict v = overlap(some_a, a_sides, some_b, b_sides, w.reach, w.error);
-      cross = bits(v.cross);
-      disjoint = bits(v.disjoint);
-    }
+    EightCertainties certainties;
+    if constexpr (!kMargin) certainties = certainties_of(some_a, a_sides, some_b, b_sides, w, left);
     for (std::uint32_t c = left; c != 0; c &= c - 1) {
       const int lane = __builtin_ctz(c);
       const std::uint32_t pair = begin + static_cast<std::uint32_t>(lane);
-      const Certainty verdict = (cross >> lane & 1) != 0      ? Certainty::cross
-                                : (disjoint >> lane & 1) != 0 ? Certainty::disjoint
-                                                              : Certainty::none;
-      k.out[k.out_size++] = {block_a.simplex[list.a[pair]], block_b.simplex[list.b[pair]], verdict};
+      Candidate& found = k.out[k.out_size++];
+      found = {block_a.simplex[list.a[pair]], block_b.simplex[list.b[pair]], Certainty::none, Side::a, 0};
+      if constexpr (!kMargin) certainties.tell(lane, found);
     }
   }
 }
+
+/// A node so many times as large as the other is descended alone: all that the other holds would meet the
+/// same few of its boxes.
+constexpr float kMuchLarger = 3;
 
 template <bool kMargin, bool kNearest>
 void run(TreeKernel& k) {
@@ -631,10 +683,17 @@ void run(TreeKernel& k) {
     const TreeNode& a = k.nodes_a[p.a];
     const TreeNode& b = k.nodes_b[p.b];
     ++k.node_pairs;
-    if (a.is_leaf)
-      b.is_leaf ? leaf_pair<kMargin>(k, a, b) : leaf_a_inner_b<kMargin>(k, a, b, p.a);
+    const float size_a = a.radius * k.ratio_a, size_b = b.radius * k.ratio_b;
+    const bool hold_a = a.is_leaf || size_b > kMuchLarger * size_a;
+    const bool hold_b = b.is_leaf || size_a > kMuchLarger * size_b;
+    if (a.is_leaf && b.is_leaf)
+      leaf_pair<kMargin>(k, a, b);
+    else if (!a.is_leaf && hold_b)
+      descend_a<kMargin>(k, a, b, p.b);
+    else if (!b.is_leaf && hold_a)
+      descend_b<kMargin>(k, a, b, p.a);
     else
-      b.is_leaf ? inner_a_leaf_b<kMargin>(k, a, b, p.b) : inner_pair<kMargin, kNearest>(k, a, b);
+      descend_both<kMargin, kNearest>(k, a, b);
   }
 }
 

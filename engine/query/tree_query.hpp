@@ -10,6 +10,7 @@
 ///
 /// What "proved apart" has to cover is in set_up_kernel().
 
+#include "engine/exact/exact_sign.hpp"
 #include "engine/exact/predicates.hpp"
 #include "engine/query/query_context.hpp"
 
@@ -88,7 +89,7 @@ class TreeQuery {
   /// True if the answer is complete. One pair is enough in any_pair mode, in first_pair mode if it crosses; a
   /// pair that only touches is kept while a crossing one is looked for, so that the relation is exact in that
   /// mode too.
-  bool test(Candidate c) {
+  bool test(const Candidate& c) {
     if constexpr (Rules::kCoarse)
       if (rules_.no_test_left(result_.counters.face_tests)) return true;
     const FaceId fa = ctx_[Side::a].rep().face_of_simplex(c.a), fb = ctx_[Side::b].rep().face_of_simplex(c.b);
@@ -113,10 +114,26 @@ class TreeQuery {
   }
 
   /// Most are certain: then no corner needs to be moved to the world.
-  exact::Meet meet_of(Candidate c) {
-    if (believes_kernel_ && c.certainty != Certainty::none)
-      return c.certainty == Certainty::cross ? exact::Meet::cross : exact::Meet::disjoint;
+  exact::Meet meet_of(const Candidate& c) {
+    if (believes_kernel_) {
+      if (c.certainty == Certainty::cross) return exact::Meet::cross;
+      if (c.certainty == Certainty::disjoint) return exact::Meet::disjoint;
+      if (c.certainty == Certainty::touch_if_shared && shares_corners(c)) return exact::Meet::touch;
+    }
     return test_simplices(ctx_, c.a, c.b);
+  }
+
+  bool shares_corners(const Candidate& c) {
+    const double *own[3], *others[3];
+    ctx_[c.side].world.corners(c.side == Side::a ? c.a : c.b, own);
+    ctx_[other(c.side)].world.corners(c.side == Side::a ? c.b : c.a, others);
+    for (int i = 0; i < 3; ++i) {
+      if ((c.corners >> i & 1) == 0) continue;
+      if (!exact::same_point(own[i], others[0]) && !exact::same_point(own[i], others[1]) &&
+          !exact::same_point(own[i], others[2]))
+        return false;
+    }
+    return true;
   }
 
   QueryContext& ctx_;
@@ -124,7 +141,7 @@ class TreeQuery {
   CollideResult& result_;
   Probe& probe_;
   Rules rules_;
-  const bool believes_kernel_ = !exact::only_floating();
+  const bool believes_kernel_ = ctx_[Side::a].rep().dim() == 3 && !exact::only_floating();
 };
 
 }  // namespace lrb
