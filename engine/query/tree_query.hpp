@@ -115,11 +115,9 @@ class TreeQuery {
 
   /// Most are certain: then no corner needs to be moved to the world.
   exact::Meet meet_of(const Candidate& c) {
-    if (believes_kernel_) {
-      if (c.certainty == Certainty::cross) return exact::Meet::cross;
-      if (c.certainty == Certainty::disjoint) return exact::Meet::disjoint;
-      if (c.certainty == Certainty::touch_if_shared && shares_corners(c)) return exact::Meet::touch;
-    }
+    if (c.certainty == Certainty::cross) return exact::Meet::cross;
+    if (c.certainty == Certainty::disjoint) return exact::Meet::disjoint;
+    if (c.certainty == Certainty::touch_if_shared && exactly_ && shares_corners(c)) return exact::Meet::touch;
     return test_simplices(ctx_, c.a, c.b);
   }
 
@@ -141,7 +139,7 @@ class TreeQuery {
   CollideResult& result_;
   Probe& probe_;
   Rules rules_;
-  const bool believes_kernel_ = ctx_[Side::a].rep().dim() == 3 && !exact::only_floating();
+  const bool exactly_ = ctx_[Side::a].rep().dim() == 3 && !exact::only_floating();
 };
 
 }  // namespace lrb

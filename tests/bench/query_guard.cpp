@@ -25,7 +25,8 @@ struct Guarded {
 constexpr Guarded kGuarded[] = {
     {"apart", 1.05, Mode::all_pairs, Predicates::exact},
     {"shallow", 0.85, Mode::all_pairs, Predicates::exact},
-    {"shallow_boolean", 0.85, Mode::first_pair, Predicates::exact},
+    {"shallow_first", 0.85, Mode::first_pair, Predicates::exact},
+    {"shallow_any", 0.85, Mode::any_pair, Predicates::exact},
     {"shallow_floating", 0.85, Mode::all_pairs, Predicates::floating},
     {"deep", 0.4, Mode::all_pairs, Predicates::exact},
     {"identical", 0, Mode::all_pairs, Predicates::exact},
