@@ -1,5 +1,5 @@
 // Prints, for each mesh given (or all of LRB_MESHES), what its LRB-rep costs:
-//   build_bench [-k INTERIOR] [-r REPEATS] [--validate] MESH...
+//   build_bench [-k INTERIOR] [-r REPEATS] [--threads N] [--validate] MESH...
 // or how building and loading grow with size, on each mesh (or the generated rock) at resolutions of it:
 //   build_bench --growth [-r REPEATS] [--validate] [--subdivide N] [--resolutions N] [MESH|rock]...
 
@@ -155,6 +155,8 @@ int main(int argc, char** argv) try {
     const std::string arg = argv[i];
     if (arg == "-k" && i + 1 < argc)
       options.patch_interior = static_cast<std::uint32_t>(std::strtoul(argv[++i], nullptr, 10));
+    else if (arg == "--threads" && i + 1 < argc)
+      options.threads = static_cast<unsigned>(std::strtoul(argv[++i], nullptr, 10));
     else if (arg == "-r" && i + 1 < argc)
       repeats = std::max(1, std::atoi(argv[++i]));
     else if (arg == "--growth")

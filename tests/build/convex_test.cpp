@@ -122,7 +122,8 @@ TEST_CASE(
                {shapes::box({0, 0, 0}, {1, 1, 1e-4}), 1e3}};
   for (const auto& c : cases) {
     CAPTURE(c.mesh.name);
-    const Mesh polytope = enclosing_polytope(c.mesh.vertices, 20, 0.005);
+    Workers workers(2);
+    const Mesh polytope = enclosing_polytope(c.mesh.vertices, 20, 0.005, workers);
     REQUIRE(polytope.face_count() > 0);
     CHECK(polytope.face_count() <= 20);
     check_closed(polytope);
@@ -132,13 +133,15 @@ TEST_CASE(
 }
 
 TEST_CASE("the outermost polytope of flat sets, single points and huge coordinates") {
+  Workers workers;
   for (const Vector3& scale : {Vector3(1, 1, 0), Vector3(1, 0, 0)}) {
     const auto points = random_points(50, 2, scale);
-    const Mesh polytope = enclosing_polytope(points, 20, 0.005);
+    const Mesh polytope = enclosing_polytope(points, 20, 0.005, workers);
     REQUIRE(polytope.face_count() > 0);
     for (const Vector3& p : points) CHECK(holds(polytope, p));
   }
-  CHECK(enclosing_polytope(random_points(50, 2, {1e200, 1e200, 1e200}), 20, 0.005).face_count() == 0);
+  CHECK(enclosing_polytope(random_points(50, 2, {1e200, 1e200, 1e200}), 20, 0.005, workers).face_count() ==
+        0);
 }
 
 TEST_CASE("the convex outline keeps points in the middle of its sides and turns left") {
