@@ -76,7 +76,9 @@ int run_build(const BuildCommandOptions& o, const Globals& globals) {
   if (o.no_validate) {
     j["valid"] = nullptr;
   } else {
-    report = validate(rep);
+    ValidateOptions validating;
+    validating.threads = o.build.threads;
+    report = validate(rep, validating);
     j["valid"] = report.valid;
     j["real_pairs_meeting"] = report.real_pairs_meeting;
     j["violations"] = report.violations;
