@@ -39,6 +39,7 @@ void use(const LrbRep& rep, int how) {
       return;
     case 2: {
       ValidateOptions options;
+      options.embedding = false;
       options.wrapper_states = 2;
       static_cast<void>(validate(rep, options));
       return;

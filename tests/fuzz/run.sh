@@ -22,6 +22,8 @@ cmake --build "$build" --target fuzz_seeds "${formats[@]/#/fuzz_}"
 rm -rf "$dir/seeds"
 "$build/tests/fuzz_seeds" "$dir/seeds"
 mkdir -p "$dir/found"
+# Where memory was taken, two calls deep, is enough to look for a crash, and a deep walk for each allocation is not cheap.
+export ASAN_OPTIONS=malloc_context_size=2
 for format in "${formats[@]}"; do
   mkdir -p "$dir/corpus/$format"
   # Longer inputs are cut, and a seed that is cut is worth nothing.
