@@ -78,7 +78,7 @@ bool bridge_concavities(HullMesh& hull, ComplexBuilder& complex, const std::vect
   if (removed.empty() || !are_clear(hull, added)) return false;
   const std::uint32_t component = hull[slots[0]].component;
   for (const Slot s : slots) hull.set_component(s, component);
-  cover(hull, complex, removed, added, layer, component);
+  cover(hull, complex, make_sheet(hull, removed, added), layer, component);
   return true;
 }
 

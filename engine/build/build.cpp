@@ -6,6 +6,7 @@
 #include "engine/mesh/face_checks.hpp"
 #include "engine/mesh/mesh_check.hpp"
 #include "engine/mesh/self_intersections.hpp"
+#include "engine/parallel.hpp"
 
 namespace lrb {
 namespace {
@@ -24,9 +25,10 @@ std::string refusal(const Mesh& mesh, const MeshReport& report) {
 LrbRep build_lrb(const Mesh& mesh, const BuildOptions& options) {
   const MeshReport report = check_mesh(mesh, false);
   if (!report.buildable() || report[MeshFault::inside_out].count > 0) throw InputError(refusal(mesh, report));
+  Workers workers(options.threads);
   MeshReport unused;
   const std::vector<FaceUse> use = check_faces(mesh, unused);
-  const std::vector<FaceId> meeting = self_intersecting_faces(mesh, use);
+  const std::vector<FaceId> meeting = self_intersecting_faces(mesh, use, workers);
   bool overlapping = false;
   if (!meeting.empty()) {
     const auto meets = [&](FaceId f) { return std::binary_search(meeting.begin(), meeting.end(), f); };
@@ -37,7 +39,7 @@ LrbRep build_lrb(const Mesh& mesh, const BuildOptions& options) {
   LrbData data =
       mesh.dim == 2 ? build_by_chains(mesh, meeting, options) : build_by_patches(mesh, meeting, options);
   data.self_intersecting = overlapping;
-  return LrbRep(std::move(data));
+  return LrbRep(std::move(data), options.threads);
 }
 
 }  // namespace lrb

@@ -14,13 +14,14 @@ struct BuildOptions {
                                        ///< recursion cheap, large makes the structure small
   std::uint32_t max_outer_faces = 20;  ///< aim for the outermost wrapper
   std::uint64_t seed = 1;              ///< of the order in which patches grow
+  unsigned threads = 1;                ///< 0: as many as the machine runs at once. No matter for the result
   /// Called after each pass: pass number, faces of the hull, seconds so far. May be empty.
   std::function<void(std::uint32_t pass, std::uint32_t hull_faces)> progress;
 };
 
 /// Builds by patch caps on progressive hulls (patch_builder.hpp). The mesh must be closed, manifold and
 /// oriented: InputError names the offenders otherwise. 2D meshes go through chain_builder.hpp. Deterministic
-/// for a seed.
+/// for a seed, on any number of threads.
 LrbRep build_lrb(const Mesh& mesh, const BuildOptions& options = {});
 
 }  // namespace lrb

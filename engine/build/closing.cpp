@@ -99,7 +99,8 @@ bool holds(const Mesh& convex, const Vector3& point) {
   return true;
 }
 
-Mesh enclosing_polytope(std::span<const Vector3> points, std::uint32_t max_faces, double distance) {
+Mesh enclosing_polytope(std::span<const Vector3> points, std::uint32_t max_faces, double distance,
+                        Workers& workers) {
   Eigen::AlignedBox3d box;
   for (const Vector3& p : points) box.extend(p);
   distance *= box.sizes().maxCoeff();
@@ -110,8 +111,10 @@ Mesh enclosing_polytope(std::span<const Vector3> points, std::uint32_t max_faces
   const Mesh convex = convex_hull_mesh(tetrahedra_about(outermost(points, distance / 8), distance));
   if (convex.face_count() == 0) return best;
   double least = volume_of(best);
-  for (const double depth : {2.0, 8.0}) {
-    Mesh polytope = simplify_polytope(convex, max_faces, depth);
+  std::array<Mesh, 2> simplified;
+  workers.both([&] { simplified[0] = simplify_polytope(convex, max_faces, 2); },
+               [&] { simplified[1] = simplify_polytope(convex, max_faces, 8); });
+  for (Mesh& polytope : simplified) {
     if (polytope.face_count() == 0 || volume_of(polytope) >= least) continue;
     if (!std::all_of(points.begin(), points.end(), [&](const Vector3& p) { return holds(polytope, p); }))
       continue;

@@ -9,6 +9,7 @@
 #include <Eigen/Core>
 
 #include "engine/mesh/mesh.hpp"
+#include "engine/parallel.hpp"
 
 namespace lrb {
 
@@ -20,7 +21,8 @@ namespace lrb {
 /// which the tightest wins, and what comes out is made convex. Jacobson, "Progressive Convex Hull
 /// Simplification", 2026, removes half-spaces instead; but there a plane costs up to four triangles, and here
 /// one.
-Mesh enclosing_polytope(std::span<const Eigen::Vector3d> points, std::uint32_t max_faces, double distance);
+Mesh enclosing_polytope(std::span<const Eigen::Vector3d> points, std::uint32_t max_faces, double distance,
+                        Workers& workers);
 
 /// True if the point lies strictly behind all faces of a mesh of triangles. Exact.
 bool holds(const Mesh& convex, const Eigen::Vector3d& point);

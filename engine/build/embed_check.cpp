@@ -96,6 +96,7 @@ void EmbedCheck::add_patch(const Patch& patch) {
 }
 
 void EmbedCheck::gather_hull(const Patch& patch, const CapSurface& cap, const Box& box) {
+  seen_.extend(box);
   strangers_.clear();
   const std::uint32_t own = hull_[patch.slots[0]].component;
   tree_.for_each_in(box, [&](HullMesh::Slot s) {

@@ -39,6 +39,11 @@ class EmbedCheck {
   bool fan_is_clear(const Patch& patch, const CapSurface& cap, const CapSurface::Star& star,
                     const HullMesh::Point& w);
 
+  /// A box of all the places at which the hull outside the patch was looked for, beyond what shares a vertex
+  /// with the patch.
+  const Eigen::AlignedBox3d& seen() const { return seen_; }
+  void forget_seen() { seen_.setEmpty(); }
+
  private:
   void gather_hull(const Patch& patch, const CapSurface& cap, const Eigen::AlignedBox3d& box);
   void add_patch(const Patch& patch);
@@ -50,6 +55,7 @@ class EmbedCheck {
   const HullMesh& hull_;
   const SlotTree& tree_;
   std::vector<Eigen::AlignedBox3d> component_boxes_;
+  Eigen::AlignedBox3d seen_;
   std::vector<CheckedTriangle> obstacles_, added_;
   std::vector<HullMesh::Slot> strangers_;  ///< triangles of other components met while gathering, one of each
 };

@@ -12,18 +12,36 @@
 
 namespace lrb {
 
-/// Takes the triangles `removed` out of the hull and puts `added` (by the hull's vertices) in their place.
-/// They become pseudo faces of `component` with regions of this layer behind them and, for now, the outside
-/// in front; the faces they cover get those regions in front. `removed` and `added` have the same boundary.
-/// Returns the new slots.
-std::vector<HullMesh::Slot> cover(HullMesh& hull, ComplexBuilder& complex,
-                                  std::span<const HullMesh::Slot> removed,
-                                  std::span<const PointTriangle> added, std::uint16_t layer,
-                                  std::uint32_t component);
+/// All that can be worked out about a sheet before it is put on the hull; nothing of it changes when other
+/// sheets are that have no vertex in common with what this one covers.
+struct Sheet {
+  /// Corners from this number on are the sheet's own new points, in order.
+  static constexpr HullMesh::Corner kNewPoint = 1u << 31;
 
-/// The same for a patch and its finished cap: new vertices are added, triangles that the cap has kept stay.
-/// Returns all of the cap's slots, the new ones first.
-std::vector<HullMesh::Slot> cover(HullMesh& hull, ComplexBuilder& complex, const Patch& patch,
-                                  const CapSurface& cap, std::uint16_t layer, std::size_t& new_count);
+  std::vector<HullMesh::Slot> removed;  ///< ascending: triangles of one polygon are neighbours
+  std::vector<HullMesh::Slot> kept;     ///< of a patch: triangles that its cap has, too
+  std::vector<PointTriangle> added;     ///< by the hull's vertices
+  std::vector<Eigen::Vector3d> new_points;
+  RegionPieces pieces;
+  /// (|added|) what lies beyond each edge: another added triangle or, at the boundary, what lay beyond a
+  /// removed one.
+  struct Beyond {
+    std::uint32_t added = kNull, removed = kNull;
+  };
+  std::vector<std::array<Beyond, 3>> beyond;
+};
+
+/// The sheet that covers the triangles `removed` with `added`; they have the same boundary.
+Sheet make_sheet(const HullMesh& hull, std::span<const HullMesh::Slot> removed,
+                 std::span<const PointTriangle> added);
+
+/// The sheet that covers a patch with its finished cap; triangles that the cap has kept stay.
+Sheet make_sheet(const HullMesh& hull, const Patch& patch, const CapSurface& cap);
+
+/// Takes the sheet's removed triangles out of the hull and puts the added ones in their place. They become
+/// pseudo faces of `component` with regions of this layer behind them and, for now, the outside in front; the
+/// faces they cover get those regions in front. Returns the new slots.
+std::vector<HullMesh::Slot> cover(HullMesh& hull, ComplexBuilder& complex, const Sheet& sheet,
+                                  std::uint16_t layer, std::uint32_t component);
 
 }  // namespace lrb

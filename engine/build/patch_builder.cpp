@@ -23,6 +23,7 @@ class PatchBuilder {
  public:
   PatchBuilder(const Mesh& mesh, const std::vector<FaceId>& meeting, const BuildOptions& options)
       : options_(options),
+        workers_(options.threads),
         hull_(mesh),
         complex_(mesh),
         nesting_(find_nesting(mesh, hull_)),
@@ -69,7 +70,7 @@ class PatchBuilder {
       // On a small hull patches are small, so that there are still several of them.
       const std::uint32_t interior =
           std::max(kLeastInterior, std::min(options_.patch_interior, before / kLeastPatches));
-      PatchPass(hull_, complex_, bounds_, frozen_, component_boxes_)
+      PatchPass(hull_, complex_, bounds_, frozen_, component_boxes_, workers_)
           .run({interior, std::max(4 * interior, kLeastTriangles)}, worth, layer(), random_);
       end_pass();
       if (hull_.triangle_count() > kLeastGain * before) return;
@@ -88,7 +89,7 @@ class PatchBuilder {
   /// From here on all hulls stay in what will be the outermost wrapper.
   void plan_polytope() {
     if (polytope_.face_count() > 0) return;
-    polytope_ = enclosing_polytope(outer_points(), options_.max_outer_faces, kPolytopeDistance);
+    polytope_ = enclosing_polytope(outer_points(), options_.max_outer_faces, kPolytopeDistance, workers_);
     if (polytope_.face_count() == 0) return;
     bounds_ = BodyBounds(polytope_, kHullDistance * size_of(polytope_));
   }
@@ -115,7 +116,8 @@ class PatchBuilder {
       return std::all_of(points.begin(), points.end(), [&](const auto& p) { return holds(polytope_, p); });
     };
     if (polytope_.face_count() == 0) return;
-    if (!holds_all()) polytope_ = enclosing_polytope(points, options_.max_outer_faces, kPolytopeDistance);
+    if (!holds_all())
+      polytope_ = enclosing_polytope(points, options_.max_outer_faces, kPolytopeDistance, workers_);
     if (polytope_.face_count() == 0 || !holds_all()) return;
     const RegionId region = complex_.add_region(layer());
     for (const Slot s : hull_.alive_slots())
@@ -148,6 +150,7 @@ class PatchBuilder {
   static constexpr std::uint32_t kLeastTriangles = 16;  ///< that a patch may have
 
   const BuildOptions& options_;
+  Workers workers_;
   HullMesh hull_;
   ComplexBuilder complex_;
   const ComponentNesting nesting_;

@@ -20,7 +20,29 @@ PatchGrower::PatchGrower(const HullMesh& hull, const GrowLimits& limits)
       slot_stamp_(hull.slot_count(), 0),
       point_stamp_(hull.point_count(), 0),
       inside_(hull.point_count(), 0),
-      refused_(hull.point_count(), 0) {}
+      refused_(hull.point_count(), 0),
+      batch_stamp_(hull.point_count(), 0) {}
+
+void PatchGrower::begin_batch() {
+  ++batch_;
+  batch_is_empty_ = true;
+}
+
+void PatchGrower::add_to_batch(const Patch& patch) {
+  for (const auto* list : {&patch.ring, &patch.interior})
+    for (const Corner v : *list) batch_stamp_[v] = batch_;
+  batch_is_empty_ = false;
+}
+
+/// Vertices that are newer than this are under caps that no growth enters.
+bool PatchGrower::is_in_batch(Corner v) const {
+  return v < batch_stamp_.size() && batch_stamp_[v] == batch_;
+}
+
+void PatchGrower::look_for_batch() {
+  for (const Slot s : added_)
+    for (const Corner v : hull_[s].v) met_batch_ = met_batch_ || is_in_batch(v);
+}
 
 bool PatchGrower::grow(Corner seed, Patch& patch) {
   patch.slots.clear();
@@ -29,6 +51,7 @@ bool PatchGrower::grow(Corner seed, Patch& patch) {
   patch.outside.clear();
   rim_.clear();
   ++stamp_;
+  met_batch_ = is_in_batch(seed);
   if (!add_star(seed, patch)) return false;
   double reach_sq = 0;
   for (const Corner v : rim_) reach_sq = std::max(reach_sq, (hull_.x(v) - hull_.x(seed)).squaredNorm());
@@ -56,6 +79,7 @@ bool PatchGrower::add_star(Corner v, Patch& patch) {
       added_.push_back(t);
     }
   });
+  if (!batch_is_empty_) look_for_batch();
   const std::size_t limit = patch.slots.empty() ? added_.size() : limits_.triangles;
   allowed = allowed && patch.slots.size() + added_.size() <= limit;
   std::size_t new_points = 0, old_edges = 0;

@@ -34,10 +34,18 @@ class PatchGrower {
   void take(HullMesh::Slot s) { taken_[s] = true; }
   bool is_taken(HullMesh::Slot s) const { return taken_[s]; }
 
+  /// From here on, growth notes when it looks at triangles with a vertex of a patch that is in the batch.
+  void begin_batch();
+  void add_to_batch(const Patch& patch);
+  /// Whether the last call of grow() did: its result may then depend on what becomes of the batch.
+  bool met_batch() const { return met_batch_; }
+
  private:
   bool add_star(HullMesh::Corner v, Patch& patch);
   HullMesh::Corner best_candidate(HullMesh::Corner seed, double reach_sq, const Patch& patch) const;
   void find_ring(Patch& patch) const;
+  bool is_in_batch(HullMesh::Corner v) const;
+  void look_for_batch();
 
   bool in_patch(HullMesh::Slot s) const { return slot_stamp_[s] == stamp_; }
 
@@ -49,6 +57,9 @@ class PatchGrower {
   std::vector<std::uint32_t> inside_;       ///< triangles of the patch at a vertex, if it is stamped
   std::vector<std::uint32_t> refused_;      ///< == stamp_: the vertex's star cannot be added
   std::uint32_t stamp_ = 0;
+  std::vector<std::uint32_t> batch_stamp_;  ///< == batch_: a vertex of a patch of the batch
+  std::uint32_t batch_ = 0;
+  bool batch_is_empty_ = true, met_batch_ = false;
   std::vector<HullMesh::Slot> added_;
   std::vector<HullMesh::Corner> rim_;  ///< vertices of the patch, some of them interior by now
 };

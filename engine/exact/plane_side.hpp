@@ -42,6 +42,11 @@ class PlaneSide {
     return orient3d_exact(a_, b_, c_, d);
   }
 
+  /// Twice the triangle's area times the height of d over the plane, rounded: to choose by, not to decide by.
+  double rough_height(const double* d) const {
+    return (normal_[0] * (d[0] - a_[0]) + normal_[1] * (d[1] - a_[1])) + normal_[2] * (d[2] - a_[2]);
+  }
+
   /// True if the points are certainly not on one line: a component of (b - a) x (c - a), which has only four
   /// rounding errors, is larger than its error.
   bool surely_has_area() const {

@@ -68,10 +68,10 @@ double face_size(const LrbData& d, FaceId f) {
 
 }  // namespace
 
-LrbRep::LrbRep(LrbData data) : d_(std::move(data)) {
+LrbRep::LrbRep(LrbData data, unsigned threads) : d_(std::move(data)) {
   derive();
   hash_ = hash_of(d_);
-  tree_ = BlockTree(*this);
+  tree_ = BlockTree(*this, threads);
 }
 
 LrbRep::LrbRep(LrbData data, std::vector<TreeNode> nodes, std::vector<LeafBlock> blocks, std::uint64_t hash)

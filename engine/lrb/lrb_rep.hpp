@@ -55,8 +55,8 @@ std::uint64_t hash_of(const LrbData& data);
 class LrbRep {
  public:
   /// Checks the arrays against each other (throws InputError naming the element), derives collectors, parents
-  /// and the query's tree.
-  explicit LrbRep(LrbData data);
+  /// and the query's tree, this on so many threads (see BuildOptions).
+  explicit LrbRep(LrbData data, unsigned threads = 1);
   /// The same with what took long to derive, stored: the tree's nodes and blocks, and hash_of(data). Both are
   /// checked only as far as safety goes (see BlockTree); that they belong to the data is the caller's word.
   LrbRep(LrbData data, std::vector<TreeNode> nodes, std::vector<LeafBlock> blocks, std::uint64_t hash);

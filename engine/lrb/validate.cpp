@@ -9,6 +9,7 @@
 #include "engine/exact/simplex_test.hpp"
 #include "engine/lrb/boundary_sum.hpp"
 #include "engine/lrb/wrapper.hpp"
+#include "engine/parallel.hpp"
 #include "engine/query/self_pairs.hpp"
 #include "engine/tolerances.hpp"
 
@@ -17,17 +18,31 @@ namespace {
 
 class Validator {
  public:
-  Validator(const LrbRep& rep, const ValidateOptions& options) : rep_(rep), options_(options), sum_(rep) {}
+  Validator(const LrbRep& rep, const ValidateOptions& options, Workers& workers)
+      : rep_(rep), options_(options), workers_(workers), sum_(rep) {}
 
   ValidateReport run() {
     check_cells();
     check_derived();
-    if (options_.embedding) check_embedding();
-    if (report_.valid || report_.violation_count < options_.max_messages) check_wrapper_states();
+    Validator states(rep_, options_, workers_);
+    states.volume_ = volume_;
+    states.report_.volume_outer = report_.volume_outer;
+    workers_.both(
+        [&] {
+          if (options_.embedding) check_embedding();
+        },
+        [&] { states.check_wrapper_states(); });
+    if (report_.valid || report_.violation_count < options_.max_messages) append(states.report_);
     return std::move(report_);
   }
 
  private:
+  void append(const ValidateReport& states) {
+    report_.states = states.states;
+    for (const std::string& text : states.violations) violation(text);
+    report_.violation_count += states.violation_count - states.violations.size();
+  }
+
   void violation(const std::string& text) {
     report_.valid = false;
     if (report_.violation_count++ < options_.max_messages) report_.violations.push_back(text);
@@ -87,25 +102,53 @@ class Validator {
     d.inner_cell.assign(rep_.face_count(), kSolid);
     d.outer_cell.assign(rep_.face_count(), kOutside);
     d.region_layer.clear();
-    return LrbRep(std::move(d));
+    return LrbRep(std::move(d), workers_.count());
   }
 
   void check_embedding() {
     const LrbRep soup = complex_as_soup();
+    std::vector<Pair> pairs;
     for_each_self_pair(soup, [&](SimplexId s, SimplexId t) {
-      VertexId vs[3], vt[3];
-      soup.simplex(s, vs);
-      soup.simplex(t, vt);
-      const double *cs[3], *ct[3];
-      for (int k = 0; k < soup.simplex_size(); ++k) {
-        cs[k] = rep_.vertices()[vs[k]].data();
-        ct[k] = rep_.vertices()[vt[k]].data();
-      }
-      ++report_.embedding_pairs;
-      const bool good = rep_.dim() == 3 ? exact::meet_only_in_shared(cs, vs, ct, vt)
-                                        : exact::meet_only_in_shared_2d(cs, vs, ct, vt);
-      if (!good) judge_meeting(soup.face_of_simplex(s), soup.face_of_simplex(t), cs, ct);
+      pairs.push_back({s, t});
+      if (pairs.size() == kPairsAtOnce) judge(soup, pairs);
     });
+    judge(soup, pairs);
+  }
+
+  /// Two simplices of the complex.
+  struct Pair {
+    SimplexId s, t;
+    bool good = false;
+  };
+  /// Corners of a simplex.
+  struct Corners {
+    VertexId id[3];
+    const double* x[3];
+  };
+
+  Corners corners(const LrbRep& soup, SimplexId s) const {
+    Corners c;
+    soup.simplex(s, c.id);
+    for (int k = 0; k < soup.simplex_size(); ++k) c.x[k] = rep_.vertices()[c.id[k]].data();
+    return c;
+  }
+
+  /// Tests pairs at once, and reports on them in order; empties the list.
+  void judge(const LrbRep& soup, std::vector<Pair>& pairs) {
+    workers_.for_each((pairs.size() + kPairsShared - 1) / kPairsShared, [&](std::size_t i, unsigned) {
+      const std::size_t end = std::min(pairs.size(), (i + 1) * kPairsShared);
+      for (std::size_t k = i * kPairsShared; k < end; ++k) {
+        const Corners s = corners(soup, pairs[k].s), t = corners(soup, pairs[k].t);
+        pairs[k].good = rep_.dim() == 3 ? exact::meet_only_in_shared(s.x, s.id, t.x, t.id)
+                                        : exact::meet_only_in_shared_2d(s.x, s.id, t.x, t.id);
+      }
+    });
+    report_.embedding_pairs += pairs.size();
+    for (const Pair& p : pairs)
+      if (!p.good)
+        judge_meeting(soup.face_of_simplex(p.s), soup.face_of_simplex(p.t), corners(soup, p.s).x,
+                      corners(soup, p.t).x);
+    pairs.clear();
   }
 
   void judge_meeting(FaceId f, FaceId g, const double* const* cf, const double* const* cg) {
@@ -212,9 +255,11 @@ class Validator {
   }
 
   static constexpr int kEnclosureSamples = 8;
+  static constexpr std::size_t kPairsAtOnce = 1u << 14, kPairsShared = 256;
 
   const LrbRep& rep_;
   const ValidateOptions& options_;
+  Workers& workers_;
   BoundarySum sum_;
   ValidateReport report_;
   std::vector<double> volume_;
@@ -224,7 +269,8 @@ class Validator {
 }  // namespace
 
 ValidateReport validate(const LrbRep& rep, const ValidateOptions& options) {
-  return Validator(rep, options).run();
+  Workers workers(options.threads);
+  return Validator(rep, options, workers).run();
 }
 
 }  // namespace lrb

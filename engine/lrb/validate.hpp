@@ -16,6 +16,7 @@ struct ValidateOptions {
   std::uint32_t wrapper_states = 100;  ///< random wrapper states checked for closedness, volume and enclosure
   std::uint64_t seed = 1;
   std::uint32_t max_messages = 20;
+  unsigned threads = 1;  ///< 0: as many as the machine runs at once. No matter for the report
 };
 
 struct ValidateReport {

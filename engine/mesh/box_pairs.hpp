@@ -9,6 +9,8 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
+#include "engine/parallel.hpp"
+
 namespace lrb {
 
 using Box = Eigen::AlignedBox3d;
@@ -27,9 +29,15 @@ class BoxTree {
   void for_each_pair(Visit&& visit) const {
     if (!nodes_.empty()) within(0, visit);
   }
+  /// The same, with calls from several threads at once.
+  template <class Visit>
+  void for_each_pair(Visit&& visit, Workers& workers) const {
+    if (!nodes_.empty()) within_shared(0, visit, workers);
+  }
 
  private:
   static constexpr std::uint32_t kLeafSize = 4;
+  static constexpr std::uint32_t kWorthSharing = 2048;  ///< boxes
   struct Node {
     Box box;
     std::uint32_t first, last;  ///< items
@@ -69,6 +77,18 @@ class BoxTree {
     within(n + 1, visit);
     within(node.right, visit);
     between(n + 1, node.right, visit);
+  }
+
+  template <class Visit>
+  void within_shared(std::uint32_t n, Visit& visit, Workers& workers) const {
+    const Node& node = nodes_[n];
+    if (node.last - node.first < kWorthSharing) return within(n, visit);
+    workers.both(
+        [&] {
+          workers.both([&] { within_shared(n + 1, visit, workers); },
+                       [&] { within_shared(node.right, visit, workers); });
+        },
+        [&] { between(n + 1, node.right, visit); });
   }
 
   template <class Visit>

@@ -1,6 +1,7 @@
 #include "engine/mesh/self_intersections.hpp"
 
 #include <array>
+#include <atomic>
 
 #include "engine/exact/orient_axes.hpp"
 #include "engine/exact/predicates.hpp"
@@ -154,12 +155,16 @@ void find_self_intersections(const Mesh& mesh, const std::vector<FaceUse>& use,
   });
 }
 
-std::vector<FaceId> self_intersecting_faces(const Mesh& mesh, const std::vector<FaceUse>& use) {
+std::vector<FaceId> self_intersecting_faces(const Mesh& mesh, const std::vector<FaceUse>& use,
+                                            Workers& workers) {
   const Pieces pieces(mesh, use);
-  std::vector<bool> meets(mesh.face_count(), false);
-  BoxTree(pieces.boxes()).for_each_pair([&](FaceId f, FaceId g) {
-    if (!(meets[f] && meets[g]) && pieces.meet_outside_shared(f, g)) meets[f] = meets[g] = true;
-  });
+  std::vector<std::atomic<bool>> meets(mesh.face_count());
+  BoxTree(pieces.boxes())
+      .for_each_pair(
+          [&](FaceId f, FaceId g) {
+            if (!(meets[f] && meets[g]) && pieces.meet_outside_shared(f, g)) meets[f] = meets[g] = true;
+          },
+          workers);
   std::vector<FaceId> faces;
   for (FaceId f = 0; f < meets.size(); ++f)
     if (meets[f]) faces.push_back(f);

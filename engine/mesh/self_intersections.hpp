@@ -6,6 +6,7 @@
 
 #include "engine/mesh/face_checks.hpp"
 #include "engine/mesh/mesh.hpp"
+#include "engine/parallel.hpp"
 
 namespace lrb {
 
@@ -17,7 +18,8 @@ void find_self_intersections(const Mesh& mesh, const std::vector<FaceUse>& use,
 
 /// The faces that find_self_intersections() would name, ascending: sooner, and in memory for the faces alone,
 /// where there are millions of pairs.
-std::vector<FaceId> self_intersecting_faces(const Mesh& mesh, const std::vector<FaceUse>& use);
+std::vector<FaceId> self_intersecting_faces(const Mesh& mesh, const std::vector<FaceUse>& use,
+                                            Workers& workers);
 
 /// Calls found(f, g), f < g, for every two faces for which wanted(f, g) holds and that cross: each passes
 /// through the other's interior.

@@ -8,6 +8,7 @@
 #include <Eigen/Geometry>
 
 #include "engine/lrb/lrb_rep.hpp"
+#include "engine/parallel.hpp"
 #include "engine/query/pose_bounds.hpp"
 #include "engine/tolerances.hpp"
 
@@ -71,26 +72,38 @@ struct BinaryNode {
 /// but the last are full; among those splits the surface area heuristic chooses, on bins of the centres.
 class BinaryBuilder {
  public:
-  explicit BinaryBuilder(Soup& soup) : soup_(soup) {
-    build(0, static_cast<std::uint32_t>(soup.order.size()));
+  BinaryBuilder(Soup& soup, Workers& workers) : soup_(soup), workers_(workers) {
+    const auto n = static_cast<std::uint32_t>(soup.order.size());
+    nodes.resize(nodes_for(n));
+    build(0, 0, n);
   }
   std::vector<BinaryNode> nodes;
 
  private:
   static constexpr int kBins = 32;
 
-  std::uint32_t build(std::uint32_t begin, std::uint32_t end) {
-    const auto self = static_cast<std::uint32_t>(nodes.size());
-    nodes.push_back({begin, end, kNull, kNull, {}});
-    Box box;
-    for (std::uint32_t i = begin; i < end; ++i) box.extend(soup_.box[soup_.order[i]]);
-    nodes[self].box = box;
-    if (end - begin <= kTreeWidth) return self;
+  static constexpr std::uint32_t kWorthSharing = 2048;  ///< simplices
+
+  /// Every leaf but the last is full.
+  static std::uint32_t nodes_for(std::uint32_t simplices) {
+    return 2 * ((simplices + kTreeWidth - 1) / kTreeWidth) - 1;
+  }
+
+  /// Parents before children, left before right.
+  void build(std::uint32_t self, std::uint32_t begin, std::uint32_t end) {
+    BinaryNode& node = nodes[self];
+    node = {begin, end, kNull, kNull, {}};
+    for (std::uint32_t i = begin; i < end; ++i) node.box.extend(soup_.box[soup_.order[i]]);
+    if (end - begin <= kTreeWidth) return;
     const std::uint32_t middle = split(begin, end);
-    const std::uint32_t left = build(begin, middle), right = build(middle, end);
-    nodes[self].left = left;
-    nodes[self].right = right;
-    return self;
+    node.left = self + 1;
+    node.right = node.left + nodes_for(middle - begin);
+    if (end - begin < kWorthSharing) {
+      build(node.left, begin, middle);
+      build(node.right, middle, end);
+    } else {
+      workers_.both([&] { build(node.left, begin, middle); }, [&] { build(node.right, middle, end); });
+    }
   }
 
   std::uint32_t split(std::uint32_t begin, std::uint32_t end) {
@@ -150,6 +163,7 @@ class BinaryBuilder {
   static double blocks_for(std::uint32_t simplices) { return (simplices + kTreeWidth - 1) / kTreeWidth; }
 
   Soup& soup_;
+  Workers& workers_;
 };
 
 std::vector<SimplexId> all_real(const LrbRep& rep) {
@@ -211,33 +225,59 @@ Frame fit_frame(const Soup& soup, std::uint32_t begin, std::uint32_t end, const 
 
 }  // namespace
 
-/// Collapses the binary tree to eight children a node and quantizes the boxes.
+/// Collapses the binary tree to eight children a node and quantizes the boxes: first all places, then what
+/// stands there, each node by itself.
 class BlockTreeBuilder {
  public:
-  BlockTreeBuilder(BlockTree& tree, Soup& soup) : tree_(tree), soup_(soup), binary_(soup) {
+  BlockTreeBuilder(BlockTree& tree, Soup& soup, Workers& workers)
+      : tree_(tree), soup_(soup), binary_(soup, workers) {
     tree_.nodes_.resize(1);
-    fill(0, 0, 1);
+    binary_of_.resize(1);
+    lay_out(0, 0, 1);
+    tree_.blocks_.resize(block_count_);
+    // From a few nodes each holds so many simplices that they are worth sharing.
+    constexpr std::size_t kShare = 32;
+    workers.for_each((tree_.nodes_.size() + kShare - 1) / kShare, [&](std::size_t i, unsigned) {
+      const std::size_t end = std::min(tree_.nodes_.size(), (i + 1) * kShare);
+      for (std::size_t n = i * kShare; n < end; ++n) fill(static_cast<std::uint32_t>(n));
+    });
   }
 
  private:
-  void fill(std::uint32_t wide, std::uint32_t binary, std::uint32_t height) {
+  /// Where children and blocks go: depth first.
+  void lay_out(std::uint32_t wide, std::uint32_t binary, std::uint32_t height) {
     tree_.height_ = std::max(tree_.height_, height);
-    const BinaryNode& b = binary_.nodes[binary];
-    const Frame frame = fit_frame(soup_, b.begin, b.end, b.box);
-    if (b.is_leaf()) {
-      fill_leaf(wide, b, frame);
+    binary_of_[wide] = binary;
+    if (binary_.nodes[binary].is_leaf()) {
+      tree_.nodes_[wide].first = block_count_++;
       return;
     }
     const std::vector<std::uint32_t> children = widest_children(binary);
-    std::vector<Box> boxes;
-    for (const std::uint32_t c : children)
-      boxes.push_back(box_in_frame(soup_, binary_.nodes[c].begin, binary_.nodes[c].end, frame));
     const auto first = static_cast<std::uint32_t>(tree_.nodes_.size());
     tree_.nodes_.resize(first + children.size());
-    quantize(tree_.nodes_[wide], frame, boxes);
+    binary_of_.resize(tree_.nodes_.size());
     tree_.nodes_[wide].first = first;
-    tree_.nodes_[wide].is_leaf = 0;
-    for (std::uint32_t k = 0; k < children.size(); ++k) fill(first + k, children[k], height + 1);
+    tree_.nodes_[wide].count = static_cast<std::uint8_t>(children.size());
+    for (std::uint32_t k = 0; k < children.size(); ++k) lay_out(first + k, children[k], height + 1);
+  }
+
+  void fill(std::uint32_t wide) {
+    const BinaryNode& b = binary_.nodes[binary_of_[wide]];
+    const Frame frame = fit_frame(soup_, b.begin, b.end, b.box);
+    TreeNode& node = tree_.nodes_[wide];
+    const std::uint32_t first = node.first;
+    std::vector<Box> boxes;
+    if (b.is_leaf()) {
+      boxes = fill_block(tree_.blocks_[first], b, frame);
+    } else {
+      for (std::uint32_t k = 0; k < node.count; ++k) {
+        const BinaryNode& child = binary_.nodes[binary_of_[first + k]];
+        boxes.push_back(box_in_frame(soup_, child.begin, child.end, frame));
+      }
+    }
+    quantize(node, frame, boxes);
+    node.first = first;
+    node.is_leaf = b.is_leaf();
   }
 
   /// Opens the child with the largest box until there are eight.
@@ -261,9 +301,9 @@ class BlockTreeBuilder {
     return children;
   }
 
-  void fill_leaf(std::uint32_t wide, const BinaryNode& b, const Frame& frame) {
+  std::vector<Box> fill_block(LeafBlock& block, const BinaryNode& b, const Frame& frame) const {
     std::vector<Box> boxes;
-    LeafBlock block{};
+    block = {};
     std::fill(std::begin(block.simplex), std::end(block.simplex), kNull);
     for (std::uint32_t k = 0; k < kTreeWidth; ++k) {
       const std::uint32_t s = soup_.order[std::min(b.begin + k, b.end - 1)];
@@ -276,11 +316,7 @@ class BlockTreeBuilder {
         boxes.push_back(box_in_frame(soup_, b.begin + k, b.begin + k + 1, frame));
       }
     }
-    TreeNode& node = tree_.nodes_[wide];
-    quantize(node, frame, boxes);
-    node.first = static_cast<std::uint32_t>(tree_.blocks_.size());
-    node.is_leaf = 1;
-    tree_.blocks_.push_back(block);
+    return boxes;
   }
 
   static void quantize(TreeNode& node, const Frame& frame, const std::vector<Box>& boxes) {
@@ -326,6 +362,8 @@ class BlockTreeBuilder {
   BlockTree& tree_;
   Soup& soup_;
   BinaryBuilder binary_;
+  std::vector<std::uint32_t> binary_of_;  ///< (|nodes|) the binary tree's node
+  std::uint32_t block_count_ = 0;
 };
 
 void BlockTree::measure(const LrbRep& rep, std::span<const SimplexId> simplices) {
@@ -345,13 +383,14 @@ void BlockTree::measure(const LrbRep& rep) {
   measure(rep, all_real(rep));
 }
 
-BlockTree::BlockTree(const LrbRep& rep) : BlockTree(rep, all_real(rep)) {}
+BlockTree::BlockTree(const LrbRep& rep, unsigned threads) : BlockTree(rep, all_real(rep), threads) {}
 
-BlockTree::BlockTree(const LrbRep& rep, std::span<const SimplexId> simplices) {
+BlockTree::BlockTree(const LrbRep& rep, std::span<const SimplexId> simplices, unsigned threads) {
   measure(rep, simplices);
   if (simplices.empty()) return;
+  Workers workers(threads);
   Soup soup = make_soup(rep, simplices, unit_);
-  BlockTreeBuilder(*this, soup);
+  BlockTreeBuilder(*this, soup, workers);
   nodes_.shrink_to_fit();
   blocks_.shrink_to_fit();
 }

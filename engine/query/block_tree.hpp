@@ -52,9 +52,10 @@ static_assert(sizeof(LeafBlock) == 320);
 class BlockTree {
  public:
   BlockTree() = default;
-  explicit BlockTree(const LrbRep& rep);  ///< of all real simplices
+  /// Of all real simplices. On so many threads (see BuildOptions): the tree is the same on any number.
+  explicit BlockTree(const LrbRep& rep, unsigned threads = 1);
   /// Of some simplices, real or pseudo: then "real" above means these.
-  BlockTree(const LrbRep& rep, std::span<const SimplexId> simplices);
+  BlockTree(const LrbRep& rep, std::span<const SimplexId> simplices, unsigned threads = 1);
   /// As it was when it was stored. Throws InputError unless it can be walked safely and its leaves hold every
   /// real simplex once. That its bounds are right is taken for granted: bounds_hold() tells.
   BlockTree(const LrbRep& rep, std::vector<TreeNode> nodes, std::vector<LeafBlock> blocks);

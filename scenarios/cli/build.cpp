@@ -76,7 +76,9 @@ int run_build(const BuildCommandOptions& o, const Globals& globals) {
   if (o.no_validate) {
     j["valid"] = nullptr;
   } else {
-    report = validate(rep);
+    ValidateOptions validating;
+    validating.threads = o.build.threads;
+    report = validate(rep, validating);
     j["valid"] = report.valid;
     j["real_pairs_meeting"] = report.real_pairs_meeting;
     j["violations"] = report.violations;
@@ -97,6 +99,7 @@ Command add_build(CLI::App& root, const Globals& globals) {
   const auto o = std::make_shared<BuildCommandOptions>();
   app->add_option("MESH", o->mesh, "OBJ, STL, PLY or OFF")->required();
   app->add_option("-o,--output", o->out, "Write the LRB-rep here")->type_name("FILE.lrb");
+  o->build.threads = 0;
   add_build_options(*app, o->build);
   app->add_flag("--json", o->json, "The figures as one JSON object");
   app->add_flag("--no-validate", o->no_validate, "Skip the proof that the LRB-rep keeps its promises");

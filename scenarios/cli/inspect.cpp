@@ -125,7 +125,9 @@ int run_inspect(const InspectOptions& o, const Globals& globals) {
   }
   bool valid = true;
   if (o.validate) {
-    const ValidateReport report = validate(*rep);
+    ValidateOptions validating;
+    validating.threads = 0;
+    const ValidateReport report = validate(*rep, validating);
     valid = report.valid;
     j["valid"] = report.valid;
     j["violations"] = report.violations;

@@ -83,6 +83,10 @@ void add_build_options(CLI::App& app, BuildOptions& options) {
   app.add_option("--seed", options.seed, "Of the order in which patches grow")
       ->capture_default_str()
       ->type_name("N");
+  app.add_option("--threads", options.threads,
+                 "To build on, all of the machine's by default; the LRB-rep is the same on any number")
+      ->check(CLI::Range(1, 1024))
+      ->type_name("N");
 }
 
 void add_picture_options(CLI::App& app, PictureOptions& options) {

@@ -1,7 +1,8 @@
 // Prints, for each mesh given (or all of LRB_MESHES), what its LRB-rep costs:
-//   build_bench [-k INTERIOR] [-r REPEATS] [--validate] MESH...
+//   build_bench [-k INTERIOR] [-r REPEATS] [--threads N] [--validate] MESH...
 // or how building and loading grow with size, on each mesh (or the generated rock) at resolutions of it:
-//   build_bench --growth [-r REPEATS] [--validate] [--subdivide N] [--resolutions N] [MESH|rock]...
+//   build_bench --growth [-r REPEATS] [--threads N] [--validate] [--subdivide N] [--resolutions N]
+//   [MESH|rock]...
 
 #include <algorithm>
 #include <chrono>
@@ -9,10 +10,12 @@
 #include <cstdlib>
 #include <ctime>
 #include <filesystem>
+#include <fstream>
+#include <optional>
 #include <string>
 #include <vector>
 
-#include <sys/resource.h>
+#include <malloc.h>
 #include <unistd.h>
 
 #include "engine/build/build.hpp"
@@ -78,53 +81,83 @@ double cpu_seconds() {
   return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
 }
 
+double wall_seconds() {
+  std::timespec t{};
+  clock_gettime(CLOCK_MONOTONIC, &t);
+  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+}
+
 /// The least of some repeats: what other processes do only ever adds to it.
+struct Times {
+  double cpu, wall;
+};
+
 template <class Work>
-double least_cpu_seconds(int repeats, const Work& work) {
-  double least = 0;
+Times least_times(int repeats, const Work& work) {
+  Times least{};
   for (int i = 0; i < repeats; ++i) {
-    const double begin = cpu_seconds();
+    const double cpu = cpu_seconds(), wall = wall_seconds();
     work();
-    const double taken = cpu_seconds() - begin;
-    if (i == 0 || taken < least) least = taken;
+    const Times t{cpu_seconds() - cpu, wall_seconds() - wall};
+    least = i == 0 ? t : Times{std::min(least.cpu, t.cpu), std::min(least.wall, t.wall)};
   }
   return least;
 }
 
-/// Most memory that this process ever held, in bytes.
-double peak_bytes() {
-  rusage use{};
-  getrusage(RUSAGE_SELF, &use);
+/// What Linux says of this process's memory in bytes: "VmRSS:", "VmHWM:" (the most of the former so far).
+double memory_bytes(const std::string& key) {
+  std::ifstream status("/proc/self/status");
   constexpr double kKibi = 1024;
-  return kKibi * static_cast<double>(use.ru_maxrss);
+  for (std::string line; std::getline(status, line);)
+    if (line.starts_with(key)) return kKibi * std::strtod(line.c_str() + key.size(), nullptr);
+  return 0;
+}
+
+/// The most memory that some work takes beyond what is held before it. Linux alone can forget an old peak;
+/// elsewhere it is 0.
+template <class Work>
+double peak_bytes_of(const Work& work) {
+  malloc_trim(0);
+  std::ofstream("/proc/self/clear_refs") << "5";
+  const double before = memory_bytes("VmRSS:");
+  work();
+  return memory_bytes("VmHWM:") - before;
 }
 
 void print_growth(const Mesh& mesh, const lrb::ResolutionOptions& resolutions,
                   const lrb::BuildOptions& options, int repeats, bool validating) {
   std::printf(
-      "%s\n| faces | build: CPU s | us a face | total/real | outer faces | load: CPU ms | .lrb MB | "
-      "LRB-rep MB | peak MB |\n",
+      "%s\n| faces | build: CPU s | us a face | build: wall s | peak MB | bytes a face | LRB-rep MB | bytes "
+      "a "
+      "face | total/real | outer faces | load: CPU ms | .lrb MB |\n",
       mesh.name.c_str());
   const std::string file =
       std::filesystem::temp_directory_path() / ("build_bench." + std::to_string(getpid()));
   std::vector<double> faces, seconds;
   std::vector<Mesh> series = lrb::resolutions(mesh, resolutions);
-  std::reverse(series.begin(), series.end());  // the peak is that of the largest so far
+  std::reverse(series.begin(), series.end());  // the least first: soon something to see
   for (const Mesh& m : series) {
-    faces.push_back(static_cast<double>(m.face_count()));
-    seconds.push_back(least_cpu_seconds(repeats, [&] { build_lrb(m, options); }));
-    const lrb::LrbRep rep = build_lrb(m, options);
-    save_lrb(rep, file);
+    const auto n = static_cast<double>(m.face_count());
+    std::optional<lrb::LrbRep> rep;
+    Times build{};
+    const double peak = peak_bytes_of([&] { build = least_times(1, [&] { rep = build_lrb(m, options); }); });
+    if (repeats > 1) {
+      const Times more = least_times(repeats - 1, [&] { build_lrb(m, options); });
+      build = {std::min(build.cpu, more.cpu), std::min(build.wall, more.wall)};
+    }
+    faces.push_back(n);
+    seconds.push_back(build.cpu);
+    save_lrb(*rep, file);
     constexpr int kLoads = 5;
-    const double load = least_cpu_seconds(kLoads, [&] { lrb::load_lrb(file); });
+    const double load = least_times(kLoads, [&] { lrb::load_lrb(file); }).cpu;
     constexpr double kMega = 1e6;
-    std::printf("| %.0f | %.3f | %.2f | %.3f | %zu | %.1f | %.1f | %.1f | %.0f |", faces.back(),
-                seconds.back(), kMega * seconds.back() / faces.back(),
-                static_cast<double>(rep.face_count()) / rep.real_face_count(), rep.outermost_faces().size(),
-                1e3 * load, static_cast<double>(std::filesystem::file_size(file)) / kMega,
-                static_cast<double>(rep.memory_bytes()) / kMega, peak_bytes() / kMega);
+    const auto held = static_cast<double>(rep->memory_bytes());
+    std::printf("| %.0f | %.3f | %.2f | %.3f | %.0f | %.0f | %.1f | %.0f | %.3f | %zu | %.1f | %.1f |", n,
+                build.cpu, kMega * build.cpu / n, build.wall, peak / kMega, peak / n, held / kMega, held / n,
+                static_cast<double>(rep->face_count()) / n, rep->outermost_faces().size(), 1e3 * load,
+                static_cast<double>(std::filesystem::file_size(file)) / kMega);
     if (validating) {
-      const lrb::ValidateReport v = validate(rep);
+      const lrb::ValidateReport v = validate(*rep);
       std::printf(" %s |", v.valid ? "valid" : v.violations.front().c_str());
     }
     std::printf("\n");
@@ -133,7 +166,7 @@ void print_growth(const Mesh& mesh, const lrb::ResolutionOptions& resolutions,
   std::filesystem::remove(file);
   if (faces.size() < 2) return;
   const lrb::PowerFit fit = lrb::fit_power(faces, seconds);
-  std::printf("build time grows as n^%.3f +- %.3f\n", fit.exponent, fit.error);
+  std::printf("build time (CPU) grows as n^%.3f +- %.3f\n", fit.exponent, fit.error);
 }
 
 Mesh growth_mesh(const std::string& path) {
@@ -155,6 +188,8 @@ int main(int argc, char** argv) try {
     const std::string arg = argv[i];
     if (arg == "-k" && i + 1 < argc)
       options.patch_interior = static_cast<std::uint32_t>(std::strtoul(argv[++i], nullptr, 10));
+    else if (arg == "--threads" && i + 1 < argc)
+      options.threads = static_cast<unsigned>(std::strtoul(argv[++i], nullptr, 10));
     else if (arg == "-r" && i + 1 < argc)
       repeats = std::max(1, std::atoi(argv[++i]));
     else if (arg == "--growth")

@@ -1,5 +1,6 @@
 #include <map>
 #include <random>
+#include <set>
 
 #include <doctest/doctest.h>
 
@@ -46,6 +47,62 @@ TEST_CASE("the convex hull is closed and leaves no point in front of a face") {
   }
 }
 
+/// Points added in order, each in place of all triangles that it is strictly in front of.
+std::vector<std::array<std::uint32_t, 3>> hull_point_by_point(const std::vector<Vector3>& points) {
+  using Triangle = std::array<std::uint32_t, 3>;
+  const auto at = [&](std::uint32_t p) { return points[p].data(); };
+  const auto count = static_cast<std::uint32_t>(points.size());
+  std::uint32_t b = 1, c, d;
+  while (b < count && points[b] == points[0]) ++b;
+  for (c = b + 1; c < count && exact::collinear3d(at(0), at(b), at(c));) ++c;
+  for (d = c + 1; d < count && exact::orient3d(at(0), at(b), at(c), at(d)) == 0;) ++d;
+  if (d >= count) return {};
+  if (exact::orient3d(at(0), at(b), at(c), at(d)) > 0) std::swap(b, c);
+  std::vector<Triangle> hull = {{0, b, c}, {0, d, b}, {b, d, c}, {c, d, 0}};
+  for (std::uint32_t p = 0; p < count; ++p) {
+    std::set<std::pair<std::uint32_t, std::uint32_t>> edges;
+    std::erase_if(hull, [&](const Triangle& t) {
+      if (exact::orient3d(at(t[0]), at(t[1]), at(t[2]), at(p)) <= 0) return false;
+      for (int k = 0; k < 3; ++k) edges.insert({t[k], t[(k + 1) % 3]});
+      return true;
+    });
+    for (const auto& [u, v] : edges)
+      if (!edges.contains({v, u})) hull.push_back({u, v, p});
+  }
+  return hull;
+}
+
+TEST_CASE("the convex hull is that of points added in order, triangle for triangle") {
+  for (int round = 0; round < 40; ++round) {
+    CAPTURE(round);
+    auto cloud = random_points(30 + 10 * round, round, {1, 1, 1});
+    CHECK(convex_hull(cloud) == hull_point_by_point(cloud));
+    for (Vector3& p : cloud) p.normalize();
+    CHECK(convex_hull(cloud) == hull_point_by_point(cloud));
+  }
+}
+
+TEST_CASE("the convex hull of points in common planes, on common lines, and twice in one place") {
+  std::mt19937_64 random(3);
+  for (int round = 0; round < 600; ++round) {
+    CAPTURE(round);
+    const std::uint64_t steps = 2 + round % 5;  // few steps: nearly all points are degenerate
+    std::vector<Vector3> grid;
+    for (int i = 0; i < 8 + round / 4; ++i) {
+      Vector3 p;
+      for (int k = 0; k < 3; ++k) p[k] = static_cast<double>(random() % steps) * (k == 0 ? 0.1 : 1);
+      grid.push_back(p);
+    }
+    REQUIRE(convex_hull(grid) == hull_point_by_point(grid));
+  }
+}
+
+TEST_CASE("the convex hull of a fine ball takes no more than its size") {
+  // Point by point this would be 1.7e9 signs.
+  const Mesh ball = shapes::icosphere(6);
+  CHECK(convex_hull(ball.vertices).size() == 2 * ball.vertices.size() - 4);
+}
+
 TEST_CASE("there is no convex hull of points in a plane") {
   CHECK(convex_hull(random_points(30, 1, {1, 1, 0})).empty());
   CHECK(convex_hull(random_points(30, 1, {1, 0, 0})).empty());
@@ -65,7 +122,8 @@ TEST_CASE(
                {shapes::box({0, 0, 0}, {1, 1, 1e-4}), 1e3}};
   for (const auto& c : cases) {
     CAPTURE(c.mesh.name);
-    const Mesh polytope = enclosing_polytope(c.mesh.vertices, 20, 0.005);
+    Workers workers(2);
+    const Mesh polytope = enclosing_polytope(c.mesh.vertices, 20, 0.005, workers);
     REQUIRE(polytope.face_count() > 0);
     CHECK(polytope.face_count() <= 20);
     check_closed(polytope);
@@ -75,13 +133,15 @@ TEST_CASE(
 }
 
 TEST_CASE("the outermost polytope of flat sets, single points and huge coordinates") {
+  Workers workers;
   for (const Vector3& scale : {Vector3(1, 1, 0), Vector3(1, 0, 0)}) {
     const auto points = random_points(50, 2, scale);
-    const Mesh polytope = enclosing_polytope(points, 20, 0.005);
+    const Mesh polytope = enclosing_polytope(points, 20, 0.005, workers);
     REQUIRE(polytope.face_count() > 0);
     for (const Vector3& p : points) CHECK(holds(polytope, p));
   }
-  CHECK(enclosing_polytope(random_points(50, 2, {1e200, 1e200, 1e200}), 20, 0.005).face_count() == 0);
+  CHECK(enclosing_polytope(random_points(50, 2, {1e200, 1e200, 1e200}), 20, 0.005, workers).face_count() ==
+        0);
 }
 
 TEST_CASE("the convex outline keeps points in the middle of its sides and turns left") {

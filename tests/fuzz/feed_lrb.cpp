@@ -1,3 +1,5 @@
+#include <cstring>
+
 #include "engine/lrb/lrb_file.hpp"
 #include "engine/lrb/validate.hpp"
 #include "engine/query/collide.hpp"
@@ -10,15 +12,21 @@ constexpr std::size_t kChecksum = sizeof(std::uint64_t);
 
 /// Without it the checksum would stop nearly every mutation, and what is behind it would never be tried.
 void put_checksum_right(std::string& file) {
-  if (file.size() < kChecksum) return;
-  const std::uint64_t value = lrb_checksum(std::string_view(file).substr(0, file.size() - kChecksum));
+  constexpr std::size_t kVersionAt = 8;
+  std::uint32_t version = 0;
+  if (file.size() < kVersionAt + sizeof version + kChecksum) return;
+  std::memcpy(&version, file.data() + kVersionAt, sizeof version);
+  const std::uint64_t value =
+      lrb_checksum(std::string_view(file).substr(0, file.size() - kChecksum), version);
   file.replace(file.size() - kChecksum, kChecksum, reinterpret_cast<const char*>(&value), kChecksum);
 }
 
-/// A file that is accepted may be nonsense as a body, but using it must be safe. One use for each input: they
-/// cost more than reading does.
+/// A file that is accepted may be nonsense as a body, but using it must be safe. One use for each input, of a
+/// small body: using costs more than reading does. For the same reason all pairs are decided in floating
+/// point; exact predicates, slow for hostile numbers, are asked until the first pair, and have the torture
+/// suite.
 void use(const LrbRep& rep, int how) {
-  static constexpr std::size_t kSmall = 100;  // corners
+  static constexpr std::size_t kSmall = 64;  // corners
   if (rep.data().face_vertices.size() > kSmall) return;
   CollideRequest request;
   switch (how) {
@@ -26,15 +34,19 @@ void use(const LrbRep& rep, int how) {
       request.recursion = Recursion::paper;
       [[fallthrough]];
     case 0:
+      request.predicates = Predicates::floating;
       static_cast<void>(collide(rep, Pose{}, rep, Pose::translation({0.5, 0.25, 0}), request));
       return;
     case 2: {
       ValidateOptions options;
+      options.embedding = false;
       options.wrapper_states = 2;
       static_cast<void>(validate(rep, options));
       return;
     }
     default:
+      request.mode = Mode::any_pair;
+      static_cast<void>(collide(rep, Pose{}, rep, Pose::translation({0.5, 0.25, 0}), request));
       return;
   }
 }

@@ -58,7 +58,7 @@ void mutate(const std::string& name, int rounds) {
 
 // Meshes are damaged in tests/mesh/malformed_test.cpp.
 TEST_CASE("damaged .lrb files are refused or safe to use") {
-  mutate("lrb", 1500);
+  mutate("lrb", 800);
 }
 TEST_CASE("damaged pose files are refused or read") {
   mutate("poses", 5000);

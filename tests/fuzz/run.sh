@@ -19,12 +19,17 @@ launcher=()
 if command -v ccache >/dev/null; then launcher=(-DCMAKE_CXX_COMPILER_LAUNCHER=ccache); fi
 cmake --preset asan-ubsan -DLRB_BUILD_TESTS=ON "${launcher[@]}" >/dev/null
 cmake --build "$build" --target fuzz_seeds "${formats[@]/#/fuzz_}"
+rm -rf "$dir/seeds"
 "$build/tests/fuzz_seeds" "$dir/seeds"
 mkdir -p "$dir/found"
+# Where memory was taken, two calls deep, is enough to look for a crash, and a deep walk for each allocation is not cheap.
+export ASAN_OPTIONS=malloc_context_size=2
 for format in "${formats[@]}"; do
   mkdir -p "$dir/corpus/$format"
-  options=(-timeout=10 -rss_limit_mb=2048 -max_len=1536 -print_final_stats=1 -verbosity=0 "$bound")
-  [ "$format" = trace ] && options+=(-max_len=4096)
+  # Longer inputs are cut, and a seed that is cut is worth nothing.
+  longest=$(find "$dir/seeds/$format" -type f -printf '%s\n' | sort -n | tail -1)
+  length=$((longest > 1536 ? longest : 1536))
+  options=(-timeout=10 -rss_limit_mb=2048 -max_len="$length" -print_final_stats=1 -verbosity=0 "$bound")
   dictionary=tests/fuzz/$format.dict
   case "$format" in crowd | experiment) dictionary=tests/fuzz/scenario.dict ;; esac
   [ -f "$dictionary" ] && options+=(-dict="$dictionary")

@@ -2,11 +2,11 @@
 
 #include <algorithm>
 
-#include "engine/lrb/lrb_file.hpp"
 #include "scenarios/shapes/hand_made.hpp"
 #include "scenarios/shapes/shapes.hpp"
 #include "tests/fuzz/feed.hpp"
 #include "tests/mesh/encode.hpp"
+#include "tests/support/lrb_files.hpp"
 #include "tests/support/lrb_shapes.hpp"
 #include "tests/trace/runs.hpp"
 #include "trace/trace_json.hpp"
@@ -35,18 +35,17 @@ std::vector<std::string> meshes() {
   return out;
 }
 
+/// Small bodies, as a tree of one block is 512 bytes; one has a tree with a root. Version 1 has no tree.
 std::vector<std::string> lrb_files() {
-  const test::TemporaryDirectory folder;
+  const LrbRep plate(toy::small_plate()), pit(toy::dented_tetrahedron()), two_blocks(toy::notched_plate()),
+      flat(LrbRep::without_regions(shapes::tetrahedron(), true, false));
+  std::vector<std::string> files;
+  for (const LrbRep& rep : {plate, pit, two_blocks, flat}) files.push_back(test::lrb_bytes(rep));
+  for (const LrbRep& rep : {plate, pit, LrbRep(toy::dented_box())})
+    files.push_back(test::lrb_bytes_version_1(rep));
   std::vector<std::string> out;
-  for (const LrbRep& rep :
-       {LrbRep(toy::notched_plate()), LrbRep(toy::dented_box()), shapes::dented_box(), shapes::stairs_2d(),
-        LrbRep::without_regions(shapes::tetrahedron(), true, false)}) {
-    save_lrb(rep, folder.file("x.lrb"));
-    out.push_back('\1' + test::load_bytes(folder.file("x.lrb")));
-  }
-  const std::size_t bodies = out.size();
-  for (const char use : {'\3', '\5'})  // see feed.hpp
-    for (std::size_t i = 0; i < bodies; ++i) out.push_back(use + out[i].substr(1));
+  for (const std::string& file : files)
+    for (const char use : {'\1', '\3', '\5', '\7'}) out.push_back(use + file);  // see feed.hpp
   return out;
 }
 

@@ -9,13 +9,14 @@
 
 #include "engine/build/build.hpp"
 #include "engine/error.hpp"
-#include "engine/lrb/fnv.hpp"
 #include "engine/lrb/validate.hpp"
 #include "engine/query/collide.hpp"
 #include "scenarios/shapes/hand_made.hpp"
 #include "scenarios/shapes/random_pose.hpp"
 #include "scenarios/shapes/shapes.hpp"
 #include "tests/mesh/encode.hpp"
+#include "tests/support/lrb_files.hpp"
+#include "tests/support/lrb_shapes.hpp"
 
 using namespace lrb;
 using shapes::Random;
@@ -56,7 +57,7 @@ std::string with(std::string bytes, std::size_t at, T value) {
   return with_right_checksum(bytes);
 }
 
-constexpr std::size_t kVersionAt = 8, kDimAt = 12, kRealFacesAt = 16, kNameAt = 24;
+constexpr std::size_t kVersionAt = test::kVersionAt, kDimAt = 12, kRealFacesAt = 16, kNameAt = test::kNameAt;
 
 }  // namespace
 
@@ -216,29 +217,6 @@ TEST_CASE("damaged files with a right checksum are refused or harmless") {
 
 namespace {
 
-/// As version 1 was written.
-std::string in_version_1(const LrbRep& rep) {
-  std::string out = bytes_of(rep).substr(0, kNameAt);
-  out[kVersionAt] = 1;
-  const auto array = [&](const auto& x) {
-    const auto count = static_cast<std::uint64_t>(x.size());
-    out.append(reinterpret_cast<const char*>(&count), 8);
-    out.append(reinterpret_cast<const char*>(x.data()), x.size() * sizeof(x[0]));
-  };
-  const LrbData& d = rep.data();
-  array(d.name);
-  array(d.vertices);
-  array(d.face_offsets);
-  array(d.face_vertices);
-  array(d.inner_cell);
-  array(d.outer_cell);
-  array(d.region_layer);
-  Fnv64 h;
-  h.add_bytes(out.data(), out.size());
-  const std::uint64_t sum = h.value();
-  return out.append(reinterpret_cast<const char*>(&sum), 8);
-}
-
 /// A body's tree with something changed.
 template <class Change>
 std::pair<std::vector<TreeNode>, std::vector<LeafBlock>> changed(const LrbRep& rep, Change change) {
@@ -251,10 +229,10 @@ std::pair<std::vector<TreeNode>, std::vector<LeafBlock>> changed(const LrbRep& r
 
 TEST_CASE("files of version 1 are read, and written as this version's") {
   const LrbRep rep = build_lrb(shapes::bumpy_sphere(2, 1));
-  const LrbRep back = load_lrb(std::string_view(in_version_1(rep)), "body.lrb");
+  const LrbRep back = load_lrb(std::string_view(test::lrb_bytes_version_1(rep)), "body.lrb");
   CHECK(back.hash() == rep.hash());
   CHECK(bytes_of(back) == bytes_of(rep));
-  std::string damaged = in_version_1(rep);
+  std::string damaged = test::lrb_bytes_version_1(rep);
   damaged[60] ^= 1;
   CHECK(complaint(damaged).find("checksum") != std::string::npos);
 }

@@ -4,6 +4,7 @@
 
 #include "scenarios/shapes/hand_made.hpp"
 #include "scenarios/shapes/shapes.hpp"
+#include "tests/support/lrb_shapes.hpp"
 
 using namespace lrb;
 
@@ -29,6 +30,14 @@ TEST_CASE("clean LRB-reps pass, with the volumes known by heart") {
   CHECK_MESSAGE(stairs.valid, (stairs.violations.empty() ? "" : stairs.violations[0]));
   CHECK(stairs.volume_solid == doctest::Approx(10));
   CHECK(stairs.volume_outer == doctest::Approx(16));
+  const ValidateReport plate = validate(LrbRep(toy::small_plate()));
+  CHECK_MESSAGE(plate.valid, (plate.violations.empty() ? "" : plate.violations[0]));
+  CHECK(plate.volume_solid == doctest::Approx(25));
+  CHECK(plate.volume_outer == doctest::Approx(36));
+  const ValidateReport pit = validate(LrbRep(toy::dented_tetrahedron()));
+  CHECK_MESSAGE(pit.valid, (pit.violations.empty() ? "" : pit.violations[0]));
+  CHECK(pit.volume_solid == doctest::Approx(4));
+  CHECK(pit.volume_outer == doctest::Approx(32.0 / 3));
 }
 
 TEST_CASE("a region that is open is named") {

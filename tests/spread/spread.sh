@@ -1,9 +1,10 @@
 #!/usr/bin/env bash
-# tests/spread/spread.sh LRBSCOPE: the README's two lines for a sweep over machines, run as they stand there but for
+# tests/spread/spread.sh LRBSCOPE [SECONDS]: the README's two lines for a sweep over machines, run as they stand there but for
 # smaller numbers, with several numbers of local ranks: the report's data must be the same bytes as those of one process.
-# Exits 77 (skipped) without mpirun.
+# Each run may take SECONDS (120). Exits 77 (skipped) without mpirun.
 set -euo pipefail
 program=$1
+seconds=${2:-120}
 readme=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)/README.md
 if ! command -v mpirun >/dev/null; then
   echo "skipped: there is no mpirun (Debian: openmpi-bin)"
@@ -37,7 +38,11 @@ lrbscope paper --collisions 3 --meshes torus.obj -o whole >/dev/null
 [ "$(wc -l <whole/series.jsonl)" -gt 20 ] || { echo "no series to compare"; exit 1; }
 for ranks in 1 3 4; do
   rm -rf out
-  timeout 120 bash -c "$(smaller $ranks)" >log 2>&1 || { echo "failed with $ranks ranks:"; cat log; exit 1; }
+  timeout "$seconds" bash -c "$(smaller $ranks)" >log 2>&1 || {
+    echo "failed with $ranks ranks, or took over $seconds s:"
+    cat log
+    exit 1
+  }
   [ "$(ls -d out/part* | wc -l)" = "$ranks" ] || { echo "$ranks ranks wrote $(ls out)"; exit 1; }
   bash -c "$merge --meshes torus.obj" >log 2>&1 || { echo "merging $ranks ranks failed:"; cat log; exit 1; }
   for file in records.jsonl tables.json series.jsonl series.json; do

@@ -44,6 +44,41 @@ inline LrbData notched_plate() {
   return d;
 }
 
+/// A square plate with a notch that narrows once; two nested regions: the notch's bottom (0) and the rest of
+/// it (1). 7 real faces, 2 lids: small enough for a tree of one block.
+inline LrbData small_plate() {
+  LrbData d;
+  d.dim = 2;
+  d.name = "plate";
+  d.closed = true;
+  d.vertices = {{0, 0, 0}, {6, 0, 0}, {6, 6, 0}, {4, 4, 0}, {3, 1, 0}, {2, 4, 0}, {0, 6, 0}};
+  const CellId outers[] = {kOutside, kOutside, 1, 0, 0, 1, kOutside};
+  for (VertexId i = 0; i < 7; ++i) add_face(d, {i, (i + 1) % 7}, kSolid, outers[i]);
+  d.real_face_count = 7;
+  add_face(d, {3, 5}, 0, 1);
+  add_face(d, {2, 6}, 1, kOutside);
+  d.region_layer = {0, 1};
+  return d;
+}
+
+/// A tetrahedron whose slanted side is a pit under a lid: one region, 6 real triangles.
+inline LrbData dented_tetrahedron() {
+  LrbData d;
+  d.name = "pit";
+  d.closed = true;
+  d.vertices = {{0, 0, 0}, {4, 0, 0}, {0, 4, 0}, {0, 0, 4}, {0.5, 0.5, 0.5}};
+  add_face(d, {0, 2, 1}, kSolid, kOutside);
+  add_face(d, {0, 1, 3}, kSolid, kOutside);
+  add_face(d, {0, 3, 2}, kSolid, kOutside);
+  add_face(d, {1, 2, 4}, kSolid, 0);
+  add_face(d, {2, 3, 4}, kSolid, 0);
+  add_face(d, {3, 1, 4}, kSolid, 0);
+  d.real_face_count = 6;
+  add_face(d, {1, 2, 3}, 0, kOutside);
+  d.region_layer = {0};
+  return d;
+}
+
 /// A box of side 4 with a pyramid-shaped dent in its top. Region 0 is the dent under a square lid (face 13);
 /// region 1 has no volume: it lies between the whole top (face 14) and the frame and lid under it. Faces: 5
 /// real quadrangles (bottom and sides), 4 of the frame, 4 real triangles of the dent, 2 pseudo quadrangles.

@@ -1,0 +1,35 @@
+#pragma once
+/// Work on several threads. Whatever runs here gives the same result on any number of them: threads decide
+/// who does a piece of work, never what it is.
+
+#include <cstddef>
+#include <functional>
+#include <memory>
+
+namespace lrb {
+
+/// Threads to share work with: those of oneTBB's pool, which the whole program has in common.
+class Workers {
+ public:
+  /// The calling thread is one of them. 0: as many as the machine runs at once.
+  explicit Workers(unsigned threads = 1);
+  ~Workers();
+  Workers(const Workers&) = delete;
+  Workers& operator=(const Workers&) = delete;
+
+  unsigned count() const { return count_; }
+
+  /// Calls work(i, worker) for i = 0 .. n - 1, in no order to rely on; worker < count(), and no two calls
+  /// with the same one run at once, unless calls are nested. What a call throws comes out here.
+  void for_each(std::size_t n, const std::function<void(std::size_t i, unsigned worker)>& work);
+
+  /// Calls both, perhaps at once. May be nested.
+  void both(const std::function<void()>& one, const std::function<void()>& other);
+
+ private:
+  struct Pool;
+  unsigned count_;
+  std::unique_ptr<Pool> pool_;  ///< none for a single thread
+};
+
+}  // namespace lrb

@@ -1,0 +1,105 @@
+// On any number of threads the same bytes, and the same report.
+
+#include <filesystem>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include <doctest/doctest.h>
+#include <unistd.h>
+
+#include "engine/build/build.hpp"
+#include "engine/lrb/lrb_file.hpp"
+#include "engine/lrb/validate.hpp"
+#include "engine/mesh/file_bytes.hpp"
+#include "engine/parallel.hpp"
+#include "scenarios/shapes/shapes.hpp"
+
+namespace lrb::test {
+namespace {
+
+using namespace shapes;
+
+std::string bytes_of(const LrbRep& rep) {
+  const auto file = std::filesystem::temp_directory_path() / ("threads_test." + std::to_string(getpid()));
+  save_lrb(rep, file.string());
+  std::string bytes = read_file(file.string());
+  std::filesystem::remove(file);
+  return bytes;
+}
+
+LrbRep build_on(const Mesh& mesh, unsigned threads) {
+  BuildOptions options;
+  options.threads = threads;
+  return build_lrb(mesh, options);
+}
+
+/// Two crossing balls, and one apart with a void in it.
+Mesh crossing_balls() {
+  return several({bumpy_sphere(3, 5), translated(bumpy_sphere(3, 6), {0.9, 0.1, 0.2}),
+                  translated(icosphere(3), {4, 0, 0}),
+                  translated(turned_inside_out(icosphere(2, 0.5)), {4, 0, 0})});
+}
+
+/// A ball in a void that it nearly fills: caps on both sides of the gap get into each other's way, though
+/// their patches share no vertex.
+Mesh ball_in_tight_void() {
+  return several({icosphere(5), turned_inside_out(icosphere(5, 1.006)), icosphere(3, 1.5)});
+}
+
+TEST_CASE("any number of threads builds the same LRB-rep, byte for byte") {
+  for (const Mesh& mesh : {bumpy_sphere(5, 3), torus(80, 40), comb(20), quad_torus(40, 20), bowl(40, 20),
+                           crossing_balls(), ball_in_tight_void(), gear(200)}) {
+    CAPTURE(mesh.name);
+    CAPTURE(mesh.face_count());
+    const std::string one = bytes_of(build_on(mesh, 1));
+    for (const unsigned threads : {2u, 5u}) CHECK((bytes_of(build_on(mesh, threads)) == one));
+  }
+}
+
+TEST_CASE("any number of threads gives the same report on an LRB-rep, right or wrong") {
+  LrbData broken = build_lrb(torus(60, 30)).data();
+  for (std::size_t v = 0; v < broken.vertices.size(); v += 50) broken.vertices[v] *= 1.3;
+  const LrbRep reps[] = {build_lrb(bumpy_sphere(4, 3)), build_lrb(crossing_balls()), LrbRep(broken)};
+  for (const LrbRep& rep : reps) {
+    ValidateOptions options;
+    const ValidateReport one = validate(rep, options);
+    for (const unsigned threads : {2u, 5u}) {
+      options.threads = threads;
+      const ValidateReport many = validate(rep, options);
+      CHECK(many.valid == one.valid);
+      CHECK(many.violations == one.violations);
+      CHECK(many.violation_count == one.violation_count);
+      CHECK(many.real_pairs_meeting == one.real_pairs_meeting);
+      CHECK(many.flat_pairs == one.flat_pairs);
+      CHECK(many.embedding_pairs == one.embedding_pairs);
+      CHECK(many.states == one.states);
+      CHECK(many.volume_regions == one.volume_regions);
+    }
+  }
+  CHECK(validate(reps[0]).valid);
+  CHECK_FALSE(validate(reps[2]).valid);
+}
+
+TEST_CASE("workers do every piece of work once, and hand on what it throws") {
+  for (const unsigned threads : {1u, 2u, 5u}) {
+    Workers workers(threads);
+    CHECK(workers.count() == threads);
+    std::vector<int> done(1000, 0);
+    std::vector<int> busy(threads, 0);
+    workers.for_each(done.size(), [&](std::size_t i, unsigned worker) {
+      ++busy[worker];
+      ++done[i];
+      --busy[worker];
+    });
+    CHECK(done == std::vector<int>(1000, 1));
+    CHECK(busy == std::vector<int>(threads, 0));
+    CHECK_THROWS_AS(
+        workers.for_each(100, [](std::size_t i, unsigned) { i == 57 ? throw std::runtime_error("57") : 0; }),
+        std::runtime_error);
+  }
+  CHECK(Workers(0).count() >= 1);
+}
+
+}  // namespace
+}  // namespace lrb::test
