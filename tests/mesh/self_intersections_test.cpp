@@ -42,7 +42,8 @@ void check_against_oracle(const Mesh& m) {
   std::set<FaceId> faces;
   for (const auto& pair : expected) faces.insert(pair.begin(), pair.end());
   MeshReport unused;
-  CHECK(self_intersecting_faces(m, check_faces(m, unused)) ==
+  Workers workers(2);
+  CHECK(self_intersecting_faces(m, check_faces(m, unused), workers) ==
         std::vector<FaceId>(faces.begin(), faces.end()));
   CHECK(finding.first ==
         Pairs(expected.begin(), expected.begin() + std::min<std::size_t>(8, expected.size())));

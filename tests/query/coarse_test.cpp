@@ -44,11 +44,7 @@ std::vector<std::vector<Eigen::Vector3d>> real_simplices(const LrbRep& rep, cons
 }
 
 double distance(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b) {
-  double least = INFINITY;
-  const auto of_b = real_simplices(b, pose_b);
-  for (const auto& s : real_simplices(a, pose_a))
-    for (const auto& t : of_b) least = std::min(least, test::simplex_distance(s, t));
-  return least;
+  return test::surface_distance(real_simplices(a, pose_a), real_simplices(b, pose_b));
 }
 
 Pose pose_around(Random& random, const Bodies& pair) {

@@ -37,7 +37,11 @@ inline double segment_segment(const Eigen::Vector3d& a, const Eigen::Vector3d& b
   const auto at = [&](double s) { return point_segment(a + s * (b - a), c, d); };
   for (int i = 0; i < 60; ++i) {
     const double x = low + 0.382 * (high - low), y = low + 0.618 * (high - low);
-    (at(x) < at(y) ? high : low) = at(x) < at(y) ? y : x;
+    if (at(x) < at(y)) {
+      high = y;
+    } else {
+      low = x;
+    }
   }
   return at((low + high) / 2);
 }
@@ -65,6 +69,31 @@ inline double simplex_distance(const Points& s, const Points& t) {
     for (int i = 0; i < 3; ++i)
       for (int j = 0; j < 3; ++j)
         least = std::min(least, segment_segment(s[i], s[(i + 1) % 3], t[j], t[(j + 1) % 3]));
+  return least;
+}
+
+/// Of surfaces that do not pass through each other. Only pairs whose balls are nearer than what was found are
+/// measured.
+inline double surface_distance(const std::vector<Points>& a, const std::vector<Points>& b) {
+  struct Ball {
+    Eigen::Vector3d centre;
+    double radius;
+  };
+  const auto ball_of = [](const Points& s) {
+    Ball ball{Eigen::Vector3d::Zero(), 0};
+    for (const Eigen::Vector3d& x : s) ball.centre += x / static_cast<double>(s.size());
+    for (const Eigen::Vector3d& x : s) ball.radius = std::max(ball.radius, (x - ball.centre).norm());
+    return ball;
+  };
+  std::vector<Ball> balls;
+  for (const Points& t : b) balls.push_back(ball_of(t));
+  double least = INFINITY;
+  for (const Points& s : a) {
+    const Ball ball = ball_of(s);
+    for (std::size_t j = 0; j < b.size(); ++j)
+      if ((ball.centre - balls[j].centre).norm() - ball.radius - balls[j].radius < least)
+        least = std::min(least, simplex_distance(s, b[j]));
+  }
   return least;
 }
 
