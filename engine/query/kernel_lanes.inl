@@ -1,0 +1,134 @@
+#pragma once
+// Part of tree_kernel.inl: eight floats at a time, and a truth for each of eight.
+
+#include <cstddef>
+#include <cstdint>
+
+#if defined(__SSE2__)
+#include <immintrin.h>
+#endif
+
+namespace lrb {
+namespace {
+
+using Float8 = float __attribute__((vector_size(32)));
+using Int8 = std::int32_t __attribute__((vector_size(32)));
+using Float4 = float __attribute__((vector_size(16)));
+using Int4 = std::int32_t __attribute__((vector_size(16)));
+using Double4 = double __attribute__((vector_size(32)));
+
+inline Float8 splat(float x) {
+  return Float8{x, x, x, x, x, x, x, x};
+}
+
+inline Float4 splat4(float x) {
+  return Float4{x, x, x, x};
+}
+
+inline Double4 splat4d(double x) {
+  return Double4{x, x, x, x};
+}
+
+inline Float4 abs4(Float4 x) {
+  return reinterpret_cast<Float4>(reinterpret_cast<Int4>(x) & (Int4{} + 0x7fffffff));
+}
+
+inline Float8 abs8(Float8 x) {
+  const Int8 mask = Int8{} + 0x7fffffff;
+  return reinterpret_cast<Float8>(reinterpret_cast<Int8>(x) & mask);
+}
+
+// A truth for each of eight lanes: a bit each where the processor compares into bits, else all or none of a
+// lane's bits.
+#if defined(__AVX512VL__) && defined(__AVX512DQ__)
+using Lanes = std::uint8_t;
+constexpr Lanes kAllLanes = 255, kNoLanes = 0;
+
+inline Lanes greater(Float8 x, Float8 y) {
+  return _mm256_cmp_ps_mask(reinterpret_cast<__m256>(x), reinterpret_cast<__m256>(y), _CMP_GT_OQ);
+}
+
+inline std::uint32_t bits(Lanes lanes) {
+  return lanes;
+}
+
+inline Float8 select(Lanes which, Float8 x, Float8 y) {
+  return reinterpret_cast<Float8>(
+      _mm256_mask_mov_ps(reinterpret_cast<__m256>(y), which, reinterpret_cast<__m256>(x)));
+}
+#else
+using Lanes = Int8;
+constexpr Lanes kAllLanes = {-1, -1, -1, -1, -1, -1, -1, -1}, kNoLanes = {};
+
+inline Lanes greater(Float8 x, Float8 y) {
+  return x > y;
+}
+
+/// Bit k: lane k is true.
+inline std::uint32_t bits(Lanes lanes) {
+#if defined(__AVX__)
+  return static_cast<std::uint32_t>(_mm256_movemask_ps(reinterpret_cast<__m256>(lanes)));
+#elif defined(__SSE2__)
+  const auto* half = reinterpret_cast<const __m128*>(&lanes);
+  return static_cast<std::uint32_t>(_mm_movemask_ps(half[0]) | _mm_movemask_ps(half[1]) << 4);
+#else
+  std::uint32_t result = 0;
+  for (int k = 0; k < 8; ++k) result |= static_cast<std::uint32_t>(lanes[k] & 1) << k;
+  return result;
+#endif
+}
+
+inline Float8 select(Lanes which, Float8 x, Float8 y) {
+#if defined(__AVX__)
+  return reinterpret_cast<Float8>(_mm256_blendv_ps(reinterpret_cast<__m256>(y), reinterpret_cast<__m256>(x),
+                                                   reinterpret_cast<__m256>(which)));
+#else
+  return reinterpret_cast<Float8>((reinterpret_cast<Int8>(x) & which) | (reinterpret_cast<Int8>(y) & ~which));
+#endif
+}
+#endif
+
+inline Lanes both(Lanes x, Lanes y) {
+  return static_cast<Lanes>(x & y);
+}
+inline Lanes either(Lanes x, Lanes y) {
+  return static_cast<Lanes>(x | y);
+}
+inline Lanes equal(Lanes x, Lanes y) {
+  return static_cast<Lanes>(~(x ^ y));
+}
+/// x where `which`, else y.
+inline Lanes select(Lanes which, Lanes x, Lanes y) {
+  return static_cast<Lanes>((x & which) | (y & ~which));
+}
+
+inline Float8 larger(Float8 x, Float8 y) {
+  return select(greater(x, y), x, y);
+}
+
+inline Int8 bytes_to_int(const std::uint8_t* q) {
+#if defined(__AVX2__)
+  return reinterpret_cast<Int8>(_mm256_cvtepu8_epi32(_mm_loadl_epi64(reinterpret_cast<const __m128i*>(q))));
+#elif defined(__SSE2__)
+  const __m128i zero = _mm_setzero_si128();
+  const __m128i words = _mm_unpacklo_epi8(_mm_loadl_epi64(reinterpret_cast<const __m128i*>(q)), zero);
+  union {
+    __m128i half[2];
+    Int8 all;
+  } u;
+  u.half[0] = _mm_unpacklo_epi16(words, zero);
+  u.half[1] = _mm_unpackhi_epi16(words, zero);
+  return u.all;
+#else
+  Int8 x;
+  for (int k = 0; k < 8; ++k) x[k] = q[k];
+  return x;
+#endif
+}
+
+inline Float8 load8(const float* x) {
+  return *reinterpret_cast<const Float8*>(x);
+}
+
+}  // namespace
+}  // namespace lrb
