@@ -5,8 +5,8 @@
 /// of tree nodes above them each node's bounds hold one of the two, so the bounds, grown by all errors,
 /// overlap: by induction the traversal, which drops a pair only when its bounds are proved apart, reaches the
 /// pair of leaves that hold s and t; there the pair (s, t) is dropped only when boxes or a plane are proved
-/// to separate the two; and what is left is tested exactly. The proof uses neither the nesting of regions nor
-/// that the LRB-rep is embedded: a poor LRB-rep can cost time, never a contact.
+/// to separate the two; what is left is decided within proved bounds of float errors, or exactly. The proof
+/// uses neither nesting of regions nor embedding: a poor LRB-rep can cost time, never a contact.
 ///
 /// What "proved apart" has to cover is in set_up_kernel().
 
