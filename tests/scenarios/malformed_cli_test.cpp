@@ -9,6 +9,8 @@
 #include "tests/fuzz/seeds.hpp"
 #include "tests/mesh/encode.hpp"
 #include "tests/scenarios/program.hpp"
+#include "tests/support/lrb_files.hpp"
+#include "tests/support/lrb_shapes.hpp"
 
 namespace lrb::test {
 
@@ -161,7 +163,7 @@ const std::vector<std::string>& seeds(const std::string& format) {
 }  // namespace
 
 TEST_CASE("malformed .lrb") {
-  const std::string good = seeds("lrb").at(1).substr(1);
+  const std::string good = test::lrb_bytes(LrbRep(toy::dented_box()));
   const std::size_t name = 8 + 4 * 4, vertices = name + 8 + std::strlen("dented box"),
                     offsets = vertices + 8 + 13 * 24, corners = offsets + 8 + 16 * 4,
                     inner = corners + 8 + 56 * 4;
