@@ -48,6 +48,6 @@ awk -v tolerance="$tolerance" '
   { key = $1 " " $2
     if (!(key in known)) { printf "%-18s %12d  not known for %s: --approve it\n", $2, $3, $1; next }
     change = 100 * ($3 / known[key] - 1)
-    printf "%-18s %12d  %+.2f %%%s\n", $2, $3, change, change > tolerance ? "  MORE than " tolerance " %" : ""
+    printf("%-18s %12d  %+.2f %%%s\n", $2, $3, change, (change > tolerance ? "  MORE than " tolerance " %" : ""))
     if (change > tolerance) bad = 1 }
   END { exit bad }' "$known" "$scratch/now"
