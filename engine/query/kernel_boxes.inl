@@ -16,7 +16,7 @@ struct Whole {
 inline Whole whole_of(const TreeNode& n, float ratio) {
   Whole w;
   for (int i = 0; i < 3; ++i) {
-    w.half[i] = n.scale[i] * ratio * 127.5f;
+    w.half[i] = n.scale[i] * ratio * (0.5f * kQuantizedMost);
     w.centre[i] = n.base[i] * ratio + w.half[i];
   }
   return w;
