@@ -28,6 +28,16 @@ inline constexpr double kTreeRoundingUnits = 0x1p-50;
 /// float and turned once or twice, 8 u; boxes are decoded with 3 u; products and sums of three terms add 4 u.
 /// Together under 48 u < 2^-18.
 inline constexpr float kKernelRounding = 0x1p-18f;
+/// The same for the difference of two corners of one body, in which the error of the offset between the nodes
+/// cancels; (reach) is what kKernelRounding is relative to. Of the body whose frame it is: corners are
+/// rounded to float, 1 u of the node's radius each, their difference by 2 u: 4 u, taken twice for rounding in
+/// the bound of products. Of the other, relative to its node's radius: the rotation's entries are 16 u off
+/// and the transposition 8 u, together 36 u of a difference's length, which is 2 radii; rounding of the
+/// corners 2.1 u, of products and sums 8 u, of the difference 2 u: 84.1 u; and 3 sums for each corner to which
+/// the offset contributes, 6 u of the reach.
+inline constexpr float kOwnEdgeRounding = 0x1p-21f;
+inline constexpr float kTurnedEdgeRounding = 0x1.8p-18f;
+inline constexpr float kFarEdgeRounding = 0x1p-21f;
 /// Added to bounds so that float underflow (absolute error 2^-149 an operation) cannot decide anything.
 inline constexpr float kKernelTiny = 0x1p-120f;
 

@@ -86,7 +86,9 @@ void LrbRep::derive() {
   link_faces_to_regions();
   find_parents();
   find_components();
-  if (d_.dim == 3 && d_.face_vertices.size() != 3 * d_.face_count())
+  const auto simplex_size = static_cast<std::size_t>(d_.dim);
+  while (whole_faces_ < face_count() && d_.face(whole_faces_).size() == simplex_size) ++whole_faces_;
+  if (whole_faces_ < face_count())
     for (FaceId f = 0; f < face_count(); ++f)
       face_of_simplex_.insert(face_of_simplex_.end(), Mesh::simplices_of(d_.face(f).size(), 3), f);
   static std::atomic<std::uint64_t> next_serial{1};

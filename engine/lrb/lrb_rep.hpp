@@ -106,20 +106,25 @@ class LrbRep {
   bool is_real_simplex(SimplexId s) const { return is_real(face_of_simplex(s)); }
   /// Corners per simplex: 3, or 2 in 2D.
   int simplex_size() const { return d_.dim; }
-  FaceId face_of_simplex(SimplexId s) const { return face_of_simplex_.empty() ? s : face_of_simplex_[s]; }
+  FaceId face_of_simplex(SimplexId s) const { return s < whole_faces_ ? s : face_of_simplex_[s]; }
   SimplexId first_simplex(FaceId f) const {
-    return face_of_simplex_.empty()
-               ? f
-               : d_.face_offsets[f] - 2 * f;  // a fan has two triangles less than corners
+    return f < whole_faces_ ? f : d_.face_offsets[f] - 2 * f;  // a fan has two triangles less than corners
   }
   /// Writes the simplex's corners (3, or 2 in 2D) to out.
   void simplex(SimplexId s, VertexId out[3]) const {
+    if (s < whole_faces_) {
+      const VertexId* corners = d_.face_vertices.data() + static_cast<std::size_t>(d_.dim) * s;
+      out[0] = corners[0];
+      out[1] = corners[1];
+      if (d_.dim == 3) out[2] = corners[2];
+      return;
+    }
     const FaceId f = face_of_simplex(s);
     const VertexId* corners = d_.face_vertices.data() + d_.face_offsets[f];
     const std::uint32_t i = s - first_simplex(f);
     out[0] = corners[0];
     out[1] = corners[i + 1];
-    if (d_.dim == 3) out[2] = corners[i + 2];
+    out[2] = corners[i + 2];
   }
 
   const BlockTree& tree() const { return tree_; }
@@ -145,7 +150,8 @@ class LrbRep {
   std::vector<std::uint32_t> lid_count_;  ///< (|R|)
   std::vector<CellId> parent_;            ///< (|R|)
   std::vector<std::uint32_t> depth_;      ///< (|R|)
-  std::vector<FaceId> face_of_simplex_;   ///< empty if every face is one simplex
+  std::uint32_t whole_faces_ = 0;         ///< so many faces, from the first on, are one simplex each
+  std::vector<FaceId> face_of_simplex_;   ///< empty if all faces are
   std::uint32_t layer_count_ = 0;
   std::uint64_t hash_ = 0;
   std::uint64_t serial_ = 0;

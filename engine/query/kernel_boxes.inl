@@ -42,9 +42,10 @@ inline Boxes decode(const TreeNode& n, float ratio) {
 /// r^T * (coordinates in A's node) + back. The fourth of each four is nothing.
 struct Between {
   alignas(16) float r[3][4], abs_r[3][4], t[4], back[4];
-  float reach;  ///< bound of every coordinate difference that occurs
-  float error;  ///< bound of the error of every transformed coordinate
-  float grow;   ///< of boxes: the error, and the margin
+  float reach;          ///< bound of every coordinate difference that occurs
+  float error;          ///< bound of the error of every transformed coordinate
+  float edge_error[2];  ///< of A's and B's: of every coordinate of the difference of two corners of one body
+  float grow;           ///< of boxes: the error, and the margin
 };
 
 /// Row i of a node's frame; the fourth is what follows it in the node.
@@ -104,6 +105,9 @@ inline Between between(const TreeKernel& k, const TreeNode& a, const TreeNode& b
   w.reach = k.m_size * (a.radius * k.ratio_a + b.radius * k.ratio_b + __builtin_fabsf(df[0]) +
                         __builtin_fabsf(df[1]) + __builtin_fabsf(df[2]));
   w.error = k.slack + kKernelRounding * w.reach;
+  w.edge_error[0] = 2 * k.slack + kOwnEdgeRounding * (a.radius * k.ratio_a);
+  w.edge_error[1] =
+      2 * k.slack + kTurnedEdgeRounding * (k.m_size * (b.radius * k.ratio_b)) + kFarEdgeRounding * w.reach;
   w.grow = kMargin ? w.error + k.margin : w.error;
   return w;
 }

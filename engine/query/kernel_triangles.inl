@@ -11,18 +11,19 @@ struct Corners {
   Float8 x[3][3];  // [corner][axis]
 };
 
-/// What float arithmetic makes of (u x v) . d, lane by lane, and a bound of its error.
+/// What float arithmetic makes of (u x v) . d, lane by lane, and a bound of its error, where u and v are
+/// differences of corners of one body each, d of corners of both.
 ///
-/// Every corner is off by at most `error` in each coordinate, so an edge by 2 error, and the normal n = u x v
-/// of two edges by at most 4 error (E + 2 error) in each component, where E = max|u| + max|v|. A difference d
-/// of two corners is at most reach, and off by 2 error, so that n . d is off by at most 2 error |n|_1 + 12
-/// error (E + 2 error) (reach + 2 error). Rounding in float is below 10 u E^2 reach, u = 2^-24, for which
-/// there is room in the second term: error holds kKernelRounding reach = 64 u reach, of which less than 48 u
-/// can occur, and E <= 4 reach.
+/// Let eu and ev bound the errors of the coordinates of u and v, U and V those coordinates, w = 2^-24. The
+/// normal n = u x v is off by at most 2 (U ev + V eu + eu ev) in each component, and its rounding by 4 w U V.
+/// d is no longer than reach + 2 error, so that the sum of its coordinates is below 1.75 times that: n . d is
+/// off by at most 2 error |n|_1, in which there is room for rounding d and the products with it (4 w reach of
+/// 128), and 3.5 (reach + 2 error) (U ev + V eu + eu ev + 2 w U V); 4 instead of 3.5 leaves room for the last
+/// term (eu and ev are at least 8 w times a radius, U and V at most 2 radii) and for rounding in here.
 struct Normal {
   Float8 n[3], size, bound;
 
-  Normal(const Float8* u, const Float8* v, float reach, float error) {
+  Normal(const Float8* u, float u_error, const Float8* v, float v_error, float reach, float error) {
     Float8 u_max{}, v_max{};
     for (int axis = 0; axis < 3; ++axis) {
       u_max = larger(abs8(u[axis]), u_max);
@@ -33,9 +34,9 @@ struct Normal {
       n[x] = u[y] * v[z] - u[z] * v[y];
     }
     size = abs8(n[0]) + abs8(n[1]) + abs8(n[2]);
-    bound = splat(2 * error) * size +
-            splat(12 * error) * (u_max + v_max + splat(2 * error)) * splat(reach + 2 * error) +
-            splat(kKernelTiny);
+    const float far = 4 * (reach + 2 * error);
+    bound = splat(2 * error) * size + splat(far * v_error) * u_max + splat(far * u_error) * v_max +
+            splat(far * u_error * v_error + kKernelTiny);
   }
 
   Float8 dot(const Float8* d) const { return n[0] * d[0] + n[1] * d[1] + n[2] * d[2]; }
@@ -58,12 +59,13 @@ struct SideLanes {
   }
 };
 
-inline SideLanes sides_of_planes(const Corners& planes, const Corners& points, float reach, float error,
-                                 float margin) {
+/// plane_edge_error: Between::edge_error of the body whose planes they are.
+inline SideLanes sides_of_planes(const Corners& planes, const Corners& points, const Between& w,
+                                 float plane_edge_error, float margin) {
   Float8 e1[3], e2[3];
   subtract(planes.x[1], planes.x[0], e1);
   subtract(planes.x[2], planes.x[0], e2);
-  const Normal n(e1, e2, reach, error);
+  const Normal n(e1, plane_edge_error, e2, plane_edge_error, w.reach, w.error);
   // The size is more than the normal's length; without a margin it vanishes.
   const Float8 bound = n.bound + splat(margin) * n.size;
   SideLanes sides;
@@ -110,7 +112,7 @@ struct Verdict {
 /// here is that of the world coordinates: a world point, seen in the leaf's frame, is an affine image, which
 /// may be mirrored but keeps what meets what, and every corner is within `error` of its own.
 inline Verdict overlap(const Corners& a, const SideLanes& a_sides, const Corners& b, const SideLanes& b_sides,
-                       float reach, float error) {
+                       const Between& w) {
   const TipFirst ta(a, a_sides), tb(b, b_sides);
   const Lanes alike = equal(ta.positive, tb.positive);
   Float8 between_tips[3], ua[2][3], ub[2][3];
@@ -121,7 +123,7 @@ inline Verdict overlap(const Corners& a, const SideLanes& a_sides, const Corners
       ub[end][axis] = select(alike, tb.t.x[1 + end][axis], tb.t.x[2 - end][axis]) - tb.t.x[0][axis];
   Lanes low[2], high[2];
   for (int end = 0; end < 2; ++end) {
-    const Normal n(ua[end], ub[end], reach, error);
+    const Normal n(ua[end], w.edge_error[0], ub[end], w.edge_error[1], w.reach, w.error);
     const Float8 value = n.dot(between_tips);
     low[end] = greater(-n.bound, value);
     high[end] = greater(value, n.bound);
@@ -137,21 +139,19 @@ struct EightCertainties {
   std::uint32_t one_side[2] = {};   ///< of A's and B's: corners that are certain lie on one side
   std::uint32_t unsure[2][3] = {};  ///< [A's, B's][corner]: may lie in the other's plane
 
+  /// Without branches: what is certain of a pair cannot be foretold.
   void tell(int lane, Candidate& c) const {
-    const auto is = [lane](std::uint32_t lanes) { return (lanes >> lane & 1) != 0; };
-    if (is(cross)) c.certainty = Certainty::cross;
-    if (is(disjoint)) c.certainty = Certainty::disjoint;
-    if (!is(uncertain)) return;
+    const auto is = [lane](std::uint32_t lanes) { return lanes >> lane & 1; };
+    const auto value = [](Certainty certainty) { return static_cast<std::uint32_t>(certainty); };
     // A triangle whose other corners are on one side of a plane meets it in the hull of those that may lie in
     // it: if they are corners of the other triangle, that hull is an edge or a corner of it, or all of it.
-    for (int of = 0; of < 2; ++of) {
-      if (!is(one_side[of])) continue;
-      c.certainty = Certainty::touch_if_shared;
-      c.side = static_cast<Side>(of);
-      for (int corner = 0; corner < 3; ++corner)
-        c.corners |= static_cast<std::uint8_t>(is(unsure[of][corner]) << corner);
-      return;
-    }
+    const std::uint32_t of = is(one_side[0]) ^ 1, touch = is(uncertain) & (is(one_side[0]) | is(one_side[1]));
+    c.certainty = static_cast<Certainty>(is(cross) * value(Certainty::cross) +
+                                         is(disjoint) * value(Certainty::disjoint) +
+                                         touch * value(Certainty::touch_if_shared));
+    c.side = static_cast<Side>(of);
+    c.corners =
+        static_cast<std::uint8_t>(is(unsure[of][0]) | is(unsure[of][1]) << 1 | is(unsure[of][2]) << 2);
   }
 };
 
@@ -160,7 +160,7 @@ inline EightCertainties certainties_of(const Corners& a, const SideLanes& a_side
   EightCertainties c;
   const std::uint32_t certain = bits(both(a_sides.certain, b_sides.certain)) & which;
   if (certain != 0) {
-    const Verdict v = overlap(a, a_sides, b, b_sides, w.reach, w.error);
+    const Verdict v = overlap(a, a_sides, b, b_sides, w);
     c.cross = bits(v.cross);
     c.disjoint = bits(v.disjoint);
   }

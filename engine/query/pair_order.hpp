@@ -14,14 +14,13 @@ class PairOrder {
   void sort(CollideResult& result);
 
  private:
-  struct Found {
-    SimplexPair pair;
-    exact::Meet meet;
-  };
-  void sort_by_digits(SimplexId most_a, SimplexId most_b);
-  void sort_by_digit(SimplexId SimplexPair::*id, unsigned shift);
+  void sort_keys(unsigned key_bits);
+  void sort_by_digits(unsigned key_bits);
 
-  std::vector<Found> found_, moved_;
+  /// A pair in as many bits as its numbers need, and how it meets in the last: all in one number, so that as
+  /// little as can be is moved.
+  std::vector<std::uint64_t> keys_, moved_;
+  std::vector<std::uint32_t> places_;  ///< of each digit, of each of its values
 };
 
 }  // namespace lrb

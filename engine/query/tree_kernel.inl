@@ -151,8 +151,8 @@ inline void leaf_pair(TreeKernel& k, const TreeNode& na, const TreeNode& nb) {
   const float margin = kMargin ? k.margin : 0;
   for (std::uint32_t begin = 0; begin < list.size; begin += 8) {
     const Corners some_a = pick(a, list.a + begin), some_b = pick(b, list.b + begin);
-    const SideLanes b_sides = sides_of_planes(some_a, some_b, w.reach, w.error, margin);
-    const SideLanes a_sides = sides_of_planes(some_b, some_a, w.reach, w.error, margin);
+    const SideLanes b_sides = sides_of_planes(some_a, some_b, w, w.edge_error[0], margin);
+    const SideLanes a_sides = sides_of_planes(some_b, some_a, w, w.edge_error[1], margin);
     const std::uint32_t here = list.size - begin < 8 ? (1u << (list.size - begin)) - 1 : 255u;
     const std::uint32_t left = ~bits(either(a_sides.parted, b_sides.parted)) & here;
     if (left == 0) continue;

@@ -10,6 +10,8 @@
 ///
 /// What "proved apart" has to cover is in set_up_kernel().
 
+#include <bit>
+
 #include "engine/exact/exact_sign.hpp"
 #include "engine/exact/predicates.hpp"
 #include "engine/query/query_context.hpp"
@@ -121,17 +123,27 @@ class TreeQuery {
     return test_simplices(ctx_, c.a, c.b);
   }
 
+  /// Without branches: which corners are shared cannot be foretold.
   bool shares_corners(const Candidate& c) {
-    const double *own[3], *others[3];
-    ctx_[c.side].world.corners(c.side == Side::a ? c.a : c.b, own);
-    ctx_[other(c.side)].world.corners(c.side == Side::a ? c.b : c.a, others);
-    for (int i = 0; i < 3; ++i) {
-      if ((c.corners >> i & 1) == 0) continue;
-      if (!exact::same_point(own[i], others[0]) && !exact::same_point(own[i], others[1]) &&
-          !exact::same_point(own[i], others[2]))
-        return false;
-    }
-    return true;
+    const double *of_a[3], *of_b[3];
+    ctx_[Side::a].world.corners(c.a, of_a);
+    ctx_[Side::b].world.corners(c.b, of_b);
+    unsigned shared[2] = {0, 0};
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j) {
+        const unsigned same = has_bits_of(of_a[i], of_b[j]);
+        shared[0] |= same << i;
+        shared[1] |= same << j;
+      }
+    return (c.corners & ~shared[static_cast<int>(c.side)]) == 0;
+  }
+
+  /// Points that only differ in the sign of a zero are left to the exact test.
+  static bool has_bits_of(const double* x, const double* y) {
+    std::uint64_t difference = 0;
+    for (int i = 0; i < 3; ++i)
+      difference |= std::bit_cast<std::uint64_t>(x[i]) ^ std::bit_cast<std::uint64_t>(y[i]);
+    return difference == 0;
   }
 
   QueryContext& ctx_;

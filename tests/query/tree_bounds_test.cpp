@@ -99,12 +99,30 @@ struct Scene {
   bool rotations = true;  ///< then the kernel's way back to B's axes is r_b^T too, and can be compared
 };
 
+struct Shares {
+  double corners = 0, edges = 0;
+};
+
+/// Greatest deviation of the differences of two corners of one body, on A's axes, over Between::edge_error.
+double share_of_edges(const Real3* true_a, const float (*got_a)[3], const Real3* true_b,
+                      const float (*got_b)[3], const Between& w) {
+  const auto share = [](const Real3* x, const float(*got)[3], int axis, float error) {
+    const float edge = got[1][axis] - got[0][axis];
+    return static_cast<double>(abs(x[1][axis] - x[0][axis] - Real(edge)) / Real(error));
+  };
+  double worst = 0;
+  for (int axis = 0; axis < 3; ++axis)
+    worst = std::max(
+        {worst, share(true_a, got_a, axis, w.edge_error[0]), share(true_b, got_b, axis, w.edge_error[1])});
+  return worst;
+}
+
 /// Greatest deviation of the corners that a leaf pair computes with from the functionals, over the error that
-/// the kernel reckons with.
-double worst_share(const Scene& s, Random& random, int pairs) {
+/// the kernel reckons with; and of edges.
+Shares worst_shares(const Scene& s, Random& random, int pairs) {
   const TreeKernel k = set_up_kernel(s.a, s.pose_a, s.b, s.pose_b);
   const double unit = std::max(s.a.tree().unit(), s.b.tree().unit());
-  double worst = 0;
+  Shares worst;
   const auto leaf = [&](const LrbRep& rep) -> const TreeNode& {
     while (true) {
       const TreeNode& n = rep.tree().nodes()[random() % rep.tree().nodes().size()];
@@ -117,29 +135,34 @@ double worst_share(const Scene& s, Random& random, int pairs) {
     if (!(w.error < 1e30f)) continue;  // overflow: nothing is culled
     const auto ka = random() % na.count, kb = random() % nb.count;
     const LeafBlock &ba = s.a.tree().blocks()[na.first], &bb = s.b.tree().blocks()[nb.first];
-    const int corner = static_cast<int>(random() % 3);
-    const Eigen::Vector3d wa = s.pose_a.apply(vertex(s.a, ba.simplex[ka], corner)),
-                          wb = s.pose_b.apply(vertex(s.b, bb.simplex[kb], corner));
-    const Real3 a_on_a = functional(s.pose_a, na, s.a.tree().unit(), unit, wa);
-    const Real3 b_on_a = functional(s.pose_a, na, s.a.tree().unit(), unit, wb);
-    const Real3 a_on_b = functional(s.pose_b, nb, s.b.tree().unit(), unit, wa);
-    const Real3 b_on_b = functional(s.pose_b, nb, s.b.tree().unit(), unit, wb);
-    float a_got[3], b_got[3];
-    for (int j = 0; j < 3; ++j) {
-      a_got[j] = ba.corner[corner][j][ka] * k.ratio_a;
-      b_got[j] = bb.corner[corner][j][kb] * k.ratio_b;
+    Real3 a_on_a[2], b_on_a[2];
+    float a_got[2][3], b_turned[2][3];
+    for (int corner = 0; corner < 2; ++corner) {
+      const Eigen::Vector3d wa = s.pose_a.apply(vertex(s.a, ba.simplex[ka], corner)),
+                            wb = s.pose_b.apply(vertex(s.b, bb.simplex[kb], corner));
+      a_on_a[corner] = functional(s.pose_a, na, s.a.tree().unit(), unit, wa);
+      b_on_a[corner] = functional(s.pose_a, na, s.a.tree().unit(), unit, wb);
+      const Real3 a_on_b = functional(s.pose_b, nb, s.b.tree().unit(), unit, wa);
+      const Real3 b_on_b = functional(s.pose_b, nb, s.b.tree().unit(), unit, wb);
+      float b_got[3];
+      for (int j = 0; j < 3; ++j) {
+        a_got[corner][j] = ba.corner[corner][j][ka] * k.ratio_a;
+        b_got[j] = bb.corner[corner][j][kb] * k.ratio_b;
+      }
+      for (int axis = 0; axis < 3; ++axis) {
+        b_turned[corner][axis] =
+            w.t[axis] + w.r[axis][0] * b_got[0] + w.r[axis][1] * b_got[1] + w.r[axis][2] * b_got[2];
+        const float a_turned = w.back[axis] + w.r[0][axis] * a_got[corner][0] +
+                               w.r[1][axis] * a_got[corner][1] + w.r[2][axis] * a_got[corner][2];
+        // Both count: boxes are grown by the error once for the two of them.
+        const Real on_a = abs(a_on_a[corner][axis] - Real(a_got[corner][axis])) +
+                          abs(b_on_a[corner][axis] - Real(b_turned[corner][axis]));
+        const Real on_b = abs(b_on_b[axis] - Real(b_got[axis])) + abs(a_on_b[axis] - Real(a_turned));
+        const Real off = s.rotations && on_b > on_a ? on_b : on_a;
+        worst.corners = std::max(worst.corners, static_cast<double>(off / Real(w.error)));
+      }
     }
-    for (int axis = 0; axis < 3; ++axis) {
-      const float b_turned =
-          w.t[axis] + w.r[axis][0] * b_got[0] + w.r[axis][1] * b_got[1] + w.r[axis][2] * b_got[2];
-      const float a_turned =
-          w.back[axis] + w.r[0][axis] * a_got[0] + w.r[1][axis] * a_got[1] + w.r[2][axis] * a_got[2];
-      // Both count: boxes are grown by the error once for the two of them.
-      const Real on_a = abs(a_on_a[axis] - Real(a_got[axis])) + abs(b_on_a[axis] - Real(b_turned));
-      const Real on_b = abs(b_on_b[axis] - Real(b_got[axis])) + abs(a_on_b[axis] - Real(a_turned));
-      const Real off = s.rotations && on_b > on_a ? on_b : on_a;
-      worst = std::max(worst, static_cast<double>(off / Real(w.error)));
-    }
+    worst.edges = std::max(worst.edges, share_of_edges(a_on_a, a_got, b_on_a, b_turned, w));
   }
   return worst;
 }
@@ -173,7 +196,7 @@ TEST_CASE("a tree of simplices that all are one point, or on one line") {
 
 TEST_CASE("the kernel's error covers rotation, translation, rounding and odd matrices") {
   Random random(7);
-  double worst = 0;
+  Shares worst;
   for (int i = 0; i < 400; ++i) {
     const double kSizes[] = {1, 1, 1e-12, 1e12, 1e-60};
     const Mesh m = shapes::bumpy_sphere(1, static_cast<std::uint64_t>(i % 5));
@@ -196,10 +219,13 @@ TEST_CASE("the kernel's error covers rotation, translation, rounding and odd mat
       }
     }
     CAPTURE(i);
-    const double share = worst_share(s, random, 30);
-    REQUIRE(share < 1);
-    worst = std::max(worst, share);
+    const Shares shares = worst_shares(s, random, 30);
+    REQUIRE(shares.corners < 1);
+    REQUIRE(shares.edges < 1);
+    worst = {std::max(worst.corners, shares.corners), std::max(worst.edges, shares.edges)};
   }
-  MESSAGE("largest share of the error bound that was used: " << worst);
-  CHECK(worst > 1e-3);  // else nothing was tested
+  MESSAGE("largest share of the error bounds that was used: " << worst.corners << ", of edges "
+                                                              << worst.edges);
+  CHECK(worst.corners > 1e-3);  // else nothing was tested
+  CHECK(worst.edges > 1e-3);
 }

@@ -1,0 +1,86 @@
+// Where the kernel's float arithmetic is strained: small triangles far from the middle of their block, on
+// large ones of the other body. Their planes are known badly, and the large triangles' corners are far away.
+#include <cmath>
+
+#include <doctest/doctest.h>
+
+#include "engine/query/brute_force.hpp"
+#include "engine/query/collide.hpp"
+#include "scenarios/families/families.hpp"
+#include "scenarios/shapes/shapes.hpp"
+
+using namespace lrb;
+using families::Random;
+
+namespace {
+
+using Triangle = std::array<Eigen::Vector3d, 3>;
+
+LrbRep soup(const std::vector<Triangle>& triangles) {
+  Mesh m;
+  for (const Triangle& t : triangles) {
+    for (const Eigen::Vector3d& x : t) {
+      m.face_vertices.push_back(static_cast<VertexId>(m.vertices.size()));
+      m.vertices.push_back(x);
+    }
+    m.face_offsets.push_back(static_cast<std::uint32_t>(m.face_vertices.size()));
+  }
+  return LrbRep::without_regions(m, false, false);
+}
+
+Eigen::Vector3d in_ball(Random& random) {
+  const double radius = shapes::uniform(random, 0, 1);
+  return radius * shapes::random_direction(random);
+}
+
+Eigen::Vector3d on(const Triangle& t, Random& random) {
+  const double u = shapes::uniform(random, 0, 1), v = shapes::uniform(random, 0, 1 - u);
+  return t[0] + u * (t[1] - t[0]) + v * (t[2] - t[0]);
+}
+
+struct Bodies {
+  LrbRep large, small;
+  Pose pose_large, pose_small;
+};
+
+Bodies small_on_large(Random& random, double size, double offset) {
+  std::vector<Triangle> large, small;
+  Pose pose_large{shapes::random_rotation(random), offset * shapes::random_direction(random)};
+  Pose pose_small{shapes::random_rotation(random), pose_large.t + in_ball(random)};
+  for (int i = 0; i < 8; ++i) {
+    Triangle t;
+    for (auto& x : t) x = in_ball(random);
+    large.push_back(t);
+  }
+  for (int i = 0; i < 24; ++i) {
+    const Eigen::Vector3d middle = on(large[random() % large.size()], random);
+    Triangle t;
+    for (auto& x : t) {
+      const Eigen::Vector3d world = pose_large.apply(middle + size * in_ball(random));
+      x = pose_small.r.transpose() * (world - pose_small.t);
+    }
+    small.push_back(t);
+  }
+  return {soup(large), soup(small), pose_large, pose_small};
+}
+
+}  // namespace
+
+TEST_CASE("small triangles on large ones: the answer is that of brute force") {
+  Random random(3);
+  std::size_t meeting = 0;
+  for (int i = 0; i < 3000; ++i) {
+    const double size = std::pow(10, shapes::uniform(random, -7, -0.5));
+    const double offset = i % 3 ? 0 : std::pow(10, shapes::uniform(random, -1, 6));
+    const Bodies x = small_on_large(random, size, offset);
+    CAPTURE(i);
+    CAPTURE(size);
+    CAPTURE(offset);
+    const auto forth = collide(x.large, x.pose_large, x.small, x.pose_small);
+    const auto back = collide(x.small, x.pose_small, x.large, x.pose_large);
+    REQUIRE(forth.pairs == brute_force(x.large, x.pose_large, x.small, x.pose_small).pairs);
+    REQUIRE(back.pairs == brute_force(x.small, x.pose_small, x.large, x.pose_large).pairs);
+    meeting += forth.pairs.size();
+  }
+  CHECK(meeting > 20'000);
+}
