@@ -46,8 +46,16 @@ fi
 awk -v tolerance="$tolerance" '
   FNR == NR { known[$1 " " $2] = $3; next }
   { key = $1 " " $2
+    counted[$2] = $3
     if (!(key in known)) { printf "%-18s %12d  not known for %s: --approve it\n", $2, $3, $1; next }
     change = 100 * ($3 / known[key] - 1)
     printf("%-18s %12d  %+.2f %%%s\n", $2, $3, change, (change > tolerance ? "  MORE than " tolerance " %" : ""))
     if (change > tolerance) bad = 1 }
-  END { exit bad }' "$known" "$scratch/now"
+  END {
+    if (counted["shallow"] > 0) {
+      cost = 100 * (counted["shallow_watched"] / counted["shallow"] - 1)
+      printf("what events cost that nobody keeps: %+.2f %%, at most 1 %%%s\n", cost, (cost > 1 ? ": MORE" : ""))
+      if (cost > 1) bad = 1
+    }
+    exit bad
+  }' "$known" "$scratch/now"
