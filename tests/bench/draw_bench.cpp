@@ -27,7 +27,7 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
 /// A rock turns beside a ball.
 Scenario turning_rock(int frames) {
   const std::string text =
-      R"({"name": "rate", "bodies": {"a": {"generator": "ball"}, "b": {"generator": "rock",
+      R"({"name": "rate", "purpose": "A rock turns beside a ball.", "bodies": {"a": {"generator": "ball"}, "b": {"generator": "rock",
           "parameters": {"frequency": 50}, "pose": {"position": [2.5, 0, 0]}}},
           "motion": {"kind": "spin", "axis": [0, 0, 1], "degrees": 90, "steps": )" +
       std::to_string(frames) + R"(}, "frames": {"at": "step", "size": [1280, 720]}})";
