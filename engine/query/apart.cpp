@@ -30,7 +30,6 @@ class SlabSearch {
   SlabSearch(int dim, const Corners& a, const Corners& b, double margin)
       : dim_(dim), a_(a), b_(b), margin_(margin) {}
 
-  static constexpr int kLikely = 3;
   int directions() const { return dim_ == 3 ? 21 : 7; }
 
   /// Width of the slab across a direction; 0 if there is none wider than the margin.
@@ -73,92 +72,14 @@ class SlabSearch {
   double margin_;
 };
 
-/// Width of the slab across d between a range and a value, or two ranges; negative if they overlap.
-double between(double low, double high, double other_low, double other_high) {
-  return std::max(other_low - high, low - other_high);
-}
-
-/// The least of: the slabs between an edge's ends and a triangle, which must lie on opposite sides of it, and
-/// those between that edge and the triangle's edges, which it must pass all on the same hand. Slabs, because
-/// they are right for any direction, however badly rounded. 0 if the edge does not pass through, beyond
-/// doubt.
-double piercing_depth(const Corners& t, const Vector3d& p, const Vector3d& p2) {
-  const Vector3d n = (t[1] - t[0]).cross(t[2] - t[0]);
-  const double size = n.norm();
-  if (!std::isnormal(size)) return 0;
-  const double t0 = n.dot(t[0]), t1 = n.dot(t[1]), t2 = n.dot(t[2]), h = n.dot(p), h2 = n.dot(p2);
-  const double low = std::min({t0, t1, t2}), high = std::max({t0, t1, t2});
-  if ((h > high) == (h2 > high)) return 0;
-  double depth = std::min(between(low, high, h, h), between(low, high, h2, h2)) / size;
-  const Vector3d along = p2 - p;
-  int turns = 0;
-  for (int side = 0; side < 3 && depth > 0; ++side) {
-    const Vector3d &q = t[side], &r = t[(side + 1) % 3];
-    const Vector3d across = (r - q).cross(along);
-    const double length = across.norm(), volume = across.dot(q - p);
-    const double doubt = kWrapperMargin * (r - q).norm() * along.norm() * (q - p).norm();
-    if (!std::isnormal(length) || !(std::abs(volume) > doubt)) return 0;
-    turns += volume > 0 ? 1 : -1;
-    const double pa = across.dot(p), pb = across.dot(p2), qa = across.dot(q), qb = across.dot(r);
-    depth = std::min(
-        depth, between(std::min(pa, pb), std::max(pa, pb), std::min(qa, qb), std::max(qa, qb)) / length);
-  }
-  return std::abs(turns) == 3 ? std::max(depth, 0.0) : 0;
-}
-
-/// The least height of a triangle: what keeps it from becoming a segment.
-double least_height(const Corners& t) {
-  const double longest = std::max({(t[1] - t[0]).norm(), (t[2] - t[1]).norm(), (t[0] - t[2]).norm()});
-  return longest > 0 ? (t[1] - t[0]).cross(t[2] - t[0]).norm() / longest : 0;
-}
-
 }  // namespace
 
-double gap_between(double margin, double enough, int dim, const double* const a[3], const double* const b[3],
-                   std::uint8_t& hint) {
-  const Corners x = relative_to(a[0], a, dim), y = relative_to(a[0], b, dim);
-  const SlabSearch search(dim, x, y, margin);
-  double widest = search.width(hint);
-  for (int i = 0, tried = hint; i < search.directions() && !(widest > enough); ++i) {
-    if (i == tried) continue;
-    const double width = search.width(i);
-    if (!(width > widest)) continue;
-    widest = width;
-    hint = static_cast<std::uint8_t>(i);
-  }
-  return widest;
-}
-
-double likely_gap(double margin, double enough, int dim, const double* const a[3], const double* const b[3]) {
-  const Corners x = relative_to(a[0], a, dim), y = relative_to(a[0], b, dim);
-  const SlabSearch search(dim, x, y, margin);
-  double widest = 0;
-  for (int i = 0; i < SlabSearch::kLikely && !(widest > enough); ++i)
-    widest = std::max(widest, search.width(i));
-  return widest;
-}
-
 bool apart_by(double margin, int dim, const double* const a[3], const double* const b[3]) {
-  std::uint8_t hint = 0;
-  return gap_between(margin, margin, dim, a, b, hint) > margin;
-}
-
-double crossing_depth(double enough, const double* const a[3], const double* const b[3], std::uint8_t& hint) {
-  const Corners x = relative_to(a[0], a, 3), y = relative_to(a[0], b, 3);
-  const auto depth_of = [&](int i) {
-    const Corners& edges = i < 3 ? y : x;
-    return piercing_depth(i < 3 ? x : y, edges[i % 3], edges[(i + 1) % 3]);
-  };
-  double deepest = depth_of(hint);
-  for (int i = 0, tried = hint; i < 6 && !(deepest > enough); ++i) {
-    if (i == tried) continue;
-    const double depth = depth_of(i);
-    if (!(depth > deepest)) continue;
-    deepest = depth;
-    hint = static_cast<std::uint8_t>(i);
-  }
-  // Triangles that rounding could flatten do not cross.
-  return std::min({deepest, least_height(x) / 4, least_height(y) / 4});
+  const Corners x = relative_to(a[0], a, dim), y = relative_to(a[0], b, dim);
+  const SlabSearch search(dim, x, y, margin);
+  for (int i = 0; i < search.directions(); ++i)
+    if (search.width(i) > margin) return true;
+  return false;
 }
 
 }  // namespace lrb

@@ -7,7 +7,6 @@
 
 #include <Eigen/LU>
 
-#include "engine/query/apart.hpp"
 #include "engine/query/collide_impl.hpp"
 #include "engine/query/pose_bounds.hpp"
 #include "engine/tolerances.hpp"
@@ -16,10 +15,12 @@ namespace lrb {
 namespace {
 
 /// A list this many times as long as what the last query from scratch tested is given up.
-constexpr std::size_t kMostListed = 6, kAlwaysListed = 64;
+constexpr std::size_t kMostListed = 16, kAlwaysListed = 64;
 constexpr double kFewestSteps = 1.5, kMostSteps = 64, kStepsFactor = 1.5;
 /// Where a longer list failed, the next ones stay shorter, by less and less.
 constexpr double kCeilingFactor = 1.02;
+/// A list for a way longer than this share of B's radius would hold much of both bodies: it is not tried.
+constexpr double kLongestWay = 1.0 / 16;
 constexpr std::uint32_t kLongestPause = 64, kPauseFactor = 4, kFirstPause = 4;
 /// Steps shorter than this share of one for which a list did not pay are worth another try at once; others
 /// only after so many pauses.
@@ -28,7 +29,6 @@ constexpr std::uint32_t kPausesBetween = 4;
 /// The usual step is the longest of late: it shrinks by this from one query to the next. A step so many times
 /// as long is a jump, which says nothing about the steps to come, unless another one follows.
 constexpr double kForget = 0.7, kJump = 8;
-constexpr std::uint32_t kProofsOffFor = 8;
 
 using Clock = std::chrono::steady_clock;
 
@@ -70,33 +70,38 @@ const CollideResult& CoherentQuery::collide(const Pose& pose_a, const Pose& pose
   context_.body[0].world.begin(a_, pose_a);
   context_.body[1].world.begin(b_, pose_b);
   reset_counters(result_.counters);
-  const auto began = Clock::now();
-  const bool paused = pause_ > 0;
-  if (paused) --pause_;
-  if (paused || !is_rigid(pose_a, pose_b)) {
+  if (pause_ > 0) {
     has_list_ = has_last_ = false;
-    query_from_scratch();
-    if (paused && pause_ == 0) scratch_time_ = seconds_since(began);
+    if (--pause_ > 0)
+      query_from_scratch();
+    else
+      time_scratch();
     return result_;
   }
+  if (!is_rigid(pose_a, pose_b)) {
+    has_list_ = has_last_ = false;
+    query_from_scratch();
+    return result_;
+  }
+  const auto began = Clock::now();
   rounding_ = wrapper_margin(pose_a, a_.tree(), pose_b, b_.tree());
   const Relative now{pose_a.r.transpose() * pose_b.r, pose_a.r.transpose() * (pose_b.t - pose_a.t)};
-  const double step = has_last_ ? length_of_step(now) : std::numeric_limits<double>::infinity();
+  constexpr double kAnywhere = std::numeric_limits<double>::infinity();
+  note_step(has_last_ ? motion(last_, now) : kAnywhere);
+  const double moved = has_list_ ? motion(list_at_, now) : kAnywhere;
   last_ = now;
   has_last_ = true;
-  note_step(step);
-  path_ += step;
-  if (has_list_ && path_ <= valid_to_) {
-    query_list(step);
+  if (has_list_ && moved <= valid_to_) {
+    ++statistics_.from_list;
+    ++steps_;
+    answer_from_list(set_up_kernel(a_, pose_a, b_, pose_b), moved);
     step_time_ += seconds_since(began);
   } else if (request_.mode != Mode::all_pairs && still_crosses()) {
     has_list_ = false;
   } else if (list_pays() && make_list()) {
     list_time_ = seconds_since(began);
   } else {
-    const auto scratch_began = Clock::now();
-    query_from_scratch();
-    scratch_time_ = seconds_since(scratch_began);
+    time_scratch();
     if (gave_up_) list_time_ = seconds_since(began);
   }
   return result_;
@@ -107,11 +112,17 @@ bool CoherentQuery::is_rigid(const Pose& pose_a, const Pose& pose_b) const {
          pose_a.r.determinant() > 0 && pose_b.r.determinant() > 0;
 }
 
-/// An upper bound of how far any point of B has moved on A's axes.
-double CoherentQuery::length_of_step(const Relative& now) const {
-  const Eigen::Matrix3d dm = now.m - last_.m;
-  const double turn = std::sqrt(dm.squaredNorm() / 2), shift = (dm * middle_ + (now.t - last_.t)).norm();
+/// An upper bound of how far any point of B moves on A's axes.
+double CoherentQuery::motion(const Relative& from, const Relative& to) const {
+  const Eigen::Matrix3d dm = to.m - from.m;
+  const double turn = std::sqrt(dm.squaredNorm() / 2), shift = (dm * middle_ + (to.t - from.t)).norm();
   return (shift + turn * radius_) * (1 + kWorldRounding) + rounding_;
+}
+
+void CoherentQuery::time_scratch() {
+  const auto began = Clock::now();
+  query_from_scratch();
+  scratch_time_ = seconds_since(began);
 }
 
 /// As collide() does it, but into the result that there is.
@@ -164,6 +175,10 @@ bool CoherentQuery::list_pays() {
   gave_up_ = false;
   if (!(usual_step_ > 0) || jumped_) return false;
   if (lists_ == Lists::always) return true;
+  if (steps_a_list_ * usual_step_ > kLongestWay * radius_) {
+    pause_ = kLongestPause / kPauseFactor;
+    return false;
+  }
   if (scratch_time_ == 0) return false;
   if (list_time_ > 0) {
     const bool paid = has_list_ && (list_time_ + step_time_) / (1 + steps_) < scratch_time_;
@@ -199,132 +214,66 @@ bool CoherentQuery::make_list() {
   for (QueryBody& body : context_.body) body.begin(body.rep(), body.world.pose(), request_.wrapper);
   TreeKernel k = start_kernel(context_, 1024);
   k.margin = static_cast<float>(margin / std::max(a_.tree().unit(), b_.tree().unit())) * (1 + 0x1p-20f);
-  list_.clear();
+  near_.clear();
   step_time_ = 0;
   steps_ = 0;
   while (k.stack_size != 0) {
     k.out_size = 0;
     run_tree_kernel(k);
-    for (std::uint32_t i = 0; i < k.out_size; ++i) list_.push_back({k.out[i].a, k.out[i].b});
-    if (lists_ == Lists::as_it_pays && list_.size() > kMostListed * (scratch_tests_ + kAlwaysListed)) {
+    for (std::uint32_t i = 0; i < k.out_size; ++i) near_.add({k.out[i].a, k.out[i].b});
+    if (lists_ == Lists::as_it_pays && near_.size() > kMostListed * (scratch_tests_ + kAlwaysListed)) {
       gave_up_ = true;
       return false;
     }
   }
-  std::sort(list_.begin(), list_.end());
+  near_.arrange(a_, b_, k, margin, 4 * rounding_);
   has_list_ = true;
-  path_ = 0;
+  list_at_ = last_;
   valid_to_ = margin - 4 * rounding_;
-  due_.assign(list_.size(), -1);
-  meets_.assign(list_.size(), exact::Meet::disjoint);
-  hints_.assign(list_.size(), 0);
-  relation_kept_ = false;
-  for (Proofs* p : {&apart_, &crossing_}) {
-    if (p->on && p->made > 0 && p->saved < p->made / 2) {
-      p->on = false;
-      p->off_for = kProofsOffFor;
-    } else if (!p->on && --p->off_for == 0) {
-      p->on = true;
-    }
-    p->made = p->saved = 0;
-  }
+  has_answer_ = false;
   ++statistics_.lists_made;
-  std::size_t kept = 0;
   NullProbe probe;
-  for (std::size_t i = 0; i < list_.size(); ++i) {
-    const double *ca[3], *cb[3];
-    context_[Side::a].world.corners(list_[i].a, ca);
-    context_[Side::b].world.corners(list_[i].b, cb);
-    if (likely_gap(4 * rounding_, margin, a_.dim(), ca, cb) > margin) continue;  // not before the next list
-    list_[kept] = list_[i];
-    test_pair(kept, 0);
-    if (meets_[kept] == exact::Meet::disjoint && due_[kept] > valid_to_) continue;
-    show_face(context_, Side::a, a_.face_of_simplex(list_[i].a), result_, probe);
-    show_face(context_, Side::b, b_.face_of_simplex(list_[i].b), result_, probe);
-    ++kept;
+  for (std::size_t i = 0; i < near_.size(); ++i) {
+    show_face(context_, Side::a, a_.face_of_simplex(near_[i].a), result_, probe);
+    show_face(context_, Side::b, b_.face_of_simplex(near_[i].b), result_, probe);
   }
-  list_.resize(kept);
-  due_.resize(kept);
-  hints_.resize(kept);
-  meets_.resize(kept);
   show_opened();
   result_.counters.node_pairs = k.node_pairs;
-  answer_from_list();
+  answer_from_list(k, 0);
   return true;
 }
 
-void CoherentQuery::query_list(double step) {
-  ++statistics_.from_list;
-  ++steps_;
-  for (std::size_t i = 0; i < list_.size(); ++i) {
-    if (path_ < due_[i]) {
-      ++(meets_[i] == exact::Meet::disjoint ? apart_ : crossing_).saved;
-      continue;
-    }
-    test_pair(i, step);
-  }
-  statistics_.tests_saved += list_.size() - result_.counters.face_tests;
-  answer_from_list();
-}
-
-/// Tests a pair of the list: by the proof that held last time, if it still does for a step or more, else
-/// exactly.
-void CoherentQuery::test_pair(std::size_t i, double step) {
-  const double *ca[3], *cb[3];
-  context_[Side::a].world.corners(list_[i].a, ca);
-  context_[Side::b].world.corners(list_[i].b, cb);
-  const int dim = a_.dim();
-  const double rounding = 4 * rounding_, aim = 2 * usual_step_;
-  ++result_.counters.face_tests;
-  const bool proves_gaps = apart_.on || result_.pairs.empty(), proves_depths = crossing_.on && dim == 3;
-  const auto gap = [&] {
-    ++apart_.made;
-    return gap_between(rounding, aim, dim, ca, cb, hints_[i]);
-  };
-  const auto depth = [&] {
-    ++crossing_.made;
-    return crossing_depth(aim, ca, cb, hints_[i]);
-  };
-  const bool first = due_[i] < 0;
-  const exact::Meet before = meets_[i];
-  double hold = 0;
-  if (!first && before == exact::Meet::disjoint && proves_gaps) hold = gap();
-  if (!first && before == exact::Meet::cross && proves_depths) hold = depth();
-  if (!(hold > rounding)) {
-    hold = 0;
-    meets_[i] = dim == 3 ? exact::meet_triangles(ca, cb) : exact::meet_segments(ca, cb);
-    if (first || meets_[i] != before) {
-      hints_[i] = 0;
-      if (meets_[i] == exact::Meet::disjoint && proves_gaps) hold = gap();
-      if (meets_[i] == exact::Meet::cross && proves_depths) hold = depth();
-    }
-  }
-  // Where the bodies do not meet, the relation hangs on it: it need not be decided again.
-  if (meets_[i] == exact::Meet::disjoint && !(hold > step + rounding)) relation_kept_ = false;
-  due_[i] = path_ + std::max(hold - rounding, 0.0);
-}
-
-void CoherentQuery::answer_from_list() {
-  relation_kept_ &= result_.pairs.empty();
-  result_.mode = request_.mode;
-  result_.pairs.clear();
-  result_.meets.clear();
-  for (std::size_t i = 0; i < list_.size(); ++i) {
-    if (meets_[i] == exact::Meet::disjoint) continue;
-    if (request_.mode == Mode::any_pair && !result_.pairs.empty()) break;
-    if (request_.mode == Mode::first_pair && !result_.pairs.empty()) {
-      if (meets_[i] != exact::Meet::cross || result_.meets[0] == exact::Meet::cross) continue;
-      result_.pairs.clear();
-      result_.meets.clear();
-    }
-    result_.pairs.push_back(list_[i]);
-    result_.meets.push_back(meets_[i]);
-  }
-  if (!relation_kept_ || !result_.pairs.empty()) decide_relation(context_, result_);
-  relation_kept_ = true;
+/// At the pose of k, at which no point of B is further than `moved` from where it was when the list was made.
+void CoherentQuery::answer_from_list(const TreeKernel& k, double moved) {
+  const std::size_t before = tested_;
+  tested_ = near_.within(moved);
+  const bool changed = near_.update(k, moved, tested_,
+                                    [&](const SimplexPair& p) { return test_simplices(context_, p.a, p.b); });
+  result_.counters.face_tests += tested_;
+  statistics_.tests_saved += near_.size() - tested_;
+  if (changed || !has_answer_) list_answer();
+  // Where no pair came near enough to be tested, now or before, no surfaces can have met in between.
+  if (!has_answer_ || tested_ > 0 || before > 0) decide_relation(context_, result_);
+  has_answer_ = true;
   result_.contacts.clear();
   result_.regions.clear();
   describe_contact(context_, request_, result_);
+}
+
+void CoherentQuery::list_answer() {
+  result_.mode = request_.mode;
+  result_.pairs.clear();
+  result_.meets.clear();
+  near_.list_meeting(result_);
+  context_.pair_order.sort(result_);
+  if (request_.mode == Mode::all_pairs || result_.pairs.empty()) return;
+  const auto crossing = request_.mode == Mode::any_pair
+                            ? result_.meets.begin()
+                            : std::find(result_.meets.begin(), result_.meets.end(), exact::Meet::cross);
+  const std::size_t i =
+      crossing == result_.meets.end() ? 0 : static_cast<std::size_t>(crossing - result_.meets.begin());
+  result_.pairs = {result_.pairs[i]};
+  result_.meets = {result_.meets[i]};
 }
 
 }  // namespace lrb

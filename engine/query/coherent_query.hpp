@@ -2,16 +2,14 @@
 /// Two bodies again and again, as they move by little from one query to the next (the paper's future work).
 ///
 /// Kept from one query to the next: the wrappers, and a list of the pairs of simplices that were not proved
-/// further apart than a margin. While no point of B has moved by more than that margin, seen from A, no other
-/// pair can meet. Within the list a pair is tested again only once B has moved far enough, since its last
-/// test, to change the outcome: by the slab that was found between two simplices that are apart, by the depth
-/// at which an edge of one passes through the other where they cross.
+/// further apart than a margin at one pose. While no point of B is further than that margin from where it was
+/// then, seen from A, no other pair can meet. Of the list, those pairs are tested that were no further apart
+/// than B has moved since: eight at a time in float arithmetic, exactly where that is not certain.
 ///
 /// Motion. With (m, t) as in set_up_kernel() the points of B, on A's axes, are m x + t. From one pose to the
 /// next they move by at most |dm c + dt| + |dm| R, where c and R are the middle and radius of B. |dm|^2 is
-/// half the sum of the squares of dm's entries, both m being rotations. Lengths of steps are added up, so
-/// that a pair tested under way stays proved by the triangle inequality. Rounding of world coordinates and of
-/// all this is covered by wrapper_margin(), taken off every proof and added to every step. Matrices that are
+/// half the sum of the squares of dm's entries, both m being rotations. Rounding of world coordinates and of
+/// all this is covered by wrapper_margin(), taken off every gap and added to every motion. Matrices that are
 /// further from rotations than rounding (kRigid) are queried from scratch.
 ///
 /// The answers are those of collide(): pairs, meets and relation always; what was opened, and the counters,
@@ -19,6 +17,7 @@
 /// (paper's recursions, floating predicates, coarse queries, separation) are passed on to collide().
 
 #include "engine/query/collide.hpp"
+#include "engine/query/near_pairs.hpp"
 #include "engine/query/query_context.hpp"
 
 namespace lrb {
@@ -51,21 +50,14 @@ class CoherentQuery {
     Eigen::Matrix3d m = Eigen::Matrix3d::Identity();
     Eigen::Vector3d t = Eigen::Vector3d::Zero();
   };
-  /// Proofs that a pair need not be tested for a while, by what the last test found.
-  struct Proofs {
-    bool on = true;
-    std::uint32_t made = 0, saved = 0;  ///< with this list: proofs, and tests that they saved
-    std::uint32_t off_for = 0;          ///< lists
-  };
-
   bool is_rigid(const Pose& pose_a, const Pose& pose_b) const;
-  double length_of_step(const Relative& now) const;
+  double motion(const Relative& from, const Relative& to) const;
   void query_from_scratch();
+  void time_scratch();
   bool still_crosses();
   bool make_list();
-  void query_list(double step);
-  void test_pair(std::size_t i, double step);
-  void answer_from_list();
+  void answer_from_list(const TreeKernel& k, double moved);
+  void list_answer();
   void show_opened();
   void note_step(double step);
   bool list_pays();
@@ -87,16 +79,13 @@ class CoherentQuery {
   double rounding_ = 0;  ///< wrapper_margin() of the query at hand
 
   bool has_list_ = false;
-  double path_ = 0, valid_to_ = 0;  ///< length of all steps since; the list is complete up to this length
-  std::vector<SimplexPair> list_;   ///< ascending
-  std::vector<double>
-      due_;  ///< (|list|): the length of path at which a pair must be tested again; < 0: never tested
-  std::vector<exact::Meet> meets_;   ///< (|list|): of the last test
-  std::vector<std::uint8_t> hints_;  ///< (|list|): where the proof of the last test was found
-  bool relation_kept_ = false;       ///< no surfaces can have met since result_.relation was decided
-  Proofs apart_, crossing_;
+  Relative list_at_;         ///< the pose at which it was made
+  double valid_to_ = 0;      ///< it is complete while B is no further from there
+  NearPairs near_;           ///< the list
+  std::size_t tested_ = 0;   ///< of the list, in the last query from it
+  bool has_answer_ = false;  ///< result_ holds the answer of the last query from this list
 
-  double steps_a_list_ = 4, ceiling_ = 64;    ///< aimed at, and at most
+  double steps_a_list_ = 8, ceiling_ = 64;    ///< aimed at, and at most
   bool last_paid_ = false;                    ///< the list before the one at hand
   double list_time_ = 0, step_time_ = 0;      ///< seconds: for the list, and for the steps since
   double scratch_time_ = 0;                   ///< of a query from scratch, the last one

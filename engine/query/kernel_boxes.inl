@@ -48,6 +48,17 @@ struct Between {
   float grow;           ///< of boxes: the error, and the margin
 };
 
+/// radius_a, radius_b: of what is held of both bodies, or the length of its edges. reach: of the differences
+/// of a corner of A and one of B that occur; whole: of the coordinates from which corners of B are
+/// transformed.
+inline void set_errors(Between& w, float slack, float m_size, float radius_a, float radius_b, float reach,
+                       float whole) {
+  w.reach = reach;
+  w.error = slack + kKernelRounding * whole;
+  w.edge_error[0] = 2 * slack + kOwnEdgeRounding * radius_a;
+  w.edge_error[1] = 2 * slack + kTurnedEdgeRounding * (m_size * radius_b) + kFarEdgeRounding * reach;
+}
+
 /// Row i of a node's frame; the fourth is what follows it in the node.
 inline Float4 frame_row(const TreeNode& n, int i) {
   static_assert(__builtin_offsetof(TreeNode, base) == sizeof(n.frame));
@@ -102,12 +113,10 @@ inline Between between(const TreeKernel& k, const TreeNode& a, const TreeNode& b
   const float t_parts[3] = {t[0], t[1], t[2]};
   const Float4 back = -combine(t_parts, r);
   __builtin_memcpy(w.back, &back, sizeof back);
-  w.reach = k.m_size * (a.radius * k.ratio_a + b.radius * k.ratio_b + __builtin_fabsf(df[0]) +
-                        __builtin_fabsf(df[1]) + __builtin_fabsf(df[2]));
-  w.error = k.slack + kKernelRounding * w.reach;
-  w.edge_error[0] = 2 * k.slack + kOwnEdgeRounding * (a.radius * k.ratio_a);
-  w.edge_error[1] =
-      2 * k.slack + kTurnedEdgeRounding * (k.m_size * (b.radius * k.ratio_b)) + kFarEdgeRounding * w.reach;
+  const float radius_a = a.radius * k.ratio_a, radius_b = b.radius * k.ratio_b;
+  const float reach = k.m_size * (radius_a + radius_b + __builtin_fabsf(df[0]) + __builtin_fabsf(df[1]) +
+                                  __builtin_fabsf(df[2]));
+  set_errors(w, k.slack, k.m_size, radius_a, radius_b, reach, reach);
   w.grow = kMargin ? w.error + k.margin : w.error;
   return w;
 }

@@ -2,7 +2,7 @@
 // apart, touch and lie deep in each other. Without arguments: bodies generated here, and those of
 // ../shared/meshes.
 //
-//   coherent_bench [A B]... [--steps N] [--walks N]
+//   coherent_bench [A B]... [--steps N] [--walks N] [--room SHARE]
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
@@ -30,13 +30,13 @@ struct PoseClass {
 };
 constexpr PoseClass kClasses[] = {{"apart 0.5 %", -0.005}, {"touching 0.2 %", 0.002}, {"deep 10 %", 0.1}};
 constexpr double kSteps[] = {0.0001, 0.0003, 0.001, 0.003, 0.01, 0.03, 0.1};
-/// B wanders no further than this from where it began, in diagonals, or one step where that is more.
-constexpr double kRoom = 0.004;
 constexpr int kWarm = 8;  ///< steps before the clock runs: memory is there, and the query has seen the motion
 
 struct Bench {
   const LrbRep &a, &b;
   double diagonal;
+  double
+      room;  ///< B wanders no further than this from where it began, in diagonals, or a step if that is more
   QueryContext context;
   NullProbe probe;
 
@@ -68,7 +68,7 @@ struct Bench {
   /// steps.
   std::vector<Pose> walk(Random& random, const Pose& from, double length, int steps, bool apart) {
     const Eigen::Vector3d middle = shapes::box_of(b).center();
-    const double radius = shapes::box_of(b).diagonal().norm() / 2, room = std::max(kRoom * diagonal, length);
+    const double radius = shapes::box_of(b).diagonal().norm() / 2, most = std::max(room * diagonal, length);
     std::vector<Pose> out = {from};
     Eigen::Vector3d way = shapes::random_direction(random), axis = shapes::random_direction(random);
     for (int tries = 0; static_cast<int>(out.size()) < steps && tries < 100 * steps; ++tries) {
@@ -79,7 +79,7 @@ struct Bench {
       next.t = last.r * middle + last.t - next.r * middle + 0.5 * length * way;
       const double off = ((next.r * middle + next.t) - (from.r * middle + from.t)).norm() +
                          (next.r - from.r).norm() * radius / 1.5;
-      if (off > room + length || (apart && meets(next))) {
+      if (off > most + length || (apart && meets(next))) {
         way = shapes::random_direction(random);
         axis = shapes::random_direction(random);
         continue;
@@ -102,9 +102,9 @@ double median(std::vector<double> x) {
   return x[x.size() / 2];
 }
 
-int run(const std::string& name, const LrbRep& a, const LrbRep& b, int steps, int walks) {
+int run(const std::string& name, const LrbRep& a, const LrbRep& b, int steps, int walks, double room) {
   const double diagonal = std::max(shapes::box_of(a).diagonal().norm(), shapes::box_of(b).diagonal().norm());
-  Bench bench{a, b, diagonal, {}, {}};
+  Bench bench{a, b, diagonal, room, {}, {}};
   std::printf("%s: %u x %u faces; from scratch / coherent, the median of %d walks of %d steps\n",
               name.c_str(), a.real_face_count(), b.real_face_count(), walks, steps);
   int differences = 0;
@@ -162,23 +162,26 @@ int run(const std::string& name, const LrbRep& a, const LrbRep& b, int steps, in
 
 int main(int argc, char** argv) {
   int steps = 100, walks = 7;
+  double room = 0.004;
   std::vector<std::string> files;
   for (int i = 1; i < argc; ++i) {
     if (!std::strcmp(argv[i], "--steps") && i + 1 < argc)
       steps = std::atoi(argv[++i]);
     else if (!std::strcmp(argv[i], "--walks") && i + 1 < argc)
       walks = std::atoi(argv[++i]);
+    else if (!std::strcmp(argv[i], "--room") && i + 1 < argc)
+      room = std::atof(argv[++i]);
     else
       files.emplace_back(argv[i]);
   }
   if (files.size() % 2 != 0 || steps < 2 || walks < 1) {
-    std::fprintf(stderr, "usage: coherent_bench [A B]... [--steps N] [--walks N]\n");
+    std::fprintf(stderr, "usage: coherent_bench [A B]... [--steps N] [--walks N] [--room SHARE]\n");
     return 2;
   }
   int differences = 0;
   if (files.empty()) {
     const LrbRep rock = build_lrb(shapes::bumpy_sphere(5, 3, 0.2)), ring = build_lrb(shapes::torus(100, 50));
-    differences += run("rock x ring, generated", rock, ring, steps, walks);
+    differences += run("rock x ring, generated", rock, ring, steps, walks, room);
     const std::filesystem::path meshes = test::shared_meshes();
     if (meshes.empty()) std::printf("no ../shared/meshes, no LRB_MESHES: that was all\n");
     for (const char* name : {"spot.obj", "rocker-arm.obj", "nefertiti.obj"})
@@ -189,7 +192,7 @@ int main(int argc, char** argv) {
     const LrbRep a = build_lrb(read_mesh(files[i])), b = build_lrb(read_mesh(files[i + 1]));
     differences += run(std::filesystem::path(files[i]).filename().string() + " x " +
                            std::filesystem::path(files[i + 1]).filename().string(),
-                       a, b, steps, walks);
+                       a, b, steps, walks, room);
   }
   std::printf("%d differences\n", differences);
   return differences == 0 ? 0 : 1;

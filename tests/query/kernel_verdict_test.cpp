@@ -5,6 +5,7 @@
 #include <doctest/doctest.h>
 
 #include "engine/query/brute_force.hpp"
+#include "engine/query/coherent_query.hpp"
 #include "engine/query/collide.hpp"
 #include "scenarios/families/families.hpp"
 #include "scenarios/shapes/shapes.hpp"
@@ -83,4 +84,33 @@ TEST_CASE("small triangles on large ones: the answer is that of brute force") {
     meeting += forth.pairs.size();
   }
   CHECK(meeting > 20'000);
+}
+
+TEST_CASE("small triangles on large ones: coherent queries while they quiver") {
+  Random random(5);
+  std::size_t meeting = 0, from_list = 0, changes = 0;
+  for (int i = 0; i < 300; ++i) {
+    const double size = std::pow(10, shapes::uniform(random, -6, -0.5));
+    Bodies x = small_on_large(random, size, i % 3 ? 0 : std::pow(10, shapes::uniform(random, -1, 5)));
+    CAPTURE(i);
+    CAPTURE(size);
+    CoherentQuery coherent(x.large, x.small, {}, CoherentQuery::Lists::always);
+    const Pose start = x.pose_small;
+    std::size_t before = 0;
+    for (int step = 0; step < 12; ++step) {
+      const auto& now = coherent.collide(x.pose_large, x.pose_small);
+      REQUIRE(now.pairs == brute_force(x.large, x.pose_large, x.small, x.pose_small).pairs);
+      meeting += now.pairs.size();
+      changes += now.pairs.size() != before;
+      before = now.pairs.size();
+      const double turn = shapes::uniform(random, -0.3, 0.3) * size;
+      const Eigen::Vector3d axis = shapes::random_direction(random);
+      x.pose_small.r = Pose::rotation(axis, turn).r * start.r;
+      x.pose_small.t = start.t + 0.3 * size * in_ball(random);
+    }
+    from_list += coherent.statistics().from_list;
+  }
+  CHECK(meeting > 20'000);
+  CHECK(from_list > 1000);
+  CHECK(changes > 500);
 }
