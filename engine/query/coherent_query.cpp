@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include <Eigen/LU>
 
@@ -210,6 +211,7 @@ bool CoherentQuery::list_pays() {
 
 /// False if it grew too long: there is no list then.
 bool CoherentQuery::make_list() {
+  has_list_ = false;  // until it is whole, whatever is thrown
   const double margin = steps_a_list_ * usual_step_ + 4 * rounding_;
   for (QueryBody& body : context_.body) body.begin(body.rep(), body.world.pose(), request_.wrapper);
   TreeKernel k = start_kernel(context_, 1024);
@@ -227,7 +229,6 @@ bool CoherentQuery::make_list() {
     }
   }
   near_.arrange(a_, b_, k, margin, 4 * rounding_);
-  has_list_ = true;
   list_at_ = last_;
   valid_to_ = margin - 4 * rounding_;
   has_answer_ = false;
@@ -240,24 +241,25 @@ bool CoherentQuery::make_list() {
   show_opened();
   result_.counters.node_pairs = k.node_pairs;
   answer_from_list(k, 0);
+  has_list_ = true;
   return true;
 }
 
 /// At the pose of k, at which no point of B is further than `moved` from where it was when the list was made.
 void CoherentQuery::answer_from_list(const TreeKernel& k, double moved) {
-  const std::size_t before = tested_;
-  tested_ = near_.within(moved);
+  const bool has_answer = std::exchange(has_answer_, false);  // until it is whole again
+  const std::size_t before = std::exchange(tested_, near_.within(moved));
   const bool changed = near_.update(k, moved, tested_,
                                     [&](const SimplexPair& p) { return test_simplices(context_, p.a, p.b); });
   result_.counters.face_tests += tested_;
   statistics_.tests_saved += near_.size() - tested_;
-  if (changed || !has_answer_) list_answer();
+  if (changed || !has_answer) list_answer();
   // Where no pair came near enough to be tested, now or before, no surfaces can have met in between.
-  if (!has_answer_ || tested_ > 0 || before > 0) decide_relation(context_, result_);
-  has_answer_ = true;
+  if (!has_answer || tested_ > 0 || before > 0) decide_relation(context_, result_);
   result_.contacts.clear();
   result_.regions.clear();
   describe_contact(context_, request_, result_);
+  has_answer_ = true;
 }
 
 void CoherentQuery::list_answer() {

@@ -1,8 +1,10 @@
 /// Memory runs out at each allocation in turn: std::bad_alloc comes out, nothing is left behind (ASan's leak
 /// check sees to that), and what was in use goes on working.
 
+#include <bit>
 #include <filesystem>
 #include <new>
+#include <utility>
 
 #include <doctest/doctest.h>
 
@@ -10,6 +12,7 @@
 #include "engine/lrb/lrb_file.hpp"
 #include "engine/mesh/mesh_check.hpp"
 #include "engine/mesh/mesh_io.hpp"
+#include "engine/query/coherent_query.hpp"
 #include "engine/query/collide_impl.hpp"
 #include "scenarios/shapes/hand_made.hpp"
 #include "scenarios/shapes/shapes.hpp"
@@ -126,6 +129,61 @@ TEST_CASE("a .lrb that is saved while memory runs out leaves no file, or a whole
   CHECK(fail_each_allocation(save, judge) > 5);
   save();
   CHECK(fail_each_allocation([&] { return load_lrb(path).hash() == rep.hash(); }, [] {}) > 5);
+}
+
+TEST_CASE("a coherent query that runs out of memory answers the next pose rightly") {
+  const LrbRep a = LrbRep::without_regions(bumpy_sphere(2, 1), true, false),
+               b = LrbRep::without_regions(bumpy_sphere(2, 2), true, false);
+  const auto pose = [](int step) { return Pose::translation({1.9 - 0.004 * step * (6 - step), 0.2, 0}); };
+  std::vector<CollideResult> expected;
+  for (int step = 0; step < 12; ++step) expected.push_back(collide(a, Pose{}, b, pose(step), {}));
+  std::uint64_t failures = 0;
+  for (bool failed = true; failed; failures += failed) {
+    CoherentQuery coherent(a, b, {}, CoherentQuery::Lists::always);
+    failed = false;
+    fail_allocation_after(failures);
+    for (int step = 0; step < 12; ++step) {
+      bool right = true;  // or not answered
+      try {
+        const CollideResult& now = coherent.collide(Pose{}, pose(step));
+        right = now.pairs == expected[step].pairs && now.relation == expected[step].relation;
+      } catch (const std::bad_alloc&) {
+        failed = true;
+        fail_allocation_after(kNoFailure);
+      }
+      REQUIRE(right);
+    }
+    fail_allocation_after(kNoFailure);
+  }
+  CHECK(failures > 30);
+}
+
+TEST_CASE("a warm query takes memory for its answer alone") {
+  const LrbRep a = build_lrb(bumpy_sphere(3, 1)), b = build_lrb(bumpy_sphere(3, 2));
+  QueryContext context;
+  NullProbe probe;
+  const auto taken = [&](const Pose& p) {
+    collide(a, Pose{}, b, p, {}, context, probe);
+    const std::uint64_t before = allocations();
+    const CollideResult r = collide(a, Pose{}, b, p, {}, context, probe);
+    const std::uint64_t after = allocations();
+    return std::pair{after - before, r.pairs.size()};
+  };
+  CHECK(taken(Pose::translation({3, 0, 0})).first == 0);
+  const auto [count, pairs] = taken(Pose::translation({1.7, 0.2, 0}));
+  REQUIRE(pairs > 50);
+  // The lists of pairs and of how they meet double as they grow; regions opened; tests by level.
+  CHECK(count <= 2 * (std::bit_width(pairs) + 1) + 2 + 8);
+
+  CoherentQuery coherent(a, b);
+  const auto step = [&](int i) {
+    coherent.collide(Pose{}, Pose::translation({1.7 + 1e-4 * (i % 4), 0.2, 0}));
+  };
+  for (int i = 0; i < 100; ++i) step(i);
+  const std::uint64_t before = allocations(), lists = coherent.statistics().from_list;
+  for (int i = 0; i < 100 && allocations() == before; ++i) step(i);
+  CHECK(coherent.statistics().from_list > lists);
+  CHECK(allocations() == before);
 }
 
 // Not the reading of traces: the destructors of nlohmann-json 3.11 allocate, and end the process if they

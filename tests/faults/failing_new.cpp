@@ -10,9 +10,11 @@ namespace {
 
 thread_local std::uint64_t left = kNoFailure;
 thread_local bool failed = false;
+thread_local std::uint64_t asked = 0;
 
 /// Null if it is this allocation's turn to fail.
 void* allocate(std::size_t size, std::size_t alignment) {
+  ++asked;
   if (left != kNoFailure && left-- == 0) {
     left = kNoFailure;
     failed = true;
@@ -36,6 +38,10 @@ void fail_allocation_after(std::uint64_t count) {
 
 bool allocation_has_failed() {
   return failed;
+}
+
+std::uint64_t allocations() {
+  return asked;
 }
 
 }  // namespace lrb::test

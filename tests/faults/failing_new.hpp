@@ -13,4 +13,7 @@ void fail_allocation_after(std::uint64_t count);
 /// Whether the failure that was asked for has come.
 bool allocation_has_failed();
 
+/// Of this thread, so far.
+std::uint64_t allocations();
+
 }  // namespace lrb::test
