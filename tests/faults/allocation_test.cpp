@@ -1,6 +1,7 @@
 /// Memory runs out at each allocation in turn: std::bad_alloc comes out, nothing is left behind (ASan's leak
 /// check sees to that), and what was in use goes on working.
 
+#include <algorithm>
 #include <bit>
 #include <filesystem>
 #include <new>
@@ -134,15 +135,21 @@ TEST_CASE("a .lrb that is saved while memory runs out leaves no file, or a whole
 TEST_CASE("a coherent query that runs out of memory answers the next pose rightly") {
   const LrbRep a = LrbRep::without_regions(bumpy_sphere(2, 1), true, false),
                b = LrbRep::without_regions(bumpy_sphere(2, 2), true, false);
-  const auto pose = [](int step) { return Pose::translation({1.9 - 0.004 * step * (6 - step), 0.2, 0}); };
+  // In and out again, deeper each time: lists become longer, and B comes back to where the one before was
+  // good.
+  constexpr int kSteps = 100;
+  const auto pose = [](int step) {
+    const double depth = 0.001 * (10 - std::abs(step % 20 - 10)) * (1 + step / 20);
+    return Pose::translation({1.9 - depth, 0.2, 0});
+  };
   std::vector<CollideResult> expected;
-  for (int step = 0; step < 12; ++step) expected.push_back(collide(a, Pose{}, b, pose(step), {}));
+  for (int step = 0; step < kSteps; ++step) expected.push_back(collide(a, Pose{}, b, pose(step), {}));
   std::uint64_t failures = 0;
   for (bool failed = true; failed; failures += failed) {
     CoherentQuery coherent(a, b, {}, CoherentQuery::Lists::always);
     failed = false;
     fail_allocation_after(failures);
-    for (int step = 0; step < 12; ++step) {
+    for (int step = 0; step < kSteps; ++step) {
       bool right = true;  // or not answered
       try {
         const CollideResult& now = coherent.collide(Pose{}, pose(step));
