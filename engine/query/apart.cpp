@@ -23,7 +23,7 @@ Corners relative_to(const double* origin, const double* const x[3], int dim) {
   return c;
 }
 
-/// Looks for the widest slab between two simplices. Any direction can be tried, however it came about; one
+/// Looks for a slab between two simplices. Any direction can be tried, however it came about; one
 /// too short to be told from rounding proves nothing, nor does an overflow.
 class SlabSearch {
  public:
@@ -32,18 +32,18 @@ class SlabSearch {
 
   int directions() const { return dim_ == 3 ? 21 : 7; }
 
-  /// Width of the slab across a direction; 0 if there is none wider than the margin.
-  double width(int direction) const {
+  /// Whether there is a slab wider than the margin across a direction.
+  bool parts(int direction) const {
     const Vector3d d = dim_ == 3 ? in_space(direction) : in_plane(direction);
     const double length_sq = d.squaredNorm();
-    if (!std::isnormal(length_sq)) return 0;
-    const double length = std::sqrt(length_sq), least = margin_ * length;
-    if (!std::isnormal(least)) return 0;
+    if (!std::isnormal(length_sq)) return false;
+    const double least = margin_ * std::sqrt(length_sq);
+    if (!std::isnormal(least)) return false;
     const double a0 = d.dot(a_[0]), a1 = d.dot(a_[1]), a2 = d.dot(a_[2]);
     const double b0 = d.dot(b_[0]), b1 = d.dot(b_[1]), b2 = d.dot(b_[2]);
     const double w = std::max(std::min({b0, b1, b2}) - std::max({a0, a1, a2}),
                               std::min({a0, a1, a2}) - std::max({b0, b1, b2}));
-    return w > least ? w / length : 0;
+    return w > least;
   }
 
  private:
@@ -78,7 +78,7 @@ bool apart_by(double margin, int dim, const double* const a[3], const double* co
   const Corners x = relative_to(a[0], a, dim), y = relative_to(a[0], b, dim);
   const SlabSearch search(dim, x, y, margin);
   for (int i = 0; i < search.directions(); ++i)
-    if (search.width(i) > margin) return true;
+    if (search.parts(i)) return true;
   return false;
 }
 

@@ -68,21 +68,33 @@ const CollideResult& CoherentQuery::collide(const Pose& pose_a, const Pose& pose
     return result_;
   }
   check_query(a_, pose_a, b_, pose_b);
+  if (std::exchange(at_work_, true)) {  // the last call ended by an exception, and left who knows what
+    has_list_ = has_last_ = false;
+    result_.pairs.clear();
+  }
+  const std::uint64_t fallbacks = exact::exact_fallbacks();
+  reset_counters(result_.counters);
+  answer(pose_a, pose_b);
+  result_.counters.exact_fallbacks = exact::exact_fallbacks() - fallbacks;
+  at_work_ = false;
+  return result_;
+}
+
+void CoherentQuery::answer(const Pose& pose_a, const Pose& pose_b) {
   context_.body[0].world.begin(a_, pose_a);
   context_.body[1].world.begin(b_, pose_b);
-  reset_counters(result_.counters);
   if (pause_ > 0) {
     has_list_ = has_last_ = false;
     if (--pause_ > 0)
       query_from_scratch();
     else
       time_scratch();
-    return result_;
+    return;
   }
   if (!is_rigid(pose_a, pose_b)) {
     has_list_ = has_last_ = false;
     query_from_scratch();
-    return result_;
+    return;
   }
   const auto began = Clock::now();
   rounding_ = wrapper_margin(pose_a, a_.tree(), pose_b, b_.tree());
@@ -105,7 +117,6 @@ const CollideResult& CoherentQuery::collide(const Pose& pose_a, const Pose& pose
     time_scratch();
     if (gave_up_) list_time_ = seconds_since(began);
   }
-  return result_;
 }
 
 bool CoherentQuery::is_rigid(const Pose& pose_a, const Pose& pose_b) const {
@@ -116,7 +127,7 @@ bool CoherentQuery::is_rigid(const Pose& pose_a, const Pose& pose_b) const {
 /// An upper bound of how far any point of B moves on A's axes.
 double CoherentQuery::motion(const Relative& from, const Relative& to) const {
   const Eigen::Matrix3d dm = to.m - from.m;
-  const double turn = std::sqrt(dm.squaredNorm() / 2), shift = (dm * middle_ + (to.t - from.t)).norm();
+  const double turn = std::sqrt(dm.squaredNorm() / 2), shift = (dm * middle_ + (to.t - from.t)).stableNorm();
   return (shift + turn * radius_) * (1 + kWorldRounding) + rounding_;
 }
 
@@ -137,14 +148,12 @@ void CoherentQuery::query_from_scratch() {
   result_.meets.clear();
   result_.contacts.clear();
   result_.regions.clear();
-  const std::uint64_t fallbacks = exact::exact_fallbacks();
   NullProbe probe;
   TreeQuery<NullProbe>(context_, request_.mode, result_, probe).run();
   context_.pair_order.sort(result_);
   decide_relation(context_, result_);
   describe_contact(context_, request_, result_);
   show_opened();
-  result_.counters.exact_fallbacks = exact::exact_fallbacks() - fallbacks;
   scratch_tests_ = result_.counters.face_tests;
 }
 
@@ -211,7 +220,6 @@ bool CoherentQuery::list_pays() {
 
 /// False if it grew too long: there is no list then.
 bool CoherentQuery::make_list() {
-  has_list_ = false;  // until it is whole, whatever is thrown
   const double margin = steps_a_list_ * usual_step_ + 4 * rounding_;
   for (QueryBody& body : context_.body) body.begin(body.rep(), body.world.pose(), request_.wrapper);
   TreeKernel k = start_kernel(context_, 1024);
@@ -229,6 +237,7 @@ bool CoherentQuery::make_list() {
     }
   }
   near_.arrange(a_, b_, k, margin, 4 * rounding_);
+  has_list_ = true;
   list_at_ = last_;
   valid_to_ = margin - 4 * rounding_;
   has_answer_ = false;
@@ -240,14 +249,15 @@ bool CoherentQuery::make_list() {
   }
   show_opened();
   result_.counters.node_pairs = k.node_pairs;
+  result_.counters.box_tests = k.box_tests;
+  result_.counters.prefilter_tests = k.prefilter_tests;
   answer_from_list(k, 0);
-  has_list_ = true;
   return true;
 }
 
 /// At the pose of k, at which no point of B is further than `moved` from where it was when the list was made.
 void CoherentQuery::answer_from_list(const TreeKernel& k, double moved) {
-  const bool has_answer = std::exchange(has_answer_, false);  // until it is whole again
+  const bool has_answer = std::exchange(has_answer_, true);
   const std::size_t before = std::exchange(tested_, near_.within(moved));
   const bool changed = near_.update(k, moved, tested_,
                                     [&](const SimplexPair& p) { return test_simplices(context_, p.a, p.b); });
@@ -259,7 +269,6 @@ void CoherentQuery::answer_from_list(const TreeKernel& k, double moved) {
   result_.contacts.clear();
   result_.regions.clear();
   describe_contact(context_, request_, result_);
-  has_answer_ = true;
 }
 
 void CoherentQuery::list_answer() {

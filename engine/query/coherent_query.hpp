@@ -13,7 +13,8 @@
 /// further from rotations than rounding (kRigid) are queried from scratch.
 ///
 /// The answers are those of collide(): pairs, meets and relation always; what was opened, and the counters,
-/// tell of this query's own work. In first_pair mode it may be another pair. All requests that are not plain
+/// tell of this query's own work. In first_pair mode it may be another pair; in any_pair mode, too, and the
+/// relation, which is what that one pair tells, another with it. All requests that are not plain
 /// (paper's recursions, floating predicates, coarse queries, separation) are passed on to collide().
 
 #include "engine/query/collide.hpp"
@@ -50,6 +51,7 @@ class CoherentQuery {
     Eigen::Matrix3d m = Eigen::Matrix3d::Identity();
     Eigen::Vector3d t = Eigen::Vector3d::Zero();
   };
+  void answer(const Pose& pose_a, const Pose& pose_b);
   bool is_rigid(const Pose& pose_a, const Pose& pose_b) const;
   double motion(const Relative& from, const Relative& to) const;
   void query_from_scratch();
@@ -72,6 +74,7 @@ class CoherentQuery {
   Eigen::Vector3d middle_{0, 0, 0};  ///< of B
   double radius_ = 0;                ///< of B about it
 
+  bool at_work_ = false;  ///< a call has begun and not ended
   bool has_last_ = false;
   Relative last_;
   double usual_step_ = 0;  ///< the longest of late, but for jumps

@@ -1,5 +1,6 @@
 #pragma once
-// Part of tree_kernel.inl: two nodes, how they lie to each other, and which of their boxes meet.
+// Part of tree_kernel.inl and pair_kernel.inl: two nodes, how they lie to each other, and which of their
+// boxes meet.
 
 #include "engine/query/kernel_lanes.inl"
 #include "engine/query/tree_kernel.hpp"

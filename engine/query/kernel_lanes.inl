@@ -1,5 +1,5 @@
 #pragma once
-// Part of tree_kernel.inl: eight floats at a time, and a truth for each of eight.
+// Part of tree_kernel.inl and pair_kernel.inl: eight floats at a time, and a truth for each of eight.
 
 #include <cstddef>
 #include <cstdint>

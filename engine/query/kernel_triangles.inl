@@ -1,5 +1,6 @@
 #pragma once
-// Part of tree_kernel.inl: eight pairs of triangles, and what float arithmetic is certain of about them.
+// Part of tree_kernel.inl and pair_kernel.inl: eight pairs of triangles, and what float arithmetic is certain
+// of about them.
 
 #include "engine/query/kernel_boxes.inl"
 

@@ -21,8 +21,8 @@ inline Float8 smaller(Float8 x, Float8 y) {
 }
 
 /// Width of the slab between eight pairs across directions, less all errors; 0 if there is none. Any
-/// direction will do, however it came about: only the corners' errors count, 2 error |d|_1, in which there is
-/// room for the rounding of the products as there is in Normal.
+/// direction will do, however it came about: only the corners' errors count, those of A's among them, 2 error
+/// |d|_1, in which there is room for the rounding of the products as there is in Normal.
 inline Float8 slab(const Float8* across, const Corners& a, const Corners& b, const Between& w) {
   // Neither too long nor too short for its square; of no direction, NaN, which proves nothing.
   const Float8 longest = larger(larger(abs8(across[0]), abs8(across[1])), abs8(across[2]));
@@ -76,7 +76,8 @@ void LRB_PAIR_KERNEL_NAME(const PairKernel& k) {
     Between w;
     set_errors(w, k.slack, k.m_size, block.edge_a, block.edge_b, block.reach + k.moved,
                whole + k.m_size * block.edge_b);
-    Corners a, b;  // from A's first corner
+    w.error += kOwnEdgeRounding * block.edge_a;  // corners of A, too, are reached by edges
+    Corners a, b;                                // from A's first corner
     for (int x = 0; x < 3; ++x) {
       const auto turned = [&](int which) {
         return splat(k.r[x][0]) * load8(block.b[which][0]) + splat(k.r[x][1]) * load8(block.b[which][1]) +

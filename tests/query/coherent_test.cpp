@@ -165,6 +165,25 @@ TEST_CASE("coherent queries notice a body that slides through a contact in steps
   CHECK(tally.contact > 100);
 }
 
+TEST_CASE("coherent queries of bodies of any size") {
+  QueryContext context;
+  NullProbe probe;
+  for (const double size : {1e-310, 1e-300, 1e-200, 1e-160, 1e-12, 1e9, 1e150, 1e200, 1e300}) {
+    CAPTURE(size);
+    const LrbRep a = bare(shapes::scaled(shapes::icosphere(2), size)),
+                 b = bare(shapes::scaled(shapes::bumpy_sphere(2, 6, 0.2), size));
+    CoherentQuery coherent(a, b, {}, CoherentQuery::Lists::always);
+    Tally tally;
+    for (double s = 2.3; s > 1.7; s -= 0.01) {
+      const Pose p = Pose::translation(size * Eigen::Vector3d(s, 0.1, 0));
+      compare(coherent.collide(Pose{}, p), collide(a, Pose{}, b, p, {}, context, probe), Mode::all_pairs,
+              tally);
+    }
+    CHECK(coherent.statistics().from_list > 10);
+    CHECK(tally.contact > 10);
+  }
+}
+
 TEST_CASE("what a coherent query has no list for is passed on") {
   const LrbRep a = build_lrb(shapes::bumpy_sphere(2, 5, 0.2));
   CollideRequest request;

@@ -114,3 +114,34 @@ TEST_CASE("small triangles on large ones: coherent queries while they quiver") {
   CHECK(from_list > 1000);
   CHECK(changes > 500);
 }
+
+TEST_CASE("a small triangle above the long edge of an obtuse sliver: coherent queries while it comes down") {
+  Random random(1);
+  std::size_t meeting = 0, from_list = 0;
+  for (int i = 0; i < 3000; ++i) {
+    const Eigen::Matrix3d turn = shapes::random_rotation(random);
+    const double height = std::pow(10, shapes::uniform(random, -7.5, -5));
+    const double gap = shapes::uniform(random, 0.2, 1) * 3e-8,
+                 size = height * shapes::uniform(random, 0.1, 1);
+    const Eigen::Vector3d tip(0, height + gap, 0);
+    // The sliver's first corner is far from the others, and they from each other.
+    const Triangle sliver = {Eigen::Vector3d(0, 0, 0), turn * Eigen::Vector3d(-1, height, 0),
+                             turn * Eigen::Vector3d(1, height, 0)};
+    const Triangle small = {turn * tip, turn * (tip + Eigen::Vector3d(size, 0, 0.1 * size)),
+                            turn * (tip + Eigen::Vector3d(-size, 0, size))};
+    const LrbRep a = soup({sliver}), b = soup({small});
+    const Eigen::Vector3d down = turn * Eigen::Vector3d(0, -1, 0);
+    const double step = gap / (4 + i % 4);
+    CoherentQuery coherent(a, b, {}, CoherentQuery::Lists::always);
+    CAPTURE(i);
+    for (int k = -3; k < 11; ++k) {
+      const Pose p = Pose::translation(k * step * down);
+      const auto& now = coherent.collide(Pose{}, p);
+      REQUIRE(now.pairs == brute_force(a, Pose{}, b, p).pairs);
+      meeting += now.pairs.size();
+    }
+    from_list += coherent.statistics().from_list;
+  }
+  CHECK(meeting > 5000);
+  CHECK(from_list > 5000);
+}
