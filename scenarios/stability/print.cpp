@@ -132,7 +132,7 @@ void add_cell(Sheet& sheet, const Cell& cell, double x, double y) {
   mark(s.timed_out, "\u25f7");
   mark(s.refused, "\u2298");
   // What does not fit beside the failures has a line of its own.
-  constexpr std::size_t kBeside = 16;  // bytes; a mark's sign has three
+  constexpr std::size_t kBeside = 14;  // bytes; a mark's sign has three
   sheet.text(x + 0.95, y + (failures.size() + marks.size() > kBeside ? 0.61 : 0.8), Sheet::small_right,
              marks);
   add_bars(sheet, cell, x, y);
