@@ -56,8 +56,9 @@ struct TreeKernel {
 };
 
 /// Goes on until the stack is empty or fewer than 64 places are left in `out`. With the newest instruction
-/// set that the processor has; the environment variable LRB_SIMD=baseline, read at the first call, keeps to
-/// what every processor has. The outcome is the same, counters included (tests/repeat/repeat.sh).
+/// set that the processor has; the environment variable LRB_SIMD, read at the first call, keeps to AVX2
+/// ("avx2") or to what every processor has ("baseline"). The outcome is the same, counters included
+/// (tests/repeat/repeat.sh).
 void run_tree_kernel(TreeKernel& k);
 
 }  // namespace lrb
