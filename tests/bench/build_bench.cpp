@@ -28,14 +28,12 @@
 #include "scenarios/generators/generators.hpp"
 #include "scenarios/series/power_fit.hpp"
 #include "scenarios/series/resolutions.hpp"
+#include "tests/bench/timing.hpp"
 
 namespace {
 
 using lrb::Mesh;
-
-double seconds_since(std::chrono::steady_clock::time_point start) {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
+using lrb::bench::seconds_since;
 
 double hull_volume(const Mesh& mesh) {
   Mesh hull;

@@ -17,9 +17,11 @@
 #include "engine/query/collide_impl.hpp"
 #include "scenarios/shapes/random_pose.hpp"
 #include "scenarios/shapes/shapes.hpp"
+#include "tests/bench/timing.hpp"
 #include "tests/support/shared_meshes.hpp"
 
 using namespace lrb;
+using bench::median;
 using shapes::Random;
 
 namespace {
@@ -94,12 +96,7 @@ template <class F>
 double seconds(F&& f) {
   const auto begin = std::chrono::steady_clock::now();
   f();
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-}
-
-double median(std::vector<double> x) {
-  std::sort(x.begin(), x.end());
-  return x[x.size() / 2];
+  return bench::seconds_since(begin);
 }
 
 int run(const std::string& name, const LrbRep& a, const LrbRep& b, int steps, int walks, double room) {

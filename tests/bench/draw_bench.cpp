@@ -7,22 +7,21 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
-#include <filesystem>
 #include <string>
 #include <vector>
 
 #include "scenarios/play/frames.hpp"
 #include "scenarios/play/recording.hpp"
+#include "tests/bench/timing.hpp"
+#include "tests/mesh/encode.hpp"
 
 using namespace lrb;
+using bench::median;
+using bench::seconds_since;
 
 namespace {
 
 constexpr double kAim = 0.8;  ///< of the rate of drawing alone
-
-double seconds_since(std::chrono::steady_clock::time_point start) {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
 
 /// A rock turns beside a ball.
 Scenario turning_rock(int frames) {
@@ -32,11 +31,6 @@ Scenario turning_rock(int frames) {
           "motion": {"kind": "spin", "axis": [0, 0, 1], "degrees": 90, "steps": )" +
       std::to_string(frames) + R"(}, "frames": {"at": "step", "size": [1280, 720]}})";
   return parse_scenario(text, "draw_bench");
-}
-
-double median(std::vector<double> x) {
-  std::sort(x.begin(), x.end());
-  return x[x.size() / 2];
 }
 
 }  // namespace
@@ -55,9 +49,7 @@ int main(int argc, char** argv) {
   for (const LoadedBody& body : recording.bodies) performance.reps.push_back(&body.rep);
   performance.trace = &recording.trace;
   performance.results = &recording.results;
-  const std::string folder =
-      (std::filesystem::temp_directory_path() / ("draw_bench-" + std::to_string(std::rand()))).string();
-  std::filesystem::create_directories(folder);
+  const test::TemporaryDirectory directory;
   std::printf("%d frames of 1280x720, %u faces\n", frames, recording.bodies[1].rep.real_face_count());
   std::vector<double> alone, whole;
   for (int i = 0; i < repeats; ++i) {
@@ -65,10 +57,9 @@ int main(int argc, char** argv) {
     paint_frames(performance, scenario.frames, quiet, nullptr);
     alone.push_back(seconds_since(start) / frames);
     start = std::chrono::steady_clock::now();
-    draw_frames(performance, scenario.frames, folder, {}, quiet);
+    draw_frames(performance, scenario.frames, directory.file("sequence"), {}, quiet);
     whole.push_back(seconds_since(start) / frames);
   }
-  std::filesystem::remove_all(folder);
   const double rate = median(alone) / median(whole);
   std::printf("drawing alone         %6.1f ms a frame\n", 1e3 * median(alone));
   std::printf("encoded and written   %6.1f ms a frame: %.0f %% of the rate, aim %.0f %%: %s\n",

@@ -14,12 +14,14 @@
 #include "engine/query/brute_force.hpp"
 #include "engine/query/collide_impl.hpp"
 #include "scenarios/shapes/random_pose.hpp"
+#include "tests/bench/timing.hpp"
 
 #ifdef LRB_WITH_FCL
 #include <fcl/fcl.h>
 #endif
 
 using namespace lrb;
+using bench::median;
 
 namespace {
 
@@ -40,11 +42,6 @@ double best_microseconds(int repeats, F&& f) {
         best, std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - start).count());
   }
   return best;
-}
-
-double median(std::vector<double> x) {
-  std::nth_element(x.begin(), x.begin() + static_cast<std::ptrdiff_t>(x.size() / 2), x.end());
-  return x[x.size() / 2];
 }
 
 #ifdef LRB_WITH_FCL
