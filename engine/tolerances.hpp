@@ -38,6 +38,9 @@ inline constexpr float kKernelRounding = 0x1p-18f;
 inline constexpr float kOwnEdgeRounding = 0x1p-21f;
 inline constexpr float kTurnedEdgeRounding = 0x1.8p-18f;
 inline constexpr float kFarEdgeRounding = 0x1p-21f;
+/// For sizes that are rounded to float and must not come out too small: 16 u, of which rounding uses 1, and the
+/// arithmetic before it little more.
+inline constexpr float kFloatUp = 1 + 0x1p-20f;
 /// Added to bounds so that float underflow (absolute error 2^-149 an operation) cannot decide anything.
 inline constexpr float kKernelTiny = 0x1p-120f;
 

@@ -223,7 +223,7 @@ bool CoherentQuery::make_list() {
   const double margin = steps_a_list_ * usual_step_ + 4 * rounding_;
   for (QueryBody& body : context_.body) body.begin(body.rep(), body.world.pose(), request_.wrapper);
   TreeKernel k = start_kernel(context_, 1024);
-  k.margin = static_cast<float>(margin / std::max(a_.tree().unit(), b_.tree().unit())) * (1 + 0x1p-20f);
+  k.margin = static_cast<float>(margin / std::max(a_.tree().unit(), b_.tree().unit())) * kFloatUp;
   near_.clear();
   step_time_ = 0;
   steps_ = 0;

@@ -10,8 +10,6 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr float kUp = 1 + 0x1p-20f;  ///< for sizes in float that must not be too small
-
 /// Simplices of a body as PairBlock has them, about an origin amid them.
 class SimplexWriter {
  public:
@@ -41,7 +39,7 @@ class SimplexWriter {
 
   const Vector3d& origin() const { return origin_; }
   /// Of a ball about the origin that holds all first corners that were written.
-  float radius() const { return static_cast<float>(std::sqrt(farthest_sq_)) * kUp + kKernelTiny; }
+  float radius() const { return static_cast<float>(std::sqrt(farthest_sq_)) * kFloatUp + kKernelTiny; }
 
  private:
   const LrbRep& rep_;
@@ -49,6 +47,14 @@ class SimplexWriter {
   Vector3d origin_;
   double farthest_sq_ = 0;
 };
+
+/// A block's sizes are the largest of its pairs'.
+template <class Size>
+void include(PairBlock& block, const Size& size) {
+  block.edge_a = std::max(block.edge_a, size.edge_a);
+  block.edge_b = std::max(block.edge_b, size.edge_b);
+  block.reach = std::max(block.reach, size.reach);
+}
 
 void copy_lane(const PairBlock& from, std::size_t lane, PairBlock& to, std::size_t to_lane) {
   for (int which = 0; which < 3; ++which)
@@ -83,25 +89,20 @@ void NearPairs::fill_blocks(const LrbRep& a, const LrbRep& b, const TreeKernel& 
   middle_[0] = of_a.origin();
   middle_[1] = of_b.origin();
   Eigen::Matrix3d m;
-  Vector3d t;
-  for (int i = 0; i < 3; ++i) {
+  for (int i = 0; i < 3; ++i)
     for (int j = 0; j < 3; ++j) m(i, j) = k.m[j][i];
-    t[i] = k.t[i];
-  }
-  t += m * middle_[1] - middle_[0];
+  const Vector3d t = offset_at(k);
   for (std::size_t i = 0; i < pairs_.size(); ++i) {
     PairBlock& block = blocks_[i / 8];
     const auto in_a = of_a.write(pairs_[i].a, block.a, i % 8), in_b = of_b.write(pairs_[i].b, block.b, i % 8);
     const double between = (m * in_b.first + t - in_a.first).norm();
     const Size size{
-        static_cast<float>(in_a.longest) * kUp + kKernelTiny,
-        static_cast<float>(in_b.longest) * kUp + kKernelTiny,
-        static_cast<float>(between + in_a.longest + static_cast<double>(k.m_size) * in_b.longest) * kUp +
+        static_cast<float>(in_a.longest) * kFloatUp + kKernelTiny,
+        static_cast<float>(in_b.longest) * kFloatUp + kKernelTiny,
+        static_cast<float>(between + in_a.longest + static_cast<double>(k.m_size) * in_b.longest) * kFloatUp +
             kKernelTiny};
     sizes_.push_back(size);
-    block.edge_a = std::max(block.edge_a, size.edge_a);
-    block.edge_b = std::max(block.edge_b, size.edge_b);
-    block.reach = std::max(block.reach, size.reach);
+    include(block, size);
   }
   radius_[0] = of_a.radius();
   radius_[1] = of_b.radius();
@@ -136,9 +137,7 @@ void NearPairs::sort_by_shell(double margin, double rounding) {
     PairBlock& block = sorted_blocks_[to / 8];
     sorted_[to] = pairs_[i];
     copy_lane(blocks_[i / 8], i % 8, block, to % 8);
-    block.edge_a = std::max(block.edge_a, sizes_[i].edge_a);
-    block.edge_b = std::max(block.edge_b, sizes_[i].edge_b);
-    block.reach = std::max(block.reach, sizes_[i].reach);
+    include(block, sizes_[i]);
   }
   pairs_.swap(sorted_);
   blocks_.swap(sorted_blocks_);
@@ -150,9 +149,18 @@ std::size_t NearPairs::within(double distance) const {
   return shell < kShells - 1 ? shell_end_[static_cast<int>(shell)] : shell_end_[kShells - 1];
 }
 
+Vector3d NearPairs::offset_at(const TreeKernel& k) const {
+  Vector3d t;
+  for (int i = 0; i < 3; ++i) {
+    t[i] = k.t[i] - middle_[0][i];
+    for (int j = 0; j < 3; ++j) t[i] += k.m[j][i] * middle_[1][j];
+  }
+  return t;
+}
+
 PairKernel NearPairs::kernel_at(const TreeKernel& k, double moved, std::size_t count) {
   PairKernel p{};
-  p.moved = static_cast<float>(moved / unit_) * kUp + kKernelTiny;
+  p.moved = static_cast<float>(moved / unit_) * kFloatUp + kKernelTiny;
   p.blocks = blocks_.data();
   p.block_count = static_cast<std::uint32_t>((count + 7) / 8);
   p.verdicts = verdicts_.data();
@@ -160,13 +168,10 @@ PairKernel NearPairs::kernel_at(const TreeKernel& k, double moved, std::size_t c
   p.radius_b = radius_[1];
   p.slack = k.slack;
   p.m_size = k.m_size;
+  const Vector3d t = offset_at(k);
   for (int i = 0; i < 3; ++i) {
-    double t = k.t[i] - middle_[0][i];
-    for (int j = 0; j < 3; ++j) {
-      t += k.m[j][i] * middle_[1][j];
-      p.r[i][j] = k.m_rows[i][j];
-    }
-    p.t[i] = static_cast<float>(t);
+    std::copy(std::begin(k.m_rows[i]), std::end(k.m_rows[i]), p.r[i]);
+    p.t[i] = static_cast<float>(t[i]);
   }
   return p;
 }

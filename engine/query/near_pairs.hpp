@@ -50,6 +50,8 @@ class NearPairs {
   void fill_blocks(const LrbRep& a, const LrbRep& b, const TreeKernel& k);
   int shell_of(std::size_t i, double margin, double rounding) const;
   void sort_by_shell(double margin, double rounding);
+  /// Of the frame of B's corners, seen from that of A's; query units.
+  Eigen::Vector3d offset_at(const TreeKernel& k) const;
   PairKernel kernel_at(const TreeKernel& k, double moved, std::size_t count);
 
   std::vector<SimplexPair> pairs_, sorted_;

@@ -41,7 +41,7 @@ inline Float8 slab(const Float8* across, const Corners& a, const Corners& b, con
   const Float8 size = abs8(d[0]) + abs8(d[1]) + abs8(d[2]);
   const Float8 width =
       larger(low[1] - high[0], low[0] - high[1]) - (splat(2 * w.error) * size + splat(kKernelTiny));
-  const Float8 length = root8(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]) * splat(1 + 0x1p-20f);
+  const Float8 length = root8(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]) * splat(kFloatUp);
   return select(greater(width, Float8{}), width / length, Float8{});
 }
 

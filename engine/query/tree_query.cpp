@@ -42,8 +42,8 @@ TreeKernel set_up_kernel(const BlockTree& a, const Pose& pose_a, const BlockTree
   const double turn_a = std::sqrt(1 + defect_a), turn_m = std::sqrt(1 + defect_m);
   const double on_a = defect_a * (a.extent() / unit) + turn_a * kWorldRounding * size;
   const double on_b = defect_m * (b.extent() / unit) + turn_m * on_a;
-  k.slack = static_cast<float>(kPoseSafety * (on_a + on_b)) * (1 + 0x1p-20f) + kKernelTiny;
-  k.m_size = static_cast<float>(turn_m) * (1 + 0x1p-20f);
+  k.slack = static_cast<float>(kPoseSafety * (on_a + on_b)) * kFloatUp + kKernelTiny;
+  k.m_size = static_cast<float>(turn_m) * kFloatUp;
   return k;
 }
 
