@@ -63,10 +63,10 @@ inline constexpr double kThicknessRounding = 0x1p-40;
 /// missed; larger: bodies this close are refined further, or not proved apart.
 inline constexpr double kWrapperMargin = 0x1p-44;
 
-/// How far a matrix may be from a rotation (largest row sum of r^T r - 1) for coherent queries to take its
-/// motion for rigid: the rounding of a rotation is below 2^-50, and this, times a body's size, has room in
-/// kWrapperMargin. Larger: proofs of apartness over time could fail by it.
-inline constexpr double kRigid = 0x1p-47;
+/// How far a matrix may be from a rotation (largest row sum of r^T r - 1) for coherent queries to keep lists:
+/// thousands of products of rotations drift less than this. What it does to lengths is allowed for (course.hpp),
+/// and this times a body's size is less than lists are made for. Larger: longer lists.
+inline constexpr double kRigid = 0x1p-24;
 
 /// The builders. None of these decides whether an LRB-rep is right: what they propose is confirmed exactly.
 

@@ -6,10 +6,7 @@
 #include <limits>
 #include <utility>
 
-#include <Eigen/LU>
-
 #include "engine/query/collide_impl.hpp"
-#include "engine/query/pose_bounds.hpp"
 #include "engine/tolerances.hpp"
 
 namespace lrb {
@@ -22,6 +19,10 @@ constexpr double kFewestSteps = 1.5, kMostSteps = 64, kStepsFactor = 1.5;
 constexpr double kCeilingFactor = 1.02;
 /// A list for a way longer than this share of B's radius would hold much of both bodies: it is not tried.
 constexpr double kLongestWay = 1.0 / 16;
+/// A gap on B's axes is longer than it is on A's by twice the defect at most, and little.
+constexpr double kListDefects = 3;
+/// So many queries before the end of a pause B's course is watched again.
+constexpr std::uint32_t kToSeeACourse = 3;
 constexpr std::uint32_t kLongestPause = 64, kPauseFactor = 4, kFirstPause = 4;
 /// Steps shorter than this share of one for which a list did not pay are worth another try at once; others
 /// only after so many pauses.
@@ -54,10 +55,7 @@ CoherentQuery::CoherentQuery(const LrbRep& a, const LrbRep& b, const CollideRequ
       lists_(lists),
       plain_(request.recursion == Recursion::complete && request.predicates == Predicates::exact &&
              !request.is_coarse() && !request.separation && !a.tree().empty() && !b.tree().empty()) {
-  if (!plain_) return;
-  const TreeNode& root = b.tree().nodes()[0];
-  middle_ = Eigen::Vector3d(root.origin[0], root.origin[1], root.origin[2]) * b.tree().unit();
-  radius_ = static_cast<double>(root.radius) * b.tree().unit();
+  if (plain_) course_ = {a, b};
 }
 
 const CollideResult& CoherentQuery::collide(const Pose& pose_a, const Pose& pose_b) {
@@ -69,7 +67,8 @@ const CollideResult& CoherentQuery::collide(const Pose& pose_a, const Pose& pose
   }
   check_query(a_, pose_a, b_, pose_b);
   if (std::exchange(at_work_, true)) {  // the last call ended by an exception, and left who knows what
-    has_list_ = has_last_ = false;
+    has_list_ = false;
+    course_.forget();
     result_.pairs.clear();
   }
   const std::uint64_t fallbacks = exact::exact_fallbacks();
@@ -83,28 +82,22 @@ const CollideResult& CoherentQuery::collide(const Pose& pose_a, const Pose& pose
 void CoherentQuery::answer(const Pose& pose_a, const Pose& pose_b) {
   context_.body[0].world.begin(a_, pose_a);
   context_.body[1].world.begin(b_, pose_b);
-  if (pause_ > 0) {
-    has_list_ = has_last_ = false;
-    if (--pause_ > 0)
-      query_from_scratch();
-    else
-      time_scratch();
+  if (pause_ > 0) --pause_;
+  if (pause_ >= kToSeeACourse) {
+    course_.forget();
+    query_from_scratch();
     return;
   }
-  if (!is_rigid(pose_a, pose_b)) {
-    has_list_ = has_last_ = false;
+  if (!course_.see(pose_a, pose_b)) {
     query_from_scratch();
     return;
   }
   const auto began = Clock::now();
-  rounding_ = wrapper_margin(pose_a, a_.tree(), pose_b, b_.tree());
-  const Relative now{pose_a.r.transpose() * pose_b.r, pose_a.r.transpose() * (pose_b.t - pose_a.t)};
-  constexpr double kAnywhere = std::numeric_limits<double>::infinity();
-  note_step(has_last_ ? motion(last_, now) : kAnywhere);
-  const double moved = has_list_ ? motion(list_at_, now) : kAnywhere;
-  last_ = now;
-  has_last_ = true;
-  if (has_list_ && moved <= valid_to_) {
+  note_step(course_.step());
+  const double moved = has_list_ ? course_.moved_since(list_at_) : 0;
+  if (pause_ > 0) {
+    time_scratch();
+  } else if (has_list_ && moved <= valid_to_) {
     ++statistics_.from_list;
     ++steps_;
     answer_from_list(set_up_kernel(a_, pose_a, b_, pose_b), moved);
@@ -117,18 +110,6 @@ void CoherentQuery::answer(const Pose& pose_a, const Pose& pose_b) {
     time_scratch();
     if (gave_up_) list_time_ = seconds_since(began);
   }
-}
-
-bool CoherentQuery::is_rigid(const Pose& pose_a, const Pose& pose_b) const {
-  return rotation_defect(pose_a.r) <= kRigid && rotation_defect(pose_b.r) <= kRigid &&
-         pose_a.r.determinant() > 0 && pose_b.r.determinant() > 0;
-}
-
-/// An upper bound of how far any point of B moves on A's axes.
-double CoherentQuery::motion(const Relative& from, const Relative& to) const {
-  const Eigen::Matrix3d dm = to.m - from.m;
-  const double turn = std::sqrt(dm.squaredNorm() / 2), shift = (dm * middle_ + (to.t - from.t)).stableNorm();
-  return (shift + turn * radius_) * (1 + kWorldRounding) + rounding_;
 }
 
 void CoherentQuery::time_scratch() {
@@ -185,7 +166,7 @@ bool CoherentQuery::list_pays() {
   gave_up_ = false;
   if (!(usual_step_ > 0) || jumped_) return false;
   if (lists_ == Lists::always) return true;
-  if (steps_a_list_ * usual_step_ > kLongestWay * radius_) {
+  if (steps_a_list_ * usual_step_ > kLongestWay * course_.radius()) {
     pause_ = kLongestPause / kPauseFactor;
     return false;
   }
@@ -220,9 +201,13 @@ bool CoherentQuery::list_pays() {
 
 /// False if it grew too long: there is no list then.
 bool CoherentQuery::make_list() {
-  const double margin = steps_a_list_ * usual_step_ + 4 * rounding_;
+  list_at_ = course_.ahead(static_cast<int>(steps_a_list_ / 2));
+  const double moved = course_.moved_since(list_at_), rounding = 4 * course_.rounding();
+  const bool ahead = moved > usual_step_ / 2;
+  const double way = std::max(steps_a_list_ / (ahead ? 2 : 1) * usual_step_, moved);
+  const double margin = (way + rounding) * (1 + 2 * kListDefects * list_at_.defect);
   for (QueryBody& body : context_.body) body.begin(body.rep(), body.world.pose(), request_.wrapper);
-  TreeKernel k = start_kernel(context_, 1024);
+  TreeKernel k = start_kernel(context_, Pose{}, {list_at_.m, list_at_.t}, 1024);
   k.margin = static_cast<float>(margin / std::max(a_.tree().unit(), b_.tree().unit())) * kFloatUp;
   near_.clear();
   step_time_ = 0;
@@ -231,38 +216,39 @@ bool CoherentQuery::make_list() {
     k.out_size = 0;
     run_tree_kernel(k);
     for (std::uint32_t i = 0; i < k.out_size; ++i) near_.add({k.out[i].a, k.out[i].b});
-    if (lists_ == Lists::as_it_pays && near_.size() > kMostListed * (scratch_tests_ + kAlwaysListed)) {
+    if (lists_ == Lists::as_it_pays &&
+        near_.pairs().size() > kMostListed * (scratch_tests_ + kAlwaysListed)) {
       gave_up_ = true;
       return false;
     }
   }
-  near_.arrange(a_, b_, k, margin, 4 * rounding_);
+  near_.arrange(a_, b_, k, margin, rounding, context_.pair_order);
   has_list_ = true;
-  list_at_ = last_;
-  valid_to_ = margin - 4 * rounding_;
+  valid_to_ = margin * (1 - kListDefects * list_at_.defect) - rounding;
   has_answer_ = false;
   ++statistics_.lists_made;
   NullProbe probe;
-  for (std::size_t i = 0; i < near_.size(); ++i) {
-    show_face(context_, Side::a, a_.face_of_simplex(near_[i].a), result_, probe);
-    show_face(context_, Side::b, b_.face_of_simplex(near_[i].b), result_, probe);
+  for (const SimplexPair& p : near_.pairs()) {
+    show_face(context_, Side::a, a_.face_of_simplex(p.a), result_, probe);
+    show_face(context_, Side::b, b_.face_of_simplex(p.b), result_, probe);
   }
   show_opened();
   result_.counters.node_pairs = k.node_pairs;
   result_.counters.box_tests = k.box_tests;
   result_.counters.prefilter_tests = k.prefilter_tests;
-  answer_from_list(k, 0);
+  answer_from_list(set_up_kernel(a_, context_.body[0].world.pose(), b_, context_.body[1].world.pose()),
+                   moved);
   return true;
 }
 
 /// At the pose of k, at which no point of B is further than `moved` from where it was when the list was made.
 void CoherentQuery::answer_from_list(const TreeKernel& k, double moved) {
   const bool has_answer = std::exchange(has_answer_, true);
-  const std::size_t before = std::exchange(tested_, near_.within(moved));
-  const bool changed = near_.update(k, moved, tested_,
-                                    [&](const SimplexPair& p) { return test_simplices(context_, p.a, p.b); });
+  const std::size_t before = std::exchange(tested_, near_.choose(moved));
+  const bool changed =
+      near_.update(k, [&](const SimplexPair& p) { return test_simplices(context_, p.a, p.b); });
   result_.counters.face_tests += tested_;
-  statistics_.tests_saved += near_.size() - tested_;
+  statistics_.tests_saved += near_.pairs().size() - tested_;
   if (changed || !has_answer) list_answer();
   // Where no pair came near enough to be tested, now or before, no surfaces can have met in between.
   if (!has_answer || tested_ > 0 || before > 0) decide_relation(context_, result_);
@@ -276,7 +262,6 @@ void CoherentQuery::list_answer() {
   result_.pairs.clear();
   result_.meets.clear();
   near_.list_meeting(result_);
-  context_.pair_order.sort(result_);
   if (request_.mode == Mode::all_pairs || result_.pairs.empty()) return;
   const auto crossing = request_.mode == Mode::any_pair
                             ? result_.meets.begin()

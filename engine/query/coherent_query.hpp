@@ -6,11 +6,9 @@
 /// then, seen from A, no other pair can meet. Of the list, those pairs are tested that were no further apart
 /// than B has moved since: eight at a time in float arithmetic, exactly where that is not certain.
 ///
-/// Motion. With (m, t) as in set_up_kernel() the points of B, on A's axes, are m x + t. From one pose to the
-/// next they move by at most |dm c + dt| + |dm| R, where c and R are the middle and radius of B. |dm|^2 is
-/// half the sum of the squares of dm's entries, both m being rotations. Rounding of world coordinates and of
-/// all this is covered by wrapper_margin(), taken off every gap and added to every motion. Matrices that are
-/// further from rotations than rounding (kRigid) are queried from scratch.
+/// While B keeps its course, seen from A, a list is made for where it will be some steps ahead: then it
+/// serves on the way there and beyond. What moved means, and what it allows for, is in course.hpp. Matrices
+/// further from rotations than kRigid are queried from scratch.
 ///
 /// The answers are those of collide(): pairs, meets and relation always; what was opened, and the counters,
 /// tell of this query's own work. In first_pair mode it may be another pair; in any_pair mode, too, and the
@@ -18,6 +16,7 @@
 /// (paper's recursions, floating predicates, coarse queries, separation) are passed on to collide().
 
 #include "engine/query/collide.hpp"
+#include "engine/query/course.hpp"
 #include "engine/query/near_pairs.hpp"
 #include "engine/query/query_context.hpp"
 
@@ -46,14 +45,7 @@ class CoherentQuery {
   const Statistics& statistics() const { return statistics_; }
 
  private:
-  /// B seen from A.
-  struct Relative {
-    Eigen::Matrix3d m = Eigen::Matrix3d::Identity();
-    Eigen::Vector3d t = Eigen::Vector3d::Zero();
-  };
   void answer(const Pose& pose_a, const Pose& pose_b);
-  bool is_rigid(const Pose& pose_a, const Pose& pose_b) const;
-  double motion(const Relative& from, const Relative& to) const;
   void query_from_scratch();
   void time_scratch();
   bool still_crosses();
@@ -70,19 +62,15 @@ class CoherentQuery {
   QueryContext context_;
   CollideResult result_;
   Statistics statistics_;
-  bool plain_;                       ///< the request is one that a list can answer
-  Eigen::Vector3d middle_{0, 0, 0};  ///< of B
-  double radius_ = 0;                ///< of B about it
+  bool plain_;  ///< the request is one that a list can answer
+  Course course_;
 
-  bool at_work_ = false;  ///< a call has begun and not ended
-  bool has_last_ = false;
-  Relative last_;
+  bool at_work_ = false;   ///< a call has begun and not ended
   double usual_step_ = 0;  ///< the longest of late, but for jumps
   bool jumped_ = false;
-  double rounding_ = 0;  ///< wrapper_margin() of the query at hand
 
   bool has_list_ = false;
-  Relative list_at_;         ///< the pose at which it was made
+  RelativePose list_at_;     ///< the pose for which it was made
   double valid_to_ = 0;      ///< it is complete while B is no further from there
   NearPairs near_;           ///< the list
   std::size_t tested_ = 0;   ///< of the list, in the last query from it

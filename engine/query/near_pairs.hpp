@@ -1,6 +1,7 @@
 #pragma once
 /// The pairs of simplices that are near each other at one pose of B seen from A, kept so that how they meet
-/// at another pose close by takes little: corners eight abreast, the pairs that are least apart first.
+/// at another pose close by takes little: of the list those are tested that are no further apart than B has
+/// moved, corners eight abreast.
 
 #include <bit>
 #include <cstdint>
@@ -10,92 +11,102 @@
 #include "engine/lrb/lrb_rep.hpp"
 #include "engine/query/collide.hpp"
 #include "engine/query/pair_kernel.hpp"
+#include "engine/query/pair_order.hpp"
 #include "engine/query/tree_kernel.hpp"
 
 namespace lrb {
+
+/// The simplices of one body that occur in pairs.
+class NearSimplices {
+ public:
+  void begin(const LrbRep& rep, double unit);
+  /// The place of a simplex in what follows; written there if it is new.
+  std::uint32_t place_of(SimplexId s);
+  const NearSimplex* data() const { return written_.data(); }
+
+  /// Origin of their frame: a corner amid them, query units.
+  const Eigen::Vector3d& origin() const { return origin_; }
+  /// Of a ball about the origin that holds all first corners.
+  float radius() const;
+
+ private:
+  void write(SimplexId s);
+
+  struct Slot {
+    std::uint32_t list = 0, place = 0;
+  };
+  const LrbRep* rep_ = nullptr;
+  double per_unit_ = 1;
+  std::vector<Slot> slots_;  ///< (simplices of the body) good where `list` is this one
+  std::uint32_t list_ = 0;
+  std::vector<NearSimplex> written_;
+  Eigen::Vector3d origin_{0, 0, 0};
+  double farthest_sq_ = 0;
+};
 
 class NearPairs {
  public:
   void clear() { pairs_.clear(); }
   void add(SimplexPair p) { pairs_.push_back(p); }
-  std::size_t size() const { return pairs_.size(); }
-  SimplexPair operator[](std::size_t i) const { return pairs_[i]; }
+  /// Ascending, once they are arranged.
+  const std::vector<SimplexPair>& pairs() const { return pairs_; }
 
   /// Puts the pairs that were added in order, at the pose of k. Drops those that are apart by more than
   /// `margin`. `rounding`: of world coordinates. Both in the mesh's unit.
-  void arrange(const LrbRep& a, const LrbRep& b, const TreeKernel& k, double margin, double rounding);
+  void arrange(const LrbRep& a, const LrbRep& b, const TreeKernel& k, double margin, double rounding,
+               PairOrder& order);
 
-  /// So many pairs, the first ones, may meet, or come to, while no point of B is further than `distance` from
-  /// where it was at that pose, seen from A. `distance` <= `margin`, in the mesh's unit.
-  std::size_t within(double distance) const;
+  /// Chooses the pairs that may meet while no point of B is further than `distance` (<= `margin`, mesh's
+  /// unit) from where it was at that pose, seen from A. How many they are.
+  std::size_t choose(double distance);
 
-  /// Finds out how the first `count` pairs meet at the pose of k, no point of B being further than `moved`
-  /// from where it was; the others do not meet. exact(pair) is asked where floats are not certain. True if
-  /// anything is not as it was.
+  /// Finds out how the chosen pairs meet at the pose of k; the others do not. exact(pair) is asked where
+  /// floats are not certain. True if anything is not as it was.
   template <class Exact>
-  bool update(const TreeKernel& k, double moved, std::size_t count, Exact&& exact);
+  bool update(const TreeKernel& k, Exact&& exact);
 
-  /// The pairs that meet, in no order.
+  /// The pairs that meet, ascending.
   void list_meeting(CollideResult& result) const;
 
  private:
-  struct Meeting {
-    std::uint8_t cross = 0, touch = 0;  ///< a bit for each pair of a block
-    friend bool operator==(const Meeting&, const Meeting&) = default;
-  };
-  /// Of a pair, for the block that it comes to.
-  struct Size {
-    float edge_a, edge_b, reach;
-  };
-  void fill_blocks(const LrbRep& a, const LrbRep& b, const TreeKernel& k);
-  int shell_of(std::size_t i, double margin, double rounding) const;
-  void sort_by_shell(double margin, double rounding);
-  /// Of the frame of B's corners, seen from that of A's; query units.
-  Eigen::Vector3d offset_at(const TreeKernel& k) const;
-  PairKernel kernel_at(const TreeKernel& k, double moved, std::size_t count);
+  void place_pairs(const LrbRep& a, const LrbRep& b);
+  void find_gaps(const TreeKernel& k);
+  void drop_beyond(float gap);
+  PairKernel kernel_at(const TreeKernel& k, const std::vector<NearPair>& pairs) const;
 
-  std::vector<SimplexPair> pairs_, sorted_;
-  std::vector<PairBlock> blocks_, sorted_blocks_;
-  std::vector<Size> sizes_;             ///< (|pairs|) in the order in which they came
-  std::vector<PairVerdicts> verdicts_;  ///< (|blocks|)
-  std::vector<Meeting> meeting_;        ///< (|blocks|)
-  std::vector<float> gaps_;             ///< (8 |blocks|)
-  std::size_t meeting_blocks_ = 0;      ///< of those beyond none meets
+  NearSimplices of_[2];
+  std::vector<SimplexPair> pairs_;
+  std::vector<NearPair> places_;  ///< (|pairs_|, filled up to eights)
+  std::vector<float> gaps_;       ///< (|pairs_|, filled up to eights) query units
+  double unit_ = 1;               ///< the query's, in the mesh's
+  double rounding_ = 0;           ///< to be taken off gaps, mesh's unit
 
-  /// Shell i is apart by i - 1 widths at least. The first two are those that cross, and the rest of what may
-  /// meet at the pose of the list: blocks of the same kind take less.
-  static constexpr int kShells = 33;
-  std::size_t shell_end_[kShells] = {};  ///< pairs in shells up to this one
-  double shell_width_ = 0;
-  double unit_ = 1;            ///< the query's
-  Eigen::Vector3d middle_[2];  ///< origins of the frames of A's and B's corners, query units
-  float radius_[2] = {};
+  std::vector<std::uint32_t> chosen_;    ///< numbers of pairs, room for all
+  std::vector<NearPair> chosen_places_;  ///< the same, filled up to eights
+  std::size_t chosen_count_ = 0;
+  std::vector<PairVerdicts> verdicts_;        ///< (eights)
+  std::vector<std::uint8_t> meets_, before_;  ///< (|pairs_|) exact::Meet, now and before the last update
 };
 
 template <class Exact>
-bool NearPairs::update(const TreeKernel& k, double moved, std::size_t count, Exact&& exact) {
-  run_pair_kernel(kernel_at(k, moved, count));
-  const std::size_t blocks = (count + 7) / 8;
-  bool changed = false;
-  for (std::size_t i = 0; i < blocks; ++i) {
-    const unsigned present = count - 8 * i < 8 ? (1u << (count - 8 * i)) - 1 : 255u;
-    const PairVerdicts v = verdicts_[i];
-    Meeting now{static_cast<std::uint8_t>(v.cross & present), 0};
-    for (unsigned open = present & ~unsigned{v.cross} & ~unsigned{v.disjoint}; open != 0; open &= open - 1) {
-      const int lane = std::countr_zero(open);
-      const exact::Meet meet = exact(pairs_[8 * i + static_cast<std::size_t>(lane)]);
-      now.cross |= static_cast<std::uint8_t>((meet == exact::Meet::cross) << lane);
-      now.touch |= static_cast<std::uint8_t>((meet == exact::Meet::touch) << lane);
+bool NearPairs::update(const TreeKernel& k, Exact&& exact) {
+  PairKernel kernel = kernel_at(k, chosen_places_);
+  kernel.block_count = static_cast<std::uint32_t>((chosen_count_ + 7) / 8);
+  kernel.verdicts = verdicts_.data();
+  run_pair_kernel(kernel);
+  meets_.swap(before_);
+  meets_.assign(pairs_.size(), static_cast<std::uint8_t>(exact::Meet::disjoint));
+  for (std::size_t i = 0; i < chosen_count_; i += 8) {
+    const unsigned present = chosen_count_ - i < 8 ? (1u << (chosen_count_ - i)) - 1 : 255u;
+    const PairVerdicts v = verdicts_[i / 8];
+    for (unsigned left = present & ~unsigned{v.disjoint}; left != 0; left &= left - 1) {
+      const int lane = std::countr_zero(left);
+      const std::uint32_t pair = chosen_[i + static_cast<std::size_t>(lane)];
+      const bool crosses = (v.cross >> lane & 1) != 0;
+      meets_[pair] = static_cast<std::uint8_t>(crosses ? exact::Meet::cross : exact(pairs_[pair]));
     }
-    changed |= now != meeting_[i];
-    meeting_[i] = now;
   }
-  for (std::size_t i = blocks; i < meeting_blocks_; ++i) {
-    changed |= meeting_[i] != Meeting{};
-    meeting_[i] = {};
-  }
-  meeting_blocks_ = blocks;
-  return changed;
+  return meets_ != before_;
 }
 
 }  // namespace lrb

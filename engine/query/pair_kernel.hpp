@@ -8,29 +8,34 @@
 
 namespace lrb {
 
-/// Eight pairs of a simplex of A and one of B, query units: of each simplex its first corner, in a frame with
-/// the axes of its body, and the way from there to the others. Differences are small where the simplices are,
-/// and so are their errors. A segment repeats its second corner.
-struct alignas(32) PairBlock {
-  float a[3][3][8], b[3][3][8];  ///< [corner 0, edge to 1, edge to 2][axis][pair]
-  float edge_a, edge_b;          ///< length of the longest edge here
-  float reach;                   ///< >= length of any way from a corner of A to one of B, before the motion
+/// A simplex, query units: its first corner, in a frame with the axes of its body, and the way from there to
+/// the others. Differences are small where the simplices are, and so are their errors. A segment repeats its
+/// second corner.
+struct alignas(16) NearSimplex {
+  float corner[3], edge[2][3];
+  float longest;  ///< edge, rounded up
+  float unused[2];
 };
 
-/// Each bit is that of a pair of a block. Where neither is set nothing is certain.
+/// Of a simplex of A and one of B, by their places in PairKernel::a and b.
+struct NearPair {
+  std::uint32_t a, b;
+};
+
+/// Each bit is that of one of eight pairs. Where neither is set nothing is certain.
 struct PairVerdicts {
   std::uint8_t cross, disjoint;
 };
 
 struct PairKernel {
-  const PairBlock* blocks;
+  const NearSimplex *a, *b;
+  const NearPair* pairs;  ///< (8 block_count)
   std::uint32_t block_count;
   float r[3][3], t[3];       ///< A's frame <- B's frame: r x + t
   float radius_a, radius_b;  ///< of balls about the frames' origins that hold all first corners
-  float moved;               ///< how far any point of B has moved since `reach` was found
   float slack, m_size;       ///< as in TreeKernel
 
-  PairVerdicts* verdicts;  ///< (block_count)
+  PairVerdicts* verdicts;  ///< (block_count), or null: not asked for
   float* gaps;  ///< (8 block_count): what keeps the pairs apart at least, query units; not above 0: nothing
                 ///< is known to. Null: not asked for
 };

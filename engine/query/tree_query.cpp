@@ -47,9 +47,9 @@ TreeKernel set_up_kernel(const BlockTree& a, const Pose& pose_a, const BlockTree
   return k;
 }
 
-TreeKernel start_kernel(QueryContext& ctx, std::size_t capacity) {
+TreeKernel start_kernel(QueryContext& ctx, const Pose& pose_a, const Pose& pose_b, std::size_t capacity) {
   const BlockTree &a = ctx[Side::a].tree(), &b = ctx[Side::b].tree();
-  TreeKernel k = set_up_kernel(a, ctx[Side::a].world.pose(), b, ctx[Side::b].world.pose());
+  TreeKernel k = set_up_kernel(a, pose_a, b, pose_b);
   ctx.stack.resize(64 * (a.height() + b.height()) + 64);
   ctx.candidates.resize(capacity);
   k.stack = ctx.stack.data();

@@ -42,7 +42,10 @@ template <class Probe>
 
 /// A kernel at the roots of what is queried of both bodies, with the context's buffers: `capacity`
 /// candidates.
-TreeKernel start_kernel(QueryContext& ctx, std::size_t capacity);
+TreeKernel start_kernel(QueryContext& ctx, const Pose& pose_a, const Pose& pose_b, std::size_t capacity);
+inline TreeKernel start_kernel(QueryContext& ctx, std::size_t capacity) {
+  return start_kernel(ctx, ctx[Side::a].world.pose(), ctx[Side::b].world.pose(), capacity);
+}
 
 /// Refines the wrapper of a body until a face shows: the regions from the outside inward that hide it. Mostly
 /// there are none left. How many regions there are between the face and the outside.
