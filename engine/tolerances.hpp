@@ -38,6 +38,9 @@ inline constexpr float kKernelRounding = 0x1p-18f;
 inline constexpr float kOwnEdgeRounding = 0x1p-21f;
 inline constexpr float kTurnedEdgeRounding = 0x1.8p-18f;
 inline constexpr float kFarEdgeRounding = 0x1p-21f;
+/// Of the way that a node or simplex is swept, rounded to float and turned twice (see kKernelRounding), relative
+/// to the sum of its coordinates.
+inline constexpr float kSweepRounding = 0x1p-16f;
 /// For sizes that are rounded to float and must not come out too small: 16 u, of which rounding uses 1, and the
 /// arithmetic before it little more.
 inline constexpr float kFloatUp = 1 + 0x1p-20f;

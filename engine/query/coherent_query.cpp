@@ -12,22 +12,8 @@
 namespace lrb {
 namespace {
 
-/// A list this many times as long as what the last query from scratch tested is given up.
-constexpr std::size_t kMostListed = 16, kAlwaysListed = 64;
-constexpr double kFewestSteps = 1.5, kMostSteps = 64, kStepsFactor = 1.5;
-/// Where a longer list failed, the next ones stay shorter, by less and less.
-constexpr double kCeilingFactor = 1.02;
-/// A list for a way longer than this share of B's radius would hold much of both bodies: it is not tried.
-constexpr double kLongestWay = 1.0 / 16;
-/// A gap on B's axes is longer than it is on A's by twice the defect at most, and little.
-constexpr double kListDefects = 3;
-/// So many queries before the end of a pause B's course is watched again.
-constexpr std::uint32_t kToSeeACourse = 3;
-constexpr std::uint32_t kLongestPause = 64, kPauseFactor = 4, kFirstPause = 4;
-/// Steps shorter than this share of one for which a list did not pay are worth another try at once; others
-/// only after so many pauses.
-constexpr double kShorter = 0.7;
-constexpr std::uint32_t kPausesBetween = 4;
+/// Pairs that are found before the clock is looked at.
+constexpr std::size_t kAtATime = 256;
 /// The usual step is the longest of late: it shrinks by this from one query to the next. A step so many times
 /// as long is a jump, which says nothing about the steps to come, unless another one follows.
 constexpr double kForget = 0.7, kJump = 8;
@@ -82,8 +68,7 @@ const CollideResult& CoherentQuery::collide(const Pose& pose_a, const Pose& pose
 void CoherentQuery::answer(const Pose& pose_a, const Pose& pose_b) {
   context_.body[0].world.begin(a_, pose_a);
   context_.body[1].world.begin(b_, pose_b);
-  if (pause_ > 0) --pause_;
-  if (pause_ >= kToSeeACourse) {
+  if (policy_.rests()) {
     course_.forget();
     query_from_scratch();
     return;
@@ -94,37 +79,31 @@ void CoherentQuery::answer(const Pose& pose_a, const Pose& pose_b) {
   }
   const auto began = Clock::now();
   note_step(course_.step());
-  const double moved = has_list_ ? course_.moved_since(list_at_) : 0;
-  if (pause_ > 0) {
-    time_scratch();
-  } else if (has_list_ && moved <= valid_to_) {
+  const Along where = has_list_ ? course_.along(stretch_) : Along{};
+  if (policy_.must_wait()) {
+    query_from_scratch();
+    policy_.scratch_took(seconds_since(began));
+  } else if (has_list_ && where.off <= stretch_.width) {
     ++statistics_.from_list;
-    ++steps_;
-    answer_from_list(set_up_kernel(a_, pose_a, b_, pose_b), moved);
-    step_time_ += seconds_since(began);
+    answer_from_list(where);
+    policy_.step_took(seconds_since(began));
   } else if (request_.mode != Mode::all_pairs && still_crosses()) {
     has_list_ = false;
-  } else if (list_pays() && make_list()) {
-    list_time_ = seconds_since(began);
+  } else if (const auto list = next_list()) {
+    if (!make_list(*list)) query_from_scratch();
+    policy_.list_took(list->kind, seconds_since(began));
   } else {
-    time_scratch();
-    if (gave_up_) list_time_ = seconds_since(began);
+    query_from_scratch();
+    policy_.scratch_took(seconds_since(began));
   }
-}
-
-void CoherentQuery::time_scratch() {
-  const auto began = Clock::now();
-  query_from_scratch();
-  scratch_time_ = seconds_since(began);
 }
 
 /// As collide() does it, but into the result that there is.
 void CoherentQuery::query_from_scratch() {
   has_list_ = false;
   ++statistics_.from_scratch;
-  for (QueryBody& body : context_.body) body.begin(body.rep(), body.world.pose(), request_.wrapper);
+  for (QueryBody& body : context_.body) body.begin_at_pose(request_.wrapper);
   result_.mode = request_.mode;
-  reset_counters(result_.counters);
   result_.pairs.clear();
   result_.meets.clear();
   result_.contacts.clear();
@@ -135,7 +114,6 @@ void CoherentQuery::query_from_scratch() {
   decide_relation(context_, result_);
   describe_contact(context_, request_, result_);
   show_opened();
-  scratch_tests_ = result_.counters.face_tests;
 }
 
 void CoherentQuery::show_opened() {
@@ -157,76 +135,38 @@ bool CoherentQuery::still_crosses() {
 void CoherentQuery::note_step(double step) {
   const bool jump = !std::isfinite(step) || (usual_step_ > 0 && step > kJump * usual_step_);
   if (!jump || (jumped_ && std::isfinite(step))) usual_step_ = std::max(step, kForget * usual_step_);
-  if (jump) list_time_ = 0;  // the list could not help it
+  if (jump) policy_.forgive();
   jumped_ = jump;
 }
 
-/// Whether a new list should be made now, from how the last one did.
-bool CoherentQuery::list_pays() {
-  gave_up_ = false;
-  if (!(usual_step_ > 0) || jumped_) return false;
-  if (lists_ == Lists::always) return true;
-  if (steps_a_list_ * usual_step_ > kLongestWay * course_.radius()) {
-    pause_ = kLongestPause / kPauseFactor;
-    return false;
-  }
-  if (scratch_time_ == 0) return false;
-  if (list_time_ > 0) {
-    const bool paid = has_list_ && (list_time_ + step_time_) / (1 + steps_) < scratch_time_;
-    const bool again = paid || last_paid_;  // one failure after a success: the list was too long, not useless
-    if (paid) {
-      ceiling_ = std::min(kCeilingFactor * ceiling_, kMostSteps);
-      steps_a_list_ = list_time_ > step_time_ ? steps_a_list_ * kStepsFactor : steps_a_list_ / kStepsFactor;
-      next_pause_ = kFirstPause;
-    } else {
-      steps_a_list_ /= kStepsFactor * kStepsFactor;
-      if (last_paid_) ceiling_ = steps_a_list_ * kStepsFactor;
-    }
-    steps_a_list_ = std::clamp(steps_a_list_, kFewestSteps, std::max(ceiling_, kFewestSteps));
-    list_time_ = 0;
-    last_paid_ = paid;
-    if (again) return true;
-    pause_ = next_pause_;
-    next_pause_ = std::min(kPauseFactor * next_pause_, kLongestPause);
-    too_long_ = usual_step_;
-    pauses_ = 0;
-    return false;
-  }
-  if (too_long_ > 0 && usual_step_ >= kShorter * too_long_ && ++pauses_ < kPausesBetween) {
-    pause_ = next_pause_;
-    return false;
-  }
-  return true;
+std::optional<ListPolicy::List> CoherentQuery::next_list() {
+  if (!(usual_step_ > 0) || jumped_ || !course_.is_seen()) return {};
+  if (lists_ == Lists::as_it_pays) return policy_.next(course_.is_kept(), usual_step_, course_.radius());
+  return ListPolicy::List{course_.is_kept() ? ListPolicy::Kind::stretch : ListPolicy::Kind::place,
+                          ListPolicy::kFirstSteps};
 }
 
-/// False if it grew too long: there is no list then.
-bool CoherentQuery::make_list() {
-  list_at_ = course_.ahead(static_cast<int>(steps_a_list_ / 2));
-  const double moved = course_.moved_since(list_at_), rounding = 4 * course_.rounding();
-  const bool ahead = moved > usual_step_ / 2;
-  const double way = std::max(steps_a_list_ / (ahead ? 2 : 1) * usual_step_, moved);
-  const double margin = (way + rounding) * (1 + 2 * kListDefects * list_at_.defect);
-  for (QueryBody& body : context_.body) body.begin(body.rep(), body.world.pose(), request_.wrapper);
-  TreeKernel k = start_kernel(context_, Pose{}, {list_at_.m, list_at_.t}, 1024);
-  k.margin = static_cast<float>(margin / std::max(a_.tree().unit(), b_.tree().unit())) * kFloatUp;
+/// False if that takes too long: there is no list then.
+bool CoherentQuery::make_list(const ListPolicy::List& list) {
+  const auto began = Clock::now();
+  const bool ahead = list.kind == ListPolicy::Kind::stretch;
+  stretch_ = ahead ? course_.ahead(list.steps) : course_.about(list.steps * usual_step_);
+  const double rounding = 4 * course_.rounding(), unit = std::max(a_.tree().unit(), b_.tree().unit());
+  for (QueryBody& body : context_.body) body.begin_at_pose(request_.wrapper);
+  TreeKernel k = start_kernel(context_, Pose{}, {stretch_.middle.m, stretch_.middle.t}, kAtATime);
+  aim_at(stretch_, rounding, unit, k);
   near_.clear();
-  step_time_ = 0;
-  steps_ = 0;
   while (k.stack_size != 0) {
     k.out_size = 0;
     run_tree_kernel(k);
     for (std::uint32_t i = 0; i < k.out_size; ++i) near_.add({k.out[i].a, k.out[i].b});
-    if (lists_ == Lists::as_it_pays &&
-        near_.pairs().size() > kMostListed * (scratch_tests_ + kAlwaysListed)) {
-      gave_up_ = true;
-      return false;
-    }
+    if (lists_ == Lists::as_it_pays && seconds_since(began) > policy_.patience()) return false;
   }
-  near_.arrange(a_, b_, k, margin, rounding, context_.pair_order);
+  near_.arrange(a_, b_, k, stretch_, rounding, context_.pair_order);
   has_list_ = true;
-  valid_to_ = margin * (1 - kListDefects * list_at_.defect) - rounding;
   has_answer_ = false;
   ++statistics_.lists_made;
+  statistics_.lists_ahead += ahead;
   NullProbe probe;
   for (const SimplexPair& p : near_.pairs()) {
     show_face(context_, Side::a, a_.face_of_simplex(p.a), result_, probe);
@@ -236,22 +176,22 @@ bool CoherentQuery::make_list() {
   result_.counters.node_pairs = k.node_pairs;
   result_.counters.box_tests = k.box_tests;
   result_.counters.prefilter_tests = k.prefilter_tests;
-  answer_from_list(set_up_kernel(a_, context_.body[0].world.pose(), b_, context_.body[1].world.pose()),
-                   moved);
+  answer_from_list(course_.along(stretch_));
   return true;
 }
 
-/// At the pose of k, at which no point of B is further than `moved` from where it was when the list was made.
-void CoherentQuery::answer_from_list(const TreeKernel& k, double moved) {
+/// B being where the list is good.
+void CoherentQuery::answer_from_list(const Along& where) {
+  const TreeKernel k = set_up_kernel(a_, context_.body[0].world.pose(), b_, context_.body[1].world.pose());
   const bool has_answer = std::exchange(has_answer_, true);
-  const std::size_t before = std::exchange(tested_, near_.choose(moved));
+  const Along before = std::exchange(where_, where);
+  const std::size_t tested = near_.choose(where);
   const bool changed =
       near_.update(k, [&](const SimplexPair& p) { return test_simplices(context_, p.a, p.b); });
-  result_.counters.face_tests += tested_;
-  statistics_.tests_saved += near_.pairs().size() - tested_;
+  result_.counters.face_tests += tested;
+  statistics_.tests_saved += near_.pairs().size() - tested;
   if (changed || !has_answer) list_answer();
-  // Where no pair came near enough to be tested, now or before, no surfaces can have met in between.
-  if (!has_answer || tested_ > 0 || before > 0) decide_relation(context_, result_);
+  if (!has_answer || tested > 0 || !near_.none_between(before, where)) decide_relation(context_, result_);
   result_.contacts.clear();
   result_.regions.clear();
   describe_contact(context_, request_, result_);

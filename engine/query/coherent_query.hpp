@@ -2,21 +2,22 @@
 /// Two bodies again and again, as they move by little from one query to the next (the paper's future work).
 ///
 /// Kept from one query to the next: the wrappers, and a list of the pairs of simplices that were not proved
-/// further apart than a margin at one pose. While no point of B is further than that margin from where it was
-/// then, seen from A, no other pair can meet. Of the list, those pairs are tested that were no further apart
-/// than B has moved since: eight at a time in float arithmetic, exactly where that is not certain.
-///
-/// While B keeps its course, seen from A, a list is made for where it will be some steps ahead: then it
-/// serves on the way there and beyond. What moved means, and what it allows for, is in course.hpp. Matrices
-/// further from rotations than kRigid are queried from scratch.
+/// to stay apart along a stretch of B's course, seen from A, and nearby. While B is there no other pair can
+/// meet. Of the list, those pairs are tested that may meet at that point of the stretch: eight at a time in
+/// float arithmetic, exactly where that is not certain. Where B keeps no course the stretch is a place, and
+/// those pairs are tested that are no further apart there than B has moved from it. What that means, and what
+/// it allows for, is in course.hpp. Matrices further from rotations than kRigid are queried from scratch.
 ///
 /// The answers are those of collide(): pairs, meets and relation always; what was opened, and the counters,
 /// tell of this query's own work. In first_pair mode it may be another pair; in any_pair mode, too, and the
 /// relation, which is what that one pair tells, another with it. All requests that are not plain
 /// (paper's recursions, floating predicates, coarse queries, separation) are passed on to collide().
 
+#include <optional>
+
 #include "engine/query/collide.hpp"
 #include "engine/query/course.hpp"
+#include "engine/query/list_policy.hpp"
 #include "engine/query/near_pairs.hpp"
 #include "engine/query/query_context.hpp"
 
@@ -39,6 +40,7 @@ class CoherentQuery {
   struct Statistics {
     std::uint64_t from_list = 0;     ///< queries answered from the list as it was
     std::uint64_t lists_made = 0;    ///< queries that made a new one
+    std::uint64_t lists_ahead = 0;   ///< of these, for a stretch of B's course
     std::uint64_t from_scratch = 0;  ///< queries as if there had been none before
     std::uint64_t tests_saved = 0;   ///< pairs of the list that needed no test
   };
@@ -47,14 +49,13 @@ class CoherentQuery {
  private:
   void answer(const Pose& pose_a, const Pose& pose_b);
   void query_from_scratch();
-  void time_scratch();
   bool still_crosses();
-  bool make_list();
-  void answer_from_list(const TreeKernel& k, double moved);
+  bool make_list(const ListPolicy::List& list);
+  void answer_from_list(const Along& where);
   void list_answer();
   void show_opened();
   void note_step(double step);
-  bool list_pays();
+  std::optional<ListPolicy::List> next_list();
 
   const LrbRep &a_, &b_;
   CollideRequest request_;
@@ -70,22 +71,12 @@ class CoherentQuery {
   bool jumped_ = false;
 
   bool has_list_ = false;
-  RelativePose list_at_;     ///< the pose for which it was made
-  double valid_to_ = 0;      ///< it is complete while B is no further from there
+  Stretch stretch_;          ///< where it is complete
   NearPairs near_;           ///< the list
-  std::size_t tested_ = 0;   ///< of the list, in the last query from it
+  Along where_;              ///< in the stretch, in the last query from the list
   bool has_answer_ = false;  ///< result_ holds the answer of the last query from this list
 
-  double steps_a_list_ = 8, ceiling_ = 64;    ///< aimed at, and at most
-  bool last_paid_ = false;                    ///< the list before the one at hand
-  double list_time_ = 0, step_time_ = 0;      ///< seconds: for the list, and for the steps since
-  double scratch_time_ = 0;                   ///< of a query from scratch, the last one
-  std::uint64_t scratch_tests_ = 0;           ///< its face tests
-  bool gave_up_ = false;                      ///< the list became too long
-  std::uint32_t steps_ = 0;                   ///< since the list was made
-  double too_long_ = 0;                       ///< a step for which a list did not pay
-  std::uint32_t pause_ = 0, next_pause_ = 4;  ///< queries from scratch before the next list is tried
-  std::uint32_t pauses_ = 0;                  ///< since the last try
+  ListPolicy policy_;
 };
 
 }  // namespace lrb

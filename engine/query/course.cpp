@@ -13,8 +13,12 @@ namespace lrb {
 namespace {
 
 constexpr int kRemembered = 3;
-/// B keeps its course while it is no further from where it was expected than this share of the step.
+/// Half a stretch of n steps is no longer than this many times a step over how far B came from where the two
+/// poses before had led to expect it: there B will be no further off than half of n steps.
 constexpr double kOffCourse = 0.25;
+/// Of a stretch: shares of a step by which it is longer at either end than the steps, and wide at least; and
+/// how many times as wide as B is off it now, for it is bent as much at its other end.
+constexpr double kBeyondEnd = 0.125, kLeastWidth = 1.0 / 16, kSpareWidth = 1.25;
 /// At least 1 + sqrt(3 / 2): for going from matrices to the rotations that they are near.
 constexpr double kToRotations = 2.3;
 
@@ -64,14 +68,67 @@ double Course::step() const {
   return seen_ < 2 ? std::numeric_limits<double>::infinity() : motion(last_, now_);
 }
 
-RelativePose Course::ahead(int steps) const {
-  if (seen_ < kRemembered ||
-      motion(after(motion_between(earlier_, last_), last_), now_) > kOffCourse * motion(last_, now_))
-    return now_;
+/// From now on, twice so many steps, and a little more at both ends.
+Stretch Course::stretch_of(int steps) const {
   const RelativePose way = motion_between(last_, now_);
-  RelativePose pose = now_;
-  for (int i = 0; i < steps; ++i) pose = after(way, pose);
-  return pose;
+  Stretch s;
+  RelativePose end = now_;
+  for (int i = 0; i < steps; ++i) end = after(way, end);
+  s.middle = end;
+  for (int i = 0; i < steps; ++i) end = after(way, end);
+  const double longer = 1 + kBeyondEnd / steps;
+  s.dm = (end.m - now_.m) * (longer / 2);
+  s.dt = (end.t - now_.t) * (longer / 2);
+  s.turn = s.dm.norm() * (1 + kWorldRounding);
+  s.length = ((s.dm * middle_ + s.dt).stableNorm() + s.turn * radius_) * (1 + kWorldRounding) + rounding_;
+  return s;
+}
+
+bool Course::is_seen() const {
+  return seen_ == kRemembered;
+}
+
+bool Course::is_kept() const {
+  return is_seen() && steps_on_course() >= 1;
+}
+
+double Course::off_course() const {
+  return motion(after(motion_between(earlier_, last_), last_), now_);
+}
+
+/// Off by so much in one step, B is off by that times half the square of the steps in more.
+double Course::steps_on_course() const {
+  return kOffCourse * motion(last_, now_) / off_course();
+}
+
+Stretch Course::ahead(double steps) const {
+  const int half = std::max(1, static_cast<int>(std::min(steps / 2, steps_on_course())));
+  Stretch ahead = stretch_of(half);
+  ahead.width = kLeastWidth * motion(last_, now_) + 2 * half * half * off_course();
+  ahead.width = std::max(ahead.width, kSpareWidth * along(ahead).off);
+  return ahead;
+}
+
+Stretch Course::about(double width) const {
+  Stretch here;
+  here.middle = now_;
+  here.width = width;
+  return here;
+}
+
+Along Course::along(const Stretch& s) const {
+  if (s.length == 0) return {0, motion(s.middle, now_)};
+  const Eigen::Matrix3d m = now_.m - s.middle.m;
+  const Eigen::Vector3d t = now_.t - s.middle.t;
+  // The least squares over B's points, as if they filled a ball.
+  const Eigen::Vector3d way = (s.dm * middle_ + s.dt) / s.length, gone = (m * middle_ + t) / s.length;
+  const double spread = radius_ / s.length * (radius_ / s.length) / 2;
+  const double at = std::clamp((gone.dot(way) + spread * m.cwiseProduct(s.dm).sum()) /
+                                   (way.squaredNorm() + spread * s.dm.squaredNorm()),
+                               -1.0, 1.0);
+  const Eigen::Matrix3d off_m = m - at * s.dm;
+  const double shift = (off_m * middle_ + (t - at * s.dt)).stableNorm();
+  return {at, (shift + off_m.norm() * radius_) * (1 + kWorldRounding) + rounding_};
 }
 
 }  // namespace lrb

@@ -8,6 +8,8 @@
 /// rotation: between two of those |dm| is at most what it would be between rotations, taken from dm itself,
 /// and 2.3 times the sum of both D more.
 ///
+/// The same for parts of a motion, which are not between rotations, with the root of the sum of all squares.
+///
 /// Points that are equal in the world are not quite equal on A's axes: they may differ by on_a of
 /// set_up_kernel(), which rounding() bounds, together with the rounding of world coordinates and of all
 /// that is computed here (see wrapper_margin()).
@@ -27,6 +29,21 @@ struct RelativePose {
   RelativePose(const Eigen::Matrix3d& m, const Eigen::Vector3d& t);
 };
 
+/// A stretch of a course: B from the middle by -1 to 1 times (dm x + dt), on A's axes, and all that is near.
+struct Stretch {
+  RelativePose middle;
+  Eigen::Matrix3d dm = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d dt = Eigen::Vector3d::Zero();
+  double turn = 0;    ///< a bound of |dm|
+  double length = 0;  ///< a bound of how far any point of B goes from the middle to an end; 0: a place
+  double width = 0;   ///< B may be so far off
+};
+
+/// Where B is: so many times (dm x + dt) from the middle, and no point of it further off from there.
+struct Along {
+  double at = 0, off = 0;
+};
+
 class Course {
  public:
   Course() = default;
@@ -43,15 +60,23 @@ class Course {
   double radius() const { return radius_; }
   /// Mesh's unit; of the pose of now.
   double rounding() const { return rounding_; }
-  /// An upper bound of how far any point of B is now, on A's axes, from where it was. Mesh's unit.
-  double moved_since(const RelativePose& from) const { return motion(from, now_); }
-  /// The same since the pose before; infinite if there was none.
+  /// An upper bound of how far any point of B is now, on A's axes, from where it was at the pose before;
+  /// infinite if there was none. Mesh's unit.
   double step() const;
-  /// Where B is after so many steps like the last one, if it has kept its course so far; else where it is.
-  RelativePose ahead(int steps) const;
+  /// Enough poses in a row to tell whether B keeps its course; and whether it does.
+  bool is_seen() const;
+  bool is_kept() const;
+  /// Where B will be for so many steps, if it keeps its course, as it does.
+  Stretch ahead(double steps) const;
+  /// The surroundings of where B is.
+  Stretch about(double width) const;
+  Along along(const Stretch& s) const;
 
  private:
   double motion(const RelativePose& from, const RelativePose& to) const;
+  double off_course() const;
+  double steps_on_course() const;
+  Stretch stretch_of(int steps) const;
 
   const LrbRep *a_ = nullptr, *b_ = nullptr;
   Eigen::Vector3d middle_{0, 0, 0};  ///< of B

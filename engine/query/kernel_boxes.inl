@@ -46,7 +46,11 @@ struct Between {
   float reach;          ///< bound of every coordinate difference that occurs
   float error;          ///< bound of the error of every transformed coordinate
   float edge_error[2];  ///< of A's and B's: of every coordinate of the difference of two corners of one body
-  float grow;           ///< of boxes: the error, and the margin
+  // Where there is a margin:
+  alignas(16) float grow[2][4];  ///< of boxes on A's and B's axes: the error, it, and what is swept; else the
+                                 ///< error
+  float way[4];                  ///< how far B's node is swept, on A's axes
+  float margin;                  ///< and by how much more any of its points may be
 };
 
 /// radius_a, radius_b: of what is held of both bodies, or the length of its edges. reach: of the differences
@@ -86,7 +90,7 @@ inline Float4 combine(const float* x, const Float4* column) {
 }
 
 /// kMargin: whether k.margin counts. Simplices that come to meet at a point after a motion have points now
-/// that are no further apart than it is long: boxes and planes that are, part them.
+/// that the motion brings together: slabs between them that are wider than it is long across, part them.
 template <bool kMargin = false>
 inline Between between(const TreeKernel& k, const TreeNode& a, const TreeNode& b) {
   Between w;
@@ -118,8 +122,30 @@ inline Between between(const TreeKernel& k, const TreeNode& a, const TreeNode& b
   const float reach = k.m_size * (radius_a + radius_b + __builtin_fabsf(df[0]) + __builtin_fabsf(df[1]) +
                                   __builtin_fabsf(df[2]));
   set_errors(w, k.slack, k.m_size, radius_a, radius_b, reach, reach);
-  w.grow = kMargin ? w.error + k.margin : w.error;
+  if constexpr (kMargin) {
+    const Double4* sweep = reinterpret_cast<const Double4*>(k.sweep);
+    const Float4 swept =
+        __builtin_convertvector(((sweep[0] * splat4d(b.origin[0]) + sweep[1] * splat4d(b.origin[1])) +
+                                 sweep[2] * splat4d(b.origin[2])) *
+                                        splat4d(k.ratio_b) +
+                                    *reinterpret_cast<const Double4*>(k.sweep_t),
+                                Float4);
+    const float parts[3] = {swept[0], swept[1], swept[2]};
+    const Float4 on_a = combine(parts, a_columns.c);
+    __builtin_memcpy(w.way, &on_a, sizeof on_a);
+    const Float4 on_b = combine(w.way, r);
+    w.margin =
+        k.margin + k.sweep_turn * radius_b +
+        kSweepRounding * (__builtin_fabsf(parts[0]) + __builtin_fabsf(parts[1]) + __builtin_fabsf(parts[2]));
+    const Float4 grow[2] = {splat4(w.error + w.margin) + abs4(on_a), splat4(w.error + w.margin) + abs4(on_b)};
+    __builtin_memcpy(w.grow, grow, sizeof grow);
+  }
   return w;
+}
+
+template <bool kMargin>
+inline float grow_of(const Between& w, int side, int axis) {
+  return kMargin ? w.grow[side][axis] : w.error;
 }
 
 /// Boxes of one node in the other's frame: axis-aligned there, grown by the error.
@@ -127,24 +153,26 @@ struct Turned {
   Float8 centre[3], half[3];
 };
 
+template <bool kMargin>
 inline Turned turn_b(const Boxes& b, const Between& w) {
   Turned o;
   for (int i = 0; i < 3; ++i) {
     o.centre[i] = splat(w.t[i]) + splat(w.r[i][0]) * b.centre[0] + splat(w.r[i][1]) * b.centre[1] +
                   splat(w.r[i][2]) * b.centre[2];
-    o.half[i] = splat(w.grow) + splat(w.abs_r[i][0]) * b.half[0] + splat(w.abs_r[i][1]) * b.half[1] +
-                splat(w.abs_r[i][2]) * b.half[2];
+    o.half[i] = splat(grow_of<kMargin>(w, 0, i)) + splat(w.abs_r[i][0]) * b.half[0] +
+                splat(w.abs_r[i][1]) * b.half[1] + splat(w.abs_r[i][2]) * b.half[2];
   }
   return o;
 }
 
+template <bool kMargin>
 inline Turned turn_a(const Boxes& a, const Between& w) {
   Turned o;
   for (int j = 0; j < 3; ++j) {
     o.centre[j] = splat(w.back[j]) + splat(w.r[0][j]) * a.centre[0] + splat(w.r[1][j]) * a.centre[1] +
                   splat(w.r[2][j]) * a.centre[2];
-    o.half[j] = splat(w.grow) + splat(w.abs_r[0][j]) * a.half[0] + splat(w.abs_r[1][j]) * a.half[1] +
-                splat(w.abs_r[2][j]) * a.half[2];
+    o.half[j] = splat(grow_of<kMargin>(w, 1, j)) + splat(w.abs_r[0][j]) * a.half[0] +
+                splat(w.abs_r[1][j]) * a.half[1] + splat(w.abs_r[2][j]) * a.half[2];
   }
   return o;
 }
@@ -178,17 +206,18 @@ struct Gaps {
 
 /// Which of A's boxes meet which of B's: mask[k] has the bits of B's boxes that A's box k may meet. Most
 /// pairs of nodes are apart, and most of these show it in the first test.
+template <bool kMargin>
 inline std::uint32_t pair_masks(TreeKernel& k, const TreeNode& na, const TreeNode& nb, const Between& w,
                                 std::uint32_t mask[8], Gaps* gaps = nullptr) {
   k.box_tests += na.count + nb.count;
   const Whole whole_a = whole_of(na, k.ratio_a);
   const Boxes b = decode(nb, k.ratio_b);
-  const Turned bt = turn_b(b, w);
+  const Turned bt = turn_b<kMargin>(b, w);
   const std::uint32_t mask_b = ~bits(apart(bt.centre, bt.half, whole_a.centre, whole_a.half)) & present(nb);
   if (mask_b == 0) return 0;
   const Whole whole_b = whole_of(nb, k.ratio_b);
   const Boxes a = decode(na, k.ratio_a);
-  const Turned at = turn_a(a, w);
+  const Turned at = turn_a<kMargin>(a, w);
   const std::uint32_t mask_a = ~bits(apart(at.centre, at.half, whole_b.centre, whole_b.half)) & present(na);
   const auto* a_centre = reinterpret_cast<const float*>(a.centre);
   const auto* a_half = reinterpret_cast<const float*>(a.half);

@@ -60,15 +60,18 @@ struct SideLanes {
   }
 };
 
-/// plane_edge_error: Between::edge_error of the body whose planes they are.
+/// plane_edge_error: Between::edge_error of the body whose planes they are. kMargin: as of between().
+template <bool kMargin = false>
 inline SideLanes sides_of_planes(const Corners& planes, const Corners& points, const Between& w,
-                                 float plane_edge_error, float margin) {
+                                 float plane_edge_error) {
   Float8 e1[3], e2[3];
   subtract(planes.x[1], planes.x[0], e1);
   subtract(planes.x[2], planes.x[0], e2);
   const Normal n(e1, plane_edge_error, e2, plane_edge_error, w.reach, w.error);
-  // The size is more than the normal's length; without a margin it vanishes.
-  const Float8 bound = n.bound + splat(margin) * n.size;
+  Float8 bound = n.bound;
+  if constexpr (kMargin)  // the size is more than the normal's length
+    bound += splat(w.margin) * n.size +
+             abs8(n.n[0] * splat(w.way[0]) + n.n[1] * splat(w.way[1]) + n.n[2] * splat(w.way[2]));
   SideLanes sides;
   Lanes above = kAllLanes, below = kAllLanes;
   sides.certain = kAllLanes;

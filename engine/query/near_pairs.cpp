@@ -10,6 +10,9 @@ namespace {
 
 using Eigen::Vector3d;
 
+/// A gap on B's axes is longer than it is on A's by twice the defect at most, and little.
+constexpr double kGapDefects = 3;
+
 /// To eights, with a pair that there is.
 void fill_up(std::vector<NearPair>& pairs, std::size_t count) {
   for (std::size_t i = count; i % 8 != 0; ++i) pairs[i] = pairs[0];
@@ -20,6 +23,17 @@ std::size_t up_to_eights(std::size_t count) {
 }
 
 }  // namespace
+
+void aim_at(const Stretch& stretch, double rounding, double unit, TreeKernel& k) {
+  const double margin = stretch.width + rounding +
+                        kGapDefects * stretch.middle.defect * (stretch.length + stretch.width + rounding);
+  k.margin = static_cast<float>(margin / unit) * kFloatUp;
+  k.sweep_turn = static_cast<float>(stretch.turn) * kFloatUp;
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) k.sweep[j][i] = stretch.dm(i, j);
+    k.sweep_t[i] = stretch.dt[i] / unit;
+  }
+}
 
 void NearSimplices::begin(const LrbRep& rep, double unit) {
   rep_ = &rep;
@@ -65,14 +79,20 @@ float NearSimplices::radius() const {
   return static_cast<float>(std::sqrt(farthest_sq_)) * kFloatUp + kKernelTiny;
 }
 
-void NearPairs::arrange(const LrbRep& a, const LrbRep& b, const TreeKernel& k, double margin, double rounding,
-                        PairOrder& order) {
+void NearPairs::arrange(const LrbRep& a, const LrbRep& b, const TreeKernel& k, const Stretch& stretch,
+                        double rounding, PairOrder& order) {
   unit_ = std::max(a.tree().unit(), b.tree().unit());
   rounding_ = rounding;
+  is_swept_ = stretch.length > 0;
   order.sort(pairs_);
   place_pairs(a, b);
-  find_gaps(k);
-  drop_beyond(static_cast<float>((margin + rounding) / unit_) * kFloatUp);
+  find_spans(k, stretch);
+  if (is_swept_)
+    drop_unless([](float from, float to) {
+      return (from <= 1 + kSpanRounding) & (to >= -1 - kSpanRounding) & (from <= to + kSpanRounding);
+    });
+  else
+    drop_unless([most = length_of(stretch.width)](float from, float) { return from <= most; });
   chosen_.resize(pairs_.size());
   chosen_places_.resize(up_to_eights(pairs_.size()));
   verdicts_.resize(chosen_places_.size() / 8);
@@ -89,37 +109,68 @@ void NearPairs::place_pairs(const LrbRep& a, const LrbRep& b) {
   fill_up(places_, pairs_.size());
 }
 
-void NearPairs::find_gaps(const TreeKernel& k) {
-  gaps_.resize(places_.size());
+void NearPairs::find_spans(const TreeKernel& k, const Stretch& stretch) {
+  from_.resize(places_.size());
+  to_.resize(places_.size());
   PairKernel kernel = kernel_at(k, places_);
   kernel.block_count = static_cast<std::uint32_t>(places_.size() / 8);
-  kernel.gaps = gaps_.data();
+  kernel.from = from_.data();
+  kernel.to = to_.data();
+  kernel.is_swept = is_swept_;
+  kernel.sweep_turn = k.sweep_turn;
+  kernel.margin = k.margin;
+  const Vector3d way = stretch.dm * of_[1].origin() + stretch.dt / unit_;
+  for (int i = 0; i < 3; ++i) {
+    kernel.sweep_t[i] = static_cast<float>(way[i]);
+    for (int j = 0; j < 3; ++j) kernel.sweep[i][j] = static_cast<float>(stretch.dm(i, j));
+  }
   run_pair_kernel(kernel);
 }
 
 /// Without branches, as what is near cannot be foretold; so in choose().
-void NearPairs::drop_beyond(float gap) {
+template <class Keep>
+void NearPairs::drop_unless(Keep&& keep) {
   std::size_t kept = 0;
   for (std::size_t i = 0; i < pairs_.size(); ++i) {
     pairs_[kept] = pairs_[i];
     places_[kept] = places_[i];
-    gaps_[kept] = gaps_[i];
-    kept += !(gaps_[i] > gap);
+    from_[kept] = from_[i];
+    to_[kept] = to_[i];
+    kept += keep(from_[kept], to_[kept]);
   }
   pairs_.resize(kept);
 }
 
-std::size_t NearPairs::choose(double distance) {
-  const float most = static_cast<float>((distance + rounding_) / unit_) * kFloatUp;
+float NearPairs::length_of(double distance) const {
+  return static_cast<float>((distance + rounding_) / unit_) * kFloatUp;
+}
+
+/// In spans.
+float NearPairs::place_of(const Along& where) const {
+  return is_swept_ ? static_cast<float>(where.at) : length_of(where.off);
+}
+
+std::size_t NearPairs::choose(const Along& where) {
+  const float at = place_of(where), spare = span_rounding();
   std::size_t count = 0;
   for (std::size_t i = 0; i < pairs_.size(); ++i) {
     chosen_[count] = static_cast<std::uint32_t>(i);
     chosen_places_[count] = places_[i];
-    count += !(gaps_[i] > most);
+    count += static_cast<std::size_t>((from_[i] <= at + spare) & (to_[i] >= at - spare));
   }
   fill_up(chosen_places_, count);
   chosen_count_ = count;
   return count;
+}
+
+/// Between two maps of B that are in the stretch so are those that mix them: where no surfaces meet on that
+/// way, none can have gone through another.
+bool NearPairs::none_between(const Along& here, const Along& there) const {
+  const float x = place_of(here), y = place_of(there), spare = span_rounding();
+  const float first = std::min(x, y) - spare, last = std::max(x, y) + spare;
+  for (std::size_t i = 0; i < pairs_.size(); ++i)
+    if (from_[i] <= last && to_[i] >= first) return false;
+  return true;
 }
 
 PairKernel NearPairs::kernel_at(const TreeKernel& k, const std::vector<NearPair>& pairs) const {

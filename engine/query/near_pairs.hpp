@@ -1,7 +1,7 @@
 #pragma once
-/// The pairs of simplices that are near each other at one pose of B seen from A, kept so that how they meet
-/// at another pose close by takes little: of the list those are tested that are no further apart than B has
-/// moved, corners eight abreast.
+/// The pairs of simplices that are near each other along a stretch of B's course, or about one place, kept so
+/// that how they meet at a pose there takes little: of the list those are tested that may meet at that point
+/// of the stretch, or are no further apart than B has moved from the place, corners eight abreast.
 
 #include <bit>
 #include <cstdint>
@@ -10,6 +10,7 @@
 #include "engine/exact/simplex_test.hpp"
 #include "engine/lrb/lrb_rep.hpp"
 #include "engine/query/collide.hpp"
+#include "engine/query/course.hpp"
 #include "engine/query/pair_kernel.hpp"
 #include "engine/query/pair_order.hpp"
 #include "engine/query/tree_kernel.hpp"
@@ -44,6 +45,10 @@ class NearSimplices {
   double farthest_sq_ = 0;
 };
 
+/// Has a kernel at the middle of a stretch find all pairs that may meet in it. `rounding`: of world
+/// coordinates; `unit`: the query's; both in the mesh's.
+void aim_at(const Stretch& stretch, double rounding, double unit, TreeKernel& k);
+
 class NearPairs {
  public:
   void clear() { pairs_.clear(); }
@@ -51,14 +56,17 @@ class NearPairs {
   /// Ascending, once they are arranged.
   const std::vector<SimplexPair>& pairs() const { return pairs_; }
 
-  /// Puts the pairs that were added in order, at the pose of k. Drops those that are apart by more than
-  /// `margin`. `rounding`: of world coordinates. Both in the mesh's unit.
-  void arrange(const LrbRep& a, const LrbRep& b, const TreeKernel& k, double margin, double rounding,
+  /// Puts the pairs that were added in order: all that may meet in the stretch. Drops those that turn out not
+  /// to. The kernel is the one that found them, at the middle of the stretch. `rounding`: of world
+  /// coordinates, mesh's unit.
+  void arrange(const LrbRep& a, const LrbRep& b, const TreeKernel& k, const Stretch& stretch, double rounding,
                PairOrder& order);
 
-  /// Chooses the pairs that may meet while no point of B is further than `distance` (<= `margin`, mesh's
-  /// unit) from where it was at that pose, seen from A. How many they are.
-  std::size_t choose(double distance);
+  /// Chooses the pairs that may meet where B is, in the stretch. How many they are.
+  std::size_t choose(const Along& where);
+
+  /// Whether none may meet on the way from here to there, both in the stretch.
+  bool none_between(const Along& here, const Along& there) const;
 
   /// Finds out how the chosen pairs meet at the pose of k; the others do not. exact(pair) is asked where
   /// floats are not certain. True if anything is not as it was.
@@ -70,16 +78,24 @@ class NearPairs {
 
  private:
   void place_pairs(const LrbRep& a, const LrbRep& b);
-  void find_gaps(const TreeKernel& k);
-  void drop_beyond(float gap);
+  void find_spans(const TreeKernel& k, const Stretch& stretch);
+  template <class Keep>
+  void drop_unless(Keep&& keep);
+  float length_of(double distance) const;
+  float place_of(const Along& where) const;
+  float span_rounding() const { return is_swept_ ? kSpanRounding : 0; }
   PairKernel kernel_at(const TreeKernel& k, const std::vector<NearPair>& pairs) const;
+
+  /// Spans of a sweep are from -1 to 1, and rounded by 2^-20 near there.
+  static constexpr float kSpanRounding = 0x1p-16f;
 
   NearSimplices of_[2];
   std::vector<SimplexPair> pairs_;
   std::vector<NearPair> places_;  ///< (|pairs_|, filled up to eights)
-  std::vector<float> gaps_;       ///< (|pairs_|, filled up to eights) query units
-  double unit_ = 1;               ///< the query's, in the mesh's
-  double rounding_ = 0;           ///< to be taken off gaps, mesh's unit
+  std::vector<float> from_, to_;  ///< (|pairs_|, filled up to eights) where they may meet, see PairKernel
+  bool is_swept_ = false;
+  double unit_ = 1;      ///< the query's, in the mesh's
+  double rounding_ = 0;  ///< to be taken off lengths, mesh's unit
 
   std::vector<std::uint32_t> chosen_;    ///< numbers of pairs, room for all
   std::vector<NearPair> chosen_places_;  ///< the same, filled up to eights

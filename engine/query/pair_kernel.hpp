@@ -36,8 +36,15 @@ struct PairKernel {
   float slack, m_size;       ///< as in TreeKernel
 
   PairVerdicts* verdicts;  ///< (block_count), or null: not asked for
-  float* gaps;  ///< (8 block_count): what keeps the pairs apart at least, query units; not above 0: nothing
-                ///< is known to. Null: not asked for
+
+  /// (8 block_count), or null: not asked for. Pairs meet only after a motion from `from` to `to`. Of a motion
+  /// there is known, where `is_swept`, that it brings the points of B by s times (sweep x + sweep_t), from
+  /// A's frame seen, s from -1 to 1, and then by no more than `margin` from there: the span is one of s. Else
+  /// it is one of the length, query units, of whatever motion.
+  float *from, *to;
+  bool is_swept;
+  float sweep[3][3], sweep_t[3];  ///< rows; on A's axes <- in B's frame
+  float sweep_turn, margin;
 };
 
 /// With the instruction set that run_tree_kernel() chooses, and the same outcome with each.

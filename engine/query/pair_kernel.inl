@@ -62,17 +62,21 @@ struct EightSimplices {
 /// Eight pairs, from A's first corners.
 struct EightPairs {
   Corners a, b;
+  Float8 corner_b[3];  ///< the first, in B's frame
+  float edge_b;
   Between w;
 
   EightPairs(const PairKernel& k, const NearPair* pairs) {
     const EightSimplices of_a(k.a, &pairs->a), of_b(k.b, &pairs->b);
-    const float edge_a = largest_of(of_a.longest), edge_b = largest_of(of_b.longest);
+    const float edge_a = largest_of(of_a.longest);
+    edge_b = largest_of(of_b.longest);
     Float8 between{};  // the first corners, at least
     for (int x = 0; x < 3; ++x) {
       const auto turned = [&](const Float8* way) {
         return splat(k.r[x][0]) * way[0] + splat(k.r[x][1]) * way[1] + splat(k.r[x][2]) * way[2];
       };
       a.x[0][x] = Float8{};
+      corner_b[x] = of_b.corner[x];
       b.x[0][x] = (splat(k.t[x]) + turned(of_b.corner)) - of_a.corner[x];
       between += abs8(b.x[0][x]);
       for (int which = 0; which < 2; ++which) {
@@ -93,56 +97,106 @@ struct EightPairs {
 struct Shadow {
   Float8 low, high;
 
-  Shadow(Float8 x, Float8 y, Float8 z)
-      : low(smaller(smaller(x, y), z)), high(larger(larger(x, y), z)) {}
-
-  /// Between this and another; negative where they overlap.
-  Float8 gap(const Shadow& other) const { return larger(other.low - high, low - other.high); }
+  Shadow(Float8 x, Float8 y, Float8 z) : low(smaller(smaller(x, y), z)), high(larger(larger(x, y), z)) {}
 };
 
-/// Width of the slab between eight pairs across directions, less all errors; 0 if there is none. Any
-/// direction will do, however it came about: only the corners' errors count, those of A's among them, 2 error
-/// |d|_1, in which there is room for the rounding of the products as there is in Normal.
-inline Float8 slab(const Float8* across, const EightPairs& p) {
-  // Neither too long nor too short for its square; of no direction, NaN, which proves nothing.
-  const Float8 scale = splat(1) / larger(larger(abs8(across[0]), abs8(across[1])), abs8(across[2]));
-  Float8 d[3];
-  for (int x = 0; x < 3; ++x) d[x] = across[x] * scale;
-  const auto along = [&d](const Float8* x) { return d[0] * x[0] + d[1] * x[1] + d[2] * x[2]; };
-  const Shadow of_a(Float8{}, along(p.a.x[1]), along(p.a.x[2]));
-  const Shadow of_b(along(p.b.x[0]), along(p.b.x[1]), along(p.b.x[2]));
-  const Float8 size = abs8(d[0]) + abs8(d[1]) + abs8(d[2]);
-  const Float8 width = of_a.gap(of_b) - (splat(2 * p.w.error) * size + splat(kKernelTiny));
-  const Float8 length = root8(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]) * splat(kFloatUp);
-  return select(greater(width, Float8{}), width / length, Float8{});
-}
+/// A direction and what eight pairs are across it, by any scale.
+struct Across {
+  Float8 d[3], a_above, b_above;  ///< what one is above the other at least, negative where they overlap
+  Float8 size;                    ///< |d|_1
 
-/// The widest slab across: the planes of both, the axes, and the line between the middles.
-inline Float8 widest_slab(const EightPairs& p) {
-  Float8 widest{}, d[3];
+  /// Any direction will do, however it came about: only the corners' errors count, those of A's among them, 2
+  /// error |d|_1, in which there is room for the rounding of the products as there is in Normal. Neither too
+  /// long nor too short for its square; of no direction, NaN, which proves nothing.
+  Across(const Float8* direction, const EightPairs& p) {
+    const Float8 scale =
+        splat(1) / larger(larger(abs8(direction[0]), abs8(direction[1])), abs8(direction[2]));
+    for (int x = 0; x < 3; ++x) d[x] = direction[x] * scale;
+    const auto along = [this](const Float8* x) { return d[0] * x[0] + d[1] * x[1] + d[2] * x[2]; };
+    size = abs8(d[0]) + abs8(d[1]) + abs8(d[2]);
+    compare({Float8{}, along(p.a.x[1]), along(p.a.x[2])}, {along(p.b.x[0]), along(p.b.x[1]), along(p.b.x[2])},
+            splat(2 * p.w.error) * size);
+  }
+  Across(int axis, const EightPairs& p) : d{} {
+    d[axis] = size = splat(1);
+    compare({Float8{}, p.a.x[1][axis], p.a.x[2][axis]}, {p.b.x[0][axis], p.b.x[1][axis], p.b.x[2][axis]},
+            splat(2 * p.w.error));
+  }
+
+ private:
+  void compare(const Shadow& a, const Shadow& b, Float8 error) {
+    a_above = a.low - b.high - error - splat(kKernelTiny);
+    b_above = b.low - a.high - error - splat(kKernelTiny);
+  }
+};
+
+/// Calls see() with directions across which pairs may be apart: the normals of both, the axes, and the line
+/// between the middles.
+template <class See>
+inline void for_directions(const EightPairs& p, See&& see) {
+  Float8 d[3];
   const Corners* const of[2] = {&p.a, &p.b};
   for (const Corners* t : of) {
     Float8 u[3], v[3];
     subtract(t->x[1], t->x[0], u);
     subtract(t->x[2], t->x[0], v);
     for (int x = 0; x < 3; ++x) d[x] = u[(x + 1) % 3] * v[(x + 2) % 3] - u[(x + 2) % 3] * v[(x + 1) % 3];
-    widest = larger(slab(d, p), widest);
+    see(Across(d, p));
   }
   for (int x = 0; x < 3; ++x) {
-    const Shadow of_a(Float8{}, p.a.x[1][x], p.a.x[2][x]), of_b(p.b.x[0][x], p.b.x[1][x], p.b.x[2][x]);
-    widest = larger(of_a.gap(of_b) - splat(2 * p.w.error + kKernelTiny), widest);
+    see(Across(x, p));
     d[x] = (p.b.x[0][x] + p.b.x[1][x] + p.b.x[2][x]) - (p.a.x[1][x] + p.a.x[2][x]);
   }
-  return larger(slab(d, p), widest);
+  see(Across(d, p));
+}
+
+struct Span {
+  Float8 from, to;
+
+  /// NaN proves nothing.
+  void not_before(Float8 x) { from = larger(x, from); }
+  void not_after(Float8 x) { to = select(greater(to, x), x, to); }
+};
+
+/// A motion is at least as long as the widest slab between the two.
+inline Span span_of_lengths(const EightPairs& p) {
+  Span span{Float8{}, splat(__builtin_inff())};
+  for_directions(p, [&](const Across& x) {
+    const Float8 length = root8(x.d[0] * x.d[0] + x.d[1] * x.d[1] + x.d[2] * x.d[2]) * splat(kFloatUp);
+    span.not_before(larger(x.a_above, x.b_above) / length);
+  });
+  return span;
+}
+
+/// Across each direction B goes at a constant rate, give or take what is spared: from the one side of A it
+/// comes, on the other it leaves.
+inline Span span_of_sweep(const PairKernel& k, const EightPairs& p) {
+  Span span{splat(-__builtin_inff()), splat(__builtin_inff())};
+  const float longest = k.sweep_turn * k.radius_b + __builtin_fabsf(k.sweep_t[0]) +
+                        __builtin_fabsf(k.sweep_t[1]) + __builtin_fabsf(k.sweep_t[2]);
+  const Float8 spared = splat(k.margin + k.sweep_turn * p.edge_b + kSweepRounding * longest);
+  Float8 way[3];
+  for (int x = 0; x < 3; ++x)
+    way[x] = splat(k.sweep_t[x]) + splat(k.sweep[x][0]) * p.corner_b[0] +
+             splat(k.sweep[x][1]) * p.corner_b[1] + splat(k.sweep[x][2]) * p.corner_b[2];
+  for_directions(p, [&](const Across& x) {
+    const Float8 rate = x.d[0] * way[0] + x.d[1] * way[1] + x.d[2] * way[2];
+    const Lanes rises = greater(rate, Float8{});
+    const Float8 per_rate = splat(1) / abs8(rate), spare = spared * x.size;
+    span.not_before((select(rises, x.a_above, x.b_above) - spare) * per_rate);
+    span.not_after((spare - select(rises, x.b_above, x.a_above)) * per_rate);
+  });
+  return span;
 }
 
 inline PairVerdicts verdicts_of(const EightPairs& p) {
-  const SideLanes b_sides = sides_of_planes(p.a, p.b, p.w, p.w.edge_error[0], 0);
-  const SideLanes a_sides = sides_of_planes(p.b, p.a, p.w, p.w.edge_error[1], 0);
+  const SideLanes b_sides = sides_of_planes(p.a, p.b, p.w, p.w.edge_error[0]);
+  const SideLanes a_sides = sides_of_planes(p.b, p.a, p.w, p.w.edge_error[1]);
   const std::uint32_t parted = bits(either(a_sides.parted, b_sides.parted));
   if (parted == 255u) return {0, 255u};
   const Verdict v = overlap(p.a, a_sides, p.b, b_sides, p.w);  // of the others
-  return {static_cast<std::uint8_t>(bits(v.cross) & ~parted), static_cast<std::uint8_t>(bits(v.disjoint) | parted)};
+  return {static_cast<std::uint8_t>(bits(v.cross) & ~parted),
+          static_cast<std::uint8_t>(bits(v.disjoint) | parted)};
 }
 
 }  // namespace
@@ -151,9 +205,10 @@ void LRB_PAIR_KERNEL_NAME(const PairKernel& k) {
   for (std::uint32_t i = 0; i < k.block_count; ++i) {
     const EightPairs p(k, k.pairs + 8 * i);
     if (k.verdicts) k.verdicts[i] = verdicts_of(p);
-    if (k.gaps) {
-      const Float8 gap = widest_slab(p);
-      __builtin_memcpy(k.gaps + 8 * i, &gap, sizeof gap);
+    if (k.from) {
+      const Span span = k.is_swept ? span_of_sweep(k, p) : span_of_lengths(p);
+      __builtin_memcpy(k.from + 8 * i, &span.from, sizeof span.from);
+      __builtin_memcpy(k.to + 8 * i, &span.to, sizeof span.to);
     }
   }
 }

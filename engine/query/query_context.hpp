@@ -27,10 +27,15 @@ struct QueryBody {
 
   void begin(const LrbRep& rep, const Pose& pose, WrapperMode mode) {
     world.begin(rep, pose);
+    begin_at_pose(mode);
+  }
+  /// The pose being known already.
+  void begin_at_pose(WrapperMode mode) {
     query_body();
-    if (!wrapper || wrapper_serial != rep.serial() || &wrapper->rep() != &rep || wrapper->mode() != mode) {
-      wrapper = std::make_unique<Wrapper>(rep, mode);
-      wrapper_serial = rep.serial();
+    if (!wrapper || wrapper_serial != rep().serial() || &wrapper->rep() != &rep() ||
+        wrapper->mode() != mode) {
+      wrapper = std::make_unique<Wrapper>(rep(), mode);
+      wrapper_serial = rep().serial();
     }
     wrapper->reset();
   }

@@ -43,8 +43,11 @@ struct TreeKernel {
   float m_rows[3][3];          ///< m[column][row] rounded, by rows: m_rows[row][column]
   float slack;   ///< absolute: errors of poses and of the rounding of world coordinates (see tree_query.cpp)
   float m_size;  ///< >= 1 and >= the Euclidean norm of m
-  float margin;  ///< 0; else pairs are kept that may meet once the points of either have moved this far
-  bool nearest_first;  ///< without a margin: descend first where boxes overlap most
+  float margin;  ///< 0; else pairs are kept that may meet once the points of B have moved this far, and
+                 ///< by any of -1 to 1 times (sweep x + sweep_t) before
+  alignas(32) double sweep[3][4], sweep_t[4];  ///< as m and t
+  float sweep_turn;                            ///< >= the Euclidean norm of sweep
+  bool nearest_first;                          ///< without a margin: descend first where boxes overlap most
 
   NodePair* stack;  ///< room for 64 * (height of A + height of B) + 64 pairs
   std::uint32_t stack_size;

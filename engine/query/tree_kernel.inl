@@ -55,7 +55,7 @@ inline void descend_both(TreeKernel& k, const TreeNode& na, const TreeNode& nb) 
   std::uint32_t mask[8];
   Gaps gaps;
   const std::uint32_t rows =
-      pair_masks(k, na, nb, between<kMargin>(k, na, nb), mask, kNearest ? &gaps : nullptr);
+      pair_masks<kMargin>(k, na, nb, between<kMargin>(k, na, nb), mask, kNearest ? &gaps : nullptr);
   if (rows == 0) return;
   float gap_of[64];
   const std::uint32_t bottom = k.stack_size;
@@ -76,11 +76,12 @@ inline void descend_a(TreeKernel& k, const TreeNode& na, const TreeNode& nb, std
   const Boxes a = decode(na, k.ratio_a);
   const Whole b = whole_of(nb, k.ratio_b);
   const Between w = between<kMargin>(k, na, nb);
-  const Turned at = turn_a(a, w);
+  const Turned at = turn_a<kMargin>(a, w);
   float centre[3], half[3];
   for (int i = 0; i < 3; ++i) {
     centre[i] = w.t[i] + w.r[i][0] * b.centre[0] + w.r[i][1] * b.centre[1] + w.r[i][2] * b.centre[2];
-    half[i] = w.grow + w.abs_r[i][0] * b.half[0] + w.abs_r[i][1] * b.half[1] + w.abs_r[i][2] * b.half[2];
+    half[i] = grow_of<kMargin>(w, 0, i) + w.abs_r[i][0] * b.half[0] + w.abs_r[i][1] * b.half[1] +
+              w.abs_r[i][2] * b.half[2];
   }
   const Lanes gap =
       either(apart(at.centre, at.half, b.centre, b.half), apart(a.centre, a.half, centre, half));
@@ -95,11 +96,12 @@ inline void descend_b(TreeKernel& k, const TreeNode& na, const TreeNode& nb, std
   const Whole a = whole_of(na, k.ratio_a);
   const Boxes b = decode(nb, k.ratio_b);
   const Between w = between<kMargin>(k, na, nb);
-  const Turned bt = turn_b(b, w);
+  const Turned bt = turn_b<kMargin>(b, w);
   float centre[3], half[3];
   for (int j = 0; j < 3; ++j) {
     centre[j] = w.back[j] + w.r[0][j] * a.centre[0] + w.r[1][j] * a.centre[1] + w.r[2][j] * a.centre[2];
-    half[j] = w.grow + w.abs_r[0][j] * a.half[0] + w.abs_r[1][j] * a.half[1] + w.abs_r[2][j] * a.half[2];
+    half[j] = grow_of<kMargin>(w, 1, j) + w.abs_r[0][j] * a.half[0] + w.abs_r[1][j] * a.half[1] +
+              w.abs_r[2][j] * a.half[2];
   }
   const Lanes gap =
       either(apart(bt.centre, bt.half, a.centre, a.half), apart(b.centre, b.half, centre, half));
@@ -130,7 +132,7 @@ template <bool kMargin>
 inline void leaf_pair(TreeKernel& k, const TreeNode& na, const TreeNode& nb) {
   const Between w = between<kMargin>(k, na, nb);
   std::uint32_t mask[8];
-  const std::uint32_t rows = pair_masks(k, na, nb, w, mask);
+  const std::uint32_t rows = pair_masks<kMargin>(k, na, nb, w, mask);
   if (rows == 0) return;
   const LeafBlock& block_a = k.blocks_a[na.first];
   const LeafBlock& block_b = k.blocks_b[nb.first];
@@ -148,11 +150,10 @@ inline void leaf_pair(TreeKernel& k, const TreeNode& na, const TreeNode& nb) {
       b.x[corner][i] =
           splat(w.t[i]) + splat(w.r[i][0]) * own[0] + splat(w.r[i][1]) * own[1] + splat(w.r[i][2]) * own[2];
   }
-  const float margin = kMargin ? k.margin : 0;
   for (std::uint32_t begin = 0; begin < list.size; begin += 8) {
     const Corners some_a = pick(a, list.a + begin), some_b = pick(b, list.b + begin);
-    const SideLanes b_sides = sides_of_planes(some_a, some_b, w, w.edge_error[0], margin);
-    const SideLanes a_sides = sides_of_planes(some_b, some_a, w, w.edge_error[1], margin);
+    const SideLanes b_sides = sides_of_planes<kMargin>(some_a, some_b, w, w.edge_error[0]);
+    const SideLanes a_sides = sides_of_planes<kMargin>(some_b, some_a, w, w.edge_error[1]);
     const std::uint32_t here = list.size - begin < 8 ? (1u << (list.size - begin)) - 1 : 255u;
     const std::uint32_t left = ~bits(either(a_sides.parted, b_sides.parted)) & here;
     if (left == 0) continue;

@@ -159,7 +159,7 @@ int run(const std::string& name, const LrbRep& a, const LrbRep& b, int steps, in
 
 int main(int argc, char** argv) {
   int steps = 100, walks = 7;
-  double room = 0.004;
+  double room = 1;
   std::vector<std::string> files;
   for (int i = 1; i < argc; ++i) {
     if (!std::strcmp(argv[i], "--steps") && i + 1 < argc)

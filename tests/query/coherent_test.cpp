@@ -146,6 +146,77 @@ TEST_CASE("coherent queries answer as queries from scratch do, for motions of al
   CHECK(tally.changes > 200);
 }
 
+TEST_CASE("coherent queries of bodies on courses: they screw, speed up, bend, and turn back") {
+  Random random(815);
+  Tally tally;
+  CoherentQuery::Statistics sum;
+  for (const Bodies& pair : bodies()) {
+    CAPTURE(pair.name);
+    const int dim = pair.a.dim();
+    const Eigen::Vector3d off = shapes::box_of(pair.a).center();
+    for (int walk = 0; walk < 24; ++walk) {
+      CAPTURE(walk);
+      CollideRequest request;
+      request.mode = walk % 8 == 7 ? Mode::first_pair : Mode::all_pairs;
+      CoherentQuery coherent(pair.a, pair.b, request,
+                             walk % 6 == 5 ? CoherentQuery::Lists::as_it_pays : CoherentQuery::Lists::always);
+      QueryContext context;
+      NullProbe probe;
+      const double share = shapes::uniform(random, 0, 0.9);
+      Pose pose_a, pose_b = shapes::random_pose(random, pair.a, pair.b, share);
+      const double size = std::pow(10, shapes::uniform(random, -5, -0.3));
+      Pose step_a = walk % 4 == 1 ? moved(random, Pose{}, size, dim) : Pose{};
+      Pose step_b = moved(random, Pose{}, size, dim);
+      const double faster = walk % 3 == 2 ? 1.03 : 1;
+      for (int i = 0; i < 60; ++i) {
+        CAPTURE(i);
+        const CollideResult scratch = collide(pair.a, pose_a, pair.b, pose_b, request, context, probe);
+        compare(coherent.collide(pose_a, pose_b), scratch, request.mode, tally);
+        step_b.t *= faster;
+        if (i == 30) step_b.t = -step_b.t;
+        if (walk % 5 == 3) step_b = moved(random, step_b, 0.02 * size, dim);
+        Pose about = pose_b;
+        about.t -= off;
+        pose_b = {step_b.r * about.r, step_b.r * about.t + step_b.t + off};
+        pose_a = {step_a.r * pose_a.r, step_a.r * pose_a.t + step_a.t};
+      }
+      sum.from_list += coherent.statistics().from_list;
+      sum.lists_made += coherent.statistics().lists_made;
+      sum.lists_ahead += coherent.statistics().lists_ahead;
+    }
+  }
+  MESSAGE(tally.queries << " queries: " << sum.from_list << " from lists, " << sum.lists_made
+                        << " lists made, " << sum.lists_ahead << " of them ahead; " << tally.contact
+                        << " in contact, " << tally.apart << " apart, " << tally.inside << " inside");
+  CHECK(sum.from_list > 3000);
+  CHECK(sum.lists_ahead > 300);
+  CHECK(tally.contact > 500);
+  CHECK(tally.apart > 300);
+  CHECK(tally.inside > 50);
+}
+
+TEST_CASE("coherent queries notice a small body that goes through a surface in one step") {
+  const LrbRep a = build_lrb(shapes::bumpy_sphere(3, 5, 0.2)), b = bare(shapes::icosphere(0, 0.01));
+  QueryContext context;
+  NullProbe probe;
+  Tally tally;
+  Relation before = Relation::separate;
+  int through = 0;
+  for (const double step : {0.03, 0.05, 0.07, 0.11, 0.13}) {
+    CoherentQuery coherent(a, b, {}, CoherentQuery::Lists::always);
+    for (double s = 1.5; s > -1.5; s -= step) {
+      const Pose p = Pose::translation({s, 0.1, 0.02});
+      const CollideResult scratch = collide(a, Pose{}, b, p, {}, context, probe);
+      compare(coherent.collide(Pose{}, p), scratch, Mode::all_pairs, tally);
+      through += scratch.relation != before && scratch.relation != Relation::crossing &&
+                 before != Relation::crossing;
+      before = scratch.relation;
+    }
+    CHECK(coherent.statistics().lists_ahead > 1);
+  }
+  CHECK(through > 3);
+}
+
 TEST_CASE("coherent queries notice a body that slides through a contact in steps of every size") {
   Random random(12);
   const LrbRep a = build_lrb(shapes::bumpy_sphere(3, 5, 0.2)), b = build_lrb(shapes::bumpy_sphere(2, 6, 0.2));

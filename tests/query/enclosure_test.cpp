@@ -217,8 +217,8 @@ Share check_nodes(const Scene& s) {
         b_on_a.push_back(united(on_a[p].of_b, list));
         b_on_b.push_back(united(on_b[q].of_b, list));
       }
-      check_axes(a_on_a, b_on_a, boxes_a, turn_b(boxes_b, w), w.error, share);
-      check_axes(b_on_b, a_on_b, boxes_b, turn_a(boxes_a, w), w.error, share);
+      check_axes(a_on_a, b_on_a, boxes_a, turn_b<false>(boxes_b, w), w.error, share);
+      check_axes(b_on_b, a_on_b, boxes_b, turn_a<false>(boxes_a, w), w.error, share);
     }
   return share;
 }
