@@ -11,6 +11,8 @@ namespace lrb::trace {
 void write_json(JsonWriter& w, const BodyInfo& body);
 void write_json(JsonWriter& w, const Counters& counters);
 void write_json(JsonWriter& w, const CollideRequest& request);
+/// The members of a step's answer to `request`. An error bound that is not known is null.
+void write_answer(JsonWriter& w, const StepResult& result, const CollideRequest& request);
 /// {"name", "hash"}
 void write_scenario(JsonWriter& w, const TraceHeader& header);
 /// {"stored", "seen", "cap", "truncated"}

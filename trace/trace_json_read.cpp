@@ -63,6 +63,11 @@ class Node {
     if (!j_->is_number()) fail("a number");
     return j_->get<double>();
   }
+  double least(double least) const {
+    if (!j_->is_number() || !(number() >= least)) fail("a number of at least " + std::to_string(least));
+    return number();
+  }
+  bool is_null() const { return j_->is_null(); }
   bool boolean() const {
     if (!j_->is_boolean()) fail("true or false");
     return j_->get<bool>();
@@ -110,15 +115,25 @@ std::string line_and_column(std::string_view text, std::size_t offset) {
   return "line " + std::to_string(line) + ", column " + std::to_string(std::max<std::size_t>(column, 1));
 }
 
+/// A simplex of the answer, under either of its two names.
+std::uint32_t read_contact(const Node& args, Side side) {
+  const char* pseudo = pseudo_simplex(side).data();
+  const auto [a, b] = fields_of(EventKind::contact);
+  return args.at(args.has(pseudo) ? pseudo : side == Side::a ? a.data() : b.data()).integer<std::uint32_t>();
+}
+
 void read_fields(const Node& args, Event& e) {
   const auto [a, b] = fields_of(e.kind);
   if (e.kind == EventKind::refine || e.kind == EventKind::coarsen) e.side = args.at("side").named<Side>();
-  if (!a.empty()) {
+  if (e.kind == EventKind::contact) {
+    e.a = read_contact(args, Side::a);
+    e.b = read_contact(args, Side::b);
+  } else if (!a.empty()) {
     const Node node = args.at(a.data());
     e.a = e.kind == EventKind::result ? static_cast<std::uint32_t>(node.named<Relation>())
                                       : node.integer<std::uint32_t>();
   }
-  if (!b.empty()) e.b = args.at(b.data()).integer<std::uint32_t>();
+  if (!b.empty() && e.kind != EventKind::contact) e.b = args.at(b.data()).integer<std::uint32_t>();
   if (e.kind == EventKind::face_test || e.kind == EventKind::contact)
     e.meet = args.at("meet").named<exact::Meet>();
   if (e.kind == EventKind::face_test) {
@@ -223,6 +238,10 @@ class Reader {
     h.request.wrapper = request.at("wrapper").named<WrapperMode>();
     h.request.contacts = request.at("contacts").boolean();
     h.request.interiors_overlap = request.at("interiors_overlap").boolean();
+    if (request.has("tolerance")) h.request.tolerance = request.at("tolerance").least(0);
+    if (request.has("max_tests")) h.request.max_tests = request.at("max_tests").integer<std::uint64_t>();
+    if (request.has("max_time")) h.request.max_time = request.at("max_time").least(0);
+    if (request.has("separation")) h.request.separation = request.at("separation").boolean();
     const Node bodies = metadata.at("bodies");
     const std::size_t count = bodies.array_size();
     if (count < 1 || count > 2) bodies.fail("one body or two");
@@ -265,6 +284,28 @@ class Reader {
     return s;
   }
 
+  void read_coarse(const Node& node, StepResult& r) const {
+    if (t_.header.request.is_coarse()) {
+      const Node bound = node.at("error_bound");
+      r.error_bound = bound.is_null() && node.has("error_bound") ? std::numeric_limits<double>::infinity()
+                                                                 : bound.least(0);
+      r.finished = node.at("finished").boolean();
+    }
+    if (!node.has("separation")) return;
+    const Node separation = node.at("separation");
+    const Node faces = separation.at("faces"), refined = separation.at("refined");
+    if (faces.array_size() != 2) faces.fail("two numbers, of A and B");
+    if (refined.array_size() != 2) refined.fail("two lists of regions, of A and B");
+    r.separation.emplace();
+    for (std::size_t side = 0; side < 2; ++side) {
+      r.separation->face_count[side] = faces.at(side).integer<std::uint32_t>();
+      const Node regions = refined.at(side);
+      const std::size_t count = regions.array_size();
+      for (std::size_t i = 0; i < count; ++i)
+        r.separation->refined[side].push_back(regions.at(i).integer<std::uint32_t>());
+    }
+  }
+
   static Pose read_pose(const Node& node) {
     if (node.array_size() != 12) node.fail("12 numbers (a 3x4 matrix, row by row)");
     Pose pose;
@@ -276,11 +317,12 @@ class Reader {
     return pose;
   }
 
-  static void read_result(const Node& node, StepResult& r) {
+  void read_result(const Node& node, StepResult& r) const {
     r.relation = node.at("relation").named<Relation>();
     r.interiors_overlap = node.at("interiors_overlap").named<Answer>();
     r.pair_count = node.at("pairs").integer<std::uint64_t>();
     r.fingerprint = node.at("fingerprint").hash();
+    read_coarse(node, r);
     const Node counters = node.at("counters");
     Counters& c = r.counters;
     c.face_tests = counters.at("face_tests").integer<std::uint64_t>();

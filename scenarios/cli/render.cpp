@@ -59,9 +59,11 @@ void check_events(const RenderOptions& o, const trace::Trace& trace, const std::
 /// A trace holds pairs, not where they meet: the contact regions of each step are computed anew.
 std::vector<CollideResult> contacts_of(const trace::Trace& trace, const std::vector<LoadedBody>& bodies) {
   std::vector<CollideResult> out;
-  if (bodies.size() < 2 || trace.header.request.mode != Mode::all_pairs) return out;
+  if (bodies.size() < 2 || trace.header.request.mode != Mode::all_pairs || trace.header.request.is_coarse())
+    return out;
   CollideRequest request = trace.header.request;
   request.contacts = true;
+  request.separation = false;  // that the trace holds
   for (const trace::Step& step : trace.steps)
     out.push_back(collide(bodies[0].rep, step.pose_a, bodies[1].rep, step.pose_b, request));
   return out;

@@ -94,7 +94,11 @@ Crowd parse_crowd(const std::string& text, const std::string& file) {
   c.kinds = read_kinds(root.at("bodies"), std::filesystem::path(file).parent_path(), c.seed);
   read_motion(root.at("motion"), c);
   c.request.contacts = true;
-  if (const auto n = root.get("query")) c.request = read_query(*n);
+  if (const auto n = root.get("query")) {
+    for (const char* key : {"tolerance", "max_tests", "separation"})
+      if (n->has(key)) n->fail_key(key, "queries of a crowd are exact: remove it, or make it a scenario");
+    c.request = read_query(*n);
+  }
   if (const auto trace = root.get("trace")) {
     trace->object({"clock", "max_events"});
     if (const auto n = trace->get("clock"))

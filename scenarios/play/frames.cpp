@@ -13,6 +13,7 @@
 #include "scenarios/play/frame_files.hpp"
 #include "scenarios/play/framing.hpp"
 #include "scenarios/play/moments.hpp"
+#include "scenarios/play/separation_picture.hpp"
 #include "scenarios/play/stage.hpp"
 
 namespace lrb {
@@ -243,6 +244,11 @@ DrawnFrames draw_frames(const Performance& performance, const FrameSpec& given, 
   if (!together.panels.empty())
     out.montage = together.write(performance, spec, folder, {text, spec.dpi}, writer);
   writer.finish();
+  for (const trace::Step& step : performance.trace->steps)
+    if (step.result.separation) out.proved = &step;
+  if (out.proved != nullptr)
+    draw_separation(*performance.reps[0], out.proved->pose_a, *performance.reps[1], out.proved->pose_b,
+                    *out.proved->result.separation, folder + "/" + kSeparationFile);
   return out;
 }
 

@@ -224,6 +224,9 @@ TEST_CASE("schema and reader agree on good and bad crowds") {
                         with("/motion/speed", -1),
                         with("/query", {{"contacts", false}}),
                         with("/query/mode", "some"),
+                        with("/query/tolerance", 0.1),
+                        with("/query/max_tests", 10),
+                        with("/query/separation", true),
                         with("/trace", {{"clock", "wall"}, {"max_events", 10}}),
                         with("/trace/gzip", true),
                         with("/frames/at", "none"),
@@ -241,6 +244,8 @@ TEST_CASE("what is wrong with a crowd is said with its place") {
   CHECK(error_of(with("/motion/speed", {2, 1})).find("/motion/speed: expected 0 <= least <= most") !=
         std::string::npos);
   CHECK(error_of(with("/bodies/1/name", "ball")).find("other bodies are called ball") != std::string::npos);
+  CHECK(error_of(with("/query/tolerance", 0.1)).find("/query/tolerance: queries of a crowd are exact") !=
+        std::string::npos);
   json mixed = good();
   mixed["bodies"].push_back({{"name", "flat"}, {"body", {{"generator", "island"}}}});
   CHECK_THROWS_WITH_AS(static_cast<void>(run_crowd(crowd_of(mixed), 1, kSilent)),
