@@ -47,5 +47,6 @@ Crowd parse_crowd(const std::string& text, const std::string& file);
 
 /// A crowd by the name of a shipped one, or from a file. Throws InputError.
 Crowd open_crowd(const std::string& name_or_path);
+std::vector<std::string> shipped_crowds();
 
 }  // namespace lrb

@@ -1,4 +1,5 @@
 #include <filesystem>
+#include <map>
 #include <set>
 #include <sstream>
 #include <string>
@@ -317,7 +318,21 @@ TEST_CASE("run and render: a tolerance, a limit, certificates; answers as query 
 
 TEST_CASE("list, help and version go to stdout") {
   const Folder folder;
-  CHECK(run(folder, {"list"}).out.find("figure2") != std::string::npos);
+  const std::string list = run(folder, {"list"}).out;
+  for (const char* line :
+       {"scenarios, for lrbscope run\n", "\n  figure2 ", "crowds, for lrbscope crowd\n  crowd ",
+        "experiments, for lrbscope paper --experiment\n", "\n  table1 "}) {
+    CAPTURE(line);
+    CHECK(list.find(line) != std::string::npos);
+  }
+  std::map<std::string, int> kinds;
+  for (const json& item : json::parse(run(folder, {"list", "--json"}).out)) {
+    CHECK(item["purpose"].get<std::string>().size() > 20);
+    ++kinds[item["kind"].get<std::string>()];
+  }
+  CHECK(kinds["scenario"] >= 9);
+  CHECK(kinds["crowd"] >= 1);
+  CHECK(kinds["experiment"] >= 5);
   CHECK(json::parse(run(folder, {"list", "--generators", "--json"}).out).size() >= 8);
   CHECK(run(folder, {"--help"}).code == 0);
   CHECK(run(folder, {"query", "--help"}).out.find("--poses") != std::string::npos);

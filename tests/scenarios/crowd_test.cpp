@@ -203,6 +203,7 @@ TEST_CASE("bodies stay in the room as far as they fit") {
 
 TEST_CASE("the shipped crowd is valid and has about forty bodies") {
   const Crowd crowd = open_crowd("crowd");
+  CHECK((shipped_crowds() == std::vector<std::string>{"crowd"}));
   CHECK(crowd.body_count() == 40);
   CHECK(schema_accepts(json::parse(embedded_file("crowd.crowd.json"))));
 }
