@@ -35,6 +35,15 @@ void write_json(JsonWriter& w, const CollideRequest& r) {
   w.end_object();
 }
 
+void write_json(JsonWriter& w, const Pose& pose) {
+  w.begin_array();
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column < 3; ++column) w.value(pose.r(row, column));
+    w.value(pose.t(row));
+  }
+  w.end_array();
+}
+
 void write_answer(JsonWriter& w, const StepResult& r, const CollideRequest& request) {
   w.member("relation", name_of(r.relation)).member("interiors_overlap", name_of(r.interiors_overlap));
   w.member("pairs", r.pair_count).member("fingerprint", to_hex(r.fingerprint));

@@ -8,24 +8,14 @@ namespace lrb::trace {
 
 namespace {
 
-/// Row-major 3x4, as in pose files.
-void write_pose(JsonWriter& w, const Pose& pose) {
-  w.begin_array();
-  for (int row = 0; row < 3; ++row) {
-    for (int column = 0; column < 3; ++column) w.value(pose.r(row, column));
-    w.value(pose.t(row));
-  }
-  w.end_array();
-}
-
 void write_step(JsonWriter& w, const Step& s, const TraceHeader& header) {
   w.begin_object();
   w.member("index", s.index).member("first_event", s.first_event).member("events_seen", s.events_seen);
   w.key("pose_a");
-  write_pose(w, s.pose_a);
+  write_json(w, s.pose_a);
   if (header.bodies.size() > 1) {
     w.key("pose_b");
-    write_pose(w, s.pose_b);
+    write_json(w, s.pose_b);
   }
   if (s.finished) {
     w.key("result").begin_object();
@@ -50,7 +40,7 @@ void write_metadata(const Trace& trace, JsonOut& out) {
   JsonWriter w(out, 2);
   w.begin_object();
   const std::uint32_t version = h.request.is_coarse() || h.request.separation ? kTraceVersion : 1;
-  w.member("format", "lrbscope trace").member("version", version).member("lrbscope", h.lrbscope);
+  w.member("format", kTraceFormat).member("version", version).member("lrbscope", h.lrbscope);
   w.key("scenario");
   write_scenario(w, h);
   w.member("clock", name_of(h.clock));

@@ -12,6 +12,9 @@
 
 namespace lrb {
 
+inline constexpr std::uint32_t kMostCrowdBodies = 10'000;
+inline constexpr double kFar = 1e150;  ///< coordinates whose squares are still finite
+
 /// Some bodies of one shape. They share one LRB-rep.
 struct CrowdKind {
   std::string name;

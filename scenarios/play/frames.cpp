@@ -180,11 +180,15 @@ struct Montage {
 }  // namespace
 
 void check_frames(const Performance& performance, const FrameSpec& spec) {
-  constexpr int kMost = 8192;
   static_cast<void>(moments(spec, *performance.trace, performance.milestones));
   if (spec.svg && performance.reps[0]->dim() != 2)
     throw InputError(
         "frames as SVG are for 2D bodies, and these are 3D: leave svg out, and ask for a higher --dpi");
+  check_frame_size(spec);
+}
+
+void check_frame_size(const FrameSpec& spec) {
+  constexpr int kMost = 8192;
   const FrameSpec in_file = in_pixels(spec);
   if (in_file.width > kMost || in_file.height > kMost)
     throw InputError("frames of " + std::to_string(spec.width) + "x" + std::to_string(spec.height) +

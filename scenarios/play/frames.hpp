@@ -44,6 +44,8 @@ struct PaintedFrame {
   std::vector<Camera> cameras;  ///< one a view
 };
 
+/// Throws InputError for frames of more pixels than can be drawn.
+void check_frame_size(const FrameSpec& spec);
 /// Throws InputError for frames that cannot be drawn: of events that there are not, as SVG in 3D, too large.
 void check_frames(const Performance& performance, const FrameSpec& spec);
 
