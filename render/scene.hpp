@@ -59,7 +59,7 @@ struct SceneOptions {
                                                  ///< distance from the body's centre; 0: in place, as lids
   bool real_edges = true;
   bool contact_rims = false;  ///< 3D: faces in contact get a rim that shows through what is before them
-  float scale = 1;  ///< of line widths and points: for large pictures and print
+  float scale = 1;            ///< of line widths and points: for large pictures and print
 };
 
 struct Scene {
