@@ -46,6 +46,13 @@ Eigen::Vector3d Context::middle(std::span<const FaceId> faces) const {
   return count > 0 ? Eigen::Vector3d(sum / static_cast<double>(count)) : sum;
 }
 
+std::vector<FaceId> Context::pseudo_in_contact() const {
+  std::vector<FaceId> faces;
+  for (FaceId f = body.rep->real_face_count(); f < body.rep->face_count(); ++f)
+    if (in_contact(f)) faces.push_back(f);
+  return faces;
+}
+
 Rgba Context::region_colour(RegionId r) const {
   switch (options.colour_by) {
     case ColourBy::layer:

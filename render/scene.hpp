@@ -30,7 +30,8 @@ struct SceneBody {
   std::span<const double> face_values;  ///< (|F|) for ColourBy::value; empty: none
   std::string name;                     ///< in the legend; empty: "A", "B"
   std::optional<Rgba> colour = {};      ///< nothing: the side's
-  /// (|real F|), not 0: drawn in the contacts' colour; empty: none.
+  /// (|real F|) or (|F|), not 0: drawn in the contacts' colour; empty: none. Pseudo faces, where a wrapper is
+  /// shown, even if it has been refined beyond them.
   std::span<const std::uint8_t> in_contact = {};
 };
 
@@ -57,7 +58,8 @@ struct SceneOptions {
   double explode = 0;                            ///< included regions move outward by this share of their
                                                  ///< distance from the body's centre; 0: in place, as lids
   bool real_edges = true;
-  float scale = 1;  ///< of line widths and points: for large pictures and print
+  bool contact_rims = false;  ///< 3D: faces in contact get a rim that shows through what is before them
+  float scale = 1;            ///< of line widths and points: for large pictures and print
 };
 
 struct Scene {

@@ -30,6 +30,7 @@ class Builder {
       region_lines();
       wrapper_line();
     }
+    if (!c_.isolating()) contact_lines();
   }
 
  private:
@@ -73,9 +74,20 @@ class Builder {
       for (const FaceId f : real) add_lines({f}, c_.colour_of(f, kSolid), 4, 0);
     } else {
       add_lines(real, mix(palette::edge_of(body_), kWhite, ghost ? 0.6 : 0.0), 1.2F, 0);
-      std::erase_if(real, [&](FaceId f) { return !c_.in_contact(f); });
-      if (!real.empty()) add_lines(real, palette::kContact, 3.5F, 0);
     }
+  }
+
+  /// On top of the wrapper's line, which runs along real faces too.
+  void contact_lines() {
+    std::vector<FaceId> real;
+    for (FaceId f = 0; f < rep_.real_face_count(); ++f)
+      if (c_.in_contact(f)) real.push_back(f);
+    add_lines(real, palette::kContact, 3.5F, 0);
+    if (!real.empty()) c_.add_key(Mark::line, palette::kContact, "real faces that meet");
+    if (c_.body.wrapper == nullptr) return;
+    const std::vector<FaceId> pseudo = c_.pseudo_in_contact();
+    add_lines(pseudo, palette::kContact, 3.5F, 7);
+    if (!pseudo.empty()) c_.add_key(Mark::dashed, palette::kContact, "pseudo faces that meet");
   }
 
   /// Thin lines between regions; of those refined away a dashed trace.

@@ -47,6 +47,7 @@ class Builder {
       wrapper();
     }
     for (const RegionId r : c_.refining()) refining(r);
+    if (c_.options.contact_rims && !c_.isolating()) contact_rims();
   }
 
  private:
@@ -55,9 +56,11 @@ class Builder {
   void wrapper() {
     real_faces();
     if (c_.body.wrapper == nullptr) return;
+    lids_in_contact();
     std::vector<FaceId> lids;
     for (const FaceId f : c_.body.wrapper->boundary()) {
-      if (!rep_.is_real(f) && !(is_region(rep_.inner_cell(f)) && c_.refining(rep_.inner_cell(f))))
+      if (!rep_.is_real(f) && !c_.in_contact(f) &&
+          !(is_region(rep_.inner_cell(f)) && c_.refining(rep_.inner_cell(f))))
         lids.push_back(f);
     }
     const bool telling = c_.options.colour_by != ColourBy::kind;
@@ -75,7 +78,25 @@ class Builder {
     }
   }
 
+  void lids_in_contact() {
+    const std::vector<FaceId> lids = c_.pseudo_in_contact();
+    DrawTriangle t = translucent(with_alpha(palette::kContact, kTellingAlpha), 2);
+    t.edges = 7;
+    t.edge_style = lid_edges_;
+    for (const FaceId f : lids) add_face(f, t);
+    if (!lids.empty()) c_.add_key(Mark::translucent, palette::kContact, "pseudo faces that meet");
+  }
+
+  void contact_rims() {
+    std::vector<FaceId> faces;
+    if (c_.body.wrapper != nullptr) faces = c_.pseudo_in_contact();
+    for (FaceId f = 0; f < rep_.real_face_count(); ++f)
+      if (c_.in_contact(f)) faces.push_back(f);
+    add_outlines(faces, {palette::kContact, 2 * c_.options.scale}, true);
+  }
+
   void real_faces() {
+    bool any_in_contact = false;
     for (FaceId f = 0; f < rep_.real_face_count(); ++f) {
       DrawTriangle t;
       t.colour = c_.in_contact(f) ? palette::kContact : c_.colour_of(f, kSolid);
@@ -84,8 +105,10 @@ class Builder {
       }
       t.edges = c_.options.real_edges ? 7 : 0;
       t.edge_style = c_.body.wrapper != nullptr && !c_.on_boundary(f) ? pale_edges_ : real_edges_;
+      any_in_contact |= c_.in_contact(f);
       add_face(f, t);
     }
+    if (any_in_contact) c_.add_key(Mark::solid, palette::kContact, "real faces that meet");
     if (c_.options.colour_by == ColourBy::value) {
       c_.add_key(Mark::solid, mix(c_.colour(), kWhite, 0.78),
                  c_.name() + ", faces without " + c_.options.value_name);

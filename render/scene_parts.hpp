@@ -22,6 +22,7 @@ struct Context {
   std::string name() const;
   Rgba colour() const;  ///< of the body
   bool in_contact(FaceId f) const { return f < body.in_contact.size() && body.in_contact[f] != 0; }
+  std::vector<FaceId> pseudo_in_contact() const;
   bool included(CellId cell) const { return body.wrapper != nullptr && body.wrapper->included(cell); }
   bool on_boundary(FaceId f) const { return body.wrapper != nullptr && body.wrapper->on_boundary(f); }
   const std::vector<RegionId>& isolated() const { return options.isolate[static_cast<std::size_t>(side)]; }

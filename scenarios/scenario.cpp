@@ -6,6 +6,7 @@
 
 #include "engine/error.hpp"
 #include "engine/lrb/fnv.hpp"
+#include "engine/query/coarse_query.hpp"
 #include "scenarios/json/json_node.hpp"
 #include "scenarios/json/suggest.hpp"
 #include "scenarios/scenario_body.hpp"
@@ -15,6 +16,9 @@
 
 namespace lrb {
 namespace {
+
+constexpr double kLongestTolerance = 1e150;  // its square is still finite
+constexpr std::uint64_t kMostTests = std::uint64_t{1} << 62;
 
 std::vector<BodySpec> read_bodies(const JsonNode& node, Show show, const std::filesystem::path& folder,
                                   std::uint64_t seed) {
@@ -47,7 +51,8 @@ Expectation read_expectation(const JsonNode& node, const JsonText& text) {
                                       {"touching", Relation::touching},
                                       {"a_inside_b", Relation::a_inside_b},
                                       {"b_inside_a", Relation::b_inside_a},
-                                      {"undefined", Relation::undefined}});
+                                      {"undefined", Relation::undefined},
+                                      {"unresolved", Relation::unresolved}});
   if (const auto n = node.get("pairs")) e.pairs = n->integer(0, kAnySeed);
   if (const auto n = node.get("fingerprint")) {
     e.fingerprint = trace::from_hex(n->string());
@@ -59,7 +64,12 @@ Expectation read_expectation(const JsonNode& node, const JsonText& text) {
 }  // namespace
 
 CollideRequest read_query(const JsonNode& node) {
-  node.object({"mode", "recursion", "predicates", "wrapper", "contacts", "interiors_overlap"});
+  if (node.has("max_time"))
+    node.fail_key("max_time",
+                  "how far a query comes in a time differs from run to run, and the same file is to give the "
+                  "same trace: give max_tests instead");
+  node.object({"mode", "recursion", "predicates", "wrapper", "contacts", "interiors_overlap", "tolerance",
+               "max_tests", "separation"});
   CollideRequest r;
   if (const auto n = node.get("mode"))
     r.mode =
@@ -73,12 +83,20 @@ CollideRequest read_query(const JsonNode& node) {
   if (const auto n = node.get("wrapper"))
     r.wrapper = n->choice<WrapperMode>(
         {{"regularised", WrapperMode::regularised}, {"unregularised", WrapperMode::unregularised}});
-  r.contacts = r.mode == Mode::all_pairs;
+  if (const auto n = node.get("tolerance")) r.tolerance = n->number(0, kLongestTolerance);
+  if (const auto n = node.get("max_tests")) r.max_tests = n->integer(1, kMostTests);
+  if (const auto n = node.get("separation")) r.separation = n->boolean();
+  r.contacts = r.mode == Mode::all_pairs && !r.is_coarse();
   if (const auto n = node.get("contacts")) {
     r.contacts = n->boolean();
     if (r.contacts && r.mode != Mode::all_pairs) n->fail("contacts need \"mode\": \"all\"");
   }
   if (const auto n = node.get("interiors_overlap")) r.interiors_overlap = n->boolean();
+  try {
+    if (r.is_coarse()) check_coarse_request(r);
+  } catch (const InputError& e) {
+    node.fail(e.what());
+  }
   return r;
 }
 

@@ -15,7 +15,7 @@ inline constexpr std::uint64_t kAnySeed = std::numeric_limits<std::int64_t>::max
 /// none of its own.
 BodySpec read_body(const JsonNode& node, const std::filesystem::path& folder, std::uint64_t seed);
 
-/// The "query" part of a scenario.
+/// The "query" part of a scenario. What the engine cannot give together is refused.
 CollideRequest read_query(const JsonNode& node);
 
 /// A name after which a folder can be called.

@@ -17,17 +17,16 @@ std::string describe(const BodyInfo& info) {
          std::to_string(info.regions) + " regions, hash " + to_hex(info.hash) + ")";
 }
 
-void require_same_body(const BodyInfo& recorded, const LrbRep& rep, Side side) {
+}  // namespace
+
+void require_same_body(const BodyInfo& recorded, const LrbRep& rep, const std::string& who) {
   BodyInfo given = describe_body(rep, recorded.source);
   given.name = recorded.name;  // a copy may be named otherwise: the hash says which body it is
   if (given == recorded) return;
   given.name = rep.name();
-  throw InputError("trace: body " + std::string(name_of(side)) + " was recorded as " + describe(recorded) +
-                   ", but is given as " + describe(given) +
-                   "; replay needs the same LRB-rep: give that one, or record again");
+  throw InputError("trace: body " + who + " was recorded as " + describe(recorded) + ", but is given as " +
+                   describe(given) + "; replay needs the same LRB-rep: give that one, or record again");
 }
-
-}  // namespace
 
 Cursor::Cursor(const Trace& trace, const LrbRep& a, const LrbRep& b)
     : Cursor(trace, std::vector<const LrbRep*>{&a, &b}) {}
@@ -41,7 +40,7 @@ Cursor::Cursor(const Trace& trace, std::vector<const LrbRep*> reps)
     throw InputError("trace: recorded with " + std::to_string(trace.header.bodies.size()) +
                      " bodies, given " + std::to_string(reps.size()) + "; replay needs the same ones");
   for (std::size_t i = 0; i < reps.size(); ++i)
-    require_same_body(trace.header.bodies[i], *reps[i], static_cast<Side>(i));
+    require_same_body(trace.header.bodies[i], *reps[i], std::string(name_of(static_cast<Side>(i))));
   for (EventId e = 0; e < trace.events.size(); ++e) {
     const EventKind kind = trace.events[e].kind;
     if (kind == EventKind::step || kind == EventKind::refine || kind == EventKind::coarsen)

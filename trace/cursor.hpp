@@ -3,6 +3,7 @@
 /// alone.
 
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "engine/lrb/wrapper.hpp"
@@ -10,6 +11,10 @@
 #include "trace/trace.hpp"
 
 namespace lrb::trace {
+
+/// Throws InputError if an LRB-rep is not the one that was recorded. `who`: which body this is, for the
+/// message.
+void require_same_body(const BodyInfo& recorded, const LrbRep& rep, const std::string& who);
 
 /// The faces of a face test.
 struct TestedPair {

@@ -19,6 +19,15 @@ std::string or_none(std::uint32_t value) {
 std::string words(std::uint64_t value) {
   return std::to_string(value);
 }
+std::string words(double value) {
+  std::array<char, 32> digits{};
+  return {digits.data(), std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr};
+}
+std::string words(const std::optional<Separation>& s) {
+  return s ? "wrappers of " + std::to_string(s->face_count[0]) + " and " + std::to_string(s->face_count[1]) +
+                 " faces"
+           : "none";
+}
 std::string words(bool value) {
   return value ? "true" : "false";
 }
@@ -81,6 +90,10 @@ void compare_requests(Comparison& c, const CollideRequest& x, const CollideReque
   c.same("request: recursion", x.recursion, y.recursion);
   c.same("request: predicates", x.predicates, y.predicates);
   c.same("request: wrapper", x.wrapper, y.wrapper);
+  c.same("request: tolerance", x.tolerance, y.tolerance);
+  c.same("request: max_tests", x.max_tests, y.max_tests);
+  c.same("request: max_time", x.max_time, y.max_time);
+  c.same("request: separation", x.separation, y.separation);
 }
 
 void compare_events(Comparison& c, const Event& x, const Event& y) {
@@ -108,6 +121,10 @@ void compare_results(Comparison& c, const Step& x, const Step& y) {
   c.same("pairs", p.pair_count, q.pair_count);
   if (p.fingerprint != q.fingerprint)
     c.found("fingerprint of the pairs", to_hex(p.fingerprint), to_hex(q.fingerprint));
+  c.same("error bound", p.error_bound, q.error_bound);
+  c.same("finished", p.finished, q.finished);
+  if (!equal(p.separation, q.separation))
+    c.found("certificate of separation", words(p.separation), words(q.separation));
   c.same("events seen", x.events_seen, y.events_seen);
   const Counters &m = p.counters, &n = q.counters;
   c.same("counter face_tests", m.face_tests, n.face_tests);

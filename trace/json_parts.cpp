@@ -28,7 +28,39 @@ void write_json(JsonWriter& w, const CollideRequest& r) {
   w.member("mode", name_of(r.mode)).member("recursion", name_of(r.recursion));
   w.member("predicates", name_of(r.predicates)).member("wrapper", name_of(r.wrapper));
   w.member("contacts", r.contacts).member("interiors_overlap", r.interiors_overlap);
+  if (r.tolerance > 0) w.member("tolerance", r.tolerance);
+  if (r.max_tests > 0) w.member("max_tests", r.max_tests);
+  if (r.max_time > 0) w.member("max_time", r.max_time);
+  if (r.separation) w.member("separation", true);
   w.end_object();
+}
+
+void write_json(JsonWriter& w, const Pose& pose) {
+  w.begin_array();
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column < 3; ++column) w.value(pose.r(row, column));
+    w.value(pose.t(row));
+  }
+  w.end_array();
+}
+
+void write_answer(JsonWriter& w, const StepResult& r, const CollideRequest& request) {
+  w.member("relation", name_of(r.relation)).member("interiors_overlap", name_of(r.interiors_overlap));
+  w.member("pairs", r.pair_count).member("fingerprint", to_hex(r.fingerprint));
+  if (request.is_coarse()) w.member("error_bound", r.error_bound).member("finished", r.finished);
+  if (r.separation) {
+    w.key("separation").begin_object().key("faces").begin_array();
+    for (const std::uint32_t faces : r.separation->face_count) w.value(faces);
+    w.end_array().key("refined").begin_array();
+    for (const std::vector<RegionId>& regions : r.separation->refined) {
+      w.begin_array();
+      for (const RegionId region : regions) w.value(region);
+      w.end_array();
+    }
+    w.end_array().end_object();
+  }
+  w.key("counters");
+  write_json(w, r.counters);
 }
 
 void write_scenario(JsonWriter& w, const TraceHeader& header) {

@@ -11,6 +11,10 @@ namespace lrb::trace {
 void write_json(JsonWriter& w, const BodyInfo& body);
 void write_json(JsonWriter& w, const Counters& counters);
 void write_json(JsonWriter& w, const CollideRequest& request);
+/// Row-major 3x4, as in pose files.
+void write_json(JsonWriter& w, const Pose& pose);
+/// The members of a step's answer to `request`. An error bound that is not known is null.
+void write_answer(JsonWriter& w, const StepResult& result, const CollideRequest& request);
 /// {"name", "hash"}
 void write_scenario(JsonWriter& w, const TraceHeader& header);
 /// {"stored", "seen", "cap", "truncated"}

@@ -52,8 +52,8 @@ struct Names<WrapperMode> {
 };
 template <>
 struct Names<Relation> {
-  static constexpr std::string_view values[] = {"separate",   "crossing",   "touching",
-                                                "a_inside_b", "b_inside_a", "undefined", "unresolved"};
+  static constexpr std::string_view values[] = {"separate",   "crossing",  "touching",  "a_inside_b",
+                                                "b_inside_a", "undefined", "unresolved"};
 };
 template <>
 struct Names<Answer> {
@@ -92,6 +92,10 @@ constexpr EventFields fields_of(EventKind kind) {
   constexpr EventFields fields[] = {LRB_EVENTS(LRB_EVENT)};
 #undef LRB_EVENT
   return fields[static_cast<std::size_t>(kind)];
+}
+/// What a contact's number is called where it is a pseudo simplex: in the answers of coarse queries.
+constexpr std::string_view pseudo_simplex(Side side) {
+  return side == Side::a ? "pseudo simplex of A" : "pseudo simplex of B";
 }
 inline constexpr std::size_t kEventKinds = std::size(Names<EventKind>::values);
 

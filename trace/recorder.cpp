@@ -1,11 +1,30 @@
 #include "trace/recorder.hpp"
 
 #include <stdexcept>
+#include <unordered_map>
 
 #include "engine/error.hpp"
 #include "trace/replay.hpp"
 
 namespace lrb::trace {
+
+namespace {
+
+/// A coarse query tells its contacts when it is done: the test that found one is the last of its pair.
+void find_causes(std::vector<Event>& events) {
+  std::unordered_map<std::uint64_t, EventId> tests;
+  for (EventId i = 0; i < events.size(); ++i) {
+    Event& e = events[i];
+    const std::uint64_t pair = std::uint64_t{e.a} << 32 | e.b;
+    if (e.kind == EventKind::step) tests.clear();
+    if (e.kind == EventKind::face_test) tests[pair] = i;
+    if (e.kind != EventKind::contact) continue;
+    const auto test = tests.find(pair);
+    e.cause = test == tests.end() ? kNull : test->second;
+  }
+}
+
+}  // namespace
 
 Recorder::Recorder(const LrbRep& a, const LrbRep& b, RecorderSettings settings)
     : reps_{&a, &b}, settings_(std::move(settings)) {
@@ -70,6 +89,9 @@ void Recorder::end_step(const CollideResult& result) {
   step.result.pair_count = result.pairs.size();
   step.result.fingerprint = fingerprint(result.pairs);
   step.result.counters = result.counters;
+  step.result.error_bound = result.error_bound;
+  step.result.finished = result.finished;
+  step.result.separation = result.separation;
   push({.a = static_cast<std::uint32_t>(result.relation),
         .b = static_cast<std::uint32_t>(result.pairs.size()),
         .kind = EventKind::result});
@@ -82,6 +104,7 @@ Trace Recorder::take() {
     throw std::logic_error("Recorder: events came before begin_step()");
   close_step();
   trace_.events_seen = seen_;
+  if (settings_.request.is_coarse()) find_causes(trace_.events);
   Replay replay(reps_, settings_.request.wrapper);
   for (Event& event : trace_.events)
     if (replay.apply(event, trace_.events)) event.boundary = replay.boundary_size(event.side);

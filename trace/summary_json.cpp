@@ -23,13 +23,7 @@ void write_totals(JsonWriter& w, const Totals& t) {
 void write_step(JsonWriter& w, const Trace& trace, std::size_t i) {
   const Step& step = trace.steps[i];
   w.begin_object().member("index", step.index);
-  if (step.finished) {
-    const StepResult& r = step.result;
-    w.member("relation", name_of(r.relation)).member("interiors_overlap", name_of(r.interiors_overlap));
-    w.member("pairs", r.pair_count).member("fingerprint", to_hex(r.fingerprint));
-    w.key("counters");
-    write_json(w, r.counters);
-  }
+  if (step.finished) write_answer(w, step.result, trace.header.request);
   w.key("events");
   write_totals(w, count_events(trace.events_of(i)));
   w.end_object();

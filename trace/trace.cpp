@@ -59,14 +59,22 @@ bool equal(const Counters& x, const Counters& y) {
          x.face_tests_by_level == y.face_tests_by_level;
 }
 
+bool equal(const std::optional<Separation>& x, const std::optional<Separation>& y) {
+  return x.has_value() == y.has_value() &&
+         (!x || (x->refined == y->refined && x->face_count == y->face_count));
+}
+
 bool equal(const StepResult& x, const StepResult& y) {
   return x.relation == y.relation && x.interiors_overlap == y.interiors_overlap &&
-         x.pair_count == y.pair_count && x.fingerprint == y.fingerprint && equal(x.counters, y.counters);
+         x.pair_count == y.pair_count && x.fingerprint == y.fingerprint && equal(x.counters, y.counters) &&
+         x.error_bound == y.error_bound && x.finished == y.finished && equal(x.separation, y.separation);
 }
 
 bool equal(const CollideRequest& x, const CollideRequest& y) {
   return x.mode == y.mode && x.recursion == y.recursion && x.predicates == y.predicates &&
-         x.wrapper == y.wrapper && x.contacts == y.contacts && x.interiors_overlap == y.interiors_overlap;
+         x.wrapper == y.wrapper && x.contacts == y.contacts && x.interiors_overlap == y.interiors_overlap &&
+         x.tolerance == y.tolerance && x.max_tests == y.max_tests && x.max_time == y.max_time &&
+         x.separation == y.separation;
 }
 
 namespace {
@@ -142,6 +150,16 @@ class Checker {
       if (e.kind != EventKind::step || e.a != s.index) fail(name + ": its first event does not begin it");
     }
     if (s.events_seen < t_.events_of(i).size()) fail(name + ": fewer events seen than stored");
+    if (!(s.result.error_bound >= 0)) fail(name + ": its error bound is negative");
+    if (s.result.separation) check_separation(*s.result.separation, name);
+  }
+
+  void check_separation(const Separation& separation, const std::string& step) const {
+    const std::vector<BodyInfo>& bodies = t_.header.bodies;
+    if (bodies.size() < 2) fail(step + ": a separation needs two bodies");
+    for (std::size_t side = 0; side < 2; ++side)
+      for (const RegionId r : separation.refined[side])
+        if (r >= bodies[side].regions) fail(step + ": its separation names a region that there is not");
   }
 
   void check_event(EventId id) const {

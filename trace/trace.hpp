@@ -5,8 +5,10 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "engine/ids.hpp"
@@ -17,8 +19,13 @@
 
 namespace lrb::trace {
 
-/// Version of the trace format. A reader takes its own version and older ones, and refuses newer ones.
-inline constexpr std::uint32_t kTraceVersion = 1;
+/// Version of the trace format. A reader takes its own version and older ones, and refuses newer ones. 2: of
+/// queries to a tolerance, within a limit or with certificates of separation; all others are still written as
+/// version 1.
+inline constexpr std::uint32_t kTraceVersion = 2;
+
+/// What a trace's metadata call its format.
+inline constexpr std::string_view kTraceFormat = "lrbscope trace";
 
 /// Version of lrbscope that this library was built from, e.g. "0.1.0".
 const char* lrbscope_version();
@@ -78,6 +85,9 @@ struct StepResult {
   std::uint64_t pair_count = 0;
   std::uint64_t fingerprint = 0;  ///< lrb::fingerprint() of the pairs
   Counters counters;
+  double error_bound = 0;  ///< as in CollideResult; it and `finished` are kept of coarse queries alone
+  bool finished = true;
+  std::optional<Separation> separation = {};
 };
 
 /// One time step: one query of the two bodies, both wrappers starting as the outermost ones.
@@ -118,6 +128,7 @@ struct Trace {
 /// Equal in every bit that a file must keep (poses: the doubles' bits).
 bool operator==(const Trace& x, const Trace& y);
 bool equal(const Counters& x, const Counters& y);
+bool equal(const std::optional<Separation>& x, const std::optional<Separation>& y);
 bool equal(const StepResult& x, const StepResult& y);
 bool equal(const CollideRequest& x, const CollideRequest& y);
 bool equal(const Pose& x, const Pose& y);

@@ -114,7 +114,11 @@ void save_trace(const Trace& trace, const std::string& path) {
 }
 
 Trace load_trace(const std::string& path, const ReadLimits& limits) {
-  return trace_from_json(read_all(path, limits.max_bytes), printable_name(path));
+  return trace_from_json(load_trace_text(path, limits), printable_name(path));
+}
+
+std::string load_trace_text(const std::string& path, const ReadLimits& limits) {
+  return read_all(path, limits.max_bytes);
 }
 
 }  // namespace lrb::trace

@@ -39,5 +39,7 @@ struct ReadLimits {
 Trace trace_from_json(std::string_view text, const std::string& name);
 /// Plain or gzip, told apart by content. Throws InputError also if the file cannot be read.
 Trace load_trace(const std::string& path, const ReadLimits& limits = {});
+/// The same, but for reading it as a trace.
+std::string load_trace_text(const std::string& path, const ReadLimits& limits = {});
 
 }  // namespace lrb::trace

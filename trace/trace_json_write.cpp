@@ -206,6 +206,7 @@ class TraceWriter {
   void write_fields(const Event& e, const Parts& parts) {
     if (e.kind == EventKind::refine || e.kind == EventKind::coarsen)
       out_.raw(e.side == Side::a ? ",\"side\":\"A\"" : ",\"side\":\"B\"");
+    if (e.kind == EventKind::contact) return write_contact(e, parts);
     if (!parts.a.empty()) {
       out_.raw(parts.a);
       if (e.kind == EventKind::result)
@@ -217,12 +218,8 @@ class TraceWriter {
       out_.raw(parts.b);
       out_.number(std::uint64_t{e.b});
     }
-    if (e.kind == EventKind::face_test || e.kind == EventKind::contact) {
-      out_.raw(",\"meet\":\"");
-      out_.raw(name_of(e.meet));
-      out_.raw('"');
-    }
     if (e.kind == EventKind::face_test) {
+      write_meet(e.meet);
       out_.raw(",\"depth of A\":");
       out_.number(std::uint64_t{e.depth_a});
       out_.raw(",\"depth of B\":");
@@ -232,10 +229,38 @@ class TraceWriter {
       out_.raw(",\"wrapper faces\":");
       out_.number(std::uint64_t{e.boundary});
     }
-    if (e.cause != kNull) {
-      out_.raw(",\"cause\":");
-      out_.number(std::uint64_t{e.cause});
+    write_cause(e.cause);
+  }
+
+  void write_contact(const Event& e, const Parts& parts) {
+    write_simplex(Side::a, parts.a, e.a);
+    write_simplex(Side::b, parts.b, e.b);
+    write_meet(e.meet);
+    write_cause(e.cause);
+  }
+
+  /// A simplex of the answer. `name` is that of a real one.
+  void write_simplex(Side side, const std::string& name, SimplexId simplex) {
+    if (simplex < t_.header.bodies[static_cast<std::size_t>(side)].real_simplices) {
+      out_.raw(name);
+    } else {
+      out_.raw(",\"");
+      out_.raw(pseudo_simplex(side));
+      out_.raw("\":");
     }
+    out_.number(std::uint64_t{simplex});
+  }
+
+  void write_meet(exact::Meet meet) {
+    out_.raw(",\"meet\":\"");
+    out_.raw(name_of(meet));
+    out_.raw('"');
+  }
+
+  void write_cause(EventId cause) {
+    if (cause == kNull) return;
+    out_.raw(",\"cause\":");
+    out_.number(std::uint64_t{cause});
   }
 
   void write_flow(char phase, EventId flow, EventId at) {

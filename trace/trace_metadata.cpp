@@ -8,32 +8,18 @@ namespace lrb::trace {
 
 namespace {
 
-/// Row-major 3x4, as in pose files.
-void write_pose(JsonWriter& w, const Pose& pose) {
-  w.begin_array();
-  for (int row = 0; row < 3; ++row) {
-    for (int column = 0; column < 3; ++column) w.value(pose.r(row, column));
-    w.value(pose.t(row));
-  }
-  w.end_array();
-}
-
-void write_step(JsonWriter& w, const Step& s, std::size_t bodies) {
+void write_step(JsonWriter& w, const Step& s, const TraceHeader& header) {
   w.begin_object();
   w.member("index", s.index).member("first_event", s.first_event).member("events_seen", s.events_seen);
   w.key("pose_a");
-  write_pose(w, s.pose_a);
-  if (bodies > 1) {
+  write_json(w, s.pose_a);
+  if (header.bodies.size() > 1) {
     w.key("pose_b");
-    write_pose(w, s.pose_b);
+    write_json(w, s.pose_b);
   }
   if (s.finished) {
     w.key("result").begin_object();
-    w.member("relation", name_of(s.result.relation));
-    w.member("interiors_overlap", name_of(s.result.interiors_overlap));
-    w.member("pairs", s.result.pair_count).member("fingerprint", to_hex(s.result.fingerprint));
-    w.key("counters");
-    write_json(w, s.result.counters);
+    write_answer(w, s.result, header.request);
     w.end_object();
   }
   w.end_object();
@@ -53,7 +39,8 @@ void write_metadata(const Trace& trace, JsonOut& out) {
   const TraceHeader& h = trace.header;
   JsonWriter w(out, 2);
   w.begin_object();
-  w.member("format", "lrbscope trace").member("version", kTraceVersion).member("lrbscope", h.lrbscope);
+  const std::uint32_t version = h.request.is_coarse() || h.request.separation ? kTraceVersion : 1;
+  w.member("format", kTraceFormat).member("version", version).member("lrbscope", h.lrbscope);
   w.key("scenario");
   write_scenario(w, h);
   w.member("clock", name_of(h.clock));
@@ -67,7 +54,7 @@ void write_metadata(const Trace& trace, JsonOut& out) {
   for (const BodyInfo& b : h.bodies) write_json(w, b);
   w.end_array();
   w.key("steps").begin_array();
-  for (const Step& s : trace.steps) write_step(w, s, h.bodies.size());
+  for (const Step& s : trace.steps) write_step(w, s, h);
   w.end_array();
   w.end_object();
 }

@@ -1,6 +1,4 @@
-#include <algorithm>
 #include <memory>
-#include <thread>
 
 #include "scenarios/cli/command.hpp"
 #include "scenarios/cli/options.hpp"
@@ -24,7 +22,7 @@ int run_crowd_command(const CrowdOptions& o, const Globals& globals) {
   if (o.clock) crowd.clock = *o.clock;
   if (o.no_frames) crowd.frames.at = FrameSpec::At::none;
   const std::string folder = o.folder.empty() ? "out/" + crowd.name : o.folder;
-  const std::uint32_t jobs = o.jobs > 0 ? o.jobs : std::max(1U, std::thread::hardware_concurrency());
+  const std::uint32_t jobs = o.jobs > 0 ? o.jobs : all_cores();
   const ProgressReport progress = progress_report(globals.quiet);
   const CrowdRun run = run_crowd(crowd, jobs, progress);
   note(globals, run.notes);

@@ -1,10 +1,15 @@
+#include <algorithm>
 #include <memory>
 #include <sstream>
+#include <string_view>
+#include <utility>
 
 #include <nlohmann/json.hpp>
 
 #include "scenarios/cli/command.hpp"
+#include "scenarios/crowd/crowd.hpp"
 #include "scenarios/generators/generators.hpp"
+#include "scenarios/paper/experiment.hpp"
 #include "scenarios/shipped.hpp"
 
 namespace lrb::cli {
@@ -14,10 +19,19 @@ struct ListOptions {
   bool json = false, generators = false;
 };
 
-nlohmann::ordered_json scenarios_json() {
+/// How a kind of shipped file is used.
+constexpr std::pair<std::string_view, std::string_view> kUses[] = {
+    {"scenario", "lrbscope run"}, {"crowd", "lrbscope crowd"}, {"experiment", "lrbscope paper --experiment"}};
+
+nlohmann::ordered_json shipped_json() {
   nlohmann::ordered_json out = nlohmann::ordered_json::array();
-  for (const ShippedScenario& s : shipped_scenarios())
-    out.push_back({{"name", s.name}, {"purpose", s.purpose}});
+  const auto add = [&](const char* kind, const std::string& name, const std::string& purpose) {
+    out.push_back({{"kind", kind}, {"name", name}, {"purpose", purpose}});
+  };
+  for (const ShippedScenario& s : shipped_scenarios()) add("scenario", s.name, s.purpose);
+  for (const std::string& name : shipped_crowds()) add("crowd", name, open_crowd(name).purpose);
+  for (const std::string& name : shipped_experiments())
+    add("experiment", name, open_experiment(name).purpose);
   return out;
 }
 
@@ -40,9 +54,17 @@ nlohmann::ordered_json generators_json() {
 
 std::string as_text(const nlohmann::ordered_json& list) {
   std::ostringstream out;
+  std::size_t width = 0;
+  for (const auto& item : list) width = std::max(width, item["name"].get<std::string>().size() + 2);
+  std::string last;
   for (const auto& item : list) {
-    const auto name = item["name"].get<std::string>();
-    out << name << std::string(name.size() < 14 ? 14 - name.size() : 1, ' ')
+    const auto name = item["name"].get<std::string>(), kind = item.value("kind", "");
+    if (kind != last) {
+      for (const auto& [of, use] : kUses)
+        if (of == kind) out << (last.empty() ? "" : "\n") << kind << "s, for " << use << "\n";
+      last = kind;
+    }
+    out << (kind.empty() ? "" : "  ") << name << std::string(width - name.size(), ' ')
         << item["purpose"].get<std::string>() << "\n";
     if (!item.contains("parameters")) continue;
     for (const auto& p : item["parameters"])
@@ -53,7 +75,7 @@ std::string as_text(const nlohmann::ordered_json& list) {
 }
 
 int run_list(const ListOptions& o) {
-  const nlohmann::ordered_json list = o.generators ? generators_json() : scenarios_json();
+  const nlohmann::ordered_json list = o.generators ? generators_json() : shipped_json();
   print(o.json ? list.dump() + "\n" : as_text(list));
   return kOk;
 }
@@ -61,8 +83,8 @@ int run_list(const ListOptions& o) {
 }  // namespace
 
 Command add_list(CLI::App& root, const Globals&) {
-  CLI::App* app =
-      root.add_subcommand("list", "The shipped scenarios, or the generators and their parameters");
+  CLI::App* app = root.add_subcommand(
+      "list", "The shipped scenarios, crowds and experiments, or the generators and their parameters");
   const auto o = std::make_shared<ListOptions>();
   app->add_flag("--generators", o->generators, "The generators of bodies instead");
   app->add_flag("--json", o->json, "As JSON");

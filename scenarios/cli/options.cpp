@@ -1,7 +1,9 @@
 #include "scenarios/cli/options.hpp"
 
+#include <algorithm>
 #include <charconv>
 #include <map>
+#include <thread>
 
 #include "engine/error.hpp"
 #include "scenarios/scenario_frames.hpp"
@@ -147,6 +149,10 @@ void apply(const PictureOptions& options, FrameSpec& spec) {
   if (options.most) spec.most = *options.most;
   if (options.colour_by) spec.colour_by = *options.colour_by;
   if (!options.up.empty()) turn_up(spec, options.up[0] - 'x');
+}
+
+std::uint32_t all_cores() {
+  return std::max(1U, std::thread::hardware_concurrency());
 }
 
 std::vector<FrameSpec::View> whole_and_contact() {

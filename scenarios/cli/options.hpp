@@ -38,6 +38,9 @@ void apply(const PictureOptions& options, FrameSpec& spec);
 /// Two views side by side: the whole scene with the wrappers, and the contact with the bodies alone.
 std::vector<FrameSpec::View> whole_and_contact();
 
+/// How many threads there are; at least 1.
+std::uint32_t all_cores();
+
 /// Prints the end of a run; its exit code.
 int report_outcome(const RunOutcome& outcome, const std::string& folder, bool json, const Globals& globals);
 

@@ -105,7 +105,8 @@ int run_query(const QueryOptions& o, const Globals& globals) {
     const double us = o.repeat > 0 ? median_us(a.rep, b.rep, poses[i], o, context) : 0;
     print(line_of(i, result, o, us, a.rep, b.rep));
     if (!o.draw.empty() && result.separation)
-      draw_separation(a.rep, b.rep, poses[i], *result.separation, picture_name(o.draw, i, poses.size()));
+      draw_separation(a.rep, Pose{}, b.rep, poses[i], *result.separation,
+                      picture_name(o.draw, i, poses.size()));
     progress.set(i + 1);
   }
   return kOk;

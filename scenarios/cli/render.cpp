@@ -9,6 +9,8 @@
 #include "scenarios/cli/command.hpp"
 #include "scenarios/cli/options.hpp"
 #include "scenarios/cli/progress.hpp"
+#include "scenarios/crowd/crowd_replay.hpp"
+#include "scenarios/crowd/crowd_report.hpp"
 #include "scenarios/files.hpp"
 #include "scenarios/play/frames.hpp"
 #include "scenarios/play/report.hpp"
@@ -29,16 +31,23 @@ struct RenderOptions {
   std::vector<std::string> regions;
 };
 
-/// The bodies that were recorded: named on the command line, or a.lrb and b.lrb beside the trace.
-std::vector<LoadedBody> find_bodies(const RenderOptions& o, const trace::Trace& trace) {
-  const std::size_t count = trace.header.bodies.size();
+constexpr const char* kFromTrace = "Drawn from a recorded run.";
+
+std::string output_folder(const RenderOptions& o) {
+  return o.folder.empty()
+             ? "out/" + std::filesystem::path(o.trace).parent_path().filename().string() + "-render"
+             : o.folder;
+}
+
+/// The bodies that were recorded: named on the command line, or with these names beside the trace.
+std::vector<LoadedBody> find_bodies(const RenderOptions& o, const std::vector<std::string>& names) {
   std::vector<std::string> paths = o.bodies;
   if (paths.empty()) {
     const std::filesystem::path beside = std::filesystem::path(o.trace).parent_path();
-    for (std::size_t i = 0; i < count; ++i) paths.push_back((beside / (i == 0 ? "a.lrb" : "b.lrb")).string());
+    for (const std::string& name : names) paths.push_back((beside / name).string());
   }
-  if (paths.size() != count)
-    throw InputError(o.trace + ": has " + std::to_string(count) + " bodies, --bodies names " +
+  if (paths.size() != names.size())
+    throw InputError(o.trace + ": has " + std::to_string(names.size()) + " bodies, --bodies names " +
                      std::to_string(paths.size()));
   std::vector<LoadedBody> out;
   for (const std::string& path : paths) out.push_back(load_body(path));
@@ -59,9 +68,11 @@ void check_events(const RenderOptions& o, const trace::Trace& trace, const std::
 /// A trace holds pairs, not where they meet: the contact regions of each step are computed anew.
 std::vector<CollideResult> contacts_of(const trace::Trace& trace, const std::vector<LoadedBody>& bodies) {
   std::vector<CollideResult> out;
-  if (bodies.size() < 2 || trace.header.request.mode != Mode::all_pairs) return out;
+  if (bodies.size() < 2 || trace.header.request.mode != Mode::all_pairs || trace.header.request.is_coarse())
+    return out;
   CollideRequest request = trace.header.request;
   request.contacts = true;
+  request.separation = false;  // that the trace holds
   for (const trace::Step& step : trace.steps)
     out.push_back(collide(bodies[0].rep, step.pose_a, bodies[1].rep, step.pose_b, request));
   return out;
@@ -102,9 +113,45 @@ FrameSpec frame_spec(const RenderOptions& o, bool two_bodies) {
   return spec;
 }
 
+/// What frames of a crowd have none of.
+void refuse_for_crowd(const RenderOptions& o) {
+  const auto& at = o.picture.at;
+  const std::pair<bool, const char*> none[] = {
+      {!o.events.empty(), "--events"},
+      {o.montage > 0, "--montage"},
+      {!o.regions.empty(), "--region"},
+      {o.hide_rest, "--no-ghost"},
+      {o.picture.svg.value_or(false), "--format svg"},
+      {o.picture.colour_by.has_value(), "--colour-by"},
+      {at == FrameSpec::At::refinement || at == FrameSpec::At::every, "--frames refinement or event"}};
+  for (const auto& [given, name] : none)
+    if (given) throw InputError(std::string(name) + ": there is none for the trace of a crowd; leave it out");
+}
+
+int render_crowd(const RenderOptions& o, const Globals& globals, const std::string& text) {
+  refuse_for_crowd(o);
+  CrowdTrace trace = read_crowd_trace(text, o.trace);
+  trace.crowd.purpose = kFromTrace;
+  trace.crowd.frames = frame_spec(o, true);
+  check_frame_size(trace.crowd.frames);
+  std::vector<std::string> names;
+  for (const CrowdKind& kind : trace.crowd.kinds) names.push_back(kind.name + ".lrb");
+  const ProgressReport progress = progress_report(globals.quiet);
+  const CrowdRun run = replay_crowd(trace, find_bodies(o, names), all_cores(), progress);
+  note(globals, run.notes);
+  const std::string folder = output_folder(o);
+  redraw_crowd(trace.crowd, run, folder, globals.command_line, o.trace, progress);
+  print(folder + "/index.html\n");
+  return kOk;
+}
+
 int run_render(const RenderOptions& o, const Globals& globals) {
-  const trace::Trace trace = trace::load_trace(o.trace);
-  const std::vector<LoadedBody> bodies = find_bodies(o, trace);
+  std::string json = trace::load_trace_text(o.trace);
+  if (is_crowd_trace(json)) return render_crowd(o, globals, json);
+  const trace::Trace trace = trace::trace_from_json(json, printable_name(o.trace));
+  json = {};
+  const std::vector<LoadedBody> bodies =
+      trace.header.bodies.size() == 1 ? find_bodies(o, {"a.lrb"}) : find_bodies(o, {"a.lrb", "b.lrb"});
   check_events(o, trace, bodies);
   const std::vector<CollideResult> results = contacts_of(trace, bodies);
   Performance p;
@@ -112,9 +159,7 @@ int run_render(const RenderOptions& o, const Globals& globals) {
   p.trace = &trace;
   p.results = &results;
   for (const LoadedBody& body : bodies) p.reps.push_back(&body.rep);
-  const std::string folder =
-      o.folder.empty() ? "out/" + std::filesystem::path(o.trace).parent_path().filename().string() + "-render"
-                       : o.folder;
+  const std::string folder = output_folder(o);
   FrameSpec spec = frame_spec(o, bodies.size() == 2);
   isolate(o, bodies, spec);
   const std::vector<std::pair<std::string, std::string>> text = {
@@ -128,8 +173,7 @@ int run_render(const RenderOptions& o, const Globals& globals) {
   refuse_links(folder);
   const DrawnFrames drawn = draw_frames(p, spec, folder, text, progress_report(globals.quiet));
   const std::string trace_link = std::filesystem::relative(o.trace, folder).generic_string();
-  ReportText report{
-      trace.header.scenario, "Drawn from a recorded run.", globals.command_line, trace_link, {}};
+  ReportText report{trace.header.scenario, kFromTrace, globals.command_line, trace_link, {}};
   Page page = run_page(p, drawn, folder, report);
   std::erase_if(page.links, [](const PageLink& l) { return l.target == "summary.json"; });
   write_text(folder + "/index.html", page_html(page));
@@ -144,9 +188,11 @@ Command add_render(CLI::App& root, const Globals& globals) {
   const auto o = std::make_shared<RenderOptions>();
   app->add_option("TRACE", o->trace, "trace.json or trace.json.gz")->required();
   app->add_option("-o,--output", o->folder, "Folder to write to")->type_name("DIR");
-  app->add_option("--bodies", o->bodies, "The bodies that were recorded [a.lrb and b.lrb beside the trace]")
+  app->add_option(
+         "--bodies", o->bodies,
+         "The bodies that were recorded [a.lrb and b.lrb beside the trace; of a crowd KIND.lrb, each]")
       ->type_name("FILE")
-      ->expected(1, 2);
+      ->expected(1, static_cast<int>(kMostCrowdBodies));
   app->add_option("--events", o->events, "Draw after these events")->delimiter(',')->type_name("N,N,...");
   app->add_option("--montage", o->montage, "Panels of a montage")->check(CLI::Range(1, 26))->type_name("N");
   app->add_flag("--close-up", o->close_up, "A second view on the contact");

@@ -12,8 +12,7 @@
 namespace lrb {
 namespace {
 
-constexpr std::uint32_t kMostBodies = 10'000, kMostSteps = 100'000;
-constexpr double kFar = 1e150;  // coordinates whose squares are still finite
+constexpr std::uint32_t kMostSteps = 100'000;
 
 std::vector<CrowdKind> read_kinds(const JsonNode& node, const std::filesystem::path& folder,
                                   std::uint64_t seed) {
@@ -27,9 +26,10 @@ std::vector<CrowdKind> read_kinds(const JsonNode& node, const std::filesystem::p
       if (other.name == kind.name)
         item.at("name").fail("other bodies are called " + kind.name + ": rename one");
     kind.body = read_body(item.at("body"), folder, seed);
-    if (const auto n = item.get("count")) kind.count = static_cast<std::uint32_t>(n->integer(1, kMostBodies));
+    if (const auto n = item.get("count"))
+      kind.count = static_cast<std::uint32_t>(n->integer(1, kMostCrowdBodies));
     bodies += kind.count;
-    if (bodies > kMostBodies) node.fail("expected at most 10000 bodies in all");
+    if (bodies > kMostCrowdBodies) node.fail("expected at most 10000 bodies in all");
     kinds.push_back(std::move(kind));
   }
   return kinds;
@@ -94,7 +94,11 @@ Crowd parse_crowd(const std::string& text, const std::string& file) {
   c.kinds = read_kinds(root.at("bodies"), std::filesystem::path(file).parent_path(), c.seed);
   read_motion(root.at("motion"), c);
   c.request.contacts = true;
-  if (const auto n = root.get("query")) c.request = read_query(*n);
+  if (const auto n = root.get("query")) {
+    for (const char* key : {"tolerance", "max_tests", "separation"})
+      if (n->has(key)) n->fail_key(key, "queries of a crowd are exact: remove it, or make it a scenario");
+    c.request = read_query(*n);
+  }
   if (const auto trace = root.get("trace")) {
     trace->object({"clock", "max_events"});
     if (const auto n = trace->get("clock"))

@@ -12,6 +12,9 @@
 
 namespace lrb {
 
+inline constexpr std::uint32_t kMostCrowdBodies = 10'000;
+inline constexpr double kFar = 1e150;  ///< coordinates whose squares are still finite
+
 /// Some bodies of one shape. They share one LRB-rep.
 struct CrowdKind {
   std::string name;
@@ -47,5 +50,6 @@ Crowd parse_crowd(const std::string& text, const std::string& file);
 
 /// A crowd by the name of a shipped one, or from a file. Throws InputError.
 Crowd open_crowd(const std::string& name_or_path);
+std::vector<std::string> shipped_crowds();
 
 }  // namespace lrb

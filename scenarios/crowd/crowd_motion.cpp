@@ -60,9 +60,19 @@ double radius_of(const LrbRep& rep, const Pose& own) {
   return r;
 }
 
+std::vector<std::uint32_t> kinds_of_bodies(const Crowd& crowd) {
+  std::vector<std::uint32_t> out;
+  for (std::uint32_t k = 0; k < crowd.kinds.size(); ++k) out.insert(out.end(), crowd.kinds[k].count, k);
+  return out;
+}
+
 }  // namespace
 
-CrowdMotion::CrowdMotion(const Crowd& crowd, std::span<const LrbRep* const> reps) {
+CrowdMotion::CrowdMotion(const Crowd& crowd, std::vector<std::vector<Pose>> poses)
+    : kinds_(kinds_of_bodies(crowd)), recorded_(std::move(poses)) {}
+
+CrowdMotion::CrowdMotion(const Crowd& crowd, std::span<const LrbRep* const> reps)
+    : kinds_(kinds_of_bodies(crowd)) {
   const int dim = reps[0]->dim();
   Random random(crowd.seed);
   for (std::uint32_t k = 0; k < crowd.kinds.size(); ++k) {
@@ -70,7 +80,6 @@ CrowdMotion::CrowdMotion(const Crowd& crowd, std::span<const LrbRep* const> reps
     const double radius = radius_of(*reps[k], own);
     for (std::uint32_t i = 0; i < crowd.kinds[k].count; ++i) {
       Mover m;
-      m.kind = k;
       m.own = own;
       m.reach = (crowd.room / 2 - Eigen::Vector3d::Constant(radius)).cwiseMax(0);
       if (dim == 2) m.reach.z() = 0;
@@ -92,6 +101,7 @@ CrowdMotion::CrowdMotion(const Crowd& crowd, std::span<const LrbRep* const> reps
 }
 
 Pose CrowdMotion::pose(std::uint32_t body, std::uint32_t step) const {
+  if (!recorded_.empty()) return recorded_.at(step).at(body);
   const Mover& m = movers_[body];
   Pose move;
   const Eigen::Vector3d straight = m.start + static_cast<double>(step) * m.speed;

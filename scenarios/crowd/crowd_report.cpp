@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <functional>
 
+#include "engine/lrb/lrb_file.hpp"
 #include "engine/mesh/atomic_file.hpp"
 #include "render/overlay.hpp"
 #include "scenarios/crowd/crowd_frames.hpp"
@@ -132,7 +134,7 @@ PageTable last_queries(const Crowd& crowd, const CrowdRun& run) {
 }
 
 Page crowd_page(const Crowd& crowd, const CrowdRun& run, const DrawnFrames& drawn, const std::string& folder,
-                const std::string& command) {
+                const std::string& command, std::vector<PageLink> links) {
   Page page;
   page.title = crowd.name;
   page.purpose = crowd.purpose;
@@ -142,12 +144,7 @@ Page crowd_page(const Crowd& crowd, const CrowdRun& run, const DrawnFrames& draw
   add_frames(page, drawn, folder);
   page.charts = charts(run);
   page.tables.push_back(last_queries(crowd, run));
-  page.links = {{"trace.json", "trace.json",
-                 crowd.clock == trace::Clock::event
-                     ? "every query on the tracks of its bodies; drag it onto ui.perfetto.dev"
-                     : "every query on the track of its thread; drag it onto ui.perfetto.dev"},
-                {"summary.json", "summary.json", "every step and every answer as JSON"},
-                {"timing.json", "timing.json", "how long each step took"}};
+  page.links = std::move(links);
   if (!drawn.frames.empty())
     page.links.push_back(
         {"frames/", "frames/", std::to_string(drawn.frames.size()) + " full pictures (PNG)"});
@@ -156,10 +153,32 @@ Page crowd_page(const Crowd& crowd, const CrowdRun& run, const DrawnFrames& draw
   return page;
 }
 
+PageLink trace_link(const Crowd& crowd, const std::string& file) {
+  return {file, file,
+          crowd.clock == trace::Clock::event
+              ? "every query on the tracks of its bodies; drag it onto ui.perfetto.dev"
+              : "every query on the track of its thread; drag it onto ui.perfetto.dev"};
+}
+
+void write_pictures_and_page(const Crowd& crowd, const CrowdRun& run, const std::string& folder,
+                             const std::string& command, std::vector<PageLink> links,
+                             const ProgressReport& progress) {
+  const std::vector<std::pair<std::string, std::string>> text = {
+      {"Software", std::string("lrbscope ") + trace::lrbscope_version()},
+      {"lrbscope:crowd", crowd.name},
+      {"lrbscope:crowd_hash", trace::to_hex(crowd.hash)},
+  };
+  const DrawnFrames drawn = draw_crowd(crowd, run, folder, text, progress);
+  progress("page", 0, 1);
+  write_text(folder + "/index.html",
+             page_html(crowd_page(crowd, run, drawn, folder, command, std::move(links))));
+}
+
 }  // namespace
 
 std::string write_crowd(const Crowd& crowd, const CrowdRun& run, const std::string& folder,
                         const std::string& command, const ProgressReport& progress) {
+  check_frame_size(crowd.frames);
   make_folder(folder);
   const FolderLock lock(folder);
   refuse_links(folder);
@@ -169,15 +188,23 @@ std::string write_crowd(const Crowd& crowd, const CrowdRun& run, const std::stri
   const std::string summary = crowd_summary(crowd, run);
   write_text(folder + "/summary.json", summary);
   write_text(folder + "/timing.json", crowd_timing(run));
-  const std::vector<std::pair<std::string, std::string>> text = {
-      {"Software", std::string("lrbscope ") + trace::lrbscope_version()},
-      {"lrbscope:crowd", crowd.name},
-      {"lrbscope:crowd_hash", trace::to_hex(crowd.hash)},
-  };
-  const DrawnFrames drawn = draw_crowd(crowd, run, folder, text, progress);
-  progress("page", 0, 1);
-  write_text(folder + "/index.html", page_html(crowd_page(crowd, run, drawn, folder, command)));
+  for (std::size_t k = 0; k < run.kinds.size(); ++k)
+    save_lrb(run.kinds[k].rep, folder + "/" + crowd.kinds[k].name + ".lrb");
+  write_pictures_and_page(crowd, run, folder, command,
+                          {trace_link(crowd, "trace.json"),
+                           {"summary.json", "summary.json", "every step and every answer as JSON"},
+                           {"timing.json", "timing.json", "how long each step took"}},
+                          progress);
   return summary;
+}
+
+void redraw_crowd(const Crowd& crowd, const CrowdRun& run, const std::string& folder,
+                  const std::string& command, const std::string& trace_file, const ProgressReport& progress) {
+  make_folder(folder);
+  const FolderLock lock(folder);
+  refuse_links(folder);
+  const std::string file = std::filesystem::relative(trace_file, folder).generic_string();
+  write_pictures_and_page(crowd, run, folder, command, {trace_link(crowd, file)}, progress);
 }
 
 std::string crowd_speed(const CrowdRun& run) {

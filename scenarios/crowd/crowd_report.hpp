@@ -6,10 +6,15 @@
 
 namespace lrb {
 
-/// Writes folder/{index.html, trace.json, summary.json, timing.json, frames/}. Everything but timing.json,
-/// and a trace on the wall clock, is the same for any number of threads. Returns summary.json's text.
+/// Writes folder/{index.html, trace.json, summary.json, timing.json, KIND.lrb, frames/}. Everything but
+/// timing.json, and a trace on the wall clock, is the same for any number of threads. Returns summary.json's
+/// text.
 std::string write_crowd(const Crowd& crowd, const CrowdRun& run, const std::string& folder,
                         const std::string& command, const ProgressReport& progress);
+
+/// Of a replayed run: folder/{index.html, frames/}.
+void redraw_crowd(const Crowd& crowd, const CrowdRun& run, const std::string& folder,
+                  const std::string& command, const std::string& trace_file, const ProgressReport& progress);
 
 /// How long a step took, in one line for people.
 std::string crowd_speed(const CrowdRun& run);

@@ -166,6 +166,11 @@ std::vector<std::uint32_t> drawn_steps(const FrameSpec& spec, std::uint32_t step
 CrowdRun run_crowd(const Crowd& crowd, std::uint32_t threads, const ProgressReport& progress) {
   std::vector<LoadedBody> kinds = make_kinds(crowd, progress);
   CrowdMotion motion(crowd, reps_of(kinds));
+  return play_crowd(crowd, std::move(kinds), std::move(motion), threads, progress);
+}
+
+CrowdRun play_crowd(const Crowd& crowd, std::vector<LoadedBody> kinds, CrowdMotion motion,
+                    std::uint32_t threads, const ProgressReport& progress) {
   CrowdRun run{std::move(kinds), {}, std::move(motion), {}, {}, {}, threads};
   for (std::size_t k = 0; k < run.kinds.size(); ++k) {
     for (const std::string& note : run.kinds[k].notes) run.notes.push_back(crowd.kinds[k].name + ": " + note);

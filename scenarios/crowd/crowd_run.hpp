@@ -64,5 +64,8 @@ std::vector<std::uint32_t> drawn_steps(const FrameSpec& spec, std::uint32_t step
 /// Builds the bodies and plays. Everything but threads and times is the same for any number of threads, at
 /// least 1. Throws InputError for bodies of different dimensions and for what collide() refuses.
 CrowdRun run_crowd(const Crowd& crowd, std::uint32_t threads, const ProgressReport& progress);
+/// The same with bodies, one a kind, that are there already.
+CrowdRun play_crowd(const Crowd& crowd, std::vector<LoadedBody> kinds, CrowdMotion motion,
+                    std::uint32_t threads, const ProgressReport& progress);
 
 }  // namespace lrb

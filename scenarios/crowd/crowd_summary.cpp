@@ -58,18 +58,6 @@ void write_step(JsonWriter& w, const CrowdStep& step, std::size_t index, std::si
   w.end_array().end_object();
 }
 
-void write_kinds(JsonWriter& w, const Crowd& crowd, const CrowdRun& run) {
-  w.key("kinds").begin_array();
-  for (std::size_t k = 0; k < run.kinds.size(); ++k) {
-    const BodySpec& spec = crowd.kinds[k].body;
-    w.begin_object().member("name", crowd.kinds[k].name).member("count", crowd.kinds[k].count).key("body");
-    trace::write_json(w, trace::describe_body(run.kinds[k].rep,
-                                              spec.file.empty() ? "generator " + spec.generator : spec.file));
-    w.end_object();
-  }
-  w.end_array();
-}
-
 template <class Write>
 std::string as_text(const Write& write) {
   trace::StringSink sink;
@@ -82,6 +70,18 @@ std::string as_text(const Write& write) {
 }
 
 }  // namespace
+
+void write_kinds(JsonWriter& w, const Crowd& crowd, const CrowdRun& run) {
+  w.key("kinds").begin_array();
+  for (std::size_t k = 0; k < run.kinds.size(); ++k) {
+    const BodySpec& spec = crowd.kinds[k].body;
+    w.begin_object().member("name", crowd.kinds[k].name).member("count", crowd.kinds[k].count).key("body");
+    trace::write_json(w, trace::describe_body(run.kinds[k].rep,
+                                              spec.file.empty() ? "generator " + spec.generator : spec.file));
+    w.end_object();
+  }
+  w.end_array();
+}
 
 std::size_t count(const CrowdStep& step, Relation relation) {
   return static_cast<std::size_t>(

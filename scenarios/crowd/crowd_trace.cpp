@@ -77,6 +77,7 @@ class Writer {
 
   void step(std::uint32_t index) {
     const CrowdStep& s = run_.steps[index];
+    index_ = index;
     if (wall_) clock_ = static_cast<double>(s.begin_ns) / 1000;
     const Span broad{clock_, wall_ ? static_cast<double>(s.boxes_ns + s.sweep_ns) / 1000
                                    : static_cast<double>(s.broad_phase.box_tests) + 1};
@@ -152,7 +153,7 @@ class Writer {
     const trace::StepResult& r = q.result;
     const Counters& c = r.counters;
     begin(name, trace::name_of(r.relation), "X", track, span);
-    w_.member("A", run_.names[q.bodies.i]).member("B", run_.names[q.bodies.j]);
+    w_.member("time step", index_).member("A", run_.names[q.bodies.i]).member("B", run_.names[q.bodies.j]);
     w_.member("relation", trace::name_of(r.relation)).member("pairs", r.pair_count);
     w_.member("fingerprint", trace::to_hex(r.fingerprint));
     if (crowd_.request.contacts) w_.member("contact regions", q.contact_regions);
@@ -163,13 +164,30 @@ class Writer {
   }
 
   void metadata() {
-    w_.begin_object().member("lrbscope", trace::lrbscope_version()).member("format", "lrbscope crowd");
-    w_.member("version", 1U).member("clock", trace::name_of(crowd_.clock));
+    w_.begin_object().member("lrbscope", trace::lrbscope_version()).member("format", kCrowdFormat);
+    w_.member("version", kCrowdVersion).member("clock", trace::name_of(crowd_.clock));
     w_.key("crowd").begin_object().member("name", crowd_.name).member("hash", trace::to_hex(crowd_.hash));
     w_.end_object().key("request");
     trace::write_json(w_, crowd_.request);
+    w_.key("room").begin_array();
+    for (int axis = 0; axis < 3; ++axis) w_.value(crowd_.room[axis]);
+    w_.end_array();
+    write_kinds(w_, crowd_, run_);
+    w_.member("steps", std::uint64_t{run_.steps.size()});
+    poses();
     w_.key("query_slices").begin_object().member("stored", stored_).member("seen", seen_);
     w_.member("truncated", stored_ < seen_).end_object().end_object();
+  }
+
+  void poses() {
+    w_.key("poses").begin_array();
+    const std::uint64_t bodies = run_.motion.body_count();
+    for (std::uint32_t i = 0; i < run_.steps.size() && (i + 1) * bodies <= crowd_.max_events; ++i) {
+      w_.begin_array();
+      for (std::uint32_t body = 0; body < bodies; ++body) trace::write_json(w_, run_.motion.pose(body, i));
+      w_.end_array();
+    }
+    w_.end_array();
   }
 
   const Crowd& crowd_;
@@ -178,6 +196,7 @@ class Writer {
   JsonWriter w_;
   bool wall_;
   double clock_ = 0;
+  std::uint32_t index_ = 0;  ///< of the step
   std::uint64_t stored_ = 0, seen_ = 0;
 };
 

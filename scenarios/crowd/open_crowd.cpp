@@ -2,9 +2,18 @@
 #include "scenarios/shipped.hpp"
 
 namespace lrb {
+namespace {
+
+constexpr std::string_view kEnding = ".crowd.json";
+
+}  // namespace
+
+std::vector<std::string> shipped_crowds() {
+  return shipped_names(kEnding);
+}
 
 Crowd open_crowd(const std::string& name_or_path) {
-  const NamedText crowd = open_named(name_or_path, ".crowd.json", "crowd");
+  const NamedText crowd = open_named(name_or_path, kEnding, "crowd");
   return parse_crowd(crowd.text, crowd.file);
 }
 

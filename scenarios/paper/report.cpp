@@ -11,6 +11,7 @@
 #include "scenarios/paper/figures.hpp"
 #include "scenarios/paper/number_text.hpp"
 #include "scenarios/paper/report_pictures.hpp"
+#include "scenarios/play/report.hpp"
 
 namespace lrb {
 namespace {

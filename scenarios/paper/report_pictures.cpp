@@ -7,10 +7,10 @@
 #include "render/overlay.hpp"
 #include "render/png.hpp"
 #include "scenarios/files.hpp"
-#include "scenarios/page/inline_image.hpp"
 #include "scenarios/paper/close_up.hpp"
 #include "scenarios/paper/heat_map.hpp"
 #include "scenarios/paper/icicle.hpp"
+#include "scenarios/play/report.hpp"
 
 namespace lrb {
 namespace {
@@ -63,16 +63,6 @@ std::optional<CloseUps> close_ups_of(const PaperReport& r) {
 }
 
 }  // namespace
-
-void add_figure(Page& page, const std::string& folder, const std::string& title, const std::string& caption,
-                const std::string& file) {
-  const std::string bytes = read_text(folder + "/" + file);
-  const char* type = file.ends_with(".svg") ? "image/svg+xml" : "image/png";
-  page.figures.push_back({title, caption,
-                          data_uri(type, reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()),
-                          file});
-  page.links.push_back({file, file, title});
-}
 
 void check_records(const PaperReport& r) {
   for (const ContactStep& s : r.steps)

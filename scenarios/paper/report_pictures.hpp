@@ -6,10 +6,6 @@
 
 namespace lrb {
 
-/// A picture that is in the folder already, .svg or .png.
-void add_figure(Page& page, const std::string& folder, const std::string& title, const std::string& caption,
-                const std::string& file);
-
 /// Throws InputError if the steps are not those of the experiment, as far as numbers of collisions and its
 /// close-ups tell.
 void check_records(const PaperReport& report);

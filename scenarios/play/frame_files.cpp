@@ -43,7 +43,7 @@ void remove_old_frames(const std::string& folder) {
     if (name.starts_with("frame_") && (name.ends_with(".png") || name.ends_with(".svg")))
       std::filesystem::remove(entry.path(), error);
   }
-  for (const char* file : {"/montage.png", "/montage.svg", "/caption.txt"})
+  for (const char* file : {"/montage.png", "/montage.svg", "/caption.txt", "/separation.png"})
     std::filesystem::remove(folder + file, error);
 }
 

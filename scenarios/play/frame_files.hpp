@@ -17,7 +17,7 @@ namespace lrb {
 std::string numbered_frame(std::size_t frame);
 std::string frame_file(std::size_t frame);
 
-/// Of an earlier run: frames, montage and its caption.
+/// Of an earlier run: frames, montage and its caption, certificate of separation.
 void remove_old_frames(const std::string& folder);
 
 /// The same frames with their size in pixels of the file.

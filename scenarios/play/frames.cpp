@@ -13,6 +13,7 @@
 #include "scenarios/play/frame_files.hpp"
 #include "scenarios/play/framing.hpp"
 #include "scenarios/play/moments.hpp"
+#include "scenarios/play/separation_picture.hpp"
 #include "scenarios/play/stage.hpp"
 
 namespace lrb {
@@ -179,11 +180,15 @@ struct Montage {
 }  // namespace
 
 void check_frames(const Performance& performance, const FrameSpec& spec) {
-  constexpr int kMost = 8192;
   static_cast<void>(moments(spec, *performance.trace, performance.milestones));
   if (spec.svg && performance.reps[0]->dim() != 2)
     throw InputError(
         "frames as SVG are for 2D bodies, and these are 3D: leave svg out, and ask for a higher --dpi");
+  check_frame_size(spec);
+}
+
+void check_frame_size(const FrameSpec& spec) {
+  constexpr int kMost = 8192;
   const FrameSpec in_file = in_pixels(spec);
   if (in_file.width > kMost || in_file.height > kMost)
     throw InputError("frames of " + std::to_string(spec.width) + "x" + std::to_string(spec.height) +
@@ -243,6 +248,11 @@ DrawnFrames draw_frames(const Performance& performance, const FrameSpec& given, 
   if (!together.panels.empty())
     out.montage = together.write(performance, spec, folder, {text, spec.dpi}, writer);
   writer.finish();
+  for (const trace::Step& step : performance.trace->steps)
+    if (step.result.separation) out.proved = &step;
+  if (out.proved != nullptr)
+    draw_separation(*performance.reps[0], out.proved->pose_a, *performance.reps[1], out.proved->pose_b,
+                    *out.proved->result.separation, folder + "/" + kSeparationFile);
   return out;
 }
 

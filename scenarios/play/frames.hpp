@@ -20,6 +20,9 @@ struct Performance {
   std::vector<trace::EventId> milestones;
 };
 
+/// In the output folder: the last certificate of separation of the run.
+inline constexpr const char* kSeparationFile = "separation.png";
+
 struct DrawnFrame {
   std::string file;  ///< relative to the output folder
   std::string caption;
@@ -29,7 +32,8 @@ struct DrawnFrame {
 
 struct DrawnFrames {
   std::vector<DrawnFrame> frames;
-  std::vector<std::string> montage;  ///< montage.png, montage.svg, caption.txt; none: no montage
+  std::vector<std::string> montage;     ///< montage.png, montage.svg, caption.txt; none: no montage
+  const trace::Step* proved = nullptr;  ///< whose certificate of separation is drawn; null: none
 };
 
 /// A frame that has not been written.
@@ -40,6 +44,8 @@ struct PaintedFrame {
   std::vector<Camera> cameras;  ///< one a view
 };
 
+/// Throws InputError for frames of more pixels than can be drawn.
+void check_frame_size(const FrameSpec& spec);
 /// Throws InputError for frames that cannot be drawn: of events that there are not, as SVG in 3D, too large.
 void check_frames(const Performance& performance, const FrameSpec& spec);
 
@@ -48,8 +54,8 @@ void check_frames(const Performance& performance, const FrameSpec& spec);
 std::vector<PaintedFrame> paint_frames(const Performance& performance, const FrameSpec& spec,
                                        const ProgressReport& progress, const Framing* framing = nullptr);
 
-/// Draws into folder/frames/ and, if asked, folder/montage.png with folder/caption.txt. `text` goes into
-/// every PNG.
+/// Draws into folder/frames/ and, if asked, folder/montage.png with folder/caption.txt; with certificates of
+/// separation the last one into folder/separation.png. `text` goes into every frame.
 DrawnFrames draw_frames(const Performance& performance, const FrameSpec& spec, const std::string& folder,
                         const std::vector<std::pair<std::string, std::string>>& text,
                         const ProgressReport& progress);

@@ -26,6 +26,19 @@ std::vector<Eigen::Vector3d> extremes(const std::vector<Eigen::Vector3d>& points
   return out;
 }
 
+/// Of coarse answers, which have no contact regions: the corners of all faces that meet.
+void add_contacts(const std::vector<const LrbRep*>& reps, const trace::Trace& trace,
+                  std::vector<Eigen::Vector3d>& points) {
+  for (std::size_t step = 0; step < trace.steps.size(); ++step)
+    for (const trace::Event& e : trace.events_of(step)) {
+      if (e.kind != EventKind::contact) continue;
+      for (const VertexId v : reps[0]->face(reps[0]->face_of_simplex(e.a)))
+        points.push_back(trace.steps[step].pose_a.apply(reps[0]->vertices()[v]));
+      for (const VertexId v : reps[1]->face(reps[1]->face_of_simplex(e.b)))
+        points.push_back(trace.steps[step].pose_b.apply(reps[1]->vertices()[v]));
+    }
+}
+
 }  // namespace
 
 Framing frame_sequence(const std::vector<const LrbRep*>& reps, const trace::Trace& trace,
@@ -45,6 +58,7 @@ Framing frame_sequence(const std::vector<const LrbRep*>& reps, const trace::Trac
       for (const Eigen::Vector3d& p : body) f.points.push_back(pose.apply(p));
     }
   }
+  if (trace.header.request.is_coarse()) add_contacts(reps, trace, f.contacts);
   for (const CollideResult& result : results)
     for (const Eigen::Vector3d& p : contact_points(result.regions)) f.contacts.push_back(p);
   return f;

@@ -13,7 +13,8 @@ namespace lrb {
 /// What the cameras of a whole sequence have to hold, so that the picture stands still while the bodies move.
 struct Framing {
   std::vector<Eigen::Vector3d> points;    ///< of both bodies, in all steps shown
-  std::vector<Eigen::Vector3d> contacts;  ///< of all contact regions; none: contact views show the whole
+  std::vector<Eigen::Vector3d> contacts;  ///< of all contact regions, or of the faces of coarse answers;
+                                          ///< none: contact views show the whole
   int dim = 3;
 };
 

@@ -5,6 +5,7 @@
 #include "render/overlay.hpp"
 #include "scenarios/files.hpp"
 #include "scenarios/page/inline_image.hpp"
+#include "scenarios/play/stage.hpp"
 #include "trace/counters.hpp"
 #include "trace/hex.hpp"
 #include "trace/names.hpp"
@@ -27,6 +28,16 @@ const trace::Step* last_step(const trace::Trace& trace) {
   return trace.steps.empty() || !trace.steps.back().finished ? nullptr : &trace.steps.back();
 }
 
+/// Of the last step's answer: pairs of which not both faces are real.
+std::size_t pseudo_pairs(const trace::Trace& trace) {
+  const auto& bodies = trace.header.bodies;
+  const auto events = trace.events_of(trace.steps.size() - 1);
+  return static_cast<std::size_t>(std::count_if(events.begin(), events.end(), [&](const trace::Event& e) {
+    return e.kind == EventKind::contact &&
+           (e.a >= bodies[0].real_simplices || e.b >= bodies[1].real_simplices);
+  }));
+}
+
 std::vector<PageNumber> collision_numbers(const Performance& p, const trace::Step& step) {
   const trace::StepResult& r = step.result;
   const auto at = "at step " + std::to_string(step.index);
@@ -39,8 +50,14 @@ std::vector<PageNumber> collision_numbers(const Performance& p, const trace::Ste
   }
   std::vector<PageNumber> out = {{"Relation", words(r.relation), at},
                                  {"Pairs of faces that meet", group_digits(r.pair_count), at}};
-  if (p.results != nullptr && !p.results->empty())
+  if (const CollideRequest& request = p.trace->header.request; request.is_coarse()) {
+    out.back().note += "; of wrappers: " + group_digits(pseudo_pairs(*p.trace)) + " with a pseudo face";
+    out.push_back({"Error bound", error_bound_text(r.error_bound),
+                   at + (r.finished ? "; how far those wrappers are off the bodies"
+                                    : "; a limit was reached before the tolerance")});
+  } else if (p.results != nullptr && !p.results->empty()) {
     out.push_back({"Contact regions", group_digits(p.results->back().regions.size()), at});
+  }
   out.push_back(
       {"Face tests", group_digits(r.counters.face_tests),
        at + "; all pairs would be " +
@@ -117,15 +134,40 @@ PageTable contact_table(const CollideResult& result, std::uint32_t step) {
   return t;
 }
 
+std::string faces_text(const Separation& s) {
+  return group_digits(s.face_count[0]) + " + " + group_digits(s.face_count[1]) + " faces";
+}
+
+/// What was asked for, where it is less than the exact answer.
+std::string coarse_words(const CollideRequest& request) {
+  std::string limits;
+  const auto add = [&](const std::string& limit) { limits += (limits.empty() ? "" : " and ") + limit; };
+  if (request.tolerance > 0) add("to a tolerance of " + short_number(request.tolerance));
+  if (request.max_tests > 0) add("within " + group_digits(request.max_tests) + " face tests");
+  if (request.max_time > 0) add("within " + short_number(request.max_time) + " s");
+  return " (Answered " + limits +
+         ": faces that meet can be pseudo faces, off the bodies by no more than the error bound.)";
+}
+
 PageTable steps_table(const trace::Trace& trace) {
   PageTable t;
   t.title = "Every time step";
   t.columns = {"step", "relation", "pairs", "face tests", "refinements", "fingerprint"};
-  for (const trace::Step& s : trace.steps)
+  const CollideRequest& request = trace.header.request;
+  if (request.is_coarse()) t.columns.insert(t.columns.end(), {"error bound", "finished"});
+  if (request.separation) t.columns.emplace_back("proved apart by");
+  for (const trace::Step& s : trace.steps) {
     t.rows.push_back({std::to_string(s.index), words(s.result.relation), group_digits(s.result.pair_count),
                       group_digits(s.result.counters.face_tests), group_digits(s.result.counters.refinements),
                       trace::to_hex(s.result.fingerprint)});
+    std::vector<std::string>& row = t.rows.back();
+    if (request.is_coarse())
+      row.insert(row.end(), {s.result.error_bound == 0 ? "0" : error_bound_text(s.result.error_bound),
+                             s.result.finished ? "yes" : "no"});
+    if (request.separation) row.push_back(s.result.separation ? faces_text(*s.result.separation) : "");
+  }
   t.note = "The fingerprint is FNV-1a 64 over the sorted pairs: equal answers, equal fingerprints.";
+  if (request.is_coarse()) t.note += " An error bound of 0: the answer is exact.";
   return t;
 }
 
@@ -159,6 +201,16 @@ void add_frames(Page& page, const DrawnFrames& drawn, const std::string& folder)
   }
 }
 
+void add_figure(Page& page, const std::string& folder, const std::string& title, const std::string& caption,
+                const std::string& file) {
+  const std::string bytes = read_text(folder + "/" + file);
+  const char* type = file.ends_with(".svg") ? "image/svg+xml" : "image/png";
+  page.figures.push_back({title, caption,
+                          data_uri(type, reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()),
+                          file});
+  page.links.push_back({file, file, title});
+}
+
 Page run_page(const Performance& p, const DrawnFrames& drawn, const std::string& folder,
               const ReportText& text) {
   Page page;
@@ -174,6 +226,7 @@ Page run_page(const Performance& p, const DrawnFrames& drawn, const std::string&
   }
   if (two && p.trace->header.request.recursion != Recursion::complete)
     page.purpose += " (The paper's recursion was asked for: it can miss contacts.)";
+  if (two && p.trace->header.request.is_coarse()) page.purpose += coarse_words(p.trace->header.request);
   if (p.trace->truncated())
     page.purpose += " (The trace was cut: it holds " + group_digits(p.trace->events.size()) + " of " +
                     group_digits(p.trace->events_seen) + " events, and so do frames and charts.)";
@@ -201,6 +254,12 @@ Page run_page(const Performance& p, const DrawnFrames& drawn, const std::string&
   constexpr std::size_t kMostSteps = 200;
   if (two && p.trace->steps.size() <= kMostSteps) page.tables.push_back(steps_table(*p.trace));
   add_links(page, drawn, text);
+  if (drawn.proved != nullptr)
+    add_figure(page, folder, "Proof that the bodies are apart at step " + std::to_string(drawn.proved->index),
+               "(a) the outermost wrappers, (b) refined as far as it takes until they have no point in "
+               "common: " +
+                   faces_text(*drawn.proved->result.separation) + ". Each holds its body.",
+               kSeparationFile);
   page.footer =
       "lrbscope " + p.trace->header.lrbscope + ". This page holds all it needs and fetches nothing.";
   return page;

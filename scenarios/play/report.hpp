@@ -18,6 +18,10 @@ struct ReportText {
 /// Puts frames, whose files are in `folder`, into a page.
 void add_frames(Page& page, const DrawnFrames& drawn, const std::string& folder);
 
+/// A picture that is in the folder already, .svg or .png.
+void add_figure(Page& page, const std::string& folder, const std::string& title, const std::string& caption,
+                const std::string& file);
+
 /// The page of a run whose files are in `folder`.
 Page run_page(const Performance& performance, const DrawnFrames& drawn, const std::string& folder,
               const ReportText& text);

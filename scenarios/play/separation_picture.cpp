@@ -14,9 +14,9 @@ namespace {
 
 constexpr int kWidth = 900, kHeight = 720;
 
-Camera camera_of(const LrbRep& a, const LrbRep& b, const Pose& pose) {
-  std::vector<Eigen::Vector3d> points = body_points(a, Pose{});
-  const std::vector<Eigen::Vector3d> of_b = body_points(b, pose);
+Camera camera_of(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b) {
+  std::vector<Eigen::Vector3d> points = body_points(a, pose_a);
+  const std::vector<Eigen::Vector3d> of_b = body_points(b, pose_b);
   points.insert(points.end(), of_b.begin(), of_b.end());
   return a.dim() == 2 ? fit_top(points, kWidth, kHeight) : fit_camera(points, kWidth, kHeight);
 }
@@ -27,9 +27,9 @@ std::string caption(const std::string& what, const Wrapper& a, const Wrapper& b)
 
 }  // namespace
 
-void draw_separation(const LrbRep& a, const LrbRep& b, const Pose& pose, const Separation& separation,
-                     const std::string& path) {
-  const Camera camera = camera_of(a, b, pose);
+void draw_separation(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
+                     const Separation& separation, const std::string& path) {
+  const Camera camera = camera_of(a, pose_a, b, pose_b);
   RasterOptions options;
   options.width = kWidth;
   options.height = kHeight;
@@ -39,9 +39,10 @@ void draw_separation(const LrbRep& a, const LrbRep& b, const Pose& pose, const S
     std::vector<SceneBody> bodies(2);
     bodies[0].rep = &a;
     bodies[0].wrapper = &wrapper_a;
+    bodies[0].pose = pose_a;
     bodies[1].rep = &b;
     bodies[1].wrapper = &wrapper_b;
-    bodies[1].pose = pose;
+    bodies[1].pose = pose_b;
     return Panel{rasterizer.draw(build_scene(bodies).list, camera, options),
                  caption(what, wrapper_a, wrapper_b)};
   };

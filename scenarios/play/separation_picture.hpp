@@ -7,8 +7,8 @@
 namespace lrb {
 
 /// Two bodies that are apart under the wrappers that prove it: as they come in panel a, as far as they had to
-/// be refined in panel b. B at `pose`.
-void draw_separation(const LrbRep& a, const LrbRep& b, const Pose& pose, const Separation& separation,
-                     const std::string& path);
+/// be refined in panel b.
+void draw_separation(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
+                     const Separation& separation, const std::string& path);
 
 }  // namespace lrb

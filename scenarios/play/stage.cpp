@@ -1,5 +1,6 @@
 #include "scenarios/play/stage.hpp"
 
+#include <cmath>
 #include <filesystem>
 
 #include "render/palette.hpp"
@@ -35,6 +36,10 @@ std::string counted(std::uint64_t n, const char* one, const char* many) {
 
 }  // namespace
 
+std::string error_bound_text(double bound) {
+  return bound == 0 ? "0 (exact)" : std::isfinite(bound) ? short_number(bound) : "none yet";
+}
+
 Stage::Stage(const trace::Trace& trace, std::vector<const LrbRep*> reps,
              const std::vector<CollideResult>& results, const FrameSpec& spec, bool point_out_refined)
     : trace_(trace),
@@ -57,6 +62,31 @@ const CollideResult* Stage::result_here() const {
                                                                   : nullptr;
 }
 
+const trace::StepResult* Stage::answer_here() const {
+  return at_step_end() && cursor_.step()->finished ? &cursor_.step()->result : nullptr;
+}
+
+const Separation* Stage::proof_here() const {
+  const trace::StepResult* answer = answer_here();
+  return answer != nullptr && answer->separation ? &*answer->separation : nullptr;
+}
+
+std::uint32_t Stage::boundary_size(Side side) const {
+  const Separation* proof = proof_here();
+  return proof != nullptr ? proof->face_count[static_cast<std::size_t>(side)] : cursor_.boundary_size(side);
+}
+
+std::vector<std::uint8_t> Stage::met(Side side) const {
+  if (!trace_.header.request.is_coarse()) return {};
+  const LrbRep& rep = *reps_[static_cast<std::size_t>(side)];
+  std::vector<std::uint8_t> out(rep.face_count());
+  for (trace::EventId e = cursor_.step()->first_event; e <= cursor_.position(); ++e) {
+    const trace::Event& event = trace_.events[e];
+    if (event.kind == EventKind::contact) out[rep.face_of_simplex(side == Side::a ? event.a : event.b)] = 1;
+  }
+  return out;
+}
+
 trace::Totals Stage::totals() const {
   const trace::EventId first = cursor_.step()->first_event;
   return trace::count_events({trace_.events.data() + first, cursor_.position() + std::size_t{1} - first});
@@ -77,11 +107,21 @@ Scene Stage::scene(bool wrapper, bool plain) const {
   std::vector<SceneBody> bodies;
   const std::vector<double> values[2] = {values_of(Side::a),
                                          reps_.size() > 1 ? values_of(Side::b) : std::vector<double>()};
+  const Separation* proof = proof_here();
+  std::vector<Wrapper> proving;
+  std::vector<std::uint8_t> in_contact[2];
+  for (std::size_t i = 0; i < reps_.size() && proof != nullptr; ++i) {
+    proving.emplace_back(*reps_[i]);
+    for (const RegionId r : proof->refined[i]) proving.back().refine(r);
+  }
+  if (reps_.size() > 1)
+    for (const Side side : {Side::a, Side::b}) in_contact[static_cast<std::size_t>(side)] = met(side);
   for (std::size_t i = 0; i < reps_.size(); ++i) {
     const Side side = static_cast<Side>(i);
     SceneBody body;
     body.rep = reps_[i];
-    body.wrapper = wrapper ? &cursor_.wrapper(side) : nullptr;
+    if (wrapper) body.wrapper = proof != nullptr ? &proving[i] : &cursor_.wrapper(side);
+    body.in_contact = in_contact[i];
     body.pose = cursor_.pose(side);
     body.face_values = values[i];
     body.name =
@@ -114,6 +154,7 @@ Scene Stage::scene(bool wrapper, bool plain) const {
       break;
   }
   options.explode = spec_.explode;
+  options.contact_rims = true;
   options.scale = static_cast<float>(spec_.scale());
   options.isolate = spec_.isolate;
   options.ghost_rest = spec_.ghost_rest;
@@ -123,6 +164,9 @@ Scene Stage::scene(bool wrapper, bool plain) const {
 std::string Stage::event_text() const {
   const trace::Event& e = cursor_.event();
   const std::string side = e.side == Side::a ? "A" : "B";
+  const auto face = [&](std::size_t i, SimplexId s) {
+    return (reps_[i]->is_real_simplex(s) ? "face " : "pseudo face ") + std::to_string(s);
+  };
   const std::string region =
       reps_.size() == 1 ? "region " + std::to_string(e.a) : "region " + std::to_string(e.a) + " of " + side;
   switch (e.kind) {
@@ -136,14 +180,24 @@ std::string Stage::event_text() const {
     case EventKind::coarsen:
       return region + " added";
     case EventKind::contact:
-      return "contact: face " + std::to_string(e.a) + " of A meets face " + std::to_string(e.b) + " of B";
-    case EventKind::result: {
-      const trace::StepResult& r = cursor_.step()->result;
-      return relation_words(r.relation) + ": " +
-             counted(r.pair_count, "pair of faces meets", "pairs of faces meet");
-    }
+      return "contact: " + face(0, e.a) + " of A meets " + face(1, e.b) + " of B";
+    case EventKind::result:
+      return result_text();
   }
   return {};
+}
+
+std::string Stage::result_text() const {
+  const trace::StepResult& r = cursor_.step()->result;
+  if (const Separation* proof = proof_here())
+    return "separate: wrappers of " + group_digits(proof->face_count[0]) + " and " +
+           counted(proof->face_count[1], "face prove it", "faces prove it");
+  if (r.relation == Relation::unresolved)
+    return std::isfinite(r.error_bound)
+               ? "unresolved: in contact, or no further apart than " + short_number(r.error_bound)
+               : "unresolved: the limit came before the coarsest wrappers were compared";
+  return relation_words(r.relation) + ": " +
+         counted(r.pair_count, "pair of faces meets", "pairs of faces meet");
 }
 
 Overlay Stage::overlay(const std::string& title) const {
@@ -158,11 +212,16 @@ Overlay Stage::overlay(const std::string& title) const {
                   {"refined", group_digits(t.refinements[0] - t.coarsenings[0]) + " of " +
                                   group_digits(reps_[0]->region_count()) + " regions"}};
   } else {
-    o.counters = {{"wrapper A", group_digits(cursor_.boundary_size(Side::a))},
-                  {"wrapper B", group_digits(cursor_.boundary_size(Side::b))},
-                  {"refined", group_digits(t.refinements[0]) + " + " + group_digits(t.refinements[1])},
+    const Separation* proof = proof_here();
+    const std::uint64_t refined[2] = {proof != nullptr ? proof->refined[0].size() : t.refinements[0],
+                                      proof != nullptr ? proof->refined[1].size() : t.refinements[1]};
+    o.counters = {{"wrapper A", group_digits(boundary_size(Side::a))},
+                  {"wrapper B", group_digits(boundary_size(Side::b))},
+                  {"refined", group_digits(refined[0]) + " + " + group_digits(refined[1])},
                   {"face tests", group_digits(t.face_tests)},
                   {"contacts", group_digits(t.contacts)}};
+    if (const trace::StepResult* answer = answer_here(); answer && trace_.header.request.is_coarse())
+      o.counters.push_back({"error bound", error_bound_text(answer->error_bound)});
   }
   return o;
 }
@@ -186,10 +245,13 @@ std::string Stage::caption() const {
   out += std::to_string(cursor_.position()) + ": " + event_text() + ". ";
   out += reps_.size() == 1
              ? "Wrapper: " + group_digits(cursor_.boundary_size(Side::a)) + " faces."
-             : "Wrappers: " + group_digits(cursor_.boundary_size(Side::a)) + " + " +
-                   group_digits(cursor_.boundary_size(Side::b)) + " faces; " +
+             : "Wrappers: " + group_digits(boundary_size(Side::a)) + " + " +
+                   group_digits(boundary_size(Side::b)) + " faces; " +
                    counted(t.face_tests, "face test", "face tests") + ", " +
                    counted(t.refinements[0] + t.refinements[1], "refinement", "refinements") + ".";
+  if (const trace::StepResult* answer = answer_here(); answer && trace_.header.request.is_coarse())
+    out += " Error bound: " + error_bound_text(answer->error_bound) +
+           (answer->finished ? "." : "; a limit was reached.");
   return out;
 }
 

@@ -13,6 +13,9 @@
 
 namespace lrb {
 
+/// CollideResult::error_bound in a word or two.
+std::string error_bound_text(double bound);
+
 class Stage {
  public:
   /// `results`: one a step, for contact regions; may be empty. All must outlive the stage.
@@ -35,9 +38,15 @@ class Stage {
 
  private:
   bool at_step_end() const;
-  const CollideResult* result_here() const;  ///< the step's answer, once its last event has come
+  const CollideResult* result_here() const;      ///< the step's answer, once its last event has come
+  const trace::StepResult* answer_here() const;  ///< the same as the trace has it
+  const Separation* proof_here() const;          ///< its certificate, whose wrappers are then on show
+  std::uint32_t boundary_size(Side side) const;  ///< of the wrapper on show
+  /// (|F|) faces of a coarse answer so far; empty: the answer is one for contact regions.
+  std::vector<std::uint8_t> met(Side side) const;
   std::vector<double> values_of(Side side) const;
   std::string event_text() const;
+  std::string result_text() const;
   trace::Totals totals() const;  ///< of the step so far
 
   const trace::Trace& trace_;

@@ -17,6 +17,7 @@ bool feed_poses(std::string_view bytes);
 bool feed_scenario(std::string_view bytes);
 bool feed_crowd(std::string_view bytes);
 bool feed_experiment(std::string_view bytes);
+bool feed_crowd_trace(std::string_view bytes);
 bool feed_trace(std::string_view bytes);
 
 /// Throws std::logic_error unless an InputError's message is one line that begins with `name` and a colon.

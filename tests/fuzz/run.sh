@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # tests/fuzz/run.sh [--runs N | --seconds N] [FORMAT...]: builds the fuzzers (clang, address and undefined-behaviour
 # sanitizers: the preset asan-ubsan) and runs each for 20 seconds, or as long as it is told; --runs 1000000 is the full
-# run. Formats: mesh (OBJ, STL, PLY and OFF) lrb poses scenario crowd experiment trace. What runs learn stays in
-# build/asan-ubsan/fuzz/corpus; an input that crashes, or takes over 10 s, is left in .../found and ends the script.
+# run. Formats: mesh (OBJ, STL, PLY and OFF) lrb poses scenario crowd crowd_trace experiment trace. What runs learn stays
+# in build/asan-ubsan/fuzz/corpus; an input that crashes, or takes over 10 s, is left in .../found and ends the script.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
 bound=-max_total_time=20
@@ -12,7 +12,7 @@ case "${1:-}" in
   -*) sed -n '2,5s/^# //p' "${BASH_SOURCE[0]}" >&2 && exit 2 ;;
 esac
 formats=("$@")
-[ ${#formats[@]} -gt 0 ] || formats=(mesh lrb poses scenario crowd experiment trace)
+[ ${#formats[@]} -gt 0 ] || formats=(mesh lrb poses scenario crowd crowd_trace experiment trace)
 build=build/asan-ubsan
 dir=$build/fuzz
 launcher=()
@@ -40,5 +40,5 @@ for format in "${formats[@]}"; do
     exit 1
   fi
   inputs=$(awk '/number_of_executed_units/ { print $2 }' "$dir/$format.log")
-  printf '%-9s %8d inputs in %d s: no crash, none over 10 s\n' "$format" "$inputs" $((SECONDS - begin))
+  printf '%-11s %8d inputs in %d s: no crash, none over 10 s\n' "$format" "$inputs" $((SECONDS - begin))
 done

@@ -79,6 +79,9 @@ std::vector<std::string> scenarios() {
   out.push_back(
       begin +
       R"({"kind": "sweep", "from": [0, 0, 0], "to": [1, 1, 1], "axis": [0, 1, 0], "degrees": 90, "steps": 5}, "frames": {"events": [1, 5]}})");
+  out.push_back(
+      begin +
+      R"({"kind": "sweep", "from": [0, 0, 0], "to": [1, 1, 1]}, "query": {"tolerance": 0.25, "max_tests": 200, "separation": true}, "expect": [{"step": 0, "relation": "unresolved"}]})");
   out.push_back(begin + R"({"kind": "spin", "axis": [0, 1, 0], "degrees": 90, "steps": 5}})");
   return out;
 }
@@ -97,7 +100,34 @@ std::vector<std::string> traces() {
   recorder.refine(Side::a, 2, 4);
   recorder.coarsen(Side::a, 2, 4);
   out.push_back(trace::trace_to_json(recorder.take()));
+  trace::RecorderSettings coarse;
+  coarse.request.tolerance = 0.5;
+  coarse.request.max_tests = 9;
+  coarse.request.separation = true;
+  trace::Recorder other(plate, plate, coarse);
+  other.begin_step(0, Pose{});
+  other.face_test(1, plate.real_simplex_count(), exact::Meet::touch, 0, 0);
+  other.contact(1, plate.real_simplex_count(), exact::Meet::touch);
+  CollideResult result;
+  result.relation = Relation::unresolved;
+  result.error_bound = 0.25;
+  result.finished = false;
+  result.separation = Separation{{{{0}, {1}}}, {7, 6}};
+  other.end_step(result);
+  out.push_back(trace::trace_to_json(other.take()));
   return out;
+}
+
+std::vector<std::string> crowd_traces() {
+  return {R"({"traceEvents": [
+{"name":"step","cat":"step","ph":"X","ts":0,"dur":3,"pid":1,"tid":1,"args":{"time step":0,"bodies":2,"bodies in contact":0,"queries":1}},
+{"name":"ball 2","cat":"separate","ph":"X","ts":1,"dur":2,"pid":1,"tid":3,"args":{"time step":0,"A":"ball 1","B":"ball 2","relation":"separate","pairs":0,"fingerprint":"cbf29ce484222325"}},
+{"name":"ball 1","cat":"separate","ph":"X","ts":1,"dur":2,"pid":1,"tid":4,"args":{"time step":0,"A":"ball 1","B":"ball 2","relation":"separate","pairs":0,"fingerprint":"cbf29ce484222325"}}],
+"metadata": {"lrbscope": "0.1.0", "format": "lrbscope crowd", "version": 2, "clock": "event", "crowd": {"name": "x", "hash": "0123456789abcdef"},
+"request": {"mode": "all", "recursion": "complete", "predicates": "exact", "wrapper": "regularised", "contacts": true, "interiors_overlap": false},
+"room": [1.0, 2.0, 3.0], "kinds": [{"name": "ball", "count": 2, "body": {"name": "b", "source": "s", "hash": "0123456789abcdef", "dim": 3, "closed": true, "real_faces": 8, "total_faces": 8, "outer_faces": 8, "regions": 0, "layers": 0, "real_simplices": 8, "simplices": 8}}],
+"steps": 1, "poses": [[[1.0, 0.0, 0.0, 5.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0], [1.0, 0.0, 0.0, -0.0, 0.0, 1.0, 0.0, 0.5, 0.0, 0.0, 1.0, 1e-300]]],
+"query_slices": {"stored": 2, "seen": 2, "truncated": false}}})"};
 }
 
 }  // namespace
@@ -109,7 +139,8 @@ std::vector<Format> formats() {
           {"scenario", feed_scenario, scenarios()},
           {"crowd", feed_crowd, shipped(".crowd.json")},
           {"experiment", feed_experiment, shipped(".experiment.json")},
-          {"trace", feed_trace, traces()}};
+          {"trace", feed_trace, traces()},
+          {"crowd_trace", feed_crowd_trace, crowd_traces()}};
 }
 
 }  // namespace lrb::fuzz

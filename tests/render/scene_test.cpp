@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <map>
 #include <set>
+#include <utility>
 
 #include <doctest/doctest.h>
 
@@ -304,6 +305,48 @@ TEST_CASE("many bodies: each in its colour, faces in contact in that of contacts
     SceneHighlight highlight;
     highlight.refining[0] = {0};
     CHECK_THROWS_AS(build_scene(bodies, highlight), InputError);
+  }
+}
+
+TEST_CASE(
+    "pseudo faces in contact are marked where a wrapper is shown, even one that was refined beyond them") {
+  const LrbRep solid = test::dented(shapes::icosphere(0), 1), flat = test::dented(shapes::circle(5), 1);
+  for (const LrbRep* rep : {&solid, &flat}) {
+    const FaceId lid = rep->lids(0)[0];
+    std::vector<std::uint8_t> marks(rep->face_count());
+    marks[lid] = marks[0] = 1;
+    Wrapper closed(*rep), open(*rep);
+    open.refine(0);
+    for (const Wrapper* wrapper :
+         {static_cast<const Wrapper*>(nullptr), &std::as_const(closed), &std::as_const(open)}) {
+      SceneBody body;
+      body.rep = rep;
+      body.wrapper = wrapper;
+      body.in_contact = marks;
+      const Scene scene = build_scene(std::vector<SceneBody>{body});
+      const auto red = [](Rgba c) { return with_alpha(c, 255) == palette::kContact; };
+      std::size_t real = 0, pseudo = 0;
+      if (rep == &solid) {
+        for (const DrawTriangle& t : scene.list.triangles)
+          if (red(t.colour)) ++(t.layer == Layer::translucent ? pseudo : real);
+      } else {
+        for (const DrawLine& l : scene.list.lines)
+          if (red(l.colour)) ++(l.dash > 0 ? pseudo : real);
+      }
+      SceneOptions rims;
+      rims.contact_rims = true;
+      const Scene with_rims = build_scene(std::vector<SceneBody>{body}, {}, rims);
+      const std::size_t more = with_rims.list.lines.size() - scene.list.lines.size();
+      CHECK((more > 0) == (rep == &solid));
+      CHECK(real == 1);
+      CHECK((pseudo > 0) == (wrapper != nullptr));
+      const auto has = [&](const std::string& text) {
+        return std::any_of(scene.key.begin(), scene.key.end(),
+                           [&](const LegendItem& item) { return item.text == text; });
+      };
+      CHECK(has("real faces that meet"));
+      CHECK(has("pseudo faces that meet") == (wrapper != nullptr));
+    }
   }
 }
 

@@ -1,4 +1,6 @@
 #include <filesystem>
+#include <map>
+#include <set>
 #include <sstream>
 #include <string>
 
@@ -246,9 +248,91 @@ TEST_CASE("an output folder that cannot be made is the environment's fault") {
   CHECK(o.out.empty());
 }
 
+TEST_CASE("run and render: a tolerance, a limit, certificates; answers as query gives them") {
+  const Folder folder;
+  std::set<std::string> relations;
+  bool pseudo = false;
+  for (const json& query : {json{{"tolerance", 0.3}, {"separation", true}}, json{{"max_tests", 60}},
+                            json{{"separation", true}}}) {
+    CAPTURE(query.dump());
+    const json rock = {{"generator", "rock"}, {"parameters", {{"frequency", 5}}}};
+    const json s = {
+        {"name", "coarse"},
+        {"purpose", "two rocks"},
+        {"bodies", {{"a", rock}, {"b", rock}}},
+        {"motion", {{"kind", "sweep"}, {"from", {3.2, 0.1, 0.2}}, {"to", {1.2, 0, 0}}, {"steps", 6}}},
+        {"query", query},
+        {"frames", {{"size", {320, 240}}}}};
+    folder.write("s.json", s.dump(1));
+    const Outcome ran = run(folder, {"run", "s.json", "-o", "one"});
+    CAPTURE(ran.err);
+    REQUIRE(ran.code == 0);
+    const json steps = json::parse(slurp(folder / "one/summary.json"))["steps"];
+    const json trace = json::parse(slurp(folder / "one/trace.json"));
+    std::string poses;
+    for (const json& step : trace["metadata"]["steps"]) {
+      for (const json& x : step["pose_b"]) poses += x.dump() + " ";
+      poses += "\n";
+    }
+    folder.write("p.txt", poses);
+    std::vector<std::string> ask = {"query", "one/a.lrb", "one/b.lrb", "--poses", "p.txt"};
+    if (query.contains("tolerance")) ask.insert(ask.end(), {"--tolerance", query["tolerance"].dump()});
+    if (query.contains("max_tests")) ask.insert(ask.end(), {"--max-tests", query["max_tests"].dump()});
+    if (query.contains("separation")) ask.emplace_back("--separation");
+    std::istringstream lines(run(folder, ask).out);
+    std::size_t at = 0;
+    bool proved = false;
+    for (std::string line; std::getline(lines, line); ++at) {
+      const json answer = json::parse(line);
+      for (const char* key : {"relation", "pairs", "fingerprint", "finished", "separation"}) {
+        CAPTURE(key);
+        CHECK(answer.value(key, json()) == steps[at].value(key, json()));
+      }
+      CHECK(answer.contains("error_bound") == steps[at].contains("error_bound"));
+      if (answer.contains("error_bound") && answer["error_bound"].is_number())
+        CHECK(answer["error_bound"].get<double>() ==
+              doctest::Approx(steps[at]["error_bound"].get<double>()).epsilon(1e-4));
+      relations.insert(answer["relation"].get<std::string>());
+      proved |= answer.contains("separation");
+    }
+    CHECK(at == steps.size());
+    CHECK(fs::exists(folder / "one/separation.png") == proved);
+    CHECK(proved == query.contains("separation"));
+    pseudo |= slurp(folder / "one/trace.json").find("pseudo simplex of A") != std::string::npos;
+    const std::string page = slurp(folder / "one/index.html");
+    CHECK((page.find("Error bound") != std::string::npos) ==
+          (query.contains("tolerance") || query.contains("max_tests")));
+    CHECK((page.find("Proof that the bodies are apart") != std::string::npos) == proved);
+    REQUIRE(run(folder, {"render", "one/trace.json", "-o", "two", "--size", "320x240"}).code == 0);
+    for (std::size_t i = 0; i < steps.size(); ++i) {
+      const std::string frame = "/frames/frame_000" + std::to_string(i) + ".png";
+      CHECK(lrb::read_png(folder / ("two" + frame)).image == lrb::read_png(folder / ("one" + frame)).image);
+    }
+    CHECK(fs::exists(folder / "two/separation.png") == proved);
+  }
+  CHECK(relations.contains("separate"));
+  CHECK(relations.contains("unresolved"));
+  CHECK(relations.contains("crossing"));
+  CHECK(pseudo);
+}
+
 TEST_CASE("list, help and version go to stdout") {
   const Folder folder;
-  CHECK(run(folder, {"list"}).out.find("figure2") != std::string::npos);
+  const std::string list = run(folder, {"list"}).out;
+  for (const char* line :
+       {"scenarios, for lrbscope run\n", "\n  figure2 ", "crowds, for lrbscope crowd\n  crowd ",
+        "experiments, for lrbscope paper --experiment\n", "\n  table1 "}) {
+    CAPTURE(line);
+    CHECK(list.find(line) != std::string::npos);
+  }
+  std::map<std::string, int> kinds;
+  for (const json& item : json::parse(run(folder, {"list", "--json"}).out)) {
+    CHECK(item["purpose"].get<std::string>().size() > 20);
+    ++kinds[item["kind"].get<std::string>()];
+  }
+  CHECK(kinds["scenario"] >= 9);
+  CHECK(kinds["crowd"] >= 1);
+  CHECK(kinds["experiment"] >= 5);
   CHECK(json::parse(run(folder, {"list", "--generators", "--json"}).out).size() >= 8);
   CHECK(run(folder, {"--help"}).code == 0);
   CHECK(run(folder, {"query", "--help"}).out.find("--poses") != std::string::npos);

@@ -17,6 +17,7 @@
 #include "engine/query/brute_force.hpp"
 #include "scenarios/crowd/crowd_frames.hpp"
 #include "scenarios/crowd/crowd_json.hpp"
+#include "scenarios/crowd/crowd_replay.hpp"
 #include "scenarios/crowd/crowd_report.hpp"
 #include "scenarios/crowd/task_pool.hpp"
 #include "scenarios/embedded.hpp"
@@ -79,6 +80,13 @@ bool schema_accepts(const json& j) {
   valijson::SchemaParser(valijson::SchemaParser::kDraft7)
       .populateSchema(valijson::adapters::NlohmannJsonAdapter(document), schema, fetch, release);
   return valijson::Validator().validate(schema, valijson::adapters::NlohmannJsonAdapter(j), nullptr);
+}
+
+/// As write_crowd() left them.
+std::vector<LoadedBody> saved_kinds(const Crowd& crowd, const std::string& folder) {
+  std::vector<LoadedBody> out;
+  for (const CrowdKind& kind : crowd.kinds) out.push_back(load_body(folder + "/" + kind.name + ".lrb"));
+  return out;
 }
 
 std::string trace_of(const Crowd& crowd, const CrowdRun& run) {
@@ -156,6 +164,102 @@ TEST_CASE("the number of threads does not show in trace, numbers or pictures") {
   }
 }
 
+TEST_CASE("a crowd's trace is enough to draw it again, pixel by pixel") {
+  const auto folder = std::filesystem::temp_directory_path() / "lrbscope_crowd_replay_test";
+  for (const json& j : {good(), good_2d()})
+    for (const trace::Clock clock : {trace::Clock::event, trace::Clock::wall}) {
+      Crowd crowd = crowd_of(j);
+      crowd.clock = clock;
+      const CrowdRun run = run_crowd(crowd, 2, kSilent);
+      const std::string first = (folder / "run").string(), again = (folder / "again").string();
+      write_crowd(crowd, run, first, "lrbscope crowd", kSilent);
+      const std::string text = read_text(first + "/trace.json");
+      REQUIRE(is_crowd_trace(text));
+      CrowdTrace trace = read_crowd_trace(text, "t.json");
+      CHECK(trace.steps == crowd.steps);
+      CHECK(trace.crowd.steps == crowd.steps);
+      trace.crowd.frames = crowd.frames;
+      const CrowdRun replayed = replay_crowd(trace, saved_kinds(crowd, first), 1, kSilent);
+      CHECK(replayed.notes.empty());
+      CHECK(crowd_summary(trace.crowd, replayed).size() > 1000);
+      for (std::uint32_t step = 0; step < crowd.steps; ++step)
+        for (std::uint32_t i = 0; i < run.motion.body_count(); ++i)
+          REQUIRE(trace::equal(replayed.motion.pose(i, step), run.motion.pose(i, step)));
+      redraw_crowd(trace.crowd, replayed, again, "lrbscope render", first + "/trace.json", kSilent);
+      for (const char* f : {"/frames/frame_0000.png", "/frames/frame_0001.png"})
+        CHECK((read_text(again + f) == read_text(first + f)));
+      const std::string page = read_text(again + "/index.html");
+      CHECK(page.find("../run/trace.json") != std::string::npos);
+      CHECK(page.find("summary.json") == std::string::npos);
+    }
+  std::filesystem::remove_all(folder);
+}
+
+TEST_CASE("traces of crowds that are cut, damaged, old or of other bodies") {
+  Crowd crowd = crowd_of(good());
+  crowd.frames.at = FrameSpec::At::none;
+  const CrowdRun run = run_crowd(crowd, 1, kSilent);
+  const std::string text = trace_of(crowd, run);
+  const auto kinds = [&] {
+    std::vector<LoadedBody> out;
+    for (const CrowdKind& kind : crowd.kinds) out.push_back(make_body(kind.body));
+    return out;
+  };
+  const auto error = [&](const std::string& damaged, std::vector<LoadedBody> bodies) -> std::string {
+    try {
+      static_cast<void>(replay_crowd(read_crowd_trace(damaged, "t.json"), std::move(bodies), 1, kSilent));
+    } catch (const InputError& e) {
+      CHECK(std::string(e.what()).find('\n') == std::string::npos);
+      return e.what();
+    }
+    return {};
+  };
+  CHECK(error(text, kinds()).empty());
+  crowd.max_events = 150;
+  const CrowdTrace cut = read_crowd_trace(trace_of(crowd, run), "t.json");
+  CHECK(cut.steps == 5);
+  CHECK(cut.crowd.steps > 0);
+  CHECK(cut.crowd.steps < 5);
+  const CrowdRun part = replay_crowd(cut, kinds(), 1, kSilent);
+  CHECK(part.steps.size() == cut.crowd.steps);
+  CHECK(part.notes.at(0).find(" of 5 steps (trace.max_events)") != std::string::npos);
+  crowd.max_events = 3;
+  CHECK(error(trace_of(crowd, run), kinds()) ==
+        "t.json: holds no step whole: run the crowd again with a larger trace.max_events");
+
+  const json whole = json::parse(text);
+  const auto changed = [&](const std::string& pointer, const json& value) {
+    json j = whole;
+    j[json::json_pointer(pointer)] = value;
+    return error(j.dump(), kinds());
+  };
+  std::vector<LoadedBody> swapped = kinds();
+  std::swap(swapped[0], swapped[2]);
+  CHECK(error(text, std::move(swapped)).find("trace: body ball was recorded as ") == 0);
+  std::vector<LoadedBody> few = kinds();
+  few.pop_back();
+  CHECK(error(text, std::move(few)) == "t.json: has 4 kinds of bodies, given are 3");
+  CHECK(changed("/metadata/poses/2/0/3", 1.25).find("t.json: step 2, ball 1 and ") == 0);
+  CHECK(changed("/metadata/version", 1).find("run the crowd again") != std::string::npos);
+  CHECK(changed("/metadata/version", 3).find("written in format 3") != std::string::npos);
+  CHECK(changed("/metadata/kinds/0/name", "../x").find("/metadata/kinds/0/name: ") != std::string::npos);
+  CHECK(changed("/metadata/kinds/0/name", "bal").find("a query names ball 1, which is no body") !=
+        std::string::npos);
+  CHECK(changed("/metadata/kinds/1/name", "ball").find("/metadata/kinds/1/name: ") != std::string::npos);
+  CHECK(changed("/metadata/kinds/1/count", 100000).find("/metadata/kinds/1/count: ") != std::string::npos);
+  CHECK(changed("/metadata/kinds/1/body/dim", 2).find("bodies of one dimension") != std::string::npos);
+  CHECK(changed("/metadata/poses/0/1", json::array({1, 2})).find("/metadata/poses/0/1: expected 12") !=
+        std::string::npos);
+  CHECK(changed("/metadata/poses/0/1/3", 1e300).find("/metadata/poses/0/1: ") != std::string::npos);
+  CHECK(changed("/metadata/poses/0", json::array()).find("12 poses, one a body") != std::string::npos);
+  CHECK(changed("/metadata/room", json::array({1, 2, -1})).find("/metadata/room/2: ") != std::string::npos);
+  json other = whole;
+  for (json& e : other["traceEvents"])
+    if (e["args"].contains("fingerprint") && e["args"]["relation"] == "crossing")
+      e["args"]["fingerprint"] = "0000000000000000";
+  CHECK(error(other.dump(), kinds()).find(": recorded was crossing in ") != std::string::npos);
+}
+
 TEST_CASE("slices of a track lie one after the other, and say what was asked and answered") {
   Crowd crowd = crowd_of(good());
   for (const trace::Clock clock : {trace::Clock::event, trace::Clock::wall}) {
@@ -203,6 +307,7 @@ TEST_CASE("bodies stay in the room as far as they fit") {
 
 TEST_CASE("the shipped crowd is valid and has about forty bodies") {
   const Crowd crowd = open_crowd("crowd");
+  CHECK((shipped_crowds() == std::vector<std::string>{"crowd"}));
   CHECK(crowd.body_count() == 40);
   CHECK(schema_accepts(json::parse(embedded_file("crowd.crowd.json"))));
 }
@@ -224,6 +329,9 @@ TEST_CASE("schema and reader agree on good and bad crowds") {
                         with("/motion/speed", -1),
                         with("/query", {{"contacts", false}}),
                         with("/query/mode", "some"),
+                        with("/query/tolerance", 0.1),
+                        with("/query/max_tests", 10),
+                        with("/query/separation", true),
                         with("/trace", {{"clock", "wall"}, {"max_events", 10}}),
                         with("/trace/gzip", true),
                         with("/frames/at", "none"),
@@ -241,6 +349,8 @@ TEST_CASE("what is wrong with a crowd is said with its place") {
   CHECK(error_of(with("/motion/speed", {2, 1})).find("/motion/speed: expected 0 <= least <= most") !=
         std::string::npos);
   CHECK(error_of(with("/bodies/1/name", "ball")).find("other bodies are called ball") != std::string::npos);
+  CHECK(error_of(with("/query/tolerance", 0.1)).find("/query/tolerance: queries of a crowd are exact") !=
+        std::string::npos);
   json mixed = good();
   mixed["bodies"].push_back({{"name", "flat"}, {"body", {{"generator", "island"}}}});
   CHECK_THROWS_WITH_AS(static_cast<void>(run_crowd(crowd_of(mixed), 1, kSilent)),

@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include <Eigen/Geometry>
 #include <doctest/doctest.h>
 
@@ -137,7 +139,19 @@ TEST_CASE("the shipped collisions come out as they promise, and as brute force h
     for (const std::string& line : mismatches(s, r)) FAIL_CHECK(line);
     const trace::Step& last = r.trace.steps.back();
     const BruteForceResult truth = brute_force(r.bodies[0].rep, last.pose_a, r.bodies[1].rep, last.pose_b);
-    CHECK(truth.pairs == r.results.back().pairs);
-    CHECK(truth.relation == r.results.back().relation);
+    const CollideResult& answer = r.results.back();
+    CHECK(truth.relation == answer.relation);
+    if (!s.request.is_coarse()) {
+      CHECK(truth.pairs == answer.pairs);
+      continue;
+    }
+    CHECK(answer.error_bound > 0);
+    std::size_t real = 0;
+    for (const SimplexPair& p : answer.pairs) {
+      if (!r.bodies[0].rep.is_real_simplex(p.a) || !r.bodies[1].rep.is_real_simplex(p.b)) continue;
+      CHECK(std::binary_search(truth.pairs.begin(), truth.pairs.end(), p));
+      ++real;
+    }
+    CHECK(real < answer.pairs.size());  // or it shows nothing
   }
 }

@@ -132,6 +132,50 @@ TEST_CASE("run --format svg: frames, montage and caption; the former run's are g
     CHECK_FALSE(std::filesystem::exists(folder / gone));
 }
 
+TEST_CASE("render: of a crowd's trace, with the flags that fit") {
+  const Folder folder;
+  folder.write("c.json", R"({"name": "few", "purpose": "p", "room": [2, 2, 2],
+    "bodies": [{"name": "bead", "body": {"generator": "ball", "parameters": {"frequency": 2, "radius": 0.5}}, "count": 4},
+               {"name": "bowl", "body": {"generator": "bowl", "parameters": {"segments": 10, "rows": 4}}}],
+    "motion": {"steps": 3, "speed": 0.1, "spin": 5}, "frames": {"size": [320, 240]}})");
+  REQUIRE(run(folder, {"crowd", "c.json", "-o", "run"}).code == 0);
+  const Outcome same = run(folder, {"render", "run/trace.json", "-o", "again", "--size", "320x240"});
+  CAPTURE(same.err);
+  REQUIRE(same.code == 0);
+  CHECK(same.out == "again/index.html\n");
+  for (int i = 0; i < 3; ++i) {
+    const std::string frame = "/frames/frame_000" + std::to_string(i) + ".png";
+    CHECK(read_png(folder / ("again" + frame)).image == read_png(folder / ("run" + frame)).image);
+  }
+  REQUIRE(
+      run(folder, {"render", "run/trace.json", "-o", "close", "--size", "640x240", "--close-up", "--every",
+                   "2", "--transparent", "--up", "y", "--bodies", "run/bead.lrb", "run/bowl.lrb"})
+          .code == 0);
+  CHECK(std::filesystem::exists(folder / "close/frames/frame_0001.png"));
+  CHECK(!std::filesystem::exists(folder / "close/frames/frame_0002.png"));
+  const std::vector<std::string> before = folder.tree();
+  for (const std::vector<std::string>& flags : {std::vector<std::string>{"--montage", "2"},
+                                                {"--events", "3"},
+                                                {"--region", "1"},
+                                                {"--no-ghost"},
+                                                {"--format", "svg"},
+                                                {"--colour-by", "layer"},
+                                                {"--frames", "refinement"},
+                                                {"--frames", "event"},
+                                                {"--size", "8000x8000", "--dpi", "2400"},
+                                                {"--bodies", "run/bead.lrb"},
+                                                {"--bodies", "run/bowl.lrb", "run/bead.lrb"}}) {
+    std::vector<std::string> all = {"--quiet", "render", "run/trace.json", "-o", "out"};
+    all.insert(all.end(), flags.begin(), flags.end());
+    const Outcome o = run(folder, all);
+    CAPTURE(o.err);
+    CHECK(o.code == 2);
+    CHECK(o.error_lines() == 1);
+    CHECK(o.out.empty());
+    CHECK(folder.tree() == before);
+  }
+}
+
 TEST_CASE("render: flags that do not fit are refused before anything is written") {
   const Folder folder;
   folder.write("s.json", scenario("ball"));

@@ -96,6 +96,27 @@ TEST_CASE("schema and reader agree on good and bad files") {
       with("/query", json{{"recursion", "papr"}}),
       with("/query", json{{"predicates", "floating"}}),
       with("/query", json{{"predicates", "floatin"}}),
+      with("/query", json{{"tolerance", 0.1}, {"max_tests", 200}, {"separation", true}}),
+      with("/query", json{{"tolerance", 0}, {"contacts", true}}),
+      with("/query", json{{"tolerance", 0.1}, {"mode", "first"}, {"contacts", false}}),
+      with("/query", json{{"separation", true}, {"contacts", true}, {"interiors_overlap", true}}),
+      with("/query", json{{"separation", true}, {"recursion", "paper"}}),
+      with("/query", json{{"tolerance", -0.1}}),
+      with("/query", json{{"tolerance", "0.1"}}),
+      with("/query", json{{"tolerance", 1e200}}),
+      with("/query", json{{"max_tests", 0}}),
+      with("/query", json{{"max_tests", 1.5}}),
+      with("/query", json{{"max_tests", -3}}),
+      with("/query", json{{"separation", 1}}),
+      with("/query", json{{"max_time", 1}}),
+      with("/query", json{{"tolerence", 1}}),
+      with("/query", json{{"tolerance", 0.1}, {"contacts", true}}),
+      with("/query", json{{"max_tests", 10}, {"contacts", true}}),
+      with("/query", json{{"tolerance", 0.1}, {"recursion", "paper"}}),
+      with("/query", json{{"max_tests", 10}, {"recursion", "paper_strict"}}),
+      with("/query", json{{"tolerance", 0.1}, {"wrapper", "unregularised"}}),
+      with("/query", json{{"tolerance", 0.1}, {"interiors_overlap", true}}),
+      with("/expect", json::array({{{"step", 3}, {"relation", "unresolved"}}})),
       with("/trace", json{{"clock", "wall"}, {"gzip", true}, {"max_events", 10}}),
       with("/trace", json{{"max_events", 0}}),
       with("/frames",
@@ -131,6 +152,30 @@ TEST_CASE("errors name file, line, column and the nearest known word") {
   const std::string parameter = error_of(with("/bodies/b/parameters/freqency", 3));
   CHECK(parameter.find("did you mean \"frequency\"?") != std::string::npos);
   CHECK(error_of(with("/bodies/a/pose", json{1, 2, 3})).find("expected 12 numbers, found 3") !=
+        std::string::npos);
+}
+
+TEST_CASE(
+    "a query that does no more than a scene needs: read as it is, and what cannot be is said in a line") {
+  const CollideRequest r =
+      parse_scenario(with("/query", json{{"tolerance", 0.25}, {"max_tests", 200}, {"separation", true}}), "s")
+          .request;
+  CHECK(r.tolerance == 0.25);
+  CHECK(r.max_tests == 200);
+  CHECK(r.separation);
+  CHECK(!r.contacts);  // which exact queries have by default
+  CHECK(parse_scenario(with("/query", json{{"separation", true}}), "s").request.contacts);
+  const auto error = [](const json& query) { return error_of(with("/query", query)); };
+  CHECK(error({{"max_time", 2}})
+            .find("/query/max_time: how far a query comes in a time differs from run to "
+                  "run, and the same file is to give the same trace: give max_tests "
+                  "instead") != std::string::npos);
+  CHECK(error({{"tolerance", -1}}).find("/query/tolerance: expected a number from 0 to ") !=
+        std::string::npos);
+  CHECK(error({{"tolerence", 1}}).find("unknown key; did you mean \"tolerance\"?") != std::string::npos);
+  CHECK(error({{"tolerance", 1}, {"contacts", true}})
+            .find("/query: contacts and interiors_overlap are exact") != std::string::npos);
+  CHECK(error({{"max_tests", 9}, {"recursion", "paper"}}).find("needs the complete recursion") !=
         std::string::npos);
 }
 

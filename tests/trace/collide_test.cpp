@@ -1,12 +1,15 @@
 /// The recorder on the real query.
 
 #include <algorithm>
+#include <cmath>
 
 #include <doctest/doctest.h>
 
+#include "engine/build/build.hpp"
 #include "engine/query/collide_impl.hpp"
 #include "scenarios/shapes/hand_made.hpp"
 #include "scenarios/shapes/random_pose.hpp"
+#include "scenarios/shapes/shapes.hpp"
 #include "tests/support/lrb_shapes.hpp"
 #include "trace/counters.hpp"
 #include "trace/cursor.hpp"
@@ -125,6 +128,57 @@ TEST_CASE(
         CHECK(refinement.a == (refinement.side == Side::a ? cover_a : cover_b));
       }
     }
+}
+
+TEST_CASE(
+    "coarse queries and certificates: the trace has what was answered, and says which faces are pseudo") {
+  const LrbRep a = build_lrb(shapes::bumpy_sphere(2, 7, 0.3)), b = build_lrb(shapes::bumpy_sphere(2, 8, 0.3));
+  const LrbRep flat_a = build_lrb(shapes::gear(24)), flat_b = build_lrb(shapes::gear(19, 0.9, 0.6));
+  std::size_t pseudo = 0, unfinished = 0, unknown = 0, proofs = 0, earlier = 0;
+  for (const Bodies& bodies : {Bodies{&a, &b}, Bodies{&flat_a, &flat_b}})
+    for (const CollideRequest& request :
+         {CollideRequest{.tolerance = 0.1, .separation = true}, CollideRequest{.max_tests = 40},
+          CollideRequest{.tolerance = 0.02, .max_tests = 300, .separation = true},
+          CollideRequest{.mode = Mode::any_pair, .max_tests = 1}, CollideRequest{.separation = true}}) {
+      CAPTURE(request.tolerance);
+      CAPTURE(request.max_tests);
+      const Recorded run = record(bodies, request, 25);
+      const std::string json = trace_to_json(run.trace);
+      CHECK(trace_from_json(json, "run") == run.trace);
+      std::size_t pseudo_here = 0;
+      for (std::size_t step = 0; step < run.results.size(); ++step) {
+        const CollideResult& result = run.results[step];
+        const StepResult& kept = run.trace.steps[step].result;
+        CHECK(kept.error_bound == result.error_bound);
+        CHECK(kept.finished == result.finished);
+        CHECK(equal(kept.separation, result.separation));
+        unfinished += !kept.finished;
+        unknown += std::isinf(kept.error_bound);
+        proofs += kept.separation.has_value();
+        std::vector<SimplexPair> pairs;
+        for (const Event& e : run.trace.events_of(step)) {
+          if (e.kind != EventKind::contact) continue;
+          pairs.push_back({e.a, e.b});
+          pseudo_here += !bodies.a->is_real_simplex(e.a);
+          pseudo_here += !bodies.b->is_real_simplex(e.b);
+          REQUIRE(e.cause != kNull);
+          const Event& test = run.trace.events[e.cause];
+          CHECK(test.kind == EventKind::face_test);
+          CHECK((test.a == e.a && test.b == e.b && test.meet == e.meet));
+          earlier += run.trace.events[e.cause + 1].kind == EventKind::face_test;
+        }
+        std::sort(pairs.begin(), pairs.end());
+        CHECK((pairs == result.pairs));
+      }
+      pseudo += pseudo_here;
+      CHECK((json.find("\"pseudo simplex of ") != std::string::npos) == (pseudo_here > 0));
+      CHECK((json.find("\"version\": 2") != std::string::npos));
+    }
+  CHECK(pseudo > 100);
+  CHECK(unfinished > 10);
+  CHECK(unknown > 0);
+  CHECK(proofs > 10);
+  CHECK(earlier > 100);
 }
 
 TEST_CASE("the same query twice gives the same trace, and the names agree with the engine's") {

@@ -110,5 +110,15 @@ TEST_CASE("what is around the events is compared too") {
   y = x;
   y.steps[0].result.counters.box_tests += 1;
   CHECK(difference(x, y) == "step 0: counter box_tests: expected 0, found 1");
+  y = x;
+  y.header.request.tolerance = 0.5;
+  CHECK(difference(x, y) == "run: request: tolerance: expected 0, found 0.5");
+  y = x;
+  y.steps[0].result.error_bound = 0.25;
+  CHECK(difference(x, y) == "step 0: error bound: expected 0, found 0.25");
+  y = x;
+  y.steps[0].result.separation = Separation{{{{1}, {}}}, {7, 6}};
+  CHECK(difference(x, y) ==
+        "step 0: certificate of separation: expected none, found wrappers of 7 and 6 faces");
   CHECK(difference(x, box_run({runs::kBoxPoses[0]})) == "run: number of steps: expected 3, found 1");
 }

@@ -10,6 +10,9 @@
 #include <valijson/schema_parser.hpp>
 #include <valijson/validator.hpp>
 
+#include "engine/build/build.hpp"
+#include "engine/query/collide_impl.hpp"
+#include "scenarios/shapes/shapes.hpp"
 #include "tests/trace/runs.hpp"
 #include "trace/trace_json.hpp"
 
@@ -69,6 +72,33 @@ TEST_CASE("traces fulfil the schema") {
   CHECK(complaint(Json::parse(trace_to_json(alone.take()))) == "");
 }
 
+TEST_CASE("traces of coarse queries and certificates do, too") {
+  static const LrbRep rock = build_lrb(shapes::bumpy_sphere(2, 7, 0.3));
+  std::string all;
+  for (const CollideRequest& request :
+       {CollideRequest{.tolerance = 1, .separation = true}, CollideRequest{.max_tests = 1},
+        CollideRequest{.max_time = 1e-9}, CollideRequest{.separation = true}}) {
+    RecorderSettings settings;
+    settings.request = request;
+    Recorder recorder(rock, rock, settings);
+    QueryContext context;
+    for (std::uint32_t step = 0; step < 3; ++step) {
+      const Pose pose = Pose::translation({2.4 - 0.6 * step, 0.1, 0.2});
+      recorder.begin_step(step, {}, pose);
+      recorder.end_step(collide(rock, {}, rock, pose, request, context, recorder));
+    }
+    const std::string text = trace_to_json(recorder.take());
+    CHECK(complaint(Json::parse(text)) == "");
+    all += text;
+  }
+  for (const char* part :
+       {"pseudo simplex of A", "real simplex of A", "\"error_bound\": null", "\"finished\": false",
+        "\"separation\": {", "\"tolerance\"", "\"max_tests\"", "\"max_time\""}) {
+    CAPTURE(std::string(part));
+    CHECK(all.find(part) != std::string::npos);  // or this shows little
+  }
+}
+
 TEST_CASE("broken traces do not fulfil the schema") {
   const Json good = box_run(Clock::event);
   const auto find = [](Json& document, const char* name, const char* phase) -> Json& {
@@ -102,7 +132,16 @@ TEST_CASE("broken traces do not fulfil the schema") {
       {"no region", [&](Json& d) { refine(d)["args"].erase("region"); }},
       {"an unknown argument", [&](Json& d) { refine(d)["args"]["colour"] = 1; }},
       {"another format", [](Json& d) { d["metadata"]["format"] = "other"; }},
-      {"a newer version", [](Json& d) { d["metadata"]["version"] = 2; }},
+      {"a newer version", [](Json& d) { d["metadata"]["version"] = 3; }},
+      {"a negative tolerance", [](Json& d) { d["metadata"]["request"]["tolerance"] = -1; }},
+      {"a contact without simplex",
+       [&](Json& d) { find(d, "contact", "X")["args"].erase("real simplex of A"); }},
+      {"a simplex real and pseudo",
+       [&](Json& d) { find(d, "contact", "X")["args"]["pseudo simplex of A"] = 1; }},
+      {"a certificate of one body",
+       [](Json& d) {
+         d["metadata"]["steps"][0]["result"]["separation"] = {{"faces", {1, 2}}, {"refined", {{1}}}};
+       }},
       {"a short hash", [](Json& d) { d["metadata"]["bodies"][0]["hash"] = "abc"; }},
       {"no body", [](Json& d) { d["metadata"]["bodies"] = Json::array(); }},
       {"a fourth dimension", [](Json& d) { d["metadata"]["bodies"][1]["dim"] = 4; }},

@@ -287,10 +287,31 @@ TEST_CASE("bad files are refused with one line that says where and what") {
   names("{\"traceEvents\": [{\"ph\": 1}]}", "/traceEvents/0/ph");
   names("{\"traceEvents\": [{}]}", "/traceEvents/0/ph: expected a string, found nothing");
   names(std::string(100000, '['), "nested");
-  names(replaced(good, "\"version\": 1", "\"version\": 2"), "/metadata/version: written in format 2");
+  names(replaced(good, "\"version\": 1", "\"version\": 3"), "/metadata/version: written in format 3");
   names(replaced(good, "\"version\": 1", "\"version\": 0"), "/metadata/version");
   names(replaced(good, "\"version\": 1", "\"version\": \"1\""), "expected an integer");
   names(replaced(good, "lrbscope trace", "another trace"), "this is some other file");
+  RecorderSettings settings;
+  settings.request.tolerance = 0.5;
+  settings.request.separation = true;
+  Recorder recorder(box(), box(), settings);
+  recorder.begin_step(0, {}, {});
+  CollideResult result;
+  result.error_bound = 0.25;
+  result.separation = Separation{{{{0}, {0}}}, {7, 6}};
+  recorder.end_step(result);
+  const std::string coarse = trace_to_json(recorder.take());
+  CHECK(complaint(coarse) == "accepted");
+  names(replaced(coarse, "\"tolerance\": 0.5", "\"tolerance\": -0.5"),
+        "/metadata/request/tolerance: expected a number of at least 0");
+  names(replaced(coarse, "\"error_bound\": 0.25", "\"error_bound\": -1"), "/result/error_bound");
+  names(replaced(coarse, "\"error_bound\": 0.25", "\"error_bond\": 1"), "/result/error_bound");
+  CHECK(complaint(replaced(coarse, "\"error_bound\": 0.25", "\"error_bound\": null")) == "accepted");
+  names(replaced(coarse, "\"finished\": true", "\"finished\": 1"),
+        "/result/finished: expected true or false");
+  names(replaced(coarse, "[7, 6]", "[7]"), "/result/separation/faces: expected two numbers");
+  names(replaced(coarse, "[[0], [0]]", "[[0], [1000000]]"),
+        "step 0: its separation names a region that there is not");
   names(replaced(good, "\"name\":\"refine\"", "\"name\":\"refin\""), "refine");
   names(replaced(good, "\"meet\":\"cross\"", "\"meet\":\"crosses\""),
         "/args/meet: expected disjoint, touch or cross");

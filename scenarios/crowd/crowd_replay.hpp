@@ -1,0 +1,42 @@
+#pragma once
+/// A crowd's trace, read back: enough to draw its steps again.
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "scenarios/crowd/crowd_run.hpp"
+
+namespace lrb {
+
+struct CrowdTrace {
+  /// One query's answer.
+  struct Answer {
+    BodyPair bodies{0, 0};
+    Relation relation = Relation::separate;
+    std::uint64_t pairs = 0, fingerprint = 0;
+    friend auto operator<=>(const Answer&, const Answer&) = default;
+  };
+  std::string file;         ///< for messages
+  Crowd crowd;              ///< as far as pictures need it; steps: those that the trace holds whole
+  std::uint32_t steps = 0;  ///< that were played
+  std::vector<trace::BodyInfo> bodies;       ///< one a kind
+  std::vector<std::vector<Pose>> poses;      ///< by whole step and body
+  std::vector<std::vector<Answer>> answers;  ///< by whole step, ascending by bodies
+};
+
+/// Whether a trace says that it is one of a crowd.
+bool is_crowd_trace(std::string_view text);
+
+/// Reads what write_crowd_trace() wrote. Throws InputError as trace_from_json() does, and for a trace that
+/// holds no step whole; any bytes are safe.
+CrowdTrace read_crowd_trace(std::string_view text, const std::string& file);
+
+/// Asks the queries of the whole steps again, for what the trace does not hold (regions that were opened,
+/// pairs of faces, contacts), and requires the answers that it has. `kinds`: the bodies that were recorded.
+/// Throws InputError if these are others, or answer otherwise.
+CrowdRun replay_crowd(const CrowdTrace& trace, std::vector<LoadedBody> kinds, std::uint32_t threads,
+                      const ProgressReport& progress);
+
+}  // namespace lrb

@@ -1,0 +1,174 @@
+#include <algorithm>
+#include <limits>
+#include <map>
+
+#include "engine/error.hpp"
+#include "engine/mesh/file_bytes.hpp"
+#include "scenarios/crowd/crowd_json.hpp"
+#include "scenarios/crowd/crowd_replay.hpp"
+#include "trace/json_read.hpp"
+
+namespace lrb {
+namespace {
+
+using trace::TraceNode;
+
+class Reader {
+ public:
+  Reader(std::string_view text, const std::string& file) : text_(text) { t_.file = printable_name(file); }
+
+  CrowdTrace run() {
+    const nlohmann::json document =
+        trace::parse_events(text_, t_.file, [this](const TraceNode& event) { take(event); });
+    const TraceNode root(document, t_.file);
+    const TraceNode metadata = root.at("metadata");
+    trace::check_format(metadata, t_.file, kCrowdFormat, kCrowdVersion);
+    if (metadata.at("version").integer<std::uint32_t>() < kCrowdVersion)
+      throw InputError(t_.file +
+                       ": was recorded by an lrbscope that did not keep where the bodies are: run the "
+                       "crowd again");
+    read_header(metadata);
+    read_kinds(metadata.at("kinds"));
+    read_answers();
+    read_poses(metadata.at("poses"));
+    t_.steps = metadata.at("steps").integer<std::uint32_t>();
+    keep_whole_steps();
+    return std::move(t_);
+  }
+
+ private:
+  /// As in the trace, on one track or two.
+  struct Slice {
+    std::uint32_t step;
+    std::string a, b;
+    Relation relation;
+    std::uint64_t pairs, fingerprint;
+  };
+
+  void take(const TraceNode& event) {
+    if (event.at("ph").string() != "X") return;
+    const TraceNode args = event.at("args");
+    if (args.has("queries")) {
+      if (args.at("time step").integer<std::uint32_t>() != queries_.size())
+        args.at("time step").fail(std::to_string(queries_.size()) + ", the next step");
+      queries_.push_back(args.at("queries").integer<std::uint32_t>());
+    }
+    if (!args.has("relation")) return;
+    // Version 1, which is refused once it is known, did not say the step.
+    const auto step = args.has("time step") ? args.at("time step").integer<std::uint32_t>() : 0U;
+    slices_.push_back({step, args.at("A").string(), args.at("B").string(),
+                       args.at("relation").named<Relation>(), args.at("pairs").integer<std::uint64_t>(),
+                       args.at("fingerprint").hash()});
+  }
+
+  void read_header(const TraceNode& metadata) {
+    Crowd& c = t_.crowd;
+    c.name = metadata.at("crowd").at("name").string();
+    c.hash = metadata.at("crowd").at("hash").hash();
+    c.clock = metadata.at("clock").named<trace::Clock>();
+    c.request = trace::read_request(metadata.at("request"));
+    const TraceNode room = metadata.at("room");
+    if (room.array_size() != 3) room.fail("three sizes");
+    for (int axis = 0; axis < 3; ++axis) {
+      const TraceNode size = room.at(static_cast<std::size_t>(axis));
+      c.room[axis] = size.least(0);
+      if (c.room[axis] > kFar) size.fail("a room of finite size");
+    }
+  }
+
+  void read_kinds(const TraceNode& kinds) {
+    const std::size_t count = kinds.array_size();
+    if (count == 0) kinds.fail("at least one kind of bodies");
+    for (std::size_t k = 0; k < count; ++k) {
+      const TraceNode node = kinds.at(k);
+      CrowdKind kind;
+      kind.name = node.at("name").string();
+      // It names a file beside the trace.
+      if (kind.name.empty() || kind.name.find_first_of("/.\\") != std::string::npos)
+        node.at("name").fail("the name of a kind of bodies");
+      kind.count = node.at("count").integer<std::uint32_t>(kMostCrowdBodies);
+      if (kind.count == 0 || names_.size() + kind.count > kMostCrowdBodies)
+        node.at("count").fail("1 body at least and 10000 in all at most");
+      for (std::uint32_t i = 1; i <= kind.count; ++i)
+        if (!names_.emplace(kind.name + " " + std::to_string(i), names_.size()).second)
+          node.at("name").fail("another name for each kind");
+      t_.bodies.push_back(trace::read_body(node.at("body")));
+      if (t_.bodies.back().dim != t_.bodies.front().dim)
+        node.at("body").at("dim").fail("bodies of one dimension");
+      t_.crowd.kinds.push_back(std::move(kind));
+    }
+  }
+
+  std::uint32_t body_called(const std::string& name) const {
+    const auto body = names_.find(name);
+    if (body == names_.end())
+      throw InputError(t_.file + ": a query names " + printable_name(name) +
+                       ", which is no body; the trace is damaged: record it again");
+    return static_cast<std::uint32_t>(body->second);
+  }
+
+  void read_answers() {
+    t_.answers.resize(queries_.size());
+    for (const Slice& s : slices_) {
+      if (s.step >= queries_.size())
+        throw InputError(t_.file + ": a query is of step " + std::to_string(s.step) +
+                         ", which there is not; the trace is damaged: record it again");
+      const BodyPair bodies{body_called(s.a), body_called(s.b)};
+      t_.answers[s.step].push_back({bodies, s.relation, s.pairs, s.fingerprint});
+    }
+    for (std::vector<CrowdTrace::Answer>& step : t_.answers) {
+      std::sort(step.begin(), step.end());
+      step.erase(std::unique(step.begin(), step.end()), step.end());  // a query may be on two tracks
+    }
+  }
+
+  void read_poses(const TraceNode& steps) {
+    const std::size_t count = steps.array_size();
+    for (std::size_t i = 0; i < count; ++i) {
+      const TraceNode bodies = steps.at(i);
+      if (bodies.array_size() != names_.size())
+        bodies.fail(std::to_string(names_.size()) + " poses, one a body");
+      std::vector<Pose>& poses = t_.poses.emplace_back();
+      for (std::size_t body = 0; body < names_.size(); ++body) {
+        const Pose pose = trace::read_pose(bodies.at(body));
+        if (!(pose.r.cwiseAbs().maxCoeff() <= kFar && pose.t.cwiseAbs().maxCoeff() <= kFar))
+          bodies.at(body).fail("a pose near the room");
+        poses.push_back(pose);
+      }
+    }
+  }
+
+  void keep_whole_steps() {
+    std::size_t whole = 0;
+    while (whole < std::min(t_.poses.size(), queries_.size()) && t_.answers[whole].size() == queries_[whole])
+      ++whole;
+    if (whole == 0)
+      throw InputError(t_.file + ": holds no step whole: run the crowd again with a larger trace.max_events");
+    t_.crowd.steps = static_cast<std::uint32_t>(whole);
+    t_.poses.resize(whole);
+    t_.answers.resize(whole);
+  }
+
+  std::string_view text_;
+  CrowdTrace t_;
+  std::vector<std::uint32_t> queries_;  ///< of each step
+  std::vector<Slice> slices_;
+  std::map<std::string, std::size_t> names_;  ///< of bodies: their numbers
+};
+
+}  // namespace
+
+bool is_crowd_trace(std::string_view text) {
+  // The metadata come last; within a string the quotes would be escaped.
+  const std::size_t at = text.rfind("\"metadata\"");
+  constexpr std::size_t kNear = 256;
+  if (at == std::string_view::npos) return false;
+  const std::string_view begin = text.substr(at, kNear);
+  return begin.find("\"" + std::string(kCrowdFormat) + "\"") != std::string_view::npos;
+}
+
+CrowdTrace read_crowd_trace(std::string_view text, const std::string& file) {
+  return Reader(text, file).run();
+}
+
+}  // namespace lrb

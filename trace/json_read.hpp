@@ -1,0 +1,106 @@
+#pragma once
+/// Reading the JSON of traces by what is expected in it. The only header of this folder that includes
+/// nlohmann-json.
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <string>
+#include <string_view>
+
+#include <nlohmann/json.hpp>
+
+#include "trace/hex.hpp"
+#include "trace/names.hpp"
+#include "trace/trace.hpp"
+
+namespace lrb::trace {
+
+/// A JSON value and where it stands, so that every complaint can name it. The path is a chain of the values
+/// around it, which must outlive it: it costs nothing until something is wrong.
+class TraceNode {
+ public:
+  using Json = nlohmann::json;
+  TraceNode(const Json& j, const std::string& file) : j_(&j), file_(&file) {}
+
+  /// Throws InputError: "file: pointer: expected ..., found ...; what to do".
+  [[noreturn]] void fail(const std::string& expected) const;
+
+  bool has(const char* key) const { return j_->is_object() && j_->contains(key); }
+  TraceNode at(const char* key) const;
+  TraceNode at(std::size_t i) const { return {(*j_)[i], this, nullptr, i}; }
+  /// Where an element of a long array was, after the parser dropped those before it.
+  static TraceNode element(const Json& j, const TraceNode& array, std::size_t i) {
+    return {j, &array, nullptr, i};
+  }
+
+  std::size_t array_size() const {
+    if (!j_->is_array()) fail("an array");
+    return j_->size();
+  }
+
+  template <class T>
+  T integer(std::uint64_t max = std::numeric_limits<T>::max()) const {
+    if (j_->is_number_unsigned() && j_->get<std::uint64_t>() <= max)
+      return static_cast<T>(j_->get<std::uint64_t>());
+    fail("an integer from 0 to " + std::to_string(max));
+  }
+  double number() const {
+    if (!j_->is_number()) fail("a number");
+    return j_->get<double>();
+  }
+  double least(double least) const {
+    if (!j_->is_number() || !(number() >= least)) fail("a number of at least " + std::to_string(least));
+    return number();
+  }
+  bool is_null() const { return j_->is_null(); }
+  bool boolean() const {
+    if (!j_->is_boolean()) fail("true or false");
+    return j_->get<bool>();
+  }
+  const std::string& string() const {
+    if (!j_->is_string()) fail("a string");
+    return j_->get_ref<const std::string&>();
+  }
+  std::uint64_t hash() const {
+    const auto value = j_->is_string() ? from_hex(string()) : std::nullopt;
+    if (!value) fail("a hash of 16 hexadecimal digits");
+    return *value;
+  }
+  template <class Enum>
+  Enum named() const {
+    const auto value = j_->is_string() ? from_name<Enum>(string()) : std::nullopt;
+    if (!value) fail(all_names<Enum>());
+    return *value;
+  }
+
+ private:
+  TraceNode(const Json& j, const TraceNode* parent, const char* key, std::size_t index)
+      : j_(&j), file_(parent->file_), parent_(parent), key_(key), index_(index) {}
+
+  /// RFC 6901; no key of ours needs escaping.
+  std::string pointer() const;
+
+  const Json* j_;
+  const std::string* file_;
+  const TraceNode* parent_ = nullptr;
+  const char* key_ = nullptr;
+  std::size_t index_ = 0;
+};
+
+/// Hands over the events (elements of traceEvents) one by one as the parser completes them, so that they are
+/// never all in memory as JSON; returns the rest of the document. Throws InputError, also for what is no
+/// JSON.
+nlohmann::json parse_events(std::string_view text, const std::string& name,
+                            const std::function<void(const TraceNode&)>& take);
+
+/// Throws InputError unless `metadata` is that of `format` in a version from 1 to `version`.
+void check_format(const TraceNode& metadata, const std::string& name, std::string_view format,
+                  std::uint32_t version);
+
+BodyInfo read_body(const TraceNode& node);
+CollideRequest read_request(const TraceNode& node);
+Pose read_pose(const TraceNode& node);
+
+}  // namespace lrb::trace
