@@ -156,7 +156,8 @@ std::size_t NearPairs::choose(const Along& where) {
   for (std::size_t i = 0; i < pairs_.size(); ++i) {
     chosen_[count] = static_cast<std::uint32_t>(i);
     chosen_places_[count] = places_[i];
-    count += static_cast<std::size_t>((from_[i] <= at + spare) & (to_[i] >= at - spare));
+    const bool from_here = from_[i] <= at + spare, to_here = to_[i] >= at - spare;
+    count += static_cast<std::size_t>(from_here & to_here);
   }
   fill_up(chosen_places_, count);
   chosen_count_ = count;
