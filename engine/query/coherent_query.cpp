@@ -146,7 +146,7 @@ std::optional<ListPolicy::List> CoherentQuery::next_list() {
                           ListPolicy::kFirstSteps};
 }
 
-/// False if that takes too long: there is no list then.
+/// False if that takes too long, or B goes on beyond what doubles can tell: there is no list then.
 bool CoherentQuery::make_list(const ListPolicy::List& list) {
   const auto began = Clock::now();
   const bool ahead = list.kind == ListPolicy::Kind::stretch;
@@ -155,6 +155,9 @@ bool CoherentQuery::make_list(const ListPolicy::List& list) {
   for (QueryBody& body : context_.body) body.begin_at_pose(request_.wrapper);
   TreeKernel k = start_kernel(context_, Pose{}, {stretch_.middle.m, stretch_.middle.t}, kAtATime);
   aim_at(stretch_, rounding, unit, k);
+  const Along where = course_.along(stretch_);
+  // What overflowed is no bound: a margin that is not a number would count as none.
+  if (!(k.margin < std::numeric_limits<float>::infinity()) || !(where.off <= stretch_.width)) return false;
   near_.clear();
   while (k.stack_size != 0) {
     k.out_size = 0;
@@ -176,7 +179,7 @@ bool CoherentQuery::make_list(const ListPolicy::List& list) {
   result_.counters.node_pairs = k.node_pairs;
   result_.counters.box_tests = k.box_tests;
   result_.counters.prefilter_tests = k.prefilter_tests;
-  answer_from_list(course_.along(stretch_));
+  answer_from_list(where);
   return true;
 }
 
