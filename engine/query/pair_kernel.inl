@@ -37,8 +37,8 @@ struct EightSimplices {
       Float8 row[4];
       for (int i = 0; i < 4; ++i) {
         Float4 low, high;
-        __builtin_memcpy(&low, table[which[2 * i]].corner + 4 * part, sizeof low);
-        __builtin_memcpy(&high, table[which[2 * (i + 4)]].corner + 4 * part, sizeof high);
+        __builtin_memcpy(&low, part_of(table[which[2 * i]], part), sizeof low);
+        __builtin_memcpy(&high, part_of(table[which[2 * (i + 4)]], part), sizeof high);
         row[i] = __builtin_shufflevector(low, high, 0, 1, 2, 3, 4, 5, 6, 7);
       }
       const Float8 low01 = __builtin_shufflevector(row[0], row[1], 0, 8, 1, 9, 4, 12, 5, 13);
@@ -56,6 +56,13 @@ struct EightSimplices {
       edge[1][x] = column[(6 + x) / 4][(6 + x) % 4];
     }
     longest = column[9 / 4][9 % 4];
+  }
+
+ private:
+  /// Four numbers of a simplex. By bytes: they are of more than one of its arrays.
+  static const char* part_of(const NearSimplex& s, int part) {
+    static_assert(sizeof s == 3 * sizeof(Float4));
+    return reinterpret_cast<const char*>(&s) + static_cast<std::size_t>(part) * sizeof(Float4);
   }
 };
 
