@@ -65,7 +65,7 @@ void ListPolicy::rest() {
 std::optional<ListPolicy::List> ListPolicy::next(bool on_course, double step, double radius) {
   if (scratch_time_ == 0) return {};
   if (scratch_time_ < kWorthWatching) {
-    forgive();
+    list_time_ = 0;
     pause_ = kLongestPause / kPauseFactor;
     return {};
   }
@@ -108,6 +108,7 @@ void ListPolicy::take_stock() {
   Aim& other = aim(kind_ == Kind::stretch ? Kind::place : Kind::stretch);
   const double now = cost();
   list_time_ = 0;
+  forgave_ = false;
   if (now < 1) {
     failures_ = 0;
     if (used.cost > 0 && now > used.cost) used.factor = 1 / used.factor;

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <utility>
 
 namespace lrb {
 
@@ -34,8 +35,10 @@ class ListPolicy {
   void scratch_took(double time);
   void list_took(Kind kind, double time);
   void step_took(double time);
-  /// The last list ended for reasons of its own: what it cost tells nothing.
-  void forgive() { list_time_ = 0; }
+  /// The last list ended for reasons of its own: what it cost tells nothing, unless so did the one before.
+  void forgive() {
+    if (!std::exchange(forgave_, true)) list_time_ = 0;
+  }
 
  private:
   struct Aim {
@@ -55,6 +58,7 @@ class ListPolicy {
   std::uint32_t steps_ = 0;               ///< so many
   double scratch_time_ = 0;
   bool is_fresh_ = false;                     ///< it is younger than the list
+  bool forgave_ = false;                      ///< since stock was taken
   std::uint32_t failures_ = 0;                ///< so many lists in a row did not pay
   double too_long_ = 0;                       ///< a step for which a list did not pay
   std::uint32_t pause_ = 0, next_pause_ = 4;  ///< queries from scratch before the next list is tried
