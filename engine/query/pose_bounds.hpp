@@ -7,7 +7,7 @@
 namespace lrb {
 
 /// How far r^T r is from the identity, largest row sum: a bound of the Euclidean norm, the matrix being
-/// symmetric.
+/// symmetric. Not a number where r^T r overflows to what is none.
 double rotation_defect(const Eigen::Matrix3d& r);
 
 /// A bound of every world coordinate of a tree's simplices, and of every term on the way to it.

@@ -142,4 +142,7 @@ TEST_CASE("a course that bends, or is none, is not taken for one") {
   b.r *= 1.01;
   CHECK(!course.see({}, b));
   CHECK(!course.is_seen());
+  // The products of two columns are infinite, of both signs.
+  b.r << 1, 0, 0, 0, 1e200, -1e200, 0, 1e200, 1e200;
+  CHECK(!course.see({}, b));
 }
