@@ -96,7 +96,7 @@ void NearPairs::arrange(const LrbRep& a, const LrbRep& b, const TreeKernel& k, c
   chosen_.resize(pairs_.size());
   chosen_places_.resize(up_to_eights(pairs_.size()));
   verdicts_.resize(chosen_places_.size() / 8);
-  meets_.assign(pairs_.size(), static_cast<std::uint8_t>(exact::Meet::disjoint));
+  meeting_.clear();
   chosen_count_ = 0;
 }
 
@@ -192,10 +192,9 @@ PairKernel NearPairs::kernel_at(const TreeKernel& k, const std::vector<NearPair>
 }
 
 void NearPairs::list_meeting(CollideResult& result) const {
-  for (std::size_t i = 0; i < pairs_.size(); ++i) {
-    if (meets_[i] == static_cast<std::uint8_t>(exact::Meet::disjoint)) continue;
-    result.pairs.push_back(pairs_[i]);
-    result.meets.push_back(static_cast<exact::Meet>(meets_[i]));
+  for (const Meeting& m : meeting_) {
+    result.pairs.push_back(pairs_[m.pair]);
+    result.meets.push_back(m.meet);
   }
 }
 
