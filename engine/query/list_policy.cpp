@@ -20,9 +20,9 @@ constexpr double kForgetSlowly = 0.99;
 constexpr double kWorthWatching = 5e-7;
 /// Most lists that pay are found in the time of two queries from scratch.
 constexpr double kPatience = 3;
-/// No list is for a way longer than this share of B's radius, of each kind: it would hold much of both
-/// bodies.
-constexpr double kLongestWay[] = {1.0 / 4, 1.0 / 16};
+/// No list is for a way longer than this share of B's radius: it would hold much of both bodies.
+/// And none where it could not be for so many steps.
+constexpr double kLongestWay = 1.0 / 16, kWorthTrying = 4;
 /// So many queries before the end of a pause B's course is watched again.
 constexpr std::uint32_t kToSeeACourse = 3;
 constexpr std::uint32_t kLongestPause = 64, kPauseFactor = 4, kFirstPause = 4;
@@ -90,8 +90,8 @@ std::optional<ListPolicy::List> ListPolicy::next(bool on_course, double step, do
     aim(kind).cost *= kForgetSlowly;
     return {};
   }
-  const double steps = std::min(aim(kind).steps, kLongestWay[static_cast<int>(kind)] * radius / step);
-  if (steps >= kFewestSteps) return List{kind, steps};
+  const double most = kLongestWay * radius / step;
+  if (most >= kWorthTrying) return List{kind, std::min(aim(kind).steps, most)};
   pause_ = kLongestPause;
   return {};
 }
