@@ -255,6 +255,24 @@ TEST_CASE("coherent queries of bodies of any size") {
   }
 }
 
+TEST_CASE("coherent queries of bodies that stand still, creep, or go on after a rest") {
+  const LrbRep a = build_lrb(shapes::bumpy_sphere(3, 5, 0.2)), b = build_lrb(shapes::bumpy_sphere(2, 6, 0.2));
+  QueryContext context;
+  NullProbe probe;
+  Tally tally;
+  CoherentQuery coherent(a, b, {}, CoherentQuery::Lists::always);
+  Pose p = Pose::translation({2.2, 0.1, 0});
+  for (const double step : {0.0, 0.01, 0.0, 1e-15, 0.003, 0.0, 1e-12, 0.001, 0.0})
+    for (int i = 0; i < 30; ++i) {
+      p.t.x() -= step;
+      compare(coherent.collide(Pose{}, p), collide(a, Pose{}, b, p, {}, context, probe), Mode::all_pairs,
+              tally);
+    }
+  CHECK(coherent.statistics().from_list > 100);
+  CHECK(tally.contact > 50);
+  CHECK(tally.apart > 30);
+}
+
 TEST_CASE("what a coherent query has no list for is passed on") {
   const LrbRep a = build_lrb(shapes::bumpy_sphere(2, 5, 0.2));
   CollideRequest request;
