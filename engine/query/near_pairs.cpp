@@ -89,10 +89,11 @@ void NearPairs::arrange(const LrbRep& a, const LrbRep& b, const TreeKernel& k, c
   find_spans(k, stretch);
   if (is_swept_)
     drop_unless([](float from, float to) {
-      return (from <= 1 + kSpanRounding) & (to >= -1 - kSpanRounding) & (from <= to + kSpanRounding);
+      return unsigned{from <= 1 + kSpanRounding} & unsigned{to >= -1 - kSpanRounding} &
+             unsigned{from <= to + kSpanRounding};
     });
   else
-    drop_unless([most = length_of(stretch.width)](float from, float) { return from <= most; });
+    drop_unless([most = length_of(stretch.width)](float from, float) { return unsigned{from <= most}; });
   chosen_.resize(pairs_.size());
   chosen_places_.resize(up_to_eights(pairs_.size()));
   verdicts_.resize(chosen_places_.size() / 8);
@@ -156,7 +157,7 @@ std::size_t NearPairs::choose(const Along& where) {
   for (std::size_t i = 0; i < pairs_.size(); ++i) {
     chosen_[count] = static_cast<std::uint32_t>(i);
     chosen_places_[count] = places_[i];
-    count += static_cast<std::size_t>((from_[i] <= at + spare) & (to_[i] >= at - spare));
+    count += unsigned{from_[i] <= at + spare} & unsigned{to_[i] >= at - spare};
   }
   fill_up(chosen_places_, count);
   chosen_count_ = count;
