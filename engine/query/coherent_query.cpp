@@ -146,11 +146,13 @@ std::optional<ListPolicy::List> CoherentQuery::next_list() {
                           ListPolicy::kFirstSteps};
 }
 
-/// False if that takes too long, or B goes on beyond what doubles can tell: there is no list then.
+/// False if that takes too long, or lengths overflow: there is no list then.
 bool CoherentQuery::make_list(const ListPolicy::List& list) {
   const auto began = Clock::now();
   const bool ahead = list.kind == ListPolicy::Kind::stretch;
   stretch_ = ahead ? course_.ahead(list.steps) : course_.about(list.steps * usual_step_);
+  const Along where = course_.along(stretch_);
+  if (!(where.off <= stretch_.width)) return false;
   const double rounding = 4 * course_.rounding(), unit = std::max(a_.tree().unit(), b_.tree().unit());
   for (QueryBody& body : context_.body) body.begin_at_pose(request_.wrapper);
   TreeKernel k = start_kernel(context_, Pose{}, {stretch_.middle.m, stretch_.middle.t}, kAtATime);

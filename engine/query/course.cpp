@@ -123,9 +123,9 @@ Along Course::along(const Stretch& s) const {
   // The least squares over B's points, as if they filled a ball.
   const Eigen::Vector3d way = (s.dm * middle_ + s.dt) / s.length, gone = (m * middle_ + t) / s.length;
   const double spread = radius_ / s.length * (radius_ / s.length) / 2;
-  const double at = std::clamp((gone.dot(way) + spread * m.cwiseProduct(s.dm).sum()) /
-                                   (way.squaredNorm() + spread * s.dm.squaredNorm()),
-                               -1.0, 1.0);
+  const double nearest = (gone.dot(way) + spread * m.cwiseProduct(s.dm).sum()) /
+                         (way.squaredNorm() + spread * s.dm.squaredNorm());
+  const double at = nearest > -1 ? std::min(nearest, 1.0) : -1;  // also where overflow made it no number
   const Eigen::Matrix3d off_m = m - at * s.dm;
   const double shift = (off_m * middle_ + (t - at * s.dt)).stableNorm();
   return {at, (shift + off_m.norm() * radius_) * (1 + kWorldRounding) + rounding_};

@@ -7,6 +7,7 @@ namespace lrb {
 namespace {
 
 constexpr double kFewestSteps = 2, kMostSteps = 64;
+constexpr double kLonger = 1.5;
 /// A list that did not pay was longer than one that may.
 constexpr double kMuchShorter = 0.4;
 /// One may have been too long, or the clock's fault: with so many in a row there is a pause.
@@ -19,9 +20,9 @@ constexpr double kForgetSlowly = 0.99;
 constexpr double kWorthWatching = 5e-7;
 /// Most lists that pay are found in the time of two queries from scratch.
 constexpr double kPatience = 3;
-/// No list is for a way longer than this share of B's radius, of each kind: it would hold much of both
-/// bodies.
-constexpr double kLongestWay[] = {1.0 / 4, 1.0 / 16};
+/// No list is for a way longer than this share of B's radius: it would hold much of both bodies.
+/// And none where it could not be for so many steps.
+constexpr double kLongestWay = 1.0 / 16, kWorthTrying = 4;
 /// So many queries before the end of a pause B's course is watched again.
 constexpr std::uint32_t kToSeeACourse = 3;
 constexpr std::uint32_t kLongestPause = 64, kPauseFactor = 4, kFirstPause = 4;
@@ -89,8 +90,8 @@ std::optional<ListPolicy::List> ListPolicy::next(bool on_course, double step, do
     aim(kind).cost *= kForgetSlowly;
     return {};
   }
-  const double steps = std::min(aim(kind).steps, kLongestWay[static_cast<int>(kind)] * radius / step);
-  if (steps >= kFewestSteps) return List{kind, steps};
+  const double most = kLongestWay * radius / step;
+  if (most >= kWorthTrying) return List{kind, std::min(aim(kind).steps, most)};
   pause_ = kLongestPause;
   return {};
 }
@@ -103,16 +104,22 @@ double ListPolicy::cost() const {
   return (list_time_ + step_time_) / ((1 + steps_) * scratch_time_);
 }
 
+/// How many times as many steps the next list is to serve for. A longer stretch costs about as much more as
+/// it is longer: what is best is found by trying. A wider place costs more and more: it is wide enough where
+/// B stays long enough for the list to be paid off.
+double ListPolicy::growth(Aim& used, double now) const {
+  if (kind_ == Kind::place) return list_time_ > step_time_ ? kLonger : 1;
+  if (used.cost > 0 && now > used.cost) used.is_growing = !used.is_growing;
+  return used.is_growing ? kLonger : 1 / kLonger;
+}
+
 void ListPolicy::take_stock() {
   Aim& used = aim(kind_);
   Aim& other = aim(kind_ == Kind::stretch ? Kind::place : Kind::stretch);
   const double now = cost();
-  list_time_ = 0;
-  forgave_ = false;
   if (now < 1) {
     failures_ = 0;
-    if (used.cost > 0 && now > used.cost) used.factor = 1 / used.factor;
-    used.steps *= used.factor;
+    used.steps *= growth(used, now);
     next_pause_ = std::max(next_pause_ / kPauseFactor, kFirstPause);
     too_long_ = 0;
   } else {
@@ -121,6 +128,7 @@ void ListPolicy::take_stock() {
   }
   used.steps = std::clamp(used.steps, kFewestSteps, kMostSteps);
   used.cost = used.cost > 0 && used.cost < 1 ? (used.cost + now) / 2 : now;
+  list_time_ = 0;
   other.cost *= kForget;
 }
 

@@ -43,11 +43,12 @@ class ListPolicy {
  private:
   struct Aim {
     double steps = kFirstSteps;
-    double factor = 1.5;  ///< the next list is longer by that, while this makes queries faster
-    double cost = 0;      ///< of a query with such lists of late, queries from scratch; 0: not known
+    double cost = 0;         ///< of a query with such lists of late, queries from scratch; 0: not known
+    bool is_growing = true;  ///< the next list is longer, while this makes queries faster; else shorter
   };
   Aim& aim(Kind kind) { return aim_[static_cast<int>(kind)]; }
   double cost() const;  ///< of a query with the list at hand, queries from scratch
+  double growth(Aim& used, double now) const;
   void take_stock();
   void rest();
 

@@ -89,14 +89,15 @@ void NearPairs::arrange(const LrbRep& a, const LrbRep& b, const TreeKernel& k, c
   find_spans(k, stretch);
   if (is_swept_)
     drop_unless([](float from, float to) {
-      return (from <= 1 + kSpanRounding) & (to >= -1 - kSpanRounding) & (from <= to + kSpanRounding);
+      return unsigned{from <= 1 + kSpanRounding} & unsigned{to >= -1 - kSpanRounding} &
+             unsigned{from <= to + kSpanRounding};
     });
   else
-    drop_unless([most = length_of(stretch.width)](float from, float) { return from <= most; });
+    drop_unless([most = length_of(stretch.width)](float from, float) { return unsigned{from <= most}; });
   chosen_.resize(pairs_.size());
   chosen_places_.resize(up_to_eights(pairs_.size()));
   verdicts_.resize(chosen_places_.size() / 8);
-  meets_.assign(pairs_.size(), static_cast<std::uint8_t>(exact::Meet::disjoint));
+  meeting_.clear();
   chosen_count_ = 0;
 }
 
@@ -156,8 +157,7 @@ std::size_t NearPairs::choose(const Along& where) {
   for (std::size_t i = 0; i < pairs_.size(); ++i) {
     chosen_[count] = static_cast<std::uint32_t>(i);
     chosen_places_[count] = places_[i];
-    const bool from_here = from_[i] <= at + spare, to_here = to_[i] >= at - spare;
-    count += static_cast<std::size_t>(from_here & to_here);
+    count += unsigned{from_[i] <= at + spare} & unsigned{to_[i] >= at - spare};
   }
   fill_up(chosen_places_, count);
   chosen_count_ = count;
@@ -193,10 +193,9 @@ PairKernel NearPairs::kernel_at(const TreeKernel& k, const std::vector<NearPair>
 }
 
 void NearPairs::list_meeting(CollideResult& result) const {
-  for (std::size_t i = 0; i < pairs_.size(); ++i) {
-    if (meets_[i] == static_cast<std::uint8_t>(exact::Meet::disjoint)) continue;
-    result.pairs.push_back(pairs_[i]);
-    result.meets.push_back(static_cast<exact::Meet>(meets_[i]));
+  for (const Meeting& m : meeting_) {
+    result.pairs.push_back(pairs_[m.pair]);
+    result.meets.push_back(m.meet);
   }
 }
 

@@ -77,6 +77,11 @@ class NearPairs {
   void list_meeting(CollideResult& result) const;
 
  private:
+  struct Meeting {
+    std::uint32_t pair;
+    exact::Meet meet;
+    friend bool operator==(const Meeting&, const Meeting&) = default;
+  };
   void place_pairs(const LrbRep& a, const LrbRep& b);
   void find_spans(const TreeKernel& k, const Stretch& stretch);
   template <class Keep>
@@ -100,8 +105,8 @@ class NearPairs {
   std::vector<std::uint32_t> chosen_;    ///< numbers of pairs, room for all
   std::vector<NearPair> chosen_places_;  ///< the same, filled up to eights
   std::size_t chosen_count_ = 0;
-  std::vector<PairVerdicts> verdicts_;        ///< (eights)
-  std::vector<std::uint8_t> meets_, before_;  ///< (|pairs_|) exact::Meet, now and before the last update
+  std::vector<PairVerdicts> verdicts_;     ///< (eights)
+  std::vector<Meeting> meeting_, before_;  ///< ascending; now, and before the last update
 };
 
 template <class Exact>
@@ -110,8 +115,8 @@ bool NearPairs::update(const TreeKernel& k, Exact&& exact) {
   kernel.block_count = static_cast<std::uint32_t>((chosen_count_ + 7) / 8);
   kernel.verdicts = verdicts_.data();
   run_pair_kernel(kernel);
-  meets_.swap(before_);
-  meets_.assign(pairs_.size(), static_cast<std::uint8_t>(exact::Meet::disjoint));
+  meeting_.swap(before_);
+  meeting_.clear();
   for (std::size_t i = 0; i < chosen_count_; i += 8) {
     const unsigned present = chosen_count_ - i < 8 ? (1u << (chosen_count_ - i)) - 1 : 255u;
     const PairVerdicts v = verdicts_[i / 8];
@@ -119,10 +124,11 @@ bool NearPairs::update(const TreeKernel& k, Exact&& exact) {
       const int lane = std::countr_zero(left);
       const std::uint32_t pair = chosen_[i + static_cast<std::size_t>(lane)];
       const bool crosses = (v.cross >> lane & 1) != 0;
-      meets_[pair] = static_cast<std::uint8_t>(crosses ? exact::Meet::cross : exact(pairs_[pair]));
+      const exact::Meet meet = crosses ? exact::Meet::cross : exact(pairs_[pair]);
+      if (meet != exact::Meet::disjoint) meeting_.push_back({pair, meet});
     }
   }
-  return meets_ != before_;
+  return meeting_ != before_;
 }
 
 }  // namespace lrb
