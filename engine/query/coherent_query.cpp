@@ -157,9 +157,8 @@ bool CoherentQuery::make_list(const ListPolicy::List& list) {
   for (QueryBody& body : context_.body) body.begin_at_pose(request_.wrapper);
   TreeKernel k = start_kernel(context_, Pose{}, {stretch_.middle.m, stretch_.middle.t}, kAtATime);
   aim_at(stretch_, rounding, unit, k);
-  const Along where = course_.along(stretch_);
-  // What overflowed is no bound: a margin that is not a number would count as none.
-  if (!(k.margin < std::numeric_limits<float>::infinity()) || !(where.off <= stretch_.width)) return false;
+  // One that is not a number, as infinite widths and no defect make it, would count as none.
+  if (!(k.margin < std::numeric_limits<float>::infinity())) return false;
   near_.clear();
   while (k.stack_size != 0) {
     k.out_size = 0;

@@ -117,6 +117,7 @@ void ListPolicy::take_stock() {
   Aim& used = aim(kind_);
   Aim& other = aim(kind_ == Kind::stretch ? Kind::place : Kind::stretch);
   const double now = cost();
+  forgave_ = false;
   if (now < 1) {
     failures_ = 0;
     used.steps *= growth(used, now);

@@ -7,7 +7,11 @@
 namespace lrb {
 
 double rotation_defect(const Eigen::Matrix3d& r) {
-  return (r.transpose() * r - Eigen::Matrix3d::Identity()).cwiseAbs().rowwise().sum().maxCoeff<Eigen::PropagateNaN>();
+  return (r.transpose() * r - Eigen::Matrix3d::Identity())
+      .cwiseAbs()
+      .rowwise()
+      .sum()
+      .maxCoeff<Eigen::PropagateNaN>();
 }
 
 double world_size(const Pose& pose, const BlockTree& tree) {

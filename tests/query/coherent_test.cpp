@@ -273,6 +273,29 @@ TEST_CASE("coherent queries of bodies that stand still, creep, or go on after a 
   CHECK(tally.apart > 30);
 }
 
+TEST_CASE("coherent queries of bodies that go on to where no numbers are") {
+  using Eigen::Vector3d;
+  const double size = 1e300, step = 4e307;
+  const LrbRep a = bare(shapes::scaled(shapes::icosphere(2), size)),
+               b = bare(shapes::scaled(shapes::bumpy_sphere(2, 6, 0.2), size));
+  // Eight steps on, along a course, or off a place in any direction, end beyond the largest double.
+  const std::vector<Vector3d> on_course = {{-2 * step, size, 0}, {-step, size, 0}, {0, size, 0}};
+  const std::vector<Vector3d> on_none = {{step, 0, 0},    {0, step, 0}, {0, 0, step / 2},   {size, size, 0},
+                                         {0, size, size}, {0, step, 0}, {size, 0, size / 2}};
+  QueryContext context;
+  NullProbe probe;
+  for (const auto& way : {on_course, on_none}) {
+    CoherentQuery coherent(a, b, {}, CoherentQuery::Lists::always);
+    Tally tally;
+    for (const Vector3d& t : way) {
+      const Pose p = Pose::translation(t);
+      compare(coherent.collide(Pose{}, p), collide(a, Pose{}, b, p, {}, context, probe), Mode::all_pairs,
+              tally);
+    }
+    CHECK(tally.contact > 0);
+  }
+}
+
 TEST_CASE("what a coherent query has no list for is passed on") {
   const LrbRep a = build_lrb(shapes::bumpy_sphere(2, 5, 0.2));
   CollideRequest request;
