@@ -89,6 +89,20 @@ inline Float4 combine(const float* x, const Float4* column) {
   return splat4(x[0]) * column[0] + splat4(x[1]) * column[1] + splat4(x[2]) * column[2];
 }
 
+/// Finds the way of a node of B on A's axes. Returns the sum of its coordinates' sizes.
+inline float sweep(const TreeKernel& k, const TreeNode& b, const Columns& a_columns, Between& w) {
+  const Double4* m = reinterpret_cast<const Double4*>(k.sweep);
+  const Double4 swept =
+      ((m[0] * splat4d(b.origin[0]) + m[1] * splat4d(b.origin[1])) + m[2] * splat4d(b.origin[2])) *
+          splat4d(k.ratio_b) +
+      *reinterpret_cast<const Double4*>(k.sweep_t);
+  const Float4 way = __builtin_convertvector(swept, Float4);
+  const float parts[3] = {way[0], way[1], way[2]};
+  const Float4 on_a = combine(parts, a_columns.c);
+  __builtin_memcpy(w.way, &on_a, sizeof on_a);
+  return __builtin_fabsf(parts[0]) + __builtin_fabsf(parts[1]) + __builtin_fabsf(parts[2]);
+}
+
 /// kMargin: whether k.margin counts. Simplices that come to meet at a point after a motion have points now
 /// that the motion brings together: slabs between them that are wider than it is long across, part them.
 template <bool kMargin = false>
@@ -119,24 +133,17 @@ inline Between between(const TreeKernel& k, const TreeNode& a, const TreeNode& b
   const Float4 back = -combine(t_parts, r);
   __builtin_memcpy(w.back, &back, sizeof back);
   const float radius_a = a.radius * k.ratio_a, radius_b = b.radius * k.ratio_b;
-  const float reach = k.m_size * (radius_a + radius_b + __builtin_fabsf(df[0]) + __builtin_fabsf(df[1]) +
+  const float whole = k.m_size * (radius_a + radius_b + __builtin_fabsf(df[0]) + __builtin_fabsf(df[1]) +
                                   __builtin_fabsf(df[2]));
-  set_errors(w, k.slack, k.m_size, radius_a, radius_b, reach, reach);
+  float reach = whole;
   if constexpr (kMargin) {
-    const Double4* sweep = reinterpret_cast<const Double4*>(k.sweep);
-    const Float4 swept =
-        __builtin_convertvector(((sweep[0] * splat4d(b.origin[0]) + sweep[1] * splat4d(b.origin[1])) +
-                                 sweep[2] * splat4d(b.origin[2])) *
-                                        splat4d(k.ratio_b) +
-                                    *reinterpret_cast<const Double4*>(k.sweep_t),
-                                Float4);
-    const float parts[3] = {swept[0], swept[1], swept[2]};
-    const Float4 on_a = combine(parts, a_columns.c);
-    __builtin_memcpy(w.way, &on_a, sizeof on_a);
-    const Float4 on_b = combine(w.way, r);
-    w.margin =
-        k.margin + k.sweep_turn * radius_b +
-        kSweepRounding * (__builtin_fabsf(parts[0]) + __builtin_fabsf(parts[1]) + __builtin_fabsf(parts[2]));
+    const float size = sweep(k, b, a_columns, w);
+    w.margin = k.margin + k.sweep_turn * radius_b + kSweepRounding * size;
+    reach += size + w.margin;  // differences of corners at the end of the way count, too
+  }
+  set_errors(w, k.slack, k.m_size, radius_a, radius_b, reach, whole);
+  if constexpr (kMargin) {
+    const Float4 on_a{w.way[0], w.way[1], w.way[2], 0}, on_b = combine(w.way, r);
     const Float4 grow[2] = {splat4(w.error + w.margin) + abs4(on_a), splat4(w.error + w.margin) + abs4(on_b)};
     __builtin_memcpy(w.grow, grow, sizeof grow);
   }
