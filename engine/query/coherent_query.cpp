@@ -153,10 +153,10 @@ bool CoherentQuery::make_list(const ListPolicy::List& list) {
   stretch_ = ahead ? course_.ahead(list.steps) : course_.about(list.steps * usual_step_);
   const Along where = course_.along(stretch_);
   if (!(where.off <= stretch_.width)) return false;
-  const double rounding = 4 * course_.rounding(), unit = std::max(a_.tree().unit(), b_.tree().unit());
+  const double rounding = 4 * course_.rounding();
   for (QueryBody& body : context_.body) body.begin_at_pose(request_.wrapper);
   TreeKernel k = start_kernel(context_, Pose{}, {stretch_.middle.m, stretch_.middle.t}, kAtATime);
-  aim_at(stretch_, rounding, unit, k);
+  aim_at(stretch_, rounding, query_unit(a_.tree(), b_.tree()), k);
   // One that is not a number, as infinite widths and no defect make it, would count as none.
   if (!(k.margin < std::numeric_limits<float>::infinity())) return false;
   near_.clear();

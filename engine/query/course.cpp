@@ -12,6 +12,9 @@
 namespace lrb {
 namespace {
 
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+
 constexpr int kRemembered = 3;
 /// Half a stretch of n steps is no longer than this many times a step over how far B came from where the two
 /// poses before had led to expect it: there B will be no further off than half of n steps.
@@ -24,7 +27,7 @@ constexpr double kToRotations = 2.3;
 
 /// The motion that takes B from one pose to the other, on A's axes: x -> m x + t.
 RelativePose motion_between(const RelativePose& from, const RelativePose& to) {
-  const Eigen::Matrix3d m = to.m * from.m.transpose();
+  const Matrix3d m = to.m * from.m.transpose();
   return {m, to.t - m * from.t};
 }
 
@@ -34,12 +37,12 @@ RelativePose after(const RelativePose& motion, const RelativePose& pose) {
 
 }  // namespace
 
-RelativePose::RelativePose(const Eigen::Matrix3d& m_, const Eigen::Vector3d& t_)
+RelativePose::RelativePose(const Matrix3d& m_, const Vector3d& t_)
     : m(m_), t(t_), defect(rotation_defect(m_)) {}
 
 Course::Course(const LrbRep& a, const LrbRep& b) : a_(&a), b_(&b) {
   const TreeNode& root = b.tree().nodes()[0];
-  middle_ = Eigen::Vector3d(root.origin[0], root.origin[1], root.origin[2]) * b.tree().unit();
+  middle_ = Vector3d(root.origin[0], root.origin[1], root.origin[2]) * b.tree().unit();
   radius_ = static_cast<double>(root.radius) * b.tree().unit();
 }
 
@@ -57,11 +60,15 @@ bool Course::see(const Pose& pose_a, const Pose& pose_b) {
   return false;
 }
 
+/// A bound of |dm x + dt| for points x of B, where |dm| <= turn.
+double Course::farthest(const Matrix3d& dm, const Vector3d& dt, double turn) const {
+  return ((dm * middle_ + dt).stableNorm() + turn * radius_) * (1 + kWorldRounding) + rounding_;
+}
+
 double Course::motion(const RelativePose& from, const RelativePose& to) const {
-  const Eigen::Matrix3d dm = to.m - from.m;
+  const Matrix3d dm = to.m - from.m;
   const double turn = std::sqrt(dm.squaredNorm() / 2) + kToRotations * (from.defect + to.defect);
-  const double shift = (dm * middle_ + (to.t - from.t)).stableNorm();
-  return (shift + turn * radius_) * (1 + kWorldRounding) + rounding_;
+  return farthest(dm, to.t - from.t, turn);
 }
 
 double Course::step() const {
@@ -80,7 +87,7 @@ Stretch Course::stretch_of(int steps) const {
   s.dm = (end.m - now_.m) * (longer / 2);
   s.dt = (end.t - now_.t) * (longer / 2);
   s.turn = s.dm.norm() * (1 + kWorldRounding);
-  s.length = ((s.dm * middle_ + s.dt).stableNorm() + s.turn * radius_) * (1 + kWorldRounding) + rounding_;
+  s.length = farthest(s.dm, s.dt, s.turn);
   return s;
 }
 
@@ -118,17 +125,16 @@ Stretch Course::about(double width) const {
 
 Along Course::along(const Stretch& s) const {
   if (s.length == 0) return {0, motion(s.middle, now_)};
-  const Eigen::Matrix3d m = now_.m - s.middle.m;
-  const Eigen::Vector3d t = now_.t - s.middle.t;
+  const Matrix3d m = now_.m - s.middle.m;
+  const Vector3d t = now_.t - s.middle.t;
   // The least squares over B's points, as if they filled a ball.
-  const Eigen::Vector3d way = (s.dm * middle_ + s.dt) / s.length, gone = (m * middle_ + t) / s.length;
+  const Vector3d way = (s.dm * middle_ + s.dt) / s.length, gone = (m * middle_ + t) / s.length;
   const double spread = radius_ / s.length * (radius_ / s.length) / 2;
   const double nearest = (gone.dot(way) + spread * m.cwiseProduct(s.dm).sum()) /
                          (way.squaredNorm() + spread * s.dm.squaredNorm());
   const double at = nearest > -1 ? std::min(nearest, 1.0) : -1;  // also where overflow made it no number
-  const Eigen::Matrix3d off_m = m - at * s.dm;
-  const double shift = (off_m * middle_ + (t - at * s.dt)).stableNorm();
-  return {at, (shift + off_m.norm() * radius_) * (1 + kWorldRounding) + rounding_};
+  const Matrix3d off_m = m - at * s.dm;
+  return {at, farthest(off_m, t - at * s.dt, off_m.norm())};
 }
 
 }  // namespace lrb

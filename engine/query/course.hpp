@@ -73,6 +73,7 @@ class Course {
   Along along(const Stretch& s) const;
 
  private:
+  double farthest(const Eigen::Matrix3d& dm, const Eigen::Vector3d& dt, double turn) const;
   double motion(const RelativePose& from, const RelativePose& to) const;
   double off_course() const;
   double steps_on_course() const;

@@ -47,8 +47,7 @@ struct Between {
   float error;          ///< bound of the error of every transformed coordinate
   float edge_error[2];  ///< of A's and B's: of every coordinate of the difference of two corners of one body
   // Where there is a margin:
-  alignas(16) float grow[2][4];  ///< of boxes on A's and B's axes: the error, it, and what is swept; else the
-                                 ///< error
+  alignas(16) float grow[2][4];  ///< of boxes on A's and B's axes: the error, the margin, and what is swept
   float way[4];                  ///< how far B's node is swept, on A's axes
   float margin;                  ///< and by how much more any of its points may be
 };

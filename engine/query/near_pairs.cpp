@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/query/tree_query.hpp"
 #include "engine/tolerances.hpp"
 
 namespace lrb {
@@ -81,7 +82,7 @@ float NearSimplices::radius() const {
 
 void NearPairs::arrange(const LrbRep& a, const LrbRep& b, const TreeKernel& k, const Stretch& stretch,
                         double rounding, PairOrder& order) {
-  unit_ = std::max(a.tree().unit(), b.tree().unit());
+  unit_ = query_unit(a.tree(), b.tree());
   rounding_ = rounding;
   is_swept_ = stretch.length > 0;
   order.sort(pairs_);

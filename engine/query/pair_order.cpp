@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <span>
 #include <utility>
 
 namespace lrb {
@@ -28,6 +29,24 @@ void sort_by_comparing(CollideResult& result) {
   }
 }
 
+/// How a pair is packed in one number: in as many bits as its numbers need, and how it meets in the last.
+struct Packing {
+  unsigned bits_b, bits;
+};
+
+/// No bits: they are in order, without repetitions.
+Packing packing_of(std::span<const SimplexPair> pairs) {
+  SimplexPair all{0, 0};  // all bits that occur
+  bool in_order = true;
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    in_order &= i == 0 || pairs[i - 1] < pairs[i];
+    all = {all.a | pairs[i].a, all.b | pairs[i].b};
+  }
+  if (in_order) return {0, 0};
+  const auto bits_b = static_cast<unsigned>(std::bit_width(all.b));
+  return {bits_b, static_cast<unsigned>(std::bit_width(all.a)) + bits_b + kMeetBits};
+}
+
 std::uint64_t key_of(const SimplexPair& p, unsigned bits_b) {
   return (std::uint64_t{p.a} << bits_b | p.b) << kMeetBits;
 }
@@ -39,19 +58,6 @@ SimplexPair pair_of(std::uint64_t key, unsigned bits_b) {
 }
 
 }  // namespace
-
-/// No bits: they are in order, without repetitions.
-PairOrder::Packing PairOrder::packing_of(std::span<const SimplexPair> pairs) const {
-  SimplexPair all{0, 0};  // all bits that occur
-  bool in_order = true;
-  for (std::size_t i = 0; i < pairs.size(); ++i) {
-    in_order &= i == 0 || pairs[i - 1] < pairs[i];
-    all = {all.a | pairs[i].a, all.b | pairs[i].b};
-  }
-  if (in_order) return {0, 0};
-  const auto bits_b = static_cast<unsigned>(std::bit_width(all.b));
-  return {bits_b, static_cast<unsigned>(std::bit_width(all.a)) + bits_b + kMeetBits};
-}
 
 void PairOrder::sort(CollideResult& result) {
   const Packing packing = packing_of(result.pairs);

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <span>
 #include <vector>
 
 #include "engine/query/collide.hpp"
@@ -16,11 +15,6 @@ class PairOrder {
   void sort(std::vector<SimplexPair>& pairs);
 
  private:
-  /// How a pair is packed in one number: in as many bits as its numbers need, and how it meets in the last.
-  struct Packing {
-    unsigned bits_b, bits;
-  };
-  Packing packing_of(std::span<const SimplexPair> pairs) const;
   void sort_keys(unsigned bits);
   void sort_by_digits(unsigned bits);
 

@@ -24,7 +24,7 @@ TreeKernel set_up_kernel(const BlockTree& a, const Pose& pose_a, const BlockTree
   k.nodes_b = b.nodes().data();
   k.blocks_a = a.blocks().data();
   k.blocks_b = b.blocks().data();
-  const double unit = std::max(a.unit(), b.unit());
+  const double unit = query_unit(a, b);
   k.ratio_a = static_cast<float>(a.unit() / unit);
   k.ratio_b = static_cast<float>(b.unit() / unit);
 
@@ -51,7 +51,7 @@ TreeKernel start_kernel(QueryContext& ctx, const Pose& pose_a, const Pose& pose_
   const BlockTree &a = ctx[Side::a].tree(), &b = ctx[Side::b].tree();
   TreeKernel k = set_up_kernel(a, pose_a, b, pose_b);
   ctx.stack.resize(64 * (a.height() + b.height()) + 64);
-  ctx.candidates.resize(capacity);
+  if (ctx.candidates.size() < capacity) ctx.candidates.resize(capacity);
   k.stack = ctx.stack.data();
   k.stack[0] = {0, 0};
   k.stack_size = 1;

@@ -10,6 +10,7 @@
 ///
 /// What "proved apart" has to cover is in set_up_kernel().
 
+#include <algorithm>
 #include <bit>
 
 #include "engine/exact/exact_sign.hpp"
@@ -17,6 +18,11 @@
 #include "engine/query/query_context.hpp"
 
 namespace lrb {
+
+/// The query's unit, in the mesh's.
+inline double query_unit(const BlockTree& a, const BlockTree& b) {
+  return std::max(a.unit(), b.unit());
+}
 
 /// Fills in all of a kernel but its buffers.
 TreeKernel set_up_kernel(const BlockTree& a, const Pose& pose_a, const BlockTree& b, const Pose& pose_b);

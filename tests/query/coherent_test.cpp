@@ -80,6 +80,14 @@ void compare(const CollideResult& coherent, const CollideResult& scratch, Mode m
   tally.inside += scratch.relation == Relation::a_inside_b || scratch.relation == Relation::b_inside_a;
 }
 
+void add(CoherentQuery::Statistics& sum, const CoherentQuery::Statistics& s) {
+  sum.from_list += s.from_list;
+  sum.lists_made += s.lists_made;
+  sum.lists_ahead += s.lists_ahead;
+  sum.from_scratch += s.from_scratch;
+  sum.tests_saved += s.tests_saved;
+}
+
 }  // namespace
 
 TEST_CASE("coherent queries answer as queries from scratch do, for motions of all sizes") {
@@ -127,10 +135,7 @@ TEST_CASE("coherent queries answer as queries from scratch do, for motions of al
         if (random() % 60 == 0) pose_b.r *= 1.01;  // no rotation for once
         if (random() % 3 == 0) pose_b = straightened(pose_b);
       }
-      sum.from_list += coherent.statistics().from_list;
-      sum.lists_made += coherent.statistics().lists_made;
-      sum.from_scratch += coherent.statistics().from_scratch;
-      sum.tests_saved += coherent.statistics().tests_saved;
+      add(sum, coherent.statistics());
     }
   }
   MESSAGE(tally.queries << " queries: " << sum.from_list << " from lists, " << sum.lists_made
@@ -180,9 +185,7 @@ TEST_CASE("coherent queries of bodies on courses: they screw, speed up, bend, an
         pose_b = {step_b.r * about.r, step_b.r * about.t + step_b.t + off};
         pose_a = {step_a.r * pose_a.r, step_a.r * pose_a.t + step_a.t};
       }
-      sum.from_list += coherent.statistics().from_list;
-      sum.lists_made += coherent.statistics().lists_made;
-      sum.lists_ahead += coherent.statistics().lists_ahead;
+      add(sum, coherent.statistics());
     }
   }
   MESSAGE(tally.queries << " queries: " << sum.from_list << " from lists, " << sum.lists_made

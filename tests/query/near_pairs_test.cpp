@@ -85,7 +85,7 @@ void compare(Random& random, const LrbRep& a, const LrbRep& b, const Stretch& st
   context.body[0].begin(a, Pose{}, CollideRequest{}.wrapper);
   context.body[1].begin(b, Pose{}, CollideRequest{}.wrapper);
   TreeKernel k = start_kernel(context, Pose{}, {stretch.middle.m, stretch.middle.t}, 1 << 16);
-  aim_at(stretch, rounding, std::max(a.tree().unit(), b.tree().unit()), k);
+  aim_at(stretch, rounding, query_unit(a.tree(), b.tree()), k);
   run_tree_kernel(k);
   REQUIRE(k.stack_size == 0);
   NearPairs near;
@@ -152,7 +152,7 @@ TEST_CASE("what is chosen at two poses may miss what meets between them") {
     stretch.middle.t = a.vertices()[0] - stretch.middle.m * b.vertices()[1];
     QueryContext context;
     TreeKernel k = set_up_kernel(a, Pose{}, b, {stretch.middle.m, stretch.middle.t});
-    aim_at(stretch, 1e-12, std::max(a.tree().unit(), b.tree().unit()), k);
+    aim_at(stretch, 1e-12, query_unit(a.tree(), b.tree()), k);
     NearPairs near;
     near.clear();
     near.add({0, 0});

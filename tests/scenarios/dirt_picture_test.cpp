@@ -100,12 +100,7 @@ TEST_CASE("an LRB-rep has no findings to draw") {
   const Folder folder;
   folder.write("cube.obj", kCube);
   REQUIRE(run(folder, {"build", "cube.obj", "-o", "cube.lrb"}).code == 0);
-  const std::vector<std::string> before = folder.tree();
-  const Outcome o = run(folder, {"inspect", "cube.lrb", "--draw", "x.png"});
-  CHECK(o.code == 2);
-  CHECK(o.error_lines() == 1);
-  CHECK(o.out.empty());
-  CHECK(folder.tree() == before);
+  check_refused(folder, {"inspect", "cube.lrb", "--draw", "x.png"});
 }
 
 TEST_CASE("kinds that say the same are drawn once") {

@@ -12,6 +12,8 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <doctest/doctest.h>
+
 namespace lrb::test {
 
 /// A folder of its own for each test, gone afterwards.
@@ -66,6 +68,18 @@ inline Outcome run(const Folder& folder, const std::vector<std::string>& argumen
   o.err = slurp(folder / "stderr");
   std::filesystem::remove(folder / "stdout");
   std::filesystem::remove(folder / "stderr");
+  return o;
+}
+
+/// Runs the program with arguments that it refuses, in one line, before it writes anything.
+inline Outcome check_refused(const Folder& folder, const std::vector<std::string>& arguments) {
+  const std::vector<std::string> before = folder.tree();
+  const Outcome o = run(folder, arguments);
+  CAPTURE(o.err);
+  CHECK(o.code == 2);
+  CHECK(o.error_lines() == 1);
+  CHECK(o.out.empty());
+  CHECK(folder.tree() == before);
   return o;
 }
 
