@@ -6,10 +6,11 @@
 
 namespace lrb {
 
-using VertexId = std::uint32_t;   ///< into LrbRep::vertices() / Mesh::vertices
-using FaceId = std::uint32_t;     ///< a polygon (3D) or a segment (2D); real faces come first, in file order
-using SimplexId = std::uint32_t;  ///< a triangle of a face's fan (3D) or the segment itself (2D); real ones first
-using RegionId = std::uint32_t;   ///< a region of an LRB-rep, 0 .. region_count() - 1
+using VertexId = std::uint32_t;  ///< into LrbRep::vertices() / Mesh::vertices
+using FaceId = std::uint32_t;    ///< a polygon (3D) or a segment (2D); real faces come first, in file order
+using SimplexId =
+    std::uint32_t;  ///< a triangle of a face's fan (3D) or the segment itself (2D); real ones first
+using RegionId = std::uint32_t;  ///< a region of an LRB-rep, 0 .. region_count() - 1
 
 /// A cell of the complex: a RegionId, or one of the two cells that every body has.
 using CellId = std::uint32_t;
@@ -19,11 +20,15 @@ inline constexpr CellId kOutside = kNull - 1;  ///< all of space that no wrapper
 inline constexpr CellId kSolid = kNull - 2;    ///< the body itself, always included
 inline constexpr std::uint32_t kMaxId = kNull - 3;
 
-constexpr bool is_region(CellId cell) { return cell <= kMaxId; }
+constexpr bool is_region(CellId cell) {
+  return cell <= kMaxId;
+}
 
 /// Which of the two bodies of a query.
 enum class Side : std::uint8_t { a = 0, b = 1 };
 
-constexpr Side other(Side s) { return s == Side::a ? Side::b : Side::a; }
+constexpr Side other(Side s) {
+  return s == Side::a ? Side::b : Side::a;
+}
 
 }  // namespace lrb

@@ -20,7 +20,7 @@ struct HullFace {
   std::array<std::uint32_t, 3> corner;
   std::array<std::uint32_t, 3> across{kNone, kNone,
                                       kNone};  ///< the face over the edge from corner i to i + 1
-  std::vector<std::uint32_t> above{};            ///< points in front of it that no other face took
+  std::vector<std::uint32_t> above{};          ///< points in front of it that no other face took
   bool alive = true;
 };
 

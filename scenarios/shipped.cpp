@@ -18,7 +18,8 @@ constexpr std::string_view kScenario = ".scenario.json";
 std::vector<std::string> shipped_names(std::string_view ending) {
   std::vector<std::string> names;
   for (const EmbeddedFile& file : embedded_files())
-    if (file.name.ends_with(ending)) names.emplace_back(file.name.substr(0, file.name.size() - ending.size()));
+    if (file.name.ends_with(ending))
+      names.emplace_back(file.name.substr(0, file.name.size() - ending.size()));
   std::sort(names.begin(), names.end());
   return names;
 }

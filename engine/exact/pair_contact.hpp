@@ -29,9 +29,9 @@ struct ContactCorner {
 /// The intersection of two simplices, a convex set: a point, a segment or a coplanar polygon.
 struct PairContact {
   Meet meet = Meet::disjoint;
-  bool coplanar = false;     ///< both lie in one plane (in 2D: on one line)
-  std::uint8_t corner_count = 0;              ///< 0 none, 1 point, 2 segment, 3 to 6 polygon (in order round it)
-  std::array<ContactCorner, 6> corners{};     ///< the first corner_count
+  bool coplanar = false;                   ///< both lie in one plane (in 2D: on one line)
+  std::uint8_t corner_count = 0;           ///< 0 none, 1 point, 2 segment, 3 to 6 polygon (in order round it)
+  std::array<ContactCorner, 6> corners{};  ///< the first corner_count
 };
 
 PairContact contact_of_triangles(const double* const a[3], const double* const b[3]);

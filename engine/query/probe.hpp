@@ -10,11 +10,11 @@ namespace lrb {
 
 /// The events of a query, in one table: enum, name in traces, meaning of the fields a and b.
 /// LRB_EVENT(enumerator, json_name, meaning of a, meaning of b)
-#define LRB_EVENTS(LRB_EVENT)                                  \
-  LRB_EVENT(step, "step", "time step", "")                     \
-  LRB_EVENT(face_test, "face test", "simplex of A", "simplex of B") \
-  LRB_EVENT(refine, "refine", "region", "faces added")         \
-  LRB_EVENT(coarsen, "coarsen", "region", "faces removed")     \
+#define LRB_EVENTS(LRB_EVENT)                                             \
+  LRB_EVENT(step, "step", "time step", "")                                \
+  LRB_EVENT(face_test, "face test", "simplex of A", "simplex of B")       \
+  LRB_EVENT(refine, "refine", "region", "faces added")                    \
+  LRB_EVENT(coarsen, "coarsen", "region", "faces removed")                \
   LRB_EVENT(contact, "contact", "real simplex of A", "real simplex of B") \
   LRB_EVENT(result, "result", "relation", "pairs")
 

@@ -50,8 +50,8 @@ json chart_json(const PageChart& chart) {
                       {"shape", s.shape},
                       {"line", s.line}});
   }
-  return {{"x", chart.x_label},       {"y", chart.y_label},         {"cursor", name_of(chart.cursor)},
-          {"logX", chart.log_x},      {"logY", chart.log_y},        {"stepped", chart.stepped},
+  return {{"x", chart.x_label},       {"y", chart.y_label},          {"cursor", name_of(chart.cursor)},
+          {"logX", chart.log_x},      {"logY", chart.log_y},         {"stepped", chart.stepped},
           {"scatter", chart.scatter}, {"series", std::move(series)}, {"leastX", chart.least_x},
           {"mostX", chart.most_x}};
 }

@@ -21,7 +21,8 @@ int main() {
   const lrb::LrbRep a = body(v, f), b = body(v, f);
   lrb::CollideRequest request;
   request.contacts = true;
-  const lrb::CollideResult r = lrb::collide(a, lrb::Pose{}, b, lrb::Pose::translation({0.25, 0.1, 0.05}), request);
+  const lrb::CollideResult r =
+      lrb::collide(a, lrb::Pose{}, b, lrb::Pose::translation({0.25, 0.1, 0.05}), request);
   std::cout << lrb::to_string(r.relation) << " " << r.pairs.size() << " " << r.regions.size() << "\n";
   return r.relation == lrb::Relation::crossing && !r.regions.empty() ? 0 : 1;
 }

@@ -9,10 +9,9 @@
 #include <string>
 #include <vector>
 
+#include <doctest/doctest.h>
 #include <sys/wait.h>
 #include <unistd.h>
-
-#include <doctest/doctest.h>
 
 namespace lrb::test {
 
