@@ -1,5 +1,5 @@
-# lrb_embed(TARGET FILE...): compiles text files into TARGET, to be read back by lrb::embedded_file(NAME), where NAME is
-# the file's name without its folder (scenarios/embedded.hpp). Files may lie outside the source tree.
+# lrb_embed(TARGET FILE...): compiles text files into TARGET, to be read back by lrb::io::embedded_file(NAME), where NAME is
+# the file's name without its folder (scenarios/io/embedded.hpp). Files may lie outside the source tree.
 # As a script (-P): writes one such file as C++ source.
 if(CMAKE_SCRIPT_MODE_FILE)
   file(READ "${EMBED_IN}" text)
@@ -36,16 +36,16 @@ function(lrb_embed target)
   set_source_files_properties(${generated} PROPERTIES COMPILE_OPTIONS -Wno-overlength-strings)
   set(registry "${CMAKE_CURRENT_BINARY_DIR}/embedded/registry.cpp")
   file(CONFIGURE OUTPUT "${registry}" @ONLY CONTENT
-"#include \"scenarios/embedded.hpp\"
+"#include \"scenarios/io/embedded.hpp\"
 
 @declarations@
-namespace lrb {
+namespace lrb::io {
 std::span<const EmbeddedFile> embedded_files() {
   static const EmbeddedFile files[] = {
 @table@  };
   return files;
 }
-}  // namespace lrb
+}  // namespace lrb::io
 ")
   target_sources(${target} PRIVATE "${registry}" ${generated})
 endfunction()

@@ -6,9 +6,9 @@
 #include <limits>
 #include <numbers>
 
-#include "engine/error.hpp"
+#include "engine/core/error.hpp"
 
-namespace lrb {
+namespace lrb::render {
 namespace {
 
 using Eigen::Matrix3d;
@@ -243,4 +243,4 @@ Vector3d Projection::towards_viewer(const Vector3d& world) const {
   return (eye_ - world).normalized();
 }
 
-}  // namespace lrb
+}  // namespace lrb::render

@@ -8,7 +8,7 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
-namespace lrb {
+namespace lrb::render {
 
 struct Camera {
   Eigen::Vector3d eye{0, 0, 1};     ///< world frame
@@ -95,4 +95,4 @@ class Projection {
   bool orthographic_;
 };
 
-}  // namespace lrb
+}  // namespace lrb::render

@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-namespace lrb {
+namespace lrb::render {
 
 /// A colour in 8-bit sRGB with straight (not premultiplied) alpha.
 struct Rgba {
@@ -49,4 +49,4 @@ inline constexpr Rgba kWhite{255, 255, 255};
 inline constexpr Rgba kBlack{0, 0, 0};
 inline constexpr Rgba kTransparent{0, 0, 0, 0};
 
-}  // namespace lrb
+}  // namespace lrb::render

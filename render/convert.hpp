@@ -10,7 +10,7 @@
 
 #include "render/colour.hpp"
 
-namespace lrb {
+namespace lrb::render {
 
 using ByteColour = glm::u8vec4;  ///< red, green, blue, alpha; straight
 
@@ -35,4 +35,4 @@ inline glm::vec4 to_unit(Rgba c) {
   return glm::vec4(to_bytes(c)) / 255.0F;
 }
 
-}  // namespace lrb
+}  // namespace lrb::render

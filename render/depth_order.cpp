@@ -5,7 +5,7 @@
 #include <limits>
 #include <utility>
 
-namespace lrb {
+namespace lrb::render {
 namespace {
 
 using Eigen::Vector3d;
@@ -164,4 +164,4 @@ std::vector<EyePolygon> back_to_front(std::vector<EyePolygon> polygons, bool ort
   return out;
 }
 
-}  // namespace lrb
+}  // namespace lrb::render

@@ -12,7 +12,7 @@
 
 #include <Eigen/Core>
 
-namespace lrb {
+namespace lrb::render {
 
 /// A convex polygon in the eye's frame (x right, y up, z = distance in front of the eye).
 struct EyePolygon {
@@ -25,4 +25,4 @@ struct EyePolygon {
 /// out. The viewer stands at the origin; orthographic: infinitely far away, looking along +z.
 std::vector<EyePolygon> back_to_front(std::vector<EyePolygon> polygons, bool orthographic);
 
-}  // namespace lrb
+}  // namespace lrb::render

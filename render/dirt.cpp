@@ -6,7 +6,7 @@
 #include "render/dirt_parts.hpp"
 #include "render/palette.hpp"
 
-namespace lrb::dirt {
+namespace lrb::render::dirt {
 namespace {
 
 using Eigen::Vector3d;
@@ -228,4 +228,4 @@ std::vector<LegendItem> legend(const MeshReport& report, int dim) {
   return out;
 }
 
-}  // namespace lrb::dirt
+}  // namespace lrb::render::dirt

@@ -11,7 +11,7 @@
 #include "render/draw_list.hpp"
 #include "render/overlay.hpp"
 
-namespace lrb::dirt {
+namespace lrb::render::dirt {
 
 /// The kinds that a report found and that have a place to point at, in the order of MeshFault. Faces that
 /// name a vertex twice are drawn as faces without area if they are that as well.
@@ -51,4 +51,4 @@ DrawList list(const Mesh& mesh, const MeshReport& report, const Camera& camera, 
 /// The legend for a list: sides of faces, then the kinds.
 std::vector<LegendItem> legend(const MeshReport& report, int dim);
 
-}  // namespace lrb::dirt
+}  // namespace lrb::render::dirt

@@ -6,7 +6,7 @@
 #include "render/dirt_parts.hpp"
 #include "render/palette.hpp"
 
-namespace lrb::dirt {
+namespace lrb::render::dirt {
 namespace {
 
 using Eigen::Vector3d;
@@ -244,4 +244,4 @@ DrawList list(const Mesh& mesh, const MeshReport& report, const Camera& camera, 
   return Builder(mesh, report, camera, options).run();
 }
 
-}  // namespace lrb::dirt
+}  // namespace lrb::render::dirt

@@ -5,9 +5,9 @@
 
 #include <Eigen/Geometry>
 
-#include "engine/mesh/disjoint_sets.hpp"
+#include "engine/core/disjoint_sets.hpp"
 
-namespace lrb::dirt {
+namespace lrb::render::dirt {
 
 using Eigen::Vector3d;
 
@@ -130,4 +130,4 @@ std::vector<Vector3d> cut(const Mesh& mesh, FaceId f, FaceId g) {
   return {one, other};
 }
 
-}  // namespace lrb::dirt
+}  // namespace lrb::render::dirt

@@ -7,7 +7,7 @@
 
 #include "engine/mesh/mesh_check.hpp"
 
-namespace lrb::dirt {
+namespace lrb::render::dirt {
 
 using Element = std::array<std::uint32_t, 2>;
 
@@ -33,4 +33,4 @@ std::vector<Eigen::Vector3d> cut(const Mesh& mesh, FaceId f, FaceId g);
 /// Whether a segment passes through a face, in doubles.
 bool passes_through(const Mesh& mesh, FaceId f, const Eigen::Vector3d& from, const Eigen::Vector3d& to);
 
-}  // namespace lrb::dirt
+}  // namespace lrb::render::dirt

@@ -5,9 +5,9 @@
 #include <map>
 #include <set>
 
-#include "engine/error.hpp"
+#include "engine/core/error.hpp"
 
-namespace lrb {
+namespace lrb::render {
 namespace {
 
 constexpr std::array<const char*, kLayers> kLayerNames = {"opaque", "translucent", "on top"};
@@ -125,4 +125,4 @@ std::string summary(const DrawList& list) {
   return text;
 }
 
-}  // namespace lrb
+}  // namespace lrb::render

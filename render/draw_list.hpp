@@ -14,7 +14,7 @@
 
 #include "render/colour.hpp"
 
-namespace lrb {
+namespace lrb::render {
 
 /// When a primitive is drawn, and what hides it. In this order:
 enum class Layer : std::uint8_t {
@@ -113,4 +113,4 @@ std::vector<Eigen::Vector3d> extent_points(const DrawList& list);
 /// One line per kind and layer: how many, their ids and colours, for people and for tests without GL.
 std::string summary(const DrawList& list);
 
-}  // namespace lrb
+}  // namespace lrb::render

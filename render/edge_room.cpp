@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <optional>
 
-namespace lrb {
+namespace lrb::render {
 namespace {
 
 using Eigen::Vector3d;
@@ -70,4 +70,4 @@ double fade_between(double x, double gone, double full) {
   return t * t * (3 - 2 * t);
 }
 
-}  // namespace lrb
+}  // namespace lrb::render

@@ -7,7 +7,7 @@
 #include "render/camera.hpp"
 #include "render/draw_list.hpp"
 
-namespace lrb {
+namespace lrb::render {
 
 /// For every triangle of the list the altitude on the screen (pixels of the projection, of the lowest one) of
 /// itself and of the triangles round about it: the mean over its corners of the mean over the triangles that
@@ -18,4 +18,4 @@ std::vector<double> edge_room(const DrawList& list, const Projection& projection
 /// The smooth step from 0 at `gone` to 1 at `full`.
 double fade_between(double x, double gone, double full);
 
-}  // namespace lrb
+}  // namespace lrb::render

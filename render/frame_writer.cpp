@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-namespace lrb {
+namespace lrb::render {
 
 FrameWriter::FrameWriter(std::size_t capacity)
     : capacity_(std::max<std::size_t>(capacity, 1)), thread_([this] { run(); }) {}
@@ -60,4 +60,4 @@ void FrameWriter::run() {
   }
 }
 
-}  // namespace lrb
+}  // namespace lrb::render

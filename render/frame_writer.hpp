@@ -11,7 +11,7 @@
 
 #include "render/png.hpp"
 
-namespace lrb {
+namespace lrb::render {
 
 class FrameWriter {
  public:
@@ -45,4 +45,4 @@ class FrameWriter {
   std::thread thread_;
 };
 
-}  // namespace lrb
+}  // namespace lrb::render

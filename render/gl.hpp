@@ -4,7 +4,7 @@
 
 #include <GL/glcorearb.h>
 
-namespace lrb {
+namespace lrb::render {
 
 /// LRB_GL(type of pointer without PFNGL and PROC, name without gl)
 #define LRB_GL_FUNCTIONS(LRB_GL)                           \
@@ -68,4 +68,4 @@ struct Gl {
 #undef LRB_GL
 };
 
-}  // namespace lrb
+}  // namespace lrb::render

@@ -2,9 +2,9 @@
 
 #include <array>
 
-#include "engine/error.hpp"
+#include "engine/core/error.hpp"
 
-namespace lrb {
+namespace lrb::render {
 namespace {
 
 GLuint compile(const Gl& gl, const std::string& name, GLenum kind, const std::string& source) {
@@ -44,4 +44,4 @@ GlProgram make_program(const Gl& gl, const std::string& name, const std::string&
   return program;
 }
 
-}  // namespace lrb
+}  // namespace lrb::render

@@ -7,7 +7,7 @@
 
 #include "render/gl.hpp"
 
-namespace lrb {
+namespace lrb::render {
 
 /// A name of OpenGL's with the function that deletes it.
 template <class Delete>
@@ -73,4 +73,4 @@ inline GlObject make_vertex_array(const Gl& gl) {
 GlProgram make_program(const Gl& gl, const std::string& name, const std::string& vertex,
                        const std::string& fragment);
 
-}  // namespace lrb
+}  // namespace lrb::render

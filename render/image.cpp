@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <string>
 
-#include "engine/error.hpp"
-#include "engine/lrb/fnv.hpp"
+#include "engine/core/error.hpp"
+#include "engine/core/fnv.hpp"
 
-namespace lrb {
+namespace lrb::render {
 
 Image::Image(int width, int height, Rgba fill) : width_(width), height_(height) {
   if (width < 1 || height < 1 || width > kMaxSide || height > kMaxSide) {
@@ -56,4 +56,4 @@ std::uint64_t hash(const Image& image) {
   return h.value();
 }
 
-}  // namespace lrb
+}  // namespace lrb::render

@@ -7,7 +7,7 @@
 
 #include "render/colour.hpp"
 
-namespace lrb {
+namespace lrb::render {
 
 /// A rectangle of pixels: x to the right, y down, from the top left corner of an image.
 struct PixelRect {
@@ -63,4 +63,4 @@ class Image {
 /// FNV-1a 64 over size and pixels.
 std::uint64_t hash(const Image& image);
 
-}  // namespace lrb
+}  // namespace lrb::render

@@ -4,7 +4,7 @@
 #include <cstdio>
 #include <cstdlib>
 
-namespace lrb {
+namespace lrb::render {
 namespace {
 
 int channel_difference(Rgba a, Rgba b) {
@@ -73,4 +73,4 @@ Image difference_image(const Image& expected, const Image& actual, int gain) {
   return out;
 }
 
-}  // namespace lrb
+}  // namespace lrb::render

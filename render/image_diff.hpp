@@ -6,7 +6,7 @@
 
 #include "render/image.hpp"
 
-namespace lrb {
+namespace lrb::render {
 
 /// What counts as noise between processors (measured; see README of the golden images): pixels in two
 /// buckets.
@@ -36,4 +36,4 @@ ImageDifference compare(const Image& expected, const Image& actual, const ImageT
 /// pixels.
 Image difference_image(const Image& expected, const Image& actual, int gain = 16);
 
-}  // namespace lrb
+}  // namespace lrb::render

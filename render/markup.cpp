@@ -1,6 +1,6 @@
 #include "render/markup.hpp"
 
-namespace lrb {
+namespace lrb::render {
 
 std::string escape_markup(std::string_view text) {
   std::string out;
@@ -25,4 +25,4 @@ std::string escape_markup(std::string_view text) {
   return out;
 }
 
-}  // namespace lrb
+}  // namespace lrb::render

@@ -20,7 +20,7 @@ extern "C" const char* __lsan_default_options() {
 }
 #endif
 
-namespace lrb {
+namespace lrb::render {
 /// Stands for this file where it must be linked.
 void suppress_mesa_leaks() {}
-}  // namespace lrb
+}  // namespace lrb::render

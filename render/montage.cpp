@@ -5,11 +5,11 @@
 #include <limits>
 #include <numeric>
 
-#include "engine/error.hpp"
+#include "engine/core/error.hpp"
 #include "render/palette.hpp"
 #include "render/text.hpp"
 
-namespace lrb {
+namespace lrb::render {
 namespace {
 
 constexpr double kGutterShare = 1.0 / 24;
@@ -123,4 +123,4 @@ Image montage(const std::vector<Panel>& panels, const MontageOptions& options) {
   return out;
 }
 
-}  // namespace lrb
+}  // namespace lrb::render

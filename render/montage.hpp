@@ -6,7 +6,7 @@
 
 #include "render/image.hpp"
 
-namespace lrb {
+namespace lrb::render {
 
 struct Panel {
   Image image;
@@ -38,4 +38,4 @@ Image montage(const std::vector<Panel>& panels, const MontageOptions& options = 
 /// "(a)" .. "(z)", "(aa)" ...
 std::string panel_letter(std::size_t index);
 
-}  // namespace lrb
+}  // namespace lrb::render

@@ -8,10 +8,10 @@
 
 #include <GL/osmesa.h>
 
-#include "engine/error.hpp"
+#include "engine/core/error.hpp"
 #include "render/text.hpp"
 
-namespace lrb {
+namespace lrb::render {
 
 void suppress_mesa_leaks();  // mesa_leaks.cpp
 
@@ -140,4 +140,4 @@ std::vector<Finding> check_rendering() {
   return out;
 }
 
-}  // namespace lrb
+}  // namespace lrb::render

@@ -9,7 +9,7 @@
 
 #include "render/gl.hpp"
 
-namespace lrb {
+namespace lrb::render {
 
 class Offscreen {
  public:
@@ -48,4 +48,4 @@ std::vector<Finding> check_gl_environment();
 /// Everything drawing needs: environment, context, sizes, fonts. Never throws for what it finds.
 std::vector<Finding> check_rendering();
 
-}  // namespace lrb
+}  // namespace lrb::render

@@ -4,11 +4,11 @@
 #include <cmath>
 #include <cstdio>
 
-#include "engine/error.hpp"
+#include "engine/core/error.hpp"
 #include "render/palette.hpp"
 #include "render/text.hpp"
 
-namespace lrb {
+namespace lrb::render {
 namespace {
 
 constexpr double kTextShare = 0.0275;  ///< height of text, as a share of the frame's
@@ -298,4 +298,4 @@ std::string short_number(double value) {
   return text;
 }
 
-}  // namespace lrb
+}  // namespace lrb::render

@@ -10,7 +10,7 @@
 
 #include "render/image.hpp"
 
-namespace lrb {
+namespace lrb::render {
 
 struct LegendItem {
   enum class Mark : std::uint8_t { solid, translucent, line, dashed, point } mark = Mark::solid;
@@ -77,4 +77,4 @@ std::string group_digits(std::uint64_t n);
 /// A value for a scale: short, at most four digits.
 std::string short_number(double value);
 
-}  // namespace lrb
+}  // namespace lrb::render

@@ -8,7 +8,7 @@
 #include <glm/mat3x3.hpp>
 #include <glm/vec3.hpp>
 
-namespace lrb::palette {
+namespace lrb::render::palette {
 
 Rgba viridis(double t) {
   // Every sixteenth of the map that matplotlib published into the public domain (CC0); linear in between,
@@ -58,4 +58,4 @@ Rgba category(std::uint32_t index) {
   return {byte(rgb.r), byte(rgb.g), byte(rgb.b)};
 }
 
-}  // namespace lrb::palette
+}  // namespace lrb::render::palette

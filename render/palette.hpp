@@ -5,11 +5,11 @@
 
 #include <cstdint>
 
-#include "engine/ids.hpp"
-#include "engine/query/probe.hpp"
+#include "engine/core/ids.hpp"
+#include "engine/query/walk/probe.hpp"
 #include "render/colour.hpp"
 
-namespace lrb::palette {
+namespace lrb::render::palette {
 
 inline constexpr Rgba kOrange{230, 159, 0};
 inline constexpr Rgba kSkyBlue{86, 180, 233};
@@ -76,4 +76,4 @@ Rgba viridis(double t);
 /// that numbers that are close get colours that are not.
 Rgba category(std::uint32_t index);
 
-}  // namespace lrb::palette
+}  // namespace lrb::render::palette

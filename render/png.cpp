@@ -13,8 +13,8 @@
 #include <unistd.h>
 #include <zlib.h>
 
-#include "engine/error.hpp"
-#include "engine/mesh/atomic_file.hpp"
+#include "engine/core/atomic_file.hpp"
+#include "engine/core/error.hpp"
 
 namespace {
 
@@ -56,7 +56,7 @@ unsigned int zlib_crc(const unsigned char* data, int size) {
 #include <stb_image.h>
 #pragma GCC diagnostic pop
 
-namespace lrb {
+namespace lrb::render {
 namespace {
 
 using Bytes = std::vector<std::uint8_t>;
@@ -187,4 +187,4 @@ DecodedPng read_png(const std::string& path) {
   return decode_png({reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()}, path);
 }
 
-}  // namespace lrb
+}  // namespace lrb::render

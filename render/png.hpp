@@ -9,7 +9,7 @@
 
 #include "render/image.hpp"
 
-namespace lrb {
+namespace lrb::render {
 
 /// Keyword (1 to 79 Latin-1 characters) and value of a tEXt chunk; values beyond Latin-1 go into an iTXt
 /// chunk.
@@ -37,4 +37,4 @@ void write_png(const Image& image, const std::string& path, const PngOptions& op
 /// Throws InputError if the file cannot be read.
 DecodedPng read_png(const std::string& path);
 
-}  // namespace lrb
+}  // namespace lrb::render

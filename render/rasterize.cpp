@@ -7,14 +7,14 @@
 
 #include <glm/gtc/type_ptr.hpp>
 
-#include "engine/error.hpp"
+#include "engine/core/error.hpp"
 #include "render/convert.hpp"
 #include "render/gl_objects.hpp"
 #include "render/offscreen.hpp"
 #include "render/shaders.hpp"
 #include "render/text.hpp"
 
-namespace lrb {
+namespace lrb::render {
 namespace {
 
 constexpr int kGhostStrength = 96;  ///< of hidden faces on top, in 1/256
@@ -345,4 +345,4 @@ void draw_labels(Image& image, const DrawList& list, const Camera& camera) {
   }
 }
 
-}  // namespace lrb
+}  // namespace lrb::render

@@ -12,7 +12,7 @@
 #include "render/image.hpp"
 #include "render/screen_mesh.hpp"
 
-namespace lrb {
+namespace lrb::render {
 
 struct RasterOptions {
   int width = 1280, height = 720;  ///< pixels
@@ -53,4 +53,4 @@ class Rasterizer {
 /// Draws the labels of a list over a picture that was taken of it without.
 void draw_labels(Image& image, const DrawList& list, const Camera& camera);
 
-}  // namespace lrb
+}  // namespace lrb::render

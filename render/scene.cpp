@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <map>
 
-#include "engine/error.hpp"
+#include "engine/core/error.hpp"
 #include "render/palette.hpp"
 #include "render/scene_parts.hpp"
 
-namespace lrb {
+namespace lrb::render {
 namespace scene {
 
 std::string Context::name() const {
@@ -273,4 +273,4 @@ std::vector<Eigen::Vector3d> contact_points(std::span<const ContactRegion> conta
   return out;
 }
 
-}  // namespace lrb
+}  // namespace lrb::render

@@ -13,15 +13,15 @@
 #include <string>
 #include <vector>
 
+#include "engine/core/pose.hpp"
 #include "engine/exact/simplex_test.hpp"
 #include "engine/lrb/lrb_rep.hpp"
-#include "engine/lrb/pose.hpp"
 #include "engine/lrb/wrapper.hpp"
-#include "engine/query/contact.hpp"
+#include "engine/query/walk/contact_region.hpp"
 #include "render/draw_list.hpp"
 #include "render/overlay.hpp"
 
-namespace lrb {
+namespace lrb::render {
 
 struct SceneBody {
   const LrbRep* rep = nullptr;
@@ -89,4 +89,4 @@ std::vector<Eigen::Vector3d> body_points(const LrbRep& rep, const Pose& pose);
 /// All points of the contact regions.
 std::vector<Eigen::Vector3d> contact_points(std::span<const ContactRegion> contacts);
 
-}  // namespace lrb
+}  // namespace lrb::render

@@ -5,7 +5,7 @@
 #include "render/palette.hpp"
 #include "render/scene_parts.hpp"
 
-namespace lrb::scene {
+namespace lrb::render::scene {
 namespace {
 
 using Eigen::Vector3d;
@@ -153,4 +153,4 @@ void add_body_2d(const Context& c) {
   Builder(c).run();
 }
 
-}  // namespace lrb::scene
+}  // namespace lrb::render::scene

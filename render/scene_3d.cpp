@@ -5,7 +5,7 @@
 #include "render/palette.hpp"
 #include "render/scene_parts.hpp"
 
-namespace lrb::scene {
+namespace lrb::render::scene {
 namespace {
 
 using Eigen::Vector3d;
@@ -261,4 +261,4 @@ void add_body_3d(const Context& c) {
   Builder(c).run();
 }
 
-}  // namespace lrb::scene
+}  // namespace lrb::render::scene

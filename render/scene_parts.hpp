@@ -7,7 +7,7 @@
 
 #include "render/scene.hpp"
 
-namespace lrb::scene {
+namespace lrb::render::scene {
 
 /// Draws one body into a scene.
 struct Context {
@@ -52,4 +52,4 @@ struct Chain {
 };
 std::vector<Chain> chains(const std::vector<std::array<VertexId, 2>>& segments);
 
-}  // namespace lrb::scene
+}  // namespace lrb::render::scene

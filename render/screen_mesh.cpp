@@ -9,7 +9,7 @@
 #include "render/depth_order.hpp"
 #include "render/edge_room.hpp"
 
-namespace lrb {
+namespace lrb::render {
 namespace {
 
 using Eigen::Vector2d;
@@ -356,4 +356,4 @@ ScreenMesh make_screen_mesh(const DrawList& list, const Projection& projection, 
   return Builder(list, projection, scale, lighting).build();
 }
 
-}  // namespace lrb
+}  // namespace lrb::render

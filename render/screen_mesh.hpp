@@ -13,7 +13,7 @@
 #include "render/convert.hpp"
 #include "render/draw_list.hpp"
 
-namespace lrb {
+namespace lrb::render {
 
 /// A corner of a face. Interpolated linearly over the screen: position and edge distances.
 struct FaceVertex {
@@ -71,4 +71,4 @@ Rgba shade(Rgba colour, const Eigen::Vector3d& normal, const Eigen::Matrix3d& ax
 ScreenMesh make_screen_mesh(const DrawList& list, const Projection& projection, double scale,
                             const Lighting& lighting = {});
 
-}  // namespace lrb
+}  // namespace lrb::render

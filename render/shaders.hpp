@@ -3,7 +3,7 @@
 /// premultiplied coming out. Coverage is rounded to sixteenths: where processors differ in an interpolation's
 /// last bit, the pixel then mostly does not.
 
-namespace lrb::shaders {
+namespace lrb::render::shaders {
 
 inline constexpr const char* kFaceVertex = R"(#version 330 core
 layout(location = 0) in vec3 position;
@@ -107,4 +107,4 @@ void main() {
 }
 )";
 
-}  // namespace lrb::shaders
+}  // namespace lrb::render::shaders

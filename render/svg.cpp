@@ -9,11 +9,11 @@
 #include <map>
 #include <vector>
 
-#include "engine/error.hpp"
+#include "engine/core/error.hpp"
 #include "render/markup.hpp"
 #include "render/svg_text.hpp"
 
-namespace lrb {
+namespace lrb::render {
 namespace {
 
 using namespace svg_text;
@@ -156,4 +156,4 @@ std::string svg(const DrawList& list, const Camera& camera, const SvgOptions& op
   return Writer(list, camera, options).write();
 }
 
-}  // namespace lrb
+}  // namespace lrb::render

@@ -7,7 +7,7 @@
 #include "render/camera.hpp"
 #include "render/draw_list.hpp"
 
-namespace lrb {
+namespace lrb::render {
 
 struct SvgOptions {
   double width = 1280, height = 720;  ///< of the view box; widths and radii of the list are in its units
@@ -21,4 +21,4 @@ struct SvgOptions {
 /// list has triangles (what hides what is decided pixel by pixel there), and where Projection does.
 std::string svg(const DrawList& list, const Camera& camera, const SvgOptions& options = {});
 
-}  // namespace lrb
+}  // namespace lrb::render

@@ -1,11 +1,11 @@
 #include "render/svg_montage.hpp"
 
-#include "engine/error.hpp"
+#include "engine/core/error.hpp"
 #include "render/markup.hpp"
 #include "render/palette.hpp"
 #include "render/svg_text.hpp"
 
-namespace lrb {
+namespace lrb::render {
 namespace {
 
 using namespace svg_text;
@@ -46,4 +46,4 @@ std::string svg_montage(const std::vector<std::string>& panels, const MontageLay
   return out + "</svg>\n";
 }
 
-}  // namespace lrb
+}  // namespace lrb::render

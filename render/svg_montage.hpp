@@ -6,7 +6,7 @@
 
 #include "render/montage.hpp"
 
-namespace lrb {
+namespace lrb::render {
 
 struct SvgMontageOptions {
   std::string title;           ///< for readers that cannot see it; empty: none
@@ -18,4 +18,4 @@ struct SvgMontageOptions {
 std::string svg_montage(const std::vector<std::string>& panels, const MontageLayout& layout,
                         const SvgMontageOptions& options = {});
 
-}  // namespace lrb
+}  // namespace lrb::render

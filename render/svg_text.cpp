@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstdio>
 
-namespace lrb::svg_text {
+namespace lrb::render::svg_text {
 
 std::string number(double x) {
   std::array<char, 64> text{};
@@ -42,4 +42,4 @@ std::string svg_open(double width, double height, double units_per_pixel) {
          attribute("viewBox", "0 0 " + number(width) + " " + number(height)) + ">\n";
 }
 
-}  // namespace lrb::svg_text
+}  // namespace lrb::render::svg_text

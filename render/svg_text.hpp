@@ -5,7 +5,7 @@
 
 #include "render/colour.hpp"
 
-namespace lrb::svg_text {
+namespace lrb::render::svg_text {
 
 /// With two decimals at most.
 std::string number(double x);
@@ -18,4 +18,4 @@ std::string font(double height);
 /// The root element's start tag. `units_per_pixel`: of the view box, per pixel of a screen.
 std::string svg_open(double width, double height, double units_per_pixel = 1);
 
-}  // namespace lrb::svg_text
+}  // namespace lrb::render::svg_text

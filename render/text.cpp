@@ -7,7 +7,7 @@
 #include <fstream>
 #include <iterator>
 
-#include "engine/error.hpp"
+#include "engine/core/error.hpp"
 
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wunused-function"
@@ -16,7 +16,7 @@
 #include <stb_truetype.h>
 #pragma GCC diagnostic pop
 
-namespace lrb {
+namespace lrb::render {
 namespace {
 
 /// Where distributions put DejaVu, should the file that the build found have moved.
@@ -233,4 +233,4 @@ char32_t next_code_point(std::string_view& text) {
   return code;
 }
 
-}  // namespace lrb
+}  // namespace lrb::render

@@ -8,7 +8,7 @@
 
 #include "render/image.hpp"
 
-namespace lrb {
+namespace lrb::render {
 
 /// The font's file: $LRB_FONT if set (for the bold one $LRB_FONT_BOLD, else $LRB_FONT), else DejaVu Sans
 /// where it was found when we were built, or where distributions put it. Throws EnvironmentError with what to
@@ -59,4 +59,4 @@ const Font& default_font();
 /// Next code point of UTF-8 text, moved past it; U+FFFD for what is no UTF-8.
 char32_t next_code_point(std::string_view& text);
 
-}  // namespace lrb
+}  // namespace lrb::render

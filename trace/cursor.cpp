@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "engine/error.hpp"
-#include "engine/mesh/file_bytes.hpp"
+#include "engine/core/error.hpp"
+#include "engine/core/file_bytes.hpp"
 #include "trace/hex.hpp"
 #include "trace/names.hpp"
 

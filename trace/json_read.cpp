@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "engine/error.hpp"
-#include "engine/mesh/file_bytes.hpp"
+#include "engine/core/error.hpp"
+#include "engine/core/file_bytes.hpp"
 
 namespace lrb::trace {
 

@@ -8,7 +8,7 @@
 #include <string_view>
 
 #include "engine/query/collide.hpp"
-#include "engine/query/probe.hpp"
+#include "engine/query/walk/probe.hpp"
 #include "trace/trace.hpp"
 
 namespace lrb::trace {

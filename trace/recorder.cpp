@@ -3,7 +3,7 @@
 #include <stdexcept>
 #include <unordered_map>
 
-#include "engine/error.hpp"
+#include "engine/core/error.hpp"
 #include "trace/replay.hpp"
 
 namespace lrb::trace {

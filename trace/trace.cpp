@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <bit>
 
-#include "engine/error.hpp"
+#include "engine/core/error.hpp"
 #include "trace/names.hpp"
 
 namespace lrb::trace {

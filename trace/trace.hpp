@@ -11,11 +11,11 @@
 #include <string_view>
 #include <vector>
 
-#include "engine/ids.hpp"
+#include "engine/core/ids.hpp"
+#include "engine/core/pose.hpp"
 #include "engine/lrb/lrb_rep.hpp"
-#include "engine/lrb/pose.hpp"
 #include "engine/query/collide.hpp"
-#include "engine/query/probe.hpp"
+#include "engine/query/walk/probe.hpp"
 
 namespace lrb::trace {
 
@@ -33,7 +33,7 @@ const char* lrbscope_version();
 /// Index of an event in Trace::events; kNull: none.
 using EventId = std::uint32_t;
 
-/// One event, 24 bytes. What `a` and `b` mean depends on the kind: see LRB_EVENTS in engine/query/probe.hpp.
+/// One event, 24 bytes. What `a` and `b` mean depends on the kind: see LRB_EVENTS in engine/query/walk/probe.hpp.
 struct Event {
   std::uint32_t a = 0;
   std::uint32_t b = 0;

@@ -10,9 +10,9 @@
 
 #include <zlib.h>
 
-#include "engine/error.hpp"
-#include "engine/mesh/atomic_file.hpp"
-#include "engine/mesh/file_bytes.hpp"
+#include "engine/core/atomic_file.hpp"
+#include "engine/core/error.hpp"
+#include "engine/core/file_bytes.hpp"
 #include "trace/trace_json.hpp"
 
 namespace lrb::trace {

@@ -3,10 +3,10 @@
 #include <cstring>
 #include <vector>
 
-#include "engine/error.hpp"
-#include "engine/lrb/fnv.hpp"
-#include "engine/mesh/atomic_file.hpp"
-#include "engine/mesh/file_bytes.hpp"
+#include "engine/core/atomic_file.hpp"
+#include "engine/core/error.hpp"
+#include "engine/core/file_bytes.hpp"
+#include "engine/core/fnv.hpp"
 
 namespace lrb {
 namespace {

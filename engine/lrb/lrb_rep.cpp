@@ -7,10 +7,10 @@
 
 #include <Eigen/Geometry>
 
-#include "engine/error.hpp"
-#include "engine/lrb/fnv.hpp"
+#include "engine/core/error.hpp"
+#include "engine/core/file_bytes.hpp"
+#include "engine/core/fnv.hpp"
 #include "engine/lrb/pieces.hpp"
-#include "engine/mesh/file_bytes.hpp"
 
 namespace lrb {
 namespace {
@@ -71,13 +71,19 @@ double face_size(const LrbData& d, FaceId f) {
 LrbRep::LrbRep(LrbData data, unsigned threads) : d_(std::move(data)) {
   derive();
   hash_ = hash_of(d_);
-  tree_ = BlockTree(*this, threads);
+  tree_ = ObbTree(simplices(), threads);
 }
 
 LrbRep::LrbRep(LrbData data, std::vector<TreeNode> nodes, std::vector<LeafBlock> blocks, std::uint64_t hash)
     : d_(std::move(data)), hash_(hash) {
   derive();
-  tree_ = BlockTree(*this, std::move(nodes), std::move(blocks));
+  tree_ = ObbTree(simplices(), std::move(nodes), std::move(blocks));
+}
+
+SimplexView LrbRep::simplices() const {
+  return {dim(), vertices(), real_simplex_count(), this, [](const void* rep, SimplexId s, VertexId out[3]) {
+            static_cast<const LrbRep*>(rep)->simplex(s, out);
+          }};
 }
 
 /// All but the tree and the hash.

@@ -23,9 +23,10 @@
 
 #include <Eigen/Core>
 
-#include "engine/ids.hpp"
+#include "engine/core/ids.hpp"
 #include "engine/mesh/mesh.hpp"
-#include "engine/query/block_tree.hpp"
+#include "engine/tree/obb_tree.hpp"
+#include "engine/tree/simplex_view.hpp"
 
 namespace lrb {
 
@@ -58,7 +59,7 @@ class LrbRep {
   /// and the query's tree, this on so many threads (see BuildOptions).
   explicit LrbRep(LrbData data, unsigned threads = 1);
   /// The same with what took long to derive, stored: the tree's nodes and blocks, and hash_of(data). Both are
-  /// checked only as far as safety goes (see BlockTree); that they belong to the data is the caller's word.
+  /// checked only as far as safety goes (see ObbTree); that they belong to the data is the caller's word.
   LrbRep(LrbData data, std::vector<TreeNode> nodes, std::vector<LeafBlock> blocks, std::uint64_t hash);
   /// A body without regions: its outermost wrapper is itself. `closed` as found by check_mesh().
   static LrbRep without_regions(const Mesh& mesh, bool closed, bool self_intersecting);
@@ -127,7 +128,9 @@ class LrbRep {
     out[2] = corners[i + 2];
   }
 
-  const BlockTree& tree() const { return tree_; }
+  /// Returns the simplices as the tree sees them; refers to this LRB-rep.
+  SimplexView simplices() const;
+  const ObbTree& tree() const { return tree_; }
   /// hash_of(data()): names this very complex in traces and files.
   std::uint64_t hash() const { return hash_; }
   /// Differs between any two LRB-reps made in this process (copies share it): lets caches notice a new body
@@ -155,7 +158,7 @@ class LrbRep {
   std::uint32_t layer_count_ = 0;
   std::uint64_t hash_ = 0;
   std::uint64_t serial_ = 0;
-  BlockTree tree_;
+  ObbTree tree_;
 };
 
 }  // namespace lrb

@@ -1,7 +1,7 @@
 #include "engine/lrb/pieces.hpp"
 
+#include "engine/core/disjoint_sets.hpp"
 #include "engine/lrb/lrb_rep.hpp"
-#include "engine/mesh/disjoint_sets.hpp"
 
 namespace lrb {
 

@@ -3,7 +3,7 @@
 #include <span>
 #include <vector>
 
-#include "engine/ids.hpp"
+#include "engine/core/ids.hpp"
 
 namespace lrb {
 

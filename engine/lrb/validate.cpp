@@ -4,14 +4,14 @@
 #include <cmath>
 #include <random>
 
+#include "engine/core/parallel.hpp"
+#include "engine/core/tolerances.hpp"
 #include "engine/exact/locate.hpp"
 #include "engine/exact/predicates.hpp"
 #include "engine/exact/simplex_test.hpp"
 #include "engine/lrb/boundary_sum.hpp"
 #include "engine/lrb/wrapper.hpp"
-#include "engine/parallel.hpp"
-#include "engine/query/self_pairs.hpp"
-#include "engine/tolerances.hpp"
+#include "engine/tree/self_pairs.hpp"
 
 namespace lrb {
 namespace {
@@ -50,7 +50,8 @@ class Validator {
 
   /// What a file stores beside the complex.
   void check_derived() {
-    if (!rep_.tree().bounds_hold(rep_)) violation("the query's tree has bounds that do not hold its faces");
+    if (!rep_.tree().bounds_hold(rep_.simplices()))
+      violation("the query's tree has bounds that do not hold its faces");
     if (hash_of(rep_.data()) != rep_.hash()) violation("the stored hash is not that of the complex");
   }
 
@@ -108,7 +109,7 @@ class Validator {
   void check_embedding() {
     const LrbRep soup = complex_as_soup();
     std::vector<Pair> pairs;
-    for_each_self_pair(soup, [&](SimplexId s, SimplexId t) {
+    for_each_self_pair(soup.tree(), [&](SimplexId s, SimplexId t) {
       pairs.push_back({s, t});
       if (pairs.size() == kPairsAtOnce) judge(soup, pairs);
     });

@@ -9,7 +9,7 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
-#include "engine/parallel.hpp"
+#include "engine/core/parallel.hpp"
 
 namespace lrb {
 

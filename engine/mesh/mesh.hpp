@@ -9,7 +9,7 @@
 
 #include <Eigen/Core>
 
-#include "engine/ids.hpp"
+#include "engine/core/ids.hpp"
 
 namespace lrb {
 

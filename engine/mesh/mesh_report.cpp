@@ -2,7 +2,7 @@
 #include <string>
 #include <string_view>
 
-#include "engine/ids.hpp"
+#include "engine/core/ids.hpp"
 #include "engine/mesh/mesh_check.hpp"
 
 namespace lrb {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <span>
 
-#include "engine/mesh/disjoint_sets.hpp"
+#include "engine/core/disjoint_sets.hpp"
 
 namespace lrb {
 namespace {

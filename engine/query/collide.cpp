@@ -3,47 +3,10 @@
 #include <cmath>
 #include <limits>
 
-#include "engine/lrb/fnv.hpp"
 #include "engine/query/collide_impl.hpp"
-#include "engine/query/pose_bounds.hpp"
+#include "engine/tree/pose_bounds.hpp"
 
 namespace lrb {
-
-const char* to_string(Relation r) {
-  switch (r) {
-    case Relation::separate:
-      return "separate";
-    case Relation::crossing:
-      return "crossing";
-    case Relation::touching:
-      return "touching";
-    case Relation::a_inside_b:
-      return "a_inside_b";
-    case Relation::b_inside_a:
-      return "b_inside_a";
-    case Relation::undefined:
-      return "undefined";
-    case Relation::unresolved:
-      return "unresolved";
-  }
-  return "";
-}
-
-const char* to_string(Answer a) {
-  return a == Answer::yes ? "yes" : a == Answer::no ? "no" : "unknown";
-}
-
-const char* to_string(Recursion r) {
-  switch (r) {
-    case Recursion::complete:
-      return "complete";
-    case Recursion::paper:
-      return "paper";
-    case Recursion::paper_strict:
-      return "paper-strict";
-  }
-  return "";
-}
 
 namespace {
 
@@ -77,15 +40,6 @@ void check_query(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pos
   }
   check_world(a, pose_a, 'A');
   check_world(b, pose_b, 'B');
-}
-
-std::uint64_t fingerprint(const std::vector<SimplexPair>& pairs) {
-  Fnv64 h;
-  for (const SimplexPair& p : pairs) {
-    h.add_value(p.a);
-    h.add_value(p.b);
-  }
-  return h.value();
 }
 
 template CollideResult collide<NullProbe>(const LrbRep&, const Pose&, const LrbRep&, const Pose&,

@@ -4,21 +4,20 @@
 #include <algorithm>
 #include <numeric>
 
-#include "engine/error.hpp"
+#include "engine/core/error.hpp"
 #include "engine/exact/predicates.hpp"
-#include "engine/query/coarse_query.hpp"
+#include "engine/query/coarse/coarse_query.hpp"
+#include "engine/query/coarse/separation.hpp"
 #include "engine/query/collide.hpp"
-#include "engine/query/paper_query.hpp"
-#include "engine/query/relation.hpp"
-#include "engine/query/separation.hpp"
-#include "engine/query/tree_query.hpp"
+#include "engine/query/contact/describe_contact.hpp"
+#include "engine/query/walk/paper_query.hpp"
+#include "engine/query/walk/relation.hpp"
+#include "engine/query/walk/tree_query.hpp"
 
 namespace lrb {
 
 /// Throws InputError if the query cannot be asked.
 void check_query(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b);
-/// Fills in interiors_overlap, contacts and regions as requested.
-void describe_contact(QueryContext& context, const CollideRequest& request, CollideResult& result);
 
 template <class Probe>
 CollideResult collide(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,

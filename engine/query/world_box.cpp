@@ -4,8 +4,8 @@
 #include <cmath>
 #include <limits>
 
-#include "engine/query/pose_bounds.hpp"
-#include "engine/tolerances.hpp"
+#include "engine/core/tolerances.hpp"
+#include "engine/tree/pose_bounds.hpp"
 
 namespace lrb {
 namespace {

@@ -5,9 +5,9 @@
 
 #include <Eigen/Geometry>
 
-#include "engine/ids.hpp"
+#include "engine/core/ids.hpp"
+#include "engine/core/pose.hpp"
 #include "engine/lrb/lrb_rep.hpp"
-#include "engine/lrb/pose.hpp"
 
 namespace lrb {
 

@@ -1,21 +1,21 @@
 #include <algorithm>
 #include <memory>
 
-#include "engine/error.hpp"
+#include "engine/core/error.hpp"
+#include "scenarios/bench/report/machine.hpp"
+#include "scenarios/bench/report/peer_table.hpp"
+#include "scenarios/bench/survey.hpp"
 #include "scenarios/cli/choice.hpp"
 #include "scenarios/cli/command.hpp"
 #include "scenarios/cli/measure_options.hpp"
 #include "scenarios/cli/progress.hpp"
-#include "scenarios/files.hpp"
-#include "scenarios/measure/machine.hpp"
-#include "scenarios/measure/peer_table.hpp"
-#include "scenarios/measure/survey.hpp"
+#include "scenarios/io/files.hpp"
 
 namespace lrb::cli {
 namespace {
 
-using namespace lrb::measure;
-using stability::WorkerMethod;
+using namespace lrb::bench;
+using workers::WorkerMethod;
 
 struct BenchOptions : MeasureOptions {
   BenchOptions() { folder = "out/bench"; }
@@ -24,48 +24,48 @@ struct BenchOptions : MeasureOptions {
 
 /// Peers are engines that answer the same question: no approximation, no textbook loop over all pairs, which
 /// takes minutes here, and not the paper's recursion, which misses contacts.
-bool is_peer(const WorkerMethod& m) {
+bool is_peer(const workers::WorkerMethod& m) {
   return !m.info.approximate && !m.info.convex && m.info.name != "plain" && m.info.name != "ours-paper";
 }
 
 int run_bench(const BenchOptions& o, const Globals& globals) {
-  std::vector<WorkerMethod> methods = stability::find_all_methods();
-  std::erase_if(methods, [](const WorkerMethod& m) { return !is_peer(m); });
-  methods = chosen(methods, o.methods, "method", [](const WorkerMethod& m) { return m.info.name; });
-  make_folder(o.folder);
-  const FolderLock lock(o.folder);
-  std::vector<BodyPair> pairs;
-  if (!o.models.empty()) pairs = pairs_of_models(o.models);
+  std::vector<workers::WorkerMethod> methods = workers::find_all_methods();
+  std::erase_if(methods, [](const workers::WorkerMethod& m) { return !is_peer(m); });
+  methods = chosen(methods, o.methods, "method", [](const workers::WorkerMethod& m) { return m.info.name; });
+  io::make_folder(o.folder);
+  const io::FolderLock lock(o.folder);
+  std::vector<bench::BodyPair> pairs;
+  if (!o.models.empty()) pairs = bench::pairs_of_models(o.models);
   for (const std::uint32_t n : o.faces)
     if (n > 0)
-      for (BodyPair& p : generated_pairs(n)) {
+      for (bench::BodyPair& p : bench::generated_pairs(n)) {
         pairs.push_back(std::move(p));
         if (n != o.faces.front()) break;
       }
-  SurveyOptions survey_options;
+  bench::SurveyOptions survey_options;
   survey_options.folder = o.folder;
   survey_options.timeout = o.timeout;
-  survey_options.contestants = contestants(methods);
+  survey_options.contestants = bench::contestants(methods);
   {
     Progress bar("bodies", pairs.size(), globals.quiet);
-    for (const BodyPair& p : pairs) {
+    for (const bench::BodyPair& p : pairs) {
       bar.set(survey_options.sets.size(), p.what);
-      survey_options.sets.push_back(make_data_set(p, o.set, o.folder));
+      survey_options.sets.push_back(bench::make_data_set(p, o.set, o.folder));
     }
   }
   Progress bar("bench", 0, globals.quiet);
-  const std::vector<Record> records =
-      survey(survey_options, [&](std::uint64_t done, std::uint64_t total, const std::string& what) {
+  const std::vector<bench::Record> records =
+      bench::survey(survey_options, [&](std::uint64_t done, std::uint64_t total, const std::string& what) {
         bar.set_total(total);
         bar.set(done, what);
       });
   bar.finish();
   std::vector<methods::MethodInfo> infos;
-  for (const WorkerMethod& m : methods) infos.push_back(m.info);
-  const PeerTable table = peer_table(survey_options.sets, infos, records);
-  const std::string head = machine() + "; built with " + build_flags() + "\n\n";
-  print(head + in_brief(table));
-  write_text(o.folder + "/peers.txt", head + in_brief(table) + "\n" + in_full(table));
+  for (const workers::WorkerMethod& m : methods) infos.push_back(m.info);
+  const bench::PeerTable table = bench::peer_table(survey_options.sets, infos, records);
+  const std::string head = bench::machine() + "; built with " + bench::build_flags() + "\n\n";
+  print(head + bench::in_brief(table));
+  io::write_text(o.folder + "/peers.txt", head + bench::in_brief(table) + "\n" + bench::in_full(table));
   print(o.folder + "/peers.txt\n" + o.folder + "/records.jsonl\n");
   return kOk;
 }

@@ -6,12 +6,12 @@
 #include <nlohmann/json.hpp>
 #include <sys/resource.h>
 
-#include "engine/error.hpp"
+#include "engine/core/error.hpp"
 #include "engine/lrb/lrb_file.hpp"
 #include "engine/lrb/validate.hpp"
-#include "engine/mesh/mesh_io.hpp"
-#include "scenarios/body.hpp"
-#include "scenarios/body_figures.hpp"
+#include "engine/mesh/io/mesh_io.hpp"
+#include "scenarios/bodies/body.hpp"
+#include "scenarios/bodies/hull_figures.hpp"
 #include "scenarios/cli/command.hpp"
 #include "scenarios/cli/options.hpp"
 #include "scenarios/cli/progress.hpp"
@@ -63,12 +63,12 @@ int run_build(const BuildCommandOptions& o, const Globals& globals) {
     progress.set(pass, "hull of " + std::to_string(faces) + " faces");
   };
   const auto begin = std::chrono::steady_clock::now();
-  const LrbRep rep = build_from_mesh(std::move(mesh), options, notes);
+  const LrbRep rep = bodies::build_from_mesh(std::move(mesh), options, notes);
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   progress.finish();
   note(globals, notes);
 
-  nlohmann::ordered_json j = body_figures(rep);
+  nlohmann::ordered_json j = bodies::body_figures(rep);
   j["seconds"] = seconds;
   j["peak_bytes"] = peak_bytes();
   j["notes"] = notes;  // what was done to the mesh: nothing is, in silence

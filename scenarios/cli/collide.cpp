@@ -3,13 +3,13 @@
 
 #include <Eigen/Geometry>
 
-#include "engine/error.hpp"
-#include "engine/lrb/fnv.hpp"
+#include "engine/core/error.hpp"
+#include "engine/core/fnv.hpp"
 #include "scenarios/cli/command.hpp"
 #include "scenarios/cli/options.hpp"
 #include "scenarios/cli/progress.hpp"
-#include "scenarios/play/run.hpp"
-#include "scenarios/pose_file.hpp"
+#include "scenarios/io/pose_file.hpp"
+#include "scenarios/run/run_scenario.hpp"
 
 namespace lrb::cli {
 namespace {
@@ -29,10 +29,10 @@ Eigen::AlignedBox3d box_of(const LrbRep& rep) {
 }
 
 /// B's middle heads for A's, from clear of it, and goes on for a while after the first contact.
-Motion approach_from(const Eigen::Vector3d& direction, const LrbRep& a, const LrbRep& b) {
+spec::Motion approach_from(const Eigen::Vector3d& direction, const LrbRep& a, const LrbRep& b) {
   const Eigen::AlignedBox3d box_a = box_of(a), box_b = box_of(b);
-  Motion m;
-  m.kind = Motion::Kind::approach;
+  spec::Motion m;
+  m.kind = spec::Motion::Kind::approach;
   m.target = box_a.center() - box_b.center();
   constexpr double kClear = 1.02;  // of the distance at which balls round both boxes touch
   m.from = direction.normalized() * kClear * (box_a.diagonal().norm() + box_b.diagonal().norm()) / 2;
@@ -45,16 +45,16 @@ Motion approach_from(const Eigen::Vector3d& direction, const LrbRep& a, const Lr
 
 /// Stands beside the way on which B comes, a little on B's side and above: the gap between the bodies is
 /// seen.
-void look_from_the_side(const Eigen::Vector3d& coming_from, std::vector<FrameSpec::View>& views) {
-  for (FrameSpec::View& view : views) {
+void look_from_the_side(const Eigen::Vector3d& coming_from, std::vector<spec::FrameSpec::View>& views) {
+  for (spec::FrameSpec::View& view : views) {
     const Eigen::Vector3d up = view.up.normalized(), side = coming_from.cross(up);
     if (!(side.squaredNorm() > 0)) continue;  // B comes from above or below: any side will do
     view.from = 0.8 * side.normalized() + 0.3 * coming_from.normalized() + 0.45 * up;
   }
 }
 
-Scenario make_scenario(const CollideOptions& o, const std::vector<LoadedBody>& bodies) {
-  Scenario s;
+spec::Scenario make_scenario(const CollideOptions& o, const std::vector<bodies::LoadedBody>& bodies) {
+  spec::Scenario s;
   s.name = std::filesystem::path(o.a).stem().string() + "-" + std::filesystem::path(o.b).stem().string();
   s.bodies = {{}, {}};
   s.bodies[0].file = o.a;
@@ -64,18 +64,18 @@ Scenario make_scenario(const CollideOptions& o, const std::vector<LoadedBody>& b
   s.frames.montage = 6;
   s.frames.views = whole_and_contact();
   if (!o.poses.empty()) {
-    s.motion.kind = Motion::Kind::poses;
-    s.motion.poses = read_poses(o.poses);
+    s.motion.kind = spec::Motion::Kind::poses;
+    s.motion.poses = io::read_poses(o.poses);
   } else {
     // Aslant by default: along an axis, bodies that are lined up with it would meet in whole faces first.
     Eigen::Vector3d direction(1, 0.35, 0.25);
-    if (!o.from.empty()) direction = parse_vector(o.from, "--from");
+    if (!o.from.empty()) direction = io::parse_vector(o.from, "--from");
     if (!(direction.squaredNorm() > 0)) throw InputError("--from: expected a direction that is not zero");
     if (bodies[0].rep.dim() == 2) direction.z() = 0;
     s.motion = approach_from(direction, bodies[0].rep, bodies[1].rep);
   }
   Fnv64 hash;
-  for (const LoadedBody& body : bodies) hash.add_value(body.rep.hash());
+  for (const bodies::LoadedBody& body : bodies) hash.add_value(body.rep.hash());
   for (const Pose& pose : s.motion.poses) {
     hash.add_bytes(pose.r.data(), sizeof(double) * 9);
     hash.add_bytes(pose.t.data(), sizeof(double) * 3);
@@ -83,24 +83,24 @@ Scenario make_scenario(const CollideOptions& o, const std::vector<LoadedBody>& b
   hash.add_bytes(s.motion.from.data(), sizeof(double) * 3);
   s.hash = hash.value();
   apply(o.picture, s.frames);
-  if (s.motion.kind == Motion::Kind::approach) look_from_the_side(s.motion.from, s.frames.views);
+  if (s.motion.kind == spec::Motion::Kind::approach) look_from_the_side(s.motion.from, s.frames.views);
   return s;
 }
 
 int run_collide(const CollideOptions& o, const Globals& globals) {
-  if (!o.poses.empty()) read_poses(o.poses);  // a typing error there should not cost a build
-  const ProgressReport progress = progress_report(globals.quiet);
-  std::vector<LoadedBody> bodies;
+  if (!o.poses.empty()) io::read_poses(o.poses);  // a typing error there should not cost a build
+  const run::ProgressReport progress = progress_report(globals.quiet);
+  std::vector<bodies::LoadedBody> bodies;
   for (const std::string& path : {o.a, o.b}) {
     progress("build", bodies.size(), 2);
-    bodies.push_back(load_body(path));
+    bodies.push_back(bodies::load_body(path));
   }
   if (bodies[0].rep.dim() != bodies[1].rep.dim())
     throw InputError(o.a + " and " + o.b + ": one is 2D, the other 3D: give two of a kind");
-  const Scenario scenario = make_scenario(o, bodies);
+  const spec::Scenario scenario = make_scenario(o, bodies);
   const std::string folder = o.folder.empty() ? "out/" + scenario.name : o.folder;
-  const Recording recording = record(scenario, std::move(bodies), progress);
-  return report_outcome(write_run(scenario, recording, folder, globals.command_line, progress), folder,
+  const run::Recording recording = run::record(scenario, std::move(bodies), progress);
+  return report_outcome(run::write_run(scenario, recording, folder, globals.command_line, progress), folder,
                         o.json, globals);
 }
 

@@ -17,17 +17,17 @@ struct CrowdOptions {
 };
 
 int run_crowd_command(const CrowdOptions& o, const Globals& globals) {
-  Crowd crowd = open_crowd(o.crowd);
+  spec::Crowd crowd = spec::open_crowd(o.crowd);
   if (o.steps) crowd.steps = *o.steps;
   if (o.clock) crowd.clock = *o.clock;
-  if (o.no_frames) crowd.frames.at = FrameSpec::At::none;
+  if (o.no_frames) crowd.frames.at = spec::FrameSpec::At::none;
   const std::string folder = o.folder.empty() ? "out/" + crowd.name : o.folder;
   const std::uint32_t jobs = o.jobs > 0 ? o.jobs : all_cores();
-  const ProgressReport progress = progress_report(globals.quiet);
-  const CrowdRun run = run_crowd(crowd, jobs, progress);
+  const run::ProgressReport progress = progress_report(globals.quiet);
+  const crowd::CrowdRun run = crowd::run_crowd(crowd, jobs, progress);
   note(globals, run.notes);
-  note(globals, {crowd_speed(run)});
-  const std::string summary = write_crowd(crowd, run, folder, globals.command_line, progress);
+  note(globals, {crowd::crowd_speed(run)});
+  const std::string summary = crowd::write_crowd(crowd, run, folder, globals.command_line, progress);
   print(o.json ? summary : folder + "/index.html\n");
   return kOk;
 }

@@ -4,26 +4,26 @@
 
 #include <nlohmann/json.hpp>
 
-#include "engine/error.hpp"
+#include "engine/core/error.hpp"
 #include "engine/query/collide.hpp"
 #include "render/offscreen.hpp"
 #include "render/rasterize.hpp"
-#include "scenarios/body.hpp"
-#include "scenarios/charts/gnuplot.hpp"
+#include "scenarios/bodies/body.hpp"
+#include "scenarios/bodies/generators/generators.hpp"
 #include "scenarios/cli/command.hpp"
-#include "scenarios/embedded.hpp"
-#include "scenarios/files.hpp"
-#include "scenarios/generators/generators.hpp"
+#include "scenarios/io/embedded.hpp"
+#include "scenarios/io/files.hpp"
+#include "scenarios/report/charts/gnuplot.hpp"
 #include "trace/trace.hpp"
 
 namespace lrb::cli {
 namespace {
 
-using Level = Finding::Level;
+using Level = render::Finding::Level;
 
 /// Runs a check that says in a few words what it found, or throws.
 template <class Check>
-Finding look(const std::string& what, const Check& check) {
+render::Finding look(const std::string& what, const Check& check) {
   try {
     return {Level::ok, what, check()};
   } catch (const std::exception& e) {
@@ -32,23 +32,24 @@ Finding look(const std::string& what, const Check& check) {
 }
 
 std::string draw_something() {
-  DrawList list;
-  DrawTriangle triangle;
+  render::DrawList list;
+  render::DrawTriangle triangle;
   triangle.x = {Eigen::Vector3d(-9, -9, 0), Eigen::Vector3d(9, -9, 0), Eigen::Vector3d(0, 9, 0)};
   triangle.colour = {200, 40, 40};
   triangle.lit = false;
   list.triangles = {triangle};
-  RasterOptions options;
+  render::RasterOptions options;
   options.width = options.height = 64;
-  const Image image = Rasterizer().draw(list, Camera{{0, 0, 5}, {0, 0, 0}, {0, 1, 0}}, options);
-  const Rgba middle = image.at(32, 32);
-  if (middle != Rgba{200, 40, 40})
+  const render::Image image =
+      render::Rasterizer().draw(list, render::Camera{{0, 0, 5}, {0, 0, 0}, {0, 1, 0}}, options);
+  const render::Rgba middle = image.at(32, 32);
+  if (middle != render::Rgba{200, 40, 40})
     throw EnvironmentError("a red triangle came out in another colour: Mesa is broken here");
   return "a triangle came out as it should";
 }
 
 std::string ask_something() {
-  const LoadedBody ball = body_of_mesh(generate("ball", {{"frequency", 3}}));
+  const bodies::LoadedBody ball = bodies::body_of_mesh(generators::generate("ball", {{"frequency", 3}}));
   const CollideResult apart = collide(ball.rep, Pose{}, ball.rep, Pose::translation({3, 0, 0}));
   const CollideResult meet = collide(ball.rep, Pose{}, ball.rep, Pose::translation({1.5, 0.1, 0.2}));
   if (apart.relation != Relation::separate || meet.relation != Relation::crossing)
@@ -60,29 +61,29 @@ std::string ask_something() {
 std::string write_something() {
   const std::filesystem::path folder = std::filesystem::exists("out") ? "out" : ".";
   const std::string path = (folder / ".doctor").string();
-  write_text(path, "written by lrbscope doctor\n");
+  io::write_text(path, "written by lrbscope doctor\n");
   std::filesystem::remove(path);
   return "writable: " + std::filesystem::absolute(folder).lexically_normal().string();
 }
 
 int run_doctor(bool json) {
-  std::vector<Finding> findings = {{Level::ok, "lrbscope", trace::lrbscope_version()}};
+  std::vector<render::Finding> findings = {{Level::ok, "lrbscope", trace::lrbscope_version()}};
   findings.push_back(look("query", ask_something));
-  for (Finding& f : check_rendering()) findings.push_back(std::move(f));
+  for (render::Finding& f : render::check_rendering()) findings.push_back(std::move(f));
   findings.push_back(look("drawing", draw_something));
   findings.push_back(look("output", write_something));
   findings.push_back(look("page", [] {
-    return std::to_string(embedded_file("chart.min.js").size() / 1000) +
+    return std::to_string(io::embedded_file("chart.min.js").size() / 1000) +
            " kB of charting library compiled in";
   }));
-  findings.push_back(has_gnuplot()
-                         ? Finding{Level::ok, "gnuplot", "there"}
-                         : Finding{Level::warning, "gnuplot",
-                                   "not there: charts for print are left out; install gnuplot-nox"});
+  findings.push_back(report::has_gnuplot()
+                         ? render::Finding{Level::ok, "gnuplot", "there"}
+                         : render::Finding{Level::warning, "gnuplot",
+                                           "not there: charts for print are left out; install gnuplot-nox"});
   bool well = true;
   nlohmann::ordered_json list = nlohmann::ordered_json::array();
   std::string text;
-  for (const Finding& f : findings) {
+  for (const render::Finding& f : findings) {
     const char* level = f.level == Level::ok ? "ok" : f.level == Level::warning ? "warning" : "error";
     well = well && f.level != Level::error;
     list.push_back({{"level", level}, {"what", f.what}, {"detail", f.detail}});

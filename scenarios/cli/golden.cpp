@@ -2,14 +2,14 @@
 #include <memory>
 #include <optional>
 
-#include "engine/error.hpp"
+#include "engine/core/error.hpp"
 #include "scenarios/cli/command.hpp"
 #include "scenarios/cli/options.hpp"
 #include "scenarios/cli/progress.hpp"
-#include "scenarios/files.hpp"
 #include "scenarios/golden/approve.hpp"
-#include "scenarios/golden/report.hpp"
-#include "scenarios/shipped.hpp"
+#include "scenarios/golden/golden_report.hpp"
+#include "scenarios/io/files.hpp"
+#include "scenarios/spec/shipped.hpp"
 
 namespace lrb::cli {
 namespace {
@@ -27,14 +27,14 @@ std::string approve_command(const GoldenOptions& o, const std::string& name) {
 
 struct NamedGolden {
   std::string name;
-  std::optional<Scenario> scenario;  ///< opened already
+  std::optional<spec::Scenario> scenario;  ///< opened already
 };
 
 /// A golden by its own name, or by the scenario's: a shipped one's, or a file.
 NamedGolden find_golden(const GoldenOptions& o, const std::string& word) {
-  if (has_golden(o.goldens, word)) return {word, std::nullopt};
-  Scenario scenario = open_scenario(word);
-  if (!has_golden(o.goldens, scenario.name))
+  if (golden::has_golden(o.goldens, word)) return {word, std::nullopt};
+  spec::Scenario scenario = spec::open_scenario(word);
+  if (!golden::has_golden(o.goldens, scenario.name))
     throw InputError(word + ": no golden in " + o.goldens +
                      " yet; make it with: lrbscope golden approve --goldens " + quoted(o.goldens) + " " +
                      quoted(word));
@@ -44,14 +44,14 @@ NamedGolden find_golden(const GoldenOptions& o, const std::string& word) {
 std::vector<NamedGolden> goldens_to_test(const GoldenOptions& o) {
   std::vector<NamedGolden> out;
   if (o.scenarios.empty())
-    for (const std::string& name : golden_names(o.goldens)) out.push_back({name, std::nullopt});
+    for (const std::string& name : golden::golden_names(o.goldens)) out.push_back({name, std::nullopt});
   for (const std::string& word : o.scenarios) out.push_back(find_golden(o, word));
   return out;
 }
 
-std::string as_json(const GoldenResult& r) {
+std::string as_json(const golden::GoldenResult& r) {
   nlohmann::ordered_json images = nlohmann::ordered_json::array();
-  for (const ImageVerdict& v : r.verdict.images)
+  for (const golden::ImageVerdict& v : r.verdict.images)
     images.push_back({{"file", v.file}, {"passed", v.passed}, {"equal", v.equal}, {"text", v.text}});
   nlohmann::ordered_json line = {{"scenario", r.name},    {"passed", r.verdict.passed()},
                                  {"steps", r.steps},      {"events", r.events},
@@ -67,46 +67,48 @@ int run_test(const GoldenOptions& o, const Globals& globals, bool report) {
   const std::vector<NamedGolden> todo = goldens_to_test(o);
   std::vector<std::string> names;
   for (const NamedGolden& g : todo) names.push_back(g.name);
-  std::optional<FolderLock> lock;
+  std::optional<io::FolderLock> lock;
   const auto lock_folder = [&] {
-    make_folder(o.folder);
+    io::make_folder(o.folder);
     if (!lock) lock.emplace(o.folder);
   };
   if (report || std::filesystem::exists(o.folder)) lock_folder();
-  clear_golden_report(o.folder, names);
-  std::vector<GoldenResult> results;
+  golden::clear_golden_report(o.folder, names);
+  std::vector<golden::GoldenResult> results;
   bool passed = true;
   for (const NamedGolden& g : todo) {
-    const Golden golden = load_golden(o.goldens, g.name);
-    Scenario scenario = g.scenario ? *g.scenario : golden_scenario(o.goldens, g.name, golden.spec);
-    const GoldenRun run = play_golden(std::move(scenario), golden.spec, progress_report(globals.quiet));
-    results.push_back(test_golden(golden, run, approve_command(o, g.name), report));
+    const golden::Golden golden = golden::load_golden(o.goldens, g.name);
+    spec::Scenario scenario =
+        g.scenario ? *g.scenario : golden::golden_scenario(o.goldens, g.name, golden.spec);
+    const golden::GoldenRun run =
+        golden::play_golden(std::move(scenario), golden.spec, progress_report(globals.quiet));
+    results.push_back(golden::test_golden(golden, run, approve_command(o, g.name), report));
     passed = passed && results.back().verdict.passed();
     if (!passed) lock_folder();
-    write_failures(results.back(), run, o.folder);
-    print(o.json ? as_json(results.back()) : result_text(results.back()));
+    golden::write_failures(results.back(), run, o.folder);
+    print(o.json ? as_json(results.back()) : golden::result_text(results.back()));
   }
   if (report || !passed) {
-    write_golden_page(results, o.folder, globals.command_line);
+    golden::write_golden_page(results, o.folder, globals.command_line);
     if (!o.json) print(o.folder + "/index.html\n");
   }
   return passed ? kOk : kMismatch;
 }
 
-GoldenSpec spec_to_approve(const GoldenOptions& o, const std::string& name, const Scenario& scenario,
-                           const std::string& word) {
-  GoldenSpec spec;
-  if (has_golden(o.goldens, name)) {
-    spec = read_golden_spec(o.goldens, name);
-    if (name != word) spec.scenario = scenario_reference(o.goldens, scenario, word);
+golden::GoldenSpec spec_to_approve(const GoldenOptions& o, const std::string& name,
+                                   const spec::Scenario& scenario, const std::string& word) {
+  golden::GoldenSpec spec;
+  if (golden::has_golden(o.goldens, name)) {
+    spec = golden::read_golden_spec(o.goldens, name);
+    if (name != word) spec.scenario = golden::scenario_reference(o.goldens, scenario, word);
   } else {
-    set_default_size(spec, scenario.frames);
-    spec.scenario = scenario_reference(o.goldens, scenario, word);
+    golden::set_default_size(spec, scenario.frames);
+    spec.scenario = golden::scenario_reference(o.goldens, scenario, word);
   }
   if (!o.size.empty()) {
     PictureOptions picture;
     picture.size = o.size;
-    FrameSpec frames;
+    spec::FrameSpec frames;
     apply(picture, frames);
     spec.width = frames.width;
     spec.height = frames.height;
@@ -116,15 +118,17 @@ GoldenSpec spec_to_approve(const GoldenOptions& o, const std::string& name, cons
 }
 
 int run_approve(const GoldenOptions& o, const Globals& globals) {
-  const std::vector<std::string> words = o.scenarios.empty() ? golden_names(o.goldens) : o.scenarios;
+  const std::vector<std::string> words = o.scenarios.empty() ? golden::golden_names(o.goldens) : o.scenarios;
   for (const std::string& word : words) {
-    Scenario scenario = has_golden(o.goldens, word)
-                            ? golden_scenario(o.goldens, word, read_golden_spec(o.goldens, word))
-                            : open_scenario(word);
+    spec::Scenario scenario =
+        golden::has_golden(o.goldens, word)
+            ? golden::golden_scenario(o.goldens, word, golden::read_golden_spec(o.goldens, word))
+            : spec::open_scenario(word);
     const std::string name = scenario.name;
-    const GoldenSpec spec = spec_to_approve(o, name, scenario, word);
-    const GoldenRun run = play_golden(std::move(scenario), spec, progress_report(globals.quiet));
-    const std::vector<std::string> done = approve_golden(o.goldens, spec, run, o.variant);
+    const golden::GoldenSpec spec = spec_to_approve(o, name, scenario, word);
+    const golden::GoldenRun run =
+        golden::play_golden(std::move(scenario), spec, progress_report(globals.quiet));
+    const std::vector<std::string> done = golden::approve_golden(o.goldens, spec, run, o.variant);
     for (const std::string& line : done) print(line + "\n");
     if (done.empty()) print("unchanged " + name + "\n");
   }

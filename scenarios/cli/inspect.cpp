@@ -6,18 +6,18 @@
 #include <Eigen/Geometry>
 #include <nlohmann/json.hpp>
 
-#include "engine/error.hpp"
+#include "engine/core/error.hpp"
+#include "engine/core/file_bytes.hpp"
 #include "engine/lrb/lrb_file.hpp"
 #include "engine/lrb/validate.hpp"
-#include "engine/mesh/file_bytes.hpp"
+#include "engine/mesh/io/mesh_io.hpp"
 #include "engine/mesh/mesh_check.hpp"
-#include "engine/mesh/mesh_io.hpp"
-#include "scenarios/body.hpp"
-#include "scenarios/body_figures.hpp"
+#include "scenarios/bodies/body.hpp"
+#include "scenarios/bodies/hull_figures.hpp"
 #include "scenarios/cli/command.hpp"
-#include "scenarios/files.hpp"
-#include "scenarios/play/dirt_picture.hpp"
-#include "scenarios/play/portrait.hpp"
+#include "scenarios/io/files.hpp"
+#include "scenarios/run/body_sheet.hpp"
+#include "scenarios/run/dirt_picture.hpp"
 namespace lrb::cli {
 namespace {
 
@@ -90,8 +90,8 @@ void draw_findings(const Mesh& mesh, const MeshReport& report, const std::string
   const std::string folder = std::filesystem::path(path).parent_path().string();
   const bool any = std::any_of(report.findings.begin(), report.findings.end(),
                                [](const MeshFinding& f) { return f.count > 0; });
-  if (any && !folder.empty()) make_folder(folder);
-  if (any && draw_dirt(mesh, report, path)) {
+  if (any && !folder.empty()) io::make_folder(folder);
+  if (any && run::draw_dirt(mesh, report, path)) {
     j["drawing"] = path;
     return;
   }
@@ -103,7 +103,7 @@ int run_inspect(const InspectOptions& o, const Globals& globals) {
   Json j;
   std::unique_ptr<LrbRep> rep;
   std::vector<std::string> notes;
-  if (is_lrb_file(o.file)) {
+  if (bodies::is_lrb_file(o.file)) {
     if (!o.drawing.empty())
       throw InputError(
           printable_name(o.file) +
@@ -111,7 +111,7 @@ int run_inspect(const InspectOptions& o, const Globals& globals) {
     rep = std::make_unique<LrbRep>(load_lrb(o.file));
     j["file"] = o.file;
     j["kind"] = "LRB-rep";
-    j.update(body_figures(*rep));
+    j.update(bodies::body_figures(*rep));
     j["layers_from_the_solid"] = layers_json(*rep);
   } else {
     Mesh mesh = read_mesh(o.file);
@@ -119,9 +119,9 @@ int run_inspect(const InspectOptions& o, const Globals& globals) {
     j = mesh_json(mesh, report);
     if (!o.drawing.empty()) draw_findings(mesh, report, o.drawing, j, notes);
     if (o.validate)
-      rep = std::make_unique<LrbRep>(build_from_mesh(std::move(mesh), {}, notes));
+      rep = std::make_unique<LrbRep>(bodies::build_from_mesh(std::move(mesh), {}, notes));
     else if (o.render)
-      rep = std::make_unique<LrbRep>(body_of_mesh(std::move(mesh)).rep);
+      rep = std::make_unique<LrbRep>(bodies::body_of_mesh(std::move(mesh)).rep);
   }
   bool valid = true;
   if (o.validate) {
@@ -136,8 +136,8 @@ int run_inspect(const InspectOptions& o, const Globals& globals) {
   if (o.render) {
     const std::string picture =
         o.picture.empty() ? "out/" + std::filesystem::path(o.file).stem().string() + ".png" : o.picture;
-    make_folder(std::filesystem::path(picture).parent_path().string());
-    draw_portrait(*rep, picture);
+    io::make_folder(std::filesystem::path(picture).parent_path().string());
+    run::draw_portrait(*rep, picture);
     j["picture"] = picture;
   }
   note(globals, notes);

@@ -6,11 +6,11 @@
 
 #include <nlohmann/json.hpp>
 
+#include "scenarios/bodies/generators/generators.hpp"
 #include "scenarios/cli/command.hpp"
-#include "scenarios/crowd/crowd.hpp"
-#include "scenarios/generators/generators.hpp"
 #include "scenarios/paper/experiment.hpp"
-#include "scenarios/shipped.hpp"
+#include "scenarios/spec/crowd_spec.hpp"
+#include "scenarios/spec/shipped.hpp"
 
 namespace lrb::cli {
 namespace {
@@ -28,18 +28,18 @@ nlohmann::ordered_json shipped_json() {
   const auto add = [&](const char* kind, const std::string& name, const std::string& purpose) {
     out.push_back({{"kind", kind}, {"name", name}, {"purpose", purpose}});
   };
-  for (const ShippedScenario& s : shipped_scenarios()) add("scenario", s.name, s.purpose);
-  for (const std::string& name : shipped_crowds()) add("crowd", name, open_crowd(name).purpose);
-  for (const std::string& name : shipped_experiments())
-    add("experiment", name, open_experiment(name).purpose);
+  for (const spec::ShippedScenario& s : spec::shipped_scenarios()) add("scenario", s.name, s.purpose);
+  for (const std::string& name : spec::shipped_crowds()) add("crowd", name, spec::open_crowd(name).purpose);
+  for (const std::string& name : paper::shipped_experiments())
+    add("experiment", name, paper::open_experiment(name).purpose);
   return out;
 }
 
 nlohmann::ordered_json generators_json() {
   nlohmann::ordered_json out = nlohmann::ordered_json::array();
-  for (const Generator& g : generators()) {
+  for (const generators::Generator& g : generators::generators()) {
     nlohmann::ordered_json parameters = nlohmann::ordered_json::array();
-    for (const GeneratorParameter& p : g.parameters)
+    for (const generators::GeneratorParameter& p : g.parameters)
       parameters.push_back({{"name", p.name},
                             {"default", p.fallback},
                             {"least", p.least},

@@ -9,8 +9,8 @@
 #include <stdexcept>
 #include <system_error>
 
-#include "engine/error.hpp"
-#include "engine/mesh/file_bytes.hpp"
+#include "engine/core/error.hpp"
+#include "engine/core/file_bytes.hpp"
 #include "scenarios/cli/command.hpp"
 #include "scenarios/cli/signals.hpp"
 #include "trace/trace.hpp"

@@ -6,14 +6,14 @@
 
 #include <CLI/CLI.hpp>
 
-#include "scenarios/measure/make_sets.hpp"
+#include "scenarios/bench/make_sets.hpp"
 
 namespace lrb::cli {
 
 struct MeasureOptions {
   std::string folder, models;
   std::vector<std::string> methods;
-  measure::SetOptions set;
+  bench::SetOptions set;
   double timeout = 20;
 };
 

@@ -5,8 +5,8 @@
 #include <map>
 #include <thread>
 
-#include "engine/error.hpp"
-#include "scenarios/scenario_frames.hpp"
+#include "engine/core/error.hpp"
+#include "scenarios/spec/scenario_frames.hpp"
 
 namespace lrb::cli {
 namespace {
@@ -31,14 +31,14 @@ void add_recursion(CLI::App& app, Target& recursion) {
 }
 
 /// Makes an axis (0, 1, 2) the upward one, and stands where one stood with z upward.
-void turn_up(FrameSpec& spec, int axis) {
+void turn_up(spec::FrameSpec& spec, int axis) {
   if (spec.views.empty()) spec.views.emplace_back();
   const auto turned = [axis](const Eigen::Vector3d& v) {
     Eigen::Vector3d out;
     for (int i = 0; i < 3; ++i) out[(i + axis + 1) % 3] = v[i];
     return out;
   };
-  for (FrameSpec::View& view : spec.views) {
+  for (spec::FrameSpec::View& view : spec.views) {
     view.from = turned(view.from);
     view.up = turned(view.up);
   }
@@ -92,13 +92,13 @@ void add_build_options(CLI::App& app, BuildOptions& options) {
 }
 
 void add_picture_options(CLI::App& app, PictureOptions& options) {
-  using At = FrameSpec::At;
-  using ColourBy = FrameSpec::ColourBy;
+  using At = spec::FrameSpec::At;
+  using ColourBy = spec::FrameSpec::ColourBy;
   app.add_option("--size", options.size, "Of the frames, pixels")->type_name("WxH");
   app.add_option(
          "--dpi", options.dpi,
          "For print: the size that --size has at 96 dpi, in more pixels; lines and texts grow with them")
-      ->check(CLI::Range(kLeastDpi, kMostDpi))
+      ->check(CLI::Range(spec::kLeastDpi, spec::kMostDpi))
       ->type_name("N");
   app.add_flag("--transparent", options.transparent, "No background");
   add_choice<bool>(app, "--format", options.svg, {{"png", false}, {"svg", true}}, "png|svg",
@@ -125,7 +125,7 @@ void add_picture_options(CLI::App& app, PictureOptions& options) {
                        "kind|layer|region|face_tests|refinements", "What colours mean");
 }
 
-void apply(const PictureOptions& options, FrameSpec& spec) {
+void apply(const PictureOptions& options, spec::FrameSpec& spec) {
   if (!options.size.empty()) {
     const char* end = options.size.data() + options.size.size();
     const auto [x, e1] = std::from_chars(options.size.data(), end, spec.width);
@@ -155,11 +155,11 @@ std::uint32_t all_cores() {
   return std::max(1U, std::thread::hardware_concurrency());
 }
 
-std::vector<FrameSpec::View> whole_and_contact() {
-  FrameSpec::View whole, contact;
+std::vector<spec::FrameSpec::View> whole_and_contact() {
+  spec::FrameSpec::View whole, contact;
   whole.title = "Whole, with wrappers";
   contact.title = "Contact, bodies alone";
-  contact.camera = FrameSpec::Camera::contact;
+  contact.camera = spec::FrameSpec::Camera::contact;
   contact.wrapper = false;
   return {whole, contact};
 }

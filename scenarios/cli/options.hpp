@@ -3,11 +3,11 @@
 
 #include <optional>
 
-#include "engine/build/build.hpp"
+#include "engine/construct/build.hpp"
 #include "engine/query/collide.hpp"
 #include "scenarios/cli/command.hpp"
-#include "scenarios/play/run.hpp"
-#include "scenarios/scenario.hpp"
+#include "scenarios/run/run_scenario.hpp"
+#include "scenarios/spec/scenario.hpp"
 
 namespace lrb::cli {
 
@@ -27,21 +27,22 @@ struct PictureOptions {
   std::optional<double> dpi;
   std::optional<bool> svg;
   bool transparent = false;
-  std::optional<FrameSpec::At> at;
+  std::optional<spec::FrameSpec::At> at;
   std::optional<std::uint32_t> every, most;
-  std::optional<FrameSpec::ColourBy> colour_by;
+  std::optional<spec::FrameSpec::ColourBy> colour_by;
   std::string up;
 };
 void add_picture_options(CLI::App& app, PictureOptions& options);
-void apply(const PictureOptions& options, FrameSpec& spec);
+void apply(const PictureOptions& options, spec::FrameSpec& spec);
 
 /// Two views side by side: the whole scene with the wrappers, and the contact with the bodies alone.
-std::vector<FrameSpec::View> whole_and_contact();
+std::vector<spec::FrameSpec::View> whole_and_contact();
 
 /// How many threads there are; at least 1.
 std::uint32_t all_cores();
 
 /// Prints the end of a run; its exit code.
-int report_outcome(const RunOutcome& outcome, const std::string& folder, bool json, const Globals& globals);
+int report_outcome(const run::RunOutcome& outcome, const std::string& folder, bool json,
+                   const Globals& globals);
 
 }  // namespace lrb::cli

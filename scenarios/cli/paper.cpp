@@ -2,13 +2,13 @@
 #include <cstdio>
 #include <memory>
 
-#include "engine/error.hpp"
+#include "engine/core/error.hpp"
 #include "scenarios/cli/command.hpp"
 #include "scenarios/cli/paper_series.hpp"
 #include "scenarios/cli/progress.hpp"
-#include "scenarios/files.hpp"
+#include "scenarios/io/files.hpp"
 #include "scenarios/paper/experiment.hpp"
-#include "scenarios/paper/report.hpp"
+#include "scenarios/paper/paper_report.hpp"
 #include "scenarios/paper/report_pictures.hpp"
 #include "scenarios/paper/shard_file.hpp"
 
@@ -26,8 +26,8 @@ struct PaperOptions {
   bool json = false, print = false;
 };
 
-PaperExperiment experiment_of(const PaperOptions& o) {
-  PaperExperiment e = open_experiment(o.experiment);
+paper::PaperExperiment experiment_of(const PaperOptions& o) {
+  paper::PaperExperiment e = paper::open_experiment(o.experiment);
   if (o.collisions) e.protocol.collisions = *o.collisions;
   if (o.steps_after) e.protocol.steps_after = *o.steps_after;
   if (o.step) e.protocol.step = *o.step;
@@ -36,19 +36,20 @@ PaperExperiment experiment_of(const PaperOptions& o) {
 }
 
 /// "i/n", i from 0.
-Shard read_shard(const std::string& text) {
-  Shard s;
+paper::Shard read_shard(const std::string& text) {
+  paper::Shard s;
   char rest = 0;
   if (std::sscanf(text.c_str(), "%9u/%9u%c", &s.index, &s.count, &rest) != 2 || s.index >= s.count)
     throw InputError("--shard " + text + ": expected i/n with i from 0 to n - 1, as in 0/4");
   return s;
 }
 
-std::vector<ContactStep> read_shards(const std::vector<std::string>& files) {
-  std::vector<ContactStep> steps;
+std::vector<paper::ContactStep> read_shards(const std::vector<std::string>& files) {
+  std::vector<paper::ContactStep> steps;
   for (const std::string& file : files)
-    for (ContactStep& s : read_json_lines(read_text(file), file)) steps.push_back(std::move(s));
-  return merged(std::move(steps));
+    for (paper::ContactStep& s : paper::read_json_lines(io::read_text(file), file))
+      steps.push_back(std::move(s));
+  return paper::merged(std::move(steps));
 }
 
 /// Runs a part of the command, and notes what it took.
@@ -64,10 +65,10 @@ class Clock {
   std::vector<std::pair<std::string, double>> taken;
 };
 
-std::vector<ContactStep> sweep_objects(std::span<const PaperObject> objects, const SweepOptions& sweep,
-                                       const Globals& globals) {
+std::vector<paper::ContactStep> sweep_objects(std::span<const paper::PaperObject> objects,
+                                              const paper::SweepOptions& sweep, const Globals& globals) {
   Progress progress("paper", 0, globals.quiet);
-  return run_sweep(objects, sweep, [&](std::uint64_t done, std::uint64_t of) {
+  return paper::run_sweep(objects, sweep, [&](std::uint64_t done, std::uint64_t of) {
     progress.set_total(of);
     progress.set(done);
   });
@@ -75,53 +76,53 @@ std::vector<ContactStep> sweep_objects(std::span<const PaperObject> objects, con
 
 int run_paper(PaperOptions o, const Globals& globals) {
   if (o.print) {
-    print(shipped_experiment(o.experiment));
+    print(paper::shipped_experiment(o.experiment));
     return kOk;
   }
-  PaperExperiment experiment = experiment_of(o);
+  paper::PaperExperiment experiment = experiment_of(o);
   if (!experiment.collides() && (!o.shard.empty() || !o.merge.empty()))
     throw InputError("experiment " + experiment.name +
                      ": nothing collides in it; leave out --shard and --merge");
   const bool merging = !o.merge.empty();
   if (merging) {
-    const ShardFile whole = read_shard_files(o.merge);
+    const paper::ShardFile whole = paper::read_shard_files(o.merge);
     experiment.protocol = whole.protocol;
     o.series.resolutions = whole.resolutions;
   } else if (!experiment.collides() || (experiment.name != "paper" && o.series.meshes.empty())) {
     o.series.resolutions.most = 0;  // other experiments have a series only with meshes for it
   }
-  SweepOptions sweep{experiment.protocol, {}, o.jobs};
+  paper::SweepOptions sweep{experiment.protocol, {}, o.jobs};
   if (!o.shard.empty()) sweep.shard = read_shard(o.shard);
   const bool with_series = o.series.resolutions.most > 0;
-  std::vector<ContactStep> steps = read_shards(o.merge), series_steps;
+  std::vector<paper::ContactStep> steps = read_shards(o.merge), series_steps;
   if (merging && with_series) series_steps = read_series_shards(o.merge);
   Clock clock;
   std::vector<std::string> notes;
-  const std::vector<PaperObject> objects =
-      clock.run("the paper's objects", [&] { return make_objects(experiment, notes); });
+  const std::vector<paper::PaperObject> objects =
+      clock.run("the paper's objects", [&] { return paper::make_objects(experiment, notes); });
   note(globals, notes);
-  if (merging) check_records({objects, steps, experiment, globals.command_line});
-  make_folder(o.folder);
-  const FolderLock lock(o.folder);
+  if (merging) paper::check_records({objects, steps, experiment, globals.command_line});
+  io::make_folder(o.folder);
+  const io::FolderLock lock(o.folder);
   const LrbRep& a = objects[0].rep;
   if (!merging && experiment.collides())
     steps = clock.run("their collisions", [&] { return sweep_objects(objects, sweep, globals); });
-  const std::vector<SeriesObject> series =
+  const std::vector<paper::SeriesObject> series =
       clock.run("bodies at several resolutions", [&] { return make_series(o.series, a, globals); });
   if (!merging && with_series)
     series_steps = clock.run("their collisions", [&] { return run_series(a, series, sweep, globals); });
   if (!o.shard.empty()) {
-    write_shard_file({sweep.shard, sweep.protocol, o.series.resolutions}, o.folder);
-    write_text(o.folder + "/records.jsonl", to_json_lines(steps));
+    paper::write_shard_file({sweep.shard, sweep.protocol, o.series.resolutions}, o.folder);
+    io::write_text(o.folder + "/records.jsonl", paper::to_json_lines(steps));
     if (with_series) write_series_shard(series_steps, o.folder);
     print(o.folder + "/records.jsonl\n");
     return kOk;
   }
-  const SeriesReport series_report{a, series, series_steps, sweep.jobs};
-  note(globals, write_paper_report({objects, steps, experiment, globals.command_line,
-                                    with_series ? &series_report : nullptr, clock.taken},
-                                   o.folder));
-  print(o.json ? read_text(o.folder + "/tables.json") : o.folder + "/index.html\n");
+  const paper::SeriesReport series_report{a, series, series_steps, sweep.jobs};
+  note(globals, paper::write_paper_report({objects, steps, experiment, globals.command_line,
+                                           with_series ? &series_report : nullptr, clock.taken},
+                                          o.folder));
+  print(o.json ? io::read_text(o.folder + "/tables.json") : o.folder + "/index.html\n");
   return kOk;
 }
 
@@ -140,13 +141,13 @@ Command add_paper(CLI::App& root, const Globals& globals) {
       ->capture_default_str();
   app->add_flag("--print", o->print, "Print the experiment of that name instead: to be changed and run");
   app->add_option("--collisions", o->collisions, "Of A with each object [100]")
-      ->check(CLI::Range(1u, kMostCollisions))
+      ->check(CLI::Range(1u, paper::kMostCollisions))
       ->type_name("N");
   app->add_option("--step", o->step, "Time step as a share of the diagonal [0.005]")
-      ->check(CLI::Range(kLeastStep, kMostStep))
+      ->check(CLI::Range(paper::kLeastStep, paper::kMostStep))
       ->type_name("SHARE");
   app->add_option("--steps-after", o->steps_after, "Time steps counted after the first contact [5]")
-      ->check(CLI::Range(0u, kMostStepsAfter))
+      ->check(CLI::Range(0u, paper::kMostStepsAfter))
       ->type_name("N");
   app->add_option("--seed", o->seed, "Of directions and rotations [1]")->type_name("N");
   app->add_option("--jobs", o->jobs, "Threads; the result does not depend on it")

@@ -3,7 +3,7 @@
 #include <filesystem>
 
 #include "scenarios/cli/progress.hpp"
-#include "scenarios/files.hpp"
+#include "scenarios/io/files.hpp"
 #include "scenarios/paper/protocol.hpp"
 
 namespace lrb::cli {
@@ -24,44 +24,46 @@ void add_series_options(CLI::App& app, PaperSeriesOptions& o) {
       ->capture_default_str();
 }
 
-std::vector<SeriesObject> make_series(const PaperSeriesOptions& o, const LrbRep& a, const Globals& globals) {
+std::vector<paper::SeriesObject> make_series(const PaperSeriesOptions& o, const LrbRep& a,
+                                             const Globals& globals) {
   if (o.resolutions.most == 0) return {};
   std::vector<std::string> notes;
   const std::vector<Mesh> bodies =
-      o.meshes.empty() ? own_series_bodies() : read_series_bodies(o.meshes, notes);
+      o.meshes.empty() ? paper::own_series_bodies() : paper::read_series_bodies(o.meshes, notes);
   note(globals, notes);
   Progress progress("resolutions", 0, globals.quiet);
   std::uint64_t done = 0;
-  return lrb::make_series(bodies, o.resolutions, diagonal(a), [&] { progress.set(++done); });
+  return paper::make_series(bodies, o.resolutions, paper::diagonal(a), [&] { progress.set(++done); });
 }
 
-std::vector<ContactStep> run_series(const LrbRep& a, std::span<const SeriesObject> objects,
-                                    const SweepOptions& sweep, const Globals& globals) {
+std::vector<paper::ContactStep> run_series(const LrbRep& a, std::span<const paper::SeriesObject> objects,
+                                           const paper::SweepOptions& sweep, const Globals& globals) {
   Progress progress("resolutions collide", 0, globals.quiet);
-  return lrb::run_series(a, objects, sweep, [&](std::uint64_t done, std::uint64_t of) {
+  return paper::run_series(a, objects, sweep, [&](std::uint64_t done, std::uint64_t of) {
     progress.set_total(of);
     progress.set(done);
   });
 }
 
-void write_series_shard(const std::vector<ContactStep>& steps, const std::string& folder) {
-  write_text(folder + "/series.jsonl", to_json_lines(steps));
-  write_text(folder + "/series_times.jsonl", times_to_json_lines(steps));
+void write_series_shard(const std::vector<paper::ContactStep>& steps, const std::string& folder) {
+  io::write_text(folder + "/series.jsonl", paper::to_json_lines(steps));
+  io::write_text(folder + "/series_times.jsonl", paper::times_to_json_lines(steps));
 }
 
-std::vector<ContactStep> read_series_shards(const std::vector<std::string>& records) {
+std::vector<paper::ContactStep> read_series_shards(const std::vector<std::string>& records) {
   const auto beside = [](const std::string& file, const char* name) {
     return (std::filesystem::path(file).parent_path() / name).string();
   };
-  std::vector<ContactStep> steps;
+  std::vector<paper::ContactStep> steps;
   for (const std::string& file : records) {
     const std::string path = beside(file, "series.jsonl");
-    for (ContactStep& s : read_json_lines(read_text(path), path)) steps.push_back(std::move(s));
+    for (paper::ContactStep& s : paper::read_json_lines(io::read_text(path), path))
+      steps.push_back(std::move(s));
   }
-  steps = merged(std::move(steps));
+  steps = paper::merged(std::move(steps));
   for (const std::string& file : records) {
     const std::string path = beside(file, "series_times.jsonl");
-    read_times(read_text(path), path, steps);
+    paper::read_times(io::read_text(path), path, steps);
   }
   return steps;
 }

@@ -8,20 +8,20 @@ namespace lrb::cli {
 
 struct PaperSeriesOptions {
   std::vector<std::string> meshes;
-  ResolutionOptions resolutions;  ///< most = 0: no series
+  resolutions::ResolutionOptions resolutions;  ///< most = 0: no series
 };
 void add_series_options(CLI::App& app, PaperSeriesOptions& options);
 
 /// Makes the bodies, from the meshes or of our own; A is the paper's object.
-std::vector<SeriesObject> make_series(const PaperSeriesOptions& options, const LrbRep& a,
-                                      const Globals& globals);
+std::vector<paper::SeriesObject> make_series(const PaperSeriesOptions& options, const LrbRep& a,
+                                             const Globals& globals);
 /// Collides them.
-std::vector<ContactStep> run_series(const LrbRep& a, std::span<const SeriesObject> objects,
-                                    const SweepOptions& sweep, const Globals& globals);
+std::vector<paper::ContactStep> run_series(const LrbRep& a, std::span<const paper::SeriesObject> objects,
+                                           const paper::SweepOptions& sweep, const Globals& globals);
 
 /// A shard's series, to be merged later: series.jsonl and series_times.jsonl.
-void write_series_shard(const std::vector<ContactStep>& steps, const std::string& folder);
+void write_series_shard(const std::vector<paper::ContactStep>& steps, const std::string& folder);
 /// Reads those that lie beside the records.jsonl of the shards.
-std::vector<ContactStep> read_series_shards(const std::vector<std::string>& records);
+std::vector<paper::ContactStep> read_series_shards(const std::vector<std::string>& records);
 
 }  // namespace lrb::cli

@@ -60,7 +60,7 @@ void Progress::finish() {
   drawn_ = false;
 }
 
-ProgressReport progress_report(bool quiet) {
+run::ProgressReport progress_report(bool quiet) {
   struct Parts {
     std::string what;
     std::unique_ptr<Progress> bar;

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <string>
 
-#include "scenarios/play/recording.hpp"
+#include "scenarios/run/recorded_run.hpp"
 
 namespace lrb::cli {
 
@@ -29,6 +29,6 @@ class Progress {
 };
 
 /// Draws the progress of a job of several parts, a bar for each.
-ProgressReport progress_report(bool quiet);
+run::ProgressReport progress_report(bool quiet);
 
 }  // namespace lrb::cli

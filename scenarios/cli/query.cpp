@@ -7,12 +7,12 @@
 
 #include "engine/query/collide.hpp"
 #include "engine/query/collide_impl.hpp"
-#include "scenarios/body.hpp"
+#include "scenarios/bodies/body.hpp"
 #include "scenarios/cli/command.hpp"
 #include "scenarios/cli/options.hpp"
 #include "scenarios/cli/progress.hpp"
-#include "scenarios/play/separation_picture.hpp"
-#include "scenarios/pose_file.hpp"
+#include "scenarios/io/pose_file.hpp"
+#include "scenarios/run/separation_picture.hpp"
 #include "trace/hex.hpp"
 
 namespace lrb::cli {
@@ -93,8 +93,8 @@ std::string line_of(std::size_t pose, const CollideResult& result, const QueryOp
 }
 
 int run_query(const QueryOptions& o, const Globals& globals) {
-  const std::vector<Pose> poses = read_poses(o.poses);  // all of them, before anything is printed
-  const LoadedBody a = load_body(o.a), b = load_body(o.b);
+  const std::vector<Pose> poses = io::read_poses(o.poses);  // all of them, before anything is printed
+  const bodies::LoadedBody a = bodies::load_body(o.a), b = bodies::load_body(o.b);
   note(globals, a.notes);
   note(globals, b.notes);
   QueryContext context;
@@ -105,8 +105,8 @@ int run_query(const QueryOptions& o, const Globals& globals) {
     const double us = o.repeat > 0 ? median_us(a.rep, b.rep, poses[i], o, context) : 0;
     print(line_of(i, result, o, us, a.rep, b.rep));
     if (!o.draw.empty() && result.separation)
-      draw_separation(a.rep, Pose{}, b.rep, poses[i], *result.separation,
-                      picture_name(o.draw, i, poses.size()));
+      run::draw_separation(a.rep, Pose{}, b.rep, poses[i], *result.separation,
+                           picture_name(o.draw, i, poses.size()));
     progress.set(i + 1);
   }
   return kOk;

@@ -2,18 +2,18 @@
 #include <filesystem>
 #include <memory>
 
-#include "engine/error.hpp"
-#include "engine/mesh/file_bytes.hpp"
+#include "engine/core/error.hpp"
+#include "engine/core/file_bytes.hpp"
 #include "engine/query/collide.hpp"
-#include "scenarios/body.hpp"
+#include "scenarios/bodies/body.hpp"
 #include "scenarios/cli/command.hpp"
 #include "scenarios/cli/options.hpp"
 #include "scenarios/cli/progress.hpp"
 #include "scenarios/crowd/crowd_replay.hpp"
 #include "scenarios/crowd/crowd_report.hpp"
-#include "scenarios/files.hpp"
-#include "scenarios/play/frames.hpp"
-#include "scenarios/play/report.hpp"
+#include "scenarios/io/files.hpp"
+#include "scenarios/run/frame_job.hpp"
+#include "scenarios/run/run_report.hpp"
 #include "trace/cursor.hpp"
 #include "trace/hex.hpp"
 #include "trace/trace_json.hpp"
@@ -40,7 +40,7 @@ std::string output_folder(const RenderOptions& o) {
 }
 
 /// The bodies that were recorded: named on the command line, or with these names beside the trace.
-std::vector<LoadedBody> find_bodies(const RenderOptions& o, const std::vector<std::string>& names) {
+std::vector<bodies::LoadedBody> find_bodies(const RenderOptions& o, const std::vector<std::string>& names) {
   std::vector<std::string> paths = o.bodies;
   if (paths.empty()) {
     const std::filesystem::path beside = std::filesystem::path(o.trace).parent_path();
@@ -49,13 +49,14 @@ std::vector<LoadedBody> find_bodies(const RenderOptions& o, const std::vector<st
   if (paths.size() != names.size())
     throw InputError(o.trace + ": has " + std::to_string(names.size()) + " bodies, --bodies names " +
                      std::to_string(paths.size()));
-  std::vector<LoadedBody> out;
-  for (const std::string& path : paths) out.push_back(load_body(path));
+  std::vector<bodies::LoadedBody> out;
+  for (const std::string& path : paths) out.push_back(bodies::load_body(path));
   return out;
 }
 
 /// Throws, before anything is drawn or written, if the trace cannot have come from these bodies.
-void check_events(const RenderOptions& o, const trace::Trace& trace, const std::vector<LoadedBody>& bodies) {
+void check_events(const RenderOptions& o, const trace::Trace& trace,
+                  const std::vector<bodies::LoadedBody>& bodies) {
   try {
     trace::Cursor cursor = bodies.size() == 1 ? trace::Cursor(trace, bodies[0].rep)
                                               : trace::Cursor(trace, bodies[0].rep, bodies[1].rep);
@@ -66,7 +67,8 @@ void check_events(const RenderOptions& o, const trace::Trace& trace, const std::
 }
 
 /// A trace holds pairs, not where they meet: the contact regions of each step are computed anew.
-std::vector<CollideResult> contacts_of(const trace::Trace& trace, const std::vector<LoadedBody>& bodies) {
+std::vector<CollideResult> contacts_of(const trace::Trace& trace,
+                                       const std::vector<bodies::LoadedBody>& bodies) {
   std::vector<CollideResult> out;
   if (bodies.size() < 2 || trace.header.request.mode != Mode::all_pairs || trace.header.request.is_coarse())
     return out;
@@ -79,7 +81,7 @@ std::vector<CollideResult> contacts_of(const trace::Trace& trace, const std::vec
 }
 
 /// "12" and "a12" are region 12 of A, "b12" is one of B.
-void isolate(const RenderOptions& o, const std::vector<LoadedBody>& bodies, FrameSpec& spec) {
+void isolate(const RenderOptions& o, const std::vector<bodies::LoadedBody>& bodies, spec::FrameSpec& spec) {
   for (const std::string& text : o.regions) {
     const bool named = text.starts_with('a') || text.starts_with('b');
     const std::size_t body = text.starts_with('b') ? 1 : 0;
@@ -100,13 +102,13 @@ void isolate(const RenderOptions& o, const std::vector<LoadedBody>& bodies, Fram
   spec.ghost_rest = !o.hide_rest;
 }
 
-FrameSpec frame_spec(const RenderOptions& o, bool two_bodies) {
-  FrameSpec spec;
-  spec.at = two_bodies ? FrameSpec::At::step : FrameSpec::At::refinement;
+spec::FrameSpec frame_spec(const RenderOptions& o, bool two_bodies) {
+  spec::FrameSpec spec;
+  spec.at = two_bodies ? spec::FrameSpec::At::step : spec::FrameSpec::At::refinement;
   if (o.close_up) spec.views = whole_and_contact();
   apply(o.picture, spec);
   if (!o.events.empty()) {
-    spec.at = FrameSpec::At::events;
+    spec.at = spec::FrameSpec::At::events;
     spec.events = o.events;
   }
   spec.montage = o.montage;
@@ -123,60 +125,61 @@ void refuse_for_crowd(const RenderOptions& o) {
       {o.hide_rest, "--no-ghost"},
       {o.picture.svg.value_or(false), "--format svg"},
       {o.picture.colour_by.has_value(), "--colour-by"},
-      {at == FrameSpec::At::refinement || at == FrameSpec::At::every, "--frames refinement or event"}};
+      {at == spec::FrameSpec::At::refinement || at == spec::FrameSpec::At::every,
+       "--frames refinement or event"}};
   for (const auto& [given, name] : none)
     if (given) throw InputError(std::string(name) + ": there is none for the trace of a crowd; leave it out");
 }
 
 int render_crowd(const RenderOptions& o, const Globals& globals, const std::string& text) {
   refuse_for_crowd(o);
-  CrowdTrace trace = read_crowd_trace(text, o.trace);
+  crowd::CrowdTrace trace = crowd::read_crowd_trace(text, o.trace);
   trace.crowd.purpose = kFromTrace;
   trace.crowd.frames = frame_spec(o, true);
-  check_frame_size(trace.crowd.frames);
+  run::check_frame_size(trace.crowd.frames);
   std::vector<std::string> names;
-  for (const CrowdKind& kind : trace.crowd.kinds) names.push_back(kind.name + ".lrb");
-  const ProgressReport progress = progress_report(globals.quiet);
-  const CrowdRun run = replay_crowd(trace, find_bodies(o, names), all_cores(), progress);
+  for (const spec::CrowdKind& kind : trace.crowd.kinds) names.push_back(kind.name + ".lrb");
+  const run::ProgressReport progress = progress_report(globals.quiet);
+  const crowd::CrowdRun run = crowd::replay_crowd(trace, find_bodies(o, names), all_cores(), progress);
   note(globals, run.notes);
   const std::string folder = output_folder(o);
-  redraw_crowd(trace.crowd, run, folder, globals.command_line, o.trace, progress);
+  crowd::redraw_crowd(trace.crowd, run, folder, globals.command_line, o.trace, progress);
   print(folder + "/index.html\n");
   return kOk;
 }
 
 int run_render(const RenderOptions& o, const Globals& globals) {
   std::string json = trace::load_trace_text(o.trace);
-  if (is_crowd_trace(json)) return render_crowd(o, globals, json);
+  if (crowd::is_crowd_trace(json)) return render_crowd(o, globals, json);
   const trace::Trace trace = trace::trace_from_json(json, printable_name(o.trace));
   json = {};
-  const std::vector<LoadedBody> bodies =
+  const std::vector<bodies::LoadedBody> bodies =
       trace.header.bodies.size() == 1 ? find_bodies(o, {"a.lrb"}) : find_bodies(o, {"a.lrb", "b.lrb"});
   check_events(o, trace, bodies);
   const std::vector<CollideResult> results = contacts_of(trace, bodies);
-  Performance p;
+  run::RecordedRun p;
   p.title = trace.header.scenario;
   p.trace = &trace;
   p.results = &results;
-  for (const LoadedBody& body : bodies) p.reps.push_back(&body.rep);
+  for (const bodies::LoadedBody& body : bodies) p.reps.push_back(&body.rep);
   const std::string folder = output_folder(o);
-  FrameSpec spec = frame_spec(o, bodies.size() == 2);
+  spec::FrameSpec spec = frame_spec(o, bodies.size() == 2);
   isolate(o, bodies, spec);
   const std::vector<std::pair<std::string, std::string>> text = {
       {"Software", "lrbscope " + trace.header.lrbscope},
       {"lrbscope:scenario", trace.header.scenario},
       {"lrbscope:scenario_hash", trace::to_hex(trace.header.scenario_hash)},
   };
-  check_frames(p, spec);  // throws before anything is written
-  make_folder(folder);
-  const FolderLock lock(folder);
-  refuse_links(folder);
-  const DrawnFrames drawn = draw_frames(p, spec, folder, text, progress_report(globals.quiet));
+  run::check_frames(p, spec);  // throws before anything is written
+  io::make_folder(folder);
+  const io::FolderLock lock(folder);
+  io::refuse_links(folder);
+  const run::DrawnFrames drawn = run::draw_frames(p, spec, folder, text, progress_report(globals.quiet));
   const std::string trace_link = std::filesystem::relative(o.trace, folder).generic_string();
-  ReportText report{trace.header.scenario, kFromTrace, globals.command_line, trace_link, {}};
-  Page page = run_page(p, drawn, folder, report);
-  std::erase_if(page.links, [](const PageLink& l) { return l.target == "summary.json"; });
-  write_text(folder + "/index.html", page_html(page));
+  run::ReportText report{trace.header.scenario, kFromTrace, globals.command_line, trace_link, {}};
+  report::Page page = run::run_page(p, drawn, folder, report);
+  std::erase_if(page.links, [](const report::PageLink& l) { return l.target == "summary.json"; });
+  io::write_text(folder + "/index.html", report::page_html(page));
   print(folder + "/index.html\n");
   return kOk;
 }
@@ -192,7 +195,7 @@ Command add_render(CLI::App& root, const Globals& globals) {
          "--bodies", o->bodies,
          "The bodies that were recorded [a.lrb and b.lrb beside the trace; of a crowd KIND.lrb, each]")
       ->type_name("FILE")
-      ->expected(1, static_cast<int>(kMostCrowdBodies));
+      ->expected(1, static_cast<int>(spec::kMostCrowdBodies));
   app->add_option("--events", o->events, "Draw after these events")->delimiter(',')->type_name("N,N,...");
   app->add_option("--montage", o->montage, "Panels of a montage")->check(CLI::Range(1, 26))->type_name("N");
   app->add_flag("--close-up", o->close_up, "A second view on the contact");

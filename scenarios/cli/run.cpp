@@ -1,12 +1,11 @@
-#include "scenarios/play/run.hpp"
-
 #include <iostream>
 #include <memory>
 
 #include "scenarios/cli/command.hpp"
 #include "scenarios/cli/options.hpp"
 #include "scenarios/cli/progress.hpp"
-#include "scenarios/shipped.hpp"
+#include "scenarios/run/run_scenario.hpp"
+#include "scenarios/spec/shipped.hpp"
 
 namespace lrb::cli {
 namespace {
@@ -19,17 +18,19 @@ struct RunCommandOptions {
 };
 
 int run_run(const RunCommandOptions& o, const Globals& globals) {
-  Scenario scenario = open_scenario(o.scenario);
+  spec::Scenario scenario = spec::open_scenario(o.scenario);
   apply(o.picture, scenario.frames);
   if (o.recursion) scenario.request.recursion = *o.recursion;
   const std::string folder = o.folder.empty() ? "out/" + scenario.name : o.folder;
-  RunOutcome outcome = run_scenario(scenario, folder, globals.command_line, progress_report(globals.quiet));
+  run::RunOutcome outcome =
+      run::run_scenario(scenario, folder, globals.command_line, progress_report(globals.quiet));
   return report_outcome(outcome, folder, o.json, globals);
 }
 
 }  // namespace
 
-int report_outcome(const RunOutcome& outcome, const std::string& folder, bool json, const Globals& globals) {
+int report_outcome(const run::RunOutcome& outcome, const std::string& folder, bool json,
+                   const Globals& globals) {
   note(globals, outcome.notes);
   for (const std::string& line : outcome.mismatches) std::cerr << "lrbscope: mismatch: " << line << "\n";
   print(json ? outcome.summary : folder + "/index.html\n");

@@ -10,7 +10,7 @@
 
 #include <unistd.h>
 
-#include "engine/mesh/atomic_file.hpp"
+#include "engine/core/atomic_file.hpp"
 #include "scenarios/cli/command.hpp"
 
 namespace lrb::cli {

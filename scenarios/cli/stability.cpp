@@ -5,16 +5,16 @@
 #include <memory>
 #include <sstream>
 
-#include "engine/error.hpp"
+#include "engine/core/error.hpp"
 #include "scenarios/cli/choice.hpp"
 #include "scenarios/cli/command.hpp"
 #include "scenarios/cli/progress.hpp"
-#include "scenarios/files.hpp"
-#include "scenarios/stability/experiment.hpp"
+#include "scenarios/io/files.hpp"
 #include "scenarios/stability/record_json.hpp"
-#include "scenarios/stability/stability_report.hpp"
+#include "scenarios/stability/report/stability_report.hpp"
+#include "scenarios/stability/report/worst_pictures.hpp"
+#include "scenarios/stability/stability_experiment.hpp"
 #include "scenarios/stability/table.hpp"
-#include "scenarios/stability/worst_pictures.hpp"
 
 namespace lrb::cli {
 namespace {
@@ -71,11 +71,11 @@ std::string describe(const Replay& r, bool pairs) {
   return out.str();
 }
 
-int replay_one(const StabilityOptions& o, const std::vector<WorkerMethod>& methods,
+int replay_one(const StabilityOptions& o, const std::vector<workers::WorkerMethod>& methods,
                const std::vector<FamilyRow>& families) {
   if (families.size() != 1 || !o.dial) throw InputError("--only CASE needs one --family and a --dial");
   bool all_right = true;
-  for (const WorkerMethod& m : methods) {
+  for (const workers::WorkerMethod& m : methods) {
     if (!m.column.present) {
       print(m.column.name + ": absent. " + m.column.remark + "\n");
       continue;
@@ -87,7 +87,7 @@ int replay_one(const StabilityOptions& o, const std::vector<WorkerMethod>& metho
   return all_right ? kOk : kMismatch;
 }
 
-Grid run_grid(const StabilityOptions& o, const std::vector<WorkerMethod>& methods,
+Grid run_grid(const StabilityOptions& o, const std::vector<workers::WorkerMethod>& methods,
               const std::vector<FamilyRow>& families, const Globals& globals) {
   const auto begin = std::chrono::steady_clock::now();
   ExperimentOptions experiment;
@@ -105,9 +105,9 @@ Grid run_grid(const StabilityOptions& o, const std::vector<WorkerMethod>& method
         bar.set(done, what);
       });
   bar.finish();
-  write_text(o.folder + "/records.jsonl", to_lines(records));
-  std::vector<MethodColumn> columns;
-  for (const WorkerMethod& m : methods) columns.push_back(m.column);
+  io::write_text(o.folder + "/records.jsonl", to_lines(records));
+  std::vector<workers::MethodColumn> columns;
+  for (const workers::WorkerMethod& m : methods) columns.push_back(m.column);
   Grid grid = count_grid(std::move(columns), families, records);
   grid.command = globals.command_line;
   grid.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
@@ -121,15 +121,16 @@ std::string command_of(const Record& r) {
 }
 
 /// The page and its pictures, for which the worst cases are asked again.
-void write_report(const StabilityOptions& o, const std::vector<WorkerMethod>& methods, const Grid& grid,
-                  const Globals& globals) {
+void write_report(const StabilityOptions& o, const std::vector<workers::WorkerMethod>& methods,
+                  const Grid& grid, const Globals& globals) {
   Progress bar("pictures", 0, globals.quiet);
   ReportOptions report;
   report.pictures = draw_worst_cases(
       grid, o.folder,
       [&](const Record& r) {
-        const auto method = std::find_if(methods.begin(), methods.end(),
-                                         [&](const WorkerMethod& m) { return m.column.name == r.method; });
+        const auto method = std::find_if(methods.begin(), methods.end(), [&](const workers::WorkerMethod& m) {
+          return m.column.name == r.method;
+        });
         Replay again = replay(*method, r.family, r.dial, r.case_index, r.seed, o.timeout);
         return AnsweredPairs{std::move(again.expected), std::move(again.answered)};
       },
@@ -155,12 +156,12 @@ bool ours_failed(const Grid& grid) {
 
 int run_stability(const StabilityOptions& o, const Globals& globals) {
   const auto families =
-      chosen(family_rows(), o.families, "family", [](const FamilyRow& f) { return f.name; });
-  const auto methods =
-      chosen(find_methods(), o.methods, "method", [](const WorkerMethod& m) { return m.column.name; });
+      chosen(stability::family_rows(), o.families, "family", [](const FamilyRow& f) { return f.name; });
+  const auto methods = chosen(workers::find_methods(), o.methods, "method",
+                              [](const workers::WorkerMethod& m) { return m.column.name; });
   if (o.only) return replay_one(o, methods, families);
-  make_folder(o.folder);
-  const FolderLock lock(o.folder);
+  io::make_folder(o.folder);
+  const io::FolderLock lock(o.folder);
   const Grid grid = run_grid(o, methods, families, globals);
   print(table(grid));
   print(o.folder + "/records.jsonl\n");

@@ -9,40 +9,40 @@
 #include "render/palette.hpp"
 #include "render/scene.hpp"
 #include "scenarios/crowd/crowd_json.hpp"
-#include "scenarios/files.hpp"
-#include "scenarios/play/frame_files.hpp"
+#include "scenarios/io/files.hpp"
+#include "scenarios/run/frame_files.hpp"
 
-namespace lrb {
+namespace lrb::crowd {
 namespace {
 
-using Mark = LegendItem::Mark;
+using Mark = render::LegendItem::Mark;
 
 /// More kinds than this share colours.
 constexpr std::uint32_t kColours = 24;
 
-Rgba colour_of(std::uint32_t kind) {
+render::Rgba colour_of(std::uint32_t kind) {
   // The first ones are apart from the contacts' red and from each other for every eye.
-  constexpr Rgba kFirst[] = {{86, 150, 205}, {222, 172, 76},  {92, 172, 140},
-                             {190, 178, 92}, {150, 140, 190}, {150, 150, 150}};
+  constexpr render::Rgba kFirst[] = {{86, 150, 205}, {222, 172, 76},  {92, 172, 140},
+                                     {190, 178, 92}, {150, 140, 190}, {150, 150, 150}};
   kind %= kColours;
-  return kind < std::size(kFirst) ? kFirst[kind] : palette::category(kind);
+  return kind < std::size(kFirst) ? kFirst[kind] : render::palette::category(kind);
 }
 
 std::string counted(std::uint64_t n, const char* one, const char* many) {
-  return group_digits(n) + " " + (n == 1 ? one : many);
+  return render::group_digits(n) + " " + (n == 1 ? one : many);
 }
 
-class Stage {
+class FrameState {
  public:
-  Stage(const Crowd& crowd, const CrowdRun& run, const FrameSpec& spec)
+  FrameState(const spec::Crowd& crowd, const CrowdRun& run, const spec::FrameSpec& spec)
       : crowd_(crowd), run_(run), spec_(spec) {}
 
   /// What is to be seen of a moment. `wrappers`: with the lids that are left of them.
-  DrawList list(const CrowdMoment& m, bool wrappers) const {
-    std::vector<SceneBody> bodies;
+  render::DrawList list(const CrowdMoment& m, bool wrappers) const {
+    std::vector<render::SceneBody> bodies;
     std::vector<std::unique_ptr<Wrapper>> states;
     for (std::uint32_t i = 0; i < run_.motion.body_count(); ++i) {
-      SceneBody body;
+      render::SceneBody body;
       body.rep = &run_.rep(i);
       body.pose = run_.motion.pose(i, m.step);
       body.colour = colour_of(run_.motion.kind(i));
@@ -54,42 +54,43 @@ class Stage {
       }
       bodies.push_back(std::move(body));
     }
-    SceneHighlight highlight;
+    render::SceneHighlight highlight;
     highlight.contacts = m.contacts;
-    SceneOptions options;
+    render::SceneOptions options;
     options.scale = static_cast<float>(spec_.scale());
     options.real_edges = false;  // thousands of small faces: their edges would be all there is to see
-    Scene scene = build_scene(bodies, highlight, options);
-    for (DrawLine& line : scene.list.lines)
-      if (line.colour == palette::kContact) thin(line);
+    render::Scene scene = render::build_scene(bodies, highlight, options);
+    for (render::DrawLine& line : scene.list.lines)
+      if (line.colour == render::palette::kContact) thin(line);
     add_room(scene.list);
     return std::move(scene.list);
   }
 
-  Overlay overlay(const CrowdMoment& m) const {
+  render::Overlay overlay(const CrowdMoment& m) const {
     const CrowdStep& step = run_.steps[m.step];
-    Overlay o;
+    render::Overlay o;
     o.title = crowd_.name + "  ·  step " + std::to_string(m.step);
     o.event = counted(count(step, Relation::crossing), "pair of bodies crosses", "pairs of bodies cross");
-    o.event_colour = palette::kContact;
+    o.event_colour = render::palette::kContact;
     const Counters c = sum(step);
     const std::uint64_t n = run_.motion.body_count();
-    o.counters = {
-        {"bodies in contact", group_digits(bodies_in_contact(step, n)) + " of " + group_digits(n)},
-        {"boxes meet", group_digits(step.queries.size()) + " of " + group_digits(n * (n - 1) / 2) + " pairs"},
-        {"face tests", group_digits(c.face_tests)},
-        {"refined", group_digits(c.refinements)}};
+    o.counters = {{"bodies in contact",
+                   render::group_digits(bodies_in_contact(step, n)) + " of " + render::group_digits(n)},
+                  {"boxes meet", render::group_digits(step.queries.size()) + " of " +
+                                     render::group_digits(n * (n - 1) / 2) + " pairs"},
+                  {"face tests", render::group_digits(c.face_tests)},
+                  {"refined", render::group_digits(c.refinements)}};
     for (std::uint32_t k = 0; k < crowd_.kinds.size(); ++k)
       o.key.push_back(
           {Mark::solid, colour_of(k), std::to_string(crowd_.kinds[k].count) + " x " + crowd_.kinds[k].name});
-    o.key.push_back({Mark::solid, palette::kContact, "faces in contact"});
-    if (shows_wrappers()) o.key.push_back({Mark::translucent, palette::kFaint, "pseudo faces"});
+    o.key.push_back({Mark::solid, render::palette::kContact, "faces in contact"});
+    if (shows_wrappers()) o.key.push_back({Mark::translucent, render::palette::kFaint, "pseudo faces"});
     return o;
   }
 
   /// Corners of all boxes at the moments drawn: what cameras are fitted to.
-  Framing framing() const {
-    Framing f;
+  run::Framing framing() const {
+    run::Framing f;
     f.dim = run_.rep(0).dim();
     for (const CrowdMoment& m : run_.moments) {
       for (std::uint32_t i = 0; i < run_.motion.body_count(); ++i) {
@@ -97,7 +98,7 @@ class Stage {
         for (int corner = 0; corner < 8; ++corner)
           f.points.push_back(box.corner(static_cast<Eigen::AlignedBox3d::CornerType>(corner)));
       }
-      const auto contacts = contact_points(m.contacts);
+      const auto contacts = render::contact_points(m.contacts);
       f.contacts.insert(f.contacts.end(), contacts.begin(), contacts.end());
     }
     for (const auto& edge : room()) f.points.insert(f.points.end(), edge.begin(), edge.end());
@@ -107,12 +108,12 @@ class Stage {
  private:
   bool shows_wrappers() const {
     return spec_.views.empty() || std::any_of(spec_.views.begin(), spec_.views.end(),
-                                              [](const FrameSpec::View& v) { return v.wrapper; });
+                                              [](const spec::FrameSpec::View& v) { return v.wrapper; });
   }
 
   /// In a crowd, curves that show through everything in front of them would hide it.
-  void thin(DrawLine& line) const {
-    line.layer = Layer::opaque;
+  void thin(render::DrawLine& line) const {
+    line.layer = render::Layer::opaque;
     line.width = static_cast<float>(1.6 * spec_.scale());
     line.halo_width = 0;
   }
@@ -136,19 +137,19 @@ class Stage {
     return edges;
   }
 
-  void add_room(DrawList& list) const {
+  void add_room(render::DrawList& list) const {
     for (const auto& [p, q] : room()) {
-      DrawLine line;
+      render::DrawLine line;
       line.points = {p, q};
-      line.colour = palette::kRule;
+      line.colour = render::palette::kRule;
       line.width = static_cast<float>(1.2 * spec_.scale());
       list.lines.push_back(std::move(line));
     }
   }
 
-  const Crowd& crowd_;
+  const spec::Crowd& crowd_;
   const CrowdRun& run_;
-  const FrameSpec& spec_;
+  const spec::FrameSpec& spec_;
 };
 
 }  // namespace
@@ -160,56 +161,57 @@ std::string crowd_caption(const CrowdRun& run, std::uint32_t step) {
   std::string out = "Step " + std::to_string(step) + ": " +
                     counted(s.queries.size(), "pair of boxes meets", "pairs of boxes meet") + ", " +
                     counted(crossing, "pair of bodies crosses", "pairs of bodies cross");
-  if (touching > 0) out += ", " + group_digits(touching) + " touch";
-  if (inside > 0) out += ", " + group_digits(inside) + " lie one in the other";
+  if (touching > 0) out += ", " + render::group_digits(touching) + " touch";
+  if (inside > 0) out += ", " + render::group_digits(inside) + " lie one in the other";
   return out + ".";
 }
 
-DrawnFrames draw_crowd(const Crowd& crowd, const CrowdRun& run, const std::string& folder,
-                       const std::vector<std::pair<std::string, std::string>>& text,
-                       const ProgressReport& progress) {
-  const FrameSpec spec = in_pixels(crowd.frames);
-  make_folder(folder + "/frames");
-  remove_old_frames(folder);
-  DrawnFrames out;
+run::DrawnFrames draw_crowd(const spec::Crowd& crowd, const CrowdRun& run, const std::string& folder,
+                            const std::vector<std::pair<std::string, std::string>>& text,
+                            const run::ProgressReport& progress) {
+  const spec::FrameSpec spec = run::in_pixels(crowd.frames);
+  io::make_folder(folder + "/frames");
+  run::remove_old_frames(folder);
+  run::DrawnFrames out;
   if (run.moments.empty()) return out;
-  const Stage stage(crowd, run, spec);
+  const FrameState stage(crowd, run, spec);
   const auto scale = static_cast<float>(spec.scale());
-  std::vector<Overlay> overlays;
-  std::vector<OverlayLayout> layouts;
+  std::vector<render::Overlay> overlays;
+  std::vector<render::OverlayLayout> layouts;
   for (const CrowdMoment& m : run.moments) {
     overlays.push_back(stage.overlay(m));
-    layouts.push_back(lay_out(overlays.back(), spec.width, spec.height, scale));
+    layouts.push_back(render::lay_out(overlays.back(), spec.width, spec.height, scale));
   }
-  const PixelRect place = common_picture(layouts);
-  std::vector<FrameSpec::View> views = spec.views;
+  const render::PixelRect place = render::common_picture(layouts);
+  std::vector<spec::FrameSpec::View> views = spec.views;
   if (views.empty()) views.emplace_back();
-  const std::vector<PixelRect> places = view_places(place, views.size(), spec.scale());
-  const Framing framing = stage.framing();
-  Rasterizer rasterizer;
-  FrameWriter writer;
-  Image picture(place.width, place.height);
+  const std::vector<render::PixelRect> places = run::view_places(place, views.size(), spec.scale());
+  const run::Framing framing = stage.framing();
+  render::Rasterizer rasterizer;
+  render::FrameWriter writer;
+  render::Image picture(place.width, place.height);
   for (std::size_t i = 0; i < run.moments.size(); ++i) {
     progress("draw", i, run.moments.size());
     const CrowdMoment& m = run.moments[i];
     const double passed =
         run.moments.size() > 1 ? static_cast<double>(i) / static_cast<double>(run.moments.size() - 1) : 0;
-    paint_views(
-        rasterizer, spec, views, places, [&](const FrameSpec::View& v) { return stage.list(m, v.wrapper); },
+    run::paint_views(
+        rasterizer, spec, views, places,
+        [&](const spec::FrameSpec::View& v) { return stage.list(m, v.wrapper); },
         [&](std::size_t v) {
-          return camera_for(views[v], framing, places[v].width, places[v].height, passed);
+          return run::camera_for(views[v], framing, places[v].width, places[v].height, passed);
         },
         picture);
-    PngOptions png{text, spec.dpi};
+    render::PngOptions png{text, spec.dpi};
     png.text.emplace_back("lrbscope:step", std::to_string(m.step));
-    writer.push(folder + "/" + frame_file(i),
-                compose_frame(picture, place, overlays[i], spec.width, spec.height,
-                              spec.transparent ? kTransparent : kWhite, scale),
+    writer.push(folder + "/" + run::frame_file(i),
+                render::compose_frame(picture, place, overlays[i], spec.width, spec.height,
+                                      spec.transparent ? render::kTransparent : render::kWhite, scale),
                 png);
-    out.frames.push_back({frame_file(i), crowd_caption(run, m.step), 0, m.step});
+    out.frames.push_back({run::frame_file(i), crowd_caption(run, m.step), 0, m.step});
   }
   writer.finish();
   return out;
 }
 
-}  // namespace lrb
+}  // namespace lrb::crowd

@@ -5,11 +5,11 @@
 #include <numbers>
 #include <numeric>
 
-#include "engine/steady_math.hpp"
-#include "scenarios/generators/random.hpp"
-#include "scenarios/scenario_motion.hpp"
+#include "engine/core/random.hpp"
+#include "engine/core/steady_math.hpp"
+#include "scenarios/spec/scenario_motion.hpp"
 
-namespace lrb {
+namespace lrb::crowd {
 namespace {
 
 Eigen::Vector3d random_direction(Random& random, int dim) {
@@ -60,7 +60,7 @@ double radius_of(const LrbRep& rep, const Pose& own) {
   return r;
 }
 
-std::vector<std::uint32_t> kinds_of_bodies(const Crowd& crowd) {
+std::vector<std::uint32_t> kinds_of_bodies(const spec::Crowd& crowd) {
   std::vector<std::uint32_t> out;
   for (std::uint32_t k = 0; k < crowd.kinds.size(); ++k) out.insert(out.end(), crowd.kinds[k].count, k);
   return out;
@@ -68,10 +68,10 @@ std::vector<std::uint32_t> kinds_of_bodies(const Crowd& crowd) {
 
 }  // namespace
 
-CrowdMotion::CrowdMotion(const Crowd& crowd, std::vector<std::vector<Pose>> poses)
+CrowdMotion::CrowdMotion(const spec::Crowd& crowd, std::vector<std::vector<Pose>> poses)
     : kinds_(kinds_of_bodies(crowd)), recorded_(std::move(poses)) {}
 
-CrowdMotion::CrowdMotion(const Crowd& crowd, std::span<const LrbRep* const> reps)
+CrowdMotion::CrowdMotion(const spec::Crowd& crowd, std::span<const LrbRep* const> reps)
     : kinds_(kinds_of_bodies(crowd)) {
   const int dim = reps[0]->dim();
   Random random(crowd.seed);
@@ -93,7 +93,7 @@ CrowdMotion::CrowdMotion(const Crowd& crowd, std::span<const LrbRep* const> reps
       movers_.push_back(m);
     }
   }
-  if (crowd.arrangement == Crowd::Arrangement::random) return;
+  if (crowd.arrangement == spec::Crowd::Arrangement::random) return;
   const auto places =
       grid_places(Eigen::Vector3d::Ones(), static_cast<std::uint32_t>(movers_.size()), dim, random);
   for (std::size_t i = 0; i < movers_.size(); ++i)
@@ -107,7 +107,7 @@ Pose CrowdMotion::pose(std::uint32_t body, std::uint32_t step) const {
   const Eigen::Vector3d straight = m.start + static_cast<double>(step) * m.speed;
   for (int i = 0; i < 3; ++i) move.t[i] = thrown_back(straight[i], m.reach[i]);
   move.r = steady::rotation(m.axis, m.spin * step) * m.turned;
-  return then(m.own, move);
+  return spec::then(m.own, move);
 }
 
-}  // namespace lrb
+}  // namespace lrb::crowd

@@ -5,18 +5,18 @@
 #include <vector>
 
 #include "engine/lrb/lrb_rep.hpp"
-#include "scenarios/crowd/crowd.hpp"
+#include "scenarios/spec/crowd_spec.hpp"
 
-namespace lrb {
+namespace lrb::crowd {
 
 /// Where every body of a crowd is at every step: straight on, thrown back by the walls of the room, in closed
 /// form, so that steps can be asked for in any order. Or as a trace has it.
 class CrowdMotion {
  public:
   /// `reps`: one a kind, of one dimension.
-  CrowdMotion(const Crowd& crowd, std::span<const LrbRep* const> reps);
+  CrowdMotion(const spec::Crowd& crowd, std::span<const LrbRep* const> reps);
   /// As it was recorded: `poses` by step and body; no other step can be asked for.
-  CrowdMotion(const Crowd& crowd, std::vector<std::vector<Pose>> poses);
+  CrowdMotion(const spec::Crowd& crowd, std::vector<std::vector<Pose>> poses);
 
   /// Bodies are numbered kind by kind.
   std::uint32_t body_count() const { return static_cast<std::uint32_t>(kinds_.size()); }
@@ -36,4 +36,4 @@ class CrowdMotion {
   std::vector<std::vector<Pose>> recorded_;
 };
 
-}  // namespace lrb
+}  // namespace lrb::crowd

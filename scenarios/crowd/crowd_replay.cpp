@@ -1,10 +1,10 @@
 #include "scenarios/crowd/crowd_replay.hpp"
 
-#include "engine/error.hpp"
+#include "engine/core/error.hpp"
 #include "trace/cursor.hpp"
 #include "trace/hex.hpp"
 
-namespace lrb {
+namespace lrb::crowd {
 namespace {
 
 std::string words(const CrowdTrace::Answer* a) {
@@ -33,8 +33,8 @@ void compare(const CrowdTrace& trace, const CrowdRun& run, std::size_t step) {
 
 }  // namespace
 
-CrowdRun replay_crowd(const CrowdTrace& trace, std::vector<LoadedBody> kinds, std::uint32_t threads,
-                      const ProgressReport& progress) {
+CrowdRun replay_crowd(const CrowdTrace& trace, std::vector<bodies::LoadedBody> kinds, std::uint32_t threads,
+                      const run::ProgressReport& progress) {
   if (kinds.size() != trace.bodies.size())
     throw InputError(trace.file + ": has " + std::to_string(trace.bodies.size()) +
                      " kinds of bodies, given are " + std::to_string(kinds.size()));
@@ -49,4 +49,4 @@ CrowdRun replay_crowd(const CrowdTrace& trace, std::vector<LoadedBody> kinds, st
   return run;
 }
 
-}  // namespace lrb
+}  // namespace lrb::crowd

@@ -8,7 +8,7 @@
 
 #include "scenarios/crowd/crowd_run.hpp"
 
-namespace lrb {
+namespace lrb::crowd {
 
 struct CrowdTrace {
   /// One query's answer.
@@ -19,7 +19,7 @@ struct CrowdTrace {
     friend auto operator<=>(const Answer&, const Answer&) = default;
   };
   std::string file;         ///< for messages
-  Crowd crowd;              ///< as far as pictures need it; steps: those that the trace holds whole
+  spec::Crowd crowd;        ///< as far as pictures need it; steps: those that the trace holds whole
   std::uint32_t steps = 0;  ///< that were played
   std::vector<trace::BodyInfo> bodies;       ///< one a kind
   std::vector<std::vector<Pose>> poses;      ///< by whole step and body
@@ -36,7 +36,7 @@ CrowdTrace read_crowd_trace(std::string_view text, const std::string& file);
 /// Asks the queries of the whole steps again, for what the trace does not hold (regions that were opened,
 /// pairs of faces, contacts), and requires the answers that it has. `kinds`: the bodies that were recorded.
 /// Throws InputError if these are others, or answer otherwise.
-CrowdRun replay_crowd(const CrowdTrace& trace, std::vector<LoadedBody> kinds, std::uint32_t threads,
-                      const ProgressReport& progress);
+CrowdRun replay_crowd(const CrowdTrace& trace, std::vector<bodies::LoadedBody> kinds, std::uint32_t threads,
+                      const run::ProgressReport& progress);
 
-}  // namespace lrb
+}  // namespace lrb::crowd

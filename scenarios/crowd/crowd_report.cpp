@@ -5,17 +5,17 @@
 #include <filesystem>
 #include <functional>
 
+#include "engine/core/atomic_file.hpp"
 #include "engine/lrb/lrb_file.hpp"
-#include "engine/mesh/atomic_file.hpp"
 #include "render/overlay.hpp"
 #include "scenarios/crowd/crowd_frames.hpp"
 #include "scenarios/crowd/crowd_json.hpp"
-#include "scenarios/files.hpp"
-#include "scenarios/page/page.hpp"
-#include "scenarios/play/report.hpp"
+#include "scenarios/io/files.hpp"
+#include "scenarios/report/page/page.hpp"
+#include "scenarios/run/run_report.hpp"
 #include "trace/hex.hpp"
 
-namespace lrb {
+namespace lrb::crowd {
 namespace {
 
 class FileSink final : public trace::ByteSink {
@@ -28,7 +28,7 @@ class FileSink final : public trace::ByteSink {
   AtomicFile file_;
 };
 
-std::vector<PageNumber> numbers(const Crowd& crowd, const CrowdRun& run) {
+std::vector<report::PageNumber> numbers(const spec::Crowd& crowd, const CrowdRun& run) {
   const std::uint64_t n = run.motion.body_count(), all = n * (n - 1) / 2;
   std::uint64_t asked = 0, met = 0, faces = 0, tests = 0;
   for (const CrowdStep& s : run.steps) {
@@ -41,30 +41,30 @@ std::vector<PageNumber> numbers(const Crowd& crowd, const CrowdRun& run) {
   const auto a_step = [&](std::uint64_t x) {
     const double mean = static_cast<double>(x) / static_cast<double>(run.steps.size());
     constexpr double kWholeFrom = 1000;
-    return mean < kWholeFrom ? short_number(mean)
-                             : group_digits(static_cast<std::uint64_t>(std::round(mean)));
+    return mean < kWholeFrom ? render::short_number(mean)
+                             : render::group_digits(static_cast<std::uint64_t>(std::round(mean)));
   };
-  return {{"Bodies", group_digits(n),
+  return {{"Bodies", render::group_digits(n),
            "of " + std::to_string(crowd.kinds.size()) + (crowd.kinds.size() == 1 ? " kind, " : " kinds, ") +
-               group_digits(faces) + " real faces"},
-          {"Time steps", group_digits(run.steps.size()), ""},
-          {"Boxes that meet", a_step(asked), "of " + group_digits(all) + " pairs of bodies, a step"},
+               render::group_digits(faces) + " real faces"},
+          {"Time steps", render::group_digits(run.steps.size()), ""},
+          {"Boxes that meet", a_step(asked), "of " + render::group_digits(all) + " pairs of bodies, a step"},
           {"Bodies that meet", a_step(met), "pairs a step"},
           {"Face tests", a_step(tests), "exact comparisons of two faces, a step"}};
 }
 
-PageChart chart(const char* title, const char* y_label) {
-  PageChart c;
+report::PageChart chart(const char* title, const char* y_label) {
+  report::PageChart c;
   c.title = title;
   c.x_label = "time step";
   c.y_label = y_label;
-  c.cursor = PageCursor::step;
+  c.cursor = report::PageCursor::step;
   return c;
 }
 
-void add_series(PageChart& c, const CrowdRun& run, const char* label,
+void add_series(report::PageChart& c, const CrowdRun& run, const char* label,
                 const std::function<double(const CrowdStep&)>& value) {
-  PageSeries s;
+  report::PageSeries s;
   s.label = label;
   for (std::size_t i = 0; i < run.steps.size(); ++i) {
     s.x.push_back(static_cast<double>(i));
@@ -73,10 +73,10 @@ void add_series(PageChart& c, const CrowdRun& run, const char* label,
   if (std::any_of(s.y.begin(), s.y.end(), [](double y) { return y > 0; })) c.series.push_back(std::move(s));
 }
 
-std::vector<PageChart> charts(const CrowdRun& run) {
+std::vector<report::PageChart> charts(const CrowdRun& run) {
   const std::size_t n = run.motion.body_count();
   const auto number = [](std::size_t x) { return static_cast<double>(x); };
-  PageChart bodies = chart("Pairs of bodies, step by step", "pairs in the step");
+  report::PageChart bodies = chart("Pairs of bodies, step by step", "pairs in the step");
   add_series(bodies, run, "boxes meet", [&](const CrowdStep& s) { return number(s.queries.size()); });
   add_series(bodies, run, "crossing",
              [&](const CrowdStep& s) { return number(count(s, Relation::crossing)); });
@@ -87,15 +87,15 @@ std::vector<PageChart> charts(const CrowdRun& run) {
   });
   add_series(bodies, run, "bodies in contact",
              [&](const CrowdStep& s) { return number(bodies_in_contact(s, n)); });
-  PageChart work = chart("Work, step by step", "number in the step");
+  report::PageChart work = chart("Work, step by step", "number in the step");
   add_series(work, run, "face tests", [&](const CrowdStep& s) { return number(sum(s).face_tests); });
   add_series(work, run, "refinements", [&](const CrowdStep& s) { return number(sum(s).refinements); });
-  PageChart broad = chart("Broad phase, step by step", "number in the step");
+  report::PageChart broad = chart("Broad phase, step by step", "number in the step");
   add_series(broad, run, "box tests", [&](const CrowdStep& s) { return number(s.broad_phase.box_tests); });
   add_series(broad, run, "swaps in the order",
              [&](const CrowdStep& s) { return number(s.broad_phase.swaps); });
-  std::vector<PageChart> out;
-  for (PageChart* c : {&bodies, &work, &broad})
+  std::vector<report::PageChart> out;
+  for (report::PageChart* c : {&bodies, &work, &broad})
     if (run.steps.size() > 1 && !c->series.empty()) out.push_back(std::move(*c));
   return out;
 }
@@ -106,9 +106,9 @@ std::string words(Relation r) {
   return out;
 }
 
-PageTable last_queries(const Crowd& crowd, const CrowdRun& run) {
+report::PageTable last_queries(const spec::Crowd& crowd, const CrowdRun& run) {
   constexpr std::size_t kMostRows = 200;
-  PageTable t;
+  report::PageTable t;
   t.title = "Bodies that meet at step " + std::to_string(run.steps.size() - 1);
   t.columns = {"A",          "B",           "relation",   "pairs of faces", "contact regions",
                "face tests", "refinements", "fingerprint"};
@@ -123,9 +123,9 @@ PageTable last_queries(const Crowd& crowd, const CrowdRun& run) {
     }
     const trace::StepResult& r = q.result;
     t.rows.push_back({run.names[q.bodies.i], run.names[q.bodies.j], words(r.relation),
-                      group_digits(r.pair_count), group_digits(q.contact_regions),
-                      group_digits(r.counters.face_tests), group_digits(r.counters.refinements),
-                      trace::to_hex(r.fingerprint)});
+                      render::group_digits(r.pair_count), render::group_digits(q.contact_regions),
+                      render::group_digits(r.counters.face_tests),
+                      render::group_digits(r.counters.refinements), trace::to_hex(r.fingerprint)});
     if (!regions) t.rows.back().erase(t.rows.back().begin() + 4);
   }
   t.note = "Of pairs whose boxes do not meet nothing is asked: they have no point in common.";
@@ -133,15 +133,16 @@ PageTable last_queries(const Crowd& crowd, const CrowdRun& run) {
   return t;
 }
 
-Page crowd_page(const Crowd& crowd, const CrowdRun& run, const DrawnFrames& drawn, const std::string& folder,
-                const std::string& command, std::vector<PageLink> links) {
-  Page page;
+report::Page crowd_page(const spec::Crowd& crowd, const CrowdRun& run, const run::DrawnFrames& drawn,
+                        const std::string& folder, const std::string& command,
+                        std::vector<report::PageLink> links) {
+  report::Page page;
   page.title = crowd.name;
   page.purpose = crowd.purpose;
   page.verdict = std::to_string(run.motion.body_count()) + " bodies";
   page.command = command;
   page.numbers = numbers(crowd, run);
-  add_frames(page, drawn, folder);
+  run::add_frames(page, drawn, folder);
   page.charts = charts(run);
   page.tables.push_back(last_queries(crowd, run));
   page.links = std::move(links);
@@ -153,41 +154,41 @@ Page crowd_page(const Crowd& crowd, const CrowdRun& run, const DrawnFrames& draw
   return page;
 }
 
-PageLink trace_link(const Crowd& crowd, const std::string& file) {
+report::PageLink trace_link(const spec::Crowd& crowd, const std::string& file) {
   return {file, file,
           crowd.clock == trace::Clock::event
               ? "every query on the tracks of its bodies; drag it onto ui.perfetto.dev"
               : "every query on the track of its thread; drag it onto ui.perfetto.dev"};
 }
 
-void write_pictures_and_page(const Crowd& crowd, const CrowdRun& run, const std::string& folder,
-                             const std::string& command, std::vector<PageLink> links,
-                             const ProgressReport& progress) {
+void write_pictures_and_page(const spec::Crowd& crowd, const CrowdRun& run, const std::string& folder,
+                             const std::string& command, std::vector<report::PageLink> links,
+                             const run::ProgressReport& progress) {
   const std::vector<std::pair<std::string, std::string>> text = {
       {"Software", std::string("lrbscope ") + trace::lrbscope_version()},
       {"lrbscope:crowd", crowd.name},
       {"lrbscope:crowd_hash", trace::to_hex(crowd.hash)},
   };
-  const DrawnFrames drawn = draw_crowd(crowd, run, folder, text, progress);
+  const run::DrawnFrames drawn = draw_crowd(crowd, run, folder, text, progress);
   progress("page", 0, 1);
-  write_text(folder + "/index.html",
-             page_html(crowd_page(crowd, run, drawn, folder, command, std::move(links))));
+  io::write_text(folder + "/index.html",
+                 report::page_html(crowd_page(crowd, run, drawn, folder, command, std::move(links))));
 }
 
 }  // namespace
 
-std::string write_crowd(const Crowd& crowd, const CrowdRun& run, const std::string& folder,
-                        const std::string& command, const ProgressReport& progress) {
-  check_frame_size(crowd.frames);
-  make_folder(folder);
-  const FolderLock lock(folder);
-  refuse_links(folder);
+std::string write_crowd(const spec::Crowd& crowd, const CrowdRun& run, const std::string& folder,
+                        const std::string& command, const run::ProgressReport& progress) {
+  run::check_frame_size(crowd.frames);
+  io::make_folder(folder);
+  const io::FolderLock lock(folder);
+  io::refuse_links(folder);
   FileSink sink(folder + "/trace.json");
   write_crowd_trace(crowd, run, sink);
   sink.commit();
   const std::string summary = crowd_summary(crowd, run);
-  write_text(folder + "/summary.json", summary);
-  write_text(folder + "/timing.json", crowd_timing(run));
+  io::write_text(folder + "/summary.json", summary);
+  io::write_text(folder + "/timing.json", crowd_timing(run));
   for (std::size_t k = 0; k < run.kinds.size(); ++k)
     save_lrb(run.kinds[k].rep, folder + "/" + crowd.kinds[k].name + ".lrb");
   write_pictures_and_page(crowd, run, folder, command,
@@ -198,11 +199,12 @@ std::string write_crowd(const Crowd& crowd, const CrowdRun& run, const std::stri
   return summary;
 }
 
-void redraw_crowd(const Crowd& crowd, const CrowdRun& run, const std::string& folder,
-                  const std::string& command, const std::string& trace_file, const ProgressReport& progress) {
-  make_folder(folder);
-  const FolderLock lock(folder);
-  refuse_links(folder);
+void redraw_crowd(const spec::Crowd& crowd, const CrowdRun& run, const std::string& folder,
+                  const std::string& command, const std::string& trace_file,
+                  const run::ProgressReport& progress) {
+  io::make_folder(folder);
+  const io::FolderLock lock(folder);
+  io::refuse_links(folder);
   const std::string file = std::filesystem::relative(trace_file, folder).generic_string();
   write_pictures_and_page(crowd, run, folder, command, {trace_link(crowd, file)}, progress);
 }
@@ -217,11 +219,11 @@ std::string crowd_speed(const CrowdRun& run) {
   const auto median = [](std::vector<double>& x) {
     const auto middle = x.begin() + static_cast<std::ptrdiff_t>(x.size() / 2);
     std::nth_element(x.begin(), middle, x.end());
-    return short_number(*middle) + " us";
+    return render::short_number(*middle) + " us";
   };
   return "a step takes (medians): boxes " + median(boxes) + ", sort and sweep " + median(sweeps) +
          ", queries " + median(queries) + ", on " + std::to_string(run.threads) +
          (run.threads == 1 ? " thread" : " threads");
 }
 
-}  // namespace lrb
+}  // namespace lrb::crowd

@@ -4,19 +4,20 @@
 
 #include "scenarios/crowd/crowd_run.hpp"
 
-namespace lrb {
+namespace lrb::crowd {
 
 /// Writes folder/{index.html, trace.json, summary.json, timing.json, KIND.lrb, frames/}. Everything but
 /// timing.json, and a trace on the wall clock, is the same for any number of threads. Returns summary.json's
 /// text.
-std::string write_crowd(const Crowd& crowd, const CrowdRun& run, const std::string& folder,
-                        const std::string& command, const ProgressReport& progress);
+std::string write_crowd(const spec::Crowd& crowd, const CrowdRun& run, const std::string& folder,
+                        const std::string& command, const run::ProgressReport& progress);
 
 /// Of a replayed run: folder/{index.html, frames/}.
-void redraw_crowd(const Crowd& crowd, const CrowdRun& run, const std::string& folder,
-                  const std::string& command, const std::string& trace_file, const ProgressReport& progress);
+void redraw_crowd(const spec::Crowd& crowd, const CrowdRun& run, const std::string& folder,
+                  const std::string& command, const std::string& trace_file,
+                  const run::ProgressReport& progress);
 
 /// How long a step took, in one line for people.
 std::string crowd_speed(const CrowdRun& run);
 
-}  // namespace lrb
+}  // namespace lrb::crowd

@@ -5,22 +5,22 @@
 #include <numeric>
 #include <tuple>
 
-#include "engine/error.hpp"
-#include "engine/query/query_context.hpp"
+#include "engine/core/error.hpp"
+#include "engine/query/walk/query_context.hpp"
 #include "engine/query/world_box.hpp"
 #include "scenarios/crowd/task_pool.hpp"
-#include "scenarios/play/moments.hpp"
+#include "scenarios/run/moments.hpp"
 
-namespace lrb {
+namespace lrb::crowd {
 namespace {
 
 using Clock = std::chrono::steady_clock;
 
-std::vector<LoadedBody> make_kinds(const Crowd& crowd, const ProgressReport& progress) {
-  std::vector<LoadedBody> kinds;
-  for (const CrowdKind& kind : crowd.kinds) {
+std::vector<bodies::LoadedBody> make_kinds(const spec::Crowd& crowd, const run::ProgressReport& progress) {
+  std::vector<bodies::LoadedBody> kinds;
+  for (const spec::CrowdKind& kind : crowd.kinds) {
     progress("build", kinds.size(), crowd.kinds.size());
-    kinds.push_back(make_body(kind.body));
+    kinds.push_back(run::make_body(kind.body));
     if (kinds.back().rep.dim() != kinds[0].rep.dim())
       throw InputError("crowd " + crowd.name + ": " + kind.name + " is " +
                        std::to_string(kinds.back().rep.dim()) + "D and " + crowd.kinds[0].name + " is " +
@@ -29,15 +29,15 @@ std::vector<LoadedBody> make_kinds(const Crowd& crowd, const ProgressReport& pro
   return kinds;
 }
 
-std::vector<const LrbRep*> reps_of(const std::vector<LoadedBody>& kinds) {
+std::vector<const LrbRep*> reps_of(const std::vector<bodies::LoadedBody>& kinds) {
   std::vector<const LrbRep*> out;
-  for (const LoadedBody& kind : kinds) out.push_back(&kind.rep);
+  for (const bodies::LoadedBody& kind : kinds) out.push_back(&kind.rep);
   return out;
 }
 
 class Player {
  public:
-  Player(const Crowd& crowd, CrowdRun& run)
+  Player(const spec::Crowd& crowd, CrowdRun& run)
       : crowd_(crowd),
         run_(run),
         pool_(run.threads),
@@ -46,7 +46,7 @@ class Player {
         boxes_(run.motion.body_count()),
         extremes_(run.motion.body_count()),
         began_(Clock::now()) {
-    for (const LoadedBody& kind : run.kinds) extents_.emplace_back(kind.rep);
+    for (const bodies::LoadedBody& kind : run.kinds) extents_.emplace_back(kind.rep);
   }
 
   /// Plays a step; `moment`: what is to be seen of it, or null.
@@ -139,7 +139,7 @@ class Player {
     }
   }
 
-  const Crowd& crowd_;
+  const spec::Crowd& crowd_;
   CrowdRun& run_;
   TaskPool pool_;
   std::vector<QueryContext> contexts_;  ///< one a thread
@@ -153,24 +153,24 @@ class Player {
 
 }  // namespace
 
-std::vector<std::uint32_t> drawn_steps(const FrameSpec& spec, std::uint32_t steps) {
+std::vector<std::uint32_t> drawn_steps(const spec::FrameSpec& spec, std::uint32_t steps) {
   std::vector<std::uint32_t> all;
-  if (spec.at == FrameSpec::At::none) return all;
+  if (spec.at == spec::FrameSpec::At::none) return all;
   for (std::uint32_t s = 0; s < steps; ++s)
     if (s % spec.every == 0 || s + 1 == steps) all.push_back(s);
   std::vector<std::uint32_t> out;
-  for (const std::size_t i : evenly(all.size(), spec.most)) out.push_back(all[i]);
+  for (const std::size_t i : run::evenly(all.size(), spec.most)) out.push_back(all[i]);
   return out;
 }
 
-CrowdRun run_crowd(const Crowd& crowd, std::uint32_t threads, const ProgressReport& progress) {
-  std::vector<LoadedBody> kinds = make_kinds(crowd, progress);
+CrowdRun run_crowd(const spec::Crowd& crowd, std::uint32_t threads, const run::ProgressReport& progress) {
+  std::vector<bodies::LoadedBody> kinds = make_kinds(crowd, progress);
   CrowdMotion motion(crowd, reps_of(kinds));
   return play_crowd(crowd, std::move(kinds), std::move(motion), threads, progress);
 }
 
-CrowdRun play_crowd(const Crowd& crowd, std::vector<LoadedBody> kinds, CrowdMotion motion,
-                    std::uint32_t threads, const ProgressReport& progress) {
+CrowdRun play_crowd(const spec::Crowd& crowd, std::vector<bodies::LoadedBody> kinds, CrowdMotion motion,
+                    std::uint32_t threads, const run::ProgressReport& progress) {
   CrowdRun run{std::move(kinds), {}, std::move(motion), {}, {}, {}, threads};
   for (std::size_t k = 0; k < run.kinds.size(); ++k) {
     for (const std::string& note : run.kinds[k].notes) run.notes.push_back(crowd.kinds[k].name + ": " + note);
@@ -190,4 +190,4 @@ CrowdRun play_crowd(const Crowd& crowd, std::vector<LoadedBody> kinds, CrowdMoti
   return run;
 }
 
-}  // namespace lrb
+}  // namespace lrb::crowd

@@ -7,12 +7,12 @@
 
 #include "engine/query/broad_phase.hpp"
 #include "engine/query/collide.hpp"
-#include "scenarios/body.hpp"
-#include "scenarios/crowd/crowd.hpp"
+#include "scenarios/bodies/body.hpp"
 #include "scenarios/crowd/crowd_motion.hpp"
-#include "scenarios/play/recording.hpp"
+#include "scenarios/run/recorded_run.hpp"
+#include "scenarios/spec/crowd_spec.hpp"
 
-namespace lrb {
+namespace lrb::crowd {
 
 /// One query of two bodies: A is the one of the lower number.
 struct CrowdQuery {
@@ -47,8 +47,8 @@ struct CrowdMoment {
 };
 
 struct CrowdRun {
-  std::vector<LoadedBody> kinds;   ///< one a kind
-  std::vector<std::string> names;  ///< of bodies: "gear 3"
+  std::vector<bodies::LoadedBody> kinds;  ///< one a kind
+  std::vector<std::string> names;         ///< of bodies: "gear 3"
   CrowdMotion motion;
   std::vector<CrowdStep> steps;
   std::vector<CrowdMoment> moments;  ///< of the steps to be drawn
@@ -59,13 +59,13 @@ struct CrowdRun {
 };
 
 /// The steps that `spec` wants drawn.
-std::vector<std::uint32_t> drawn_steps(const FrameSpec& spec, std::uint32_t steps);
+std::vector<std::uint32_t> drawn_steps(const spec::FrameSpec& spec, std::uint32_t steps);
 
 /// Builds the bodies and plays. Everything but threads and times is the same for any number of threads, at
 /// least 1. Throws InputError for bodies of different dimensions and for what collide() refuses.
-CrowdRun run_crowd(const Crowd& crowd, std::uint32_t threads, const ProgressReport& progress);
+CrowdRun run_crowd(const spec::Crowd& crowd, std::uint32_t threads, const run::ProgressReport& progress);
 /// The same with bodies, one a kind, that are there already.
-CrowdRun play_crowd(const Crowd& crowd, std::vector<LoadedBody> kinds, CrowdMotion motion,
-                    std::uint32_t threads, const ProgressReport& progress);
+CrowdRun play_crowd(const spec::Crowd& crowd, std::vector<bodies::LoadedBody> kinds, CrowdMotion motion,
+                    std::uint32_t threads, const run::ProgressReport& progress);
 
-}  // namespace lrb
+}  // namespace lrb::crowd

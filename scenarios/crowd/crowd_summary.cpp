@@ -1,13 +1,13 @@
 #include <algorithm>
 #include <vector>
 
-#include "engine/lrb/fnv.hpp"
+#include "engine/core/fnv.hpp"
 #include "scenarios/crowd/crowd_json.hpp"
 #include "trace/hex.hpp"
 #include "trace/json_parts.hpp"
 #include "trace/names.hpp"
 
-namespace lrb {
+namespace lrb::crowd {
 namespace {
 
 using trace::JsonWriter;
@@ -71,10 +71,10 @@ std::string as_text(const Write& write) {
 
 }  // namespace
 
-void write_kinds(JsonWriter& w, const Crowd& crowd, const CrowdRun& run) {
+void write_kinds(JsonWriter& w, const spec::Crowd& crowd, const CrowdRun& run) {
   w.key("kinds").begin_array();
   for (std::size_t k = 0; k < run.kinds.size(); ++k) {
-    const BodySpec& spec = crowd.kinds[k].body;
+    const spec::BodySpec& spec = crowd.kinds[k].body;
     w.begin_object().member("name", crowd.kinds[k].name).member("count", crowd.kinds[k].count).key("body");
     trace::write_json(w, trace::describe_body(run.kinds[k].rep,
                                               spec.file.empty() ? "generator " + spec.generator : spec.file));
@@ -112,7 +112,7 @@ Counters sum(const CrowdStep& step) {
   return all;
 }
 
-std::string crowd_summary(const Crowd& crowd, const CrowdRun& run) {
+std::string crowd_summary(const spec::Crowd& crowd, const CrowdRun& run) {
   return as_text([&](JsonWriter& w) {
     const std::uint64_t n = run.motion.body_count();
     w.begin_object().member("lrbscope", trace::lrbscope_version());
@@ -141,4 +141,4 @@ std::string crowd_timing(const CrowdRun& run) {
   });
 }
 
-}  // namespace lrb
+}  // namespace lrb::crowd

@@ -7,7 +7,7 @@
 #include "trace/json_parts.hpp"
 #include "trace/names.hpp"
 
-namespace lrb {
+namespace lrb::crowd {
 namespace {
 
 using trace::JsonWriter;
@@ -19,7 +19,7 @@ struct Span {
 
 class Writer {
  public:
-  Writer(const Crowd& crowd, const CrowdRun& run, trace::ByteSink& sink)
+  Writer(const spec::Crowd& crowd, const CrowdRun& run, trace::ByteSink& sink)
       : crowd_(crowd), run_(run), out_(sink), w_(out_, 2), wall_(crowd.clock == trace::Clock::wall) {}
 
   void run() {
@@ -190,7 +190,7 @@ class Writer {
     w_.end_array();
   }
 
-  const Crowd& crowd_;
+  const spec::Crowd& crowd_;
   const CrowdRun& run_;
   trace::JsonOut out_;
   JsonWriter w_;
@@ -202,8 +202,8 @@ class Writer {
 
 }  // namespace
 
-void write_crowd_trace(const Crowd& crowd, const CrowdRun& run, trace::ByteSink& sink) {
+void write_crowd_trace(const spec::Crowd& crowd, const CrowdRun& run, trace::ByteSink& sink) {
   Writer(crowd, run, sink).run();
 }
 
-}  // namespace lrb
+}  // namespace lrb::crowd

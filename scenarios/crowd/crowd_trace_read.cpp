@@ -2,13 +2,13 @@
 #include <limits>
 #include <map>
 
-#include "engine/error.hpp"
-#include "engine/mesh/file_bytes.hpp"
+#include "engine/core/error.hpp"
+#include "engine/core/file_bytes.hpp"
 #include "scenarios/crowd/crowd_json.hpp"
 #include "scenarios/crowd/crowd_replay.hpp"
 #include "trace/json_read.hpp"
 
-namespace lrb {
+namespace lrb::crowd {
 namespace {
 
 using trace::TraceNode;
@@ -62,7 +62,7 @@ class Reader {
   }
 
   void read_header(const TraceNode& metadata) {
-    Crowd& c = t_.crowd;
+    spec::Crowd& c = t_.crowd;
     c.name = metadata.at("crowd").at("name").string();
     c.hash = metadata.at("crowd").at("hash").hash();
     c.clock = metadata.at("clock").named<trace::Clock>();
@@ -72,7 +72,7 @@ class Reader {
     for (int axis = 0; axis < 3; ++axis) {
       const TraceNode size = room.at(static_cast<std::size_t>(axis));
       c.room[axis] = size.least(0);
-      if (c.room[axis] > kFar) size.fail("a room of finite size");
+      if (c.room[axis] > spec::kFar) size.fail("a room of finite size");
     }
   }
 
@@ -81,13 +81,13 @@ class Reader {
     if (count == 0) kinds.fail("at least one kind of bodies");
     for (std::size_t k = 0; k < count; ++k) {
       const TraceNode node = kinds.at(k);
-      CrowdKind kind;
+      spec::CrowdKind kind;
       kind.name = node.at("name").string();
       // It names a file beside the trace.
       if (kind.name.empty() || kind.name.find_first_of("/.\\") != std::string::npos)
         node.at("name").fail("the name of a kind of bodies");
-      kind.count = node.at("count").integer<std::uint32_t>(kMostCrowdBodies);
-      if (kind.count == 0 || names_.size() + kind.count > kMostCrowdBodies)
+      kind.count = node.at("count").integer<std::uint32_t>(spec::kMostCrowdBodies);
+      if (kind.count == 0 || names_.size() + kind.count > spec::kMostCrowdBodies)
         node.at("count").fail("1 body at least and 10000 in all at most");
       for (std::uint32_t i = 1; i <= kind.count; ++i)
         if (!names_.emplace(kind.name + " " + std::to_string(i), names_.size()).second)
@@ -131,7 +131,7 @@ class Reader {
       std::vector<Pose>& poses = t_.poses.emplace_back();
       for (std::size_t body = 0; body < names_.size(); ++body) {
         const Pose pose = trace::read_pose(bodies.at(body));
-        if (!(pose.r.cwiseAbs().maxCoeff() <= kFar && pose.t.cwiseAbs().maxCoeff() <= kFar))
+        if (!(pose.r.cwiseAbs().maxCoeff() <= spec::kFar && pose.t.cwiseAbs().maxCoeff() <= spec::kFar))
           bodies.at(body).fail("a pose near the room");
         poses.push_back(pose);
       }
@@ -171,4 +171,4 @@ CrowdTrace read_crowd_trace(std::string_view text, const std::string& file) {
   return Reader(text, file).run();
 }
 
-}  // namespace lrb
+}  // namespace lrb::crowd

@@ -1,6 +1,6 @@
 #include "scenarios/crowd/task_pool.hpp"
 
-namespace lrb {
+namespace lrb::crowd {
 
 TaskPool::TaskPool(std::uint32_t threads) {
   for (std::uint32_t t = 1; t < threads; ++t) workers_.emplace_back([this, t] { wait_for_work(t); });
@@ -61,4 +61,4 @@ void TaskPool::work(std::uint32_t thread) {
   if (--busy_ == 0) ended_.notify_one();
 }
 
-}  // namespace lrb
+}  // namespace lrb::crowd

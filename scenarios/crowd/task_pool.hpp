@@ -9,7 +9,7 @@
 #include <thread>
 #include <vector>
 
-namespace lrb {
+namespace lrb::crowd {
 
 /// Threads that wait for the next round of small jobs: a round starts in microseconds, which starting threads
 /// would not. The thread that asks works too.
@@ -43,4 +43,4 @@ class TaskPool {
   std::vector<std::jthread> workers_;  ///< last: they see the rest
 };
 
-}  // namespace lrb
+}  // namespace lrb::crowd

@@ -4,12 +4,12 @@
 #include <filesystem>
 #include <optional>
 
-#include "engine/error.hpp"
-#include "scenarios/files.hpp"
+#include "engine/core/error.hpp"
 #include "scenarios/golden/check.hpp"
+#include "scenarios/io/files.hpp"
 #include "trace/trace_json.hpp"
 
-namespace lrb {
+namespace lrb::golden {
 namespace fs = std::filesystem;
 namespace {
 
@@ -35,10 +35,10 @@ class Approval {
     say("approved", kGoldenTrace);
   }
   void frame(std::size_t i, const std::string& variant) {
-    PngOptions png;
+    render::PngOptions png;
     png.text = golden_text(run_, i);
     const std::string file = golden_image_file(i, variant);
-    write_png(run_.frames[i].image, folder_ + "/" + file, png);
+    render::write_png(run_.frames[i].image, folder_ + "/" + file, png);
     say("approved", file);
   }
   void remove(const std::vector<std::string>& files) {
@@ -99,8 +99,8 @@ std::vector<std::string> approve_golden(const std::string& goldens, const Golden
   const bool known = has_golden(goldens, name);
   if (!known && !variant.empty())
     throw InputError(name + ": has no golden yet; approve it first, without --variant");
-  make_folder(folder);
-  const FolderLock lock(folder);
+  io::make_folder(folder);
+  const io::FolderLock lock(folder);
   const std::optional<Golden> old = known ? load_if_sound(goldens, name, variant.empty()) : std::nullopt;
   if (!old) {
     write_golden_spec(goldens, name, spec);
@@ -120,4 +120,4 @@ std::vector<std::string> approve_golden(const std::string& goldens, const Golden
   return std::move(approval.done);
 }
 
-}  // namespace lrb
+}  // namespace lrb::golden

@@ -6,7 +6,7 @@
 #include "scenarios/golden/golden.hpp"
 #include "scenarios/golden/golden_run.hpp"
 
-namespace lrb {
+namespace lrb::golden {
 
 /// Makes what was run the golden. Files that say the same already are left as they are; where a picture has
 /// changed, its old variants go. With `variant` the trace must be the approved one already, and pictures that
@@ -14,4 +14,4 @@ namespace lrb {
 std::vector<std::string> approve_golden(const std::string& goldens, const GoldenSpec& spec,
                                         const GoldenRun& run, const std::string& variant);
 
-}  // namespace lrb
+}  // namespace lrb::golden

@@ -8,10 +8,10 @@
 #include "render/image_diff.hpp"
 #include "scenarios/golden/diagnosis.hpp"
 
-namespace lrb {
+namespace lrb::golden {
 namespace {
 
-std::string size_words(const Image& image) {
+std::string size_words(const render::Image& image) {
   return std::to_string(image.width()) + "x" + std::to_string(image.height());
 }
 
@@ -21,16 +21,16 @@ std::string hex_colour(std::uint32_t rgb) {
   return text;
 }
 
-std::uint32_t packed(Rgba c) {
+std::uint32_t packed(render::Rgba c) {
   return static_cast<std::uint32_t>(c.r) << 16 | static_cast<std::uint32_t>(c.g) << 8 | c.b;
 }
 
 /// The change of colour that most of the strongly different pixels have in common.
-std::string commonest_change(const Image& expected, const Image& actual) {
-  const int large = ImageTolerance{}.large;
+std::string commonest_change(const render::Image& expected, const render::Image& actual) {
+  const int large = render::ImageTolerance{}.large;
   std::unordered_map<std::uint64_t, std::uint64_t> counts;
   for (std::size_t i = 0; i < expected.pixels().size(); ++i) {
-    const Rgba e = expected.pixels()[i], a = actual.pixels()[i];
+    const render::Rgba e = expected.pixels()[i], a = actual.pixels()[i];
     if (std::max({std::abs(e.r - a.r), std::abs(e.g - a.g), std::abs(e.b - a.b)}) > large)
       ++counts[static_cast<std::uint64_t>(packed(e)) << 32 | packed(a)];
   }
@@ -43,7 +43,7 @@ std::string commonest_change(const Image& expected, const Image& actual) {
          (most == 1 ? " pixel)" : " pixels)");
 }
 
-std::string text_of(const DecodedPng& png, const std::string& key) {
+std::string text_of(const render::DecodedPng& png, const std::string& key) {
   for (const auto& [name, value] : png.text)
     if (name == key) return value;
   return {};
@@ -75,7 +75,7 @@ std::string moved_words(const std::string& expected, const std::string& actual) 
 }
 
 /// What is behind a difference: another moment, another camera, or else other colours or shapes.
-std::string explain(const DecodedPng& expected, const PaintedFrame& actual) {
+std::string explain(const render::DecodedPng& expected, const run::PaintedFrame& actual) {
   std::string out;
   const std::string event = text_of(expected, "lrbscope:event"), found = std::to_string(actual.event);
   if (!event.empty() && event != found) out += "drawn after event " + found + " instead of " + event + "; ";
@@ -85,7 +85,7 @@ std::string explain(const DecodedPng& expected, const PaintedFrame& actual) {
   return out + commonest_change(expected.image, actual.image);
 }
 
-ImageVerdict check_frame(const std::vector<GoldenImage>& variants, const PaintedFrame& actual,
+ImageVerdict check_frame(const std::vector<GoldenImage>& variants, const run::PaintedFrame& actual,
                          std::size_t frame) {
   ImageVerdict best;
   best.frame = frame;
@@ -96,12 +96,13 @@ ImageVerdict check_frame(const std::vector<GoldenImage>& variants, const Painted
     return best;
   }
   best.has_expected = true;
-  const std::uint64_t print = hash(actual.image);
-  ImageDifference least;
+  const std::uint64_t print = render::hash(actual.image);
+  render::ImageDifference least;
   for (std::size_t i = 0; i < variants.size(); ++i) {
-    const Image& expected = variants[i].png.image;
-    const bool equal = hash(expected) == print;
-    const ImageDifference d = equal ? ImageDifference{} : compare(expected, actual.image);
+    const render::Image& expected = variants[i].png.image;
+    const bool equal = render::hash(expected) == print;
+    const render::ImageDifference d =
+        equal ? render::ImageDifference{} : render::compare(expected, actual.image);
     const bool passed = equal || d.within();
     const bool nearer = passed != best.passed            ? passed
                         : d.same_size != least.same_size ? d.same_size
@@ -151,4 +152,4 @@ GoldenVerdict check_golden(const Golden& golden, const GoldenRun& run) {
   return out;
 }
 
-}  // namespace lrb
+}  // namespace lrb::golden

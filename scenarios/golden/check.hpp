@@ -10,7 +10,7 @@
 #include "scenarios/golden/golden_run.hpp"
 #include "trace/divergence.hpp"
 
-namespace lrb {
+namespace lrb::golden {
 
 struct ImageVerdict {
   std::string file;  ///< the approved picture that comes nearest; of a frame that has none, its name
@@ -33,4 +33,4 @@ struct GoldenVerdict {
 
 GoldenVerdict check_golden(const Golden& golden, const GoldenRun& run);
 
-}  // namespace lrb
+}  // namespace lrb::golden

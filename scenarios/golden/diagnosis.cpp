@@ -5,7 +5,7 @@
 
 #include "trace/counters.hpp"
 
-namespace lrb {
+namespace lrb::golden {
 namespace {
 
 using Events = std::span<const trace::Event>;
@@ -63,4 +63,4 @@ std::string diagnose(const trace::Trace& expected, const trace::Trace& actual,
   return "expected " + trace::describe(x[i]) + "; found " + trace::describe(y[i]) + contacts;
 }
 
-}  // namespace lrb
+}  // namespace lrb::golden

@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <optional>
 
-#include "engine/error.hpp"
+#include "engine/core/error.hpp"
 #include "render/scene.hpp"
-#include "scenarios/play/moments.hpp"
+#include "scenarios/run/moments.hpp"
 #include "trace/cursor.hpp"
 
-namespace lrb {
+namespace lrb::golden {
 namespace {
 
 constexpr int kWidth = 1000, kHeight = 560;
@@ -31,7 +31,7 @@ std::optional<std::size_t> step_of(const trace::Trace& x, const trace::Trace& y,
 /// The event to show of a run: a step that has ended before shows its end.
 trace::EventId event_to_show(const trace::Trace& trace, std::size_t step,
                              std::optional<trace::EventId> event) {
-  const trace::EventId last = last_event(trace, step);
+  const trace::EventId last = run::last_event(trace, step);
   return event ? std::min(*event, last) : last;
 }
 
@@ -65,12 +65,12 @@ std::vector<Eigen::Vector3d> subject_of(const SideShown& side, const std::vector
   return out;
 }
 
-FrameSpec spec_for(const GoldenRun& run, bool close_up) {
-  FrameSpec spec;
-  spec.at = FrameSpec::At::events;
+spec::FrameSpec spec_for(const GoldenRun& run, bool close_up) {
+  spec::FrameSpec spec;
+  spec.at = spec::FrameSpec::At::events;
   spec.width = kWidth;
   spec.height = kHeight;
-  FrameSpec::View whole;
+  spec::FrameSpec::View whole;
   if (!run.scenario.frames.views.empty()) {  // stand where the scenario stands
     whole.from = run.scenario.frames.views[0].from;
     whole.up = run.scenario.frames.views[0].up;
@@ -78,23 +78,23 @@ FrameSpec spec_for(const GoldenRun& run, bool close_up) {
   whole.title = "Whole, with wrappers";
   spec.views = {whole};
   if (close_up) {
-    FrameSpec::View close = whole;
-    close.camera = FrameSpec::Camera::contact;
+    spec::FrameSpec::View close = whole;
+    close.camera = spec::FrameSpec::Camera::contact;
     close.title = "Close up, with wrappers";
     spec.views.push_back(close);
   }
   return spec;
 }
 
-PaintedFrame paint(const GoldenRun& run, const SideShown& side, FrameSpec spec, const Framing& framing,
-                   const std::string& title) {
-  Performance p = performance_of(run);
+run::PaintedFrame paint(const GoldenRun& run, const SideShown& side, spec::FrameSpec spec,
+                        const run::Framing& framing, const std::string& title) {
+  run::RecordedRun p = performance_of(run);
   p.title = run.scenario.name + ", " + title;
   p.trace = &side.trace;
   p.milestones.clear();
   spec.events = {side.event};
-  const ProgressReport silent = [](const std::string&, std::uint64_t, std::uint64_t) {};
-  return paint_frames(p, spec, silent, &framing).at(0);
+  const run::ProgressReport silent = [](const std::string&, std::uint64_t, std::uint64_t) {};
+  return run::paint_frames(p, spec, silent, &framing).at(0);
 }
 
 bool same_bodies(const trace::Trace& x, const trace::Trace& y) {
@@ -124,15 +124,15 @@ DivergencePictures draw_divergence(const Golden& golden, const GoldenRun& run,
   const std::vector<const LrbRep*> reps = performance_of(run).reps;
   try {
     // Around the step alone: both runs' bodies, and what both events are about.
-    Framing framing = frame_sequence(reps, actual, run.recording.results, run.scenario.frames);
+    run::Framing framing = run::frame_sequence(reps, actual, run.recording.results, run.scenario.frames);
     framing.contacts.clear();
     for (const SideShown& side : sides)
       for (const Eigen::Vector3d& p : subject_of(side, reps)) framing.contacts.push_back(p);
     if (const CollideResult* result = find_result(run, *step); framing.contacts.empty() && result != nullptr)
-      framing.contacts = contact_points(result->regions);
-    const FrameSpec spec = spec_for(run, !framing.contacts.empty());
-    PaintedFrame pictures[2] = {paint(run, sides[0], spec, framing, "approved"),
-                                paint(run, sides[1], spec, framing, "found")};
+      framing.contacts = render::contact_points(result->regions);
+    const spec::FrameSpec spec = spec_for(run, !framing.contacts.empty());
+    run::PaintedFrame pictures[2] = {paint(run, sides[0], spec, framing, "approved"),
+                                     paint(run, sides[1], spec, framing, "found")};
     out.expected = std::move(pictures[0].image);
     out.actual = std::move(pictures[1].image);
     out.expected_caption = pictures[0].caption;
@@ -143,4 +143,4 @@ DivergencePictures draw_divergence(const Golden& golden, const GoldenRun& run,
   return out;
 }
 
-}  // namespace lrb
+}  // namespace lrb::golden

@@ -6,12 +6,12 @@
 #include "scenarios/golden/golden_run.hpp"
 #include "trace/divergence.hpp"
 
-namespace lrb {
+namespace lrb::golden {
 
 /// The two runs where they part: at the first event that differs, or at the end of the step that does, whole
 /// and close up, through the same cameras.
 struct DivergencePictures {
-  Image expected, actual;  ///< empty if there is nothing to draw
+  render::Image expected, actual;  ///< empty if there is nothing to draw
   std::string expected_caption, actual_caption;
   std::string note;  ///< why there is nothing to draw
 };
@@ -19,4 +19,4 @@ struct DivergencePictures {
 DivergencePictures draw_divergence(const Golden& golden, const GoldenRun& run,
                                    const trace::Divergence& divergence);
 
-}  // namespace lrb
+}  // namespace lrb::golden

@@ -7,14 +7,14 @@
 
 #include <nlohmann/json.hpp>
 
-#include "engine/error.hpp"
-#include "engine/mesh/file_bytes.hpp"
-#include "scenarios/files.hpp"
-#include "scenarios/json/json_node.hpp"
-#include "scenarios/shipped.hpp"
+#include "engine/core/error.hpp"
+#include "engine/core/file_bytes.hpp"
+#include "scenarios/io/files.hpp"
+#include "scenarios/io/json/json_node.hpp"
+#include "scenarios/spec/shipped.hpp"
 #include "trace/trace_json.hpp"
 
-namespace lrb {
+namespace lrb::golden {
 namespace fs = std::filesystem;
 namespace {
 
@@ -88,12 +88,12 @@ std::vector<std::string> golden_names(const std::string& goldens) {
 
 GoldenSpec read_golden_spec(const std::string& goldens, const std::string& name) {
   const std::string file = (fs::path(goldens) / name / kSpecFile).string();
-  const JsonText json(read_text(file), file);
-  const JsonNode root(json);
+  const io::JsonText json(io::read_text(file), file);
+  const io::JsonNode root(json);
   root.object({"scenario", "size", "frames"});
   GoldenSpec spec;
   spec.scenario = root.at("scenario").string();
-  const std::vector<JsonNode> size = root.at("size").items();
+  const std::vector<io::JsonNode> size = root.at("size").items();
   if (size.size() != 2) root.at("size").fail("expected [width, height]");
   spec.width = static_cast<int>(size[0].integer(64, 8192));
   spec.height = static_cast<int>(size[1].integer(64, 8192));
@@ -104,10 +104,10 @@ GoldenSpec read_golden_spec(const std::string& goldens, const std::string& name)
 void write_golden_spec(const std::string& goldens, const std::string& name, const GoldenSpec& spec) {
   const nlohmann::ordered_json json = {
       {"scenario", spec.scenario}, {"size", {spec.width, spec.height}}, {"frames", spec.frames}};
-  write_text((fs::path(goldens) / name / kSpecFile).string(), json.dump() + "\n");
+  io::write_text((fs::path(goldens) / name / kSpecFile).string(), json.dump() + "\n");
 }
 
-std::string scenario_reference(const std::string& goldens, const Scenario& scenario,
+std::string scenario_reference(const std::string& goldens, const spec::Scenario& scenario,
                                const std::string& name_or_path) {
   if (name_or_path == scenario.name) return name_or_path;  // files end in .json, which no name does
   std::error_code error;
@@ -115,9 +115,9 @@ std::string scenario_reference(const std::string& goldens, const Scenario& scena
   return fs::absolute(name_or_path, error).lexically_normal().lexically_relative(from).generic_string();
 }
 
-Scenario golden_scenario(const std::string& goldens, const std::string& name, const GoldenSpec& spec) {
+spec::Scenario golden_scenario(const std::string& goldens, const std::string& name, const GoldenSpec& spec) {
   const bool shipped = spec.scenario.find_first_of("./\\") == std::string::npos;
-  Scenario scenario = open_scenario(
+  spec::Scenario scenario = spec::open_scenario(
       shipped ? spec.scenario : (fs::path(goldens) / name / spec.scenario).lexically_normal().string());
   if (scenario.name != name)
     throw InputError(printable_name(folder_of(goldens, name)) + ": " + kSpecFile +
@@ -136,9 +136,9 @@ Golden load_golden(const std::string& goldens, const std::string& name) {
     const std::size_t frame = *frame_of_file(file);
     if (frame >= kMostFrames) continue;
     if (golden.frames.size() <= frame) golden.frames.resize(frame + 1);
-    golden.frames[frame].push_back({file, read_png(folder + "/" + file)});
+    golden.frames[frame].push_back({file, render::read_png(folder + "/" + file)});
   }
   return golden;
 }
 
-}  // namespace lrb
+}  // namespace lrb::golden

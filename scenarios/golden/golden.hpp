@@ -11,10 +11,10 @@
 #include <vector>
 
 #include "render/png.hpp"
-#include "scenarios/scenario.hpp"
+#include "scenarios/spec/scenario.hpp"
 #include "trace/trace.hpp"
 
-namespace lrb {
+namespace lrb::golden {
 
 /// golden.json
 struct GoldenSpec {
@@ -26,7 +26,7 @@ struct GoldenSpec {
 /// A picture that was approved.
 struct GoldenImage {
   std::string file;  ///< without its folder
-  DecodedPng png;
+  render::DecodedPng png;
 };
 
 struct Golden {
@@ -44,10 +44,10 @@ bool has_golden(const std::string& goldens, const std::string& name);
 GoldenSpec read_golden_spec(const std::string& goldens, const std::string& name);
 Golden load_golden(const std::string& goldens, const std::string& name);
 /// The scenario that a golden is of.
-Scenario golden_scenario(const std::string& goldens, const std::string& name, const GoldenSpec& spec);
+spec::Scenario golden_scenario(const std::string& goldens, const std::string& name, const GoldenSpec& spec);
 
 /// What golden.json says of a scenario opened as `name_or_path`.
-std::string scenario_reference(const std::string& goldens, const Scenario& scenario,
+std::string scenario_reference(const std::string& goldens, const spec::Scenario& scenario,
                                const std::string& name_or_path);
 void write_golden_spec(const std::string& goldens, const std::string& name, const GoldenSpec& spec);
 
@@ -59,4 +59,4 @@ std::vector<std::string> image_files_from(const std::string& folder, std::size_t
 
 inline const char* const kGoldenTrace = "trace.json.gz";
 
-}  // namespace lrb
+}  // namespace lrb::golden

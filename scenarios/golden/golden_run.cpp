@@ -8,7 +8,7 @@
 
 #include "trace/hex.hpp"
 
-namespace lrb {
+namespace lrb::golden {
 namespace {
 
 constexpr int kDefaultWidth = 480, kLeastHeight = 320;
@@ -20,7 +20,7 @@ std::string words(const Eigen::Vector3d& v) {
   return out.str();
 }
 
-std::string words(const Camera& c) {
+std::string words(const render::Camera& c) {
   std::ostringstream out;
   out.precision(6);
   out << "eye " << words(c.eye) << "; target " << words(c.target) << "; up " << words(c.up) << "; ";
@@ -33,41 +33,41 @@ std::string words(const Camera& c) {
 
 }  // namespace
 
-void set_default_size(GoldenSpec& spec, const FrameSpec& frames) {
+void set_default_size(GoldenSpec& spec, const spec::FrameSpec& frames) {
   spec.width = kDefaultWidth;
   spec.height =
       std::clamp(static_cast<int>(std::lround(double{kDefaultWidth} * frames.height / frames.width)),
                  kLeastHeight, 4 * kDefaultWidth);
 }
 
-GoldenRun play_golden(Scenario scenario, const GoldenSpec& spec, const ProgressReport& progress) {
+GoldenRun play_golden(spec::Scenario scenario, const GoldenSpec& spec, const run::ProgressReport& progress) {
   GoldenRun run;
   run.scenario = std::move(scenario);
   run.scenario.clock = trace::Clock::event;
-  FrameSpec& frames = run.scenario.frames;
+  spec::FrameSpec& frames = run.scenario.frames;
   frames.width = spec.width;
   frames.height = spec.height;
   frames.dpi = 0;
   frames.most = spec.frames;
-  run.recording = record(run.scenario, progress);
+  run.recording = run::record(run.scenario, progress);
   for (trace::BodyInfo& body : run.recording.trace.header.bodies)  // no folder of this machine
     if (body.source.find('/') != std::string::npos)
       body.source = std::filesystem::path(body.source).filename().string();
-  run.frames = paint_frames(performance_of(run), frames, progress);
+  run.frames = run::paint_frames(performance_of(run), frames, progress);
   return run;
 }
 
-Performance performance_of(const GoldenRun& run) {
-  Performance p;
+run::RecordedRun performance_of(const GoldenRun& run) {
+  run::RecordedRun p;
   p.title = run.scenario.name;
   p.trace = &run.recording.trace;
   p.results = &run.recording.results;
   p.milestones = run.recording.milestones;
-  for (const LoadedBody& body : run.recording.bodies) p.reps.push_back(&body.rep);
+  for (const bodies::LoadedBody& body : run.recording.bodies) p.reps.push_back(&body.rep);
   return p;
 }
 
-std::string camera_words(const std::vector<Camera>& cameras) {
+std::string camera_words(const std::vector<render::Camera>& cameras) {
   std::string out;
   for (std::size_t i = 0; i < cameras.size(); ++i) {
     if (i > 0) out += "; ";
@@ -77,11 +77,11 @@ std::string camera_words(const std::vector<Camera>& cameras) {
   return out;
 }
 
-std::vector<PngText> golden_text(const GoldenRun& run, std::size_t frame) {
+std::vector<render::PngText> golden_text(const GoldenRun& run, std::size_t frame) {
   return {{"lrbscope:scenario", run.scenario.name},
           {"lrbscope:scenario_hash", trace::to_hex(run.scenario.hash)},
           {"lrbscope:event", std::to_string(run.frames[frame].event)},
           {kCameraText, camera_words(run.frames[frame].cameras)}};
 }
 
-}  // namespace lrb
+}  // namespace lrb::golden

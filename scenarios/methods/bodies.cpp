@@ -5,7 +5,7 @@
 
 #include <Eigen/LU>
 
-#include "engine/error.hpp"
+#include "engine/core/error.hpp"
 
 namespace lrb::methods {
 

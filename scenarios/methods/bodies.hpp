@@ -6,8 +6,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "engine/core/pose.hpp"
 #include "engine/lrb/lrb_rep.hpp"
-#include "engine/lrb/pose.hpp"
 #include "engine/mesh/mesh.hpp"
 
 namespace lrb::methods {

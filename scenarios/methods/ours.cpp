@@ -1,9 +1,9 @@
 #include <Eigen/Geometry>
 
-#include "engine/build/build.hpp"
-#include "engine/error.hpp"
+#include "engine/construct/build.hpp"
+#include "engine/core/error.hpp"
 #include "engine/exact/pair_contact.hpp"
-#include "engine/query/coherent_query.hpp"
+#include "engine/query/coherent/coherent_query.hpp"
 #include "engine/query/collide_impl.hpp"
 #include "scenarios/methods/bodies.hpp"
 #include "scenarios/methods/method.hpp"

@@ -1,4 +1,4 @@
-#include "engine/error.hpp"
+#include "engine/core/error.hpp"
 #include "scenarios/methods/bodies.hpp"
 #include "scenarios/methods/method.hpp"
 #include "scenarios/methods/plain_tests.hpp"

@@ -6,7 +6,7 @@
 
 #include <Eigen/Geometry>
 
-#include "engine/error.hpp"
+#include "engine/core/error.hpp"
 #include "scenarios/methods/bodies.hpp"
 #include "scenarios/methods/method.hpp"
 

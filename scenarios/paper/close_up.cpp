@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <map>
 
-#include "engine/error.hpp"
+#include "engine/core/error.hpp"
 #include "engine/query/collide_impl.hpp"
-#include "engine/query/query_context.hpp"
+#include "engine/query/walk/query_context.hpp"
 #include "trace/recorder.hpp"
 
-namespace lrb {
+namespace lrb::paper {
 namespace {
 
 constexpr std::size_t kPaper = 0;  // of kRecursions
@@ -63,4 +63,4 @@ CloseUp close_up(const PaperPair& pair, std::uint32_t collision, const PaperProt
   return out;
 }
 
-}  // namespace lrb
+}  // namespace lrb::paper

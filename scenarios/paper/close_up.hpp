@@ -9,7 +9,7 @@
 #include "scenarios/paper/sweep.hpp"
 #include "trace/trace.hpp"
 
-namespace lrb {
+namespace lrb::paper {
 
 /// Two bodies of the experiment.
 struct PaperPair {
@@ -35,4 +35,4 @@ std::array<std::uint32_t, 2> easiest_and_hardest(std::span<const ContactStep> st
 CloseUp close_up(const PaperPair& pair, std::uint32_t collision, const PaperProtocol& protocol,
                  std::span<const ContactStep> records);
 
-}  // namespace lrb
+}  // namespace lrb::paper

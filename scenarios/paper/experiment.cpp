@@ -3,17 +3,17 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "scenarios/json/json_node.hpp"
-#include "scenarios/scenario_body.hpp"
+#include "scenarios/io/json/json_node.hpp"
+#include "scenarios/spec/scenario_body.hpp"
 
-namespace lrb {
+namespace lrb::paper {
 namespace {
 
 constexpr std::array<PaperPart, 6> kAllParts = {PaperPart::table1,     PaperPart::table2,
                                                 PaperPart::figure_3_1, PaperPart::figure_3_2,
                                                 PaperPart::heat_maps,  PaperPart::refinement_tree};
 
-PaperProtocol read_protocol(const JsonNode& node) {
+PaperProtocol read_protocol(const io::JsonNode& node) {
   node.object({"collisions", "steps_after", "step", "seed"});
   PaperProtocol p;
   if (const auto n = node.get("collisions"))
@@ -21,13 +21,13 @@ PaperProtocol read_protocol(const JsonNode& node) {
   if (const auto n = node.get("steps_after"))
     p.steps_after = static_cast<std::uint32_t>(n->integer(0, kMostStepsAfter));
   if (const auto n = node.get("step")) p.step = n->number(kLeastStep, kMostStep);
-  if (const auto n = node.get("seed")) p.seed = n->integer(0, kAnySeed);
+  if (const auto n = node.get("seed")) p.seed = n->integer(0, spec::kAnySeed);
   return p;
 }
 
-std::vector<PaperPart> read_report(const JsonNode& node) {
+std::vector<PaperPart> read_report(const io::JsonNode& node) {
   std::vector<PaperPart> parts;
-  for (const JsonNode& item : node.items(1)) {
+  for (const io::JsonNode& item : node.items(1)) {
     const auto part = item.choice<PaperPart>({{"table1", PaperPart::table1},
                                               {"table2", PaperPart::table2},
                                               {"figure3.1", PaperPart::figure_3_1},
@@ -42,23 +42,24 @@ std::vector<PaperPart> read_report(const JsonNode& node) {
 }
 
 /// Names stand in records, in charts' data blocks and in file names.
-std::string read_object_name(const JsonNode& node) {
-  const std::string name = read_name(node);
+std::string read_object_name(const io::JsonNode& node) {
+  const std::string name = spec::read_name(node);
   if (name.find('-') != std::string::npos) node.fail("expected letters, digits and _ only");
   return name;
 }
 
-std::vector<PaperExperiment::Object> read_objects(const JsonNode& node, const std::filesystem::path& folder) {
+std::vector<PaperExperiment::Object> read_objects(const io::JsonNode& node,
+                                                  const std::filesystem::path& folder) {
   constexpr std::size_t kMostObjects = 100;
   std::vector<PaperExperiment::Object> objects;
-  for (const JsonNode& item : node.items(1)) {
+  for (const io::JsonNode& item : node.items(1)) {
     item.object({"name", "body"});
     PaperExperiment::Object o;
     o.name = read_object_name(item.at("name"));
     for (const auto& other : objects)
       if (other.name == o.name) item.at("name").fail("another object is called " + o.name + ": rename one");
-    const JsonNode body = item.at("body");
-    o.body = read_body(body, folder, 1);
+    const io::JsonNode body = item.at("body");
+    o.body = spec::read_body(body, folder, 1);
     if (body.has("pose")) body.fail_key("pose", "the protocol places the bodies: remove it");
     objects.push_back(std::move(o));
   }
@@ -67,7 +68,7 @@ std::vector<PaperExperiment::Object> read_objects(const JsonNode& node, const st
 }
 
 /// The object that the close-up shows: as named, or the last.
-std::string read_close_up(const JsonNode& root, const std::vector<PaperExperiment::Object>& objects) {
+std::string read_close_up(const io::JsonNode& root, const std::vector<PaperExperiment::Object>& objects) {
   const auto n = root.get("close_up");
   if (!n) return objects.back().name;
   std::vector<std::pair<std::string, std::string>> known;
@@ -86,12 +87,12 @@ bool PaperExperiment::collides() const {
 }
 
 PaperExperiment parse_experiment(const std::string& text, const std::string& file) {
-  const JsonText json(text, file);
-  const JsonNode root(json);
+  const io::JsonText json(text, file);
+  const io::JsonNode root(json);
   root.object({"$schema", "name", "purpose", "report", "protocol", "close_up", "objects"});
   PaperExperiment e;
   if (const auto n = root.get("$schema")) n->string();
-  e.name = read_name(root.at("name"));
+  e.name = spec::read_name(root.at("name"));
   e.purpose = root.at("purpose").string();
   e.report.assign(kAllParts.begin(), kAllParts.end());
   if (const auto n = root.get("report")) e.report = read_report(*n);
@@ -104,4 +105,4 @@ PaperExperiment parse_experiment(const std::string& text, const std::string& fil
   return e;
 }
 
-}  // namespace lrb
+}  // namespace lrb::paper

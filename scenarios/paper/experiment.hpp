@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "scenarios/paper/sweep.hpp"
-#include "scenarios/scenario.hpp"
+#include "scenarios/spec/scenario.hpp"
 
-namespace lrb {
+namespace lrb::paper {
 
 /// Parts of the report.
 enum class PaperPart : std::uint8_t { table1, table2, figure_3_1, figure_3_2, heat_maps, refinement_tree };
@@ -17,7 +17,7 @@ enum class PaperPart : std::uint8_t { table1, table2, figure_3_1, figure_3_2, he
 struct PaperExperiment {
   struct Object {
     std::string name;
-    BodySpec body;
+    spec::BodySpec body;
   };
   std::string name, purpose;
   PaperProtocol protocol;
@@ -42,4 +42,4 @@ std::vector<std::string> shipped_experiments();
 /// bodies that are not 3D.
 std::vector<PaperObject> make_objects(const PaperExperiment& experiment, std::vector<std::string>& notes);
 
-}  // namespace lrb
+}  // namespace lrb::paper

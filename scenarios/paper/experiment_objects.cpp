@@ -1,13 +1,13 @@
-#include "engine/error.hpp"
+#include "engine/core/error.hpp"
 #include "scenarios/paper/experiment.hpp"
-#include "scenarios/play/recording.hpp"
+#include "scenarios/run/recorded_run.hpp"
 
-namespace lrb {
+namespace lrb::paper {
 
 std::vector<PaperObject> make_objects(const PaperExperiment& experiment, std::vector<std::string>& notes) {
   std::vector<PaperObject> objects;
   for (const PaperExperiment::Object& o : experiment.objects) {
-    LoadedBody body = make_body(o.body);
+    bodies::LoadedBody body = run::make_body(o.body);
     notes.insert(notes.end(), body.notes.begin(), body.notes.end());
     if (body.rep.dim() != 3)
       throw InputError("experiment " + experiment.name + ": object " + o.name +
@@ -18,4 +18,4 @@ std::vector<PaperObject> make_objects(const PaperExperiment& experiment, std::ve
   return objects;
 }
 
-}  // namespace lrb
+}  // namespace lrb::paper

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <map>
 
-namespace lrb {
+namespace lrb::paper {
 namespace {
 
 constexpr std::size_t kPaper = 0;  // of kRecursions
@@ -22,7 +22,7 @@ std::string number(double x) {
 
 }  // namespace
 
-Gnuplot figure_3_1(std::span<const ObjectRow> rows) {
+report::Gnuplot figure_3_1(std::span<const ObjectRow> rows) {
   constexpr double kBeside = 1.06;  // published bars stand this factor to the right of ours
   const auto bar = [](double size, double average, double min, double max) {
     return number(size) + " " + number(average) + " " + number(min) + " " + number(max);
@@ -36,9 +36,10 @@ Gnuplot figure_3_1(std::span<const ObjectRow> rows) {
       as_published.push_back(bar(row.total_faces * kBeside, p->average, p->min, p->max));
       top = std::max(top, p->max);
     }
-    names.push_back(number(row.total_faces) + " " + number(top) + " " + gnuplot_data_text(row.object));
+    names.push_back(number(row.total_faces) + " " + number(top) + " " +
+                    report::gnuplot_data_text(row.object));
   }
-  Gnuplot g;
+  report::Gnuplot g;
   g.add_data("measured", measured);
   g.add_data("published", as_published);
   g.add_data("names", names);
@@ -61,8 +62,8 @@ plot $measured using 1:2:3:4 with yerrorbars lw 1.5 pt 7 ps 0.6 lc rgb '#0072B2'
   return g;
 }
 
-Gnuplot figure_3_2(std::span<const ObjectRow> rows, std::span<const ContactStep> steps) {
-  Gnuplot g;
+report::Gnuplot figure_3_2(std::span<const ObjectRow> rows, std::span<const ContactStep> steps) {
+  report::Gnuplot g;
   std::string plot = "plot ";
   for (std::size_t i = 0; i < rows.size(); ++i) {
     std::map<std::uint64_t, int> bins;
@@ -77,7 +78,7 @@ Gnuplot figure_3_2(std::span<const ObjectRow> rows, std::span<const ContactStep>
     plot += (i > 0 ? ", " : "") + std::string("$object_") + rows[i].object +
             " using 1:2 with lines lw 1.5 dt " + std::to_string(i % 5 + 1) + " lc rgb '" +
             kColours[i % std::size(kColours)] + "' title " +
-            gnuplot_text(rows[i].object + ": " + std::to_string(rows[i].total_faces) + " faces");
+            report::gnuplot_text(rows[i].object + ": " + std::to_string(rows[i].total_faces) + " faces");
   }
   g.script += "set xlabel 'face comparisons in a time step (bins of " + number(kBinWidth) + ")'\n";
   g.script += R"(set ylabel 'time steps'
@@ -91,4 +92,4 @@ set tics nomirror out
   return g;
 }
 
-}  // namespace lrb
+}  // namespace lrb::paper

@@ -11,14 +11,14 @@
 #include "trace/counters.hpp"
 #include "trace/cursor.hpp"
 
-namespace lrb {
+namespace lrb::paper {
 namespace {
 
 constexpr int kPanelWidth = 560, kPanelHeight = 500;
 constexpr double kAside = 0.45;  ///< how far from the other body's place one looks, over the distance
 
 /// Shape is seen, and colours stay those of the scale.
-const Lighting kSoft{.ambient = 0.78, .head = 0.1, .key = 0.16, .fill = 0.05};
+const render::Lighting kSoft{.ambient = 0.78, .head = 0.1, .key = 0.16, .fill = 0.05};
 
 /// What one panel shows.
 struct Sitter {
@@ -41,12 +41,12 @@ Pose pose_of(const Sitter& s) {
 
 Eigen::AlignedBox3d box_of(const LrbRep& rep, const Pose& pose) {
   Eigen::AlignedBox3d box;
-  for (const Eigen::Vector3d& p : body_points(rep, pose)) box.extend(p);
+  for (const Eigen::Vector3d& p : render::body_points(rep, pose)) box.extend(p);
   return box;
 }
 
 /// From where the other body is, a little aside: onto the faces that it met.
-ViewDirection view_of(const PaperPair& pair, const Sitter& s) {
+render::ViewDirection view_of(const PaperPair& pair, const Sitter& s) {
   const ContactStep& last = s.collision->steps.back();
   const Eigen::Vector3d way =
       box_of(pair.x.rep, last.pose_x).center() - box_of(pair.a.rep, last.pose_a).center();
@@ -70,17 +70,17 @@ std::vector<Eigen::Vector3d> largest_contact(const CollideResult& contact) {
     return p.pairs.size() < q.pairs.size();
   };
   const auto largest = std::max_element(contact.regions.begin(), contact.regions.end(), less);
-  return contact_points(std::span(&*largest, 1));
+  return render::contact_points(std::span(&*largest, 1));
 }
 
-Camera camera_of(const PaperPair& pair, const Sitter& s) {
+render::Camera camera_of(const PaperPair& pair, const Sitter& s) {
   const LrbRep& rep = pair.rep(s.side);
-  FitOptions fit;
+  render::FitOptions fit;
   fit.view = view_of(pair, s);
   constexpr double kAround = 1.2, kLeast = 0.12;  // of the contact's size, of the body's
-  return s.near ? fit_contact(largest_contact(*s.contact), box_of(rep, pose_of(s)), kPanelWidth, kPanelHeight,
-                              fit, kAround, kLeast)
-                : fit_camera(body_points(rep, pose_of(s)), kPanelWidth, kPanelHeight, fit);
+  return s.near ? render::fit_contact(largest_contact(*s.contact), box_of(rep, pose_of(s)), kPanelWidth,
+                                      kPanelHeight, fit, kAround, kLeast)
+                : render::fit_camera(render::body_points(rep, pose_of(s)), kPanelWidth, kPanelHeight, fit);
 }
 
 /// The scale: logarithmic, because a few faces get most of the tests. 0 for none, 1 for the most of all.
@@ -90,16 +90,16 @@ double share(double tests, double most) {
 
 /// The wrapper as the last time step left it, without anything translucent, so that colours are those of the
 /// scale; and where the bodies meet.
-DrawList wrapper_list(const PaperPair& pair, const Sitter& s, double most) {
+render::DrawList wrapper_list(const PaperPair& pair, const Sitter& s, double most) {
   const LrbRep& rep = pair.rep(s.side);
   const std::vector<double> tests = tests_of(pair, s);
   trace::Cursor cursor(s.collision->trace, pair.a.rep, pair.x.rep);
   cursor.seek(static_cast<trace::EventId>(s.collision->trace.events.size() - 1));
-  DrawList list;
-  list.edge_styles[0] = {with_alpha(kWhite, 110), 0.8F};
+  render::DrawList list;
+  list.edge_styles[0] = {render::with_alpha(render::kWhite, 110), 0.8F};
   for (const FaceId f : cursor.wrapper(s.side).boundary()) {
-    DrawTriangle t;
-    t.colour = tests[f] > 0 ? palette::viridis(share(tests[f], most)) : palette::kPaleFront;
+    render::DrawTriangle t;
+    t.colour = tests[f] > 0 ? render::palette::viridis(share(tests[f], most)) : render::palette::kPaleFront;
     t.edges = 7;
     std::vector<Eigen::Vector3d> corners;
     for (const VertexId v : rep.face(f)) corners.push_back(pose_of(s).apply(rep.vertices()[v]));
@@ -107,33 +107,34 @@ DrawList wrapper_list(const PaperPair& pair, const Sitter& s, double most) {
   }
   for (const ContactRegion& region : s.contact->regions)
     for (const ContactLoop& loop : region.loops) {
-      DrawLine line;
+      render::DrawLine line;
       line.points = loop.points;
       line.closed = loop.closed;
-      line.colour = palette::kContact;
+      line.colour = render::palette::kContact;
       line.width = 3;
-      line.halo = kWhite;
+      line.halo = render::kWhite;
       line.halo_width = 1;
-      line.layer = Layer::on_top;
+      line.layer = render::Layer::on_top;
       list.lines.push_back(line);
     }
   return list;
 }
 
-Panel draw_panel(Rasterizer& rasterizer, const PaperPair& pair, const Sitter& s, double most) {
-  RasterOptions raster;
+render::Panel draw_panel(render::Rasterizer& rasterizer, const PaperPair& pair, const Sitter& s,
+                         double most) {
+  render::RasterOptions raster;
   raster.width = kPanelWidth;
   raster.height = kPanelHeight;
   raster.lighting = kSoft;
-  const std::string what =
-      s.near ? ", close up"
-             : ", " + std::string(s.which) + ": " + group_digits(s.collision->comparisons) + " face tests";
+  const std::string what = s.near ? ", close up"
+                                  : ", " + std::string(s.which) + ": " +
+                                        render::group_digits(s.collision->comparisons) + " face tests";
   return {rasterizer.draw(wrapper_list(pair, s, most), camera_of(pair, s), raster), pair.name(s.side) + what};
 }
 
 }  // namespace
 
-Image draw_heat_maps(const PaperPair& pair, const CloseUp& easiest, const CloseUp& hardest) {
+render::Image draw_heat_maps(const PaperPair& pair, const CloseUp& easiest, const CloseUp& hardest) {
   const CollideResult contacts[2] = {contact_of(pair, easiest), contact_of(pair, hardest)};
   std::vector<Sitter> sitters;
   for (const bool hard : {false, true})
@@ -146,22 +147,23 @@ Image draw_heat_maps(const PaperPair& pair, const CloseUp& easiest, const CloseU
     const std::vector<double> tests = tests_of(pair, s);
     most = std::max(most, *std::max_element(tests.begin(), tests.end()));
   }
-  Rasterizer rasterizer;
-  std::vector<Panel> panels;
+  render::Rasterizer rasterizer;
+  std::vector<render::Panel> panels;
   for (const Sitter& s : sitters) panels.push_back(draw_panel(rasterizer, pair, s, most));
-  MontageOptions options;
+  render::MontageOptions options;
   options.columns = 4;
   options.text_height = 28;
-  const Image all = montage(panels, options);
+  const render::Image all = render::montage(panels, options);
 
-  Overlay overlay;
-  overlay.key = {{LegendItem::Mark::line, palette::kContact, "where the bodies meet in the end"},
-                 {LegendItem::Mark::dashed, palette::kContact, "the same, hidden"}};
-  overlay.scale = ScaleBar{"face tests of a face (log scale)", 0, most};
+  render::Overlay overlay;
+  overlay.key = {
+      {render::LegendItem::Mark::line, render::palette::kContact, "where the bodies meet in the end"},
+      {render::LegendItem::Mark::dashed, render::palette::kContact, "the same, hidden"}};
+  overlay.scale = render::ScaleBar{"face tests of a face (log scale)", 0, most};
   constexpr int kRoom = 400;  // more than the legend needs; what it does not need is not drawn
-  const OverlayLayout tentative = lay_out(overlay, all.width(), all.height() + kRoom);
+  const render::OverlayLayout tentative = render::lay_out(overlay, all.width(), all.height() + kRoom);
   const int height = all.height() + (all.height() + kRoom - tentative.picture.height);
-  return compose_frame(all, all.rect(), overlay, all.width(), height);
+  return render::compose_frame(all, all.rect(), overlay, all.width(), height);
 }
 
-}  // namespace lrb
+}  // namespace lrb::paper

@@ -7,14 +7,14 @@
 #include "render/overlay.hpp"
 #include "render/palette.hpp"
 #include "render/svg_text.hpp"
-#include "scenarios/play/moments.hpp"
+#include "scenarios/run/moments.hpp"
 #include "trace/counters.hpp"
 #include "trace/cursor.hpp"
 
-namespace lrb {
+namespace lrb::paper {
 namespace {
 
-using namespace svg_text;
+using namespace render::svg_text;
 
 constexpr double kWidth = 1200, kMargin = 16, kRow = 24, kText = 15, kTitle = 18, kGap = 34;  // pixels
 constexpr double kRule = 0.7, kRuleShare = 0.2;  ///< white between boxes: pixels, of the box at most
@@ -22,18 +22,18 @@ constexpr double kRoomForText = 2.5;             ///< box widths over the text's
 
 enum class State : std::uint8_t { refined, tested, real_tested, untouched };  // in the order of the boxes
 
-Rgba colour_of(State s) {
+render::Rgba colour_of(State s) {
   switch (s) {
     case State::refined:
-      return palette::kGreen;
+      return render::palette::kGreen;
     case State::tested:
-      return palette::kOrange;
+      return render::palette::kOrange;
     case State::real_tested:
-      return palette::kSkyBlue;
+      return render::palette::kSkyBlue;
     case State::untouched:
       break;
   }
-  return palette::kRule;
+  return render::palette::kRule;
 }
 
 /// A region, or the real faces of one that share a state.
@@ -132,12 +132,12 @@ int depth_of(const Node& n) {
   return 1 + deepest;
 }
 
-std::string text(double x, double y, double height, const std::string& words, const char* anchor, Rgba colour,
-                 bool bold = false) {
+std::string text(double x, double y, double height, const std::string& words, const char* anchor,
+                 render::Rgba colour, bool bold = false) {
   return "<text" + attribute("x", number(x)) + attribute("y", number(y)) + font(height) +
          attribute("text-anchor", anchor) + attribute("dominant-baseline", "central") +
-         paint("fill", colour) + (bold ? attribute("font-weight", "bold") : "") + ">" + escape_markup(words) +
-         "</text>\n";
+         paint("fill", colour) + (bold ? attribute("font-weight", "bold") : "") + ">" +
+         render::escape_markup(words) + "</text>\n";
 }
 
 class Writer {
@@ -149,7 +149,7 @@ class Writer {
     return depth_of(root) * kRow;
   }
   void heading(const std::string& words, double y) {
-    out += text(kMargin, y, kTitle, words, "start", palette::kInk, true);
+    out += text(kMargin, y, kTitle, words, "start", render::palette::kInk, true);
   }
   void legend(double y) {
     double x = kMargin;
@@ -158,27 +158,28 @@ class Writer {
                                        {State::real_tested, "real faces, tested"},
                                        {State::untouched, "untouched"}}) {
       out += rect(x, y - kText / 2, kText, kText, colour_of(state)) + "/>\n";
-      out += text(x + 1.5 * kText, y, kText, words, "start", palette::kInk);
+      out += text(x + 1.5 * kText, y, kText, words, "start", render::palette::kInk);
       x += 1.5 * kText + 0.55 * kText * static_cast<double>(std::string_view(words).size()) + 2 * kText;
     }
-    out += text(kWidth - kMargin, y, kText, "widths: faces of the final wrapper", "end", palette::kFaint);
+    out += text(kWidth - kMargin, y, kText, "widths: faces of the final wrapper", "end",
+                render::palette::kFaint);
   }
 
   std::string out;
 
  private:
-  static std::string rect(double x, double y, double width, double height, Rgba colour) {
+  static std::string rect(double x, double y, double width, double height, render::Rgba colour) {
     return "<rect" + attribute("x", number(x)) + attribute("y", number(y)) +
            attribute("width", number(width)) + attribute("height", number(height)) + paint("fill", colour);
   }
 
   void box(const Node& n, double x, double y) {
     const double width = n.width * unit_, rule = std::min(kRule, kRuleShare * width);
-    out += rect(x, y, width - rule, kRow - kRule, colour_of(n.state)) + "><title>" + escape_markup(n.what) +
-           "</title></rect>\n";
+    out += rect(x, y, width - rule, kRow - kRule, colour_of(n.state)) + "><title>" +
+           render::escape_markup(n.what) + "</title></rect>\n";
     if (width > kRoomForText * kText && !n.name.empty())
       out += text(x + width / 2, y + kRow / 2, kText * 0.8, n.name, "middle",
-                  n.state == State::refined ? kWhite : palette::kInk);
+                  n.state == State::refined ? render::kWhite : render::palette::kInk);
     for (const Node& child : n.inside) {
       box(child, x, y + kRow);
       x += child.width * unit_;
@@ -201,7 +202,7 @@ std::string icicle_svg(const PaperPair& pair, const CloseUp& collision) {
   const std::size_t step = busiest_step(collision);
   const trace::Trace& t = collision.trace;
   trace::Cursor cursor(t, pair.a.rep, pair.x.rep);
-  const trace::EventId first = t.steps[step].first_event, last = last_event(t, step);
+  const trace::EventId first = t.steps[step].first_event, last = run::last_event(t, step);
   cursor.seek(last);
   const std::span events(t.events.data() + first, last - first + std::size_t{1});
   Writer writer;
@@ -211,9 +212,9 @@ std::string icicle_svg(const PaperPair& pair, const CloseUp& collision) {
     const std::vector<std::uint32_t> tests = trace::count_faces(rep, side, events).tests;
     const trace::Totals totals = trace::count_events(events);
     const std::string& name = pair.name(side);
-    writer.heading(name + ": " + group_digits(totals.refinements[static_cast<std::size_t>(side)]) + " of " +
-                       group_digits(rep.region_count()) + " regions refined, wrapper of " +
-                       group_digits(cursor.boundary_size(side)) + " faces",
+    writer.heading(name + ": " + render::group_digits(totals.refinements[static_cast<std::size_t>(side)]) +
+                       " of " + render::group_digits(rep.region_count()) + " regions refined, wrapper of " +
+                       render::group_digits(cursor.boundary_size(side)) + " faces",
                    y);
     y += kTitle;
     y += writer.tree(Tree(rep, cursor.wrapper(side), tests).root(name), y) + kGap;
@@ -221,8 +222,8 @@ std::string icicle_svg(const PaperPair& pair, const CloseUp& collision) {
   writer.legend(y - kGap / 3);
   const double height = y + kMargin;
   return svg_open(kWidth, height) + "<title>The refinement tree of one collision</title>\n<rect" +
-         attribute("width", number(kWidth)) + attribute("height", number(height)) + paint("fill", kWhite) +
-         "/>\n" + writer.out + "</svg>\n";
+         attribute("width", number(kWidth)) + attribute("height", number(height)) +
+         paint("fill", render::kWhite) + "/>\n" + writer.out + "</svg>\n";
 }
 
-}  // namespace lrb
+}  // namespace lrb::paper

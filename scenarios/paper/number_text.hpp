@@ -6,7 +6,7 @@
 #include <sstream>
 #include <string>
 
-namespace lrb {
+namespace lrb::paper {
 
 inline std::string whole(double x) {
   return std::to_string(std::llround(x));
@@ -18,4 +18,4 @@ inline std::string fixed(double x, int digits) {
   return out.str();
 }
 
-}  // namespace lrb
+}  // namespace lrb::paper

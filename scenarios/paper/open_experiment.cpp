@@ -1,11 +1,11 @@
 #include <algorithm>
 
-#include "engine/error.hpp"
-#include "scenarios/json/suggest.hpp"
+#include "engine/core/error.hpp"
+#include "scenarios/io/json/suggest.hpp"
 #include "scenarios/paper/experiment.hpp"
-#include "scenarios/shipped.hpp"
+#include "scenarios/spec/shipped.hpp"
 
-namespace lrb {
+namespace lrb::paper {
 namespace {
 
 constexpr std::string_view kEnding = ".experiment.json";
@@ -13,19 +13,19 @@ constexpr std::string_view kEnding = ".experiment.json";
 }  // namespace
 
 std::vector<std::string> shipped_experiments() {
-  return shipped_names(kEnding);
+  return spec::shipped_names(kEnding);
 }
 
 std::string shipped_experiment(const std::string& name) {
   const std::vector<std::string> names = shipped_experiments();
   if (std::find(names.begin(), names.end(), name) == names.end())
-    throw InputError("no experiment is called \"" + name + "\"" + suggestion(name, names));
-  return open_named(name, kEnding, "experiment").text;
+    throw InputError("no experiment is called \"" + name + "\"" + io::suggestion(name, names));
+  return spec::open_named(name, kEnding, "experiment").text;
 }
 
 PaperExperiment open_experiment(const std::string& name_or_path) {
-  const NamedText experiment = open_named(name_or_path, kEnding, "experiment");
+  const spec::NamedText experiment = spec::open_named(name_or_path, kEnding, "experiment");
   return parse_experiment(experiment.text, experiment.file);
 }
 
-}  // namespace lrb
+}  // namespace lrb::paper

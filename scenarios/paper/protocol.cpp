@@ -5,12 +5,12 @@
 
 #include <Eigen/Geometry>
 
-#include "engine/lrb/fnv.hpp"
+#include "engine/core/fnv.hpp"
 #include "engine/query/collide_impl.hpp"
-#include "engine/query/query_context.hpp"
-#include "scenarios/shapes/random_pose.hpp"
+#include "engine/query/walk/query_context.hpp"
+#include "scenarios/bodies/shapes/random_pose.hpp"
 
-namespace lrb {
+namespace lrb::paper {
 namespace {
 
 RecursionCount count_of(const CollideResult& result, const std::vector<SimplexPair>& all) {
@@ -74,7 +74,7 @@ std::vector<ContactStep> run_collision(const LrbRep& a, const LrbRep& x, const s
   seed.add_value(protocol.seed);
   seed.add_bytes(object.data(), object.size());
   seed.add_value(collision);
-  shapes::Random random(seed.value());
+  shapes::RandomEngine random(seed.value());
   const Eigen::AlignedBox3d box_a = shapes::box_of(a), box_x = shapes::box_of(x);
   const double unit = box_a.diagonal().norm();
   Pose pose_a, pose_x;
@@ -109,4 +109,4 @@ std::vector<ContactStep> run_collision(const LrbRep& a, const LrbRep& x, const s
   return steps;
 }
 
-}  // namespace lrb
+}  // namespace lrb::paper

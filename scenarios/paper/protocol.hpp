@@ -16,7 +16,7 @@
 #include "engine/lrb/lrb_rep.hpp"
 #include "engine/query/collide.hpp"
 
-namespace lrb {
+namespace lrb::paper {
 
 struct PaperProtocol {
   std::uint32_t collisions = 100;
@@ -61,4 +61,4 @@ LrbRep scaled(const LrbRep& rep, double by);
 /// Diagonal of the bounding box of the real faces.
 double diagonal(const LrbRep& rep);
 
-}  // namespace lrb
+}  // namespace lrb::paper

@@ -3,16 +3,16 @@
 #include <algorithm>
 #include <optional>
 
-#include "engine/error.hpp"
+#include "engine/core/error.hpp"
 #include "render/overlay.hpp"
 #include "render/png.hpp"
-#include "scenarios/files.hpp"
+#include "scenarios/io/files.hpp"
 #include "scenarios/paper/close_up.hpp"
 #include "scenarios/paper/heat_map.hpp"
 #include "scenarios/paper/icicle.hpp"
-#include "scenarios/play/report.hpp"
+#include "scenarios/run/run_report.hpp"
 
-namespace lrb {
+namespace lrb::paper {
 namespace {
 
 const PaperObject& object_called(const PaperReport& r, const std::string& name) {
@@ -21,15 +21,16 @@ const PaperObject& object_called(const PaperReport& r, const std::string& name) 
 }
 
 std::string collision_words(const CloseUp& c) {
-  return "number " + std::to_string(c.collision) + ", " + group_digits(c.comparisons) + " face tests in " +
-         std::to_string(c.steps.size()) + (c.steps.size() == 1 ? " time step" : " time steps");
+  return "number " + std::to_string(c.collision) + ", " + render::group_digits(c.comparisons) +
+         " face tests in " + std::to_string(c.steps.size()) +
+         (c.steps.size() == 1 ? " time step" : " time steps");
 }
 
 std::string heat_caption(const PaperPair& pair, const CloseUp& easiest, const CloseUp& hardest,
                          std::uint32_t collisions) {
   return "Face tests of each face of " + pair.a.name + " and of " + pair.x.name +
-         " by the paper's recursion, in the easiest of their " + group_digits(collisions) + " collisions (" +
-         collision_words(easiest) + ") and in the hardest (" + collision_words(hardest) +
+         " by the paper's recursion, in the easiest of their " + render::group_digits(collisions) +
+         " collisions (" + collision_words(easiest) + ") and in the hardest (" + collision_words(hardest) +
          "). Each body stands alone, seen from where the other one is, as the wrapper that the last time "
          "step "
          "left of it: lids that stayed closed, and bare real faces. One logarithmic scale for all panels.";
@@ -39,7 +40,7 @@ std::string tree_caption(const PaperPair& pair, const CloseUp& c) {
   const ContactStep& step = c.steps[busiest_step(c)];
   return pair.a.name + " against " + pair.x.name + ", collision " + std::to_string(c.collision) +
          ", time step " + std::to_string(step.step) + " after the first contact, " +
-         group_digits(step.counts[0].comparisons) +
+         render::group_digits(step.counts[0].comparisons) +
          " face tests by the paper's recursion. A row is a depth, from the outermost wrapper down; a box is "
          "a "
          "region, under the one that hid it; at the ends, real faces, or all that a closed region hides. A "
@@ -74,23 +75,23 @@ void check_records(const PaperReport& r) {
   static_cast<void>(close_ups_of(r));
 }
 
-void draw_close_ups(const PaperReport& r, const std::string& folder, Page& page,
+void draw_close_ups(const PaperReport& r, const std::string& folder, report::Page& page,
                     std::vector<std::string>& notes) {
   const std::optional<CloseUps> c = close_ups_of(r);
   if (!c) return;
   if (r.experiment.reports(PaperPart::heat_maps)) try {
-      write_png(draw_heat_maps(c->pair, c->easiest, c->hardest), folder + "/heat_maps.png");
-      add_figure(page, folder, "Face tests over the bodies",
-                 heat_caption(c->pair, c->easiest, c->hardest, r.experiment.protocol.collisions),
-                 "heat_maps.png");
+      render::write_png(draw_heat_maps(c->pair, c->easiest, c->hardest), folder + "/heat_maps.png");
+      run::add_figure(page, folder, "Face tests over the bodies",
+                      heat_caption(c->pair, c->easiest, c->hardest, r.experiment.protocol.collisions),
+                      "heat_maps.png");
     } catch (const EnvironmentError& e) {
       notes.push_back(std::string("heat maps were not drawn: ") + e.what());
     }
   if (r.experiment.reports(PaperPart::refinement_tree)) {
-    write_text(folder + "/refinement_tree.svg", icicle_svg(c->pair, c->hardest));
-    add_figure(page, folder, "The refinement tree of one collision", tree_caption(c->pair, c->hardest),
-               "refinement_tree.svg");
+    io::write_text(folder + "/refinement_tree.svg", icicle_svg(c->pair, c->hardest));
+    run::add_figure(page, folder, "The refinement tree of one collision", tree_caption(c->pair, c->hardest),
+                    "refinement_tree.svg");
   }
 }
 
-}  // namespace lrb
+}  // namespace lrb::paper

@@ -1,10 +1,10 @@
 #pragma once
 /// Pictures of the paper's report: written as files, and put into its page.
 
-#include "scenarios/page/page.hpp"
-#include "scenarios/paper/report.hpp"
+#include "scenarios/paper/paper_report.hpp"
+#include "scenarios/report/page/page.hpp"
 
-namespace lrb {
+namespace lrb::paper {
 
 /// Throws InputError if the steps are not those of the experiment, as far as numbers of collisions and its
 /// close-ups tell.
@@ -12,7 +12,7 @@ void check_records(const PaperReport& report);
 
 /// Heat maps of the easiest and the hardest collision, and the refinement tree of the hardest one's busiest
 /// step, as far as the experiment reports them. `notes` gets what could not be drawn.
-void draw_close_ups(const PaperReport& report, const std::string& folder, Page& page,
+void draw_close_ups(const PaperReport& report, const std::string& folder, report::Page& page,
                     std::vector<std::string>& notes);
 
-}  // namespace lrb
+}  // namespace lrb::paper

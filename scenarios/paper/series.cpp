@@ -8,14 +8,14 @@
 
 #include <nlohmann/json.hpp>
 
-#include "engine/build/build.hpp"
-#include "engine/error.hpp"
-#include "engine/mesh/file_bytes.hpp"
+#include "engine/construct/build.hpp"
+#include "engine/core/error.hpp"
+#include "engine/core/file_bytes.hpp"
+#include "engine/mesh/io/mesh_io.hpp"
 #include "engine/mesh/mesh_check.hpp"
-#include "engine/mesh/mesh_io.hpp"
-#include "scenarios/generators/generators.hpp"
+#include "scenarios/bodies/generators/generators.hpp"
 
-namespace lrb {
+namespace lrb::paper {
 namespace {
 
 namespace fs = std::filesystem;
@@ -68,8 +68,8 @@ std::string series_name(const SeriesObject& object, SeriesPartner partner) {
 }
 
 std::vector<Mesh> own_series_bodies() {
-  std::vector<Mesh> bodies = {generate("rock", {{"frequency", 64}}),
-                              generate("knot", {{"segments", 1600}, {"sides", 24}})};
+  std::vector<Mesh> bodies = {generators::generate("rock", {{"frequency", 64}}),
+                              generators::generate("knot", {{"segments", 1600}, {"sides", 24}})};
   bodies[0].name = "rock";
   bodies[1].name = "knot";
   return bodies;
@@ -97,11 +97,12 @@ std::vector<Mesh> read_series_bodies(const std::vector<std::string>& paths, std:
   return bodies;
 }
 
-std::vector<SeriesObject> make_series(std::span<const Mesh> bodies, const ResolutionOptions& options,
-                                      double diagonal_of_a, const std::function<void()>& progress) {
+std::vector<SeriesObject> make_series(std::span<const Mesh> bodies,
+                                      const resolutions::ResolutionOptions& options, double diagonal_of_a,
+                                      const std::function<void()>& progress) {
   std::vector<SeriesObject> objects;
   for (const Mesh& body : bodies) {
-    for (const Mesh& mesh : resolutions(body, options)) {
+    for (const Mesh& mesh : resolutions::resolutions(body, options)) {
       const LrbRep rep = build_lrb(mesh);
       objects.push_back({body.name, scaled(rep, diagonal_of_a / diagonal(rep))});
       if (progress) progress();
@@ -199,4 +200,4 @@ std::vector<SeriesRow> series_rows(const LrbRep& a, std::span<const SeriesObject
   return rows;
 }
 
-}  // namespace lrb
+}  // namespace lrb::paper

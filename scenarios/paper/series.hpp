@@ -11,10 +11,10 @@
 #include <vector>
 
 #include "engine/mesh/mesh.hpp"
+#include "scenarios/bodies/resolutions/resolutions.hpp"
 #include "scenarios/paper/tables.hpp"
-#include "scenarios/series/resolutions.hpp"
 
-namespace lrb {
+namespace lrb::paper {
 
 /// A body at one resolution, of A's diagonal.
 struct SeriesObject {
@@ -36,8 +36,9 @@ std::vector<Mesh> own_series_bodies();
 std::vector<Mesh> read_series_bodies(const std::vector<std::string>& paths, std::vector<std::string>& notes);
 
 /// Bodies in order, the finest resolution of each first; scaled to this diagonal.
-std::vector<SeriesObject> make_series(std::span<const Mesh> bodies, const ResolutionOptions& options,
-                                      double diagonal, const std::function<void()>& progress);
+std::vector<SeriesObject> make_series(std::span<const Mesh> bodies,
+                                      const resolutions::ResolutionOptions& options, double diagonal,
+                                      const std::function<void()>& progress);
 
 /// All collisions of the shard, in the order of merged().
 std::vector<ContactStep> run_series(const LrbRep& a, std::span<const SeriesObject> objects,
@@ -62,4 +63,4 @@ struct SeriesRow {
 std::vector<SeriesRow> series_rows(const LrbRep& a, std::span<const SeriesObject> objects,
                                    std::span<const ContactStep> steps);
 
-}  // namespace lrb
+}  // namespace lrb::paper

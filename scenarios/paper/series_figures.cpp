@@ -7,7 +7,7 @@
 #include <limits>
 #include <sstream>
 
-namespace lrb {
+namespace lrb::paper {
 namespace {
 
 // Okabe and Ito's colours, which survive colour blindness; point types survive greyscale.
@@ -31,12 +31,12 @@ struct Measured {
 };
 
 using Measure = Measured (*)(const SeriesRow&, std::size_t recursion);
-using FitOf = const std::optional<PowerFit>& (*)(const SeriesFit&);
+using FitOf = const std::optional<resolutions::PowerFit>& (*)(const SeriesFit&);
 
 /// One panel: its data blocks, and its plot command.
 class Panel {
  public:
-  Panel(Gnuplot& g, std::span<const SeriesRow> rows, std::span<const SeriesFit> fits, Measure measure,
+  Panel(report::Gnuplot& g, std::span<const SeriesRow> rows, std::span<const SeriesFit> fits, Measure measure,
         FitOf fit_of)
       : g_(g), rows_(rows), fits_(fits), measure_(measure), fit_of_(fit_of) {}
 
@@ -64,10 +64,10 @@ class Panel {
       const std::string name = "series_" + std::to_string(panel_) + "_" + std::to_string(bodies);
       g_.add_data(name, points);
       const std::string colour = kColours[bodies % kColours.size()];
-      const std::optional<PowerFit>& power = fit_of_(fit);
+      const std::optional<resolutions::PowerFit>& power = fit_of_(fit);
       plot += (plot.empty() ? "plot $" : ", $") + name + " using 1:2:3:4 with yerrorbars lw 0.7 pt " +
               std::to_string(kPoints[bodies % kPoints.size()]) + " ps 0.5 lc rgb '" + colour + "' title " +
-              gnuplot_text(fit.body + (power ? ": " + power_text(*power) : ""));
+              report::gnuplot_text(fit.body + (power ? ": " + power_text(*power) : ""));
       if (power)
         plot += ", x < " + number(first) + " || x > " + number(last) + " ? 1/0 : " + number(power->factor) +
                 " * x**(" + number(power->exponent) + ") with lines lw 1 dt 2 lc rgb '" + colour +
@@ -76,7 +76,8 @@ class Panel {
     }
     ++panel_;
     const std::string grown = partner == SeriesPartner::a ? "A against the body" : "the body against itself";
-    g_.script += "set title " + gnuplot_text(grown + ", " + kRecursionTitles[recursion]) + " offset 0,-0.7\n";
+    g_.script +=
+        "set title " + report::gnuplot_text(grown + ", " + kRecursionTitles[recursion]) + " offset 0,-0.7\n";
     if (plot.empty()) {
       g_.script += "set multiplot next\n";
       return;
@@ -89,7 +90,7 @@ class Panel {
   }
 
  private:
-  Gnuplot& g_;
+  report::Gnuplot& g_;
   std::span<const SeriesRow> rows_;
   std::span<const SeriesFit> fits_;
   Measure measure_;
@@ -97,9 +98,9 @@ class Panel {
   std::size_t panel_ = 0;
 };
 
-Gnuplot panels(std::span<const SeriesRow> rows, std::span<const SeriesFit> fits, const char* y_label,
-               Measure measure, FitOf fit_of) {
-  Gnuplot g;
+report::Gnuplot panels(std::span<const SeriesRow> rows, std::span<const SeriesFit> fits, const char* y_label,
+                       Measure measure, FitOf fit_of) {
+  report::Gnuplot g;
   g.width = 210;
   g.height = 112 + 12 * static_cast<double>(fits.size()) / (kSeriesPartners.size() * kRecursions.size());
   g.font = 7;
@@ -120,7 +121,8 @@ set tics nomirror out
   Panel panel(g, rows, fits, measure, fit_of);
   for (const SeriesPartner partner : kSeriesPartners) {
     for (std::size_t i = 0; i < kRecursions.size(); ++i) {
-      g.script += i == 0 ? "set ylabel " + gnuplot_text(y_label) + " offset 0.3,0\n" : "unset ylabel\n";
+      g.script +=
+          i == 0 ? "set ylabel " + report::gnuplot_text(y_label) + " offset 0.3,0\n" : "unset ylabel\n";
       panel.add(partner, i);
     }
   }
@@ -130,31 +132,31 @@ set tics nomirror out
 
 }  // namespace
 
-std::string power_text(const PowerFit& fit) {
+std::string power_text(const resolutions::PowerFit& fit) {
   std::ostringstream out;
   out << std::fixed << std::setprecision(2) << "n^" << fit.exponent;
   if (fit.error > 0) out << " ± " << fit.error;
   return out.str();
 }
 
-Gnuplot series_comparisons(std::span<const SeriesRow> rows, std::span<const SeriesFit> fits) {
+report::Gnuplot series_comparisons(std::span<const SeriesRow> rows, std::span<const SeriesFit> fits) {
   return panels(
       rows, fits, "face comparisons",
       [](const SeriesRow& row, std::size_t i) {
         const Spread& s = row.counts.recursions[i].comparisons;
         return Measured{s.min, s.average, s.max};
       },
-      [](const SeriesFit& f) -> const std::optional<PowerFit>& { return f.comparisons; });
+      [](const SeriesFit& f) -> const std::optional<resolutions::PowerFit>& { return f.comparisons; });
 }
 
-Gnuplot series_time(std::span<const SeriesRow> rows, std::span<const SeriesFit> fits) {
+report::Gnuplot series_time(std::span<const SeriesRow> rows, std::span<const SeriesFit> fits) {
   return panels(
       rows, fits, "median of a query, microseconds",
       [](const SeriesRow& row, std::size_t i) {
         const double us = row.microseconds[i];
         return Measured{us, us, us};
       },
-      [](const SeriesFit& f) -> const std::optional<PowerFit>& { return f.microseconds; });
+      [](const SeriesFit& f) -> const std::optional<resolutions::PowerFit>& { return f.microseconds; });
 }
 
-}  // namespace lrb
+}  // namespace lrb::paper

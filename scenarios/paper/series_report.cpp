@@ -7,12 +7,12 @@
 
 #include <nlohmann/json.hpp>
 
-#include "scenarios/files.hpp"
+#include "scenarios/io/files.hpp"
 #include "scenarios/paper/number_text.hpp"
 #include "scenarios/paper/series_figures.hpp"
 #include "trace/names.hpp"
 
-namespace lrb {
+namespace lrb::paper {
 namespace {
 
 constexpr std::array<const char*, 3> kTitles = {"the paper's recursion", "the paper's recursion, strict",
@@ -22,12 +22,12 @@ const char* against(SeriesPartner p) {
   return p == SeriesPartner::a ? "A" : "itself";
 }
 
-std::string text_of(const std::optional<PowerFit>& fit) {
+std::string text_of(const std::optional<resolutions::PowerFit>& fit) {
   return fit ? power_text(*fit) : "–";
 }
 
-PageTable table(std::span<const SeriesRow> rows, SeriesPartner partner, std::size_t recursion) {
-  PageTable t;
+report::PageTable table(std::span<const SeriesRow> rows, SeriesPartner partner, std::size_t recursion) {
+  report::PageTable t;
   t.title = std::string("Resolutions against ") + against(partner) + ", " + kTitles[recursion];
   t.columns = {
       "body",    "real faces",        "total faces",  "outermost",        "steps", "minimum", "average",
@@ -49,8 +49,8 @@ PageTable table(std::span<const SeriesRow> rows, SeriesPartner partner, std::siz
   return t;
 }
 
-PageTable fit_table(std::span<const SeriesFit> fits, std::uint32_t jobs) {
-  PageTable t{
+report::PageTable fit_table(std::span<const SeriesFit> fits, std::uint32_t jobs) {
+  report::PageTable t{
       "Growth with the resolution",
       {"body", "against", "recursion", "comparisons", "refinements", "time"},
       {},
@@ -65,8 +65,8 @@ PageTable fit_table(std::span<const SeriesFit> fits, std::uint32_t jobs) {
   return t;
 }
 
-PageChart chart(std::span<const SeriesRow> rows, SeriesPartner partner, bool time) {
-  PageChart c;
+report::PageChart chart(std::span<const SeriesRow> rows, SeriesPartner partner, bool time) {
+  report::PageChart c;
   c.title = std::string(time ? "Time" : "Comparisons") + " against size: " +
             (partner == SeriesPartner::a ? "A against each body" : "each body against itself");
   c.x_label = "real and pseudo faces";
@@ -86,7 +86,7 @@ PageChart chart(std::span<const SeriesRow> rows, SeriesPartner partner, bool tim
   return c;
 }
 
-nlohmann::ordered_json to_json(const std::optional<PowerFit>& fit) {
+nlohmann::ordered_json to_json(const std::optional<resolutions::PowerFit>& fit) {
   if (!fit) return nullptr;
   return {{"exponent", fit->exponent}, {"standard_error", fit->error}, {"factor", fit->factor}};
 }
@@ -124,7 +124,8 @@ std::string series_json(std::span<const SeriesRow> rows, std::span<const SeriesF
 }
 
 template <class Measure>
-std::optional<PowerFit> fit(std::span<const SeriesRow> rows, const SeriesFit& of, Measure measure) {
+std::optional<resolutions::PowerFit> fit(std::span<const SeriesRow> rows, const SeriesFit& of,
+                                         Measure measure) {
   std::vector<double> x, y;
   for (const SeriesRow& row : rows) {
     if (row.body != of.body || row.partner != of.partner) continue;
@@ -134,7 +135,7 @@ std::optional<PowerFit> fit(std::span<const SeriesRow> rows, const SeriesFit& of
     y.push_back(value);
   }
   if (x.size() < 2) return std::nullopt;
-  return fit_power(x, y);
+  return resolutions::fit_power(x, y);
 }
 
 }  // namespace
@@ -156,12 +157,13 @@ std::vector<SeriesFit> series_fits(std::span<const SeriesRow> rows) {
   return fits;
 }
 
-std::string add_series(const SeriesReport& report, const std::string& folder, bool figures, Page& page) {
+std::string add_series(const SeriesReport& report, const std::string& folder, bool figures,
+                       report::Page& page) {
   const std::vector<SeriesRow> rows = series_rows(report.a, report.objects, report.steps);
   const std::vector<SeriesFit> fits = series_fits(rows);
-  write_text(folder + "/series.jsonl", to_json_lines(report.steps));
-  write_text(folder + "/series_times.jsonl", times_to_json_lines(report.steps));
-  write_text(folder + "/series.json", series_json(rows, fits));
+  io::write_text(folder + "/series.jsonl", to_json_lines(report.steps));
+  io::write_text(folder + "/series_times.jsonl", times_to_json_lines(report.steps));
+  io::write_text(folder + "/series.json", series_json(rows, fits));
   page.tables.push_back(fit_table(fits, report.jobs));
   for (const SeriesPartner partner : kSeriesPartners)
     for (std::size_t i = 0; i < kRecursions.size(); ++i) page.tables.push_back(table(rows, partner, i));
@@ -176,7 +178,7 @@ std::string add_series(const SeriesReport& report, const std::string& folder, bo
        {std::tuple{"series-comparisons", "Comparisons against size", series_comparisons(rows, fits)},
         std::tuple{"series-time", "Time against size", series_time(rows, fits)}}) {
     for (const char* ending : {".svg", ".png"}) {
-      draw(chart, folder + "/" + name + ending);
+      report::draw(chart, folder + "/" + name + ending);
       page.links.push_back({std::string(name) + ending, std::string(name) + ending, ""});
     }
     markdown += std::string("\n![") + what + "](" + name + ".svg)\n";
@@ -184,4 +186,4 @@ std::string add_series(const SeriesReport& report, const std::string& folder, bo
   return markdown;
 }
 
-}  // namespace lrb
+}  // namespace lrb::paper

@@ -3,11 +3,11 @@
 
 #include <optional>
 
-#include "scenarios/page/page.hpp"
+#include "scenarios/bodies/resolutions/power_fit.hpp"
 #include "scenarios/paper/series.hpp"
-#include "scenarios/series/power_fit.hpp"
+#include "scenarios/report/page/page.hpp"
 
-namespace lrb {
+namespace lrb::paper {
 
 struct SeriesReport {
   const LrbRep& a;
@@ -22,13 +22,14 @@ struct SeriesFit {
   std::string body;
   SeriesPartner partner;
   std::size_t recursion;  ///< of kRecursions
-  std::optional<PowerFit> comparisons, refinements, microseconds;
+  std::optional<resolutions::PowerFit> comparisons, refinements, microseconds;
 };
 std::vector<SeriesFit> series_fits(std::span<const SeriesRow> rows);
 
 /// Writes series.jsonl (records), series_times.jsonl, series.json (rows and fits, but for times) and, if
 /// `figures`, series-comparisons and series-time as SVG and PNG. Adds tables, charts and links to the page;
 /// returns what Markdown shows beside them.
-std::string add_series(const SeriesReport& report, const std::string& folder, bool figures, Page& page);
+std::string add_series(const SeriesReport& report, const std::string& folder, bool figures,
+                       report::Page& page);
 
-}  // namespace lrb
+}  // namespace lrb::paper

@@ -6,11 +6,11 @@
 
 #include <nlohmann/json.hpp>
 
-#include "engine/error.hpp"
-#include "engine/mesh/file_bytes.hpp"
-#include "scenarios/files.hpp"
+#include "engine/core/error.hpp"
+#include "engine/core/file_bytes.hpp"
+#include "scenarios/io/files.hpp"
 
-namespace lrb {
+namespace lrb::paper {
 namespace {
 
 /// Of the whole: what shards of one experiment have in common.
@@ -26,7 +26,7 @@ nlohmann::ordered_json experiment(const ShardFile& s) {
 
 ShardFile read(const std::string& path) {
   try {
-    const auto j = nlohmann::json::parse(read_text(path));
+    const auto j = nlohmann::json::parse(io::read_text(path));
     ShardFile s;
     s.shard = {j.at("shard").get<std::uint32_t>(), j.at("shards").get<std::uint32_t>()};
     s.protocol.collisions = j.at("collisions").get<std::uint32_t>();
@@ -52,7 +52,7 @@ std::string shard_file_of(const std::string& records) {
 void write_shard_file(const ShardFile& shard, const std::string& folder) {
   nlohmann::ordered_json j = {{"shard", shard.shard.index}};
   j.update(experiment(shard));
-  write_text(folder + "/shard.json", j.dump(2) + "\n");
+  io::write_text(folder + "/shard.json", j.dump(2) + "\n");
 }
 
 ShardFile read_shard_files(const std::vector<std::string>& records) {
@@ -80,4 +80,4 @@ ShardFile read_shard_files(const std::vector<std::string>& records) {
   return *first;
 }
 
-}  // namespace lrb
+}  // namespace lrb::paper

@@ -4,15 +4,15 @@
 #include <string>
 #include <vector>
 
+#include "scenarios/bodies/resolutions/resolutions.hpp"
 #include "scenarios/paper/sweep.hpp"
-#include "scenarios/series/resolutions.hpp"
 
-namespace lrb {
+namespace lrb::paper {
 
 struct ShardFile {
   Shard shard;
   PaperProtocol protocol;
-  ResolutionOptions resolutions;  ///< of the series; most = 0: there is none
+  resolutions::ResolutionOptions resolutions;  ///< of the series; most = 0: there is none
 };
 
 /// Where it lies: beside the records.jsonl of the shard.
@@ -24,4 +24,4 @@ void write_shard_file(const ShardFile& shard, const std::string& folder);
 /// InputError if one is missing, or of another experiment, or if they are not all n shards, once each.
 ShardFile read_shard_files(const std::vector<std::string>& records);
 
-}  // namespace lrb
+}  // namespace lrb::paper

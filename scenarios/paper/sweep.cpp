@@ -8,12 +8,12 @@
 
 #include <nlohmann/json.hpp>
 
-#include "engine/error.hpp"
-#include "engine/mesh/file_bytes.hpp"
-#include "engine/query/query_context.hpp"
+#include "engine/core/error.hpp"
+#include "engine/core/file_bytes.hpp"
+#include "engine/query/walk/query_context.hpp"
 #include "trace/names.hpp"
 
-namespace lrb {
+namespace lrb::paper {
 namespace {
 
 using nlohmann::json;
@@ -127,4 +127,4 @@ std::vector<ContactStep> merged(std::vector<ContactStep> steps) {
   return steps;
 }
 
-}  // namespace lrb
+}  // namespace lrb::paper

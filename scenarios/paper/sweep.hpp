@@ -10,7 +10,7 @@
 
 #include "scenarios/paper/protocol.hpp"
 
-namespace lrb {
+namespace lrb::paper {
 
 struct PaperObject {
   std::string name;
@@ -41,4 +41,4 @@ std::vector<ContactStep> read_json_lines(const std::string& text, const std::str
 /// Puts the steps of several shards in order. Throws InputError if a step is there twice.
 std::vector<ContactStep> merged(std::vector<ContactStep> steps);
 
-}  // namespace lrb
+}  // namespace lrb::paper

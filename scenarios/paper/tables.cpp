@@ -8,7 +8,7 @@
 
 #include "trace/names.hpp"
 
-namespace lrb {
+namespace lrb::paper {
 namespace {
 
 class SpreadOf {
@@ -114,4 +114,4 @@ std::string tables_json(std::span<const PaperObject> objects, std::span<const Ob
   return j.dump(2) + "\n";
 }
 
-}  // namespace lrb
+}  // namespace lrb::paper

@@ -8,7 +8,7 @@
 
 #include "scenarios/paper/sweep.hpp"
 
-namespace lrb {
+namespace lrb::paper {
 
 struct Spread {
   double min = 0, average = 0, max = 0;
@@ -46,4 +46,4 @@ const PublishedRow* published(const std::string& object);
 std::string tables_json(std::span<const PaperObject> objects, std::span<const ObjectRow> rows,
                         const PaperProtocol& protocol);
 
-}  // namespace lrb
+}  // namespace lrb::paper

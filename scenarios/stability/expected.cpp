@@ -1,6 +1,6 @@
 #include "scenarios/stability/expected.hpp"
 
-#include "engine/error.hpp"
+#include "engine/core/error.hpp"
 #include "engine/query/brute_force.hpp"
 
 namespace lrb::stability {
@@ -9,7 +9,7 @@ namespace {
 using nlohmann::json;
 using nlohmann::ordered_json;
 
-std::string why_not(const families::Case& c) {
+std::string why_not(const cases::Case& c) {
   char name = 'A';
   for (const auto& [rep, pose] : {std::pair{c.a, c.pose_a}, std::pair{c.b, c.pose_b}}) {
     for (std::size_t v = 0; v < rep->vertices().size(); ++v)
@@ -22,7 +22,7 @@ std::string why_not(const families::Case& c) {
 
 }  // namespace
 
-Expected expected_answer(const families::Case& c) {
+Expected expected_answer(const cases::Case& c) {
   Expected e;
   e.refusal = why_not(c);
   if (!e.refusal.empty()) return e;

@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "engine/query/collide.hpp"
-#include "scenarios/families/families.hpp"
+#include "scenarios/cases/families.hpp"
 
 namespace lrb::stability {
 
@@ -17,7 +17,7 @@ struct Expected {
   std::string refusal;  ///< not empty: the question has no answer, and this says why
 };
 
-Expected expected_answer(const families::Case& c);
+Expected expected_answer(const cases::Case& c);
 
 nlohmann::ordered_json to_json(const std::vector<SimplexPair>& pairs);
 std::vector<SimplexPair> pairs_from(const nlohmann::json& pairs);

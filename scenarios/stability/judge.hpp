@@ -3,7 +3,7 @@
 
 #include "scenarios/methods/method.hpp"
 #include "scenarios/stability/expected.hpp"
-#include "scenarios/stability/grid.hpp"
+#include "scenarios/stability/outcome_grid.hpp"
 
 namespace lrb::stability {
 

@@ -2,9 +2,9 @@
 
 #include <sstream>
 
-#include "engine/error.hpp"
-#include "engine/mesh/file_bytes.hpp"
-#include "scenarios/files.hpp"
+#include "engine/core/error.hpp"
+#include "engine/core/file_bytes.hpp"
+#include "scenarios/io/files.hpp"
 
 namespace lrb::stability {
 namespace {
@@ -71,7 +71,7 @@ std::string to_lines(const std::vector<Record>& records) {
 }
 
 std::vector<Record> read_records(const std::string& path) {
-  std::istringstream in(read_text(path));
+  std::istringstream in(io::read_text(path));
   std::vector<Record> records;
   std::string line;
   for (std::size_t number = 1; std::getline(in, line); ++number) {

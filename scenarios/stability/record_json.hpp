@@ -6,7 +6,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "scenarios/stability/grid.hpp"
+#include "scenarios/stability/outcome_grid.hpp"
 
 namespace lrb::stability {
 

@@ -13,7 +13,7 @@ int first_failure(const Cell& c) {
   return -1;
 }
 
-std::string cell_text(const MethodColumn& method, const Cell& c) {
+std::string cell_text(const workers::MethodColumn& method, const Cell& c) {
   if (!method.present) return "absent";
   if (Cell::sum(c.cases) == 0) return "";
   if (c.answered() == 0) return "refused";
@@ -32,7 +32,7 @@ std::string total(const Grid& grid, std::size_t method, Counts Cell::*counts) {
 
 std::vector<std::vector<std::string>> rows_of(const Grid& grid) {
   std::vector<std::vector<std::string>> rows(1, {"family"});
-  for (const MethodColumn& m : grid.methods) rows[0].push_back(m.name);
+  for (const workers::MethodColumn& m : grid.methods) rows[0].push_back(m.name);
   for (std::size_t f = 0; f < grid.families.size(); ++f) {
     rows.push_back({grid.families[f].name});
     for (std::size_t m = 0; m < grid.methods.size(); ++m)
@@ -68,7 +68,7 @@ std::string table(const Grid& grid) {
   }
   out << "\nIn each cell: failures/cases answered, @ the first setting of the dial (0 benign, "
       << kDialSettings - 1 << " degenerate) with a failure.\n";
-  for (const MethodColumn& m : grid.methods)
+  for (const workers::MethodColumn& m : grid.methods)
     out << "  " << m.name << ": " << m.title << ". " << m.remark << "\n";
   return out.str();
 }

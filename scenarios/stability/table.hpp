@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "scenarios/stability/grid.hpp"
+#include "scenarios/stability/outcome_grid.hpp"
 
 namespace lrb::stability {
 

@@ -18,16 +18,16 @@
 #include <malloc.h>
 #include <unistd.h>
 
-#include "engine/build/build.hpp"
-#include "engine/build/closing.hpp"
-#include "engine/build/convex_hull.hpp"
-#include "engine/error.hpp"
+#include "engine/construct/build.hpp"
+#include "engine/construct/closing.hpp"
+#include "engine/construct/convex_hull.hpp"
+#include "engine/core/error.hpp"
 #include "engine/lrb/lrb_file.hpp"
 #include "engine/lrb/validate.hpp"
-#include "engine/mesh/mesh_io.hpp"
-#include "scenarios/generators/generators.hpp"
-#include "scenarios/series/power_fit.hpp"
-#include "scenarios/series/resolutions.hpp"
+#include "engine/mesh/io/mesh_io.hpp"
+#include "scenarios/bodies/generators/generators.hpp"
+#include "scenarios/bodies/resolutions/power_fit.hpp"
+#include "scenarios/bodies/resolutions/resolutions.hpp"
 #include "tests/bench/timing.hpp"
 
 namespace {
@@ -122,7 +122,7 @@ double peak_bytes_of(const Work& work) {
   return memory_bytes("VmHWM:") - before;
 }
 
-void print_growth(const Mesh& mesh, const lrb::ResolutionOptions& resolutions,
+void print_growth(const Mesh& mesh, const lrb::resolutions::ResolutionOptions& resolutions,
                   const lrb::BuildOptions& options, int repeats, bool validating) {
   std::printf(
       "%s\n| faces | build: CPU s | us a face | build: wall s | peak MB | bytes a face | LRB-rep MB | bytes "
@@ -163,13 +163,13 @@ void print_growth(const Mesh& mesh, const lrb::ResolutionOptions& resolutions,
   }
   std::filesystem::remove(file);
   if (faces.size() < 2) return;
-  const lrb::PowerFit fit = lrb::fit_power(faces, seconds);
+  const lrb::resolutions::PowerFit fit = lrb::resolutions::fit_power(faces, seconds);
   std::printf("build time (CPU) grows as n^%.3f +- %.3f\n", fit.exponent, fit.error);
 }
 
 Mesh growth_mesh(const std::string& path) {
   if (path != "rock") return lrb::read_mesh(path);
-  Mesh rock = lrb::generate("rock", {{"frequency", 316}});  // 1,997,120 faces
+  Mesh rock = lrb::generators::generate("rock", {{"frequency", 316}});  // 1,997,120 faces
   rock.name = path;
   return rock;
 }
@@ -180,7 +180,7 @@ int main(int argc, char** argv) try {
   lrb::BuildOptions options;
   int repeats = 3;
   bool validating = false, growth = false;
-  lrb::ResolutionOptions resolutions;
+  lrb::resolutions::ResolutionOptions resolutions;
   std::vector<std::string> paths;
   for (int i = 1; i < argc; ++i) {
     const std::string arg = argv[i];

@@ -11,18 +11,18 @@
 #include <string>
 #include <vector>
 
-#include "engine/build/build.hpp"
-#include "engine/mesh/mesh_io.hpp"
-#include "engine/query/coherent_query.hpp"
+#include "engine/construct/build.hpp"
+#include "engine/mesh/io/mesh_io.hpp"
+#include "engine/query/coherent/coherent_query.hpp"
 #include "engine/query/collide_impl.hpp"
-#include "scenarios/shapes/random_pose.hpp"
-#include "scenarios/shapes/shapes.hpp"
+#include "scenarios/bodies/shapes/random_pose.hpp"
+#include "scenarios/bodies/shapes/shapes.hpp"
 #include "tests/bench/timing.hpp"
 #include "tests/support/shared_meshes.hpp"
 
 using namespace lrb;
 using bench::median;
-using shapes::Random;
+using shapes::RandomEngine;
 
 namespace {
 
@@ -48,7 +48,7 @@ struct Bench {
     return !collide(a, Pose{}, b, p, first, context, probe).pairs.empty();
   }
 
-  Pose start(Random& random, double depth) {
+  Pose start(RandomEngine& random, double depth) {
     while (true) {
       Pose p;
       p.r = shapes::random_rotation(random);
@@ -68,7 +68,7 @@ struct Bench {
 
   /// Steps of one length each: half of it a turn about B's middle, half a shift; in one direction for some
   /// steps.
-  std::vector<Pose> walk(Random& random, const Pose& from, double length, int steps, bool apart) {
+  std::vector<Pose> walk(RandomEngine& random, const Pose& from, double length, int steps, bool apart) {
     const Eigen::Vector3d middle = shapes::box_of(b).center();
     const double radius = shapes::box_of(b).diagonal().norm() / 2, most = std::max(room * diagonal, length);
     std::vector<Pose> out = {from};
@@ -107,7 +107,7 @@ int run(const std::string& name, const LrbRep& a, const LrbRep& b, int steps, in
   int differences = 0;
   for (const PoseClass& c : kClasses)
     for (const double step : kSteps) {
-      Random random(1);
+      RandomEngine random(1);
       std::vector<double> ratios, scratch_us;
       CoherentQuery::Statistics sum;
       double pairs = 0;
@@ -137,8 +137,8 @@ int run(const std::string& name, const LrbRep& a, const LrbRep& b, int steps, in
           differences += of_scratch != of_coherent;
           if (repeat > 0) continue;
           pairs += static_cast<double>(of_scratch % 1000003) / static_cast<double>(timed.size());
-          sum.from_list += coherent.statistics().from_list;
-          sum.lists_made += coherent.statistics().lists_made;
+          sum.from_cache += coherent.statistics().from_cache;
+          sum.caches_made += coherent.statistics().caches_made;
           sum.from_scratch += coherent.statistics().from_scratch;
         }
         ratios.push_back(best_scratch / best_coherent);
@@ -148,7 +148,7 @@ int run(const std::string& name, const LrbRep& a, const LrbRep& b, int steps, in
           "  %-15s step %5.2f %%  %8.2f us %6.0f pairs  %6.2fx   (%llu from lists, %llu lists, %llu "
           "scratch)\n",
           c.name, 100 * step, median(scratch_us), pairs / walks, median(ratios),
-          static_cast<unsigned long long>(sum.from_list), static_cast<unsigned long long>(sum.lists_made),
+          static_cast<unsigned long long>(sum.from_cache), static_cast<unsigned long long>(sum.caches_made),
           static_cast<unsigned long long>(sum.from_scratch));
       std::fflush(stdout);
     }

@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
-#include "scenarios/play/frames.hpp"
-#include "scenarios/play/recording.hpp"
+#include "scenarios/run/frame_job.hpp"
+#include "scenarios/run/recorded_run.hpp"
 #include "tests/bench/timing.hpp"
 #include "tests/mesh/encode.hpp"
 
@@ -24,13 +24,13 @@ namespace {
 constexpr double kAim = 0.8;  ///< of the rate of drawing alone
 
 /// A rock turns beside a ball.
-Scenario turning_rock(int frames) {
+spec::Scenario turning_rock(int frames) {
   const std::string text =
       R"({"name": "rate", "purpose": "A rock turns beside a ball.", "bodies": {"a": {"generator": "ball"}, "b": {"generator": "rock",
           "parameters": {"frequency": 50}, "pose": {"position": [2.5, 0, 0]}}},
           "motion": {"kind": "spin", "axis": [0, 0, 1], "degrees": 90, "steps": )" +
       std::to_string(frames) + R"(}, "frames": {"at": "step", "size": [1280, 720]}})";
-  return parse_scenario(text, "draw_bench");
+  return spec::parse_scenario(text, "draw_bench");
 }
 
 }  // namespace
@@ -41,12 +41,12 @@ int main(int argc, char** argv) {
     if (std::strcmp(argv[i], "--repeats") == 0) repeats = std::max(1, std::atoi(argv[i + 1]));
     if (std::strcmp(argv[i], "--frames") == 0) frames = std::max(2, std::atoi(argv[i + 1]));
   }
-  const Scenario scenario = turning_rock(frames);
-  const ProgressReport quiet = [](const std::string&, std::uint64_t, std::uint64_t) {};
-  const Recording recording = record(scenario, quiet);
-  Performance performance;
+  const spec::Scenario scenario = turning_rock(frames);
+  const run::ProgressReport quiet = [](const std::string&, std::uint64_t, std::uint64_t) {};
+  const run::Recording recording = run::record(scenario, quiet);
+  run::RecordedRun performance;
   performance.title = scenario.name;
-  for (const LoadedBody& body : recording.bodies) performance.reps.push_back(&body.rep);
+  for (const bodies::LoadedBody& body : recording.bodies) performance.reps.push_back(&body.rep);
   performance.trace = &recording.trace;
   performance.results = &recording.results;
   const test::TemporaryDirectory directory;
@@ -54,10 +54,10 @@ int main(int argc, char** argv) {
   std::vector<double> alone, whole;
   for (int i = 0; i < repeats; ++i) {
     auto start = std::chrono::steady_clock::now();
-    paint_frames(performance, scenario.frames, quiet, nullptr);
+    run::paint_frames(performance, scenario.frames, quiet, nullptr);
     alone.push_back(seconds_since(start) / frames);
     start = std::chrono::steady_clock::now();
-    draw_frames(performance, scenario.frames, directory.file("sequence"), {}, quiet);
+    run::draw_frames(performance, scenario.frames, directory.file("sequence"), {}, quiet);
     whole.push_back(seconds_since(start) / frames);
   }
   const double rate = median(alone) / median(whole);

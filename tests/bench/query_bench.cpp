@@ -9,11 +9,11 @@
 #include <cstdlib>
 #include <cstring>
 
-#include "engine/build/build.hpp"
-#include "engine/mesh/mesh_io.hpp"
+#include "engine/construct/build.hpp"
+#include "engine/mesh/io/mesh_io.hpp"
 #include "engine/query/brute_force.hpp"
 #include "engine/query/collide_impl.hpp"
-#include "scenarios/shapes/random_pose.hpp"
+#include "scenarios/bodies/shapes/random_pose.hpp"
 #include "tests/bench/timing.hpp"
 
 #ifdef LRB_WITH_FCL
@@ -81,7 +81,7 @@ struct Approach {
 };
 
 std::vector<Approach> approaches(const LrbRep& a, const LrbRep& b, double diagonal, int count) {
-  shapes::Random random(1);
+  shapes::RandomEngine random(1);
   QueryContext context;
   NullProbe probe;
   CollideRequest first;

@@ -6,10 +6,10 @@
 
 #include <valgrind/callgrind.h>
 
-#include "engine/build/build.hpp"
+#include "engine/construct/build.hpp"
 #include "engine/query/collide_impl.hpp"
-#include "scenarios/shapes/random_pose.hpp"
-#include "scenarios/shapes/shapes.hpp"
+#include "scenarios/bodies/shapes/random_pose.hpp"
+#include "scenarios/bodies/shapes/shapes.hpp"
 
 using namespace lrb;
 
@@ -48,7 +48,7 @@ void ask(const Guarded& g, const LrbRep& a, const LrbRep& b) {
   request.predicates = g.predicates;
   QueryContext context;
   Probe probe;
-  shapes::Random random(1);
+  shapes::RandomEngine random(1);
   std::size_t pairs = 0;
   CALLGRIND_ZERO_STATS;
   for (int i = 0; i < kPoses; ++i) {

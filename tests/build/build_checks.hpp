@@ -8,7 +8,7 @@
 
 #include <doctest/doctest.h>
 
-#include "engine/build/build.hpp"
+#include "engine/construct/build.hpp"
 #include "engine/exact/simplex_test.hpp"
 #include "engine/lrb/validate.hpp"
 #include "engine/lrb/wrapper.hpp"

@@ -2,8 +2,8 @@
 
 #include <doctest/doctest.h>
 
-#include "engine/error.hpp"
-#include "scenarios/shapes/shapes.hpp"
+#include "engine/core/error.hpp"
+#include "scenarios/bodies/shapes/shapes.hpp"
 #include "tests/build/build_checks.hpp"
 
 namespace lrb::test {

@@ -1,11 +1,11 @@
-#include "engine/build/complex_builder.hpp"
+#include "engine/construct/complex_builder.hpp"
 
 #include <doctest/doctest.h>
 
 #include "engine/lrb/validate.hpp"
-#include "scenarios/shapes/shapes.hpp"
+#include "scenarios/bodies/shapes/shapes.hpp"
 
-namespace lrb {
+namespace lrb::construct {
 namespace {
 
 TEST_CASE("a complex by construction: a box in a box, faces in any order") {
@@ -34,4 +34,4 @@ TEST_CASE("a complex by construction: a box in a box, faces in any order") {
 }
 
 }  // namespace
-}  // namespace lrb
+}  // namespace lrb::construct

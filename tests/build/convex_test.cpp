@@ -4,13 +4,13 @@
 
 #include <doctest/doctest.h>
 
-#include "engine/build/closing.hpp"
-#include "engine/build/convex_hull.hpp"
-#include "engine/build/convex_polygon.hpp"
+#include "engine/construct/closing.hpp"
+#include "engine/construct/convex_hull.hpp"
+#include "engine/construct/convex_polygon.hpp"
 #include "engine/exact/predicates.hpp"
-#include "scenarios/shapes/shapes.hpp"
+#include "scenarios/bodies/shapes/shapes.hpp"
 
-namespace lrb {
+namespace lrb::construct {
 namespace {
 
 using Vector3 = Eigen::Vector3d;
@@ -170,4 +170,4 @@ TEST_CASE("the outermost polygon has few sides and holds all points") {
 }
 
 }  // namespace
-}  // namespace lrb
+}  // namespace lrb::construct

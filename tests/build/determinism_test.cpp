@@ -1,7 +1,7 @@
 #include <doctest/doctest.h>
 
-#include "engine/build/build.hpp"
-#include "scenarios/shapes/shapes.hpp"
+#include "engine/construct/build.hpp"
+#include "scenarios/bodies/shapes/shapes.hpp"
 
 namespace lrb::test {
 

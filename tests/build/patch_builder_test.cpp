@@ -1,8 +1,8 @@
 #include <doctest/doctest.h>
 
-#include "engine/error.hpp"
+#include "engine/core/error.hpp"
 #include "engine/mesh/mesh_check.hpp"
-#include "scenarios/shapes/shapes.hpp"
+#include "scenarios/bodies/shapes/shapes.hpp"
 #include "tests/build/build_checks.hpp"
 
 namespace lrb::test {

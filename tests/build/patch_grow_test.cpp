@@ -1,13 +1,13 @@
-#include "engine/build/patch_grow.hpp"
+#include "engine/construct/patch_grow.hpp"
 
 #include <algorithm>
 #include <set>
 
 #include <doctest/doctest.h>
 
-#include "scenarios/shapes/shapes.hpp"
+#include "scenarios/bodies/shapes/shapes.hpp"
 
-namespace lrb {
+namespace lrb::construct {
 namespace {
 
 /// V - E + F of a set of triangles.
@@ -68,4 +68,4 @@ TEST_CASE("a vertex that joins two fans stands twice in the hull") {
 }
 
 }  // namespace
-}  // namespace lrb
+}  // namespace lrb::construct

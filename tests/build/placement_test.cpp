@@ -1,4 +1,4 @@
-#include "engine/build/placement.hpp"
+#include "engine/construct/placement.hpp"
 
 #include <limits>
 #include <random>
@@ -6,7 +6,7 @@
 #include <Eigen/LU>
 #include <doctest/doctest.h>
 
-namespace lrb {
+namespace lrb::construct {
 namespace {
 
 using Vector3 = Eigen::Vector3d;
@@ -64,4 +64,4 @@ TEST_CASE("nearest_point: opposite half-spaces without a point between them") {
 }
 
 }  // namespace
-}  // namespace lrb
+}  // namespace lrb::construct

@@ -1,13 +1,16 @@
 #include <doctest/doctest.h>
 
-#include "engine/build/closing.hpp"
-#include "engine/build/convex_hull.hpp"
-#include "engine/mesh/mesh_io.hpp"
+#include "engine/construct/closing.hpp"
+#include "engine/construct/convex_hull.hpp"
+#include "engine/mesh/io/mesh_io.hpp"
 #include "tests/build/build_checks.hpp"
 #include "tests/support/shared_meshes.hpp"
 
 namespace lrb::test {
 namespace {
+
+using construct::convex_hull;
+using construct::volume_of;
 
 TEST_CASE("real models meet the targets: faces, outer faces, volume, embedding") {
   const auto folder = shared_meshes();

@@ -8,12 +8,12 @@
 #include <doctest/doctest.h>
 #include <unistd.h>
 
-#include "engine/build/build.hpp"
+#include "engine/construct/build.hpp"
+#include "engine/core/file_bytes.hpp"
+#include "engine/core/parallel.hpp"
 #include "engine/lrb/lrb_file.hpp"
 #include "engine/lrb/validate.hpp"
-#include "engine/mesh/file_bytes.hpp"
-#include "engine/parallel.hpp"
-#include "scenarios/shapes/shapes.hpp"
+#include "scenarios/bodies/shapes/shapes.hpp"
 
 namespace lrb::test {
 namespace {

@@ -4,8 +4,8 @@
 
 #include "engine/exact/predicates.hpp"
 #include "engine/query/brute_force.hpp"
-#include "scenarios/families/families.hpp"
-#include "scenarios/shapes/random_pose.hpp"
+#include "scenarios/bodies/shapes/random_pose.hpp"
+#include "scenarios/cases/families.hpp"
 
 using namespace lrb;
 
@@ -42,14 +42,14 @@ TEST_CASE("floating predicates are wrong where doubles cannot decide, until the 
 }
 
 TEST_CASE("a query with floating predicates misjudges near contacts, and the next one is exact again") {
-  shapes::Random random(5);
+  shapes::RandomEngine random(5);
   CollideRequest floating;
   floating.predicates = Predicates::floating;
-  const families::Family* family = families::find_family("coplanar");
+  const cases::Family* family = cases::find_family("coplanar");
   REQUIRE(family != nullptr);
   int wrong = 0;
   for (int i = 0; i < 300; ++i) {
-    const families::Case c = family->make(random, 0.8);
+    const cases::Case c = family->make(random, 0.8);
     const auto brute = brute_force(*c.a, c.pose_a, *c.b, c.pose_b);
     wrong += collide(*c.a, c.pose_a, *c.b, c.pose_b, floating).pairs != brute.pairs;
     CHECK(collide(*c.a, c.pose_a, *c.b, c.pose_b).pairs == brute.pairs);

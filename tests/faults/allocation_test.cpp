@@ -9,14 +9,14 @@
 
 #include <doctest/doctest.h>
 
-#include "engine/build/build.hpp"
+#include "engine/construct/build.hpp"
 #include "engine/lrb/lrb_file.hpp"
+#include "engine/mesh/io/mesh_io.hpp"
 #include "engine/mesh/mesh_check.hpp"
-#include "engine/mesh/mesh_io.hpp"
-#include "engine/query/coherent_query.hpp"
+#include "engine/query/coherent/coherent_query.hpp"
 #include "engine/query/collide_impl.hpp"
-#include "scenarios/shapes/hand_made.hpp"
-#include "scenarios/shapes/shapes.hpp"
+#include "scenarios/bodies/shapes/hand_made.hpp"
+#include "scenarios/bodies/shapes/shapes.hpp"
 #include "tests/faults/failing_new.hpp"
 #include "tests/mesh/encode.hpp"
 #include "tests/support/lrb_shapes.hpp"
@@ -146,7 +146,7 @@ TEST_CASE("a coherent query that runs out of memory answers the next pose rightl
   for (int step = 0; step < kSteps; ++step) expected.push_back(collide(a, Pose{}, b, pose(step), {}));
   std::uint64_t failures = 0;
   for (bool failed = true; failed; failures += failed) {
-    CoherentQuery coherent(a, b, {}, CoherentQuery::Lists::always);
+    CoherentQuery coherent(a, b, {}, CoherentQuery::CacheUse::always);
     failed = false;
     fail_allocation_after(failures);
     for (int step = 0; step < kSteps; ++step) {
@@ -187,9 +187,9 @@ TEST_CASE("a warm query takes memory for its answer alone") {
     coherent.collide(Pose{}, Pose::translation({1.7 + 1e-4 * (i % 4), 0.2, 0}));
   };
   for (int i = 0; i < 100; ++i) step(i);
-  const std::uint64_t before = allocations(), lists = coherent.statistics().from_list;
+  const std::uint64_t before = allocations(), lists = coherent.statistics().from_cache;
   for (int i = 0; i < 100 && allocations() == before; ++i) step(i);
-  CHECK(coherent.statistics().from_list > lists);
+  CHECK(coherent.statistics().from_cache > lists);
   CHECK(allocations() == before);
 }
 

@@ -3,7 +3,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "engine/error.hpp"
+#include "engine/core/error.hpp"
 
 namespace lrb::fuzz {
 

@@ -1,5 +1,5 @@
+#include "engine/mesh/io/mesh_io.hpp"
 #include "engine/mesh/mesh_check.hpp"
-#include "engine/mesh/mesh_io.hpp"
 #include "tests/fuzz/feed.hpp"
 
 namespace lrb::fuzz {

@@ -1,8 +1,8 @@
 #include "scenarios/crowd/crowd_replay.hpp"
+#include "scenarios/io/pose_file.hpp"
 #include "scenarios/paper/experiment.hpp"
-#include "scenarios/pose_file.hpp"
-#include "scenarios/scenario.hpp"
-#include "scenarios/scenario_motion.hpp"
+#include "scenarios/spec/scenario.hpp"
+#include "scenarios/spec/scenario_motion.hpp"
 #include "tests/fuzz/feed.hpp"
 
 namespace lrb::fuzz {
@@ -18,48 +18,48 @@ void judge_name(const std::string& name) {
 
 bool feed_poses(std::string_view bytes) {
   return accepted("p.txt", [&] {
-    for (const Pose& pose : parse_poses(std::string(bytes), "p.txt"))
+    for (const Pose& pose : io::parse_poses(std::string(bytes), "p.txt"))
       if (!pose.r.allFinite() || !pose.t.allFinite()) throw std::logic_error("a pose is not finite");
   });
 }
 
 bool feed_scenario(std::string_view bytes) {
   return accepted("s.json", [&] {
-    const Scenario s = parse_scenario(std::string(bytes), "s.json");
+    const spec::Scenario s = spec::parse_scenario(std::string(bytes), "s.json");
     judge_name(s.name);
-    if (s.show == Show::collision) static_cast<void>(poses_of(s.motion, s.bodies.at(1).pose));
+    if (s.show == spec::Show::collision) static_cast<void>(spec::poses_of(s.motion, s.bodies.at(1).pose));
   });
 }
 
 bool feed_crowd(std::string_view bytes) {
   return accepted("c.json", [&] {
-    const Crowd c = parse_crowd(std::string(bytes), "c.json");
+    const spec::Crowd c = spec::parse_crowd(std::string(bytes), "c.json");
     judge_name(c.name);
-    for (const CrowdKind& kind : c.kinds) judge_name(kind.name);
+    for (const spec::CrowdKind& kind : c.kinds) judge_name(kind.name);
     if (!c.room.allFinite() || c.body_count() == 0) throw std::logic_error("a crowd that cannot be");
   });
 }
 
 bool feed_crowd_trace(std::string_view bytes) {
   return accepted("t.json", [&] {
-    const CrowdTrace t = read_crowd_trace(bytes, "t.json");
-    for (const CrowdKind& kind : t.crowd.kinds) judge_name(kind.name);
+    const crowd::CrowdTrace t = crowd::read_crowd_trace(bytes, "t.json");
+    for (const spec::CrowdKind& kind : t.crowd.kinds) judge_name(kind.name);
     const std::uint32_t bodies = t.crowd.body_count();
     if (t.poses.size() != t.crowd.steps || t.answers.size() != t.crowd.steps || t.crowd.steps == 0)
       throw std::logic_error("a trace of a crowd that cannot be replayed");
     for (const std::vector<Pose>& step : t.poses)
       if (step.size() != bodies) throw std::logic_error("a body without a pose");
-    for (const std::vector<CrowdTrace::Answer>& step : t.answers)
-      for (const CrowdTrace::Answer& a : step)
+    for (const std::vector<crowd::CrowdTrace::Answer>& step : t.answers)
+      for (const crowd::CrowdTrace::Answer& a : step)
         if (a.bodies.i >= bodies || a.bodies.j >= bodies) throw std::logic_error("a query of no body");
   });
 }
 
 bool feed_experiment(std::string_view bytes) {
   return accepted("e.json", [&] {
-    const PaperExperiment e = parse_experiment(std::string(bytes), "e.json");
+    const paper::PaperExperiment e = paper::parse_experiment(std::string(bytes), "e.json");
     judge_name(e.name);
-    for (const PaperExperiment::Object& object : e.objects) judge_name(object.name);
+    for (const paper::PaperExperiment::Object& object : e.objects) judge_name(object.name);
     if (e.collides() && e.objects.size() < 2) throw std::logic_error("an experiment that cannot be");
   });
 }

@@ -3,7 +3,7 @@
 #include <cstdio>
 #include <filesystem>
 
-#include "engine/mesh/atomic_file.hpp"
+#include "engine/core/atomic_file.hpp"
 #include "tests/fuzz/seeds.hpp"
 
 int main(int argc, char** argv) {

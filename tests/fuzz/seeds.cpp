@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "scenarios/shapes/hand_made.hpp"
-#include "scenarios/shapes/shapes.hpp"
+#include "scenarios/bodies/shapes/hand_made.hpp"
+#include "scenarios/bodies/shapes/shapes.hpp"
 #include "tests/fuzz/feed.hpp"
 #include "tests/mesh/encode.hpp"
 #include "tests/support/lrb_files.hpp"

@@ -7,19 +7,19 @@
 
 #include <doctest/doctest.h>
 
-#include "engine/build/build.hpp"
-#include "engine/error.hpp"
+#include "engine/construct/build.hpp"
+#include "engine/core/error.hpp"
 #include "engine/lrb/validate.hpp"
 #include "engine/query/collide.hpp"
-#include "scenarios/shapes/hand_made.hpp"
-#include "scenarios/shapes/random_pose.hpp"
-#include "scenarios/shapes/shapes.hpp"
+#include "scenarios/bodies/shapes/hand_made.hpp"
+#include "scenarios/bodies/shapes/random_pose.hpp"
+#include "scenarios/bodies/shapes/shapes.hpp"
 #include "tests/mesh/encode.hpp"
 #include "tests/support/lrb_files.hpp"
 #include "tests/support/lrb_shapes.hpp"
 
 using namespace lrb;
-using shapes::Random;
+using shapes::RandomEngine;
 
 namespace {
 
@@ -78,7 +78,7 @@ TEST_CASE("a file gives back the same LRB-rep") {
 }
 
 TEST_CASE("a body from a file gives the same answers") {
-  Random random(1);
+  RandomEngine random(1);
   const LrbRep a = build_lrb(shapes::torus(12, 8)), b = build_lrb(shapes::bumpy_sphere(1, 2));
   const LrbRep a_back = load_lrb(std::string_view(bytes_of(a)), "a.lrb");
   const LrbRep b_back = load_lrb(std::string_view(bytes_of(b)), "b.lrb");
@@ -186,7 +186,7 @@ TEST_CASE("a 2D body lies in the plane") {
 
 // Damage that a checksum would hide from us: either refused, or an LRB-rep that can be walked and queried.
 TEST_CASE("damaged files with a right checksum are refused or harmless") {
-  Random random(9);
+  RandomEngine random(9);
   int taken = 0, refused = 0;
   for (const LrbRep& rep : {shapes::dented_box(), shapes::stairs_2d()}) {
     const std::string whole = bytes_of(rep);
@@ -241,7 +241,7 @@ TEST_CASE("a stored tree is the one that would be built, and its bounds hold") {
   for (const LrbRep& rep : {shapes::dented_box(), shapes::stairs_2d(), build_lrb(shapes::torus(40, 30)),
                             build_lrb(shapes::scaled(shapes::bumpy_sphere(3, 1), 1e-200))}) {
     const LrbRep back = load_lrb(std::string_view(bytes_of(rep)), "body.lrb");
-    CHECK(back.tree().bounds_hold(back));
+    CHECK(back.tree().bounds_hold(back.simplices()));
     CHECK(back.tree().height() == rep.tree().height());
     CHECK(back.tree().unit() == rep.tree().unit());
     CHECK(back.tree().extent() == rep.tree().extent());
@@ -272,7 +272,7 @@ TEST_CASE("a stored tree that is not the body's: unsafe ones are refused, wrong 
   CHECK_THROWS_AS(make([](Nodes&, Blocks& b) { b.pop_back(); }), InputError);
   const auto found = [&](auto change) {
     const LrbRep wrong = make(change);
-    return !wrong.tree().bounds_hold(wrong) && !validate(wrong).valid;
+    return !wrong.tree().bounds_hold(wrong.simplices()) && !validate(wrong).valid;
   };
   CHECK(found([](Nodes& n, Blocks&) { n[0].hi[1][0] = n[0].lo[1][0]; }));
   CHECK(found([](Nodes& n, Blocks&) { n.back().origin[2] += 1; }));

@@ -2,9 +2,9 @@
 
 #include <doctest/doctest.h>
 
-#include "engine/error.hpp"
-#include "scenarios/shapes/hand_made.hpp"
-#include "scenarios/shapes/shapes.hpp"
+#include "engine/core/error.hpp"
+#include "scenarios/bodies/shapes/hand_made.hpp"
+#include "scenarios/bodies/shapes/shapes.hpp"
 
 using namespace lrb;
 

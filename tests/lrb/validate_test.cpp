@@ -2,8 +2,8 @@
 
 #include <doctest/doctest.h>
 
-#include "scenarios/shapes/hand_made.hpp"
-#include "scenarios/shapes/shapes.hpp"
+#include "scenarios/bodies/shapes/hand_made.hpp"
+#include "scenarios/bodies/shapes/shapes.hpp"
 #include "tests/support/lrb_shapes.hpp"
 
 using namespace lrb;

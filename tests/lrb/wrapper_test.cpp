@@ -4,7 +4,7 @@
 
 #include <doctest/doctest.h>
 
-#include "scenarios/shapes/hand_made.hpp"
+#include "scenarios/bodies/shapes/hand_made.hpp"
 
 using namespace lrb;
 

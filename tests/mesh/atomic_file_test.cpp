@@ -1,9 +1,9 @@
-#include "engine/mesh/atomic_file.hpp"
+#include "engine/core/atomic_file.hpp"
 
 #include <doctest/doctest.h>
 #include <sys/stat.h>
 
-#include "engine/error.hpp"
+#include "engine/core/error.hpp"
 #include "tests/mesh/encode.hpp"
 
 namespace lrb::test {

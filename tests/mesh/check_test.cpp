@@ -6,7 +6,7 @@
 #include <doctest/doctest.h>
 
 #include "engine/mesh/mesh_check.hpp"
-#include "scenarios/shapes/shapes.hpp"
+#include "scenarios/bodies/shapes/shapes.hpp"
 
 namespace lrb::test {
 

@@ -6,7 +6,7 @@
 #include "engine/mesh/mesh_check.hpp"
 #include "engine/mesh/point_inside.hpp"
 #include "engine/mesh/volume_sign.hpp"
-#include "scenarios/shapes/shapes.hpp"
+#include "scenarios/bodies/shapes/shapes.hpp"
 
 namespace lrb::test {
 

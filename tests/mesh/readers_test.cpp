@@ -3,10 +3,10 @@
 
 #include <doctest/doctest.h>
 
-#include "engine/error.hpp"
+#include "engine/core/error.hpp"
+#include "engine/mesh/io/mesh_io.hpp"
 #include "engine/mesh/mesh_check.hpp"
-#include "engine/mesh/mesh_io.hpp"
-#include "scenarios/shapes/shapes.hpp"
+#include "scenarios/bodies/shapes/shapes.hpp"
 #include "tests/mesh/encode.hpp"
 
 namespace lrb::test {

@@ -1,7 +1,7 @@
 #include <doctest/doctest.h>
 
+#include "engine/mesh/io/mesh_io.hpp"
 #include "engine/mesh/mesh_check.hpp"
-#include "engine/mesh/mesh_io.hpp"
 #include "tests/support/shared_meshes.hpp"
 
 namespace lrb::test {

@@ -7,7 +7,7 @@
 #include <doctest/doctest.h>
 
 #include "engine/mesh/mesh_check.hpp"
-#include "scenarios/shapes/shapes.hpp"
+#include "scenarios/bodies/shapes/shapes.hpp"
 #include "tests/support/rational_oracle.hpp"
 
 namespace lrb::test {

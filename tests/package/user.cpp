@@ -1,6 +1,6 @@
 #include <iostream>
 
-#include "engine/build/build.hpp"
+#include "engine/construct/build.hpp"
 #include "engine/query/collide.hpp"
 
 lrb::LrbRep body(const Eigen::MatrixX3d& v, const Eigen::MatrixX3i& f) {  // vertices, triangles

@@ -6,13 +6,13 @@
 
 #include <doctest/doctest.h>
 
-#include "engine/build/build.hpp"
+#include "engine/construct/build.hpp"
 #include "engine/query/world_box.hpp"
-#include "scenarios/shapes/random_pose.hpp"
-#include "scenarios/shapes/shapes.hpp"
+#include "scenarios/bodies/shapes/random_pose.hpp"
+#include "scenarios/bodies/shapes/shapes.hpp"
 
 using namespace lrb;
-using shapes::Random;
+using shapes::RandomEngine;
 using Box = Eigen::AlignedBox3d;
 
 namespace {
@@ -48,7 +48,7 @@ std::vector<BodyPair> all_pairs(const std::vector<Box>& boxes) {
 }  // namespace
 
 TEST_CASE("a world box is exactly that of all vertices") {
-  Random random(1);
+  RandomEngine random(1);
   const Mesh meshes[] = {shapes::tetrahedron(),
                          shapes::box(),
                          shapes::bumpy_sphere(4, 3),
@@ -114,7 +114,7 @@ TEST_CASE("a body that may leave the range of doubles meets every box") {
 }
 
 TEST_CASE("sort and sweep finds the pairs of boxes that all pairs find, step after step") {
-  Random random(2);
+  RandomEngine random(2);
   for (const int dim : {2, 3}) {
     for (int round = 0; round < 20; ++round) {
       SweepAndPrune sweep;

@@ -4,18 +4,18 @@
 
 #include <doctest/doctest.h>
 
-#include "engine/build/build.hpp"
-#include "engine/error.hpp"
+#include "engine/construct/build.hpp"
+#include "engine/core/error.hpp"
 #include "engine/exact/locate.hpp"
+#include "engine/lrb/thickness.hpp"
 #include "engine/query/brute_force.hpp"
 #include "engine/query/collide_impl.hpp"
-#include "engine/query/thickness.hpp"
-#include "scenarios/shapes/random_pose.hpp"
-#include "scenarios/shapes/shapes.hpp"
+#include "scenarios/bodies/shapes/random_pose.hpp"
+#include "scenarios/bodies/shapes/shapes.hpp"
 #include "tests/support/simplex_distance.hpp"
 
 using namespace lrb;
-using shapes::Random;
+using shapes::RandomEngine;
 
 namespace {
 
@@ -47,7 +47,7 @@ double distance(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose
   return test::surface_distance(real_simplices(a, pose_a), real_simplices(b, pose_b));
 }
 
-Pose pose_around(Random& random, const Bodies& pair) {
+Pose pose_around(RandomEngine& random, const Bodies& pair) {
   const double share = shapes::uniform(random, 0, 1.1);
   return shapes::random_pose(random, pair.a, pair.b, share);
 }
@@ -76,7 +76,7 @@ void check_claims(const Bodies& pair, const Pose& p, const CollideResult& coarse
 }  // namespace
 
 TEST_CASE("no point of a region is further from the real faces than its thickness") {
-  Random random(3);
+  RandomEngine random(3);
   double tightest = 0;
   for (const Bodies& pair : bodies()) {
     CAPTURE(pair.name);
@@ -107,7 +107,7 @@ TEST_CASE("no point of a region is further from the real faces than its thicknes
 }
 
 TEST_CASE("a query with a tolerance never calls bodies separate that meet, and keeps its error bound") {
-  Random random(41);
+  RandomEngine random(41);
   int unresolved = 0, separate_with_lids = 0, with_pseudo = 0, crossing = 0;
   for (const Bodies& pair : bodies()) {
     CAPTURE(pair.name);
@@ -146,7 +146,7 @@ TEST_CASE("a query with a tolerance never calls bodies separate that meet, and k
 
 TEST_CASE("bodies that touch under flat lids are never called separate") {
   // Boxes against boxes and combs: lids lie in the planes of faces, and rounding moves both.
-  Random random(77);
+  RandomEngine random(77);
   const Bodies pair{"combs", build_lrb(shapes::comb(4)), build_lrb(shapes::comb(3))};
   QueryContext context;
   int meeting = 0;
@@ -167,7 +167,7 @@ TEST_CASE("bodies that touch under flat lids are never called separate") {
 }
 
 TEST_CASE("an answer at any time: within the limit, true as far as it goes, and exact in the end") {
-  Random random(13);
+  RandomEngine random(13);
   int unfinished = 0, narrowed = 0;
   for (const Bodies& pair : bodies()) {
     CAPTURE(pair.name);

@@ -4,13 +4,13 @@
 
 #include <doctest/doctest.h>
 
-#include "engine/build/build.hpp"
-#include "engine/query/coherent_query.hpp"
-#include "scenarios/shapes/random_pose.hpp"
-#include "scenarios/shapes/shapes.hpp"
+#include "engine/construct/build.hpp"
+#include "engine/query/coherent/coherent_query.hpp"
+#include "scenarios/bodies/shapes/random_pose.hpp"
+#include "scenarios/bodies/shapes/shapes.hpp"
 
 using namespace lrb;
-using shapes::Random;
+using shapes::RandomEngine;
 
 namespace {
 
@@ -40,7 +40,7 @@ std::vector<Bodies> bodies() {
 }
 
 /// A motion of about `size` (of points within 1 of the origin).
-Pose moved(Random& random, const Pose& p, double size, int dim) {
+Pose moved(RandomEngine& random, const Pose& p, double size, int dim) {
   const double angle = shapes::uniform(random, -1, 1) * std::min(size, 3.0);
   const Eigen::Vector3d axis = dim == 2 ? Eigen::Vector3d::UnitZ() : shapes::random_direction(random);
   Eigen::Vector3d shift = size * shapes::random_direction(random);
@@ -81,9 +81,9 @@ void compare(const CollideResult& coherent, const CollideResult& scratch, Mode m
 }
 
 void add(CoherentQuery::Statistics& sum, const CoherentQuery::Statistics& s) {
-  sum.from_list += s.from_list;
-  sum.lists_made += s.lists_made;
-  sum.lists_ahead += s.lists_ahead;
+  sum.from_cache += s.from_cache;
+  sum.caches_made += s.caches_made;
+  sum.swept_caches += s.swept_caches;
   sum.from_scratch += s.from_scratch;
   sum.tests_saved += s.tests_saved;
 }
@@ -91,7 +91,7 @@ void add(CoherentQuery::Statistics& sum, const CoherentQuery::Statistics& s) {
 }  // namespace
 
 TEST_CASE("coherent queries answer as queries from scratch do, for motions of all sizes") {
-  Random random(4711);
+  RandomEngine random(4711);
   Tally tally;
   CoherentQuery::Statistics sum;
   for (const Bodies& pair : bodies()) {
@@ -101,8 +101,9 @@ TEST_CASE("coherent queries answer as queries from scratch do, for motions of al
       CAPTURE(walk);
       CollideRequest request;
       request.mode = walk % 4 == 3 ? Mode::first_pair : Mode::all_pairs;
-      CoherentQuery coherent(pair.a, pair.b, request,
-                             walk % 5 == 4 ? CoherentQuery::Lists::as_it_pays : CoherentQuery::Lists::always);
+      CoherentQuery coherent(
+          pair.a, pair.b, request,
+          walk % 5 == 4 ? CoherentQuery::CacheUse::as_it_pays : CoherentQuery::CacheUse::always);
       QueryContext context;
       const double share = shapes::uniform(random, 0, 0.9);
       Pose pose_a, pose_b = shapes::random_pose(random, pair.a, pair.b, share);
@@ -138,12 +139,12 @@ TEST_CASE("coherent queries answer as queries from scratch do, for motions of al
       add(sum, coherent.statistics());
     }
   }
-  MESSAGE(tally.queries << " queries: " << sum.from_list << " from lists, " << sum.lists_made
+  MESSAGE(tally.queries << " queries: " << sum.from_cache << " from lists, " << sum.caches_made
                         << " lists made, " << sum.from_scratch << " from scratch, " << sum.tests_saved
                         << " tests saved; " << tally.contact << " in contact, " << tally.apart << " apart, "
                         << tally.inside << " inside, " << tally.changes << " changes of relation");
-  CHECK(sum.from_list > 1000);
-  CHECK(sum.lists_made > 200);
+  CHECK(sum.from_cache > 1000);
+  CHECK(sum.caches_made > 200);
   CHECK(sum.tests_saved > 1000);
   CHECK(tally.contact > 500);
   CHECK(tally.apart > 300);
@@ -152,7 +153,7 @@ TEST_CASE("coherent queries answer as queries from scratch do, for motions of al
 }
 
 TEST_CASE("coherent queries of bodies on courses: they screw, speed up, bend, and turn back") {
-  Random random(815);
+  RandomEngine random(815);
   Tally tally;
   CoherentQuery::Statistics sum;
   for (const Bodies& pair : bodies()) {
@@ -163,8 +164,9 @@ TEST_CASE("coherent queries of bodies on courses: they screw, speed up, bend, an
       CAPTURE(walk);
       CollideRequest request;
       request.mode = walk % 8 == 7 ? Mode::first_pair : Mode::all_pairs;
-      CoherentQuery coherent(pair.a, pair.b, request,
-                             walk % 6 == 5 ? CoherentQuery::Lists::as_it_pays : CoherentQuery::Lists::always);
+      CoherentQuery coherent(
+          pair.a, pair.b, request,
+          walk % 6 == 5 ? CoherentQuery::CacheUse::as_it_pays : CoherentQuery::CacheUse::always);
       QueryContext context;
       NullProbe probe;
       const double share = shapes::uniform(random, 0, 0.9);
@@ -188,11 +190,11 @@ TEST_CASE("coherent queries of bodies on courses: they screw, speed up, bend, an
       add(sum, coherent.statistics());
     }
   }
-  MESSAGE(tally.queries << " queries: " << sum.from_list << " from lists, " << sum.lists_made
-                        << " lists made, " << sum.lists_ahead << " of them ahead; " << tally.contact
+  MESSAGE(tally.queries << " queries: " << sum.from_cache << " from lists, " << sum.caches_made
+                        << " lists made, " << sum.swept_caches << " of them ahead; " << tally.contact
                         << " in contact, " << tally.apart << " apart, " << tally.inside << " inside");
-  CHECK(sum.from_list > 3000);
-  CHECK(sum.lists_ahead > 300);
+  CHECK(sum.from_cache > 3000);
+  CHECK(sum.swept_caches > 300);
   CHECK(tally.contact > 500);
   CHECK(tally.apart > 300);
   CHECK(tally.inside > 50);
@@ -206,7 +208,7 @@ TEST_CASE("coherent queries notice a small body that goes through a surface in o
   Relation before = Relation::separate;
   int through = 0;
   for (const double step : {0.03, 0.05, 0.07, 0.11, 0.13}) {
-    CoherentQuery coherent(a, b, {}, CoherentQuery::Lists::always);
+    CoherentQuery coherent(a, b, {}, CoherentQuery::CacheUse::always);
     for (double s = 1.5; s > -1.5; s -= step) {
       const Pose p = Pose::translation({s, 0.1, 0.02});
       const CollideResult scratch = collide(a, Pose{}, b, p, {}, context, probe);
@@ -215,26 +217,26 @@ TEST_CASE("coherent queries notice a small body that goes through a surface in o
                  before != Relation::crossing;
       before = scratch.relation;
     }
-    CHECK(coherent.statistics().lists_ahead > 1);
+    CHECK(coherent.statistics().swept_caches > 1);
   }
   CHECK(through > 3);
 }
 
 TEST_CASE("coherent queries notice a body that slides through a contact in steps of every size") {
-  Random random(12);
+  RandomEngine random(12);
   const LrbRep a = build_lrb(shapes::bumpy_sphere(3, 5, 0.2)), b = build_lrb(shapes::bumpy_sphere(2, 6, 0.2));
   QueryContext context;
   NullProbe probe;
   Tally tally;
   for (const double step : {0.0002, 0.002, 0.02, 0.2}) {
-    CoherentQuery coherent(a, b, {}, CoherentQuery::Lists::always);
+    CoherentQuery coherent(a, b, {}, CoherentQuery::CacheUse::always);
     const Eigen::Vector3d way = shapes::random_direction(random);
     for (double s = 2.6; s > 1.4; s -= step) {
       const Pose p = Pose::translation(s * way);
       compare(coherent.collide(Pose{}, p), collide(a, Pose{}, b, p, {}, context, probe), Mode::all_pairs,
               tally);
     }
-    CHECK(coherent.statistics().from_list > coherent.statistics().lists_made);
+    CHECK(coherent.statistics().from_cache > coherent.statistics().caches_made);
   }
   CHECK(tally.contact > 100);
 }
@@ -246,14 +248,14 @@ TEST_CASE("coherent queries of bodies of any size") {
     CAPTURE(size);
     const LrbRep a = bare(shapes::scaled(shapes::icosphere(2), size)),
                  b = bare(shapes::scaled(shapes::bumpy_sphere(2, 6, 0.2), size));
-    CoherentQuery coherent(a, b, {}, CoherentQuery::Lists::always);
+    CoherentQuery coherent(a, b, {}, CoherentQuery::CacheUse::always);
     Tally tally;
     for (double s = 2.3; s > 1.7; s -= 0.01) {
       const Pose p = Pose::translation(size * Eigen::Vector3d(s, 0.1, 0));
       compare(coherent.collide(Pose{}, p), collide(a, Pose{}, b, p, {}, context, probe), Mode::all_pairs,
               tally);
     }
-    CHECK(coherent.statistics().from_list > 10);
+    CHECK(coherent.statistics().from_cache > 10);
     CHECK(tally.contact > 10);
   }
 }
@@ -263,7 +265,7 @@ TEST_CASE("coherent queries of bodies that stand still, creep, or go on after a 
   QueryContext context;
   NullProbe probe;
   Tally tally;
-  CoherentQuery coherent(a, b, {}, CoherentQuery::Lists::always);
+  CoherentQuery coherent(a, b, {}, CoherentQuery::CacheUse::always);
   Pose p = Pose::translation({2.2, 0.1, 0});
   for (const double step : {0.0, 0.01, 0.0, 1e-15, 0.003, 0.0, 1e-12, 0.001, 0.0})
     for (int i = 0; i < 30; ++i) {
@@ -271,7 +273,7 @@ TEST_CASE("coherent queries of bodies that stand still, creep, or go on after a 
       compare(coherent.collide(Pose{}, p), collide(a, Pose{}, b, p, {}, context, probe), Mode::all_pairs,
               tally);
     }
-  CHECK(coherent.statistics().from_list > 100);
+  CHECK(coherent.statistics().from_cache > 100);
   CHECK(tally.contact > 50);
   CHECK(tally.apart > 30);
 }
@@ -288,7 +290,7 @@ TEST_CASE("coherent queries of bodies that go on to where no numbers are") {
   QueryContext context;
   NullProbe probe;
   for (const auto& way : {on_course, on_none}) {
-    CoherentQuery coherent(a, b, {}, CoherentQuery::Lists::always);
+    CoherentQuery coherent(a, b, {}, CoherentQuery::CacheUse::always);
     Tally tally;
     for (const Vector3d& t : way) {
       const Pose p = Pose::translation(t);
@@ -315,5 +317,5 @@ TEST_CASE("what a coherent query has no list for is passed on") {
     const CollideResult& r = with_contacts.collide(Pose{}, p);
     CHECK(r.regions.size() == collide(a, Pose{}, a, p, request).regions.size());
   }
-  CHECK(paper.statistics().from_list == 0);
+  CHECK(paper.statistics().from_cache == 0);
 }

@@ -3,12 +3,12 @@
 
 #include "engine/query/brute_force.hpp"
 #include "engine/query/collide_impl.hpp"
-#include "scenarios/shapes/hand_made.hpp"
-#include "scenarios/shapes/random_pose.hpp"
-#include "scenarios/shapes/shapes.hpp"
+#include "scenarios/bodies/shapes/hand_made.hpp"
+#include "scenarios/bodies/shapes/random_pose.hpp"
+#include "scenarios/bodies/shapes/shapes.hpp"
 
 using namespace lrb;
-using shapes::Random;
+using shapes::RandomEngine;
 
 namespace {
 
@@ -77,7 +77,7 @@ std::vector<Bodies> bodies() {
 }  // namespace
 
 TEST_CASE("complete equals brute force on random poses, from deep inside to near misses") {
-  Random random(20240607);
+  RandomEngine random(20240607);
   QueryContext context;
   Tally total;
   for (const Bodies& pair : bodies()) {
@@ -97,7 +97,7 @@ TEST_CASE("complete equals brute force on random poses, from deep inside to near
 }
 
 TEST_CASE("complete equals brute force when both bodies move") {
-  Random random(5);
+  RandomEngine random(5);
   QueryContext context;
   Tally total;
   const LrbRep a = closed(shapes::bumpy_sphere(1, 3)), b = closed(shapes::torus(9, 6));
@@ -113,7 +113,7 @@ TEST_CASE("complete equals brute force when both bodies move") {
 }
 
 TEST_CASE("complete equals brute force on identical bodies and grid-aligned contact") {
-  Random random(6);
+  RandomEngine random(6);
   QueryContext context;
   Tally total;
   const std::vector<LrbRep> list = {closed(shapes::box()),          closed(shapes::comb(4)),
@@ -135,7 +135,7 @@ TEST_CASE("complete equals brute force on identical bodies and grid-aligned cont
 }
 
 TEST_CASE("any matrix is answered exactly, rotation or not") {
-  Random random(8);
+  RandomEngine random(8);
   QueryContext context;
   Tally total;
   const LrbRep a = closed(shapes::icosphere(1)), b = closed(shapes::box({-0.5, -0.5, -0.5}, {0.5, 0.5, 0.5}));
@@ -172,7 +172,7 @@ TEST_CASE("an open body has no inside: without contact the relation is undefined
 }
 
 TEST_CASE("swapping the bodies transposes the pairs") {
-  Random random(11);
+  RandomEngine random(11);
   const LrbRep a = closed(shapes::bumpy_sphere(2, 1)), b = closed(shapes::comb(3));
   for (int i = 0; i < 50; ++i) {
     const Pose p = shapes::random_pose(random, a, b, shapes::uniform(random, 0, 0.8));

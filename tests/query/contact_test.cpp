@@ -2,8 +2,8 @@
 #include <doctest/doctest.h>
 
 #include "engine/query/collide.hpp"
-#include "scenarios/shapes/random_pose.hpp"
-#include "scenarios/shapes/shapes.hpp"
+#include "scenarios/bodies/shapes/random_pose.hpp"
+#include "scenarios/bodies/shapes/shapes.hpp"
 
 using namespace lrb;
 

@@ -8,20 +8,20 @@
 #include <boost/multiprecision/cpp_int.hpp>
 #include <doctest/doctest.h>
 
-#include "engine/query/tree_query.hpp"
-#include "scenarios/families/families.hpp"
-#include "scenarios/shapes/shapes.hpp"
+#include "engine/query/walk/tree_query.hpp"
+#include "scenarios/bodies/shapes/shapes.hpp"
+#include "scenarios/cases/families.hpp"
 #include "tests/support/rational_oracle.hpp"
 
 #define LRB_KERNEL_NAME run_tree_kernel_for_enclosure
 namespace lrb {
 void run_tree_kernel_for_enclosure(TreeKernel& k);
 }
-#include "engine/query/tree_kernel.inl"
+#include "engine/tree/tree_kernel.inl"
 #include "tests/support/tree_content.hpp"
 
 using namespace lrb;
-using families::Random;
+using cases::RandomEngine;
 
 namespace {
 
@@ -251,7 +251,8 @@ struct Asked {
 };
 
 /// What the kernel is certain of is what the rational oracle says.
-void check_certain(const Scene& s, std::span<const Candidate> found, Random& random, int most, Asked& asked) {
+void check_certain(const Scene& s, std::span<const Candidate> found, RandomEngine& random, int most,
+                   Asked& asked) {
   for (int i = 0; i < most && !found.empty(); ++i) {
     const Candidate& c = found[random() % found.size()];
     if (c.certainty != Certainty::cross && c.certainty != Certainty::disjoint) continue;
@@ -262,7 +263,7 @@ void check_certain(const Scene& s, std::span<const Candidate> found, Random& ran
 }
 
 /// Pairs that boxes or planes have dropped do not meet, says the rational oracle.
-void check_dropped(const Scene& s, Random& random, int most, Asked& asked) {
+void check_dropped(const Scene& s, RandomEngine& random, int most, Asked& asked) {
   TreeKernel k = set_up_kernel(*s.a, s.pose_a, *s.b, s.pose_b);
   std::vector<NodePair> stack(64 * (s.a->tree().height() + s.b->tree().height()) + 64);
   std::vector<Candidate> out(64 + std::size_t{s.a->real_simplex_count()} * s.b->real_simplex_count());
@@ -292,8 +293,8 @@ LrbRep closed(const Mesh& mesh, double size = 1) {
 }
 
 /// Moves that strain the error terms: far off, an ulp from each other, no rotations.
-void spoil(Scene& s, Random& random, int kind) {
-  const Eigen::Vector3d far = std::pow(10, families::pick(random, 0, 16)) * shapes::random_direction(random);
+void spoil(Scene& s, RandomEngine& random, int kind) {
+  const Eigen::Vector3d far = std::pow(10, cases::pick(random, 0, 16)) * shapes::random_direction(random);
   if (kind == 1) s.pose_b = s.pose_a;
   if (kind == 2 || kind == 3) {
     s.pose_a.t += far;
@@ -308,14 +309,13 @@ void spoil(Scene& s, Random& random, int kind) {
     }
   if (kind == 7) s.pose_a.r = shapes::random_rotation(random) * Eigen::Vector3d(1, 1, 0).asDiagonal();
   if (kind % 2)
-    for (int i = 0; i < 3; ++i)
-      s.pose_b.t[i] = families::nudged(s.pose_b.t[i], families::pick(random, -1, 1));
+    for (int i = 0; i < 3; ++i) s.pose_b.t[i] = cases::nudged(s.pose_b.t[i], cases::pick(random, -1, 1));
 }
 
 }  // namespace
 
 TEST_CASE("whatever boxes leave out is apart in exact arithmetic: random and adversarial poses") {
-  Random random(31);
+  RandomEngine random(31);
   const double kSizes[] = {1, 1, 1e-12, 1e12, 1e-60, 1e100, 1e-308};
   Share total;
   Asked asked;
@@ -325,7 +325,7 @@ TEST_CASE("whatever boxes leave out is apart in exact arithmetic: random and adv
     const bool both = i % 3 != 0;
     const LrbRep a = closed(i % 2 ? shapes::bumpy_sphere(1, 3) : shapes::comb(3), both ? size : 1),
                  b = closed(i % 5 ? shapes::icosphere(1) : shapes::torus(6, 5), size);
-    Scene s{&a, &b, families::any_pose(random), {}};
+    Scene s{&a, &b, cases::any_pose(random), {}};
     s.pose_a.t *= both ? size : 1;
     s.pose_b = shapes::random_pose(random, a, b, shapes::uniform(random, 0, 1.1));
     s.pose_b.t = s.pose_a.apply(s.pose_b.t);

@@ -5,13 +5,13 @@
 #include <doctest/doctest.h>
 
 #include "engine/query/brute_force.hpp"
-#include "engine/query/coherent_query.hpp"
+#include "engine/query/coherent/coherent_query.hpp"
 #include "engine/query/collide.hpp"
-#include "scenarios/families/families.hpp"
-#include "scenarios/shapes/shapes.hpp"
+#include "scenarios/bodies/shapes/shapes.hpp"
+#include "scenarios/cases/families.hpp"
 
 using namespace lrb;
-using families::Random;
+using cases::RandomEngine;
 
 namespace {
 
@@ -29,12 +29,12 @@ LrbRep soup(const std::vector<Triangle>& triangles) {
   return LrbRep::without_regions(m, false, false);
 }
 
-Eigen::Vector3d in_ball(Random& random) {
+Eigen::Vector3d in_ball(RandomEngine& random) {
   const double radius = shapes::uniform(random, 0, 1);
   return radius * shapes::random_direction(random);
 }
 
-Eigen::Vector3d on(const Triangle& t, Random& random) {
+Eigen::Vector3d on(const Triangle& t, RandomEngine& random) {
   const double u = shapes::uniform(random, 0, 1), v = shapes::uniform(random, 0, 1 - u);
   return t[0] + u * (t[1] - t[0]) + v * (t[2] - t[0]);
 }
@@ -44,7 +44,7 @@ struct Bodies {
   Pose pose_large, pose_small;
 };
 
-Bodies small_on_large(Random& random, double size, double offset) {
+Bodies small_on_large(RandomEngine& random, double size, double offset) {
   std::vector<Triangle> large, small;
   Pose pose_large{shapes::random_rotation(random), offset * shapes::random_direction(random)};
   Pose pose_small{shapes::random_rotation(random), pose_large.t + in_ball(random)};
@@ -68,7 +68,7 @@ Bodies small_on_large(Random& random, double size, double offset) {
 }  // namespace
 
 TEST_CASE("small triangles on large ones: the answer is that of brute force") {
-  Random random(3);
+  RandomEngine random(3);
   std::size_t meeting = 0;
   for (int i = 0; i < 3000; ++i) {
     const double size = std::pow(10, shapes::uniform(random, -7, -0.5));
@@ -87,14 +87,14 @@ TEST_CASE("small triangles on large ones: the answer is that of brute force") {
 }
 
 TEST_CASE("small triangles on large ones: coherent queries while they quiver") {
-  Random random(5);
-  std::size_t meeting = 0, from_list = 0, changes = 0;
+  RandomEngine random(5);
+  std::size_t meeting = 0, from_cache = 0, changes = 0;
   for (int i = 0; i < 300; ++i) {
     const double size = std::pow(10, shapes::uniform(random, -6, -0.5));
     Bodies x = small_on_large(random, size, i % 3 ? 0 : std::pow(10, shapes::uniform(random, -1, 5)));
     CAPTURE(i);
     CAPTURE(size);
-    CoherentQuery coherent(x.large, x.small, {}, CoherentQuery::Lists::always);
+    CoherentQuery coherent(x.large, x.small, {}, CoherentQuery::CacheUse::always);
     const Pose start = x.pose_small;
     std::size_t before = 0;
     for (int step = 0; step < 12; ++step) {
@@ -108,16 +108,16 @@ TEST_CASE("small triangles on large ones: coherent queries while they quiver") {
       x.pose_small.r = Pose::rotation(axis, turn).r * start.r;
       x.pose_small.t = start.t + 0.3 * size * in_ball(random);
     }
-    from_list += coherent.statistics().from_list;
+    from_cache += coherent.statistics().from_cache;
   }
   CHECK(meeting > 20'000);
-  CHECK(from_list > 1000);
+  CHECK(from_cache > 1000);
   CHECK(changes > 500);
 }
 
 TEST_CASE("a small triangle above the long edge of an obtuse sliver: coherent queries while it comes down") {
-  Random random(1);
-  std::size_t meeting = 0, from_list = 0;
+  RandomEngine random(1);
+  std::size_t meeting = 0, from_cache = 0;
   for (int i = 0; i < 3000; ++i) {
     const Eigen::Matrix3d turn = shapes::random_rotation(random);
     const double height = std::pow(10, shapes::uniform(random, -7.5, -5));
@@ -132,7 +132,7 @@ TEST_CASE("a small triangle above the long edge of an obtuse sliver: coherent qu
     const LrbRep a = soup({sliver}), b = soup({small});
     const Eigen::Vector3d down = turn * Eigen::Vector3d(0, -1, 0);
     const double step = gap / (4 + i % 4);
-    CoherentQuery coherent(a, b, {}, CoherentQuery::Lists::always);
+    CoherentQuery coherent(a, b, {}, CoherentQuery::CacheUse::always);
     CAPTURE(i);
     for (int k = -3; k < 11; ++k) {
       const Pose p = Pose::translation(k * step * down);
@@ -140,8 +140,8 @@ TEST_CASE("a small triangle above the long edge of an obtuse sliver: coherent qu
       REQUIRE(now.pairs == brute_force(a, Pose{}, b, p).pairs);
       meeting += now.pairs.size();
     }
-    from_list += coherent.statistics().from_list;
+    from_cache += coherent.statistics().from_cache;
   }
   CHECK(meeting > 5000);
-  CHECK(from_list > 5000);
+  CHECK(from_cache > 5000);
 }

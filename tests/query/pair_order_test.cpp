@@ -1,4 +1,4 @@
-#include "engine/query/pair_order.hpp"
+#include "engine/query/walk/pair_order.hpp"
 
 #include <algorithm>
 #include <random>

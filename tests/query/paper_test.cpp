@@ -2,9 +2,9 @@
 #include <doctest/doctest.h>
 
 #include "engine/query/collide_impl.hpp"
-#include "scenarios/shapes/hand_made.hpp"
-#include "scenarios/shapes/random_pose.hpp"
-#include "scenarios/shapes/shapes.hpp"
+#include "scenarios/bodies/shapes/hand_made.hpp"
+#include "scenarios/bodies/shapes/random_pose.hpp"
+#include "scenarios/bodies/shapes/shapes.hpp"
 
 using namespace lrb;
 
@@ -29,7 +29,7 @@ TEST_CASE("the result says which recursion it used") {
 TEST_CASE("without regions the paper's query is brute force, and finds all") {
   const LrbRep a = LrbRep::without_regions(shapes::icosphere(1), true, false);
   const LrbRep b = LrbRep::without_regions(shapes::comb(3), true, false);
-  shapes::Random random(3);
+  shapes::RandomEngine random(3);
   for (int i = 0; i < 20; ++i) {
     const Pose p = shapes::random_pose(random, a, b, 0.4);
     const CollideResult paper = ask(a, b, p, Recursion::paper);
@@ -66,7 +66,7 @@ TEST_CASE(
 }
 
 TEST_CASE("the strict reading finds no more than the other, and no pair that is not there") {
-  shapes::Random random(4);
+  shapes::RandomEngine random(4);
   const LrbRep a = shapes::dented_box();
   std::size_t strict_total = 0, paper_total = 0, complete_total = 0;
   for (int i = 0; i < 200; ++i) {

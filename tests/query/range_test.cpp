@@ -3,14 +3,14 @@
 
 #include <doctest/doctest.h>
 
-#include "engine/error.hpp"
+#include "engine/core/error.hpp"
 #include "engine/query/brute_force.hpp"
 #include "engine/query/collide.hpp"
-#include "scenarios/shapes/random_pose.hpp"
-#include "scenarios/shapes/shapes.hpp"
+#include "scenarios/bodies/shapes/random_pose.hpp"
+#include "scenarios/bodies/shapes/shapes.hpp"
 
 using namespace lrb;
-using shapes::Random;
+using shapes::RandomEngine;
 
 namespace {
 
@@ -32,7 +32,7 @@ std::string complaint(const LrbRep& a, const Pose& pose_a, const LrbRep& b, cons
 // Both bodies scaled by 100 or more: the kernel's inverse by transposition is then off by the fourth power,
 // of which the bound once covered the third. 23 pairs of 192 were missed.
 TEST_CASE("two matrices that scale miss nothing") {
-  Random random(3);
+  RandomEngine random(3);
   const LrbRep a = closed(shapes::icosphere(1)), b = closed(shapes::bumpy_sphere(1, 2));
   int in_contact = 0;
   for (int i = 0; i < 300; ++i) {
@@ -49,7 +49,7 @@ TEST_CASE("two matrices that scale miss nothing") {
 }
 
 TEST_CASE("bodies made of denormals miss nothing") {
-  Random random(4);
+  RandomEngine random(4);
   int in_contact = 0;
   for (int i = 0; i < 300; ++i) {
     const double scale = std::ldexp(1.0, shapes::uniform(random) < 0.5 ? -1060 : -1040);
@@ -81,7 +81,7 @@ TEST_CASE("world coordinates that overflow are refused by name") {
 // Areas times coordinates of bodies of size 1e120 are no doubles: centroids were not numbers, and at 1e-120
 // normals vanished.
 TEST_CASE("a power of two scales contact regions exactly") {
-  Random random(5);
+  RandomEngine random(5);
   CollideRequest request;
   request.contacts = true;
   const Mesh mesh_a = shapes::l_shape(), mesh_b = shapes::box();
@@ -150,7 +150,7 @@ TEST_CASE("crossings of ordinary bodies are all proved") {
   request.interiors_overlap = true;
   const LrbRep bodies[] = {closed(shapes::bumpy_sphere(2, 3, 0.5)), closed(shapes::torus(12, 8)),
                            closed(shapes::comb(4)), closed(shapes::bowl(12, 6))};
-  shapes::Random random(3);
+  shapes::RandomEngine random(3);
   int crossings = 0;
   for (int i = 0; i < 300; ++i) {
     const LrbRep &a = bodies[i % 4], &b = bodies[random() % 4];

@@ -2,15 +2,15 @@
 // one against every face of the other and every corner against the other as a whole, in rational arithmetic.
 #include <doctest/doctest.h>
 
-#include "engine/build/build.hpp"
+#include "engine/construct/build.hpp"
 #include "engine/query/brute_force.hpp"
 #include "engine/query/collide.hpp"
-#include "scenarios/shapes/random_pose.hpp"
-#include "scenarios/shapes/shapes.hpp"
+#include "scenarios/bodies/shapes/random_pose.hpp"
+#include "scenarios/bodies/shapes/shapes.hpp"
 #include "tests/torture/parity_oracle.hpp"
 
 using namespace lrb;
-using shapes::Random;
+using shapes::RandomEngine;
 using torture::WorldPoint;
 
 namespace {
@@ -56,7 +56,7 @@ bool boxes_apart(const double* const a[3], const double* const b[3], int n) {
 }
 
 /// Whether two closed surfaces have no point in common and neither reaches into what the other encloses.
-bool are_apart(const Wrapped& a, const Wrapped& b, Random& random) {
+bool are_apart(const Wrapped& a, const Wrapped& b, RandomEngine& random) {
   const int n = a.rep.dim();
   for (const SimplexId s : a.simplices)
     for (const SimplexId t : b.simplices) {
@@ -107,7 +107,7 @@ std::vector<Bodies> bodies() {
 }  // namespace
 
 TEST_CASE("certificates of separation hold, and hold no region too many open") {
-  Random random(99);
+  RandomEngine random(99);
   for (const Bodies& pair : bodies()) {
     CAPTURE(pair.name);
     int certified = 0, trials = 0, refined = 0, minimal = 0;
@@ -143,7 +143,7 @@ TEST_CASE("certificates of separation hold, and hold no region too many open") {
 }
 
 TEST_CASE("the checker can say no: wrappers as they come do not prove close bodies apart") {
-  Random random(7);
+  RandomEngine random(7);
   const LrbRep bowl = build_lrb(shapes::bowl(16, 8)), ball = build_lrb(shapes::icosphere(2, 0.3));
   const Pose inside = Pose::translation({0, 0, 0.2});
   const CollideResult r = [&] {

@@ -6,20 +6,20 @@
 #include <boost/multiprecision/cpp_bin_float.hpp>
 #include <doctest/doctest.h>
 
-#include "engine/query/tree_query.hpp"
-#include "scenarios/shapes/random_pose.hpp"
-#include "scenarios/shapes/shapes.hpp"
+#include "engine/query/walk/tree_query.hpp"
+#include "scenarios/bodies/shapes/random_pose.hpp"
+#include "scenarios/bodies/shapes/shapes.hpp"
 
 // The kernel itself, to look at what is inside it.
 #define LRB_KERNEL_NAME run_tree_kernel_under_test
 namespace lrb {
 void run_tree_kernel_under_test(TreeKernel& k);
 }
-#include "engine/query/tree_kernel.inl"
+#include "engine/tree/tree_kernel.inl"
 #include "tests/support/tree_content.hpp"
 
 using namespace lrb;
-using shapes::Random;
+using shapes::RandomEngine;
 
 namespace {
 
@@ -49,7 +49,7 @@ Real3 in_node(const TreeNode& n, const Real3& x) {
 
 /// Box k of a node must hold the simplices beneath it, as the kernel decodes it; the ball everything.
 void check_node(const LrbRep& rep, std::uint32_t index) {
-  const BlockTree& t = rep.tree();
+  const ObbTree& t = rep.tree();
   const TreeNode& n = t.nodes()[index];
   const Boxes boxes = decode(n, 1);
   const Whole whole = whole_of(n, 1);
@@ -119,7 +119,7 @@ double share_of_edges(const Real3* true_a, const float (*got_a)[3], const Real3*
 
 /// Greatest deviation of the corners that a leaf pair computes with from the functionals, over the error that
 /// the kernel reckons with; and of edges.
-Shares worst_shares(const Scene& s, Random& random, int pairs) {
+Shares worst_shares(const Scene& s, RandomEngine& random, int pairs) {
   const TreeKernel k = set_up_kernel(s.a, s.pose_a, s.b, s.pose_b);
   const double unit = std::max(s.a.tree().unit(), s.b.tree().unit());
   Shares worst;
@@ -195,7 +195,7 @@ TEST_CASE("a tree of simplices that all are one point, or on one line") {
 }
 
 TEST_CASE("the kernel's error covers rotation, translation, rounding and odd matrices") {
-  Random random(7);
+  RandomEngine random(7);
   Shares worst;
   for (int i = 0; i < 400; ++i) {
     const double kSizes[] = {1, 1, 1e-12, 1e12, 1e-60};

@@ -7,7 +7,7 @@
 #include <Eigen/Geometry>
 
 #include "engine/lrb/lrb_rep.hpp"
-#include "scenarios/shapes/shapes.hpp"
+#include "scenarios/bodies/shapes/shapes.hpp"
 
 namespace lrb::test {
 

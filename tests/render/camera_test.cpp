@@ -5,7 +5,7 @@
 
 #include <doctest/doctest.h>
 
-#include "engine/error.hpp"
+#include "engine/core/error.hpp"
 
 using namespace lrb;
 using Eigen::Vector3d;
@@ -35,13 +35,13 @@ TEST_CASE("a fitted camera shows every point, within the margin, and wastes no r
     const double scale = std::pow(10.0, i % 7 - 3);
     const auto points = cloud(random, scale * Vector3d(angle(random), angle(random), angle(random)) * 10,
                               scale * Vector3d(1, 0.2 + i % 3, i % 5));
-    FitOptions options;
-    options.view = view_from_angles(angle(random), 0.45 * angle(random));
+    render::FitOptions options;
+    options.view = render::view_from_angles(angle(random), 0.45 * angle(random));
     options.orthographic = i % 2 == 0;
     const double width = 1280, height = i % 3 == 0 ? 720 : 1500,
                  free = options.margin * std::min(width, height);
-    const Camera camera = fit_camera(points, width, height, options);
-    const Projection projection(camera, width, height, box_of(points));
+    const render::Camera camera = render::fit_camera(points, width, height, options);
+    const render::Projection projection(camera, width, height, box_of(points));
     double tightest = std::numeric_limits<double>::infinity();
     for (const Vector3d& p : points) {
       const auto at = projection.to_pixel(p);
@@ -60,24 +60,24 @@ TEST_CASE("a fitted camera shows every point, within the margin, and wastes no r
 TEST_CASE("single points, flat and far scenes can be fitted") {
   for (const Vector3d& at : {Vector3d(0, 0, 0), Vector3d(1e6, -1e6, 3), Vector3d(1e-8, 0, 0)}) {
     for (const bool orthographic : {false, true}) {
-      FitOptions options;
+      render::FitOptions options;
       options.orthographic = orthographic;
       const std::vector<Vector3d> points{at};
-      const Camera camera = fit_camera(points, 640, 360, options);
-      const Projection projection(camera, 640, 360, box_of(points));
+      const render::Camera camera = render::fit_camera(points, 640, 360, options);
+      const render::Projection projection(camera, 640, 360, box_of(points));
       const auto pixel = projection.to_pixel(at);
       REQUIRE(pixel.has_value());
       CHECK((*pixel - Eigen::Vector2d(320, 180)).norm() < 1);
     }
   }
-  CHECK_THROWS_AS(fit_camera(std::vector<Vector3d>{}, 640, 360), InputError);
-  CHECK_THROWS_AS(fit_camera(std::vector<Vector3d>{{0, 0, std::nan("")}}, 640, 360), InputError);
+  CHECK_THROWS_AS(render::fit_camera(std::vector<Vector3d>{}, 640, 360), InputError);
+  CHECK_THROWS_AS(render::fit_camera(std::vector<Vector3d>{{0, 0, std::nan("")}}, 640, 360), InputError);
 }
 
 TEST_CASE("the view from above keeps x to the right and y up") {
   const std::vector<Vector3d> points{{0, 0, 0}, {4, 0, 0}, {4, 2, 0}, {0, 2, 0}};
-  const Camera camera = fit_top(points, 800, 400, 0.1);
-  const Projection projection(camera, 800, 400, box_of(points));
+  const render::Camera camera = render::fit_top(points, 800, 400, 0.1);
+  const render::Projection projection(camera, 800, 400, box_of(points));
   const Eigen::Vector2d origin = *projection.to_pixel({0, 0, 0}), right = *projection.to_pixel({1, 0, 0}),
                         up = *projection.to_pixel({0, 1, 0});
   CHECK(right.x() > origin.x());
@@ -92,10 +92,10 @@ TEST_CASE("a camera on the contact holds it with its surroundings") {
   const std::vector<Vector3d> contact{{1, 1, 1}, {1.1, 1, 1}, {1.05, 1.04, 1.02}};
   Eigen::AlignedBox3d scene(Vector3d(-2, -2, -2), Vector3d(2, 2, 2));
   for (const bool orthographic : {false, true}) {
-    FitOptions options;
+    render::FitOptions options;
     options.orthographic = orthographic;
-    const Camera camera = fit_contact(contact, scene, 800, 600, options, 3.0, 0.01);
-    const Projection projection(camera, 800, 600, scene);
+    const render::Camera camera = render::fit_contact(contact, scene, 800, 600, options, 3.0, 0.01);
+    const render::Projection projection(camera, 800, 600, scene);
     Eigen::AlignedBox2d seen;
     for (const Vector3d& p : contact) seen.extend(*projection.to_pixel(p));
     CHECK(seen.min().minCoeff() > 100);
@@ -107,25 +107,28 @@ TEST_CASE("a camera on the contact holds it with its surroundings") {
   std::vector<Vector3d> deep;
   for (int i = 0; i < 40; ++i) deep.push_back(Vector3d(std::sin(i * 0.157), 0.1, 3 * std::cos(i * 0.157)));
   deep.emplace_back(0, 0, 4);
-  FitOptions wide_angle;
+  render::FitOptions wide_angle;
   wide_angle.fov_y = 1.2;
-  const Camera middle = fit_contact(deep, scene, 800, 600, wide_angle);
+  const render::Camera middle = render::fit_contact(deep, scene, 800, 600, wide_angle);
   Eigen::AlignedBox2d extent;
-  for (const Vector3d& p : deep) extent.extend(*Projection(middle, 800, 600, scene).to_pixel(p));
+  for (const Vector3d& p : deep) extent.extend(*render::Projection(middle, 800, 600, scene).to_pixel(p));
   CHECK((extent.center() - Eigen::Vector2d(400, 300)).norm() < 0.05 * extent.diagonal().norm());
   // A contact in one point is shown at the least size asked for.
-  const Camera near = fit_contact(std::vector<Vector3d>{{1, 1, 1}}, scene, 800, 600, {}, 3.0, 0.01);
-  const Camera wide = fit_contact(std::vector<Vector3d>{{1, 1, 1}}, scene, 800, 600, {}, 3.0, 0.1);
+  const render::Camera near =
+      render::fit_contact(std::vector<Vector3d>{{1, 1, 1}}, scene, 800, 600, {}, 3.0, 0.01);
+  const render::Camera wide =
+      render::fit_contact(std::vector<Vector3d>{{1, 1, 1}}, scene, 800, 600, {}, 3.0, 0.1);
   CHECK((wide.eye - wide.target).norm() > 5 * (near.eye - near.target).norm());
 }
 
 TEST_CASE("nearer in depth is nearer in the world, by shares of the picture's height") {
   for (const bool orthographic : {false, true}) {
-    Camera camera;
+    render::Camera camera;
     camera.eye = {0, 0, 5};
     camera.orthographic = orthographic;
     camera.half_height = 1.5;
-    const Projection p(camera, 400, 300, Eigen::AlignedBox3d(Vector3d(-1, -1, -8), Vector3d(1, 1, 2)));
+    const render::Projection p(camera, 400, 300,
+                               Eigen::AlignedBox3d(Vector3d(-1, -1, -8), Vector3d(1, 1, 2)));
     const Vector3d at(0.3, 0.2, -4);
     const double height = p.unit_per_pixel(at) * 300;
     const Vector3d eye = p.to_eye(at);
@@ -138,7 +141,7 @@ TEST_CASE("a view from beside puts both ends of the axis side by side") {
   for (const Vector3d& up : {Vector3d(0, 0, 1), Vector3d(0, 1, 0)}) {
     for (const Vector3d& axis :
          {Vector3d(1, 0.3, 0.2), Vector3d(-0.1, 2, 5), Vector3d(0, -1, 0.2), Vector3d(0, 0, 7)}) {
-      const ViewDirection view = view_beside(axis, up);
+      const render::ViewDirection view = render::view_beside(axis, up);
       if (axis.cross(up).norm() > 0) CHECK(std::abs(view.from.dot(axis - axis.dot(up) * up)) < 1e-12);
       CHECK(view.from.norm() == doctest::Approx(1));
       CHECK(view.from.dot(up) > 0.3);
@@ -147,27 +150,28 @@ TEST_CASE("a view from beside puts both ends of the axis side by side") {
 }
 
 TEST_CASE("orbit keeps target, distance and height") {
-  const Camera camera = fit_camera(Eigen::AlignedBox3d(Vector3d(-1, -1, -1), Vector3d(1, 1, 1)), 640, 360);
-  Camera turned = camera;
-  for (int i = 0; i < 12; ++i) turned = orbit(turned, 2 * 3.14159265358979323846 / 12);
+  const render::Camera camera =
+      render::fit_camera(Eigen::AlignedBox3d(Vector3d(-1, -1, -1), Vector3d(1, 1, 1)), 640, 360);
+  render::Camera turned = camera;
+  for (int i = 0; i < 12; ++i) turned = render::orbit(turned, 2 * 3.14159265358979323846 / 12);
   CHECK((turned.eye - camera.eye).norm() < 1e-12);
-  const Camera quarter = orbit(camera, 1.5);
+  const render::Camera quarter = render::orbit(camera, 1.5);
   CHECK(quarter.eye.z() == doctest::Approx(camera.eye.z()));
   CHECK((quarter.eye - quarter.target).norm() == doctest::Approx((camera.eye - camera.target).norm()));
   CHECK((quarter.eye - camera.eye).norm() > 1);
-  const Camera lifted = orbit(camera, 0, 0.3);
+  const render::Camera lifted = render::orbit(camera, 0, 0.3);
   CHECK(lifted.eye.z() > camera.eye.z());
   CHECK((lifted.eye - lifted.target).norm() == doctest::Approx((camera.eye - camera.target).norm()));
-  const Camera top = orbit(camera, 0, 9);  // stops short of the vertical
+  const render::Camera top = render::orbit(camera, 0, 9);  // stops short of the vertical
   CHECK((top.eye - top.target).cross(top.up).norm() > 0.01);
 }
 
 TEST_CASE("cameras without a direction or an opening are refused") {
-  Camera camera;
+  render::Camera camera;
   camera.eye = camera.target;
   const Eigen::AlignedBox3d scene(Vector3d(-1, -1, -1), Vector3d(1, 1, 1));
-  CHECK_THROWS_AS(Projection(camera, 10, 10, scene), InputError);
+  CHECK_THROWS_AS(render::Projection(camera, 10, 10, scene), InputError);
   camera.eye = {0, 0, 5};
   camera.fov_y = 0;
-  CHECK_THROWS_AS(Projection(camera, 10, 10, scene), InputError);
+  CHECK_THROWS_AS(render::Projection(camera, 10, 10, scene), InputError);
 }

@@ -17,8 +17,8 @@ TEST_CASE("a polygon becomes a fan whose edges are its outline") {
     std::vector<Vector3d> corners;
     for (std::size_t i = 0; i < n; ++i)
       corners.emplace_back(std::cos(0.8 * double(i)), std::sin(0.8 * double(i)), 0);
-    DrawList list;
-    DrawTriangle like;
+    render::DrawList list;
+    render::DrawTriangle like;
     like.edges = 7;
     list.add_polygon(corners, like);
     REQUIRE(list.triangles.size() == n - 2);
@@ -26,7 +26,7 @@ TEST_CASE("a polygon becomes a fan whose edges are its outline") {
     const auto index = [&](const Vector3d& x) {
       return static_cast<std::size_t>(std::find(corners.begin(), corners.end(), x) - corners.begin());
     };
-    for (const DrawTriangle& t : list.triangles) {
+    for (const render::DrawTriangle& t : list.triangles) {
       for (std::size_t i = 0; i < 3; ++i) {
         if (t.edges >> i & 1) CHECK(drawn.emplace(index(t.x[i]), index(t.x[(i + 1) % 3])).second);
       }
@@ -37,47 +37,47 @@ TEST_CASE("a polygon becomes a fan whose edges are its outline") {
 }
 
 TEST_CASE("edge styles are shared and survive appending") {
-  DrawList a, b;
+  render::DrawList a, b;
   const auto style = a.edge_style({{1, 2, 3}, 2});
   CHECK(a.edge_style({{1, 2, 3}, 2}) == style);
   CHECK(a.edge_styles.size() == 2);
   b.edge_style({{9, 9, 9}, 1});
-  DrawTriangle t;
+  render::DrawTriangle t;
   t.edge_style = b.edge_style({{4, 5, 6}, 3});
   b.triangles.push_back(t);
   a.append(b);
-  CHECK(a.edge_styles[a.triangles[0].edge_style].colour == Rgba{4, 5, 6});
+  CHECK(a.edge_styles[a.triangles[0].edge_style].colour == render::Rgba{4, 5, 6});
 }
 
 TEST_CASE("the summary counts by kind and layer") {
-  DrawList list;
-  DrawTriangle t;
+  render::DrawList list;
+  render::DrawTriangle t;
   t.colour = {1, 2, 3};
   test::add(list, test::box_triangles({0, 0, 0}, {1, 1, 1}), t);
-  t.layer = Layer::translucent;
+  t.layer = render::Layer::translucent;
   t.colour = {4, 5, 6, 70};
   test::add(list, test::box_triangles({0, 0, 0}, {2, 2, 2}), t);
   list.lines.push_back({{{0, 0, 0}, {1, 1, 1}}, false, {9, 9, 9}});
   list.labels.push_back({{0, 0, 0}, "origin"});
-  CHECK(summary(list) ==
+  CHECK(render::summary(list) ==
         "triangles, opaque: 12, 12 ids, #010203ff x12\n"
         "triangles, translucent: 12, 12 ids, #04050646 x12\n"
         "lines, opaque: 1, #090909ff x1\n"
         "label: origin\n");
-  CHECK(bounds(list).isApprox(Eigen::AlignedBox3d(Vector3d(0, 0, 0), Vector3d(2, 2, 2))));
-  CHECK(DrawList().empty());
+  CHECK(render::bounds(list).isApprox(Eigen::AlignedBox3d(Vector3d(0, 0, 0), Vector3d(2, 2, 2))));
+  CHECK(render::DrawList().empty());
   CHECK(!list.empty());
 }
 
 TEST_CASE("corners lie on the grid of 1/256 pixel") {
-  DrawList list;
+  render::DrawList list;
   test::add(list, test::sphere_triangles(2), {});
-  const auto points = extent_points(list);
-  const Camera camera = fit_camera(points, 641, 359);
-  const Projection projection(camera, 641, 359, bounds(list));
-  const ScreenMesh mesh = make_screen_mesh(list, projection, 1);
+  const auto points = render::extent_points(list);
+  const render::Camera camera = render::fit_camera(points, 641, 359);
+  const render::Projection projection(camera, 641, 359, render::bounds(list));
+  const render::ScreenMesh mesh = render::make_screen_mesh(list, projection, 1);
   REQUIRE(mesh.faces.size() == 320 * 3);
-  for (const FaceVertex& v : mesh.faces) {
+  for (const render::FaceVertex& v : mesh.faces) {
     const double x = (static_cast<double>(v.x[0]) + 1) / 2 * 641 * 256;
     const double y = (static_cast<double>(v.x[1]) + 1) / 2 * 359 * 256;
     CHECK(std::abs(x - std::round(x)) < 0.02);
@@ -86,33 +86,34 @@ TEST_CASE("corners lie on the grid of 1/256 pixel") {
 }
 
 TEST_CASE("edge distances are pixels on the screen") {
-  DrawList list;
-  DrawTriangle t;
+  render::DrawList list;
+  render::DrawTriangle t;
   t.edges = 1 | 4;
   t.x = {Vector3d(0, 0, 0), {3, 0, 0}, {0, 3, 0}};
   list.triangles.push_back(t);
-  const auto points = extent_points(list);
-  const Camera camera = fit_top(points, 500, 500, 0.1);  // 3 units over 400 pixels
-  const ScreenMesh mesh = make_screen_mesh(list, Projection(camera, 500, 500, bounds(list)), 1);
+  const auto points = render::extent_points(list);
+  const render::Camera camera = render::fit_top(points, 500, 500, 0.1);  // 3 units over 400 pixels
+  const render::ScreenMesh mesh =
+      render::make_screen_mesh(list, render::Projection(camera, 500, 500, render::bounds(list)), 1);
   REQUIRE(mesh.faces.size() == 3);
   CHECK(mesh.faces[2].edge[0] == doctest::Approx(400));
   CHECK(mesh.faces[1].edge[2] == doctest::Approx(400));
   CHECK(mesh.faces[0].edge[0] == doctest::Approx(0).epsilon(1e-6));
-  for (const FaceVertex& v : mesh.faces) CHECK(v.edge[1] == kNoEdge);
+  for (const render::FaceVertex& v : mesh.faces) CHECK(v.edge[1] == render::kNoEdge);
 }
 
 TEST_CASE("what lies behind a camera within the scene is clipped") {
-  DrawList list;
+  render::DrawList list;
   test::add(list, test::sphere_triangles(2, 1), {});
-  Camera camera;
+  render::Camera camera;
   camera.eye = {0, 0, 0.2};
   camera.target = {0, 0, 0.9};
   camera.up = {0, 1, 0};
-  const Projection projection(camera, 400, 400, bounds(list));
-  const ScreenMesh mesh = make_screen_mesh(list, projection, 1);
+  const render::Projection projection(camera, 400, 400, render::bounds(list));
+  const render::ScreenMesh mesh = render::make_screen_mesh(list, projection, 1);
   CHECK(mesh.faces.size() > 30);
   CHECK(mesh.faces.size() % 3 == 0);
-  for (const FaceVertex& v : mesh.faces) {
+  for (const render::FaceVertex& v : mesh.faces) {
     for (int i = 0; i < 3; ++i) CHECK(std::abs(v.x[i]) <= 18);
     CHECK(std::isfinite(v.edge[0]));
   }

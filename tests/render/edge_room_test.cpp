@@ -11,7 +11,7 @@ using Eigen::Vector3d;
 
 namespace {
 
-double altitude(const DrawTriangle& t, const Projection& projection) {
+double altitude(const render::DrawTriangle& t, const render::Projection& projection) {
   double lowest = 1e9;
   for (int i = 0; i < 3; ++i) {
     const Eigen::Vector2d a = *projection.to_pixel(t.x[i]), b = *projection.to_pixel(t.x[(i + 1) % 3]);
@@ -22,12 +22,13 @@ double altitude(const DrawTriangle& t, const Projection& projection) {
 }
 
 /// Every triangle with every other.
-double brute_room(const DrawList& list, const DrawTriangle& t, const Projection& projection) {
+double brute_room(const render::DrawList& list, const render::DrawTriangle& t,
+                  const render::Projection& projection) {
   double sum = 0;
   for (const Vector3d& x : t.x) {
     double here = 0;
     int count = 0;
-    for (const DrawTriangle& o : list.triangles) {
+    for (const render::DrawTriangle& o : list.triangles) {
       if (o.edges == 0 || o.edge_style != t.edge_style || std::count(o.x.begin(), o.x.end(), x) == 0)
         continue;
       here += altitude(o, projection);
@@ -41,40 +42,41 @@ double brute_room(const DrawList& list, const DrawTriangle& t, const Projection&
 }  // namespace
 
 TEST_CASE("the room of edges is the mean altitude round about, of triangles of one style") {
-  DrawList list;
-  DrawTriangle t;
+  render::DrawList list;
+  render::DrawTriangle t;
   t.edges = 7;
   test::add(list, test::sphere_triangles(2), t);
-  t.edge_style = list.edge_style({kBlack, 3});
+  t.edge_style = list.edge_style({render::kBlack, 3});
   test::add(list, test::sphere_triangles(1), t);  // shares corners with the first, not the style
   t.edges = 0;
   test::add(list, test::sphere_triangles(1, 1.5), t);
-  const auto points = extent_points(list);
-  const Projection projection(fit_camera(points, 640, 480), 640, 480, bounds(list));
-  const std::vector<double> room = edge_room(list, projection);
+  const auto points = render::extent_points(list);
+  const render::Projection projection(render::fit_camera(points, 640, 480), 640, 480, render::bounds(list));
+  const std::vector<double> room = render::edge_room(list, projection);
   REQUIRE(room.size() == list.triangles.size());
   for (std::size_t i = 0; i < room.size(); ++i) {
-    const DrawTriangle& triangle = list.triangles[i];
+    const render::DrawTriangle& triangle = list.triangles[i];
     const double expected = triangle.edges == 0 ? 0 : brute_room(list, triangle, projection);
     CHECK(room[i] == doctest::Approx(expected).epsilon(1e-6));
   }
 }
 
 TEST_CASE("what comes up to the eye has room") {
-  DrawList list;
-  DrawTriangle t;
+  render::DrawList list;
+  render::DrawTriangle t;
   t.edges = 7;
   t.x = {Vector3d(-1, -1, -3), {1, -1, -3}, {0, 1, 9}};
   list.triangles.push_back(t);
-  Camera camera;
+  render::Camera camera;
   camera.eye = Vector3d::Zero();
   camera.target = {0, 0, -1};
-  CHECK(edge_room(list, Projection(camera, 300, 200, bounds(list)))[0] == doctest::Approx(200));
+  CHECK(render::edge_room(list, render::Projection(camera, 300, 200, render::bounds(list)))[0] ==
+        doctest::Approx(200));
 }
 
 TEST_CASE("fading is smooth between its ends") {
-  CHECK(fade_between(1, 2, 4) == 0);
-  CHECK(fade_between(3, 2, 4) == doctest::Approx(0.5));
-  CHECK(fade_between(5, 2, 4) == 1);
-  CHECK(fade_between(2.01, 2, 4) < 0.001);
+  CHECK(render::fade_between(1, 2, 4) == 0);
+  CHECK(render::fade_between(3, 2, 4) == doctest::Approx(0.5));
+  CHECK(render::fade_between(5, 2, 4) == 1);
+  CHECK(render::fade_between(2.01, 2, 4) < 0.001);
 }

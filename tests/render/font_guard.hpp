@@ -5,15 +5,15 @@
 
 #include <doctest/doctest.h>
 
-#include "engine/error.hpp"
+#include "engine/core/error.hpp"
 #include "render/text.hpp"
 
 namespace lrb::test {
 
 inline bool have_font() {
   try {
-    find_font(false);
-    find_font(true);
+    render::find_font(false);
+    render::find_font(true);
     return true;
   } catch (const EnvironmentError& e) {
     MESSAGE("left out: " << std::string(e.what()));

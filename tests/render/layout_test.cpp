@@ -1,6 +1,6 @@
 #include <doctest/doctest.h>
 
-#include "engine/error.hpp"
+#include "engine/core/error.hpp"
 #include "render/montage.hpp"
 #include "render/overlay.hpp"
 #include "render/palette.hpp"
@@ -10,24 +10,24 @@ using namespace lrb;
 
 namespace {
 
-Overlay full_overlay() {
-  Overlay o;
+render::Overlay full_overlay() {
+  render::Overlay o;
   o.title = "Ball against ball, step 12 of 60, recursion complete, regularised wrappers";
   o.event = "Event 123 456: face test, pseudo face 1 234 of A against real face 99 938 of B: they cross";
-  o.event_colour = palette::kYellow;
+  o.event_colour = render::palette::kYellow;
   o.counters = {{"face tests", "12 345 678"}, {"refinements", "87"}, {"wrapper A", "112"},
                 {"wrapper B", "98"},          {"contacts", "23"},    {"regions opened", "1 234"}};
-  using Mark = LegendItem::Mark;
+  using Mark = render::LegendItem::Mark;
   for (const char* text : {"A, real faces", "A, pseudo faces", "B, real faces", "B, pseudo faces",
                            "region being refined", "pair under test", "contact", "contact, hidden"}) {
-    o.key.push_back({static_cast<Mark>(o.key.size() % 5), palette::kBlue, text});
+    o.key.push_back({static_cast<Mark>(o.key.size() % 5), render::palette::kBlue, text});
   }
-  o.scale = ScaleBar{"face tests per face", 0, 12345};
+  o.scale = render::ScaleBar{"face tests per face", 0, 12345};
   return o;
 }
 
-std::vector<PixelRect> boxes(const OverlayLayout& layout) {
-  std::vector<PixelRect> out{layout.picture};
+std::vector<render::PixelRect> boxes(const render::OverlayLayout& layout) {
+  std::vector<render::PixelRect> out{layout.picture};
   for (const auto& t : layout.texts) out.push_back(t.box);
   out.insert(out.end(), layout.key_marks.begin(), layout.key_marks.end());
   if (layout.event_mark.width > 0) out.push_back(layout.event_mark);
@@ -39,17 +39,17 @@ std::vector<PixelRect> boxes(const OverlayLayout& layout) {
 
 TEST_CASE("in frames of the usual sizes nothing overlaps or is cut off") {
   if (!test::have_font()) return;
-  Overlay overlay = full_overlay();
+  render::Overlay overlay = full_overlay();
   for (const bool scale : {true, false}) {
     if (!scale) overlay.scale.reset();
     for (const std::pair<int, int>& size :
          {std::pair{640, 360}, {1280, 720}, {1920, 1080}, {3840, 2160}, {600, 800}, {500, 500}}) {
       const int w = size.first, h = size.second;
       CAPTURE(w);
-      const OverlayLayout layout = lay_out(overlay, w, h);
+      const render::OverlayLayout layout = render::lay_out(overlay, w, h);
       const auto all = boxes(layout);
       for (std::size_t i = 0; i < all.size(); ++i) {
-        CHECK(PixelRect{0, 0, w, h}.contains(all[i]));
+        CHECK(render::PixelRect{0, 0, w, h}.contains(all[i]));
         for (std::size_t j = 0; j < i; ++j) CHECK(!all[i].overlaps(all[j]));
       }
       CHECK(layout.picture.width == w);
@@ -57,13 +57,14 @@ TEST_CASE("in frames of the usual sizes nothing overlaps or is cut off") {
       CHECK(layout.text_height >= 10);
     }
   }
-  CHECK_THROWS_AS(lay_out(overlay, 100, 60), InputError);
+  CHECK_THROWS_AS(render::lay_out(overlay, 100, 60), InputError);
 }
 
 TEST_CASE("more pixels an inch change nothing but the number of pixels") {
   if (!test::have_font()) return;
-  const Overlay overlay = full_overlay();
-  const OverlayLayout screen = lay_out(overlay, 1280, 720), print = lay_out(overlay, 3840, 2160, 3);
+  const render::Overlay overlay = full_overlay();
+  const render::OverlayLayout screen = render::lay_out(overlay, 1280, 720),
+                              print = render::lay_out(overlay, 3840, 2160, 3);
   CHECK(print.text_height == 3 * screen.text_height);
   REQUIRE(print.texts.size() == screen.texts.size());
   for (std::size_t i = 0; i < print.texts.size(); ++i) {
@@ -75,93 +76,93 @@ TEST_CASE("more pixels an inch change nothing but the number of pixels") {
 
 TEST_CASE("the overlay draws where it was laid out, the rest stays") {
   if (!test::have_font()) return;
-  const Overlay overlay = full_overlay();
-  const OverlayLayout layout = lay_out(overlay, 1280, 720);
-  const Image picture(layout.picture.width, layout.picture.height, {1, 2, 3});
-  const Image frame = compose_frame(picture, layout.picture, overlay, 1280, 720);
+  const render::Overlay overlay = full_overlay();
+  const render::OverlayLayout layout = render::lay_out(overlay, 1280, 720);
+  const render::Image picture(layout.picture.width, layout.picture.height, {1, 2, 3});
+  const render::Image frame = render::compose_frame(picture, layout.picture, overlay, 1280, 720);
   for (int y = layout.picture.y; y < layout.picture.bottom(); ++y) {
-    for (int x = 0; x < 1280; x += 5) REQUIRE(frame.at(x, y) == Rgba{1, 2, 3});
+    for (int x = 0; x < 1280; x += 5) REQUIRE(frame.at(x, y) == render::Rgba{1, 2, 3});
   }
-  const PixelRect& m = layout.event_mark;
-  CHECK(frame.at(m.x + m.width / 2, m.y + m.height / 2) == palette::kYellow);
-  const PixelRect& s = layout.bar;
-  CHECK(frame.at(s.x, s.y + 2) == palette::viridis(0));
-  CHECK(frame.at(s.right() - 1, s.y + 2) == palette::viridis(1));
+  const render::PixelRect& m = layout.event_mark;
+  CHECK(frame.at(m.x + m.width / 2, m.y + m.height / 2) == render::palette::kYellow);
+  const render::PixelRect& s = layout.bar;
+  CHECK(frame.at(s.x, s.y + 2) == render::palette::viridis(0));
+  CHECK(frame.at(s.right() - 1, s.y + 2) == render::palette::viridis(1));
   for (const auto& t : layout.texts) {
     int ink = 0;
     for (int y = t.box.y; y < t.box.bottom(); ++y) {
-      for (int x = t.box.x; x < t.box.right(); ++x) ink += frame.at(x, y) != kWhite;
+      for (int x = t.box.x; x < t.box.right(); ++x) ink += frame.at(x, y) != render::kWhite;
     }
     CHECK(ink > 10);
   }
 }
 
 TEST_CASE("an empty overlay leaves the whole frame to the picture") {
-  CHECK(lay_out(Overlay{}, 640, 360).picture == PixelRect{0, 0, 640, 360});
+  CHECK(render::lay_out(render::Overlay{}, 640, 360).picture == render::PixelRect{0, 0, 640, 360});
 }
 
 TEST_CASE("frames of a sequence share a picture") {
-  OverlayLayout a, b;
+  render::OverlayLayout a, b;
   a.picture = {0, 40, 640, 250};
   b.picture = {0, 60, 640, 250};
-  CHECK(common_picture(std::vector{a, b}) == PixelRect{0, 60, 640, 230});
+  CHECK(render::common_picture(std::vector{a, b}) == render::PixelRect{0, 60, 640, 230});
 }
 
 TEST_CASE("numbers are short and grouped") {
-  CHECK(group_digits(0) == "0");
-  CHECK(group_digits(999) == "999");
-  CHECK(group_digits(1234567) == "1\u202f234\u202f567");
-  CHECK(short_number(-1200) == "-1\u202f200");
-  CHECK(short_number(0.12345) == "0.123");
-  CHECK(short_number(3e9) == "3e+09");
+  CHECK(render::group_digits(0) == "0");
+  CHECK(render::group_digits(999) == "999");
+  CHECK(render::group_digits(1234567) == "1\u202f234\u202f567");
+  CHECK(render::short_number(-1200) == "-1\u202f200");
+  CHECK(render::short_number(0.12345) == "0.123");
+  CHECK(render::short_number(3e9) == "3e+09");
 }
 
 TEST_CASE("panels of a montage lie in a grid and do not overlap") {
   if (!test::have_font()) return;
-  std::vector<Panel> panels;
+  std::vector<render::Panel> panels;
   for (int i = 0; i < 5; ++i) {
-    panels.push_back({Image(120 + 10 * i, 90, {static_cast<std::uint8_t>(50 * i), 0, 0}),
+    panels.push_back({render::Image(120 + 10 * i, 90, {static_cast<std::uint8_t>(50 * i), 0, 0}),
                       i == 2 ? "a caption that surely needs more than one line here" : "short"});
   }
-  MontageOptions options;
+  render::MontageOptions options;
   options.columns = 3;
-  const MontageLayout layout = lay_out(panels, options);
+  const render::MontageLayout layout = render::lay_out(panels, options);
   REQUIRE(layout.panels.size() == 5);
-  std::vector<PixelRect> all = layout.panels;
+  std::vector<render::PixelRect> all = layout.panels;
   all.insert(all.end(), layout.captions.begin(), layout.captions.end());
   for (std::size_t i = 0; i < all.size(); ++i) {
-    CHECK(PixelRect{0, 0, layout.width, layout.height}.contains(all[i]));
+    CHECK(render::PixelRect{0, 0, layout.width, layout.height}.contains(all[i]));
     for (std::size_t j = 0; j < i; ++j) CHECK(!all[i].overlaps(all[j]));
   }
   CHECK(layout.panels[0].y == layout.panels[2].y);
   CHECK(layout.panels[3].y >= layout.captions[2].bottom());
   CHECK(layout.lines[2].size() > 1);
   CHECK(layout.lines[3][0] == "(d) short");
-  const Image image = montage(panels, options);
+  const render::Image image = render::montage(panels, options);
   CHECK(image.width() == layout.width);
   for (int i = 0; i < 5; ++i) {
-    const PixelRect& r = layout.panels[static_cast<std::size_t>(i)];
+    const render::PixelRect& r = layout.panels[static_cast<std::size_t>(i)];
     CHECK(image.at(r.x, r.y).r == 50 * i);
     CHECK(image.at(r.right() - 1, r.bottom() - 1).r == 50 * i);
   }
-  CHECK(image.at(1, 1) == kWhite);
-  CHECK_THROWS_AS(montage({}), InputError);
+  CHECK(image.at(1, 1) == render::kWhite);
+  CHECK_THROWS_AS(render::montage({}), InputError);
 }
 
 TEST_CASE("four panels of a figure stand two by two; letters go on after z") {
   if (!test::have_font()) return;
-  const std::vector<Panel> panels(4, Panel{Image(400, 300), ""});
-  const MontageLayout layout = lay_out(panels);
+  const std::vector<render::Panel> panels(4, render::Panel{render::Image(400, 300), ""});
+  const render::MontageLayout layout = render::lay_out(panels);
   CHECK(layout.panels[0].y == layout.panels[1].y);
   CHECK(layout.panels[2].y > layout.panels[1].y);
-  CHECK(panel_letter(0) == "(a)");
-  CHECK(panel_letter(25) == "(z)");
-  CHECK(panel_letter(26) == "(aa)");
-  MontageOptions plain;
+  CHECK(render::panel_letter(0) == "(a)");
+  CHECK(render::panel_letter(25) == "(z)");
+  CHECK(render::panel_letter(26) == "(aa)");
+  render::MontageOptions plain;
   plain.letters = false;
   plain.columns = 2;
   plain.gutter = 0;
-  const MontageLayout tight = lay_out(panels, plain);
+  const render::MontageLayout tight = render::lay_out(panels, plain);
   CHECK(tight.width == 800);
   CHECK(tight.height == 600);
 }

@@ -8,7 +8,7 @@
 
 #include <doctest/doctest.h>
 
-#include "engine/error.hpp"
+#include "engine/core/error.hpp"
 #include "render/offscreen.hpp"
 #include "tests/render/font_guard.hpp"
 #include "tests/render/triangles.hpp"
@@ -18,14 +18,14 @@ using Eigen::Vector3d;
 
 namespace {
 
-Rasterizer& rasterizer() {
-  static Rasterizer r;
+render::Rasterizer& rasterizer() {
+  static render::Rasterizer r;
   return r;
 }
 
 /// One pixel per unit, origin in the lower left corner, seen from above.
-Camera pixel_camera(int width, int height) {
-  Camera c;
+render::Camera pixel_camera(int width, int height) {
+  render::Camera c;
   c.eye = {0.5 * width, 0.5 * height, 100};
   c.target = {0.5 * width, 0.5 * height, 0};
   c.up = {0, 1, 0};
@@ -34,8 +34,8 @@ Camera pixel_camera(int width, int height) {
   return c;
 }
 
-DrawTriangle flat(Rgba colour, Layer layer = Layer::opaque) {
-  DrawTriangle t;
+render::DrawTriangle flat(render::Rgba colour, render::Layer layer = render::Layer::opaque) {
+  render::DrawTriangle t;
   t.colour = colour;
   t.layer = layer;
   t.lit = false;
@@ -43,21 +43,22 @@ DrawTriangle flat(Rgba colour, Layer layer = Layer::opaque) {
 }
 
 /// A square in the plane z, as two triangles.
-void square(DrawList& list, double x0, double y0, double x1, double y1, double z, DrawTriangle like) {
+void square(render::DrawList& list, double x0, double y0, double x1, double y1, double z,
+            render::DrawTriangle like) {
   list.add_polygon({{x0, y0, z}, {x1, y0, z}, {x1, y1, z}, {x0, y1, z}}, like);
 }
 
-RasterOptions size(int width, int height, int supersample = 2) {
-  RasterOptions o;
+render::RasterOptions size(int width, int height, int supersample = 2) {
+  render::RasterOptions o;
   o.width = width;
   o.height = height;
   o.supersample = supersample;
   return o;
 }
 
-constexpr Rgba kRed{255, 0, 0}, kGreen{0, 255, 0}, kBlue{0, 0, 255};
+constexpr render::Rgba kRed{255, 0, 0}, kGreen{0, 255, 0}, kBlue{0, 0, 255};
 
-bool near(Rgba a, Rgba b, int by = 2) {
+bool near(render::Rgba a, render::Rgba b, int by = 2) {
   return std::abs(a.r - b.r) <= by && std::abs(a.g - b.g) <= by && std::abs(a.b - b.b) <= by &&
          std::abs(a.a - b.a) <= by;
 }
@@ -65,98 +66,98 @@ bool near(Rgba a, Rgba b, int by = 2) {
 }  // namespace
 
 TEST_CASE("faces are where they should be, nearer ones in front, rows from the top") {
-  DrawList list;
+  render::DrawList list;
   square(list, 10, 10, 50, 40, 0, flat(kRed));
   square(list, 30, 20, 60, 60, 1, flat(kGreen));
-  const Image image = rasterizer().draw(list, pixel_camera(80, 64), size(80, 64));
-  CHECK(image.at(5, 5) == kWhite);
+  const render::Image image = rasterizer().draw(list, pixel_camera(80, 64), size(80, 64));
+  CHECK(image.at(5, 5) == render::kWhite);
   CHECK(image.at(10, 64 - 1 - 10) == kRed);
-  CHECK(image.at(9, 64 - 1 - 10) == kWhite);
+  CHECK(image.at(9, 64 - 1 - 10) == render::kWhite);
   CHECK(image.at(29, 64 - 1 - 39) == kRed);
   CHECK(image.at(30, 64 - 1 - 20) == kGreen);
   CHECK(image.at(49, 64 - 1 - 30) == kGreen);
   CHECK(image.at(59, 64 - 1 - 59) == kGreen);
-  CHECK(image.at(60, 64 - 1 - 59) == kWhite);
+  CHECK(image.at(60, 64 - 1 - 59) == render::kWhite);
 }
 
 TEST_CASE("supersampling averages in integers; the background may be transparent") {
-  DrawList list;
+  render::DrawList list;
   square(list, 10, 10, 20.5, 20, 0, flat(kRed));
-  RasterOptions o = size(32, 32);
-  Image image = rasterizer().draw(list, pixel_camera(32, 32), o);
-  CHECK(image.at(20, 31 - 15) == Rgba{255, 128, 128});
+  render::RasterOptions o = size(32, 32);
+  render::Image image = rasterizer().draw(list, pixel_camera(32, 32), o);
+  CHECK(image.at(20, 31 - 15) == render::Rgba{255, 128, 128});
   o.background.reset();
   image = rasterizer().draw(list, pixel_camera(32, 32), o);
   CHECK(image.at(15, 31 - 15) == kRed);
-  CHECK(image.at(0, 0) == kTransparent);
+  CHECK(image.at(0, 0) == render::kTransparent);
   CHECK(near(image.at(20, 31 - 15), {255, 0, 0, 128}));
-  o.background = Rgba{7, 8, 9};
-  CHECK(rasterizer().draw({}, pixel_camera(32, 32), o).at(3, 3) == Rgba{7, 8, 9});
+  o.background = render::Rgba{7, 8, 9};
+  CHECK(rasterizer().draw({}, pixel_camera(32, 32), o).at(3, 3) == render::Rgba{7, 8, 9});
 }
 
 TEST_CASE("edges are drawn with their width, and only those asked for") {
   for (const int supersample : {1, 2, 4}) {
-    DrawList list;
-    DrawTriangle t = flat(kWhite);
+    render::DrawList list;
+    render::DrawTriangle t = flat(render::kWhite);
     t.edges = 7;
-    t.edge_style = list.edge_style({kBlack, 6});
+    t.edge_style = list.edge_style({render::kBlack, 6});
     square(list, 10, 10, 90, 90, 0, t);
-    const Image image = rasterizer().draw(list, pixel_camera(100, 100), size(100, 100, supersample));
-    CHECK(image.at(10, 50) == kBlack);  // half of the width lies on this face: pixels 10 to 12
-    CHECK(image.at(12, 50) == kBlack);
-    CHECK(near(image.at(14, 50), kWhite));
-    CHECK(image.at(88, 50) == kBlack);
-    CHECK(image.at(50, 12) == kBlack);
-    CHECK(image.at(50, 87) == kBlack);
-    CHECK(image.at(50, 50) == kWhite);  // on the diagonal of the fan: no edge
-    CHECK(image.at(40, 60) == kWhite);
+    const render::Image image = rasterizer().draw(list, pixel_camera(100, 100), size(100, 100, supersample));
+    CHECK(image.at(10, 50) == render::kBlack);  // half of the width lies on this face: pixels 10 to 12
+    CHECK(image.at(12, 50) == render::kBlack);
+    CHECK(near(image.at(14, 50), render::kWhite));
+    CHECK(image.at(88, 50) == render::kBlack);
+    CHECK(image.at(50, 12) == render::kBlack);
+    CHECK(image.at(50, 87) == render::kBlack);
+    CHECK(image.at(50, 50) == render::kWhite);  // on the diagonal of the fan: no edge
+    CHECK(image.at(40, 60) == render::kWhite);
   }
 }
 
 TEST_CASE("edges fade where they would cover the face") {
-  DrawList list;
-  DrawTriangle t = flat(kGreen);
+  render::DrawList list;
+  render::DrawTriangle t = flat(kGreen);
   t.edges = 7;
-  t.edge_style = list.edge_style({kBlack, 1});
+  t.edge_style = list.edge_style({render::kBlack, 1});
   for (int i = 0; i < 40; ++i) square(list, 10 + i, 10, 11 + i, 50, 0, t);
-  const Image image = rasterizer().draw(list, pixel_camera(64, 64), size(64, 64));
+  const render::Image image = rasterizer().draw(list, pixel_camera(64, 64), size(64, 64));
   CHECK(image.at(30, 30) == kGreen);
 }
 
 TEST_CASE("edges of faces that show their back are paler where their style says so") {
-  DrawList list;
-  DrawTriangle t = flat(kWhite, Layer::translucent);
+  render::DrawList list;
+  render::DrawTriangle t = flat(render::kWhite, render::Layer::translucent);
   t.edges = 7;
-  t.edge_style = list.edge_style({kBlack, 6, 0.4F});
+  t.edge_style = list.edge_style({render::kBlack, 6, 0.4F});
   square(list, 10, 10, 90, 90, 0, t);
   list.add_polygon({{110, 10, 0}, {110, 90, 0}, {190, 90, 0}, {190, 10, 0}}, t);  // the other way round
-  const Image image = rasterizer().draw(list, pixel_camera(200, 100), size(200, 100));
-  CHECK(image.at(11, 50) == kBlack);
+  const render::Image image = rasterizer().draw(list, pixel_camera(200, 100), size(200, 100));
+  CHECK(image.at(11, 50) == render::kBlack);
   CHECK(near(image.at(111, 50), {153, 153, 153}));
-  CHECK(image.at(12, 50) == kBlack);
+  CHECK(image.at(12, 50) == render::kBlack);
   CHECK(image.at(112, 50).r > 220);  // 0.7 of the width
 }
 
 TEST_CASE("in a close-up among large bodies, lines on top know what hides them") {
   // A slope across the view, a line on it and one as far behind it as it is wide, and then some.
-  DrawList list;
-  DrawTriangle t = flat(kGreen);
+  render::DrawList list;
+  render::DrawTriangle t = flat(kGreen);
   list.add_polygon({{-1, -1, -0.7}, {1, -1, -0.7}, {1, 1, 0.7}, {-1, 1, 0.7}}, t);
   list.add_polygon({{-90, -90, -200}, {90, -90, -200}, {0, 90, -200}}, t);
   list.add_polygon({{-90, -90, 50}, {90, -90, 50}, {0, 90, 50}}, t);  // behind the eye
-  DrawLine line;
+  render::DrawLine line;
   line.colour = kRed;
   line.width = 6;
-  line.layer = Layer::on_top;
+  line.layer = render::Layer::on_top;
   line.points = {{-0.6, 0, 0}, {0.6, 0, 0}};
   list.lines.push_back(line);
   line.points = {{-0.6, 0.4, 0.16}, {0.6, 0.4, 0.16}};  // the slope is at 0.28 there
   list.lines.push_back(line);
-  Camera camera;
+  render::Camera camera;
   camera.eye = {0, 0, 4};
   camera.target = Vector3d::Zero();
   camera.fov_y = 0.5;
-  const Image image = rasterizer().draw(list, camera, size(300, 300));
+  const render::Image image = rasterizer().draw(list, camera, size(300, 300));
   const auto red = [&](int x0, int y0, int x1, int y1) {
     int n = 0;
     for (int y = y0; y < y1; ++y) {
@@ -171,10 +172,10 @@ TEST_CASE("in a close-up among large bodies, lines on top know what hides them")
 
 TEST_CASE("translucent faces blend by depth, whatever their order, also where they cross") {
   for (const bool swapped : {false, true}) {
-    DrawList list;
-    square(list, 0, 0, 40, 40, -5, flat(kWhite));
-    DrawTriangle red = flat({255, 0, 0, 128}, Layer::translucent),
-                 blue = flat({0, 0, 255, 128}, Layer::translucent);
+    render::DrawList list;
+    square(list, 0, 0, 40, 40, -5, flat(render::kWhite));
+    render::DrawTriangle red = flat({255, 0, 0, 128}, render::Layer::translucent),
+                         blue = flat({0, 0, 255, 128}, render::Layer::translucent);
     // Two planes that cross at x = 20: left of it red is nearer, right of it blue.
     const auto add_red = [&] { list.add_polygon({{5, 5, 2}, {35, 5, -2}, {35, 35, -2}, {5, 35, 2}}, red); };
     const auto add_blue = [&] { list.add_polygon({{5, 5, -2}, {35, 5, 2}, {35, 35, 2}, {5, 35, -2}}, blue); };
@@ -183,39 +184,39 @@ TEST_CASE("translucent faces blend by depth, whatever their order, also where th
     } else {
       add_red(), add_blue();
     }
-    const Image image = rasterizer().draw(list, pixel_camera(40, 40), size(40, 40));
+    const render::Image image = rasterizer().draw(list, pixel_camera(40, 40), size(40, 40));
     CHECK(near(image.at(10, 20), {191, 64, 128}));
     CHECK(near(image.at(30, 20), {128, 64, 191}));
-    CHECK(image.at(2, 2) == kWhite);
+    CHECK(image.at(2, 2) == render::kWhite);
   }
 }
 
 TEST_CASE("what is opaque hides translucent faces behind it") {
-  DrawList list;
+  render::DrawList list;
   square(list, 0, 0, 20, 40, 1, flat(kGreen));
-  square(list, 0, 0, 40, 40, 0, flat({255, 0, 0, 128}, Layer::translucent));
-  const Image image = rasterizer().draw(list, pixel_camera(40, 40), size(40, 40));
+  square(list, 0, 0, 40, 40, 0, flat({255, 0, 0, 128}, render::Layer::translucent));
+  const render::Image image = rasterizer().draw(list, pixel_camera(40, 40), size(40, 40));
   CHECK(image.at(10, 20) == kGreen);
   CHECK(near(image.at(30, 20), {255, 127, 127}));
 }
 
 TEST_CASE("a nudge settles what lies in one plane") {
-  DrawList list;
-  DrawTriangle lid = flat(kBlue);
+  render::DrawList list;
+  render::DrawTriangle lid = flat(kBlue);
   lid.nudge = 1;
   list.add_polygon({{0, 0, 0}, {40, 0, 13}, {40, 40, 13}, {0, 40, 0}}, flat(kRed));
   list.add_polygon({{0, 0, 0}, {20, 0, 6.5}, {40, 0, 13}, {40, 20, 13}, {40, 40, 13}, {0, 40, 0}}, lid);
-  const Image image = rasterizer().draw(list, pixel_camera(40, 40), size(40, 40));
+  const render::Image image = rasterizer().draw(list, pixel_camera(40, 40), size(40, 40));
   for (int y = 1; y < 39; ++y) {
     for (int x = 1; x < 39; ++x) REQUIRE(image.at(x, y) == kBlue);
   }
 }
 
 TEST_CASE("lines have their width, round ends, dashes and halos") {
-  DrawList list;
-  DrawLine line;
+  render::DrawList list;
+  render::DrawLine line;
   line.points = {{20, 30, 0}, {80, 30, 0}};
-  line.colour = kBlack;
+  line.colour = render::kBlack;
   line.width = 6;
   line.halo = kRed;
   line.halo_width = 3;
@@ -224,37 +225,37 @@ TEST_CASE("lines have their width, round ends, dashes and halos") {
   line.dash = 10;
   line.points = {{20, 60, 0}, {50, 60, 0}, {80, 60, 0}};
   list.lines.push_back(line);
-  square(list, 0, 0, 100, 100, -1, flat(kWhite));
-  const Image image = rasterizer().draw(list, pixel_camera(100, 100), size(100, 100));
+  square(list, 0, 0, 100, 100, -1, flat(render::kWhite));
+  const render::Image image = rasterizer().draw(list, pixel_camera(100, 100), size(100, 100));
   const auto at = [&](int x, int y) { return image.at(x, 99 - y); };
-  CHECK(at(50, 28) == kBlack);
-  CHECK(at(50, 31) == kBlack);
+  CHECK(at(50, 28) == render::kBlack);
+  CHECK(at(50, 31) == render::kBlack);
   CHECK(near(at(50, 34), kRed));
   CHECK(near(at(50, 25), kRed));
-  CHECK(near(at(50, 37), kWhite));
-  CHECK(near(at(18, 30), kBlack));  // the round end reaches half a width beyond the point
+  CHECK(near(at(50, 37), render::kWhite));
+  CHECK(near(at(18, 30), render::kBlack));  // the round end reaches half a width beyond the point
   CHECK(near(at(15, 30), kRed));
-  CHECK(near(at(12, 30), kWhite));
-  CHECK(near(at(14, 36), kWhite));  // ... and is round
-  for (const int x : {25, 45, 65}) CHECK(near(at(x, 60), kBlack));
-  for (const int x : {35, 55, 75}) CHECK(near(at(x, 60), kWhite));
+  CHECK(near(at(12, 30), render::kWhite));
+  CHECK(near(at(14, 36), render::kWhite));  // ... and is round
+  for (const int x : {25, 45, 65}) CHECK(near(at(x, 60), render::kBlack));
+  for (const int x : {35, 55, 75}) CHECK(near(at(x, 60), render::kWhite));
 }
 
 TEST_CASE("what is on top shines through, ghosted") {
-  DrawList list;
+  render::DrawList list;
   square(list, 0, 0, 50, 100, 15,
-         flat(kWhite));  // hides the left half, and is farther off than dots are thick
-  square(list, 0, 0, 100, 100, -5, flat(kWhite));
-  DrawLine line;
+         flat(render::kWhite));  // hides the left half, and is farther off than dots are thick
+  square(list, 0, 0, 100, 100, -5, flat(render::kWhite));
+  render::DrawLine line;
   line.points = {{10, 50, 0}, {90, 50, 0}};
   line.colour = kRed;
   line.width = 4;
-  line.layer = Layer::on_top;
+  line.layer = render::Layer::on_top;
   list.lines.push_back(line);
-  square(list, 10, 70, 90, 90, 0, flat(kBlue, Layer::on_top));
-  list.points.push_back({{30, 20, 0}, kGreen, 8, kTransparent, 0, Layer::on_top, 1});
-  list.points.push_back({{70, 20, 0}, kGreen, 8, kTransparent, 0, Layer::on_top, 1});
-  const Image image = rasterizer().draw(list, pixel_camera(100, 100), size(100, 100));
+  square(list, 10, 70, 90, 90, 0, flat(kBlue, render::Layer::on_top));
+  list.points.push_back({{30, 20, 0}, kGreen, 8, render::kTransparent, 0, render::Layer::on_top, 1});
+  list.points.push_back({{70, 20, 0}, kGreen, 8, render::kTransparent, 0, render::Layer::on_top, 1});
+  const render::Image image = rasterizer().draw(list, pixel_camera(100, 100), size(100, 100));
   int hidden = 0, seen = 0;
   for (int x = 12; x < 48; ++x) hidden += near(image.at(x, 49), kRed);
   for (int x = 52; x < 88; ++x) seen += near(image.at(x, 49), kRed);
@@ -262,18 +263,18 @@ TEST_CASE("what is on top shines through, ghosted") {
   CHECK(hidden > 6);
   CHECK(hidden < 30);
   CHECK(image.at(70, 20) == kBlue);
-  const Rgba ghost = image.at(30, 20);
+  const render::Rgba ghost = image.at(30, 20);
   CHECK(ghost.r > 100);
   CHECK(ghost.r < 200);
   CHECK(ghost.b == 255);
   CHECK(near(image.at(70, 79), kGreen));
-  CHECK(near(image.at(30, 79), kWhite));  // a ring
+  CHECK(near(image.at(30, 79), render::kWhite));  // a ring
   CHECK(near(image.at(30, 79 - 6), kGreen, 90));
 }
 
 TEST_CASE("fills follow the even-odd rule, with holes and in any order of segments") {
-  DrawList list;
-  DrawFill fill;
+  render::DrawList list;
+  render::DrawFill fill;
   fill.colour = kBlue;
   fill.id = 7;
   const auto loop = [&](std::vector<Vector3d> p) {
@@ -285,25 +286,25 @@ TEST_CASE("fills follow the even-odd rule, with holes and in any order of segmen
   std::swap(fill.segments[1], fill.segments[6]);
   std::swap(fill.segments[2][0], fill.segments[2][1]);
   list.fills.push_back(fill);
-  const Image image = rasterizer().draw(list, pixel_camera(100, 100), size(100, 100));
+  const render::Image image = rasterizer().draw(list, pixel_camera(100, 100), size(100, 100));
   const auto at = [&](int x, int y) { return image.at(x, 99 - y); };
   CHECK(at(15, 50) == kBlue);
   CHECK(at(85, 80) == kBlue);
-  CHECK(at(50, 70) == kWhite);
-  CHECK(at(32, 30) == kWhite);
+  CHECK(at(50, 70) == render::kWhite);
+  CHECK(at(32, 30) == render::kWhite);
   CHECK(at(45, 30) == kBlue);
   CHECK(at(70, 30) == kBlue);
-  CHECK(at(5, 5) == kWhite);
-  const IdImage ids = rasterizer().ids(list, pixel_camera(100, 100), 100, 100);
+  CHECK(at(5, 5) == render::kWhite);
+  const render::IdImage ids = rasterizer().ids(list, pixel_camera(100, 100), 100, 100);
   CHECK(ids.at(45, 99 - 30) == 7);
-  CHECK(ids.at(32, 99 - 30) == kNoId);
+  CHECK(ids.at(32, 99 - 30) == render::kNoId);
 }
 
 TEST_CASE("cells that share segments leave no gap between them") {
-  DrawList list;
+  render::DrawList list;
   const std::vector<Vector3d> zigzag = {{50.3, 5, 0}, {42.7, 31.4, 0}, {61.2, 55.5, 0}, {48.8, 95, 0}};
   for (const bool left : {true, false}) {
-    DrawFill fill;
+    render::DrawFill fill;
     fill.colour = left ? kBlue : kGreen;
     std::vector<Vector3d> p = zigzag;
     const double x = left ? 5 : 95;
@@ -312,24 +313,24 @@ TEST_CASE("cells that share segments leave no gap between them") {
     for (std::size_t i = 0; i < p.size(); ++i) fill.segments.push_back({p[i], p[(i + 1) % p.size()]});
     list.fills.push_back(fill);
   }
-  RasterOptions o = size(100, 100);
+  render::RasterOptions o = size(100, 100);
   o.background = kRed;
-  const Image image = rasterizer().draw(list, pixel_camera(100, 100), o);
+  const render::Image image = rasterizer().draw(list, pixel_camera(100, 100), o);
   for (int y = 10; y < 90; ++y) {
     for (int x = 10; x < 90; ++x) REQUIRE(image.at(x, y).r == 0);
   }
 }
 
 TEST_CASE("ids name the face seen at each pixel") {
-  DrawList list;
-  DrawTriangle t;
+  render::DrawList list;
+  render::DrawTriangle t;
   test::add(list, test::sphere_triangles(3), t, 1000);
-  const auto points = extent_points(list);
-  const Camera camera = fit_camera(points, 300, 200);
-  const Projection projection(camera, 300, 200, bounds(list));
-  const IdImage ids = rasterizer().ids(list, camera, 300, 200);
+  const auto points = render::extent_points(list);
+  const render::Camera camera = render::fit_camera(points, 300, 200);
+  const render::Projection projection(camera, 300, 200, render::bounds(list));
+  const render::IdImage ids = rasterizer().ids(list, camera, 300, 200);
   int facing = 0, found = 0;
-  for (const DrawTriangle& f : list.triangles) {
+  for (const render::DrawTriangle& f : list.triangles) {
     const Vector3d middle = (f.x[0] + f.x[1] + f.x[2]) / 3;
     const double cosine =
         (f.x[1] - f.x[0]).cross(f.x[2] - f.x[0]).normalized().dot(projection.towards_viewer(middle));
@@ -340,34 +341,37 @@ TEST_CASE("ids name the face seen at each pixel") {
   }
   CHECK(facing > 200);
   CHECK(found == facing);
-  CHECK(ids.at(0, 0) == kNoId);
+  CHECK(ids.at(0, 0) == render::kNoId);
 }
 
 TEST_CASE("shading is flat, brightest towards the light, the same on both sides") {
-  const Camera camera = pixel_camera(10, 10);
-  const Projection projection(camera, 10, 10, Eigen::AlignedBox3d(Vector3d(0, 0, -1), Vector3d(10, 10, 1)));
-  const Lighting lighting;
-  const Rgba c{100, 150, 200};
-  const auto lit = [&](Vector3d n) { return luma(shade(c, n.normalized(), projection.axes(), lighting)); };
+  const render::Camera camera = pixel_camera(10, 10);
+  const render::Projection projection(camera, 10, 10,
+                                      Eigen::AlignedBox3d(Vector3d(0, 0, -1), Vector3d(10, 10, 1)));
+  const render::Lighting lighting;
+  const render::Rgba c{100, 150, 200};
+  const auto lit = [&](Vector3d n) {
+    return render::luma(render::shade(c, n.normalized(), projection.axes(), lighting));
+  };
   CHECK(lit({-0.3, 0.6, 1}) > lit({0, 0, 1}));
   CHECK(lit({0, 0, 1}) > lit({0.8, -0.9, 0.2}));
   CHECK(lit({0, 0, 1}) == lit({0, 0, -1}));
-  CHECK(lit({1, -1, 0.01}) > 0.3 * luma(c));
+  CHECK(lit({1, -1, 0.01}) > 0.3 * render::luma(c));
 }
 
 TEST_CASE("the same picture twice is the same to the byte, also after others and by another rasterizer") {
-  DrawList list;
-  DrawTriangle t;
+  render::DrawList list;
+  render::DrawTriangle t;
   t.edges = 7;
   test::add(list, test::sphere_triangles(3), t);
-  t.layer = Layer::translucent;
+  t.layer = render::Layer::translucent;
   t.colour = {0, 90, 200, 70};
   test::add(list, test::sphere_triangles(1, 1.3), t);
-  const Camera camera = fit_camera(extent_points(list), 320, 240);
-  const Image first = rasterizer().draw(list, camera, size(320, 240));
+  const render::Camera camera = render::fit_camera(render::extent_points(list), 320, 240);
+  const render::Image first = rasterizer().draw(list, camera, size(320, 240));
   rasterizer().draw(list, camera, size(111, 97, 1));
   CHECK(rasterizer().draw(list, camera, size(320, 240)) == first);
-  Rasterizer other;
+  render::Rasterizer other;
   CHECK(other.draw(list, camera, size(320, 240)) == first);
   CHECK(rasterizer().draw(list, camera, size(320, 240)) == first);
 }
@@ -390,13 +394,13 @@ TEST_CASE("the number of rasterizer threads does not change a byte") {
 
 TEST_CASE("labels are written at their points") {
   if (!test::have_font()) return;
-  DrawList list;
+  render::DrawList list;
   square(list, 0, 0, 200, 100, 0, flat({60, 60, 160}));
-  list.labels.push_back({{100, 50, 0}, "label", kBlack, 20, 0, -20, kWhite});
-  RasterOptions o = size(200, 100);
-  const Image with = rasterizer().draw(list, pixel_camera(200, 100), o);
+  list.labels.push_back({{100, 50, 0}, "label", render::kBlack, 20, 0, -20, render::kWhite});
+  render::RasterOptions o = size(200, 100);
+  const render::Image with = rasterizer().draw(list, pixel_camera(200, 100), o);
   o.labels = false;
-  const Image without = rasterizer().draw(list, pixel_camera(200, 100), o);
+  const render::Image without = rasterizer().draw(list, pixel_camera(200, 100), o);
   Eigen::AlignedBox2d changed;
   for (int y = 0; y < 100; ++y) {
     for (int x = 0; x < 200; ++x) {
@@ -414,50 +418,50 @@ TEST_CASE("impossible sizes are refused") {
 }
 
 TEST_CASE("the environment is looked at before Mesa sees it") {
-  using Level = Finding::Level;
+  using Level = render::Finding::Level;
   bool context = false;
-  for (const Finding& f : check_rendering()) {
+  for (const render::Finding& f : render::check_rendering()) {
     if (f.what == "off-screen OpenGL")
       context = f.level == Level::ok && f.detail.find("llvmpipe") != std::string::npos;
   }
   CHECK(context);
   setenv("LP_NATIVE_VECTOR_WIDTH", "512", 1);
-  CHECK_THROWS_AS(Rasterizer(), EnvironmentError);
+  CHECK_THROWS_AS(render::Rasterizer(), EnvironmentError);
   unsetenv("LP_NATIVE_VECTOR_WIDTH");
   setenv("GALLIUM_DRIVER", "nonsense", 1);
-  REQUIRE(check_gl_environment().size() == 1);
-  CHECK(check_gl_environment()[0].level == Level::error);
-  CHECK_THROWS_AS(Rasterizer(), EnvironmentError);
+  REQUIRE(render::check_gl_environment().size() == 1);
+  CHECK(render::check_gl_environment()[0].level == Level::error);
+  CHECK_THROWS_AS(render::Rasterizer(), EnvironmentError);
   unsetenv("GALLIUM_DRIVER");
 }
 
 TEST_CASE(
     "a transparent picture laid on a colour is the picture drawn on that colour: no fringe at any edge") {
-  DrawList list;
+  render::DrawList list;
   square(list, 10, 10, 70, 50, 0, flat({240, 240, 240}));
-  square(list, 30.4, 20.3, 90, 58.7, 1, flat({255, 60, 0, 120}, Layer::translucent));
-  square(list, 5, 40, 60.5, 57, 2, flat({0, 80, 255, 20}, Layer::translucent));
+  square(list, 30.4, 20.3, 90, 58.7, 1, flat({255, 60, 0, 120}, render::Layer::translucent));
+  square(list, 5, 40, 60.5, 57, 2, flat({0, 80, 255, 20}, render::Layer::translucent));
   list.lines.push_back({{{3, 3, 3}, {95, 57, 3}, {95, 5, 3}}, true, {250, 250, 210, 200}, 2.3F});
-  const Camera camera = pixel_camera(100, 60);
+  const render::Camera camera = pixel_camera(100, 60);
   for (const int supersample : {1, 2, 3}) {
-    RasterOptions options = size(100, 60, supersample);
+    render::RasterOptions options = size(100, 60, supersample);
     options.background.reset();
-    const Image transparent = rasterizer().draw(list, camera, options);
-    for (const Rgba back : {kWhite, kBlack, Rgba{200, 40, 160}}) {
+    const render::Image transparent = rasterizer().draw(list, camera, options);
+    for (const render::Rgba back : {render::kWhite, render::kBlack, render::Rgba{200, 40, 160}}) {
       options.background = back;
-      const Image expected = rasterizer().draw(list, camera, options);
+      const render::Image expected = rasterizer().draw(list, camera, options);
       int worst = 0;
       for (int y = 0; y < 60; ++y)
         for (int x = 0; x < 100; ++x) {
-          const Rgba got = over(transparent.at(x, y), back), want = expected.at(x, y);
+          const render::Rgba got = render::over(transparent.at(x, y), back), want = expected.at(x, y);
           worst =
               std::max({worst, std::abs(got.r - want.r), std::abs(got.g - want.g), std::abs(got.b - want.b)});
         }
       CHECK(worst <= 2);
     }
     bool partly = false;
-    for (const Rgba p : transparent.pixels()) partly |= p.a > 0 && p.a < 255;
+    for (const render::Rgba p : transparent.pixels()) partly |= p.a > 0 && p.a < 255;
     CHECK(partly);
-    CHECK(transparent.at(99, 59) == kTransparent);
+    CHECK(transparent.at(99, 59) == render::kTransparent);
   }
 }

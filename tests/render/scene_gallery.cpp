@@ -14,26 +14,27 @@ namespace {
 
 using Eigen::Vector3d;
 
-std::vector<Vector3d> all_points(const std::vector<SceneBody>& bodies) {
+std::vector<Vector3d> all_points(const std::vector<render::SceneBody>& bodies) {
   std::vector<Vector3d> out;
-  for (const SceneBody& b : bodies) {
-    const auto points = body_points(*b.rep, b.pose);
+  for (const render::SceneBody& b : bodies) {
+    const auto points = render::body_points(*b.rep, b.pose);
     out.insert(out.end(), points.begin(), points.end());
   }
   return out;
 }
 
-Image frame(Rasterizer& r, const Scene& scene, const std::vector<Vector3d>& points, const std::string& title,
-            int width = 1280, int height = 720, bool flat = false) {
-  Overlay overlay;
+render::Image frame(render::Rasterizer& r, const render::Scene& scene, const std::vector<Vector3d>& points,
+                    const std::string& title, int width = 1280, int height = 720, bool flat = false) {
+  render::Overlay overlay;
   overlay.title = title;
   overlay.key = scene.key;
   overlay.scale = scene.scale;
-  const OverlayLayout layout = lay_out(overlay, width, height);
-  RasterOptions o;
+  const render::OverlayLayout layout = render::lay_out(overlay, width, height);
+  render::RasterOptions o;
   o.width = layout.picture.width, o.height = layout.picture.height;
-  const Camera camera = flat ? fit_top(points, o.width, o.height) : fit_camera(points, o.width, o.height);
-  return compose_frame(r.draw(scene.list, camera, o), layout.picture, overlay, width, height);
+  const render::Camera camera =
+      flat ? render::fit_top(points, o.width, o.height) : render::fit_camera(points, o.width, o.height);
+  return render::compose_frame(r.draw(scene.list, camera, o), layout.picture, overlay, width, height);
 }
 
 ContactRegion ring(const Vector3d& centre, const Vector3d& normal, double radius) {
@@ -49,7 +50,7 @@ ContactRegion ring(const Vector3d& centre, const Vector3d& normal, double radius
   return region;
 }
 
-void gallery_3d(Rasterizer& r, const std::string& folder) {
+void gallery_3d(render::Rasterizer& r, const std::string& folder) {
   const LrbRep a = dented(icosphere(1), 2, 0.25), b = dented(icosphere(0, 0.7), 3, 0.2);
   Wrapper wa(a), wb(b);
   const Pose pose_b = Pose::rotation({1, 2, 3}, 0.7, {1.25, -0.35, 0.25});
@@ -58,61 +59,63 @@ void gallery_3d(Rasterizer& r, const std::string& folder) {
       wa.refine(i);
   }
   for (RegionId i = 0; i < 7; ++i) wb.refine(i);
-  std::vector<SceneBody> bodies = {{&a, &wa, {}, {}, ""}, {&b, &wb, pose_b, {}, ""}};
+  std::vector<render::SceneBody> bodies = {{&a, &wa, {}, {}, ""}, {&b, &wb, pose_b, {}, ""}};
   const auto points = all_points(bodies);
-  const auto save = [&](const char* name, const Scene& scene, const std::string& title) {
-    write_png(frame(r, scene, points, title), folder + "/scene_" + name + ".png");
+  const auto save = [&](const char* name, const render::Scene& scene, const std::string& title) {
+    render::write_png(frame(r, scene, points, title), folder + "/scene_" + name + ".png");
   };
-  SceneHighlight highlight;
+  render::SceneHighlight highlight;
   highlight.refining[0] = {33};
   highlight.refining[1] = {9};
   highlight.under_test = {a.first_simplex(a.lids(30)[0]), b.first_simplex(b.lids(2)[0])};
   const std::vector<ContactRegion> contacts = {ring({0.72, -0.22, 0.15}, {1.25, -0.35, 0.25}, 0.42)};
   highlight.contacts = contacts;
-  save("kind", build_scene(bodies, highlight), "Dented balls, partly refined");
-  SceneOptions options;
-  options.colour_by = ColourBy::layer;
-  save("layer", build_scene(bodies, {}, options), "By layer");
-  options.colour_by = ColourBy::region;
-  save("region", build_scene(bodies, {}, options), "By region");
+  save("kind", render::build_scene(bodies, highlight), "Dented balls, partly refined");
+  render::SceneOptions options;
+  options.colour_by = render::ColourBy::layer;
+  save("layer", render::build_scene(bodies, {}, options), "By layer");
+  options.colour_by = render::ColourBy::region;
+  save("region", render::build_scene(bodies, {}, options), "By region");
   std::vector<double> va(a.face_count()), vb(b.face_count());
   for (FaceId f = 0; f < a.face_count(); ++f) va[f] = std::max(0.0, 400 * a.vertices()[a.face(f)[0]].x());
   for (FaceId f = 0; f < b.face_count(); ++f) vb[f] = f % 300;
   bodies[0].face_values = va, bodies[1].face_values = vb;
-  options.colour_by = ColourBy::value;
-  save("value", build_scene(bodies, {}, options), "By face tests");
+  options.colour_by = render::ColourBy::value;
+  save("value", render::build_scene(bodies, {}, options), "By face tests");
   options = {};
   options.isolate[0] = {20, 21, 33};
   options.isolate[1] = {3};
-  save("isolate", build_scene(bodies, {}, options), "Regions on their own");
+  save("isolate", render::build_scene(bodies, {}, options), "Regions on their own");
   options = {};
   options.explode = 0.5;
-  options.colour_by = ColourBy::region;
-  Scene exploded = build_scene(std::vector<SceneBody>{{&a, nullptr, {}, {}, ""}}, {}, options);
-  write_png(frame(r, exploded, extent_points(exploded.list), "Exploded"), folder + "/scene_explode.png");
+  options.colour_by = render::ColourBy::region;
+  render::Scene exploded =
+      render::build_scene(std::vector<render::SceneBody>{{&a, nullptr, {}, {}, ""}}, {}, options);
+  render::write_png(frame(r, exploded, render::extent_points(exploded.list), "Exploded"),
+                    folder + "/scene_explode.png");
 }
 
-void gallery_2d(Rasterizer& r, const std::string& folder) {
+void gallery_2d(render::Rasterizer& r, const std::string& folder) {
   const LrbRep a = dented(circle(7), 3, 0.22), b = dented(circle(5, 0.7), 3, 0.2);
-  std::vector<Panel> panels;
+  std::vector<render::Panel> panels;
   for (int step = 0; step < 4; ++step) {
     Wrapper w(a);
     for (RegionId i = 0; i < a.region_count(); ++i) {
       if (a.layer(i) >= 3 - step && (step < 3 || i % 2 == 0 || a.layer(i) > 0)) w.refine(i);
     }
-    const std::vector<SceneBody> body = {{&a, &w, {}, {}, ""}};
-    const Scene scene = build_scene(body);
-    RasterOptions o;
+    const std::vector<render::SceneBody> body = {{&a, &w, {}, {}, ""}};
+    const render::Scene scene = render::build_scene(body);
+    render::RasterOptions o;
     o.width = 520, o.height = 400;
-    panels.push_back({r.draw(scene.list, fit_top(all_points(body), o.width, o.height), o), ""});
+    panels.push_back({r.draw(scene.list, render::fit_top(all_points(body), o.width, o.height), o), ""});
   }
-  write_png(montage(panels), folder + "/scene_2d_sequence.png");
+  render::write_png(render::montage(panels), folder + "/scene_2d_sequence.png");
   Wrapper wa(a), wb(b);
   for (const RegionId i : {0U, 1U, 7U, 8U, 9U, 22U}) wa.refine(i);
   for (const RegionId i : {2U, 3U}) wb.refine(i);
-  const std::vector<SceneBody> bodies = {{&a, &wa, {}, {}, ""},
-                                         {&b, &wb, Pose::rotation({0, 0, 1}, 0.3, {1.35, 0.2, 0}), {}, ""}};
-  SceneHighlight highlight;
+  const std::vector<render::SceneBody> bodies = {
+      {&a, &wa, {}, {}, ""}, {&b, &wb, Pose::rotation({0, 0, 1}, 0.3, {1.35, 0.2, 0}), {}, ""}};
+  render::SceneHighlight highlight;
   highlight.refining[0] = {2};
   highlight.refining[1] = {1};
   highlight.under_test = {a.first_simplex(a.outermost_faces()[0]), b.first_simplex(b.outermost_faces()[3])};
@@ -121,25 +124,28 @@ void gallery_2d(Rasterizer& r, const std::string& folder) {
   const std::vector<ContactRegion> contacts = {point};
   highlight.contacts = contacts;
   const auto points = all_points(bodies);
-  write_png(frame(r, build_scene(bodies, highlight), points, "Two bodies in the plane", 1280, 720, true),
-            folder + "/scene_2d_pair.png");
-  SceneOptions options;
-  options.colour_by = ColourBy::layer;
+  render::write_png(
+      frame(r, render::build_scene(bodies, highlight), points, "Two bodies in the plane", 1280, 720, true),
+      folder + "/scene_2d_pair.png");
+  render::SceneOptions options;
+  options.colour_by = render::ColourBy::layer;
   Wrapper all(a);
-  write_png(frame(r, build_scene(std::vector<SceneBody>{{&a, &all, {}, {}, ""}}, {}, options),
-                  body_points(a, {}), "By layer", 1280, 720, true),
-            folder + "/scene_2d_layer.png");
-  options.colour_by = ColourBy::region;
+  render::write_png(
+      frame(r, render::build_scene(std::vector<render::SceneBody>{{&a, &all, {}, {}, ""}}, {}, options),
+            render::body_points(a, {}), "By layer", 1280, 720, true),
+      folder + "/scene_2d_layer.png");
+  options.colour_by = render::ColourBy::region;
   options.explode = 0.5;
-  const Scene exploded = build_scene(std::vector<SceneBody>{{&a, &all, {}, {}, ""}}, {}, options);
-  write_png(frame(r, exploded, extent_points(exploded.list), "Exploded", 1280, 720, true),
-            folder + "/scene_2d_explode.png");
+  const render::Scene exploded =
+      render::build_scene(std::vector<render::SceneBody>{{&a, &all, {}, {}, ""}}, {}, options);
+  render::write_png(frame(r, exploded, render::extent_points(exploded.list), "Exploded", 1280, 720, true),
+                    folder + "/scene_2d_explode.png");
 }
 
 }  // namespace
 
 void scene_gallery(const std::string& folder) {
-  Rasterizer r;
+  render::Rasterizer r;
   gallery_3d(r, folder);
   gallery_2d(r, folder);
 }

@@ -7,7 +7,7 @@
 
 #include <doctest/doctest.h>
 
-#include "engine/error.hpp"
+#include "engine/core/error.hpp"
 #include "render/camera.hpp"
 #include "render/palette.hpp"
 #include "render/rasterize.hpp"
@@ -23,24 +23,27 @@ struct Counts {
   std::size_t opaque = 0, translucent = 0, on_top = 0;
 };
 
-Counts count(const DrawList& list) {
+Counts count(const render::DrawList& list) {
   Counts n;
-  for (const DrawTriangle& t : list.triangles) {
-    ++(t.layer == Layer::opaque ? n.opaque : t.layer == Layer::translucent ? n.translucent : n.on_top);
+  for (const render::DrawTriangle& t : list.triangles) {
+    ++(t.layer == render::Layer::opaque        ? n.opaque
+       : t.layer == render::Layer::translucent ? n.translucent
+                                               : n.on_top);
   }
   return n;
 }
 
-std::set<std::uint32_t> ids(const DrawList& list, Layer layer) {
+std::set<std::uint32_t> ids(const render::DrawList& list, render::Layer layer) {
   std::set<std::uint32_t> out;
-  for (const DrawTriangle& t : list.triangles) {
+  for (const render::DrawTriangle& t : list.triangles) {
     if (t.layer == layer) out.insert(t.id);
   }
   return out;
 }
 
-bool has_key(const Scene& scene, const std::string& text) {
-  return std::any_of(scene.key.begin(), scene.key.end(), [&](const LegendItem& i) { return i.text == text; });
+bool has_key(const render::Scene& scene, const std::string& text) {
+  return std::any_of(scene.key.begin(), scene.key.end(),
+                     [&](const render::LegendItem& i) { return i.text == text; });
 }
 
 }  // namespace
@@ -48,21 +51,21 @@ bool has_key(const Scene& scene, const std::string& text) {
 TEST_CASE("the picture follows the wrapper: all real faces, and the lids of its boundary") {
   const LrbRep rep = test::dented(shapes::icosphere(0), 2);
   Wrapper wrapper(rep);
-  const std::vector<SceneBody> body = {{&rep, &wrapper, {}, {}, ""}};
+  const std::vector<render::SceneBody> body = {{&rep, &wrapper, {}, {}, ""}};
   for (int step = 0; step < 12; ++step) {
-    const Scene scene = build_scene(body);
+    const render::Scene scene = render::build_scene(body);
     const Counts n = count(scene.list);
     CHECK(n.opaque == rep.real_face_count());
     std::set<std::uint32_t> lids;
     for (const FaceId f : wrapper.boundary()) {
-      if (!rep.is_real(f)) lids.insert(face_id(Side::a, f));
+      if (!rep.is_real(f)) lids.insert(render::face_id(Side::a, f));
     }
-    CHECK(ids(scene.list, Layer::translucent) == lids);
+    CHECK(ids(scene.list, render::Layer::translucent) == lids);
     CHECK(has_key(scene, "A, pseudo faces"));
     wrapper.refine(static_cast<RegionId>(step * 3));
   }
   wrapper.refine_all();
-  const Scene bare = build_scene(body);
+  const render::Scene bare = render::build_scene(body);
   CHECK(count(bare.list).translucent == 0);
   CHECK(bare.list.lines.empty());
   CHECK(!has_key(bare, "A, pseudo faces"));
@@ -71,27 +74,28 @@ TEST_CASE("the picture follows the wrapper: all real faces, and the lids of its 
 TEST_CASE("lids have their edges; those of a region being refined are lines, each once") {
   const LrbRep rep = test::dented(shapes::icosphere(0), 1);
   const Wrapper wrapper(rep);
-  const std::vector<SceneBody> body = {{&rep, &wrapper, {}, {}, ""}};
-  Scene scene = build_scene(body);
-  for (const DrawTriangle& t : scene.list.triangles) {
-    if (t.layer == Layer::translucent) CHECK(t.edges == 7);
+  const std::vector<render::SceneBody> body = {{&rep, &wrapper, {}, {}, ""}};
+  render::Scene scene = render::build_scene(body);
+  for (const render::DrawTriangle& t : scene.list.triangles) {
+    if (t.layer == render::Layer::translucent) CHECK(t.edges == 7);
   }
   CHECK(scene.list.lines.empty());
-  SceneHighlight highlight;
+  render::SceneHighlight highlight;
   highlight.refining[0] = {4};
-  scene = build_scene(body, highlight);
+  scene = render::build_scene(body, highlight);
   CHECK(scene.list.lines.size() == 3);  // one triangular lid over three real faces
 }
 
 TEST_CASE("poses move bodies, names and sides are told apart") {
   const LrbRep rep = test::dented(shapes::icosphere(0), 1);
   const Pose pose = Pose::rotation({0, 1, 0}, 0.4, {3, 0, 0});
-  const std::vector<SceneBody> bodies = {{&rep, nullptr, {}, {}, "bowl"}, {&rep, nullptr, pose, {}, ""}};
-  const Scene scene = build_scene(bodies);
+  const std::vector<render::SceneBody> bodies = {{&rep, nullptr, {}, {}, "bowl"},
+                                                 {&rep, nullptr, pose, {}, ""}};
+  const render::Scene scene = render::build_scene(bodies);
   CHECK(has_key(scene, "bowl, real faces"));
   CHECK(has_key(scene, "B, real faces"));
   Eigen::AlignedBox3d b;
-  for (const DrawTriangle& t : scene.list.triangles) {
+  for (const render::DrawTriangle& t : scene.list.triangles) {
     if (t.id >> 31 == 0) continue;
     for (const Vector3d& x : t.x) b.extend(x);
     const auto corners = rep.face(t.id & 0x7fffffff);
@@ -105,9 +109,9 @@ TEST_CASE("what the event is about is highlighted") {
   Wrapper wrapper(rep);
   const RegionId r = 3;
   wrapper.refine(r);
-  const std::vector<SceneBody> bodies = {{&rep, &wrapper, {}, {}, ""},
-                                         {&rep, &wrapper, Pose::translation({2, 0, 0}), {}, ""}};
-  SceneHighlight highlight;
+  const std::vector<render::SceneBody> bodies = {{&rep, &wrapper, {}, {}, ""},
+                                                 {&rep, &wrapper, Pose::translation({2, 0, 0}), {}, ""}};
+  render::SceneHighlight highlight;
   highlight.refining[0] = {r};
   const SimplexId sa = rep.first_simplex(rep.outermost_faces()[0]), sb = 5;
   highlight.under_test = {sa, sb};
@@ -116,16 +120,17 @@ TEST_CASE("what the event is about is highlighted") {
   point.loops.push_back({{{1, 0, 2}}, false});
   const std::vector<ContactRegion> contacts = {curve, point};
   highlight.contacts = contacts;
-  const Scene scene = build_scene(bodies, highlight);
+  const render::Scene scene = render::build_scene(bodies, highlight);
   int green = 0, yellow = 0, red = 0, rim = 0;
-  for (const DrawTriangle& t : scene.list.triangles) {
-    green +=
-        t.layer == Layer::translucent && t.colour.a > 0 && with_alpha(t.colour, 255) == palette::kRefining;
-    yellow += t.layer == Layer::on_top && with_alpha(t.colour, 255) == palette::kUnderTest;
+  for (const render::DrawTriangle& t : scene.list.triangles) {
+    green += t.layer == render::Layer::translucent && t.colour.a > 0 &&
+             render::with_alpha(t.colour, 255) == render::palette::kRefining;
+    yellow +=
+        t.layer == render::Layer::on_top && render::with_alpha(t.colour, 255) == render::palette::kUnderTest;
   }
-  for (const DrawLine& l : scene.list.lines) {
-    red += l.colour == palette::kContact && l.layer == Layer::on_top;
-    rim += l.points.size() == 2 && l.layer == Layer::on_top;
+  for (const render::DrawLine& l : scene.list.lines) {
+    red += l.colour == render::palette::kContact && l.layer == render::Layer::on_top;
+    rim += l.points.size() == 2 && l.layer == render::Layer::on_top;
   }
   REQUIRE(rep.lids(r).size() == 1);
   CHECK(rim == 3);  // of the region's lid, a triangle
@@ -137,7 +142,7 @@ TEST_CASE("what the event is about is highlighted") {
   for (const char* text : {"region being refined", "pair under test", "contact", "contact, hidden"}) {
     CHECK(has_key(scene, text));
   }
-  CHECK(contact_points(contacts).size() == 4);
+  CHECK(render::contact_points(contacts).size() == 4);
 }
 
 TEST_CASE("layers, regions and values give faces their colours and the frame its scale") {
@@ -147,59 +152,60 @@ TEST_CASE("layers, regions and values give faces their colours and the frame its
   std::vector<double> values(rep.face_count(), 0.0);
   values[rep.outermost_faces()[2]] = 40;
   values[rep.outermost_faces()[5]] = 10;
-  const std::vector<SceneBody> body = {{&rep, &wrapper, {}, values, ""}};
-  SceneOptions options;
-  options.colour_by = ColourBy::layer;
-  Scene scene = build_scene(body, {}, options);
+  const std::vector<render::SceneBody> body = {{&rep, &wrapper, {}, values, ""}};
+  render::SceneOptions options;
+  options.colour_by = render::ColourBy::layer;
+  render::Scene scene = render::build_scene(body, {}, options);
   REQUIRE(scene.scale.has_value());
   CHECK(scene.scale->high == 2);
-  for (const DrawTriangle& t : scene.list.triangles) {
-    if (t.layer != Layer::translucent) continue;
+  for (const render::DrawTriangle& t : scene.list.triangles) {
+    if (t.layer != render::Layer::translucent) continue;
     const std::uint16_t layer = rep.layer(rep.inner_cell(t.id));
-    CHECK(with_alpha(t.colour, 255) == palette::viridis(layer / 2.0));
+    CHECK(render::with_alpha(t.colour, 255) == render::palette::viridis(layer / 2.0));
   }
-  options.colour_by = ColourBy::region;
-  scene = build_scene(body, {}, options);
-  for (const DrawTriangle& t : scene.list.triangles) {
-    if (t.layer == Layer::translucent)
-      CHECK(with_alpha(t.colour, 255) == palette::category(rep.inner_cell(t.id)));
+  options.colour_by = render::ColourBy::region;
+  scene = render::build_scene(body, {}, options);
+  for (const render::DrawTriangle& t : scene.list.triangles) {
+    if (t.layer == render::Layer::translucent)
+      CHECK(render::with_alpha(t.colour, 255) == render::palette::category(rep.inner_cell(t.id)));
   }
-  options.colour_by = ColourBy::value;
-  scene = build_scene(body, {}, options);
+  options.colour_by = render::ColourBy::value;
+  scene = render::build_scene(body, {}, options);
   CHECK(scene.scale->high == 40);
-  std::map<std::uint32_t, Rgba> colour;
-  for (const DrawTriangle& t : scene.list.triangles) colour[t.id] = with_alpha(t.colour, 255);
-  CHECK(colour[rep.outermost_faces()[2]] == palette::viridis(1));
-  CHECK(colour[rep.outermost_faces()[5]] == palette::viridis(0.25));
+  std::map<std::uint32_t, render::Rgba> colour;
+  for (const render::DrawTriangle& t : scene.list.triangles) colour[t.id] = render::with_alpha(t.colour, 255);
+  CHECK(colour[rep.outermost_faces()[2]] == render::palette::viridis(1));
+  CHECK(colour[rep.outermost_faces()[5]] == render::palette::viridis(0.25));
   options.value_range = {{0.0, 20.0}};
-  CHECK(build_scene(body, {}, options).scale->high == 20);
+  CHECK(render::build_scene(body, {}, options).scale->high == 20);
 }
 
 TEST_CASE("isolated regions stand before ghosts, or alone") {
   const LrbRep rep = test::dented(shapes::icosphere(0), 2);
-  const std::vector<SceneBody> body = {{&rep, nullptr, {}, {}, ""}};
-  SceneOptions options;
+  const std::vector<render::SceneBody> body = {{&rep, nullptr, {}, {}, ""}};
+  render::SceneOptions options;
   options.isolate[0] = {7};
   options.ghost_rest = false;
-  Scene scene = build_scene(body, {}, options);
-  std::set<std::uint32_t> drawn = ids(scene.list, Layer::opaque);
-  for (const std::uint32_t id : ids(scene.list, Layer::translucent)) drawn.insert(id);
+  render::Scene scene = render::build_scene(body, {}, options);
+  std::set<std::uint32_t> drawn = ids(scene.list, render::Layer::opaque);
+  for (const std::uint32_t id : ids(scene.list, render::Layer::translucent)) drawn.insert(id);
   CHECK(drawn == std::set<std::uint32_t>(rep.collector(7).begin(), rep.collector(7).end()));
   options.ghost_rest = true;
-  scene = build_scene(body, {}, options);
+  scene = render::build_scene(body, {}, options);
   CHECK(count(scene.list).translucent >= rep.real_face_count());
 }
 
 TEST_CASE("exploded regions keep their shape and move outward") {
   const LrbRep rep = test::dented(shapes::icosphere(0), 2);
   const Wrapper wrapper(rep);
-  SceneOptions options;
+  render::SceneOptions options;
   options.explode = 1;
-  const Scene scene = build_scene(std::vector<SceneBody>{{&rep, &wrapper, {}, {}, ""}}, {}, options);
+  const render::Scene scene =
+      render::build_scene(std::vector<render::SceneBody>{{&rep, &wrapper, {}, {}, ""}}, {}, options);
   std::size_t in_regions = 0;
   for (RegionId r = 0; r < rep.region_count(); ++r) in_regions += rep.collector(r).size();
   CHECK(count(scene.list).opaque == rep.real_face_count() + in_regions);
-  for (const DrawTriangle& t : scene.list.triangles) {
+  for (const render::DrawTriangle& t : scene.list.triangles) {
     const auto corners = rep.face(t.id);
     const Vector3d before = rep.vertices()[corners[0]], moved = t.x[0] - before;
     CHECK((t.x[1] - rep.vertices()[corners[1]] - moved).norm() < 1e-12);
@@ -210,32 +216,33 @@ TEST_CASE("exploded regions keep their shape and move outward") {
 TEST_CASE("bodies of many regions can be exploded by region") {
   const LrbRep rep = test::dented(shapes::icosphere(1), 3);
   REQUIRE(rep.region_count() > 256);
-  SceneOptions options;
+  render::SceneOptions options;
   options.explode = 0.5;
-  options.colour_by = ColourBy::region;
-  CHECK(!build_scene(std::vector<SceneBody>{{&rep, nullptr, {}, {}, ""}}, {}, options).list.empty());
+  options.colour_by = render::ColourBy::region;
+  CHECK(!render::build_scene(std::vector<render::SceneBody>{{&rep, nullptr, {}, {}, ""}}, {}, options)
+             .list.empty());
 }
 
 TEST_CASE("2D: the solid dark, regions light, the wrapper as a line") {
   const LrbRep rep = test::dented(shapes::circle(6), 2);
   Wrapper wrapper(rep);
   wrapper.refine(1);
-  const std::vector<SceneBody> body = {{&rep, &wrapper, {}, {}, ""}};
-  const Scene scene = build_scene(body);
+  const std::vector<render::SceneBody> body = {{&rep, &wrapper, {}, {}, ""}};
+  const render::Scene scene = render::build_scene(body);
   REQUIRE(scene.list.fills.size() == rep.region_count());  // the solid, and all regions but one
   CHECK(scene.list.fills.back().segments.size() == rep.real_face_count());
   CHECK(has_key(scene, "A, wrapper"));
   CHECK(has_key(scene, "A, refined away"));
 
-  Rasterizer rasterizer;
-  RasterOptions o;
+  render::Rasterizer rasterizer;
+  render::RasterOptions o;
   o.width = 300, o.height = 300;
-  const Camera camera = fit_top(body_points(rep, {}), 300, 300);
-  const Image image = rasterizer.draw(scene.list, camera, o);
-  const IdImage picked = rasterizer.ids(scene.list, camera, 300, 300);
-  const Rgba dark = palette::solid_2d(palette::body(Side::a));
+  const render::Camera camera = render::fit_top(render::body_points(rep, {}), 300, 300);
+  const render::Image image = rasterizer.draw(scene.list, camera, o);
+  const render::IdImage picked = rasterizer.ids(scene.list, camera, 300, 300);
+  const render::Rgba dark = render::palette::solid_2d(render::palette::body(Side::a));
   CHECK(image.at(150, 150) == dark);
-  const Projection projection(camera, 300, 300, bounds(scene.list));
+  const render::Projection projection(camera, 300, 300, render::bounds(scene.list));
   const auto inside = [&](RegionId r) {  // the middle of a triangle
     Vector3d sum = Vector3d::Zero();
     for (const FaceId f : rep.collector(r))
@@ -246,18 +253,18 @@ TEST_CASE("2D: the solid dark, regions light, the wrapper as a line") {
     const Eigen::Vector2d at = inside(r);
     const int x = static_cast<int>(at.x()), y = static_cast<int>(at.y());
     if (r == 1) {
-      CHECK(image.at(x, y) == kWhite);
-      CHECK(picked.at(x, y) == kNoId);
+      CHECK(image.at(x, y) == render::kWhite);
+      CHECK(picked.at(x, y) == render::kNoId);
     } else {
-      CHECK(luma(image.at(x, y)) > luma(dark) + 60);
-      CHECK(image.at(x, y) != kWhite);
-      CHECK(picked.at(x, y) == region_id(Side::a, r));
+      CHECK(render::luma(image.at(x, y)) > render::luma(dark) + 60);
+      CHECK(image.at(x, y) != render::kWhite);
+      CHECK(picked.at(x, y) == render::region_id(Side::a, r));
     }
   }
 }
 
 TEST_CASE("segments become as few polylines as can be") {
-  using scene::chains;
+  using render::scene::chains;
   auto found = chains({{0, 1}, {2, 0}, {1, 2}});
   REQUIRE(found.size() == 1);
   CHECK(found[0].closed);
@@ -277,34 +284,39 @@ TEST_CASE("many bodies: each in its colour, faces in contact in that of contacts
   const LrbRep solid = test::dented(shapes::icosphere(0), 1), flat = test::dented(shapes::circle(5), 1);
   for (const LrbRep* rep : {&solid, &flat}) {
     const std::vector<std::uint8_t> marks = {0, 1, 1};
-    std::vector<SceneBody> bodies;
+    std::vector<render::SceneBody> bodies;
     for (std::uint32_t i = 0; i < 3; ++i) {
-      SceneBody body;
+      render::SceneBody body;
       body.rep = rep;
       body.pose = Pose::translation({3.0 * i, 0, 0});
-      body.colour = palette::category(i);
+      body.colour = render::palette::category(i);
       if (i == 2) body.in_contact = marks;
       bodies.push_back(body);
     }
-    const DrawList list = build_scene(bodies).list;
+    const render::DrawList list = render::build_scene(bodies).list;
     std::map<std::uint32_t, std::size_t> faces;  // by colour, as one number
-    const auto number = [](Rgba c) { return c.r << 16 | c.g << 8 | c.b; };
-    for (const DrawTriangle& t : list.triangles) ++faces[static_cast<std::uint32_t>(number(t.colour))];
+    const auto number = [](render::Rgba c) { return c.r << 16 | c.g << 8 | c.b; };
+    for (const render::DrawTriangle& t : list.triangles)
+      ++faces[static_cast<std::uint32_t>(number(t.colour))];
     std::size_t marked_lines = 0;
-    for (const DrawLine& l : list.lines) marked_lines += l.colour == palette::kContact ? 1 : 0;
+    for (const render::DrawLine& l : list.lines)
+      marked_lines += l.colour == render::palette::kContact ? 1 : 0;
     if (rep == &solid) {
-      CHECK(faces[static_cast<std::uint32_t>(number(palette::category(0)))] == solid.real_face_count());
-      CHECK(faces[static_cast<std::uint32_t>(number(palette::category(1)))] == solid.real_face_count());
-      CHECK(faces[static_cast<std::uint32_t>(number(palette::category(2)))] == solid.real_face_count() - 2);
-      CHECK(faces[static_cast<std::uint32_t>(number(palette::kContact))] == 2);
+      CHECK(faces[static_cast<std::uint32_t>(number(render::palette::category(0)))] ==
+            solid.real_face_count());
+      CHECK(faces[static_cast<std::uint32_t>(number(render::palette::category(1)))] ==
+            solid.real_face_count());
+      CHECK(faces[static_cast<std::uint32_t>(number(render::palette::category(2)))] ==
+            solid.real_face_count() - 2);
+      CHECK(faces[static_cast<std::uint32_t>(number(render::palette::kContact))] == 2);
     } else {
       CHECK(list.fills.size() == 3);
-      CHECK(list.fills[1].colour == palette::solid_2d(palette::category(1)));
+      CHECK(list.fills[1].colour == render::palette::solid_2d(render::palette::category(1)));
       CHECK(marked_lines == 1);
     }
-    SceneHighlight highlight;
+    render::SceneHighlight highlight;
     highlight.refining[0] = {0};
-    CHECK_THROWS_AS(build_scene(bodies, highlight), InputError);
+    CHECK_THROWS_AS(render::build_scene(bodies, highlight), InputError);
   }
 }
 
@@ -319,30 +331,30 @@ TEST_CASE(
     open.refine(0);
     for (const Wrapper* wrapper :
          {static_cast<const Wrapper*>(nullptr), &std::as_const(closed), &std::as_const(open)}) {
-      SceneBody body;
+      render::SceneBody body;
       body.rep = rep;
       body.wrapper = wrapper;
       body.in_contact = marks;
-      const Scene scene = build_scene(std::vector<SceneBody>{body});
-      const auto red = [](Rgba c) { return with_alpha(c, 255) == palette::kContact; };
+      const render::Scene scene = render::build_scene(std::vector<render::SceneBody>{body});
+      const auto red = [](render::Rgba c) { return render::with_alpha(c, 255) == render::palette::kContact; };
       std::size_t real = 0, pseudo = 0;
       if (rep == &solid) {
-        for (const DrawTriangle& t : scene.list.triangles)
-          if (red(t.colour)) ++(t.layer == Layer::translucent ? pseudo : real);
+        for (const render::DrawTriangle& t : scene.list.triangles)
+          if (red(t.colour)) ++(t.layer == render::Layer::translucent ? pseudo : real);
       } else {
-        for (const DrawLine& l : scene.list.lines)
+        for (const render::DrawLine& l : scene.list.lines)
           if (red(l.colour)) ++(l.dash > 0 ? pseudo : real);
       }
-      SceneOptions rims;
+      render::SceneOptions rims;
       rims.contact_rims = true;
-      const Scene with_rims = build_scene(std::vector<SceneBody>{body}, {}, rims);
+      const render::Scene with_rims = render::build_scene(std::vector<render::SceneBody>{body}, {}, rims);
       const std::size_t more = with_rims.list.lines.size() - scene.list.lines.size();
       CHECK((more > 0) == (rep == &solid));
       CHECK(real == 1);
       CHECK((pseudo > 0) == (wrapper != nullptr));
       const auto has = [&](const std::string& text) {
         return std::any_of(scene.key.begin(), scene.key.end(),
-                           [&](const LegendItem& item) { return item.text == text; });
+                           [&](const render::LegendItem& item) { return item.text == text; });
       };
       CHECK(has("real faces that meet"));
       CHECK(has("pseudo faces that meet") == (wrapper != nullptr));
@@ -352,18 +364,18 @@ TEST_CASE(
 
 TEST_CASE("scenes that make no sense are refused") {
   const LrbRep solid = test::dented(shapes::icosphere(0), 1), flat = test::dented(shapes::circle(5), 1);
-  CHECK_THROWS_AS(build_scene({}), InputError);
-  CHECK_THROWS_AS(
-      build_scene(std::vector<SceneBody>{{&solid, nullptr, {}, {}, ""}, {&flat, nullptr, {}, {}, ""}}),
-      InputError);
-  const std::vector<SceneBody> body = {{&solid, nullptr, {}, {}, ""}};
-  SceneHighlight highlight;
+  CHECK_THROWS_AS(render::build_scene({}), InputError);
+  CHECK_THROWS_AS(render::build_scene(std::vector<render::SceneBody>{{&solid, nullptr, {}, {}, ""},
+                                                                     {&flat, nullptr, {}, {}, ""}}),
+                  InputError);
+  const std::vector<render::SceneBody> body = {{&solid, nullptr, {}, {}, ""}};
+  render::SceneHighlight highlight;
   highlight.refining[0] = {solid.region_count()};
-  CHECK_THROWS_AS(build_scene(body, highlight), InputError);
+  CHECK_THROWS_AS(render::build_scene(body, highlight), InputError);
   highlight = {};
   highlight.under_test = {0, 0};
-  CHECK_THROWS_AS(build_scene(body, highlight), InputError);
-  SceneOptions options;
+  CHECK_THROWS_AS(render::build_scene(body, highlight), InputError);
+  render::SceneOptions options;
   options.isolate[1] = {0};
-  CHECK_THROWS_AS(build_scene(body, {}, options), InputError);
+  CHECK_THROWS_AS(render::build_scene(body, {}, options), InputError);
 }

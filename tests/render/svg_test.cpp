@@ -8,7 +8,7 @@
 
 #include <doctest/doctest.h>
 
-#include "engine/error.hpp"
+#include "engine/core/error.hpp"
 #include "render/rasterize.hpp"
 #include "render/scene.hpp"
 #include "render/svg_montage.hpp"
@@ -23,7 +23,7 @@ namespace {
 
 struct PathFill {
   std::vector<std::vector<Vector2d>> loops;
-  Rgba colour;
+  render::Rgba colour;
 
   /// By the even-odd rule: how many edges does a ray to the right cross?
   bool inside(const Vector2d& p) const {
@@ -95,36 +95,37 @@ std::size_t count(const std::string& text, const std::string& what) {
 TEST_CASE("fills of an SVG cover what the rasterizer paints") {
   const LrbRep rep = test::dented(shapes::circle(12), 1);
   const Wrapper wrapper(rep);
-  DrawList list = build_scene(std::vector<SceneBody>{{&rep, &wrapper, {}, {}, ""}}).list;
+  render::DrawList list =
+      render::build_scene(std::vector<render::SceneBody>{{&rep, &wrapper, {}, {}, ""}}).list;
   list.lines.clear();
   constexpr int kWidth = 200, kHeight = 150;
-  const auto points = extent_points(list);
-  const Camera camera = fit_top(points, kWidth, kHeight);
-  SvgOptions options;
+  const auto points = render::extent_points(list);
+  const render::Camera camera = render::fit_top(points, kWidth, kHeight);
+  render::SvgOptions options;
   options.width = kWidth, options.height = kHeight;
-  const std::vector<PathFill> fills = fills_in(svg(list, camera, options));
+  const std::vector<PathFill> fills = fills_in(render::svg(list, camera, options));
   REQUIRE(fills.size() == list.fills.size());
-  RasterOptions raster;
+  render::RasterOptions raster;
   raster.width = kWidth, raster.height = kHeight;
-  Rasterizer rasterizer;
-  const Image image = rasterizer.draw(list, camera, raster);
+  render::Rasterizer rasterizer;
+  const render::Image image = rasterizer.draw(list, camera, raster);
   int compared = 0, painted = 0;
   for (int y = 0; y < kHeight; ++y) {
     for (int x = 0; x < kWidth; ++x) {
       const Vector2d p(x + 0.5, y + 0.5);
-      Rgba expected = kWhite;
+      render::Rgba expected = render::kWhite;
       bool near_edge = false;
       for (const PathFill& f : fills) {
         near_edge = near_edge || f.distance(p) < 1;
-        if (f.inside(p)) expected = over(f.colour, expected);
+        if (f.inside(p)) expected = render::over(f.colour, expected);
       }
       if (near_edge) continue;
-      const Rgba got = image.at(x, y);
+      const render::Rgba got = image.at(x, y);
       const int off = std::max(
           {std::abs(got.r - expected.r), std::abs(got.g - expected.g), std::abs(got.b - expected.b)});
       if (off > 2) FAIL("pixel ", x, " ", y, " is off by ", off);
       ++compared;
-      painted += got == kWhite ? 0 : 1;
+      painted += got == render::kWhite ? 0 : 1;
     }
   }
   CHECK(compared > kWidth * kHeight / 2);
@@ -132,17 +133,18 @@ TEST_CASE("fills of an SVG cover what the rasterizer paints") {
 }
 
 TEST_CASE("lines, points and labels of an SVG") {
-  DrawList list;
-  list.lines.push_back({{{0, 0, 0}, {4, 0, 0}, {4, 2, 0}}, true, {1, 2, 3, 51}, 2.5F, 5, kWhite, 1.5F});
-  list.points.push_back({{2, 1, 0}, {255, 0, 0}, 3, kWhite, 1});
-  list.labels.push_back({{0, 2, 0}, "a < b & \"c\"", kBlack, 11.64F, 0, -4});
-  Camera camera;
+  render::DrawList list;
+  list.lines.push_back(
+      {{{0, 0, 0}, {4, 0, 0}, {4, 2, 0}}, true, {1, 2, 3, 51}, 2.5F, 5, render::kWhite, 1.5F});
+  list.points.push_back({{2, 1, 0}, {255, 0, 0}, 3, render::kWhite, 1});
+  list.labels.push_back({{0, 2, 0}, "a < b & \"c\"", render::kBlack, 11.64F, 0, -4});
+  render::Camera camera;
   camera.eye = {2, 1, 5};
   camera.target = {2, 1, 0};
   camera.orthographic = true;
-  SvgOptions options;
+  render::SvgOptions options;
   options.width = 400, options.height = 200, options.title = "R&D";
-  const std::string text = svg(list, camera, options);
+  const std::string text = render::svg(list, camera, options);
   CHECK(text.starts_with("<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"400\" height=\"200\""));
   CHECK(text.ends_with("</svg>\n"));
   CHECK(count(text, "<title>R&amp;D</title>") == 1);
@@ -157,39 +159,40 @@ TEST_CASE("lines, points and labels of an SVG") {
   CHECK(count(text, "font-size=\"10\"") == 1);
   CHECK(count(text, ">a &lt; b &amp; &quot;c&quot;</text>") == 1);
   options.background.reset();
-  CHECK(count(svg(list, camera, options), "<rect") == 0);
+  CHECK(count(render::svg(list, camera, options), "<rect") == 0);
 }
 
 TEST_CASE("an SVG has no depth: triangles are refused") {
-  DrawList list;
+  render::DrawList list;
   list.triangles.emplace_back();
-  CHECK_THROWS_AS(svg(list, Camera{}), InputError);
+  CHECK_THROWS_AS(render::svg(list, render::Camera{}), InputError);
 }
 
 TEST_CASE("an SVG keeps its size on paper, whatever its units") {
-  DrawList list;
-  list.lines.push_back({{{0, 0, 0}, {1, 0, 0}}, false, kBlack, 1});
-  SvgOptions options;
+  render::DrawList list;
+  list.lines.push_back({{{0, 0, 0}, {1, 0, 0}}, false, render::kBlack, 1});
+  render::SvgOptions options;
   options.width = 1250, options.height = 625, options.units_per_pixel = 3.125;
-  const std::string text = svg(list, Camera{}, options);
+  const std::string text = render::svg(list, render::Camera{}, options);
   CHECK(count(text, " width=\"400\" height=\"200\" viewBox=\"0 0 1250 625\"") == 1);
 }
 
 TEST_CASE("a montage of SVG: panels where the pixels would be, captions as text") {
   if (!test::have_font()) return;
-  DrawList list;
-  list.lines.push_back({{{0, 0, 0}, {1, 0, 0}}, false, kBlack, 1});
-  SvgOptions each;
+  render::DrawList list;
+  list.lines.push_back({{{0, 0, 0}, {1, 0, 0}}, false, render::kBlack, 1});
+  render::SvgOptions each;
   each.width = 300, each.height = 200;
-  const std::string panel = svg(list, Camera{}, each);
-  const std::vector<Panel> panels = {{Image(300, 200), "one < two"}, {Image(300, 200), "more"}};
-  MontageOptions columns;
+  const std::string panel = render::svg(list, render::Camera{}, each);
+  const std::vector<render::Panel> panels = {{render::Image(300, 200), "one < two"},
+                                             {render::Image(300, 200), "more"}};
+  render::MontageOptions columns;
   columns.columns = 2;
-  const MontageLayout layout = lay_out(panels, columns);
-  SvgMontageOptions options;
+  const render::MontageLayout layout = render::lay_out(panels, columns);
+  render::SvgMontageOptions options;
   options.title = "A & B";
-  const std::string text = svg_montage({panel, panel}, layout, options);
-  for (const PixelRect& r : layout.panels)
+  const std::string text = render::svg_montage({panel, panel}, layout, options);
+  for (const render::PixelRect& r : layout.panels)
     CHECK(count(text, "<svg x=\"" + std::to_string(r.x) + "\" y=\"" + std::to_string(r.y) +
                           "\" width=\"300\" height=\"200\" viewBox=\"0 0 300 200\"") == 1);
   CHECK(count(text, "<svg") == 3);
@@ -199,6 +202,6 @@ TEST_CASE("a montage of SVG: panels where the pixels would be, captions as text"
   CHECK(count(text, "<title>A &amp; B</title>") == 1);
   CHECK(count(text, "<rect") == 3);
   options.transparent = true;
-  CHECK(count(svg_montage({panel, panel}, layout, options), "<rect") == 2);
-  CHECK_THROWS_AS(svg_montage({"no picture", panel}, layout), InputError);
+  CHECK(count(render::svg_montage({panel, panel}, layout, options), "<rect") == 2);
+  CHECK_THROWS_AS(render::svg_montage({"no picture", panel}, layout), InputError);
 }

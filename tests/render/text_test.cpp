@@ -4,7 +4,7 @@
 
 #include <doctest/doctest.h>
 
-#include "engine/error.hpp"
+#include "engine/core/error.hpp"
 #include "tests/render/font_guard.hpp"
 
 using namespace lrb;
@@ -12,11 +12,11 @@ using namespace lrb;
 namespace {
 
 /// The box of pixels that are not white.
-PixelRect ink(const Image& image) {
+render::PixelRect ink(const render::Image& image) {
   int x0 = image.width(), y0 = image.height(), x1 = -1, y1 = -1;
   for (int y = 0; y < image.height(); ++y) {
     for (int x = 0; x < image.width(); ++x) {
-      if (image.at(x, y) == kWhite) continue;
+      if (image.at(x, y) == render::kWhite) continue;
       x0 = std::min(x0, x), x1 = std::max(x1, x), y0 = std::min(y0, y), y1 = std::max(y1, y);
     }
   }
@@ -28,24 +28,24 @@ PixelRect ink(const Image& image) {
 TEST_CASE("UTF-8 is decoded, and what is none becomes a mark") {
   std::string_view text = "aé€\U0001F600\xff\xc3";
   std::vector<char32_t> got;
-  while (!text.empty()) got.push_back(next_code_point(text));
+  while (!text.empty()) got.push_back(render::next_code_point(text));
   CHECK(got == std::vector<char32_t>{U'a', U'é', U'€', U'\U0001F600', 0xFFFD, 0xFFFD});
 }
 
 TEST_CASE("a text stays within what was measured") {
   if (!test::have_font()) return;
-  const Font& font = default_font();
+  const render::Font& font = render::default_font();
   for (const float height : {9.0F, 14.0F, 31.5F}) {
     for (const bool bold : {false, true}) {
-      TextStyle style;
+      render::TextStyle style;
       style.height = height;
       style.bold = bold;
       const std::string text = "Wrapper (jAg) 1\u202f204 × 90°";
-      const TextSize size = font.measure(text, style);
-      Image image(size.width + 40, size.height + 40);
+      const render::TextSize size = font.measure(text, style);
+      render::Image image(size.width + 40, size.height + 40);
       font.draw(image, text, 20, 20, style);
-      const PixelRect box = ink(image);
-      CHECK(PixelRect{18, 19, size.width + 4, size.height + 2}.contains(box));
+      const render::PixelRect box = ink(image);
+      CHECK(render::PixelRect{18, 19, size.width + 4, size.height + 2}.contains(box));
       CHECK(box.width > 0.9 * size.width);
       CHECK(box.height > 0.6 * size.height);
     }
@@ -54,40 +54,40 @@ TEST_CASE("a text stays within what was measured") {
 
 TEST_CASE("widths add up, alignment moves") {
   if (!test::have_font()) return;
-  const Font& font = default_font();
-  TextStyle style;
+  const render::Font& font = render::default_font();
+  render::TextStyle style;
   style.height = 20;
   const int one = font.measure("face", style).width, two = font.measure("faceface", style).width;
   CHECK(std::abs(two - 2 * one) <= 2);
   CHECK(font.measure("", style).width == 0);
   CHECK(font.measure("", style).height == font.measure("Xg", style).height);
-  for (const Align align : {Align::left, Align::centre, Align::right}) {
-    Image image(300, 40);
+  for (const render::Align align : {render::Align::left, render::Align::centre, render::Align::right}) {
+    render::Image image(300, 40);
     style.align = align;
     font.draw(image, "alignment", 150, 5, style);
-    const PixelRect box = ink(image);
+    const render::PixelRect box = ink(image);
     const int middle = box.x + box.width / 2, half = font.measure("alignment", style).width / 2;
-    CHECK(std::abs(middle - (align == Align::left     ? 150 + half
-                             : align == Align::centre ? 150
-                                                      : 150 - half)) <= 3);
+    CHECK(std::abs(middle - (align == render::Align::left     ? 150 + half
+                             : align == render::Align::centre ? 150
+                                                              : 150 - half)) <= 3);
   }
 }
 
 TEST_CASE("a halo surrounds the letters and keeps them") {
   if (!test::have_font()) return;
-  TextStyle style;
+  render::TextStyle style;
   style.height = 24;
-  style.colour = kBlack;
-  Image plain(120, 40, {90, 90, 200}), haloed = plain;
-  default_font().draw(plain, "halo", 10, 5, style);
-  style.halo = kWhite;
+  style.colour = render::kBlack;
+  render::Image plain(120, 40, {90, 90, 200}), haloed = plain;
+  render::default_font().draw(plain, "halo", 10, 5, style);
+  style.halo = render::kWhite;
   style.halo_width = 3;
-  default_font().draw(haloed, "halo", 10, 5, style);
+  render::default_font().draw(haloed, "halo", 10, 5, style);
   int white = 0;
   for (int y = 0; y < 40; ++y) {
     for (int x = 0; x < 120; ++x) {
-      if (plain.at(x, y) == kBlack) CHECK(haloed.at(x, y) == kBlack);
-      white += haloed.at(x, y) == kWhite;
+      if (plain.at(x, y) == render::kBlack) CHECK(haloed.at(x, y) == render::kBlack);
+      white += haloed.at(x, y) == render::kWhite;
     }
   }
   CHECK(white > 200);
@@ -95,14 +95,14 @@ TEST_CASE("a halo surrounds the letters and keeps them") {
 
 TEST_CASE("wrapped lines fit and lose nothing") {
   if (!test::have_font()) return;
-  TextStyle style;
+  render::TextStyle style;
   style.height = 15;
   const std::string text =
       "refine the region behind pseudo face 17 of body A, unbreakableunbreakableunbreakable end";
   for (const int width : {60, 120, 400, 4000}) {
     std::string joined;
-    for (const std::string& line : default_font().wrap(text, width, style)) {
-      CHECK(default_font().measure(line, style).width <= width);
+    for (const std::string& line : render::default_font().wrap(text, width, style)) {
+      CHECK(render::default_font().measure(line, style).width <= width);
       joined += line;
     }
     const auto without_spaces = [](std::string s) {
@@ -117,9 +117,9 @@ TEST_CASE("a missing font is named with what to do") {
   const char* const old = std::getenv("LRB_FONT");
   const std::string kept = old == nullptr ? "" : old;
   setenv("LRB_FONT", "/nowhere/font.ttf", 1);
-  CHECK_THROWS_AS(find_font(), EnvironmentError);
+  CHECK_THROWS_AS(render::find_font(), EnvironmentError);
   try {
-    find_font();
+    render::find_font();
   } catch (const EnvironmentError& e) {
     CHECK(std::string(e.what()).find("/nowhere/font.ttf") != std::string::npos);
   }

@@ -61,10 +61,10 @@ inline Triangles box_triangles(const Eigen::Vector3d& lo, const Eigen::Vector3d&
   return out;
 }
 
-inline void add(DrawList& list, const Triangles& triangles, const DrawTriangle& like,
+inline void add(render::DrawList& list, const Triangles& triangles, const render::DrawTriangle& like,
                 std::uint32_t first_id = 0) {
   for (const auto& x : triangles) {
-    DrawTriangle t = like;
+    render::DrawTriangle t = like;
     t.x = x;
     t.id = first_id++;
     list.triangles.push_back(t);

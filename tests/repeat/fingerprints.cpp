@@ -10,14 +10,14 @@
 #include <thread>
 #include <vector>
 
-#include "engine/build/build.hpp"
-#include "engine/error.hpp"
-#include "engine/lrb/fnv.hpp"
+#include "engine/construct/build.hpp"
+#include "engine/core/error.hpp"
+#include "engine/core/file_bytes.hpp"
+#include "engine/core/fnv.hpp"
 #include "engine/lrb/lrb_file.hpp"
-#include "engine/mesh/file_bytes.hpp"
 #include "engine/query/collide_impl.hpp"
-#include "scenarios/families/families.hpp"
-#include "scenarios/generators/generators.hpp"
+#include "scenarios/bodies/generators/generators.hpp"
+#include "scenarios/cases/families.hpp"
 #include "trace/recorder.hpp"
 #include "trace/trace_json.hpp"
 
@@ -66,7 +66,7 @@ void add_answer(Fnv64& h, const CollideResult& r) {
 }
 
 /// Complete with contacts, then both of the paper's recursions.
-std::uint64_t ask(const families::Case& c, QueryContext& context) {
+std::uint64_t ask(const cases::Case& c, QueryContext& context) {
   Fnv64 h;
   NullProbe probe;
   for (const Recursion recursion : {Recursion::complete, Recursion::paper, Recursion::paper_strict}) {
@@ -83,7 +83,7 @@ std::uint64_t ask(const families::Case& c, QueryContext& context) {
 }
 
 /// All cases at once, each thread with a context of its own; bodies are shared.
-std::uint64_t ask_all(const std::vector<families::Case>& cases, unsigned threads) {
+std::uint64_t ask_all(const std::vector<cases::Case>& cases, unsigned threads) {
   std::vector<std::uint64_t> answers(cases.size());
   std::atomic<std::size_t> next{0};
   const auto work = [&] {
@@ -99,11 +99,11 @@ std::uint64_t ask_all(const std::vector<families::Case>& cases, unsigned threads
   return h.value();
 }
 
-std::vector<families::Body> generated_bodies() {
+std::vector<cases::Body> generated_bodies() {
   const std::string file = std::filesystem::temp_directory_path() / ("lrb-" + std::to_string(std::rand()));
-  std::vector<families::Body> bodies;
-  for (const Generator& g : generators()) {
-    bodies.push_back(std::make_shared<const LrbRep>(build_lrb(generate(g.name))));
+  std::vector<cases::Body> bodies;
+  for (const generators::Generator& g : generators::generators()) {
+    bodies.push_back(std::make_shared<const LrbRep>(build_lrb(generators::generate(g.name))));
     print(std::string("body ") + g.name, bodies.back()->hash());
     save_lrb(*bodies.back(), file);
     print(std::string(".lrb ") + g.name, hash_of_bytes(read_file(file)));
@@ -113,26 +113,26 @@ std::vector<families::Body> generated_bodies() {
 }
 
 /// Every two generated bodies of one dimension, in contact or nearly so.
-std::vector<families::Case> cases_of(const std::vector<families::Body>& bodies) {
-  families::Random random(1);
-  std::vector<families::Case> cases;
-  for (const families::Body& a : bodies)
-    for (const families::Body& b : bodies)
+std::vector<cases::Case> cases_of(const std::vector<cases::Body>& bodies) {
+  cases::RandomEngine random(1);
+  std::vector<cases::Case> cases;
+  for (const cases::Body& a : bodies)
+    for (const cases::Body& b : bodies)
       for (int i = 0; i < kPosesPerPair && a->dim() == b->dim(); ++i)
         cases.push_back({a, b, Pose{}, shapes::random_pose(random, *a, *b, 0.1 * i), {}, {}});
   return cases;
 }
 
-std::vector<families::Case> cases_of(const families::Family& family) {
-  families::Random random(1);
-  std::vector<families::Case> cases;
+std::vector<cases::Case> cases_of(const cases::Family& family) {
+  cases::RandomEngine random(1);
+  std::vector<cases::Case> cases;
   for (int dial = 0; dial < kDials; ++dial)
     for (int i = 0; i < kCasesPerDial; ++i)
       cases.push_back(family.make(random, static_cast<double>(dial) / (kDials - 1)));
   return cases;
 }
 
-void print_trace(const families::Case& c, Recursion recursion) {
+void print_trace(const cases::Case& c, Recursion recursion) {
   trace::RecorderSettings settings;
   settings.scenario = "repeat";
   settings.request.recursion = recursion;
@@ -150,7 +150,7 @@ int main(int argc, char** argv) {
   const auto bodies = generated_bodies();
   const auto pairs = cases_of(bodies);
   print("generated bodies", ask_all(pairs, threads));
-  for (const families::Family& family : families::all_families())
+  for (const cases::Family& family : cases::all_families())
     print(std::string("class ") + family.name, ask_all(cases_of(family), threads));
   for (const Recursion recursion : {Recursion::complete, Recursion::paper})
     print_trace(pairs.front(), recursion);

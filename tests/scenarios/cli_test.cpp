@@ -207,7 +207,7 @@ TEST_CASE("run: page, trace, summary and frames; twice the same bytes; a mismatc
     CHECK(fs::file_size(folder.path / "one" / file) > 0);
     CHECK(slurp(folder / ("one/" + std::string(file))) == slurp(folder / ("two/" + std::string(file))));
   }
-  const lrb::DecodedPng png = lrb::read_png(folder / "one/frames/frame_0000.png");
+  const lrb::render::DecodedPng png = lrb::render::read_png(folder / "one/frames/frame_0000.png");
   CHECK(png.image.width() == 320);
   CHECK(png.image.height() == 240);
   CHECK(slurp(folder / "one/index.html").find("data:image/png;base64,") != std::string::npos);
@@ -215,8 +215,8 @@ TEST_CASE("run: page, trace, summary and frames; twice the same bytes; a mismatc
   const Outcome again = run(folder, {"render", "one/trace.json", "-o", "three", "--size", "320x240"});
   CAPTURE(again.err);
   REQUIRE(again.code == 0);  // drawn from the trace alone: the same pictures
-  CHECK(lrb::read_png(folder / "three/frames/frame_0002.png").image ==
-        lrb::read_png(folder / "one/frames/frame_0002.png").image);
+  CHECK(lrb::render::read_png(folder / "three/frames/frame_0002.png").image ==
+        lrb::render::read_png(folder / "one/frames/frame_0002.png").image);
 
   s["expect"][0]["relation"] = "touching";
   folder.write("s.json", s.dump(1));
@@ -306,7 +306,8 @@ TEST_CASE("run and render: a tolerance, a limit, certificates; answers as query 
     REQUIRE(run(folder, {"render", "one/trace.json", "-o", "two", "--size", "320x240"}).code == 0);
     for (std::size_t i = 0; i < steps.size(); ++i) {
       const std::string frame = "/frames/frame_000" + std::to_string(i) + ".png";
-      CHECK(lrb::read_png(folder / ("two" + frame)).image == lrb::read_png(folder / ("one" + frame)).image);
+      CHECK(lrb::render::read_png(folder / ("two" + frame)).image ==
+            lrb::render::read_png(folder / ("one" + frame)).image);
     }
     CHECK(fs::exists(folder / "two/separation.png") == proved);
   }

@@ -13,22 +13,22 @@
 #include <valijson/schema_parser.hpp>
 #include <valijson/validator.hpp>
 
-#include "engine/error.hpp"
+#include "engine/core/error.hpp"
 #include "engine/query/brute_force.hpp"
 #include "scenarios/crowd/crowd_frames.hpp"
 #include "scenarios/crowd/crowd_json.hpp"
 #include "scenarios/crowd/crowd_replay.hpp"
 #include "scenarios/crowd/crowd_report.hpp"
 #include "scenarios/crowd/task_pool.hpp"
-#include "scenarios/embedded.hpp"
-#include "scenarios/files.hpp"
+#include "scenarios/io/embedded.hpp"
+#include "scenarios/io/files.hpp"
 
 using namespace lrb;
 using nlohmann::json;
 
 namespace {
 
-const ProgressReport kSilent = [](const std::string&, std::uint64_t, std::uint64_t) {};
+const run::ProgressReport kSilent = [](const std::string&, std::uint64_t, std::uint64_t) {};
 
 /// A dozen small bodies, close together: some cross, some lie in others.
 json good() {
@@ -52,8 +52,8 @@ json good_2d() {
     "frames": {"at": "step", "every": 3, "size": [320, 240], "supersampling": 1}})");
 }
 
-Crowd crowd_of(const json& j) {
-  return parse_crowd(j.dump(1), "dir/c.json");
+spec::Crowd crowd_of(const json& j) {
+  return spec::parse_crowd(j.dump(1), "dir/c.json");
 }
 
 json with(const std::string& pointer, const json& value) {
@@ -72,8 +72,8 @@ std::string error_of(const json& j) {
 }
 
 bool schema_accepts(const json& j) {
-  static const json document = json::parse(embedded_file("crowd.schema.json"));
-  static const json scenario = json::parse(embedded_file("scenario.schema.json"));
+  static const json document = json::parse(io::embedded_file("crowd.schema.json"));
+  static const json scenario = json::parse(io::embedded_file("scenario.schema.json"));
   const auto fetch = [](const std::string&) { return &scenario; };
   const auto release = [](const json*) {};
   valijson::Schema schema;
@@ -83,22 +83,23 @@ bool schema_accepts(const json& j) {
 }
 
 /// As write_crowd() left them.
-std::vector<LoadedBody> saved_kinds(const Crowd& crowd, const std::string& folder) {
-  std::vector<LoadedBody> out;
-  for (const CrowdKind& kind : crowd.kinds) out.push_back(load_body(folder + "/" + kind.name + ".lrb"));
+std::vector<bodies::LoadedBody> saved_kinds(const spec::Crowd& crowd, const std::string& folder) {
+  std::vector<bodies::LoadedBody> out;
+  for (const spec::CrowdKind& kind : crowd.kinds)
+    out.push_back(bodies::load_body(folder + "/" + kind.name + ".lrb"));
   return out;
 }
 
-std::string trace_of(const Crowd& crowd, const CrowdRun& run) {
+std::string trace_of(const spec::Crowd& crowd, const crowd::CrowdRun& run) {
   trace::StringSink sink;
-  write_crowd_trace(crowd, run, sink);
+  crowd::write_crowd_trace(crowd, run, sink);
   return sink.text;
 }
 
-void check_against_brute_force(const CrowdRun& run, std::set<Relation>& seen) {
+void check_against_brute_force(const crowd::CrowdRun& run, std::set<Relation>& seen) {
   const std::uint32_t n = run.motion.body_count();
   for (std::uint32_t step = 0; step < run.steps.size(); ++step) {
-    const std::vector<CrowdQuery>& queries = run.steps[step].queries;
+    const std::vector<crowd::CrowdQuery>& queries = run.steps[step].queries;
     auto next = queries.begin();
     for (std::uint32_t i = 0; i < n; ++i)
       for (std::uint32_t j = i + 1; j < n; ++j) {
@@ -121,44 +122,44 @@ void check_against_brute_force(const CrowdRun& run, std::set<Relation>& seen) {
 
 TEST_CASE("all pairs of a crowd, asked or not, are answered as brute force answers them") {
   std::set<Relation> seen;
-  const CrowdRun run = run_crowd(crowd_of(good()), 2, kSilent);
+  const crowd::CrowdRun run = crowd::run_crowd(crowd_of(good()), 2, kSilent);
   check_against_brute_force(run, seen);
   CHECK(seen.contains(Relation::crossing));
   CHECK(seen.contains(Relation::b_inside_a));  // or the test shows little
   std::size_t asked = 0;
-  for (const CrowdStep& s : run.steps) asked += s.queries.size();
+  for (const crowd::CrowdStep& s : run.steps) asked += s.queries.size();
   CHECK(asked < run.steps.size() * 12 * 11 / 2);
 }
 
 TEST_CASE("a crowd of 2D bodies, too") {
   std::set<Relation> seen;
-  const CrowdRun run = run_crowd(crowd_of(good_2d()), 2, kSilent);
+  const crowd::CrowdRun run = crowd::run_crowd(crowd_of(good_2d()), 2, kSilent);
   check_against_brute_force(run, seen);
   CHECK(seen.contains(Relation::crossing));
 }
 
 TEST_CASE("the number of threads does not show in trace, numbers or pictures") {
   for (const json& j : {good(), good_2d()}) {
-    const Crowd crowd = crowd_of(j);
+    const spec::Crowd crowd = crowd_of(j);
     const auto folder = std::filesystem::temp_directory_path() / "lrbscope_crowd_test";
     std::string trace, summary;
     std::vector<std::string> frames;
     for (const std::uint32_t threads : {1U, 2U, 5U}) {
-      const CrowdRun run = run_crowd(crowd, threads, kSilent);
+      const crowd::CrowdRun run = crowd::run_crowd(crowd, threads, kSilent);
       const std::string out = (folder / std::to_string(threads)).string();
-      const std::string text = write_crowd(crowd, run, out, "lrbscope crowd", kSilent);
+      const std::string text = crowd::write_crowd(crowd, run, out, "lrbscope crowd", kSilent);
       std::vector<std::string> files;
       for (const char* f : {"frame_0000.png", "frame_0001.png"})
-        files.push_back(read_text(out + "/frames/" + f));
+        files.push_back(io::read_text(out + "/frames/" + f));
       if (threads == 1) {
-        trace = read_text(out + "/trace.json");
+        trace = io::read_text(out + "/trace.json");
         summary = text;
         frames = files;
       }
-      CHECK(read_text(out + "/trace.json") == trace);
+      CHECK(io::read_text(out + "/trace.json") == trace);
       CHECK(text == summary);
       CHECK((files == frames));
-      CHECK(read_text(out + "/index.html").find("<html") != std::string::npos);
+      CHECK(io::read_text(out + "/index.html").find("<html") != std::string::npos);
     }
     std::filesystem::remove_all(folder);
   }
@@ -168,27 +169,27 @@ TEST_CASE("a crowd's trace is enough to draw it again, pixel by pixel") {
   const auto folder = std::filesystem::temp_directory_path() / "lrbscope_crowd_replay_test";
   for (const json& j : {good(), good_2d()})
     for (const trace::Clock clock : {trace::Clock::event, trace::Clock::wall}) {
-      Crowd crowd = crowd_of(j);
+      spec::Crowd crowd = crowd_of(j);
       crowd.clock = clock;
-      const CrowdRun run = run_crowd(crowd, 2, kSilent);
+      const crowd::CrowdRun run = crowd::run_crowd(crowd, 2, kSilent);
       const std::string first = (folder / "run").string(), again = (folder / "again").string();
-      write_crowd(crowd, run, first, "lrbscope crowd", kSilent);
-      const std::string text = read_text(first + "/trace.json");
-      REQUIRE(is_crowd_trace(text));
-      CrowdTrace trace = read_crowd_trace(text, "t.json");
+      crowd::write_crowd(crowd, run, first, "lrbscope crowd", kSilent);
+      const std::string text = io::read_text(first + "/trace.json");
+      REQUIRE(crowd::is_crowd_trace(text));
+      crowd::CrowdTrace trace = crowd::read_crowd_trace(text, "t.json");
       CHECK(trace.steps == crowd.steps);
       CHECK(trace.crowd.steps == crowd.steps);
       trace.crowd.frames = crowd.frames;
-      const CrowdRun replayed = replay_crowd(trace, saved_kinds(crowd, first), 1, kSilent);
+      const crowd::CrowdRun replayed = crowd::replay_crowd(trace, saved_kinds(crowd, first), 1, kSilent);
       CHECK(replayed.notes.empty());
-      CHECK(crowd_summary(trace.crowd, replayed).size() > 1000);
+      CHECK(crowd::crowd_summary(trace.crowd, replayed).size() > 1000);
       for (std::uint32_t step = 0; step < crowd.steps; ++step)
         for (std::uint32_t i = 0; i < run.motion.body_count(); ++i)
           REQUIRE(trace::equal(replayed.motion.pose(i, step), run.motion.pose(i, step)));
-      redraw_crowd(trace.crowd, replayed, again, "lrbscope render", first + "/trace.json", kSilent);
+      crowd::redraw_crowd(trace.crowd, replayed, again, "lrbscope render", first + "/trace.json", kSilent);
       for (const char* f : {"/frames/frame_0000.png", "/frames/frame_0001.png"})
-        CHECK((read_text(again + f) == read_text(first + f)));
-      const std::string page = read_text(again + "/index.html");
+        CHECK((io::read_text(again + f) == io::read_text(first + f)));
+      const std::string page = io::read_text(again + "/index.html");
       CHECK(page.find("../run/trace.json") != std::string::npos);
       CHECK(page.find("summary.json") == std::string::npos);
     }
@@ -196,18 +197,19 @@ TEST_CASE("a crowd's trace is enough to draw it again, pixel by pixel") {
 }
 
 TEST_CASE("traces of crowds that are cut, damaged, old or of other bodies") {
-  Crowd crowd = crowd_of(good());
-  crowd.frames.at = FrameSpec::At::none;
-  const CrowdRun run = run_crowd(crowd, 1, kSilent);
+  spec::Crowd crowd = crowd_of(good());
+  crowd.frames.at = spec::FrameSpec::At::none;
+  const crowd::CrowdRun run = crowd::run_crowd(crowd, 1, kSilent);
   const std::string text = trace_of(crowd, run);
   const auto kinds = [&] {
-    std::vector<LoadedBody> out;
-    for (const CrowdKind& kind : crowd.kinds) out.push_back(make_body(kind.body));
+    std::vector<bodies::LoadedBody> out;
+    for (const spec::CrowdKind& kind : crowd.kinds) out.push_back(run::make_body(kind.body));
     return out;
   };
-  const auto error = [&](const std::string& damaged, std::vector<LoadedBody> bodies) -> std::string {
+  const auto error = [&](const std::string& damaged, std::vector<bodies::LoadedBody> bodies) -> std::string {
     try {
-      static_cast<void>(replay_crowd(read_crowd_trace(damaged, "t.json"), std::move(bodies), 1, kSilent));
+      static_cast<void>(
+          crowd::replay_crowd(crowd::read_crowd_trace(damaged, "t.json"), std::move(bodies), 1, kSilent));
     } catch (const InputError& e) {
       CHECK(std::string(e.what()).find('\n') == std::string::npos);
       return e.what();
@@ -216,11 +218,11 @@ TEST_CASE("traces of crowds that are cut, damaged, old or of other bodies") {
   };
   CHECK(error(text, kinds()).empty());
   crowd.max_events = 150;
-  const CrowdTrace cut = read_crowd_trace(trace_of(crowd, run), "t.json");
+  const crowd::CrowdTrace cut = crowd::read_crowd_trace(trace_of(crowd, run), "t.json");
   CHECK(cut.steps == 5);
   CHECK(cut.crowd.steps > 0);
   CHECK(cut.crowd.steps < 5);
-  const CrowdRun part = replay_crowd(cut, kinds(), 1, kSilent);
+  const crowd::CrowdRun part = crowd::replay_crowd(cut, kinds(), 1, kSilent);
   CHECK(part.steps.size() == cut.crowd.steps);
   CHECK(part.notes.at(0).find(" of 5 steps (trace.max_events)") != std::string::npos);
   crowd.max_events = 3;
@@ -233,10 +235,10 @@ TEST_CASE("traces of crowds that are cut, damaged, old or of other bodies") {
     j[json::json_pointer(pointer)] = value;
     return error(j.dump(), kinds());
   };
-  std::vector<LoadedBody> swapped = kinds();
+  std::vector<bodies::LoadedBody> swapped = kinds();
   std::swap(swapped[0], swapped[2]);
   CHECK(error(text, std::move(swapped)).find("trace: body ball was recorded as ") == 0);
-  std::vector<LoadedBody> few = kinds();
+  std::vector<bodies::LoadedBody> few = kinds();
   few.pop_back();
   CHECK(error(text, std::move(few)) == "t.json: has 4 kinds of bodies, given are 3");
   CHECK(changed("/metadata/poses/2/0/3", 1.25).find("t.json: step 2, ball 1 and ") == 0);
@@ -261,13 +263,13 @@ TEST_CASE("traces of crowds that are cut, damaged, old or of other bodies") {
 }
 
 TEST_CASE("slices of a track lie one after the other, and say what was asked and answered") {
-  Crowd crowd = crowd_of(good());
+  spec::Crowd crowd = crowd_of(good());
   for (const trace::Clock clock : {trace::Clock::event, trace::Clock::wall}) {
     crowd.clock = clock;
-    const CrowdRun run = run_crowd(crowd, 2, kSilent);
+    const crowd::CrowdRun run = crowd::run_crowd(crowd, 2, kSilent);
     const json trace = json::parse(trace_of(crowd, run));
     std::size_t queries = 0, slices = 0;
-    for (const CrowdStep& s : run.steps) queries += s.queries.size();
+    for (const crowd::CrowdStep& s : run.steps) queries += s.queries.size();
     std::map<int, double> ends;
     for (const json& e : trace["traceEvents"]) {
       for (const char* key : {"name", "cat", "ph", "ts", "pid", "tid", "args"}) REQUIRE(e.contains(key));
@@ -283,18 +285,18 @@ TEST_CASE("slices of a track lie one after the other, and say what was asked and
     CHECK(trace["metadata"]["query_slices"]["truncated"] == false);
   }
   crowd.max_events = 3;
-  const json cut = json::parse(trace_of(crowd, run_crowd(crowd, 1, kSilent)));
+  const json cut = json::parse(trace_of(crowd, crowd::run_crowd(crowd, 1, kSilent)));
   CHECK(cut["metadata"]["query_slices"]["truncated"] == true);
   CHECK(cut["metadata"]["query_slices"]["stored"] == 3);
 }
 
 TEST_CASE("bodies stay in the room as far as they fit") {
   for (const json& j : {good(), good_2d()}) {
-    Crowd crowd = crowd_of(j);
+    spec::Crowd crowd = crowd_of(j);
     crowd.speed = {0.5, 2};
-    crowd.frames.at = FrameSpec::At::none;
+    crowd.frames.at = spec::FrameSpec::At::none;
     crowd.steps = 1;
-    const CrowdRun run = run_crowd(crowd, 1, kSilent);
+    const crowd::CrowdRun run = crowd::run_crowd(crowd, 1, kSilent);
     for (std::uint32_t step = 0; step < 40; ++step)
       for (std::uint32_t i = 0; i < run.motion.body_count(); ++i)
         for (FaceId f = 0; f < run.rep(i).real_face_count(); ++f)
@@ -306,10 +308,10 @@ TEST_CASE("bodies stay in the room as far as they fit") {
 }
 
 TEST_CASE("the shipped crowd is valid and has about forty bodies") {
-  const Crowd crowd = open_crowd("crowd");
-  CHECK((shipped_crowds() == std::vector<std::string>{"crowd"}));
+  const spec::Crowd crowd = spec::open_crowd("crowd");
+  CHECK((spec::shipped_crowds() == std::vector<std::string>{"crowd"}));
   CHECK(crowd.body_count() == 40);
-  CHECK(schema_accepts(json::parse(embedded_file("crowd.crowd.json"))));
+  CHECK(schema_accepts(json::parse(io::embedded_file("crowd.crowd.json"))));
 }
 
 TEST_CASE("schema and reader agree on good and bad crowds") {
@@ -353,15 +355,15 @@ TEST_CASE("what is wrong with a crowd is said with its place") {
         std::string::npos);
   json mixed = good();
   mixed["bodies"].push_back({{"name", "flat"}, {"body", {{"generator", "island"}}}});
-  CHECK_THROWS_WITH_AS(static_cast<void>(run_crowd(crowd_of(mixed), 1, kSilent)),
+  CHECK_THROWS_WITH_AS(static_cast<void>(crowd::run_crowd(crowd_of(mixed), 1, kSilent)),
                        "crowd few: flat is 2D and ball is 3D; give bodies of one dimension", InputError);
-  CHECK_THROWS_WITH_AS(static_cast<void>(open_crowd("crowds")),
+  CHECK_THROWS_WITH_AS(static_cast<void>(spec::open_crowd("crowds")),
                        "crowds: neither a shipped crowd nor a file; did you mean \"crowd\"? known: crowd",
                        InputError);
 }
 
 TEST_CASE("a pool does every task once; of what is thrown, the lowest comes out, and the pool goes on") {
-  TaskPool pool(3);
+  crowd::TaskPool pool(3);
   for (const std::size_t count : {0U, 1U, 2U, 1000U}) {
     std::vector<std::atomic<int>> done(count);
     pool.run(count, [&](std::uint32_t thread, std::size_t i) {

@@ -3,11 +3,11 @@
 #include <doctest/doctest.h>
 #include <nlohmann/json.hpp>
 
-#include "engine/mesh/mesh_io.hpp"
+#include "engine/mesh/io/mesh_io.hpp"
 #include "render/dirt.hpp"
 #include "render/palette.hpp"
 #include "render/png.hpp"
-#include "scenarios/shapes/shapes.hpp"
+#include "scenarios/bodies/shapes/shapes.hpp"
 #include "tests/scenarios/program.hpp"
 #include "tests/support/dirt.hpp"
 
@@ -19,11 +19,11 @@ namespace {
 using nlohmann::json;
 
 /// Pixels of a colour outside the legend, as it is or shaded: lit faces keep the proportions of its channels.
-std::size_t pixels_of(const Image& image, Rgba colour) {
+std::size_t pixels_of(const render::Image& image, render::Rgba colour) {
   const double size = std::hypot(colour.r, colour.g, colour.b);
   std::size_t count = 0;
   for (std::size_t i = 0; i < image.pixels().size() * 7 / 8; ++i) {  // below is the legend
-    const Rgba p = image.pixels()[i];
+    const render::Rgba p = image.pixels()[i];
     const double other = std::hypot(p.r, p.g, p.b), dot = p.r * colour.r + p.g * colour.g + p.b * colour.b;
     const bool same_hue = size > 0 && other > 0.5 * size && dot > 0.998 * size * other;
     count += p == colour || same_hue;
@@ -34,7 +34,7 @@ std::size_t pixels_of(const Image& image, Rgba colour) {
 struct Drawn {
   const char* kind;
   Mesh mesh;
-  std::vector<Rgba> colours;
+  std::vector<render::Rgba> colours;
 };
 
 }  // namespace
@@ -48,27 +48,31 @@ TEST_CASE("the picture shows each kind of dirt in its colour") {
     star.face_vertices[2 * i + 1] = 2 * (i + 1) % 5;
   }
   for (const Drawn& d : std::vector<Drawn>{
-           {"open", without_faces(ball, {7}), {palette::kVermillion}},
+           {"open", without_faces(ball, {7}), {render::palette::kVermillion}},
            {"fin",
             with_face(ball, {{2, 0, 0}}, {ball.face(0)[0], ball.face(0)[1], n}),
-            {palette::kVermillion, palette::kPurple, palette::kOrange}},
-           {"vertex", welded(several({box(), box({1, 1, 1}, {2, 2, 2})})), {palette::kPurple}},
-           {"flipped", with_flipped(ball, {7}), {palette::kBlue}},
-           {"doubled", with_doubled(ball, {7}), {palette::kGreen}},
+            {render::palette::kVermillion, render::palette::kPurple, render::palette::kOrange}},
+           {"vertex", welded(several({box(), box({1, 1, 1}, {2, 2, 2})})), {render::palette::kPurple}},
+           {"flipped", with_flipped(ball, {7}), {render::palette::kBlue}},
+           {"doubled", with_doubled(ball, {7}), {render::palette::kGreen}},
            {"crossing",
             several({ball, translated(ball, {0.7, 0.1, 0.2})}),
-            {palette::kOrange, palette::kSkyBlue, palette::kContact}},
-           {"collapsed", with_merged(ball, ball.face(0)[0], ball.face(0)[1]), {palette::kYellow}},
-           {"no area", with_face(ball, {}, {0, 0, 0}), {palette::kYellow}},
-           {"inside out within", several({ball, icosphere(1, 0.4)}), {palette::kSkyBlue}},
-           {"soup", as_soup(ball), {palette::kGreen, palette::kVermillion}},
-           {"a point", with_face(Mesh{}, {{1, 2, 3}, {1, 2, 3}, {1, 2, 3}}, {0, 1, 2}), {palette::kYellow}},
-           {"huge and open", scaled(without_faces(ball, {7}), 1e308), {palette::kVermillion}},
-           {"tiny and open", scaled(without_faces(ball, {7}), 1e-300), {palette::kVermillion}},
-           {"2D open", without_faces(circle(9), {3}), {palette::kVermillion}},
-           {"2D branch", with_face(circle(9), {{2, 0, 0}}, {0, 9}), {palette::kPurple}},
-           {"2D flipped", with_flipped(circle(9), {3}), {palette::kBlue}},
-           {"2D crossing", star, {palette::kOrange, palette::kSkyBlue, palette::kContact}}}) {
+            {render::palette::kOrange, render::palette::kSkyBlue, render::palette::kContact}},
+           {"collapsed", with_merged(ball, ball.face(0)[0], ball.face(0)[1]), {render::palette::kYellow}},
+           {"no area", with_face(ball, {}, {0, 0, 0}), {render::palette::kYellow}},
+           {"inside out within", several({ball, icosphere(1, 0.4)}), {render::palette::kSkyBlue}},
+           {"soup", as_soup(ball), {render::palette::kGreen, render::palette::kVermillion}},
+           {"a point",
+            with_face(Mesh{}, {{1, 2, 3}, {1, 2, 3}, {1, 2, 3}}, {0, 1, 2}),
+            {render::palette::kYellow}},
+           {"huge and open", scaled(without_faces(ball, {7}), 1e308), {render::palette::kVermillion}},
+           {"tiny and open", scaled(without_faces(ball, {7}), 1e-300), {render::palette::kVermillion}},
+           {"2D open", without_faces(circle(9), {3}), {render::palette::kVermillion}},
+           {"2D branch", with_face(circle(9), {{2, 0, 0}}, {0, 9}), {render::palette::kPurple}},
+           {"2D flipped", with_flipped(circle(9), {3}), {render::palette::kBlue}},
+           {"2D crossing",
+            star,
+            {render::palette::kOrange, render::palette::kSkyBlue, render::palette::kContact}}}) {
     CAPTURE(std::string(d.kind));
     const Folder folder;
     write_mesh(d.mesh, folder / "m.obj");
@@ -77,8 +81,8 @@ TEST_CASE("the picture shows each kind of dirt in its colour") {
     REQUIRE(o.code == 0);
     CHECK(o.err.empty());
     CHECK(json::parse(o.out)["drawing"] == "new/m.png");
-    const Image image = read_png(folder / "new/m.png").image;
-    for (const Rgba& colour : d.colours) {
+    const render::Image image = render::read_png(folder / "new/m.png").image;
+    for (const render::Rgba& colour : d.colours) {
       CAPTURE(int(colour.r));
       CHECK(pixels_of(image, colour) > 40);
     }
@@ -105,14 +109,15 @@ TEST_CASE("an LRB-rep has no findings to draw") {
 
 TEST_CASE("kinds that say the same are drawn once") {
   const Mesh doubled = with_doubled(icosphere(1), {3, 9});  // they also meet
-  CHECK(dirt::kinds(check_mesh(doubled)) ==
+  CHECK(render::dirt::kinds(check_mesh(doubled)) ==
         std::vector{MeshFault::duplicate_face, MeshFault::non_manifold_edge});
   const Mesh collapsed = with_face(icosphere(1), {}, {0, 0, 1});
-  CHECK(dirt::kinds(check_mesh(collapsed)) == std::vector{MeshFault::zero_area_face});
-  CHECK(dirt::kinds(check_mesh(icosphere(1))).empty());
+  CHECK(render::dirt::kinds(check_mesh(collapsed)) == std::vector{MeshFault::zero_area_face});
+  CHECK(render::dirt::kinds(check_mesh(icosphere(1))).empty());
   const MeshReport open = check_mesh(without_faces(icosphere(1), {7, 40, 77}));
-  CHECK(dirt::caption(MeshFault::open_edge, open[MeshFault::open_edge], 3).starts_with("9 open edges: "));
-  CHECK(dirt::caption(MeshFault::open_edge, open[MeshFault::open_edge], 3).ends_with(", …"));
+  CHECK(render::dirt::caption(MeshFault::open_edge, open[MeshFault::open_edge], 3)
+            .starts_with("9 open edges: "));
+  CHECK(render::dirt::caption(MeshFault::open_edge, open[MeshFault::open_edge], 3).ends_with(", …"));
 }
 
 }  // namespace lrb::test

@@ -7,10 +7,10 @@
 #include <doctest/doctest.h>
 #include <nlohmann/json.hpp>
 
-#include "engine/mesh/mesh_io.hpp"
+#include "engine/mesh/io/mesh_io.hpp"
 #include "engine/query/brute_force.hpp"
 #include "engine/query/collide.hpp"
-#include "scenarios/shapes/shapes.hpp"
+#include "scenarios/bodies/shapes/shapes.hpp"
 #include "tests/scenarios/program.hpp"
 #include "tests/support/dirt.hpp"
 #include "tests/support/shared_meshes.hpp"

@@ -13,10 +13,10 @@
 #include <valijson/schema_parser.hpp>
 #include <valijson/validator.hpp>
 
-#include "engine/error.hpp"
+#include "engine/core/error.hpp"
 #include "render/png.hpp"
-#include "scenarios/embedded.hpp"
-#include "scenarios/generators/fractal.hpp"
+#include "scenarios/bodies/generators/fractal.hpp"
+#include "scenarios/io/embedded.hpp"
 #include "scenarios/paper/close_up.hpp"
 #include "scenarios/paper/icicle.hpp"
 #include "tests/scenarios/program.hpp"
@@ -28,8 +28,8 @@ using nlohmann::json;
 namespace {
 
 bool schema_accepts(const std::string& text) {
-  const json document = json::parse(embedded_file("experiment.schema.json"));
-  const json scenario = json::parse(embedded_file("scenario.schema.json"));
+  const json document = json::parse(io::embedded_file("experiment.schema.json"));
+  const json scenario = json::parse(io::embedded_file("scenario.schema.json"));
   valijson::Schema schema;
   valijson::SchemaParser(valijson::SchemaParser::kDraft7)
       .populateSchema(
@@ -41,7 +41,7 @@ bool schema_accepts(const std::string& text) {
 
 std::string error_of(const std::string& text) {
   try {
-    parse_experiment(text, "dir/e.json");
+    paper::parse_experiment(text, "dir/e.json");
   } catch (const InputError& e) {
     return e.what();
   }
@@ -60,10 +60,11 @@ std::string with(const std::string& pointer, const json& value) {
   return e.dump(1);
 }
 
-std::vector<PaperObject> small_objects() {
-  std::vector<PaperObject> objects;
+std::vector<paper::PaperObject> small_objects() {
+  std::vector<paper::PaperObject> objects;
   for (const std::size_t i : {3u, 2u})
-    objects.push_back({paper_objects()[i].name, fractal_body(paper_objects()[i])});
+    objects.push_back(
+        {generators::paper_objects()[i].name, generators::fractal_body(generators::paper_objects()[i])});
   return objects;
 }
 
@@ -77,29 +78,29 @@ std::size_t count(const std::string& text, const std::string& part) {
 
 TEST_CASE(
     "shipped experiments: valid by schema and reader; their numbers are the paper's and the protocol's") {
-  const std::vector<std::string> names = shipped_experiments();
+  const std::vector<std::string> names = paper::shipped_experiments();
   CHECK(names.size() == 5);
   for (const std::string& name : names) {
     CAPTURE(name);
-    CHECK(schema_accepts(shipped_experiment(name)));
-    const PaperExperiment e = open_experiment(name);
+    CHECK(schema_accepts(paper::shipped_experiment(name)));
+    const paper::PaperExperiment e = paper::open_experiment(name);
     CHECK(e.name == name);
-    CHECK(e.protocol.collisions == PaperProtocol{}.collisions);
-    CHECK(e.protocol.steps_after == PaperProtocol{}.steps_after);
-    CHECK(e.protocol.step == PaperProtocol{}.step);
-    CHECK(e.protocol.seed == PaperProtocol{}.seed);
-    if (name != "close_up") CHECK(e.objects.size() == paper_objects().size());
-    for (const PaperExperiment::Object& o : e.objects) {
-      const auto p = std::find_if(paper_objects().begin(), paper_objects().end(),
-                                  [&](const FractalSpec& s) { return s.name == o.name; });
-      REQUIRE(p != paper_objects().end());
+    CHECK(e.protocol.collisions == paper::PaperProtocol{}.collisions);
+    CHECK(e.protocol.steps_after == paper::PaperProtocol{}.steps_after);
+    CHECK(e.protocol.step == paper::PaperProtocol{}.step);
+    CHECK(e.protocol.seed == paper::PaperProtocol{}.seed);
+    if (name != "close_up") CHECK(e.objects.size() == generators::paper_objects().size());
+    for (const paper::PaperExperiment::Object& o : e.objects) {
+      const auto p = std::find_if(generators::paper_objects().begin(), generators::paper_objects().end(),
+                                  [&](const generators::FractalSpec& s) { return s.name == o.name; });
+      REQUIRE(p != generators::paper_objects().end());
       CHECK(o.body.generator == "fractal");
       CHECK(o.body.parameters.at("real_faces") == p->real_faces);
       CHECK(o.body.parameters.at("total_faces") == p->total_faces);
       CHECK(o.body.build.seed == p->seed);
     }
   }
-  CHECK_FALSE(open_experiment("table1").collides());
+  CHECK_FALSE(paper::open_experiment("table1").collides());
 }
 
 TEST_CASE("experiments: schema and reader agree on good and bad files") {
@@ -145,61 +146,63 @@ TEST_CASE("experiments: errors name file, line, column and the nearest word") {
   json lone = good();
   lone["objects"].erase(1);
   CHECK(error_of(lone.dump()).find("expected a second object") != std::string::npos);
-  CHECK_THROWS_WITH_AS(open_experiment("tabel1"), doctest::Contains("did you mean \"table1\"?"), InputError);
+  CHECK_THROWS_WITH_AS(paper::open_experiment("tabel1"), doctest::Contains("did you mean \"table1\"?"),
+                       InputError);
   std::vector<std::string> notes;
   CHECK_THROWS_WITH_AS(
-      make_objects(parse_experiment(with("/objects/1/body", json{{"generator", "island"}}), "e"), notes),
+      paper::make_objects(
+          paper::parse_experiment(with("/objects/1/body", json{{"generator", "island"}}), "e"), notes),
       doctest::Contains("is a 2D body"), InputError);
 }
 
 TEST_CASE("easiest and hardest: by comparisons over all time steps, the first of several") {
-  std::vector<ContactStep> steps(5);
+  std::vector<paper::ContactStep> steps(5);
   const std::uint32_t collisions[] = {3, 3, 5, 7, 9}, comparisons[] = {10, 10, 15, 15, 20};
   for (std::size_t i = 0; i < steps.size(); ++i) {
     steps[i].object = "C";
     steps[i].collision = collisions[i];
     steps[i].counts[0].comparisons = comparisons[i];
   }
-  CHECK(easiest_and_hardest(steps, "C") == std::array<std::uint32_t, 2>{5, 3});
-  CHECK_THROWS_AS(easiest_and_hardest(steps, "D"), InputError);
+  CHECK(paper::easiest_and_hardest(steps, "C") == std::array<std::uint32_t, 2>{5, 3});
+  CHECK_THROWS_AS(paper::easiest_and_hardest(steps, "D"), InputError);
 }
 
 TEST_CASE("a close-up is the recorded collision, event by event; records of another one are refused") {
   const auto objects = small_objects();
-  SweepOptions sweep;
+  paper::SweepOptions sweep;
   sweep.protocol.collisions = 3;
-  const auto records = run_sweep(objects, sweep, {});
-  const PaperPair pair{objects[0], objects[1]};
-  const CloseUp c = close_up(pair, 1, sweep.protocol, records);
+  const auto records = paper::run_sweep(objects, sweep, {});
+  const paper::PaperPair pair{objects[0], objects[1]};
+  const paper::CloseUp c = paper::close_up(pair, 1, sweep.protocol, records);
   std::uint64_t sum = 0;
-  for (const ContactStep& s : records) sum += s.collision == 1 ? s.counts[0].comparisons : 0;
+  for (const paper::ContactStep& s : records) sum += s.collision == 1 ? s.counts[0].comparisons : 0;
   CHECK(c.comparisons == sum);
   CHECK(trace::count_events(c.trace.events).face_tests == sum);
   for (const Side side : {Side::a, Side::b}) {
     const auto tests = trace::count_faces(pair.rep(side), side, c.trace.events).tests;
     CHECK(std::accumulate(tests.begin(), tests.end(), std::uint64_t{0}) == sum);
   }
-  PaperProtocol other = sweep.protocol;
+  paper::PaperProtocol other = sweep.protocol;
   other.seed = 2;
-  CHECK_THROWS_WITH_AS(close_up(pair, 1, other, records), doctest::Contains("another experiment"),
+  CHECK_THROWS_WITH_AS(paper::close_up(pair, 1, other, records), doctest::Contains("another experiment"),
                        InputError);
 }
 
 TEST_CASE("the icicle chart has a box for each region that the query came to") {
   const auto objects = small_objects();
-  SweepOptions sweep;
+  paper::SweepOptions sweep;
   sweep.protocol.collisions = 1;
-  const auto records = run_sweep(objects, sweep, {});
-  const PaperPair pair{objects[0], objects[1]};
-  const CloseUp c = close_up(pair, 0, sweep.protocol, records);
-  const std::string svg = icicle_svg(pair, c);
+  const auto records = paper::run_sweep(objects, sweep, {});
+  const paper::PaperPair pair{objects[0], objects[1]};
+  const paper::CloseUp c = paper::close_up(pair, 0, sweep.protocol, records);
+  const std::string svg = paper::icicle_svg(pair, c);
   CHECK(svg.starts_with("<svg "));
   CHECK(svg.ends_with("</svg>\n"));
-  const std::size_t refined = c.steps[busiest_step(c)].counts[0].refinements;
+  const std::size_t refined = c.steps[paper::busiest_step(c)].counts[0].refinements;
   CHECK(refined > 0);
   CHECK(count(svg, ", refined: ") == refined);
-  for (const ContactStep& s : c.steps)
-    CHECK(s.counts[0].comparisons <= c.steps[busiest_step(c)].counts[0].comparisons);
+  for (const paper::ContactStep& s : c.steps)
+    CHECK(s.counts[0].comparisons <= c.steps[paper::busiest_step(c)].counts[0].comparisons);
   CHECK(count(svg, "<rect") == count(svg, "</rect>") + 5);  // the background and four colours of the legend
 }
 
@@ -210,7 +213,7 @@ TEST_CASE("paper --experiment: only what is asked for, on bodies of one's own; p
   CHECK_FALSE(std::filesystem::exists(folder / "one/records.jsonl"));
   CHECK(test::slurp(folder / "one/report.md").find("| H | 34474 | 43396 | 7 faces |") != std::string::npos);
   const test::Outcome printed = run({"paper", "--experiment", "close_up", "--print"});
-  CHECK(printed.out == shipped_experiment("close_up"));
+  CHECK(printed.out == paper::shipped_experiment("close_up"));
 
   folder.write("cube.obj", test::kCube);
   json mine = good();
@@ -230,7 +233,7 @@ TEST_CASE("paper --experiment: only what is asked for, on bodies of one's own; p
     CHECK(md.find(std::string("](") + file + ")") != std::string::npos);
     CHECK(page.find(std::string("href=\"") + file + "\"><img src=\"data:image/") != std::string::npos);
   }
-  const Image heat = read_png(folder / "mine/heat_maps.png").image;
+  const render::Image heat = render::read_png(folder / "mine/heat_maps.png").image;
   CHECK(heat.width() > 2000);
   REQUIRE(run({"paper", "--experiment", "mine.json", "-o", "again", "--jobs", "2"}).code == 0);
   for (const char* file : {"/heat_maps.png", "/refinement_tree.svg", "/records.jsonl", "/tables.json"})

@@ -1,8 +1,8 @@
-#include "scenarios/generators/generators.hpp"
+#include "scenarios/bodies/generators/generators.hpp"
 
 #include <doctest/doctest.h>
 
-#include "engine/error.hpp"
+#include "engine/core/error.hpp"
 #include "engine/mesh/mesh_check.hpp"
 
 using namespace lrb;
@@ -24,35 +24,36 @@ void check_clean(const Mesh& mesh) {
 }  // namespace
 
 TEST_CASE("every generator makes a closed, clean body that faces outward, whatever the seed") {
-  for (const Generator& g : generators())
-    for (std::uint64_t seed = 1; seed <= 4; ++seed) check_clean(generate(g.name, {}, seed));
+  for (const generators::Generator& g : generators::generators())
+    for (std::uint64_t seed = 1; seed <= 4; ++seed) check_clean(generators::generate(g.name, {}, seed));
 }
 
 TEST_CASE("clean also away from the fallbacks") {
-  check_clean(generate("rock", {{"frequency", 7}, {"bumps", 0.5}, {"craters", 40}}, 5));
-  check_clean(generate("knot", {{"p", 3}, {"q", 2}, {"tube", 0.1}, {"segments", 90}, {"sides", 5}}));
-  check_clean(generate("gear", {{"teeth", 5}, {"rings", 1}, {"points", 4}, {"bore", 0.6}}));
-  check_clean(generate("stick", {{"length", 9}, {"segments", 7}, {"rows", 1}}));
-  check_clean(generate("pot", {{"mouth", 0.05}, {"rows", 1}, {"segments", 9}}));
-  check_clean(generate("bowl", {{"wall", 0.5}, {"rows", 2}, {"segments", 6}}));
+  check_clean(generators::generate("rock", {{"frequency", 7}, {"bumps", 0.5}, {"craters", 40}}, 5));
+  check_clean(
+      generators::generate("knot", {{"p", 3}, {"q", 2}, {"tube", 0.1}, {"segments", 90}, {"sides", 5}}));
+  check_clean(generators::generate("gear", {{"teeth", 5}, {"rings", 1}, {"points", 4}, {"bore", 0.6}}));
+  check_clean(generators::generate("stick", {{"length", 9}, {"segments", 7}, {"rows", 1}}));
+  check_clean(generators::generate("pot", {{"mouth", 0.05}, {"rows", 1}, {"segments", 9}}));
+  check_clean(generators::generate("bowl", {{"wall", 0.5}, {"rows", 2}, {"segments", 6}}));
   for (double levels = 0; levels <= 4; ++levels)
-    check_clean(generate("island", {{"levels", levels}, {"depth", 0.32}}, 9));
+    check_clean(generators::generate("island", {{"levels", levels}, {"depth", 0.32}}, 9));
 }
 
 TEST_CASE("the two bodies of the main job have real detail") {
-  CHECK(generate("rock").face_count() == 5120);
-  CHECK(generate("knot").face_count() == 5280);
+  CHECK(generators::generate("rock").face_count() == 5120);
+  CHECK(generators::generate("knot").face_count() == 5280);
 }
 
 TEST_CASE("same seed, same body; other seed, other body") {
-  CHECK(generate("rock", {}, 3).vertices == generate("rock", {}, 3).vertices);
-  CHECK(generate("rock", {}, 3).vertices != generate("rock", {}, 4).vertices);
+  CHECK(generators::generate("rock", {}, 3).vertices == generators::generate("rock", {}, 3).vertices);
+  CHECK(generators::generate("rock", {}, 3).vertices != generators::generate("rock", {}, 4).vertices);
 }
 
 TEST_CASE("unknown names and values out of range are refused") {
-  CHECK_THROWS_WITH_AS(generate("rok"), doctest::Contains("did you mean \"rock\"?"), InputError);
-  CHECK_THROWS_WITH_AS(generate("rock", {{"bump", 1}}), doctest::Contains("did you mean \"bumps\"?"),
-                       InputError);
-  CHECK_THROWS_AS(generate("rock", {{"frequency", 1e9}}), InputError);
-  CHECK_THROWS_AS(generate("rock", {{"frequency", 2.5}}), InputError);
+  CHECK_THROWS_WITH_AS(generators::generate("rok"), doctest::Contains("did you mean \"rock\"?"), InputError);
+  CHECK_THROWS_WITH_AS(generators::generate("rock", {{"bump", 1}}),
+                       doctest::Contains("did you mean \"bumps\"?"), InputError);
+  CHECK_THROWS_AS(generators::generate("rock", {{"frequency", 1e9}}), InputError);
+  CHECK_THROWS_AS(generators::generate("rock", {{"frequency", 2.5}}), InputError);
 }

@@ -10,7 +10,7 @@
 
 #include "render/png.hpp"
 #include "scenarios/golden/approve.hpp"
-#include "scenarios/golden/report.hpp"
+#include "scenarios/golden/golden_report.hpp"
 #include "tests/scenarios/program.hpp"
 #include "trace/trace_json.hpp"
 
@@ -20,7 +20,7 @@ using namespace lrb::test;
 
 namespace {
 
-const ProgressReport kSilent = [](const std::string&, std::uint64_t, std::uint64_t) {};
+const run::ProgressReport kSilent = [](const std::string&, std::uint64_t, std::uint64_t) {};
 
 /// Two balls that meet; `frames` goes into the scenario's "frames".
 std::string two_balls(const std::string& frames = {}) {
@@ -46,14 +46,14 @@ std::size_t files_ending(const Folder& folder, const std::string& ending) {
 struct Approved : Folder {
   Approved() {
     write("balls.scenario.json", two_balls());
-    const Outcome o = run(*this, {"golden", "approve", "--frames", "2", "balls.scenario.json"});
+    const Outcome o = test::run(*this, {"golden", "approve", "--frames", "2", "balls.scenario.json"});
     REQUIRE_MESSAGE(o.code == 0, o.err);
   }
-  Outcome test() const { return run(*this, {"golden", "test"}); }
+  Outcome test() const { return test::run(*this, {"golden", "test"}); }
 };
 
-GoldenSpec small_spec() {
-  GoldenSpec spec;
+golden::GoldenSpec small_spec() {
+  golden::GoldenSpec spec;
   spec.scenario = "balls";
   spec.width = 480;
   spec.height = 320;
@@ -61,18 +61,19 @@ GoldenSpec small_spec() {
   return spec;
 }
 
-GoldenRun play() {
-  return play_golden(parse_scenario(two_balls(), "balls.scenario.json"), small_spec(), kSilent);
+golden::GoldenRun play() {
+  return golden::play_golden(spec::parse_scenario(two_balls(), "balls.scenario.json"), small_spec(), kSilent);
 }
 
 /// The golden of a run, without going through files.
-Golden golden_of(const GoldenRun& run) {
-  Golden golden;
+golden::Golden golden_of(const golden::GoldenRun& run) {
+  golden::Golden golden;
   golden.name = run.scenario.name;
   golden.spec = small_spec();
   golden.trace = run.recording.trace;
   for (std::size_t i = 0; i < run.frames.size(); ++i)
-    golden.frames.push_back({{golden_image_file(i), {run.frames[i].image, golden_text(run, i), 0}}});
+    golden.frames.push_back(
+        {{golden::golden_image_file(i), {run.frames[i].image, golden::golden_text(run, i), 0}}});
   return golden;
 }
 
@@ -110,8 +111,8 @@ TEST_CASE("goldens: what is approved passes, and leaves nothing behind; approvin
   CHECK(o.code == 0);
   CHECK(o.out.starts_with("ok    balls: "));
   CHECK(folder.tree() == before);
-  CHECK(run(folder, {"golden", "approve"}).out == "unchanged balls\n");
-  CHECK(run(folder, {"golden", "test", "balls.scenario.json"}).code == 0);
+  CHECK(test::run(folder, {"golden", "approve"}).out == "unchanged balls\n");
+  CHECK(test::run(folder, {"golden", "test", "balls.scenario.json"}).code == 0);
 }
 
 TEST_CASE("goldens: approved twice, they are the same bytes") {
@@ -125,7 +126,7 @@ TEST_CASE("goldens: any number of rasterizer threads gives equal pictures") {
   const Approved folder;
   for (const char* threads : {"0", "1", "3", "7"}) {
     setenv("LP_NUM_THREADS", threads, 1);
-    const Outcome o = run(folder, {"golden", "test", "--json"});
+    const Outcome o = test::run(folder, {"golden", "test", "--json"});
     unsetenv("LP_NUM_THREADS");
     const auto answer = nlohmann::json::parse(o.out);
     CHECK(answer["passed"] == true);
@@ -155,7 +156,7 @@ TEST_CASE("goldens: a moved camera is called a moved camera") {
   CHECK_FALSE(has(page, "https:"));
 
   // The command that was printed makes it pass, and the test cleans up.
-  CHECK(run(folder, {"golden", "approve", "--goldens", "goldens", "balls"}).code == 0);
+  CHECK(test::run(folder, {"golden", "approve", "--goldens", "goldens", "balls"}).code == 0);
   CHECK(folder.test().code == 0);
   CHECK(files_ending(folder, ".expected.png") == 0);
   CHECK(files_ending(folder, "index.html") == 0);
@@ -164,9 +165,9 @@ TEST_CASE("goldens: a moved camera is called a moved camera") {
 TEST_CASE("goldens: a changed colour is told from a moved camera") {
   const Approved folder;
   const std::string picture = folder / "goldens/balls/frame_1.png";
-  DecodedPng png = read_png(picture);
-  for (Rgba& p : png.image.pixels()) std::swap(p.r, p.b);
-  write_png(png.image, picture, {png.text, 0});
+  render::DecodedPng png = render::read_png(picture);
+  for (render::Rgba& p : png.image.pixels()) std::swap(p.r, p.b);
+  render::write_png(png.image, picture, {png.text, 0});
   const Outcome o = folder.test();
   CAPTURE(o.out);
   CHECK(o.code == 1);
@@ -178,10 +179,10 @@ TEST_CASE("goldens: a changed colour is told from a moved camera") {
 TEST_CASE("goldens: noise of processors passes, and is reported as such") {
   const Approved folder;
   const std::string picture = folder / "goldens/balls/frame_1.png";
-  DecodedPng png = read_png(picture);
+  render::DecodedPng png = render::read_png(picture);
   for (std::size_t i = 0; i < png.image.pixels().size(); i += 10) png.image.pixels()[i].g ^= 1;
   png.image.at(5, 5) = {0, 0, 0, 255};
-  write_png(png.image, picture, {png.text, 0});
+  render::write_png(png.image, picture, {png.text, 0});
   const Outcome o = folder.test();
   CHECK(o.code == 0);
   CHECK(has(o.out, "images: 2 equal, 1 of them within tolerance"));
@@ -190,18 +191,18 @@ TEST_CASE("goldens: noise of processors passes, and is reported as such") {
 TEST_CASE("goldens: a variant is right as well; a picture that has changed loses its variants") {
   const Approved folder;
   const std::string base = folder / "goldens/balls/frame_1.png";
-  DecodedPng png = read_png(base);
+  render::DecodedPng png = render::read_png(base);
   png.image.fill({0, 0, 100, 100}, {1, 2, 3, 255});
-  write_png(png.image, base, {png.text, 0});
+  render::write_png(png.image, base, {png.text, 0});
   REQUIRE(folder.test().code == 1);
-  CHECK(run(folder, {"golden", "approve", "--variant", "here"}).code == 0);
+  CHECK(test::run(folder, {"golden", "approve", "--variant", "here"}).code == 0);
   CHECK(fs::exists(folder / "goldens/balls/frame_1.here.png"));
   CHECK_FALSE(fs::exists(folder / "goldens/balls/frame_2.here.png"));
   CHECK(folder.test().code == 0);
 
   folder.write("balls.scenario.json", two_balls(R"(, "colour_by": "layer")"));
   CHECK(folder.test().code == 1);
-  CHECK(run(folder, {"golden", "approve"}).code == 0);
+  CHECK(test::run(folder, {"golden", "approve"}).code == 0);
   CHECK_FALSE(fs::exists(folder / "goldens/balls/frame_1.here.png"));
   CHECK(folder.test().code == 0);
 }
@@ -223,53 +224,53 @@ TEST_CASE("goldens: two events swapped are named, and both sides are drawn") {
   for (const char* kind : {"expected", "actual", "difference"})
     CHECK(fs::exists(folder / ("out/golden/balls/divergence." + std::string(kind) + ".png")));
   CHECK(fs::exists(folder / "out/golden/balls/actual.trace.json.gz"));
-  CHECK(read_png(folder / "out/golden/balls/divergence.expected.png").image !=
-        read_png(folder / "out/golden/balls/divergence.actual.png").image);
-  CHECK(run(folder, {"golden", "approve", "--variant", "here"}).code == 2);  // events have no variants
+  CHECK(render::read_png(folder / "out/golden/balls/divergence.expected.png").image !=
+        render::read_png(folder / "out/golden/balls/divergence.actual.png").image);
+  CHECK(test::run(folder, {"golden", "approve", "--variant", "here"}).code == 2);  // events have no variants
 }
 
 TEST_CASE("goldens: a contact that is lost is called lost, one that is new is called added") {
-  GoldenRun run = play();
-  Golden golden = golden_of(run);
-  REQUIRE(check_golden(golden, run).passed());
+  golden::GoldenRun run = play();
+  golden::Golden golden = golden_of(run);
+  REQUIRE(golden::check_golden(golden, run).passed());
   const trace::EventId e = first_of(golden.trace, EventKind::contact);
   const std::string contact = trace::describe(golden.trace.events[e]);
 
   lose(run.recording.trace, e);
-  const GoldenResult lost = test_golden(golden, run, "approve", false);
+  const golden::GoldenResult lost = golden::test_golden(golden, run, "approve", false);
   CAPTURE(lost.verdict.diagnosis);
   REQUIRE(lost.verdict.divergence);
   CHECK(lost.verdict.divergence->event == e);
   CHECK(lost.verdict.diagnosis.starts_with("event " + std::to_string(e) + " lost: " + contact));
   CHECK(has(lost.verdict.diagnosis, "instead of"));
-  CHECK(has(result_text(lost), " lost: contact: "));
+  CHECK(has(golden::result_text(lost), " lost: contact: "));
   REQUIRE(lost.pngs.size() == 1);  // the pictures of the run are as approved
   CHECK_FALSE(lost.pngs[0][0].empty());
   CHECK(lost.pngs[0][0] != lost.pngs[0][1]);
 
   std::swap(golden.trace, run.recording.trace);
-  const GoldenVerdict added = check_golden(golden, run);
+  const golden::GoldenVerdict added = golden::check_golden(golden, run);
   REQUIRE(added.divergence);
   CHECK(added.diagnosis.starts_with("event " + std::to_string(e) + " added: " + contact));
 }
 
 TEST_CASE("goldens: counters, poses and bodies are part of the run") {
-  const GoldenRun run = play();
-  Golden golden = golden_of(run);
+  const golden::GoldenRun run = play();
+  golden::Golden golden = golden_of(run);
   ++golden.trace.steps[2].result.counters.box_tests;
-  GoldenVerdict v = check_golden(golden, run);
+  golden::GoldenVerdict v = golden::check_golden(golden, run);
   REQUIRE(v.divergence);
   CHECK(has(v.divergence->message(), "step 2: counter box_tests: expected "));
 
   golden = golden_of(run);
   golden.trace.steps[1].pose_b.t.x() += 1;
-  v = check_golden(golden, run);
+  v = golden::check_golden(golden, run);
   REQUIRE(v.divergence);
   CHECK(has(v.divergence->message(), "step 1: pose of B"));
 
   golden = golden_of(run);
   ++golden.trace.header.bodies[1].hash;
-  const GoldenResult body = test_golden(golden, run, "approve", false);
+  const golden::GoldenResult body = golden::test_golden(golden, run, "approve", false);
   REQUIRE(body.verdict.divergence);
   CHECK(has(body.verdict.divergence->message(), "hash of body B"));
   REQUIRE(body.comparisons.size() == 1);
@@ -283,14 +284,14 @@ TEST_CASE("goldens: frames that one side alone has are failures") {
   fs::copy_file(folder / "goldens/balls/frame_1.png", folder / "goldens/balls/frame_2.png");
   fs::copy_file(folder / "goldens/balls/frame_1.png", folder / "goldens/balls/frame_3.png");
   CHECK(has(folder.test().out, "frame_3.png: approved, but the run has 2 frames only"));
-  CHECK(run(folder, {"golden", "approve"}).code == 0);
+  CHECK(test::run(folder, {"golden", "approve"}).code == 0);
   CHECK_FALSE(fs::exists(folder / "goldens/balls/frame_3.png"));
   CHECK(folder.test().code == 0);
 }
 
 TEST_CASE("goldens: a report shows every picture, passed or not") {
   const Approved folder;
-  const Outcome o = run(folder, {"golden", "report", "-o", "pages"});
+  const Outcome o = test::run(folder, {"golden", "report", "-o", "pages"});
   CHECK(o.code == 0);
   CHECK(has(o.out, "pages/index.html\n"));
   const std::string page = slurp(folder / "pages/index.html");
@@ -312,16 +313,16 @@ TEST_CASE("goldens: what cannot be tested ends with code 2 and one line") {
       {"golden", "approve", "--variant", "x", "other.scenario.json"},
   };
   for (const auto& arguments : bad) {
-    const Outcome o = run(folder, arguments);
+    const Outcome o = test::run(folder, arguments);
     CAPTURE(arguments.back());
     CAPTURE(o.err);
     CHECK(o.code == 2);
     CHECK(o.error_lines() == 1);
   }
-  CHECK(has(run(folder, {"golden", "test", "other.scenario.json"}).err, "lrbscope golden approve"));
+  CHECK(has(test::run(folder, {"golden", "test", "other.scenario.json"}).err, "lrbscope golden approve"));
   folder.write("goldens/balls/frame_1.png", "no picture");
   CHECK(folder.test().code == 2);
-  CHECK(run(folder, {"golden", "approve"}).code == 0);  // which puts a sound one in its place
+  CHECK(test::run(folder, {"golden", "approve"}).code == 0);  // which puts a sound one in its place
   CHECK(folder.test().code == 0);
   folder.write("goldens/balls/golden.json", "{\"scenario\": \"balls\", \"size\": [1]}");
   CHECK(has(folder.test().err, "golden.json:1:"));

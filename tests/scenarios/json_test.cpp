@@ -2,10 +2,10 @@
 
 #include <doctest/doctest.h>
 
-#include "engine/error.hpp"
-#include "scenarios/json/json_node.hpp"
-#include "scenarios/json/json_text.hpp"
-#include "scenarios/json/suggest.hpp"
+#include "engine/core/error.hpp"
+#include "scenarios/io/json/json_node.hpp"
+#include "scenarios/io/json/json_text.hpp"
+#include "scenarios/io/json/suggest.hpp"
 
 using namespace lrb;
 
@@ -13,7 +13,7 @@ namespace {
 
 std::string error_of(const std::string& text) {
   try {
-    const JsonText json(text, "file.json");
+    const io::JsonText json(text, "file.json");
   } catch (const InputError& e) {
     return e.what();
   }
@@ -23,7 +23,7 @@ std::string error_of(const std::string& text) {
 }  // namespace
 
 TEST_CASE("values are found again by their pointers") {
-  const JsonText json("{\n  \"a\": [1,\n    {\"b/c\": \"x\\\"y\"}],\n \"~\": true }", "f");
+  const io::JsonText json("{\n  \"a\": [1,\n    {\"b/c\": \"x\\\"y\"}],\n \"~\": true }", "f");
   CHECK(json.where("") == "f:1:1");
   CHECK(json.where("/a") == "f:2:8");
   CHECK(json.where("/a#") == "f:2:3");
@@ -33,7 +33,7 @@ TEST_CASE("values are found again by their pointers") {
 }
 
 TEST_CASE("columns count characters, not bytes") {
-  const JsonText json("{\"\xc3\xa4\xc3\xb6\": 1}", "f");
+  const io::JsonText json("{\"\xc3\xa4\xc3\xb6\": 1}", "f");
   CHECK(json.where("/\xc3\xa4\xc3\xb6") == "f:1:8");
 }
 
@@ -60,17 +60,17 @@ TEST_CASE("absurd nesting is refused, not crashed on") {
 
 TEST_CASE("near words are suggested, far ones are not") {
   const std::vector<std::string> known = {"motion", "query", "frames"};
-  CHECK(nearest_word("moton", known) == "motion");
-  CHECK(nearest_word("qurey", known) == "query");
-  CHECK(nearest_word("banana", known).empty());
-  CHECK(nearest_word(std::string(100'000, 'x'), known).empty());
-  CHECK(edit_distance("kitten", "sitting") == 3);
-  CHECK(edit_distance("ab", "ba") == 1);
+  CHECK(io::nearest_word("moton", known) == "motion");
+  CHECK(io::nearest_word("qurey", known) == "query");
+  CHECK(io::nearest_word("banana", known).empty());
+  CHECK(io::nearest_word(std::string(100'000, 'x'), known).empty());
+  CHECK(io::edit_distance("kitten", "sitting") == 3);
+  CHECK(io::edit_distance("ab", "ba") == 1);
 }
 
 TEST_CASE("readers say what they expected and where") {
-  const JsonText json("{\"n\": -1, \"s\": \"x\", \"v\": [1, 2], \"big\": 1e300, \"f\": 1.5}", "f");
-  const JsonNode root(json);
+  const io::JsonText json("{\"n\": -1, \"s\": \"x\", \"v\": [1, 2], \"big\": 1e300, \"f\": 1.5}", "f");
+  const io::JsonNode root(json);
   CHECK_THROWS_WITH_AS(root.at("n").integer(0, 9), "f:1:7: /n: expected a whole number from 0 to 9, found -1",
                        InputError);
   CHECK_THROWS_WITH_AS(root.at("f").integer(0, 9),
@@ -87,8 +87,8 @@ TEST_CASE("a byte order mark moves no place, and nothing may follow a NUL byte")
 }
 
 TEST_CASE("messages stay one line, whatever stands in the file") {
-  const JsonText json("{\"a\\nb\": 1, \"c\": \"\\u001b[2J\\n\"}", "f");
-  const JsonNode root(json);
+  const io::JsonText json("{\"a\\nb\": 1, \"c\": \"\\u001b[2J\\n\"}", "f");
+  const io::JsonNode root(json);
   CHECK_THROWS_WITH_AS(root.object({"c"}), doctest::Contains("/a\\x0ab: unknown key"), InputError);
   CHECK_THROWS_WITH_AS(root.at("c").choice<int>({{"x", 1}}), doctest::Contains("\\x1b[2J\\x0a"), InputError);
 }

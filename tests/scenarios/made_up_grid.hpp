@@ -1,7 +1,7 @@
 #pragma once
 
-#include "scenarios/families/families.hpp"
-#include "scenarios/stability/grid.hpp"
+#include "scenarios/cases/families.hpp"
+#include "scenarios/stability/outcome_grid.hpp"
 
 namespace lrb::stability {
 
@@ -20,14 +20,14 @@ inline Grid made_up_grid() {
       {"cgal", "CGAL 5.5, Rigid_triangle_mesh_collision_detection", "meet or not, and inside", true},
       {"bullet", "Bullet 3.24, GImpact", "meet or not", false},
   };
-  for (const families::Family& f : families::all_families())
+  for (const cases::Family& f : cases::all_families())
     g.families.push_back({f.name, f.what, "gap 1e-1", "gap 1 ulp"});
   g.families[0].what += " <b>&\"quoted\"";
   for (std::size_t f = 0; f < g.families.size(); ++f)
     for (std::size_t m = 0; m < g.methods.size(); ++m) {
       Cell c;
       if (g.methods[m].present)
-        for (std::size_t d = 0; d < kDialSettings; ++d) {
+        for (std::size_t d = 0; d < cases::kDialSettings; ++d) {
           c.cases[d] = 30;
           const bool begun = d + m > 6 + f % 5;
           if (m == 0) {
@@ -39,7 +39,7 @@ inline Grid made_up_grid() {
           if (m == 4 && f % 7 == 3 && d > 8) c.timed_out[d] = 3;
           if (m == 5 && f % 5 == 1 && d > 6) c.refused[d] = 3;
         }
-      for (std::size_t d = 0; d < kDialSettings && !c.worst; ++d) {
+      for (std::size_t d = 0; d < cases::kDialSettings && !c.worst; ++d) {
         if (c.wrong[d] + c.crashed[d] + c.timed_out[d] + c.refused[d] == 0) continue;
         Record r;
         r.family = g.families[f].name;

@@ -5,7 +5,7 @@
 #include <doctest/doctest.h>
 
 #include "engine/lrb/lrb_file.hpp"
-#include "scenarios/shapes/shapes.hpp"
+#include "scenarios/bodies/shapes/shapes.hpp"
 #include "tests/fuzz/seeds.hpp"
 #include "tests/mesh/encode.hpp"
 #include "tests/scenarios/program.hpp"

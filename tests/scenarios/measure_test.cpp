@@ -4,36 +4,36 @@
 
 #include <doctest/doctest.h>
 
-#include "engine/build/build.hpp"
-#include "engine/error.hpp"
+#include "engine/construct/build.hpp"
+#include "engine/core/error.hpp"
 #include "engine/query/brute_force.hpp"
-#include "scenarios/measure/data_set.hpp"
-#include "scenarios/measure/make_sets.hpp"
-#include "scenarios/measure/metrics.hpp"
-#include "scenarios/measure/oracle.hpp"
-#include "scenarios/measure/peer_table.hpp"
-#include "scenarios/measure/region_error.hpp"
-#include "scenarios/measure/statistics.hpp"
+#include "scenarios/bench/data_set.hpp"
+#include "scenarios/bench/make_sets.hpp"
+#include "scenarios/bench/oracle.hpp"
+#include "scenarios/bench/report/metrics.hpp"
+#include "scenarios/bench/report/peer_table.hpp"
+#include "scenarios/bench/report/region_error.hpp"
+#include "scenarios/bench/report/statistics.hpp"
+#include "scenarios/bodies/shapes/random_pose.hpp"
+#include "scenarios/bodies/shapes/shapes.hpp"
 #include "scenarios/methods/method.hpp"
-#include "scenarios/shapes/random_pose.hpp"
-#include "scenarios/shapes/shapes.hpp"
 #include "tests/scenarios/program.hpp"
 
 using namespace lrb;
-using namespace lrb::measure;
+using namespace lrb::bench;
 using lrb::test::Folder;
 using lrb::test::run;
 using lrb::test::slurp;
 
 namespace {
 
-BodyPair small_pair() {
+bench::BodyPair small_pair() {
   return {"spheres", "two bumpy spheres", [] { return shapes::bumpy_sphere(2, 1); },
           [] { return shapes::bumpy_sphere(2, 2); }};
 }
 
-SetOptions few() {
-  SetOptions o;
+bench::SetOptions few() {
+  bench::SetOptions o;
   o.poses = 4;
   return o;
 }
@@ -44,8 +44,8 @@ methods::MethodInfo info(const std::string& name) {
   return i;
 }
 
-Record answer(const std::string& method, std::uint64_t question, PoseClass c, double us) {
-  Record r;
+bench::Record answer(const std::string& method, std::uint64_t question, bench::PoseClass c, double us) {
+  bench::Record r;
   r.set = "set";
   r.method = method;
   r.question = question;
@@ -55,44 +55,45 @@ Record answer(const std::string& method, std::uint64_t question, PoseClass c, do
   return r;
 }
 
-DataSet made_up_set(int questions) {
-  DataSet set;
+bench::DataSet made_up_set(int questions) {
+  bench::DataSet set;
   set.name = "set";
-  for (int i = 0; i < questions; ++i) set.questions.push_back({PoseClass::deep, 0, 0, {}, {}, {}});
+  for (int i = 0; i < questions; ++i) set.questions.push_back({bench::PoseClass::deep, 0, 0, {}, {}, {}});
   return set;
 }
 
 }  // namespace
 
 TEST_CASE("quantiles are values that are there, means of ratios are geometric") {
-  CHECK(quantile({5, 1, 4, 2, 3}, 0.5) == 3);
-  CHECK(quantile({5, 1, 4, 2, 3}, 0.95) == 5);
-  CHECK(quantile({1, 2}, 0.5) == 1);
-  CHECK(quantile({}, 0.5) == 0);
-  CHECK(geometric_mean({2, 8}) == doctest::Approx(4));
+  CHECK(bench::quantile({5, 1, 4, 2, 3}, 0.5) == 3);
+  CHECK(bench::quantile({5, 1, 4, 2, 3}, 0.95) == 5);
+  CHECK(bench::quantile({1, 2}, 0.5) == 1);
+  CHECK(bench::quantile({}, 0.5) == 0);
+  CHECK(bench::geometric_mean({2, 8}) == doctest::Approx(4));
 }
 
 TEST_CASE("the oracle of data sets is brute force, but faster") {
-  shapes::Random random(3);
+  shapes::RandomEngine random(3);
   const LrbRep a = build_lrb(shapes::bumpy_sphere(2, 1)), b = build_lrb(shapes::torus(12, 8));
   std::size_t met = 0;
   for (int i = 0; i < 20; ++i) {
     const Pose p = shapes::random_pose(random, a, b, 0.5);
     const auto expected = brute_force(a, Pose{}, b, p).pairs;
-    CHECK(exact_pairs(a, Pose{}, b, p) == expected);
+    CHECK(bench::exact_pairs(a, Pose{}, b, p) == expected);
     met += expected.size();
   }
   CHECK(met > 100);
-  CHECK(exact_pairs(a, Pose{}, a, Pose{}) == brute_force(a, Pose{}, a, Pose{}).pairs);
+  CHECK(bench::exact_pairs(a, Pose{}, a, Pose{}) == brute_force(a, Pose{}, a, Pose{}).pairs);
 }
 
 TEST_CASE("a data set holds poses of the classes it says, and comes back from its file as it was") {
   const Folder folder;
-  const DataSet set = make_data_set(small_pair(), few(), folder.path.string());
+  const bench::DataSet set = bench::make_data_set(small_pair(), few(), folder.path.string());
   REQUIRE(set.questions.size() == 4 * 4 + 1);
-  for (const Question& q : set.questions) CHECK(q.expected.empty() == (q.pose_class == PoseClass::apart));
+  for (const bench::Question& q : set.questions)
+    CHECK(q.expected.empty() == (q.pose_class == bench::PoseClass::apart));
   CHECK(set.bodies.size() == 3);
-  const DataSet again = read_data_set(folder / "spheres.set.json");
+  const bench::DataSet again = bench::read_data_set(folder / "spheres.set.json");
   REQUIRE(again.questions.size() == set.questions.size());
   for (std::size_t i = 0; i < set.questions.size(); ++i) {
     CHECK(again.questions[i].pose_b.r == set.questions[i].pose_b.r);
@@ -102,68 +103,68 @@ TEST_CASE("a data set holds poses of the classes it says, and comes back from it
   }
   // Made again only if asked for something else.
   const std::string before = slurp(folder / "spheres.set.json");
-  make_data_set(small_pair(), few(), folder.path.string());
+  bench::make_data_set(small_pair(), few(), folder.path.string());
   CHECK(slurp(folder / "spheres.set.json") == before);
-  SetOptions other = few();
+  bench::SetOptions other = few();
   other.seed = 2;
-  make_data_set(small_pair(), other, folder.path.string());
+  bench::make_data_set(small_pair(), other, folder.path.string());
   CHECK(slurp(folder / "spheres.set.json") != before);
   folder.write("spheres.set.json", "{}");
-  CHECK_THROWS_AS(read_data_set(folder / "spheres.set.json"), InputError);
+  CHECK_THROWS_AS(bench::read_data_set(folder / "spheres.set.json"), InputError);
 }
 
 TEST_CASE("a body a hundredth of the diagonal apart is not nearer and hardly farther") {
   const Folder folder;
-  const DataSet set = make_data_set(small_pair(), few(), folder.path.string());
+  const bench::DataSet set = bench::make_data_set(small_pair(), few(), folder.path.string());
   const LrbRep a = build_lrb(shapes::bumpy_sphere(2, 1)), b = build_lrb(shapes::bumpy_sphere(2, 2));
-  for (const Question& q : set.questions) {
-    if (q.pose_class != PoseClass::apart) continue;
+  for (const bench::Question& q : set.questions) {
+    if (q.pose_class != bench::PoseClass::apart) continue;
     // Pushed by a little more than the gap along some direction it must meet; along the line of centres it
     // does for bodies this round.
     Pose nearer = q.pose_b;
     nearer.t -= 0.03 * set.diagonal * q.pose_b.t.normalized();
-    CHECK_FALSE(exact_pairs(a, Pose{}, b, nearer).empty());
+    CHECK_FALSE(bench::exact_pairs(a, Pose{}, b, nearer).empty());
   }
 }
 
 TEST_CASE("records come back from their lines, and half a line is passed over") {
-  Record r = answer("spheres", 3, PoseClass::small, 1.5);
+  bench::Record r = answer("spheres", 3, bench::PoseClass::small, 1.5);
   r.setting = 4;
   r.all.pairs = {{1, 2}, {3, 4}};
   r.all.points = {{0.1, 0.2, 0.3}};
   r.all.missed = 7;
   r.build_seconds = 0.25;
-  const Record same = record_from(nlohmann::json::parse(to_json(r).dump()));
+  const bench::Record same = bench::record_from(nlohmann::json::parse(to_json(r).dump()));
   CHECK(to_json(same).dump() == to_json(r).dump());
-  CHECK(name_of(same) == "spheres 4");
+  CHECK(bench::name_of(same) == "spheres 4");
   CHECK(same.all.pairs == r.all.pairs);
-  r.outcome = Outcome::crashed;
+  r.outcome = bench::Outcome::crashed;
   r.message = "died";
-  CHECK(record_from(to_json(r)).outcome == Outcome::crashed);
+  CHECK(bench::record_from(to_json(r)).outcome == bench::Outcome::crashed);
   const Folder folder;
   const std::string line = to_json(r).dump();
   const std::string file = folder.write("records.jsonl", line + "\n" + line.substr(0, line.size() / 2));
-  CHECK(read_records(file).size() == 1);
-  CHECK(read_records(folder / "none.jsonl").empty());
-  CHECK_THROWS_AS(record_from(nlohmann::json::parse("{}")), InputError);
+  CHECK(bench::read_records(file).size() == 1);
+  CHECK(bench::read_records(folder / "none.jsonl").empty());
+  CHECK_THROWS_AS(bench::record_from(nlohmann::json::parse("{}")), InputError);
 }
 
 TEST_CASE("ratios are medians over questions; who is ahead is said") {
-  std::vector<Record> records;
+  std::vector<bench::Record> records;
   for (std::uint64_t q = 0; q < 3; ++q) {
-    records.push_back(answer("ours", q, PoseClass::deep, 10));
-    records.push_back(answer("slow", q, PoseClass::deep, q == 0 ? 1 : 70));
-    records.push_back(answer("fast", q, PoseClass::deep, 5));
+    records.push_back(answer("ours", q, bench::PoseClass::deep, 10));
+    records.push_back(answer("slow", q, bench::PoseClass::deep, q == 0 ? 1 : 70));
+    records.push_back(answer("fast", q, bench::PoseClass::deep, 5));
   }
-  Record dead = answer("dead", 0, PoseClass::deep, 0);
-  dead.outcome = Outcome::crashed;
+  bench::Record dead = answer("dead", 0, bench::PoseClass::deep, 0);
+  dead.outcome = bench::Outcome::crashed;
   records.push_back(dead);
-  const PeerTable t =
-      peer_table({made_up_set(3)}, {info("ours"), info("slow"), info("fast"), info("dead")}, records);
-  CHECK(t.find("set", "slow", PoseClass::deep, Mode::all_pairs)->ratio == 7);
-  CHECK(t.find("set", "fast", PoseClass::deep, Mode::all_pairs)->ratio == 0.5);
-  CHECK(t.find("set", "dead", PoseClass::deep, Mode::all_pairs)->crashed == 1);
-  const std::string text = in_brief(t);
+  const bench::PeerTable t =
+      bench::peer_table({made_up_set(3)}, {info("ours"), info("slow"), info("fast"), info("dead")}, records);
+  CHECK(t.find("set", "slow", bench::PoseClass::deep, Mode::all_pairs)->ratio == 7);
+  CHECK(t.find("set", "fast", bench::PoseClass::deep, Mode::all_pairs)->ratio == 0.5);
+  CHECK(t.find("set", "dead", bench::PoseClass::deep, Mode::all_pairs)->crashed == 1);
+  const std::string text = bench::in_brief(t);
   CHECK(text.find("set, deep, 10 %, all pairs: fast 2.00x") != std::string::npos);
   CHECK(text.find("slow 0") == std::string::npos);
   CHECK(text.find("crash") != std::string::npos);
@@ -172,45 +173,47 @@ TEST_CASE("ratios are medians over questions; who is ahead is said") {
 TEST_CASE("errors of a contact region: none for the exact list, the worst for nothing, between for a part") {
   const LrbRep a = build_lrb(shapes::bumpy_sphere(2, 1));
   const Pose p = Pose::translation({1.2, 0.1, 0});
-  const auto pairs = exact_pairs(a, Pose{}, a, p);
+  const auto pairs = bench::exact_pairs(a, Pose{}, a, p);
   REQUIRE(pairs.size() > 10);
-  RegionMaker maker(a, Pose{}, a, p);
-  const Region exact = maker.of_pairs(pairs);
-  const RegionError none = region_error(exact, maker.of_pairs(pairs), 2);
+  bench::RegionMaker maker(a, Pose{}, a, p);
+  const bench::Region exact = maker.of_pairs(pairs);
+  const bench::RegionError none = bench::region_error(exact, maker.of_pairs(pairs), 2);
   CHECK(none.hausdorff == 0);
   CHECK(none.length == 0);
   CHECK(none.normal < 1e-6);
-  const RegionError worst = region_error(exact, maker.of_pairs({}), 2);
+  const bench::RegionError worst = bench::region_error(exact, maker.of_pairs({}), 2);
   CHECK(worst.hausdorff == 1);
   CHECK(worst.depth == 1);
-  const RegionError part = region_error(exact, maker.of_pairs({pairs.begin(), pairs.begin() + 5}), 2);
+  const bench::RegionError part =
+      bench::region_error(exact, maker.of_pairs({pairs.begin(), pairs.begin() + 5}), 2);
   CHECK(part.hausdorff > 0);
   CHECK(part.hausdorff < 1);
   CHECK(part.length > 0);
-  CHECK(region_error(of_points({}), of_points({}), 2).hausdorff == 0);
-  CHECK(region_error(of_points({{0, 0, 0}}), of_points({{1, 0, 0}}), 2).hausdorff == 0.5);
+  CHECK(bench::region_error(bench::of_points({}), bench::of_points({}), 2).hausdorff == 0);
+  CHECK(bench::region_error(bench::of_points({{0, 0, 0}}), bench::of_points({{1, 0, 0}}), 2).hausdorff ==
+        0.5);
 }
 
 TEST_CASE("points: what fails scores the worst, and the frontier is what nothing beats in both") {
   const Folder folder;
-  const DataSet set = make_data_set(small_pair(), few(), folder.path.string());
+  const bench::DataSet set = bench::make_data_set(small_pair(), few(), folder.path.string());
   std::vector<methods::MethodInfo> infos = {info("right"), info("blind"), info("dead"), info("slow")};
-  std::vector<Record> records;
+  std::vector<bench::Record> records;
   for (std::uint64_t q = 0; q < set.questions.size(); ++q)
     for (const methods::MethodInfo& m : infos) {
-      Record r = answer(m.name, q, set.questions[q].pose_class,
-                        m.name == "slow"    ? 9
-                        : m.name == "blind" ? 1
-                                            : 2);
+      bench::Record r = answer(m.name, q, set.questions[q].pose_class,
+                               m.name == "slow"    ? 9
+                               : m.name == "blind" ? 1
+                                                   : 2);
       r.set = set.name;
       if (m.name != "blind") r.all.pairs = set.questions[q].expected;
       r.all.contact = !r.all.pairs.empty();
-      if (m.name == "dead") r.outcome = Outcome::timed_out;
+      if (m.name == "dead") r.outcome = bench::Outcome::timed_out;
       records.push_back(r);
     }
   std::size_t seen = 0;
-  for (const Point& p : measure_points({set}, infos, records)) {
-    const bool meets = p.pose_class != PoseClass::apart;
+  for (const bench::Point& p : bench::measure_points({set}, infos, records)) {
+    const bool meets = p.pose_class != bench::PoseClass::apart;
     if (p.method == "right") {
       CHECK(p.error() == 0);
       CHECK(p.frontier == meets);  // apart, to see nothing is as right, and faster
@@ -223,23 +226,23 @@ TEST_CASE("points: what fails scores the worst, and the frontier is what nothing
     if (p.method == "dead") {
       CHECK(p.error() == 1);
       CHECK(p.failed() == p.questions);
-      CHECK(*p.errors[static_cast<std::size_t>(Metric::recall)] == 1);
+      CHECK(*p.errors[static_cast<std::size_t>(bench::Metric::recall)] == 1);
       CHECK_FALSE(p.frontier);
     }
     ++seen;
   }
-  CHECK(seen == 4 * std::size(kPoseClasses));
+  CHECK(seen == 4 * std::size(bench::kPoseClasses));
 }
 
 TEST_CASE("a sphere tree misses nothing, and is closer to the truth at deeper levels") {
   const auto spheres = methods::spheres().make();
   const LrbRep a = build_lrb(shapes::torus(32, 12));  // far from its own outermost sphere
   const auto body_a = spheres->build(a), body_b = spheres->build(a);
-  shapes::Random random(7);
+  shapes::RandomEngine random(7);
   std::size_t wolves[2] = {0, 0}, met = 0;
   for (int i = 0; i < 60; ++i) {
     const Pose p = shapes::random_pose(random, a, a, 0.3 + 0.01 * i);
-    const bool meets = !exact_pairs(a, Pose{}, a, p).empty();
+    const bool meets = !bench::exact_pairs(a, Pose{}, a, p).empty();
     met += meets;
     int k = 0;
     for (const double level : {2.0, 20.0}) {

@@ -1,4 +1,4 @@
-#include "scenarios/page/page.hpp"
+#include "scenarios/report/page/page.hpp"
 
 #include <regex>
 #include <string>
@@ -6,25 +6,25 @@
 #include <doctest/doctest.h>
 
 #include "render/png.hpp"
-#include "scenarios/embedded.hpp"
-#include "scenarios/page/inline_image.hpp"
+#include "scenarios/io/embedded.hpp"
+#include "scenarios/report/page/inline_image.hpp"
 
 using namespace lrb;
 
 namespace {
 
-Page full_page() {
-  Page page;
+report::Page full_page() {
+  report::Page page;
   page.title = "A < B & \"C\" {{data}}";
   page.purpose = "</script><script>alert(1)</script>";
   page.verdict = "crossing";
   page.numbers = {{"pairs", "12", "at step 3"}};
   page.frames = {{"data:image/png;base64,AAAA", "</script>first", "frames/a.png", 0, 0},
                  {"data:image/png;base64,BBBB", "second", "frames/b.png", 7, 1}};
-  PageChart chart;
+  report::PageChart chart;
   chart.title = "chart";
   chart.series = {{"s", {0, 1, 2}, {3, 4, 5}}};
-  chart.cursor = PageCursor::event;
+  chart.cursor = report::PageCursor::event;
   page.charts = {chart};
   page.tables = {{"table", {"a", "b"}, {{"1", "x"}}, "note"}};
   page.command = "lrbscope run x";
@@ -41,17 +41,17 @@ std::size_t count(const std::string& text, const std::string& word) {
 }  // namespace
 
 TEST_CASE("numbers in tables are aligned right, with their digits in groups, too") {
-  Page page = full_page();
+  report::Page page = full_page();
   page.tables = {{"table", {"a", "b", "c"}, {{"1\u202f234", "0.5", "gear 3"}}, ""}};
-  const std::string html = page_html(page);
+  const std::string html = report::page_html(page);
   CHECK(html.find("<td class=\"n\">1\u202f234</td><td class=\"n\">0.5</td><td>gear 3</td>") !=
         std::string::npos);
 }
 
 TEST_CASE("a page fetches nothing: no address outside, all scripts and pictures inside") {
-  std::string html = page_html(full_page());
+  std::string html = report::page_html(full_page());
   // The charting library's own banner names its home page; nothing is loaded from there.
-  const std::string library(embedded_file("chart.min.js"));
+  const std::string library(io::embedded_file("chart.min.js"));
   const std::size_t at = html.find(library);
   REQUIRE(at != std::string::npos);
   html.erase(at, library.size());
@@ -64,7 +64,7 @@ TEST_CASE("a page fetches nothing: no address outside, all scripts and pictures 
 }
 
 TEST_CASE("text cannot become markup or end the data") {
-  const std::string html = page_html(full_page());
+  const std::string html = report::page_html(full_page());
   CHECK(html.find("<script>alert") == std::string::npos);
   CHECK(html.find("</script>first") == std::string::npos);
   CHECK(html.find("A &lt; B &amp; &quot;C&quot; {{data}}") != std::string::npos);  // marks in texts are texts
@@ -72,9 +72,9 @@ TEST_CASE("text cannot become markup or end the data") {
 }
 
 TEST_CASE("parts that a page does not have leave nothing behind") {
-  Page page;
+  report::Page page;
   page.title = "t";
-  const std::string html = page_html(page);
+  const std::string html = report::page_html(page);
   CHECK(html.find("<canvas") == std::string::npos);
   CHECK(html.find("id=\"player\"") == std::string::npos);
   CHECK(html.find("<table") == std::string::npos);
@@ -83,7 +83,7 @@ TEST_CASE("parts that a page does not have leave nothing behind") {
 
 TEST_CASE("base64") {
   const auto encoded = [](const std::string& s) {
-    return data_uri("t", reinterpret_cast<const std::uint8_t*>(s.data()), s.size());
+    return report::data_uri("t", reinterpret_cast<const std::uint8_t*>(s.data()), s.size());
   };
   CHECK(encoded("") == "data:t;base64,");
   CHECK(encoded("f") == "data:t;base64,Zg==");
@@ -92,18 +92,18 @@ TEST_CASE("base64") {
 }
 
 TEST_CASE("pictures stay PNGs while they fit, and become small enough when they do not") {
-  Image image(256, 192);
+  render::Image image(256, 192);
   for (int y = 0; y < 192; ++y)
     for (int x = 0; x < 256; ++x)
       image.at(x, y) = {static_cast<std::uint8_t>(x * 7), static_cast<std::uint8_t>(x * y),
                         static_cast<std::uint8_t>(y * 5)};
-  const std::vector<PngBytes> pngs(3, encode_png(image));
-  const InlinedImages whole = inline_pngs(pngs);
+  const std::vector<report::PngBytes> pngs(3, render::encode_png(image));
+  const report::InlinedImages whole = report::inline_pngs(pngs);
   CHECK(whole.note.empty());
   REQUIRE(whole.uris.size() == 3);
   CHECK(whole.uris[0].rfind("data:image/png", 0) == 0);
   const std::size_t budget = 30'000;
-  const InlinedImages small = inline_pngs(pngs, budget);
+  const report::InlinedImages small = report::inline_pngs(pngs, budget);
   CHECK_FALSE(small.note.empty());
   CHECK(small.uris[0].rfind("data:image/jpeg", 0) == 0);
   CHECK(small.uris[0].size() * 3 <= budget);

@@ -3,11 +3,11 @@
 #include <doctest/doctest.h>
 #include <nlohmann/json.hpp>
 
-#include "engine/error.hpp"
-#include "engine/mesh/mesh_io.hpp"
-#include "engine/query/query_context.hpp"
-#include "scenarios/generators/fractal.hpp"
-#include "scenarios/generators/generators.hpp"
+#include "engine/core/error.hpp"
+#include "engine/mesh/io/mesh_io.hpp"
+#include "engine/query/walk/query_context.hpp"
+#include "scenarios/bodies/generators/fractal.hpp"
+#include "scenarios/bodies/generators/generators.hpp"
 #include "scenarios/paper/series_report.hpp"
 #include "scenarios/paper/tables.hpp"
 #include "tests/scenarios/program.hpp"
@@ -16,15 +16,16 @@ using namespace lrb;
 
 namespace {
 
-std::vector<PaperObject> few_objects() {
-  std::vector<PaperObject> objects;
+std::vector<paper::PaperObject> few_objects() {
+  std::vector<paper::PaperObject> objects;
   for (const std::size_t i : {3u, 1u, 2u})
-    objects.push_back({paper_objects()[i].name, fractal_body(paper_objects()[i])});
+    objects.push_back(
+        {generators::paper_objects()[i].name, generators::fractal_body(generators::paper_objects()[i])});
   return objects;
 }
 
-SweepOptions few_collisions() {
-  SweepOptions o;
+paper::SweepOptions few_collisions() {
+  paper::SweepOptions o;
   o.protocol.collisions = 6;
   return o;
 }
@@ -33,28 +34,28 @@ SweepOptions few_collisions() {
 
 TEST_CASE("the paper's sweep: jobs and shards change nothing") {
   const auto objects = few_objects();
-  SweepOptions options = few_collisions();
-  const std::string whole = to_json_lines(run_sweep(objects, options, {}));
+  paper::SweepOptions options = few_collisions();
+  const std::string whole = paper::to_json_lines(paper::run_sweep(objects, options, {}));
   options.jobs = 3;
   std::uint64_t calls = 0;
-  CHECK(to_json_lines(run_sweep(objects, options,
-                                [&](std::uint64_t, std::uint64_t of) { calls += of == 12; })) == whole);
+  CHECK(paper::to_json_lines(paper::run_sweep(
+            objects, options, [&](std::uint64_t, std::uint64_t of) { calls += of == 12; })) == whole);
   CHECK(calls == 12);
-  std::vector<ContactStep> parts;
+  std::vector<paper::ContactStep> parts;
   for (std::uint32_t i = 0; i < 5; ++i) {
     options.shard = {4 - i, 5};
-    for (ContactStep& s : run_sweep(objects, options, {})) parts.push_back(std::move(s));
+    for (paper::ContactStep& s : paper::run_sweep(objects, options, {})) parts.push_back(std::move(s));
   }
-  CHECK(to_json_lines(merged(parts)) == whole);
+  CHECK(paper::to_json_lines(paper::merged(parts)) == whole);
   parts.push_back(parts.front());
-  CHECK_THROWS_AS(merged(parts), InputError);
+  CHECK_THROWS_AS(paper::merged(parts), InputError);
 }
 
 TEST_CASE("the paper's sweep: every collision ends in contact, and the complete recursion misses nothing") {
   const auto objects = few_objects();
-  const auto steps = run_sweep(objects, few_collisions(), {});
+  const auto steps = paper::run_sweep(objects, few_collisions(), {});
   std::vector<std::uint32_t> firsts;
-  for (const ContactStep& s : steps) {
+  for (const paper::ContactStep& s : steps) {
     CHECK(s.step <= 5);
     CHECK((s.relation == Relation::crossing || s.relation == Relation::touching));
     CHECK(s.counts[2].missed == 0);
@@ -67,12 +68,12 @@ TEST_CASE("the paper's sweep: every collision ends in contact, and the complete 
 }
 
 TEST_CASE("the paper's records: as JSON Lines and back; what is none of them is refused by line") {
-  const auto steps = run_sweep(few_objects(), few_collisions(), {});
-  const std::string text = to_json_lines(steps);
-  CHECK(to_json_lines(read_json_lines(text, "r.jsonl")) == text);
+  const auto steps = paper::run_sweep(few_objects(), few_collisions(), {});
+  const std::string text = paper::to_json_lines(steps);
+  CHECK(paper::to_json_lines(paper::read_json_lines(text, "r.jsonl")) == text);
   for (const std::string bad : {"{}", "[1]", "{\"object\":\"B\"", "\xff", ""}) {
     try {
-      read_json_lines(to_json_lines({steps.data(), 2}) + bad + "\n", "r.jsonl");
+      paper::read_json_lines(paper::to_json_lines({steps.data(), 2}) + bad + "\n", "r.jsonl");
       FAIL("accepted: " << bad);
     } catch (const InputError& e) {
       CHECK(std::string(e.what()).rfind("r.jsonl:3: ", 0) == 0);
@@ -82,13 +83,13 @@ TEST_CASE("the paper's records: as JSON Lines and back; what is none of them is 
 
 TEST_CASE("the paper's tables: averages, and the paper's own columns") {
   const auto objects = few_objects();
-  std::vector<ContactStep> steps(3);
+  std::vector<paper::ContactStep> steps(3);
   for (std::size_t i = 0; i < 3; ++i) {
     steps[i].object = "B";
     steps[i].counts[0].comparisons = 10 * (i + 1);
     steps[i].counts[0].missed = i;
   }
-  const auto rows = make_table(objects, steps);
+  const auto rows = paper::make_table(objects, steps);
   REQUIRE(rows.size() == 2);
   CHECK(rows[0].object == "B");
   CHECK(rows[0].steps == 3);
@@ -98,16 +99,17 @@ TEST_CASE("the paper's tables: averages, and the paper's own columns") {
   CHECK(rows[0].recursions[0].missed == 3);
   CHECK(rows[0].n_squared == 2532.0 * 168);
   CHECK(rows[1].steps == 0);
-  const auto j = nlohmann::json::parse(tables_json(objects, rows, {}));
+  const auto j = nlohmann::json::parse(paper::tables_json(objects, rows, {}));
   CHECK(j["table1_object_sizes"]["D"]["total_faces"] == 2532);
   CHECK(j["table2_face_comparisons_of_object_A_with"]["B"]["avg"] == 20);
   CHECK(j["table2_face_comparisons_of_object_A_with_complete"].contains("C"));
 }
 
 TEST_CASE("the paper's experiment: counts that must not change unnoticed") {
-  const LrbRep a = fractal_body(paper_objects()[0]), e = fractal_body(paper_objects()[4]);
+  const LrbRep a = generators::fractal_body(generators::paper_objects()[0]),
+               e = generators::fractal_body(generators::paper_objects()[4]);
   QueryContext context;
-  const auto steps = run_collision(a, e, "E", 0, {}, context);
+  const auto steps = paper::run_collision(a, e, "E", 0, {}, context);
   REQUIRE(steps.size() == 6);
   CHECK(steps[5].counts[0].comparisons == 879);
   CHECK(steps[5].counts[1].comparisons == 133);
@@ -152,58 +154,58 @@ TEST_CASE("paper: the program's shards make the report of the whole, and bad inp
 
 TEST_CASE("the series: the power of exact powers is found, and the error of others") {
   const double x[] = {1, 10, 100, 1000}, exact[] = {3, 3 * std::sqrt(10.0), 30, 30 * std::sqrt(10.0)};
-  CHECK(fit_power(x, exact).exponent == doctest::Approx(0.5));
-  CHECK(fit_power(x, exact).factor == doctest::Approx(3));
-  CHECK(fit_power(x, exact).error < 1e-7);
+  CHECK(resolutions::fit_power(x, exact).exponent == doctest::Approx(0.5));
+  CHECK(resolutions::fit_power(x, exact).factor == doctest::Approx(3));
+  CHECK(resolutions::fit_power(x, exact).error < 1e-7);
   // By hand: logarithms to base 10 are 0, 1, 1, 2 at 0, 1, 2, 3: slope 0.6, residuals -0.1, 0.3, -0.3, 0.1,
   // error sqrt(0.2 / 2 / 5).
   const double y[] = {1, 10, 10, 100};
-  CHECK(fit_power(x, y).exponent == doctest::Approx(0.6));
-  CHECK(fit_power(x, y).error == doctest::Approx(std::sqrt(0.02)));
+  CHECK(resolutions::fit_power(x, y).exponent == doctest::Approx(0.6));
+  CHECK(resolutions::fit_power(x, y).error == doctest::Approx(std::sqrt(0.02)));
 }
 
 TEST_CASE("the series: rows and powers from records; records of other bodies are refused") {
-  const LrbRep a = fractal_body(paper_objects()[1]);
+  const LrbRep a = generators::fractal_body(generators::paper_objects()[1]);
   const Mesh rock = [] {
-    Mesh m = generate("rock", {{"frequency", 10}});
+    Mesh m = generators::generate("rock", {{"frequency", 10}});
     m.name = "rock";
     return m;
   }();
-  const auto objects = make_series({&rock, 1}, {0, 3, 100}, diagonal(a), {});
+  const auto objects = paper::make_series({&rock, 1}, {0, 3, 100}, paper::diagonal(a), {});
   REQUIRE(objects.size() == 3);
   CHECK(objects[0].rep.real_face_count() == 2000);
   CHECK(objects[2].rep.real_face_count() == 500);
-  CHECK(diagonal(objects[2].rep) == doctest::Approx(diagonal(a)));
-  SweepOptions options;
+  CHECK(paper::diagonal(objects[2].rep) == doctest::Approx(paper::diagonal(a)));
+  paper::SweepOptions options;
   options.protocol.collisions = 3;
-  auto steps = run_series(a, objects, options, {});
-  const std::string whole = to_json_lines(steps);
+  auto steps = paper::run_series(a, objects, options, {});
+  const std::string whole = paper::to_json_lines(steps);
   options.jobs = 3;
-  CHECK(to_json_lines(run_series(a, objects, options, {})) == whole);
-  const auto rows = series_rows(a, objects, steps);
+  CHECK(paper::to_json_lines(paper::run_series(a, objects, options, {})) == whole);
+  const auto rows = paper::series_rows(a, objects, steps);
   REQUIRE(rows.size() == 6);
-  for (const SeriesRow& row : rows) {
+  for (const paper::SeriesRow& row : rows) {
     CHECK(row.counts.steps == 18);
     CHECK(row.counts.recursions[2].missed == 0);
     CHECK(row.microseconds[2] > 0);
   }
-  CHECK(rows[3].partner == SeriesPartner::itself);
+  CHECK(rows[3].partner == paper::SeriesPartner::itself);
   CHECK(rows[3].counts.n_squared == std::pow(rows[0].counts.total_faces, 2));
-  const auto fits = series_fits(rows);
+  const auto fits = paper::series_fits(rows);
   REQUIRE(fits.size() == 6);
   CHECK(fits[5].comparisons->exponent > 0.1);  // complete, against itself: about the square root
   CHECK(fits[5].comparisons->exponent < 0.9);
 
   auto again = steps;
-  for (ContactStep& s : again)
-    for (RecursionCount& n : s.counts) n.nanoseconds = 0;
-  read_times(times_to_json_lines(steps), "t.jsonl", again);
-  CHECK(times_to_json_lines(again) == times_to_json_lines(steps));
-  CHECK_THROWS_AS(read_times("{}\n", "t.jsonl", again), InputError);
+  for (paper::ContactStep& s : again)
+    for (paper::RecursionCount& n : s.counts) n.nanoseconds = 0;
+  paper::read_times(paper::times_to_json_lines(steps), "t.jsonl", again);
+  CHECK(paper::times_to_json_lines(again) == paper::times_to_json_lines(steps));
+  CHECK_THROWS_AS(paper::read_times("{}\n", "t.jsonl", again), InputError);
   again.pop_back();
-  CHECK_THROWS_AS(read_times(times_to_json_lines(steps), "t.jsonl", again), InputError);
+  CHECK_THROWS_AS(paper::read_times(paper::times_to_json_lines(steps), "t.jsonl", again), InputError);
   steps[0].object = "another/2000/A";
-  CHECK_THROWS_AS(series_rows(a, objects, steps), InputError);
+  CHECK_THROWS_AS(paper::series_rows(a, objects, steps), InputError);
 }
 
 TEST_CASE("paper: meshes at several resolutions, in shards and as a whole") {
@@ -218,9 +220,9 @@ TEST_CASE("paper: meshes at several resolutions, in shards and as a whole") {
     return paper(meshes, std::move(more));
   };
   std::filesystem::create_directory(folder.path / "meshes");
-  Mesh ball = generate("ball", {{"frequency", 4}});
+  Mesh ball = generators::generate("ball", {{"frequency", 4}});
   write_mesh(ball, folder / "meshes/ball.ply");
-  write_mesh(generate("knot", {{"segments", 60}, {"sides", 6}}), folder / "meshes/knot.obj");
+  write_mesh(generators::generate("knot", {{"segments", 60}, {"sides", 6}}), folder / "meshes/knot.obj");
   folder.write("meshes/open.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
   const auto whole = run("meshes", {"-o", "whole"});
   CHECK(whole.code == 0);

@@ -1,13 +1,13 @@
-#include "scenarios/pose_file.hpp"
+#include "scenarios/io/pose_file.hpp"
 
 #include <doctest/doctest.h>
 
-#include "engine/error.hpp"
+#include "engine/core/error.hpp"
 
 using namespace lrb;
 
 TEST_CASE("poses: blank lines, comments, commas, CRLF, plus signs") {
-  const std::vector<Pose> poses = parse_poses(
+  const std::vector<Pose> poses = io::parse_poses(
       "# a comment\r\n\r\n1 0 0 5  0 1 0 6  0 0 1 7\r\n  1,0,0,-1.5, 0,+1,0,2e3, 0,0,1,.25 # behind it\n\n",
       "p.txt");
   REQUIRE(poses.size() == 2);
@@ -17,7 +17,7 @@ TEST_CASE("poses: blank lines, comments, commas, CRLF, plus signs") {
 }
 
 TEST_CASE("poses: row-major") {
-  const Pose p = parse_poses("1 2 3 4 5 6 7 8 9 10 11 12", "p")[0];
+  const Pose p = io::parse_poses("1 2 3 4 5 6 7 8 9 10 11 12", "p")[0];
   CHECK(p.r(0, 1) == 2);
   CHECK(p.r(1, 0) == 5);
   CHECK(p.t == Eigen::Vector3d(4, 8, 12));
@@ -26,7 +26,7 @@ TEST_CASE("poses: row-major") {
 TEST_CASE("poses: what is wrong is said with file and line") {
   const auto fails = [](const std::string& text, const char* message) {
     CAPTURE(text);
-    CHECK_THROWS_WITH_AS(parse_poses(text, "p.txt"), message, InputError);
+    CHECK_THROWS_WITH_AS(io::parse_poses(text, "p.txt"), message, InputError);
   };
   fails("1 0 0 5  0 1 0 6  0 0 1 7\n\n1 2 3", "p.txt:3: expected 12 numbers (a row-major 3x4 pose), found 3");
   fails("1 2 3 4 5 6 7 8 9 10 11 12 13", "p.txt:1: expected 12 numbers (a row-major 3x4 pose), found 13");
@@ -42,8 +42,8 @@ TEST_CASE("poses: what is wrong is said with file and line") {
 }
 
 TEST_CASE("vectors of options") {
-  CHECK(parse_vector("1,-2,3.5", "--from") == Eigen::Vector3d(1, -2, 3.5));
-  CHECK_THROWS_WITH_AS(parse_vector("1,2", "--from"),
+  CHECK(io::parse_vector("1,-2,3.5", "--from") == Eigen::Vector3d(1, -2, 3.5));
+  CHECK_THROWS_WITH_AS(io::parse_vector("1,2", "--from"),
                        "--from: expected three numbers X,Y,Z, found 2 in \"1,2\"", InputError);
-  CHECK_THROWS_AS(parse_vector("1,2,inf", "--from"), InputError);
+  CHECK_THROWS_AS(io::parse_vector("1,2,inf", "--from"), InputError);
 }

@@ -15,12 +15,12 @@ std::string scenario(const std::string& generator) {
 
 /// Pixels of the picture that are not white, without the texts above and below it.
 std::size_t painted(const Folder& folder, const std::string& out) {
-  const Image image = read_png(folder / (out + "/frames/frame_0000.png")).image;
+  const render::Image image = render::read_png(folder / (out + "/frames/frame_0000.png")).image;
   const auto height = static_cast<std::size_t>(image.height()),
              width = static_cast<std::size_t>(image.width());
   std::size_t count = 0;
   for (std::size_t i = height / 6 * width; i < height * 4 / 5 * width; ++i)
-    count += image.pixels()[i] != kWhite;
+    count += image.pixels()[i] != render::kWhite;
   return count;
 }
 
@@ -77,17 +77,17 @@ TEST_CASE("--dpi: the same size on paper in more pixels, said in the file; lines
                                     "1",      "--size",         "480x360", "--format", "svg"};
     all.insert(all.end(), more.begin(), more.end());
     REQUIRE(run(folder, all).code == 0);
-    return read_png(folder / (out + "/frames/frame_0000.png"));
+    return render::read_png(folder / (out + "/frames/frame_0000.png"));
   };
-  const DecodedPng screen = frame("screen", {}), print = frame("print", {"--dpi", "288"});
+  const render::DecodedPng screen = frame("screen", {}), print = frame("print", {"--dpi", "288"});
   CHECK(screen.dpi == 0);
   CHECK(print.dpi == doctest::Approx(288).epsilon(0.001));
   REQUIRE(print.image.width() == 3 * screen.image.width());
   REQUIRE(print.image.height() == 3 * screen.image.height());
   // Ink per area is the same only if everything has grown alike.
-  const auto ink = [](const Image& image) {
+  const auto ink = [](const render::Image& image) {
     double sum = 0;
-    for (const Rgba p : image.pixels()) sum += 255 - luma(p);
+    for (const render::Rgba p : image.pixels()) sum += 255 - render::luma(p);
     return sum / (255.0 * image.width() * image.height());
   };
   CHECK(ink(print.image) == doctest::Approx(ink(screen.image)).epsilon(0.03));
@@ -105,18 +105,18 @@ TEST_CASE("--transparent: no background in PNG and SVG; laid on white, the usual
               .code == 0);
   REQUIRE(run(folder, {"render", "run/trace.json", "-o", "white", "--most", "1", "--size", "480x360"}).code ==
           0);
-  const Image white = read_png(folder / "white/frames/frame_0000.png").image,
-              clear = read_png(folder / "clear/frames/frame_0000.png").image;
+  const render::Image white = render::read_png(folder / "white/frames/frame_0000.png").image,
+                      clear = render::read_png(folder / "clear/frames/frame_0000.png").image;
   CHECK(white.opaque());
-  CHECK(clear.at(0, 0) == kTransparent);
+  CHECK(clear.at(0, 0) == render::kTransparent);
   int worst = 0;
   for (std::size_t i = 0; i < white.pixels().size(); ++i) {
-    const Rgba got = over(clear.pixels()[i], kWhite), want = white.pixels()[i];
+    const render::Rgba got = render::over(clear.pixels()[i], render::kWhite), want = white.pixels()[i];
     worst = std::max({worst, std::abs(got.r - want.r), std::abs(got.g - want.g), std::abs(got.b - want.b)});
   }
   CHECK(worst <= 3);
   CHECK(slurp(folder / "clear/montage.svg").find("<rect") == std::string::npos);
-  CHECK(read_png(folder / "clear/montage.png").image.at(0, 0) == kTransparent);
+  CHECK(render::read_png(folder / "clear/montage.png").image.at(0, 0) == render::kTransparent);
 }
 
 TEST_CASE("run --format svg: frames, montage and caption; the former run's are gone") {
@@ -145,7 +145,8 @@ TEST_CASE("render: of a crowd's trace, with the flags that fit") {
   CHECK(same.out == "again/index.html\n");
   for (int i = 0; i < 3; ++i) {
     const std::string frame = "/frames/frame_000" + std::to_string(i) + ".png";
-    CHECK(read_png(folder / ("again" + frame)).image == read_png(folder / ("run" + frame)).image);
+    CHECK(render::read_png(folder / ("again" + frame)).image ==
+          render::read_png(folder / ("run" + frame)).image);
   }
   REQUIRE(
       run(folder, {"render", "run/trace.json", "-o", "close", "--size", "640x240", "--close-up", "--every",

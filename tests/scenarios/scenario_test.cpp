@@ -1,4 +1,4 @@
-#include "scenarios/scenario.hpp"
+#include "scenarios/spec/scenario.hpp"
 
 #include <string>
 
@@ -9,11 +9,11 @@
 #include <valijson/schema_parser.hpp>
 #include <valijson/validator.hpp>
 
-#include "engine/error.hpp"
-#include "scenarios/embedded.hpp"
-#include "scenarios/generators/generators.hpp"
-#include "scenarios/scenario_motion.hpp"
-#include "scenarios/shipped.hpp"
+#include "engine/core/error.hpp"
+#include "scenarios/bodies/generators/generators.hpp"
+#include "scenarios/io/embedded.hpp"
+#include "scenarios/spec/scenario_motion.hpp"
+#include "scenarios/spec/shipped.hpp"
 
 using namespace lrb;
 using nlohmann::json;
@@ -22,7 +22,7 @@ namespace {
 
 /// Whether an independent validator accepts a scenario by our schema.
 bool schema_accepts(const std::string& text) {
-  static const json document = json::parse(embedded_file("scenario.schema.json"));
+  static const json document = json::parse(io::embedded_file("scenario.schema.json"));
   valijson::Schema schema;
   valijson::SchemaParser(valijson::SchemaParser::kDraft7)
       .populateSchema(valijson::adapters::NlohmannJsonAdapter(document), schema);
@@ -32,7 +32,7 @@ bool schema_accepts(const std::string& text) {
 
 std::string error_of(const std::string& text) {
   try {
-    parse_scenario(text, "dir/s.json");
+    spec::parse_scenario(text, "dir/s.json");
   } catch (const InputError& e) {
     return e.what();
   }
@@ -56,11 +56,11 @@ std::string with(const std::string& pointer, const json& value) {
 
 TEST_CASE("every shipped scenario is valid by the schema and by the reader, and says why it is there") {
   int count = 0;
-  for (const EmbeddedFile& file : embedded_files()) {
+  for (const io::EmbeddedFile& file : io::embedded_files()) {
     if (!file.name.ends_with(".scenario.json")) continue;
     CAPTURE(std::string(file.name));
     CHECK(schema_accepts(std::string(file.text)));
-    const Scenario s = parse_scenario(std::string(file.text), std::string(file.name));
+    const spec::Scenario s = spec::parse_scenario(std::string(file.text), std::string(file.name));
     CHECK(s.name + ".scenario.json" == file.name);
     CHECK(s.purpose.size() > 30);
     ++count;
@@ -158,13 +158,14 @@ TEST_CASE("errors name file, line, column and the nearest known word") {
 TEST_CASE(
     "a query that does no more than a scene needs: read as it is, and what cannot be is said in a line") {
   const CollideRequest r =
-      parse_scenario(with("/query", json{{"tolerance", 0.25}, {"max_tests", 200}, {"separation", true}}), "s")
+      spec::parse_scenario(
+          with("/query", json{{"tolerance", 0.25}, {"max_tests", 200}, {"separation", true}}), "s")
           .request;
   CHECK(r.tolerance == 0.25);
   CHECK(r.max_tests == 200);
   CHECK(r.separation);
   CHECK(!r.contacts);  // which exact queries have by default
-  CHECK(parse_scenario(with("/query", json{{"separation", true}}), "s").request.contacts);
+  CHECK(spec::parse_scenario(with("/query", json{{"separation", true}}), "s").request.contacts);
   const auto error = [](const json& query) { return error_of(with("/query", query)); };
   CHECK(error({{"max_time", 2}})
             .find("/query/max_time: how far a query comes in a time differs from run to "
@@ -182,40 +183,40 @@ TEST_CASE(
 TEST_CASE("body files are looked up from the scenario's folder") {
   json s = good();
   s["bodies"]["a"] = {{"file", "../meshes/x.obj"}};
-  CHECK(parse_scenario(s.dump(), "some/dir/s.json").bodies[0].file == "some/meshes/x.obj");
+  CHECK(spec::parse_scenario(s.dump(), "some/dir/s.json").bodies[0].file == "some/meshes/x.obj");
 }
 
 TEST_CASE("a word that is neither scenario nor file gets the nearest name") {
-  CHECK_THROWS_WITH_AS(open_scenario("colision"), doctest::Contains("did you mean \"collision\"?"),
+  CHECK_THROWS_WITH_AS(spec::open_scenario("colision"), doctest::Contains("did you mean \"collision\"?"),
                        InputError);
-  CHECK_THROWS_AS(open_scenario("no/such/file.json"), InputError);
+  CHECK_THROWS_AS(spec::open_scenario("no/such/file.json"), InputError);
 }
 
 TEST_CASE("motions pass through what they name") {
-  Motion m;
-  m.kind = Motion::Kind::sweep;
+  spec::Motion m;
+  m.kind = spec::Motion::Kind::sweep;
   m.from = {0, 0, 0};
   m.to = {4, 0, 2};
   m.steps = 5;
-  const std::vector<Pose> sweep = poses_of(m, Pose{});
+  const std::vector<Pose> sweep = spec::poses_of(m, Pose{});
   REQUIRE(sweep.size() == 5);
   CHECK(sweep.front().t == Eigen::Vector3d(0, 0, 0));
   CHECK(sweep[2].t == Eigen::Vector3d(2, 0, 1));
   CHECK(sweep.back().t == Eigen::Vector3d(4, 0, 2));
   CHECK(sweep[2].r == Eigen::Matrix3d::Identity());
 
-  m.kind = Motion::Kind::keyframes;
+  m.kind = spec::Motion::Kind::keyframes;
   m.keyframes = {{0, {0, 0, 0}, {0, 0, 1}, 0}, {4, {4, 0, 0}, {0, 0, 1}, 90}};
-  const std::vector<Pose> keys = poses_of(m, Pose{});
+  const std::vector<Pose> keys = spec::poses_of(m, Pose{});
   REQUIRE(keys.size() == 5);
   CHECK(keys[2].t.x() == doctest::Approx(2));
   CHECK(keys[2].r(0, 0) == doctest::Approx(std::sqrt(0.5)));
   CHECK(keys[4].r(1, 0) == doctest::Approx(1));
 
-  m.kind = Motion::Kind::spin;
+  m.kind = spec::Motion::Kind::spin;
   m.degrees = 360;
   m.steps = 4;
-  const std::vector<Pose> spin = poses_of(m, Pose::translation({1, 2, 3}));
+  const std::vector<Pose> spin = spec::poses_of(m, Pose::translation({1, 2, 3}));
   REQUIRE(spin.size() == 4);
   CHECK(spin[1].t.x() == doctest::Approx(-2));  // the body's own pose comes first, the motion after it
 }

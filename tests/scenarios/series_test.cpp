@@ -3,14 +3,14 @@
 #include <Eigen/Geometry>
 #include <doctest/doctest.h>
 
-#include "engine/error.hpp"
+#include "engine/core/error.hpp"
+#include "engine/mesh/io/mesh_io.hpp"
 #include "engine/mesh/mesh_check.hpp"
-#include "engine/mesh/mesh_io.hpp"
-#include "scenarios/generators/generators.hpp"
-#include "scenarios/series/decimate.hpp"
-#include "scenarios/series/resolutions.hpp"
-#include "scenarios/series/subdivide.hpp"
-#include "scenarios/shapes/shapes.hpp"
+#include "scenarios/bodies/generators/generators.hpp"
+#include "scenarios/bodies/resolutions/decimate.hpp"
+#include "scenarios/bodies/resolutions/resolutions.hpp"
+#include "scenarios/bodies/resolutions/subdivide.hpp"
+#include "scenarios/bodies/shapes/shapes.hpp"
 #include "tests/support/shared_meshes.hpp"
 
 using namespace lrb;
@@ -52,10 +52,10 @@ Mesh thin_shell() {
 TEST_CASE("decimation: closed, of the same genus, free of self-intersections, at every target") {
   const std::uint32_t targets[] = {2000, 700, 200, 60};
   for (const auto& [mesh, genus, components] :
-       {std::tuple{generate("rock", {{"frequency", 16}}), 0, 1u},
-        std::tuple{generate("knot", {{"segments", 200}, {"sides", 12}}), 1, 1u},
+       {std::tuple{generators::generate("rock", {{"frequency", 16}}), 0, 1u},
+        std::tuple{generators::generate("knot", {{"segments", 200}, {"sides", 12}}), 1, 1u},
         std::tuple{shapes::bowl(48, 24, 0.02), 0, 1u}, std::tuple{thin_shell(), 0, 2u}}) {
-    const std::vector<Mesh> series = decimate(mesh, targets);
+    const std::vector<Mesh> series = resolutions::decimate(mesh, targets);
     REQUIRE(series.size() == std::size(targets));
     for (std::size_t i = 0; i < series.size(); ++i) {
       check_embedded(series[i], genus, components);
@@ -70,22 +70,22 @@ TEST_CASE("decimation: without the proof the thin shell would break through itse
   // 60 faces for both balls: the inner one's corners reach further out than the outer one's faces, unless
   // collapses that would bring this about are refused.
   const std::uint32_t targets[] = {60};
-  const Mesh series = decimate(thin_shell(), targets).front();
+  const Mesh series = resolutions::decimate(thin_shell(), targets).front();
   CHECK(series.face_count() > 200);
 }
 
 TEST_CASE("decimation: flat parts cost nothing, creases stay") {
   Mesh box = shapes::voxels(6, 6, 6, [](int, int, int) { return true; });
   const std::uint32_t targets[] = {12};
-  const Mesh out = decimate(box, targets).front();
+  const Mesh out = resolutions::decimate(box, targets).front();
   CHECK(out.face_count() == 12);
   CHECK(volume(out) == doctest::Approx(216).epsilon(5e-3));
 }
 
 TEST_CASE("decimation: the same for the same mesh, and an unreachable target ends") {
-  const Mesh mesh = generate("rock", {{"frequency", 8}});
+  const Mesh mesh = generators::generate("rock", {{"frequency", 8}});
   const std::uint32_t targets[] = {300, 2};
-  const auto once = decimate(mesh, targets), again = decimate(mesh, targets);
+  const auto once = resolutions::decimate(mesh, targets), again = resolutions::decimate(mesh, targets);
   for (int i = 0; i < 2; ++i) {
     CHECK(once[i].face_vertices == again[i].face_vertices);
     CHECK(once[i].vertices == again[i].vertices);
@@ -95,24 +95,27 @@ TEST_CASE("decimation: the same for the same mesh, and an unreachable target end
 }
 
 TEST_CASE("subdivision: four faces for one, smoother, still closed") {
-  const Mesh coarse = shapes::icosphere(1), fine = subdivide(coarse), finer = subdivide(fine);
+  const Mesh coarse = shapes::icosphere(1), fine = resolutions::subdivide(coarse),
+             finer = resolutions::subdivide(fine);
   CHECK(fine.face_count() == 4 * coarse.face_count());
   CHECK(finer.vertices.size() == 2 + finer.face_count() / 2);  // Euler
   check_embedded(finer, 0, 1);
   double least = 10, most = 0;
   for (const auto& v : finer.vertices) least = std::min(least, v.norm()), most = std::max(most, v.norm());
   CHECK(most - least < 0.02);
-  check_embedded(subdivide(generate("knot", {{"segments", 60}, {"sides", 6}})), 1, 1);
+  check_embedded(resolutions::subdivide(generators::generate("knot", {{"segments", 60}, {"sides", 6}})), 1,
+                 1);
 }
 
 TEST_CASE("resolutions: half of the faces each time; what cannot be built is refused") {
-  const auto series = resolutions(generate("rock", {{"frequency", 10}}), {1, 8, 500});
+  const auto series =
+      resolutions::resolutions(generators::generate("rock", {{"frequency", 10}}), {1, 8, 500});
   REQUIRE(series.size() == 5);
   for (std::size_t i = 0; i < 5; ++i) CHECK(series[i].face_count() == (8000u >> i));
-  CHECK(resolutions(generate("rock", {{"frequency", 10}}), {1, 2, 500}).size() == 2);
-  CHECK(resolutions(shapes::quad_box(), {}).front().face_count() == 12);
-  CHECK_THROWS_AS(resolutions(shapes::open_cylinder(12), {}), InputError);
-  CHECK_THROWS_AS(resolutions(shapes::circle(12), {}), InputError);
+  CHECK(resolutions::resolutions(generators::generate("rock", {{"frequency", 10}}), {1, 2, 500}).size() == 2);
+  CHECK(resolutions::resolutions(shapes::quad_box(), {}).front().face_count() == 12);
+  CHECK_THROWS_AS(resolutions::resolutions(shapes::open_cylinder(12), {}), InputError);
+  CHECK_THROWS_AS(resolutions::resolutions(shapes::circle(12), {}), InputError);
 }
 
 TEST_CASE("resolutions of real meshes") {
@@ -123,7 +126,7 @@ TEST_CASE("resolutions of real meshes") {
   }
   for (const auto& [name, genus] : {std::pair{"rocker-arm.obj", 1}, std::pair{"fandisk.obj", 0}}) {
     const Mesh mesh = read_mesh((folder / name).string());
-    for (const Mesh& m : resolutions(mesh, {})) {
+    for (const Mesh& m : resolutions::resolutions(mesh, {})) {
       check_embedded(m, genus, 1);
       CHECK(volume(m) == doctest::Approx(volume(mesh)).epsilon(0.02));
     }

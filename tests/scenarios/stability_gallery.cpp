@@ -6,9 +6,9 @@
 #include "engine/query/brute_force.hpp"
 #include "render/montage.hpp"
 #include "render/png.hpp"
-#include "scenarios/files.hpp"
-#include "scenarios/stability/stability_report.hpp"
-#include "scenarios/stability/worst_case.hpp"
+#include "scenarios/io/files.hpp"
+#include "scenarios/stability/report/stability_report.hpp"
+#include "scenarios/stability/report/worst_case.hpp"
 #include "tests/scenarios/made_up_grid.hpp"
 
 using namespace lrb;
@@ -17,7 +17,7 @@ using namespace lrb::stability;
 namespace {
 
 /// Every third pair missed, and a pair of neighbours in excess.
-std::vector<SimplexPair> spoilt(const std::vector<SimplexPair>& pairs, const families::Case& c) {
+std::vector<SimplexPair> spoilt(const std::vector<SimplexPair>& pairs, const cases::Case& c) {
   std::vector<SimplexPair> out;
   for (std::size_t i = 0; i < pairs.size(); ++i)
     if (i % 3 != 1) out.push_back(pairs[i]);
@@ -32,9 +32,9 @@ std::vector<SimplexPair> spoilt(const std::vector<SimplexPair>& pairs, const fam
 int main(int argc, char** argv) {
   if (argc < 2) return std::fprintf(stderr, "usage: stability_gallery FOLDER\n"), 2;
   const std::string folder = argv[1];
-  make_folder(folder + "/worst");
+  io::make_folder(folder + "/worst");
   const Grid grid = made_up_grid();
-  Rasterizer rasterizer;
+  render::Rasterizer rasterizer;
   ReportOptions options;
   options.pictures.resize(grid.cells.size());
   options.command = [](const Record& r) {
@@ -43,10 +43,10 @@ int main(int argc, char** argv) {
            std::to_string(r.seed);
   };
   std::size_t f = 0;
-  std::vector<Panel> sheet;
-  for (const families::Family& family : families::all_families()) {
+  std::vector<render::Panel> sheet;
+  for (const cases::Family& family : cases::all_families()) {
     for (const int dial : {2, 10}) {
-      const families::Case c = families::make_case(family, 1, dial, 3);
+      const cases::Case c = cases::make_case(family, 1, dial, 3);
       const std::string file = "worst/" + std::string(family.name) + "-" + std::to_string(dial) + ".png";
       try {
         const BruteForceResult right = brute_force(*c.a, c.pose_a, *c.b, c.pose_b);
@@ -56,7 +56,7 @@ int main(int argc, char** argv) {
              "wrong on purpose",
              {{"dial", std::to_string(dial) + " of 10"}, {"relation", to_string(right.relation)}}},
             folder + "/" + file, rasterizer);
-        if (dial == 10) sheet.push_back({read_png(folder + "/" + file).image, ""});
+        if (dial == 10) sheet.push_back({render::read_png(folder + "/" + file).image, ""});
         for (std::size_t m = 0; m < grid.methods.size(); ++m)
           options.pictures[f * grid.methods.size() + m] = file;
       } catch (const std::exception& e) {
@@ -64,9 +64,9 @@ int main(int argc, char** argv) {
       }
     }
     if (++f % 6 == 0 || f == grid.families.size()) {
-      MontageOptions layout;
+      render::MontageOptions layout;
       layout.columns = 2;
-      write_png(montage(sheet, layout), folder + "/sheet-" + std::to_string(f) + ".png");
+      render::write_png(render::montage(sheet, layout), folder + "/sheet-" + std::to_string(f) + ".png");
       sheet.clear();
     }
   }

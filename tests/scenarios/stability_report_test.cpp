@@ -1,4 +1,4 @@
-#include "scenarios/stability/stability_report.hpp"
+#include "scenarios/stability/report/stability_report.hpp"
 
 #include <cstdlib>
 #include <filesystem>
@@ -9,18 +9,18 @@
 
 #include <doctest/doctest.h>
 
-#include "engine/error.hpp"
+#include "engine/core/error.hpp"
 #include "engine/query/brute_force.hpp"
 #include "render/palette.hpp"
 #include "render/png.hpp"
-#include "scenarios/charts/gnuplot.hpp"
-#include "scenarios/files.hpp"
-#include "scenarios/shapes/shapes.hpp"
-#include "scenarios/stability/cell_summary.hpp"
-#include "scenarios/stability/print.hpp"
-#include "scenarios/stability/subject.hpp"
-#include "scenarios/stability/worst_case.hpp"
-#include "scenarios/stability/worst_pictures.hpp"
+#include "scenarios/bodies/shapes/shapes.hpp"
+#include "scenarios/io/files.hpp"
+#include "scenarios/report/charts/gnuplot.hpp"
+#include "scenarios/stability/report/case_picture.hpp"
+#include "scenarios/stability/report/cell_summary.hpp"
+#include "scenarios/stability/report/stability_print.hpp"
+#include "scenarios/stability/report/worst_case.hpp"
+#include "scenarios/stability/report/worst_pictures.hpp"
 #include "tests/scenarios/made_up_grid.hpp"
 
 using namespace lrb;
@@ -67,26 +67,26 @@ std::string unbalanced(const std::string& markup) {
   return open.empty() ? "" : open.back();
 }
 
-std::map<std::uint32_t, int> colours(const Image& image) {
+std::map<std::uint32_t, int> colours(const render::Image& image) {
   std::map<std::uint32_t, int> out;
-  for (const Rgba& p : image.pixels()) ++out[(p.r << 16U) | (p.g << 8U) | p.b];
+  for (const render::Rgba& p : image.pixels()) ++out[(p.r << 16U) | (p.g << 8U) | p.b];
   return out;
 }
 
 /// Pixels of exactly this colour below the title and above the legend.
-int pixels_of(const Image& image, Rgba c) {
-  Image middle(image.width(), image.height() - 180);
+int pixels_of(const render::Image& image, render::Rgba c) {
+  render::Image middle(image.width(), image.height() - 180);
   for (int y = 0; y < middle.height(); ++y)
     for (int x = 0; x < image.width(); ++x) middle.at(x, y) = image.at(x, y + 90);
   return colours(middle)[(c.r << 16U) | (c.g << 8U) | c.b];
 }
 
-families::Body made(const Mesh& mesh) {
-  return families::body(mesh);
+cases::Body made(const Mesh& mesh) {
+  return cases::body(mesh);
 }
 
-families::Case boxes(double scale = 1, const Eigen::Vector3d& by = Eigen::Vector3d::Zero()) {
-  families::Case c;
+cases::Case boxes(double scale = 1, const Eigen::Vector3d& by = Eigen::Vector3d::Zero()) {
+  cases::Case c;
   c.a = made(shapes::scaled(shapes::box(), scale));
   c.b = made(shapes::scaled(shapes::l_shape(), scale));
   c.pose_a = Pose::translation(by);
@@ -94,8 +94,8 @@ families::Case boxes(double scale = 1, const Eigen::Vector3d& by = Eigen::Vector
   return c;
 }
 
-Image picture(const families::Case& c, std::size_t drop = 2, bool with_extra = true) {
-  static Rasterizer rasterizer;
+render::Image picture(const cases::Case& c, std::size_t drop = 2, bool with_extra = true) {
+  static render::Rasterizer rasterizer;
   const std::vector<SimplexPair> expected = brute_force(*c.a, c.pose_a, *c.b, c.pose_b).pairs;
   REQUIRE(expected.size() > drop);
   std::vector<SimplexPair> answered(expected.begin() + static_cast<std::ptrdiff_t>(drop), expected.end());
@@ -109,11 +109,11 @@ Image picture(const families::Case& c, std::size_t drop = 2, bool with_extra = t
 }
 
 /// Share of pixels that clearly differ.
-double differing(const Image& a, const Image& b) {
+double differing(const render::Image& a, const render::Image& b) {
   REQUIRE(a.pixels().size() == b.pixels().size());
   std::size_t n = 0;
   for (std::size_t i = 0; i < a.pixels().size(); ++i) {
-    const Rgba p = a.pixels()[i], q = b.pixels()[i];
+    const render::Rgba p = a.pixels()[i], q = b.pixels()[i];
     n += std::abs(p.r - q.r) + std::abs(p.g - q.g) + std::abs(p.b - q.b) > 60;
   }
   return static_cast<double>(n) / static_cast<double>(a.pixels().size());
@@ -133,9 +133,9 @@ TEST_CASE("the page is whole, and fetches nothing") {
   ReportOptions options;
   options.command = [](const Record& r) { return "show <" + r.family + ">"; };
   options.pictures.resize(grid.cells.size());
-  write_png(Image(8, 8, palette::kBlue), folder + "/first.png");
+  render::write_png(render::Image(8, 8, render::palette::kBlue), folder + "/first.png");
   options.pictures[1] = "first.png";
-  const std::string html = page_html(stability_page(grid, folder, options));
+  const std::string html = report::page_html(stability_page(grid, folder, options));
   CHECK(unbalanced(html) == "");
   CHECK(html.find("http:") == std::string::npos);
   CHECK(html.find("https:") == std::string::npos);
@@ -147,7 +147,7 @@ TEST_CASE("the page is whole, and fetches nothing") {
 
 TEST_CASE("the page has every cell, every mark and every worst case") {
   const Grid grid = made_up_grid();
-  const std::string html = page_html(stability_page(grid, ".", {}));
+  const std::string html = report::page_html(stability_page(grid, ".", {}));
   const std::size_t families = grid.families.size(), methods = grid.methods.size();
   CHECK(count(html, "<td ") == (families + 1) * methods);
   CHECK(count(html, "<td class=\"absent\"") == families + 1);
@@ -172,7 +172,7 @@ TEST_CASE("the page has every cell, every mark and every worst case") {
     if (grid.methods[m].present) {
       const CellSummary s = summarise(sum_of_column(grid, m));
       CHECK(html.find("all families \u00d7 ") != std::string::npos);
-      CHECK(s.cases == families * kDialSettings * 30);
+      CHECK(s.cases == families * cases::kDialSettings * 30);
     }
 }
 
@@ -180,7 +180,7 @@ TEST_CASE("names are escaped, and their addresses are plain") {
   Grid grid = made_up_grid();
   grid.methods[1].name = "a\"><script>x";
   grid.methods[1].title = "<script>alert(1)</script>";
-  const std::string html = page_html(stability_page(grid, ".", {}));
+  const std::string html = report::page_html(stability_page(grid, ".", {}));
   CHECK(html.find("<script>alert") == std::string::npos);
   CHECK(html.find("<b>&\"quoted\"") == std::string::npos);
   CHECK(html.find("&lt;b&gt;&amp;") != std::string::npos);
@@ -220,10 +220,10 @@ TEST_CASE("without gnuplot there is the page, and one line on what is missing") 
   CHECK(files.missing.find("gnuplot-nox") != std::string::npos);
   CHECK(files.missing.find('\n') == std::string::npos);
   CHECK(std::distance(std::filesystem::directory_iterator(folder), {}) == 1);
-  CHECK_FALSE(has_gnuplot());
+  CHECK_FALSE(report::has_gnuplot());
 }
 
-TEST_CASE("the charts are drawn, and texts in them are no commands" * doctest::skip(!has_gnuplot())) {
+TEST_CASE("the charts are drawn, and texts in them are no commands" * doctest::skip(!report::has_gnuplot())) {
   const std::string folder = scratch_folder("charts");
   Grid grid = made_up_grid();
   grid.methods[0].title = "it's `touch " + folder + "/ran` <& @x $y \\n \"q\" ";
@@ -232,16 +232,16 @@ TEST_CASE("the charts are drawn, and texts in them are no commands" * doctest::s
   CHECK(files.missing == "");
   CHECK_FALSE(std::filesystem::exists(folder + "/ran"));
   for (const char* name : {"stability.svg", "stability-profiles.svg"}) {
-    const std::string svg = read_text(folder + "/" + name);
+    const std::string svg = io::read_text(folder + "/" + name);
     CHECK(unbalanced(svg) == "");
     CHECK(svg.find("&lt;&amp;") != std::string::npos);
     CHECK(svg.find("coplanar") != std::string::npos);
   }
-  const std::string svg = read_text(folder + "/stability.svg");
+  const std::string svg = io::read_text(folder + "/stability.svg");
   CHECK(count(svg, "absent") == grid.families.size());
   // A crash, a time-out and a refusal have their marks.
   for (const char* mark : {"\u2715", "\u25f7", "\u2298"}) CHECK(count(svg, mark) > 1);
-  const Image png = read_png(folder + "/stability.png").image;
+  const render::Image png = render::read_png(folder + "/stability.png").image;
   CHECK(png.width() > 1500);
   const auto found = colours(png);
   CHECK(found.contains(0xd55e00));
@@ -249,12 +249,12 @@ TEST_CASE("the charts are drawn, and texts in them are no commands" * doctest::s
   CHECK(std::distance(std::filesystem::directory_iterator(folder), {}) == 5);  // nothing is left behind
 }
 
-TEST_CASE("gnuplot's complaint comes back in one line" * doctest::skip(!has_gnuplot())) {
+TEST_CASE("gnuplot's complaint comes back in one line" * doctest::skip(!report::has_gnuplot())) {
   const std::string path = scratch_folder("complaint") + "/chart.svg";
-  Gnuplot chart;
+  report::Gnuplot chart;
   chart.script = "plot nonsense(\n";
   try {
-    draw(chart, path);
+    report::draw(chart, path);
     FAIL("no error");
   } catch (const EnvironmentError& e) {
     CHECK(std::string(e.what()).find("chart.svg") != std::string::npos);
@@ -262,26 +262,26 @@ TEST_CASE("gnuplot's complaint comes back in one line" * doctest::skip(!has_gnup
   }
   CHECK_FALSE(std::filesystem::exists(path));
   chart.script = "plot x\n";
-  CHECK_THROWS_AS(draw(chart, path + ".gif"), InputError);
+  CHECK_THROWS_AS(report::draw(chart, path + ".gif"), InputError);
 }
 
 TEST_CASE("a 2D picture has exactly the colours of its marks") {
-  families::Case c;
+  cases::Case c;
   c.a = made(shapes::l_shape_2d());
   c.b = c.a;
   c.pose_b = Pose::translation({0.5, 0.25, 0});
-  const Image all = picture(c, 1, true);
+  const render::Image all = picture(c, 1, true);
   CHECK(pixels_of(all, found_colour()) > 100);
   CHECK(pixels_of(all, missed_colour()) > 100);
   CHECK(pixels_of(all, extra_colour()) > 100);
-  const Image right = picture(c, 0, false);
+  const render::Image right = picture(c, 0, false);
   CHECK(pixels_of(right, found_colour()) > 100);
   CHECK(pixels_of(right, missed_colour()) == 0);
   CHECK(pixels_of(right, extra_colour()) == 0);
 }
 
 TEST_CASE("size and place of the world do not show in the picture") {
-  const Image here = picture(boxes());
+  const render::Image here = picture(boxes());
   CHECK(here == picture(boxes(0x1p-400)));
   CHECK(here == picture(boxes(0x1p900)));
   // Far away the close-up's box is rounded: edges may move by a fraction of a pixel.
@@ -290,22 +290,22 @@ TEST_CASE("size and place of the world do not show in the picture") {
 }
 
 TEST_CASE("what is missed is seen beside a body 1e60 times as large") {
-  families::Case c = boxes(1e-60);
+  cases::Case c = boxes(1e-60);
   c.b = made(shapes::box({-1, -1, 0}, {1, 1, 1}));
   c.pose_b = Pose::translation({0, 0, 0.5e-60});
-  const Image image = picture(c, 2, false);
+  const render::Image image = picture(c, 2, false);
   int red = 0;
   for (int y = 90; y < image.height() - 90; ++y)
     for (int x = image.width() / 2 + 10; x < image.width(); ++x) {  // the close-up
-      const Rgba p = image.at(x, y);
+      const render::Rgba p = image.at(x, y);
       red += p.r > 100 && p.r > 2 * p.g && p.r > p.b + 40;
     }
   CHECK(red > 1000);
 }
 
 TEST_CASE("what cannot be drawn is refused") {
-  Rasterizer rasterizer;
-  families::Case c = boxes();
+  render::Rasterizer rasterizer;
+  cases::Case c = boxes();
   c.pose_a.t.x() = std::numeric_limits<double>::infinity();
   CHECK_THROWS_AS(worst_case_picture(c, {}, std::nullopt, {}, rasterizer), InputError);
   c = boxes();
@@ -316,7 +316,7 @@ TEST_CASE("what cannot be drawn is refused") {
 TEST_CASE("every cell that failed gets a picture, and the old ones go") {
   const std::string folder = scratch_folder("worst");
   std::filesystem::create_directories(folder + "/worst");
-  write_text(folder + "/worst/of-an-earlier-run.png", "old");
+  io::write_text(folder + "/worst/of-an-earlier-run.png", "old");
   Grid grid = made_up_grid();
   for (std::size_t i = 0; i < grid.cells.size(); ++i)
     if (i / grid.methods.size() > 2) grid.cells[i].worst.reset();  // few are enough
@@ -324,15 +324,14 @@ TEST_CASE("every cell that failed gets a picture, and the old ones go") {
   std::size_t asked = 0;
   const std::vector<std::string> pictures = draw_worst_cases(grid, folder, [&](const Record& r) {
     ++asked;
-    const families::Case c =
-        families::make_case(*families::find_family(r.family), r.seed, r.dial, r.case_index);
+    const cases::Case c = cases::make_case(*cases::find_family(r.family), r.seed, r.dial, r.case_index);
     return AnsweredPairs{brute_force(*c.a, c.pose_a, *c.b, c.pose_b).pairs, Pairs{}};
   });
   REQUIRE(pictures.size() == grid.cells.size());
   std::size_t drawn = 0;
   for (std::size_t i = 0; i < pictures.size(); ++i) {
     CHECK(pictures[i].empty() == (!grid.cells[i].worst || i == 1));
-    if (!pictures[i].empty()) CHECK(read_png(folder + "/" + pictures[i]).image.width() > 1000);
+    if (!pictures[i].empty()) CHECK(render::read_png(folder + "/" + pictures[i]).image.width() > 1000);
     drawn += pictures[i].empty() ? 0 : 1;
   }
   CHECK(drawn > 5);
@@ -341,11 +340,11 @@ TEST_CASE("every cell that failed gets a picture, and the old ones go") {
 }
 
 TEST_CASE("every family's cases can be drawn at both ends of the dial") {
-  Rasterizer rasterizer;
-  for (const families::Family& family : families::all_families())
-    for (const int dial : {0, families::kDialSettings - 1}) {
+  render::Rasterizer rasterizer;
+  for (const cases::Family& family : cases::all_families())
+    for (const int dial : {0, cases::kDialSettings - 1}) {
       CAPTURE(family.name);
-      const families::Case c = families::make_case(family, 5, dial, 0);
+      const cases::Case c = cases::make_case(family, 5, dial, 0);
       std::vector<SimplexPair> pairs;
       bool drawable = true;
       try {
@@ -367,15 +366,15 @@ TEST_CASE("every family's cases can be drawn at both ends of the dial") {
 }
 
 TEST_CASE("a case is the same every time, and follows seed, index and dial") {
-  const families::Family& family = *families::find_family("sliver");
+  const cases::Family& family = *cases::find_family("sliver");
   const auto hash = [&](std::uint64_t seed, int dial, std::uint64_t index) {
-    const families::Case c = families::make_case(family, seed, dial, index);
+    const cases::Case c = cases::make_case(family, seed, dial, index);
     return std::pair(c.a->hash() ^ c.b->hash(), c.pose_b.t.x());
   };
   CHECK(hash(1, 4, 7) == hash(1, 4, 7));
   CHECK(hash(1, 4, 7) != hash(2, 4, 7));
   CHECK(hash(1, 4, 7) != hash(1, 4, 8));
   CHECK(hash(1, 4, 7) != hash(1, 5, 7));
-  CHECK_THROWS_AS(families::make_case(family, 1, families::kDialSettings, 0), InputError);
-  CHECK_THROWS_AS(families::make_case(family, 1, -1, 0), InputError);
+  CHECK_THROWS_AS(cases::make_case(family, 1, cases::kDialSettings, 0), InputError);
+  CHECK_THROWS_AS(cases::make_case(family, 1, -1, 0), InputError);
 }

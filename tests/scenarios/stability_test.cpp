@@ -8,14 +8,14 @@
 
 #include <doctest/doctest.h>
 
-#include "engine/error.hpp"
-#include "scenarios/families/families.hpp"
+#include "engine/core/error.hpp"
+#include "scenarios/bodies/shapes/shapes.hpp"
+#include "scenarios/cases/families.hpp"
 #include "scenarios/methods/plain_tests.hpp"
-#include "scenarios/shapes/shapes.hpp"
-#include "scenarios/stability/asker.hpp"
-#include "scenarios/stability/experiment.hpp"
 #include "scenarios/stability/judge.hpp"
 #include "scenarios/stability/record_json.hpp"
+#include "scenarios/stability/stability_experiment.hpp"
+#include "scenarios/stability/stability_runner.hpp"
 #include "scenarios/stability/table.hpp"
 #include "tests/scenarios/program.hpp"
 
@@ -42,8 +42,8 @@ struct Workers {
   Environment fakes{"LRBSCOPE_FAKE_METHODS", "1"};
 };
 
-WorkerMethod method(const std::string& name) {
-  for (const WorkerMethod& m : find_methods())
+workers::WorkerMethod method(const std::string& name) {
+  for (const workers::WorkerMethod& m : workers::find_methods())
     if (m.column.name == name) return m;
   FAIL("no method " << name);
   return {};
@@ -159,7 +159,7 @@ TEST_CASE("a case asked again gives the same record, and its pairs") {
 TEST_CASE("a worker that is not there, or is no worker") {
   const Folder folder;
   const Environment where("LRBSCOPE_METHODS", folder.path.string());
-  CHECK_THROWS_AS(find_methods(), EnvironmentError);
+  CHECK_THROWS_AS(workers::find_methods(), EnvironmentError);
   const test::Outcome o = run(folder, {"stability"});
   CHECK(o.code == 3);
   CHECK(o.out.empty());
@@ -168,7 +168,7 @@ TEST_CASE("a worker that is not there, or is no worker") {
   CHECK(folder.tree().empty());
   std::filesystem::permissions(folder.write("lrbscope-methods", "#!/bin/sh\nexit 9\n"),
                                std::filesystem::perms::owner_all);
-  CHECK_THROWS_AS(find_methods(), EnvironmentError);
+  CHECK_THROWS_AS(workers::find_methods(), EnvironmentError);
 }
 
 TEST_CASE("records survive their file") {
@@ -212,7 +212,7 @@ TEST_CASE("a file of records that is wrong is refused by line") {
 }
 
 TEST_CASE("counting") {
-  std::vector<MethodColumn> methods(2);
+  std::vector<workers::MethodColumn> methods(2);
   methods[0].name = "ours";
   methods[1].name = "fcl";
   std::vector<FamilyRow> families(1);
@@ -325,16 +325,16 @@ TEST_CASE("judging a method by itself, with the bodies exchanged") {
 
 // If the benign end were not benign the grid could not say where along the dial a method starts to fail.
 TEST_CASE("the textbook's method is right at the benign end of every dial, and not at the other") {
-  Asker plain(methods::plain_double());
+  StabilityRunner plain(methods::plain_double());
   int failing = 0, failed = 0;
-  for (const families::Family& f : families::all_families()) {
+  for (const cases::Family& f : cases::all_families()) {
     CAPTURE(f.name);
     CHECK(std::string(f.benign) != "");
     CHECK(std::string(f.degenerate) != "");
     const auto failures = [&](int dial) {
       int n = 0;
       for (std::uint64_t i = 0; i < 8; ++i) {
-        const families::Case c = families::make_case(f, 1, dial, i);
+        const cases::Case c = cases::make_case(f, 1, dial, i);
         Record r;
         plain.ask(f, c, expected_answer(c), r);
         n += r.outcome == Outcome::wrong;

@@ -1,5 +1,5 @@
 #pragma once
-/// Random simplices of every awkward kind, reproducible from a seed.
+/// RandomEngine simplices of every awkward kind, reproducible from a seed.
 
 #include <array>
 #include <cmath>

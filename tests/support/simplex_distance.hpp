@@ -8,9 +8,9 @@
 
 #include <Eigen/Geometry>
 
+#include "engine/core/pose.hpp"
 #include "engine/lrb/lrb_rep.hpp"
-#include "engine/lrb/pose.hpp"
-#include "scenarios/shapes/random_pose.hpp"
+#include "scenarios/bodies/shapes/random_pose.hpp"
 
 namespace lrb::test {
 
@@ -97,7 +97,7 @@ inline double surface_distance(const std::vector<Points>& a, const std::vector<P
   return least;
 }
 
-inline Eigen::Vector3d random_point_of(shapes::Random& random, const Points& s) {
+inline Eigen::Vector3d random_point_of(shapes::RandomEngine& random, const Points& s) {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   double weights = 0;
   for (const Eigen::Vector3d& x : s) {

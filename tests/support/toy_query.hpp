@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
+#include "engine/core/pose.hpp"
 #include "engine/exact/simplex_test.hpp"
-#include "engine/lrb/pose.hpp"
 #include "engine/lrb/wrapper.hpp"
 #include "engine/query/collide.hpp"
 

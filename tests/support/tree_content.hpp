@@ -2,12 +2,12 @@
 
 #include <vector>
 
-#include "engine/query/block_tree.hpp"
+#include "engine/tree/obb_tree.hpp"
 
 namespace lrb::test {
 
 /// Appends the simplices beneath a node.
-inline void simplices_under(const BlockTree& t, std::uint32_t node, std::vector<SimplexId>& out) {
+inline void simplices_under(const ObbTree& t, std::uint32_t node, std::vector<SimplexId>& out) {
   const TreeNode& n = t.nodes()[node];
   for (std::uint32_t k = 0; k < n.count; ++k) {
     if (n.is_leaf)

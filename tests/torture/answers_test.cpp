@@ -9,7 +9,7 @@
 #include <rapidcheck.h>
 #include <unistd.h>
 
-#include "engine/error.hpp"
+#include "engine/core/error.hpp"
 #include "engine/lrb/lrb_file.hpp"
 #include "engine/query/collide_impl.hpp"
 #include "tests/torture/regions.hpp"
@@ -18,19 +18,19 @@
 #include "trace/recorder.hpp"
 
 using namespace lrb;
-using namespace lrb::families;
+using namespace lrb::cases;
 
 namespace {
 
 constexpr std::uint32_t kMostSimplices = 300;  // the builder is asked often
 
 /// A case of any family whose coordinates are finite. Discards bodies too large for so many rounds.
-Case any_case() {
-  const auto families = all_families();
-  const Family& family = families[*rc::gen::inRange<std::size_t>(0, families.size()).as("family")];
-  const int dial = *rc::gen::inRange(0, kDialSettings).as("dial");
+cases::Case any_case() {
+  const auto families = cases::all_families();
+  const cases::Family& family = families[*rc::gen::inRange<std::size_t>(0, families.size()).as("family")];
+  const int dial = *rc::gen::inRange(0, cases::kDialSettings).as("dial");
   const auto index = *rc::gen::inRange<std::uint64_t>(0, 1000000).as("index");
-  Case c = make_case(family, 1, dial, index);
+  cases::Case c = cases::make_case(family, 1, dial, index);
   RC_TAG(std::string(family.name));
   RC_PRE(c.a->real_simplex_count() <= 4 * kMostSimplices && c.b->real_simplex_count() <= 4 * kMostSimplices);
   for (const auto& [rep, pose] : {std::pair{c.a, c.pose_a}, std::pair{c.b, c.pose_b}})
@@ -39,14 +39,14 @@ Case any_case() {
 }
 
 /// The same with regions, where the builder takes the mesh; often.
-Case any_case_with_regions() {
-  Case c = any_case();
-  Random random(*rc::gen::arbitrary<std::uint64_t>().as("regions"));
+cases::Case any_case_with_regions() {
+  cases::Case c = any_case();
+  RandomEngine random(*rc::gen::arbitrary<std::uint64_t>().as("regions"));
   torture::give_regions(c, random, kMostSimplices);
   return c;
 }
 
-CollideResult ask(const Case& c, const CollideRequest& request = {}) {
+CollideResult ask(const cases::Case& c, const CollideRequest& request = {}) {
   return collide(*c.a, c.pose_a, *c.b, c.pose_b, request);
 }
 
@@ -65,7 +65,7 @@ void assert_same(const CollideResult& x, const CollideResult& y) {
   RC_ASSERT(x.relation == y.relation);
 }
 
-Body saved_and_loaded(const LrbRep& rep) {
+cases::Body saved_and_loaded(const LrbRep& rep) {
   const auto file =
       std::filesystem::temp_directory_path() / ("lrb-answers-" + std::to_string(getpid()) + ".lrb");
   save_lrb(rep, file.string());
@@ -83,7 +83,7 @@ Relation mirrored(Relation r) {
 
 TEST_CASE("the complete query equals brute force, with regions and without") {
   CHECK(rc::check([] {
-    const Case c = any_case_with_regions();
+    const cases::Case c = any_case_with_regions();
     const CollideResult r = ask(c);
     const BruteForceResult expected = torture::swept_brute_force(*c.a, c.pose_a, *c.b, c.pose_b);
     RC_ASSERT(r.pairs == expected.pairs);
@@ -95,7 +95,7 @@ TEST_CASE("the complete query equals brute force, with regions and without") {
 
 TEST_CASE("swapping the bodies transposes the list and mirrors the relation") {
   CHECK(rc::check([] {
-    const Case c = any_case();
+    const cases::Case c = any_case();
     const CollideResult r = ask(c), swapped = ask({c.b, c.a, c.pose_b, c.pose_a, {}, {}});
     std::vector<SimplexPair> back;
     for (const SimplexPair& p : swapped.pairs) back.push_back({p.b, p.a});
@@ -109,9 +109,9 @@ TEST_CASE("swapping the bodies transposes the list and mirrors the relation") {
 
 TEST_CASE("regions change no answer") {
   CHECK(rc::check([] {
-    Case c = any_case();
+    cases::Case c = any_case();
     const CollideResult bare = ask(c);
-    Random random(*rc::gen::arbitrary<std::uint64_t>().as("regions"));
+    RandomEngine random(*rc::gen::arbitrary<std::uint64_t>().as("regions"));
     RC_CLASSIFY(torture::give_regions(c, random, kMostSimplices) > 0, "with regions");
     assert_same(ask(c), bare);
   }));
@@ -119,8 +119,8 @@ TEST_CASE("regions change no answer") {
 
 TEST_CASE("a body from a file gives the same answers") {
   CHECK(rc::check([] {
-    const Case c = any_case_with_regions();
-    const Case loaded{saved_and_loaded(*c.a), saved_and_loaded(*c.b), c.pose_a, c.pose_b, {}, {}};
+    const cases::Case c = any_case_with_regions();
+    const cases::Case loaded{saved_and_loaded(*c.a), saved_and_loaded(*c.b), c.pose_a, c.pose_b, {}, {}};
     const CollideRequest request = any_request();
     const CollideResult before = ask(c, request), after = ask(loaded, request);
     assert_same(before, after);
@@ -132,7 +132,7 @@ TEST_CASE("a body from a file gives the same answers") {
 
 TEST_CASE("recording changes no answer, and the trace replays to the wrappers that the query left") {
   CHECK(rc::check([] {
-    const Case c = any_case_with_regions();
+    const cases::Case c = any_case_with_regions();
     trace::RecorderSettings settings;
     settings.request = any_request();
     settings.event_cap = 100000;

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <iterator>
 
-#include "engine/error.hpp"
+#include "engine/core/error.hpp"
 #include "engine/query/brute_force.hpp"
 #include "engine/query/collide_impl.hpp"
 #include "tests/support/rational_oracle.hpp"
@@ -27,7 +27,7 @@ bool holds_each_other(Relation r) {
 
 class Comparison {
  public:
-  Comparison(const Case& c, Random& random, const Effort& effort, std::string& trouble)
+  Comparison(const cases::Case& c, RandomEngine& random, const Effort& effort, std::string& trouble)
       : c_(c), random_(random), effort_(effort), trouble_(trouble) {}
 
   Tally run() {
@@ -266,8 +266,8 @@ class Comparison {
                std::string(to_string(all_.relation)) + ", the parity oracle says " + to_string(r));
   }
 
-  const Case& c_;
-  Random& random_;
+  const cases::Case& c_;
+  RandomEngine& random_;
   const Effort& effort_;
   std::string& trouble_;
   Tally t_;
@@ -295,7 +295,7 @@ Tally& Tally::operator+=(const Tally& t) {
   return *this;
 }
 
-Tally check(const Case& c, Random& random, const Effort& effort, std::string& trouble) {
+Tally check(const cases::Case& c, RandomEngine& random, const Effort& effort, std::string& trouble) {
   return Comparison(c, random, effort, trouble).run();
 }
 

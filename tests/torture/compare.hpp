@@ -4,11 +4,11 @@
 #include <cstdint>
 #include <string>
 
-#include "scenarios/families/families.hpp"
+#include "scenarios/cases/families.hpp"
 
 namespace lrb::torture {
 
-using namespace families;
+using namespace cases::families;
 
 /// Sums over the cases of a class. Plain, so that a child process can send it through a pipe.
 struct Tally {
@@ -44,6 +44,6 @@ struct Effort {
 };
 
 /// `trouble` gets a line for each difference.
-Tally check(const Case& c, Random& random, const Effort& effort, std::string& trouble);
+Tally check(const cases::Case& c, RandomEngine& random, const Effort& effort, std::string& trouble);
 
 }  // namespace lrb::torture

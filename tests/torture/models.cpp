@@ -3,22 +3,22 @@
 #include <algorithm>
 #include <cmath>
 
-#include "engine/build/build.hpp"
-#include "engine/mesh/mesh_io.hpp"
+#include "engine/construct/build.hpp"
+#include "engine/mesh/io/mesh_io.hpp"
 #include "engine/query/collide_impl.hpp"
-#include "scenarios/shapes/shapes.hpp"
+#include "scenarios/bodies/shapes/shapes.hpp"
 
 namespace lrb::torture {
 namespace {
 
-using namespace families;
+using namespace cases::families;
 using Eigen::Vector3d;
 
 double diameter(const LrbRep& rep) {
   return shapes::box_of(rep).diagonal().norm();
 }
 
-bool in_contact(const Case& c) {
+bool in_contact(const cases::Case& c) {
   static QueryContext context;
   NullProbe probe;
   CollideRequest request;
@@ -28,7 +28,7 @@ bool in_contact(const Case& c) {
 
 /// Moves B along a direction until a step decides between contact and none; at the end the distance is known
 /// to reach / 2^steps.
-void stop_at_contact(Case& c, const Vector3d& away, double reach, int steps, bool inside) {
+void stop_at_contact(cases::Case& c, const Vector3d& away, double reach, int steps, bool inside) {
   const Vector3d start = c.pose_b.t;
   double near = 0, far = reach;
   if (!in_contact(c)) near = -reach;  // through and out on the other side
@@ -55,24 +55,25 @@ void Models::load(const std::filesystem::path& folder) {
     if (mesh.face_count() < 10000)
       bodies_.push_back(std::make_shared<LrbRep>(build_lrb(shapes::scaled(mesh, 1.0 / 16))));
   }
-  std::stable_sort(bodies_.begin(), bodies_.end(),
-                   [](const Body& a, const Body& b) { return a->real_face_count() < b->real_face_count(); });
+  std::stable_sort(bodies_.begin(), bodies_.end(), [](const cases::Body& a, const cases::Body& b) {
+    return a->real_face_count() < b->real_face_count();
+  });
 }
 
-Case Models::make(Random& random, double dial) const {
+cases::Case Models::make(RandomEngine& random, double dial) const {
   // The largest model costs ten times the others: seldom.
   const auto model = [&] {
     const std::size_t most = random() % 8 ? std::max<std::size_t>(1, bodies_.size() - 1) : bodies_.size();
     return bodies_[random() % most];
   };
-  Case c{model(), random() % 4 ? model() : any_body(random), {}, {}, {}, {}};
-  if (random() % 4 == 0) c.pose_a = any_pose(random, 1);
+  cases::Case c{model(), random() % 4 ? model() : cases::any_body(random), {}, {}, {}, {}};
+  if (random() % 4 == 0) c.pose_a = cases::any_pose(random, 1);
   const Pose rough = shapes::random_pose(random, *c.a, *c.b, 0.5 * uniform(random));
   c.pose_b.r = c.pose_a.r * rough.r;
   c.pose_b.t = c.pose_a.apply(rough.t);
   const double size = diameter(*c.a) + diameter(*c.b);
   const Vector3d away = shapes::random_direction(random);
-  const int kind = pick(random, 0, 7);
+  const int kind = cases::pick(random, 0, 7);
   if (kind == 0) return c;  // as it comes: mostly deep
   stop_at_contact(c, away, size, static_cast<int>(8 + 48 * dial), random() % 2 != 0);
   const double little = size * std::pow(10, -2 - 12 * dial) * uniform(random);
@@ -80,8 +81,8 @@ Case Models::make(Random& random, double dial) const {
   if (kind == 2) c.pose_b.t -= little * away;
   // Not as far as where the answer becomes quadratic, as faces become points.
   if (kind == 3)
-    move_both(c,
-              {shapes::random_rotation(random), std::pow(10, 9 * dial) * shapes::random_direction(random)});
+    cases::move_both(
+        c, {shapes::random_rotation(random), std::pow(10, 9 * dial) * shapes::random_direction(random)});
   return c;
 }
 

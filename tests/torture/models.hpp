@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <vector>
 
-#include "scenarios/families/families.hpp"
+#include "scenarios/cases/families.hpp"
 
 namespace lrb::torture {
 
@@ -18,10 +18,10 @@ class Models {
 
   /// Two models, or a model and a small generated body, moved together or apart until they all but touch; or
   /// from there a little in or out, or far in; or one inside the other.
-  families::Case make(families::Random& random, double dial) const;
+  cases::Case make(cases::RandomEngine& random, double dial) const;
 
  private:
-  std::vector<families::Body> bodies_;  ///< ascending in size
+  std::vector<cases::Body> bodies_;  ///< ascending in size
 };
 
 }  // namespace lrb::torture

@@ -3,8 +3,8 @@
 #include <chrono>
 #include <cstdio>
 
+#include "engine/core/fnv.hpp"
 #include "engine/exact/simplex_test.hpp"
-#include "engine/lrb/fnv.hpp"
 #include "tests/support/meet_roles.hpp"
 #include "tests/support/random_simplices.hpp"
 #include "tests/support/rational_oracle.hpp"

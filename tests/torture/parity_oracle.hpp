@@ -12,7 +12,7 @@
 
 #include "engine/lrb/lrb_rep.hpp"
 #include "engine/query/collide.hpp"
-#include "scenarios/shapes/random_pose.hpp"
+#include "scenarios/bodies/shapes/random_pose.hpp"
 #include "tests/support/rational_oracle.hpp"
 
 namespace lrb::torture {
@@ -65,7 +65,7 @@ class ParityOracle {
     }
   }
 
-  bool holds(const WorldPoint& p, shapes::Random& random) const {
+  bool holds(const WorldPoint& p, shapes::RandomEngine& random) const {
     for (int attempt = 0;; ++attempt) {
       if (attempt == 100) throw std::logic_error("no segment to the far avoids all edges");
       WorldPoint far;
@@ -81,7 +81,7 @@ class ParityOracle {
     }
   }
 
-  std::size_t held_pieces(const ParityOracle& inner, shapes::Random& random) const {
+  std::size_t held_pieces(const ParityOracle& inner, shapes::RandomEngine& random) const {
     std::size_t n = 0;
     for (const VertexId v : inner.rep_.component_vertices()) n += holds(inner.x_[v], random);
     return n;
@@ -133,7 +133,7 @@ class ParityOracle {
 
 /// For bodies without a pair that meets.
 inline Relation relation_by_parity(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
-                                   shapes::Random& random) {
+                                   shapes::RandomEngine& random) {
   if (!a.closed() || !b.closed()) return Relation::undefined;
   const ParityOracle oa(a, pose_a), ob(b, pose_b);
   const std::size_t a_in_b = ob.held_pieces(oa, random), b_in_a = oa.held_pieces(ob, random);

@@ -5,25 +5,25 @@
 #include <Eigen/Geometry>
 #include <doctest/doctest.h>
 
-#include "engine/build/build.hpp"
+#include "engine/construct/build.hpp"
 #include "engine/exact/locate.hpp"
 #include "engine/lrb/boundary_sum.hpp"
 #include "engine/lrb/wrapper.hpp"
 #include "engine/query/collide_impl.hpp"
-#include "scenarios/families/families.hpp"
-#include "scenarios/shapes/hand_made.hpp"
-#include "scenarios/shapes/shapes.hpp"
+#include "scenarios/bodies/shapes/hand_made.hpp"
+#include "scenarios/bodies/shapes/shapes.hpp"
+#include "scenarios/cases/families.hpp"
 #include "tests/support/rational_oracle.hpp"
 
 using namespace lrb;
-using namespace lrb::families;
+using namespace lrb::cases;
 
 namespace {
 
 /// Coordinates on a grid of 2^-20: whole translations of up to 2^20 move them without rounding.
-Body on_grid(Mesh m) {
+cases::Body on_grid(Mesh m) {
   for (auto& v : m.vertices) v = (v * 0x1p20).array().round() * 0x1p-20;
-  return body(m);
+  return cases::body(m);
 }
 
 std::vector<LrbRep> built() {
@@ -71,7 +71,7 @@ bool holds(const Wrapper& w, const Eigen::Vector3d& p) {
   return crossings % 2 != 0;
 }
 
-std::vector<RegionId> shuffled_regions(Random& random, const LrbRep& rep) {
+std::vector<RegionId> shuffled_regions(RandomEngine& random, const LrbRep& rep) {
   std::vector<RegionId> order(rep.region_count());
   for (RegionId r = 0; r < order.size(); ++r) order[r] = r;
   for (std::size_t i = order.size(); i > 1; --i) std::swap(order[i - 1], order[random() % i]);
@@ -81,18 +81,19 @@ std::vector<RegionId> shuffled_regions(Random& random, const LrbRep& rep) {
 }  // namespace
 
 TEST_CASE("moving both bodies by the same exact translation changes nothing") {
-  Random random(1);
-  const Body bodies[] = {on_grid(shapes::bumpy_sphere(2, 3)), on_grid(shapes::torus(12, 8)),
-                         on_grid(shapes::comb(4)), on_grid(shapes::box_with_void())};
+  RandomEngine random(1);
+  const cases::Body bodies[] = {on_grid(shapes::bumpy_sphere(2, 3)), on_grid(shapes::torus(12, 8)),
+                                on_grid(shapes::comb(4)), on_grid(shapes::box_with_void())};
   int in_contact = 0;
   for (int i = 0; i < 400; ++i) {
     const LrbRep &a = *bodies[random() % 4], &b = *bodies[random() % 4];
-    Pose pa, pb{grid_turn(random), Eigen::Vector3d(pick(random, -4, 4), pick(random, -4, 4), 0) / 2};
+    Pose pa, pb{cases::grid_turn(random),
+                Eigen::Vector3d(cases::pick(random, -4, 4), cases::pick(random, -4, 4), 0) / 2};
     CollideRequest request;
     request.contacts = request.interiors_overlap = true;
     const CollideResult before = collide(a, pa, b, pb, request);
-    const Eigen::Vector3d by(pick(random, -1000000, 1000000), pick(random, -1000000, 1000000),
-                             pick(random, -9, 9));
+    const Eigen::Vector3d by(cases::pick(random, -1000000, 1000000), cases::pick(random, -1000000, 1000000),
+                             cases::pick(random, -9, 9));
     pa.t += by;
     pb.t += by;
     const CollideResult after = collide(a, pa, b, pb, request);
@@ -107,11 +108,11 @@ TEST_CASE("moving both bodies by the same exact translation changes nothing") {
 }
 
 TEST_CASE("a query leaves nothing behind: the same context, asked again, gives the same answer") {
-  Random random(2);
+  RandomEngine random(2);
   QueryContext context;
   NullProbe probe;
   for (int i = 0; i < 200; ++i) {
-    const Case c = make_dented(random, 0.5);
+    const cases::Case c = cases::make_dented(random, 0.5);
     const CollideResult fresh = collide(*c.a, c.pose_a, *c.b, c.pose_b);
     for (int repeat = 0; repeat < 2; ++repeat) {
       const CollideResult again = collide(*c.a, c.pose_a, *c.b, c.pose_b, {}, context, probe);
@@ -123,7 +124,7 @@ TEST_CASE("a query leaves nothing behind: the same context, asked again, gives t
 }
 
 TEST_CASE("refining and coarsening again is the identity") {
-  Random random(3);
+  RandomEngine random(3);
   for (const LrbRep& rep : built())
     for (const WrapperMode mode : {WrapperMode::regularised, WrapperMode::unregularised}) {
       Wrapper w(rep, mode);
@@ -150,7 +151,7 @@ TEST_CASE("refining and coarsening again is the identity") {
 
 TEST_CASE(
     "any order of refinement reaches the same solid, and every state on the way is closed and encloses it") {
-  Random random(4);
+  RandomEngine random(4);
   for (const LrbRep& rep : built()) {
     CAPTURE(rep.name());
     std::vector<FaceId> real(rep.real_face_count());
@@ -227,7 +228,7 @@ std::uint64_t vertices_outside(const Wrapper& w) {
 }  // namespace
 
 TEST_CASE("the lids of every region alone, and of any set of regions, enclose the whole solid exactly") {
-  Random random(5);
+  RandomEngine random(5);
   for (const LrbRep& rep : built()) {
     CAPTURE(rep.name());
     Simplices real;

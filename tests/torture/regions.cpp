@@ -2,14 +2,14 @@
 
 #include <unordered_map>
 
-#include "engine/build/build.hpp"
-#include "engine/error.hpp"
+#include "engine/construct/build.hpp"
+#include "engine/core/error.hpp"
 
 namespace lrb::torture {
 namespace {
 
-using families::Body;
-using families::Random;
+using cases::Body;
+using cases::RandomEngine;
 
 Mesh mesh_of(const LrbRep& rep) {
   Mesh m;
@@ -21,9 +21,9 @@ Mesh mesh_of(const LrbRep& rep) {
 }
 
 /// Null if the builder refuses the mesh.
-Body built(const LrbRep& rep, Random& random) {
+cases::Body built(const LrbRep& rep, RandomEngine& random) {
   BuildOptions options;
-  options.patch_interior = static_cast<std::uint32_t>(families::pick(random, 2, 16));
+  options.patch_interior = static_cast<std::uint32_t>(cases::pick(random, 2, 16));
   options.seed = random();
   try {
     return std::make_shared<LrbRep>(build_lrb(mesh_of(rep), options));
@@ -32,16 +32,16 @@ Body built(const LrbRep& rep, Random& random) {
   }
 }
 
-bool give(Body& body, Random& random, std::uint32_t most_simplices) {
+bool give(cases::Body& body, RandomEngine& random, std::uint32_t most_simplices) {
   if (body->region_count() > 0 || body->real_simplex_count() > most_simplices) return false;
   // Drawn always, so that what follows does not depend on what is kept.
-  Random own(random());
-  static std::unordered_map<std::uint64_t, Body> kept;  // many families draw from a dozen bodies
+  RandomEngine own(random());
+  static std::unordered_map<std::uint64_t, cases::Body> kept;  // many families draw from a dozen bodies
   const std::uint64_t key = body->hash() * 8 + own() % 8;
   if (kept.size() > 1000) kept.clear();
   const auto [it, fresh] = kept.try_emplace(key);
   if (fresh) {
-    Random options(key);
+    RandomEngine options(key);
     it->second = built(*body, options);
   }
   if (!it->second) return false;
@@ -51,7 +51,7 @@ bool give(Body& body, Random& random, std::uint32_t most_simplices) {
 
 }  // namespace
 
-int give_regions(families::Case& c, families::Random& random, std::uint32_t most_simplices) {
+int give_regions(cases::Case& c, cases::RandomEngine& random, std::uint32_t most_simplices) {
   int count = give(c.a, random, most_simplices);
   count += give(c.b, random, most_simplices);
   return count;

@@ -1,11 +1,11 @@
 #pragma once
 
-#include "scenarios/families/families.hpp"
+#include "scenarios/cases/families.hpp"
 
 namespace lrb::torture {
 
 /// Gives a case's bodies regions by build_lrb(), where they have none and the mesh can be built and has at
 /// most `most_simplices` simplices: the answer must not change. How many bodies got some.
-int give_regions(families::Case& c, families::Random& random, std::uint32_t most_simplices);
+int give_regions(cases::Case& c, cases::RandomEngine& random, std::uint32_t most_simplices);
 
 }  // namespace lrb::torture

@@ -25,7 +25,7 @@
 #include "tests/torture/regions.hpp"
 
 using namespace lrb;
-using namespace lrb::families;
+using namespace lrb::cases;
 using namespace lrb::torture;
 
 namespace {
@@ -50,7 +50,7 @@ constexpr const char* kSlow[] = {"hub",   "interlock", "far",     "extreme",
 
 /// A row of the table: a family, or the real models.
 struct Class {
-  Family family;
+  cases::Family family;
   const Models* models = nullptr;
 
   std::uint64_t poses(const Options& o) const {
@@ -59,19 +59,19 @@ struct Class {
     return slow ? (o.poses + 3) / 4 : o.poses;
   }
 
-  Case make(Random& random, double dial) const {
+  cases::Case make(RandomEngine& random, double dial) const {
     return models ? models->make(random, dial) : family.make(random, dial);
   }
 };
 
-constexpr Family kModels = {"models", "real models against each other and small bodies, near contact",
-                            nullptr};
+constexpr cases::Family kModels = {"models", "real models against each other and small bodies, near contact",
+                                   nullptr};
 
 Tally one_pose(const Class& c, std::uint64_t index, const Options& o, std::string& trouble) {
   // As make_case() at setting index % kDialSettings; what is left of the random numbers drives the checks.
-  Random random = case_random(c.family, o.seed, index);
-  const double dial = dial_value(static_cast<int>(index % kDialSettings));
-  Case made = c.make(random, dial);
+  RandomEngine random = cases::case_random(c.family, o.seed, index);
+  const double dial = cases::dial_value(static_cast<int>(index % cases::kDialSettings));
+  cases::Case made = c.make(random, dial);
   Tally t;
   if (random() % o.effort.regions_every == 0)
     t.with_regions += give_regions(made, random, o.effort.regions_most_simplices) > 0;
@@ -133,7 +133,7 @@ int usage(const std::string& complaint) {
       "usage: torture [--poses N] [--jobs N] [--class NAME] [--seed S] [--only POSE] [--oracle PAIRS]\n"
       "               [--models FOLDER]   N poses of a class (slow ones: N / 4), compared with every oracle\n"
       "       torture --pairs N [--jobs N] [--seed S]   N pairs of degenerate simplices\nclasses:\n");
-  for (const Family& f : all_families()) std::fprintf(stderr, "  %-12s %s\n", f.name, f.what);
+  for (const cases::Family& f : cases::all_families()) std::fprintf(stderr, "  %-12s %s\n", f.name, f.what);
   std::fprintf(stderr, "  %-12s %s\n", kModels.name, kModels.what);
   return 2;
 }
@@ -205,12 +205,12 @@ int main(int argc, char** argv) {
     if (!take(o, key, argv[i + 1])) return usage("unknown option " + key);
   }
   if (o.pairs > 0) return torture_pairs(o.pairs, o.seed, o.jobs) == 0 ? 0 : 1;
-  if (!o.name.empty() && o.name != kModels.name && find_family(o.name) == nullptr)
+  if (!o.name.empty() && o.name != kModels.name && cases::find_family(o.name) == nullptr)
     return usage("unknown class " + o.name);
   if (o.only >= 0 && o.name.empty()) return usage("--only needs --class");
 
   std::vector<Class> classes;
-  for (const Family& f : all_families()) classes.push_back({f});
+  for (const cases::Family& f : cases::all_families()) classes.push_back({f});
   Models models;
   if (o.name.empty() || o.name == kModels.name) {
     models.load(o.models);

@@ -5,11 +5,11 @@
 
 #include <doctest/doctest.h>
 
-#include "engine/build/build.hpp"
+#include "engine/construct/build.hpp"
 #include "engine/query/collide_impl.hpp"
-#include "scenarios/shapes/hand_made.hpp"
-#include "scenarios/shapes/random_pose.hpp"
-#include "scenarios/shapes/shapes.hpp"
+#include "scenarios/bodies/shapes/hand_made.hpp"
+#include "scenarios/bodies/shapes/random_pose.hpp"
+#include "scenarios/bodies/shapes/shapes.hpp"
 #include "tests/support/lrb_shapes.hpp"
 #include "trace/counters.hpp"
 #include "trace/cursor.hpp"
@@ -53,7 +53,7 @@ Recorded record(const Bodies& bodies, const CollideRequest& request, int steps) 
   settings.request = request;
   Recorder recorder(*bodies.a, *bodies.b, settings);
   QueryContext context;
-  shapes::Random random(11);
+  shapes::RandomEngine random(11);
   Recorded out;
   for (int i = 0; i < steps; ++i) {
     const Pose pose = shapes::random_pose(random, *bodies.a, *bodies.b, shapes::uniform(random, 0, 1.1));

@@ -6,7 +6,7 @@
 
 #include <doctest/doctest.h>
 
-#include "engine/error.hpp"
+#include "engine/core/error.hpp"
 #include "tests/trace/runs.hpp"
 
 using namespace lrb;

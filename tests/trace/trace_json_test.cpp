@@ -14,8 +14,8 @@
 #include <doctest/doctest.h>
 #include <nlohmann/json.hpp>
 
-#include "engine/error.hpp"
-#include "engine/mesh/atomic_file.hpp"
+#include "engine/core/atomic_file.hpp"
+#include "engine/core/error.hpp"
 #include "tests/trace/runs.hpp"
 
 using namespace lrb;

@@ -1,0 +1,72 @@
+#include "engine/construct/aabb_tree.hpp"
+
+#include <algorithm>
+
+namespace lrb::construct {
+
+namespace {
+
+std::vector<Eigen::AlignedBox3d> boxes_of(const HullMesh& hull) {
+  std::vector<Eigen::AlignedBox3d> boxes(hull.slot_count());
+  for (HullMesh::Slot s = 0; s < hull.slot_count(); ++s)
+    if (hull.alive(s)) boxes[s] = box_of(hull, s);
+  return boxes;
+}
+
+}  // namespace
+
+AabbTree::AabbTree(const HullMesh& hull) : AabbTree(hull.alive_slots(), boxes_of(hull)) {}
+
+AabbTree::AabbTree(std::vector<Slot> slots, std::span<const Box> boxes)
+    : slots_(std::move(slots)), centres_(boxes.size()), place_(boxes.size(), kNull) {
+  if (slots_.empty()) return;
+  for (const Slot s : slots_)
+    centres_[s] = boxes[s].min() / 2 + boxes[s].max() / 2;  // halved first: no overflow
+  leaf_.resize(slots_.size());
+  nodes_.reserve(slots_.size());
+  build(0, static_cast<std::uint32_t>(slots_.size()), kNull);
+  boxes_.resize(slots_.size());
+  for (std::uint32_t i = 0; i < slots_.size(); ++i) {
+    place_[slots_[i]] = i;
+    boxes_[i] = boxes[slots_[i]];
+  }
+  for (std::size_t n = nodes_.size(); n-- > 0;) {
+    Node& node = nodes_[n];
+    if (node.right == 0)
+      for (std::uint32_t i = node.first; i < node.last; ++i) node.box.extend(boxes_[i]);
+    if (node.parent != kNull) nodes_[node.parent].box.extend(node.box);
+  }
+  centres_ = {};
+}
+
+std::uint32_t AabbTree::build(std::uint32_t first, std::uint32_t last, std::uint32_t parent) {
+  const auto index = static_cast<std::uint32_t>(nodes_.size());
+  nodes_.push_back({Box(), first, last, 0, parent});
+  if (last - first <= kLeafSize) {
+    for (std::uint32_t i = first; i < last; ++i) leaf_[i] = index;
+    return index;
+  }
+  Box spread;
+  for (std::uint32_t i = first; i < last; ++i) spread.extend(centres_[slots_[i]]);
+  int axis = 0;
+  spread.sizes().maxCoeff(&axis);
+  const std::uint32_t middle = first + (last - first) / 2;
+  std::nth_element(slots_.begin() + first, slots_.begin() + middle, slots_.begin() + last,
+                   [&](Slot s, Slot t) {
+                     const double a = centres_[s][axis], b = centres_[t][axis];
+                     return a != b ? a < b : s < t;
+                   });
+  build(first, middle, index);
+  const std::uint32_t right = build(middle, last, index);
+  nodes_[index].right = right;
+  return index;
+}
+
+void AabbTree::update(Slot s, const Box& box) {
+  const std::uint32_t place = place_[s];
+  boxes_[place] = box;
+  for (std::uint32_t n = leaf_[place]; n != kNull && !nodes_[n].box.contains(box); n = nodes_[n].parent)
+    nodes_[n].box.extend(box);
+}
+
+}  // namespace lrb::construct

@@ -1,0 +1,77 @@
+#pragma once
+/// Boxes of a hull's triangles in a tree that follows the replacement of patches by caps.
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include <Eigen/Geometry>
+
+#include "engine/construct/hull_mesh.hpp"
+
+namespace lrb::construct {
+
+/// Built anew for each pass. In between, a slot that gets a new triangle keeps its place in the tree, and the
+/// boxes above it grow as far as needed: caps lie close to the patches whose slots they take over.
+class AabbTree {
+ public:
+  using Slot = HullMesh::Slot;
+  using Box = Eigen::AlignedBox3d;
+
+  explicit AabbTree(const HullMesh& hull);
+  /// Of any slots; `boxes` (slot count) is asked for those only.
+  AabbTree(std::vector<Slot> slots, std::span<const Box> boxes);
+
+  /// The slot has a new triangle (not called for slots that become empty: their boxes stay and are ignored by
+  /// the caller, who looks at HullMesh::alive()).
+  void update(Slot s, const Box& box);
+
+  /// Calls visit(slot) for every slot whose box meets `box` (closed).
+  template <class Visit>
+  void for_each_in(const Box& box, Visit&& visit) const {
+    if (nodes_.empty()) return;
+    std::uint32_t stack[kMaxDepth];
+    int top = 0;
+    stack[top++] = 0;
+    while (top > 0) {
+      const std::uint32_t n = stack[--top];
+      const Node& node = nodes_[n];
+      if (!node.box.intersects(box)) continue;
+      if (node.right == 0) {
+        for (std::uint32_t i = node.first; i < node.last; ++i)
+          if (boxes_[i].intersects(box)) visit(slots_[i]);
+        continue;
+      }
+      stack[top++] = node.right;
+      stack[top++] = n + 1;
+    }
+  }
+
+ private:
+  static constexpr std::uint32_t kLeafSize = 4;
+  static constexpr int kMaxDepth = 64;  // of a tree halved at each step: 2 + log2 of the number of leaves
+  struct Node {
+    Box box;
+    std::uint32_t first, last;  ///< into slots_
+    std::uint32_t right;        ///< child; the left one follows its parent. 0: leaf
+    std::uint32_t parent;
+  };
+
+  std::uint32_t build(std::uint32_t first, std::uint32_t last, std::uint32_t parent);
+
+  std::vector<Slot> slots_;
+  std::vector<Box> boxes_;                ///< beside slots_
+  std::vector<Eigen::Vector3d> centres_;  ///< by slot, while building
+  std::vector<std::uint32_t> place_;      ///< of a slot in slots_
+  std::vector<std::uint32_t> leaf_;       ///< of a place
+  std::vector<Node> nodes_;
+};
+
+inline Eigen::AlignedBox3d box_of(const HullMesh& hull, HullMesh::Slot s) {
+  Eigen::AlignedBox3d box(hull.x(hull[s].v[0]));
+  box.extend(hull.x(hull[s].v[1]));
+  box.extend(hull.x(hull[s].v[2]));
+  return box;
+}
+
+}  // namespace lrb::construct

@@ -1,0 +1,227 @@
+#include "engine/construct/cap_surface.hpp"
+
+#include <Eigen/Geometry>
+
+namespace lrb::construct {
+
+void CapSurface::load(const HullMesh& hull, const Patch& patch, VertexId first_id) {
+  next_id_ = first_id;
+  load_points(hull, patch);
+  load_faces(hull, patch);
+  load_surroundings(hull, patch);
+}
+
+void CapSurface::load_points(const HullMesh& hull, const Patch& patch) {
+  if (local_point_.size() < hull.point_count()) local_point_.resize(hull.point_count(), -1);
+  points_.clear();
+  corners_.clear();
+  for (const auto* list : {&patch.ring, &patch.interior}) {
+    for (const HullMesh::Corner v : *list) {
+      local_point_[v] = vertex_count();
+      points_.push_back(hull.point(v));
+      corners_.push_back(v);
+    }
+  }
+  ring_size_ = static_cast<int>(patch.ring.size());
+  first_new_ = vertex_count();
+  face_of_.assign(points_.size(), -1);
+  mark_.assign(points_.size(), 0);
+  marker_ = 0;
+}
+
+void CapSurface::load_faces(const HullMesh& hull, const Patch& patch) {
+  if (local_face_.size() < hull.slot_count()) local_face_.resize(hull.slot_count(), -1);
+  for (std::size_t i = 0; i < patch.slots.size(); ++i) local_face_[patch.slots[i]] = static_cast<int>(i);
+  faces_.resize(patch.slots.size());
+  ring_face_.assign(patch.ring.size(), -1);
+  alive_ = kept_ = static_cast<int>(faces_.size());
+  patch_area_ = 0;
+  for (int f = 0; f < alive_; ++f) {
+    const auto& t = hull[patch.slots[f]];
+    Face& face = faces_[f];
+    for (int i = 0; i < 3; ++i) {
+      face.v[i] = local_point_[t.v[i]];
+      face.across[i] = local_face(patch, t.across[i]);
+    }
+    for (int i = 0; i < 3; ++i) {
+      const int v = face.v[i];
+      if (face.across[i] < 0) {  // on the ring, where the edge from v is the v-th
+        face.across[i] = -1 - v;
+        ring_face_[v] = f;
+        face_of_[v] = f;
+      } else if (!is_ring(v)) {
+        face_of_[v] = f;
+      }
+    }
+    face.plane = plane_of(face.v[0], face.v[1], face.v[2]);
+    face.kept = f;
+    face.alive = true;
+    patch_area_ += face.plane.area;
+  }
+}
+
+void CapSurface::load_surroundings(const HullMesh& hull, const Patch& patch) {
+  beyond_.resize(patch.ring.size());
+  chords_.assign(patch.ring.size() * patch.ring.size(), false);
+  const auto local = [&](HullMesh::Corner c) {
+    const int v = local_point_[c];
+    return v >= 0 && v < ring_size_ && corners_[v] == c ? v : -1;
+  };
+  for (int k = 0; k < ring_size_; ++k) {
+    const HullMesh::Slot s = patch.outside[k];
+    const int next = (k + 1) % ring_size_;
+    const int i = hull.index_of(s, patch.ring[next]);  // it runs against the ring
+    beyond_[k].tip = hull.x(hull[s].v[(i + 2) % 3]);
+    const Eigen::Vector3d &a = hull.x(hull[s].v[0]), &b = hull.x(hull[s].v[1]), &c = hull.x(hull[s].v[2]);
+    const Eigen::Vector3d normal = (b - a).cross(c - a);
+    const double length = normal.norm();
+    beyond_[k].plane.n = length > 0 ? Eigen::Vector3d(normal / length) : Eigen::Vector3d(0, 0, 0);
+    beyond_[k].plane.d = beyond_[k].plane.n.dot(a);
+    beyond_[k].plane.area = length / 2;
+    // Edges from this vertex to others of the ring that are not ring edges and not in the patch.
+    hull.for_each_around(patch.ring[k], [&](HullMesh::Slot t, int j) {
+      if (local_face(patch, t) >= 0) return;
+      const int other = local(hull[t].v[(j + 1) % 3]);
+      if (other < 0 || other == next || (other + 1) % ring_size_ == k) return;
+      chords_[k * ring_size_ + other] = chords_[other * ring_size_ + k] = true;
+    });
+  }
+}
+
+CapSurface::Plane CapSurface::plane_of(int a, int b, int c) const {
+  const Eigen::Vector3d normal = (x(b) - x(a)).cross(x(c) - x(a));
+  const double length = normal.norm();
+  Plane p;
+  p.n = length > 0 ? Eigen::Vector3d(normal / length) : Eigen::Vector3d(0, 0, 0);
+  p.d = p.n.dot(x(a));
+  p.area = length / 2;
+  return p;
+}
+
+bool CapSurface::find_star(int u, int v, Star& star) {
+  star.u = u;
+  star.v = v;
+  star.faces.clear();
+  star.rim.clear();
+  ++marker_;
+  int first = face_of_[u];
+  for (int i = index_of(first, u); faces_[first].v[(i + 1) % 3] != v; i = index_of(first, u)) {
+    first = faces_[first].across[(i + 2) % 3];
+    if (first == face_of_[u]) return false;  // u and v are no longer neighbours
+  }
+  // Round u, from the triangle u, v, x to the triangle u, y, v.
+  int last = first;
+  for (int f = first;;) {
+    const int i = index_of(f, u);
+    const Face& t = faces_[f];
+    const int a = t.v[(i + 1) % 3], b = t.v[(i + 2) % 3];
+    star.faces.push_back(f);
+    mark_[a] = marker_;
+    if (a != v && b != v) star.rim.push_back({a, b, t.across[(i + 1) % 3], f});
+    if (a == v) star.across_first = t.across[(i + 1) % 3];
+    if (b == v) star.across_last = t.across[(i + 1) % 3];
+    last = f;
+    f = t.across[(i + 2) % 3];
+    if (f == first) break;
+  }
+  mark_[v] = 0;
+  if (is_ring(v)) {
+    if (count_marked_neighbours_of_ring(v) != 2) return false;
+    for (const auto& r : star.rim)
+      if (is_ring(r.b) && r.b != v && &r != &star.rim.back() && chord_outside(r.b, v)) return false;
+    return true;
+  }
+  int common = 0;
+  for (int f = last;;) {
+    const int i = index_of(f, v);
+    const Face& t = faces_[f];
+    const int a = t.v[(i + 1) % 3], b = t.v[(i + 2) % 3];
+    common += mark_[a] == marker_;
+    if (a != u && b != u) {
+      star.faces.push_back(f);
+      star.rim.push_back({a, b, t.across[(i + 1) % 3], f});
+    }
+    f = t.across[(i + 2) % 3];
+    if (f == last) break;
+  }
+  return common == 2 && star.rim.size() >= 3;
+}
+
+int CapSurface::count_marked_neighbours_of_ring(int r) const {
+  int f = face_of_[r];
+  int i = index_of(f, r);
+  int count = mark_[faces_[f].v[(i + 1) % 3]] == marker_;
+  for (;;) {
+    i = index_of(f, r);
+    count += mark_[faces_[f].v[(i + 2) % 3]] == marker_;
+    f = faces_[f].across[(i + 2) % 3];
+    if (f < 0) return count;
+  }
+}
+
+int CapSurface::collapse_to_new(const Star& star, const Eigen::Vector3d& position) {
+  const int w = vertex_count();
+  points_.push_back({position, next_id_++});
+  face_of_.push_back(-1);
+  mark_.push_back(0);
+  replace(star, w);
+  return w;
+}
+
+void CapSurface::collapse_onto_ring(const Star& star) {
+  replace(star, star.v);
+}
+
+void CapSurface::move(int v, const Eigen::Vector3d& position) {
+  points_[v].x = position;
+  int f = face_of_[v];
+  do {
+    const int i = index_of(f, v);
+    faces_[f].plane = plane_of(faces_[f].v[0], faces_[f].v[1], faces_[f].v[2]);
+    f = faces_[f].across[(i + 2) % 3];
+  } while (f != face_of_[v]);
+}
+
+/// The star's triangles make room for a fan from w over its rim. New faces take the places of old ones.
+void CapSurface::replace(const Star& star, int w) {
+  for (const int f : star.faces) {
+    faces_[f].alive = false;
+    kept_ -= faces_[f].kept >= 0;
+  }
+  alive_ -= static_cast<int>(star.faces.size());
+  const int count = static_cast<int>(star.rim.size());
+  const bool open = w == star.v;
+  face_of_[star.u] = -1;
+  if (!open) face_of_[star.v] = -1;
+  for (int k = 0; k < count; ++k) {
+    const auto& r = star.rim[k];
+    Face& face = faces_[r.face];
+    face.v = {r.a, r.b, w};
+    face.across[0] = r.across;
+    face.across[1] = k + 1 < count ? star.rim[k + 1].face : open ? star.across_last : star.rim[0].face;
+    face.across[2] = k > 0 ? star.rim[k - 1].face : open ? star.across_first : star.rim[count - 1].face;
+    face.plane = plane_of(r.a, r.b, w);
+    face.kept = -1;
+    face.alive = true;
+    set_across(r.across, r.a, r.b, r.face);
+    if (!is_ring(r.a)) face_of_[r.a] = r.face;
+    if (!is_ring(r.b)) face_of_[r.b] = r.face;
+  }
+  alive_ += count;
+  if (open) {
+    set_across(star.across_first, w, star.rim.front().a, star.rim.front().face);
+    set_across(star.across_last, star.rim.back().b, w, star.rim.back().face);
+  } else {
+    face_of_[w] = star.rim[0].face;
+  }
+}
+
+/// Face f now lies beyond the edge that runs a, b in f.
+void CapSurface::set_across(int code, int a, int b, int f) {
+  if (code < 0)
+    ring_face_[-1 - code] = face_of_[a] = f;
+  else
+    faces_[code].across[index_of(code, b)] = f;
+}
+
+}  // namespace lrb::construct

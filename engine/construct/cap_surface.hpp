@@ -1,0 +1,147 @@
+#pragma once
+/// A patch's triangles on their own, to be collapsed edge by edge into a cap.
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "engine/construct/hull_mesh.hpp"
+#include "engine/construct/patch_grow.hpp"
+
+namespace lrb::construct {
+
+/// A disk with a fixed ring, or a closed surface. Vertices have local numbers: first the ring in its order,
+/// then the patch's interior, then new ones.
+class CapSurface {
+ public:
+  struct Plane {
+    Eigen::Vector3d n;  ///< length 1, or 0 for a triangle without area
+    double d;           ///< n.x = d on the plane
+    double area;
+  };
+  struct Face {
+    std::array<int, 3> v;
+    std::array<int, 3>
+        across;  ///< face over the edge v[i], v[i + 1]; beyond the ring: -1 - (index of the ring edge)
+    Plane plane;
+    int kept;  ///< the patch's triangle that it still is (index into Patch::slots), or -1
+    bool alive;
+  };
+  /// The triangles round an interior vertex u, or round an edge u, v, and the polygon about them.
+  struct Star {
+    struct Rim {
+      int a, b;    ///< an edge that a new triangle a, b, w would stand on
+      int across;  ///< what lies beyond it
+      int face;    ///< the star's triangle at it
+    };
+    int u = -1, v = -1;
+    std::vector<int> faces;
+    std::vector<Rim> rim;  ///< in order; an open chain from v back to v if v is on the ring
+    int across_first = -1,
+        across_last = -1;  ///< open chain: beyond the edges v, rim.front().a and rim.back().b, v
+  };
+
+  /// `first_id`: number in the complex of the first new vertex.
+  void load(const HullMesh& hull, const Patch& patch, VertexId first_id);
+
+  int ring_size() const { return ring_size_; }
+  int first_new() const { return first_new_; }
+  int vertex_count() const { return static_cast<int>(points_.size()); }
+  bool is_ring(int v) const { return v < ring_size_; }
+  bool is_used(int v) const { return face_of_[v] >= 0; }
+  const Eigen::Vector3d& x(int v) const { return points_[v].x; }
+  /// Number in the complex; of new vertices: as if all of them came to stay.
+  VertexId id(int v) const { return points_[v].id; }
+  /// The hull's vertex that an old one is.
+  HullMesh::Corner corner(int v) const { return corners_[v]; }
+
+  const std::vector<Face>& faces() const { return faces_; }
+  int alive_faces() const { return alive_; }
+  int new_faces() const { return alive_ - kept_; }
+  int face_at_ring(int k) const { return ring_face_[k]; }
+  const Plane& plane_beyond(int k) const { return beyond_[k].plane; }
+  const Eigen::Vector3d& tip_beyond(int k) const { return beyond_[k].tip; }
+  double patch_area() const { return patch_area_; }
+  /// The number of a hull's triangle in the patch, or -1.
+  int local_face(const Patch& patch, HullMesh::Slot s) const {
+    const int f = local_face_[s];
+    return f >= 0 && static_cast<std::size_t>(f) < patch.slots.size() && patch.slots[f] == s ? f : -1;
+  }
+
+  /// The star for collapsing edge u, v (u interior) to a new vertex or, if v is on the ring, onto v. False if
+  /// the collapse would not leave a surface (link condition), or if it would make an edge between ring
+  /// vertices that the hull has already.
+  bool find_star(int u, int v, Star& star);
+  /// Collapses u and v into a new vertex at x. Returns its number.
+  int collapse_to_new(const Star& star, const Eigen::Vector3d& x);
+  void collapse_onto_ring(const Star& star);
+
+  /// A polygon of the mesh has one face in the complex, so its triangles must all stay or all be covered:
+  /// covers those that stayed alone, by flipping an edge outward. False if that cannot be done.
+  bool keep_polygons_whole(const HullMesh& hull, const Patch& patch);
+
+  /// Moves an interior vertex.
+  void move(int v, const Eigen::Vector3d& x);
+
+  /// Calls visit(neighbour) for the vertices round an interior vertex.
+  template <class Visit>
+  void for_each_neighbour(int u, Visit&& visit) const {
+    int f = face_of_[u];
+    do {
+      const int i = index_of(f, u);
+      visit(faces_[f].v[(i + 1) % 3]);
+      f = faces_[f].across[(i + 2) % 3];
+    } while (f != face_of_[u]);
+  }
+  /// Calls visit(a, b) for the edges of the polygon round an interior vertex.
+  template <class Visit>
+  void for_each_rim_edge(int u, Visit&& visit) const {
+    int f = face_of_[u];
+    do {
+      const int i = index_of(f, u);
+      visit(faces_[f].v[(i + 1) % 3], faces_[f].v[(i + 2) % 3]);
+      f = faces_[f].across[(i + 2) % 3];
+    } while (f != face_of_[u]);
+  }
+
+ private:
+  struct Beyond {
+    Plane plane;
+    Eigen::Vector3d tip;  ///< the corner that is not on the ring edge
+  };
+
+  int index_of(int f, int v) const {
+    const auto& t = faces_[f].v;
+    return t[0] == v ? 0 : t[1] == v ? 1 : 2;
+  }
+  Plane plane_of(int a, int b, int c) const;
+  void load_points(const HullMesh& hull, const Patch& patch);
+  void load_faces(const HullMesh& hull, const Patch& patch);
+  void load_surroundings(const HullMesh& hull, const Patch& patch);
+  bool chord_outside(int a, int b) const { return chords_[a * ring_size_ + b]; }
+  int count_marked_neighbours_of_ring(int r) const;
+  void replace(const Star& star, int w);
+  void set_across(int code, int a, int b, int f);
+  bool are_neighbours(int a, int b) const;
+  bool flip_outward(int f, int i);
+
+  std::vector<HullMesh::Point> points_;
+  std::vector<HullMesh::Corner> corners_;  ///< (old vertices)
+  std::vector<int> face_of_;  ///< (|points|) any face; of a ring vertex: that of its ring edge; -1: unused
+  std::vector<Face> faces_;
+  std::vector<int> ring_face_;       ///< (|ring|) the face at the ring edge
+  std::vector<Beyond> beyond_;       ///< (|ring|)
+  std::vector<bool> chords_;         ///< (|ring| x |ring|) the hull has this edge outside the patch
+  std::vector<std::uint32_t> mark_;  ///< (|points|)
+  std::uint32_t marker_ = 0;
+  VertexId next_id_ = 0;
+  int ring_size_ = 0, first_new_ = 0, alive_ = 0, kept_ = 0;
+  double patch_area_ = 0;
+
+  // From the hull's numbers to local ones; entries are valid if they point back.
+  std::vector<int> local_point_, local_face_;
+};
+
+}  // namespace lrb::construct

@@ -1,0 +1,155 @@
+#include "engine/construct/chain_cap.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/core/tolerances.hpp"
+#include "engine/exact/locate.hpp"
+#include "engine/exact/predicates.hpp"
+#include "engine/exact/simplex_test.hpp"
+
+namespace lrb::construct {
+namespace {
+
+using Slot = HullLoops::Slot;
+using Vector3 = Eigen::Vector3d;
+
+int turn(const Vector3& a, const Vector3& b, const Vector3& c) {
+  return exact::orient2d(a.data(), b.data(), c.data());
+}
+
+double cross_2d(const Vector3& a, const Vector3& b) {
+  return a.x() * b.y() - a.y() * b.x();
+}
+
+/// In front (to the right) of the line through a segment by `margin`; relative to `origin`.
+HalfSpace in_front(const Vector3& a, const Vector3& b, const Vector3& origin, double margin) {
+  const Vector3 n = Vector3(b.y() - a.y(), a.x() - b.x(), 0).normalized();
+  return {n, n.dot(a - origin) + margin};
+}
+
+/// Strictly within the sector that a ray from `centre` through `from` sweeps counter-clockwise on its way to
+/// `to`.
+bool in_sector(const Vector3& centre, const Vector3& from, const Vector3& to, const Vector3& p) {
+  const int sector = turn(centre, from, to);
+  if (sector > 0) return turn(centre, from, p) > 0 && turn(centre, p, to) > 0;
+  if (sector < 0) return !(turn(centre, to, p) >= 0 && turn(centre, p, from) >= 0);
+  return turn(centre, from, p) > 0;  // straight on
+}
+
+struct CheckedSegment {
+  const Vector3 *a, *b;
+  VertexId ia, ib;
+  Eigen::AlignedBox3d box;
+  CheckedSegment(const Vector3& pa, VertexId va, const Vector3& pb, VertexId vb)
+      : a(&pa), b(&pb), ia(va), ib(vb), box(pa) {
+    box.extend(pb);
+  }
+  bool clear_of(const CheckedSegment& o) const {
+    if (!box.intersects(o.box)) return true;
+    const double *pa[2] = {a->data(), b->data()}, *pb[2] = {o.a->data(), o.b->data()};
+    const std::uint32_t va[2] = {ia, ib}, vb[2] = {o.ia, o.ib};
+    return exact::meet_only_in_shared_2d(pa, va, pb, vb);
+  }
+};
+
+CheckedSegment checked(const HullLoops& hull, Slot s) {
+  return {hull.start(s), hull[s].a, hull.end(s), hull[s].b};
+}
+
+bool region_holds(const HullLoops& hull, const std::vector<Slot>& chain,
+                  const std::vector<CheckedSegment>& cap, const Vector3& p) {
+  bool inside = false;
+  const auto cast = [&](const Vector3& a, const Vector3& b) {
+    const double* segment[2] = {a.data(), b.data()};
+    inside ^= exact::ray_crosses_2d(p.data(), segment) == exact::RayHit::crosses;
+  };
+  for (const Slot s : chain) cast(hull.start(s), hull.end(s));
+  for (const CheckedSegment& s : cap) cast(*s.a, *s.b);
+  return inside;
+}
+
+std::optional<Vector3> find_apex(const HullLoops& hull, const std::vector<Slot>& chain,
+                                 std::span<const HalfSpace> bounds, double radius) {
+  const Vector3 &a = hull.start(chain.front()), &b = hull.end(chain.back());
+  const Vector3 centre = a / 2 + b / 2;
+  std::vector<HalfSpace> half_spaces;
+  for (const Slot s : chain)
+    half_spaces.push_back(in_front(hull.start(s), hull.end(s), centre, kPlacementMargin * radius));
+  const Slot before = hull[chain.front()].prev, after = hull[chain.back()].next;
+  if (turn(hull.start(before), a, hull.end(chain.front())) < 0)
+    half_spaces.push_back(in_front(hull.start(before), a, centre, kPlacementMargin * radius));
+  if (turn(hull.start(chain.back()), b, hull.end(after)) < 0)
+    half_spaces.push_back(in_front(b, hull.end(after), centre, kPlacementMargin * radius));
+  for (const HalfSpace& h : bounds) half_spaces.push_back({h.n, h.d - h.n.dot(centre)});
+  const Vector3 inward = Vector3(a.y() - b.y(), b.x() - a.x(), 0).normalized();
+  auto apex = nearest_point(inward * radius, half_spaces, kPlacementSlack * radius);
+  if (!apex) return std::nullopt;
+  *apex += centre;
+  apex->z() = 0;
+  return apex;
+}
+
+}  // namespace
+
+std::vector<Slot> chain_of(const HullLoops& hull, Slot first, std::uint32_t length) {
+  std::vector<Slot> chain;
+  for (Slot s = first; chain.size() < length; s = hull[s].next) chain.push_back(s);
+  return chain;
+}
+
+std::optional<ChainCap> find_cap(const HullLoops& hull, Slot first, std::uint32_t length,
+                                 std::span<const HalfSpace> bounds, double area_limit) {
+  const std::vector<Slot> chain = chain_of(hull, first, length);
+  const Vector3 &a = hull.start(chain.front()), &b = hull.end(chain.back());
+  ChainCap cap{first, length, std::nullopt, 0};
+  double size = 0;
+  bool chord = true;
+  for (const Slot s : chain) {
+    size += (hull.end(s) - hull.start(s)).norm();
+    if (s != chain.front()) chord = chord && turn(a, b, hull.start(s)) > 0;
+    cap.area -= cross_2d(hull.start(s) - a, hull.end(s) - a) / 2;
+  }
+  if (!chord) {
+    cap.apex = find_apex(hull, chain, bounds, size / 2);
+    if (!cap.apex) return std::nullopt;
+    for (const Slot s : chain)
+      if (turn(hull.start(s), hull.end(s), *cap.apex) >= 0) return std::nullopt;
+    cap.area += cross_2d(*cap.apex - a, b - a) / 2;
+  }
+  if (!(cap.area <= area_limit * size * size)) return std::nullopt;
+  return cap;
+}
+
+bool chain_cap_is_clear(const HullLoops& hull, const AabbTree& tree, const ChainCap& cap,
+                        std::span<const Eigen::AlignedBox3d> boxes) {
+  const std::vector<Slot> chain = chain_of(hull, cap.first, cap.length);
+  const Slot front = chain.front(), back = chain.back();
+  const Vector3 &a = hull.start(front), &b = hull.end(back);
+  std::vector<CheckedSegment> added;
+  if (cap.apex) {
+    added.emplace_back(a, hull[front].a, *cap.apex, kNull);
+    added.emplace_back(*cap.apex, kNull, b, hull[back].b);
+    if (!added[0].clear_of(added[1])) return false;
+  } else {
+    added.emplace_back(a, hull[front].a, b, hull[back].b);
+  }
+  // The outside is to the right: at a vertex it lies between the segment that comes and the one that goes.
+  if (!in_sector(a, hull.start(hull[front].prev), hull.end(front), *added.front().b)) return false;
+  if (!in_sector(b, hull.start(back), hull.end(hull[back].next), *added.back().a)) return false;
+  Eigen::AlignedBox3d box = added.front().box;
+  box.extend(added.back().box);
+  for (const Slot s : chain) box.extend(box_of(hull, s));  // another component may lie in the middle
+  bool clear = true;
+  tree.for_each_in(box, [&](Slot s) {
+    if (!clear || !hull.alive(s)) return;
+    const CheckedSegment other = checked(hull, s);
+    for (const CheckedSegment& t : added) clear = clear && t.clear_of(other);
+    const std::uint32_t component = hull[s].component;
+    if (component != hull[front].component && box.contains(boxes[component]))
+      clear = clear && !region_holds(hull, chain, added, hull.start(s));
+  });
+  return clear;
+}
+
+}  // namespace lrb::construct

@@ -1,0 +1,40 @@
+#pragma once
+/// Caps over chains of segments: what they look like, and the proof that one may stand.
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "engine/construct/aabb_tree.hpp"
+#include "engine/construct/hull_loops.hpp"
+#include "engine/construct/placement.hpp"
+
+namespace lrb::construct {
+
+/// Over the segments `first` and those that follow it, `length` in all.
+struct ChainCap {
+  HullLoops::Slot first = kNull;
+  std::uint32_t length = 0;
+  std::optional<Eigen::Vector3d> apex;  ///< none: the cap is the chord
+  double area = 0;                      ///< between chain and cap; unit squared
+};
+
+/// The slots of the chain, in order.
+std::vector<HullLoops::Slot> chain_of(const HullLoops& hull, HullLoops::Slot first, std::uint32_t length);
+
+/// The chord if the chain's inner vertices are strictly behind it, else two segments whose apex is in front
+/// of the chain's lines (and, where the outline turns up at its ends, of its neighbours') and within
+/// `bounds`. None if there is no such point, or if the cap would add more than `area_limit` times the square
+/// of the chain's length.
+std::optional<ChainCap> find_cap(const HullLoops& hull, HullLoops::Slot first, std::uint32_t length,
+                                 std::span<const HalfSpace> bounds, double area_limit);
+
+/// Exactly: the cap meets nothing of the hull and of the chain but the chain's ends, leaves these between the
+/// chain and its neighbours on the outer side, and no other component lies beneath it. `boxes` (components).
+bool chain_cap_is_clear(const HullLoops& hull, const AabbTree& tree, const ChainCap& cap,
+                        std::span<const Eigen::AlignedBox3d> boxes);
+
+}  // namespace lrb::construct

@@ -1,0 +1,115 @@
+#include "engine/construct/convex_polygon.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include <Eigen/Geometry>
+
+#include "engine/exact/predicates.hpp"
+
+namespace lrb::construct {
+namespace {
+
+using Vector3 = Eigen::Vector3d;
+
+double cross_2d(const Vector3& a, const Vector3& b) {
+  return a.x() * b.y() - a.y() * b.x();
+}
+
+/// Where two sides p0 -> p1 and q0 -> q1 meet when they are made longer, and the area that this adds beyond
+/// p1, q0; none (infinite area) if they do not converge.
+struct Corner {
+  Vector3 x;
+  double area;
+};
+
+Corner meet(const Vector3& p0, const Vector3& p1, const Vector3& q0, const Vector3& q1) {
+  const Vector3 p = p1 - p0, q = q1 - q0;
+  const double turn = cross_2d(p, q);
+  if (!(turn > 0)) return {p1, std::numeric_limits<double>::infinity()};
+  const Vector3 x = p1 + p * (cross_2d(q0 - p1, q) / turn);
+  return {x, cross_2d(p1 - q0, x - q0)};
+}
+
+}  // namespace
+
+std::vector<std::uint32_t> convex_outline(std::span<const Vector3> points) {
+  std::vector<std::uint32_t> order(points.size());
+  std::iota(order.begin(), order.end(), 0u);
+  const auto before = [&](std::uint32_t i, std::uint32_t j) {
+    const Vector3 &a = points[i], &b = points[j];
+    return a.x() != b.x() ? a.x() < b.x() : a.y() != b.y() ? a.y() < b.y() : i < j;
+  };
+  std::sort(order.begin(), order.end(), before);
+  order.erase(std::unique(order.begin(), order.end(),
+                          [&](std::uint32_t i, std::uint32_t j) {
+                            return points[i].x() == points[j].x() && points[i].y() == points[j].y();
+                          }),
+              order.end());
+  const auto chain = [&](auto first, auto last) {
+    std::vector<std::uint32_t> out;
+    for (auto i = first; i != last; ++i) {
+      while (out.size() >= 2 && exact::orient2d(points[out[out.size() - 2]].data(), points[out.back()].data(),
+                                                points[*i].data()) < 0)
+        out.pop_back();
+      out.push_back(*i);
+    }
+    return out;
+  };
+  std::vector<std::uint32_t> outline = chain(order.begin(), order.end());
+  const std::vector<std::uint32_t> upper = chain(order.rbegin(), order.rend());
+  const bool flat = outline.size() == order.size() && upper.size() == order.size();
+  if (flat || upper.size() < 2) return {};
+  outline.insert(outline.end(), upper.begin() + 1, upper.end() - 1);
+  return outline;
+}
+
+std::vector<Vector3> enclosing_polygon(std::span<const Vector3> points, std::uint32_t max_sides,
+                                       double distance) {
+  Eigen::AlignedBox3d box;
+  for (const Vector3& p : points) box.extend(p);
+  distance *= box.sizes().maxCoeff();
+  const Vector3 low = box.min().array() - distance, high = box.max().array() + distance;
+  const double width = high.x() - low.x(), height = high.y() - low.y();
+  if (!std::isfinite(width * height * width * height)) return {};
+  std::vector<Vector3> around;
+  for (const Vector3& p : points)
+    for (const auto& [dx, dy] : {std::pair{1, 0}, std::pair{0, 1}, std::pair{-1, 0}, std::pair{0, -1}})
+      around.emplace_back(p.x() + distance * dx, p.y() + distance * dy, 0);
+  std::vector<Vector3> polygon;
+  for (const std::uint32_t i : convex_outline(around)) polygon.push_back(around[i]);
+  while (polygon.size() > std::max(max_sides, 4u)) {
+    const std::size_t n = polygon.size();
+    std::size_t best = 0;
+    Corner least{Eigen::Vector3d::Zero(), std::numeric_limits<double>::infinity()};
+    for (std::size_t i = 0; i < n; ++i) {  // the side from i + 1 to i + 2 goes
+      const Corner c = meet(polygon[i], polygon[(i + 1) % n], polygon[(i + 2) % n], polygon[(i + 3) % n]);
+      if (c.area < least.area) {
+        least = c;
+        best = i;
+      }
+    }
+    if (!std::isfinite(least.area)) break;
+    polygon[(best + 1) % n] = least.x;
+    polygon.erase(polygon.begin() + static_cast<std::ptrdiff_t>((best + 2) % n));
+  }
+  const auto is_good = [&] {
+    return polygon.size() <= std::max(max_sides, 4u) &&
+           std::all_of(points.begin(), points.end(), [&](const Vector3& p) { return holds_2d(polygon, p); });
+  };
+  if (!is_good())
+    polygon = {
+        {low.x(), low.y(), 0}, {high.x(), low.y(), 0}, {high.x(), high.y(), 0}, {low.x(), high.y(), 0}};
+  return polygon;
+}
+
+bool holds_2d(std::span<const Vector3> polygon, const Vector3& point) {
+  for (std::size_t i = 0; i < polygon.size(); ++i)
+    if (exact::orient2d(polygon[i].data(), polygon[(i + 1) % polygon.size()].data(), point.data()) <= 0)
+      return false;
+  return true;
+}
+
+}  // namespace lrb::construct

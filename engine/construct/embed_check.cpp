@@ -1,0 +1,189 @@
+#include "engine/construct/embed_check.hpp"
+
+#include <algorithm>
+
+#include "engine/exact/predicates.hpp"
+#include "engine/exact/simplex_test.hpp"
+#include "engine/mesh/point_inside.hpp"
+
+namespace lrb::construct {
+namespace {
+
+using Box = Eigen::AlignedBox3d;
+using Vector3 = Eigen::Vector3d;
+
+HullMesh::Point point_of(const CapSurface& cap, int v) {
+  return {cap.x(v), cap.id(v)};
+}
+
+int side(const Vector3& a, const Vector3& b, const Vector3& c, const Vector3& d) {
+  return exact::orient3d(a.data(), b.data(), c.data(), d.data());
+}
+
+/// Turning round the edge a, b from the old triangle (a, b, p) through what lies in front of it, does one
+/// reach the new triangle (a, b, w) before the neighbour (b, a, q)?
+bool turns_outward(const Vector3& a, const Vector3& b, const Vector3& p, const Vector3& w, const Vector3& q) {
+  const int new_side = side(a, b, p, w), far_side = side(a, b, p, q);
+  if (new_side > 0) return far_side <= 0 || side(a, b, w, q) > 0;
+  if (new_side == 0) return far_side < 0;
+  return far_side < 0 && side(a, b, w, q) > 0;
+}
+
+}  // namespace
+
+CheckedTriangle::CheckedTriangle(const HullMesh::Point& a, const HullMesh::Point& b, const HullMesh::Point& c)
+    : x{a.x.data(), b.x.data(), c.x.data()}, id{a.id, b.id, c.id}, box(a.x) {
+  box.extend(b.x);
+  box.extend(c.x);
+}
+
+bool CheckedTriangle::clear_of(const CheckedTriangle& other) const {
+  return !box.intersects(other.box) ||
+         exact::meet_only_in_shared(x.data(), id.data(), other.x.data(), other.id.data());
+}
+
+bool EmbedCheck::cap_is_clear(const Patch& patch, const CapSurface& cap) {
+  if (!ring_turns_outward(patch, cap)) return false;
+  added_.clear();
+  obstacles_.clear();
+  Box box;
+  std::vector<HullMesh::Point> points;
+  points.reserve(cap.vertex_count());
+  for (int v = 0; v < cap.vertex_count(); ++v) points.push_back(point_of(cap, v));
+  for (const auto& f : cap.faces()) {
+    if (!f.alive || f.kept >= 0) continue;
+    added_.emplace_back(points[f.v[0]], points[f.v[1]], points[f.v[2]]);
+    box.extend(added_.back().box);
+  }
+  for (std::size_t i = 0; i < added_.size(); ++i)
+    for (std::size_t j = 0; j < i; ++j)
+      if (!added_[i].clear_of(added_[j])) return false;
+  add_patch(patch);
+  if (component_boxes_.size() > 1)  // another component may lie in the middle, under the cap and clear of it
+    for (const CheckedTriangle& t : obstacles_) box.extend(t.box);
+  gather_hull(patch, cap, box);
+  return added_are_clear() && !swallows_component(patch, cap, box);
+}
+
+bool EmbedCheck::fan_is_clear(const Patch& patch, const CapSurface& cap, const CapSurface::Star& star,
+                              const HullMesh::Point& w) {
+  if (!rim_turns_outward(cap, star, w.x)) return false;
+  added_.clear();
+  obstacles_.clear();
+  Box box;
+  std::vector<HullMesh::Point> points;
+  points.reserve(cap.vertex_count());
+  for (int v = 0; v < cap.vertex_count(); ++v) points.push_back(point_of(cap, v));
+  for (const auto& r : star.rim) {
+    added_.emplace_back(points[r.a], points[r.b], w);
+    box.extend(added_.back().box);
+  }
+  for (const auto& f : cap.faces())
+    if (f.alive && f.kept < 0) obstacles_.emplace_back(points[f.v[0]], points[f.v[1]], points[f.v[2]]);
+  for (std::size_t i = 0; i < added_.size(); ++i)
+    for (std::size_t j = 0; j < i; ++j)
+      if (!added_[i].clear_of(added_[j])) return false;
+  add_patch(patch);
+  gather_hull(patch, cap, box);
+  return added_are_clear();
+}
+
+void EmbedCheck::add_patch(const Patch& patch) {
+  for (const HullMesh::Slot s : patch.slots) {
+    const auto& t = hull_[s].v;
+    obstacles_.emplace_back(hull_.point(t[0]), hull_.point(t[1]), hull_.point(t[2]));
+  }
+}
+
+void EmbedCheck::gather_hull(const Patch& patch, const CapSurface& cap, const Box& box) {
+  seen_.extend(box);
+  strangers_.clear();
+  const std::uint32_t own = hull_[patch.slots[0]].component;
+  tree_.for_each_in(box, [&](HullMesh::Slot s) {
+    if (!hull_.alive(s) || cap.local_face(patch, s) >= 0) return;
+    const auto& t = hull_[s];
+    obstacles_.emplace_back(hull_.point(t.v[0]), hull_.point(t.v[1]), hull_.point(t.v[2]));
+    const auto same = [&](HullMesh::Slot other) { return hull_[other].component == t.component; };
+    if (t.component != own && std::none_of(strangers_.begin(), strangers_.end(), same))
+      strangers_.push_back(s);
+  });
+}
+
+bool EmbedCheck::added_are_clear() const {
+  for (const CheckedTriangle& t : added_)
+    for (const CheckedTriangle& o : obstacles_)
+      if (!t.clear_of(o)) return false;
+  return true;
+}
+
+/// With one neighbour outside, all of the patch's component is: it is connected and meets the region's
+/// boundary in the ring only.
+bool EmbedCheck::ring_turns_outward(const Patch& patch, const CapSurface& cap) const {
+  const int size = cap.ring_size();
+  for (int k = 0; k < size; ++k) {
+    const auto& face = cap.faces()[cap.face_at_ring(k)];
+    if (face.kept >= 0) continue;
+    const HullMesh::Corner a = patch.ring[k], b = patch.ring[(k + 1) % size];
+    const auto third = [&](const auto& t, auto first) {
+      return t.v[0] == first ? t.v[2] : t.v[1] == first ? t.v[0] : t.v[1];
+    };
+    const HullMesh::Slot beyond = patch.outside[k];
+    const auto& old = hull_[hull_[beyond].across[hull_.index_of(beyond, b)]];
+    if (!turns_outward(hull_.x(a), hull_.x(b), hull_.x(third(old, a)), cap.x(third(face, k)),
+                       cap.tip_beyond(k)))
+      return false;
+  }
+  return true;
+}
+
+bool EmbedCheck::rim_turns_outward(const CapSurface& cap, const CapSurface::Star& star,
+                                   const Vector3& w) const {
+  const auto third = [&](int f, int a, int b) {
+    const auto& v = cap.faces()[f].v;
+    return v[0] != a && v[0] != b ? v[0] : v[1] != a && v[1] != b ? v[1] : v[2];
+  };
+  for (const auto& r : star.rim) {
+    const Vector3& tip = r.across < 0 ? cap.tip_beyond(-1 - r.across) : cap.x(third(r.across, r.a, r.b));
+    if (!turns_outward(cap.x(r.a), cap.x(r.b), cap.x(third(r.face, r.a, r.b)), w, tip)) return false;
+  }
+  return true;
+}
+
+/// True if another component may lie in the region between patch and cap. It then lies there as a whole.
+bool EmbedCheck::swallows_component(const Patch& patch, const CapSurface& cap, const Box& box) const {
+  Mesh region;
+  for (const HullMesh::Slot stranger : strangers_) {
+    const Box& other = component_boxes_[hull_[stranger].component];
+    if (!box.contains(other)) continue;
+    if (region.vertices.empty()) {
+      for (int v = 0; v < cap.vertex_count(); ++v) region.vertices.push_back(cap.x(v));
+      for (const auto& f : cap.faces()) {
+        if (!f.alive) continue;
+        const VertexId corners[3] = {VertexId(f.v[0]), VertexId(f.v[1]), VertexId(f.v[2])};
+        region.add_face(corners);
+      }
+      for (const HullMesh::Slot s : patch.slots) {
+        VertexId corners[3];
+        for (int i = 0; i < 3; ++i) {
+          corners[i] = static_cast<VertexId>(region.vertices.size());
+          region.vertices.push_back(hull_.x(hull_[s].v[i]));
+        }
+        region.add_face(corners);
+      }
+    }
+    std::vector<FaceId> faces(region.face_count());
+    for (FaceId f = 0; f < faces.size(); ++f) faces[f] = f;
+    bool decided = false;
+    for (const HullMesh::Corner c : hull_[stranger].v) {
+      const PointSide where = point_side(region, faces, hull_.x(c));
+      if (where == PointSide::on_surface) continue;
+      if (where == PointSide::inside) return true;
+      decided = true;
+      break;
+    }
+    if (!decided) return true;
+  }
+  return false;
+}
+
+}  // namespace lrb::construct

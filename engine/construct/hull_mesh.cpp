@@ -1,0 +1,155 @@
+#include "engine/construct/hull_mesh.hpp"
+
+#include <Eigen/Geometry>
+
+#include "engine/mesh/polygon_shape.hpp"
+
+namespace lrb::construct {
+namespace {
+
+/// A polygon as triangles with area where it is flat; as its fan, which then is its shape, where it is not.
+void triangulate(const Mesh& mesh, std::span<const VertexId> corners,
+                 std::vector<std::array<VertexId, 3>>& triangles) {
+  triangles.clear();
+  if (corners.size() > 3) {
+    const auto plane = spanning_corners(mesh, corners);
+    if (plane && is_planar(mesh, corners, *plane)) return triangulate_convex(mesh, corners, triangles);
+  }
+  for (std::size_t i = 1; i + 1 < corners.size(); ++i)
+    triangles.push_back({corners[0], corners[i], corners[i + 1]});
+}
+
+}  // namespace
+
+HullMesh::HullMesh(const Mesh& mesh) : real_faces_(static_cast<std::uint32_t>(mesh.face_count())) {
+  for (VertexId v = 0; v < mesh.vertices.size(); ++v) points_.push_back({mesh.vertices[v], v});
+  add_faces(mesh);
+  find_neighbours();
+  split_fans();
+  find_components();
+}
+
+void HullMesh::add_faces(const Mesh& mesh) {
+  const bool polygons = mesh.face_vertices.size() != 3 * mesh.face_count();
+  std::vector<std::array<VertexId, 3>> parts;
+  for (FaceId f = 0; f < mesh.face_count(); ++f) {
+    triangulate(mesh, mesh.face(f), parts);
+    const Slot first = slot_count();
+    for (const auto& part : parts) {
+      triangles_.push_back({part, {kNull, kNull, kNull}, f, kNull});
+      if (!polygons) continue;
+      unit_first_.push_back(first);
+      unit_size_.push_back(static_cast<std::uint32_t>(parts.size()));
+    }
+  }
+  alive_ = slot_count();
+}
+
+void HullMesh::find_neighbours() {
+  // Edges in order of the vertex they start at.
+  std::vector<std::uint32_t> offsets(points_.size() + 2, 0);
+  for (const Triangle& t : triangles_)
+    for (const Corner v : t.v) ++offsets[v + 2];
+  for (std::size_t i = 2; i < offsets.size(); ++i) offsets[i] += offsets[i - 1];
+  std::vector<std::uint32_t> edges(3 * triangles_.size());
+  for (Slot s = 0; s < slot_count(); ++s)
+    for (std::uint32_t i = 0; i < 3; ++i) edges[offsets[triangles_[s].v[i] + 1]++] = 3 * s + i;
+  for (Slot s = 0; s < slot_count(); ++s) {
+    for (std::uint32_t i = 0; i < 3; ++i) {
+      const Corner a = triangles_[s].v[i], b = triangles_[s].v[(i + 1) % 3];
+      for (std::uint32_t e = offsets[b]; e < offsets[b + 1]; ++e)
+        if (triangles_[edges[e] / 3].v[(edges[e] % 3 + 1) % 3] == a) triangles_[s].across[i] = edges[e] / 3;
+    }
+  }
+}
+
+void HullMesh::split_fans() {
+  slot_of_.assign(points_.size(), kNull);
+  degree_.assign(points_.size(), 0);
+  std::vector<bool> seen(3 * triangles_.size(), false);
+  for (Slot first = 0; first < slot_count(); ++first) {
+    for (int corner = 0; corner < 3; ++corner) {
+      if (seen[3 * first + corner]) continue;
+      const Corner old = triangles_[first].v[corner];
+      Corner v = old;
+      if (slot_of_[old] != kNull) {  // another fan has this vertex
+        v = add_point(Eigen::Vector3d(points_[old].x), points_[old].id);
+      }
+      slot_of_[v] = first;
+      Slot s = first;
+      do {
+        const int i = index_of(s, old);
+        seen[3 * s + i] = true;
+        ++degree_[v];
+        triangles_[s].v[i] = v;
+        s = triangles_[s].across[(i + 2) % 3];
+      } while (s != first);
+    }
+  }
+}
+
+void HullMesh::find_components() {
+  std::vector<Slot> stack;
+  for (Slot first = 0; first < slot_count(); ++first) {
+    if (triangles_[first].component != kNull) continue;
+    triangles_[first].component = components_;
+    stack.push_back(first);
+    while (!stack.empty()) {
+      const Slot s = stack.back();
+      stack.pop_back();
+      for (const Slot t : triangles_[s].across) {
+        if (triangles_[t].component != kNull) continue;
+        triangles_[t].component = components_;
+        stack.push_back(t);
+      }
+    }
+    ++components_;
+  }
+}
+
+HullMesh::Corner HullMesh::add_point(const Eigen::Vector3d& x, VertexId id) {
+  points_.push_back({x, id});
+  slot_of_.push_back(kNull);
+  degree_.push_back(0);
+  return point_count() - 1;
+}
+
+void HullMesh::remove(std::span<const Slot> slots) {
+  for (const Slot s : slots) {
+    for (const Corner v : triangles_[s].v)
+      if (--degree_[v] == 0) slot_of_[v] = kNull;
+    triangles_[s].face = kNull;
+  }
+  alive_ -= static_cast<std::uint32_t>(slots.size());
+}
+
+void HullMesh::add(Slot s, const Triangle& t) {
+  if (s == slot_count()) triangles_.emplace_back();
+  triangles_[s] = t;
+  for (const Corner v : t.v) {
+    slot_of_[v] = s;
+    ++degree_[v];
+  }
+  ++alive_;
+}
+
+std::vector<HullMesh::Slot> HullMesh::alive_slots() const {
+  std::vector<Slot> slots;
+  slots.reserve(alive_);
+  for (Slot s = 0; s < slot_count(); ++s)
+    if (alive(s)) slots.push_back(s);
+  return slots;
+}
+
+double HullMesh::volume_sixfold(std::span<const Slot> slots) const {
+  if (slots.empty()) return 0;
+  const Eigen::Vector3d origin = x(triangles_[slots[0]].v[0]);
+  double sum = 0;
+  for (const Slot s : slots) {
+    const auto& v = triangles_[s].v;
+    sum += (x(v[0]) - origin).dot((x(v[1]) - origin).cross(x(v[2]) - origin));
+  }
+  return sum;
+}
+
+}  // namespace lrb::construct

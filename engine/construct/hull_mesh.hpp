@@ -1,0 +1,114 @@
+#pragma once
+/// The surface that a builder works on: at first the mesh itself, then hulls that enclose ever more.
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "engine/mesh/mesh.hpp"
+
+namespace lrb::construct {
+
+/// A closed triangle surface with neighbours. Triangles live in numbered slots; a slot may be empty, and is
+/// used again when a patch is replaced by its cap. Every vertex has exactly one fan of triangles: a vertex of
+/// the mesh that joins several fans stands here once for each of them.
+class HullMesh {
+ public:
+  using Slot = std::uint32_t;    ///< a triangle
+  using Corner = std::uint32_t;  ///< a vertex of the hull
+
+  struct Triangle {
+    std::array<Corner, 3> v;      ///< counter-clockwise seen from outside
+    std::array<Slot, 3> across;   ///< neighbour over the edge v[i], v[i + 1]
+    FaceId face = kNull;          ///< of the complex; kNull: the slot is empty
+    std::uint32_t component = 0;  ///< of the mesh's surface
+  };
+
+  /// A vertex's position and its number in the complex.
+  struct Point {
+    Eigen::Vector3d x;
+    VertexId id;
+  };
+
+  /// `mesh` must be closed, manifold but for vertices with several fans, and oriented. Polygons become
+  /// triangles; those of one polygon stand in neighbouring slots and have the same face.
+  explicit HullMesh(const Mesh& mesh);
+
+  Slot slot_count() const { return static_cast<Slot>(triangles_.size()); }
+  std::uint32_t triangle_count() const { return alive_; }
+  std::uint32_t component_count() const { return components_; }
+  Corner point_count() const { return static_cast<Corner>(points_.size()); }
+  bool alive(Slot s) const { return triangles_[s].face != kNull; }
+  const Triangle& operator[](Slot s) const { return triangles_[s]; }
+  const Point& point(Corner v) const { return points_[v]; }
+  const Eigen::Vector3d& x(Corner v) const { return points_[v].x; }
+  std::uint32_t degree(Corner v) const { return degree_[v]; }  ///< triangles round it; 0: not in use
+  Slot any_slot(Corner v) const { return slot_of_[v]; }
+
+  /// Index of vertex v in triangle s (which must have it).
+  int index_of(Slot s, Corner v) const {
+    const auto& t = triangles_[s].v;
+    return t[0] == v ? 0 : t[1] == v ? 1 : 2;
+  }
+  /// Index of the edge of triangle s over which triangle t lies, the edge starting at `from` in s.
+  int edge_from(Slot s, Corner from) const { return index_of(s, from); }
+
+  /// Calls visit(slot, index of v in it) for the triangles round v, counter-clockwise.
+  template <class Visit>
+  void for_each_around(Corner v, Visit&& visit) const {
+    const Slot first = slot_of_[v];
+    Slot s = first;
+    do {
+      const int i = index_of(s, v);
+      visit(s, i);
+      s = triangles_[s].across[(i + 2) % 3];
+    } while (s != first);
+  }
+
+  /// The slots of the polygon that slot s belongs to (just s for a triangle).
+  struct SlotRange {
+    Slot first, last;
+  };
+  SlotRange unit(Slot s) const {
+    return s < unit_first_.size() && triangles_[s].face < real_faces_
+               ? SlotRange{unit_first_[s], unit_first_[s] + unit_size_[s]}
+               : SlotRange{s, s + 1};
+  }
+  bool has_polygons() const { return !unit_first_.empty(); }
+
+  Corner add_point(const Eigen::Vector3d& x, VertexId id);
+
+  /// Removes triangles without closing the gap: add() must follow.
+  void remove(std::span<const Slot> slots);
+  /// Fills an empty slot, or the next one after the last. Neighbours are as given; the other side is to be
+  /// set with link().
+  void add(Slot s, const Triangle& t);
+  /// Makes t the neighbour of s over the edge of s that starts at `from`.
+  void link(Slot s, Corner from, Slot t) { triangles_[s].across[index_of(s, from)] = t; }
+  void set_component(Slot s, std::uint32_t component) { triangles_[s].component = component; }
+
+  std::vector<Slot> alive_slots() const;
+  /// Six times the volume behind a set of triangles that is closed.
+  double volume_sixfold(std::span<const Slot> slots) const;
+
+ private:
+  void add_faces(const Mesh& mesh);
+  void find_neighbours();
+  void split_fans();
+  void find_components();
+
+  std::vector<Triangle> triangles_;
+  std::vector<Point> points_;
+  std::vector<Slot> slot_of_;          ///< (|points|) any triangle at the vertex; kNull if none
+  std::vector<std::uint32_t> degree_;  ///< (|points|)
+  std::vector<Slot> unit_first_;       ///< empty if all faces are triangles
+  std::vector<std::uint32_t> unit_size_;
+  std::uint32_t real_faces_ = 0;
+  std::uint32_t alive_ = 0;
+  std::uint32_t components_ = 0;
+};
+
+}  // namespace lrb::construct

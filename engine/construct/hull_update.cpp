@@ -1,0 +1,127 @@
+#include "engine/construct/hull_update.hpp"
+
+#include <algorithm>
+
+namespace lrb::construct {
+namespace {
+
+using Slot = HullMesh::Slot;
+using Corner = HullMesh::Corner;
+
+/// Numbers the corners of both sides of the sheet from 0, and finds regions and neighbours.
+void work_out(const HullMesh& hull, Sheet& sheet) {
+  std::sort(sheet.removed.begin(), sheet.removed.end());
+  std::vector<Corner> corners;
+  for (const Slot slot : sheet.removed)
+    corners.insert(corners.end(), hull[slot].v.begin(), hull[slot].v.end());
+  for (const PointTriangle& t : sheet.added) corners.insert(corners.end(), t.begin(), t.end());
+  std::sort(corners.begin(), corners.end());
+  corners.erase(std::unique(corners.begin(), corners.end()), corners.end());
+  std::vector<Eigen::Vector3d> points;
+  for (const Corner c : corners)
+    points.push_back(c < Sheet::kNewPoint ? hull.x(c) : sheet.new_points[c - Sheet::kNewPoint]);
+  const auto local = [&](const PointTriangle& t) {
+    PointTriangle out;
+    for (int i = 0; i < 3; ++i)
+      out[i] = static_cast<std::uint32_t>(std::lower_bound(corners.begin(), corners.end(), t[i]) -
+                                          corners.begin());
+    return out;
+  };
+  std::vector<PointTriangle> old, added;
+  std::vector<FaceId> old_face;
+  for (const Slot slot : sheet.removed) {
+    old.push_back(local(hull[slot].v));
+    old_face.push_back(hull[slot].face);
+  }
+  for (const PointTriangle& t : sheet.added) added.push_back(local(t));
+  sheet.pieces = split_region(old, old_face, added, points);
+  const EdgeIndex old_edges(old), added_edges(added);
+  sheet.beyond.resize(added.size());
+  for (std::size_t i = 0; i < added.size(); ++i) {
+    for (int k = 0; k < 3; ++k) {
+      const std::uint32_t a = added[i][k], b = added[i][(k + 1) % 3];
+      Sheet::Beyond& beyond = sheet.beyond[i][k];
+      beyond.added = added_edges.find(b, a);
+      if (beyond.added == kNull) beyond.removed = old_edges.find(a, b);
+    }
+  }
+}
+
+}  // namespace
+
+Sheet make_sheet(const HullMesh& hull, std::span<const Slot> removed, std::span<const PointTriangle> added) {
+  Sheet sheet;
+  sheet.removed.assign(removed.begin(), removed.end());
+  sheet.added.assign(added.begin(), added.end());
+  work_out(hull, sheet);
+  return sheet;
+}
+
+Sheet make_sheet(const HullMesh& hull, const Patch& patch, const CapSurface& cap) {
+  Sheet sheet;
+  std::vector<Corner> corners(cap.vertex_count(), kNull);
+  for (int v = 0; v < cap.vertex_count(); ++v) {
+    if (!cap.is_used(v)) continue;
+    if (v < cap.first_new()) {
+      corners[v] = cap.corner(v);
+    } else {
+      corners[v] = Sheet::kNewPoint + static_cast<Corner>(sheet.new_points.size());
+      sheet.new_points.push_back(cap.x(v));
+    }
+  }
+  std::vector<bool> stays(patch.slots.size(), false);
+  for (const auto& f : cap.faces()) {
+    if (!f.alive) continue;
+    if (f.kept >= 0)
+      stays[f.kept] = true;
+    else
+      sheet.added.push_back({corners[f.v[0]], corners[f.v[1]], corners[f.v[2]]});
+  }
+  for (std::size_t i = 0; i < patch.slots.size(); ++i)
+    (stays[i] ? sheet.kept : sheet.removed).push_back(patch.slots[i]);
+  work_out(hull, sheet);
+  return sheet;
+}
+
+std::vector<Slot> cover(HullMesh& hull, ComplexBuilder& complex, const Sheet& sheet, std::uint16_t layer,
+                        std::uint32_t component) {
+  const Corner first_new = hull.point_count();
+  for (const Eigen::Vector3d& x : sheet.new_points) hull.add_point(x, complex.add_vertex(x));
+  const std::vector<Slot>& removed = sheet.removed;
+  const RegionId first_region = complex.region_count();
+  for (std::uint32_t p = 0; p < sheet.pieces.count; ++p) complex.add_region(layer);
+  for (std::size_t i = 0; i < removed.size(); ++i)
+    complex.set_outer_cell(hull[removed[i]].face, first_region + sheet.pieces.of_old[i]);
+
+  std::vector<Slot> slots;
+  for (std::size_t i = 0; i < sheet.added.size(); ++i)
+    slots.push_back(i < removed.size() ? removed[i]
+                                       : hull.slot_count() + static_cast<Slot>(i - removed.size()));
+  std::vector<HullMesh::Triangle> triangles(sheet.added.size());
+  for (std::size_t i = 0; i < triangles.size(); ++i) {
+    HullMesh::Triangle& t = triangles[i];
+    VertexId ids[3];
+    for (int k = 0; k < 3; ++k) {
+      const Corner c = sheet.added[i][k];
+      t.v[k] = c < Sheet::kNewPoint ? c : first_new + (c - Sheet::kNewPoint);
+      ids[k] = hull.point(t.v[k]).id;
+    }
+    for (int k = 0; k < 3; ++k) {
+      const Sheet::Beyond& beyond = sheet.beyond[i][k];
+      if (beyond.added != kNull) {
+        t.across[k] = slots[beyond.added];
+      } else {
+        const Slot old = removed[beyond.removed];
+        t.across[k] = hull[old].across[hull.index_of(old, t.v[k])];
+        hull.link(t.across[k], t.v[(k + 1) % 3], slots[i]);
+      }
+    }
+    t.face = complex.add_pseudo_face(ids, first_region + sheet.pieces.of_added[i], kOutside);
+    t.component = component;
+  }
+  hull.remove(removed);
+  for (std::size_t i = 0; i < slots.size(); ++i) hull.add(slots[i], triangles[i]);
+  return slots;
+}
+
+}  // namespace lrb::construct

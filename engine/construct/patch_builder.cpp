@@ -1,0 +1,172 @@
+#include "engine/construct/patch_builder.hpp"
+
+#include <algorithm>
+
+#include "engine/construct/aabb_tree.hpp"
+#include "engine/construct/body_bounds.hpp"
+#include "engine/construct/bridging.hpp"
+#include "engine/construct/closing.hpp"
+#include "engine/construct/complex_builder.hpp"
+#include "engine/construct/component_nesting.hpp"
+#include "engine/construct/hull_mesh.hpp"
+#include "engine/construct/patch_pass.hpp"
+#include "engine/core/random.hpp"
+#include "engine/core/tolerances.hpp"
+
+namespace lrb::construct {
+namespace {
+
+using Slot = HullMesh::Slot;
+using Corner = HullMesh::Corner;
+
+class PatchBuilder {
+ public:
+  PatchBuilder(const Mesh& mesh, const std::vector<FaceId>& meeting, const BuildOptions& options)
+      : options_(options),
+        workers_(options.threads),
+        hull_(mesh),
+        complex_(mesh),
+        nesting_(find_nesting(mesh, hull_)),
+        bounds_(mesh.vertices, kHullSwell),
+        random_(options.seed),
+        frozen_(mesh.face_count(), false),
+        component_boxes_(hull_.component_count()) {
+    for (const FaceId f : meeting) frozen_[f] = true;
+    for (Slot s = 0; s < hull_.slot_count(); ++s)
+      component_boxes_[hull_[s].component].extend(box_of(hull_, s));
+  }
+
+  LrbData run() {
+    simplify(kCapWorth);
+    simplify(kLastCapWorth);
+    if (outer_size() > options_.max_outer_faces && bridge()) simplify(kLastCapWorth);
+    fill_voids();
+    if (outer_size() > options_.max_outer_faces) close();
+    return complex_.finish(true, false);
+  }
+
+ private:
+  bool is_outer(Slot s) const { return nesting_.home[hull_[s].component] == kNull; }
+
+  std::uint32_t outer_size() const {
+    std::uint32_t count = 0;
+    for (Slot s = 0; s < hull_.slot_count(); ++s) count += hull_.alive(s) && is_outer(s);
+    return count;
+  }
+
+  std::vector<Eigen::Vector3d> outer_points() const {
+    std::vector<Eigen::Vector3d> points;
+    for (Corner v = 0; v < hull_.point_count(); ++v)
+      if (hull_.degree(v) > 0 && is_outer(hull_.any_slot(v))) points.push_back(hull_.x(v));
+    return points;
+  }
+
+  /// Passes until they no longer help. `worth`: largest share of triangles that a cap may have.
+  void simplify(double worth) {
+    for (;;) {
+      const std::uint32_t before = hull_.triangle_count();
+      if (before <= options_.max_outer_faces) return;
+      if (before <= kPolytopeFrom) plan_polytope();
+      // On a small hull patches are small, so that there are still several of them.
+      const std::uint32_t interior =
+          std::max(kLeastInterior, std::min(options_.patch_interior, before / kLeastPatches));
+      PatchPass(hull_, complex_, bounds_, frozen_, component_boxes_, workers_)
+          .run({interior, std::max(4 * interior, kLeastTriangles)}, worth, layer(), random_);
+      end_pass();
+      if (hull_.triangle_count() > kLeastGain * before) return;
+    }
+  }
+
+  bool bridge() {
+    std::vector<bool> joined(hull_.component_count());
+    for (std::uint32_t c = 0; c < joined.size(); ++c) joined[c] = nesting_.home[c] == kNull;
+    plan_polytope();
+    if (!bridge_concavities(hull_, complex_, joined, layer())) return false;
+    end_pass();
+    return true;
+  }
+
+  /// From here on all hulls stay in what will be the outermost wrapper.
+  void plan_polytope() {
+    if (polytope_.face_count() > 0) return;
+    polytope_ = enclosing_polytope(outer_points(), options_.max_outer_faces, kPolytopeDistance, workers_);
+    if (polytope_.face_count() == 0) return;
+    bounds_ = BodyBounds(polytope_, kHullDistance * size_of(polytope_));
+  }
+
+  static double size_of(const Mesh& mesh) {
+    Eigen::AlignedBox3d box;
+    for (const auto& v : mesh.vertices) box.extend(v);
+    return box.sizes().maxCoeff();
+  }
+
+  /// What is left of a void when its hull shrinks no more is one region, which has only a floor.
+  void fill_voids() {
+    std::vector<RegionId> core(hull_.component_count(), kNull);
+    for (std::uint32_t c = 0; c < core.size(); ++c)
+      if (nesting_.is_void[c]) core[c] = complex_.add_region(layer());
+    for (const Slot s : hull_.alive_slots())
+      if (!is_outer(s)) complex_.set_outer_cell(hull_[s].face, core[nesting_.home[hull_[s].component]]);
+  }
+
+  void close() {
+    plan_polytope();
+    const std::vector<Eigen::Vector3d> points = outer_points();
+    const auto holds_all = [&] {
+      return std::all_of(points.begin(), points.end(), [&](const auto& p) { return holds(polytope_, p); });
+    };
+    if (polytope_.face_count() == 0) return;
+    if (!holds_all())
+      polytope_ = enclosing_polytope(points, options_.max_outer_faces, kPolytopeDistance, workers_);
+    if (polytope_.face_count() == 0 || !holds_all()) return;
+    const RegionId region = complex_.add_region(layer());
+    for (const Slot s : hull_.alive_slots())
+      if (is_outer(s)) complex_.set_outer_cell(hull_[s].face, region);
+    std::vector<VertexId> ids;
+    for (const auto& v : polytope_.vertices) ids.push_back(complex_.add_vertex(v));
+    for (FaceId f = 0; f < polytope_.face_count(); ++f) {
+      const auto c = polytope_.face(f);
+      const VertexId corners[3] = {ids[c[0]], ids[c[1]], ids[c[2]]};
+      complex_.add_pseudo_face(corners, region, kOutside);
+    }
+    end_pass();
+  }
+
+  std::uint16_t layer() const { return static_cast<std::uint16_t>(pass_); }
+  void end_pass() {
+    if (complex_.region_count() == regions_) return;
+    regions_ = complex_.region_count();
+    ++pass_;
+    if (options_.progress) options_.progress(pass_, hull_.triangle_count());
+  }
+
+  /// The outermost wrapper is planned when the hull has no more triangles than this: few enough to be quick,
+  /// and still close to the mesh.
+  static constexpr std::uint32_t kPolytopeFrom = 30000;
+  static constexpr double kLeastGain = 0.85;  ///< a pass that leaves a larger share of triangles is the last
+  static constexpr std::uint32_t kLeastPatches =
+      24;  ///< triangles of the hull per interior vertex of a patch
+  static constexpr std::uint32_t kLeastInterior = 3;
+  static constexpr std::uint32_t kLeastTriangles = 16;  ///< that a patch may have
+
+  const BuildOptions& options_;
+  Workers workers_;
+  HullMesh hull_;
+  ComplexBuilder complex_;
+  const ComponentNesting nesting_;
+  BodyBounds bounds_;
+  Random random_;
+  std::vector<bool> frozen_;  ///< (|real faces|) they meet others
+  std::vector<Eigen::AlignedBox3d> component_boxes_;
+  Mesh polytope_;              ///< empty until planned
+  std::uint32_t pass_ = 0;     ///< the number of the next
+  std::uint32_t regions_ = 0;  ///< before it
+};
+
+}  // namespace
+
+LrbData build_by_patches(const Mesh& mesh, const std::vector<FaceId>& meeting, const BuildOptions& options) {
+  return PatchBuilder(mesh, meeting, options).run();
+}
+
+}  // namespace lrb::construct

@@ -1,0 +1,190 @@
+#include "engine/construct/patch_cap.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <Eigen/Geometry>
+
+#include "engine/core/tolerances.hpp"
+#include "engine/exact/plane_side.hpp"
+
+namespace lrb::construct {
+namespace {
+
+using Vector3 = Eigen::Vector3d;
+
+}  // namespace
+
+void PatchCap::simplify(const Patch& patch, const Limits& limits) {
+  patch_ = &patch;
+  limits_ = limits;
+  version_ = 0;
+  // A collapse that is impossible now may be possible after others: go round until nothing changes.
+  for (std::uint32_t before = version_ + 1; before != version_;) {
+    before = version_;
+    propose_all();
+    while (!queue_.empty() && cap_.alive_faces() > limits_.faces) {
+      std::pop_heap(queue_.begin(), queue_.end());
+      const Candidate c = queue_.back();
+      queue_.pop_back();
+      if (!cap_.is_used(c.u) || !cap_.is_used(c.v)) continue;
+      const auto now = evaluate(c.u, c.v);
+      if (!now) continue;
+      if (c.version != version_ && now->cost > c.cost) {
+        queue_.push_back(*now);
+        std::push_heap(queue_.begin(), queue_.end());
+        continue;
+      }
+      if (!confirm(*now)) continue;
+      ++version_;
+      if (cap_.is_ring(now->v)) {
+        cap_.collapse_onto_ring(star_);
+        for (const auto& r : star_.rim)
+          if (!cap_.is_ring(r.a)) propose(r.a, now->v);
+      } else {
+        propose_around(cap_.collapse_to_new(star_, now->w));
+      }
+    }
+  }
+}
+
+void PatchCap::propose_all() {
+  queue_.clear();
+  for (int u = cap_.ring_size(); u < cap_.vertex_count(); ++u) {
+    if (!cap_.is_used(u)) continue;
+    cap_.for_each_neighbour(u, [&](int v) {
+      if (cap_.is_ring(v) || u < v) propose(u, v);
+    });
+  }
+}
+
+void PatchCap::propose_around(int w) {
+  cap_.for_each_neighbour(w, [&](int v) {
+    if (cap_.is_ring(v))
+      propose(w, v);
+    else
+      propose(v, w);
+  });
+}
+
+void PatchCap::propose(int u, int v) {
+  if (const auto c = evaluate(u, v)) {
+    queue_.push_back(*c);
+    std::push_heap(queue_.begin(), queue_.end());
+  }
+}
+
+/// Leaves the star of the edge in star_.
+std::optional<PatchCap::Candidate> PatchCap::evaluate(int u, int v) {
+  if (!cap_.find_star(u, v, star_)) return std::nullopt;
+  Vector3 centre = Vector3::Zero();
+  for (const auto& r : star_.rim) centre += cap_.x(r.a);
+  centre /= static_cast<double>(star_.rim.size());
+  double radius_sq = 0;
+  for (const auto& r : star_.rim) radius_sq = std::max(radius_sq, (cap_.x(r.a) - centre).squaredNorm());
+  const double radius = std::sqrt(radius_sq);
+  Candidate c{0, u, v, version_, {}};
+  if (cap_.is_ring(v)) {
+    if (!ring_vertex_is_in_front(v, radius)) return std::nullopt;
+    c.w = cap_.x(v);
+  } else {
+    const auto w = place(radius, centre);
+    if (!w) return std::nullopt;
+    c.w = *w;
+  }
+  double volume = 0, area = 0;
+  for (const int f : star_.faces) {
+    const auto& plane = cap_.faces()[f].plane;
+    volume += (plane.n.dot(c.w) - plane.d) * plane.area;
+    area += plane.area;
+  }
+  c.cost = volume / 3;
+  if (c.cost > limits_.volume) return std::nullopt;
+  c.cost += kCapShapeWeight * area * std::sqrt(area) / shape_of_fan(c.w);
+  if (!(c.cost <= limits_.volume)) return std::nullopt;
+  return c;
+}
+
+/// The projection onto the planes' polyhedron of a point one radius behind the star's centre: so the new
+/// vertex comes to lie above the middle of the star, as low as it may. (The lowest vertex by a linear program
+/// slides away sideways where the star is flat.)
+std::optional<Vector3> PatchCap::place(double radius, const Vector3& centre) {
+  const double margin = kPlacementMargin * radius, slack = kPlacementSlack * radius;
+  Vector3 outward = Vector3::Zero();
+  for (const int f : star_.faces) outward += cap_.faces()[f].plane.n * cap_.faces()[f].plane.area;
+  const double length = outward.norm();
+  if (!(length > 0)) return std::nullopt;
+  collect_half_spaces(centre, margin);
+  const Vector3 target = outward * (-limits_.depth * radius / length);
+  auto w = nearest_point(target, half_spaces_, slack);
+  if (!w) return std::nullopt;
+  const double reach = 2 * radius;
+  if (w->cwiseAbs().maxCoeff() > reach || !bounds_.contains(*w + centre)) {
+    for (int i = 0; i < 3; ++i)
+      for (const double sign : {-1.0, 1.0}) half_spaces_.push_back({sign * Vector3::Unit(i), -reach});
+    for (const HalfSpace& h : bounds_.half_spaces()) half_spaces_.push_back({h.n, h.d - h.n.dot(centre)});
+    w = nearest_point(target, half_spaces_, slack);
+    if (!w) return std::nullopt;
+  }
+  return Vector3(*w + centre);
+}
+
+/// In front of the star's planes and, where the surface turns up at the rim, of those it turns up with.
+void PatchCap::collect_half_spaces(const Vector3& centre, double margin) {
+  half_spaces_.clear();
+  for (const int f : star_.faces) {
+    const auto& p = cap_.faces()[f].plane;
+    half_spaces_.push_back({p.n, p.d - p.n.dot(centre) + margin});
+  }
+  for (const auto& r : star_.rim) {
+    const auto& own = cap_.faces()[r.face].plane;
+    if (r.across < 0) {
+      const auto& p = cap_.plane_beyond(-1 - r.across);
+      if (own.n.dot(cap_.tip_beyond(-1 - r.across)) > own.d)
+        half_spaces_.push_back({p.n, p.d - p.n.dot(centre) + margin});
+      continue;
+    }
+    const auto& other = cap_.faces()[r.across];
+    const int tip = other.v[0] != r.a && other.v[0] != r.b   ? other.v[0]
+                    : other.v[1] != r.a && other.v[1] != r.b ? other.v[1]
+                                                             : other.v[2];
+    if (own.n.dot(cap_.x(tip)) > own.d)
+      half_spaces_.push_back({other.plane.n, other.plane.d - other.plane.n.dot(centre) + margin});
+  }
+}
+
+bool PatchCap::ring_vertex_is_in_front(int r, double radius) const {
+  const Vector3& x = cap_.x(r);
+  for (const int f : star_.faces) {
+    const auto& face = cap_.faces()[f];
+    if (face.v[0] == r || face.v[1] == r || face.v[2] == r) continue;
+    if (face.plane.n.dot(x) - face.plane.d < kPlacementMargin * radius) return false;
+  }
+  return true;
+}
+
+/// Of the worst triangle between w and the rim: 1 for equilateral ones, 0 for none.
+double PatchCap::shape_of_fan(const Vector3& w) const {
+  double worst = std::numeric_limits<double>::infinity();
+  for (const auto& r : star_.rim) {
+    const Vector3 a = cap_.x(r.a) - w, b = cap_.x(r.b) - w;
+    const double twice_area = a.cross(b).norm();
+    worst = std::min(worst, twice_area / (a.squaredNorm() + b.squaredNorm() + (a - b).squaredNorm()));
+  }
+  return worst * (2 * std::sqrt(3.0));
+}
+
+bool PatchCap::confirm(const Candidate& c) const {
+  for (const int f : star_.faces) {
+    const auto& v = cap_.faces()[f].v;
+    if (v[0] == c.v && cap_.is_ring(c.v)) continue;
+    if ((v[1] == c.v || v[2] == c.v) && cap_.is_ring(c.v)) continue;
+    if (exact::PlaneSide(cap_.x(v[0]).data(), cap_.x(v[1]).data(), cap_.x(v[2]).data()).side(c.w.data()) <= 0)
+      return false;
+  }
+  return !limits_.check ||
+         limits_.check->fan_is_clear(*patch_, cap_, star_, {c.w, cap_.is_ring(c.v) ? cap_.id(c.v) : kNull});
+}
+
+}  // namespace lrb::construct

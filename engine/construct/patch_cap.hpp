@@ -1,0 +1,64 @@
+#pragma once
+/// From a patch to its cap: edges collapse, cheapest first.
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "engine/construct/body_bounds.hpp"
+#include "engine/construct/cap_surface.hpp"
+#include "engine/construct/embed_check.hpp"
+
+namespace lrb::construct {
+
+/// Every collapse leaves a surface that lies in front of the one before (progressive hulls: Sander, Gu,
+/// Gortler, Hoppe and Snyder, "Silhouette Clipping", 2000, whose linear program is replaced by a projection:
+/// see place()).
+class PatchCap {
+ public:
+  struct Limits {
+    double volume = 0;  ///< that one collapse may add, or rather its cost; unit cubed
+    int faces = 0;      ///< stop when the cap has no more
+    double depth = 1;   ///< of the point that is projected, below the star's centre; in radii of the star
+    EmbedCheck* check = nullptr;  ///< if set, every collapse must pass it
+  };
+
+  PatchCap(CapSurface& cap, const BodyBounds& bounds) : cap_(cap), bounds_(bounds) {}
+
+  /// Collapses edges of the loaded surface until none is left that may be.
+  void simplify(const Patch& patch, const Limits& limits);
+
+ private:
+  /// A collapse and what it costs; w only if v is not on the ring.
+  struct Candidate {
+    double cost;
+    int u, v;
+    std::uint32_t version;  ///< number of collapses when it was worked out
+    Eigen::Vector3d w;
+    bool operator<(const Candidate& other) const {  // the cheapest is the last in order: for heaps
+      if (cost != other.cost) return cost > other.cost;
+      return u != other.u ? u > other.u : v > other.v;
+    }
+  };
+
+  void propose_all();
+  void propose_around(int w);
+  void propose(int u, int v);
+  std::optional<Candidate> evaluate(int u, int v);
+  std::optional<Eigen::Vector3d> place(double radius, const Eigen::Vector3d& centre);
+  bool ring_vertex_is_in_front(int r, double radius) const;
+  double shape_of_fan(const Eigen::Vector3d& w) const;
+  void collect_half_spaces(const Eigen::Vector3d& centre, double margin);
+  bool confirm(const Candidate& c) const;
+
+  CapSurface& cap_;
+  const BodyBounds& bounds_;
+  Limits limits_;
+  const Patch* patch_ = nullptr;
+  std::vector<Candidate> queue_;
+  CapSurface::Star star_;
+  std::vector<HalfSpace> half_spaces_;
+  std::uint32_t version_ = 0;
+};
+
+}  // namespace lrb::construct

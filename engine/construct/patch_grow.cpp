@@ -1,0 +1,169 @@
+#include "engine/construct/patch_grow.hpp"
+
+#include <algorithm>
+
+namespace lrb::construct {
+namespace {
+
+using Slot = HullMesh::Slot;
+using Corner = HullMesh::Corner;
+
+/// A candidate one reach away from the seed counts as so many more new triangles: keeps patches round.
+constexpr double kDistancePenalty = 1.0;
+
+}  // namespace
+
+PatchGrower::PatchGrower(const HullMesh& hull, const GrowLimits& limits)
+    : hull_(hull),
+      limits_(limits),
+      taken_(hull.slot_count(), false),
+      slot_stamp_(hull.slot_count(), 0),
+      point_stamp_(hull.point_count(), 0),
+      inside_(hull.point_count(), 0),
+      refused_(hull.point_count(), 0),
+      batch_stamp_(hull.point_count(), 0) {}
+
+void PatchGrower::begin_batch() {
+  ++batch_;
+  batch_is_empty_ = true;
+}
+
+void PatchGrower::add_to_batch(const Patch& patch) {
+  for (const auto* list : {&patch.ring, &patch.interior})
+    for (const Corner v : *list) batch_stamp_[v] = batch_;
+  batch_is_empty_ = false;
+}
+
+/// Vertices that are newer than this are under caps that no growth enters.
+bool PatchGrower::is_in_batch(Corner v) const {
+  return v < batch_stamp_.size() && batch_stamp_[v] == batch_;
+}
+
+void PatchGrower::look_for_batch() {
+  for (const Slot s : added_)
+    for (const Corner v : hull_[s].v) met_batch_ = met_batch_ || is_in_batch(v);
+}
+
+bool PatchGrower::grow(Corner seed, Patch& patch) {
+  patch.slots.clear();
+  patch.interior.clear();
+  patch.ring.clear();
+  patch.outside.clear();
+  rim_.clear();
+  ++stamp_;
+  met_batch_ = is_in_batch(seed);
+  if (!add_star(seed, patch)) return false;
+  double reach_sq = 0;
+  for (const Corner v : rim_) reach_sq = std::max(reach_sq, (hull_.x(v) - hull_.x(seed)).squaredNorm());
+  while (patch.interior.size() < limits_.interior) {
+    const Corner v = best_candidate(seed, reach_sq, patch);
+    if (v == kNull) break;
+    if (!add_star(v, patch)) refused_[v] = stamp_;
+  }
+  find_ring(patch);
+  return true;
+}
+
+/// Adds the polygons at v that are not in the patch yet, if the patch remains a disk. It does exactly if its
+/// Euler characteristic stays what it is (from nothing: becomes 1): the new triangles hang together round v,
+/// and share an edge with the patch.
+bool PatchGrower::add_star(Corner v, Patch& patch) {
+  added_.clear();
+  bool allowed = true;
+  hull_.for_each_around(v, [&](Slot s, int) {
+    if (!allowed || in_patch(s)) return;
+    const auto unit = hull_.unit(s);
+    for (Slot t = unit.first; t < unit.last; ++t) {
+      allowed = allowed && !taken_[t];
+      slot_stamp_[t] = stamp_;
+      added_.push_back(t);
+    }
+  });
+  if (!batch_is_empty_) look_for_batch();
+  const std::size_t limit = patch.slots.empty() ? added_.size() : limits_.triangles;
+  allowed = allowed && patch.slots.size() + added_.size() <= limit;
+  std::size_t new_points = 0, old_edges = 0;
+  const std::size_t rim_before = rim_.size();
+  if (allowed) {
+    for (const Slot s : added_) {
+      for (int i = 0; i < 3; ++i) {
+        const Corner u = hull_[s].v[i];
+        if (point_stamp_[u] != stamp_) {
+          point_stamp_[u] = stamp_;
+          inside_[u] = 0;
+          rim_.push_back(u);
+          ++new_points;
+        }
+        ++inside_[u];
+        old_edges += in_patch(hull_[s].across[i]);  // counted from both sides if both are new
+      }
+    }
+    // Each edge among the new triangles has been counted twice, each edge to the old patch once.
+    std::size_t inner = 0;
+    for (const Slot s : added_)
+      for (const Slot t : hull_[s].across)
+        inner += in_patch(t) && std::find(added_.begin(), added_.end(), t) != added_.end();
+    const std::size_t shared_with_old = old_edges - inner;
+    const std::size_t new_edges = 3 * added_.size() - inner / 2 - shared_with_old;
+    const auto change =
+        static_cast<std::int64_t>(new_points + added_.size()) - static_cast<std::int64_t>(new_edges);
+    allowed = change == (patch.slots.empty() ? 1 : 0);
+    if (!allowed)
+      for (const Slot s : added_)
+        for (const Corner u : hull_[s].v) --inside_[u];
+  }
+  if (!allowed) {
+    for (const Slot s : added_) slot_stamp_[s] = 0;
+    while (rim_.size() > rim_before) {
+      point_stamp_[rim_.back()] = 0;
+      rim_.pop_back();
+    }
+    return false;
+  }
+  patch.slots.insert(patch.slots.end(), added_.begin(), added_.end());
+  std::erase_if(rim_, [&](Corner u) {
+    if (inside_[u] < hull_.degree(u)) return false;
+    patch.interior.push_back(u);
+    return true;
+  });
+  return true;
+}
+
+Corner PatchGrower::best_candidate(Corner seed, double reach_sq, const Patch& patch) const {
+  Corner best = kNull;
+  double least = 0;
+  for (const Corner v : rim_) {
+    if (refused_[v] == stamp_) continue;
+    const std::uint32_t missing = hull_.degree(v) - inside_[v];
+    if (patch.slots.size() + missing > limits_.triangles) continue;
+    const double score = missing + kDistancePenalty * ((hull_.x(v) - hull_.x(seed)).squaredNorm() / reach_sq);
+    if (best == kNull || score < least || (score == least && v < best)) {
+      best = v;
+      least = score;
+    }
+  }
+  return best;
+}
+
+void PatchGrower::find_ring(Patch& patch) const {
+  // Start at any boundary edge and turn round its end until the next one.
+  Slot s = kNull;
+  int i = 0;
+  for (const Slot t : patch.slots)
+    for (int j = 0; j < 3 && s == kNull; ++j)
+      if (!in_patch(hull_[t].across[j])) s = t, i = j;
+  if (s == kNull) return;
+  const Corner first = hull_[s].v[i];
+  do {
+    patch.ring.push_back(hull_[s].v[i]);
+    patch.outside.push_back(hull_[s].across[i]);
+    const Corner end = hull_[s].v[(i + 1) % 3];
+    i = (i + 1) % 3;
+    while (in_patch(hull_[s].across[i])) {
+      s = hull_[s].across[i];
+      i = hull_.index_of(s, end);
+    }
+  } while (hull_[s].v[i] != first);
+}
+
+}  // namespace lrb::construct

@@ -1,0 +1,67 @@
+#pragma once
+/// Patches: disks of the hull's triangles that a pass covers with caps.
+
+#include <cstdint>
+#include <vector>
+
+#include "engine/construct/hull_mesh.hpp"
+
+namespace lrb::construct {
+
+/// A topological disk (or, without a ring, a whole closed component).
+struct Patch {
+  std::vector<HullMesh::Slot> slots;
+  std::vector<HullMesh::Corner> interior;  ///< vertices all of whose triangles are in the patch
+  /// Vertices on the boundary in order, so that the patch lies on the left of ring[i] -> ring[i + 1].
+  std::vector<HullMesh::Corner> ring;
+  std::vector<HullMesh::Slot> outside;  ///< (|ring|) the triangle beyond the edge ring[i], ring[i + 1]
+};
+
+struct GrowLimits {
+  std::uint32_t interior = 16;  ///< vertices to aim at
+  std::uint32_t triangles = 64;
+};
+
+/// Grows patches one after the other; triangles that are taken are never in a patch again.
+class PatchGrower {
+ public:
+  PatchGrower(const HullMesh& hull, const GrowLimits& limits);
+
+  /// Grows a disk about the seed: the star of the seed first, then the star of the ring vertex that needs
+  /// fewest new triangles (with a penalty on its distance from the seed), as long as the patch remains a
+  /// disk. Polygons of the mesh are taken whole. False if not even the seed's star will do.
+  bool grow(HullMesh::Corner seed, Patch& patch);
+  void take(HullMesh::Slot s) { taken_[s] = true; }
+  bool is_taken(HullMesh::Slot s) const { return taken_[s]; }
+
+  /// From here on, growth notes when it looks at triangles with a vertex of a patch that is in the batch.
+  void begin_batch();
+  void add_to_batch(const Patch& patch);
+  /// Whether the last call of grow() did: its result may then depend on what becomes of the batch.
+  bool met_batch() const { return met_batch_; }
+
+ private:
+  bool add_star(HullMesh::Corner v, Patch& patch);
+  HullMesh::Corner best_candidate(HullMesh::Corner seed, double reach_sq, const Patch& patch) const;
+  void find_ring(Patch& patch) const;
+  bool is_in_batch(HullMesh::Corner v) const;
+  void look_for_batch();
+
+  bool in_patch(HullMesh::Slot s) const { return slot_stamp_[s] == stamp_; }
+
+  const HullMesh& hull_;
+  GrowLimits limits_;
+  std::vector<bool> taken_;                 ///< (slots)
+  std::vector<std::uint32_t> slot_stamp_;   ///< == stamp_: in the patch that grows
+  std::vector<std::uint32_t> point_stamp_;  ///< the same for vertices
+  std::vector<std::uint32_t> inside_;       ///< triangles of the patch at a vertex, if it is stamped
+  std::vector<std::uint32_t> refused_;      ///< == stamp_: the vertex's star cannot be added
+  std::uint32_t stamp_ = 0;
+  std::vector<std::uint32_t> batch_stamp_;  ///< == batch_: a vertex of a patch of the batch
+  std::uint32_t batch_ = 0;
+  bool batch_is_empty_ = true, met_batch_ = false;
+  std::vector<HullMesh::Slot> added_;
+  std::vector<HullMesh::Corner> rim_;  ///< vertices of the patch, some of them interior by now
+};
+
+}  // namespace lrb::construct

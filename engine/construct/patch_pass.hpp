@@ -1,0 +1,79 @@
+#pragma once
+/// One pass: patches all over the hull, and a cap on each.
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include <Eigen/Geometry>
+
+#include "engine/construct/aabb_tree.hpp"
+#include "engine/construct/body_bounds.hpp"
+#include "engine/construct/complex_builder.hpp"
+#include "engine/construct/embed_check.hpp"
+#include "engine/construct/hull_mesh.hpp"
+#include "engine/construct/hull_update.hpp"
+#include "engine/construct/patch_cap.hpp"
+#include "engine/construct/patch_grow.hpp"
+#include "engine/core/parallel.hpp"
+#include "engine/core/random.hpp"
+
+namespace lrb::construct {
+
+/// The result is that of taking one seed after the other: grow its patch, make its cap, put it on the hull.
+/// Several threads do it in batches. Patches grow in order until one comes across a vertex of an earlier one
+/// of the batch; that one begins the next batch. So no patch of a batch, nor what its growth looked at, has
+/// anything in common with another. Then all caps are made at once, on the hull as it was, and put on it in
+/// order; a cap whose proof looked at a part of space where an earlier one of the batch changed the hull is
+/// made again first.
+class PatchPass {
+ public:
+  /// `frozen` (|real faces|): not to be covered. `component_boxes`: of the hull's components, or of parts of
+  /// them that tell whether the component is somewhere as a whole.
+  PatchPass(HullMesh& hull, ComplexBuilder& complex, const BodyBounds& bounds,
+            const std::vector<bool>& frozen, const std::vector<Eigen::AlignedBox3d>& component_boxes,
+            Workers& workers);
+
+  /// Covers what it can with regions of this layer, seeds in random order. `worth`: largest share of the
+  /// triangles it covers that a cap may have.
+  void run(const GrowLimits& limits, double worth, std::uint16_t layer, Random& random);
+
+ private:
+  /// What making a cap needs to write to.
+  struct Bench {
+    Bench(const HullMesh& hull, const AabbTree& tree, const BodyBounds& bounds,
+          const std::vector<Eigen::AlignedBox3d>& component_boxes)
+        : check(hull, tree), collapse(cap, bounds) {
+      check.set_component_boxes(component_boxes);
+    }
+    CapSurface cap;
+    EmbedCheck check;
+    PatchCap collapse;
+  };
+  struct Job {
+    Patch patch;
+    bool has_cap = false;
+    Sheet sheet;               ///< the cap, if there is one
+    Eigen::AlignedBox3d seen;  ///< where the hull was looked at
+  };
+
+  void grow_batch(PatchGrower& grower);
+  void make_cap(Job& job, double worth, Bench& bench) const;
+  bool find_cap(const Patch& patch, double worth, Bench& bench) const;
+  void put_on(const Job& job, std::uint16_t layer, PatchGrower& grower);
+
+  HullMesh& hull_;
+  ComplexBuilder& complex_;
+  const std::vector<bool>& frozen_;
+  Workers& workers_;
+  AabbTree tree_;
+  std::vector<std::unique_ptr<Bench>> benches_;  ///< one for each worker
+  std::vector<HullMesh::Corner> seeds_;
+  std::size_t next_seed_ = 0;
+  std::vector<bool> tried_;  ///< (points at the start)
+  std::vector<Job> jobs_;
+  std::size_t batch_ = 0;                     ///< of jobs_ in use
+  std::vector<Eigen::AlignedBox3d> changed_;  ///< where the batch has changed the hull so far
+};
+
+}  // namespace lrb::construct

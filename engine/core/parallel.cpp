@@ -1,0 +1,51 @@
+#include "engine/core/parallel.hpp"
+
+#include <optional>
+
+#include <tbb/global_control.h>
+#include <tbb/info.h>
+#include <tbb/parallel_for.h>
+#include <tbb/parallel_invoke.h>
+#include <tbb/task_arena.h>
+
+namespace lrb {
+
+struct Workers::Pool {
+  explicit Pool(int threads) : arena(threads) {
+    // On its own, oneTBB starts no more threads than there are processors.
+    if (threads > tbb::info::default_concurrency())
+      more.emplace(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
+  }
+  std::optional<tbb::global_control> more;
+  tbb::task_arena arena;
+};
+
+Workers::Workers(unsigned threads)
+    : count_(threads > 0 ? threads : static_cast<unsigned>(tbb::info::default_concurrency())) {
+  if (count_ > 1) pool_ = std::make_unique<Pool>(static_cast<int>(count_));
+}
+
+Workers::~Workers() = default;
+
+void Workers::for_each(std::size_t n, const std::function<void(std::size_t, unsigned)>& work) {
+  if (!pool_ || n < 2) {
+    for (std::size_t i = 0; i < n; ++i) work(i, 0);
+    return;
+  }
+  pool_->arena.execute([&] {
+    tbb::parallel_for(std::size_t{0}, n, [&](std::size_t i) {
+      work(i, static_cast<unsigned>(tbb::this_task_arena::current_thread_index()));
+    });
+  });
+}
+
+void Workers::both(const std::function<void()>& one, const std::function<void()>& other) {
+  if (!pool_) {
+    one();
+    other();
+    return;
+  }
+  pool_->arena.execute([&] { tbb::parallel_invoke(one, other); });
+}
+
+}  // namespace lrb

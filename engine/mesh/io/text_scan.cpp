@@ -1,0 +1,130 @@
+#include "engine/mesh/io/text_scan.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <cstdlib>
+#include <system_error>
+
+#include "engine/core/error.hpp"
+#include "engine/core/file_bytes.hpp"
+
+namespace lrb {
+namespace {
+
+constexpr bool is_blank(char c) {
+  return c == ' ' || c == '\t' || c == '\v' || c == '\f';
+}
+constexpr bool is_newline(char c) {
+  return c == '\n' || c == '\r';
+}
+
+/// std::from_chars takes no plus sign; files do.
+std::string_view without_plus(std::string_view token) {
+  if (token.size() > 1 && token[0] == '+' && token[1] != '-' && token[1] != '+') token.remove_prefix(1);
+  return token;
+}
+
+/// std::from_chars calls both ends of the range "out of range". Numbers too small for a double round to zero
+/// or to a subnormal as any other number rounds; numbers too large have no double.
+double round_out_of_range(std::string_view digits) {
+  const std::string copy(digits);
+  char* stop = nullptr;
+  const double value = std::strtod(copy.c_str(), &stop);
+  return stop == copy.c_str() + copy.size() ? value : HUGE_VAL;
+}
+
+}  // namespace
+
+bool TextCursor::skip_continuation() {
+  if (!rules_.continuation || *at_ != '\\' || at_ + 1 == end_ || !is_newline(at_[1])) return false;
+  ++at_;
+  skip_newline();
+  return true;
+}
+
+void TextCursor::skip_newline() {
+  const bool pair = *at_ == '\r' && at_ + 1 != end_ && at_[1] == '\n';
+  at_ += pair ? 2 : 1;
+  ++line_;
+}
+
+std::string_view TextCursor::token() {
+  while (at_ != end_) {
+    if (is_blank(*at_))
+      ++at_;
+    else if (!skip_continuation())
+      break;
+  }
+  const char* start = at_;
+  if (rules_.hash_comments && at_ != end_ && *at_ == '#') {
+    at_ = std::find_if(at_, end_, is_newline);
+    return {};
+  }
+  for (; !at_line_end() && !is_blank(*at_); ++at_)
+    if (*at_ == '\\' && rules_.continuation && at_ + 1 != end_ && is_newline(at_[1])) break;
+  return {start, static_cast<std::size_t>(at_ - start)};
+}
+
+bool TextCursor::next_line() {
+  while (!token().empty()) {
+  }
+  if (at_ == end_) return false;
+  skip_newline();
+  return true;
+}
+
+std::string_view TextCursor::any_token() {
+  do {
+    const std::string_view found = token();
+    if (!found.empty()) return found;
+  } while (next_line());
+  return {};
+}
+
+double TextCursor::number(std::string_view token, std::string_view what) const {
+  const std::string_view digits = without_plus(token);
+  double value = 0;
+  const auto [stop, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
+  if (error == std::errc::result_out_of_range) value = round_out_of_range(digits);
+  if (error == std::errc::invalid_argument || stop != digits.data() + digits.size())
+    fail(shown(token), "a number (" + std::string(what) + ")", "correct the line");
+  if (!std::isfinite(value))
+    fail(shown(token), "a finite number (" + std::string(what) + ")",
+         "correct the line or export the mesh again");
+  return value;
+}
+
+std::int64_t TextCursor::integer(std::string_view token, std::string_view what) const {
+  const std::string_view digits = without_plus(token);
+  std::int64_t value = 0;
+  const auto [stop, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
+  if (error == std::errc::invalid_argument || stop != digits.data() + digits.size())
+    fail(shown(token), "an integer (" + std::string(what) + ")", "correct the line");
+  if (error == std::errc::result_out_of_range)
+    fail(shown(token), "an integer of at most 64 bits (" + std::string(what) + ")", "correct the line");
+  return value;
+}
+
+void TextCursor::fail_at(std::uint64_t line, std::string_view found, std::string_view expected,
+                         std::string_view advice) const {
+  std::string message = printable_name(name_) + ":" + std::to_string(line) + ": found ";
+  message.append(found).append(", expected ").append(expected).append("; ").append(advice);
+  throw InputError(message);
+}
+
+std::string TextCursor::shown(std::string_view token) const {
+  if (!token.empty()) return quoted(token);
+  return at_ == end_ ? "the end of the file" : "the end of the line";
+}
+
+void refuse_nul(std::string_view text, std::string_view name) {
+  const std::size_t nul = text.find('\0');
+  if (nul == std::string_view::npos) return;
+  const TextCursor start(text, name, {});
+  const auto line = 1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(nul), '\n');
+  start.fail_at(static_cast<std::uint64_t>(line), "a NUL byte (byte " + std::to_string(nul) + " of the file)",
+                "text", "the file is damaged or binary: export or copy it again");
+}
+
+}  // namespace lrb

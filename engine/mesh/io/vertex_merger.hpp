@@ -1,0 +1,57 @@
+#pragma once
+
+#include <bit>
+#include <cstdint>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "engine/core/ids.hpp"
+
+namespace lrb {
+
+/// Gives points that are equal (to the bit, but 0 and -0 count as equal) one vertex, numbered in order of
+/// first appearance. Nothing is snapped: points an ulp apart stay apart, and check_mesh will find the gap.
+class VertexMerger {
+ public:
+  explicit VertexMerger(std::vector<Eigen::Vector3d>& vertices) : vertices_(vertices), slots_(64, kNull) {}
+
+  VertexId id(const Eigen::Vector3d& v) {
+    if (2 * vertices_.size() >= slots_.size()) grow();
+    std::uint32_t& slot = find(v);
+    if (slot == kNull) {
+      slot = static_cast<VertexId>(vertices_.size());
+      vertices_.push_back(v);
+    }
+    return slot;
+  }
+
+ private:
+  static std::uint64_t hash(const Eigen::Vector3d& v) {
+    std::uint64_t h = 0;
+    for (int i = 0; i < 3; ++i) {
+      h ^= std::bit_cast<std::uint64_t>(v[i] + 0.0);  // -0 + 0 is 0
+      h *= 0x9e3779b97f4a7c15u;                       // 2^64 over the golden ratio: spreads neighbouring keys
+      h ^= h >> 32;
+    }
+    return h;
+  }
+
+  /// Where v is, or the free slot where it belongs. The number of slots is a power of two, at most half of
+  /// them used.
+  std::uint32_t& find(const Eigen::Vector3d& v) {
+    const std::size_t mask = slots_.size() - 1;
+    for (std::size_t i = hash(v) & mask;; i = (i + 1) & mask)
+      if (slots_[i] == kNull || vertices_[slots_[i]] == v) return slots_[i];
+  }
+
+  void grow() {
+    slots_.assign(2 * slots_.size(), kNull);
+    for (std::size_t i = 0; i < vertices_.size(); ++i) find(vertices_[i]) = static_cast<VertexId>(i);
+  }
+
+  std::vector<Eigen::Vector3d>& vertices_;
+  std::vector<std::uint32_t> slots_;
+};
+
+}  // namespace lrb

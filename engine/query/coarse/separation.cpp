@@ -1,0 +1,241 @@
+#include "engine/query/coarse/separation.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/Geometry>
+
+#include "engine/exact/locate.hpp"
+#include "engine/lrb/pieces.hpp"
+#include "engine/lrb/validate.hpp"
+#include "engine/query/coarse/separating_slab.hpp"
+#include "engine/tree/pose_bounds.hpp"
+
+namespace lrb {
+namespace {
+
+using Box = Eigen::AlignedBox3d;
+
+/// A body's wrapper in the world: the faces of its boundary with their boxes.
+class WorldWrapper {
+ public:
+  WorldWrapper(QueryBody& body, double margin) : body_(body), wrapper_(body.rep()), margin_(margin) {
+    add(body.rep().outermost_faces());
+  }
+
+  const LrbRep& rep() const { return body_.rep(); }
+  const Wrapper& wrapper() const { return wrapper_; }
+  std::size_t size() const { return faces_.size(); }
+  FaceId face(std::size_t i) const { return faces_[i]; }
+  bool is_there(std::size_t i) const { return wrapper_.on_boundary(faces_[i]); }
+  const double* world(VertexId v) { return body_.world(v); }
+
+  /// The region that a face of the boundary belongs to; kNull for a real one.
+  RegionId region_at(FaceId f) const {
+    const CellId inner = rep().inner_cell(f);
+    if (is_region(inner)) return wrapper_.included(inner) ? inner : rep().outer_cell(f);
+    return kNull;
+  }
+
+  void refine(RegionId r) {
+    wrapper_.refine(r);
+    add(rep().collector(r));
+  }
+  void coarsen(RegionId r) {
+    wrapper_.coarsen(r);
+    add(rep().collector(r));
+  }
+
+  /// Whether two faces of the boundaries are further apart than the margin.
+  bool apart(std::size_t i, WorldWrapper& other, std::size_t j) {
+    if (!boxes_[i].intersects(other.boxes_[j])) return true;
+    const double *a[3], *b[3];
+    for (SimplexId s = 0; s < simplices(faces_[i]); ++s)
+      for (SimplexId t = 0; t < other.simplices(other.faces_[j]); ++t) {
+        body_.world.corners(rep().first_simplex(faces_[i]) + s, a);
+        other.body_.world.corners(other.rep().first_simplex(other.faces_[j]) + t, b);
+        if (!separated_by(margin_, rep().dim(), a, b)) return false;
+      }
+    return true;
+  }
+
+  /// Whether a point of the world lies in the wrapper, or in one region of it.
+  bool holds(const double* point) {
+    const std::vector<FaceId> boundary = wrapper_.boundary();
+    return crossed(point, boundary) % 2 != 0;
+  }
+  RegionId region_that_holds(const double* point) {
+    for (RegionId r = 0; r < rep().region_count(); ++r)
+      if (wrapper_.included(r) && crossed(point, rep().collector(r)) % 2 != 0) return r;
+    return kNull;
+  }
+
+ private:
+  SimplexId simplices(FaceId f) const {
+    return static_cast<SimplexId>(Mesh::simplices_of(rep().face(f).size(), rep().dim()));
+  }
+
+  /// Faces that were there before may come a second time, which does no harm.
+  void add(std::span<const FaceId> faces) {
+    for (const FaceId f : faces) {
+      if (!wrapper_.on_boundary(f)) continue;
+      Box box;
+      for (const VertexId v : rep().face(f)) {
+        const double* x = world(v);
+        box.extend(Eigen::Vector3d(x[0], x[1], x[2]));
+      }
+      const Eigen::Vector3d grow = Eigen::Vector3d::Constant(2 * margin_);
+      faces_.push_back(f);
+      boxes_.emplace_back(box.min() - grow, box.max() + grow);
+    }
+  }
+
+  int crossed(const double* point, std::span<const FaceId> faces) {
+    int crossings = 0;
+    const double* c[3];
+    for (const FaceId f : faces)
+      for (SimplexId i = 0; i < simplices(f); ++i) {
+        body_.world.corners(rep().first_simplex(f) + i, c);
+        const exact::RayHit hit =
+            rep().dim() == 3 ? exact::ray_crosses(point, c) : exact::ray_crosses_2d(point, c);
+        crossings += hit == exact::RayHit::crosses;
+      }
+    return crossings;
+  }
+
+  QueryBody& body_;
+  Wrapper wrapper_;
+  double margin_;
+  std::vector<FaceId> faces_;  ///< and some that have been refined since
+  std::vector<Box> boxes_;
+};
+
+class SeparationFinder {
+ public:
+  SeparationFinder(QueryContext& ctx, double margin)
+      : half_{WorldWrapper(ctx[Side::a], margin), WorldWrapper(ctx[Side::b], margin)} {}
+
+  std::optional<Separation> run() {
+    do {
+      if (!part_boundaries()) return std::nullopt;
+    } while (open_what_holds_a_piece());
+    if (stuck_) return std::nullopt;
+    for (const int side : {0, 1}) take_back(side);
+    Separation s;
+    for (const int side : {0, 1}) {
+      s.refined[side] = half_[side].wrapper().excluded();
+      s.face_count[side] = static_cast<std::uint32_t>(half_[side].wrapper().boundary_size());
+    }
+    return s;
+  }
+
+ private:
+  /// Refines until no faces meet; false if real ones are too near.
+  bool part_boundaries() {
+    // Every face of A is compared with every one of B once: whichever comes later does it.
+    while (done_[0] < half_[0].size() || done_[1] < half_[1].size()) {
+      const int side = done_[0] < half_[0].size() ? 0 : 1;
+      const std::size_t i = done_[side]++;
+      for (std::size_t j = 0; j < done_[1 - side] && half_[side].is_there(i); ++j)
+        if (half_[1 - side].is_there(j) && !half_[side].apart(i, half_[1 - side], j) &&
+            !refine_one(side, i, j))
+          return false;
+    }
+    return true;
+  }
+
+  /// Of the regions behind two faces that meet the larger one.
+  bool refine_one(int side, std::size_t i, std::size_t j) {
+    const RegionId r = half_[side].region_at(half_[side].face(i)),
+                   q = half_[1 - side].region_at(half_[1 - side].face(j));
+    if (r == kNull && q == kNull) return false;
+    const bool first = q == kNull || (r != kNull && size_of(side, r) >= size_of(1 - side, q));
+    first ? half_[side].refine(r) : half_[1 - side].refine(q);
+    return true;
+  }
+  double size_of(int side, RegionId r) const { return std::abs(region_volume(half_[side].rep(), r)); }
+
+  /// A vertex of a piece of one boundary that lies in the other wrapper; kNull: there is none.
+  VertexId piece_inside(int inner) {
+    const std::vector<FaceId> boundary = half_[inner].wrapper().boundary();
+    for (const VertexId v : piece_vertices(half_[inner].rep(), boundary))
+      if (half_[1 - inner].holds(half_[inner].world(v))) return v;
+    return kNull;
+  }
+  bool nested() { return piece_inside(0) != kNull || piece_inside(1) != kNull; }
+
+  /// True if something was refined because a piece lies in it.
+  bool open_what_holds_a_piece() {
+    for (const int inner : {0, 1}) {
+      const VertexId v = piece_inside(inner);
+      if (v == kNull) continue;
+      if (!open_down_to(1 - inner, half_[1 - inner].region_that_holds(half_[inner].world(v))) &&
+          !refine_at(inner, v)) {
+        stuck_ = true;
+        return false;
+      }
+      return true;
+    }
+    return false;
+  }
+
+  bool open_down_to(int side, CellId cell) {
+    if (cell == kNull) return false;
+    std::vector<RegionId> path;
+    for (; is_region(cell) && half_[side].wrapper().included(cell); cell = half_[side].rep().parent(cell))
+      path.push_back(cell);
+    for (; !path.empty(); path.pop_back()) half_[side].refine(path.back());
+    return true;
+  }
+
+  /// The vertex lies in the other's solid: it is not the body's own, or the bodies are not apart.
+  bool refine_at(int side, VertexId v) {
+    for (std::size_t i = 0; i < half_[side].size(); ++i) {
+      if (!half_[side].is_there(i)) continue;
+      const FaceId f = half_[side].face(i);
+      const auto corners = half_[side].rep().face(f);
+      if (std::find(corners.begin(), corners.end(), v) == corners.end()) continue;
+      const RegionId r = half_[side].region_at(f);
+      if (r == kNull) continue;
+      half_[side].refine(r);
+      return true;
+    }
+    return false;
+  }
+
+  /// Once is enough: wrappers only grow, so a region that could not come back in still cannot.
+  void take_back(int side) {
+    const std::vector<RegionId> refined = half_[side].wrapper().excluded();
+    for (auto r = refined.rbegin(); r != refined.rend(); ++r) {
+      const std::size_t before = half_[side].size();
+      half_[side].coarsen(*r);
+      if (!are_clear(side, before) || nested()) half_[side].refine(*r);
+    }
+  }
+
+  /// Whether the faces of a boundary from the first-th on are apart from all of the other's.
+  bool are_clear(int side, std::size_t first) {
+    for (std::size_t i = first; i < half_[side].size(); ++i)
+      for (std::size_t j = 0; j < half_[1 - side].size(); ++j)
+        if (half_[side].is_there(i) && half_[1 - side].is_there(j) &&
+            !half_[side].apart(i, half_[1 - side], j))
+          return false;
+    return true;
+  }
+
+  WorldWrapper half_[2];
+  std::size_t done_[2] = {0, 0};  ///< faces of each that have been compared with those of the other
+  bool stuck_ = false;
+};
+
+}  // namespace
+
+std::optional<Separation> find_separation(QueryContext& ctx) {
+  for (const Side side : {Side::a, Side::b})
+    if (!ctx[side].rep().closed() || ctx[side].rep().self_intersecting()) return std::nullopt;
+  const double margin = wrapper_margin(ctx[Side::a].world.pose(), ctx[Side::a].rep().tree(),
+                                       ctx[Side::b].world.pose(), ctx[Side::b].rep().tree());
+  return SeparationFinder(ctx, margin).run();
+}
+
+}  // namespace lrb

@@ -1,0 +1,203 @@
+#include "engine/query/coherent/candidate_cache.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/core/tolerances.hpp"
+#include "engine/query/walk/tree_query.hpp"
+
+namespace lrb {
+namespace {
+
+using Eigen::Vector3d;
+
+/// A gap on B's axes is longer than it is on A's by twice the defect at most, and little.
+constexpr double kGapDefects = 3;
+
+/// To eights, with a pair that there is.
+void fill_up(std::vector<CachedPair>& pairs, std::size_t count) {
+  for (std::size_t i = count; i % 8 != 0; ++i) pairs[i] = pairs[0];
+}
+
+std::size_t up_to_eights(std::size_t count) {
+  return (count + 7) / 8 * 8;
+}
+
+}  // namespace
+
+void aim_at(const Sweep& stretch, double rounding, double unit, TreeKernel& k) {
+  const double margin = stretch.width + rounding +
+                        kGapDefects * stretch.middle.defect * (stretch.length + stretch.width + rounding);
+  k.margin = static_cast<float>(margin / unit) * kFloatUp;
+  k.sweep_turn = static_cast<float>(stretch.turn) * kFloatUp;
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) k.sweep[j][i] = stretch.dm(i, j);
+    k.sweep_t[i] = stretch.dt[i] / unit;
+  }
+}
+
+void CandidateSimplices::begin(const LrbRep& rep, double unit) {
+  rep_ = &rep;
+  per_unit_ = 1 / unit;  // a power of two, as the unit is
+  written_.clear();
+  farthest_sq_ = 0;
+  if (slots_.size() < rep.simplex_count()) slots_.resize(rep.simplex_count());
+  if (++list_ != 0) return;
+  std::fill(slots_.begin(), slots_.end(), Slot{});
+  list_ = 1;
+}
+
+std::uint32_t CandidateSimplices::place_of(SimplexId s) {
+  Slot& slot = slots_[s];
+  if (slot.list != list_) {
+    slot = {list_, static_cast<std::uint32_t>(written_.size())};
+    write(s);
+  }
+  return slot.place;
+}
+
+void CandidateSimplices::write(SimplexId s) {
+  VertexId v[3] = {};
+  rep_->simplex(s, v);
+  if (rep_->simplex_size() == 2) v[2] = v[1];
+  const Vector3d x = rep_->vertices()[v[0]] * per_unit_;
+  if (written_.empty()) origin_ = x;
+  const Vector3d first = x - origin_;
+  double longest_sq = 0;
+  CachedSimplex to{};
+  for (int axis = 0; axis < 3; ++axis) to.corner[axis] = static_cast<float>(first[axis]);
+  for (int end = 0; end < 2; ++end) {
+    const Vector3d edge = rep_->vertices()[v[1 + end]] * per_unit_ - x;
+    for (int axis = 0; axis < 3; ++axis) to.edge[end][axis] = static_cast<float>(edge[axis]);
+    longest_sq = std::max(longest_sq, edge.squaredNorm());
+  }
+  to.longest = static_cast<float>(std::sqrt(longest_sq)) * kFloatUp + kKernelTiny;
+  farthest_sq_ = std::max(farthest_sq_, first.squaredNorm());
+  written_.push_back(to);
+}
+
+float CandidateSimplices::radius() const {
+  return static_cast<float>(std::sqrt(farthest_sq_)) * kFloatUp + kKernelTiny;
+}
+
+void CandidateCache::arrange(const LrbRep& a, const LrbRep& b, const TreeKernel& k, const Sweep& stretch,
+                             double rounding, PairOrder& order) {
+  unit_ = query_unit(a.tree(), b.tree());
+  rounding_ = rounding;
+  is_swept_ = stretch.length > 0;
+  order.sort(pairs_);
+  place_pairs(a, b);
+  find_spans(k, stretch);
+  if (is_swept_)
+    drop_unless([](float from, float to) {
+      return unsigned{from <= 1 + kSpanRounding} & unsigned{to >= -1 - kSpanRounding} &
+             unsigned{from <= to + kSpanRounding};
+    });
+  else
+    drop_unless([most = length_of(stretch.width)](float from, float) { return unsigned{from <= most}; });
+  chosen_.resize(pairs_.size());
+  chosen_places_.resize(up_to_eights(pairs_.size()));
+  verdicts_.resize(chosen_places_.size() / 8);
+  meeting_.clear();
+  chosen_count_ = 0;
+}
+
+void CandidateCache::place_pairs(const LrbRep& a, const LrbRep& b) {
+  of_[0].begin(a, unit_);
+  of_[1].begin(b, unit_);
+  places_.resize(up_to_eights(pairs_.size()));
+  for (std::size_t i = 0; i < pairs_.size(); ++i)
+    places_[i] = {of_[0].place_of(pairs_[i].a), of_[1].place_of(pairs_[i].b)};
+  fill_up(places_, pairs_.size());
+}
+
+void CandidateCache::find_spans(const TreeKernel& k, const Sweep& stretch) {
+  from_.resize(places_.size());
+  to_.resize(places_.size());
+  PairKernel kernel = kernel_at(k, places_);
+  kernel.block_count = static_cast<std::uint32_t>(places_.size() / 8);
+  kernel.from = from_.data();
+  kernel.to = to_.data();
+  kernel.is_swept = is_swept_;
+  kernel.sweep_turn = k.sweep_turn;
+  kernel.margin = k.margin;
+  const Vector3d way = stretch.dm * of_[1].origin() + stretch.dt / unit_;
+  for (int i = 0; i < 3; ++i) {
+    kernel.sweep_t[i] = static_cast<float>(way[i]);
+    for (int j = 0; j < 3; ++j) kernel.sweep[i][j] = static_cast<float>(stretch.dm(i, j));
+  }
+  run_pair_kernel(kernel);
+}
+
+/// Without branches, as what is near cannot be foretold; so in choose().
+template <class Keep>
+void CandidateCache::drop_unless(Keep&& keep) {
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < pairs_.size(); ++i) {
+    pairs_[kept] = pairs_[i];
+    places_[kept] = places_[i];
+    from_[kept] = from_[i];
+    to_[kept] = to_[i];
+    kept += keep(from_[kept], to_[kept]);
+  }
+  pairs_.resize(kept);
+}
+
+float CandidateCache::length_of(double distance) const {
+  return static_cast<float>((distance + rounding_) / unit_) * kFloatUp;
+}
+
+/// In spans.
+float CandidateCache::place_of(const SweepPoint& where) const {
+  return is_swept_ ? static_cast<float>(where.at) : length_of(where.off);
+}
+
+std::size_t CandidateCache::choose(const SweepPoint& where) {
+  const float at = place_of(where), spare = span_rounding();
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < pairs_.size(); ++i) {
+    chosen_[count] = static_cast<std::uint32_t>(i);
+    chosen_places_[count] = places_[i];
+    count += unsigned{from_[i] <= at + spare} & unsigned{to_[i] >= at - spare};
+  }
+  fill_up(chosen_places_, count);
+  chosen_count_ = count;
+  return count;
+}
+
+/// Between two maps of B that are in the stretch so are those that mix them: where no surfaces meet on that
+/// way, none can have gone through another.
+bool CandidateCache::none_between(const SweepPoint& here, const SweepPoint& there) const {
+  const float x = place_of(here), y = place_of(there), spare = span_rounding();
+  const float first = std::min(x, y) - spare, last = std::max(x, y) + spare;
+  for (std::size_t i = 0; i < pairs_.size(); ++i)
+    if (from_[i] <= last && to_[i] >= first) return false;
+  return true;
+}
+
+PairKernel CandidateCache::kernel_at(const TreeKernel& k, const std::vector<CachedPair>& pairs) const {
+  PairKernel p{};
+  p.a = of_[0].data();
+  p.b = of_[1].data();
+  p.pairs = pairs.data();
+  p.radius_a = of_[0].radius();
+  p.radius_b = of_[1].radius();
+  p.slack = k.slack;
+  p.m_size = k.m_size;
+  for (int i = 0; i < 3; ++i) {
+    std::copy(std::begin(k.m_rows[i]), std::end(k.m_rows[i]), p.r[i]);
+    double t = k.t[i] - of_[0].origin()[i];  // of the frame of B's corners, seen from that of A's
+    for (int j = 0; j < 3; ++j) t += k.m[j][i] * of_[1].origin()[j];
+    p.t[i] = static_cast<float>(t);
+  }
+  return p;
+}
+
+void CandidateCache::append_meeting(CollideResult& result) const {
+  for (const Meeting& m : meeting_) {
+    result.pairs.push_back(pairs_[m.pair]);
+    result.meets.push_back(m.meet);
+  }
+}
+
+}  // namespace lrb

@@ -1,0 +1,140 @@
+#include "engine/query/coherent/relative_motion.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <Eigen/LU>
+
+#include "engine/core/tolerances.hpp"
+#include "engine/tree/pose_bounds.hpp"
+
+namespace lrb {
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+
+constexpr int kRemembered = 3;
+/// Half a stretch of n steps is no longer than this many times a step over how far B came from where the two
+/// poses before had led to expect it: there B will be no further off than half of n steps.
+constexpr double kOffCourse = 0.25;
+/// Of a stretch: shares of a step by which it is longer at either end than the steps, and wide at least; and
+/// how many times as wide as B is off it now, for it is bent as much at its other end.
+constexpr double kBeyondEnd = 0.125, kLeastWidth = 1.0 / 16, kSpareWidth = 1.25;
+/// At least 1 + sqrt(3 / 2): for going from matrices to the rotations that they are near.
+constexpr double kToRotations = 2.3;
+
+/// The motion that takes B from one pose to the other, on A's axes: x -> m x + t.
+RelativePose motion_between(const RelativePose& from, const RelativePose& to) {
+  const Matrix3d m = to.m * from.m.transpose();
+  return {m, to.t - m * from.t};
+}
+
+RelativePose after(const RelativePose& motion, const RelativePose& pose) {
+  return {motion.m * pose.m, motion.m * pose.t + motion.t};
+}
+
+}  // namespace
+
+RelativePose::RelativePose(const Matrix3d& m_, const Vector3d& t_)
+    : m(m_), t(t_), defect(rotation_defect(m_)) {}
+
+RelativeMotion::RelativeMotion(const LrbRep& a, const LrbRep& b) : a_(&a), b_(&b) {
+  const TreeNode& root = b.tree().nodes()[0];
+  middle_ = Vector3d(root.origin[0], root.origin[1], root.origin[2]) * b.tree().unit();
+  radius_ = static_cast<double>(root.radius) * b.tree().unit();
+}
+
+bool RelativeMotion::see(const Pose& pose_a, const Pose& pose_b) {
+  const double defect_a = rotation_defect(pose_a.r);
+  earlier_ = last_;
+  last_ = now_;
+  now_ = {pose_a.r.transpose() * pose_b.r, pose_a.r.transpose() * (pose_b.t - pose_a.t)};
+  rounding_ = wrapper_margin(pose_a, a_->tree(), pose_b, b_->tree()) + 2 * defect_a * a_->tree().extent();
+  if (defect_a <= kRigid && now_.defect <= kRigid && now_.m.determinant() > 0) {
+    seen_ = std::min(seen_ + 1, kRemembered);
+    return true;
+  }
+  forget();
+  return false;
+}
+
+/// A bound of |dm x + dt| for points x of B, where |dm| <= turn.
+double RelativeMotion::farthest(const Matrix3d& dm, const Vector3d& dt, double turn) const {
+  return ((dm * middle_ + dt).stableNorm() + turn * radius_) * (1 + kWorldRounding) + rounding_;
+}
+
+double RelativeMotion::motion(const RelativePose& from, const RelativePose& to) const {
+  const Matrix3d dm = to.m - from.m;
+  const double turn = std::sqrt(dm.squaredNorm() / 2) + kToRotations * (from.defect + to.defect);
+  return farthest(dm, to.t - from.t, turn);
+}
+
+double RelativeMotion::step() const {
+  return seen_ < 2 ? std::numeric_limits<double>::infinity() : motion(last_, now_);
+}
+
+/// From now on, twice so many steps, and a little more at both ends.
+Sweep RelativeMotion::sweep_of(int steps) const {
+  const RelativePose way = motion_between(last_, now_);
+  Sweep s;
+  RelativePose end = now_;
+  for (int i = 0; i < steps; ++i) end = after(way, end);
+  s.middle = end;
+  for (int i = 0; i < steps; ++i) end = after(way, end);
+  const double longer = 1 + kBeyondEnd / steps;
+  s.dm = (end.m - now_.m) * (longer / 2);
+  s.dt = (end.t - now_.t) * (longer / 2);
+  s.turn = s.dm.norm() * (1 + kWorldRounding);
+  s.length = farthest(s.dm, s.dt, s.turn);
+  return s;
+}
+
+bool RelativeMotion::is_seen() const {
+  return seen_ == kRemembered;
+}
+
+bool RelativeMotion::is_kept() const {
+  return is_seen() && steps_on_course() >= 1;
+}
+
+double RelativeMotion::off_course() const {
+  return motion(after(motion_between(earlier_, last_), last_), now_);
+}
+
+/// Off by so much in one step, B is off by that times half the square of the steps in more.
+double RelativeMotion::steps_on_course() const {
+  return kOffCourse * motion(last_, now_) / off_course();
+}
+
+Sweep RelativeMotion::ahead(double steps) const {
+  const int half = std::max(1, static_cast<int>(std::min(steps / 2, steps_on_course())));
+  Sweep ahead = sweep_of(half);
+  ahead.width = kLeastWidth * motion(last_, now_) + 2 * half * half * off_course();
+  ahead.width = std::max(ahead.width, kSpareWidth * along(ahead).off);
+  return ahead;
+}
+
+Sweep RelativeMotion::about(double width) const {
+  Sweep here;
+  here.middle = now_;
+  here.width = width;
+  return here;
+}
+
+SweepPoint RelativeMotion::along(const Sweep& s) const {
+  if (s.length == 0) return {0, motion(s.middle, now_)};
+  const Matrix3d m = now_.m - s.middle.m;
+  const Vector3d t = now_.t - s.middle.t;
+  // The least squares over B's points, as if they filled a ball.
+  const Vector3d way = (s.dm * middle_ + s.dt) / s.length, gone = (m * middle_ + t) / s.length;
+  const double spread = radius_ / s.length * (radius_ / s.length) / 2;
+  const double nearest = (gone.dot(way) + spread * m.cwiseProduct(s.dm).sum()) /
+                         (way.squaredNorm() + spread * s.dm.squaredNorm());
+  const double at = nearest > -1 ? std::min(nearest, 1.0) : -1;  // also where overflow made it no number
+  const Matrix3d off_m = m - at * s.dm;
+  return {at, farthest(off_m, t - at * s.dt, off_m.norm())};
+}
+
+}  // namespace lrb

@@ -1,0 +1,212 @@
+#include "engine/query/contact/describe_contact.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <span>
+
+#include <Eigen/Geometry>
+
+#include "engine/core/tolerances.hpp"
+#include "engine/query/contact/contact_graph.hpp"
+#include "engine/query/contact/contact_loops.hpp"
+#include "engine/query/contact/enclosed_vertices.hpp"
+#include "engine/query/contact/interiors.hpp"
+
+namespace lrb {
+namespace {
+
+using Eigen::Vector3d;
+
+/// The power of two by which to divide points so that no product of two or three coordinates overflows or
+/// vanishes: areas of bodies of size 1e-120 or 1e120 are no doubles once they are multiplied by a coordinate.
+double unit_for(std::span<const Vector3d> points) {
+  double most = 0;
+  for (const Vector3d& p : points) most = std::max(most, p.cwiseAbs().maxCoeff());
+  return most > 0 ? std::ldexp(1.0, std::clamp(std::ilogb(most), -1022, 1023)) : 1;
+}
+
+/// Unit normal of a real simplex in the world, out of the solid; zero for a degenerate one.
+Vector3d world_normal(QueryBody& body, SimplexId s) {
+  const double* c[3];
+  body.world.corners(s, c);
+  const int dim = body.rep().dim();
+  std::array<Vector3d, 3> x = {Vector3d::Zero(), Vector3d::Zero(), Vector3d::Zero()};
+  for (int k = 0; k < dim; ++k) x[k] = Vector3d(c[k][0], c[k][1], c[k][2]);
+  const double unit = unit_for({x.data(), static_cast<std::size_t>(dim)});
+  const auto at = [&](int k) { return Vector3d(x[k] / unit); };
+  // In 2D the solid lies on the left of a segment's direction, so the outside is on its right.
+  const Vector3d along = at(1) - at(0);
+  const Vector3d n = dim == 2 ? Vector3d(along.y(), -along.x(), 0) : along.cross(at(2) - at(0)).eval();
+  return n.stableNormalized();
+}
+
+double polygon_area(const std::vector<Vector3d>& x) {
+  Vector3d twice = Vector3d::Zero();
+  for (std::size_t i = 1; i + 1 < x.size(); ++i) twice += (x[i] - x[0]).cross(x[i + 1] - x[0]);
+  return 0.5 * twice.norm();
+}
+
+/// Length, area or count of a piece: what it weighs in averages over its region.
+struct Weight {
+  double value;
+  Vector3d centre;
+};
+
+Weight weigh(const std::vector<Vector3d>& x) {
+  Vector3d mean = Vector3d::Zero();
+  for (const Vector3d& p : x) mean += p / static_cast<double>(x.size());
+  if (x.size() < 3) return {x.size() == 2 ? (x[1] - x[0]).norm() : 1.0, mean};
+  Vector3d centre = Vector3d::Zero();
+  double area = 0;
+  for (std::size_t i = 1; i + 1 < x.size(); ++i) {
+    const double a = polygon_area({x[0], x[i], x[i + 1]});
+    area += a;
+    centre += a * (x[0] + x[i] + x[i + 1]) / 3;
+  }
+  return {area, area > 0 ? Vector3d(centre / area) : mean};
+}
+
+double loop_length(const ContactLoop& loop) {
+  double sum = 0;
+  const std::size_t n = loop.points.size();
+  for (std::size_t i = 0; i + 1 < n + (loop.closed ? 1 : 0); ++i)
+    sum += (loop.points[(i + 1) % n] - loop.points[i]).norm();
+  return sum;
+}
+
+/// Builds the regions from the graph. Computes in `unit_`; results are turned back at the end.
+class RegionMaker {
+ public:
+  RegionMaker(QueryContext& ctx, const CollideResult& result)
+      : ctx_(ctx),
+        result_(result),
+        graph_(contact_graph(ctx, result)),
+        a_in_b_(ctx, Side::a, result),
+        b_in_a_(ctx, Side::b, result),
+        unit_(unit_for(graph_.points)) {
+    for (Vector3d& p : graph_.points) p /= unit_;
+  }
+
+  std::vector<ContactRegion> run() {
+    std::vector<ContactRegion> regions(graph_.component_count);
+    std::vector<std::uint8_t> rank(graph_.component_count,
+                                   0);  // 3: has polygons, 2: segments, 1: points only
+    for (const auto& piece : graph_.pieces)
+      if (!piece.points.empty()) {
+        const std::uint32_t r = graph_.component[piece.points[0]];
+        regions[r].pairs.push_back(piece.pair);
+        rank[r] = std::max(rank[r], static_cast<std::uint8_t>(std::min<std::size_t>(piece.points.size(), 3)));
+      }
+    for (std::uint32_t r = 0; r < regions.size(); ++r) average(regions[r], rank[r]);
+    add_loops(regions);
+    for (std::uint32_t r = 0; r < regions.size(); ++r) {
+      if (rank[r] == 2) regions[r].area = spanned_area(regions[r]);
+      regions[r].depth = penetration(regions[r]);
+    }
+    for (ContactRegion& region : regions) leave_unit(region);
+    return regions;
+  }
+
+ private:
+  void leave_unit(ContactRegion& region) const {
+    for (ContactLoop& loop : region.loops)
+      for (Vector3d& p : loop.points) p *= unit_;
+    region.centroid *= unit_;
+    region.length *= unit_;
+    region.depth *= unit_;
+    region.area = region.area * unit_ * unit_;
+  }
+
+  std::vector<Vector3d> points_of(const ContactGraph::Piece& piece) const {
+    std::vector<Vector3d> x;
+    for (const std::uint32_t p : piece.points) x.push_back(graph_.points[p]);
+    return x;
+  }
+
+  /// Centroid, normal and coplanar area, over the pieces of the highest dimension in the region.
+  void average(ContactRegion& region, std::uint8_t rank) {
+    double total = 0;
+    Vector3d centre = Vector3d::Zero(), normal = Vector3d::Zero();
+    for (const std::uint32_t i : region.pairs) {
+      const auto& piece = graph_.pieces[i];
+      if (std::min<std::size_t>(piece.points.size(), 3) != rank) continue;
+      const Weight w = weigh(points_of(piece));
+      total += w.value;
+      centre += w.value * w.centre;
+      normal += w.value * (world_normal(ctx_[Side::a], result_.pairs[i].a) -
+                           world_normal(ctx_[Side::b], result_.pairs[i].b));
+    }
+    region.centroid =
+        total > 0 ? Vector3d(centre / total) : graph_.points[graph_.pieces[region.pairs[0]].points[0]];
+    // Normals that cancel (surfaces that meet facing the same way) leave no direction worth a name.
+    if (normal.norm() > kContactNormalLeast * total) region.normal = normal.stableNormalized();
+    if (rank == 3) region.area = total;
+  }
+
+  void add_loops(std::vector<ContactRegion>& regions) const {
+    std::vector<std::vector<std::array<std::uint32_t, 2>>> edges(regions.size());
+    for (const auto* list : {&graph_.outlines, &graph_.curves})
+      for (const auto& e : *list) edges[graph_.component[e[0]]].push_back(e);
+    for (std::uint32_t r = 0; r < regions.size(); ++r) {
+      regions[r].loops = chain_edges(edges[r], graph_.points);
+      for (const ContactLoop& loop : regions[r].loops) regions[r].length += loop_length(loop);
+    }
+  }
+
+  /// Area that the closed loops span: the length of their vector area, each loop on its own.
+  static double spanned_area(const ContactRegion& region) {
+    double sum = 0;
+    for (const ContactLoop& loop : region.loops)
+      if (loop.closed) sum += polygon_area(loop.points);
+    return sum;
+  }
+
+  double penetration(const ContactRegion& region) {
+    const bool crosses = std::any_of(region.pairs.begin(), region.pairs.end(),
+                                     [&](std::uint32_t i) { return result_.meets[i] == exact::Meet::cross; });
+    if (!crosses || region.normal.isZero()) return 0;
+    double a_reaches = -std::numeric_limits<double>::infinity(), b_reaches = -a_reaches;
+    for (const std::uint32_t i : region.pairs)
+      for (const std::uint32_t p : graph_.pieces[i].points) {
+        a_reaches = std::max(a_reaches, region.normal.dot(graph_.points[p]));
+        b_reaches = std::min(b_reaches, region.normal.dot(graph_.points[p]));
+      }
+    for (const VertexId v : a_in_b_.from(region.pairs))
+      a_reaches = std::max(a_reaches, region.normal.dot(world(Side::a, v)));
+    for (const VertexId v : b_in_a_.from(region.pairs))
+      b_reaches = std::min(b_reaches, region.normal.dot(world(Side::b, v)));
+    return std::max(0.0, a_reaches - b_reaches);
+  }
+
+  Vector3d world(Side side, VertexId v) { return Eigen::Map<const Vector3d>(ctx_[side].world(v)) / unit_; }
+
+  QueryContext& ctx_;
+  const CollideResult& result_;
+  ContactGraph graph_;
+  EnclosedVertices a_in_b_, b_in_a_;
+  double unit_;
+};
+
+exact::PairContact contact_of(QueryContext& ctx, SimplexPair pair) {
+  const double *ca[3], *cb[3];
+  ctx[Side::a].world.corners(pair.a, ca);
+  ctx[Side::b].world.corners(pair.b, cb);
+  return ctx[Side::a].rep().dim() == 3 ? exact::contact_of_triangles(ca, cb)
+                                       : exact::contact_of_segments(ca, cb);
+}
+
+}  // namespace
+
+void describe_contact(QueryContext& context, const CollideRequest& request, CollideResult& result) {
+  if (result.pairs.empty() || request.mode != Mode::all_pairs) return;
+  if (request.interiors_overlap && result.relation == Relation::touching)
+    result.interiors_overlap = interiors_overlap(context, result);
+  if (request.interiors_overlap && result.relation == Relation::crossing)
+    result.interiors_overlap = crossing_interiors_overlap(context, result);
+  if (!request.contacts) return;
+  for (const SimplexPair& pair : result.pairs) result.contacts.push_back(contact_of(context, pair));
+  result.regions = RegionMaker(context, result).run();
+}
+
+}  // namespace lrb

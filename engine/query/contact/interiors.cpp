@@ -1,0 +1,257 @@
+#include "engine/query/contact/interiors.hpp"
+
+#include <algorithm>
+#include <map>
+#include <unordered_set>
+
+#include <Eigen/Geometry>
+
+#include "engine/core/tolerances.hpp"
+#include "engine/exact/locate.hpp"
+#include "engine/exact/pair_contact.hpp"
+#include "engine/exact/predicates.hpp"
+#include "engine/query/contact/side_in_plane.hpp"
+#include "engine/query/walk/relation.hpp"
+
+namespace lrb {
+namespace {
+
+using Corners = std::array<const double*, 3>;
+
+/// Sign of the rotation's determinant: a reflection turns surfaces inside out.
+int handedness(const Pose& pose) {
+  return pose.r.determinant() < 0 ? -1 : 1;
+}
+
+/// Whether the normals of two coplanar triangles of positive area point the same way, exactly: seen along an
+/// axis on which the first keeps its area, both turn the same way.
+bool same_direction_3d(const double* const a[3], const double* const b[3]) {
+  for (int axis = 0; axis < 3; ++axis) {
+    const int u = (axis + 1) % 3, v = (axis + 2) % 3;
+    const auto turn = [&](const double* const t[3]) {
+      const double p[2] = {t[0][u], t[0][v]}, q[2] = {t[1][u], t[1][v]}, r[2] = {t[2][u], t[2][v]};
+      return exact::orient2d(p, q, r);
+    };
+    if (const int turn_a = turn(a); turn_a != 0) return turn_a == turn(b);
+  }
+  return false;
+}
+
+/// What cuts a face into cells that are each inside or outside of the holder or on its surface. Of the
+/// holder's triangles in the face's plane only the outline does: an edge with one of them on either side is
+/// left out, since both its sides are on the surface. Without this a fan of n triangles on another would be
+/// n^2 cells.
+class Cutters {
+ public:
+  Cutters(const double* const face[3], QueryBody& holder)
+      : face_{face[0], face[1], face[2]}, holder_(holder) {}
+
+  void add(SimplexId t) {
+    const double* c[3];
+    holder_.world.corners(t, c);
+    for (const double* corner : c)
+      if (exact::orient3d(face_[0], face_[1], face_[2], corner) != 0) {
+        triangles_.push_back({c[0], c[1], c[2]});
+        return;
+      }
+    VertexId v[3];
+    holder_.rep().simplex(t, v);
+    for (int k = 0; k < 3; ++k)
+      flat_edges_[std::minmax(v[k], v[(k + 1) % 3])].push_back({c[k], c[(k + 1) % 3], c[(k + 2) % 3]});
+  }
+
+  /// Triangles, and edges as triangles without area.
+  std::vector<Corners> all() const {
+    std::vector<Corners> r = triangles_;
+    for (const auto& [ids, uses] : flat_edges_) {
+      const double *p = uses[0][0], *q = uses[0][1];
+      const bool is_inner =
+          uses.size() == 2 &&
+          side_in_plane(face_, p, q, uses[0][2]) * side_in_plane(face_, p, q, uses[1][2]) < 0;
+      if (!is_inner) r.push_back({p, q, q});
+    }
+    return r;
+  }
+
+ private:
+  const double* face_[3];
+  QueryBody& holder_;
+  std::vector<Corners> triangles_;
+  std::map<std::pair<VertexId, VertexId>, std::vector<Corners>> flat_edges_;  ///< each with its third corner
+};
+
+/// Collinear segments of positive length: compared along a coordinate in which the first advances.
+bool same_direction_2d(const double* const a[2], const double* const b[2]) {
+  const int k = a[0][0] != a[1][0] ? 0 : 1;
+  return (a[0][k] < a[1][k]) == (b[0][k] < b[1][k]);
+}
+
+class Decider {
+ public:
+  Decider(QueryContext& ctx, const CollideResult& result)
+      : ctx_(ctx), result_(result), dim_(ctx[Side::a].rep().dim()) {}
+
+  Answer run() {
+    for (const Side side : {Side::a, Side::b}) {
+      const LrbRep& rep = ctx_[side].rep();
+      if (!rep.closed() || rep.self_intersecting()) return Answer::unknown;
+    }
+    const Answer between = between_coinciding_faces();
+    if (between == Answer::yes) return between;
+    for (const Side side : {Side::a, Side::b}) {
+      group_pairs(side);
+      if (free_patch_inside(side)) return Answer::yes;
+    }
+    for (const Side side : {Side::a, Side::b}) {
+      group_pairs(side);
+      if (const Answer answer = touched_face_inside(side); answer != Answer::no) return answer;
+    }
+    return between;
+  }
+
+ private:
+  /// Behind coplanar faces that overlap in an area (2D: a length) and face the same way lie both solids. A
+  /// point there that is inside both proves it; where none is found, rounding has folded a body in the world
+  /// (far from the origin thin walls become flat) and faces need not face out any more: unknown.
+  Answer between_coinciding_faces() {
+    const bool mirrored = handedness(ctx_[Side::a].world.pose()) * handedness(ctx_[Side::b].world.pose()) < 0;
+    Answer answer = Answer::no;
+    for (const SimplexPair& pair : result_.pairs) {
+      const double *a[3], *b[3];
+      ctx_[Side::a].world.corners(pair.a, a);
+      ctx_[Side::b].world.corners(pair.b, b);
+      const exact::PairContact contact =
+          dim_ == 3 ? exact::contact_of_triangles(a, b) : exact::contact_of_segments(a, b);
+      if (!contact.coplanar || contact.corner_count < dim_) continue;
+      if ((dim_ == 3 ? same_direction_3d(a, b) : same_direction_2d(a, b)) == mirrored) continue;
+      if (inside_both_near(contact, a)) return Answer::yes;
+      answer = Answer::unknown;
+    }
+    return answer;
+  }
+
+  /// Looks on both sides of the middle of a coplanar contact, ever nearer: there is no telling how far the
+  /// next faces are. A point on one of them is as good as none.
+  bool inside_both_near(const exact::PairContact& contact, const double* const face[3]) {
+    std::vector<exact::RationalPoint> corners;
+    Eigen::AlignedBox3d box;
+    for (int k = 0; k < contact.corner_count; ++k) {
+      corners.emplace_back(contact.corners[k].x.data());
+      box.extend(contact.corners[k].x);
+    }
+    const auto middle = exact::RationalPoint::combination(corners, std::vector<double>(corners.size(), 1));
+    const Eigen::Vector3d normal = normal_of(face);
+    for (const double side : {-1.0, 1.0}) {
+      const Eigen::Vector3d off = middle.rounded() + side * box.sizes().maxCoeff() * normal;
+      const exact::RationalPoint ends[] = {middle, exact::RationalPoint(off.data())};
+      for (const double share : kInteriorProbes) {
+        const double weights[] = {1 - share, share};
+        const auto p = exact::RationalPoint::combination(ends, weights);
+        if (locate(ctx_[Side::a], p) == Where::inside && locate(ctx_[Side::b], p) == Where::inside)
+          return true;
+      }
+    }
+    return false;
+  }
+
+  /// Of length about 1; need not be accurate.
+  Eigen::Vector3d normal_of(const double* const face[3]) const {
+    const auto edge = [&](int k) {
+      Eigen::Vector3d e = Eigen::Vector3d::Zero();
+      for (int i = 0; i < dim_; ++i) e[i] = face[k][i] - face[0][i];
+      return e.stableNormalized();
+    };
+    const Eigen::Vector3d e = edge(1);
+    return dim_ == 2 ? Eigen::Vector3d(e.y(), -e.x(), 0) : e.cross(edge(2)).stableNormalized();
+  }
+
+  SimplexId own(Side side, const SimplexPair& p) const { return side == Side::a ? p.a : p.b; }
+
+  void group_pairs(Side side) {
+    partners_.clear();
+    for (const SimplexPair& p : result_.pairs) partners_[own(side, p)].push_back(own(other(side), p));
+  }
+
+  /// Vertices in no touched face, one for each patch of the surface that touched faces leave connected.
+  /// Patches are joined through vertices that no touched face has; a patch without such a vertex is made of
+  /// faces all of whose corners are on touched faces: each of those faces is asked itself.
+  bool free_patch_inside(Side side) {
+    QueryBody &body = ctx_[side], &holder = ctx_[other(side)];
+    const LrbRep& rep = body.rep();
+    std::vector<bool> touched(rep.vertices().size(), false), seen(rep.vertices().size(), false);
+    for (const auto& [s, partners] : partners_) {
+      VertexId v[3];
+      rep.simplex(s, v);
+      for (int k = 0; k < dim_; ++k) touched[v[k]] = true;
+    }
+    const SurfaceGraph& graph = body.surface_graph();
+    std::vector<VertexId> patch;
+    for (SimplexId s = 0; s < rep.real_simplex_count(); ++s) {
+      if (partners_.contains(s)) continue;
+      VertexId v[3];
+      rep.simplex(s, v);
+      const auto free = std::find_if(v, v + dim_, [&](VertexId x) { return !touched[x]; });
+      if (free == v + dim_) {
+        // The face itself touches nothing, so neither do its corners.
+        if (locate(holder, body.world(v[0])) == Where::inside) return true;
+      } else if (!seen[*free]) {
+        if (locate(holder, body.world(*free)) == Where::inside) return true;
+        patch.assign(1, *free);
+        seen[*free] = true;
+        for (; !patch.empty();) {
+          const VertexId from = patch.back();
+          patch.pop_back();
+          for (const VertexId x : graph.neighbours(from))
+            if (!touched[x] && !seen[x]) {
+              seen[x] = true;
+              patch.push_back(x);
+            }
+        }
+      }
+    }
+    return false;
+  }
+
+  Answer touched_face_inside(Side side) {
+    QueryBody &body = ctx_[side], &holder = ctx_[other(side)];
+    std::size_t cells = 0;
+    for (const auto& [s, partners] : partners_) {
+      const auto points = sample(body, s, holder, partners);
+      if (!points || (cells += points->size()) > kInteriorCells) return Answer::unknown;
+      for (const exact::RationalPoint& p : *points)
+        if (locate(holder, p) == Where::inside) return Answer::yes;
+    }
+    return Answer::no;
+  }
+
+  std::optional<std::vector<exact::RationalPoint>> sample(QueryBody& body, SimplexId s, QueryBody& holder,
+                                                          const std::vector<SimplexId>& partners) {
+    const double* own_corners[3];
+    body.world.corners(s, own_corners);
+    if (dim_ == 3) {
+      Cutters cutters(own_corners, holder);
+      for (const SimplexId t : partners) cutters.add(t);
+      return exact::sample_cells(own_corners, cutters.all(), kInteriorCellsPerFace);
+    }
+    const double* c[2];
+    std::vector<std::array<const double*, 2>> others;
+    for (const SimplexId t : partners) {
+      holder.world.corners(t, c);
+      others.push_back({c[0], c[1]});
+    }
+    return exact::sample_cells_2d(own_corners, others, kInteriorCellsPerFace);
+  }
+
+  QueryContext& ctx_;
+  const CollideResult& result_;
+  int dim_;
+  std::map<SimplexId, std::vector<SimplexId>> partners_;  ///< of each touched simplex of the side in work
+};
+
+}  // namespace
+
+Answer interiors_overlap(QueryContext& context, const CollideResult& result) {
+  return Decider(context, result).run();
+}
+
+}  // namespace lrb

@@ -1,0 +1,104 @@
+#include <algorithm>
+#include <map>
+
+#include "engine/core/tolerances.hpp"
+#include "engine/exact/predicates.hpp"
+#include "engine/query/contact/interiors.hpp"
+#include "engine/query/contact/side_in_plane.hpp"
+
+namespace lrb {
+namespace {
+
+using Corners = std::array<const double*, 3>;
+
+/// Crosses a face of A a face of B where the surfaces are nothing but these two faces? There, parity changes
+/// from one side of each to the other, so that one of the four wedges between them is inside both.
+class CrossingProof {
+ public:
+  CrossingProof(QueryContext& ctx, const CollideResult& result)
+      : ctx_(ctx), result_(result), dim_(ctx[Side::a].rep().dim()) {
+    for (const SimplexPair& p : result.pairs) {
+      partners_[0][p.a].push_back(p.b);
+      partners_[1][p.b].push_back(p.a);
+    }
+  }
+
+  bool found() const {
+    unsigned tries = 0;
+    for (std::size_t i = 0; i < result_.pairs.size() && tries < kCrossingsTried; ++i) {
+      if (result_.meets[i] != exact::Meet::cross) continue;
+      ++tries;
+      const SimplexPair& p = result_.pairs[i];
+      if (is_alone(Side::a, p.a, partners_[1].at(p.b)) && is_alone(Side::b, p.b, partners_[0].at(p.a)))
+        return true;
+    }
+    return false;
+  }
+
+ private:
+  /// No other simplex of the body that meets the partner of `s` meets the inside of `s`. (Sufficient: one
+  /// that passes through the plane of `s` anywhere counts as if it did.)
+  bool is_alone(Side side, SimplexId s, const std::vector<SimplexId>& others) const {
+    Corners face;
+    ctx_[side].world.corners(s, face.data());
+    return std::all_of(others.begin(), others.end(), [&](SimplexId u) {
+      if (u == s) return true;
+      Corners other;
+      ctx_[side].world.corners(u, other.data());
+      return dim_ == 3 ? keeps_out(face, other) : keeps_out_2d(face, other);
+    });
+  }
+
+  /// Whether the triangle `other` leaves the inside of `face` alone.
+  static bool keeps_out(const Corners& face, const Corners& other) {
+    std::vector<const double*> in_plane;
+    bool above = false, below = false;
+    for (const double* p : other) {
+      const int side = exact::orient3d(face[0], face[1], face[2], p);
+      above |= side > 0;
+      below |= side < 0;
+      if (side == 0) in_plane.push_back(p);
+    }
+    if (above && below) return false;
+    for (int k = 0; k < 3; ++k) {
+      const double *p = face[k], *q = face[(k + 1) % 3];
+      const int inward = side_in_plane(face.data(), p, q, face[(k + 2) % 3]);
+      const bool beyond = std::all_of(in_plane.begin(), in_plane.end(), [&](const double* x) {
+        return side_in_plane(face.data(), p, q, x) * inward <= 0;
+      });
+      if (beyond) return true;
+    }
+    return false;
+  }
+
+  /// The same for segments: what is on the line of `face` must lie beyond one of its ends.
+  static bool keeps_out_2d(const Corners& face, const Corners& other) {
+    const int axis = face[0][0] != face[1][0] ? 0 : 1;
+    const double low = std::min(face[0][axis], face[1][axis]), high = std::max(face[0][axis], face[1][axis]);
+    bool above = false, below = false, before = true, after = true;
+    for (int k = 0; k < 2; ++k) {
+      const int side = exact::orient2d(face[0], face[1], other[k]);
+      above |= side > 0;
+      below |= side < 0;
+      if (side != 0) continue;
+      before &= other[k][axis] <= low;
+      after &= other[k][axis] >= high;
+    }
+    return !(above && below) && (before || after);
+  }
+
+  QueryContext& ctx_;
+  const CollideResult& result_;
+  int dim_;
+  std::map<SimplexId, std::vector<SimplexId>> partners_[2];
+};
+
+}  // namespace
+
+Answer crossing_interiors_overlap(QueryContext& context, const CollideResult& result) {
+  for (const Side side : {Side::a, Side::b})
+    if (!context[side].rep().closed()) return Answer::unknown;
+  return CrossingProof(context, result).found() ? Answer::yes : Answer::unknown;
+}
+
+}  // namespace lrb

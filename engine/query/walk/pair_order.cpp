@@ -1,0 +1,125 @@
+#include "engine/query/walk/pair_order.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <span>
+#include <utility>
+
+namespace lrb {
+namespace {
+
+/// Radix sort is worth its passes for more pairs than this. A digit has about as many values as there are
+/// pairs: fewer passes than with shorter ones, and tables no longer than what is sorted, which fit the first
+/// cache.
+constexpr std::size_t kWorthDigits = 32;
+constexpr unsigned kLeastDigitBits = 6, kMostDigitBits = 11;
+constexpr unsigned kMeetBits = 1;
+
+/// Numbers that do not fit a key: bodies of billions of simplices.
+void sort_by_comparing(CollideResult& result) {
+  std::vector<std::pair<SimplexPair, exact::Meet>> found;
+  for (std::size_t i = 0; i < result.pairs.size(); ++i) found.emplace_back(result.pairs[i], result.meets[i]);
+  std::sort(found.begin(), found.end());
+  found.erase(std::unique(found.begin(), found.end()), found.end());
+  result.pairs.clear();
+  result.meets.clear();
+  for (const auto& [pair, meet] : found) {
+    result.pairs.push_back(pair);
+    result.meets.push_back(meet);
+  }
+}
+
+/// How a pair is packed in one number: in as many bits as its numbers need, and how it meets in the last.
+struct Packing {
+  unsigned bits_b, bits;
+};
+
+/// No bits: they are in order, without repetitions.
+Packing packing_of(std::span<const SimplexPair> pairs) {
+  SimplexPair all{0, 0};  // all bits that occur
+  bool in_order = true;
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    in_order &= i == 0 || pairs[i - 1] < pairs[i];
+    all = {all.a | pairs[i].a, all.b | pairs[i].b};
+  }
+  if (in_order) return {0, 0};
+  const auto bits_b = static_cast<unsigned>(std::bit_width(all.b));
+  return {bits_b, static_cast<unsigned>(std::bit_width(all.a)) + bits_b + kMeetBits};
+}
+
+std::uint64_t key_of(const SimplexPair& p, unsigned bits_b) {
+  return (std::uint64_t{p.a} << bits_b | p.b) << kMeetBits;
+}
+
+SimplexPair pair_of(std::uint64_t key, unsigned bits_b) {
+  const std::uint64_t pair = key >> kMeetBits;
+  return {static_cast<SimplexId>(pair >> bits_b),
+          static_cast<SimplexId>(pair & ((std::uint64_t{1} << bits_b) - 1))};
+}
+
+}  // namespace
+
+void PairOrder::sort(CollideResult& result) {
+  const Packing packing = packing_of(result.pairs);
+  if (packing.bits == 0) return;
+  if (packing.bits > 64) return sort_by_comparing(result);
+  keys_.resize(result.pairs.size());
+  for (std::size_t i = 0; i < keys_.size(); ++i)
+    keys_[i] = key_of(result.pairs[i], packing.bits_b) |
+               static_cast<std::uint64_t>(result.meets[i] == exact::Meet::cross);
+  sort_keys(packing.bits);
+  result.pairs.resize(keys_.size());
+  result.meets.resize(keys_.size());
+  for (std::size_t i = 0; i < keys_.size(); ++i) {
+    result.pairs[i] = pair_of(keys_[i], packing.bits_b);
+    result.meets[i] = (keys_[i] & 1) != 0 ? exact::Meet::cross : exact::Meet::touch;
+  }
+}
+
+void PairOrder::sort(std::vector<SimplexPair>& pairs) {
+  const Packing packing = packing_of(pairs);
+  if (packing.bits == 0) return;
+  if (packing.bits > 64) {
+    std::sort(pairs.begin(), pairs.end());
+    pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
+    return;
+  }
+  keys_.resize(pairs.size());
+  for (std::size_t i = 0; i < keys_.size(); ++i) keys_[i] = key_of(pairs[i], packing.bits_b);
+  sort_keys(packing.bits);
+  pairs.resize(keys_.size());
+  for (std::size_t i = 0; i < keys_.size(); ++i) pairs[i] = pair_of(keys_[i], packing.bits_b);
+}
+
+void PairOrder::sort_keys(unsigned bits) {
+  if (keys_.size() > kWorthDigits)
+    sort_by_digits(bits);
+  else
+    std::sort(keys_.begin(), keys_.end());
+  keys_.erase(std::unique(keys_.begin(), keys_.end()), keys_.end());
+}
+
+/// The last digit first: each pass keeps the order of those before it. How a pair meets needs no order.
+void PairOrder::sort_by_digits(unsigned key_bits) {
+  const unsigned most =
+      std::clamp(static_cast<unsigned>(std::bit_width(keys_.size())), kLeastDigitBits, kMostDigitBits);
+  const unsigned bits = key_bits - kMeetBits, passes = std::max(1u, (bits + most - 1) / most);
+  const unsigned digit_bits = (bits + passes - 1) / passes;
+  const std::size_t values = std::size_t{1} << digit_bits;
+  const auto digit = [&](std::uint64_t key, unsigned pass) {
+    return key >> (kMeetBits + pass * digit_bits) & (values - 1);
+  };
+  moved_.resize(keys_.size());
+  places_.assign(passes * values, 0);
+  for (const std::uint64_t key : keys_)
+    for (unsigned pass = 0; pass < passes; ++pass) ++places_[pass * values + digit(key, pass)];
+  for (unsigned pass = 0; pass < passes; ++pass) {
+    std::uint32_t* const place = places_.data() + pass * values;
+    std::uint32_t before = 0;
+    for (std::size_t v = 0; v < values; ++v) before += std::exchange(place[v], before);
+    for (const std::uint64_t key : keys_) moved_[place[digit(key, pass)]++] = key;
+    keys_.swap(moved_);
+  }
+}
+
+}  // namespace lrb

@@ -1,0 +1,38 @@
+#pragma once
+/// What the query tells whoever watches it. A probe is a template parameter: with NullProbe every call vanishes.
+
+#include <cstdint>
+
+#include "engine/core/ids.hpp"
+#include "engine/exact/simplex_test.hpp"
+
+namespace lrb {
+
+/// The events of a query, in one table: enum, name in traces, meaning of the fields a and b.
+/// LRB_EVENT(enumerator, json_name, meaning of a, meaning of b)
+#define LRB_EVENTS(LRB_EVENT)                                             \
+  LRB_EVENT(step, "step", "time step", "")                                \
+  LRB_EVENT(face_test, "face test", "simplex of A", "simplex of B")       \
+  LRB_EVENT(refine, "refine", "region", "faces added")                    \
+  LRB_EVENT(coarsen, "coarsen", "region", "faces removed")                \
+  LRB_EVENT(contact, "contact", "real simplex of A", "real simplex of B") \
+  LRB_EVENT(result, "result", "relation", "pairs")
+
+enum class EventKind : std::uint8_t {
+#define LRB_EVENT(name, json, a, b) name,
+  LRB_EVENTS(LRB_EVENT)
+#undef LRB_EVENT
+};
+
+/// Does nothing, costs nothing. Also the list of what a probe must have.
+struct NullProbe {
+  static constexpr bool kEnabled = false;
+  /// A simplex of A was compared exactly with one of B. depth_a/b: regions between each and the outside.
+  void face_test(SimplexId, SimplexId, exact::Meet, std::uint32_t /*depth_a*/, std::uint32_t /*depth_b*/) {}
+  /// A region of a body's wrapper was refined. After a face test that hit, that test is the cause.
+  void refine(Side, RegionId, std::uint32_t /*faces_added*/) {}
+  /// Two real simplices meet: part of the answer.
+  void contact(SimplexId, SimplexId, exact::Meet) {}
+};
+
+}  // namespace lrb

@@ -1,0 +1,122 @@
+#pragma once
+
+#include <memory>
+#include <unordered_set>
+#include <vector>
+
+#include "engine/lrb/wrapper.hpp"
+#include "engine/lrb/wrapper_level.hpp"
+#include "engine/query/walk/pair_order.hpp"
+#include "engine/query/walk/result.hpp"
+#include "engine/query/walk/surface_graph.hpp"
+#include "engine/query/walk/world_vertices.hpp"
+#include "engine/tree/tree_kernel.hpp"
+
+namespace lrb {
+
+/// One body during a query.
+struct QueryBody {
+  WorldVertices world;
+  std::unique_ptr<Wrapper> wrapper;
+  std::uint64_t wrapper_serial = 0;  ///< of the LRB-rep that the wrapper was made for
+
+  const LrbRep& rep() const { return world.rep(); }
+  /// What is queried: the body, or a level of it.
+  const ObbTree& tree() const { return *tree_; }
+  std::span<const VertexId> component_vertices() const { return component_vertices_; }
+
+  void begin(const LrbRep& rep, const Pose& pose, WrapperMode mode) {
+    world.begin(rep, pose);
+    begin_at_pose(mode);
+  }
+  /// The pose being known already.
+  void begin_at_pose(WrapperMode mode) {
+    query_body();
+    if (!wrapper || wrapper_serial != rep().serial() || &wrapper->rep() != &rep() ||
+        wrapper->mode() != mode) {
+      wrapper = std::make_unique<Wrapper>(rep(), mode);
+      wrapper_serial = rep().serial();
+    }
+    wrapper->reset();
+  }
+
+  void query_body() {
+    tree_ = &rep().tree();
+    component_vertices_ = rep().component_vertices();
+  }
+  void query_level(const WrapperLevel& level) {
+    tree_ = &level.tree;
+    component_vertices_ = level.component_vertices;
+  }
+
+  /// Made when first asked for, kept as long as the body stays the same.
+  WrapperLevels& levels() {
+    if (!levels_ || levels_serial_ != rep().serial() || levels_rep_ != &rep()) {
+      levels_ = std::make_unique<WrapperLevels>(rep());
+      levels_serial_ = rep().serial();
+      levels_rep_ = &rep();
+    }
+    return *levels_;
+  }
+
+  /// Made when first asked for, kept as long as the body stays the same.
+  const SurfaceGraph& surface_graph() {
+    if (!graph_ || graph_serial_ != rep().serial()) {
+      graph_ = std::make_unique<SurfaceGraph>(rep());
+      graph_serial_ = rep().serial();
+    }
+    return *graph_;
+  }
+
+  /// Regions between a face and the outside along parents.
+  std::uint32_t depth_of(FaceId f) const {
+    const CellId outer = rep().outer_cell(f);
+    return is_region(outer) ? rep().depth(outer) : 0;
+  }
+
+ private:
+  const ObbTree* tree_ = nullptr;
+  std::span<const VertexId> component_vertices_;
+  std::unique_ptr<WrapperLevels> levels_;
+  std::uint64_t levels_serial_ = 0;
+  const LrbRep* levels_rep_ = nullptr;
+  std::unique_ptr<SurfaceGraph> graph_;
+  std::uint64_t graph_serial_ = 0;
+};
+
+class QueryContext {
+ public:
+  QueryBody body[2];
+  std::vector<NodePair> stack;
+  std::vector<Candidate> candidates;
+  std::vector<RegionId> path;
+  PairOrder pair_order;
+  std::unordered_set<std::uint64_t> visited[3];  ///< paper: region x region, face x region, region x face
+
+  QueryBody& operator[](Side s) { return body[static_cast<int>(s)]; }
+};
+
+/// Exact test of two simplices in the world frame.
+inline exact::Meet test_simplices(QueryContext& ctx, SimplexId a, SimplexId b) {
+  const double *ca[3], *cb[3];
+  ctx.body[0].world.corners(a, ca);
+  ctx.body[1].world.corners(b, cb);
+  return ctx.body[0].rep().dim() == 3 ? exact::meet_triangles(ca, cb) : exact::meet_segments(ca, cb);
+}
+
+inline void count_face_test(bool real, std::uint32_t level, Counters& c) {
+  ++c.face_tests;
+  c.real_tests += real;
+  if (c.face_tests_by_level.size() <= level) c.face_tests_by_level.resize(level + 1);
+  ++c.face_tests_by_level[level];
+}
+
+/// Appends a pair of the answer.
+template <class Probe>
+void record_pair(CollideResult& result, Probe& probe, SimplexId a, SimplexId b, exact::Meet meet) {
+  result.pairs.push_back({a, b});
+  result.meets.push_back(meet);
+  if constexpr (Probe::kEnabled) probe.contact(a, b, meet);
+}
+
+}  // namespace lrb

@@ -1,0 +1,165 @@
+#include "engine/query/walk/relation.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/core/tolerances.hpp"
+#include "engine/exact/locate.hpp"
+#include "engine/tree/pose_bounds.hpp"
+
+namespace lrb {
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+
+/// Walks the tree along the ray from a point (doubles, or exact::RationalPoint) in direction +x and counts
+/// the simplices that it crosses. `near` is the point rounded to doubles, for the boxes.
+template <class Point>
+class RayWalk {
+ public:
+  RayWalk(QueryBody& body, const Point& point, const Vector3d& near)
+      : body_(body), tree_(body.tree()), point_(point), p_(near) {
+    const Pose& pose = body.world.pose();
+    margin_ = kWorldRounding * (world_size(pose, tree_) + near.cwiseAbs().maxCoeff());
+    turn_ = std::max(1.0, pose.r.cwiseAbs().rowwise().sum().maxCoeff());
+  }
+
+  Where run() {
+    if (!misses_all()) visit(0);
+    return on_surface_ ? Where::on_surface : crossings_ % 2 ? Where::inside : Where::outside;
+  }
+
+ private:
+  /// A node's axes and origin in the world.
+  struct Frame {
+    Matrix3d axes;
+    Vector3d origin;
+    double grow;  ///< of boxes: all errors
+  };
+
+  Frame frame_of(const TreeNode& n) const {
+    const Pose& pose = body_.world.pose();
+    const double unit = tree_.unit();
+    Frame f;
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j) f.axes(j, i) = n.frame[i][j];
+    f.axes = pose.r * f.axes * unit;
+    f.origin = pose.r * (Vector3d(n.origin[0], n.origin[1], n.origin[2]) * unit) + pose.t;
+    f.grow = margin_ + kKernelRounding * turn_ * (static_cast<double>(n.radius) * unit);
+    return f;
+  }
+
+  /// Whether the ray certainly misses a box, of which `lo` and `hi` give the quantized ends. Conservative, as
+  /// the kernel's boxes are.
+  template <class Lo, class Hi>
+  bool misses(const TreeNode& n, const Frame& f, const Lo& lo, const Hi& hi) const {
+    Vector3d centre, half;
+    for (int i = 0; i < 3; ++i) {
+      const double base = n.base[i], scale = n.scale[i];
+      centre[i] = base + scale * 0.5 * (lo(i) + hi(i));
+      half[i] = scale * 0.5 * (hi(i) - lo(i));
+    }
+    const Vector3d c = f.origin + f.axes * centre;
+    const Vector3d h = f.axes.cwiseAbs() * half + Vector3d::Constant(f.grow);
+    return c.x() + h.x() < p_[0] || std::abs(c.y() - p_[1]) > h.y() ||
+           (body_.rep().dim() == 3 && std::abs(c.z() - p_[2]) > h.z());
+  }
+
+  /// Most rays miss the whole body.
+  bool misses_all() const {
+    const TreeNode& root = tree_.nodes()[0];
+    return misses(
+        root, frame_of(root), [](int) { return 0; }, [](int) { return kQuantizedMost; });
+  }
+
+  void visit(std::uint32_t index) {
+    const TreeNode& n = tree_.nodes()[index];
+    if (n.is_leaf) {
+      const LeafBlock& block = tree_.blocks()[n.first];
+      for (int k = 0; k < n.count && !on_surface_; ++k) cross(block.simplex[k]);
+      return;
+    }
+    const Frame f = frame_of(n);
+    for (std::uint32_t k = 0; k < n.count && !on_surface_; ++k)
+      if (!misses(
+              n, f, [&](int i) { return n.lo[i][k]; }, [&](int i) { return n.hi[i][k]; }))
+        visit(n.first + k);
+  }
+
+  void cross(SimplexId s) {
+    const double* corners[3];
+    body_.world.corners(s, corners);
+    const exact::RayHit hit =
+        body_.rep().dim() == 3 ? exact::ray_crosses(point_, corners) : exact::ray_crosses_2d(point_, corners);
+    on_surface_ |= hit == exact::RayHit::on_face;
+    crossings_ += hit == exact::RayHit::crosses;
+  }
+
+  QueryBody& body_;
+  const ObbTree& tree_;
+  const Point& point_;
+  Vector3d p_;
+  double margin_, turn_;
+  int crossings_ = 0;
+  bool on_surface_ = false;
+};
+
+struct Swallowed {
+  std::size_t inside = 0, components = 0;
+  bool all() const { return inside == components && components > 0; }
+  bool some() const { return inside > 0; }
+};
+
+/// How many components of `inner` lie inside `outer`, given that the surfaces do not meet.
+Swallowed components_inside(QueryBody& inner, QueryBody& outer) {
+  Swallowed s;
+  for (const VertexId v : inner.component_vertices()) {
+    ++s.components;
+    s.inside += locate(outer, inner.world(v)) == Where::inside;
+  }
+  return s;
+}
+
+}  // namespace
+
+Where locate(QueryBody& body, const double* point) {
+  if (body.tree().empty()) return Where::outside;
+  return RayWalk<const double*>(body, point, {point[0], point[1], body.rep().dim() == 3 ? point[2] : 0})
+      .run();
+}
+
+Where locate(QueryBody& body, const exact::RationalPoint& point) {
+  return body.tree().empty() ? Where::outside : RayWalk(body, point, point.rounded()).run();
+}
+
+void decide_relation(QueryContext& ctx, CollideResult& result) {
+  if (!result.pairs.empty()) {
+    const bool crosses =
+        std::find(result.meets.begin(), result.meets.end(), exact::Meet::cross) != result.meets.end();
+    result.relation = crosses ? Relation::crossing : Relation::touching;
+    const bool solids = ctx[Side::a].rep().closed() && ctx[Side::b].rep().closed();
+    result.interiors_overlap = crosses && solids ? Answer::yes : Answer::unknown;
+    return;
+  }
+  QueryBody &a = ctx[Side::a], &b = ctx[Side::b];
+  if (!a.rep().closed() || !b.rep().closed()) {
+    result.relation = Relation::undefined;
+    result.interiors_overlap = Answer::unknown;
+    return;
+  }
+  const Swallowed a_in_b = components_inside(a, b), b_in_a = components_inside(b, a);
+  if (a_in_b.all())
+    result.relation = Relation::a_inside_b;
+  else if (b_in_a.all())
+    result.relation = Relation::b_inside_a;
+  else if (a_in_b.some())
+    result.relation = Relation::a_inside_b;
+  else if (b_in_a.some())
+    result.relation = Relation::b_inside_a;
+  else
+    result.relation = Relation::separate;
+  result.interiors_overlap = result.relation == Relation::separate ? Answer::no : Answer::yes;
+}
+
+}  // namespace lrb

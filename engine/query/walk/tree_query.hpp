@@ -1,0 +1,161 @@
+#pragma once
+/// The complete query: a dual traversal of the two trees of blocks.
+///
+/// Why it never misses. If real simplices s of A and t of B meet at a point of the world, then in every pair
+/// of tree nodes above them each node's bounds hold one of the two, so the bounds, grown by all errors,
+/// overlap: by induction the traversal, which drops a pair only when its bounds are proved apart, reaches the
+/// pair of leaves that hold s and t; there the pair (s, t) is dropped only when boxes or a plane are proved
+/// to separate the two; what is left is decided within proved bounds of float errors, or exactly. The proof
+/// uses neither nesting of regions nor embedding: a poor LRB-rep can cost time, never a contact.
+///
+/// What "proved apart" has to cover is in set_up_kernel().
+
+#include <algorithm>
+#include <bit>
+
+#include "engine/exact/exact_sign.hpp"
+#include "engine/exact/predicates.hpp"
+#include "engine/query/walk/query_context.hpp"
+#include "engine/tree/kernel_setup.hpp"
+
+namespace lrb {
+
+/// The same for two bodies' own trees.
+inline TreeKernel set_up_kernel(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b) {
+  return set_up_kernel(a.tree(), pose_a, b.tree(), pose_b);
+}
+
+template <class Probe>
+[[gnu::noinline]] void open_regions_from(QueryContext& ctx, Side side, CellId innermost,
+                                         CollideResult& result, Probe& probe) {
+  QueryBody& body = ctx[side];
+  const LrbRep& rep = body.rep();
+  ctx.path.clear();  // a query that ended by an exception may have left some
+  for (CellId c = innermost; is_region(c) && body.wrapper->included(c); c = rep.parent(c))
+    ctx.path.push_back(c);
+  for (; !ctx.path.empty(); ctx.path.pop_back()) {
+    body.wrapper->refine(ctx.path.back());
+    ++result.counters.refinements;
+    if constexpr (Probe::kEnabled)
+      probe.refine(side, ctx.path.back(), static_cast<std::uint32_t>(rep.floor(ctx.path.back()).size()));
+  }
+}
+
+/// A kernel at the roots of what is queried of both bodies, with the context's buffers: `capacity`
+/// candidates.
+TreeKernel start_kernel(QueryContext& ctx, const Pose& pose_a, const Pose& pose_b, std::size_t capacity);
+inline TreeKernel start_kernel(QueryContext& ctx, std::size_t capacity) {
+  return start_kernel(ctx, ctx[Side::a].world.pose(), ctx[Side::b].world.pose(), capacity);
+}
+
+/// Refines the wrapper of a body until a face shows: the regions from the outside inward that hide it. Mostly
+/// there are none left. How many regions there are between the face and the outside.
+template <class Probe>
+inline std::uint32_t show_face(QueryContext& ctx, Side side, FaceId f, CollideResult& result, Probe& probe) {
+  const LrbRep& rep = ctx[side].rep();
+  const CellId outer = rep.outer_cell(f);
+  if (!is_region(outer)) return 0;
+  if (ctx[side].wrapper->included(outer)) open_regions_from(ctx, side, outer, result, probe);
+  return rep.depth(outer);
+}
+
+/// Rules of the exact query; coarse_query.hpp has others.
+struct ExactRules {
+  static constexpr bool kCoarse = false;
+};
+
+template <class Probe, class Rules = ExactRules>
+class TreeQuery {
+ public:
+  TreeQuery(QueryContext& ctx, Mode mode, CollideResult& result, Probe& probe, Rules rules = {})
+      : ctx_(ctx), mode_(mode), result_(result), probe_(probe), rules_(rules) {}
+
+  const Rules& rules() const { return rules_; }
+
+  void run() {
+    const ObbTree &a = ctx_[Side::a].tree(), &b = ctx_[Side::b].tree();
+    if (a.empty() || b.empty()) return;
+    // A small buffer where one pair may be enough, or time may run out, so that little is searched beyond it.
+    TreeKernel k = start_kernel(ctx_, mode_ == Mode::all_pairs && !Rules::kCoarse ? 1024 : 64);
+    k.nearest_first = mode_ != Mode::all_pairs;
+    if constexpr (Rules::kCoarse) k.slack *= 2;  // what the kernel drops is then apart by more than rounding
+    bool done = false;
+    while (k.stack_size != 0 && !done) {
+      k.out_size = 0;
+      run_tree_kernel(k);
+      if constexpr (Rules::kCoarse) done = rules_.must_stop();
+      for (std::uint32_t i = 0; i < k.out_size && !done; ++i) done = test(k.out[i]);
+    }
+    result_.counters.node_pairs += k.node_pairs;
+    result_.counters.box_tests += k.box_tests;
+    result_.counters.prefilter_tests += k.prefilter_tests;
+  }
+
+ private:
+  /// True if the answer is complete. One pair is enough in any_pair mode, in first_pair mode if it crosses; a
+  /// pair that only touches is kept while a crossing one is looked for, so that the relation is exact in that
+  /// mode too.
+  bool test(const Candidate& c) {
+    if constexpr (Rules::kCoarse)
+      if (rules_.no_test_left(result_.counters.face_tests)) return true;
+    const FaceId fa = ctx_[Side::a].rep().face_of_simplex(c.a), fb = ctx_[Side::b].rep().face_of_simplex(c.b);
+    const std::uint32_t depth_a = show_face(ctx_, Side::a, fa, result_, probe_);
+    const std::uint32_t depth_b = show_face(ctx_, Side::b, fb, result_, probe_);
+    exact::Meet meet = meet_of(c);
+    if constexpr (Rules::kCoarse)
+      if (meet == exact::Meet::disjoint) meet = rules_.meet_of_near(ctx_, c.a, c.b);
+    const bool real = ctx_[Side::a].rep().is_real(fa) && ctx_[Side::b].rep().is_real(fb);
+    count_face_test(real, std::max(depth_a, depth_b), result_.counters);
+    if constexpr (Probe::kEnabled) probe_.face_test(c.a, c.b, meet, depth_a, depth_b);
+    if (meet == exact::Meet::disjoint) return false;
+    if (mode_ == Mode::first_pair && !result_.pairs.empty()) {
+      if (meet != exact::Meet::cross) return false;
+      result_.pairs.clear();
+      result_.meets.clear();
+    }
+    record_pair(result_, probe_, c.a, c.b, meet);
+    if constexpr (Rules::kCoarse)
+      if (mode_ != Mode::all_pairs && rules_.one_is_enough()) return true;
+    return mode_ == Mode::any_pair || (mode_ == Mode::first_pair && meet == exact::Meet::cross);
+  }
+
+  /// Most are certain: then no corner needs to be moved to the world.
+  exact::Meet meet_of(const Candidate& c) {
+    if (c.certainty == Certainty::cross) return exact::Meet::cross;
+    if (c.certainty == Certainty::disjoint) return exact::Meet::disjoint;
+    if (c.certainty == Certainty::touch_if_shared && exactly_ && shares_corners(c)) return exact::Meet::touch;
+    return test_simplices(ctx_, c.a, c.b);
+  }
+
+  /// Without branches: which corners are shared cannot be foretold.
+  bool shares_corners(const Candidate& c) {
+    const double *of_a[3], *of_b[3];
+    ctx_[Side::a].world.corners(c.a, of_a);
+    ctx_[Side::b].world.corners(c.b, of_b);
+    unsigned shared[2] = {0, 0};
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j) {
+        const unsigned same = has_bits_of(of_a[i], of_b[j]);
+        shared[0] |= same << i;
+        shared[1] |= same << j;
+      }
+    return (c.corners & ~shared[static_cast<int>(c.side)]) == 0;
+  }
+
+  /// Points that only differ in the sign of a zero are left to the exact test.
+  static bool has_bits_of(const double* x, const double* y) {
+    std::uint64_t difference = 0;
+    for (int i = 0; i < 3; ++i)
+      difference |= std::bit_cast<std::uint64_t>(x[i]) ^ std::bit_cast<std::uint64_t>(y[i]);
+    return difference == 0;
+  }
+
+  QueryContext& ctx_;
+  Mode mode_;
+  CollideResult& result_;
+  Probe& probe_;
+  Rules rules_;
+  const bool exactly_ = ctx_[Side::a].rep().dim() == 3 && !exact::only_floating();
+};
+
+}  // namespace lrb

@@ -1,0 +1,253 @@
+#pragma once
+// Part of tree_kernel.inl and pair_kernel.inl: two nodes, how they lie to each other, and which of their
+// boxes meet.
+
+#include "engine/core/tolerances.hpp"
+#include "engine/tree/kernel_lanes.inl"
+#include "engine/tree/tree_kernel.hpp"
+
+namespace lrb {
+namespace {
+
+/// The box of a node in its own frame, query units.
+struct Whole {
+  float centre[3], half[3];
+};
+
+inline Whole whole_of(const TreeNode& n, float ratio) {
+  Whole w;
+  for (int i = 0; i < 3; ++i) {
+    w.half[i] = n.scale[i] * ratio * (0.5f * kQuantizedMost);
+    w.centre[i] = n.base[i] * ratio + w.half[i];
+  }
+  return w;
+}
+
+/// The boxes of what a node holds, in its own frame, query units.
+struct Boxes {
+  Float8 centre[3], half[3];
+};
+
+inline Boxes decode(const TreeNode& n, float ratio) {
+  Boxes b;
+  for (int i = 0; i < 3; ++i) {
+    const float base = n.base[i] * ratio, half_scale = n.scale[i] * ratio * 0.5f;
+    const Int8 lo = bytes_to_int(n.lo[i]), hi = bytes_to_int(n.hi[i]);
+    b.centre[i] = splat(base) + splat(half_scale) * __builtin_convertvector(lo + hi, Float8);
+    b.half[i] = splat(half_scale) * __builtin_convertvector(hi - lo, Float8);
+  }
+  return b;
+}
+
+/// How two nodes lie to each other: coordinates in A's node = r * (coordinates in B's node) + t, and back
+/// r^T * (coordinates in A's node) + back. The fourth of each four is nothing.
+struct Between {
+  alignas(16) float r[3][4], abs_r[3][4], t[4], back[4];
+  float reach;          ///< bound of every coordinate difference that occurs
+  float error;          ///< bound of the error of every transformed coordinate
+  float edge_error[2];  ///< of A's and B's: of every coordinate of the difference of two corners of one body
+  // Where there is a margin:
+  alignas(16) float grow[2][4];  ///< of boxes on A's and B's axes: the error, the margin, and what is swept
+  float way[4];                  ///< how far B's node is swept, on A's axes
+  float margin;                  ///< and by how much more any of its points may be
+};
+
+/// radius_a, radius_b: of what is held of both bodies, or the length of its edges. reach: of the differences
+/// of a corner of A and one of B that occur; whole: of the coordinates from which corners of B are
+/// transformed.
+inline void set_errors(Between& w, float slack, float m_size, float radius_a, float radius_b, float reach,
+                       float whole) {
+  w.reach = reach;
+  w.error = slack + kKernelRounding * whole;
+  w.edge_error[0] = 2 * slack + kOwnEdgeRounding * radius_a;
+  w.edge_error[1] = 2 * slack + kTurnedEdgeRounding * (m_size * radius_b) + kFarEdgeRounding * reach;
+}
+
+/// Row i of a node's frame; the fourth is what follows it in the node.
+inline Float4 frame_row(const TreeNode& n, int i) {
+  static_assert(__builtin_offsetof(TreeNode, base) == sizeof(n.frame));
+  Float4 row;
+  __builtin_memcpy(&row, reinterpret_cast<const char*>(&n) + static_cast<unsigned>(i) * 3 * sizeof(float),
+                   sizeof row);
+  return row;
+}
+
+struct Columns {
+  Float4 c[3];
+};
+
+inline Columns columns_of(Float4 row0, Float4 row1, Float4 row2) {
+  const Float4 low = __builtin_shufflevector(row0, row1, 0, 4, 1, 5);
+  const Float4 high = __builtin_shufflevector(row0, row1, 2, 6, 2, 6);
+  return {{__builtin_shufflevector(low, row2, 0, 1, 4, 4), __builtin_shufflevector(low, row2, 2, 3, 5, 5),
+           __builtin_shufflevector(high, row2, 0, 1, 6, 6)}};
+}
+
+/// x[0] of column 0 + x[1] of column 1 + x[2] of column 2.
+inline Float4 combine(const float* x, const Float4* column) {
+  return splat4(x[0]) * column[0] + splat4(x[1]) * column[1] + splat4(x[2]) * column[2];
+}
+
+/// Finds the way of a node of B on A's axes. Returns the sum of its coordinates' sizes.
+inline float sweep(const TreeKernel& k, const TreeNode& b, const Columns& a_columns, Between& w) {
+  const Double4* m = reinterpret_cast<const Double4*>(k.sweep);
+  const Double4 swept =
+      ((m[0] * splat4d(b.origin[0]) + m[1] * splat4d(b.origin[1])) + m[2] * splat4d(b.origin[2])) *
+          splat4d(k.ratio_b) +
+      *reinterpret_cast<const Double4*>(k.sweep_t);
+  const Float4 way = __builtin_convertvector(swept, Float4);
+  const float parts[3] = {way[0], way[1], way[2]};
+  const Float4 on_a = combine(parts, a_columns.c);
+  __builtin_memcpy(w.way, &on_a, sizeof on_a);
+  return __builtin_fabsf(parts[0]) + __builtin_fabsf(parts[1]) + __builtin_fabsf(parts[2]);
+}
+
+/// kMargin: whether k.margin counts. Simplices that come to meet at a point after a motion have points now
+/// that the motion brings together: slabs between them that are wider than it is long across, part them.
+template <bool kMargin = false>
+inline Between between(const TreeKernel& k, const TreeNode& a, const TreeNode& b) {
+  Between w;
+  const Double4* m = reinterpret_cast<const Double4*>(k.m);
+  const Double4 origin_a{a.origin[0], a.origin[1], a.origin[2], 0};
+  const Double4 d =
+      (((m[0] * splat4d(b.origin[0]) + m[1] * splat4d(b.origin[1])) + m[2] * splat4d(b.origin[2])) *
+           splat4d(k.ratio_b) +
+       *reinterpret_cast<const Double4*>(k.t)) -
+      origin_a * splat4d(k.ratio_a);
+  const Float4 offset = __builtin_convertvector(d, Float4);
+  const float df[3] = {offset[0], offset[1], offset[2]};
+  const Columns b_columns = columns_of(frame_row(b, 0), frame_row(b, 1), frame_row(b, 2));
+  const Columns a_columns = columns_of(frame_row(a, 0), frame_row(a, 1), frame_row(a, 2));
+  Float4 mb[3], r[3];  // rows of m * (axes of B), and of r
+  for (int i = 0; i < 3; ++i) mb[i] = combine(k.m_rows[i], b_columns.c);
+  for (int i = 0; i < 3; ++i) {
+    r[i] = combine(a.frame[i], mb);
+    __builtin_memcpy(w.r[i], &r[i], sizeof r[i]);
+    const Float4 size = abs4(r[i]);
+    __builtin_memcpy(w.abs_r[i], &size, sizeof size);
+  }
+  const Float4 t = combine(df, a_columns.c);
+  __builtin_memcpy(w.t, &t, sizeof t);
+  const float t_parts[3] = {t[0], t[1], t[2]};
+  const Float4 back = -combine(t_parts, r);
+  __builtin_memcpy(w.back, &back, sizeof back);
+  const float radius_a = a.radius * k.ratio_a, radius_b = b.radius * k.ratio_b;
+  const float whole = k.m_size * (radius_a + radius_b + __builtin_fabsf(df[0]) + __builtin_fabsf(df[1]) +
+                                  __builtin_fabsf(df[2]));
+  float reach = whole;
+  if constexpr (kMargin) {
+    const float size = sweep(k, b, a_columns, w);
+    w.margin = k.margin + k.sweep_turn * radius_b + kSweepRounding * size;
+    reach += size + w.margin;  // differences of corners at the end of the way count, too
+  }
+  set_errors(w, k.slack, k.m_size, radius_a, radius_b, reach, whole);
+  if constexpr (kMargin) {
+    const Float4 on_a{w.way[0], w.way[1], w.way[2], 0}, on_b = combine(w.way, r);
+    const Float4 grow[2] = {splat4(w.error + w.margin) + abs4(on_a), splat4(w.error + w.margin) + abs4(on_b)};
+    __builtin_memcpy(w.grow, grow, sizeof grow);
+  }
+  return w;
+}
+
+template <bool kMargin>
+inline float grow_of(const Between& w, int side, int axis) {
+  return kMargin ? w.grow[side][axis] : w.error;
+}
+
+/// Boxes of one node in the other's frame: axis-aligned there, grown by the error.
+struct Turned {
+  Float8 centre[3], half[3];
+};
+
+template <bool kMargin>
+inline Turned turn_b(const Boxes& b, const Between& w) {
+  Turned o;
+  for (int i = 0; i < 3; ++i) {
+    o.centre[i] = splat(w.t[i]) + splat(w.r[i][0]) * b.centre[0] + splat(w.r[i][1]) * b.centre[1] +
+                  splat(w.r[i][2]) * b.centre[2];
+    o.half[i] = splat(grow_of<kMargin>(w, 0, i)) + splat(w.abs_r[i][0]) * b.half[0] +
+                splat(w.abs_r[i][1]) * b.half[1] + splat(w.abs_r[i][2]) * b.half[2];
+  }
+  return o;
+}
+
+template <bool kMargin>
+inline Turned turn_a(const Boxes& a, const Between& w) {
+  Turned o;
+  for (int j = 0; j < 3; ++j) {
+    o.centre[j] = splat(w.back[j]) + splat(w.r[0][j]) * a.centre[0] + splat(w.r[1][j]) * a.centre[1] +
+                  splat(w.r[2][j]) * a.centre[2];
+    o.half[j] = splat(grow_of<kMargin>(w, 1, j)) + splat(w.abs_r[0][j]) * a.half[0] +
+                splat(w.abs_r[1][j]) * a.half[1] + splat(w.abs_r[2][j]) * a.half[2];
+  }
+  return o;
+}
+
+/// Lanes whose boxes are apart on some axis. Written so that NaN (an overflow) counts as "not apart".
+inline Lanes apart(const Float8* centre, const Float8* half, const float* other_centre,
+                   const float* other_half) {
+  Lanes result = kNoLanes;
+  for (int i = 0; i < 3; ++i)
+    result |= greater(abs8(centre[i] - splat(other_centre[i])), half[i] + splat(other_half[i]));
+  return result;
+}
+
+inline std::uint32_t present(const TreeNode& n) {
+  return (1u << n.count) - 1;
+}
+
+/// How far boxes are apart on the axis on which they are furthest apart; negative: by how much they overlap.
+inline Float8 gap_between(const Float8* centre, const Float8* half, const float* other_centre,
+                          const float* other_half) {
+  Float8 gap = abs8(centre[0] - splat(other_centre[0])) - (half[0] + splat(other_half[0]));
+  for (int i = 1; i < 3; ++i)
+    gap = larger(gap, abs8(centre[i] - splat(other_centre[i])) - (half[i] + splat(other_half[i])));
+  return gap;
+}
+
+/// Of pairs of boxes: how far apart (see gap_between()) box i of A is from those of B.
+struct Gaps {
+  Float8 of[8];
+};
+
+/// Which of A's boxes meet which of B's: mask[k] has the bits of B's boxes that A's box k may meet. Most
+/// pairs of nodes are apart, and most of these show it in the first test.
+template <bool kMargin>
+inline std::uint32_t pair_masks(TreeKernel& k, const TreeNode& na, const TreeNode& nb, const Between& w,
+                                std::uint32_t mask[8], Gaps* gaps = nullptr) {
+  k.box_tests += na.count + nb.count;
+  const Whole whole_a = whole_of(na, k.ratio_a);
+  const Boxes b = decode(nb, k.ratio_b);
+  const Turned bt = turn_b<kMargin>(b, w);
+  const std::uint32_t mask_b = ~bits(apart(bt.centre, bt.half, whole_a.centre, whole_a.half)) & present(nb);
+  if (mask_b == 0) return 0;
+  const Whole whole_b = whole_of(nb, k.ratio_b);
+  const Boxes a = decode(na, k.ratio_a);
+  const Turned at = turn_a<kMargin>(a, w);
+  const std::uint32_t mask_a = ~bits(apart(at.centre, at.half, whole_b.centre, whole_b.half)) & present(na);
+  const auto* a_centre = reinterpret_cast<const float*>(a.centre);
+  const auto* a_half = reinterpret_cast<const float*>(a.half);
+  const auto* at_centre = reinterpret_cast<const float*>(at.centre);
+  const auto* at_half = reinterpret_cast<const float*>(at.half);
+  const auto in_mask_b = static_cast<unsigned>(__builtin_popcount(mask_b));
+  std::uint32_t rows = 0;
+  for (std::uint32_t todo = mask_a; todo != 0; todo &= todo - 1) {
+    const int i = __builtin_ctz(todo);
+    const float own_centre[3] = {a_centre[i], a_centre[8 + i], a_centre[16 + i]};
+    const float own_half[3] = {a_half[i], a_half[8 + i], a_half[16 + i]};
+    const float turned_centre[3] = {at_centre[i], at_centre[8 + i], at_centre[16 + i]};
+    const float turned_half[3] = {at_half[i], at_half[8 + i], at_half[16 + i]};
+    const Lanes gap = either(apart(bt.centre, bt.half, own_centre, own_half),
+                             apart(b.centre, b.half, turned_centre, turned_half));
+    mask[i] = ~bits(gap) & mask_b;
+    rows |= static_cast<std::uint32_t>(mask[i] != 0) << i;
+    k.box_tests += in_mask_b;
+    if (gaps && mask[i] != 0)
+      gaps->of[i] = larger(gap_between(bt.centre, bt.half, own_centre, own_half),
+                           gap_between(b.centre, b.half, turned_centre, turned_half));
+  }
+  return rows;
+}
+
+}  // namespace
+}  // namespace lrb

@@ -1,0 +1,50 @@
+#include "engine/tree/kernel_setup.hpp"
+
+#include <cmath>
+
+#include "engine/core/tolerances.hpp"
+#include "engine/tree/pose_bounds.hpp"
+
+namespace lrb {
+/// The kernel compares boxes on A's axes and on B's. Let w_a = r_a x_a + t_a + rounding and w_b likewise be
+/// the world coordinates of a point of each body. If they are equal, then, with m = r_a^T r_b, t = r_a^T (t_b
+/// - t_a) and Euclidean norms,
+/// - on A's axes, where the kernel takes x_a as it is and m x_b + t for x_b, these differ by at most
+///     on_a = D(r_a) |x_a| + |r_a| |rounding|,   D(r) = |r^T r - 1|;
+/// - on B's axes, where it takes x_b as it is and m^T (x_a - t) for x_a, by at most
+///     on_b = D(m) |x_b| + |m| on_a, seen from any point of B (then x_b is a distance of two of its points).
+/// |r|^2 <= 1 + D(r). World coordinates are rounded by at most 4 u times the sizes of their terms (u =
+/// 2^-53), m, t and the offsets between nodes by another 16 u of the same sizes. The factor kPoseSafety
+/// covers the change from the largest coordinate to the Euclidean length (sqrt 3), and from a distance to an
+/// extent (2). The bounds hold for any matrix; for one that is far from a rotation they are merely so large
+/// that little is culled. Overflow makes them infinite or not a number: then nothing is.
+TreeKernel set_up_kernel(const ObbTree& a, const Pose& pose_a, const ObbTree& b, const Pose& pose_b) {
+  TreeKernel k{};
+  k.nodes_a = a.nodes().data();
+  k.nodes_b = b.nodes().data();
+  k.blocks_a = a.blocks().data();
+  k.blocks_b = b.blocks().data();
+  const double unit = query_unit(a, b);
+  k.ratio_a = static_cast<float>(a.unit() / unit);
+  k.ratio_b = static_cast<float>(b.unit() / unit);
+
+  const Eigen::Matrix3d m = pose_a.r.transpose() * pose_b.r;
+  const Eigen::Vector3d t = pose_a.r.transpose() * (pose_b.t - pose_a.t) / unit;
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) {
+      k.m[j][i] = m(i, j);
+      k.m_rows[i][j] = static_cast<float>(m(i, j));
+    }
+    k.t[i] = t[i];
+  }
+  const double size = (world_size(pose_a, a) + world_size(pose_b, b) + kWorldUnderflow) / unit;
+  const double defect_a = rotation_defect(pose_a.r), defect_m = rotation_defect(m);
+  const double turn_a = std::sqrt(1 + defect_a), turn_m = std::sqrt(1 + defect_m);
+  const double on_a = defect_a * (a.extent() / unit) + turn_a * kWorldRounding * size;
+  const double on_b = defect_m * (b.extent() / unit) + turn_m * on_a;
+  k.slack = static_cast<float>(kPoseSafety * (on_a + on_b)) * kFloatUp + kKernelTiny;
+  k.m_size = static_cast<float>(turn_m) * kFloatUp;
+  return k;
+}
+
+}  // namespace lrb

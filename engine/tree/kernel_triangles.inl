@@ -1,0 +1,202 @@
+#pragma once
+// Part of tree_kernel.inl and pair_kernel.inl: eight pairs of triangles, and what float arithmetic is certain
+// of about them.
+
+#include "engine/tree/kernel_boxes.inl"
+
+namespace lrb {
+namespace {
+
+/// Corners of eight simplices in A's leaf frame, query units.
+struct Corners {
+  Float8 x[3][3];  // [corner][axis]
+};
+
+/// What float arithmetic makes of (u x v) . d, lane by lane, and a bound of its error, where u and v are
+/// differences of corners of one body each, d of corners of both.
+///
+/// Let eu and ev bound the errors of the coordinates of u and v, U and V those coordinates, w = 2^-24. The
+/// normal n = u x v is off by at most 2 (U ev + V eu + eu ev) in each component, and its rounding by 4 w U V.
+/// d is no longer than reach + 2 error, so that the sum of its coordinates is below 1.75 times that: n . d is
+/// off by at most 2 error |n|_1, in which there is room for rounding d and the products with it (4 w reach of
+/// 128), and 3.5 (reach + 2 error) (U ev + V eu + eu ev + 2 w U V); 4 instead of 3.5 leaves room for the last
+/// term (eu and ev are at least 8 w times a radius, U and V at most 2 radii) and for rounding in here.
+struct Normal {
+  Float8 n[3], size, bound;
+
+  Normal(const Float8* u, float u_error, const Float8* v, float v_error, float reach, float error) {
+    Float8 u_max{}, v_max{};
+    for (int axis = 0; axis < 3; ++axis) {
+      u_max = larger(abs8(u[axis]), u_max);
+      v_max = larger(abs8(v[axis]), v_max);
+    }
+    for (int x = 0; x < 3; ++x) {
+      const int y = (x + 1) % 3, z = (x + 2) % 3;
+      n[x] = u[y] * v[z] - u[z] * v[y];
+    }
+    size = abs8(n[0]) + abs8(n[1]) + abs8(n[2]);
+    const float far = 4 * (reach + 2 * error);
+    bound = splat(2 * error) * size + splat(far * v_error) * u_max + splat(far * u_error) * v_max +
+            splat(far * u_error * v_error + kKernelTiny);
+  }
+
+  Float8 dot(const Float8* d) const { return n[0] * d[0] + n[1] * d[1] + n[2] * d[2]; }
+};
+
+inline void subtract(const Float8* x, const Float8* y, Float8* difference) {
+  for (int axis = 0; axis < 3; ++axis) difference[axis] = x[axis] - y[axis];
+}
+
+/// On which side of other simplices' planes the corners of eight simplices lie, lane by lane.
+struct SideLanes {
+  Lanes positive[3], negative[3];  ///< certainly in front, or behind, by more than the margin
+  Lanes certain;                   ///< each corner certainly in front or behind
+  Lanes parted;                    ///< all in front, or all behind
+
+  /// Not certainly on both sides.
+  Lanes one_side() const {
+    return static_cast<Lanes>(
+        ~((positive[0] | positive[1] | positive[2]) & (negative[0] | negative[1] | negative[2])));
+  }
+};
+
+/// plane_edge_error: Between::edge_error of the body whose planes they are. kMargin: as of between().
+template <bool kMargin = false>
+inline SideLanes sides_of_planes(const Corners& planes, const Corners& points, const Between& w,
+                                 float plane_edge_error) {
+  Float8 e1[3], e2[3];
+  subtract(planes.x[1], planes.x[0], e1);
+  subtract(planes.x[2], planes.x[0], e2);
+  const Normal n(e1, plane_edge_error, e2, plane_edge_error, w.reach, w.error);
+  Float8 bound = n.bound;
+  if constexpr (kMargin)  // the size is more than the normal's length
+    bound += splat(w.margin) * n.size +
+             abs8(n.n[0] * splat(w.way[0]) + n.n[1] * splat(w.way[1]) + n.n[2] * splat(w.way[2]));
+  SideLanes sides;
+  Lanes above = kAllLanes, below = kAllLanes;
+  sides.certain = kAllLanes;
+  for (int corner = 0; corner < 3; ++corner) {
+    Float8 d[3];
+    subtract(points.x[corner], planes.x[0], d);
+    const Float8 height = n.dot(d);
+    sides.positive[corner] = greater(height, bound);
+    sides.negative[corner] = greater(-bound, height);
+    above &= sides.positive[corner];
+    below &= sides.negative[corner];
+    sides.certain = both(sides.certain, either(sides.positive[corner], sides.negative[corner]));
+  }
+  sides.parted = either(above, below);
+  return sides;
+}
+
+/// Triangles turned so that corner 0, the tip, is alone on its side of the other's plane.
+struct TipFirst {
+  Corners t;
+  Lanes positive;  ///< the tip's side
+
+  TipFirst(const Corners& from, const SideLanes& s) {
+    const Lanes first = equal(s.positive[1], s.positive[2]), second = equal(s.positive[0], s.positive[2]);
+    for (int corner = 0; corner < 3; ++corner)
+      for (int axis = 0; axis < 3; ++axis)
+        t.x[corner][axis] =
+            select(first, from.x[corner][axis],
+                   select(second, from.x[(corner + 1) % 3][axis], from.x[(corner + 2) % 3][axis]));
+    positive = select(first, s.positive[0], select(second, s.positive[1], s.positive[2]));
+  }
+};
+
+/// What is certain of pairs of triangles, lane by lane.
+struct Verdict {
+  Lanes cross, disjoint;
+};
+
+/// Of triangles each of which has corners certainly on both sides of the other's plane: do they overlap on
+/// the line in which the planes cross? As engine/exact/planes_cross.hpp decides it, whose orient3d(tip of a,
+/// end of a, tip of b, end of b) is -(edge of a x edge of b) . (tip of b - tip of a). A sign that is certain
+/// here is that of the world coordinates: a world point, seen in the leaf's frame, is an affine image, which
+/// may be mirrored but keeps what meets what, and every corner is within `error` of its own.
+inline Verdict overlap(const Corners& a, const SideLanes& a_sides, const Corners& b, const SideLanes& b_sides,
+                       const Between& w) {
+  const TipFirst ta(a, a_sides), tb(b, b_sides);
+  const Lanes alike = equal(ta.positive, tb.positive);
+  Float8 between_tips[3], ua[2][3], ub[2][3];
+  subtract(tb.t.x[0], ta.t.x[0], between_tips);
+  for (int end = 0; end < 2; ++end) subtract(ta.t.x[1 + end], ta.t.x[0], ua[end]);
+  for (int end = 0; end < 2; ++end)
+    for (int axis = 0; axis < 3; ++axis)
+      ub[end][axis] = select(alike, tb.t.x[1 + end][axis], tb.t.x[2 - end][axis]) - tb.t.x[0][axis];
+  Lanes low[2], high[2];
+  for (int end = 0; end < 2; ++end) {
+    const Normal n(ua[end], w.edge_error[0], ub[end], w.edge_error[1], w.reach, w.error);
+    const Float8 value = n.dot(between_tips);
+    low[end] = greater(-n.bound, value);
+    high[end] = greater(value, n.bound);
+  }
+  const Lanes certain = both(a_sides.certain, b_sides.certain);
+  return {both(certain, select(tb.positive, both(high[0], low[1]), both(low[0], high[1]))),
+          both(certain, select(tb.positive, either(low[0], high[1]), either(high[0], low[1])))};
+}
+
+/// What is certain of eight pairs of triangles; a bit for each.
+struct EightCertainties {
+  std::uint32_t cross = 0, disjoint = 0, uncertain = 0;
+  std::uint32_t one_side[2] = {};   ///< of A's and B's: corners that are certain lie on one side
+  std::uint32_t unsure[2][3] = {};  ///< [A's, B's][corner]: may lie in the other's plane
+
+  /// Without branches: what is certain of a pair cannot be foretold.
+  void tell(int lane, Candidate& c) const {
+    const auto is = [lane](std::uint32_t lanes) { return lanes >> lane & 1; };
+    const auto value = [](Certainty certainty) { return static_cast<std::uint32_t>(certainty); };
+    // A triangle whose other corners are on one side of a plane meets it in the hull of those that may lie in
+    // it: if they are corners of the other triangle, that hull is an edge or a corner of it, or all of it.
+    const std::uint32_t of = is(one_side[0]) ^ 1, touch = is(uncertain) & (is(one_side[0]) | is(one_side[1]));
+    c.certainty = static_cast<Certainty>(is(cross) * value(Certainty::cross) +
+                                         is(disjoint) * value(Certainty::disjoint) +
+                                         touch * value(Certainty::touch_if_shared));
+    c.side = static_cast<Side>(of);
+    c.corners =
+        static_cast<std::uint8_t>(is(unsure[of][0]) | is(unsure[of][1]) << 1 | is(unsure[of][2]) << 2);
+  }
+};
+
+inline EightCertainties certainties_of(const Corners& a, const SideLanes& a_sides, const Corners& b,
+                                       const SideLanes& b_sides, const Between& w, std::uint32_t which) {
+  EightCertainties c;
+  const std::uint32_t certain = bits(both(a_sides.certain, b_sides.certain)) & which;
+  if (certain != 0) {
+    const Verdict v = overlap(a, a_sides, b, b_sides, w);
+    c.cross = bits(v.cross);
+    c.disjoint = bits(v.disjoint);
+  }
+  if (certain == which) return c;
+  c.uncertain = which & ~certain;
+  const SideLanes* const sides[2] = {&a_sides, &b_sides};
+  for (int of = 0; of < 2; ++of) {
+    c.one_side[of] = bits(sides[of]->one_side()) & ~bits(sides[of]->certain);
+    for (int corner = 0; corner < 3; ++corner)
+      c.unsure[of][corner] = ~bits(either(sides[of]->positive[corner], sides[of]->negative[corner]));
+  }
+  return c;
+}
+
+/// Simplices of a block, lane by lane: lane k gets number which[k].
+inline Corners pick(const Corners& from, const std::uint8_t* which) {
+  Corners to;
+#if defined(__AVX2__)
+  const __m256i lanes = _mm256_cvtepu8_epi32(_mm_loadl_epi64(reinterpret_cast<const __m128i*>(which)));
+  for (int corner = 0; corner < 3; ++corner)
+    for (int axis = 0; axis < 3; ++axis)
+      to.x[corner][axis] = reinterpret_cast<Float8>(
+          _mm256_permutevar8x32_ps(reinterpret_cast<__m256>(from.x[corner][axis]), lanes));
+#else
+  for (int corner = 0; corner < 3; ++corner)
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto* own = reinterpret_cast<const float*>(&from.x[corner][axis]);
+      for (int lane = 0; lane < 8; ++lane) to.x[corner][axis][lane] = own[which[lane]];
+    }
+#endif
+  return to;
+}
+
+}  // namespace
+}  // namespace lrb

@@ -1,0 +1,223 @@
+// Compiled once per instruction set by pair_kernel_*.cpp, which define LRB_PAIR_KERNEL_NAME: apart from the
+// tree kernel, whose speed hangs on what the compiler makes part of its one loop.
+
+#include "engine/tree/kernel_triangles.inl"
+#include "engine/tree/pair_kernel.hpp"
+
+namespace lrb {
+namespace {
+
+inline Float8 root8(Float8 x) {
+#if defined(__AVX__)
+  return reinterpret_cast<Float8>(_mm256_sqrt_ps(reinterpret_cast<__m256>(x)));
+#else
+  for (int k = 0; k < 8; ++k) x[k] = __builtin_sqrtf(x[k]);
+  return x;
+#endif
+}
+
+inline Float8 smaller(Float8 x, Float8 y) {
+  return select(greater(x, y), y, x);
+}
+
+inline float largest_of(Float8 x) {
+  x = larger(x, __builtin_shufflevector(x, x, 4, 5, 6, 7, 0, 1, 2, 3));
+  x = larger(x, __builtin_shufflevector(x, x, 2, 3, 0, 1, 6, 7, 4, 5));
+  x = larger(x, __builtin_shufflevector(x, x, 1, 0, 3, 2, 5, 4, 7, 6));
+  return x[0];
+}
+
+/// Eight simplices of a table, lane by lane.
+struct EightSimplices {
+  Float8 corner[3], edge[2][3], longest;
+
+  EightSimplices(const CachedSimplex* table, const std::uint32_t* which) {  // every second of which
+    Float8 column[3][4];
+    for (int part = 0; part < 3; ++part) {
+      Float8 row[4];
+      for (int i = 0; i < 4; ++i) {
+        Float4 low, high;
+        __builtin_memcpy(&low, part_of(table[which[2 * i]], part), sizeof low);
+        __builtin_memcpy(&high, part_of(table[which[2 * (i + 4)]], part), sizeof high);
+        row[i] = __builtin_shufflevector(low, high, 0, 1, 2, 3, 4, 5, 6, 7);
+      }
+      const Float8 low01 = __builtin_shufflevector(row[0], row[1], 0, 8, 1, 9, 4, 12, 5, 13);
+      const Float8 low23 = __builtin_shufflevector(row[2], row[3], 0, 8, 1, 9, 4, 12, 5, 13);
+      const Float8 high01 = __builtin_shufflevector(row[0], row[1], 2, 10, 3, 11, 6, 14, 7, 15);
+      const Float8 high23 = __builtin_shufflevector(row[2], row[3], 2, 10, 3, 11, 6, 14, 7, 15);
+      column[part][0] = __builtin_shufflevector(low01, low23, 0, 1, 8, 9, 4, 5, 12, 13);
+      column[part][1] = __builtin_shufflevector(low01, low23, 2, 3, 10, 11, 6, 7, 14, 15);
+      column[part][2] = __builtin_shufflevector(high01, high23, 0, 1, 8, 9, 4, 5, 12, 13);
+      column[part][3] = __builtin_shufflevector(high01, high23, 2, 3, 10, 11, 6, 7, 14, 15);
+    }
+    for (int x = 0; x < 3; ++x) {
+      corner[x] = column[x / 4][x % 4];
+      edge[0][x] = column[(3 + x) / 4][(3 + x) % 4];
+      edge[1][x] = column[(6 + x) / 4][(6 + x) % 4];
+    }
+    longest = column[9 / 4][9 % 4];
+  }
+
+ private:
+  /// Four numbers of a simplex. By bytes: they are of more than one of its arrays.
+  static const char* part_of(const CachedSimplex& s, int part) {
+    static_assert(sizeof s == 3 * sizeof(Float4));
+    return reinterpret_cast<const char*>(&s) + static_cast<std::size_t>(part) * sizeof(Float4);
+  }
+};
+
+/// Eight pairs, from A's first corners.
+struct EightPairs {
+  Corners a, b;
+  Float8 corner_b[3];  ///< the first, in B's frame
+  float edge_b;
+  Between w;
+
+  EightPairs(const PairKernel& k, const CachedPair* pairs) {
+    const EightSimplices of_a(k.a, &pairs->a), of_b(k.b, &pairs->b);
+    const float edge_a = largest_of(of_a.longest);
+    edge_b = largest_of(of_b.longest);
+    Float8 between{};  // the first corners, at least
+    for (int x = 0; x < 3; ++x) {
+      const auto turned = [&](const Float8* way) {
+        return splat(k.r[x][0]) * way[0] + splat(k.r[x][1]) * way[1] + splat(k.r[x][2]) * way[2];
+      };
+      a.x[0][x] = Float8{};
+      corner_b[x] = of_b.corner[x];
+      b.x[0][x] = (splat(k.t[x]) + turned(of_b.corner)) - of_a.corner[x];
+      between += abs8(b.x[0][x]);
+      for (int which = 0; which < 2; ++which) {
+        a.x[1 + which][x] = of_a.edge[which][x];
+        b.x[1 + which][x] = b.x[0][x] + turned(of_b.edge[which]);
+      }
+    }
+    const float whole = k.m_size * (k.radius_a + k.radius_b + __builtin_fabsf(k.t[0]) +
+                                    __builtin_fabsf(k.t[1]) + __builtin_fabsf(k.t[2]) + edge_b);
+    const float error = k.slack + kKernelRounding * whole;
+    const float reach = (largest_of(between) + edge_a + k.m_size * edge_b + 3 * error) * kFloatUp;
+    set_errors(w, k.slack, k.m_size, edge_a, edge_b, reach, whole);
+    w.error += kOwnEdgeRounding * edge_a;  // corners of A, too, are reached by edges
+  }
+};
+
+/// How far eight simplices reach along a direction.
+struct Shadow {
+  Float8 low, high;
+
+  Shadow(Float8 x, Float8 y, Float8 z) : low(smaller(smaller(x, y), z)), high(larger(larger(x, y), z)) {}
+};
+
+/// A direction and what eight pairs are across it, by any scale.
+struct Across {
+  Float8 d[3], a_above, b_above;  ///< what one is above the other at least, negative where they overlap
+  Float8 size;                    ///< |d|_1
+
+  /// Any direction will do, however it came about: only the corners' errors count, those of A's among them, 2
+  /// error |d|_1, in which there is room for the rounding of the products as there is in Normal. Neither too
+  /// long nor too short for its square; of no direction, NaN, which proves nothing.
+  Across(const Float8* direction, const EightPairs& p) {
+    const Float8 scale =
+        splat(1) / larger(larger(abs8(direction[0]), abs8(direction[1])), abs8(direction[2]));
+    for (int x = 0; x < 3; ++x) d[x] = direction[x] * scale;
+    const auto along = [this](const Float8* x) { return d[0] * x[0] + d[1] * x[1] + d[2] * x[2]; };
+    size = abs8(d[0]) + abs8(d[1]) + abs8(d[2]);
+    compare({Float8{}, along(p.a.x[1]), along(p.a.x[2])}, {along(p.b.x[0]), along(p.b.x[1]), along(p.b.x[2])},
+            splat(2 * p.w.error) * size);
+  }
+  Across(int axis, const EightPairs& p) : d{} {
+    d[axis] = size = splat(1);
+    compare({Float8{}, p.a.x[1][axis], p.a.x[2][axis]}, {p.b.x[0][axis], p.b.x[1][axis], p.b.x[2][axis]},
+            splat(2 * p.w.error));
+  }
+
+ private:
+  void compare(const Shadow& a, const Shadow& b, Float8 error) {
+    a_above = a.low - b.high - error - splat(kKernelTiny);
+    b_above = b.low - a.high - error - splat(kKernelTiny);
+  }
+};
+
+/// Calls see() with directions across which pairs may be apart: the normals of both, the axes, and the line
+/// between the middles.
+template <class See>
+inline void for_directions(const EightPairs& p, See&& see) {
+  Float8 d[3];
+  const Corners* const of[2] = {&p.a, &p.b};
+  for (const Corners* t : of) {
+    Float8 u[3], v[3];
+    subtract(t->x[1], t->x[0], u);
+    subtract(t->x[2], t->x[0], v);
+    for (int x = 0; x < 3; ++x) d[x] = u[(x + 1) % 3] * v[(x + 2) % 3] - u[(x + 2) % 3] * v[(x + 1) % 3];
+    see(Across(d, p));
+  }
+  for (int x = 0; x < 3; ++x) {
+    see(Across(x, p));
+    d[x] = (p.b.x[0][x] + p.b.x[1][x] + p.b.x[2][x]) - (p.a.x[1][x] + p.a.x[2][x]);
+  }
+  see(Across(d, p));
+}
+
+struct Span {
+  Float8 from, to;
+
+  /// NaN proves nothing.
+  void not_before(Float8 x) { from = larger(x, from); }
+  void not_after(Float8 x) { to = select(greater(to, x), x, to); }
+};
+
+/// A motion is at least as long as the widest slab between the two.
+inline Span span_of_lengths(const EightPairs& p) {
+  Span span{Float8{}, splat(__builtin_inff())};
+  for_directions(p, [&](const Across& x) {
+    const Float8 length = root8(x.d[0] * x.d[0] + x.d[1] * x.d[1] + x.d[2] * x.d[2]) * splat(kFloatUp);
+    span.not_before(larger(x.a_above, x.b_above) / length);
+  });
+  return span;
+}
+
+/// Across each direction B goes at a constant rate, give or take what is spared: from the one side of A it
+/// comes, on the other it leaves.
+inline Span span_of_sweep(const PairKernel& k, const EightPairs& p) {
+  Span span{splat(-__builtin_inff()), splat(__builtin_inff())};
+  const float longest = k.sweep_turn * k.radius_b + __builtin_fabsf(k.sweep_t[0]) +
+                        __builtin_fabsf(k.sweep_t[1]) + __builtin_fabsf(k.sweep_t[2]);
+  const Float8 spared = splat(k.margin + k.sweep_turn * p.edge_b + kSweepRounding * longest);
+  Float8 way[3];
+  for (int x = 0; x < 3; ++x)
+    way[x] = splat(k.sweep_t[x]) + splat(k.sweep[x][0]) * p.corner_b[0] +
+             splat(k.sweep[x][1]) * p.corner_b[1] + splat(k.sweep[x][2]) * p.corner_b[2];
+  for_directions(p, [&](const Across& x) {
+    const Float8 rate = x.d[0] * way[0] + x.d[1] * way[1] + x.d[2] * way[2];
+    const Lanes rises = greater(rate, Float8{});
+    const Float8 per_rate = splat(1) / abs8(rate), spare = spared * x.size;
+    span.not_before((select(rises, x.a_above, x.b_above) - spare) * per_rate);
+    span.not_after((spare - select(rises, x.b_above, x.a_above)) * per_rate);
+  });
+  return span;
+}
+
+inline PairVerdicts verdicts_of(const EightPairs& p) {
+  const SideLanes b_sides = sides_of_planes(p.a, p.b, p.w, p.w.edge_error[0]);
+  const SideLanes a_sides = sides_of_planes(p.b, p.a, p.w, p.w.edge_error[1]);
+  const std::uint32_t parted = bits(either(a_sides.parted, b_sides.parted));
+  if (parted == 255u) return {0, 255u};
+  const Verdict v = overlap(p.a, a_sides, p.b, b_sides, p.w);  // of the others
+  return {static_cast<std::uint8_t>(bits(v.cross) & ~parted),
+          static_cast<std::uint8_t>(bits(v.disjoint) | parted)};
+}
+
+}  // namespace
+
+void LRB_PAIR_KERNEL_NAME(const PairKernel& k) {
+  for (std::uint32_t i = 0; i < k.block_count; ++i) {
+    const EightPairs p(k, k.pairs + 8 * i);
+    if (k.verdicts) k.verdicts[i] = verdicts_of(p);
+    if (k.from) {
+      const Span span = k.is_swept ? span_of_sweep(k, p) : span_of_lengths(p);
+      __builtin_memcpy(k.from + 8 * i, &span.from, sizeof span.from);
+      __builtin_memcpy(k.to + 8 * i, &span.to, sizeof span.to);
+    }
+  }
+}
+
+}  // namespace lrb

@@ -1,0 +1,25 @@
+#include "engine/tree/self_pairs.hpp"
+
+#include "engine/tree/kernel_setup.hpp"
+
+namespace lrb {
+
+void for_each_self_pair(const ObbTree& tree, const std::function<void(SimplexId, SimplexId)>& visit) {
+  if (tree.empty()) return;
+  TreeKernel k = set_up_kernel(tree, Pose{}, tree, Pose{});
+  std::vector<NodePair> stack(128 * tree.height() + 64);
+  std::vector<Candidate> candidates(4096);
+  k.stack = stack.data();
+  k.stack[0] = {0, 0};
+  k.stack_size = 1;
+  k.out = candidates.data();
+  k.out_capacity = static_cast<std::uint32_t>(candidates.size());
+  while (k.stack_size != 0) {
+    k.out_size = 0;
+    run_tree_kernel(k);
+    for (std::uint32_t i = 0; i < k.out_size; ++i)
+      if (candidates[i].a < candidates[i].b) visit(candidates[i].a, candidates[i].b);
+  }
+}
+
+}  // namespace lrb

@@ -1,0 +1,198 @@
+#include "scenarios/bench/make_sets.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <filesystem>
+
+#include "engine/construct/build.hpp"
+#include "engine/core/error.hpp"
+#include "engine/core/file_bytes.hpp"
+#include "engine/lrb/lrb_file.hpp"
+#include "engine/mesh/io/mesh_io.hpp"
+#include "engine/query/collide_impl.hpp"
+#include "scenarios/bench/oracle.hpp"
+#include "scenarios/bodies/body.hpp"
+#include "scenarios/bodies/generators/generators.hpp"
+#include "scenarios/bodies/shapes/random_pose.hpp"
+
+namespace lrb::bench {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// How far B goes beyond first contact, in diagonals of the larger body; negative: apart.
+double depth_of(PoseClass c) {
+  return c == PoseClass::apart ? -0.005 : c == PoseClass::deep ? 0.1 : 0.01;
+}
+
+constexpr double kSmall = 0.1;  // of the other body's size
+
+/// B at random rotations, moved along random directions until it first meets A, and on.
+class Approaches {
+ public:
+  Approaches(const LrbRep& a, const LrbRep& b, double diagonal, std::uint64_t seed)
+      : a_(a), b_(b), diagonal_(diagonal), random_(seed) {
+    request_.mode = Mode::first_pair;
+  }
+
+  Pose next(double depth) {
+    while (true) {
+      Pose p;
+      p.r = shapes::random_rotation(random_);
+      const Eigen::Vector3d d = shapes::random_direction(random_);
+      const Eigen::Vector3d middle = shapes::box_of(a_).center() - p.r * shapes::box_of(b_).center();
+      const auto meets = [&](double s) {
+        p.t = middle + s * d;
+        NullProbe probe;
+        return !collide(a_, Pose{}, b_, p, request_, context_, probe).pairs.empty();
+      };
+      constexpr int kHalvings = 40;
+      double at = 2 * diagonal_, step = 0.004 * diagonal_;
+      while (at > 0 && !meets(at)) at -= step;
+      if (at <= 0) continue;
+      for (int i = 0; i < kHalvings; ++i) (meets(at + (step /= 2)) ? at += step : at);
+      p.t = middle + (at - depth * diagonal_) * d;
+      return p;
+    }
+  }
+
+ private:
+  const LrbRep &a_, &b_;
+  double diagonal_;
+  shapes::RandomEngine random_;
+  QueryContext context_;
+  CollideRequest request_;
+};
+
+std::uint32_t whole_root(double x) {
+  return static_cast<std::uint32_t>(std::max(2.0, std::round(std::sqrt(x))));
+}
+
+class Maker {
+ public:
+  Maker(const BodyPair& pair, const SetOptions& options, const std::string& folder)
+      : o_(options), folder_(folder) {
+    set_.name = pair.name;
+    set_.what = pair.what;
+    set_.folder = folder;
+    const Mesh a = pair.a(), b = pair.b();
+    Mesh small = b;
+    add("a", a);
+    add("b", b);
+    const double size_a = shapes::box_of(reps_[0]).diagonal().norm();
+    const double size_b = shapes::box_of(reps_[1]).diagonal().norm();
+    set_.diagonal = std::max(size_a, size_b);
+    for (Eigen::Vector3d& v : small.vertices) v *= kSmall * size_a / size_b;
+    add("small", small);
+  }
+
+  DataSet make() {
+    for (const PoseClass c : kPoseClasses) {
+      if (c == PoseClass::identical)
+        add_identical();
+      else
+        add_approaches(c, c == PoseClass::small ? 2 : 1);
+    }
+    return std::move(set_);
+  }
+
+ private:
+  void add(const char* role, const Mesh& mesh) {
+    const auto begin = std::chrono::steady_clock::now();
+    std::vector<std::string> notes;
+    reps_.push_back(bodies::build_from_mesh(mesh, {}, notes));
+    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    const std::string file = set_.name + "-" + role + ".lrb";
+    save_lrb(reps_.back(), folder_ + "/" + file);
+    set_.bodies.push_back({file, reps_.back().real_simplex_count(), seconds});
+  }
+
+  void ask(PoseClass c, std::size_t a, std::size_t b, const Pose& pose_a, const Pose& pose_b) {
+    set_.questions.push_back({c, a, b, pose_a, pose_b, exact_pairs(reps_[a], pose_a, reps_[b], pose_b)});
+  }
+
+  void add_approaches(PoseClass c, std::size_t b) {
+    Approaches approaches(reps_[0], reps_[b], set_.diagonal, o_.seed);
+    // One body small: 1 % of its own size, for it is all that there is to go into.
+    const double depth = depth_of(c) * (c == PoseClass::small ? kSmall : 1);
+    for (int i = 0; i < o_.poses; ++i) ask(c, 0, b, Pose{}, approaches.next(depth));
+  }
+
+  void add_identical() {
+    shapes::RandomEngine random(o_.seed);
+    for (int i = 0; i < std::max(1, o_.poses / 4); ++i) {
+      Pose p;
+      p.r = shapes::random_rotation(random);
+      p.t = set_.diagonal * shapes::random_direction(random);
+      ask(PoseClass::identical, 0, 0, p, p);
+    }
+  }
+
+  SetOptions o_;
+  std::string folder_;
+  DataSet set_;
+  std::vector<LrbRep> reps_;
+};
+
+std::function<Mesh()> maker(const char* name, generators::GeneratorValues values, std::uint64_t seed) {
+  return [=] { return generators::generate(name, values, seed); };
+}
+
+}  // namespace
+
+std::vector<BodyPair> generated_pairs(std::uint32_t faces) {
+  const double n = faces;
+  const double frequency = whole_root(n / 20);
+  const double sides = std::max(3.0, std::round(std::sqrt(n / 140)));
+  const double segments = std::max(12.0, std::round(n / (2 * sides)));
+  const generators::GeneratorValues rock = {{"frequency", frequency}};
+  const double points = std::max(4.0, std::round(std::sqrt(n / 400)));
+  // A gear of 16 teeth has about 64 points faces for each ring and side.
+  const generators::GeneratorValues gear = {{"points", points},
+                                            {"rings", std::max(1.0, std::round(n / (64 * points)))}};
+  const std::string size = std::to_string(faces);
+  const std::string about = " of about " + size + " faces";
+  return {
+      {"rocks-" + size, "two rocks" + about, maker("rock", rock, 1), maker("rock", rock, 2)},
+      {"knot-gear-" + size, "a knot and a gear" + about,
+       maker("knot", {{"segments", segments}, {"sides", sides}}, 1), maker("gear", gear, 1)},
+      {"balls-" + size, "two balls" + about, maker("ball", {{"frequency", frequency}}, 1),
+       maker("ball", {{"frequency", frequency}}, 1)},
+  };
+}
+
+std::vector<BodyPair> pairs_of_models(const std::string& folder) {
+  std::vector<fs::path> files;
+  std::error_code error;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder, error))
+    if (entry.is_regular_file()) files.push_back(entry.path());
+  if (error || files.size() < 2)
+    throw InputError(printable_name(folder) + ": expected a folder with two meshes or more");
+  std::sort(files.begin(), files.end());
+  std::vector<BodyPair> pairs;
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    const fs::path a = files[i], b = files[(i + 1) % files.size()];
+    const auto reader = [](const fs::path& p) { return [p] { return read_mesh(p.string()); }; };
+    pairs.push_back({a.stem().string() + "-" + b.stem().string(),
+                     a.stem().string() + " and " + b.stem().string(), reader(a), reader(b)});
+  }
+  return pairs;
+}
+
+DataSet make_data_set(const BodyPair& pair, const SetOptions& options, const std::string& folder) {
+  const std::string mark =
+      " (" + std::to_string(options.poses) + " poses a class, seed " + std::to_string(options.seed) + ")";
+  const std::string path = folder + "/" + pair.name + ".set.json";
+  if (fs::exists(path)) {
+    DataSet set = read_data_set(path);
+    if (set.what == pair.what + mark) return set;
+  }
+  BodyPair marked = pair;
+  marked.what += mark;
+  DataSet set = Maker(marked, options, folder).make();
+  write_data_set(set, folder);
+  return set;
+}
+
+}  // namespace lrb::bench

@@ -1,0 +1,32 @@
+#pragma once
+/// Makes data sets: bodies, poses of each class, and the exact answers.
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "engine/mesh/mesh.hpp"
+#include "scenarios/bench/data_set.hpp"
+
+namespace lrb::bench {
+
+struct BodyPair {
+  std::string name, what;
+  std::function<Mesh()> a, b;
+};
+
+/// Generated ones of about `faces` real faces each: two rocks, a knot and a gear, two balls.
+std::vector<BodyPair> generated_pairs(std::uint32_t faces);
+/// Each mesh or LRB-rep in a folder, by name, with the next one. Throws InputError if there are not two.
+std::vector<BodyPair> pairs_of_models(const std::string& folder);
+
+struct SetOptions {
+  int poses = 12;  ///< of each class; identical bodies at identical poses: a quarter of it
+  std::uint64_t seed = 1;
+};
+
+/// Writes the data set and its bodies into a folder and returns the set, or reads what is there if it was
+/// made of the same bodies and options. Throws InputError if a body cannot be an LRB-rep.
+DataSet make_data_set(const BodyPair& pair, const SetOptions& options, const std::string& folder);
+
+}  // namespace lrb::bench

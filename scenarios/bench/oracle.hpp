@@ -1,0 +1,14 @@
+#pragma once
+
+#include <vector>
+
+#include "engine/query/collide.hpp"
+
+namespace lrb::bench {
+
+/// Every pair of real triangles that meets: a sweep over boxes in the world, and exact tests of what is left.
+/// It shares the predicates and the definition of world coordinates with the query, and nothing else.
+std::vector<SimplexPair> exact_pairs(const LrbRep& a, const Pose& pose_a, const LrbRep& b,
+                                     const Pose& pose_b);
+
+}  // namespace lrb::bench

@@ -1,0 +1,18 @@
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "scenarios/bench/report/metrics.hpp"
+#include "scenarios/report/page/page.hpp"
+
+namespace lrb::bench {
+
+/// Speed against accuracy as a page that opens from disk: a chart for each pair of bodies and class of poses.
+/// `scene_of`: where a point leads, relative to the page; empty: nowhere.
+report::Page accuracy_page(const std::vector<DataSet>& sets, const std::vector<Point>& points,
+                           const std::vector<methods::MethodInfo>& methods,
+                           const std::function<std::string(const Point&)>& scene_of);
+
+}  // namespace lrb::bench

@@ -1,0 +1,135 @@
+#include "scenarios/bench/report/chart_print.hpp"
+
+#include <cmath>
+#include <cstdio>
+
+#include "scenarios/bench/report/series_style.hpp"
+
+namespace lrb::bench {
+namespace {
+
+constexpr double kPanelWidth = 50, kPanelHeight = 46, kLeft = 19, kTop = 7, kBottom = 12,
+                 kKeyHeight = 16;  // mm
+constexpr int kKeyColumns = 5;
+
+std::string number(double x) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.7g", x);
+  return text;
+}
+
+std::string style(std::size_t i, double size) {
+  return std::string(" lc rgb '") + look(i).colour + "' pt " + std::to_string(look(i).point) + " ps " +
+         number(size);
+}
+
+/// Sizes of the whole, in millimetres from the lower left corner.
+struct Layout {
+  double width, height;
+  std::string margins(double x0, double x1, double y0, double y1) const {
+    return "set lmargin at screen " + number(x0 / width) + "\nset rmargin at screen " + number(x1 / width) +
+           "\nset bmargin at screen " + number(y0 / height) + "\nset tmargin at screen " +
+           number(y1 / height) + "\n";
+  }
+};
+
+/// One panel: faint points, the frontier over them, and crosses where something failed.
+std::string plots_of(report::Gnuplot& chart, const std::string& id, const std::vector<const Point*>& panel,
+                     double slowest) {
+  std::vector<std::vector<std::string>> rows(look_count());
+  std::vector<std::string> failed, best;
+  std::string last;
+  for (const Point* p : panel) {
+    const std::string at = number(drawn_error(*p)) + " " + number(drawn_time(*p, slowest));
+    std::vector<std::string>& r = rows[look_of(p->method)];
+    if (!r.empty() && !(p->setting && p->method == last)) r.emplace_back();  // a gap: no line between methods
+    r.push_back(at);
+    last = p->method;
+    if (p->failed() > 0) failed.push_back(at);
+  }
+  for (const Point* p : frontier(panel)) best.push_back(number(drawn_error(*p)) + " " + number(p->median));
+  std::string plots;
+  const auto add = [&](const std::string& name, const std::vector<std::string>& data,
+                       const std::string& how) {
+    if (data.empty()) return;
+    chart.add_data(name, data);
+    plots += (plots.empty() ? "plot $" : ", $") + name + " using 1:2 with " + how;
+  };
+  add(id + "best", best, "steps lw 2.2 lc rgb '#c9d6df'");
+  for (std::size_t i = 0; i < rows.size(); ++i)
+    add(id + "m" + std::to_string(i), rows[i], "linespoints lw 0.6" + style(i, i == 0 ? 0.75 : 0.5));
+  add(id + "failed", failed, "points pt 2 ps 0.9 lw 1.6 lc rgb '#d00000'");
+  return plots.empty() ? "" : plots + "\n";
+}
+
+std::string key_of(report::Gnuplot& chart, const Layout& layout) {
+  const auto n = static_cast<int>(look_count()) + 2;
+  const int lines = (n + kKeyColumns - 1) / kKeyColumns;
+  std::string out =
+      layout.margins(2, layout.width - 2, 1, kKeyHeight - 1) +
+      "unset border\nunset tics\nunset title\nunset xlabel\nunset ylabel\nunset logscale\nunset grid\n"
+      "set xrange [0:" +
+      std::to_string(kKeyColumns) + "]\nset yrange [0:" + std::to_string(lines) + "]\n";
+  std::vector<std::string> titles;
+  std::string plots;
+  for (int i = 0; i < n; ++i) {
+    const double x = i / lines, y = lines - 0.5 - i % lines;
+    const std::string name = "key" + std::to_string(i);
+    const auto k = static_cast<std::size_t>(i);
+    const bool frontier = k == look_count(), failed = k == look_count() + 1;
+    std::vector<std::string> at = {number(x + 0.05) + " " + number(y)};
+    if (frontier) at.push_back(number(x + 0.09) + " " + number(y));
+    chart.add_data(name, at);
+    plots += (i == 0 ? "plot $" : ", $") + name + " using 1:2 with " +
+             (frontier ? std::string("lines lw 2.2 lc rgb '#c9d6df'")
+              : failed ? std::string("points pt 2 ps 0.9 lw 1.6 lc rgb '#d00000'")
+                       : "points" + style(k, 0.75));
+    titles.push_back(number(x + 0.11) + " " + number(y) + " " +
+                     report::gnuplot_data_text(frontier ? "Pareto frontier"
+                                               : failed ? "crash, refusal or time-out: the worst"
+                                                        : look(k).title));
+  }
+  chart.add_data("titles", titles);
+  return out + plots + ", $titles using 1:2:3 with labels left\n";
+}
+
+}  // namespace
+
+report::Gnuplot accuracy_chart(const std::vector<DataSet>& sets, const std::vector<Point>& points) {
+  const auto rows = static_cast<double>(sets.size());
+  const Layout layout{kLeft + std::size(kPoseClasses) * kPanelWidth + 3,
+                      kTop + rows * kPanelHeight + kBottom + kKeyHeight};
+  report::Gnuplot chart;
+  chart.width = layout.width;
+  chart.height = layout.height;
+  chart.font = 6.5;
+  std::string plots;
+  for (std::size_t row = 0; row < sets.size(); ++row) {
+    const double slowest = slowest_of(points, sets[row].name);
+    for (std::size_t column = 0; column < std::size(kPoseClasses); ++column) {
+      const auto here = panel(points, sets[row].name, kPoseClasses[column]);
+      const double x0 = kLeft + static_cast<double>(column) * kPanelWidth;
+      const double y1 = layout.height - kTop - static_cast<double>(row) * kPanelHeight;
+      plots += layout.margins(x0, x0 + kPanelWidth - 2, y1 - kPanelHeight + 3, y1);
+      plots += row == 0
+                   ? "set title " + report::gnuplot_text(title(kPoseClasses[column])) + " offset 0,-0.6\n"
+                   : "unset title\n";
+      plots += row + 1 == sets.size()
+                   ? "set xlabel 'error of the contact region / diagonal' offset 0,0.2\n"
+                     "set xtics ('0' 1e-7, '1e-5' 1e-5, '1e-3' 1e-3, '0.1' 0.1, '1' 1) nomirror\n"
+                   : "unset xlabel\nset xtics ('' 1e-7, '' 1e-5, '' 1e-3, '' 0.1, '' 1) nomirror\n";
+      plots += column == 0 ? "set ylabel " + report::gnuplot_text(sets[row].name + ": median, µs") +
+                                 " offset 0.4,0\nset ytics 10 format '%g' nomirror\n"
+                           : "unset ylabel\nset ytics 10 format '' nomirror\n";
+      plots += "set yrange [0.05:" + number(6 * slowest) + "]\n";
+      plots += plots_of(chart, "r" + std::to_string(row) + "c" + std::to_string(column), here, slowest);
+    }
+  }
+  chart.script +=
+      "set multiplot\nunset key\nset border 3 lw 0.6 lc rgb '#8a8f95'\nset logscale xy\nset xrange [3e-8:3]\n"
+      "set grid lw 0.4 lc rgb '#e2e4e6' dt 1\n" +
+      plots + key_of(chart, layout) + "unset multiplot\n";
+  return chart;
+}
+
+}  // namespace lrb::bench

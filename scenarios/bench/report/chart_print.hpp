@@ -1,0 +1,15 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "scenarios/bench/report/metrics.hpp"
+#include "scenarios/report/charts/gnuplot.hpp"
+
+namespace lrb::bench {
+
+/// Speed against accuracy for print: a row of panels for each pair of bodies, a column for each class of
+/// poses.
+report::Gnuplot accuracy_chart(const std::vector<DataSet>& sets, const std::vector<Point>& points);
+
+}  // namespace lrb::bench

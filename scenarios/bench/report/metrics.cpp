@@ -1,0 +1,229 @@
+#include "scenarios/bench/report/metrics.hpp"
+
+#include <algorithm>
+#include <iterator>
+#include <map>
+#include <tuple>
+
+#include "engine/lrb/lrb_file.hpp"
+#include "scenarios/bench/report/region_error.hpp"
+#include "scenarios/bench/report/statistics.hpp"
+
+namespace lrb::bench {
+namespace {
+
+constexpr MetricInfo kInfos[kMetrics] = {
+    {"contact", "share of poses where contact is said and there is none, or the reverse", 1},
+    {"precision", "1 - precision: share of the pairs listed that do not meet", 1},
+    {"recall", "1 - recall: share of the pairs that meet and are not listed", 1},
+    {"hausdorff", "Hausdorff distance of the contact regions, over the larger body's diagonal", 1},
+    {"length", "error of the contact curves' length, over the larger of both", 1},
+    {"area", "error of the contact's area, over the larger of both", 1},
+    {"centroid", "distance of the contacts' centroids, over the diagonal", 1},
+    {"normal", "angle between the normals of the largest contact, over 180 degrees", 1},
+    {"depth", "error of the largest depth, over the diagonal", 1},
+};
+
+constexpr Metric kAll[kMetrics] = {Metric::contact,   Metric::precision, Metric::recall,
+                                   Metric::hausdorff, Metric::length,    Metric::area,
+                                   Metric::centroid,  Metric::normal,    Metric::depth};
+
+std::optional<double>& at(Errors& e, Metric m) {
+  return e[static_cast<std::size_t>(m)];
+}
+
+bool lists_pairs(const methods::MethodInfo& m) {
+  return m.pairs;
+}
+bool gives_points(const methods::MethodInfo& m) {
+  return m.approximate || m.convex;
+}
+
+/// Whether a method answers what a metric is about at all.
+bool applies(const methods::MethodInfo& info, Metric m) {
+  if (m == Metric::contact) return true;
+  if (m == Metric::hausdorff || m == Metric::centroid) return lists_pairs(info) || gives_points(info);
+  return lists_pairs(info);
+}
+
+Errors worst_of(const methods::MethodInfo& info) {
+  Errors e;
+  for (const Metric m : kAll)
+    if (applies(info, m)) at(e, m) = metric_info(m).worst;
+  return e;
+}
+
+std::size_t without(const std::vector<SimplexPair>& of, const std::vector<SimplexPair>& others) {
+  std::vector<SimplexPair> out;
+  std::set_difference(of.begin(), of.end(), others.begin(), others.end(), std::back_inserter(out));
+  return out.size();
+}
+
+double share(std::size_t part, std::size_t whole) {
+  return whole == 0 ? 0 : static_cast<double>(part) / static_cast<double>(whole);
+}
+
+/// Judges what all methods answered to one question.
+class Judge {
+ public:
+  Judge(const DataSet& set, const Question& q, const LrbRep& a, const LrbRep& b)
+      : diagonal_(set.diagonal),
+        q_(q),
+        maker_(a, q.pose_a, b, q.pose_b),
+        exact_(maker_.of_pairs(q.expected)) {}
+
+  Errors errors(const methods::MethodInfo& info, const Record& r) {
+    if (r.outcome != Outcome::answered) return worst_of(info);
+    Errors e;
+    at(e, Metric::contact) = r.all.contact == q_.expected.empty() ? metric_info(Metric::contact).worst : 0;
+    if (lists_pairs(info)) {
+      at(e, Metric::precision) = share(without(r.all.pairs, q_.expected), r.all.pairs.size());
+      at(e, Metric::recall) = share(without(q_.expected, r.all.pairs), q_.expected.size());
+      set_region(e, info, r.all.pairs == q_.expected ? RegionError{} : error(maker_.of_pairs(r.all.pairs)));
+    } else if (gives_points(info)) {
+      set_region(e, info, error(of_points(r.all.points)));
+    }
+    return e;
+  }
+
+ private:
+  RegionError error(const Region& found) const { return region_error(exact_, found, diagonal_); }
+
+  static void set_region(Errors& e, const methods::MethodInfo& info, const RegionError& r) {
+    const std::pair<Metric, double> values[] = {
+        {Metric::hausdorff, r.hausdorff}, {Metric::length, r.length}, {Metric::area, r.area},
+        {Metric::centroid, r.centroid},   {Metric::normal, r.normal}, {Metric::depth, r.depth}};
+    for (const auto& [m, value] : values)
+      if (applies(info, m)) at(e, m) = value;
+  }
+
+  double diagonal_;
+  const Question& q_;
+  RegionMaker maker_;
+  Region exact_;
+};
+
+/// What is gathered for a point.
+struct Gathered {
+  Point point;
+  std::vector<double> us;
+  Errors sums;
+  double worst = -1;
+};
+
+void add(Gathered& g, const Record& r, const Errors& e) {
+  Point& p = g.point;
+  ++p.questions;
+  p.refused += r.outcome == Outcome::refused;
+  p.crashed += r.outcome == Outcome::crashed;
+  p.timed_out += r.outcome == Outcome::timed_out;
+  for (const Metric m : kAll)
+    if (const auto& value = e[static_cast<std::size_t>(m)])
+      at(g.sums, m) = at(g.sums, m).value_or(0) + *value;
+  Point one;
+  one.errors = e;
+  if (one.error() > g.worst) {
+    g.worst = one.error();
+    p.worst_question = r.question;
+  }
+  if (r.outcome != Outcome::answered) return;
+  g.us.push_back(r.all.hot_us);
+  p.build_seconds = std::max(p.build_seconds, r.build_seconds);
+  p.bytes = std::max(p.bytes, r.bytes);
+  p.face_tests += static_cast<double>(r.all.face_tests);
+}
+
+Point finished(Gathered g) {
+  Point& p = g.point;
+  const auto n = static_cast<double>(p.questions);
+  for (const Metric m : kAll)
+    if (const auto& sum = at(g.sums, m)) at(p.errors, m) = *sum / n;
+  p.median = median(g.us);
+  p.p95 = quantile(g.us, 0.95);
+  p.p99 = quantile(g.us, 0.99);
+  if (!g.us.empty()) p.face_tests /= static_cast<double>(g.us.size());
+  return p;
+}
+
+/// Nothing is both as fast and as right, and better in one of the two. What answered nothing has no time, and
+/// what says only yes or no does not answer the same question.
+void mark_frontiers(std::vector<Point>& points) {
+  for (Point& p : points) {
+    const auto takes_part = [](const Point& x) { return x.median > 0 && x.gives_region(); };
+    p.frontier = takes_part(p);
+    for (const Point& other : points) {
+      if (other.set != p.set || other.pose_class != p.pose_class || !takes_part(other)) continue;
+      const bool no_worse = other.median <= p.median && other.error() <= p.error();
+      if (no_worse && (other.median < p.median || other.error() < p.error())) p.frontier = false;
+    }
+  }
+}
+
+}  // namespace
+
+const MetricInfo& metric_info(Metric m) {
+  return kInfos[static_cast<std::size_t>(m)];
+}
+
+double Point::error() const {
+  const auto& region = errors[static_cast<std::size_t>(Metric::hausdorff)];
+  const auto& contact = errors[static_cast<std::size_t>(Metric::contact)];
+  return region ? *region : contact.value_or(metric_info(Metric::contact).worst);
+}
+
+std::vector<Point> measure_points(const std::vector<DataSet>& sets,
+                                  const std::vector<methods::MethodInfo>& methods,
+                                  const std::vector<Record>& records, const MetricProgress& progress) {
+  std::map<std::pair<std::string, std::uint64_t>, std::vector<const Record*>> by_question;
+  for (const Record& r : records) by_question[{r.set, r.question}].push_back(&r);
+  std::vector<Point> points;
+  std::size_t done = 0;
+  for (const DataSet& set : sets) {
+    std::vector<LrbRep> bodies;
+    for (const BodyFile& b : set.bodies) bodies.push_back(load_lrb(set.folder + "/" + b.file));
+    std::map<std::tuple<PoseClass, std::string, std::optional<double>>, Gathered> gathered;
+    for (std::uint64_t k = 0; k < set.questions.size(); ++k) {
+      const Question& q = set.questions[k];
+      Judge judge(set, q, bodies.at(q.a), bodies.at(q.b));
+      for (const Record* r : by_question[{set.name, k}]) {
+        const auto info = std::find_if(methods.begin(), methods.end(),
+                                       [&](const methods::MethodInfo& m) { return m.name == r->method; });
+        if (info == methods.end()) continue;
+        Gathered& g = gathered[{q.pose_class, r->method, r->setting}];
+        g.point.set = set.name;
+        g.point.method = r->method;
+        g.point.setting = r->setting;
+        g.point.pose_class = q.pose_class;
+        add(g, *r, judge.errors(*info, *r));
+        if (progress) progress(++done, records.size());
+      }
+    }
+    for (auto& [key, g] : gathered) points.push_back(finished(std::move(g)));
+  }
+  mark_frontiers(points);
+  return points;
+}
+
+std::string to_lines(const std::vector<Point>& points) {
+  std::string out;
+  for (const Point& p : points) {
+    nlohmann::ordered_json value = {{"set", p.set}, {"class", to_string(p.pose_class)}, {"method", p.method}};
+    if (p.setting) value["setting"] = *p.setting;
+    value["questions"] = p.questions;
+    value["refused"] = p.refused;
+    value["crashed"] = p.crashed;
+    value["timed_out"] = p.timed_out;
+    for (const Metric m : kAll)
+      if (const auto& e = p.errors[static_cast<std::size_t>(m)]) value["errors"][metric_info(m).name] = *e;
+    value["us"] = {{"median", p.median}, {"p95", p.p95}, {"p99", p.p99}};
+    value["build_s"] = p.build_seconds;
+    value["bytes"] = p.bytes;
+    value["face_tests"] = p.face_tests;
+    value["frontier"] = p.frontier;
+    value["worst_question"] = p.worst_question;
+    out += value.dump() + "\n";
+  }
+  return out;
+}
+
+}  // namespace lrb::bench

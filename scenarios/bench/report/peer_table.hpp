@@ -1,0 +1,42 @@
+#pragma once
+/// Ours beside its peers: ratios, times and exactness, from records.
+
+#include <string>
+#include <vector>
+
+#include "scenarios/bench/record.hpp"
+#include "scenarios/methods/method.hpp"
+
+namespace lrb::bench {
+
+/// One method on one class of poses of one data set, in one mode.
+struct PeerCell {
+  std::string set, method;
+  PoseClass pose_class = PoseClass::apart;
+  Mode mode = Mode::all_pairs;
+  std::size_t questions = 0, answered = 0, crashed = 0, timed_out = 0;
+  double hot = 0, hot_p95 = 0, cold = 0, cold_p95 = 0;  ///< microseconds: median and 95th percentile
+  double ratio = 0, cold_ratio = 0;  ///< to ours: median over the questions; 0: no answer to compare
+  double pairs = 0;                  ///< found, on average
+  std::uint64_t missed = 0, extra = 0;
+};
+
+struct PeerTable {
+  std::vector<std::string> sets;             ///< names
+  std::vector<methods::MethodInfo> methods;  ///< in the order of columns; ours first
+  std::vector<PeerCell> cells;
+
+  const PeerCell* find(const std::string& set, const std::string& method, PoseClass c, Mode mode) const;
+};
+
+/// The method that everything is compared with is "ours".
+PeerTable peer_table(const std::vector<DataSet>& sets, const std::vector<methods::MethodInfo>& methods,
+                     const std::vector<Record>& records);
+
+/// For stdout: ratios, the geometric means against what was aimed at, where a peer is ahead, what exactness
+/// costs, and who answered exactly.
+std::string in_brief(const PeerTable& table);
+/// A line for every cell, with all its numbers.
+std::string in_full(const PeerTable& table);
+
+}  // namespace lrb::bench

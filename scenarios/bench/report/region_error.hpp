@@ -1,0 +1,48 @@
+#pragma once
+/// How far what a method calls the contact is from the exact contact: of two posed bodies, the region that a
+/// list of pairs spans, or points that a method gave in place of pairs.
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "engine/query/collide_impl.hpp"
+#include "scenarios/bench/record.hpp"
+
+namespace lrb::bench {
+
+/// Contact in few numbers and many points; all in the world frame and the meshes' unit.
+struct Region {
+  std::vector<Eigen::Vector3d> points;  ///< corners of the intersections, at most kMostPoints of them
+  double length = 0, area = 0;          ///< sums over connected regions
+  Eigen::Vector3d centroid{0, 0, 0};    ///< of the points
+  Eigen::Vector3d normal{0, 0, 0};      ///< of the largest connected region; zero: none
+  double depth = 0;                     ///< the largest
+};
+
+/// Errors relative to the diagonal of the larger body, or to the exact value. 1 is the worst of each.
+struct RegionError {
+  double hausdorff = 0, centroid = 0;  ///< over the diagonal
+  double length = 0, area = 0;         ///< over the larger of both values
+  double normal = 0;                   ///< angle over 180 degrees
+  double depth = 0;                    ///< over the diagonal
+};
+
+/// Describes lists of pairs of two bodies at given poses.
+class RegionMaker {
+ public:
+  RegionMaker(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b);
+  /// Pairs that do not meet are left out of all but the points, where their triangles' middles stand for
+  /// them.
+  Region of_pairs(const std::vector<SimplexPair>& pairs);
+
+ private:
+  QueryContext context_;
+};
+
+Region of_points(const std::vector<Eigen::Vector3d>& points);
+
+/// Nothing against nothing is no error; nothing against something is the worst.
+RegionError region_error(const Region& exact, const Region& found, double diagonal);
+
+}  // namespace lrb::bench

@@ -1,0 +1,73 @@
+#include "scenarios/bench/report/scenes.hpp"
+
+#include <filesystem>
+
+#include "scenarios/bench/report/series_style.hpp"
+#include "scenarios/io/files.hpp"
+#include "scenarios/run/run_scenario.hpp"
+#include "scenarios/spec/scenario.hpp"
+
+namespace lrb::bench {
+namespace {
+
+using nlohmann::ordered_json;
+
+/// The question that most points call their worst; the first of the class if none has an error.
+std::uint64_t question_of(const DataSet& set, const std::vector<const Point*>& panel, PoseClass c) {
+  std::map<std::uint64_t, std::size_t> votes;
+  for (const Point* p : panel)
+    if (p->error() > 0) ++votes[p->worst_question];
+  std::uint64_t best = 0;
+  while (best < set.questions.size() && set.questions[best].pose_class != c) ++best;
+  std::size_t most = 0;
+  for (const auto& [question, count] : votes)
+    if (count > most) {
+      best = question;
+      most = count;
+    }
+  return best;
+}
+
+std::string scenario_text(const DataSet& set, std::uint64_t k, const std::string& name) {
+  const Question& q = set.questions[k];
+  const ordered_json views = {{{"camera", "scene"}, {"title", "Whole, with wrappers"}},
+                              {{"camera", "contact"}, {"draw", "body"}, {"title", "Contact, bodies alone"}}};
+  const ordered_json value = {
+      {"name", name},
+      {"purpose", set.what + ": " + title(q.pose_class) + ", question " + std::to_string(k) + "."},
+      {"bodies",
+       {{"a", {{"file", "../" + set.bodies[q.a].file}, {"pose", pose_json(q.pose_a)}}},
+        {"b", {{"file", "../" + set.bodies[q.b].file}}}}},
+      {"motion", {{"kind", "poses"}, {"poses", {pose_json(q.pose_b)}}}},
+      {"trace", {{"gzip", true}}},
+      {"frames", {{"at", "step"}, {"size", {960, 540}}, {"views", views}}},
+      {"expect", {{{"step", 0}, {"pairs", q.expected.size()}}}}};
+  return value.dump(2) + "\n";
+}
+
+}  // namespace
+
+std::map<SceneKey, std::string> write_scenes(const std::vector<DataSet>& sets,
+                                             const std::vector<Point>& points, const std::string& folder,
+                                             const run::ProgressReport& progress) {
+  std::map<SceneKey, std::string> pages;
+  std::uint64_t done = 0;
+  for (const DataSet& set : sets)
+    for (const PoseClass c : kPoseClasses) {
+      progress("scenes", done++, sets.size() * std::size(kPoseClasses));
+      const std::uint64_t k = question_of(set, panel(points, set.name, c), c);
+      if (k >= set.questions.size()) continue;
+      const std::string name = set.name + "-" + to_string(c);
+      const std::string file = folder + "/scenes/" + name + ".scenario.json";
+      const std::string text = scenario_text(set, k, name), page = "scenes/" + name + "/index.html";
+      pages[{set.name, c}] = page;
+      namespace fs = std::filesystem;
+      if (fs::exists(folder + "/" + page) && fs::exists(file) && io::read_text(file) == text) continue;
+      io::write_text(file, text);
+      run::run_scenario(spec::parse_scenario(text, file), folder + "/scenes/" + name, "lrbscope run " + file,
+                        [](const std::string&, std::uint64_t, std::uint64_t) {});
+    }
+  return pages;
+}
+
+}  // namespace lrb::bench

@@ -1,0 +1,75 @@
+#include "scenarios/bodies/body.hpp"
+
+#include <chrono>
+#include <fstream>
+
+#include "engine/core/error.hpp"
+#include "engine/lrb/lrb_file.hpp"
+#include "engine/mesh/io/mesh_io.hpp"
+#include "engine/mesh/mesh_check.hpp"
+
+namespace lrb::bodies {
+namespace {
+
+double seconds_since(std::chrono::steady_clock::time_point begin) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+}
+
+/// A mesh's findings on one line, its name said once, before them.
+std::string joined(const Mesh& mesh, const std::vector<std::string>& lines) {
+  const std::string name = mesh.name + ": ";
+  std::string out;
+  for (const std::string& line : lines)
+    out += (out.empty() ? "" : " | ") + (line.starts_with(name) ? line.substr(name.size()) : line);
+  return out;
+}
+
+void turn_outward(Mesh& mesh, std::vector<std::string>& notes) {
+  const std::uint32_t turned = orient_outward(mesh);
+  if (turned > 0)
+    notes.push_back(mesh.name + ": turned " + std::to_string(turned) +
+                    (turned == 1 ? " component that was inside out" : " components that were inside out"));
+}
+
+}  // namespace
+
+bool is_lrb_file(const std::string& path) {
+  constexpr std::size_t kEnough = 64;  // bytes: more than any magic
+  std::ifstream in(path, std::ios::binary);
+  std::string start(kEnough, '\0');
+  in.read(start.data(), static_cast<std::streamsize>(start.size()));
+  return looks_like_lrb(std::string_view(start).substr(0, static_cast<std::size_t>(in.gcount())));
+}
+
+LrbRep build_from_mesh(Mesh mesh, const BuildOptions& options, std::vector<std::string>& notes) {
+  const MeshReport report = check_mesh(mesh, false);
+  if (!report.buildable())
+    throw InputError(mesh.name + ": cannot be an LRB-rep: " + joined(mesh, report.obstacles(mesh)) +
+                     " | it can still be queried, not built");
+  turn_outward(mesh, notes);
+  return build_lrb(mesh, options);
+}
+
+LoadedBody body_of_mesh(Mesh mesh, const BuildOptions& options) {
+  const MeshReport report = check_mesh(mesh);
+  if (!report.queryable())
+    throw InputError(mesh.name + ": cannot be queried: " + joined(mesh, report.lines(mesh)));
+  const bool self_intersecting = report[MeshFault::self_intersection].count > 0;
+  std::vector<std::string> notes;
+  if (report.buildable()) {
+    turn_outward(mesh, notes);
+    const auto begin = std::chrono::steady_clock::now();
+    LrbRep rep = build_lrb(mesh, options);
+    return {std::move(rep), std::move(notes), seconds_since(begin)};
+  }
+  notes.push_back(mesh.name + ": queried without regions, because it cannot have any: " +
+                  joined(mesh, report.obstacles(mesh)));
+  return {LrbRep::without_regions(mesh, report.bounds_solid, self_intersecting), std::move(notes), 0};
+}
+
+LoadedBody load_body(const std::string& path, const BuildOptions& options) {
+  if (is_lrb_file(path)) return {load_lrb(path), {}, 0};
+  return body_of_mesh(read_mesh(path), options);
+}
+
+}  // namespace lrb::bodies

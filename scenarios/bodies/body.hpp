@@ -1,0 +1,31 @@
+#pragma once
+/// A body for a query, from whatever the user has: a mesh file, an LRB-rep file, or a mesh in memory.
+
+#include <string>
+#include <vector>
+
+#include "engine/construct/build.hpp"
+#include "engine/lrb/lrb_rep.hpp"
+#include "engine/mesh/mesh.hpp"
+
+namespace lrb::bodies {
+
+struct LoadedBody {
+  LrbRep rep;
+  std::vector<std::string> notes;  ///< what was done to it or could not be: one line each, for people
+  double build_seconds = 0;        ///< 0 if nothing was built
+};
+
+/// Whether the file says it is an LRB-rep (its first bytes, not its name).
+bool is_lrb_file(const std::string& path);
+
+/// Reads a mesh and builds its LRB-rep, or reads an LRB-rep. A mesh that cannot have one (open, non-manifold)
+/// comes as a body without regions, and a note says why. Throws InputError if it cannot be queried at all.
+LoadedBody load_body(const std::string& path, const BuildOptions& options = {});
+LoadedBody body_of_mesh(Mesh mesh, const BuildOptions& options = {});
+
+/// Reads a mesh, turns what is inside out, and builds; InputError lists the offenders if it cannot be built.
+/// `notes` gets what was done on the way.
+LrbRep build_from_mesh(Mesh mesh, const BuildOptions& options, std::vector<std::string>& notes);
+
+}  // namespace lrb::bodies

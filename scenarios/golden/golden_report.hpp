@@ -1,0 +1,42 @@
+#pragma once
+/// What a test of goldens leaves: files of what differs, and a page.
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "scenarios/golden/check.hpp"
+#include "scenarios/report/page/inline_image.hpp"
+#include "scenarios/report/page/page.hpp"
+
+namespace lrb::golden {
+
+/// One scenario's test, without its run.
+struct GoldenResult {
+  std::string name, purpose;
+  GoldenVerdict verdict;
+  std::size_t steps = 0, events = 0;
+  std::string approve;                              ///< the command
+  std::vector<report::PageComparison> comparisons;  ///< for the page, pictures without their data
+  std::vector<std::array<report::PngBytes, 3>>
+      pngs;  ///< of each: expected, actual, difference; empty: there is none
+};
+
+/// Tests a run. Pictures of what passed are kept if `all`.
+GoldenResult test_golden(const Golden& golden, const GoldenRun& run, const std::string& approve, bool all);
+
+/// Removes what an earlier test of these goldens left in a folder, and nothing else.
+void clear_golden_report(const std::string& folder, const std::vector<std::string>& names);
+
+/// The failures of a test as folder/NAME/{frame_1,divergence}.{expected,actual,difference}.png and, where the
+/// events differ, NAME/actual.trace.json.gz, for `lrbscope render` and Perfetto.
+void write_failures(const GoldenResult& result, const GoldenRun& run, const std::string& folder);
+
+/// folder/index.html
+void write_golden_page(const std::vector<GoldenResult>& results, const std::string& folder,
+                       const std::string& command);
+
+/// The lines that tell people about a scenario's test.
+std::string result_text(const GoldenResult& result);
+
+}  // namespace lrb::golden

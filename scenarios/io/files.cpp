@@ -1,0 +1,74 @@
+#include "scenarios/io/files.hpp"
+
+#include <cerrno>
+#include <filesystem>
+#include <system_error>
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include "engine/core/atomic_file.hpp"
+#include "engine/core/error.hpp"
+#include "engine/core/file_bytes.hpp"
+
+namespace lrb::io {
+namespace fs = std::filesystem;
+namespace {
+
+bool is_written(const fs::path& name) {
+  if (name == "frames") return true;
+  for (const char* ending : {".html", ".json", ".gz", ".lrb", ".png"})
+    if (name.extension() == ending) return true;
+  return false;
+}
+
+void refuse_links_in(const fs::path& folder) {
+  std::error_code error;
+  for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error))
+    if (fs::is_symlink(entry->symlink_status()) && is_written(entry->path().filename()))
+      throw EnvironmentError(printable_name(entry->path().string()) +
+                             ": a symbolic link stands where a file of the run goes, and could lead out of "
+                             "the folder; remove it, or name another folder with -o");
+}
+
+}  // namespace
+
+std::string read_text(const std::string& path) {
+  return read_file(path);
+}
+
+void make_folder(const std::string& path) {
+  if (path.empty()) return;
+  std::error_code error;
+  fs::create_directories(path, error);
+  if (error || !fs::is_directory(path, error))
+    throw EnvironmentError(path + ": cannot be made a folder (" +
+                           (error ? error.message() : "a file is in the way") + ")");
+}
+
+void write_text(const std::string& path, const std::string& text) {
+  make_folder(fs::path(path).parent_path().string());
+  write_file(path, text);
+}
+
+void refuse_links(const std::string& folder) {
+  refuse_links_in(folder);  // frames, if it is a link itself, ends here
+  refuse_links_in(fs::path(folder) / "frames");
+}
+
+FolderLock::FolderLock(const std::string& path)
+    : folder_(open(path.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
+  if (folder_ < 0) return;  // written to, but not to be listed: there is nothing to lock it by
+  if (flock(folder_, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK) return;
+  close(folder_);
+  throw EnvironmentError(
+      printable_name(path) +
+      ": another lrbscope is writing to this folder; wait for it, or name another with -o");
+}
+
+FolderLock::~FolderLock() {
+  if (folder_ >= 0) close(folder_);
+}
+
+}  // namespace lrb::io

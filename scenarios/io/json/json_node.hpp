@@ -1,0 +1,68 @@
+#pragma once
+/// Reading a JsonText by what is expected in it: a wrong type, value or key is an InputError that names its
+/// place.
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "scenarios/io/json/json_text.hpp"
+
+namespace lrb::io {
+
+class JsonNode {
+ public:
+  explicit JsonNode(const JsonText& text) : text_(&text), value_(&text.root()) {}
+
+  /// As an object with no keys but these: an unknown one is an error with the nearest known word.
+  const JsonNode& object(const std::vector<std::string>& keys) const;
+  bool has(const std::string& key) const { return value_->is_object() && value_->contains(key); }
+  JsonNode at(const std::string& key) const;  ///< must be there
+  std::optional<JsonNode> get(const std::string& key) const;
+
+  /// As an array of at least `least` values.
+  std::vector<JsonNode> items(std::size_t least = 0) const;
+  bool is_array() const { return value_->is_array(); }
+  bool is_object() const { return value_->is_object(); }
+  bool is_string() const { return value_->is_string(); }
+
+  double number(double least, double most) const;
+  std::uint64_t integer(std::uint64_t least, std::uint64_t most) const;
+  bool boolean() const;
+  std::string string() const;
+  std::vector<double> numbers(std::size_t count) const;  ///< an array of exactly so many
+  Eigen::Vector3d vector() const;                        ///< three numbers
+  /// One of these words.
+  template <class T>
+  T choice(const std::vector<std::pair<std::string, T>>& words) const {
+    std::vector<std::string> known;
+    for (const auto& [word, value] : words) {
+      if (value_->is_string() && value_->get_ref<const std::string&>() == word) return value;
+      known.push_back(word);
+    }
+    fail_choice(known);
+  }
+
+  /// Throws InputError: "file:line:column: pointer: message".
+  [[noreturn]] void fail(const std::string& message) const;
+  /// The same with the place of the member's key.
+  [[noreturn]] void fail_key(const std::string& key, const std::string& message) const;
+  const nlohmann::json& json() const { return *value_; }
+  const std::string& pointer() const { return pointer_; }
+
+ private:
+  JsonNode(const JsonText& text, const nlohmann::json& value, std::string pointer)
+      : text_(&text), value_(&value), pointer_(std::move(pointer)) {}
+  [[noreturn]] void fail_type(const char* expected) const;
+  [[noreturn]] void fail_choice(const std::vector<std::string>& known) const;
+
+  const JsonText* text_;
+  const nlohmann::json* value_;
+  std::string pointer_;
+};
+
+}  // namespace lrb::io

@@ -1,0 +1,88 @@
+#include "scenarios/io/pose_file.hpp"
+
+#include <charconv>
+#include <cmath>
+#include <string_view>
+
+#include "engine/core/error.hpp"
+#include "scenarios/io/files.hpp"
+
+namespace lrb::io {
+namespace {
+
+constexpr std::string_view kBetween = " \t\r\v\f,";
+
+std::vector<std::string_view> words_of(std::string_view line) {
+  line = line.substr(0, line.find('#'));
+  std::vector<std::string_view> words;
+  for (std::size_t at = line.find_first_not_of(kBetween); at != std::string_view::npos;
+       at = line.find_first_not_of(kBetween, at)) {
+    const std::size_t end = std::min(line.find_first_of(kBetween, at), line.size());
+    words.push_back(line.substr(at, end - at));
+    at = end;
+  }
+  return words;
+}
+
+/// A word as it can be shown in a one-line message.
+std::string shown(std::string_view word) {
+  constexpr std::size_t kLongest = 32;
+  std::string out;
+  for (const char c : word.substr(0, kLongest)) out += static_cast<unsigned char>(c) < ' ' ? '?' : c;
+  return "\"" + out + (word.size() > kLongest ? "...\"" : "\"");
+}
+
+double number(std::string_view word, const std::string& where) {
+  const std::string_view digits = word.substr(word[0] == '+' ? 1 : 0);  // from_chars knows no plus sign
+  double x = 0;
+  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), x);
+  if (error == std::errc::result_out_of_range)
+    throw InputError(where + shown(word) + " is beyond the range of a double");
+  if (error != std::errc() || end != digits.data() + digits.size())
+    throw InputError(where + shown(word) + " is not a number: expected 12 numbers a line");
+  if (!std::isfinite(x))
+    throw InputError(where + shown(word) + " is not finite: every number of a pose must be");
+  return x;
+}
+
+}  // namespace
+
+std::vector<Pose> parse_poses(const std::string& text, const std::string& name) {
+  std::vector<Pose> poses;
+  std::size_t line_number = 0;
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t end = std::min(text.find('\n', at), text.size());
+    const std::vector<std::string_view> words = words_of(std::string_view(text).substr(at, end - at));
+    at = end + 1;
+    const std::string where = name + ":" + std::to_string(++line_number) + ": ";
+    if (words.empty()) continue;
+    double x[12];
+    for (std::size_t i = 0; i < words.size() && i < 12; ++i) x[i] = number(words[i], where);
+    if (words.size() != 12)
+      throw InputError(where + "expected 12 numbers (a row-major 3x4 pose), found " +
+                       std::to_string(words.size()));
+    Pose pose;
+    for (int r = 0; r < 3; ++r) {
+      for (int c = 0; c < 3; ++c) pose.r(r, c) = x[4 * r + c];
+      pose.t[r] = x[4 * r + 3];
+    }
+    poses.push_back(pose);
+  }
+  if (poses.empty()) throw InputError(name + ": no poses: expected lines of 12 numbers (row-major 3x4)");
+  return poses;
+}
+
+std::vector<Pose> read_poses(const std::string& path) {
+  return parse_poses(read_text(path), path);
+}
+
+Eigen::Vector3d parse_vector(const std::string& text, const std::string& option) {
+  const std::vector<std::string_view> words = words_of(text);
+  if (words.size() != 3)
+    throw InputError(option + ": expected three numbers X,Y,Z, found " + std::to_string(words.size()) +
+                     " in \"" + text + "\"");
+  const std::string where = option + ": ";
+  return {number(words[0], where), number(words[1], where), number(words[2], where)};
+}
+
+}  // namespace lrb::io

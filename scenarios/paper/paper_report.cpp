@@ -1,0 +1,250 @@
+#include "scenarios/paper/paper_report.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <iomanip>
+#include <sstream>
+
+#include "scenarios/bodies/generators/fractal.hpp"
+#include "scenarios/io/files.hpp"
+#include "scenarios/paper/figures.hpp"
+#include "scenarios/paper/number_text.hpp"
+#include "scenarios/paper/report_pictures.hpp"
+#include "scenarios/report/page/page.hpp"
+#include "scenarios/run/run_report.hpp"
+
+namespace lrb::paper {
+namespace {
+
+constexpr std::array<const char*, 3> kTitles = {"the paper's recursion, each pair of regions once",
+                                                "the paper's recursion, each region once (strict)",
+                                                "complete"};
+
+/// Whether an object of the paper has these very numbers of faces.
+bool as_published(const PaperObject& o) {
+  const auto published = generators::paper_objects();
+  return std::any_of(published.begin(), published.end(), [&](const generators::FractalSpec& p) {
+    return p.name == o.name && p.real_faces == o.rep.real_face_count() && p.total_faces == o.rep.face_count();
+  });
+}
+
+bool all_as_published(const PaperReport& r) {
+  return std::all_of(r.objects.begin(), r.objects.end(), as_published);
+}
+
+report::PageTable table1(const PaperReport& r) {
+  report::PageTable t{
+      "Table 1: object sizes", {"object", "real faces", "total faces", "outermost wrapper"}, {}, {}};
+  t.note = all_as_published(r)
+               ? "Equal to the paper's, face by face: the generator is given its numbers. The bodies' shapes "
+                 "are ours: the paper says only that they are fractal, with a basic non-convex shape."
+               : "Not the paper's objects, or not all of them.";
+  for (const PaperObject& o : r.objects)
+    t.rows.push_back({o.name, std::to_string(o.rep.real_face_count()), std::to_string(o.rep.face_count()),
+                      std::to_string(o.rep.outermost_faces().size()) + " faces"});
+  return t;
+}
+
+report::PageTable table2(std::span<const ObjectRow> rows, std::size_t recursion) {
+  report::PageTable t;
+  t.title = std::string("Table 2, ") + kTitles[recursion];
+  t.columns = {"A against", "steps", "minimum",           "average",      "maximum", "published min",
+               "avg",       "max",   "refinements (avg)", "pairs missed", "n log n", "n²"};
+  if (kRecursions[recursion] == Recursion::complete)
+    t.columns.insert(t.columns.begin() + 9, "bound tests (avg)");
+  for (const ObjectRow& row : rows) {
+    const RecursionRow& x = row.recursions[recursion];
+    const PublishedRow* p = published(row.object);
+    std::vector<std::string> cells = {row.object, std::to_string(row.steps), whole(x.comparisons.min),
+                                      whole(x.comparisons.average), whole(x.comparisons.max)};
+    for (const double n : {p ? p->min : 0, p ? p->average : 0, p ? p->max : 0})
+      cells.push_back(p ? whole(n) : "–");
+    cells.push_back(fixed(x.refinements.average, 1));
+    if (kRecursions[recursion] == Recursion::complete) cells.push_back(whole(x.bound_tests));
+    const auto all = static_cast<double>(x.pairs + x.missed);
+    cells.push_back(all > 0 ? fixed(100 * static_cast<double>(x.missed) / all, 2) + " %" : "–");
+    cells.push_back(whole(row.n_log_n));
+    cells.push_back(whole(row.n_squared));
+    t.rows.push_back(std::move(cells));
+  }
+  t.note = kRecursions[recursion] == Recursion::complete
+               ? "Comparisons of triangles, exact; what decides before them are the bound tests. Nothing is "
+                 "missed."
+               : "Comparisons of faces, exact, over the time steps with a contact of real faces.";
+  return t;
+}
+
+/// What a reader must know before he compares.
+std::vector<std::string> differences(const PaperReport& r, std::span<const ObjectRow> rows) {
+  std::vector<std::string> out;
+  if (!all_as_published(r))
+    out.push_back("Not the paper's objects, or not all of them: what is published is of its own.");
+  const RecursionRow &first = rows.front().recursions[0], &last = rows.back().recursions[0];
+  std::string over;
+  for (const ObjectRow& row : rows)
+    if (const PublishedRow* p = published(row.object);
+        p && row.recursions[0].comparisons.average > p->average)
+      over += (over.empty() ? "" : ", ") + row.object;
+  out.push_back(
+      over.empty()
+          ? "The averages of the paper's recursion are at or under the published ones for all objects."
+          : "The averages of the paper's recursion are above the published ones for " + over + ".");
+  if (first.comparisons.max > 0 && rows.size() > 1)
+    out.push_back("From " + rows.front().object + " to " + rows.back().object + " the average grows " +
+                  fixed(last.comparisons.average / first.comparisons.average, 2) +
+                  "-fold (published: 2.18), the maximum " +
+                  fixed(last.comparisons.max / first.comparisons.max, 2) +
+                  "-fold (published: 3.57 to its highest row).");
+  std::string missed;
+  for (const ObjectRow& row : rows)
+    missed += (missed.empty() ? "" : ", ") + row.object + " " + std::to_string(row.recursions[0].missed) +
+              "/" + std::to_string(row.recursions[1].missed);
+  out.push_back("Pairs that the paper's recursion misses, in its two readings: " + missed +
+                ". The paper does not count misses.");
+  out.push_back(
+      "The shapes, the approach and the depth of contact are not in the paper; they decide the numbers as "
+      "much as the algorithm does. See the protocol.");
+  return out;
+}
+
+std::string protocol_text(const PaperProtocol& p) {
+  return std::to_string(p.collisions) +
+         " collisions per object; random rotations of both bodies, equal diagonals; the "
+         "other body comes in along a random line through both centres in steps of " +
+         fixed(100 * p.step, 2) +
+         " % of the diagonal; every step with a contact of real faces counts, from the first one through " +
+         std::to_string(p.steps_after) + " more; seed " + std::to_string(p.seed) + ".";
+}
+
+report::PageTable time_table(const std::vector<std::pair<std::string, double>>& seconds) {
+  report::PageTable t{"What it took", {"part", "seconds"}, {}, "Of the clock on the wall."};
+  double sum = 0;
+  for (const auto& [part, took] : seconds) {
+    t.rows.push_back({part, fixed(took, 1)});
+    sum += took;
+  }
+  t.rows.push_back({"together", fixed(sum, 1)});
+  return t;
+}
+
+void add_markdown(std::string& md, const report::PageTable& t) {
+  md += "\n## " + t.title + "\n\n|";
+  for (const std::string& c : t.columns) md += " " + c + " |";
+  md += "\n|";
+  for (std::size_t i = 0; i < t.columns.size(); ++i) md += i == 0 ? " --- |" : " ---: |";
+  for (const auto& row : t.rows) {
+    md += "\n|";
+    for (const std::string& c : row) md += " " + c + " |";
+  }
+  md += "\n\n" + t.note + "\n";
+}
+
+report::PageChart sizes_chart(std::span<const ObjectRow> rows) {
+  report::PageChart sizes{"Object size against comparisons",
+                          "real and pseudo faces of the other object",
+                          "comparisons",
+                          "Figure 3.1: the paper's recursion, measured and published.",
+                          {},
+                          report::PageCursor::none,
+                          true,
+                          false,
+                          false,
+                          false};
+  report::PageSeries measured{"measured average", {}, {}}, most{"measured maximum", {}, {}},
+      paper{"published average", {}, {}}, paper_most{"published maximum", {}, {}};
+  for (const ObjectRow& row : rows) {
+    const double size = row.total_faces;
+    measured.x.push_back(size);
+    measured.y.push_back(row.recursions[0].comparisons.average);
+    most.x.push_back(size);
+    most.y.push_back(row.recursions[0].comparisons.max);
+    if (const PublishedRow* p = published(row.object)) {
+      paper.x.push_back(size);
+      paper.y.push_back(p->average);
+      paper_most.x.push_back(size);
+      paper_most.y.push_back(p->max);
+    }
+  }
+  sizes.series = {measured, paper, most, paper_most};
+  return sizes;
+}
+
+/// Figures 3.1 and 3.2, as far as they are wanted and gnuplot is there.
+void draw_charts(const PaperReport& r, std::span<const ObjectRow> rows, const std::string& folder,
+                 report::Page& page, std::vector<std::string>& notes) {
+  struct Figure {
+    PaperPart part;
+    const char *name, *title, *caption;
+  };
+  for (const Figure& f :
+       {Figure{PaperPart::figure_3_1, "figure3-1", "Figure 3.1",
+               "Size of the object that A meets, real and pseudo faces, against face comparisons in a time "
+               "step by the paper's recursion: average, minimum and maximum, measured and published."},
+        Figure{PaperPart::figure_3_2, "figure3-2", "Figure 3.2",
+               "In how many time steps so many face comparisons were needed by the paper's recursion, a line "
+               "for each object."}}) {
+    if (!r.experiment.reports(f.part)) continue;
+    if (!report::has_gnuplot()) {
+      notes.push_back(std::string(f.title) + " was not drawn: gnuplot is missing (Debian: gnuplot-nox)");
+      continue;
+    }
+    const report::Gnuplot chart =
+        f.part == PaperPart::figure_3_1 ? figure_3_1(rows) : figure_3_2(rows, r.steps);
+    for (const char* ending : {".svg", ".png"}) report::draw(chart, folder + "/" + f.name + ending);
+    run::add_figure(page, folder, f.title, f.caption, std::string(f.name) + ".svg");
+    page.links.push_back({std::string(f.name) + ".png", std::string(f.name) + ".png", "300 dpi"});
+  }
+}
+
+}  // namespace
+
+std::vector<std::string> write_paper_report(const PaperReport& r, const std::string& folder) {
+  const auto wants = [&](PaperPart part) { return r.experiment.reports(part); };
+  const std::vector<ObjectRow> rows =
+      r.experiment.collides() ? make_table(r.objects, r.steps) : std::vector<ObjectRow>();
+  std::vector<std::string> notes;
+  io::write_text(folder + "/tables.json", tables_json(r.objects, rows, r.experiment.protocol));
+
+  report::Page page;
+  page.title = "The paper's experiment";
+  page.purpose =
+      "C. Gonzalez-Ochoa, \"2-Body Collision Detection using LRB-reps\", tables 1 and 2 and figures 3.1 and "
+      "3.2, measured beside the published numbers.";
+  if (r.experiment.name != "paper") page.purpose = r.experiment.purpose;
+  const std::string protocol = protocol_text(r.experiment.protocol);
+  std::string md = "# " + page.title + "\n\n" + page.purpose + "\n\n";
+  if (!rows.empty()) {
+    md += "Protocol: " + protocol + "\n\nMade by `" + r.command + "`.\n\n## What differs\n\n";
+    report::PageTable what{"What differs", {"remark"}, {}, "Protocol: " + protocol};
+    for (const std::string& s : differences(r, rows)) {
+      md += "- " + s + "\n";
+      what.rows.push_back({s});
+    }
+    page.tables.push_back(what);
+  }
+  const std::size_t said = page.tables.size();
+  if (wants(PaperPart::table1)) page.tables.push_back(table1(r));
+  if (wants(PaperPart::table2))
+    for (std::size_t i = 0; i < kRecursions.size(); ++i) page.tables.push_back(table2(rows, i));
+  const std::string series = r.series ? add_series(*r.series, folder, report::has_gnuplot(), page) : "";
+  if (!r.seconds.empty()) page.tables.push_back(time_table(r.seconds));
+  for (std::size_t i = said; i < page.tables.size(); ++i) add_markdown(md, page.tables[i]);
+
+  if (wants(PaperPart::figure_3_1)) page.charts.push_back(sizes_chart(rows));
+  draw_charts(r, rows, folder, page, notes);
+  draw_close_ups(r, folder, page, notes);
+  for (const report::PageFigure& f : page.figures)
+    md += "\n## " + f.title + "\n\n![" + f.title + "](" + f.file + ")\n\n" + f.caption + "\n";
+  md += series;
+  if (!rows.empty()) {
+    io::write_text(folder + "/records.jsonl", to_json_lines(r.steps));
+    page.links.push_back({"records.jsonl", "records.jsonl", "every counted time step"});
+  }
+  page.links.push_back({"tables.json", "tables.json", "both tables as data"});
+  page.command = r.command;
+  io::write_text(folder + "/report.md", md);
+  io::write_text(folder + "/index.html", report::page_html(page));
+  return notes;
+}
+
+}  // namespace lrb::paper

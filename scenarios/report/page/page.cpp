@@ -1,0 +1,225 @@
+#include "scenarios/report/page/page.hpp"
+
+#include <string_view>
+
+#include <nlohmann/json.hpp>
+
+#include "render/markup.hpp"
+#include "scenarios/io/embedded.hpp"
+
+namespace lrb::report {
+namespace {
+
+using nlohmann::json;
+
+/// JSON that can stand in a script element: nothing in it can end the element.
+std::string script_safe(const json& value) {
+  std::string out;
+  for (const char c : value.dump(-1, ' ', false, json::error_handler_t::replace))
+    if (c == '<')
+      out += "\\u003c";
+    else
+      out += c;
+  return out;
+}
+
+const char* name_of(PageCursor cursor) {
+  switch (cursor) {
+    case PageCursor::event:
+      return "event";
+    case PageCursor::step:
+      return "step";
+    case PageCursor::none:
+      break;
+  }
+  return "";
+}
+
+json chart_json(const PageChart& chart) {
+  json series = json::array();
+  for (const PageSeries& s : chart.series) {
+    json points = json::array();
+    for (std::size_t i = 0; i < s.x.size() && i < s.y.size(); ++i) {
+      points.push_back({{"x", s.x[i]}, {"y", s.y[i]}});
+      if (i < s.notes.size()) points.back()["note"] = s.notes[i];
+      if (i < s.targets.size() && !s.targets[i].empty()) points.back()["target"] = s.targets[i];
+    }
+    series.push_back({{"label", s.label},
+                      {"data", std::move(points)},
+                      {"colour", s.colour},
+                      {"shape", s.shape},
+                      {"line", s.line}});
+  }
+  return {{"x", chart.x_label},       {"y", chart.y_label},          {"cursor", name_of(chart.cursor)},
+          {"logX", chart.log_x},      {"logY", chart.log_y},         {"stepped", chart.stepped},
+          {"scatter", chart.scatter}, {"series", std::move(series)}, {"leastX", chart.least_x},
+          {"mostX", chart.most_x}};
+}
+
+json page_json(const Page& page) {
+  json frames = json::array(), charts = json::array();
+  for (const PageFrame& f : page.frames)
+    frames.push_back({{"src", f.data_uri},
+                      {"caption", f.caption},
+                      {"file", f.file},
+                      {"event", f.event},
+                      {"step", f.step}});
+  for (const PageChart& c : page.charts) charts.push_back(chart_json(c));
+  return {{"frames", std::move(frames)}, {"charts", std::move(charts)}};
+}
+
+std::string numbers_html(const Page& page) {
+  if (page.numbers.empty()) return {};
+  std::string out = "<dl class=\"numbers\">\n";
+  for (const PageNumber& n : page.numbers) {
+    out += "<div><dt>" + render::escape_markup(n.label) + "</dt><dd>" + render::escape_markup(n.value);
+    if (!n.note.empty()) out += "<small>" + render::escape_markup(n.note) + "</small>";
+    out += "</dd></div>\n";
+  }
+  return out + "</dl>\n";
+}
+
+std::string texts_html(const Page& page) {
+  if (page.texts.empty()) return {};
+  std::string out = "<div class=\"texts\">\n";
+  for (const PageText& t : page.texts)
+    out += "<div><h2>" + render::escape_markup(t.title) + "</h2><p>" + render::escape_markup(t.text) +
+           "</p></div>\n";
+  return out + "</div>\n";
+}
+
+std::string player_html(const Page& page) {
+  if (page.frames.empty()) return {};
+  std::string out(io::embedded_file("player.html"));
+  const std::string mark = "{{note}}";
+  out.replace(out.find(mark), mark.size(), render::escape_markup(page.frames_note));
+  return out;
+}
+
+std::string charts_html(const Page& page) {
+  if (page.charts.empty()) return {};
+  std::string out = "<section class=\"charts\">\n";
+  for (std::size_t i = 0; i < page.charts.size(); ++i) {
+    const PageChart& c = page.charts[i];
+    out += "<figure class=\"chart\"><figcaption><h2>" + render::escape_markup(c.title) + "</h2>";
+    if (!c.note.empty()) out += "<p>" + render::escape_markup(c.note) + "</p>";
+    out += "</figcaption><div class=\"plot\"><canvas id=\"chart-" + std::to_string(i) +
+           "\" role=\"img\" aria-label=\"" + render::escape_markup(c.title) + "\"></canvas></div></figure>\n";
+  }
+  return out + "</section>\n";
+}
+
+constexpr std::size_t kProse = 60;  // characters: longer cells are broken into lines
+
+bool looks_numeric(std::string_view cell) {
+  // The last three bytes: a narrow space, between groups of digits.
+  return cell.find_first_of("0123456789") != std::string_view::npos &&
+         cell.find_first_not_of("0123456789.,+-eE %x\xE2\x80\xAF") == std::string_view::npos;
+}
+
+std::string tables_html(const Page& page) {
+  std::string out;
+  for (const PageTable& t : page.tables) {
+    out +=
+        "<section><h2>" + render::escape_markup(t.title) + "</h2>\n<div class=\"scroll\"><table><thead><tr>";
+    for (std::size_t c = 0; c < t.columns.size(); ++c) {
+      const bool numeric = !t.rows.empty() && c < t.rows[0].size() && looks_numeric(t.rows[0][c]);
+      out +=
+          std::string(numeric ? "<th class=\"n\">" : "<th>") + render::escape_markup(t.columns[c]) + "</th>";
+    }
+    out += "</tr></thead><tbody>\n";
+    for (const auto& row : t.rows) {
+      out += "<tr>";
+      for (const std::string& cell : row) {
+        const bool prose = cell.size() > kProse;
+        out += std::string(looks_numeric(cell) ? "<td class=\"n\">"
+                           : prose             ? "<td class=\"prose\">"
+                                               : "<td>") +
+               render::escape_markup(cell) + "</td>";
+      }
+      out += "</tr>\n";
+    }
+    out += "</tbody></table></div>";
+    if (!t.note.empty()) out += "<p class=\"note\">" + render::escape_markup(t.note) + "</p>";
+    out += "</section>\n";
+  }
+  return out;
+}
+
+std::string figures_html(const Page& page) {
+  std::string out;
+  for (const PageFigure& f : page.figures)
+    out += "<section class=\"figure\"><h2>" + render::escape_markup(f.title) + "</h2>\n<figure><a href=\"" +
+           render::escape_markup(f.file) + "\"><img src=\"" + f.data_uri + "\" alt=\"" +
+           render::escape_markup(f.title) + "\"></a><figcaption>" + render::escape_markup(f.caption) +
+           "</figcaption></figure></section>\n";
+  return out;
+}
+
+std::string source_html(const Page& page) {
+  std::string out;
+  if (!page.command.empty())
+    out += "<section><h2>Made by</h2>\n<pre class=\"command\"><code>" + render::escape_markup(page.command) +
+           "</code></pre></section>\n";
+  if (!page.links.empty()) {
+    out += "<section><h2>Files</h2>\n<ul class=\"links\">\n";
+    for (const PageLink& l : page.links) {
+      out +=
+          "<li><a href=\"" + render::escape_markup(l.target) + "\">" + render::escape_markup(l.text) + "</a>";
+      if (!l.note.empty()) out += " <span>" + render::escape_markup(l.note) + "</span>";
+      out += "</li>\n";
+    }
+    out += "</ul></section>\n";
+  }
+  return out;
+}
+
+}  // namespace
+
+std::string page_html(const Page& page) {
+  const std::string_view shape = io::embedded_file("page.html");
+  const auto part = [&](std::string_view key) -> std::string {
+    if (key == "title") return render::escape_markup(page.title);
+    if (key == "purpose")
+      return page.purpose.empty() ? ""
+                                  : "<p class=\"purpose\">" + render::escape_markup(page.purpose) + "</p>";
+    if (key == "verdict")
+      return page.verdict.empty()
+                 ? ""
+                 : "<span class=\"verdict\">" + render::escape_markup(page.verdict) + "</span>";
+    if (key == "style")
+      return std::string(io::embedded_file("page.css")) +
+             (page.grid.empty() ? "" : std::string(io::embedded_file("grid.css"))) +
+             (page.comparisons.empty() ? "" : std::string(io::embedded_file("comparison.css")));
+    if (key == "texts") return texts_html(page);
+    if (key == "grid") return grid_html(page.grid);
+    if (key == "numbers") return numbers_html(page);
+    if (key == "player") return player_html(page);
+    if (key == "charts") return charts_html(page);
+    if (key == "tables") return tables_html(page);
+    if (key == "figures") return figures_html(page);
+    if (key == "comparisons") return comparisons_html(page.comparisons);
+    if (key == "source") return source_html(page);
+    if (key == "footer") return render::escape_markup(page.footer);
+    if (key == "data") return script_safe(page_json(page));
+    if (key == "library") return page.charts.empty() ? "" : std::string(io::embedded_file("chart.min.js"));
+    if (key == "script")
+      return std::string(io::embedded_file("page.js")) +
+             (page.grid.empty() ? "" : std::string(io::embedded_file("grid.js"))) +
+             (page.comparisons.empty() ? "" : std::string(io::embedded_file("comparison.js")));
+    return {};
+  };
+  // One pass over the template, so that marks within what is put in stay what they are.
+  std::string out;
+  std::size_t at = 0;
+  for (std::size_t open = shape.find("{{"); open != std::string_view::npos; open = shape.find("{{", at)) {
+    const std::size_t close = shape.find("}}", open);
+    out += shape.substr(at, open - at);
+    out += part(shape.substr(open + 2, close - open - 2));
+    at = close + 2;
+  }
+  out += shape.substr(at);
+  return out;
+}
+
+}  // namespace lrb::report

@@ -1,0 +1,99 @@
+#pragma once
+/// Every HTML page and chart of the project: one file that opens from disk, with style, script, charting
+/// library and pictures inside, and nothing fetched from anywhere.
+
+#include <string>
+#include <vector>
+
+#include "scenarios/report/page/comparison.hpp"
+#include "scenarios/report/page/grid.hpp"
+
+namespace lrb::report {
+
+/// A number worth reading first.
+struct PageNumber {
+  std::string label, value;
+  std::string note;  ///< small print under it; may be empty
+};
+
+/// A picture of a sequence.
+struct PageFrame {
+  std::string data_uri;  ///< see inline_image.hpp
+  std::string caption;
+  std::string file;   ///< link to the full picture, relative to the page; may be empty
+  double event = -1;  ///< where it stands on charts over events; negative: nowhere
+  double step = -1;   ///< where it stands on charts over time steps; negative: nowhere
+};
+
+struct PageSeries {
+  std::string label;
+  std::vector<double> x, y;  ///< of one length, x ascending
+  // Scatter charts alone:
+  std::string colour = {}, shape = {};    ///< #rrggbb and Chart.js's name of a shape; empty: the page chooses
+  bool line = false;                      ///< joined by steps, without points
+  std::vector<std::string> notes = {};    ///< (|x|) what is said of a point, in lines; or none
+  std::vector<std::string> targets = {};  ///< (|x|) where a click on it leads, relative to the page; or none
+};
+
+enum class PageCursor { none, event, step };
+
+/// A chart of lines, or of points if `scatter`. The frame on show is marked on it, and a click goes to a
+/// frame.
+struct PageChart {
+  std::string title, x_label, y_label;
+  std::string note;  ///< one sentence on how to read it; may be empty
+  std::vector<PageSeries> series;
+  PageCursor cursor = PageCursor::none;  ///< what x counts
+  bool log_x = false, log_y = false;
+  bool stepped = false;  ///< values hold until the next point
+  bool scatter = false;
+  double least_x = 0, most_x = 0;  ///< ends of the x axis; equal: as the data have it
+};
+
+struct PageTable {
+  std::string title;
+  std::vector<std::string> columns;
+  std::vector<std::vector<std::string>> rows;  ///< numbers in them are aligned right
+  std::string note;
+};
+
+/// A picture with its caption.
+struct PageFigure {
+  std::string title, caption;
+  std::string data_uri;  ///< see inline_image.hpp
+  std::string file;      ///< link to the full picture, relative to the page; may be empty
+};
+
+/// A heading and a paragraph.
+struct PageText {
+  std::string title, text;
+};
+
+struct PageLink {
+  std::string text, target;  ///< target: relative to the page
+  std::string note;
+};
+
+/// What a page shows, from top to bottom; empty parts are left out.
+struct Page {
+  std::string title;
+  std::string purpose;          ///< one or two sentences under the title
+  std::string verdict;          ///< a short word beside the title, such as the relation of the bodies
+  std::vector<PageText> texts;  ///< what a reader should know first, side by side
+  std::vector<PageNumber> numbers;
+  PageGrid grid;
+  std::vector<PageComparison> comparisons;
+  std::vector<PageFrame> frames;
+  std::string frames_note;
+  std::vector<PageChart> charts;
+  std::vector<PageTable> tables;
+  std::vector<PageFigure> figures;
+  std::string command;  ///< that made it, ready to copy
+  std::vector<PageLink> links;
+  std::string footer;
+};
+
+/// The page as HTML.
+std::string page_html(const Page& page);
+
+}  // namespace lrb::report

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "engine/lrb/lrb_rep.hpp"
+#include "scenarios/spec/scenario.hpp"
+
+namespace lrb::run {
+
+/// A straight way of B towards a point, cut down to the part worth seeing.
+struct Approach {
+  std::vector<Pose> poses;        ///< of B, one a step
+  std::size_t first_contact = 0;  ///< index into poses
+  bool met = false;               ///< false: B passed without contact; poses are the whole way, thinned
+};
+
+/// Lets B come until the bodies first meet (surfaces, or one inside the other), and goes on for motion.into
+/// steps.
+Approach find_approach(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& start,
+                       const spec::Motion& motion);
+
+/// Diagonal of the box round a body's real faces, in body coordinates.
+double diagonal_of(const LrbRep& rep);
+
+}  // namespace lrb::run

@@ -1,0 +1,12 @@
+#pragma once
+
+#include <string>
+
+#include "engine/lrb/lrb_rep.hpp"
+
+namespace lrb::run {
+
+/// One picture of a body: itself, some wrappers between, and its outermost wrapper, as panels (a), (b), ...
+void draw_portrait(const LrbRep& rep, const std::string& path);
+
+}  // namespace lrb::run

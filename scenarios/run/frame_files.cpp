@@ -1,0 +1,99 @@
+#include "scenarios/run/frame_files.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <iomanip>
+#include <sstream>
+#include <system_error>
+
+#include "render/palette.hpp"
+#include "render/text.hpp"
+
+namespace lrb::run {
+namespace {
+
+void write_title(render::Image& view, const std::string& title, const spec::FrameSpec& spec) {
+  render::TextStyle style;
+  const auto scale = static_cast<float>(spec.scale());
+  style.height = std::max(13.0F * scale, static_cast<float>(spec.height) / 42);
+  style.colour = render::palette::kFaint;
+  style.halo = render::kWhite;
+  style.halo_width = 2 * scale;
+  render::default_font().draw(view, title, static_cast<int>(style.height / 2),
+                              static_cast<int>(style.height / 3), style);
+}
+
+}  // namespace
+
+std::string numbered_frame(std::size_t frame) {
+  std::ostringstream out;
+  out << "frames/frame_" << std::setw(4) << std::setfill('0') << frame;
+  return out.str();
+}
+
+std::string frame_file(std::size_t frame) {
+  return numbered_frame(frame) + ".png";
+}
+
+void remove_old_frames(const std::string& folder) {
+  std::error_code error;
+  for (const auto& entry : std::filesystem::directory_iterator(folder + "/frames", error)) {
+    const std::string name = entry.path().filename().string();
+    if (name.starts_with("frame_") && (name.ends_with(".png") || name.ends_with(".svg")))
+      std::filesystem::remove(entry.path(), error);
+  }
+  for (const char* file : {"/montage.png", "/montage.svg", "/caption.txt", "/separation.png"})
+    std::filesystem::remove(folder + file, error);
+}
+
+spec::FrameSpec in_pixels(spec::FrameSpec spec) {
+  spec.width = static_cast<int>(std::lround(spec.width * spec.scale()));
+  spec.height = static_cast<int>(std::lround(spec.height * spec.scale()));
+  return spec;
+}
+
+std::vector<render::PixelRect> view_places(const render::PixelRect& picture, std::size_t views,
+                                           double scale) {
+  const int gap = static_cast<int>(std::lround(4 * scale)), n = static_cast<int>(views);
+  const bool columns = picture.width >= picture.height;
+  const int whole = columns ? picture.width : picture.height, each = (whole - gap * (n - 1)) / n;
+  std::vector<render::PixelRect> out;
+  for (int i = 0; i < n; ++i) {
+    const int at = i * (each + gap), size = i + 1 == n ? whole - at : each;
+    out.push_back(columns ? render::PixelRect{at, 0, size, picture.height}
+                          : render::PixelRect{0, at, picture.width, size});
+  }
+  return out;
+}
+
+void paint_views(render::Rasterizer& rasterizer, const spec::FrameSpec& spec,
+                 const std::vector<spec::FrameSpec::View>& views,
+                 const std::vector<render::PixelRect>& places,
+                 const std::function<render::DrawList(const spec::FrameSpec::View&)>& list_of,
+                 const std::function<render::Camera(std::size_t)>& camera_of, render::Image& picture) {
+  const render::Rgba back = spec.transparent ? render::kTransparent : render::kWhite;
+  picture.pixels().assign(picture.pixels().size(),
+                          views.size() > 1 && !spec.transparent ? render::palette::kRule : back);
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    const render::PixelRect& place = places[i];
+    render::RasterOptions options;
+    options.width = place.width;
+    options.height = place.height;
+    options.supersample = spec.supersampling;
+    if (spec.transparent) options.background.reset();
+    render::Image view = rasterizer.draw(list_of(views[i]), camera_of(i), options);
+    if (!views[i].title.empty()) write_title(view, views[i].title, spec);
+    for (int y = 0; y < place.height; ++y)
+      std::copy_n(&view.at(0, y), place.width, &picture.at(place.x, place.y + y));
+  }
+}
+
+void merge_key(std::vector<render::LegendItem>& all, const std::vector<render::LegendItem>& some) {
+  for (const render::LegendItem& item : some)
+    if (std::none_of(all.begin(), all.end(),
+                     [&](const render::LegendItem& known) { return known.text == item.text; }))
+      all.push_back(item);
+}
+
+}  // namespace lrb::run

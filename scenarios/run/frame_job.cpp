@@ -1,0 +1,262 @@
+#include "scenarios/run/frame_job.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/core/error.hpp"
+#include "render/frame_writer.hpp"
+#include "render/montage.hpp"
+#include "render/rasterize.hpp"
+#include "render/svg.hpp"
+#include "render/svg_montage.hpp"
+#include "scenarios/io/files.hpp"
+#include "scenarios/run/frame_files.hpp"
+#include "scenarios/run/frame_state.hpp"
+#include "scenarios/run/framing.hpp"
+#include "scenarios/run/moments.hpp"
+#include "scenarios/run/separation_picture.hpp"
+
+namespace lrb::run {
+namespace {
+
+/// Texts first, for all frames: they decide how much room the pictures get, which is the same in every frame.
+struct Script {
+  std::vector<render::Overlay> overlays;
+  render::PixelRect picture;
+};
+
+Script write_script(FrameState& stage, const std::vector<trace::EventId>& events, const std::string& title,
+                    const spec::FrameSpec& spec) {
+  Script script;
+  std::vector<render::LegendItem> key;
+  for (const trace::EventId event : events) {
+    stage.seek(event);
+    const render::Scene scene = stage.scene();
+    merge_key(key, scene.key);
+    script.overlays.push_back(stage.overlay(title));
+    script.overlays.back().scale = scene.scale;
+  }
+  std::vector<render::OverlayLayout> layouts;
+  for (render::Overlay& overlay : script.overlays) {
+    overlay.key = key;
+    layouts.push_back(render::lay_out(overlay, spec.width, spec.height, static_cast<float>(spec.scale())));
+  }
+  script.picture = render::common_picture(layouts);
+  return script;
+}
+
+class Painter {
+ public:
+  Painter(const spec::FrameSpec& spec, const render::PixelRect& picture, Framing framing)
+      : spec_(spec), views_(spec.views), framing_(std::move(framing)) {
+    if (views_.empty()) views_.emplace_back();
+    places_ = view_places(picture, views_.size(), spec.scale());
+    picture_ = render::Image(picture.width, picture.height);
+  }
+
+  /// `plain`: see Stage::scene().
+  const render::Image& paint(const FrameState& stage, double progress, bool plain = false) {
+    paint_views(
+        rasterizer_, spec_, views_, places_,
+        [&](const spec::FrameSpec::View& view) { return stage.scene(view.wrapper, plain).list; },
+        [&](std::size_t view) { return camera(view, progress); }, picture_);
+    return picture_;
+  }
+
+  std::vector<render::Camera> cameras(double progress) const {
+    std::vector<render::Camera> out;
+    for (std::size_t i = 0; i < views_.size(); ++i) out.push_back(camera(i, progress));
+    return out;
+  }
+
+  /// Each view as SVG. `plain`: see Stage::scene().
+  std::vector<std::string> svgs(const FrameState& stage, double progress, const std::string& title,
+                                bool plain = false) const {
+    std::vector<std::string> out;
+    for (std::size_t i = 0; i < views_.size(); ++i) {
+      render::SvgOptions options;
+      options.width = places_[i].width;
+      options.height = places_[i].height;
+      options.title = title;
+      options.units_per_pixel = spec_.scale();
+      if (spec_.transparent) options.background.reset();
+      out.push_back(render::svg(stage.scene(views_[i].wrapper, plain).list, camera(i, progress), options));
+    }
+    return out;
+  }
+
+  /// In files called `name`.svg, or `name`_1.svg and so on.
+  void write_svg(const FrameState& stage, double progress, const std::string& name,
+                 const std::string& title) const {
+    const std::vector<std::string> all = svgs(stage, progress, title);
+    for (std::size_t i = 0; i < all.size(); ++i)
+      io::write_text(name + (all.size() > 1 ? "_" + std::to_string(i + 1) : "") + ".svg", all[i]);
+  }
+
+ private:
+  render::Camera camera(std::size_t view, double progress) const {
+    const render::PixelRect& place = places_[view];
+    return camera_for(views_[view], framing_, place.width, place.height, progress);
+  }
+
+  const spec::FrameSpec& spec_;
+  std::vector<spec::FrameSpec::View> views_;
+  std::vector<render::PixelRect> places_;
+  Framing framing_;
+  render::Rasterizer rasterizer_;
+  render::Image picture_;
+};
+
+const std::vector<CollideResult>& results_of(const RecordedRun& performance) {
+  static const std::vector<CollideResult> kNoResults;
+  return performance.results != nullptr ? *performance.results : kNoResults;
+}
+
+/// What all frames of a performance have in common. At least one event.
+struct FrameJob {
+  const spec::FrameSpec& spec;
+  std::vector<trace::EventId> events;
+  FrameState stage;
+  Script script;
+  Painter painter;
+
+  FrameJob(const RecordedRun& p, const spec::FrameSpec& s, std::vector<trace::EventId> at, Framing framing)
+      : spec(s),
+        events(std::move(at)),
+        stage(*p.trace, p.reps, results_of(p), s, p.milestones.empty() && s.at != spec::FrameSpec::At::step),
+        script(write_script(stage, events, p.title, s)),
+        painter(s, script.picture, std::move(framing)) {}
+
+  /// How much of the sequence has passed at frame i, for orbits.
+  double passed(std::size_t i) const {
+    return events.size() > 1 ? static_cast<double>(i) / static_cast<double>(events.size() - 1) : 0;
+  }
+  /// Frame i, at which the stage stands.
+  render::Image frame(std::size_t i) {
+    const render::Rgba back = spec.transparent ? render::kTransparent : render::kWhite;
+    return render::compose_frame(painter.paint(stage, passed(i)), script.picture, script.overlays[i],
+                                 spec.width, spec.height, back, static_cast<float>(spec.scale()));
+  }
+};
+
+Framing framing_of(const RecordedRun& p, const spec::FrameSpec& spec) {
+  return frame_sequence(p.reps, *p.trace, results_of(p), spec);
+}
+
+/// The panels of a montage, gathered while the frames are drawn.
+struct Montage {
+  std::vector<render::Panel> panels;
+  std::vector<std::string> svgs;  ///< of panels with one view; else none
+
+  std::vector<std::string> write(const RecordedRun& p, const spec::FrameSpec& spec, const std::string& folder,
+                                 const render::PngOptions& png, render::FrameWriter& writer) const {
+    render::MontageOptions options;
+    options.columns = static_cast<int>(spec.montage_columns);
+    options.letters = panels.size() > 1;
+    if (spec.transparent) options.background = render::kTransparent;
+    std::vector<std::string> files = {"montage.png", "caption.txt"};
+    writer.push(folder + "/montage.png", render::montage(panels, options), png);
+    const std::string words = caption(p.purpose.empty() ? p.title + "." : p.purpose);
+    io::write_text(folder + "/caption.txt", words + "\n");
+    if (svgs.empty()) return files;
+    render::SvgMontageOptions svg_options;
+    svg_options.title = words;
+    svg_options.transparent = spec.transparent;
+    svg_options.units_per_pixel = spec.scale();
+    io::write_text(folder + "/montage.svg",
+                   render::svg_montage(svgs, render::lay_out(panels, options), svg_options));
+    files.insert(files.begin() + 1, "montage.svg");
+    return files;
+  }
+
+ private:
+  /// What a paper prints under the figure.
+  std::string caption(std::string text) const {
+    for (std::size_t i = 0; i < panels.size(); ++i)
+      text += (i == 0 ? " " : "; ") + (panels.size() > 1 ? render::panel_letter(i) + " " : "") +
+              panels[i].caption;
+    return text + ".";
+  }
+};
+
+}  // namespace
+
+void check_frames(const RecordedRun& performance, const spec::FrameSpec& spec) {
+  static_cast<void>(moments(spec, *performance.trace, performance.milestones));
+  if (spec.svg && performance.reps[0]->dim() != 2)
+    throw InputError(
+        "frames as SVG are for 2D bodies, and these are 3D: leave svg out, and ask for a higher --dpi");
+  check_frame_size(spec);
+}
+
+void check_frame_size(const spec::FrameSpec& spec) {
+  constexpr int kMost = 8192;
+  const spec::FrameSpec in_file = in_pixels(spec);
+  if (in_file.width > kMost || in_file.height > kMost)
+    throw InputError("frames of " + std::to_string(spec.width) + "x" + std::to_string(spec.height) +
+                     " would have " + std::to_string(in_file.width) + "x" + std::to_string(in_file.height) +
+                     " pixels at this dpi, and 8192 a side is the most: lower --dpi or --size");
+}
+
+std::vector<PaintedFrame> paint_frames(const RecordedRun& performance, const spec::FrameSpec& given,
+                                       const ProgressReport& progress, const Framing* framing) {
+  const spec::FrameSpec spec = in_pixels(given);
+  std::vector<PaintedFrame> out;
+  const std::vector<trace::EventId> events = moments(spec, *performance.trace, performance.milestones);
+  if (events.empty()) return out;
+  FrameJob production(performance, spec, events,
+                      framing != nullptr ? *framing : framing_of(performance, spec));
+  for (std::size_t i = 0; i < events.size(); ++i) {
+    progress("draw", i, events.size());
+    production.stage.seek(events[i]);
+    out.push_back({production.frame(i), production.stage.caption(), events[i],
+                   production.painter.cameras(production.passed(i))});
+  }
+  return out;
+}
+
+DrawnFrames draw_frames(const RecordedRun& performance, const spec::FrameSpec& given,
+                        const std::string& folder,
+                        const std::vector<std::pair<std::string, std::string>>& text,
+                        const ProgressReport& progress) {
+  const spec::FrameSpec spec = in_pixels(given);
+  DrawnFrames out;
+  io::make_folder(folder + "/frames");
+  remove_old_frames(folder);
+  const std::vector<trace::EventId> events = moments(spec, *performance.trace, performance.milestones);
+  if (events.empty()) return out;
+
+  FrameJob production(performance, spec, events, framing_of(performance, spec));
+  FrameState& stage = production.stage;
+  Painter& painter = production.painter;
+  const std::vector<std::size_t> in_montage =
+      spec.montage > 0 ? evenly(events.size(), spec.montage) : std::vector<std::size_t>();
+  Montage together;
+  render::FrameWriter writer;
+  for (std::size_t i = 0; i < events.size(); ++i) {
+    progress("draw", i, events.size());
+    stage.seek(events[i]);
+    const double passed = production.passed(i);
+    if (spec.svg) painter.write_svg(stage, passed, folder + "/" + numbered_frame(i), stage.caption());
+    render::PngOptions png{text, spec.dpi};
+    png.text.emplace_back("lrbscope:event", std::to_string(events[i]));
+    writer.push(folder + "/" + frame_file(i), production.frame(i), png);
+    if (std::find(in_montage.begin(), in_montage.end(), i) != in_montage.end()) {
+      together.panels.push_back({painter.paint(stage, passed, true), stage.short_caption()});
+      if (spec.svg && spec.views.size() <= 1)
+        together.svgs.push_back(painter.svgs(stage, passed, stage.caption(), true).front());
+    }
+    out.frames.push_back({frame_file(i), stage.caption(), events[i], stage.step()});
+  }
+  if (!together.panels.empty())
+    out.montage = together.write(performance, spec, folder, {text, spec.dpi}, writer);
+  writer.finish();
+  for (const trace::Step& step : performance.trace->steps)
+    if (step.result.separation) out.proved = &step;
+  if (out.proved != nullptr)
+    draw_separation(*performance.reps[0], out.proved->pose_a, *performance.reps[1], out.proved->pose_b,
+                    *out.proved->result.separation, folder + "/" + kSeparationFile);
+  return out;
+}
+
+}  // namespace lrb::run

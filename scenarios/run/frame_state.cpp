@@ -1,0 +1,259 @@
+#include "scenarios/run/frame_state.hpp"
+
+#include <cmath>
+#include <filesystem>
+
+#include "render/palette.hpp"
+#include "scenarios/run/moments.hpp"
+#include "trace/names.hpp"
+
+namespace lrb::run {
+namespace {
+
+trace::Cursor make_cursor(const trace::Trace& trace, const std::vector<const LrbRep*>& reps) {
+  return reps.size() == 1 ? trace::Cursor(trace, *reps[0]) : trace::Cursor(trace, *reps[0], *reps[1]);
+}
+
+std::string relation_words(Relation r) {
+  switch (r) {
+    case Relation::a_inside_b:
+      return "A inside B";
+    case Relation::b_inside_a:
+      return "B inside A";
+    default:
+      return to_string(r);
+  }
+}
+
+/// A mesh's name without folder and extension.
+std::string short_name(const LrbRep& rep) {
+  return std::filesystem::path(rep.name()).stem().string();
+}
+
+std::string counted(std::uint64_t n, const char* one, const char* many) {
+  return render::group_digits(n) + " " + (n == 1 ? one : many);
+}
+
+}  // namespace
+
+std::string error_bound_text(double bound) {
+  return bound == 0 ? "0 (exact)" : std::isfinite(bound) ? render::short_number(bound) : "none yet";
+}
+
+FrameState::FrameState(const trace::Trace& trace, std::vector<const LrbRep*> reps,
+                       const std::vector<CollideResult>& results, const spec::FrameSpec& spec,
+                       bool point_out_refined)
+    : trace_(trace),
+      reps_(std::move(reps)),
+      results_(results),
+      spec_(spec),
+      point_out_refined_(point_out_refined),
+      cursor_(make_cursor(trace, reps_)) {}
+
+void FrameState::seek(trace::EventId event) {
+  cursor_.seek(event);
+}
+
+bool FrameState::at_step_end() const {
+  return cursor_.position() == last_event(trace_, cursor_.step_number());
+}
+
+const CollideResult* FrameState::result_here() const {
+  return at_step_end() && cursor_.step_number() < results_.size() ? &results_[cursor_.step_number()]
+                                                                  : nullptr;
+}
+
+const trace::StepResult* FrameState::answer_here() const {
+  return at_step_end() && cursor_.step()->finished ? &cursor_.step()->result : nullptr;
+}
+
+const Separation* FrameState::proof_here() const {
+  const trace::StepResult* answer = answer_here();
+  return answer != nullptr && answer->separation ? &*answer->separation : nullptr;
+}
+
+std::uint32_t FrameState::boundary_size(Side side) const {
+  const Separation* proof = proof_here();
+  return proof != nullptr ? proof->face_count[static_cast<std::size_t>(side)] : cursor_.boundary_size(side);
+}
+
+std::vector<std::uint8_t> FrameState::met(Side side) const {
+  if (!trace_.header.request.is_coarse()) return {};
+  const LrbRep& rep = *reps_[static_cast<std::size_t>(side)];
+  std::vector<std::uint8_t> out(rep.face_count());
+  for (trace::EventId e = cursor_.step()->first_event; e <= cursor_.position(); ++e) {
+    const trace::Event& event = trace_.events[e];
+    if (event.kind == EventKind::contact) out[rep.face_of_simplex(side == Side::a ? event.a : event.b)] = 1;
+  }
+  return out;
+}
+
+trace::Totals FrameState::totals() const {
+  const trace::EventId first = cursor_.step()->first_event;
+  return trace::count_events({trace_.events.data() + first, cursor_.position() + std::size_t{1} - first});
+}
+
+std::vector<double> FrameState::values_of(Side side) const {
+  const bool tests = spec_.colour_by == spec::FrameSpec::ColourBy::face_tests;
+  if (!tests && spec_.colour_by != spec::FrameSpec::ColourBy::refinements) return {};
+  const trace::EventId first = cursor_.step()->first_event;
+  const trace::FaceCounts counts =
+      trace::count_faces(*reps_[static_cast<std::size_t>(side)], side,
+                         {trace_.events.data() + first, cursor_.position() + std::size_t{1} - first});
+  const std::vector<std::uint32_t>& chosen = tests ? counts.tests : counts.refinements;
+  return {chosen.begin(), chosen.end()};
+}
+
+render::Scene FrameState::scene(bool wrapper, bool plain) const {
+  std::vector<render::SceneBody> bodies;
+  const std::vector<double> values[2] = {values_of(Side::a),
+                                         reps_.size() > 1 ? values_of(Side::b) : std::vector<double>()};
+  const Separation* proof = proof_here();
+  std::vector<Wrapper> proving;
+  std::vector<std::uint8_t> in_contact[2];
+  for (std::size_t i = 0; i < reps_.size() && proof != nullptr; ++i) {
+    proving.emplace_back(*reps_[i]);
+    for (const RegionId r : proof->refined[i]) proving.back().refine(r);
+  }
+  if (reps_.size() > 1)
+    for (const Side side : {Side::a, Side::b}) in_contact[static_cast<std::size_t>(side)] = met(side);
+  for (std::size_t i = 0; i < reps_.size(); ++i) {
+    const Side side = static_cast<Side>(i);
+    render::SceneBody body;
+    body.rep = reps_[i];
+    if (wrapper) body.wrapper = proof != nullptr ? &proving[i] : &cursor_.wrapper(side);
+    body.in_contact = in_contact[i];
+    body.pose = cursor_.pose(side);
+    body.face_values = values[i];
+    body.name =
+        reps_.size() == 1 ? short_name(*reps_[i]) : std::string(i == 0 ? "A " : "B ") + short_name(*reps_[i]);
+    bodies.push_back(std::move(body));
+  }
+  render::SceneHighlight highlight;
+  if (wrapper && !plain && point_out_refined_)
+    for (const trace::RefinedRegion& r : cursor_.refined())
+      highlight.refining[static_cast<std::size_t>(r.side)].push_back(r.region);
+  if (const auto pair = cursor_.pair_under_test(); wrapper && !plain && pair && !at_step_end())
+    highlight.under_test = {pair->simplex_a, pair->simplex_b};
+  if (const CollideResult* result = result_here()) highlight.contacts = result->regions;
+  render::SceneOptions options;
+  switch (spec_.colour_by) {
+    case spec::FrameSpec::ColourBy::kind:
+      break;
+    case spec::FrameSpec::ColourBy::layer:
+      options.colour_by = render::ColourBy::layer;
+      break;
+    case spec::FrameSpec::ColourBy::region:
+      options.colour_by = render::ColourBy::region;
+      break;
+    case spec::FrameSpec::ColourBy::face_tests:
+      options.colour_by = render::ColourBy::value;
+      break;
+    case spec::FrameSpec::ColourBy::refinements:
+      options.colour_by = render::ColourBy::value;
+      options.value_name = "refinements";
+      break;
+  }
+  options.explode = spec_.explode;
+  options.contact_rims = true;
+  options.scale = static_cast<float>(spec_.scale());
+  options.isolate = spec_.isolate;
+  options.ghost_rest = spec_.ghost_rest;
+  return render::build_scene(bodies, highlight, options);
+}
+
+std::string FrameState::event_text() const {
+  const trace::Event& e = cursor_.event();
+  const std::string side = e.side == Side::a ? "A" : "B";
+  const auto face = [&](std::size_t i, SimplexId s) {
+    return (reps_[i]->is_real_simplex(s) ? "face " : "pseudo face ") + std::to_string(s);
+  };
+  const std::string region =
+      reps_.size() == 1 ? "region " + std::to_string(e.a) : "region " + std::to_string(e.a) + " of " + side;
+  switch (e.kind) {
+    case EventKind::step:
+      return reps_.size() == 1 ? "the outermost wrapper" : "both wrappers are the outermost ones";
+    case EventKind::face_test:
+      return "face test " + std::to_string(e.a) + " against " + std::to_string(e.b) + ": " +
+             std::string(trace::name_of(e.meet));
+    case EventKind::refine:
+      return "refine " + region + ": " + counted(e.b, "face", "faces") + " under it";
+    case EventKind::coarsen:
+      return region + " added";
+    case EventKind::contact:
+      return "contact: " + face(0, e.a) + " of A meets " + face(1, e.b) + " of B";
+    case EventKind::result:
+      return result_text();
+  }
+  return {};
+}
+
+std::string FrameState::result_text() const {
+  const trace::StepResult& r = cursor_.step()->result;
+  if (const Separation* proof = proof_here())
+    return "separate: wrappers of " + render::group_digits(proof->face_count[0]) + " and " +
+           counted(proof->face_count[1], "face prove it", "faces prove it");
+  if (r.relation == Relation::unresolved)
+    return std::isfinite(r.error_bound)
+               ? "unresolved: in contact, or no further apart than " + render::short_number(r.error_bound)
+               : "unresolved: the limit came before the coarsest wrappers were compared";
+  return relation_words(r.relation) + ": " +
+         counted(r.pair_count, "pair of faces meets", "pairs of faces meet");
+}
+
+render::Overlay FrameState::overlay(const std::string& title) const {
+  render::Overlay o;
+  o.title = title;
+  if (reps_.size() > 1) o.title += "  ·  step " + std::to_string(step());
+  o.event = event_text();
+  o.event_colour = render::palette::event(cursor_.event().kind);
+  const trace::Totals t = totals();
+  if (reps_.size() == 1) {
+    o.counters = {{"wrapper", render::group_digits(cursor_.boundary_size(Side::a)) + " faces"},
+                  {"refined", render::group_digits(t.refinements[0] - t.coarsenings[0]) + " of " +
+                                  render::group_digits(reps_[0]->region_count()) + " regions"}};
+  } else {
+    const Separation* proof = proof_here();
+    const std::uint64_t refined[2] = {proof != nullptr ? proof->refined[0].size() : t.refinements[0],
+                                      proof != nullptr ? proof->refined[1].size() : t.refinements[1]};
+    o.counters = {{"wrapper A", render::group_digits(boundary_size(Side::a))},
+                  {"wrapper B", render::group_digits(boundary_size(Side::b))},
+                  {"refined", render::group_digits(refined[0]) + " + " + render::group_digits(refined[1])},
+                  {"face tests", render::group_digits(t.face_tests)},
+                  {"contacts", render::group_digits(t.contacts)}};
+    if (const trace::StepResult* answer = answer_here(); answer && trace_.header.request.is_coarse())
+      o.counters.push_back({"error bound", error_bound_text(answer->error_bound)});
+  }
+  return o;
+}
+
+std::string FrameState::short_caption() const {
+  if (reps_.size() == 1) {
+    const trace::Totals t = totals();
+    const std::uint64_t refined = t.refinements[0] - t.coarsenings[0], all = reps_[0]->region_count();
+    const std::string state = refined == 0     ? "outermost wrapper"
+                              : refined == all ? "the body itself"
+                                               : render::group_digits(refined) + " of " +
+                                                     counted(all, "region", "regions") + " refined";
+    return state + ", " + counted(cursor_.boundary_size(Side::a), "face", "faces");
+  }
+  return "step " + std::to_string(step()) + ": " + event_text();
+}
+
+std::string FrameState::caption() const {
+  const trace::Totals t = totals();
+  std::string out = reps_.size() > 1 ? "Step " + std::to_string(step()) + ", event " : "Event ";
+  out += std::to_string(cursor_.position()) + ": " + event_text() + ". ";
+  out += reps_.size() == 1
+             ? "Wrapper: " + render::group_digits(cursor_.boundary_size(Side::a)) + " faces."
+             : "Wrappers: " + render::group_digits(boundary_size(Side::a)) + " + " +
+                   render::group_digits(boundary_size(Side::b)) + " faces; " +
+                   counted(t.face_tests, "face test", "face tests") + ", " +
+                   counted(t.refinements[0] + t.refinements[1], "refinement", "refinements") + ".";
+  if (const trace::StepResult* answer = answer_here(); answer && trace_.header.request.is_coarse())
+    out += " Error bound: " + error_bound_text(answer->error_bound) +
+           (answer->finished ? "." : "; a limit was reached.");
+  return out;
+}
+
+}  // namespace lrb::run

@@ -1,0 +1,97 @@
+#include "scenarios/run/framing.hpp"
+
+#include <algorithm>
+#include <numbers>
+
+#include "render/scene.hpp"
+
+namespace lrb::run {
+namespace {
+
+/// Of many points, some that span nearly the same: the extreme ones in a few dozen directions.
+std::vector<Eigen::Vector3d> extremes(const std::vector<Eigen::Vector3d>& points) {
+  constexpr int kTurns = 24, kRows = 7;
+  std::vector<Eigen::Vector3d> out;
+  if (points.empty()) return out;
+  for (int row = 0; row < kRows; ++row) {
+    for (int turn = 0; turn < kTurns; ++turn) {
+      const double azimuth = 2 * std::numbers::pi * turn / kTurns;
+      const double elevation = std::numbers::pi * (row - kRows / 2) / (kRows - 1);
+      const Eigen::Vector3d d(std::cos(azimuth) * std::cos(elevation),
+                              std::sin(azimuth) * std::cos(elevation), std::sin(elevation));
+      out.push_back(*std::max_element(points.begin(), points.end(),
+                                      [&](const auto& p, const auto& q) { return p.dot(d) < q.dot(d); }));
+    }
+  }
+  return out;
+}
+
+/// Of coarse answers, which have no contact regions: the corners of all faces that meet.
+void add_contacts(const std::vector<const LrbRep*>& reps, const trace::Trace& trace,
+                  std::vector<Eigen::Vector3d>& points) {
+  for (std::size_t step = 0; step < trace.steps.size(); ++step)
+    for (const trace::Event& e : trace.events_of(step)) {
+      if (e.kind != EventKind::contact) continue;
+      for (const VertexId v : reps[0]->face(reps[0]->face_of_simplex(e.a)))
+        points.push_back(trace.steps[step].pose_a.apply(reps[0]->vertices()[v]));
+      for (const VertexId v : reps[1]->face(reps[1]->face_of_simplex(e.b)))
+        points.push_back(trace.steps[step].pose_b.apply(reps[1]->vertices()[v]));
+    }
+}
+
+}  // namespace
+
+Framing frame_sequence(const std::vector<const LrbRep*>& reps, const trace::Trace& trace,
+                       const std::vector<CollideResult>& results, const spec::FrameSpec& spec) {
+  const bool regions_alone = !spec.ghost_rest && !(spec.isolate[0].empty() && spec.isolate[1].empty());
+  Framing f;
+  f.dim = reps[0]->dim();
+  for (std::size_t i = 0; i < reps.size(); ++i) {
+    std::vector<Eigen::Vector3d> shown;
+    for (const RegionId r : spec.isolate[i])
+      for (const FaceId face : reps[i]->collector(r))
+        for (const VertexId v : reps[i]->face(face)) shown.push_back(reps[i]->vertices()[v]);
+    if (!regions_alone) shown = render::body_points(*reps[i], Pose{});
+    const std::vector<Eigen::Vector3d> body = extremes(shown);
+    for (const trace::Step& step : trace.steps) {
+      const Pose& pose = i == 0 ? step.pose_a : step.pose_b;
+      for (const Eigen::Vector3d& p : body) f.points.push_back(pose.apply(p));
+    }
+  }
+  if (trace.header.request.is_coarse()) add_contacts(reps, trace, f.contacts);
+  for (const CollideResult& result : results)
+    for (const Eigen::Vector3d& p : render::contact_points(result.regions)) f.contacts.push_back(p);
+  return f;
+}
+
+render::Camera camera_for(const spec::FrameSpec::View& view, const Framing& framing, double width,
+                          double height, double progress) {
+  using Kind = spec::FrameSpec::Camera;
+  const bool close = view.camera == Kind::contact && !framing.contacts.empty();
+  render::Camera camera;
+  if (view.camera == Kind::fixed) {
+    camera.eye = view.eye;
+    camera.target = view.target;
+    camera.up = view.up;
+    camera.orthographic = view.orthographic;
+    camera.half_height = (view.eye - view.target).norm() * std::tan(camera.fov_y / 2);
+  } else if (framing.dim == 2) {
+    camera = render::fit_top(close ? framing.contacts : framing.points, width, height);
+  } else {
+    render::FitOptions options;
+    options.view = {view.from, view.up};
+    options.orthographic = view.orthographic;
+    Eigen::AlignedBox3d box;
+    for (const Eigen::Vector3d& p : framing.points) box.extend(p);
+    constexpr double kContext = 1.6;  // of the contacts' size around them
+    camera = close ? render::fit_contact(framing.contacts, box, width, height, options, kContext)
+                   : render::fit_camera(framing.points, width, height, options);
+    if (view.camera == Kind::orbit)
+      camera = render::orbit(camera, view.turn_degrees * progress * std::numbers::pi / 180);
+  }
+  camera.half_height /= view.zoom;
+  if (!camera.orthographic) camera.eye = camera.target + (camera.eye - camera.target) / view.zoom;
+  return camera;
+}
+
+}  // namespace lrb::run

@@ -1,0 +1,92 @@
+#include "scenarios/run/moments.hpp"
+
+#include <algorithm>
+
+#include "engine/core/error.hpp"
+
+namespace lrb::run {
+namespace {
+
+using trace::EventId;
+
+/// Every n-th of the list, and its last.
+std::vector<EventId> every(const std::vector<EventId>& all, std::uint32_t n) {
+  std::vector<EventId> out;
+  for (std::size_t i = 0; i < all.size(); ++i)
+    if (i % n == 0 || i + 1 == all.size()) out.push_back(all[i]);
+  return out;
+}
+
+std::vector<EventId> step_ends(const trace::Trace& trace) {
+  std::vector<EventId> out;
+  for (std::size_t step = 0; step < trace.steps.size(); ++step)
+    if (trace.steps[step].first_event < trace.events.size()) out.push_back(last_event(trace, step));
+  return out;
+}
+
+/// Each step's beginning and what changes a wrapper in it.
+std::vector<EventId> wrapper_changes(const trace::Trace& trace) {
+  std::vector<EventId> out;
+  for (EventId e = 0; e < trace.events.size(); ++e) {
+    const EventKind kind = trace.events[e].kind;
+    if (kind == EventKind::step || kind == EventKind::refine || kind == EventKind::coarsen) out.push_back(e);
+  }
+  return out;
+}
+
+std::vector<EventId> listed(const spec::FrameSpec& spec, const trace::Trace& trace) {
+  std::vector<EventId> out = spec.events;
+  std::sort(out.begin(), out.end());
+  out.erase(std::unique(out.begin(), out.end()), out.end());
+  if (!out.empty() && out.back() >= trace.events.size())
+    throw InputError("frames: event " + std::to_string(out.back()) +
+                     " was asked for, but the trace ends with event " +
+                     std::to_string(trace.events.size() - 1));
+  return out;
+}
+
+}  // namespace
+
+EventId last_event(const trace::Trace& trace, std::size_t step) {
+  const std::size_t end =
+      step + 1 < trace.steps.size() ? trace.steps[step + 1].first_event : trace.events.size();
+  return static_cast<EventId>(end - 1);
+}
+
+std::vector<std::size_t> evenly(std::size_t count, std::size_t wanted) {
+  std::vector<std::size_t> out;
+  wanted = std::min(count, wanted);
+  for (std::size_t i = 0; i < wanted; ++i)
+    out.push_back(wanted == 1 ? count - 1 : i * (count - 1) / (wanted - 1));
+  return out;
+}
+
+std::vector<EventId> moments(const spec::FrameSpec& spec, const trace::Trace& trace,
+                             const std::vector<EventId>& milestones) {
+  if (trace.events.empty()) return {};
+  std::vector<EventId> all;
+  switch (spec.at) {
+    case spec::FrameSpec::At::none:
+      return {};
+    case spec::FrameSpec::At::step:
+      all = every(step_ends(trace), spec.every);
+      break;
+    case spec::FrameSpec::At::refinement:
+      all = every(milestones.empty() ? wrapper_changes(trace) : milestones, spec.every);
+      break;
+    case spec::FrameSpec::At::every: {
+      std::vector<EventId> events(trace.events.size());
+      for (EventId e = 0; e < events.size(); ++e) events[e] = e;
+      all = every(events, spec.every);
+      break;
+    }
+    case spec::FrameSpec::At::events:
+      all = listed(spec, trace);
+      break;
+  }
+  std::vector<EventId> out;
+  for (const std::size_t i : evenly(all.size(), spec.most)) out.push_back(all[i]);
+  return out;
+}
+
+}  // namespace lrb::run

@@ -1,0 +1,140 @@
+#include "scenarios/run/recorded_run.hpp"
+
+#include <algorithm>
+#include <numeric>
+
+#include "engine/core/error.hpp"
+#include "engine/query/collide_impl.hpp"
+#include "scenarios/run/approach.hpp"
+#include "scenarios/spec/scenario_motion.hpp"
+#include "trace/hex.hpp"
+#include "trace/recorder.hpp"
+
+namespace lrb::run {
+namespace {
+
+std::string source_of(const spec::BodySpec& spec) {
+  return spec.file.empty() ? "generator " + spec.generator : spec.file;
+}
+
+trace::RecorderSettings recorder_settings(const spec::Scenario& s) {
+  trace::RecorderSettings settings;
+  settings.scenario = s.name;
+  settings.scenario_hash = s.hash;
+  for (std::size_t i = 0; i < s.bodies.size(); ++i) settings.sources[i] = source_of(s.bodies[i]);
+  settings.request = s.request;
+  settings.clock = s.clock;
+  settings.event_cap = s.event_cap;
+  return settings;
+}
+
+std::vector<Pose> poses_of_b(const spec::Scenario& s, Recording& r) {
+  if (s.motion.kind != spec::Motion::Kind::approach) return spec::poses_of(s.motion, s.bodies[1].pose);
+  Approach approach =
+      find_approach(r.bodies[0].rep, s.bodies[0].pose, r.bodies[1].rep, s.bodies[1].pose, s.motion);
+  r.notes.push_back(approach.met ? "first contact at step " + std::to_string(approach.first_contact)
+                                 : "the bodies did not meet on the way");
+  return std::move(approach.poses);
+}
+
+void record_collision(const spec::Scenario& s, Recording& r, const ProgressReport& progress) {
+  const LrbRep &a = r.bodies[0].rep, &b = r.bodies[1].rep;
+  const std::vector<Pose> poses = poses_of_b(s, r);
+  trace::Recorder recorder(a, b, recorder_settings(s));
+  QueryContext context;
+  for (std::uint32_t step = 0; step < poses.size(); ++step) {
+    progress("query", step, poses.size());
+    recorder.begin_step(step, s.bodies[0].pose, poses[step]);
+    r.results.push_back(collide(a, s.bodies[0].pose, b, poses[step], s.request, context, recorder));
+    recorder.end_step(r.results.back());
+  }
+  r.trace = recorder.take();
+}
+
+/// Regions, those of the builder's last pass (the outermost ones) first: each is refined when it lies bare.
+std::vector<RegionId> outside_in(const LrbRep& rep) {
+  std::vector<RegionId> order(rep.region_count());
+  std::iota(order.begin(), order.end(), RegionId{0});
+  std::stable_sort(order.begin(), order.end(),
+                   [&](RegionId x, RegionId y) { return rep.layer(x) > rep.layer(y); });
+  return order;
+}
+
+void record_wrapper(const spec::Scenario& s, Recording& r) {
+  const LrbRep& rep = r.bodies[0].rep;
+  trace::Recorder recorder(rep, recorder_settings(s));
+  recorder.begin_step(0, s.bodies[0].pose);
+  std::vector<RegionId> order = outside_in(rep);
+  for (const RegionId region : order)
+    recorder.refine(Side::a, region, static_cast<std::uint32_t>(rep.floor(region).size()));
+  if (s.show == spec::Show::construction) {
+    r.milestones.push_back(static_cast<trace::EventId>(order.size()));  // the step's own event comes first
+    std::reverse(order.begin(), order.end());
+    for (std::size_t i = 0; i < order.size(); ++i) {
+      recorder.coarsen(Side::a, order[i], static_cast<std::uint32_t>(rep.floor(order[i]).size()));
+      const bool pass_ends = i + 1 == order.size() || rep.layer(order[i + 1]) != rep.layer(order[i]);
+      if (pass_ends) r.milestones.push_back(static_cast<trace::EventId>(order.size() + i + 1));
+    }
+  }
+  r.trace = recorder.take();
+}
+
+}  // namespace
+
+bodies::LoadedBody make_body(const spec::BodySpec& spec) {
+  if (!spec.file.empty()) return bodies::load_body(spec.file, spec.build);
+  if (std::optional<LrbRep> rep = generators::generate_rep(spec.generator, spec.parameters, spec.build.seed))
+    return {std::move(*rep), {}, 0};
+  return bodies::body_of_mesh(generators::generate(spec.generator, spec.parameters, spec.build.seed),
+                              spec.build);
+}
+
+Recording record(const spec::Scenario& scenario, const ProgressReport& progress) {
+  std::vector<bodies::LoadedBody> bodies;
+  for (std::size_t i = 0; i < scenario.bodies.size(); ++i) {
+    progress("build", i, scenario.bodies.size());
+    bodies.push_back(make_body(scenario.bodies[i]));
+  }
+  return record(scenario, std::move(bodies), progress);
+}
+
+Recording record(const spec::Scenario& scenario, std::vector<bodies::LoadedBody> bodies,
+                 const ProgressReport& progress) {
+  Recording r;
+  r.bodies = std::move(bodies);
+  for (const bodies::LoadedBody& body : r.bodies)
+    r.notes.insert(r.notes.end(), body.notes.begin(), body.notes.end());
+  if (scenario.show == spec::Show::collision)
+    record_collision(scenario, r, progress);
+  else
+    record_wrapper(scenario, r);
+  if (r.trace.truncated())
+    r.notes.push_back("the trace holds the first " + std::to_string(r.trace.events.size()) + " of " +
+                      std::to_string(r.trace.events_seen) + " events (trace.max_events)");
+  return r;
+}
+
+std::vector<std::string> mismatches(const spec::Scenario& scenario, const Recording& r) {
+  std::vector<std::string> out;
+  for (const spec::Expectation& e : scenario.expect) {
+    const std::string where = e.place + ": step " + std::to_string(e.step) + ": ";
+    if (e.step >= r.results.size()) {
+      out.push_back(where + "the run has " + std::to_string(r.results.size()) + " steps only");
+      continue;
+    }
+    const CollideResult& result = r.results[e.step];
+    const std::uint64_t print = fingerprint(result.pairs);
+    if (e.relation && *e.relation != result.relation)
+      out.push_back(where + "expected relation " + to_string(*e.relation) + ", found " +
+                    to_string(result.relation));
+    if (e.pairs && *e.pairs != result.pairs.size())
+      out.push_back(where + "expected " + std::to_string(*e.pairs) + " pairs, found " +
+                    std::to_string(result.pairs.size()));
+    if (e.fingerprint && *e.fingerprint != print)
+      out.push_back(where + "expected fingerprint " + trace::to_hex(*e.fingerprint) + ", found " +
+                    trace::to_hex(print));
+  }
+  return out;
+}
+
+}  // namespace lrb::run

@@ -1,0 +1,272 @@
+#include "scenarios/run/run_report.hpp"
+
+#include <algorithm>
+
+#include "render/overlay.hpp"
+#include "scenarios/io/files.hpp"
+#include "scenarios/report/page/inline_image.hpp"
+#include "scenarios/run/frame_state.hpp"
+#include "trace/counters.hpp"
+#include "trace/hex.hpp"
+#include "trace/names.hpp"
+
+namespace lrb::run {
+namespace {
+
+std::string vector_text(const Eigen::Vector3d& v) {
+  return "(" + render::short_number(v.x()) + ", " + render::short_number(v.y()) + ", " +
+         render::short_number(v.z()) + ")";
+}
+
+std::string words(Relation r) {
+  std::string out = to_string(r);
+  std::replace(out.begin(), out.end(), '_', ' ');
+  return out;
+}
+
+/// The step with the most to say: the last one.
+const trace::Step* last_step(const trace::Trace& trace) {
+  return trace.steps.empty() || !trace.steps.back().finished ? nullptr : &trace.steps.back();
+}
+
+/// Of the last step's answer: pairs of which not both faces are real.
+std::size_t pseudo_pairs(const trace::Trace& trace) {
+  const auto& bodies = trace.header.bodies;
+  const auto events = trace.events_of(trace.steps.size() - 1);
+  return static_cast<std::size_t>(std::count_if(events.begin(), events.end(), [&](const trace::Event& e) {
+    return e.kind == EventKind::contact &&
+           (e.a >= bodies[0].real_simplices || e.b >= bodies[1].real_simplices);
+  }));
+}
+
+std::vector<report::PageNumber> collision_numbers(const RecordedRun& p, const trace::Step& step) {
+  const trace::StepResult& r = step.result;
+  const auto at = "at step " + std::to_string(step.index);
+  std::uint64_t regions = 0, faces = 0;
+  std::string each;
+  for (const LrbRep* rep : p.reps) {
+    regions += rep->region_count();
+    faces += rep->real_face_count();
+    each += (each.empty() ? "" : " + ") + render::group_digits(rep->real_face_count());
+  }
+  std::vector<report::PageNumber> out = {
+      {"Relation", words(r.relation), at},
+      {"Pairs of faces that meet", render::group_digits(r.pair_count), at}};
+  if (const CollideRequest& request = p.trace->header.request; request.is_coarse()) {
+    out.back().note +=
+        "; of wrappers: " + render::group_digits(pseudo_pairs(*p.trace)) + " with a pseudo face";
+    out.push_back({"Error bound", error_bound_text(r.error_bound),
+                   at + (r.finished ? "; how far those wrappers are off the bodies"
+                                    : "; a limit was reached before the tolerance")});
+  } else if (p.results != nullptr && !p.results->empty()) {
+    out.push_back({"Contact regions", render::group_digits(p.results->back().regions.size()), at});
+  }
+  out.push_back({"Face tests", render::group_digits(r.counters.face_tests),
+                 at + "; all pairs would be " +
+                     render::group_digits(std::uint64_t{p.reps[0]->real_simplex_count()} *
+                                          p.reps[1]->real_simplex_count())});
+  out.push_back({"Regions opened", render::group_digits(r.counters.regions_opened),
+                 "of " + render::group_digits(regions) + ", " + at});
+  out.push_back({"Real faces", render::group_digits(faces), each});
+  return out;
+}
+
+std::vector<report::PageNumber> wrapper_numbers(const LrbRep& rep) {
+  const std::uint32_t real = rep.real_face_count();
+  return {{"Real faces", render::group_digits(real), ""},
+          {"Pseudo faces", render::group_digits(rep.face_count() - real),
+           render::short_number(static_cast<double>(rep.face_count()) / real) + " faces in all per real one"},
+          {"Outermost wrapper", render::group_digits(rep.outermost_faces().size()) + " faces", ""},
+          {"Regions", render::group_digits(rep.region_count()),
+           "in " + std::to_string(rep.layer_count()) + " layers"}};
+}
+
+/// In the complete query only real faces are compared: what hits is a contact, and one curve is enough.
+bool same_as_contacts(const trace::Series& hits, const trace::Chart& chart) {
+  return std::any_of(chart.series.begin(), chart.series.end(),
+                     [&](const trace::Series& s) { return s.name == "contacts" && s.values == hits.values; });
+}
+
+/// Curves of the trace by unit: faces of the wrappers in one chart, counts in the other.
+std::vector<report::PageChart> charts_of(const trace::Chart& chart, report::PageCursor cursor,
+                                         const char* faces_title, const char* counts_title, bool stepped) {
+  report::PageChart faces, counts;
+  faces.title = faces_title;
+  counts.title = counts_title;
+  faces.y_label = "faces";
+  counts.y_label = "number in the step";
+  for (const trace::Series& s : chart.series) {
+    if (s.unit == "ms") continue;
+    if (s.name == "hits" && same_as_contacts(s, chart)) continue;
+    report::PageChart& target = s.unit == "faces" ? faces : counts;
+    // A body that is not there, or a kind of event that never came, is no curve.
+    if (std::none_of(s.values.begin(), s.values.end(), [](double v) { return v > 0; })) continue;
+    target.series.push_back({std::string(s.name), chart.x, s.values});
+  }
+  std::vector<report::PageChart> out;
+  for (report::PageChart* c : {&faces, &counts}) {
+    if (c->series.empty()) continue;
+    c->x_label = std::string(chart.x_name);
+    c->cursor = cursor;
+    c->stepped = stepped;
+    out.push_back(std::move(*c));
+  }
+  return out;
+}
+
+report::PageTable contact_table(const CollideResult& result, std::uint32_t step) {
+  report::PageTable t;
+  t.title = "Contact regions at step " + std::to_string(step);
+  t.columns = {"region", "pairs", "curves", "length", "area", "depth", "centroid", "normal, A to B"};
+  constexpr std::size_t kMostRows = 30;
+  for (std::size_t i = 0; i < std::min(result.regions.size(), kMostRows); ++i) {
+    const ContactRegion& r = result.regions[i];
+    const auto closed =
+        std::count_if(r.loops.begin(), r.loops.end(), [](const ContactLoop& l) { return l.closed; });
+    t.rows.push_back({std::to_string(i + 1), render::group_digits(r.pairs.size()),
+                      std::to_string(closed) + " closed, " +
+                          std::to_string(r.loops.size() - static_cast<std::size_t>(closed)) + " open",
+                      render::short_number(r.length), render::short_number(r.area),
+                      render::short_number(r.depth), vector_text(r.centroid), vector_text(r.normal)});
+  }
+  t.note =
+      "World frame; lengths in the meshes' unit. Depth is an estimate: how far B must move along the normal "
+      "to leave the region.";
+  if (result.regions.size() > kMostRows)
+    t.note += " " + std::to_string(result.regions.size() - kMostRows) + " more are left out here.";
+  return t;
+}
+
+std::string faces_text(const Separation& s) {
+  return render::group_digits(s.face_count[0]) + " + " + render::group_digits(s.face_count[1]) + " faces";
+}
+
+/// What was asked for, where it is less than the exact answer.
+std::string coarse_words(const CollideRequest& request) {
+  std::string limits;
+  const auto add = [&](const std::string& limit) { limits += (limits.empty() ? "" : " and ") + limit; };
+  if (request.tolerance > 0) add("to a tolerance of " + render::short_number(request.tolerance));
+  if (request.max_tests > 0) add("within " + render::group_digits(request.max_tests) + " face tests");
+  if (request.max_time > 0) add("within " + render::short_number(request.max_time) + " s");
+  return " (Answered " + limits +
+         ": faces that meet can be pseudo faces, off the bodies by no more than the error bound.)";
+}
+
+report::PageTable steps_table(const trace::Trace& trace) {
+  report::PageTable t;
+  t.title = "Every time step";
+  t.columns = {"step", "relation", "pairs", "face tests", "refinements", "fingerprint"};
+  const CollideRequest& request = trace.header.request;
+  if (request.is_coarse()) t.columns.insert(t.columns.end(), {"error bound", "finished"});
+  if (request.separation) t.columns.emplace_back("proved apart by");
+  for (const trace::Step& s : trace.steps) {
+    t.rows.push_back(
+        {std::to_string(s.index), words(s.result.relation), render::group_digits(s.result.pair_count),
+         render::group_digits(s.result.counters.face_tests),
+         render::group_digits(s.result.counters.refinements), trace::to_hex(s.result.fingerprint)});
+    std::vector<std::string>& row = t.rows.back();
+    if (request.is_coarse())
+      row.insert(row.end(), {s.result.error_bound == 0 ? "0" : error_bound_text(s.result.error_bound),
+                             s.result.finished ? "yes" : "no"});
+    if (request.separation) row.push_back(s.result.separation ? faces_text(*s.result.separation) : "");
+  }
+  t.note = "The fingerprint is FNV-1a 64 over the sorted pairs: equal answers, equal fingerprints.";
+  if (request.is_coarse()) t.note += " An error bound of 0: the answer is exact.";
+  return t;
+}
+
+void add_links(report::Page& page, const DrawnFrames& drawn, const ReportText& text) {
+  page.links.push_back({text.trace_file, text.trace_file,
+                        "every event; drag it onto ui.perfetto.dev or chrome://tracing to walk through it"});
+  page.links.push_back({"summary.json", "summary.json", "totals, statistics and every time step as JSON"});
+  for (const std::string& file : drawn.montage)
+    page.links.push_back({file, file,
+                          file.ends_with(".txt") ? "what to print under the montage"
+                                                 : "panels (a), (b), (c), ... as one picture"});
+  if (!drawn.frames.empty())
+    page.links.push_back(
+        {"frames/", "frames/", std::to_string(drawn.frames.size()) + " full pictures (PNG)"});
+}
+
+}  // namespace
+
+void add_frames(report::Page& page, const DrawnFrames& drawn, const std::string& folder) {
+  std::vector<report::PngBytes> pngs;
+  for (const DrawnFrame& f : drawn.frames) {
+    const std::string bytes = io::read_text(folder + "/" + f.file);
+    pngs.emplace_back(bytes.begin(), bytes.end());
+  }
+  report::InlinedImages images = report::inline_pngs(pngs);
+  page.frames_note = images.note;
+  for (std::size_t i = 0; i < drawn.frames.size(); ++i) {
+    const DrawnFrame& f = drawn.frames[i];
+    page.frames.push_back({std::move(images.uris[i]), f.caption, f.file, static_cast<double>(f.event),
+                           static_cast<double>(f.step)});
+  }
+}
+
+void add_figure(report::Page& page, const std::string& folder, const std::string& title,
+                const std::string& caption, const std::string& file) {
+  const std::string bytes = io::read_text(folder + "/" + file);
+  const char* type = file.ends_with(".svg") ? "image/svg+xml" : "image/png";
+  page.figures.push_back(
+      {title, caption,
+       report::data_uri(type, reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()), file});
+  page.links.push_back({file, file, title});
+}
+
+report::Page run_page(const RecordedRun& p, const DrawnFrames& drawn, const std::string& folder,
+                      const ReportText& text) {
+  report::Page page;
+  page.title = text.title;
+  page.purpose = text.purpose;
+  page.command = text.command;
+  const bool two = p.reps.size() == 2;
+  if (const trace::Step* step = last_step(*p.trace); two && step != nullptr) {
+    page.verdict = words(step->result.relation);
+    page.numbers = collision_numbers(p, *step);
+  } else if (!two) {
+    page.numbers = wrapper_numbers(*p.reps[0]);
+  }
+  if (two && p.trace->header.request.recursion != Recursion::complete)
+    page.purpose += " (The paper's recursion was asked for: it can miss contacts.)";
+  if (two && p.trace->header.request.is_coarse()) page.purpose += coarse_words(p.trace->header.request);
+  if (p.trace->truncated())
+    page.purpose += " (The trace was cut: it holds " + render::group_digits(p.trace->events.size()) + " of " +
+                    render::group_digits(p.trace->events_seen) + " events, and so do frames and charts.)";
+  if (!text.mismatches.empty()) {
+    report::PageTable t;
+    t.title = "Not as expected";
+    t.columns = {"expectation"};
+    for (const std::string& m : text.mismatches) t.rows.push_back({m});
+    page.tables.push_back(std::move(t));
+    page.verdict = "not as expected";
+  }
+  add_frames(page, drawn, folder);
+  if (p.trace->steps.size() > 1)
+    page.charts = charts_of(trace::chart_over_steps(*p.trace), report::PageCursor::step,
+                            "Largest wrappers, step by step", "Work and answer, step by step", false);
+  std::vector<report::PageChart> by_event =
+      charts_of(trace::chart_over_events(*p.trace), report::PageCursor::event,
+                two ? "Wrappers, event by event" : "The wrapper, event by event",
+                "Work and answer, event by event", true);
+  if (!two)
+    by_event.resize(std::min<std::size_t>(by_event.size(), 1));  // one refinement an event: nothing to count
+  for (report::PageChart& c : by_event) page.charts.push_back(std::move(c));
+  if (two && p.results != nullptr && !p.results->empty() && !p.results->back().regions.empty())
+    page.tables.push_back(contact_table(p.results->back(), p.trace->steps.back().index));
+  constexpr std::size_t kMostSteps = 200;
+  if (two && p.trace->steps.size() <= kMostSteps) page.tables.push_back(steps_table(*p.trace));
+  add_links(page, drawn, text);
+  if (drawn.proved != nullptr)
+    add_figure(page, folder, "Proof that the bodies are apart at step " + std::to_string(drawn.proved->index),
+               "(a) the outermost wrappers, (b) refined as far as it takes until they have no point in "
+               "common: " +
+                   faces_text(*drawn.proved->result.separation) + ". Each holds its body.",
+               kSeparationFile);
+  page.footer =
+      "lrbscope " + p.trace->header.lrbscope + ". This page holds all it needs and fetches nothing.";
+  return page;
+}
+
+}  // namespace lrb::run

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "scenarios/report/page/page.hpp"
+#include "scenarios/run/frame_job.hpp"
+
+namespace lrb::run {
+
+/// What stands around the pictures of a run's page.
+struct ReportText {
+  std::string title, purpose, command;
+  std::string trace_file;  ///< relative to the folder
+  std::vector<std::string> mismatches;
+};
+
+/// Puts frames, whose files are in `folder`, into a page.
+void add_frames(report::Page& page, const DrawnFrames& drawn, const std::string& folder);
+
+/// A picture that is in the folder already, .svg or .png.
+void add_figure(report::Page& page, const std::string& folder, const std::string& title,
+                const std::string& caption, const std::string& file);
+
+/// The page of a run whose files are in `folder`.
+report::Page run_page(const RecordedRun& performance, const DrawnFrames& drawn, const std::string& folder,
+                      const ReportText& text);
+
+}  // namespace lrb::run

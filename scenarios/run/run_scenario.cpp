@@ -1,0 +1,78 @@
+#include "scenarios/run/run_scenario.hpp"
+
+#include <filesystem>
+
+#include "engine/core/error.hpp"
+#include "engine/lrb/lrb_file.hpp"
+#include "scenarios/io/files.hpp"
+#include "scenarios/run/frame_job.hpp"
+#include "scenarios/run/run_report.hpp"
+#include "trace/hex.hpp"
+#include "trace/summary_json.hpp"
+#include "trace/trace_json.hpp"
+
+namespace lrb::run {
+
+namespace {
+
+RecordedRun performance_of(const spec::Scenario& scenario, const Recording& recording) {
+  RecordedRun p;
+  p.title = scenario.name;
+  p.purpose = scenario.purpose;
+  p.trace = &recording.trace;
+  p.results = &recording.results;
+  p.milestones = recording.milestones;
+  for (const bodies::LoadedBody& body : recording.bodies) p.reps.push_back(&body.rep);
+  return p;
+}
+
+/// Throws, before anything is written, if a frame is asked for that cannot be drawn.
+void check(const spec::Scenario& scenario, const RecordedRun& performance) {
+  try {
+    check_frames(performance, scenario.frames);
+  } catch (const InputError& e) {
+    throw InputError("scenario " + scenario.name + ": " + e.what());
+  }
+}
+
+}  // namespace
+
+RunOutcome write_run(const spec::Scenario& scenario, const Recording& recording, const std::string& folder,
+                     const std::string& command, const ProgressReport& progress) {
+  const RecordedRun performance = performance_of(scenario, recording);
+  check(scenario, performance);
+  io::make_folder(folder);
+  const io::FolderLock lock(folder);
+  io::refuse_links(folder);
+  const std::string trace_file = scenario.gzip ? "trace.json.gz" : "trace.json";
+  std::error_code error;
+  std::filesystem::remove(folder + (scenario.gzip ? "/trace.json" : "/trace.json.gz"),
+                          error);  // of an earlier run
+  trace::save_trace(recording.trace, folder + "/" + trace_file);
+  RunOutcome out;
+  out.notes = recording.notes;
+  out.mismatches = mismatches(scenario, recording);
+  out.summary = trace::summary_json(recording.trace);
+  io::write_text(folder + "/summary.json", out.summary);
+
+  for (std::size_t i = 0; i < recording.bodies.size(); ++i)
+    save_lrb(recording.bodies[i].rep, folder + (i == 0 ? "/a.lrb" : "/b.lrb"));
+  const std::vector<std::pair<std::string, std::string>> text = {
+      {"Software", "lrbscope " + recording.trace.header.lrbscope},
+      {"lrbscope:scenario", scenario.name},
+      {"lrbscope:scenario_hash", trace::to_hex(scenario.hash)},
+  };
+  const DrawnFrames drawn = draw_frames(performance, scenario.frames, folder, text, progress);
+  out.frames = drawn.frames.size();
+  progress("page", 0, 1);
+  const ReportText report{scenario.name, scenario.purpose, command, trace_file, out.mismatches};
+  io::write_text(folder + "/index.html", report::page_html(run_page(performance, drawn, folder, report)));
+  return out;
+}
+
+RunOutcome run_scenario(const spec::Scenario& scenario, const std::string& folder, const std::string& command,
+                        const ProgressReport& progress) {
+  return write_run(scenario, record(scenario, progress), folder, command, progress);
+}
+
+}  // namespace lrb::run

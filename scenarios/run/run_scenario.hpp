@@ -1,0 +1,25 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "scenarios/run/recorded_run.hpp"
+
+namespace lrb::run {
+
+struct RunOutcome {
+  std::vector<std::string> mismatches;  ///< expectations that were not met
+  std::vector<std::string> notes;       ///< for people
+  std::string summary;                  ///< summary.json
+  std::size_t frames = 0;
+};
+
+/// Plays a scenario and writes folder/{index.html, trace.json[.gz], summary.json, a.lrb, b.lrb, frames/,
+/// montage.png}.
+RunOutcome run_scenario(const spec::Scenario& scenario, const std::string& folder, const std::string& command,
+                        const ProgressReport& progress);
+/// The same for bodies that are built already.
+RunOutcome write_run(const spec::Scenario& scenario, const Recording& recording, const std::string& folder,
+                     const std::string& command, const ProgressReport& progress);
+
+}  // namespace lrb::run

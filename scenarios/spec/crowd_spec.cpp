@@ -1,0 +1,116 @@
+#include "scenarios/spec/crowd_spec.hpp"
+
+#include <algorithm>
+#include <filesystem>
+
+#include "engine/core/error.hpp"
+#include "engine/core/fnv.hpp"
+#include "scenarios/io/json/json_node.hpp"
+#include "scenarios/spec/scenario_body.hpp"
+#include "scenarios/spec/scenario_frames.hpp"
+
+namespace lrb::spec {
+namespace {
+
+constexpr std::uint32_t kMostSteps = 100'000;
+
+std::vector<CrowdKind> read_kinds(const io::JsonNode& node, const std::filesystem::path& folder,
+                                  std::uint64_t seed) {
+  std::vector<CrowdKind> kinds;
+  std::uint32_t bodies = 0;
+  for (const io::JsonNode& item : node.items(1)) {
+    item.object({"name", "body", "count"});
+    CrowdKind kind;
+    kind.name = read_name(item.at("name"));
+    for (const CrowdKind& other : kinds)
+      if (other.name == kind.name)
+        item.at("name").fail("other bodies are called " + kind.name + ": rename one");
+    kind.body = read_body(item.at("body"), folder, seed);
+    if (const auto n = item.get("count"))
+      kind.count = static_cast<std::uint32_t>(n->integer(1, kMostCrowdBodies));
+    bodies += kind.count;
+    if (bodies > kMostCrowdBodies) node.fail("expected at most 10000 bodies in all");
+    kinds.push_back(std::move(kind));
+  }
+  return kinds;
+}
+
+/// A number, or [least, most].
+std::array<double, 2> read_range(const io::JsonNode& node) {
+  if (!node.is_array()) {
+    const double x = node.number(0, kFar);
+    return {x, x};
+  }
+  const std::vector<double> x = node.numbers(2);
+  if (!(0 <= x[0] && x[0] <= x[1] && x[1] <= kFar)) node.fail("expected 0 <= least <= most");
+  return {x[0], x[1]};
+}
+
+void read_motion(const io::JsonNode& node, Crowd& c) {
+  node.object({"steps", "speed", "spin"});
+  c.steps = static_cast<std::uint32_t>(node.at("steps").integer(1, kMostSteps));
+  if (const auto n = node.get("speed")) c.speed = read_range(*n);
+  if (const auto n = node.get("spin")) c.spin = read_range(*n);
+}
+
+Eigen::Vector3d read_room(const io::JsonNode& node) {
+  const Eigen::Vector3d room = node.vector();
+  if (!(room.minCoeff() >= 0 && room.maxCoeff() <= kFar)) node.fail("expected three sizes of at least 0");
+  return room;
+}
+
+/// Of what frames of two bodies can be, those of a crowd are some.
+FrameSpec read_crowd_frames(const io::JsonNode& node) {
+  FrameSpec frames = read_frames(node, {});
+  for (const char* key : {"events", "colour_by", "explode", "montage", "format"})
+    if (node.has(key)) node.fail_key(key, "frames of a crowd have none: remove it");
+  if (frames.at != FrameSpec::At::step && frames.at != FrameSpec::At::none)
+    node.at("at").fail("frames of a crowd are drawn at a step, or none are");
+  return frames;
+}
+
+}  // namespace
+
+std::uint32_t Crowd::body_count() const {
+  std::uint32_t n = 0;
+  for (const CrowdKind& kind : kinds) n += kind.count;
+  return n;
+}
+
+Crowd parse_crowd(const std::string& text, const std::string& file) {
+  const io::JsonText json(text, file);
+  const io::JsonNode root(json);
+  root.object({"$schema", "name", "purpose", "seed", "room", "arrangement", "bodies", "motion", "query",
+               "trace", "frames"});
+  Crowd c;
+  if (const auto n = root.get("$schema")) n->string();
+  c.name = read_name(root.at("name"));
+  c.purpose = root.at("purpose").string();
+  if (const auto n = root.get("seed")) c.seed = n->integer(0, kAnySeed);
+  c.room = read_room(root.at("room"));
+  if (const auto n = root.get("arrangement"))
+    c.arrangement = n->choice<Crowd::Arrangement>(
+        {{"grid", Crowd::Arrangement::grid}, {"random", Crowd::Arrangement::random}});
+  c.kinds = read_kinds(root.at("bodies"), std::filesystem::path(file).parent_path(), c.seed);
+  read_motion(root.at("motion"), c);
+  c.request.contacts = true;
+  if (const auto n = root.get("query")) {
+    for (const char* key : {"tolerance", "max_tests", "separation"})
+      if (n->has(key)) n->fail_key(key, "queries of a crowd are exact: remove it, or make it a scenario");
+    c.request = read_query(*n);
+  }
+  if (const auto trace = root.get("trace")) {
+    trace->object({"clock", "max_events"});
+    if (const auto n = trace->get("clock"))
+      c.clock = n->choice<trace::Clock>({{"event", trace::Clock::event}, {"wall", trace::Clock::wall}});
+    if (const auto n = trace->get("max_events"))
+      c.max_events = static_cast<std::uint32_t>(n->integer(1, 50'000'000));
+  }
+  if (const auto n = root.get("frames")) c.frames = read_crowd_frames(*n);
+  Fnv64 hash;
+  hash.add_bytes(text.data(), text.size());
+  c.hash = hash.value();
+  return c;
+}
+
+}  // namespace lrb::spec

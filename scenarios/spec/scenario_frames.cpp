@@ -1,0 +1,88 @@
+#include "scenarios/spec/scenario_frames.hpp"
+
+#include <Eigen/Geometry>
+
+namespace lrb::spec {
+namespace {
+
+constexpr std::uint64_t kMostFrames = 10'000;
+
+FrameSpec::View read_view(const io::JsonNode& node) {
+  using Camera = FrameSpec::Camera;
+  node.object(
+      {"camera", "projection", "eye", "target", "from", "up", "turn_degrees", "zoom", "draw", "title"});
+  FrameSpec::View v;
+  if (const auto n = node.get("camera"))
+    v.camera = n->choice<Camera>({{"scene", Camera::scene},
+                                  {"contact", Camera::contact},
+                                  {"fixed", Camera::fixed},
+                                  {"orbit", Camera::orbit}});
+  if (const auto n = node.get("projection"))
+    v.orthographic = n->choice<bool>({{"perspective", false}, {"orthographic", true}});
+  if ((v.camera == Camera::fixed) != (node.has("eye") && node.has("target")))
+    node.fail("a fixed camera needs \"eye\" and \"target\", and no other camera has them");
+  if (const auto n = node.get("eye")) v.eye = n->vector();
+  if (const auto n = node.get("target")) v.target = n->vector();
+  if (const auto n = node.get("from")) v.from = n->vector();
+  if (const auto n = node.get("up")) v.up = n->vector();
+  if (const auto n = node.get("turn_degrees")) v.turn_degrees = n->number(-36000, 36000);
+  if (const auto n = node.get("zoom")) v.zoom = n->number(0.01, 1000);
+  if (const auto n = node.get("draw")) v.wrapper = n->choice<bool>({{"wrapper", true}, {"body", false}});
+  if (const auto n = node.get("title")) v.title = n->string();
+  if (!(v.from.cross(v.up).squaredNorm() > 0)) node.fail("\"from\" and \"up\" must not lie along one line");
+  return v;
+}
+
+void read_moments(const io::JsonNode& node, FrameSpec& f) {
+  using At = FrameSpec::At;
+  if (const auto n = node.get("at"))
+    f.at = n->choice<At>(
+        {{"none", At::none}, {"step", At::step}, {"refinement", At::refinement}, {"event", At::every}});
+  if (const auto n = node.get("every")) f.every = static_cast<std::uint32_t>(n->integer(1, kMaxId));
+  if (const auto n = node.get("events")) {
+    if (node.has("at") || node.has("every"))
+      node.fail_key("events", "a list of events takes the place of \"at\" and \"every\"");
+    f.at = At::events;
+    for (const io::JsonNode& item : n->items(1))
+      f.events.push_back(static_cast<std::uint32_t>(item.integer(0, kMaxId)));
+  }
+  if (const auto n = node.get("most")) f.most = static_cast<std::uint32_t>(n->integer(1, kMostFrames));
+}
+
+}  // namespace
+
+FrameSpec read_frames(const io::JsonNode& node, const FrameSpec& fallback) {
+  using ColourBy = FrameSpec::ColourBy;
+  node.object({"at", "every", "events", "most", "size", "dpi", "format", "supersampling", "colour_by",
+               "views", "transparent", "explode", "montage"});
+  FrameSpec f = fallback;
+  read_moments(node, f);
+  if (const auto n = node.get("size")) {
+    const std::vector<io::JsonNode> size = n->items();
+    if (size.size() != 2) n->fail("expected [width, height]");
+    f.width = static_cast<int>(size[0].integer(64, 8192));
+    f.height = static_cast<int>(size[1].integer(64, 8192));
+  }
+  if (const auto n = node.get("dpi")) f.dpi = n->number(kLeastDpi, kMostDpi);
+  if (const auto n = node.get("format")) f.svg = n->choice<bool>({{"png", false}, {"svg", true}});
+  if (const auto n = node.get("supersampling")) f.supersampling = static_cast<int>(n->integer(1, 4));
+  if (const auto n = node.get("colour_by"))
+    f.colour_by = n->choice<ColourBy>({{"kind", ColourBy::kind},
+                                       {"layer", ColourBy::layer},
+                                       {"region", ColourBy::region},
+                                       {"face_tests", ColourBy::face_tests},
+                                       {"refinements", ColourBy::refinements}});
+  if (const auto n = node.get("views"))
+    for (const io::JsonNode& item : n->items(1)) f.views.push_back(read_view(item));
+  if (f.views.size() > 6) node.at("views").fail("expected at most 6 views");
+  if (const auto n = node.get("transparent")) f.transparent = n->boolean();
+  if (const auto n = node.get("explode")) f.explode = n->number(0, 10);
+  if (const auto n = node.get("montage")) {
+    n->object({"panels", "columns"});
+    f.montage = static_cast<std::uint32_t>(n->at("panels").integer(1, 26));
+    if (const auto c = n->get("columns")) f.montage_columns = static_cast<std::uint32_t>(c->integer(1, 26));
+  }
+  return f;
+}
+
+}  // namespace lrb::spec

@@ -1,0 +1,174 @@
+#include "scenarios/spec/scenario_motion.hpp"
+
+#include <numbers>
+
+#include <Eigen/Geometry>
+
+namespace lrb::spec {
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180;
+constexpr double kFar = 1e150;  // coordinates whose squares are still finite
+constexpr std::uint32_t kMostSteps = 100'000;
+
+Eigen::Vector3d read_axis(const io::JsonNode& node) {
+  const Eigen::Vector3d axis = node.vector();
+  if (!(axis.squaredNorm() > 0)) node.fail("expected a direction that is not zero");
+  return axis;
+}
+
+double read_degrees(const io::JsonNode& node) {
+  return node.number(-kFar, kFar);
+}
+
+std::uint32_t read_steps(const io::JsonNode& node, const char* key, std::uint32_t fallback,
+                         std::uint32_t least) {
+  const auto n = node.get(key);
+  return n ? static_cast<std::uint32_t>(n->integer(least, kMostSteps)) : fallback;
+}
+
+std::vector<Motion::Keyframe> read_keyframes(const io::JsonNode& node) {
+  std::vector<Motion::Keyframe> out;
+  for (const io::JsonNode& item : node.items(1)) {
+    item.object({"step", "position", "axis", "degrees"});
+    Motion::Keyframe k;
+    k.step = static_cast<std::uint32_t>(item.at("step").integer(0, kMostSteps));
+    if (out.empty() ? k.step != 0 : k.step <= out.back().step)
+      item.at("step").fail(out.empty() ? "the first keyframe is at step 0"
+                                       : "keyframes come in order of their steps");
+    k.position = item.at("position").vector();
+    if (const auto n = item.get("axis")) k.axis = read_axis(*n);
+    if (const auto n = item.get("degrees")) k.degrees = read_degrees(*n);
+    out.push_back(k);
+  }
+  return out;
+}
+
+void read_turn(const io::JsonNode& node, Motion& m) {
+  if (const auto n = node.get("axis")) m.axis = read_axis(*n);
+  if (const auto n = node.get("degrees")) m.degrees = read_degrees(*n);
+}
+
+void read_approach(const io::JsonNode& node, Motion& m) {
+  node.object({"kind", "from", "target", "step_length", "axis", "degrees", "before", "into", "most_steps"});
+  m.from = node.at("from").vector();
+  if (!(m.from.squaredNorm() > 0)) node.at("from").fail("expected a direction that is not zero");
+  if (const auto n = node.get("target")) m.target = n->vector();
+  constexpr double kShortest = 1e-6;  // of the bodies' diagonals: a million steps across
+  if (const auto n = node.get("step_length")) m.step_length = n->number(kShortest, 1);
+  read_turn(node, m);
+  m.before = read_steps(node, "before", m.before, 0);
+  m.into = read_steps(node, "into", m.into, 0);
+  m.steps = read_steps(node, "most_steps", 10'000, 1);
+}
+
+Pose turned(const Eigen::Vector3d& axis, double degrees, const Eigen::Vector3d& position) {
+  return degrees == 0 ? Pose::translation(position) : Pose::rotation(axis, degrees * kDegree, position);
+}
+
+std::vector<Pose> keyframe_poses(const std::vector<Motion::Keyframe>& keys) {
+  const auto rotation = [](const Motion::Keyframe& k) {
+    // In long double throughout, slerp as well: see engine/core/steady_math.hpp.
+    return Eigen::Quaternion<long double>(
+        Eigen::AngleAxis<long double>(k.degrees * kDegree, k.axis.normalized().cast<long double>()));
+  };
+  std::vector<Pose> out = {turned(keys[0].axis, keys[0].degrees, keys[0].position)};
+  for (std::size_t i = 1; i < keys.size(); ++i) {
+    const std::uint32_t span = keys[i].step - keys[i - 1].step;
+    for (std::uint32_t s = 1; s <= span; ++s) {
+      const double t = static_cast<double>(s) / span;
+      out.push_back({rotation(keys[i - 1]).slerp(t, rotation(keys[i])).toRotationMatrix().cast<double>(),
+                     keys[i - 1].position + t * (keys[i].position - keys[i - 1].position)});
+    }
+  }
+  return out;
+}
+
+}  // namespace
+
+Pose then(const Pose& first, const Pose& second) {
+  return {second.r * first.r, second.r * first.t + second.t};
+}
+
+Pose read_pose(const io::JsonNode& node) {
+  if (node.is_array()) {
+    const std::vector<double> x = node.numbers(12);
+    Pose pose;
+    for (int r = 0; r < 3; ++r) {
+      for (int c = 0; c < 3; ++c) pose.r(r, c) = x[static_cast<std::size_t>(4 * r + c)];
+      pose.t[r] = x[static_cast<std::size_t>(4 * r + 3)];
+    }
+    return pose;
+  }
+  node.object({"position", "axis", "degrees"});
+  Eigen::Vector3d position(0, 0, 0), axis(0, 0, 1);
+  if (const auto n = node.get("position")) position = n->vector();
+  if (const auto n = node.get("axis")) axis = read_axis(*n);
+  const auto degrees = node.get("degrees");
+  return turned(axis, degrees ? read_degrees(*degrees) : 0, position);
+}
+
+Motion read_motion(const io::JsonNode& node) {
+  using Kind = Motion::Kind;
+  Motion m;
+  m.kind = node.at("kind").choice<Kind>({{"poses", Kind::poses},
+                                         {"keyframes", Kind::keyframes},
+                                         {"sweep", Kind::sweep},
+                                         {"approach", Kind::approach},
+                                         {"spin", Kind::spin}});
+  switch (m.kind) {
+    case Kind::poses:
+      node.object({"kind", "poses"});
+      for (const io::JsonNode& item : node.at("poses").items(1)) m.poses.push_back(read_pose(item));
+      break;
+    case Kind::keyframes:
+      node.object({"kind", "keyframes"});
+      m.keyframes = read_keyframes(node.at("keyframes"));
+      break;
+    case Kind::sweep:
+      node.object({"kind", "from", "to", "axis", "degrees", "steps"});
+      m.from = node.at("from").vector();
+      m.to = node.at("to").vector();
+      read_turn(node, m);
+      m.steps = read_steps(node, "steps", 30, 1);
+      break;
+    case Kind::approach:
+      read_approach(node, m);
+      break;
+    case Kind::spin:
+      node.object({"kind", "axis", "degrees", "steps"});
+      m.degrees = 360;
+      read_turn(node, m);
+      m.steps = read_steps(node, "steps", 36, 1);
+      break;
+  }
+  return m;
+}
+
+std::vector<Pose> poses_of(const Motion& motion, const Pose& start) {
+  std::vector<Pose> moves;
+  switch (motion.kind) {
+    case Motion::Kind::poses:
+      moves = motion.poses;
+      break;
+    case Motion::Kind::keyframes:
+      moves = keyframe_poses(motion.keyframes);
+      break;
+    case Motion::Kind::sweep:
+      for (std::uint32_t i = 0; i < motion.steps; ++i) {
+        const double t = motion.steps == 1 ? 0 : static_cast<double>(i) / (motion.steps - 1);
+        moves.push_back(turned(motion.axis, motion.degrees * t, motion.from + t * (motion.to - motion.from)));
+      }
+      break;
+    case Motion::Kind::spin:
+      for (std::uint32_t i = 0; i < motion.steps; ++i)
+        moves.push_back(turned(motion.axis, motion.degrees * i / motion.steps, {0, 0, 0}));
+      break;
+    case Motion::Kind::approach:
+      break;
+  }
+  for (Pose& move : moves) move = then(start, move);
+  return moves;
+}
+
+}  // namespace lrb::spec

@@ -1,0 +1,55 @@
+#include "scenarios/spec/shipped.hpp"
+
+#include <algorithm>
+#include <filesystem>
+
+#include "engine/core/error.hpp"
+#include "scenarios/io/embedded.hpp"
+#include "scenarios/io/files.hpp"
+#include "scenarios/io/json/suggest.hpp"
+
+namespace lrb::spec {
+namespace {
+
+constexpr std::string_view kScenario = ".scenario.json";
+
+}  // namespace
+
+std::vector<std::string> shipped_names(std::string_view ending) {
+  std::vector<std::string> names;
+  for (const io::EmbeddedFile& file : io::embedded_files())
+    if (file.name.ends_with(ending))
+      names.emplace_back(file.name.substr(0, file.name.size() - ending.size()));
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+NamedText open_named(const std::string& name_or_path, std::string_view ending, std::string_view what) {
+  const bool is_name = name_or_path.find_first_of("./\\") == std::string::npos;
+  if (is_name) {
+    const std::string shipped = name_or_path + std::string(ending);
+    for (const io::EmbeddedFile& file : io::embedded_files())
+      if (file.name == shipped) return {std::string(file.text), shipped};
+    std::error_code error;
+    if (!std::filesystem::exists(name_or_path, error))
+      throw InputError(name_or_path + ": neither a shipped " + std::string(what) + " nor a file" +
+                       io::suggestion(name_or_path, shipped_names(ending)));
+  }
+  return {io::read_text(name_or_path), name_or_path};
+}
+
+std::vector<ShippedScenario> shipped_scenarios() {
+  std::vector<ShippedScenario> out;
+  for (const std::string& name : shipped_names(kScenario)) {
+    const Scenario s = open_scenario(name);
+    out.push_back({s.name, s.purpose});
+  }
+  return out;
+}
+
+Scenario open_scenario(const std::string& name_or_path) {
+  const NamedText scenario = open_named(name_or_path, kScenario, "scenario");
+  return parse_scenario(scenario.text, scenario.file);
+}
+
+}  // namespace lrb::spec

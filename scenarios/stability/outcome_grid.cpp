@@ -1,0 +1,81 @@
+#include "scenarios/stability/outcome_grid.hpp"
+
+#include <algorithm>
+#include <tuple>
+
+#include "scenarios/cases/families.hpp"
+
+static_assert(lrb::cases::kDialSettings == lrb::cases::kDialSettings);
+
+namespace lrb::stability {
+namespace {
+
+/// How bad a record is, for comparison.
+auto badness(const Record& r) {
+  const int kind = r.outcome == Outcome::crashed ? 2 : r.outcome == Outcome::timed_out ? 1 : 0;
+  return std::tuple(kind, r.missed + r.extra, -r.dial);
+}
+
+void count(Cell& cell, const Record& r) {
+  ++cell.cases[r.dial];
+  if (r.outcome == Outcome::right) return;
+  auto& counted = r.outcome == Outcome::wrong     ? cell.wrong
+                  : r.outcome == Outcome::refused ? cell.refused
+                  : r.outcome == Outcome::crashed ? cell.crashed
+                                                  : cell.timed_out;
+  ++counted[r.dial];
+  if (r.outcome == Outcome::refused) return;
+  if (!cell.worst || badness(r) > badness(*cell.worst)) cell.worst = r;
+}
+
+}  // namespace
+
+const char* to_string(Outcome o) {
+  switch (o) {
+    case Outcome::right:
+      return "right";
+    case Outcome::wrong:
+      return "wrong";
+    case Outcome::refused:
+      return "refused";
+    case Outcome::crashed:
+      return "crashed";
+    case Outcome::timed_out:
+      return "timed_out";
+  }
+  return "";
+}
+
+Grid count_grid(std::vector<workers::MethodColumn> methods, std::vector<FamilyRow> families,
+                const std::vector<Record>& records) {
+  Grid grid;
+  grid.methods = std::move(methods);
+  grid.families = std::move(families);
+  grid.cells.resize(grid.families.size() * grid.methods.size());
+  for (const Record& r : records) {
+    const auto family = std::find_if(grid.families.begin(), grid.families.end(),
+                                     [&](const FamilyRow& f) { return f.name == r.family; });
+    const auto method = std::find_if(grid.methods.begin(), grid.methods.end(),
+                                     [&](const workers::MethodColumn& m) { return m.name == r.method; });
+    if (family == grid.families.end() || method == grid.methods.end()) continue;
+    const auto row = static_cast<std::size_t>(family - grid.families.begin());
+    const auto column = static_cast<std::size_t>(method - grid.methods.begin());
+    count(grid.cells[row * grid.methods.size() + column], r);
+  }
+  return grid;
+}
+
+std::uint64_t Cell::sum(const std::array<std::uint64_t, cases::kDialSettings>& counts) {
+  std::uint64_t n = 0;
+  for (const std::uint64_t c : counts) n += c;
+  return n;
+}
+
+std::vector<FamilyRow> family_rows() {
+  std::vector<FamilyRow> rows;
+  for (const cases::Family& f : cases::all_families())
+    rows.push_back({f.name, f.what, f.benign, f.degenerate});
+  return rows;
+}
+
+}  // namespace lrb::stability

@@ -1,0 +1,80 @@
+#pragma once
+/// The stability experiment: what every method answered to every case of every family, and the grid of
+/// families x methods that is counted from it.
+///
+/// Raw records come first (JSON Lines, one per case and method); the grid, the page and the pictures are made
+/// of nothing else.
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/query/collide.hpp"
+#include "scenarios/workers/workers.hpp"
+
+namespace lrb::stability {
+
+/// Settings of a family's dial, from benign (0) to degenerate (kDialSettings - 1).
+inline constexpr int kDialSettings = 11;
+
+/// What became of one case in the hands of one method.
+enum class Outcome : std::uint8_t {
+  right,      ///< all that the method answers is right
+  wrong,      ///< pairs missed or too many, or a wrong relation
+  refused,    ///< it said that it cannot answer
+  crashed,    ///< its process died
+  timed_out,  ///< it did not answer in time
+};
+const char* to_string(Outcome o);
+
+struct FamilyRow {
+  std::string name, what;
+  std::string benign, degenerate;  ///< what the ends of the dial mean: "gap 1e-1", "gap 1 ulp"
+};
+
+struct Record {
+  std::string family, method;
+  int dial = 0;  ///< 0 .. kDialSettings - 1
+  std::uint64_t case_index = 0, seed = 0;
+  Outcome outcome = Outcome::right;
+  std::uint64_t expected = 0;  ///< pairs that meet, by exact brute force
+  std::uint64_t missed = 0, extra = 0;
+  std::string relation, expected_relation;  ///< empty: the method gives none
+  double microseconds = 0;                  ///< of the query alone
+  std::string message;                      ///< of a refusal, a crash
+};
+
+/// One family in the hands of one method.
+struct Cell {
+  std::array<std::uint64_t, kDialSettings> cases{}, wrong{}, refused{}, crashed{}, timed_out{};
+  std::optional<Record> worst;  ///< of those that failed; the one with the lowest dial setting among equals
+
+  static std::uint64_t sum(const std::array<std::uint64_t, kDialSettings>& counts);
+  /// Refusals are no failures.
+  std::uint64_t failures() const { return sum(wrong) + sum(crashed) + sum(timed_out); }
+  /// Without those that were refused.
+  std::uint64_t answered() const { return sum(cases) - sum(refused); }
+};
+
+struct Grid {
+  std::vector<workers::MethodColumn> methods;
+  std::vector<FamilyRow> families;
+  std::vector<Cell> cells;  ///< (|families| x |methods|), row by row
+  std::string command;      ///< that made it
+  double seconds = 0;
+
+  const Cell& at(std::size_t family, std::size_t method) const {
+    return cells[family * methods.size() + method];
+  }
+};
+
+/// Counts records. Those of other methods and families are passed over.
+Grid count_grid(std::vector<workers::MethodColumn> methods, std::vector<FamilyRow> families,
+                const std::vector<Record>& records);
+
+/// Returns the families of all_families(), in their order.
+std::vector<FamilyRow> family_rows();
+
+}  // namespace lrb::stability

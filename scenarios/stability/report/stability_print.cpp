@@ -1,0 +1,339 @@
+#include "scenarios/stability/report/stability_print.hpp"
+
+#include <algorithm>
+#include <array>
+#include <iomanip>
+#include <sstream>
+
+#include "render/overlay.hpp"
+#include "render/palette.hpp"
+#include "scenarios/stability/report/cell_summary.hpp"
+
+namespace lrb::stability {
+namespace {
+
+// ---- the grid: drawn in units of one cell, x to the right, y up, the first row's top at 0
+
+constexpr double kCellWidth = 17, kCellHeight = 10.5;  // millimetres
+constexpr double kLeft = 2.9, kBottom = 1.5;
+constexpr double kFont = 6.5, kSmall = 0.8, kLine = 0.24;  // points; share of it
+
+constexpr render::Rgba kWrong = render::palette::kVermillion;
+constexpr render::Rgba kCrashed{20, 22, 26};
+constexpr render::Rgba kTimedOut{160, 69, 138};
+constexpr render::Rgba kRefused{154, 160, 166};
+constexpr render::Rgba kAbsent{247, 247, 246};
+constexpr render::Rgba kOnlyRefused{228, 230, 232};
+/// As on the page: pale blue where nothing fails, then ever more orange.
+constexpr std::array<render::Rgba, 5> kLevels = {render::Rgba{226, 238, 246}, render::Rgba{253, 241, 220},
+                                                 render::Rgba{251, 220, 174}, render::Rgba{245, 180, 107},
+                                                 render::Rgba{232, 138, 60}};
+
+std::string number(double x) {
+  std::ostringstream out;
+  out << std::setprecision(7) << x;
+  return out.str();
+}
+
+std::string colour(render::Rgba c) {
+  return std::to_string((static_cast<unsigned>(c.r) << 16) + (static_cast<unsigned>(c.g) << 8) + c.b);
+}
+
+/// Rectangles and texts, and the commands that draw them in this order.
+class Sheet {
+ public:
+  void rect(double x0, double y0, double x1, double y1, render::Rgba c) {
+    rects_.push_back(number((x0 + x1) / 2) + " " + number((y0 + y1) / 2) + " " + number(x0) + " " +
+                     number(x1) + " " + number(y0) + " " + number(y1) + " " + colour(c));
+  }
+  enum Style { normal, bold, small, small_right, small_centre, kStyles };
+  void text(double x, double y, Style style, const std::string& s, render::Rgba c = render::palette::kInk) {
+    if (!s.empty())
+      texts_[style].push_back(number(x) + " " + number(y) + " " + report::gnuplot_data_text(s) + " " +
+                              colour(c));
+  }
+  void write(report::Gnuplot& chart) const {
+    static constexpr std::array<const char*, kStyles> kNames = {"normal", "bold", "small", "small_right",
+                                                                "small_centre"};
+    static constexpr std::array<const char*, kStyles> kAligns = {"left", "right", "left", "right", "center"};
+    chart.add_data("rects", rects_);
+    std::string plot = "plot $rects using 1:2:3:4:5:6:7 with boxxyerror lc rgb variable";
+    for (std::size_t i = 0; i < kStyles; ++i) {
+      if (texts_[i].empty()) continue;
+      chart.add_data(kNames[i], texts_[i]);
+      const std::string font = i == bold ? "DejaVu Sans Bold," + number(kFont)
+                                         : "DejaVu Sans," + number(i == normal ? kFont : kFont * kSmall);
+      plot += ", $" + std::string(kNames[i]) + " using 1:2:3:4 with labels " + kAligns[i] + " font '" + font +
+              "' tc rgb variable";
+    }
+    chart.script += plot + "\n";
+  }
+
+ private:
+  std::vector<std::string> rects_;
+  std::array<std::vector<std::string>, kStyles> texts_;
+};
+
+/// Breaks at spaces, and at underscores where a word is longer than a line.
+std::vector<std::string> wrap(const std::string& text, std::size_t width) {
+  std::vector<std::string> lines;
+  std::istringstream in(text);
+  for (std::string word; in >> word;) {
+    for (std::size_t cut; word.size() > width && (cut = word.rfind('_', width - 1)) != std::string::npos;) {
+      lines.push_back(word.substr(0, cut + 1));
+      word.erase(0, cut + 1);
+    }
+    if (!lines.empty() && lines.back().back() != '_' && lines.back().size() + word.size() < width)
+      lines.back() += " " + word;
+    else
+      lines.push_back(word);
+  }
+  return lines;
+}
+
+std::vector<std::string> title_lines(const workers::MethodColumn& method) {
+  constexpr std::size_t kCharacters = 16;
+  return wrap(method.title, kCharacters);
+}
+
+void add_bars(Sheet& sheet, const Cell& cell, double x, double y) {
+  constexpr double kFrom = 0.07, kTo = 0.93, kLow = 0.1, kHigh = 0.5, kLeast = 0.05;
+  sheet.rect(x + kFrom - 0.02, y + kLow - 0.03, x + kTo + 0.02, y + kHigh + 0.03, render::kWhite);
+  const double step = (kTo - kFrom) / kDialSettings;
+  for (std::size_t i = 0; i < kDialSettings; ++i) {
+    if (cell.cases[i] == 0) continue;
+    const double left = x + kFrom + step * (static_cast<double>(i) + 0.1), right = left + 0.8 * step;
+    sheet.rect(left, y + kLow - 0.012, right, y + kLow, render::palette::kRule);
+    double at = y + kLow;
+    const auto part = [&](std::uint64_t n, render::Rgba c) {
+      if (n == 0) return;
+      const double share = static_cast<double>(n) / static_cast<double>(cell.cases[i]);
+      const double top = std::min(y + kHigh, at + std::max(kLeast, (kHigh - kLow) * share));
+      sheet.rect(left, at, right, top, c);
+      at = top;
+    };
+    part(cell.wrong[i], kWrong);
+    part(cell.crashed[i], kCrashed);
+    part(cell.timed_out[i], kTimedOut);
+    part(cell.refused[i], kRefused);
+  }
+}
+
+void add_cell(Sheet& sheet, const Cell& cell, double x, double y) {
+  constexpr double kGap = 0.02;
+  const CellSummary s = summarise(cell);
+  sheet.rect(x + kGap, y + kGap, x + 1 - kGap, y + 1 - kGap,
+             s.only_refused() ? kOnlyRefused : kLevels[static_cast<std::size_t>(s.level())]);
+  const std::string failures = std::to_string(s.failures()) + "/" + std::to_string(s.answered());
+  sheet.text(x + 0.06, y + 0.8, Sheet::small, failures);
+  std::string marks;
+  const auto mark = [&](std::uint64_t n, const char* sign) {
+    if (n > 0) marks += (marks.empty() ? "" : " ") + (sign + std::to_string(n));
+  };
+  mark(s.crashed, "\u2715");
+  mark(s.timed_out, "\u25f7");
+  mark(s.refused, "\u2298");
+  // What does not fit beside the failures has a line of its own.
+  constexpr std::size_t kBeside = 14;  // bytes; a mark's sign has three
+  sheet.text(x + 0.95, y + (failures.size() + marks.size() > kBeside ? 0.61 : 0.8), Sheet::small_right,
+             marks);
+  add_bars(sheet, cell, x, y);
+}
+
+std::string ends_of(const FamilyRow& family) {
+  if (family.benign.empty() && family.degenerate.empty()) return " ";
+  return family.benign + " \u2192 " + family.degenerate;
+}
+
+void add_row_head(Sheet& sheet, const FamilyRow& family, double y) {
+  sheet.text(-0.08, y + 0.76, Sheet::bold, family.name);
+  if (family.benign.empty() && family.degenerate.empty()) return;
+  sheet.text(-0.08, y + 0.46, Sheet::small_right, family.benign + " \u2192", render::palette::kFaint);
+  sheet.text(-0.08, y + 0.2, Sheet::small_right, family.degenerate, render::palette::kFaint);
+}
+
+void add_column_head(Sheet& sheet, const workers::MethodColumn& method, double x) {
+  const std::vector<std::string> lines = title_lines(method);
+  for (std::size_t i = 0; i < lines.size(); ++i)
+    sheet.text(x + 0.5, 0.2 + kLine * static_cast<double>(lines.size() - 1 - i), Sheet::small_centre,
+               lines[i], method.present ? render::palette::kInk : render::palette::kFaint);
+}
+
+void add_legend(Sheet& sheet, double y, double columns) {
+  double x = -kLeft + 0.1;
+  const auto item = [&](render::Rgba c, const std::string& text) {
+    constexpr double kCharacter = 0.066;
+    const auto characters =
+        std::count_if(text.begin(), text.end(), [](char byte) { return (byte & 0xC0) != 0x80; });  // of UTF-8
+    const double needed = 0.35 + kCharacter * static_cast<double>(characters) + 0.2;
+    if (x + needed > columns) {
+      x = -kLeft + 0.1;
+      y -= 0.42;
+    }
+    sheet.rect(x, y - 0.12, x + 0.22, y + 0.12, c);
+    sheet.text(x + 0.29, y, Sheet::small, text);
+    x += needed;
+  };
+  for (std::size_t i = 0; i < kLevels.size(); ++i) item(kLevels[i], kLevelNames[i]);
+  item(kOnlyRefused, "refusals alone");
+  item(kWrong, "wrong answer");
+  item(kCrashed, "\u2715 crashed");
+  item(kTimedOut, "\u25f7 timed out");
+  item(kRefused, "\u2298 refused");
+  sheet.text(-kLeft + 0.1, y - 0.42, Sheet::small,
+             "Failures/cases not refused; bars: share of cases along the dial, benign to degenerate.",
+             render::palette::kFaint);
+}
+
+// ---- the profiles
+
+constexpr int kProfileColumns = 4;
+
+/// Lines that differ in colour, dash and mark.
+std::string line_style(std::size_t i) {
+  static constexpr std::array<const char*, 8> kColours = {"#0072b2", "#d55e00", "#009e73", "#cc79a7",
+                                                          "#1d1f22", "#56b4e9", "#e69f00", "#7a5195"};
+  static constexpr std::array<int, 8> kPoints = {7, 5, 9, 11, 13, 6, 4, 8};
+  return "lc rgb '" + std::string(kColours[i % kColours.size()]) + "' pt " +
+         std::to_string(kPoints[i % kPoints.size()]) + " ps 0.35 dt " +
+         std::to_string(1 + i / kColours.size()) + " lw 1.1";
+}
+
+std::string margins(double left, double right, double bottom, double top) {
+  return "set lmargin at screen " + number(left) + "\nset rmargin at screen " + number(right) +
+         "\nset bmargin at screen " + number(bottom) + "\nset tmargin at screen " + number(top) + "\n";
+}
+
+std::string panel_heading(const FamilyRow& family, bool first) {
+  std::string out =
+      "set title " + report::gnuplot_text(family.name) + " font 'DejaVu Sans Bold,6.5' offset 0,-0.6\n";
+  out += "set xlabel " + report::gnuplot_text(ends_of(family)) +
+         " offset 0,0.8 font 'DejaVu Sans,5' tc rgb '#62676e'\n";
+  return out + (first ? "set ylabel 'failures, %' offset 1.5,0\n" : "unset ylabel\n");
+}
+
+std::vector<std::string> profile_rows(const Cell& cell, double shift) {
+  std::vector<std::string> rows;
+  for (std::size_t i = 0; i < kDialSettings; ++i) {
+    if (cell.cases[i] == 0) continue;
+    const double failed = static_cast<double>(cell.wrong[i] + cell.crashed[i] + cell.timed_out[i]);
+    rows.push_back(number(static_cast<double>(i) + shift) + " " +
+                   number(100 * failed / static_cast<double>(cell.cases[i])));
+  }
+  return rows;
+}
+
+}  // namespace
+
+report::Gnuplot grid_chart(const Grid& grid) {
+  const double columns = static_cast<double>(grid.methods.size());
+  const double rows = static_cast<double>(grid.families.size()) + 1.1;  // a little room above the sums
+  std::size_t most_lines = 1;
+  for (const workers::MethodColumn& m : grid.methods)
+    most_lines = std::max(most_lines, title_lines(m).size());
+  const double top = 0.2 + kLine * static_cast<double>(most_lines);
+  report::Gnuplot chart;
+  chart.width = kCellWidth * (kLeft + columns + 0.1);
+  chart.height = kCellHeight * (top + rows + kBottom);
+  chart.font = kFont;
+  Sheet sheet;
+  for (std::size_t m = 0; m < grid.methods.size(); ++m) {
+    const double x = static_cast<double>(m);
+    add_column_head(sheet, grid.methods[m], x);
+    for (std::size_t f = 0; f < grid.families.size(); ++f) {
+      const double y = -1 - static_cast<double>(f);
+      if (grid.methods[m].present) {
+        add_cell(sheet, grid.at(f, m), x, y);
+      } else {
+        sheet.rect(x + 0.02, y + 0.02, x + 0.98, y + 0.98, kAbsent);
+        sheet.text(x + 0.5, y + 0.5, Sheet::small_centre, "absent", render::palette::kFaint);
+      }
+    }
+    if (grid.methods[m].present) add_cell(sheet, sum_of_column(grid, m), x, -rows);
+  }
+  for (std::size_t f = 0; f < grid.families.size(); ++f)
+    add_row_head(sheet, grid.families[f], -1 - static_cast<double>(f));
+  sheet.text(-0.08, -rows + 0.5, Sheet::bold, "all families");
+  add_legend(sheet, -rows - 0.35, columns);
+
+  chart.script =
+      "unset border\nunset tics\nunset key\nset style fill solid 1 noborder\n"
+      "set lmargin at screen 0\nset rmargin at screen 1\nset tmargin at screen 1\nset bmargin at screen 0\n";
+  chart.script += "set xrange [" + number(-kLeft) + ":" + number(columns + 0.1) + "]\nset yrange [" +
+                  number(-rows - kBottom) + ":" + number(top) + "]\n";
+  sheet.write(chart);
+  return chart;
+}
+
+report::Gnuplot profile_chart(const Grid& grid) {
+  const auto families = static_cast<int>(grid.families.size());
+  const int rows = (families + kProfileColumns - 1) / kProfileColumns;
+  std::vector<std::size_t> present;
+  for (std::size_t m = 0; m < grid.methods.size(); ++m)
+    if (grid.methods[m].present) present.push_back(m);
+  constexpr int kKeyColumns = 2;
+  const int key_rows = std::max(1, (static_cast<int>(present.size()) + kKeyColumns - 1) / kKeyColumns);
+  constexpr double kPanelHeight = 34, kKeyLine = 3.6;  // millimetres
+  report::Gnuplot chart;
+  chart.width = 180;
+  chart.height = kPanelHeight * rows + kKeyLine * key_rows + 3;
+  chart.font = 6;
+
+  std::string plots;
+  for (std::size_t f = 0; f < grid.families.size(); ++f) {
+    const int row = static_cast<int>(f) / kProfileColumns, column = static_cast<int>(f) % kProfileColumns;
+    // Of the panel: what axis, title and labels need at its sides.
+    constexpr double kLeftSide = 0.045, kPanelWidth = (1 - kLeftSide) / kProfileColumns;
+    plots += margins(kLeftSide + (column + 0.1) * kPanelWidth, kLeftSide + (column + 0.97) * kPanelWidth,
+                     1 - (row + 0.8) * kPanelHeight / chart.height,
+                     1 - (row + 0.15) * kPanelHeight / chart.height);
+    plots += panel_heading(grid.families[f], column == 0);
+    for (std::size_t line = 0; line < present.size(); ++line) {
+      const std::string name = "f" + std::to_string(f) + "m" + std::to_string(present[line]);
+      // Side by side where lines would hide each other.
+      constexpr double kApart = 0.07;
+      const double shift = kApart * (static_cast<double>(line) - static_cast<double>(present.size() - 1) / 2);
+      chart.add_data(name, profile_rows(grid.at(f, present[line]), shift));
+      plots += (line > 0 ? ", $" : "plot $") + name + " using 1:2 with linespoints " + line_style(line);
+    }
+    plots += "\n";
+  }
+  // The key: lines and titles in a panel of their own, in units of its columns and lines.
+  plots += margins(0.03, 1, 0, kKeyLine * key_rows / chart.height) +
+           "unset border\nunset tics\nunset title\nunset xlabel\nunset ylabel\nset xrange [0:" +
+           std::to_string(kKeyColumns) + "]\nset yrange [0:" + std::to_string(key_rows) + "]\n";
+  std::vector<std::string> titles;
+  for (std::size_t line = 0; line < present.size(); ++line) {
+    const double x = static_cast<double>(static_cast<int>(line) / key_rows);
+    const double y = key_rows - 0.5 - static_cast<int>(line) % key_rows;
+    const std::string name = "key" + std::to_string(line);
+    chart.add_data(name, {number(x) + " " + number(y), number(x + 0.12) + " " + number(y)});
+    titles.push_back(number(x + 0.15) + " " + number(y) + " " +
+                     report::gnuplot_data_text(grid.methods[present[line]].title));
+    plots += (line > 0 ? ", $" : "plot $") + name + " using 1:2 with linespoints " + line_style(line);
+  }
+  chart.add_data("titles", titles);
+  plots += std::string(present.empty() ? "plot" : ",") + " $titles using 1:2:3 with labels left";
+
+  chart.script +=
+      "set multiplot\nunset key\nset border 3 lw 0.6 lc rgb '#8a8f95'\nset yrange [-3:103]\nset ytics "
+      "0,50,100 nomirror scale 0.4 offset 0.6,0 tc rgb '#1c1e22'\n"
+      "set xtics 0,1 nomirror scale 0.4 format ''\nset grid ytics lw 0.4 lc rgb '#d8dadc' dt 1\n";
+  chart.script += "set xrange [-0.6:" + number(kDialSettings - 0.4) + "]\n" + plots + "\nunset multiplot\n";
+  return chart;
+}
+
+std::vector<PrintFile> print_stability(const Grid& grid, const std::string& folder) {
+  const report::Gnuplot whole = grid_chart(grid), profiles = profile_chart(grid);
+  std::vector<PrintFile> files;
+  for (const char* ending : {".svg", ".png"}) {
+    report::draw(whole, folder + "/stability" + ending);
+    files.push_back({std::string("stability") + ending, "the grid, for print"});
+    report::draw(profiles, folder + "/stability-profiles" + ending);
+    files.push_back(
+        {std::string("stability-profiles") + ending, "share of failures along each family's dial"});
+  }
+  return files;
+}
+
+}  // namespace lrb::stability

@@ -1,0 +1,254 @@
+#include "scenarios/stability/report/stability_report.hpp"
+
+#include <algorithm>
+#include <cctype>
+
+#include "engine/core/error.hpp"
+#include "render/overlay.hpp"
+#include "scenarios/io/files.hpp"
+#include "scenarios/report/page/inline_image.hpp"
+#include "scenarios/stability/report/cell_summary.hpp"
+#include "scenarios/stability/report/stability_print.hpp"
+
+namespace lrb::stability {
+namespace {
+
+constexpr const char* kPage = "index.html";
+
+std::string count_of(std::uint64_t n, const char* one, const char* many) {
+  return render::group_digits(n) + " " + (n == 1 ? one : many);
+}
+
+std::string sentence(const CellSummary& s) {
+  std::string out =
+      render::group_digits(s.failures()) + " of " + count_of(s.answered(), "case fails", "cases fail");
+  const auto add = [&](std::uint64_t n, const std::string& what) {
+    if (n > 0) out += ", " + render::group_digits(n) + " " + what;
+  };
+  add(s.wrong, "with a wrong answer");
+  add(s.crashed, "by a crash");
+  add(s.timed_out, "by a time-out");
+  add(s.refused, "refused");
+  if (s.first_failing >= 0)
+    out += "; first at setting " + std::to_string(s.first_failing) + " of 0 to " +
+           std::to_string(kDialSettings - 1);
+  return out;
+}
+
+report::PageGridCell page_cell(const Cell& cell, const std::string& where) {
+  const CellSummary s = summarise(cell);
+  report::PageGridCell out;
+  out.level = s.only_refused() ? report::PageGridCell::kOnlyRefused : s.level();
+  out.count = s.answered() > 0 ? render::group_digits(s.failures()) : "\u2013";
+  out.of = s.answered() > 0 ? "of " + render::group_digits(s.answered()) : "all refused";
+  const auto mark = [](std::uint64_t n) { return n > 0 ? render::group_digits(n) : std::string(); };
+  out.marks = {"", mark(s.crashed), mark(s.timed_out), mark(s.refused)};
+  out.label = where + ": " + sentence(s);
+  for (std::size_t i = 0; i < kDialSettings; ++i) {
+    if (cell.cases[i] == 0) {
+      out.bars.push_back({-1, 0, 0, 0});
+      continue;
+    }
+    const auto share = [&](std::uint64_t n) {
+      return static_cast<double>(n) / static_cast<double>(cell.cases[i]);
+    };
+    out.bars.push_back(
+        {share(cell.wrong[i]), share(cell.crashed[i]), share(cell.timed_out[i]), share(cell.refused[i])});
+  }
+  return out;
+}
+
+/// Letters, digits and dashes.
+std::string plain(const std::string& text) {
+  std::string out;
+  for (const char c : text) out += std::isalnum(static_cast<unsigned char>(c)) != 0 ? c : '-';
+  return out;
+}
+
+/// An outcome's name, for people.
+std::string words(Outcome o) {
+  std::string name = to_string(o);
+  std::replace(name.begin(), name.end(), '_', ' ');
+  return name;
+}
+
+report::PageGridDetail page_detail(const Grid& grid, std::size_t f, std::size_t m,
+                                   const ReportOptions& options) {
+  const Record& r = *grid.at(f, m).worst;
+  const FamilyRow& family = grid.families[f];
+  report::PageGridDetail d;
+  d.id = "case-" + plain(family.name) + "-" + plain(grid.methods[m].name);
+  d.title = family.name + " \u00d7 " + grid.methods[m].title;
+  d.text = answer_text(r);
+  const std::size_t cell = f * grid.methods.size() + m;
+  if (cell < options.pictures.size()) d.file = options.pictures[cell];
+  const CellSummary s = summarise(grid.at(f, m));
+  const bool answered = r.outcome == Outcome::right || r.outcome == Outcome::wrong;
+  d.facts = {{"Outcome", words(r.outcome)}, {"Pairs that meet", render::group_digits(r.expected)}};
+  if (answered) {
+    d.facts.emplace_back("Missed", render::group_digits(r.missed));
+    d.facts.emplace_back("In excess", render::group_digits(r.extra));
+  }
+  d.facts.emplace_back("Relation", r.expected_relation.empty() ? "\u2013" : r.expected_relation);
+  if (answered) d.facts.emplace_back("Answered", r.relation.empty() ? "no relation" : r.relation);
+  d.facts.emplace_back("Dial", std::to_string(r.dial) + " of 0 to " + std::to_string(kDialSettings - 1));
+  d.facts.emplace_back("Case, seed", render::group_digits(r.case_index) + ", " + std::to_string(r.seed));
+  if (answered) d.facts.emplace_back("Query", render::short_number(r.microseconds) + " \u00b5s");
+  d.note = "Of this family, with this method: " + sentence(s) + ".";
+  if (options.command) d.command = options.command(r);
+  return d;
+}
+
+/// Reads the pictures of all details, within what a page may weigh.
+std::string inline_pictures(std::vector<report::PageGridDetail>& details, const std::string& folder) {
+  std::vector<report::PngBytes> pngs;
+  for (const report::PageGridDetail& d : details) {
+    if (d.file.empty()) continue;
+    const std::string bytes = io::read_text(folder + "/" + d.file);
+    pngs.emplace_back(bytes.begin(), bytes.end());
+  }
+  report::InlinedImages images = report::inline_pngs(pngs);
+  std::size_t next = 0;
+  for (report::PageGridDetail& d : details)
+    if (!d.file.empty()) d.data_uri = std::move(images.uris[next++]);
+  return images.note;
+}
+
+report::PageGrid page_grid(const Grid& grid, const std::string& folder, const ReportOptions& options) {
+  report::PageGrid out;
+  out.title = "Families of cases \u00d7 methods";
+  out.corner = "family, and its dial from benign to degenerate";
+  out.level_names.assign(kLevelNames.begin(), kLevelNames.end());
+  out.part_names = {"wrong answer", "crashed", "timed out", "refused"};
+  for (const workers::MethodColumn& m : grid.methods)
+    out.columns.push_back(
+        {m.title, m.present ? m.remark : "not installed when this was built", "", "", !m.present});
+  for (std::size_t f = 0; f < grid.families.size(); ++f) {
+    const FamilyRow& family = grid.families[f];
+    out.rows.push_back({family.name, family.what, family.benign, family.degenerate, false});
+    for (std::size_t m = 0; m < grid.methods.size(); ++m) {
+      const std::string where = family.name + " \u00d7 " + grid.methods[m].title;
+      report::PageGridCell cell;
+      cell.label = where + ": absent";
+      if (grid.methods[m].present) {
+        cell = page_cell(grid.at(f, m), where);
+        if (grid.at(f, m).worst) {
+          cell.detail = static_cast<int>(out.details.size());
+          out.details.push_back(page_detail(grid, f, m, options));
+        }
+      }
+      out.cells.push_back(std::move(cell));
+    }
+  }
+  out.rows.push_back({"all families", "", "", "", false});
+  out.total_rows = 1;
+  for (std::size_t m = 0; m < grid.methods.size(); ++m) {
+    const std::string where = "all families \u00d7 " + grid.methods[m].title;
+    report::PageGridCell cell;
+    cell.label = where + ": absent";
+    if (grid.methods[m].present) cell = page_cell(sum_of_column(grid, m), where);
+    out.cells.push_back(std::move(cell));
+  }
+  out.note =
+      "In each cell: failures of the cases that were not refused, and below them one bar per setting of the "
+      "dial, benign on the left, "
+      "degenerate on the right; its height is the share of that setting's cases. A cell that leads to its "
+      "worst "
+      "case can be clicked; arrow keys then go from case to case.";
+  const std::string note = inline_pictures(out.details, folder);
+  if (!note.empty()) out.note += " " + note;
+  return out;
+}
+
+std::vector<report::PageText> texts() {
+  return {
+      {"What was asked",
+       "Two bodies at two poses: which pairs of faces meet, and how do the bodies lie to each other? Every "
+       "method "
+       "gets the same bodies and poses, in doubles. Each family is one way in which collision engines are "
+       "known to "
+       "fail, with a dial that goes from where everybody is right to where it is hardest; random numbers are "
+       "the "
+       "same at all settings, so that only the dial differs."},
+      {"How answers are judged",
+       "Against every pair of faces tested with exact arithmetic on the very doubles that the poses give: a "
+       "touch "
+       "counts as meeting, a gap of one unit in the last place does not. A method is held to what it claims "
+       "to "
+       "answer: pairs missed or in excess, or a wrong relation, make a case wrong. Each runs in a process of "
+       "its "
+       "own: crashes and time-outs count as failures. Refusals are shown and counted, but are no failures: "
+       "they "
+       "mislead nobody."},
+      {"What is not claimed",
+       "The cases are made to be hard: shares say where a method breaks, not how often it would in a game or "
+       "a "
+       "robot. Most methods never promised exact answers, and some take a touch for a miss on purpose. "
+       "Nothing here "
+       "compares speed. Families are samples: no failure among them is no proof."},
+  };
+}
+
+void check(const Grid& grid) {
+  if (grid.cells.size() != grid.families.size() * grid.methods.size())
+    throw InputError("stability: " + std::to_string(grid.cells.size()) + " cells for " +
+                     std::to_string(grid.families.size()) + " families and " +
+                     std::to_string(grid.methods.size()) + " methods");
+}
+
+}  // namespace
+
+std::string answer_text(const Record& r) {
+  std::string out = words(r.outcome);
+  if (r.missed + r.extra > 0)
+    out += ": " + render::group_digits(r.missed) + " missed, " + render::group_digits(r.extra) + " in excess";
+  else if (r.outcome == Outcome::wrong && r.relation != r.expected_relation)
+    out += ": " + r.relation + " instead of " + r.expected_relation;
+  if (!r.message.empty()) out += ": " + r.message;
+  return out;
+}
+
+report::Page stability_page(const Grid& grid, const std::string& folder, const ReportOptions& options) {
+  check(grid);
+  std::uint64_t answers = 0;
+  std::size_t present = 0;
+  for (const workers::MethodColumn& m : grid.methods) present += m.present ? 1 : 0;
+  for (const Cell& c : grid.cells) answers += summarise(c).cases;
+  report::Page page;
+  page.title = "Where collision methods fail";
+  page.texts = texts();
+  page.numbers = {{"Families", render::group_digits(grid.families.size()),
+                   std::to_string(kDialSettings) + " settings of the dial each"},
+                  {"Methods", render::group_digits(present),
+                   present == grid.methods.size() ? "all that are known"
+                                                  : render::group_digits(grid.methods.size() - present) +
+                                                        " more absent from this build"},
+                  {"Answers judged", render::group_digits(answers), "one per case and method"},
+                  {"Time taken", render::short_number(grid.seconds) + " s", ""}};
+  page.grid = page_grid(grid, folder, options);
+  page.command = grid.command;
+  page.links = options.links;
+  page.footer = "This page holds all it needs and fetches nothing.";
+  return page;
+}
+
+ReportFiles write_stability_report(const Grid& grid, const std::string& folder,
+                                   const ReportOptions& options) {
+  check(grid);
+  io::make_folder(folder);
+  ReportFiles out;
+  ReportOptions with_files = options;
+  try {
+    for (const PrintFile& f : print_stability(grid, folder)) {
+      out.written.push_back(f.name);
+      with_files.links.push_back({f.name, f.name, f.what});
+    }
+  } catch (const EnvironmentError& e) {
+    out.missing = e.what();
+  }
+  io::write_text(folder + "/" + kPage, report::page_html(stability_page(grid, folder, with_files)));
+  out.written.insert(out.written.begin(), kPage);
+  return out;
+}
+
+}  // namespace lrb::stability

@@ -1,6 +1,0 @@
-// Bullet in double precision alone: see scenarios/methods/peers.cmake.
-#include "scenarios/stability/worker.hpp"
-
-int main(int argc, char** argv) {
-  return lrb::stability::worker_main(argc, argv, {lrb::methods::bullet()});
-}

@@ -1,0 +1,57 @@
+#include "scenarios/worker_programs/fake_methods.hpp"
+
+#include <cstdlib>
+#include <stdexcept>
+
+#include <unistd.h>
+
+#include "engine/core/error.hpp"
+
+namespace lrb::worker_programs {
+namespace {
+
+using methods::Method;
+using methods::MethodAnswer;
+using methods::MethodBody;
+
+enum class Vice { crash, hang, refuse, raise, miss };
+
+class Fake : public Method {
+ public:
+  explicit Fake(Vice vice) : vice_(vice), honest_(methods::ours().make()) {}
+  std::unique_ptr<MethodBody> build(const LrbRep& rep) override { return honest_->build(rep); }
+
+  MethodAnswer query(const MethodBody& a, const Pose& pose_a, const MethodBody& b, const Pose& pose_b,
+                     Mode mode) override {
+    MethodAnswer answer = honest_->query(a, pose_a, b, pose_b, mode);
+    if (!answer.contact) return answer;
+    if (vice_ == Vice::crash) std::abort();
+    while (vice_ == Vice::hang) pause();
+    if (vice_ == Vice::refuse) throw InputError("the fake does not like contacts");
+    if (vice_ == Vice::raise) throw std::logic_error("the fake is at its wits' end");
+    answer.pairs.erase(answer.pairs.begin());
+    return answer;
+  }
+
+ private:
+  Vice vice_;
+  std::unique_ptr<Method> honest_;
+};
+
+template <Vice vice>
+methods::MethodEntry fake(const char* name) {
+  methods::MethodEntry entry = methods::ours();
+  entry.info.name = entry.info.title = name;
+  entry.make = []() -> std::unique_ptr<Method> { return std::make_unique<Fake>(vice); };
+  return entry;
+}
+
+}  // namespace
+
+std::vector<methods::MethodEntry> fake_methods() {
+  return {fake<Vice::crash>("fake-crash"),   fake<Vice::hang>("fake-hang"),
+          fake<Vice::refuse>("fake-refuse"), fake<Vice::raise>("fake-throw"),
+          fake<Vice::miss>("fake-miss"),     methods::absent("fake-absent", "fake-absent", "nothing")};
+}
+
+}  // namespace lrb::worker_programs

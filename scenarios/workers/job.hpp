@@ -1,0 +1,60 @@
+#pragma once
+/// One family in the hands of one method, or of exact brute force, as a chain of worker processes: where one
+/// dies or hangs the next begins behind the case it was at. One that hangs on several cases in a row is not
+/// asked the others, so that a run ends in time whatever a method does: they count as time-outs.
+
+#include <chrono>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "scenarios/workers/child.hpp"
+
+namespace lrb::workers {
+
+/// What ended a worker before its work was done.
+struct Mishap {
+  bool timed_out = false;
+  std::string message;
+};
+
+class Job {
+ public:
+  using Clock = std::chrono::steady_clock;
+
+  struct Task {
+    std::vector<std::string> command;  ///< without --begin and --end
+    std::uint64_t begin = 0, end = 0;  ///< cases
+    int given = -1;                    ///< a file for the worker, see Child
+    Clock::duration limit{};           ///< for one case
+    /// Called in order: a case's line, or the mishap that took its place.
+    std::function<void(std::uint64_t k, const std::string& line)> on_line;
+    std::function<void(std::uint64_t k, const Mishap& mishap)> on_mishap;
+  };
+
+  explicit Job(Task task) : task_(std::move(task)), next_(task_.begin) { start(); }
+
+  bool done() const { return !child_; }
+  int output() const { return child_->output(); }
+  Clock::time_point deadline() const { return deadline_; }
+  /// There is something to read.
+  void receive();
+  /// The deadline has passed.
+  void expire();
+
+ private:
+  void start();
+  void go_on(const Mishap& mishap);
+
+  Task task_;
+  std::uint64_t next_;  ///< the case whose line comes next
+  int hung_ = 0;        ///< cases in a row
+  std::optional<Child> child_;
+  Clock::time_point deadline_;
+};
+
+/// Waits for all of a job's lines and mishaps.
+void run_to_end(Job job);
+
+}  // namespace lrb::workers

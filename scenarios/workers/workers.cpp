@@ -1,0 +1,67 @@
+#include "scenarios/workers/workers.hpp"
+
+#include <cstdlib>
+#include <filesystem>
+
+#include <nlohmann/json.hpp>
+#include <unistd.h>
+
+#include "engine/core/error.hpp"
+#include "engine/core/file_bytes.hpp"
+#include "scenarios/workers/child.hpp"
+#include "scenarios/workers/method_json.hpp"
+
+namespace lrb::workers {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kPrograms[] = {"lrbscope-methods", "lrbscope-methods-double", "lrbscope-methods-fcl"};
+constexpr std::chrono::seconds kListLimit(20);
+
+fs::path folder_of_workers() {
+  if (const char* given = std::getenv("LRBSCOPE_METHODS")) return given;
+  std::error_code error;
+  const fs::path self = fs::read_symlink("/proc/self/exe", error);
+  return error ? fs::path(".") : self.parent_path();
+}
+
+void add_methods(const std::string& program, std::vector<WorkerMethod>& methods) {
+  const std::vector<std::string> lines = lines_of({program, "--list"}, kListLimit);
+  for (const std::string& line : lines) {
+    const auto value = nlohmann::json::parse(line, nullptr, false);
+    if (!value.is_object()) break;
+    WorkerMethod m;
+    m.info = method_info_from(value);
+    m.column = {m.info.name, m.info.title, m.info.remark, m.info.present};
+    m.program = program;
+    methods.push_back(m);
+  }
+  if (lines.empty())
+    throw EnvironmentError(printable_name(program) + ": did not say which methods it has; build it again");
+}
+
+}  // namespace
+
+std::vector<WorkerMethod> find_methods() {
+  std::vector<WorkerMethod> methods = find_all_methods();
+  std::erase_if(methods, [](const WorkerMethod& m) { return !m.info.hard_cases; });
+  return methods;
+}
+
+std::vector<WorkerMethod> find_all_methods() {
+  const fs::path folder = folder_of_workers();
+  std::vector<WorkerMethod> methods;
+  for (const char* name : kPrograms) {
+    const std::string program = (folder / name).string();
+    if (access(program.c_str(), X_OK) == 0) add_methods(program, methods);
+  }
+  if (methods.empty())
+    throw EnvironmentError(
+        printable_name((folder / kPrograms[0]).string()) +
+        ": not found; it is built beside lrbscope and not installed: run lrbscope from its "
+        "build folder, or name that in LRBSCOPE_METHODS");
+  return methods;
+}
+
+}  // namespace lrb::workers

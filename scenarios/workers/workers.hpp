@@ -1,0 +1,30 @@
+#pragma once
+/// The worker programs beside lrbscope, and the methods that they have.
+
+#include <string>
+#include <vector>
+
+#include "scenarios/methods/method.hpp"
+
+namespace lrb::workers {
+
+struct MethodColumn {
+  std::string name;     ///< for the command line: "ours", "fcl"
+  std::string title;    ///< for people: "FCL 0.7.0, OBBRSS, double"
+  std::string remark;   ///< what it answers, and how it was asked
+  bool present = true;  ///< false: not installed when this was built
+};
+
+struct WorkerMethod {
+  MethodColumn column;
+  std::string program;       ///< path of the worker that has it
+  methods::MethodInfo info;  ///< the column's, and what else the worker says of it
+};
+
+/// Asks the workers in the folder of this very program, or in the one that the environment's LRBSCOPE_METHODS
+/// names. Throws EnvironmentError if there is none, or one does not answer.
+std::vector<WorkerMethod> find_all_methods();
+/// Those that take part in the stability experiment.
+std::vector<WorkerMethod> find_methods();
+
+}  // namespace lrb::workers
