@@ -4,11 +4,11 @@
 // our flags.
 #include "scenarios/methods/method.hpp"
 
+#ifdef LRB_HAS_FCL
+
 #ifdef LRB_FCL_HEADERS
 #include "scenarios/methods/peers/fcl_instantiated.hpp"
 #endif
-
-#ifdef LRB_HAS_FCL
 
 #include <algorithm>
 
