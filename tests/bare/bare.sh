@@ -1,0 +1,257 @@
+#!/usr/bin/env bash
+# tests/bare/bare.sh [--commit C] [--until STEP] [--no-cache] [--keep]: proves the README's two commands on a bare Debian
+# 12. Makes a root with debootstrap, from the package sources of this machine, clones commit C (HEAD) into it, and runs
+# ./run and ./check there as root would type them, in a clean environment; then again as a user without root; then with
+# the engines of others installed, and the rest of ./check --full. Prints how long every step took.
+# Steps: root clone stranger run check user peers clang sanitizers fuzz tidy; --until ends after one of them.
+# Kept between runs, in ${XDG_CACHE_HOME:-~/.cache}/lrbscope-bare: the bare root, downloaded packages, and a compiler
+# cache. --no-cache does without all three, for honest times. --keep leaves the root to be looked at.
+# Needs root and debootstrap. Everything runs in a mount namespace of its own, so that no mount can stay behind.
+set -euo pipefail
+script=$(readlink -f "${BASH_SOURCE[0]}")
+here=$(dirname "$script")
+repository=$(cd "$here/../.." && pwd)
+suite=bookworm
+home=/root/lrbscope # the clone, inside the root
+
+usage() { sed -n '2,9s/^# //p' "$script" >&2 && exit 2; }
+refuse() { echo "bare.sh: $1" >&2 && exit 2; }
+
+# ---- the package sources of this machine
+
+# Prints this machine's sources of Debian's own packages, one "URI RELEASE" a line; Debian's servers where it has none.
+debian_sources() {
+  local found
+  found=$(apt-get indextargets --format '$(REPO_URI)|$(RELEASE)|$(COMPONENT)|$(ORIGIN)' 'Created-By: Packages' 2>/dev/null |
+    awk -F'|' -v s="$suite" '($2 == s || $2 == s "-updates" || $2 == s "-security") && $3 == "main" &&
+                             ($4 == "" || $4 == "Debian" || $4 ~ /^\$/) { print $1, $2 }' | sort -u || true)
+  if ! grep -q " $suite$" <<<"$found"; then
+    found="http://deb.debian.org/debian $suite
+http://deb.debian.org/debian $suite-updates
+http://deb.debian.org/debian-security $suite-security"
+  fi
+  echo "$found"
+}
+
+# Prints how this machine reaches them: apt's proxies, certificates and retries.
+apt_transport() {
+  apt-config dump 2>/dev/null | grep -iE '^Acquire::(https?|Retries)\b' || true
+  if [ -n "${http_proxy:-}" ]; then echo "Acquire::http::Proxy \"$http_proxy\";"; fi
+  if [ -n "${https_proxy:-}" ]; then echo "Acquire::https::Proxy \"$https_proxy\";"; fi
+}
+
+# ---- a root
+
+# Makes the bare root $1: from the cache, or with debootstrap.
+make_root() {
+  local root=$1 sources key tar mirror keep=()
+  sources=$(debian_sources)
+  mirror=$(awk -v s="$suite" '$2 == s { print $1; exit }' <<<"$sources")
+  key=$({ echo "$sources"; declare -f make_root; date +%Y-%m; } | sha256sum | cut -c1-16)
+  tar=$cache/root-$key.tar
+  mkdir -p "$root"
+  if [ "$cached" = 1 ] && [ -f "$tar" ]; then
+    tar -C "$root" --numeric-owner -xpf "$tar"
+  else
+    mkdir -p "$cache/debs"
+    [ "$cached" = 0 ] || keep+=(--cache-dir="$cache/debs")
+    debootstrap --variant=minbase --include=ca-certificates,git "${keep[@]}" "$suite" "$root" "$mirror" >"$work/debootstrap.log" 2>&1 ||
+      { tail -20 "$work/debootstrap.log"; return 1; }
+    # As in an image of Debian's: no package lists, no packages.
+    rm -rf "$root"/var/lib/apt/lists/* "$root"/var/cache/apt/archives/*.deb "$root/etc/apt/sources.list"
+    awk '{ print "deb", $1, $2, "main" }' <<<"$sources" >"$root/etc/apt/sources.list.d/debian.list"
+    rm -f "$root/etc/resolv.conf" "$root/etc/hosts" # debootstrap copies this machine's
+    if [ "$cached" = 1 ]; then
+      rm -f "$cache"/root-*.tar
+      tar -C "$root" --numeric-owner --one-file-system -cpf "$tar.$$" . && mv "$tar.$$" "$tar"
+    fi
+  fi
+  # What belongs to this machine and not to the cached root.
+  cp -L /etc/resolv.conf /etc/hosts "$root/etc/" 2>/dev/null || true
+  apt_transport >"$root/etc/apt/apt.conf.d/90machine"
+  if [ "$cached" = 1 ]; then
+    echo 'Binary::apt::APT::Keep-Downloaded-Packages "true"; APT::Keep-Downloaded-Packages "true";' >"$root/etc/apt/apt.conf.d/91keep"
+  fi
+}
+
+# Mounts what programs expect beside files: processes, shared memory, and the caches. Says what cannot be had.
+mount_parts() {
+  local root=$1 device
+  if [ "$mounts" = 0 ]; then
+    echo "bare.sh: this machine lets nobody mount: the root has no /proc, and only packages are kept between runs"
+  fi
+  try mount -t proc proc "$root/proc"
+  try mount -t tmpfs -o mode=1777 tmpfs "$root/dev/shm"
+  for device in null zero full random urandom tty; do # where debootstrap may not make devices
+    [ -c "$root/dev/$device" ] || { touch "$root/dev/$device" && try mount --bind "/dev/$device" "$root/dev/$device"; }
+  done
+  [ -c "$root/dev/null" ] || { echo "bare.sh: no /dev/null can be made in the root" >&2 && return 1; }
+  if [ "$cached" = 1 ]; then
+    mkdir -p "$cache/debs" "$cache/ccache" "$root/var/cache/ccache"
+    try mount --bind "$cache/debs" "$root/var/cache/apt/archives" || cp "$cache"/debs/*.deb "$root/var/cache/apt/archives/" 2>/dev/null || true
+    try mount --bind "$cache/ccache" "$root/var/cache/ccache" || true
+  fi
+}
+try() { [ "$mounts" = 1 ] && "$@"; }
+
+# Runs words in the root, as root would in a shell of its own; with the compiler cache if there is one.
+inside() { as root /root "$@"; }
+# as USER HOME WORD...
+as() {
+  local user=$1 home_of=$2 clean=(TERM=dumb PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin)
+  shift 2
+  if [ "$user" = root ] && [ -x "$root/usr/bin/ccache" ]; then
+    clean+=(CCACHE_DIR=/var/cache/ccache CCACHE_MAXSIZE=5G CMAKE_CXX_COMPILER_LAUNCHER=ccache)
+  fi
+  env -i HOME="$home_of" USER="$user" LOGNAME="$user" "${clean[@]}" chroot --userspec="$user" "$root" \
+    /bin/bash -c 'cd "$1" && shift && exec "$@"' bash "$home" "$@" </dev/null
+}
+
+# ---- steps
+
+names=() times=()
+# step NAME FUNCTION: runs it, with its output, and notes how long it took. Ends here if it fails, or was the last wanted.
+step() {
+  local name=$1 begin code
+  echo "== bare: $name"
+  begin=$(date +%s.%N)
+  set +e # a function that is asked whether it failed would not stop at its first failure
+  (set -e && "$2") 2>&1 | tee "$work/$name.log"
+  code=${PIPESTATUS[0]}
+  set -e
+  names+=("$name")
+  times+=("$(awk -v a="$begin" -v b="$(date +%s.%N)" 'BEGIN { printf "%.0f", b - a }')")
+  if [ $code != 0 ]; then
+    table
+    echo "bare.sh: $name FAILED at $(git -C "$repository" log -1 --format='%h %s' "$commit")"
+    exit 1
+  fi
+  [ "$name" != "$until" ] || finish
+}
+table() {
+  local i
+  printf '\n%-12s %8s\n' step seconds
+  for i in "${!names[@]}"; do printf '%-12s %8d\n' "${names[i]}" "${times[i]}"; done
+  awk -v t="${times[*]}" 'BEGIN { n = split(t, a, " "); for (i = 1; i <= n; i++) s += a[i]; printf "%-12s %8d\n", "all", s }'
+  echo "on $(nproc) processors, load $(cut -d' ' -f1-3 /proc/loadavg), caches $([ "$cached" = 1 ] && echo kept || echo off)"
+}
+finish() {
+  table
+  if [ "$cached" = 1 ] && [ "$mounts" = 0 ]; then cp -n "$root"/var/cache/apt/archives/*.deb "$cache/debs/" 2>/dev/null || true; fi
+  # The closing lines of every ctest, the main one last.
+  local name
+  for name in user peers clang sanitizers check; do
+    if [ -f "$work/$name.log" ] && grep -q 'tests passed' "$work/$name.log"; then
+      printf '\n%s:\n' "$name"
+      grep -E '% tests passed|^Total Test time' "$work/$name.log"
+    fi
+  done
+  exit 0
+}
+
+step_root() { make_root "$root" && mount_parts "$root"; }
+step_clone() {
+  # Pushed into the root, so that the clone is one of an ordinary repository and this one stays unseen.
+  git init -q --bare "$root/srv/lrbscope.git"
+  git -C "$root/srv/lrbscope.git" config receive.shallowUpdate true
+  git -C "$repository" push -q "$root/srv/lrbscope.git" "$commit:refs/heads/main"
+  git -C "$root/srv/lrbscope.git" symbolic-ref HEAD refs/heads/main
+  chown -R root: "$root/srv/lrbscope.git"
+  home=/root inside git clone -q /srv/lrbscope.git lrbscope
+  mkdir -p "$root/home/stranger"
+  cp -a "$root$home" "$root/home/stranger/lrbscope"
+  chown -R 1000:1000 "$root/home/stranger"
+}
+# Without root, and without packages: says which, and that root must install them.
+step_stranger() {
+  local command code said
+  for command in ./run ./check; do
+    code=0
+    said=$(home=/home/stranger/lrbscope as 1000:1000 /home/stranger "$command" 2>&1) || code=$?
+    echo "$said"
+    [ $code = 3 ] && grep -q 'apt-get install .*libeigen3-dev' <<<"$said" ||
+      { echo "$command of a user without packages: exit code $code, where 3 and what to install was expected"; return 1; }
+  done
+}
+step_run() {
+  [ "$cached" = 0 ] || add_compiler_cache
+  inside ./run
+  local picture
+  for picture in out/collision/index.html out/figure2/montage.png; do
+    [ -s "$root$home/$picture" ] || { echo "./run made no $picture"; return 1; }
+  done
+}
+add_compiler_cache() {
+  [ "$mounts" = 1 ] || return 0
+  inside bash -c 'apt-get update -q && apt-get install -y -q --no-install-recommends ccache' >"$work/ccache.log" 2>&1 ||
+    { cat "$work/ccache.log"; return 1; }
+  rm -rf "$root"/var/lib/apt/lists/* # a bare machine has none
+}
+step_check() { inside ./check; }
+# Without root, with the packages: the same clone, given away, so that only what depends on the user is done again.
+step_user() {
+  chmod a+x "$root/root"
+  chown -R 1000:1000 "$root$home"
+  local code=0
+  { as 1000:1000 /home/stranger ./run && as 1000:1000 /home/stranger ./check; } || code=$?
+  chown -R 0:0 "$root$home"
+  return $code
+}
+step_peers() { inside ./check peers; }
+step_clang() { inside ./check clang; }
+step_sanitizers() { inside ./check sanitizers; }
+step_fuzz() { inside ./check fuzz; }
+step_tidy() { inside ./check tidy; }
+
+all_steps() {
+  local name
+  for name in root clone stranger run check user peers clang sanitizers fuzz tidy; do step "$name" "step_$name"; done
+  finish
+}
+
+# ---- from here on: this machine
+
+commit=HEAD until=tidy cached=1 keep=0
+if [ "${1:-}" != --inside ]; then
+  while [ $# -gt 0 ]; do
+    case "$1" in
+      --commit) commit=${2:?a commit} && shift ;;
+      --until) until=${2:?a step} && shift ;;
+      --no-cache) cached=0 ;;
+      --keep) keep=1 ;;
+      *) usage ;;
+    esac
+    shift
+  done
+  case " root clone stranger run check user peers clang sanitizers fuzz tidy " in *" $until "*) ;; *) usage ;; esac
+  [ "$(id -u)" = 0 ] || refuse "needs root, to make a root of its own"
+  command -v debootstrap >/dev/null || refuse "needs debootstrap (apt-get install debootstrap)"
+  commit=$(git -C "$repository" rev-parse --verify -q "$commit^{commit}") || refuse "no such commit"
+  cache=${XDG_CACHE_HOME:-$HOME/.cache}/lrbscope-bare
+  mkdir -p "$cache"
+  for old in "$cache"/work-*; do # of runs that were killed
+    [ ! -d "$old" ] || [ -d "/proc/${old##*-}" ] || rm -rf --one-file-system "$old"
+  done
+  work=$cache/work-$$
+  mkdir "$work"
+  child=""
+  clean_up() {
+    if [ -n "$child" ]; then kill "$child" 2>/dev/null || true; wait "$child" 2>/dev/null || true; fi
+    if [ "$keep" = 1 ]; then echo "kept: $work/root"; else rm -rf --one-file-system "$work"; fi
+  }
+  trap clean_up EXIT
+  trap 'exit 130' INT TERM HUP
+  # Mounts and processes end with the namespace, however this script ends.
+  apart=(unshare --mount --propagation private --pid --fork --kill-child)
+  mounts=1
+  if ! "${apart[@]}" sh -c 'mount -t tmpfs tmpfs "$1"' sh "$work" 2>/dev/null; then apart=() mounts=0; fi
+  "${apart[@]}" bash "$script" --inside "$commit" "$until" "$cached" "$mounts" "$cache" "$work" &
+  child=$!
+  code=0
+  wait "$child" || code=$?
+  child=""
+  exit $code
+fi
+commit=$2 until=$3 cached=$4 mounts=$5 cache=$6 work=$7
+root=$work/root
+all_steps
