@@ -33,7 +33,8 @@ function(lrb_embed target)
     string(APPEND table "      {\"${name}\", ${symbol}},\n")
   endforeach()
   # The files' own characters are nobody's style: no warnings about long literals.
-  set_source_files_properties(${generated} PROPERTIES COMPILE_OPTIONS -Wno-overlength-strings)
+  set_source_files_properties(${generated} PROPERTIES COMPILE_OPTIONS -Wno-overlength-strings
+                              SKIP_PRECOMPILE_HEADERS ON)
   set(registry "${CMAKE_CURRENT_BINARY_DIR}/embedded/registry.cpp")
   file(CONFIGURE OUTPUT "${registry}" @ONLY CONTENT
 "#include \"scenarios/io/embedded.hpp\"

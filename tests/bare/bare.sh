@@ -109,19 +109,18 @@ as() {
 
 # ---- steps
 
-names=() times=()
+names=() seconds=() busy=()
 # step NAME FUNCTION: runs it, with its output, and notes how long it took. Ends here if it fails, or was the last wanted.
 step() {
-  local name=$1 begin code
+  local name=$1 code TIMEFORMAT='%R %U %S'
   echo "== bare: $name"
-  begin=$(date +%s.%N)
   set +e # a function that is asked whether it failed would not stop at its first failure
-  (set -e && "$2") 2>&1 | tee "$work/$name.log"
-  code=${PIPESTATUS[0]}
+  { time { (set -e && "$2") 2>&1 | tee "$work/$name.log"; code=${PIPESTATUS[0]}; }; } 2>"$work/$name.time"
   set -e
   names+=("$name")
-  times+=("$(awk -v a="$begin" -v b="$(date +%s.%N)" 'BEGIN { printf "%.0f", b - a }')")
-  if [ $code != 0 ]; then
+  seconds+=("$(awk '{ printf "%.0f", $1 }' "$work/$name.time")")
+  busy+=("$(awk '{ printf "%.0f", $2 + $3 }' "$work/$name.time")")
+  if [ "$code" != 0 ]; then
     table
     echo "bare.sh: $name FAILED at $(git -C "$repository" log -1 --format='%h %s' "$commit")"
     exit 1
@@ -129,10 +128,13 @@ step() {
   [ "$name" != "$until" ] || finish
 }
 table() {
-  local i
-  printf '\n%-12s %8s\n' step seconds
-  for i in "${!names[@]}"; do printf '%-12s %8d\n' "${names[i]}" "${times[i]}"; done
-  awk -v t="${times[*]}" 'BEGIN { n = split(t, a, " "); for (i = 1; i <= n; i++) s += a[i]; printf "%-12s %8d\n", "all", s }'
+  local i all=0 all_busy=0
+  printf '\n%-12s %8s %18s\n' step seconds 'processor seconds'
+  for i in "${!names[@]}"; do
+    printf '%-12s %8d %18d\n' "${names[i]}" "${seconds[i]}" "${busy[i]}"
+    all=$((all + seconds[i])) all_busy=$((all_busy + busy[i]))
+  done
+  printf '%-12s %8d %18d\n' all $all $all_busy
   echo "on $(nproc) processors, load $(cut -d' ' -f1-3 /proc/loadavg), caches $([ "$cached" = 1 ] && echo kept || echo off)"
 }
 finish() {
