@@ -15,9 +15,10 @@ if(PROJECT_IS_TOP_LEVEL)
   target_link_libraries(lrb_options INTERFACE $<BUILD_INTERFACE:lrb_own_options>)
 endif()
 
-# -Wrestrict of gcc 12 is wrong about inlined std::string::replace and operator+ (gcc bug 105329).
+# -Wrestrict of gcc 12 is wrong about inlined std::string::replace and operator+ (gcc bug 105329), -Wstringop-overread about
+# short strings that are moved once they come from a precompiled header.
 target_compile_options(lrb_own_options INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion -Wno-psabi
-                                             $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>)
+                                             $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict -Wno-stringop-overread>)
 if(LRB_WARNINGS_AS_ERRORS)
   target_compile_options(lrb_own_options INTERFACE -Werror)
 endif()

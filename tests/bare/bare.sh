@@ -4,8 +4,8 @@
 # ./run and ./check there as root would type them, in a clean environment; then again as a user without root; then with
 # the engines of others installed, and the rest of ./check --full. Prints how long every step took.
 # Steps: root clone stranger run check user peers clang sanitizers fuzz tidy; --until ends after one of them.
-# Kept between runs, in ${XDG_CACHE_HOME:-~/.cache}/lrbscope-bare: the bare root, downloaded packages, and a compiler
-# cache. --no-cache does without all three, for honest times. --keep leaves the root to be looked at.
+# Kept between runs, in ${XDG_CACHE_HOME:-~/.cache}/lrbscope-bare: the bare root and downloaded packages; and this machine's
+# compiler cache is used. --no-cache does without all three, for honest times. --keep leaves the root to be looked at.
 # Needs root and debootstrap. Everything runs in a mount namespace of its own, so that no mount can stay behind.
 set -euo pipefail
 script=$(readlink -f "${BASH_SOURCE[0]}")
@@ -80,16 +80,17 @@ mount_parts() {
   if [ "$mounts" = 0 ]; then
     echo "bare.sh: this machine lets nobody mount: the root has no /proc, and only packages are kept between runs"
   fi
-  try mount -t proc proc "$root/proc"
-  try mount -t tmpfs -o mode=1777 tmpfs "$root/dev/shm"
+  try mount -t proc proc "$root/proc" || true
+  try mount -t tmpfs -o mode=1777 tmpfs "$root/dev/shm" || true
   for device in null zero full random urandom tty; do # where debootstrap may not make devices
     [ -c "$root/dev/$device" ] || { touch "$root/dev/$device" && try mount --bind "/dev/$device" "$root/dev/$device"; }
   done
   [ -c "$root/dev/null" ] || { echo "bare.sh: no /dev/null can be made in the root" >&2 && return 1; }
   if [ "$cached" = 1 ]; then
-    mkdir -p "$cache/debs" "$cache/ccache" "$root/var/cache/ccache"
+    mkdir -p "$cache/debs" "$objects" "$root/var/cache/ccache" "$cache/tidy" "$root/root/.cache/lrbscope-tidy"
+    try mount --bind "$cache/tidy" "$root/root/.cache/lrbscope-tidy" || true
     try mount --bind "$cache/debs" "$root/var/cache/apt/archives" || cp "$cache"/debs/*.deb "$root/var/cache/apt/archives/" 2>/dev/null || true
-    try mount --bind "$cache/ccache" "$root/var/cache/ccache" || true
+    try mount --bind "$objects" "$root/var/cache/ccache" || true
   fi
 }
 try() { [ "$mounts" = 1 ] && "$@"; }
@@ -101,7 +102,7 @@ as() {
   local user=$1 home_of=$2 clean=(TERM=dumb PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin)
   shift 2
   if [ "$user" = root ] && [ -x "$root/usr/bin/ccache" ]; then
-    clean+=(CCACHE_DIR=/var/cache/ccache CCACHE_MAXSIZE=5G CMAKE_CXX_COMPILER_LAUNCHER=ccache)
+    clean+=(CCACHE_DIR=/var/cache/ccache "CCACHE_BASEDIR=$home" CMAKE_CXX_COMPILER_LAUNCHER=ccache)
   fi
   env -i HOME="$home_of" USER="$user" LOGNAME="$user" "${clean[@]}" chroot --userspec="$user" "$root" \
     /bin/bash -c 'cd "$1" && shift && exec "$@"' bash "$home" "$@" </dev/null
@@ -246,7 +247,11 @@ if [ "${1:-}" != --inside ]; then
   # Mounts and processes end with the namespace, however this script ends.
   apart=(unshare --mount --propagation private --pid --fork --kill-child)
   mounts=1
+  chroot / true 2>/dev/null || refuse "may not change the root here"
   if ! "${apart[@]}" sh -c 'mount -t tmpfs tmpfs "$1"' sh "$work" 2>/dev/null; then apart=() mounts=0; fi
+  if [ $mounts = 0 ]; then
+    mknod "$work/null" c 1 3 2>/dev/null && : >"$work/null" || refuse "may neither mount nor make devices here"
+  fi
   "${apart[@]}" bash "$script" --inside "$commit" "$until" "$cached" "$mounts" "$cache" "$work" &
   child=$!
   code=0
@@ -255,5 +260,6 @@ if [ "${1:-}" != --inside ]; then
   exit $code
 fi
 commit=$2 until=$3 cached=$4 mounts=$5 cache=$6 work=$7
+objects=${CCACHE_DIR:-${XDG_CACHE_HOME:-$HOME/.cache}/ccache} # this machine's: an object is what it is wherever it was made
 root=$work/root
 all_steps
