@@ -102,7 +102,7 @@ as() {
   local user=$1 home_of=$2 clean=(TERM=dumb PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin)
   shift 2
   if [ "$user" = root ] && [ -x "$root/usr/bin/ccache" ]; then
-    clean+=(CCACHE_DIR=/var/cache/ccache "CCACHE_BASEDIR=$home" CMAKE_CXX_COMPILER_LAUNCHER=ccache)
+    clean+=(CCACHE_DIR=/var/cache/ccache "CCACHE_BASEDIR=$home")
   fi
   env -i HOME="$home_of" USER="$user" LOGNAME="$user" "${clean[@]}" chroot --userspec="$user" "$root" \
     /bin/bash -c 'cd "$1" && shift && exec "$@"' bash "$home" "$@" </dev/null

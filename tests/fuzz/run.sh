@@ -15,9 +15,7 @@ formats=("$@")
 [ ${#formats[@]} -gt 0 ] || formats=(mesh lrb poses scenario crowd crowd_trace experiment trace)
 build=build/asan-ubsan
 dir=$build/fuzz
-launcher=()
-if command -v ccache >/dev/null; then launcher=(-DCMAKE_CXX_COMPILER_LAUNCHER=ccache); fi
-cmake --preset asan-ubsan -DLRB_BUILD_TESTS=ON "${launcher[@]}" >/dev/null
+cmake --preset asan-ubsan -DLRB_BUILD_TESTS=ON >/dev/null
 cmake --build "$build" --target fuzz_seeds "${formats[@]/#/fuzz_}"
 rm -rf "$dir/seeds"
 "$build/tests/fuzz_seeds" "$dir/seeds"

@@ -5,8 +5,6 @@
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
 top=build/repeat
-launcher=()
-if command -v ccache >/dev/null; then launcher=(-DCMAKE_CXX_COMPILER_LAUNCHER=ccache); fi
 first=""
 differ=0
 printf '%-8s %-5s %-9s %-8s %-7s %s\n' compiler level vectors threads lines answer
@@ -16,7 +14,7 @@ for compiler in ${COMPILERS:-g++ clang++}; do
     # What the release preset has beside its level of optimisation.
     cmake -S . -B "$build" -G Ninja -DCMAKE_CXX_COMPILER="$compiler" -DCMAKE_BUILD_TYPE=Release \
       -DCMAKE_CXX_FLAGS_RELEASE="-O$level" -DLRB_HARDEN=$([ "$level" = 0 ] && echo OFF || echo ON) \
-      -DLRB_BUILD_TESTS=ON -DLRB_WARNINGS_AS_ERRORS=OFF "${launcher[@]}" >/dev/null
+      -DLRB_BUILD_TESTS=ON -DLRB_WARNINGS_AS_ERRORS=OFF >/dev/null
     cmake --build "$build" --target fingerprints >"$build.log" 2>&1 || { cat "$build.log"; exit 1; }
     for vectors in best avx2 baseline; do
       for threads in 1 2; do
