@@ -8,7 +8,7 @@
 
 namespace lrb::torture {
 
-using namespace cases::families;
+using namespace cases;
 
 /// Sums over the cases of a class. Plain, so that a child process can send it through a pipe.
 struct Tally {

@@ -11,7 +11,7 @@
 namespace lrb::torture {
 namespace {
 
-using namespace cases::families;
+using namespace cases;
 using Eigen::Vector3d;
 
 double diameter(const LrbRep& rep) {
