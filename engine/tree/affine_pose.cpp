@@ -6,8 +6,8 @@
 #include <Eigen/LU>
 #include <Eigen/SVD>
 
-#include "engine/tree/pose_bounds.hpp"
 #include "engine/core/tolerances.hpp"
+#include "engine/tree/pose_bounds.hpp"
 
 namespace lrb {
 namespace {
@@ -46,52 +46,16 @@ double norm_of(const Matrix3d& m) {
   return m.norm() * (1 + kWrapperMargin);
 }
 
-/// A body's map and the way back: see affine_pose.hpp.
-struct BodyMap {
-  Matrix3d r;     ///< R
-  int exponent;   ///< of a unit of the tree in the world: e and the unit's
-  Matrix3d back;  ///< G
-  Matrix3d own;   ///< G R where flat, else the identity
-  bool flat;
-  double defect;  ///< where not flat: how far G R is from the identity, Euclidean norm
-  double size;    ///< Euclidean norms of R and G, or more
-  double back_size;
-
-  BodyMap(const Pose& pose, const ObbTree& tree, int dim) {
-    r = dim == 2 ? map_in_plane(pose.r) : pose.r;
-    const int e = exponent_of(r.cwiseAbs().maxCoeff());
-    exponent = e == kNoExponent ? e : e + std::ilogb(tree.unit());
-    if (e != kNoExponent) r = scaled(r, -e);
-    size = norm_of(r);
-    back = r.inverse();
-    back_size = norm_of(back);
-    flat = !(back_size * size * kFlatness <= 1);  // also where it is no number
-    if (flat) {
-      back = raised_inverse(r);
-      back_size = norm_of(back);
-      own = back * r;
-      defect = 0;
-    } else {
-      own = Matrix3d::Identity();
-      defect = (back * r - own).norm();
-    }
-  }
-
-  /// What it makes of coordinates up to 1, coordinate by coordinate, and every term of that, is no larger.
-  double row_size() const { return r.cwiseAbs().rowwise().sum().maxCoeff(); }
-
- private:
-  static Matrix3d raised_inverse(const Matrix3d& r) {
-    const Eigen::JacobiSVD<Matrix3d> svd(r, Eigen::ComputeFullU | Eigen::ComputeFullV);
-    const Vector3d& values = svd.singularValues();
-    if (!(values[0] > 0)) return Matrix3d::Identity();
-    const Vector3d raised = values.cwiseMax(kFlatness * values[0]);
-    return svd.matrixV() * raised.cwiseInverse().asDiagonal() * svd.matrixU().transpose();
-  }
-};
+Matrix3d raised_inverse(const Matrix3d& r) {
+  const Eigen::JacobiSVD<Matrix3d> svd(r, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  const Vector3d& values = svd.singularValues();
+  if (!(values[0] > 0)) return Matrix3d::Identity();
+  const Vector3d raised = values.cwiseMax(kFlatness * values[0]);
+  return svd.matrixV() * raised.cwiseInverse().asDiagonal() * svd.matrixU().transpose();
+}
 
 /// Of the larger of two bodies in the world; more where they are so far apart that floats would overflow.
-int query_exponent(const BodyMap& a, const Pose& pose_a, const BodyMap& b, const Pose& pose_b) {
+int query_exponent(const AffineMap& a, const Pose& pose_a, const AffineMap& b, const Pose& pose_b) {
   constexpr int kFarOff = 60, kLeast = -1022;
   const double apart = (pose_b.t / 2 - pose_a.t / 2).cwiseAbs().maxCoeff();
   return std::max({a.exponent, b.exponent, exponent_of(apart) - kFarOff, kLeast});
@@ -114,14 +78,40 @@ void put(const Vector3d& x, double (&to)[4]) {
   for (int i = 0; i < 3; ++i) to[i] = x[i];
 }
 
+/// What the map makes of coordinates up to 1, coordinate by coordinate, and every term of that, is no larger.
+double row_size(const Matrix3d& r) {
+  return r.cwiseAbs().rowwise().sum().maxCoeff();
+}
+
 }  // namespace
 
-TreeKernel set_up_affine_kernel(const ObbTree& a, const Pose& pose_a, const ObbTree& b,
-                                const Pose& pose_b, int dim, AffineTerms& terms) {
-  const BodyMap maps[2] = {BodyMap(pose_a, a, dim), BodyMap(pose_b, b, dim)};
+AffineMap::AffineMap(const Pose& pose, const ObbTree& tree, int dim)
+    : r(dim == 2 ? map_in_plane(pose.r) : pose.r) {
+  const int e = exponent_of(r.cwiseAbs().maxCoeff());
+  exponent = e == kNoExponent ? e : e + std::ilogb(tree.unit());
+  if (e != kNoExponent) r = scaled(r, -e);
+  size = norm_of(r);
+  back = r.inverse();
+  back_size = norm_of(back);
+  flat = !(back_size * size * kFlatness <= 1);  // also where it is no number
+  if (flat) {
+    back = raised_inverse(r);
+    back_size = norm_of(back);
+    own = back * r;
+    defect = 0;
+  } else {
+    own = Matrix3d::Identity();
+    defect = (back * r - own).norm();
+  }
+}
+
+TreeKernel set_up_affine_kernel(const ObbTree& a, const Pose& pose_a, const ObbTree& b, const Pose& pose_b,
+                                int dim, AffineTerms& terms) {
+  const AffineMap maps[2] = {AffineMap(pose_a, a, dim), AffineMap(pose_b, b, dim)};
   const int exponent = query_exponent(maps[0], pose_a, maps[1], pose_b);
   TreeKernel k{};
   terms = {};
+  terms.exponent = exponent;
   k.affine = &terms;
   k.nodes_a = a.nodes().data();
   k.nodes_b = b.nodes().data();
@@ -133,10 +123,10 @@ TreeKernel set_up_affine_kernel(const ObbTree& a, const Pose& pose_a, const ObbT
   const Vector3d t[2] = {scaled(pose_a.t, -exponent), scaled(pose_b.t, -exponent)}, between = t[1] - t[0];
   double size = std::ldexp(kWorldUnderflow, -exponent);  // no term of a world coordinate is larger
   for (int side = 0; side < 2; ++side)
-    size += maps[side].row_size() * kMostUnits * ratios[side] + t[side].cwiseAbs().maxCoeff();
+    size += row_size(maps[side].r) * kMostUnits * ratios[side] + t[side].cwiseAbs().maxCoeff();
   const double rounding = kWorldRounding * size;
   for (int side = 0; side < 2; ++side) {
-    const BodyMap &self = maps[side], &other = maps[1 - side];
+    const AffineMap &self = maps[side], &other = maps[1 - side];
     AffineTerms::Axes& axes = terms.axes[side];
     const Matrix3d other_map = self.back * other.r;
     const Vector3d origin = self.back * (side == 0 ? between : -between);

@@ -34,9 +34,22 @@
 
 namespace lrb {
 
+/// A body's map and the way back, as above.
+struct AffineMap {
+  Eigen::Matrix3d r;     ///< R
+  int exponent;          ///< of a unit of the tree in the world: e and the unit's
+  Eigen::Matrix3d back;  ///< G
+  Eigen::Matrix3d own;   ///< G R where flat, else the identity
+  bool flat;
+  double defect;           ///< where not flat: how far G R is from the identity, Euclidean norm
+  double size, back_size;  ///< Euclidean norms of R and G, or more
+
+  AffineMap(const Pose& pose, const ObbTree& tree, int dim);
+};
+
 /// A kernel with all but its buffers, as set_up_kernel() makes it for rotations; its affine terms are kept in
 /// `terms`. dim: of both bodies.
-TreeKernel set_up_affine_kernel(const ObbTree& a, const Pose& pose_a, const ObbTree& b,
-                                const Pose& pose_b, int dim, AffineTerms& terms);
+TreeKernel set_up_affine_kernel(const ObbTree& a, const Pose& pose_a, const ObbTree& b, const Pose& pose_b,
+                                int dim, AffineTerms& terms);
 
 }  // namespace lrb

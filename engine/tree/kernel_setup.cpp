@@ -74,8 +74,8 @@ TreeKernel set_up_kernel(const ObbTree& a, const Pose& pose_a, const ObbTree& b,
   return kernel_of({pose_a, pose_b}, a, pose_a, b, pose_b);
 }
 
-TreeKernel set_up_any_kernel(const ObbTree& a, const Pose& pose_a, const ObbTree& b, const Pose& pose_b, int dim,
-                             AffineTerms& terms) {
+TreeKernel set_up_any_kernel(const ObbTree& a, const Pose& pose_a, const ObbTree& b, const Pose& pose_b,
+                             int dim, AffineTerms& terms) {
   const RelativeTurn turn(pose_a, pose_b);
   return turn.is_near_rotation() && is_near(a, pose_a, b, pose_b)
              ? kernel_of(turn, a, pose_a, b, pose_b)
