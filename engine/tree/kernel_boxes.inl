@@ -154,6 +154,38 @@ inline float grow_of(const Between& w, int side, int axis) {
   return kMargin ? w.grow[side][axis] : w.error;
 }
 
+/// As they are: the axes of a node under a rotation are its own. Under other maps see affine_boxes.inl.
+inline const Boxes& boxes_on_own(const Boxes& boxes, Side, const Between&) {
+  return boxes;
+}
+inline const Whole& whole_on_own(const Whole& whole, Side, const Between&) {
+  return whole;
+}
+
+/// The whole box of B's node on A's axes, grown.
+template <bool kMargin>
+inline Whole turn_whole_b(const Whole& b, const Between& w) {
+  Whole o;
+  for (int i = 0; i < 3; ++i) {
+    o.centre[i] = w.t[i] + w.r[i][0] * b.centre[0] + w.r[i][1] * b.centre[1] + w.r[i][2] * b.centre[2];
+    o.half[i] = grow_of<kMargin>(w, 0, i) + w.abs_r[i][0] * b.half[0] + w.abs_r[i][1] * b.half[1] +
+                w.abs_r[i][2] * b.half[2];
+  }
+  return o;
+}
+
+/// The whole box of A's node on B's axes, grown.
+template <bool kMargin>
+inline Whole turn_whole_a(const Whole& a, const Between& w) {
+  Whole o;
+  for (int j = 0; j < 3; ++j) {
+    o.centre[j] = w.back[j] + w.r[0][j] * a.centre[0] + w.r[1][j] * a.centre[1] + w.r[2][j] * a.centre[2];
+    o.half[j] = grow_of<kMargin>(w, 1, j) + w.abs_r[0][j] * a.half[0] + w.abs_r[1][j] * a.half[1] +
+                w.abs_r[2][j] * a.half[2];
+  }
+  return o;
+}
+
 /// Boxes of one node in the other's frame: axis-aligned there, grown by the error.
 struct Turned {
   Float8 centre[3], half[3];
@@ -194,59 +226,6 @@ inline Lanes apart(const Float8* centre, const Float8* half, const float* other_
 
 inline std::uint32_t present(const TreeNode& n) {
   return (1u << n.count) - 1;
-}
-
-/// How far boxes are apart on the axis on which they are furthest apart; negative: by how much they overlap.
-inline Float8 gap_between(const Float8* centre, const Float8* half, const float* other_centre,
-                          const float* other_half) {
-  Float8 gap = abs8(centre[0] - splat(other_centre[0])) - (half[0] + splat(other_half[0]));
-  for (int i = 1; i < 3; ++i)
-    gap = larger(gap, abs8(centre[i] - splat(other_centre[i])) - (half[i] + splat(other_half[i])));
-  return gap;
-}
-
-/// Of pairs of boxes: how far apart (see gap_between()) box i of A is from those of B.
-struct Gaps {
-  Float8 of[8];
-};
-
-/// Which of A's boxes meet which of B's: mask[k] has the bits of B's boxes that A's box k may meet. Most
-/// pairs of nodes are apart, and most of these show it in the first test.
-template <bool kMargin>
-inline std::uint32_t pair_masks(TreeKernel& k, const TreeNode& na, const TreeNode& nb, const Between& w,
-                                std::uint32_t mask[8], Gaps* gaps = nullptr) {
-  k.box_tests += na.count + nb.count;
-  const Whole whole_a = whole_of(na, k.ratio_a);
-  const Boxes b = decode(nb, k.ratio_b);
-  const Turned bt = turn_b<kMargin>(b, w);
-  const std::uint32_t mask_b = ~bits(apart(bt.centre, bt.half, whole_a.centre, whole_a.half)) & present(nb);
-  if (mask_b == 0) return 0;
-  const Whole whole_b = whole_of(nb, k.ratio_b);
-  const Boxes a = decode(na, k.ratio_a);
-  const Turned at = turn_a<kMargin>(a, w);
-  const std::uint32_t mask_a = ~bits(apart(at.centre, at.half, whole_b.centre, whole_b.half)) & present(na);
-  const auto* a_centre = reinterpret_cast<const float*>(a.centre);
-  const auto* a_half = reinterpret_cast<const float*>(a.half);
-  const auto* at_centre = reinterpret_cast<const float*>(at.centre);
-  const auto* at_half = reinterpret_cast<const float*>(at.half);
-  const auto in_mask_b = static_cast<unsigned>(__builtin_popcount(mask_b));
-  std::uint32_t rows = 0;
-  for (std::uint32_t todo = mask_a; todo != 0; todo &= todo - 1) {
-    const int i = __builtin_ctz(todo);
-    const float own_centre[3] = {a_centre[i], a_centre[8 + i], a_centre[16 + i]};
-    const float own_half[3] = {a_half[i], a_half[8 + i], a_half[16 + i]};
-    const float turned_centre[3] = {at_centre[i], at_centre[8 + i], at_centre[16 + i]};
-    const float turned_half[3] = {at_half[i], at_half[8 + i], at_half[16 + i]};
-    const Lanes gap = either(apart(bt.centre, bt.half, own_centre, own_half),
-                             apart(b.centre, b.half, turned_centre, turned_half));
-    mask[i] = ~bits(gap) & mask_b;
-    rows |= static_cast<std::uint32_t>(mask[i] != 0) << i;
-    k.box_tests += in_mask_b;
-    if (gaps && mask[i] != 0)
-      gaps->of[i] = larger(gap_between(bt.centre, bt.half, own_centre, own_half),
-                           gap_between(b.centre, b.half, turned_centre, turned_half));
-  }
-  return rows;
 }
 
 }  // namespace

@@ -3,9 +3,24 @@
 #include <cmath>
 
 #include "engine/core/tolerances.hpp"
+#include "engine/tree/affine_pose.hpp"
 #include "engine/tree/pose_bounds.hpp"
 
 namespace lrb {
+namespace {
+
+/// How B is turned, seen from A, and how far that and A are from rotations.
+struct RelativeTurn {
+  Eigen::Matrix3d m;
+  double defect_a, defect_m;
+
+  RelativeTurn(const Pose& a, const Pose& b)
+      : m(a.r.transpose() * b.r), defect_a(rotation_defect(a.r)), defect_m(rotation_defect(m)) {}
+
+  /// Also false where something is no number.
+  bool is_near_rotation() const { return defect_a <= kNearRotation && defect_m <= kNearRotation; }
+};
+
 /// The kernel compares boxes on A's axes and on B's. Let w_a = r_a x_a + t_a + rounding and w_b likewise be
 /// the world coordinates of a point of each body. If they are equal, then, with m = r_a^T r_b, t = r_a^T (t_b
 /// - t_a) and Euclidean norms,
@@ -17,8 +32,10 @@ namespace lrb {
 /// 2^-53), m, t and the offsets between nodes by another 16 u of the same sizes. The factor kPoseSafety
 /// covers the change from the largest coordinate to the Euclidean length (sqrt 3), and from a distance to an
 /// extent (2). The bounds hold for any matrix; for one that is far from a rotation they are merely so large
-/// that little is culled. Overflow makes them infinite or not a number: then nothing is.
-TreeKernel set_up_kernel(const ObbTree& a, const Pose& pose_a, const ObbTree& b, const Pose& pose_b) {
+/// that little is culled: affine_pose.hpp has others for those. Overflow makes them infinite or not a number:
+/// then nothing is culled.
+TreeKernel kernel_of(const RelativeTurn& turn, const ObbTree& a, const Pose& pose_a, const ObbTree& b,
+                     const Pose& pose_b) {
   TreeKernel k{};
   k.nodes_a = a.nodes().data();
   k.nodes_b = b.nodes().data();
@@ -28,7 +45,7 @@ TreeKernel set_up_kernel(const ObbTree& a, const Pose& pose_a, const ObbTree& b,
   k.ratio_a = static_cast<float>(a.unit() / unit);
   k.ratio_b = static_cast<float>(b.unit() / unit);
 
-  const Eigen::Matrix3d m = pose_a.r.transpose() * pose_b.r;
+  const Eigen::Matrix3d& m = turn.m;
   const Eigen::Vector3d t = pose_a.r.transpose() * (pose_b.t - pose_a.t) / unit;
   for (int i = 0; i < 3; ++i) {
     for (int j = 0; j < 3; ++j) {
@@ -38,13 +55,38 @@ TreeKernel set_up_kernel(const ObbTree& a, const Pose& pose_a, const ObbTree& b,
     k.t[i] = t[i];
   }
   const double size = (world_size(pose_a, a) + world_size(pose_b, b) + kWorldUnderflow) / unit;
-  const double defect_a = rotation_defect(pose_a.r), defect_m = rotation_defect(m);
-  const double turn_a = std::sqrt(1 + defect_a), turn_m = std::sqrt(1 + defect_m);
-  const double on_a = defect_a * (a.extent() / unit) + turn_a * kWorldRounding * size;
-  const double on_b = defect_m * (b.extent() / unit) + turn_m * on_a;
+  const double turn_a = std::sqrt(1 + turn.defect_a), turn_m = std::sqrt(1 + turn.defect_m);
+  const double on_a = turn.defect_a * (a.extent() / unit) + turn_a * kWorldRounding * size;
+  const double on_b = turn.defect_m * (b.extent() / unit) + turn_m * on_a;
   k.slack = static_cast<float>(kPoseSafety * (on_a + on_b)) * kFloatUp + kKernelTiny;
   k.m_size = static_cast<float>(turn_m) * kFloatUp;
   return k;
+}
+
+/// Whether floats of the kernel cannot overflow.
+bool is_near(const ObbTree& a, const Pose& pose_a, const ObbTree& b, const Pose& pose_b) {
+  return (pose_b.t - pose_a.t).cwiseAbs().maxCoeff() <= kNearEnough * query_unit(a, b);
+}
+
+}  // namespace
+
+TreeKernel set_up_kernel(const ObbTree& a, const Pose& pose_a, const ObbTree& b, const Pose& pose_b) {
+  return kernel_of({pose_a, pose_b}, a, pose_a, b, pose_b);
+}
+
+TreeKernel set_up_any_kernel(const ObbTree& a, const Pose& pose_a, const ObbTree& b, const Pose& pose_b,
+                             int dim, AffineTerms& terms) {
+  const RelativeTurn turn(pose_a, pose_b);
+  return turn.is_near_rotation() && is_near(a, pose_a, b, pose_b)
+             ? kernel_of(turn, a, pose_a, b, pose_b)
+             : set_up_affine_kernel(a, pose_a, b, pose_b, dim, terms);
+}
+
+void double_slack(TreeKernel& k) {
+  k.slack *= 2;
+  if (k.affine == nullptr) return;
+  for (AffineTerms::Axes& axes : k.affine->axes) axes.slack *= 2;
+  k.affine->world_slack *= 2;
 }
 
 }  // namespace lrb

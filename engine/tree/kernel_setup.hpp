@@ -14,7 +14,16 @@ inline double query_unit(const ObbTree& a, const ObbTree& b) {
   return std::max(a.unit(), b.unit());
 }
 
-/// Returns a kernel with everything filled in but its buffers (stack and out).
+/// Returns a kernel with everything filled in but its buffers (stack and out). Meant for poses that are nearly
+/// rotations: others are right, too, but cull little.
 TreeKernel set_up_kernel(const ObbTree& a, const Pose& pose_a, const ObbTree& b, const Pose& pose_b);
+
+/// Returns the same for any poses; what it needs where they are no rotations is put into `terms`, which must live as
+/// long as the kernel. dim: of both bodies.
+TreeKernel set_up_any_kernel(const ObbTree& a, const Pose& pose_a, const ObbTree& b, const Pose& pose_b,
+                             int dim, AffineTerms& terms);
+
+/// Makes a kernel keep what is not apart by twice the errors, on all axes.
+void double_slack(TreeKernel& k);
 
 }  // namespace lrb

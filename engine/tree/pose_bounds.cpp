@@ -22,9 +22,14 @@ double wrapper_margin(const Pose& pose_a, const ObbTree& a, const Pose& pose_b, 
   return kWrapperMargin * (world_size(pose_a, a) + world_size(pose_b, b) + kWorldUnderflow);
 }
 
+/// By a power of two to where squares are doubles, which is exact, and back.
 double stretch(const Pose& pose) {
-  return std::sqrt((pose.r.transpose() * pose.r).cwiseAbs().rowwise().sum().maxCoeff()) *
-         (1 + kWrapperMargin);
+  int exponent = 0;
+  std::frexp(pose.r.cwiseAbs().maxCoeff(), &exponent);
+  const Eigen::Matrix3d r = pose.r.unaryExpr([exponent](double x) { return std::ldexp(x, -exponent); });
+  const double norm = std::sqrt((r.transpose() * r).cwiseAbs().rowwise().sum().maxCoeff());
+  const double size = std::ldexp(norm * (1 + kWrapperMargin), exponent);
+  return exponent < -1000 ? size + kWorldUnderflow : size;
 }
 
 }  // namespace lrb

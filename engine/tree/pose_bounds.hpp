@@ -16,7 +16,7 @@ double world_size(const Pose& pose, const ObbTree& tree);
 /// The distance that wrappers must keep to prove what is in them apart: see kWrapperMargin.
 double wrapper_margin(const Pose& pose_a, const ObbTree& a, const Pose& pose_b, const ObbTree& b);
 
-/// A bound of how much the pose stretches distances; 1 for rotations, but for rounding.
+/// A bound of how much the pose stretches distances; 1 for rotations, but for rounding. For any finite matrix.
 double stretch(const Pose& pose);
 
 }  // namespace lrb

@@ -8,11 +8,14 @@
 namespace lrb {
 
 void run_tree_kernel_baseline(TreeKernel& k);
+void run_affine_kernel_baseline(TreeKernel& k);
 void run_pair_kernel_baseline(const PairKernel& k);
 #if defined(__x86_64__)
 void run_tree_kernel_avx2(TreeKernel& k);
+void run_affine_kernel_avx2(TreeKernel& k);
 void run_pair_kernel_avx2(const PairKernel& k);
 void run_tree_kernel_avx512(TreeKernel& k);
+void run_affine_kernel_avx512(TreeKernel& k);
 void run_pair_kernel_avx512(const PairKernel& k);
 #endif
 
@@ -20,6 +23,7 @@ namespace {
 
 struct Kernels {
   void (*tree)(TreeKernel&) = run_tree_kernel_baseline;
+  void (*affine)(TreeKernel&) = run_affine_kernel_baseline;
   void (*pairs)(const PairKernel&) = run_pair_kernel_baseline;
 };
 
@@ -37,9 +41,9 @@ Kernels best_kernels() {
   const char* const wish = std::getenv("LRB_SIMD");
   const std::string_view most = wish != nullptr ? wish : "";
   if (most != "baseline" && most != "avx2" && has_avx512())
-    return {run_tree_kernel_avx512, run_pair_kernel_avx512};
+    return {run_tree_kernel_avx512, run_affine_kernel_avx512, run_pair_kernel_avx512};
   if (most != "baseline" && __builtin_cpu_supports("avx2"))
-    return {run_tree_kernel_avx2, run_pair_kernel_avx2};
+    return {run_tree_kernel_avx2, run_affine_kernel_avx2, run_pair_kernel_avx2};
 #endif
   return {};
 }
@@ -52,7 +56,7 @@ const Kernels& kernels() {
 }  // namespace
 
 void run_tree_kernel(TreeKernel& k) {
-  kernels().tree(k);
+  (k.affine != nullptr ? kernels().affine : kernels().tree)(k);
 }
 
 void run_pair_kernel(const PairKernel& k) {

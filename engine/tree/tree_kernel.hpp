@@ -31,6 +31,29 @@ struct Candidate {
   std::uint8_t corners;  ///< bit k: corner k
 };
 
+/// A linear map: columns for double arithmetic, rows rounded for that in floats.
+struct KernelMap {
+  alignas(32) double columns[3][4];
+  float rows[3][3];
+  float size;  ///< >= the Euclidean norm
+};
+
+/// Maps of two bodies that are not near to rotations; what they are is in affine_pose.hpp. Pairs are A's and B's.
+struct AffineTerms {
+  struct Axes {
+    KernelMap other;               ///< these axes <- coordinates in the other body
+    alignas(32) double origin[4];  ///< of the other body, on these axes
+    KernelMap own;                 ///< these axes <- coordinates in the body; the identity unless flat
+    bool flat;
+    float slack;  ///< as of TreeKernel, on these axes
+  } axes[2];
+  KernelMap world[2];             ///< the world's axes <- coordinates in a body
+  alignas(32) double between[4];  ///< B's origin seen from A's, on the world's axes
+  float world_slack;
+  int exponent;  ///< the query's unit is 2^exponent
+  float span[2];  ///< about how large in the world, query units, what is 1 in the tree's units becomes
+};
+
 /// One traversal. All lengths are in the query's unit: the larger of the two trees' units.
 struct TreeKernel {
   const TreeNode* nodes_a;
@@ -48,6 +71,8 @@ struct TreeKernel {
   alignas(32) double sweep[3][4], sweep_t[4];  ///< as m and t
   float sweep_turn;                            ///< >= the Euclidean norm of sweep
   bool nearest_first;                          ///< without a margin: descend first where boxes overlap most
+  AffineTerms*
+      affine;  ///< null; else, without a margin, the maps are these, and m, t and slack what they say
 
   NodePair* stack;  ///< room for 64 * (height of A + height of B) + 64 pairs
   std::uint32_t stack_size;

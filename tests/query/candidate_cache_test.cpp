@@ -84,7 +84,7 @@ void compare(RandomEngine& random, const LrbRep& a, const LrbRep& b, const Sweep
   QueryContext context;
   context.body[0].begin(a, Pose{}, CollideRequest{}.wrapper);
   context.body[1].begin(b, Pose{}, CollideRequest{}.wrapper);
-  TreeKernel k = start_kernel(context, Pose{}, {stretch.middle.m, stretch.middle.t}, 1 << 16);
+  TreeKernel k = start_rigid_kernel(context, Pose{}, {stretch.middle.m, stretch.middle.t}, 1 << 16);
   aim_at(stretch, rounding, query_unit(a.tree(), b.tree()), k);
   run_tree_kernel(k);
   REQUIRE(k.stack_size == 0);

@@ -2,96 +2,24 @@
 // them from one body's axes to the other's and grows them, against exact arithmetic on the world coordinates
 // that the answer is about.
 #include <cmath>
-#include <set>
 #include <span>
 
-#include <boost/multiprecision/cpp_int.hpp>
 #include <doctest/doctest.h>
 
 #include "engine/query/walk/tree_query.hpp"
 #include "scenarios/bodies/shapes/shapes.hpp"
 #include "scenarios/cases/families.hpp"
-#include "tests/support/rational_oracle.hpp"
 
 #define LRB_KERNEL_NAME run_tree_kernel_for_enclosure
 namespace lrb {
 void run_tree_kernel_for_enclosure(TreeKernel& k);
 }
 #include "engine/tree/tree_kernel.inl"
-#include "tests/support/tree_content.hpp"
+#include "tests/support/exact_boxes.hpp"
 
 using namespace lrb;
-using cases::RandomEngine;
 
 namespace {
-
-using boost::multiprecision::cpp_int;
-
-/// mantissa * 2^exponent: sums and products of doubles without rounding.
-class Exact {
- public:
-  Exact() = default;
-  /// Floats that overflowed count as 0 here: the kernel culls nothing by them, so that they bound nothing.
-  Exact(double x) {
-    if (!std::isfinite(x)) return;
-    int e = 0;
-    mantissa_ = static_cast<std::int64_t>(std::ldexp(std::frexp(x, &e), 53));
-    exponent_ = e - 53;
-  }
-  friend Exact operator+(const Exact& x, const Exact& y) {
-    if (x.mantissa_ == 0) return y;
-    if (y.mantissa_ == 0) return x;
-    const long low = std::min(x.exponent_, y.exponent_);
-    return {(x.mantissa_ << (x.exponent_ - low)) + (y.mantissa_ << (y.exponent_ - low)), low};
-  }
-  friend Exact operator-(const Exact& x, const Exact& y) { return x + Exact(-y.mantissa_, y.exponent_); }
-  friend Exact operator*(const Exact& x, const Exact& y) {
-    return {x.mantissa_ * y.mantissa_, x.exponent_ + y.exponent_};
-  }
-  friend bool operator<(const Exact& x, const Exact& y) { return (x - y).mantissa_ < 0; }
-  Exact times_power_of_two(int e) const { return {mantissa_, exponent_ + e}; }
-
- private:
-  Exact(cpp_int mantissa, long exponent) : mantissa_(std::move(mantissa)), exponent_(exponent) {}
-  cpp_int mantissa_ = 0;
-  long exponent_ = 0;
-};
-
-using Exact3 = std::array<Exact, 3>;
-
-struct Range {
-  Exact low, high;
-  bool empty = true;
-  void extend(const Exact& x) {
-    if (empty || x < low) low = x;
-    if (empty || high < x) high = x;
-    empty = false;
-  }
-  void extend(const Range& r) {
-    if (r.empty) return;
-    extend(r.low);
-    extend(r.high);
-  }
-};
-using Range3 = std::array<Range, 3>;
-
-struct Scene {
-  const LrbRep *a, *b;
-  Pose pose_a, pose_b;
-};
-
-/// The simplices that each box of a node must hold.
-std::vector<std::vector<SimplexId>> contents(const LrbRep& rep, std::uint32_t node) {
-  const TreeNode& n = rep.tree().nodes()[node];
-  std::vector<std::vector<SimplexId>> r(n.count);
-  for (std::uint32_t k = 0; k < n.count; ++k) {
-    if (n.is_leaf)
-      r[k].push_back(rep.tree().blocks()[n.first].simplex[k]);
-    else
-      test::simplices_under(rep.tree(), n.first + k, r[k]);
-  }
-  return r;
-}
 
 /// World coordinates of one body seen on A's axes, in query units: r_a^T (w - t_a) / unit.
 class Seen {
@@ -138,55 +66,6 @@ class Seen {
   std::vector<Exact3> on_a_;
 };
 
-Range3 united(const std::vector<Range3>& of, const std::vector<SimplexId>& list) {
-  Range3 r;
-  for (const SimplexId s : list)
-    for (int i = 0; i < 3; ++i) r[i].extend(of[s][i]);
-  return r;
-}
-
-/// How far content reaches out of a box less `error`; not below 0. Where floats overflowed nothing is
-/// outside, and nothing is culled.
-Exact outside(const Range& r, float centre, float half_size, float error) {
-  Exact most(0.0);
-  if (!std::isfinite(centre) || !std::isfinite(half_size)) return most;
-  const Exact half = Exact(half_size) - Exact(error);
-  for (const Exact& over : {Exact(centre) - half - r.low, r.high - Exact(centre) - half})
-    if (most < over) most = over;
-  return most;
-}
-
-struct Share {
-  std::uint64_t boxes = 0, culled = 0;
-  std::uint64_t too_small = 0;  ///< boxes that, grown by the error, do not hold what they must
-  std::uint64_t wrong = 0;      ///< culled, but not apart
-};
-
-/// One set of axes: boxes that are at home there, and boxes turned into it and grown by the error.
-void check_axes(const std::vector<Range3>& home, const std::vector<Range3>& guest, const Boxes& home_boxes,
-                const Turned& guest_boxes, float error, Share& share) {
-  if (!std::isfinite(error)) return;  // every box is grown to hold all
-  for (int axis = 0; axis < 3; ++axis) {
-    std::vector<Exact> home_off, guest_off;
-    for (std::size_t i = 0; i < home.size(); ++i)
-      home_off.push_back(outside(home[i][axis], home_boxes.centre[axis][i], home_boxes.half[axis][i], 0));
-    for (std::size_t j = 0; j < guest.size(); ++j)
-      guest_off.push_back(
-          outside(guest[j][axis], guest_boxes.centre[axis][j], guest_boxes.half[axis][j], error));
-    for (std::size_t i = 0; i < home.size(); ++i)
-      for (std::size_t j = 0; j < guest.size(); ++j) {
-        ++share.boxes;
-        // Both boxes, grown once by the error, hold their contents.
-        share.too_small += Exact(error) < home_off[i] + guest_off[j];
-        // And as the kernel decides, rounding included: what it drops is apart.
-        const float gap = std::fabs(guest_boxes.centre[axis][j] - home_boxes.centre[axis][i]);
-        if (!(gap > guest_boxes.half[axis][j] + home_boxes.half[axis][i])) continue;
-        ++share.culled;
-        share.wrong += !(home[i][axis].high < guest[j][axis].low || guest[j][axis].high < home[i][axis].low);
-      }
-  }
-}
-
 Share check_nodes(const Scene& s) {
   Share share;
   const TreeKernel k = set_up_kernel(*s.a, s.pose_a, *s.b, s.pose_b);
@@ -223,45 +102,6 @@ Share check_nodes(const Scene& s) {
   return share;
 }
 
-/// How two simplices meet in the world, says the rational oracle.
-int oracle_meet(const Scene& s, SimplexId a, SimplexId b) {
-  VertexId va[3], vb[3];
-  s.a->simplex(a, va);
-  s.b->simplex(b, vb);
-  Eigen::Vector3d x[6];
-  for (int c = 0; c < 3; ++c) {
-    x[c] = s.pose_a.apply(s.a->vertices()[va[c]]);
-    x[3 + c] = s.pose_b.apply(s.b->vertices()[vb[c]]);
-  }
-  const double *pa[3] = {x[0].data(), x[1].data(), x[2].data()},
-               *pb[3] = {x[3].data(), x[4].data(), x[5].data()};
-  return oracle::meet_of_simplices(pa, pb, 3);
-}
-
-Eigen::AlignedBox3d world_box(const LrbRep& rep, const Pose& pose, SimplexId simplex) {
-  VertexId v[3];
-  rep.simplex(simplex, v);
-  Eigen::AlignedBox3d box;
-  for (const VertexId corner : v) box.extend(pose.apply(rep.vertices()[corner]));
-  return box;
-}
-
-struct Asked {
-  int dropped = 0, disjoint = 0, cross = 0;
-};
-
-/// What the kernel is certain of is what the rational oracle says.
-void check_certain(const Scene& s, std::span<const Candidate> found, RandomEngine& random, int most,
-                   Asked& asked) {
-  for (int i = 0; i < most && !found.empty(); ++i) {
-    const Candidate& c = found[random() % found.size()];
-    if (c.certainty != Certainty::cross && c.certainty != Certainty::disjoint) continue;
-    const bool cross = c.certainty == Certainty::cross;
-    ++(cross ? asked.cross : asked.disjoint);
-    REQUIRE(oracle_meet(s, c.a, c.b) == (cross ? 2 : 0));
-  }
-}
-
 /// Pairs that boxes or planes have dropped do not meet, says the rational oracle.
 void check_dropped(const Scene& s, RandomEngine& random, int most, Asked& asked) {
   TreeKernel k = set_up_kernel(*s.a, s.pose_a, *s.b, s.pose_b);
@@ -274,18 +114,7 @@ void check_dropped(const Scene& s, RandomEngine& random, int most, Asked& asked)
   k.out_capacity = static_cast<std::uint32_t>(out.size());
   run_tree_kernel_for_enclosure(k);
   REQUIRE(k.stack_size == 0);
-  std::set<std::pair<SimplexId, SimplexId>> kept;
-  for (std::uint32_t i = 0; i < k.out_size; ++i) kept.insert({out[i].a, out[i].b});
-  for (int i = 0, compared = 0; i < 20 * most && compared < most; ++i) {
-    const auto sa = static_cast<SimplexId>(random() % s.a->real_simplex_count()),
-               sb = static_cast<SimplexId>(random() % s.b->real_simplex_count());
-    if (kept.contains({sa, sb}) || !world_box(*s.a, s.pose_a, sa).intersects(world_box(*s.b, s.pose_b, sb)))
-      continue;
-    ++compared;
-    ++asked.dropped;
-    REQUIRE(oracle_meet(s, sa, sb) == 0);
-  }
-  check_certain(s, std::span(out).first(k.out_size), random, 5 * most, asked);
+  check_outcome(s, std::span(out).first(k.out_size), random, most, asked);
 }
 
 LrbRep closed(const Mesh& mesh, double size = 1) {

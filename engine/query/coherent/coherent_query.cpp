@@ -155,7 +155,7 @@ bool CoherentQuery::make_cache(const CachePolicy::Plan& list) {
   if (!(where.off <= sweep_.width)) return false;
   const double rounding = 4 * motion_.rounding();
   for (QueryBody& body : context_.body) body.begin_at_pose(request_.wrapper);
-  TreeKernel k = start_kernel(context_, Pose{}, {sweep_.middle.m, sweep_.middle.t}, kAtATime);
+  TreeKernel k = start_rigid_kernel(context_, Pose{}, {sweep_.middle.m, sweep_.middle.t}, kAtATime);
   aim_at(sweep_, rounding, query_unit(a_.tree(), b_.tree()), k);
   // One that is not a number, as infinite widths and no defect make it, would count as none.
   if (!(k.margin < std::numeric_limits<float>::infinity())) return false;

@@ -21,8 +21,8 @@ class RayWalk {
   RayWalk(QueryBody& body, const Point& point, const Vector3d& near)
       : body_(body), tree_(body.tree()), point_(point), p_(near) {
     const Pose& pose = body.world.pose();
-    margin_ = kWorldRounding * (world_size(pose, tree_) + near.cwiseAbs().maxCoeff());
-    turn_ = std::max(1.0, pose.r.cwiseAbs().rowwise().sum().maxCoeff());
+    margin_ = kWorldRounding * (world_size(pose, tree_) + near.cwiseAbs().maxCoeff() + kWorldUnderflow);
+    turn_ = pose.r.cwiseAbs().rowwise().sum().maxCoeff();
   }
 
   Where run() {

@@ -2,9 +2,10 @@
 
 namespace lrb {
 
-TreeKernel start_kernel(QueryContext& ctx, const Pose& pose_a, const Pose& pose_b, std::size_t capacity) {
+namespace {
+
+void give_buffers(QueryContext& ctx, std::size_t capacity, TreeKernel& k) {
   const ObbTree &a = ctx[Side::a].tree(), &b = ctx[Side::b].tree();
-  TreeKernel k = set_up_kernel(a, pose_a, b, pose_b);
   ctx.stack.resize(64 * (a.height() + b.height()) + 64);
   if (ctx.candidates.size() < capacity) ctx.candidates.resize(capacity);
   k.stack = ctx.stack.data();
@@ -12,6 +13,22 @@ TreeKernel start_kernel(QueryContext& ctx, const Pose& pose_a, const Pose& pose_
   k.stack_size = 1;
   k.out = ctx.candidates.data();
   k.out_capacity = static_cast<std::uint32_t>(capacity);
+}
+
+}  // namespace
+
+TreeKernel start_kernel(QueryContext& ctx, std::size_t capacity) {
+  const QueryBody &a = ctx[Side::a], &b = ctx[Side::b];
+  TreeKernel k =
+      set_up_any_kernel(a.tree(), a.world.pose(), b.tree(), b.world.pose(), a.rep().dim(), ctx.affine);
+  give_buffers(ctx, capacity, k);
+  return k;
+}
+
+TreeKernel start_rigid_kernel(QueryContext& ctx, const Pose& pose_a, const Pose& pose_b,
+                              std::size_t capacity) {
+  TreeKernel k = set_up_kernel(ctx[Side::a].tree(), pose_a, ctx[Side::b].tree(), pose_b);
+  give_buffers(ctx, capacity, k);
   return k;
 }
 

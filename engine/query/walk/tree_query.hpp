@@ -8,7 +8,7 @@
 /// to separate the two; what is left is decided within proved bounds of float errors, or exactly. The proof
 /// uses neither nesting of regions nor embedding: a poor LRB-rep can cost time, never a contact.
 ///
-/// What "proved apart" has to cover is in set_up_kernel().
+/// What "proved apart" has to cover is in set_up_kernel() for rotations, in affine_pose.hpp for all other maps.
 
 #include <algorithm>
 #include <bit>
@@ -41,12 +41,12 @@ template <class Probe>
   }
 }
 
-/// A kernel at the roots of what is queried of both bodies, with the context's buffers: `capacity`
-/// candidates.
-TreeKernel start_kernel(QueryContext& ctx, const Pose& pose_a, const Pose& pose_b, std::size_t capacity);
-inline TreeKernel start_kernel(QueryContext& ctx, std::size_t capacity) {
-  return start_kernel(ctx, ctx[Side::a].world.pose(), ctx[Side::b].world.pose(), capacity);
-}
+/// Returns a kernel at the roots of what is queried of both bodies, at their poses, with the context's buffers:
+/// `capacity` candidates.
+TreeKernel start_kernel(QueryContext& ctx, std::size_t capacity);
+/// Returns the same at other poses, set up by set_up_kernel() whatever they are.
+TreeKernel start_rigid_kernel(QueryContext& ctx, const Pose& pose_a, const Pose& pose_b,
+                              std::size_t capacity);
 
 /// Refines the wrapper of a body until a face shows: the regions from the outside inward that hide it. Mostly
 /// there are none left. How many regions there are between the face and the outside.
@@ -78,7 +78,7 @@ class TreeQuery {
     // A small buffer where one pair may be enough, or time may run out, so that little is searched beyond it.
     TreeKernel k = start_kernel(ctx_, mode_ == Mode::all_pairs && !Rules::kCoarse ? 1024 : 64);
     k.nearest_first = mode_ != Mode::all_pairs;
-    if constexpr (Rules::kCoarse) k.slack *= 2;  // what the kernel drops is then apart by more than rounding
+    if constexpr (Rules::kCoarse) double_slack(k);  // what is dropped is then apart by more than rounding
     bool done = false;
     while (k.stack_size != 0 && !done) {
       k.out_size = 0;

@@ -1,0 +1,27 @@
+// Compiled once per instruction set by affine_kernel_*.cpp, which define LRB_AFFINE_KERNEL_NAME: apart from the
+// tree kernel, whose speed hangs on what the compiler makes part of its one loop. See tree_kernel.inl.
+
+#include "engine/tree/affine_boxes.inl"
+#include "engine/tree/kernel_walk.inl"
+
+namespace lrb {
+namespace {
+
+/// Of bodies under any affine maps.
+struct AffineWalk {
+  static constexpr bool kMargin = false;
+  static Skewed between(const TreeKernel& k, const TreeNode& a, const TreeNode& b) {
+    return between_skewed(k, a, b);
+  }
+  static float size(const TreeKernel& k, const TreeNode& n, Side side) {
+    return n.radius * k.affine->span[static_cast<int>(side)];
+  }
+};
+
+}  // namespace
+
+void LRB_AFFINE_KERNEL_NAME(TreeKernel& k) {
+  k.nearest_first ? run<AffineWalk, true>(k) : run<AffineWalk, false>(k);
+}
+
+}  // namespace lrb

@@ -1,0 +1,147 @@
+#include "engine/tree/affine_pose.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/LU>
+#include <Eigen/SVD>
+
+#include "engine/core/tolerances.hpp"
+#include "engine/tree/pose_bounds.hpp"
+
+namespace lrb {
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+
+/// The exponent of what maps everything to one point: less than any other, without overflow in sums.
+constexpr int kNoExponent = -100000;
+
+/// Coordinates in a tree's units are less than 2: 1, but for bodies near the end of what doubles hold.
+constexpr double kMostUnits = 2;
+
+/// x < 2^exponent_of(x), by a factor of at most 2.
+int exponent_of(double x) {
+  int exponent = 0;
+  std::frexp(x, &exponent);
+  return x == 0 ? kNoExponent : exponent;
+}
+
+/// 2^exponent x; mostly by a product, which is quicker.
+template <class Matrix>
+Matrix scaled(const Matrix& x, int exponent) {
+  if (std::abs(exponent) <= 1000) return x * std::ldexp(1.0, exponent);
+  return x.unaryExpr([exponent](double c) { return std::ldexp(c, exponent); });
+}
+
+/// What a plane body has of its map: nothing else counts, for z = 0. The third axis keeps its place.
+Matrix3d map_in_plane(Matrix3d r) {
+  r(2, 2) = r.topLeftCorner<2, 2>().cwiseAbs().maxCoeff();
+  return r;
+}
+
+/// At least the Euclidean norm, at most sqrt 3 times it.
+double norm_of(const Matrix3d& m) {
+  return m.norm() * (1 + kWrapperMargin);
+}
+
+Matrix3d raised_inverse(const Matrix3d& r) {
+  const Eigen::JacobiSVD<Matrix3d> svd(r, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  const Vector3d& values = svd.singularValues();
+  if (!(values[0] > 0)) return Matrix3d::Identity();
+  const Vector3d raised = values.cwiseMax(kFlatness * values[0]);
+  return svd.matrixV() * raised.cwiseInverse().asDiagonal() * svd.matrixU().transpose();
+}
+
+/// Of the larger of two bodies in the world; more where they are so far apart that floats would overflow.
+int query_exponent(const AffineMap& a, const Pose& pose_a, const AffineMap& b, const Pose& pose_b) {
+  constexpr int kFarOff = 60, kLeast = -1022;
+  const double apart = (pose_b.t / 2 - pose_a.t / 2).cwiseAbs().maxCoeff();
+  return std::max({a.exponent, b.exponent, exponent_of(apart) - kFarOff, kLeast});
+}
+
+float rounded_up(double x) {
+  return static_cast<float>(x) * kFloatUp + kKernelTiny;
+}
+
+void put(const Matrix3d& m, double size, KernelMap& to) {
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) {
+      to.columns[j][i] = m(i, j);
+      to.rows[i][j] = static_cast<float>(m(i, j));
+    }
+  to.size = rounded_up(size);
+}
+
+void put(const Vector3d& x, double (&to)[4]) {
+  for (int i = 0; i < 3; ++i) to[i] = x[i];
+}
+
+/// What the map makes of coordinates up to 1, coordinate by coordinate, and every term of that, is no larger.
+double row_size(const Matrix3d& r) {
+  return r.cwiseAbs().rowwise().sum().maxCoeff();
+}
+
+}  // namespace
+
+AffineMap::AffineMap(const Pose& pose, const ObbTree& tree, int dim)
+    : r(dim == 2 ? map_in_plane(pose.r) : pose.r) {
+  const int e = exponent_of(r.cwiseAbs().maxCoeff());
+  exponent = e == kNoExponent ? e : e + std::ilogb(tree.unit());
+  if (e != kNoExponent) r = scaled(r, -e);
+  size = norm_of(r);
+  back = r.inverse();
+  back_size = norm_of(back);
+  flat = !(back_size * size * kFlatness <= 1);  // also where it is no number
+  if (flat) {
+    back = raised_inverse(r);
+    back_size = norm_of(back);
+    own = back * r;
+    defect = 0;
+  } else {
+    own = Matrix3d::Identity();
+    defect = (back * r - own).norm();
+  }
+}
+
+TreeKernel set_up_affine_kernel(const ObbTree& a, const Pose& pose_a, const ObbTree& b, const Pose& pose_b,
+                                int dim, AffineTerms& terms) {
+  const AffineMap maps[2] = {AffineMap(pose_a, a, dim), AffineMap(pose_b, b, dim)};
+  const int exponent = query_exponent(maps[0], pose_a, maps[1], pose_b);
+  TreeKernel k{};
+  terms = {};
+  terms.exponent = exponent;
+  k.affine = &terms;
+  k.nodes_a = a.nodes().data();
+  k.nodes_b = b.nodes().data();
+  k.blocks_a = a.blocks().data();
+  k.blocks_b = b.blocks().data();
+  k.ratio_a = std::ldexp(1.0F, maps[0].exponent - exponent);
+  k.ratio_b = std::ldexp(1.0F, maps[1].exponent - exponent);
+  const float ratios[2] = {k.ratio_a, k.ratio_b};
+  const Vector3d t[2] = {scaled(pose_a.t, -exponent), scaled(pose_b.t, -exponent)}, between = t[1] - t[0];
+  double size = std::ldexp(kWorldUnderflow, -exponent);  // no term of a world coordinate is larger
+  for (int side = 0; side < 2; ++side)
+    size += row_size(maps[side].r) * kMostUnits * ratios[side] + t[side].cwiseAbs().maxCoeff();
+  const double rounding = kWorldRounding * size;
+  for (int side = 0; side < 2; ++side) {
+    const AffineMap &self = maps[side], &other = maps[1 - side];
+    AffineTerms::Axes& axes = terms.axes[side];
+    const Matrix3d other_map = self.back * other.r;
+    const Vector3d origin = self.back * (side == 0 ? between : -between);
+    put(other_map, norm_of(other_map), axes.other);
+    put(origin, axes.origin);
+    axes.flat = self.flat;
+    put(self.own, self.flat ? norm_of(self.own) : 1, axes.own);
+    const double off = self.defect * kMostUnits * ratios[side];
+    axes.slack = rounded_up(kPoseSafety * (off + self.back_size * rounding));
+    put(self.r, self.size, terms.world[side]);
+    terms.span[side] = static_cast<float>(self.size) * ratios[side];
+  }
+  put(between, terms.between);
+  terms.world_slack = rounded_up(kPoseSafety * rounding);
+  return k;
+}
+
+}  // namespace lrb

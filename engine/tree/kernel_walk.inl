@@ -1,0 +1,269 @@
+#pragma once
+// Part of tree_kernel.inl and affine_kernel.inl: the descent of two trees. A Walk says how nodes lie to each
+// other.
+
+#include "engine/tree/kernel_triangles.inl"
+
+namespace lrb {
+namespace {
+
+/// How far boxes are apart on the axis on which they are furthest apart; negative: by how much they overlap.
+inline Float8 gap_between(const Float8* centre, const Float8* half, const float* other_centre,
+                          const float* other_half) {
+  Float8 gap = abs8(centre[0] - splat(other_centre[0])) - (half[0] + splat(other_half[0]));
+  for (int i = 1; i < 3; ++i)
+    gap = larger(gap, abs8(centre[i] - splat(other_centre[i])) - (half[i] + splat(other_half[i])));
+  return gap;
+}
+
+/// Where there are two pairs or more: how far apart (see gap_between()) box i of A is from those of B.
+struct Gaps {
+  Float8 of[8];
+};
+
+/// Whether rows of a mask have more than one bit together.
+inline bool is_more_than_one(std::uint32_t rows, const std::uint32_t mask[8]) {
+  if (rows == 0) return false;
+  const std::uint32_t first = mask[__builtin_ctz(rows)];
+  return (rows & (rows - 1)) != 0 || (first & (first - 1)) != 0;
+}
+
+/// Which of A's boxes meet which of B's: mask[k] has the bits of B's boxes that A's box k may meet. Most
+/// pairs of nodes are apart, and most of these show it in the first test.
+template <bool kMargin, class Lie>
+inline std::uint32_t pair_masks(TreeKernel& k, const TreeNode& na, const TreeNode& nb, const Lie& w,
+                                std::uint32_t mask[8], Gaps* gaps = nullptr) {
+  k.box_tests += na.count + nb.count;
+  const Whole whole_a = whole_on_own(whole_of(na, k.ratio_a), Side::a, w);
+  const Boxes b = decode(nb, k.ratio_b);
+  const Turned bt = turn_b<kMargin>(b, w);
+  const std::uint32_t mask_b = ~bits(apart(bt.centre, bt.half, whole_a.centre, whole_a.half)) & present(nb);
+  if (mask_b == 0) return 0;
+  const Whole whole_b = whole_on_own(whole_of(nb, k.ratio_b), Side::b, w);
+  const Boxes a = decode(na, k.ratio_a);
+  const Turned at = turn_a<kMargin>(a, w);
+  const std::uint32_t mask_a = ~bits(apart(at.centre, at.half, whole_b.centre, whole_b.half)) & present(na);
+  const Boxes &own_a = boxes_on_own(a, Side::a, w), &own_b = boxes_on_own(b, Side::b, w);
+  const auto* a_centre = reinterpret_cast<const float*>(own_a.centre);
+  const auto* a_half = reinterpret_cast<const float*>(own_a.half);
+  const auto* at_centre = reinterpret_cast<const float*>(at.centre);
+  const auto* at_half = reinterpret_cast<const float*>(at.half);
+  const auto in_mask_b = static_cast<unsigned>(__builtin_popcount(mask_b));
+  std::uint32_t rows = 0;
+  for (std::uint32_t todo = mask_a; todo != 0; todo &= todo - 1) {
+    const int i = __builtin_ctz(todo);
+    const float own_centre[3] = {a_centre[i], a_centre[8 + i], a_centre[16 + i]};
+    const float own_half[3] = {a_half[i], a_half[8 + i], a_half[16 + i]};
+    const float turned_centre[3] = {at_centre[i], at_centre[8 + i], at_centre[16 + i]};
+    const float turned_half[3] = {at_half[i], at_half[8 + i], at_half[16 + i]};
+    const Lanes gap = either(apart(bt.centre, bt.half, own_centre, own_half),
+                             apart(own_b.centre, own_b.half, turned_centre, turned_half));
+    mask[i] = ~bits(gap) & mask_b;
+    rows |= static_cast<std::uint32_t>(mask[i] != 0) << i;
+    k.box_tests += in_mask_b;
+  }
+  if (gaps && is_more_than_one(rows, mask))
+    for (std::uint32_t todo = rows; todo != 0; todo &= todo - 1) {
+      const int i = __builtin_ctz(todo);
+      const auto of_row = [i](const float* x, float* row) {
+        for (int axis = 0; axis < 3; ++axis) row[axis] = x[8 * axis + i];
+      };
+      float own_centre[3], own_half[3], turned_centre[3], turned_half[3];
+      of_row(a_centre, own_centre);
+      of_row(a_half, own_half);
+      of_row(at_centre, turned_centre);
+      of_row(at_half, turned_half);
+      gaps->of[i] = larger(gap_between(bt.centre, bt.half, own_centre, own_half),
+                           gap_between(own_b.centre, own_b.half, turned_centre, turned_half));
+    }
+  return rows;
+}
+
+/// Corners of two leaves' simplices in A's leaf's frame, query units; and their errors, as they are.
+inline const Between& corners_of(const TreeKernel& k, const TreeNode& na, const TreeNode& nb,
+                                 const Between& w, Corners& a, Corners& b) {
+  const LeafBlock& block_a = k.blocks_a[na.first];
+  const LeafBlock& block_b = k.blocks_b[nb.first];
+  for (int corner = 0; corner < 3; ++corner) {
+    Float8 own[3];
+    for (int axis = 0; axis < 3; ++axis) {
+      a.x[corner][axis] = load8(block_a.corner[corner][axis]) * splat(k.ratio_a);
+      own[axis] = load8(block_b.corner[corner][axis]) * splat(k.ratio_b);
+    }
+    for (int i = 0; i < 3; ++i)
+      b.x[corner][i] =
+          splat(w.t[i]) + splat(w.r[i][0]) * own[0] + splat(w.r[i][1]) * own[1] + splat(w.r[i][2]) * own[2];
+  }
+  return w;
+}
+
+/// All lines of a node.
+inline void prefetch(const TreeNode& n) {
+  constexpr std::size_t kLine = 64;
+  for (std::size_t at = 0; at < sizeof n; at += kLine)
+    __builtin_prefetch(reinterpret_cast<const char*>(&n) + at);
+}
+
+inline void push(TreeKernel& k, std::uint32_t a, std::uint32_t b) {
+  prefetch(k.nodes_a[a]);
+  prefetch(k.nodes_b[b]);
+  k.stack[k.stack_size++] = {a, b};
+}
+
+/// Sorts what was pushed last, the pair with the least gap last; of many only that one is moved.
+inline void nearest_last(NodePair* pairs, float* gaps, std::uint32_t size) {
+  constexpr std::uint32_t kFew = 8;
+  if (size <= kFew) {
+    for (std::uint32_t i = 1; i < size; ++i) {
+      const NodePair pair = pairs[i];
+      const float gap = gaps[i];
+      std::uint32_t at = i;
+      for (; at > 0 && gaps[at - 1] < gap; --at) {
+        gaps[at] = gaps[at - 1];
+        pairs[at] = pairs[at - 1];
+      }
+      gaps[at] = gap;
+      pairs[at] = pair;
+    }
+    return;
+  }
+  std::uint32_t nearest = 0;
+  for (std::uint32_t i = 1; i < size; ++i)
+    if (gaps[i] < gaps[nearest]) nearest = i;
+  const NodePair last = pairs[size - 1];
+  pairs[size - 1] = pairs[nearest];
+  pairs[nearest] = last;
+}
+
+/// Descends both nodes. kNearest: into the pair first whose boxes overlap most, for where one pair of
+/// simplices is enough it is likely to be there.
+template <class Walk, bool kNearest>
+inline void descend_both(TreeKernel& k, const TreeNode& na, const TreeNode& nb) {
+  std::uint32_t mask[8];
+  Gaps gaps;
+  const std::uint32_t rows =
+      pair_masks<Walk::kMargin>(k, na, nb, Walk::between(k, na, nb), mask, kNearest ? &gaps : nullptr);
+  if (rows == 0) return;
+  float gap_of[64];
+  const std::uint32_t bottom = k.stack_size;
+  for (std::uint32_t r = rows; r != 0; r &= r - 1) {
+    const std::uint32_t i = static_cast<std::uint32_t>(__builtin_ctz(r));
+    for (std::uint32_t c = mask[i]; c != 0; c &= c - 1) {
+      const int j = __builtin_ctz(c);
+      if constexpr (kNearest) gap_of[k.stack_size - bottom] = gaps.of[i][j];
+      push(k, na.first + i, nb.first + static_cast<std::uint32_t>(j));
+    }
+  }
+  if constexpr (kNearest) nearest_last(k.stack + bottom, gap_of, k.stack_size - bottom);
+}
+
+/// Descends A's node alone: its boxes against the whole box of B's, in both frames.
+template <class Walk>
+inline void descend_a(TreeKernel& k, const TreeNode& na, const TreeNode& nb, std::uint32_t b_index) {
+  const Boxes a = decode(na, k.ratio_a);
+  const Whole b = whole_of(nb, k.ratio_b);
+  const auto w = Walk::between(k, na, nb);
+  const Turned at = turn_a<Walk::kMargin>(a, w);
+  const Whole bt = turn_whole_b<Walk::kMargin>(b, w), own_b = whole_on_own(b, Side::b, w);
+  const Boxes& own_a = boxes_on_own(a, Side::a, w);
+  const Lanes gap = either(apart(at.centre, at.half, own_b.centre, own_b.half),
+                           apart(own_a.centre, own_a.half, bt.centre, bt.half));
+  k.box_tests += na.count;
+  for (std::uint32_t c = ~bits(gap) & present(na); c != 0; c &= c - 1)
+    push(k, na.first + static_cast<std::uint32_t>(__builtin_ctz(c)), b_index);
+}
+
+/// Descends B's node alone.
+template <class Walk>
+inline void descend_b(TreeKernel& k, const TreeNode& na, const TreeNode& nb, std::uint32_t a_index) {
+  const Whole a = whole_of(na, k.ratio_a);
+  const Boxes b = decode(nb, k.ratio_b);
+  const auto w = Walk::between(k, na, nb);
+  const Turned bt = turn_b<Walk::kMargin>(b, w);
+  const Whole at = turn_whole_a<Walk::kMargin>(a, w), own_a = whole_on_own(a, Side::a, w);
+  const Boxes& own_b = boxes_on_own(b, Side::b, w);
+  const Lanes gap = either(apart(bt.centre, bt.half, own_a.centre, own_a.half),
+                           apart(own_b.centre, own_b.half, at.centre, at.half));
+  k.box_tests += nb.count;
+  for (std::uint32_t c = ~bits(gap) & present(nb); c != 0; c &= c - 1)
+    push(k, a_index, nb.first + static_cast<std::uint32_t>(__builtin_ctz(c)));
+}
+
+/// Pairs of simplices of two blocks, by their numbers there. Room for eight at a time beyond the last.
+struct PairList {
+  std::uint8_t a[72], b[72];
+  std::uint32_t size = 0;
+};
+
+inline void list_pairs(std::uint32_t rows, const std::uint32_t mask[8], PairList& list) {
+  for (; rows != 0; rows &= rows - 1) {
+    const int i = __builtin_ctz(rows);
+    for (std::uint32_t c = mask[i]; c != 0; c &= c - 1) {
+      list.a[list.size] = static_cast<std::uint8_t>(i);
+      list.b[list.size++] = static_cast<std::uint8_t>(__builtin_ctz(c));
+    }
+  }
+  __builtin_memset(list.a + list.size, 0, 8);
+  __builtin_memset(list.b + list.size, 0, 8);
+}
+
+template <class Walk>
+inline void leaf_pair(TreeKernel& k, const TreeNode& na, const TreeNode& nb) {
+  constexpr bool kMargin = Walk::kMargin;
+  const auto w = Walk::between(k, na, nb);
+  std::uint32_t mask[8];
+  const std::uint32_t rows = pair_masks<kMargin>(k, na, nb, w, mask);
+  if (rows == 0) return;
+  const LeafBlock& block_a = k.blocks_a[na.first];
+  const LeafBlock& block_b = k.blocks_b[nb.first];
+  PairList list;
+  list_pairs(rows, mask, list);
+  k.prefilter_tests += list.size;
+  Corners a, b;
+  const Between& errors = corners_of(k, na, nb, w, a, b);
+  for (std::uint32_t begin = 0; begin < list.size; begin += 8) {
+    const Corners some_a = pick(a, list.a + begin), some_b = pick(b, list.b + begin);
+    const SideLanes b_sides = sides_of_planes<kMargin>(some_a, some_b, errors, errors.edge_error[0]);
+    const SideLanes a_sides = sides_of_planes<kMargin>(some_b, some_a, errors, errors.edge_error[1]);
+    const std::uint32_t here = list.size - begin < 8 ? (1u << (list.size - begin)) - 1 : 255u;
+    const std::uint32_t left = ~bits(either(a_sides.parted, b_sides.parted)) & here;
+    if (left == 0) continue;
+    EightCertainties certainties;
+    if constexpr (!kMargin) certainties = certainties_of(some_a, a_sides, some_b, b_sides, errors, left);
+    for (std::uint32_t c = left; c != 0; c &= c - 1) {
+      const int lane = __builtin_ctz(c);
+      const std::uint32_t pair = begin + static_cast<std::uint32_t>(lane);
+      Candidate& found = k.out[k.out_size++];
+      found = {block_a.simplex[list.a[pair]], block_b.simplex[list.b[pair]], Certainty::none, Side::a, 0};
+      if constexpr (!kMargin) certainties.tell(lane, found);
+    }
+  }
+}
+
+/// A node so many times as large as the other is descended alone: all that the other holds would meet the
+/// same few of its boxes.
+constexpr float kMuchLarger = 3;
+
+template <class Walk, bool kNearest>
+void run(TreeKernel& k) {
+  while (k.stack_size != 0 && k.out_capacity - k.out_size >= 64) {
+    const NodePair p = k.stack[--k.stack_size];
+    const TreeNode& a = k.nodes_a[p.a];
+    const TreeNode& b = k.nodes_b[p.b];
+    ++k.node_pairs;
+    const float size_a = Walk::size(k, a, Side::a), size_b = Walk::size(k, b, Side::b);
+    const bool hold_a = a.is_leaf || size_b > kMuchLarger * size_a;
+    const bool hold_b = b.is_leaf || size_a > kMuchLarger * size_b;
+    if (a.is_leaf && b.is_leaf)
+      leaf_pair<Walk>(k, a, b);
+    else if (!a.is_leaf && hold_b)
+      descend_a<Walk>(k, a, b, p.b);
+    else if (!b.is_leaf && hold_a)
+      descend_b<Walk>(k, a, b, p.a);
+    else
+      descend_both<Walk, kNearest>(k, a, b);
+  }
+}
+
+}  // namespace
+}  // namespace lrb
