@@ -44,6 +44,7 @@ TreeKernel set_up_kernel(const ObbTree& a, const Pose& pose_a, const ObbTree& b,
   const double on_b = defect_m * (b.extent() / unit) + turn_m * on_a;
   k.slack = static_cast<float>(kPoseSafety * (on_a + on_b)) * kFloatUp + kKernelTiny;
   k.m_size = static_cast<float>(turn_m) * kFloatUp;
+  k.needles = a.has_needles() && b.has_needles();
   return k;
 }
 

@@ -49,6 +49,8 @@ struct TreeKernel {
   float sweep_turn;                            ///< >= the Euclidean norm of sweep
   bool nearest_first;                          ///< without a margin: descend first where boxes overlap most
 
+  bool needles;  ///< both trees are full of them: try more directions (see kernel_needles.inl)
+
   NodePair* stack;  ///< room for 64 * (height of A + height of B) + 64 pairs
   std::uint32_t stack_size;
   Candidate* out;

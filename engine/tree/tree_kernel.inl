@@ -5,6 +5,7 @@
 // The floating-point operations are the same for every instruction set and are not contracted, so that
 // counters and traces do not depend on the processor.
 
+#include "engine/tree/kernel_needles.inl"
 #include "engine/tree/kernel_triangles.inl"
 
 namespace lrb {
@@ -180,6 +181,8 @@ void run(TreeKernel& k) {
     const TreeNode& a = k.nodes_a[p.a];
     const TreeNode& b = k.nodes_b[p.b];
     ++k.node_pairs;
+    if constexpr (!kMargin)
+      if (k.needles && needles_apart(k, a, b)) continue;
     const float size_a = a.radius * k.ratio_a, size_b = b.radius * k.ratio_b;
     const bool hold_a = a.is_leaf || size_b > kMuchLarger * size_a;
     const bool hold_b = b.is_leaf || size_a > kMuchLarger * size_b;
