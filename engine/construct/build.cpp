@@ -4,8 +4,7 @@
 #include "engine/construct/patch_builder.hpp"
 #include "engine/core/error.hpp"
 #include "engine/core/parallel.hpp"
-#include "engine/mesh/face_checks.hpp"
-#include "engine/mesh/mesh_check.hpp"
+#include "engine/mesh/checked_mesh.hpp"
 #include "engine/mesh/self_intersections.hpp"
 
 namespace lrb {
@@ -13,22 +12,14 @@ namespace {
 
 /// All that forbids an LRB-rep, on one line.
 std::string refusal(const Mesh& mesh, const MeshReport& report) {
-  std::vector<std::string> lines = report.obstacles(mesh);
-  if (lines.empty()) lines = report.lines(mesh);  // inside out: can be built, but not as it is
   std::string text;
-  for (const std::string& line : lines) text += (text.empty() ? "" : " | ") + line;
+  for (const std::string& line : report.obstacles(mesh)) text += (text.empty() ? "" : " | ") + line;
   return text;
 }
 
-}  // namespace
-
-LrbRep build_lrb(const Mesh& mesh, const BuildOptions& options) {
-  const MeshReport report = check_mesh(mesh, false);
-  if (!report.buildable() || report[MeshFault::inside_out].count > 0) throw InputError(refusal(mesh, report));
-  Workers workers(options.threads);
-  MeshReport unused;
-  const std::vector<FaceUse> use = check_faces(mesh, unused);
-  const std::vector<FaceId> meeting = self_intersecting_faces(mesh, use, workers);
+/// `meeting`: the faces that meet others in more than they share.
+LrbRep build(const Mesh& mesh, const std::vector<FaceUse>& use, const std::vector<FaceId>& meeting,
+             const BuildOptions& options) {
   bool overlapping = false;
   if (!meeting.empty()) {
     const auto meets = [&](FaceId f) { return std::binary_search(meeting.begin(), meeting.end(), f); };
@@ -40,6 +31,21 @@ LrbRep build_lrb(const Mesh& mesh, const BuildOptions& options) {
                                : construct::build_by_patches(mesh, meeting, options);
   data.self_intersecting = overlapping;
   return LrbRep(std::move(data), options.threads);
+}
+
+}  // namespace
+
+LrbRep build_lrb(const CheckedMesh& checked, const BuildOptions& options) {
+  if (!checked.report().buildable()) throw InputError(refusal(checked.mesh(), checked.report()));
+  Workers workers(options.threads);
+  return build(checked.mesh(), checked.use(), checked.self_intersecting_faces(workers), options);
+}
+
+LrbRep build_lrb(const Mesh& mesh, const BuildOptions& options) {
+  const MeshFindings found = examine(mesh);
+  if (!found.report.buildable()) throw InputError(refusal(mesh, found.report));
+  Workers workers(options.threads);
+  return build(mesh, found.use, self_intersecting_faces(mesh, found.use, workers), options);
 }
 
 }  // namespace lrb

@@ -5,6 +5,7 @@
 #include <functional>
 
 #include "engine/lrb/lrb_rep.hpp"
+#include "engine/mesh/checked_mesh.hpp"
 #include "engine/mesh/mesh.hpp"
 
 namespace lrb {
@@ -19,9 +20,13 @@ struct BuildOptions {
   std::function<void(std::uint32_t pass, std::uint32_t hull_faces)> progress;
 };
 
-/// Builds by patch caps on progressive hulls (patch_builder.hpp). The mesh must be closed, manifold and
-/// oriented: InputError names the offenders otherwise. 2D meshes go through chain_builder.hpp. Deterministic
-/// for a seed, on any number of threads.
+/// Builds by patch caps on progressive hulls (patch_builder.hpp); 2D meshes go through chain_builder.hpp. The
+/// mesh must be closed, manifold and oriented, with the solid behind its faces, as MeshReport::buildable() says:
+/// InputError names the offenders otherwise. A body that is inside out is turned by CheckedMesh::turn_outward().
+/// Deterministic for a seed, on any number of threads.
+LrbRep build_lrb(const CheckedMesh& mesh, const BuildOptions& options = {});
+
+/// The same for a mesh that nobody has checked yet.
 LrbRep build_lrb(const Mesh& mesh, const BuildOptions& options = {});
 
 }  // namespace lrb

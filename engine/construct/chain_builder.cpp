@@ -69,15 +69,24 @@ class ChainBuilder {
     home_.assign(count, kNull);
     for (std::uint32_t c = 0; c < count; ++c)
       if (volume_sign(mesh, faces[c]) < 0) home_[c] = c;
+    std::vector<std::uint32_t> component_of(mesh.face_count(), kNull);
+    for (std::uint32_t c = 0; c < count; ++c)
+      for (const FaceId f : faces[c]) component_of[f] = c;
+    const SideFinder finder(mesh, std::move(component_of));
+    std::vector<std::vector<std::uint32_t>> holders(count);  // of a component's first vertex, ascending
+    for (std::uint32_t c = 0; c < count; ++c)
+      for (const SideFinder::Side& s : finder.sides(mesh.vertices[mesh.face(faces[c][0])[0]]))
+        if (s.side == PointSide::inside && boxes_[s.surface].contains(boxes_[c]))
+          holders[c].push_back(s.surface);
     const auto is_inside = [&](std::uint32_t inner, std::uint32_t outer) {
-      const VertexId v = mesh.face(faces[inner][0])[0];
-      return boxes_[outer].contains(boxes_[inner]) &&
-             point_side(mesh, faces[outer], mesh.vertices[v]) == PointSide::inside;
+      return std::binary_search(holders[inner].begin(), holders[inner].end(), outer);
     };
     const std::vector<std::uint32_t> holes = home_;
-    for (std::uint32_t c = 0; c < count; ++c)
-      for (std::uint32_t h = 0; h < count && holes[c] == kNull; ++h)
-        if (holes[h] == h && is_inside(c, h) && (home_[c] == kNull || is_inside(h, home_[c]))) home_[c] = h;
+    for (std::uint32_t c = 0; c < count; ++c) {
+      if (holes[c] != kNull) continue;
+      for (const std::uint32_t h : holders[c])
+        if (holes[h] == h && (home_[c] == kNull || is_inside(h, home_[c]))) home_[c] = h;
+    }
   }
 
   /// The outermost wrapper comes first, so that all hulls stay in it.

@@ -1,5 +1,7 @@
 #include "engine/construct/component_nesting.hpp"
 
+#include <algorithm>
+
 #include <Eigen/Geometry>
 
 #include "engine/construct/aabb_tree.hpp"
@@ -24,13 +26,25 @@ std::vector<Component> components_of(const HullMesh& hull) {
   return out;
 }
 
-bool is_inside(const Mesh& mesh, const Component& inner, const Component& outer) {
-  if (!outer.box.contains(inner.box)) return false;
-  for (const FaceId f : inner.faces) {
-    const PointSide side = point_side(mesh, outer.faces, mesh.vertices[mesh.face(f)[0]]);
-    if (side != PointSide::on_surface) return side == PointSide::inside;
+/// The components around each one, ascending. The first corner of a face that does not lie on the other's
+/// surface decides; where those of many faces do, the two have their surface in common.
+std::vector<std::vector<std::uint32_t>> find_holders(const Mesh& mesh,
+                                                     const std::vector<Component>& components) {
+  std::vector<std::uint32_t> component_of(mesh.face_count(), kNull);
+  for (std::uint32_t c = 0; c < components.size(); ++c)
+    for (const FaceId f : components[c].faces) component_of[f] = c;
+  const SideFinder finder(mesh, std::move(component_of));
+  constexpr std::size_t kTries = 64;
+  std::vector<std::vector<std::uint32_t>> holders(components.size());
+  for (std::uint32_t c = 0; c < components.size(); ++c) {
+    const auto& faces = components[c].faces;
+    holders[c] = finder.around(c, [&](std::size_t i) {
+      return i < std::min(kTries, faces.size()) ? &mesh.vertices[mesh.face(faces[i])[0]] : nullptr;
+    });
+    std::erase_if(holders[c],
+                  [&](std::uint32_t h) { return !components[h].box.contains(components[c].box); });
   }
-  return false;
+  return holders;
 }
 
 }  // namespace
@@ -43,16 +57,18 @@ ComponentNesting find_nesting(const Mesh& mesh, const HullMesh& hull) {
   if (count == 1) return out;
   const std::vector<Component> components = components_of(hull);
   for (std::uint32_t c = 0; c < count; ++c) out.is_void[c] = volume_sign(mesh, components[c].faces) < 0;
+  const auto holders = find_holders(mesh, components);
+  const auto is_inside = [&](std::uint32_t inner, std::uint32_t outer) {
+    return std::binary_search(holders[inner].begin(), holders[inner].end(), outer);
+  };
   for (std::uint32_t c = 0; c < count; ++c) {
     if (out.is_void[c]) {
       out.home[c] = c;
       continue;
     }
     // Of the voids around it the innermost is in all others.
-    for (std::uint32_t v = 0; v < count; ++v) {
-      if (!out.is_void[v] || !is_inside(mesh, components[c], components[v])) continue;
-      if (out.home[c] == kNull || is_inside(mesh, components[v], components[out.home[c]])) out.home[c] = v;
-    }
+    for (const std::uint32_t v : holders[c])
+      if (out.is_void[v] && (out.home[c] == kNull || is_inside(v, out.home[c]))) out.home[c] = v;
   }
   return out;
 }

@@ -98,14 +98,16 @@ void EmbedCheck::add_patch(const Patch& patch) {
 void EmbedCheck::gather_hull(const Patch& patch, const CapSurface& cap, const Box& box) {
   seen_.extend(box);
   strangers_.clear();
+  ++stamp_;
+  met_.resize(hull_.component_count(), 0);
   const std::uint32_t own = hull_[patch.slots[0]].component;
   tree_.for_each_in(box, [&](HullMesh::Slot s) {
     if (!hull_.alive(s) || cap.local_face(patch, s) >= 0) return;
     const auto& t = hull_[s];
     obstacles_.emplace_back(hull_.point(t.v[0]), hull_.point(t.v[1]), hull_.point(t.v[2]));
-    const auto same = [&](HullMesh::Slot other) { return hull_[other].component == t.component; };
-    if (t.component != own && std::none_of(strangers_.begin(), strangers_.end(), same))
-      strangers_.push_back(s);
+    if (t.component == own || met_[t.component] == stamp_) return;
+    met_[t.component] = stamp_;
+    strangers_.push_back(s);
   });
 }
 

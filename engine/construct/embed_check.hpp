@@ -58,6 +58,8 @@ class EmbedCheck {
   Eigen::AlignedBox3d seen_;
   std::vector<CheckedTriangle> obstacles_, added_;
   std::vector<HullMesh::Slot> strangers_;  ///< triangles of other components met while gathering, one of each
+  std::vector<std::uint32_t> met_;         ///< (components) == stamp_: met while gathering
+  std::uint32_t stamp_ = 0;
 };
 
 }  // namespace lrb::construct

@@ -1,5 +1,7 @@
 #include "engine/construct/hull_mesh.hpp"
 
+#include <algorithm>
+
 #include <Eigen/Geometry>
 
 #include "engine/mesh/polygon_shape.hpp"
@@ -54,11 +56,32 @@ void HullMesh::find_neighbours() {
   std::vector<std::uint32_t> edges(3 * triangles_.size());
   for (Slot s = 0; s < slot_count(); ++s)
     for (std::uint32_t i = 0; i < 3; ++i) edges[offsets[triangles_[s].v[i] + 1]++] = 3 * s + i;
+  const auto end_of = [&](std::uint32_t edge) { return triangles_[edge / 3].v[(edge % 3 + 1) % 3]; };
+  // Where very many start at one vertex, in order of their ends: looking through all of them for each would
+  // take too long.
+  constexpr std::uint32_t kFew = 32;
+  const auto at = [&](std::uint32_t e) { return edges.begin() + e; };
+  for (Corner v = 0; v < points_.size(); ++v)
+    if (offsets[v + 1] - offsets[v] > kFew)
+      std::stable_sort(at(offsets[v]), at(offsets[v + 1]),
+                       [&](std::uint32_t e, std::uint32_t f) { return end_of(e) < end_of(f); });
+  const auto last_edge = [&](Corner from, Corner to) {
+    std::uint32_t first = offsets[from], last = offsets[from + 1];
+    if (last - first > kFew)
+      last = static_cast<std::uint32_t>(
+          std::upper_bound(at(first), at(last), to,
+                           [&](Corner end, std::uint32_t e) { return end < end_of(e); }) -
+          edges.begin());
+    for (std::uint32_t e = last; e-- > first;) {
+      if (end_of(edges[e]) == to) return edges[e];
+      if (offsets[from + 1] - first > kFew) break;
+    }
+    return kNull;
+  };
   for (Slot s = 0; s < slot_count(); ++s) {
     for (std::uint32_t i = 0; i < 3; ++i) {
-      const Corner a = triangles_[s].v[i], b = triangles_[s].v[(i + 1) % 3];
-      for (std::uint32_t e = offsets[b]; e < offsets[b + 1]; ++e)
-        if (triangles_[edges[e] / 3].v[(edges[e] % 3 + 1) % 3] == a) triangles_[s].across[i] = edges[e] / 3;
+      const std::uint32_t opposite = last_edge(triangles_[s].v[(i + 1) % 3], triangles_[s].v[i]);
+      if (opposite != kNull) triangles_[s].across[i] = opposite / 3;
     }
   }
 }

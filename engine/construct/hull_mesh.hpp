@@ -77,6 +77,15 @@ class HullMesh {
                ? SlotRange{unit_first_[s], unit_first_[s] + unit_size_[s]}
                : SlotRange{s, s + 1};
   }
+  /// Part of a polygon with very many corners, or at a vertex with very many triangles. Such come into a patch
+  /// only as a whole, and what a patch costs grows with the square of its triangles: so they come into none.
+  bool is_crowded(Slot s) const {
+    constexpr std::uint32_t kMost = 512;
+    const SlotRange polygon = unit(s);
+    const auto& v = triangles_[s].v;
+    return polygon.last - polygon.first > kMost || degree_[v[0]] > kMost || degree_[v[1]] > kMost ||
+           degree_[v[2]] > kMost;
+  }
   bool has_polygons() const { return !unit_first_.empty(); }
 
   Corner add_point(const Eigen::Vector3d& x, VertexId id);

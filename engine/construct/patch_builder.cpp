@@ -78,6 +78,9 @@ class PatchBuilder {
   }
 
   bool bridge() {
+    // The convex hull of thousands of points that lie in one plane takes as many steps as their pairs.
+    for (Slot s = 0; s < hull_.slot_count(); ++s)
+      if (hull_.alive(s) && hull_.is_crowded(s)) return false;
     std::vector<bool> joined(hull_.component_count());
     for (std::uint32_t c = 0; c < joined.size(); ++c) joined[c] = nesting_.home[c] == kNull;
     plan_polytope();

@@ -73,8 +73,8 @@ bool PatchGrower::add_star(Corner v, Patch& patch) {
   hull_.for_each_around(v, [&](Slot s, int) {
     if (!allowed || in_patch(s)) return;
     const auto unit = hull_.unit(s);
-    for (Slot t = unit.first; t < unit.last; ++t) {
-      allowed = allowed && !taken_[t];
+    for (Slot t = unit.first; t < unit.last && allowed; ++t) {
+      allowed = !taken_[t];  // what is taken stays where it is: no matter what comes after it
       slot_stamp_[t] = stamp_;
       added_.push_back(t);
     }

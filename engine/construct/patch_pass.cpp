@@ -37,7 +37,8 @@ PatchPass::PatchPass(HullMesh& hull, ComplexBuilder& complex, const BodyBounds& 
 void PatchPass::run(const GrowLimits& limits, double worth, std::uint16_t layer, Random& random) {
   PatchGrower grower(hull_, limits);
   for (Slot s = 0; s < hull_.slot_count(); ++s)
-    if (hull_.alive(s) && hull_[s].face < frozen_.size() && frozen_[hull_[s].face]) grower.take(s);
+    if (hull_.alive(s) && ((hull_[s].face < frozen_.size() && frozen_[hull_[s].face]) || hull_.is_crowded(s)))
+      grower.take(s);
   tried_.assign(hull_.point_count(), false);
   seeds_ = seeds_of(hull_, random);
   next_seed_ = 0;

@@ -11,6 +11,7 @@
 #include "engine/exact/simplex_test.hpp"
 #include "engine/lrb/boundary_sum.hpp"
 #include "engine/lrb/wrapper.hpp"
+#include "engine/mesh/face_pairs.hpp"
 #include "engine/tree/self_pairs.hpp"
 
 namespace lrb {
@@ -107,6 +108,7 @@ class Validator {
   }
 
   void check_embedding() {
+    if (has_hubs()) return check_embedding_with_hubs();
     const LrbRep soup = complex_as_soup();
     std::vector<Pair> pairs;
     for_each_self_pair(soup.tree(), [&](SimplexId s, SimplexId t) {
@@ -114,6 +116,40 @@ class Validator {
       if (pairs.size() == kPairsAtOnce) judge(soup, pairs);
     });
     judge(soup, pairs);
+  }
+
+  /// So many simplices at one vertex that comparing all of them with each other takes too long.
+  bool has_hubs() const {
+    if (rep_.dim() == 2) return false;
+    std::vector<std::uint32_t> degree(rep_.vertices().size(), 0);
+    VertexId v[3] = {};
+    for (SimplexId s = 0; s < rep_.simplex_count(); ++s) {
+      rep_.simplex(s, v);
+      for (const VertexId corner : v)
+        if (++degree[corner] > kFewNeighbours) return true;
+    }
+    return false;
+  }
+
+  /// The same by another search for pairs that may meet. (A simplex without area is convex, too.)
+  void check_embedding_with_hubs() {
+    Mesh simplices;
+    simplices.vertices = rep_.data().vertices;
+    VertexId v[3] = {};
+    for (SimplexId s = 0; s < rep_.simplex_count(); ++s) {
+      rep_.simplex(s, v);
+      simplices.add_face(v);
+    }
+    const FacePairs search(simplices, std::vector<FaceUse>(simplices.face_count(), FaceUse::convex));
+    std::vector<Pair> pairs;
+    Workers alone;
+    search.for_each(
+        [&](FaceId s, FaceId t) {
+          pairs.push_back({s, t});
+          if (pairs.size() == kPairsAtOnce) judge(rep_, pairs);
+        },
+        alone);
+    judge(rep_, pairs);
   }
 
   /// Two simplices of the complex.

@@ -24,6 +24,27 @@ class BoxTree {
     if (!items_.empty()) build(0, static_cast<std::uint32_t>(items_.size()));
   }
 
+  /// How many other boxes the i-th one meets: counted as far as `most`.
+  std::uint32_t count_meeting(std::uint32_t i, std::uint32_t most) const {
+    std::uint32_t count = 0;
+    std::vector<std::uint32_t> stack;
+    if (!nodes_.empty()) stack.push_back(0);
+    while (!stack.empty() && count < most) {
+      const std::uint32_t n = stack.back();
+      const Node& node = nodes_[n];
+      stack.pop_back();
+      if (!node.box.intersects(boxes_[i])) continue;
+      if (node.right != 0) {
+        stack.push_back(node.right);
+        stack.push_back(n + 1);
+        continue;
+      }
+      for (std::uint32_t k = node.first; k < node.last; ++k)
+        count += items_[k] != i && boxes_[items_[k]].intersects(boxes_[i]);
+    }
+    return count;
+  }
+
   /// Calls visit(i, j), i < j, once for every two boxes that meet (closed sets), in no order to rely on.
   template <class Visit>
   void for_each_pair(Visit&& visit) const {

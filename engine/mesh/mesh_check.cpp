@@ -4,6 +4,7 @@
 #include <array>
 #include <map>
 
+#include "engine/mesh/checked_mesh.hpp"
 #include "engine/mesh/face_checks.hpp"
 #include "engine/mesh/nesting.hpp"
 #include "engine/mesh/self_intersections.hpp"
@@ -46,33 +47,41 @@ bool is_cycle(const Mesh& mesh, const std::vector<FaceUse>& use) {
 
 }  // namespace
 
-MeshReport check_mesh(const Mesh& mesh, bool self_intersections) {
-  MeshReport report;
+MeshFindings examine(const Mesh& mesh) {
+  MeshFindings found;
+  MeshReport& report = found.report;
   if (mesh.face_count() == 0) ++report.findings[static_cast<std::size_t>(MeshFault::no_faces)].count;
-  const std::vector<FaceUse> use = check_faces(mesh, report);
-  check_duplicates(mesh, use, report);
+  found.use = check_faces(mesh, report);
+  check_duplicates(mesh, found.use, report);
   check_vertices(mesh, report);
-  const SurfaceTopology topology = analyse_topology(mesh, use, report);
-  report.components = topology.components;
-  report.closed = topology.closed;
-  report.bounds_solid = report.closed || is_cycle(mesh, use);
-  report.genus = topology.genus;
-  for (const auto& faces : wrongly_facing_components(mesh, use, topology))
-    note(report, MeshFault::inside_out, faces.front());
+  found.topology = analyse_topology(mesh, found.use, report);
+  report.components = found.topology.components;
+  report.closed = found.topology.closed;
+  report.bounds_solid = report.closed || is_cycle(mesh, found.use);
+  report.genus = found.topology.genus;
+  found.inside_out = wrongly_facing_components(mesh, found.use, found.topology);
+  for (const auto& faces : found.inside_out) note(report, MeshFault::inside_out, faces.front());
+  return found;
+}
+
+MeshReport check_mesh(const Mesh& mesh, bool self_intersections) {
+  MeshFindings found = examine(mesh);
   if (self_intersections) {
-    find_self_intersections(mesh, use,
-                            [&](FaceId f, FaceId g) { note(report, MeshFault::self_intersection, f, g); });
-    report.self_intersections_checked = true;
+    find_self_intersections(
+        mesh, found.use, [&](FaceId f, FaceId g) { note(found.report, MeshFault::self_intersection, f, g); });
+    found.report.self_intersections_checked = true;
   }
-  return report;
+  return std::move(found.report);
+}
+
+void turn_faces(Mesh& mesh, const std::vector<std::vector<FaceId>>& components) {
+  for (const auto& faces : components)
+    for (const FaceId f : faces) turn(mesh, f);
 }
 
 std::uint32_t orient_outward(Mesh& mesh) {
-  MeshReport unused;
-  const std::vector<FaceUse> use = check_faces(mesh, unused);
-  const auto wrong = wrongly_facing_components(mesh, use, analyse_topology(mesh, use, unused));
-  for (const auto& faces : wrong)
-    for (const FaceId f : faces) turn(mesh, f);
+  const auto wrong = examine(mesh).inside_out;
+  turn_faces(mesh, wrong);
   return static_cast<std::uint32_t>(wrong.size());
 }
 

@@ -25,7 +25,7 @@ namespace lrb {
   MESH_FAULT(non_manifold_edge, "an edge has more than two faces", false, true)                         \
   MESH_FAULT(flipped_face, "two neighbouring faces run along their edge in one direction", false, true) \
   MESH_FAULT(non_manifold_vertex, "a vertex joins two fans of faces", true, true)                       \
-  MESH_FAULT(inside_out, "the body is inside out", true, true)                                          \
+  MESH_FAULT(inside_out, "the body is inside out", false, true)                                         \
   MESH_FAULT(self_intersection, "two faces meet outside shared parts", true, true)                      \
   MESH_FAULT(duplicate_vertex, "two vertices lie in one place", true, true)                             \
   MESH_FAULT(unused_vertex, "no face uses a vertex", true, true)
@@ -56,15 +56,17 @@ struct MeshReport {
   bool self_intersections_checked = false;
 
   const MeshFinding& operator[](MeshFault f) const { return findings[static_cast<std::size_t>(f)]; }
-  bool buildable() const;  ///< no finding that forbids an LRB-rep
+  bool buildable() const;  ///< no finding that forbids an LRB-rep: build_lrb() takes the mesh as it is
   bool queryable() const;
+  /// What it says once orient_outward() has turned what is inside out: this finding is gone, no other changes.
+  MeshReport when_turned() const;
   /// One line per fault found, with its first offenders.
   std::vector<std::string> lines(const Mesh& mesh) const;
   /// Those of them that forbid an LRB-rep.
   std::vector<std::string> obstacles(const Mesh& mesh) const;
 };
 
-/// Checks everything; self-intersections exactly and by a box tree, only if asked (they take the longest).
+/// Checks everything (to go on with the mesh, see checked_mesh.hpp); self-intersections exactly and by a box tree, only if asked (they take the longest).
 /// Faces without area count as zero_area_face only, and what they touch is no self-intersection. In 2D
 /// vertices are judged as edges are in 3D: one segment must lead to each and one away from it.
 MeshReport check_mesh(const Mesh& mesh, bool self_intersections = true);
@@ -74,5 +76,8 @@ MeshReport check_mesh(const Mesh& mesh, bool self_intersections = true);
 /// Components that are not closed stay as they are. Returns the number turned. The triangles of a turned
 /// triangle or quad keep their numbers, those of a larger polygon's fan are numbered the other way round.
 std::uint32_t orient_outward(Mesh& mesh);
+
+/// Turns the faces of these components round, as orient_outward() does.
+void turn_faces(Mesh& mesh, const std::vector<std::vector<FaceId>>& components);
 
 }  // namespace lrb

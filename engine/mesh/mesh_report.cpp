@@ -162,6 +162,12 @@ bool MeshReport::queryable() const {
   return true;
 }
 
+MeshReport MeshReport::when_turned() const {
+  MeshReport turned = *this;
+  turned.findings[static_cast<std::size_t>(MeshFault::inside_out)] = {};
+  return turned;
+}
+
 std::vector<std::string> MeshReport::lines(const Mesh& mesh) const {
   std::vector<std::string> out;
   for (std::size_t i = 0; i < kMeshFaultCount; ++i)

@@ -45,39 +45,52 @@ class Nesting {
   }
 
  private:
+  /// One is in another if a vertex is. A vertex that lies on the other's surface says nothing: then the next
+  /// is tried. If all do, the two have their surface in common and neither is a void of the other.
   std::vector<Pair> find_nested() const {
     std::vector<Pair> nested;
-    for (std::uint32_t inner = 0; inner < faces_.size(); ++inner)
-      for (std::uint32_t outer = 0; outer < faces_.size(); ++outer)
-        if (inner != outer && usable_[inner] && usable_[outer] && boxes_[outer].contains(boxes_[inner]) &&
-            starts_inside(inner, outer))
-          nested.emplace_back(inner, outer);
+    if (std::count(usable_.begin(), usable_.end(), true) < 2) return nested;
+    std::vector<std::uint32_t> surface = topology_.component_of_face;
+    for (std::uint32_t& c : surface)
+      if (c != kNull && !usable_[c]) c = kNull;
+    const SideFinder finder(mesh_, std::move(surface));
+    for (std::uint32_t inner = 0; inner < faces_.size(); ++inner) {
+      if (!usable_[inner]) continue;
+      const std::vector<VertexId> tried = first_corners(inner);
+      const auto point = [&](std::size_t i) {
+        return i < tried.size() ? &mesh_.vertices[tried[i]] : nullptr;
+      };
+      for (const std::uint32_t outer : finder.around(inner, point))
+        if (boxes_[outer].contains(boxes_[inner])) nested.emplace_back(inner, outer);
+    }
     return nested;
   }
 
-  /// Is a vertex of `inner` inside `outer`? One that lies on the surface says nothing: then the next is
-  /// tried. If all do, the two have their surface in common and neither is a void of the other.
-  bool starts_inside(std::uint32_t inner, std::uint32_t outer) const {
-    static constexpr std::size_t kTries = 16;  // faces, so up to three times as many vertices
-    for (std::size_t i = 0; i < std::min(kTries, faces_[inner].size()); ++i)
-      for (const VertexId v : mesh_.face(faces_[inner][i])) {
-        const PointSide side = point_side(mesh_, faces_[outer], mesh_.vertices[v]);
-        if (side != PointSide::on_surface) return side == PointSide::inside;
-      }
-    return false;
+  /// Corners of a component's first faces, a few of each.
+  std::vector<VertexId> first_corners(std::uint32_t component) const {
+    static constexpr std::size_t kFaces = 16, kOfEach = 8;
+    std::vector<VertexId> corners;
+    for (std::size_t i = 0; i < std::min(kFaces, faces_[component].size()); ++i) {
+      const auto face = mesh_.face(faces_[component][i]);
+      const auto few = face.first(std::min(kOfEach, face.size()));
+      corners.insert(corners.end(), few.begin(), few.end());
+    }
+    return corners;
   }
 
   void drop_crossing(std::vector<Pair>& nested) const {
     if (nested.empty()) return;
-    const std::set<Pair> candidates(nested.begin(), nested.end());
+    std::sort(nested.begin(), nested.end());
+    const auto is_candidate = [&](std::uint32_t a, std::uint32_t b) {
+      return std::binary_search(nested.begin(), nested.end(), Pair(a, b));
+    };
     std::set<Pair> crossing;
     const auto components = [&](FaceId f, FaceId g) {
       return Pair(topology_.component_of_face[f], topology_.component_of_face[g]);
     };
     const auto wanted = [&](FaceId f, FaceId g) {
       const auto [a, b] = components(f, g);
-      return a != b && (candidates.contains({a, b}) || candidates.contains({b, a})) &&
-             !crossing.contains({a, b});
+      return a != b && (is_candidate(a, b) || is_candidate(b, a)) && !crossing.contains({a, b});
     };
     find_crossings(mesh_, use_, wanted, [&](FaceId f, FaceId g) {
       const auto [a, b] = components(f, g);

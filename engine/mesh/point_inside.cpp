@@ -1,5 +1,8 @@
 #include "engine/mesh/point_inside.hpp"
 
+#include <algorithm>
+#include <map>
+
 #include "engine/exact/locate.hpp"
 
 namespace lrb {
@@ -32,6 +35,75 @@ PointSide point_side(const Mesh& mesh, std::span<const FaceId> faces, const Eige
   for (const FaceId f : faces)
     if (!cast_at_face(mesh, f, p, count)) return PointSide::on_surface;
   return inside ? PointSide::inside : PointSide::outside;
+}
+
+SideFinder::SideFinder(const Mesh& mesh, std::vector<std::uint32_t> surface_of_face)
+    : mesh_(mesh), surface_of_face_(std::move(surface_of_face)), boxes_(mesh.face_count()) {
+  for (FaceId f = 0; f < mesh.face_count(); ++f) {
+    if (surface_of_face_[f] == kNull) continue;
+    for (const VertexId v : mesh.face(f)) boxes_[f].extend(mesh.vertices[v]);
+    order_.push_back(f);
+  }
+  if (!order_.empty()) build(0, static_cast<std::uint32_t>(order_.size()));
+}
+
+/// Parents before children, left before right; halves by the boxes' centres.
+std::uint32_t SideFinder::build(std::uint32_t first, std::uint32_t last) {
+  constexpr std::uint32_t kLeafSize = 4;
+  const auto index = static_cast<std::uint32_t>(nodes_.size());
+  nodes_.push_back({{}, first, last, 0});
+  for (std::uint32_t i = first; i < last; ++i) nodes_[index].box.extend(boxes_[order_[i]]);
+  if (last - first <= kLeafSize) return index;
+  const Eigen::AlignedBox3d& box = nodes_[index].box;
+  int axis = 0;
+  (box.max() / 2 - box.min() / 2).maxCoeff(&axis);
+  const std::uint32_t middle = first + (last - first) / 2;
+  const auto centre = [&](FaceId f) { return boxes_[f].min()[axis] / 2 + boxes_[f].max()[axis] / 2; };
+  const auto at = [&](std::uint32_t i) { return order_.begin() + static_cast<std::ptrdiff_t>(i); };
+  std::nth_element(at(first), at(middle), at(last),
+                   [&](FaceId f, FaceId g) { return centre(f) < centre(g); });
+  build(first, middle);
+  const std::uint32_t right = build(middle, last);
+  nodes_[index].right = right;
+  return index;
+}
+
+std::vector<SideFinder::Side> SideFinder::sides(const Eigen::Vector3d& p) const {
+  // The ray runs to +x. It starts an infinitely small step beside p, which closed boxes have room for.
+  const auto is_on_ray = [&](const Eigen::AlignedBox3d& box) {
+    return box.max().x() >= p.x() && box.min().y() <= p.y() && p.y() <= box.max().y() &&
+           (mesh_.dim == 2 || (box.min().z() <= p.z() && p.z() <= box.max().z()));
+  };
+  std::map<std::uint32_t, PointSide> found;
+  const auto cast = [&](FaceId f) {
+    PointSide& side = found.try_emplace(surface_of_face_[f], PointSide::outside).first->second;
+    cast_at_face(mesh_, f, p, [&](exact::RayHit hit) {
+      if (hit == exact::RayHit::on_face) side = PointSide::on_surface;
+      if (side == PointSide::on_surface) return false;
+      if (hit == exact::RayHit::crosses)
+        side = side == PointSide::inside ? PointSide::outside : PointSide::inside;
+      return true;
+    });
+  };
+  std::vector<std::uint32_t> stack;
+  if (!nodes_.empty()) stack.push_back(0);
+  while (!stack.empty()) {
+    const std::uint32_t n = stack.back();
+    const Node& node = nodes_[n];
+    stack.pop_back();
+    if (!is_on_ray(node.box)) continue;
+    if (node.right != 0) {
+      stack.push_back(node.right);
+      stack.push_back(n + 1);
+      continue;
+    }
+    for (std::uint32_t i = node.first; i < node.last; ++i)
+      if (is_on_ray(boxes_[order_[i]])) cast(order_[i]);
+  }
+  std::vector<Side> out;
+  for (const auto& [surface, side] : found)
+    if (side != PointSide::outside) out.push_back({surface, side});
+  return out;
 }
 
 }  // namespace lrb

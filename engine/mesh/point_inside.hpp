@@ -1,6 +1,11 @@
 #pragma once
 
+#include <algorithm>
+#include <cstdint>
 #include <span>
+#include <vector>
+
+#include <Eigen/Geometry>
 
 #include "engine/mesh/mesh.hpp"
 
@@ -11,5 +16,54 @@ enum class PointSide { outside, inside, on_surface };
 /// Where a point lies to a closed set of faces (fans of triangles; 2D: segments), by the parity of an exact
 /// ray.
 PointSide point_side(const Mesh& mesh, std::span<const FaceId> faces, const Eigen::Vector3d& p);
+
+/// Finds on which sides of many closed surfaces a point lies, in one walk along a ray through a tree of boxes.
+class SideFinder {
+ public:
+  /// `surface_of_face` (|F|): the surface that a face belongs to; kNull: none.
+  SideFinder(const Mesh& mesh, std::vector<std::uint32_t> surface_of_face);
+
+  struct Side {
+    std::uint32_t surface;
+    PointSide side;
+  };
+  /// The surfaces that the point is in or on, ascending. It is outside all others.
+  std::vector<Side> sides(const Eigen::Vector3d& p) const;
+
+  /// The surfaces that hold another one as a whole, ascending, given points of it of which the first that is
+  /// not on the surface in question decides; a surface that has all of them on it does not hold it.
+  /// next_point(i): the i-th of them, or nullptr after the last.
+  template <class NextPoint>
+  std::vector<std::uint32_t> around(std::uint32_t inner, NextPoint next_point) const {
+    std::vector<std::uint32_t> holders, open;
+    for (std::size_t i = 0; const Eigen::Vector3d* p = next_point(i); ++i) {
+      std::vector<std::uint32_t> still_open;
+      for (const Side& s : sides(*p)) {
+        if (s.surface == inner || (i > 0 && !std::binary_search(open.begin(), open.end(), s.surface)))
+          continue;
+        (s.side == PointSide::inside ? holders : still_open).push_back(s.surface);
+      }
+      open = std::move(still_open);
+      if (open.empty()) break;
+    }
+    std::sort(holders.begin(), holders.end());
+    return holders;
+  }
+
+ private:
+  struct Node {
+    Eigen::AlignedBox3d box;
+    std::uint32_t first, last;  ///< into order_
+    std::uint32_t right;        ///< child; the left one follows its parent. 0: leaf
+  };
+
+  std::uint32_t build(std::uint32_t first, std::uint32_t last);
+
+  const Mesh& mesh_;
+  std::vector<std::uint32_t> surface_of_face_;
+  std::vector<Eigen::AlignedBox3d> boxes_;  ///< (|F|)
+  std::vector<FaceId> order_;               ///< by leaves of the tree
+  std::vector<Node> nodes_;
+};
 
 }  // namespace lrb

@@ -144,4 +144,56 @@ void triangulate_convex(const Mesh& mesh, std::span<const VertexId> corners,
   for (std::size_t i = p.last; i < p.ring.size(); ++i) add(eye, i, i + 1);
 }
 
+namespace {
+
+/// Chords of a polygon that run through its inside. Corners are numbered from a proper one on; number n is
+/// corner 0 again.
+class Chords {
+ public:
+  Chords(const Mesh& mesh, std::span<const VertexId> ring) : side_(ring.size(), 0) {
+    for (std::size_t i = 1; i < ring.size(); ++i)
+      side_[i] =
+          side_[i - 1] + (is_straight(mesh, ring[i - 1], ring[i], ring[(i + 1) % ring.size()]) ? 0 : 1);
+  }
+
+  /// A corner between i and j, as near to the middle as may be, from which neither way to i nor to j runs along
+  /// a straight side with corners in its middle. The chord from i to j must be such a one; then there is one:
+  /// beyond the first side's end and before the last one's start, or next to i, or next to j.
+  std::size_t middle(std::size_t i, std::size_t j) const {
+    const auto begin = side_.begin() + static_cast<std::ptrdiff_t>(i),
+               end = side_.begin() + static_cast<std::ptrdiff_t>(j);
+    const auto first_end = i + static_cast<std::size_t>(std::upper_bound(begin, end, *begin) - begin);
+    const auto last_start = i + static_cast<std::size_t>(std::lower_bound(begin, end, *(end - 1)) - begin);
+    if (first_end + 1 < last_start) return std::clamp(i + (j - i) / 2, first_end + 1, last_start - 1);
+    return i + 2 == j || side_[i + 1] != side_[j - 1] ? i + 1 : j - 1;
+  }
+
+ private:
+  std::vector<std::uint32_t> side_;  ///< (|ring|) number of the straight side from the corner to the next
+};
+
+}  // namespace
+
+void triangulate_by_halves(const Mesh& mesh, std::span<const VertexId> corners,
+                           std::vector<std::array<VertexId, 3>>& triangles) {
+  const ProperRing p = proper_ring(mesh, corners);
+  const std::size_t n = p.ring.size();
+  if (n == 0) return triangulate_convex(mesh, corners, triangles);
+  triangles.clear();
+  const Chords chords(mesh, p.ring);
+  // The polygon is cut in two, and each part by the triangle on its chord that reaches to the middle of its
+  // rim. No triangle is without area: its corners are not on one side.
+  const std::size_t half = chords.middle(0, n);
+  std::vector<std::array<std::size_t, 2>> todo = {{0, half}, {half, n}};
+  while (!todo.empty()) {
+    const auto [i, j] = todo.back();
+    todo.pop_back();
+    if (j == i + 1) continue;
+    const std::size_t k = chords.middle(i, j);
+    triangles.push_back({p.ring[i], p.ring[k], p.ring[j % n]});
+    todo.push_back({i, k});
+    todo.push_back({k, j});
+  }
+}
+
 }  // namespace lrb

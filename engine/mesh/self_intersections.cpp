@@ -1,13 +1,17 @@
 #include "engine/mesh/self_intersections.hpp"
 
+#include <algorithm>
 #include <array>
 #include <atomic>
+#include <map>
+#include <optional>
 
 #include "engine/exact/orient_axes.hpp"
 #include "engine/exact/predicates.hpp"
 #include "engine/exact/simplex_test.hpp"
-#include "engine/mesh/box_pairs.hpp"
+#include "engine/mesh/face_pairs.hpp"
 #include "engine/mesh/polygon_shape.hpp"
+#include "engine/mesh/triangle_tree.hpp"
 
 namespace lrb {
 namespace {
@@ -53,22 +57,50 @@ bool overlap_2d(const double* const a[2], const double* const b[2]) {
   return forward ? a[0][k] < b[1][k] && b[0][k] < a[1][k] : a[0][k] > b[1][k] && b[0][k] > a[1][k];
 }
 
-/// The faces as triangles with area (2D: as segments), and their boxes.
+/// Which corners of a face with very many corners are neighbours.
+class Ring {
+ public:
+  explicit Ring(std::span<const VertexId> corners) {
+    for (std::uint32_t i = 0; i < corners.size(); ++i) places_.push_back({corners[i], i});
+    std::sort(places_.begin(), places_.end());
+  }
+  bool are_neighbours(VertexId v, VertexId w) const {
+    const auto n = static_cast<std::uint32_t>(places_.size());
+    const std::uint32_t i = place(v), j = place(w);
+    return (i + 1) % n == j || (j + 1) % n == i;
+  }
+
+ private:
+  std::uint32_t place(VertexId v) const {
+    return std::lower_bound(places_.begin(), places_.end(), std::array<std::uint32_t, 2>{v, 0})->at(1);
+  }
+  std::vector<std::array<std::uint32_t, 2>> places_;  ///< (vertex, place in the face), ascending
+};
+
+/// A face with very many corners.
+struct LargeFace {
+  TriangleTree tree;
+  std::optional<Ring> ring;  ///< of a planar convex one: its triangles' sides are not all its own
+};
+
+/// The faces as triangles with area (2D: as segments), and the pairs of them that may meet.
 class Pieces {
  public:
-  Pieces(const Mesh& mesh, const std::vector<FaceUse>& use) : mesh_(mesh), boxes_(mesh.face_count()) {
+  Pieces(const Mesh& mesh, const std::vector<FaceUse>& use) : mesh_(mesh), pairs_(mesh, use) {
     offsets_.reserve(mesh.face_count() + 1);
     triangles_.reserve(mesh.face_count());
     for (FaceId f = 0; f < mesh.face_count(); ++f) {
       offsets_.push_back(static_cast<std::uint32_t>(triangles_.size()));
-      if (use[f] < FaceUse::area) continue;
-      for (const VertexId v : mesh.face(f)) boxes_[f].extend(mesh.vertices[v]);
-      if (mesh.dim == 3) add_triangles(f, use[f]);
+      if (use[f] < FaceUse::area || mesh.dim == 2) continue;
+      pairs_.is_large(f) ? add_large(f, use[f]) : add_triangles(f, use[f]);
     }
     offsets_.push_back(static_cast<std::uint32_t>(triangles_.size()));
   }
 
-  const std::vector<Box>& boxes() const { return boxes_; }
+  /// Calls visit(f, g), f < g, for the pairs that may meet; on several threads if there are.
+  void for_each_pair(const FacePairs::Visit& visit, Workers& workers) const {
+    pairs_.for_each(visit, workers);
+  }
 
   bool meet_outside_shared(FaceId f, FaceId g) const {
     if (mesh_.dim == 2) {
@@ -77,10 +109,12 @@ class Pieces {
       const double* const pb[2] = {point(b[0]), point(b[1])};
       return !exact::meet_only_in_shared_2d(pa, a.data(), pb, b.data());
     }
-    return any_pair(
-        f, g, [](const double* const a[3], const Triangle& ia, const double* const b[3], const Triangle& ib) {
-          return !exact::meet_only_in_shared(a, ia.data(), b, ib.data());
-        });
+    const bool large = pairs_.is_large(f) || pairs_.is_large(g);
+    return any_pair(f, g, [&](const Triangle& s, const Triangle& t) {
+      const auto a = points(s), b = points(t);
+      return !exact::meet_only_in_shared(a.data(), s.data(), b.data(), t.data()) ||
+             (large && share_a_chord(f, s, g, t));
+    });
   }
 
   bool overlap(FaceId f, FaceId g) const {
@@ -90,10 +124,9 @@ class Pieces {
       const double* const pb[2] = {point(b[0]), point(b[1])};
       return overlap_2d(pa, pb);
     }
-    return any_pair(f, g,
-                    [](const double* const a[3], const Triangle&, const double* const b[3], const Triangle&) {
-                      return overlap_3d(a, b);
-                    });
+    return any_pair(f, g, [&](const Triangle& s, const Triangle& t) {
+      return overlap_3d(points(s).data(), points(t).data());
+    });
   }
 
   bool cross(FaceId f, FaceId g) const {
@@ -103,45 +136,101 @@ class Pieces {
       const double* const pb[2] = {point(b[0]), point(b[1])};
       return exact::meet_segments(pa, pb) == exact::Meet::cross;
     }
-    return any_pair(f, g,
-                    [](const double* const a[3], const Triangle&, const double* const b[3], const Triangle&) {
-                      return exact::meet_triangles(a, b) == exact::Meet::cross;
-                    });
+    return any_pair(f, g, [&](const Triangle& s, const Triangle& t) {
+      return exact::meet_triangles(points(s).data(), points(t).data()) == exact::Meet::cross;
+    });
   }
 
  private:
   const double* point(VertexId v) const { return mesh_.vertices[v].data(); }
+  std::array<const double*, 3> points(const Triangle& t) const {
+    return {point(t[0]), point(t[1]), point(t[2])};
+  }
 
   void add_triangles(FaceId f, FaceUse use) {
     const auto corners = mesh_.face(f);
     if (use == FaceUse::convex) {
       triangulate_convex(mesh_, corners, scratch_);
       triangles_.insert(triangles_.end(), scratch_.begin(), scratch_.end());
-      return;
+    } else {
+      add_fan(corners, triangles_);
     }
-    for (std::size_t i = 1; i + 1 < corners.size(); ++i)  // a polygon that is not flat is its fan
+  }
+
+  /// A polygon that is not flat is its fan.
+  void add_fan(std::span<const VertexId> corners, std::vector<Triangle>& out) const {
+    for (std::size_t i = 1; i + 1 < corners.size(); ++i)
       if (!exact::collinear3d(point(corners[0]), point(corners[i]), point(corners[i + 1])))
-        triangles_.push_back({corners[0], corners[i], corners[i + 1]});
+        out.push_back({corners[0], corners[i], corners[i + 1]});
+  }
+
+  void add_large(FaceId f, FaceUse use) {
+    std::vector<Triangle> triangles;
+    std::optional<Ring> ring;
+    if (use == FaceUse::convex) {
+      triangulate_by_halves(mesh_, mesh_.face(f), triangles);
+      ring.emplace(mesh_.face(f));
+    } else {
+      add_fan(mesh_.face(f), triangles);
+    }
+    large_.emplace(f,
+                   LargeFace{TriangleTree(mesh_, pairs_.cube(), std::move(triangles), 1), std::move(ring)});
   }
 
   template <class Test>
   bool any_pair(FaceId f, FaceId g, Test test) const {
-    for (std::uint32_t i = offsets_[f]; i < offsets_[f + 1]; ++i) {
-      const Triangle& ia = triangles_[i];
-      const double* const a[3] = {point(ia[0]), point(ia[1]), point(ia[2])};
-      for (std::uint32_t j = offsets_[g]; j < offsets_[g + 1]; ++j) {
-        const Triangle& ib = triangles_[j];
-        const double* const b[3] = {point(ib[0]), point(ib[1]), point(ib[2])};
-        if (test(a, ia, b, ib)) return true;
-      }
+    if (pairs_.is_large(f) || pairs_.is_large(g)) return any_pair_of_trees(f, g, test);
+    for (std::uint32_t i = offsets_[f]; i < offsets_[f + 1]; ++i)
+      for (std::uint32_t j = offsets_[g]; j < offsets_[g + 1]; ++j)
+        if (test(triangles_[i], triangles_[j])) return true;
+    return false;
+  }
+
+  template <class Test>
+  bool any_pair_of_trees(FaceId f, FaceId g, Test& test) const {
+    const auto tree_of = [&](FaceId face, std::optional<TriangleTree>& made) -> const TriangleTree* {
+      if (pairs_.is_large(face)) return &large_.at(face).tree;
+      const auto at = [&](std::uint32_t i) { return triangles_.begin() + i; };
+      if (offsets_[face] == offsets_[face + 1]) return nullptr;
+      made.emplace(mesh_, pairs_.cube(), std::vector<Triangle>(at(offsets_[face]), at(offsets_[face + 1])),
+                   kFewNeighbours);
+      return &*made;
+    };
+    std::optional<TriangleTree> made_of_f, made_of_g;
+    const TriangleTree *a = tree_of(f, made_of_f), *b = tree_of(g, made_of_g);
+    return a != nullptr && b != nullptr && TriangleTree::any_pair(*a, *b, test);
+  }
+
+  /// The triangles have a side in common that is no side of one of the faces, but a chord through its inside:
+  /// there the faces meet, though the triangles do no more than share a side.
+  bool share_a_chord(FaceId f, const Triangle& s, FaceId g, const Triangle& t) const {
+    VertexId shared[3];
+    int count = 0;
+    for (const VertexId v : s)
+      if (std::find(t.begin(), t.end(), v) != t.end()) shared[count++] = v;
+    return count == 2 && !(is_side(f, shared[0], shared[1]) && is_side(g, shared[0], shared[1]));
+  }
+
+  /// Two corners of one triangle of a face are neighbours in the face. (One that is not planar and convex is
+  /// its fan, all sides of which are its own.)
+  bool is_side(FaceId f, VertexId v, VertexId w) const {
+    if (pairs_.is_large(f)) {
+      const auto& ring = large_.at(f).ring;
+      return !ring || ring->are_neighbours(v, w);
+    }
+    const auto corners = mesh_.face(f);
+    for (std::size_t i = 0; i < corners.size(); ++i) {
+      const VertexId a = corners[i], b = corners[(i + 1) % corners.size()];
+      if ((a == v && b == w) || (a == w && b == v)) return true;
     }
     return false;
   }
 
   const Mesh& mesh_;
-  std::vector<Box> boxes_;              ///< (|F|), empty for faces left out
+  FacePairs pairs_;
   std::vector<std::uint32_t> offsets_;  ///< (|F| + 1), into triangles_
-  std::vector<Triangle> triangles_;
+  std::vector<Triangle> triangles_;     ///< of faces that are not large
+  std::map<FaceId, LargeFace> large_;
   std::vector<Triangle> scratch_;
 };
 
@@ -150,21 +239,23 @@ class Pieces {
 void find_self_intersections(const Mesh& mesh, const std::vector<FaceUse>& use,
                              const std::function<void(FaceId, FaceId)>& found) {
   const Pieces pieces(mesh, use);
-  BoxTree(pieces.boxes()).for_each_pair([&](FaceId f, FaceId g) {
-    if (pieces.meet_outside_shared(f, g)) found(f, g);
-  });
+  Workers alone;
+  pieces.for_each_pair(
+      [&](FaceId f, FaceId g) {
+        if (pieces.meet_outside_shared(f, g)) found(f, g);
+      },
+      alone);
 }
 
 std::vector<FaceId> self_intersecting_faces(const Mesh& mesh, const std::vector<FaceUse>& use,
                                             Workers& workers) {
   const Pieces pieces(mesh, use);
   std::vector<std::atomic<bool>> meets(mesh.face_count());
-  BoxTree(pieces.boxes())
-      .for_each_pair(
-          [&](FaceId f, FaceId g) {
-            if (!(meets[f] && meets[g]) && pieces.meet_outside_shared(f, g)) meets[f] = meets[g] = true;
-          },
-          workers);
+  pieces.for_each_pair(
+      [&](FaceId f, FaceId g) {
+        if (!(meets[f] && meets[g]) && pieces.meet_outside_shared(f, g)) meets[f] = meets[g] = true;
+      },
+      workers);
   std::vector<FaceId> faces;
   for (FaceId f = 0; f < meets.size(); ++f)
     if (meets[f]) faces.push_back(f);
@@ -175,18 +266,24 @@ void find_crossings(const Mesh& mesh, const std::vector<FaceUse>& use,
                     const std::function<bool(FaceId, FaceId)>& wanted,
                     const std::function<void(FaceId, FaceId)>& found) {
   const Pieces pieces(mesh, use);
-  BoxTree(pieces.boxes()).for_each_pair([&](FaceId f, FaceId g) {
-    if (wanted(f, g) && pieces.cross(f, g)) found(f, g);
-  });
+  Workers alone;
+  pieces.for_each_pair(
+      [&](FaceId f, FaceId g) {
+        if (wanted(f, g) && pieces.cross(f, g)) found(f, g);
+      },
+      alone);
 }
 
 void find_overlaps(const Mesh& mesh, const std::vector<FaceUse>& use,
                    const std::function<bool(FaceId, FaceId)>& wanted,
                    const std::function<void(FaceId, FaceId)>& found) {
   const Pieces pieces(mesh, use);
-  BoxTree(pieces.boxes()).for_each_pair([&](FaceId f, FaceId g) {
-    if (wanted(f, g) && pieces.overlap(f, g)) found(f, g);
-  });
+  Workers alone;
+  pieces.for_each_pair(
+      [&](FaceId f, FaceId g) {
+        if (wanted(f, g) && pieces.overlap(f, g)) found(f, g);
+      },
+      alone);
 }
 
 }  // namespace lrb

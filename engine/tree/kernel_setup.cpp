@@ -60,6 +60,7 @@ TreeKernel kernel_of(const RelativeTurn& turn, const ObbTree& a, const Pose& pos
   const double on_b = turn.defect_m * (b.extent() / unit) + turn_m * on_a;
   k.slack = static_cast<float>(kPoseSafety * (on_a + on_b)) * kFloatUp + kKernelTiny;
   k.m_size = static_cast<float>(turn_m) * kFloatUp;
+  k.needles = a.has_needles() && b.has_needles();
   return k;
 }
 

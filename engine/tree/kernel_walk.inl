@@ -251,6 +251,7 @@ void run(TreeKernel& k) {
     const TreeNode& a = k.nodes_a[p.a];
     const TreeNode& b = k.nodes_b[p.b];
     ++k.node_pairs;
+    if (Walk::more_parts(k, a, b)) continue;
     const float size_a = Walk::size(k, a, Side::a), size_b = Walk::size(k, b, Side::b);
     const bool hold_a = a.is_leaf || size_b > kMuchLarger * size_a;
     const bool hold_b = b.is_leaf || size_a > kMuchLarger * size_b;

@@ -374,6 +374,19 @@ void ObbTree::measure(const SimplexView& body, std::span<const SimplexId> simpli
 
 ObbTree::ObbTree(const SimplexView& body, unsigned threads) : ObbTree(body, body.real_simplices(), threads) {}
 
+void ObbTree::look_for_needles() {
+  constexpr float kSlim = 64;  // times as long as wide
+  constexpr std::size_t kMany = 8;
+  std::size_t needles = 0;
+  for (const TreeNode& n : nodes_) {
+    if (!n.is_leaf) continue;
+    std::array<float, 3> size = {n.scale[0], n.scale[1], n.scale[2]};
+    std::sort(size.begin(), size.end());
+    needles += size[2] > kSlim * size[1];
+  }
+  has_needles_ = blocks_.size() >= kMany && needles * kMany >= blocks_.size();
+}
+
 ObbTree::ObbTree(const SimplexView& body, std::span<const SimplexId> simplices, unsigned threads) {
   measure(body, simplices);
   if (simplices.empty()) return;
@@ -382,6 +395,7 @@ ObbTree::ObbTree(const SimplexView& body, std::span<const SimplexId> simplices, 
   ObbTreeBuilder(*this, soup, workers);
   nodes_.shrink_to_fit();
   blocks_.shrink_to_fit();
+  look_for_needles();
 }
 
 }  // namespace lrb

@@ -74,6 +74,8 @@ struct TreeKernel {
   AffineTerms*
       affine;  ///< null; else, without a margin, the maps are these, and m, t and slack what they say
 
+  bool needles;  ///< both trees are full of them: try more directions (see kernel_needles.inl)
+
   NodePair* stack;  ///< room for 64 * (height of A + height of B) + 64 pairs
   std::uint32_t stack_size;
   Candidate* out;

@@ -5,6 +5,7 @@
 // The floating-point operations are the same for every instruction set and are not contracted, so that
 // counters and traces do not depend on the processor.
 
+#include "engine/tree/kernel_needles.inl"
 #include "engine/tree/kernel_walk.inl"
 
 namespace lrb {
@@ -16,6 +17,11 @@ struct RigidWalk {
   static constexpr bool kMargin = kMargin_;
   static Between between(const TreeKernel& k, const TreeNode& a, const TreeNode& b) {
     return lrb::between<kMargin>(k, a, b);
+  }
+  /// Whether directions that are tried for trees full of needles alone part the two nodes.
+  static bool more_parts(const TreeKernel& k, const TreeNode& a, const TreeNode& b) {
+    if constexpr (kMargin) return false;
+    return k.needles && needles_apart(k, a, b);
   }
   static float size(const TreeKernel& k, const TreeNode& n, Side side) {
     return n.radius * (side == Side::a ? k.ratio_a : k.ratio_b);

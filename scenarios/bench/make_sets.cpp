@@ -101,7 +101,7 @@ class Maker {
   void add(const char* role, const Mesh& mesh) {
     const auto begin = std::chrono::steady_clock::now();
     std::vector<std::string> notes;
-    reps_.push_back(bodies::build_from_mesh(mesh, {}, notes));
+    reps_.push_back(bodies::build_from_mesh(check(mesh), {}, notes));
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     const std::string file = set_.name + "-" + role + ".lrb";
     save_lrb(reps_.back(), folder_ + "/" + file);

@@ -5,8 +5,8 @@
 
 #include "engine/core/error.hpp"
 #include "engine/lrb/lrb_file.hpp"
+#include "engine/mesh/checked_mesh.hpp"
 #include "engine/mesh/io/mesh_io.hpp"
-#include "engine/mesh/mesh_check.hpp"
 
 namespace lrb::bodies {
 namespace {
@@ -24,11 +24,26 @@ std::string joined(const Mesh& mesh, const std::vector<std::string>& lines) {
   return out;
 }
 
-void turn_outward(Mesh& mesh, std::vector<std::string>& notes) {
-  const std::uint32_t turned = orient_outward(mesh);
+void turn_outward(CheckedMesh& mesh, std::vector<std::string>& notes) {
+  const std::uint32_t turned = mesh.turn_outward();
   if (turned > 0)
-    notes.push_back(mesh.name + ": turned " + std::to_string(turned) +
+    notes.push_back(mesh.mesh().name + ": turned " + std::to_string(turned) +
                     (turned == 1 ? " component that was inside out" : " components that were inside out"));
+}
+
+/// Why there can be no LRB-rep of it, even if it were turned.
+std::string obstacles(const CheckedMesh& mesh) {
+  return joined(mesh.mesh(), mesh.report().when_turned().obstacles(mesh.mesh()));
+}
+
+void refuse_unless_queryable(const CheckedMesh& mesh) {
+  if (!mesh.report().queryable())
+    throw InputError(mesh.mesh().name +
+                     ": cannot be queried: " + joined(mesh.mesh(), mesh.report().lines(mesh.mesh())));
+}
+
+std::string note_without_regions(const CheckedMesh& mesh) {
+  return mesh.mesh().name + ": queried without regions, because it cannot have any: " + obstacles(mesh);
 }
 
 }  // namespace
@@ -41,35 +56,50 @@ bool is_lrb_file(const std::string& path) {
   return looks_like_lrb(std::string_view(start).substr(0, static_cast<std::size_t>(in.gcount())));
 }
 
-LrbRep build_from_mesh(Mesh mesh, const BuildOptions& options, std::vector<std::string>& notes) {
-  const MeshReport report = check_mesh(mesh, false);
-  if (!report.buildable())
-    throw InputError(mesh.name + ": cannot be an LRB-rep: " + joined(mesh, report.obstacles(mesh)) +
+LrbRep build_from_mesh(CheckedMesh mesh, const BuildOptions& options, std::vector<std::string>& notes) {
+  if (!mesh.report().when_turned().buildable())
+    throw InputError(mesh.mesh().name + ": cannot be an LRB-rep: " + obstacles(mesh) +
                      " | it can still be queried, not built");
   turn_outward(mesh, notes);
   return build_lrb(mesh, options);
 }
 
 LoadedBody body_of_mesh(Mesh mesh, const BuildOptions& options) {
-  const MeshReport report = check_mesh(mesh);
-  if (!report.queryable())
-    throw InputError(mesh.name + ": cannot be queried: " + joined(mesh, report.lines(mesh)));
-  const bool self_intersecting = report[MeshFault::self_intersection].count > 0;
+  return body_of_mesh(check(std::move(mesh)), options);
+}
+
+LoadedBody body_of_mesh(CheckedMesh mesh, const BuildOptions& options) {
+  refuse_unless_queryable(mesh);
   std::vector<std::string> notes;
-  if (report.buildable()) {
+  if (mesh.report().when_turned().buildable()) {
     turn_outward(mesh, notes);
     const auto begin = std::chrono::steady_clock::now();
     LrbRep rep = build_lrb(mesh, options);
     return {std::move(rep), std::move(notes), seconds_since(begin)};
   }
-  notes.push_back(mesh.name + ": queried without regions, because it cannot have any: " +
-                  joined(mesh, report.obstacles(mesh)));
-  return {LrbRep::without_regions(mesh, report.bounds_solid, self_intersecting), std::move(notes), 0};
+  notes.push_back(note_without_regions(mesh));
+  Workers workers(options.threads);
+  const bool self_intersecting = !mesh.self_intersecting_faces(workers).empty();
+  return {LrbRep::without_regions(mesh.mesh(), mesh.report().bounds_solid, self_intersecting),
+          std::move(notes), 0};
 }
 
 LoadedBody load_body(const std::string& path, const BuildOptions& options) {
   if (is_lrb_file(path)) return {load_lrb(path), {}, 0};
   return body_of_mesh(read_mesh(path), options);
+}
+
+LoadedBody load_faces(const std::string& path) {
+  if (is_lrb_file(path)) return {load_lrb(path), {}, 0};
+  CheckedMesh mesh = check(read_mesh(path));
+  refuse_unless_queryable(mesh);
+  std::vector<std::string> notes;
+  if (mesh.report().when_turned().buildable())
+    turn_outward(mesh, notes);
+  else
+    notes.push_back(note_without_regions(mesh));
+  constexpr bool kNotAsked = false;  // whether it intersects itself: only regions depend on it
+  return {LrbRep::without_regions(mesh.mesh(), mesh.report().bounds_solid, kNotAsked), std::move(notes), 0};
 }
 
 }  // namespace lrb::bodies

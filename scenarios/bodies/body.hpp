@@ -23,9 +23,15 @@ bool is_lrb_file(const std::string& path);
 /// comes as a body without regions, and a note says why. Throws InputError if it cannot be queried at all.
 LoadedBody load_body(const std::string& path, const BuildOptions& options = {});
 LoadedBody body_of_mesh(Mesh mesh, const BuildOptions& options = {});
+LoadedBody body_of_mesh(CheckedMesh mesh, const BuildOptions& options = {});
 
-/// Reads a mesh, turns what is inside out, and builds; InputError lists the offenders if it cannot be built.
-/// `notes` gets what was done on the way.
-LrbRep build_from_mesh(Mesh mesh, const BuildOptions& options, std::vector<std::string>& notes);
+/// The same without regions, for who asks for pairs of faces and the relation only: no LRB-rep is built of a
+/// mesh, and nothing is proved of it that the answer does not need. Faces have the numbers that they have in
+/// load_body()'s, and answers are the same. (What an .lrb file holds is read as it is.)
+LoadedBody load_faces(const std::string& path);
+
+/// Turns what is inside out, and builds; InputError lists the offenders if it cannot be built. `notes` gets
+/// what was done on the way.
+LrbRep build_from_mesh(CheckedMesh mesh, const BuildOptions& options, std::vector<std::string>& notes);
 
 }  // namespace lrb::bodies

@@ -63,7 +63,7 @@ int run_build(const BuildCommandOptions& o, const Globals& globals) {
     progress.set(pass, "hull of " + std::to_string(faces) + " faces");
   };
   const auto begin = std::chrono::steady_clock::now();
-  const LrbRep rep = bodies::build_from_mesh(std::move(mesh), options, notes);
+  const LrbRep rep = bodies::build_from_mesh(check(std::move(mesh)), options, notes);
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   progress.finish();
   note(globals, notes);

@@ -10,8 +10,8 @@
 #include "engine/core/file_bytes.hpp"
 #include "engine/lrb/lrb_file.hpp"
 #include "engine/lrb/validate.hpp"
+#include "engine/mesh/checked_mesh.hpp"
 #include "engine/mesh/io/mesh_io.hpp"
-#include "engine/mesh/mesh_check.hpp"
 #include "scenarios/bodies/body.hpp"
 #include "scenarios/bodies/hull_figures.hpp"
 #include "scenarios/cli/command.hpp"
@@ -48,7 +48,7 @@ Json mesh_json(const Mesh& mesh, const MeshReport& report) {
   j["genus"] = report.genus >= 0 ? Json(report.genus) : Json(nullptr);
   j["closed"] = report.closed;
   j["bounds_solid"] = report.bounds_solid;
-  j["buildable"] = report.buildable();
+  j["buildable"] = report.when_turned().buildable();  // `build` turns it
   j["queryable"] = report.queryable();
   j["findings"] = report.lines(mesh);
   return j;
@@ -114,10 +114,10 @@ int run_inspect(const InspectOptions& o, const Globals& globals) {
     j.update(bodies::body_figures(*rep));
     j["layers_from_the_solid"] = layers_json(*rep);
   } else {
-    Mesh mesh = read_mesh(o.file);
-    const MeshReport report = check_mesh(mesh);
-    j = mesh_json(mesh, report);
-    if (!o.drawing.empty()) draw_findings(mesh, report, o.drawing, j, notes);
+    CheckedMesh mesh = check(read_mesh(o.file));
+    mesh.find_self_intersections();
+    j = mesh_json(mesh.mesh(), mesh.report());
+    if (!o.drawing.empty()) draw_findings(mesh.mesh(), mesh.report(), o.drawing, j, notes);
     if (o.validate)
       rep = std::make_unique<LrbRep>(bodies::build_from_mesh(std::move(mesh), {}, notes));
     else if (o.render)

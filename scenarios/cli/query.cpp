@@ -92,9 +92,17 @@ std::string line_of(std::size_t pose, const CollideResult& result, const QueryOp
   return out.str();
 }
 
+/// Whether an answer depends on more than the bodies' faces: on wrappers.
+bool needs_regions(const CollideRequest& request) {
+  return request.recursion != Recursion::complete || request.is_coarse() || request.separation;
+}
+
 int run_query(const QueryOptions& o, const Globals& globals) {
   const std::vector<Pose> poses = io::read_poses(o.poses);  // all of them, before anything is printed
-  const bodies::LoadedBody a = bodies::load_body(o.a), b = bodies::load_body(o.b);
+  const auto load = [&](const std::string& path) {
+    return needs_regions(o.request) ? bodies::load_body(path) : bodies::load_faces(path);
+  };
+  const bodies::LoadedBody a = load(o.a), b = load(o.b);
   note(globals, a.notes);
   note(globals, b.notes);
   QueryContext context;

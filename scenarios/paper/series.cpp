@@ -45,7 +45,7 @@ std::vector<std::string> files_of(const std::vector<std::string>& paths) {
 /// Why no series can be made of it; empty if one can.
 std::string obstacle(const Mesh& mesh) {
   if (mesh.dim != 3) return "a body in the plane";
-  const MeshReport report = check_mesh(mesh, false);
+  const MeshReport report = check_mesh(mesh, false).when_turned();
   return report.buildable() ? "" : "no LRB-rep can be built of it; see `lrbscope inspect`";
 }
 

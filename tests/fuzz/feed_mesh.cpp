@@ -13,7 +13,7 @@ bool feed_mesh(std::string_view bytes) {
     Mesh mesh = read_mesh(std::string(bytes.substr(1)), name);
     const MeshReport report = check_mesh(mesh, mesh.face_vertices.size() <= 4 * kSmall);
     static_cast<void>(report.lines(mesh));
-    if (report.buildable()) orient_outward(mesh);
+    if (report.when_turned().buildable()) orient_outward(mesh);
   });
 }
 

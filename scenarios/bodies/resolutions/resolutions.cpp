@@ -8,7 +8,7 @@
 namespace lrb::resolutions {
 
 std::vector<Mesh> resolutions(const Mesh& mesh, const ResolutionOptions& options) {
-  const MeshReport report = check_mesh(mesh, false);
+  const MeshReport report = check_mesh(mesh, false).when_turned();
   if (mesh.dim != 3)
     throw InputError(mesh.name + ": a body in the plane has no resolutions; give one in space");
   if (!report.buildable()) {

@@ -1,0 +1,112 @@
+// Workers on threads of the standard library. ThreadSanitizer sees all of what they do, while it takes the inside
+// of an oneTBB that was not compiled for it for races: the build that proves threads free of races has these.
+
+#include <algorithm>
+#include <atomic>
+#include <exception>
+#include <mutex>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "engine/core/parallel.hpp"
+
+namespace lrb {
+
+struct Workers::Pool {
+  /// The numbers that no thread has: 0 is the thread's that made the pool.
+  explicit Pool(unsigned threads) {
+    for (unsigned number = threads; number-- > 1;) free.push_back(number);
+  }
+
+  /// Up to `wanted` of them.
+  std::vector<unsigned> take(std::size_t wanted) {
+    const std::lock_guard lock(mutex);
+    std::vector<unsigned> taken;
+    for (; taken.size() < wanted && !free.empty(); free.pop_back()) taken.push_back(free.back());
+    return taken;
+  }
+  void give_back(const std::vector<unsigned>& numbers) {
+    const std::lock_guard lock(mutex);
+    free.insert(free.end(), numbers.begin(), numbers.end());
+  }
+
+  std::mutex mutex;
+  std::vector<unsigned> free;
+};
+
+namespace {
+
+/// The worker that this thread is, in a pool that it works for.
+thread_local std::pair<const void*, unsigned> current{nullptr, 0};
+
+/// Runs work(number) on a thread for each number and on this one, and hands on the first exception.
+template <class Work>
+void run_on(const void* pool, const std::vector<unsigned>& numbers, const Work& work) {
+  std::mutex mutex;
+  std::exception_ptr failure;
+  const auto run = [&](unsigned number) {
+    const auto before = std::exchange(current, {pool, number});
+    try {
+      work(number);
+    } catch (...) {
+      const std::lock_guard lock(mutex);
+      if (!failure) failure = std::current_exception();
+    }
+    current = before;
+  };
+  const unsigned own = current.first == pool ? current.second : 0;
+  std::vector<std::thread> threads;
+  threads.reserve(numbers.size());
+  for (const unsigned number : numbers) threads.emplace_back(run, number);
+  run(own);
+  for (std::thread& t : threads) t.join();
+  if (failure) std::rethrow_exception(failure);
+}
+
+}  // namespace
+
+Workers::Workers(unsigned threads)
+    : count_(threads > 0 ? threads : std::max(1u, std::thread::hardware_concurrency())) {
+  if (count_ > 1) pool_ = std::make_unique<Pool>(count_);
+}
+
+Workers::~Workers() = default;
+
+void Workers::for_each(std::size_t n, const std::function<void(std::size_t, unsigned)>& work) {
+  const std::vector<unsigned> helpers =
+      pool_ && n > 1 ? pool_->take(std::min<std::size_t>(n, count_) - 1) : std::vector<unsigned>{};
+  std::atomic<std::size_t> next{0};
+  const auto take_part = [&](unsigned worker) {
+    for (std::size_t i = next++; i < n; i = next++) work(i, worker);
+  };
+  const auto give_back = [&] {
+    if (pool_) pool_->give_back(helpers);
+  };
+  try {
+    run_on(pool_.get(), helpers, take_part);
+  } catch (...) {
+    give_back();
+    throw;
+  }
+  give_back();
+}
+
+void Workers::both(const std::function<void()>& one, const std::function<void()>& other) {
+  const std::vector<unsigned> helper = pool_ ? pool_->take(1) : std::vector<unsigned>{};
+  if (helper.empty()) {
+    one();
+    other();
+    return;
+  }
+  const auto give_back = [&] { pool_->give_back(helper); };
+  try {
+    run_on(pool_.get(), helper, [&](unsigned worker) { worker == helper[0] ? other() : one(); });
+  } catch (...) {
+    give_back();
+    throw;
+  }
+  give_back();
+}
+
+}  // namespace lrb

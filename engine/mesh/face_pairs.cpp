@@ -1,0 +1,214 @@
+#include "engine/mesh/face_pairs.hpp"
+
+#include <algorithm>
+
+namespace lrb {
+namespace {
+
+constexpr std::size_t kLeafFaces = 4;
+constexpr std::uint32_t kWorthSharing = 2048;  ///< faces
+
+std::vector<Box> boxes_of(const Mesh& mesh, const std::vector<FaceUse>& use) {
+  std::vector<Box> boxes(mesh.face_count());
+  for (FaceId f = 0; f < mesh.face_count(); ++f)
+    if (use[f] >= FaceUse::area)
+      for (const VertexId v : mesh.face(f)) boxes[f].extend(mesh.vertices[v]);
+  return boxes;
+}
+
+Box box_of_all(const std::vector<Box>& boxes) {
+  Box all;
+  for (const Box& box : boxes) all.extend(box);
+  return all;
+}
+
+/// Halves a range by the centres' longest extent.
+template <class Item, class Centre>
+std::size_t halve(std::vector<Item>& items, std::size_t first, std::size_t last, Centre centre) {
+  Box spread;
+  for (std::size_t i = first; i < last; ++i) spread.extend(centre(items[i]));
+  int axis = 0;
+  (spread.max() / 2 - spread.min() / 2).maxCoeff(&axis);
+  const std::size_t middle = first + (last - first) / 2;
+  const auto at = [&](std::size_t i) { return items.begin() + static_cast<std::ptrdiff_t>(i); };
+  std::nth_element(at(first), at(middle), at(last),
+                   [&](const Item& a, const Item& b) { return centre(a)[axis] < centre(b)[axis]; });
+  return middle;
+}
+
+}  // namespace
+
+FacePairs::FacePairs(const Mesh& mesh, const std::vector<FaceUse>& use)
+    : mesh_(mesh),
+      boxes_(boxes_of(mesh, use)),
+      is_large_(mesh.face_count(), false),
+      cube_(box_of_all(boxes_)),
+      hubs_(mesh, use) {
+  bool any_large = false;
+  for (FaceId f = 0; mesh.dim == 3 && f < mesh.face_count(); ++f) {
+    is_large_[f] = use[f] >= FaceUse::area && mesh.face(f).size() > kFewNeighbours;
+    any_large = any_large || is_large_[f];
+  }
+  const bool known_to_be_crowded = any_large || !hubs_.hubs.empty();
+  if (!known_to_be_crowded) tree_.emplace(boxes_);
+  if (known_to_be_crowded || (mesh.dim == 3 && boxes_are_crowded())) {
+    tree_.reset();
+    build();
+  }
+}
+
+/// Whether boxes along the axes meet far more others than neighbours do, judged by some of them spread over the
+/// mesh: as those of long narrow faces that are close to each other, or of large faces close in front of each
+/// other.
+bool FacePairs::boxes_are_crowded() const {
+  constexpr std::uint32_t kSamples = 256, kMost = 64;
+  const auto faces = static_cast<std::uint32_t>(boxes_.size());
+  if (faces <= kSamples) return false;
+  std::uint64_t meeting = 0;
+  for (std::uint32_t i = 0; i < kSamples; ++i)
+    meeting +=
+        tree_->count_meeting(static_cast<std::uint32_t>(std::uint64_t{i} * faces / kSamples), 4 * kMost);
+  return meeting > std::uint64_t{kSamples} * kMost;
+}
+
+std::vector<FacePairs::Unit> FacePairs::units() const {
+  std::vector<Unit> units;
+  std::vector<bool> at_hub(boxes_.size(), false);
+  for (std::uint32_t h = 0; h < hubs_.hubs.size(); ++h) {
+    Box box;
+    for (const FaceId f : hubs_.hubs[h].faces) {
+      at_hub[f] = true;
+      box.extend(boxes_[f]);
+    }
+    if (!box.isEmpty()) units.push_back({box.min() / 2 + box.max() / 2, h, kNull});
+  }
+  for (FaceId f = 0; f < boxes_.size(); ++f)
+    if (!at_hub[f] && !boxes_[f].isEmpty()) units.push_back({centre_of(f), kNull, f});
+  return units;
+}
+
+void FacePairs::build() {
+  std::vector<Unit> all = units();
+  if (all.empty()) return;
+  order_.reserve(boxes_.size());
+  build_units(all, 0, all.size());
+}
+
+std::uint32_t FacePairs::add_node() {
+  const auto index = static_cast<std::uint32_t>(nodes_.size());
+  nodes_.emplace_back().first = static_cast<std::uint32_t>(order_.size());
+  return index;
+}
+
+/// All faces below a node are in the order now: works out its boxes.
+void FacePairs::close_node(std::uint32_t index) {
+  Node& node = nodes_[index];
+  node.last = static_cast<std::uint32_t>(order_.size());
+  std::vector<Eigen::Vector3d> points;
+  for (std::uint32_t i = node.first; i < node.last; ++i) {
+    node.box.extend(boxes_[order_[i]]);
+    for (const VertexId v : mesh_.face(order_[i])) points.push_back(cube_(mesh_.vertices[v]));
+  }
+  node.slim = OrientedBox::about(points);
+}
+
+/// Parents before children, left before right.
+std::uint32_t FacePairs::build_units(std::vector<Unit>& units, std::size_t first, std::size_t last) {
+  if (last - first == 1 && units[first].hub != kNull) {
+    std::vector<FaceId> faces = hubs_.hubs[units[first].hub].faces;
+    const std::uint32_t index = build_hub(faces, 0, faces.size());
+    nodes_[index].of_one_hub = true;
+    return index;
+  }
+  const std::uint32_t index = add_node();
+  const auto is_small = [&](const Unit& u) { return u.hub == kNull && !is_large_[u.face]; };
+  const auto begin = units.begin() + static_cast<std::ptrdiff_t>(first),
+             end = units.begin() + static_cast<std::ptrdiff_t>(last);
+  if (last - first == 1 || (last - first <= kLeafFaces && std::all_of(begin, end, is_small))) {
+    for (std::size_t i = first; i < last; ++i) order_.push_back(units[i].face);
+  } else {
+    const std::size_t middle = halve(units, first, last, [](const Unit& u) { return u.centre; });
+    build_units(units, first, middle);
+    const std::uint32_t right = build_units(units, middle, last);
+    nodes_[index].right = right;
+  }
+  close_node(index);
+  return index;
+}
+
+std::uint32_t FacePairs::build_hub(std::vector<FaceId>& faces, std::size_t first, std::size_t last) {
+  const std::uint32_t index = add_node();
+  const bool is_leaf = last - first == 1 || (last - first <= kLeafFaces &&
+                                             std::none_of(faces.begin() + static_cast<std::ptrdiff_t>(first),
+                                                          faces.begin() + static_cast<std::ptrdiff_t>(last),
+                                                          [&](FaceId f) { return is_large_[f]; }));
+  if (is_leaf) {
+    for (std::size_t i = first; i < last; ++i) order_.push_back(faces[i]);
+  } else {
+    const std::size_t middle = halve(faces, first, last, [&](FaceId f) { return centre_of(f); });
+    build_hub(faces, first, middle);
+    const std::uint32_t right = build_hub(faces, middle, last);
+    nodes_[index].right = right;
+  }
+  close_node(index);
+  return index;
+}
+
+void FacePairs::for_each(const Visit& visit, Workers& workers) const {
+  if (tree_) {
+    if (workers.count() == 1)
+      tree_->for_each_pair(visit);
+    else
+      tree_->for_each_pair(visit, workers);
+    return;
+  }
+  if (nodes_.empty()) return;
+  for (const Hubs::Hub& hub : hubs_.hubs)
+    for_each_pair_at(
+        mesh_, hub, [&](FaceId f, FaceId g) { try_pair(f, g, visit); }, workers);
+  within(0, visit, workers);
+}
+
+void FacePairs::try_pair(FaceId f, FaceId g, const Visit& visit) const {
+  if (boxes_[f].intersects(boxes_[g])) visit(std::min(f, g), std::max(f, g));
+}
+
+void FacePairs::within(std::uint32_t n, const Visit& visit, Workers& workers) const {
+  const Node& node = nodes_[n];
+  if (node.of_one_hub) return;
+  if (node.right == 0) {
+    for (std::uint32_t i = node.first; i < node.last; ++i)
+      for (std::uint32_t j = i + 1; j < node.last; ++j) try_pair(order_[i], order_[j], visit);
+    return;
+  }
+  const auto left_side = [&] { within(n + 1, visit, workers); };
+  const auto right_side = [&] { within(node.right, visit, workers); };
+  const auto across = [&] { between(n + 1, node.right, visit); };
+  if (node.last - node.first < kWorthSharing) {
+    left_side();
+    right_side();
+    across();
+  } else {
+    workers.both([&] { workers.both(left_side, right_side); }, across);
+  }
+}
+
+void FacePairs::between(std::uint32_t m, std::uint32_t n, const Visit& visit) const {
+  const Node &a = nodes_[m], &b = nodes_[n];
+  if (!a.box.intersects(b.box) || surely_apart(a.slim, b.slim)) return;
+  if (a.right == 0 && b.right == 0) {
+    for (std::uint32_t i = a.first; i < a.last; ++i)
+      for (std::uint32_t j = b.first; j < b.last; ++j) try_pair(order_[i], order_[j], visit);
+    return;
+  }
+  // Descend into the node with more faces, so that both reach their leaves together.
+  if (b.right == 0 || (a.right != 0 && a.last - a.first >= b.last - b.first)) {
+    between(m + 1, n, visit);
+    between(a.right, n, visit);
+  } else {
+    between(m, n + 1, visit);
+    between(m, b.right, visit);
+  }
+}
+
+}  // namespace lrb

@@ -1,0 +1,73 @@
+// From a mesh to a body: the check, with the search for self-intersections; building; the proof.
+
+#include <memory>
+
+#include "engine/construct/build.hpp"
+#include "engine/lrb/validate.hpp"
+#include "engine/mesh/mesh_check.hpp"
+#include "scenarios/bodies/shapes/shapes.hpp"
+#include "tests/cliffs/cliffs.hpp"
+#include "tests/support/hard_bodies.hpp"
+
+namespace lrb::cliffs {
+namespace {
+
+using namespace hard;
+
+using MakeMesh = std::function<Mesh(std::uint32_t)>;
+
+Task check_task(const Mesh& made) {
+  const auto mesh = std::make_shared<Mesh>(made);
+  return {static_cast<double>(mesh->face_vertices.size()), [mesh] { check_mesh(*mesh); }};
+}
+
+Task build_task(const Mesh& made) {
+  const auto mesh = std::make_shared<CheckedMesh>(check(made));
+  return {static_cast<double>(made.face_vertices.size()), [mesh] { build_lrb(*mesh); }};
+}
+
+Task proof_task(const Mesh& made) {
+  const auto rep = std::make_shared<LrbRep>(build_lrb(made));
+  return {static_cast<double>(made.face_vertices.size()), [rep] { validate(*rep); }};
+}
+
+using Sizes = std::vector<std::uint32_t>;
+
+bool add_check(const std::string& name, const Sizes& share, const Sizes& more, const MakeMesh& make) {
+  return add({name, "check", "corners", share, more, [=](std::uint32_t n) { return check_task(make(n)); }});
+}
+bool add_build(const std::string& name, const Sizes& share, const Sizes& more, const MakeMesh& make) {
+  return add({name, "build", "corners", share, more, [=](std::uint32_t n) { return build_task(make(n)); }});
+}
+bool add_all(const std::string& name, const Sizes& share, const Sizes& more, const MakeMesh& make) {
+  add({name, "proof", "corners", share, more, [=](std::uint32_t n) { return proof_task(make(n)); }});
+  return add_check(name, share, more, make) && add_build(name, share, more, make);
+}
+
+Mesh rock(std::uint32_t level) {
+  return shapes::bumpy_sphere(static_cast<int>(level), 1, 0.2);
+}
+
+// Two families go without the proof, which counts the pairs of triangles that meet: at the common end of two
+// drums, and in the fans of a box whose corners in the middle of sides give triangles without area, n^2 do.
+
+Mesh two_drums(std::uint32_t n) {
+  return shapes::several({drum(n), shapes::translated(drum(n), {0, 0, 1})});
+}
+
+const Sizes kShare = {1000, 2000, 4000, 8000}, kMore = {16000, 32000, 64000};
+
+const bool added =
+    add_all("rock", {2, 3, 4}, {5, 6}, rock) && add_all("drum", kShare, kMore, drum) &&
+    add_check("drum with concave ends", kShare, kMore, cog) &&
+    add_check("box of many corners", kShare, kMore, fine_box) &&
+    add_build("box of many corners", kShare, kMore, fine_box) && add_all("cone", kShare, kMore, cone) &&
+    add_all("bipyramid", kShare, kMore, bipyramid) && add_all("crown", kShare, kMore, crown) &&
+    add_check("fan disk", kShare, kMore, fan_disk) && add_all("frustum", kShare, kMore, frustum) &&
+    add_check("two drums, end to end", kShare, kMore, two_drums) &&
+    add_build("two drums, end to end", kShare, kMore, two_drums) &&
+    add_all("nested balls", {32, 64, 128}, {256}, nested) &&
+    add_all("pieces", {3, 6, 12, 24}, {48, 96}, pieces) && add_all("tiles", {16, 32, 64}, {128}, tiles);
+
+}  // namespace
+}  // namespace lrb::cliffs

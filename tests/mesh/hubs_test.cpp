@@ -1,0 +1,210 @@
+// Faces with very many corners and vertices with very many faces: found is what comparing all with all finds.
+
+#include <algorithm>
+#include <map>
+#include <random>
+#include <set>
+
+#include <doctest/doctest.h>
+
+#include "engine/exact/predicates.hpp"
+#include "engine/exact/simplex_test.hpp"
+#include "engine/mesh/face_pairs.hpp"
+#include "engine/mesh/mesh_check.hpp"
+#include "engine/mesh/oriented_box.hpp"
+#include "engine/mesh/polygon_shape.hpp"
+#include "engine/mesh/self_intersections.hpp"
+#include "scenarios/bodies/shapes/shapes.hpp"
+#include "tests/support/hard_bodies.hpp"
+
+namespace lrb::test {
+namespace {
+
+using namespace shapes;
+using namespace hard;
+using FacePair = std::array<FaceId, 2>;
+using Triangle = std::array<VertexId, 3>;
+
+std::vector<FaceUse> uses_of(const Mesh& m) {
+  MeshReport unused;
+  return check_faces(m, unused);
+}
+
+std::set<FacePair> found_in(const Mesh& m) {
+  std::set<FacePair> found;
+  find_self_intersections(m, uses_of(m), [&](FaceId f, FaceId g) { CHECK(found.insert({f, g}).second); });
+  return found;
+}
+
+std::vector<Triangle> triangles_of(const Mesh& m, FaceId f, FaceUse use) {
+  std::vector<Triangle> out;
+  if (use < FaceUse::area) return out;
+  const auto c = m.face(f);
+  if (use == FaceUse::convex) {
+    triangulate_convex(m, c, out);
+    return out;
+  }
+  for (std::size_t i = 1; i + 1 < c.size(); ++i)
+    if (!exact::collinear3d(m.vertices[c[0]].data(), m.vertices[c[i]].data(), m.vertices[c[i + 1]].data()))
+      out.push_back({c[0], c[i], c[i + 1]});
+  return out;
+}
+
+bool are_clear(const Mesh& m, const Triangle& s, const Triangle& t) {
+  const double *a[3], *b[3];
+  for (int k = 0; k < 3; ++k) {
+    a[k] = m.vertices[s[k]].data();
+    b[k] = m.vertices[t[k]].data();
+  }
+  return exact::meet_only_in_shared(a, s.data(), b, t.data());
+}
+
+/// By comparing all triangles of all faces.
+std::set<FacePair> expected_in(const Mesh& m) {
+  const auto use = uses_of(m);
+  std::vector<std::vector<Triangle>> parts;
+  for (FaceId f = 0; f < m.face_count(); ++f) parts.push_back(triangles_of(m, f, use[f]));
+  std::set<FacePair> found;
+  for (FaceId f = 0; f < m.face_count(); ++f)
+    for (FaceId g = f + 1; g < m.face_count(); ++g) {
+      const auto meets = [&](const Triangle& s) {
+        return std::any_of(parts[g].begin(), parts[g].end(),
+                           [&](const Triangle& t) { return !are_clear(m, s, t); });
+      };
+      if (std::any_of(parts[f].begin(), parts[f].end(), meets)) found.insert({f, g});
+    }
+  return found;
+}
+
+/// Moves vertices a little, so that faces about hubs run into each other.
+Mesh shaken(Mesh m, double by, std::uint64_t seed) {
+  std::mt19937_64 random(seed);
+  for (auto& v : m.vertices)
+    for (double& x : v) x += by * (static_cast<double>(random() % 2001) / 1000 - 1);
+  return m;
+}
+
+constexpr std::uint32_t kMany = 90;  // more than kFewNeighbours
+
+TEST_CASE("clean bodies with hubs and large faces intersect themselves nowhere") {
+  for (const Mesh& m : {drum(kMany), fine_box(4 * kMany), cone(kMany), bipyramid(kMany), crown(kMany),
+                        fan_disk(kMany), frustum(kMany), uv_sphere(kMany, 6), drum(1000), bipyramid(1000)}) {
+    CAPTURE(m.face_count());
+    CHECK(found_in(m).empty());
+    const MeshReport report = check_mesh(m);
+    CHECK(report[MeshFault::non_planar_face].count == 0);
+    CHECK(report[MeshFault::non_convex_face].count == 0);
+  }
+}
+
+TEST_CASE("about hubs and at large faces exactly those faces are found that all pairs name") {
+  std::vector<Mesh> meshes;
+  for (std::uint64_t seed = 0; seed < 4; ++seed)
+    for (const double by : {0.003, 0.03, 0.3}) {
+      meshes.push_back(shaken(bipyramid(kMany), by, seed));
+      meshes.push_back(shaken(crown(kMany), by, seed));
+      meshes.push_back(shaken(fan_disk(kMany), by, seed));
+    }
+  meshes.push_back(cog(kMany));
+  meshes.push_back(several({drum(kMany), translated(drum(kMany), {0.3, 0.2, 0.5})}));
+  meshes.push_back(several({drum(kMany), translated(drum(kMany), {0, 0, 1})}));
+  meshes.push_back(several({drum(kMany), translated(scaled(drum(kMany), 0.5), {0, 0, 1})}));
+  meshes.push_back(several({drum(kMany), drum(kMany)}));
+  meshes.push_back(several({cone(kMany), translated(scaled(bipyramid(kMany), 0.4), {0.1, 0, 0.1})}));
+  meshes.push_back(several({fine_box(4 * kMany), translated(icosphere(2), {0.5, 0.5, 1})}));
+  meshes.push_back(several({fan_disk(kMany), fan_disk(kMany)}));
+  std::size_t found = 0;
+  for (const Mesh& m : meshes) {
+    CAPTURE(m.face_count());
+    const auto expected = expected_in(m);
+    CHECK((found_in(m) == expected));
+    found += expected.size();
+    Workers workers(3);
+    std::set<FaceId> faces;
+    for (const FacePair& p : expected) faces.insert(p.begin(), p.end());
+    CHECK(
+        (self_intersecting_faces(m, uses_of(m), workers) == std::vector<FaceId>(faces.begin(), faces.end())));
+  }
+  CHECK(found > 10000);
+}
+
+TEST_CASE("at any size and place of the body") {
+  const Mesh m = shaken(crown(kMany), 0.3, 7);
+  const auto expected = found_in(m);
+  CHECK(!expected.empty());
+  for (const double scale : {0x1p-1040, 0x1p-600, 0x1p-20, 0x1p500, 0x1p1020}) {
+    CAPTURE(scale);
+    const Mesh other = scaled(m, scale);
+    CHECK((found_in(other) == expected_in(other)));
+    if (scale > 0x1p-900) CHECK((found_in(other) == expected));
+  }
+  const Mesh far = translated(m, {1e9, -1e9, 1e9});
+  CHECK((found_in(far) == expected_in(far)));
+}
+
+TEST_CASE("a chord of a large face is not an edge that others may share") {
+  // A fin that stands on the line between two corners of the drum's end that are no neighbours.
+  for (const VertexId other : {2u, 7u, kMany / 2, kMany - 2}) {
+    Mesh m = drum(kMany);
+    const VertexId tip = static_cast<VertexId>(m.vertices.size());
+    m.vertices.emplace_back(0.1, 0.2, 3);
+    m.add_face(std::array<VertexId, 3>{kMany, kMany + other, tip});
+    CHECK(found_in(m).contains(FacePair{1, static_cast<FaceId>(m.face_count() - 1)}));
+    m.face_vertices[m.face_vertices.size() - 2] = kMany + 1;  // a neighbour
+    CHECK_FALSE(found_in(m).contains(FacePair{1, static_cast<FaceId>(m.face_count() - 1)}));
+  }
+}
+
+TEST_CASE("a large polygon is cut into triangles with area that cover it once") {
+  for (const Mesh& m : {drum(67), drum(1000), fine_box(400), fine_box(12), drum(3), drum(4)}) {
+    std::vector<Triangle> triangles;
+    triangulate_by_halves(m, m.face(1), triangles);
+    CHECK(triangles.size() == m.face(1).size() - 2);
+    std::map<std::array<VertexId, 2>, int> sides;
+    double area = 0;
+    for (const Triangle& t : triangles) {
+      const auto &a = m.vertices[t[0]], &b = m.vertices[t[1]], &c = m.vertices[t[2]];
+      CHECK(exact::orient2d(a.data(), b.data(), c.data()) == 1);
+      area += 0.5 * (b - a).cross(c - a).z();
+      for (int k = 0; k < 3; ++k) {
+        ++sides[{t[k], t[(k + 1) % 3]}];
+        --sides[{t[(k + 1) % 3], t[k]}];
+      }
+    }
+    double whole = 0;
+    const auto c = m.face(1);
+    for (std::size_t i = 0; i < c.size(); ++i) {
+      const VertexId v = c[i], w = c[(i + 1) % c.size()];
+      whole += 0.5 * m.vertices[v].cross(m.vertices[w]).z();
+      --sides[{v, w}];
+      ++sides[{w, v}];
+    }
+    CHECK(area == doctest::Approx(whole));
+    CHECK(std::all_of(sides.begin(), sides.end(), [](const auto& s) { return s.second == 0; }));
+  }
+}
+
+TEST_CASE("turned boxes never part what has a point in common") {
+  std::mt19937_64 random(5);
+  const auto number = [&] { return static_cast<double>(random() % 4096) / 2048 - 1; };
+  int apart = 0;
+  for (int i = 0; i < 20000; ++i) {
+    const Eigen::Vector3d shared(number(), number(), number());
+    const auto about = [&](double size) {
+      std::vector<Eigen::Vector3d> points = {shared};
+      for (int k = 0; k < 3; ++k)
+        points.push_back(
+            (shared + size * Eigen::Vector3d(number(), number(), number())).cwiseMin(1).cwiseMax(-1));
+      return points;
+    };
+    const double size = std::ldexp(1.0, -static_cast<int>(random() % 40));
+    std::vector<Eigen::Vector3d> a = about(size), b = about(1);
+    CHECK_FALSE(surely_apart(OrientedBox::about(a), OrientedBox::about(b)));
+    for (Eigen::Vector3d& p : a) p += Eigen::Vector3d(3 * size, 0, 0);
+    apart += surely_apart(OrientedBox::about(a), OrientedBox::about(b));
+  }
+  CHECK(apart > 1000);
+}
+
+}  // namespace
+}  // namespace lrb::test
