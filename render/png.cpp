@@ -5,16 +5,17 @@
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
-#include <fstream>
 #include <iterator>
 #include <limits>
 #include <memory>
+#include <optional>
 
 #include <unistd.h>
 #include <zlib.h>
 
 #include "engine/core/atomic_file.hpp"
 #include "engine/core/error.hpp"
+#include "engine/core/file_bytes.hpp"
 
 namespace {
 
@@ -142,6 +143,79 @@ void decode_extras(std::span<const std::uint8_t> bytes, DecodedPng& out) {
   }
 }
 
+/// What the header says of the pixels.
+struct Header {
+  std::uint64_t width, height;
+  std::uint64_t raw_bytes;  ///< of the rows as they are compressed, interlaced ones a little more
+};
+
+/// Nothing if the header is damaged.
+std::optional<Header> header_of(std::span<const std::uint8_t> bytes) {
+  if (bytes.size() < kHeaderEnd || std::memcmp(bytes.data() + 12, "IHDR", 4) != 0) return std::nullopt;
+  constexpr std::uint64_t kChannels[] = {1, 0, 3, 1, 2, 0, 4};
+  const std::uint64_t width = get_u32(bytes, 16), height = get_u32(bytes, 20);
+  const unsigned depth = bytes[24], colour = bytes[25];
+  constexpr std::uint64_t kLongest = 1 << 24;
+  if (colour >= std::size(kChannels) || depth > 16 || width > kLongest || height > kLongest)
+    return std::nullopt;
+  return Header{width, height, height * (1 + (width * kChannels[colour] * depth + 7) / 8)};
+}
+
+/// The compressed pixels, part after part.
+std::vector<std::span<const std::uint8_t>> data_chunks(std::span<const std::uint8_t> bytes) {
+  std::vector<std::span<const std::uint8_t>> out;
+  for (std::size_t at = kSignature; at + 12 <= bytes.size();) {
+    const std::size_t length = get_u32(bytes, at);
+    if (length > bytes.size() - at - 12) break;
+    if (std::memcmp(bytes.data() + at + 4, "IDAT", 4) == 0) out.push_back(bytes.subspan(at + 8, length));
+    at += 12 + length;
+  }
+  return out;
+}
+
+/// Whether the compressed pixels unpack to more than `most` bytes, without keeping them.
+bool unpacks_beyond(const std::vector<std::span<const std::uint8_t>>& chunks, std::uint64_t most) {
+  z_stream stream{};
+  if (inflateInit(&stream) != Z_OK) throw EnvironmentError("zlib cannot begin to unpack: out of memory?");
+  const std::unique_ptr<z_stream, decltype(&inflateEnd)> end(&stream, &inflateEnd);
+  Bytes unpacked(std::size_t{1} << 16);
+  std::uint64_t total = 0;
+  for (const std::span<const std::uint8_t> chunk : chunks) {
+    stream.next_in = const_cast<Bytef*>(chunk.data());
+    stream.avail_in = static_cast<uInt>(chunk.size());
+    do {
+      stream.next_out = unpacked.data();
+      stream.avail_out = static_cast<uInt>(unpacked.size());
+      const int result = inflate(&stream, Z_NO_FLUSH);
+      total += unpacked.size() - stream.avail_out;
+      if (total > most) return true;
+      if (result != Z_OK) return false;  // the end, or damage, which the decoder will find
+    } while (stream.avail_out == 0 || stream.avail_in > 0);
+  }
+  return false;
+}
+
+/// Refuses a file that takes far more memory than its bytes and its pixels ask for, before it does.
+void check_size(std::span<const std::uint8_t> bytes, const std::string& name, std::uint64_t most_pixels) {
+  const std::optional<Header> header = header_of(bytes);
+  if (!header) return;  // the decoder says what is wrong
+  const std::string size =
+      std::to_string(header->width) + "x" + std::to_string(header->height) + " pixels";
+  if (header->width * header->height > most_pixels)
+    throw InputError(name + ": has " + size + ", more than the " + std::to_string(most_pixels) +
+                     " that are expected at most");
+  constexpr std::uint64_t kDeflateMost = 1032;  // bytes from one, by its format
+  const auto chunks = data_chunks(bytes);
+  std::uint64_t packed = 0;
+  for (const auto chunk : chunks) packed += chunk.size();
+  if (header->raw_bytes > kDeflateMost * packed)
+    throw InputError(name + ": not a readable PNG (" + size + " cannot be in " + std::to_string(packed) +
+                     " bytes)");
+  const std::uint64_t enough = 2 * header->raw_bytes + (std::uint64_t{1} << 20);
+  if (kDeflateMost * packed > enough && unpacks_beyond(chunks, enough))
+    throw InputError(name + ": not a readable PNG (its data unpack to more than its " + size + ")");
+}
+
 }  // namespace
 
 Bytes encode_png(const Image& image, const PngOptions& options) {
@@ -161,7 +235,9 @@ Bytes encode_png(const Image& image, const PngOptions& options) {
   return out;
 }
 
-DecodedPng decode_png(std::span<const std::uint8_t> bytes, const std::string& name) {
+DecodedPng decode_png(std::span<const std::uint8_t> bytes, const std::string& name,
+                      std::uint64_t most_pixels) {
+  check_size(bytes, name, most_pixels);
   int width = 0, height = 0, channels = 0;
   const std::unique_ptr<stbi_uc, decltype(&stbi_image_free)> pixels(
       stbi_load_from_memory(bytes.data(), static_cast<int>(bytes.size()), &width, &height, &channels, 4),
@@ -180,11 +256,10 @@ void write_png(const Image& image, const std::string& path, const PngOptions& op
   write_file(path, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
 }
 
-DecodedPng read_png(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  if (!file) throw InputError(path + ": cannot be opened: does it exist, and may it be read?");
-  const std::vector<char> bytes((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
-  return decode_png({reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()}, path);
+DecodedPng read_png(const std::string& path, std::uint64_t most_pixels) {
+  const std::string bytes = read_file(path);
+  return decode_png({reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()},
+                    printable_name(path), most_pixels);
 }
 
 }  // namespace lrb::render

@@ -28,13 +28,18 @@ struct DecodedPng {
   std::vector<PngText> text;
   double dpi = 0;  ///< 0: none given
 };
-/// Throws InputError with `name` in it if the bytes are no PNG, or a damaged one.
-DecodedPng decode_png(std::span<const std::uint8_t> bytes, const std::string& name = "PNG");
+/// Pixels of a picture at most, unless fewer are expected: 0.5 GB of them.
+inline constexpr std::uint64_t kMostPixels = std::uint64_t{1} << 27;
+
+/// Throws InputError with `name` in it if the bytes are no PNG, or a damaged one, or one of more pixels than
+/// `most_pixels`, or one that unpacks to much more than its pixels: before memory is taken for that.
+DecodedPng decode_png(std::span<const std::uint8_t> bytes, const std::string& name = "PNG",
+                      std::uint64_t most_pixels = kMostPixels);
 
 /// Whole or not at all (AtomicFile): no half-written picture is ever seen under its name. Throws InputError
 /// if the path is at fault, EnvironmentError if the machine is.
 void write_png(const Image& image, const std::string& path, const PngOptions& options = {});
 /// Throws InputError if the file cannot be read.
-DecodedPng read_png(const std::string& path);
+DecodedPng read_png(const std::string& path, std::uint64_t most_pixels = kMostPixels);
 
 }  // namespace lrb::render

@@ -7,6 +7,7 @@
 
 #include "trace/hex.hpp"
 #include "trace/names.hpp"
+#include "trace/record_fields.hpp"
 
 namespace lrb::trace {
 
@@ -27,6 +28,12 @@ std::string words(const std::optional<Separation>& s) {
   return s ? "wrappers of " + std::to_string(s->face_count[0]) + " and " + std::to_string(s->face_count[1]) +
                  " faces"
            : "none";
+}
+std::string words(const std::vector<std::uint32_t>& values) {
+  std::string out = "[";
+  for (const std::uint32_t value : values)
+    out.append(out.size() > 1 ? ", " : "").append(std::to_string(value));
+  return out + "]";
 }
 std::string words(bool value) {
   return value ? "true" : "false";
@@ -59,7 +66,7 @@ class Comparison {
     if (!found_) found_ = Divergence{event_, step_, std::move(what), std::move(expected), std::move(actual)};
   }
   template <class T>
-  void same(const char* what, const T& expected, const T& actual) {
+  void same(const std::string& what, const T& expected, const T& actual) {
     if (!found_ && expected != actual) found(what, words(expected), words(actual));
   }
   void same_or_none(const std::string& what, std::uint32_t expected, std::uint32_t actual) {
@@ -85,15 +92,21 @@ void compare_bodies(Comparison& c, const TraceHeader& x, const TraceHeader& y) {
   }
 }
 
-void compare_requests(Comparison& c, const CollideRequest& x, const CollideRequest& y) {
-  c.same("request: mode", x.mode, y.mode);
-  c.same("request: recursion", x.recursion, y.recursion);
-  c.same("request: predicates", x.predicates, y.predicates);
-  c.same("request: wrapper", x.wrapper, y.wrapper);
-  c.same("request: tolerance", x.tolerance, y.tolerance);
-  c.same("request: max_tests", x.max_tests, y.max_tests);
-  c.same("request: max_time", x.max_time, y.max_time);
-  c.same("request: separation", x.separation, y.separation);
+/// Compares the fields of two records; `before` stands before their names.
+template <class Record>
+void compare_fields(Comparison& c, const Record& x, const Record& y, const std::string& before) {
+  for_each_field<Record>([&](const auto& field) {
+    const auto &expected = x.*field.member, &actual = y.*field.member;
+    if constexpr (std::is_same_v<decltype(expected), const Counters&>) {
+      compare_fields(c, expected, actual, "counter ");
+    } else if constexpr (std::is_same_v<decltype(expected), const std::uint64_t&>) {
+      if (field.form == Form::hash && expected != actual)
+        return c.found(before + std::string(field.name), to_hex(expected), to_hex(actual));
+      c.same(before + std::string(field.name), expected, actual);
+    } else {
+      c.same(before + std::string(field.name), expected, actual);
+    }
+  });
 }
 
 void compare_events(Comparison& c, const Event& x, const Event& y) {
@@ -115,28 +128,8 @@ void compare_events(Comparison& c, const Event& x, const Event& y) {
 
 void compare_results(Comparison& c, const Step& x, const Step& y) {
   c.same("step finished", x.finished, y.finished);
-  const StepResult &p = x.result, &q = y.result;
-  c.same("relation", p.relation, q.relation);
-  c.same("interiors overlap", p.interiors_overlap, q.interiors_overlap);
-  c.same("pairs", p.pair_count, q.pair_count);
-  if (p.fingerprint != q.fingerprint)
-    c.found("fingerprint of the pairs", to_hex(p.fingerprint), to_hex(q.fingerprint));
-  c.same("error bound", p.error_bound, q.error_bound);
-  c.same("finished", p.finished, q.finished);
-  if (!equal(p.separation, q.separation))
-    c.found("certificate of separation", words(p.separation), words(q.separation));
+  compare_fields(c, x.result, y.result, "");
   c.same("events seen", x.events_seen, y.events_seen);
-  const Counters &m = p.counters, &n = q.counters;
-  c.same("counter face_tests", m.face_tests, n.face_tests);
-  c.same("counter real_tests", m.real_tests, n.real_tests);
-  c.same("counter exact_fallbacks", m.exact_fallbacks, n.exact_fallbacks);
-  c.same("counter node_pairs", m.node_pairs, n.node_pairs);
-  c.same("counter box_tests", m.box_tests, n.box_tests);
-  c.same("counter prefilter_tests", m.prefilter_tests, n.prefilter_tests);
-  c.same("counter refinements", m.refinements, n.refinements);
-  c.same("counter regions_opened", m.regions_opened, n.regions_opened);
-  if (m.face_tests_by_level != n.face_tests_by_level)
-    c.found("counter face_tests_by_level", "a list", "another");
 }
 
 void compare_step_events(Comparison& c, const Trace& x, const Trace& y, std::size_t step) {
@@ -200,7 +193,7 @@ std::string Divergence::message() const {
 std::optional<Divergence> first_divergence(const Trace& expected, const Trace& actual) {
   Comparison c;
   compare_bodies(c, expected.header, actual.header);
-  compare_requests(c, expected.header.request, actual.header.request);
+  compare_fields(c, expected.header.request, actual.header.request, "request: ");
   if (!c.differs()) compare_steps(c, expected, actual);
   return std::move(c).result();
 }

@@ -72,7 +72,7 @@ void JsonWriter::separate() {
     return;
   }
   Level& level = levels_.back();
-  if (!level.empty) out_->raw(level.broken ? "," : ", ");
+  if (!level.empty) out_->raw(level.broken || broken_levels_ == kCompact ? "," : ", ");
   level.empty = false;
   if (level.broken) break_line(levels_.size());
 }
@@ -80,7 +80,7 @@ void JsonWriter::separate() {
 JsonWriter& JsonWriter::key(std::string_view name) {
   separate();
   out_->string(name);
-  out_->raw(": ");
+  out_->raw(broken_levels_ == kCompact ? ":" : ": ");
   after_key_ = true;
   return *this;
 }

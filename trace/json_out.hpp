@@ -75,9 +75,12 @@ class JsonOut {
   std::size_t used_ = 0;
 };
 
-/// Structured: brackets, commas and line breaks come by themselves. For metadata and summaries.
+/// Structured: brackets, commas and line breaks come by themselves. For metadata, summaries and answers.
 class JsonWriter {
  public:
+  /// In place of a number of broken levels: all on one line, without spaces.
+  static constexpr int kCompact = -1;
+
   /// Containers nested deeper than `broken_levels` stay on one line. `indent` is where the outermost one
   /// stands.
   JsonWriter(JsonOut& out, int broken_levels, int indent = 0)

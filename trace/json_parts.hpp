@@ -11,9 +11,11 @@ namespace lrb::trace {
 void write_json(JsonWriter& w, const BodyInfo& body);
 void write_json(JsonWriter& w, const Counters& counters);
 void write_json(JsonWriter& w, const CollideRequest& request);
+/// {"faces", "refined"}, each of A and B.
+void write_json(JsonWriter& w, const Separation& separation);
 /// Row-major 3x4, as in pose files.
 void write_json(JsonWriter& w, const Pose& pose);
-/// The members of a step's answer to `request`. An error bound that is not known is null.
+/// The members of a step's answer to `request`, without brackets.
 void write_answer(JsonWriter& w, const StepResult& result, const CollideRequest& request);
 /// {"name", "hash"}
 void write_scenario(JsonWriter& w, const TraceHeader& header);

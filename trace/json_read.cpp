@@ -1,9 +1,14 @@
 #include "trace/json_read.hpp"
 
 #include <algorithm>
+#include <limits>
+#include <optional>
+#include <type_traits>
+#include <vector>
 
 #include "engine/core/error.hpp"
 #include "engine/core/file_bytes.hpp"
+#include "trace/record_fields.hpp"
 
 namespace lrb::trace {
 
@@ -31,6 +36,47 @@ std::string line_and_column(std::string_view text, std::size_t offset) {
 /// Containers may nest this deep; ours need six levels.
 constexpr int kMaxDepth = 32;
 
+/// Bounds what the parser holds by what it has read. A "0," of two bytes becomes 16, an "[]," of three about
+/// 60, while what we write takes more bytes as text than as values, but for poses of round numbers. An event
+/// is held until it is complete, the rest to the end.
+class MemoryBudget {
+ public:
+  explicit MemoryBudget(const std::string& name) : name_(name) {}
+
+  void add(Json::parse_event_t event, const Json& j) {
+    constexpr std::uint64_t kValue = 16, kContainer = 64, kMember = 80;  // bytes of nlohmann's tree, about
+    switch (event) {
+      case Json::parse_event_t::object_start:
+      case Json::parse_event_t::array_start:
+        held_ += kContainer;
+        break;
+      case Json::parse_event_t::key:
+        held_ += kMember + j.get_ref<const std::string&>().size();
+        break;
+      case Json::parse_event_t::value:
+        held_ += kValue + (j.is_string() ? j.get_ref<const std::string&>().size() : 0);
+        break;
+      case Json::parse_event_t::object_end:
+      case Json::parse_event_t::array_end:
+        break;
+    }
+  }
+  /// Throws InputError if more is held than so much text may take.
+  void check(std::uint64_t text) const {
+    constexpr std::uint64_t kFree = std::uint64_t{16} << 20, kPerByte = 8;
+    if (held_ > kFree + kPerByte * text)
+      throw InputError(name_ + ": its values take more than " + std::to_string(kPerByte) +
+                       " times the memory of its text, which no trace of lrbscope does: it is damaged");
+  }
+  /// What was held last, an event, has gone.
+  void forget_from(std::uint64_t held) { held_ = held; }
+  std::uint64_t held() const { return held_; }
+
+ private:
+  const std::string& name_;
+  std::uint64_t held_ = 0;
+};
+
 }  // namespace
 
 void TraceNode::fail(const std::string& expected) const {
@@ -52,19 +98,37 @@ std::string TraceNode::pointer() const {
 
 Json parse_events(std::string_view text, const std::string& name,
                   const std::function<void(const TraceNode&)>& take) {
+  constexpr std::uint64_t kLargestEvent = std::uint64_t{1} << 16;  // bytes; ours take less than 2000
   bool in_events = false;
   std::size_t elements = 0;
+  std::uint64_t before_event = 0;
+  MemoryBudget budget(name);
+  static const Json unfinished = Json::object(), some_array = Json::array();
+  const TraceNode root(unfinished, name);
+  const TraceNode array = root.at("traceEvents");
   /// The parser's callback; false drops a value that is no longer needed.
   const auto on_event = [&](int depth, Json::parse_event_t event, Json& j) {
+    using Parsed = Json::parse_event_t;
     if (depth > kMaxDepth)
       throw InputError(name + ": containers nested more than " + std::to_string(kMaxDepth) +
                        " deep: this is not a trace of lrbscope");
-    if (event == Json::parse_event_t::key && depth == 1) in_events = j == "traceEvents";
-    if (event != Json::parse_event_t::object_end || depth != 2 || !in_events) return true;
-    static const Json unfinished = Json::object();
-    const TraceNode root(unfinished, name);
-    const TraceNode array = root.at("traceEvents");
+    budget.add(event, j);
+    if (event == Parsed::key && depth == 1) in_events = j == "traceEvents";
+    if (!in_events) {
+      budget.check(text.size());
+      return true;
+    }
+    const bool is_value = event == Parsed::value, is_array = event == Parsed::array_start;
+    if (depth == 1 && (is_value || event == Parsed::object_start)) array.fail("an array of events");
+    if (depth == 2 && (is_value || is_array))
+      TraceNode::element(is_array ? some_array : j, array, elements).fail("an event, {...}");
+    if (depth == 2 && event == Parsed::object_start) before_event = budget.held();
+    if (depth > 1 && budget.held() - before_event > kLargestEvent)
+      throw InputError(name + ": /traceEvents/" + std::to_string(elements) +
+                       ": is longer than any event of lrbscope; the trace is damaged: record it again");
+    if (event != Parsed::object_end || depth != 2) return true;
     take(TraceNode::element(j, array, elements++));
+    budget.forget_from(before_event);
     return false;
   };
   try {
@@ -97,36 +161,82 @@ void check_format(const TraceNode& metadata, const std::string& name, std::strin
   if (found == 0) metadata.at("version").fail("a version from 1");
 }
 
+namespace {
+
+void read_value(const TraceNode& node, std::vector<std::uint32_t>& values) {
+  const std::size_t count = node.array_size();
+  for (std::size_t i = 0; i < count; ++i) values.push_back(node.at(i).integer<std::uint32_t>());
+}
+
+void read_value(const TraceNode& node, Separation& s) {
+  const TraceNode faces = node.at("faces"), refined = node.at("refined");
+  if (faces.array_size() != 2) faces.fail("two numbers, of A and B");
+  if (refined.array_size() != 2) refined.fail("two lists of regions, of A and B");
+  for (std::size_t side = 0; side < 2; ++side) {
+    s.face_count[side] = faces.at(side).integer<std::uint32_t>();
+    read_value(refined.at(side), s.refined[side]);
+  }
+}
+
+template <class Record>
+void read_record(const TraceNode& node, Record& record, bool coarse = false);
+
+template <class Record, class Value>
+void read_field(const TraceNode& node, const Field<Record, Value>& field, Value& value) {
+  if constexpr (std::is_enum_v<Value>)
+    value = node.named<Value>();
+  else if constexpr (std::is_same_v<Value, bool>)
+    value = node.boolean();
+  else if constexpr (std::is_same_v<Value, std::string>)
+    value = node.string();
+  else if constexpr (std::is_same_v<Value, std::uint32_t>)
+    value = node.integer<std::uint32_t>(field.form == Form::id ? kMaxId : kNull);
+  else if constexpr (std::is_same_v<Value, std::uint64_t>)
+    value = field.form == Form::hash ? node.hash() : node.integer<std::uint64_t>();
+  else if constexpr (std::is_same_v<Value, double>)
+    value = field.form == Form::or_infinite && node.is_null() ? std::numeric_limits<double>::infinity()
+                                                              : node.least(0);
+  else if constexpr (std::is_same_v<Value, std::optional<Separation>>)
+    read_value(node, value.emplace());
+  else if constexpr (std::is_same_v<Value, Counters>)
+    read_record(node, value);
+  else
+    read_value(node, value);
+}
+
+/// Reads what the record's table says must be there, and of the rest what is.
+template <class Record>
+void read_record(const TraceNode& node, Record& record, bool coarse) {
+  for_each_field<Record>([&](const auto& field) {
+    const char* const name = field.name.data();
+    const bool must_be = field.kept == Kept::always || (field.kept == Kept::if_coarse && coarse);
+    if (!node.has(name) && (!must_be || field.form == Form::or_infinite)) {
+      if (must_be) node.at(name).fail("a number of at least 0, or null");
+      return;
+    }
+    if (field.kept == Kept::if_coarse && !coarse) return;
+    read_field(node.at(name), field, record.*field.member);
+  });
+}
+
+}  // namespace
+
 BodyInfo read_body(const TraceNode& node) {
   BodyInfo b;
-  b.name = node.at("name").string();
-  b.source = node.at("source").string();
-  b.hash = node.at("hash").hash();
-  b.dim = node.at("dim").integer<std::uint32_t>();
+  read_record(node, b);
   if (b.dim != 2 && b.dim != 3) node.at("dim").fail("2 or 3");
-  b.closed = node.at("closed").boolean();
-  b.real_faces = node.at("real_faces").integer<std::uint32_t>(kMaxId);
-  b.total_faces = node.at("total_faces").integer<std::uint32_t>(kMaxId);
-  b.outer_faces = node.at("outer_faces").integer<std::uint32_t>(kMaxId);
-  b.regions = node.at("regions").integer<std::uint32_t>(kMaxId);
-  b.layers = node.at("layers").integer<std::uint32_t>(kMaxId);
-  b.real_simplices = node.at("real_simplices").integer<std::uint32_t>(kMaxId);
-  b.simplices = node.at("simplices").integer<std::uint32_t>(kMaxId);
   return b;
 }
 
 CollideRequest read_request(const TraceNode& node) {
   CollideRequest r;
-  r.mode = node.at("mode").named<Mode>();
-  r.recursion = node.at("recursion").named<Recursion>();
-  r.predicates = node.at("predicates").named<Predicates>();
-  r.wrapper = node.at("wrapper").named<WrapperMode>();
-  r.contacts = node.at("contacts").boolean();
-  r.interiors_overlap = node.at("interiors_overlap").boolean();
-  if (node.has("tolerance")) r.tolerance = node.at("tolerance").least(0);
-  if (node.has("max_tests")) r.max_tests = node.at("max_tests").integer<std::uint64_t>();
-  if (node.has("max_time")) r.max_time = node.at("max_time").least(0);
-  if (node.has("separation")) r.separation = node.at("separation").boolean();
+  read_record(node, r);
+  return r;
+}
+
+StepResult read_answer(const TraceNode& node, const CollideRequest& request) {
+  StepResult r;
+  read_record(node, r, request.is_coarse());
   return r;
 }
 

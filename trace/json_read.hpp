@@ -101,6 +101,8 @@ void check_format(const TraceNode& metadata, const std::string& name, std::strin
 
 BodyInfo read_body(const TraceNode& node);
 CollideRequest read_request(const TraceNode& node);
+/// What write_answer() wrote of an answer to `request`.
+StepResult read_answer(const TraceNode& node, const CollideRequest& request);
 Pose read_pose(const TraceNode& node);
 
 }  // namespace lrb::trace

@@ -51,43 +51,17 @@ bool equal(const Pose& x, const Pose& y) {
          std::equal(x.t.data(), x.t.data() + 3, y.t.data(), same);
 }
 
-bool equal(const Counters& x, const Counters& y) {
-  return x.face_tests == y.face_tests && x.real_tests == y.real_tests &&
-         x.exact_fallbacks == y.exact_fallbacks && x.node_pairs == y.node_pairs &&
-         x.box_tests == y.box_tests && x.prefilter_tests == y.prefilter_tests &&
-         x.refinements == y.refinements && x.regions_opened == y.regions_opened &&
-         x.face_tests_by_level == y.face_tests_by_level;
-}
-
-bool equal(const std::optional<Separation>& x, const std::optional<Separation>& y) {
-  return x.has_value() == y.has_value() &&
-         (!x || (x->refined == y->refined && x->face_count == y->face_count));
-}
-
-bool equal(const StepResult& x, const StepResult& y) {
-  return x.relation == y.relation && x.interiors_overlap == y.interiors_overlap &&
-         x.pair_count == y.pair_count && x.fingerprint == y.fingerprint && equal(x.counters, y.counters) &&
-         x.error_bound == y.error_bound && x.finished == y.finished && equal(x.separation, y.separation);
-}
-
-bool equal(const CollideRequest& x, const CollideRequest& y) {
-  return x.mode == y.mode && x.recursion == y.recursion && x.predicates == y.predicates &&
-         x.wrapper == y.wrapper && x.contacts == y.contacts && x.interiors_overlap == y.interiors_overlap &&
-         x.tolerance == y.tolerance && x.max_tests == y.max_tests && x.max_time == y.max_time &&
-         x.separation == y.separation;
-}
-
 namespace {
 
 bool equal(const Step& x, const Step& y) {
   return x.index == y.index && trace::equal(x.pose_a, y.pose_a) && trace::equal(x.pose_b, y.pose_b) &&
          x.first_event == y.first_event && x.events_seen == y.events_seen && x.finished == y.finished &&
-         trace::equal(x.result, y.result);
+         x.result == y.result;
 }
 
 bool equal(const TraceHeader& x, const TraceHeader& y) {
   return x.lrbscope == y.lrbscope && x.scenario == y.scenario && x.scenario_hash == y.scenario_hash &&
-         x.bodies == y.bodies && trace::equal(x.request, y.request) && x.clock == y.clock &&
+         x.bodies == y.bodies && x.request == y.request && x.clock == y.clock &&
          x.event_cap == y.event_cap;
 }
 
@@ -169,7 +143,7 @@ class Checker {
     };
     if (static_cast<std::size_t>(e.kind) >= kEventKinds) bad("unknown kind");
     if (e.side != Side::a && e.side != Side::b) bad("unknown side");
-    if (static_cast<std::size_t>(e.meet) >= std::size(Names<exact::Meet>::values)) bad("unknown meet");
+    if (static_cast<std::size_t>(e.meet) >= kWords<exact::Meet>.size()) bad("unknown meet");
     if (e.cause != kNull && e.cause >= id) bad("its cause is not an earlier event");
     const std::size_t bodies = t_.header.bodies.size();
     switch (e.kind) {
@@ -185,7 +159,7 @@ class Checker {
         if (e.a >= t_.header.bodies[static_cast<std::size_t>(e.side)].regions) bad("there is no such region");
         break;
       case EventKind::result:
-        if (e.a >= std::size(Names<Relation>::values)) bad("unknown relation");
+        if (e.a >= kWords<Relation>.size()) bad("unknown relation");
         break;
       case EventKind::step:
         break;

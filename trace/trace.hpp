@@ -11,6 +11,7 @@
 #include <string_view>
 #include <vector>
 
+#include "engine/core/enum_words.hpp"
 #include "engine/core/ids.hpp"
 #include "engine/core/pose.hpp"
 #include "engine/lrb/lrb_rep.hpp"
@@ -57,6 +58,9 @@ enum class Clock : std::uint8_t {
   event,  ///< the event's number: the same run gives the same bytes
   wall,   ///< steady_clock, read once an event
 };
+constexpr auto words_of(Clock) {
+  return std::to_array<EnumWord<Clock>>({{Clock::event, "event"}, {Clock::wall, "wall"}});
+}
 
 /// What a trace says about a body, enough to refuse another one.
 struct BodyInfo {
@@ -88,6 +92,8 @@ struct StepResult {
   double error_bound = 0;  ///< as in CollideResult; it and `finished` are kept of coarse queries alone
   bool finished = true;
   std::optional<Separation> separation = {};
+
+  friend bool operator==(const StepResult&, const StepResult&) = default;
 };
 
 /// One time step: one query of the two bodies, both wrappers starting as the outermost ones.
@@ -127,10 +133,6 @@ struct Trace {
 
 /// Equal in every bit that a file must keep (poses: the doubles' bits).
 bool operator==(const Trace& x, const Trace& y);
-bool equal(const Counters& x, const Counters& y);
-bool equal(const std::optional<Separation>& x, const std::optional<Separation>& y);
-bool equal(const StepResult& x, const StepResult& y);
-bool equal(const CollideRequest& x, const CollideRequest& y);
 bool equal(const Pose& x, const Pose& y);
 
 /// Checks that all indices are in range and steps and events fit together. Throws InputError: "`where`: event

@@ -1,11 +1,10 @@
 /// Traces on disk: bytes in and out, compressed or not. What the bytes say is trace_json_*.cpp's affair.
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
-#include <filesystem>
 #include <memory>
 #include <string>
-#include <system_error>
 #include <vector>
 
 #include <zlib.h>
@@ -73,10 +72,17 @@ struct GzClose {
                    "; give a trace.json or trace.json.gz");
 }
 
+/// What a file may unpack to: our traces, at gzip's best, to 15 times their size. A file of zeros would come
+/// to 1000 times.
+std::uint64_t most_unpacked(std::uint64_t packed) {
+  constexpr std::uint64_t kFree = std::uint64_t{8} << 20, kRatio = 60;
+  return kFree + kRatio * packed;
+}
+
 /// All bytes of a file, decompressed if they are gzip's.
 std::string read_all(const std::string& path, std::uint64_t max_bytes) {
-  std::error_code ignored;
-  if (std::filesystem::is_directory(path, ignored)) fail_to_read(path, "it is a folder");
+  const std::string_view kind = what_is_no_file(path);
+  if (!kind.empty()) fail_to_read(path, "it is " + std::string(kind));
   const std::unique_ptr<gzFile_s, GzClose> file(gzopen(path.c_str(), "rb"));
   if (!file) fail_to_read(path, std::strerror(errno));
   constexpr unsigned kChunk = 1 << 18;
@@ -94,6 +100,10 @@ std::string read_all(const std::string& path, std::uint64_t max_bytes) {
     if (got == 0) return text;
     if (text.size() + static_cast<std::size_t>(got) > max_bytes)
       fail_to_read(path, "it has more than " + std::to_string(max_bytes) + " bytes of text");
+    const auto packed = static_cast<std::uint64_t>(std::max<z_off_t>(gzoffset(file.get()), 0));
+    if (gzdirect(file.get()) == 0 && text.size() + static_cast<std::size_t>(got) > most_unpacked(packed))
+      fail_to_read(path, "its first " + std::to_string(packed) + " bytes unpack to more than " +
+                             std::to_string(most_unpacked(packed)) + ", which no trace of lrbscope does");
     text.append(chunk.data(), static_cast<std::size_t>(got));
   }
 }

@@ -1,6 +1,5 @@
 /// Reads what trace_json_write.cpp wrote.
 
-#include <limits>
 #include <string>
 
 #include "trace/json_read.hpp"
@@ -99,52 +98,8 @@ class Reader {
     s.pose_a = read_pose(node.at("pose_a"));
     if (t_.header.bodies.size() > 1) s.pose_b = read_pose(node.at("pose_b"));
     s.finished = node.has("result");
-    if (s.finished) read_result(node.at("result"), s.result);
+    if (s.finished) s.result = read_answer(node.at("result"), t_.header.request);
     return s;
-  }
-
-  void read_coarse(const TraceNode& node, StepResult& r) const {
-    if (t_.header.request.is_coarse()) {
-      const TraceNode bound = node.at("error_bound");
-      r.error_bound = bound.is_null() && node.has("error_bound") ? std::numeric_limits<double>::infinity()
-                                                                 : bound.least(0);
-      r.finished = node.at("finished").boolean();
-    }
-    if (!node.has("separation")) return;
-    const TraceNode separation = node.at("separation");
-    const TraceNode faces = separation.at("faces"), refined = separation.at("refined");
-    if (faces.array_size() != 2) faces.fail("two numbers, of A and B");
-    if (refined.array_size() != 2) refined.fail("two lists of regions, of A and B");
-    r.separation.emplace();
-    for (std::size_t side = 0; side < 2; ++side) {
-      r.separation->face_count[side] = faces.at(side).integer<std::uint32_t>();
-      const TraceNode regions = refined.at(side);
-      const std::size_t count = regions.array_size();
-      for (std::size_t i = 0; i < count; ++i)
-        r.separation->refined[side].push_back(regions.at(i).integer<std::uint32_t>());
-    }
-  }
-
-  void read_result(const TraceNode& node, StepResult& r) const {
-    r.relation = node.at("relation").named<Relation>();
-    r.interiors_overlap = node.at("interiors_overlap").named<Answer>();
-    r.pair_count = node.at("pairs").integer<std::uint64_t>();
-    r.fingerprint = node.at("fingerprint").hash();
-    read_coarse(node, r);
-    const TraceNode counters = node.at("counters");
-    Counters& c = r.counters;
-    c.face_tests = counters.at("face_tests").integer<std::uint64_t>();
-    c.real_tests = counters.at("real_tests").integer<std::uint64_t>();
-    c.exact_fallbacks = counters.at("exact_fallbacks").integer<std::uint64_t>();
-    c.node_pairs = counters.at("node_pairs").integer<std::uint64_t>();
-    c.box_tests = counters.at("box_tests").integer<std::uint64_t>();
-    c.prefilter_tests = counters.at("prefilter_tests").integer<std::uint64_t>();
-    c.refinements = counters.at("refinements").integer<std::uint64_t>();
-    c.regions_opened = counters.at("regions_opened").integer<std::uint64_t>();
-    const TraceNode levels = counters.at("face_tests_by_level");
-    const std::size_t count = levels.array_size();
-    for (std::size_t i = 0; i < count; ++i)
-      c.face_tests_by_level.push_back(levels.at(i).integer<std::uint32_t>());
   }
 
   void check_counts(const TraceNode& node) {

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <memory>
 
+#include <sys/vfs.h>
 #include "engine/core/error.hpp"
 
 namespace lrb {
@@ -29,24 +30,55 @@ std::string escaped(std::string_view text, bool keep_high) {
   throw InputError(printable_name(path) + ": " + why);
 }
 
+/// A pipe without a name, as <(...) and | make it: whoever fills it decides how much there is. One with a
+/// name may have nobody at its other end, and opening it waits for somebody.
+bool has_name(const char* fifo) {
+  constexpr long kPipeFileSystem = 0x50495045;  // PIPEFS_MAGIC
+  struct statfs where {};
+  return statfs(fifo, &where) != 0 || static_cast<long>(where.f_type) != kPipeFileSystem;
+}
+
+[[noreturn]] void too_large(const std::string& path, std::uint64_t most) {
+  cannot_read(path, "found more than " + std::to_string(most) +
+                        " bytes, which no file of this kind needs; is it the right one?");
+}
+
 }  // namespace
 
-std::string read_file(const std::string& path) {
+std::string_view what_is_no_file(const std::string& path) {
+  using Kind = std::filesystem::file_type;
   std::error_code ignored;
-  if (std::filesystem::is_directory(path, ignored))
-    cannot_read(path, "found a directory, expected a file; name a file in it");
+  switch (std::filesystem::status(path, ignored).type()) {
+    case Kind::directory:
+      return "a directory";
+    case Kind::character:  // /dev/zero has no end
+    case Kind::block:
+      return "a device";
+    case Kind::fifo:
+      return has_name(path.c_str()) ? "a named pipe" : "";
+    case Kind::socket:
+      return "a socket";
+    default:
+      return "";
+  }
+}
+
+std::string read_file(const std::string& path, std::uint64_t most) {
+  const std::string_view kind = what_is_no_file(path);
+  if (!kind.empty())
+    cannot_read(path, "found " + std::string(kind) + ", expected a file" +
+                          (kind == "a directory" ? "; name a file in it"
+                                                 : "; copy what is in it into a file"));
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"), &std::fclose);
   if (!file) {
     const int reason = errno;
     if (reason == ENOENT) cannot_read(path, "no such file; check the path");
     cannot_read(path, std::string("cannot be opened (") + std::strerror(reason) + "); check its permissions");
   }
-  // /dev/zero has no end. Pipes may be read: whoever fills one decides how much.
-  const auto kind = std::filesystem::status(path, ignored).type();
-  if (kind == std::filesystem::file_type::character || kind == std::filesystem::file_type::block)
-    cannot_read(path, "found a device, expected a file; copy what is on it into a file");
+  std::error_code ignored;
   std::string bytes;
   const auto size = std::filesystem::file_size(path, ignored);
+  if (!ignored && size > most) too_large(path, most);
   if (!ignored) bytes.reserve(size + 1);  // pipes have no size and grow as they come
   static constexpr std::size_t kChunk = std::size_t{1} << 18;
   for (;;) {
@@ -54,6 +86,7 @@ std::string read_file(const std::string& path) {
     bytes.resize(before + kChunk);
     const std::size_t got = std::fread(bytes.data() + before, 1, kChunk, file.get());
     bytes.resize(before + got);
+    if (bytes.size() > most) too_large(path, most);
     if (got == kChunk) continue;
     if (std::ferror(file.get())) cannot_read(path, "reading failed; check the disk or copy the file again");
     return bytes;

@@ -1,12 +1,21 @@
 #pragma once
 
+#include <cstdint>
+#include <limits>
 #include <string>
 #include <string_view>
 
 namespace lrb {
 
-/// The whole file. InputError if it is missing, a directory or unreadable.
-std::string read_file(const std::string& path);
+/// Returns all bytes of a file. Throws InputError if it is missing, unreadable, no file (see below), or has
+/// more than `most` bytes, which are then not read.
+std::string read_file(const std::string& path,
+                      std::uint64_t most = std::numeric_limits<std::uint64_t>::max());
+
+/// Returns what stands at a path in place of a file that can be read to its end: "a directory", "a device",
+/// "a named pipe" (which might wait for ever) or "a socket"; nothing for files, for pipes without a name, as
+/// shells make them, and where nothing is. Does not open it.
+std::string_view what_is_no_file(const std::string& path);
 
 /// `text` for a message: control characters and bytes beyond ASCII's printable ones as \xNN, cut after
 /// `limit` characters, in single quotes. A message stays one line whatever a file contains.

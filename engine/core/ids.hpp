@@ -4,6 +4,8 @@
 #include <cstdint>
 #include <limits>
 
+#include "engine/core/enum_words.hpp"
+
 namespace lrb {
 
 using VertexId = std::uint32_t;  ///< into LrbRep::vertices() / Mesh::vertices
@@ -26,6 +28,9 @@ constexpr bool is_region(CellId cell) {
 
 /// Which of the two bodies of a query.
 enum class Side : std::uint8_t { a = 0, b = 1 };
+constexpr auto words_of(Side) {
+  return std::to_array<EnumWord<Side>>({{Side::a, "A"}, {Side::b, "B"}});
+}
 
 constexpr Side other(Side s) {
   return s == Side::a ? Side::b : Side::a;

@@ -4,11 +4,17 @@
 
 #include <cstdint>
 
+#include "engine/core/enum_words.hpp"
+
 namespace lrb::exact {
 
 /// How two simplices meet. `cross`: their relative interiors share a point and they do not lie in one plane (in
 /// 2D: on one line), so that each passes through the other. `touch`: they share a point, but do not cross.
 enum class Meet : std::uint8_t { disjoint = 0, touch = 1, cross = 2 };
+constexpr auto words_of(Meet) {
+  return std::to_array<EnumWord<Meet>>(
+      {{Meet::disjoint, "disjoint"}, {Meet::touch, "touch"}, {Meet::cross, "cross"}});
+}
 
 /// Two triangles given by their corners (closed sets). Degenerate ones (zero area) never cross.
 Meet meet_triangles(const double* const a[3], const double* const b[3]);

@@ -18,6 +18,10 @@ enum class WrapperMode : std::uint8_t {
   unregularised,  ///< refining a face discards that face alone and adds its region's floor; the region's
                   ///< other lids stay until they are refined themselves
 };
+constexpr auto words_of(WrapperMode) {
+  return std::to_array<EnumWord<WrapperMode>>(
+      {{WrapperMode::regularised, "regularised"}, {WrapperMode::unregularised, "unregularised"}});
+}
 
 class Wrapper {
  public:

@@ -8,7 +8,7 @@ namespace lrb {
 
 /// Every pair of real simplices tested exactly: the slow answer that the fast one is compared with. It shares
 /// the predicates and the definition of world coordinates with the query, and nothing else: no tree, no
-/// boxes.
+/// boxes. Throws InputError beyond kMostPairs.
 struct BruteForceResult {
   std::vector<SimplexPair> pairs;  ///< ascending
   std::vector<exact::Meet> meets;  ///< (|pairs|)

@@ -7,6 +7,11 @@
 /// contacts under lids that nothing touches, and is kept to reproduce the paper's figures and to show where
 /// it fails.
 
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <vector>
+#include "engine/core/enum_words.hpp"
 #include "engine/core/pose.hpp"
 #include "engine/lrb/lrb_rep.hpp"
 #include "engine/query/walk/probe.hpp"

@@ -36,7 +36,7 @@ CollideResult collide(const LrbRep& a, const Pose& pose_a, const LrbRep& b, cons
       CoarseQuery<Probe>(context, request, result, probe).run();
     } else {
       if (request.recursion == Recursion::complete)
-        TreeQuery<Probe>(context, request.mode, result, probe).run();
+        TreeQuery<Probe>(context, request, result, probe).run();
       else
         PaperQuery<Probe>(context, request, result, probe).run();
       context.pair_order.sort(result);

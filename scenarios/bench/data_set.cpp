@@ -25,8 +25,7 @@ Pose pose_from(const json& value) {
 }
 
 PoseClass pose_class_from(const std::string& word) {
-  for (const PoseClass c : kPoseClasses)
-    if (word == to_string(c)) return c;
+  if (const auto c = from_name<PoseClass>(word)) return *c;
   throw InputError("'" + word + "' is no class of poses");
 }
 
@@ -41,11 +40,6 @@ nlohmann::ordered_json pose_json(const Pose& p) {
   return out;
 }
 
-const char* to_string(PoseClass c) {
-  static constexpr const char* kNames[] = {"apart", "shallow", "deep", "identical", "small"};
-  return kNames[static_cast<std::size_t>(c)];
-}
-
 const char* title(PoseClass c) {
   static constexpr const char* kTitles[] = {"0.5 % apart", "shallow, 1 %", "deep, 10 %", "identical pose",
                                             "one body small"};
@@ -57,7 +51,7 @@ std::string write_data_set(const DataSet& set, const std::string& folder) {
   for (const BodyFile& b : set.bodies)
     bodies.push_back({{"file", b.file}, {"faces", b.faces}, {"build_s", b.build_seconds}});
   for (const Question& q : set.questions)
-    questions.push_back({{"class", to_string(q.pose_class)},
+    questions.push_back({{"class", name_of(q.pose_class)},
                          {"a", q.a},
                          {"b", q.b},
                          {"pose_a", pose_json(q.pose_a)},

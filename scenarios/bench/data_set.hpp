@@ -8,6 +8,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 
+#include "engine/core/enum_words.hpp"
 #include "engine/query/collide.hpp"
 
 namespace lrb::bench {
@@ -16,8 +17,14 @@ namespace lrb::bench {
 enum class PoseClass : std::uint8_t { apart, shallow, deep, identical, small };
 inline constexpr PoseClass kPoseClasses[] = {PoseClass::apart, PoseClass::shallow, PoseClass::deep,
                                              PoseClass::identical, PoseClass::small};
-const char* to_string(PoseClass c);  ///< "apart"
-const char* title(PoseClass c);      ///< "0.5 % apart"
+constexpr auto words_of(PoseClass) {
+  return std::to_array<EnumWord<PoseClass>>({{PoseClass::apart, "apart"},
+                                             {PoseClass::shallow, "shallow"},
+                                             {PoseClass::deep, "deep"},
+                                             {PoseClass::identical, "identical"},
+                                             {PoseClass::small, "small"}});
+}
+const char* title(PoseClass c);  ///< "0.5 % apart"
 
 /// A body as an LRB-rep in a file, and what it took to make it.
 struct BodyFile {

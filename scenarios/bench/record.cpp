@@ -38,19 +38,13 @@ Reply reply_from(const json& value) {
   return r;
 }
 
-template <class T, std::size_t n>
-T value_of(const std::string& word, const T (&all)[n], const char* what) {
-  for (const T t : all)
-    if (word == to_string(t)) return t;
+template <class T>
+T value_of(const std::string& word, const char* what) {
+  if (const auto value = from_name<T>(word)) return *value;
   throw InputError("'" + word + "' is no " + what);
 }
 
 }  // namespace
-
-const char* to_string(Outcome o) {
-  static constexpr const char* kNames[] = {"answered", "refused", "crashed", "timed_out"};
-  return kNames[static_cast<std::size_t>(o)];
-}
 
 ordered_json flat(const std::vector<SimplexPair>& pairs) {
   ordered_json out = ordered_json::array();
@@ -72,8 +66,8 @@ ordered_json to_json(const Record& r) {
   ordered_json out = {{"set", r.set}, {"method", r.method}};
   if (r.setting) out["setting"] = *r.setting;
   out["question"] = r.question;
-  out["class"] = to_string(r.pose_class);
-  out["outcome"] = to_string(r.outcome);
+  out["class"] = name_of(r.pose_class);
+  out["outcome"] = name_of(r.outcome);
   if (!r.message.empty()) out["message"] = r.message;
   if (r.outcome != Outcome::answered) return out;
   out["all"] = reply_json(r.all);
@@ -84,16 +78,14 @@ ordered_json to_json(const Record& r) {
 }
 
 Record record_from(const json& value) {
-  static constexpr Outcome kOutcomes[] = {Outcome::answered, Outcome::refused, Outcome::crashed,
-                                          Outcome::timed_out};
   try {
     Record r;
     value.at("set").get_to(r.set);
     value.at("method").get_to(r.method);
     if (value.contains("setting")) r.setting = value.at("setting").get<double>();
     value.at("question").get_to(r.question);
-    r.pose_class = value_of(value.at("class").get<std::string>(), kPoseClasses, "class of poses");
-    r.outcome = value_of(value.at("outcome").get<std::string>(), kOutcomes, "outcome");
+    r.pose_class = value_of<PoseClass>(value.at("class").get<std::string>(), "class of poses");
+    r.outcome = value_of<Outcome>(value.at("outcome").get<std::string>(), "outcome");
     r.message = value.value("message", "");
     if (r.outcome != Outcome::answered) return r;
     r.all = reply_from(value.at("all"));

@@ -15,7 +15,12 @@
 namespace lrb::bench {
 
 enum class Outcome : std::uint8_t { answered, refused, crashed, timed_out };
-const char* to_string(Outcome o);
+constexpr auto words_of(Outcome) {
+  return std::to_array<EnumWord<Outcome>>({{Outcome::answered, "answered"},
+                                           {Outcome::refused, "refused"},
+                                           {Outcome::crashed, "crashed"},
+                                           {Outcome::timed_out, "timed_out"}});
+}
 
 /// The answer in one mode.
 struct Reply {

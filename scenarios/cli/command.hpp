@@ -46,7 +46,7 @@ int main(int argc, char** argv);
 void note(const Globals& globals, const std::vector<std::string>& lines);
 
 /// A word as it can stand in a shell's command line.
-std::string quoted(const std::string& word);
+std::string shell_word(const std::string& word);
 
 /// As JSON on a line. Bytes that are not UTF-8, which a file's name may have, become U+FFFD.
 std::string one_line(const nlohmann::ordered_json& value);

@@ -3,6 +3,7 @@
 #include "scenarios/cli/command.hpp"
 #include "scenarios/cli/options.hpp"
 #include "scenarios/cli/progress.hpp"
+#include "scenarios/io/files.hpp"
 #include "scenarios/crowd/crowd_report.hpp"
 
 namespace lrb::cli {
@@ -22,12 +23,14 @@ int run_crowd_command(const CrowdOptions& o, const Globals& globals) {
   if (o.clock) crowd.clock = *o.clock;
   if (o.no_frames) crowd.frames.at = spec::FrameSpec::At::none;
   const std::string folder = o.folder.empty() ? "out/" + crowd.name : o.folder;
+  if (o.folder.empty()) io::refuse_run_of_another(folder, o.crowd);
   const std::uint32_t jobs = o.jobs > 0 ? o.jobs : all_cores();
   const run::ProgressReport progress = progress_report(globals.quiet);
   const crowd::CrowdRun run = crowd::run_crowd(crowd, jobs, progress);
   note(globals, run.notes);
   note(globals, {crowd::crowd_speed(run)});
   const std::string summary = crowd::write_crowd(crowd, run, folder, globals.command_line, progress);
+  if (o.folder.empty()) io::mark_run(folder, o.crowd);
   print(o.json ? summary : folder + "/index.html\n");
   return kOk;
 }
@@ -48,14 +51,9 @@ Command add_crowd(CLI::App& root, const Globals& globals) {
   app->add_option("--steps", o->steps, "Time steps, over what the crowd says")
       ->check(CLI::Range(1u, 100000u))
       ->type_name("N");
-  app->add_option_function<std::string>(
-         "--clock",
-         [o](const std::string& word) {
-           o->clock = word == "wall" ? trace::Clock::wall : trace::Clock::event;
-         },
-         "Of the trace: event, the same for any number of threads, a track a body; wall, a track a thread")
-      ->check(CLI::IsMember({"event", "wall"}).description(""))
-      ->type_name("event|wall");
+  add_choice<trace::Clock>(
+      *app, "--clock", o->clock,
+      "Of the trace: event, the same for any number of threads, a track a body; wall, a track a thread");
   app->add_flag("--no-frames", o->no_frames, "Draw nothing");
   app->add_flag("--json", o->json, "Print the summary instead of the page's path");
   return {app, [o, &globals] { return run_crowd_command(*o, globals); }};

@@ -22,7 +22,7 @@ struct GoldenOptions {
 };
 
 std::string approve_command(const GoldenOptions& o, const std::string& name) {
-  return "lrbscope golden approve --goldens " + quoted(o.goldens) + " " + name;
+  return "lrbscope golden approve --goldens " + shell_word(o.goldens) + " " + name;
 }
 
 struct NamedGolden {
@@ -36,8 +36,8 @@ NamedGolden find_golden(const GoldenOptions& o, const std::string& word) {
   spec::Scenario scenario = spec::open_scenario(word);
   if (!golden::has_golden(o.goldens, scenario.name))
     throw InputError(word + ": no golden in " + o.goldens +
-                     " yet; make it with: lrbscope golden approve --goldens " + quoted(o.goldens) + " " +
-                     quoted(word));
+                     " yet; make it with: lrbscope golden approve --goldens " + shell_word(o.goldens) + " " +
+                     shell_word(word));
   return {scenario.name, std::move(scenario)};
 }
 
@@ -56,10 +56,26 @@ std::string as_json(const golden::GoldenResult& r) {
   nlohmann::ordered_json line = {{"scenario", r.name},    {"passed", r.verdict.passed()},
                                  {"steps", r.steps},      {"events", r.events},
                                  {"divergence", nullptr}, {"images", std::move(images)}};
+  if (!r.verdict.refusal.empty()) line["refusal"] = r.verdict.refusal;
   if (r.verdict.divergence) line["divergence"] = r.verdict.divergence->message();
   if (!r.verdict.diagnosis.empty()) line["diagnosis"] = r.verdict.diagnosis;
   if (!r.verdict.passed()) line["approve"] = r.approve;
   return one_line(line);
+}
+
+/// Tests one golden. What is damaged or refused fails alone: the others are tested all the same.
+golden::GoldenResult test_one(const GoldenOptions& o, const Globals& globals, const NamedGolden& g, bool report,
+                              std::optional<golden::GoldenRun>& run) {
+  const std::string approve = approve_command(o, g.name);
+  try {
+    const golden::Golden golden = golden::load_golden(o.goldens, g.name);
+    spec::Scenario scenario = g.scenario ? *g.scenario : golden::golden_scenario(o.goldens, g.name, golden.spec);
+    run = golden::play_golden(std::move(scenario), golden.spec, progress_report(globals.quiet));
+    return golden::test_golden(golden, *run, approve, report);
+  } catch (const InputError& e) {
+    run.reset();
+    return golden::untested_golden(g.name, e.what(), approve);
+  }
 }
 
 /// `report`: a page in any case, with every picture on it.
@@ -77,15 +93,11 @@ int run_test(const GoldenOptions& o, const Globals& globals, bool report) {
   std::vector<golden::GoldenResult> results;
   bool passed = true;
   for (const NamedGolden& g : todo) {
-    const golden::Golden golden = golden::load_golden(o.goldens, g.name);
-    spec::Scenario scenario =
-        g.scenario ? *g.scenario : golden::golden_scenario(o.goldens, g.name, golden.spec);
-    const golden::GoldenRun run =
-        golden::play_golden(std::move(scenario), golden.spec, progress_report(globals.quiet));
-    results.push_back(golden::test_golden(golden, run, approve_command(o, g.name), report));
+    std::optional<golden::GoldenRun> run;
+    results.push_back(test_one(o, globals, g, report, run));
     passed = passed && results.back().verdict.passed();
     if (!passed) lock_folder();
-    golden::write_failures(results.back(), run, o.folder);
+    if (run) golden::write_failures(results.back(), *run, o.folder);
     print(o.json ? as_json(results.back()) : golden::result_text(results.back()));
   }
   if (report || !passed) {

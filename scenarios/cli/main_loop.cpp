@@ -20,7 +20,7 @@ namespace {
 
 std::string command_line(int argc, char** argv) {
   std::string out = "lrbscope";
-  for (int i = 1; i < argc; ++i) out += " " + quoted(argv[i]);
+  for (int i = 1; i < argc; ++i) out += " " + shell_word(argv[i]);
   return out;
 }
 
@@ -51,7 +51,7 @@ int guarded(const Run& run) {
 
 }  // namespace
 
-std::string quoted(const std::string& word) {
+std::string shell_word(const std::string& word) {
   const bool plain = !word.empty() && word.find_first_not_of(
                                           "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ"
                                           "0123456789_-+=./,:@%") == std::string::npos;

@@ -2,32 +2,39 @@
 
 #include <algorithm>
 #include <charconv>
-#include <map>
 #include <thread>
+#include <type_traits>
 
 #include "engine/core/error.hpp"
 #include "scenarios/spec/scenario_frames.hpp"
+#include "trace/record_fields.hpp"
 
 namespace lrb::cli {
 namespace {
 
-/// An option that takes one of a few words.
-template <class T, class Target>
-void add_choice(CLI::App& app, const std::string& name, Target& target, const std::map<std::string, T>& words,
-                const std::string& type_name, const std::string& what) {
-  app.add_option_function<std::string>(
-         name, [&target, words](const std::string& word) { target = words.at(word); }, what)
-      ->check(CLI::IsMember(words).description(""))
-      ->type_name(type_name);
+/// The option that sets a field of a request: "--max-tests" for max_tests.
+template <class Value>
+std::string option_of(Value CollideRequest::*member) {
+  std::string out = "--";
+  trace::for_each_field<CollideRequest>([&](const auto& field) {
+    if constexpr (std::is_same_v<decltype(field.member), decltype(member)>)
+      if (field.member == member) out += field.name;
+  });
+  std::replace(out.begin(), out.end(), '_', '-');
+  return out;
 }
 
 template <class Target>
 void add_recursion(CLI::App& app, Target& recursion) {
-  add_choice<Recursion>(app, "--recursion", recursion,
-                        {{"complete", Recursion::complete},
-                         {"paper", Recursion::paper},
-                         {"paper_strict", Recursion::paper_strict}},
-                        "complete|paper|paper_strict", "complete never misses; paper is the paper's own");
+  add_choice<Recursion>(app, option_of(&CollideRequest::recursion), recursion,
+                        "complete never misses; paper is the paper's own");
+}
+
+/// An option that takes a number of things, from 1.
+void add_count(CLI::App& app, const std::string& name, std::uint64_t& count, const std::string& what) {
+  app.add_option(name, count, what)
+      ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1} << 62).description(""))
+      ->type_name("N");
 }
 
 /// Makes an axis (0, 1, 2) the upward one, and stands where one stood with z upward.
@@ -51,24 +58,24 @@ void add_recursion_option(CLI::App& app, std::optional<Recursion>& recursion) {
 }
 
 void add_request_options(CLI::App& app, CollideRequest& request) {
-  add_choice<Mode>(app, "--mode", request.mode,
-                   {{"all", Mode::all_pairs}, {"first", Mode::first_pair}, {"any", Mode::any_pair}},
-                   "all|first|any", "All pairs; one, crossing if any does; or the first that meets");
+  add_choice<Mode>(app, option_of(&CollideRequest::mode), request.mode,
+                   "All pairs; one, crossing if any does; or the first that meets");
   add_recursion(app, request.recursion);
-  add_choice<Predicates>(app, "--predicates", request.predicates,
-                         {{"exact", Predicates::exact}, {"floating", Predicates::floating}}, "exact|floating",
+  add_choice<Predicates>(app, option_of(&CollideRequest::predicates), request.predicates,
                          "floating: without the exact fallback, wrong where doubles cannot decide");
+  add_count(app, option_of(&CollideRequest::max_pairs), request.max_pairs,
+            "Pairs at most, beyond which a query is refused [" + std::to_string(kMostPairs) +
+                "; with contacts " + std::to_string(kMostPairsWithContacts) + "]");
 }
 
 void add_coarse_options(CLI::App& app, CollideRequest& request) {
-  app.add_option("--tolerance", request.tolerance,
+  app.add_option(option_of(&CollideRequest::tolerance), request.tolerance,
                  "Keep regions closed that are no thicker; a length in the meshes' unit")
       ->check(CLI::NonNegativeNumber)
       ->type_name("LENGTH");
-  app.add_option("--max-tests", request.max_tests, "Face tests at most, coarsest first")
-      ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1} << 62).description(""))
-      ->type_name("N");
-  app.add_option("--max-time", request.max_time, "Seconds at most, coarsest first")
+  add_count(app, option_of(&CollideRequest::max_tests), request.max_tests,
+            "Face tests at most, coarsest first");
+  app.add_option(option_of(&CollideRequest::max_time), request.max_time, "Seconds at most, coarsest first")
       ->check(CLI::PositiveNumber)
       ->type_name("S");
 }
@@ -92,8 +99,6 @@ void add_build_options(CLI::App& app, BuildOptions& options) {
 }
 
 void add_picture_options(CLI::App& app, PictureOptions& options) {
-  using At = spec::FrameSpec::At;
-  using ColourBy = spec::FrameSpec::ColourBy;
   app.add_option("--size", options.size, "Of the frames, pixels")->type_name("WxH");
   app.add_option(
          "--dpi", options.dpi,
@@ -101,12 +106,12 @@ void add_picture_options(CLI::App& app, PictureOptions& options) {
       ->check(CLI::Range(spec::kLeastDpi, spec::kMostDpi))
       ->type_name("N");
   app.add_flag("--transparent", options.transparent, "No background");
-  add_choice<bool>(app, "--format", options.svg, {{"png", false}, {"svg", true}}, "png|svg",
-                   "svg: frames and montage as SVG as well, for 2D bodies");
-  add_choice<At>(
-      app, "--frames", options.at,
-      {{"none", At::none}, {"step", At::step}, {"refinement", At::refinement}, {"event", At::every}},
-      "none|step|refinement|event", "When to draw one");
+  app.add_option_function<std::string>(
+         "--format", [&options](const std::string& word) { options.svg = word == "svg"; },
+         "svg: frames and montage as SVG as well, for 2D bodies")
+      ->check(CLI::IsMember({"png", "svg"}).description(""))
+      ->type_name("png|svg");
+  add_choice<spec::FrameSpec::At>(app, "--frames", options.at, "When to draw one");
   app.add_option("--every", options.every, "Draw every N-th of these")
       ->check(CLI::Range(1, 1000000000))
       ->type_name("N");
@@ -116,13 +121,7 @@ void add_picture_options(CLI::App& app, PictureOptions& options) {
   app.add_option("--up", options.up, "Axis that points up in the pictures [z]")
       ->check(CLI::IsMember({"x", "y", "z"}).description(""))
       ->type_name("x|y|z");
-  add_choice<ColourBy>(app, "--colour-by", options.colour_by,
-                       {{"kind", ColourBy::kind},
-                        {"layer", ColourBy::layer},
-                        {"region", ColourBy::region},
-                        {"face_tests", ColourBy::face_tests},
-                        {"refinements", ColourBy::refinements}},
-                       "kind|layer|region|face_tests|refinements", "What colours mean");
+  add_choice<spec::FrameSpec::ColourBy>(app, "--colour-by", options.colour_by, "What colours mean");
 }
 
 void apply(const PictureOptions& options, spec::FrameSpec& spec) {

@@ -2,6 +2,8 @@
 /// Options that several commands have.
 
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "engine/construct/build.hpp"
 #include "engine/query/collide.hpp"
@@ -11,7 +13,18 @@
 
 namespace lrb::cli {
 
-/// --mode and --recursion.
+/// An option that takes one of an enum's words.
+template <class Enum, class Target>
+void add_choice(CLI::App& app, const std::string& name, Target& target, const std::string& what) {
+  std::vector<std::string> words;
+  for (const EnumWord<Enum>& entry : kWords<Enum>) words.emplace_back(entry.word);
+  app.add_option_function<std::string>(
+         name, [&target](const std::string& word) { target = from_name<Enum>(word).value(); }, what)
+      ->check(CLI::IsMember(words).description(""))
+      ->type_name(all_names<Enum>("|", "|"));
+}
+
+/// --mode, --recursion, --predicates and --max-pairs.
 void add_request_options(CLI::App& app, CollideRequest& request);
 /// --tolerance, --max-tests and --max-time.
 void add_coarse_options(CLI::App& app, CollideRequest& request);

@@ -1,10 +1,10 @@
 #include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <filesystem>
 #include <memory>
-#include <sstream>
+#include <utility>
 
+#include "engine/core/file_bytes.hpp"
 #include "engine/query/collide.hpp"
 #include "engine/query/collide_impl.hpp"
 #include "scenarios/bodies/body.hpp"
@@ -14,6 +14,8 @@
 #include "scenarios/io/pose_file.hpp"
 #include "scenarios/run/separation_picture.hpp"
 #include "trace/hex.hpp"
+#include "trace/json_out.hpp"
+#include "trace/json_parts.hpp"
 
 namespace lrb::cli {
 namespace {
@@ -41,12 +43,6 @@ double median_us(const LrbRep& a, const LrbRep& b, const Pose& pose, const Query
   return us[middle];
 }
 
-std::string list(const std::vector<RegionId>& regions) {
-  std::string out = "[";
-  for (const RegionId r : regions) out.append(out.size() > 1 ? "," : "").append(std::to_string(r));
-  return out + "]";
-}
-
 /// PICTURE, or PICTURE with the pose's number where there are several.
 std::string picture_name(const std::string& path, std::size_t pose, std::size_t poses) {
   if (poses == 1) return path;
@@ -55,41 +51,91 @@ std::string picture_name(const std::string& path, std::size_t pose, std::size_t 
       .string();
 }
 
+/// Touching bodies may overlap all the same (see Relation::touching). This is decided where it costs little:
+/// for as many pairs as take a few milliseconds, of a query that found all of them exactly.
+constexpr std::size_t kMostPairsToDecide = 1000;
+
+bool tells_overlap(const CollideRequest& request) {
+  return request.mode == Mode::all_pairs && request.recursion == Recursion::complete &&
+         request.predicates == Predicates::exact && !request.is_coarse();
+}
+
+void decide_overlap(QueryContext& context, const CollideRequest& request, CollideResult& result) {
+  if (result.relation != Relation::touching || result.pairs.size() > kMostPairsToDecide) return;
+  CollideRequest overlap = request;
+  overlap.interiors_overlap = true;
+  describe_contact(context, overlap, result);
+}
+
+/// Writes [[number of A, number of B], ...].
+template <class Numbers>
+void write_pairs(trace::JsonWriter& w, const char* name, const std::vector<SimplexPair>& pairs,
+                 const Numbers& numbers) {
+  w.key(name).begin_array();
+  for (const SimplexPair& pair : pairs) {
+    const auto [a, b] = numbers(pair);
+    w.begin_array().value(a).value(b).end_array();
+  }
+  w.end_array();
+}
+
 std::string line_of(std::size_t pose, const CollideResult& result, const QueryOptions& o, double us,
                     const LrbRep& a, const LrbRep& b) {
-  std::ostringstream out;
-  out.exceptions(std::ios::badbit);  // out of memory must not cut a line short
-  out << "{\"pose\":" << pose << ",\"relation\":\"" << to_string(result.relation)
-      << "\",\"pairs\":" << result.pairs.size() << ",\"fingerprint\":\""
-      << trace::to_hex(fingerprint(result.pairs)) << "\"";
-  if (o.request.recursion != Recursion::complete)
-    out << ",\"recursion\":\"" << (o.request.recursion == Recursion::paper ? "paper" : "paper_strict")
-        << "\"";
-  if (o.request.predicates != Predicates::exact) out << ",\"predicates\":\"floating\"";
-  if (o.request.is_coarse()) {
-    out << ",\"finished\":" << (result.finished ? "true" : "false") << ",\"error_bound\":";
-    std::isfinite(result.error_bound) ? out << result.error_bound : out << "null";
+  using Two = std::pair<std::uint32_t, std::uint32_t>;
+  const CollideRequest& request = o.request;
+  trace::StringSink sink;
+  trace::JsonOut out(sink);
+  trace::JsonWriter w(out, trace::JsonWriter::kCompact);
+  w.begin_object().member("pose", std::uint64_t{pose}).member("relation", name_of(result.relation));
+  w.member("pairs", std::uint64_t{result.pairs.size()});
+  w.member("fingerprint", trace::to_hex(fingerprint(result.pairs)));
+  if (tells_overlap(request) && result.relation == Relation::touching)
+    w.member("interiors_overlap", name_of(result.interiors_overlap));
+  if (request.recursion != Recursion::complete) w.member("recursion", name_of(request.recursion));
+  if (request.predicates != Predicates::exact) w.member("predicates", name_of(request.predicates));
+  if (request.is_coarse()) w.member("finished", result.finished).member("error_bound", result.error_bound);
+  if (request.separation && result.separation) {
+    w.key("separation");
+    trace::write_json(w, *result.separation);
   }
-  if (o.request.separation && result.separation)
-    out << ",\"separation\":{\"faces\":[" << result.separation->face_count[0] << ","
-        << result.separation->face_count[1] << "],\"refined\":[" << list(result.separation->refined[0]) << ","
-        << list(result.separation->refined[1]) << "]}";
-  if (o.repeat > 0) out << ",\"us\":" << us;
-  if (o.pairs) {
-    out << ",\"list\":[";
-    for (std::size_t i = 0; i < result.pairs.size(); ++i)
-      out << (i > 0 ? "," : "") << "[" << result.pairs[i].a << "," << result.pairs[i].b << "]";
-    out << "]";
-    if (o.request.is_coarse()) {
-      out << ",\"pseudo\":[";
-      for (std::size_t i = 0; i < result.pairs.size(); ++i)
-        out << (i > 0 ? "," : "") << "[" << (a.is_real_simplex(result.pairs[i].a) ? 0 : 1) << ","
-            << (b.is_real_simplex(result.pairs[i].b) ? 0 : 1) << "]";
-      out << "]";
+  if (o.repeat > 0) w.member("us", us);
+  if (o.pairs) write_pairs(w, "list", result.pairs, [](const SimplexPair& p) { return Two(p.a, p.b); });
+  if (o.pairs && request.is_coarse())
+    write_pairs(w, "pseudo", result.pairs, [&](const SimplexPair& p) {
+      return Two(a.is_real_simplex(p.a) ? 0 : 1, b.is_real_simplex(p.b) ? 0 : 1);
+    });
+  w.end_object();
+  out.raw('\n');
+  out.flush();
+  return std::move(sink.text);
+}
+
+/// The poses of a query, and where each stands in its file.
+struct PoseLines {
+  explicit PoseLines(const std::string& path)
+      : file(printable_name(path)), poses(io::read_poses(path, &lines)) {}  // `lines` comes first
+
+  /// Calls ask(); an InputError gets the place of the pose before its message.
+  template <class Ask>
+  auto at(std::size_t i, const Ask& ask) const {
+    try {
+      return ask();
+    } catch (const InputError& e) {
+      throw InputError(file + ":" + std::to_string(lines[i]) + ": " + e.what());
     }
   }
-  out << "}\n";
-  return out.str();
+
+  std::string file;
+  std::vector<std::size_t> lines;
+  std::vector<Pose> poses;
+};
+
+/// Throws InputError, before anything is printed, if a query cannot be asked.
+void check_queries(const LrbRep& a, const LrbRep& b, const PoseLines& list, const CollideRequest& request) {
+  check_query(a, Pose{}, b, Pose{});
+  if (request.is_coarse()) check_coarse_request(request);
+  for (std::size_t i = 0; i < list.poses.size(); ++i)
+    list.at(i, [&] { check_query(a, Pose{}, b, list.poses[i]); });
 }
 
 /// Whether an answer depends on more than the bodies' faces: on wrappers.
@@ -98,18 +144,22 @@ bool needs_regions(const CollideRequest& request) {
 }
 
 int run_query(const QueryOptions& o, const Globals& globals) {
-  const std::vector<Pose> poses = io::read_poses(o.poses);  // all of them, before anything is printed
+  const PoseLines list(o.poses);
+  const std::vector<Pose>& poses = list.poses;
   const auto load = [&](const std::string& path) {
     return needs_regions(o.request) ? bodies::load_body(path) : bodies::load_faces(path);
   };
   const bodies::LoadedBody a = load(o.a), b = load(o.b);
   note(globals, a.notes);
   note(globals, b.notes);
+  check_queries(a.rep, b.rep, list, o.request);
   QueryContext context;
   NullProbe probe;
   Progress progress("query", poses.size(), globals.quiet);
   for (std::size_t i = 0; i < poses.size(); ++i) {
-    const CollideResult result = collide(a.rep, Pose{}, b.rep, poses[i], o.request, context, probe);
+    CollideResult result =
+        list.at(i, [&] { return collide(a.rep, Pose{}, b.rep, poses[i], o.request, context, probe); });
+    if (tells_overlap(o.request)) decide_overlap(context, o.request, result);
     const double us = o.repeat > 0 ? median_us(a.rep, b.rep, poses[i], o, context) : 0;
     print(line_of(i, result, o, us, a.rep, b.rep));
     if (!o.draw.empty() && result.separation)

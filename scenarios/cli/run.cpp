@@ -4,6 +4,7 @@
 #include "scenarios/cli/command.hpp"
 #include "scenarios/cli/options.hpp"
 #include "scenarios/cli/progress.hpp"
+#include "scenarios/io/files.hpp"
 #include "scenarios/run/run_scenario.hpp"
 #include "scenarios/spec/shipped.hpp"
 
@@ -22,8 +23,10 @@ int run_run(const RunCommandOptions& o, const Globals& globals) {
   apply(o.picture, scenario.frames);
   if (o.recursion) scenario.request.recursion = *o.recursion;
   const std::string folder = o.folder.empty() ? "out/" + scenario.name : o.folder;
+  if (o.folder.empty()) io::refuse_run_of_another(folder, o.scenario);
   run::RunOutcome outcome =
       run::run_scenario(scenario, folder, globals.command_line, progress_report(globals.quiet));
+  if (o.folder.empty()) io::mark_run(folder, o.scenario);
   return report_outcome(outcome, folder, o.json, globals);
 }
 

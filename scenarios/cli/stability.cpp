@@ -51,7 +51,7 @@ std::string describe(const Replay& r, bool pairs) {
   std::ostringstream out;
   const Record& record = r.record;
   out << record.family << ", dial " << record.dial << ", case " << record.case_index << ", " << record.method
-      << ": " << stability::to_string(record.outcome);
+      << ": " << name_of(record.outcome);
   if (!record.message.empty()) out << " (" << record.message << ")";
   out << "\n  pairs: " << record.expected << " expected, ";
   if (r.answered)

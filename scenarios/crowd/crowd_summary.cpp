@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <type_traits>
 #include <vector>
 
 #include "engine/core/fnv.hpp"
@@ -6,6 +7,7 @@
 #include "trace/hex.hpp"
 #include "trace/json_parts.hpp"
 #include "trace/names.hpp"
+#include "trace/record_fields.hpp"
 
 namespace lrb::crowd {
 namespace {
@@ -99,15 +101,10 @@ std::size_t bodies_in_contact(const CrowdStep& step, std::size_t bodies) {
 Counters sum(const CrowdStep& step) {
   Counters all;
   for (const CrowdQuery& q : step.queries) {
-    const Counters& c = q.result.counters;
-    all.face_tests += c.face_tests;
-    all.real_tests += c.real_tests;
-    all.exact_fallbacks += c.exact_fallbacks;
-    all.node_pairs += c.node_pairs;
-    all.box_tests += c.box_tests;
-    all.prefilter_tests += c.prefilter_tests;
-    all.refinements += c.refinements;
-    all.regions_opened += c.regions_opened;
+    trace::for_each_field<Counters>([&](const auto& field) {
+      if constexpr (std::is_same_v<decltype(field.member), std::uint64_t Counters::*>)
+        all.*field.member += q.result.counters.*field.member;
+    });
   }
   return all;
 }

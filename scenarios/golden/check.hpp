@@ -23,12 +23,13 @@ struct ImageVerdict {
 };
 
 struct GoldenVerdict {
+  std::string refusal;  ///< why it could not be tested at all; the rest is empty then
   std::optional<trace::Divergence> divergence;
   std::string diagnosis;  ///< of the divergence: what was swapped, lost or added; may be empty
   std::vector<ImageVerdict> images;
   bool scenario_changed = false;  ///< its file is not the one that was approved: a hint, not a failure
   bool images_passed() const;
-  bool passed() const { return !divergence && images_passed(); }
+  bool passed() const { return refusal.empty() && !divergence && images_passed(); }
 };
 
 GoldenVerdict check_golden(const Golden& golden, const GoldenRun& run);

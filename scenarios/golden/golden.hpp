@@ -27,6 +27,7 @@ struct GoldenSpec {
 struct GoldenImage {
   std::string file;  ///< without its folder
   render::DecodedPng png;
+  std::string damage;  ///< why it cannot be read; then `png` is empty
 };
 
 struct Golden {
@@ -40,7 +41,7 @@ struct Golden {
 std::vector<std::string> golden_names(const std::string& goldens);
 
 bool has_golden(const std::string& goldens, const std::string& name);
-/// Throws InputError if it is missing or damaged.
+/// Both throw InputError if it is missing or damaged; pictures that are damaged say so themselves.
 GoldenSpec read_golden_spec(const std::string& goldens, const std::string& name);
 Golden load_golden(const std::string& goldens, const std::string& name);
 /// The scenario that a golden is of.

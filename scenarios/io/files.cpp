@@ -16,9 +16,11 @@ namespace lrb::io {
 namespace fs = std::filesystem;
 namespace {
 
+constexpr const char* kMadeFrom = "made_from.txt";
+
 bool is_written(const fs::path& name) {
   if (name == "frames") return true;
-  for (const char* ending : {".html", ".json", ".gz", ".lrb", ".png"})
+  for (const char* ending : {".html", ".json", ".gz", ".lrb", ".png", ".txt"})
     if (name.extension() == ending) return true;
   return false;
 }
@@ -38,6 +40,11 @@ std::string read_text(const std::string& path) {
   return read_file(path);
 }
 
+std::string read_small_text(const std::string& path) {
+  constexpr std::uint64_t kMost = std::uint64_t{8} << 20;
+  return read_file(path, kMost);
+}
+
 void make_folder(const std::string& path) {
   if (path.empty()) return;
   std::error_code error;
@@ -55,6 +62,23 @@ void write_text(const std::string& path, const std::string& text) {
 void refuse_links(const std::string& folder) {
   refuse_links_in(folder);  // frames, if it is a link itself, ends here
   refuse_links_in(fs::path(folder) / "frames");
+}
+
+void refuse_run_of_another(const std::string& folder, const std::string& scenario_file) {
+  std::error_code error;
+  const std::string marker = folder + "/" + kMadeFrom;
+  if (!fs::is_regular_file(marker, error)) return;
+  std::string other = read_file(marker);
+  if (!other.empty() && other.back() == '\n') other.pop_back();
+  if (fs::is_regular_file(other, error) && !fs::equivalent(other, scenario_file, error))
+    throw InputError(printable_name(folder) + ": holds the run of another scenario of this name, " +
+                     printable_name(other) + "; rename one of the two, or name another folder with -o");
+}
+
+void mark_run(const std::string& folder, const std::string& scenario_file) {
+  std::error_code error;
+  if (fs::is_regular_file(scenario_file, error))
+    write_text(folder + "/" + kMadeFrom, fs::canonical(scenario_file, error).string() + "\n");
 }
 
 FolderLock::FolderLock(const std::string& path)

@@ -47,7 +47,8 @@ double number(std::string_view word, const std::string& where) {
 
 }  // namespace
 
-std::vector<Pose> parse_poses(const std::string& text, const std::string& name) {
+std::vector<Pose> parse_poses(const std::string& text, const std::string& name,
+                              std::vector<std::size_t>* lines) {
   std::vector<Pose> poses;
   std::size_t line_number = 0;
   for (std::size_t at = 0; at < text.size();) {
@@ -67,13 +68,14 @@ std::vector<Pose> parse_poses(const std::string& text, const std::string& name) 
       pose.t[r] = x[4 * r + 3];
     }
     poses.push_back(pose);
+    if (lines != nullptr) lines->push_back(line_number);
   }
   if (poses.empty()) throw InputError(name + ": no poses: expected lines of 12 numbers (row-major 3x4)");
   return poses;
 }
 
-std::vector<Pose> read_poses(const std::string& path) {
-  return parse_poses(read_text(path), path);
+std::vector<Pose> read_poses(const std::string& path, std::vector<std::size_t>* lines) {
+  return parse_poses(read_text(path), path, lines);
 }
 
 Eigen::Vector3d parse_vector(const std::string& text, const std::string& option) {

@@ -28,12 +28,7 @@ PaperProtocol read_protocol(const io::JsonNode& node) {
 std::vector<PaperPart> read_report(const io::JsonNode& node) {
   std::vector<PaperPart> parts;
   for (const io::JsonNode& item : node.items(1)) {
-    const auto part = item.choice<PaperPart>({{"table1", PaperPart::table1},
-                                              {"table2", PaperPart::table2},
-                                              {"figure3.1", PaperPart::figure_3_1},
-                                              {"figure3.2", PaperPart::figure_3_2},
-                                              {"heat_maps", PaperPart::heat_maps},
-                                              {"refinement_tree", PaperPart::refinement_tree}});
+    const auto part = item.choice<PaperPart>();
     if (std::find(parts.begin(), parts.end(), part) != parts.end()) item.fail("is there twice: remove one");
     parts.push_back(part);
   }

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <map>
 
+#include "scenarios/io/number_text.hpp"
+
 namespace lrb::paper {
 namespace {
 
@@ -13,19 +15,12 @@ constexpr double kBinWidth = 250;  // comparisons
 constexpr const char* kColours[] = {"#0072B2", "#E69F00", "#009E73", "#D55E00",
                                     "#56B4E9", "#CC79A7", "#000000"};
 
-std::string number(double x) {
-  std::string s = std::to_string(x);
-  s.erase(s.find_last_not_of('0') + 1);
-  if (s.back() == '.') s.pop_back();
-  return s;
-}
-
 }  // namespace
 
 report::Gnuplot figure_3_1(std::span<const ObjectRow> rows) {
   constexpr double kBeside = 1.06;  // published bars stand this factor to the right of ours
   const auto bar = [](double size, double average, double min, double max) {
-    return number(size) + " " + number(average) + " " + number(min) + " " + number(max);
+    return io::fixed_text(size) + " " + io::fixed_text(average) + " " + io::fixed_text(min) + " " + io::fixed_text(max);
   };
   std::vector<std::string> measured, as_published, names;
   for (const ObjectRow& row : rows) {
@@ -36,7 +31,7 @@ report::Gnuplot figure_3_1(std::span<const ObjectRow> rows) {
       as_published.push_back(bar(row.total_faces * kBeside, p->average, p->min, p->max));
       top = std::max(top, p->max);
     }
-    names.push_back(number(row.total_faces) + " " + number(top) + " " +
+    names.push_back(io::fixed_text(row.total_faces) + " " + io::fixed_text(top) + " " +
                     report::gnuplot_data_text(row.object));
   }
   report::Gnuplot g;
@@ -73,14 +68,14 @@ report::Gnuplot figure_3_2(std::span<const ObjectRow> rows, std::span<const Cont
     std::vector<std::string> points;
     const std::uint64_t last = bins.empty() ? 0 : bins.rbegin()->first;
     for (std::uint64_t b = 0; b <= last; ++b)
-      points.push_back(number((static_cast<double>(b) + 0.5) * kBinWidth) + " " + std::to_string(bins[b]));
+      points.push_back(io::fixed_text((static_cast<double>(b) + 0.5) * kBinWidth) + " " + std::to_string(bins[b]));
     g.add_data("object_" + rows[i].object, points);
     plot += (i > 0 ? ", " : "") + std::string("$object_") + rows[i].object +
             " using 1:2 with lines lw 1.5 dt " + std::to_string(i % 5 + 1) + " lc rgb '" +
             kColours[i % std::size(kColours)] + "' title " +
             report::gnuplot_text(rows[i].object + ": " + std::to_string(rows[i].total_faces) + " faces");
   }
-  g.script += "set xlabel 'face comparisons in a time step (bins of " + number(kBinWidth) + ")'\n";
+  g.script += "set xlabel 'face comparisons in a time step (bins of " + io::fixed_text(kBinWidth) + ")'\n";
   g.script += R"(set ylabel 'time steps'
 set xrange [0:8000]
 set yrange [0:*]

@@ -7,6 +7,8 @@
 #include <limits>
 #include <sstream>
 
+#include "scenarios/io/number_text.hpp"
+
 namespace lrb::paper {
 namespace {
 
@@ -18,12 +20,6 @@ constexpr std::array<const char*, 3> kRecursionTitles = {"paper", "paper, strict
 
 constexpr double kPanelRows = 2;
 constexpr double kKeyLine = 3.4;  // millimetres
-
-std::string number(double x) {
-  std::ostringstream out;
-  out << std::setprecision(6) << x;
-  return out.str();
-}
 
 /// What a figure shows of a row.
 struct Measured {
@@ -53,8 +49,8 @@ class Panel {
         if (row.body != fit.body || row.partner != partner) continue;
         const Measured m = measure_(row, recursion);
         if (!(m.low > 0)) continue;
-        points.push_back(number(row.counts.total_faces) + " " + number(m.average) + " " + number(m.low) +
-                         " " + number(m.high));
+        points.push_back(io::number_text(row.counts.total_faces) + " " + io::number_text(m.average) + " " + io::number_text(m.low) +
+                         " " + io::number_text(m.high));
         first = std::min<double>(first, row.counts.total_faces);
         last = std::max<double>(last, row.counts.total_faces);
         lowest = std::min(lowest, m.low);
@@ -69,8 +65,8 @@ class Panel {
               std::to_string(kPoints[bodies % kPoints.size()]) + " ps 0.5 lc rgb '" + colour + "' title " +
               report::gnuplot_text(fit.body + (power ? ": " + power_text(*power) : ""));
       if (power)
-        plot += ", x < " + number(first) + " || x > " + number(last) + " ? 1/0 : " + number(power->factor) +
-                " * x**(" + number(power->exponent) + ") with lines lw 1 dt 2 lc rgb '" + colour +
+        plot += ", x < " + io::number_text(first) + " || x > " + io::number_text(last) + " ? 1/0 : " + io::number_text(power->factor) +
+                " * x**(" + io::number_text(power->exponent) + ") with lines lw 1 dt 2 lc rgb '" + colour +
                 "' notitle";
       ++bodies;
     }
@@ -85,7 +81,7 @@ class Panel {
     // Room above the points for the key.
     const double share = static_cast<double>(bodies + 1) * kKeyLine * kPanelRows / g_.height;
     const double room = std::log10(highest / lowest) * share / (1 - share);
-    g_.script += "set yrange [" + number(lowest / 1.3) + ":" + number(highest * 1.2 * std::pow(10, room)) +
+    g_.script += "set yrange [" + io::number_text(lowest / 1.3) + ":" + io::number_text(highest * 1.2 * std::pow(10, room)) +
                  "]\n" + plot + "\n";
   }
 
@@ -117,7 +113,7 @@ set tics nomirror out
     smallest = std::min<double>(smallest, row.counts.total_faces);
     largest = std::max<double>(largest, row.counts.total_faces);
   }
-  g.script += "set xrange [" + number(smallest / 1.5) + ":" + number(largest * 1.5) + "]\n";
+  g.script += "set xrange [" + io::number_text(smallest / 1.5) + ":" + io::number_text(largest * 1.5) + "]\n";
   Panel panel(g, rows, fits, measure, fit_of);
   for (const SeriesPartner partner : kSeriesPartners) {
     for (std::size_t i = 0; i < kRecursions.size(); ++i) {

@@ -4,6 +4,7 @@
 #include <numeric>
 
 #include "engine/core/error.hpp"
+#include "engine/core/file_bytes.hpp"
 #include "engine/query/collide_impl.hpp"
 #include "scenarios/run/approach.hpp"
 #include "scenarios/spec/scenario_motion.hpp"
@@ -37,6 +38,16 @@ std::vector<Pose> poses_of_b(const spec::Scenario& s, Recording& r) {
   return std::move(approach.poses);
 }
 
+CollideResult query_of_step(const spec::Scenario& s, const Recording& r, const Pose& pose_b,
+                            std::uint32_t step, QueryContext& context, trace::Recorder& recorder) {
+  const LrbRep &a = r.bodies[0].rep, &b = r.bodies[1].rep;
+  try {
+    return collide(a, s.bodies[0].pose, b, pose_b, s.request, context, recorder);
+  } catch (const InputError& e) {
+    throw InputError("scenario " + s.name + ", step " + std::to_string(step) + ": " + e.what());
+  }
+}
+
 void record_collision(const spec::Scenario& s, Recording& r, const ProgressReport& progress) {
   const LrbRep &a = r.bodies[0].rep, &b = r.bodies[1].rep;
   const std::vector<Pose> poses = poses_of_b(s, r);
@@ -45,7 +56,7 @@ void record_collision(const spec::Scenario& s, Recording& r, const ProgressRepor
   for (std::uint32_t step = 0; step < poses.size(); ++step) {
     progress("query", step, poses.size());
     recorder.begin_step(step, s.bodies[0].pose, poses[step]);
-    r.results.push_back(collide(a, s.bodies[0].pose, b, poses[step], s.request, context, recorder));
+    r.results.push_back(query_of_step(s, r, poses[step], step, context, recorder));
     recorder.end_step(r.results.back());
   }
   r.trace = recorder.take();
@@ -62,6 +73,10 @@ std::vector<RegionId> outside_in(const LrbRep& rep) {
 
 void record_wrapper(const spec::Scenario& s, Recording& r) {
   const LrbRep& rep = r.bodies[0].rep;
+  if (!rep.closed())
+    throw InputError("scenario " + s.name + ": body a, " + printable_name(source_of(s.bodies[0])) +
+                     ", is open: it has no inside, and so no wrapper to refine or to construct; close it "
+                     "(lrbscope inspect names its open edges), or show a collision");
   trace::Recorder recorder(rep, recorder_settings(s));
   recorder.begin_step(0, s.bodies[0].pose);
   std::vector<RegionId> order = outside_in(rep);

@@ -89,8 +89,7 @@ Crowd parse_crowd(const std::string& text, const std::string& file) {
   if (const auto n = root.get("seed")) c.seed = n->integer(0, kAnySeed);
   c.room = read_room(root.at("room"));
   if (const auto n = root.get("arrangement"))
-    c.arrangement = n->choice<Crowd::Arrangement>(
-        {{"grid", Crowd::Arrangement::grid}, {"random", Crowd::Arrangement::random}});
+    c.arrangement = n->choice<Crowd::Arrangement>();
   c.kinds = read_kinds(root.at("bodies"), std::filesystem::path(file).parent_path(), c.seed);
   read_motion(root.at("motion"), c);
   c.request.contacts = true;
@@ -101,8 +100,7 @@ Crowd parse_crowd(const std::string& text, const std::string& file) {
   }
   if (const auto trace = root.get("trace")) {
     trace->object({"clock", "max_events"});
-    if (const auto n = trace->get("clock"))
-      c.clock = n->choice<trace::Clock>({{"event", trace::Clock::event}, {"wall", trace::Clock::wall}});
+    if (const auto n = trace->get("clock")) c.clock = n->choice<trace::Clock>();
     if (const auto n = trace->get("max_events"))
       c.max_events = static_cast<std::uint32_t>(n->integer(1, 50'000'000));
   }

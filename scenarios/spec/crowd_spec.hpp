@@ -43,6 +43,10 @@ struct Crowd {
 
   std::uint32_t body_count() const;
 };
+constexpr auto words_of(Crowd::Arrangement) {
+  return std::to_array<EnumWord<Crowd::Arrangement>>(
+      {{Crowd::Arrangement::grid, "grid"}, {Crowd::Arrangement::random, "random"}});
+}
 
 /// Reads a crowd; `file` is for messages and the folder that body files are looked up in. Throws InputError:
 /// "file:line:column: pointer: what is wrong, what is known".

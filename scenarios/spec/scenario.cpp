@@ -13,12 +13,28 @@
 #include "scenarios/spec/scenario_frames.hpp"
 #include "scenarios/spec/scenario_motion.hpp"
 #include "trace/hex.hpp"
+#include "trace/record_fields.hpp"
 
 namespace lrb::spec {
 namespace {
 
 constexpr double kLongestTolerance = 1e150;  // its square is still finite
-constexpr std::uint64_t kMostTests = std::uint64_t{1} << 62;
+constexpr std::uint64_t kMostCount = std::uint64_t{1} << 62;
+
+/// A value of a query by its type: lengths, numbers of things from 1, words, and true or false.
+template <class Enum>
+void read_value(const io::JsonNode& node, Enum& value) {
+  value = node.choice<Enum>();
+}
+void read_value(const io::JsonNode& node, double& value) {
+  value = node.number(0, kLongestTolerance);
+}
+void read_value(const io::JsonNode& node, std::uint64_t& value) {
+  value = node.integer(1, kMostCount);
+}
+void read_value(const io::JsonNode& node, bool& value) {
+  value = node.boolean();
+}
 
 std::vector<BodySpec> read_bodies(const io::JsonNode& node, Show show, const std::filesystem::path& folder,
                                   std::uint64_t seed) {
@@ -33,8 +49,7 @@ std::vector<BodySpec> read_bodies(const io::JsonNode& node, Show show, const std
 
 void read_trace(const io::JsonNode& node, Scenario& s) {
   node.object({"clock", "max_events", "gzip"});
-  if (const auto n = node.get("clock"))
-    s.clock = n->choice<trace::Clock>({{"event", trace::Clock::event}, {"wall", trace::Clock::wall}});
+  if (const auto n = node.get("clock")) s.clock = n->choice<trace::Clock>();
   if (const auto n = node.get("max_events"))
     s.event_cap = static_cast<std::uint32_t>(n->integer(1, 50'000'000));
   if (const auto n = node.get("gzip")) s.gzip = n->boolean();
@@ -45,14 +60,7 @@ Expectation read_expectation(const io::JsonNode& node, const io::JsonText& text)
   Expectation e;
   e.step = static_cast<std::uint32_t>(node.at("step").integer(0, kMaxId));
   e.place = text.where(node.pointer());
-  if (const auto n = node.get("relation"))
-    e.relation = n->choice<Relation>({{"separate", Relation::separate},
-                                      {"crossing", Relation::crossing},
-                                      {"touching", Relation::touching},
-                                      {"a_inside_b", Relation::a_inside_b},
-                                      {"b_inside_a", Relation::b_inside_a},
-                                      {"undefined", Relation::undefined},
-                                      {"unresolved", Relation::unresolved}});
+  if (const auto n = node.get("relation")) e.relation = n->choice<Relation>();
   if (const auto n = node.get("pairs")) e.pairs = n->integer(0, kAnySeed);
   if (const auto n = node.get("fingerprint")) {
     e.fingerprint = trace::from_hex(n->string());
@@ -68,30 +76,18 @@ CollideRequest read_query(const io::JsonNode& node) {
     node.fail_key("max_time",
                   "how far a query comes in a time differs from run to run, and the same file is to give the "
                   "same trace: give max_tests instead");
-  node.object({"mode", "recursion", "predicates", "wrapper", "contacts", "interiors_overlap", "tolerance",
-               "max_tests", "separation"});
+  std::vector<std::string> keys;
+  trace::for_each_field<CollideRequest>([&](const auto& field) { keys.emplace_back(field.name); });
+  std::erase(keys, "max_time");
+  node.object(keys);
   CollideRequest r;
-  if (const auto n = node.get("mode"))
-    r.mode =
-        n->choice<Mode>({{"all", Mode::all_pairs}, {"first", Mode::first_pair}, {"any", Mode::any_pair}});
-  if (const auto n = node.get("recursion"))
-    r.recursion = n->choice<Recursion>({{"complete", Recursion::complete},
-                                        {"paper", Recursion::paper},
-                                        {"paper_strict", Recursion::paper_strict}});
-  if (const auto n = node.get("predicates"))
-    r.predicates = n->choice<Predicates>({{"exact", Predicates::exact}, {"floating", Predicates::floating}});
-  if (const auto n = node.get("wrapper"))
-    r.wrapper = n->choice<WrapperMode>(
-        {{"regularised", WrapperMode::regularised}, {"unregularised", WrapperMode::unregularised}});
-  if (const auto n = node.get("tolerance")) r.tolerance = n->number(0, kLongestTolerance);
-  if (const auto n = node.get("max_tests")) r.max_tests = n->integer(1, kMostTests);
-  if (const auto n = node.get("separation")) r.separation = n->boolean();
-  r.contacts = r.mode == Mode::all_pairs && !r.is_coarse();
-  if (const auto n = node.get("contacts")) {
-    r.contacts = n->boolean();
-    if (r.contacts && r.mode != Mode::all_pairs) n->fail("contacts need \"mode\": \"all\"");
-  }
-  if (const auto n = node.get("interiors_overlap")) r.interiors_overlap = n->boolean();
+  trace::for_each_field<CollideRequest>([&](const auto& field) {
+    if (const auto n = node.get(std::string(field.name))) read_value(*n, r.*field.member);
+  });
+  if (!node.has("contacts"))
+    r.contacts = r.mode == Mode::all_pairs && !r.is_coarse();
+  else if (r.contacts && r.mode != Mode::all_pairs)
+    node.at("contacts").fail("contacts need \"mode\": \"all\"");
   try {
     if (r.is_coarse()) check_coarse_request(r);
   } catch (const InputError& e) {
@@ -110,10 +106,7 @@ Scenario parse_scenario(const std::string& text, const std::string& file) {
   s.name = read_name(root.at("name"));
   s.purpose = root.at("purpose").string();
   if (const auto n = root.get("seed")) s.seed = n->integer(0, kAnySeed);
-  if (const auto n = root.get("show"))
-    s.show = n->choice<Show>({{"collision", Show::collision},
-                              {"refinement", Show::refinement},
-                              {"construction", Show::construction}});
+  if (const auto n = root.get("show")) s.show = n->choice<Show>();
   s.bodies = read_bodies(root.at("bodies"), s.show, std::filesystem::path(file).parent_path(), s.seed);
   if (s.show == Show::collision) {
     s.motion = read_motion(root.at("motion"));

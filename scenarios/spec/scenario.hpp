@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "engine/construct/build.hpp"
+#include "engine/core/enum_words.hpp"
 #include "engine/core/pose.hpp"
 #include "engine/query/collide.hpp"
 #include "scenarios/bodies/generators/generators.hpp"
@@ -22,6 +23,11 @@ enum class Show : std::uint8_t {
   refinement,    ///< one body: its wrapper from the outermost one down to the body itself
   construction,  ///< one body: its hull growing outward, one builder's pass after the other
 };
+constexpr auto words_of(Show) {
+  return std::to_array<EnumWord<Show>>({{Show::collision, "collision"},
+                                        {Show::refinement, "refinement"},
+                                        {Show::construction, "construction"}});
+}
 
 struct BodySpec {
   std::string file;  ///< mesh or .lrb, found from the scenario's folder; empty: generated
@@ -53,10 +59,18 @@ struct Motion {
   std::uint32_t before = 10;        ///< approach: steps shown before the first contact
   std::uint32_t into = 5;           ///< approach: steps shown after it
 };
+constexpr auto words_of(Motion::Kind) {
+  using Kind = Motion::Kind;
+  return std::to_array<EnumWord<Kind>>({{Kind::poses, "poses"},
+                                        {Kind::keyframes, "keyframes"},
+                                        {Kind::sweep, "sweep"},
+                                        {Kind::approach, "approach"},
+                                        {Kind::spin, "spin"}});
+}
 
 /// Which moments become pictures.
 struct FrameSpec {
-  enum class At : std::uint8_t { none, step, refinement, every, events };
+  enum class At : std::uint8_t { none, step, refinement, every, events };  ///< events: by a list, no word
   enum class Camera : std::uint8_t { scene, contact, fixed, orbit };
   enum class ColourBy : std::uint8_t { kind, layer, region, face_tests, refinements };
   struct View {
@@ -92,6 +106,26 @@ struct FrameSpec {
   /// Pixels per pixel of a screen.
   double scale() const { return dpi > 0 ? dpi / kScreenDpi : 1; }
 };
+constexpr auto words_of(FrameSpec::At) {
+  using At = FrameSpec::At;
+  return std::to_array<EnumWord<At>>(
+      {{At::none, "none"}, {At::step, "step"}, {At::refinement, "refinement"}, {At::every, "event"}});
+}
+constexpr auto words_of(FrameSpec::Camera) {
+  using Camera = FrameSpec::Camera;
+  return std::to_array<EnumWord<Camera>>({{Camera::scene, "scene"},
+                                          {Camera::contact, "contact"},
+                                          {Camera::fixed, "fixed"},
+                                          {Camera::orbit, "orbit"}});
+}
+constexpr auto words_of(FrameSpec::ColourBy) {
+  using ColourBy = FrameSpec::ColourBy;
+  return std::to_array<EnumWord<ColourBy>>({{ColourBy::kind, "kind"},
+                                            {ColourBy::layer, "layer"},
+                                            {ColourBy::region, "region"},
+                                            {ColourBy::face_tests, "face_tests"},
+                                            {ColourBy::refinements, "refinements"}});
+}
 
 struct Expectation {
   std::uint32_t step = 0;

@@ -12,11 +12,7 @@ FrameSpec::View read_view(const io::JsonNode& node) {
   node.object(
       {"camera", "projection", "eye", "target", "from", "up", "turn_degrees", "zoom", "draw", "title"});
   FrameSpec::View v;
-  if (const auto n = node.get("camera"))
-    v.camera = n->choice<Camera>({{"scene", Camera::scene},
-                                  {"contact", Camera::contact},
-                                  {"fixed", Camera::fixed},
-                                  {"orbit", Camera::orbit}});
+  if (const auto n = node.get("camera")) v.camera = n->choice<Camera>();
   if (const auto n = node.get("projection"))
     v.orthographic = n->choice<bool>({{"perspective", false}, {"orthographic", true}});
   if ((v.camera == Camera::fixed) != (node.has("eye") && node.has("target")))
@@ -35,9 +31,7 @@ FrameSpec::View read_view(const io::JsonNode& node) {
 
 void read_moments(const io::JsonNode& node, FrameSpec& f) {
   using At = FrameSpec::At;
-  if (const auto n = node.get("at"))
-    f.at = n->choice<At>(
-        {{"none", At::none}, {"step", At::step}, {"refinement", At::refinement}, {"event", At::every}});
+  if (const auto n = node.get("at")) f.at = n->choice<At>();
   if (const auto n = node.get("every")) f.every = static_cast<std::uint32_t>(n->integer(1, kMaxId));
   if (const auto n = node.get("events")) {
     if (node.has("at") || node.has("every"))
@@ -52,7 +46,6 @@ void read_moments(const io::JsonNode& node, FrameSpec& f) {
 }  // namespace
 
 FrameSpec read_frames(const io::JsonNode& node, const FrameSpec& fallback) {
-  using ColourBy = FrameSpec::ColourBy;
   node.object({"at", "every", "events", "most", "size", "dpi", "format", "supersampling", "colour_by",
                "views", "transparent", "explode", "montage"});
   FrameSpec f = fallback;
@@ -66,12 +59,7 @@ FrameSpec read_frames(const io::JsonNode& node, const FrameSpec& fallback) {
   if (const auto n = node.get("dpi")) f.dpi = n->number(kLeastDpi, kMostDpi);
   if (const auto n = node.get("format")) f.svg = n->choice<bool>({{"png", false}, {"svg", true}});
   if (const auto n = node.get("supersampling")) f.supersampling = static_cast<int>(n->integer(1, 4));
-  if (const auto n = node.get("colour_by"))
-    f.colour_by = n->choice<ColourBy>({{"kind", ColourBy::kind},
-                                       {"layer", ColourBy::layer},
-                                       {"region", ColourBy::region},
-                                       {"face_tests", ColourBy::face_tests},
-                                       {"refinements", ColourBy::refinements}});
+  if (const auto n = node.get("colour_by")) f.colour_by = n->choice<FrameSpec::ColourBy>();
   if (const auto n = node.get("views"))
     for (const io::JsonNode& item : n->items(1)) f.views.push_back(read_view(item));
   if (f.views.size() > 6) node.at("views").fail("expected at most 6 views");

@@ -111,11 +111,7 @@ Pose read_pose(const io::JsonNode& node) {
 Motion read_motion(const io::JsonNode& node) {
   using Kind = Motion::Kind;
   Motion m;
-  m.kind = node.at("kind").choice<Kind>({{"poses", Kind::poses},
-                                         {"keyframes", Kind::keyframes},
-                                         {"sweep", Kind::sweep},
-                                         {"approach", Kind::approach},
-                                         {"spin", Kind::spin}});
+  m.kind = node.at("kind").choice<Kind>();
   switch (m.kind) {
     case Kind::poses:
       node.object({"kind", "poses"});

@@ -35,7 +35,7 @@ NamedText open_named(const std::string& name_or_path, std::string_view ending, s
       throw InputError(name_or_path + ": neither a shipped " + std::string(what) + " nor a file" +
                        io::suggestion(name_or_path, shipped_names(ending)));
   }
-  return {io::read_text(name_or_path), name_or_path};
+  return {io::read_small_text(name_or_path), name_or_path};
 }
 
 std::vector<ShippedScenario> shipped_scenarios() {

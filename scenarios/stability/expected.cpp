@@ -57,9 +57,7 @@ Expected expected_from(const std::string& line) {
 }
 
 Relation relation_from(const std::string& word) {
-  for (const Relation r : {Relation::separate, Relation::crossing, Relation::touching, Relation::a_inside_b,
-                           Relation::b_inside_a, Relation::undefined})
-    if (word == to_string(r)) return r;
+  if (const auto r = from_name<Relation>(word); r && *r != Relation::unresolved) return *r;
   throw InputError("'" + word + "' is no relation of two bodies");
 }
 

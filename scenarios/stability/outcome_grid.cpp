@@ -30,22 +30,6 @@ void count(Cell& cell, const Record& r) {
 
 }  // namespace
 
-const char* to_string(Outcome o) {
-  switch (o) {
-    case Outcome::right:
-      return "right";
-    case Outcome::wrong:
-      return "wrong";
-    case Outcome::refused:
-      return "refused";
-    case Outcome::crashed:
-      return "crashed";
-    case Outcome::timed_out:
-      return "timed_out";
-  }
-  return "";
-}
-
 Grid count_grid(std::vector<workers::MethodColumn> methods, std::vector<FamilyRow> families,
                 const std::vector<Record>& records) {
   Grid grid;

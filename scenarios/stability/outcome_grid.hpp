@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/core/enum_words.hpp"
 #include "engine/query/collide.hpp"
 #include "scenarios/workers/workers.hpp"
 
@@ -27,7 +28,13 @@ enum class Outcome : std::uint8_t {
   crashed,    ///< its process died
   timed_out,  ///< it did not answer in time
 };
-const char* to_string(Outcome o);
+constexpr auto words_of(Outcome) {
+  return std::to_array<EnumWord<Outcome>>({{Outcome::right, "right"},
+                                           {Outcome::wrong, "wrong"},
+                                           {Outcome::refused, "refused"},
+                                           {Outcome::crashed, "crashed"},
+                                           {Outcome::timed_out, "timed_out"}});
+}
 
 struct FamilyRow {
   std::string name, what;

@@ -12,13 +12,9 @@ namespace {
 using nlohmann::json;
 using nlohmann::ordered_json;
 
-constexpr Outcome kOutcomes[] = {Outcome::right, Outcome::wrong, Outcome::refused, Outcome::crashed,
-                                 Outcome::timed_out};
-
 Outcome outcome_from(const std::string& word) {
-  for (const Outcome o : kOutcomes)
-    if (word == to_string(o)) return o;
-  throw InputError("outcome '" + word + "': use right, wrong, refused, crashed or timed_out");
+  if (const auto outcome = from_name<Outcome>(word)) return *outcome;
+  throw InputError("outcome '" + word + "': use " + all_names<Outcome>());
 }
 
 }  // namespace
@@ -29,7 +25,7 @@ ordered_json to_json(const Record& r) {
           {"dial", r.dial},
           {"case", r.case_index},
           {"seed", r.seed},
-          {"outcome", to_string(r.outcome)},
+          {"outcome", name_of(r.outcome)},
           {"expected", r.expected},
           {"missed", r.missed},
           {"extra", r.extra},

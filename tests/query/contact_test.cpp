@@ -24,7 +24,46 @@ bool near(const Eigen::Vector3d& x, const Eigen::Vector3d& y, double by = 1e-12)
   return (x - y).norm() <= by;
 }
 
+/// Each face with vertices of its own, as STL files and the seams of textures have them.
+Mesh torn(const Mesh& mesh) {
+  Mesh out;
+  out.dim = mesh.dim;
+  for (FaceId f = 0; f < mesh.face_count(); ++f) {
+    std::vector<VertexId> corners;
+    for (const VertexId v : mesh.face(f)) {
+      corners.push_back(static_cast<VertexId>(out.vertices.size()));
+      out.vertices.push_back(mesh.vertices[v]);
+    }
+    out.add_face(corners);
+  }
+  return out;
+}
+
 }  // namespace
+
+TEST_CASE("vertices that stand in one place are one: contacts across seams are whole") {
+  const Mesh ball = shapes::icosphere(2), box = shapes::box({-1, -1, -1}, {1, 1, 1});
+  const auto open = [](const Mesh& mesh) { return LrbRep::without_regions(torn(mesh), false, false); };
+  for (const auto& [x, y, by] : {std::tuple{ball, ball, Eigen::Vector3d(1.3, 0.2, 0.1)},
+                                 std::tuple{box, ball, Eigen::Vector3d(0.9, 0.8, 0.7)},
+                                 std::tuple{box, box, Eigen::Vector3d(0.5, 0.25, 2)}}) {
+    const CollideResult whole = contact(closed(x), closed(y), Pose::translation(by));
+    const CollideResult seams = contact(open(x), open(y), Pose::translation(by));
+    CHECK(seams.pairs == whole.pairs);
+    REQUIRE(seams.regions.size() == whole.regions.size());
+    for (std::size_t i = 0; i < whole.regions.size(); ++i) {
+      const ContactRegion &w = whole.regions[i], &s = seams.regions[i];
+      CHECK(s.length == w.length);
+      CHECK(s.area == w.area);
+      CHECK(s.centroid == w.centroid);
+      REQUIRE(s.loops.size() == w.loops.size());
+      for (std::size_t k = 0; k < w.loops.size(); ++k) {
+        CHECK(s.loops[k].closed);
+        CHECK(s.loops[k].points == w.loops[k].points);
+      }
+    }
+  }
+}
 
 TEST_CASE("a box on a box: one coplanar region with its area, centre and direction") {
   const CollideResult r =

@@ -62,6 +62,80 @@ TEST_CASE("query: without --pairs and --repeat there is nothing but the four key
         "{\"pose\":0,\"relation\":\"separate\",\"pairs\":0,\"fingerprint\":\"cbf29ce484222325\"}\n");
 }
 
+TEST_CASE("query: bodies that touch say whether they overlap, unless not all pairs were found exactly") {
+  const Folder folder;
+  folder.write("a.obj", kCube);
+  folder.write("p.txt", "1 0 0 0.1 0 1 0 0 0 0 1 0\n1 0 0 1 0 1 0 0 0 0 1 0\n1 0 0 0 0 1 0 0 0 0 1 0\n" +
+                            std::string("1 0 0 0.5 0 1 0 0.25 0 0 1 0.125\n"));
+  std::istringstream lines(run(folder, {"query", "a.obj", "a.obj", "--poses", "p.txt"}).out);
+  const std::pair<const char*, const char*> expected[] = {
+      {"touching", "yes"}, {"touching", "no"}, {"touching", "yes"}, {"crossing", nullptr}};
+  std::string line;
+  for (const auto& [relation, overlap] : expected) {
+    REQUIRE(std::getline(lines, line));
+    const json answer = json::parse(line);
+    CAPTURE(line);
+    CHECK(answer["relation"] == relation);
+    if (overlap != nullptr)
+      CHECK(answer["interiors_overlap"] == overlap);
+    else
+      CHECK_FALSE(answer.contains("interiors_overlap"));
+  }
+  for (const std::vector<std::string>& not_told :
+       {std::vector<std::string>{"--mode", "first"}, {"--recursion", "paper"}, {"--tolerance", "1e-9"}}) {
+    std::vector<std::string> query = {"query", "a.obj", "a.obj", "--poses", "p.txt"};
+    query.insert(query.end(), not_told.begin(), not_told.end());
+    CHECK(run(folder, query).out.find("interiors_overlap") == std::string::npos);
+  }
+}
+
+TEST_CASE("query: a pose that carries a vertex beyond all numbers is named by file and line, before any answer") {
+  const Folder folder;
+  folder.write("a.obj", kCube);
+  folder.write("p.txt", "# first\n" + std::string(kApart) + "\n1e308 1e308 0 0 0 1 0 0 0 0 1 0\n");
+  const Outcome o = check_refused(folder, {"query", "a.obj", "a.obj", "--poses", "p.txt"});
+  CHECK(o.err.starts_with("lrbscope: p.txt:4: body B, vertex "));
+  // What no pose can mend is not the pose's fault.
+  folder.write("flat.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nl 1 2 3 1\n");
+  CHECK(check_refused(folder, {"query", "a.obj", "flat.obj", "--poses", "p.txt"}).err.find("p.txt") ==
+        std::string::npos);
+}
+
+TEST_CASE("run: two scenario files of one name do not replace each other's run") {
+  const Folder folder;
+  const std::string text = R"({"name": "twin", "purpose": "p",
+    "bodies": {"a": {"generator": "ball"}, "b": {"generator": "ball"}},
+    "motion": {"kind": "poses", "poses": [{"position": [1.5, 0, 0]}]}, "frames": {"at": "none"}})";
+  folder.write("one.json", text);
+  folder.write("two.json", text);
+  REQUIRE(run(folder, {"run", "one.json"}).code == 0);
+  REQUIRE(run(folder, {"run", "./one.json"}).code == 0);  // again, and changed, as often as one likes
+  const Outcome o = check_refused(folder, {"run", "two.json"});
+  CHECK(o.err.find("out/twin: holds the run of another scenario of this name, ") != std::string::npos);
+  CHECK(o.err.find("one.json; rename one of the two, or name another folder with -o") != std::string::npos);
+  CHECK(run(folder, {"run", "two.json", "-o", "elsewhere"}).code == 0);
+  fs::rename(folder / "one.json", folder / "three.json");  // the other is not there any more
+  CHECK(run(folder, {"run", "two.json"}).code == 0);
+  CHECK(run(folder, {"run", "three.json"}).code == 2);
+}
+
+TEST_CASE("run: an open body has no wrapper to refine or construct") {
+  const Folder folder;
+  folder.write("open.obj", kTriangle);
+  for (const char* show : {"refinement", "construction"}) {
+    folder.write("s.json", std::string(R"({"name": "s", "purpose": "p", "show": ")") + show +
+                               R"(", "bodies": {"a": {"file": "open.obj"}}})");
+    const Outcome o = run(folder, {"--quiet", "run", "s.json"});
+    CAPTURE(o.err);
+    CHECK(o.code == 2);
+    CHECK(o.error_lines() == 1);
+    CHECK(o.err.find("open.obj, is open") != std::string::npos);
+    CHECK_FALSE(fs::exists(folder / "out"));
+    CHECK(run(folder, {"--quiet", "golden", "approve", "s.json"}).code == 2);
+    CHECK_FALSE(fs::exists(folder / "goldens"));
+  }
+}
+
 TEST_CASE("query: first finds one pair, the paper's recursion says that it is not the complete one") {
   const Folder folder;
   folder.write("a.obj", kCube);

@@ -1,5 +1,6 @@
 // Crowds: what the broad phase leaves out is apart, what it keeps is answered as brute force answers it, and
 // the number of threads shows in times alone.
+#include <fstream>
 #include <atomic>
 #include <filesystem>
 #include <map>
@@ -80,6 +81,20 @@ bool schema_accepts(const json& j) {
   valijson::SchemaParser(valijson::SchemaParser::kDraft7)
       .populateSchema(valijson::adapters::NlohmannJsonAdapter(document), schema, fetch, release);
   return valijson::Validator().validate(schema, valijson::adapters::NlohmannJsonAdapter(j), nullptr);
+}
+
+/// Whether the published schema of traces accepts a document; else its complaints.
+std::string complaint_about_trace(const json& trace) {
+  static const json document = json::parse(std::ifstream(LRB_TRACE_SCHEMA));
+  valijson::Schema schema;
+  valijson::SchemaParser(valijson::SchemaParser::kDraft7)
+      .populateSchema(valijson::adapters::NlohmannJsonAdapter(document), schema);
+  valijson::ValidationResults results;
+  std::string out;
+  if (valijson::Validator().validate(schema, valijson::adapters::NlohmannJsonAdapter(trace), &results)) return out;
+  for (valijson::ValidationResults::Error error; results.popError(error); out += error.description + "\n")
+    for (const std::string& part : error.context) out += part;
+  return out.empty() ? "refused" : out;
 }
 
 /// As write_crowd() left them.
@@ -260,6 +275,38 @@ TEST_CASE("traces of crowds that are cut, damaged, old or of other bodies") {
     if (e["args"].contains("fingerprint") && e["args"]["relation"] == "crossing")
       e["args"]["fingerprint"] = "0000000000000000";
   CHECK(error(other.dump(), kinds()).find(": recorded was crossing in ") != std::string::npos);
+}
+
+TEST_CASE("traces of crowds fulfil the schema of traces, on either clock; broken ones do not") {
+  for (json text : {good(), good_2d()}) {
+    for (const char* clock : {"event", "wall"}) {
+      text["trace"] = {{"clock", clock}};
+      const spec::Crowd c = crowd_of(text);
+      const json trace = json::parse(trace_of(c, crowd::run_crowd(c, 2, kSilent)));
+      CHECK(complaint_about_trace(trace) == "");
+      const auto broken = [&](const char* pointer, const json& value) {
+        json bad = trace;
+        bad[json::json_pointer(pointer)] = value;
+        CAPTURE(pointer);
+        CHECK(complaint_about_trace(bad) != "");
+      };
+      broken("/metadata/clock", "sun");
+      broken("/metadata/version", 3);
+      broken("/metadata/colour", 1);
+      broken("/metadata/kinds/0/body/dim", 4);
+      broken("/metadata/poses/0/0", json::array({1, 2}));
+      broken("/traceEvents/0/ph", "B");
+      for (std::size_t i = 0; i < trace["traceEvents"].size(); ++i) {
+        if (!trace["traceEvents"][i]["args"].contains("relation")) continue;
+        const std::string event = "/traceEvents/" + std::to_string(i);
+        broken((event + "/args/relation").c_str(), "near");
+        broken((event + "/args/colour").c_str(), "red");
+        broken((event + "/cat").c_str(), "test");
+        broken((event + "/tid").c_str(), 2);
+        break;
+      }
+    }
+  }
 }
 
 TEST_CASE("slices of a track lie one after the other, and say what was asked and answered") {

@@ -73,7 +73,7 @@ golden::Golden golden_of(const golden::GoldenRun& run) {
   golden.trace = run.recording.trace;
   for (std::size_t i = 0; i < run.frames.size(); ++i)
     golden.frames.push_back(
-        {{golden::golden_image_file(i), {run.frames[i].image, golden::golden_text(run, i), 0}}});
+        {{golden::golden_image_file(i), {run.frames[i].image, golden::golden_text(run, i), 0}, {}}});
   return golden;
 }
 
@@ -263,6 +263,15 @@ TEST_CASE("goldens: counters, poses and bodies are part of the run") {
   CHECK(has(v.divergence->message(), "step 2: counter box_tests: expected "));
 
   golden = golden_of(run);
+  golden.trace.header.request.contacts = false;
+  CHECK(has(golden::check_golden(golden, run).divergence.value().message(),
+            "request: contacts: expected false, found true"));
+  golden = golden_of(run);
+  golden.trace.header.request.interiors_overlap = true;
+  CHECK(has(golden::check_golden(golden, run).divergence.value().message(),
+            "request: interiors_overlap: expected true, found false"));
+
+  golden = golden_of(run);
   golden.trace.steps[1].pose_b.t.x() += 1;
   v = golden::check_golden(golden, run);
   REQUIRE(v.divergence);
@@ -320,10 +329,35 @@ TEST_CASE("goldens: what cannot be tested ends with code 2 and one line") {
     CHECK(o.error_lines() == 1);
   }
   CHECK(has(test::run(folder, {"golden", "test", "other.scenario.json"}).err, "lrbscope golden approve"));
+}
+
+TEST_CASE("goldens: what is damaged fails, and the others are tested all the same") {
+  const Approved folder;
+  folder.write("other.scenario.json", two_balls().replace(10, 5, "other"));
+  REQUIRE(test::run(folder, {"golden", "approve", "--frames", "1", "other.scenario.json"}).code == 0);
+  const auto check_fails = [&](const char* what) {
+    const Outcome o = folder.test();
+    CAPTURE(o.out);
+    CAPTURE(o.err);
+    CHECK(o.code == 1);
+    CHECK(has(o.out, "FAIL  balls: "));
+    CHECK(has(o.out, what));
+    CHECK(has(o.out, "ok    other: "));
+    CHECK(has(slurp(folder / "out/golden/index.html"), what));
+  };
+  const std::string sound = slurp(folder / "goldens/balls/trace.json.gz");
   folder.write("goldens/balls/frame_1.png", "no picture");
-  CHECK(folder.test().code == 2);
-  CHECK(test::run(folder, {"golden", "approve"}).code == 0);  // which puts a sound one in its place
+  check_fails("frame_1.png: not a readable PNG");
+  CHECK(has(folder.test().out, "events equal; images: 1 of 2 differ"));
+  CHECK(test::run(folder, {"golden", "approve", "balls"}).code == 0);  // which puts a sound one in its place
   CHECK(folder.test().code == 0);
+  folder.write("goldens/balls/trace.json.gz", sound.substr(0, sound.size() / 2));
+  check_fails("ends too early");
+  const auto answer = nlohmann::json::parse(
+      test::run(folder, {"golden", "test", "--json", "balls"}).out);
+  CHECK(answer["passed"] == false);
+  CHECK(has(answer["refusal"].get<std::string>(), "ends too early"));
+  folder.write("goldens/balls/trace.json.gz", sound);
   folder.write("goldens/balls/golden.json", "{\"scenario\": \"balls\", \"size\": [1]}");
-  CHECK(has(folder.test().err, "golden.json:1:"));
+  check_fails("golden.json:1:");
 }

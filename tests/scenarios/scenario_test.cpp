@@ -1,6 +1,7 @@
 #include "scenarios/spec/scenario.hpp"
 
 #include <string>
+#include <type_traits>
 
 #include <doctest/doctest.h>
 #include <nlohmann/json.hpp>
@@ -14,6 +15,7 @@
 #include "scenarios/io/embedded.hpp"
 #include "scenarios/spec/scenario_motion.hpp"
 #include "scenarios/spec/shipped.hpp"
+#include "trace/record_fields.hpp"
 
 using namespace lrb;
 using nlohmann::json;
@@ -52,6 +54,13 @@ std::string with(const std::string& pointer, const json& value) {
   return s.dump(1);
 }
 
+template <class Enum>
+json words() {
+  json out = json::array();
+  for (const EnumWord<Enum>& entry : kWords<Enum>) out.push_back(entry.word);
+  return out;
+}
+
 }  // namespace
 
 TEST_CASE("every shipped scenario is valid by the schema and by the reader, and says why it is there") {
@@ -66,6 +75,32 @@ TEST_CASE("every shipped scenario is valid by the schema and by the reader, and 
     ++count;
   }
   CHECK(count >= 6);
+}
+
+TEST_CASE("a scenario's query has the fields of requests, and its words are the enums'") {
+  const json document = json::parse(io::embedded_file("scenario.schema.json"));
+  json keys = json::object();
+  const json& query = document["properties"]["query"]["properties"];
+  trace::for_each_field<CollideRequest>([&](const auto& field) {
+    const std::string name(field.name);
+    CAPTURE(name);
+    if (name == "max_time") return;  // differs from run to run
+    keys[name] = query.at(name);
+    using Value = std::remove_cvref_t<decltype(CollideRequest{}.*field.member)>;
+    if constexpr (std::is_enum_v<Value>) CHECK(query.at(name).at("enum") == words<Value>());
+  });
+  CHECK(keys == query);
+  const auto at = [&](const char* pointer) { return document.at(json::json_pointer(pointer)).at("enum"); };
+  CHECK(at("/properties/show") == words<spec::Show>());
+  CHECK(at("/properties/trace/properties/clock") == words<trace::Clock>());
+  CHECK(at("/properties/expect/items/properties/relation") == words<Relation>());
+  CHECK(at("/definitions/frames/properties/at") == words<spec::FrameSpec::At>());
+  CHECK(at("/definitions/frames/properties/colour_by") == words<spec::FrameSpec::ColourBy>());
+  CHECK(at("/definitions/view/properties/camera") == words<spec::FrameSpec::Camera>());
+  json kinds = json::array();
+  for (const json& kind : document["definitions"]["motion"]["oneOf"])
+    kinds.push_back(kind["properties"]["kind"]["const"]);
+  CHECK(kinds == words<spec::Motion::Kind>());
 }
 
 TEST_CASE("schema and reader agree on good and bad files") {
@@ -109,6 +144,8 @@ TEST_CASE("schema and reader agree on good and bad files") {
       with("/query", json{{"max_tests", -3}}),
       with("/query", json{{"separation", 1}}),
       with("/query", json{{"max_time", 1}}),
+      with("/query", json{{"max_pairs", 1}}),
+      with("/query", json{{"max_pairs", 0}}),
       with("/query", json{{"tolerence", 1}}),
       with("/query", json{{"tolerance", 0.1}, {"contacts", true}}),
       with("/query", json{{"max_tests", 10}, {"contacts", true}}),

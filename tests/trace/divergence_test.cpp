@@ -106,7 +106,7 @@ TEST_CASE("what is around the events is compared too") {
   CHECK(difference(x, y).starts_with("step 1: pose of B: expected ("));
   y = x;
   y.steps[2].result.fingerprint ^= 1;
-  CHECK(difference(x, y).starts_with("step 2: fingerprint of the pairs"));
+  CHECK(difference(x, y).starts_with("step 2: fingerprint: expected "));
   y = x;
   y.steps[0].result.counters.box_tests += 1;
   CHECK(difference(x, y) == "step 0: counter box_tests: expected 0, found 1");
@@ -115,10 +115,10 @@ TEST_CASE("what is around the events is compared too") {
   CHECK(difference(x, y) == "run: request: tolerance: expected 0, found 0.5");
   y = x;
   y.steps[0].result.error_bound = 0.25;
-  CHECK(difference(x, y) == "step 0: error bound: expected 0, found 0.25");
+  CHECK(difference(x, y) == "step 0: error_bound: expected 0, found 0.25");
   y = x;
   y.steps[0].result.separation = Separation{{{{1}, {}}}, {7, 6}};
   CHECK(difference(x, y) ==
-        "step 0: certificate of separation: expected none, found wrappers of 7 and 6 faces");
+        "step 0: separation: expected none, found wrappers of 7 and 6 faces");
   CHECK(difference(x, box_run({runs::kBoxPoses[0]})) == "run: number of steps: expected 3, found 1");
 }

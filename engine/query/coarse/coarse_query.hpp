@@ -111,7 +111,7 @@ class CoarseQuery {
     CollideResult level;
     level.counters = std::move(result_.counters);
     WithoutContacts probe{probe_};
-    TreeQuery<WithoutContacts, CoarseRules> query(ctx_, request_.mode, level, probe, rules);
+    TreeQuery<WithoutContacts, CoarseRules> query(ctx_, request_, level, probe, rules);
     query.run();
     result_.counters = std::move(level.counters);
     if (query.rules().stopped) return false;

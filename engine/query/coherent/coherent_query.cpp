@@ -109,7 +109,7 @@ void CoherentQuery::query_from_scratch() {
   result_.contacts.clear();
   result_.regions.clear();
   NullProbe probe;
-  TreeQuery<NullProbe>(context_, request_.mode, result_, probe).run();
+  TreeQuery<NullProbe>(context_, request_, result_, probe).run();
   context_.pair_order.sort(result_);
   decide_relation(context_, result_);
   describe_contact(context_, request_, result_);
@@ -164,6 +164,7 @@ bool CoherentQuery::make_cache(const CachePolicy::Plan& list) {
     k.out_size = 0;
     run_tree_kernel(k);
     for (std::uint32_t i = 0; i < k.out_size; ++i) cache_.add({k.out[i].a, k.out[i].b});
+    if (cache_.pairs().size() > request_.pair_limit()) return false;  // the query itself counts those that meet
     if (use_ == CacheUse::as_it_pays && seconds_since(began) > policy_.patience()) return false;
   }
   cache_.arrange(a_, b_, k, sweep_, rounding, context_.pair_order);

@@ -3,18 +3,42 @@
 #include <algorithm>
 #include <map>
 #include <numeric>
+#include <unordered_map>
 
 namespace lrb {
 namespace {
 
-/// A feature of a surface, named by its vertices so that all simplices around it agree: a vertex (v, v), an
+/// A feature of a surface, named by its vertices (see Places) so that all simplices around it agree: a vertex (v, v), an
 /// edge (v < w), or the interior of a simplex (kNull, s).
 using SurfaceFeature = std::pair<std::uint32_t, std::uint32_t>;
 
-SurfaceFeature surface_feature(const LrbRep& rep, SimplexId s, exact::Feature f) {
+/// Vertices by their place: of those that stand in the same one, as along seams of textures, the first that
+/// was asked for.
+class Places {
+ public:
+  explicit Places(const LrbRep& rep) : rep_(rep) {}
+
+  VertexId at(VertexId v) {
+    const auto [known, is_new] = first_.try_emplace(v, v);
+    if (is_new) {
+      const Eigen::Vector3d x = rep_.vertices()[v] + Eigen::Vector3d::Zero();  // -0 is 0
+      known->second = by_place_.try_emplace({x[0], x[1], x[2]}, v).first->second;
+    }
+    return known->second;
+  }
+  const LrbRep& rep() const { return rep_; }
+
+ private:
+  const LrbRep& rep_;
+  std::unordered_map<VertexId, VertexId> first_;
+  std::map<std::array<double, 3>, VertexId> by_place_;
+};
+
+SurfaceFeature surface_feature(Places& places, SimplexId s, exact::Feature f) {
   VertexId v[3];
-  rep.simplex(s, v);
-  const int n = rep.simplex_size();
+  places.rep().simplex(s, v);
+  const int n = places.rep().simplex_size();
+  for (int k = 0; k < n; ++k) v[k] = places.at(v[k]);
   if (f.dim == 0) return {v[f.index], v[f.index]};
   if (f.dim == 1 && n == 3) return std::minmax({v[f.index], v[(f.index + 1) % 3]});
   return {kNull, s};
@@ -28,13 +52,14 @@ Edge ordered(std::uint32_t p, std::uint32_t q) {
 
 void number_corners(const QueryContext& context, const CollideResult& result, ContactGraph& graph) {
   std::map<std::pair<SurfaceFeature, SurfaceFeature>, std::uint32_t> number;
+  Places of_a(context.body[0].rep()), of_b(context.body[1].rep());
   for (std::uint32_t i = 0; i < result.pairs.size(); ++i) {
     const PairContactRecord& contact = result.contacts[i];
     ContactGraph::Piece piece{i, {}};
     for (int c = 0; c < contact.corner_count; ++c) {
       const exact::ContactCorner& corner = contact.corners[static_cast<std::size_t>(c)];
-      const auto key = std::pair{surface_feature(context.body[0].rep(), result.pairs[i].a, corner.on_a),
-                                 surface_feature(context.body[1].rep(), result.pairs[i].b, corner.on_b)};
+      const auto key = std::pair{surface_feature(of_a, result.pairs[i].a, corner.on_a),
+                                 surface_feature(of_b, result.pairs[i].b, corner.on_b)};
       const auto [it, is_new] = number.try_emplace(key, static_cast<std::uint32_t>(graph.points.size()));
       if (is_new) graph.points.push_back(corner.x);
       piece.points.push_back(it->second);

@@ -23,6 +23,11 @@ enum class EventKind : std::uint8_t {
   LRB_EVENTS(LRB_EVENT)
 #undef LRB_EVENT
 };
+constexpr auto words_of(EventKind) {
+#define LRB_EVENT(name, json, a, b) {EventKind::name, json},
+  return std::to_array<EnumWord<EventKind>>({LRB_EVENTS(LRB_EVENT)});
+#undef LRB_EVENT
+}
 
 /// Does nothing, costs nothing. Also the list of what a probe must have.
 struct NullProbe {

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 
+#include "engine/core/enum_words.hpp"
 #include "engine/lrb/wrapper.hpp"
 
 namespace lrb {
@@ -13,6 +14,10 @@ enum class Mode : std::uint8_t {
   any_pair,    ///< do the surfaces meet? The first pair that does ends the query, and Relation::touching then
                ///< says no more than that this pair touches: others may cross
 };
+constexpr auto words_of(Mode) {
+  return std::to_array<EnumWord<Mode>>(
+      {{Mode::all_pairs, "all"}, {Mode::first_pair, "first"}, {Mode::any_pair, "any"}});
+}
 
 enum class Recursion : std::uint8_t {
   complete,
@@ -20,6 +25,11 @@ enum class Recursion : std::uint8_t {
   paper_strict,  ///< each region is refined once; its new faces meet only the new faces of what it hit
 };
 
+constexpr auto words_of(Recursion) {
+  return std::to_array<EnumWord<Recursion>>({{Recursion::complete, "complete"},
+                                             {Recursion::paper, "paper"},
+                                             {Recursion::paper_strict, "paper_strict"}});
+}
 const char* to_string(Recursion r);
 
 enum class Predicates : std::uint8_t {
@@ -27,6 +37,15 @@ enum class Predicates : std::uint8_t {
   floating,  ///< without the exact fallback: the answer can be wrong; to measure what exactness costs and
              ///< saves
 };
+constexpr auto words_of(Predicates) {
+  return std::to_array<EnumWord<Predicates>>(
+      {{Predicates::exact, "exact"}, {Predicates::floating, "floating"}});
+}
+
+/// Pairs that a query keeps at most, unless it is asked for more or fewer. A pair takes about 25 bytes while
+/// it is found and sorted, and about 700 with its contact: less than 1 GB, and about 1.5 GB.
+inline constexpr std::uint64_t kMostPairs = std::uint64_t{1} << 25;
+inline constexpr std::uint64_t kMostPairsWithContacts = std::uint64_t{1} << 21;
 
 struct CollideRequest {
   Mode mode = Mode::all_pairs;
@@ -46,8 +65,16 @@ struct CollideRequest {
   double max_time = 0;          ///< seconds at most, looked at every few face tests; 0: as long as it takes
   /// For separate bodies: find CollideResult::separation. Takes longer than the query.
   bool separation = false;
+  /// Pairs that are kept at most: a query that finds more ends there with an InputError. (Two bodies of n
+  /// faces have up to n * n.) 0: kMostPairs, or kMostPairsWithContacts. The paper's recursions count a pair
+  /// as often as they find it.
+  std::uint64_t max_pairs = 0;
 
   bool is_coarse() const { return tolerance > 0 || max_tests > 0 || max_time > 0; }
+  std::uint64_t pair_limit() const {
+    return max_pairs > 0 ? max_pairs : contacts ? kMostPairsWithContacts : kMostPairs;
+  }
+  friend bool operator==(const CollideRequest&, const CollideRequest&) = default;
 };
 
 }  // namespace lrb

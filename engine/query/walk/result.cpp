@@ -1,43 +1,27 @@
 #include "engine/query/walk/result.hpp"
 
+#include <string>
+
+#include "engine/core/error.hpp"
 #include "engine/core/fnv.hpp"
 
 namespace lrb {
 
 const char* to_string(Relation r) {
-  switch (r) {
-    case Relation::separate:
-      return "separate";
-    case Relation::crossing:
-      return "crossing";
-    case Relation::touching:
-      return "touching";
-    case Relation::a_inside_b:
-      return "a_inside_b";
-    case Relation::b_inside_a:
-      return "b_inside_a";
-    case Relation::undefined:
-      return "undefined";
-    case Relation::unresolved:
-      return "unresolved";
-  }
-  return "";
+  return name_of(r).data();
 }
-
 const char* to_string(Answer a) {
-  return a == Answer::yes ? "yes" : a == Answer::no ? "no" : "unknown";
+  return name_of(a).data();
+}
+const char* to_string(Recursion r) {
+  return name_of(r).data();
 }
 
-const char* to_string(Recursion r) {
-  switch (r) {
-    case Recursion::complete:
-      return "complete";
-    case Recursion::paper:
-      return "paper";
-    case Recursion::paper_strict:
-      return "paper-strict";
-  }
-  return "";
+void refuse_pairs(std::uint64_t limit) {
+  throw InputError("the bodies meet in more than " + std::to_string(limit) +
+                   " pairs of triangles, the most that are kept: raise max_pairs (--max-pairs) if there is "
+                   "memory for more, about 25 bytes a pair and 700 with its contact, or ask only whether "
+                   "they meet (mode any or first)");
 }
 
 std::uint64_t fingerprint(const std::vector<SimplexPair>& pairs) {

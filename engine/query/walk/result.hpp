@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "engine/core/enum_words.hpp"
 #include "engine/query/walk/contact_region.hpp"
 #include "engine/query/walk/request.hpp"
 
@@ -15,16 +16,31 @@ namespace lrb {
 enum class Relation : std::uint8_t {
   separate,    ///< no point in common
   crossing,    ///< at least two faces pass through each other's interior
-  touching,    ///< surfaces meet, but no two faces cross
+  touching,    ///< surfaces meet, but no two faces cross. The bodies may still share a volume: two equal
+               ///< cubes, one shifted along an edge, overlap with their sides flush, and no face passes
+               ///< through another. CollideResult::interiors_overlap tells, where it is asked for
   a_inside_b,  ///< no surface contact; B holds A
   b_inside_a,
   undefined,   ///< no surface contact, and a body that is not closed: inside has no meaning
   unresolved,  ///< a coarse query did not prove the bodies apart; they are closer than the error bound, or
                ///< meet
 };
+constexpr auto words_of(Relation) {
+  return std::to_array<EnumWord<Relation>>({{Relation::separate, "separate"},
+                                            {Relation::crossing, "crossing"},
+                                            {Relation::touching, "touching"},
+                                            {Relation::a_inside_b, "a_inside_b"},
+                                            {Relation::b_inside_a, "b_inside_a"},
+                                            {Relation::undefined, "undefined"},
+                                            {Relation::unresolved, "unresolved"}});
+}
 const char* to_string(Relation r);
 
 enum class Answer : std::uint8_t { no, yes, unknown };
+constexpr auto words_of(Answer) {
+  return std::to_array<EnumWord<Answer>>(
+      {{Answer::no, "no"}, {Answer::yes, "yes"}, {Answer::unknown, "unknown"}});
+}
 const char* to_string(Answer a);
 
 /// A pair of real simplices that meet (see LrbRep::face_of_simplex for the faces).
@@ -39,6 +55,8 @@ struct SimplexPair {
 struct Separation {
   std::array<std::vector<RegionId>, 2> refined;      ///< A's and B's
   std::array<std::uint32_t, 2> face_count = {0, 0};  ///< of the two wrappers
+
+  friend bool operator==(const Separation&, const Separation&) = default;
 };
 
 /// What the query did. All are numbers of operations.
@@ -53,13 +71,16 @@ struct Counters {
   std::uint64_t refinements = 0;     ///< paper: refine operations; complete: equal to regions_opened
   std::uint64_t regions_opened = 0;  ///< regions excluded from either wrapper at the end
   std::vector<std::uint32_t> face_tests_by_level;  ///< by max(depth of a, depth of b) of the compared faces
+
+  friend bool operator==(const Counters&, const Counters&) = default;
 };
 
 struct CollideResult {
   Relation relation = Relation::separate;
-  /// crossing, inside: yes; separate: no; touching: if requested; a body that is not closed: unknown. Yes
-  /// takes for granted that rounding leaves the bodies a volume in the world. If requested, a crossing is yes
-  /// only where that is proved, else unknown; a body inside another is not asked whether it has become flat.
+  /// crossing, inside: yes; separate: no; touching: if requested, else unknown (see Relation::touching: a
+  /// stack of boxes sinks unnoticed where nobody asks); a body that is not closed: unknown. Yes takes for
+  /// granted that rounding leaves the bodies a volume in the world. If requested, a crossing is yes only where
+  /// that is proved, else unknown; a body inside another is not asked whether it has become flat.
   Answer interiors_overlap = Answer::unknown;
   Recursion recursion = Recursion::complete;  ///< the one that was used
   Mode mode = Mode::all_pairs;
@@ -77,6 +98,9 @@ struct CollideResult {
   std::optional<Separation> separation;  ///< if requested, separate, and not nearer than rounding
   Counters counters;
 };
+
+/// Throws InputError: the query found more pairs than `limit`.
+[[noreturn]] void refuse_pairs(std::uint64_t limit);
 
 /// FNV-1a 64 over the pairs, each as u32 a, u32 b little-endian; cbf29ce484222325 for none.
 std::uint64_t fingerprint(const std::vector<SimplexPair>& pairs);

@@ -67,8 +67,14 @@ struct ExactRules {
 template <class Probe, class Rules = ExactRules>
 class TreeQuery {
  public:
-  TreeQuery(QueryContext& ctx, Mode mode, CollideResult& result, Probe& probe, Rules rules = {})
-      : ctx_(ctx), mode_(mode), result_(result), probe_(probe), rules_(rules) {}
+  TreeQuery(QueryContext& ctx, const CollideRequest& request, CollideResult& result, Probe& probe,
+            Rules rules = {})
+      : ctx_(ctx),
+        mode_(request.mode),
+        pair_limit_(request.pair_limit()),
+        result_(result),
+        probe_(probe),
+        rules_(rules) {}
 
   const Rules& rules() const { return rules_; }
 
@@ -85,6 +91,7 @@ class TreeQuery {
       run_tree_kernel(k);
       if constexpr (Rules::kCoarse) done = rules_.must_stop();
       for (std::uint32_t i = 0; i < k.out_size && !done; ++i) done = test(k.out[i]);
+      if (result_.pairs.size() > pair_limit_) refuse_pairs(pair_limit_);
     }
     result_.counters.node_pairs += k.node_pairs;
     result_.counters.box_tests += k.box_tests;
@@ -152,6 +159,7 @@ class TreeQuery {
 
   QueryContext& ctx_;
   Mode mode_;
+  std::uint64_t pair_limit_;
   CollideResult& result_;
   Probe& probe_;
   Rules rules_;

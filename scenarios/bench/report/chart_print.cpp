@@ -1,9 +1,9 @@
 #include "scenarios/bench/report/chart_print.hpp"
 
 #include <cmath>
-#include <cstdio>
 
 #include "scenarios/bench/report/series_style.hpp"
+#include "scenarios/io/number_text.hpp"
 
 namespace lrb::bench {
 namespace {
@@ -12,24 +12,18 @@ constexpr double kPanelWidth = 50, kPanelHeight = 46, kLeft = 19, kTop = 7, kBot
                  kKeyHeight = 16;  // mm
 constexpr int kKeyColumns = 5;
 
-std::string number(double x) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.7g", x);
-  return text;
-}
-
 std::string style(std::size_t i, double size) {
   return std::string(" lc rgb '") + look(i).colour + "' pt " + std::to_string(look(i).point) + " ps " +
-         number(size);
+         io::number_text(size);
 }
 
 /// Sizes of the whole, in millimetres from the lower left corner.
 struct Layout {
   double width, height;
   std::string margins(double x0, double x1, double y0, double y1) const {
-    return "set lmargin at screen " + number(x0 / width) + "\nset rmargin at screen " + number(x1 / width) +
-           "\nset bmargin at screen " + number(y0 / height) + "\nset tmargin at screen " +
-           number(y1 / height) + "\n";
+    return "set lmargin at screen " + io::number_text(x0 / width) + "\nset rmargin at screen " + io::number_text(x1 / width) +
+           "\nset bmargin at screen " + io::number_text(y0 / height) + "\nset tmargin at screen " +
+           io::number_text(y1 / height) + "\n";
   }
 };
 
@@ -40,14 +34,14 @@ std::string plots_of(report::Gnuplot& chart, const std::string& id, const std::v
   std::vector<std::string> failed, best;
   std::string last;
   for (const Point* p : panel) {
-    const std::string at = number(drawn_error(*p)) + " " + number(drawn_time(*p, slowest));
+    const std::string at = io::number_text(drawn_error(*p)) + " " + io::number_text(drawn_time(*p, slowest));
     std::vector<std::string>& r = rows[look_of(p->method)];
     if (!r.empty() && !(p->setting && p->method == last)) r.emplace_back();  // a gap: no line between methods
     r.push_back(at);
     last = p->method;
     if (p->failed() > 0) failed.push_back(at);
   }
-  for (const Point* p : frontier(panel)) best.push_back(number(drawn_error(*p)) + " " + number(p->median));
+  for (const Point* p : frontier(panel)) best.push_back(io::number_text(drawn_error(*p)) + " " + io::number_text(p->median));
   std::string plots;
   const auto add = [&](const std::string& name, const std::vector<std::string>& data,
                        const std::string& how) {
@@ -77,14 +71,14 @@ std::string key_of(report::Gnuplot& chart, const Layout& layout) {
     const std::string name = "key" + std::to_string(i);
     const auto k = static_cast<std::size_t>(i);
     const bool frontier = k == look_count(), failed = k == look_count() + 1;
-    std::vector<std::string> at = {number(x + 0.05) + " " + number(y)};
-    if (frontier) at.push_back(number(x + 0.09) + " " + number(y));
+    std::vector<std::string> at = {io::number_text(x + 0.05) + " " + io::number_text(y)};
+    if (frontier) at.push_back(io::number_text(x + 0.09) + " " + io::number_text(y));
     chart.add_data(name, at);
     plots += (i == 0 ? "plot $" : ", $") + name + " using 1:2 with " +
              (frontier ? std::string("lines lw 2.2 lc rgb '#c9d6df'")
               : failed ? std::string("points pt 2 ps 0.9 lw 1.6 lc rgb '#d00000'")
                        : "points" + style(k, 0.75));
-    titles.push_back(number(x + 0.11) + " " + number(y) + " " +
+    titles.push_back(io::number_text(x + 0.11) + " " + io::number_text(y) + " " +
                      report::gnuplot_data_text(frontier ? "Pareto frontier"
                                                : failed ? "crash, refusal or time-out: the worst"
                                                         : look(k).title));
@@ -121,7 +115,7 @@ report::Gnuplot accuracy_chart(const std::vector<DataSet>& sets, const std::vect
       plots += column == 0 ? "set ylabel " + report::gnuplot_text(sets[row].name + ": median, µs") +
                                  " offset 0.4,0\nset ytics 10 format '%g' nomirror\n"
                            : "unset ylabel\nset ytics 10 format '' nomirror\n";
-      plots += "set yrange [0.05:" + number(6 * slowest) + "]\n";
+      plots += "set yrange [0.05:" + io::number_text(6 * slowest) + "]\n";
       plots += plots_of(chart, "r" + std::to_string(row) + "c" + std::to_string(column), here, slowest);
     }
   }

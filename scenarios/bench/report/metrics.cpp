@@ -207,7 +207,7 @@ std::vector<Point> measure_points(const std::vector<DataSet>& sets,
 std::string to_lines(const std::vector<Point>& points) {
   std::string out;
   for (const Point& p : points) {
-    nlohmann::ordered_json value = {{"set", p.set}, {"class", to_string(p.pose_class)}, {"method", p.method}};
+    nlohmann::ordered_json value = {{"set", p.set}, {"class", name_of(p.pose_class)}, {"method", p.method}};
     if (p.setting) value["setting"] = *p.setting;
     value["questions"] = p.questions;
     value["refused"] = p.refused;

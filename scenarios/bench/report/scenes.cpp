@@ -57,7 +57,7 @@ std::map<SceneKey, std::string> write_scenes(const std::vector<DataSet>& sets,
       progress("scenes", done++, sets.size() * std::size(kPoseClasses));
       const std::uint64_t k = question_of(set, panel(points, set.name, c), c);
       if (k >= set.questions.size()) continue;
-      const std::string name = set.name + "-" + to_string(c);
+      const std::string name = set.name + "-" + std::string(name_of(c));
       const std::string file = folder + "/scenes/" + name + ".scenario.json";
       const std::string text = scenario_text(set, k, name), page = "scenes/" + name + "/index.html";
       pages[{set.name, c}] = page;

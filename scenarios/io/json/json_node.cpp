@@ -2,23 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <sstream>
 
 #include "engine/core/error.hpp"
 #include "engine/core/file_bytes.hpp"
 #include "scenarios/io/json/suggest.hpp"
+#include "scenarios/io/number_text.hpp"
 
 namespace lrb::io {
-namespace {
-
-std::string shown(double x) {
-  std::ostringstream out;
-  out << x;
-  return out.str();
-}
-
-}  // namespace
-
 void JsonNode::fail(const std::string& message) const {
   throw InputError(text_->where(pointer_) + ": " +
                    printable_name((pointer_.empty() ? "" : pointer_ + ": ") + message));
@@ -72,7 +62,7 @@ double JsonNode::number(double least, double most) const {
   if (!value_->is_number()) fail_type("a number");
   const double x = value_->get<double>();
   if (!std::isfinite(x) || x < least || x > most)
-    fail("expected a number from " + shown(least) + " to " + shown(most) + ", found " + value_->dump());
+    fail("expected a number from " + number_text(least, 6) + " to " + number_text(most, 6) + ", found " + value_->dump());
   return x;
 }
 

@@ -10,6 +10,7 @@
 
 #include <Eigen/Core>
 
+#include "engine/core/enum_words.hpp"
 #include "scenarios/io/json/json_text.hpp"
 
 namespace lrb::io {
@@ -45,6 +46,14 @@ class JsonNode {
       known.push_back(word);
     }
     fail_choice(known);
+  }
+
+  /// One of the words of an enum.
+  template <class Enum>
+  Enum choice() const {
+    std::vector<std::pair<std::string, Enum>> words;
+    for (const EnumWord<Enum>& entry : kWords<Enum>) words.emplace_back(entry.word, entry.value);
+    return choice(words);
   }
 
   /// Throws InputError: "file:line:column: pointer: message".

@@ -6,7 +6,6 @@
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
-#include <iomanip>
 #include <sstream>
 
 #include <spawn.h>
@@ -15,6 +14,7 @@
 
 #include "engine/core/error.hpp"
 #include "scenarios/io/files.hpp"
+#include "scenarios/io/number_text.hpp"
 
 extern char** environ;
 
@@ -88,28 +88,22 @@ Finished run(const std::string& script) {
   return finished;
 }
 
-std::string number(double x) {
-  std::ostringstream out;
-  out << std::setprecision(6) << x;
-  return out.str();
-}
-
 /// The command that sets the terminal. Fonts: DejaVu Sans everywhere, as in the pictures.
 std::string terminal(const Gnuplot& chart, const std::string& ending) {
   constexpr double kInch = 25.4, kPointsPerInch = 72, kDpi = 300, kPngDpi = 96;
-  const std::string font = " font 'DejaVu Sans," + number(chart.font) + "'";
+  const std::string font = " font 'DejaVu Sans," + io::number_text(chart.font) + "'";
   const auto size = [&](double dpi) {
-    return " size " + number(std::round(chart.width / kInch * dpi)) + "," +
-           number(std::round(chart.height / kInch * dpi));
+    return " size " + io::number_text(std::round(chart.width / kInch * dpi)) + "," +
+           io::number_text(std::round(chart.height / kInch * dpi));
   };
   if (ending == ".svg")
     return "svg noenhanced" + size(kPointsPerInch) + font + " linewidth 0.75 background '#ffffff'";
   if (ending == ".pdf")
-    return "pdfcairo noenhanced size " + number(chart.width / kInch) + "," + number(chart.height / kInch) +
+    return "pdfcairo noenhanced size " + io::number_text(chart.width / kInch) + "," + io::number_text(chart.height / kInch) +
            font + " linewidth 0.75";
   if (ending == ".png")  // its fonts and lines are for 96 dpi
-    return "pngcairo noenhanced" + size(kDpi) + " fontscale " + number(kDpi / kPngDpi) + font +
-           " linewidth " + number(kDpi / kPngDpi) + " pointscale " + number(kDpi / kPngDpi);
+    return "pngcairo noenhanced" + size(kDpi) + " fontscale " + io::number_text(kDpi / kPngDpi) + font +
+           " linewidth " + io::number_text(kDpi / kPngDpi) + " pointscale " + io::number_text(kDpi / kPngDpi);
   throw InputError(ending + ": charts are written as .svg, .png or .pdf");
 }
 

@@ -1,10 +1,9 @@
 #include "scenarios/report/page/grid.hpp"
 
 #include <algorithm>
-#include <iomanip>
-#include <sstream>
 
 #include "render/markup.hpp"
+#include "scenarios/io/number_text.hpp"
 
 namespace lrb::report {
 namespace {
@@ -13,21 +12,15 @@ constexpr std::array<const char*, kPageParts> kPartClasses = {"wrong", "crashed"
 /// So that they are told apart without colour.
 constexpr std::array<const char*, kPageParts> kPartMarks = {"", "\u2715", "\u25f7", "\u2298"};
 
-std::string number(double x) {
-  std::ostringstream out;
-  out << std::setprecision(4) << x;
-  return out.str();
-}
-
 std::string profile_svg(const PageGridCell& cell) {
   constexpr double kBar = 4, kStep = 5, kHeight = 20, kBase = 1;
   constexpr double kLeast = 2.5;  // of a part that is there: always seen
   const double width = kStep * static_cast<double>(cell.bars.size()) - (kStep - kBar);
-  std::string out = "<svg class=\"profile\" viewBox=\"-1 -1 " + number(width + 2) + " " +
-                    number(kHeight + kBase + 2) + "\" preserveAspectRatio=\"none\" aria-hidden=\"true\">";
+  std::string out = "<svg class=\"profile\" viewBox=\"-1 -1 " + io::number_text(width + 2) + " " +
+                    io::number_text(kHeight + kBase + 2) + "\" preserveAspectRatio=\"none\" aria-hidden=\"true\">";
   const auto rect = [&](double x, double y, double h, const char* kind) {
-    out += "<rect class=\"" + std::string(kind) + "\" x=\"" + number(x) + "\" y=\"" + number(y) +
-           "\" width=\"" + number(kBar) + "\" height=\"" + number(h) + "\"/>";
+    out += "<rect class=\"" + std::string(kind) + "\" x=\"" + io::number_text(x, 4) + "\" y=\"" + io::number_text(y, 4) +
+           "\" width=\"" + io::number_text(kBar) + "\" height=\"" + io::number_text(h, 4) + "\"/>";
   };
   for (std::size_t i = 0; i < cell.bars.size(); ++i) {
     const double x = kStep * static_cast<double>(i);
@@ -104,7 +97,7 @@ std::string row_html(const PageGridHead& head) {
 std::string wide_style(const PageGrid& grid) {
   constexpr double kHead = 15, kColumn = 7.6, kMargins = 3.5;  // as in grid.css, rem
   return "<style>@media (min-width: " +
-         number(kHead + kMargins + kColumn * static_cast<double>(grid.columns.size())) +
+         io::number_text(kHead + kMargins + kColumn * static_cast<double>(grid.columns.size())) +
          "rem) { .frame { overflow: visible; max-height: none; } }</style>\n";
 }
 

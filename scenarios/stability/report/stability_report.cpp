@@ -67,7 +67,7 @@ std::string plain(const std::string& text) {
 
 /// An outcome's name, for people.
 std::string words(Outcome o) {
-  std::string name = to_string(o);
+  std::string name(name_of(o));
   std::replace(name.begin(), name.end(), '_', ' ');
   return name;
 }

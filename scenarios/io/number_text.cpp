@@ -1,0 +1,25 @@
+#include "scenarios/io/number_text.hpp"
+
+#include <array>
+#include <charconv>
+
+namespace lrb::io {
+
+std::string number_text(double x, int digits) {
+  std::array<char, 64> text{};
+  return {text.data(),
+          std::to_chars(text.data(), text.data() + text.size(), x, std::chars_format::general, digits).ptr};
+}
+
+std::string fixed_text(double x, int decimals) {
+  std::array<char, 512> text{};  // a double has 309 digits before the point at most
+  std::string out(text.data(), std::to_chars(text.data(), text.data() + text.size(), x,
+                                             std::chars_format::fixed, decimals)
+                                   .ptr);
+  if (out.find('.') == std::string::npos) return out;
+  out.erase(out.find_last_not_of('0') + 1);
+  if (out.back() == '.') out.pop_back();
+  return out;
+}
+
+}  // namespace lrb::io

@@ -1,0 +1,192 @@
+/// The tables of fields and words against the published schema, and against all that is made from them.
+
+#include <fstream>
+#include <set>
+#include <string>
+#include <type_traits>
+
+#include <doctest/doctest.h>
+#include <nlohmann/json.hpp>
+
+#include "tests/trace/runs.hpp"
+#include "trace/divergence.hpp"
+#include "trace/names.hpp"
+#include "trace/record_fields.hpp"
+#include "trace/trace_json.hpp"
+
+using namespace lrb;
+using namespace lrb::trace;
+using Json = nlohmann::json;
+
+namespace {
+
+const Json& schema() {
+  static const Json json = Json::parse(std::ifstream(LRB_TRACE_SCHEMA));
+  return json;
+}
+
+Json resolved(const Json& node) {
+  if (!node.contains("$ref")) return node;
+  return schema().at(Json::json_pointer(node.at("$ref").get<std::string>().substr(1)));
+}
+
+template <class Enum>
+Json words() {
+  Json out = Json::array();
+  for (const EnumWord<Enum>& entry : kWords<Enum>) out.push_back(entry.word);
+  return out;
+}
+
+/// What the schema must say of a field by its type.
+template <class Value>
+void check_type(const Json& field, Form form) {
+  if constexpr (std::is_enum_v<Value>)
+    CHECK(field.at("enum") == words<Value>());
+  else if constexpr (std::is_same_v<Value, bool>)
+    CHECK(field.at("type") == "boolean");
+  else if constexpr (std::is_same_v<Value, std::string>)
+    CHECK(field.at("type") == "string");
+  else if constexpr (std::is_same_v<Value, double>)
+    CHECK((form == Form::or_infinite ? field.at("oneOf").at(0) : field).at("type") == "number");
+  else if constexpr (std::is_integral_v<Value>)
+    CHECK((form == Form::hash || field.contains("enum") || field.at("type") == "integer"));
+}
+
+template <class Record>
+void check_schema(const std::string& pointer) {
+  CAPTURE(pointer);
+  const Json& object = schema().at(Json::json_pointer(pointer));
+  std::set<std::string> fields, required;
+  for_each_field<Record>([&](const auto& f) {
+    const std::string name(f.name);
+    CAPTURE(name);
+    fields.insert(name);
+    if (f.kept == Kept::always) required.insert(name);
+    REQUIRE(object.at("properties").contains(name));
+    using Value = std::remove_cvref_t<decltype(Record{}.*f.member)>;
+    check_type<Value>(resolved(object.at("properties").at(name)), f.form);
+  });
+  std::set<std::string> known;
+  for (const auto& [name, value] : object.at("properties").items()) known.insert(name);
+  CHECK(known == fields);
+  CHECK(object.at("required").get<std::set<std::string>>() == required);
+}
+
+/// Makes a value another one.
+template <class Value>
+void change(Value& value) {
+  if constexpr (std::is_enum_v<Value>)
+    value = value == Value{} ? static_cast<Value>(1) : Value{};
+  else if constexpr (std::is_same_v<Value, bool>)
+    value = !value;
+  else if constexpr (std::is_same_v<Value, std::string>)
+    value += "x";
+  else if constexpr (std::is_same_v<Value, std::vector<std::uint32_t>>)
+    value.push_back(7);
+  else if constexpr (std::is_same_v<Value, std::optional<Separation>>)
+    value = Separation{{{{0}, {}}}, {7, 6}};
+  else if constexpr (std::is_same_v<Value, Counters>)
+    ++value.box_tests;
+  else
+    value = static_cast<Value>(value + 1);
+}
+
+Trace read_back(const Trace& trace) {
+  return trace_from_json(trace_to_json(trace), "t.json");
+}
+
+template <class Enum>
+void check_words() {
+  std::set<std::string_view> seen;
+  for (const EnumWord<Enum>& entry : kWords<Enum>) {
+    CHECK(name_of(entry.value) == entry.word);
+    CHECK(from_name<Enum>(entry.word) == entry.value);
+    CHECK(seen.insert(entry.word).second);
+  }
+  CHECK_FALSE(from_name<Enum>("nonsense"));
+  CHECK(name_of(static_cast<Enum>(kWords<Enum>.size())) == "?");
+}
+
+Trace box_run() {
+  const LrbRep box(toy::dented_box());
+  return runs::record(box, box, runs::kBoxPoses).trace;
+}
+
+}  // namespace
+
+TEST_CASE("the tables have the fields and words of the published schema") {
+  check_schema<CollideRequest>("/definitions/request");
+  check_schema<Counters>("/definitions/counters");
+  check_schema<BodyInfo>("/definitions/body");
+  check_schema<StepResult>("/definitions/time_step/properties/result");
+  CHECK(schema().at("/definitions/relation/enum"_json_pointer) == words<Relation>());
+  CHECK(schema().at("/definitions/meet/enum"_json_pointer) == words<exact::Meet>());
+  CHECK(schema().at("/definitions/side/enum"_json_pointer) == words<Side>());
+  CHECK(schema().at("/definitions/metadata/properties/clock/enum"_json_pointer) == words<Clock>());
+  CHECK(schema().at("/definitions/metadata/properties/totals/required"_json_pointer) == words<EventKind>());
+}
+
+TEST_CASE("words lead to their enumerators and back; the engine's are those of files") {
+  check_words<Mode>();
+  check_words<Recursion>();
+  check_words<Predicates>();
+  check_words<WrapperMode>();
+  check_words<Relation>();
+  check_words<Answer>();
+  check_words<Side>();
+  check_words<exact::Meet>();
+  check_words<EventKind>();
+  check_words<Clock>();
+  CHECK(std::string(to_string(Recursion::paper_strict)) == "paper_strict");
+  CHECK(all_names<Mode>() == "all, first or any");
+  CHECK(all_names<Mode>("|", "|") == "all|first|any");
+}
+
+TEST_CASE("no field of a request changes unnoticed, and each survives a file") {
+  const Trace x = box_run();
+  for_each_field<CollideRequest>([&](const auto& field) {
+    CAPTURE(field.name);
+    Trace y = x;
+    change(y.header.request.*field.member);
+    CHECK_FALSE(x == y);
+    const auto d = first_divergence(x, y);
+    REQUIRE(d);
+    CHECK(d->message().starts_with("run: request: " + std::string(field.name) + ": expected "));
+    CHECK(read_back(y).header.request == y.header.request);
+  });
+}
+
+TEST_CASE("no field of an answer changes unnoticed, and each survives a file") {
+  Trace x = box_run();
+  x.header.request.tolerance = 1;  // or error bounds are not kept
+  for_each_field<StepResult>([&](const auto& field) {
+    CAPTURE(field.name);
+    Trace y = x;
+    change(y.steps[1].result.*field.member);
+    CHECK_FALSE(x == y);
+    const auto d = first_divergence(x, y);
+    REQUIRE(d);
+    CHECK(d->message().starts_with("step 1: "));
+    CHECK(d->message().find(field.name == "counters" ? "counter box_tests" : field.name) !=
+          std::string::npos);
+    if (field.name == "separation") return;  // its region is checked against the body's
+    CHECK(read_back(y) == y);
+  });
+  for_each_field<Counters>([&](const auto& field) {
+    CAPTURE(field.name);
+    Trace y = x;
+    change(y.steps[1].result.counters.*field.member);
+    const auto d = first_divergence(x, y);
+    REQUIRE(d);
+    CHECK(d->message().starts_with("step 1: counter " + std::string(field.name)));
+    CHECK(read_back(y) == y);
+  });
+  for_each_field<BodyInfo>([&](const auto& field) {
+    CAPTURE(field.name);
+    Trace y = x;
+    change(y.header.bodies[1].*field.member);
+    if (field.name == "dim") y.header.bodies[1].dim = 2;
+    CHECK_FALSE(x == y);
+    CHECK(read_back(y) == y);
+  });
+}
