@@ -35,26 +35,25 @@ bool is_inside(const Mesh& mesh, const Component& inner, const Component& outer)
 
 }  // namespace
 
-ComponentNesting find_nesting(const Mesh& mesh, const HullMesh& hull) {
-  ComponentNesting out;
+std::vector<std::uint32_t> find_nesting(const Mesh& mesh, const HullMesh& hull) {
   const std::uint32_t count = hull.component_count();
-  out.is_void.assign(count, false);
-  out.home.assign(count, kNull);
-  if (count == 1) return out;
+  std::vector<std::uint32_t> home(count, kNull);
+  if (count == 1) return home;
   const std::vector<Component> components = components_of(hull);
-  for (std::uint32_t c = 0; c < count; ++c) out.is_void[c] = volume_sign(mesh, components[c].faces) < 0;
+  std::vector<bool> is_void(count);
+  for (std::uint32_t c = 0; c < count; ++c) is_void[c] = volume_sign(mesh, components[c].faces) < 0;
   for (std::uint32_t c = 0; c < count; ++c) {
-    if (out.is_void[c]) {
-      out.home[c] = c;
+    if (is_void[c]) {
+      home[c] = c;
       continue;
     }
     // Of the voids around it the innermost is in all others.
     for (std::uint32_t v = 0; v < count; ++v) {
-      if (!out.is_void[v] || !is_inside(mesh, components[c], components[v])) continue;
-      if (out.home[c] == kNull || is_inside(mesh, components[v], components[out.home[c]])) out.home[c] = v;
+      if (!is_void[v] || !is_inside(mesh, components[c], components[v])) continue;
+      if (home[c] == kNull || is_inside(mesh, components[v], components[home[c]])) home[c] = v;
     }
   }
-  return out;
+  return home;
 }
 
 }  // namespace lrb::construct
