@@ -1,6 +1,7 @@
 #include "engine/construct/chain_builder.hpp"
 
 #include <algorithm>
+#include <array>
 #include <limits>
 
 #include "engine/construct/aabb_tree.hpp"
@@ -8,6 +9,8 @@
 #include "engine/construct/complex_builder.hpp"
 #include "engine/construct/convex_polygon.hpp"
 #include "engine/construct/hull_loops.hpp"
+#include "engine/construct/hull_regions.hpp"
+#include "engine/construct/pass_counter.hpp"
 #include "engine/core/tolerances.hpp"
 #include "engine/exact/simplex_test.hpp"
 #include "engine/mesh/point_inside.hpp"
@@ -28,7 +31,8 @@ class ChainBuilder {
         hull_(mesh),
         complex_(mesh),
         frozen_(mesh.face_count(), false),
-        boxes_(hull_.component_count()) {
+        boxes_(hull_.component_count()),
+        passes_(options) {
     for (const FaceId f : meeting) frozen_[f] = true;
     for (Slot s = 0; s < hull_.slot_count(); ++s) boxes_[hull_[s].component].extend(box_of(hull_, s));
     find_nesting(mesh);
@@ -39,7 +43,7 @@ class ChainBuilder {
     simplify(kCapWorth);
     simplify(kLastCapWorth);
     if (outer_size() > max_outer_ && bridge()) simplify(kLastCapWorth);
-    fill_voids();
+    fill_voids(hull_, home_, passes_.layer(), complex_);
     if (outer_size() > max_outer_) close();
     return complex_.finish(true, false);
   }
@@ -161,7 +165,7 @@ class ChainBuilder {
   }
 
   std::vector<Slot> replace(const ChainCap& cap, const std::vector<Slot>& chain) {
-    const RegionId region = complex_.add_region(layer());
+    const RegionId region = complex_.add_region(passes_.layer());
     for (const Slot s : chain) complex_.set_outer_cell(hull_[s].face, region);
     const VertexId a = hull_[chain.front()].a, b = hull_[chain.back()].b;
     std::vector<VertexId> corners = {a, b};
@@ -219,15 +223,6 @@ class ChainBuilder {
     return !caps.empty();
   }
 
-  /// What is left of a hole is one region, which has only a floor.
-  void fill_voids() {
-    std::vector<RegionId> core(home_.size(), kNull);
-    for (std::uint32_t c = 0; c < core.size(); ++c)
-      if (home_[c] == c) core[c] = complex_.add_region(layer());
-    for (const Slot s : hull_.alive_slots())
-      if (!is_outer(s)) complex_.set_outer_cell(hull_[s].face, core[home_[hull_[s].component]]);
-  }
-
   void close() {
     const auto points = outer_points();
     const auto holds_all = [&] {
@@ -236,24 +231,20 @@ class ChainBuilder {
     };
     if (!holds_all()) polygon_ = enclosing_polygon(points, max_outer_, kPolytopeDistance);
     if (!holds_all()) return;
-    const RegionId region = complex_.add_region(layer());
-    for (const Slot s : outer_slots()) complex_.set_outer_cell(hull_[s].face, region);
-    std::vector<VertexId> ids;
-    for (const Vector3& p : polygon_) ids.push_back(complex_.add_vertex(p));
-    for (std::size_t i = 0; i < ids.size(); ++i) {
-      const VertexId ends[2] = {ids[i], ids[(i + 1) % ids.size()]};
-      complex_.add_pseudo_face(ends, region, kOutside);
-    }
+    enclose(hull_, home_, outline_mesh(polygon_), passes_.layer(), complex_);
     end_pass();
   }
 
-  std::uint16_t layer() const { return static_cast<std::uint16_t>(pass_); }
-  void end_pass() {
-    if (complex_.region_count() == regions_) return;
-    regions_ = complex_.region_count();
-    ++pass_;
-    if (options_.progress) options_.progress(pass_, hull_.segment_count());
+  static Mesh outline_mesh(const std::vector<Vector3>& polygon) {
+    Mesh mesh;
+    mesh.dim = 2;
+    mesh.vertices = polygon;
+    const auto count = static_cast<VertexId>(polygon.size());
+    for (VertexId v = 0; v < count; ++v) mesh.add_face(std::array{v, (v + 1) % count});
+    return mesh;
   }
+
+  void end_pass() { passes_.end_pass(complex_, hull_.segment_count()); }
 
   static constexpr std::uint32_t kMostOuter = 8;  ///< segments of the outermost wrapper
   static constexpr double kLeastGain = 0.95;  ///< a pass that leaves a larger share of segments is the last
@@ -267,8 +258,7 @@ class ChainBuilder {
   std::vector<std::uint32_t> home_;  ///< (components)
   std::vector<Vector3> polygon_;
   std::vector<HalfSpace> bounds_;
-  std::uint32_t pass_ = 0;     ///< the number of the next
-  std::uint32_t regions_ = 0;  ///< before it
+  PassCounter passes_;
 };
 
 }  // namespace

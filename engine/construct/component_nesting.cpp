@@ -49,28 +49,27 @@ std::vector<std::vector<std::uint32_t>> find_holders(const Mesh& mesh,
 
 }  // namespace
 
-ComponentNesting find_nesting(const Mesh& mesh, const HullMesh& hull) {
-  ComponentNesting out;
+std::vector<std::uint32_t> find_nesting(const Mesh& mesh, const HullMesh& hull) {
   const std::uint32_t count = hull.component_count();
-  out.is_void.assign(count, false);
-  out.home.assign(count, kNull);
-  if (count == 1) return out;
+  std::vector<std::uint32_t> home(count, kNull);
+  if (count == 1) return home;
   const std::vector<Component> components = components_of(hull);
-  for (std::uint32_t c = 0; c < count; ++c) out.is_void[c] = volume_sign(mesh, components[c].faces) < 0;
+  std::vector<bool> is_void(count);
+  for (std::uint32_t c = 0; c < count; ++c) is_void[c] = volume_sign(mesh, components[c].faces) < 0;
   const auto holders = find_holders(mesh, components);
   const auto is_inside = [&](std::uint32_t inner, std::uint32_t outer) {
     return std::binary_search(holders[inner].begin(), holders[inner].end(), outer);
   };
   for (std::uint32_t c = 0; c < count; ++c) {
-    if (out.is_void[c]) {
-      out.home[c] = c;
+    if (is_void[c]) {
+      home[c] = c;
       continue;
     }
     // Of the voids around it the innermost is in all others.
     for (const std::uint32_t v : holders[c])
-      if (out.is_void[v] && (out.home[c] == kNull || is_inside(v, out.home[c]))) out.home[c] = v;
+      if (is_void[v] && (home[c] == kNull || is_inside(v, home[c]))) home[c] = v;
   }
-  return out;
+  return home;
 }
 
 }  // namespace lrb::construct

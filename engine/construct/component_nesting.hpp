@@ -9,15 +9,9 @@
 
 namespace lrb::construct {
 
-/// What lies in front of a component of the mesh's surface: the outside, or a void.
-struct ComponentNesting {
-  std::vector<bool> is_void;  ///< (components) it faces inward
-  std::vector<std::uint32_t>
-      home;  ///< (components) the void in front of it: itself for a void; kNull: the outside
-};
-
-/// `hull` is the mesh's own surface still. Exact, but that components which cross a void's wall count as in
-/// it or not by a vertex.
-ComponentNesting find_nesting(const Mesh& mesh, const HullMesh& hull);
+/// Returns the void in front of each component of the mesh's surface: (components) itself for a void, kNull
+/// where the outside is. `hull` is the mesh's own surface still. Exact, but that components which cross a
+/// void's wall count as in it or not by a vertex.
+std::vector<std::uint32_t> find_nesting(const Mesh& mesh, const HullMesh& hull);
 
 }  // namespace lrb::construct

@@ -9,6 +9,8 @@
 #include "engine/construct/complex_builder.hpp"
 #include "engine/construct/component_nesting.hpp"
 #include "engine/construct/hull_mesh.hpp"
+#include "engine/construct/hull_regions.hpp"
+#include "engine/construct/pass_counter.hpp"
 #include "engine/construct/patch_pass.hpp"
 #include "engine/core/random.hpp"
 #include "engine/core/tolerances.hpp"
@@ -26,11 +28,12 @@ class PatchBuilder {
         workers_(options.threads),
         hull_(mesh),
         complex_(mesh),
-        nesting_(find_nesting(mesh, hull_)),
+        home_(find_nesting(mesh, hull_)),
         bounds_(mesh.vertices, kHullSwell),
         random_(options.seed),
         frozen_(mesh.face_count(), false),
-        component_boxes_(hull_.component_count()) {
+        component_boxes_(hull_.component_count()),
+        passes_(options) {
     for (const FaceId f : meeting) frozen_[f] = true;
     for (Slot s = 0; s < hull_.slot_count(); ++s)
       component_boxes_[hull_[s].component].extend(box_of(hull_, s));
@@ -40,13 +43,13 @@ class PatchBuilder {
     simplify(kCapWorth);
     simplify(kLastCapWorth);
     if (outer_size() > options_.max_outer_faces && bridge()) simplify(kLastCapWorth);
-    fill_voids();
+    fill_voids(hull_, home_, passes_.layer(), complex_);
     if (outer_size() > options_.max_outer_faces) close();
     return complex_.finish(true, false);
   }
 
  private:
-  bool is_outer(Slot s) const { return nesting_.home[hull_[s].component] == kNull; }
+  bool is_outer(Slot s) const { return home_[hull_[s].component] == kNull; }
 
   std::uint32_t outer_size() const {
     std::uint32_t count = 0;
@@ -71,7 +74,7 @@ class PatchBuilder {
       const std::uint32_t interior =
           std::max(kLeastInterior, std::min(options_.patch_interior, before / kLeastPatches));
       PatchPass(hull_, complex_, bounds_, frozen_, component_boxes_, workers_)
-          .run({interior, std::max(4 * interior, kLeastTriangles)}, worth, layer(), random_);
+          .run({interior, std::max(4 * interior, kLeastTriangles)}, worth, passes_.layer(), random_);
       end_pass();
       if (hull_.triangle_count() > kLeastGain * before) return;
     }
@@ -82,9 +85,9 @@ class PatchBuilder {
     for (Slot s = 0; s < hull_.slot_count(); ++s)
       if (hull_.alive(s) && hull_.is_crowded(s)) return false;
     std::vector<bool> joined(hull_.component_count());
-    for (std::uint32_t c = 0; c < joined.size(); ++c) joined[c] = nesting_.home[c] == kNull;
+    for (std::uint32_t c = 0; c < joined.size(); ++c) joined[c] = home_[c] == kNull;
     plan_polytope();
-    if (!bridge_concavities(hull_, complex_, joined, layer())) return false;
+    if (!bridge_concavities(hull_, complex_, joined, passes_.layer())) return false;
     end_pass();
     return true;
   }
@@ -103,15 +106,6 @@ class PatchBuilder {
     return box.sizes().maxCoeff();
   }
 
-  /// What is left of a void when its hull shrinks no more is one region, which has only a floor.
-  void fill_voids() {
-    std::vector<RegionId> core(hull_.component_count(), kNull);
-    for (std::uint32_t c = 0; c < core.size(); ++c)
-      if (nesting_.is_void[c]) core[c] = complex_.add_region(layer());
-    for (const Slot s : hull_.alive_slots())
-      if (!is_outer(s)) complex_.set_outer_cell(hull_[s].face, core[nesting_.home[hull_[s].component]]);
-  }
-
   void close() {
     plan_polytope();
     const std::vector<Eigen::Vector3d> points = outer_points();
@@ -122,26 +116,11 @@ class PatchBuilder {
     if (!holds_all())
       polytope_ = enclosing_polytope(points, options_.max_outer_faces, kPolytopeDistance, workers_);
     if (polytope_.face_count() == 0 || !holds_all()) return;
-    const RegionId region = complex_.add_region(layer());
-    for (const Slot s : hull_.alive_slots())
-      if (is_outer(s)) complex_.set_outer_cell(hull_[s].face, region);
-    std::vector<VertexId> ids;
-    for (const auto& v : polytope_.vertices) ids.push_back(complex_.add_vertex(v));
-    for (FaceId f = 0; f < polytope_.face_count(); ++f) {
-      const auto c = polytope_.face(f);
-      const VertexId corners[3] = {ids[c[0]], ids[c[1]], ids[c[2]]};
-      complex_.add_pseudo_face(corners, region, kOutside);
-    }
+    enclose(hull_, home_, polytope_, passes_.layer(), complex_);
     end_pass();
   }
 
-  std::uint16_t layer() const { return static_cast<std::uint16_t>(pass_); }
-  void end_pass() {
-    if (complex_.region_count() == regions_) return;
-    regions_ = complex_.region_count();
-    ++pass_;
-    if (options_.progress) options_.progress(pass_, hull_.triangle_count());
-  }
+  void end_pass() { passes_.end_pass(complex_, hull_.triangle_count()); }
 
   /// The outermost wrapper is planned when the hull has no more triangles than this: few enough to be quick,
   /// and still close to the mesh.
@@ -156,14 +135,13 @@ class PatchBuilder {
   Workers workers_;
   HullMesh hull_;
   ComplexBuilder complex_;
-  const ComponentNesting nesting_;
+  const std::vector<std::uint32_t> home_;  ///< (components) see find_nesting()
   BodyBounds bounds_;
   Random random_;
   std::vector<bool> frozen_;  ///< (|real faces|) they meet others
   std::vector<Eigen::AlignedBox3d> component_boxes_;
-  Mesh polytope_;              ///< empty until planned
-  std::uint32_t pass_ = 0;     ///< the number of the next
-  std::uint32_t regions_ = 0;  ///< before it
+  Mesh polytope_;  ///< empty until planned
+  PassCounter passes_;
 };
 
 }  // namespace

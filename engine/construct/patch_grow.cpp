@@ -68,56 +68,17 @@ bool PatchGrower::grow(Corner seed, Patch& patch) {
 /// Euler characteristic stays what it is (from nothing: becomes 1): the new triangles hang together round v,
 /// and share an edge with the patch.
 bool PatchGrower::add_star(Corner v, Patch& patch) {
-  added_.clear();
-  bool allowed = true;
-  hull_.for_each_around(v, [&](Slot s, int) {
-    if (!allowed || in_patch(s)) return;
-    const auto unit = hull_.unit(s);
-    for (Slot t = unit.first; t < unit.last && allowed; ++t) {
-      allowed = !taken_[t];  // what is taken stays where it is: no matter what comes after it
-      slot_stamp_[t] = stamp_;
-      added_.push_back(t);
-    }
-  });
+  const bool free = mark_star(v);
   if (!batch_is_empty_) look_for_batch();
   const std::size_t limit = patch.slots.empty() ? added_.size() : limits_.triangles;
-  allowed = allowed && patch.slots.size() + added_.size() <= limit;
-  std::size_t new_points = 0, old_edges = 0;
-  const std::size_t rim_before = rim_.size();
-  if (allowed) {
-    for (const Slot s : added_) {
-      for (int i = 0; i < 3; ++i) {
-        const Corner u = hull_[s].v[i];
-        if (point_stamp_[u] != stamp_) {
-          point_stamp_[u] = stamp_;
-          inside_[u] = 0;
-          rim_.push_back(u);
-          ++new_points;
-        }
-        ++inside_[u];
-        old_edges += in_patch(hull_[s].across[i]);  // counted from both sides if both are new
-      }
-    }
-    // Each edge among the new triangles has been counted twice, each edge to the old patch once.
-    std::size_t inner = 0;
-    for (const Slot s : added_)
-      for (const Slot t : hull_[s].across)
-        inner += in_patch(t) && std::find(added_.begin(), added_.end(), t) != added_.end();
-    const std::size_t shared_with_old = old_edges - inner;
-    const std::size_t new_edges = 3 * added_.size() - inner / 2 - shared_with_old;
-    const auto change =
-        static_cast<std::int64_t>(new_points + added_.size()) - static_cast<std::int64_t>(new_edges);
-    allowed = change == (patch.slots.empty() ? 1 : 0);
-    if (!allowed)
-      for (const Slot s : added_)
-        for (const Corner u : hull_[s].v) --inside_[u];
+  if (!free || patch.slots.size() + added_.size() > limit) {
+    unmark_star();
+    return false;
   }
-  if (!allowed) {
-    for (const Slot s : added_) slot_stamp_[s] = 0;
-    while (rim_.size() > rim_before) {
-      point_stamp_[rim_.back()] = 0;
-      rim_.pop_back();
-    }
+  const std::size_t new_points = add_corners();
+  if (euler_change(new_points) != (patch.slots.empty() ? 1 : 0)) {
+    take_back_corners(new_points);
+    unmark_star();
     return false;
   }
   patch.slots.insert(patch.slots.end(), added_.begin(), added_.end());
@@ -127,6 +88,66 @@ bool PatchGrower::add_star(Corner v, Patch& patch) {
     return true;
   });
   return true;
+}
+
+/// Marks the triangles of the polygons at v that are not in the patch yet as in it, and lists them in added_.
+/// Returns false if one of them is taken; the list may then end there.
+bool PatchGrower::mark_star(Corner v) {
+  added_.clear();
+  bool free = true;
+  hull_.for_each_around(v, [&](Slot s, int) {
+    if (!free || in_patch(s)) return;
+    const auto unit = hull_.unit(s);
+    for (Slot t = unit.first; t < unit.last && free; ++t) {
+      free = !taken_[t];  // what is taken stays where it is: no matter what comes after it
+      slot_stamp_[t] = stamp_;
+      added_.push_back(t);
+    }
+  });
+  return free;
+}
+
+void PatchGrower::unmark_star() {
+  for (const Slot s : added_) slot_stamp_[s] = 0;
+}
+
+/// Counts the new triangles in at their corners. Returns how many of these are new; they are at the end of rim_.
+std::size_t PatchGrower::add_corners() {
+  const std::size_t before = rim_.size();
+  for (const Slot s : added_) {
+    for (const Corner u : hull_[s].v) {
+      if (point_stamp_[u] != stamp_) {
+        point_stamp_[u] = stamp_;
+        inside_[u] = 0;
+        rim_.push_back(u);
+      }
+      ++inside_[u];
+    }
+  }
+  return rim_.size() - before;
+}
+
+void PatchGrower::take_back_corners(std::size_t new_points) {
+  for (const Slot s : added_)
+    for (const Corner u : hull_[s].v) --inside_[u];
+  for (; new_points > 0; --new_points) {
+    point_stamp_[rim_.back()] = 0;
+    rim_.pop_back();
+  }
+}
+
+/// Returns the change of the patch's vertices - edges + faces by the new triangles.
+std::int64_t PatchGrower::euler_change(std::size_t new_points) const {
+  std::size_t among_new = 0, to_old = 0;  // an edge among the new triangles counts twice, from both sides
+  for (const Slot s : added_) {
+    for (const Slot t : hull_[s].across) {
+      if (!in_patch(t)) continue;
+      const bool is_new = std::find(added_.begin(), added_.end(), t) != added_.end();
+      ++(is_new ? among_new : to_old);
+    }
+  }
+  const std::size_t new_edges = 3 * added_.size() - among_new / 2 - to_old;
+  return static_cast<std::int64_t>(new_points + added_.size()) - static_cast<std::int64_t>(new_edges);
 }
 
 Corner PatchGrower::best_candidate(Corner seed, double reach_sq, const Patch& patch) const {

@@ -42,6 +42,11 @@ class PatchGrower {
 
  private:
   bool add_star(HullMesh::Corner v, Patch& patch);
+  bool mark_star(HullMesh::Corner v);
+  void unmark_star();
+  std::size_t add_corners();
+  void take_back_corners(std::size_t new_points);
+  std::int64_t euler_change(std::size_t new_points) const;
   HullMesh::Corner best_candidate(HullMesh::Corner seed, double reach_sq, const Patch& patch) const;
   void find_ring(Patch& patch) const;
   bool is_in_batch(HullMesh::Corner v) const;

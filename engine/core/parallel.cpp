@@ -1,5 +1,8 @@
 #include "engine/core/parallel.hpp"
 
+#include <atomic>
+#include <exception>
+#include <mutex>
 #include <optional>
 
 #include <tbb/global_control.h>
@@ -32,11 +35,24 @@ void Workers::for_each(std::size_t n, const std::function<void(std::size_t, unsi
     for (std::size_t i = 0; i < n; ++i) work(i, 0);
     return;
   }
+  // Calls above the lowest that failed so far are left out, those below it are not: so the lowest of all is found.
+  std::atomic<std::size_t> failed = n;
+  std::exception_ptr failure;
+  std::mutex one_at_a_time;
   pool_->arena.execute([&] {
     tbb::parallel_for(std::size_t{0}, n, [&](std::size_t i) {
-      work(i, static_cast<unsigned>(tbb::this_task_arena::current_thread_index()));
+      if (i > failed.load(std::memory_order_relaxed)) return;
+      try {
+        work(i, static_cast<unsigned>(tbb::this_task_arena::current_thread_index()));
+      } catch (...) {
+        const std::lock_guard lock(one_at_a_time);
+        if (i > failed) return;
+        failed = i;
+        failure = std::current_exception();
+      }
     });
   });
+  if (failure) std::rethrow_exception(failure);
 }
 
 void Workers::both(const std::function<void()>& one, const std::function<void()>& other) {

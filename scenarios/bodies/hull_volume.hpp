@@ -6,11 +6,11 @@
 
 namespace lrb::bodies {
 
-/// Volume of the convex hull of points; 0 if all lie in one plane. Quickhull (Barber, Dobkin, Huhdanpaa 1996)
-/// with exact signs, so that it ends on any input; the volume itself is rounded.
+/// Returns the volume of the convex hull of points; 0 if all lie in one plane. The hull is exact
+/// (construct::convex_hull), the volume rounded.
 double hull_volume(std::span<const Eigen::Vector3d> points);
 
-/// Area of the convex hull of points in the plane z = 0.
+/// Returns the area of the convex hull of points in the plane z = 0.
 double hull_area(std::span<const Eigen::Vector3d> points);
 
 }  // namespace lrb::bodies

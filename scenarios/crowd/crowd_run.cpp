@@ -6,9 +6,9 @@
 #include <tuple>
 
 #include "engine/core/error.hpp"
+#include "engine/core/parallel.hpp"
 #include "engine/query/walk/query_context.hpp"
 #include "engine/query/world_box.hpp"
-#include "scenarios/crowd/task_pool.hpp"
 #include "scenarios/run/moments.hpp"
 
 namespace lrb::crowd {
@@ -40,8 +40,8 @@ class Player {
   Player(const spec::Crowd& crowd, CrowdRun& run)
       : crowd_(crowd),
         run_(run),
-        pool_(run.threads),
-        contexts_(run.threads),
+        workers_(run.threads),
+        contexts_(workers_.count()),
         poses_(run.motion.body_count()),
         boxes_(run.motion.body_count()),
         extremes_(run.motion.body_count()),
@@ -53,7 +53,7 @@ class Player {
   CrowdStep play(std::uint32_t number, CrowdMoment* moment) {
     CrowdStep step;
     const std::uint64_t begin = now();
-    pool_.run(poses_.size(), [&](std::uint32_t, std::size_t i) {
+    workers_.for_each(poses_.size(), [&](std::size_t i, unsigned) {
       const auto body = static_cast<std::uint32_t>(i);
       poses_[i] = run_.motion.pose(body, number);
       boxes_[i] = extents_[run_.motion.kind(body)].in_world(poses_[i], &extremes_[i]);
@@ -65,7 +65,7 @@ class Player {
     std::vector<CollideResult> results(moment != nullptr ? pairs.size() : 0);
     step.queries.resize(pairs.size());
     const std::vector<std::uint32_t> order = by_kinds(pairs);
-    pool_.run(pairs.size(), [&](std::uint32_t thread, std::size_t k) {
+    workers_.for_each(pairs.size(), [&](std::size_t k, unsigned thread) {
       const std::uint32_t at = order[k];
       CollideResult result = ask(pairs[at], thread, step.queries[at]);
       if (moment != nullptr) results[at] = std::move(result);
@@ -141,7 +141,7 @@ class Player {
 
   const spec::Crowd& crowd_;
   CrowdRun& run_;
-  TaskPool pool_;
+  Workers workers_;
   std::vector<QueryContext> contexts_;  ///< one a thread
   std::vector<Pose> poses_;
   std::vector<Eigen::AlignedBox3d> boxes_;

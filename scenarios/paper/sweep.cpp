@@ -1,15 +1,13 @@
 #include "scenarios/paper/sweep.hpp"
 
-#include <atomic>
-#include <exception>
 #include <mutex>
-#include <thread>
 #include <tuple>
 
 #include <nlohmann/json.hpp>
 
 #include "engine/core/error.hpp"
 #include "engine/core/file_bytes.hpp"
+#include "engine/core/parallel.hpp"
 #include "engine/query/walk/query_context.hpp"
 #include "trace/names.hpp"
 
@@ -62,31 +60,18 @@ std::vector<ContactStep> run_sweep(std::span<const PaperObject> objects, const S
       if (number++ % options.shard.count == options.shard.index) tasks.emplace_back(k, c);
 
   std::vector<std::vector<ContactStep>> found(tasks.size());
-  std::atomic<std::size_t> next = 0;
+  Workers workers(options.jobs);
+  std::vector<QueryContext> contexts(workers.count());
   std::mutex one_at_a_time;
   std::uint64_t done = 0;
-  std::exception_ptr failure;
-  const auto work = [&] {
-    QueryContext context;
-    for (std::size_t i = next++; i < tasks.size(); i = next++) try {
-        const PaperObject& x = objects[tasks[i].first];
-        found[i] = run_collision(objects[0].rep, x.rep, x.draws.empty() ? x.name : x.draws, tasks[i].second,
-                                 options.protocol, context);
-        for (ContactStep& s : found[i]) s.object = x.name;
-        const std::lock_guard lock(one_at_a_time);
-        if (progress) progress(++done, tasks.size());
-      } catch (...) {
-        const std::lock_guard lock(one_at_a_time);
-        failure = std::current_exception();
-        next = tasks.size();
-      }
-  };
-  {
-    std::vector<std::jthread> threads;
-    for (std::uint32_t j = 1; j < options.jobs; ++j) threads.emplace_back(work);
-    work();
-  }
-  if (failure) std::rethrow_exception(failure);
+  workers.for_each(tasks.size(), [&](std::size_t i, unsigned worker) {
+    const PaperObject& x = objects[tasks[i].first];
+    found[i] = run_collision(objects[0].rep, x.rep, x.draws.empty() ? x.name : x.draws, tasks[i].second,
+                             options.protocol, contexts[worker]);
+    for (ContactStep& s : found[i]) s.object = x.name;
+    const std::lock_guard lock(one_at_a_time);
+    if (progress) progress(++done, tasks.size());
+  });
   std::vector<ContactStep> steps;
   for (auto& part : found) std::move(part.begin(), part.end(), std::back_inserter(steps));
   return steps;

@@ -3,10 +3,6 @@
 #include <algorithm>
 #include <tuple>
 
-#include "scenarios/cases/families.hpp"
-
-static_assert(lrb::cases::kDialSettings == lrb::cases::kDialSettings);
-
 namespace lrb::stability {
 namespace {
 

@@ -13,12 +13,12 @@
 
 #include "engine/core/enum_words.hpp"
 #include "engine/query/collide.hpp"
+#include "scenarios/cases/families.hpp"
 #include "scenarios/workers/workers.hpp"
 
 namespace lrb::stability {
 
-/// Settings of a family's dial, from benign (0) to degenerate (kDialSettings - 1).
-inline constexpr int kDialSettings = 11;
+using cases::kDialSettings;
 
 /// What became of one case in the hands of one method.
 enum class Outcome : std::uint8_t {

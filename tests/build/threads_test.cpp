@@ -81,22 +81,32 @@ TEST_CASE("any number of threads gives the same report on an LRB-rep, right or w
   CHECK_FALSE(validate(reps[2]).valid);
 }
 
-TEST_CASE("workers do every piece of work once, and hand on what it throws") {
+TEST_CASE("workers do every piece of work once, hand on what the lowest one throws, and go on") {
   for (const unsigned threads : {1u, 2u, 5u}) {
     Workers workers(threads);
     CHECK(workers.count() == threads);
-    std::vector<int> done(1000, 0);
-    std::vector<int> busy(threads, 0);
-    workers.for_each(done.size(), [&](std::size_t i, unsigned worker) {
-      ++busy[worker];
-      ++done[i];
-      --busy[worker];
-    });
-    CHECK(done == std::vector<int>(1000, 1));
-    CHECK(busy == std::vector<int>(threads, 0));
-    CHECK_THROWS_AS(
-        workers.for_each(100, [](std::size_t i, unsigned) { i == 57 ? throw std::runtime_error("57") : 0; }),
-        std::runtime_error);
+    for (const std::size_t count : {0u, 1u, 2u, 1000u}) {
+      std::vector<int> done(count, 0);
+      std::vector<int> busy(threads, 0);
+      workers.for_each(count, [&](std::size_t i, unsigned worker) {
+        ++busy[worker];
+        ++done[i];
+        --busy[worker];
+      });
+      CHECK(done == std::vector<int>(count, 1));
+      CHECK(busy == std::vector<int>(threads, 0));
+    }
+    for (int round = 0; round < 20; ++round) {
+      std::vector<int> done(100, 0);
+      const auto failing = [&] {
+        workers.for_each(done.size(), [&](std::size_t i, unsigned) {
+          if (i % 10 == 7) throw std::runtime_error(std::to_string(i));
+          ++done[i];
+        });
+      };
+      CHECK_THROWS_WITH_AS(failing(), "7", std::runtime_error);
+      for (std::size_t i = 0; i < 7; ++i) CHECK(done[i] == 1);
+    }
   }
   CHECK(Workers(0).count() >= 1);
 }

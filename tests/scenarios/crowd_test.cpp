@@ -1,7 +1,6 @@
 // Crowds: what the broad phase leaves out is apart, what it keeps is answered as brute force answers it, and
 // the number of threads shows in times alone.
 #include <fstream>
-#include <atomic>
 #include <filesystem>
 #include <map>
 #include <set>
@@ -20,7 +19,6 @@
 #include "scenarios/crowd/crowd_json.hpp"
 #include "scenarios/crowd/crowd_replay.hpp"
 #include "scenarios/crowd/crowd_report.hpp"
-#include "scenarios/crowd/task_pool.hpp"
 #include "scenarios/io/embedded.hpp"
 #include "scenarios/io/files.hpp"
 
@@ -407,22 +405,4 @@ TEST_CASE("what is wrong with a crowd is said with its place") {
   CHECK_THROWS_WITH_AS(static_cast<void>(spec::open_crowd("crowds")),
                        "crowds: neither a shipped crowd nor a file; did you mean \"crowd\"? known: crowd",
                        InputError);
-}
-
-TEST_CASE("a pool does every task once; of what is thrown, the lowest comes out, and the pool goes on") {
-  crowd::TaskPool pool(3);
-  for (const std::size_t count : {0U, 1U, 2U, 1000U}) {
-    std::vector<std::atomic<int>> done(count);
-    pool.run(count, [&](std::uint32_t thread, std::size_t i) {
-      CHECK_MESSAGE(thread < 3, "thread");
-      ++done[i];
-    });
-    for (const auto& d : done) CHECK(d == 1);
-  }
-  const auto failing = [&] {
-    pool.run(100, [](std::uint32_t, std::size_t i) {
-      if (i % 10 == 7) throw InputError(std::to_string(i));
-    });
-  };
-  for (int i = 0; i < 20; ++i) CHECK_THROWS_WITH_AS(failing(), "7", InputError);
 }
