@@ -13,6 +13,8 @@
 
 namespace lrb::bench {
 
+using lrb::name_of;  // that of enums, beside those of records
+
 /// How a pose was chosen. In diagonals of the larger body.
 enum class PoseClass : std::uint8_t { apart, shallow, deep, identical, small };
 inline constexpr PoseClass kPoseClasses[] = {PoseClass::apart, PoseClass::shallow, PoseClass::deep,
