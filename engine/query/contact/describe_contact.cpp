@@ -12,6 +12,7 @@
 #include "engine/query/contact/contact_loops.hpp"
 #include "engine/query/contact/enclosed_vertices.hpp"
 #include "engine/query/contact/interiors.hpp"
+#include "engine/query/contact/reflection.hpp"
 
 namespace lrb {
 namespace {
@@ -26,8 +27,9 @@ double unit_for(std::span<const Vector3d> points) {
   return most > 0 ? std::ldexp(1.0, std::clamp(std::ilogb(most), -1022, 1023)) : 1;
 }
 
-/// Unit normal of a real simplex in the world, out of the solid; zero for a degenerate one.
-Vector3d world_normal(QueryBody& body, SimplexId s) {
+/// Returns the unit normal of a real simplex in the world, out of the solid, also of one that is mirrored; zero for
+/// a degenerate one.
+Vector3d world_normal(QueryBody& body, SimplexId s, bool mirrored) {
   const double* c[3];
   body.world.corners(s, c);
   const int dim = body.rep().dim();
@@ -38,7 +40,7 @@ Vector3d world_normal(QueryBody& body, SimplexId s) {
   // In 2D the solid lies on the left of a segment's direction, so the outside is on its right.
   const Vector3d along = at(1) - at(0);
   const Vector3d n = dim == 2 ? Vector3d(along.y(), -along.x(), 0) : along.cross(at(2) - at(0)).eval();
-  return n.stableNormalized();
+  return mirrored ? Vector3d(-n.stableNormalized()) : n.stableNormalized();
 }
 
 double polygon_area(const std::vector<Vector3d>& x) {
@@ -134,8 +136,8 @@ class RegionMaker {
       const Weight w = weigh(points_of(piece));
       total += w.value;
       centre += w.value * w.centre;
-      normal += w.value * (world_normal(ctx_[Side::a], result_.pairs[i].a) -
-                           world_normal(ctx_[Side::b], result_.pairs[i].b));
+      normal += w.value * (world_normal(ctx_[Side::a], result_.pairs[i].a, mirrored_[0]) -
+                           world_normal(ctx_[Side::b], result_.pairs[i].b, mirrored_[1]));
     }
     region.centroid =
         total > 0 ? Vector3d(centre / total) : graph_.points[graph_.pieces[region.pairs[0]].points[0]];
@@ -186,6 +188,8 @@ class RegionMaker {
   ContactGraph graph_;
   EnclosedVertices a_in_b_, b_in_a_;
   double unit_;
+  const bool mirrored_[2] = {is_reflection(ctx_[Side::a].world.pose(), ctx_[Side::a].rep().dim()),
+                             is_reflection(ctx_[Side::b].world.pose(), ctx_[Side::b].rep().dim())};
 };
 
 exact::PairContact contact_of(QueryContext& ctx, SimplexPair pair) {

@@ -10,6 +10,7 @@
 #include "engine/exact/locate.hpp"
 #include "engine/exact/pair_contact.hpp"
 #include "engine/exact/predicates.hpp"
+#include "engine/query/contact/reflection.hpp"
 #include "engine/query/contact/side_in_plane.hpp"
 #include "engine/query/walk/relation.hpp"
 
@@ -17,11 +18,6 @@ namespace lrb {
 namespace {
 
 using Corners = std::array<const double*, 3>;
-
-/// Sign of the rotation's determinant: a reflection turns surfaces inside out.
-int handedness(const Pose& pose) {
-  return pose.r.determinant() < 0 ? -1 : 1;
-}
 
 /// Whether the normals of two coplanar triangles of positive area point the same way, exactly: seen along an
 /// axis on which the first keeps its area, both turn the same way.
@@ -114,7 +110,8 @@ class Decider {
   /// point there that is inside both proves it; where none is found, rounding has folded a body in the world
   /// (far from the origin thin walls become flat) and faces need not face out any more: unknown.
   Answer between_coinciding_faces() {
-    const bool mirrored = handedness(ctx_[Side::a].world.pose()) * handedness(ctx_[Side::b].world.pose()) < 0;
+    const bool mirrored =
+        is_reflection(ctx_[Side::a].world.pose(), dim_) != is_reflection(ctx_[Side::b].world.pose(), dim_);
     Answer answer = Answer::no;
     for (const SimplexPair& pair : result_.pairs) {
       const double *a[3], *b[3];
