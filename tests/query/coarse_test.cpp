@@ -12,6 +12,7 @@
 #include "engine/query/collide_impl.hpp"
 #include "scenarios/bodies/shapes/random_pose.hpp"
 #include "scenarios/bodies/shapes/shapes.hpp"
+#include "tests/support/affine_maps.hpp"
 #include "tests/support/simplex_distance.hpp"
 
 using namespace lrb;
@@ -142,6 +143,40 @@ TEST_CASE("a query with a tolerance never calls bodies separate that meet, and k
   CHECK(crossing > 25);
   CHECK(separate_with_lids > 25);
   CHECK(with_pseudo > 300);
+}
+
+TEST_CASE("a query with a tolerance keeps its claims under affine maps of both bodies") {
+  RandomEngine random(43);
+  int unresolved = 0, separate = 0;
+  for (const Bodies& pair : bodies()) {
+    CAPTURE(pair.name);
+    QueryContext context;
+    NullProbe probe;
+    for (int i = 0; i < 30; ++i) {
+      CAPTURE(i);
+      const int dim = pair.a.dim();
+      const Pose p = pose_around(random, pair);
+      const Eigen::Matrix3d map =
+          test::random_map(random, static_cast<test::MapKind>(i % test::kMapKinds), dim);
+      Pose pose_a{i % 3 ? map : Eigen::Matrix3d::Identity(), {0, 0, 0}},
+          pose_b{pose_a.r * p.r, pose_a.r * p.t};
+      if (i % 3 != 1) pose_b.r = test::random_map(random, test::MapKind::sheared, dim) * pose_b.r;
+      const BruteForceResult truth = brute_force(pair.a, pose_a, pair.b, pose_b);
+      for (const double tolerance : {0.02, 0.3}) {
+        CollideRequest request;
+        request.tolerance = tolerance;
+        const CollideResult coarse = collide(pair.a, pose_a, pair.b, pose_b, request, context, probe);
+        if (coarse.relation == Relation::separate) REQUIRE(truth.relation == Relation::separate);
+        if (coarse.relation == Relation::crossing) REQUIRE(truth.relation == Relation::crossing);
+        if (coarse.relation == Relation::unresolved && truth.relation == Relation::separate)
+          REQUIRE(distance(pair.a, pose_a, pair.b, pose_b) <= coarse.error_bound);
+        unresolved += coarse.relation == Relation::unresolved;
+        separate += coarse.relation == Relation::separate;
+      }
+    }
+  }
+  CHECK(unresolved > 30);
+  CHECK(separate > 30);
 }
 
 TEST_CASE("bodies that touch under flat lids are never called separate") {

@@ -7,6 +7,7 @@
 #include "engine/query/collide.hpp"
 #include "scenarios/bodies/shapes/random_pose.hpp"
 #include "scenarios/bodies/shapes/shapes.hpp"
+#include "tests/support/affine_maps.hpp"
 #include "tests/torture/parity_oracle.hpp"
 
 using namespace lrb;
@@ -139,6 +140,31 @@ TEST_CASE("certificates of separation hold, and hold no region too many open") {
                                    << " regions refined in all");
     CHECK(certified >= 5);
     CHECK(minimal == trials);
+  }
+}
+
+TEST_CASE("certificates of separation hold under affine maps") {
+  RandomEngine random(101);
+  for (const Bodies& pair : bodies()) {
+    CAPTURE(pair.name);
+    int certified = 0;
+    for (int i = 0; i < 400 && certified < 4; ++i) {
+      CAPTURE(i);
+      using test::MapKind;
+      constexpr MapKind kKinds[] = {MapKind::scaled, MapKind::stretched, MapKind::sheared, MapKind::mirrored};
+      const Eigen::Matrix3d map = test::random_map(random, kKinds[i % 4], pair.a.dim());
+      const Pose p =
+          shapes::random_pose(random, pair.a, pair.b, shapes::uniform(random, 0.5, 1.3) * pair.share);
+      const Pose pose_a{map, {0, 0, 0}}, pose_b{map * p.r, map * p.t};
+      CollideRequest request;
+      request.separation = true;
+      const CollideResult r = collide(pair.a, pose_a, pair.b, pose_b, request);
+      if (!r.separation) continue;
+      ++certified;
+      REQUIRE(are_apart(Wrapped(pair.a, pose_a, r.separation->refined[0]),
+                        Wrapped(pair.b, pose_b, r.separation->refined[1]), random));
+    }
+    CHECK(certified >= 4);
   }
 }
 

@@ -116,7 +116,7 @@ class CoarseQuery {
     result_.counters = std::move(level.counters);
     if (query.rules().stopped) return false;
     ctx_.pair_order.sort(level);
-    decide(level, query.rules(), la.bound * stretch(a.world.pose()) + lb.bound * stretch(b.world.pose()));
+    decide(level, query.rules(), off(la, a.world.pose()) + off(lb, b.world.pose()));
     result_.pairs.swap(level.pairs);
     result_.meets.swap(level.meets);
     result_.relation = level.relation;
@@ -124,6 +124,11 @@ class CoarseQuery {
     result_.error_bound = level.error_bound;
     result_.finished = last || level.error_bound == 0;
     return true;
+  }
+
+  /// Returns how far a level is off its body in the world at most. Not a product where it would be 0 times infinity.
+  static double off(const WrapperLevel& level, const Pose& pose) {
+    return level.bound == 0 ? 0 : level.bound * stretch(pose);
   }
 
   void decide(CollideResult& level, const CoarseRules& rules, double bound) {
