@@ -16,10 +16,17 @@ inline Float8 gap_between(const Float8* centre, const Float8* half, const float*
   return gap;
 }
 
-/// Of pairs of boxes: how far apart (see gap_between()) box i of A is from those of B.
+/// Where there are two pairs or more: how far apart (see gap_between()) box i of A is from those of B.
 struct Gaps {
   Float8 of[8];
 };
+
+/// Whether rows of a mask have more than one bit together.
+inline bool is_more_than_one(std::uint32_t rows, const std::uint32_t mask[8]) {
+  if (rows == 0) return false;
+  const std::uint32_t first = mask[__builtin_ctz(rows)];
+  return (rows & (rows - 1)) != 0 || (first & (first - 1)) != 0;
+}
 
 /// Which of A's boxes meet which of B's: mask[k] has the bits of B's boxes that A's box k may meet. Most
 /// pairs of nodes are apart, and most of these show it in the first test.
@@ -54,10 +61,21 @@ inline std::uint32_t pair_masks(TreeKernel& k, const TreeNode& na, const TreeNod
     mask[i] = ~bits(gap) & mask_b;
     rows |= static_cast<std::uint32_t>(mask[i] != 0) << i;
     k.box_tests += in_mask_b;
-    if (gaps && mask[i] != 0)
+  }
+  if (gaps && is_more_than_one(rows, mask))
+    for (std::uint32_t todo = rows; todo != 0; todo &= todo - 1) {
+      const int i = __builtin_ctz(todo);
+      const auto of_row = [i](const float* x, float* row) {
+        for (int axis = 0; axis < 3; ++axis) row[axis] = x[8 * axis + i];
+      };
+      float own_centre[3], own_half[3], turned_centre[3], turned_half[3];
+      of_row(a_centre, own_centre);
+      of_row(a_half, own_half);
+      of_row(at_centre, turned_centre);
+      of_row(at_half, turned_half);
       gaps->of[i] = larger(gap_between(bt.centre, bt.half, own_centre, own_half),
                            gap_between(own_b.centre, own_b.half, turned_centre, turned_half));
-  }
+    }
   return rows;
 }
 
