@@ -6,7 +6,8 @@
 /// meet. Of the list, those pairs are tested that may meet at that point of the stretch: eight at a time in
 /// float arithmetic, exactly where that is not certain. Where B keeps no course the stretch is a place, and
 /// those pairs are tested that are no further apart there than B has moved from it. What that means, and what
-/// it allows for, is in course.hpp. Matrices further from rotations than kRigid are queried from scratch.
+/// it allows for, is in course.hpp. Poses further from rotations than kRigid, scaled or sheared ones, are queried
+/// from scratch: as fast as collide(), and the answers the same.
 ///
 /// The answers are those of collide(): pairs, meets and relation always; what was opened, and the counters,
 /// tell of this query's own work. In first_pair mode it may be another pair; in any_pair mode, too, and the
@@ -29,7 +30,8 @@ class CoherentQuery {
   /// whenever it can be done (for tests). The answers do not depend on it.
   enum class CacheUse : std::uint8_t { as_it_pays, always };
 
-  /// Keeps references to the bodies, which must outlive it.
+  /// Keeps references to the bodies, which must outlive it and stay as they are: do not assign to them, for what
+  /// is kept from query to query is of the bodies that were there. Other bodies need another CoherentQuery.
   CoherentQuery(const LrbRep& a, const LrbRep& b, const CollideRequest& request = {},
                 CacheUse lists = CacheUse::as_it_pays);
 
