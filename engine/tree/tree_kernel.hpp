@@ -50,7 +50,7 @@ struct AffineTerms {
   KernelMap world[2];             ///< the world's axes <- coordinates in a body
   alignas(32) double between[4];  ///< B's origin seen from A's, on the world's axes
   float world_slack;
-  int exponent;  ///< the query's unit is 2^exponent
+  int exponent;   ///< the query's unit is 2^exponent
   float span[2];  ///< about how large in the world, query units, what is 1 in the tree's units becomes
 };
 

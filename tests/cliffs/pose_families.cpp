@@ -1,6 +1,7 @@
 // One query of two bodies under poses that are no rotations: it grows with the answer and with what is near, as under
 // a rotation. Where boxes culled nothing it would grow with the product of both bodies' faces.
 
+#include <cmath>
 #include <memory>
 
 #include <Eigen/Geometry>

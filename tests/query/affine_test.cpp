@@ -1,5 +1,6 @@
 // Bodies under maps that are no rotations: the answers are those of brute force, in every mode, and the work is that
 // of the same bodies with the map in their vertices.
+#include <algorithm>
 #include <cmath>
 
 #include <doctest/doctest.h>
