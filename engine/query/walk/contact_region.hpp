@@ -34,12 +34,8 @@ struct ContactRegion {
   Eigen::Vector3d centroid{
       0, 0, 0};  ///< of the area for coplanar contact, of the curve's length, else of the points
   Eigen::Vector3d normal{0, 0, 0};  ///< unit, from A to B, averaged; zero where it has no meaning
-<<<<<<< HEAD
   /// An estimate of how far B must move along `normal` to leave this region; 0: touch, or flush.
   /// Measured along `normal`:
-=======
-  /// An estimate of how far B must move along `normal` to leave this region; 0: touch. Measured along `normal`:
->>>>>>> affine
   /// the part of A that this region encloses in B, its contact points included, reaches this far beyond the
   /// nearest point of the part of B that it encloses in A; once B has moved that far a plane parts the two.
   /// Nothing but these two parts is looked at. For convex bodies there is nothing else. Concave bodies may still
