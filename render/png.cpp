@@ -199,8 +199,7 @@ bool unpacks_beyond(const std::vector<std::span<const std::uint8_t>>& chunks, st
 void check_size(std::span<const std::uint8_t> bytes, const std::string& name, std::uint64_t most_pixels) {
   const std::optional<Header> header = header_of(bytes);
   if (!header) return;  // the decoder says what is wrong
-  const std::string size =
-      std::to_string(header->width) + "x" + std::to_string(header->height) + " pixels";
+  const std::string size = std::to_string(header->width) + "x" + std::to_string(header->height) + " pixels";
   if (header->width * header->height > most_pixels)
     throw InputError(name + ": has " + size + ", more than the " + std::to_string(most_pixels) +
                      " that are expected at most");
@@ -258,8 +257,8 @@ void write_png(const Image& image, const std::string& path, const PngOptions& op
 
 DecodedPng read_png(const std::string& path, std::uint64_t most_pixels) {
   const std::string bytes = read_file(path);
-  return decode_png({reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()},
-                    printable_name(path), most_pixels);
+  return decode_png({reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()}, printable_name(path),
+                    most_pixels);
 }
 
 }  // namespace lrb::render

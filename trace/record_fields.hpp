@@ -118,7 +118,9 @@ struct AnyValue {
 };
 template <class Record, std::size_t... I>
 constexpr bool takes(std::index_sequence<I...>) {
-  return requires { Record{(static_cast<void>(I), AnyValue{})...}; };
+  return requires {
+    Record{(static_cast<void>(I), AnyValue{})...};
+  };
 }
 template <class Record, std::size_t n = 0>
 constexpr std::size_t member_count() {

@@ -7,6 +7,7 @@
 #include <memory>
 
 #include <sys/vfs.h>
+
 #include "engine/core/error.hpp"
 
 namespace lrb {
@@ -66,9 +67,9 @@ std::string_view what_is_no_file(const std::string& path) {
 std::string read_file(const std::string& path, std::uint64_t most) {
   const std::string_view kind = what_is_no_file(path);
   if (!kind.empty())
-    cannot_read(path, "found " + std::string(kind) + ", expected a file" +
-                          (kind == "a directory" ? "; name a file in it"
-                                                 : "; copy what is in it into a file"));
+    cannot_read(path,
+                "found " + std::string(kind) + ", expected a file" +
+                    (kind == "a directory" ? "; name a file in it" : "; copy what is in it into a file"));
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"), &std::fclose);
   if (!file) {
     const int reason = errno;

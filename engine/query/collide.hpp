@@ -11,6 +11,7 @@
 #include <cstdint>
 #include <optional>
 #include <vector>
+
 #include "engine/core/enum_words.hpp"
 #include "engine/core/pose.hpp"
 #include "engine/lrb/lrb_rep.hpp"

@@ -3,8 +3,8 @@
 #include "scenarios/cli/command.hpp"
 #include "scenarios/cli/options.hpp"
 #include "scenarios/cli/progress.hpp"
-#include "scenarios/io/files.hpp"
 #include "scenarios/crowd/crowd_report.hpp"
+#include "scenarios/io/files.hpp"
 
 namespace lrb::cli {
 namespace {

@@ -64,12 +64,13 @@ std::string as_json(const golden::GoldenResult& r) {
 }
 
 /// Tests one golden. What is damaged or refused fails alone: the others are tested all the same.
-golden::GoldenResult test_one(const GoldenOptions& o, const Globals& globals, const NamedGolden& g, bool report,
-                              std::optional<golden::GoldenRun>& run) {
+golden::GoldenResult test_one(const GoldenOptions& o, const Globals& globals, const NamedGolden& g,
+                              bool report, std::optional<golden::GoldenRun>& run) {
   const std::string approve = approve_command(o, g.name);
   try {
     const golden::Golden golden = golden::load_golden(o.goldens, g.name);
-    spec::Scenario scenario = g.scenario ? *g.scenario : golden::golden_scenario(o.goldens, g.name, golden.spec);
+    spec::Scenario scenario =
+        g.scenario ? *g.scenario : golden::golden_scenario(o.goldens, g.name, golden.spec);
     run = golden::play_golden(std::move(scenario), golden.spec, progress_report(globals.quiet));
     return golden::test_golden(golden, *run, approve, report);
   } catch (const InputError& e) {

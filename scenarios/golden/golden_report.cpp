@@ -159,8 +159,8 @@ void write_golden_page(const std::vector<GoldenResult>& results, const std::stri
     table.rows.push_back({r.name, v.passed() ? "passed" : "FAILED",
                           !v.refusal.empty() ? v.refusal
                           : v.divergence     ? v.divergence->message()
-                                       : counted(r.steps, "step", "steps") + ", " +
-                                             counted(r.events, "event", "events") + ": equal",
+                                             : counted(r.steps, "step", "steps") + ", " +
+                                               counted(r.events, "event", "events") + ": equal",
                           images_words(v)});
     for (const auto& three : r.pngs)
       for (const report::PngBytes& png : three)
@@ -192,7 +192,8 @@ void write_golden_page(const std::vector<GoldenResult>& results, const std::stri
 std::string result_text(const GoldenResult& r) {
   const GoldenVerdict& v = r.verdict;
   if (!v.refusal.empty())
-    return "FAIL  " + r.name + ": " + v.refusal + "\n      approve it once that is mended: " + r.approve + "\n";
+    return "FAIL  " + r.name + ": " + v.refusal + "\n      approve it once that is mended: " + r.approve +
+           "\n";
   std::string out =
       (v.passed() ? "ok    " : "FAIL  ") + r.name + ": " +
       (v.divergence ? "events or counters differ" : counted(r.events, "event", "events") + " equal") +

@@ -13,9 +13,9 @@ std::string number_text(double x, int digits) {
 
 std::string fixed_text(double x, int decimals) {
   std::array<char, 512> text{};  // a double has 309 digits before the point at most
-  std::string out(text.data(), std::to_chars(text.data(), text.data() + text.size(), x,
-                                             std::chars_format::fixed, decimals)
-                                   .ptr);
+  std::string out(
+      text.data(),
+      std::to_chars(text.data(), text.data() + text.size(), x, std::chars_format::fixed, decimals).ptr);
   if (out.find('.') == std::string::npos) return out;
   out.erase(out.find_last_not_of('0') + 1);
   if (out.back() == '.') out.pop_back();

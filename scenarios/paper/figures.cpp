@@ -20,7 +20,8 @@ constexpr const char* kColours[] = {"#0072B2", "#E69F00", "#009E73", "#D55E00",
 report::Gnuplot figure_3_1(std::span<const ObjectRow> rows) {
   constexpr double kBeside = 1.06;  // published bars stand this factor to the right of ours
   const auto bar = [](double size, double average, double min, double max) {
-    return io::fixed_text(size) + " " + io::fixed_text(average) + " " + io::fixed_text(min) + " " + io::fixed_text(max);
+    return io::fixed_text(size) + " " + io::fixed_text(average) + " " + io::fixed_text(min) + " " +
+           io::fixed_text(max);
   };
   std::vector<std::string> measured, as_published, names;
   for (const ObjectRow& row : rows) {
@@ -68,7 +69,8 @@ report::Gnuplot figure_3_2(std::span<const ObjectRow> rows, std::span<const Cont
     std::vector<std::string> points;
     const std::uint64_t last = bins.empty() ? 0 : bins.rbegin()->first;
     for (std::uint64_t b = 0; b <= last; ++b)
-      points.push_back(io::fixed_text((static_cast<double>(b) + 0.5) * kBinWidth) + " " + std::to_string(bins[b]));
+      points.push_back(io::fixed_text((static_cast<double>(b) + 0.5) * kBinWidth) + " " +
+                       std::to_string(bins[b]));
     g.add_data("object_" + rows[i].object, points);
     plot += (i > 0 ? ", " : "") + std::string("$object_") + rows[i].object +
             " using 1:2 with lines lw 1.5 dt " + std::to_string(i % 5 + 1) + " lc rgb '" +

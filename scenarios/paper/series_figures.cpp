@@ -49,8 +49,8 @@ class Panel {
         if (row.body != fit.body || row.partner != partner) continue;
         const Measured m = measure_(row, recursion);
         if (!(m.low > 0)) continue;
-        points.push_back(io::number_text(row.counts.total_faces) + " " + io::number_text(m.average) + " " + io::number_text(m.low) +
-                         " " + io::number_text(m.high));
+        points.push_back(io::number_text(row.counts.total_faces) + " " + io::number_text(m.average) + " " +
+                         io::number_text(m.low) + " " + io::number_text(m.high));
         first = std::min<double>(first, row.counts.total_faces);
         last = std::max<double>(last, row.counts.total_faces);
         lowest = std::min(lowest, m.low);
@@ -65,9 +65,9 @@ class Panel {
               std::to_string(kPoints[bodies % kPoints.size()]) + " ps 0.5 lc rgb '" + colour + "' title " +
               report::gnuplot_text(fit.body + (power ? ": " + power_text(*power) : ""));
       if (power)
-        plot += ", x < " + io::number_text(first) + " || x > " + io::number_text(last) + " ? 1/0 : " + io::number_text(power->factor) +
-                " * x**(" + io::number_text(power->exponent) + ") with lines lw 1 dt 2 lc rgb '" + colour +
-                "' notitle";
+        plot += ", x < " + io::number_text(first) + " || x > " + io::number_text(last) +
+                " ? 1/0 : " + io::number_text(power->factor) + " * x**(" + io::number_text(power->exponent) +
+                ") with lines lw 1 dt 2 lc rgb '" + colour + "' notitle";
       ++bodies;
     }
     ++panel_;
@@ -81,8 +81,8 @@ class Panel {
     // Room above the points for the key.
     const double share = static_cast<double>(bodies + 1) * kKeyLine * kPanelRows / g_.height;
     const double room = std::log10(highest / lowest) * share / (1 - share);
-    g_.script += "set yrange [" + io::number_text(lowest / 1.3) + ":" + io::number_text(highest * 1.2 * std::pow(10, room)) +
-                 "]\n" + plot + "\n";
+    g_.script += "set yrange [" + io::number_text(lowest / 1.3) + ":" +
+                 io::number_text(highest * 1.2 * std::pow(10, room)) + "]\n" + plot + "\n";
   }
 
  private:

@@ -88,8 +88,7 @@ Crowd parse_crowd(const std::string& text, const std::string& file) {
   c.purpose = root.at("purpose").string();
   if (const auto n = root.get("seed")) c.seed = n->integer(0, kAnySeed);
   c.room = read_room(root.at("room"));
-  if (const auto n = root.get("arrangement"))
-    c.arrangement = n->choice<Crowd::Arrangement>();
+  if (const auto n = root.get("arrangement")) c.arrangement = n->choice<Crowd::Arrangement>();
   c.kinds = read_kinds(root.at("bodies"), std::filesystem::path(file).parent_path(), c.seed);
   read_motion(root.at("motion"), c);
   c.request.contacts = true;

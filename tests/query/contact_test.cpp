@@ -1,4 +1,7 @@
 // Contact geometry: regions whose shape, size and place are known in closed form.
+#include <tuple>
+#include <vector>
+
 #include <doctest/doctest.h>
 
 #include "engine/query/collide.hpp"

@@ -21,7 +21,7 @@ LrbRep strips(int along) {
   mesh.dim = 3;
   for (std::uint64_t i = 0; i < kStrips; ++i) {
     const double at = static_cast<double>(i) / kStrips;
-    for (const auto [far, z] : {std::pair{-1.0, -0.5}, std::pair{2.0, -0.5}, std::pair{0.5, 2.0}}) {
+    for (const auto& [far, z] : {std::pair{-1.0, -0.5}, std::pair{2.0, -0.5}, std::pair{0.5, 2.0}}) {
       Eigen::Vector3d v(at, far, z);
       if (along == 1) std::swap(v[0], v[1]);
       mesh.vertices.push_back(v);

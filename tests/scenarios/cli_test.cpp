@@ -89,7 +89,8 @@ TEST_CASE("query: bodies that touch say whether they overlap, unless not all pai
   }
 }
 
-TEST_CASE("query: a pose that carries a vertex beyond all numbers is named by file and line, before any answer") {
+TEST_CASE(
+    "query: a pose that carries a vertex beyond all numbers is named by file and line, before any answer") {
   const Folder folder;
   folder.write("a.obj", kCube);
   folder.write("p.txt", "# first\n" + std::string(kApart) + "\n1e308 1e308 0 0 0 1 0 0 0 0 1 0\n");

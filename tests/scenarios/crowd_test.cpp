@@ -1,7 +1,9 @@
 // Crowds: what the broad phase leaves out is apart, what it keeps is answered as brute force answers it, and
 // the number of threads shows in times alone.
 #include <fstream>
+#include <atomic>
 #include <filesystem>
+#include <fstream>
 #include <map>
 #include <set>
 #include <string>
@@ -89,7 +91,8 @@ std::string complaint_about_trace(const json& trace) {
       .populateSchema(valijson::adapters::NlohmannJsonAdapter(document), schema);
   valijson::ValidationResults results;
   std::string out;
-  if (valijson::Validator().validate(schema, valijson::adapters::NlohmannJsonAdapter(trace), &results)) return out;
+  if (valijson::Validator().validate(schema, valijson::adapters::NlohmannJsonAdapter(trace), &results))
+    return out;
   for (valijson::ValidationResults::Error error; results.popError(error); out += error.description + "\n")
     for (const std::string& part : error.context) out += part;
   return out.empty() ? "refused" : out;

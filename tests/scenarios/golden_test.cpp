@@ -353,8 +353,7 @@ TEST_CASE("goldens: what is damaged fails, and the others are tested all the sam
   CHECK(folder.test().code == 0);
   folder.write("goldens/balls/trace.json.gz", sound.substr(0, sound.size() / 2));
   check_fails("ends too early");
-  const auto answer = nlohmann::json::parse(
-      test::run(folder, {"golden", "test", "--json", "balls"}).out);
+  const auto answer = nlohmann::json::parse(test::run(folder, {"golden", "test", "--json", "balls"}).out);
   CHECK(answer["passed"] == false);
   CHECK(has(answer["refusal"].get<std::string>(), "ends too early"));
   folder.write("goldens/balls/trace.json.gz", sound);

@@ -64,7 +64,7 @@ Recorded record(const Bodies& bodies, const CollideRequest& request, int steps) 
     CHECK(plain.pairs == out.results.back().pairs);
     CHECK(plain.relation == out.results.back().relation);
     CHECK(plain.opened == out.results.back().opened);
-    CHECK(equal(plain.counters, out.results.back().counters));
+    CHECK(plain.counters == out.results.back().counters);
   }
   out.trace = recorder.take();
   return out;
@@ -151,7 +151,7 @@ TEST_CASE(
         const StepResult& kept = run.trace.steps[step].result;
         CHECK(kept.error_bound == result.error_bound);
         CHECK(kept.finished == result.finished);
-        CHECK(equal(kept.separation, result.separation));
+        CHECK(kept.separation == result.separation);
         unfinished += !kept.finished;
         unknown += std::isinf(kept.error_bound);
         proofs += kept.separation.has_value();

@@ -118,7 +118,6 @@ TEST_CASE("what is around the events is compared too") {
   CHECK(difference(x, y) == "step 0: error_bound: expected 0, found 0.25");
   y = x;
   y.steps[0].result.separation = Separation{{{{1}, {}}}, {7, 6}};
-  CHECK(difference(x, y) ==
-        "step 0: separation: expected none, found wrappers of 7 and 6 faces");
+  CHECK(difference(x, y) == "step 0: separation: expected none, found wrappers of 7 and 6 faces");
   CHECK(difference(x, box_run({runs::kBoxPoses[0]})) == "run: number of steps: expected 3, found 1");
 }

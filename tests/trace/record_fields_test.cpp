@@ -1,5 +1,7 @@
 /// The tables of fields and words against the published schema, and against all that is made from them.
 
+#include "trace/record_fields.hpp"
+
 #include <fstream>
 #include <set>
 #include <string>
@@ -11,7 +13,6 @@
 #include "tests/trace/runs.hpp"
 #include "trace/divergence.hpp"
 #include "trace/names.hpp"
-#include "trace/record_fields.hpp"
 #include "trace/trace_json.hpp"
 
 using namespace lrb;

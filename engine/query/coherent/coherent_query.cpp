@@ -164,7 +164,8 @@ bool CoherentQuery::make_cache(const CachePolicy::Plan& list) {
     k.out_size = 0;
     run_tree_kernel(k);
     for (std::uint32_t i = 0; i < k.out_size; ++i) cache_.add({k.out[i].a, k.out[i].b});
-    if (cache_.pairs().size() > request_.pair_limit()) return false;  // the query itself counts those that meet
+    if (cache_.pairs().size() > request_.pair_limit())
+      return false;  // the query itself counts those that meet
     if (use_ == CacheUse::as_it_pays && seconds_since(began) > policy_.patience()) return false;
   }
   cache_.arrange(a_, b_, k, sweep_, rounding, context_.pair_order);

@@ -21,9 +21,9 @@ std::string style(std::size_t i, double size) {
 struct Layout {
   double width, height;
   std::string margins(double x0, double x1, double y0, double y1) const {
-    return "set lmargin at screen " + io::number_text(x0 / width) + "\nset rmargin at screen " + io::number_text(x1 / width) +
-           "\nset bmargin at screen " + io::number_text(y0 / height) + "\nset tmargin at screen " +
-           io::number_text(y1 / height) + "\n";
+    return "set lmargin at screen " + io::number_text(x0 / width) + "\nset rmargin at screen " +
+           io::number_text(x1 / width) + "\nset bmargin at screen " + io::number_text(y0 / height) +
+           "\nset tmargin at screen " + io::number_text(y1 / height) + "\n";
   }
 };
 
@@ -41,7 +41,8 @@ std::string plots_of(report::Gnuplot& chart, const std::string& id, const std::v
     last = p->method;
     if (p->failed() > 0) failed.push_back(at);
   }
-  for (const Point* p : frontier(panel)) best.push_back(io::number_text(drawn_error(*p)) + " " + io::number_text(p->median));
+  for (const Point* p : frontier(panel))
+    best.push_back(io::number_text(drawn_error(*p)) + " " + io::number_text(p->median));
   std::string plots;
   const auto add = [&](const std::string& name, const std::vector<std::string>& data,
                        const std::string& how) {

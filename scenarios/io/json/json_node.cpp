@@ -62,7 +62,8 @@ double JsonNode::number(double least, double most) const {
   if (!value_->is_number()) fail_type("a number");
   const double x = value_->get<double>();
   if (!std::isfinite(x) || x < least || x > most)
-    fail("expected a number from " + number_text(least, 6) + " to " + number_text(most, 6) + ", found " + value_->dump());
+    fail("expected a number from " + number_text(least, 6) + " to " + number_text(most, 6) + ", found " +
+         value_->dump());
   return x;
 }
 

@@ -99,8 +99,8 @@ std::string terminal(const Gnuplot& chart, const std::string& ending) {
   if (ending == ".svg")
     return "svg noenhanced" + size(kPointsPerInch) + font + " linewidth 0.75 background '#ffffff'";
   if (ending == ".pdf")
-    return "pdfcairo noenhanced size " + io::number_text(chart.width / kInch) + "," + io::number_text(chart.height / kInch) +
-           font + " linewidth 0.75";
+    return "pdfcairo noenhanced size " + io::number_text(chart.width / kInch) + "," +
+           io::number_text(chart.height / kInch) + font + " linewidth 0.75";
   if (ending == ".png")  // its fonts and lines are for 96 dpi
     return "pngcairo noenhanced" + size(kDpi) + " fontscale " + io::number_text(kDpi / kPngDpi) + font +
            " linewidth " + io::number_text(kDpi / kPngDpi) + " pointscale " + io::number_text(kDpi / kPngDpi);

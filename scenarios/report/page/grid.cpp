@@ -17,10 +17,12 @@ std::string profile_svg(const PageGridCell& cell) {
   constexpr double kLeast = 2.5;  // of a part that is there: always seen
   const double width = kStep * static_cast<double>(cell.bars.size()) - (kStep - kBar);
   std::string out = "<svg class=\"profile\" viewBox=\"-1 -1 " + io::number_text(width + 2) + " " +
-                    io::number_text(kHeight + kBase + 2) + "\" preserveAspectRatio=\"none\" aria-hidden=\"true\">";
+                    io::number_text(kHeight + kBase + 2) +
+                    "\" preserveAspectRatio=\"none\" aria-hidden=\"true\">";
   const auto rect = [&](double x, double y, double h, const char* kind) {
-    out += "<rect class=\"" + std::string(kind) + "\" x=\"" + io::number_text(x, 4) + "\" y=\"" + io::number_text(y, 4) +
-           "\" width=\"" + io::number_text(kBar) + "\" height=\"" + io::number_text(h, 4) + "\"/>";
+    out += "<rect class=\"" + std::string(kind) + "\" x=\"" + io::number_text(x, 4) + "\" y=\"" +
+           io::number_text(y, 4) + "\" width=\"" + io::number_text(kBar) + "\" height=\"" +
+           io::number_text(h, 4) + "\"/>";
   };
   for (std::size_t i = 0; i < cell.bars.size(); ++i) {
     const double x = kStep * static_cast<double>(i);

@@ -36,14 +36,15 @@ std::string colour(render::Rgba c) {
 class Sheet {
  public:
   void rect(double x0, double y0, double x1, double y1, render::Rgba c) {
-    rects_.push_back(io::number_text((x0 + x1) / 2) + " " + io::number_text((y0 + y1) / 2) + " " + io::number_text(x0) +
-                     " " + io::number_text(x1) + " " + io::number_text(y0) + " " + io::number_text(y1) + " " + colour(c));
+    rects_.push_back(io::number_text((x0 + x1) / 2) + " " + io::number_text((y0 + y1) / 2) + " " +
+                     io::number_text(x0) + " " + io::number_text(x1) + " " + io::number_text(y0) + " " +
+                     io::number_text(y1) + " " + colour(c));
   }
   enum Style { normal, bold, small, small_right, small_centre, kStyles };
   void text(double x, double y, Style style, const std::string& s, render::Rgba c = render::palette::kInk) {
     if (!s.empty())
-      texts_[style].push_back(io::number_text(x) + " " + io::number_text(y) + " " + report::gnuplot_data_text(s) +
-                              " " + colour(c));
+      texts_[style].push_back(io::number_text(x) + " " + io::number_text(y) + " " +
+                              report::gnuplot_data_text(s) + " " + colour(c));
   }
   void write(report::Gnuplot& chart) const {
     static constexpr std::array<const char*, kStyles> kNames = {"normal", "bold", "small", "small_right",
@@ -54,8 +55,9 @@ class Sheet {
     for (std::size_t i = 0; i < kStyles; ++i) {
       if (texts_[i].empty()) continue;
       chart.add_data(kNames[i], texts_[i]);
-      const std::string font = i == bold ? "DejaVu Sans Bold," + io::number_text(kFont)
-                                         : "DejaVu Sans," + io::number_text(i == normal ? kFont : kFont * kSmall);
+      const std::string font = i == bold
+                                   ? "DejaVu Sans Bold," + io::number_text(kFont)
+                                   : "DejaVu Sans," + io::number_text(i == normal ? kFont : kFont * kSmall);
       plot += ", $" + std::string(kNames[i]) + " using 1:2:3:4 with labels " + kAligns[i] + " font '" + font +
               "' tc rgb variable";
     }
@@ -193,8 +195,9 @@ std::string line_style(std::size_t i) {
 }
 
 std::string margins(double left, double right, double bottom, double top) {
-  return "set lmargin at screen " + io::number_text(left) + "\nset rmargin at screen " + io::number_text(right) +
-         "\nset bmargin at screen " + io::number_text(bottom) + "\nset tmargin at screen " + io::number_text(top) + "\n";
+  return "set lmargin at screen " + io::number_text(left) + "\nset rmargin at screen " +
+         io::number_text(right) + "\nset bmargin at screen " + io::number_text(bottom) +
+         "\nset tmargin at screen " + io::number_text(top) + "\n";
 }
 
 std::string panel_heading(const FamilyRow& family, bool first) {
@@ -252,8 +255,8 @@ report::Gnuplot grid_chart(const Grid& grid) {
   chart.script =
       "unset border\nunset tics\nunset key\nset style fill solid 1 noborder\n"
       "set lmargin at screen 0\nset rmargin at screen 1\nset tmargin at screen 1\nset bmargin at screen 0\n";
-  chart.script += "set xrange [" + io::number_text(-kLeft) + ":" + io::number_text(columns + 0.1) + "]\nset yrange [" +
-                  io::number_text(-rows - kBottom) + ":" + io::number_text(top) + "]\n";
+  chart.script += "set xrange [" + io::number_text(-kLeft) + ":" + io::number_text(columns + 0.1) +
+                  "]\nset yrange [" + io::number_text(-rows - kBottom) + ":" + io::number_text(top) + "]\n";
   sheet.write(chart);
   return chart;
 }
@@ -300,8 +303,8 @@ report::Gnuplot profile_chart(const Grid& grid) {
     const double x = static_cast<double>(static_cast<int>(line) / key_rows);
     const double y = key_rows - 0.5 - static_cast<int>(line) % key_rows;
     const std::string name = "key" + std::to_string(line);
-    chart.add_data(name,
-                   {io::number_text(x) + " " + io::number_text(y), io::number_text(x + 0.12) + " " + io::number_text(y)});
+    chart.add_data(name, {io::number_text(x) + " " + io::number_text(y),
+                          io::number_text(x + 0.12) + " " + io::number_text(y)});
     titles.push_back(io::number_text(x + 0.15) + " " + io::number_text(y) + " " +
                      report::gnuplot_data_text(grid.methods[present[line]].title));
     plots += (line > 0 ? ", $" : "plot $") + name + " using 1:2 with linespoints " + line_style(line);
@@ -313,7 +316,8 @@ report::Gnuplot profile_chart(const Grid& grid) {
       "set multiplot\nunset key\nset border 3 lw 0.6 lc rgb '#8a8f95'\nset yrange [-3:103]\nset ytics "
       "0,50,100 nomirror scale 0.4 offset 0.6,0 tc rgb '#1c1e22'\n"
       "set xtics 0,1 nomirror scale 0.4 format ''\nset grid ytics lw 0.4 lc rgb '#d8dadc' dt 1\n";
-  chart.script += "set xrange [-0.6:" + io::number_text(kDialSettings - 0.4) + "]\n" + plots + "\nunset multiplot\n";
+  chart.script +=
+      "set xrange [-0.6:" + io::number_text(kDialSettings - 0.4) + "]\n" + plots + "\nunset multiplot\n";
   return chart;
 }
 
