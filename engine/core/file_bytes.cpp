@@ -41,7 +41,7 @@ std::string read_file(const std::string& path) {
     if (reason == ENOENT) cannot_read(path, "no such file; check the path");
     cannot_read(path, std::string("cannot be opened (") + std::strerror(reason) + "); check its permissions");
   }
-  // /dev/zero has no end. Pipes may be read: whoever fills one decides how much.
+  // /dev/zero never ends. Pipes may be read: whoever fills one decides how much comes.
   const auto kind = std::filesystem::status(path, ignored).type();
   if (kind == std::filesystem::file_type::character || kind == std::filesystem::file_type::block)
     cannot_read(path, "found a device, expected a file; copy what is on it into a file");
