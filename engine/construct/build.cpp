@@ -11,10 +11,10 @@
 namespace lrb {
 namespace {
 
-/// All that forbids an LRB-rep, on one line.
+/// Returns everything that prevents an LRB-rep from being built, on one line.
 std::string refusal(const Mesh& mesh, const MeshReport& report) {
   std::vector<std::string> lines = report.obstacles(mesh);
-  if (lines.empty()) lines = report.lines(mesh);  // inside out: can be built, but not as it is
+  if (lines.empty()) lines = report.lines(mesh);  // an inside-out mesh could be built, but not as it is
   std::string text;
   for (const std::string& line : lines) text += (text.empty() ? "" : " | ") + line;
   return text;

@@ -48,7 +48,7 @@ ComponentNesting find_nesting(const Mesh& mesh, const HullMesh& hull) {
       out.home[c] = c;
       continue;
     }
-    // Of the voids around it the innermost is in all others.
+    // The innermost of the voids around a component is the one that lies in all the others.
     for (std::uint32_t v = 0; v < count; ++v) {
       if (!out.is_void[v] || !is_inside(mesh, components[c], components[v])) continue;
       if (out.home[c] == kNull || is_inside(mesh, components[v], components[out.home[c]])) out.home[c] = v;

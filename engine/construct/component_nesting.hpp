@@ -1,5 +1,5 @@
 #pragma once
-/// Which of a body's surfaces bound voids, and what lies in them.
+/// Finds which of a body's surfaces bound voids, and what lies in these.
 
 #include <cstdint>
 #include <vector>
@@ -9,15 +9,15 @@
 
 namespace lrb::construct {
 
-/// What lies in front of a component of the mesh's surface: the outside, or a void.
+/// Tells, for each component of the mesh's surface, what lies in front of it: the outside, or a void.
 struct ComponentNesting {
-  std::vector<bool> is_void;  ///< (components) it faces inward
+  std::vector<bool> is_void;  ///< (components) true if it faces inward
   std::vector<std::uint32_t>
       home;  ///< (components) the void in front of it: itself for a void; kNull: the outside
 };
 
-/// `hull` is the mesh's own surface still. Exact, but that components which cross a void's wall count as in
-/// it or not by a vertex.
+/// Finds the nesting. `hull` must still be the mesh's own surface. Exact, except that a component which
+/// crosses the wall of a void counts as inside it or not by one of its vertices.
 ComponentNesting find_nesting(const Mesh& mesh, const HullMesh& hull);
 
 }  // namespace lrb::construct

@@ -61,13 +61,13 @@ class PatchBuilder {
     return points;
   }
 
-  /// Passes until they no longer help. `worth`: largest share of triangles that a cap may have.
+  /// Makes passes until they no longer help. `worth`: the largest share of triangles that a cap may have.
   void simplify(double worth) {
     for (;;) {
       const std::uint32_t before = hull_.triangle_count();
       if (before <= options_.max_outer_faces) return;
       if (before <= kPolytopeFrom) plan_polytope();
-      // On a small hull patches are small, so that there are still several of them.
+      // On a small hull patches are small, so that there are still several.
       const std::uint32_t interior =
           std::max(kLeastInterior, std::min(options_.patch_interior, before / kLeastPatches));
       PatchPass(hull_, complex_, bounds_, frozen_, component_boxes_, workers_)
@@ -86,7 +86,7 @@ class PatchBuilder {
     return true;
   }
 
-  /// From here on all hulls stay in what will be the outermost wrapper.
+  /// Plans the outermost wrapper; from here on all hulls stay inside it.
   void plan_polytope() {
     if (polytope_.face_count() > 0) return;
     polytope_ = enclosing_polytope(outer_points(), options_.max_outer_faces, kPolytopeDistance, workers_);
@@ -100,7 +100,7 @@ class PatchBuilder {
     return box.sizes().maxCoeff();
   }
 
-  /// What is left of a void when its hull shrinks no more is one region, which has only a floor.
+  /// Makes one region, which has only a floor, of what is left of each void when its hull shrinks no more.
   void fill_voids() {
     std::vector<RegionId> core(hull_.component_count(), kNull);
     for (std::uint32_t c = 0; c < core.size(); ++c)
@@ -140,14 +140,15 @@ class PatchBuilder {
     if (options_.progress) options_.progress(pass_, hull_.triangle_count());
   }
 
-  /// The outermost wrapper is planned when the hull has no more triangles than this: few enough to be quick,
-  /// and still close to the mesh.
+  /// The outermost wrapper is planned when the hull has no more triangles than this: few enough for that to
+  /// be quick, and still close to the mesh.
   static constexpr std::uint32_t kPolytopeFrom = 30000;
-  static constexpr double kLeastGain = 0.85;  ///< a pass that leaves a larger share of triangles is the last
+  /// a pass that leaves a larger share of the triangles is the last
+  static constexpr double kLeastGain = 0.85;
   static constexpr std::uint32_t kLeastPatches =
       24;  ///< triangles of the hull per interior vertex of a patch
   static constexpr std::uint32_t kLeastInterior = 3;
-  static constexpr std::uint32_t kLeastTriangles = 16;  ///< that a patch may have
+  static constexpr std::uint32_t kLeastTriangles = 16;  ///< lowest limit on the triangles of a patch
 
   const BuildOptions& options_;
   Workers workers_;
@@ -156,11 +157,11 @@ class PatchBuilder {
   const ComponentNesting nesting_;
   BodyBounds bounds_;
   Random random_;
-  std::vector<bool> frozen_;  ///< (|real faces|) they meet others
+  std::vector<bool> frozen_;  ///< (|real faces|) true for faces that meet others
   std::vector<Eigen::AlignedBox3d> component_boxes_;
   Mesh polytope_;              ///< empty until planned
-  std::uint32_t pass_ = 0;     ///< the number of the next
-  std::uint32_t regions_ = 0;  ///< before it
+  std::uint32_t pass_ = 0;     ///< the number of the next pass
+  std::uint32_t regions_ = 0;  ///< number of regions before that pass
 };
 
 }  // namespace
