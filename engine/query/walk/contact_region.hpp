@@ -1,5 +1,5 @@
 #pragma once
-/// Where two bodies meet: the geometry of each pair, and the connected contact regions they form.
+/// Where two bodies meet: the geometry of each pair, and the connected contact regions that the pairs form.
 /// All points and vectors are in the world frame; lengths in the meshes' unit.
 
 #include <cstdint>
@@ -29,8 +29,8 @@ struct ContactRegion {
   double length = 0;  ///< total length of the loops (unit: the mesh's)
   double area = 0;    ///< coplanar contact: its area; closed loops: the area they span (unit squared)
   Eigen::Vector3d centroid{
-      0, 0, 0};  ///< of the area for coplanar contact, of the curve's length, else of the points
-  Eigen::Vector3d normal{0, 0, 0};  ///< unit, from A to B, averaged; zero where it has no meaning
+      0, 0, 0};  ///< centroid of the area for coplanar contact, of the curve's length, else of the points
+  Eigen::Vector3d normal{0, 0, 0};  ///< unit length, from A to B, averaged; zero where it has no meaning
   double depth = 0;  ///< estimate: how far B must move along `normal` to leave this region; 0: touch
 };
 
