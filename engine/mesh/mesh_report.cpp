@@ -19,7 +19,7 @@ constexpr std::array<FaultText, kMeshFaultCount> kFaults = {{
 #undef MESH_FAULT
 }};
 
-/// What the two numbers of an offender are.
+/// What the two numbers of an offender stand for.
 enum class Offender : std::uint8_t {
   none,
   vertex,
@@ -102,7 +102,7 @@ std::string_view noun(Offender kind, int dim) {
   }
 }
 
-/// In the plane, vertices are what edges are in space.
+/// Returns a fault's text. In the plane, vertices are what edges are in space.
 std::string_view text_of(MeshFault fault, int dim) {
   if (dim == 2) {
     switch (fault) {
