@@ -49,7 +49,7 @@ class AabbTree {
 
  private:
   static constexpr std::uint32_t kLeafSize = 4;
-  // of a tree that is halved at each step: 2 + log2 of the number of leaves
+  // The depth of a tree that is halved at each step is 2 + log2 of the number of leaves.
   static constexpr int kMaxDepth = 64;
   struct Node {
     Box box;

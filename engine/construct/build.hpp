@@ -10,8 +10,8 @@
 namespace lrb {
 
 struct BuildOptions {
-  /// number of interior vertices that a patch aims at: small makes the paper's recursion cheap, large makes
-  /// the structure small
+  /// Number of interior vertices that a patch aims at: small makes the paper's recursion cheap, large makes
+  /// the structure small.
   std::uint32_t patch_interior = 16;
   std::uint32_t max_outer_faces = 20;  ///< number of faces to aim for in the outermost wrapper
   std::uint64_t seed = 1;              ///< seeds the order in which patches grow

@@ -130,7 +130,7 @@ class CapSurface {
 
   std::vector<HullMesh::Point> points_;
   std::vector<HullMesh::Corner> corners_;  ///< (old vertices)
-  /// (|points|) any face at the vertex; for a ring vertex that of its ring edge; -1: unused
+  /// (|points|) any face at the vertex; for a ring vertex that of its ring edge; -1: unused.
   std::vector<int> face_of_;
   std::vector<Face> faces_;
   std::vector<int> ring_face_;       ///< (|ring|) the face at the ring edge

@@ -247,7 +247,7 @@ class ChainBuilder {
   }
 
   static constexpr std::uint32_t kMostOuter = 8;  ///< segments of the outermost wrapper
-  /// a pass that leaves a larger share of the segments is the last
+  /// A pass that leaves a larger share of the segments is the last.
   static constexpr double kLeastGain = 0.95;
 
   const BuildOptions& options_;

@@ -39,7 +39,7 @@ class Hull {
   struct Facet {
     Triangle corners;
     exact::PlaneSide plane;
-    /// the facet beyond the edge corners[i], corners[i + 1]
+    /// The facet beyond the edge corners[i], corners[i + 1].
     std::array<std::uint32_t, 3> across = {kNull, kNull, kNull};
     std::uint32_t waiting = kNull;  ///< the first of the points that wait here
     std::uint32_t furthest = kNull;

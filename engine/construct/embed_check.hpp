@@ -57,7 +57,7 @@ class EmbedCheck {
   std::vector<Eigen::AlignedBox3d> component_boxes_;
   Eigen::AlignedBox3d seen_;
   std::vector<CheckedTriangle> obstacles_, added_;
-  /// triangles of other components met while gathering, one for each component
+  /// Triangles of other components met while gathering, one for each component.
   std::vector<HullMesh::Slot> strangers_;
 };
 

@@ -45,7 +45,7 @@ class HullMesh {
   const Triangle& operator[](Slot s) const { return triangles_[s]; }
   const Point& point(Corner v) const { return points_[v]; }
   const Eigen::Vector3d& x(Corner v) const { return points_[v].x; }
-  /// number of triangles round it; 0: not in use
+  /// Number of triangles round it; 0: not in use.
   std::uint32_t degree(Corner v) const { return degree_[v]; }
   Slot any_slot(Corner v) const { return slot_of_[v]; }
 

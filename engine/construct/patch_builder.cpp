@@ -143,7 +143,7 @@ class PatchBuilder {
   /// The outermost wrapper is planned when the hull has no more triangles than this: few enough for that to
   /// be quick, and still close to the mesh.
   static constexpr std::uint32_t kPolytopeFrom = 30000;
-  /// a pass that leaves a larger share of the triangles is the last
+  /// A pass that leaves a larger share of the triangles is the last.
   static constexpr double kLeastGain = 0.85;
   static constexpr std::uint32_t kLeastPatches =
       24;  ///< triangles of the hull per interior vertex of a patch

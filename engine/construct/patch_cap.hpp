@@ -19,7 +19,7 @@ class PatchCap {
   struct Limits {
     double volume = 0;  ///< largest volume (strictly, cost) that one collapse may add; unit cubed
     int faces = 0;      ///< stop when the cap has no more faces than this
-    /// how far the point that is projected lies below the star's centre; in radii of the star
+    /// How far the point that is projected lies below the star's centre; in radii of the star.
     double depth = 1;
     EmbedCheck* check = nullptr;  ///< if set, every collapse must pass it
   };

@@ -141,7 +141,7 @@ class PolytopeStep {
   }
 
   static constexpr double kSwell = 0.4;  ///< see BodyBounds; here only to keep vertices from going far off
-  /// depth of the point that is projected in tightening, in radii of the rim
+  /// Depth of the point that is projected in tightening, in radii of the rim.
   static constexpr double kDepth = 8;
   static constexpr double kLeastGain = 1e-3;  ///< share of the volume for which another round is worthwhile
 

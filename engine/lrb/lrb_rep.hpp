@@ -40,7 +40,7 @@ struct LrbData {
   std::uint32_t real_face_count = 0;  ///< faces [0, real_face_count) are real, in the mesh's order
   std::vector<CellId> inner_cell;     ///< (|F|): kSolid (real) or a region (pseudo)
   std::vector<CellId> outer_cell;     ///< (|F|): a region or kOutside
-  /// (|R|): the builder's pass that made the region; 0 lies on the solid
+  /// (|R|): the builder's pass that made the region; 0 lies on the solid.
   std::vector<std::uint16_t> region_layer;
   bool closed = false;             ///< the real faces bound a solid, so that "inside" has a meaning
   bool self_intersecting = false;  ///< the solid overlaps itself ("inside" is then by parity)

@@ -174,7 +174,7 @@ class ThicknessFinder {
   const LrbRep& rep_;
   double unit_;
   std::vector<State> state_;
-  /// units: bounds from any point of the region's lids, and from any point of the region
+  /// Units: bounds from any point of the region's lids, and from any point of the region.
   std::vector<double> off_, inside_;
   std::vector<Target> targets_;
 };

@@ -12,7 +12,7 @@ namespace lrb {
 
 struct ValidateOptions {
   bool embedding = true;  ///< test every pair of faces of the complex exactly
-  /// random wrapper states to check for closedness, volume and enclosure
+  /// Random wrapper states to check for closedness, volume and enclosure.
   std::uint32_t wrapper_states = 100;
   std::uint64_t seed = 1;
   std::uint32_t max_messages = 20;
@@ -21,7 +21,7 @@ struct ValidateOptions {
 
 struct ValidateReport {
   bool valid = true;  ///< there are no violations; faults of the input are not violations
-  /// one line each, naming region and faces; at most max_messages lines
+  /// One line each, naming region and faces; at most max_messages lines.
   std::vector<std::string> violations;
   std::uint64_t violation_count = 0;
   std::uint64_t real_pairs_meeting =

@@ -11,7 +11,7 @@
 namespace lrb {
 namespace {
 
-// kept at a time; without a limit, a sweep over tolerances would keep one for each
+// The number of levels kept; without a limit, a sweep over tolerances would keep one for each.
 constexpr std::size_t kMostLevels = 24;
 
 /// Returns, for each region, the largest thickness among the region and all that it hides. Passes values

@@ -12,7 +12,7 @@ namespace lrb {
 
 struct WrapperLevel {
   double tolerance = 0;  ///< the tolerance that was asked for, mesh's unit
-  /// no point of the wrapper is further than this from a real face; 0: it is the body itself
+  /// No point of the wrapper is further than this from a real face; 0: it is the body itself.
   double bound = 0;
   ObbTree tree;  ///< over the simplices of its boundary, numbered as in the LRB-rep
   std::vector<VertexId> component_vertices;  ///< one vertex of each connected piece of the boundary

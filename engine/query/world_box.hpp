@@ -36,7 +36,7 @@ class BodyExtent {
 
  private:
   const LrbRep* rep_;
-  /// Corners of the real faces, each once; none if the tree is quicker
+  /// Corners of the real faces, each once; none if the tree is quicker.
   std::vector<Eigen::Vector3d> corners_;
 };
 

@@ -98,7 +98,7 @@ class CandidateCache {
   CandidateSimplices of_[2];
   std::vector<SimplexPair> pairs_;
   std::vector<CachedPair> places_;  ///< (|pairs_|, padded to a multiple of 8)
-  /// (|pairs_|, padded to a multiple of 8) where they may meet, see PairKernel
+  /// (|pairs_|, padded to a multiple of 8) where they may meet, see PairKernel.
   std::vector<float> from_, to_;
   bool is_swept_ = false;
   double unit_ = 1;      ///< the query's unit, in the mesh's

@@ -77,7 +77,7 @@ class Cutters {
   const double* face_[3];
   QueryBody& holder_;
   std::vector<Corners> triangles_;
-  /// The triangles at an edge, each with its third corner
+  /// The triangles at an edge, each with its third corner.
   std::map<std::pair<VertexId, VertexId>, std::vector<Corners>> flat_edges_;
 };
 
@@ -248,7 +248,7 @@ class Decider {
   QueryContext& ctx_;
   const CollideResult& result_;
   int dim_;
-  /// Partners of each touched simplex of the current side
+  /// Partners of each touched simplex of the current side.
   std::map<SimplexId, std::vector<SimplexId>> partners_;
 };
 

@@ -19,7 +19,7 @@ class PairOrder {
   void sort_by_digits(unsigned bits);
 
   std::vector<std::uint64_t> keys_, moved_;  ///< packed pairs, so that as little as possible is moved
-  /// (digits x values of a digit) where the next key with that value goes
+  /// (digits x values of a digit) where the next key with that value goes.
   std::vector<std::uint32_t> places_;
 };
 

@@ -11,7 +11,7 @@ enum class Mode : std::uint8_t {
   all_pairs,
   first_pair,  ///< finds one pair that crosses, if there is one; the relation is exact
   /// Finds out whether the surfaces meet. The first pair that does ends the query, and Relation::touching
-  /// then says no more than that this pair touches: others may cross
+  /// then says no more than that this pair touches: others may cross.
   any_pair,
 };
 
@@ -25,7 +25,7 @@ const char* to_string(Recursion r);
 
 enum class Predicates : std::uint8_t {
   exact,
-  /// Without the exact fallback: the answer can be wrong; exists to measure what exactness costs and saves
+  /// Without the exact fallback: the answer can be wrong; exists to measure what exactness costs and saves.
   floating,
 };
 

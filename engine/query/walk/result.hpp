@@ -19,7 +19,7 @@ enum class Relation : std::uint8_t {
   a_inside_b,  ///< no surface contact; B holds A
   b_inside_a,
   undefined,  ///< no surface contact, and a body that is not closed: inside has no meaning
-  /// A coarse query did not prove the bodies separate; they meet, or are closer than the error bound
+  /// A coarse query did not prove the bodies separate; they meet, or are closer than the error bound.
   unresolved,
 };
 const char* to_string(Relation r);
