@@ -55,8 +55,7 @@ inline int orient3d_fixed(const std::array<std::array<std::int64_t, 4>, 3>& p) {
     w[k] = p[k][3] - p[k][0];
   }
   // The determinant is at most twice the volume of the points' box, so it is below 2^190 and can be held as
-  // high * 2^64
-  // low, where high fits 128 bits. Partial sums of high may wrap, hence unsigned.
+  // high * 2^64 + low, where high fits 128 bits. Partial sums of high may wrap, hence unsigned.
   UInt128 high = 0, low = 0;
   for (std::size_t k = 0; k < 3; ++k) {
     const std::size_t i = (k + 1) % 3, j = (k + 2) % 3;

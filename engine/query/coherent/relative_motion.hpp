@@ -41,8 +41,8 @@ struct Sweep {
   double width = 0;   ///< B may be off by this much
 };
 
-/// Where B is relative to a sweep: displaced from the middle by `at` times (dm x + dt), with no point of B
-/// further than `off` from there.
+/// The position of B relative to a sweep: displaced from the middle by `at` times (dm x + dt), with no point
+/// of B further than `off` from there.
 struct SweepPoint {
   double at = 0, off = 0;
 };

@@ -1,5 +1,5 @@
 #pragma once
-/// What the query reports to an observer. A probe is a template parameter: with NullProbe every call
+/// The probe: what the query reports to an observer. It is a template parameter: with NullProbe every call
 /// vanishes.
 
 #include <cstdint>

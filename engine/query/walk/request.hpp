@@ -1,5 +1,5 @@
 #pragma once
-/// What can be asked about two bodies.
+/// The request: what can be asked about two bodies.
 
 #include <cstdint>
 

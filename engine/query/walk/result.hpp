@@ -1,5 +1,5 @@
 #pragma once
-/// What a query answers, and how much work it took.
+/// The result: what a query answers, and how much work it took.
 
 #include <array>
 #include <cstdint>
