@@ -109,7 +109,7 @@ std::string_view text_of(MeshFault fault, int dim) {
       case MeshFault::no_faces:
         return "the mesh has no segments";
       case MeshFault::index_out_of_range:
-        return "a segment names a vertex that is not there";
+        return "a segment names a vertex that does not exist";
       case MeshFault::repeated_corner:
         return "a segment names a vertex twice";
       case MeshFault::zero_area_face:
