@@ -1,5 +1,5 @@
 #pragma once
-/// Boxes of a hull's triangles in a tree that follows the replacement of patches by caps.
+/// A dynamic AABB tree over a hull's triangles that follows the replacement of patches by caps.
 
 #include <cstdint>
 #include <span>
@@ -19,11 +19,11 @@ class AabbTree {
   using Box = Eigen::AlignedBox3d;
 
   explicit AabbTree(const HullMesh& hull);
-  /// Of any slots; `boxes` (slot count) is asked for those only.
+  /// Builds a tree over any slots; reads `boxes` (slot count) for those only.
   AabbTree(std::vector<Slot> slots, std::span<const Box> boxes);
 
-  /// The slot has a new triangle (not called for slots that become empty: their boxes stay and are ignored by
-  /// the caller, who looks at HullMesh::alive()).
+  /// Grows the boxes above a slot that has a new triangle. Not called for slots that become empty: their
+  /// boxes stay, and the caller ignores them by looking at HullMesh::alive().
   void update(Slot s, const Box& box);
 
   /// Calls visit(slot) for every slot whose box meets `box` (closed).
@@ -49,11 +49,12 @@ class AabbTree {
 
  private:
   static constexpr std::uint32_t kLeafSize = 4;
-  static constexpr int kMaxDepth = 64;  // of a tree halved at each step: 2 + log2 of the number of leaves
+  // The depth of a tree that is halved at each step is 2 + log2 of the number of leaves.
+  static constexpr int kMaxDepth = 64;
   struct Node {
     Box box;
     std::uint32_t first, last;  ///< into slots_
-    std::uint32_t right;        ///< child; the left one follows its parent. 0: leaf
+    std::uint32_t right;        ///< the right child; the left one follows its parent. 0: leaf
     std::uint32_t parent;
   };
 
@@ -62,8 +63,8 @@ class AabbTree {
   std::vector<Slot> slots_;
   std::vector<Box> boxes_;                ///< beside slots_
   std::vector<Eigen::Vector3d> centres_;  ///< by slot, while building
-  std::vector<std::uint32_t> place_;      ///< of a slot in slots_
-  std::vector<std::uint32_t> leaf_;       ///< of a place
+  std::vector<std::uint32_t> place_;      ///< (slots) the position of a slot in slots_
+  std::vector<std::uint32_t> leaf_;       ///< (|slots_|) the leaf of a position
   std::vector<Node> nodes_;
 };
 

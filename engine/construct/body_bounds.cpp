@@ -9,7 +9,7 @@ namespace lrb::construct {
 
 BodyBounds::BodyBounds(std::span<const Eigen::Vector3d> points, double swell) {
   for (int i = 0; i < 27; ++i) {
-    if (i == 13) continue;  // the middle of 27: no direction
+    if (i == 13) continue;  // the middle of the 27 is no direction
     const Eigen::Vector3d n = Eigen::Vector3d(i / 9 - 1, i / 3 % 3 - 1, i % 3 - 1).normalized();
     double low = std::numeric_limits<double>::infinity(), high = -low;
     for (const Eigen::Vector3d& p : points) {

@@ -1,5 +1,5 @@
 #pragma once
-/// How far hulls may swell.
+/// Limits how far hulls may swell.
 
 #include <cstdint>
 #include <span>
@@ -15,10 +15,10 @@ namespace lrb::construct {
 /// A convex region that holds a body.
 class BodyBounds {
  public:
-  /// The polytope whose 26 faces look along the axes and their diagonals, moved outward by `swell` times the
-  /// body's width in each direction.
+  /// Makes the polytope whose 26 faces look along the axes and their diagonals, moved outward by `swell`
+  /// times the body's width in each direction.
   BodyBounds(std::span<const Eigen::Vector3d> points, double swell);
-  /// Behind all faces of a convex mesh of triangles by `distance`.
+  /// Makes the region that lies behind all faces of a convex mesh of triangles by at least `distance`.
   BodyBounds(const Mesh& convex, double distance);
 
   std::span<const HalfSpace> half_spaces() const { return half_spaces_; }

@@ -14,7 +14,7 @@ namespace {
 using Slot = HullMesh::Slot;
 using Corner = HullMesh::Corner;
 
-/// The convex hull of the slots' vertices, by the hull's vertices.
+/// Returns the triangles of the convex hull of the slots' vertices; corners are the hull mesh's.
 std::vector<PointTriangle> convex_hull_of(const HullMesh& hull, const std::vector<Slot>& slots) {
   std::vector<Corner> corners;
   for (const Slot s : slots) corners.insert(corners.end(), hull[s].v.begin(), hull[s].v.end());
@@ -61,7 +61,7 @@ bool bridge_concavities(HullMesh& hull, ComplexBuilder& complex, const std::vect
   if (added.empty()) return false;
   for (PointTriangle& t : added) t = smallest_first(t);
   std::sort(added.begin(), added.end());
-  // Triangles in both stay.
+  // Triangles that are in both stay.
   std::vector<PointTriangle> kept;
   std::vector<Slot> removed;
   for (const Slot s : slots) {

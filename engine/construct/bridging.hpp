@@ -1,5 +1,5 @@
 #pragma once
-/// What patches cannot do: close holes, fill deep concavities, join components.
+/// Bridging does what patches cannot: it closes holes, fills deep concavities, joins components.
 
 #include <cstdint>
 #include <vector>
@@ -10,9 +10,9 @@
 namespace lrb::construct {
 
 /// Covers the concavities of a set of components with the faces of their convex hull: the pockets between
-/// become regions of this layer, and the components one. `joined` (components): those to cover. False, and
-/// nothing happens, if that would not make the surface simpler, or if faces of the convex hull would meet
-/// others (vertices in one plane).
+/// become regions of this layer, and the components become one. `joined` (components): which ones to cover.
+/// Does nothing and returns false if that would not make the surface simpler, or if faces of the convex hull
+/// would meet others (vertices in one plane).
 bool bridge_concavities(HullMesh& hull, ComplexBuilder& complex, const std::vector<bool>& joined,
                         std::uint16_t layer);
 

@@ -10,7 +10,7 @@
 namespace lrb {
 namespace {
 
-/// All that forbids an LRB-rep, on one line.
+/// Returns everything that prevents an LRB-rep from being built, on one line.
 std::string refusal(const Mesh& mesh, const MeshReport& report) {
   std::string text;
   for (const std::string& line : report.obstacles(mesh)) text += (text.empty() ? "" : " | ") + line;

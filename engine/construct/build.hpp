@@ -1,5 +1,5 @@
 #pragma once
-/// mesh -> LRB-rep.
+/// Builds an LRB-rep from a mesh.
 
 #include <cstdint>
 #include <functional>
@@ -11,12 +11,13 @@
 namespace lrb {
 
 struct BuildOptions {
-  std::uint32_t patch_interior = 16;   ///< interior vertices a patch aims at: small makes the paper's
-                                       ///< recursion cheap, large makes the structure small
-  std::uint32_t max_outer_faces = 20;  ///< aim for the outermost wrapper
-  std::uint64_t seed = 1;              ///< of the order in which patches grow
-  unsigned threads = 1;                ///< 0: as many as the machine runs at once. No matter for the result
-  /// Called after each pass: pass number, faces of the hull, seconds so far. May be empty.
+  /// Number of interior vertices that a patch aims at: small makes the paper's recursion cheap, large makes
+  /// the structure small.
+  std::uint32_t patch_interior = 16;
+  std::uint32_t max_outer_faces = 20;  ///< number of faces to aim for in the outermost wrapper
+  std::uint64_t seed = 1;              ///< seeds the order in which patches grow
+  unsigned threads = 1;  ///< 0: as many as the machine runs at once. The result does not depend on it
+  /// Called after each pass with the pass's number and the number of faces of the hull. May be empty.
   std::function<void(std::uint32_t pass, std::uint32_t hull_faces)> progress;
 };
 

@@ -1,4 +1,4 @@
-// Polygons of the mesh under a cap: covered whole or not at all.
+// Makes sure that a cap covers each polygon of the mesh wholly or not at all.
 
 #include <algorithm>
 
@@ -42,8 +42,8 @@ bool CapSurface::are_neighbours(int a, int b) const {
   });
 }
 
-/// Replaces the edge a, b that face f (a, b, c) has in common with a new face g (b, a, w) by c, w, if w lies
-/// in front of f: the tetrahedron between goes under the cap.
+/// Replaces the edge a, b that face f (a, b, c) shares with a new face g (b, a, w) by the edge c, w, if w
+/// lies in front of f: the tetrahedron between them goes under the cap.
 bool CapSurface::flip_outward(int f, int i) {
   Face& face = faces_[f];
   const int g = face.across[i];

@@ -45,7 +45,7 @@ void CapSurface::load_faces(const HullMesh& hull, const Patch& patch) {
     }
     for (int i = 0; i < 3; ++i) {
       const int v = face.v[i];
-      if (face.across[i] < 0) {  // on the ring, where the edge from v is the v-th
+      if (face.across[i] < 0) {  // on the ring, the edge that starts at v is the v-th
         face.across[i] = -1 - v;
         ring_face_[v] = f;
         face_of_[v] = f;
@@ -78,7 +78,7 @@ void CapSurface::load_surroundings(const HullMesh& hull, const Patch& patch) {
     beyond_[k].plane.n = length > 0 ? Eigen::Vector3d(normal / length) : Eigen::Vector3d(0, 0, 0);
     beyond_[k].plane.d = beyond_[k].plane.n.dot(a);
     beyond_[k].plane.area = length / 2;
-    // Edges from this vertex to others of the ring that are not ring edges and not in the patch.
+    // Note the edges from this vertex to others of the ring that are neither ring edges nor in the patch.
     hull.for_each_around(patch.ring[k], [&](HullMesh::Slot t, int j) {
       if (local_face(patch, t) >= 0) return;
       const int other = local(hull[t].v[(j + 1) % 3]);
@@ -109,7 +109,7 @@ bool CapSurface::find_star(int u, int v, Star& star) {
     first = faces_[first].across[(i + 2) % 3];
     if (first == face_of_[u]) return false;  // u and v are no longer neighbours
   }
-  // Round u, from the triangle u, v, x to the triangle u, y, v.
+  // Go round u, from the triangle u, v, x to the triangle u, y, v.
   int last = first;
   for (int f = first;;) {
     const int i = index_of(f, u);
@@ -182,7 +182,7 @@ void CapSurface::move(int v, const Eigen::Vector3d& position) {
   } while (f != face_of_[v]);
 }
 
-/// The star's triangles make room for a fan from w over its rim. New faces take the places of old ones.
+/// Replaces the star's triangles by a fan from w over its rim. New faces take the places of old ones.
 void CapSurface::replace(const Star& star, int w) {
   for (const int f : star.faces) {
     faces_[f].alive = false;
@@ -216,7 +216,8 @@ void CapSurface::replace(const Star& star, int w) {
   }
 }
 
-/// Face f now lies beyond the edge that runs a, b in f.
+/// Notes that face f now lies beyond the edge that runs a, b in f; `code` says what is on the other side of
+/// it.
 void CapSurface::set_across(int code, int a, int b, int f) {
   if (code < 0)
     ring_face_[-1 - code] = face_of_[a] = f;

@@ -13,7 +13,7 @@
 namespace lrb::construct {
 
 /// A disk with a fixed ring, or a closed surface. Vertices have local numbers: first the ring in its order,
-/// then the patch's interior, then new ones.
+/// then the patch's interior, then new vertices.
 class CapSurface {
  public:
   struct Plane {
@@ -26,13 +26,13 @@ class CapSurface {
     std::array<int, 3>
         across;  ///< face over the edge v[i], v[i + 1]; beyond the ring: -1 - (index of the ring edge)
     Plane plane;
-    int kept;  ///< the patch's triangle that it still is (index into Patch::slots), or -1
+    int kept;  ///< the patch's triangle (index into Patch::slots) if it is still that one, else -1
     bool alive;
   };
-  /// The triangles round an interior vertex u, or round an edge u, v, and the polygon about them.
+  /// The triangles round an interior vertex u, or round an edge u, v, and the polygon around them.
   struct Star {
     struct Rim {
-      int a, b;    ///< an edge that a new triangle a, b, w would stand on
+      int a, b;    ///< an edge on which a new triangle a, b, w would stand
       int across;  ///< what lies beyond it
       int face;    ///< the star's triangle at it
     };
@@ -40,10 +40,10 @@ class CapSurface {
     std::vector<int> faces;
     std::vector<Rim> rim;  ///< in order; an open chain from v back to v if v is on the ring
     int across_first = -1,
-        across_last = -1;  ///< open chain: beyond the edges v, rim.front().a and rim.back().b, v
+        across_last = -1;  ///< open chain: what lies beyond the edges v, rim.front().a and rim.back().b, v
   };
 
-  /// `first_id`: number in the complex of the first new vertex.
+  /// Loads a patch. `first_id`: the number in the complex of the first new vertex.
   void load(const HullMesh& hull, const Patch& patch, VertexId first_id);
 
   int ring_size() const { return ring_size_; }
@@ -52,9 +52,9 @@ class CapSurface {
   bool is_ring(int v) const { return v < ring_size_; }
   bool is_used(int v) const { return face_of_[v] >= 0; }
   const Eigen::Vector3d& x(int v) const { return points_[v].x; }
-  /// Number in the complex; of new vertices: as if all of them came to stay.
+  /// Returns a vertex's number in the complex; for new vertices, the one that they have if all of them stay.
   VertexId id(int v) const { return points_[v].id; }
-  /// The hull's vertex that an old one is.
+  /// Returns the hull's vertex that an old vertex is.
   HullMesh::Corner corner(int v) const { return corners_[v]; }
 
   const std::vector<Face>& faces() const { return faces_; }
@@ -64,22 +64,23 @@ class CapSurface {
   const Plane& plane_beyond(int k) const { return beyond_[k].plane; }
   const Eigen::Vector3d& tip_beyond(int k) const { return beyond_[k].tip; }
   double patch_area() const { return patch_area_; }
-  /// The number of a hull's triangle in the patch, or -1.
+  /// Returns the number that a triangle of the hull has in the patch, or -1.
   int local_face(const Patch& patch, HullMesh::Slot s) const {
     const int f = local_face_[s];
     return f >= 0 && static_cast<std::size_t>(f) < patch.slots.size() && patch.slots[f] == s ? f : -1;
   }
 
-  /// The star for collapsing edge u, v (u interior) to a new vertex or, if v is on the ring, onto v. False if
-  /// the collapse would not leave a surface (link condition), or if it would make an edge between ring
-  /// vertices that the hull has already.
+  /// Finds the star for collapsing the edge u, v (u interior) to a new vertex or, if v is on the ring, onto
+  /// v. Returns false if the collapse would not leave a surface (link condition), or if it would make an edge
+  /// between ring vertices that the hull has already.
   bool find_star(int u, int v, Star& star);
   /// Collapses u and v into a new vertex at x. Returns its number.
   int collapse_to_new(const Star& star, const Eigen::Vector3d& x);
   void collapse_onto_ring(const Star& star);
 
-  /// A polygon of the mesh has one face in the complex, so its triangles must all stay or all be covered:
-  /// covers those that stayed alone, by flipping an edge outward. False if that cannot be done.
+  /// A polygon of the mesh has one face in the complex, so its triangles must all stay or all be covered.
+  /// Covers those that stayed without the others, by flipping an edge outward. Returns false if that cannot
+  /// be done.
   bool keep_polygons_whole(const HullMesh& hull, const Patch& patch);
 
   /// Moves an interior vertex.
@@ -129,18 +130,19 @@ class CapSurface {
 
   std::vector<HullMesh::Point> points_;
   std::vector<HullMesh::Corner> corners_;  ///< (old vertices)
-  std::vector<int> face_of_;  ///< (|points|) any face; of a ring vertex: that of its ring edge; -1: unused
+  /// (|points|) any face at the vertex; for a ring vertex that of its ring edge; -1: unused.
+  std::vector<int> face_of_;
   std::vector<Face> faces_;
   std::vector<int> ring_face_;       ///< (|ring|) the face at the ring edge
   std::vector<Beyond> beyond_;       ///< (|ring|)
-  std::vector<bool> chords_;         ///< (|ring| x |ring|) the hull has this edge outside the patch
+  std::vector<bool> chords_;         ///< (|ring| x |ring|) true if the hull has this edge outside the patch
   std::vector<std::uint32_t> mark_;  ///< (|points|)
   std::uint32_t marker_ = 0;
   VertexId next_id_ = 0;
   int ring_size_ = 0, first_new_ = 0, alive_ = 0, kept_ = 0;
   double patch_area_ = 0;
 
-  // From the hull's numbers to local ones; entries are valid if they point back.
+  // From the hull's numbers to local ones; an entry is valid if the local one points back to it.
   std::vector<int> local_point_, local_face_;
 };
 

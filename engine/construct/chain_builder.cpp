@@ -65,7 +65,7 @@ class ChainBuilder {
     return points;
   }
 
-  /// The hole in front of each component: itself for a hole, kNull for the outside.
+  /// Finds the hole in front of each component: the component itself if it is a hole, kNull for the outside.
   void find_nesting(const Mesh& mesh) {
     const std::uint32_t count = hull_.component_count();
     std::vector<std::vector<FaceId>> faces(count);
@@ -93,7 +93,7 @@ class ChainBuilder {
     }
   }
 
-  /// The outermost wrapper comes first, so that all hulls stay in it.
+  /// Plans the outermost wrapper first, so that all hulls stay inside it.
   void plan_polygon() {
     const auto points = outer_points();
     polygon_ = enclosing_polygon(points, max_outer_, kPolytopeDistance);
@@ -115,7 +115,7 @@ class ChainBuilder {
     }
   }
 
-  /// Takes the caps that add least area for each segment they save, on chains that do not overlap.
+  /// Puts on the caps that add least area for each segment they save, on chains that do not overlap.
   void pass(double worth) {
     const std::vector<Slot> slots = hull_.alive_slots();
     std::vector<Box> slot_boxes(hull_.slot_count());
@@ -154,7 +154,7 @@ class ChainBuilder {
     end_pass();
   }
 
-  /// The chain if all of it is still there and free.
+  /// Returns the cap's chain if all of it is still there and free, else nothing.
   std::vector<Slot> chain_of_untaken(const ChainCap& cap, const std::vector<bool>& taken) const {
     std::vector<Slot> chain;
     for (Slot s = cap.first; chain.size() < cap.length; s = hull_[s].next) {
@@ -193,12 +193,12 @@ class ChainBuilder {
     return added;
   }
 
-  /// Pockets between a single outline and its convex hull become regions.
+  /// Makes regions of the pockets between a single outline and its convex hull.
   bool bridge() {
     const std::vector<Slot> slots = outer_slots();
     for (const Slot s : slots)
       if (hull_[s].component != hull_[slots[0]].component) return false;
-    // Positions along the outline, so that a side of the hull covers the chain between its ends.
+    // Use positions along the outline, so that a side of the hull covers the chain between its ends.
     const std::vector<Slot> outline = chain_of(hull_, slots[0], static_cast<std::uint32_t>(slots.size()));
     std::vector<Vector3> points;
     for (const Slot s : outline) points.push_back(hull_.start(s));
@@ -247,13 +247,14 @@ class ChainBuilder {
   void end_pass() { passes_.end_pass(complex_, hull_.segment_count()); }
 
   static constexpr std::uint32_t kMostOuter = 8;  ///< segments of the outermost wrapper
-  static constexpr double kLeastGain = 0.95;  ///< a pass that leaves a larger share of segments is the last
+  /// A pass that leaves a larger share of the segments is the last.
+  static constexpr double kLeastGain = 0.95;
 
   const BuildOptions& options_;
   const std::uint32_t max_outer_;
   HullLoops hull_;
   ComplexBuilder complex_;
-  std::vector<bool> frozen_;         ///< (|real faces|) they meet others
+  std::vector<bool> frozen_;         ///< (|real faces|) true for faces that meet others
   std::vector<Box> boxes_;           ///< (components)
   std::vector<std::uint32_t> home_;  ///< (components)
   std::vector<Vector3> polygon_;

@@ -22,14 +22,15 @@ double cross_2d(const Vector3& a, const Vector3& b) {
   return a.x() * b.y() - a.y() * b.x();
 }
 
-/// In front (to the right) of the line through a segment by `margin`; relative to `origin`.
+/// Returns the half-plane in front (to the right) of the line through a segment by `margin`; relative to
+/// `origin`.
 HalfSpace in_front(const Vector3& a, const Vector3& b, const Vector3& origin, double margin) {
   const Vector3 n = Vector3(b.y() - a.y(), a.x() - b.x(), 0).normalized();
   return {n, n.dot(a - origin) + margin};
 }
 
-/// Strictly within the sector that a ray from `centre` through `from` sweeps counter-clockwise on its way to
-/// `to`.
+/// Returns true if p is strictly within the sector that a ray from `centre` through `from` sweeps
+/// counter-clockwise on its way to `to`.
 bool in_sector(const Vector3& centre, const Vector3& from, const Vector3& to, const Vector3& p) {
   const int sector = turn(centre, from, to);
   if (sector > 0) return turn(centre, from, p) > 0 && turn(centre, p, to) > 0;
@@ -134,12 +135,12 @@ bool chain_cap_is_clear(const HullLoops& hull, const AabbTree& tree, const Chain
   } else {
     added.emplace_back(a, hull[front].a, b, hull[back].b);
   }
-  // The outside is to the right: at a vertex it lies between the segment that comes and the one that goes.
+  // The outside is to the right: at a vertex it lies between the incoming segment and the outgoing one.
   if (!in_sector(a, hull.start(hull[front].prev), hull.end(front), *added.front().b)) return false;
   if (!in_sector(b, hull.start(back), hull.end(hull[back].next), *added.back().a)) return false;
   Eigen::AlignedBox3d box = added.front().box;
   box.extend(added.back().box);
-  for (const Slot s : chain) box.extend(box_of(hull, s));  // another component may lie in the middle
+  for (const Slot s : chain) box.extend(box_of(hull, s));  // another component may lie in between
   bool clear = true;
   tree.for_each_in(box, [&](Slot s) {
     if (!clear || !hull.alive(s)) return;

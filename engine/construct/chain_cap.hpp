@@ -1,5 +1,5 @@
 #pragma once
-/// Caps over chains of segments: what they look like, and the proof that one may stand.
+/// Caps over chains of segments: finding one, and the proof that it may stand.
 
 #include <cstdint>
 #include <optional>
@@ -14,26 +14,27 @@
 
 namespace lrb::construct {
 
-/// Over the segments `first` and those that follow it, `length` in all.
+/// A cap over the segment `first` and those that follow it, `length` in all.
 struct ChainCap {
   HullLoops::Slot first = kNull;
   std::uint32_t length = 0;
-  std::optional<Eigen::Vector3d> apex;  ///< none: the cap is the chord
-  double area = 0;                      ///< between chain and cap; unit squared
+  std::optional<Eigen::Vector3d> apex;  ///< none if the cap is the chord
+  double area = 0;                      ///< area between chain and cap; unit squared
 };
 
-/// The slots of the chain, in order.
+/// Returns the slots of the chain, in order.
 std::vector<HullLoops::Slot> chain_of(const HullLoops& hull, HullLoops::Slot first, std::uint32_t length);
 
-/// The chord if the chain's inner vertices are strictly behind it, else two segments whose apex is in front
-/// of the chain's lines (and, where the outline turns up at its ends, of its neighbours') and within
-/// `bounds`. None if there is no such point, or if the cap would add more than `area_limit` times the square
-/// of the chain's length.
+/// Returns the chord if the chain's inner vertices are strictly behind it, else two segments whose apex is in
+/// front of the chain's lines (and, where the outline turns up at its ends, of its neighbours') and within
+/// `bounds`. Returns nothing if there is no such point, or if the cap would add more than `area_limit` times
+/// the square of the chain's length.
 std::optional<ChainCap> find_cap(const HullLoops& hull, HullLoops::Slot first, std::uint32_t length,
                                  std::span<const HalfSpace> bounds, double area_limit);
 
-/// Exactly: the cap meets nothing of the hull and of the chain but the chain's ends, leaves these between the
-/// chain and its neighbours on the outer side, and no other component lies beneath it. `boxes` (components).
+/// Returns true if, exactly, the cap meets nothing of the hull and of the chain but the chain's ends, leaves
+/// these between the chain and its neighbours on the outer side, and no other component lies beneath it.
+/// `boxes` (components).
 bool chain_cap_is_clear(const HullLoops& hull, const AabbTree& tree, const ChainCap& cap,
                         std::span<const Eigen::AlignedBox3d> boxes);
 

@@ -15,14 +15,14 @@ namespace {
 
 using Vector3 = Eigen::Vector3d;
 
-/// A number from 0 to 1, the same sequence on every machine.
+/// Returns a number from 0 to 1, the same sequence on every machine.
 double fraction(Random& random) {
   return static_cast<double>(random.below(1u << 16)) * 0x1p-16;
 }
 
-/// The points on the convex hull, and perhaps some that lie within `distance` of it; they leave all others
-/// within that distance of their own hull. (Moved a little, points are in general position, so that the hull
-/// is quick to find.)
+/// Returns the points on the convex hull, and perhaps some that lie within `distance` of it; all others are
+/// within that distance of the hull of those returned. (The points are moved a little first: in general
+/// position, their hull is quick to find.)
 std::vector<Vector3> outermost(std::span<const Vector3> points, double distance) {
   Random random(1);
   std::vector<Vector3> moved;
@@ -40,8 +40,8 @@ std::vector<Vector3> outermost(std::span<const Vector3> points, double distance)
   return out;
 }
 
-/// Four points about each: their hull holds every point by at least a quarter of `distance`, and they are in
-/// general position.
+/// Returns four points around each point: their hull holds every point with at least a quarter of `distance`
+/// to spare, and they are in general position.
 std::vector<Vector3> tetrahedra_about(std::span<const Vector3> points, double distance) {
   static const Vector3 kCorners[4] = {{1, 1, 1}, {1, -1, -1}, {-1, 1, -1}, {-1, -1, 1}};
   Random random(1);

@@ -1,6 +1,5 @@
 #pragma once
-/// Puts the arrays of an LRB-rep together, face by face: for builders, and for generators that know their
-/// regions.
+/// Assembles the arrays of an LRB-rep face by face: for builders, and for generators that know their regions.
 
 #include <cstdint>
 #include <span>
@@ -12,8 +11,8 @@
 
 namespace lrb::construct {
 
-/// Vertices, regions and faces are numbered from 0 in the order in which they are added. finish() moves the
-/// real faces to the front, as LrbData wants it; both kinds keep their order.
+/// Numbers vertices, regions and faces from 0 in the order in which they are added. finish() moves the real
+/// faces to the front, as LrbData requires; within each kind, faces keep their order.
 class ComplexBuilder {
  public:
   explicit ComplexBuilder(int dim, std::string name = {});
@@ -22,7 +21,8 @@ class ComplexBuilder {
 
   VertexId add_vertex(const Eigen::Vector3d& p);
   RegionId add_region(std::uint16_t layer);
-  /// Corners run counter-clockwise seen from the outer cell (2D: the inner cell is on the left).
+  /// Adds a face. Its corners run counter-clockwise seen from the outer cell (2D: the inner cell is on the
+  /// left).
   FaceId add_real_face(std::span<const VertexId> corners, CellId outer);
   FaceId add_pseudo_face(std::span<const VertexId> corners, RegionId inner, CellId outer);
   void set_outer_cell(FaceId f, CellId outer) { d_.outer_cell[f] = outer; }
@@ -32,7 +32,7 @@ class ComplexBuilder {
   std::uint32_t region_count() const { return static_cast<std::uint32_t>(d_.region_layer.size()); }
   std::uint32_t face_count() const { return static_cast<std::uint32_t>(d_.face_count()); }
 
-  /// `closed`, `self_intersecting`: see LrbData. Leaves the builder empty.
+  /// Returns the arrays and leaves the builder empty. `closed`, `self_intersecting`: see LrbData.
   LrbData finish(bool closed, bool self_intersecting);
 
  private:

@@ -1,5 +1,5 @@
 #pragma once
-/// Which of a body's surfaces bound voids, and what lies in them.
+/// Finds which of a body's surfaces bound voids, and what lies in these.
 
 #include <cstdint>
 #include <vector>

@@ -13,13 +13,13 @@ namespace {
 
 using Triangle = std::array<std::uint32_t, 3>;
 
-/// Quickhull: each point that is still outside waits at one facet that it sees; the furthest that waits at a
-/// facet becomes a corner, and those that waited at the facets it replaces look for new ones.
+/// Quickhull: each point that is still outside waits at one facet that it sees; the furthest point that waits
+/// at a facet becomes a corner, and those that waited at the facets it replaces look for new ones.
 ///
-/// In what order corners are added makes no difference, because no four points count as lying in one plane:
-/// each is thought of as moved towards a point inside by an infinitesimal share, every point by infinitely
-/// more than those before it. So a point is behind the planes of earlier ones that it lies in, as if points
-/// were added in order; and the hull of the moved points is unique.
+/// The order in which corners are added makes no difference, because no four points count as lying in one
+/// plane: each point is thought of as moved towards a point inside by an infinitesimal share, every point by
+/// infinitely more than those before it. So a point is behind the planes of earlier points that it lies in,
+/// just as if points were added in order; and the hull of the moved points is unique.
 class Hull {
  public:
   explicit Hull(std::span<const Eigen::Vector3d> points)
@@ -39,20 +39,21 @@ class Hull {
   struct Facet {
     Triangle corners;
     exact::PlaneSide plane;
-    std::array<std::uint32_t, 3> across = {kNull, kNull, kNull};  ///< beyond corners[i], corners[i + 1]
-    std::uint32_t waiting = kNull;                                ///< first of the points that wait here
+    /// The facet beyond the edge corners[i], corners[i + 1].
+    std::array<std::uint32_t, 3> across = {kNull, kNull, kNull};
+    std::uint32_t waiting = kNull;  ///< the first of the points that wait here
     std::uint32_t furthest = kNull;
-    double height = -std::numeric_limits<double>::infinity();  ///< of the furthest
+    double height = -std::numeric_limits<double>::infinity();  ///< height of the furthest
     bool alive = true;
   };
   struct HorizonEdge {
-    std::uint32_t a, b;    ///< as in the facet that goes
+    std::uint32_t a, b;    ///< in the order that they have in the facet that goes
     std::uint32_t beyond;  ///< the facet that stays
   };
 
   const double* at(std::uint32_t p) const { return points_[p].data(); }
 
-  /// A tetrahedron with volume.
+  /// Makes the first facets, those of a tetrahedron with volume.
   bool start() {
     const auto count = static_cast<std::uint32_t>(points_.size());
     std::uint32_t b = 1, c, d;
@@ -76,7 +77,7 @@ class Hull {
   }
 
   bool is_first(std::uint32_t p) const { return std::find(first_.begin(), first_.end(), p) != first_.end(); }
-  /// Place in the order. The first four are never compared with each other.
+  /// Returns a point's place in the order. The first four are never compared with each other.
   std::uint32_t rank(std::uint32_t p) const { return is_first(p) ? 0 : p + 1; }
 
   std::uint32_t make(const Triangle& t) {
@@ -99,9 +100,10 @@ class Hull {
     return side != 0 ? side > 0 : sees_in_plane(p, f.corners);
   }
 
-  /// For p in the plane: whichever of the four moves most decides. If that is p, it gets behind the plane. If
-  /// it is a corner, the plane turns about the edge opposite, and p is in front where it is on the corner's
-  /// side of that edge; on the edge's line, the next decides.
+  /// Returns true if p, which lies in the plane of t, sees t. The one of the four points that moves most
+  /// decides. If that is p, it ends up behind the plane. If it is a corner, the plane turns about the
+  /// opposite edge, and p is in front if it is on the corner's side of that edge; if p is on the edge's line,
+  /// the next point decides.
   bool sees_in_plane(std::uint32_t p, const Triangle& t) const {
     std::array<int, 3> order = {0, 1, 2};
     std::sort(order.begin(), order.end(), [&](int i, int j) { return rank(t[i]) > rank(t[j]); });
@@ -113,7 +115,8 @@ class Hull {
     return false;
   }
 
-  /// Of four points in one plane: +1 if p is on the same side of the line a, b as c, -1 if on the other.
+  /// Returns, for four points in one plane, +1 if p is on the same side of the line a, b as c, and -1 if it
+  /// is on the other.
   int side_of_edge(std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t p) const {
     for (int x = 0; x < 3; ++x) {
       const int y = (x + 1) % 3;
@@ -123,8 +126,8 @@ class Hull {
     return 0;
   }
 
-  /// Puts p on the list of the first of the facets just made that it sees. If it sees none of them it is
-  /// inside: whoever sees a facet that goes and one that stays, sees a new one between them.
+  /// Puts p on the list of the first of the new facets that it sees. If it sees none of them it is inside: a
+  /// point that sees a facet that goes and one that stays also sees a new one between them.
   void wait(std::uint32_t p) {
     for (const std::uint32_t f : made_) {
       Facet& facet = facets_[f];
@@ -145,7 +148,7 @@ class Hull {
     made_.clear();
   }
 
-  /// p, which sees facet f, becomes a corner.
+  /// Makes p, which sees facet f, a corner.
   void add(std::uint32_t p, std::uint32_t f) {
     find_visible(p, f);
     for (const HorizonEdge& e : horizon_) {
@@ -169,13 +172,14 @@ class Hull {
       }
       facets_[v].waiting = kNull;
     }
-    // Only now, so that the slots were not used again; the first four keep theirs for the order.
+    // Free the slots only now, so that they were not used again meanwhile; the first four facets keep theirs,
+    // for the order.
     for (const std::uint32_t v : visible_)
       if (v >= first_.size()) free_.push_back(v);
     expect_points();
   }
 
-  /// The facets that p sees hang together; they are marked as gone.
+  /// Finds the facets that p sees, which are connected, and marks them as gone.
   void find_visible(std::uint32_t p, std::uint32_t f) {
     visible_ = {f};
     horizon_.clear();
@@ -195,8 +199,8 @@ class Hull {
     }
   }
 
-  /// As points added one by one make them: the first four's, then by the last corner, the edge before it
-  /// first.
+  /// Returns the triangles in the order in which adding the points one by one makes them: what is left of the
+  /// first four facets, then by last corner and, for the same one, by the edge before it.
   std::vector<Triangle> in_order() const {
     std::vector<Triangle> triangles;
     for (std::size_t f = 0; f < facets_.size(); ++f) {
@@ -222,11 +226,11 @@ class Hull {
   std::vector<Facet> facets_;                ///< slots; all but the first four are used again
   std::vector<std::uint32_t> free_;
   std::vector<std::uint32_t> pending_;  ///< slots of facets at which points may wait
-  std::vector<std::uint32_t> made_;     ///< by the last corner
+  std::vector<std::uint32_t> made_;     ///< the facets that the last corner made
   std::vector<std::uint32_t> visible_;
   std::vector<HorizonEdge> horizon_;
-  std::vector<std::uint32_t> next_;        ///< (|points|) of those that wait at the same facet
-  std::vector<std::uint32_t> facet_from_;  ///< (|points|) new facet whose horizon edge starts here
+  std::vector<std::uint32_t> next_;        ///< (|points|) the next point that waits at the same facet
+  std::vector<std::uint32_t> facet_from_;  ///< (|points|) the new facet whose horizon edge starts here
 };
 
 }  // namespace

@@ -18,8 +18,8 @@ double cross_2d(const Vector3& a, const Vector3& b) {
   return a.x() * b.y() - a.y() * b.x();
 }
 
-/// Where two sides p0 -> p1 and q0 -> q1 meet when they are made longer, and the area that this adds beyond
-/// p1, q0; none (infinite area) if they do not converge.
+/// The point in which two sides p0 -> p1 and q0 -> q1 meet when they are extended, and the area that this
+/// adds beyond p1, q0; the area is infinite if they do not converge.
 struct Corner {
   Vector3 x;
   double area;

@@ -20,8 +20,8 @@ int side(const Vector3& a, const Vector3& b, const Vector3& c, const Vector3& d)
   return exact::orient3d(a.data(), b.data(), c.data(), d.data());
 }
 
-/// Turning round the edge a, b from the old triangle (a, b, p) through what lies in front of it, does one
-/// reach the new triangle (a, b, w) before the neighbour (b, a, q)?
+/// Returns true if, turning about the edge a, b from the old triangle (a, b, p) through the space in front of
+/// it, one reaches the new triangle (a, b, w) before the neighbour (b, a, q).
 bool turns_outward(const Vector3& a, const Vector3& b, const Vector3& p, const Vector3& w, const Vector3& q) {
   const int new_side = side(a, b, p, w), far_side = side(a, b, p, q);
   if (new_side > 0) return far_side <= 0 || side(a, b, w, q) > 0;
@@ -59,10 +59,10 @@ bool EmbedCheck::cap_is_clear(const Patch& patch, const CapSurface& cap) {
     for (std::size_t j = 0; j < i; ++j)
       if (!added_[i].clear_of(added_[j])) return false;
   add_patch(patch);
-  if (component_boxes_.size() > 1)  // another component may lie in the middle, under the cap and clear of it
+  if (component_boxes_.size() > 1)  // another component may lie in between, under the cap and clear of it
     for (const CheckedTriangle& t : obstacles_) box.extend(t.box);
   gather_hull(patch, cap, box);
-  return added_are_clear() && !swallows_component(patch, cap, box);
+  return added_are_clear() && !encloses_component(patch, cap, box);
 }
 
 bool EmbedCheck::fan_is_clear(const Patch& patch, const CapSurface& cap, const CapSurface::Star& star,
@@ -118,7 +118,7 @@ bool EmbedCheck::added_are_clear() const {
   return true;
 }
 
-/// With one neighbour outside, all of the patch's component is: it is connected and meets the region's
+/// If one neighbour is outside, all of the patch's component is: it is connected and meets the region's
 /// boundary in the ring only.
 bool EmbedCheck::ring_turns_outward(const Patch& patch, const CapSurface& cap) const {
   const int size = cap.ring_size();
@@ -151,8 +151,9 @@ bool EmbedCheck::rim_turns_outward(const CapSurface& cap, const CapSurface::Star
   return true;
 }
 
-/// True if another component may lie in the region between patch and cap. It then lies there as a whole.
-bool EmbedCheck::swallows_component(const Patch& patch, const CapSurface& cap, const Box& box) const {
+/// Returns true if another component may lie in the region between patch and cap. If it does, it lies there
+/// as a whole.
+bool EmbedCheck::encloses_component(const Patch& patch, const CapSurface& cap, const Box& box) const {
   Mesh region;
   for (const HullMesh::Slot stranger : strangers_) {
     const Box& other = component_boxes_[hull_[stranger].component];

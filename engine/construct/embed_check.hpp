@@ -1,5 +1,5 @@
 #pragma once
-/// The proof that a cap may stand: its new triangles meet, exactly, nothing but what they share with others.
+/// Proves that a cap may stand: its new triangles meet, exactly, nothing but what they share with others.
 
 #include <array>
 #include <cstdint>
@@ -14,33 +14,33 @@
 
 namespace lrb::construct {
 
-/// A triangle of the complex, by reference to its corners.
+/// A triangle of the complex; refers to its corners.
 struct CheckedTriangle {
   std::array<const double*, 3> x;
   std::array<VertexId, 3> id;
   Eigen::AlignedBox3d box;
 
   CheckedTriangle(const HullMesh::Point& a, const HullMesh::Point& b, const HullMesh::Point& c);
-  /// True if the two have nothing in common but shared vertices and edges.
+  /// Returns true if the two triangles have nothing in common but shared vertices and edges.
   bool clear_of(const CheckedTriangle& other) const;
 };
 
 class EmbedCheck {
  public:
   EmbedCheck(const HullMesh& hull, const AabbTree& tree) : hull_(hull), tree_(tree) {}
-  /// Boxes of the components (in the hull's numbering), so that a cap over a patch of one never hides
-  /// another.
+  /// Sets the boxes of the components (in the hull's numbering), so that a cap over a patch of one never
+  /// hides another.
   void set_component_boxes(std::vector<Eigen::AlignedBox3d> boxes) { component_boxes_ = std::move(boxes); }
 
-  /// Nothing may meet the cap's new triangles: not the hull outside the patch, not the patch, not each other.
-  /// And all of the hull that is outside the patch must lie outside the region between patch and cap.
+  /// Returns true if nothing meets the cap's new triangles, neither the hull outside the patch nor the patch
+  /// nor each other, and all of the hull outside the patch lies outside the region between patch and cap.
   bool cap_is_clear(const Patch& patch, const CapSurface& cap);
-  /// The same for a fan from w that is about to replace a star of the cap.
+  /// Does the same for a fan from w that is about to replace a star of the cap.
   bool fan_is_clear(const Patch& patch, const CapSurface& cap, const CapSurface::Star& star,
                     const HullMesh::Point& w);
 
-  /// A box of all the places at which the hull outside the patch was looked for, beyond what shares a vertex
-  /// with the patch.
+  /// Returns a box around all places at which the hull outside the patch was looked at, beyond the triangles
+  /// that share a vertex with the patch.
   const Eigen::AlignedBox3d& seen() const { return seen_; }
   void forget_seen() { seen_.setEmpty(); }
 
@@ -50,7 +50,7 @@ class EmbedCheck {
   bool added_are_clear() const;
   bool ring_turns_outward(const Patch& patch, const CapSurface& cap) const;
   bool rim_turns_outward(const CapSurface& cap, const CapSurface::Star& star, const Eigen::Vector3d& w) const;
-  bool swallows_component(const Patch& patch, const CapSurface& cap, const Eigen::AlignedBox3d& box) const;
+  bool encloses_component(const Patch& patch, const CapSurface& cap, const Eigen::AlignedBox3d& box) const;
 
   const HullMesh& hull_;
   const AabbTree& tree_;

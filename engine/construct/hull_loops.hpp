@@ -12,7 +12,7 @@
 namespace lrb::construct {
 
 /// Closed loops of segments with the solid on their left. Segments live in numbered slots; an empty slot is
-/// used again when a chain is replaced by its cap. Vertices are those of the complex.
+/// used again when a chain is replaced by its cap. Vertices are numbered as in the complex.
 class HullLoops {
  public:
   using Slot = std::uint32_t;
@@ -20,11 +20,11 @@ class HullLoops {
   struct Segment {
     VertexId a, b;
     Slot next = kNull, prev = kNull;
-    FaceId face = kNull;  ///< of the complex; kNull: the slot is empty
+    FaceId face = kNull;  ///< the face of the complex; kNull: the slot is empty
     std::uint32_t component = kNull;
   };
 
-  /// `mesh` must be 2D and closed, every vertex with one segment in and one out.
+  /// Makes the loops of a mesh, which must be 2D and closed, every vertex with one segment in and one out.
   explicit HullLoops(const Mesh& mesh);
 
   Slot slot_count() const { return static_cast<Slot>(segments_.size()); }

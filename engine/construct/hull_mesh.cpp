@@ -9,7 +9,7 @@
 namespace lrb::construct {
 namespace {
 
-/// A polygon as triangles with area where it is flat; as its fan, which then is its shape, where it is not.
+/// Splits a polygon into triangles with area if it is flat; else into its fan, which then defines its shape.
 void triangulate(const Mesh& mesh, std::span<const VertexId> corners,
                  std::vector<std::array<VertexId, 3>>& triangles) {
   triangles.clear();
@@ -48,7 +48,7 @@ void HullMesh::add_faces(const Mesh& mesh) {
 }
 
 void HullMesh::find_neighbours() {
-  // Edges in order of the vertex they start at.
+  // Sort the edges by the vertex that they start at.
   std::vector<std::uint32_t> offsets(points_.size() + 2, 0);
   for (const Triangle& t : triangles_)
     for (const Corner v : t.v) ++offsets[v + 2];

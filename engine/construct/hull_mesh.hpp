@@ -1,5 +1,5 @@
 #pragma once
-/// The surface that a builder works on: at first the mesh itself, then hulls that enclose ever more.
+/// The surface that a builder works on: at first the mesh itself, then hulls that enclose more and more.
 
 #include <array>
 #include <cstdint>
@@ -14,7 +14,7 @@ namespace lrb::construct {
 
 /// A closed triangle surface with neighbours. Triangles live in numbered slots; a slot may be empty, and is
 /// used again when a patch is replaced by its cap. Every vertex has exactly one fan of triangles: a vertex of
-/// the mesh that joins several fans stands here once for each of them.
+/// the mesh that joins several fans occurs here once for each of them.
 class HullMesh {
  public:
   using Slot = std::uint32_t;    ///< a triangle
@@ -23,8 +23,8 @@ class HullMesh {
   struct Triangle {
     std::array<Corner, 3> v;      ///< counter-clockwise seen from outside
     std::array<Slot, 3> across;   ///< neighbour over the edge v[i], v[i + 1]
-    FaceId face = kNull;          ///< of the complex; kNull: the slot is empty
-    std::uint32_t component = 0;  ///< of the mesh's surface
+    FaceId face = kNull;          ///< the face of the complex; kNull: the slot is empty
+    std::uint32_t component = 0;  ///< component of the mesh's surface
   };
 
   /// A vertex's position and its number in the complex.
@@ -33,8 +33,8 @@ class HullMesh {
     VertexId id;
   };
 
-  /// `mesh` must be closed, manifold but for vertices with several fans, and oriented. Polygons become
-  /// triangles; those of one polygon stand in neighbouring slots and have the same face.
+  /// Makes the surface of a mesh, which must be closed, oriented, and manifold but for vertices with several
+  /// fans. Polygons become triangles; those of one polygon are in consecutive slots and have the same face.
   explicit HullMesh(const Mesh& mesh);
 
   Slot slot_count() const { return static_cast<Slot>(triangles_.size()); }
@@ -45,15 +45,16 @@ class HullMesh {
   const Triangle& operator[](Slot s) const { return triangles_[s]; }
   const Point& point(Corner v) const { return points_[v]; }
   const Eigen::Vector3d& x(Corner v) const { return points_[v].x; }
-  std::uint32_t degree(Corner v) const { return degree_[v]; }  ///< triangles round it; 0: not in use
+  /// Number of triangles round it; 0: not in use.
+  std::uint32_t degree(Corner v) const { return degree_[v]; }
   Slot any_slot(Corner v) const { return slot_of_[v]; }
 
-  /// Index of vertex v in triangle s (which must have it).
+  /// Returns the index of vertex v in triangle s (which must have it).
   int index_of(Slot s, Corner v) const {
     const auto& t = triangles_[s].v;
     return t[0] == v ? 0 : t[1] == v ? 1 : 2;
   }
-  /// Index of the edge of triangle s over which triangle t lies, the edge starting at `from` in s.
+  /// Returns the index of the edge of triangle s that starts at `from`.
   int edge_from(Slot s, Corner from) const { return index_of(s, from); }
 
   /// Calls visit(slot, index of v in it) for the triangles round v, counter-clockwise.
@@ -68,7 +69,7 @@ class HullMesh {
     } while (s != first);
   }
 
-  /// The slots of the polygon that slot s belongs to (just s for a triangle).
+  /// The slots of one polygon.
   struct SlotRange {
     Slot first, last;
   };
@@ -92,15 +93,15 @@ class HullMesh {
 
   /// Removes triangles without closing the gap: add() must follow.
   void remove(std::span<const Slot> slots);
-  /// Fills an empty slot, or the next one after the last. Neighbours are as given; the other side is to be
-  /// set with link().
+  /// Fills an empty slot, or the next one after the last. Sets the triangle's neighbours as given; their side
+  /// is to be set with link().
   void add(Slot s, const Triangle& t);
   /// Makes t the neighbour of s over the edge of s that starts at `from`.
   void link(Slot s, Corner from, Slot t) { triangles_[s].across[index_of(s, from)] = t; }
   void set_component(Slot s, std::uint32_t component) { triangles_[s].component = component; }
 
   std::vector<Slot> alive_slots() const;
-  /// Six times the volume behind a set of triangles that is closed.
+  /// Returns six times the volume behind a closed set of triangles.
   double volume_sixfold(std::span<const Slot> slots) const;
 
  private:

@@ -8,7 +8,7 @@ namespace {
 using Slot = HullMesh::Slot;
 using Corner = HullMesh::Corner;
 
-/// Numbers the corners of both sides of the sheet from 0, and finds regions and neighbours.
+/// Numbers the corners of both sides of the sheet from 0, and finds its regions and neighbours.
 void work_out(const HullMesh& hull, Sheet& sheet) {
   std::sort(sheet.removed.begin(), sheet.removed.end());
   std::vector<Corner> corners;

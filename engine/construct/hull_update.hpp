@@ -1,5 +1,6 @@
 #pragma once
-/// A new sheet on the hull: into the complex with its regions, and into the hull in place of what it covers.
+/// Puts a new sheet on the hull: into the complex with its regions, and into the hull in place of what it
+/// covers.
 
 #include <cstdint>
 #include <span>
@@ -12,15 +13,15 @@
 
 namespace lrb::construct {
 
-/// All that can be worked out about a sheet before it is put on the hull; nothing of it changes when other
-/// sheets are that have no vertex in common with what this one covers.
+/// Everything that can be computed about a sheet before it is put on the hull. It stays valid when other
+/// sheets are put on, as long as they have no vertex in common with what this one covers.
 struct Sheet {
   /// Corners from this number on are the sheet's own new points, in order.
   static constexpr HullMesh::Corner kNewPoint = 1u << 31;
 
   std::vector<HullMesh::Slot> removed;  ///< ascending: triangles of one polygon are neighbours
-  std::vector<HullMesh::Slot> kept;     ///< of a patch: triangles that its cap has, too
-  std::vector<PointTriangle> added;     ///< by the hull's vertices
+  std::vector<HullMesh::Slot> kept;     ///< for a patch: the triangles that its cap keeps
+  std::vector<PointTriangle> added;     ///< corners are the hull's vertices
   std::vector<Eigen::Vector3d> new_points;
   RegionPieces pieces;
   /// (|added|) what lies beyond each edge: another added triangle or, at the boundary, what lay beyond a
@@ -31,16 +32,16 @@ struct Sheet {
   std::vector<std::array<Beyond, 3>> beyond;
 };
 
-/// The sheet that covers the triangles `removed` with `added`; they have the same boundary.
+/// Returns the sheet that covers the triangles `removed` with `added`; they have the same boundary.
 Sheet make_sheet(const HullMesh& hull, std::span<const HullMesh::Slot> removed,
                  std::span<const PointTriangle> added);
 
-/// The sheet that covers a patch with its finished cap; triangles that the cap has kept stay.
+/// Returns the sheet that covers a patch with its finished cap; triangles that the cap has kept stay.
 Sheet make_sheet(const HullMesh& hull, const Patch& patch, const CapSurface& cap);
 
-/// Takes the sheet's removed triangles out of the hull and puts the added ones in their place. They become
+/// Takes the sheet's removed triangles out of the hull and puts the added ones in their place. These become
 /// pseudo faces of `component` with regions of this layer behind them and, for now, the outside in front; the
-/// faces they cover get those regions in front. Returns the new slots.
+/// faces that they cover get those regions in front. Returns the new slots.
 std::vector<HullMesh::Slot> cover(HullMesh& hull, ComplexBuilder& complex, const Sheet& sheet,
                                   std::uint16_t layer, std::uint32_t component);
 

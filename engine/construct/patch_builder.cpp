@@ -64,13 +64,13 @@ class PatchBuilder {
     return points;
   }
 
-  /// Passes until they no longer help. `worth`: largest share of triangles that a cap may have.
+  /// Makes passes until they no longer help. `worth`: the largest share of triangles that a cap may have.
   void simplify(double worth) {
     for (;;) {
       const std::uint32_t before = hull_.triangle_count();
       if (before <= options_.max_outer_faces) return;
       if (before <= kPolytopeFrom) plan_polytope();
-      // On a small hull patches are small, so that there are still several of them.
+      // On a small hull patches are small, so that there are still several.
       const std::uint32_t interior =
           std::max(kLeastInterior, std::min(options_.patch_interior, before / kLeastPatches));
       PatchPass(hull_, complex_, bounds_, frozen_, component_boxes_, workers_)
@@ -92,7 +92,7 @@ class PatchBuilder {
     return true;
   }
 
-  /// From here on all hulls stay in what will be the outermost wrapper.
+  /// Plans the outermost wrapper; from here on all hulls stay inside it.
   void plan_polytope() {
     if (polytope_.face_count() > 0) return;
     polytope_ = enclosing_polytope(outer_points(), options_.max_outer_faces, kPolytopeDistance, workers_);
@@ -122,14 +122,15 @@ class PatchBuilder {
 
   void end_pass() { passes_.end_pass(complex_, hull_.triangle_count()); }
 
-  /// The outermost wrapper is planned when the hull has no more triangles than this: few enough to be quick,
-  /// and still close to the mesh.
+  /// The outermost wrapper is planned when the hull has no more triangles than this: few enough for that to
+  /// be quick, and still close to the mesh.
   static constexpr std::uint32_t kPolytopeFrom = 30000;
-  static constexpr double kLeastGain = 0.85;  ///< a pass that leaves a larger share of triangles is the last
+  /// A pass that leaves a larger share of the triangles is the last.
+  static constexpr double kLeastGain = 0.85;
   static constexpr std::uint32_t kLeastPatches =
       24;  ///< triangles of the hull per interior vertex of a patch
   static constexpr std::uint32_t kLeastInterior = 3;
-  static constexpr std::uint32_t kLeastTriangles = 16;  ///< that a patch may have
+  static constexpr std::uint32_t kLeastTriangles = 16;  ///< lowest limit on the triangles of a patch
 
   const BuildOptions& options_;
   Workers workers_;
@@ -138,7 +139,7 @@ class PatchBuilder {
   const std::vector<std::uint32_t> home_;  ///< (components) see find_nesting()
   BodyBounds bounds_;
   Random random_;
-  std::vector<bool> frozen_;  ///< (|real faces|) they meet others
+  std::vector<bool> frozen_;  ///< (|real faces|) true for faces that meet others
   std::vector<Eigen::AlignedBox3d> component_boxes_;
   Mesh polytope_;  ///< empty until planned
   PassCounter passes_;

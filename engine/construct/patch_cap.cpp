@@ -20,7 +20,7 @@ void PatchCap::simplify(const Patch& patch, const Limits& limits) {
   patch_ = &patch;
   limits_ = limits;
   version_ = 0;
-  // A collapse that is impossible now may be possible after others: go round until nothing changes.
+  // A collapse that is impossible now may become possible after others: go round until nothing changes.
   for (std::uint32_t before = version_ + 1; before != version_;) {
     before = version_;
     propose_all();
@@ -75,7 +75,7 @@ void PatchCap::propose(int u, int v) {
   }
 }
 
-/// Leaves the star of the edge in star_.
+/// Evaluates the collapse of an edge; leaves the edge's star in star_.
 std::optional<PatchCap::Candidate> PatchCap::evaluate(int u, int v) {
   if (!cap_.find_star(u, v, star_)) return std::nullopt;
   Vector3 centre = Vector3::Zero();
@@ -106,9 +106,9 @@ std::optional<PatchCap::Candidate> PatchCap::evaluate(int u, int v) {
   return c;
 }
 
-/// The projection onto the planes' polyhedron of a point one radius behind the star's centre: so the new
-/// vertex comes to lie above the middle of the star, as low as it may. (The lowest vertex by a linear program
-/// slides away sideways where the star is flat.)
+/// Returns the place of the new vertex: projects a point limits_.depth radii behind the star's centre onto
+/// the planes' polyhedron, so that the vertex comes to lie above the middle of the star, as low as possible.
+/// (The lowest vertex by a linear program slides away sideways where the star is flat.)
 std::optional<Vector3> PatchCap::place(double radius, const Vector3& centre) {
   const double margin = kPlacementMargin * radius, slack = kPlacementSlack * radius;
   Vector3 outward = Vector3::Zero();
@@ -130,7 +130,8 @@ std::optional<Vector3> PatchCap::place(double radius, const Vector3& centre) {
   return Vector3(*w + centre);
 }
 
-/// In front of the star's planes and, where the surface turns up at the rim, of those it turns up with.
+/// Collects the half-spaces in front of the star's planes and, where the surface turns up at the rim, in
+/// front of the neighbours' planes there.
 void PatchCap::collect_half_spaces(const Vector3& centre, double margin) {
   half_spaces_.clear();
   for (const int f : star_.faces) {
@@ -164,7 +165,8 @@ bool PatchCap::ring_vertex_is_in_front(int r, double radius) const {
   return true;
 }
 
-/// Of the worst triangle between w and the rim: 1 for equilateral ones, 0 for none.
+/// Returns the shape of the worst triangle between w and the rim: 1 for an equilateral one, 0 for one without
+/// area.
 double PatchCap::shape_of_fan(const Vector3& w) const {
   double worst = std::numeric_limits<double>::infinity();
   for (const auto& r : star_.rim) {

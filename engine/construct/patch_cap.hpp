@@ -1,5 +1,5 @@
 #pragma once
-/// From a patch to its cap: edges collapse, cheapest first.
+/// Turns a patch into its cap by edge collapses, cheapest first.
 
 #include <cstdint>
 #include <optional>
@@ -11,31 +11,32 @@
 
 namespace lrb::construct {
 
-/// Every collapse leaves a surface that lies in front of the one before (progressive hulls: Sander, Gu,
+/// Collapses edges so that each surface lies in front of the one before (progressive hulls: Sander, Gu,
 /// Gortler, Hoppe and Snyder, "Silhouette Clipping", 2000, whose linear program is replaced by a projection:
 /// see place()).
 class PatchCap {
  public:
   struct Limits {
-    double volume = 0;  ///< that one collapse may add, or rather its cost; unit cubed
-    int faces = 0;      ///< stop when the cap has no more
-    double depth = 1;   ///< of the point that is projected, below the star's centre; in radii of the star
+    double volume = 0;  ///< largest volume (strictly, cost) that one collapse may add; unit cubed
+    int faces = 0;      ///< stop when the cap has no more faces than this
+    /// How far the point that is projected lies below the star's centre; in radii of the star.
+    double depth = 1;
     EmbedCheck* check = nullptr;  ///< if set, every collapse must pass it
   };
 
   PatchCap(CapSurface& cap, const BodyBounds& bounds) : cap_(cap), bounds_(bounds) {}
 
-  /// Collapses edges of the loaded surface until none is left that may be.
+  /// Collapses edges of the loaded surface until no collapse is allowed any more.
   void simplify(const Patch& patch, const Limits& limits);
 
  private:
-  /// A collapse and what it costs; w only if v is not on the ring.
+  /// A collapse and its cost; w is set only if v is not on the ring.
   struct Candidate {
     double cost;
     int u, v;
-    std::uint32_t version;  ///< number of collapses when it was worked out
+    std::uint32_t version;  ///< number of collapses when it was evaluated
     Eigen::Vector3d w;
-    bool operator<(const Candidate& other) const {  // the cheapest is the last in order: for heaps
+    bool operator<(const Candidate& other) const {  // orders the cheapest last, for heaps
       if (cost != other.cost) return cost > other.cost;
       return u != other.u ? u > other.u : v > other.v;
     }

@@ -8,7 +8,7 @@ namespace {
 using Slot = HullMesh::Slot;
 using Corner = HullMesh::Corner;
 
-/// A candidate one reach away from the seed counts as so many more new triangles: keeps patches round.
+/// How many more new triangles a candidate one reach away from the seed counts for: keeps patches round.
 constexpr double kDistancePenalty = 1.0;
 
 }  // namespace
@@ -34,7 +34,8 @@ void PatchGrower::add_to_batch(const Patch& patch) {
   batch_is_empty_ = false;
 }
 
-/// Vertices that are newer than this are under caps that no growth enters.
+/// Returns true if v is a vertex of a patch of the batch. Vertices newer than the stamps are under caps,
+/// which growth never enters.
 bool PatchGrower::is_in_batch(Corner v) const {
   return v < batch_stamp_.size() && batch_stamp_[v] == batch_;
 }
@@ -65,8 +66,8 @@ bool PatchGrower::grow(Corner seed, Patch& patch) {
 }
 
 /// Adds the polygons at v that are not in the patch yet, if the patch remains a disk. It does exactly if its
-/// Euler characteristic stays what it is (from nothing: becomes 1): the new triangles hang together round v,
-/// and share an edge with the patch.
+/// Euler characteristic stays what it is (or, from nothing, becomes 1): the new triangles are connected round
+/// v and share an edge with the patch.
 bool PatchGrower::add_star(Corner v, Patch& patch) {
   const bool free = mark_star(v);
   if (!batch_is_empty_) look_for_batch();
@@ -167,7 +168,7 @@ Corner PatchGrower::best_candidate(Corner seed, double reach_sq, const Patch& pa
 }
 
 void PatchGrower::find_ring(Patch& patch) const {
-  // Start at any boundary edge and turn round its end until the next one.
+  // Start at any boundary edge and turn round its end until the next one is reached.
   Slot s = kNull;
   int i = 0;
   for (const Slot t : patch.slots)

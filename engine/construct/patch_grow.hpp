@@ -1,5 +1,5 @@
 #pragma once
-/// Patches: disks of the hull's triangles that a pass covers with caps.
+/// Patches: disks of the hull's triangles, which a pass covers with caps.
 
 #include <cstdint>
 #include <vector>
@@ -12,32 +12,34 @@ namespace lrb::construct {
 struct Patch {
   std::vector<HullMesh::Slot> slots;
   std::vector<HullMesh::Corner> interior;  ///< vertices all of whose triangles are in the patch
-  /// Vertices on the boundary in order, so that the patch lies on the left of ring[i] -> ring[i + 1].
+  /// The vertices on the boundary in order, so that the patch lies on the left of ring[i] -> ring[i + 1].
   std::vector<HullMesh::Corner> ring;
   std::vector<HullMesh::Slot> outside;  ///< (|ring|) the triangle beyond the edge ring[i], ring[i + 1]
 };
 
 struct GrowLimits {
-  std::uint32_t interior = 16;  ///< vertices to aim at
+  std::uint32_t interior = 16;  ///< number of interior vertices to aim at
   std::uint32_t triangles = 64;
 };
 
-/// Grows patches one after the other; triangles that are taken are never in a patch again.
+/// Grows patches one after the other; triangles that are taken never become part of a patch again.
 class PatchGrower {
  public:
   PatchGrower(const HullMesh& hull, const GrowLimits& limits);
 
-  /// Grows a disk about the seed: the star of the seed first, then the star of the ring vertex that needs
-  /// fewest new triangles (with a penalty on its distance from the seed), as long as the patch remains a
-  /// disk. Polygons of the mesh are taken whole. False if not even the seed's star will do.
+  /// Grows a disk around the seed: first the star of the seed, then the star of the ring vertex that needs
+  /// the fewest new triangles (with a penalty on its distance from the seed), as long as the patch remains a
+  /// disk. Takes polygons of the mesh whole. Returns false if not even the seed's star can be taken.
   bool grow(HullMesh::Corner seed, Patch& patch);
   void take(HullMesh::Slot s) { taken_[s] = true; }
   bool is_taken(HullMesh::Slot s) const { return taken_[s]; }
 
-  /// From here on, growth notes when it looks at triangles with a vertex of a patch that is in the batch.
+  /// Starts a batch: from here on, growth notes when it looks at triangles with a vertex of a patch that is
+  /// in the batch.
   void begin_batch();
   void add_to_batch(const Patch& patch);
-  /// Whether the last call of grow() did: its result may then depend on what becomes of the batch.
+  /// Returns true if the last call of grow() looked at such triangles: its result may then depend on what
+  /// becomes of the batch.
   bool met_batch() const { return met_batch_; }
 
  private:
@@ -57,9 +59,9 @@ class PatchGrower {
   const HullMesh& hull_;
   GrowLimits limits_;
   std::vector<bool> taken_;                 ///< (slots)
-  std::vector<std::uint32_t> slot_stamp_;   ///< == stamp_: in the patch that grows
+  std::vector<std::uint32_t> slot_stamp_;   ///< == stamp_: in the patch that is growing
   std::vector<std::uint32_t> point_stamp_;  ///< the same for vertices
-  std::vector<std::uint32_t> inside_;       ///< triangles of the patch at a vertex, if it is stamped
+  std::vector<std::uint32_t> inside_;       ///< number of the patch's triangles at a vertex, if it is stamped
   std::vector<std::uint32_t> refused_;      ///< == stamp_: the vertex's star cannot be added
   std::uint32_t stamp_ = 0;
   std::vector<std::uint32_t> batch_stamp_;  ///< == batch_: a vertex of a patch of the batch

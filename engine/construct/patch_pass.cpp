@@ -11,10 +11,10 @@ namespace {
 using Slot = HullMesh::Slot;
 using Corner = HullMesh::Corner;
 
-/// More for each thread would seldom grow before two patches of a batch touch.
+/// Patches of a batch per thread. Longer batches would seldom come about before two of their patches touch.
 constexpr std::size_t kBatchPerThread = 32;
 
-/// Vertices in use, in random order.
+/// Returns the vertices in use, in random order.
 std::vector<Corner> seeds_of(const HullMesh& hull, Random& random) {
   std::vector<Corner> seeds;
   for (Corner v = 0; v < hull.point_count(); ++v)
@@ -79,8 +79,8 @@ void PatchPass::make_cap(Job& job, double worth, Bench& bench) const {
   if (job.has_cap) job.sheet = make_sheet(hull_, job.patch, bench.cap);
 }
 
-/// First without looking at anything but the patch itself; if that cap turns out to hit something, again with
-/// a proof for each collapse.
+/// Finds a cap, at first without looking at anything but the patch itself; if that cap turns out to hit
+/// something, tries again with a proof for each collapse.
 bool PatchPass::find_cap(const Patch& patch, double worth, Bench& bench) const {
   CapSurface& cap = bench.cap;
   for (const bool careful : {false, true}) {

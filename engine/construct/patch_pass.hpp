@@ -20,26 +20,28 @@
 
 namespace lrb::construct {
 
-/// The result is that of taking one seed after the other: grow its patch, make its cap, put it on the hull.
-/// Several threads do it in batches. Patches grow in order until one comes across a vertex of an earlier one
-/// of the batch; that one begins the next batch. So no patch of a batch, nor what its growth looked at, has
-/// anything in common with another. Then all caps are made at once, on the hull as it was, and put on it in
-/// order; a cap whose proof looked at a part of space where an earlier one of the batch changed the hull is
-/// made again first.
+/// Gives the same result as taking one seed after the other: grow its patch, make its cap, put it on the
+/// hull.
+///
+/// Several threads do this in batches. Patches grow in order until one comes across a vertex of an earlier
+/// one of the batch; that one begins the next batch. So no patch of a batch, nor anything that its growth
+/// looked at, has anything in common with another. Then all caps are made at once, on the hull as it was, and
+/// put on it in order; a cap whose proof looked at a part of space where an earlier cap of the batch changed
+/// the hull is made again first.
 class PatchPass {
  public:
-  /// `frozen` (|real faces|): not to be covered. `component_boxes`: of the hull's components, or of parts of
-  /// them that tell whether the component is somewhere as a whole.
+  /// `frozen` (|real faces|): faces not to be covered. `component_boxes`: boxes of the hull's components, or
+  /// of parts of them that tell where the component is as a whole.
   PatchPass(HullMesh& hull, ComplexBuilder& complex, const BodyBounds& bounds,
             const std::vector<bool>& frozen, const std::vector<Eigen::AlignedBox3d>& component_boxes,
             Workers& workers);
 
-  /// Covers what it can with regions of this layer, seeds in random order. `worth`: largest share of the
-  /// triangles it covers that a cap may have.
+  /// Covers what it can with regions of this layer, taking seeds in random order. `worth`: the largest share
+  /// of the triangles it covers that a cap may have.
   void run(const GrowLimits& limits, double worth, std::uint16_t layer, Random& random);
 
  private:
-  /// What making a cap needs to write to.
+  /// The memory that one worker needs to make caps.
   struct Bench {
     Bench(const HullMesh& hull, const AabbTree& tree, const BodyBounds& bounds,
           const std::vector<Eigen::AlignedBox3d>& component_boxes)
@@ -72,7 +74,7 @@ class PatchPass {
   std::size_t next_seed_ = 0;
   std::vector<bool> tried_;  ///< (points at the start)
   std::vector<Job> jobs_;
-  std::size_t batch_ = 0;                     ///< of jobs_ in use
+  std::size_t batch_ = 0;                     ///< number of jobs_ in use
   std::vector<Eigen::AlignedBox3d> changed_;  ///< where the batch has changed the hull so far
 };
 

@@ -29,11 +29,11 @@ Frame frame_on(const HalfSpace& h, const Vector3& target) {
   return f;
 }
 
-/// The half-plane a.p >= b, a not of length 1, in which a half-space cuts the frame's plane.
+/// The half-plane a.p >= b (a need not have length 1) in which a half-space cuts the frame's plane.
 struct HalfPlane {
   Vector2 a;
   double b;
-  bool parallel;  ///< to the plane: all or nothing
+  bool parallel;  ///< parallel to the plane: holds all of it or nothing
 };
 
 HalfPlane cut(const HalfSpace& h, const Frame& f) {
@@ -41,7 +41,8 @@ HalfPlane cut(const HalfSpace& h, const Frame& f) {
   return {a, h.d - h.n.dot(f.origin), a.squaredNorm() < kParallelSineSq};
 }
 
-/// The point nearest to the origin on the edge of half-plane `last` (count of those before it).
+/// Returns the point nearest to the origin on the boundary line `edge` of a half-plane, within the
+/// half-spaces `before`.
 std::optional<Vector2> nearest_on_line(const HalfPlane& edge, std::span<const HalfSpace> before,
                                        const Frame& frame, double slack) {
   const double length_sq = edge.a.squaredNorm();

@@ -21,12 +21,13 @@ namespace {
 
 using Vector3 = Eigen::Vector3d;
 
-/// Down to so many faces in one step; from there each step takes away one in kStepShare.
+/// The first step goes down to this many faces at once; from there each step takes away one face in
+/// kStepShare.
 constexpr std::size_t kTightenFrom = 100, kStepShare = 4;
-/// Rounds of tightening after a step, and after the last one.
+/// Rounds of tightening after each step, and after the last one.
 constexpr int kRounds = 3, kLastRounds = 20;
 
-/// Convex surface to begin with; `points` are to stay inside.
+/// One step of simplification. Starts from a convex surface; `points` are to stay inside.
 class PolytopeStep {
  public:
   PolytopeStep(const Mesh& convex, const std::vector<Vector3>& points) : points_(points), hull_(convex) {
@@ -104,8 +105,8 @@ class PolytopeStep {
     return sixfold / 6;
   }
 
-  /// Where the cone over the rim has least volume: volume falls against the sum of the rim's area vectors, so
-  /// a point far down that way is projected onto what is allowed.
+  /// Returns the place where the cone over the rim has least volume. The volume falls against the sum of the
+  /// rim's area vectors, so a point far along that way is projected onto what is allowed.
   std::optional<Vector3> place() {
     Vector3 centre = Vector3::Zero(), area = Vector3::Zero();
     for (const Edge& e : rim_) centre += e.a;
@@ -124,8 +125,9 @@ class PolytopeStep {
     return Vector3(*w + centre);
   }
 
-  /// Of the two planes that contain the edge a, b and touch the points. All points are behind a face a, b, w
-  /// if for each of them w is in front of the plane a, b, p; of these planes the two outermost count.
+  /// Returns the normals of the two planes that contain the edge a, b and touch the points. All points are
+  /// behind a face a, b, w if for each of them w is in front of the plane a, b, p; of these planes the two
+  /// outermost count.
   std::array<Vector3, 2> touching_normals(const Edge& e) const {
     const Vector3 along = e.b - e.a;
     std::array<Vector3, 2> normals = {Vector3::Zero(), Vector3::Zero()};
@@ -138,15 +140,16 @@ class PolytopeStep {
     return {normals[0].normalized(), normals[1].normalized()};
   }
 
-  static constexpr double kSwell = 0.4;       ///< see BodyBounds; here only to keep vertices from far off
-  static constexpr double kDepth = 8;         ///< of the point projected in tightening, in radii of the rim
-  static constexpr double kLeastGain = 1e-3;  ///< share of the volume for which another round is worth while
+  static constexpr double kSwell = 0.4;  ///< see BodyBounds; here only to keep vertices from going far off
+  /// Depth of the point that is projected in tightening, in radii of the rim.
+  static constexpr double kDepth = 8;
+  static constexpr double kLeastGain = 1e-3;  ///< share of the volume for which another round is worthwhile
 
   const std::vector<Vector3>& points_;
   HullMesh hull_;
   Patch all_;
   CapSurface surface_;
-  double size_sq_;  ///< of the points' box
+  double size_sq_;  ///< squared size of the points' box
   std::vector<Edge> rim_;
   std::vector<HalfSpace> half_spaces_;
 };

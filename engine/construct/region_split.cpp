@@ -14,7 +14,7 @@ std::uint64_t edge_key(std::uint32_t a, std::uint32_t b) {
   return std::uint64_t{a} << 32 | b;
 }
 
-/// Joins over edges: old triangles first, then the added ones.
+/// Joins triangles over edges; the old ones come first, then the added ones.
 DisjointSets connect(std::span<const PointTriangle> old, std::span<const PointTriangle> added) {
   const auto old_count = static_cast<std::uint32_t>(old.size());
   DisjointSets sets(old.size() + added.size());

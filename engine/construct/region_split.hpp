@@ -1,5 +1,5 @@
 #pragma once
-/// The space between two sheets of surface, as regions.
+/// Splits the space between two sheets of surface into regions.
 
 #include <array>
 #include <cstdint>
@@ -10,21 +10,21 @@
 
 namespace lrb::construct {
 
-/// Corners as indices of points, counter-clockwise seen from outside.
+/// A triangle: its corners as indices of points, counter-clockwise seen from outside.
 using PointTriangle = std::array<std::uint32_t, 3>;
 
-/// Which piece each triangle bounds: pieces 0 .. count - 1.
+/// Tells which piece each triangle bounds: pieces 0 .. count - 1.
 struct RegionPieces {
   std::uint32_t count = 0;
   std::vector<std::uint32_t> of_old;    ///< (|old|)
   std::vector<std::uint32_t> of_added;  ///< (|added|)
 };
 
-/// `added` lies in front of `old`, and together they bound the space between. (Triangles that are in both
-/// sheets are in neither list.) `old_face`: triangles of one polygon have the same entry, and neighbours in
-/// the list. Pieces hang together over edges; where the sheets touch in an edge, the space to its left and
-/// the space to its right are different pieces. A piece without volume is the inner shell of another one: it
-/// is joined to the largest.
+/// Splits the space between the sheets `old` and `added`, which lies in front of it, into pieces. (Triangles
+/// that are in both sheets are in neither list.) `old_face`: triangles of one polygon have the same entry and
+/// are neighbours in the list. Pieces are connected over edges; where the sheets touch in an edge, the space
+/// to its left and the space to its right are different pieces. A piece without volume is the inner shell of
+/// another one: it is joined to the largest.
 RegionPieces split_region(std::span<const PointTriangle> old, std::span<const std::uint32_t> old_face,
                           std::span<const PointTriangle> added, std::span<const Eigen::Vector3d> points);
 
@@ -32,7 +32,7 @@ RegionPieces split_region(std::span<const PointTriangle> old, std::span<const st
 class EdgeIndex {
  public:
   explicit EdgeIndex(std::span<const PointTriangle> triangles);
-  /// The triangle in which an edge runs from a to b, or kNull.
+  /// Returns the triangle in which an edge runs from a to b, or kNull.
   std::uint32_t find(std::uint32_t a, std::uint32_t b) const;
 
  private:

@@ -25,20 +25,20 @@ bool is_machines_fault(int reason) {
          reason == EMFILE || reason == ENFILE;
 }
 
-/// Where a chain of symbolic links leads, so that the file is replaced and not the link.
+/// Follows symbolic links to their end, so that the file is replaced and not the link.
 std::string behind_links(const std::string& path) {
   std::error_code error;
   const auto real = std::filesystem::weakly_canonical(path, error);
   return error ? path : real.string();
 }
 
-/// Beside the target, on the same file system; no two of any process are the same.
+/// Returns a name beside the target, on the same file system, that no other process or thread uses.
 std::string temporary_name(const std::string& target) {
   static std::atomic<unsigned> counter{0};
   return target + ".tmp-" + std::to_string(getpid()) + "-" + std::to_string(counter++);
 }
 
-/// Temporary files that exist. Never destroyed: threads may outlive main().
+/// The temporary files that exist. Never destroyed, because threads may outlive main().
 struct Unfinished {
   std::mutex mutex;
   std::set<std::string> files;
@@ -79,7 +79,7 @@ AtomicFile::AtomicFile(const std::string& path) : path_(path), target_(behind_li
     fail("create", reason);
   }
   if (exists && !temporary_.empty())
-    static_cast<void>(fchmod(file_, status.st_mode & 07777));  // keep if we may
+    static_cast<void>(fchmod(file_, status.st_mode & 07777));  // keep the mode if we are allowed to
 }
 
 AtomicFile::~AtomicFile() {

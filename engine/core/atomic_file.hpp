@@ -1,27 +1,28 @@
 #pragma once
-/// Files that are there whole or not at all.
+/// Files that appear whole or not at all.
 
 #include <string>
 #include <string_view>
 
 namespace lrb {
 
-/// Writes beside the target and moves the result there at the end: a reader never sees half a file, and a
-/// failure (disk full, no permission, an exception on the way) leaves what was there before. Text and binary
-/// alike. Something that is not a regular file, such as a pipe or /dev/null, is written to directly.
+/// Writes to a temporary file beside the target and renames it at the end: a reader never sees half a file,
+/// and a failure (disk full, no permission, an exception on the way) leaves what was there before. For text
+/// and binary data. Something that is not a regular file, such as a pipe or /dev/null, is written to
+/// directly.
 ///
-/// Failures throw naming path and reason: EnvironmentError if the machine cannot (disk full, read-only, I/O
-/// error), InputError if the path is at fault.
+/// Every failure throws and names the path and the reason: EnvironmentError if the machine is at fault (disk
+/// full, read-only, I/O error), InputError if the path is.
 class AtomicFile {
  public:
   explicit AtomicFile(const std::string& path);
-  ~AtomicFile();  ///< removes the temporary file unless commit() was reached
+  ~AtomicFile();  ///< Removes the temporary file unless commit() was reached.
   AtomicFile(const AtomicFile&) = delete;
   AtomicFile& operator=(const AtomicFile&) = delete;
 
-  /// May be called many times; small pieces are gathered.
+  /// Appends bytes; small pieces are buffered. May be called any number of times.
   void write(std::string_view bytes);
-  /// Must be called once, at the end.
+  /// Writes what is buffered and puts the file in place. Must be called once, at the end.
   void commit();
 
  private:
@@ -29,17 +30,18 @@ class AtomicFile {
   [[noreturn]] void fail(const char* doing, int reason) const;
 
   std::string path_;       ///< as given, for messages
-  std::string target_;     ///< behind symbolic links
-  std::string temporary_;  ///< empty: written to directly, or committed
+  std::string target_;     ///< path_ with symbolic links resolved
+  std::string temporary_;  ///< empty if the target is written to directly, or after commit()
   std::string buffer_;
   int file_ = -1;
 };
 
-/// Removes the temporary files of all AtomicFiles, and lets none begin or end any more: for a process that is
-/// about to end without running destructors. Takes a lock for good; not for use in a signal handler.
+/// Removes the temporary files of all AtomicFiles and keeps any other from being created or committed: for a
+/// process that is about to end without running destructors. Takes a lock and never releases it, so it must
+/// not be called from a signal handler.
 void abandon_atomic_files();
 
-/// The whole file in one go.
+/// Writes a whole file at once, as AtomicFile does.
 void write_file(const std::string& path, std::string_view bytes);
 
 }  // namespace lrb

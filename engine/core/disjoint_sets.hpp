@@ -6,8 +6,8 @@
 
 namespace lrb {
 
-/// Sets that only ever join (union-find with path halving; the smaller number leads, so that results do not
-/// depend on the order of joins).
+/// Union-find with path halving: sets that can be joined but not split. The smaller number always leads, so
+/// that results do not depend on the order of the joins.
 class DisjointSets {
  public:
   explicit DisjointSets(std::size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), 0u); }
@@ -16,7 +16,7 @@ class DisjointSets {
     while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
     return i;
   }
-  /// True if they were two sets until now.
+  /// Joins the sets of i and j. Returns true if they were two different sets until now.
   bool join(std::uint32_t i, std::uint32_t j) {
     i = leader(i);
     j = leader(j);

@@ -17,11 +17,12 @@ std::string read_file(const std::string& path,
 /// shells make them, and where nothing is. Does not open it.
 std::string_view what_is_no_file(const std::string& path);
 
-/// `text` for a message: control characters and bytes beyond ASCII's printable ones as \xNN, cut after
-/// `limit` characters, in single quotes. A message stays one line whatever a file contains.
+/// Returns `text` in single quotes for use in a message: control characters and bytes beyond printable ASCII
+/// appear as \xNN, and what follows the first `limit` characters is cut off. The message stays on one line
+/// whatever a file contains.
 std::string quoted(std::string_view text, std::size_t limit = 40);
 
-/// A file's name for the front of a message: as given, on one line.
+/// Returns a file's name for the front of a message: as given, but on one line.
 std::string printable_name(std::string_view name);
 
 }  // namespace lrb

@@ -7,8 +7,8 @@
 
 namespace lrb {
 
-/// FNV-1a, 64 bit (Fowler, Noll, Vo): fingerprints of results and checksums of files. Bytes are taken as they
-/// lie in memory; lrbscope's formats and fingerprints are little-endian, as are all machines it runs on.
+/// FNV-1a, 64 bits (Fowler, Noll, Vo): fingerprints of results and checksums of files. Hashes bytes as they
+/// lie in memory; lrbscope's formats and fingerprints are little-endian, as are all machines that it runs on.
 class Fnv64 {
  public:
   void add_bytes(const void* data, std::size_t size) {
@@ -19,7 +19,7 @@ class Fnv64 {
   void add_value(const T& value) {
     add_bytes(&value, sizeof value);
   }
-  /// Length, then elements.
+  /// Adds the length, then the elements.
   template <class T>
   void add_array(const std::vector<T>& v) {
     add_value(static_cast<std::uint64_t>(v.size()));
@@ -31,8 +31,8 @@ class Fnv64 {
   std::uint64_t h_ = 0xcbf29ce484222325u;
 };
 
-/// A checksum like it that is read at the speed of memory: eight sums side by side, of 64-bit words, and one
-/// over them and the bytes that are left. Any change within eight bytes changes it.
+/// Returns a similar checksum that runs at the speed of memory: eight FNV-1a sums of 64-bit words side by
+/// side, and then one over these sums and the remaining bytes. Any change confined to eight bytes changes it.
 inline std::uint64_t fnv64_of_words(const void* data, std::size_t size) {
   constexpr std::size_t kLanes = 8, kWord = sizeof(std::uint64_t);
   const auto* bytes = static_cast<const unsigned char*>(data);

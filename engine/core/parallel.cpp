@@ -15,7 +15,7 @@ namespace lrb {
 
 struct Workers::Pool {
   explicit Pool(int threads) : arena(threads) {
-    // On its own, oneTBB starts no more threads than there are processors.
+    // By default oneTBB starts no more threads than there are processors.
     if (threads > tbb::info::default_concurrency())
       more.emplace(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
   }

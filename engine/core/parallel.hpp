@@ -1,6 +1,6 @@
 #pragma once
-/// Work on several threads. Whatever runs here gives the same result on any number of them: threads decide
-/// who does a piece of work, never what it is.
+/// Work on several threads. Everything that runs here gives the same result on any number of threads: they
+/// decide who does a piece of work, never what the work is.
 
 #include <cstddef>
 #include <functional>
@@ -8,10 +8,10 @@
 
 namespace lrb {
 
-/// Threads to share work with: those of oneTBB's pool, which the whole program has in common.
+/// The threads that share work: those of oneTBB's pool, which the whole program has in common.
 class Workers {
  public:
-  /// The calling thread is one of them. 0: as many as the machine runs at once.
+  /// Uses `threads` threads, the calling one included; 0: as many as the machine runs at once.
   explicit Workers(unsigned threads = 1);
   ~Workers();
   Workers(const Workers&) = delete;
@@ -24,7 +24,7 @@ class Workers {
   /// out here, as on one thread; some of the calls above it may have been left out.
   void for_each(std::size_t n, const std::function<void(std::size_t i, unsigned worker)>& work);
 
-  /// Calls both, perhaps at once. May be nested.
+  /// Calls both functions, possibly at the same time. May be nested.
   void both(const std::function<void()>& one, const std::function<void()>& other);
 
  private:

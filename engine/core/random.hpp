@@ -5,8 +5,8 @@
 
 namespace lrb {
 
-/// SplitMix64 (Steele, Lea and Flood 2014): the same numbers from the same seed on every machine and with every
-/// standard library, unlike the distributions of <random>.
+/// SplitMix64 (Steele, Lea and Flood 2014). Gives the same numbers for the same seed on every machine and
+/// with every standard library, unlike the distributions of <random>.
 class Random {
  public:
   explicit Random(std::uint64_t seed) : state_(seed) {}
@@ -18,12 +18,12 @@ class Random {
     z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
     return z ^ (z >> 31);
   }
-  /// Returns a number in [least, most), uniformly.
+  /// Returns a uniformly distributed number in [least, most).
   double in(double least, double most) {
     constexpr double kUnit = 1.0 / 9007199254740992.0;  // 2^-53: a double has 53 bits
     return least + (most - least) * static_cast<double>(bits() >> 11) * kUnit;
   }
-  /// Returns a number in 0 .. bound - 1 (bound > 0), uniformly but for 2^-32.
+  /// Returns a number in 0 .. bound - 1 (bound > 0), uniformly distributed to within 2^-32.
   std::uint32_t below(std::uint32_t bound) {
     return static_cast<std::uint32_t>(((bits() >> 32) * bound) >> 32);
   }

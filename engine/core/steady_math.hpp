@@ -1,11 +1,11 @@
 #pragma once
 /// Functions that give the same double on every x86-64 processor.
 ///
-/// glibc's sin, cos, exp and others for double choose code by processor, with or without fused multiply-add,
-/// and differ in the last bit here and there: enough for another body, and so for another run. Its functions
-/// for long double have one code for all. Rounded to double, their results are the exact ones rounded, but
-/// for one in about two thousand. Measured by running the goldens with
-/// GLIBC_TUNABLES=glibc.cpu.hwcaps=-FMA,-AVX2.
+/// glibc's sin, cos, exp and others for double pick their code by processor, with or without fused
+/// multiply-add, and the results differ in the last bit here and there: enough to make a different body, and
+/// so a different run. The functions for long double have the same code everywhere. Rounded to double, their
+/// results are the correctly rounded ones, but for about one in two thousand. Checked by running the goldens
+/// with GLIBC_TUNABLES=glibc.cpu.hwcaps=-FMA,-AVX2.
 
 #include <cmath>
 
@@ -41,7 +41,7 @@ inline double atan2(double y, double x) {
   return static_cast<double>(std::atan2(static_cast<long double>(y), static_cast<long double>(x)));
 }
 
-/// About a unit vector; angle in radians.
+/// Returns the rotation about a unit vector by an angle in radians.
 inline Eigen::Matrix3d rotation(const Eigen::Vector3d& axis, double angle) {
   using Turn = Eigen::AngleAxis<long double>;
   return Turn(angle, axis.cast<long double>()).toRotationMatrix().cast<double>();

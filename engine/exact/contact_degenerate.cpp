@@ -1,4 +1,4 @@
-// Contacts of triangles without area: all in rational arithmetic, for they are rare.
+// Contacts of triangles without area: all in rational arithmetic, because they are rare.
 
 #include <utility>
 #include <vector>
@@ -51,7 +51,7 @@ bool on_segment(const RationalVec& x, const RationalVec& p, const RationalVec& q
   return !part.empty;
 }
 
-/// The least feature of triangle t, which may be degenerate, that holds its point x.
+/// Returns the feature of least dimension of triangle t, which may be degenerate, that holds its point x.
 Feature feature_of(const RationalVec& x, const double* const t[3]) {
   for (int i = 0; i < 3; ++i) {
     if (x == to_rational(t[i])) return corner(i);

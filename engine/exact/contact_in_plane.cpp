@@ -11,7 +11,8 @@
 namespace lrb::exact {
 namespace {
 
-/// sides[i][k]: side of corner k of one triangle on the directed edge i of the other, +1 inside.
+/// Sides of the corners of one triangle on the edges of another: side[i][k] is that of corner k on the
+/// directed edge i, +1 inside.
 struct EdgeSides {
   int side[3][3];
 };
@@ -27,7 +28,7 @@ EdgeSides edge_sides(const double* const edges[3], const double* const corners[3
   return r;
 }
 
-/// Where corner k lies in the triangle of the edges; false if outside.
+/// Finds where corner k lies in the triangle of the edges; returns false if it is outside.
 bool locate_corner(const EdgeSides& s, int k, Feature& f) {
   int zeros = 0, zero_edge = 0;
   for (int i = 0; i < 3; ++i) {
@@ -38,7 +39,7 @@ bool locate_corner(const EdgeSides& s, int k, Feature& f) {
   }
   if (zeros == 0) f = {2, 0};
   if (zeros == 1) f = {1, static_cast<std::uint8_t>(zero_edge)};
-  // On edges i and i + 1 it is the corner between them, i + 1.
+  // A point on both edges i and i + 1 is the corner between them, i + 1.
   if (zeros == 2) f = corner(s.side[0][k] != 0 ? 2 : s.side[1][k] != 0 ? 0 : 1);
   return true;
 }
@@ -47,8 +48,8 @@ bool on_edge(const Feature& f, int edge) {
   return f.dim == 1 ? f.index == edge : f.dim == 0 && (f.index == edge || f.index == (edge + 1) % 3);
 }
 
-/// Corners of a convex polygon on one edge of either triangle are neighbours, because that edge's line
-/// supports it.
+/// Returns true if two corners of the polygon are known to be neighbours: corners of a convex polygon that
+/// lie on one edge of either triangle are, because the line of that edge supports the polygon.
 bool are_neighbours(const ContactCorner& p, const ContactCorner& q) {
   for (int i = 0; i < 3; ++i) {
     if (on_edge(p.on_a, i) && on_edge(q.on_a, i)) return true;
@@ -57,7 +58,7 @@ bool are_neighbours(const ContactCorner& p, const ContactCorner& q) {
   return false;
 }
 
-/// Brings the corners into an order round the polygon.
+/// Sorts the corners into an order round the polygon.
 void order_round(PairContact& r) {
   for (int i = 1; i < r.corner_count; ++i) {
     const auto from = r.corners.begin() + i;
@@ -72,7 +73,7 @@ ContactCorner at_corner(const double* p, Feature on_a, Feature on_b) {
   return {as_vector(p), on_a, on_b};
 }
 
-/// Edges i of a and j of b cross in a point that is no corner of either.
+/// Returns true if edge i of a and edge j of b cross in a point that is no corner of either.
 bool edges_cross(const EdgeSides& b_in_a, const EdgeSides& a_in_b, int i, int j) {
   return b_in_a.side[i][j] * b_in_a.side[i][(j + 1) % 3] < 0 &&
          a_in_b.side[j][i] * a_in_b.side[j][(i + 1) % 3] < 0;
@@ -86,7 +87,8 @@ Feature end_or_inside(int side_of_0, int side_of_1) {
   return side_of_0 == 0 ? corner(0) : side_of_1 == 0 ? corner(1) : Feature{1, 0};
 }
 
-/// Where point p of the line of segment s lies on it; false if beyond its ends.
+/// Finds where a point p, which is on the line of segment s, lies on s; returns false if it is beyond the
+/// ends.
 bool locate_on_segment(const double* p, const double* const s[2], Feature& f) {
   for (int i = 0; i < 2; ++i) {
     if (p[0] == s[i][0] && p[1] == s[i][1]) {
@@ -102,7 +104,7 @@ bool locate_on_segment(const double* p, const double* const s[2], Feature& f) {
   return true;
 }
 
-/// Segments (or points) on one line: the ends that lie on the other.
+/// Intersects two segments (or points) on one line: collects the ends of each that lie on the other.
 PairContact contact_on_one_line(const double* const a[2], const double* const b[2]) {
   PairContact r;
   r.coplanar = true;
@@ -135,7 +137,7 @@ PairContact contact_in_plane(const double* const a[3], const double* const b[3])
   for (int k = 0; k < 3; ++k) {
     if (locate_corner(a_in_b, k, f)) append(r, at_corner(a[k], corner(k), f));
   }
-  for (int k = 0; k < 3; ++k) {  // a corner of both is there already
+  for (int k = 0; k < 3; ++k) {  // a corner of both has been added already
     if (locate_corner(b_in_a, k, f) && f.dim != 0) append(r, at_corner(b[k], f, corner(k)));
   }
   for (int i = 0; i < 3; ++i) {

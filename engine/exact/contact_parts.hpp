@@ -1,5 +1,5 @@
 #pragma once
-/// The parts of which pair contacts are put together. Private to engine/exact.
+/// The building blocks of pair contacts. Private to engine/exact.
 
 #include <cstdint>
 
@@ -11,7 +11,7 @@ namespace lrb::exact {
 inline Feature corner(int i) {
   return {0, static_cast<std::uint8_t>(i)};
 }
-/// The edge of a triangle between corners i and j.
+/// Returns the edge of a triangle between its corners i and j.
 inline Feature edge_between(int i, int j) {
   return {1, static_cast<std::uint8_t>((i + 1) % 3 == j ? i : j)};
 }
@@ -24,10 +24,10 @@ inline void append(PairContact& r, const ContactCorner& c) {
   r.corners[r.corner_count++] = c;
 }
 
-/// Two triangles with area in one plane: a polygon, a segment, a point or nothing.
+/// Intersects two triangles with area that lie in one plane: a polygon, a segment, a point or nothing.
 PairContact contact_in_plane(const double* const a[3], const double* const b[3]);
 
-/// Two triangles of which at least one has no area: a segment, a point or nothing.
+/// Intersects two triangles of which at least one has no area: a segment, a point or nothing.
 PairContact contact_of_degenerate(const double* const a[3], const double* const b[3]);
 
 }  // namespace lrb::exact

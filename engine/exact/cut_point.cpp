@@ -8,8 +8,8 @@
 namespace lrb::exact {
 namespace {
 
-/// A determinant in doubles, and a bound on its error, derived as in plane_side.hpp and orient_axes.hpp
-/// (underflow included; overflow makes it infinite or not a number).
+/// A determinant in doubles and a bound on its error, derived as in plane_side.hpp and orient_axes.hpp
+/// (underflow is included; overflow makes the bound infinite or not a number).
 struct Approximate {
   double value, error;
 };
@@ -34,8 +34,9 @@ Approximate area(const double* a, const double* b, const double* c, int x, int y
   return {left - right, 5 * 0x1p-53 * (std::fabs(left) + std::fabs(right)) + kTiny};
 }
 
-/// t = hp / (hp - hq) for heights of opposite sign is accurate if the errors are small beside hp - hq: with
-/// E the sum of both errors, |error of t| <= 2 E / (|hp - hq| - E), plus three roundings.
+/// Finds the parameter t = hp / (hp - hq) at which a height changes from hp to hq, of opposite sign, through
+/// 0. Returns false unless t is accurate, that is, unless the errors are small beside hp - hq: with E the sum
+/// of both errors, |error of t| <= 2 E / (|hp - hq| - E), plus three roundings.
 bool parameter(const Approximate& hp, const Approximate& hq, double& t) {
   constexpr double kGoodEnough = 0x1p-45;  // 3e-14: then 2 E / (...) + 3 roundings stays under 1e-13
   const double rise = std::fabs(hp.value - hq.value);
@@ -44,10 +45,10 @@ bool parameter(const Approximate& hp, const Approximate& hq, double& t) {
   return true;
 }
 
-/// False if a difference of coordinates overflows.
+/// Finds the point p + t (q - p). Returns false if a difference of coordinates overflows.
 bool interpolate(const double* p, const double* q, double t, int dim, Eigen::Vector3d& r) {
   r.setZero();
-  // From the nearer end, so that the result is as good near q as near p.
+  // Start from the nearer end, so that the result is as good near q as near p.
   for (int k = 0; k < dim; ++k) r[k] = t <= 0.5 ? p[k] + t * (q[k] - p[k]) : q[k] + (1 - t) * (p[k] - q[k]);
   return r.allFinite();
 }

@@ -19,13 +19,13 @@ bool intervals_meet(double a0, double a1, double b0, double b1) {
   return std::max(std::min(a0, a1), std::min(b0, b1)) <= std::min(std::max(a0, a1), std::max(b0, b1));
 }
 
-/// Segments on one line (either may be a point): they meet if their boxes do.
+/// Returns true if two segments on one line (either may be a point) meet: they do if their boxes do.
 bool on_line_meet(const double* a0, const double* a1, const double* b0, const double* b1) {
   return intervals_meet(a0[0], a1[0], b0[0], b1[0]) && intervals_meet(a0[1], a1[1], b0[1], b1[1]) &&
          intervals_meet(a0[2], a1[2], b0[2], b1[2]);
 }
 
-/// True if all of hull h lies strictly on side `side` of line p, q.
+/// Returns true if all of hull h lies strictly on side `side` of the line p, q.
 bool strictly_beside(const double* p, const double* q, const Hull& h, int side, const Axes& axes) {
   for (int i = 0; i <= h.dim; ++i) {
     if (orient_axes(p, q, h.corner[i], axes.x, axes.y) != side) return false;
@@ -33,8 +33,9 @@ bool strictly_beside(const double* p, const double* q, const Hull& h, int side, 
   return true;
 }
 
-/// True if the line of an edge of `a` has a on one side and b strictly on the other. A segment's line
-/// separates from either side. All in one plane, on which projection to `axes` is one to one.
+/// Returns true if the line of an edge of `a` has a on one side and b strictly on the other. The line of a
+/// segment may separate with b on either side. Everything lies in one plane, which projects to `axes` one to
+/// one.
 bool edge_separates(const Hull& a, const Hull& b, const Axes& axes) {
   if (a.dim == 0) return false;
   const double* const* p = a.corner;
@@ -44,8 +45,9 @@ bool edge_separates(const Hull& a, const Hull& b, const Axes& axes) {
          strictly_beside(p[2], p[0], b, outside, axes);
 }
 
-/// Convex sets in one plane, together not on one line: disjoint exactly if an edge's line separates them,
-/// because the sides of their Minkowski difference, a polygon with inner points, are parallel to their edges.
+/// Returns true if two convex sets in one plane, which together are not on one line, meet. They are disjoint
+/// exactly if the line of an edge separates them, because the sides of their Minkowski difference, a polygon
+/// with inner points, are parallel to their edges.
 bool coplanar_meet(const Hull& a, const Hull& b, const Axes& axes) {
   return !edge_separates(a, b, axes) && !edge_separates(b, a, axes);
 }
@@ -57,7 +59,8 @@ bool triangle_meets(const Hull& t, const Hull& h) {
   const int end = h.dim == 0 ? start : plane.side(h.corner[1]);
   if (start * end > 0) return false;
   if (start == 0 && end == 0) return coplanar_meet(t, h, axes_for(p[0], p[1], p[2]));
-  // The segment has one point in the plane: inside if its line passes all edges on the same side.
+  // The segment meets the plane in one point: it lies in the triangle if the segment's line passes all edges
+  // on the same side.
   int seen = 0;
   for (int i = 0; i < 3; ++i) {
     const int s = orient3d(h.corner[0], h.corner[1], p[i], p[(i + 1) % 3]);
@@ -79,7 +82,7 @@ bool segments_meet(const Hull& a, const Hull& b) {
 }  // namespace
 
 Axes axes_for(const double* a, const double* b, const double* c) {
-  // The widest projection first, as far as doubles can tell: its sign is the least likely to need exact
+  // Try the widest projection first, as far as doubles can tell: its sign is the least likely to need exact
   // arithmetic.
   const double ux = b[0] - a[0], uy = b[1] - a[1], uz = b[2] - a[2];
   const double vx = c[0] - a[0], vy = c[1] - a[1], vz = c[2] - a[2];

@@ -38,8 +38,9 @@ int orient3d_floating(const double* a, const double* b, const double* c, const d
               (u[0] * v[1] - u[1] * v[0]) * w[2]);
 }
 
-// A coordinate is either 0 or has a magnitude in [2^-300, 2^300]: then for products of up to three factors
-// expansion.hpp's conditions hold: 3 * (300 + 53) = 1059 <= 1074 and 3 * 301 + 30 = 933 <= 1023.
+// Expansions apply if every coordinate is 0 or has a magnitude in [2^-300, 2^300]: then expansion.hpp's
+// conditions hold for products of up to three factors: 3 * (300 + 53) = 1059 <= 1074 and 3 * 301 + 30 = 933
+// <= 1023.
 constexpr double kSmallest = 0x1p-300;
 constexpr double kLargest = 0x1p+300;
 
@@ -51,8 +52,8 @@ bool all_in_range(const std::array<double, N>& x) {
   });
 }
 
-/// Coordinates of up to four points along one axis as integers: multiplied by a common power of two, which
-/// changes no sign of a determinant.
+/// Returns the coordinates of up to four points along one axis as integers: multiplied by a common power of
+/// two, which changes no sign of a determinant.
 template <std::size_t N>
 std::array<cpp_int, N> scaled_to_integers(const std::array<double, N>& x) {
   constexpr int kMantissaBits = 53;
@@ -84,7 +85,7 @@ int orient2d_integer(const std::array<double, 3>& x, const std::array<double, 3>
   return (left > right) - (left < right);
 }
 
-/// u0 * v1 - u1 * v0.
+/// Returns u0 * v1 - u1 * v0.
 Expansion<16> minor(const Expansion<2>& u0, const Expansion<2>& u1, const Expansion<2>& v0,
                     const Expansion<2>& v1) {
   return sum(product(u0, v1), product(-u1, v0));
@@ -140,7 +141,7 @@ std::uint64_t exact_fallbacks() {
 
 int orient2d_exact(const double* a, const double* b, const double* c, int x, int y) {
   if (floating_only) return orient2d_floating(a, b, c, x, y);
-  // Points with equal coordinates on one axis, or points that coincide.
+  // Points with equal coordinates on one axis, and points that coincide, are on one line.
   if (a[x] == b[x] && a[x] == c[x]) return 0;
   if (a[y] == b[y] && a[y] == c[y]) return 0;
   if ((a[x] == b[x] && a[y] == b[y]) || (b[x] == c[x] && b[y] == c[y]) || (a[x] == c[x] && a[y] == c[y]))

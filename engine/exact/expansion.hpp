@@ -1,13 +1,13 @@
 #pragma once
-/// Floating-point expansions: a number held exactly as a sum of doubles of increasing magnitude that do not
-/// overlap (no two have a bit of the same weight), zeros left out. After Dekker (1971) and Shewchuk,
+/// Floating-point expansions: numbers held exactly as sums of doubles of increasing magnitude that do not
+/// overlap (no two have a bit of the same weight), with zeros left out. After Dekker (1971) and Shewchuk,
 /// "Adaptive Precision Floating-Point Arithmetic and Fast Robust Geometric Predicates" (1997), of which only
 /// the theorems are used.
 ///
-/// Everything here is exact as long as no operation overflows and no error term falls under 2^-1074. For sums
-/// of products of k factors that holds if each factor is 0 or has magnitude in [2^-lo, 2^hi] with k * (lo +
-/// 53) <= 1074 and k * (hi + 1) + 30 <= 1023 (the 30: Dekker's split, and the sum's length). Arithmetic must
-/// be binary64, round to nearest even, without contraction.
+/// Everything here is exact as long as no operation overflows and no error term falls below 2^-1074. For sums
+/// of products of k factors this holds if each factor is 0 or has a magnitude in [2^-lo, 2^hi] with k * (lo +
+/// 53) <= 1074 and k * (hi + 1) + 30 <= 1023 (the 30 is for Dekker's split and the length of the sum).
+/// Arithmetic must be binary64, round to nearest even, without contraction.
 
 #include <array>
 #include <cfloat>
@@ -17,7 +17,8 @@ namespace lrb::exact {
 
 static_assert(FLT_EVAL_METHOD == 0, "expansions need arithmetic rounded to double after each operation");
 
-/// x = fl(a + b), and what was rounded away: x + y = a + b exactly. Any a, b whose sum does not overflow.
+/// Sets x = fl(a + b) and y to what was rounded away: x + y = a + b exactly. For any a, b whose sum does not
+/// overflow.
 inline void two_sum(double a, double b, double& x, double& y) {
   x = a + b;
   const double b_virtual = x - a;
@@ -25,18 +26,18 @@ inline void two_sum(double a, double b, double& x, double& y) {
   y = (a - a_virtual) + (b - b_virtual);
 }
 
-/// The same for |a| >= |b| (or a = 0 = b).
+/// Does the same if |a| >= |b| (or a = 0 = b).
 inline void fast_two_sum(double a, double b, double& x, double& y) {
   x = a + b;
   y = b - (x - a);
 }
 
-/// x = fl(a - b), x + y = a - b exactly.
+/// Sets x = fl(a - b) and y such that x + y = a - b exactly.
 inline void two_difference(double a, double b, double& x, double& y) {
   two_sum(a, -b, x, y);
 }
 
-/// x = fl(a * b), x + y = a * b exactly.
+/// Sets x = fl(a * b) and y such that x + y = a * b exactly.
 inline void two_product(double a, double b, double& x, double& y) {
   x = a * b;
 #ifdef __FMA__
@@ -54,7 +55,7 @@ inline void two_product(double a, double b, double& x, double& y) {
 #endif
 }
 
-/// An expansion of at most Capacity components. Uninitialised beyond `size`.
+/// An expansion of at most Capacity components. Components beyond `size` are uninitialised.
 template <int Capacity>
 struct Expansion {
   std::array<double, Capacity> component;
@@ -70,7 +71,7 @@ struct Expansion {
     if (size == 0) return 0;
     return component[static_cast<std::size_t>(size - 1)] > 0 ? 1 : -1;
   }
-  /// Within one unit in the last place: components are added from the smallest.
+  /// Returns the value to within one unit in the last place: adds the components from the smallest up.
   double estimate() const {
     double sum = 0;
     for (int i = 0; i < size; ++i) sum += (*this)[i];
@@ -84,7 +85,7 @@ struct Expansion {
   }
 };
 
-/// a - b, exactly.
+/// Returns a - b, exactly.
 inline Expansion<2> difference(double a, double b) {
   Expansion<2> r;
   double x, y;
@@ -94,7 +95,7 @@ inline Expansion<2> difference(double a, double b) {
   return r;
 }
 
-/// e * b, exactly (Shewchuk's theorem 19: non-overlapping in, non-overlapping out).
+/// Returns e * b, exactly (Shewchuk's theorem 19: non-overlapping in, non-overlapping out).
 template <int N>
 Expansion<2 * N> scale(const Expansion<N>& e, double b) {
   Expansion<2 * N> r;
@@ -114,8 +115,8 @@ Expansion<2 * N> scale(const Expansion<N>& e, double b) {
   return r;
 }
 
-/// e + f, exactly, in linear time (Shewchuk's linear expansion sum, which asks only that inputs do not
-/// overlap).
+/// Returns e + f, exactly, in linear time (Shewchuk's linear expansion sum, which only requires that the
+/// components of each input do not overlap).
 template <int M, int N>
 Expansion<M + N> sum(const Expansion<M>& e, const Expansion<N>& f) {
   Expansion<M + N> r;
@@ -142,7 +143,7 @@ Expansion<M + N> sum(const Expansion<M>& e, const Expansion<N>& f) {
   return r;
 }
 
-/// e * f for a short f, exactly.
+/// Returns e * f for a short f, exactly.
 template <int M>
 Expansion<4 * M> product(const Expansion<M>& e, const Expansion<2>& f) {
   if (f.size == 2) return sum(scale(e, f[0]), scale(e, f[1]));

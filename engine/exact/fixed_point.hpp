@@ -1,7 +1,7 @@
 #pragma once
 /// Determinants in 64-bit fixed point: exact, almost without branches, and about ten times faster than
-/// expansions, for points whose coordinates share an exponent range, as those of neighbouring faces nearly
-/// always do.
+/// expansions. They serve points whose coordinates share an exponent range, as those of neighbouring faces
+/// nearly always do.
 
 #include <algorithm>
 #include <array>
@@ -14,9 +14,10 @@ namespace lrb::exact {
 __extension__ typedef __int128 Int128;
 __extension__ typedef unsigned __int128 UInt128;
 
-/// The coordinates of N points along one axis as integers below 2^62 in magnitude, multiplied by a common
-/// power of two, which changes no sign of a determinant. False if they do not fit: if the highest and the
-/// lowest bit set in any of them are 62 or more places apart, or one is denormal or almost.
+/// Turns the coordinates of N points along one axis into integers below 2^62 in magnitude, by multiplying
+/// them by a common power of two, which changes no sign of a determinant. Returns false if they do not fit:
+/// if the highest and the lowest bit set in any of them are 62 or more places apart, or one of them is
+/// denormal or almost.
 template <std::size_t N>
 bool to_fixed_point(const std::array<double, N>& x, std::array<std::int64_t, N>& r) {
   constexpr int kMantissaBits = 52, kExponentBias = 1023, kExponentMask = 2047;
@@ -37,15 +38,15 @@ bool to_fixed_point(const std::array<double, N>& x, std::array<std::int64_t, N>&
   return true;
 }
 
-/// Sign of (b - a) x (c - a) in the coordinates given; all below 2^62, so that differences are below 2^63 and
-/// products below 2^126.
+/// Returns the sign of (b - a) x (c - a) in the given coordinates, all below 2^62, so that differences are
+/// below 2^63 and products below 2^126.
 inline int orient2d_fixed(const std::array<std::int64_t, 3>& x, const std::array<std::int64_t, 3>& y) {
   const Int128 left = Int128{x[1] - x[0]} * (y[2] - y[0]);
   const Int128 right = Int128{y[1] - y[0]} * (x[2] - x[0]);
   return (left > right) - (left < right);
 }
 
-/// Sign of det[b - a; c - a; d - a]; axis k of the points is p[k].
+/// Returns the sign of det[b - a; c - a; d - a]; p[k] holds the points' coordinates on axis k.
 inline int orient3d_fixed(const std::array<std::array<std::int64_t, 4>, 3>& p) {
   std::array<std::int64_t, 3> u, v, w;
   for (std::size_t k = 0; k < 3; ++k) {
@@ -53,8 +54,8 @@ inline int orient3d_fixed(const std::array<std::array<std::int64_t, 4>, 3>& p) {
     v[k] = p[k][2] - p[k][0];
     w[k] = p[k][3] - p[k][0];
   }
-  // The determinant is at most twice the volume of the points' box, so below 2^190: as high * 2^64 + low,
-  // high fits 128 bits. Partial sums of high may wrap, hence unsigned.
+  // The determinant is at most twice the volume of the points' box, so it is below 2^190 and can be held as
+  // high * 2^64 + low, where high fits 128 bits. Partial sums of high may wrap, hence unsigned.
   UInt128 high = 0, low = 0;
   for (std::size_t k = 0; k < 3; ++k) {
     const std::size_t i = (k + 1) % 3, j = (k + 2) % 3;

@@ -12,7 +12,7 @@ namespace {
 
 constexpr int kX = 0, kY = 1, kZ = 2;
 
-/// One point, asked for signs: of doubles here, of rationals below.
+/// A point that answers questions about signs: one of doubles here, a rational one below.
 struct DoubleProbe {
   const double* p;
 
@@ -52,7 +52,8 @@ bool in_box_of_segment(const Probe& p, const double* a, const double* b, int dim
   return true;
 }
 
-/// For a point in the plane of the triangle, or a triangle without area: is it on the triangle?
+/// Returns true if a point in the plane of a triangle, or any point where the triangle has no area, is on the
+/// triangle.
 template <class Probe>
 bool on_flat_triangle(const Probe& p, const double* const t[3]) {
   const Axes axes = axes_for(t[0], t[1], t[2]);
@@ -67,7 +68,7 @@ bool on_flat_triangle(const Probe& p, const double* const t[3]) {
          p.orient(a, b, kZ, kX) == 0;
 }
 
-/// True if the ray and its start pass the triangle's box by.
+/// Returns true if the ray, its start included, misses the triangle's box.
 template <class Probe>
 bool passes_box(const Probe& p, const double* const t[3]) {
   for (int k : {kY, kZ}) {
@@ -77,8 +78,8 @@ bool passes_box(const Probe& p, const double* const t[3]) {
   return p.surely_above(kX, std::max({t[0][kX], t[1][kX], t[2][kX]}));
 }
 
-/// Side of the moved point on the line a, b seen along x, where its own side is `side`. The determinant grows
-/// with eps by -(b_z - a_z), and with eps^2 by b_y - a_y.
+/// Returns the side of the line a, b, seen along x, on which the moved point lies; `side` is that of the
+/// point itself. The determinant changes with eps by -(b_z - a_z), and with eps^2 by b_y - a_y.
 int moved_side(int side, const double* a, const double* b) {
   if (side != 0) return side;
   if (a[kZ] != b[kZ]) return b[kZ] < a[kZ] ? 1 : -1;
@@ -95,7 +96,7 @@ RayHit ray_triangle(const Probe& p, const double* const t[3]) {
     left |= s[i] > 0;
     right |= s[i] < 0;
   }
-  // Off the triangle seen along x, by more than eps.
+  // Seen along x, the point is off the triangle by more than eps.
   if (left && right) return RayHit::misses;
   const int side = p.side(t);
   if (side == 0 && on_flat_triangle(p, t)) return RayHit::on_face;
@@ -104,7 +105,8 @@ RayHit ray_triangle(const Probe& p, const double* const t[3]) {
   if (turn == 0 || moved_side(s[1], t[1], t[2]) != turn || moved_side(s[2], t[2], t[0]) != turn) {
     return RayHit::misses;
   }
-  // Seen along x the triangle turns as its normal's x component: the plane lies ahead if p is behind it.
+  // Seen along x, the triangle turns as the x component of its normal does: the plane lies ahead if p is
+  // behind it.
   return side == -turn ? RayHit::crosses : RayHit::misses;
 }
 
@@ -116,7 +118,7 @@ RayHit ray_segment(const Probe& p, const double* const s[2]) {
   if (p.surely_above(kX, std::max(s[0][kX], s[1][kX]))) return RayHit::misses;
   const int left = p.orient(lower, upper, kX, kY);
   if (left == 0 && in_box_of_segment(p, lower, upper, 2)) return RayHit::on_face;
-  // The moved point is above whatever is level with it.
+  // The moved point is above everything that p is level with.
   const bool spans = p.compare(kY, lower[kY]) >= 0 && p.compare(kY, upper[kY]) < 0;
   return spans && left > 0 ? RayHit::crosses : RayHit::misses;
 }

@@ -1,5 +1,5 @@
 #pragma once
-/// Where is a point? Crossings of an exact ray, points with rational coordinates, and sample points for the
+/// Locating points: crossings of an exact ray, points with rational coordinates, and sample points for the
 /// cells into which a face is cut by other faces. Everything here is exact.
 
 #include <array>
@@ -13,21 +13,22 @@
 
 namespace lrb::exact {
 
-/// A point whose coordinates are rational numbers. Immutable; copies share. In 2D z = 0.
+/// A point with rational coordinates. Immutable; copies share them. In 2D z = 0.
 class RationalPoint {
  public:
   struct Coordinates;  // private to engine/exact (rational_point.hpp): keeps Boost out of this header
 
-  /// The exact point of `dim` (2 or 3) finite doubles.
+  /// Makes the exact point of `dim` (2 or 3) finite doubles.
   explicit RationalPoint(const double* p, int dim = 3);
   explicit RationalPoint(std::shared_ptr<const Coordinates> coordinates)
       : coordinates_(std::move(coordinates)) {}
 
   static RationalPoint midpoint(const RationalPoint& a, const RationalPoint& b);
-  /// sum(weights[i] * points[i]) / sum(weights): finite weights, as many as points, whose sum is not 0.
+  /// Returns sum(weights[i] * points[i]) / sum(weights). There must be one finite weight for each point, and
+  /// their sum must not be 0.
   static RationalPoint combination(std::span<const RationalPoint> points, std::span<const double> weights);
 
-  /// The nearest doubles (to one unit in the last place).
+  /// Returns the nearest doubles (to one unit in the last place).
   Eigen::Vector3d rounded() const;
   const Coordinates& coordinates() const { return *coordinates_; }
 
@@ -35,36 +36,36 @@ class RationalPoint {
   std::shared_ptr<const Coordinates> coordinates_;
 };
 
-/// predicates.hpp's orient2d and orient3d with a rational last point.
+/// The predicates orient2d and orient3d of predicates.hpp with a rational last point.
 int orient2d(const double* a, const double* b, const RationalPoint& c);
 int orient3d(const double* a, const double* b, const double* c, const RationalPoint& d);
 
 /// What a ray does at one face of a surface. If no face of a closed surface gives on_face, the point is
-/// inside exactly if an odd number of them gives crosses.
+/// inside exactly if an odd number of faces give crosses.
 enum class RayHit { misses = 0, crosses = 1, on_face = -1 };
 
-/// The ray from p in the direction +x, after p has been moved by (0, eps, eps^2) for an infinitely small eps:
-/// it meets no edge or corner of any triangle and runs in no triangle's plane, so that no case is degenerate.
-/// on_face: p itself, not moved, lies on the closed triangle (which may have no area). After Edelsbrunner and
-/// Muecke, "Simulation of Simplicity" (1990).
+/// Tells what the ray from p in the direction +x does at a triangle, after p has been moved by (0, eps,
+/// eps^2) for an infinitely small eps: the ray then meets no edge or corner of any triangle and runs in no
+/// triangle's plane, so that no case is degenerate. on_face: p itself, not moved, lies on the closed triangle
+/// (which may have no area). After Edelsbrunner and Muecke, "Simulation of Simplicity" (1990).
 RayHit ray_crosses(const double p[3], const double* const tri[3]);
 RayHit ray_crosses(const RationalPoint& p, const double* const tri[3]);
 
-/// The same in the plane z = 0 for a segment; p is moved by (0, eps).
+/// Does the same in the plane z = 0 for a segment; p is moved by (0, eps).
 RayHit ray_crosses_2d(const double p[2], const double* const seg[2]);
 RayHit ray_crosses_2d(const RationalPoint& p, const double* const seg[2]);
 
-/// One point strictly inside every cell into which `tri` is cut by its intersections with the other
-/// triangles; none lies on any of them, except that a cell covered by a coplanar triangle has its point on
-/// that triangle. By vertical slabs between all end points and crossings of the cuts, in the projection along
-/// an axis in which the triangle keeps its area. None if tri has no area. Gives up (empty optional) if there
-/// would be more than `limit` points, more than `limit` cuts, or too many slabs: the work is cubic in the
-/// number of cuts.
+/// Returns one point strictly inside every cell into which `tri` is cut by its intersections with the other
+/// triangles. None of the points lies on any of these triangles, except that a cell covered by a coplanar
+/// triangle has its point on that triangle. Works by vertical slabs between all end points and crossings of
+/// the cuts, in the projection along an axis in which the triangle keeps its area. Returns no points if tri
+/// has no area. Gives up (empty optional) if there would be more than `limit` points, more than `limit` cuts,
+/// or too many slabs: the work is cubic in the number of cuts.
 std::optional<std::vector<RationalPoint>> sample_cells(const double* const tri[3],
                                                        std::span<const std::array<const double*, 3>> others,
                                                        std::size_t limit);
 
-/// The same for a segment in the plane, cut by points (and by the ends of segments that overlap it).
+/// Does the same for a segment in the plane, cut by points (and by the ends of segments that overlap it).
 std::optional<std::vector<RationalPoint>> sample_cells_2d(
     const double* const seg[2], std::span<const std::array<const double*, 2>> others, std::size_t limit);
 

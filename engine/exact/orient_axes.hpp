@@ -7,12 +7,12 @@
 
 namespace lrb::exact {
 
-/// Sign of the area of a, b, c seen in coordinates x and y (indices into the points).
+/// Returns the sign of the area of a, b, c seen in coordinates x and y (indices into the points).
 ///
 /// Error bound: each of the two products has at most four rounding errors (two differences, the product, the
 /// subtraction), so the error is below 4 e (1 + 10 e) times the computed sum of magnitudes, e = 2^-53; 5 e
 /// covers it. The products lose at most 2^-1074 to underflow, which kTiny exceeds. Overflow makes the bound
-/// infinite or not a number, and the comparisons false.
+/// infinite or not a number, and then both comparisons are false.
 inline int orient_axes(const double* a, const double* b, const double* c, int x, int y) {
   constexpr double kError = 5 * 0x1p-53;
   constexpr double kTiny = 0x1p-1000;

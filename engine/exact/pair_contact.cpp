@@ -9,12 +9,12 @@
 namespace lrb::exact {
 namespace {
 
-/// Which ends of a triangle's span on L a point is; neither: strictly between them.
+/// Tells at which ends of a triangle's span on L a point lies; neither: strictly between them.
 struct Place {
   bool low, high;
 };
 
-/// The feature of the triangle that holds a point of L.
+/// Returns the feature of the triangle that holds a point of L.
 Feature feature_on(const Span& span, const Sides& sides, const Place& place) {
   if (!place.low && !place.high)
     return sides.strictly_mixed() ? Feature{2, 0} : edge_between(span.low, span.high);
@@ -22,7 +22,7 @@ Feature feature_on(const Span& span, const Sides& sides, const Place& place) {
   return sides.s[end] == 0 ? corner(end) : edge_between(span.tip, end);
 }
 
-/// A point of L that ends the span of at least one triangle.
+/// Returns a point of L that ends the span of at least one triangle.
 ContactCorner corner_on_line(const CrossingPlanes& c, const Sides& a_sides, const Sides& b_sides,
                              const Place& on_a, const Place& on_b) {
   ContactCorner r;
@@ -50,7 +50,8 @@ PairContact contact_on_line(const double* const a[3], const Sides& a_sides, cons
   const bool through = a_sides.strictly_mixed() && b_sides.strictly_mixed();
   r.meet = through && high_b_low_a > 0 && high_a_low_b > 0 ? Meet::cross : Meet::touch;
   const int lows = c.order(c.on_a.low, c.on_b.low), highs = c.order(c.on_a.high, c.on_b.high);
-  // The lower end is the greater of the low ends; it can be a high end too, and both if a span is a point.
+  // The lower end of the intersection is the greater of the two low ends. It can be a high end too, and both
+  // ends of one triangle if its span is a point.
   const Place low_on_a{lows <= 0, (lows <= 0 && c.on_a.is_point()) || (lows >= 0 && high_a_low_b == 0)};
   const Place low_on_b{lows >= 0, (lows >= 0 && c.on_b.is_point()) || (lows <= 0 && high_b_low_a == 0)};
   const Place high_on_a{(highs >= 0 && c.on_a.is_point()) || (highs <= 0 && high_b_low_a == 0), highs >= 0};

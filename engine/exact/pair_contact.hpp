@@ -1,5 +1,5 @@
 #pragma once
-/// What two faces that meet have in common, with exact combinatorics and coordinates rounded to double.
+/// The intersection of two faces that meet, with exact combinatorics and coordinates rounded to double.
 
 #include <array>
 #include <cstdint>
@@ -10,8 +10,9 @@
 
 namespace lrb::exact {
 
-/// A part of a simplex: corner i (`dim` 0), the edge from corner i to corner i + 1 mod n (`dim` 1), or its interior
-/// (`dim` 2, index 0). Of the features that hold a point this is the one of least dimension.
+/// A part of a simplex: corner i (`dim` 0), the edge from corner i to corner i + 1 mod n (`dim` 1), or its
+/// interior (`dim` 2, index 0). Of the features that hold a point, it is always the one of least dimension
+/// that is named.
 struct Feature {
   std::uint8_t dim = 2;
   std::uint8_t index = 0;
@@ -20,10 +21,10 @@ struct Feature {
 
 /// A corner of the intersection of two simplices.
 struct ContactCorner {
-  /// World frame. A corner of either simplex is copied; other points are within 1e-13 of the cut edge's extent plus
-  /// two roundings of the exact point, in each coordinate.
+  /// World frame. A corner of either simplex is copied; in each coordinate, other points are within 1e-13 of
+  /// the cut edge's extent plus two roundings of the exact point.
   Eigen::Vector3d x{0, 0, 0};
-  Feature on_a, on_b;  ///< where it lies on each; exact
+  Feature on_a, on_b;  ///< where the point lies on each simplex; exact
 };
 
 /// The intersection of two simplices, a convex set: a point, a segment or a coplanar polygon.
@@ -35,7 +36,7 @@ struct PairContact {
 };
 
 PairContact contact_of_triangles(const double* const a[3], const double* const b[3]);
-/// Segments in the plane; corners have z = 0.
+/// Intersects segments in the plane; corners have z = 0.
 PairContact contact_of_segments(const double* const a[2], const double* const b[2]);
 
 }  // namespace lrb::exact

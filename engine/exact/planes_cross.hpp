@@ -1,6 +1,7 @@
 #pragma once
-/// Two triangles with area whose planes cross in a line L, each with corners on both sides of, or on, the
-/// other's plane: where they meet L, and in which order along it. Private to engine/exact.
+/// Two triangles with area whose planes cross in a line L, where each has corners on both sides of the
+/// other's plane, or on it: the points in which they meet L, and the order of these points along L. Private
+/// to engine/exact.
 
 #include <algorithm>
 
@@ -9,7 +10,7 @@
 
 namespace lrb::exact {
 
-/// Sides of a plane on which a triangle's corners lie.
+/// The sides of a plane on which a triangle's corners lie.
 struct Sides {
   int s[3];
   bool all_strictly_same() const { return s[0] != 0 && s[0] == s[1] && s[0] == s[2]; }
@@ -21,19 +22,19 @@ inline Sides sides_of(const PlaneSide& plane, const double* const t[3]) {
   return {{plane.side(t[0]), plane.side(t[1]), plane.side(t[2])}};
 }
 
-/// Where a triangle meets L: from the point of L on edge (tip, low) to that on edge (tip, high), in the
-/// direction of normal(a) x normal(b). All are numbers of corners. The tip lies strictly on side `side` of
-/// the other plane, the other two ends do not; one of them that lies in the other plane is itself the point
-/// on L.
+/// The part of L in a triangle: from the point of L on the edge (tip, low) to that on the edge (tip, high),
+/// in the direction of normal(a) x normal(b). tip, low and high are numbers of corners. The tip lies strictly
+/// on side `side` of the other plane; low and high do not. One of them that lies in the other plane is itself
+/// the point on L.
 struct Span {
   int tip, low, high;
   int side;
   bool is_point() const { return low == high; }
 };
 
-/// `is_b`: the triangle is the second of the two. Seen from the front of b, the triangle a runs along L
-/// against the direction of normal(a) x normal(b) on the positive side, and with it on the negative; b's case
-/// is the mirror image.
+/// Returns the span of a triangle on L; `is_b`: it is the second of the two triangles. Seen from the front of
+/// b, triangle a runs along L against the direction of normal(a) x normal(b) on the positive side, and with
+/// it on the negative side; the case of b is the mirror image.
 inline Span span_of(const Sides& sides, bool is_b) {
   for (int i = 0; i < 3; ++i) {
     const int q = (i + 1) % 3, r = (i + 2) % 3;
@@ -41,7 +42,7 @@ inline Span span_of(const Sides& sides, bool is_b) {
     if (side == 0 || sides.s[q] == side || sides.s[r] == side) continue;
     return (side > 0) == is_b ? Span{i, q, r, side} : Span{i, r, q, side};
   }
-  // Two corners on one side, the third in the plane: L meets the triangle in that corner only.
+  // Two corners lie on one side and the third in the plane: L meets the triangle in that corner only.
   const int zero = sides.s[0] == 0 ? 0 : sides.s[1] == 0 ? 1 : 2;
   const int tip = (zero + 1) % 3;
   return {tip, zero, zero, sides.s[tip]};
@@ -57,9 +58,9 @@ struct CrossingPlanes {
                  const Sides& b_sides)
       : a(a_corners), b(b_corners), on_a(span_of(a_sides, false)), on_b(span_of(b_sides, true)) {}
 
-  /// Sign of Y - X along L, where X is on edge (tip, a_end) of a and Y on edge (tip, b_end) of b. The lines
-  /// of the two edges are in one plane exactly if X = Y; elsewhere the orientation keeps its sign, and one
-  /// example fixes it.
+  /// Returns the sign of Y - X along L, where X is the point of L on the edge (tip, a_end) of a and Y that on
+  /// the edge (tip, b_end) of b. The lines of the two edges are in one plane exactly if X = Y; elsewhere the
+  /// orientation keeps its sign, and one example fixes it.
   int order(int a_end, int b_end) const {
     return on_a.side * on_b.side * orient3d(a[on_a.tip], a[a_end], b[on_b.tip], b[b_end]);
   }

@@ -11,10 +11,10 @@
 namespace lrb::exact {
 
 using Rational = boost::multiprecision::cpp_rational;
-/// Without expression templates' references to temporaries in the way: x, y, z.
+/// x, y, z, as values: no expression template can refer to a temporary that is gone.
 using RationalVec = std::array<Rational, 3>;
 
-/// The double's exact value.
+/// Returns the double's exact value.
 inline Rational to_rational(double x) {
   constexpr int kMantissaBits = 53;
   int exponent = 0;
@@ -40,21 +40,21 @@ inline Eigen::Vector3d rounded(const RationalVec& p) {
   return {p[0].convert_to<double>(), p[1].convert_to<double>(), p[2].convert_to<double>()};
 }
 
-/// a + t (b - a).
+/// Returns a + t (b - a).
 inline RationalVec between(const RationalVec& a, const RationalVec& b, const Rational& t) {
   RationalVec r;
   for (std::size_t k = 0; k < 3; ++k) r[k] = a[k] + t * (b[k] - a[k]);
   return r;
 }
 
-/// (b - a) x (c - a) in the coordinates x and y: orient2d's determinant.
+/// Returns (b - a) x (c - a) in the coordinates x and y: orient2d's determinant.
 inline Rational area_determinant(const RationalVec& a, const RationalVec& b, const RationalVec& c, int x,
                                  int y) {
   const auto i = static_cast<std::size_t>(x), j = static_cast<std::size_t>(y);
   return (b[i] - a[i]) * (c[j] - a[j]) - (b[j] - a[j]) * (c[i] - a[i]);
 }
 
-/// det[b - a; c - a; d - a]: orient3d's determinant.
+/// Returns det[b - a; c - a; d - a]: orient3d's determinant.
 inline Rational volume_determinant(const RationalVec& a, const RationalVec& b, const RationalVec& c,
                                    const RationalVec& d) {
   return area_determinant(a, b, c, 1, 2) * (d[0] - a[0]) + area_determinant(a, b, c, 2, 0) * (d[1] - a[1]) +

@@ -1,5 +1,5 @@
 #pragma once
-/// What is inside a RationalPoint. Private to engine/exact, because it includes Boost.
+/// The contents of a RationalPoint. Private to engine/exact, because it includes Boost.
 
 #include "engine/exact/locate.hpp"
 #include "engine/exact/rational.hpp"
@@ -8,7 +8,7 @@ namespace lrb::exact {
 
 struct RationalPoint::Coordinates {
   RationalVec x;
-  std::array<double, 3> low, high;  ///< doubles that enclose x, equal where it is a double
+  std::array<double, 3> low, high;  ///< doubles that enclose x; equal if x is a double
 
   explicit Coordinates(RationalVec coordinates);
 };

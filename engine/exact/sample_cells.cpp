@@ -1,4 +1,4 @@
-// One point in each cell of a face that others cut.
+// Finds one point in each cell of a face that others cut.
 
 #include <algorithm>
 #include <utility>
@@ -14,18 +14,18 @@
 namespace lrb::exact {
 namespace {
 
-/// Every end and crossing of cuts divides cells further, into gaps, on which the work is done. Larger: faces
-/// with a hundred cuts are decided too, in minutes each.
+/// Every end and crossing of cuts divides the cells further, into gaps, and the work is done gap by gap.
+/// Larger: faces with a hundred cuts are decided too, in minutes each.
 constexpr std::size_t kGapsPerCell = 16;
 
-/// A point of the triangle's projection.
+/// A point in the triangle's projection.
 struct Planar {
   Rational x, y;
   friend bool operator==(const Planar&, const Planar&) = default;
   friend bool operator<(const Planar& a, const Planar& b) { return a.x != b.x ? a.x < b.x : a.y < b.y; }
 };
 
-/// From the left (or lower) to the right (or upper) end.
+/// A cut, from its left (or lower) to its right (or upper) end.
 struct Cut {
   Planar from, to;
   friend bool operator==(const Cut&, const Cut&) = default;
@@ -37,7 +37,7 @@ Rational cross(const Planar& a, const Planar& b, const Planar& c) {
   return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
 }
 
-/// The triangle, its projection, and what cuts it.
+/// The triangle, its projection, and the cuts through it.
 class CutTriangle {
  public:
   CutTriangle(const double* const tri[3], const Axes& axes) : axes_(axes), plane_(tri[0], tri[1], tri[2]) {
@@ -65,7 +65,7 @@ class CutTriangle {
 
   const std::vector<Cut>& cuts() const { return cuts_; }
 
-  /// The point of the triangle's plane with this projection.
+  /// Returns the point of the triangle's plane that has this projection.
   RationalPoint lift(const Planar& p) const {
     const Rational area = cross(corner_[0], corner_[1], corner_[2]);
     const Rational u = cross(corner_[0], p, corner_[2]) / area, v = cross(corner_[0], corner_[1], p) / area;
@@ -101,7 +101,8 @@ class CutTriangle {
   void add(const Planar& p, const Planar& q) {
     if (p == q) return;  // a point cuts nothing
     Cut cut = p < q ? Cut{p, q} : Cut{q, p};
-    // Faces that share an edge both bring it, and work grows with the third power.
+    // Two faces that share an edge both bring it, and the work grows with the third power of the number of
+    // cuts.
     if (std::find(cuts_.begin(), cuts_.end(), cut) == cuts_.end()) cuts_.push_back(std::move(cut));
   }
 
@@ -112,7 +113,7 @@ class CutTriangle {
   std::vector<Cut> cuts_;
 };
 
-/// Adds the abscissa where two cuts cross (overlapping ones have their ends as events anyway).
+/// Adds the abscissa at which two cuts cross (the ends of overlapping cuts are events anyway).
 void add_crossing(const Cut& a, const Cut& b, std::vector<Rational>& events) {
   const Rational b_from = cross(a.from, a.to, b.from), b_to = cross(a.from, a.to, b.to);
   if (b_from * b_to > 0 || (b_from == 0 && b_to == 0)) return;
@@ -133,7 +134,7 @@ std::vector<Rational> events_of(const std::vector<Cut>& cuts) {
   return events;
 }
 
-/// The cuts that span a slab, upwards; of those that run together the first stands for all.
+/// A cut that spans a slab. The layers of a slab run upwards; where cuts coincide, the first stands for all.
 struct Layer {
   Rational y;  ///< at the slab's middle
   std::size_t cut;
@@ -154,17 +155,17 @@ std::vector<Layer> layers_between(const std::vector<Cut>& cuts, const Rational& 
   return layers;
 }
 
-/// A trapezoid of a slab, between two cuts; gaps of one cell are linked towards the first of them.
+/// A trapezoid of a slab, between two cuts; the gaps of one cell are linked to the first of them.
 struct Gap {
   std::size_t below, above;
   Planar middle;
   std::size_t link;
 };
 
-/// The slabs from left to right, and which of their gaps are of one cell.
+/// The slabs from left to right, and which of their gaps belong to one cell.
 class Slabs {
  public:
-  /// Gives up at more than `limit` gaps.
+  /// Divides the projection into slabs; gives up at more than `limit` gaps.
   Slabs(const std::vector<Cut>& cuts, std::size_t limit) : cuts_(cuts) {
     const std::vector<Rational> events = events_of(cuts);
     std::size_t previous = 0;
@@ -179,7 +180,7 @@ class Slabs {
 
   bool whole() const { return whole_; }
 
-  /// One point of each cell.
+  /// Returns one point of each cell.
   std::vector<Planar> middles() const {
     std::vector<Planar> r;
     for (std::size_t i = 0; i < gaps_.size(); ++i) {
@@ -189,7 +190,7 @@ class Slabs {
   }
 
  private:
-  /// What is open of a gap at one end of its slab.
+  /// The open part of a gap at one end of its slab.
   struct Opening {
     Rational low, high;
   };
@@ -215,8 +216,9 @@ class Slabs {
     return r;
   }
 
-  /// The slab of gaps [left, middle) and that of [middle, end) meet at x: gaps that open to each other there
-  /// are of one cell. Both run upwards, so one walk through both finds all.
+  /// Joins gaps across x, where the slab of the gaps [left, middle) and that of [middle, end) meet: gaps that
+  /// open to each other there belong to one cell. Both run upwards, so one walk through both finds all such
+  /// pairs.
   void join_neighbours(std::size_t left, std::size_t middle, const Rational& x) {
     const std::vector<Opening> l = openings(left, middle, x), r = openings(middle, gaps_.size(), x);
     const std::vector<const Cut*> walls = walls_at(x);
@@ -233,7 +235,7 @@ class Slabs {
     }
   }
 
-  /// The vertical cuts at x, upwards.
+  /// Returns the vertical cuts at x, upwards.
   std::vector<const Cut*> walls_at(const Rational& x) const {
     std::vector<const Cut*> walls;
     for (const Cut& c : cuts_) {
@@ -243,7 +245,7 @@ class Slabs {
     return walls;
   }
 
-  /// True if walls cover all from low to high.
+  /// Returns true if the walls cover everything from low to high.
   static bool walled_off(const std::vector<const Cut*>& walls, Rational low, const Rational& high) {
     for (const Cut* c : walls) {
       if (c->from.y <= low) low = std::max(low, c->to.y);

@@ -1,4 +1,4 @@
-// Faces of one complex may meet in the vertices and edges they share, and in nothing else.
+// Tests that faces of one complex meet in nothing but the vertices and edges that they share.
 
 #include "engine/exact/degenerate.hpp"
 #include "engine/exact/orient_axes.hpp"
@@ -9,7 +9,7 @@
 namespace lrb::exact {
 namespace {
 
-/// Which corners two triangles share, by index: `count` pairs (a[in_a[i]], b[in_b[i]]).
+/// The corners that two triangles share, by index: `count` pairs (a[in_a[i]], b[in_b[i]]).
 struct SharedCorners {
   int count = 0;
   int in_a[3], in_b[3];
@@ -35,21 +35,21 @@ bool has_area(const PlaneSide& plane, const double* const t[3]) {
   return plane.surely_has_area() || !collinear3d(t[0], t[1], t[2]);
 }
 
-/// Both have the edge p, q; the third corners are r and s.
+/// Tests two triangles that share the edge p, q; their third corners are r and s.
 bool meet_only_in_edge(const double* p, const double* q, const double* r, const double* s) {
   if (orient3d(p, q, r, s) != 0) return true;
   const Axes axes = axes_for(p, q, r);  // coplanar, or one has no area
   return axes.turn != 0 && orient_axes(p, q, s, axes.x, axes.y) == -axes.turn;
 }
 
-/// True if the closed cone v, c0, c1 (turning by `turn`, less than half a turn) holds the point p, which is
-/// not v.
+/// Returns true if the closed cone v, c0, c1 (turning by `turn`, less than half a turn) holds the point p,
+/// which is not v.
 bool cone_holds(const double* v, const double* c0, const double* c1, int turn, const double* p,
                 const Axes& axes) {
   return orient_axes(v, c0, p, axes.x, axes.y) != -turn && orient_axes(v, p, c1, axes.x, axes.y) != -turn;
 }
 
-/// Two coplanar triangles with area and the corner v in common.
+/// Returns true if two coplanar triangles with area, which share the corner v, have nothing else in common.
 bool coplanar_cones_apart(const double* v, const double* a1, const double* a2, const double* b1,
                           const double* b2) {
   const Axes axes = axes_for(v, a1, a2);
@@ -58,7 +58,7 @@ bool coplanar_cones_apart(const double* v, const double* a1, const double* a2, c
          !cone_holds(v, b1, b2, b_turn, a1, axes) && !cone_holds(v, b1, b2, b_turn, a2, axes);
 }
 
-/// Both have the corner v; both triangles run v, 1, 2 in their own order.
+/// Tests two triangles that share the corner v; each runs v, 1, 2 in its own order.
 bool meet_only_in_corner(const double* v, const double* a1, const double* a2, const double* b1,
                          const double* b2) {
   const double* const a[3] = {v, a1, a2};
@@ -70,9 +70,9 @@ bool meet_only_in_corner(const double* v, const double* a1, const double* a2, co
   if (s1 == 0 && s2 == 0) return coplanar_cones_apart(v, a1, a2, b1, b2);
   const int t1 = plane_b.side(a1), t2 = plane_b.side(a2);
   if (t1 * t2 > 0) return true;
-  // Each triangle has a ray from v on the line in which the planes cross, and its direction along
-  // normal(a) x normal(b) follows from which of the two corners is the higher: forward for a if it is the
-  // first, for b if it is the second. (Not t1 = t2 = 0: b would lie in a's plane.)
+  // Each triangle has a ray from v on the line in which the planes cross. Its direction along normal(a) x
+  // normal(b) follows from which of the two other corners is the higher: for a it runs forward if that is the
+  // first corner, for b if it is the second. (t1 = t2 = 0 cannot be: b would lie in a's plane.)
   return (t1 > t2) == (s1 > s2);
 }
 
@@ -103,7 +103,7 @@ bool meet_only_in_shared_2d(const double* const a[2], const std::uint32_t ia[2],
       if (ia[1 - i] == ib[1 - j]) return false;
       const double *v = a[i], *p = a[1 - i], *q = b[1 - j];
       if (orient2d(v, p, q) != 0) return true;
-      // On one line: they must leave v in opposite directions.
+      // All on one line: the segments must leave v in opposite directions.
       for (int k = 0; k < 2; ++k) {
         if (p[k] != v[k]) return (p[k] > v[k]) != (q[k] > v[k]);
       }

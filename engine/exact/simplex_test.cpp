@@ -16,7 +16,7 @@ Meet meet_on_line(const CrossingPlanes& c, bool both_mixed) {
   if (above < 0) return Meet::disjoint;
   const int below = -c.order(c.on_a.high, c.on_b.low);
   if (below < 0) return Meet::disjoint;
-  // Relative interiors meet L in open intervals, which are empty unless the other plane cuts the triangle
+  // The relative interiors meet L in open intervals, which are empty unless the other plane cuts the triangle
   // in two.
   return both_mixed && above > 0 && below > 0 ? Meet::cross : Meet::touch;
 }
@@ -25,8 +25,8 @@ Meet meet_degenerate(const double* const a[3], const double* const b[3]) {
   return hulls_meet(hull_of(a), hull_of(b)) ? Meet::touch : Meet::disjoint;
 }
 
-/// Corners that two triangles have in common: number k of the first is number with[k] of the second, -1 if
-/// none.
+/// Finds the corners that two triangles have in common: number k of the first is number with[k] of the
+/// second, -1 if none.
 struct Shared {
   int with[3] = {-1, -1, -1};
   int count = 0;
@@ -43,7 +43,7 @@ struct Shared {
   }
 };
 
-/// Sides of the corners, of which those that are the plane's own need not be asked about.
+/// Returns the sides of the corners; those that are the plane's own (`own`) are on it and need no test.
 Sides sides_of(const PlaneSide& plane, const double* const t[3], const bool own[3]) {
   Sides sides{};
   for (int i = 0; i < 3; ++i) sides.s[i] = own[i] ? 0 : plane.side(t[i]);
@@ -70,8 +70,8 @@ Meet meet_triangles(const double* const a[3], const double* const b[3]) {
   bool shared_a[3] = {}, shared_b[3] = {};
   if (!only_floating()) {
     const Shared shared(a, b);
-    // Two corners: the triangles have an edge in common, and meet only there or lie in one plane; or one of
-    // them has no area.
+    // Two common corners: the triangles have an edge in common, and meet only there or lie in one plane; or
+    // one of them has no area.
     if (shared.count >= 2) return Meet::touch;
     for (int i = 0; i < 3; ++i) {
       if (shared.with[i] < 0) continue;
@@ -89,7 +89,7 @@ Meet meet_segments(const double* const a[2], const double* const b[2]) {
   if (a0 * a1 > 0) return Meet::disjoint;
   if (a0 * a1 < 0 && b0 * b1 < 0) return Meet::cross;
   if (a0 != 0 || a1 != 0 || b0 != 0 || b1 != 0) return Meet::touch;
-  // On one line (or points): they meet if their boxes do.
+  // They are on one line (or points): they meet if their boxes do.
   for (int k = 0; k < 2; ++k) {
     const auto [a_low, a_high] = std::minmax(a[0][k], a[1][k]);
     const auto [b_low, b_high] = std::minmax(b[0][k], b[1][k]);

@@ -10,7 +10,8 @@ BoundarySum::BoundarySum(const LrbRep& rep) : rep_(rep) {
   const std::size_t corners = d.face_vertices.size();
   edge_of_corner_.resize(corners);
   direction_.resize(corners);
-  // The ends of the edge that starts at each corner; in 2D a "corner" stands for itself, leaving or entering.
+  // The ends of the edge that starts at each corner. In 2D an "edge" is a vertex, which a segment leaves or
+  // enters.
   std::vector<std::pair<VertexId, VertexId>> ends(corners);
   for (FaceId f = 0; f < rep.face_count(); ++f) {
     const auto face = rep.face(f);

@@ -11,7 +11,7 @@
 namespace lrb {
 namespace {
 
-/// As PNG's: a byte beyond ASCII and line ends show a file that was sent as text.
+/// Made like PNG's: a byte beyond ASCII and line ends reveal a file that was transferred as text.
 constexpr std::string_view kMagic("\x89LRB\r\n\x1a\n", 8);
 
 /// The first version that holds the hash and the tree.
@@ -60,7 +60,7 @@ class Reader {
   std::vector<T> array() {
     const auto count = value<std::uint64_t>();
     if (count > (bytes_.size() - at_) / sizeof(T))
-      refuse("an array of " + std::to_string(count) + " elements does not fit into what is left of the file");
+      refuse("an array of " + std::to_string(count) + " elements does not fit into the rest of the file");
     std::vector<T> x(count);
     if (count != 0) std::memcpy(static_cast<void*>(x.data()), bytes_.data() + at_, count * sizeof(T));
     at_ += count * sizeof(T);
@@ -147,7 +147,7 @@ LrbRep load_lrb(std::string_view bytes, const std::string& name) {
   const auto hash = with_tree ? r.value<std::uint64_t>() : 0;
   auto nodes = with_tree ? r.array<TreeNode>() : std::vector<TreeNode>();
   auto blocks = with_tree ? r.array<LeafBlock>() : std::vector<LeafBlock>();
-  if (r.at() + sizeof stored != bytes.size()) r.refuse("there is more than a .lrb file holds");
+  if (r.at() + sizeof stored != bytes.size()) r.refuse("there are bytes after the end of the .lrb data");
   if (d.face_offsets.empty()) r.refuse("the offsets of the faces are missing");
   try {
     return with_tree ? LrbRep(std::move(d), std::move(nodes), std::move(blocks), hash) : LrbRep(std::move(d));

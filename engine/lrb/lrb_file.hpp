@@ -7,28 +7,29 @@
 
 namespace lrb {
 
-/// Version of the file form that save_lrb writes, and the newest that load_lrb reads.
+/// The version of the file format that save_lrb writes, and the newest that load_lrb reads.
 inline constexpr std::uint32_t kLrbFileVersion = 2;
 
-/// Writes an LRB-rep as a binary file (`.lrb`): magic, version, the arrays of LrbData each with its length,
-/// their hash, the query's tree, and a checksum over all of it (lrb_checksum()); little-endian. Version 1 had
-/// neither hash nor tree, and FNV-1a as its checksum. The file appears whole or not at all
-/// (EnvironmentError).
+/// Writes an LRB-rep to a binary file (`.lrb`): magic, version, the arrays of LrbData, each preceded by its
+/// length, their hash, the query's tree, and a checksum of everything before it (lrb_checksum());
+/// little-endian. Version 1 had neither hash nor tree, and FNV-1a as its checksum. The file appears whole or
+/// not at all. Throws EnvironmentError or InputError as AtomicFile does.
 void save_lrb(const LrbRep& rep, const std::string& path);
 
-/// Reads one back, of this version or an older one. The tree of a file whose checksum is right is believed to
-/// be the one that was stored: its structure is checked, its bounds only by validate(). InputError if it is
-/// damaged, cut short, of a newer version or not a `.lrb` at all; lengths are checked against the file's size
-/// before memory is taken.
+/// Reads an LRB-rep from a `.lrb` file of this version or an older one. If the checksum is right, the tree is
+/// trusted to be the one that was stored: its structure is checked, its bounds only by validate(). Throws
+/// InputError if the file is damaged, cut short, of a newer version or not a `.lrb` file at all. Lengths are
+/// checked against the file's size before memory is allocated.
 LrbRep load_lrb(const std::string& path);
 
-/// The same from memory; `name` stands for the file in messages.
+/// Does the same from memory; `name` stands for the file in messages.
 LrbRep load_lrb(std::string_view bytes, const std::string& name);
 
-/// The checksum that a file of this version has in its last eight bytes, over those before.
+/// Returns the checksum that a file of this version holds in its last eight bytes, computed over the bytes
+/// before.
 std::uint64_t lrb_checksum(std::string_view bytes, std::uint32_t version = kLrbFileVersion);
 
-/// Whether bytes begin like a `.lrb` file.
+/// Returns true if bytes begin like a `.lrb` file.
 bool looks_like_lrb(std::string_view bytes);
 
 }  // namespace lrb

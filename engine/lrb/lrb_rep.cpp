@@ -27,10 +27,10 @@ void check_face(const LrbData& d, FaceId f) {
     refuse(d, face + " has " + std::to_string(corners.size()) + " corners");
   for (const VertexId v : corners)
     if (v >= d.vertices.size())
-      refuse(d, face + " names vertex " + std::to_string(v) + ", which is not there");
+      refuse(d, face + " names vertex " + std::to_string(v) + ", which does not exist");
   const CellId inner = d.inner_cell[f], outer = d.outer_cell[f];
   const auto is_known = [&](CellId c) { return !is_region(c) || c < d.region_layer.size(); };
-  if (!is_known(inner) || !is_known(outer)) refuse(d, face + " names a region that is not there");
+  if (!is_known(inner) || !is_known(outer)) refuse(d, face + " names a region that does not exist");
   if ((inner == kSolid) != (f < d.real_face_count))
     refuse(d, face + " must have the solid behind it if and only if it is real");
   if (inner == kOutside || outer == kSolid || inner == outer || outer == kNull || inner == kNull)
@@ -49,14 +49,14 @@ void check(const LrbData& d) {
     refuse(d, "the offsets of the faces' corners are not ascending");
   for (std::size_t v = 0; v < d.vertices.size(); ++v) {
     if (!d.vertices[v].allFinite()) refuse(d, "vertex " + std::to_string(v) + " is not finite");
-    // The predicates of the plane do not look at z, but the tree's boxes do.
+    // The 2D predicates do not read z, but the tree's boxes do.
     if (d.dim == 2 && d.vertices[v].z() != 0)
       refuse(d, "vertex " + std::to_string(v) + " of a 2D body is not in the plane z = 0");
   }
   for (FaceId f = 0; f < faces; ++f) check_face(d, f);
 }
 
-/// Area of a face (2D: length), for comparing lids; unit squared (2D: unit).
+/// Returns the area of a face (2D: its length), for comparing lids; unit squared (2D: unit).
 double face_size(const LrbData& d, FaceId f) {
   const auto c = d.face(f);
   if (d.dim == 2) return (d.vertices[c[1]] - d.vertices[c[0]]).norm();
@@ -86,7 +86,7 @@ SimplexView LrbRep::simplices() const {
           }};
 }
 
-/// All but the tree and the hash.
+/// Derives everything but the tree and the hash.
 void LrbRep::derive() {
   check(d_);
   link_faces_to_regions();
@@ -158,7 +158,7 @@ void LrbRep::find_parents() {
     CellId c = r;
     for (; is_region(c) && depth_[c] == 0; c = parent_[c]) {
       path.push_back(c);
-      if (path.size() > regions) refuse(d_, "region " + std::to_string(r) + " is hidden by itself");
+      if (path.size() > regions) refuse(d_, "region " + std::to_string(r) + " hides itself");
     }
     std::uint32_t depth = is_region(c) ? depth_[c] : 0;
     for (; !path.empty(); path.pop_back()) depth_[path.back()] = ++depth;

@@ -2,19 +2,20 @@
 /// The LRB-rep: a body as a complex of cells (C. Gonzalez-Ochoa, "2-Body Collision Detection using LRB-reps",
 /// section 2).
 ///
-/// Cells are the *solid*, the *outside* and the *regions* between them. Every face has one cell on each side:
-/// its inner cell behind it and its outer cell in front of it (the side its normal points to; its corners run
-/// counter-clockwise seen from there). *Real* faces, those of the mesh, have the solid behind them; *pseudo*
-/// faces have a region behind them and hide what is in it. A region's *face-collector* lists its faces: its
-/// *lids* (the faces it stands behind) and its *floor* (the faces it stands in front of). A region may have
-/// zero volume.
+/// The cells are the *solid*, the *outside* and the *regions* between them. Every face has one cell on each
+/// side: its inner cell behind it and its outer cell in front of it (on the side that its normal points to;
+/// its corners run counter-clockwise seen from there). *Real* faces, those of the mesh, have the solid behind
+/// them; *pseudo* faces have a region behind them and hide what is in it. A region's *face-collector* lists
+/// its faces: its *lids* (the faces that it lies behind) and its *floor* (the faces that it lies in front
+/// of). A region may have zero volume.
 ///
-/// Static once built; const and without caches, so that threads and bodies can share one.
+/// An LRB-rep does not change once built; it is const and has no caches, so that threads and bodies can share
+/// one.
 ///
-/// Departure from the paper: cells keep "inner" and "outer" per face instead of an unordered pair, which
-/// costs nothing and makes "which cell hides which" a look-up. A mesh that cannot be abstracted (open,
-/// non-manifold) is held as an LRB-rep without regions: it can be queried exactly, but only a closed one has
-/// an inside.
+/// It departs from the paper in one point: each face keeps an "inner" and an "outer" cell instead of an
+/// unordered pair, which costs nothing and makes "which cell hides which" a look-up. A mesh that cannot be
+/// abstracted (open, non-manifold) is held as an LRB-rep without regions: it can be queried exactly, but only
+/// a closed one has an inside.
 
 #include <cstdint>
 #include <span>
@@ -36,12 +37,13 @@ struct LrbData {
   std::vector<Eigen::Vector3d> vertices;          ///< (|V| x 3): the mesh's, then those of pseudo faces
   std::vector<std::uint32_t> face_offsets = {0};  ///< (|F| + 1)
   std::vector<VertexId> face_vertices;
-  std::uint32_t real_face_count = 0;        ///< faces [0, real_face_count) are real, in the mesh's order
-  std::vector<CellId> inner_cell;           ///< (|F|): kSolid (real) or a region (pseudo)
-  std::vector<CellId> outer_cell;           ///< (|F|): a region or kOutside
-  std::vector<std::uint16_t> region_layer;  ///< (|R|): the builder's pass that made it; 0 lies on the solid
-  bool closed = false;                      ///< the real faces bound a solid: inside has a meaning
-  bool self_intersecting = false;           ///< the solid overlaps itself (inside is then by parity)
+  std::uint32_t real_face_count = 0;  ///< faces [0, real_face_count) are real, in the mesh's order
+  std::vector<CellId> inner_cell;     ///< (|F|): kSolid (real) or a region (pseudo)
+  std::vector<CellId> outer_cell;     ///< (|F|): a region or kOutside
+  /// (|R|): the builder's pass that made the region; 0 lies on the solid.
+  std::vector<std::uint16_t> region_layer;
+  bool closed = false;             ///< the real faces bound a solid, so that "inside" has a meaning
+  bool self_intersecting = false;  ///< the solid overlaps itself ("inside" is then by parity)
   std::string name;
 
   std::size_t face_count() const { return face_offsets.size() - 1; }
@@ -50,18 +52,20 @@ struct LrbData {
   }
 };
 
-/// FNV-1a 64 over the arrays.
+/// Returns the FNV-1a hash (64 bits) of all members but the name.
 std::uint64_t hash_of(const LrbData& data);
 
 class LrbRep {
  public:
-  /// Checks the arrays against each other (throws InputError naming the element), derives collectors, parents
-  /// and the query's tree, this on so many threads (see BuildOptions).
+  /// Checks the arrays against each other (throws InputError naming the element) and derives collectors,
+  /// parents and the query's tree, the tree on `threads` threads (see BuildOptions).
   explicit LrbRep(LrbData data, unsigned threads = 1);
-  /// The same with what took long to derive, stored: the tree's nodes and blocks, and hash_of(data). Both are
-  /// checked only as far as safety goes (see ObbTree); that they belong to the data is the caller's word.
+  /// Does the same, given what takes long to derive: the tree's nodes and blocks, and hash_of(data), as they
+  /// were stored. Both are checked only as far as safety requires (see ObbTree); the caller vouches that they
+  /// belong to the data.
   LrbRep(LrbData data, std::vector<TreeNode> nodes, std::vector<LeafBlock> blocks, std::uint64_t hash);
-  /// A body without regions: its outermost wrapper is itself. `closed` as found by check_mesh().
+  /// Makes a body without regions: its outermost wrapper is the body itself. `closed` is as check_mesh()
+  /// finds it.
   static LrbRep without_regions(const Mesh& mesh, bool closed, bool self_intersecting);
 
   int dim() const { return d_.dim; }
@@ -77,27 +81,28 @@ class LrbRep {
   std::span<const VertexId> face(FaceId f) const { return d_.face(f); }
   CellId inner_cell(FaceId f) const { return d_.inner_cell[f]; }
   CellId outer_cell(FaceId f) const { return d_.outer_cell[f]; }
-  /// One real vertex of each connected piece of the real surface (pieces joined by a vertex count as one).
+  /// Returns one real vertex of each connected piece of the real surface (pieces joined by a vertex count as
+  /// one).
   std::span<const VertexId> component_vertices() const { return component_vertices_; }
-  /// Faces in front of which lies the outside: the boundary of the outermost wrapper.
+  /// Returns the faces that have the outside in front of them: the boundary of the outermost wrapper.
   std::span<const FaceId> outermost_faces() const { return outermost_; }
 
   std::uint32_t region_count() const { return static_cast<std::uint32_t>(d_.region_layer.size()); }
-  /// All faces of a region: its lids, then its floor.
+  /// Returns all faces of a region: its lids, then its floor.
   std::span<const FaceId> collector(RegionId r) const {
     return {collector_faces_.data() + collector_offsets_[r],
             collector_offsets_[r + 1] - collector_offsets_[r]};
   }
-  /// Faces that hide the region (it is their inner cell).
+  /// Returns the faces that hide the region (it is their inner cell).
   std::span<const FaceId> lids(RegionId r) const { return collector(r).first(lid_count_[r]); }
-  /// Faces that the region hides (it is their outer cell).
+  /// Returns the faces that the region hides (it is their outer cell).
   std::span<const FaceId> floor(RegionId r) const { return collector(r).subspan(lid_count_[r]); }
   std::uint16_t layer(RegionId r) const { return d_.region_layer[r]; }
-  /// Number of builder's passes: 1 + the largest layer, 0 without regions.
+  /// Returns the number of the builder's passes: 1 + the largest layer, 0 without regions.
   std::uint32_t layer_count() const { return layer_count_; }
-  /// The outer neighbour (a region or kOutside) with the most lid area in common.
+  /// Returns the outer neighbour (a region or kOutside) with which the region shares the most lid area.
   CellId parent(RegionId r) const { return parent_[r]; }
-  /// Steps from the outside along parents: 1 for a region whose parent is the outside.
+  /// Returns the number of steps from the outside along parents: 1 for a region whose parent is the outside.
   std::uint32_t depth(RegionId r) const { return depth_[r]; }
 
   /// Simplices: the triangles of each face's fan from its first corner (2D: its segment), numbered face by
@@ -105,7 +110,7 @@ class LrbRep {
   std::uint32_t simplex_count() const;
   std::uint32_t real_simplex_count() const;
   bool is_real_simplex(SimplexId s) const { return is_real(face_of_simplex(s)); }
-  /// Corners per simplex: 3, or 2 in 2D.
+  /// Returns the number of corners of a simplex: 3, or 2 in 2D.
   int simplex_size() const { return d_.dim; }
   FaceId face_of_simplex(SimplexId s) const { return s < whole_faces_ ? s : face_of_simplex_[s]; }
   SimplexId first_simplex(FaceId f) const {
@@ -128,15 +133,15 @@ class LrbRep {
     out[2] = corners[i + 2];
   }
 
-  /// Returns the simplices as the tree sees them; refers to this LRB-rep.
+  /// Returns the simplices as the tree sees them; the view refers to this LRB-rep.
   SimplexView simplices() const;
   const ObbTree& tree() const { return tree_; }
-  /// hash_of(data()): names this very complex in traces and files.
+  /// Returns hash_of(data()), which identifies this very complex in traces and files.
   std::uint64_t hash() const { return hash_; }
-  /// Differs between any two LRB-reps made in this process (copies share it): lets caches notice a new body
-  /// at an old address.
+  /// Returns a number that differs between any two LRB-reps made in this process (copies share it), so that
+  /// caches notice a new body at an old address.
   std::uint64_t serial() const { return serial_; }
-  /// Bytes held, all arrays and the tree.
+  /// Returns the memory held by all arrays and the tree, in bytes.
   std::size_t memory_bytes() const;
 
  private:
@@ -153,8 +158,8 @@ class LrbRep {
   std::vector<std::uint32_t> lid_count_;  ///< (|R|)
   std::vector<CellId> parent_;            ///< (|R|)
   std::vector<std::uint32_t> depth_;      ///< (|R|)
-  std::uint32_t whole_faces_ = 0;         ///< so many faces, from the first on, are one simplex each
-  std::vector<FaceId> face_of_simplex_;   ///< empty if all faces are
+  std::uint32_t whole_faces_ = 0;         ///< this many faces, counted from the first, are one simplex each
+  std::vector<FaceId> face_of_simplex_;   ///< (simplices) empty if every face is one simplex
   std::uint32_t layer_count_ = 0;
   std::uint64_t hash_ = 0;
   std::uint64_t serial_ = 0;

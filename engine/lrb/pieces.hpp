@@ -9,8 +9,8 @@ namespace lrb {
 
 class LrbRep;
 
-/// One vertex of each connected piece of some faces, in the order of the faces. Faces joined by a vertex
-/// count as one piece.
+/// Returns one vertex of each connected piece of the given faces, in the order of the faces. Faces joined by
+/// a vertex count as one piece.
 std::vector<VertexId> piece_vertices(const LrbRep& rep, std::span<const FaceId> faces);
 
 }  // namespace lrb

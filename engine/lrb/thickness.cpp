@@ -16,11 +16,13 @@ using Eigen::Vector3d;
 using Triangle = std::array<Vector3d, 3>;  // 2D: the second corner twice
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-/// A lid is cut no more than this often, and not where the bound is this close to what is certain.
+/// A lid's triangle is cut at most this many times, and not where the bound is within this factor of a value
+/// that is certain.
 constexpr int kMostCuts = 3;
 constexpr double kTight = 1.25;
 
-/// Distance to some point of the segment, the nearest but for rounding: never less than the distance.
+/// Returns the distance to some point of the segment, the nearest but for rounding: never less than the true
+/// distance.
 double distance_to_segment(const Vector3d& p, const Vector3d& a, const Vector3d& b) {
   const Vector3d d = b - a;
   const double square = d.squaredNorm();
@@ -28,7 +30,7 @@ double distance_to_segment(const Vector3d& p, const Vector3d& a, const Vector3d&
   return (p - (a + s * d)).norm();
 }
 
-/// The same for a triangle.
+/// Does the same for a triangle.
 double distance_to(const Vector3d& p, const Triangle& t) {
   const Vector3d u = t[1] - t[0], v = t[2] - t[0], w = p - t[0], n = u.cross(v);
   const double area_sq = n.squaredNorm();
@@ -42,10 +44,10 @@ double distance_to(const Vector3d& p, const Triangle& t) {
 
 struct Target {
   Triangle triangle;
-  double off;  ///< from any of its points to a real face, at most
+  double off;  ///< bound on the distance from any of its points to a real face
 };
 
-/// Works in units, so that squares neither overflow nor vanish.
+/// Computes the thickness of all regions. Works in units, so that squares neither overflow nor vanish.
 class ThicknessFinder {
  public:
   explicit ThicknessFinder(const LrbRep& rep)
@@ -65,7 +67,8 @@ class ThicknessFinder {
  private:
   enum class State : std::uint8_t { unknown, at_work, known };
 
-  /// Regions under the floor first. On a stack of its own: layers can be many.
+  /// Measures a region, and first the regions under its floor. Uses a stack of its own, because there can be
+  /// many layers.
   void find(RegionId root) {
     std::vector<RegionId> stack = {root};
     while (!stack.empty()) {
@@ -87,7 +90,8 @@ class ThicknessFinder {
     }
   }
 
-  /// A region under the floor that is still at work hides this one in turn: its bound is infinite then.
+  /// Measures a region from what is known of the regions under its floor. One of these that is still at work
+  /// hides this region in turn: its bound is still infinite then.
   void measure(RegionId r) {
     targets_.clear();
     double floor_off = 0;
@@ -104,7 +108,8 @@ class ThicknessFinder {
     inside_[r] = std::max(off_[r], floor_off) + half_width(r);
   }
 
-  /// Bound of what a lid's triangle is off, or `enough` if that is more.
+  /// Returns a bound on the distance from any point of a lid's triangle to a real face, or `enough` if that
+  /// is larger.
   double lid_off(const Triangle& t, double enough, int cuts) {
     double bound = kInfinity;
     std::array<double, 3> at_corner = {kInfinity, kInfinity, kInfinity};
@@ -128,7 +133,7 @@ class ThicknessFinder {
     return std::min(worst, std::max(bound, enough));
   }
 
-  /// Half the least width among the axes and the mean direction of the lids.
+  /// Returns half the region's least width along the axes and the mean direction of the lids.
   double half_width(RegionId r) const {
     Vector3d normal = Vector3d::Zero();
     for (const FaceId f : rep_.lids(r))
@@ -169,7 +174,8 @@ class ThicknessFinder {
   const LrbRep& rep_;
   double unit_;
   std::vector<State> state_;
-  std::vector<double> off_, inside_;  ///< units: from its lids, from any point of it
+  /// Units: bounds from any point of the region's lids, and from any point of the region.
+  std::vector<double> off_, inside_;
   std::vector<Target> targets_;
 };
 

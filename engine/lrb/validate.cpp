@@ -49,7 +49,7 @@ class Validator {
     if (report_.violation_count++ < options_.max_messages) report_.violations.push_back(text);
   }
 
-  /// What a file stores beside the complex.
+  /// Checks what a file stores beside the complex.
   void check_derived() {
     if (!rep_.tree().bounds_hold(rep_.simplices()))
       violation("the query's tree has bounds that do not hold its faces");
@@ -81,7 +81,8 @@ class Validator {
       check_closed("region " + std::to_string(r));
       volume_.push_back(region_volume(rep_, r));
       report_.volume_regions += volume_.back();
-      // Where a solid overlaps itself its volume counts twice, and a region about it may owe the difference.
+      // Where a solid overlaps itself, its volume counts twice, and a region around it may have to make up
+      // for that.
       if (volume_.back() < -noise && !rep_.self_intersecting())
         violation("region " + std::to_string(r) + " has the negative volume " +
                   std::to_string(volume_.back()));
@@ -97,7 +98,7 @@ class Validator {
       violation("volumes of solid and regions miss the outermost wrapper's by " + std::to_string(gap));
   }
 
-  /// All faces of the complex as one body's real faces.
+  /// Returns a body whose real faces are all faces of the complex.
   LrbRep complex_as_soup() const {
     LrbData d = rep_.data();
     d.real_face_count = rep_.face_count();
@@ -170,7 +171,7 @@ class Validator {
     return c;
   }
 
-  /// Tests pairs at once, and reports on them in order; empties the list.
+  /// Tests many pairs at the same time, then reports on them in order; empties the list.
   void judge(const LrbRep& soup, std::vector<Pair>& pairs) {
     workers_.for_each((pairs.size() + kPairsShared - 1) / kPairsShared, [&](std::size_t i, unsigned) {
       const std::size_t end = std::min(pairs.size(), (i + 1) * kPairsShared);
@@ -200,8 +201,8 @@ class Validator {
     }
   }
 
-  /// The lid hides the face, which touches it from behind and goes nowhere beyond its plane: where a rim lies
-  /// in the lid's plane, what lies behind has no thickness there.
+  /// Returns true if the lid hides the face and the face touches it from behind, nowhere going beyond the
+  /// lid's plane: where a rim lies in the lid's plane, what lies behind the lid has no thickness there.
   bool touches_from_behind(FaceId lid, FaceId face, const double* const* cl, const double* const* cf) const {
     if (!hides(lid, face)) return false;
     for (int k = 0; k < rep_.dim(); ++k) {
@@ -223,7 +224,7 @@ class Validator {
     if (rep_.region_count() == 0 || !rep_.closed()) return;
     std::mt19937_64 random(options_.seed);
     for (std::uint32_t state = 0; state < options_.wrapper_states; ++state) {
-      // Shares of excluded regions from almost none to all, so that states near both ends occur.
+      // Vary the share of excluded regions from almost none to all, so that states near both ends occur.
       const double share = std::pow(std::generate_canonical<double, 53>(random), 2);
       Wrapper w(rep_);
       double volume = report_.volume_outer;
@@ -242,8 +243,8 @@ class Validator {
     std::vector<bool> touched(rep_.vertices().size(), false);
     std::vector<FaceId> as_is, reversed;
     for (const FaceId f : boundary) {
-      // With a region included in front of a face but not behind it, the wrapper's boundary shows the face's
-      // back.
+      // Where the region in front of a face is included but the cell behind it is not, the boundary of the
+      // wrapper shows the back of the face.
       const bool outward = w.included(rep_.inner_cell(f));
       outward ? sum_.add(f) : sum_.add_reversed(f);
       (outward ? as_is : reversed).push_back(f);
@@ -254,7 +255,7 @@ class Validator {
     if (std::abs(enclosed_volume(rep_, as_is, reversed) - volume) >
         kVolumeRounding * std::abs(report_.volume_outer))
       violation(name + " encloses a volume other than that of its cells");
-    // A self-intersecting solid has vertices inside itself that parity calls outside.
+    // A self-intersecting solid has vertices inside itself that are outside by parity.
     if (!rep_.self_intersecting()) check_enclosure(boundary, touched, name, random);
   }
 
@@ -268,7 +269,7 @@ class Validator {
     }
   }
 
-  /// The vertex lies behind the boundary or on it.
+  /// Returns true if the vertex lies behind the boundary or on it.
   bool holds(const std::vector<FaceId>& boundary, VertexId v) const {
     const double* p = rep_.vertices()[v].data();
     bool inside = false, on_face = false;

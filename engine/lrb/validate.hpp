@@ -1,6 +1,5 @@
 #pragma once
-/// Proof, or refutation, of what an LRB-rep promises. Slow and exact; for tests, `inspect --validate` and
-/// builders.
+/// Proves or refutes what an LRB-rep promises. Slow and exact; for tests, `inspect --validate` and builders.
 
 #include <cstdint>
 #include <span>
@@ -12,40 +11,42 @@
 namespace lrb {
 
 struct ValidateOptions {
-  bool embedding = true;               ///< test every pair of faces of the complex exactly
-  std::uint32_t wrapper_states = 100;  ///< random wrapper states checked for closedness, volume and enclosure
+  bool embedding = true;  ///< test every pair of faces of the complex exactly
+  /// Random wrapper states to check for closedness, volume and enclosure.
+  std::uint32_t wrapper_states = 100;
   std::uint64_t seed = 1;
   std::uint32_t max_messages = 20;
-  unsigned threads = 1;  ///< 0: as many as the machine runs at once. No matter for the report
+  unsigned threads = 1;  ///< 0: as many as the machine runs at once. The report does not depend on it
 };
 
 struct ValidateReport {
-  bool valid = true;                    ///< no violation below; faults of the input are not violations
-  std::vector<std::string> violations;  ///< one line each, naming region and faces; at most max_messages
+  bool valid = true;  ///< there are no violations; faults of the input are not violations
+  /// One line each, naming region and faces; at most max_messages lines.
+  std::vector<std::string> violations;
   std::uint64_t violation_count = 0;
   std::uint64_t real_pairs_meeting =
-      0;  ///< pairs of real simplices that meet outside shared parts: the input's fault
+      0;  ///< pairs of real simplices that meet outside shared parts: faults of the input
   std::uint64_t flat_pairs =
-      0;  ///< faces that touch, but do not pass, a lid that hides them: zero volume, allowed
+      0;  ///< faces that touch, but do not pass through, a lid that hides them: zero volume, allowed
   std::uint64_t embedding_pairs = 0;                              ///< pairs of simplices tested exactly
   std::uint32_t states = 0;                                       ///< wrapper states checked
   double volume_solid = 0, volume_regions = 0, volume_outer = 0;  ///< unit cubed (2D: squared)
-  double volume_error = 0;  ///< |solid + regions - outer| / outer; rounding only, as the sum telescopes
+  double volume_error = 0;  ///< |solid + regions - outer| / outer; only rounding, because the sum telescopes
 };
 
-/// Invariants, weakest first: every region and the solid closed, with volume >= 0 (to rounding); volumes of
-/// solid and regions add up to the outermost wrapper's; no two faces of the complex meet but in shared
-/// vertices and edges (this is the proof of embedding; a face that touches a lid which hides it, and stays
-/// behind it, is counted apart); every random wrapper state is closed, has the volume of its cells, and holds
-/// real vertices that it does not touch strictly inside. Beside them, what a file stores to save time: the
-/// hash, and the bounds of the query's tree.
+/// Checks the invariants of an LRB-rep, weakest first: every region and the solid are closed, with volume >=
+/// 0 (to rounding); the volumes of solid and regions add up to the outermost wrapper's; no two faces of the
+/// complex meet except in shared vertices and edges (this is the proof of embedding; a face that touches a
+/// lid which hides it, and stays behind it, is counted separately); every random wrapper state is closed, has
+/// the volume of its cells, and holds strictly inside the real vertices that it does not touch. Also checks
+/// what a file stores to save time: the hash, and the bounds of the query's tree.
 ValidateReport validate(const LrbRep& rep, const ValidateOptions& options = {});
 
-/// Signed volume (2D: area) behind a closed set of faces: those of `outward` taken with their normal outward,
-/// those of `inward` seen from their other side; unit cubed (2D: squared).
+/// Returns the signed volume (2D: area) behind a closed set of faces: those of `outward` taken with their
+/// normal outward, those of `inward` seen from their other side; unit cubed (2D: squared).
 double enclosed_volume(const LrbRep& rep, std::span<const FaceId> outward,
                        std::span<const FaceId> inward = {});
-/// Volume of a region: behind its lids and in front of its floor.
+/// Returns the volume of a region: behind its lids and in front of its floor.
 double region_volume(const LrbRep& rep, RegionId r);
 
 }  // namespace lrb

@@ -5,8 +5,8 @@
 namespace lrb {
 namespace {
 
-/// Volume of the cone from `origin` over a face (2D: area of the triangle), positive if the face looks away
-/// from it. The origin is near the faces, so that bodies far from zero keep their digits.
+/// Returns the volume of the cone from `origin` over a face (2D: the area of the triangle), positive if the
+/// face looks away from it. The origin is near the faces, so that bodies far from zero keep their digits.
 double cone(const LrbRep& rep, FaceId f, const Eigen::Vector3d& origin) {
   const auto corners = rep.face(f);
   const auto at = [&](std::size_t i) -> Eigen::Vector3d { return rep.vertices()[corners[i]] - origin; };

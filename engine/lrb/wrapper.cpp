@@ -13,7 +13,7 @@ Wrapper::Wrapper(const LrbRep& rep, WrapperMode mode)
 void Wrapper::reset() {
   order_.clear();
   excluded_count_ = 0;
-  if (++epoch_ == 0) {  // after 2^32 resets the stamps of the first epoch would look fresh
+  if (++epoch_ == 0) {  // after 2^32 resets the stamps of the first epoch would look current
     std::fill(region_stamp_.begin(), region_stamp_.end(), 0);
     std::fill(discarded_stamp_.begin(), discarded_stamp_.end(), 0);
     epoch_ = 1;
@@ -49,7 +49,7 @@ bool Wrapper::coarsen(RegionId r) {
   --excluded_count_;
   if (mode_ == WrapperMode::unregularised)
     for (const FaceId lid : rep_->lids(r)) discarded_stamp_[lid] = 0;
-  // Usually the last one refined is taken back first.
+  // The region refined last is usually the first to be taken back.
   const auto last = std::find(order_.rbegin(), order_.rend(), r);
   order_.erase(std::next(last).base());
   return true;
@@ -62,7 +62,8 @@ void Wrapper::refine_all() {
 bool Wrapper::on_boundary(FaceId f) const {
   if (mode_ == WrapperMode::regularised)
     return included(rep_->inner_cell(f)) != included(rep_->outer_cell(f));
-  // A lid is there as long as what it lies in was brought in and it was not discarded itself.
+  // A face is on the boundary once the cell in front of it is not included, unless it is a lid that was
+  // discarded itself.
   return !included(rep_->outer_cell(f)) && (rep_->is_real(f) || discarded_stamp_[f] != epoch_);
 }
 

@@ -1,9 +1,10 @@
 #pragma once
 /// The wrapper: which regions of an LRB-rep currently count as part of the body (the paper's section 3).
 ///
-/// Its boundary is the approximation that a query works on. All regions included: the outermost wrapper, a
-/// handful of faces. All excluded: exactly the real faces. Refining a region excludes it; nothing in the
-/// LRB-rep changes. State is a stamp per region, so that reset() costs O(1) and a query O(what it opened).
+/// Its boundary is the approximation that a query works on. With all regions included it is the outermost
+/// wrapper, a handful of faces; with all excluded, exactly the real faces. Refining a region excludes it;
+/// nothing in the LRB-rep changes. The state is one stamp per region, so that reset() costs O(1) and a query
+/// O(regions it opened).
 
 #include <cstdint>
 #include <vector>
@@ -30,28 +31,30 @@ class Wrapper {
   const LrbRep& rep() const { return *rep_; }
   WrapperMode mode() const { return mode_; }
 
-  /// Back to the outermost wrapper, in O(1).
+  /// Goes back to the outermost wrapper, in O(1).
   void reset();
   bool included(CellId cell) const {  ///< the solid always is, the outside never
     return is_region(cell) ? region_stamp_[cell] != epoch_ : cell == kSolid;
   }
-  /// Excludes a region; false if it was excluded already.
+  /// Excludes a region. Returns false if it was excluded already.
   bool refine(RegionId r);
-  /// Refines the region behind a face. regularised: refine(inner_cell(f)). unregularised: discards f; adds
-  /// the floor if this is the first of the region's lids. False if f is real or not on the boundary.
+  /// Refines the region behind a face. regularised: refine(inner_cell(f)). unregularised: discards f, and
+  /// adds the floor if f is the first of the region's lids to be refined. Returns false if f is real or not
+  /// on the boundary.
   bool refine_face(FaceId f);
-  /// Takes a region back in: the reverse of refine(). False if it is included already. In unregularised mode
-  /// its lids come back and its floor goes.
+  /// Takes a region back in: the reverse of refine(). Returns false if it is included already. In
+  /// unregularised mode its lids come back and its floor goes.
   bool coarsen(RegionId r);
   void refine_all();
 
   bool on_boundary(FaceId f) const;
-  /// The faces of the boundary, ascending. O(n log n) in the outermost faces and those of the excluded
-  /// regions.
+  /// Returns the faces of the boundary, ascending. O(n log n) in the number of outermost faces and of faces
+  /// of the excluded regions.
   std::vector<FaceId> boundary() const;
-  /// How many those are. Counted anew at each call: refine() stays O(1), which is what a query needs.
+  /// Returns the number of faces of the boundary. Counts them anew at each call: this keeps refine() at O(1),
+  /// which is what a query needs.
   std::size_t boundary_size() const { return boundary().size(); }
-  /// The excluded regions in the order in which they were refined.
+  /// Returns the excluded regions in the order in which they were refined.
   const std::vector<RegionId>& excluded() const { return order_; }
   std::uint32_t excluded_count() const { return excluded_count_; }
 

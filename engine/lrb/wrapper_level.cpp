@@ -11,10 +11,11 @@
 namespace lrb {
 namespace {
 
-constexpr std::size_t kMostLevels = 24;  // kept; a sweep over tolerances would hold one more each
+// The number of levels kept; without a limit, a sweep over tolerances would keep one for each.
+constexpr std::size_t kMostLevels = 24;
 
-/// The largest thickness among a region and all that it hides: in the order of a worklist until nothing
-/// grows.
+/// Returns, for each region, the largest thickness among the region and all that it hides. Passes values
+/// outward until none grows.
 std::vector<double> needed_tolerances(const LrbRep& rep) {
   std::vector<double> needed = region_thickness(rep);
   std::vector<RegionId> work(rep.region_count());

@@ -1,5 +1,5 @@
 #pragma once
-/// All pairs of boxes of one set that meet: a balanced tree of boxes descended against itself.
+/// Finds all pairs of boxes of one set that meet: descends a balanced tree of boxes against itself.
 
 #include <algorithm>
 #include <cstdint>
@@ -17,7 +17,7 @@ using Box = Eigen::AlignedBox3d;
 
 class BoxTree {
  public:
-  /// Empty boxes meet nothing and are left out.
+  /// Builds the tree. Leaves out empty boxes, which meet nothing.
   explicit BoxTree(const std::vector<Box>& boxes) : boxes_(boxes) {
     for (std::uint32_t i = 0; i < boxes.size(); ++i)
       if (!boxes[i].isEmpty()) items_.push_back(i);
@@ -50,7 +50,7 @@ class BoxTree {
   void for_each_pair(Visit&& visit) const {
     if (!nodes_.empty()) within(0, visit);
   }
-  /// The same, with calls from several threads at once.
+  /// Does the same, with calls from several threads at once.
   template <class Visit>
   void for_each_pair(Visit&& visit, Workers& workers) const {
     if (!nodes_.empty()) within_shared(0, visit, workers);
@@ -62,7 +62,7 @@ class BoxTree {
   struct Node {
     Box box;
     std::uint32_t first, last;  ///< items
-    std::uint32_t right;        ///< child; the left one follows its parent. 0: leaf
+    std::uint32_t right;        ///< the right child; the left one follows its parent. 0: leaf
   };
 
   std::uint32_t build(std::uint32_t first, std::uint32_t last) {
@@ -77,7 +77,7 @@ class BoxTree {
     const std::uint32_t middle = first + (last - first) / 2;
     std::nth_element(items_.begin() + first, items_.begin() + middle, items_.begin() + last,
                      [&](std::uint32_t i, std::uint32_t j) {
-                       // Halved before they are added: no overflow.
+                       // Halve before adding, against overflow.
                        const double a = boxes_[i].min()[axis] / 2 + boxes_[i].max()[axis] / 2;
                        const double b = boxes_[j].min()[axis] / 2 + boxes_[j].max()[axis] / 2;
                        return a != b ? a < b : i < j;

@@ -12,12 +12,12 @@
 namespace lrb {
 namespace {
 
-/// Offenders kept per fault: enough to find the place, few enough to read.
+/// Number of offenders kept per fault: enough to find the place, few enough to read.
 constexpr std::size_t kKept = 8;
 
-/// The first vertex that a face names twice, kNull if there is none.
+/// Returns a vertex that a face names twice, kNull if there is none.
 VertexId repeated_corner(std::span<const VertexId> corners, std::vector<VertexId>& sorted) {
-  if (corners.size() == 3) {  // nearly every face there is
+  if (corners.size() == 3) {  // nearly every face is a triangle
     if (corners[0] == corners[1] || corners[0] == corners[2]) return corners[0];
     return corners[1] == corners[2] ? corners[1] : kNull;
   }
@@ -65,7 +65,7 @@ FaceUse check_face(const Mesh& mesh, FaceId f, const std::vector<bool>& finite,
   return twice == kNull ? use : std::min(use, FaceUse::area);
 }
 
-/// Faces in order of their sorted corners: equal ones become neighbours, the earlier one first.
+/// Sorts faces by their sorted corners: equal ones become neighbours, the earlier one first.
 class CornerSets {
  public:
   CornerSets(const Mesh& mesh, const std::vector<FaceUse>& use) : offsets_(mesh.face_offsets) {

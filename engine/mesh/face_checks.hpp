@@ -1,5 +1,5 @@
 #pragma once
-/// What can be said of a mesh's faces one by one, and of faces with the same corners. Exact.
+/// Checks a mesh's faces one by one, and finds faces with the same corners. Exact.
 
 #include <cstdint>
 #include <vector>
@@ -9,9 +9,9 @@
 
 namespace lrb {
 
-/// What a face is good for; each includes those before it.
+/// What a face can be used for; each use includes those before it.
 enum class FaceUse : std::uint8_t {
-  nothing,   ///< it names a vertex that is not there
+  nothing,   ///< it names a vertex that does not exist
   topology,  ///< its corners exist, but one is not finite
   points,    ///< its corners are finite, but it has no area (2D: no length), or too few different corners
   area,      ///< it is a proper face, perhaps neither planar nor convex
@@ -19,7 +19,7 @@ enum class FaceUse : std::uint8_t {
 };
 
 /// Notes non-finite vertices, bad indices, repeated corners, faces without area, planarity and convexity in
-/// the report, and says what each face can be used for.
+/// the report. Returns what each face can be used for.
 std::vector<FaceUse> check_faces(const Mesh& mesh, MeshReport& report);
 
 /// Notes faces that have the same set of corners as an earlier one.
@@ -28,7 +28,7 @@ void check_duplicates(const Mesh& mesh, const std::vector<FaceUse>& use, MeshRep
 /// Notes vertices that no face names, and those with the coordinates of an earlier one.
 void check_vertices(const Mesh& mesh, MeshReport& report);
 
-/// Counts a finding and keeps the element(s) if it is among the first few.
+/// Counts a finding, and keeps the element(s) if it is among the first few.
 void note(MeshReport& report, MeshFault fault, std::uint32_t first, std::uint32_t second = kNull);
 
 }  // namespace lrb

@@ -1,5 +1,5 @@
 #pragma once
-/// A polygon mesh as it came from a file: flat arrays, nothing repaired.
+/// A polygon mesh as read from a file: flat arrays, nothing repaired.
 
 #include <cstddef>
 #include <cstdint>
@@ -30,7 +30,8 @@ struct Mesh {
     face_vertices.insert(face_vertices.end(), corners.begin(), corners.end());
     face_offsets.push_back(static_cast<std::uint32_t>(face_vertices.size()));
   }
-  /// Simplices of a face with `corners` corners: the triangles of its fan from the first corner; in 2D, itself.
+  /// Returns the number of simplices of a face with `corners` corners: the triangles of its fan from the
+  /// first corner; in 2D 1, the segment itself.
   static std::size_t simplices_of(std::size_t corners, int dim) { return dim == 2 ? 1 : corners - 2; }
 };
 

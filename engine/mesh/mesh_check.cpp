@@ -13,8 +13,8 @@
 namespace lrb {
 namespace {
 
-/// Turns a face round. A triangle keeps its first corner and a quad starts at its third, so that the
-/// triangles of its fan keep their numbers; those of larger polygons are numbered from the other end.
+/// Reverses a face. A triangle keeps its first corner and a quad starts at its third, so that the triangles
+/// of its fan keep their numbers; those of larger polygons are numbered from the other end.
 void turn(Mesh& mesh, FaceId f) {
   const auto first = mesh.face_vertices.begin() + mesh.face_offsets[f];
   const auto last = mesh.face_vertices.begin() + mesh.face_offsets[f + 1];
@@ -26,7 +26,8 @@ void turn(Mesh& mesh, FaceId f) {
   if (last - first == 4) std::rotate(first, first + 2, last);
 }
 
-/// Whether the directed edges (2D: ends of segments) cancel: the boundary of the faces, as a sum, is empty.
+/// Returns true if the directed edges (2D: ends of segments) cancel: the boundary of the faces, as a sum, is
+/// empty.
 bool is_cycle(const Mesh& mesh, const std::vector<FaceUse>& use) {
   std::map<std::array<VertexId, 2>, std::int64_t> sum;
   for (FaceId f = 0; f < mesh.face_count(); ++f) {

@@ -1,5 +1,5 @@
 #pragma once
-/// What is wrong with a mesh, by name: nothing is repaired silently.
+/// Checks a mesh and names its faults: nothing is repaired silently.
 
 #include <array>
 #include <cstdint>
@@ -10,12 +10,12 @@
 
 namespace lrb {
 
-/// Every fault a mesh can have. MESH_FAULT(enumerator, what it says, can still be built?, can still be
-/// queried?)
+/// Every fault that a mesh can have.
+/// MESH_FAULT(enumerator, what it says, can still be built?, can still be queried?)
 #define LRB_MESH_FAULTS(MESH_FAULT)                                                                     \
   MESH_FAULT(no_faces, "the mesh has no faces", false, false)                                           \
   MESH_FAULT(non_finite_vertex, "a coordinate is not finite", false, false)                             \
-  MESH_FAULT(index_out_of_range, "a face names a vertex that is not there", false, false)               \
+  MESH_FAULT(index_out_of_range, "a face names a vertex that does not exist", false, false)             \
   MESH_FAULT(repeated_corner, "a face names a vertex twice", false, true)                               \
   MESH_FAULT(zero_area_face, "a face has no area", false, true)                                         \
   MESH_FAULT(non_planar_face, "a polygon's corners do not lie in one plane", true, true)                \
@@ -48,11 +48,12 @@ struct MeshFinding {
 struct MeshReport {
   std::array<MeshFinding, kMeshFaultCount> findings;
   std::uint32_t components = 0;  ///< edge-connected pieces of the surface
-  int genus = -1;                ///< sum over closed components; -1 if not closed and manifold
+  int genus = -1;                ///< sum over the closed components; -1 if not closed and manifold
   bool closed = false;           ///< every edge has exactly two faces, in opposite directions
   bool bounds_solid =
-      false;  ///< every edge is run through as often one way as the other: weaker than closed (bodies
-              ///< may share edges), and enough for "inside" to have a meaning, by parity
+      /// Every edge is passed as often one way as the other: weaker than closed (bodies may share edges), and
+      /// enough for "inside" to have a meaning, by parity.
+      false;
   bool self_intersections_checked = false;
 
   const MeshFinding& operator[](MeshFault f) const { return findings[static_cast<std::size_t>(f)]; }
@@ -62,7 +63,7 @@ struct MeshReport {
   MeshReport when_turned() const;
   /// One line per fault found, with its first offenders.
   std::vector<std::string> lines(const Mesh& mesh) const;
-  /// Those of them that forbid an LRB-rep.
+  /// Returns those lines that forbid an LRB-rep.
   std::vector<std::string> obstacles(const Mesh& mesh) const;
 };
 
@@ -73,8 +74,9 @@ MeshReport check_mesh(const Mesh& mesh, bool self_intersections = true);
 
 /// Turns every component that is inside out so that the solid lies behind its faces. A component directly
 /// inside an odd number of others is a void and must face the other way; this is decided by parity.
-/// Components that are not closed stay as they are. Returns the number turned. The triangles of a turned
-/// triangle or quad keep their numbers, those of a larger polygon's fan are numbered the other way round.
+/// Components that are not closed stay as they are. Returns the number of components turned. The triangles of
+/// a turned triangle or quad keep their numbers; those of a larger polygon's fan are numbered the other way
+/// round.
 std::uint32_t orient_outward(Mesh& mesh);
 
 /// Turns the faces of these components round, as orient_outward() does.

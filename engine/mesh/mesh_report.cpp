@@ -19,7 +19,7 @@ constexpr std::array<FaultText, kMeshFaultCount> kFaults = {{
 #undef MESH_FAULT
 }};
 
-/// What the two numbers of an offender are.
+/// What the two numbers of an offender stand for.
 enum class Offender : std::uint8_t {
   none,
   vertex,
@@ -102,14 +102,14 @@ std::string_view noun(Offender kind, int dim) {
   }
 }
 
-/// In the plane, vertices are what edges are in space.
+/// Returns a fault's text. In the plane, vertices are what edges are in space.
 std::string_view text_of(MeshFault fault, int dim) {
   if (dim == 2) {
     switch (fault) {
       case MeshFault::no_faces:
         return "the mesh has no segments";
       case MeshFault::index_out_of_range:
-        return "a segment names a vertex that is not there";
+        return "a segment names a vertex that does not exist";
       case MeshFault::repeated_corner:
         return "a segment names a vertex twice";
       case MeshFault::zero_area_face:

@@ -106,7 +106,7 @@ class Nesting {
   std::vector<std::vector<FaceId>> faces_;  ///< (components)
   std::vector<Box> boxes_;                  ///< (components)
   std::vector<bool> usable_;                ///< closed, all coordinates finite
-  std::vector<std::uint32_t> depth_;        ///< components around it
+  std::vector<std::uint32_t> depth_;        ///< number of components around each
 };
 
 }  // namespace

@@ -13,8 +13,8 @@ namespace lrb {
 
 enum class PointSide { outside, inside, on_surface };
 
-/// Where a point lies to a closed set of faces (fans of triangles; 2D: segments), by the parity of an exact
-/// ray.
+/// Tells where a point lies relative to a closed set of faces (fans of triangles; 2D: segments), by the
+/// parity of an exact ray.
 PointSide point_side(const Mesh& mesh, std::span<const FaceId> faces, const Eigen::Vector3d& p);
 
 /// Finds on which sides of many closed surfaces a point lies, in one walk along a ray through a tree of boxes.

@@ -14,7 +14,8 @@ const double* point(const Mesh& mesh, VertexId v) {
   return mesh.vertices[v].data();
 }
 
-/// The axes, that nearest to the polygon's normal (Newell's, of the polygon scaled to size 1) first.
+/// Returns the axes, beginning with the one nearest to the polygon's normal (Newell's, of the polygon scaled
+/// to size 1).
 std::array<int, 3> axes_by_normal(const Mesh& mesh, std::span<const VertexId> corners) {
   double size = 0;
   for (const VertexId v : corners) size = std::max(size, mesh.vertices[v].cwiseAbs().maxCoeff());
@@ -27,14 +28,14 @@ std::array<int, 3> axes_by_normal(const Mesh& mesh, std::span<const VertexId> co
   return axes;
 }
 
-/// Sign of the order of two points of the plane, by x and then by y.
+/// Returns the sign of the order of two points of the plane, by x and then by y.
 int order(const double* a, const double* b) {
   for (int i = 0; i < 2; ++i)
     if (a[i] != b[i]) return a[i] < b[i] ? 1 : -1;
   return 0;
 }
 
-/// The corners without coordinate `axis`, consecutive equal ones once.
+/// Returns the corners without coordinate `axis`; consecutive equal ones once.
 std::vector<Eigen::Vector2d> seen_along(int axis, const Mesh& mesh, std::span<const VertexId> corners) {
   std::vector<Eigen::Vector2d> seen;
   for (const VertexId v : corners) {
@@ -45,10 +46,11 @@ std::vector<Eigen::Vector2d> seen_along(int axis, const Mesh& mesh, std::span<co
   return seen;
 }
 
-/// How a polygon of the plane runs round.
+/// How the outline of a plane polygon runs.
 struct Round {
   bool left = false, right = false;  ///< it turns that way somewhere
-  int changes = 0;                   ///< of its sides' order (by x, then y); 2 if it goes round once
+  /// Number of changes in the order (by x, then y) in which its sides run; 2 if it goes round once.
+  int changes = 0;
 
   bool has_turns() const { return left || right; }
   bool is_convex() const { return left != right && changes == 2; }
@@ -76,8 +78,8 @@ bool fan_has_area(const Mesh& mesh, std::span<const VertexId> corners) {
   return true;
 }
 
-/// The corners in order from a proper one on, and where the first and last other proper ones are. Corners in
-/// the middle of a straight side are not proper. No ring if fewer than three are.
+/// The corners in order, beginning with a proper one, and where the first and last other proper ones are.
+/// Corners in the middle of a straight side are not proper. The ring is empty if fewer than three are proper.
 struct ProperRing {
   std::vector<VertexId> ring;
   std::size_t first = 0, last = 0;
@@ -134,9 +136,9 @@ void triangulate_convex(const Mesh& mesh, std::span<const VertexId> corners,
   const auto add = [&](std::size_t i, std::size_t j, std::size_t k) {
     triangles.push_back({p.ring[i], p.ring[j], p.ring[k % p.ring.size()]});
   };
-  // Corner 0 sees all sides but the two it lies on: a fan over those. The two are seen from the corner next
-  // to their far end; where that is the far end of the other one, the second is seen from the first corner of
-  // the first.
+  // Corner 0 sees all sides but the two that it lies on: those make a fan. The two are seen from the corner
+  // next to their far end; where that is the far end of the other one, the second is seen from the first
+  // corner of the first.
   for (std::size_t i = p.first + 1; i + 1 < p.last; ++i) add(0, i, i + 1);
   const bool one_side_between = p.last == p.first + 1;
   for (std::size_t i = one_side_between ? 1 : 0; i < p.first; ++i) add(p.first + 1, i, i + 1);

@@ -10,17 +10,17 @@
 
 namespace lrb {
 
-/// Three corners that span a plane; none if all corners lie on one line (the polygon has no area).
+/// Returns three corners that span a plane; nothing if all corners lie on one line (the polygon has no area).
 std::optional<std::array<VertexId, 3>> spanning_corners(const Mesh& mesh, std::span<const VertexId> corners);
 
-/// Do all corners lie in the plane of these three?
+/// Returns true if all corners lie in the plane of these three.
 bool is_planar(const Mesh& mesh, std::span<const VertexId> corners, const std::array<VertexId, 3>& plane);
 
-/// Is the polygon convex, seen along the axis nearest to its normal? Corners in the middle of a straight side
-/// are allowed, sides that turn back are not. For a polygon with area.
+/// Returns true if the polygon is convex, seen along the axis nearest to its normal. Corners in the middle of
+/// a straight side are allowed, sides that turn back are not. For a polygon with area.
 bool is_convex(const Mesh& mesh, std::span<const VertexId> corners);
 
-/// Triangles that make up a planar convex polygon with area. The fan from the first corner, unless corners in
+/// Splits a planar convex polygon with area into triangles: the fan from the first corner, unless corners in
 /// the middle of straight sides would give that fan triangles without area; then others that all have area.
 /// (Corners that lie in one place can still make triangles without area.)
 void triangulate_convex(const Mesh& mesh, std::span<const VertexId> corners,

@@ -18,14 +18,14 @@ namespace {
 
 using Triangle = std::array<VertexId, 3>;
 
-/// Two triangles in one plane that face the same way and share more than points and lines.
+/// Returns true if two triangles lie in one plane, face the same way and share more than points and lines.
 bool cover_each_other(const double* const a[3], const double* const b[3]) {
   for (int x = 0; x < 3; ++x) {
     const int y = (x + 1) % 3;
     const int turn = exact::orient_axes(a[0], a[1], a[2], x, y);
     if (turn == 0) continue;
     if (exact::orient_axes(b[0], b[1], b[2], x, y) != turn) return false;
-    // Two convex figures with nothing in common but their rims: a side of one has the other beyond it.
+    // If two convex figures have nothing in common but their rims, a side of one has the other beyond it.
     const auto parted = [&](const double* const p[3], const double* const q[3]) {
       for (int i = 0; i < 3; ++i) {
         bool beyond = true;
@@ -47,7 +47,8 @@ bool overlap_3d(const double* const a[3], const double* const b[3]) {
   return cover_each_other(a, b);
 }
 
-/// Segments, with the solid on their left.
+/// Returns true if two segments, which have the solid on their left, cross, or overlap on one line and run
+/// the same way.
 bool overlap_2d(const double* const a[2], const double* const b[2]) {
   if (exact::orient2d(a[0], a[1], b[0]) != 0 || exact::orient2d(a[0], a[1], b[1]) != 0)
     return exact::meet_segments(a, b) == exact::Meet::cross;

@@ -11,13 +11,13 @@
 namespace lrb {
 
 /// Calls found(f, g), f < g, for every two faces that meet in more than the vertices and edges they share.
-/// Faces without area are left out (they have a finding of their own), and a polygon is not tested against
+/// Leaves out faces without area (they have a finding of their own), and does not test a polygon against
 /// itself. Exact.
 void find_self_intersections(const Mesh& mesh, const std::vector<FaceUse>& use,
                              const std::function<void(FaceId, FaceId)>& found);
 
-/// The faces that find_self_intersections() would name, ascending: sooner, and in memory for the faces alone,
-/// where there are millions of pairs.
+/// Returns the faces that find_self_intersections() would name, ascending: faster, and with memory for the
+/// faces alone, where there are millions of pairs.
 std::vector<FaceId> self_intersecting_faces(const Mesh& mesh, const std::vector<FaceUse>& use,
                                             Workers& workers);
 
@@ -27,9 +27,10 @@ void find_crossings(const Mesh& mesh, const std::vector<FaceUse>& use,
                     const std::function<bool(FaceId, FaceId)>& wanted,
                     const std::function<void(FaceId, FaceId)>& found);
 
-/// The same for faces that cross, or cover each other in one plane and face the same way: those of a solid
-/// that overlaps itself, while faces of one that only touches itself do neither. (An overlap in which no face
-/// does either is not found: its parts would have to pass exactly through each other's rims everywhere.)
+/// Does the same for faces that cross, or that cover each other in one plane and face the same way: those of
+/// a solid that overlaps itself do, while the faces of one that only touches itself do neither. (An overlap
+/// in which no face does either is not found: its parts would have to pass exactly through each other's rims
+/// everywhere.)
 void find_overlaps(const Mesh& mesh, const std::vector<FaceUse>& use,
                    const std::function<bool(FaceId, FaceId)>& wanted,
                    const std::function<void(FaceId, FaceId)>& found);

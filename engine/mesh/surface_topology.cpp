@@ -12,7 +12,7 @@ namespace {
 struct SideUse {
   std::uint64_t key;  ///< the edge: smaller vertex, larger vertex (2D: the vertex)
   FaceId face;
-  std::uint32_t corner;  ///< at which the side starts, into Mesh::face_vertices
+  std::uint32_t corner;  ///< the corner at which the side starts, index into Mesh::face_vertices
   bool forward;          ///< it runs from the smaller to the larger vertex (2D: it leaves the vertex)
 };
 
@@ -78,7 +78,7 @@ class Analysis {
     }
   }
 
-  /// The corner of the same face after this one.
+  /// Returns the corner of the same face after this one.
   std::uint32_t next_corner(const SideUse& s) const {
     return s.corner + 1 == mesh_.face_offsets[s.face + 1] ? mesh_.face_offsets[s.face] : s.corner + 1;
   }
@@ -91,7 +91,7 @@ class Analysis {
     }
   }
 
-  /// Two faces at an edge are in one fan at both of its ends.
+  /// Joins the fans of two faces at an edge: they are in one fan at both of its ends.
   void join_fans(const SideUse& s, const SideUse& t) {
     const std::uint32_t low_s = s.forward ? s.corner : next_corner(s),
                         high_s = s.forward ? next_corner(s) : s.corner;
@@ -121,7 +121,8 @@ class Analysis {
     note(report_, fault, static_cast<VertexId>(edge[0].key >> 32), static_cast<VertexId>(edge[0].key));
   }
 
-  /// True if no vertex joins two fans. (In 2D the vertices are the edges, and judged as such.)
+  /// Returns true if no vertex joins two fans. (In 2D the vertices take the role of edges, and are judged as
+  /// such.)
   bool judge_fans() {
     if (mesh_.dim == 2) return true;
     bool manifold = true;
@@ -134,7 +135,7 @@ class Analysis {
     return manifold;
   }
 
-  /// Euler: V - E + F = 2 C - 2 G.
+  /// Returns the genus by Euler's formula: V - E + F = 2 C - 2 G.
   int genus() const {
     const std::int64_t euler = vertices_used_ - edges_ + faces_used_;
     return static_cast<int>((2 * std::int64_t{out_.components} - euler) / 2);
@@ -145,7 +146,7 @@ class Analysis {
   SurfaceTopology out_;
   std::vector<SideUse> sides_;
   DisjointSets faces_;               ///< joined over edges
-  DisjointSets corners_;             ///< of all faces, joined round their vertex: each set is a fan
+  DisjointSets corners_;             ///< corners of all faces, joined round their vertex: each set is a fan
   std::vector<std::uint32_t> fans_;  ///< (|V|) fans at a vertex: corners less joins
   bool all_usable_ = false;
   std::int64_t vertices_used_ = 0, edges_ = 0, faces_used_ = 0;

@@ -24,14 +24,14 @@ void for_each_simplex(const Mesh& mesh, std::span<const FaceId> faces, Visit vis
   }
 }
 
-/// The sign by doubles, if the sum is beyond what rounding can have done to it; else 0. Volumes do not depend
-/// on the origin, and one on the body keeps the terms small.
+/// Returns the sign computed in doubles, if the sum is beyond what rounding can have done to it; else 0.
+/// Volumes do not depend on the origin, and an origin on the body keeps the terms small.
 ///
 /// Error, with u = 2^-53 and n terms (products of three differences): a difference has relative error u, a
-/// term three of those and two of its own, adding n terms up n - 1; together below (n + 8) u times the sum of
-/// the terms' absolute values. The bound is twice that, which covers the rounding of that very sum, and
-/// underflow too: with differences below kLarge it changes a term by at most 2^-1075 kLarge, all 2^35 terms
-/// by less than 2^-800, and the bound is above 2^-750 where the sum is above kTiny.
+/// term three of those and two of its own, and adding n terms up to n - 1; together below (n + 8) u times the
+/// sum of the terms' absolute values. The bound is twice that, which covers the rounding of that very sum,
+/// and underflow too: with differences below kLarge it changes a term by at most 2^-1075 kLarge, all 2^35
+/// terms by less than 2^-800, and the bound is above 2^-750 where the sum is above kTiny.
 int sign_by_doubles(const Mesh& mesh, std::span<const FaceId> faces) {
   const Eigen::Vector3d& origin = mesh.vertices[mesh.face(faces[0])[0]];
   double sum = 0, size = 0, n = 0, largest = 0;
@@ -58,7 +58,7 @@ int sign_by_doubles(const Mesh& mesh, std::span<const FaceId> faces) {
   return sum < -bound ? -1 : 0;
 }
 
-/// Doubles as integers: all coordinates times one power of two.
+/// Doubles as integers: all coordinates multiplied by one power of two.
 class IntegerPoints {
  public:
   IntegerPoints(const Mesh& mesh, std::span<const FaceId> faces) : mesh_(mesh) {
@@ -71,7 +71,7 @@ class IntegerPoints {
   cpp_int operator()(VertexId v, int axis) const {
     const double x = mesh_.vertices[v][axis];
     if (x == 0) return 0;
-    const int exponent = std::ilogb(x) - 52;  // of the last of its 53 bits
+    const int exponent = std::ilogb(x) - 52;  // exponent of the last of its 53 bits
     cpp_int value = static_cast<std::int64_t>(std::ldexp(x, -exponent));
     value <<= exponent - shift_;
     return value;

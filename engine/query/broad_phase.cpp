@@ -10,8 +10,9 @@ namespace {
 
 using Box = Eigen::AlignedBox3d;
 
-/// How many boxes lie over a place of the axis, up to a factor that all axes have: their lengths together
-/// over the length that they cover. Halved before they are subtracted: no overflow.
+/// Returns how crowded an axis is: the average number of boxes over a point of it, up to a factor that all
+/// axes have, which is the sum of the boxes' lengths over the length that they cover. Halves before it
+/// subtracts, against overflow.
 double crowding(std::span<const Box> boxes, int axis) {
   double low = 0, high = 0, lengths = 0;
   bool any = false;

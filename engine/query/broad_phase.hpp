@@ -1,5 +1,5 @@
 #pragma once
-/// Which of many bodies can meet at all: pairs of boxes that do.
+/// The broad phase: finds which of many bodies can meet at all, as pairs of boxes that do.
 
 #include <cstddef>
 #include <cstdint>
@@ -16,20 +16,20 @@ struct BodyPair {
 };
 
 /// Sort and sweep (D. Baraff, "Dynamic Simulation of Non-Penetrating Rigid Bodies", 1992, section 2.4.1)
-/// along one axis. The order of the boxes on it is kept from one step to the next, where an insertion sort of
-/// what has moved a little costs little; the other two axes are compared. The axis is the one on which the
-/// boxes are fewest to a place, and is given up only for one that is twice as good.
+/// along one axis. Keeps the order of the boxes on it from one step to the next, so that an insertion sort
+/// costs little when bodies have moved little; compares the other two axes. Uses the axis on which the boxes
+/// are least crowded, and gives it up only for one that is twice as good.
 class SweepAndPrune {
  public:
-  /// What the last update cost.
+  /// The cost of the last update.
   struct Work {
-    std::uint64_t swaps = 0;      ///< of neighbours in the order
-    std::uint64_t box_tests = 0;  ///< pairs that meet on the axis, compared on the others
-    bool sorted_afresh = false;   ///< the number of bodies or the axis changed
+    std::uint64_t swaps = 0;      ///< swaps of neighbours in the order
+    std::uint64_t box_tests = 0;  ///< pairs that overlap on the axis and were compared on the others
+    bool sorted_afresh = false;   ///< true if the number of bodies or the axis changed
   };
 
-  /// The pairs of boxes that have a point in common (they are closed: touching is enough), ascending. Empty
-  /// boxes meet nothing; no coordinate may be NaN. Valid until the next update.
+  /// Returns the pairs of boxes that have a point in common (boxes are closed: touching is enough),
+  /// ascending. Empty boxes meet nothing; no coordinate may be NaN. Valid until the next update.
   const std::vector<BodyPair>& update(std::span<const Eigen::AlignedBox3d> boxes);
   const Work& work() const { return work_; }
 
@@ -38,7 +38,7 @@ class SweepAndPrune {
   void sort(std::span<const Eigen::AlignedBox3d> boxes);
 
   int axis_ = 0;
-  std::vector<std::uint32_t> order_;  ///< bodies by the lower end of their boxes on the axis
+  std::vector<std::uint32_t> order_;  ///< bodies sorted by the lower end of their boxes on the axis
   std::vector<BodyPair> pairs_;
   Work work_;
 };

@@ -31,7 +31,7 @@ struct WorldBody {
   std::vector<Eigen::Vector3d> x;
 };
 
-/// Of the components of `inner`, how many lie in `outer`.
+/// Returns how many of the components of `inner` lie in `outer`.
 std::size_t held(const WorldBody& inner, const WorldBody& outer) {
   const auto vertices = inner.rep.component_vertices();
   return static_cast<std::size_t>(std::count_if(vertices.begin(), vertices.end(),

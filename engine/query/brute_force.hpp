@@ -6,7 +6,7 @@
 
 namespace lrb {
 
-/// Every pair of real simplices tested exactly: the slow answer that the fast one is compared with. It shares
+/// Tests every pair of real simplices exactly: the slow answer that the fast one is compared with. It shares
 /// the predicates and the definition of world coordinates with the query, and nothing else: no tree, no
 /// boxes. Throws InputError beyond kMostPairs.
 struct BruteForceResult {

@@ -10,7 +10,8 @@ namespace lrb {
 
 namespace {
 
-/// World coordinates must be doubles. Few poses come near overflow: vertices are looked at only then.
+/// Throws InputError if a vertex of the body has a world coordinate that is not finite. Few poses come near
+/// overflow: only then are the vertices looked at.
 void check_world(const LrbRep& rep, const Pose& pose, char name) {
   if (world_size(pose, rep.tree()) <= 0.5 * std::numeric_limits<double>::max()) return;
   const auto vertices = rep.vertices();

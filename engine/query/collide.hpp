@@ -1,11 +1,12 @@
 #pragma once
-/// The two-body query: do two bodies meet, which real faces do, and how do the bodies lie to each other?
+/// The two-body query: finds whether two bodies meet, which real faces do, and how the bodies lie to each
+/// other.
 ///
-/// Two algorithms. `complete` never misses: a tree over blocks of real faces whose bounds hold everything
-/// beneath, so that every pair that meets is reached, and an exact test at the leaves (see tree_query.hpp for
-/// the proof). `paper` is section 4 of the paper to the letter: recursion through lids that hit. It misses
-/// contacts under lids that nothing touches, and is kept to reproduce the paper's figures and to show where
-/// it fails.
+/// There are two algorithms. `complete` never misses: it descends an OBB tree over real faces whose bounds
+/// hold everything beneath, so that every pair that meets is reached, and tests exactly at the leaves (see
+/// tree_query.hpp for the proof). `paper` is section 4 of the paper to the letter: recursion through lids
+/// that hit. It misses contacts under lids that nothing touches, and is kept to reproduce the paper's figures
+/// and to show where it fails.
 
 #include <array>
 #include <cstdint>
@@ -20,16 +21,16 @@
 
 namespace lrb {
 
-/// Memory that a query needs and the next one can use again. One per thread.
+/// The memory that a query needs and the next one can use again. One per thread.
 class QueryContext;
 
-/// Body `a` at pose_a against body `b` at pose_b; both 3D or both 2D (else InputError). Poses must be finite,
-/// and so must be the world coordinates of every vertex (else InputError, naming it).
+/// Queries body `a` at pose_a against body `b` at pose_b; both must be 3D, or both 2D (else InputError).
+/// Poses must be finite, and so must be the world coordinates of every vertex (else InputError, naming it).
 template <class Probe>
 CollideResult collide(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
                       const CollideRequest& request, QueryContext& context, Probe& probe);
 
-/// The same without a probe, and with a context of its own.
+/// Does the same without a probe, and with a context of its own.
 CollideResult collide(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
                       const CollideRequest& request = {});
 

@@ -1,5 +1,5 @@
 #pragma once
-/// Definition of collide() for any probe; include it where a probe of your own is used.
+/// Defines collide() for any probe; include it where you use a probe of your own.
 
 #include <algorithm>
 #include <numeric>
@@ -16,7 +16,7 @@
 
 namespace lrb {
 
-/// Throws InputError if the query cannot be asked.
+/// Throws InputError if the query is not possible for these bodies and poses.
 void check_query(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b);
 
 template <class Probe>

@@ -10,19 +10,19 @@
 namespace lrb {
 namespace {
 
-/// Up to so many corners, looking at all is quicker. Measured: 2.4 ns a corner; the tree takes 8 to 15 us for
-/// bodies of 1,400 to 2,600 corners, 53 us for one of 49,000.
+/// Up to this many corners, it is quicker to look at all of them. Measured: 2.4 ns a corner; the tree takes 8
+/// to 15 us for bodies of 1,400 to 2,600 corners, 53 us for one of 49,000.
 constexpr std::size_t kFewCorners = 16384;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// The real corner whose world coordinate on one axis, times `sign`, is greatest.
+/// Finds the real corner whose world coordinate on one axis, times `sign`, is greatest.
 ///
 /// With d the axis' row of the rotation, a child's box (centre frame coordinates y in [lo, hi]) bounds d . x
-/// by d . origin + sum_i max(g_i lo_i, g_i hi_i), g = frame d. Added to it: kKernelRounding |d| radius, since
-/// a node's axes are orthonormal to kFrameDefect only (x - origin = frame^T (1 - E) y + ..., |E| <=
-/// kFrameDefect, which takes sqrt 3 of the 8 kFrameDefect there are); and the rounding of world coordinates,
-/// of which Pose::apply and this sum take less than 16 u of the 32 u in kWorldRounding.
+/// by d . origin + sum_i max(g_i lo_i, g_i hi_i), g = frame d. Two terms are added to that: kKernelRounding
+/// |d| radius, because a node's axes are orthonormal only to kFrameDefect (x - origin = frame^T (1 - E) y +
+/// ..., |E| <= kFrameDefect, which takes sqrt 3 of the 8 kFrameDefect that there are); and the rounding of
+/// world coordinates, of which Pose::apply and this sum take less than 16 u of the 32 u in kWorldRounding.
 class Search {
  public:
   Search(const LrbRep& rep, const Pose& pose, int axis, double sign)
@@ -33,7 +33,7 @@ class Search {
     slack_ = kWorldRounding * size + kWorldUnderflow;
   }
 
-  /// Begins with a vertex known to be far out; kNull: with none.
+  /// Searches, beginning with a vertex known to be far out; kNull: with none.
   void run(VertexId first) {
     if (first != kNull) look_at(first);
     visit(0);
@@ -95,7 +95,7 @@ class Search {
   VertexId vertex_ = kNull;
 };
 
-/// No coordinate, and no term on the way to one, can overflow.
+/// Returns true if no coordinate, and no term on the way to one, can overflow.
 bool stays_finite(const LrbRep& rep, const Pose& pose) {
   return world_size(pose, rep.tree()) <= 0.25 * std::numeric_limits<double>::max();
 }
@@ -111,7 +111,7 @@ Eigen::AlignedBox3d world_box(const LrbRep& rep, const Pose& pose, ExtremeVertic
   if (rep.tree().empty()) return box;
   if (!stays_finite(rep, pose)) return everything();
   for (int axis = 0; axis < 3; ++axis) {
-    // All of a 2D body lies at one height: any corner tells.
+    // All of a 2D body lies at one height, so any corner tells it.
     const bool level = rep.dim() == 2 && pose.r(axis, 0) == 0 && pose.r(axis, 1) == 0;
     if (level) {
       box.min()[axis] = box.max()[axis] = pose.apply(rep.vertices()[rep.face(0)[0]])[axis];

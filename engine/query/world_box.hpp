@@ -11,24 +11,24 @@
 
 namespace lrb {
 
-/// The vertices that were farthest out the last time: lowest x, highest x, lowest y, ... Of one body; they
-/// make the next search short if it has moved little, and cost nothing but time if it has not.
+/// The vertices of one body that were farthest out the last time: lowest x, highest x, lowest y, ... They
+/// make the next search short if the body has moved little, and cost nothing but time if it has not.
 struct ExtremeVertices {
   std::array<VertexId, 6> vertex{kNull, kNull, kNull, kNull, kNull, kNull};
 };
 
-/// The box round a body's real faces in the world: exactly the least and greatest world coordinates
-/// (Pose::apply) of their corners, so two bodies whose boxes have no point in common have none either. A pose
-/// that may take the body beyond the range of doubles, which collide() refuses, gives a box that meets
+/// Returns the box around a body's real faces in the world: exactly the least and greatest world coordinates
+/// (Pose::apply) of their corners, so that two bodies whose boxes have no point in common have none either. A
+/// pose that may take the body beyond the range of doubles, which collide() refuses, gives a box that meets
 /// everything.
 ///
-/// Found by descending the body's block tree in each of six directions, best bound first, and only where a
-/// bound, with all rounding added, is beyond what has been found: of large bodies few vertices are looked at
-/// (all of those that lie within rounding of the box, as on a flat side along an axis).
+/// Descends the body's OBB tree in each of six directions, best bound first, and only where a bound, with all
+/// rounding added, is beyond what has been found: of large bodies it looks at few vertices (at all of those
+/// that lie within rounding of the box, as on a flat side along an axis).
 Eigen::AlignedBox3d world_box(const LrbRep& rep, const Pose& pose, ExtremeVertices* last = nullptr);
 
-/// The same box, the quicker way for the body: of small ones every corner is looked at. Made once a body, for
-/// all threads; the LRB-rep must outlive it.
+/// Finds the same box in the way that is quicker for the body: of a small one it looks at every corner. Made
+/// once per body, for all threads; the LRB-rep must outlive it.
 class BodyExtent {
  public:
   explicit BodyExtent(const LrbRep& rep);
@@ -36,7 +36,8 @@ class BodyExtent {
 
  private:
   const LrbRep* rep_;
-  std::vector<Eigen::Vector3d> corners_;  ///< of the real faces, each once; none: the tree is quicker
+  /// Corners of the real faces, each once; none if the tree is quicker.
+  std::vector<Eigen::Vector3d> corners_;
 };
 
 }  // namespace lrb

@@ -1,6 +1,6 @@
 #pragma once
-// Part of tree_kernel.inl and pair_kernel.inl: two nodes, how they lie to each other, and which of their
-// boxes meet.
+// Part of tree_kernel.inl and pair_kernel.inl: two nodes, their positions relative to each other, and which
+// of their boxes meet.
 
 #include "engine/core/tolerances.hpp"
 #include "engine/tree/kernel_lanes.inl"
@@ -23,7 +23,7 @@ inline Whole whole_of(const TreeNode& n, float ratio) {
   return w;
 }
 
-/// The boxes of what a node holds, in its own frame, query units.
+/// The boxes of a node's children or simplices, in its own frame, query units.
 struct Boxes {
   Float8 centre[3], half[3];
 };
@@ -39,22 +39,24 @@ inline Boxes decode(const TreeNode& n, float ratio) {
   return b;
 }
 
-/// How two nodes lie to each other: coordinates in A's node = r * (coordinates in B's node) + t, and back
-/// r^T * (coordinates in A's node) + back. The fourth of each four is nothing.
+/// The positions of two nodes relative to each other: coordinates in A's node = r * (coordinates in B's node)
+/// + t, and back r^T * (coordinates in A's node) + back. The fourth entry of each four is unused.
 struct Between {
   alignas(16) float r[3][4], abs_r[3][4], t[4], back[4];
-  float reach;          ///< bound of every coordinate difference that occurs
-  float error;          ///< bound of the error of every transformed coordinate
-  float edge_error[2];  ///< of A's and B's: of every coordinate of the difference of two corners of one body
-  // Where there is a margin:
-  alignas(16) float grow[2][4];  ///< of boxes on A's and B's axes: the error, the margin, and what is swept
-  float way[4];                  ///< how far B's node is swept, on A's axes
-  float margin;                  ///< and by how much more any of its points may be
+  float reach;  ///< bound on every coordinate difference that occurs
+  float error;  ///< bound on the error of every transformed coordinate
+  /// For A and for B: bound on the error of every coordinate of the difference of two corners of that body.
+  float edge_error[2];
+  // Only with a margin:
+  /// How much boxes grow on A's and on B's axes: the error, the margin, and the displacement that is swept.
+  alignas(16) float grow[2][4];
+  float way[4];  ///< displacement by which B's node is swept, on A's axes
+  float margin;  ///< how much further any of its points may move
 };
 
-/// radius_a, radius_b: of what is held of both bodies, or the length of its edges. reach: of the differences
-/// of a corner of A and one of B that occur; whole: of the coordinates from which corners of B are
-/// transformed.
+/// Sets the error bounds. radius_a, radius_b: radius of what is held of each body, or the length of its
+/// edges. reach: bound on the differences of a corner of A and one of B that occur; whole: bound on the
+/// coordinates from which corners of B are transformed.
 inline void set_errors(Between& w, float slack, float m_size, float radius_a, float radius_b, float reach,
                        float whole) {
   w.reach = reach;
@@ -63,7 +65,7 @@ inline void set_errors(Between& w, float slack, float m_size, float radius_a, fl
   w.edge_error[1] = 2 * slack + kTurnedEdgeRounding * (m_size * radius_b) + kFarEdgeRounding * reach;
 }
 
-/// Row i of a node's frame; the fourth is what follows it in the node.
+/// Returns row i of a node's frame; the fourth entry is whatever follows in the node.
 inline Float4 frame_row(const TreeNode& n, int i) {
   static_assert(__builtin_offsetof(TreeNode, base) == sizeof(n.frame));
   Float4 row;
@@ -83,12 +85,13 @@ inline Columns columns_of(Float4 row0, Float4 row1, Float4 row2) {
            __builtin_shufflevector(high, row2, 0, 1, 6, 6)}};
 }
 
-/// x[0] of column 0 + x[1] of column 1 + x[2] of column 2.
+/// Returns x[0] column[0] + x[1] column[1] + x[2] column[2].
 inline Float4 combine(const float* x, const Float4* column) {
   return splat4(x[0]) * column[0] + splat4(x[1]) * column[1] + splat4(x[2]) * column[2];
 }
 
-/// Finds the way of a node of B on A's axes. Returns the sum of its coordinates' sizes.
+/// Finds the displacement by which a node of B is swept, on A's axes. Returns the sum of its coordinates'
+/// sizes.
 inline float sweep(const TreeKernel& k, const TreeNode& b, const Columns& a_columns, Between& w) {
   const Double4* m = reinterpret_cast<const Double4*>(k.sweep);
   const Double4 swept =
@@ -102,8 +105,9 @@ inline float sweep(const TreeKernel& k, const TreeNode& b, const Columns& a_colu
   return __builtin_fabsf(parts[0]) + __builtin_fabsf(parts[1]) + __builtin_fabsf(parts[2]);
 }
 
-/// kMargin: whether k.margin counts. Simplices that come to meet at a point after a motion have points now
-/// that the motion brings together: slabs between them that are wider than it is long across, part them.
+/// Finds how two nodes lie to each other. kMargin: allow for k.margin. Simplices that come to meet at a point
+/// after a motion have points now that the motion brings together: so slabs between them that are wider than
+/// the motion is long across them prove that they do not meet.
 template <bool kMargin = false>
 inline Between between(const TreeKernel& k, const TreeNode& a, const TreeNode& b) {
   Between w;
@@ -138,7 +142,7 @@ inline Between between(const TreeKernel& k, const TreeNode& a, const TreeNode& b
   if constexpr (kMargin) {
     const float size = sweep(k, b, a_columns, w);
     w.margin = k.margin + k.sweep_turn * radius_b + kSweepRounding * size;
-    reach += size + w.margin;  // differences of corners at the end of the way count, too
+    reach += size + w.margin;  // differences of corners at the end of the sweep count, too
   }
   set_errors(w, k.slack, k.m_size, radius_a, radius_b, reach, whole);
   if constexpr (kMargin) {
@@ -215,7 +219,8 @@ inline Turned turn_a(const Boxes& a, const Between& w) {
   return o;
 }
 
-/// Lanes whose boxes are apart on some axis. Written so that NaN (an overflow) counts as "not apart".
+/// Returns the lanes whose boxes are separated on some axis. Written so that NaN (an overflow) counts as "not
+/// separated".
 inline Lanes apart(const Float8* centre, const Float8* half, const float* other_centre,
                    const float* other_half) {
   Lanes result = kNoLanes;

@@ -1,5 +1,5 @@
 #pragma once
-// Part of tree_kernel.inl and pair_kernel.inl: eight floats at a time, and a truth for each of eight.
+// Part of tree_kernel.inl and pair_kernel.inl: eight floats at a time, and a truth value for each of eight.
 
 #include <cstddef>
 #include <cstdint>
@@ -38,8 +38,8 @@ inline Float8 abs8(Float8 x) {
   return reinterpret_cast<Float8>(reinterpret_cast<Int8>(x) & mask);
 }
 
-// A truth for each of eight lanes: a bit each where the processor compares into bits, else all or none of a
-// lane's bits.
+// A truth value for each of eight lanes: one bit each where the processor compares into bits, else all or
+// none of a lane's bits.
 #if defined(__AVX512VL__) && defined(__AVX512DQ__)
 using Lanes = std::uint8_t;
 constexpr Lanes kAllLanes = 255, kNoLanes = 0;
@@ -64,7 +64,7 @@ inline Lanes greater(Float8 x, Float8 y) {
   return x > y;
 }
 
-/// Bit k: lane k is true.
+/// Returns a number whose bit k is set if lane k is true.
 inline std::uint32_t bits(Lanes lanes) {
 #if defined(__AVX__)
   return static_cast<std::uint32_t>(_mm256_movemask_ps(reinterpret_cast<__m256>(lanes)));
@@ -97,7 +97,7 @@ inline Lanes either(Lanes x, Lanes y) {
 inline Lanes equal(Lanes x, Lanes y) {
   return static_cast<Lanes>(~(x ^ y));
 }
-/// x where `which`, else y.
+/// Returns x where `which`, else y.
 inline Lanes select(Lanes which, Lanes x, Lanes y) {
   return static_cast<Lanes>((x & which) | (y & ~which));
 }

@@ -1,26 +1,27 @@
 #pragma once
-// Part of tree_kernel.inl and pair_kernel.inl: eight pairs of triangles, and what float arithmetic is certain
-// of about them.
+// Part of tree_kernel.inl and pair_kernel.inl: eight pairs of triangles, and what float arithmetic can say
+// about them for certain.
 
 #include "engine/tree/kernel_boxes.inl"
 
 namespace lrb {
 namespace {
 
-/// Corners of eight simplices in A's leaf frame, query units.
+/// The corners of eight simplices in A's leaf frame, query units.
 struct Corners {
   Float8 x[3][3];  // [corner][axis]
 };
 
-/// What float arithmetic makes of (u x v) . d, lane by lane, and a bound of its error, where u and v are
-/// differences of corners of one body each, d of corners of both.
+/// Computes (u x v) . d in float arithmetic, lane by lane, with a bound on its error; u and v are differences
+/// of two corners of one body each, d is a difference of corners of both.
 ///
 /// Let eu and ev bound the errors of the coordinates of u and v, U and V those coordinates, w = 2^-24. The
 /// normal n = u x v is off by at most 2 (U ev + V eu + eu ev) in each component, and its rounding by 4 w U V.
 /// d is no longer than reach + 2 error, so that the sum of its coordinates is below 1.75 times that: n . d is
-/// off by at most 2 error |n|_1, in which there is room for rounding d and the products with it (4 w reach of
-/// 128), and 3.5 (reach + 2 error) (U ev + V eu + eu ev + 2 w U V); 4 instead of 3.5 leaves room for the last
-/// term (eu and ev are at least 8 w times a radius, U and V at most 2 radii) and for rounding in here.
+/// off by at most 2 error |n|_1, which leaves room for rounding d and the products with it (4 w reach of
+/// 128), and by 3.5 (reach + 2 error) (U ev + V eu + eu ev + 2 w U V); 4 instead of 3.5 leaves room for the
+/// last term (eu and ev are at least 8 w times a radius, U and V at most 2 radii) and for rounding in this
+/// computation.
 struct Normal {
   Float8 n[3], size, bound;
 
@@ -47,20 +48,21 @@ inline void subtract(const Float8* x, const Float8* y, Float8* difference) {
   for (int axis = 0; axis < 3; ++axis) difference[axis] = x[axis] - y[axis];
 }
 
-/// On which side of other simplices' planes the corners of eight simplices lie, lane by lane.
+/// The sides of other simplices' planes on which the corners of eight simplices lie, lane by lane.
 struct SideLanes {
   Lanes positive[3], negative[3];  ///< certainly in front, or behind, by more than the margin
-  Lanes certain;                   ///< each corner certainly in front or behind
-  Lanes parted;                    ///< all in front, or all behind
+  Lanes certain;                   ///< each corner is certainly in front or behind
+  Lanes parted;                    ///< all are in front, or all behind
 
-  /// Not certainly on both sides.
+  /// Returns the lanes whose corners are not certainly on both sides.
   Lanes one_side() const {
     return static_cast<Lanes>(
         ~((positive[0] | positive[1] | positive[2]) & (negative[0] | negative[1] | negative[2])));
   }
 };
 
-/// plane_edge_error: Between::edge_error of the body whose planes they are. kMargin: as of between().
+/// Finds the sides of `points` on `planes`. plane_edge_error: Between::edge_error of the body whose planes
+/// they are. kMargin: as for between().
 template <bool kMargin = false>
 inline SideLanes sides_of_planes(const Corners& planes, const Corners& points, const Between& w,
                                  float plane_edge_error) {
@@ -89,10 +91,10 @@ inline SideLanes sides_of_planes(const Corners& planes, const Corners& points, c
   return sides;
 }
 
-/// Triangles turned so that corner 0, the tip, is alone on its side of the other's plane.
+/// Triangles whose corners are rotated so that corner 0, the tip, is alone on its side of the other's plane.
 struct TipFirst {
   Corners t;
-  Lanes positive;  ///< the tip's side
+  Lanes positive;  ///< lanes whose tip is on the positive side
 
   TipFirst(const Corners& from, const SideLanes& s) {
     const Lanes first = equal(s.positive[1], s.positive[2]), second = equal(s.positive[0], s.positive[2]);
@@ -105,16 +107,17 @@ struct TipFirst {
   }
 };
 
-/// What is certain of pairs of triangles, lane by lane.
+/// What is certain about pairs of triangles, lane by lane.
 struct Verdict {
   Lanes cross, disjoint;
 };
 
-/// Of triangles each of which has corners certainly on both sides of the other's plane: do they overlap on
-/// the line in which the planes cross? As engine/exact/planes_cross.hpp decides it, whose orient3d(tip of a,
-/// end of a, tip of b, end of b) is -(edge of a x edge of b) . (tip of b - tip of a). A sign that is certain
-/// here is that of the world coordinates: a world point, seen in the leaf's frame, is an affine image, which
-/// may be mirrored but keeps what meets what, and every corner is within `error` of its own.
+/// Tells whether two triangles overlap on the line in which their planes cross, where each has corners
+/// certainly on both sides of the other's plane. Decides this as engine/exact/planes_cross.hpp does, whose
+/// orient3d(tip of a, end of a, tip of b, end of b) is -(edge of a x edge of b) . (tip of b - tip of a). A
+/// sign that is certain here is also that of the world coordinates: a world point, seen in the leaf's frame,
+/// is an affine image, which may be mirrored but preserves what meets what, and every corner is within
+/// `error` of its own image.
 inline Verdict overlap(const Corners& a, const SideLanes& a_sides, const Corners& b, const SideLanes& b_sides,
                        const Between& w) {
   const TipFirst ta(a, a_sides), tb(b, b_sides);
@@ -137,18 +140,19 @@ inline Verdict overlap(const Corners& a, const SideLanes& a_sides, const Corners
           both(certain, select(tb.positive, either(low[0], high[1]), either(high[0], low[1])))};
 }
 
-/// What is certain of eight pairs of triangles; a bit for each.
+/// What is certain about eight pairs of triangles; a bit for each.
 struct EightCertainties {
   std::uint32_t cross = 0, disjoint = 0, uncertain = 0;
-  std::uint32_t one_side[2] = {};   ///< of A's and B's: corners that are certain lie on one side
-  std::uint32_t unsure[2][3] = {};  ///< [A's, B's][corner]: may lie in the other's plane
+  std::uint32_t one_side[2] = {};   ///< for A's and B's: the corners that are certain lie on one side
+  std::uint32_t unsure[2][3] = {};  ///< [A's, B's][corner]: the corner may lie in the other's plane
 
-  /// Without branches: what is certain of a pair cannot be foretold.
+  /// Stores what is certain about a pair. Without branches, because that cannot be predicted.
   void tell(int lane, Candidate& c) const {
     const auto is = [lane](std::uint32_t lanes) { return lanes >> lane & 1; };
     const auto value = [](Certainty certainty) { return static_cast<std::uint32_t>(certainty); };
-    // A triangle whose other corners are on one side of a plane meets it in the hull of those that may lie in
-    // it: if they are corners of the other triangle, that hull is an edge or a corner of it, or all of it.
+    // A triangle whose certain corners are on one side of a plane meets it in the hull of those that may lie
+    // in it: if these are corners of the other triangle too, that hull is an edge or a corner of it, or all
+    // of it.
     const std::uint32_t of = is(one_side[0]) ^ 1, touch = is(uncertain) & (is(one_side[0]) | is(one_side[1]));
     c.certainty = static_cast<Certainty>(is(cross) * value(Certainty::cross) +
                                          is(disjoint) * value(Certainty::disjoint) +
@@ -179,7 +183,7 @@ inline EightCertainties certainties_of(const Corners& a, const SideLanes& a_side
   return c;
 }
 
-/// Simplices of a block, lane by lane: lane k gets number which[k].
+/// Picks simplices of a block, lane by lane: lane k gets number which[k].
 inline Corners pick(const Corners& from, const std::uint8_t* which) {
   Corners to;
 #if defined(__AVX2__)

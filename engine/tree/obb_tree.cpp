@@ -24,11 +24,12 @@ double half_area(const Box& b) {
   return e.x() * e.y() + e.y() * e.z() + e.z() * e.x();
 }
 
-/// Simplices in units, by their place in the list that was given, and in the order of the tree's leaves.
+/// The simplices in units, in the order in which they were given; `order` lists them in the order of the
+/// tree's leaves.
 struct Soup {
   std::span<const SimplexId> simplices;
   std::vector<std::array<Vector3d, 3>> corners;
-  std::vector<Vector3d> centre;  ///< of the box
+  std::vector<Vector3d> centre;  ///< centre of the box
   std::vector<Box> box;
   std::vector<std::uint32_t> order;
 };
@@ -60,7 +61,7 @@ Soup make_soup(const SimplexView& body, std::span<const SimplexId> simplices, do
   return soup;
 }
 
-/// A node of the binary tree that is collapsed to width eight afterwards.
+/// A node of the binary tree, which is collapsed to width eight afterwards.
 struct BinaryNode {
   std::uint32_t begin, end;  ///< range in Soup::order
   std::uint32_t left = kNull, right = kNull;
@@ -68,8 +69,9 @@ struct BinaryNode {
   bool is_leaf() const { return left == kNull; }
 };
 
-/// Top-down binary build. Every split leaves a multiple of eight simplices on its left, so that all blocks
-/// but the last are full; among those splits the surface area heuristic chooses, on bins of the centres.
+/// Builds the binary tree top-down. Every split leaves a multiple of eight simplices on its left, so that all
+/// blocks but the last are full; among those splits the surface area heuristic chooses, on bins of the
+/// centres.
 class BinaryBuilder {
  public:
   BinaryBuilder(Soup& soup, Workers& workers) : soup_(soup), workers_(workers) {
@@ -84,12 +86,12 @@ class BinaryBuilder {
 
   static constexpr std::uint32_t kWorthSharing = 2048;  ///< simplices
 
-  /// Every leaf but the last is full.
+  /// Returns the number of nodes for some simplices: every leaf but the last is full.
   static std::uint32_t nodes_for(std::uint32_t simplices) {
     return 2 * ((simplices + kTreeWidth - 1) / kTreeWidth) - 1;
   }
 
-  /// Parents before children, left before right.
+  /// Builds a subtree; parents come before children, left before right.
   void build(std::uint32_t self, std::uint32_t begin, std::uint32_t end) {
     BinaryNode& node = nodes[self];
     node = {begin, end, kNull, kNull, {}};
@@ -175,12 +177,12 @@ Matrix3d rounded_to_float(const Matrix3d& m) {
   return m.cast<float>().cast<double>();
 }
 
-/// Whether rows are as orthonormal as kKernelRounding takes them to be. NaN is not.
+/// Returns true if the rows are as orthonormal as kKernelRounding assumes; false for NaN.
 bool is_orthonormal(const Matrix3d& axes) {
   return rotation_defect(axes.transpose()) <= kFrameDefect;
 }
 
-/// Box of a range of simplices in a frame.
+/// Returns the box of a range of simplices in a frame.
 Box box_in_frame(const Soup& soup, std::uint32_t begin, std::uint32_t end, const Frame& f) {
   Box box;
   for (std::uint32_t i = begin; i < end; ++i)
@@ -188,8 +190,8 @@ Box box_in_frame(const Soup& soup, std::uint32_t begin, std::uint32_t end, const
   return box;
 }
 
-/// Principal axes of the simplices (weighted by area, with a little for every corner so that segments and
-/// points count), or the coordinate axes where those give the smaller box.
+/// Returns the principal axes of the simplices (weighted by area, with a little for every corner so that
+/// segments and points count), or the coordinate axes where those give the smaller box.
 Frame fit_frame(const Soup& soup, std::uint32_t begin, std::uint32_t end, const Box& bounds) {
   Frame frame{Matrix3d::Identity(), 0.5 * (bounds.min() + bounds.max())};
   const double size = bounds.sizes().norm();
@@ -219,8 +221,8 @@ Frame fit_frame(const Soup& soup, std::uint32_t begin, std::uint32_t end, const 
 
 }  // namespace
 
-/// Collapses the binary tree to eight children a node and quantizes the boxes: first all places, then what
-/// stands there, each node by itself.
+/// Collapses the binary tree to eight children per node and quantizes the boxes. First decides where
+/// everything goes, then fills in each node by itself.
 class ObbTreeBuilder {
  public:
   ObbTreeBuilder(ObbTree& tree, Soup& soup, Workers& workers)
@@ -229,7 +231,7 @@ class ObbTreeBuilder {
     binary_of_.resize(1);
     lay_out(0, 0, 1);
     tree_.blocks_.resize(block_count_);
-    // From a few nodes each holds so many simplices that they are worth sharing.
+    // Nodes per task: a few of them hold enough simplices to be worth sharing.
     constexpr std::size_t kShare = 32;
     workers.for_each((tree_.nodes_.size() + kShare - 1) / kShare, [&](std::size_t i, unsigned) {
       const std::size_t end = std::min(tree_.nodes_.size(), (i + 1) * kShare);
@@ -238,7 +240,7 @@ class ObbTreeBuilder {
   }
 
  private:
-  /// Where children and blocks go: depth first.
+  /// Decides where children and blocks go: depth first.
   void lay_out(std::uint32_t wide, std::uint32_t binary, std::uint32_t height) {
     tree_.height_ = std::max(tree_.height_, height);
     binary_of_[wide] = binary;
@@ -274,7 +276,7 @@ class ObbTreeBuilder {
     node.is_leaf = b.is_leaf();
   }
 
-  /// Opens the child with the largest box until there are eight.
+  /// Returns a wide node's children: opens the child with the largest box until there are eight.
   std::vector<std::uint32_t> widest_children(std::uint32_t binary) const {
     std::vector<std::uint32_t> children = {binary_.nodes[binary].left, binary_.nodes[binary].right};
     while (children.size() < kTreeWidth) {
@@ -317,7 +319,7 @@ class ObbTreeBuilder {
     node = {};
     Box all;
     for (const Box& b : boxes) all.extend(b);
-    // Rounding in the projection above, and room for the float arithmetic below.
+    // Covers the rounding in the projection above, and leaves room for the float arithmetic below.
     const double margin =
         kTreeRounding * (all.min().cwiseAbs().cwiseMax(all.max().cwiseAbs()).maxCoeff()) + kTreeRoundingUnits;
     for (int i = 0; i < 3; ++i) {
@@ -356,7 +358,7 @@ class ObbTreeBuilder {
   ObbTree& tree_;
   Soup& soup_;
   BinaryBuilder binary_;
-  std::vector<std::uint32_t> binary_of_;  ///< (|nodes|) the binary tree's node
+  std::vector<std::uint32_t> binary_of_;  ///< (|nodes|) the binary tree's node for each wide one
   std::uint32_t block_count_ = 0;
 };
 

@@ -1,10 +1,11 @@
 #pragma once
-/// The tree that the complete query walks: leaves are blocks of real simplices, nodes hold bounds.
+/// The 8-wide OBB tree that the complete query walks: leaves are blocks of real simplices, nodes hold bounds.
 ///
 /// Invariant: the bounds of a node contain all real simplices beneath it. This alone makes the query complete
-/// (see tree_query.hpp). The tree is free: it follows a surface area heuristic, not the nesting of regions,
-/// and a block may hold simplices of several regions, which keeps blocks full. Which regions a wrapper must
-/// have refined to show a simplex is looked up from its face (LrbRep::outer_cell) when it is first compared.
+/// (see tree_query.hpp). The shape of the tree is free: it follows a surface area heuristic, not the nesting
+/// of regions, and a block may hold simplices of several regions, which keeps blocks full. Which regions a
+/// wrapper must have refined to show a simplex is looked up from its face (LrbRep::outer_cell) when it is
+/// first compared.
 ///
 /// Coordinates are kept in *units*: multiples of a power of two near the body's size, so that float boxes
 /// neither overflow nor underflow at any scale of input.
@@ -24,25 +25,25 @@ struct SimplexView;  // no Eigen here: the kernels are compiled for processors t
 inline constexpr std::uint32_t kTreeWidth = 8;  ///< children of a node, simplices of a block
 inline constexpr int kQuantizedMost = 255;      ///< end of a node's box on its quantized axes
 
-/// A node, inner or leaf: an oriented frame and up to eight boxes in it (of its children, or of its
-/// simplices). A point x (units, body axes) has node coordinates frame * (x - origin). Box k spans, on axis
-/// i, base[i] + scale[i] * [lo[i][k], hi[i][k]]; quantized outward.
+/// A node, inner or leaf: an oriented frame and up to eight boxes in it (those of its children, or of its
+/// simplices). A point x (units, body axes) has node coordinates frame * (x - origin). On axis i, box k spans
+/// base[i] + scale[i] * [lo[i][k], hi[i][k]]; it is quantized outward.
 struct alignas(64) TreeNode {
   float frame[3][3];  ///< rows: the node's axes, unit length to float precision
   float base[3], scale[3];
   double origin[3];                                   ///< units, body axes
-  std::uint8_t lo[3][kTreeWidth], hi[3][kTreeWidth];  ///< of absent children: lo 255, hi 0
+  std::uint8_t lo[3][kTreeWidth], hi[3][kTreeWidth];  ///< lo 255, hi 0 for absent children
   std::uint32_t
       first;  ///< inner: index of the first child (children are contiguous); leaf: index of its block
-  std::uint8_t count;  ///< children or simplices
+  std::uint8_t count;  ///< number of children or simplices
   std::uint8_t is_leaf;
   std::uint8_t padding[2];
-  float radius;  ///< of a ball about the origin that holds all beneath, units
+  float radius;  ///< radius of a ball about the origin that holds everything beneath, units
 };
 static_assert(sizeof(TreeNode) == 192);
 
-/// The simplices of a leaf: corners in the leaf's coordinates, eight abreast. A segment repeats its second
-/// corner.
+/// The simplices of a leaf: corners in the leaf's coordinates, eight simplices side by side. A segment
+/// repeats its second corner.
 struct alignas(64) LeafBlock {
   float corner[3][3][kTreeWidth];     ///< [corner][axis][simplex]; absent simplices repeat the first
   std::uint32_t simplex[kTreeWidth];  ///< SimplexId; kNull where absent
@@ -54,13 +55,13 @@ class ObbTree {
   ObbTree() = default;
   /// Builds the tree over a body's real simplices. The tree is the same for any number of threads.
   explicit ObbTree(const SimplexView& body, unsigned threads = 1);
-  /// Builds it over the simplices that are listed, real or pseudo: then "real" above means these.
+  /// Builds the tree over the listed simplices, real or pseudo: then "real" above means these.
   ObbTree(const SimplexView& body, std::span<const SimplexId> simplices, unsigned threads = 1);
-  /// Takes a tree as it was stored. Throws InputError unless it can be walked safely and its leaves hold every
-  /// real simplex once. That its bounds are right is taken for granted: bounds_hold() tells.
+  /// Takes a tree as it was stored. Throws InputError unless it can be walked safely and its leaves hold
+  /// every real simplex once. Assumes that its bounds are right: bounds_hold() tells.
   ObbTree(const SimplexView& body, std::vector<TreeNode> nodes, std::vector<LeafBlock> blocks);
 
-  /// Whether every node's boxes hold what lies beneath: what the query's completeness rests on.
+  /// Returns true if every node's boxes hold what lies beneath: the query's completeness rests on this.
   bool bounds_hold(const SimplexView& body) const;
 
   bool empty() const { return nodes_.empty(); }

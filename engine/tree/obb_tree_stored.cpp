@@ -1,4 +1,4 @@
-// A tree that comes from a file: is it safe to walk, and do its bounds hold?
+// Checks a tree that comes from a file: whether it is safe to walk, and whether its bounds hold.
 #include <algorithm>
 #include <cmath>
 
@@ -16,7 +16,7 @@ namespace {
                    "; build the LRB-rep again from its mesh");
 }
 
-/// Notes the simplices of a leaf.
+/// Checks a leaf and notes its simplices.
 void check_leaf(std::size_t i, const TreeNode& node, const std::vector<LeafBlock>& blocks,
                 std::vector<bool>& block_seen, std::vector<bool>& simplex_seen) {
   if (node.first >= blocks.size() || block_seen[node.first]) refuse(i, "has no block of its own");
@@ -24,15 +24,16 @@ void check_leaf(std::size_t i, const TreeNode& node, const std::vector<LeafBlock
   for (std::uint32_t k = 0; k < kTreeWidth; ++k) {
     const std::uint32_t s = blocks[node.first].simplex[k];
     if (k >= node.count) {
-      if (s != kNull) refuse(i, "has a block that holds more than it says");
+      if (s != kNull) refuse(i, "has a block with more faces than it counts");
       continue;
     }
-    if (s >= simplex_seen.size() || simplex_seen[s]) refuse(i, "holds a face that is not there or elsewhere");
+    if (s >= simplex_seen.size() || simplex_seen[s])
+      refuse(i, "holds a face that does not exist or is in another leaf, too");
     simplex_seen[s] = true;
   }
 }
 
-/// Everything is reached once, from the root, and children stand after their parents.
+/// Checks that everything is reached once from the root, and that children come after their parents.
 void check_structure(const std::vector<TreeNode>& nodes, const std::vector<LeafBlock>& blocks,
                      std::uint32_t simplices) {
   std::vector<bool> node_seen(nodes.size(), false), block_seen(blocks.size(), false),
@@ -47,7 +48,7 @@ void check_structure(const std::vector<TreeNode>& nodes, const std::vector<LeafB
       continue;
     }
     if (node.first <= i || node.first > nodes.size() || node.count > nodes.size() - node.first)
-      refuse(i, "has children that are not there");
+      refuse(i, "has children that do not exist");
     for (std::uint32_t k = 0; k < node.count; ++k) {
       if (node_seen[node.first + k]) refuse(i, "has a child of another node");
       node_seen[node.first + k] = true;
@@ -67,7 +68,7 @@ Eigen::Vector3d in_frame(const TreeNode& node, const Eigen::Vector3d& x) {
   return out;
 }
 
-/// Whether box `k` of a node, and its ball, hold a point in units.
+/// Returns true if box `k` of a node, and its ball, hold a point in units.
 bool holds(const TreeNode& node, std::uint32_t k, const Eigen::Vector3d& x) {
   const Eigen::Vector3d at = in_frame(node, x);
   for (int i = 0; i < 3; ++i) {
@@ -77,7 +78,7 @@ bool holds(const TreeNode& node, std::uint32_t k, const Eigen::Vector3d& x) {
   return at.norm() <= node.radius;
 }
 
-/// Whether a leaf's copy of a corner is the corner, to the rounding that the query allows for.
+/// Returns true if a leaf's copy of a corner is the corner, to the rounding that the query allows for.
 bool is_copy(const TreeNode& leaf, const LeafBlock& block, std::uint32_t k, int corner,
              const Eigen::Vector3d& x) {
   const Eigen::Vector3d at = in_frame(leaf, x);

@@ -1,5 +1,5 @@
-// Compiled once per instruction set by pair_kernel_*.cpp, which define LRB_PAIR_KERNEL_NAME: apart from the
-// tree kernel, whose speed hangs on what the compiler makes part of its one loop.
+// Compiled once per instruction set by pair_kernel_*.cpp, which define LRB_PAIR_KERNEL_NAME. It is apart from
+// the tree kernel, because that one's speed depends on what the compiler inlines into its one loop.
 
 #include "engine/tree/kernel_triangles.inl"
 #include "engine/tree/pair_kernel.hpp"
@@ -31,7 +31,7 @@ inline float largest_of(Float8 x) {
 struct EightSimplices {
   Float8 corner[3], edge[2][3], longest;
 
-  EightSimplices(const CachedSimplex* table, const std::uint32_t* which) {  // every second of which
+  EightSimplices(const CachedSimplex* table, const std::uint32_t* which) {  // every second entry of `which`
     Float8 column[3][4];
     for (int part = 0; part < 3; ++part) {
       Float8 row[4];
@@ -59,17 +59,17 @@ struct EightSimplices {
   }
 
  private:
-  /// Four numbers of a simplex. By bytes: they are of more than one of its arrays.
+  /// Returns four numbers of a simplex. By bytes, because they belong to more than one of its arrays.
   static const char* part_of(const CachedSimplex& s, int part) {
     static_assert(sizeof s == 3 * sizeof(Float4));
     return reinterpret_cast<const char*>(&s) + static_cast<std::size_t>(part) * sizeof(Float4);
   }
 };
 
-/// Eight pairs, from A's first corners.
+/// Eight pairs, each seen from the first corner of its simplex of A.
 struct EightPairs {
   Corners a, b;
-  Float8 corner_b[3];  ///< the first, in B's frame
+  Float8 corner_b[3];  ///< the first corner, in B's frame
   float edge_b;
   Between w;
 
@@ -77,7 +77,7 @@ struct EightPairs {
     const EightSimplices of_a(k.a, &pairs->a), of_b(k.b, &pairs->b);
     const float edge_a = largest_of(of_a.longest);
     edge_b = largest_of(of_b.longest);
-    Float8 between{};  // the first corners, at least
+    Float8 between{};  // at least the distance of the first corners
     for (int x = 0; x < 3; ++x) {
       const auto turned = [&](const Float8* way) {
         return splat(k.r[x][0]) * way[0] + splat(k.r[x][1]) * way[1] + splat(k.r[x][2]) * way[2];
@@ -96,25 +96,27 @@ struct EightPairs {
     const float error = k.slack + kKernelRounding * whole;
     const float reach = (largest_of(between) + edge_a + k.m_size * edge_b + 3 * error) * kFloatUp;
     set_errors(w, k.slack, k.m_size, edge_a, edge_b, reach, whole);
-    w.error += kOwnEdgeRounding * edge_a;  // corners of A, too, are reached by edges
+    w.error += kOwnEdgeRounding * edge_a;  // corners of A, too, are computed from edges
   }
 };
 
-/// How far eight simplices reach along a direction.
+/// The extent of eight simplices along a direction.
 struct Shadow {
   Float8 low, high;
 
   Shadow(Float8 x, Float8 y, Float8 z) : low(smaller(smaller(x, y), z)), high(larger(larger(x, y), z)) {}
 };
 
-/// A direction and what eight pairs are across it, by any scale.
+/// A direction, and the gaps of eight pairs along it; on any scale.
 struct Across {
-  Float8 d[3], a_above, b_above;  ///< what one is above the other at least, negative where they overlap
-  Float8 size;                    ///< |d|_1
+  /// By how much one lies above the other at least, negative where they overlap.
+  Float8 d[3], a_above, b_above;
+  Float8 size;  ///< |d|_1
 
-  /// Any direction will do, however it came about: only the corners' errors count, those of A's among them, 2
-  /// error |d|_1, in which there is room for the rounding of the products as there is in Normal. Neither too
-  /// long nor too short for its square; of no direction, NaN, which proves nothing.
+  /// Any direction will do, however it came about: only the errors of the corners count, those of A's among
+  /// them, 2 error |d|_1, which leaves room for the rounding of the products as in Normal. The direction is
+  /// scaled so that its square neither overflows nor vanishes; no direction at all gives NaN, which proves
+  /// nothing.
   Across(const Float8* direction, const EightPairs& p) {
     const Float8 scale =
         splat(1) / larger(larger(abs8(direction[0]), abs8(direction[1])), abs8(direction[2]));
@@ -137,8 +139,8 @@ struct Across {
   }
 };
 
-/// Calls see() with directions across which pairs may be apart: the normals of both, the axes, and the line
-/// between the middles.
+/// Calls see() with directions along which pairs may be separated: the normals of both, the axes, and the
+/// line between the middles.
 template <class See>
 inline void for_directions(const EightPairs& p, See&& see) {
   Float8 d[3];
@@ -160,12 +162,13 @@ inline void for_directions(const EightPairs& p, See&& see) {
 struct Span {
   Float8 from, to;
 
-  /// NaN proves nothing.
+  /// Narrow the span; NaN proves nothing and is ignored.
   void not_before(Float8 x) { from = larger(x, from); }
   void not_after(Float8 x) { to = select(greater(to, x), x, to); }
 };
 
-/// A motion is at least as long as the widest slab between the two.
+/// Returns the lengths of motions after which the pairs may meet: at least the width of the widest slab
+/// between the two.
 inline Span span_of_lengths(const EightPairs& p) {
   Span span{Float8{}, splat(__builtin_inff())};
   for_directions(p, [&](const Across& x) {
@@ -175,8 +178,8 @@ inline Span span_of_lengths(const EightPairs& p) {
   return span;
 }
 
-/// Across each direction B goes at a constant rate, give or take what is spared: from the one side of A it
-/// comes, on the other it leaves.
+/// Returns the parts of a sweep in which the pairs may meet. Along each direction B moves at a constant rate,
+/// give or take `spared`: it comes from one side of A and leaves on the other.
 inline Span span_of_sweep(const PairKernel& k, const EightPairs& p) {
   Span span{splat(-__builtin_inff()), splat(__builtin_inff())};
   const float longest = k.sweep_turn * k.radius_b + __builtin_fabsf(k.sweep_t[0]) +
@@ -201,7 +204,7 @@ inline PairVerdicts verdicts_of(const EightPairs& p) {
   const SideLanes a_sides = sides_of_planes(p.b, p.a, p.w, p.w.edge_error[1]);
   const std::uint32_t parted = bits(either(a_sides.parted, b_sides.parted));
   if (parted == 255u) return {0, 255u};
-  const Verdict v = overlap(p.a, a_sides, p.b, b_sides, p.w);  // of the others
+  const Verdict v = overlap(p.a, a_sides, p.b, b_sides, p.w);  // for the others
   return {static_cast<std::uint8_t>(bits(v.cross) & ~parted),
           static_cast<std::uint8_t>(bits(v.disjoint) | parted)};
 }

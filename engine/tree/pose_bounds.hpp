@@ -1,19 +1,20 @@
 #pragma once
-/// What a pose can do to lengths and coordinates: bounds on which culling and proofs in doubles rest.
+/// Bounds on what a pose can do to lengths and coordinates, on which culling and proofs in doubles rest.
 
 #include "engine/core/pose.hpp"
 #include "engine/tree/obb_tree.hpp"
 
 namespace lrb {
 
-/// How far r^T r is from the identity, largest row sum: a bound of the Euclidean norm, the matrix being
-/// symmetric. Not a number where r^T r overflows to what is none.
+/// Returns how far r^T r is from the identity, as the largest row sum: a bound on the Euclidean norm, because
+/// the matrix is symmetric. Returns not-a-number where r^T r overflows to that.
 double rotation_defect(const Eigen::Matrix3d& r);
 
-/// A bound of every world coordinate of a tree's simplices, and of every term on the way to it.
+/// Returns a bound on every world coordinate of a tree's simplices, and on every term on the way to it.
 double world_size(const Pose& pose, const ObbTree& tree);
 
-/// The distance that wrappers must keep to prove what is in them apart: see kWrapperMargin.
+/// Returns the distance that wrappers must keep to prove that what is in them is separate: see
+/// kWrapperMargin.
 double wrapper_margin(const Pose& pose_a, const ObbTree& a, const Pose& pose_b, const ObbTree& b);
 
 /// A bound of how much the pose stretches distances; 1 for rotations, but for rounding. For any finite matrix.

@@ -10,8 +10,8 @@
 
 namespace lrb {
 
-/// What a tree needs to know of a body: its vertices and the corners of each simplex. Refers to the body, which
-/// must outlive it.
+/// What a tree needs to know about a body: its vertices and the corners of each simplex. Refers to the body,
+/// which must outlive it.
 struct SimplexView {
   int dim = 3;                                ///< 3: simplices are triangles; 2: segments
   std::span<const Eigen::Vector3d> vertices;  ///< (|V|) the body's frame, the mesh's unit

@@ -28,7 +28,8 @@ struct Kernels {
 };
 
 #if defined(__x86_64__)
-/// What the AVX-512 kernels are compiled for. Eight lanes all the same, but truths in mask registers.
+/// Returns true if the processor has what the AVX-512 kernels are compiled for: still eight lanes, but truth
+/// values in mask registers.
 bool has_avx512() {
   return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") &&
          __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512bw") &&

@@ -1,8 +1,8 @@
 #pragma once
-/// The inner loop of the complete query: two trees of blocks against each other, in eight-wide float
-/// arithmetic whose every error is bounded, so that it drops a pair of simplices only if they cannot meet.
+/// The inner loop of the complete query: the dual traversal of two OBB trees, in eight-wide float arithmetic
+/// whose every error is bounded, so that it drops a pair of simplices only if they cannot meet.
 ///
-/// Plain structures only: this header is compiled once per instruction set (tree_kernel_*.cpp).
+/// Contains only plain structures: this header is compiled once per instruction set (tree_kernel_*.cpp).
 
 #include <cstdint>
 
@@ -14,12 +14,13 @@ struct NodePair {
   std::uint32_t a, b;
 };
 
-/// How two simplices meet, as far as float arithmetic is certain of it.
+/// How two simplices meet, as far as float arithmetic can be certain of it.
 enum class Certainty : std::uint8_t {
   none,
   disjoint,
   cross,
-  touch_if_shared,  ///< touch if some corners of one are corners of the other too; else nothing is certain
+  /// They touch if some corners of one are corners of the other too; else nothing is certain.
+  touch_if_shared,
 };
 
 /// A pair of real simplices that boxes and planes could not prove apart.
@@ -27,7 +28,7 @@ struct Candidate {
   SimplexId a, b;
   Certainty certainty;  ///< none where there is a margin
   // For touch_if_shared:
-  Side side;             ///< the body whose simplex the corners are of
+  Side side;             ///< the body to whose simplex the corners belong
   std::uint8_t corners;  ///< bit k: corner k
 };
 
@@ -60,15 +61,16 @@ struct TreeKernel {
   const TreeNode* nodes_b;
   const LeafBlock* blocks_a;
   const LeafBlock* blocks_b;
-  float ratio_a, ratio_b;      ///< tree's unit / query's unit, powers of two, at most 1
-  alignas(32) double m[3][4];  ///< A's axes <- B's axes, its columns (m[column][row])
+  float ratio_a, ratio_b;      ///< tree's unit / query's unit: powers of two, at most 1
+  alignas(32) double m[3][4];  ///< from B's axes to A's, by columns (m[column][row])
   alignas(32) double t[4];     ///< B's origin seen from A's, in A's axes
-  float m_rows[3][3];          ///< m[column][row] rounded, by rows: m_rows[row][column]
-  float slack;   ///< absolute: errors of poses and of the rounding of world coordinates (see tree_query.cpp)
+  float m_rows[3][3];          ///< m rounded, by rows: m_rows[row][column] = m[column][row]
+  float slack;  ///< absolute: errors of poses and of the rounding of world coordinates (see kernel_setup.cpp)
   float m_size;  ///< >= 1 and >= the Euclidean norm of m
-  float margin;  ///< 0; else pairs are kept that may meet once the points of B have moved this far, and
-                 ///< by any of -1 to 1 times (sweep x + sweep_t) before
-  alignas(32) double sweep[3][4], sweep_t[4];  ///< as m and t
+  /// 0, or else pairs are kept that may meet once the points of B have been displaced by -1 to 1 times (sweep
+  /// x + sweep_t) and then by no more than this.
+  float margin;
+  alignas(32) double sweep[3][4], sweep_t[4];  ///< laid out as m and t
   float sweep_turn;                            ///< >= the Euclidean norm of sweep
   bool nearest_first;                          ///< without a margin: descend first where boxes overlap most
   AffineTerms*
@@ -85,8 +87,8 @@ struct TreeKernel {
   std::uint64_t node_pairs, box_tests, prefilter_tests;
 };
 
-/// Goes on until the stack is empty or fewer than 64 places are left in `out`. With the newest instruction
-/// set that the processor has; the environment variable LRB_SIMD, read at the first call, keeps to AVX2
+/// Traverses until the stack is empty or fewer than 64 places are left in `out`. Uses the newest instruction
+/// set that the processor has; the environment variable LRB_SIMD, read at the first call, limits it to AVX2
 /// ("avx2") or to what every processor has ("baseline"). The outcome is the same, counters included
 /// (tests/repeat/repeat.sh).
 void run_tree_kernel(TreeKernel& k);

@@ -1,5 +1,5 @@
 #pragma once
-/// Numbers out of a binary file's bytes.
+/// Reads numbers from a binary file's bytes.
 
 #include <algorithm>
 #include <array>
@@ -9,7 +9,7 @@
 
 namespace lrb {
 
-/// The number stored at `from`, which need not be aligned.
+/// Returns the number stored at `from`, which need not be aligned.
 template <class T>
 T load(const char* from, std::endian order) {
   std::array<char, sizeof(T)> bytes;

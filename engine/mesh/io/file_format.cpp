@@ -24,7 +24,7 @@ struct Lookalike {
   std::string_view what;
 };
 
-/// Files that end up under a mesh's name, by how they begin.
+/// Files that are often mistaken for meshes, by how they begin.
 constexpr std::array<Lookalike, 20> kLookalikes = {{
     {"<!doctype html"sv, "an HTML page (a failed download?)"},
     {"<html"sv, "an HTML page (a failed download?)"},
@@ -77,7 +77,7 @@ std::optional<std::string_view> looks_like(std::string_view bytes) {
   return std::nullopt;
 }
 
-/// UTF-16 without a byte order mark: every second byte of ASCII is zero.
+/// Returns true for UTF-16 without a byte order mark: every second byte of ASCII is zero.
 bool is_utf16_without_mark(std::string_view bytes) {
   if (bytes.size() < 4) return false;
   return (bytes[0] != 0 && bytes[1] == 0 && bytes[2] != 0 && bytes[3] == 0) ||
@@ -123,7 +123,7 @@ MeshFormat tell_format(std::string_view bytes, std::string_view name) {
   }
   if (first.empty()) refuse(name, "nothing but comments", "export or copy the file again");
   if (std::find(kObjWords.begin(), kObjWords.end(), first) != kObjWords.end()) return MeshFormat::obj;
-  if (extension == "obj") return MeshFormat::obj;                      // whose reader names the line
+  if (extension == "obj") return MeshFormat::obj;  // the OBJ reader names the offending line
   if (extension == "off" && is_number(first)) return MeshFormat::off;  // the keyword OFF may be left out
   refuse(name, "text that begins with " + quoted(first));
 }

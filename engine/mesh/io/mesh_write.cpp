@@ -22,14 +22,15 @@ void put(AtomicFile& out, T value) {
   out.write({bytes.data(), bytes.size()});
 }
 
-/// The shortest digits that read back as the same double.
+/// Appends the shortest digits that read back as the same double.
 void put_number(std::string& line, double x) {
   std::array<char, 32> digits;
   const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), x).ptr;
   line.append(digits.data(), end);
 }
 
-/// The list as MeshLab and Blender expect it, `uchar int`; only corners beyond 255 need a wider count.
+/// Returns the header, with the face list as MeshLab and Blender expect it, `uchar int`; only faces of more
+/// than 255 corners need a wider count.
 std::string ply_header(const Mesh& mesh, bool wide, bool coloured) {
   const bool many = mesh.vertices.size() > std::size_t{std::numeric_limits<std::int32_t>::max()};
   std::string text = "ply\nformat binary_little_endian 1.0\n";

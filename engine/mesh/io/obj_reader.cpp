@@ -29,8 +29,8 @@ bool holds(const std::array<std::string_view, N>& list, std::string_view word) {
   return std::find(list.begin(), list.end(), word) != list.end();
 }
 
-/// A corner that names a vertex the file has not defined yet when it is read. OBJ allows that for positive
-/// indices; whether the vertex follows is known only at the end.
+/// A corner that names a vertex which the file has not defined yet when it is read. OBJ allows that for
+/// positive indices; whether the vertex follows is known only at the end.
 struct ForwardReference {
   std::int64_t index;
   std::uint64_t line;
@@ -40,8 +40,8 @@ class ObjReader {
  public:
   ObjReader(std::string_view bytes, std::string_view name)
       : text_(bytes, name, {.hash_comments = true, .continuation = true}), name_(name) {
-    // A line of a vertex or a face hardly ever has fewer bytes than this: one allocation, never an absurd
-    // one.
+    // A line of a vertex or a face hardly ever has fewer bytes than this: this makes one allocation, and
+    // never an absurd one.
     static constexpr std::size_t kBytesPerLine = 24;
     mesh_.vertices.reserve(bytes.size() / kBytesPerLine / 3);
     mesh_.face_offsets.reserve(bytes.size() / kBytesPerLine / 3 * 2);
@@ -73,7 +73,8 @@ class ObjReader {
                "check that this is an OBJ file and not damaged");
   }
 
-  /// x y z, and then nothing, a weight, a colour, or both. Polygons have no use for weight and colour.
+  /// Reads x y z, followed by nothing, a weight, a colour, or both. Polygons have no use for weight and
+  /// colour.
   void vertex() {
     static constexpr std::array<std::string_view, 3> kWhat = {"coordinate x", "coordinate y", "coordinate z"};
     Eigen::Vector3d& v = mesh_.vertices.emplace_back();
@@ -95,7 +96,7 @@ class ObjReader {
     mesh_.add_face(corners_);
   }
 
-  /// A polyline: each of its segments is an element of a 2D body.
+  /// Reads a polyline: each of its segments is an element of a 2D body.
   void polyline() {
     read_corners();
     if (corners_.size() < 2)
@@ -110,7 +111,7 @@ class ObjReader {
     for (std::string_view t = text_.token(); !t.empty(); t = text_.token()) corners_.push_back(corner(t));
   }
 
-  /// v, v/vt, v//vn or v/vt/vn. Texture and normal must be integers, but no more is asked of them.
+  /// Reads v, v/vt, v//vn or v/vt/vn. Texture and normal must be integers, but are not checked any further.
   VertexId corner(std::string_view token) {
     const std::size_t slash = token.find('/');
     if (slash != std::string_view::npos) check_attributes(token, token.substr(slash + 1));
@@ -140,7 +141,7 @@ class ObjReader {
                  "correct the line");
     if (index > count) forward_.push_back({index, text_.line()});
     return static_cast<VertexId>(index < 0 ? count + index
-                                           : index - 1);  // too large ones are refused at the end
+                                           : index - 1);  // indices that are too large are refused at the end
   }
 
   void check_forward_references() const {
@@ -152,7 +153,8 @@ class ObjReader {
                       "correct the line or complete the file");
   }
 
-  /// Without faces, polylines are the body; beside faces they are loose edges that bound nothing.
+  /// Takes the polylines as the body if there are no faces; beside faces they are loose edges that bound
+  /// nothing.
   void take_segments() {
     if (mesh_.face_count() > 0 || segments_.empty()) return;
     if (line_off_plane_ != 0)
@@ -166,10 +168,10 @@ class ObjReader {
   TextCursor text_;
   std::string_view name_;
   Mesh mesh_;
-  std::vector<VertexId> corners_;   ///< of the element being read
-  std::vector<VertexId> segments_;  ///< two corners each
+  std::vector<VertexId> corners_;   ///< corners of the element being read
+  std::vector<VertexId> segments_;  ///< two corners for each segment
   std::vector<ForwardReference> forward_;
-  std::uint64_t line_off_plane_ = 0;  ///< of the first vertex with z other than 0; 0: none
+  std::uint64_t line_off_plane_ = 0;  ///< line of the first vertex with z other than 0; 0: none
 };
 
 }  // namespace

@@ -45,14 +45,15 @@ class OffReader {
       text_.fail("a binary OFF file", "a text one", "export it as OFF text, or as PLY");
   }
 
-  /// Vertices, faces and (not needed, and often wrong) edges.
+  /// Reads the numbers of vertices, faces and edges (the last is not needed, and often wrong).
   void counts(std::string_view first) {
     vertices_ = count(first, "the number of vertices");
     faces_ = count(text_.token(), "the number of faces");
     const std::string_view edges = text_.token();
     if (!edges.empty()) text_.integer(edges, "the number of edges");
     end_of_line("the end of the line of counts");
-    // Before allocating: a vertex takes six bytes ("0 0 0" and a newline), a face eight ("3 0 1 2" and one).
+    // Check before allocating: a vertex takes six bytes ("0 0 0" and a newline), a face eight ("3 0 1 2" and
+    // a newline).
     static constexpr std::uint64_t kVertexBytes = 6, kFaceBytes = 8;
     const std::uint64_t left = text_.bytes_left() + 1;
     if (vertices_ > left / kVertexBytes || faces_ > (left - vertices_ * kVertexBytes) / kFaceBytes)
@@ -80,7 +81,7 @@ class OffReader {
     return token;
   }
 
-  /// x y z, then normal, colour and texture as the header says; plain OFF has nothing more.
+  /// Reads x y z, then normal, colour and texture as the header says; plain OFF has nothing more.
   void vertex() {
     Eigen::Vector3d v;
     v.x() = text_.number(first_of_line("another vertex"), "coordinate x");

@@ -10,7 +10,7 @@
 namespace lrb {
 namespace {
 
-/// Both generations of names.
+/// The types, under both generations of names.
 constexpr std::array<std::pair<std::string_view, PlyType>, 16> kTypes = {{
     {"char", PlyType::i8},
     {"uchar", PlyType::u8},
@@ -35,7 +35,7 @@ class PlyHeaderReader {
   PlyHeaderReader(std::string_view bytes, std::string_view name) : bytes_(bytes), text_(bytes, name, {}) {}
 
   PlyHeader read() {
-    text_.any_token();  // "ply", by which the format was told
+    text_.any_token();  // "ply", from which the format was recognised
     end_of_line();
     for (;;) {
       const std::string_view word = text_.any_token();
@@ -134,8 +134,8 @@ class PlyHeaderReader {
     if (!word.empty()) text_.fail(quoted(word), "the end of the line", "correct the header");
   }
 
-  /// Binary data begin right behind the line's end, and may look like another line's end: with a header that
-  /// ends its lines with CR alone, a LF there is data.
+  /// Finds where the data begins. Binary data begins right behind the end of the line, and may look like
+  /// another line end: if the header ends its lines with CR alone, an LF there is data.
   void finish() {
     end_of_line();
     std::size_t at = bytes_.size() - text_.bytes_left();

@@ -1,5 +1,5 @@
 #pragma once
-/// The header of a PLY file: what its data consists of.
+/// The header of a PLY file, which says what its data consists of.
 
 #include <cstdint>
 #include <optional>
@@ -20,24 +20,24 @@ constexpr bool is_integer(PlyType type) {
 struct PlyProperty {
   std::string name;
   PlyType type = PlyType::f32;
-  std::optional<PlyType> count_type;  ///< of a list: the type of its length
+  std::optional<PlyType> count_type;  ///< for a list: the type of its length
 };
 
 struct PlyElement {
   std::string name;
   std::uint64_t count = 0;
-  std::uint64_t line = 0;  ///< of the header
+  std::uint64_t line = 0;  ///< line of the header
   std::vector<PlyProperty> properties;
 };
 
 struct PlyHeader {
   PlyFormat format = PlyFormat::ascii;
   std::vector<PlyElement> elements;
-  std::size_t data_offset = 0;  ///< bytes before the data
-  std::uint64_t data_line = 0;  ///< line on which they begin
+  std::size_t data_offset = 0;  ///< number of bytes before the data
+  std::uint64_t data_line = 0;  ///< line on which the data begins
 };
 
-/// Throws InputError naming the line.
+/// Reads the header. Throws InputError naming the line.
 PlyHeader read_ply_header(std::string_view bytes, std::string_view name);
 
 }  // namespace lrb

@@ -23,7 +23,7 @@ std::ptrdiff_t find_property(const PlyElement& element, std::string_view name) {
   return it == all.end() ? -1 : it - all.begin();
 }
 
-/// Where in the header the mesh is.
+/// Says where in the header the mesh is.
 struct PlyLayout {
   const PlyElement* vertex = nullptr;
   const PlyElement* face = nullptr;
@@ -73,7 +73,7 @@ class PlyReader {
 
  private:
   void elements(const PlyElement& e) {
-    if (e.properties.empty()) return;  // takes no bytes, however many there are
+    if (e.properties.empty()) return;  // such elements take no bytes, however many there are
     if (!source_.has_room(e))
       source_.fail("fewer bytes than " + std::to_string(e.count) + " times " + quoted(e.name) + " need",
                    "as many as the header says",

@@ -16,13 +16,14 @@
 
 namespace lrb {
 
-/// One element a line.
+/// Data as text: one element per line.
 class PlyText {
  public:
   PlyText(std::string_view data, std::string_view name, std::uint64_t first_line)
       : text_(data, name, {}, first_line) {}
 
-  /// Can `count` elements be here? (Every value takes a character and a separator; the last one needs none.)
+  /// Returns true if there can be as many elements as the header says. (Every value takes a character and a
+  /// separator; the last one needs no separator.)
   bool has_room(const PlyElement& e) const {
     return e.count <= (text_.bytes_left() + 1) / (2 * e.properties.size());
   }
@@ -40,7 +41,7 @@ class PlyText {
   void skip(PlyType, std::uint64_t count, std::string_view what) {
     for (; count > 0; --count) next(what);
   }
-  /// After the last element.
+  /// Checks that nothing follows the last element.
   void end_of_data() {
     const std::string_view extra = text_.any_token();
     if (!extra.empty())
@@ -63,7 +64,7 @@ class PlyText {
   }
 
   TextCursor text_;
-  std::string_view waiting_;  ///< a line's first token, by which the line was found
+  std::string_view waiting_;  ///< a line's first token, which was read to find the line
 };
 
 class PlyBytes {
@@ -150,7 +151,7 @@ class PlyBytes {
   const char* end_;
   std::string_view name_;
   std::endian order_;
-  const PlyElement* element_ = nullptr;  ///< being read
+  const PlyElement* element_ = nullptr;  ///< the element being read
   std::uint64_t index_ = 0;
 };
 

@@ -59,8 +59,8 @@ class StlText {
 
   void facet() {
     expect("normal");
-    // Exporters write anything as the normal of a thin triangle; the order of the corners says which side is
-    // out.
+    // Ignore the normal, because exporters write anything for a thin triangle; the order of the corners says
+    // which side is out.
     for (int i = 0; i < 3; ++i)
       if (text_.any_token().empty()) unexpected({}, "the normal's three numbers");
     expect("outer");
@@ -136,7 +136,8 @@ Mesh read_stl_binary(std::string_view bytes, std::string_view name) {
   VertexMerger merger(mesh.vertices);
   for (std::size_t t = 0; t < count; ++t) {
     std::size_t byte =
-        kStart + t * kTriangle + 12;  // past the normal: the order of the corners says which side is out
+        // Past the normal, because the order of the corners says which side is out.
+        kStart + t * kTriangle + 12;
     std::array<VertexId, 3> corners;
     for (VertexId& c : corners) {
       Eigen::Vector3d v;

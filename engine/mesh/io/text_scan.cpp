@@ -19,14 +19,15 @@ constexpr bool is_newline(char c) {
   return c == '\n' || c == '\r';
 }
 
-/// std::from_chars takes no plus sign; files do.
+/// Removes a plus sign, which files use and std::from_chars does not accept.
 std::string_view without_plus(std::string_view token) {
   if (token.size() > 1 && token[0] == '+' && token[1] != '-' && token[1] != '+') token.remove_prefix(1);
   return token;
 }
 
-/// std::from_chars calls both ends of the range "out of range". Numbers too small for a double round to zero
-/// or to a subnormal as any other number rounds; numbers too large have no double.
+/// Returns the double for digits that std::from_chars calls "out of range", as it does at both ends of the
+/// range. Numbers too small for a double round to zero or to a subnormal as any other number rounds; numbers
+/// too large have no double.
 double round_out_of_range(std::string_view digits) {
   const std::string copy(digits);
   char* stop = nullptr;

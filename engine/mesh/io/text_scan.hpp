@@ -1,5 +1,5 @@
 #pragma once
-/// Reading a mesh's text token by token, line by line, with messages that name the line.
+/// Reads a mesh's text token by token, line by line, with messages that name the line.
 
 #include <cstdint>
 #include <string>
@@ -14,7 +14,7 @@ struct TextRules {
       false;  ///< a backslash at the end of a line (not of a comment) joins it with the next one
 };
 
-/// Lines end with LF, CR LF or CR.
+/// A position in a text. Lines end with LF, CR LF or CR.
 class TextCursor {
  public:
   TextCursor(std::string_view text, std::string_view name, TextRules rules, std::uint64_t first_line = 1)
@@ -23,14 +23,14 @@ class TextCursor {
   std::uint64_t line() const { return line_; }
   std::uint64_t bytes_left() const { return static_cast<std::uint64_t>(end_ - at_); }
 
-  /// The next token of this line, empty at its end.
+  /// Returns the next token of this line; empty at its end.
   std::string_view token();
-  /// Goes to the line after this one; false if the text ends first.
+  /// Goes to the next line. Returns false if the text ends first.
   bool next_line();
-  /// The next token on this line or a later one, empty at the end of the text.
+  /// Returns the next token on this line or a later one; empty at the end of the text.
   std::string_view any_token();
 
-  /// A token of this line as a finite double, rounded to nearest. `what`: "coordinate x" or the like.
+  /// Returns a token of this line as a finite double, rounded to nearest. `what`: "coordinate x" or the like.
   double number(std::string_view what) { return number(token(), what); }
   double number(std::string_view token, std::string_view what) const;
   std::int64_t integer(std::string_view what) { return integer(token(), what); }
@@ -42,7 +42,7 @@ class TextCursor {
   }
   [[noreturn]] void fail_at(std::uint64_t line, std::string_view found, std::string_view expected,
                             std::string_view advice) const;
-  /// How a message names a token; that of no token is the end of the line or of the file.
+  /// Returns how a message names a token; an empty one is the end of the line or of the file.
   std::string shown(std::string_view token) const;
 
  private:

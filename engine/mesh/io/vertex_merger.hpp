@@ -37,8 +37,8 @@ class VertexMerger {
     return h;
   }
 
-  /// Where v is, or the free slot where it belongs. The number of slots is a power of two, at most half of
-  /// them used.
+  /// Returns the slot of v, or the free slot where it belongs. The number of slots is a power of two, at most
+  /// half of them used.
   std::uint32_t& find(const Eigen::Vector3d& v) {
     const std::size_t mask = slots_.size() - 1;
     for (std::size_t i = hash(v) & mask;; i = (i + 1) & mask)

@@ -8,8 +8,8 @@
 namespace lrb {
 namespace {
 
-/// From one tolerance of the ladder to the next. Smaller: more queries before the exact one; larger: coarser
-/// answers where a limit is reached.
+/// Factor from one tolerance of the ladder to the next. Smaller: more queries before the exact one; larger:
+/// coarser answers where a limit is reached.
 constexpr double kLadderStep = 4;
 /// A level with more than this share of the bodies' own faces is left out: the exact query costs hardly more.
 constexpr double kWorthwhile = 0.7;
@@ -24,15 +24,14 @@ void check_coarse_request(const CollideRequest& request) {
     throw InputError("a tolerance or limit needs the complete recursion; leave \"paper\" out");
   if (request.contacts || request.interiors_overlap)
     throw InputError(
-        "contacts and interiors_overlap are exact: they cannot be had with a tolerance or limit; leave out "
-        "one "
-        "of the two");
+        "contacts and interiors_overlap are exact: they cannot be combined with a tolerance or limit; leave "
+        "out one or the other");
   if (request.wrapper != WrapperMode::regularised)
-    throw InputError("a tolerance or limit needs regularised wrappers");
+    throw InputError("a tolerance or limit needs regularised wrappers; leave \"unregularised\" out");
 }
 
 std::vector<double> coarse_ladder(QueryContext& context, const CollideRequest& request) {
-  // A surface that bounds nothing hides nothing: what is near it has to be seen as it is.
+  // A surface that bounds nothing hides nothing: both bodies have to be queried as they are.
   for (const Side side : {Side::a, Side::b})
     if (!context[side].rep().closed() || context[side].rep().self_intersecting()) return {0};
   std::vector<double> ladder;
@@ -42,7 +41,7 @@ std::vector<double> coarse_ladder(QueryContext& context, const CollideRequest& r
   if ((request.max_tests > 0 || request.max_time > 0) && largest > 0) {
     const double real = static_cast<double>(context[Side::a].rep().real_face_count()) +
                         context[Side::b].rep().real_face_count();
-    // Powers of two, so that bodies of like size share levels from pair to pair.
+    // Use powers of two, so that bodies of similar size share levels from pair to pair.
     int exponent = 0;
     std::frexp(largest, &exponent);
     for (double x = std::ldexp(1.0, exponent); x > request.tolerance && x >= smallest; x /= kLadderStep) {

@@ -3,11 +3,11 @@
 /// first until a limit is reached.
 ///
 /// Why they never call bodies separate that meet. Each wrapper encloses its body (wrapper_level.hpp), so
-/// bodies whose wrappers share no point share none. Two wrappers share no point if no two faces of theirs
-/// meet and no connected piece of either one's boundary has a point in the other: pairs of faces are found as
-/// the complete query finds them, and pieces are located exactly. In the world, rounding moves hidden
-/// vertices and lids separately: faces therefore count as apart only where they keep wrapper_margin(), in
-/// which all that has room.
+/// bodies whose wrappers share no point share none. Two wrappers share no point if no two of their faces meet
+/// and no connected piece of either one's boundary has a point in the other: pairs of faces are found as the
+/// complete query finds them, and pieces are located exactly. In the world, rounding moves hidden vertices
+/// and lids separately: faces therefore count as separate only if they keep wrapper_margin(), which is enough
+/// for all of that.
 
 #include <chrono>
 #include <limits>
@@ -21,33 +21,34 @@
 
 namespace lrb {
 
-/// Throws InputError if a coarse query is asked for together with what it cannot give.
+/// Throws InputError if a coarse query is combined with a request that it cannot answer.
 void check_coarse_request(const CollideRequest& request);
 
-/// Tolerances to be tried, coarsest first; the last is the one asked for.
+/// Returns the tolerances to be tried, coarsest first; the last is the one asked for.
 std::vector<double> coarse_ladder(QueryContext& context, const CollideRequest& request);
 
-/// Whether the boundary of either wrapper has a piece in the other. For wrappers whose faces do not meet.
+/// Returns true if the boundary of either wrapper has a piece in the other. For wrappers whose faces do not
+/// meet.
 bool wrappers_nested(QueryContext& context);
 
 struct CoarseRules {
   static constexpr bool kCoarse = true;
   using Clock = std::chrono::steady_clock;
 
-  bool exact = false;  ///< these are the bodies themselves
+  bool exact = false;  ///< the wrappers are the bodies themselves
   double margin = 0;
   std::uint64_t max_tests = 0;
   bool has_deadline = false;
   Clock::time_point deadline;
   bool stopped = false;  ///< a limit was reached
-  bool near = false;     ///< real faces do not meet, but came within the margin
+  bool near = false;     ///< real faces do not meet, but come within the margin
 
   bool must_stop() { return stopped |= has_deadline && Clock::now() >= deadline; }
-  /// Asked only when there is one to be done: the last one that is allowed may be the last one needed.
+  /// Asked only when there is a test to be done: the last one that is allowed may be the last one needed.
   bool no_test_left(std::uint64_t tests) { return stopped |= max_tests > 0 && tests >= max_tests; }
   bool one_is_enough() const { return !exact; }
 
-  /// For a pair that does not meet.
+  /// Returns how to count a pair that does not meet.
   exact::Meet meet_of_near(QueryContext& ctx, SimplexId a, SimplexId b) {
     if (exact) return exact::Meet::disjoint;
     const double *ca[3], *cb[3];
@@ -89,7 +90,7 @@ class CoarseQuery {
  private:
   static constexpr double kLongest = 1e6;  ///< seconds: more does not fit the clock on every machine
 
-  /// Contacts of a level are part of the answer only once it is the last.
+  /// Keeps contacts from the probe: those of a level are part of the answer only if it is the last.
   struct WithoutContacts {
     static constexpr bool kEnabled = Probe::kEnabled;
     Probe& probe;
@@ -100,7 +101,8 @@ class CoarseQuery {
     void contact(SimplexId, SimplexId, exact::Meet) {}
   };
 
-  /// One level. False if a limit was reached before its end: then the answer stays that of the level before.
+  /// Queries one level. Returns false if a limit was reached before its end: the answer then stays that of
+  /// the level before.
   bool step(double tolerance, CoarseRules rules, bool last) {
     QueryBody &a = ctx_[Side::a], &b = ctx_[Side::b];
     const WrapperLevel &la = a.levels().at(tolerance), &lb = b.levels().at(tolerance);

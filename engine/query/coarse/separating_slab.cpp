@@ -23,8 +23,8 @@ Corners relative_to(const double* origin, const double* const x[3], int dim) {
   return c;
 }
 
-/// Looks for a slab between two simplices. Any direction can be tried, however it came about; one
-/// too short to be told from rounding proves nothing, nor does an overflow.
+/// Looks for a slab between two simplices. Any direction can be tried, however it came about; one that is too
+/// short to be told from rounding proves nothing, nor does an overflow.
 class SlabSearch {
  public:
   SlabSearch(int dim, const Corners& a, const Corners& b, double margin)
@@ -32,7 +32,7 @@ class SlabSearch {
 
   int directions() const { return dim_ == 3 ? 21 : 7; }
 
-  /// Whether there is a slab wider than the margin across a direction.
+  /// Returns true if there is a slab wider than the margin across a direction.
   bool parts(int direction) const {
     const Vector3d d = dim_ == 3 ? in_space(direction) : in_plane(direction);
     const double length_sq = d.squaredNorm();
@@ -51,7 +51,8 @@ class SlabSearch {
   static Vector3d normal(const Corners& c) { return edge(c, 0).cross(edge(c, 1)); }
   Vector3d middles() const { return (b_[0] + b_[1] + b_[2]) - (a_[0] + a_[1] + a_[2]); }
 
-  /// The line between the middles; normals; edge x edge; in the planes, across edges; the axes.
+  /// Returns a direction to try: the line between the middles; normals; edge x edge; in the planes, across
+  /// edges; the axes.
   Vector3d in_space(int i) const {
     if (i == 0) return middles();
     if (i < 3) return normal(i == 1 ? a_ : b_);

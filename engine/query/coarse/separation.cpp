@@ -30,7 +30,7 @@ class WorldWrapper {
   bool is_there(std::size_t i) const { return wrapper_.on_boundary(faces_[i]); }
   const double* world(VertexId v) { return body_.world(v); }
 
-  /// The region that a face of the boundary belongs to; kNull for a real one.
+  /// Returns the region that a face of the boundary belongs to; kNull for a real face.
   RegionId region_at(FaceId f) const {
     const CellId inner = rep().inner_cell(f);
     if (is_region(inner)) return wrapper_.included(inner) ? inner : rep().outer_cell(f);
@@ -46,7 +46,7 @@ class WorldWrapper {
     add(rep().collector(r));
   }
 
-  /// Whether two faces of the boundaries are further apart than the margin.
+  /// Returns true if two faces of the boundaries are further apart than the margin.
   bool apart(std::size_t i, WorldWrapper& other, std::size_t j) {
     if (!boxes_[i].intersects(other.boxes_[j])) return true;
     const double *a[3], *b[3];
@@ -59,7 +59,7 @@ class WorldWrapper {
     return true;
   }
 
-  /// Whether a point of the world lies in the wrapper, or in one region of it.
+  /// Returns true if a point of the world lies in the wrapper, or in one region of it.
   bool holds(const double* point) {
     const std::vector<FaceId> boundary = wrapper_.boundary();
     return crossed(point, boundary) % 2 != 0;
@@ -75,7 +75,7 @@ class WorldWrapper {
     return static_cast<SimplexId>(Mesh::simplices_of(rep().face(f).size(), rep().dim()));
   }
 
-  /// Faces that were there before may come a second time, which does no harm.
+  /// Adds faces of the boundary. Some may come a second time, which does no harm.
   void add(std::span<const FaceId> faces) {
     for (const FaceId f : faces) {
       if (!wrapper_.on_boundary(f)) continue;
@@ -106,7 +106,7 @@ class WorldWrapper {
   QueryBody& body_;
   Wrapper wrapper_;
   double margin_;
-  std::vector<FaceId> faces_;  ///< and some that have been refined since
+  std::vector<FaceId> faces_;  ///< the boundary's faces, and some that have been refined since
   std::vector<Box> boxes_;
 };
 
@@ -130,9 +130,9 @@ class SeparationFinder {
   }
 
  private:
-  /// Refines until no faces meet; false if real ones are too near.
+  /// Refines until no faces meet. Returns false if real faces are too near.
   bool part_boundaries() {
-    // Every face of A is compared with every one of B once: whichever comes later does it.
+    // Every face of A is compared with every face of B once: whichever comes later does it.
     while (done_[0] < half_[0].size() || done_[1] < half_[1].size()) {
       const int side = done_[0] < half_[0].size() ? 0 : 1;
       const std::size_t i = done_[side]++;
@@ -144,7 +144,7 @@ class SeparationFinder {
     return true;
   }
 
-  /// Of the regions behind two faces that meet the larger one.
+  /// Refines the larger one of the regions behind two faces that meet.
   bool refine_one(int side, std::size_t i, std::size_t j) {
     const RegionId r = half_[side].region_at(half_[side].face(i)),
                    q = half_[1 - side].region_at(half_[1 - side].face(j));
@@ -155,7 +155,7 @@ class SeparationFinder {
   }
   double size_of(int side, RegionId r) const { return std::abs(region_volume(half_[side].rep(), r)); }
 
-  /// A vertex of a piece of one boundary that lies in the other wrapper; kNull: there is none.
+  /// Returns a vertex of a piece of one boundary that lies in the other wrapper; kNull if there is none.
   VertexId piece_inside(int inner) {
     const std::vector<FaceId> boundary = half_[inner].wrapper().boundary();
     for (const VertexId v : piece_vertices(half_[inner].rep(), boundary))
@@ -164,7 +164,7 @@ class SeparationFinder {
   }
   bool nested() { return piece_inside(0) != kNull || piece_inside(1) != kNull; }
 
-  /// True if something was refined because a piece lies in it.
+  /// Refines a region in which a piece lies. Returns true if there was one.
   bool open_what_holds_a_piece() {
     for (const int inner : {0, 1}) {
       const VertexId v = piece_inside(inner);
@@ -188,7 +188,9 @@ class SeparationFinder {
     return true;
   }
 
-  /// The vertex lies in the other's solid: it is not the body's own, or the bodies are not apart.
+  /// Refines a region of `side` that has the boundary vertex v, which lies in the other body's solid: v is
+  /// then not one of the body's own vertices, or the bodies are not separate. Returns false if there is no
+  /// such region.
   bool refine_at(int side, VertexId v) {
     for (std::size_t i = 0; i < half_[side].size(); ++i) {
       if (!half_[side].is_there(i)) continue;
@@ -203,7 +205,8 @@ class SeparationFinder {
     return false;
   }
 
-  /// Once is enough: wrappers only grow, so a region that could not come back in still cannot.
+  /// Takes back in every region that can be. Once is enough: wrappers only grow, so that a region that could
+  /// not come back in still cannot.
   void take_back(int side) {
     const std::vector<RegionId> refined = half_[side].wrapper().excluded();
     for (auto r = refined.rbegin(); r != refined.rend(); ++r) {
@@ -213,7 +216,7 @@ class SeparationFinder {
     }
   }
 
-  /// Whether the faces of a boundary from the first-th on are apart from all of the other's.
+  /// Returns true if the faces of a boundary from the first-th on are apart from all of the other's.
   bool are_clear(int side, std::size_t first) {
     for (std::size_t i = first; i < half_[side].size(); ++i)
       for (std::size_t j = 0; j < half_[1 - side].size(); ++j)
@@ -224,7 +227,7 @@ class SeparationFinder {
   }
 
   WorldWrapper half_[2];
-  std::size_t done_[2] = {0, 0};  ///< faces of each that have been compared with those of the other
+  std::size_t done_[2] = {0, 0};  ///< number of faces of each that have been compared with those of the other
   bool stuck_ = false;
 };
 

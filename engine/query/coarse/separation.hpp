@@ -6,10 +6,10 @@
 
 namespace lrb {
 
-/// The certificate for two bodies that are known to be separate: from the outermost wrappers on, what meets
-/// is refined, of two regions the larger one, and at the end all is taken back in that can be. None for
-/// bodies that are not closed or intersect themselves, or that are nearer than wrapper_margin(): what hides
-/// them cannot then be told from them.
+/// Returns the certificate for two bodies that are known to be separate. Starts from the outermost wrappers,
+/// refines what meets, the larger one of two regions, and at the end takes everything back in that can be.
+/// There is none for bodies that are not closed or intersect themselves, or that are nearer than
+/// wrapper_margin(): they cannot then be told from what hides them.
 std::optional<Separation> find_separation(QueryContext& context);
 
 }  // namespace lrb

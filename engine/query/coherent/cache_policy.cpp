@@ -8,26 +8,28 @@ namespace {
 
 constexpr double kFewestSteps = 2, kMostSteps = 64;
 constexpr double kLonger = 1.5;
-/// A list that did not pay was longer than one that may.
+/// A cache that did not pay was made for too many steps: the next one is for this share of them.
 constexpr double kMuchShorter = 0.4;
-/// One may have been too long, or the clock's fault: with so many in a row there is a pause.
+/// One failure may be due to too long a cache, or to the clock: after this many in a row there is a pause.
 constexpr std::uint32_t kMostFailures = 2;
-/// What the other kind of list cost is forgotten by this for every list, and so that kind tried again.
+/// With every cache the remembered cost of the other kind is multiplied by this, so that it is tried again.
 constexpr double kForget = 0.95;
-/// And by this for every query, where only a list about a place could be made, and did not pay.
+/// The same for every query in which only a fixed cache could be made, and these did not pay.
 constexpr double kForgetSlowly = 0.99;
-/// Queries from scratch that take no longer, in seconds, are not worth what it takes to watch B's course.
+/// Queries from scratch that take no longer than this, in seconds, are not worth the effort of watching B's
+/// motion.
 constexpr double kWorthWatching = 5e-7;
-/// Most lists that pay are found in the time of two queries from scratch.
+/// Making a cache is given up after this many times a query from scratch: most caches that pay are found in
+/// two.
 constexpr double kPatience = 3;
-/// No list is for a way longer than this share of B's radius: it would hold much of both bodies.
-/// And none where it could not be for so many steps.
-constexpr double kLongestWay = 1.0 / 16, kWorthTrying = 4;
-/// So many queries before the end of a pause B's course is watched again.
-constexpr std::uint32_t kToSeeACourse = 3;
+/// No cache is for a motion longer than this share of B's radius, because it would hold much of both bodies;
+/// and none is made where that leaves fewer than kWorthTrying steps.
+constexpr double kLongestMotion = 1.0 / 16, kWorthTrying = 4;
+/// This many queries before the end of a pause, B's motion is watched again.
+constexpr std::uint32_t kToSeeMotion = 3;
 constexpr std::uint32_t kLongestPause = 64, kPauseFactor = 4, kFirstPause = 4;
-/// Steps shorter than this share of one for which a list did not pay are worth another try at once; others
-/// only after so many pauses.
+/// After a step for which a cache did not pay, steps shorter than this share of it are worth another try at
+/// once; others only after kPausesBetween pauses.
 constexpr double kShorter = 0.7;
 constexpr std::uint32_t kPausesBetween = 4;
 
@@ -35,12 +37,12 @@ constexpr std::uint32_t kPausesBetween = 4;
 
 bool CachePolicy::rests() {
   if (pause_ > 0) --pause_;
-  return pause_ >= kToSeeACourse;
+  return pause_ >= kToSeeMotion;
 }
 
 void CachePolicy::build_took(Kind kind, double time) {
   kind_ = kind;
-  // The first one finds no memory: it does not count.
+  // The first cache has to allocate its memory, so its time does not count.
   build_time_ = std::exchange(has_memory_, true) ? time : 0;
   step_time_ = 0;
   steps_ = 0;
@@ -63,7 +65,7 @@ void CachePolicy::rest() {
   pauses_ = 0;
 }
 
-std::optional<CachePolicy::Plan> CachePolicy::next(bool on_course, double step, double radius) {
+std::optional<CachePolicy::Plan> CachePolicy::next(bool is_steady, double step, double radius) {
   if (scratch_time_ == 0) return {};
   if (scratch_time_ < kWorthWatching) {
     build_time_ = 0;
@@ -83,13 +85,14 @@ std::optional<CachePolicy::Plan> CachePolicy::next(bool on_course, double step, 
     pause_ = next_pause_;
     return {};
   }
-  const double place = aim(Kind::fixed).cost;
-  const Kind kind = on_course && (place >= 1 || aim(Kind::swept).cost <= place) ? Kind::swept : Kind::fixed;
-  if (kind == Kind::fixed && place >= 1) {  // until there is a course, or that is forgotten
+  const double fixed_cost = aim(Kind::fixed).cost;
+  const Kind kind =
+      is_steady && (fixed_cost >= 1 || aim(Kind::swept).cost <= fixed_cost) ? Kind::swept : Kind::fixed;
+  if (kind == Kind::fixed && fixed_cost >= 1) {  // until the motion is steady, or that cost is forgotten
     aim(kind).cost *= kForgetSlowly;
     return {};
   }
-  const double most = kLongestWay * radius / step;
+  const double most = kLongestMotion * radius / step;
   if (most >= kWorthTrying) return Plan{kind, std::min(aim(kind).steps, most)};
   pause_ = kLongestPause;
   return {};
@@ -103,9 +106,9 @@ double CachePolicy::cost() const {
   return (build_time_ + step_time_) / ((1 + steps_) * scratch_time_);
 }
 
-/// How many times as many steps the next list is to serve for. A longer stretch costs about as much more as
-/// it is longer: what is best is found by trying. A wider place costs more and more: it is wide enough where
-/// B stays long enough for the list to be paid off.
+/// Returns the factor for the number of steps that the next cache is for. The cost of a swept cache grows
+/// about as its length: the best length is found by trying. The cost of a fixed cache grows faster than its
+/// width: it is wide enough if B stays in it long enough to pay it off.
 double CachePolicy::growth(Aim& used, double now) const {
   if (kind_ == Kind::fixed) return build_time_ > step_time_ ? kLonger : 1;
   if (used.cost > 0 && now > used.cost) used.is_growing = !used.is_growing;

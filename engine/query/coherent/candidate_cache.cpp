@@ -11,10 +11,11 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// A gap on B's axes is longer than it is on A's by twice the defect at most, and little.
+/// Factor on the defect: a gap is longer on B's axes than on A's by at most twice the defect, relatively, and
+/// a little.
 constexpr double kGapDefects = 3;
 
-/// To eights, with a pair that there is.
+/// Pads to a multiple of eight with a pair that exists.
 void fill_up(std::vector<CachedPair>& pairs, std::size_t count) {
   for (std::size_t i = count; i % 8 != 0; ++i) pairs[i] = pairs[0];
 }
@@ -25,14 +26,14 @@ std::size_t up_to_eights(std::size_t count) {
 
 }  // namespace
 
-void aim_at(const Sweep& stretch, double rounding, double unit, TreeKernel& k) {
-  const double margin = stretch.width + rounding +
-                        kGapDefects * stretch.middle.defect * (stretch.length + stretch.width + rounding);
+void aim_at(const Sweep& sweep, double rounding, double unit, TreeKernel& k) {
+  const double margin =
+      sweep.width + rounding + kGapDefects * sweep.middle.defect * (sweep.length + sweep.width + rounding);
   k.margin = static_cast<float>(margin / unit) * kFloatUp;
-  k.sweep_turn = static_cast<float>(stretch.turn) * kFloatUp;
+  k.sweep_turn = static_cast<float>(sweep.turn) * kFloatUp;
   for (int i = 0; i < 3; ++i) {
-    for (int j = 0; j < 3; ++j) k.sweep[j][i] = stretch.dm(i, j);
-    k.sweep_t[i] = stretch.dt[i] / unit;
+    for (int j = 0; j < 3; ++j) k.sweep[j][i] = sweep.dm(i, j);
+    k.sweep_t[i] = sweep.dt[i] / unit;
   }
 }
 
@@ -42,15 +43,15 @@ void CandidateSimplices::begin(const LrbRep& rep, double unit) {
   written_.clear();
   farthest_sq_ = 0;
   if (slots_.size() < rep.simplex_count()) slots_.resize(rep.simplex_count());
-  if (++list_ != 0) return;
+  if (++epoch_ != 0) return;
   std::fill(slots_.begin(), slots_.end(), Slot{});
-  list_ = 1;
+  epoch_ = 1;
 }
 
 std::uint32_t CandidateSimplices::place_of(SimplexId s) {
   Slot& slot = slots_[s];
-  if (slot.list != list_) {
-    slot = {list_, static_cast<std::uint32_t>(written_.size())};
+  if (slot.epoch != epoch_) {
+    slot = {epoch_, static_cast<std::uint32_t>(written_.size())};
     write(s);
   }
   return slot.place;
@@ -80,21 +81,21 @@ float CandidateSimplices::radius() const {
   return static_cast<float>(std::sqrt(farthest_sq_)) * kFloatUp + kKernelTiny;
 }
 
-void CandidateCache::arrange(const LrbRep& a, const LrbRep& b, const TreeKernel& k, const Sweep& stretch,
+void CandidateCache::arrange(const LrbRep& a, const LrbRep& b, const TreeKernel& k, const Sweep& sweep,
                              double rounding, PairOrder& order) {
   unit_ = query_unit(a.tree(), b.tree());
   rounding_ = rounding;
-  is_swept_ = stretch.length > 0;
+  is_swept_ = sweep.length > 0;
   order.sort(pairs_);
   place_pairs(a, b);
-  find_spans(k, stretch);
+  find_spans(k, sweep);
   if (is_swept_)
     drop_unless([](float from, float to) {
       return unsigned{from <= 1 + kSpanRounding} & unsigned{to >= -1 - kSpanRounding} &
              unsigned{from <= to + kSpanRounding};
     });
   else
-    drop_unless([most = length_of(stretch.width)](float from, float) { return unsigned{from <= most}; });
+    drop_unless([most = length_of(sweep.width)](float from, float) { return unsigned{from <= most}; });
   chosen_.resize(pairs_.size());
   chosen_places_.resize(up_to_eights(pairs_.size()));
   verdicts_.resize(chosen_places_.size() / 8);
@@ -111,7 +112,7 @@ void CandidateCache::place_pairs(const LrbRep& a, const LrbRep& b) {
   fill_up(places_, pairs_.size());
 }
 
-void CandidateCache::find_spans(const TreeKernel& k, const Sweep& stretch) {
+void CandidateCache::find_spans(const TreeKernel& k, const Sweep& sweep) {
   from_.resize(places_.size());
   to_.resize(places_.size());
   PairKernel kernel = kernel_at(k, places_);
@@ -121,15 +122,15 @@ void CandidateCache::find_spans(const TreeKernel& k, const Sweep& stretch) {
   kernel.is_swept = is_swept_;
   kernel.sweep_turn = k.sweep_turn;
   kernel.margin = k.margin;
-  const Vector3d way = stretch.dm * of_[1].origin() + stretch.dt / unit_;
+  const Vector3d way = sweep.dm * of_[1].origin() + sweep.dt / unit_;
   for (int i = 0; i < 3; ++i) {
     kernel.sweep_t[i] = static_cast<float>(way[i]);
-    for (int j = 0; j < 3; ++j) kernel.sweep[i][j] = static_cast<float>(stretch.dm(i, j));
+    for (int j = 0; j < 3; ++j) kernel.sweep[i][j] = static_cast<float>(sweep.dm(i, j));
   }
   run_pair_kernel(kernel);
 }
 
-/// Without branches, as what is near cannot be foretold; so in choose().
+/// Drops pairs without branches, because which pairs are near cannot be predicted; choose() does the same.
 template <class Keep>
 void CandidateCache::drop_unless(Keep&& keep) {
   std::size_t kept = 0;
@@ -147,13 +148,13 @@ float CandidateCache::length_of(double distance) const {
   return static_cast<float>((distance + rounding_) / unit_) * kFloatUp;
 }
 
-/// In spans.
-float CandidateCache::place_of(const SweepPoint& where) const {
+/// Returns a point of the sweep on the scale of the spans.
+float CandidateCache::position_of(const SweepPoint& where) const {
   return is_swept_ ? static_cast<float>(where.at) : length_of(where.off);
 }
 
 std::size_t CandidateCache::choose(const SweepPoint& where) {
-  const float at = place_of(where), spare = span_rounding();
+  const float at = position_of(where), spare = span_rounding();
   std::size_t count = 0;
   for (std::size_t i = 0; i < pairs_.size(); ++i) {
     chosen_[count] = static_cast<std::uint32_t>(i);
@@ -165,10 +166,10 @@ std::size_t CandidateCache::choose(const SweepPoint& where) {
   return count;
 }
 
-/// Between two maps of B that are in the stretch so are those that mix them: where no surfaces meet on that
-/// way, none can have gone through another.
+/// If two maps of B are in the sweep, so are those that blend them: if no surfaces meet on that way, none can
+/// have passed through another.
 bool CandidateCache::none_between(const SweepPoint& here, const SweepPoint& there) const {
-  const float x = place_of(here), y = place_of(there), spare = span_rounding();
+  const float x = position_of(here), y = position_of(there), spare = span_rounding();
   const float first = std::min(x, y) - spare, last = std::max(x, y) + spare;
   for (std::size_t i = 0; i < pairs_.size(); ++i)
     if (from_[i] <= last && to_[i] >= first) return false;
@@ -186,7 +187,7 @@ PairKernel CandidateCache::kernel_at(const TreeKernel& k, const std::vector<Cach
   p.m_size = k.m_size;
   for (int i = 0; i < 3; ++i) {
     std::copy(std::begin(k.m_rows[i]), std::end(k.m_rows[i]), p.r[i]);
-    double t = k.t[i] - of_[0].origin()[i];  // of the frame of B's corners, seen from that of A's
+    double t = k.t[i] - of_[0].origin()[i];  // origin of the frame of B's corners, seen from that of A's
     for (int j = 0; j < 3; ++j) t += k.m[j][i] * of_[1].origin()[j];
     p.t[i] = static_cast<float>(t);
   }

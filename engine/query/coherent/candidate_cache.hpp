@@ -1,7 +1,8 @@
 #pragma once
-/// The pairs of simplices that are near each other along a stretch of B's course, or about one place, kept so
-/// that how they meet at a pose there takes little: of the list those are tested that may meet at that point
-/// of the stretch, or are no further apart than B has moved from the place, corners eight abreast.
+/// The candidate cache: the pairs of simplices that are near each other along a sweep of B, or about a fixed
+/// pose. They are kept so that it costs little to find out how they meet at a pose there: only those pairs
+/// are tested that may meet at that point of the sweep, or that are no further apart than B has moved from
+/// the fixed pose, and eight pairs at a time.
 
 #include <bit>
 #include <cstdint>
@@ -17,63 +18,63 @@
 
 namespace lrb {
 
-/// The simplices of one body that occur in pairs.
+/// The simplices of one body that occur in cached pairs.
 class CandidateSimplices {
  public:
   void begin(const LrbRep& rep, double unit);
-  /// The place of a simplex in what follows; written there if it is new.
+  /// Returns the index of a simplex in data(); writes it there if it is new.
   std::uint32_t place_of(SimplexId s);
   const CachedSimplex* data() const { return written_.data(); }
 
-  /// Origin of their frame: a corner amid them, query units.
+  /// Returns the origin of their frame, a corner among them; query units.
   const Eigen::Vector3d& origin() const { return origin_; }
-  /// Of a ball about the origin that holds all first corners.
+  /// Returns the radius of a ball about the origin that holds all first corners; query units.
   float radius() const;
 
  private:
   void write(SimplexId s);
 
   struct Slot {
-    std::uint32_t list = 0, place = 0;
+    std::uint32_t epoch = 0, place = 0;
   };
   const LrbRep* rep_ = nullptr;
   double per_unit_ = 1;
-  std::vector<Slot> slots_;  ///< (simplices of the body) good where `list` is this one
-  std::uint32_t list_ = 0;
+  std::vector<Slot> slots_;  ///< (simplices of the body) valid where `epoch` is the current one
+  std::uint32_t epoch_ = 0;
   std::vector<CachedSimplex> written_;
   Eigen::Vector3d origin_{0, 0, 0};
   double farthest_sq_ = 0;
 };
 
-/// Has a kernel at the middle of a stretch find all pairs that may meet in it. `rounding`: of world
-/// coordinates; `unit`: the query's; both in the mesh's.
-void aim_at(const Sweep& stretch, double rounding, double unit, TreeKernel& k);
+/// Makes a kernel that is set up at the middle of a sweep find all pairs that may meet in the sweep.
+/// `rounding`: of world coordinates; `unit`: the query's; both in the mesh's unit.
+void aim_at(const Sweep& sweep, double rounding, double unit, TreeKernel& k);
 
 class CandidateCache {
  public:
   void clear() { pairs_.clear(); }
   void add(SimplexPair p) { pairs_.push_back(p); }
-  /// Ascending, once they are arranged.
+  /// Returns the pairs; ascending, once they are arranged.
   const std::vector<SimplexPair>& pairs() const { return pairs_; }
 
-  /// Puts the pairs that were added in order: all that may meet in the stretch. Drops those that turn out not
-  /// to. The kernel is the one that found them, at the middle of the stretch. `rounding`: of world
+  /// Sorts the pairs that were added, which must be all that may meet in the sweep, and drops those that turn
+  /// out not to. The kernel is the one that found them, at the middle of the sweep. `rounding`: of world
   /// coordinates, mesh's unit.
-  void arrange(const LrbRep& a, const LrbRep& b, const TreeKernel& k, const Sweep& stretch, double rounding,
+  void arrange(const LrbRep& a, const LrbRep& b, const TreeKernel& k, const Sweep& sweep, double rounding,
                PairOrder& order);
 
-  /// Chooses the pairs that may meet where B is, in the stretch. How many they are.
+  /// Chooses the pairs that may meet with B at this point of the sweep. Returns their number.
   std::size_t choose(const SweepPoint& where);
 
-  /// Whether none may meet on the way from here to there, both in the stretch.
+  /// Returns true if no pair may meet on the way from here to there, both in the sweep.
   bool none_between(const SweepPoint& here, const SweepPoint& there) const;
 
-  /// Finds out how the chosen pairs meet at the pose of k; the others do not. exact(pair) is asked where
-  /// floats are not certain. True if anything is not as it was.
+  /// Finds out how the chosen pairs meet at the pose of k; the others do not meet. Calls exact(pair) where
+  /// floats are not certain. Returns true if anything has changed since the last update.
   template <class Exact>
   bool update(const TreeKernel& k, Exact&& exact);
 
-  /// The pairs that meet, ascending.
+  /// Appends the pairs that meet, ascending.
   void append_meeting(CollideResult& result) const;
 
  private:
@@ -83,29 +84,30 @@ class CandidateCache {
     friend bool operator==(const Meeting&, const Meeting&) = default;
   };
   void place_pairs(const LrbRep& a, const LrbRep& b);
-  void find_spans(const TreeKernel& k, const Sweep& stretch);
+  void find_spans(const TreeKernel& k, const Sweep& sweep);
   template <class Keep>
   void drop_unless(Keep&& keep);
   float length_of(double distance) const;
-  float place_of(const SweepPoint& where) const;
+  float position_of(const SweepPoint& where) const;
   float span_rounding() const { return is_swept_ ? kSpanRounding : 0; }
   PairKernel kernel_at(const TreeKernel& k, const std::vector<CachedPair>& pairs) const;
 
-  /// Spans of a sweep are from -1 to 1, and rounded by 2^-20 near there.
+  /// Spans of a sweep lie between -1 and 1, and are rounded by 2^-20 near these ends.
   static constexpr float kSpanRounding = 0x1p-16f;
 
   CandidateSimplices of_[2];
   std::vector<SimplexPair> pairs_;
-  std::vector<CachedPair> places_;  ///< (|pairs_|, filled up to eights)
-  std::vector<float> from_, to_;    ///< (|pairs_|, filled up to eights) where they may meet, see PairKernel
+  std::vector<CachedPair> places_;  ///< (|pairs_|, padded to a multiple of 8)
+  /// (|pairs_|, padded to a multiple of 8) where they may meet, see PairKernel.
+  std::vector<float> from_, to_;
   bool is_swept_ = false;
-  double unit_ = 1;      ///< the query's, in the mesh's
-  double rounding_ = 0;  ///< to be taken off lengths, mesh's unit
+  double unit_ = 1;      ///< the query's unit, in the mesh's
+  double rounding_ = 0;  ///< allowed for in lengths, mesh's unit
 
-  std::vector<std::uint32_t> chosen_;      ///< numbers of pairs, room for all
-  std::vector<CachedPair> chosen_places_;  ///< the same, filled up to eights
+  std::vector<std::uint32_t> chosen_;      ///< indices of pairs, with room for all
+  std::vector<CachedPair> chosen_places_;  ///< the same pairs, padded to a multiple of 8
   std::size_t chosen_count_ = 0;
-  std::vector<PairVerdicts> verdicts_;     ///< (eights)
+  std::vector<PairVerdicts> verdicts_;     ///< (blocks of eight pairs)
   std::vector<Meeting> meeting_, before_;  ///< ascending; now, and before the last update
 };
 

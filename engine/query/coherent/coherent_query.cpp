@@ -12,10 +12,11 @@
 namespace lrb {
 namespace {
 
-/// Pairs that are found before the clock is looked at.
+/// Number of pairs to find before looking at the clock.
 constexpr std::size_t kAtATime = 256;
-/// The usual step is the longest of late: it shrinks by this from one query to the next. A step so many times
-/// as long is a jump, which says nothing about the steps to come, unless another one follows.
+/// The usual step is the longest of recent steps: from one query to the next it shrinks by the factor
+/// kForget. A step more than kJump times as long is a jump, which says nothing about the steps to come,
+/// unless another one follows.
 constexpr double kForget = 0.7, kJump = 8;
 
 using Clock = std::chrono::steady_clock;
@@ -24,7 +25,7 @@ double seconds_since(Clock::time_point began) {
   return std::chrono::duration<double>(Clock::now() - began).count();
 }
 
-/// Keeps the memory.
+/// Resets the counters but keeps their memory.
 void reset_counters(Counters& c) {
   std::vector<std::uint32_t> levels = std::move(c.face_tests_by_level);
   levels.clear();
@@ -34,11 +35,11 @@ void reset_counters(Counters& c) {
 
 }  // namespace
 
-CoherentQuery::CoherentQuery(const LrbRep& a, const LrbRep& b, const CollideRequest& request, CacheUse lists)
+CoherentQuery::CoherentQuery(const LrbRep& a, const LrbRep& b, const CollideRequest& request, CacheUse use)
     : a_(a),
       b_(b),
       request_(request),
-      use_(lists),
+      use_(use),
       plain_(request.recursion == Recursion::complete && request.predicates == Predicates::exact &&
              !request.is_coarse() && !request.separation && !a.tree().empty() && !b.tree().empty()) {
   if (plain_) motion_ = {a, b};
@@ -52,7 +53,7 @@ const CollideResult& CoherentQuery::collide(const Pose& pose_a, const Pose& pose
     return result_;
   }
   check_query(a_, pose_a, b_, pose_b);
-  if (std::exchange(at_work_, true)) {  // the last call ended by an exception, and left who knows what
+  if (std::exchange(at_work_, true)) {  // the last call ended with an exception, in an unknown state
     has_cache_ = false;
     motion_.forget();
     result_.pairs.clear();
@@ -89,16 +90,16 @@ void CoherentQuery::answer(const Pose& pose_a, const Pose& pose_b) {
     policy_.step_took(seconds_since(began));
   } else if (request_.mode != Mode::all_pairs && still_crosses()) {
     has_cache_ = false;
-  } else if (const auto list = next_plan()) {
-    if (!make_cache(*list)) query_from_scratch();
-    policy_.build_took(list->kind, seconds_since(began));
+  } else if (const auto plan = next_plan()) {
+    if (!make_cache(*plan)) query_from_scratch();
+    policy_.build_took(plan->kind, seconds_since(began));
   } else {
     query_from_scratch();
     policy_.scratch_took(seconds_since(began));
   }
 }
 
-/// As collide() does it, but into the result that there is.
+/// Does what collide() does, but into the existing result.
 void CoherentQuery::query_from_scratch() {
   has_cache_ = false;
   ++statistics_.from_scratch;
@@ -123,7 +124,7 @@ void CoherentQuery::show_opened() {
   }
 }
 
-/// Where one pair is enough: that found last time, if it crosses, is as good as any.
+/// Returns true if the pair found last time still crosses: where one pair is enough, it is as good as any.
 bool CoherentQuery::still_crosses() {
   if (result_.pairs.size() != 1 || result_.meets[0] != exact::Meet::cross) return false;
   ++result_.counters.face_tests;
@@ -146,18 +147,19 @@ std::optional<CachePolicy::Plan> CoherentQuery::next_plan() {
                            CachePolicy::kFirstSteps};
 }
 
-/// False if that takes too long, or lengths overflow: there is no list then.
-bool CoherentQuery::make_cache(const CachePolicy::Plan& list) {
+/// Makes a cache and answers from it. Returns false, without a cache, if that takes too long or lengths
+/// overflow.
+bool CoherentQuery::make_cache(const CachePolicy::Plan& plan) {
   const auto began = Clock::now();
-  const bool ahead = list.kind == CachePolicy::Kind::swept;
-  sweep_ = ahead ? motion_.ahead(list.steps) : motion_.about(list.steps * usual_step_);
+  const bool is_swept = plan.kind == CachePolicy::Kind::swept;
+  sweep_ = is_swept ? motion_.ahead(plan.steps) : motion_.about(plan.steps * usual_step_);
   const SweepPoint where = motion_.along(sweep_);
   if (!(where.off <= sweep_.width)) return false;
   const double rounding = 4 * motion_.rounding();
   for (QueryBody& body : context_.body) body.begin_at_pose(request_.wrapper);
   TreeKernel k = start_rigid_kernel(context_, Pose{}, {sweep_.middle.m, sweep_.middle.t}, kAtATime);
   aim_at(sweep_, rounding, query_unit(a_.tree(), b_.tree()), k);
-  // One that is not a number, as infinite widths and no defect make it, would count as none.
+  // A margin that is not a number, as infinite widths and no defect make it, would count as none.
   if (!(k.margin < std::numeric_limits<float>::infinity())) return false;
   cache_.clear();
   while (k.stack_size != 0) {
@@ -172,7 +174,7 @@ bool CoherentQuery::make_cache(const CachePolicy::Plan& list) {
   has_cache_ = true;
   has_answer_ = false;
   ++statistics_.caches_made;
-  statistics_.swept_caches += ahead;
+  statistics_.swept_caches += is_swept;
   NullProbe probe;
   for (const SimplexPair& p : cache_.pairs()) {
     show_face(context_, Side::a, a_.face_of_simplex(p.a), result_, probe);
@@ -186,7 +188,7 @@ bool CoherentQuery::make_cache(const CachePolicy::Plan& list) {
   return true;
 }
 
-/// B being where the list is good.
+/// Answers from the cache; B must be where it is complete.
 void CoherentQuery::answer_from_cache(const SweepPoint& where) {
   const TreeKernel k = set_up_kernel(a_, context_.body[0].world.pose(), b_, context_.body[1].world.pose());
   const bool has_answer = std::exchange(has_answer_, true);

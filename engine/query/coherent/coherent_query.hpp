@@ -1,5 +1,6 @@
 #pragma once
-/// Two bodies again and again, as they move by little from one query to the next (the paper's future work).
+/// Queries two bodies again and again as they move by little from one query to the next (the paper's future
+/// work).
 ///
 /// Kept from one query to the next: the wrappers, and a list of the pairs of simplices that were not proved
 /// to stay apart along a stretch of B's course, seen from A, and nearby. While B is there no other pair can
@@ -10,8 +11,8 @@
 /// from scratch: as fast as collide(), and the answers the same.
 ///
 /// The answers are those of collide(): pairs, meets and relation always; what was opened, and the counters,
-/// tell of this query's own work. In first_pair mode it may be another pair; in any_pair mode, too, and the
-/// relation, which is what that one pair tells, another with it. All requests that are not plain
+/// describe this query's own work. In first_pair mode the pair may be another one; in any_pair mode too, and
+/// the relation, which is what that one pair shows, may differ with it. All requests that are not plain
 /// (paper's recursions, floating predicates, coarse queries, separation) are passed on to collide().
 
 #include <optional>
@@ -26,25 +27,25 @@ namespace lrb {
 
 class CoherentQuery {
  public:
-  /// When lists are made: where they turned out to be faster than queries from scratch, by the clock; or
-  /// whenever it can be done (for tests). The answers do not depend on it.
+  /// When caches are made: where they turned out to be faster than queries from scratch, by the clock; or
+  /// whenever one can be made (for tests). The answers do not depend on it.
   enum class CacheUse : std::uint8_t { as_it_pays, always };
 
   /// Keeps references to the bodies, which must outlive it and stay as they are: do not assign to them, for what
   /// is kept from query to query is of the bodies that were there. Other bodies need another CoherentQuery.
   CoherentQuery(const LrbRep& a, const LrbRep& b, const CollideRequest& request = {},
-                CacheUse lists = CacheUse::as_it_pays);
+                CacheUse use = CacheUse::as_it_pays);
 
-  /// The answer for these poses, good until the next call. Throws InputError as collide() does.
+  /// Returns the answer for these poses, valid until the next call. Throws InputError as collide() does.
   const CollideResult& collide(const Pose& pose_a, const Pose& pose_b);
 
-  /// What it has done so far.
+  /// What has been done so far.
   struct Statistics {
-    std::uint64_t from_cache = 0;    ///< queries answered from the list as it was
-    std::uint64_t caches_made = 0;   ///< queries that made a new one
-    std::uint64_t swept_caches = 0;  ///< of these, for a stretch of B's course
-    std::uint64_t from_scratch = 0;  ///< queries as if there had been none before
-    std::uint64_t tests_saved = 0;   ///< pairs of the list that needed no test
+    std::uint64_t from_cache = 0;    ///< queries answered from the cache as it was
+    std::uint64_t caches_made = 0;   ///< queries that made a new cache
+    std::uint64_t swept_caches = 0;  ///< of these caches, those for a sweep of B
+    std::uint64_t from_scratch = 0;  ///< queries done as if there had been none before
+    std::uint64_t tests_saved = 0;   ///< cached pairs that needed no test
   };
   const Statistics& statistics() const { return statistics_; }
 
@@ -52,7 +53,7 @@ class CoherentQuery {
   void answer(const Pose& pose_a, const Pose& pose_b);
   void query_from_scratch();
   bool still_crosses();
-  bool make_cache(const CachePolicy::Plan& list);
+  bool make_cache(const CachePolicy::Plan& plan);
   void answer_from_cache(const SweepPoint& where);
   void collect_answer();
   void show_opened();
@@ -65,18 +66,18 @@ class CoherentQuery {
   QueryContext context_;
   CollideResult result_;
   Statistics statistics_;
-  bool plain_;  ///< the request is one that a list can answer
+  bool plain_;  ///< the request is one that a cache can answer
   RelativeMotion motion_;
 
   bool at_work_ = false;   ///< a call has begun and not ended
-  double usual_step_ = 0;  ///< the longest of late, but for jumps
+  double usual_step_ = 0;  ///< the longest recent step, apart from jumps
   bool jumped_ = false;
 
   bool has_cache_ = false;
-  Sweep sweep_;              ///< where it is complete
-  CandidateCache cache_;     ///< the list
-  SweepPoint where_;         ///< in the stretch, in the last query from the list
-  bool has_answer_ = false;  ///< result_ holds the answer of the last query from this list
+  Sweep sweep_;  ///< where the cache is complete
+  CandidateCache cache_;
+  SweepPoint where_;         ///< position in the sweep at the last query answered from the cache
+  bool has_answer_ = false;  ///< result_ holds the answer of the last query from this cache
 
   CachePolicy policy_;
 };

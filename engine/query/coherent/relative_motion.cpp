@@ -16,16 +16,16 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
 constexpr int kRemembered = 3;
-/// Half a stretch of n steps is no longer than this many times a step over how far B came from where the two
-/// poses before had led to expect it: there B will be no further off than half of n steps.
-constexpr double kOffCourse = 0.25;
-/// Of a stretch: shares of a step by which it is longer at either end than the steps, and wide at least; and
-/// how many times as wide as B is off it now, for it is bent as much at its other end.
+/// Half a sweep of n steps has at most this many times a step, divided by the deviation of B from where the
+/// two poses before had led to expect it: by then B will be off by no more than half of n steps.
+constexpr double kDeviation = 0.25;
+/// For a sweep, in steps: how much longer it is than its steps at either end, and how wide it is at least;
+/// and how many times as wide it is as B is off it now, because the motion bends as much at the other end.
 constexpr double kBeyondEnd = 0.125, kLeastWidth = 1.0 / 16, kSpareWidth = 1.25;
-/// At least 1 + sqrt(3 / 2): for going from matrices to the rotations that they are near.
+/// At least 1 + sqrt(3 / 2): the factor on defects for going from matrices to the rotations near them.
 constexpr double kToRotations = 2.3;
 
-/// The motion that takes B from one pose to the other, on A's axes: x -> m x + t.
+/// Returns the motion that takes B from one pose to the other, on A's axes: x -> m x + t.
 RelativePose motion_between(const RelativePose& from, const RelativePose& to) {
   const Matrix3d m = to.m * from.m.transpose();
   return {m, to.t - m * from.t};
@@ -60,7 +60,7 @@ bool RelativeMotion::see(const Pose& pose_a, const Pose& pose_b) {
   return false;
 }
 
-/// A bound of |dm x + dt| for points x of B, where |dm| <= turn.
+/// Returns a bound on |dm x + dt| for points x of B, where |dm| <= turn.
 double RelativeMotion::farthest(const Matrix3d& dm, const Vector3d& dt, double turn) const {
   return ((dm * middle_ + dt).stableNorm() + turn * radius_) * (1 + kWorldRounding) + rounding_;
 }
@@ -75,7 +75,7 @@ double RelativeMotion::step() const {
   return seen_ < 2 ? std::numeric_limits<double>::infinity() : motion(last_, now_);
 }
 
-/// From now on, twice so many steps, and a little more at both ends.
+/// Returns the sweep from now on for twice this many steps, and a little more at both ends.
 Sweep RelativeMotion::sweep_of(int steps) const {
   const RelativePose way = motion_between(last_, now_);
   Sweep s;
@@ -96,22 +96,23 @@ bool RelativeMotion::is_seen() const {
 }
 
 bool RelativeMotion::is_kept() const {
-  return is_seen() && steps_on_course() >= 1;
+  return is_seen() && steady_steps() >= 1;
 }
 
-double RelativeMotion::off_course() const {
+double RelativeMotion::deviation() const {
   return motion(after(motion_between(earlier_, last_), last_), now_);
 }
 
-/// Off by so much in one step, B is off by that times half the square of the steps in more.
-double RelativeMotion::steps_on_course() const {
-  return kOffCourse * motion(last_, now_) / off_course();
+/// Returns half the number of steps for which B's motion can be foreseen. A deviation in one step becomes
+/// that deviation times half the square of their number in several.
+double RelativeMotion::steady_steps() const {
+  return kDeviation * motion(last_, now_) / deviation();
 }
 
 Sweep RelativeMotion::ahead(double steps) const {
-  const int half = std::max(1, static_cast<int>(std::min(steps / 2, steps_on_course())));
+  const int half = std::max(1, static_cast<int>(std::min(steps / 2, steady_steps())));
   Sweep ahead = sweep_of(half);
-  ahead.width = kLeastWidth * motion(last_, now_) + 2 * half * half * off_course();
+  ahead.width = kLeastWidth * motion(last_, now_) + 2 * half * half * deviation();
   ahead.width = std::max(ahead.width, kSpareWidth * along(ahead).off);
   return ahead;
 }
@@ -127,12 +128,12 @@ SweepPoint RelativeMotion::along(const Sweep& s) const {
   if (s.length == 0) return {0, motion(s.middle, now_)};
   const Matrix3d m = now_.m - s.middle.m;
   const Vector3d t = now_.t - s.middle.t;
-  // The least squares over B's points, as if they filled a ball.
+  // Least squares over B's points, as if they filled a ball.
   const Vector3d way = (s.dm * middle_ + s.dt) / s.length, gone = (m * middle_ + t) / s.length;
   const double spread = radius_ / s.length * (radius_ / s.length) / 2;
   const double nearest = (gone.dot(way) + spread * m.cwiseProduct(s.dm).sum()) /
                          (way.squaredNorm() + spread * s.dm.squaredNorm());
-  const double at = nearest > -1 ? std::min(nearest, 1.0) : -1;  // also where overflow made it no number
+  const double at = nearest > -1 ? std::min(nearest, 1.0) : -1;  // also where overflow made it not a number
   const Matrix3d off_m = m - at * s.dm;
   return {at, farthest(off_m, t - at * s.dt, off_m.norm())};
 }

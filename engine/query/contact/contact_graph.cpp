@@ -98,7 +98,7 @@ void label_components(ContactGraph& graph) {
     }
   graph.component.assign(graph.points.size(), kNull);
   for (std::uint32_t p = 0; p < graph.points.size(); ++p) {
-    const std::uint32_t root = find(p);  // root <= p, so it has its label already unless it is p
+    const std::uint32_t root = find(p);  // root <= p, so it has its label already, unless it is p
     graph.component[p] = root == p ? graph.component_count++ : graph.component[root];
   }
 }

@@ -27,7 +27,7 @@ struct ContactGraph {
   std::uint32_t component_count = 0;
 };
 
-/// From result.pairs and result.contacts.
+/// Makes the graph from result.pairs and result.contacts.
 ContactGraph contact_graph(const QueryContext& context, const CollideResult& result);
 
 }  // namespace lrb

@@ -15,7 +15,7 @@ class Chainer {
 
   std::vector<ContactLoop> run() {
     std::vector<ContactLoop> loops;
-    // Open chains first, from their ends; what is left then are closed ones.
+    // Walk open chains first, from their ends; what is left then are closed ones.
     for (const auto& [p, at] : edges_at_)
       for (const std::uint32_t e : at)
         if (at.size() != 2 && !used_[e]) loops.push_back(walk(p, e));

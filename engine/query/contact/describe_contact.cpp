@@ -19,8 +19,9 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// The power of two by which to divide points so that no product of two or three coordinates overflows or
-/// vanishes: areas of bodies of size 1e-120 or 1e120 are no doubles once they are multiplied by a coordinate.
+/// Returns the power of two by which to divide points so that no product of two or three coordinates
+/// overflows or vanishes: the areas of bodies of size 1e-120 or 1e120 are no doubles once they are multiplied
+/// by a coordinate.
 double unit_for(std::span<const Vector3d> points) {
   double most = 0;
   for (const Vector3d& p : points) most = std::max(most, p.cwiseAbs().maxCoeff());
@@ -49,7 +50,7 @@ double polygon_area(const std::vector<Vector3d>& x) {
   return 0.5 * twice.norm();
 }
 
-/// Length, area or count of a piece: what it weighs in averages over its region.
+/// The weight of a piece in averages over its region: its length, area or count.
 struct Weight {
   double value;
   Vector3d centre;
@@ -77,7 +78,7 @@ double loop_length(const ContactLoop& loop) {
   return sum;
 }
 
-/// Builds the regions from the graph. Computes in `unit_`; results are turned back at the end.
+/// Builds the regions from the graph. Computes in `unit_`; results are scaled back at the end.
 class RegionMaker {
  public:
   RegionMaker(QueryContext& ctx, const CollideResult& result)
@@ -126,7 +127,7 @@ class RegionMaker {
     return x;
   }
 
-  /// Centroid, normal and coplanar area, over the pieces of the highest dimension in the region.
+  /// Sets centroid, normal and coplanar area, over the pieces of the highest dimension in the region.
   void average(ContactRegion& region, std::uint8_t rank) {
     double total = 0;
     Vector3d centre = Vector3d::Zero(), normal = Vector3d::Zero();
@@ -141,7 +142,7 @@ class RegionMaker {
     }
     region.centroid =
         total > 0 ? Vector3d(centre / total) : graph_.points[graph_.pieces[region.pairs[0]].points[0]];
-    // Normals that cancel (surfaces that meet facing the same way) leave no direction worth a name.
+    // Normals that cancel (surfaces that meet facing the same way) leave no meaningful direction.
     if (normal.norm() > kContactNormalLeast * total) region.normal = normal.stableNormalized();
     if (rank == 3) region.area = total;
   }
@@ -156,7 +157,7 @@ class RegionMaker {
     }
   }
 
-  /// Area that the closed loops span: the length of their vector area, each loop on its own.
+  /// Returns the area that the closed loops span: the length of their vector area, each loop on its own.
   static double spanned_area(const ContactRegion& region) {
     double sum = 0;
     for (const ContactLoop& loop : region.loops)

@@ -8,14 +8,14 @@
 
 namespace lrb {
 
-/// Finds the vertices of one body that lie strictly inside the other and hang together with given pairs.
+/// Finds the vertices of one body that lie strictly inside the other and are connected to given pairs.
 class EnclosedVertices {
  public:
-  /// For the vertices of `side`. Nothing is found if the other body is not closed.
+  /// Prepares the search for vertices of `side`. Finds nothing if the other body is not closed.
   EnclosedVertices(QueryContext& context, Side side, const CollideResult& result);
 
-  /// Spreads over the surface from the simplices of some pairs (indices into result.pairs), without crossing
-  /// the other body's surface.
+  /// Returns what is found by spreading over the surface from the simplices of some pairs (indices into
+  /// result.pairs), without crossing the other body's surface.
   std::vector<VertexId> from(std::span<const std::uint32_t> pairs);
 
  private:

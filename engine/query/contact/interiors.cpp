@@ -33,10 +33,10 @@ bool same_direction_3d(const double* const a[3], const double* const b[3]) {
   return false;
 }
 
-/// What cuts a face into cells that are each inside or outside of the holder or on its surface. Of the
-/// holder's triangles in the face's plane only the outline does: an edge with one of them on either side is
-/// left out, since both its sides are on the surface. Without this a fan of n triangles on another would be
-/// n^2 cells.
+/// Collects what cuts a face into cells that are each inside or outside of the holder or on its surface. Of
+/// the holder's triangles in the face's plane only the outline does: an edge with one of them on either side
+/// is left out, because both its sides are on the surface. Without this a fan of n triangles on another would
+/// make n^2 cells.
 class Cutters {
  public:
   Cutters(const double* const face[3], QueryBody& holder)
@@ -56,7 +56,7 @@ class Cutters {
       flat_edges_[std::minmax(v[k], v[(k + 1) % 3])].push_back({c[k], c[(k + 1) % 3], c[(k + 2) % 3]});
   }
 
-  /// Triangles, and edges as triangles without area.
+  /// Returns the triangles, and the edges as triangles without area.
   std::vector<Corners> all() const {
     std::vector<Corners> r = triangles_;
     for (const auto& [ids, uses] : flat_edges_) {
@@ -73,10 +73,12 @@ class Cutters {
   const double* face_[3];
   QueryBody& holder_;
   std::vector<Corners> triangles_;
-  std::map<std::pair<VertexId, VertexId>, std::vector<Corners>> flat_edges_;  ///< each with its third corner
+  /// The triangles at an edge, each with its third corner.
+  std::map<std::pair<VertexId, VertexId>, std::vector<Corners>> flat_edges_;
 };
 
-/// Collinear segments of positive length: compared along a coordinate in which the first advances.
+/// Returns true if two collinear segments of positive length point the same way: compares them along a
+/// coordinate in which the first advances.
 bool same_direction_2d(const double* const a[2], const double* const b[2]) {
   const int k = a[0][0] != a[1][0] ? 0 : 1;
   return (a[0][k] < a[1][k]) == (b[0][k] < b[1][k]);
@@ -106,9 +108,10 @@ class Decider {
   }
 
  private:
-  /// Behind coplanar faces that overlap in an area (2D: a length) and face the same way lie both solids. A
-  /// point there that is inside both proves it; where none is found, rounding has folded a body in the world
-  /// (far from the origin thin walls become flat) and faces need not face out any more: unknown.
+  /// Answers for coplanar faces that overlap in an area (2D: a length) and face the same way. Both solids lie
+  /// behind them, and a point there that is inside both proves it. Where none is found, rounding has folded a
+  /// body in the world (far from the origin thin walls become flat) and faces need not face outward any more:
+  /// unknown.
   Answer between_coinciding_faces() {
     const bool mirrored =
         is_reflection(ctx_[Side::a].world.pose(), dim_) != is_reflection(ctx_[Side::b].world.pose(), dim_);
@@ -127,8 +130,8 @@ class Decider {
     return answer;
   }
 
-  /// Looks on both sides of the middle of a coplanar contact, ever nearer: there is no telling how far the
-  /// next faces are. A point on one of them is as good as none.
+  /// Looks for a point inside both on either side of the middle of a coplanar contact, nearer and nearer:
+  /// there is no telling how far the next faces are. A point on one of them proves nothing.
   bool inside_both_near(const exact::PairContact& contact, const double* const face[3]) {
     std::vector<exact::RationalPoint> corners;
     Eigen::AlignedBox3d box;
@@ -151,7 +154,7 @@ class Decider {
     return false;
   }
 
-  /// Of length about 1; need not be accurate.
+  /// Returns a normal of length about 1; it need not be accurate.
   Eigen::Vector3d normal_of(const double* const face[3]) const {
     const auto edge = [&](int k) {
       Eigen::Vector3d e = Eigen::Vector3d::Zero();
@@ -169,9 +172,9 @@ class Decider {
     for (const SimplexPair& p : result_.pairs) partners_[own(side, p)].push_back(own(other(side), p));
   }
 
-  /// Vertices in no touched face, one for each patch of the surface that touched faces leave connected.
+  /// Tests vertices of no touched face, one for each patch of the surface that touched faces leave connected.
   /// Patches are joined through vertices that no touched face has; a patch without such a vertex is made of
-  /// faces all of whose corners are on touched faces: each of those faces is asked itself.
+  /// faces all of whose corners are on touched faces: each of those faces is tested itself.
   bool free_patch_inside(Side side) {
     QueryBody &body = ctx_[side], &holder = ctx_[other(side)];
     const LrbRep& rep = body.rep();
@@ -242,7 +245,8 @@ class Decider {
   QueryContext& ctx_;
   const CollideResult& result_;
   int dim_;
-  std::map<SimplexId, std::vector<SimplexId>> partners_;  ///< of each touched simplex of the side in work
+  /// Partners of each touched simplex of the current side.
+  std::map<SimplexId, std::vector<SimplexId>> partners_;
 };
 
 }  // namespace

@@ -11,8 +11,9 @@ namespace {
 
 using Corners = std::array<const double*, 3>;
 
-/// Crosses a face of A a face of B where the surfaces are nothing but these two faces? There, parity changes
-/// from one side of each to the other, so that one of the four wedges between them is inside both.
+/// Finds a face of A that crosses a face of B where the surfaces consist of nothing but these two faces.
+/// There, parity changes from one side of each to the other, so that one of the four wedges between them is
+/// inside both.
 class CrossingProof {
  public:
   CrossingProof(QueryContext& ctx, const CollideResult& result)
@@ -36,8 +37,8 @@ class CrossingProof {
   }
 
  private:
-  /// No other simplex of the body that meets the partner of `s` meets the inside of `s`. (Sufficient: one
-  /// that passes through the plane of `s` anywhere counts as if it did.)
+  /// Returns true if no other simplex of the body that meets the partner of `s` meets the inside of `s`.
+  /// (Sufficient: one that passes through the plane of `s` anywhere counts as if it did.)
   bool is_alone(Side side, SimplexId s, const std::vector<SimplexId>& others) const {
     Corners face;
     ctx_[side].world.corners(s, face.data());
@@ -49,7 +50,7 @@ class CrossingProof {
     });
   }
 
-  /// Whether the triangle `other` leaves the inside of `face` alone.
+  /// Returns true if the triangle `other` does not meet the inside of `face`.
   static bool keeps_out(const Corners& face, const Corners& other) {
     std::vector<const double*> in_plane;
     bool above = false, below = false;
@@ -71,7 +72,7 @@ class CrossingProof {
     return false;
   }
 
-  /// The same for segments: what is on the line of `face` must lie beyond one of its ends.
+  /// Does the same for segments: what is on the line of `face` must lie beyond one of its ends.
   static bool keeps_out_2d(const Corners& face, const Corners& other) {
     const int axis = face[0][0] != face[1][0] ? 0 : 1;
     const double low = std::min(face[0][axis], face[1][axis]), high = std::max(face[0][axis], face[1][axis]);

@@ -4,8 +4,8 @@
 
 namespace lrb {
 
-/// Side of the line p, q on which r lies, seen along the first axis on which the triangle `face`, in whose
-/// plane all of them lie, keeps its area.
+/// Returns the side of the line p, q on which r lies, seen along the first axis on which the triangle `face`,
+/// in whose plane all of them lie, keeps its area.
 inline int side_in_plane(const double* const face[3], const double* p, const double* q, const double* r) {
   for (int axis = 0; axis < 3; ++axis) {
     const int u = (axis + 1) % 3, v = (axis + 2) % 3;

@@ -1,6 +1,6 @@
 #pragma once
-/// Where two bodies meet: the geometry of each pair, and the connected contact regions they form.
-/// All points and vectors are in the world frame; lengths in the meshes' unit.
+/// The geometry of contact: that of each pair, and the connected contact regions that the pairs form. All
+/// points and vectors are in the world frame; lengths in the meshes' unit.
 
 #include <cstdint>
 #include <vector>

@@ -9,13 +9,13 @@ namespace lrb {
 namespace {
 
 /// Radix sort is worth its passes for more pairs than this. A digit has about as many values as there are
-/// pairs: fewer passes than with shorter ones, and tables no longer than what is sorted, which fit the first
-/// cache.
+/// pairs: this takes fewer passes than shorter digits, and its tables are no longer than what is sorted, so
+/// that they fit the first cache.
 constexpr std::size_t kWorthDigits = 32;
 constexpr unsigned kLeastDigitBits = 6, kMostDigitBits = 11;
 constexpr unsigned kMeetBits = 1;
 
-/// Numbers that do not fit a key: bodies of billions of simplices.
+/// Sorts pairs whose numbers do not fit a key: those of bodies of billions of simplices.
 void sort_by_comparing(CollideResult& result) {
   std::vector<std::pair<SimplexPair, exact::Meet>> found;
   for (std::size_t i = 0; i < result.pairs.size(); ++i) found.emplace_back(result.pairs[i], result.meets[i]);
@@ -29,12 +29,13 @@ void sort_by_comparing(CollideResult& result) {
   }
 }
 
-/// How a pair is packed in one number: in as many bits as its numbers need, and how it meets in the last.
+/// How a pair is packed into one number: its simplices in as many bits as they need, and how it meets in the
+/// last bit.
 struct Packing {
   unsigned bits_b, bits;
 };
 
-/// No bits: they are in order, without repetitions.
+/// Returns the packing for some pairs; no bits if they are in order already, without repetitions.
 Packing packing_of(std::span<const SimplexPair> pairs) {
   SimplexPair all{0, 0};  // all bits that occur
   bool in_order = true;
@@ -99,7 +100,8 @@ void PairOrder::sort_keys(unsigned bits) {
   keys_.erase(std::unique(keys_.begin(), keys_.end()), keys_.end());
 }
 
-/// The last digit first: each pass keeps the order of those before it. How a pair meets needs no order.
+/// Sorts by the last digit first: each pass keeps the order of the passes before it. How a pair meets needs
+/// no order.
 void PairOrder::sort_by_digits(unsigned key_bits) {
   const unsigned most =
       std::clamp(static_cast<unsigned>(std::bit_width(keys_.size())), kLeastDigitBits, kMostDigitBits);

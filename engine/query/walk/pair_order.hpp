@@ -7,10 +7,10 @@
 
 namespace lrb {
 
-/// Puts pairs in ascending order and removes repetitions. Keeps its memory from one call to the next.
+/// Sorts pairs in ascending order and removes repetitions. Keeps its memory from one call to the next.
 class PairOrder {
  public:
-  /// The pairs of an answer, and how they meet.
+  /// Sorts the pairs of an answer, and with them how they meet.
   void sort(CollideResult& result);
   void sort(std::vector<SimplexPair>& pairs);
 
@@ -18,8 +18,9 @@ class PairOrder {
   void sort_keys(unsigned bits);
   void sort_by_digits(unsigned bits);
 
-  std::vector<std::uint64_t> keys_, moved_;  ///< packed, so that as little as can be is moved
-  std::vector<std::uint32_t> places_;        ///< of each digit, of each of its values
+  std::vector<std::uint64_t> keys_, moved_;  ///< packed pairs, so that as little as possible is moved
+  /// (digits x values of a digit) where the next key with that value goes.
+  std::vector<std::uint32_t> places_;
 };
 
 }  // namespace lrb

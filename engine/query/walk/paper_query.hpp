@@ -1,18 +1,18 @@
 #pragma once
 /// The paper's query (section 4, "The 2-Body Collision Algorithm"), to the letter: the outermost faces of
-/// both wrappers are tested all against all, and faces that meet are refined, their new faces tested
+/// both wrappers are tested all against all; faces that meet are refined, and their new faces tested
 /// recursively.
 ///
 /// It is not complete: a contact under lids that nothing touches is never reached (a ball in a bowl; a body
 /// that came in through the solid side). It is here to reproduce the paper's figures and to be seen failing.
 ///
-/// The text leaves open what "the new faces are recursively tested" means once a region was refined before
-/// ("a region or even an individual face can only be refined once"). Two readings, both kept:
+/// The text leaves open what "the new faces are recursively tested" means for a region that was refined
+/// before ("a region or even an individual face can only be refined once"). There are two readings, and both
+/// are kept:
 /// - Recursion::paper: what may happen only once is the recursion into a *pair* of regions (or of a real face
-/// and a
-///   region); a refined region's floor is tested again when another region of the other body hits its lids.
-/// - Recursion::paper_strict: a region gives its floor once, when it is first refined, and those faces are
-/// tested
+///   and a region); the floor of a refined region is tested again when another region of the other body hits
+///   its lids.
+/// - Recursion::paper_strict: a region gives its floor once, when it is first refined; those faces are tested
 ///   against the new faces (or the real face) of what hit, and never again.
 
 #include <span>
@@ -43,7 +43,7 @@ class PaperQuery {
       }
   }
 
-  /// The three cases of section 4 for a pair of faces that intersect.
+  /// Handles the three cases of section 4 for a pair of faces that intersect.
   void resolve(FaceId fa, FaceId fb) {
     const LrbRep &a = ctx_[Side::a].rep(), &b = ctx_[Side::b].rep();
     if (!a.is_real(fa) && !b.is_real(fb)) {
@@ -79,7 +79,7 @@ class PaperQuery {
     return ctx_.visited[kind].insert(std::uint64_t{a} << 32 | b).second;
   }
 
-  /// Refines the region behind a face; true if that had not happened before.
+  /// Refines the region behind a face. Returns true if that had not happened before.
   bool refine(Side side, FaceId f) {
     QueryBody& body = ctx_[side];
     const RegionId r = body.rep().inner_cell(f);
@@ -91,7 +91,8 @@ class PaperQuery {
     return is_new;
   }
 
-  /// Compares two faces as polygons: all simplices of their fans. One face test, one event.
+  /// Compares two faces as polygons, that is, all simplices of their fans. Counts as one face test, one
+  /// event.
   bool faces_meet(FaceId fa, FaceId fb) {
     exact::Meet best = exact::Meet::disjoint;
     SimplexPair which{ctx_[Side::a].rep().first_simplex(fa), ctx_[Side::b].rep().first_simplex(fb)};

@@ -1,5 +1,6 @@
 #pragma once
-/// What the query tells whoever watches it. A probe is a template parameter: with NullProbe every call vanishes.
+/// The probe: what the query reports to an observer. It is a template parameter: with NullProbe every call
+/// vanishes.
 
 #include <cstdint>
 
@@ -8,7 +9,7 @@
 
 namespace lrb {
 
-/// The events of a query, in one table: enum, name in traces, meaning of the fields a and b.
+/// The events of a query, in one table: enumerator, name in traces, meaning of the fields a and b.
 /// LRB_EVENT(enumerator, json_name, meaning of a, meaning of b)
 #define LRB_EVENTS(LRB_EVENT)                                             \
   LRB_EVENT(step, "step", "time step", "")                                \
@@ -29,14 +30,15 @@ constexpr auto words_of(EventKind) {
 #undef LRB_EVENT
 }
 
-/// Does nothing, costs nothing. Also the list of what a probe must have.
+/// Does nothing and costs nothing. Also the list of what a probe must have.
 struct NullProbe {
   static constexpr bool kEnabled = false;
-  /// A simplex of A was compared exactly with one of B. depth_a/b: regions between each and the outside.
+  /// A simplex of A was compared exactly with one of B. depth_a/b: number of regions between each and the
+  /// outside.
   void face_test(SimplexId, SimplexId, exact::Meet, std::uint32_t /*depth_a*/, std::uint32_t /*depth_b*/) {}
-  /// A region of a body's wrapper was refined. After a face test that hit, that test is the cause.
+  /// A region of a body's wrapper was refined. If a face test that hit came before, that test is the cause.
   void refine(Side, RegionId, std::uint32_t /*faces_added*/) {}
-  /// Two real simplices meet: part of the answer.
+  /// Two real simplices meet; they are part of the answer.
   void contact(SimplexId, SimplexId, exact::Meet) {}
 };
 

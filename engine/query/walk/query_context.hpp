@@ -18,10 +18,10 @@ namespace lrb {
 struct QueryBody {
   WorldVertices world;
   std::unique_ptr<Wrapper> wrapper;
-  std::uint64_t wrapper_serial = 0;  ///< of the LRB-rep that the wrapper was made for
+  std::uint64_t wrapper_serial = 0;  ///< serial of the LRB-rep that the wrapper was made for
 
   const LrbRep& rep() const { return world.rep(); }
-  /// What is queried: the body, or a level of it.
+  /// Return what is queried: the body, or a level of it.
   const ObbTree& tree() const { return *tree_; }
   std::span<const VertexId> component_vertices() const { return component_vertices_; }
 
@@ -29,7 +29,7 @@ struct QueryBody {
     world.begin(rep, pose);
     begin_at_pose(mode);
   }
-  /// The pose being known already.
+  /// Begins at a pose that `world` knows already.
   void begin_at_pose(WrapperMode mode) {
     query_body();
     if (!wrapper || wrapper_serial != rep().serial() || &wrapper->rep() != &rep() ||
@@ -49,7 +49,7 @@ struct QueryBody {
     component_vertices_ = level.component_vertices;
   }
 
-  /// Made when first asked for, kept as long as the body stays the same.
+  /// Returns the body's levels; made when first asked for, kept as long as the body stays the same.
   WrapperLevels& levels() {
     if (!levels_ || levels_serial_ != rep().serial() || levels_rep_ != &rep()) {
       levels_ = std::make_unique<WrapperLevels>(rep());
@@ -59,7 +59,7 @@ struct QueryBody {
     return *levels_;
   }
 
-  /// Made when first asked for, kept as long as the body stays the same.
+  /// Returns the body's surface graph; made when first asked for, kept as long as the body stays the same.
   const SurfaceGraph& surface_graph() {
     if (!graph_ || graph_serial_ != rep().serial()) {
       graph_ = std::make_unique<SurfaceGraph>(rep());
@@ -68,7 +68,7 @@ struct QueryBody {
     return *graph_;
   }
 
-  /// Regions between a face and the outside along parents.
+  /// Returns the number of regions between a face and the outside along parents.
   std::uint32_t depth_of(FaceId f) const {
     const CellId outer = rep().outer_cell(f);
     return is_region(outer) ? rep().depth(outer) : 0;
@@ -97,7 +97,7 @@ class QueryContext {
   QueryBody& operator[](Side s) { return body[static_cast<int>(s)]; }
 };
 
-/// Exact test of two simplices in the world frame.
+/// Tests exactly how two simplices meet in the world frame.
 inline exact::Meet test_simplices(QueryContext& ctx, SimplexId a, SimplexId b) {
   const double *ca[3], *cb[3];
   ctx.body[0].world.corners(a, ca);
@@ -112,7 +112,7 @@ inline void count_face_test(bool real, std::uint32_t level, Counters& c) {
   ++c.face_tests_by_level[level];
 }
 
-/// Appends a pair of the answer.
+/// Appends a pair to the answer.
 template <class Probe>
 void record_pair(CollideResult& result, Probe& probe, SimplexId a, SimplexId b, exact::Meet meet) {
   result.pairs.push_back({a, b});

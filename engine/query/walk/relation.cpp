@@ -31,11 +31,11 @@ class RayWalk {
   }
 
  private:
-  /// A node's axes and origin in the world.
+  /// The axes and origin of a node in the world.
   struct Frame {
     Matrix3d axes;
     Vector3d origin;
-    double grow;  ///< of boxes: all errors
+    double grow;  ///< by how much boxes grow to cover all errors
   };
 
   Frame frame_of(const TreeNode& n) const {
@@ -50,7 +50,7 @@ class RayWalk {
     return f;
   }
 
-  /// Whether the ray certainly misses a box, of which `lo` and `hi` give the quantized ends. Conservative, as
+  /// Returns true if the ray certainly misses a box whose quantized ends are `lo` and `hi`. Conservative, as
   /// the kernel's boxes are.
   template <class Lo, class Hi>
   bool misses(const TreeNode& n, const Frame& f, const Lo& lo, const Hi& hi) const {
@@ -66,7 +66,7 @@ class RayWalk {
            (body_.rep().dim() == 3 && std::abs(c.z() - p_[2]) > h.z());
   }
 
-  /// Most rays miss the whole body.
+  /// Returns true if the ray misses the whole body, as most do.
   bool misses_all() const {
     const TreeNode& root = tree_.nodes()[0];
     return misses(
@@ -105,15 +105,15 @@ class RayWalk {
   bool on_surface_ = false;
 };
 
-struct Swallowed {
+struct Enclosed {
   std::size_t inside = 0, components = 0;
   bool all() const { return inside == components && components > 0; }
   bool some() const { return inside > 0; }
 };
 
-/// How many components of `inner` lie inside `outer`, given that the surfaces do not meet.
-Swallowed components_inside(QueryBody& inner, QueryBody& outer) {
-  Swallowed s;
+/// Returns how many components of `inner` lie inside `outer`, given that the surfaces do not meet.
+Enclosed components_inside(QueryBody& inner, QueryBody& outer) {
+  Enclosed s;
   for (const VertexId v : inner.component_vertices()) {
     ++s.components;
     s.inside += locate(outer, inner.world(v)) == Where::inside;
@@ -148,7 +148,7 @@ void decide_relation(QueryContext& ctx, CollideResult& result) {
     result.interiors_overlap = Answer::unknown;
     return;
   }
-  const Swallowed a_in_b = components_inside(a, b), b_in_a = components_inside(b, a);
+  const Enclosed a_in_b = components_inside(a, b), b_in_a = components_inside(b, a);
   if (a_in_b.all())
     result.relation = Relation::a_inside_b;
   else if (b_in_a.all())

@@ -1,5 +1,5 @@
 #pragma once
-/// What can be asked of two bodies.
+/// The request: what can be asked about two bodies.
 
 #include <cstdint>
 
@@ -10,9 +10,10 @@ namespace lrb {
 
 enum class Mode : std::uint8_t {
   all_pairs,
-  first_pair,  ///< one pair that crosses, if there is one; the relation is exact
-  any_pair,    ///< do the surfaces meet? The first pair that does ends the query, and Relation::touching then
-               ///< says no more than that this pair touches: others may cross
+  first_pair,  ///< finds one pair that crosses, if there is one; the relation is exact
+  /// Finds out whether the surfaces meet. The first pair that does ends the query, and Relation::touching
+  /// then says no more than that this pair touches: others may cross.
+  any_pair,
 };
 constexpr auto words_of(Mode) {
   return std::to_array<EnumWord<Mode>>(
@@ -34,8 +35,8 @@ const char* to_string(Recursion r);
 
 enum class Predicates : std::uint8_t {
   exact,
-  floating,  ///< without the exact fallback: the answer can be wrong; to measure what exactness costs and
-             ///< saves
+  /// Without the exact fallback: the answer can be wrong; exists to measure what exactness costs and saves.
+  floating,
 };
 constexpr auto words_of(Predicates) {
   return std::to_array<EnumWord<Predicates>>(
@@ -56,14 +57,14 @@ struct CollideRequest {
   bool interiors_overlap =
       false;  ///< decide CollideResult::interiors_overlap for bodies that meet (all_pairs)
 
-  /// No more than a scene needs. With any of these three the answer may be about wrappers instead of the
-  /// bodies, and says so (CollideResult::error_bound). It never calls bodies separate that meet. Only
-  /// `complete`, without contacts, interiors_overlap or unregularised wrappers (else InputError). What is
-  /// needed of a body is made, and kept in the context, when it is first asked for; that is not counted.
-  double tolerance = 0;         ///< regions no thicker than this stay closed; unit: the meshes'
-  std::uint64_t max_tests = 0;  ///< face tests at most; 0: as many as it takes
-  double max_time = 0;          ///< seconds at most, looked at every few face tests; 0: as long as it takes
-  /// For separate bodies: find CollideResult::separation. Takes longer than the query.
+  /// Limits on the effort. With any of these three the answer may be about wrappers instead of the bodies,
+  /// and says so (CollideResult::error_bound). It never calls bodies separate that meet. Only for `complete`,
+  /// without contacts, interiors_overlap or unregularised wrappers (else InputError). What a body needs for
+  /// this is made when it is first asked for, and kept in the context; that time is not counted.
+  double tolerance = 0;         ///< regions no thicker than this are not refined; unit: the meshes'
+  std::uint64_t max_tests = 0;  ///< largest number of face tests; 0: no limit
+  double max_time = 0;          ///< longest time in seconds, checked every few face tests; 0: no limit
+  /// For separate bodies: finds CollideResult::separation. Takes longer than the query.
   bool separation = false;
   /// Pairs that are kept at most: a query that finds more ends there with an InputError. (Two bodies of n
   /// faces have up to n * n.) 0: kMostPairs, or kMostPairsWithContacts. The paper's recursions count a pair

@@ -1,5 +1,5 @@
 #pragma once
-/// What a query answers, and how much work that took.
+/// The result: what a query answers, and how much work it took.
 
 #include <array>
 #include <cstdint>
@@ -21,9 +21,9 @@ enum class Relation : std::uint8_t {
                ///< through another. CollideResult::interiors_overlap tells, where it is asked for
   a_inside_b,  ///< no surface contact; B holds A
   b_inside_a,
-  undefined,   ///< no surface contact, and a body that is not closed: inside has no meaning
-  unresolved,  ///< a coarse query did not prove the bodies apart; they are closer than the error bound, or
-               ///< meet
+  undefined,  ///< no surface contact, and a body that is not closed: inside has no meaning
+  /// A coarse query did not prove the bodies separate; they meet, or are closer than the error bound.
+  unresolved,
 };
 constexpr auto words_of(Relation) {
   return std::to_array<EnumWord<Relation>>({{Relation::separate, "separate"},
@@ -49,9 +49,9 @@ struct SimplexPair {
   friend auto operator<=>(const SimplexPair&, const SimplexPair&) = default;
 };
 
-/// A certificate that two closed bodies are apart: their outermost wrappers, with these regions refined in
-/// this order, meet nowhere, and none has a point in the other. No region can be taken back in without the
-/// proof failing.
+/// A certificate that two closed bodies are separate: if these regions of their outermost wrappers are
+/// refined in this order, the wrappers meet nowhere, and none has a point in the other. No region can be
+/// taken back in without the proof failing.
 struct Separation {
   std::array<std::vector<RegionId>, 2> refined;      ///< A's and B's
   std::array<std::uint32_t, 2> face_count = {0, 0};  ///< of the two wrappers
@@ -59,15 +59,15 @@ struct Separation {
   friend bool operator==(const Separation&, const Separation&) = default;
 };
 
-/// What the query did. All are numbers of operations.
+/// The work that the query did, in numbers of operations.
 struct Counters {
   std::uint64_t face_tests = 0;  ///< exact comparisons of two simplices, pseudo or real (best: pairs found)
-  std::uint64_t real_tests = 0;  ///< of these, both real
-  std::uint64_t exact_fallbacks = 0;  ///< predicates that floating point could not decide
+  std::uint64_t real_tests = 0;  ///< those of them in which both are real
+  std::uint64_t exact_fallbacks = 0;  ///< predicates that the floating-point filter could not decide
   std::uint64_t node_pairs = 0;       ///< complete: pairs of tree nodes expanded
   std::uint64_t box_tests = 0;        ///< complete: box against box
   std::uint64_t prefilter_tests =
-      0;  ///< complete: simplex pairs that reached the box and plane tests of a leaf pair
+      0;  ///< complete: pairs of simplices that reached the box and plane tests of a pair of leaves
   std::uint64_t refinements = 0;     ///< paper: refine operations; complete: equal to regions_opened
   std::uint64_t regions_opened = 0;  ///< regions excluded from either wrapper at the end
   std::vector<std::uint32_t> face_tests_by_level;  ///< by max(depth of a, depth of b) of the compared faces
@@ -82,16 +82,16 @@ struct CollideResult {
   /// granted that rounding leaves the bodies a volume in the world. If requested, a crossing is yes only where
   /// that is proved, else unknown; a body inside another is not asked whether it has become flat.
   Answer interiors_overlap = Answer::unknown;
-  Recursion recursion = Recursion::complete;  ///< the one that was used
+  Recursion recursion = Recursion::complete;  ///< the recursion that was used
   Mode mode = Mode::all_pairs;
-  /// Ascending; at most one but for all_pairs. Coarse queries: with pseudo simplices (LrbRep::
-  /// is_real_simplex()) where lids stayed closed; those meet or come within rounding of it.
+  /// Ascending; at most one pair unless all_pairs. Coarse queries: with pseudo simplices
+  /// (LrbRep::is_real_simplex()) where lids were not refined; those meet or come within rounding of it.
   std::vector<SimplexPair> pairs;
   std::vector<exact::Meet> meets;               ///< (|pairs|) touch or cross
   std::vector<PairContactRecord> contacts;      ///< (|pairs|) if requested
   std::vector<ContactRegion> regions;           ///< connected groups of contacts, if requested
   std::array<std::vector<RegionId>, 2> opened;  ///< regions refined, A's and B's, in order
-  /// 0: the answer is exact. Else the pairs are those of wrappers that are off the bodies by no more than
+  /// 0 if the answer is exact. Else the pairs are those of wrappers that are off the bodies by no more than
   /// this, both together, in the world: unresolved bodies are no further apart. Infinite: nothing is known.
   double error_bound = 0;
   bool finished = true;  ///< false: a limit was reached before the tolerance (or the exact answer) was

@@ -7,8 +7,8 @@
 
 namespace lrb {
 
-/// Which real vertices are joined by an edge of a real face. Derived from an LRB-rep when a query first needs
-/// it.
+/// Tells which real vertices are joined by an edge of a real face. Derived from an LRB-rep when a query first
+/// needs it.
 class SurfaceGraph {
  public:
   explicit SurfaceGraph(const LrbRep& rep);

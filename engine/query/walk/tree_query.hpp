@@ -1,12 +1,12 @@
 #pragma once
-/// The complete query: a dual traversal of the two trees of blocks.
+/// The complete query: a dual traversal of the two OBB trees.
 ///
 /// Why it never misses. If real simplices s of A and t of B meet at a point of the world, then in every pair
 /// of tree nodes above them each node's bounds hold one of the two, so the bounds, grown by all errors,
-/// overlap: by induction the traversal, which drops a pair only when its bounds are proved apart, reaches the
-/// pair of leaves that hold s and t; there the pair (s, t) is dropped only when boxes or a plane are proved
-/// to separate the two; what is left is decided within proved bounds of float errors, or exactly. The proof
-/// uses neither nesting of regions nor embedding: a poor LRB-rep can cost time, never a contact.
+/// overlap. By induction the traversal, which drops a pair only when its bounds are proved apart, reaches the
+/// pair of leaves that hold s and t. There the pair (s, t) is dropped only when boxes or a plane are proved
+/// to separate the two; what is left is decided within proved bounds on float errors, or exactly. The proof
+/// uses neither the nesting of regions nor embedding: a poor LRB-rep can cost time, never a contact.
 ///
 /// What "proved apart" has to cover is in set_up_kernel() for rotations, in affine_pose.hpp for all other maps.
 
@@ -20,7 +20,7 @@
 
 namespace lrb {
 
-/// The same for two bodies' own trees.
+/// Sets up a kernel for two bodies' own trees.
 inline TreeKernel set_up_kernel(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b) {
   return set_up_kernel(a.tree(), pose_a, b.tree(), pose_b);
 }
@@ -30,7 +30,7 @@ template <class Probe>
                                          CollideResult& result, Probe& probe) {
   QueryBody& body = ctx[side];
   const LrbRep& rep = body.rep();
-  ctx.path.clear();  // a query that ended by an exception may have left some
+  ctx.path.clear();  // a query that ended with an exception may have left some
   for (CellId c = innermost; is_region(c) && body.wrapper->included(c); c = rep.parent(c))
     ctx.path.push_back(c);
   for (; !ctx.path.empty(); ctx.path.pop_back()) {
@@ -48,8 +48,8 @@ TreeKernel start_kernel(QueryContext& ctx, std::size_t capacity);
 TreeKernel start_rigid_kernel(QueryContext& ctx, const Pose& pose_a, const Pose& pose_b,
                               std::size_t capacity);
 
-/// Refines the wrapper of a body until a face shows: the regions from the outside inward that hide it. Mostly
-/// there are none left. How many regions there are between the face and the outside.
+/// Refines the wrapper of a body until a face shows: the regions that hide it, from the outside inward.
+/// Mostly there are none left. Returns the number of regions between the face and the outside.
 template <class Probe>
 inline std::uint32_t show_face(QueryContext& ctx, Side side, FaceId f, CollideResult& result, Probe& probe) {
   const LrbRep& rep = ctx[side].rep();
@@ -59,7 +59,7 @@ inline std::uint32_t show_face(QueryContext& ctx, Side side, FaceId f, CollideRe
   return rep.depth(outer);
 }
 
-/// Rules of the exact query; coarse_query.hpp has others.
+/// The rules of the exact query; coarse_query.hpp has others.
 struct ExactRules {
   static constexpr bool kCoarse = false;
 };
@@ -99,9 +99,9 @@ class TreeQuery {
   }
 
  private:
-  /// True if the answer is complete. One pair is enough in any_pair mode, in first_pair mode if it crosses; a
-  /// pair that only touches is kept while a crossing one is looked for, so that the relation is exact in that
-  /// mode too.
+  /// Tests a candidate. Returns true if the answer is complete. One pair is enough in any_pair mode, and in
+  /// first_pair mode if it crosses; a pair that only touches is kept while a crossing one is looked for, so
+  /// that the relation is exact in that mode too.
   bool test(const Candidate& c) {
     if constexpr (Rules::kCoarse)
       if (rules_.no_test_left(result_.counters.face_tests)) return true;
@@ -126,7 +126,7 @@ class TreeQuery {
     return mode_ == Mode::any_pair || (mode_ == Mode::first_pair && meet == exact::Meet::cross);
   }
 
-  /// Most are certain: then no corner needs to be moved to the world.
+  /// Returns how a candidate meets. Most are certain: then no corner needs to be moved to the world.
   exact::Meet meet_of(const Candidate& c) {
     if (c.certainty == Certainty::cross) return exact::Meet::cross;
     if (c.certainty == Certainty::disjoint) return exact::Meet::disjoint;
@@ -134,7 +134,8 @@ class TreeQuery {
     return test_simplices(ctx_, c.a, c.b);
   }
 
-  /// Without branches: which corners are shared cannot be foretold.
+  /// Returns true if the candidate's corners are corners of the other simplex too. Without branches, because
+  /// which corners are shared cannot be predicted.
   bool shares_corners(const Candidate& c) {
     const double *of_a[3], *of_b[3];
     ctx_[Side::a].world.corners(c.a, of_a);
@@ -149,7 +150,8 @@ class TreeQuery {
     return (c.corners & ~shared[static_cast<int>(c.side)]) == 0;
   }
 
-  /// Points that only differ in the sign of a zero are left to the exact test.
+  /// Returns true if two points are equal bit by bit. Points that only differ in the sign of a zero are left
+  /// to the exact test.
   static bool has_bits_of(const double* x, const double* y) {
     std::uint64_t difference = 0;
     for (int i = 0; i < 3; ++i)

@@ -8,8 +8,8 @@
 
 namespace lrb {
 
-/// World coordinates of one body's vertices during one query: each is moved at most once, when it is first
-/// needed.
+/// World coordinates of one body's vertices during one query: each vertex is moved at most once, when it is
+/// first needed.
 class WorldVertices {
  public:
   void begin(const LrbRep& rep, const Pose& pose) {
@@ -25,7 +25,7 @@ class WorldVertices {
   const LrbRep& rep() const { return *rep_; }
   const Pose& pose() const { return pose_; }
 
-  /// World coordinates (x, y, z) of a vertex. The pointer is good until the next begin().
+  /// Returns the world coordinates (x, y, z) of a vertex. The pointer is valid until the next begin().
   const double* operator()(VertexId v) {
     Slot& s = slots_[v];
     if (s.epoch != epoch_) {
@@ -35,7 +35,7 @@ class WorldVertices {
     return s.x.data();
   }
 
-  /// World coordinates of a simplex's corners (3, or 2 in 2D).
+  /// Writes pointers to the world coordinates of a simplex's corners (3, or 2 in 2D) to out.
   void corners(SimplexId s, const double* out[3]) {
     VertexId v[3];
     rep_->simplex(s, v);
