@@ -9,8 +9,22 @@ set_target_properties(lrb_options PROPERTIES EXPORT_NAME options)
 
 install(TARGETS lrbscope RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 install(TARGETS lrb_engine lrb_options EXPORT lrbscopeTargets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
-install(DIRECTORY ${PROJECT_SOURCE_DIR}/engine DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/lrbscope
-        FILES_MATCHING PATTERN "*.hpp")
+
+# The public headers, which may include public headers alone: so what is installed is what is documented.
+file(STRINGS ${PROJECT_SOURCE_DIR}/engine/public_headers.txt LRB_PUBLIC_HEADERS REGEX "^[^#]")
+set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/engine/public_headers.txt)
+foreach(header IN LISTS LRB_PUBLIC_HEADERS)
+  set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/${header})
+  file(STRINGS ${PROJECT_SOURCE_DIR}/${header} included REGEX "^#include \"")
+  foreach(line IN LISTS included)
+    string(REGEX REPLACE "^#include \"(.*)\".*" "\\1" other "${line}")
+    if(NOT other IN_LIST LRB_PUBLIC_HEADERS)
+      message(FATAL_ERROR "${header} is public, but includes ${other}, which is not: include it in a .cpp file instead, or put it on engine/public_headers.txt")
+    endif()
+  endforeach()
+  get_filename_component(folder ${header} DIRECTORY)
+  install(FILES ${PROJECT_SOURCE_DIR}/${header} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/lrbscope/${folder})
+endforeach()
 install(EXPORT lrbscopeTargets NAMESPACE lrb:: DESTINATION ${LRB_CMAKE_DIR})
 
 configure_package_config_file(${PROJECT_SOURCE_DIR}/cmake/lrbscopeConfig.cmake.in

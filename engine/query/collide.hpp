@@ -16,21 +16,13 @@
 #include "engine/core/enum_words.hpp"
 #include "engine/core/pose.hpp"
 #include "engine/lrb/lrb_rep.hpp"
-#include "engine/query/walk/probe.hpp"
 #include "engine/query/walk/result.hpp"
 
 namespace lrb {
 
-/// The memory that a query needs and the next one can use again. One per thread.
-class QueryContext;
-
 /// Queries body `a` at pose_a against body `b` at pose_b; both must be 3D, or both 2D (else InputError).
 /// Poses must be finite, and so must be the world coordinates of every vertex (else InputError, naming it).
-template <class Probe>
-CollideResult collide(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
-                      const CollideRequest& request, QueryContext& context, Probe& probe);
-
-/// Does the same without a probe, and with a context of its own.
+/// To watch a query: collide_probe.hpp.
 CollideResult collide(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
                       const CollideRequest& request = {});
 

@@ -149,8 +149,6 @@ void move_exactly(RandomEngine& random, Case& c) {
   move_both(c, by);
 }
 
-}  // namespace
-
 Case make_lattice(RandomEngine& random, double dial) {
   static const std::vector<Body> kBodies = {body(menger()), body(koch_cube()), body(lattice())};
   Case c{kBodies[random() % 3], kBodies[random() % 3], {}, {}, {}, {}};
@@ -303,6 +301,25 @@ Case make_dirty(RandomEngine& random, double dial) {
   if (random() % 2) c.pose_b = {grid_turn(random), pick_point(random, {-2, -1, 0}, {2, 1, 0})};
   loosen(random, c, slack(dial));
   return c;
+}
+
+}  // namespace
+
+std::vector<Family> body_families() {
+  return {
+      {"lattice", "lattices, Menger and Koch bodies on their grid", make_lattice, "0.1 off the grid",
+       "on the grid", false, 150},
+      {"dented", "bodies with regions, made by hand and by the builder", make_dented, "0.1 off the grid",
+       "on the grid", false, 160},
+      {"containment", "inside, in a cavity, in the wall around one, nested shells, swallowed pieces",
+       make_containment, "0.1 of the room left", "1e-14 of the room left", false, 170},
+      {"voxels", "random cells of one grid: interiors overlap exactly if a cell is shared", make_voxels,
+       "0.1 off the grid", "on the grid, or on half of it", false, 180},
+      {"plane", "2D bodies, random cells of one grid among them", make_plane, "0.1 off",
+       "edges on edges, corners on corners", false, 190},
+      {"dirty", "open, duplicated, zero-area, turned and crossing faces", make_dirty,
+       "clean but for crossings, 0.1 off", "a third of the faces bad", false, 200},
+  };
 }
 
 }  // namespace lrb::cases

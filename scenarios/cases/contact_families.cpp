@@ -97,8 +97,6 @@ Mesh cone(int n, double height) {
   return shapes::revolve({{0, 0}, {1, height}, {0, height}}, n);
 }
 
-}  // namespace
-
 Case make_touch(RandomEngine& random, double dial) {
   Case c{any_body(random), any_body(random), {}, any_pose(random), {}, {}};
   if (pick(random, 0, 3) == 0) c.pose_a = any_pose(random);
@@ -243,6 +241,27 @@ Case make_quadratic(RandomEngine& random, double dial) {
   loosen(random, c, slack(dial));
   if (pick(random, 0, 3) == 0) move_both(c, any_pose(random));
   return c;
+}
+
+}  // namespace
+
+std::vector<Family> contact_families() {
+  return {
+      {"touch", "random bodies stopped within an ulp of contact", make_touch, "0.2 from first contact",
+       "an ulp from first contact", false, 10},
+      {"shared", "a face, edge or vertex in common, exactly or nearly", make_shared, "0.1 off",
+       "in common exactly", false, 20},
+      {"coplanar", "face on face: shifted, turned in the plane, tilted", make_coplanar,
+       "0.1 off and tilted by 0.1", "in one plane, or an ulp off", false, 30},
+      {"identical", "the same body at the same pose, or under a symmetry", make_identical, "0.1 off",
+       "the same pose, or an ulp off", false, 40},
+      {"hub", "many faces in a point; faces of many corners", make_hub, "3 faces, 0.1 off",
+       "100 faces, exactly in the point", false, 50},
+      {"interlock", "combs with all flanks in contact, chain links, screw in nut", make_interlock, "0.1 off",
+       "all flanks in contact", false, 60},
+      {"quadratic", "every plate of one through every plate of the other", make_quadratic,
+       "2 plates, 0.1 off", "6 plates, faces in one plane", false, 70},
+  };
 }
 
 }  // namespace lrb::cases

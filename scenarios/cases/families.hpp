@@ -10,6 +10,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "engine/query/collide.hpp"
 #include "scenarios/bodies/shapes/random_pose.hpp"
@@ -35,8 +36,17 @@ struct Family {
   const char* benign = "";      ///< what dial 0 means: "1e-1 apart"
   const char* degenerate = "";  ///< what dial 1 means: "exactly in contact"
   bool both_ways = false;       ///< the question is whether exchanging A and B transposes the answer
+  int rank = 1000;              ///< the families' order in tables: by rank, then by file
 };
+inline int rank_of(const Family& f) {
+  return f.rank;
+}
 
+/// A file NAME_families.cpp of this folder defines `std::vector<Family> NAME_families()`, and its families are
+/// registered: they need no other list (cmake/registry.cmake).
+std::vector<Family> registered_families();
+
+/// Returns the same, in their order.
 std::span<const Family> all_families();
 const Family* find_family(const std::string& name);
 
@@ -51,33 +61,6 @@ RandomEngine case_random(const Family& family, std::uint64_t seed, std::uint64_t
 /// Case `index` of the family at a dial setting, the same on every machine. Throws InputError if there is no
 /// such setting.
 Case make_case(const Family& family, std::uint64_t seed, int dial, std::uint64_t index);
-
-// Each in its file.
-Case make_touch(RandomEngine&, double);        // contact_families.cpp: approach to within an ulp of contact
-Case make_shared(RandomEngine&, double);       // a face, an edge or a vertex in common, ulps off
-Case make_coplanar(RandomEngine&, double);     // faces on faces, shifted, turned, tilted
-Case make_identical(RandomEngine&, double);    // the same body, under its symmetries
-Case make_hub(RandomEngine&, double);          // hundreds of faces in a point; faces of many corners
-Case make_interlock(RandomEngine&, double);    // combs, chain links, screw in nut
-Case make_quadratic(RandomEngine&, double);    // every plate through every plate
-Case make_sliver(RandomEngine&, double);       // scale_families.cpp: aspect to 1e8, sheets 1e-8 thick
-Case make_far(RandomEngine&, double);          // 1e6 to 1e16 from the origin
-Case make_scale(RandomEngine&, double);        // 1e-120 to 1e120
-Case make_extreme(RandomEngine&, double);      // denormals to 1e308: an exact answer or a refusal
-Case make_ratio(RandomEngine&, double);        // sizes 1e12 and 1e60 apart
-Case make_matrix(RandomEngine&, double);       // poses that are no rotations
-Case make_lattice(RandomEngine&, double);      // body_families.cpp: lattices, Menger, Koch
-Case make_dented(RandomEngine&, double);       // bodies with regions, by hand and by the builder
-Case make_containment(RandomEngine&, double);  // inside, in a cavity, in a wall, swallowed
-Case make_voxels(RandomEngine&, double);  // random cells on one grid: interiors overlap if a cell is shared
-Case make_plane(RandomEngine&, double);   // 2D, random cells too
-Case make_zero_area(RandomEngine&, double);  // faces that collapse to segments and points
-Case make_swapped(RandomEngine&, double);    // families.cpp: cases of the others
-Case make_dirty(RandomEngine&, double);      // open, duplicated, without area, crossing themselves
-Case make_kiss(RandomEngine&, double);  // large_families.cpp: cubes that share a face, edge or vertex: known
-Case make_nested(RandomEngine&, double);   // shell in shell: solid by parity, known
-Case make_polygon(RandomEngine&, double);  // faces with thousands of corners
-Case make_fractal(RandomEngine&, double);  // thousands of faces: sponges, dented cubes, hubs
 
 // What the files share.
 Body body(const Mesh& mesh,

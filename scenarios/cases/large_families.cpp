@@ -82,8 +82,6 @@ Mesh cone(int n) {
   return shapes::revolve({{0, 0}, {1, 1}, {0, 1}}, n);
 }
 
-}  // namespace
-
 Case make_kiss(RandomEngine& random, double dial) {
   static const std::vector<Body> kCubes = {body(shapes::box()), body(shapes::quad_box())};
   const double gap = steady::exp2(-std::round(4 + 48 * dial));  // at the end of the dial an ulp of 1
@@ -217,6 +215,21 @@ Case make_fractal(RandomEngine& random, double dial) {
   }
   if (pick(random, 0, 3) == 0) move_both(c, any_pose(random));
   return c;
+}
+
+}  // namespace
+
+std::vector<Family> large_families() {
+  return {
+      {"kiss", "cubes that share a face, an edge, a vertex; the same a gap apart, a gap inside", make_kiss,
+       "gap 1/16", "gap 1 ulp", false, 210},
+      {"nested", "shell in shell in shell, solid by parity, with pieces in the walls and between them",
+       make_nested, "2 walls, 0.1 of the room left", "32 walls, 1e-14 of the room left", false, 220},
+      {"polygon", "faces with thousands of corners, convex and not", make_polygon, "8 corners, anywhere",
+       "4096 corners, end to end", false, 230},
+      {"fractal", "sponges, dented cubes and hubs of hundreds of faces against plugs that fit", make_fractal,
+       "1 off the grid", "on the grid", false, 240},
+  };
 }
 
 }  // namespace lrb::cases

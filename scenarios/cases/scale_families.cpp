@@ -42,8 +42,6 @@ Vector3d random_sign_vector(RandomEngine& random, double size) {
   return v;
 }
 
-}  // namespace
-
 Case make_sliver(RandomEngine& random, double dial) {
   const double thin = steady::pow10(-8 * dial);
   const auto shape = [&] {
@@ -186,6 +184,25 @@ Case make_matrix(RandomEngine& random, double dial) {
   const Vector3d y = c.pose_b.r * c.b->vertices()[random() % c.b->vertices().size()];
   c.pose_b.t = x - y + (0.5 + x.norm()) * random_step(random, 0.02, 0.3);
   return c;
+}
+
+}  // namespace
+
+std::vector<Family> scale_families() {
+  return {
+      {"sliver", "needles and sheets", make_sliver, "aspect 1", "aspect 1e8", false, 80},
+      {"zero-area", "faces that collapse to segments and points", make_zero_area, "corners 0.1 from collapse",
+       "no area at all", false, 90},
+      {"far", "far from the world's or the bodies' own origin", make_far, "1 from the origin",
+       "1e16 from the origin", false, 100},
+      {"scale", "tiny and huge", make_scale, "size 1", "size 1e-120 or 1e120", false, 110},
+      {"extreme", "tiny and huge to the ends of double, and beyond", make_extreme, "size 1",
+       "size 4e-322 or 1.6e308", false, 120},
+      {"ratio", "bodies of different sizes", make_ratio, "equal sizes", "sizes 1e12 or 1e60 apart", false,
+       130},
+      {"matrix", "poses that scale, shear, reflect or flatten", make_matrix, "by 1e-3", "by 1e3, or flat",
+       false, 140},
+  };
 }
 
 }  // namespace lrb::cases

@@ -1,5 +1,5 @@
 #pragma once
-/// The commands of `lrbscope`, one file each. stdout is data, stderr is for people.
+/// The commands of `lrbscope`, one file each in commands/. stdout is data, stderr is for people.
 /// Exit codes: 0 ok, 1 mismatch, 2 usage or input, 3 environment.
 
 #include <functional>
@@ -24,20 +24,18 @@ struct Command {
   std::function<int()> run;
 };
 
-Command add_run(CLI::App& root, const Globals& globals);
-Command add_build(CLI::App& root, const Globals& globals);
-Command add_inspect(CLI::App& root, const Globals& globals);
-Command add_collide(CLI::App& root, const Globals& globals);
-Command add_crowd(CLI::App& root, const Globals& globals);
-Command add_query(CLI::App& root, const Globals& globals);
-Command add_render(CLI::App& root, const Globals& globals);
-Command add_paper(CLI::App& root, const Globals& globals);
-Command add_golden(CLI::App& root, const Globals& globals);
-Command add_doctor(CLI::App& root, const Globals& globals);
-Command add_stability(CLI::App& root, const Globals& globals);
-Command add_bench(CLI::App& root, const Globals& globals);
-Command add_chart(CLI::App& root, const Globals& globals);
-Command add_list(CLI::App& root, const Globals& globals);
+/// Adds a command to the program. A file NAME.cpp in commands/ defines `std::vector<CommandEntry> NAME_commands()`, and the
+/// program has them: they need no other list (cmake/registry.cmake).
+struct CommandEntry {
+  Command (*add)(CLI::App& root, const Globals& globals) = nullptr;
+  int rank = 1000;  ///< the commands' order in --help: by rank, then by file
+};
+inline int rank_of(const CommandEntry& c) {
+  return c.rank;
+}
+
+/// Returns all commands, in their order.
+std::vector<CommandEntry> registered_commands();
 
 /// Parses, runs, and turns exceptions into one line on stderr and an exit code.
 int main(int argc, char** argv);

@@ -119,12 +119,8 @@ int parse_and_run(int argc, char** argv) {
   Globals globals;
   globals.command_line = command_line(argc, argv);
   app.add_flag("-q,--quiet", globals.quiet, "Nothing on stderr but errors");
-  const Command commands[] = {
-      add_run(app, globals),       add_collide(app, globals), add_crowd(app, globals),
-      add_query(app, globals),     add_build(app, globals),   add_inspect(app, globals),
-      add_render(app, globals),    add_paper(app, globals),   add_golden(app, globals),
-      add_stability(app, globals), add_doctor(app, globals),  add_list(app, globals),
-      add_bench(app, globals),     add_chart(app, globals)};
+  std::vector<Command> commands;
+  for (const CommandEntry& entry : registered_commands()) commands.push_back(entry.add(app, globals));
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {

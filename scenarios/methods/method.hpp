@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "engine/query/collide.hpp"
@@ -17,6 +18,14 @@ enum class Says : std::uint8_t {
   nothing,   ///< only whether and where surfaces meet
   inside,    ///< whether one body lies in the other
   relation,  ///< all of Relation
+};
+
+/// How a method is drawn on charts. Methods of one title are one series: they look as the first of them does.
+struct MethodStyle {
+  std::string title;   ///< for the key: "FCL"; empty: a style of its own is found, under the method's name
+  std::string colour;  ///< #rrggbb
+  std::string shape;   ///< Chart.js's name of the point's shape
+  int point = 0;       ///< gnuplot's number of it
 };
 
 struct MethodInfo {
@@ -40,6 +49,8 @@ struct MethodInfo {
   bool own_rep = false;          ///< works on the LRB-rep as it comes: building a body means building that
   std::string knob;              ///< what `settings` set: "level"; empty: there is nothing to set
   std::vector<double> settings;  ///< those worth a sweep, from coarse to fine
+  MethodStyle style = {};
+  int rank = 1000;  ///< the methods' order in tables and charts: by rank, then by file
 };
 
 /// A body in a method's own form.
@@ -77,10 +88,16 @@ struct MethodEntry {
   MethodInfo info;
   std::unique_ptr<Method> (*make)() = nullptr;  ///< of those that are present
 };
+inline int rank_of(const MethodEntry& e) {
+  return e.info.rank;
+}
 
 /// A method whose Debian package was not found when this was built.
-inline MethodEntry absent(const char* name, const char* title, const char* package) {
+inline MethodEntry absent(const char* name, const char* title, const char* package, int rank = 1000,
+                          MethodStyle style = {}) {
   MethodInfo info;
+  info.rank = rank;
+  info.style = std::move(style);
   info.name = name;
   info.title = title;
   info.remark = std::string("Not there when this was built: install Debian's ") + package;
@@ -88,25 +105,11 @@ inline MethodEntry absent(const char* name, const char* title, const char* packa
   return {info};
 }
 
-// Each in its file; absent if it was not found when this was built.
-MethodEntry ours();
-MethodEntry ours_floating();   ///< without the exact fallback
-MethodEntry ours_paper();      ///< the paper's recursion
-MethodEntry ours_coherent();   ///< after a few small steps
-MethodEntry ours_tolerance();  ///< approximate: to a tolerance
-MethodEntry ours_budget();     ///< approximate: within a number of face tests
-MethodEntry plain_double();    ///< brute force with an epsilon
-MethodEntry fcl_double();
-MethodEntry fcl_float();
-MethodEntry cgal_rigid();
-MethodEntry cgal_pairs();
-MethodEntry fcl_headers();  ///< FCL's headers compiled with our flags
-MethodEntry fcl_octree();   ///< approximate: cells
-MethodEntry fcl_gjk();      ///< convex hulls
-MethodEntry spheres();      ///< approximate: a sphere tree, by level
-MethodEntry embree();       ///< its tree refitted to the moved body, and then rtcCollide
-MethodEntry embree_rebuilt();
-MethodEntry ode();
-MethodEntry bullet();  ///< in the precision of the Bullet that this was built with
+/// Returns the methods of the program that this is linked to, in their order. A file NAME.cpp in own/ or peers/ defines
+/// `std::vector<MethodEntry> NAME_methods()`, and the program has them: they need no other list (cmake/registry.cmake).
+std::vector<MethodEntry> registered_methods();
+
+/// Returns the method of that name. Throws InputError if there is none, or it is absent.
+const MethodEntry& find_method(const std::vector<MethodEntry>& methods, const std::string& name);
 
 }  // namespace lrb::methods

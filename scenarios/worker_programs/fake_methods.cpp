@@ -1,5 +1,6 @@
 #include "scenarios/worker_programs/fake_methods.hpp"
 
+#include <algorithm>
 #include <cstdlib>
 #include <stdexcept>
 
@@ -16,9 +17,11 @@ using methods::MethodBody;
 
 enum class Vice { crash, hang, refuse, raise, miss };
 
+std::unique_ptr<Method> (*make_honest)() = nullptr;  // set before the first is made
+
 class Fake : public Method {
  public:
-  explicit Fake(Vice vice) : vice_(vice), honest_(methods::ours().make()) {}
+  explicit Fake(Vice vice) : vice_(vice), honest_(make_honest()) {}
   std::unique_ptr<MethodBody> build(const LrbRep& rep) override { return honest_->build(rep); }
 
   MethodAnswer query(const MethodBody& a, const Pose& pose_a, const MethodBody& b, const Pose& pose_b,
@@ -39,8 +42,7 @@ class Fake : public Method {
 };
 
 template <Vice vice>
-methods::MethodEntry fake(const char* name) {
-  methods::MethodEntry entry = methods::ours();
+methods::MethodEntry fake(const char* name, methods::MethodEntry entry) {
   entry.info.name = entry.info.title = name;
   entry.make = []() -> std::unique_ptr<Method> { return std::make_unique<Fake>(vice); };
   return entry;
@@ -48,10 +50,14 @@ methods::MethodEntry fake(const char* name) {
 
 }  // namespace
 
-std::vector<methods::MethodEntry> fake_methods() {
-  return {fake<Vice::crash>("fake-crash"),   fake<Vice::hang>("fake-hang"),
-          fake<Vice::refuse>("fake-refuse"), fake<Vice::raise>("fake-throw"),
-          fake<Vice::miss>("fake-miss"),     methods::absent("fake-absent", "fake-absent", "nothing")};
+std::vector<methods::MethodEntry> fake_methods(const std::vector<methods::MethodEntry>& methods) {
+  const auto ours = std::find_if(methods.begin(), methods.end(),
+                                 [](const methods::MethodEntry& e) { return e.info.name == "ours"; });
+  if (ours == methods.end()) return {};
+  make_honest = ours->make;
+  return {fake<Vice::crash>("fake-crash", *ours),   fake<Vice::hang>("fake-hang", *ours),
+          fake<Vice::refuse>("fake-refuse", *ours), fake<Vice::raise>("fake-throw", *ours),
+          fake<Vice::miss>("fake-miss", *ours),     methods::absent("fake-absent", "fake-absent", "nothing")};
 }
 
 }  // namespace lrb::worker_programs

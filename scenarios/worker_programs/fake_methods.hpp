@@ -10,7 +10,7 @@ namespace lrb::worker_programs {
 
 /// All answer rightly where there is no contact. Where there is, "fake-crash" aborts, "fake-hang" never
 /// returns, "fake-refuse" refuses, "fake-throw" throws, and "fake-miss" forgets the first pair. "fake-absent"
-/// is not there.
-std::vector<methods::MethodEntry> fake_methods();
+/// is not there. None if "ours", which they pretend to be, is not among the program's methods.
+std::vector<methods::MethodEntry> fake_methods(const std::vector<methods::MethodEntry>& methods);
 
 }  // namespace lrb::worker_programs

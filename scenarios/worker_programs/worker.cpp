@@ -104,13 +104,10 @@ void say_records(const WorkerOptions& o, const methods::MethodEntry& entry, Line
 void work(const WorkerOptions& o, const std::vector<methods::MethodEntry>& entries, Lines& out) {
   if (o.list) return list_methods(entries, out);
   if (o.method.empty()) return say_expected(o, out);
-  const auto entry = std::find_if(entries.begin(), entries.end(),
-                                  [&](const methods::MethodEntry& e) { return e.info.name == o.method; });
-  if (entry == entries.end() || !entry->info.present)
-    throw InputError("there is no method '" + o.method + "' here");
-  if (o.questions.empty()) return say_records(o, *entry, out);
+  const methods::MethodEntry& entry = methods::find_method(entries, o.method);
+  if (o.questions.empty()) return say_records(o, entry, out);
   const bench::DataSet set = bench::read_data_set(o.questions);
-  bench::BenchRunner asker(*entry, o.setting, set, o.pairs);
+  bench::BenchRunner asker(entry, o.setting, set, o.pairs);
   for (std::uint64_t k = o.begin; k < o.end; ++k) out.say(dump(to_json(asker.ask(k))));
 }
 
@@ -118,8 +115,8 @@ void work(const WorkerOptions& o, const std::vector<methods::MethodEntry>& entri
 
 int worker_main(int argc, char** argv, std::vector<methods::MethodEntry> entries) {
   static constexpr int kOk = 0, kBadInput = 2;
-  if (entries.size() > 1 && std::getenv("LRBSCOPE_FAKE_METHODS") != nullptr)  // in the main worker alone
-    for (methods::MethodEntry& fake : fake_methods()) entries.push_back(std::move(fake));
+  if (std::getenv("LRBSCOPE_FAKE_METHODS") != nullptr)
+    for (methods::MethodEntry& fake : fake_methods(entries)) entries.push_back(std::move(fake));
   WorkerOptions o;
   CLI::App app(
       "Puts cases to collision engines, for lrbscope stability; see scenarios/worker_programs/worker.hpp.");

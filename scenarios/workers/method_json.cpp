@@ -14,7 +14,12 @@ nlohmann::ordered_json to_json(const methods::MethodInfo& info) {
           {"convex", info.convex},
           {"own_rep", info.own_rep},
           {"knob", info.knob},
-          {"settings", info.settings}};
+          {"settings", info.settings},
+          {"style",
+           {{"title", info.style.title},
+            {"colour", info.style.colour},
+            {"shape", info.style.shape},
+            {"point", info.style.point}}}};
 }
 
 methods::MethodInfo method_info_from(const nlohmann::json& value) {
@@ -31,6 +36,11 @@ methods::MethodInfo method_info_from(const nlohmann::json& value) {
   info.own_rep = value.value("own_rep", info.own_rep);
   info.knob = value.value("knob", "");
   info.settings = value.value("settings", std::vector<double>());
+  const nlohmann::json style = value.value("style", nlohmann::json::object());
+  info.style.title = style.value("title", "");
+  info.style.colour = style.value("colour", "");
+  info.style.shape = style.value("shape", "");
+  info.style.point = style.value("point", 0);
   return info;
 }
 

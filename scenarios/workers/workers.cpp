@@ -1,7 +1,9 @@
 #include "scenarios/workers/workers.hpp"
 
+#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
+#include <string_view>
 
 #include <nlohmann/json.hpp>
 #include <unistd.h>
@@ -16,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kPrograms[] = {"lrbscope-methods", "lrbscope-methods-double", "lrbscope-methods-fcl"};
+constexpr std::string_view kProgram = "lrbscope-methods";  // and those that begin with it
 constexpr std::chrono::seconds kListLimit(20);
 
 fs::path folder_of_workers() {
@@ -24,6 +26,21 @@ fs::path folder_of_workers() {
   std::error_code error;
   const fs::path self = fs::read_symlink("/proc/self/exe", error);
   return error ? fs::path(".") : self.parent_path();
+}
+
+/// Returns the workers' programs in the order of their names.
+std::vector<fs::path> programs_in(const fs::path& folder) {
+  std::vector<fs::path> programs;
+  std::error_code error;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder, error)) {
+    const std::string name = entry.path().filename().string();
+    const bool is_ours = name.starts_with(kProgram) &&
+                         name.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789-") == std::string::npos;
+    if (is_ours && entry.is_regular_file(error) && access(entry.path().c_str(), X_OK) == 0)
+      programs.push_back(entry.path());
+  }
+  std::sort(programs.begin(), programs.end());
+  return programs;
 }
 
 void add_methods(const std::string& program, std::vector<WorkerMethod>& methods) {
@@ -52,13 +69,10 @@ std::vector<WorkerMethod> find_methods() {
 std::vector<WorkerMethod> find_all_methods() {
   const fs::path folder = folder_of_workers();
   std::vector<WorkerMethod> methods;
-  for (const char* name : kPrograms) {
-    const std::string program = (folder / name).string();
-    if (access(program.c_str(), X_OK) == 0) add_methods(program, methods);
-  }
+  for (const fs::path& program : programs_in(folder)) add_methods(program.string(), methods);
   if (methods.empty())
     throw EnvironmentError(
-        printable_name((folder / kPrograms[0]).string()) +
+        printable_name((folder / kProgram).string()) +
         ": not found; it is built beside lrbscope and not installed: run lrbscope from its "
         "build folder, or name that in LRBSCOPE_METHODS");
   return methods;

@@ -2,6 +2,7 @@
 
 #include "engine/construct/build.hpp"
 #include "engine/query/collide.hpp"
+#include "engine/query/collide_probe.hpp"
 
 lrb::LrbRep body(const Eigen::MatrixX3d& v, const Eigen::MatrixX3i& f) {  // vertices, triangles
   lrb::Mesh mesh;
@@ -12,6 +13,12 @@ lrb::LrbRep body(const Eigen::MatrixX3d& v, const Eigen::MatrixX3i& f) {  // ver
   }
   return lrb::build_lrb(mesh);
 }
+
+/// Counts what it is told.
+struct Counter : lrb::CollideProbe {
+  void contact(lrb::SimplexId, lrb::SimplexId, lrb::exact::Meet) override { ++contacts; }
+  std::size_t contacts = 0;
+};
 
 int main() {
   Eigen::MatrixX3d v(4, 3);
@@ -24,5 +31,8 @@ int main() {
   const lrb::CollideResult r =
       lrb::collide(a, lrb::Pose{}, b, lrb::Pose::translation({0.25, 0.1, 0.05}), request);
   std::cout << lrb::to_string(r.relation) << " " << r.pairs.size() << " " << r.regions.size() << "\n";
+  Counter probe;
+  lrb::collide(a, lrb::Pose{}, b, lrb::Pose::translation({0.25, 0.1, 0.05}), request, probe);
+  if (probe.contacts != r.pairs.size()) return 2;
   return r.relation == lrb::Relation::crossing && !r.regions.empty() ? 0 : 1;
 }

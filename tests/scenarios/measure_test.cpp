@@ -235,7 +235,7 @@ TEST_CASE("points: what fails scores the worst, and the frontier is what nothing
 }
 
 TEST_CASE("a sphere tree misses nothing, and is closer to the truth at deeper levels") {
-  const auto spheres = methods::spheres().make();
+  const auto spheres = methods::find_method(methods::registered_methods(), "spheres").make();
   const LrbRep a = build_lrb(shapes::torus(32, 12));  // far from its own outermost sphere
   const auto body_a = spheres->build(a), body_b = spheres->build(a);
   shapes::RandomEngine random(7);

@@ -112,7 +112,7 @@ TEST_CASE("a query leaves nothing behind: the same context, asked again, gives t
   QueryContext context;
   NullProbe probe;
   for (int i = 0; i < 200; ++i) {
-    const cases::Case c = cases::make_dented(random, 0.5);
+    const cases::Case c = cases::find_family("dented")->make(random, 0.5);
     const CollideResult fresh = collide(*c.a, c.pose_a, *c.b, c.pose_b);
     for (int repeat = 0; repeat < 2; ++repeat) {
       const CollideResult again = collide(*c.a, c.pose_a, *c.b, c.pose_b, {}, context, probe);

@@ -4,9 +4,13 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <utility>
 
 #include "engine/core/tolerances.hpp"
+#include "engine/query/coherent/cache_policy.hpp"
+#include "engine/query/coherent/candidate_cache.hpp"
+#include "engine/query/coherent/relative_motion.hpp"
 #include "engine/query/collide_impl.hpp"
 
 namespace lrb {
@@ -35,7 +39,47 @@ void reset_counters(Counters& c) {
 
 }  // namespace
 
-CoherentQuery::CoherentQuery(const LrbRep& a, const LrbRep& b, const CollideRequest& request, CacheUse use)
+/// What is behind a CoherentQuery.
+class CoherentQuery::Work {
+ public:
+  Work(const LrbRep& a, const LrbRep& b, const CollideRequest& request, CacheUse use);
+  const CollideResult& collide(const Pose& pose_a, const Pose& pose_b);
+  const Statistics& statistics() const { return statistics_; }
+
+ private:
+  void answer(const Pose& pose_a, const Pose& pose_b);
+  void query_from_scratch();
+  bool still_crosses();
+  bool make_cache(const CachePolicy::Plan& plan);
+  void answer_from_cache(const SweepPoint& where);
+  void collect_answer();
+  void show_opened();
+  void note_step(double step);
+  std::optional<CachePolicy::Plan> next_plan();
+
+  const LrbRep &a_, &b_;
+  CollideRequest request_;
+  CacheUse use_;
+  QueryContext context_;
+  CollideResult result_;
+  Statistics statistics_;
+  bool plain_;  ///< the request is one that a cache can answer
+  RelativeMotion motion_;
+
+  bool at_work_ = false;   ///< a call has begun and not ended
+  double usual_step_ = 0;  ///< the longest recent step, apart from jumps
+  bool jumped_ = false;
+
+  bool has_cache_ = false;
+  Sweep sweep_;              ///< where the cache is complete
+  CandidateCache cache_;
+  SweepPoint where_;         ///< position in the sweep at the last query answered from the cache
+  bool has_answer_ = false;  ///< result_ holds the answer of the last query from this cache
+
+  CachePolicy policy_;
+};
+
+CoherentQuery::Work::Work(const LrbRep& a, const LrbRep& b, const CollideRequest& request, CacheUse use)
     : a_(a),
       b_(b),
       request_(request),
@@ -45,7 +89,7 @@ CoherentQuery::CoherentQuery(const LrbRep& a, const LrbRep& b, const CollideRequ
   if (plain_) motion_ = {a, b};
 }
 
-const CollideResult& CoherentQuery::collide(const Pose& pose_a, const Pose& pose_b) {
+const CollideResult& CoherentQuery::Work::collide(const Pose& pose_a, const Pose& pose_b) {
   if (!plain_) {
     NullProbe probe;
     result_ = lrb::collide(a_, pose_a, b_, pose_b, request_, context_, probe);
@@ -66,7 +110,7 @@ const CollideResult& CoherentQuery::collide(const Pose& pose_a, const Pose& pose
   return result_;
 }
 
-void CoherentQuery::answer(const Pose& pose_a, const Pose& pose_b) {
+void CoherentQuery::Work::answer(const Pose& pose_a, const Pose& pose_b) {
   context_.body[0].world.begin(a_, pose_a);
   context_.body[1].world.begin(b_, pose_b);
   if (policy_.rests()) {
@@ -100,7 +144,7 @@ void CoherentQuery::answer(const Pose& pose_a, const Pose& pose_b) {
 }
 
 /// Does what collide() does, but into the existing result.
-void CoherentQuery::query_from_scratch() {
+void CoherentQuery::Work::query_from_scratch() {
   has_cache_ = false;
   ++statistics_.from_scratch;
   for (QueryBody& body : context_.body) body.begin_at_pose(request_.wrapper);
@@ -117,7 +161,7 @@ void CoherentQuery::query_from_scratch() {
   show_opened();
 }
 
-void CoherentQuery::show_opened() {
+void CoherentQuery::Work::show_opened() {
   for (int side = 0; side < 2; ++side) {
     result_.opened[side] = context_.body[side].wrapper->excluded();
     result_.counters.regions_opened += result_.opened[side].size();
@@ -125,7 +169,7 @@ void CoherentQuery::show_opened() {
 }
 
 /// Returns true if the pair found last time still crosses: where one pair is enough, it is as good as any.
-bool CoherentQuery::still_crosses() {
+bool CoherentQuery::Work::still_crosses() {
   if (result_.pairs.size() != 1 || result_.meets[0] != exact::Meet::cross) return false;
   ++result_.counters.face_tests;
   if (test_simplices(context_, result_.pairs[0].a, result_.pairs[0].b) != exact::Meet::cross) return false;
@@ -133,14 +177,14 @@ bool CoherentQuery::still_crosses() {
   return true;
 }
 
-void CoherentQuery::note_step(double step) {
+void CoherentQuery::Work::note_step(double step) {
   const bool jump = !std::isfinite(step) || (usual_step_ > 0 && step > kJump * usual_step_);
   if (!jump || (jumped_ && std::isfinite(step))) usual_step_ = std::max(step, kForget * usual_step_);
   if (jump) policy_.forgive();
   jumped_ = jump;
 }
 
-std::optional<CachePolicy::Plan> CoherentQuery::next_plan() {
+std::optional<CachePolicy::Plan> CoherentQuery::Work::next_plan() {
   if (!(usual_step_ > 0) || jumped_ || !motion_.is_seen()) return {};
   if (use_ == CacheUse::as_it_pays) return policy_.next(motion_.is_kept(), usual_step_, motion_.radius());
   return CachePolicy::Plan{motion_.is_kept() ? CachePolicy::Kind::swept : CachePolicy::Kind::fixed,
@@ -149,7 +193,7 @@ std::optional<CachePolicy::Plan> CoherentQuery::next_plan() {
 
 /// Makes a cache and answers from it. Returns false, without a cache, if that takes too long or lengths
 /// overflow.
-bool CoherentQuery::make_cache(const CachePolicy::Plan& plan) {
+bool CoherentQuery::Work::make_cache(const CachePolicy::Plan& plan) {
   const auto began = Clock::now();
   const bool is_swept = plan.kind == CachePolicy::Kind::swept;
   sweep_ = is_swept ? motion_.ahead(plan.steps) : motion_.about(plan.steps * usual_step_);
@@ -189,7 +233,7 @@ bool CoherentQuery::make_cache(const CachePolicy::Plan& plan) {
 }
 
 /// Answers from the cache; B must be where it is complete.
-void CoherentQuery::answer_from_cache(const SweepPoint& where) {
+void CoherentQuery::Work::answer_from_cache(const SweepPoint& where) {
   const TreeKernel k = set_up_kernel(a_, context_.body[0].world.pose(), b_, context_.body[1].world.pose());
   const bool has_answer = std::exchange(has_answer_, true);
   const SweepPoint before = std::exchange(where_, where);
@@ -205,7 +249,7 @@ void CoherentQuery::answer_from_cache(const SweepPoint& where) {
   describe_contact(context_, request_, result_);
 }
 
-void CoherentQuery::collect_answer() {
+void CoherentQuery::Work::collect_answer() {
   result_.mode = request_.mode;
   result_.pairs.clear();
   result_.meets.clear();
@@ -218,6 +262,20 @@ void CoherentQuery::collect_answer() {
       crossing == result_.meets.end() ? 0 : static_cast<std::size_t>(crossing - result_.meets.begin());
   result_.pairs = {result_.pairs[i]};
   result_.meets = {result_.meets[i]};
+}
+
+CoherentQuery::CoherentQuery(const LrbRep& a, const LrbRep& b, const CollideRequest& request, CacheUse lists)
+    : work_(std::make_unique<Work>(a, b, request, lists)) {}
+CoherentQuery::~CoherentQuery() = default;
+CoherentQuery::CoherentQuery(CoherentQuery&&) noexcept = default;
+CoherentQuery& CoherentQuery::operator=(CoherentQuery&&) noexcept = default;
+
+const CollideResult& CoherentQuery::collide(const Pose& pose_a, const Pose& pose_b) {
+  return work_->collide(pose_a, pose_b);
+}
+
+const CoherentQuery::Statistics& CoherentQuery::statistics() const {
+  return work_->statistics();
 }
 
 }  // namespace lrb

@@ -7,7 +7,7 @@
 /// meet. Of the list, those pairs are tested that may meet at that point of the stretch: eight at a time in
 /// float arithmetic, exactly where that is not certain. Where B keeps no course the stretch is a place, and
 /// those pairs are tested that are no further apart there than B has moved from it. What that means, and what
-/// it allows for, is in course.hpp. Poses further from rotations than kRigid, scaled or sheared ones, are queried
+/// it allows for, is in relative_motion.hpp. Poses further from rotations than kRigid, scaled or sheared ones, are queried
 /// from scratch: as fast as collide(), and the answers the same.
 ///
 /// The answers are those of collide(): pairs, meets and relation always; what was opened, and the counters,
@@ -15,13 +15,10 @@
 /// the relation, which is what that one pair shows, may differ with it. All requests that are not plain
 /// (paper's recursions, floating predicates, coarse queries, separation) are passed on to collide().
 
-#include <optional>
+#include <cstdint>
+#include <memory>
 
-#include "engine/query/coherent/cache_policy.hpp"
-#include "engine/query/coherent/candidate_cache.hpp"
-#include "engine/query/coherent/relative_motion.hpp"
 #include "engine/query/collide.hpp"
-#include "engine/query/walk/query_context.hpp"
 
 namespace lrb {
 
@@ -47,39 +44,15 @@ class CoherentQuery {
     std::uint64_t from_scratch = 0;  ///< queries done as if there had been none before
     std::uint64_t tests_saved = 0;   ///< cached pairs that needed no test
   };
-  const Statistics& statistics() const { return statistics_; }
+  const Statistics& statistics() const;
+
+  ~CoherentQuery();
+  CoherentQuery(CoherentQuery&&) noexcept;
+  CoherentQuery& operator=(CoherentQuery&&) noexcept;
 
  private:
-  void answer(const Pose& pose_a, const Pose& pose_b);
-  void query_from_scratch();
-  bool still_crosses();
-  bool make_cache(const CachePolicy::Plan& plan);
-  void answer_from_cache(const SweepPoint& where);
-  void collect_answer();
-  void show_opened();
-  void note_step(double step);
-  std::optional<CachePolicy::Plan> next_plan();
-
-  const LrbRep &a_, &b_;
-  CollideRequest request_;
-  CacheUse use_;
-  QueryContext context_;
-  CollideResult result_;
-  Statistics statistics_;
-  bool plain_;  ///< the request is one that a cache can answer
-  RelativeMotion motion_;
-
-  bool at_work_ = false;   ///< a call has begun and not ended
-  double usual_step_ = 0;  ///< the longest recent step, apart from jumps
-  bool jumped_ = false;
-
-  bool has_cache_ = false;
-  Sweep sweep_;  ///< where the cache is complete
-  CandidateCache cache_;
-  SweepPoint where_;         ///< position in the sweep at the last query answered from the cache
-  bool has_answer_ = false;  ///< result_ holds the answer of the last query from this cache
-
-  CachePolicy policy_;
+  class Work;
+  std::unique_ptr<Work> work_;
 };
 
 }  // namespace lrb

@@ -53,7 +53,7 @@ struct CollideRequest {
   Recursion recursion = Recursion::complete;
   Predicates predicates = Predicates::exact;  ///< for pairs and relation; contacts are always exact
   WrapperMode wrapper = WrapperMode::regularised;
-  bool contacts = false;  ///< fill CollideResult::contacts and ::regions (all_pairs only)
+  bool contacts = false;  ///< fill CollideResult::contacts and CollideResult::regions (all_pairs)
   bool interiors_overlap =
       false;  ///< decide CollideResult::interiors_overlap for bodies that meet (all_pairs)
 

@@ -37,6 +37,7 @@ void add(report::PageSeries& series, const Point& p, double slowest,
 }
 
 report::PageChart chart_of(const DataSet& set, PoseClass c, const std::vector<Point>& points,
+                           const SeriesStyles& styles,
                            const std::function<std::string(const Point&)>& scene_of) {
   const double slowest = slowest_of(points, set.name);
   const std::vector<const Point*> here = panel(points, set.name, c);
@@ -55,13 +56,13 @@ report::PageChart chart_of(const DataSet& set, PoseClass c, const std::vector<Po
     best.x.push_back(drawn_error(*p));
     best.y.push_back(p->median);
   }
-  for (std::size_t i = 0; i < look_count(); ++i) {
+  for (std::size_t i = 0; i < styles.count(); ++i) {
     report::PageSeries series;
-    series.label = look(i).title;
-    series.colour = look(i).colour;
-    series.shape = look(i).shape;
+    series.label = styles.style(i).title;
+    series.colour = styles.style(i).colour;
+    series.shape = styles.style(i).shape;
     for (const Point* p : here)
-      if (look_of(p->method) == i) add(series, *p, slowest, scene_of);
+      if (styles.series_of(p->method) == i) add(series, *p, slowest, scene_of);
     if (!series.x.empty()) chart.series.push_back(std::move(series));
   }
   chart.series.push_back(std::move(best));
@@ -147,8 +148,9 @@ report::Page accuracy_page(const std::vector<DataSet>& sets, const std::vector<P
        "where "
        "there is none, or none where there is, counts as one whole diagonal, and so does what is no answer."},
   };
+  const SeriesStyles styles(methods);
   for (const DataSet& set : sets)
-    for (const PoseClass c : kPoseClasses) page.charts.push_back(chart_of(set, c, points, scene_of));
+    for (const PoseClass c : kPoseClasses) page.charts.push_back(chart_of(set, c, points, styles, scene_of));
   page.tables = {table_of_metrics(), table_of_methods(methods), table_of_points(points)};
   page.footer = "This page holds all it needs and fetches nothing.";
   return page;

@@ -12,9 +12,8 @@ constexpr double kPanelWidth = 50, kPanelHeight = 46, kLeft = 19, kTop = 7, kBot
                  kKeyHeight = 16;  // mm
 constexpr int kKeyColumns = 5;
 
-std::string style(std::size_t i, double size) {
-  return std::string(" lc rgb '") + look(i).colour + "' pt " + std::to_string(look(i).point) + " ps " +
-         io::number_text(size);
+std::string style_text(const methods::MethodStyle& s, double size) {
+  return " lc rgb '" + s.colour + "' pt " + std::to_string(s.point) + " ps " + io::number_text(size);
 }
 
 /// Sizes of the whole, in millimetres from the lower left corner.
@@ -28,14 +27,15 @@ struct Layout {
 };
 
 /// One panel: faint points, the frontier over them, and crosses where something failed.
-std::string plots_of(report::Gnuplot& chart, const std::string& id, const std::vector<const Point*>& panel,
-                     double slowest) {
-  std::vector<std::vector<std::string>> rows(look_count());
+std::string plots_of(report::Gnuplot& chart, const SeriesStyles& styles, const std::string& id,
+                     const std::vector<const Point*>& panel, double slowest) {
+  std::vector<std::vector<std::string>> rows(styles.count());
   std::vector<std::string> failed, best;
   std::string last;
   for (const Point* p : panel) {
     const std::string at = io::number_text(drawn_error(*p)) + " " + io::number_text(drawn_time(*p, slowest));
-    std::vector<std::string>& r = rows[look_of(p->method)];
+    if (styles.series_of(p->method) == styles.count()) continue;
+    std::vector<std::string>& r = rows[styles.series_of(p->method)];
     if (!r.empty() && !(p->setting && p->method == last)) r.emplace_back();  // a gap: no line between methods
     r.push_back(at);
     last = p->method;
@@ -52,13 +52,14 @@ std::string plots_of(report::Gnuplot& chart, const std::string& id, const std::v
   };
   add(id + "best", best, "steps lw 2.2 lc rgb '#c9d6df'");
   for (std::size_t i = 0; i < rows.size(); ++i)
-    add(id + "m" + std::to_string(i), rows[i], "linespoints lw 0.6" + style(i, i == 0 ? 0.75 : 0.5));
+    add(id + "m" + std::to_string(i), rows[i],
+        "linespoints lw 0.6" + style_text(styles.style(i), i == 0 ? 0.75 : 0.5));
   add(id + "failed", failed, "points pt 2 ps 0.9 lw 1.6 lc rgb '#d00000'");
   return plots.empty() ? "" : plots + "\n";
 }
 
-std::string key_of(report::Gnuplot& chart, const Layout& layout) {
-  const auto n = static_cast<int>(look_count()) + 2;
+std::string key_of(report::Gnuplot& chart, const SeriesStyles& styles, const Layout& layout) {
+  const auto n = static_cast<int>(styles.count()) + 2;
   const int lines = (n + kKeyColumns - 1) / kKeyColumns;
   std::string out =
       layout.margins(2, layout.width - 2, 1, kKeyHeight - 1) +
@@ -71,18 +72,18 @@ std::string key_of(report::Gnuplot& chart, const Layout& layout) {
     const double x = i / lines, y = lines - 0.5 - i % lines;
     const std::string name = "key" + std::to_string(i);
     const auto k = static_cast<std::size_t>(i);
-    const bool frontier = k == look_count(), failed = k == look_count() + 1;
+    const bool frontier = k == styles.count(), failed = k == styles.count() + 1;
     std::vector<std::string> at = {io::number_text(x + 0.05) + " " + io::number_text(y)};
     if (frontier) at.push_back(io::number_text(x + 0.09) + " " + io::number_text(y));
     chart.add_data(name, at);
     plots += (i == 0 ? "plot $" : ", $") + name + " using 1:2 with " +
              (frontier ? std::string("lines lw 2.2 lc rgb '#c9d6df'")
               : failed ? std::string("points pt 2 ps 0.9 lw 1.6 lc rgb '#d00000'")
-                       : "points" + style(k, 0.75));
+                       : "points" + style_text(styles.style(k), 0.75));
     titles.push_back(io::number_text(x + 0.11) + " " + io::number_text(y) + " " +
                      report::gnuplot_data_text(frontier ? "Pareto frontier"
                                                : failed ? "crash, refusal or time-out: the worst"
-                                                        : look(k).title));
+                                                        : styles.style(k).title));
   }
   chart.add_data("titles", titles);
   return out + plots + ", $titles using 1:2:3 with labels left\n";
@@ -90,7 +91,9 @@ std::string key_of(report::Gnuplot& chart, const Layout& layout) {
 
 }  // namespace
 
-report::Gnuplot accuracy_chart(const std::vector<DataSet>& sets, const std::vector<Point>& points) {
+report::Gnuplot accuracy_chart(const std::vector<DataSet>& sets, const std::vector<Point>& points,
+                               const std::vector<methods::MethodInfo>& methods) {
+  const SeriesStyles styles(methods);
   const auto rows = static_cast<double>(sets.size());
   const Layout layout{kLeft + std::size(kPoseClasses) * kPanelWidth + 3,
                       kTop + rows * kPanelHeight + kBottom + kKeyHeight};
@@ -117,13 +120,14 @@ report::Gnuplot accuracy_chart(const std::vector<DataSet>& sets, const std::vect
                                  " offset 0.4,0\nset ytics 10 format '%g' nomirror\n"
                            : "unset ylabel\nset ytics 10 format '' nomirror\n";
       plots += "set yrange [0.05:" + io::number_text(6 * slowest) + "]\n";
-      plots += plots_of(chart, "r" + std::to_string(row) + "c" + std::to_string(column), here, slowest);
+      plots +=
+          plots_of(chart, styles, "r" + std::to_string(row) + "c" + std::to_string(column), here, slowest);
     }
   }
   chart.script +=
       "set multiplot\nunset key\nset border 3 lw 0.6 lc rgb '#8a8f95'\nset logscale xy\nset xrange [3e-8:3]\n"
       "set grid lw 0.4 lc rgb '#e2e4e6' dt 1\n" +
-      plots + key_of(chart, layout) + "unset multiplot\n";
+      plots + key_of(chart, styles, layout) + "unset multiplot\n";
   return chart;
 }
 

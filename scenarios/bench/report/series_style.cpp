@@ -6,46 +6,44 @@
 namespace lrb::bench {
 namespace {
 
-struct Family {
-  const char* begins;  ///< the method's name begins with it; the longest wins
-  SeriesStyle look;
+struct Spare {
+  const char* colour;
+  const char* shape;
+  int point;
 };
 
-constexpr std::array<Family, 12> kFamilies = {{
-    {"ours", {"lrbscope, exact", "#0072b2", "circle", 7}},
-    {"ours-", {"lrbscope, variants", "#4aa3dc", "circle", 6}},
-    {"plain", {"brute force", "#6b6b6b", "crossRot", 2}},
-    {"fcl", {"FCL", "#d55e00", "rect", 5}},
-    {"cgal", {"CGAL, yes or no", "#009e73", "triangle", 8}},
-    {"cgal-pairs", {"CGAL, pairs", "#009e73", "triangle", 9}},
-    {"bullet", {"Bullet", "#cc79a7", "rectRot", 13}},
-    {"embree", {"Embree", "#b58900", "rectRounded", 11}},
-    {"ode", {"ODE", "#7f3c8d", "cross", 1}},
-    {"spheres", {"sphere tree, by level", "#1c1e22", "star", 3}},
-    {"fcl-octree", {"octree (FCL), by cells", "#8a5a2b", "rect", 4}},
-    {"fcl-gjk", {"convex hulls, GJK (FCL)", "#a3132f", "triangle", 10}},
+/// For methods that do not say how they are drawn, in turn; none of our methods is drawn so.
+constexpr std::array<Spare, 8> kSpares = {{
+    {"#2f4b7c", "triangle", 11},
+    {"#f95d6a", "rectRot", 12},
+    {"#4f7942", "star", 3},
+    {"#8f5bd9", "cross", 2},
+    {"#c04000", "rectRounded", 14},
+    {"#00798c", "rect", 5},
+    {"#a0522d", "circle", 6},
+    {"#b0006d", "crossRot", 1},
 }};
 
 }  // namespace
 
-std::size_t look_of(const std::string& method) {
-  std::size_t best = 0, length = 0;
-  for (std::size_t i = 0; i < kFamilies.size(); ++i) {
-    const std::string begins = kFamilies[i].begins;
-    if (begins.size() >= length && method.rfind(begins, 0) == 0) {
-      best = i;
-      length = begins.size();
+SeriesStyles::SeriesStyles(const std::vector<methods::MethodInfo>& methods) {
+  std::size_t spares = 0;
+  for (const methods::MethodInfo& m : methods) {
+    methods::MethodStyle style = m.style;
+    if (style.title.empty()) {
+      const Spare& spare = kSpares[spares++ % kSpares.size()];
+      style = {m.name, spare.colour, spare.shape, spare.point};
     }
+    const auto same = std::find_if(series_.begin(), series_.end(),
+                                   [&](const methods::MethodStyle& s) { return s.title == style.title; });
+    series_of_[m.name] = static_cast<std::size_t>(same - series_.begin());
+    if (same == series_.end()) series_.push_back(std::move(style));
   }
-  return best;
 }
 
-std::size_t look_count() {
-  return kFamilies.size();
-}
-
-const SeriesStyle& look(std::size_t i) {
-  return kFamilies[i].look;
+std::size_t SeriesStyles::series_of(const std::string& method) const {
+  const auto it = series_of_.find(method);
+  return it == series_of_.end() ? count() : it->second;
 }
 
 double drawn_time(const Point& p, double slowest) {

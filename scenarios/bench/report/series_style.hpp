@@ -1,24 +1,31 @@
 #pragma once
 
 #include <cmath>
+#include <map>
 #include <string>
+#include <vector>
 
 #include "scenarios/bench/report/metrics.hpp"
 
 namespace lrb::bench {
 
-/// How a method is drawn, on the page and in print.
-struct SeriesStyle {
-  const char* title;   ///< for the key
-  const char* colour;  ///< #rrggbb
-  const char* shape;   ///< Chart.js's name of the point's shape
-  int point;           ///< gnuplot's number of it
-};
+/// How the series of a chart are drawn: what every method says of itself, a series for each title (variants of ours, and
+/// engines of one house, may share one). A method that says nothing gets a series of its own under its name, with a colour
+/// and a shape that differ from those of the others as far as there are enough.
+class SeriesStyles {
+ public:
+  /// The series come in the order of the methods.
+  explicit SeriesStyles(const std::vector<methods::MethodInfo>& methods);
 
-/// Ours is "ours"; variants of ours, and engines of one house, look alike.
-std::size_t look_of(const std::string& method);
-std::size_t look_count();
-const SeriesStyle& look(std::size_t i);
+  std::size_t count() const { return series_.size(); }
+  const methods::MethodStyle& style(std::size_t series) const { return series_[series]; }
+  /// Returns the series of a method; count() if it is not among the methods.
+  std::size_t series_of(const std::string& method) const;
+
+ private:
+  std::vector<methods::MethodStyle> series_;
+  std::map<std::string, std::size_t> series_of_;
+};
 
 /// Where no error stands on an axis that has no place for 0.
 inline constexpr double kNoError = 1e-7;

@@ -2,6 +2,19 @@
 // triangles that it belongs to. Compiled for the precision of the library it is linked to.
 #include "scenarios/methods/method.hpp"
 
+namespace lrb::methods {
+namespace {
+const MethodStyle kStyle = {"Bullet", "#cc79a7", "rectRot", 13};
+#ifdef BT_USE_DOUBLE_PRECISION
+#define LRB_BULLET_METHODS bullet_double_methods
+constexpr int kRank = 100;
+#else
+#define LRB_BULLET_METHODS bullet_methods
+constexpr int kRank = 50;
+#endif
+}  // namespace
+}  // namespace lrb::methods
+
 #ifdef LRB_HAS_BULLET
 
 #include <algorithm>
@@ -106,8 +119,10 @@ class Bullet : public Method {
 
 }  // namespace
 
-MethodEntry bullet() {
+std::vector<MethodEntry> LRB_BULLET_METHODS() {
   MethodInfo info;
+  info.rank = kRank;
+  info.style = kStyle;
   info.name = kSingle ? "bullet" : "bullet-double";
   info.title = "Bullet " + std::to_string(BT_BULLET_VERSION / 100) + "." +
                std::to_string(BT_BULLET_VERSION % 100) + ", GImpact, " + (kSingle ? "float" : "double");
@@ -121,7 +136,7 @@ MethodEntry bullet() {
       (kSingle ? "Single precision, Bullet's default; beyond its range it is not asked. "
                : "Debian's build in double precision. ") +
       "Does not look for bodies inside bodies; 3D only.";
-  return {info, []() -> std::unique_ptr<Method> { return std::make_unique<Bullet>(); }};
+  return {{info, []() -> std::unique_ptr<Method> { return std::make_unique<Bullet>(); }}};
 }
 
 }  // namespace lrb::methods
@@ -130,11 +145,11 @@ MethodEntry bullet() {
 
 namespace lrb::methods {
 
-MethodEntry bullet() {
+std::vector<MethodEntry> LRB_BULLET_METHODS() {
 #ifdef BT_USE_DOUBLE_PRECISION
-  return absent("bullet-double", "Bullet, GImpact, double", "libbullet-dev");
+  return {absent("bullet-double", "Bullet, GImpact, double", "libbullet-dev", kRank, kStyle)};
 #else
-  return absent("bullet", "Bullet, GImpact, float", "libbullet-dev");
+  return {absent("bullet", "Bullet, GImpact, float", "libbullet-dev", kRank, kStyle)};
 #endif
 }
 

@@ -2,6 +2,14 @@
 // detection of rigid triangle meshes, and the AABB tree asked with one triangle after another.
 #include "scenarios/methods/method.hpp"
 
+namespace lrb::methods {
+namespace {
+const MethodStyle kStyle = {"CGAL, yes or no", "#009e73", "triangle", 8};
+const MethodStyle kPairsStyle = {"CGAL, pairs", "#009e73", "triangle", 9};
+constexpr int kRank = 40;
+}  // namespace
+}  // namespace lrb::methods
+
 #ifdef LRB_HAS_CGAL
 
 #include <algorithm>
@@ -159,10 +167,10 @@ class Pairs : public Method {
   }
 };
 
-}  // namespace
-
-MethodEntry cgal_rigid() {
+MethodEntry rigid() {
   MethodInfo info;
+  info.rank = kRank;
+  info.style = kStyle;
   info.name = "cgal";
   info.title = "CGAL " CGAL_VERSION_STR ", Rigid_triangle_mesh_collision_detection";
   info.remark =
@@ -174,8 +182,10 @@ MethodEntry cgal_rigid() {
   return {info, []() -> std::unique_ptr<Method> { return std::make_unique<Rigid>(); }};
 }
 
-MethodEntry cgal_pairs() {
+MethodEntry pairs() {
   MethodInfo info;
+  info.rank = kRank + 1;
+  info.style = kPairsStyle;
   info.name = "cgal-pairs";
   info.title = "CGAL " CGAL_VERSION_STR ", AABB_tree, triangle by triangle";
   info.remark =
@@ -185,18 +195,22 @@ MethodEntry cgal_pairs() {
   return {info, []() -> std::unique_ptr<Method> { return std::make_unique<Pairs>(); }};
 }
 
+}  // namespace
+
+std::vector<MethodEntry> cgal_methods() {
+  return {rigid(), pairs()};
+}
+
 }  // namespace lrb::methods
 
 #else
 
 namespace lrb::methods {
 
-MethodEntry cgal_rigid() {
-  return absent("cgal", "CGAL, Rigid_triangle_mesh_collision_detection", "libcgal-dev");
-}
-
-MethodEntry cgal_pairs() {
-  return absent("cgal-pairs", "CGAL, AABB_tree, triangle by triangle", "libcgal-dev");
+std::vector<MethodEntry> cgal_methods() {
+  return {
+      absent("cgal", "CGAL, Rigid_triangle_mesh_collision_detection", "libcgal-dev", kRank, kStyle),
+      absent("cgal-pairs", "CGAL, AABB_tree, triangle by triangle", "libcgal-dev", kRank + 1, kPairsStyle)};
 }
 
 }  // namespace lrb::methods

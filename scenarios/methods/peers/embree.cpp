@@ -3,6 +3,13 @@
 // the world: when a body moves its tree is refitted, or built again, before it can be asked.
 #include "scenarios/methods/method.hpp"
 
+namespace lrb::methods {
+namespace {
+const MethodStyle kStyle = {"Embree", "#b58900", "rectRounded", 11};
+constexpr int kRank = 60;
+}  // namespace
+}  // namespace lrb::methods
+
 #ifdef LRB_HAS_EMBREE
 
 #include <algorithm>
@@ -142,8 +149,11 @@ class Embree : public Method {
   RTCBuildQuality quality_;
 };
 
-MethodEntry entry(const char* name, const char* how, const char* remark, std::unique_ptr<Method> (*make)()) {
+MethodEntry entry(const char* name, const char* how, const char* remark, int rank,
+                  std::unique_ptr<Method> (*make)()) {
   MethodInfo info;
+  info.rank = rank;
+  info.style = kStyle;
   info.name = name;
   info.title = std::string("Embree " RTC_VERSION_STRING ", rtcCollide, ") + how;
   info.remark =
@@ -158,15 +168,13 @@ MethodEntry entry(const char* name, const char* how, const char* remark, std::un
 
 }  // namespace
 
-MethodEntry embree() {
-  return entry("embree", "refitted", "and its tree is refitted, which counts.",
-               []() -> std::unique_ptr<Method> { return std::make_unique<Embree>(RTC_BUILD_QUALITY_REFIT); });
-}
-
-MethodEntry embree_rebuilt() {
-  return entry("embree-rebuilt", "rebuilt",
-               "and its tree is built again by the fastest builder, which counts.",
-               []() -> std::unique_ptr<Method> { return std::make_unique<Embree>(RTC_BUILD_QUALITY_LOW); });
+std::vector<MethodEntry> embree_methods() {
+  return {
+      entry("embree", "refitted", "and its tree is refitted, which counts.", kRank,
+            []() -> std::unique_ptr<Method> { return std::make_unique<Embree>(RTC_BUILD_QUALITY_REFIT); }),
+      entry("embree-rebuilt", "rebuilt", "and its tree is built again by the fastest builder, which counts.",
+            kRank + 1,
+            []() -> std::unique_ptr<Method> { return std::make_unique<Embree>(RTC_BUILD_QUALITY_LOW); })};
 }
 
 }  // namespace lrb::methods
@@ -175,16 +183,12 @@ MethodEntry embree_rebuilt() {
 
 namespace lrb::methods {
 
-MethodEntry embree() {
-  MethodEntry entry = absent("embree", "Embree, rtcCollide, refitted", "libembree-dev");
-  entry.info.hard_cases = false;
-  return entry;
-}
-
-MethodEntry embree_rebuilt() {
-  MethodEntry entry = absent("embree-rebuilt", "Embree, rtcCollide, rebuilt", "libembree-dev");
-  entry.info.hard_cases = false;
-  return entry;
+std::vector<MethodEntry> embree_methods() {
+  std::vector<MethodEntry> entries = {
+      absent("embree", "Embree, rtcCollide, refitted", "libembree-dev", kRank, kStyle),
+      absent("embree-rebuilt", "Embree, rtcCollide, rebuilt", "libembree-dev", kRank + 1, kStyle)};
+  for (MethodEntry& e : entries) e.info.hard_cases = false;
+  return entries;
 }
 
 }  // namespace lrb::methods

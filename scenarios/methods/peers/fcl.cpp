@@ -4,6 +4,17 @@
 // our flags.
 #include "scenarios/methods/method.hpp"
 
+namespace lrb::methods {
+namespace {
+const MethodStyle kStyle = {"FCL", "#d55e00", "rect", 5};
+#ifdef LRB_FCL_HEADERS
+constexpr int kRank = 110;
+#else
+constexpr int kRank = 30;
+#endif
+}  // namespace
+}  // namespace lrb::methods
+
 #ifdef LRB_HAS_FCL
 
 #ifdef LRB_FCL_HEADERS
@@ -76,8 +87,10 @@ class Fcl : public Method {
   }
 };
 
-MethodInfo fcl_info(const char* name, const char* scalar, const char* remark) {
+MethodInfo fcl_info(const char* name, const char* scalar, const char* remark, int rank) {
   MethodInfo info;
+  info.rank = rank;
+  info.style = kStyle;
   info.name = name;
   info.title = std::string("FCL " FCL_VERSION ", OBBRSS, ") + scalar;
   info.remark = remark;
@@ -88,29 +101,28 @@ MethodInfo fcl_info(const char* name, const char* scalar, const char* remark) {
 
 #ifdef LRB_FCL_HEADERS
 
-MethodEntry fcl_headers() {
+std::vector<MethodEntry> fcl_headers_methods() {
   MethodEntry entry = {
       fcl_info("fcl-headers", "double, compiled with our flags",
-               "As fcl, but for its code, which is instantiated from its headers with our compiler's flags."),
+               "As fcl, but for its code, which is instantiated from its headers with our compiler's flags.",
+               kRank),
       []() -> std::unique_ptr<Method> { return std::make_unique<Fcl<double>>(); }};
   entry.info.hard_cases = false;
-  return entry;
+  return {entry};
 }
 
 #else
 
-MethodEntry fcl_double() {
+std::vector<MethodEntry> fcl_methods() {
   return {
-      fcl_info("fcl", "double",
-               "All pairs: collide() of two BVHModel<OBBRSS>, contacts unlimited, without their positions. "
-               "Does not look for bodies inside bodies; 3D only."),
-      []() -> std::unique_ptr<Method> { return std::make_unique<Fcl<double>>(); }};
-}
-
-MethodEntry fcl_float() {
-  return {fcl_info("fcl-float", "float",
-                   "As fcl, with coordinates rounded to float; beyond its range it is not asked."),
-          []() -> std::unique_ptr<Method> { return std::make_unique<Fcl<float>>(); }};
+      {fcl_info("fcl", "double",
+                "All pairs: collide() of two BVHModel<OBBRSS>, contacts unlimited, without their positions. "
+                "Does not look for bodies inside bodies; 3D only.",
+                kRank),
+       []() -> std::unique_ptr<Method> { return std::make_unique<Fcl<double>>(); }},
+      {fcl_info("fcl-float", "float",
+                "As fcl, with coordinates rounded to float; beyond its range it is not asked.", kRank + 1),
+       []() -> std::unique_ptr<Method> { return std::make_unique<Fcl<float>>(); }}};
 }
 
 #endif
@@ -123,20 +135,17 @@ namespace lrb::methods {
 
 #ifdef LRB_FCL_HEADERS
 
-MethodEntry fcl_headers() {
-  MethodEntry entry = absent("fcl-headers", "FCL, compiled with our flags", "libfcl-dev");
+std::vector<MethodEntry> fcl_headers_methods() {
+  MethodEntry entry = absent("fcl-headers", "FCL, compiled with our flags", "libfcl-dev", kRank, kStyle);
   entry.info.hard_cases = false;
-  return entry;
+  return {entry};
 }
 
 #else
 
-MethodEntry fcl_double() {
-  return absent("fcl", "FCL, OBBRSS, double", "libfcl-dev");
-}
-
-MethodEntry fcl_float() {
-  return absent("fcl-float", "FCL, OBBRSS, float", "libfcl-dev");
+std::vector<MethodEntry> fcl_methods() {
+  return {absent("fcl", "FCL, OBBRSS, double", "libfcl-dev", kRank, kStyle),
+          absent("fcl-float", "FCL, OBBRSS, float", "libfcl-dev", kRank + 1, kStyle)};
 }
 
 #endif

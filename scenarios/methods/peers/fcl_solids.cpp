@@ -2,6 +2,14 @@
 // knob, and the convex hulls of both by GJK (libccd).
 #include "scenarios/methods/method.hpp"
 
+namespace lrb::methods {
+namespace {
+const MethodStyle kOctreeStyle = {"octree (FCL), by cells", "#8a5a2b", "rect", 4};
+const MethodStyle kGjkStyle = {"convex hulls, GJK (FCL)", "#a3132f", "triangle", 10};
+constexpr int kRank = 90;
+}  // namespace
+}  // namespace lrb::methods
+
 #ifdef LRB_HAS_FCL
 #include <fcl/config.h>
 #endif
@@ -142,10 +150,10 @@ class Gjk : public Method {
   }
 };
 
-}  // namespace
-
-MethodEntry fcl_octree() {
+MethodEntry octree() {
   MethodInfo info;
+  info.rank = kRank;
+  info.style = kOctreeStyle;
   info.name = "fcl-octree";
   info.title = "FCL " FCL_VERSION ", octree against mesh";
   info.remark =
@@ -160,8 +168,10 @@ MethodEntry fcl_octree() {
   return {info, []() -> std::unique_ptr<Method> { return std::make_unique<Octree>(); }};
 }
 
-MethodEntry fcl_gjk() {
+MethodEntry gjk() {
   MethodInfo info;
+  info.rank = kRank + 1;
+  info.style = kGjkStyle;
   info.name = "fcl-gjk";
   info.title = "FCL " FCL_VERSION ", GJK of convex hulls";
   info.remark =
@@ -174,24 +184,25 @@ MethodEntry fcl_gjk() {
   return {info, []() -> std::unique_ptr<Method> { return std::make_unique<Gjk>(); }};
 }
 
+}  // namespace
+
+std::vector<MethodEntry> fcl_solids_methods() {
+  return {octree(), gjk()};
+}
+
 }  // namespace lrb::methods
 
 #else
 
 namespace lrb::methods {
 
-MethodEntry fcl_octree() {
-  MethodEntry entry = absent("fcl-octree", "FCL, octree against mesh", "libfcl-dev");
-  entry.info.hard_cases = false;
-  entry.info.approximate = true;
-  return entry;
-}
-
-MethodEntry fcl_gjk() {
-  MethodEntry entry = absent("fcl-gjk", "FCL, GJK of convex hulls", "libfcl-dev");
-  entry.info.hard_cases = false;
-  entry.info.convex = true;
-  return entry;
+std::vector<MethodEntry> fcl_solids_methods() {
+  MethodEntry octree = absent("fcl-octree", "FCL, octree against mesh", "libfcl-dev", kRank, kOctreeStyle);
+  octree.info.approximate = true;
+  MethodEntry gjk = absent("fcl-gjk", "FCL, GJK of convex hulls", "libfcl-dev", kRank + 1, kGjkStyle);
+  gjk.info.convex = true;
+  octree.info.hard_cases = gjk.info.hard_cases = false;
+  return {octree, gjk};
 }
 
 }  // namespace lrb::methods

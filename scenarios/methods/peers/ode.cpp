@@ -1,6 +1,13 @@
 // ODE's triangle meshes: dCollide() of two of them, which makes contact points, each with its two triangles.
 #include "scenarios/methods/method.hpp"
 
+namespace lrb::methods {
+namespace {
+const MethodStyle kStyle = {"ODE", "#7f3c8d", "cross", 1};
+constexpr int kRank = 70;
+}  // namespace
+}  // namespace lrb::methods
+
 #ifdef LRB_HAS_ODE
 
 #include <algorithm>
@@ -88,8 +95,10 @@ class Ode : public Method {
 
 }  // namespace
 
-MethodEntry ode() {
+std::vector<MethodEntry> ode_methods() {
   MethodInfo info;
+  info.rank = kRank;
+  info.style = kStyle;
   info.name = "ode";
   info.title =
       sizeof(dReal) == sizeof(double) ? "ODE, triangle meshes, double" : "ODE, triangle meshes, float";
@@ -99,7 +108,7 @@ MethodEntry ode() {
       "is not meant to be complete. Trees and vertices in float.";
   info.loose = true;
   info.hard_cases = false;
-  return {info, []() -> std::unique_ptr<Method> { return std::make_unique<Ode>(); }};
+  return {{info, []() -> std::unique_ptr<Method> { return std::make_unique<Ode>(); }}};
 }
 
 }  // namespace lrb::methods
@@ -108,10 +117,10 @@ MethodEntry ode() {
 
 namespace lrb::methods {
 
-MethodEntry ode() {
-  MethodEntry entry = absent("ode", "ODE, triangle meshes", "libode-dev");
+std::vector<MethodEntry> ode_methods() {
+  MethodEntry entry = absent("ode", "ODE, triangle meshes", "libode-dev", kRank, kStyle);
   entry.info.hard_cases = false;
-  return entry;
+  return {entry};
 }
 
 }  // namespace lrb::methods

@@ -165,8 +165,6 @@ void add_output(CLI::App& app, const std::shared_ptr<GoldenOptions>& o) {
   app.add_flag("--json", o->json, "A line of JSON per scenario");
 }
 
-}  // namespace
-
 Command add_golden(CLI::App& root, const Globals& globals) {
   CLI::App* app = root.add_subcommand("golden", "Runs against approved traces and pictures");
   const auto o = std::make_shared<GoldenOptions>();
@@ -191,6 +189,12 @@ Command add_golden(CLI::App& root, const Globals& globals) {
             if (report->parsed()) return run_test(*o, globals, true);
             return run_approve(*o, globals);
           }};
+}
+
+}  // namespace
+
+std::vector<CommandEntry> golden_commands() {
+  return {{add_golden, 90}};
 }
 
 }  // namespace lrb::cli

@@ -104,8 +104,6 @@ int run_collide(const CollideOptions& o, const Globals& globals) {
                         o.json, globals);
 }
 
-}  // namespace
-
 Command add_collide(CLI::App& root, const Globals& globals) {
   CLI::App* app =
       root.add_subcommand("collide", "Two bodies of yours: an approach until contact, drawn and explained");
@@ -122,6 +120,12 @@ Command add_collide(CLI::App& root, const Globals& globals) {
   add_picture_options(*app, o->picture);
   app->add_flag("--json", o->json, "Print the summary instead of the page's path");
   return {app, [o, &globals] { return run_collide(*o, globals); }};
+}
+
+}  // namespace
+
+std::vector<CommandEntry> collide_commands() {
+  return {{add_collide, 20}};
 }
 
 }  // namespace lrb::cli

@@ -145,8 +145,6 @@ int run_inspect(const InspectOptions& o, const Globals& globals) {
   return valid ? kOk : kMismatch;
 }
 
-}  // namespace
-
 Command add_inspect(CLI::App& root, const Globals& globals) {
   CLI::App* app = root.add_subcommand("inspect", "What a mesh or an LRB-rep is, and what is wrong with it");
   const auto o = std::make_shared<InspectOptions>();
@@ -159,6 +157,12 @@ Command add_inspect(CLI::App& root, const Globals& globals) {
   app->add_option("-o,--output", o->picture, "Picture to write [out/NAME.png]")->type_name("FILE.png");
   app->add_flag("--json", o->json, "As one JSON object");
   return {app, [o, &globals] { return run_inspect(*o, globals); }};
+}
+
+}  // namespace
+
+std::vector<CommandEntry> inspect_commands() {
+  return {{add_inspect, 60}};
 }
 
 }  // namespace lrb::cli

@@ -35,8 +35,6 @@ int run_crowd_command(const CrowdOptions& o, const Globals& globals) {
   return kOk;
 }
 
-}  // namespace
-
 Command add_crowd(CLI::App& root, const Globals& globals) {
   CLI::App* app = root.add_subcommand(
       "crowd", "Many bodies: a query for each pair whose boxes meet, step by step, on all cores");
@@ -57,6 +55,12 @@ Command add_crowd(CLI::App& root, const Globals& globals) {
   app->add_flag("--no-frames", o->no_frames, "Draw nothing");
   app->add_flag("--json", o->json, "Print the summary instead of the page's path");
   return {app, [o, &globals] { return run_crowd_command(*o, globals); }};
+}
+
+}  // namespace
+
+std::vector<CommandEntry> crowd_commands() {
+  return {{add_crowd, 30}};
 }
 
 }  // namespace lrb::cli

@@ -93,7 +93,7 @@ void draw(const ChartOptions& o, const std::vector<workers::WorkerMethod>& metho
   for (const auto& [key, target] : scenes)
     page.links.push_back({key.first + ", " + bench::title(key.second), target, "scene, trace and pictures"});
   try {
-    const report::Gnuplot chart = bench::accuracy_chart(sets, points);
+    const report::Gnuplot chart = bench::accuracy_chart(sets, points, infos);
     for (const char* ending : {".svg", ".png"}) {
       report::draw(chart, o.folder + "/chart" + ending);
       page.links.push_back({std::string("chart") + ending, std::string("chart") + ending, "for print"});
@@ -117,8 +117,6 @@ int run_chart(const ChartOptions& o, bool measures, bool draws, const Globals& g
   return kOk;
 }
 
-}  // namespace
-
 Command add_chart(CLI::App& root, const Globals& globals) {
   CLI::App* app = root.add_subcommand(
       "chart", "Speed against accuracy: every method at every setting, exact ones and approximations");
@@ -135,6 +133,12 @@ Command add_chart(CLI::App& root, const Globals& globals) {
   return {app, [o, &globals, measures, draws] {
             return run_chart(*o, !draws->parsed(), !measures->parsed(), globals);
           }};
+}
+
+}  // namespace
+
+std::vector<CommandEntry> chart_commands() {
+  return {{add_chart, 140}};
 }
 
 }  // namespace lrb::cli

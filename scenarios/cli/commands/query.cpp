@@ -170,8 +170,6 @@ int run_query(const QueryOptions& o, const Globals& globals) {
   return kOk;
 }
 
-}  // namespace
-
 Command add_query(CLI::App& root, const Globals& globals) {
   CLI::App* app = root.add_subcommand("query", "Exact answers for a list of poses of B, one JSON line each");
   const auto o = std::make_shared<QueryOptions>();
@@ -190,6 +188,12 @@ Command add_query(CLI::App& root, const Globals& globals) {
       ->check(CLI::Range(1, 1000000))
       ->type_name("N");
   return {app, [o, &globals] { return run_query(*o, globals); }};
+}
+
+}  // namespace
+
+std::vector<CommandEntry> query_commands() {
+  return {{add_query, 40}};
 }
 
 }  // namespace lrb::cli

@@ -126,8 +126,6 @@ int run_paper(PaperOptions o, const Globals& globals) {
   return kOk;
 }
 
-}  // namespace
-
 Command add_paper(CLI::App& root, const Globals& globals) {
   CLI::App* app = root.add_subcommand("paper",
                                       "The paper's experiment: its tables and figures, close-ups of single "
@@ -168,6 +166,12 @@ Command add_paper(CLI::App& root, const Globals& globals) {
     merge->excludes(app->get_option(of_shards));
   app->add_flag("--json", o->json, "Print the tables instead of the page's path");
   return {app, [o, &globals] { return run_paper(*o, globals); }};
+}
+
+}  // namespace
+
+std::vector<CommandEntry> paper_commands() {
+  return {{add_paper, 80}};
 }
 
 }  // namespace lrb::cli

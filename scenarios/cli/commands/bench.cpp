@@ -70,8 +70,6 @@ int run_bench(const BenchOptions& o, const Globals& globals) {
   return kOk;
 }
 
-}  // namespace
-
 Command add_bench(CLI::App& root, const Globals& globals) {
   CLI::App* app = root.add_subcommand(
       "bench", "Ours beside other engines, on the same bodies and poses: how many times as long they take");
@@ -83,6 +81,12 @@ Command add_bench(CLI::App& root, const Globals& globals) {
       ->check(CLI::Range(0, 2000000))
       ->type_name("N");
   return {app, [o, &globals] { return run_bench(*o, globals); }};
+}
+
+}  // namespace
+
+std::vector<CommandEntry> bench_commands() {
+  return {{add_bench, 130}};
 }
 
 }  // namespace lrb::cli

@@ -57,8 +57,10 @@ class PlainDouble : public Method {
 
 }  // namespace
 
-MethodEntry plain_double() {
+std::vector<MethodEntry> plain_double_methods() {
   MethodInfo info;
+  info.rank = 20;
+  info.style = {"brute force", "#6b6b6b", "crossRot", 2};
   info.name = "plain";
   info.title = "brute force, double, epsilon 1e-6";
   info.remark =
@@ -66,7 +68,7 @@ MethodEntry plain_double() {
       "No "
       "boxes, no relation.";
   info.plane = info.moves_exactly = true;
-  return {info, []() -> std::unique_ptr<Method> { return std::make_unique<PlainDouble>(); }};
+  return {{info, []() -> std::unique_ptr<Method> { return std::make_unique<PlainDouble>(); }}};
 }
 
 }  // namespace lrb::methods

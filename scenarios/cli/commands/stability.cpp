@@ -171,8 +171,6 @@ int run_stability(const StabilityOptions& o, const Globals& globals) {
   return kMismatch;
 }
 
-}  // namespace
-
 Command add_stability(CLI::App& root, const Globals& globals) {
   CLI::App* app = root.add_subcommand(
       "stability", "Families of hard cases in the hands of ours and other engines: who fails where");
@@ -196,6 +194,12 @@ Command add_stability(CLI::App& root, const Globals& globals) {
       ->type_name("CASE");
   app->add_flag("--pairs", o->pairs, "With --only: the pairs expected and answered");
   return {app, [o, &globals] { return run_stability(*o, globals); }};
+}
+
+}  // namespace
+
+std::vector<CommandEntry> stability_commands() {
+  return {{add_stability, 100}};
 }
 
 }  // namespace lrb::cli

@@ -94,13 +94,17 @@ int run_doctor(bool json) {
   return well ? kOk : kEnvironment;
 }
 
-}  // namespace
-
 Command add_doctor(CLI::App& root, const Globals&) {
   CLI::App* app = root.add_subcommand("doctor", "Does this machine have what lrbscope needs? Exit 3 if not");
   const auto json = std::make_shared<bool>(false);
   app->add_flag("--json", *json, "As one JSON object");
   return {app, [json] { return run_doctor(*json); }};
+}
+
+}  // namespace
+
+std::vector<CommandEntry> doctor_commands() {
+  return {{add_doctor, 110}};
 }
 
 }  // namespace lrb::cli

@@ -184,8 +184,6 @@ int run_render(const RenderOptions& o, const Globals& globals) {
   return kOk;
 }
 
-}  // namespace
-
 Command add_render(CLI::App& root, const Globals& globals) {
   CLI::App* app = root.add_subcommand("render", "Pictures of a recorded run, without running it again");
   const auto o = std::make_shared<RenderOptions>();
@@ -206,6 +204,12 @@ Command add_render(CLI::App& root, const Globals& globals) {
   app->add_flag("--no-ghost", o->hide_rest, "Leave out the rest where regions are shown alone");
   add_picture_options(*app, o->picture);
   return {app, [o, &globals] { return run_render(*o, globals); }};
+}
+
+}  // namespace
+
+std::vector<CommandEntry> render_commands() {
+  return {{add_render, 70}};
 }
 
 }  // namespace lrb::cli

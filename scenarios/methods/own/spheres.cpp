@@ -125,8 +125,10 @@ class Spheres : public Method {
 
 }  // namespace
 
-MethodEntry spheres() {
+std::vector<MethodEntry> spheres_methods() {
   MethodInfo info;
+  info.rank = 80;
+  info.style = {"sphere tree, by level", "#1c1e22", "star", 3};
   info.name = "spheres";
   info.title = "sphere tree, stopped at a level";
   info.remark =
@@ -138,7 +140,7 @@ MethodEntry spheres() {
   info.approximate = true;
   info.knob = "level";
   info.settings = {2, 4, 6, 8, 10, 12};
-  return {info, []() -> std::unique_ptr<Method> { return std::make_unique<Spheres>(); }};
+  return {{info, []() -> std::unique_ptr<Method> { return std::make_unique<Spheres>(); }}};
 }
 
 }  // namespace lrb::methods

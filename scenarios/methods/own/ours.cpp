@@ -143,13 +143,15 @@ class OursCoarse : public Method {
   QueryContext context_;
 };
 
-MethodInfo our_info(const char* name, const char* title, const char* remark) {
+MethodInfo our_info(const char* name, const char* title, const char* remark, int rank) {
   MethodInfo info;
   info.name = name;
   info.title = title;
   info.remark = remark;
   info.says = Says::relation;
   info.plane = info.moves_exactly = info.own_rep = true;
+  info.rank = rank;
+  info.style = {"lrbscope, variants", "#4aa3dc", "circle", 6};
   return info;
 }
 
@@ -159,20 +161,20 @@ void coarse(MethodInfo& info) {
   info.says = Says::nothing;
 }
 
-}  // namespace
-
 MethodEntry ours() {
-  return {
-      our_info("ours", "lrbscope, complete", "All pairs and the relation; given the bodies and their poses."),
-      []() -> std::unique_ptr<Method> {
-        return std::make_unique<Ours>(Recursion::complete, Predicates::exact);
-      }};
+  MethodInfo info = our_info("ours", "lrbscope, complete",
+                             "All pairs and the relation; given the bodies and their poses.", 10);
+  info.style = {"lrbscope, exact", "#0072b2", "circle", 7};
+  return {info, []() -> std::unique_ptr<Method> {
+            return std::make_unique<Ours>(Recursion::complete, Predicates::exact);
+          }};
 }
 
 MethodEntry ours_floating() {
   return {our_info("ours-floating", "lrbscope without the exact fallback",
                    "As ours, but the sign of a predicate that double precision cannot decide is guessed from "
-                   "its rounded value."),
+                   "its rounded value.",
+                   11),
           []() -> std::unique_ptr<Method> {
             return std::make_unique<Ours>(Recursion::complete, Predicates::floating);
           }};
@@ -183,7 +185,8 @@ MethodEntry ours_paper() {
       our_info("ours-paper", "lrbscope, the paper's recursion",
                "Section 4 of the paper to the letter, with exact predicates, on an LRB-rep built from the "
                "body; where none can be built (open, not manifold), on the regions that the body has. "
-               "Misses contacts under lids that nothing touches."),
+               "Misses contacts under lids that nothing touches.",
+               12),
       []() -> std::unique_ptr<Method> {
         return std::make_unique<Ours>(Recursion::paper, Predicates::exact);
       }};
@@ -192,7 +195,8 @@ MethodEntry ours_paper() {
 MethodEntry ours_coherent() {
   MethodInfo info = our_info(
       "ours-coherent", "lrbscope, coherent",
-      "As ours, at the last of nine poses that are 0.1 % of A's diagonal apart; the others are not timed.");
+      "As ours, at the last of nine poses that are 0.1 % of A's diagonal apart; the others are not timed.",
+      13);
   info.hard_cases = false;
   return {info, []() -> std::unique_ptr<Method> { return std::make_unique<OursCoherent>(); }};
 }
@@ -201,7 +205,8 @@ MethodEntry ours_tolerance() {
   MethodInfo info =
       our_info("ours-tolerance", "lrbscope, to a tolerance",
                "Regions no thicker than the tolerance stay closed: contact, and where wrappers meet. The "
-               "knob is the tolerance over A's diagonal. Never calls bodies apart that meet.");
+               "knob is the tolerance over A's diagonal. Never calls bodies apart that meet.",
+               14);
   coarse(info);
   info.knob = "tolerance";
   info.settings = {0.1, 0.03, 0.01, 0.003, 0.001};
@@ -212,11 +217,18 @@ MethodEntry ours_budget() {
   MethodInfo info =
       our_info("ours-budget", "lrbscope, within a number of face tests",
                "An answer in time: contact, and where the wrappers reached so far meet. The knob is the "
-               "number of face tests. Never calls bodies apart that meet.");
+               "number of face tests. Never calls bodies apart that meet.",
+               15);
   coarse(info);
   info.knob = "tests";
   info.settings = {16, 64, 256, 1024, 4096};
   return {info, []() -> std::unique_ptr<Method> { return std::make_unique<OursCoarse>(true); }};
+}
+
+}  // namespace
+
+std::vector<MethodEntry> ours_methods() {
+  return {ours(), ours_floating(), ours_paper(), ours_coherent(), ours_tolerance(), ours_budget()};
 }
 
 }  // namespace lrb::methods

@@ -92,8 +92,6 @@ int run_build(const BuildCommandOptions& o, const Globals& globals) {
   return o.no_validate || report.valid ? kOk : kMismatch;
 }
 
-}  // namespace
-
 Command add_build(CLI::App& root, const Globals& globals) {
   CLI::App* app = root.add_subcommand("build", "Mesh to LRB-rep: build it, prove it, save it");
   const auto o = std::make_shared<BuildCommandOptions>();
@@ -104,6 +102,12 @@ Command add_build(CLI::App& root, const Globals& globals) {
   app->add_flag("--json", o->json, "The figures as one JSON object");
   app->add_flag("--no-validate", o->no_validate, "Skip the proof that the LRB-rep keeps its promises");
   return {app, [o, &globals] { return run_build(*o, globals); }};
+}
+
+}  // namespace
+
+std::vector<CommandEntry> build_commands() {
+  return {{add_build, 50}};
 }
 
 }  // namespace lrb::cli

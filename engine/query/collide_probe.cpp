@@ -1,0 +1,39 @@
+#include "engine/query/collide_probe.hpp"
+
+#include "engine/query/collide_impl.hpp"
+
+namespace lrb {
+namespace {
+
+/// A CollideProbe as the query's templates take it.
+class Teller {
+ public:
+  static constexpr bool kEnabled = true;
+
+  explicit Teller(CollideProbe& probe) : probe_(probe) {}
+  void face_test(SimplexId a, SimplexId b, exact::Meet meet, std::uint32_t depth_a, std::uint32_t depth_b) {
+    probe_.face_test(a, b, meet, depth_a, depth_b);
+  }
+  void refine(Side side, RegionId region, std::uint32_t faces_added) {
+    probe_.refine(side, region, faces_added);
+  }
+  void contact(SimplexId a, SimplexId b, exact::Meet meet) { probe_.contact(a, b, meet); }
+
+ private:
+  CollideProbe& probe_;
+};
+
+}  // namespace
+
+void CollideProbe::face_test(SimplexId, SimplexId, exact::Meet, std::uint32_t, std::uint32_t) {}
+void CollideProbe::refine(Side, RegionId, std::uint32_t) {}
+void CollideProbe::contact(SimplexId, SimplexId, exact::Meet) {}
+
+CollideResult collide(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
+                      const CollideRequest& request, CollideProbe& probe) {
+  QueryContext context;
+  Teller teller(probe);
+  return collide(a, pose_a, b, pose_b, request, context, teller);
+}
+
+}  // namespace lrb
