@@ -9,8 +9,8 @@
 namespace lrb::test {
 
 TEST_CASE("bodies with huge faces and hubs are built, and every promise is kept") {
-  for (const Mesh& mesh : {hard::drum(700), hard::cone(700), hard::bipyramid(700), hard::crown(700), hard::frustum(700),
-                           hard::drum(100), hard::bipyramid(100)}) {
+  for (const Mesh& mesh : {hard::drum(700), hard::cone(700), hard::bipyramid(700), hard::crown(700),
+                           hard::frustum(700), hard::drum(100), hard::bipyramid(100)}) {
     CAPTURE(mesh.face_count());
     const LrbRep rep = build_lrb(mesh);
     check_valid(rep);

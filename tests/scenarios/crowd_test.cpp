@@ -1,6 +1,5 @@
 // Crowds: what the broad phase leaves out is apart, what it keeps is answered as brute force answers it, and
 // the number of threads shows in times alone.
-#include <fstream>
 #include <atomic>
 #include <filesystem>
 #include <fstream>

@@ -71,7 +71,7 @@ class CoherentQuery::Work {
   bool jumped_ = false;
 
   bool has_cache_ = false;
-  Sweep sweep_;              ///< where the cache is complete
+  Sweep sweep_;  ///< where the cache is complete
   CandidateCache cache_;
   SweepPoint where_;         ///< position in the sweep at the last query answered from the cache
   bool has_answer_ = false;  ///< result_ holds the answer of the last query from this cache
