@@ -239,7 +239,7 @@ if [ "${1:-}" != --inside ]; then
   mkdir "$work"
   child=""
   clean_up() {
-    if [ -n "$child" ]; then kill "$child" 2>/dev/null || true; wait "$child" 2>/dev/null || true; fi
+    if [ -n "$child" ]; then kill -KILL "$child" 2>/dev/null || true; wait "$child" 2>/dev/null || true; fi
     if [ "$keep" = 1 ]; then echo "kept: $work/root"; else rm -rf --one-file-system "$work"; fi
   }
   trap clean_up EXIT
