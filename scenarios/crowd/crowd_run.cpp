@@ -7,6 +7,7 @@
 
 #include "engine/core/error.hpp"
 #include "engine/core/parallel.hpp"
+#include "engine/query/collide_impl.hpp"
 #include "engine/query/walk/query_context.hpp"
 #include "engine/query/world_box.hpp"
 #include "scenarios/run/moments.hpp"

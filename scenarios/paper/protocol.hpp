@@ -15,6 +15,7 @@
 
 #include "engine/lrb/lrb_rep.hpp"
 #include "engine/query/collide.hpp"
+#include "engine/query/walk/query_context.hpp"
 
 namespace lrb::paper {
 

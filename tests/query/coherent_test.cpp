@@ -6,6 +6,7 @@
 
 #include "engine/construct/build.hpp"
 #include "engine/query/coherent/coherent_query.hpp"
+#include "engine/query/collide_impl.hpp"
 #include "scenarios/bodies/shapes/random_pose.hpp"
 #include "scenarios/bodies/shapes/shapes.hpp"
 
