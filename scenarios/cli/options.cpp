@@ -17,7 +17,7 @@ template <class Value>
 std::string option_of(Value CollideRequest::*member) {
   std::string out = "--";
   trace::for_each_field<CollideRequest>([&](const auto& field) {
-    if constexpr (std::is_same_v<decltype(field.member), decltype(member)>)
+    if constexpr (std::is_same_v<std::remove_cvref_t<decltype((field.member))>, Value CollideRequest::*>)
       if (field.member == member) out += field.name;
   });
   std::replace(out.begin(), out.end(), '_', '-');

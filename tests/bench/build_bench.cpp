@@ -38,8 +38,8 @@ using lrb::bench::seconds_since;
 double hull_volume(const Mesh& mesh) {
   Mesh hull;
   hull.vertices = mesh.vertices;
-  for (const auto& t : lrb::convex_hull(mesh.vertices)) hull.add_face(t);
-  return volume_of(hull);
+  for (const auto& t : lrb::construct::convex_hull(mesh.vertices)) hull.add_face(t);
+  return lrb::construct::volume_of(hull);
 }
 
 void report(const std::string& path, const lrb::BuildOptions& options, int repeats, bool validating) {
@@ -132,7 +132,7 @@ void print_growth(const Mesh& mesh, const lrb::resolutions::ResolutionOptions& r
   const std::string file =
       std::filesystem::temp_directory_path() / ("build_bench." + std::to_string(getpid()));
   std::vector<double> faces, seconds;
-  std::vector<Mesh> series = lrb::resolutions(mesh, resolutions);
+  std::vector<Mesh> series = lrb::resolutions::resolutions(mesh, resolutions);
   std::reverse(series.begin(), series.end());  // the least first: soon something to see
   for (const Mesh& m : series) {
     const auto n = static_cast<double>(m.face_count());

@@ -22,8 +22,8 @@ TEST_CASE("bodies with huge faces and hubs are built, and every promise is kept"
 TEST_CASE("the proof of a body with hubs finds what is wrong with it") {
   LrbData broken = build_lrb(hard::bipyramid(300)).data();
   CHECK(validate(LrbRep(broken)).valid);
-  broken.vertices[7] *= 0.5;  // into the body, through needles on either side
-  broken.vertices[7].z() = 0.4;
+  broken.vertices[7] *= -1.5;  // through the body, and out between needles on its other side
+  broken.vertices[7].z() = 0.1;
   const ValidateReport report = validate(LrbRep(broken));
   CHECK(report.real_pairs_meeting + report.violation_count > 0);
 }

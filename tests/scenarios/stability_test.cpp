@@ -122,7 +122,7 @@ TEST_CASE("every case has its record, in order, whatever died and however many r
   const Workers workers;
   const auto key = [](const Record& r) {
     return r.family + " " + r.method + " " + std::to_string(r.dial) + " " + std::to_string(r.case_index) +
-           " " + to_string(r.outcome) + " " + std::to_string(r.missed);
+           " " + std::string(name_of(r.outcome)) + " " + std::to_string(r.missed);
   };
   std::vector<std::string> expected;
   for (const char* family : {"shared", "identical"})

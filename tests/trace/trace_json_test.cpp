@@ -279,7 +279,8 @@ TEST_CASE("bad files are refused with one line that says where and what") {
     CHECK_MESSAGE(complaint(text).find(part) != std::string::npos, complaint(text), " should contain ", part);
   };
   names("", "line 1, column 1");
-  names("{\"traceEvents\": [\n  1,\n  tru]}", "line 3, column 6");
+  names("{\"traceEvents\": [\n  {},\n  tru]}", "line 3, column 6");
+  names("{\"traceEvents\": [\n  1,\n  tru]}", "/traceEvents/0: expected an event");
   names(good.substr(0, good.size() / 2), "this is not JSON");
   names("[]", "expected an object");
   names("{\"traceEvents\": []}", "/metadata/format");
@@ -372,7 +373,7 @@ TEST_CASE("files that cannot be read are named") {
   const TempFolder folder;
   CHECK_THROWS_WITH_AS(load_trace(folder.file("none.json")), doctest::Contains("none.json: cannot be read"),
                        InputError);
-  CHECK_THROWS_WITH_AS(load_trace(folder.path.string()), doctest::Contains("it is a folder"), InputError);
+  CHECK_THROWS_WITH_AS(load_trace(folder.path.string()), doctest::Contains("it is a directory"), InputError);
   const std::string path = folder.file("t.json.gz");
   save_trace(box_run(), path);
   const std::string whole = bytes_of(path);
