@@ -279,7 +279,7 @@ TEST_CASE("bad files are refused with one line that says where and what") {
     CHECK_MESSAGE(complaint(text).find(part) != std::string::npos, complaint(text), " should contain ", part);
   };
   names("", "line 1, column 1");
-  names("{\"traceEvents\": [\n  {},\n  tru]}", "line 3, column 6");
+  names("{\"traceEvents\": [\n\n  tru]}", "line 3, column 6");
   names("{\"traceEvents\": [\n  1,\n  tru]}", "/traceEvents/0: expected an event");
   names(good.substr(0, good.size() / 2), "this is not JSON");
   names("[]", "expected an object");
