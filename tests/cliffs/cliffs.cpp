@@ -72,6 +72,9 @@ Growth fit(const std::vector<Cost>& costs) {
 /// True if nothing grows faster than it may.
 bool run(const Family& family, bool share) {
   std::vector<std::uint32_t> sizes = family.share;
+  // Small sizes on a busy machine: what is quadratic shows, what is a little over n log n only in the whole run.
+  constexpr double kShareSlack = 0.35;
+  const double most_time = family.most_time + (share ? kShareSlack : 0);
   if (!share) sizes.insert(sizes.end(), family.more.begin(), family.more.end());
   Growth growth{};
   std::vector<Cost> costs;
@@ -82,13 +85,13 @@ bool run(const Family& family, bool share) {
       now[i].seconds = std::min(now[i].seconds, costs[i].seconds);
     costs = std::move(now);
     growth = fit(costs);
-    if (growth.time <= family.most_time && growth.memory <= family.most_memory) break;
+    if (growth.time <= most_time && growth.memory <= family.most_memory) break;
   }
-  const bool ok = growth.time <= family.most_time && growth.memory <= family.most_memory;
+  const bool ok = growth.time <= most_time && growth.memory <= family.most_memory;
   std::printf(
       "| %-24s | %-14s | %-8s | %10.0f | %10.0f | %10.3f | %9.2f | %5.2f | %5.2f | %5.2f | %5.2f | %s |\n",
       family.input.c_str(), family.work.c_str(), family.unit.c_str(), costs.front().size, costs.back().size,
-      1e3 * costs.back().seconds, costs.back().bytes / 1e6, growth.time, family.most_time, growth.memory,
+      1e3 * costs.back().seconds, costs.back().bytes / 1e6, growth.time, most_time, growth.memory,
       family.most_memory, ok ? "ok" : "CLIFF");
   if (!ok)
     for (const Cost& c : costs)
