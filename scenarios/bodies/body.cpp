@@ -1,6 +1,7 @@
 #include "scenarios/bodies/body.hpp"
 
 #include <chrono>
+#include <filesystem>
 #include <fstream>
 
 #include "engine/core/error.hpp"
@@ -49,6 +50,8 @@ std::string note_without_regions(const CheckedMesh& mesh) {
 }  // namespace
 
 bool is_lrb_file(const std::string& path) {
+  std::error_code ignored;  // what is read of a pipe is gone, and one with a name would be waited for
+  if (!std::filesystem::is_regular_file(path, ignored)) return false;
   constexpr std::size_t kEnough = 64;  // bytes: more than any magic
   std::ifstream in(path, std::ios::binary);
   std::string start(kEnough, '\0');
