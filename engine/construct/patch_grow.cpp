@@ -8,7 +8,7 @@ namespace {
 using Slot = HullMesh::Slot;
 using Corner = HullMesh::Corner;
 
-/// How many more new triangles a candidate one reach away from the seed counts for: keeps patches round.
+/// The number of new triangles that a candidate one reach away from the seed counts as on top: keeps patches round.
 constexpr double kDistancePenalty = 1.0;
 
 }  // namespace

@@ -119,7 +119,7 @@ class Validator {
     judge(soup, pairs);
   }
 
-  /// So many simplices at one vertex that comparing all of them with each other takes too long.
+  /// The number of simplices at one vertex from which comparing all of them with each other takes too long.
   bool has_hubs() const {
     if (rep_.dim() == 2) return false;
     std::vector<std::uint32_t> degree(rep_.vertices().size(), 0);

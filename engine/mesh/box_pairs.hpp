@@ -24,7 +24,7 @@ class BoxTree {
     if (!items_.empty()) build(0, static_cast<std::uint32_t>(items_.size()));
   }
 
-  /// How many other boxes the i-th one meets: counted as far as `most`.
+  /// Returns how many other boxes the i-th one meets, counted as far as `most`.
   std::uint32_t count_meeting(std::uint32_t i, std::uint32_t most) const {
     std::uint32_t count = 0;
     std::vector<std::uint32_t> stack;

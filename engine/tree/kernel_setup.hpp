@@ -1,6 +1,6 @@
 #pragma once
 /// Prepares the dual traversal of two trees: both bodies' poses as one motion of B in A's frame, and a bound
-/// of all errors that come with it.
+/// on all errors that come with it.
 
 #include <algorithm>
 
