@@ -8,7 +8,6 @@
 namespace lrb::paper {
 namespace {
 
-constexpr std::size_t kPaper = 0;  // of kRecursions
 constexpr double kBinWidth = 250;  // comparisons
 
 // Okabe and Ito's colours, which survive colour blindness; dash and point types survive greyscale.

@@ -16,8 +16,7 @@
 namespace lrb::workers {
 namespace {
 
-constexpr int kGiven = 3;            // the child's number of the file it is given
-constexpr int kNoSuchProgram = 127;  // what shells use
+constexpr int kGiven = 3;  // the child's number of the file it is given
 
 /// In the child, between fork and exec: nothing that allocates or takes locks.
 [[noreturn]] void become(char* const* arguments, int output, int given, pid_t parent) {

@@ -9,12 +9,15 @@
 
 namespace lrb::workers {
 
+/// The exit code of a child whose program is not there, as shells have it.
+inline constexpr int kNoSuchProgram = 127;
+
 /// Killed when it goes out of scope, and when this process ends, however that ends (Linux). Its stderr leads
 /// nowhere.
 class Child {
  public:
   /// `given`: a file descriptor that becomes the child's number 3, or -1. Throws EnvironmentError if the
-  /// machine has no room for another process; a program that is not there ends with code 127.
+  /// machine has no room for another process; a program that is not there ends with kNoSuchProgram.
   Child(const std::vector<std::string>& command, int given);
   ~Child();
   Child(Child&& other) noexcept;
