@@ -40,7 +40,9 @@ struct Event {
   std::uint32_t a = 0;
   std::uint32_t b = 0;
   EventId cause =
-      kNull;  ///< an earlier event. Contact: the face test that found it. Refine: the face test that hit just before (kNull in the complete query, which opens regions before it tests). Face test: the later of the refinements that brought in its faces
+      kNull;  ///< an earlier event. Contact: the face test that found it. Refine: the face test that hit just
+              ///< before (kNull in the complete query, which opens regions before it tests). Face test: the
+              ///< later of the refinements that brought in its faces
   std::uint32_t boundary =
       kNull;  ///< refine, coarsen: number of faces of that wrapper afterwards; kNull: not known
   std::uint16_t depth_a =
