@@ -174,19 +174,19 @@ run::DrawnFrames draw_crowd(const spec::Crowd& crowd, const CrowdRun& run, const
   run::remove_old_frames(folder);
   run::DrawnFrames out;
   if (run.moments.empty()) return out;
-  const FrameState stage(crowd, run, spec);
+  const FrameState state(crowd, run, spec);
   const auto scale = static_cast<float>(spec.scale());
   std::vector<render::Overlay> overlays;
   std::vector<render::OverlayLayout> layouts;
   for (const CrowdMoment& m : run.moments) {
-    overlays.push_back(stage.overlay(m));
+    overlays.push_back(state.overlay(m));
     layouts.push_back(render::lay_out(overlays.back(), spec.width, spec.height, scale));
   }
   const render::PixelRect place = render::common_picture(layouts);
   std::vector<spec::FrameSpec::View> views = spec.views;
   if (views.empty()) views.emplace_back();
   const std::vector<render::PixelRect> places = run::view_places(place, views.size(), spec.scale());
-  const run::Framing framing = stage.framing();
+  const run::Framing framing = state.framing();
   render::Rasterizer rasterizer;
   render::FrameWriter writer;
   render::Image picture(place.width, place.height);
@@ -197,7 +197,7 @@ run::DrawnFrames draw_crowd(const spec::Crowd& crowd, const CrowdRun& run, const
         run.moments.size() > 1 ? static_cast<double>(i) / static_cast<double>(run.moments.size() - 1) : 0;
     run::paint_views(
         rasterizer, spec, views, places,
-        [&](const spec::FrameSpec::View& v) { return stage.list(m, v.wrapper); },
+        [&](const spec::FrameSpec::View& v) { return state.list(m, v.wrapper); },
         [&](std::size_t v) {
           return run::camera_for(views[v], framing, places[v].width, places[v].height, passed);
         },

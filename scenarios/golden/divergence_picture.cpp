@@ -88,7 +88,7 @@ spec::FrameSpec spec_for(const GoldenRun& run, bool close_up) {
 
 run::PaintedFrame paint(const GoldenRun& run, const SideShown& side, spec::FrameSpec spec,
                         const run::Framing& framing, const std::string& title) {
-  run::RecordedRun p = performance_of(run);
+  run::RecordedRun p = recorded_run_of(run);
   p.title = run.scenario.name + ", " + title;
   p.trace = &side.trace;
   p.milestones.clear();
@@ -121,7 +121,7 @@ DivergencePictures draw_divergence(const Golden& golden, const GoldenRun& run,
   }
   const SideShown sides[2] = {{expected, event_to_show(expected, *step, event)},
                               {actual, event_to_show(actual, *step, event)}};
-  const std::vector<const LrbRep*> reps = performance_of(run).reps;
+  const std::vector<const LrbRep*> reps = recorded_run_of(run).reps;
   try {
     // Around the step alone: both runs' bodies, and what both events are about.
     run::Framing framing = run::frame_sequence(reps, actual, run.recording.results, run.scenario.frames);

@@ -137,7 +137,7 @@ int run_inspect(const InspectOptions& o, const Globals& globals) {
     const std::string picture =
         o.picture.empty() ? "out/" + std::filesystem::path(o.file).stem().string() + ".png" : o.picture;
     io::make_folder(std::filesystem::path(picture).parent_path().string());
-    run::draw_portrait(*rep, picture);
+    run::draw_body_sheet(*rep, picture);
     j["picture"] = picture;
   }
   note(globals, notes);
