@@ -17,11 +17,11 @@ namespace {
 
 using Mark = render::LegendItem::Mark;
 
-/// More kinds than this share colours.
+/// If there are more kinds than this, they share colours.
 constexpr std::uint32_t kColours = 24;
 
 render::Rgba colour_of(std::uint32_t kind) {
-  // The first ones are apart from the contacts' red and from each other for every eye.
+  // The first ones differ from the contacts' red and from each other for every eye.
   constexpr render::Rgba kFirst[] = {{86, 150, 205}, {222, 172, 76},  {92, 172, 140},
                                      {190, 178, 92}, {150, 140, 190}, {150, 150, 150}};
   kind %= kColours;
@@ -37,7 +37,7 @@ class FrameState {
   FrameState(const spec::Crowd& crowd, const CrowdRun& run, const spec::FrameSpec& spec)
       : crowd_(crowd), run_(run), spec_(spec) {}
 
-  /// What is to be seen of a moment. `wrappers`: with the lids that are left of them.
+  /// Returns the picture of a moment. `wrappers`: with the lids that are left of them.
   render::DrawList list(const CrowdMoment& m, bool wrappers) const {
     std::vector<render::SceneBody> bodies;
     std::vector<std::unique_ptr<Wrapper>> states;
@@ -58,7 +58,7 @@ class FrameState {
     highlight.contacts = m.contacts;
     render::SceneOptions options;
     options.scale = static_cast<float>(spec_.scale());
-    options.real_edges = false;  // thousands of small faces: their edges would be all there is to see
+    options.real_edges = false;  // thousands of small faces: one would see nothing but their edges
     render::Scene scene = render::build_scene(bodies, highlight, options);
     for (render::DrawLine& line : scene.list.lines)
       if (line.colour == render::palette::kContact) thin(line);
@@ -88,7 +88,7 @@ class FrameState {
     return o;
   }
 
-  /// Corners of all boxes at the moments drawn: what cameras are fitted to.
+  /// Returns the corners of all boxes at the moments drawn, which cameras are fitted to.
   run::Framing framing() const {
     run::Framing f;
     f.dim = run_.rep(0).dim();
@@ -111,14 +111,14 @@ class FrameState {
                                               [](const spec::FrameSpec::View& v) { return v.wrapper; });
   }
 
-  /// In a crowd, curves that show through everything in front of them would hide it.
+  /// Removes the rims that show through everything in front of them: in a crowd they would hide it.
   void thin(render::DrawLine& line) const {
     line.layer = render::Layer::opaque;
     line.width = static_cast<float>(1.6 * spec_.scale());
     line.halo_width = 0;
   }
 
-  /// The edges of the room.
+  /// Adds the edges of the room.
   std::vector<std::array<Eigen::Vector3d, 2>> room() const {
     std::vector<std::array<Eigen::Vector3d, 2>> edges;
     const Eigen::Vector3d half = crowd_.room / 2;

@@ -50,7 +50,7 @@ GoldenRun play_golden(spec::Scenario scenario, const GoldenSpec& spec, const run
   frames.dpi = 0;
   frames.most = spec.frames;
   run.recording = run::record(run.scenario, progress);
-  for (trace::BodyInfo& body : run.recording.trace.header.bodies)  // no folder of this machine
+  for (trace::BodyInfo& body : run.recording.trace.header.bodies)  // names no folder of this machine
     if (body.source.find('/') != std::string::npos)
       body.source = std::filesystem::path(body.source).filename().string();
   run.frames = run::paint_frames(recorded_run_of(run), frames, progress);

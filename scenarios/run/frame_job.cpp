@@ -19,7 +19,8 @@
 namespace lrb::run {
 namespace {
 
-/// Texts first, for all frames: they decide how much room the pictures get, which is the same in every frame.
+/// The texts of all frames. They are laid out first, because they decide how much room the pictures get,
+/// which is the same in every frame.
 struct Script {
   std::vector<render::Overlay> overlays;
   render::PixelRect picture;
@@ -69,7 +70,7 @@ class Painter {
     return out;
   }
 
-  /// Each view as SVG. `plain`: see FrameState::scene().
+  /// Returns each view as SVG. `plain`: see FrameState::scene().
   std::vector<std::string> svgs(const FrameState& state, double progress, const std::string& title,
                                 bool plain = false) const {
     std::vector<std::string> out;
@@ -85,7 +86,7 @@ class Painter {
     return out;
   }
 
-  /// In files called `name`.svg, or `name`_1.svg and so on.
+  /// Writes files called `name`.svg, or `name`_1.svg and so on.
   void write_svg(const FrameState& state, double progress, const std::string& name,
                  const std::string& title) const {
     const std::vector<std::string> all = svgs(state, progress, title);
@@ -112,7 +113,7 @@ const std::vector<CollideResult>& results_of(const RecordedRun& recorded) {
   return recorded.results != nullptr ? *recorded.results : kNoResults;
 }
 
-/// What all frames of a run have in common. At least one event.
+/// What all frames of a run have in common. There must be at least one event.
 struct FrameJob {
   const spec::FrameSpec& spec;
   std::vector<trace::EventId> events;
@@ -127,11 +128,11 @@ struct FrameJob {
         script(write_script(state, events, p.title, s)),
         painter(s, script.picture, std::move(framing)) {}
 
-  /// How much of the sequence has passed at frame i, for orbits.
+  /// Returns the share of the sequence that has passed at frame i, for orbits.
   double passed(std::size_t i) const {
     return events.size() > 1 ? static_cast<double>(i) / static_cast<double>(events.size() - 1) : 0;
   }
-  /// Frame i, at which the state stands.
+  /// Draws frame i; `state` must stand at its event.
   render::Image frame(std::size_t i) {
     const render::Rgba back = spec.transparent ? render::kTransparent : render::kWhite;
     return render::compose_frame(painter.paint(state, passed(i)), script.picture, script.overlays[i],
@@ -170,7 +171,7 @@ struct Montage {
   }
 
  private:
-  /// What a paper prints under the figure.
+  /// Returns the caption that a paper prints under the figure.
   std::string caption(std::string text) const {
     for (std::size_t i = 0; i < panels.size(); ++i)
       text += (i == 0 ? " " : "; ") + (panels.size() > 1 ? render::panel_letter(i) + " " : "") +

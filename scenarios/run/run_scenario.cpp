@@ -26,7 +26,7 @@ RecordedRun recorded_run_of(const spec::Scenario& scenario, const Recording& rec
   return p;
 }
 
-/// Throws, before anything is written, if a frame is asked for that cannot be drawn.
+/// Throws, before anything is written, if the scenario wants a frame that cannot be drawn.
 void check(const spec::Scenario& scenario, const RecordedRun& recorded) {
   try {
     check_frames(recorded, scenario.frames);

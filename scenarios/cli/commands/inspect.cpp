@@ -48,7 +48,7 @@ Json mesh_json(const Mesh& mesh, const MeshReport& report) {
   j["genus"] = report.genus >= 0 ? Json(report.genus) : Json(nullptr);
   j["closed"] = report.closed;
   j["bounds_solid"] = report.bounds_solid;
-  j["buildable"] = report.when_turned().buildable();  // `build` turns it
+  j["buildable"] = report.when_turned().buildable();  // because `build` turns it
   j["queryable"] = report.queryable();
   j["findings"] = report.lines(mesh);
   return j;

@@ -19,7 +19,7 @@ struct ListOptions {
   bool json = false, generators = false;
 };
 
-/// How a kind of shipped file is used.
+/// Says how a kind of shipped file is used.
 constexpr std::pair<std::string_view, std::string_view> kUses[] = {
     {"scenario", "lrbscope run"}, {"crowd", "lrbscope crowd"}, {"experiment", "lrbscope paper --experiment"}};
 
