@@ -26,7 +26,7 @@ constexpr double kDepthSlack = 0.01;
 /// length.
 constexpr double kLeastExtent = 1e-9;
 constexpr double kLeastLength = 1e-30;
-/// A flat scene seen from its edge is shown in a picture this many times lower than it is wide.
+/// The least ratio of height to width of what a picture shows: for a flat scene seen from its edge.
 constexpr double kFlattest = 1e-3;
 /// The eye stays this share of the scene's size in front of it.
 constexpr double kClearance = 0.05;

@@ -14,7 +14,7 @@ using Mark = LegendItem::Mark;
 
 /// An unused vertex farther from the faces than this many times their size is left out of the picture.
 constexpr double kNear = 1.0;
-/// So are, in its close-up, the faces farther from it than this.
+/// In its close-up, the faces are left out if they are farther from it than this many times their size.
 constexpr double kFar = 20;
 /// The share of the default direction that is added to a normal, so that a close-up does not look flat.
 constexpr double kTilt = 0.35;

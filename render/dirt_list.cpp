@@ -13,9 +13,9 @@ using Eigen::Vector3d;
 
 /// How far the neighbour of a face that is turned the wrong way is from its colour towards white.
 constexpr double kNeighbourPale = 0.6;
-/// Of faces in front of what a close-up is about.
+/// Alpha of faces in front of what a close-up is about.
 constexpr std::uint8_t kVeil = 50;
-/// Of the way to an offender: its own faces do not hide it.
+/// Faces hide an offender if they lie within this share of the way to it: its own faces do not.
 constexpr double kJustBefore = 0.999;
 
 class Builder {

@@ -98,7 +98,7 @@ class Layouter {
     return y;
   }
 
-  /// Returns the height it takes; keeps no places if y is 0, which is for measuring.
+  /// Lays out the strip below the picture from y on and returns its height; y = 0 only measures it.
   int footer(int y) {
     const bool measuring = y == 0;
     const std::size_t texts = out_.texts.size();

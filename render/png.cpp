@@ -162,7 +162,7 @@ std::optional<Header> header_of(std::span<const std::uint8_t> bytes) {
   return Header{width, height, height * (1 + (width * kChannels[colour] * depth + 7) / 8)};
 }
 
-/// Calls for each part of the compressed pixels in turn.
+/// Returns the parts of the compressed pixels, in order.
 std::vector<std::span<const std::uint8_t>> data_chunks(std::span<const std::uint8_t> bytes) {
   std::vector<std::span<const std::uint8_t>> out;
   for (std::size_t at = kSignature; at + 12 <= bytes.size();) {

@@ -24,10 +24,10 @@ constexpr double kNudge = 1.2e-4;
 constexpr double kHaloNudge = 0.25;
 /// Corners farther outside than this many picture sizes are clipped, so that float coordinates stay precise.
 constexpr double kGuard = 8;
-/// Edges fade out where faces are so small that edges would cover them: they begin to where the room (see
-/// edge_room.hpp) is this many edge widths, ...
+/// Edges fade out where faces are so small that edges would cover them: they are full where there is room for
+/// the first number of edge widths (see edge_room.hpp), and gone where there is room for the second only, ...
 constexpr double kEdgesFull = 9, kEdgesGone = 1.5;
-/// ... and where they vanish have this share of their width.
+/// ... where they have come down to this share of their width.
 constexpr double kLeastWidth = 0.6;
 /// How much weaker the shading of translucent faces is than that of opaque ones.
 constexpr double kSoften = 0.6;

@@ -74,7 +74,7 @@ struct Flows {
       if (e.kind == EventKind::refine && cause == EventKind::face_test) starts.push_back({e.cause, i});
       if (e.kind == EventKind::face_test && cause == EventKind::refine) finishes.push_back({i, e.cause});
     }
-    // Of all tests that a refinement led to, the first.
+    // Keeps the first of all tests that a refinement led to.
     std::sort(finishes.begin(), finishes.end(), [](const FlowEnd& x, const FlowEnd& y) {
       return std::pair(x.flow, x.event) < std::pair(y.flow, y.event);
     });

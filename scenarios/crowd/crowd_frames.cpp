@@ -88,7 +88,7 @@ class FrameState {
     return o;
   }
 
-  /// Returns the corners of all boxes at the moments drawn, which cameras are fitted to.
+  /// Returns what cameras are fitted to: the corners of all boxes at the moments drawn.
   run::Framing framing() const {
     run::Framing f;
     f.dim = run_.rep(0).dim();
@@ -111,14 +111,15 @@ class FrameState {
                                               [](const spec::FrameSpec::View& v) { return v.wrapper; });
   }
 
-  /// Removes the rims that show through everything in front of them: in a crowd they would hide it.
+  /// Makes a contact's curve thin, and hidden by what lies in front of it: in a crowd, curves that show
+  /// through would hide the bodies.
   void thin(render::DrawLine& line) const {
     line.layer = render::Layer::opaque;
     line.width = static_cast<float>(1.6 * spec_.scale());
     line.halo_width = 0;
   }
 
-  /// Adds the edges of the room.
+  /// Returns the edges of the room.
   std::vector<std::array<Eigen::Vector3d, 2>> room() const {
     std::vector<std::array<Eigen::Vector3d, 2>> edges;
     const Eigen::Vector3d half = crowd_.room / 2;

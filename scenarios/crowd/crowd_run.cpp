@@ -85,7 +85,8 @@ class Player {
         std::chrono::duration_cast<std::chrono::nanoseconds>(Clock::now() - began_).count());
   }
 
-  /// Queries of the same two LRB-reps come one after the other, so that their contexts can be kept.
+  /// Returns an order of the pairs in which queries of the same two LRB-reps follow each other, so that their
+  /// contexts can be kept.
   std::vector<std::uint32_t> by_kinds(const std::vector<BodyPair>& pairs) const {
     std::vector<std::uint32_t> order(pairs.size());
     std::iota(order.begin(), order.end(), 0U);

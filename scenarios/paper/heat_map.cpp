@@ -46,7 +46,7 @@ Eigen::AlignedBox3d box_of(const LrbRep& rep, const Pose& pose) {
   return box;
 }
 
-/// Looks from the place of the other body, a little aside, onto the faces that it met.
+/// Returns the direction from the place of the other body, a little aside, onto the faces that it met.
 render::ViewDirection view_of(const PaperPair& pair, const Sitter& s) {
   const ContactStep& last = s.collision->steps.back();
   const Eigen::Vector3d way =
@@ -58,14 +58,14 @@ render::ViewDirection view_of(const PaperPair& pair, const Sitter& s) {
   return {from + kAside * (aside + 0.7 * up), up};
 }
 
-/// Returns the points where the bodies meet in the last time step.
+/// Asks where the bodies meet in the last time step.
 CollideResult contact_of(const PaperPair& pair, const CloseUp& c) {
   CollideRequest request;
   request.contacts = true;
   return collide(pair.a.rep, c.steps.back().pose_a, pair.x.rep, c.steps.back().pose_x, request);
 }
 
-/// Returns the contact region with most pairs of faces.
+/// Returns the points of the contact region with most pairs of faces.
 std::vector<Eigen::Vector3d> largest_contact(const CollideResult& contact) {
   const auto less = [](const ContactRegion& p, const ContactRegion& q) {
     return p.pairs.size() < q.pairs.size();

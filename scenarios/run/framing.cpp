@@ -26,7 +26,7 @@ std::vector<Eigen::Vector3d> extremes(const std::vector<Eigen::Vector3d>& points
   return out;
 }
 
-/// Returns the corners of all faces that meet: for coarse answers, which have no contact regions.
+/// Adds the corners of all faces that meet: for coarse answers, which have no contact regions.
 void add_contacts(const std::vector<const LrbRep*>& reps, const trace::Trace& trace,
                   std::vector<Eigen::Vector3d>& points) {
   for (std::size_t step = 0; step < trace.steps.size(); ++step)

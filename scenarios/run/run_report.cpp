@@ -81,8 +81,8 @@ std::vector<report::PageNumber> wrapper_numbers(const LrbRep& rep) {
            "in " + std::to_string(rep.layer_count()) + " layers"}};
 }
 
-/// Curves that are the same need to be shown only once. In the complete query only real faces are compared,
-/// so that every hit is a contact.
+/// Returns true if hits and contacts are the same curve, which is then shown once. In the complete query only
+/// real faces are compared, so that every hit is a contact.
 bool same_as_contacts(const trace::Series& hits, const trace::Chart& chart) {
   return std::any_of(chart.series.begin(), chart.series.end(),
                      [&](const trace::Series& s) { return s.name == "contacts" && s.values == hits.values; });

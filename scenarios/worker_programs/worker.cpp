@@ -65,7 +65,7 @@ void say_expected(const WorkerOptions& o, Lines& out) {
     out.say(stability::to_line(stability::expected_answer(make(family, o, k))));
 }
 
-/// Reads the lines of the file from case `begin` on.
+/// Opens the file of right answers and skips to the line of case `begin`.
 std::ifstream open_expected(const WorkerOptions& o) {
   std::ifstream in(o.expected);
   std::string line;

@@ -146,7 +146,7 @@ class Carver {
     return *std::min_element(d.begin(), d.end());
   }
 
-  /// Broad faces are dented first: a sliver stays as it is.
+  /// Adds a face and puts it in the queue for dents. Broad faces come first: a sliver stays as it is.
   void add(std::vector<VertexId> corners, std::vector<double> room, CellId outer, int level) {
     faces_.push_back({std::move(corners), std::move(room), kSolid, outer, level});
     const auto f = static_cast<FaceId>(faces_.size() - 1);

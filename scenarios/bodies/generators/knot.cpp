@@ -9,7 +9,7 @@
 namespace lrb::generators {
 namespace {
 
-/// Returns a point of a torus knot's middle line; t in [0, 1).
+/// The middle line of a torus knot, by t in [0, 1).
 struct KnotLine {
   double p, q, radius, swing;
   Eigen::Vector3d operator()(double t) const {

@@ -28,7 +28,8 @@ Eigen::AlignedBox3d box_of(const LrbRep& rep) {
   return box;
 }
 
-/// B's middle heads for A's, from where it is clear of it, and goes on for a while after the first contact.
+/// Returns a motion on which B's middle heads for A's, from where it is clear of it, and goes on for a while
+/// after the first contact.
 spec::Motion approach_from(const Eigen::Vector3d& direction, const LrbRep& a, const LrbRep& b) {
   const Eigen::AlignedBox3d box_a = box_of(a), box_b = box_of(b);
   spec::Motion m;

@@ -135,7 +135,7 @@ class Pairs : public Method {
     return body;
   }
 
-  /// A's triangles are moved into B's frame.
+  /// Moves A's triangles into B's frame and asks B's tree about each.
   MethodAnswer query(const MethodBody& a, const Pose& pose_a, const MethodBody& b, const Pose& pose_b,
                      Mode mode) override {
     const auto& body_a = static_cast<const TreeBody&>(a);

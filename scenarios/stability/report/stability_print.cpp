@@ -184,7 +184,7 @@ void add_legend(Sheet& sheet, double y, double columns) {
 
 constexpr int kProfileColumns = 4;
 
-/// Makes lines that differ in colour, dash and mark.
+/// Returns the style of line i; lines differ in colour, dash and mark.
 std::string line_style(std::size_t i) {
   static constexpr std::array<const char*, 8> kColours = {"#0072b2", "#d55e00", "#009e73", "#cc79a7",
                                                           "#1d1f22", "#56b4e9", "#e69f00", "#7a5195"};
