@@ -19,8 +19,9 @@
 
 namespace {
 
-/// Deflate and checksum of stb's writer are left to zlib, which is five times faster and makes smaller files.
-/// Level 1 without row filters: rendered frames are large flat areas, where more effort buys next to nothing.
+/// stb's writer leaves compression and checksum to zlib, which is five times as fast and makes smaller files.
+/// Level 1 without row filters: rendered frames have large flat areas, where more effort gains next to
+/// nothing.
 constexpr int kZlibLevel = 1;
 
 unsigned char* zlib_deflate(unsigned char* data, int size, int* out_size, int /*quality*/) {
@@ -83,7 +84,7 @@ void put_chunk(Bytes& out, const char type[5], const Bytes& data) {
   put_u32(out, zlib_crc(out.data() + start, static_cast<int>(out.size() - start)));
 }
 
-/// Plain ASCII goes into tEXt, anything else (as UTF-8) into iTXt.
+/// Adds a text chunk: plain ASCII as tEXt, anything else (as UTF-8) as iTXt.
 void put_text(Bytes& out, const PngText& text) {
   const auto& [key, value] = text;
   if (key.empty() || key.size() > 79)
@@ -124,7 +125,7 @@ Bytes encode_pixels(const Image& image) {
   return {png.get(), png.get() + length};
 }
 
-/// Reads the chunks that stb leaves aside. The pixels have been decoded already, so the file is whole.
+/// Reads the chunks that stb ignores. The pixels have been decoded already, so the file is whole.
 void decode_extras(std::span<const std::uint8_t> bytes, DecodedPng& out) {
   for (std::size_t at = kSignature; at + 12 <= bytes.size();) {
     const std::size_t length = get_u32(bytes, at);
@@ -143,13 +144,13 @@ void decode_extras(std::span<const std::uint8_t> bytes, DecodedPng& out) {
   }
 }
 
-/// What the header says of the pixels.
+/// What the header says about the pixels.
 struct Header {
   std::uint64_t width, height;
-  std::uint64_t raw_bytes;  ///< of the rows as they are compressed, interlaced ones a little more
+  std::uint64_t raw_bytes;  ///< length of the rows before compression; a little more if interlaced
 };
 
-/// Nothing if the header is damaged.
+/// Reads the header; nothing if it is damaged.
 std::optional<Header> header_of(std::span<const std::uint8_t> bytes) {
   if (bytes.size() < kHeaderEnd || std::memcmp(bytes.data() + 12, "IHDR", 4) != 0) return std::nullopt;
   constexpr std::uint64_t kChannels[] = {1, 0, 3, 1, 2, 0, 4};
@@ -161,7 +162,7 @@ std::optional<Header> header_of(std::span<const std::uint8_t> bytes) {
   return Header{width, height, height * (1 + (width * kChannels[colour] * depth + 7) / 8)};
 }
 
-/// The compressed pixels, part after part.
+/// Returns the parts of the compressed pixels, in order.
 std::vector<std::span<const std::uint8_t>> data_chunks(std::span<const std::uint8_t> bytes) {
   std::vector<std::span<const std::uint8_t>> out;
   for (std::size_t at = kSignature; at + 12 <= bytes.size();) {
@@ -173,7 +174,7 @@ std::vector<std::span<const std::uint8_t>> data_chunks(std::span<const std::uint
   return out;
 }
 
-/// Whether the compressed pixels unpack to more than `most` bytes, without keeping them.
+/// Returns true if the compressed pixels unpack to more than `most` bytes; does not keep them.
 bool unpacks_beyond(const std::vector<std::span<const std::uint8_t>>& chunks, std::uint64_t most) {
   z_stream stream{};
   if (inflateInit(&stream) != Z_OK) throw EnvironmentError("zlib cannot begin to unpack: out of memory?");
@@ -195,7 +196,8 @@ bool unpacks_beyond(const std::vector<std::span<const std::uint8_t>>& chunks, st
   return false;
 }
 
-/// Refuses a file that takes far more memory than its bytes and its pixels ask for, before it does.
+/// Refuses, before any memory is taken, a file that would take far more than its bytes and its pixels call
+/// for.
 void check_size(std::span<const std::uint8_t> bytes, const std::string& name, std::uint64_t most_pixels) {
   const std::optional<Header> header = header_of(bytes);
   if (!header) return;  // the decoder says what is wrong
@@ -203,7 +205,7 @@ void check_size(std::span<const std::uint8_t> bytes, const std::string& name, st
   if (header->width * header->height > most_pixels)
     throw InputError(name + ": has " + size + ", more than the " + std::to_string(most_pixels) +
                      " that are expected at most");
-  constexpr std::uint64_t kDeflateMost = 1032;  // bytes from one, by its format
+  constexpr std::uint64_t kDeflateMost = 1032;  // the most bytes that one byte can unpack to, by the format
   const auto chunks = data_chunks(bytes);
   std::uint64_t packed = 0;
   for (const auto chunk : chunks) packed += chunk.size();

@@ -78,7 +78,7 @@ class Scene2dBuilder {
     }
   }
 
-  /// On top of the wrapper's line, which runs along real faces too.
+  /// Drawn on top of the wrapper's line, which runs along real faces too.
   void contact_lines() {
     std::vector<FaceId> real;
     for (FaceId f = 0; f < rep_.real_face_count(); ++f)
@@ -91,7 +91,7 @@ class Scene2dBuilder {
     if (!pseudo.empty()) c_.add_key(Mark::dashed, palette::kContact, "pseudo faces that meet");
   }
 
-  /// Thin lines between regions; of those refined away a dashed trace.
+  /// Draws thin lines between regions, dashed between those that have been refined away.
   void region_lines() {
     std::vector<FaceId> inside, gone;
     for (FaceId f = rep_.real_face_count(); f < rep_.face_count(); ++f) {

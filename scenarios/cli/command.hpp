@@ -1,5 +1,5 @@
 #pragma once
-/// The commands of `lrbscope`, one file each in commands/ and measuring/. stdout is data, stderr is for people.
+/// The commands of `lrbscope`, one file each in commands/ and measuring/. stdout is for data, stderr for people.
 /// Exit codes: 0 ok, 1 mismatch, 2 usage or input, 3 environment.
 
 #include <functional>
@@ -13,7 +13,7 @@ namespace lrb::cli {
 
 inline constexpr int kOk = 0, kMismatch = 1, kBadInput = 2, kEnvironment = 3;
 
-/// What every command obeys.
+/// What applies to every command.
 struct Globals {
   bool quiet = false;          ///< nothing on stderr but errors
   std::string command_line;    ///< as it was given, quoted for a shell
@@ -40,19 +40,19 @@ inline int rank_of(const CommandEntry& c) {
 /// Returns all commands, in their order.
 std::vector<CommandEntry> registered_commands();
 
-/// Parses, runs, and turns exceptions into one line on stderr and an exit code.
+/// Parses the command line and runs the command; turns exceptions into one line on stderr and an exit code.
 int main(int argc, char** argv);
 
-/// Lines for people, unless quiet.
+/// Prints lines for people to stderr, unless quiet.
 void note(const Globals& globals, const std::vector<std::string>& lines);
 
-/// A word as it can stand in a shell's command line.
+/// Quotes a word, if need be, so that it can stand in a shell's command line.
 std::string shell_word(const std::string& word);
 
-/// As JSON on a line. Bytes that are not UTF-8, which a file's name may have, become U+FFFD.
+/// Returns JSON on one line. Bytes that are not UTF-8, which a file's name may have, become U+FFFD.
 std::string one_line(const nlohmann::ordered_json& value);
 
-/// A value as people read it: numbers that are not whole, with so many significant digits.
+/// Returns a value as people read it: numbers that are not whole have `digits` significant digits.
 std::string for_people(const nlohmann::ordered_json& value, int digits);
 
 /// Writes to stdout and makes sure that it arrived. Throws EnvironmentError.

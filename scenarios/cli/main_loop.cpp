@@ -101,7 +101,7 @@ void print(const std::string& text) {
 
 namespace {
 
-/// What CLI11 says for --help and --version.
+/// Prints what CLI11 says for --help and --version.
 int print_help(CLI::App& app, const CLI::ParseError& request) {
   std::ostringstream text;
   app.exit(request, text, text);

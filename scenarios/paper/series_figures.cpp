@@ -12,7 +12,8 @@
 namespace lrb::paper {
 namespace {
 
-// Okabe and Ito's colours, which survive colour blindness; point types survive greyscale.
+// Okabe and Ito's colours, which people with any colour vision tell apart; point types are told apart in
+// grey, too.
 constexpr std::array<const char*, 7> kBodyColours = {"#0072B2", "#D55E00", "#009E73", "#E69F00",
                                                      "#56B4E9", "#CC79A7", "#000000"};
 constexpr std::array<int, 7> kPoints = {7, 5, 9, 13, 11, 4, 6};
@@ -78,7 +79,7 @@ class Panel {
       g_.script += "set multiplot next\n";
       return;
     }
-    // Room above the points for the key.
+    // The key needs room above the points.
     const double share = static_cast<double>(bodies + 1) * kKeyLine * kPanelRows / g_.height;
     const double room = std::log10(highest / lowest) * share / (1 - share);
     g_.script += "set yrange [" + io::number_text(lowest / 1.3) + ":" +

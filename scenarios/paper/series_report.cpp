@@ -78,7 +78,7 @@ report::PageChart chart(std::span<const SeriesRow> rows, SeriesPartner partner, 
       const double y = time ? row.microseconds[i] : row.counts.recursions[i].comparisons.average;
       if (row.partner != partner || !(y > 0)) continue;
       if (c.series.empty() || c.series.back().label != label) c.series.push_back({label, {}, {}});
-      // Rows start with the finest, charts with the coarsest.
+      // Rows begin with the finest resolution, charts with the coarsest.
       c.series.back().x.insert(c.series.back().x.begin(), row.counts.total_faces);
       c.series.back().y.insert(c.series.back().y.begin(), y);
     }

@@ -106,7 +106,7 @@ bool draw_dirt(const Mesh& given, const MeshReport& report, const std::string& p
   const float text = std::max(kUsualText, kTextHeight * layout.text_height);
   render::Rasterizer rasterizer;
   for (std::size_t i = 0; i <= kinds.size(); ++i) {
-    const MeshFault* kind = i == 0 ? nullptr : &kinds[i - 1];  // none: the whole
+    const MeshFault* kind = i == 0 ? nullptr : &kinds[i - 1];  // null: the whole
     const int x = static_cast<int>(i) % across * (cell + kGap),
               y = static_cast<int>(i) / across * (cell_height + kGap);
     picture.paste(

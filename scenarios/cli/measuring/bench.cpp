@@ -23,8 +23,8 @@ struct BenchOptions : MeasureOptions {
   std::vector<std::uint32_t> faces = {20000, 100000};
 };
 
-/// Peers are engines that answer the same question: no approximation, no textbook loop over all pairs, which
-/// takes minutes here, and not the paper's recursion, which misses contacts.
+/// Returns true for peers, engines that answer the same question: no approximations, no textbook loop over
+/// all pairs, which takes minutes here, and not the paper's recursion, which misses contacts.
 bool is_peer(const workers::WorkerMethod& m) {
   return !m.info.approximate && !m.info.convex && m.info.name != "plain" && m.info.name != "ours-paper";
 }

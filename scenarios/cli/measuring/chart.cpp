@@ -33,7 +33,7 @@ struct ChartOptions : MeasureOptions {
   bool scenes = true;
 };
 
-/// Data sets of an earlier `measure`, by name.
+/// Returns the data sets of an earlier `bench`, by name.
 std::vector<bench::DataSet> read_sets(const std::string& folder) {
   std::vector<std::string> files;
   std::error_code error;

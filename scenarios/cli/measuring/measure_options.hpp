@@ -1,5 +1,5 @@
 #pragma once
-/// What bench and chart are told alike.
+/// The options that bench and chart share.
 
 #include <string>
 #include <vector>
@@ -17,7 +17,7 @@ struct MeasureOptions {
   double timeout = 20;
 };
 
-/// The defaults that the help names are those in `o`.
+/// Adds the options; the help names the values in `o` as defaults.
 inline void add_measure_options(CLI::App& app, MeasureOptions& o) {
   app.add_option("-o,--output", o.folder, "Folder to write to; goes on with what is there [" + o.folder + "]")
       ->type_name("DIR");

@@ -19,7 +19,7 @@ namespace {
 struct PaperOptions {
   std::string folder = "out/paper", experiment = "paper", shard;
   std::vector<std::string> merge;
-  std::optional<std::uint32_t> collisions, steps_after;  ///< over what the experiment says
+  std::optional<std::uint32_t> collisions, steps_after;  ///< these take precedence over the experiment
   std::optional<double> step;
   std::optional<std::uint64_t> seed;
   std::uint32_t jobs = 1;
@@ -36,7 +36,7 @@ paper::PaperExperiment experiment_of(const PaperOptions& o) {
   return e;
 }
 
-/// "i/n", i from 0.
+/// Reads "i/n", i from 0.
 paper::Shard read_shard(const std::string& text) {
   paper::Shard s;
   char rest = 0;
@@ -53,7 +53,7 @@ std::vector<paper::ContactStep> read_shards(const std::vector<std::string>& file
   return paper::merged(std::move(steps));
 }
 
-/// Runs a part of the command, and notes what it took.
+/// Runs a part of the command, and notes the time it took.
 class Clock {
  public:
   template <class Part>

@@ -121,7 +121,7 @@ std::string command_of(const Record& r) {
          std::to_string(r.seed) + " --pairs";
 }
 
-/// The page and its pictures, for which the worst cases are asked again.
+/// Writes the page and its pictures, for which the worst cases are asked again.
 void write_report(const StabilityOptions& o, const std::vector<workers::WorkerMethod>& methods,
                   const Grid& grid, const Globals& globals) {
   Progress bar("pictures", 0, globals.quiet);
@@ -147,7 +147,7 @@ void write_report(const StabilityOptions& o, const std::vector<workers::WorkerMe
   for (const std::string& f : files.written) print(o.folder + "/" + f + "\n");
 }
 
-/// Ours must not fail; others may.
+/// Our methods must not fail; others may.
 bool ours_failed(const Grid& grid) {
   for (std::size_t m = 0; m < grid.methods.size(); ++m)
     for (std::size_t f = 0; f < grid.families.size(); ++f)
