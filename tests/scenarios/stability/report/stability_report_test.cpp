@@ -22,6 +22,7 @@
 #include "scenarios/stability/report/worst_case.hpp"
 #include "scenarios/stability/report/worst_pictures.hpp"
 #include "tests/scenarios/stability/report/made_up_grid.hpp"
+#include "tests/support/folder.hpp"
 
 using namespace lrb;
 using namespace lrb::stability;
@@ -29,8 +30,8 @@ using namespace lrb::stability;
 namespace {
 
 std::string scratch_folder(const std::string& name) {
-  const auto path = std::filesystem::temp_directory_path() / ("lrbscope_stability_" + name);
-  std::filesystem::remove_all(path);
+  static const test::Folder all;
+  const auto path = all.path / name;
   std::filesystem::create_directories(path);
   return path.string();
 }
