@@ -98,7 +98,7 @@ void read_field(const TraceNode& node, const Field<Record, Value>& field, Value&
     read_value(node, value);
 }
 
-/// Reads what the record's table says must be there, and of the rest what is.
+/// Reads the fields that the record's table says must be there, and of the others those that are.
 template <class Record>
 void read_record(const TraceNode& node, Record& record, bool coarse) {
   for_each_field<Record>([&](const auto& field) {

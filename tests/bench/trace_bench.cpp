@@ -8,6 +8,7 @@
 
 #include <benchmark/benchmark.h>
 
+#include "tests/support/folder.hpp"
 #include "tests/support/lrb_shapes.hpp"
 #include "trace/cursor.hpp"
 #include "trace/recorder.hpp"
@@ -169,12 +170,11 @@ BENCHMARK(write_json)->ArgName("wall")->Arg(0)->Arg(1)->Unit(benchmark::kMillise
 
 void save_file(benchmark::State& state) {
   const Trace trace = recorded(Clock::event);
-  const auto path =
-      std::filesystem::temp_directory_path() / (state.range(0) ? "lrb_bench.json.gz" : "lrb_bench.json");
+  const test::Folder folder;
+  const auto path = folder.path / (state.range(0) ? "lrb_bench.json.gz" : "lrb_bench.json");
   for (auto _ : state) save_trace(trace, path.string());
   report(state);
   state.counters["bytes_per_event"] = static_cast<double>(std::filesystem::file_size(path)) / kEvents;
-  std::filesystem::remove(path);
 }
 BENCHMARK(save_file)->ArgName("gz")->Arg(0)->Arg(1)->Unit(benchmark::kMillisecond);
 
