@@ -31,8 +31,8 @@ constexpr std::size_t kMaxDepth = 32;
 /// but searches all that an array holds whenever an object in it ends: the time for an array of n objects
 /// would grow with n^2.
 ///
-/// Bounds what it holds by what it has read. A "0," of two bytes becomes 16, an "[]," of three about 60, while
-/// what we write takes more bytes as text than as values, but for poses of round numbers.
+/// Bounds what it holds by what it has read. A "0," of two bytes becomes 16, an "[]," of three about 60,
+/// while what we write takes more bytes as text than as values, but for poses of round numbers.
 class EventParser final : public nlohmann::json_sax<Json> {
  public:
   EventParser(std::string_view text, const std::string& name,

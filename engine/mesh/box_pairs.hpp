@@ -15,9 +15,9 @@ namespace lrb {
 
 using Box = Eigen::AlignedBox3d;
 
-/// Calls at_leaves(a, b) for every two leaves, one below node m and one below n, unless they lie below two nodes that
-/// apart(a, b) says hold no pair. Of a node: [first, last) are its items, `right` its right child (0: it is a leaf); its left
-/// child follows it.
+/// Calls at_leaves(a, b) for every two leaves, one below node m and one below n, unless they lie below two nodes
+/// that apart(a, b) says hold no pair. Of a node: [first, last) are its items, `right` its right child (0: it is
+/// a leaf); its left child follows it.
 template <class Node, class Apart, class AtLeaves>
 void descend(const std::vector<Node>& nodes, std::uint32_t m, std::uint32_t n, const Apart& apart,
              const AtLeaves& at_leaves) {

@@ -189,6 +189,59 @@ void add_links(report::Page& page, const DrawnFrames& drawn, const ReportText& t
         {"frames/", "frames/", std::to_string(drawn.frames.size()) + " full pictures (PNG)"});
 }
 
+/// Says what was asked for, and what came out.
+void add_answer(report::Page& page, const RecordedRun& p, const ReportText& text) {
+  page.title = text.title;
+  page.purpose = text.purpose;
+  page.command = text.command;
+  const bool two = p.reps.size() == 2;
+  if (const trace::Step* step = last_step(*p.trace); two && step != nullptr) {
+    page.verdict = words(step->result.relation);
+    page.numbers = collision_numbers(p, *step);
+  } else if (!two) {
+    page.numbers = wrapper_numbers(*p.reps[0]);
+  }
+  if (two && p.trace->header.request.recursion != Recursion::complete)
+    page.purpose += " (The paper's recursion was asked for: it can miss contacts.)";
+  if (two && p.trace->header.request.is_coarse()) page.purpose += coarse_words(p.trace->header.request);
+  if (p.trace->truncated())
+    page.purpose += " (The trace was cut: it holds " + render::group_digits(p.trace->events.size()) + " of " +
+                    render::group_digits(p.trace->events_seen) + " events, and so do frames and charts.)";
+}
+
+void add_mismatches(report::Page& page, const std::vector<std::string>& mismatches) {
+  if (mismatches.empty()) return;
+  report::PageTable t;
+  t.title = "Not as expected";
+  t.columns = {"expectation"};
+  for (const std::string& m : mismatches) t.rows.push_back({m});
+  page.tables.push_back(std::move(t));
+  page.verdict = "not as expected";
+}
+
+void add_charts(report::Page& page, const RecordedRun& p) {
+  const bool two = p.reps.size() == 2;
+  if (p.trace->steps.size() > 1)
+    page.charts = charts_of(trace::chart_over_steps(*p.trace), report::PageCursor::step,
+                            "Largest wrappers, step by step", "Work and answer, step by step", false);
+  std::vector<report::PageChart> by_event =
+      charts_of(trace::chart_over_events(*p.trace), report::PageCursor::event,
+                two ? "Wrappers, event by event" : "The wrapper, event by event",
+                "Work and answer, event by event", true);
+  // Of one body each event refines one region: there is nothing to count.
+  if (!two) by_event.resize(std::min<std::size_t>(by_event.size(), 1));
+  for (report::PageChart& c : by_event) page.charts.push_back(std::move(c));
+}
+
+/// Tables of a run of two bodies: contacts of the last step, and all steps unless they are many.
+void add_tables(report::Page& page, const RecordedRun& p) {
+  if (p.reps.size() != 2) return;
+  if (p.results != nullptr && !p.results->empty() && !p.results->back().regions.empty())
+    page.tables.push_back(contact_table(p.results->back(), p.trace->steps.back().index));
+  constexpr std::size_t kMostSteps = 200;
+  if (p.trace->steps.size() <= kMostSteps) page.tables.push_back(steps_table(*p.trace));
+}
+
 }  // namespace
 
 void add_frames(report::Page& page, const DrawnFrames& drawn, const std::string& folder) {
@@ -219,46 +272,11 @@ void add_figure(report::Page& page, const std::string& folder, const std::string
 report::Page run_page(const RecordedRun& p, const DrawnFrames& drawn, const std::string& folder,
                       const ReportText& text) {
   report::Page page;
-  page.title = text.title;
-  page.purpose = text.purpose;
-  page.command = text.command;
-  const bool two = p.reps.size() == 2;
-  if (const trace::Step* step = last_step(*p.trace); two && step != nullptr) {
-    page.verdict = words(step->result.relation);
-    page.numbers = collision_numbers(p, *step);
-  } else if (!two) {
-    page.numbers = wrapper_numbers(*p.reps[0]);
-  }
-  if (two && p.trace->header.request.recursion != Recursion::complete)
-    page.purpose += " (The paper's recursion was asked for: it can miss contacts.)";
-  if (two && p.trace->header.request.is_coarse()) page.purpose += coarse_words(p.trace->header.request);
-  if (p.trace->truncated())
-    page.purpose += " (The trace was cut: it holds " + render::group_digits(p.trace->events.size()) + " of " +
-                    render::group_digits(p.trace->events_seen) + " events, and so do frames and charts.)";
-  if (!text.mismatches.empty()) {
-    report::PageTable t;
-    t.title = "Not as expected";
-    t.columns = {"expectation"};
-    for (const std::string& m : text.mismatches) t.rows.push_back({m});
-    page.tables.push_back(std::move(t));
-    page.verdict = "not as expected";
-  }
+  add_answer(page, p, text);
+  add_mismatches(page, text.mismatches);
   add_frames(page, drawn, folder);
-  if (p.trace->steps.size() > 1)
-    page.charts = charts_of(trace::chart_over_steps(*p.trace), report::PageCursor::step,
-                            "Largest wrappers, step by step", "Work and answer, step by step", false);
-  std::vector<report::PageChart> by_event =
-      charts_of(trace::chart_over_events(*p.trace), report::PageCursor::event,
-                two ? "Wrappers, event by event" : "The wrapper, event by event",
-                "Work and answer, event by event", true);
-  if (!two)
-    by_event.resize(std::min<std::size_t>(by_event.size(), 1));  // each event refines one region: there is
-                                                                 // nothing to count
-  for (report::PageChart& c : by_event) page.charts.push_back(std::move(c));
-  if (two && p.results != nullptr && !p.results->empty() && !p.results->back().regions.empty())
-    page.tables.push_back(contact_table(p.results->back(), p.trace->steps.back().index));
-  constexpr std::size_t kMostSteps = 200;
-  if (two && p.trace->steps.size() <= kMostSteps) page.tables.push_back(steps_table(*p.trace));
+  add_charts(page, p);
+  add_tables(page, p);
   add_links(page, drawn, text);
   if (drawn.proved != nullptr)
     add_figure(page, folder, "Proof that the bodies are apart at step " + std::to_string(drawn.proved->index),

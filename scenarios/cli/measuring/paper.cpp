@@ -75,23 +75,39 @@ std::vector<paper::ContactStep> sweep_objects(std::span<const paper::PaperObject
   });
 }
 
-int run_paper(PaperOptions o, const Globals& globals) {
-  if (o.print) {
-    print(paper::shipped_experiment(o.experiment));
-    return kOk;
-  }
-  paper::PaperExperiment experiment = experiment_of(o);
+/// Takes the protocol and the resolutions from the shards that are to be merged; leaves out the series where
+/// the experiment has none. Throws InputError if there is nothing to cut into shards.
+void settle(PaperOptions& o, paper::PaperExperiment& experiment) {
   if (!experiment.collides() && (!o.shard.empty() || !o.merge.empty()))
     throw InputError("experiment " + experiment.name +
                      ": nothing collides in it; leave out --shard and --merge");
-  const bool merging = !o.merge.empty();
-  if (merging) {
+  if (!o.merge.empty()) {
     const paper::ShardFile whole = paper::read_shard_files(o.merge);
     experiment.protocol = whole.protocol;
     o.series.resolutions = whole.resolutions;
   } else if (!experiment.collides() || (experiment.name != "paper" && o.series.meshes.empty())) {
     o.series.resolutions.most = 0;  // other experiments have a series only with meshes for it
   }
+}
+
+/// `series_steps`: null if there is no series.
+void write_shard(const PaperOptions& o, const paper::SweepOptions& sweep,
+                 const std::vector<paper::ContactStep>& steps,
+                 const std::vector<paper::ContactStep>* series_steps) {
+  paper::write_shard_file({sweep.shard, sweep.protocol, o.series.resolutions}, o.folder);
+  io::write_text(o.folder + "/records.jsonl", paper::to_json_lines(steps));
+  if (series_steps != nullptr) write_series_shard(*series_steps, o.folder);
+  print(o.folder + "/records.jsonl\n");
+}
+
+int run_paper(PaperOptions o, const Globals& globals) {
+  if (o.print) {
+    print(paper::shipped_experiment(o.experiment));
+    return kOk;
+  }
+  paper::PaperExperiment experiment = experiment_of(o);
+  settle(o, experiment);
+  const bool merging = !o.merge.empty();
   paper::SweepOptions sweep{experiment.protocol, {}, o.jobs};
   if (!o.shard.empty()) sweep.shard = read_shard(o.shard);
   const bool with_series = o.series.resolutions.most > 0;
@@ -113,10 +129,7 @@ int run_paper(PaperOptions o, const Globals& globals) {
   if (!merging && with_series)
     series_steps = clock.run("their collisions", [&] { return run_series(a, series, sweep, globals); });
   if (!o.shard.empty()) {
-    paper::write_shard_file({sweep.shard, sweep.protocol, o.series.resolutions}, o.folder);
-    io::write_text(o.folder + "/records.jsonl", paper::to_json_lines(steps));
-    if (with_series) write_series_shard(series_steps, o.folder);
-    print(o.folder + "/records.jsonl\n");
+    write_shard(o, sweep, steps, with_series ? &series_steps : nullptr);
     return kOk;
   }
   const paper::SeriesReport series_report{a, series, series_steps, sweep.jobs};
