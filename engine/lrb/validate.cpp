@@ -132,7 +132,8 @@ class Validator {
     return false;
   }
 
-  /// The same by another search for pairs that may meet. (A simplex without area is convex, too.)
+  /// Checks the same, but searches differently for pairs that may meet. (A simplex without area is convex,
+  /// too.)
   void check_embedding_with_hubs() {
     Mesh simplices;
     simplices.vertices = rep_.data().vertices;

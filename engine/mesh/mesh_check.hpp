@@ -59,17 +59,19 @@ struct MeshReport {
   const MeshFinding& operator[](MeshFault f) const { return findings[static_cast<std::size_t>(f)]; }
   bool buildable() const;  ///< no finding that forbids an LRB-rep: build_lrb() takes the mesh as it is
   bool queryable() const;
-  /// What it says once orient_outward() has turned what is inside out: this finding is gone, no other changes.
+  /// Returns the report as it is once orient_outward() has turned what is inside out: that finding is gone,
+  /// no other has changed.
   MeshReport when_turned() const;
-  /// One line per fault found, with its first offenders.
+  /// Returns one line for each fault found, with its first offenders.
   std::vector<std::string> lines(const Mesh& mesh) const;
   /// Returns those lines that forbid an LRB-rep.
   std::vector<std::string> obstacles(const Mesh& mesh) const;
 };
 
-/// Checks everything (to go on with the mesh, see checked_mesh.hpp); self-intersections exactly and by a box tree, only if asked (they take the longest).
-/// Faces without area count as zero_area_face only, and what they touch is no self-intersection. In 2D
-/// vertices are judged as edges are in 3D: one segment must lead to each and one away from it.
+/// Checks everything (to go on with the mesh, see checked_mesh.hpp); self-intersections exactly and by a box
+/// tree, only if asked (they take the longest). Faces without area count as zero_area_face only, and what
+/// they touch is no self-intersection. In 2D vertices are judged as edges are in 3D: one segment must lead to
+/// each and one away from it.
 MeshReport check_mesh(const Mesh& mesh, bool self_intersections = true);
 
 /// Turns every component that is inside out so that the solid lies behind its faces. A component directly
