@@ -198,7 +198,7 @@ class Validator {
     } else {
       violation("faces " + std::to_string(f) + (rep_.is_real(f) ? " (real)" : " (pseudo)") + " and " +
                 std::to_string(g) + (rep_.is_real(g) ? " (real)" : " (pseudo)") +
-                " meet outside shared parts");
+                " meet outside their shared edges and corners");
     }
   }
 

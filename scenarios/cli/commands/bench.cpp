@@ -72,12 +72,14 @@ int run_bench(const BenchOptions& o, const Globals& globals) {
 
 Command add_bench(CLI::App& root, const Globals& globals) {
   CLI::App* app = root.add_subcommand(
-      "bench", "Ours beside other engines, on the same bodies and poses: how many times as long they take");
+      "bench",
+      "Compare our query with other engines on the same bodies and poses: how many times as long they take");
   const auto o = std::make_shared<BenchOptions>();
   add_measure_options(*app, *o);
   app->add_option(
          "--faces", o->faces,
-         "Sizes of generated bodies: all kinds of the first, rocks of the others; 0: none [20000 100000]")
+         "Numbers of faces of the bodies to generate: every kind in the first size, rocks in the others; 0: none "
+         "[20000 100000]")
       ->check(CLI::Range(0, 2000000))
       ->type_name("N");
   return {app, [o, &globals] { return run_bench(*o, globals); }};
