@@ -22,8 +22,8 @@ void StabilityRunner::ask(const cases::Family& family, const cases::Case& c, con
   record.expected = expected.pairs.size();
   try {
     if (c.a->dim() == 2 && !info_.plane)
-      throw InputError("not asked: the body is 2D, and it answers for 3D bodies only");
-    if (!expected.refusal.empty() && !info_.moves_exactly) throw InputError("not asked: " + expected.refusal);
+      throw InputError("a 2D body: not asked, because it answers for 3D bodies only");
+    if (!expected.refusal.empty() && !info_.moves_exactly) throw InputError(expected.refusal + ": not asked");
     const Posed a = place(*c.a, c.pose_a, 0), b = place(*c.b, c.pose_b, 1);
     methods::MethodAnswer answer = method_->query(*a.body, a.pose, *b.body, b.pose, mode);
     record.microseconds = answer.microseconds;
