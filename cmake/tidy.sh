@@ -42,8 +42,8 @@ if [ "${1:-}" = --seconds ]; then seconds=${2:?a number} && shift 2; fi
 case "${1:-}" in -*) sed -n '2,6s/^# //p' "$script" >&2 && exit 2 ;; esac
 mkdir -p "$passed"
 find "$passed" -type f -mtime +60 -delete
-# Without precompiled headers, so that each file is seen to include what it uses.
-cmake --preset clang -B "$database" -DLRB_BUILD_TESTS=ON -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON >/dev/null
+# Without precompiled headers and files compiled together, so that each file is seen to include what it uses.
+cmake --preset clang -B "$database" -DLRB_BUILD_TESTS=ON -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON -DCMAKE_UNITY_BUILD=OFF >/dev/null
 
 known=$(sed -n 's/^ *"file": "\(.*\)",\{0,1\}$/\1/p' "$database/compile_commands.json" | grep -v "/$database/" |
   sed "s|^$PWD/||" | sort -u)

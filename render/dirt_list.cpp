@@ -18,9 +18,9 @@ constexpr std::uint8_t kVeil = 50;
 /// Faces hide an offender if they lie within this share of the way to it: its own faces do not.
 constexpr double kJustBefore = 0.999;
 
-class Builder {
+class DirtListBuilder {
  public:
-  Builder(const Mesh& mesh, const MeshReport& report, const Camera& camera, const Options& options)
+  DirtListBuilder(const Mesh& mesh, const MeshReport& report, const Camera& camera, const Options& options)
       : mesh_(mesh), report_(report), camera_(camera), o_(options) {}
 
   DrawList run() {
@@ -243,7 +243,7 @@ class Builder {
 }  // namespace
 
 DrawList list(const Mesh& mesh, const MeshReport& report, const Camera& camera, const Options& options) {
-  return Builder(mesh, report, camera, options).run();
+  return DirtListBuilder(mesh, report, camera, options).run();
 }
 
 }  // namespace lrb::render::dirt

@@ -13,9 +13,10 @@ using Mark = LegendItem::Mark;
 
 constexpr double kGhost = 0.82;  ///< how far ghosts are from their colour towards white
 
-class Builder {
+class Scene2dBuilder {
  public:
-  explicit Builder(const Context& c) : c_(c), rep_(*c.body.rep), body_(c.colour()), scale_(c.options.scale) {}
+  explicit Scene2dBuilder(const Context& c)
+      : c_(c), rep_(*c.body.rep), body_(c.colour()), scale_(c.options.scale) {}
 
   void run() {
     for (RegionId r = 0; r < rep_.region_count(); ++r) region(r);
@@ -150,7 +151,7 @@ class Builder {
 }  // namespace
 
 void add_body_2d(const Context& c) {
-  Builder(c).run();
+  Scene2dBuilder(c).run();
 }
 
 }  // namespace lrb::render::scene

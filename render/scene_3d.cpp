@@ -23,9 +23,9 @@ constexpr std::uint8_t kRefiningAlpha = 120;
 constexpr std::uint8_t kGhostAlpha = 14;
 constexpr double kLayerStep = 0.12;  ///< exploded: extra way per layer, as a share of the body's radius
 
-class Builder {
+class Scene3dBuilder {
  public:
-  explicit Builder(const Context& c) : c_(c), rep_(*c.body.rep) {
+  explicit Scene3dBuilder(const Context& c) : c_(c), rep_(*c.body.rep) {
     const Rgba body = c.colour();
     const auto ink = palette::edge_of(body);
     real_edges_ = c.out.list.edge_style({with_alpha(ink, 150), 0.9F * c.options.scale});
@@ -260,7 +260,7 @@ class Builder {
 }  // namespace
 
 void add_body_3d(const Context& c) {
-  Builder(c).run();
+  Scene3dBuilder(c).run();
 }
 
 }  // namespace lrb::render::scene

@@ -43,9 +43,10 @@ Vector3d homogeneous(const Projection& p, const Vector3d& eye) {
   return {p.focal() * eye.x(), p.focal() * eye.y(), p.orthographic() ? 1.0 : eye.z()};
 }
 
-class Builder {
+class ScreenMeshBuilder {
  public:
-  Builder(const DrawList& list, const Projection& projection, double scale, const Lighting& lighting)
+  ScreenMeshBuilder(const DrawList& list, const Projection& projection, double scale,
+                    const Lighting& lighting)
       : list_(list), p_(projection), scale_(scale), lighting_(lighting), soft_(lighting) {
     room_ = edge_room(list, projection);
     soft_.ambient = lighting.ambient + kSoften * (1 - lighting.ambient);
@@ -356,7 +357,7 @@ Rgba shade(Rgba colour, const Vector3d& normal, const Eigen::Matrix3d& axes, con
 
 ScreenMesh make_screen_mesh(const DrawList& list, const Projection& projection, double scale,
                             const Lighting& lighting) {
-  return Builder(list, projection, scale, lighting).build();
+  return ScreenMeshBuilder(list, projection, scale, lighting).build();
 }
 
 }  // namespace lrb::render

@@ -1,6 +1,6 @@
 #pragma once
-/// The commands of `lrbscope`, one file each in commands/. stdout is for data, stderr for people. Exit codes:
-/// 0 ok, 1 mismatch, 2 usage or input, 3 environment.
+/// The commands of `lrbscope`, one file each in commands/ and measuring/. stdout is for data, stderr for people.
+/// Exit codes: 0 ok, 1 mismatch, 2 usage or input, 3 environment.
 
 #include <functional>
 #include <string>
@@ -15,17 +15,20 @@ inline constexpr int kOk = 0, kMismatch = 1, kBadInput = 2, kEnvironment = 3;
 
 /// What applies to every command.
 struct Globals {
-  bool quiet = false;        ///< nothing on stderr but errors
-  std::string command_line;  ///< as it was given, quoted for a shell
+  bool quiet = false;          ///< nothing on stderr but errors
+  std::string command_line;    ///< as it was given, quoted for a shell
+  char** arguments = nullptr;  ///< as main() got them
 };
 
 struct Command {
   CLI::App* app;
   std::function<int()> run;
+  bool parses_itself = false;  ///< run() is called before any of its options is parsed
 };
 
-/// Adds a command to the program. A file NAME.cpp in commands/ defines `std::vector<CommandEntry>
-/// NAME_commands()`, and the program has them: they need no other list (cmake/registry.cmake).
+/// Adds a command to the program. A file NAME.cpp in commands/ defines `std::vector<CommandEntry> NAME_commands()`, and
+/// lrbscope has them: they need no other list (cmake/registry.cmake). Those in measuring/ are lrbscope-measure's, and stand
+/// in measuring_words.hpp, too.
 struct CommandEntry {
   Command (*add)(CLI::App& root, const Globals& globals) = nullptr;
   int rank = 1000;  ///< the commands' order in --help: by rank, then by file

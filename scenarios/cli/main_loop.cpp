@@ -7,6 +7,7 @@
 #include <new>
 #include <sstream>
 #include <stdexcept>
+#include <string_view>
 #include <system_error>
 
 #include "engine/core/error.hpp"
@@ -108,6 +109,13 @@ int print_help(CLI::App& app, const CLI::ParseError& request) {
   return kOk;
 }
 
+/// The first argument that is not an option: the command's name.
+std::string_view command_word(int argc, char** argv) {
+  for (int i = 1; i < argc; ++i)
+    if (argv[i][0] != '-') return argv[i];
+  return "";
+}
+
 int parse_and_run(int argc, char** argv) {
   CLI::App app("An exact two-body collision engine that can be watched.", "lrbscope");
   app.set_version_flag("--version", std::string("lrbscope ") + trace::lrbscope_version());
@@ -118,9 +126,12 @@ int parse_and_run(int argc, char** argv) {
       "more.");
   Globals globals;
   globals.command_line = command_line(argc, argv);
+  globals.arguments = argv;
   app.add_flag("-q,--quiet", globals.quiet, "Print nothing to stderr but errors");
   std::vector<Command> commands;
   for (const CommandEntry& entry : registered_commands()) commands.push_back(entry.add(app, globals));
+  for (const Command& command : commands)
+    if (command.parses_itself && command.app->get_name() == command_word(argc, argv)) return command.run();
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {

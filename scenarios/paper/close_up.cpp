@@ -11,8 +11,6 @@
 namespace lrb::paper {
 namespace {
 
-constexpr std::size_t kPaper = 0;  // index into kRecursions
-
 /// Returns true if the records of one collision, in the order of its steps, agree with what it took now.
 bool same_counts(std::span<const ContactStep> records, const CloseUp& found, const std::string& object) {
   std::size_t next = 0;

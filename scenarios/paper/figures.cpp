@@ -8,7 +8,6 @@
 namespace lrb::paper {
 namespace {
 
-constexpr std::size_t kPaper = 0;  // index into kRecursions
 constexpr double kBinWidth = 250;  // comparisons
 
 // Okabe and Ito's colours, which people with any colour vision tell apart; dash and point types are told

@@ -30,6 +30,7 @@ inline constexpr double kLeastStep = 1e-5, kMostStep = 0.5;
 
 inline constexpr std::array<Recursion, 3> kRecursions = {Recursion::paper, Recursion::paper_strict,
                                                          Recursion::complete};
+inline constexpr std::size_t kPaper = 0;  ///< the paper's own, of kRecursions
 
 /// What one recursion did at one time step.
 struct RecursionCount {

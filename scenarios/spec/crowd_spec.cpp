@@ -12,8 +12,6 @@
 namespace lrb::spec {
 namespace {
 
-constexpr std::uint32_t kMostSteps = 100'000;
-
 std::vector<CrowdKind> read_kinds(const io::JsonNode& node, const std::filesystem::path& folder,
                                   std::uint64_t seed) {
   std::vector<CrowdKind> kinds;

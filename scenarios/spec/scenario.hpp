@@ -17,6 +17,9 @@
 
 namespace lrb::spec {
 
+/// The most steps that a scenario or a crowd may have.
+inline constexpr std::uint32_t kMostSteps = 100'000;
+
 /// What a scenario shows.
 enum class Show : std::uint8_t {
   collision,     ///< two bodies: a query at every time step

@@ -9,7 +9,6 @@ namespace {
 
 constexpr double kDegree = std::numbers::pi / 180;
 constexpr double kFar = 1e150;  // coordinates whose squares are still finite
-constexpr std::uint32_t kMostSteps = 100'000;
 
 Eigen::Vector3d read_axis(const io::JsonNode& node) {
   const Eigen::Vector3d axis = node.vector();

@@ -11,6 +11,9 @@ namespace lrb::spec {
 /// Returns the names NAME of the shipped files "NAME<ending>", in alphabetical order.
 std::vector<std::string> shipped_names(std::string_view ending);
 
+/// The "purpose" that the shipped file "NAME<ending>" states.
+std::string shipped_purpose(const std::string& name, std::string_view ending);
+
 struct NamedText {
   std::string text, file;  ///< `file` is for messages
 };
@@ -19,12 +22,8 @@ struct NamedText {
 /// such a file holds. Throws InputError; for a word that is neither, it names the nearest shipped name.
 NamedText open_named(const std::string& name_or_path, std::string_view ending, std::string_view what);
 
-struct ShippedScenario {
-  std::string name, purpose;
-};
-
-/// Returns the scenarios that are compiled in, by name.
-std::vector<ShippedScenario> shipped_scenarios();
+inline constexpr std::string_view kScenarioEnding = ".scenario.json", kCrowdEnding = ".crowd.json",
+                                  kExperimentEnding = ".experiment.json";
 
 /// Reads a shipped scenario by its name, or a scenario from a file. Throws InputError.
 Scenario open_scenario(const std::string& name_or_path);

@@ -16,8 +16,7 @@
 namespace lrb::workers {
 namespace {
 
-constexpr int kGiven = 3;            // the child's file descriptor for the file that it is given
-constexpr int kNoSuchProgram = 127;  // what shells use
+constexpr int kGiven = 3;  // the child's file descriptor for the file that it is given
 
 /// Runs in the child, between fork and exec: must not allocate or take locks.
 [[noreturn]] void become(char* const* arguments, int output, int given, pid_t parent) {

@@ -9,13 +9,16 @@
 
 namespace lrb::workers {
 
+/// The exit code of a child whose program does not exist, as in shells.
+inline constexpr int kNoSuchProgram = 127;
+
 /// A process that is killed when this object goes, and when this process ends, however that ends (Linux). Its
 /// stderr is discarded.
 class Child {
  public:
   /// Starts a program. `given` is a file descriptor that becomes the child's number 3, or -1. Throws
   /// EnvironmentError if the machine has no room for another process; a program that does not exist ends with
-  /// code 127.
+  /// kNoSuchProgram.
   Child(const std::vector<std::string>& command, int given);
   ~Child();
   Child(Child&& other) noexcept;

@@ -11,8 +11,8 @@
 namespace lrb::workers {
 namespace {
 
-constexpr int kPatience = 3;                        // number of cases in a row on which a method may hang
-constexpr int kBadInput = 2, kNoSuchProgram = 127;  // exit codes that do not count as a crash
+constexpr int kPatience = 3;  // number of cases in a row on which a method may hang
+constexpr int kBadInput = 2;  // an exit code that does not count as a crash
 
 std::string epitaph(int status) {
   if (status >= 0) return "ended with exit code " + std::to_string(status);

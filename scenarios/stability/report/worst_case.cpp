@@ -17,7 +17,7 @@ namespace {
 
 constexpr int kWidth = 1280, kHeight = 720, kGap = 4;
 /// Marks that take up a smaller share of the scene than this get a close-up.
-constexpr double kSmall = 0.25;
+constexpr double kSmallShare = 0.25;
 /// So do marks all over the bodies, if each is smaller than this share.
 constexpr double kTiny = 0.04;
 /// The extent of a close-up, in sizes of what it is about.
@@ -64,7 +64,7 @@ std::optional<CloseUp> close_up(const CasePicture& s, const Verdict& verdict) {
   for (const SimplexPair& p : pairs) all.extend(places.emplace_back(place_of(s, p)));
   for (const Eigen::AlignedBox3d& b : places)
     if (smallest == nullptr || diagonal(b) < diagonal(*smallest)) smallest = &b;
-  if (diagonal(all) < kSmall * whole) return CloseUp{all, std::string("close-up of what is ") + kind};
+  if (diagonal(all) < kSmallShare * whole) return CloseUp{all, std::string("close-up of what is ") + kind};
   if (diagonal(*smallest) < kTiny * whole)
     return CloseUp{*smallest, std::string("close-up of one pair ") + kind};
   return std::nullopt;

@@ -1,4 +1,4 @@
-#include "scenarios/cli/paper_series.hpp"
+#include "scenarios/cli/measuring/paper_series.hpp"
 
 #include <filesystem>
 

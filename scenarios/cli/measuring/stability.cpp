@@ -8,6 +8,7 @@
 #include "engine/core/error.hpp"
 #include "scenarios/cli/choice.hpp"
 #include "scenarios/cli/command.hpp"
+#include "scenarios/cli/measuring_words.hpp"
 #include "scenarios/cli/progress.hpp"
 #include "scenarios/io/files.hpp"
 #include "scenarios/stability/record_json.hpp"
@@ -172,8 +173,7 @@ int run_stability(const StabilityOptions& o, const Globals& globals) {
 }
 
 Command add_stability(CLI::App& root, const Globals& globals) {
-  CLI::App* app = root.add_subcommand(
-      "stability", "Put families of hard cases to our query and to other engines: who fails where");
+  CLI::App* app = add_measuring(root, measuring_word("stability"));
   const auto o = std::make_shared<StabilityOptions>();
   app->add_option("-o,--output", o->folder, "Folder to write to [out/stability]")->type_name("DIR");
   app->add_option("--family", o->families, "Only these families")->type_name("NAME");
@@ -202,7 +202,7 @@ Command add_stability(CLI::App& root, const Globals& globals) {
 }  // namespace
 
 std::vector<CommandEntry> stability_commands() {
-  return {{add_stability, 100}};
+  return {{add_stability, measuring_word("stability").rank}};
 }
 
 }  // namespace lrb::cli

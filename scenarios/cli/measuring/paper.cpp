@@ -4,7 +4,8 @@
 
 #include "engine/core/error.hpp"
 #include "scenarios/cli/command.hpp"
-#include "scenarios/cli/paper_series.hpp"
+#include "scenarios/cli/measuring/paper_series.hpp"
+#include "scenarios/cli/measuring_words.hpp"
 #include "scenarios/cli/progress.hpp"
 #include "scenarios/io/files.hpp"
 #include "scenarios/paper/experiment.hpp"
@@ -126,10 +127,7 @@ int run_paper(PaperOptions o, const Globals& globals) {
 }
 
 Command add_paper(CLI::App& root, const Globals& globals) {
-  CLI::App* app =
-      root.add_subcommand("paper",
-                          "Repeat the paper's experiment: its tables and figures, close-ups of single "
-                          "collisions, and the same on meshes");
+  CLI::App* app = add_measuring(root, measuring_word("paper"));
   const auto o = std::make_shared<PaperOptions>();
   app->add_option("-o,--output", o->folder, "Folder to write to")->type_name("DIR")->capture_default_str();
   app->add_option("--experiment", o->experiment,
@@ -172,7 +170,7 @@ Command add_paper(CLI::App& root, const Globals& globals) {
 }  // namespace
 
 std::vector<CommandEntry> paper_commands() {
-  return {{add_paper, 80}};
+  return {{add_paper, measuring_word("paper").rank}};
 }
 
 }  // namespace lrb::cli

@@ -7,7 +7,8 @@
 #include "scenarios/bench/survey.hpp"
 #include "scenarios/cli/choice.hpp"
 #include "scenarios/cli/command.hpp"
-#include "scenarios/cli/measure_options.hpp"
+#include "scenarios/cli/measuring/measure_options.hpp"
+#include "scenarios/cli/measuring_words.hpp"
 #include "scenarios/cli/progress.hpp"
 #include "scenarios/io/files.hpp"
 
@@ -71,9 +72,7 @@ int run_bench(const BenchOptions& o, const Globals& globals) {
 }
 
 Command add_bench(CLI::App& root, const Globals& globals) {
-  CLI::App* app = root.add_subcommand(
-      "bench",
-      "Compare our query with other engines on the same bodies and poses: how many times as long they take");
+  CLI::App* app = add_measuring(root, measuring_word("bench"));
   const auto o = std::make_shared<BenchOptions>();
   add_measure_options(*app, *o);
   app->add_option(
@@ -88,7 +87,7 @@ Command add_bench(CLI::App& root, const Globals& globals) {
 }  // namespace
 
 std::vector<CommandEntry> bench_commands() {
-  return {{add_bench, 130}};
+  return {{add_bench, measuring_word("bench").rank}};
 }
 
 }  // namespace lrb::cli

@@ -12,7 +12,8 @@
 #include "scenarios/bench/survey.hpp"
 #include "scenarios/cli/choice.hpp"
 #include "scenarios/cli/command.hpp"
-#include "scenarios/cli/measure_options.hpp"
+#include "scenarios/cli/measuring/measure_options.hpp"
+#include "scenarios/cli/measuring_words.hpp"
 #include "scenarios/cli/progress.hpp"
 #include "scenarios/io/files.hpp"
 #include "scenarios/report/charts/gnuplot.hpp"
@@ -118,8 +119,7 @@ int run_chart(const ChartOptions& o, bool measures, bool draws, const Globals& g
 }
 
 Command add_chart(CLI::App& root, const Globals& globals) {
-  CLI::App* app = root.add_subcommand(
-      "chart", "Chart speed against accuracy: every method at every setting, exact ones and approximations");
+  CLI::App* app = add_measuring(root, measuring_word("chart"));
   const auto o = std::make_shared<ChartOptions>();
   app->require_subcommand(0, 1);
   CLI::App* measures =
@@ -139,7 +139,7 @@ Command add_chart(CLI::App& root, const Globals& globals) {
 }  // namespace
 
 std::vector<CommandEntry> chart_commands() {
-  return {{add_chart, 140}};
+  return {{add_chart, measuring_word("chart").rank}};
 }
 
 }  // namespace lrb::cli
