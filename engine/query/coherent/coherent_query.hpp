@@ -28,9 +28,8 @@ class CoherentQuery {
   /// whenever one can be made (for tests). The answers do not depend on it.
   enum class CacheUse : std::uint8_t { as_it_pays, always };
 
-  /// Keeps references to the bodies, which must outlive it and stay as they are: do not assign to them, for
-  /// what is kept from query to query is of the bodies that were there. Other bodies need another
-  /// CoherentQuery.
+  /// Keeps references to the bodies, which must outlive it. Do not assign to them, because what is kept from
+  /// query to query depends on them; other bodies need another CoherentQuery.
   CoherentQuery(const LrbRep& a, const LrbRep& b, const CollideRequest& request = {},
                 CacheUse use = CacheUse::as_it_pays);
 
