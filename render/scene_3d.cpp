@@ -67,7 +67,8 @@ class Scene3dBuilder {
     const bool telling = c_.options.colour_by != ColourBy::kind;
     for (const FaceId f : lids) {
       DrawTriangle t = translucent(lid_colour(f));
-      // Edges of faces, not lines, so that those behind other lids show through them instead of lying on them.
+      // Edges of faces, not lines, so that those behind other lids show through them instead of lying on
+      // them.
       t.edges = 7;
       t.edge_style = lid_edges_;
       add_face(f, t);

@@ -132,7 +132,8 @@ class Validator {
     return false;
   }
 
-  /// The same by another search for pairs that may meet. (A simplex without area is convex, too.)
+  /// Checks the same, but searches differently for pairs that may meet. (A simplex without area is convex,
+  /// too.)
   void check_embedding_with_hubs() {
     Mesh simplices;
     simplices.vertices = rep_.data().vertices;
@@ -197,7 +198,7 @@ class Validator {
     } else {
       violation("faces " + std::to_string(f) + (rep_.is_real(f) ? " (real)" : " (pseudo)") + " and " +
                 std::to_string(g) + (rep_.is_real(g) ? " (real)" : " (pseudo)") +
-                " meet outside shared parts");
+                " meet outside their shared edges and corners");
     }
   }
 

@@ -58,7 +58,7 @@ Expected expected_from(const std::string& line) {
 
 Relation relation_from(const std::string& word) {
   if (const auto r = from_name<Relation>(word); r && *r != Relation::unresolved) return *r;
-  throw InputError("'" + word + "' is no relation of two bodies");
+  throw InputError("'" + word + "' is not a relation of two bodies");
 }
 
 }  // namespace lrb::stability

@@ -71,7 +71,7 @@ std::vector<Row> rows_3d() {
   const Mesh ball = icosphere(1);
   const auto n = static_cast<VertexId>(ball.vertices.size());  // 42; 80 faces
   const Mesh twice = several({ball, ball});
-  const std::string meet = "two faces meet outside shared parts (";
+  const std::string meet = "two faces meet outside their shared edges and corners (";
   return {
       {"open",
        without_faces(ball, {7}),
@@ -81,7 +81,7 @@ std::vector<Row> rows_3d() {
       {"open strip, one-sided",
        moebius(),
        {"an edge has a face on one side only (18 times)",
-        "two neighbouring faces run along their edge in one direction (1 time): face 0 and 17"},
+        "two neighbouring faces disagree on which side is outside (1 time): face 0 and 17"},
        Build::refused,
        kNone},
       {"crosses itself", turned_inside_out(figure_eight()), {meet}, Build::done, kHeld, {2.6, 0, 0}},
@@ -177,7 +177,7 @@ std::vector<Row> rows_3d() {
        kHeld},
       {"inconsistent orientation",
        with_flipped(ball, {7, 50}),
-       {"two neighbouring faces run along their edge in one direction (6 times): face "},
+       {"two neighbouring faces disagree on which side is outside (6 times): face "},
        Build::refused,
        kNone},
       {"inside out",
@@ -232,7 +232,7 @@ std::vector<Row> rows_2d() {
        kNone},
       {"2D, crosses itself",
        star,
-       {"two segments meet outside shared vertices (5 times): segment 0 and 2"},
+       {"two segments meet outside their shared ends (5 times): segment 0 and 2"},
        Build::done,
        kHeld,
        {0.7, 0, 0}},
@@ -257,7 +257,7 @@ std::vector<Row> rows_2d() {
        kHeld},
       {"2D, inconsistent orientation",
        with_flipped(round, {4}),
-       {"two neighbouring segments run against each other (2 times): segment 3 and 4, 4 and 5"},
+       {"two neighbouring segments disagree on which side is outside (2 times): segment 3 and 4, 4 and 5"},
        Build::refused,
        kNone},
       {"2D, inside out", turned_inside_out(round), {"the body is inside out (1 time)"}, Build::done, kHeld},
