@@ -12,8 +12,6 @@ constexpr int kRank = 60;
 
 #ifdef LRB_HAS_EMBREE
 
-#include <algorithm>
-
 #include <embree3/rtcore.h>
 
 #include "engine/core/error.hpp"
@@ -134,9 +132,7 @@ class Embree : public Method {
     body_b.move(pose_b);
     rtcCollide(body_a.scene, body_b.scene, Candidates::add, &candidates);
     answer.microseconds = watch.microseconds();
-    std::sort(candidates.pairs.begin(), candidates.pairs.end());
-    candidates.pairs.erase(std::unique(candidates.pairs.begin(), candidates.pairs.end()),
-                           candidates.pairs.end());
+    sort_pairs(candidates.pairs);
     answer.pairs = std::move(candidates.pairs);
     answer.face_tests = candidates.tests;
     answer.contact = !answer.pairs.empty();
