@@ -93,10 +93,10 @@ class Builder {
   /// Thin lines between regions; of those refined away a dashed trace.
   void region_lines() {
     std::vector<FaceId> inside, gone;
-    for (FaceId f = rep_.real_face_count(); f < rep_.face_count(); ++f) {
+    for (FaceId f(rep_.real_face_count()); f < rep_.face_count(); ++f) {
       const CellId in = rep_.inner_cell(f);
       if (!is_region(in)) continue;
-      if (c_.refining(in)) {
+      if (c_.refining(in.as_region())) {
         add_lines({f}, palette::edge_of(palette::kRefining), 2.4F, 0);
       } else if (c_.included(in) && !c_.on_boundary(f)) {
         inside.push_back(f);

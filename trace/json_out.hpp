@@ -12,6 +12,8 @@
 #include <type_traits>
 #include <vector>
 
+#include "engine/core/ids.hpp"
+
 namespace lrb::trace {
 
 /// Where bytes go.
@@ -104,6 +106,10 @@ class JsonWriter {
     else
       out_->string(v);
     return *this;
+  }
+  template <class Kind>
+  JsonWriter& value(Id<Kind> id) {
+    return value(id.value());
   }
   template <class T>
   JsonWriter& member(std::string_view name, const T& v) {
