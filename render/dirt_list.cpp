@@ -11,28 +11,28 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Towards white: the neighbour of a face that is turned the wrong way.
+/// How far the neighbour of a face that is turned the wrong way is from its colour towards white.
 constexpr double kNeighbourPale = 0.6;
-/// Of faces in front of what a close-up is about.
+/// Alpha of faces in front of what a close-up is about.
 constexpr std::uint8_t kVeil = 50;
-/// Of the way to an offender: its own faces do not hide it.
+/// Faces hide an offender if they lie within this share of the way to it: its own faces do not.
 constexpr double kJustBefore = 0.999;
 
-class Builder {
+class DirtListBuilder {
  public:
-  Builder(const Mesh& mesh, const MeshReport& report, const Camera& camera, const Options& options)
+  DirtListBuilder(const Mesh& mesh, const MeshReport& report, const Camera& camera, const Options& options)
       : mesh_(mesh), report_(report), camera_(camera), o_(options) {}
 
   DrawList run() {
     std::vector<MeshFault> all = kinds(report_);
-    // Whole pieces last: what is wrong with some of their faces is to be seen on them.
+    // Whole pieces come last: what is wrong with some of their faces must stay visible on them.
     std::stable_partition(all.begin(), all.end(), [](MeshFault k) { return k != MeshFault::inside_out; });
     for (const MeshFault kind : all)
       for (const Element& e : report_[kind].first) choose_colours(kind, e);
     veiled_ = o_.focus && (*o_.focus == MeshFault::inside_out || is_hidden(*o_.focus));
     mesh_.dim == 2 ? segments() : faces();
     std::vector<MeshFault> marked = kinds(report_);
-    // What the picture is about last, over the others.
+    // What the picture is about is drawn last, over the others.
     std::stable_partition(marked.begin(), marked.end(),
                           [&](MeshFault k) { return !o_.focus || k != *o_.focus; });
     for (const MeshFault kind : marked)
@@ -54,7 +54,8 @@ class Builder {
  private:
   Rgba colour(MeshFault kind) const { return key(kind, mesh_.dim).colour; }
 
-  /// A face with several faults has the colour of the first, but what a close-up is about goes first.
+  /// Returns the fault that colours a face: the first it has, but the one that a close-up is about goes
+  /// first.
   void choose_colours(MeshFault kind, const Element& e) {
     const bool first = o_.focus && *o_.focus == kind;
     const auto give = [&](FaceId f, Rgba c) {
@@ -82,7 +83,8 @@ class Builder {
     for (const FaceId f : parts_of(mesh_, kind, e).faces) give(f, colour(kind));
   }
 
-  /// Of two that contradict each other, the one that contradicts more of its neighbours.
+  /// Returns, of two neighbouring faces that are turned against each other, the one that disagrees with more
+  /// of its neighbours.
   FaceId turned_of(const Element& e) const {
     std::map<FaceId, int> times;
     for (const Element& other : report_[MeshFault::flipped_face].first) {
@@ -99,7 +101,7 @@ class Builder {
                                       : camera_.eye - mesh_.vertices[mesh_.face(f)[0]]) < 0;
   }
 
-  /// Whether faces lie between the eye and the first offender.
+  /// Returns true if faces lie between the eye and the first offender.
   bool is_hidden(MeshFault kind) const {
     const Vector3d to = camera_.eye + kJustBefore * (place(kind, report_[kind].first.front()) - camera_.eye);
     for (FaceId f = 0; f < mesh_.face_count() && mesh_.dim == 3; ++f)
@@ -119,7 +121,7 @@ class Builder {
       if (c != colours_.end()) {
         t.colour = c->second;
         t.edge_style = strong;
-        t.nudge = 1;  // over another face in the same place
+        t.nudge = 1;  // drawn over another face in the same place
       } else if (veiled_) {
         t.layer = Layer::translucent;
         t.colour.a = kVeil;
@@ -163,7 +165,7 @@ class Builder {
     out_.points.push_back(p);
   }
 
-  /// Edges, vertices, faces without area and cuts: what faces' colours cannot show.
+  /// Draws edges, vertices, faces without area and cuts, which faces' colours cannot show.
   void mark(MeshFault kind, const Element& e) {
     const Parts parts = parts_of(mesh_, kind, e);
     if (parts.edge) line({mesh_.vertices[e[0]], mesh_.vertices[e[1]]}, colour(kind), 5, true);
@@ -195,14 +197,14 @@ class Builder {
     return sum;
   }
 
-  /// A letter for a kind, at its first offender.
+  /// Writes a kind's letter at its first offender.
   void point_at(MeshFault kind, const std::string& letter) {
     const Vector3d x = place(kind, report_[kind].first.front());
     dot(x, colour(kind), 5);
     label(x, letter, 1);
   }
 
-  /// Above its point, unless it would cover another label or leave the picture.
+  /// Puts a label above its point, unless it would cover another label or leave the picture.
   void label(const Vector3d& x, const std::string& text, int sideways) {
     const auto at = projection_->to_pixel(x);
     if (!at) return;
@@ -234,7 +236,7 @@ class Builder {
   DrawList out_;
   std::map<FaceId, Rgba> colours_;
   std::set<FaceId> chosen_;
-  bool veiled_ = false;  ///< faces without offence are see-through
+  bool veiled_ = false;  ///< faces without a fault are see-through
   std::optional<Projection> projection_;
   std::vector<Eigen::AlignedBox2d> taken_;
 };
@@ -242,7 +244,7 @@ class Builder {
 }  // namespace
 
 DrawList list(const Mesh& mesh, const MeshReport& report, const Camera& camera, const Options& options) {
-  return Builder(mesh, report, camera, options).run();
+  return DirtListBuilder(mesh, report, camera, options).run();
 }
 
 }  // namespace lrb::render::dirt

@@ -74,12 +74,13 @@ std::vector<FaceId> component(const Mesh& mesh, FaceId first) {
 
 namespace {
 
-/// Of faces' sizes: what lies in one plane seems to cross in specks, once coordinates are rounded.
+/// A cut shorter than this share of the faces' sizes is ignored: faces in one plane seem to cross in specks
+/// once their coordinates are rounded.
 constexpr double kLeastCut = 1e-6;
 
 using Triangle = std::array<Vector3d, 3>;
 
-/// Where a segment passes through a triangle.
+/// Returns the point in which a segment passes through a triangle.
 std::optional<Vector3d> passage(const Vector3d& p, const Vector3d& q, const Triangle& b) {
   const Vector3d n = (b[1] - b[0]).cross(b[2] - b[0]);
   const double dp = n.dot(p - b[0]), dq = n.dot(q - b[0]);

@@ -32,7 +32,8 @@ struct DecodedPng {
 inline constexpr std::uint64_t kMostPixels = std::uint64_t{1} << 27;
 
 /// Throws InputError with `name` in it if the bytes are no PNG, or a damaged one, or one of more pixels than
-/// `most_pixels`, or one that unpacks to much more than its pixels: before memory is taken for that.
+/// `most_pixels`, or one whose data are fewer or more than its pixels. Memory is taken for the pixels alone, and only if so
+/// many can be in so few bytes.
 DecodedPng decode_png(std::span<const std::uint8_t> bytes, const std::string& name = "PNG",
                       std::uint64_t most_pixels = kMostPixels);
 

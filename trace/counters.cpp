@@ -20,7 +20,7 @@ double ratio(std::uint64_t part, std::uint64_t whole) {
   return ratio(part, static_cast<double>(whole));
 }
 
-/// The two wrappers' sizes, event after event.
+/// Follows the sizes of the two wrappers, event after event.
 class WrapperSizes {
  public:
   explicit WrapperSizes(const Trace& trace) : trace_(&trace) { reset(); }

@@ -21,7 +21,7 @@ std::string describe(const BodyInfo& info) {
 
 void require_same_body(const BodyInfo& recorded, const LrbRep& rep, const std::string& who) {
   BodyInfo given = describe_body(rep, recorded.source);
-  given.name = recorded.name;  // a copy may be named otherwise: the hash says which body it is
+  given.name = recorded.name;  // the name may differ: the hash tells which body it is
   if (given == recorded) return;
   given.name = rep.name();
   throw InputError("trace: body " + who + " was recorded as " + describe(recorded) + ", but is given as " +
@@ -77,8 +77,8 @@ void Cursor::seek(EventId event) {
   };
   const std::size_t target = count_up_to(event);
   if (target != applied_) {
-    // Each step begins afresh, so nothing before the target's step matters; backward means from its
-    // beginning.
+    // Each step begins afresh, so that nothing before the target's step matters. Going backward means
+    // starting again at the beginning of that step.
     const std::size_t begin = count_up_to(trace_->steps[step].first_event) - 1;
     for (std::size_t i = target > applied_ ? std::max(applied_, begin) : begin; i < target; ++i)
       apply_to(changes_[i]);

@@ -23,7 +23,7 @@ std::string type_of(const Json& j) {
   return name.size() <= kShown ? name : name.substr(0, kShown) + "...";
 }
 
-/// "at line 3, column 17".
+/// Returns the place of a byte: "at line 3, column 17".
 std::string line_and_column(std::string_view text, std::size_t offset) {
   const std::string_view before = text.substr(0, std::min(offset, text.size()));
   const auto line = 1 + std::count(before.begin(), before.end(), '\n');
@@ -33,12 +33,12 @@ std::string line_and_column(std::string_view text, std::size_t offset) {
   return "line " + std::to_string(line) + ", column " + std::to_string(std::max<std::size_t>(column, 1));
 }
 
-/// Containers may nest this deep; ours need six levels.
+/// The largest depth of nested containers; ours need six levels.
 constexpr int kMaxDepth = 32;
 
-/// Bounds what the parser holds by what it has read. A "0," of two bytes becomes 16, an "[]," of three about
-/// 60, while what we write takes more bytes as text than as values, but for poses of round numbers. An event
-/// is held until it is complete, the rest to the end.
+/// Limits the memory that the parser takes by the length of the text it has read. A "0," of two bytes becomes
+/// 16 bytes, an "[]," of three about 60; what we write takes more bytes as text than in memory, except for
+/// poses of round numbers. An event is held until it is complete, everything else to the end.
 class MemoryBudget {
  public:
   explicit MemoryBudget(const std::string& name) : name_(name) {}
@@ -61,14 +61,14 @@ class MemoryBudget {
         break;
     }
   }
-  /// Throws InputError if more is held than so much text may take.
+  /// Throws InputError if the parser holds more than a text of this length may need.
   void check(std::uint64_t text) const {
     constexpr std::uint64_t kFree = std::uint64_t{16} << 20, kPerByte = 8;
     if (held_ > kFree + kPerByte * text)
       throw InputError(name_ + ": its values take more than " + std::to_string(kPerByte) +
                        " times the memory of its text, which no trace of lrbscope does: it is damaged");
   }
-  /// What was held last, an event, has gone.
+  /// Discounts what was held last, an event, which has been dropped.
   void forget_from(std::uint64_t held) { held_ = held; }
   std::uint64_t held() const { return held_; }
 
@@ -106,7 +106,7 @@ Json parse_events(std::string_view text, const std::string& name,
   static const Json unfinished = Json::object(), some_array = Json::array();
   const TraceNode root(unfinished, name);
   const TraceNode array = root.at("traceEvents");
-  /// The parser's callback; false drops a value that is no longer needed.
+  /// The parser's callback; returns false to drop a value that is no longer needed.
   const auto on_event = [&](int depth, Json::parse_event_t event, Json& j) {
     using Parsed = Json::parse_event_t;
     if (depth > kMaxDepth)
@@ -205,7 +205,7 @@ void read_field(const TraceNode& node, const Field<Record, Value>& field, Value&
     read_value(node, value);
 }
 
-/// Reads what the record's table says must be there, and of the rest what is.
+/// Reads the fields that the record's table says must be there, and of the others those that are.
 template <class Record>
 void read_record(const TraceNode& node, Record& record, bool coarse) {
   for_each_field<Record>([&](const auto& field) {

@@ -6,14 +6,15 @@ namespace lrb::trace {
 
 namespace {
 
-/// Faces of a region that are on the boundary. Whatever happens to a region changes only these.
+/// Returns the number of the region's faces on the boundary. Refining or coarsening a region changes nothing
+/// but these.
 std::uint32_t visible_faces(const Wrapper& wrapper, RegionId region) {
   const std::span<const FaceId> faces = wrapper.rep().collector(region);
   return static_cast<std::uint32_t>(
       std::count_if(faces.begin(), faces.end(), [&](FaceId f) { return wrapper.on_boundary(f); }));
 }
 
-/// The face that a refinement in unregularised mode takes away; kNull: all of the region's.
+/// Returns the face that a refinement in unregularised mode takes away; kNull: all faces of the region.
 FaceId refined_face(const Event& event, std::span<const Event> events, const LrbRep& rep) {
   if (event.cause == kNull || events[event.cause].kind != EventKind::face_test) return kNull;
   const Event& test = events[event.cause];

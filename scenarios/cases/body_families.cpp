@@ -114,8 +114,8 @@ struct Cells {
   }
 };
 
-/// Whether a cell of `a` and a cell of `b`, moved by `shift`, have inner points in common; the faces of B's
-/// cells lie where rounding puts them.
+/// Returns true if a cell of `a` and a cell of `b`, moved by `shift`, have inner points in common; the faces
+/// of B's cells lie where rounding puts them.
 bool share_a_cell(const Cells& a, const Cells& b, const Vector3d& shift) {
   const auto each = [](const Cells& c, auto visit) {
     for (int i = 0; i < c.n[0]; ++i)

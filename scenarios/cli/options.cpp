@@ -12,7 +12,7 @@
 namespace lrb::cli {
 namespace {
 
-/// The option that sets a field of a request: "--max-tests" for max_tests.
+/// Returns the option that sets a field of a request: "--max-tests" for max_tests.
 template <class Value>
 std::string option_of(Value CollideRequest::*member) {
   std::string out = "--";
@@ -30,14 +30,14 @@ void add_recursion(CLI::App& app, Target& recursion) {
                         "complete never misses; paper is the paper's own");
 }
 
-/// An option that takes a number of things, from 1.
+/// Adds an option that takes a number of things, from 1.
 void add_count(CLI::App& app, const std::string& name, std::uint64_t& count, const std::string& what) {
   app.add_option(name, count, what)
       ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1} << 62).description(""))
       ->type_name("N");
 }
 
-/// Makes an axis (0, 1, 2) the upward one, and stands where one stood with z upward.
+/// Makes an axis (0, 1, 2) the upward one, and turns the view with it.
 void turn_up(spec::FrameSpec& spec, int axis) {
   if (spec.views.empty()) spec.views.emplace_back();
   const auto turned = [axis](const Eigen::Vector3d& v) {

@@ -28,8 +28,8 @@ void check_fits_float(const Triangles& t) {
 }
 
 void check_rigid(const Pose& pose) {
-  // Rotations come rounded, perhaps as products of several: far above their errors, far below any stretch
-  // that is meant.
+  // Rotations come rounded, perhaps as products of several. This limit lies far above their errors, and far
+  // below any stretch that is meant.
   static constexpr double kRotationDefect = 1e-9;
   const Eigen::Matrix3d defect = pose.r * pose.r.transpose() - Eigen::Matrix3d::Identity();
   if (defect.cwiseAbs().maxCoeff() > kRotationDefect || pose.r.determinant() < 0)

@@ -1,5 +1,5 @@
 #pragma once
-/// What the methods' bodies are made of.
+/// Makes from an LRB-rep what methods build their bodies from.
 
 #include <array>
 #include <chrono>
@@ -12,25 +12,25 @@
 
 namespace lrb::methods {
 
-/// The corners of real simplex s are vertices[triangles[s]].
+/// Triangles with shared vertices: the corners of real simplex s are vertices[triangles[s]].
 struct Triangles {
   std::vector<Eigen::Vector3d> vertices;
   std::vector<std::array<VertexId, 3>> triangles;
 };
 
-/// The real triangles of a 3D body. Throws InputError for a 2D one, as methods for 3D bodies do.
+/// Returns the real triangles of a 3D body. Throws InputError for a 2D one, as methods for 3D bodies do.
 Triangles triangles_of(const LrbRep& rep);
 
-/// Throws InputError if a coordinate is no float, however rounded.
+/// Throws InputError if a coordinate is too large for a float, however it is rounded.
 void check_fits_float(const Triangles& t);
 
 /// Throws InputError unless the pose is a rotation and a translation, as most engines expect.
 void check_rigid(const Pose& pose);
 
-/// The real faces in their order, with the vertices that they use.
+/// Returns the real faces in their order, with the vertices that they use.
 Mesh real_mesh(const LrbRep& rep);
 
-/// The same body with its world coordinates as coordinates: without regions.
+/// Returns the body moved: its world coordinates as its own. It has no regions.
 LrbRep at_pose(const LrbRep& rep, const Pose& pose);
 
 class Stopwatch {

@@ -25,7 +25,7 @@ std::string relation_words(Relation r) {
   }
 }
 
-/// A mesh's name without folder and extension.
+/// Returns a mesh's name without folder and extension.
 std::string short_name(const LrbRep& rep) {
   return std::filesystem::path(rep.name()).stem().string();
 }

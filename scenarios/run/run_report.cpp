@@ -24,12 +24,12 @@ std::string words(Relation r) {
   return out;
 }
 
-/// The step with the most to say: the last one.
+/// Returns the step with the most to say: the last one.
 const trace::Step* last_step(const trace::Trace& trace) {
   return trace.steps.empty() || !trace.steps.back().finished ? nullptr : &trace.steps.back();
 }
 
-/// Of the last step's answer: pairs of which not both faces are real.
+/// Returns the number of pairs of the last step's answer in which not both faces are real.
 std::size_t pseudo_pairs(const trace::Trace& trace) {
   const auto& bodies = trace.header.bodies;
   const auto events = trace.events_of(trace.steps.size() - 1);
@@ -81,13 +81,14 @@ std::vector<report::PageNumber> wrapper_numbers(const LrbRep& rep) {
            "in " + std::to_string(rep.layer_count()) + " layers"}};
 }
 
-/// In the complete query only real faces are compared: what hits is a contact, and one curve is enough.
+/// Returns true if hits and contacts are the same curve, which is then shown once. In the complete query only
+/// real faces are compared, so that every hit is a contact.
 bool same_as_contacts(const trace::Series& hits, const trace::Chart& chart) {
   return std::any_of(chart.series.begin(), chart.series.end(),
                      [&](const trace::Series& s) { return s.name == "contacts" && s.values == hits.values; });
 }
 
-/// Curves of the trace by unit: faces of the wrappers in one chart, counts in the other.
+/// Makes charts of the trace's curves by unit: faces of the wrappers in one, counts in the other.
 std::vector<report::PageChart> charts_of(const trace::Chart& chart, report::PageCursor cursor,
                                          const char* faces_title, const char* counts_title, bool stepped) {
   report::PageChart faces, counts;
@@ -99,7 +100,7 @@ std::vector<report::PageChart> charts_of(const trace::Chart& chart, report::Page
     if (s.unit == "ms") continue;
     if (s.name == "hits" && same_as_contacts(s, chart)) continue;
     report::PageChart& target = s.unit == "faces" ? faces : counts;
-    // A body that is not there, or a kind of event that never came, is no curve.
+    // There is no curve for a body that is missing, or for a kind of event that never came.
     if (std::none_of(s.values.begin(), s.values.end(), [](double v) { return v > 0; })) continue;
     target.series.push_back({std::string(s.name), chart.x, s.values});
   }
@@ -141,7 +142,7 @@ std::string faces_text(const Separation& s) {
   return render::group_digits(s.face_count[0]) + " + " + render::group_digits(s.face_count[1]) + " faces";
 }
 
-/// What was asked for, where it is less than the exact answer.
+/// Says what was asked for, if it is less than the exact answer.
 std::string coarse_words(const CollideRequest& request) {
   std::string limits;
   const auto add = [&](const std::string& limit) { limits += (limits.empty() ? "" : " and ") + limit; };
@@ -251,7 +252,8 @@ report::Page run_page(const RecordedRun& p, const DrawnFrames& drawn, const std:
                 two ? "Wrappers, event by event" : "The wrapper, event by event",
                 "Work and answer, event by event", true);
   if (!two)
-    by_event.resize(std::min<std::size_t>(by_event.size(), 1));  // one refinement an event: nothing to count
+    by_event.resize(std::min<std::size_t>(by_event.size(), 1));  // each event refines one region: there is
+                                                                 // nothing to count
   for (report::PageChart& c : by_event) page.charts.push_back(std::move(c));
   if (two && p.results != nullptr && !p.results->empty() && !p.results->back().regions.empty())
     page.tables.push_back(contact_table(p.results->back(), p.trace->steps.back().index));

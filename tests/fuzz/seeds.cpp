@@ -5,7 +5,7 @@
 #include "scenarios/bodies/shapes/hand_made.hpp"
 #include "scenarios/bodies/shapes/shapes.hpp"
 #include "tests/fuzz/feed.hpp"
-#include "tests/mesh/encode.hpp"
+#include "tests/mesh/io/encode.hpp"
 #include "tests/support/lrb_files.hpp"
 #include "tests/support/lrb_shapes.hpp"
 #include "tests/trace/runs.hpp"

@@ -10,7 +10,7 @@ namespace {
 struct HalfEdge {
   VertexId low, high;   ///< its ends
   VertexId tip;         ///< the face's third corner
-  std::uint32_t place;  ///< 3 face + side
+  std::uint32_t place;  ///< 3 * face + side
 };
 
 std::vector<HalfEdge> half_edges(const Mesh& mesh) {

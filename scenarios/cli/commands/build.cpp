@@ -27,7 +27,7 @@ struct BuildCommandOptions {
 
 constexpr double kMega = 1e6;
 
-/// Most memory that this process ever held, in bytes.
+/// Returns the largest amount of memory that this process ever held, in bytes.
 std::uint64_t peak_bytes() {
   rusage use{};
   getrusage(RUSAGE_SELF, &use);
@@ -71,7 +71,7 @@ int run_build(const BuildCommandOptions& o, const Globals& globals) {
   nlohmann::ordered_json j = bodies::body_figures(rep);
   j["seconds"] = seconds;
   j["peak_bytes"] = peak_bytes();
-  j["notes"] = notes;  // what was done to the mesh: nothing is, in silence
+  j["notes"] = notes;  // what was done to the mesh: nothing is done in silence
   ValidateReport report;
   if (o.no_validate) {
     j["valid"] = nullptr;

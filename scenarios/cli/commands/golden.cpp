@@ -27,10 +27,10 @@ std::string approve_command(const GoldenOptions& o, const std::string& name) {
 
 struct NamedGolden {
   std::string name;
-  std::optional<spec::Scenario> scenario;  ///< opened already
+  std::optional<spec::Scenario> scenario;  ///< nothing unless it has been opened
 };
 
-/// A golden by its own name, or by the scenario's: a shipped one's, or a file.
+/// Finds a golden by its own name, or by its scenario: the name of a shipped one, or a file.
 NamedGolden find_golden(const GoldenOptions& o, const std::string& word) {
   if (golden::has_golden(o.goldens, word)) return {word, std::nullopt};
   spec::Scenario scenario = spec::open_scenario(word);
@@ -63,7 +63,7 @@ std::string as_json(const golden::GoldenResult& r) {
   return one_line(line);
 }
 
-/// Tests one golden. What is damaged or refused fails alone: the others are tested all the same.
+/// Tests one golden. One that is damaged or refused fails by itself; the others are tested all the same.
 golden::GoldenResult test_one(const GoldenOptions& o, const Globals& globals, const NamedGolden& g,
                               bool report, std::optional<golden::GoldenRun>& run) {
   const std::string approve = approve_command(o, g.name);
@@ -79,7 +79,7 @@ golden::GoldenResult test_one(const GoldenOptions& o, const Globals& globals, co
   }
 }
 
-/// `report`: a page in any case, with every picture on it.
+/// `report`: writes a page in any case, with every picture on it.
 int run_test(const GoldenOptions& o, const Globals& globals, bool report) {
   const std::vector<NamedGolden> todo = goldens_to_test(o);
   std::vector<std::string> names;

@@ -48,7 +48,7 @@ Json mesh_json(const Mesh& mesh, const MeshReport& report) {
   j["genus"] = report.genus >= 0 ? Json(report.genus) : Json(nullptr);
   j["closed"] = report.closed;
   j["bounds_solid"] = report.bounds_solid;
-  j["buildable"] = report.when_turned().buildable();  // `build` turns it
+  j["buildable"] = report.when_turned().buildable();  // because `build` turns it
   j["queryable"] = report.queryable();
   j["findings"] = report.lines(mesh);
   return j;
@@ -137,7 +137,7 @@ int run_inspect(const InspectOptions& o, const Globals& globals) {
     const std::string picture =
         o.picture.empty() ? "out/" + std::filesystem::path(o.file).stem().string() + ".png" : o.picture;
     io::make_folder(std::filesystem::path(picture).parent_path().string());
-    run::draw_portrait(*rep, picture);
+    run::draw_body_sheet(*rep, picture);
     j["picture"] = picture;
   }
   note(globals, notes);

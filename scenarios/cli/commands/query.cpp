@@ -27,7 +27,7 @@ struct QueryOptions {
   std::uint32_t repeat = 0;
 };
 
-/// Median microseconds of `repeat` runs of one query, in a warm context.
+/// Returns the median time in microseconds of `repeat` runs of one query, in a warm context.
 double median_us(const LrbRep& a, const LrbRep& b, const Pose& pose, const QueryOptions& o,
                  QueryContext& context) {
   std::vector<double> us;
@@ -43,7 +43,7 @@ double median_us(const LrbRep& a, const LrbRep& b, const Pose& pose, const Query
   return us[middle];
 }
 
-/// PICTURE, or PICTURE with the pose's number where there are several.
+/// Returns PICTURE, or PICTURE with the pose's number if there are several poses.
 std::string picture_name(const std::string& path, std::size_t pose, std::size_t poses) {
   if (poses == 1) return path;
   const std::filesystem::path p(path);
@@ -51,8 +51,8 @@ std::string picture_name(const std::string& path, std::size_t pose, std::size_t 
       .string();
 }
 
-/// Touching bodies may overlap all the same (see Relation::touching). This is decided where it costs little:
-/// for as many pairs as take a few milliseconds, of a query that found all of them exactly.
+/// Touching bodies may overlap all the same (see Relation::touching). This is decided only where it costs
+/// little: for as many pairs as take a few milliseconds, in a query that found all of them exactly.
 constexpr std::size_t kMostPairsToDecide = 1000;
 
 bool tells_overlap(const CollideRequest& request) {
@@ -115,7 +115,7 @@ struct PoseLines {
   explicit PoseLines(const std::string& path)
       : file(printable_name(path)), poses(io::read_poses(path, &lines)) {}  // `lines` comes first
 
-  /// Calls ask(); an InputError gets the place of the pose before its message.
+  /// Calls ask(), and puts the place of the pose before the message of an InputError.
   template <class Ask>
   auto at(std::size_t i, const Ask& ask) const {
     try {
@@ -138,7 +138,7 @@ void check_queries(const LrbRep& a, const LrbRep& b, const PoseLines& list, cons
     list.at(i, [&] { check_query(a, Pose{}, b, list.poses[i]); });
 }
 
-/// Whether an answer depends on more than the bodies' faces: on wrappers.
+/// Returns true if an answer depends on more than the bodies' faces, namely on wrappers.
 bool needs_regions(const CollideRequest& request) {
   return request.recursion != Recursion::complete || request.is_coarse() || request.separation;
 }

@@ -39,7 +39,7 @@ std::string output_folder(const RenderOptions& o) {
              : o.folder;
 }
 
-/// The bodies that were recorded: named on the command line, or with these names beside the trace.
+/// Loads the bodies that were recorded: named on the command line, or found by their names beside the trace.
 std::vector<bodies::LoadedBody> find_bodies(const RenderOptions& o, const std::vector<std::string>& names) {
   std::vector<std::string> paths = o.bodies;
   if (paths.empty()) {
@@ -66,7 +66,7 @@ void check_events(const RenderOptions& o, const trace::Trace& trace,
   }
 }
 
-/// A trace holds pairs, not where they meet: the contact regions of each step are computed anew.
+/// Computes the contact regions of each step anew, because a trace holds pairs but not where they meet.
 std::vector<CollideResult> contacts_of(const trace::Trace& trace,
                                        const std::vector<bodies::LoadedBody>& bodies) {
   std::vector<CollideResult> out;
@@ -74,13 +74,13 @@ std::vector<CollideResult> contacts_of(const trace::Trace& trace,
     return out;
   CollideRequest request = trace.header.request;
   request.contacts = true;
-  request.separation = false;  // that the trace holds
+  request.separation = false;  // the trace holds it
   for (const trace::Step& step : trace.steps)
     out.push_back(collide(bodies[0].rep, step.pose_a, bodies[1].rep, step.pose_b, request));
   return out;
 }
 
-/// "12" and "a12" are region 12 of A, "b12" is one of B.
+/// Reads regions: "12" and "a12" are region 12 of A, "b12" is one of B.
 void isolate(const RenderOptions& o, const std::vector<bodies::LoadedBody>& bodies, spec::FrameSpec& spec) {
   for (const std::string& text : o.regions) {
     const bool named = text.starts_with('a') || text.starts_with('b');
@@ -115,7 +115,7 @@ spec::FrameSpec frame_spec(const RenderOptions& o, bool two_bodies) {
   return spec;
 }
 
-/// What frames of a crowd have none of.
+/// Throws for options that frames of a crowd do not have.
 void refuse_for_crowd(const RenderOptions& o) {
   const auto& at = o.picture.at;
   const std::pair<bool, const char*> none[] = {

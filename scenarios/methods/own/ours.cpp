@@ -28,7 +28,7 @@ class Ours : public Method {
       try {
         return std::make_unique<OurBody>(build_lrb(real_mesh(rep)));
       } catch (const InputError&) {
-        // Not closed or not manifold: then with the regions that it has.
+        // Not closed or not manifold: the body keeps the regions that it has.
       }
     }
     return std::make_unique<OurBody>(rep);
@@ -38,7 +38,8 @@ class Ours : public Method {
                      Mode mode) override {
     const LrbRep& rep_a = static_cast<const OurBody&>(a).rep;
     const LrbRep& rep_b = static_cast<const OurBody&>(b).rep;
-    request_.mode = mode == Mode::all_pairs ? mode : Mode::any_pair;  // what the peers are asked too
+    request_.mode = mode == Mode::all_pairs ? mode : Mode::any_pair;  // the question that the peers are
+                                                                      // asked, too
     NullProbe probe;
     const Stopwatch watch;
     CollideResult result = collide(rep_a, pose_a, rep_b, pose_b, request_, context_, probe);
@@ -63,8 +64,8 @@ double diagonal_of(const LrbRep& rep) {
   return box.diagonal().norm();
 }
 
-/// As the next of a few small steps: the query that keeps what it knows from one to the next. Only the last
-/// is timed.
+/// Asks the query that keeps what it knows from one step to the next: the pose is the last of a few small
+/// steps. Only that one is timed.
 class OursCoherent : public Method {
  public:
   std::unique_ptr<MethodBody> build(const LrbRep& rep) override { return std::make_unique<OurBody>(rep); }
@@ -76,7 +77,7 @@ class OursCoherent : public Method {
     request.mode = mode == Mode::all_pairs ? mode : Mode::any_pair;
     CoherentQuery coherent(rep_a, rep_b, request);
     constexpr int kSteps = 8;
-    constexpr double kStep = 1e-3;  // of A's diagonal
+    constexpr double kStep = 1e-3;  // as a share of A's diagonal
     const Eigen::Vector3d step = kStep * diagonal_of(rep_a) * Eigen::Vector3d(1, 2, 2) / 3;
     for (int i = kSteps; i > 0; --i) coherent.collide(pose_a, {pose_b.r, pose_b.t + i * step});
     const Stopwatch watch;
@@ -91,8 +92,8 @@ class OursCoherent : public Method {
   }
 };
 
-/// No more than was asked for: to a tolerance, or within a number of face tests. Its pairs are of wrappers'
-/// faces; what it gives is where these meet.
+/// Does no more than is asked for: to a tolerance, or within a number of face tests. Its pairs are of
+/// wrappers' faces; it answers with the points where these meet.
 class OursCoarse : public Method {
  public:
   explicit OursCoarse(bool by_tests) : by_tests_(by_tests) {}
@@ -122,7 +123,7 @@ class OursCoarse : public Method {
   }
 
  private:
-  /// Corners of the intersection; of faces that only come within rounding of each other, the middle.
+  /// Returns corners of the intersection; for faces that only come within rounding of each other, the middle.
   static void add_points(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
                          const SimplexPair& pair, std::vector<Eigen::Vector3d>& points) {
     Eigen::Vector3d p[3], q[3];

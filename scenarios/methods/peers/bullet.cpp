@@ -64,8 +64,8 @@ class Bullet : public Method {
  public:
   Bullet() : dispatcher_(&configuration_), world_(&dispatcher_, &broadphase_, &configuration_) {
     btGImpactCollisionAlgorithm::registerAlgorithm(&dispatcher_);
-    // That is not enough: contactPairTest() looks in a second table, and answers "nothing" if it finds
-    // nothing.
+    // That is not enough: contactPairTest() looks in a second table, and says that there is no contact if it
+    // finds no entry there.
     dispatcher_.registerClosestPointsCreateFunc(GIMPACT_SHAPE_PROXYTYPE, GIMPACT_SHAPE_PROXYTYPE, &create_);
   }
 

@@ -1,6 +1,6 @@
-// Embree's rtcCollide: two trees of boxes round triangles, descended against each other; what their leaves
-// hold comes by callback, and the triangles are tested there, as Embree's own example does. Its boxes live in
-// the world: when a body moves its tree is refitted, or built again, before it can be asked.
+// Embree's rtcCollide: two trees of boxes around triangles are descended against each other; a callback gets
+// the contents of leaves that meet and tests the triangles, as in Embree's own example. Its boxes are in the
+// world: when a body moves, its tree must be refitted or built again before it can be asked.
 #include "scenarios/methods/method.hpp"
 
 namespace lrb::methods {
@@ -125,7 +125,7 @@ class Embree : public Method {
 
   MethodAnswer query(const MethodBody& a, const Pose& pose_a, const MethodBody& b, const Pose& pose_b,
                      Mode mode) override {
-    // What moves are our own copies of a body.
+    // Our own copies of the bodies are moved.
     auto& body_a = const_cast<EmbreeBody&>(static_cast<const EmbreeBody&>(a));
     auto& body_b = const_cast<EmbreeBody&>(static_cast<const EmbreeBody&>(b));
     body_a.move_to(pose_a);

@@ -20,7 +20,7 @@ constexpr int kRank = 70;
 namespace lrb::methods {
 namespace {
 
-constexpr int kMostContacts = 0xffff;  // as many as its flags can ask for
+constexpr int kMostContacts = 0xffff;  // the largest number that its flags can ask for
 
 struct OdeBody : MethodBody {
   explicit OdeBody(const Triangles& t) {

@@ -11,7 +11,7 @@
 namespace lrb::stability {
 namespace {
 
-// ---- the grid: drawn in units of one cell, x to the right, y up, the first row's top at 0
+// ---- the grid. Units are those of one cell, x to the right, y up, with the first row's top at 0
 
 constexpr double kCellWidth = 17, kCellHeight = 10.5;  // millimetres
 constexpr double kLeft = 2.9, kBottom = 1.5;
@@ -23,7 +23,7 @@ constexpr render::Rgba kTimedOut{160, 69, 138};
 constexpr render::Rgba kRefused{154, 160, 166};
 constexpr render::Rgba kAbsent{247, 247, 246};
 constexpr render::Rgba kOnlyRefused{228, 230, 232};
-/// As on the page: pale blue where nothing fails, then ever more orange.
+/// Colours as on the page: pale blue where nothing fails, then ever more orange.
 constexpr std::array<render::Rgba, 5> kLevels = {render::Rgba{226, 238, 246}, render::Rgba{253, 241, 220},
                                                  render::Rgba{251, 220, 174}, render::Rgba{245, 180, 107},
                                                  render::Rgba{232, 138, 60}};
@@ -32,7 +32,7 @@ std::string colour(render::Rgba c) {
   return std::to_string((static_cast<unsigned>(c.r) << 16) + (static_cast<unsigned>(c.g) << 8) + c.b);
 }
 
-/// Rectangles and texts, and the commands that draw them in this order.
+/// Collects rectangles and texts, and the commands that draw them in this order.
 class Sheet {
  public:
   void rect(double x0, double y0, double x1, double y1, render::Rgba c) {
@@ -69,7 +69,7 @@ class Sheet {
   std::array<std::vector<std::string>, kStyles> texts_;
 };
 
-/// Breaks at spaces, and at underscores where a word is longer than a line.
+/// Breaks text at spaces, and at underscores where a word is longer than a line.
 std::vector<std::string> wrap(const std::string& text, std::size_t width) {
   std::vector<std::string> lines;
   std::istringstream in(text);
@@ -128,7 +128,7 @@ void add_cell(Sheet& sheet, const Cell& cell, double x, double y) {
   mark(s.crashed, "\u2715");
   mark(s.timed_out, "\u25f7");
   mark(s.refused, "\u2298");
-  // What does not fit beside the failures has a line of its own.
+  // What does not fit beside the failures gets a line of its own.
   constexpr std::size_t kBeside = 14;  // bytes; a mark's sign has three
   sheet.text(x + 0.95, y + (failures.size() + marks.size() > kBeside ? 0.61 : 0.8), Sheet::small_right,
              marks);
@@ -184,7 +184,7 @@ void add_legend(Sheet& sheet, double y, double columns) {
 
 constexpr int kProfileColumns = 4;
 
-/// Lines that differ in colour, dash and mark.
+/// Returns the style of line i; lines differ in colour, dash and mark.
 std::string line_style(std::size_t i) {
   static constexpr std::array<const char*, 8> kColours = {"#0072b2", "#d55e00", "#009e73", "#cc79a7",
                                                           "#1d1f22", "#56b4e9", "#e69f00", "#7a5195"};
@@ -278,7 +278,7 @@ report::Gnuplot profile_chart(const Grid& grid) {
   std::string plots;
   for (std::size_t f = 0; f < grid.families.size(); ++f) {
     const int row = static_cast<int>(f) / kProfileColumns, column = static_cast<int>(f) % kProfileColumns;
-    // Of the panel: what axis, title and labels need at its sides.
+    // The space that axis, title and labels need at the panel's sides.
     constexpr double kLeftSide = 0.045, kPanelWidth = (1 - kLeftSide) / kProfileColumns;
     plots += margins(kLeftSide + (column + 0.1) * kPanelWidth, kLeftSide + (column + 0.97) * kPanelWidth,
                      1 - (row + 0.8) * kPanelHeight / chart.height,
@@ -286,7 +286,7 @@ report::Gnuplot profile_chart(const Grid& grid) {
     plots += panel_heading(grid.families[f], column == 0);
     for (std::size_t line = 0; line < present.size(); ++line) {
       const std::string name = "f" + std::to_string(f) + "m" + std::to_string(present[line]);
-      // Side by side where lines would hide each other.
+      // Points stand side by side where lines would hide each other.
       constexpr double kApart = 0.07;
       const double shift = kApart * (static_cast<double>(line) - static_cast<double>(present.size() - 1) / 2);
       chart.add_data(name, profile_rows(grid.at(f, present[line]), shift));
