@@ -156,10 +156,11 @@ std::uint32_t FacePairs::build_hub(std::vector<FaceId>& faces, std::size_t first
 
 void FacePairs::for_each(const Visit& visit, Workers& workers) const {
   if (tree_) {
+    const auto boxes_meet = [&](std::uint32_t f, std::uint32_t g) { visit(FaceId(f), FaceId(g)); };
     if (workers.count() == 1)
-      tree_->for_each_pair(visit);
+      tree_->for_each_pair(boxes_meet);
     else
-      tree_->for_each_pair(visit, workers);
+      tree_->for_each_pair(boxes_meet, workers);
     return;
   }
   if (nodes_.empty()) return;
