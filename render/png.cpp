@@ -19,10 +19,11 @@ namespace {
 
 using Bytes = std::vector<std::uint8_t>;
 
-/// Level 1 without row filters: rendered frames are large flat areas, where more effort buys next to nothing.
+/// Level 1 without row filters: rendered frames have large flat areas, where more effort gains next to
+/// nothing.
 constexpr int kZlibLevel = 1;
 constexpr double kInchesPerMetre = 1 / 0.0254;
-/// What chunks beside the pixels may take: texts of ours are far below, a file of millions of them is refused.
+/// Limits of chunks beside the pixels: our texts stay far below; a file with millions of chunks is refused.
 constexpr png_alloc_size_t kLongestChunk = png_alloc_size_t{1} << 20;
 constexpr png_uint_32 kMostChunks = 100;
 
@@ -41,8 +42,8 @@ struct Complaint {
 
 void keep_silent(png_structp /*png*/, png_const_charp /*text*/) {}
 
-/// Returns whether `body`, which calls libpng, came to its end. Where libpng finds an error it leaves by longjmp: so nothing
-/// in `body` may need a destructor.
+/// Calls `body`, which calls libpng. Returns false if it did not come to its end: where libpng finds an error
+/// it leaves by longjmp, so nothing in `body` may need a destructor.
 template <class Body>
 bool succeeds(png_structp png, const Body& body) {
   if (setjmp(png_jmpbuf(png)) != 0) return false;  // NOLINT(cert-err52-cpp): libpng's way
@@ -50,7 +51,7 @@ bool succeeds(png_structp png, const Body& body) {
   return true;
 }
 
-/// Text that is plain ASCII becomes tEXt, other text (UTF-8) iTXt.
+/// Makes a text chunk: plain ASCII becomes tEXt, other text (UTF-8) iTXt.
 png_text as_chunk(const PngText& text) {
   const auto& [key, value] = text;
   if (key.empty() || key.size() > 79)
@@ -143,10 +144,10 @@ class Reader {
   }
   std::uint64_t width() const { return png_get_image_width(png_, info_); }
   std::uint64_t height() const { return png_get_image_height(png_, info_); }
-  /// Returns the bytes of the rows as they are compressed, at least.
+  /// Returns a lower bound on the length of the rows before compression, in bytes.
   std::uint64_t raw_bytes() const { return height() * (1 + std::uint64_t{png_get_rowbytes(png_, info_)}); }
 
-  /// Reads all of any kind of PNG, to the end of the file: `rows` of RGBA, 8 bits each.
+  /// Reads a PNG of any kind to the end of the file: `rows` of RGBA, 8 bits each.
   bool read_pixels(std::vector<png_bytep>& rows) {
     return succeeds(png_, [&] {
       png_set_expand(png_);
@@ -186,7 +187,7 @@ class Reader {
   png_infop info_ = nullptr;
 };
 
-/// Refuses a file whose picture would take far more memory than its bytes can hold, before it does.
+/// Refuses, before any memory is taken, a picture that would take far more than its file can hold.
 void check_size(const Reader& reader, std::size_t file_bytes, const std::string& name,
                 std::uint64_t most_pixels) {
   const std::string size = std::to_string(reader.width()) + "x" + std::to_string(reader.height()) + " pixels";

@@ -57,9 +57,10 @@ void check_format(const TraceNode& metadata, const std::string& name, std::strin
 
 namespace {
 
-void read_value(const TraceNode& node, std::vector<std::uint32_t>& values) {
+template <class Number>  // or an id
+void read_value(const TraceNode& node, std::vector<Number>& values) {
   const std::size_t count = node.array_size();
-  for (std::size_t i = 0; i < count; ++i) values.push_back(node.at(i).integer<std::uint32_t>());
+  for (std::size_t i = 0; i < count; ++i) values.emplace_back(node.at(i).integer<std::uint32_t>());
 }
 
 void read_value(const TraceNode& node, Separation& s) {

@@ -58,7 +58,7 @@ bool overlap_2d(const double* const a[2], const double* const b[2]) {
   return forward ? a[0][k] < b[1][k] && b[0][k] < a[1][k] : a[0][k] > b[1][k] && b[0][k] > a[1][k];
 }
 
-/// Which corners of a face with very many corners are neighbours.
+/// Tells which corners of a face with very many corners are neighbours.
 class Ring {
  public:
   explicit Ring(std::span<const VertexId> corners) {

@@ -1,6 +1,6 @@
 #pragma once
-/// The commands of `lrbscope`, one file each in commands/ and measuring/. stdout is for data, stderr for people.
-/// Exit codes: 0 ok, 1 mismatch, 2 usage or input, 3 environment.
+/// The commands of `lrbscope`, one file each in commands/ and measuring/. stdout is for data, stderr for
+/// people. Exit codes: 0 ok, 1 mismatch, 2 usage or input, 3 environment.
 
 #include <functional>
 #include <string>
@@ -26,9 +26,9 @@ struct Command {
   bool parses_itself = false;  ///< run() is called before any of its options is parsed
 };
 
-/// Adds a command to the program. A file NAME.cpp in commands/ defines `std::vector<CommandEntry> NAME_commands()`, and
-/// lrbscope has them: they need no other list (cmake/registry.cmake). Those in measuring/ are lrbscope-measure's, and stand
-/// in measuring_words.hpp, too.
+/// Adds a command to the program. A file NAME.cpp in commands/ defines `std::vector<CommandEntry>
+/// NAME_commands()`, and lrbscope has them: they need no other list (cmake/registry.cmake). Those in
+/// measuring/ are lrbscope-measure's, and stand in measuring_words.hpp, too.
 struct CommandEntry {
   Command (*add)(CLI::App& root, const Globals& globals) = nullptr;
   int rank = 1000;  ///< the commands' order in --help: by rank, then by file

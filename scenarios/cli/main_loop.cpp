@@ -127,7 +127,7 @@ int parse_and_run(int argc, char** argv) {
   Globals globals;
   globals.command_line = command_line(argc, argv);
   globals.arguments = argv;
-  app.add_flag("-q,--quiet", globals.quiet, "Nothing on stderr but errors");
+  app.add_flag("-q,--quiet", globals.quiet, "Print nothing to stderr but errors");
   std::vector<Command> commands;
   for (const CommandEntry& entry : registered_commands()) commands.push_back(entry.add(app, globals));
   for (const Command& command : commands)

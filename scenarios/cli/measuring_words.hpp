@@ -1,6 +1,6 @@
 #pragma once
-/// The commands that measure. They make up a program of their own, lrbscope-measure, that lrbscope starts for them: it takes
-/// as long to compile as all the rest, and most users never need it.
+/// The commands that measure. They make up a program of their own, lrbscope-measure, that lrbscope starts for
+/// them: it takes as long to compile as all the rest, and most users never need it.
 
 #include <array>
 #include <string>
@@ -17,23 +17,25 @@ struct MeasuringWord {
   int rank;  ///< as in CommandEntry
 };
 
-/// In the order of their names.
+/// The commands, in the order of their names.
 inline constexpr std::array kMeasuringWords = {
-    MeasuringWord{"bench",
-                  "Ours beside other engines, on the same bodies and poses: how many times as long they take",
-                  130},
     MeasuringWord{
-        "chart", "Speed against accuracy: every method at every setting, exact ones and approximations", 140},
+        "bench",
+        "Compare our query with other engines on the same bodies and poses: how many times as long they take",
+        130},
+    MeasuringWord{
+        "chart", "Chart speed against accuracy: every method at every setting, exact ones and approximations",
+        140},
     MeasuringWord{
         "paper",
-        "The paper's experiment: its tables and figures, close-ups of single collisions, and the same "
+        "Repeat the paper's experiment: its tables and figures, close-ups of single collisions, and the same "
         "on meshes",
         80},
     MeasuringWord{"stability",
-                  "Families of hard cases in the hands of ours and other engines: who fails where", 100},
+                  "Put families of hard cases to our query and to other engines: who fails where", 100},
 };
 
-/// Returns the line of a command that is in the table: anything else does not compile.
+/// Returns the line of a command in the table; a word that is not there fails to compile.
 consteval MeasuringWord measuring_word(std::string_view name) {
   for (const MeasuringWord& word : kMeasuringWords)
     if (word.name == name) return word;

@@ -88,7 +88,7 @@ class Reader {
         node.at("name").fail("the name of a kind of bodies");
       kind.count = node.at("count").integer<std::uint32_t>(spec::kMostCrowdBodies);
       if (kind.count == 0 || names_.size() + kind.count > spec::kMostCrowdBodies)
-        node.at("count").fail("1 body at least and 10000 in all at most");
+        node.at("count").fail("at least 1 body of a kind, and at most 10000 in all");
       for (std::uint32_t i = 1; i <= kind.count; ++i)
         if (!names_.emplace(kind.name + " " + std::to_string(i), names_.size()).second)
           node.at("name").fail("another name for each kind");
@@ -103,7 +103,7 @@ class Reader {
     const auto body = names_.find(name);
     if (body == names_.end())
       throw InputError(t_.file + ": a query names " + printable_name(name) +
-                       ", which is no body; the trace is damaged: record it again");
+                       ", but there is no such body; the trace is damaged: record it again");
     return static_cast<std::uint32_t>(body->second);
   }
 
@@ -112,7 +112,7 @@ class Reader {
     for (const Slice& s : slices_) {
       if (s.step >= queries_.size())
         throw InputError(t_.file + ": a query is of step " + std::to_string(s.step) +
-                         ", which there is not; the trace is damaged: record it again");
+                         ", which does not exist; the trace is damaged: record it again");
       const BodyPair bodies{body_called(s.a), body_called(s.b)};
       t_.answers[s.step].push_back({bodies, s.relation, s.pairs, s.fingerprint});
     }

@@ -11,7 +11,7 @@ namespace lrb::spec {
 /// Returns the names NAME of the shipped files "NAME<ending>", in alphabetical order.
 std::vector<std::string> shipped_names(std::string_view ending);
 
-/// The "purpose" that the shipped file "NAME<ending>" states.
+/// Returns the "purpose" that the shipped file "NAME<ending>" states.
 std::string shipped_purpose(const std::string& name, std::string_view ending);
 
 struct NamedText {

@@ -181,7 +181,7 @@ TEST_CASE("what cannot be built is refused with its offenders, on one line") {
   CHECK(message(turned_inside_out(icosphere(1))).find("inside out") != std::string::npos);
   Mesh flipped = icosphere(1);
   std::swap(flipped.face_vertices[0], flipped.face_vertices[1]);
-  CHECK(message(flipped).find("run along their edge in one direction") != std::string::npos);
+  CHECK(message(flipped).find("disagree on which side is outside") != std::string::npos);
   Mesh flat = box();
   flat.vertices[7] = flat.vertices[6];
   CHECK(message(flat).find("no area") != std::string::npos);

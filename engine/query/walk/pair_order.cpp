@@ -38,15 +38,16 @@ struct Packing {
 
 /// Returns the packing for some pairs; no bits if they are in order already, without repetitions.
 Packing packing_of(std::span<const SimplexPair> pairs) {
-  SimplexPair all{0, 0};  // all bits that occur
+  std::uint32_t all_a = 0, all_b = 0;  // all bits that occur
   bool in_order = true;
   for (std::size_t i = 0; i < pairs.size(); ++i) {
     in_order &= i == 0 || pairs[i - 1] < pairs[i];
-    all = {all.a | pairs[i].a, all.b | pairs[i].b};
+    all_a |= pairs[i].a;
+    all_b |= pairs[i].b;
   }
   if (in_order) return {0, 0};
-  const auto bits_b = static_cast<unsigned>(std::bit_width(all.b));
-  return {bits_b, static_cast<unsigned>(std::bit_width(all.a)) + bits_b + kMeetBits};
+  const auto bits_b = static_cast<unsigned>(std::bit_width(all_b));
+  return {bits_b, static_cast<unsigned>(std::bit_width(all_a)) + bits_b + kMeetBits};
 }
 
 std::uint64_t key_of(const SimplexPair& p, unsigned bits_b) {

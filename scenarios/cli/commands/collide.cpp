@@ -107,14 +107,15 @@ int run_collide(const CollideOptions& o, const Globals& globals) {
 }
 
 Command add_collide(CLI::App& root, const Globals& globals) {
-  CLI::App* app =
-      root.add_subcommand("collide", "Two bodies of yours: an approach until contact, drawn and explained");
+  CLI::App* app = root.add_subcommand(
+      "collide", "Let two bodies of yours approach each other until they touch, drawn and explained");
   const auto o = std::make_shared<CollideOptions>();
-  app->add_option("A", o->a, "Mesh or .lrb file; stays put")->required();
+  app->add_option("A", o->a, "Mesh or .lrb file; does not move")->required();
   app->add_option("B", o->b, "Mesh or .lrb file; moves")->required();
   app->add_option("-o,--output", o->folder, "Folder to write to [out/A-B]")->type_name("DIR");
   auto* poses =
-      app->add_option("--poses", o->poses, "Poses of B, one a step: lines of 12 numbers")->type_name("FILE");
+      app->add_option("--poses", o->poses, "File with the pose of B for each step: lines of 12 numbers")
+          ->type_name("FILE");
   app->add_option("--from", o->from, "Direction that B comes from, seen from A")
       ->type_name("X,Y,Z")
       ->excludes(poses);

@@ -152,7 +152,7 @@ CLI::App* add_part(CLI::App& golden, const std::string& name, const std::string&
                    const std::shared_ptr<GoldenOptions>& o, const std::string& none) {
   CLI::App* app = golden.add_subcommand(name, what);
   app->add_option("SCENARIO", o->scenarios, "Shipped scenarios, or JSON files [" + none + "]");
-  app->add_option("--goldens", o->goldens, "Folder of what is approved")
+  app->add_option("--goldens", o->goldens, "Folder with what is approved")
       ->type_name("DIR")
       ->capture_default_str();
   return app;
@@ -162,27 +162,30 @@ void add_output(CLI::App& app, const std::shared_ptr<GoldenOptions>& o) {
   app.add_option("-o,--output", o->folder, "Folder for the page and for what differs")
       ->type_name("DIR")
       ->capture_default_str();
-  app.add_flag("--json", o->json, "A line of JSON per scenario");
+  app.add_flag("--json", o->json, "Print a line of JSON for each scenario");
 }
 
 Command add_golden(CLI::App& root, const Globals& globals) {
-  CLI::App* app = root.add_subcommand("golden", "Runs against approved traces and pictures");
+  CLI::App* app = root.add_subcommand("golden", "Compare runs with approved traces and pictures");
   const auto o = std::make_shared<GoldenOptions>();
   app->require_subcommand(1);
-  CLI::App* test = add_part(
-      *app, "test", "Exit code 1 where events, counters or pictures differ; then a page", o, "all goldens");
+  CLI::App* test =
+      add_part(*app, "test", "Compare; if events, counters or pictures differ, write a page and exit with 1",
+               o, "all goldens");
   add_output(*test, o);
-  CLI::App* approve =
-      add_part(*app, "approve", "Makes today's runs the goldens, where they differ", o, "all goldens");
-  approve->add_option("--variant", o->variant, "Put pictures that differ beside the approved ones")
+  CLI::App* approve = add_part(
+      *app, "approve", "Approve today's runs where they differ: make them the goldens", o, "all goldens");
+  approve
+      ->add_option("--variant", o->variant,
+                   "Put pictures that differ beside the approved ones, under this name")
       ->type_name("NAME");
-  approve->add_option("--size", o->size, "Of the pictures [480 wide, of the scenario's shape]")
+  approve->add_option("--size", o->size, "Size of the pictures [480 wide, of the scenario's shape]")
       ->type_name("WxH");
-  approve->add_option("--frames", o->frames, "Pictures, evenly chosen from the scenario's [3]")
+  approve->add_option("--frames", o->frames, "Number of pictures, evenly chosen from the scenario's [3]")
       ->check(CLI::Range(1, 1000))
       ->type_name("N");
   CLI::App* report =
-      add_part(*app, "report", "The same as test, with a page of every picture", o, "all goldens");
+      add_part(*app, "report", "As test, but always with a page, of every picture", o, "all goldens");
   add_output(*report, o);
   return {app, [o, &globals, test, report] {
             if (test->parsed()) return run_test(*o, globals, false);

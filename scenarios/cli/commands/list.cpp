@@ -82,10 +82,10 @@ int run_list(const ListOptions& o) {
 
 Command add_list(CLI::App& root, const Globals&) {
   CLI::App* app = root.add_subcommand(
-      "list", "The shipped scenarios, crowds and experiments, or the generators and their parameters");
+      "list", "List the shipped scenarios, crowds and experiments, or the generators and their parameters");
   const auto o = std::make_shared<ListOptions>();
-  app->add_flag("--generators", o->generators, "The generators of bodies instead");
-  app->add_flag("--json", o->json, "As JSON");
+  app->add_flag("--generators", o->generators, "List the generators of bodies instead");
+  app->add_flag("--json", o->json, "Print JSON");
   return {app, [o] { return run_list(*o); }};
 }
 

@@ -171,20 +171,22 @@ int run_query(const QueryOptions& o, const Globals& globals) {
 }
 
 Command add_query(CLI::App& root, const Globals& globals) {
-  CLI::App* app = root.add_subcommand("query", "Exact answers for a list of poses of B, one JSON line each");
+  CLI::App* app =
+      root.add_subcommand("query", "Answer exactly for each pose of B in a list, one line of JSON each");
   const auto o = std::make_shared<QueryOptions>();
   app->add_option("A", o->a, "Mesh or .lrb file; stays put")->required();
   app->add_option("B", o->b, "Mesh or .lrb file; the poses are applied to it")->required();
-  app->add_option("--poses", o->poses, "File of lines of 12 numbers (row-major 3x4)")->required();
+  app->add_option("--poses", o->poses, "File with poses: lines of 12 numbers (3x4, row by row)")->required();
   add_request_options(*app, o->request);
   add_coarse_options(*app, o->request);
   auto* separation = app->add_flag("--separation", o->request.separation,
-                                   "For separate bodies, the coarsest wrappers that prove it");
-  app->add_option("--draw-separation", o->draw, "Draw these wrappers: the picture's name")
+                                   "Add, for separate bodies, the coarsest wrappers that prove it");
+  app->add_option("--draw-separation", o->draw, "Draw these wrappers to this picture")
       ->needs(separation)
       ->type_name("PNG");
   app->add_flag("--pairs", o->pairs, "Add the sorted list of pairs");
-  app->add_option("--repeat", o->repeat, "Add the median microseconds of N repeats of each pose's query")
+  app->add_option("--repeat", o->repeat,
+                  "Repeat each pose's query N times, and add the median time in microseconds")
       ->check(CLI::Range(1, 1000000))
       ->type_name("N");
   return {app, [o, &globals] { return run_query(*o, globals); }};

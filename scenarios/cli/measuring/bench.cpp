@@ -77,7 +77,8 @@ Command add_bench(CLI::App& root, const Globals& globals) {
   add_measure_options(*app, *o);
   app->add_option(
          "--faces", o->faces,
-         "Sizes of generated bodies: all kinds of the first, rocks of the others; 0: none [20000 100000]")
+         "Numbers of faces of the bodies to generate: every kind in the first size, rocks in the others; 0: none "
+         "[20000 100000]")
       ->check(CLI::Range(0, 2000000))
       ->type_name("N");
   return {app, [o, &globals] { return run_bench(*o, globals); }};

@@ -123,13 +123,14 @@ Command add_chart(CLI::App& root, const Globals& globals) {
   const auto o = std::make_shared<ChartOptions>();
   app->require_subcommand(0, 1);
   CLI::App* measures =
-      app->add_subcommand("measure", "Ask only: raw records, added to what is there")->fallthrough();
-  CLI::App* draws = app->add_subcommand("draw", "From the records: errors, charts, page")->fallthrough();
+      app->add_subcommand("measure", "Only measure: add raw records to those in the folder")->fallthrough();
+  CLI::App* draws =
+      app->add_subcommand("draw", "Only draw: errors, charts and page from the records")->fallthrough();
   add_measure_options(*app, *o);
-  app->add_option("--faces", o->faces, "Size of the generated bodies; 0: none [2000]")
+  app->add_option("--faces", o->faces, "Number of faces of the bodies to generate; 0: none [2000]")
       ->check(CLI::Range(0, 200000))
       ->type_name("N");
-  app->add_flag("!--no-scenes", o->scenes, "Do not play the scenes that points lead to");
+  app->add_flag("!--no-scenes", o->scenes, "Do not run the scenarios that the chart's points link to");
   return {app, [o, &globals, measures, draws] {
             return run_chart(*o, !draws->parsed(), !measures->parsed(), globals);
           }};

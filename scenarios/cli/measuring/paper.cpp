@@ -79,8 +79,7 @@ std::vector<paper::ContactStep> sweep_objects(std::span<const paper::PaperObject
 /// the experiment has none. Throws InputError if there is nothing to cut into shards.
 void settle(PaperOptions& o, paper::PaperExperiment& experiment) {
   if (!experiment.collides() && (!o.shard.empty() || !o.merge.empty()))
-    throw InputError("experiment " + experiment.name +
-                     ": nothing collides in it; leave out --shard and --merge");
+    throw InputError("experiment " + experiment.name + ": has no collisions; leave out --shard and --merge");
   if (!o.merge.empty()) {
     const paper::ShardFile whole = paper::read_shard_files(o.merge);
     experiment.protocol = whole.protocol;
@@ -144,28 +143,29 @@ Command add_paper(CLI::App& root, const Globals& globals) {
   CLI::App* app = add_measuring(root, measuring_word("paper"));
   const auto o = std::make_shared<PaperOptions>();
   app->add_option("-o,--output", o->folder, "Folder to write to")->type_name("DIR")->capture_default_str();
-  app->add_option(
-         "--experiment", o->experiment,
-         "Objects, protocol and what is reported: paper, table1, table2, figures, close_up, or a JSON file")
+  app->add_option("--experiment", o->experiment,
+                  "What to do and report: paper, table1, table2, figures, close_up, or a JSON file")
       ->type_name("NAME|FILE")
       ->capture_default_str();
-  app->add_flag("--print", o->print, "Print the experiment of that name instead: to be changed and run");
-  app->add_option("--collisions", o->collisions, "Of A with each object [100]")
+  app->add_flag("--print", o->print,
+                "Print the experiment of that name, to start one of your own from, and do nothing else");
+  app->add_option("--collisions", o->collisions, "Number of collisions of A with each object [100]")
       ->check(CLI::Range(1u, paper::kMostCollisions))
       ->type_name("N");
   app->add_option("--step", o->step, "Time step as a share of the diagonal [0.005]")
       ->check(CLI::Range(paper::kLeastStep, paper::kMostStep))
       ->type_name("SHARE");
-  app->add_option("--steps-after", o->steps_after, "Time steps counted after the first contact [5]")
+  app->add_option("--steps-after", o->steps_after, "Number of time steps counted after the first contact [5]")
       ->check(CLI::Range(0u, paper::kMostStepsAfter))
       ->type_name("N");
-  app->add_option("--seed", o->seed, "Of directions and rotations [1]")->type_name("N");
-  app->add_option("--jobs", o->jobs, "Threads; the result does not depend on it")
+  app->add_option("--seed", o->seed, "Seed of directions and rotations [1]")->type_name("N");
+  app->add_option("--jobs", o->jobs, "Number of threads; the result does not depend on it")
       ->check(CLI::Range(1u, 1024u))
       ->type_name("N")
       ->capture_default_str();
   CLI::Option* shard =
-      app->add_option("--shard", o->shard, "Part i (from 0) of n of the collisions: writes records alone")
+      app->add_option("--shard", o->shard,
+                      "Run only part i (from 0) of n of the collisions, and write only records")
           ->type_name("i/n");
   CLI::Option* merge = app->add_option("--merge", o->merge,
                                        "Report the records of all shards instead of computing any; with the "

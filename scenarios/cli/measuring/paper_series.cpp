@@ -10,15 +10,17 @@ namespace lrb::cli {
 
 void add_series_options(CLI::App& app, PaperSeriesOptions& o) {
   app.add_option("--meshes", o.meshes,
-                 "Bodies to collide at several resolutions of each, or folders of them; else two of our own")
+                 "Meshes, or folders of meshes, to collide at several resolutions [two bodies of our own]")
       ->type_name("PATH...");
-  app.add_option("--resolutions", o.resolutions.most,
-                 "Of each body, each with half of the faces of the one before; 0 leaves this part out")
+  app.add_option(
+         "--resolutions", o.resolutions.most,
+         "Number of resolutions of each body, each with half as many faces as the one before; 0 leaves this "
+         "part out")
       ->check(CLI::Range(0, 30))
       ->type_name("N")
       ->capture_default_str();
   app.add_option("--subdivide", o.resolutions.subdivisions,
-                 "Times that each body is subdivided first; each makes four faces of one")
+                 "How often to subdivide each body first; each time replaces a face by four")
       ->check(CLI::Range(0, 4))
       ->type_name("N")
       ->capture_default_str();

@@ -176,23 +176,26 @@ Command add_stability(CLI::App& root, const Globals& globals) {
   CLI::App* app = add_measuring(root, measuring_word("stability"));
   const auto o = std::make_shared<StabilityOptions>();
   app->add_option("-o,--output", o->folder, "Folder to write to [out/stability]")->type_name("DIR");
-  app->add_option("--family", o->families, "These families alone")->type_name("NAME");
-  app->add_option("--method", o->methods, "These methods alone")->type_name("NAME");
-  app->add_option("--dial", o->dial, "This setting of the families' dials alone, 0 benign to 10 degenerate")
+  app->add_option("--family", o->families, "Only these families")->type_name("NAME");
+  app->add_option("--method", o->methods, "Only these methods")->type_name("NAME");
+  app->add_option("--dial", o->dial,
+                  "Only this setting of the families' dials, from 0 (benign) to 10 (degenerate)")
       ->check(CLI::Range(0, kDialSettings - 1))
       ->type_name("K");
-  app->add_option("--cases", o->cases, "Cases for each setting [100]")
+  app->add_option("--cases", o->cases, "Number of cases for each setting [100]")
       ->check(CLI::Range(1, 1000000))
       ->type_name("N");
-  app->add_option("--seed", o->seed, "Of the cases [1]")->check(CLI::NonNegativeNumber)->type_name("S");
-  app->add_option("--jobs", o->jobs, "Processes at a time [2]")->check(CLI::Range(1, 256))->type_name("N");
+  app->add_option("--seed", o->seed, "Seed of the cases [1]")->check(CLI::NonNegativeNumber)->type_name("S");
+  app->add_option("--jobs", o->jobs, "Number of processes at a time [2]")
+      ->check(CLI::Range(1, 256))
+      ->type_name("N");
   app->add_option("--timeout", o->timeout, "Seconds that a method has for a case [5]")
       ->check(CLI::Range(0.1, 3600.0))
       ->type_name("S");
-  app->add_option("--only", o->only, "Ask this case again and say what came out")
+  app->add_option("--only", o->only, "Ask this case again and print what came out")
       ->check(CLI::NonNegativeNumber)
       ->type_name("CASE");
-  app->add_flag("--pairs", o->pairs, "With --only: the pairs expected and answered");
+  app->add_flag("--pairs", o->pairs, "With --only: print the pairs expected and answered");
   return {app, [o, &globals] { return run_stability(*o, globals); }};
 }
 

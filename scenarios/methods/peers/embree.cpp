@@ -103,9 +103,10 @@ struct Candidates {
     self.tests += count;
     Eigen::Vector3d p[3], q[3];
     for (unsigned i = 0; i < count; ++i) {
-      self.a->corners(found[i].primID0, p);
-      self.b->corners(found[i].primID1, q);
-      if (plain_triangles_meet(p, q)) self.pairs.push_back({found[i].primID0, found[i].primID1});
+      const SimplexPair pair{SimplexId(found[i].primID0), SimplexId(found[i].primID1)};
+      self.a->corners(pair.a, p);
+      self.b->corners(pair.b, q);
+      if (plain_triangles_meet(p, q)) self.pairs.push_back(pair);
     }
   }
 };

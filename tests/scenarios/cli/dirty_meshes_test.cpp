@@ -37,15 +37,15 @@ Mesh figure_eight() {
 }
 
 Mesh moebius() {
-  constexpr VertexId kSteps = 9;
+  constexpr int kSteps = 9;
   Mesh m;
-  for (VertexId i = 0; i < kSteps; ++i) {
+  for (int i = 0; i < kSteps; ++i) {
     const double u = 2 * std::numbers::pi * i / kSteps;
     for (const double w : {-0.3, 0.3})
       m.vertices.emplace_back((1 + w * std::cos(u / 2)) * std::cos(u),
                               (1 + w * std::cos(u / 2)) * std::sin(u), w * std::sin(u / 2));
     const bool last = i + 1 == kSteps;  // half a turn: the two sides change places
-    const VertexId a = 2 * i, b = a + 1, c = last ? 1 : a + 2, d = last ? 0 : a + 3;
+    const VertexId a(2 * i), b(a + 1), c(last ? 1 : a + 2), d(last ? 0 : a + 3);
     m.add_face(std::array{a, c, b});
     m.add_face(std::array{b, c, d});
   }
@@ -71,7 +71,7 @@ std::vector<Row> rows_3d() {
   const Mesh ball = icosphere(1);
   const auto n = static_cast<VertexId>(ball.vertices.size());  // 42; 80 faces
   const Mesh twice = several({ball, ball});
-  const std::string meet = "two faces meet outside shared parts (";
+  const std::string meet = "two faces meet outside their shared edges and corners (";
   return {
       {"open",
        without_faces(ball, {7}),
@@ -81,7 +81,7 @@ std::vector<Row> rows_3d() {
       {"open strip, one-sided",
        moebius(),
        {"an edge has a face on one side only (18 times)",
-        "two neighbouring faces run along their edge in one direction (1 time): face 0 and 17"},
+        "two neighbouring faces disagree on which side is outside (1 time): face 0 and 17"},
        Build::refused,
        kNone},
       {"crosses itself", turned_inside_out(figure_eight()), {meet}, Build::done, kHeld, {2.6, 0, 0}},
@@ -177,7 +177,7 @@ std::vector<Row> rows_3d() {
        kHeld},
       {"inconsistent orientation",
        with_flipped(ball, {7, 50}),
-       {"two neighbouring faces run along their edge in one direction (6 times): face "},
+       {"two neighbouring faces disagree on which side is outside (6 times): face "},
        Build::refused,
        kNone},
       {"inside out",
@@ -187,7 +187,7 @@ std::vector<Row> rows_3d() {
        kHeld},
       {"isolated piece, closed", several({ball, icosphere(0, 0.2, {3, 0, 0})}), {}, Build::done, kHeld},
       {"isolated piece, open",
-       with_face(ball, {{3, 0, 0}, {3, 1, 0}, {3, 0, 1}}, {n, n + 1, n + 2}),
+       with_face(ball, {{3, 0, 0}, {3, 1, 0}, {3, 0, 1}}, {n, VertexId(n + 1), VertexId(n + 2)}),
        {"an edge has a face on one side only (3 times): edge (by its vertices) 42-43, 42-44, 43-44"},
        Build::refused,
        kNone},
@@ -223,7 +223,7 @@ std::vector<Row> rows_2d() {
   Mesh star;
   star.dim = 2;
   star.vertices = circle(5).vertices;
-  for (VertexId i = 0; i < 5; ++i) star.add_face(std::array<VertexId, 2>{2 * i % 5, 2 * (i + 1) % 5});
+  for (int i = 0; i < 5; ++i) star.add_face(std::array{VertexId(2 * i % 5), VertexId(2 * (i + 1) % 5)});
   return {
       {"2D, open",
        without_faces(round, {0}),
@@ -232,7 +232,7 @@ std::vector<Row> rows_2d() {
        kNone},
       {"2D, crosses itself",
        star,
-       {"two segments meet outside shared vertices (5 times): segment 0 and 2"},
+       {"two segments meet outside their shared ends (5 times): segment 0 and 2"},
        Build::done,
        kHeld,
        {0.7, 0, 0}},
@@ -257,7 +257,7 @@ std::vector<Row> rows_2d() {
        kHeld},
       {"2D, inconsistent orientation",
        with_flipped(round, {4}),
-       {"two neighbouring segments run against each other (2 times): segment 3 and 4, 4 and 5"},
+       {"two neighbouring segments disagree on which side is outside (2 times): segment 3 and 4, 4 and 5"},
        Build::refused,
        kNone},
       {"2D, inside out", turned_inside_out(round), {"the body is inside out (1 time)"}, Build::done, kHeld},

@@ -261,7 +261,7 @@ TEST_CASE("traces of crowds that are cut, damaged, old or of other bodies") {
   CHECK(changed("/metadata/version", 1).find("run the crowd again") != std::string::npos);
   CHECK(changed("/metadata/version", 3).find("written in format 3") != std::string::npos);
   CHECK(changed("/metadata/kinds/0/name", "../x").find("/metadata/kinds/0/name: ") != std::string::npos);
-  CHECK(changed("/metadata/kinds/0/name", "bal").find("a query names ball 1, which is no body") !=
+  CHECK(changed("/metadata/kinds/0/name", "bal").find("a query names ball 1, but there is no such body") !=
         std::string::npos);
   CHECK(changed("/metadata/kinds/1/name", "ball").find("/metadata/kinds/1/name: ") != std::string::npos);
   CHECK(changed("/metadata/kinds/1/count", 100000).find("/metadata/kinds/1/count: ") != std::string::npos);
