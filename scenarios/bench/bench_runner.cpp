@@ -7,7 +7,7 @@
 
 #include "engine/core/error.hpp"
 #include "engine/lrb/lrb_file.hpp"
-#include "scenarios/methods/bodies.hpp"
+#include "scenarios/methods/body_parts.hpp"
 
 namespace lrb::bench {
 namespace {

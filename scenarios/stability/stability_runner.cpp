@@ -1,7 +1,7 @@
 #include "scenarios/stability/stability_runner.hpp"
 
 #include "engine/core/error.hpp"
-#include "scenarios/methods/bodies.hpp"
+#include "scenarios/methods/body_parts.hpp"
 #include "scenarios/stability/judge.hpp"
 
 namespace lrb::stability {

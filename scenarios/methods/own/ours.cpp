@@ -5,7 +5,7 @@
 #include "engine/exact/pair_contact.hpp"
 #include "engine/query/coherent/coherent_query.hpp"
 #include "engine/query/collide_impl.hpp"
-#include "scenarios/methods/bodies.hpp"
+#include "scenarios/methods/body_parts.hpp"
 #include "scenarios/methods/method.hpp"
 
 namespace lrb::methods {

@@ -1,5 +1,5 @@
 #include "engine/core/error.hpp"
-#include "scenarios/methods/bodies.hpp"
+#include "scenarios/methods/body_parts.hpp"
 #include "scenarios/methods/method.hpp"
 #include "scenarios/methods/plain_tests.hpp"
 

@@ -7,7 +7,7 @@
 #include <Eigen/Geometry>
 
 #include "engine/core/error.hpp"
-#include "scenarios/methods/bodies.hpp"
+#include "scenarios/methods/body_parts.hpp"
 #include "scenarios/methods/method.hpp"
 
 namespace lrb::methods {

@@ -22,7 +22,7 @@ constexpr int kRank = 50;
 #include <btBulletCollisionCommon.h>
 
 #include "engine/core/error.hpp"
-#include "scenarios/methods/bodies.hpp"
+#include "scenarios/methods/body_parts.hpp"
 
 namespace lrb::methods {
 namespace {

@@ -24,7 +24,7 @@ constexpr int kRank = 40;
 #include <CGAL/Surface_mesh.h>
 
 #include "engine/core/error.hpp"
-#include "scenarios/methods/bodies.hpp"
+#include "scenarios/methods/body_parts.hpp"
 
 namespace lrb::methods {
 namespace {

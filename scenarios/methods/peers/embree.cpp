@@ -15,7 +15,7 @@ constexpr int kRank = 60;
 #include <embree3/rtcore.h>
 
 #include "engine/core/error.hpp"
-#include "scenarios/methods/bodies.hpp"
+#include "scenarios/methods/body_parts.hpp"
 #include "scenarios/methods/plain_tests.hpp"
 
 namespace lrb::methods {

@@ -26,7 +26,7 @@ constexpr int kRank = 30;
 #include <fcl/narrowphase/collision.h>
 
 #include "engine/core/error.hpp"
-#include "scenarios/methods/bodies.hpp"
+#include "scenarios/methods/body_parts.hpp"
 
 namespace lrb::methods {
 namespace {

@@ -13,7 +13,7 @@ constexpr int kRank = 70;
 #include <ode/ode.h>
 
 #include "engine/core/error.hpp"
-#include "scenarios/methods/bodies.hpp"
+#include "scenarios/methods/body_parts.hpp"
 
 namespace lrb::methods {
 namespace {

@@ -1,4 +1,4 @@
-#include "scenarios/methods/bodies.hpp"
+#include "scenarios/methods/body_parts.hpp"
 
 #include <algorithm>
 #include <cmath>
