@@ -99,7 +99,7 @@ std::vector<FaceId> faces_at(const Mesh& mesh, const Parts& parts) {
 bool is_inside_out(const Mesh& mesh, const MeshReport& report, FaceId f) {
   const auto& pieces = report[MeshFault::inside_out].first;
   return std::any_of(pieces.begin(), pieces.end(), [&](const Element& piece) {
-    const std::vector<FaceId> faces = component(mesh, piece[0]);
+    const std::vector<FaceId> faces = component(mesh, FaceId(piece[0]));
     return std::binary_search(faces.begin(), faces.end(), f);
   });
 }

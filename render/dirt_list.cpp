@@ -70,14 +70,14 @@ class DirtListBuilder {
     if (kind == MeshFault::inside_out && o_.focus && !first)
       return;  // it would hide what the picture is about
     if (kind == MeshFault::self_intersection) {
-      give(e[0], palette::kOrange);
-      give(e[1], palette::kSkyBlue);
+      give(FaceId(e[0]), palette::kOrange);
+      give(FaceId(e[1]), palette::kSkyBlue);
       return;
     }
     if (kind == MeshFault::flipped_face) {
       const FaceId turned = turned_of(e);
       give(turned, colour(kind));
-      give(turned == e[0] ? e[1] : e[0], mix(colour(kind), kWhite, kNeighbourPale));
+      give(FaceId(turned == e[0] ? e[1] : e[0]), mix(colour(kind), kWhite, kNeighbourPale));
       return;
     }
     for (const FaceId f : parts_of(mesh_, kind, e).faces) give(f, colour(kind));
@@ -88,10 +88,11 @@ class DirtListBuilder {
   FaceId turned_of(const Element& e) const {
     std::map<FaceId, int> times;
     for (const Element& other : report_[MeshFault::flipped_face].first) {
-      ++times[other[0]];
-      ++times[other[1]];
+      ++times[FaceId(other[0])];
+      ++times[FaceId(other[1])];
     }
-    return times[e[0]] > times[e[1]] ? e[0] : e[1];
+    const FaceId first(e[0]), second(e[1]);
+    return times[first] > times[second] ? first : second;
   }
 
   bool seen_from_back(FaceId f) const {
@@ -170,14 +171,14 @@ class DirtListBuilder {
     if (parts.edge) line({mesh_.vertices[e[0]], mesh_.vertices[e[1]]}, colour(kind), 5, true);
     if (!parts.edge && !parts.vertices.empty()) dot(mesh_.vertices[e[0]], colour(kind), 6);
     if (kind == MeshFault::zero_area_face) {
-      std::vector<Vector3d> x = corners(mesh_, e[0]);
+      std::vector<Vector3d> x = corners(mesh_, FaceId(e[0]));
       const bool one_place = std::all_of(x.begin(), x.end(), [&](const Vector3d& p) { return p == x[0]; });
       if (one_place) return dot(x[0], colour(kind), 6);
       x.push_back(x[0]);
       line(x, colour(kind), 4, true);
     }
     if (kind == MeshFault::self_intersection) {
-      const std::vector<Vector3d> x = cut(mesh_, e[0], e[1]);
+      const std::vector<Vector3d> x = cut(mesh_, FaceId(e[0]), FaceId(e[1]));
       if (x.size() == 1) dot(x[0], palette::kContact, 5);
       if (x.size() == 2) line(x, palette::kContact, 4, true, kWhite);
     }
@@ -188,8 +189,8 @@ class DirtListBuilder {
     std::vector<Vector3d> x;
     for (const VertexId v : parts.vertices) x.push_back(mesh_.vertices[v]);
     if (x.empty()) {
-      if (kind == MeshFault::self_intersection) x = cut(mesh_, e[0], e[1]);
-      if (x.empty()) x = corners(mesh_, e[0]);
+      if (kind == MeshFault::self_intersection) x = cut(mesh_, FaceId(e[0]), FaceId(e[1]));
+      if (x.empty()) x = corners(mesh_, FaceId(e[0]));
     }
     Vector3d sum = Vector3d::Zero();
     for (const Vector3d& p : x) sum += p / static_cast<double>(x.size());

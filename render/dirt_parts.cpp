@@ -15,21 +15,21 @@ Parts parts_of(const Mesh& mesh, MeshFault kind, const Element& e) {
   switch (kind) {
     case MeshFault::open_edge:
     case MeshFault::non_manifold_edge:
-      if (e[1] == kNull) return {{}, {e[0]}, false};
-      return {{}, {e[0], e[1]}, true};
+      if (e[1] == kNull) return {{}, {VertexId(e[0])}, false};
+      return {{}, {VertexId(e[0]), VertexId(e[1])}, true};
     case MeshFault::non_manifold_vertex:
     case MeshFault::unused_vertex:
-      return {{}, {e[0]}, false};
+      return {{}, {VertexId(e[0])}, false};
     case MeshFault::duplicate_vertex:
-      return {{}, {e[0], e[1]}, false};
+      return {{}, {VertexId(e[0]), VertexId(e[1])}, false};
     case MeshFault::duplicate_face:
     case MeshFault::flipped_face:
     case MeshFault::self_intersection:
-      return {{e[0], e[1]}, {}, false};
+      return {{FaceId(e[0]), FaceId(e[1])}, {}, false};
     case MeshFault::inside_out:
-      return {component(mesh, e[0]), {}, false};
+      return {component(mesh, FaceId(e[0])), {}, false};
     default:
-      return {{e[0]}, {}, false};
+      return {{FaceId(e[0])}, {}, false};
   }
 }
 

@@ -48,7 +48,7 @@ Eigen::Vector3d Context::middle(std::span<const FaceId> faces) const {
 
 std::vector<FaceId> Context::pseudo_in_contact() const {
   std::vector<FaceId> faces;
-  for (FaceId f = body.rep->real_face_count(); f < body.rep->face_count(); ++f)
+  for (FaceId f(body.rep->real_face_count()); f < body.rep->face_count(); ++f)
     if (in_contact(f)) faces.push_back(f);
   return faces;
 }
@@ -70,7 +70,7 @@ Rgba Context::colour_of(FaceId f, CellId cell) const {
     const double range = value_high - value_low;
     return palette::viridis(range > 0 ? (body.face_values[f] - value_low) / range : 0);
   }
-  if (is_region(cell)) return region_colour(cell);
+  if (is_region(cell)) return region_colour(cell.as_region());
   return options.colour_by == ColourBy::kind ? colour() : mix(colour(), kWhite, 0.75);
 }
 

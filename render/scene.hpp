@@ -81,7 +81,7 @@ constexpr std::uint32_t face_id(Side side, FaceId f) {
   return (side == Side::b ? 1U << 31 : 0U) | f;
 }
 constexpr std::uint32_t region_id(Side side, RegionId r) {
-  return face_id(side, r) | 1U << 30;
+  return (side == Side::b ? 1U << 31 : 0U) | 1U << 30 | r;
 }
 
 /// Returns all points that a body can show in any wrapper state, posed. Cameras of a whole sequence should be

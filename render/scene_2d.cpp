@@ -94,10 +94,10 @@ class Scene2dBuilder {
   /// Draws thin lines between regions, dashed between those that have been refined away.
   void region_lines() {
     std::vector<FaceId> inside, gone;
-    for (FaceId f = rep_.real_face_count(); f < rep_.face_count(); ++f) {
+    for (FaceId f(rep_.real_face_count()); f < rep_.face_count(); ++f) {
       const CellId in = rep_.inner_cell(f);
       if (!is_region(in)) continue;
-      if (c_.refining(in)) {
+      if (c_.refining(in.as_region())) {
         add_lines({f}, palette::edge_of(palette::kRefining), 2.4F, 0);
       } else if (c_.included(in) && !c_.on_boundary(f)) {
         inside.push_back(f);

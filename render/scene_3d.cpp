@@ -61,7 +61,7 @@ class Scene3dBuilder {
     std::vector<FaceId> lids;
     for (const FaceId f : c_.body.wrapper->boundary()) {
       if (!rep_.is_real(f) && !c_.in_contact(f) &&
-          !(is_region(rep_.inner_cell(f)) && c_.refining(rep_.inner_cell(f))))
+          !(is_region(rep_.inner_cell(f)) && c_.refining(rep_.inner_cell(f).as_region())))
         lids.push_back(f);
     }
     const bool telling = c_.options.colour_by != ColourBy::kind;
@@ -102,7 +102,7 @@ class Scene3dBuilder {
     for (FaceId f = 0; f < rep_.real_face_count(); ++f) {
       DrawTriangle t;
       t.colour = c_.in_contact(f) ? palette::kContact : c_.colour_of(f, kSolid);
-      if (is_region(rep_.outer_cell(f)) && c_.refining(rep_.outer_cell(f))) {
+      if (is_region(rep_.outer_cell(f)) && c_.refining(rep_.outer_cell(f).as_region())) {
         t.colour = mix(t.colour, palette::kRefining, 0.6);
       }
       t.edges = c_.options.real_edges ? 7 : 0;
@@ -158,7 +158,7 @@ class Scene3dBuilder {
     }
     if (!c_.options.ghost_rest) return;
     for (FaceId f = 0; f < rep_.real_face_count(); ++f) {
-      if (is_region(rep_.outer_cell(f)) && c_.isolated(rep_.outer_cell(f)))
+      if (is_region(rep_.outer_cell(f)) && c_.isolated(rep_.outer_cell(f).as_region()))
         continue;  // the region's floor is drawn
       add_face(f, translucent(with_alpha(c_.colour(), kGhostAlpha)));
     }

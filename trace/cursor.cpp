@@ -55,7 +55,7 @@ void Cursor::apply_to(EventId event) {
   if (e.boundary == kNull || e.boundary == size) return;
   rewind();
   throw InputError("trace: event " + std::to_string(event) + " (" + std::string(name_of(e.kind)) +
-                   " region " + std::to_string(e.a) + " of " + std::string(name_of(e.side)) +
+                   " region " + std::to_string(e.region()) + " of " + std::string(name_of(e.side)) +
                    "): the wrapper has " + std::to_string(size) + " faces, recorded were " +
                    std::to_string(e.boundary) + "; the trace is damaged: record it again");
 }
@@ -125,10 +125,10 @@ std::optional<TestedPair> Cursor::pair_under_test() const {
   if (!is_pair(id)) id = event().cause;
   if (id == kNull || !is_pair(id)) return std::nullopt;
   const Event& e = trace_->events[id];
-  return TestedPair{.simplex_a = e.a,
-                    .simplex_b = e.b,
-                    .face_a = wrapper(Side::a).rep().face_of_simplex(e.a),
-                    .face_b = wrapper(Side::b).rep().face_of_simplex(e.b),
+  return TestedPair{.simplex_a = e.simplex(Side::a),
+                    .simplex_b = e.simplex(Side::b),
+                    .face_a = wrapper(Side::a).rep().face_of_simplex(e.simplex(Side::a)),
+                    .face_b = wrapper(Side::b).rep().face_of_simplex(e.simplex(Side::b)),
                     .meet = e.meet,
                     .event = id};
 }
@@ -140,7 +140,7 @@ std::vector<RefinedRegion> Cursor::refined() const {
   for (EventId id = position_;; --id) {
     const Event& e = trace_->events[id];
     if (e.kind != EventKind::refine || e.cause != cause) break;
-    out.push_back({e.side, e.a, id});
+    out.push_back({e.side, e.region(), id});
     if (id == 0 || cause == kNull) break;
   }
   std::reverse(out.begin(), out.end());

@@ -13,6 +13,8 @@
 #include <type_traits>
 #include <vector>
 
+#include "engine/core/ids.hpp"
+
 namespace lrb::trace {
 
 /// Takes bytes: a file, a string, ...
@@ -105,6 +107,10 @@ class JsonWriter {
     else
       out_->string(v);
     return *this;
+  }
+  template <class Kind>
+  JsonWriter& value(Id<Kind> id) {
+    return value(id.value());
   }
   template <class T>
   JsonWriter& member(std::string_view name, const T& v) {

@@ -234,8 +234,8 @@ class TraceWriter {
   }
 
   void write_contact(const Event& e, const Parts& parts) {
-    write_simplex(Side::a, parts.a, e.a);
-    write_simplex(Side::b, parts.b, e.b);
+    write_simplex(Side::a, parts.a, e.simplex(Side::a));
+    write_simplex(Side::b, parts.b, e.simplex(Side::b));
     write_meet(e.meet);
     write_cause(e.cause);
   }

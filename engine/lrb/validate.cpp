@@ -147,7 +147,7 @@ class Validator {
     Workers alone;
     search.for_each(
         [&](FaceId s, FaceId t) {
-          pairs.push_back({s, t});
+          pairs.push_back({SimplexId(s.value()), SimplexId(t.value())});
           if (pairs.size() == kPairsAtOnce) judge(rep_, pairs);
         },
         alone);
@@ -217,7 +217,7 @@ class Validator {
   bool hides(FaceId lid, FaceId face) const {
     if (rep_.is_real(lid)) return false;
     CellId c = rep_.outer_cell(face);
-    while (is_region(c) && c != rep_.inner_cell(lid)) c = rep_.parent(c);
+    while (is_region(c) && c != rep_.inner_cell(lid)) c = rep_.parent(c.as_region());
     return is_region(c);
   }
 

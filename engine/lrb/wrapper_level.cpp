@@ -27,7 +27,7 @@ std::vector<double> needed_tolerances(const LrbRep& rep) {
       const CellId over = rep.outer_cell(lid);
       if (!is_region(over) || needed[over] >= needed[r]) continue;
       needed[over] = needed[r];
-      work.push_back(over);
+      work.push_back(over.as_region());
     }
   }
   return needed;
@@ -68,8 +68,8 @@ std::unique_ptr<WrapperLevel> WrapperLevels::make(double tolerance) const {
   const std::vector<FaceId> faces = wrapper.boundary();
   for (const FaceId f : faces) {
     level->pseudo_count += !rep_.is_real(f);
-    const auto count = static_cast<SimplexId>(Mesh::simplices_of(rep_.face(f).size(), rep_.dim()));
-    for (SimplexId i = 0; i < count; ++i) simplices.push_back(rep_.first_simplex(f) + i);
+    const std::size_t count = Mesh::simplices_of(rep_.face(f).size(), rep_.dim());
+    for (std::size_t i = 0; i < count; ++i) simplices.emplace_back(rep_.first_simplex(f) + i);
   }
   level->face_count = static_cast<std::uint32_t>(faces.size());
   level->component_vertices = piece_vertices(rep_, faces);

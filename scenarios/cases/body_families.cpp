@@ -82,7 +82,7 @@ struct Cells {
       const auto v = static_cast<VertexId>(m.vertices.size());
       m.vertices.emplace_back(x0, y0, 0);
       m.vertices.emplace_back(x1, y1, 0);
-      const VertexId f[2] = {v, v + 1};
+      const VertexId f[2] = {v, VertexId(v + 1)};
       m.add_face(f);
     };
     for (int i = 0; i < n[0]; ++i)

@@ -15,14 +15,14 @@ using Eigen::Vector3d;
 Mesh prism(const std::vector<shapes::Point2>& section, double height) {
   Mesh m;
   m.name = "prism";
-  const auto n = static_cast<VertexId>(section.size());
+  const auto n = static_cast<std::uint32_t>(section.size());
   for (const double z : {0.0, height})
     for (const auto& p : section) m.vertices.emplace_back(p.x(), p.y(), z);
   std::vector<VertexId> low, high;
   for (VertexId i = 0; i < n; ++i) {
-    low.push_back(n - 1 - i);
-    high.push_back(n + i);
-    const VertexId j = (i + 1) % n, side[4] = {i, j, n + j, n + i};
+    low.emplace_back(n - 1 - i);
+    high.emplace_back(n + i);
+    const VertexId j((i + 1) % n), side[4] = {i, j, VertexId(n + j), VertexId(n + i)};
     m.add_face(side);
   }
   m.add_face(low);

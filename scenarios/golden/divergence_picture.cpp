@@ -60,7 +60,7 @@ std::vector<Eigen::Vector3d> subject_of(const SideShown& side, const std::vector
   }
   const trace::Event& e = cursor.event();
   if (e.kind == EventKind::refine || e.kind == EventKind::coarsen)
-    for (const FaceId f : reps[static_cast<std::size_t>(e.side)]->collector(e.a))
+    for (const FaceId f : reps[static_cast<std::size_t>(e.side)]->collector(e.region()))
       for (const VertexId v : reps[static_cast<std::size_t>(e.side)]->face(f)) add(e.side, v);
   return out;
 }

@@ -1,5 +1,6 @@
 #include "scenarios/methods/bodies.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -60,6 +61,11 @@ LrbRep at_pose(const LrbRep& rep, const Pose& pose) {
   Mesh m = real_mesh(rep);
   for (Eigen::Vector3d& v : m.vertices) v = pose.apply(v);
   return LrbRep::without_regions(m, rep.closed(), rep.self_intersecting());
+}
+
+void sort_pairs(std::vector<SimplexPair>& pairs) {
+  std::sort(pairs.begin(), pairs.end());
+  pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
 }
 
 }  // namespace lrb::methods

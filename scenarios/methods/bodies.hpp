@@ -9,6 +9,7 @@
 #include "engine/core/pose.hpp"
 #include "engine/lrb/lrb_rep.hpp"
 #include "engine/mesh/mesh.hpp"
+#include "engine/query/collide.hpp"
 
 namespace lrb::methods {
 
@@ -32,6 +33,9 @@ Mesh real_mesh(const LrbRep& rep);
 
 /// Returns the body moved: its world coordinates as its own. It has no regions.
 LrbRep at_pose(const LrbRep& rep, const Pose& pose);
+
+/// Puts pairs in order, each once.
+void sort_pairs(std::vector<SimplexPair>& pairs);
 
 class Stopwatch {
  public:

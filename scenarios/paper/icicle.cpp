@@ -63,13 +63,13 @@ class Tree {
   }
 
  private:
-  std::size_t slot(CellId cell) const { return is_region(cell) ? cell : rep_.region_count(); }
+  std::size_t slot(CellId cell) const { return is_region(cell) ? cell.value() : rep_.region_count(); }
 
   /// Adds what lies below an opened region, or below the outside.
   Node open(CellId cell) const {
     Node n;
     for (const RegionId r : inside_[slot(cell)]) n.inside.push_back(node(r));
-    const auto floor = is_region(cell) ? rep_.floor(cell) : rep_.outermost_faces();
+    const auto floor = is_region(cell) ? rep_.floor(cell.as_region()) : rep_.outermost_faces();
     for (const State state : {State::real_tested, State::untouched}) {
       const auto count = std::count_if(floor.begin(), floor.end(), [&](FaceId f) {
         return rep_.is_real(f) && (tests_[f] > 0) == (state == State::real_tested);

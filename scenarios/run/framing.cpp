@@ -32,9 +32,9 @@ void add_contacts(const std::vector<const LrbRep*>& reps, const trace::Trace& tr
   for (std::size_t step = 0; step < trace.steps.size(); ++step)
     for (const trace::Event& e : trace.events_of(step)) {
       if (e.kind != EventKind::contact) continue;
-      for (const VertexId v : reps[0]->face(reps[0]->face_of_simplex(e.a)))
+      for (const VertexId v : reps[0]->face(reps[0]->face_of_simplex(e.simplex(Side::a))))
         points.push_back(trace.steps[step].pose_a.apply(reps[0]->vertices()[v]));
-      for (const VertexId v : reps[1]->face(reps[1]->face_of_simplex(e.b)))
+      for (const VertexId v : reps[1]->face(reps[1]->face_of_simplex(e.simplex(Side::b))))
         points.push_back(trace.steps[step].pose_b.apply(reps[1]->vertices()[v]));
     }
 }

@@ -20,7 +20,7 @@ namespace lrb::test {
 inline std::uint64_t bad_pairs_by_brute_force(const LrbRep& rep) {
   std::uint64_t bad = 0;
   for (SimplexId s = 0; s < rep.simplex_count(); ++s) {
-    for (SimplexId t = std::max(s + 1, rep.real_simplex_count()); t < rep.simplex_count(); ++t) {
+    for (SimplexId t(std::max(s + 1, rep.real_simplex_count())); t < rep.simplex_count(); ++t) {
       VertexId a[3], b[3];
       rep.simplex(s, a);
       rep.simplex(t, b);

@@ -16,11 +16,11 @@ TEST_CASE("a complex by construction: a box in a box, faces in any order") {
   const RegionId gap = builder.add_region(0);
   for (FaceId f = 0; f < 6; ++f) {
     VertexId corners[4];
-    for (int i = 0; i < 4; ++i) corners[i] = outer.face(f)[i] + 8;
+    for (int i = 0; i < 4; ++i) corners[i] = VertexId(outer.face(f)[i] + 8);
     builder.add_pseudo_face(corners, gap, kOutside);
     builder.add_real_face(inner.face(f), kOutside);
   }
-  for (FaceId f = 1; f < 12; f += 2) builder.set_outer_cell(f, gap);
+  for (int f = 1; f < 12; f += 2) builder.set_outer_cell(FaceId(f), gap);
   const LrbRep rep(builder.finish(true, false));
   CHECK(rep.name() == "boxes");
   CHECK(rep.real_face_count() == 6);

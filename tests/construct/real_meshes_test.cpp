@@ -28,7 +28,8 @@ TEST_CASE("real models meet the targets: faces, outer faces, volume, embedding")
     CHECK(rep.face_count() <= 1.6 * rep.real_face_count());
     Mesh hull;
     hull.vertices = mesh.vertices;
-    for (const auto& t : convex_hull(mesh.vertices)) hull.add_face(t);
+    for (const auto& t : convex_hull(mesh.vertices))
+      hull.add_face(std::array{VertexId(t[0]), VertexId(t[1]), VertexId(t[2])});
     CHECK(enclosed_volume(rep, rep.outermost_faces()) <= 1.4 * volume_of(hull));
   }
 }

@@ -23,17 +23,10 @@ using namespace lrb::trace;
 using Json = nlohmann::ordered_json;
 using namespace std::string_literals;
 namespace fs = std::filesystem;
+using runs::box;
+using runs::plate;
 
 namespace {
-
-const LrbRep& plate() {
-  static const LrbRep rep(toy::notched_plate());
-  return rep;
-}
-const LrbRep& box() {
-  static const LrbRep rep(toy::dented_box());
-  return rep;
-}
 
 Trace box_run(Clock clock = Clock::event, WrapperMode mode = WrapperMode::regularised) {
   RecorderSettings settings;

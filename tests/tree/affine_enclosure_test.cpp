@@ -1,7 +1,6 @@
 // Whatever the affine kernel leaves out is exactly apart: boxes of every pair of tree nodes, on the axes of either
 // body, against exact arithmetic on the world coordinates that the answer is about; and what it is certain of.
 #include <cmath>
-#include <span>
 
 #include <doctest/doctest.h>
 
@@ -106,16 +105,7 @@ void check_verdicts(AffineScene scene, RandomEngine& random, Asked& asked) {
   const Scene& s = scene.bodies;
   TreeKernel& k = scene.k;
   k.affine = &scene.terms;
-  std::vector<NodePair> stack(64 * (s.a->tree().height() + s.b->tree().height()) + 64);
-  std::vector<Candidate> out(64 + std::size_t{s.a->real_simplex_count()} * s.b->real_simplex_count());
-  k.stack = stack.data();
-  k.stack[0] = {0, 0};
-  k.stack_size = 1;
-  k.out = out.data();
-  k.out_capacity = static_cast<std::uint32_t>(out.size());
-  run_affine_kernel_under_test(k);
-  REQUIRE(k.stack_size == 0);
-  check_outcome(s, std::span(out).first(k.out_size), random, 20, asked);
+  check_outcome(s, candidates_of(s, k, run_affine_kernel_under_test), random, 20, asked);
 }
 
 LrbRep closed(const Mesh& mesh, double size) {
@@ -160,16 +150,8 @@ TEST_CASE("whatever boxes leave out under affine maps is apart in exact arithmet
     check_on(s, Side::b, share);
     REQUIRE(share.too_small == 0);
     REQUIRE(share.wrong == 0);
-    total.boxes += share.boxes;
-    total.culled += share.culled;
+    total += share;
     check_verdicts(s, random, asked);
   }
-  CHECK(total.boxes > 500'000);
-  CHECK(total.culled > total.boxes / 10);  // else nothing was tested
-  CHECK(asked.dropped > 100);
-  CHECK(asked.disjoint > 100);
-  CHECK(asked.cross > 100);
-  MESSAGE(total.boxes << " pairs of boxes on an axis, " << total.culled << " culled; " << asked.dropped
-                      << " dropped pairs asked again, " << asked.disjoint << " called disjoint, "
-                      << asked.cross << " called crossing");
+  check_extent(total, asked, 500'000, 0.1);
 }

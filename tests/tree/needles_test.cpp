@@ -58,7 +58,8 @@ TEST_CASE("trees full of needles try more directions, and answer as brute force 
 
 TEST_CASE("needles that meet in one point are not lost") {
   const LrbRep cone = closed(hard::cone(2000)), other = closed(hard::bipyramid(2000));
-  for (const VertexId v : {0u, 17u, 1000u, 2000u}) {  // corners of the ring, and the apex, on each other
+  for (const VertexId v : std::initializer_list<VertexId>{
+           0, 17, 1000, 2000}) {  // corners of the ring, and the apex, on each other
     for (const double angle : {0.0, 0.3, 1.1}) {
       Pose at;
       at.r = Eigen::AngleAxisd(angle, Eigen::Vector3d(1, 2, 3).normalized()).toRotationMatrix();

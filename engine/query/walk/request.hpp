@@ -43,8 +43,8 @@ constexpr auto words_of(Predicates) {
       {{Predicates::exact, "exact"}, {Predicates::floating, "floating"}});
 }
 
-/// The largest number of pairs that a query keeps, unless the request gives another. A pair takes about 25
-/// bytes while it is found and sorted, and about 700 with its contact: less than 1 GB, and about 1.5 GB.
+/// The largest number of pairs that a query keeps, unless the request gives another. A pair takes 25 bytes
+/// while it is found and sorted, and 650 with its contact (docs/measurements.md): 0.8 GB, and 1.4 GB.
 inline constexpr std::uint64_t kMostPairs = std::uint64_t{1} << 25;
 inline constexpr std::uint64_t kMostPairsWithContacts = std::uint64_t{1} << 21;
 

@@ -32,8 +32,8 @@ template <class Probe>
   QueryBody& body = ctx[side];
   const LrbRep& rep = body.rep();
   ctx.path.clear();  // a query that ended with an exception may have left some
-  for (CellId c = innermost; is_region(c) && body.wrapper->included(c); c = rep.parent(c))
-    ctx.path.push_back(c);
+  for (CellId c = innermost; is_region(c) && body.wrapper->included(c); c = rep.parent(c.as_region()))
+    ctx.path.push_back(c.as_region());
   for (; !ctx.path.empty(); ctx.path.pop_back()) {
     body.wrapper->refine(ctx.path.back());
     ++result.counters.refinements;
@@ -57,7 +57,7 @@ inline std::uint32_t show_face(QueryContext& ctx, Side side, FaceId f, CollideRe
   const CellId outer = rep.outer_cell(f);
   if (!is_region(outer)) return 0;
   if (ctx[side].wrapper->included(outer)) open_regions_from(ctx, side, outer, result, probe);
-  return rep.depth(outer);
+  return rep.depth(outer.as_region());
 }
 
 /// The rules of the exact query; coarse_query.hpp has others.

@@ -84,8 +84,8 @@ class Carver {
     add({4, 3, 2, 1, 0}, {}, kOutside, 0);
     add({5, 6, 7, 8, 9}, {}, kOutside, 0);
     for (VertexId i = 0; i < 5; ++i) {
-      const VertexId j = (i + 1) % 5;
-      add({i, j, j + 5, i + 5}, {}, kOutside, 0);
+      const VertexId j((i + 1) % 5);
+      add({i, j, VertexId(j + 5), VertexId(i + 5)}, {}, kOutside, 0);
     }
     // Each edge may use half of the angle between its two faces.
     for (Polygon& f : faces_)
@@ -262,7 +262,7 @@ void Carver::dent(FaceId index, const Kind& kind) {
   const auto share = [m](int u) { return static_cast<double>(u) * static_cast<double>(m) / 16; };
   Slope slope = slope_of(distance, f.room, share(rim), kind.flat ? share(foot) : 1);
 
-  CellId region = regions_++;
+  RegionId region(regions_++);
   faces_[index].inner = region;
   std::vector<VertexId> top = f.corners;
   std::vector<double> top_room;
@@ -277,8 +277,8 @@ void Carver::dent(FaceId index, const Kind& kind) {
       top_room[i] = std::min(under, kWallRoom);
     }
     if (kind.flush) {
-      faces_.push_back({top, {}, regions_, region, level});
-      region = regions_++;
+      faces_.push_back({top, {}, RegionId(regions_), region, level});
+      region = RegionId(regions_++);
     }
   }
   if (kind.flat) {

@@ -32,10 +32,10 @@ std::vector<Eigen::Vector2d> with_bays(const std::vector<Eigen::Vector2d>& outli
 Mesh polygon_2d(const std::vector<Eigen::Vector2d>& outline) {
   Mesh mesh;
   mesh.dim = 2;
-  const auto n = static_cast<VertexId>(outline.size());
+  const auto n = static_cast<std::uint32_t>(outline.size());
   for (VertexId i = 0; i < n; ++i) {
     mesh.vertices.emplace_back(outline[i].x(), outline[i].y(), 0);
-    const VertexId corners[2] = {i, (i + 1) % n};
+    const VertexId corners[2] = {i, VertexId((i + 1) % n)};
     mesh.add_face(corners);
   }
   return mesh;

@@ -212,7 +212,7 @@ class Decimator {
     const auto slot_from = [&](Corner v) {
       for (std::size_t i = 0; i < rim_.size(); ++i)
         if (rim_[i].from == v) return star_[i];
-      return kNull;
+      return NoId::kValue;
     };
     std::vector<HullMesh::Triangle> fan(rim_.size());
     for (std::size_t i = 0; i < rim_.size(); ++i) {

@@ -316,7 +316,7 @@ Mesh several(const std::vector<Mesh>& meshes) {
     all.vertices.insert(all.vertices.end(), mesh.vertices.begin(), mesh.vertices.end());
     for (FaceId f = 0; f < mesh.face_count(); ++f) {
       std::vector<VertexId> corners(mesh.face(f).begin(), mesh.face(f).end());
-      for (VertexId& v : corners) v += base;
+      for (VertexId& v : corners) v = VertexId(v + base);
       all.add_face(corners);
     }
   }

@@ -86,7 +86,7 @@ void isolate(const RenderOptions& o, const std::vector<bodies::LoadedBody>& bodi
     const bool named = text.starts_with('a') || text.starts_with('b');
     const std::size_t body = text.starts_with('b') ? 1 : 0;
     const char *first = text.data() + (named ? 1 : 0), *last = text.data() + text.size();
-    RegionId region = 0;
+    std::uint32_t region = 0;
     const auto [end, error] = std::from_chars(first, last, region);
     if (error != std::errc() || end != last)
       throw InputError("--region: expected a region's number, or a or b and the number, found " +
@@ -97,7 +97,7 @@ void isolate(const RenderOptions& o, const std::vector<bodies::LoadedBody>& bodi
                             ? "the body has " + std::to_string(bodies[body].rep.region_count()) +
                                   " regions, numbered from 0"
                             : "there is no body B in this trace"));
-    spec.isolate[body].push_back(region);
+    spec.isolate[body].emplace_back(region);
   }
   spec.ghost_rest = !o.hide_rest;
 }

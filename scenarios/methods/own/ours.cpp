@@ -16,15 +16,34 @@ struct OurBody : MethodBody {
   LrbRep rep;
 };
 
+const LrbRep& rep_of(const MethodBody& body) {
+  return static_cast<const OurBody&>(body).rep;
+}
+
+/// Returns what the peers are asked, too: all pairs, or one.
+CollideRequest request_for(Mode mode) {
+  CollideRequest request;
+  request.mode = mode == Mode::all_pairs ? mode : Mode::any_pair;
+  return request;
+}
+
+MethodAnswer answer_from(CollideResult result, double microseconds) {
+  MethodAnswer answer;
+  answer.microseconds = microseconds;
+  answer.contact = !result.pairs.empty();
+  answer.pairs = std::move(result.pairs);
+  answer.inside = result.relation == Relation::a_inside_b || result.relation == Relation::b_inside_a;
+  answer.relation = result.relation;
+  answer.face_tests = result.counters.face_tests;
+  return answer;
+}
+
 class Ours : public Method {
  public:
-  Ours(Recursion recursion, Predicates predicates) {
-    request_.recursion = recursion;
-    request_.predicates = predicates;
-  }
+  Ours(Recursion recursion, Predicates predicates) : recursion_(recursion), predicates_(predicates) {}
 
   std::unique_ptr<MethodBody> build(const LrbRep& rep) override {
-    if (request_.recursion != Recursion::complete) {
+    if (recursion_ != Recursion::complete) {
       try {
         return std::make_unique<OurBody>(build_lrb(real_mesh(rep)));
       } catch (const InputError&) {
@@ -36,25 +55,19 @@ class Ours : public Method {
 
   MethodAnswer query(const MethodBody& a, const Pose& pose_a, const MethodBody& b, const Pose& pose_b,
                      Mode mode) override {
-    const LrbRep& rep_a = static_cast<const OurBody&>(a).rep;
-    const LrbRep& rep_b = static_cast<const OurBody&>(b).rep;
-    request_.mode = mode == Mode::all_pairs ? mode : Mode::any_pair;  // the question that the peers are
-                                                                      // asked, too
+    CollideRequest request = request_for(mode);
+    request.recursion = recursion_;
+    request.predicates = predicates_;
     NullProbe probe;
     const Stopwatch watch;
-    CollideResult result = collide(rep_a, pose_a, rep_b, pose_b, request_, context_, probe);
-    MethodAnswer answer;
-    answer.microseconds = watch.microseconds();
-    answer.contact = !result.pairs.empty();
-    answer.pairs = std::move(result.pairs);
-    answer.inside = result.relation == Relation::a_inside_b || result.relation == Relation::b_inside_a;
-    answer.relation = result.relation;
-    answer.face_tests = result.counters.face_tests;
-    return answer;
+    CollideResult result = collide(rep_of(a), pose_a, rep_of(b), pose_b, request, context_, probe);
+    const double microseconds = watch.microseconds();
+    return answer_from(std::move(result), microseconds);
   }
 
  private:
-  CollideRequest request_;
+  Recursion recursion_;
+  Predicates predicates_;
   QueryContext context_;
 };
 
@@ -72,23 +85,15 @@ class OursCoherent : public Method {
 
   MethodAnswer query(const MethodBody& a, const Pose& pose_a, const MethodBody& b, const Pose& pose_b,
                      Mode mode) override {
-    const LrbRep &rep_a = static_cast<const OurBody&>(a).rep, &rep_b = static_cast<const OurBody&>(b).rep;
-    CollideRequest request;
-    request.mode = mode == Mode::all_pairs ? mode : Mode::any_pair;
-    CoherentQuery coherent(rep_a, rep_b, request);
+    CoherentQuery coherent(rep_of(a), rep_of(b), request_for(mode));
     constexpr int kSteps = 8;
     constexpr double kStep = 1e-3;  // as a share of A's diagonal
-    const Eigen::Vector3d step = kStep * diagonal_of(rep_a) * Eigen::Vector3d(1, 2, 2) / 3;
+    const Eigen::Vector3d step = kStep * diagonal_of(rep_of(a)) * Eigen::Vector3d(1, 2, 2) / 3;
     for (int i = kSteps; i > 0; --i) coherent.collide(pose_a, {pose_b.r, pose_b.t + i * step});
     const Stopwatch watch;
     const CollideResult& result = coherent.collide(pose_a, pose_b);
-    MethodAnswer answer;
-    answer.microseconds = watch.microseconds();
-    answer.contact = !result.pairs.empty();
-    answer.pairs = result.pairs;
-    answer.relation = result.relation;
-    answer.face_tests = result.counters.face_tests;
-    return answer;
+    const double microseconds = watch.microseconds();
+    return answer_from(result, microseconds);
   }
 };
 
@@ -103,9 +108,8 @@ class OursCoarse : public Method {
 
   MethodAnswer query(const MethodBody& a, const Pose& pose_a, const MethodBody& b, const Pose& pose_b,
                      Mode mode) override {
-    const LrbRep &rep_a = static_cast<const OurBody&>(a).rep, &rep_b = static_cast<const OurBody&>(b).rep;
-    CollideRequest request;
-    request.mode = mode == Mode::all_pairs ? mode : Mode::any_pair;
+    const LrbRep &rep_a = rep_of(a), &rep_b = rep_of(b);
+    CollideRequest request = request_for(mode);
     if (by_tests_)
       request.max_tests = static_cast<std::uint64_t>(setting_);
     else

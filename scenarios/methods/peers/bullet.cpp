@@ -17,8 +17,6 @@ constexpr int kRank = 50;
 
 #ifdef LRB_HAS_BULLET
 
-#include <algorithm>
-
 #include <BulletCollision/Gimpact/btGImpactCollisionAlgorithm.h>
 #include <BulletCollision/Gimpact/btGImpactShape.h>
 #include <btBulletCollisionCommon.h>
@@ -101,8 +99,7 @@ class Bullet : public Method {
     Gatherer gatherer(object_a);
     world_.contactPairTest(object_a, object_b, gatherer);
     answer.microseconds = watch.microseconds();
-    std::sort(gatherer.pairs.begin(), gatherer.pairs.end());
-    gatherer.pairs.erase(std::unique(gatherer.pairs.begin(), gatherer.pairs.end()), gatherer.pairs.end());
+    sort_pairs(gatherer.pairs);
     answer.pairs = std::move(gatherer.pairs);
     answer.contact = !answer.pairs.empty();
     if (mode == Mode::first_pair && answer.contact) answer.pairs.resize(1);

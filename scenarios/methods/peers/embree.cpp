@@ -12,8 +12,6 @@ constexpr int kRank = 60;
 
 #ifdef LRB_HAS_EMBREE
 
-#include <algorithm>
-
 #include <embree3/rtcore.h>
 
 #include "engine/core/error.hpp"
@@ -105,9 +103,10 @@ struct Candidates {
     self.tests += count;
     Eigen::Vector3d p[3], q[3];
     for (unsigned i = 0; i < count; ++i) {
-      self.a->corners(found[i].primID0, p);
-      self.b->corners(found[i].primID1, q);
-      if (plain_triangles_meet(p, q)) self.pairs.push_back({found[i].primID0, found[i].primID1});
+      const SimplexPair pair{SimplexId(found[i].primID0), SimplexId(found[i].primID1)};
+      self.a->corners(pair.a, p);
+      self.b->corners(pair.b, q);
+      if (plain_triangles_meet(p, q)) self.pairs.push_back(pair);
     }
   }
 };
@@ -134,9 +133,7 @@ class Embree : public Method {
     body_b.move(pose_b);
     rtcCollide(body_a.scene, body_b.scene, Candidates::add, &candidates);
     answer.microseconds = watch.microseconds();
-    std::sort(candidates.pairs.begin(), candidates.pairs.end());
-    candidates.pairs.erase(std::unique(candidates.pairs.begin(), candidates.pairs.end()),
-                           candidates.pairs.end());
+    sort_pairs(candidates.pairs);
     answer.pairs = std::move(candidates.pairs);
     answer.face_tests = candidates.tests;
     answer.contact = !answer.pairs.empty();

@@ -21,8 +21,6 @@ constexpr int kRank = 30;
 #include "scenarios/methods/peers/fcl_instantiated.hpp"
 #endif
 
-#include <algorithm>
-
 #include <fcl/config.h>
 #include <fcl/geometry/bvh/BVH_model.h>
 #include <fcl/narrowphase/collision.h>
@@ -80,8 +78,7 @@ class Fcl : public Method {
       const fcl::Contact<S>& c = result.getContact(i);
       answer.pairs.push_back({static_cast<SimplexId>(c.b1), static_cast<SimplexId>(c.b2)});
     }
-    std::sort(answer.pairs.begin(), answer.pairs.end());
-    answer.pairs.erase(std::unique(answer.pairs.begin(), answer.pairs.end()), answer.pairs.end());
+    sort_pairs(answer.pairs);
     answer.contact = result.isCollision();
     return answer;
   }

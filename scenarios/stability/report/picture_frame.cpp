@@ -70,7 +70,7 @@ Piece PosedBody::simplex(SimplexId s) const {
   rep_->simplex(s, v);
   if (rep_->dim() == 2) return {{x_[v[0]], x_[v[1]]}, {true, false}};
   const FaceId f = rep_->face_of_simplex(s);
-  const SimplexId i = s - rep_->first_simplex(f);
+  const std::uint32_t i = s - rep_->first_simplex(f);
   return {{x_[v[0]], x_[v[1]], x_[v[2]]}, {i == 0, true, i + 3 == rep_->face(f).size()}};
 }
 

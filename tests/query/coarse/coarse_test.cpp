@@ -89,8 +89,8 @@ TEST_CASE("no point of a region is further from the real faces than its thicknes
       REQUIRE(std::isfinite(thickness[r]));
       std::vector<std::vector<Eigen::Vector3d>> sides;
       for (const FaceId f : rep.collector(r))
-        for (SimplexId i = 0; i < Mesh::simplices_of(rep.face(f).size(), rep.dim()); ++i)
-          sides.push_back(test::simplex_points(rep, Pose{}, rep.first_simplex(f) + i));
+        for (std::uint32_t i = 0; i < Mesh::simplices_of(rep.face(f).size(), rep.dim()); ++i)
+          sides.push_back(test::simplex_points(rep, Pose{}, SimplexId(rep.first_simplex(f) + i)));
       for (int sample = 0; sample < 12; ++sample) {
         // Between two points of its boundary: in the region, as it is mostly convex, or checked to be.
         Eigen::Vector3d x = test::random_point_of(random, sides[random() % sides.size()]);

@@ -43,9 +43,9 @@ TEST_CASE("the picture shows each kind of dirt in its colour") {
   const Mesh ball = icosphere(1);
   const auto n = static_cast<VertexId>(ball.vertices.size());
   Mesh star = circle(5);
-  for (VertexId i = 0; i < 5; ++i) {
-    star.face_vertices[2 * i] = 2 * i % 5;
-    star.face_vertices[2 * i + 1] = 2 * (i + 1) % 5;
+  for (std::size_t i = 0; i < 5; ++i) {
+    star.face_vertices[2 * i] = VertexId(2 * i % 5);
+    star.face_vertices[2 * i + 1] = VertexId(2 * (i + 1) % 5);
   }
   for (const Drawn& d : std::vector<Drawn>{
            {"open", without_faces(ball, {7}), {render::palette::kVermillion}},

@@ -37,15 +37,15 @@ Mesh figure_eight() {
 }
 
 Mesh moebius() {
-  constexpr VertexId kSteps = 9;
+  constexpr int kSteps = 9;
   Mesh m;
-  for (VertexId i = 0; i < kSteps; ++i) {
+  for (int i = 0; i < kSteps; ++i) {
     const double u = 2 * std::numbers::pi * i / kSteps;
     for (const double w : {-0.3, 0.3})
       m.vertices.emplace_back((1 + w * std::cos(u / 2)) * std::cos(u),
                               (1 + w * std::cos(u / 2)) * std::sin(u), w * std::sin(u / 2));
     const bool last = i + 1 == kSteps;  // half a turn: the two sides change places
-    const VertexId a = 2 * i, b = a + 1, c = last ? 1 : a + 2, d = last ? 0 : a + 3;
+    const VertexId a(2 * i), b(a + 1), c(last ? 1 : a + 2), d(last ? 0 : a + 3);
     m.add_face(std::array{a, c, b});
     m.add_face(std::array{b, c, d});
   }
@@ -187,7 +187,7 @@ std::vector<Row> rows_3d() {
        kHeld},
       {"isolated piece, closed", several({ball, icosphere(0, 0.2, {3, 0, 0})}), {}, Build::done, kHeld},
       {"isolated piece, open",
-       with_face(ball, {{3, 0, 0}, {3, 1, 0}, {3, 0, 1}}, {n, n + 1, n + 2}),
+       with_face(ball, {{3, 0, 0}, {3, 1, 0}, {3, 0, 1}}, {n, VertexId(n + 1), VertexId(n + 2)}),
        {"an edge has a face on one side only (3 times): edge (by its vertices) 42-43, 42-44, 43-44"},
        Build::refused,
        kNone},
@@ -223,7 +223,7 @@ std::vector<Row> rows_2d() {
   Mesh star;
   star.dim = 2;
   star.vertices = circle(5).vertices;
-  for (VertexId i = 0; i < 5; ++i) star.add_face(std::array<VertexId, 2>{2 * i % 5, 2 * (i + 1) % 5});
+  for (int i = 0; i < 5; ++i) star.add_face(std::array{VertexId(2 * i % 5), VertexId(2 * (i + 1) % 5)});
   return {
       {"2D, open",
        without_faces(round, {0}),

@@ -168,6 +168,8 @@ TEST_CASE("what the parser holds of a trace is bounded by its text") {
   refused("{\"traceEvents\":[{\"ph\":\"M\"},{\"x\":{", "\"a\":{},", "/traceEvents/1: is longer than any",
           100);
   refused("{\"metadata\":[", "[],", "its values take more than 8 times", 350);
+  refused("{\"metadata\":[", "{},", "its values take more than 8 times", 350);
+  refused("{\"else\":[", "{},", "its values take more than 8 times", 350);
 }
 
 TEST_CASE("a scenario that is too large to be one is refused before it is read") {
@@ -196,6 +198,7 @@ TEST_CASE("named pipes are refused and not waited for; pipes that a shell makes 
   const std::string shell = "cd '" + folder.path.string() +
                             "' && cat cube.obj | '" LRBSCOPE_BINARY "' inspect /dev/stdin >out.txt 2>&1";
   CHECK(std::system(shell.c_str()) == 0);
+  CHECK(slurp(folder / "out.txt").find("\nfaces: 6\n") != std::string::npos);
 }
 
 TEST_CASE("pictures that claim or unpack to more than they can be are refused") {

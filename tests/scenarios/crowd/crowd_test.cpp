@@ -22,6 +22,7 @@
 #include "scenarios/crowd/crowd_report.hpp"
 #include "scenarios/io/embedded.hpp"
 #include "scenarios/io/files.hpp"
+#include "tests/support/folder.hpp"
 
 using namespace lrb;
 using nlohmann::json;
@@ -156,7 +157,8 @@ TEST_CASE("a crowd of 2D bodies, too") {
 TEST_CASE("the number of threads does not show in trace, numbers or pictures") {
   for (const json& j : {good(), good_2d()}) {
     const spec::Crowd crowd = crowd_of(j);
-    const auto folder = std::filesystem::temp_directory_path() / "lrbscope_crowd_test";
+    const test::Folder scratch;
+    const auto& folder = scratch.path;
     std::string trace, summary;
     std::vector<std::string> frames;
     for (const std::uint32_t threads : {1U, 2U, 5U}) {
@@ -176,12 +178,12 @@ TEST_CASE("the number of threads does not show in trace, numbers or pictures") {
       CHECK((files == frames));
       CHECK(io::read_text(out + "/index.html").find("<html") != std::string::npos);
     }
-    std::filesystem::remove_all(folder);
   }
 }
 
 TEST_CASE("a crowd's trace is enough to draw it again, pixel by pixel") {
-  const auto folder = std::filesystem::temp_directory_path() / "lrbscope_crowd_replay_test";
+  const test::Folder scratch;
+  const auto& folder = scratch.path;
   for (const json& j : {good(), good_2d()})
     for (const trace::Clock clock : {trace::Clock::event, trace::Clock::wall}) {
       spec::Crowd crowd = crowd_of(j);
@@ -208,7 +210,6 @@ TEST_CASE("a crowd's trace is enough to draw it again, pixel by pixel") {
       CHECK(page.find("../run/trace.json") != std::string::npos);
       CHECK(page.find("summary.json") == std::string::npos);
     }
-  std::filesystem::remove_all(folder);
 }
 
 TEST_CASE("traces of crowds that are cut, damaged, old or of other bodies") {

@@ -20,9 +20,11 @@
 #include "scenarios/paper/close_up.hpp"
 #include "scenarios/paper/icicle.hpp"
 #include "tests/support/program.hpp"
+#include "tests/support/text.hpp"
 #include "trace/counters.hpp"
 
 using namespace lrb;
+using lrb::test::count;
 using nlohmann::json;
 
 namespace {
@@ -66,12 +68,6 @@ std::vector<paper::PaperObject> small_objects() {
     objects.push_back(
         {generators::paper_objects()[i].name, generators::fractal_body(generators::paper_objects()[i])});
   return objects;
-}
-
-std::size_t count(const std::string& text, const std::string& part) {
-  std::size_t n = 0;
-  for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++n;
-  return n;
 }
 
 }  // namespace

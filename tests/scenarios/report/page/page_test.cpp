@@ -8,8 +8,10 @@
 #include "render/png.hpp"
 #include "scenarios/io/embedded.hpp"
 #include "scenarios/report/page/inline_image.hpp"
+#include "tests/support/text.hpp"
 
 using namespace lrb;
+using lrb::test::count;
 
 namespace {
 
@@ -30,12 +32,6 @@ report::Page full_page() {
   page.command = "lrbscope run x";
   page.links = {{"trace.json", "trace.json", "opens in Perfetto"}};
   return page;
-}
-
-std::size_t count(const std::string& text, const std::string& word) {
-  std::size_t n = 0;
-  for (std::size_t at = text.find(word); at != std::string::npos; at = text.find(word, at + 1)) ++n;
-  return n;
 }
 
 }  // namespace

@@ -22,23 +22,20 @@
 #include "scenarios/stability/report/worst_case.hpp"
 #include "scenarios/stability/report/worst_pictures.hpp"
 #include "tests/scenarios/stability/report/made_up_grid.hpp"
+#include "tests/support/folder.hpp"
+#include "tests/support/text.hpp"
 
 using namespace lrb;
+using lrb::test::count;
 using namespace lrb::stability;
 
 namespace {
 
 std::string scratch_folder(const std::string& name) {
-  const auto path = std::filesystem::temp_directory_path() / ("lrbscope_stability_" + name);
-  std::filesystem::remove_all(path);
+  static const test::Folder all;
+  const auto path = all.path / name;
   std::filesystem::create_directories(path);
   return path.string();
-}
-
-std::size_t count(const std::string& text, const std::string& word) {
-  std::size_t n = 0;
-  for (std::size_t at = text.find(word); at != std::string::npos; at = text.find(word, at + 1)) ++n;
-  return n;
 }
 
 /// Names an element that is not closed in order; empty: all are.
