@@ -26,10 +26,10 @@ std::string line_and_column(std::string_view text, std::size_t offset) {
 /// The largest depth of nested containers; ours need six levels.
 constexpr std::size_t kMaxDepth = 32;
 
-/// Builds the tree of a document from what nlohmann's parser finds in its text, without the events: each event
-/// is handed over when it is complete, and dropped. nlohmann's own builder with a callback could drop them,
-/// too, but searches everything that an array holds whenever an object in it ends, so that the time for an
-/// array of n objects would grow with n^2.
+/// Builds the tree of a document from what nlohmann's parser finds in its text, without the events: each
+/// event is handed over when it is complete, and dropped. nlohmann's own builder with a callback could drop
+/// them, too, but searches everything that an array holds whenever an object in it ends, so that the time for
+/// an array of n objects would grow with n^2.
 ///
 /// Limits the memory that it takes by the length of the text it has read. A "0," of two bytes becomes 16
 /// bytes, an "[]," of three about 60; what we write takes more bytes as text than in memory, except for poses

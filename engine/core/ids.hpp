@@ -3,8 +3,8 @@
 /// refuses a simplex where a face is meant.
 ///
 /// An id converts to its number implicitly, so that it can index an array. A number converts to an id only
-/// explicitly, `FaceId(i)`, or if it is a constant, `FaceId f = 0`. Ids of different kinds neither convert nor
-/// compare, except that a region is also a cell. An id costs what its number costs.
+/// explicitly, `FaceId(i)`, or if it is a constant, `FaceId f = 0`. Ids of different kinds neither convert
+/// nor compare, except that a region is also a cell. An id costs what its number costs.
 
 #include <concepts>
 #include <cstddef>

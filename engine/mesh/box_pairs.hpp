@@ -15,9 +15,9 @@ namespace lrb {
 
 using Box = Eigen::AlignedBox3d;
 
-/// Descends two nodes of a tree and calls at_leaves(a, b) for every two leaves, one below node m and one below
-/// n, except below nodes of which apart(a, b) says that they hold no pair. A node has the items [first, last);
-/// `right` is its right child (0: it is a leaf), and its left child follows it.
+/// Descends two nodes of a tree and calls at_leaves(a, b) for every two leaves, one below node m and one
+/// below n, except below nodes of which apart(a, b) says that they hold no pair. A node has the items [first,
+/// last); `right` is its right child (0: it is a leaf), and its left child follows it.
 template <class Node, class Apart, class AtLeaves>
 void descend(const std::vector<Node>& nodes, std::uint32_t m, std::uint32_t n, const Apart& apart,
              const AtLeaves& at_leaves) {

@@ -51,8 +51,8 @@ std::string picture_name(const std::string& path, std::size_t pose, std::size_t 
       .string();
 }
 
-/// Touching bodies may overlap all the same (see Relation::touching). This is decided for a query that found all
-/// pairs exactly, if there are few enough of them: 1000 take 0.1 s and more (docs/measurements.md).
+/// Touching bodies may overlap all the same (see Relation::touching). This is decided for a query that found
+/// all pairs exactly, if there are few enough of them: 1000 take 0.1 s and more (docs/measurements.md).
 constexpr std::size_t kMostPairsToDecide = 1000;
 
 bool tells_overlap(const CollideRequest& request) {
