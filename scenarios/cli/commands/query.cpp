@@ -174,7 +174,7 @@ Command add_query(CLI::App& root, const Globals& globals) {
   CLI::App* app =
       root.add_subcommand("query", "Answer exactly for each pose of B in a list, one line of JSON each");
   const auto o = std::make_shared<QueryOptions>();
-  app->add_option("A", o->a, "Mesh or .lrb file; stays put")->required();
+  app->add_option("A", o->a, "Mesh or .lrb file; does not move")->required();
   app->add_option("B", o->b, "Mesh or .lrb file; the poses are applied to it")->required();
   app->add_option("--poses", o->poses, "File with poses: lines of 12 numbers (3x4, row by row)")->required();
   add_request_options(*app, o->request);
