@@ -23,16 +23,17 @@ std::string line_and_column(std::string_view text, std::size_t offset) {
   return "line " + std::to_string(line) + ", column " + std::to_string(std::max<std::size_t>(column, 1));
 }
 
-/// Containers may nest this deep; ours need six levels.
+/// The largest depth of nested containers; ours need six levels.
 constexpr std::size_t kMaxDepth = 32;
 
-/// Builds the tree of a document from what nlohmann's parser finds in its text, but for the events: each is
-/// handed over once it is complete, and dropped. nlohmann's own builder with a callback could drop them, too,
-/// but searches all that an array holds whenever an object in it ends: the time for an array of n objects
-/// would grow with n^2.
+/// Builds the tree of a document from what nlohmann's parser finds in its text, without the events: each
+/// event is handed over when it is complete, and dropped. nlohmann's own builder with a callback could drop
+/// them, too, but searches everything that an array holds whenever an object in it ends, so that the time for
+/// an array of n objects would grow with n^2.
 ///
-/// Bounds what it holds by what it has read. A "0," of two bytes becomes 16, an "[]," of three about 60,
-/// while what we write takes more bytes as text than as values, but for poses of round numbers.
+/// Limits the memory that it takes by the length of the text it has read. A "0," of two bytes becomes 16
+/// bytes, an "[]," of three about 60; what we write takes more bytes as text than in memory, except for poses
+/// of round numbers.
 class EventParser final : public nlohmann::json_sax<Json> {
  public:
   EventParser(std::string_view text, const std::string& name,
@@ -112,7 +113,7 @@ class EventParser final : public nlohmann::json_sax<Json> {
     return true;
   }
 
-  /// Refuses what is to be added if it stands where the array of events or an event should.
+  /// Refuses a value that stands where the array of events, or an event, should.
   void check_place(const Json& j) const {
     if (!in_events_) return;
     if (stack_.size() == 1 && !j.is_array()) {

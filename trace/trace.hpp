@@ -53,8 +53,8 @@ struct Event {
   exact::Meet meet = exact::Meet::disjoint;  ///< face test, contact
   std::uint8_t unused = 0;
 
-  /// Return what `a` and `b` number: of a face test or a contact, the simplex of a body; of a refinement or a
-  /// coarsening, the region.
+  /// Return what the numbers `a` and `b` stand for: in a face test or a contact the simplex of a body, in a
+  /// refinement or a coarsening the region.
   SimplexId simplex(Side of) const { return SimplexId(of == Side::a ? a : b); }
   RegionId region() const { return RegionId(a); }
 

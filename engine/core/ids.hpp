@@ -2,9 +2,9 @@
 /// Index types of the engine: 32-bit indices into flat arrays, a type for each array, so that the compiler
 /// refuses a simplex where a face is meant.
 ///
-/// An id converts to its number by itself, so it can index an array; a number becomes an id only where the
-/// code says so, `FaceId(i)`, or where it is a constant, `FaceId f = 0`. No id becomes an id of another kind,
-/// and ids of two kinds do not compare; only a region is a cell, too. An id costs what its number costs.
+/// An id converts to its number implicitly, so that it can index an array. A number converts to an id only
+/// explicitly, `FaceId(i)`, or if it is a constant, `FaceId f = 0`. Ids of different kinds neither convert
+/// nor compare, except that a region is also a cell. An id costs what its number costs.
 
 #include <concepts>
 #include <cstddef>
@@ -28,20 +28,20 @@ using RegionId = Id<struct RegionKind>;  ///< a region of an LRB-rep, 0 .. regio
 /// A cell of the complex: a region, or one of the two cells that every body has, kSolid and kOutside.
 using CellId = Id<struct CellKind>;
 
-/// Ids of the first kind are ids of the second kind, too.
+/// Ids of the first kind convert to ids of the second kind.
 template <class Kind, class Other>
 concept IsAlso = std::same_as<Kind, RegionKind> && std::same_as<Other, CellKind>;
 template <class Kind, class Other>
 concept IsNot = !std::same_as<Kind, Other> && !IsAlso<Kind, Other>;
-/// A comparison would confuse them.
+/// Ids of these kinds must not be compared.
 template <class Kind, class Other>
 concept Unrelated = IsNot<Kind, Other> && IsNot<Other, Kind>;
 
 template <class Kind>
 class Id {
  public:
-  Id() = default;  ///< leaves the number as it is, like an integer; `Id{}` is 0
-  /// Converts a constant, not less than 0.
+  Id() = default;  ///< leaves the number uninitialized, as for an integer; `Id{}` is 0
+  /// Converts a constant, which must not be negative.
   template <std::same_as<int> Constant>
   consteval Id(Constant constant)
       : value_(constant >= 0 ? static_cast<std::uint32_t>(constant) : throw "an id is not less than 0") {}
@@ -56,7 +56,7 @@ class Id {
   constexpr std::uint32_t value() const { return value_; }
   constexpr operator std::uint32_t() const { return value_; }
 
-  /// Returns a cell that is_region() as the region that it is.
+  /// Returns the region that this cell is; is_region() must hold.
   constexpr RegionId as_region() const requires std::same_as<Kind, CellKind> { return RegionId(value_); }
 
   constexpr Id& operator++() {
@@ -74,7 +74,7 @@ bool operator==(Id<A>, Id<B>) = delete;
 template <class A, Unrelated<A> B>
 bool operator<=>(Id<A>, Id<B>) = delete;
 
-/// No id, of whatever kind; also an index of something else that is not there.
+/// Stands for "no id", of any kind, and for an index of anything else that does not exist.
 struct NoId {
   static constexpr std::uint32_t kValue = std::numeric_limits<std::uint32_t>::max();
   constexpr operator std::uint32_t() const { return kValue; }

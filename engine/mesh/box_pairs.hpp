@@ -15,9 +15,9 @@ namespace lrb {
 
 using Box = Eigen::AlignedBox3d;
 
-/// Calls at_leaves(a, b) for every two leaves, one below node m and one below n, unless they lie below two nodes
-/// that apart(a, b) says hold no pair. Of a node: [first, last) are its items, `right` its right child (0: it is
-/// a leaf); its left child follows it.
+/// Descends two nodes of a tree and calls at_leaves(a, b) for every two leaves, one below node m and one
+/// below n, except below nodes of which apart(a, b) says that they hold no pair. A node has the items [first,
+/// last); `right` is its right child (0: it is a leaf), and its left child follows it.
 template <class Node, class Apart, class AtLeaves>
 void descend(const std::vector<Node>& nodes, std::uint32_t m, std::uint32_t n, const Apart& apart,
              const AtLeaves& at_leaves) {
@@ -27,7 +27,7 @@ void descend(const std::vector<Node>& nodes, std::uint32_t m, std::uint32_t n, c
   if (a_is_leaf && b_is_leaf) {
     at_leaves(a, b);
   } else if (b_is_leaf || (!a_is_leaf && a.last - a.first >= b.last - b.first)) {
-    // The node with more items first, so that both reach their leaves together.
+    // Descends the node with more items, so that both reach their leaves at about the same depth.
     descend(nodes, m + 1, n, apart, at_leaves);
     descend(nodes, a.right, n, apart, at_leaves);
   } else {

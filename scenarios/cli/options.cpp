@@ -58,9 +58,8 @@ void add_recursion_option(CLI::App& app, std::optional<Recursion>& recursion) {
 }
 
 void add_request_options(CLI::App& app, CollideRequest& request) {
-  add_choice<Mode>(
-      app, option_of(&CollideRequest::mode), request.mode,
-      "all_pairs; first_pair: one pair, which crosses if any does; any_pair: the first that meets");
+  add_choice<Mode>(app, option_of(&CollideRequest::mode), request.mode,
+                   "all: every pair; first: one pair, which crosses if any does; any: the first that meets");
   add_recursion(app, request.recursion);
   add_choice<Predicates>(app, option_of(&CollideRequest::predicates), request.predicates,
                          "floating: without the exact fallback, wrong where doubles cannot decide");

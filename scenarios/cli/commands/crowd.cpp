@@ -51,8 +51,8 @@ Command add_crowd(CLI::App& root, const Globals& globals) {
       ->type_name("N");
   add_choice<trace::Clock>(
       *app, "--clock", o->clock,
-      "Time in the trace. event: the same for any number of threads, a track for each body; wall: a track for "
-      "each thread");
+      "Time in the trace. event: the same for any number of threads, a track for each body; "
+      "wall: a track for each thread");
   app->add_flag("--no-frames", o->no_frames, "Draw nothing");
   app->add_flag("--json", o->json, "Print the summary instead of the page's path");
   return {app, [o, &globals] { return run_crowd_command(*o, globals); }};

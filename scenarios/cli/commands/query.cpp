@@ -51,8 +51,8 @@ std::string picture_name(const std::string& path, std::size_t pose, std::size_t 
       .string();
 }
 
-/// Touching bodies may overlap all the same (see Relation::touching). This is decided for a query that found all
-/// pairs exactly, if they are few enough: 1000 take 0.1 s and more (docs/measurements.md).
+/// Touching bodies may overlap all the same (see Relation::touching). This is decided for a query that found
+/// all pairs exactly, if there are few enough of them: 1000 take 0.1 s and more (docs/measurements.md).
 constexpr std::size_t kMostPairsToDecide = 1000;
 
 bool tells_overlap(const CollideRequest& request) {
@@ -174,7 +174,7 @@ Command add_query(CLI::App& root, const Globals& globals) {
   CLI::App* app =
       root.add_subcommand("query", "Answer exactly for each pose of B in a list, one line of JSON each");
   const auto o = std::make_shared<QueryOptions>();
-  app->add_option("A", o->a, "Mesh or .lrb file; stays put")->required();
+  app->add_option("A", o->a, "Mesh or .lrb file; does not move")->required();
   app->add_option("B", o->b, "Mesh or .lrb file; the poses are applied to it")->required();
   app->add_option("--poses", o->poses, "File with poses: lines of 12 numbers (3x4, row by row)")->required();
   add_request_options(*app, o->request);

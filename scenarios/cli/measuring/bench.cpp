@@ -75,10 +75,9 @@ Command add_bench(CLI::App& root, const Globals& globals) {
   CLI::App* app = add_measuring(root, measuring_word("bench"));
   const auto o = std::make_shared<BenchOptions>();
   add_measure_options(*app, *o);
-  app->add_option(
-         "--faces", o->faces,
-         "Numbers of faces of the bodies to generate: every kind in the first size, rocks in the others; 0: none "
-         "[20000 100000]")
+  app->add_option("--faces", o->faces,
+                  "Numbers of faces of the bodies to generate: every kind in the first size, rocks in the "
+                  "others; 0: none [20000 100000]")
       ->check(CLI::Range(0, 2000000))
       ->type_name("N");
   return {app, [o, &globals] { return run_bench(*o, globals); }};
