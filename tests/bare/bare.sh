@@ -3,7 +3,7 @@
 # 12. Makes a root with debootstrap, from the package sources of this machine, clones commit C (HEAD) into it, and runs
 # ./run and ./check there as root would type them, in a clean environment; then again as a user without root; then with
 # the engines of others installed, and the rest of ./check --full. Prints how long every step took.
-# Steps: root clone stranger run check user peers clang sanitizers fuzz tidy; --until ends after one of them.
+# Steps: root clone stranger run check user again peers clang sanitizers fuzz tidy; --until ends after one of them.
 # Kept between runs, in ${XDG_CACHE_HOME:-~/.cache}/lrbscope-bare: the bare root and downloaded packages; and this machine's
 # compiler cache is used. --no-cache does without all three, for honest times. --keep leaves the root to be looked at.
 # Needs root and debootstrap. Everything runs in a mount namespace of its own, so that no mount can stay behind.
@@ -144,7 +144,7 @@ finish() {
   if [ "$cached" = 1 ] && [ "$mounts" = 0 ]; then cp -n "$root"/var/cache/apt/archives/*.deb "$cache/debs/" 2>/dev/null || true; fi
   # The closing lines of every ctest, the main one last.
   local name
-  for name in user peers clang sanitizers check; do
+  for name in user again peers clang sanitizers check; do
     if [ -f "$work/$name.log" ] && grep -q 'tests passed' "$work/$name.log"; then
       printf '\n%s:\n' "$name"
       grep -E '% tests passed|^Total Test time' "$work/$name.log"
@@ -196,15 +196,19 @@ add_compiler_cache() {
   rm -rf "$root"/var/lib/apt/lists/* # a bare machine has none
 }
 step_check() { inside ./check; }
+# The tests that write files and start programs.
+user_tests='^(mesh_tests|lrb_tests|trace_tests|render_tests|scenarios_tests|crowd_tests|golden_tests|stability.*|measure_tests|package|faults)$'
 # Without root, with the packages: the same clone, given away, so that only what depends on the user is done again.
 step_user() {
   chmod a+x "$root/root"
   chown -R 1000:1000 "$root$home"
   local code=0
-  { as 1000:1000 /home/stranger ./run && as 1000:1000 /home/stranger ./check; } || code=$?
+  { as 1000:1000 /home/stranger ./run && as 1000:1000 /home/stranger ./check format &&
+    as 1000:1000 /home/stranger ctest --preset release -j "$(nproc)" -R "$user_tests"; } || code=$?
   chown -R 0:0 "$root$home"
   return $code
 }
+step_again() { inside ./check again; }
 step_peers() { inside ./check peers; }
 step_clang() { inside ./check clang; }
 step_sanitizers() { inside ./check sanitizers; }
@@ -213,7 +217,7 @@ step_tidy() { inside ./check tidy; }
 
 all_steps() {
   local name
-  for name in root clone stranger run check user peers clang sanitizers fuzz tidy; do step "$name" "step_$name"; done
+  for name in root clone stranger run check user again peers clang sanitizers fuzz tidy; do step "$name" "step_$name"; done
   finish
 }
 
@@ -231,7 +235,7 @@ if [ "${1:-}" != --inside ]; then
     esac
     shift
   done
-  case " root clone stranger run check user peers clang sanitizers fuzz tidy " in *" $until "*) ;; *) usage ;; esac
+  case " root clone stranger run check user again peers clang sanitizers fuzz tidy " in *" $until "*) ;; *) usage ;; esac
   [ "$(id -u)" = 0 ] || refuse "needs root, to make a root of its own"
   command -v debootstrap >/dev/null || refuse "needs debootstrap (apt-get install debootstrap)"
   commit=$(git -C "$repository" rev-parse --verify -q "$commit^{commit}") || refuse "no such commit"

@@ -7,6 +7,7 @@
 
 #include "engine/exact/exact_sign.hpp"
 #include "engine/exact/fixed_point.hpp"
+#include "tests/support/hull_oracle.hpp"
 #include "tests/support/random_simplices.hpp"
 #include "tests/support/rational_oracle.hpp"
 

@@ -48,7 +48,7 @@ TEST_CASE("orientations have the sign of the rational determinant") {
     const double *a = s.p[0].data(), *b = s.p[1].data(), *c = s.p[2].data(), *d = s.p[3].data();
     const int in_space = oracle::orientation({a, b, c, d});
     const int in_plane = oracle::orientation({a, b, c});
-    const bool line = oracle::affine_dimension(oracle::to_integers({{a, b, c}}, 3)[0]) < 2;
+    const bool line = oracle::affine_dimension_of({a, b, c}, 3) < 2;
     return exact::orient3d(a, b, c, d) == in_space && exact::orient3d(b, a, c, d) == -in_space &&
            exact::orient2d(a, b, c) == in_plane && exact::orient2d(a, c, b) == -in_plane &&
            exact::collinear3d(a, b, c) == line;

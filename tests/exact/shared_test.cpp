@@ -6,8 +6,8 @@
 #include <doctest/doctest.h>
 
 #include "engine/exact/simplex_test.hpp"
+#include "tests/support/hull_oracle.hpp"
 #include "tests/support/random_simplices.hpp"
-#include "tests/support/rational_oracle.hpp"
 
 using namespace lrb;
 using lrb::test::Kind;

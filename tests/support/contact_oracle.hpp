@@ -7,7 +7,7 @@
 #include <optional>
 #include <vector>
 
-#include "tests/support/rational_oracle.hpp"
+#include "tests/support/hull_oracle.hpp"
 
 namespace lrb::oracle {
 

@@ -112,8 +112,7 @@ class ParityOracle {
   }
 
   static bool is_flat(const WorldPoint& a, const WorldPoint& b, const WorldPoint& c) {
-    const auto p = oracle::to_integers({{a.data(), b.data(), c.data()}}, 3)[0];
-    return oracle::affine_dimension(p) < 2;
+    return oracle::affine_dimension_of({a.data(), b.data(), c.data()}, 3) < 2;
   }
 
   static bool crosses_flat(const WorldPoint& p, const WorldPoint& q, const WorldPoint& a, const WorldPoint& b,

@@ -5,14 +5,11 @@
 
 #include <doctest/doctest.h>
 #include <nlohmann/json.hpp>
-#include <valijson/adapters/nlohmann_json_adapter.hpp>
-#include <valijson/schema.hpp>
-#include <valijson/schema_parser.hpp>
-#include <valijson/validator.hpp>
 
 #include "engine/construct/build.hpp"
 #include "engine/query/collide_impl.hpp"
 #include "scenarios/bodies/shapes/shapes.hpp"
+#include "tests/support/json_schema.hpp"
 #include "tests/trace/runs.hpp"
 #include "trace/trace_json.hpp"
 
@@ -22,29 +19,9 @@ using Json = nlohmann::json;
 
 namespace {
 
-const valijson::Schema& schema() {
-  static const auto* parsed = [] {
-    std::ifstream file(LRB_TRACE_SCHEMA);
-    const Json json = Json::parse(file);
-    auto* out = new valijson::Schema;
-    valijson::SchemaParser parser(valijson::SchemaParser::kDraft7);
-    parser.populateSchema(valijson::adapters::NlohmannJsonAdapter(json), *out);
-    return out;
-  }();
-  return *parsed;
-}
-
 std::string complaint(const Json& document) {
-  valijson::Validator validator;
-  valijson::ValidationResults results;
-  if (validator.validate(schema(), valijson::adapters::NlohmannJsonAdapter(document), &results)) return "";
-  std::string out;
-  valijson::ValidationResults::Error error;
-  while (results.popError(error)) {
-    for (const std::string& part : error.context) out += part;
-    out += ": " + error.description + "\n";
-  }
-  return out;
+  static const Json schema = Json::parse(std::ifstream(LRB_TRACE_SCHEMA));
+  return test::schema_faults(schema, document);
 }
 
 Json box_run(Clock clock) {

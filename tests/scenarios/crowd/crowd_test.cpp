@@ -9,10 +9,6 @@
 
 #include <doctest/doctest.h>
 #include <nlohmann/json.hpp>
-#include <valijson/adapters/nlohmann_json_adapter.hpp>
-#include <valijson/schema.hpp>
-#include <valijson/schema_parser.hpp>
-#include <valijson/validator.hpp>
 
 #include "engine/core/error.hpp"
 #include "engine/query/brute_force.hpp"
@@ -23,6 +19,7 @@
 #include "scenarios/io/embedded.hpp"
 #include "scenarios/io/files.hpp"
 #include "tests/support/folder.hpp"
+#include "tests/support/json_schema.hpp"
 
 using namespace lrb;
 using nlohmann::json;
@@ -75,27 +72,13 @@ std::string error_of(const json& j) {
 bool schema_accepts(const json& j) {
   static const json document = json::parse(io::embedded_file("crowd.schema.json"));
   static const json scenario = json::parse(io::embedded_file("scenario.schema.json"));
-  const auto fetch = [](const std::string&) { return &scenario; };
-  const auto release = [](const json*) {};
-  valijson::Schema schema;
-  valijson::SchemaParser(valijson::SchemaParser::kDraft7)
-      .populateSchema(valijson::adapters::NlohmannJsonAdapter(document), schema, fetch, release);
-  return valijson::Validator().validate(schema, valijson::adapters::NlohmannJsonAdapter(j), nullptr);
+  return test::schema_faults(document, j, scenario).empty();
 }
 
 /// Whether the published schema of traces accepts a document; else its complaints.
 std::string complaint_about_trace(const json& trace) {
   static const json document = json::parse(std::ifstream(LRB_TRACE_SCHEMA));
-  valijson::Schema schema;
-  valijson::SchemaParser(valijson::SchemaParser::kDraft7)
-      .populateSchema(valijson::adapters::NlohmannJsonAdapter(document), schema);
-  valijson::ValidationResults results;
-  std::string out;
-  if (valijson::Validator().validate(schema, valijson::adapters::NlohmannJsonAdapter(trace), &results))
-    return out;
-  for (valijson::ValidationResults::Error error; results.popError(error); out += error.description + "\n")
-    for (const std::string& part : error.context) out += part;
-  return out.empty() ? "refused" : out;
+  return test::schema_faults(document, trace);
 }
 
 /// As write_crowd() left them.

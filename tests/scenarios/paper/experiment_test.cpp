@@ -8,10 +8,6 @@
 
 #include <doctest/doctest.h>
 #include <nlohmann/json.hpp>
-#include <valijson/adapters/nlohmann_json_adapter.hpp>
-#include <valijson/schema.hpp>
-#include <valijson/schema_parser.hpp>
-#include <valijson/validator.hpp>
 
 #include "engine/core/error.hpp"
 #include "render/png.hpp"
@@ -19,6 +15,7 @@
 #include "scenarios/io/embedded.hpp"
 #include "scenarios/paper/close_up.hpp"
 #include "scenarios/paper/icicle.hpp"
+#include "tests/support/json_schema.hpp"
 #include "tests/support/program.hpp"
 #include "tests/support/text.hpp"
 #include "trace/counters.hpp"
@@ -32,13 +29,7 @@ namespace {
 bool schema_accepts(const std::string& text) {
   const json document = json::parse(io::embedded_file("experiment.schema.json"));
   const json scenario = json::parse(io::embedded_file("scenario.schema.json"));
-  valijson::Schema schema;
-  valijson::SchemaParser(valijson::SchemaParser::kDraft7)
-      .populateSchema(
-          valijson::adapters::NlohmannJsonAdapter(document), schema,
-          [&](const std::string&) { return &scenario; }, [](const json*) {});
-  const json experiment = json::parse(text);
-  return valijson::Validator().validate(schema, valijson::adapters::NlohmannJsonAdapter(experiment), nullptr);
+  return test::schema_faults(document, json::parse(text), scenario).empty();
 }
 
 std::string error_of(const std::string& text) {

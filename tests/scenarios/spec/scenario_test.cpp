@@ -5,16 +5,13 @@
 
 #include <doctest/doctest.h>
 #include <nlohmann/json.hpp>
-#include <valijson/adapters/nlohmann_json_adapter.hpp>
-#include <valijson/schema.hpp>
-#include <valijson/schema_parser.hpp>
-#include <valijson/validator.hpp>
 
 #include "engine/core/error.hpp"
 #include "scenarios/bodies/generators/generators.hpp"
 #include "scenarios/io/embedded.hpp"
 #include "scenarios/spec/scenario_motion.hpp"
 #include "scenarios/spec/shipped.hpp"
+#include "tests/support/json_schema.hpp"
 #include "trace/record_fields.hpp"
 
 using namespace lrb;
@@ -25,11 +22,7 @@ namespace {
 /// Whether an independent validator accepts a scenario by our schema.
 bool schema_accepts(const std::string& text) {
   static const json document = json::parse(io::embedded_file("scenario.schema.json"));
-  valijson::Schema schema;
-  valijson::SchemaParser(valijson::SchemaParser::kDraft7)
-      .populateSchema(valijson::adapters::NlohmannJsonAdapter(document), schema);
-  const json scenario = json::parse(text);
-  return valijson::Validator().validate(schema, valijson::adapters::NlohmannJsonAdapter(scenario), nullptr);
+  return test::schema_faults(document, json::parse(text)).empty();
 }
 
 std::string error_of(const std::string& text) {
