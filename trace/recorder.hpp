@@ -68,7 +68,7 @@ class Recorder {
     if (faces_added != 0 && id != kNull) refined_by_[static_cast<std::size_t>(side)][region] = id + 1;
   }
 
-  /// Not an event of the query: for runs that show a wrapper growing back.
+  /// Of coarse queries, and of runs that show a wrapper growing back.
   void coarsen(Side side, RegionId region, std::uint32_t faces_removed) {
     push({.a = region,
           .b = faces_removed,
