@@ -1,4 +1,4 @@
-# The target api: a reference of the public headers, by Doxygen, which fails on any warning of it.
+# The target api: makes a reference of the public headers with Doxygen, and fails if Doxygen warns of anything.
 find_program(LRB_DOXYGEN doxygen DOC "Doxygen, for the target api")
 set(LRB_API_INPUT "\"${PROJECT_SOURCE_DIR}/docs/library.md\"")
 foreach(header IN LISTS LRB_PUBLIC_HEADERS)

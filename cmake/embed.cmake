@@ -1,6 +1,6 @@
-# lrb_embed(TARGET FILE...): compiles text files into TARGET, to be read back by lrb::io::embedded_file(NAME), where NAME is
+# lrb_embed(TARGET FILE...): compiles text files into TARGET; lrb::io::embedded_file(NAME) returns their text, where NAME is
 # the file's name without its folder (scenarios/io/embedded.hpp). Files may lie outside the source tree.
-# As a script (-P): writes one such file as C++ source.
+# Run as a script (-P), this file writes one such text as C++ source.
 if(CMAKE_SCRIPT_MODE_FILE)
   file(READ "${EMBED_IN}" text)
   string(FIND "${text}" ")lrb_embed\"" clash)
@@ -32,7 +32,7 @@ function(lrb_embed target)
     string(APPEND declarations "extern const char* const ${symbol};\n")
     string(APPEND table "      {\"${name}\", ${symbol}},\n")
   endforeach()
-  # The files' own characters are nobody's style: no warnings about long literals.
+  # The texts are as long as they are: no warnings about long literals.
   set_source_files_properties(${generated} PROPERTIES COMPILE_OPTIONS -Wno-overlength-strings
                               SKIP_PRECOMPILE_HEADERS ON)
   set(registry "${CMAKE_CURRENT_BINARY_DIR}/embedded/registry.cpp")

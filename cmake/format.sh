@@ -8,7 +8,7 @@ case "${1:-}" in
   --mend) how=(-i) ;;
   *) sed -n '2s/^# //p' "${BASH_SOURCE[0]}" >&2 && exit 2 ;;
 esac
-# Versions differ in what they do: that of Debian 12.
+# Versions format differently; this is Debian 12's.
 program=$(command -v clang-format-14) || { echo "format.sh: clang-format-14 is missing" >&2 && exit 3; }
 find engine trace render scenarios tests '(' -name '*.cpp' -o -name '*.hpp' -o -name '*.inl' ')' -print0 |
   xargs -0 -P "$(nproc)" -n 40 "$program" --style=file "${how[@]}" ||

@@ -7,10 +7,10 @@ set(LRB_CMAKE_DIR ${CMAKE_INSTALL_LIBDIR}/cmake/lrbscope)
 set_target_properties(lrb_engine PROPERTIES EXPORT_NAME engine)
 set_target_properties(lrb_options PROPERTIES EXPORT_NAME options)
 
-install(TARGETS lrbscope RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+install(TARGETS lrbscope lrbscope-measure RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 install(TARGETS lrb_engine lrb_options EXPORT lrbscopeTargets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
 
-# The public headers, which may include public headers alone: so what is installed is what is documented.
+# The public headers. They may include only public headers, so that what is installed is what is documented.
 file(STRINGS ${PROJECT_SOURCE_DIR}/engine/public_headers.txt LRB_PUBLIC_HEADERS REGEX "^[^#]")
 set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/engine/public_headers.txt)
 foreach(header IN LISTS LRB_PUBLIC_HEADERS)

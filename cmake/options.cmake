@@ -1,13 +1,13 @@
-# Compile options of every target of ours, as one interface target. Users of our targets get what the answer depends on;
-# warnings, tuning and sanitizers only our own build does, so that a project that adds lrbscope as a subfolder, or finds
-# it installed, keeps its own flags.
+# Compile options of all our targets, as one interface target. Users of our targets get only the options that the answer
+# depends on. Warnings, tuning and sanitizers are for our own build, so that a project that adds lrbscope as a subfolder, or
+# finds it installed, keeps its own flags.
 add_library(lrb_options INTERFACE)
 target_compile_features(lrb_options INTERFACE cxx_std_20)
 target_include_directories(lrb_options INTERFACE $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>
                                                  $<INSTALL_INTERFACE:include/lrbscope>)
 
-# No fused multiply-add behind our back: the engine's answer is defined for coordinates rounded after every
-# operation, and its error bounds are derived for that order. With contraction, compilers would disagree.
+# The compiler must not contract a * b + c into a fused multiply-add: the engine's answer is defined for coordinates that
+# are rounded after every operation, and its error bounds are derived for that. With contraction, compilers would disagree.
 target_compile_options(lrb_options INTERFACE -ffp-contract=off)
 
 add_library(lrb_own_options INTERFACE)
@@ -15,8 +15,8 @@ if(PROJECT_IS_TOP_LEVEL)
   target_link_libraries(lrb_options INTERFACE $<BUILD_INTERFACE:lrb_own_options>)
 endif()
 
-# -Wrestrict of gcc 12 is wrong about inlined std::string::replace and operator+ (gcc bug 105329), -Wstringop-overread about
-# short strings that are moved once they come from a precompiled header.
+# -Wrestrict of gcc 12 is wrong about inlined std::string::replace and operator+ (gcc bug 105329), and -Wstringop-overread
+# about moved short strings if their header was precompiled.
 target_compile_options(lrb_own_options INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion -Wno-psabi
                                              $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict -Wno-stringop-overread>)
 if(LRB_WARNINGS_AS_ERRORS)
@@ -47,7 +47,7 @@ if(LRB_FUZZ)
   target_compile_options(lrb_options INTERFACE -fsanitize=fuzzer-no-link)
 endif()
 
-# What all is optimised with, for programs that say it beside their timings.
+# The flags that everything is optimised with, for programs that print them beside their timings.
 string(TOUPPER "${CMAKE_BUILD_TYPE}" lrb_build_type)
 set(lrb_flags "${CMAKE_CXX_FLAGS_${lrb_build_type}}")
 if(LRB_NATIVE)

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# packages.sh PART...: installs the Debian packages of the named parts of packages.txt that are missing. As root, or
-# through sudo where that asks for no password it cannot get; else says what to install and exits 3.
+# packages.sh PART...: installs the missing Debian packages of these parts of packages.txt, as root or through sudo. Where
+# sudo is missing, or would ask for a password that nobody can type, says what to install and exits with 3.
 set -euo pipefail
 list="$(dirname "${BASH_SOURCE[0]}")/../packages.txt"
 

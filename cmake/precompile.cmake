@@ -1,7 +1,7 @@
-# Precompiled headers, for most of what the compiler reads is Eigen, nlohmann-json and doctest, in every file again.
-# lrb_precompile_all(): gives every target below the current folder the headers that it and its libraries link to; those
-# that are compiled with equal options share them. No target needs to say anything, and every file still includes what
-# it uses: -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON builds without.
+# Precompiled headers, because most of what the compiler reads is Eigen, nlohmann-json and doctest, again in every file.
+# lrb_precompile_all(): precompiles, for every target below the current folder, the headers of the libraries that it links
+# to; targets that are compiled with equal options share the result. No target needs to ask for it, and every file still
+# includes what it uses: -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON builds without.
 set(lrb_precompile_base <algorithm> <array> <chrono> <cmath> <cstdint> <cstdio> <cstdlib> <cstring> <fstream>
     <functional> <limits> <map> <memory> <numbers> <numeric> <optional> <random> <set> <span> <sstream> <string>
     <string_view> <unordered_map> <utility> <vector> <Eigen/Core> <Eigen/Geometry>)
@@ -9,13 +9,13 @@ set(lrb_precompile_nlohmann_json::nlohmann_json <filesystem> <nlohmann/json.hpp>
 set(lrb_precompile_CLI11::CLI11 <CLI/CLI.hpp>)
 set(lrb_precompile_doctest::doctest <doctest/doctest.h>)
 
-# What a folder finds is seen from here too.
+# Packages that are found in one folder are known in all.
 if(PROJECT_IS_TOP_LEVEL)
   set(CMAKE_FIND_PACKAGE_TARGETS_GLOBAL TRUE)
 endif()
 
-# The compiler cache, where there is one. It knows a precompiled header by its bytes if it is told so: of gcc's with an
-# option, and of clang's if no time is written into it.
+# The compiler cache, if there is one. It has to recognise a precompiled header by its bytes: gcc's needs an option for that,
+# clang's must not have a time written into it.
 if(PROJECT_IS_TOP_LEVEL AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
   find_program(LRB_CCACHE ccache DOC "The compiler cache ccache")
   if(LRB_CCACHE)
@@ -32,7 +32,7 @@ if(CMAKE_CXX_COMPILER_LAUNCHER MATCHES "ccache$")
   endif()
 endif()
 
-# Collects the libraries that a target links to, and those that these do, in the caller's variable.
+# Adds the libraries that a target links to, and those that these link to, to the caller's variable FOUND.
 function(lrb_linked target found)
   get_target_property(aliased ${target} ALIASED_TARGET)
   if(aliased)
@@ -51,7 +51,7 @@ function(lrb_linked target found)
   set(${found} ${result} PARENT_SCOPE)
 endfunction()
 
-# Leaves out the files of a target that are compiled for a processor of their own.
+# Leaves out those files of a target that are compiled for another processor than the rest.
 function(lrb_precompile_skip target)
   get_target_property(sources ${target} SOURCES)
   get_target_property(folder ${target} SOURCE_DIR)
@@ -78,7 +78,7 @@ function(lrb_precompile target)
       list(APPEND libraries ${library})
     endif()
   endforeach()
-  # Warnings are no part of what makes a precompiled header fit.
+  # Targets with different warnings can share a precompiled header.
   get_target_property(options ${target} COMPILE_OPTIONS)
   if(NOT options)
     set(options "")
@@ -86,7 +86,7 @@ function(lrb_precompile target)
   list(FILTER options EXCLUDE REGEX "-W|^-w$")
   get_target_property(definitions ${target} COMPILE_DEFINITIONS)
   if(definitions MATCHES "NDEBUG")
-    return() # what assert() is would differ
+    return() # assert() is something else there
   endif()
   string(MD5 key "${libraries} ${options}")
   string(SUBSTRING ${key} 0 8 key)

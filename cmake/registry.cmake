@@ -1,7 +1,8 @@
 # lrb_registry(TARGET NAMESPACE HEADER ITEM KIND SOURCE...): registers what files define, so that a file in the right folder
-# needs no list. Every SOURCE, NAME.cpp, must define `std::vector<ITEM> NAME_KIND()` in NAMESPACE (of a file NAME_KIND.cpp
-# the same). Compiles into TARGET `std::vector<ITEM> registered_KIND()`, which HEADER declares: all items by rank_of(item),
-# then by file. One that refers to all the others by name: no linker drops them, and their order does not depend on it.
+# needs no list. Every SOURCE, called NAME.cpp or NAME_KIND.cpp, must define `std::vector<ITEM> NAME_KIND()` in NAMESPACE.
+# Writes a function `std::vector<ITEM> registered_KIND()`, which HEADER declares and which returns all items, by
+# rank_of(item), then by file, and compiles it into TARGET. It calls each of them by name, so that no linker can drop one, and
+# the order does not depend on the linker.
 function(lrb_registry target namespace header item kind)
   set(names "")
   foreach(source IN LISTS ARGN)

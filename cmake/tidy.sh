@@ -1,15 +1,15 @@
 #!/usr/bin/env bash
-# cmake/tidy.sh [--seconds N] [FILE...]: runs clang-tidy on these files; on none given, on those that differ from the
-# branch main (on main itself: from the commit before), and then on the others as far as N seconds reach (0). A file that
-# has passed is passed over until it, a header of ours that it includes, or .clang-tidy changes: what is known of that is in
-# ${XDG_CACHE_HOME:-~/.cache}/lrbscope-tidy, so that short runs get round them all. Fails on any finding.
+# cmake/tidy.sh [--seconds N] [FILE...]: runs clang-tidy on these files. Without files: on those that differ from the branch
+# main (on main itself: from the commit before), and then, for N seconds (0), on others. Fails on any finding. A file that has
+# passed is skipped until it, a header of ours that it includes, or .clang-tidy changes;
+# ${XDG_CACHE_HOME:-~/.cache}/lrbscope-tidy remembers them, so that short runs reach all files in time.
 set -euo pipefail
 script=$(readlink -f "${BASH_SOURCE[0]}")
 cd "$(dirname "$script")/.."
 database=build/tidy
 passed=${XDG_CACHE_HOME:-$HOME/.cache}/lrbscope-tidy
 
-# Prints what the verdict on file $1 depends on, as one number.
+# Prints a hash of all that the verdict on file $1 depends on.
 state_of() {
   local command
   command=$(python3 - "$1" "$database" <<'P'
@@ -23,7 +23,7 @@ P
   { cat .clang-tidy; bash -c "$command" | tr -d '\\\n' | sed 's/^[^:]*://' | xargs cat; } | sha256sum | cut -c1-32
 }
 
-# Looks at file $2 unless it has passed, or the second $1 (of `date`) is over: then says so on file descriptor 3.
+# Checks file $2 unless it has passed. After time $1 (`date +%s`) does not, and prints the file to file descriptor 3.
 look_at() {
   local state
   [ "$(date +%s)" -lt "$1" ] || { echo "$2" >&3 && return 0; }
@@ -42,8 +42,8 @@ if [ "${1:-}" = --seconds ]; then seconds=${2:?a number} && shift 2; fi
 case "${1:-}" in -*) sed -n '2,6s/^# //p' "$script" >&2 && exit 2 ;; esac
 mkdir -p "$passed"
 find "$passed" -type f -mtime +60 -delete
-# Without precompiled headers, so that each file is seen to include what it uses.
-cmake --preset clang -B "$database" -DLRB_BUILD_TESTS=ON -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON >/dev/null
+# Without precompiled headers and files compiled together, so that each file is seen to include what it uses.
+cmake --preset clang -B "$database" -DLRB_BUILD_TESTS=ON -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON -DCMAKE_UNITY_BUILD=OFF >/dev/null
 
 known=$(sed -n 's/^ *"file": "\(.*\)",\{0,1\}$/\1/p' "$database/compile_commands.json" | grep -v "/$database/" |
   sed "s|^$PWD/||" | sort -u)
@@ -53,7 +53,7 @@ changed_files() { # against main, or against the commit before
   if [ "$base" = "$(git rev-parse HEAD)" ]; then base=$(git rev-parse -q --verify HEAD~1) || return 0; fi
   git diff --name-only --diff-filter=d "$base" -- '*.cpp' '*.hpp' '*.inl'
 }
-# A header is looked at where it is included: by its own source file, or by some other.
+# A header is checked as part of a file that includes it: its own source file, or another one.
 sources_of() {
   local file
   while IFS= read -r file; do

@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# docs/rooms.sh [ROOMS]: draws which room may see which, from tests/layers/rooms.txt, as SVG to stdout. What docs/rooms.svg
-# is; the test `docs` compares. A room stands above all that it may see; an arrow leads down to what it sees.
+# docs/rooms.sh [ROOMS]: draws which room may see which, from tests/layers/rooms.txt, as SVG to stdout: this is docs/rooms.svg,
+# which the test `docs` compares. A room stands above all that it may see; an arrow leads down to what it sees. Arrows that
+# follow from others are left out. Colours stand for the top folders, so that rooms are named without them.
 set -euo pipefail
 rooms=${1:-$(dirname "${BASH_SOURCE[0]}")/../tests/layers/rooms.txt}
 awk '
@@ -11,56 +12,133 @@ awk '
     for (i = 1; i <= n; i++) { f = floor_of(part[i]); if (f > best) best = f }
     return level[r] = best + 1
   }
+  function sees(from, to,   i, n, part) {
+    n = split(seen[from], part, " ")
+    for (i = 1; i <= n; i++) if (part[i] == to || sees(part[i], to)) return 1
+    return 0
+  }
+  function follows(from, to,   i, n, part) { # from another arrow of the same room
+    n = split(seen[from], part, " ")
+    for (i = 1; i <= n; i++) if (part[i] != to && sees(part[i], to)) return 1
+    return 0
+  }
   function colour(r) {
     if (r ~ /^engine/) return "#dbe9f6"
     if (r ~ /^trace/) return "#e3f1dc"
     if (r ~ /^render/) return "#fbe8d0"
     return "#f1e3f3"
   }
+  function label(r) { sub(/^(engine|scenarios)\//, "", r); return r }
+  function put(item, f) { floor[item] = f; row[f, wide[f]++] = item }
+  function link(upper, lower) { below[upper, downs[upper]++] = lower; above[lower, ups[lower]++] = upper }
+  # An arrow leads through a point on each floor between its ends, where it takes room like a narrow box.
+  function add_arrow(from, to,   f, last, point) {
+    arrows++
+    last = from
+    for (f = floor[from] - 1; f > floor[to]; f--) {
+      point = "arrow " arrows " at " f
+      put(point, f)
+      size[point] = 10
+      link(last, point)
+      last = point
+    }
+    link(last, to)
+    start[arrows] = from; end[arrows] = to
+  }
+  function mean_of(item, up, down,   i, n, sum) {
+    if (up) for (i = 0; i < ups[item]; i++) { sum += x[above[item, i]]; n++ }
+    if (down) for (i = 0; i < downs[item]; i++) { sum += x[below[item, i]]; n++ }
+    return n ? sum / n : x[item]
+  }
+  function sort_row(f,   k, j, t) {
+    for (k = 1; k < wide[f]; k++)
+      for (j = k; j > 0 && key[row[f, j]] < key[row[f, j - 1]]; j--) { t = row[f, j]; row[f, j] = row[f, j - 1]; row[f, j - 1] = t }
+  }
+  function apart(one, other) { return (size[one] + size[other]) / 2 + gap }
+  # Puts each item as near to where it wants to be as its neighbours allow: the mean of pushing right and pushing left.
+  function place_row(f,   k, r, right, left) {
+    for (k = 0; k < wide[f]; k++) {
+      r = row[f, k]
+      right[k] = key[r]
+      if (k && right[k] < right[k - 1] + apart(row[f, k - 1], r)) right[k] = right[k - 1] + apart(row[f, k - 1], r)
+    }
+    for (k = wide[f] - 1; k >= 0; k--) {
+      r = row[f, k]
+      left[k] = key[r]
+      if (k < wide[f] - 1 && left[k] > left[k + 1] - apart(r, row[f, k + 1])) left[k] = left[k + 1] - apart(r, row[f, k + 1])
+    }
+    for (k = 0; k < wide[f]; k++) x[row[f, k]] = (right[k] + left[k]) / 2
+  }
+  # Where an arrow leaves or enters a box: arrows are spread along the edge in the order of where they come from or go to.
+  function port(item, other, up,   i, n, o, place) {
+    n = up ? ups[item] : downs[item]
+    for (i = 0; i < n; i++) {
+      o = up ? above[item, i] : below[item, i]
+      if (x[o] < x[other] || (x[o] == x[other] && o < other)) place++
+    }
+    return x[item] + size[item] * ((place + 1) / (n + 1) - 0.5)
+  }
   /^ *(#|$)/ { next }
   { split($0, half, /: */); count++; name[count] = half[1]; seen[half[1]] = half[2] }
   END {
-    w = 196; h = 26; dx = 212; dy = 74; left = 12; top = 12
-    for (i = 1; i <= count; i++) { f = floor_of(name[i]); if (f > floors) floors = f; at[f, wide[f]++] = name[i] }
-    for (f = 0; f <= floors; f++) if (wide[f] > widest) widest = wide[f]
-    # Each floor from below is put in the order of the middles of what its rooms see.
-    for (f = 0; f <= floors; f++) {
-      for (k = 0; k < wide[f]; k++) {
-        r = at[f, k]; n = split(seen[r], part, " "); sum = 0
-        for (i = 1; i <= n; i++) sum += x[part[i]]
-        key[r] = n ? sum / n : left + k * dx
-      }
-      for (k = 1; k < wide[f]; k++)
-        for (j = k; j > 0 && key[at[f, j]] < key[at[f, j - 1]]; j--) { t = at[f, j]; at[f, j] = at[f, j - 1]; at[f, j - 1] = t }
-      # As near to these middles as there is room.
-      for (k = 0; k < wide[f]; k++) {
-        r = at[f, k]; want = key[r]; least = k ? x[at[f, k - 1]] + dx : left; most = left + (widest - wide[f] + k) * dx
-        x[r] = want < least ? least : want > most ? most : want
-        y[r] = top + (floors - f) * dy
-      }
-    }
-    width = left + widest * dx; height = top + floors * dy + h + 12
-    printf "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"%d\" height=\"%d\" viewBox=\"0 0 %d %d\" font-family=\"DejaVu Sans, sans-serif\" font-size=\"12\">\n", width, height, width, height
-    print "<defs><marker id=\"tip\" viewBox=\"0 0 8 8\" refX=\"7\" refY=\"4\" markerWidth=\"7\" markerHeight=\"7\" orient=\"auto\"><path d=\"M0 0L8 4L0 8z\" fill=\"#6b7785\"/></marker></defs>"
-    printf "<rect width=\"%d\" height=\"%d\" fill=\"#ffffff\"/>\n", width, height
-    for (i = 1; i <= count; i++) {
-      r = name[i]; n = split(seen[r], part, " ")
-      for (j = 1; j <= n; j++) {
-        # Arrows leave along the lower edge and arrive along the upper one, spread so that they can be told apart.
-        in_of[part[j]]++
-      }
-    }
-    for (i = 1; i <= count; i++) {
-      r = name[i]; n = split(seen[r], part, " ")
-      for (j = 1; j <= n; j++) {
-        s = part[j]; into[s]++
-        x0 = x[r] + w * j / (n + 1); y0 = y[r] + h; x1 = x[s] + w * into[s] / (in_of[s] + 1); y1 = y[s]
-        printf "<path d=\"M%.0f %.0fC%.0f %.0f %.0f %.0f %.0f %.0f\" fill=\"none\" stroke=\"#6b7785\" stroke-opacity=\"0.75\" marker-end=\"url(#tip)\"/>\n", x0, y0, x0, y0 + 26, x1, y1 - 26, x1, y1 - 1
-      }
-    }
+    h = 26; dy = 70; gap = 14; left = 12; top = 46
     for (i = 1; i <= count; i++) {
       r = name[i]
-      printf "<rect x=\"%.0f\" y=\"%.0f\" width=\"%d\" height=\"%d\" rx=\"5\" fill=\"%s\" stroke=\"#6b7785\"/><text x=\"%.0f\" y=\"%.0f\" text-anchor=\"middle\">%s</text>\n", x[r], y[r], w, h, colour(r), x[r] + w / 2, y[r] + 17, r
+      put(r, floor_of(r))
+      size[r] = 8 * length(label(r)) + 18
+      if (level[r] > floors) floors = level[r]
+    }
+    for (i = 1; i <= count; i++) {
+      n = split(seen[name[i]], part, " ")
+      for (j = 1; j <= n; j++) if (!follows(name[i], part[j])) add_arrow(name[i], part[j])
+    }
+    for (f = 0; f <= floors; f++) for (k = 0; k < wide[f]; k++) x[row[f, k]] = 100 * k
+    # Orders the floors by turns from below and from above, then moves items towards what they are linked to.
+    for (pass = 0; pass < 24; pass++)
+      for (i = 0; i <= floors; i++) {
+        f = pass % 2 ? floors - i : i
+        for (k = 0; k < wide[f]; k++) key[row[f, k]] = mean_of(row[f, k], pass % 2, !(pass % 2))
+        sort_row(f)
+        place_row(f)
+      }
+    for (pass = 0; pass < 60; pass++)
+      for (i = 0; i <= floors; i++) {
+        f = pass % 2 ? floors - i : i
+        for (k = 0; k < wide[f]; k++) key[row[f, k]] = mean_of(row[f, k], 1, 1)
+        place_row(f)
+      }
+    least = 1e9; most = -1e9
+    for (r in floor) {
+      if (x[r] - size[r] / 2 < least) least = x[r] - size[r] / 2
+      if (x[r] + size[r] / 2 > most) most = x[r] + size[r] / 2
+    }
+    for (r in floor) { x[r] += left - least; y[r] = top + (floors - floor[r]) * dy }
+    width = most - least + 2 * left; height = top + floors * dy + h + 12
+    printf "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"%d\" height=\"%d\" viewBox=\"0 0 %d %d\" font-family=\"DejaVu Sans, sans-serif\" font-size=\"13\">\n", width, height, width, height
+    print "<defs><marker id=\"tip\" viewBox=\"0 0 8 8\" refX=\"7\" refY=\"4\" markerWidth=\"7\" markerHeight=\"7\" orient=\"auto\"><path d=\"M0 0L8 4L0 8z\" fill=\"#55606c\"/></marker></defs>"
+    printf "<rect width=\"%d\" height=\"%d\" fill=\"#ffffff\"/>\n", width, height
+    for (i = 1; i <= arrows; i++) {
+      r = start[i]
+      from_x = 0
+      path = ""
+      last = r
+      for (f = floor[r] - 1; f >= floor[end[i]]; f--) {
+        next_item = f == floor[end[i]] ? end[i] : "arrow " i " at " f
+        x0 = last == r ? port(r, next_item, 0) : x[last]
+        y0 = y[last] + h
+        x1 = next_item == end[i] ? port(end[i], last, 1) : x[next_item]
+        y1 = y[next_item] - (next_item == end[i])
+        path = path (last == r ? sprintf("M%.0f %.0f", x0, y0) : sprintf("L%.0f %.0f", x0, y0)) sprintf("C%.0f %.0f %.0f %.0f %.0f %.0f", x0, y0 + 20, x1, y1 - 20, x1, y1)
+        last = next_item
+      }
+      printf "<path d=\"%s\" fill=\"none\" stroke=\"#55606c\" marker-end=\"url(#tip)\"/>\n", path
+    }
+    n = split("scenarios/ trace render engine/", part, " ")
+    for (i = 1; i <= n; i++)
+      printf "<rect x=\"%d\" y=\"12\" width=\"16\" height=\"16\" rx=\"3\" fill=\"%s\" stroke=\"#55606c\"/><text x=\"%d\" y=\"25\">%s</text>\n", left + 110 * (i - 1), colour(part[i]), left + 110 * (i - 1) + 22, part[i]
+    for (i = 1; i <= count; i++) {
+      r = name[i]
+      printf "<rect x=\"%.0f\" y=\"%.0f\" width=\"%d\" height=\"%d\" rx=\"5\" fill=\"%s\" stroke=\"#55606c\"/><text x=\"%.0f\" y=\"%.0f\" text-anchor=\"middle\">%s</text>\n", x[r] - size[r] / 2, y[r], size[r], h, colour(r), x[r], y[r] + 18, label(r)
     }
     print "</svg>"
   }' "$rooms"

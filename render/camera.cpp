@@ -14,25 +14,26 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-/// Of the distance to the far end, the nearest depth that is still drawn when the camera stands within the
-/// scene.
+/// The nearest depth that is drawn when the camera stands within the scene, as a share of the distance to the
+/// far end.
 constexpr double kNearShare = 1e-4;
-/// The same, of the distance to the target: in a close-up depths are to be told apart there.
+/// The same, as a share of the distance to the target: in a close-up, depths must be told apart there.
 constexpr double kNearFocus = 0.02;
-/// By how much the range of depths exceeds the scene, as a share of it: room for lines nudged towards the
+/// The range of depths exceeds the scene by this share of it: room for lines that are nudged towards the
 /// viewer.
 constexpr double kDepthSlack = 0.01;
-/// A scene that is a point still gets a picture: this share of its coordinates, or this length, across.
+/// A scene that is a single point is shown as if it were this share of its coordinates across, or this
+/// length.
 constexpr double kLeastExtent = 1e-9;
 constexpr double kLeastLength = 1e-30;
-/// A flat scene seen from its edge gets a picture this much lower than it is wide.
+/// The least ratio of height to width of what a picture shows: for a flat scene seen from its edge.
 constexpr double kFlattest = 1e-3;
-/// The eye keeps this share of the scene's size in front of it.
+/// The eye stays this share of the scene's size in front of it.
 constexpr double kClearance = 0.05;
 constexpr double kNearlyVertical = 1e-3;  ///< view_beside(): sine of the angle between axis and vertical
-constexpr double kSteepest = 0.49 * std::numbers::pi;  ///< as far as orbit() lifts a camera
+constexpr double kSteepest = 0.49 * std::numbers::pi;  ///< orbit() lifts a camera up to this angle
 
-/// Rows: right, up, forward.
+/// Returns the camera's axes as rows: right, up, forward.
 Matrix3d axes_of(const Vector3d& forward, const Vector3d& up) {
   Matrix3d axes;
   const Vector3d f = forward.normalized();
@@ -78,7 +79,8 @@ ViewDirection view_from_angles(double azimuth, double elevation) {
 ViewDirection view_beside(const Vector3d& axis, const Vector3d& up, double elevation) {
   const Vector3d vertical = up.normalized();
   Vector3d side = axis.cross(vertical);
-  // An axis that is nearly vertical tells no side: a hair's turn of it would turn the picture round.
+  // A nearly vertical axis does not say which side is which: turning it by a hair would turn the picture
+  // round.
   if (!(side.norm() > kNearlyVertical * axis.norm())) {
     side = Vector3d::UnitX() - vertical * vertical.x();
     if (!(side.norm() > kNearlyVertical)) side = Vector3d::UnitY();
@@ -90,8 +92,8 @@ Camera fit_camera(std::span<const Vector3d> points, double width, double height,
   check_points(points);
   if (!(options.view.from.squaredNorm() > 0)) throw InputError("a camera's direction must not be zero");
   const Matrix3d axes = axes_of(-options.view.from, options.view.up);
-  Vector3d origin =
-      Vector3d::Zero();  // points are measured from their middle, to keep digits far from the origin
+  Vector3d origin = Vector3d::
+      Zero();  // points are measured from their middle, to keep digits when they are far from the origin
   Eigen::AlignedBox3d box;
   for (const Vector3d& p : points) box.extend(p);
   origin = box.center();
@@ -121,8 +123,7 @@ Camera fit_camera(std::span<const Vector3d> points, double width, double height,
         std::max({y.half() / inner_y, x.half() / inner_x * height / width, kFlattest * size});
     eye.z() = -z.minus - size;
   } else {
-    // The eye lies back from z = 0 by at least what each pair of planes needs, and stays in front of the
-    // points.
+    // The eye moves back from z = 0 until each pair of planes holds the points, and stays in front of them.
     eye.z() = -std::max({x.half() / slope_x, y.half() / slope_y, z.minus + kClearance * size});
     camera.half_height = 0.5 * size;
   }
@@ -154,7 +155,7 @@ Camera fit_contact(std::span<const Vector3d> contact, const Eigen::AlignedBox3d&
   FitOptions fit = options;
   fit.margin = 0;
   Camera camera = fit_camera(Eigen::AlignedBox3d(box.center() - r, box.center() + r), width, height, fit);
-  // What is in the middle of the box need not be in the middle of what is seen of the contact.
+  // The middle of the box need not be the middle of what is seen of the contact.
   const Projection projection(camera, width, height, box);
   Eigen::AlignedBox2d seen;
   for (const Vector3d& p : contact) {
@@ -215,7 +216,7 @@ Vector3d Projection::to_screen(const Vector3d& e) const {
     return {0.5 * width_ + focal_ * e.x(), 0.5 * height_ + focal_ * e.y(),
             (2 * e.z() - far_ - near_) / (far_ - near_)};
   }
-  // Depth is linear in 1 / z, and so linear over the picture along a plane.
+  // Depth is linear in 1 / z, and so it is linear over the picture of a plane.
   return {0.5 * width_ + focal_ * e.x() / e.z(), 0.5 * height_ + focal_ * e.y() / e.z(),
           (far_ + near_ - 2 * far_ * near_ / e.z()) / (far_ - near_)};
 }

@@ -1,5 +1,5 @@
 #pragma once
-/// Where the picture is taken from. All in double; the picture's plane has x to the right and y up.
+/// Places the viewer. All numbers are doubles; the picture's plane has x to the right and y up.
 
 #include <optional>
 #include <span>
@@ -19,18 +19,19 @@ struct Camera {
   double half_height = 1;  ///< orthographic: from the middle to the top edge, world units
 };
 
-/// From where to look: a direction to stand in, seen from the target, and what is up.
+/// A direction to look from, and which way is up.
 struct ViewDirection {
-  Eigen::Vector3d from{0.62, -0.68, 0.42};  ///< need not be unit
+  Eigen::Vector3d from{0.62, -0.68, 0.42};  ///< from the target to the viewer, world frame; need not be unit
   Eigen::Vector3d up{0, 0, 1};
 };
 
-/// A direction by angles: azimuth from +x towards +y, elevation from the plane z = 0 towards +z, radians.
+/// Returns the direction of given angles in radians: azimuth from +x towards +y, elevation from the plane z =
+/// 0 towards +z.
 ViewDirection view_from_angles(double azimuth, double elevation);
 
-/// Looks across an axis, from slightly above: with the axis from one body to the other, or a contact's
-/// normal, both bodies stand side by side and what is between them is seen. An axis along `up` is looked at
-/// from +x.
+/// Returns a direction that looks across an axis from slightly above. If the axis leads from one body to the
+/// other, or along a contact's normal, both bodies stand side by side and what is between them can be seen.
+/// For an axis along `up` the viewer stands at +x.
 ViewDirection view_beside(const Eigen::Vector3d& axis, const Eigen::Vector3d& up = {0, 0, 1},
                           double elevation = 0.45);
 
@@ -38,54 +39,57 @@ struct FitOptions {
   ViewDirection view;
   bool orthographic = false;
   double fov_y = 0.6;    ///< radians
-  double margin = 0.06;  ///< left free on every side, as a share of the smaller side of the picture
+  double margin = 0.06;  ///< share of the picture's smaller side that stays free on every side
 };
 
-/// The camera of the given direction that shows all points as large as possible, in a picture of the given
-/// shape. Throws InputError without points or with ones that are not finite.
+/// Returns the camera of the given direction that shows all points as large as possible in a picture of the
+/// given size. Throws InputError if there are no points, or if one is not finite.
 Camera fit_camera(std::span<const Eigen::Vector3d> points, double width, double height,
                   const FitOptions& options = {});
 Camera fit_camera(const Eigen::AlignedBox3d& box, double width, double height,
                   const FitOptions& options = {});
 
-/// Looks straight down on the plane z = 0, orthographic, x to the right: for 2D bodies.
+/// Returns an orthographic camera that looks straight down on the plane z = 0, with x to the right: for 2D
+/// bodies.
 Camera fit_top(std::span<const Eigen::Vector3d> points, double width, double height, double margin = 0.06);
 
-/// The points in the middle of the picture and, around them, `context` times their size and `least` times the
-/// scene's diagonal: something of the bodies is always seen, even where the contact is one point.
+/// Returns a camera with the contact's points in the middle of the picture. Around them it shows `context`
+/// times their size, but at least `least` times the scene's diagonal, so that some of the bodies is seen even
+/// where the contact is a single point.
 Camera fit_contact(std::span<const Eigen::Vector3d> contact, const Eigen::AlignedBox3d& scene, double width,
                    double height, const FitOptions& options = {}, double context = 2.5, double least = 0.1);
 
-/// The same camera carried round the vertical through its target by `azimuth`, and lifted by `elevation`
-/// (radians; stopped short of the vertical).
+/// Returns the camera carried round the vertical through its target by `azimuth` and lifted by `elevation`
+/// (radians; stops short of the vertical).
 Camera orbit(const Camera& camera, double azimuth, double elevation = 0);
 
-/// A camera with the picture's size: world to pixels.
+/// Maps world to pixels: a camera together with the picture's size.
 class Projection {
  public:
-  /// `scene` holds everything to draw; it sets the range of depths. Throws InputError for a camera without
-  /// direction.
+  /// `scene` is the box around everything that will be drawn; it sets the range of depths. Throws InputError
+  /// for a camera without a direction.
   Projection(const Camera& camera, double width, double height, const Eigen::AlignedBox3d& scene);
 
   double width() const { return width_; }
   double height() const { return height_; }
   bool orthographic() const { return orthographic_; }
-  /// Eye frame: x right, y up, z = distance in front of the eye.
+  /// Maps the world to the eye's frame: x right, y up, z = distance in front of the eye.
   Eigen::Vector3d to_eye(const Eigen::Vector3d& world) const { return axes_ * (world - eye_); }
-  /// Eye frame to pixels from the bottom left, y up, and depth in [-1, 1]. z must be at least near().
+  /// Maps the eye's frame to pixels from the bottom left, y up, and depth in [-1, 1]. z must be at least
+  /// near().
   Eigen::Vector3d to_screen(const Eigen::Vector3d& eye) const;
-  /// World to pixels from the top left, y down; nothing if it lies behind the eye.
+  /// Maps the world to pixels from the top left, y down; nothing for a point behind the eye.
   std::optional<Eigen::Vector2d> to_pixel(const Eigen::Vector3d& world) const;
-  /// The depth in [-1, 1] of what lies closer to the viewer than something of that depth, by a share of the
-  /// height that the picture shows there.
+  /// Returns the depth in [-1, 1] of a point that lies closer to the viewer than one of depth `depth`, by
+  /// `heights` times the height that the picture shows there.
   double nearer(double depth, double heights) const;
   double near_depth() const { return near_; }
   double far_depth() const { return far_; }
   double focal() const { return focal_; }  ///< pixels per unit of x / z (orthographic: of x)
-  /// World units per pixel at a point.
+  /// Returns the number of world units that a pixel covers at a point.
   double unit_per_pixel(const Eigen::Vector3d& world) const;
   const Eigen::Matrix3d& axes() const { return axes_; }  ///< rows: right, up, forward
-  /// From a point to the viewer, unit, world frame.
+  /// Returns the direction from a point to the viewer, unit, world frame.
   Eigen::Vector3d towards_viewer(const Eigen::Vector3d& world) const;
 
  private:

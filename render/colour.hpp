@@ -14,7 +14,7 @@ constexpr Rgba with_alpha(Rgba c, std::uint8_t a) {
   return {c.r, c.g, c.b, a};
 }
 
-/// `c` moved towards `to` by t in [0, 1], channel by channel; alpha too.
+/// Moves `c` towards `to` by t in [0, 1], channel by channel, alpha included.
 constexpr Rgba mix(Rgba c, Rgba to, double t) {
   const auto channel = [t](std::uint8_t x, std::uint8_t y) {
     return static_cast<std::uint8_t>(x + (static_cast<double>(y) - x) * t + 0.5);
@@ -22,13 +22,13 @@ constexpr Rgba mix(Rgba c, Rgba to, double t) {
   return {channel(c.r, to.r), channel(c.g, to.g), channel(c.b, to.b), channel(c.a, to.a)};
 }
 
-/// (x + 127) / 255 for x = product of two bytes, rounded to nearest.
+/// Returns x / 255 rounded to nearest, for a product x of two bytes.
 constexpr int div255(int x) {
   return (x + 127) / 255;
 }
 
-/// `top` painted over `below`, with `coverage` (0..255) as a further factor of its alpha. Integers only, so
-/// that every machine gives the same bytes.
+/// Paints `top` over `below`, with `coverage` (0..255) as a further factor of its alpha. Computes in integers
+/// only, so that every machine gives the same bytes.
 constexpr Rgba over(Rgba top, Rgba below, int coverage = 255) {
   const int at = div255(top.a * coverage);
   if (at == 255) return top;
@@ -40,7 +40,7 @@ constexpr Rgba over(Rgba top, Rgba below, int coverage = 255) {
           static_cast<std::uint8_t>(a)};
 }
 
-/// Luma of Rec. 601, 0..255: how bright the colour is in a greyscale print.
+/// Returns the luma of Rec. 601, 0..255: how bright the colour is in a greyscale print.
 constexpr double luma(Rgba c) {
   return 0.299 * c.r + 0.587 * c.g + 0.114 * c.b;
 }

@@ -1,7 +1,7 @@
 #pragma once
-/// The one place where double becomes float: everything before it is Eigen in double (exact enough to decide
-/// by), everything after it is glm, as the graphics library and the shaders take it. Each number is rounded
-/// once, to nearest.
+/// Turns double into float, here and nowhere else. Everything before is Eigen in double, exact enough to
+/// decide by; everything after is glm, as the graphics library and the shaders take it. Each number is
+/// rounded once, to nearest.
 
 #include <Eigen/Core>
 #include <glm/vec2.hpp>
@@ -30,7 +30,7 @@ inline ByteColour to_bytes(Rgba c) {
 inline Rgba to_rgba(const ByteColour& c) {
   return {c.r, c.g, c.b, c.a};
 }
-/// Channels in [0, 1].
+/// Returns the colour with channels in [0, 1].
 inline glm::vec4 to_unit(Rgba c) {
   return glm::vec4(to_bytes(c)) / 255.0F;
 }

@@ -10,14 +10,14 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Up to this many polygons are ordered by their own planes.
+/// The largest number of polygons that are ordered by their own planes.
 constexpr std::size_t kLeaf = 24;
-/// A corner this close to a plane lies on it; a share of the scene's size. Wrong by so little, a cut does not
-/// show.
+/// A corner closer to a plane than this share of the scene's size counts as on it. A cut that is wrong by so
+/// little cannot be seen.
 constexpr double kOnPlane = 1e-9;
-/// Planes of the axes are used as long as neither side keeps more than this share of the polygons.
+/// Planes perpendicular to axes are used as long as neither side keeps more than this share of the polygons.
 constexpr double kWorthIt = 0.75;
-/// Ends the recursion where cutting does not get anywhere (many polygons through one point).
+/// The largest depth of recursion, for where cutting leads nowhere (many polygons through one point).
 constexpr int kMaxDepth = 64;
 
 struct Plane {
@@ -59,7 +59,7 @@ class Sorter {
     return sum / static_cast<double>(p.x.size());
   }
 
-  /// False if the plane would cut so many polygons that little is won.
+  /// Returns false if the plane would cut so many polygons that little is won.
   bool median_plane(const std::vector<EyePolygon>& polygons, Plane& plane) const {
     Vector3d lo = Vector3d::Constant(std::numeric_limits<double>::infinity()), hi = -lo;
     for (const EyePolygon& p : polygons) {
@@ -78,7 +78,8 @@ class Sorter {
            kWorthIt * static_cast<double>(polygons.size());
   }
 
-  /// Of the first few polygons, the one whose plane cuts the fewest others, and then the most even one.
+  /// Picks, among the first few polygons, the one whose plane cuts the fewest others; of those, the one that
+  /// divides them most evenly.
   Plane best_own_plane(const std::vector<EyePolygon>& polygons) const {
     Plane best{};
     std::size_t least = std::numeric_limits<std::size_t>::max();

@@ -12,11 +12,11 @@ namespace {
 using Eigen::Vector3d;
 using Mark = LegendItem::Mark;
 
-/// An unused vertex farther from the faces than this many of their sizes is not in the picture.
+/// An unused vertex farther from the faces than this many times their size is left out of the picture.
 constexpr double kNear = 1.0;
-/// Nor, beyond this many, are the faces in its close-up.
+/// In its close-up, the faces are left out if they are farther from it than this many times their size.
 constexpr double kFar = 20;
-/// Of the default direction added to a normal, so that a close-up does not look flat.
+/// The share of the default direction that is added to a normal, so that a close-up does not look flat.
 constexpr double kTilt = 0.35;
 
 struct Look {
@@ -83,7 +83,7 @@ bool is_edge_kind(MeshFault kind) {
   return kind == MeshFault::open_edge || kind == MeshFault::non_manifold_edge;
 }
 
-/// Faces at the offender: its own, or those that use its vertices (both, of an edge).
+/// Returns the faces at the offender: its own, or those that use its vertices (of an edge, both of them).
 std::vector<FaceId> faces_at(const Mesh& mesh, const Parts& parts) {
   if (!parts.faces.empty()) return parts.faces;
   std::vector<FaceId> out;
@@ -99,7 +99,7 @@ std::vector<FaceId> faces_at(const Mesh& mesh, const Parts& parts) {
 bool is_inside_out(const Mesh& mesh, const MeshReport& report, FaceId f) {
   const auto& pieces = report[MeshFault::inside_out].first;
   return std::any_of(pieces.begin(), pieces.end(), [&](const Element& piece) {
-    const std::vector<FaceId> faces = component(mesh, piece[0]);
+    const std::vector<FaceId> faces = component(mesh, FaceId(piece[0]));
     return std::binary_search(faces.begin(), faces.end(), f);
   });
 }
@@ -206,7 +206,7 @@ CloseUp close_up(const Mesh& mesh, const MeshReport& report, MeshFault kind) {
   if (!(n.norm() > 0)) n = middle;
   if (!(n.norm() > 0)) return out;
   out.view.from = n.normalized() + kTilt * ViewDirection{}.from.normalized();
-  constexpr double kSteep = 0.9;  // of a unit vector along z: there y is up
+  constexpr double kSteep = 0.9;  // of a unit vector along z: steeper than this, y is up
   if (std::abs(out.view.from.normalized().z()) > kSteep) out.view.up = {0, 1, 0};
   return out;
 }

@@ -11,28 +11,28 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Towards white: the neighbour of a face that is turned the wrong way.
+/// How far the neighbour of a face that is turned the wrong way is from its colour towards white.
 constexpr double kNeighbourPale = 0.6;
-/// Of faces in front of what a close-up is about.
+/// Alpha of faces in front of what a close-up is about.
 constexpr std::uint8_t kVeil = 50;
-/// Of the way to an offender: its own faces do not hide it.
+/// Faces hide an offender if they lie within this share of the way to it: its own faces do not.
 constexpr double kJustBefore = 0.999;
 
-class Builder {
+class DirtListBuilder {
  public:
-  Builder(const Mesh& mesh, const MeshReport& report, const Camera& camera, const Options& options)
+  DirtListBuilder(const Mesh& mesh, const MeshReport& report, const Camera& camera, const Options& options)
       : mesh_(mesh), report_(report), camera_(camera), o_(options) {}
 
   DrawList run() {
     std::vector<MeshFault> all = kinds(report_);
-    // Whole pieces last: what is wrong with some of their faces is to be seen on them.
+    // Whole pieces come last: what is wrong with some of their faces must stay visible on them.
     std::stable_partition(all.begin(), all.end(), [](MeshFault k) { return k != MeshFault::inside_out; });
     for (const MeshFault kind : all)
       for (const Element& e : report_[kind].first) choose_colours(kind, e);
     veiled_ = o_.focus && (*o_.focus == MeshFault::inside_out || is_hidden(*o_.focus));
     mesh_.dim == 2 ? segments() : faces();
     std::vector<MeshFault> marked = kinds(report_);
-    // What the picture is about last, over the others.
+    // What the picture is about is drawn last, over the others.
     std::stable_partition(marked.begin(), marked.end(),
                           [&](MeshFault k) { return !o_.focus || k != *o_.focus; });
     for (const MeshFault kind : marked)
@@ -54,7 +54,8 @@ class Builder {
  private:
   Rgba colour(MeshFault kind) const { return key(kind, mesh_.dim).colour; }
 
-  /// A face with several faults has the colour of the first, but what a close-up is about goes first.
+  /// Returns the fault that colours a face: the first it has, but the one that a close-up is about goes
+  /// first.
   void choose_colours(MeshFault kind, const Element& e) {
     const bool first = o_.focus && *o_.focus == kind;
     const auto give = [&](FaceId f, Rgba c) {
@@ -69,27 +70,29 @@ class Builder {
     if (kind == MeshFault::inside_out && o_.focus && !first)
       return;  // it would hide what the picture is about
     if (kind == MeshFault::self_intersection) {
-      give(e[0], palette::kOrange);
-      give(e[1], palette::kSkyBlue);
+      give(FaceId(e[0]), palette::kOrange);
+      give(FaceId(e[1]), palette::kSkyBlue);
       return;
     }
     if (kind == MeshFault::flipped_face) {
       const FaceId turned = turned_of(e);
       give(turned, colour(kind));
-      give(turned == e[0] ? e[1] : e[0], mix(colour(kind), kWhite, kNeighbourPale));
+      give(FaceId(turned == e[0] ? e[1] : e[0]), mix(colour(kind), kWhite, kNeighbourPale));
       return;
     }
     for (const FaceId f : parts_of(mesh_, kind, e).faces) give(f, colour(kind));
   }
 
-  /// Of two that contradict each other, the one that contradicts more of its neighbours.
+  /// Returns, of two neighbouring faces that are turned against each other, the one that disagrees with more
+  /// of its neighbours.
   FaceId turned_of(const Element& e) const {
     std::map<FaceId, int> times;
     for (const Element& other : report_[MeshFault::flipped_face].first) {
-      ++times[other[0]];
-      ++times[other[1]];
+      ++times[FaceId(other[0])];
+      ++times[FaceId(other[1])];
     }
-    return times[e[0]] > times[e[1]] ? e[0] : e[1];
+    const FaceId first(e[0]), second(e[1]);
+    return times[first] > times[second] ? first : second;
   }
 
   bool seen_from_back(FaceId f) const {
@@ -98,7 +101,7 @@ class Builder {
                                       : camera_.eye - mesh_.vertices[mesh_.face(f)[0]]) < 0;
   }
 
-  /// Whether faces lie between the eye and the first offender.
+  /// Returns true if faces lie between the eye and the first offender.
   bool is_hidden(MeshFault kind) const {
     const Vector3d to = camera_.eye + kJustBefore * (place(kind, report_[kind].first.front()) - camera_.eye);
     for (FaceId f = 0; f < mesh_.face_count() && mesh_.dim == 3; ++f)
@@ -118,7 +121,7 @@ class Builder {
       if (c != colours_.end()) {
         t.colour = c->second;
         t.edge_style = strong;
-        t.nudge = 1;  // over another face in the same place
+        t.nudge = 1;  // drawn over another face in the same place
       } else if (veiled_) {
         t.layer = Layer::translucent;
         t.colour.a = kVeil;
@@ -162,20 +165,20 @@ class Builder {
     out_.points.push_back(p);
   }
 
-  /// Edges, vertices, faces without area and cuts: what faces' colours cannot show.
+  /// Draws edges, vertices, faces without area and cuts, which faces' colours cannot show.
   void mark(MeshFault kind, const Element& e) {
     const Parts parts = parts_of(mesh_, kind, e);
     if (parts.edge) line({mesh_.vertices[e[0]], mesh_.vertices[e[1]]}, colour(kind), 5, true);
     if (!parts.edge && !parts.vertices.empty()) dot(mesh_.vertices[e[0]], colour(kind), 6);
     if (kind == MeshFault::zero_area_face) {
-      std::vector<Vector3d> x = corners(mesh_, e[0]);
+      std::vector<Vector3d> x = corners(mesh_, FaceId(e[0]));
       const bool one_place = std::all_of(x.begin(), x.end(), [&](const Vector3d& p) { return p == x[0]; });
       if (one_place) return dot(x[0], colour(kind), 6);
       x.push_back(x[0]);
       line(x, colour(kind), 4, true);
     }
     if (kind == MeshFault::self_intersection) {
-      const std::vector<Vector3d> x = cut(mesh_, e[0], e[1]);
+      const std::vector<Vector3d> x = cut(mesh_, FaceId(e[0]), FaceId(e[1]));
       if (x.size() == 1) dot(x[0], palette::kContact, 5);
       if (x.size() == 2) line(x, palette::kContact, 4, true, kWhite);
     }
@@ -186,22 +189,22 @@ class Builder {
     std::vector<Vector3d> x;
     for (const VertexId v : parts.vertices) x.push_back(mesh_.vertices[v]);
     if (x.empty()) {
-      if (kind == MeshFault::self_intersection) x = cut(mesh_, e[0], e[1]);
-      if (x.empty()) x = corners(mesh_, e[0]);
+      if (kind == MeshFault::self_intersection) x = cut(mesh_, FaceId(e[0]), FaceId(e[1]));
+      if (x.empty()) x = corners(mesh_, FaceId(e[0]));
     }
     Vector3d sum = Vector3d::Zero();
     for (const Vector3d& p : x) sum += p / static_cast<double>(x.size());
     return sum;
   }
 
-  /// A letter for a kind, at its first offender.
+  /// Writes a kind's letter at its first offender.
   void point_at(MeshFault kind, const std::string& letter) {
     const Vector3d x = place(kind, report_[kind].first.front());
     dot(x, colour(kind), 5);
     label(x, letter, 1);
   }
 
-  /// Above its point, unless it would cover another label or leave the picture.
+  /// Puts a label above its point, unless it would cover another label or leave the picture.
   void label(const Vector3d& x, const std::string& text, int sideways) {
     const auto at = projection_->to_pixel(x);
     if (!at) return;
@@ -233,7 +236,7 @@ class Builder {
   DrawList out_;
   std::map<FaceId, Rgba> colours_;
   std::set<FaceId> chosen_;
-  bool veiled_ = false;  ///< faces without offence are see-through
+  bool veiled_ = false;  ///< faces without a fault are see-through
   std::optional<Projection> projection_;
   std::vector<Eigen::AlignedBox2d> taken_;
 };
@@ -241,7 +244,7 @@ class Builder {
 }  // namespace
 
 DrawList list(const Mesh& mesh, const MeshReport& report, const Camera& camera, const Options& options) {
-  return Builder(mesh, report, camera, options).run();
+  return DirtListBuilder(mesh, report, camera, options).run();
 }
 
 }  // namespace lrb::render::dirt

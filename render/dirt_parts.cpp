@@ -15,21 +15,21 @@ Parts parts_of(const Mesh& mesh, MeshFault kind, const Element& e) {
   switch (kind) {
     case MeshFault::open_edge:
     case MeshFault::non_manifold_edge:
-      if (e[1] == kNull) return {{}, {e[0]}, false};
-      return {{}, {e[0], e[1]}, true};
+      if (e[1] == kNull) return {{}, {VertexId(e[0])}, false};
+      return {{}, {VertexId(e[0]), VertexId(e[1])}, true};
     case MeshFault::non_manifold_vertex:
     case MeshFault::unused_vertex:
-      return {{}, {e[0]}, false};
+      return {{}, {VertexId(e[0])}, false};
     case MeshFault::duplicate_vertex:
-      return {{}, {e[0], e[1]}, false};
+      return {{}, {VertexId(e[0]), VertexId(e[1])}, false};
     case MeshFault::duplicate_face:
     case MeshFault::flipped_face:
     case MeshFault::self_intersection:
-      return {{e[0], e[1]}, {}, false};
+      return {{FaceId(e[0]), FaceId(e[1])}, {}, false};
     case MeshFault::inside_out:
-      return {component(mesh, e[0]), {}, false};
+      return {component(mesh, FaceId(e[0])), {}, false};
     default:
-      return {{e[0]}, {}, false};
+      return {{FaceId(e[0])}, {}, false};
   }
 }
 
@@ -74,12 +74,13 @@ std::vector<FaceId> component(const Mesh& mesh, FaceId first) {
 
 namespace {
 
-/// Of faces' sizes: what lies in one plane seems to cross in specks, once coordinates are rounded.
+/// A cut shorter than this share of the faces' sizes is ignored: faces in one plane seem to cross in specks
+/// once their coordinates are rounded.
 constexpr double kLeastCut = 1e-6;
 
 using Triangle = std::array<Vector3d, 3>;
 
-/// Where a segment passes through a triangle.
+/// Returns the point in which a segment passes through a triangle.
 std::optional<Vector3d> passage(const Vector3d& p, const Vector3d& q, const Triangle& b) {
   const Vector3d n = (b[1] - b[0]).cross(b[2] - b[0]);
   const double dp = n.dot(p - b[0]), dq = n.dot(q - b[0]);

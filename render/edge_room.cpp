@@ -11,7 +11,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// A triangle's lowest altitude on the screen; of one that reaches behind the eye, nothing is known.
+/// Returns a triangle's lowest altitude on the screen; nothing if it reaches behind the eye.
 std::optional<double> altitude(const DrawTriangle& t, const Projection& projection) {
   std::array<Eigen::Vector2d, 3> at;
   for (std::size_t i = 0; i < 3; ++i) {
@@ -31,7 +31,7 @@ struct Corner {
   std::uint8_t style;
 };
 
-/// By place, then by style: those that are one come together.
+/// Sorts by place, then by style, so that equal ones come together.
 bool before(const Corner& a, const Corner& b) {
   for (int i = 0; i < 3; ++i) {
     if (a.x[i] != b.x[i]) return a.x[i] < b.x[i];
@@ -47,12 +47,13 @@ std::vector<double> edge_room(const DrawList& list, const Projection& projection
   for (std::uint32_t i = 0; i < list.triangles.size(); ++i) {
     const DrawTriangle& t = list.triangles[i];
     if (t.edges == 0) continue;
-    // What comes right up to the eye is large.
+    // A triangle that comes right up to the eye is large.
     own[i] = altitude(t, projection).value_or(projection.height());
     for (const Vector3d& x : t.x) corners.push_back({x, i, t.edge_style});
   }
   std::sort(corners.begin(), corners.end(), [](const Corner& a, const Corner& b) {
-    return before(a, b) || (!before(b, a) && a.triangle < b.triangle);  // sums in one order everywhere
+    return before(a, b) ||
+           (!before(b, a) && a.triangle < b.triangle);  // so that sums are taken in one order everywhere
   });
   for (std::size_t first = 0, end = 0; first < corners.size(); first = end) {
     double sum = 0;

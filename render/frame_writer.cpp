@@ -52,7 +52,7 @@ void FrameWriter::run() {
     }
     lock.lock();
     busy_ = false;
-    if (error) {  // what waits behind a failure is dropped: the run is over
+    if (error) {  // frames that wait behind a failure are dropped: the run is over
       if (!error_) error_ = error;
       jobs_.clear();
     }

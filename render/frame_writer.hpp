@@ -15,16 +15,17 @@ namespace lrb::render {
 
 class FrameWriter {
  public:
-  /// Holds at most `capacity` frames that wait; push() waits for room.
+  /// At most `capacity` frames wait to be written; push() waits for room.
   explicit FrameWriter(std::size_t capacity = 4);
-  /// Waits for what was pushed. An error that finish() did not report is lost here: call finish().
+  /// Waits for the frames that were pushed. An error that finish() did not report is lost here: call
+  /// finish().
   ~FrameWriter();
   FrameWriter(const FrameWriter&) = delete;
   FrameWriter& operator=(const FrameWriter&) = delete;
 
-  /// Throws the first error of an earlier frame, if there was one.
+  /// Queues a frame. Throws the first error of an earlier frame, if there was one.
   void push(std::string path, Image image, PngOptions options = {});
-  /// Waits until everything is written; throws the first error.
+  /// Waits until all frames are written; throws the first error.
   void finish();
 
  private:

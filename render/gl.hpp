@@ -1,12 +1,12 @@
 #pragma once
-/// The functions of OpenGL 3.3 core that we use, loaded at run time, so that the library that provides them
-/// is chosen by who makes the context (offscreen.hpp) and nothing else links one.
+/// The functions of OpenGL 3.3 core that we use, loaded at run time: whoever makes the context
+/// (offscreen.hpp) chooses the library that provides them, and nothing else links one.
 
 #include <GL/glcorearb.h>
 
 namespace lrb::render {
 
-/// LRB_GL(type of pointer without PFNGL and PROC, name without gl)
+/// LRB_GL(type of the pointer without PFNGL and PROC, name of the function without gl)
 #define LRB_GL_FUNCTIONS(LRB_GL)                           \
   LRB_GL(ATTACHSHADER, AttachShader)                       \
   LRB_GL(BINDBUFFER, BindBuffer)                           \

@@ -31,7 +31,7 @@ GlProgram make_program(const Gl& gl, const std::string& name, const std::string&
   for (const GLuint shader : {compile(gl, name + ".vertex", GL_VERTEX_SHADER, vertex),
                               compile(gl, name + ".fragment", GL_FRAGMENT_SHADER, fragment)}) {
     gl.AttachShader(program, shader);
-    gl.DeleteShader(shader);  // stays until the program goes
+    gl.DeleteShader(shader);  // stays until the program is deleted
   }
   gl.LinkProgram(program);
   GLint ok = 0;

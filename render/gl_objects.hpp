@@ -1,5 +1,5 @@
 #pragma once
-/// OpenGL objects that free themselves, and the few ways in which we use them.
+/// OpenGL objects that free themselves, and the few things we do with them.
 
 #include <cstddef>
 #include <string>
@@ -9,7 +9,7 @@
 
 namespace lrb::render {
 
-/// A name of OpenGL's with the function that deletes it.
+/// The number by which OpenGL knows an object, with the function that deletes it.
 template <class Delete>
 class GlName {
  public:
@@ -25,7 +25,7 @@ class GlName {
     return *this;
   }
   ~GlName() { clear(); }
-  operator GLuint() const { return name_; }  // NOLINT: it stands for the name in every call
+  operator GLuint() const { return name_; }  // NOLINT: it stands for the number in every call
 
  private:
   void clear() {
@@ -40,7 +40,7 @@ struct DeleteProgram {
   PFNGLDELETEPROGRAMPROC f = nullptr;
   void operator()(GLuint name) const { f(name); }
 };
-/// glDelete*(1, &name); all of these have one type.
+/// Calls glDelete*(1, &name), for all kinds whose function has this type.
 struct DeleteOne {
   PFNGLDELETETEXTURESPROC f = nullptr;
   void operator()(GLuint name) const { f(1, &name); }
@@ -69,7 +69,7 @@ inline GlObject make_vertex_array(const Gl& gl) {
   gl.GenVertexArrays(1, &name);
   return {name, {gl.DeleteVertexArrays}};
 }
-/// Compiles and links; throws EnvironmentError with the library's log.
+/// Compiles and links a program; throws EnvironmentError with the library's log.
 GlProgram make_program(const Gl& gl, const std::string& name, const std::string& vertex,
                        const std::string& fragment);
 

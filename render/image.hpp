@@ -1,5 +1,5 @@
 #pragma once
-/// Pixels as values.
+/// Pictures as plain values.
 
 #include <cstddef>
 #include <cstdint>
@@ -38,17 +38,17 @@ class Image {
 
   Rgba& at(int x, int y) { return pixels_[index(x, y)]; }
   const Rgba& at(int x, int y) const { return pixels_[index(x, y)]; }
-  /// Rows from the top, pixels from the left.
+  /// The pixels row by row from the top, each row from the left.
   std::vector<Rgba>& pixels() { return pixels_; }
   const std::vector<Rgba>& pixels() const { return pixels_; }
   bool opaque() const;  ///< every alpha is 255
 
-  /// Painting; what lies outside the image is left out.
+  /// Paints one pixel; outside the image does nothing.
   void blend(int x, int y, Rgba colour, int coverage = 255);
   void fill(const PixelRect& r, Rgba colour);
-  /// A frame of `thickness` pixels just inside the rectangle.
+  /// Draws a frame of `thickness` pixels just inside the rectangle.
   void stroke(const PixelRect& r, Rgba colour, int thickness = 1);
-  /// Another image with its top left corner at (x, y), blended by its alpha.
+  /// Blends another image by its alpha, with its top left corner at (x, y).
   void paste(const Image& image, int x, int y);
 
   friend bool operator==(const Image&, const Image&) = default;
@@ -60,7 +60,7 @@ class Image {
   std::vector<Rgba> pixels_;
 };
 
-/// FNV-1a 64 over size and pixels.
+/// Returns the FNV-1a hash (64 bits) of size and pixels.
 std::uint64_t hash(const Image& image);
 
 }  // namespace lrb::render

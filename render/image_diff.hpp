@@ -1,5 +1,5 @@
 #pragma once
-/// How far two images differ, and a picture of it.
+/// Measures how far two images differ, and draws it.
 
 #include <cstdint>
 #include <string>
@@ -8,8 +8,8 @@
 
 namespace lrb::render {
 
-/// What counts as noise between processors (measured; see README of the golden images): pixels in two
-/// buckets.
+/// The differences that count as noise between processors (measured; see docs/golden.md). Pixels are sorted
+/// into small and large differences.
 struct ImageTolerance {
   int large = 8;                ///< a channel difference above this is large
   double large_share = 0.0005;  ///< at most this share of pixels may have one
@@ -19,21 +19,21 @@ struct ImageTolerance {
 
 struct ImageDifference {
   bool same_size = false;
-  std::uint64_t pixels = 0;  ///< of either image; 0 unless same_size
+  std::uint64_t pixels = 0;  ///< number of pixels of either image; 0 unless same_size
   std::uint64_t equal = 0;
-  std::uint64_t small = 0;   ///< largest channel difference in 1 .. tolerance.small
-  std::uint64_t medium = 0;  ///< in between; counted with the small ones
-  std::uint64_t large = 0;   ///< above tolerance.large
+  std::uint64_t small = 0;   ///< number of pixels whose largest channel difference is in 1 .. tolerance.small
+  std::uint64_t medium = 0;  ///< number between small and large; counted with the small ones
+  std::uint64_t large = 0;   ///< number of pixels above tolerance.large
   int largest = 0;           ///< largest channel difference
   bool within(const ImageTolerance& tolerance = {}) const;
-  /// One line: which tolerance failed and by how much, or that none did.
+  /// Returns one line: which tolerance was exceeded and by how much, or that none was.
   std::string text(const ImageTolerance& tolerance = {}) const;
 };
 
 ImageDifference compare(const Image& expected, const Image& actual, const ImageTolerance& tolerance = {});
 
-/// Per channel |expected - actual| times `gain`, on black; the union of both sizes, white where only one has
-/// pixels.
+/// Returns |expected - actual| times `gain` per channel, on black. It is as wide and high as either image;
+/// white where only one has pixels.
 Image difference_image(const Image& expected, const Image& actual, int gain = 16);
 
 }  // namespace lrb::render

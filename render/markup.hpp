@@ -5,7 +5,7 @@
 
 namespace lrb::render {
 
-/// Text as it stands in SVG and HTML, in elements and in quoted attributes.
+/// Escapes text for SVG and HTML, for elements and for quoted attributes.
 std::string escape_markup(std::string_view text);
 
 }  // namespace lrb::render

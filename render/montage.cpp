@@ -13,8 +13,8 @@ namespace lrb::render {
 namespace {
 
 constexpr double kGutterShare = 1.0 / 24;
-constexpr double kTextShare = 1.0 / 20;
-constexpr float kLeastText = 12;
+constexpr double kLabelShare = 1.0 / 20;
+constexpr float kLeastLabel = 12;
 constexpr double kShape = 4.0 / 3;  ///< width to height that automatic columns aim at
 
 int columns_for(const std::vector<Panel>& panels) {
@@ -72,7 +72,7 @@ MontageLayout lay_out(const std::vector<Panel>& panels, const MontageOptions& op
   MontageLayout out;
   out.text_height = options.text_height > 0
                         ? options.text_height
-                        : std::max(kLeastText, static_cast<float>(kTextShare * panels[0].image.height()));
+                        : std::max(kLeastLabel, static_cast<float>(kLabelShare * panels[0].image.height()));
   const bool text = options.letters || std::any_of(panels.begin(), panels.end(),
                                                    [](const Panel& p) { return !p.caption.empty(); });
   const TextStyle style = caption_style(out.text_height);

@@ -1,5 +1,5 @@
 #pragma once
-/// Pictures side by side: figures with (a), (b), (c), whole and close-up in one frame.
+/// Puts pictures side by side in one image: figures with (a), (b), (c), or the whole beside a close-up.
 
 #include <string>
 #include <vector>
@@ -14,7 +14,7 @@ struct Panel {
 };
 
 struct MontageOptions {
-  int columns = 0;      ///< 0: as many as make the montage closest to 4:3
+  int columns = 0;      ///< 0: the number that brings the montage closest to 4:3
   int gutter = -1;      ///< between and around panels, pixels; -1: a twenty-fourth of a panel's smaller side
   bool letters = true;  ///< (a), (b), ... below each panel
   bool frame = false;   ///< a thin line round each panel
@@ -30,12 +30,12 @@ struct MontageLayout {
   float text_height = 0;
 };
 
-/// Panels row by row; images of different sizes are centred in cells of one width per column, one height per
-/// row. Throws InputError without panels.
+/// Lays panels out row by row. Images of different sizes are centred in cells; a column has one width, a row
+/// one height. Throws InputError without panels.
 MontageLayout lay_out(const std::vector<Panel>& panels, const MontageOptions& options = {});
 Image montage(const std::vector<Panel>& panels, const MontageOptions& options = {});
 
-/// "(a)" .. "(z)", "(aa)" ...
+/// Returns "(a)" .. "(z)", "(aa)" ...
 std::string panel_letter(std::size_t index);
 
 }  // namespace lrb::render

@@ -15,8 +15,8 @@ namespace lrb::render {
 
 void suppress_mesa_leaks();  // mesa_leaks.cpp
 
-/// OSMesa draws into memory of ours; we draw into framebuffer objects instead (whose pixels do not depend on
-/// the number of threads), so that this is only what makes the context current.
+/// The pixels that OSMesa is given to draw into. We draw into framebuffer objects instead, whose pixels do
+/// not depend on the number of threads; these only serve to make the context current.
 struct Offscreen::Context {
   static constexpr int kSide = 16;
   OSMesaContext handle = nullptr;

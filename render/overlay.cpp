@@ -23,7 +23,7 @@ class Flow {
   Flow(int left, int right, int top, int row_height, int gap)
       : left_(left), right_(right), x_(left), y_(top), row_height_(row_height), gap_(gap) {}
 
-  /// The place of something `width` wide; on a new row if it does not fit on this one.
+  /// Returns the place of something `width` wide; begins a new row if it does not fit on this one.
   PixelRect place(int width) {
     if (x_ > left_ && x_ + width > right_) new_row();
     const PixelRect r{x_, y_, width, row_height_};
@@ -44,7 +44,7 @@ class Flow {
   bool used_ = false;
 };
 
-/// Lays out with a given text height.
+/// Lays an overlay out with a given text height.
 class Layouter {
  public:
   Layouter(const Overlay& overlay, int width, int height, float text_height)
@@ -76,7 +76,7 @@ class Layouter {
     out_.texts.push_back({{x, row.y, text_width(text, bold), row.height}, text, bold, faint});
   }
 
-  /// Returns where it ends.
+  /// Returns the y at which it ends.
   int header() {
     int y = o_.title.empty() && o_.event.empty() ? 0 : margin_ / 2;
     y = lines(o_.title, y, true, 0);
@@ -98,7 +98,7 @@ class Layouter {
     return y;
   }
 
-  /// Measures when y = 0 (and forgets), else places. Returns its height.
+  /// Lays out the strip below the picture from y on and returns its height; y = 0 only measures it.
   int footer(int y) {
     const bool measuring = y == 0;
     const std::size_t texts = out_.texts.size();
@@ -115,7 +115,7 @@ class Layouter {
   }
 
   void place_counter(Flow& flow, const OverlayCounter& c) {
-    // Room for four digits, so that counters stand still while they count.
+    // There is room for four digits, so that counters stand still while they count.
     const int name = text_width(c.name + " "), value = std::max(text_width(c.value), text_width(kRoom));
     const PixelRect r = flow.place(std::min(name + value, width_ - 2 * margin_));
     add_text(r, r.x, c.name, false, true);
@@ -136,7 +136,7 @@ class Layouter {
 
   static int scale_rows() { return 2; }
 
-  /// Quantity above, then low end, bar, high end; at the right. Returns its width.
+  /// Lays out the scale at the right: the quantity above; low end, bar and high end below. Returns its width.
   int place_scale(int y) {
     const std::string low = short_number(o_.scale->low), high = short_number(o_.scale->high);
     const int low_width = text_width(low), high_width = text_width(high), gap = margin_ / 2;
@@ -164,7 +164,7 @@ bool fits(const OverlayLayout& layout, int width, int height) {
                      [&](const auto& t) { return frame.contains(t.box); });
 }
 
-/// Is there more than one colour along the rim?
+/// Returns true if there is more than one colour along the rim.
 bool runs_over(const Image& picture) {
   const Rgba first = picture.at(0, 0);
   for (int x = 0; x < picture.width(); ++x) {
@@ -176,7 +176,7 @@ bool runs_over(const Image& picture) {
   return false;
 }
 
-/// A line as thin as a screen's pixel.
+/// Returns the width of a line as thin as a screen's pixel.
 int hairline(float scale) {
   return std::max(1, static_cast<int>(std::lround(scale)));
 }
@@ -224,7 +224,8 @@ OverlayLayout lay_out(const Overlay& overlay, int width, int height, float scale
     layout.scale = scale;
     return layout;
   }
-  // Text by the frame's smaller extent: a portrait frame has no more room for a line than its width.
+  // Text goes by the frame's smaller side: a frame higher than it is wide has no more room for a line than
+  // its width.
   const double side = std::min<double>(height, width * 0.75) / scale;
   float text = std::clamp(static_cast<float>(std::round(2 * kTextShare * side) / 2), kLeastText, kMostText);
   for (;; text -= 0.5F) {

@@ -11,8 +11,8 @@
 namespace lrb::render::palette {
 
 Rgba viridis(double t) {
-  // Every sixteenth of the map that matplotlib published into the public domain (CC0); linear in between,
-  // which is nowhere off by more than what an eye can see.
+  // Every sixteenth entry of the map that matplotlib published into the public domain (CC0), linear in
+  // between: no eye can see the difference.
   static constexpr std::array<Rgba, 17> kStops = {{{68, 1, 84},
                                                    {72, 23, 105},
                                                    {71, 44, 122},

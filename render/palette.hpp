@@ -1,6 +1,6 @@
 #pragma once
 /// Every colour of the project, in one place. Categories are from Okabe and Ito's palette, which people with
-/// any common colour vision tell apart (M. Okabe, K. Ito, "Color Universal Design", 2008); scalars are
+/// any common colour vision can tell apart (M. Okabe, K. Ito, "Color Universal Design", 2008); scalars are
 /// viridis. What must be told apart also differs in brightness, for print in grey.
 
 #include <cstdint>
@@ -24,7 +24,7 @@ inline constexpr Rgba kInk{28, 30, 34};
 inline constexpr Rgba kFaint{110, 114, 120};
 inline constexpr Rgba kRule{205, 208, 212};
 
-/// Faces that are not what the picture is about: their fronts, and their backs.
+/// Faces that the picture is not about: their fronts, and their backs.
 inline constexpr Rgba kPaleFront{233, 235, 238};
 inline constexpr Rgba kPaleBack{178, 170, 160};
 
@@ -34,15 +34,16 @@ inline constexpr Rgba kRefining = kGreen;
 inline constexpr Rgba kRefining2d = mix(kGreen, kWhite, 0.4);  ///< as a fill, under lines
 inline constexpr Rgba kUnderTest = kYellow;
 
-/// The two bodies: blue and orange, far apart in brightness too.
+/// Returns the colour of a body: blue or orange, which differ in brightness too.
 constexpr Rgba body(Side side) {
   return side == Side::a ? Rgba{52, 126, 190} : Rgba{236, 168, 52};
 }
-/// Edges of real faces: the body's colour, much darker.
+/// Returns the colour of real faces' edges: the body's, much darker.
 constexpr Rgba edge_of(Rgba c) {
   return mix(c, {18, 20, 24}, 0.72);
 }
-/// A solid under pseudo faces in 2D is darker than the regions round it (the paper's figure 1).
+/// Returns the colour of a solid under pseudo faces in 2D: darker than the regions around it (the paper's
+/// figure 1).
 constexpr Rgba solid_2d(Rgba c) {
   return mix(c, {10, 14, 20}, 0.28);
 }
@@ -50,7 +51,7 @@ constexpr Rgba region_2d(Rgba c) {
   return mix(c, kWhite, 0.62);
 }
 
-/// One colour per event kind.
+/// Returns the colour of a kind of events.
 constexpr Rgba event(EventKind kind) {
   switch (kind) {
     case EventKind::step:
@@ -69,11 +70,11 @@ constexpr Rgba event(EventKind kind) {
   return kInk;
 }
 
-/// t in [0, 1] (clamped; not a number counts as 0) to viridis, dark blue to yellow, brighter all the way.
+/// Maps t in [0, 1] to viridis, from dark blue to yellow, brighter all the way. Clamps t; a NaN counts as 0.
 Rgba viridis(double t);
 
-/// A colour for each of many categories: hues go round by the golden angle, brightness in three steps, so
-/// that numbers that are close get colours that are not.
+/// Returns a colour for each of many categories: hues go round by the golden angle, brightness in three
+/// steps, so that close numbers get colours that are not close.
 Rgba category(std::uint32_t index);
 
 }  // namespace lrb::render::palette

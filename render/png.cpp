@@ -3,250 +3,236 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdlib>
+#include <csetjmp>
 #include <cstring>
-#include <iterator>
-#include <limits>
-#include <memory>
-#include <optional>
+#include <new>
 
-#include <unistd.h>
+#include <png.h>
 #include <zlib.h>
 
 #include "engine/core/atomic_file.hpp"
 #include "engine/core/error.hpp"
 #include "engine/core/file_bytes.hpp"
 
-namespace {
-
-/// Deflate and checksum of stb's writer are left to zlib, which is five times faster and makes smaller files.
-/// Level 1 without row filters: rendered frames are large flat areas, where more effort buys next to nothing.
-constexpr int kZlibLevel = 1;
-
-unsigned char* zlib_deflate(unsigned char* data, int size, int* out_size, int /*quality*/) {
-  uLongf length = compressBound(static_cast<uLong>(size));
-  if (length > static_cast<uLongf>(std::numeric_limits<int>::max())) return nullptr;
-  auto* out = static_cast<unsigned char*>(std::malloc(length));
-  if (out == nullptr) return nullptr;
-  if (compress2(out, &length, data, static_cast<uLong>(size), kZlibLevel) != Z_OK) {
-    std::free(out);
-    return nullptr;
-  }
-  *out_size = static_cast<int>(length);
-  return out;
-}
-
-unsigned int zlib_crc(const unsigned char* data, int size) {
-  return static_cast<unsigned int>(crc32(0, data, static_cast<uInt>(size)));
-}
-
-}  // namespace
-
-#pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wunused-function"
-#pragma GCC diagnostic ignored "-Wmissing-field-initializers"
-#define STBIW_ZLIB_COMPRESS zlib_deflate
-#define STBIW_CRC32 zlib_crc
-#define STB_IMAGE_WRITE_STATIC
-#define STB_IMAGE_WRITE_IMPLEMENTATION
-#include <stb_image_write.h>
-#define STB_IMAGE_STATIC
-#define STBI_ONLY_PNG
-#define STBI_NO_STDIO
-#define STB_IMAGE_IMPLEMENTATION
-#include <stb_image.h>
-#pragma GCC diagnostic pop
-
 namespace lrb::render {
 namespace {
 
 using Bytes = std::vector<std::uint8_t>;
 
-constexpr std::size_t kSignature = 8;
-constexpr std::size_t kHeaderEnd = kSignature + 4 + 4 + 13 + 4;  ///< the signature and the IHDR chunk
+/// Level 1 without row filters: rendered frames have large flat areas, where more effort gains next to
+/// nothing.
+constexpr int kZlibLevel = 1;
 constexpr double kInchesPerMetre = 1 / 0.0254;
+/// Limits of chunks beside the pixels: our texts stay far below; a file with millions of chunks is refused.
+constexpr png_alloc_size_t kLongestChunk = png_alloc_size_t{1} << 20;
+constexpr png_uint_32 kMostChunks = 100;
 
-void put_u32(Bytes& out, std::uint32_t v) {
-  for (int shift = 24; shift >= 0; shift -= 8) out.push_back(static_cast<std::uint8_t>(v >> shift));
+static_assert(sizeof(Rgba) == 4);
+
+/// What libpng complained of last.
+struct Complaint {
+  std::array<char, 200> text{};
+};
+
+[[noreturn]] void complain(png_structp png, png_const_charp text) {
+  auto& out = static_cast<Complaint*>(png_get_error_ptr(png))->text;
+  std::strncpy(out.data(), text, out.size() - 1);
+  png_longjmp(png, 1);
 }
 
-std::uint32_t get_u32(std::span<const std::uint8_t> bytes, std::size_t at) {
-  return static_cast<std::uint32_t>(bytes[at]) << 24 | static_cast<std::uint32_t>(bytes[at + 1]) << 16 |
-         static_cast<std::uint32_t>(bytes[at + 2]) << 8 | bytes[at + 3];
+void keep_silent(png_structp /*png*/, png_const_charp /*text*/) {}
+
+/// Calls `body`, which calls libpng. Returns false if it did not come to its end: where libpng finds an error
+/// it leaves by longjmp, so nothing in `body` may need a destructor.
+template <class Body>
+bool succeeds(png_structp png, const Body& body) {
+  if (setjmp(png_jmpbuf(png)) != 0) return false;  // NOLINT(cert-err52-cpp): libpng's way
+  body();
+  return true;
 }
 
-void put_chunk(Bytes& out, const char type[5], const Bytes& data) {
-  put_u32(out, static_cast<std::uint32_t>(data.size()));
-  const std::size_t start = out.size();
-  out.insert(out.end(), type, type + 4);
-  out.insert(out.end(), data.begin(), data.end());
-  put_u32(out, zlib_crc(out.data() + start, static_cast<int>(out.size() - start)));
-}
-
-/// Plain ASCII goes into tEXt, anything else (as UTF-8) into iTXt.
-void put_text(Bytes& out, const PngText& text) {
+/// Makes a text chunk: plain ASCII becomes tEXt, other text (UTF-8) iTXt.
+png_text as_chunk(const PngText& text) {
   const auto& [key, value] = text;
   if (key.empty() || key.size() > 79)
     throw InputError("PNG text keyword '" + key + "': 1 to 79 characters needed");
   const bool ascii =
       std::all_of(value.begin(), value.end(), [](char c) { return static_cast<signed char>(c) > 0; });
-  Bytes data(key.begin(), key.end());
-  data.push_back(0);
-  if (!ascii)
-    data.insert(data.end(), {0, 0, 0, 0});  // not compressed, method, no language, no translated keyword
-  data.insert(data.end(), value.begin(), value.end());
-  put_chunk(out, ascii ? "tEXt" : "iTXt", data);
-}
-
-Bytes encode_pixels(const Image& image) {
-  stbi_write_force_png_filter = 0;
-  const bool rgb = image.opaque();
-  const int channels = rgb ? 3 : 4;
-  const void* pixels = image.pixels().data();
-  Bytes packed;
-  if (rgb) {
-    packed.resize(image.pixels().size() * 3);
-    std::uint8_t* to = packed.data();
-    for (const Rgba p : image.pixels()) {
-      to[0] = p.r, to[1] = p.g, to[2] = p.b;
-      to += 3;
-    }
-    pixels = packed.data();
-  }
-  int length = 0;
-  const std::unique_ptr<unsigned char, decltype(&std::free)> png(
-      stbi_write_png_to_mem(static_cast<const unsigned char*>(pixels), image.width() * channels,
-                            image.width(), image.height(), channels, &length),
-      &std::free);
-  if (!png)
-    throw EnvironmentError("cannot encode a PNG of " + std::to_string(image.width()) + "x" +
-                           std::to_string(image.height()) + " pixels: out of memory");
-  return {png.get(), png.get() + length};
-}
-
-/// Reads the chunks that stb leaves aside. The pixels have been decoded already, so the file is whole.
-void decode_extras(std::span<const std::uint8_t> bytes, DecodedPng& out) {
-  for (std::size_t at = kSignature; at + 12 <= bytes.size();) {
-    const std::size_t length = get_u32(bytes, at);
-    if (length > bytes.size() - at - 12) return;
-    const std::string type(reinterpret_cast<const char*>(bytes.data()) + at + 4, 4);
-    const std::string data(reinterpret_cast<const char*>(bytes.data()) + at + 8, length);
-    if (type == "pHYs" && length == 9 && data[8] == 1) out.dpi = get_u32(bytes, at + 8) / kInchesPerMetre;
-    if (type == "tEXt" || type == "iTXt") {
-      const std::size_t key_end = data.find('\0');
-      const std::size_t skip = type == "tEXt" ? 1 : 5;
-      if (key_end != std::string::npos && key_end + skip <= data.size()) {
-        out.text.emplace_back(data.substr(0, key_end), data.substr(key_end + skip));
-      }
-    }
-    at += 12 + length;
-  }
-}
-
-/// What the header says of the pixels.
-struct Header {
-  std::uint64_t width, height;
-  std::uint64_t raw_bytes;  ///< of the rows as they are compressed, interlaced ones a little more
-};
-
-/// Nothing if the header is damaged.
-std::optional<Header> header_of(std::span<const std::uint8_t> bytes) {
-  if (bytes.size() < kHeaderEnd || std::memcmp(bytes.data() + 12, "IHDR", 4) != 0) return std::nullopt;
-  constexpr std::uint64_t kChannels[] = {1, 0, 3, 1, 2, 0, 4};
-  const std::uint64_t width = get_u32(bytes, 16), height = get_u32(bytes, 20);
-  const unsigned depth = bytes[24], colour = bytes[25];
-  constexpr std::uint64_t kLongest = 1 << 24;
-  if (colour >= std::size(kChannels) || depth > 16 || width > kLongest || height > kLongest)
-    return std::nullopt;
-  return Header{width, height, height * (1 + (width * kChannels[colour] * depth + 7) / 8)};
-}
-
-/// The compressed pixels, part after part.
-std::vector<std::span<const std::uint8_t>> data_chunks(std::span<const std::uint8_t> bytes) {
-  std::vector<std::span<const std::uint8_t>> out;
-  for (std::size_t at = kSignature; at + 12 <= bytes.size();) {
-    const std::size_t length = get_u32(bytes, at);
-    if (length > bytes.size() - at - 12) break;
-    if (std::memcmp(bytes.data() + at + 4, "IDAT", 4) == 0) out.push_back(bytes.subspan(at + 8, length));
-    at += 12 + length;
-  }
+  png_text out{};
+  out.compression = ascii ? PNG_TEXT_COMPRESSION_NONE : PNG_ITXT_COMPRESSION_NONE;
+  out.key = const_cast<png_charp>(key.c_str());
+  out.text = const_cast<png_charp>(value.c_str());
   return out;
 }
 
-/// Whether the compressed pixels unpack to more than `most` bytes, without keeping them.
-bool unpacks_beyond(const std::vector<std::span<const std::uint8_t>>& chunks, std::uint64_t most) {
-  z_stream stream{};
-  if (inflateInit(&stream) != Z_OK) throw EnvironmentError("zlib cannot begin to unpack: out of memory?");
-  const std::unique_ptr<z_stream, decltype(&inflateEnd)> end(&stream, &inflateEnd);
-  Bytes unpacked(std::size_t{1} << 16);
-  std::uint64_t total = 0;
-  for (const std::span<const std::uint8_t> chunk : chunks) {
-    stream.next_in = const_cast<Bytef*>(chunk.data());
-    stream.avail_in = static_cast<uInt>(chunk.size());
-    do {
-      stream.next_out = unpacked.data();
-      stream.avail_out = static_cast<uInt>(unpacked.size());
-      const int result = inflate(&stream, Z_NO_FLUSH);
-      total += unpacked.size() - stream.avail_out;
-      if (total > most) return true;
-      if (result != Z_OK) return false;  // the end, or damage, which the decoder will find
-    } while (stream.avail_out == 0 || stream.avail_in > 0);
+class Writer {
+ public:
+  Writer() : png_(png_create_write_struct(PNG_LIBPNG_VER_STRING, &complaint_, complain, keep_silent)) {
+    if (png_ != nullptr) info_ = png_create_info_struct(png_);
+    if (info_ != nullptr) png_set_write_fn(png_, this, append, [](png_structp) {});
   }
-  return false;
-}
+  ~Writer() { png_destroy_write_struct(&png_, &info_); }
+  Writer(const Writer&) = delete;
+  Writer& operator=(const Writer&) = delete;
 
-/// Refuses a file that takes far more memory than its bytes and its pixels ask for, before it does.
-void check_size(std::span<const std::uint8_t> bytes, const std::string& name, std::uint64_t most_pixels) {
-  const std::optional<Header> header = header_of(bytes);
-  if (!header) return;  // the decoder says what is wrong
-  const std::string size = std::to_string(header->width) + "x" + std::to_string(header->height) + " pixels";
-  if (header->width * header->height > most_pixels)
+  bool write(const Image& image, const std::vector<png_text>& text, png_uint_32 per_metre) {
+    return info_ != nullptr && succeeds(png_, [&] {
+             write_header(image, text, per_metre);
+             for (int y = 0; y < image.height(); ++y)
+               png_write_row(png_, reinterpret_cast<png_const_bytep>(&image.at(0, y)));
+             png_write_end(png_, nullptr);
+           });
+  }
+
+  Bytes bytes;
+  const char* complaint() const { return info_ != nullptr ? complaint_.text.data() : "out of memory"; }
+
+ private:
+  void write_header(const Image& image, const std::vector<png_text>& text, png_uint_32 per_metre) {
+    const bool rgb = image.opaque();
+    const auto width = static_cast<png_uint_32>(image.width()),
+               height = static_cast<png_uint_32>(image.height());
+    png_set_IHDR(png_, info_, width, height, 8, rgb ? PNG_COLOR_TYPE_RGB : PNG_COLOR_TYPE_RGBA,
+                 PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+    png_set_filter(png_, PNG_FILTER_TYPE_BASE, PNG_FILTER_NONE);
+    png_set_compression_level(png_, kZlibLevel);
+    const std::size_t raw = std::size_t{height} * (1 + std::size_t{width} * (rgb ? 3 : 4));
+    png_set_compression_buffer_size(png_, compressBound(raw));  // pixels in one chunk
+    if (per_metre > 0) png_set_pHYs(png_, info_, per_metre, per_metre, PNG_RESOLUTION_METER);
+    png_set_text(png_, info_, text.data(), static_cast<int>(text.size()));
+    png_write_info(png_, info_);
+    if (rgb) png_set_filler(png_, 0, PNG_FILLER_AFTER);  // leaves out each fourth byte
+  }
+
+  static void append(png_structp png, png_bytep data, std::size_t size) {
+    bool room = true;
+    try {
+      Bytes& bytes = static_cast<Writer*>(png_get_io_ptr(png))->bytes;
+      bytes.insert(bytes.end(), data, data + size);
+    } catch (const std::bad_alloc&) {
+      room = false;
+    }
+    if (!room) png_error(png, "out of memory");
+  }
+
+  Complaint complaint_;
+  png_structp png_;
+  png_infop info_ = nullptr;
+};
+
+class Reader {
+ public:
+  explicit Reader(std::span<const std::uint8_t> bytes)
+      : rest_(bytes),
+        png_(png_create_read_struct(PNG_LIBPNG_VER_STRING, &complaint_, complain, keep_silent)) {
+    if (png_ != nullptr) info_ = png_create_info_struct(png_);
+    if (info_ == nullptr) {
+      png_destroy_read_struct(&png_, nullptr, nullptr);
+      throw EnvironmentError("cannot begin to read a PNG: out of memory");
+    }
+    png_set_read_fn(png_, this, take);
+    png_set_benign_errors(png_, 0);  // pixels beyond the picture are an error
+    png_set_chunk_malloc_max(png_, kLongestChunk);
+    png_set_chunk_cache_max(png_, kMostChunks);
+  }
+  ~Reader() { png_destroy_read_struct(&png_, &info_, nullptr); }
+  Reader(const Reader&) = delete;
+  Reader& operator=(const Reader&) = delete;
+
+  bool read_header() {
+    return succeeds(png_, [&] { png_read_info(png_, info_); });
+  }
+  std::uint64_t width() const { return png_get_image_width(png_, info_); }
+  std::uint64_t height() const { return png_get_image_height(png_, info_); }
+  /// Returns a lower bound on the length of the rows before compression, in bytes.
+  std::uint64_t raw_bytes() const { return height() * (1 + std::uint64_t{png_get_rowbytes(png_, info_)}); }
+
+  /// Reads a PNG of any kind to the end of the file: `rows` of RGBA, 8 bits each.
+  bool read_pixels(std::vector<png_bytep>& rows) {
+    return succeeds(png_, [&] {
+      png_set_expand(png_);
+      png_set_strip_16(png_);
+      png_set_gray_to_rgb(png_);
+      png_set_add_alpha(png_, 255, PNG_FILLER_AFTER);
+      png_set_interlace_handling(png_);
+      png_read_update_info(png_, info_);
+      png_read_image(png_, rows.data());
+      png_read_end(png_, info_);
+    });
+  }
+
+  std::vector<PngText> text() const {
+    png_textp texts = nullptr;
+    int count = 0;
+    png_get_text(png_, info_, &texts, &count);
+    std::vector<PngText> out;
+    for (int i = 0; i < count; ++i) out.emplace_back(texts[i].key, texts[i].text);
+    return out;
+  }
+  double dpi() const { return png_get_pixels_per_meter(png_, info_) / kInchesPerMetre; }
+
+  const char* complaint() const { return complaint_.text.data(); }
+
+ private:
+  static void take(png_structp png, png_bytep to, std::size_t size) {
+    auto& rest = static_cast<Reader*>(png_get_io_ptr(png))->rest_;
+    if (size > rest.size()) png_error(png, "it ends too early");
+    std::memcpy(to, rest.data(), size);
+    rest = rest.subspan(size);
+  }
+
+  Complaint complaint_;
+  std::span<const std::uint8_t> rest_;
+  png_structp png_;
+  png_infop info_ = nullptr;
+};
+
+/// Refuses, before any memory is taken, a picture that would take far more than its file can hold.
+void check_size(const Reader& reader, std::size_t file_bytes, const std::string& name,
+                std::uint64_t most_pixels) {
+  const std::string size = std::to_string(reader.width()) + "x" + std::to_string(reader.height()) + " pixels";
+  if (reader.width() * reader.height() > most_pixels)
     throw InputError(name + ": has " + size + ", more than the " + std::to_string(most_pixels) +
                      " that are expected at most");
+  if (std::max(reader.width(), reader.height()) > Image::kMaxSide)
+    throw InputError(name + ": has " + size + ", a side longer than the " + std::to_string(Image::kMaxSide) +
+                     " of an image");
   constexpr std::uint64_t kDeflateMost = 1032;  // bytes from one, by its format
-  const auto chunks = data_chunks(bytes);
-  std::uint64_t packed = 0;
-  for (const auto chunk : chunks) packed += chunk.size();
-  if (header->raw_bytes > kDeflateMost * packed)
-    throw InputError(name + ": not a readable PNG (" + size + " cannot be in " + std::to_string(packed) +
+  if (reader.raw_bytes() > kDeflateMost * file_bytes)
+    throw InputError(name + ": not a readable PNG (" + size + " cannot be in " + std::to_string(file_bytes) +
                      " bytes)");
-  const std::uint64_t enough = 2 * header->raw_bytes + (std::uint64_t{1} << 20);
-  if (kDeflateMost * packed > enough && unpacks_beyond(chunks, enough))
-    throw InputError(name + ": not a readable PNG (its data unpack to more than its " + size + ")");
 }
 
 }  // namespace
 
 Bytes encode_png(const Image& image, const PngOptions& options) {
   if (image.empty()) throw InputError("an empty image cannot be encoded: it has no pixels");
-  const Bytes pixels = encode_pixels(image);
-  Bytes out(pixels.begin(), pixels.begin() + kHeaderEnd);
-  if (options.dpi > 0) {
-    Bytes phys;
-    const auto per_metre = static_cast<std::uint32_t>(std::lround(options.dpi * kInchesPerMetre));
-    put_u32(phys, per_metre);
-    put_u32(phys, per_metre);
-    phys.push_back(1);  // the unit is the metre
-    put_chunk(out, "pHYs", phys);
-  }
-  for (const PngText& text : options.text) put_text(out, text);
-  out.insert(out.end(), pixels.begin() + kHeaderEnd, pixels.end());
-  return out;
+  std::vector<png_text> text;
+  for (const PngText& t : options.text) text.push_back(as_chunk(t));
+  const double per_metre = std::max(0.0, options.dpi) * kInchesPerMetre;
+  Writer writer;
+  if (!writer.write(image, text, static_cast<png_uint_32>(std::lround(per_metre))))
+    throw EnvironmentError("cannot encode a PNG of " + std::to_string(image.width()) + "x" +
+                           std::to_string(image.height()) + " pixels: " + writer.complaint());
+  return std::move(writer.bytes);
 }
 
 DecodedPng decode_png(std::span<const std::uint8_t> bytes, const std::string& name,
                       std::uint64_t most_pixels) {
-  check_size(bytes, name, most_pixels);
-  int width = 0, height = 0, channels = 0;
-  const std::unique_ptr<stbi_uc, decltype(&stbi_image_free)> pixels(
-      stbi_load_from_memory(bytes.data(), static_cast<int>(bytes.size()), &width, &height, &channels, 4),
-      &stbi_image_free);
-  if (!pixels) throw InputError(name + ": not a readable PNG (" + stbi_failure_reason() + ")");
+  Reader reader(bytes);
+  const auto refuse_unless = [&](bool readable) {
+    if (!readable) throw InputError(name + ": not a readable PNG (" + reader.complaint() + ")");
+  };
+  refuse_unless(reader.read_header());
+  check_size(reader, bytes.size(), name, most_pixels);
   DecodedPng out;
-  out.image = Image(width, height);
-  static_assert(sizeof(Rgba) == 4);
-  std::memcpy(out.image.pixels().data(), pixels.get(), out.image.pixels().size() * sizeof(Rgba));
-  decode_extras(bytes, out);
+  out.image = Image(static_cast<int>(reader.width()), static_cast<int>(reader.height()));
+  std::vector<png_bytep> rows;
+  for (int y = 0; y < out.image.height(); ++y)
+    rows.push_back(reinterpret_cast<png_bytep>(&out.image.at(0, y)));
+  refuse_unless(reader.read_pixels(rows));
+  out.text = reader.text();
+  out.dpi = reader.dpi();
   return out;
 }
 

@@ -1,5 +1,5 @@
 #pragma once
-/// Images as PNG, with what is needed to make them again written inside.
+/// Writes and reads images as PNG, with text inside that says how to make them again.
 
 #include <cstdint>
 #include <span>
@@ -20,7 +20,7 @@ struct PngOptions {
   double dpi = 0;  ///< written as pHYs; 0: left out
 };
 
-/// Opaque images are stored as RGB, others as RGBA.
+/// Encodes an image: opaque ones as RGB, others as RGBA.
 std::vector<std::uint8_t> encode_png(const Image& image, const PngOptions& options = {});
 
 struct DecodedPng {
@@ -28,18 +28,19 @@ struct DecodedPng {
   std::vector<PngText> text;
   double dpi = 0;  ///< 0: none given
 };
-/// Pixels of a picture at most, unless fewer are expected: 0.5 GB of them.
+/// The largest number of pixels of a picture that is read, unless the caller expects fewer: 0.5 GB of them.
 inline constexpr std::uint64_t kMostPixels = std::uint64_t{1} << 27;
 
-/// Throws InputError with `name` in it if the bytes are no PNG, or a damaged one, or one of more pixels than
-/// `most_pixels`, or one that unpacks to much more than its pixels: before memory is taken for that.
+/// Decodes a PNG. Throws InputError with `name` in it if the bytes are not a PNG, are damaged, hold more than
+/// `most_pixels` pixels, or hold more or less data than their pixels take. Takes memory only for the pixels,
+/// and only if so many can be in so few bytes.
 DecodedPng decode_png(std::span<const std::uint8_t> bytes, const std::string& name = "PNG",
                       std::uint64_t most_pixels = kMostPixels);
 
-/// Whole or not at all (AtomicFile): no half-written picture is ever seen under its name. Throws InputError
-/// if the path is at fault, EnvironmentError if the machine is.
+/// Writes a picture whole or not at all (AtomicFile), so that a half-written one is never seen under its
+/// name. Throws InputError if the path is at fault, EnvironmentError if the machine is.
 void write_png(const Image& image, const std::string& path, const PngOptions& options = {});
-/// Throws InputError if the file cannot be read.
+/// Reads a picture. Throws InputError if the file cannot be read.
 DecodedPng read_png(const std::string& path, std::uint64_t most_pixels = kMostPixels);
 
 }  // namespace lrb::render

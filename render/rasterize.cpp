@@ -182,8 +182,8 @@ struct Rasterizer::State {
     gl.BlendFuncSeparate(GL_ONE, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
   }
 
-  /// Even-odd: the fan flips a bit for every triangle; the bit is set inside. Cover paints there and clears
-  /// it.
+  /// Fills by the even-odd rule: the fan flips a stencil bit for every triangle, so that it is set inside;
+  /// the cover paints where it is set and clears it.
   void draw_fills(const ScreenMesh& mesh, bool blend) {
     if (mesh.fills.empty()) return;
     gl.Disable(GL_DEPTH_TEST);
@@ -224,7 +224,7 @@ struct Rasterizer::State {
     gl.Disable(GL_BLEND);
   }
 
-  /// The faces come in painting order (depth_order.hpp), so one pass blends all layers.
+  /// The faces come in painting order (depth_order.hpp), so that one pass blends all layers.
   void draw_translucent(const ScreenMesh& mesh) {
     const auto layer = static_cast<std::size_t>(Layer::translucent);
     if (mesh.face_layers[layer].count > 0) {
@@ -239,7 +239,7 @@ struct Rasterizer::State {
     draw_lines(mesh.line_layers[layer], GL_LEQUAL, false, false);
   }
 
-  /// First what is hidden, ghosted, then what is seen.
+  /// What is hidden is drawn first, ghosted, and then what is seen.
   void draw_on_top(const ScreenMesh& mesh) {
     const auto layer = static_cast<std::size_t>(Layer::on_top);
     for (const bool hidden : {true, false}) {

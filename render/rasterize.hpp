@@ -1,6 +1,6 @@
 #pragma once
-/// Draw list + camera + size -> pixels. The same bytes from every run and for every number of rasterizer
-/// threads.
+/// Draws a draw list as a camera sees it into an image. Every run gives the same bytes, with any number of
+/// rasterizer threads.
 
 #include <cstdint>
 #include <memory>
@@ -22,14 +22,14 @@ struct RasterOptions {
   bool labels = true;  ///< draws the list's labels (needs the font if there are any)
 };
 
-/// The id of what is seen at each pixel; rows from the top.
+/// The id of what is seen at each pixel, row by row from the top.
 struct IdImage {
   int width = 0, height = 0;
   std::vector<std::uint32_t> ids;  ///< kNoId where there is nothing
   std::uint32_t at(int x, int y) const { return ids[static_cast<std::size_t>(y) * width + x]; }
 };
 
-/// Holds the context, programs and buffers, so that frame follows frame. Use it on the thread that made it.
+/// Holds the context, programs and buffers from one frame to the next. Use it on the thread that made it.
 class Rasterizer {
  public:
   /// Throws EnvironmentError if there is no off-screen OpenGL.
@@ -38,11 +38,11 @@ class Rasterizer {
   Rasterizer(const Rasterizer&) = delete;
   Rasterizer& operator=(const Rasterizer&) = delete;
 
-  /// Throws InputError for sizes out of range, EnvironmentError if the library fails.
+  /// Draws an image. Throws InputError for sizes out of range, EnvironmentError if the library fails.
   Image draw(const DrawList& list, const Camera& camera, const RasterOptions& options = {});
 
-  /// Ids of fills and of triangles of the opaque layer (with `translucent`: of those too, as if opaque), one
-  /// sample in the middle of each pixel.
+  /// Returns the ids of fills and of opaque triangles (with `translucent`: of translucent ones too, as if
+  /// they were opaque), from one sample in the middle of each pixel.
   IdImage ids(const DrawList& list, const Camera& camera, int width, int height, bool translucent = false);
 
  private:
@@ -50,7 +50,7 @@ class Rasterizer {
   std::unique_ptr<State> state_;
 };
 
-/// Draws the labels of a list over a picture that was taken of it without.
+/// Draws the labels of a list over a picture of it that was drawn without them.
 void draw_labels(Image& image, const DrawList& list, const Camera& camera);
 
 }  // namespace lrb::render

@@ -48,7 +48,7 @@ Eigen::Vector3d Context::middle(std::span<const FaceId> faces) const {
 
 std::vector<FaceId> Context::pseudo_in_contact() const {
   std::vector<FaceId> faces;
-  for (FaceId f = body.rep->real_face_count(); f < body.rep->face_count(); ++f)
+  for (FaceId f(body.rep->real_face_count()); f < body.rep->face_count(); ++f)
     if (in_contact(f)) faces.push_back(f);
   return faces;
 }
@@ -70,7 +70,7 @@ Rgba Context::colour_of(FaceId f, CellId cell) const {
     const double range = value_high - value_low;
     return palette::viridis(range > 0 ? (body.face_values[f] - value_low) / range : 0);
   }
-  if (is_region(cell)) return region_colour(cell);
+  if (is_region(cell)) return region_colour(cell.as_region());
   return options.colour_by == ColourBy::kind ? colour() : mix(colour(), kWhite, 0.75);
 }
 
@@ -81,7 +81,8 @@ void Context::add_key(LegendItem::Mark mark, Rgba colour, const std::string& tex
 
 std::vector<Chain> chains(const std::vector<std::array<VertexId, 2>>& segments) {
   std::multimap<VertexId, std::size_t> from;
-  std::map<VertexId, int> balance;  // ends here minus starts here: a chain that does not close starts at -1
+  std::map<VertexId, int>
+      balance;  // number of segments that end here minus number that start here: an open chain starts at -1
   for (std::size_t i = 0; i < segments.size(); ++i) {
     from.emplace(segments[i][0], i);
     --balance[segments[i][0]];
@@ -145,7 +146,7 @@ void check(std::span<const SceneBody> bodies, const SceneHighlight& highlight, c
   }
 }
 
-/// Values of the scale bar: as asked for, else from zero to the largest there is.
+/// Returns the values at the ends of the scale bar: as asked for, else zero and the largest there is.
 std::array<double, 2> value_range(std::span<const SceneBody> bodies, const SceneOptions& options) {
   if (options.value_range) return *options.value_range;
   double high = 0;
@@ -196,7 +197,7 @@ void add_contacts(const SceneHighlight& highlight, const SceneOptions& options, 
   dot.layer = Layer::on_top;
   bool lines = false;
   for (const ContactRegion& region : highlight.contacts) {
-    if (region.loops.empty()) {  // bodies that meet in a point have no curve there
+    if (region.loops.empty()) {  // bodies that meet in a single point have no curve there
       dot.x = region.centroid;
       out.list.points.push_back(dot);
     }

@@ -1,10 +1,10 @@
 #pragma once
-/// LRB-reps, wrapper states, poses and what is to be pointed out -> a draw list with its legend. Pure data in
-/// and out: no graphics library, no files.
+/// Makes a draw list with its legend from LRB-reps, wrapper states, poses and what is to be pointed out. Pure
+/// data in and out: no graphics library, no files.
 ///
 /// 3D: real faces are solid, in full colour where the wrapper has come down to them and paler where it has
-/// not; pseudo faces of the wrapper's boundary are translucent, with outlines. 2D: the solid dark, included
-/// regions light (the paper's figure 1), the wrapper's boundary as a strong line.
+/// not; pseudo faces of the wrapper's boundary are translucent, with outlines. 2D: the solid is dark,
+/// included regions are light (the paper's figure 1), the wrapper's boundary is a strong line.
 
 #include <array>
 #include <cstdint>
@@ -25,13 +25,13 @@ namespace lrb::render {
 
 struct SceneBody {
   const LrbRep* rep = nullptr;
-  const Wrapper* wrapper = nullptr;  ///< null: the real faces alone
+  const Wrapper* wrapper = nullptr;  ///< null: the real faces alone are drawn
   Pose pose;
   std::span<const double> face_values;  ///< (|F|) for ColourBy::value; empty: none
   std::string name;                     ///< in the legend; empty: "A", "B"
-  std::optional<Rgba> colour = {};      ///< nothing: the side's
-  /// (|real F|) or (|F|), not 0: drawn in the contacts' colour; empty: none. Pseudo faces, where a wrapper is
-  /// shown, even if it has been refined beyond them.
+  std::optional<Rgba> colour = {};      ///< nothing: the colour of the side
+  /// (|real F|) or (|F|): faces whose entry is not 0 are drawn in the contacts' colour; empty: none. Includes
+  /// pseudo faces where a wrapper is shown, even if it has been refined beyond them.
   std::span<const std::uint8_t> in_contact = {};
 };
 
@@ -42,7 +42,7 @@ enum class ColourBy : std::uint8_t {
   value,   ///< faces by SceneBody::face_values, viridis: face tests, refinements, ...
 };
 
-/// What the event at hand is about.
+/// What the current event is about.
 struct SceneHighlight {
   std::array<std::vector<RegionId>, 2> refining;       ///< of A and B
   std::optional<std::array<SimplexId, 2>> under_test;  ///< a simplex of A, one of B
@@ -51,14 +51,16 @@ struct SceneHighlight {
 
 struct SceneOptions {
   ColourBy colour_by = ColourBy::kind;
-  std::string value_name = "face tests";             ///< ColourBy::value: for the scale bar
+  std::string value_name = "face tests";             ///< shown at the scale bar of ColourBy::value
   std::optional<std::array<double, 2>> value_range;  ///< nothing: from 0 to the largest value of the scene
-  std::array<std::vector<RegionId>, 2> isolate;  ///< of A and B; if any: only these, and the rest as ghosts
-  bool ghost_rest = true;                        ///< false: the rest is left out
-  double explode = 0;                            ///< included regions move outward by this share of their
-                                                 ///< distance from the body's centre; 0: in place, as lids
+  std::array<std::vector<RegionId>, 2>
+      isolate;  ///< regions of A and B; if there are any, only these are shown, and the rest as ghosts
+  bool ghost_rest = true;  ///< false: the rest is left out
+  double explode =
+      0;  ///< included regions move outward by this share of their distance from the body's centre; 0: they
+          ///< stay in place, as lids
   bool real_edges = true;
-  bool contact_rims = false;  ///< 3D: faces in contact get a rim that shows through what is before them
+  bool contact_rims = false;  ///< 3D: faces in contact get a rim that is seen through what lies in front
   float scale = 1;            ///< of line widths and points: for large pictures and print
 };
 
@@ -68,25 +70,25 @@ struct Scene {
   std::optional<ScaleBar> scale;
 };
 
-/// Triangles and fills carry the id face_id() (fills of regions: region_id()). Bodies of the same dimension;
-/// throws InputError otherwise, or if a highlight names what is not there. From the third on they carry B's
-/// ids, and then no region or pair can be pointed out.
+/// Builds the scene. Triangles and fills carry the id face_id() (fills of regions: region_id()). Throws
+/// InputError if the bodies differ in dimension, or if a highlight names what is not there. Bodies from the
+/// third on carry B's ids, and then no region or pair can be pointed out.
 Scene build_scene(std::span<const SceneBody> bodies, const SceneHighlight& highlight = {},
                   const SceneOptions& options = {});
 
-/// Ids in the id pass: the top bit tells the body, the next one regions from faces.
+/// Returns the id of a face for the id pass: the top bit tells the body, the next one regions from faces.
 constexpr std::uint32_t face_id(Side side, FaceId f) {
   return (side == Side::b ? 1U << 31 : 0U) | f;
 }
 constexpr std::uint32_t region_id(Side side, RegionId r) {
-  return face_id(side, r) | 1U << 30;
+  return (side == Side::b ? 1U << 31 : 0U) | 1U << 30 | r;
 }
 
-/// All points that a body can show in any wrapper state, posed: what cameras of a whole sequence should be
-/// fitted to.
+/// Returns all points that a body can show in any wrapper state, posed. Cameras of a whole sequence should be
+/// fitted to them.
 std::vector<Eigen::Vector3d> body_points(const LrbRep& rep, const Pose& pose);
 
-/// All points of the contact regions.
+/// Returns all points of the contact regions.
 std::vector<Eigen::Vector3d> contact_points(std::span<const ContactRegion> contacts);
 
 }  // namespace lrb::render

@@ -13,9 +13,10 @@ using Mark = LegendItem::Mark;
 
 constexpr double kGhost = 0.82;  ///< how far ghosts are from their colour towards white
 
-class Builder {
+class Scene2dBuilder {
  public:
-  explicit Builder(const Context& c) : c_(c), rep_(*c.body.rep), body_(c.colour()), scale_(c.options.scale) {}
+  explicit Scene2dBuilder(const Context& c)
+      : c_(c), rep_(*c.body.rep), body_(c.colour()), scale_(c.options.scale) {}
 
   void run() {
     for (RegionId r = 0; r < rep_.region_count(); ++r) region(r);
@@ -77,7 +78,7 @@ class Builder {
     }
   }
 
-  /// On top of the wrapper's line, which runs along real faces too.
+  /// Drawn on top of the wrapper's line, which runs along real faces too.
   void contact_lines() {
     std::vector<FaceId> real;
     for (FaceId f = 0; f < rep_.real_face_count(); ++f)
@@ -90,13 +91,13 @@ class Builder {
     if (!pseudo.empty()) c_.add_key(Mark::dashed, palette::kContact, "pseudo faces that meet");
   }
 
-  /// Thin lines between regions; of those refined away a dashed trace.
+  /// Draws thin lines between regions, dashed between those that have been refined away.
   void region_lines() {
     std::vector<FaceId> inside, gone;
-    for (FaceId f = rep_.real_face_count(); f < rep_.face_count(); ++f) {
+    for (FaceId f(rep_.real_face_count()); f < rep_.face_count(); ++f) {
       const CellId in = rep_.inner_cell(f);
       if (!is_region(in)) continue;
-      if (c_.refining(in)) {
+      if (c_.refining(in.as_region())) {
         add_lines({f}, palette::edge_of(palette::kRefining), 2.4F, 0);
       } else if (c_.included(in) && !c_.on_boundary(f)) {
         inside.push_back(f);
@@ -150,7 +151,7 @@ class Builder {
 }  // namespace
 
 void add_body_2d(const Context& c) {
-  Builder(c).run();
+  Scene2dBuilder(c).run();
 }
 
 }  // namespace lrb::render::scene

@@ -11,20 +11,21 @@ namespace {
 using Eigen::Vector3d;
 using Mark = LegendItem::Mark;
 
-/// Pseudo faces: a whitish veil, so that what they cover looks paler than what lies bare.
+/// Opacity and colour of pseudo faces: a whitish veil, so that what they cover looks paler than what lies
+/// bare.
 constexpr std::uint8_t kLidAlpha = 124;
 constexpr double kLidPale = 0.70;  ///< their colour, from the body's towards white
 constexpr std::uint8_t kLidEdgeAlpha = 220;
-/// Of edges on the far side little is left: else a refined wrapper, with hundreds of faces, is a tangle.
+/// Edges on the far side are nearly left out: the hundreds of faces of a refined wrapper would make a tangle.
 constexpr float kLidEdgeBack = 0.3F;
 constexpr std::uint8_t kTellingAlpha = 175;  ///< where their colour says something
 constexpr std::uint8_t kRefiningAlpha = 120;
 constexpr std::uint8_t kGhostAlpha = 14;
 constexpr double kLayerStep = 0.12;  ///< exploded: extra way per layer, as a share of the body's radius
 
-class Builder {
+class Scene3dBuilder {
  public:
-  explicit Builder(const Context& c) : c_(c), rep_(*c.body.rep) {
+  explicit Scene3dBuilder(const Context& c) : c_(c), rep_(*c.body.rep) {
     const Rgba body = c.colour();
     const auto ink = palette::edge_of(body);
     real_edges_ = c.out.list.edge_style({with_alpha(ink, 150), 0.9F * c.options.scale});
@@ -60,14 +61,15 @@ class Builder {
     std::vector<FaceId> lids;
     for (const FaceId f : c_.body.wrapper->boundary()) {
       if (!rep_.is_real(f) && !c_.in_contact(f) &&
-          !(is_region(rep_.inner_cell(f)) && c_.refining(rep_.inner_cell(f))))
+          !(is_region(rep_.inner_cell(f)) && c_.refining(rep_.inner_cell(f).as_region())))
         lids.push_back(f);
     }
     const bool telling = c_.options.colour_by != ColourBy::kind;
     for (const FaceId f : lids) {
       DrawTriangle t = translucent(lid_colour(f));
-      t.edges =
-          7;  // edges of faces, not lines: those behind other lids are to show through them, not on them
+      // Edges of faces, not lines, so that those behind other lids show through them instead of lying on
+      // them.
+      t.edges = 7;
       t.edge_style = lid_edges_;
       add_face(f, t);
     }
@@ -100,7 +102,7 @@ class Builder {
     for (FaceId f = 0; f < rep_.real_face_count(); ++f) {
       DrawTriangle t;
       t.colour = c_.in_contact(f) ? palette::kContact : c_.colour_of(f, kSolid);
-      if (is_region(rep_.outer_cell(f)) && c_.refining(rep_.outer_cell(f))) {
+      if (is_region(rep_.outer_cell(f)) && c_.refining(rep_.outer_cell(f).as_region())) {
         t.colour = mix(t.colour, palette::kRefining, 0.6);
       }
       t.edges = c_.options.real_edges ? 7 : 0;
@@ -134,7 +136,7 @@ class Builder {
     for (const FaceId f : rep_.floor(r)) {
       if (!rep_.is_real(f)) floor.push_back(f);
     }
-    // Edges of faces fade where there are many; of a small region the rim alone is left, and its colour.
+    // Edges of faces fade where there are many; of a small region only the rim is left, and its colour.
     DrawTriangle t = translucent(with_alpha(palette::kRefining, kRefiningAlpha), 2);
     t.edges = 7;
     t.edge_style = refining_edges_;
@@ -156,7 +158,7 @@ class Builder {
     }
     if (!c_.options.ghost_rest) return;
     for (FaceId f = 0; f < rep_.real_face_count(); ++f) {
-      if (is_region(rep_.outer_cell(f)) && c_.isolated(rep_.outer_cell(f)))
+      if (is_region(rep_.outer_cell(f)) && c_.isolated(rep_.outer_cell(f).as_region()))
         continue;  // the region's floor is drawn
       add_face(f, translucent(with_alpha(c_.colour(), kGhostAlpha)));
     }
@@ -186,7 +188,7 @@ class Builder {
     }
   }
 
-  /// A region as a thing of its own: its floor solid, its lids too, or translucent so that the floor shows.
+  /// Draws a region by itself: its floor solid, its lids solid too, or translucent so that the floor shows.
   void region(RegionId r, const Vector3d& moved, bool open) {
     Rgba colour = c_.region_colour(r);
     if (c_.options.colour_by == ColourBy::kind) colour = mix(colour, kWhite, 0.5);
@@ -214,7 +216,7 @@ class Builder {
     DrawTriangle t;
     t.colour = colour;
     t.layer = Layer::translucent;
-    t.nudge = nudge;  // a lid on a real face, in a region without volume, is seen
+    t.nudge = nudge;  // so that a lid on a real face, in a region without volume, is seen
     return t;
   }
 
@@ -223,8 +225,8 @@ class Builder {
     c_.out.list.add_polygon(c_.corners(f, moved), like);
   }
 
-  /// Edges of faces as lines, each once: they keep their width at outlines, where edges of faces show half of
-  /// it. `rim`: only those of one face alone, and to be found through everything.
+  /// Draws edges of faces as lines, each once. Lines keep their width at outlines, where edges of faces show
+  /// half of it. `rim`: only edges of a single face, which are seen through everything.
   void add_outlines(const std::vector<FaceId>& faces, const EdgeStyle& style, bool rim = false) {
     std::vector<std::array<VertexId, 2>> edges;
     for (const FaceId f : faces) {
@@ -258,7 +260,7 @@ class Builder {
 }  // namespace
 
 void add_body_3d(const Context& c) {
-  Builder(c).run();
+  Scene3dBuilder(c).run();
 }
 
 }  // namespace lrb::render::scene

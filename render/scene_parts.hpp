@@ -9,14 +9,14 @@
 
 namespace lrb::render::scene {
 
-/// Draws one body into a scene.
+/// What it takes to draw one body into a scene.
 struct Context {
   const SceneBody& body;
   Side side;
   const SceneHighlight& highlight;
   const SceneOptions& options;
   double value_low, value_high;  ///< range of ColourBy::value
-  std::uint32_t layers;          ///< of the body that has most: one scale for both
+  std::uint32_t layers;          ///< number of layers of the body that has most: one scale for both
   Scene& out;
 
   std::string name() const;
@@ -27,15 +27,15 @@ struct Context {
   bool on_boundary(FaceId f) const { return body.wrapper != nullptr && body.wrapper->on_boundary(f); }
   const std::vector<RegionId>& isolated() const { return options.isolate[static_cast<std::size_t>(side)]; }
   const std::vector<RegionId>& refining() const { return highlight.refining[static_cast<std::size_t>(side)]; }
-  bool isolating() const;  ///< of either body
+  bool isolating() const;  ///< Returns true if regions of either body are isolated.
   bool isolated(RegionId r) const;
   bool refining(RegionId r) const;
   std::vector<Eigen::Vector3d> corners(FaceId f,
                                        const Eigen::Vector3d& moved = Eigen::Vector3d::Zero()) const;
-  /// The mean of the faces' corners.
+  /// Returns the mean of the faces' corners.
   Eigen::Vector3d middle(std::span<const FaceId> faces) const;
-  /// The colour of a face by SceneOptions::colour_by; `cell` is the region that it stands for. Where values
-  /// are shown, faces without one or with the lowest are pale: a few that matter stand out.
+  /// Returns the colour of a face by SceneOptions::colour_by; `cell` is the region that it stands for. Where
+  /// values are shown, faces without one or with the lowest are pale, so that the few that matter stand out.
   Rgba colour_of(FaceId f, CellId cell) const;
   bool has_value(FaceId f) const { return f < body.face_values.size() && body.face_values[f] > value_low; }
   Rgba region_colour(RegionId r) const;
@@ -45,7 +45,7 @@ struct Context {
 void add_body_3d(const Context& c);
 void add_body_2d(const Context& c);
 
-/// Polylines through all segments, as long as they can be made; closed ones where they close.
+/// A polyline through segments that join, as long as it can be made; closed where it closes.
 struct Chain {
   std::vector<VertexId> vertices;
   bool closed = false;

@@ -15,19 +15,19 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-/// Corners are rounded to 1/256 pixel, the grid of Mesa's rasterizer: it then has nothing to round.
+/// Corners are rounded to 1/256 pixel, the grid of Mesa's rasterizer, so that it has nothing to round.
 constexpr double kSnap = 256;
-/// One step of DrawTriangle::nudge, as a share of the picture's height at that depth. Small enough not to
-/// show what lies visibly behind, large enough to keep a line on the face it runs along.
+/// One step of DrawTriangle::nudge, as a share of the picture's height at that depth. It is small enough not
+/// to uncover what visibly lies behind, and large enough to keep a line on the face it runs along.
 constexpr double kNudge = 1.2e-4;
 /// A line's halo lies this share of a step behind the line.
 constexpr double kHaloNudge = 0.25;
-/// Corners farther outside than this many picture sizes are clipped, to keep float coordinates fine.
+/// Corners farther outside than this many picture sizes are clipped, so that float coordinates stay precise.
 constexpr double kGuard = 8;
-/// Edges fade out where faces are so small that they would cover them: from this many edge widths (of room,
-/// see edge_room.hpp) down to ...
+/// Edges fade out where faces are so small that edges would cover them: they are full where there is room for
+/// the first number of edge widths (see edge_room.hpp), and gone where there is room for the second only, ...
 constexpr double kEdgesFull = 9, kEdgesGone = 1.5;
-/// ... and are this share of their width where they vanish.
+/// ... where they have come down to this share of their width.
 constexpr double kLeastWidth = 0.6;
 /// How much weaker the shading of translucent faces is than that of opaque ones.
 constexpr double kSoften = 0.6;
@@ -38,14 +38,15 @@ double snap(double pixels) {
   return std::nearbyint(pixels * kSnap) / kSnap;
 }
 
-/// Homogeneous picture coordinates about the middle: pixel = (x, y) / w.
+/// Returns homogeneous picture coordinates about the middle: pixel = (x, y) / w.
 Vector3d homogeneous(const Projection& p, const Vector3d& eye) {
   return {p.focal() * eye.x(), p.focal() * eye.y(), p.orthographic() ? 1.0 : eye.z()};
 }
 
-class Builder {
+class ScreenMeshBuilder {
  public:
-  Builder(const DrawList& list, const Projection& projection, double scale, const Lighting& lighting)
+  ScreenMeshBuilder(const DrawList& list, const Projection& projection, double scale,
+                    const Lighting& lighting)
       : list_(list), p_(projection), scale_(scale), lighting_(lighting), soft_(lighting) {
     room_ = edge_room(list, projection);
     soft_.ambient = lighting.ambient + kSoften * (1 - lighting.ambient);
@@ -81,7 +82,7 @@ class Builder {
     mesh_.line_layers[index].count = mesh_.lines.size() - mesh_.line_layers[index].first;
   }
 
-  /// Faces that let others shine through, in the order in which they must be painted.
+  /// Adds the faces that let others shine through, in the order in which they must be painted.
   void add_blended(Layer layer) {
     std::vector<EyePolygon> polygons;
     for (std::uint32_t i = 0; i < list_.triangles.size(); ++i) {
@@ -111,7 +112,7 @@ class Builder {
     return s;
   }
 
-  /// Distance from a corner to a clipping plane, positive inside.
+  /// Returns the distance from a corner to a clipping plane, positive inside.
   double inside(const Vector3d& e, int plane) const {
     const double z = p_.orthographic() ? 1.0 : e.z();
     switch (plane) {
@@ -142,14 +143,15 @@ class Builder {
     }
   }
 
-  /// The line of an edge on the screen: (a, b, c) with a x + b y + c w = distance in pixels times w.
+  /// Returns the line of an edge on the screen: (a, b, c) with a x + b y + c w = distance in pixels times w.
   static Vector3d edge_line(const Vector3d& p, const Vector3d& q) {
     const Vector3d line = p.cross(q);
     const double norm = std::hypot(line.x(), line.y());
     return norm > 0 ? Vector3d(line / norm) : Vector3d::Zero();
   }
 
-  /// The part of a triangle that may be seen, in the eye's frame; fewer than three corners if there is none.
+  /// Returns the part of a triangle that can be seen, in the eye's frame; fewer than three corners if there
+  /// is none.
   std::vector<Vector3d> visible_part(const DrawTriangle& t) const {
     std::vector<Vector3d> polygon;
     for (const Vector3d& x : t.x) polygon.push_back(p_.to_eye(x));
@@ -163,7 +165,7 @@ class Builder {
     return polygon;
   }
 
-  /// Emits a convex part of a triangle, given in the eye's frame.
+  /// Adds a convex part of a triangle, given in the eye's frame.
   void add_face(const DrawTriangle& t, const std::vector<Vector3d>& polygon) {
     if (polygon.size() < 3) return;
     const Vector3d normal = (t.x[1] - t.x[0]).cross(t.x[2] - t.x[0]);
@@ -198,7 +200,8 @@ class Builder {
     return normal.dot(p_.towards_viewer(t.x[0])) < 0;
   }
 
-  /// Lines of the three edges; sets the vertex's edge style, faded where faces are small on the screen.
+  /// Sets the lines of the three edges and the vertex's edge style, faded where faces are small on the
+  /// screen.
   std::array<Vector3d, 3> edge_lines(const DrawTriangle& t, const std::array<Vector3d, 3>& h,
                                      FaceVertex& v) const {
     std::array<Vector3d, 3> lines;
@@ -212,7 +215,7 @@ class Builder {
     v.edge_colour =
         to_bytes(with_alpha(style.colour, static_cast<std::uint8_t>(style.colour.a * fade * back + 0.5)));
     if (t.layer != Layer::opaque) return lines;
-    // An opaque face stays opaque under its edges: blend them here, where it is exact.
+    // An opaque face stays opaque under its edges: they are blended here, where it is exact.
     v.edge_colour = to_bytes(over(to_rgba(v.edge_colour), with_alpha(to_rgba(v.colour), 255)));
     return lines;
   }
@@ -266,9 +269,10 @@ class Builder {
     add_polyline(l, l.colour, l.width, l.dash, nudge);
   }
 
-  /// Steps of nudge that bring the whole width of a line in front of a face that it runs along, if the face
-  /// is not seen under less than 45 degrees; a dot is as thick as it is wide. `half_width` in pixels of the
-  /// final image. Opaque lines stay where they are: of two, the wider one is not to hide the later one.
+  /// Returns the number of nudge steps that bring the whole width of a line in front of a face that it runs
+  /// along, if the face is seen at 45 degrees or more; a dot is as thick as it is wide. `half_width` is in
+  /// pixels of the final image. Opaque lines stay where they are: of two, the wider one must not hide the
+  /// later one.
   double lift(Layer layer, double half_width) const {
     return layer == Layer::opaque ? 0 : half_width * scale_ / p_.height() / kNudge;
   }
@@ -320,7 +324,7 @@ class Builder {
       const double along = i == 1 || i == 2 ? length + reach : -reach, across = i < 2 ? -reach : reach;
       const Vector2d at = sa.head<2>() + along * u + across * side;
       v.at = to_float(Vector2d(along, across));
-      // Depth is held at the ends beyond them: a round end must not sink into what it ends on.
+      // Beyond the ends the depth stays constant: a round end must not sink into what it ends on.
       v.x = device({at.x(), at.y(), along < 0 ? sa.z() : sb.z()}, nudge);
       corner[i] = v;
     }
@@ -332,7 +336,7 @@ class Builder {
   const Projection& p_;
   double scale_;
   const Lighting& lighting_;
-  Lighting soft_;             ///< of faces that let others shine through: they are to tint, not to darken
+  Lighting soft_;             ///< of faces that let others shine through: they should tint, not darken
   std::vector<double> room_;  ///< see edge_room(): by triangle
   ScreenMesh mesh_;
   std::vector<FaceVertex> corners_;
@@ -347,13 +351,13 @@ Rgba shade(Rgba colour, const Vector3d& normal, const Eigen::Matrix3d& axes, con
   const double light = lighting.ambient + lighting.head * n.z() + lighting.key * from(lighting.key_from) +
                        lighting.fill * from(lighting.fill_from);
   const Rgba dark{0, 0, 0, colour.a}, bright{255, 255, 255, colour.a};
-  // Above one the colour goes on towards white, so that bright faces keep their differences.
+  // Beyond one, the colour goes on towards white, so that bright faces keep their differences.
   return light <= 1 ? mix(dark, colour, light) : mix(colour, bright, std::min(1.0, light - 1));
 }
 
 ScreenMesh make_screen_mesh(const DrawList& list, const Projection& projection, double scale,
                             const Lighting& lighting) {
-  return Builder(list, projection, scale, lighting).build();
+  return ScreenMeshBuilder(list, projection, scale, lighting).build();
 }
 
 }  // namespace lrb::render

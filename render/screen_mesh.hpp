@@ -1,8 +1,8 @@
 #pragma once
-/// Draw list -> triangles on the screen, all on the CPU in double: projection, clipping, shading, snapping.
-/// What reaches the graphics library has w = 1, colours that are final and corners on a grid of 1/256 pixel,
-/// so that rasterizers of different processors and thread counts have no freedom left to disagree. No
-/// graphics library here.
+/// Turns a draw list into triangles on the screen, all on the CPU in double: projection, clipping, shading,
+/// snapping. What reaches the graphics library has w = 1, final colours, and corners on a grid of 1/256
+/// pixel, so that rasterizers with other processors or thread counts have nothing left to disagree about.
+/// Uses no graphics library.
 
 #include <array>
 #include <cstddef>
@@ -15,7 +15,7 @@
 
 namespace lrb::render {
 
-/// A corner of a face. Interpolated linearly over the screen: position and edge distances.
+/// A corner of a face. Position and edge distances are interpolated linearly over the screen.
 struct FaceVertex {
   glm::vec3 x{0};     ///< normalised device coordinates
   glm::vec3 edge{0};  ///< distance from the lines of the three edges, pixels; kNoEdge where not drawn
@@ -24,9 +24,10 @@ struct FaceVertex {
   std::uint32_t id = kNoId;
 };
 inline constexpr float kNoEdge = 1e6F;
-inline constexpr float kNeverDashed = -1;  ///< as dash length: solid even where the line is ghosted
+inline constexpr float kNeverDashed = -1;  ///< As dash length: solid even where the line is ghosted.
 
-/// A corner of the rectangle round a line segment, a capsule. A point is a segment of no length.
+/// A corner of the rectangle around a line segment, which is drawn as a capsule. A point is a segment of no
+/// length.
 struct LineVertex {
   glm::vec3 x{0};   ///< normalised device coordinates
   glm::vec2 at{0};  ///< from the segment's start, along it and to its left, pixels
@@ -40,7 +41,7 @@ struct VertexRange {
   std::size_t first = 0, count = 0;
 };
 
-/// Even-odd fill: `fan` flips a stencil bit, `cover` paints where it is set.
+/// A fill by the even-odd rule: `fan` flips a stencil bit, `cover` paints where it is set.
 struct FillRange {
   VertexRange fan, cover;
 };
@@ -52,8 +53,8 @@ struct ScreenMesh {
   std::array<VertexRange, kLayers> face_layers, line_layers;
 };
 
-/// How faces are shaded: flat, from their normal, by lights that go with the camera. Shares of the face's
-/// colour. Directions are in the camera's frame (right, up, towards the viewer) and made unit.
+/// How faces are shaded: flat, from their normal, by lights that move with the camera, each a share of the
+/// face's colour. Directions are in the camera's frame (right, up, towards the viewer) and need not be unit.
 struct Lighting {
   double ambient = 0.52;
   double head = 0.18;  ///< from the viewer
@@ -63,11 +64,12 @@ struct Lighting {
   Eigen::Vector3d fill_from{0.80, -0.35, 0.49};
 };
 
-/// The colour of a face with the given unit normal; both sides are lit alike. `axes` as in
+/// Returns the colour of a face with the given unit normal; both sides are lit alike. `axes` is
 /// Projection::axes().
 Rgba shade(Rgba colour, const Eigen::Vector3d& normal, const Eigen::Matrix3d& axes, const Lighting& lighting);
 
-/// `scale`: device pixels per pixel of the final image (supersampling); `projection` is in device pixels.
+/// Makes the screen mesh. `scale` is the number of device pixels per pixel of the final image
+/// (supersampling); `projection` is in device pixels.
 ScreenMesh make_screen_mesh(const DrawList& list, const Projection& projection, double scale,
                             const Lighting& lighting = {});
 

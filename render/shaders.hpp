@@ -1,7 +1,7 @@
 #pragma once
-/// The shaders. Positions come in as device coordinates, final; colours are straight going in and
-/// premultiplied coming out. Coverage is rounded to sixteenths: where processors differ in an interpolation's
-/// last bit, the pixel then mostly does not.
+/// The shaders. Positions come in as final device coordinates; colours are straight going in and
+/// premultiplied coming out. Coverage is rounded to sixteenths: where processors differ in the last bit of an
+/// interpolation, the pixel then mostly does not differ.
 
 namespace lrb::render::shaders {
 
@@ -46,7 +46,7 @@ inline constexpr const char* kFaceFragment = R"(
 void main() { colour = face_with_edges(); }
 )";
 
-/// Faces on top; the ghosted part is fainter (`strength` in 1/256).
+/// Draws faces on top; the ghosted part is fainter (`strength` in 1/256).
 inline constexpr const char* kGhostFragment = R"(
 uniform int strength;
 void main() { colour = face_with_edges() * (float(strength) * 0.00390625); }

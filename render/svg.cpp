@@ -28,7 +28,7 @@ struct Less {
   }
 };
 
-/// Segments in any order and direction, joined where they share an end exactly.
+/// Joins segments, in any order and direction, where they share an end exactly.
 std::vector<std::vector<Vector3d>> loops(const std::vector<std::array<Vector3d, 2>>& segments) {
   std::multimap<Vector3d, std::size_t, Less> at;
   for (std::size_t i = 0; i < segments.size(); ++i) {
@@ -111,7 +111,7 @@ class Writer {
   void stroke(const std::string& d, Rgba colour, float width, float dash) {
     out_ += "<path" + attribute("d", d) + attribute("fill", "none") + paint("stroke", colour) +
             attribute("stroke-width", number(width)) + attribute("stroke-linejoin", "round");
-    // Round ends would fill the gaps of dashes.
+    // Round ends would fill the gaps between dashes.
     out_ += dash > 0 ? attribute("stroke-dasharray", number(dash)) : attribute("stroke-linecap", "round");
     out_ += "/>\n";
   }

@@ -10,7 +10,7 @@ namespace {
 
 using namespace svg_text;
 
-/// A whole picture as an element of another one.
+/// Returns a whole picture as an element of another one.
 std::string nested(const std::string& panel, const PixelRect& r) {
   const std::size_t start = panel.find("viewBox");
   if (start == std::string::npos) throw InputError("a montage of SVG needs panels that are SVG");

@@ -1,5 +1,5 @@
 #pragma once
-/// Panels that are SVG, side by side: what montage() is for pixels.
+/// Puts panels that are SVG side by side: what montage() does with pixels.
 
 #include <string>
 #include <vector>
@@ -9,12 +9,12 @@
 namespace lrb::render {
 
 struct SvgMontageOptions {
-  std::string title;           ///< for readers that cannot see it; empty: none
+  std::string title;           ///< for people who cannot see the picture; empty: none
   bool transparent = false;    ///< else white
-  double units_per_pixel = 1;  ///< of the view box, per pixel of a screen: the size on paper
+  double units_per_pixel = 1;  ///< units of the view box per pixel of a screen: the size on paper
 };
 
-/// Pictures as svg() wrote them, where `layout` puts panels of their sizes, and its captions as text.
+/// Puts pictures that svg() wrote where `layout` has the panels, and its captions as text.
 std::string svg_montage(const std::vector<std::string>& panels, const MontageLayout& layout,
                         const SvgMontageOptions& options = {});
 

@@ -1,5 +1,5 @@
 #pragma once
-/// What writers of SVG share: numbers, attributes, colours, fonts. The same bytes whatever the locale.
+/// What writers of SVG share: numbers, attributes, colours, fonts. Gives the same bytes in any locale.
 
 #include <string>
 
@@ -7,15 +7,15 @@
 
 namespace lrb::render::svg_text {
 
-/// With two decimals at most.
+/// Returns a number with two decimals at most.
 std::string number(double x);
-/// ` name="value"`; the value has to be safe for markup.
+/// Returns ` name="value"`; the value must need no escaping.
 std::string attribute(const std::string& name, const std::string& value);
-/// A colour as fill or stroke, with its opacity if it has one.
+/// Returns a colour as fill or stroke (`what`), with its opacity if it has one.
 std::string paint(const std::string& what, Rgba c);
-/// Font and size of text that is `height` high from ascent to descent, as in TextStyle.
+/// Returns font and size of text that is `height` high from ascent to descent, as in TextStyle.
 std::string font(double height);
-/// The root element's start tag. `units_per_pixel`: of the view box, per pixel of a screen.
+/// Returns the root element's start tag. `units_per_pixel`: units of the view box per pixel of a screen.
 std::string svg_open(double width, double height, double units_per_pixel = 1);
 
 }  // namespace lrb::render::svg_text

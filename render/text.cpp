@@ -19,7 +19,7 @@
 namespace lrb::render {
 namespace {
 
-/// Where distributions put DejaVu, should the file that the build found have moved.
+/// Where distributions put DejaVu, in case the file that the build found has moved.
 constexpr std::array kFontFolders = {"/usr/share/fonts/truetype/dejavu/", "/usr/share/fonts/dejavu/",
                                      "/usr/share/fonts/TTF/", "/usr/share/fonts/dejavu-sans-fonts/",
                                      "/usr/local/share/fonts/"};
@@ -185,7 +185,7 @@ std::vector<std::string> Font::wrap(std::string_view text, int width, const Text
     }
     if (!line.empty()) lines.push_back(std::move(line));
     line.clear();
-    while (!word.empty()) {  // by code points, as many as fit; at least one
+    while (!word.empty()) {  // by code points, as many as fit, but at least one
       std::string_view rest = word;
       next_code_point(rest);
       const std::string next = line + std::string(word.substr(0, word.size() - rest.size()));

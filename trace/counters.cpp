@@ -20,7 +20,7 @@ double ratio(std::uint64_t part, std::uint64_t whole) {
   return ratio(part, static_cast<double>(whole));
 }
 
-/// The two wrappers' sizes, event after event.
+/// Follows the sizes of the two wrappers, event after event.
 class WrapperSizes {
  public:
   explicit WrapperSizes(const Trace& trace) : trace_(&trace) { reset(); }
@@ -177,7 +177,7 @@ FaceCounts count_faces(const LrbRep& rep, Side side, std::span<const Event> even
   const std::size_t n = rep.face_count();
   FaceCounts counts{std::vector<std::uint32_t>(n), std::vector<std::uint32_t>(n),
                     std::vector<std::uint32_t>(n), std::vector<std::uint32_t>(n)};
-  const auto face_of = [&](const Event& e) { return rep.face_of_simplex(side == Side::a ? e.a : e.b); };
+  const auto face_of = [&](const Event& e) { return rep.face_of_simplex(e.simplex(side)); };
   for (const Event& e : events) {
     if (e.kind == EventKind::face_test) {
       const FaceId face = face_of(e);
@@ -186,8 +186,8 @@ FaceCounts count_faces(const LrbRep& rep, Side side, std::span<const Event> even
     } else if (e.kind == EventKind::contact) {
       ++counts.contacts[face_of(e)];
     } else if (e.kind == EventKind::refine && e.side == side) {
-      for (const FaceId lid : rep.lids(e.a)) ++counts.refinements[lid];
-      for (const FaceId face : rep.floor(e.a))
+      for (const FaceId lid : rep.lids(e.region())) ++counts.refinements[lid];
+      for (const FaceId face : rep.floor(e.region()))
         if (rep.is_real(face)) ++counts.refinements[face];
     }
   }

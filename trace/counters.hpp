@@ -1,6 +1,7 @@
 #pragma once
-/// Numbers from events: totals, statistics, histograms, counts per face (heat maps) and series (charts). All
-/// are of the events stored; Trace::truncated() says if that is not everything.
+/// Computes numbers from a trace's events: totals, statistics, histograms, counts per face (for heat maps)
+/// and series (for charts). They cover the events that were stored; Trace::truncated() tells whether that is
+/// all of them.
 
 #include <array>
 #include <cstdint>
@@ -13,12 +14,13 @@
 
 namespace lrb::trace {
 
-/// How many events of each sort. All add up over steps.
+/// The number of events of each sort. Totals of several steps can be added up.
 struct Totals {
   std::uint64_t events = 0;      ///< all kinds; best: few
-  std::uint64_t face_tests = 0;  ///< exact comparisons of two simplices; best: as many as contacts
-  std::uint64_t hits = 0;        ///< of these, they met (touch or cross); best: as many as contacts
-  std::uint64_t crossings = 0;   ///< of the hits, they crossed
+  std::uint64_t face_tests = 0;  ///< exact comparisons of two simplices; best: no more than contacts
+  std::uint64_t hits =
+      0;  ///< face tests whose simplices met (touched or crossed); best: no more than contacts
+  std::uint64_t crossings = 0;                 ///< hits whose simplices crossed
   std::array<std::uint64_t, 2> refinements{};  ///< of A's and of B's wrapper; best: few
   std::array<std::uint64_t, 2> coarsenings{};
   std::uint64_t faces_added = 0;  ///< by the refinements
@@ -36,16 +38,18 @@ struct Statistic {
   std::string_view description;  ///< formula and best value
 };
 
-/// Of a whole run:
+/// Returns the statistics of a whole run:
 /// - tests_per_contact = face tests / contacts; best 1
 /// - hit_rate = hits / face tests; best 1
-/// - tests_per_refinement = face tests / refinements; how much work opening a region causes
-/// - faces_per_refinement = faces added / refinements; the size of the regions opened
+/// - tests_per_refinement = face tests / refinements: how much work opening a region causes
+/// - faces_per_refinement = faces added / refinements: the size of the regions opened
 /// - contact_rate = contacts / hits; best 1 (0: only lids met)
 /// - tests_per_step, refinements_per_step, contacts_per_step: means over time steps
-/// - largest_wrapper_share_a (_b) = most faces A's wrapper had / A's real faces; best: near 0
-/// - pair_share = face tests / (steps x real simplices of A x of B): against testing all pairs; best: near 0
-/// - seconds: wall clock only, first to last event
+/// - largest_wrapper_share_a (_b) = largest number of faces that A's wrapper had / A's real faces; best near
+///   0
+/// - pair_share = face tests / (steps x real simplices of A x of B): the share of all pairs that was tested;
+///   best near 0
+/// - seconds: from the first to the last event; on the wall clock only
 std::vector<Statistic> statistics(const Trace& trace);
 
 /// counts[i] is the number of values in [edges[i], edges[i + 1]).
@@ -54,22 +58,25 @@ struct Histogram {
   std::vector<double> edges;  ///< (|counts| + 1), ascending
   std::vector<std::uint64_t> counts;
 };
-/// Face tests by the depth (regions to the outside) of the deeper of the two faces; one bin a depth.
+/// Counts face tests by the depth (number of regions to the outside) of the deeper of the two faces; one bin
+/// for each depth.
 Histogram tests_by_depth(const Trace& trace);
-/// Refinements by the number of faces they added; bins double in width: 0, 1, 2-3, 4-7, ...
+/// Counts refinements by the number of faces they added; bins double in width: 0, 1, 2-3, 4-7, ...
 Histogram refinements_by_size(const Trace& trace);
-/// Time steps by their number of face tests, `bins` of equal width (the paper's figure 3.2).
+/// Counts time steps by their number of face tests, in `bins` bins of equal width (the paper's figure 3.2).
 Histogram steps_by_tests(const Trace& trace, std::size_t bins = 20);
 
-/// Counts per face of one body, for heat maps. All (|F|).
+/// Counts for each face of one body, for heat maps. All (|F|).
 struct FaceCounts {
-  std::vector<std::uint32_t> tests;        ///< face tests of the face
-  std::vector<std::uint32_t> hits;         ///< of these, it met the other
-  std::vector<std::uint32_t> contacts;     ///< real faces: contacts
-  std::vector<std::uint32_t> refinements;  ///< how often the region behind a pseudo face, or the one that
-                                           ///< covers a real face, was refined
+  std::vector<std::uint32_t> tests;     ///< number of tests of the face
+  std::vector<std::uint32_t> hits;      ///< number of those in which it met the other face
+  std::vector<std::uint32_t> contacts;  ///< number of contacts; real faces only
+  std::vector<std::uint32_t>
+      refinements;  ///< number of refinements of the region behind a pseudo face, or of the one that covers a
+                    ///< real face
 };
-/// Of the events [first, last). `rep` is the body that was recorded as `side`; events must be in its range.
+/// Counts what happened to each face in `events`. `rep` is the body that was recorded as `side`; its faces
+/// must include all that the events name.
 FaceCounts count_faces(const LrbRep& rep, Side side, std::span<const Event> events);
 
 /// One curve.
@@ -83,11 +90,12 @@ struct Chart {
   std::vector<double> x;
   std::vector<Series> series;  ///< each (|x|)
 };
-/// Over events: faces of both wrappers, and face tests, hits, refinements and contacts of the step so far. At
-/// most about `max_points` points, evenly spaced, the last event always.
+/// Returns curves over the events: the number of faces of both wrappers, and the face tests, hits,
+/// refinements and contacts of the step so far. Takes about `max_points` events at most, evenly spaced, and
+/// always the last one.
 Chart chart_over_events(const Trace& trace, std::size_t max_points = 2000);
-/// Over time steps: face tests, hits, refinements, contacts, largest wrappers, and milliseconds (wall clock
-/// only).
+/// Returns curves over the time steps: face tests, hits, refinements, contacts, largest wrappers and, on the
+/// wall clock only, milliseconds.
 Chart chart_over_steps(const Trace& trace);
 
 }  // namespace lrb::trace

@@ -21,7 +21,7 @@ std::string describe(const BodyInfo& info) {
 
 void require_same_body(const BodyInfo& recorded, const LrbRep& rep, const std::string& who) {
   BodyInfo given = describe_body(rep, recorded.source);
-  given.name = recorded.name;  // a copy may be named otherwise: the hash says which body it is
+  given.name = recorded.name;  // the name may differ: the hash tells which body it is
   if (given == recorded) return;
   given.name = rep.name();
   throw InputError("trace: body " + who + " was recorded as " + describe(recorded) + ", but is given as " +
@@ -55,7 +55,7 @@ void Cursor::apply_to(EventId event) {
   if (e.boundary == kNull || e.boundary == size) return;
   rewind();
   throw InputError("trace: event " + std::to_string(event) + " (" + std::string(name_of(e.kind)) +
-                   " region " + std::to_string(e.a) + " of " + std::string(name_of(e.side)) +
+                   " region " + std::to_string(e.region()) + " of " + std::string(name_of(e.side)) +
                    "): the wrapper has " + std::to_string(size) + " faces, recorded were " +
                    std::to_string(e.boundary) + "; the trace is damaged: record it again");
 }
@@ -77,8 +77,8 @@ void Cursor::seek(EventId event) {
   };
   const std::size_t target = count_up_to(event);
   if (target != applied_) {
-    // Each step begins afresh, so nothing before the target's step matters; backward means from its
-    // beginning.
+    // Each step begins afresh, so that nothing before the target's step matters. Going backward means
+    // starting again at the beginning of that step.
     const std::size_t begin = count_up_to(trace_->steps[step].first_event) - 1;
     for (std::size_t i = target > applied_ ? std::max(applied_, begin) : begin; i < target; ++i)
       apply_to(changes_[i]);
@@ -125,10 +125,10 @@ std::optional<TestedPair> Cursor::pair_under_test() const {
   if (!is_pair(id)) id = event().cause;
   if (id == kNull || !is_pair(id)) return std::nullopt;
   const Event& e = trace_->events[id];
-  return TestedPair{.simplex_a = e.a,
-                    .simplex_b = e.b,
-                    .face_a = wrapper(Side::a).rep().face_of_simplex(e.a),
-                    .face_b = wrapper(Side::b).rep().face_of_simplex(e.b),
+  return TestedPair{.simplex_a = e.simplex(Side::a),
+                    .simplex_b = e.simplex(Side::b),
+                    .face_a = wrapper(Side::a).rep().face_of_simplex(e.simplex(Side::a)),
+                    .face_b = wrapper(Side::b).rep().face_of_simplex(e.simplex(Side::b)),
                     .meet = e.meet,
                     .event = id};
 }
@@ -140,7 +140,7 @@ std::vector<RefinedRegion> Cursor::refined() const {
   for (EventId id = position_;; --id) {
     const Event& e = trace_->events[id];
     if (e.kind != EventKind::refine || e.cause != cause) break;
-    out.push_back({e.side, e.a, id});
+    out.push_back({e.side, e.region(), id});
     if (id == 0 || cause == kNull) break;
   }
   std::reverse(out.begin(), out.end());

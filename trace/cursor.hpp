@@ -1,6 +1,5 @@
 #pragma once
-/// Replay: the state of a recorded run after any of its events, rebuilt from the trace and the LRB-reps
-/// alone.
+/// Rebuilds the state of a recorded run after any of its events, from the trace and the LRB-reps alone.
 
 #include <optional>
 #include <string>
@@ -12,11 +11,10 @@
 
 namespace lrb::trace {
 
-/// Throws InputError if an LRB-rep is not the one that was recorded. `who`: which body this is, for the
-/// message.
+/// Throws InputError if an LRB-rep is not the one that was recorded. `who` names the body in the message.
 void require_same_body(const BodyInfo& recorded, const LrbRep& rep, const std::string& who);
 
-/// The faces of a face test.
+/// The two faces that a face test compared.
 struct TestedPair {
   SimplexId simplex_a = kNull, simplex_b = kNull;
   FaceId face_a = kNull, face_b = kNull;
@@ -31,7 +29,8 @@ struct RefinedRegion {
   EventId event = kNull;
 };
 
-/// Stands after one event of a trace, or before all of them. The trace and the LRB-reps must outlive it.
+/// A position in a trace: after one of its events, or before all of them. The trace and the LRB-reps must
+/// outlive it.
 class Cursor {
  public:
   /// Throws InputError if the trace is damaged (check_trace) or an LRB-rep is not the one that was recorded.
@@ -40,36 +39,37 @@ class Cursor {
 
   const Trace& trace() const { return *trace_; }
   bool at_start() const { return position_ == kNull; }
-  /// The event that the cursor stands after; kNull: before the first.
+  /// Returns the event that the cursor stands after; kNull: it stands before the first.
   EventId position() const { return position_; }
 
-  /// Stands after `event`, forward or backward; kNull: before the first. Costs the wrapper events in between,
-  /// or, backward over one, those of the step so far. Throws std::out_of_range for an event that was not
-  /// stored, and InputError if a wrapper does not come out as recorded (the cursor is then at_start()).
+  /// Moves to just after `event`, forward or backward; kNull: to before the first. Takes time proportional to
+  /// the number of wrapper events in between or, when going backward, since the beginning of the event's
+  /// step. Throws std::out_of_range for an event that was not stored, and InputError if a wrapper does not
+  /// come out as recorded (the cursor is then at_start()).
   void seek(EventId event);
-  bool next();      ///< false at the end
-  bool previous();  ///< false before the first event
-  /// To the next event of a kind; false (and stays) if there is none.
+  bool next();      ///< Moves on by one event; returns false at the end.
+  bool previous();  ///< Moves back by one event; returns false before the first.
+  /// Moves to the next event of a kind; returns false, and stays, if there is none.
   bool next(EventKind kind);
 
-  /// The event that the cursor stands after. Not at_start().
+  /// Returns the event that the cursor stands after. Must not be called at_start().
   const Event& event() const { return trace_->events[position_]; }
-  /// The time step that the cursor is in; nullptr at_start().
+  /// Returns the time step that the cursor is in; nullptr at_start().
   const Step* step() const { return at_start() ? nullptr : &trace_->steps[step_]; }
-  /// Index into Trace::steps. Not at_start().
+  /// Returns its index into Trace::steps. Must not be called at_start().
   std::size_t step_number() const { return step_; }
-  /// Identity at_start().
+  /// Returns the pose of a body in this step (body to world); the identity at_start().
   Pose pose(Side side) const;
 
   std::size_t body_count() const { return replay_.body_count(); }
   const Wrapper& wrapper(Side side) const { return replay_.wrapper(side); }
-  /// Faces on the wrapper's boundary, in O(1).
+  /// Returns the number of faces on the wrapper's boundary, in constant time.
   std::uint32_t boundary_size(Side side) const { return replay_.boundary_size(side); }
-  /// The pair being compared: of the event if it is a face test or a contact, of its cause if it is a
-  /// refinement.
+  /// Returns the pair that is being compared: that of the event if it is a face test or a contact, that of
+  /// its cause if it is a refinement.
   std::optional<TestedPair> pair_under_test() const;
-  /// Regions that the event refined: itself and its neighbours with the same cause, up to the cursor. Empty
-  /// unless the event is a refinement.
+  /// Returns the regions that are being refined together with the event: its own, and those of the events
+  /// just before it that have the same cause. Empty unless the event is a refinement.
   std::vector<RefinedRegion> refined() const;
 
  private:
@@ -80,7 +80,7 @@ class Cursor {
   const Trace* trace_;
   Replay replay_;
   std::vector<EventId> changes_;  ///< events that change a wrapper (step, refine, coarsen), ascending
-  std::size_t applied_ = 0;       ///< how many of them the wrappers have seen
+  std::size_t applied_ = 0;       ///< number of these events that the wrappers have gone through
   EventId position_ = kNull;
   std::size_t step_ = 0;
 };

@@ -1,5 +1,5 @@
 #pragma once
-/// Where two runs part: what a golden trace reports when it no longer matches.
+/// Finds where two runs begin to differ: what a golden trace reports when it no longer matches.
 
 #include <cstddef>
 #include <optional>
@@ -15,15 +15,16 @@ struct Divergence {
   std::string what;                 ///< the field, e.g. "meet" or "body B: hash"
   std::string expected, actual;     ///< its values, in words
 
-  /// One line, e.g. "event 12 (step 0): meet: expected cross, found touch".
+  /// Returns one line, e.g. "event 12 (step 0): meet: expected cross, found touch".
   std::string message() const;
 };
 
-/// The first difference in causal order: bodies and request, then step by step poses, events and results.
-/// Ignored: wall-clock times, names, sources, versions and caps. Nothing: the runs are the same.
+/// Returns the first difference in causal order: bodies and request, then step by step poses, events and
+/// results. Ignores wall-clock times, names, sources, versions and caps. Returns nothing if the runs are the
+/// same.
 std::optional<Divergence> first_divergence(const Trace& expected, const Trace& actual);
 
-/// An event in words, e.g. "refine: region 3 of A, faces added 5, wrapper faces 14, cause 7".
+/// Describes an event in words, e.g. "refine: region 3 of A, faces added 5, wrapper faces 14, cause 7".
 std::string describe(const Event& event);
 
 }  // namespace lrb::trace

@@ -17,8 +17,8 @@ void JsonOut::number(double value) {
 
 namespace {
 
-/// Length of the UTF-8 sequence that `text` begins with; 0 if it is none (RFC 3629: no surrogates, nothing
-/// overlong, nothing beyond U+10FFFF).
+/// Returns the length of the UTF-8 sequence that `text` begins with; 0 if it does not begin with one (RFC
+/// 3629: no surrogates, no overlong forms, nothing beyond U+10FFFF).
 std::size_t utf8_length(std::string_view text) {
   const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
   const auto within = [&](std::size_t i, unsigned low, unsigned high) {

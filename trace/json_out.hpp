@@ -1,5 +1,6 @@
 #pragma once
-/// JSON as text, appended to a buffer that empties itself into a sink: no tree, no allocation per value.
+/// Writes JSON as text into a buffer that empties itself into a sink: builds no tree and allocates nothing
+/// for a value.
 
 #include <array>
 #include <charconv>
@@ -12,9 +13,11 @@
 #include <type_traits>
 #include <vector>
 
+#include "engine/core/ids.hpp"
+
 namespace lrb::trace {
 
-/// Where bytes go.
+/// Takes bytes: a file, a string, ...
 class ByteSink {
  public:
   virtual ~ByteSink() = default;
@@ -27,7 +30,7 @@ class StringSink final : public ByteSink {
   std::string text;
 };
 
-/// Unstructured: the caller writes brackets and commas. For the millions of events.
+/// Writes values only; the caller writes brackets and commas. Made for the millions of events.
 class JsonOut {
  public:
   explicit JsonOut(ByteSink& sink) : sink_(&sink), buffer_(kBuffer) {}
@@ -50,11 +53,11 @@ class JsonOut {
     used_ += static_cast<std::size_t>(std::to_chars(begin, begin + kNumber, value).ptr - begin);
   }
 
-  /// The shortest decimal that reads back as the same double; null if it is not finite (JSON has no other
-  /// word). A point or exponent is always there, so that -0.0 stays a double.
+  /// Writes the shortest decimal that reads back as the same double, or null if it is not finite (JSON has no
+  /// word for that). It always has a point or an exponent, so that -0.0 stays a double.
   void number(double value);
 
-  /// In quotes, escaped; bytes that are not UTF-8 become U+FFFD.
+  /// Writes a string in quotes, escaped; bytes that are not UTF-8 become U+FFFD.
   void string(std::string_view text);
 
   void flush() {
@@ -75,14 +78,14 @@ class JsonOut {
   std::size_t used_ = 0;
 };
 
-/// Structured: brackets, commas and line breaks come by themselves. For metadata, summaries and answers.
+/// Writes brackets, commas and line breaks by itself. For metadata, summaries and answers.
 class JsonWriter {
  public:
-  /// In place of a number of broken levels: all on one line, without spaces.
+  /// As `broken_levels`: everything on one line, without spaces.
   static constexpr int kCompact = -1;
 
-  /// Containers nested deeper than `broken_levels` stay on one line. `indent` is where the outermost one
-  /// stands.
+  /// Puts each member of the outermost `broken_levels` containers on a line of its own; containers nested
+  /// deeper stay on one line. `indent` is the indentation of the outermost one, in levels.
   JsonWriter(JsonOut& out, int broken_levels, int indent = 0)
       : out_(&out), broken_levels_(broken_levels), indent_(indent) {}
 
@@ -104,6 +107,10 @@ class JsonWriter {
     else
       out_->string(v);
     return *this;
+  }
+  template <class Kind>
+  JsonWriter& value(Id<Kind> id) {
+    return value(id.value());
   }
   template <class T>
   JsonWriter& member(std::string_view name, const T& v) {

@@ -1,6 +1,5 @@
 #include "trace/json_read.hpp"
 
-#include <algorithm>
 #include <limits>
 #include <optional>
 #include <type_traits>
@@ -23,60 +22,6 @@ std::string type_of(const Json& j) {
   return name.size() <= kShown ? name : name.substr(0, kShown) + "...";
 }
 
-/// "at line 3, column 17".
-std::string line_and_column(std::string_view text, std::size_t offset) {
-  const std::string_view before = text.substr(0, std::min(offset, text.size()));
-  const auto line = 1 + std::count(before.begin(), before.end(), '\n');
-  const std::size_t break_at = before.rfind('\n');
-  const std::size_t column =
-      break_at == std::string_view::npos ? before.size() : before.size() - break_at - 1;
-  return "line " + std::to_string(line) + ", column " + std::to_string(std::max<std::size_t>(column, 1));
-}
-
-/// Containers may nest this deep; ours need six levels.
-constexpr int kMaxDepth = 32;
-
-/// Bounds what the parser holds by what it has read. A "0," of two bytes becomes 16, an "[]," of three about
-/// 60, while what we write takes more bytes as text than as values, but for poses of round numbers. An event
-/// is held until it is complete, the rest to the end.
-class MemoryBudget {
- public:
-  explicit MemoryBudget(const std::string& name) : name_(name) {}
-
-  void add(Json::parse_event_t event, const Json& j) {
-    constexpr std::uint64_t kValue = 16, kContainer = 64, kMember = 80;  // bytes of nlohmann's tree, about
-    switch (event) {
-      case Json::parse_event_t::object_start:
-      case Json::parse_event_t::array_start:
-        held_ += kContainer;
-        break;
-      case Json::parse_event_t::key:
-        held_ += kMember + j.get_ref<const std::string&>().size();
-        break;
-      case Json::parse_event_t::value:
-        held_ += kValue + (j.is_string() ? j.get_ref<const std::string&>().size() : 0);
-        break;
-      case Json::parse_event_t::object_end:
-      case Json::parse_event_t::array_end:
-        break;
-    }
-  }
-  /// Throws InputError if more is held than so much text may take.
-  void check(std::uint64_t text) const {
-    constexpr std::uint64_t kFree = std::uint64_t{16} << 20, kPerByte = 8;
-    if (held_ > kFree + kPerByte * text)
-      throw InputError(name_ + ": its values take more than " + std::to_string(kPerByte) +
-                       " times the memory of its text, which no trace of lrbscope does: it is damaged");
-  }
-  /// What was held last, an event, has gone.
-  void forget_from(std::uint64_t held) { held_ = held; }
-  std::uint64_t held() const { return held_; }
-
- private:
-  const std::string& name_;
-  std::uint64_t held_ = 0;
-};
-
 }  // namespace
 
 void TraceNode::fail(const std::string& expected) const {
@@ -96,57 +41,6 @@ std::string TraceNode::pointer() const {
   return parent_->pointer() + "/" + (key_ ? std::string(key_) : std::to_string(index_));
 }
 
-Json parse_events(std::string_view text, const std::string& name,
-                  const std::function<void(const TraceNode&)>& take) {
-  constexpr std::uint64_t kLargestEvent = std::uint64_t{1} << 16;  // bytes; ours take less than 2000
-  bool in_events = false;
-  std::size_t elements = 0;
-  std::uint64_t before_event = 0;
-  MemoryBudget budget(name);
-  static const Json unfinished = Json::object(), some_array = Json::array();
-  const TraceNode root(unfinished, name);
-  const TraceNode array = root.at("traceEvents");
-  /// The parser's callback; false drops a value that is no longer needed.
-  const auto on_event = [&](int depth, Json::parse_event_t event, Json& j) {
-    using Parsed = Json::parse_event_t;
-    if (depth > kMaxDepth)
-      throw InputError(name + ": containers nested more than " + std::to_string(kMaxDepth) +
-                       " deep: this is not a trace of lrbscope");
-    budget.add(event, j);
-    if (event == Parsed::key && depth == 1) in_events = j == "traceEvents";
-    if (!in_events) {
-      budget.check(text.size());
-      return true;
-    }
-    const bool is_value = event == Parsed::value, is_array = event == Parsed::array_start;
-    if (depth == 1 && (is_value || event == Parsed::object_start)) array.fail("an array of events");
-    if (depth == 2 && (is_value || is_array))
-      TraceNode::element(is_array ? some_array : j, array, elements).fail("an event, {...}");
-    if (depth == 2 && event == Parsed::object_start) before_event = budget.held();
-    if (depth > 1 && budget.held() - before_event > kLargestEvent)
-      throw InputError(name + ": /traceEvents/" + std::to_string(elements) +
-                       ": is longer than any event of lrbscope; the trace is damaged: record it again");
-    if (event != Parsed::object_end || depth != 2) return true;
-    take(TraceNode::element(j, array, elements++));
-    budget.forget_from(before_event);
-    return false;
-  };
-  try {
-    return Json::parse(text.begin(), text.end(), on_event);
-  } catch (const Json::parse_error& error) {
-    std::string what =
-        error.what();  // "[json.exception.parse_error.101] parse error at line 1, column 2: ..."
-    const std::size_t colon = what.find(": ");
-    if (colon != std::string::npos) what.erase(0, colon + 2);
-    constexpr std::size_t kShown = 160;  // the parser quotes all of an unfinished string
-    if (what.size() > kShown) what = what.substr(0, kShown) + "...";
-    throw InputError(name + ": " + line_and_column(text, error.byte) + ": this is not JSON: " + what +
-                     "; is it a trace, and whole?");
-  } catch (const Json::out_of_range&) {
-    throw InputError(name + ": a number is too large for a double; the trace is damaged: record it again");
-  }
-}
-
 void check_format(const TraceNode& metadata, const std::string& name, std::string_view format,
                   std::uint32_t version) {
   if (!metadata.has("format") || metadata.at("format").string() != format)
@@ -163,9 +57,10 @@ void check_format(const TraceNode& metadata, const std::string& name, std::strin
 
 namespace {
 
-void read_value(const TraceNode& node, std::vector<std::uint32_t>& values) {
+template <class Number>  // or an id
+void read_value(const TraceNode& node, std::vector<Number>& values) {
   const std::size_t count = node.array_size();
-  for (std::size_t i = 0; i < count; ++i) values.push_back(node.at(i).integer<std::uint32_t>());
+  for (std::size_t i = 0; i < count; ++i) values.emplace_back(node.at(i).integer<std::uint32_t>());
 }
 
 void read_value(const TraceNode& node, Separation& s) {
@@ -204,7 +99,7 @@ void read_field(const TraceNode& node, const Field<Record, Value>& field, Value&
     read_value(node, value);
 }
 
-/// Reads what the record's table says must be there, and of the rest what is.
+/// Reads the fields that the record's table says must be there, and of the others those that are.
 template <class Record>
 void read_record(const TraceNode& node, Record& record, bool coarse) {
   for_each_field<Record>([&](const auto& field) {

@@ -1,5 +1,5 @@
 #pragma once
-/// Reading the JSON of traces by what is expected in it. The only header of this folder that includes
+/// Reads the JSON of traces by naming what is expected at each place. No other header of this folder includes
 /// nlohmann-json.
 
 #include <cstddef>
@@ -17,8 +17,8 @@
 
 namespace lrb::trace {
 
-/// A JSON value and where it stands, so that every complaint can name it. The path is a chain of the values
-/// around it, which must outlive it: it costs nothing until something is wrong.
+/// A JSON value together with its place in the document, so that every complaint can name it. The place is a
+/// chain of the values around it, which must outlive it; it costs nothing until something is wrong.
 class TraceNode {
  public:
   using Json = nlohmann::json;
@@ -30,7 +30,7 @@ class TraceNode {
   bool has(const char* key) const { return j_->is_object() && j_->contains(key); }
   TraceNode at(const char* key) const;
   TraceNode at(std::size_t i) const { return {(*j_)[i], this, nullptr, i}; }
-  /// Where an element of a long array was, after the parser dropped those before it.
+  /// Returns element `i` of a long array whose earlier elements the parser has dropped.
   static TraceNode element(const Json& j, const TraceNode& array, std::size_t i) {
     return {j, &array, nullptr, i};
   }
@@ -79,7 +79,7 @@ class TraceNode {
   TraceNode(const Json& j, const TraceNode* parent, const char* key, std::size_t index)
       : j_(&j), file_(parent->file_), parent_(parent), key_(key), index_(index) {}
 
-  /// RFC 6901; no key of ours needs escaping.
+  /// Returns the place as a JSON pointer (RFC 6901); no key of ours needs escaping.
   std::string pointer() const;
 
   const Json* j_;
@@ -89,19 +89,19 @@ class TraceNode {
   std::size_t index_ = 0;
 };
 
-/// Hands over the events (elements of traceEvents) one by one as the parser completes them, so that they are
-/// never all in memory as JSON; returns the rest of the document. Throws InputError, also for what is no
+/// Calls `take` with each event (element of traceEvents) as soon as the parser has completed it, so that they
+/// are never all in memory as JSON; returns the rest of the document. Throws InputError, also for what is not
 /// JSON.
 nlohmann::json parse_events(std::string_view text, const std::string& name,
                             const std::function<void(const TraceNode&)>& take);
 
-/// Throws InputError unless `metadata` is that of `format` in a version from 1 to `version`.
+/// Throws InputError unless `metadata` names `format`, in a version from 1 to `version`.
 void check_format(const TraceNode& metadata, const std::string& name, std::string_view format,
                   std::uint32_t version);
 
 BodyInfo read_body(const TraceNode& node);
 CollideRequest read_request(const TraceNode& node);
-/// What write_answer() wrote of an answer to `request`.
+/// Reads the answer to `request` that write_answer() wrote.
 StepResult read_answer(const TraceNode& node, const CollideRequest& request);
 Pose read_pose(const TraceNode& node);
 

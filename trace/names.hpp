@@ -1,5 +1,5 @@
 #pragma once
-/// The words of what a trace holds.
+/// The words that files and messages use for what a trace holds.
 
 #include <cstddef>
 #include <string_view>
@@ -15,7 +15,7 @@ using lrb::all_names;
 using lrb::from_name;
 using lrb::name_of;
 
-/// What an event's numbers `a` and `b` are called; empty: the kind has no such number.
+/// The names of an event's numbers `a` and `b`; empty: the kind has no such number.
 struct EventFields {
   std::string_view a, b;
 };
@@ -25,7 +25,8 @@ constexpr EventFields fields_of(EventKind kind) {
 #undef LRB_EVENT
   return fields[static_cast<std::size_t>(kind)];
 }
-/// What a contact's number is called where it is a pseudo simplex: in the answers of coarse queries.
+/// Returns the name of a contact's number where it is a pseudo simplex, which happens in answers of coarse
+/// queries.
 constexpr std::string_view pseudo_simplex(Side side) {
   return side == Side::a ? "pseudo simplex of A" : "pseudo simplex of B";
 }

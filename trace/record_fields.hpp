@@ -1,8 +1,8 @@
 #pragma once
-/// Tables of the fields of records that are compared, written and read: one line a field. From them come
-/// first_divergence(), the JSON of traces and summaries in both directions, the keys of a scenario's query and
-/// the options of the same names; a test compares them with the published schemas. A member without a line
-/// does not compile.
+/// Tables of the fields of records that are compared, written and read, one line for each field. From them
+/// come first_divergence(), the JSON of traces and summaries in both directions, the keys of a scenario's
+/// query and the options of the same names; a test compares them with the published schemas. A member that is
+/// missing in its table fails to compile.
 
 #include <cstddef>
 #include <cstdint>
@@ -15,11 +15,11 @@
 
 namespace lrb::trace {
 
-/// When a file has a field.
+/// In which files a field stands.
 enum class Kept : std::uint8_t {
   always,
-  if_set,     ///< where it is not the default
-  if_coarse,  ///< where the query was coarse
+  if_set,     ///< only if it is not the default
+  if_coarse,  ///< only if the query was coarse
 };
 
 /// How a number is written.
@@ -27,13 +27,13 @@ enum class Form : std::uint8_t {
   plain,
   id,           ///< at most kMaxId
   hash,         ///< 16 hexadecimal digits
-  or_infinite,  ///< null: infinity
+  or_infinite,  ///< infinity is written as null
 };
 
-/// A line of a record's table. Files hold the fields in the order of the table.
+/// One line of a record's table. Files hold the fields in the order of the table.
 template <class Record, class Value>
 struct Field {
-  std::string_view name;  ///< of a literal: data() ends with a NUL
+  std::string_view name;  ///< a literal, so that data() ends with a NUL
   Value Record::*member;
   Kept kept;
   Form form;
@@ -44,7 +44,7 @@ constexpr Field<Record, Value> field(std::string_view name, Value Record::*membe
   return {name, member, kept, form};
 }
 
-/// The table of a record.
+/// The table of fields of a record.
 template <class Record>
 inline constexpr auto kFields = std::tuple{};
 
@@ -111,7 +111,7 @@ inline constexpr std::size_t kFieldCount = std::tuple_size_v<std::remove_cv_t<de
 
 namespace detail {
 
-/// Stands for a value of any member while members are counted.
+/// Converts to any type: the initialiser that member_count() fills a record with.
 struct AnyValue {
   template <class T>
   operator T() const;
@@ -137,7 +137,7 @@ static_assert(kFieldCount<Counters> == detail::member_count<Counters>());
 static_assert(kFieldCount<StepResult> == detail::member_count<StepResult>());
 static_assert(kFieldCount<BodyInfo> == detail::member_count<BodyInfo>());
 
-/// Whether a file has this field of a record.
+/// Returns true if a file has this field of the record. coarse: the query was coarse.
 template <class Record, class Value>
 bool is_kept(const Field<Record, Value>& field, const Record& record, bool coarse) {
   switch (field.kept) {

@@ -10,7 +10,8 @@ namespace lrb::trace {
 
 namespace {
 
-/// A coarse query tells its contacts when it is done: the test that found one is the last of its pair.
+/// Gives each contact of a coarse query its cause. Such a query reports its contacts when it is done: the
+/// test that found one is the last test of its pair.
 void find_causes(std::vector<Event>& events) {
   std::unordered_map<std::uint64_t, EventId> tests;
   for (EventId i = 0; i < events.size(); ++i) {

@@ -7,8 +7,8 @@
 ///     recorder.end_step(collide(a, pose_a, b, pose_b, request, context, recorder));
 ///   Trace trace = recorder.take();
 ///
-/// Cost: some ns an event on the event clock (tests/bench/trace_bench.cpp measures it); the wall clock adds
-/// one steady_clock read.
+/// An event costs some nanoseconds on the event clock (tests/bench/trace_bench.cpp measures it); the wall
+/// clock adds the time of reading steady_clock.
 
 #include <algorithm>
 #include <array>
@@ -25,27 +25,28 @@ struct RecorderSettings {
   std::string scenario;  ///< name
   std::uint64_t scenario_hash = 0;
   std::array<std::string, 2> sources;  ///< where the bodies came from, as the user gave it
-  CollideRequest request;              ///< what collide() is given: it decides what can cause a refinement
+  CollideRequest request;  ///< as given to collide(): decides what can be the cause of a refinement
   Clock clock = Clock::event;
-  std::uint32_t event_cap = 1'000'000;  ///< events beyond are counted, not stored (at most kMaxId)
+  std::uint32_t event_cap =
+      1'000'000;  ///< events beyond this number are counted but not stored (at most kMaxId)
 };
 
 class Recorder {
  public:
   static constexpr bool kEnabled = true;
 
-  /// The bodies must outlive the recorder.
+  /// Prepares to record queries of two bodies, which must outlive the recorder.
   Recorder(const LrbRep& a, const LrbRep& b, RecorderSettings settings);
-  /// One body: only refine() and coarsen() of Side::a make sense.
+  /// Prepares to record one body; of the events, only refine() and coarsen() of Side::a make sense.
   Recorder(const LrbRep& a, RecorderSettings settings);
 
-  /// A new time step: both wrappers are the outermost ones again. `index` must ascend, poses be finite (else
-  /// InputError).
+  /// Begins a time step: both wrappers are the outermost ones again. `index` must ascend and poses must be
+  /// finite, else throws InputError.
   void begin_step(std::uint32_t index, const Pose& pose_a, const Pose& pose_b = {});
   void end_step(const CollideResult& result);
 
   void face_test(SimplexId a, SimplexId b, exact::Meet meet, std::uint32_t depth_a, std::uint32_t depth_b) {
-    // The later of the two refinements made the test possible; "none" is 0, and 0 - 1 is kNull.
+    // Whichever of the two refinements came later made the test possible. None is 0, and 0 - 1 is kNull.
     const std::uint32_t cause = std::max(brought_in(0, a), brought_in(1, b)) - 1u;
     const EventId id = push({.a = a,
                              .b = b,
@@ -68,7 +69,7 @@ class Recorder {
     if (faces_added != 0 && id != kNull) refined_by_[static_cast<std::size_t>(side)][region] = id + 1;
   }
 
-  /// Of coarse queries, and of runs that show a wrapper growing back.
+  /// Records that a wrapper grew back over a region: in a coarse query, or in a run that shows a construction.
   void coarsen(Side side, RegionId region, std::uint32_t faces_removed) {
     push({.a = region,
           .b = faces_removed,
@@ -84,9 +85,9 @@ class Recorder {
   std::uint64_t events_seen() const { return seen_; }
   std::uint64_t events_stored() const { return trace_.events.size(); }
 
-  /// Replays what was recorded to fill in Event::boundary and hands it over. The recorder is then empty: it
-  /// can begin another run with the same settings. Throws std::logic_error if events came before the first
-  /// step.
+  /// Replays what was recorded to fill in Event::boundary, and hands the trace over. The recorder is then
+  /// empty and can begin another run with the same settings. Throws std::logic_error if there were events
+  /// before the first step.
   Trace take();
 
  private:
@@ -94,14 +95,14 @@ class Recorder {
     return static_cast<std::uint16_t>(std::min(depth, std::uint32_t{0xffff}));
   }
 
-  /// In the paper's recursion, a face test that hit. The complete query opens regions before it tests what
-  /// they hide, because bounds overlap: no event is the cause, least of all the test that happened to come
-  /// before.
+  /// In the paper's recursion, returns the face test that has just hit. Returns kNull for the complete query:
+  /// it opens regions before it tests what they hide, because bounds overlap, so that no event is the cause,
+  /// least of all the test that happened to come before.
   EventId cause_of_refinement() const {
     return settings_.request.recursion == Recursion::complete ? kNull : last_hit_;
   }
 
-  /// 1 + the refine event of this step that put the simplex's face on the boundary; 0: none.
+  /// Returns 1 + the refine event of this step that put the simplex's face on the boundary; 0: there is none.
   std::uint32_t brought_in(std::size_t side, SimplexId simplex) const {
     const LrbRep& rep = *reps_[side];
     const CellId cell = rep.outer_cell(rep.face_of_simplex(simplex));
@@ -118,7 +119,8 @@ class Recorder {
     return static_cast<EventId>(trace_.events.size() - 1);
   }
 
-  /// Since the recorder began; never the same twice, so that no two events of a timeline fall together.
+  /// Returns the time since the recorder began, and never the same twice, so that no two events of a timeline
+  /// coincide.
   std::uint64_t now_ns() {
     const auto elapsed = std::chrono::steady_clock::now() - began_;
     const auto ns = std::chrono::duration_cast<std::chrono::nanoseconds>(elapsed).count();

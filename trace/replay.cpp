@@ -6,30 +6,31 @@ namespace lrb::trace {
 
 namespace {
 
-/// Faces of a region that are on the boundary. Whatever happens to a region changes only these.
+/// Returns the number of the region's faces on the boundary. Refining or coarsening a region changes nothing
+/// but these.
 std::uint32_t visible_faces(const Wrapper& wrapper, RegionId region) {
   const std::span<const FaceId> faces = wrapper.rep().collector(region);
   return static_cast<std::uint32_t>(
       std::count_if(faces.begin(), faces.end(), [&](FaceId f) { return wrapper.on_boundary(f); }));
 }
 
-/// The face that a refinement in unregularised mode takes away; kNull: all of the region's.
+/// Returns the face that a refinement in unregularised mode takes away; kNull: all faces of the region.
 FaceId refined_face(const Event& event, std::span<const Event> events, const LrbRep& rep) {
   if (event.cause == kNull || events[event.cause].kind != EventKind::face_test) return kNull;
   const Event& test = events[event.cause];
-  const FaceId face = rep.face_of_simplex(event.side == Side::a ? test.a : test.b);
-  return rep.inner_cell(face) == event.a ? face : kNull;
+  const FaceId face = rep.face_of_simplex(test.simplex(event.side));
+  return rep.inner_cell(face) == event.region() ? face : kNull;
 }
 
 void change(Wrapper& wrapper, const Event& event, std::span<const Event> events) {
   if (event.kind == EventKind::coarsen) {
-    wrapper.coarsen(event.a);
+    wrapper.coarsen(event.region());
     return;
   }
   const FaceId face =
       wrapper.mode() == WrapperMode::unregularised ? refined_face(event, events, wrapper.rep()) : kNull;
   if (face == kNull)
-    wrapper.refine(event.a);
+    wrapper.refine(event.region());
   else
     wrapper.refine_face(face);
 }
@@ -53,9 +54,9 @@ bool Replay::apply(const Event& event, std::span<const Event> events) {
   if (event.kind == EventKind::step) reset();
   if (event.kind != EventKind::refine && event.kind != EventKind::coarsen) return false;
   const auto side = static_cast<std::size_t>(event.side);
-  const std::uint32_t before = visible_faces(wrappers_[side], event.a);
+  const std::uint32_t before = visible_faces(wrappers_[side], event.region());
   change(wrappers_[side], event, events);
-  sizes_[side] += visible_faces(wrappers_[side], event.a) - before;
+  sizes_[side] += visible_faces(wrappers_[side], event.region()) - before;
   return true;
 }
 

@@ -1,6 +1,6 @@
 #pragma once
-/// What events do to the wrappers. The recorder and the cursor both go through here, so that a replay is the
-/// recording's twin.
+/// Applies events to wrappers. The recorder and the cursor both do it through here, so that a replay cannot
+/// differ from the recording.
 
 #include <array>
 #include <cstdint>
@@ -12,15 +12,16 @@
 
 namespace lrb::trace {
 
-/// The wrappers of one or two bodies and how many faces each has.
+/// The wrappers of one or two bodies, and the number of faces on the boundary of each.
 class Replay {
  public:
   Replay(std::span<const LrbRep* const> reps, WrapperMode mode);
 
-  /// All wrappers are the outermost ones again.
+  /// Makes all wrappers the outermost ones again.
   void reset();
-  /// Step: reset(). Refine, coarsen: does so to the event's wrapper. Other kinds: nothing. True for refine
-  /// and coarsen. `events` are all of the trace, for causes; indices must be in range (check_trace).
+  /// Applies an event: a step resets all wrappers, a refinement or coarsening changes the wrapper of its
+  /// side, other kinds do nothing. Returns true for refine and coarsen. `events` are those of the whole
+  /// trace, in which causes are looked up; indices must be in range (check_trace).
   ///
   /// In unregularised mode a wrapper is refined face by face: a refinement takes away the face that its
   /// cause, a face test, compared. Without such a cause the whole region is refined.
@@ -28,7 +29,7 @@ class Replay {
 
   std::size_t body_count() const { return wrappers_.size(); }
   const Wrapper& wrapper(Side side) const { return wrappers_[static_cast<std::size_t>(side)]; }
-  /// Faces on the boundary; kept up to date, so O(1).
+  /// Returns the number of faces on the boundary, in constant time.
   std::uint32_t boundary_size(Side side) const { return sizes_[static_cast<std::size_t>(side)]; }
 
  private:

@@ -132,7 +132,7 @@ class Checker {
     if (bodies.size() < 2) fail(step + ": a separation needs two bodies");
     for (std::size_t side = 0; side < 2; ++side)
       for (const RegionId r : separation.refined[side])
-        if (r >= bodies[side].regions) fail(step + ": its separation names a region that there is not");
+        if (r >= bodies[side].regions) fail(step + ": its separation names a region that does not exist");
   }
 
   void check_event(EventId id) const {

@@ -1,5 +1,5 @@
 #pragma once
-/// A recorded run: header, time steps and events as flat arrays. It is the source of truth for replay
+/// A recorded run: header, time steps and events as flat arrays. Everything else is made from it: replays
 /// (cursor.hpp), numbers (counters.hpp), pictures (render/) and files (trace_json.hpp).
 
 #include <cstddef>
@@ -20,49 +20,58 @@
 
 namespace lrb::trace {
 
-/// Version of the trace format. A reader takes its own version and older ones, and refuses newer ones. 2: of
-/// queries to a tolerance, within a limit or with certificates of separation; all others are still written as
-/// version 1.
+/// The newest version of the trace format. A reader takes it and older ones, and refuses newer ones. Version
+/// 2 is written for queries with a tolerance, with a limit or with certificates of separation; all others are
+/// still written as version 1.
 inline constexpr std::uint32_t kTraceVersion = 2;
 
-/// What a trace's metadata call its format.
+/// The name of the format in a trace's metadata.
 inline constexpr std::string_view kTraceFormat = "lrbscope trace";
 
-/// Version of lrbscope that this library was built from, e.g. "0.1.0".
+/// Returns the version of lrbscope that this library was built from, e.g. "0.1.0".
 const char* lrbscope_version();
 
 /// Index of an event in Trace::events; kNull: none.
 using EventId = std::uint32_t;
 
-/// One event, 24 bytes. What `a` and `b` mean depends on the kind: see LRB_EVENTS in engine/query/walk/probe.hpp.
+/// One event, 24 bytes. The meaning of `a` and `b` depends on the kind: see LRB_EVENTS in
+/// engine/query/walk/probe.hpp.
 struct Event {
   std::uint32_t a = 0;
   std::uint32_t b = 0;
-  EventId cause = kNull;  ///< an earlier event. Contact: the face test that found it. Refine: the face test
-                          ///< that hit before it (none in the complete query, which opens regions ahead of
-                          ///< tests). Face test: the refinement that brought in the later of its faces
-  std::uint32_t boundary = kNull;  ///< refine, coarsen: faces of that wrapper afterwards; kNull: not known
-  std::uint16_t depth_a = 0;  ///< face test: regions between A's face and the outside (65535: that or more)
+  EventId cause =
+      kNull;  ///< an earlier event. Contact: the face test that found it. Refine: the face test that hit just
+              ///< before (kNull in the complete query, which opens regions before it tests). Face test: the
+              ///< later of the refinements that brought in its faces
+  std::uint32_t boundary =
+      kNull;  ///< refine, coarsen: number of faces of that wrapper afterwards; kNull: not known
+  std::uint16_t depth_a =
+      0;  ///< face test: number of regions between A's face and the outside (65535: that or more)
   std::uint16_t depth_b = 0;  ///< the same for B
   EventKind kind = EventKind::step;
   Side side = Side::a;                       ///< refine, coarsen: whose wrapper
   exact::Meet meet = exact::Meet::disjoint;  ///< face test, contact
   std::uint8_t unused = 0;
 
+  /// Return what the numbers `a` and `b` stand for: in a face test or a contact the simplex of a body, in a
+  /// refinement or a coarsening the region.
+  SimplexId simplex(Side of) const { return SimplexId(of == Side::a ? a : b); }
+  RegionId region() const { return RegionId(a); }
+
   friend bool operator==(const Event&, const Event&) = default;
 };
 static_assert(sizeof(Event) == 24);
 
-/// Where `ts` in a written trace comes from.
+/// Where the time stamps (`ts`) of a written trace come from.
 enum class Clock : std::uint8_t {
-  event,  ///< the event's number: the same run gives the same bytes
-  wall,   ///< steady_clock, read once an event
+  event,  ///< the event's number, so that the same run gives the same bytes
+  wall,   ///< steady_clock, read once for each event
 };
 constexpr auto words_of(Clock) {
   return std::to_array<EnumWord<Clock>>({{Clock::event, "event"}, {Clock::wall, "wall"}});
 }
 
-/// What a trace says about a body, enough to refuse another one.
+/// What a trace says about a body: enough to refuse a different one.
 struct BodyInfo {
   std::string name;
   std::string source;      ///< the file or generator, as given
@@ -82,38 +91,39 @@ struct BodyInfo {
 
 BodyInfo describe_body(const LrbRep& rep, std::string source);
 
-/// CollideResult without its lists: what a trace keeps of a time step's answer.
+/// What a trace keeps of a time step's answer: CollideResult without its lists.
 struct StepResult {
   Relation relation = Relation::separate;
   Answer interiors_overlap = Answer::unknown;
   std::uint64_t pair_count = 0;
   std::uint64_t fingerprint = 0;  ///< lrb::fingerprint() of the pairs
   Counters counters;
-  double error_bound = 0;  ///< as in CollideResult; it and `finished` are kept of coarse queries alone
+  double error_bound = 0;  ///< as in CollideResult; kept, like `finished`, for coarse queries only
   bool finished = true;
   std::optional<Separation> separation = {};
 
   friend bool operator==(const StepResult&, const StepResult&) = default;
 };
 
-/// One time step: one query of the two bodies, both wrappers starting as the outermost ones.
+/// One time step: one query of the two bodies, with both wrappers outermost at its beginning.
 struct Step {
-  std::uint32_t index = 0;        ///< the runner's number of the step, ascending
+  std::uint32_t index = 0;        ///< number of the step, as the caller gave it; ascending
   Pose pose_a, pose_b;            ///< body to world
   EventId first_event = 0;        ///< its step event; events.size() if the cap had been reached before it
-  std::uint64_t events_seen = 0;  ///< stored or not
+  std::uint64_t events_seen = 0;  ///< number of its events, stored or not
   bool finished = false;          ///< end_step() was called: `result` is valid
   StepResult result;
 };
 
 struct TraceHeader {
   std::string lrbscope = lrbscope_version();
-  std::string scenario;             ///< name
-  std::uint64_t scenario_hash = 0;  ///< of the scenario file's bytes, or whatever names the run's input
-  std::vector<BodyInfo> bodies;     ///< A and B, or A alone
+  std::string scenario;  ///< name
+  std::uint64_t scenario_hash =
+      0;  ///< hash of the scenario file's bytes, or of whatever else defines the run's input
+  std::vector<BodyInfo> bodies;  ///< A and B, or A alone
   CollideRequest request;
   Clock clock = Clock::event;
-  std::uint32_t event_cap = 0;  ///< events stored at most
+  std::uint32_t event_cap = 0;  ///< largest number of events that are stored
 };
 
 struct Trace {
@@ -121,23 +131,22 @@ struct Trace {
   std::vector<Step> steps;
   std::vector<Event> events;
   std::vector<std::uint64_t>
-      wall_ns;  ///< (|events|), strictly ascending, since the recorder began; event clock: empty
+      wall_ns;  ///< (|events|), strictly ascending, since the recorder began; empty on the event clock
   std::uint64_t events_seen = 0;  ///< more than events.size() if the cap cut the recording
 
   bool truncated() const { return events_seen > events.size(); }
-  /// Stored events of a step.
+  /// Returns the stored events of a step.
   std::span<const Event> events_of(std::size_t step) const;
-  /// The step (index into `steps`) that an event belongs to.
+  /// Returns the step (index into `steps`) that an event belongs to.
   std::size_t step_of(EventId event) const;
 };
 
-/// Equal in every bit that a file must keep (poses: the doubles' bits).
+/// Returns true if the traces are equal in every bit that a file must keep (of poses: the doubles' bits).
 bool operator==(const Trace& x, const Trace& y);
 bool equal(const Pose& x, const Pose& y);
 
-/// Checks that all indices are in range and steps and events fit together. Throws InputError: "`where`: event
-/// 12:
-/// ...". A trace that passes cannot lead a reader of it out of bounds.
+/// Checks that all indices are in range and that steps and events fit together. Throws InputError: "`where`:
+/// event 12: ...". Whoever reads a trace that passes cannot be led out of bounds.
 void check_trace(const Trace& trace, const std::string& where);
 
 }  // namespace lrb::trace

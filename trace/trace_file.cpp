@@ -1,4 +1,4 @@
-/// Traces on disk: bytes in and out, compressed or not. What the bytes say is trace_json_*.cpp's affair.
+/// Traces on disk: reads and writes bytes, compressed or not. trace_json_*.cpp knows what the bytes mean.
 
 #include <algorithm>
 #include <cerrno>
@@ -27,8 +27,8 @@ class FileSink final : public ByteSink {
   AtomicFile* file_;
 };
 
-/// gzip, level 1: traces are so repetitive that higher levels cost time and gain little. No name or time goes
-/// into the header, so that equal traces are equal files.
+/// Compresses with gzip at level 1: traces repeat themselves so much that higher levels cost time and gain
+/// little. The header holds no name or time, so that equal traces give equal files.
 class GzipSink final : public ByteSink {
  public:
   explicit GzipSink(ByteSink& next) : next_(&next), out_(kChunk) {
@@ -72,14 +72,14 @@ struct GzClose {
                    "; give a trace.json or trace.json.gz");
 }
 
-/// What a file may unpack to: our traces, at gzip's best, to 15 times their size. A file of zeros would come
-/// to 1000 times.
+/// The largest number of bytes that a compressed file may unpack to for each of its own. Our traces,
+/// compressed as far as gzip can, unpack to 15 times their size; a file of zeros unpacks to 1000 times.
 std::uint64_t most_unpacked(std::uint64_t packed) {
   constexpr std::uint64_t kFree = std::uint64_t{8} << 20, kRatio = 60;
   return kFree + kRatio * packed;
 }
 
-/// All bytes of a file, decompressed if they are gzip's.
+/// Reads all bytes of a file and decompresses them if they are gzip's.
 std::string read_all(const std::string& path, std::uint64_t max_bytes) {
   const std::string_view kind = what_is_no_file(path);
   if (!kind.empty()) fail_to_read(path, "it is " + std::string(kind));

@@ -9,7 +9,7 @@ namespace lrb::trace {
 
 namespace {
 
-/// A simplex of the answer, under either of its two names.
+/// Reads a simplex of the answer, which has one of two names.
 std::uint32_t read_contact(const TraceNode& args, Side side) {
   const char* pseudo = pseudo_simplex(side).data();
   const auto [a, b] = fields_of(EventKind::contact);

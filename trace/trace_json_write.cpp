@@ -20,7 +20,8 @@ constexpr std::pair<Thread, std::string_view> kThreads[] = {{Thread::steps, "tim
                                                             {Thread::wrapper_b, "wrapper B"},
                                                             {Thread::answer, "answer"}};
 
-/// A "work" counter every so many events: enough for a smooth curve, little enough to cost little.
+/// The number of events from one "work" counter to the next: small enough for a smooth curve, large enough to
+/// cost little.
 constexpr EventId kWorkInterval = 16;
 
 Thread thread_of(const Event& e) {
@@ -55,12 +56,12 @@ std::string_view category_of(EventKind kind) {
   return "";
 }
 
-/// One arrow's end: refinement `flow` has an arrow from or to `event`.
+/// One end of an arrow: refinement `flow` has an arrow from or to `event`.
 struct FlowEnd {
   EventId event, flow;
 };
 
-/// Which arrows begin and end where, found in one pass before writing.
+/// Where arrows begin and end, found in one pass before writing.
 struct Flows {
   std::vector<FlowEnd> starts;    ///< at face tests that caused a refinement; ascending by event
   std::vector<FlowEnd> finishes;  ///< at the first face test that a refinement led to; ascending by event
@@ -73,7 +74,7 @@ struct Flows {
       if (e.kind == EventKind::refine && cause == EventKind::face_test) starts.push_back({e.cause, i});
       if (e.kind == EventKind::face_test && cause == EventKind::refine) finishes.push_back({i, e.cause});
     }
-    // Of all tests that a refinement led to, the first.
+    // Keeps the first of all tests that a refinement led to.
     std::sort(finishes.begin(), finishes.end(), [](const FlowEnd& x, const FlowEnd& y) {
       return std::pair(x.flow, x.event) < std::pair(y.flow, y.event);
     });
@@ -115,7 +116,7 @@ class TraceWriter {
   }
 
  private:
-  /// The constant parts of a kind's line.
+  /// The constant parts of the lines for events of one kind.
   struct Parts {
     std::string head;  ///< up to the time
     std::string a, b;  ///< `, "name": ` of its two numbers; empty: not written
@@ -158,13 +159,13 @@ class TraceWriter {
 
   bool wall() const { return t_.header.clock == Clock::wall; }
 
-  /// When the slice of an event begins: event numbers, or nanoseconds.
+  /// Returns when the slice of an event begins: event numbers, or nanoseconds.
   std::uint64_t begin_of(EventId i) const {
     if (!wall()) return i;
     return t_.events[i].kind == EventKind::step ? t_.wall_ns[i] : t_.wall_ns[i - 1];
   }
 
-  /// How long it lasts, in the same unit; never 0, which viewers drop.
+  /// Returns how long it lasts, in the same unit; never 0, because viewers drop such slices.
   std::uint64_t duration_of(EventId i) const {
     if (t_.events[i].kind != EventKind::step) return wall() ? t_.wall_ns[i] - begin_of(i) : 1;
     const std::size_t step = t_.step_of(i);
@@ -172,7 +173,7 @@ class TraceWriter {
     return wall() ? std::max<std::uint64_t>(t_.wall_ns[last] - t_.wall_ns[i], 1) : last - i + 1;
   }
 
-  /// In microseconds, exactly.
+  /// Writes nanoseconds as microseconds, exactly.
   void write_time(std::uint64_t value) {
     if (!wall()) return out_.number(value);
     out_.number(value / 1000);
@@ -233,13 +234,13 @@ class TraceWriter {
   }
 
   void write_contact(const Event& e, const Parts& parts) {
-    write_simplex(Side::a, parts.a, e.a);
-    write_simplex(Side::b, parts.b, e.b);
+    write_simplex(Side::a, parts.a, e.simplex(Side::a));
+    write_simplex(Side::b, parts.b, e.simplex(Side::b));
     write_meet(e.meet);
     write_cause(e.cause);
   }
 
-  /// A simplex of the answer. `name` is that of a real one.
+  /// Writes a simplex of the answer; `name` is what a real one is called.
   void write_simplex(Side side, const std::string& name, SimplexId simplex) {
     if (simplex < t_.header.bodies[static_cast<std::size_t>(side)].real_simplices) {
       out_.raw(name);

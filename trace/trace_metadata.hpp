@@ -5,7 +5,7 @@
 
 namespace lrb::trace {
 
-/// A trace's `metadata`: all that its events do not say.
+/// Writes a trace's `metadata`: all that its events do not say.
 void write_metadata(const Trace& trace, JsonOut& out);
 
 }  // namespace lrb::trace

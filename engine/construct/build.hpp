@@ -22,12 +22,12 @@ struct BuildOptions {
 };
 
 /// Builds by patch caps on progressive hulls (patch_builder.hpp); 2D meshes go through chain_builder.hpp. The
-/// mesh must be closed, manifold and oriented, with the solid behind its faces, as MeshReport::buildable() says:
-/// InputError names the offenders otherwise. A body that is inside out is turned by CheckedMesh::turn_outward().
-/// Deterministic for a seed, on any number of threads.
+/// mesh must be closed, manifold and oriented, with the solid behind its faces, as MeshReport::buildable()
+/// says: InputError names the offenders otherwise. A body that is inside out is turned by
+/// CheckedMesh::turn_outward(). Deterministic for a seed, on any number of threads.
 LrbRep build_lrb(const CheckedMesh& mesh, const BuildOptions& options = {});
 
-/// The same for a mesh that nobody has checked yet.
+/// Checks the mesh first, then does the same.
 LrbRep build_lrb(const Mesh& mesh, const BuildOptions& options = {});
 
 }  // namespace lrb

@@ -239,8 +239,8 @@ class ChainBuilder {
     Mesh mesh;
     mesh.dim = 2;
     mesh.vertices = polygon;
-    const auto count = static_cast<VertexId>(polygon.size());
-    for (VertexId v = 0; v < count; ++v) mesh.add_face(std::array{v, (v + 1) % count});
+    const auto count = static_cast<std::uint32_t>(polygon.size());
+    for (VertexId v = 0; v < count; ++v) mesh.add_face(std::array{v, VertexId((v + 1) % count)});
     return mesh;
   }
 

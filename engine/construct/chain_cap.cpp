@@ -49,7 +49,7 @@ struct CheckedSegment {
   bool clear_of(const CheckedSegment& o) const {
     if (!box.intersects(o.box)) return true;
     const double *pa[2] = {a->data(), b->data()}, *pb[2] = {o.a->data(), o.b->data()};
-    const std::uint32_t va[2] = {ia, ib}, vb[2] = {o.ia, o.ib};
+    const VertexId va[2] = {ia, ib}, vb[2] = {o.ia, o.ib};
     return exact::meet_only_in_shared_2d(pa, va, pb, vb);
   }
 };

@@ -22,7 +22,7 @@ VertexId ComplexBuilder::add_vertex(const Eigen::Vector3d& p) {
 
 RegionId ComplexBuilder::add_region(std::uint16_t layer) {
   d_.region_layer.push_back(layer);
-  return region_count() - 1;
+  return RegionId(region_count() - 1);
 }
 
 FaceId ComplexBuilder::add_real_face(std::span<const VertexId> corners, CellId outer) {
@@ -38,7 +38,7 @@ FaceId ComplexBuilder::add_face(std::span<const VertexId> corners, CellId inner,
   d_.face_offsets.push_back(static_cast<std::uint32_t>(d_.face_vertices.size()));
   d_.inner_cell.push_back(inner);
   d_.outer_cell.push_back(outer);
-  return face_count() - 1;
+  return FaceId(face_count() - 1);
 }
 
 LrbData ComplexBuilder::finish(bool closed, bool self_intersecting) {

@@ -162,7 +162,8 @@ bool EmbedCheck::encloses_component(const Patch& patch, const CapSurface& cap, c
       for (int v = 0; v < cap.vertex_count(); ++v) region.vertices.push_back(cap.x(v));
       for (const auto& f : cap.faces()) {
         if (!f.alive) continue;
-        const VertexId corners[3] = {VertexId(f.v[0]), VertexId(f.v[1]), VertexId(f.v[2])};
+        VertexId corners[3];
+        for (int i = 0; i < 3; ++i) corners[i] = VertexId(static_cast<std::uint32_t>(f.v[i]));
         region.add_face(corners);
       }
       for (const HullMesh::Slot s : patch.slots) {

@@ -38,7 +38,7 @@ void HullMesh::add_faces(const Mesh& mesh) {
     triangulate(mesh, mesh.face(f), parts);
     const Slot first = slot_count();
     for (const auto& part : parts) {
-      triangles_.push_back({part, {kNull, kNull, kNull}, f, kNull});
+      triangles_.push_back({{part[0], part[1], part[2]}, {kNull, kNull, kNull}, f, kNull});
       if (!polygons) continue;
       unit_first_.push_back(first);
       unit_size_.push_back(static_cast<std::uint32_t>(parts.size()));
@@ -76,7 +76,7 @@ void HullMesh::find_neighbours() {
       if (end_of(edges[e]) == to) return edges[e];
       if (offsets[from + 1] - first > kFew) break;
     }
-    return kNull;
+    return NoId::kValue;
   };
   for (Slot s = 0; s < slot_count(); ++s) {
     for (std::uint32_t i = 0; i < 3; ++i) {

@@ -78,8 +78,9 @@ class HullMesh {
                ? SlotRange{unit_first_[s], unit_first_[s] + unit_size_[s]}
                : SlotRange{s, s + 1};
   }
-  /// Part of a polygon with very many corners, or at a vertex with very many triangles. Such come into a patch
-  /// only as a whole, and what a patch costs grows with the square of its triangles: so they come into none.
+  /// Part of a polygon with very many corners, or at a vertex with very many triangles. Such come into a
+  /// patch only as a whole, and what a patch costs grows with the square of its triangles: so they come into
+  /// none.
   bool is_crowded(Slot s) const {
     constexpr std::uint32_t kMost = 512;
     const SlotRange polygon = unit(s);

@@ -28,7 +28,7 @@ void work_out(const HullMesh& hull, Sheet& sheet) {
     return out;
   };
   std::vector<PointTriangle> old, added;
-  std::vector<FaceId> old_face;
+  std::vector<std::uint32_t> old_face;
   for (const Slot slot : sheet.removed) {
     old.push_back(local(hull[slot].v));
     old_face.push_back(hull[slot].face);
@@ -88,10 +88,10 @@ std::vector<Slot> cover(HullMesh& hull, ComplexBuilder& complex, const Sheet& sh
   const Corner first_new = hull.point_count();
   for (const Eigen::Vector3d& x : sheet.new_points) hull.add_point(x, complex.add_vertex(x));
   const std::vector<Slot>& removed = sheet.removed;
-  const RegionId first_region = complex.region_count();
+  const std::uint32_t first_region = complex.region_count();
   for (std::uint32_t p = 0; p < sheet.pieces.count; ++p) complex.add_region(layer);
   for (std::size_t i = 0; i < removed.size(); ++i)
-    complex.set_outer_cell(hull[removed[i]].face, first_region + sheet.pieces.of_old[i]);
+    complex.set_outer_cell(hull[removed[i]].face, RegionId(first_region + sheet.pieces.of_old[i]));
 
   std::vector<Slot> slots;
   for (std::size_t i = 0; i < sheet.added.size(); ++i)
@@ -116,7 +116,7 @@ std::vector<Slot> cover(HullMesh& hull, ComplexBuilder& complex, const Sheet& sh
         hull.link(t.across[k], t.v[(k + 1) % 3], slots[i]);
       }
     }
-    t.face = complex.add_pseudo_face(ids, first_region + sheet.pieces.of_added[i], kOutside);
+    t.face = complex.add_pseudo_face(ids, RegionId(first_region + sheet.pieces.of_added[i]), kOutside);
     t.component = component;
   }
   hull.remove(removed);

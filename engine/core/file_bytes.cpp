@@ -94,7 +94,7 @@ std::string read_file(const std::string& path, std::uint64_t most) {
   }
 }
 
-std::string quoted(std::string_view text, std::size_t limit) {
+std::string in_quotes(std::string_view text, std::size_t limit) {
   const bool cut = text.size() > limit;
   return std::string(1, '\'').append(escaped(text.substr(0, limit), false)).append(cut ? "...'" : "'");
 }

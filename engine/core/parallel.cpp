@@ -35,7 +35,8 @@ void Workers::for_each(std::size_t n, const std::function<void(std::size_t, unsi
     for (std::size_t i = 0; i < n; ++i) work(i, 0);
     return;
   }
-  // Calls above the lowest that failed so far are left out, those below it are not: so the lowest of all is found.
+  // Calls above the lowest that failed so far are left out, those below it are not: so the lowest of all is
+  // found.
   std::atomic<std::size_t> failed = n;
   std::exception_ptr failure;
   std::mutex one_at_a_time;

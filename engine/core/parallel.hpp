@@ -20,8 +20,8 @@ class Workers {
   unsigned count() const { return count_; }
 
   /// Calls work(i, worker) for i = 0 .. n - 1, in no order to rely on; worker < count(), and no two calls
-  /// with the same one run at once, unless calls are nested. If calls throw, the exception of the lowest i comes
-  /// out here, as on one thread; some of the calls above it may have been left out.
+  /// with the same one run at once, unless calls are nested. If calls throw, the exception of the lowest i
+  /// comes out here, as on one thread; some of the calls above it may have been left out.
   void for_each(std::size_t n, const std::function<void(std::size_t i, unsigned worker)>& work);
 
   /// Calls both functions, possibly at the same time. May be nested.

@@ -1,5 +1,6 @@
-// Workers on threads of the standard library. ThreadSanitizer sees all of what they do, while it takes the inside
-// of an oneTBB that was not compiled for it for races: the build that proves threads free of races has these.
+// Workers on threads of the standard library. ThreadSanitizer sees all of what they do, while it takes the
+// inside of an oneTBB that was not compiled for it for races: the build that proves threads free of races has
+// these.
 
 #include <algorithm>
 #include <atomic>

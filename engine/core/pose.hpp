@@ -4,9 +4,9 @@
 
 namespace lrb {
 
-/// Where a body stands: a matrix, most often a rotation, and a translation from body to world coordinates (unit: the
-/// mesh's). Any finite numbers will do: scaled, sheared, mirrored and flattened bodies are queried as they stand in
-/// the world, in about the time that a rotation takes.
+/// Where a body stands: a matrix, most often a rotation, and a translation from body to world coordinates
+/// (unit: the mesh's). Any finite numbers will do: scaled, sheared, mirrored and flattened bodies are queried
+/// as they stand in the world, in about the time that a rotation takes.
 ///
 /// World coordinates are *defined* by apply(): every operation is rounded to double on its own, in the order
 /// written, without fused multiply-add. The engine's answers are exact for the resulting doubles, so apply()

@@ -61,15 +61,17 @@ inline constexpr double kWorldUnderflow = 0x1p-1022;
 /// Safety factor on the sum of the pose's errors, for the change of norms; see set_up_kernel().
 inline constexpr double kPoseSafety = 4;
 
-/// How far two maps may be from rotations (largest row sum of r^T r - 1) to be queried as if they were: what it adds
-/// to boxes, 8 of it in bodies, is far less than kKernelRounding adds. Larger: less is culled; smaller: rotations
-/// that have been multiplied and rounded thousands of times take the slower way of other maps.
+/// How far two maps may be from rotations (largest row sum of r^T r - 1) to be queried as if they were: what
+/// it adds to boxes, 8 of it in bodies, is far less than kKernelRounding adds. Larger: less is culled;
+/// smaller: rotations that have been multiplied and rounded thousands of times take the slower way of other
+/// maps.
 inline constexpr double kNearRotation = 0x1p-30;
 /// Largest world coordinate, in bodies, at which they are: floats of the kernel must not overflow.
 inline constexpr double kNearEnough = 0x1p100;
-/// Least singular value of a map, relative to its largest, at which boxes are compared on the body's own axes as they
-/// are; flatter bodies are looked at as if they were as thick as this. Smaller: the kernel's rounding, which grows
-/// by its inverse, keeps more pairs; larger: bodies that are merely thin are culled as flat ones.
+/// Least singular value of a map, relative to its largest, at which boxes are compared on the body's own axes
+/// as they are; flatter bodies are looked at as if they were as thick as this. Smaller: the kernel's
+/// rounding, which grows by its inverse, keeps more pairs; larger: bodies that are merely thin are culled as
+/// flat ones.
 inline constexpr double kFlatness = 0x1p-8;
 
 /// Added to distances that bound a region's thickness, in units (coordinates are at most about 1): covers the
@@ -121,7 +123,7 @@ inline constexpr double kCapShapeWeight = 1e-4;
 /// more regions and faces in all (measured on six bodies: 1.55 faces per real one at 0.8, 1.49 at 0.45);
 /// smaller: passes stop early.
 inline constexpr double kCapWorth = 0.45;
-/// The same share for the last passes, and for bridging.
+/// The same share in the last passes, and for bridging.
 inline constexpr double kLastCapWorth = 0.8;
 /// Early hulls of large bodies stay inside the body's polytope of 26 directions, moved outward by this share
 /// of the body's width. Larger: hulls swell, and with them the outermost wrapper, which is planned around one

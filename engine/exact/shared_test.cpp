@@ -15,7 +15,7 @@ struct SharedCorners {
   int in_a[3], in_b[3];
 };
 
-SharedCorners shared_corners(const std::uint32_t ia[3], const std::uint32_t ib[3]) {
+SharedCorners shared_corners(const VertexId ia[3], const VertexId ib[3]) {
   SharedCorners r;
   for (int i = 0; i < 3; ++i) {
     for (int j = 0; j < 3; ++j) {
@@ -78,8 +78,8 @@ bool meet_only_in_corner(const double* v, const double* a1, const double* a2, co
 
 }  // namespace
 
-bool meet_only_in_shared(const double* const a[3], const std::uint32_t ia[3], const double* const b[3],
-                         const std::uint32_t ib[3]) {
+bool meet_only_in_shared(const double* const a[3], const VertexId ia[3], const double* const b[3],
+                         const VertexId ib[3]) {
   const SharedCorners shared = shared_corners(ia, ib);
   if (shared.count > 2) return false;
   const int i = shared.in_a[0], j = shared.in_b[0];
@@ -93,8 +93,8 @@ bool meet_only_in_shared(const double* const a[3], const std::uint32_t ia[3], co
          meet_triangles(a, b) == Meet::disjoint;
 }
 
-bool meet_only_in_shared_2d(const double* const a[2], const std::uint32_t ia[2], const double* const b[2],
-                            const std::uint32_t ib[2]) {
+bool meet_only_in_shared_2d(const double* const a[2], const VertexId ia[2], const double* const b[2],
+                            const VertexId ib[2]) {
   const auto is_point = [](const double* const s[2]) { return s[0][0] == s[1][0] && s[0][1] == s[1][1]; };
   if (is_point(a) || is_point(b)) return false;
   for (int i = 0; i < 2; ++i) {

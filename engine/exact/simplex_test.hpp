@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include "engine/core/enum_words.hpp"
+#include "engine/core/ids.hpp"
 
 namespace lrb::exact {
 
@@ -27,11 +28,11 @@ Meet meet_segments(const double* const a[2], const double* const b[2]);
 
 /// Returns true if two triangles of one complex meet in nothing but the vertices and edges that they share by
 /// index: the empty set, one common corner, or one common edge. ia, ib: vertex indices of the corners.
-bool meet_only_in_shared(const double* const a[3], const std::uint32_t ia[3], const double* const b[3],
-                         const std::uint32_t ib[3]);
+bool meet_only_in_shared(const double* const a[3], const VertexId ia[3], const double* const b[3],
+                         const VertexId ib[3]);
 /// Does the same for two segments in the plane.
-bool meet_only_in_shared_2d(const double* const a[2], const std::uint32_t ia[2], const double* const b[2],
-                            const std::uint32_t ib[2]);
+bool meet_only_in_shared_2d(const double* const a[2], const VertexId ia[2], const double* const b[2],
+                            const VertexId ib[2]);
 
 /// Returns the number of times that the floating-point filter could not decide since the thread started (for
 /// counters).

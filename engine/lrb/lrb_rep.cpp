@@ -108,7 +108,7 @@ void LrbRep::derive() {
   find_parents();
   find_components();
   const auto simplex_size = static_cast<std::size_t>(d_.dim);
-  while (whole_faces_ < face_count() && d_.face(whole_faces_).size() == simplex_size) ++whole_faces_;
+  while (whole_faces_ < face_count() && d_.face(FaceId(whole_faces_)).size() == simplex_size) ++whole_faces_;
   if (whole_faces_ < face_count())
     for (FaceId f = 0; f < face_count(); ++f)
       face_of_simplex_.insert(face_of_simplex_.end(), Mesh::simplices_of(d_.face(f).size(), 3), f);
@@ -188,7 +188,7 @@ void LrbRep::find_parents() {
   for (RegionId r = 0; r < regions; ++r) {
     CellId c = r;
     for (; is_region(c) && depth_[c] == 0; c = parent_[c]) {
-      path.push_back(c);
+      path.push_back(c.as_region());
       if (path.size() > regions) refuse(d_, "region " + std::to_string(r) + " hides itself");
     }
     std::uint32_t depth = is_region(c) ? depth_[c] : 0;

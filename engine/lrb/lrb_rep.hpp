@@ -115,9 +115,12 @@ class LrbRep {
   bool is_real_simplex(SimplexId s) const { return is_real(face_of_simplex(s)); }
   /// Returns the number of corners of a simplex: 3, or 2 in 2D.
   int simplex_size() const { return d_.dim; }
-  FaceId face_of_simplex(SimplexId s) const { return s < whole_faces_ ? s : face_of_simplex_[s]; }
+  FaceId face_of_simplex(SimplexId s) const {
+    return s < whole_faces_ ? FaceId(s.value()) : face_of_simplex_[s];
+  }
   SimplexId first_simplex(FaceId f) const {
-    return f < whole_faces_ ? f : d_.face_offsets[f] - 2 * f;  // a fan has two triangles less than corners
+    // a fan has two triangles less than corners
+    return SimplexId(f < whole_faces_ ? f.value() : d_.face_offsets[f] - 2 * f);
   }
   /// Writes the simplex's corners (3, or 2 in 2D) to out.
   void simplex(SimplexId s, VertexId out[3]) const {

@@ -12,7 +12,7 @@ std::vector<VertexId> piece_vertices(const LrbRep& rep, std::span<const FaceId> 
   std::vector<VertexId> out;
   std::vector<bool> seen(rep.vertices().size(), false);
   for (const FaceId f : faces) {
-    const VertexId v = pieces.leader(rep.face(f)[0]);
+    const VertexId v(pieces.leader(rep.face(f)[0]));
     if (!seen[v]) out.push_back(v);
     seen[v] = true;
   }

@@ -79,7 +79,7 @@ class ThicknessFinder {
         for (const FaceId f : rep_.floor(r)) {
           const CellId under = rep_.inner_cell(f);
           if (!is_region(under) || state_[under] != State::unknown) continue;
-          stack.push_back(under);
+          stack.push_back(under.as_region());
           waits = true;
         }
       }
@@ -161,10 +161,10 @@ class ThicknessFinder {
 
   template <class Visit>
   void for_each_triangle(FaceId f, Visit visit) const {
-    const auto count = static_cast<SimplexId>(Mesh::simplices_of(rep_.face(f).size(), rep_.dim()));
-    for (SimplexId i = 0; i < count; ++i) {
+    const std::size_t count = Mesh::simplices_of(rep_.face(f).size(), rep_.dim());
+    for (std::size_t i = 0; i < count; ++i) {
       VertexId v[3] = {};
-      rep_.simplex(rep_.first_simplex(f) + i, v);
+      rep_.simplex(SimplexId(rep_.first_simplex(f) + i), v);
       if (rep_.dim() == 2) v[2] = v[1];
       visit(Triangle{rep_.vertices()[v[0]] / unit_, rep_.vertices()[v[1]] / unit_,
                      rep_.vertices()[v[2]] / unit_});

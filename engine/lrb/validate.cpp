@@ -148,7 +148,8 @@ class Validator {
     return false;
   }
 
-  /// The same by another search for pairs that may meet. (A simplex without area is convex, too.)
+  /// Checks the same, but searches differently for pairs that may meet. (A simplex without area is convex,
+  /// too.)
   void check_embedding_with_hubs() {
     Mesh simplices;
     simplices.vertices = rep_.data().vertices;
@@ -162,7 +163,7 @@ class Validator {
     Workers alone;
     search.for_each(
         [&](FaceId s, FaceId t) {
-          pairs.push_back({s, t});
+          pairs.push_back({SimplexId(s.value()), SimplexId(t.value())});
           if (pairs.size() == kPairsAtOnce) judge(rep_, pairs);
         },
         alone);
@@ -213,7 +214,7 @@ class Validator {
     } else {
       violation("faces " + std::to_string(f) + (rep_.is_real(f) ? " (real)" : " (pseudo)") + " and " +
                 std::to_string(g) + (rep_.is_real(g) ? " (real)" : " (pseudo)") +
-                " meet outside shared parts");
+                " meet outside their shared edges and corners");
     }
   }
 
@@ -232,7 +233,7 @@ class Validator {
   bool hides(FaceId lid, FaceId face) const {
     if (rep_.is_real(lid)) return false;
     CellId c = rep_.outer_cell(face);
-    while (is_region(c) && c != rep_.inner_cell(lid)) c = rep_.parent(c);
+    while (is_region(c) && c != rep_.inner_cell(lid)) c = rep_.parent(c.as_region());
     return is_region(c);
   }
 

@@ -25,7 +25,7 @@ struct ValidateReport {
   std::vector<std::string> violations;
   std::uint64_t violation_count = 0;
   std::uint64_t real_pairs_meeting =
-      0;  ///< pairs of real simplices that meet outside shared parts: faults of the input
+      0;  ///< pairs of real simplices that meet outside their shared edges and corners: faults of the input
   std::uint64_t flat_pairs =
       0;  ///< faces that touch, but do not pass through, a lid that hides them: zero volume, allowed
   std::uint64_t embedding_pairs = 0;                              ///< pairs of simplices tested exactly

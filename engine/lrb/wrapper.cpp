@@ -32,7 +32,7 @@ bool Wrapper::refine(RegionId r) {
 
 bool Wrapper::refine_face(FaceId f) {
   if (rep_->is_real(f) || !on_boundary(f)) return false;
-  const RegionId r = rep_->inner_cell(f);
+  const RegionId r = rep_->inner_cell(f).as_region();
   if (mode_ == WrapperMode::regularised) return refine(r);
   if (included(r)) {
     order_.push_back(r);

@@ -48,7 +48,7 @@ std::vector<double> needed_tolerances(const LrbRep& rep) {
       const CellId over = rep.outer_cell(lid);
       if (!is_region(over) || needed[over] >= needed[r]) continue;
       needed[over] = needed[r];
-      work.push_back(over);
+      work.push_back(over.as_region());
     }
   }
   return needed;
@@ -150,8 +150,8 @@ std::vector<SimplexId> outline(const LrbRep& rep, double bound, std::span<const 
   std::vector<SimplexId> simplices;
   for (const FaceId f : faces) {
     level.pseudo_count += !rep.is_real(f);
-    const auto count = static_cast<SimplexId>(Mesh::simplices_of(rep.face(f).size(), rep.dim()));
-    for (SimplexId i = 0; i < count; ++i) simplices.push_back(rep.first_simplex(f) + i);
+    const std::size_t count = Mesh::simplices_of(rep.face(f).size(), rep.dim());
+    for (std::size_t i = 0; i < count; ++i) simplices.emplace_back(rep.first_simplex(f) + i);
   }
   return simplices;
 }

@@ -15,6 +15,27 @@ namespace lrb {
 
 using Box = Eigen::AlignedBox3d;
 
+/// Descends two nodes of a tree and calls at_leaves(a, b) for every two leaves, one below node m and one
+/// below n, except below nodes of which apart(a, b) says that they hold no pair. A node has the items [first,
+/// last); `right` is its right child (0: it is a leaf), and its left child follows it.
+template <class Node, class Apart, class AtLeaves>
+void descend(const std::vector<Node>& nodes, std::uint32_t m, std::uint32_t n, const Apart& apart,
+             const AtLeaves& at_leaves) {
+  const Node &a = nodes[m], &b = nodes[n];
+  if (apart(a, b)) return;
+  const bool a_is_leaf = a.right == 0, b_is_leaf = b.right == 0;
+  if (a_is_leaf && b_is_leaf) {
+    at_leaves(a, b);
+  } else if (b_is_leaf || (!a_is_leaf && a.last - a.first >= b.last - b.first)) {
+    // Descends the node with more items, so that both reach their leaves at about the same depth.
+    descend(nodes, m + 1, n, apart, at_leaves);
+    descend(nodes, a.right, n, apart, at_leaves);
+  } else {
+    descend(nodes, m, n + 1, apart, at_leaves);
+    descend(nodes, m, b.right, apart, at_leaves);
+  }
+}
+
 class BoxTree {
  public:
   /// Builds the tree. Leaves out empty boxes, which meet nothing.
@@ -114,22 +135,13 @@ class BoxTree {
 
   template <class Visit>
   void between(std::uint32_t m, std::uint32_t n, Visit& visit) const {
-    const Node &a = nodes_[m], &b = nodes_[n];
-    if (!a.box.intersects(b.box)) return;
-    if (a.right == 0 && b.right == 0) {
-      for (std::uint32_t i = a.first; i < a.last; ++i)
-        if (boxes_[items_[i]].intersects(b.box))
-          for (std::uint32_t j = b.first; j < b.last; ++j) try_pair(items_[i], items_[j], visit);
-      return;
-    }
-    // Descend into the node with more items, so that both reach their leaves together.
-    if (b.right == 0 || (a.right != 0 && a.last - a.first >= b.last - b.first)) {
-      between(m + 1, n, visit);
-      between(a.right, n, visit);
-    } else {
-      between(m, n + 1, visit);
-      between(m, b.right, visit);
-    }
+    descend(
+        nodes_, m, n, [](const Node& a, const Node& b) { return !a.box.intersects(b.box); },
+        [&](const Node& a, const Node& b) {
+          for (std::uint32_t i = a.first; i < a.last; ++i)
+            if (boxes_[items_[i]].intersects(b.box))
+              for (std::uint32_t j = b.first; j < b.last; ++j) try_pair(items_[i], items_[j], visit);
+        });
   }
 
   template <class Visit>

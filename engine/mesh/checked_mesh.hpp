@@ -13,7 +13,7 @@
 
 namespace lrb {
 
-/// What one look at a mesh tells.
+/// Everything that checking a mesh once finds out.
 struct MeshFindings {
   MeshReport report;
   std::vector<FaceUse> use;  ///< (|F|)
@@ -21,8 +21,8 @@ struct MeshFindings {
   std::vector<std::vector<FaceId>> inside_out;  ///< the faces of each component that faces the wrong way
 };
 
-/// A mesh that has been checked. Only check() makes one, and its mesh cannot be changed but by turn_outward():
-/// whoever is handed one can rely on its report, and need not, and cannot, have the mesh checked again.
+/// A mesh that has been checked. Only check() makes one, and only turn_outward() changes its mesh, so that a
+/// function that takes one can rely on its report and need not check the mesh again.
 class CheckedMesh {
  public:
   const Mesh& mesh() const { return mesh_; }
@@ -30,15 +30,15 @@ class CheckedMesh {
   const std::vector<FaceUse>& use() const { return found_.use; }
   const SurfaceTopology& topology() const { return found_.topology; }
 
-  /// Turns the components that are inside out (see orient_outward()) and returns their number. The report says
-  /// so no more.
+  /// Turns the components that are inside out (see orient_outward()) and returns their number. The report no
+  /// longer names them.
   std::uint32_t turn_outward();
 
-  /// Looks for pairs of faces that meet in more than they share, which takes longer than all other checks, and
-  /// adds them to the report. Does nothing if that has been done.
+  /// Looks for pairs of faces that meet in more than they share, which takes longer than all other checks,
+  /// and adds them to the report. Does nothing if that has been done.
   void find_self_intersections();
-  /// The faces in such pairs, ascending. Those that find_self_intersections() found, or, if nobody called it,
-  /// found now: sooner, for the pairs are not counted.
+  /// Returns the faces in such pairs, ascending: those that find_self_intersections() found. If it was not
+  /// called, finds them now, which is faster because pairs are not counted.
   std::vector<FaceId> self_intersecting_faces(Workers& workers) const;
 
  private:
@@ -47,13 +47,13 @@ class CheckedMesh {
 
   Mesh mesh_;
   MeshFindings found_;
-  std::optional<std::vector<FaceId>> meeting_;  ///< once it has been looked for
+  std::optional<std::vector<FaceId>> meeting_;  ///< set once they have been looked for
 };
 
-/// Checks all of a mesh but whether it intersects itself.
+/// Checks a mesh for everything but self-intersections.
 CheckedMesh check(Mesh mesh);
 
-/// The same for a mesh that stays where it is: as good as long as nobody changes it.
+/// Checks the same without taking the mesh over. The findings are valid as long as nobody changes the mesh.
 MeshFindings examine(const Mesh& mesh);
 
 }  // namespace lrb

@@ -57,9 +57,9 @@ FacePairs::FacePairs(const Mesh& mesh, const std::vector<FaceUse>& use)
   }
 }
 
-/// Whether boxes along the axes meet far more others than neighbours do, judged by some of them spread over the
-/// mesh: as those of long narrow faces that are close to each other, or of large faces close in front of each
-/// other.
+/// Returns true if boxes along the axes meet far more other boxes than those of neighbours, judged by a
+/// sample spread over the mesh. Long narrow faces close to each other have such boxes, and large faces close
+/// in front of each other.
 bool FacePairs::boxes_are_crowded() const {
   constexpr std::uint32_t kSamples = 256, kMost = 64;
   const auto faces = static_cast<std::uint32_t>(boxes_.size());
@@ -100,7 +100,7 @@ std::uint32_t FacePairs::add_node() {
   return index;
 }
 
-/// All faces below a node are in the order now: works out its boxes.
+/// Computes the boxes of a node, once all faces below it have been put in order.
 void FacePairs::close_node(std::uint32_t index) {
   Node& node = nodes_[index];
   node.last = static_cast<std::uint32_t>(order_.size());
@@ -156,10 +156,11 @@ std::uint32_t FacePairs::build_hub(std::vector<FaceId>& faces, std::size_t first
 
 void FacePairs::for_each(const Visit& visit, Workers& workers) const {
   if (tree_) {
+    const auto boxes_meet = [&](std::uint32_t f, std::uint32_t g) { visit(FaceId(f), FaceId(g)); };
     if (workers.count() == 1)
-      tree_->for_each_pair(visit);
+      tree_->for_each_pair(boxes_meet);
     else
-      tree_->for_each_pair(visit, workers);
+      tree_->for_each_pair(boxes_meet, workers);
     return;
   }
   if (nodes_.empty()) return;
@@ -194,21 +195,13 @@ void FacePairs::within(std::uint32_t n, const Visit& visit, Workers& workers) co
 }
 
 void FacePairs::between(std::uint32_t m, std::uint32_t n, const Visit& visit) const {
-  const Node &a = nodes_[m], &b = nodes_[n];
-  if (!a.box.intersects(b.box) || surely_apart(a.slim, b.slim)) return;
-  if (a.right == 0 && b.right == 0) {
-    for (std::uint32_t i = a.first; i < a.last; ++i)
-      for (std::uint32_t j = b.first; j < b.last; ++j) try_pair(order_[i], order_[j], visit);
-    return;
-  }
-  // Descend into the node with more faces, so that both reach their leaves together.
-  if (b.right == 0 || (a.right != 0 && a.last - a.first >= b.last - b.first)) {
-    between(m + 1, n, visit);
-    between(a.right, n, visit);
-  } else {
-    between(m, n + 1, visit);
-    between(m, b.right, visit);
-  }
+  descend(
+      nodes_, m, n,
+      [](const Node& a, const Node& b) { return !a.box.intersects(b.box) || surely_apart(a.slim, b.slim); },
+      [&](const Node& a, const Node& b) {
+        for (std::uint32_t i = a.first; i < a.last; ++i)
+          for (std::uint32_t j = b.first; j < b.last; ++j) try_pair(order_[i], order_[j], visit);
+      });
 }
 
 }  // namespace lrb

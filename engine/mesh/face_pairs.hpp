@@ -31,14 +31,14 @@ class FacePairs {
   FacePairs(const FacePairs&) = delete;
   FacePairs& operator=(const FacePairs&) = delete;
 
-  /// Calls visit(f, g), f < g, once for every two faces whose boxes along the axes meet, but for pairs that are
-  /// proved to have nothing in common except perhaps one corner by index. In no order to rely on, and from
-  /// several threads at once if `workers` has them.
+  /// Calls visit(f, g), f < g, once for every two faces whose boxes along the axes meet, but for pairs that
+  /// are proved to have nothing in common except perhaps one corner by index. In no order to rely on, and
+  /// from several threads at once if `workers` has them.
   void for_each(const Visit& visit, Workers& workers) const;
 
   const std::vector<Box>& boxes() const { return boxes_; }  ///< (|F|) empty for faces left out
   const UnitCube& cube() const { return cube_; }
-  /// Whether a face has so many corners that it should be searched through a tree of its own.
+  /// Returns true if a face has so many corners that it should be searched through a tree of its own.
   bool is_large(FaceId f) const { return is_large_[f]; }
 
  private:
@@ -47,7 +47,7 @@ class FacePairs {
     OrientedBox slim;
     std::uint32_t first = 0, last = 0;  ///< into order_
     std::uint32_t right = 0;            ///< child; the left one follows its parent. 0: leaf
-    bool of_one_hub = false;            ///< pairs within are not the tree's business
+    bool of_one_hub = false;            ///< pairs within the hub are found by other means
   };
   /// What stays together in the tree: the faces of a hub, or one face.
   struct Unit {

@@ -26,8 +26,8 @@ struct Hubs {
   Hubs(const Mesh& mesh, const std::vector<FaceUse>& use);
 };
 
-/// Calls visit(f, g), f < g, for all pairs of a hub's faces that may have more in common than the hub, and for
-/// a few others; from several threads at once if `workers` has them.
+/// Calls visit(f, g), f < g, for all pairs of a hub's faces that may have more in common than the hub, and
+/// for a few others; from several threads at once if `workers` has them.
 ///
 /// Two convex faces with a corner v in common that meet in another point x, too, have the whole way from v to
 /// x in common. So they do exactly if the arcs meet that they cut out of a small sphere about v, and boxes of

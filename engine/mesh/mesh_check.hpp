@@ -12,22 +12,22 @@ namespace lrb {
 
 /// Every fault that a mesh can have.
 /// MESH_FAULT(enumerator, what it says, can still be built?, can still be queried?)
-#define LRB_MESH_FAULTS(MESH_FAULT)                                                                     \
-  MESH_FAULT(no_faces, "the mesh has no faces", false, false)                                           \
-  MESH_FAULT(non_finite_vertex, "a coordinate is not finite", false, false)                             \
-  MESH_FAULT(index_out_of_range, "a face names a vertex that does not exist", false, false)             \
-  MESH_FAULT(repeated_corner, "a face names a vertex twice", false, true)                               \
-  MESH_FAULT(zero_area_face, "a face has no area", false, true)                                         \
-  MESH_FAULT(non_planar_face, "a polygon's corners do not lie in one plane", true, true)                \
-  MESH_FAULT(non_convex_face, "a polygon is not convex", false, true)                                   \
-  MESH_FAULT(duplicate_face, "two faces have the same corners", false, true)                            \
-  MESH_FAULT(open_edge, "an edge has a face on one side only", false, true)                             \
-  MESH_FAULT(non_manifold_edge, "an edge has more than two faces", false, true)                         \
-  MESH_FAULT(flipped_face, "two neighbouring faces run along their edge in one direction", false, true) \
-  MESH_FAULT(non_manifold_vertex, "a vertex joins two fans of faces", true, true)                       \
-  MESH_FAULT(inside_out, "the body is inside out", false, true)                                         \
-  MESH_FAULT(self_intersection, "two faces meet outside shared parts", true, true)                      \
-  MESH_FAULT(duplicate_vertex, "two vertices lie in one place", true, true)                             \
+#define LRB_MESH_FAULTS(MESH_FAULT)                                                                  \
+  MESH_FAULT(no_faces, "the mesh has no faces", false, false)                                        \
+  MESH_FAULT(non_finite_vertex, "a coordinate is not finite", false, false)                          \
+  MESH_FAULT(index_out_of_range, "a face names a vertex that does not exist", false, false)          \
+  MESH_FAULT(repeated_corner, "a face names a vertex twice", false, true)                            \
+  MESH_FAULT(zero_area_face, "a face has no area", false, true)                                      \
+  MESH_FAULT(non_planar_face, "a polygon's corners do not lie in one plane", true, true)             \
+  MESH_FAULT(non_convex_face, "a polygon is not convex", false, true)                                \
+  MESH_FAULT(duplicate_face, "two faces have the same corners", false, true)                         \
+  MESH_FAULT(open_edge, "an edge has a face on one side only", false, true)                          \
+  MESH_FAULT(non_manifold_edge, "an edge has more than two faces", false, true)                      \
+  MESH_FAULT(flipped_face, "two neighbouring faces disagree on which side is outside", false, true)  \
+  MESH_FAULT(non_manifold_vertex, "a vertex joins two fans of faces", true, true)                    \
+  MESH_FAULT(inside_out, "the body is inside out", false, true)                                      \
+  MESH_FAULT(self_intersection, "two faces meet outside their shared edges and corners", true, true) \
+  MESH_FAULT(duplicate_vertex, "two vertices lie in one place", true, true)                          \
   MESH_FAULT(unused_vertex, "no face uses a vertex", true, true)
 
 enum class MeshFault : std::uint8_t {
@@ -59,17 +59,19 @@ struct MeshReport {
   const MeshFinding& operator[](MeshFault f) const { return findings[static_cast<std::size_t>(f)]; }
   bool buildable() const;  ///< no finding that forbids an LRB-rep: build_lrb() takes the mesh as it is
   bool queryable() const;
-  /// What it says once orient_outward() has turned what is inside out: this finding is gone, no other changes.
+  /// Returns the report as it is once orient_outward() has turned what is inside out: that finding is gone,
+  /// no other has changed.
   MeshReport when_turned() const;
-  /// One line per fault found, with its first offenders.
+  /// Returns one line for each fault found, with its first offenders.
   std::vector<std::string> lines(const Mesh& mesh) const;
   /// Returns those lines that forbid an LRB-rep.
   std::vector<std::string> obstacles(const Mesh& mesh) const;
 };
 
-/// Checks everything (to go on with the mesh, see checked_mesh.hpp); self-intersections exactly and by a box tree, only if asked (they take the longest).
-/// Faces without area count as zero_area_face only, and what they touch is no self-intersection. In 2D
-/// vertices are judged as edges are in 3D: one segment must lead to each and one away from it.
+/// Checks everything (to go on with the mesh, see checked_mesh.hpp); self-intersections exactly and by a box
+/// tree, only if asked (they take the longest). Faces without area count as zero_area_face only, and what
+/// they touch is no self-intersection. In 2D vertices are judged as edges are in 3D: one segment must lead to
+/// each and one away from it.
 MeshReport check_mesh(const Mesh& mesh, bool self_intersections = true);
 
 /// Turns every component that is inside out so that the solid lies behind its faces. A component directly

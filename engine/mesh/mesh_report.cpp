@@ -19,7 +19,7 @@ constexpr std::array<FaultText, kMeshFaultCount> kFaults = {{
 #undef MESH_FAULT
 }};
 
-/// What the two numbers of an offender stand for.
+/// The kinds of things that the two numbers of an offender name.
 enum class Offender : std::uint8_t {
   none,
   vertex,
@@ -41,7 +41,7 @@ Help help_for(MeshFault fault) {
     case MeshFault::no_faces:
       return {Offender::none, "export the mesh with its faces"};
     case MeshFault::non_finite_vertex:
-      return {Offender::vertex, "give it a number"};
+      return {Offender::vertex, "give it a finite number"};
     case MeshFault::index_out_of_range:
       return {Offender::face_and_vertex, "correct the index or add the vertex"};
     case MeshFault::repeated_corner:
@@ -49,7 +49,8 @@ Help help_for(MeshFault fault) {
     case MeshFault::zero_area_face:
       return {Offender::face, "collapse or remove it"};
     case MeshFault::non_planar_face:
-      return {Offender::face, "it is taken as its fan; triangulate it to decide how"};
+      return {Offender::face,
+              "it is taken as the triangles from its first corner; triangulate it to choose others"};
     case MeshFault::non_convex_face:
       return {Offender::face, "triangulate it"};
     case MeshFault::duplicate_face:
@@ -59,7 +60,7 @@ Help help_for(MeshFault fault) {
     case MeshFault::non_manifold_edge:
       return {Offender::edge, "separate the parts or remove inner faces"};
     case MeshFault::flipped_face:
-      return {Offender::two_faces, "make the orientation consistent"};
+      return {Offender::two_faces, "reverse one of them: list its corners in the opposite order"};
     case MeshFault::non_manifold_vertex:
       return {Offender::vertex, "give each fan a vertex of its own"};
     case MeshFault::inside_out:
@@ -67,7 +68,7 @@ Help help_for(MeshFault fault) {
     case MeshFault::self_intersection:
       return {Offender::two_faces, "inside is then decided by parity"};
     case MeshFault::duplicate_vertex:
-      return {Offender::two_vertices, "merge them if the surface is to hang together there"};
+      return {Offender::two_vertices, "merge them if the surface should be connected there"};
     default:
       return {Offender::vertex, "it can be removed without loss"};
   }
@@ -121,9 +122,9 @@ std::string_view text_of(MeshFault fault, int dim) {
       case MeshFault::non_manifold_edge:
         return "a vertex ends more than two segments";
       case MeshFault::flipped_face:
-        return "two neighbouring segments run against each other";
+        return "two neighbouring segments disagree on which side is outside";
       case MeshFault::self_intersection:
-        return "two segments meet outside shared vertices";
+        return "two segments meet outside their shared ends";
       case MeshFault::unused_vertex:
         return "no segment uses a vertex";
       default:

@@ -45,8 +45,9 @@ class Nesting {
   }
 
  private:
-  /// One is in another if a vertex is. A vertex that lies on the other's surface says nothing: then the next
-  /// is tried. If all do, the two have their surface in common and neither is a void of the other.
+  /// Finds which components lie in which others. One lies in another if one of its vertices does. A vertex on
+  /// the other's surface does not tell, so the next one is tried. If all vertices lie there, the two have
+  /// their surface in common and neither is a void of the other.
   std::vector<Pair> find_nested() const {
     std::vector<Pair> nested;
     if (std::count(usable_.begin(), usable_.end(), true) < 2) return nested;

@@ -9,8 +9,8 @@ namespace lrb {
 namespace {
 
 /// Room for rounding, in the unit cube. Scaled positions are off by 2^-52; axes that the eigenvalue solver
-/// found are perpendicular to within a few units in the last place; a sum of three products of numbers below 2
-/// is off by less than 2^-49. Together that is below 2^-46: a position is within kRoom of its box, and what
+/// found are perpendicular to within a few units in the last place; a sum of three products of numbers below
+/// 2 is off by less than 2^-49. Together that is below 2^-46: a position is within kRoom of its box, and what
 /// surely_apart() computes within kRoom of what it means. For nearly parallel axes a cross product has hardly
 /// any length, and then nothing exceeds the room.
 constexpr double kRoom = 0x1p-40;

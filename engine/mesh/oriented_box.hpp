@@ -41,8 +41,8 @@ struct OrientedBox {
   static OrientedBox about(std::span<const Eigen::Vector3d> points);
 };
 
-/// True if no point of what one box was fitted to can be a point of what the other was fitted to: some
-/// direction separates them by more than rounding can have done. False says nothing.
+/// Returns true if what one box was fitted to has no point in common with what the other was fitted to: some
+/// direction separates the boxes by more than rounding can account for. False proves nothing.
 bool surely_apart(const OrientedBox& a, const OrientedBox& b);
 
 }  // namespace lrb

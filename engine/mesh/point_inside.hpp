@@ -17,7 +17,8 @@ enum class PointSide { outside, inside, on_surface };
 /// parity of an exact ray.
 PointSide point_side(const Mesh& mesh, std::span<const FaceId> faces, const Eigen::Vector3d& p);
 
-/// Finds on which sides of many closed surfaces a point lies, in one walk along a ray through a tree of boxes.
+/// Finds on which sides of many closed surfaces a point lies, in one walk along a ray through a tree of
+/// boxes.
 class SideFinder {
  public:
   /// `surface_of_face` (|F|): the surface that a face belongs to; kNull: none.

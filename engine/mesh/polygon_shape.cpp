@@ -158,9 +158,9 @@ class Chords {
           side_[i - 1] + (is_straight(mesh, ring[i - 1], ring[i], ring[(i + 1) % ring.size()]) ? 0 : 1);
   }
 
-  /// A corner between i and j, as near to the middle as may be, from which neither way to i nor to j runs along
-  /// a straight side with corners in its middle. The chord from i to j must be such a one; then there is one:
-  /// beyond the first side's end and before the last one's start, or next to i, or next to j.
+  /// A corner between i and j, as near to the middle as may be, from which neither way to i nor to j runs
+  /// along a straight side with corners in its middle. The chord from i to j must be such a one; then there
+  /// is one: beyond the first side's end and before the last one's start, or next to i, or next to j.
   std::size_t middle(std::size_t i, std::size_t j) const {
     const auto begin = side_.begin() + static_cast<std::ptrdiff_t>(i),
                end = side_.begin() + static_cast<std::ptrdiff_t>(j);

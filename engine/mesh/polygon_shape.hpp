@@ -26,8 +26,8 @@ bool is_convex(const Mesh& mesh, std::span<const VertexId> corners);
 void triangulate_convex(const Mesh& mesh, std::span<const VertexId> corners,
                         std::vector<std::array<VertexId, 3>>& triangles);
 
-/// The same for a polygon with very many corners: triangles of all sizes, few of them large and none longer
-/// than the part of the rim that it cuts off, so that boxes about them overlap little.
+/// Splits a polygon with very many corners in the same way into triangles of all sizes, few of them large and
+/// none longer than the part of the rim that it cuts off, so that boxes around them overlap little.
 void triangulate_by_halves(const Mesh& mesh, std::span<const VertexId> corners,
                            std::vector<std::array<VertexId, 3>>& triangles);
 

@@ -58,7 +58,7 @@ bool overlap_2d(const double* const a[2], const double* const b[2]) {
   return forward ? a[0][k] < b[1][k] && b[0][k] < a[1][k] : a[0][k] > b[1][k] && b[0][k] > a[1][k];
 }
 
-/// Which corners of a face with very many corners are neighbours.
+/// Tells which corners of a face with very many corners are neighbours.
 class Ring {
  public:
   explicit Ring(std::span<const VertexId> corners) {
@@ -235,17 +235,25 @@ class Pieces {
   std::vector<Triangle> scratch_;
 };
 
-}  // namespace
-
-void find_self_intersections(const Mesh& mesh, const std::vector<FaceUse>& use,
-                             const std::function<void(FaceId, FaceId)>& found) {
+/// Calls found(f, g) for the pairs that may meet and of which test(pieces, f, g) holds.
+template <class Test>
+void find_pairs(const Mesh& mesh, const std::vector<FaceUse>& use, const Test& test,
+                const std::function<void(FaceId, FaceId)>& found) {
   const Pieces pieces(mesh, use);
   Workers alone;
   pieces.for_each_pair(
       [&](FaceId f, FaceId g) {
-        if (pieces.meet_outside_shared(f, g)) found(f, g);
+        if (test(pieces, f, g)) found(f, g);
       },
       alone);
+}
+
+}  // namespace
+
+void find_self_intersections(const Mesh& mesh, const std::vector<FaceUse>& use,
+                             const std::function<void(FaceId, FaceId)>& found) {
+  const auto test = [](const Pieces& pieces, FaceId f, FaceId g) { return pieces.meet_outside_shared(f, g); };
+  find_pairs(mesh, use, test, found);
 }
 
 std::vector<FaceId> self_intersecting_faces(const Mesh& mesh, const std::vector<FaceUse>& use,
@@ -266,25 +274,19 @@ std::vector<FaceId> self_intersecting_faces(const Mesh& mesh, const std::vector<
 void find_crossings(const Mesh& mesh, const std::vector<FaceUse>& use,
                     const std::function<bool(FaceId, FaceId)>& wanted,
                     const std::function<void(FaceId, FaceId)>& found) {
-  const Pieces pieces(mesh, use);
-  Workers alone;
-  pieces.for_each_pair(
-      [&](FaceId f, FaceId g) {
-        if (wanted(f, g) && pieces.cross(f, g)) found(f, g);
-      },
-      alone);
+  const auto test = [&](const Pieces& pieces, FaceId f, FaceId g) {
+    return wanted(f, g) && pieces.cross(f, g);
+  };
+  find_pairs(mesh, use, test, found);
 }
 
 void find_overlaps(const Mesh& mesh, const std::vector<FaceUse>& use,
                    const std::function<bool(FaceId, FaceId)>& wanted,
                    const std::function<void(FaceId, FaceId)>& found) {
-  const Pieces pieces(mesh, use);
-  Workers alone;
-  pieces.for_each_pair(
-      [&](FaceId f, FaceId g) {
-        if (wanted(f, g) && pieces.overlap(f, g)) found(f, g);
-      },
-      alone);
+  const auto test = [&](const Pieces& pieces, FaceId f, FaceId g) {
+    return wanted(f, g) && pieces.overlap(f, g);
+  };
+  find_pairs(mesh, use, test, found);
 }
 
 }  // namespace lrb

@@ -14,12 +14,13 @@ class TriangleTree {
  public:
   using Triangle = std::array<VertexId, 3>;
 
-  /// Of at least one triangle; `cube` scales the mesh's vertices. Leaves hold as many as `leaf_size`.
+  /// Builds a tree over at least one triangle; `cube` scales the mesh's vertices. Leaves hold up to
+  /// `leaf_size`.
   TriangleTree(const Mesh& mesh, const UnitCube& cube, std::vector<Triangle> triangles,
                std::uint32_t leaf_size);
 
-  /// Whether test(s, t) holds for a triangle s of one tree and t of the other; those that are surely apart are
-  /// not asked about.
+  /// Returns true if test(s, t) holds for a triangle s of one tree and t of the other. Does not call it for
+  /// triangles that are surely apart.
   template <class Test>
   static bool any_pair(const TriangleTree& a, const TriangleTree& b, Test& test) {
     return any(a, 0, b, 0, test);

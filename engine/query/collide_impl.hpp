@@ -1,6 +1,6 @@
 #pragma once
-/// Defines collide() for any probe, at no cost beyond the probe's own: for code of ours, which is compiled with the engine's
-/// private headers. Users of the installed engine have collide_probe.hpp.
+/// Defines collide() for any probe, at no cost beyond the probe's own: for code of ours, which is compiled
+/// with the engine's private headers. Users of the installed engine have collide_probe.hpp.
 
 #include <algorithm>
 #include <numeric>
@@ -21,8 +21,8 @@ namespace lrb {
 /// Throws InputError if the query is not possible for these bodies and poses.
 void check_query(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b);
 
-/// Asks for body `a` at pose_a against body `b` at pose_b, as collide() in collide.hpp does. `context`: memory that a
-/// query needs and the next one can use again, one per thread. `probe`: see NullProbe.
+/// Asks for body `a` at pose_a against body `b` at pose_b, as collide() in collide.hpp does. `context`:
+/// memory that a query needs and the next one can use again, one per thread. `probe`: see NullProbe.
 template <class Probe>
 CollideResult collide(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
                       const CollideRequest& request, QueryContext& context, Probe& probe) {

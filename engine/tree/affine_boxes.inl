@@ -1,18 +1,20 @@
 #pragma once
-// Part of affine_kernel.inl: how two nodes lie to each other under maps that are no rotations, their boxes, and
-// their triangles. What the maps are is in affine_pose.hpp.
+// Part of affine_kernel.inl: how two nodes lie to each other under maps that are no rotations, their boxes,
+// and their triangles. What the maps are is in affine_pose.hpp.
 
 #include "engine/tree/kernel_triangles.inl"
 
 namespace lrb {
 namespace {
 
-/// Two nodes on the axes of one of them.
+/// Two nodes, on the axes of one of them.
 struct OnAxes {
-  alignas(16) float r[3][4], abs_r[3][4], t[4];  ///< coordinates in the other = r * (those in its node) + t
-  alignas(16) float own[3][4], abs_own[3][4];    ///< set if flat: its own = own * (coordinates in the node)
+  alignas(16) float r[3][4], abs_r[3][4], t[4];  ///< coordinates on these axes = r * (those in the other
+                                                 ///< node) + t
+  alignas(16) float own[3][4], abs_own[3][4];    ///< if `flat`: coordinates of its own = own * (those in the
+                                                 ///< node); else not set
   bool flat;
-  float error;  ///< of every transformed coordinate, of both nodes together
+  float error;  ///< bound on the error of every transformed coordinate, of both nodes together
 };
 
 /// Two nodes under any two affine maps, on A's axes and on B's.
@@ -20,7 +22,7 @@ struct Skewed {
   OnAxes on[2];
 };
 
-/// Three rows, and their sizes.
+/// Stores three rows, and the absolute values of their entries.
 inline void put_rows(const Float4* rows, float (*to)[4], float (*sizes)[4]) {
   for (int i = 0; i < 3; ++i) {
     const Float4 size = abs4(rows[i]);
@@ -29,12 +31,12 @@ inline void put_rows(const Float4* rows, float (*to)[4], float (*sizes)[4]) {
   }
 }
 
-/// A map's matrix times the transposed frame of the node that it is applied to.
+/// Computes a map's matrix times the transposed frame of the node that it is applied to.
 inline void from_node(const KernelMap& map, const Columns& node, Float4* rows) {
   for (int i = 0; i < 3; ++i) rows[i] = combine(map.rows[i], node.c);
 }
 
-/// The same, seen on another node's axes.
+/// Computes the same on another node's axes.
 inline void from_node_to(const TreeNode& onto, const KernelMap& map, const Columns& node, float (*to)[4],
                          float (*sizes)[4]) {
   Float4 half_way[3], r[3];
@@ -57,7 +59,7 @@ inline Columns columns_of(const TreeNode& n) {
   return columns_of(frame_row(n, 0), frame_row(n, 1), frame_row(n, 2));
 }
 
-/// A node and a ratio from its body's units to the query's.
+/// A node, and the ratio of its body's units to the query's.
 struct Scaled {
   const TreeNode& n;
   float ratio;
@@ -65,9 +67,10 @@ struct Scaled {
   float radius() const { return n.radius * ratio; }
 };
 
-/// Errors as of between(), but here nothing is turned back by a transposed matrix, while what is flat is turned on
-/// its own axes, too. Each body's rotation (16 u an entry), the transposition of its frame (8 u), decoding (3 u),
-/// products and sums take 48 u of its size, the offset 8 u: less than the 64 u in kKernelRounding.
+/// Moves both nodes to the axes of `self`. Errors are as those of between(), with two differences: nothing is
+/// turned back by a transposed matrix, and what is flat is turned on its own axes, too. Each body's rotation
+/// (16 u for each entry), the transposition of its frame (8 u), decoding (3 u), products and sums take 48 u
+/// of its size, the offset 8 u: less than the 64 u in kKernelRounding.
 inline void see_on(const AffineTerms::Axes& axes, const Scaled& self, const Scaled& other, OnAxes& on) {
   from_node_to(self.n, axes.other, other.columns, on.r, on.abs_r);
   const Float4 offset = __builtin_convertvector(mapped_origin(axes.other, other.n, other.ratio) +
@@ -155,7 +158,7 @@ inline Whole turn_whole_a(const Whole& a, const Skewed& w) {
   return turn(a, w.on[1]);
 }
 
-/// Corners of a leaf's simplices, query units, to the world's axes.
+/// Moves the corners of a leaf's simplices, in query units, to the world's axes.
 inline void to_world(const KernelMap& map, const Scaled& node, const LeafBlock& block, const float* offset,
                      Corners& to) {
   Float4 rows[3];
@@ -170,8 +173,9 @@ inline void to_world(const KernelMap& map, const Scaled& node, const LeafBlock& 
   }
 }
 
-/// Triangles are compared on the world's axes, seen from the origin of A's leaf: there nothing is stretched. Errors
-/// as of between(), where corners of A are turned as those of B are, without an offset.
+/// Moves the corners of two leaves to the world's axes, seen from the origin of A's leaf: there nothing is
+/// stretched. Errors are as those of between(), with corners of A turned as those of B are, without an
+/// offset.
 inline Between corners_of(const TreeKernel& k, const TreeNode& a, const TreeNode& b, const Skewed&,
                           Corners& of_a, Corners& of_b) {
   const AffineTerms& f = *k.affine;

@@ -1,5 +1,6 @@
-// Compiled once per instruction set by affine_kernel_*.cpp, which define LRB_AFFINE_KERNEL_NAME: apart from the
-// tree kernel, whose speed hangs on what the compiler makes part of its one loop. See tree_kernel.inl.
+// Compiled once per instruction set by affine_kernel_*.cpp, which define LRB_AFFINE_KERNEL_NAME. It is apart
+// from the tree kernel, because that one's speed depends on what the compiler inlines into its one loop. See
+// tree_kernel.inl.
 
 #include "engine/tree/affine_boxes.inl"
 #include "engine/tree/kernel_walk.inl"
@@ -7,7 +8,7 @@
 namespace lrb {
 namespace {
 
-/// Of bodies under any affine maps.
+/// Walks the trees of bodies under any affine maps.
 struct AffineWalk {
   static constexpr bool kMargin = false;
   static Skewed between(const TreeKernel& k, const TreeNode& a, const TreeNode& b) {

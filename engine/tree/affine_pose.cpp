@@ -15,33 +15,34 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-/// The exponent of what maps everything to one point: less than any other, without overflow in sums.
+/// The exponent of a map of everything to one point: less than any other, and sums of such exponents do not
+/// overflow.
 constexpr int kNoExponent = -100000;
 
-/// Coordinates in a tree's units are less than 2: 1, but for bodies near the end of what doubles hold.
+/// A bound on coordinates in a tree's units. It is 1, except for bodies near the end of the range of doubles.
 constexpr double kMostUnits = 2;
 
-/// x < 2^exponent_of(x), by a factor of at most 2.
+/// Returns an exponent with x < 2^exponent; that power is at most twice as large as needed.
 int exponent_of(double x) {
   int exponent = 0;
   std::frexp(x, &exponent);
   return x == 0 ? kNoExponent : exponent;
 }
 
-/// 2^exponent x; mostly by a product, which is quicker.
+/// Returns 2^exponent x; mostly by a product, which is faster.
 template <class Matrix>
 Matrix scaled(const Matrix& x, int exponent) {
   if (std::abs(exponent) <= 1000) return x * std::ldexp(1.0, exponent);
   return x.unaryExpr([exponent](double c) { return std::ldexp(c, exponent); });
 }
 
-/// What a plane body has of its map: nothing else counts, for z = 0. The third axis keeps its place.
+/// Returns the part of a map that counts for a plane body, where z = 0; its third axis stays in place.
 Matrix3d map_in_plane(Matrix3d r) {
   r(2, 2) = r.topLeftCorner<2, 2>().cwiseAbs().maxCoeff();
   return r;
 }
 
-/// At least the Euclidean norm, at most sqrt 3 times it.
+/// Returns a bound on the Euclidean norm, at most sqrt 3 times that.
 double norm_of(const Matrix3d& m) {
   return m.norm() * (1 + kWrapperMargin);
 }
@@ -54,7 +55,8 @@ Matrix3d raised_inverse(const Matrix3d& r) {
   return svd.matrixV() * raised.cwiseInverse().asDiagonal() * svd.matrixU().transpose();
 }
 
-/// Of the larger of two bodies in the world; more where they are so far apart that floats would overflow.
+/// Returns the exponent of the query's unit: that of the larger body in the world, or more if the bodies are
+/// so far apart that floats would overflow.
 int query_exponent(const AffineMap& a, const Pose& pose_a, const AffineMap& b, const Pose& pose_b) {
   constexpr int kFarOff = 60, kLeast = -1022;
   const double apart = (pose_b.t / 2 - pose_a.t / 2).cwiseAbs().maxCoeff();
@@ -78,7 +80,7 @@ void put(const Vector3d& x, double (&to)[4]) {
   for (int i = 0; i < 3; ++i) to[i] = x[i];
 }
 
-/// What the map makes of coordinates up to 1, coordinate by coordinate, and every term of that, is no larger.
+/// Returns a bound on every coordinate that the map gives for coordinates up to 1, and on every term of it.
 double row_size(const Matrix3d& r) {
   return r.cwiseAbs().rowwise().sum().maxCoeff();
 }
@@ -93,7 +95,7 @@ AffineMap::AffineMap(const Pose& pose, const ObbTree& tree, int dim)
   size = norm_of(r);
   back = r.inverse();
   back_size = norm_of(back);
-  flat = !(back_size * size * kFlatness <= 1);  // also where it is no number
+  flat = !(back_size * size * kFlatness <= 1);  // also where it is not a number
   if (flat) {
     back = raised_inverse(r);
     back_size = norm_of(back);
@@ -122,7 +124,7 @@ TreeKernel set_up_affine_kernel(const ObbTree& a, const Pose& pose_a, const ObbT
   k.ratio_b = std::ldexp(1.0F, maps[1].exponent - exponent);
   const float ratios[2] = {k.ratio_a, k.ratio_b};
   const Vector3d t[2] = {scaled(pose_a.t, -exponent), scaled(pose_b.t, -exponent)}, between = t[1] - t[0];
-  double size = std::ldexp(kWorldUnderflow, -exponent);  // no term of a world coordinate is larger
+  double size = std::ldexp(kWorldUnderflow, -exponent);  // a bound on every term of a world coordinate
   for (int side = 0; side < 2; ++side)
     size += row_size(maps[side].r) * kMostUnits * ratios[side] + t[side].cwiseAbs().maxCoeff();
   const double rounding = kWorldRounding * size;

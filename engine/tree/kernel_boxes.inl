@@ -54,9 +54,9 @@ struct Between {
   float margin;  ///< how much further any of its points may move
 };
 
-/// Sets the error bounds. radius_a, radius_b: radius of what is held of each body, or the length of its
-/// edges. reach: bound on the differences of a corner of A and one of B that occur; whole: bound on the
-/// coordinates from which corners of B are transformed.
+/// Sets the error bounds. radius_a, radius_b: radius of a ball that holds what is transformed of each body,
+/// or the length of its edges. reach: bound on the differences of a corner of A and one of B that occur;
+/// whole: bound on the coordinates from which corners of B are transformed.
 inline void set_errors(Between& w, float slack, float m_size, float radius_a, float radius_b, float reach,
                        float whole) {
   w.reach = reach;
@@ -105,9 +105,9 @@ inline float sweep(const TreeKernel& k, const TreeNode& b, const Columns& a_colu
   return __builtin_fabsf(parts[0]) + __builtin_fabsf(parts[1]) + __builtin_fabsf(parts[2]);
 }
 
-/// Finds how two nodes lie to each other. kMargin: allow for k.margin. Simplices that come to meet at a point
-/// after a motion have points now that the motion brings together: so slabs between them that are wider than
-/// the motion is long across them prove that they do not meet.
+/// Finds how two nodes lie to each other. kMargin: allow for k.margin. If simplices meet at a point after a
+/// motion, they now have two points that the motion brings together. A slab between the simplices that is
+/// wider than the motion is long across it therefore proves that they do not meet.
 template <bool kMargin = false>
 inline Between between(const TreeKernel& k, const TreeNode& a, const TreeNode& b) {
   Between w;
@@ -158,7 +158,8 @@ inline float grow_of(const Between& w, int side, int axis) {
   return kMargin ? w.grow[side][axis] : w.error;
 }
 
-/// As they are: the axes of a node under a rotation are its own. Under other maps see affine_boxes.inl.
+/// Returns the boxes unchanged: the axes of a node under a rotation are its own. Under other maps see
+/// affine_boxes.inl.
 inline const Boxes& boxes_on_own(const Boxes& boxes, Side, const Between&) {
   return boxes;
 }
@@ -166,7 +167,7 @@ inline const Whole& whole_on_own(const Whole& whole, Side, const Between&) {
   return whole;
 }
 
-/// The whole box of B's node on A's axes, grown.
+/// Returns the box of all of B's node on A's axes, grown.
 template <bool kMargin>
 inline Whole turn_whole_b(const Whole& b, const Between& w) {
   Whole o;
@@ -178,7 +179,7 @@ inline Whole turn_whole_b(const Whole& b, const Between& w) {
   return o;
 }
 
-/// The whole box of A's node on B's axes, grown.
+/// Returns the box of all of A's node on B's axes, grown.
 template <bool kMargin>
 inline Whole turn_whole_a(const Whole& a, const Between& w) {
   Whole o;

@@ -6,15 +6,16 @@
 namespace lrb {
 namespace {
 
-/// Whether a direction across an axis of each node's box has the two boxes apart. On the boxes' own axes, which
-/// are tried everywhere, skew needles nearly always overlap; here nearly all are parted.
+/// Returns true if the two nodes' boxes are apart along a direction across an axis of each. On the boxes' own
+/// axes, which are tried everywhere, skew needles nearly always overlap; along these directions nearly all
+/// are parted.
 ///
-/// Let L = e_i x r_m, e_i an axis of A's node and r_m the m-th of B's seen from A's. A point in common is in A's
-/// box at x_a and in B's at x_b, and on each axis of A's node x_a and r x_b + t differ by at most w.error: so
-/// L.x_a and L.(r x_b + t) differ by at most |L|_1 w.error. L's coordinates are entries of r, without another
-/// rounding; what is computed with them is off by less than 16 u |L|_1 times the sizes of the coordinates,
-/// u = 2^-24, and w.error is at least 2^-18 times those: twice w.error covers both. This holds for any r, a
-/// rotation or not. NaN (an overflow) counts as "not apart".
+/// Let L = e_i x r_m, with e_i an axis of A's node and r_m the m-th axis of B's seen from A's. A point in
+/// common is in A's box at x_a and in B's at x_b, and on each axis of A's node x_a and r x_b + t differ by at
+/// most w.error. So L.x_a and L.(r x_b + t) differ by at most |L|_1 w.error. L's coordinates are entries of
+/// r, without another rounding; what is computed with them is off by less than 16 u |L|_1 times the sizes of
+/// the coordinates, u = 2^-24, and w.error is at least 2^-18 times those: twice w.error covers both. This
+/// holds for any r, a rotation or not. NaN (an overflow) counts as "not apart".
 inline bool needles_apart(const TreeKernel& k, const TreeNode& na, const TreeNode& nb) {
   const Between w = between<false>(k, na, nb);
   const Whole a = whole_of(na, k.ratio_a), b = whole_of(nb, k.ratio_b);

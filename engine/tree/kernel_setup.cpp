@@ -9,7 +9,7 @@
 namespace lrb {
 namespace {
 
-/// How B is turned, seen from A, and how far that and A are from rotations.
+/// B's rotation seen from A, and how far that and A's own are from rotations.
 struct RelativeTurn {
   Eigen::Matrix3d m;
   double defect_a, defect_m;
@@ -17,13 +17,13 @@ struct RelativeTurn {
   RelativeTurn(const Pose& a, const Pose& b)
       : m(a.r.transpose() * b.r), defect_a(rotation_defect(a.r)), defect_m(rotation_defect(m)) {}
 
-  /// Also false where something is no number.
+  /// Returns false also if something is not a number.
   bool is_near_rotation() const { return defect_a <= kNearRotation && defect_m <= kNearRotation; }
 };
 
-/// The kernel compares boxes on A's axes and on B's. Let w_a = r_a x_a + t_a + rounding and w_b likewise be
-/// the world coordinates of a point of each body. If they are equal, then, with m = r_a^T r_b, t = r_a^T (t_b
-/// - t_a) and Euclidean norms,
+/// Sets the kernel up. It compares boxes on A's axes and on B's. Let w_a = r_a x_a + t_a + rounding and w_b
+/// likewise be the world coordinates of a point of each body. If they are equal, then, with m = r_a^T r_b, t
+/// = r_a^T (t_b - t_a) and Euclidean norms,
 /// - on A's axes, where the kernel takes x_a as it is and m x_b + t for x_b, these differ by at most
 ///     on_a = D(r_a) |x_a| + |r_a| |rounding|,   D(r) = |r^T r - 1|;
 /// - on B's axes, where it takes x_b as it is and m^T (x_a - t) for x_a, by at most
@@ -31,9 +31,9 @@ struct RelativeTurn {
 /// |r|^2 <= 1 + D(r). World coordinates are rounded by at most 4 u times the sizes of their terms (u =
 /// 2^-53), m, t and the offsets between nodes by another 16 u of the same sizes. The factor kPoseSafety
 /// covers the change from the largest coordinate to the Euclidean length (sqrt 3), and from a distance to an
-/// extent (2). The bounds hold for any matrix; for one that is far from a rotation they are merely so large
-/// that little is culled: affine_pose.hpp has others for those. Overflow makes them infinite or not a number:
-/// then nothing is culled.
+/// extent (2). The bounds hold for any matrix, but for one that is far from a rotation they are so large that
+/// little is culled; affine_pose.hpp has other bounds for those. Overflow makes bounds infinite or not a
+/// number: then nothing is culled.
 TreeKernel kernel_of(const RelativeTurn& turn, const ObbTree& a, const Pose& pose_a, const ObbTree& b,
                      const Pose& pose_b) {
   TreeKernel k{};
@@ -65,7 +65,7 @@ TreeKernel kernel_of(const RelativeTurn& turn, const ObbTree& a, const Pose& pos
   return k;
 }
 
-/// Whether floats of the kernel cannot overflow.
+/// Returns true if floats of the kernel cannot overflow.
 bool is_near(const ObbTree& a, const Pose& pose_a, const ObbTree& b, const Pose& pose_b) {
   return (pose_b.t - pose_a.t).cwiseAbs().maxCoeff() <= kNearEnough * query_unit(a, b);
 }

@@ -14,12 +14,12 @@ inline double query_unit(const ObbTree& a, const ObbTree& b) {
   return std::max(a.unit(), b.unit());
 }
 
-/// Returns a kernel with everything filled in but its buffers (stack and out). Meant for poses that are nearly
-/// rotations: others are right, too, but cull little.
+/// Returns a kernel with everything filled in but its buffers (stack and out). Meant for poses that are
+/// nearly rotations; for others it is right, too, but culls little.
 TreeKernel set_up_kernel(const ObbTree& a, const Pose& pose_a, const ObbTree& b, const Pose& pose_b);
 
-/// Returns the same for any poses; what it needs where they are no rotations is put into `terms`, which must live as
-/// long as the kernel. dim: of both bodies.
+/// Returns the same for any poses. What it needs for poses that are not rotations is put into `terms`, which
+/// must live as long as the kernel. dim: that of both bodies.
 TreeKernel set_up_any_kernel(const ObbTree& a, const Pose& pose_a, const ObbTree& b, const Pose& pose_b,
                              int dim, AffineTerms& terms);
 

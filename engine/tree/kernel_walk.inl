@@ -1,13 +1,14 @@
 #pragma once
-// Part of tree_kernel.inl and affine_kernel.inl: the descent of two trees. A Walk says how nodes lie to each
-// other.
+// Part of tree_kernel.inl and affine_kernel.inl: the descent of two trees. The type Walk knows how nodes lie
+// to each other.
 
 #include "engine/tree/kernel_triangles.inl"
 
 namespace lrb {
 namespace {
 
-/// How far boxes are apart on the axis on which they are furthest apart; negative: by how much they overlap.
+/// Returns the gap between boxes on the axis on which they are furthest apart; negative if they overlap on
+/// all axes.
 inline Float8 gap_between(const Float8* centre, const Float8* half, const float* other_centre,
                           const float* other_half) {
   Float8 gap = abs8(centre[0] - splat(other_centre[0])) - (half[0] + splat(other_half[0]));
@@ -16,20 +17,20 @@ inline Float8 gap_between(const Float8* centre, const Float8* half, const float*
   return gap;
 }
 
-/// Where there are two pairs or more: how far apart (see gap_between()) box i of A is from those of B.
+/// Where two or more pairs may meet: the gaps (see gap_between()) from box i of A to the boxes of B.
 struct Gaps {
   Float8 of[8];
 };
 
-/// Whether rows of a mask have more than one bit together.
+/// Returns true if the rows of a mask together have more than one bit.
 inline bool is_more_than_one(std::uint32_t rows, const std::uint32_t mask[8]) {
   if (rows == 0) return false;
   const std::uint32_t first = mask[__builtin_ctz(rows)];
   return (rows & (rows - 1)) != 0 || (first & (first - 1)) != 0;
 }
 
-/// Which of A's boxes meet which of B's: mask[k] has the bits of B's boxes that A's box k may meet. Most
-/// pairs of nodes are apart, and most of these show it in the first test.
+/// Finds which of A's boxes may meet which of B's: mask[k] has a bit for each of B's boxes that A's box k may
+/// meet. Most pairs of nodes are apart, and most of these show it in the first test.
 template <bool kMargin, class Lie>
 inline std::uint32_t pair_masks(TreeKernel& k, const TreeNode& na, const TreeNode& nb, const Lie& w,
                                 std::uint32_t mask[8], Gaps* gaps = nullptr) {
@@ -79,7 +80,8 @@ inline std::uint32_t pair_masks(TreeKernel& k, const TreeNode& na, const TreeNod
   return rows;
 }
 
-/// Corners of two leaves' simplices in A's leaf's frame, query units; and their errors, as they are.
+/// Writes the corners of two leaves' simplices to `a` and `b`, in the frame of A's leaf and query units, and
+/// returns the bounds on their errors: those of the two nodes.
 inline const Between& corners_of(const TreeKernel& k, const TreeNode& na, const TreeNode& nb,
                                  const Between& w, Corners& a, Corners& b) {
   const LeafBlock& block_a = k.blocks_a[na.first];
@@ -97,7 +99,7 @@ inline const Between& corners_of(const TreeKernel& k, const TreeNode& na, const 
   return w;
 }
 
-/// All lines of a node.
+/// Fetches all cache lines of a node.
 inline void prefetch(const TreeNode& n) {
   constexpr std::size_t kLine = 64;
   for (std::size_t at = 0; at < sizeof n; at += kLine)
@@ -110,7 +112,7 @@ inline void push(TreeKernel& k, std::uint32_t a, std::uint32_t b) {
   k.stack[k.stack_size++] = {a, b};
 }
 
-/// Moves the pair with the least gap to the end of what was pushed last; the rest needs no order.
+/// Moves the pair with the least gap to the end of those that were pushed last; the others need no order.
 inline void nearest_last(NodePair* pairs, const float* gaps, std::uint32_t size) {
   if (size == 0) return;
   std::uint32_t nearest = 0;
@@ -121,8 +123,8 @@ inline void nearest_last(NodePair* pairs, const float* gaps, std::uint32_t size)
   pairs[nearest] = last;
 }
 
-/// Descends both nodes. kNearest: into the pair first whose boxes overlap most, for where one pair of
-/// simplices is enough it is likely to be there.
+/// Descends both nodes. kNearest: first into the pair whose boxes overlap most. Where one pair of simplices
+/// is enough, it is likely to be there.
 template <class Walk, bool kNearest>
 inline void descend_both(TreeKernel& k, const TreeNode& na, const TreeNode& nb) {
   std::uint32_t mask[8];
@@ -143,7 +145,7 @@ inline void descend_both(TreeKernel& k, const TreeNode& na, const TreeNode& nb) 
   if constexpr (kNearest) nearest_last(k.stack + bottom, gap_of, k.stack_size - bottom);
 }
 
-/// Descends A's node alone: its boxes against the whole box of B's, in both frames.
+/// Descends A's node only: its boxes against the whole box of B's, in both frames.
 template <class Walk>
 inline void descend_a(TreeKernel& k, const TreeNode& na, const TreeNode& nb, std::uint32_t b_index) {
   const Boxes a = decode(na, k.ratio_a);
@@ -159,7 +161,7 @@ inline void descend_a(TreeKernel& k, const TreeNode& na, const TreeNode& nb, std
     push(k, na.first + static_cast<std::uint32_t>(__builtin_ctz(c)), b_index);
 }
 
-/// Descends B's node alone.
+/// Descends B's node only.
 template <class Walk>
 inline void descend_b(TreeKernel& k, const TreeNode& na, const TreeNode& nb, std::uint32_t a_index) {
   const Whole a = whole_of(na, k.ratio_a);
@@ -175,7 +177,7 @@ inline void descend_b(TreeKernel& k, const TreeNode& na, const TreeNode& nb, std
     push(k, a_index, nb.first + static_cast<std::uint32_t>(__builtin_ctz(c)));
 }
 
-/// Pairs of simplices of two blocks, by their numbers there. Room for eight at a time beyond the last.
+/// Pairs of simplices of two blocks, by their numbers there. There is room for eight more beyond the last.
 struct PairList {
   std::uint8_t a[72], b[72];
   std::uint32_t size = 0;
@@ -226,8 +228,8 @@ inline void leaf_pair(TreeKernel& k, const TreeNode& na, const TreeNode& nb) {
   }
 }
 
-/// A node so many times as large as the other is descended alone: all that the other holds would meet the
-/// same few of its boxes.
+/// A node that is this many times as large as the other is descended by itself, because all of the other's
+/// boxes would meet the same few of its own.
 constexpr float kMuchLarger = 3;
 
 /// The nearest pair of boxes is looked for in the first so many pairs of nodes: bodies that meet mostly show it in

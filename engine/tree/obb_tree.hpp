@@ -45,8 +45,8 @@ static_assert(sizeof(TreeNode) == 192);
 /// The simplices of a leaf: corners in the leaf's coordinates, eight simplices side by side. A segment
 /// repeats its second corner.
 struct alignas(64) LeafBlock {
-  float corner[3][3][kTreeWidth];     ///< [corner][axis][simplex]; absent simplices repeat the first
-  std::uint32_t simplex[kTreeWidth];  ///< SimplexId; kNull where absent
+  float corner[3][3][kTreeWidth];  ///< [corner][axis][simplex]; absent simplices repeat the first
+  SimplexId simplex[kTreeWidth];   ///< kNull where absent
 };
 static_assert(sizeof(LeafBlock) == 320);
 
@@ -73,7 +73,7 @@ class ObbTree {
   double unit() const { return unit_; }      ///< a power of two; coordinates / unit are in units
   double extent() const { return extent_; }  ///< largest absolute coordinate of a corner, mesh's unit
   std::uint32_t height() const { return height_; }
-  /// Whether many blocks are far longer than wide: those of fans with thousands of triangles.
+  /// Returns true if many blocks are far longer than wide, as those of fans with thousands of triangles are.
   bool has_needles() const { return has_needles_; }
   std::size_t memory_bytes() const {
     return nodes_.capacity() * sizeof(TreeNode) + blocks_.capacity() * sizeof(LeafBlock);

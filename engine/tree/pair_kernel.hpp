@@ -9,8 +9,8 @@
 namespace lrb {
 
 /// A simplex in query units: its first corner, in a frame with the axes of its body, and the edges from there
-/// to the other corners. Differences are small where the simplices are small, and so are their errors. A
-/// segment repeats its second corner.
+/// to the other corners. Where simplices are small, so are these differences and their errors. A segment
+/// repeats its second corner.
 struct alignas(16) CachedSimplex {
   float corner[3], edge[2][3];
   float longest;  ///< length of the longest edge, rounded up

@@ -107,9 +107,9 @@ struct Shadow {
   Shadow(Float8 x, Float8 y, Float8 z) : low(smaller(smaller(x, y), z)), high(larger(larger(x, y), z)) {}
 };
 
-/// A direction, and the gaps of eight pairs along it; on any scale.
+/// A direction, of any length, and the gaps of eight pairs along it.
 struct Across {
-  /// By how much one lies above the other at least, negative where they overlap.
+  /// How far one simplex lies above the other at least; negative where they overlap.
   Float8 d[3], a_above, b_above;
   Float8 size;  ///< |d|_1
 
@@ -162,7 +162,7 @@ inline void for_directions(const EightPairs& p, See&& see) {
 struct Span {
   Float8 from, to;
 
-  /// Narrow the span; NaN proves nothing and is ignored.
+  /// Narrow the span. A NaN proves nothing and is ignored.
   void not_before(Float8 x) { from = larger(x, from); }
   void not_after(Float8 x) { to = select(greater(to, x), x, to); }
 };

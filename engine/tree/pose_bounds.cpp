@@ -22,7 +22,7 @@ double wrapper_margin(const Pose& pose_a, const ObbTree& a, const Pose& pose_b, 
   return kWrapperMargin * (world_size(pose_a, a) + world_size(pose_b, b) + kWorldUnderflow);
 }
 
-/// By a power of two to where squares are doubles, which is exact, and back.
+/// Scales by a power of two, which is exact, so that squares fit into doubles, and back.
 double stretch(const Pose& pose) {
   int exponent = 0;
   std::frexp(pose.r.cwiseAbs().maxCoeff(), &exponent);

@@ -17,7 +17,8 @@ double world_size(const Pose& pose, const ObbTree& tree);
 /// kWrapperMargin.
 double wrapper_margin(const Pose& pose_a, const ObbTree& a, const Pose& pose_b, const ObbTree& b);
 
-/// A bound of how much the pose stretches distances; 1 for rotations, but for rounding. For any finite matrix.
+/// Returns a bound on how much the pose stretches distances, for any finite matrix; for rotations that is 1,
+/// up to rounding.
 double stretch(const Pose& pose);
 
 }  // namespace lrb

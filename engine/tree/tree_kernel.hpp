@@ -26,7 +26,7 @@ enum class Certainty : std::uint8_t {
 /// A pair of real simplices that boxes and planes could not prove apart.
 struct Candidate {
   SimplexId a, b;
-  Certainty certainty;  ///< none where there is a margin
+  Certainty certainty;  ///< none if there is a margin
   // For touch_if_shared:
   Side side;             ///< the body to whose simplex the corners belong
   std::uint8_t corners;  ///< bit k: corner k
@@ -39,20 +39,21 @@ struct KernelMap {
   float size;  ///< >= the Euclidean norm
 };
 
-/// Maps of two bodies that are not near to rotations; what they are is in affine_pose.hpp. Pairs are A's and B's.
+/// The maps of two bodies that are not nearly rotations; affine_pose.hpp explains them. Each pair of entries
+/// is for A and B.
 struct AffineTerms {
   struct Axes {
-    KernelMap other;               ///< these axes <- coordinates in the other body
+    KernelMap other;               ///< coordinates in the other body -> these axes
     alignas(32) double origin[4];  ///< of the other body, on these axes
-    KernelMap own;                 ///< these axes <- coordinates in the body; the identity unless flat
+    KernelMap own;                 ///< coordinates in this body -> these axes; the identity unless flat
     bool flat;
-    float slack;  ///< as of TreeKernel, on these axes
+    float slack;  ///< as TreeKernel::slack, on these axes
   } axes[2];
-  KernelMap world[2];             ///< the world's axes <- coordinates in a body
+  KernelMap world[2];             ///< coordinates in a body -> the world's axes
   alignas(32) double between[4];  ///< B's origin seen from A's, on the world's axes
   float world_slack;
   int exponent;   ///< the query's unit is 2^exponent
-  float span[2];  ///< about how large in the world, query units, what is 1 in the tree's units becomes
+  float span[2];  ///< about the size in the world, in query units, of a length of 1 in the tree's units
 };
 
 /// TreeKernel::most_node_pairs of a kernel that stops only when it is done.
@@ -75,11 +76,10 @@ struct TreeKernel {
   float margin;
   alignas(32) double sweep[3][4], sweep_t[4];  ///< laid out as m and t
   float sweep_turn;                            ///< >= the Euclidean norm of sweep
-  bool nearest_first;  ///< without a margin: descend first where boxes overlap most, at the beginning
-  AffineTerms*
-      affine;  ///< null; else, without a margin, the maps are these, and m, t and slack what they say
+  bool nearest_first;   ///< without a margin: descend first where boxes overlap most, at the beginning
+  AffineTerms* affine;  ///< null, or these maps take the place of m, t and slack (without a margin)
 
-  bool needles;  ///< both trees are full of them: try more directions (see kernel_needles.inl)
+  bool needles;  ///< both trees are full of needles: try more directions (see kernel_needles.inl)
 
   NodePair* stack;  ///< room for 64 * (height of A + height of B) + 64 pairs
   std::uint32_t stack_size;

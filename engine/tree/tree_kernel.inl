@@ -11,14 +11,14 @@
 namespace lrb {
 namespace {
 
-/// Of bodies under rotations, or what is very nearly that.
+/// Walks the trees of bodies under rotations, or what is very nearly that.
 template <bool kMargin_>
 struct RigidWalk {
   static constexpr bool kMargin = kMargin_;
   static Between between(const TreeKernel& k, const TreeNode& a, const TreeNode& b) {
     return lrb::between<kMargin>(k, a, b);
   }
-  /// Whether directions that are tried for trees full of needles alone part the two nodes.
+  /// Returns true if one of the directions that are tried only for trees full of needles parts the two nodes.
   static bool more_parts(const TreeKernel& k, const TreeNode& a, const TreeNode& b) {
     if constexpr (kMargin) return false;
     return k.needles && needles_apart(k, a, b);

@@ -7,12 +7,13 @@
 
 #include "engine/core/error.hpp"
 #include "engine/lrb/lrb_file.hpp"
-#include "scenarios/methods/bodies.hpp"
+#include "scenarios/methods/body_parts.hpp"
 
 namespace lrb::bench {
 namespace {
 
-/// Larger than most last-level caches; what a query needs is fetched from memory again after a walk over it.
+/// Bytes, more than most last-level caches hold: after walking over so many, what a query needs is fetched
+/// from memory again.
 constexpr std::size_t kSweep = std::size_t{64} << 20;
 
 void sweep_caches() {

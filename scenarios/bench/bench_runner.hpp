@@ -1,5 +1,5 @@
 #pragma once
-/// Puts a data set's questions to one method, and takes the time. For worker programs.
+/// Puts a data set's questions to one method, and measures the time. For worker programs.
 
 #include <array>
 #include <map>
@@ -14,11 +14,12 @@ namespace lrb::bench {
 
 class BenchRunner {
  public:
-  /// Of a method that is present. `keep`: the records hold pairs and points.
+  /// The method must be present. `keep`: the records hold pairs and points.
   BenchRunner(const methods::MethodEntry& entry, std::optional<double> setting, const DataSet& set,
               bool keep);
 
-  /// A refusal is an outcome. Throws InputError if there is no such question.
+  /// Puts a question to the method. A refusal is an outcome, too. Throws InputError if there is no such
+  /// question.
   Record ask(std::uint64_t question);
 
  private:

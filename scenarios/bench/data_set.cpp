@@ -26,7 +26,7 @@ Pose pose_from(const json& value) {
 
 PoseClass pose_class_from(const std::string& word) {
   if (const auto c = from_name<PoseClass>(word)) return *c;
-  throw InputError("'" + word + "' is no class of poses");
+  throw InputError("'" + word + "' is not a class of poses");
 }
 
 }  // namespace

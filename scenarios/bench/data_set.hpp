@@ -1,6 +1,6 @@
 #pragma once
 /// What methods are asked when they are measured: two bodies at poses of several classes, with the exact
-/// answers. Files of their own, so that worker programs can read them.
+/// answers. A data set is a file of its own, so that worker programs can read it.
 
 #include <cstdint>
 #include <string>
@@ -15,7 +15,7 @@ namespace lrb::bench {
 
 using lrb::name_of;  // that of enums, beside those of records
 
-/// How a pose was chosen. In diagonals of the larger body.
+/// How a pose was chosen; distances are in diagonals of the larger body.
 enum class PoseClass : std::uint8_t { apart, shallow, deep, identical, small };
 inline constexpr PoseClass kPoseClasses[] = {PoseClass::apart, PoseClass::shallow, PoseClass::deep,
                                              PoseClass::identical, PoseClass::small};
@@ -28,7 +28,7 @@ constexpr auto words_of(PoseClass) {
 }
 const char* title(PoseClass c);  ///< "0.5 % apart"
 
-/// A body as an LRB-rep in a file, and what it took to make it.
+/// An LRB-rep in a file, and what it took to make it.
 struct BodyFile {
   std::string file;  ///< .lrb, relative to the data set's
   std::uint32_t faces = 0;
@@ -48,15 +48,15 @@ struct DataSet {
   double diagonal = 0;  ///< of the larger body's box
   std::vector<BodyFile> bodies;
   std::vector<Question> questions;
-  std::string folder;  ///< that it was read from; not in the file
+  std::string folder;  ///< the one it was read from; not in the file
 };
 
-/// The 3x4 matrix, row by row.
+/// Returns the 3x4 matrix, row by row.
 nlohmann::ordered_json pose_json(const Pose& p);
 
-/// Writes folder/name.set.json; its path.
+/// Writes folder/name.set.json and returns its path.
 std::string write_data_set(const DataSet& set, const std::string& folder);
-/// Throws InputError naming the file.
+/// Reads a data set. Throws InputError that names the file.
 DataSet read_data_set(const std::string& path);
 
 }  // namespace lrb::bench

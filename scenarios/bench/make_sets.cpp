@@ -21,14 +21,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// How far B goes beyond first contact, in diagonals of the larger body; negative: apart.
+/// Returns how far B goes beyond first contact, in diagonals of the larger body; negative: apart.
 double depth_of(PoseClass c) {
   return c == PoseClass::apart ? -0.005 : c == PoseClass::deep ? 0.1 : 0.01;
 }
 
-constexpr double kSmall = 0.1;  // of the other body's size
+constexpr double kSmall = 0.1;  // size of B over that of A
 
-/// B at random rotations, moved along random directions until it first meets A, and on.
+/// Finds poses of B: at random rotations, moved along random directions until it first meets A, and on.
 class Approaches {
  public:
   Approaches(const LrbRep& a, const LrbRep& b, double diagonal, std::uint64_t seed)
@@ -114,7 +114,7 @@ class Maker {
 
   void add_approaches(PoseClass c, std::size_t b) {
     Approaches approaches(reps_[0], reps_[b], set_.diagonal, o_.seed);
-    // One body small: 1 % of its own size, for it is all that there is to go into.
+    // If one body is small the depth is 1 % of its own size, because that is all there is to go into.
     const double depth = depth_of(c) * (c == PoseClass::small ? kSmall : 1);
     for (int i = 0; i < o_.poses; ++i) ask(c, 0, b, Pose{}, approaches.next(depth));
   }
@@ -148,7 +148,7 @@ std::vector<BodyPair> generated_pairs(std::uint32_t faces) {
   const double segments = std::max(12.0, std::round(n / (2 * sides)));
   const generators::GeneratorValues rock = {{"frequency", frequency}};
   const double points = std::max(4.0, std::round(std::sqrt(n / 400)));
-  // A gear of 16 teeth has about 64 points faces for each ring and side.
+  // A gear of 16 teeth has faces for about 64 points on each ring and side.
   const generators::GeneratorValues gear = {{"points", points},
                                             {"rings", std::max(1.0, std::round(n / (64 * points)))}};
   const std::string size = std::to_string(faces);

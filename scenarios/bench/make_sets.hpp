@@ -15,18 +15,19 @@ struct BodyPair {
   std::function<Mesh()> a, b;
 };
 
-/// Generated ones of about `faces` real faces each: two rocks, a knot and a gear, two balls.
+/// Makes pairs of generated bodies of about `faces` real faces each: two rocks, a knot and a gear, two balls.
 std::vector<BodyPair> generated_pairs(std::uint32_t faces);
-/// Each mesh or LRB-rep in a folder, by name, with the next one. Throws InputError if there are not two.
+/// Returns each mesh or LRB-rep of a folder, by name, paired with the next one. Throws InputError if there
+/// are fewer than two.
 std::vector<BodyPair> pairs_of_models(const std::string& folder);
 
 struct SetOptions {
-  int poses = 12;  ///< of each class; identical bodies at identical poses: a quarter of it
+  int poses = 12;  ///< number for each class; identical bodies at identical poses: a quarter of it
   std::uint64_t seed = 1;
 };
 
 /// Writes the data set and its bodies into a folder and returns the set, or reads what is there if it was
-/// made of the same bodies and options. Throws InputError if a body cannot be an LRB-rep.
+/// made from the same bodies and options. Throws InputError if a body cannot be an LRB-rep.
 DataSet make_data_set(const BodyPair& pair, const SetOptions& options, const std::string& folder);
 
 }  // namespace lrb::bench

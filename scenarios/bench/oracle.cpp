@@ -47,9 +47,10 @@ std::vector<SimplexPair> exact_pairs(const LrbRep& a, const Pose& pose_a, const 
   BoxTree(boxes).for_each_pair([&](std::uint32_t i, std::uint32_t j) {
     if (i >= first_of_b || j < first_of_b) return;
     const double *ca[3], *cb[3];
-    wa.corners(i, ca);
-    wb.corners(j - first_of_b, cb);
-    if (exact::meet_triangles(ca, cb) != exact::Meet::disjoint) pairs.push_back({i, j - first_of_b});
+    const SimplexPair pair{SimplexId(i), SimplexId(j - first_of_b)};
+    wa.corners(pair.a, ca);
+    wb.corners(pair.b, cb);
+    if (exact::meet_triangles(ca, cb) != exact::Meet::disjoint) pairs.push_back(pair);
   });
   std::sort(pairs.begin(), pairs.end());
   return pairs;

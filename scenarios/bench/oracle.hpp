@@ -6,8 +6,9 @@
 
 namespace lrb::bench {
 
-/// Every pair of real triangles that meets: a sweep over boxes in the world, and exact tests of what is left.
-/// It shares the predicates and the definition of world coordinates with the query, and nothing else.
+/// Returns every pair of real triangles that meets: by a sweep over boxes in the world, and exact tests of
+/// what is left. Shares with the query the predicates and the definition of world coordinates, and nothing
+/// else.
 std::vector<SimplexPair> exact_pairs(const LrbRep& a, const Pose& pose_a, const LrbRep& b,
                                      const Pose& pose_b);
 

@@ -49,8 +49,8 @@ T value_of(const std::string& word, const char* what) {
 ordered_json flat(const std::vector<SimplexPair>& pairs) {
   ordered_json out = ordered_json::array();
   for (const SimplexPair& p : pairs) {
-    out.push_back(p.a);
-    out.push_back(p.b);
+    out.push_back(p.a.value());
+    out.push_back(p.b.value());
   }
   return out;
 }
@@ -58,7 +58,7 @@ ordered_json flat(const std::vector<SimplexPair>& pairs) {
 std::vector<SimplexPair> pairs_from(const json& flat) {
   std::vector<SimplexPair> out;
   for (std::size_t i = 0; i + 1 < flat.size(); i += 2)
-    out.push_back({flat[i].get<SimplexId>(), flat[i + 1].get<SimplexId>()});
+    out.push_back({SimplexId(flat[i].get<std::uint32_t>()), SimplexId(flat[i + 1].get<std::uint32_t>())});
   return out;
 }
 

@@ -1,6 +1,6 @@
 #pragma once
-/// Raw records: what a method answered to a question, and how long it took. One JSON object to a line;
-/// everything else is computed from these.
+/// Raw records: what a method answered to a question, and how long it took. A file has one JSON object on
+/// each line; everything else is computed from these.
 
 #include <cstdint>
 #include <optional>
@@ -25,10 +25,10 @@ constexpr auto words_of(Outcome) {
 /// The answer in one mode.
 struct Reply {
   bool contact = false;
-  std::uint64_t count = 0;              ///< pairs
-  std::uint64_t missed = 0, extra = 0;  ///< against the exact list
-  double cold_us = 0;                   ///< the first time, caches swept
-  double hot_us = 0;                    ///< the best of a few repeats
+  std::uint64_t count = 0;              ///< number of pairs
+  std::uint64_t missed = 0, extra = 0;  ///< compared with the exact list
+  double cold_us = 0;                   ///< time of the first query, after caches were swept
+  double hot_us = 0;                    ///< the best time of a few repeats
   std::uint64_t face_tests = 0;
   std::vector<SimplexPair> pairs;       ///< if they are kept
   std::vector<Eigen::Vector3d> points;  ///< if they are kept, and the method gives them
@@ -40,23 +40,24 @@ struct Record {
   std::uint64_t question = 0;
   PoseClass pose_class = PoseClass::apart;
   Outcome outcome = Outcome::answered;
-  std::string message;  ///< of what is no answer
+  std::string message;  ///< says what went wrong if there is no answer
   Reply all, first;
-  double build_seconds = 0;  ///< both bodies
-  double bytes = 0;          ///< that the heap grew by for them
+  double build_seconds = 0;  ///< for both bodies
+  double bytes = 0;          ///< growth of the heap by both bodies
 };
 
 nlohmann::ordered_json to_json(const Record& r);
-/// Throws InputError saying what is wrong with the value.
+/// Reads a record. Throws InputError that says what is wrong with the value.
 Record record_from(const nlohmann::json& value);
-/// Lines that are not whole, left by a run that was interrupted, are passed over. None if there is no file.
+/// Reads a file of records; none if there is no file. Skips lines that are not whole, which a run that was
+/// interrupted leaves.
 std::vector<Record> read_records(const std::string& path);
 
-/// Pairs as one array of numbers.
+/// Returns pairs as one array of numbers.
 nlohmann::ordered_json flat(const std::vector<SimplexPair>& pairs);
 std::vector<SimplexPair> pairs_from(const nlohmann::json& flat);
 
-/// "fcl", "spheres 4".
+/// Returns the method with its setting: "fcl", "spheres 4".
 std::string name_of(const Record& r);
 std::string name_of(const std::string& method, std::optional<double> setting);
 

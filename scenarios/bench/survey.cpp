@@ -89,7 +89,7 @@ class Survey {
     known_[key(r)] = std::move(r);
   }
 
-  /// Those that were asked for, in order.
+  /// Returns the records that were asked for, in order.
   std::vector<Record> collect() const {
     std::vector<Record> out;
     for (const DataSet& set : o_.sets)

@@ -1,6 +1,7 @@
 #pragma once
-/// Asks every method every question of some data sets, in processes that may die or hang, and keeps the
-/// records: appended to a file as they come, so that a survey that was interrupted goes on where it was.
+/// Puts every question of some data sets to every method, in processes that may die or hang, and keeps the
+/// records. They are appended to a file as they come, so that a survey that was interrupted goes on where it
+/// was.
 
 #include <functional>
 #include <optional>
@@ -12,27 +13,28 @@
 
 namespace lrb::bench {
 
-/// A method at a setting of its knob.
+/// A method at one setting of its knob.
 struct Contestant {
   workers::WorkerMethod method;
   std::optional<double> setting;
 };
 
-/// Methods that are present, once for each of their settings.
+/// Returns the methods that are present, once for each of their settings.
 std::vector<Contestant> contestants(const std::vector<workers::WorkerMethod>& methods);
 
 struct SurveyOptions {
-  std::string folder;  ///< with the data sets' files; records.jsonl is written there
+  std::string folder;  ///< holds the data sets' files; records.jsonl is written there
   std::vector<DataSet> sets;
   std::vector<Contestant> contestants;
-  double timeout = 20;  ///< seconds for a question, all repeats
-  bool keep = false;    ///< pairs and points
+  double timeout = 20;  ///< time in seconds for a question, with all repeats
+  bool keep = false;    ///< keeps pairs and points
 };
 
 using SurveyProgress = std::function<void(std::uint64_t done, std::uint64_t total, const std::string& what)>;
 
-/// All records, those from earlier among them. Methods take turns, class of poses by class, so that what else
-/// the machine does falls on all of them. One process at a time: they are being timed.
+/// Returns all records, including those from earlier. Methods take turns, class of poses by class, so that
+/// whatever else the machine does slows all of them alike. Runs one process at a time, because they are being
+/// timed.
 std::vector<Record> survey(const SurveyOptions& options, const SurveyProgress& progress);
 
 }  // namespace lrb::bench

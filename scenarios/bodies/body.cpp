@@ -16,7 +16,7 @@ double seconds_since(std::chrono::steady_clock::time_point begin) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 }
 
-/// A mesh's findings on one line, its name said once, before them.
+/// Returns a mesh's findings on one line, after its name.
 std::string joined(const Mesh& mesh, const std::vector<std::string>& lines) {
   const std::string name = mesh.name + ": ";
   std::string out;
@@ -32,7 +32,7 @@ void turn_outward(CheckedMesh& mesh, std::vector<std::string>& notes) {
                     (turned == 1 ? " component that was inside out" : " components that were inside out"));
 }
 
-/// Why there can be no LRB-rep of it, even if it were turned.
+/// Says why there can be no LRB-rep of it, even if it were turned.
 std::string obstacles(const CheckedMesh& mesh) {
   return joined(mesh.mesh(), mesh.report().when_turned().obstacles(mesh.mesh()));
 }
@@ -50,7 +50,7 @@ std::string note_without_regions(const CheckedMesh& mesh) {
 }  // namespace
 
 bool is_lrb_file(const std::string& path) {
-  std::error_code ignored;  // what is read of a pipe is gone, and one with a name would be waited for
+  std::error_code ignored;  // what is read from a pipe is gone, and a named pipe would have to be waited for
   if (!std::filesystem::is_regular_file(path, ignored)) return false;
   constexpr std::size_t kEnough = 64;  // bytes: more than any magic
   std::ifstream in(path, std::ios::binary);
@@ -101,7 +101,8 @@ LoadedBody load_faces(const std::string& path) {
     turn_outward(mesh, notes);
   else
     notes.push_back(note_without_regions(mesh));
-  constexpr bool kNotAsked = false;  // whether it intersects itself: only regions depend on it
+  constexpr bool kNotAsked = false;  // whether it intersects itself does not matter: only regions depend on
+                                     // it
   return {LrbRep::without_regions(mesh.mesh(), mesh.report().bounds_solid, kNotAsked), std::move(notes), 0};
 }
 

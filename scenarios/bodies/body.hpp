@@ -1,5 +1,5 @@
 #pragma once
-/// A body for a query, from whatever the user has: a mesh file, an LRB-rep file, or a mesh in memory.
+/// Makes a body for a query from whatever the user has: a mesh file, an LRB-rep file, or a mesh in memory.
 
 #include <string>
 #include <vector>
@@ -12,26 +12,26 @@ namespace lrb::bodies {
 
 struct LoadedBody {
   LrbRep rep;
-  std::vector<std::string> notes;  ///< what was done to it or could not be: one line each, for people
+  std::vector<std::string> notes;  ///< what was done to it or could not be done; one line each, for people
   double build_seconds = 0;        ///< 0 if nothing was built
 };
 
-/// Whether the file says it is an LRB-rep (its first bytes, not its name).
+/// Returns true if the file says it is an LRB-rep (by its first bytes, not its name).
 bool is_lrb_file(const std::string& path);
 
 /// Reads a mesh and builds its LRB-rep, or reads an LRB-rep. A mesh that cannot have one (open, non-manifold)
-/// comes as a body without regions, and a note says why. Throws InputError if it cannot be queried at all.
+/// becomes a body without regions, and a note says why. Throws InputError if it cannot be queried at all.
 LoadedBody load_body(const std::string& path, const BuildOptions& options = {});
 LoadedBody body_of_mesh(Mesh mesh, const BuildOptions& options = {});
 LoadedBody body_of_mesh(CheckedMesh mesh, const BuildOptions& options = {});
 
-/// The same without regions, for who asks for pairs of faces and the relation only: no LRB-rep is built of a
-/// mesh, and nothing is proved of it that the answer does not need. Faces have the numbers that they have in
-/// load_body()'s, and answers are the same. (What an .lrb file holds is read as it is.)
+/// Does the same without regions, for callers that ask only for pairs of faces and the relation: builds no
+/// LRB-rep from a mesh, and proves nothing about it that the answer does not need. Faces have the numbers
+/// that load_body() gives them, and answers are the same. (An .lrb file is read as it is.)
 LoadedBody load_faces(const std::string& path);
 
-/// Turns what is inside out, and builds; InputError lists the offenders if it cannot be built. `notes` gets
-/// what was done on the way.
+/// Turns what is inside out, and builds; throws InputError with a list of the offenders if that cannot be
+/// done. Adds what was done on the way to `notes`.
 LrbRep build_from_mesh(CheckedMesh mesh, const BuildOptions& options, std::vector<std::string>& notes);
 
 }  // namespace lrb::bodies

@@ -6,8 +6,8 @@
 
 namespace lrb::bodies {
 
-/// An LRB-rep in numbers: name, faces, regions, layers, volumes (in 2D: areas) and memory. Keys as in
-/// `lrbscope build --json`.
+/// Returns an LRB-rep in numbers: name, faces, regions, layers, volumes (in 2D: areas) and memory. The keys
+/// are those of `lrbscope build --json`.
 nlohmann::ordered_json body_figures(const LrbRep& rep);
 
 }  // namespace lrb::bodies

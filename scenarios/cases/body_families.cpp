@@ -82,7 +82,7 @@ struct Cells {
       const auto v = static_cast<VertexId>(m.vertices.size());
       m.vertices.emplace_back(x0, y0, 0);
       m.vertices.emplace_back(x1, y1, 0);
-      const VertexId f[2] = {v, v + 1};
+      const VertexId f[2] = {v, VertexId(v + 1)};
       m.add_face(f);
     };
     for (int i = 0; i < n[0]; ++i)
@@ -114,8 +114,8 @@ struct Cells {
   }
 };
 
-/// Whether a cell of `a` and a cell of `b`, moved by `shift`, have inner points in common; the faces of B's
-/// cells lie where rounding puts them.
+/// Returns true if a cell of `a` and a cell of `b`, moved by `shift`, have inner points in common; the faces
+/// of B's cells lie where rounding puts them.
 bool share_a_cell(const Cells& a, const Cells& b, const Vector3d& shift) {
   const auto each = [](const Cells& c, auto visit) {
     for (int i = 0; i < c.n[0]; ++i)
@@ -177,52 +177,85 @@ Case make_dented(RandomEngine& random, double dial) {
   return c;
 }
 
-Case make_containment(RandomEngine& random, double dial) {
-  static const Body kBall = body(shapes::icosphere(1, 4)),
-                    kVoid = body(shapes::scaled(shapes::box_with_void(), 4));
+/// A ball or a box that reaches no further than this from the origin.
+Body small_body(RandomEngine& random, double reach) {
+  return body(random() % 2 ? shapes::icosphere(0, reach)
+                           : shapes::box({-reach, -reach, -reach}, {reach, reach, reach}));
+}
+
+const Body& large_ball() {
+  static const Body kBall = body(shapes::icosphere(1, 4));
+  return kBall;
+}
+
+/// In the void, which is [4, 8]^3, or in the wall round it, which is [0, 4] thick.
+Case about_a_void(RandomEngine& random, double near, bool in_wall) {
+  static const Body kVoid = body(shapes::scaled(shapes::box_with_void(), 4));
+  if (!in_wall)
+    return {kVoid, small_body(random, 2 * near), {}, Pose::translation({6, 6, 6}), Relation::separate, false};
+  return {kVoid,
+          small_body(random, 2 * near),
+          {},
+          Pose::translation({2, uniform(random, 2, 10), 6}),
+          Relation::b_inside_a,
+          true};
+}
+
+/// In the core, between the shells or in the outer wall.
+Case in_shells(RandomEngine& random, double near) {
   static const Body kShells = body(shapes::several(
       {shapes::box({-6, -6, -6}, {6, 6, 6}), shapes::turned_inside_out(shapes::box({-4, -4, -4}, {4, 4, 4})),
        shapes::box({-2, -2, -2}, {2, 2, 2})}));
-  const auto small = [&](double reach) {
-    return body(random() % 2 ? shapes::icosphere(0, reach)
-                             : shapes::box({-reach, -reach, -reach}, {reach, reach, reach}));
-  };
-  const double near = 1 - steady::pow10(-1 - 13 * dial);  // how much of the room is used
-  Case c;
-  const int kind = pick(random, 0, 5);
-  if (kind == 0) {
-    c = {kBall, small(1), {}, any_pose(random, 1), Relation::b_inside_a, true};
-  } else if (kind == 1) {  // the void is [4, 8]^3
-    c = {kVoid, small(2 * near), {}, Pose::translation({6, 6, 6}), Relation::separate, false};
-  } else if (kind == 2) {  // the wall is [0, 4] thick
-    c = {kVoid, small(2 * near), {}, Pose::translation({2, uniform(random, 2, 10), 6}), Relation::b_inside_a,
-         true};
-  } else if (kind == 3) {
-    const int layer = pick(random, 0, 2);  // in the core, between the shells, in the outer wall
-    c = {kShells, small(near), {}, {}, Relation::b_inside_a, true};
-    c.pose_b.t = {layer == 0 ? uniform(random, -1, 1) : layer == 1 ? 3 : 5, 0, uniform(random, -1, 1)};
-    if (layer == 1) {
-      c.relation = Relation::separate;
-      c.interiors_overlap = false;
-    }
-  } else if (kind == 4) {  // one of three pieces is swallowed
-    const Mesh piece = shapes::icosphere(0, 0.5);
-    c = {kBall,
-         body(shapes::several(
-             {shapes::translated(piece, {9, 0, 0}), piece, shapes::translated(piece, {0, 9, 0})})),
-         {},
-         any_pose(random, 1),
-         Relation::b_inside_a,
-         true};
-  } else {  // each holds a piece of the other: A is named first
-    const Mesh big = shapes::icosphere(1, 3), tiny = shapes::icosphere(0, 0.5);
-    c = {body(shapes::several({big, shapes::translated(tiny, {20, 0, 0})})),
-         body(shapes::several({shapes::translated(big, {20, 0, 0}), tiny})),
-         {},
-         {},
-         Relation::a_inside_b,
-         true};
+  const int layer = pick(random, 0, 2);
+  Case c{kShells, small_body(random, near), {}, {}, Relation::b_inside_a, true};
+  c.pose_b.t = {layer == 0 ? uniform(random, -1, 1) : layer == 1 ? 3 : 5, 0, uniform(random, -1, 1)};
+  if (layer == 1) {
+    c.relation = Relation::separate;
+    c.interiors_overlap = false;
   }
+  return c;
+}
+
+/// One of B's three pieces lies in A.
+Case one_piece_inside(RandomEngine& random) {
+  const Mesh piece = shapes::icosphere(0, 0.5);
+  const Body pieces = body(
+      shapes::several({shapes::translated(piece, {9, 0, 0}), piece, shapes::translated(piece, {0, 9, 0})}));
+  return {large_ball(), pieces, {}, any_pose(random, 1), Relation::b_inside_a, true};
+}
+
+/// Each holds a piece of the other: the relation names A first.
+Case each_holds_a_piece() {
+  const Mesh big = shapes::icosphere(1, 3), tiny = shapes::icosphere(0, 0.5);
+  return {body(shapes::several({big, shapes::translated(tiny, {20, 0, 0})})),
+          body(shapes::several({shapes::translated(big, {20, 0, 0}), tiny})),
+          {},
+          {},
+          Relation::a_inside_b,
+          true};
+}
+
+/// `near`: how much of the room is used.
+Case containment_of_kind(int kind, RandomEngine& random, double near) {
+  switch (kind) {
+    case 0:
+      return {large_ball(), small_body(random, 1), {}, any_pose(random, 1), Relation::b_inside_a, true};
+    case 1:
+    case 2:
+      return about_a_void(random, near, kind == 2);
+    case 3:
+      return in_shells(random, near);
+    case 4:
+      return one_piece_inside(random);
+    default:
+      return each_holds_a_piece();
+  }
+}
+
+Case make_containment(RandomEngine& random, double dial) {
+  const double near = 1 - steady::pow10(-1 - 13 * dial);
+  const int kind = pick(random, 0, 5);
+  Case c = containment_of_kind(kind, random, near);
   if (random() % 2) move_both(c, near < 0.999 ? any_pose(random, 5) : Pose{grid_turn(random), {1, -2, 3}});
   if (kind != 5 && random() % 2) {
     std::swap(c.a, c.b);

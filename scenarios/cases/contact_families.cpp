@@ -43,8 +43,8 @@ std::vector<Vector3d> twisted_rings(int n, int layers, double r, double twist, d
   return x;
 }
 
-void add_mantle(Mesh& m, VertexId base, int n, int layers, bool inward) {
-  const auto at = [&](int i, int j) { return base + static_cast<VertexId>(j * n + i % n); };
+void add_mantle(Mesh& m, int base, int n, int layers, bool inward) {
+  const auto at = [&](int i, int j) { return static_cast<VertexId>(base + j * n + i % n); };
   const auto add = [&](VertexId p, VertexId q, VertexId r) {
     const VertexId f[3] = {p, inward ? r : q, inward ? q : r};
     m.add_face(f);
@@ -76,15 +76,15 @@ Mesh nut(int n, int layers, double twist) {
   m.name = "nut";
   m.vertices = twisted_rings(n, layers, 0.5, twist, 2);
   const std::vector<Vector3d> outer = twisted_rings(n, layers, 1, twist, 2);
-  const auto count = static_cast<VertexId>(outer.size());
+  const auto count = static_cast<int>(outer.size());
   m.vertices.insert(m.vertices.end(), outer.begin(), outer.end());
   add_mantle(m, 0, n, layers, true);
   add_mantle(m, count, n, layers, false);
   for (const bool top : {false, true})
     for (int i = 0; i < n; ++i) {
-      const auto ring = static_cast<VertexId>(top ? layers * n : 0);
-      const VertexId p = ring + static_cast<VertexId>(i), q = ring + static_cast<VertexId>((i + 1) % n);
-      const VertexId low[4] = {p, q, count + q, count + p}, high[4] = {p, count + p, count + q, q};
+      const int ring = top ? layers * n : 0;
+      const VertexId p(ring + i), q(ring + (i + 1) % n), outer_p(count + p), outer_q(count + q);
+      const VertexId low[4] = {p, q, outer_q, outer_p}, high[4] = {p, outer_p, outer_q, q};
       if (top)
         m.add_face(high);
       else

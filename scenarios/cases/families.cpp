@@ -62,7 +62,7 @@ Body any_body(RandomEngine& random) {
 }
 
 Pose any_pose(RandomEngine& random, double distance) {
-  // One after the other: compilers order operands differently.
+  // One after the other, because compilers evaluate operands in different orders.
   const Eigen::Matrix3d turn = shapes::random_rotation(random);
   const Eigen::Vector3d direction = shapes::random_direction(random);
   return {turn, distance * uniform(random) * direction};

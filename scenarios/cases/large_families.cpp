@@ -11,18 +11,18 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// A prism over a polygon that runs counter-clockwise, its two ends one polygon each.
+/// Makes a prism over a polygon that runs counter-clockwise; each of its two ends is one polygon.
 Mesh prism(const std::vector<shapes::Point2>& section, double height) {
   Mesh m;
   m.name = "prism";
-  const auto n = static_cast<VertexId>(section.size());
+  const auto n = static_cast<std::uint32_t>(section.size());
   for (const double z : {0.0, height})
     for (const auto& p : section) m.vertices.emplace_back(p.x(), p.y(), z);
   std::vector<VertexId> low, high;
   for (VertexId i = 0; i < n; ++i) {
-    low.push_back(n - 1 - i);
-    high.push_back(n + i);
-    const VertexId j = (i + 1) % n, side[4] = {i, j, n + j, n + i};
+    low.emplace_back(n - 1 - i);
+    high.emplace_back(n + i);
+    const VertexId j((i + 1) % n), side[4] = {i, j, VertexId(n + j), VertexId(n + i)};
     m.add_face(side);
   }
   m.add_face(low);
@@ -39,7 +39,7 @@ std::vector<shapes::Point2> circle_section(int corners) {
   return p;
 }
 
-/// Teeth of width and gaps of width 1 / (2 * teeth): not convex.
+/// Makes a comb with teeth and gaps of width 1 / (2 * teeth): not convex.
 std::vector<shapes::Point2> comb_section(int teeth) {
   std::vector<shapes::Point2> p = {{0, 0}, {1, 0}};
   const double width = 1.0 / (2 * teeth - 1);
@@ -53,7 +53,7 @@ std::vector<shapes::Point2> comb_section(int teeth) {
   return p;
 }
 
-/// The Menger sponge of 3^levels cells to a side, from [0, 1]^3.
+/// Makes the Menger sponge of 3^levels cells to a side, from [0, 1]^3.
 Mesh menger(int levels) {
   const int n = static_cast<int>(std::lround(std::pow(3, levels)));
   const auto solid = [](int i, int j, int k) {
@@ -64,7 +64,7 @@ Mesh menger(int levels) {
   return shapes::scaled(shapes::voxels(n, n, n, solid), 1.0 / n);
 }
 
-/// A cube of 7^3 cells with a square dent in each of its sides, `depth` cells deep, from [0, 1]^3.
+/// Makes a cube of 7^3 cells with a square dent in each of its sides, `depth` cells deep, from [0, 1]^3.
 Mesh dented_cube(int depth) {
   const auto solid = [=](int i, int j, int k) {
     const int x[3] = {i, j, k};
@@ -101,7 +101,7 @@ Case make_kiss(RandomEngine& random, double dial) {
   if (apart) c.relation = Relation::separate;
   if (!apart && touch) c.relation = Relation::touching;
   c.interiors_overlap = !apart && !touch;
-  // Exact: a permutation of the axes, a change of signs, a power of two.
+  // All of it is exact: a permutation of the axes, a change of signs, a power of two.
   const double size = steady::exp2(std::round(40 * dial * uniform(random, -1, 1)));
   const Pose by{size * grid_turn(random, true), Vector3d::Zero()};
   if (random() % 2) move_both(c, by);
@@ -130,14 +130,14 @@ Case make_nested(RandomEngine& random, double dial) {
   };
   const bool in_solid = layer % 2 == 1;
   Case c{body(shapes::several(shells)), {}, {}, {}, {}, {}};
-  // Other pieces stand outside: one that is swallowed is enough.
+  // Other pieces stand outside: it is enough if one is enclosed.
   const int pieces = pick(random, 1, 3);
   std::vector<Mesh> all = {piece(middle)};
   for (int i = 1; i < pieces; ++i) all.push_back(piece(-walls - 2.0 * i));
   c.b = body(shapes::several(all));
   c.relation = in_solid ? Relation::b_inside_a : Relation::separate;
   c.interiors_overlap = in_solid;
-  // The outside piece of B may hold nothing of A: it is a box without room.
+  // The outside piece of B must not hold anything of A: it is a box without room.
   if (random() % 2) move_both(c, {grid_turn(random, true), Vector3d::Zero()});
   if (random() % 2) {
     std::swap(c.a, c.b);
@@ -159,7 +159,7 @@ Case make_polygon(RandomEngine& random, double dial) {
     for (int n = 2; n <= 1024; n *= 8) list.push_back(body(prism(comb_section(n), 1)));
     return list;
   }();
-  // The largest takes a hundred times as long as the others: seldom.
+  // The largest takes a hundred times as long as the others, so it comes seldom.
   const std::size_t largest = random() % 16 == 0 ? 3 : 2;
   const auto& bodies = uniform(random) < 0.5 * dial ? kComb : kRound;
   Case c{bodies[std::min(largest, static_cast<std::size_t>(4 * dial))], any_body(random), {}, {}, {}, {}};

@@ -30,7 +30,7 @@ Body moved(const LrbRep& rep, const Vector3d& by) {
   return body(shapes::translated(mesh_of(rep), by));
 }
 
-/// In any direction, `low` to `high` long.
+/// Returns a vector in any direction, `low` to `high` long.
 Vector3d random_step(RandomEngine& random, double low, double high) {
   const double length = uniform(random, low, high);
   return length * shapes::random_direction(random);
@@ -138,7 +138,7 @@ Case make_extreme(RandomEngine& random, double dial) {
   Case c{any_body(random), any_body(random), {}, {}, {}, {}};
   c.pose_b = random() % 2 ? any_pose(random, 1) : Pose{grid_turn(random), random_sign_vector(random, 0.5)};
   loosen(random, c, slack(dial));
-  // The bodies are up to 7 wide: divided first, so that the meshes themselves stay finite.
+  // The bodies are up to 7 wide; they are divided first, so that the meshes themselves stay finite.
   c.a = stretched(*stretched(*c.a, Vector3d::Constant(0.125)), Vector3d::Constant(by));
   c.b = stretched(*stretched(*c.b, Vector3d::Constant(0.125)), Vector3d::Constant(by_b));
   c.pose_b.t *= random() % 4 ? 0.125 * by : by;  // the second overflows sometimes: a refusal
@@ -179,7 +179,7 @@ Case make_matrix(RandomEngine& random, double dial) {
   };
   c.pose_a.r = matrix();
   c.pose_b.r = matrix();
-  // Aims a vertex of one at a vertex of the other, more or less.
+  // Aims a vertex of one more or less at a vertex of the other.
   const Vector3d x = c.pose_a.r * c.a->vertices()[random() % c.a->vertices().size()];
   const Vector3d y = c.pose_b.r * c.b->vertices()[random() % c.b->vertices().size()];
   c.pose_b.t = x - y + (0.5 + x.norm()) * random_step(random, 0.02, 0.3);

@@ -1,5 +1,5 @@
-// Cases of the other families, asked both ways. They are drawn from all families in their order: a family that is
-// added changes which cases these are.
+// Cases of the other families, asked both ways. They are drawn from all families in their order: a family
+// that is added changes which cases these are.
 #include "scenarios/cases/families.hpp"
 
 namespace lrb::cases {

@@ -9,7 +9,8 @@
 
 namespace lrb::cli {
 
-/// Those of `all` that are named, in their order; all if none is. Throws InputError for a name that none has.
+/// Returns those of `all` that are named, in their order; all if none is named. Throws InputError for an
+/// unknown name.
 template <class T, class NameOf>
 std::vector<T> chosen(const std::vector<T>& all, const std::vector<std::string>& names, const char* what,
                       const NameOf& name_of) {

@@ -1,6 +1,6 @@
 #pragma once
-/// The commands of `lrbscope`, one file each in commands/. stdout is data, stderr is for people.
-/// Exit codes: 0 ok, 1 mismatch, 2 usage or input, 3 environment.
+/// The commands of `lrbscope`, one file each in commands/ and measuring/. stdout is for data, stderr for
+/// people. Exit codes: 0 ok, 1 mismatch, 2 usage or input, 3 environment.
 
 #include <functional>
 #include <string>
@@ -13,19 +13,22 @@ namespace lrb::cli {
 
 inline constexpr int kOk = 0, kMismatch = 1, kBadInput = 2, kEnvironment = 3;
 
-/// What every command obeys.
+/// What applies to every command.
 struct Globals {
-  bool quiet = false;        ///< nothing on stderr but errors
-  std::string command_line;  ///< as it was given, quoted for a shell
+  bool quiet = false;          ///< nothing on stderr but errors
+  std::string command_line;    ///< as it was given, quoted for a shell
+  char** arguments = nullptr;  ///< as main() got them
 };
 
 struct Command {
   CLI::App* app;
   std::function<int()> run;
+  bool parses_itself = false;  ///< run() is called before any of its options is parsed
 };
 
-/// Adds a command to the program. A file NAME.cpp in commands/ defines `std::vector<CommandEntry> NAME_commands()`, and the
-/// program has them: they need no other list (cmake/registry.cmake).
+/// Adds a command to the program. A file NAME.cpp in commands/ defines `std::vector<CommandEntry>
+/// NAME_commands()`, and lrbscope has them: they need no other list (cmake/registry.cmake). Those in
+/// measuring/ are lrbscope-measure's, and stand in measuring_words.hpp, too.
 struct CommandEntry {
   Command (*add)(CLI::App& root, const Globals& globals) = nullptr;
   int rank = 1000;  ///< the commands' order in --help: by rank, then by file
@@ -37,19 +40,19 @@ inline int rank_of(const CommandEntry& c) {
 /// Returns all commands, in their order.
 std::vector<CommandEntry> registered_commands();
 
-/// Parses, runs, and turns exceptions into one line on stderr and an exit code.
+/// Parses the command line and runs the command; turns exceptions into one line on stderr and an exit code.
 int main(int argc, char** argv);
 
-/// Lines for people, unless quiet.
+/// Prints lines for people to stderr, unless quiet.
 void note(const Globals& globals, const std::vector<std::string>& lines);
 
-/// A word as it can stand in a shell's command line.
+/// Quotes a word, if need be, so that it can stand in a shell's command line.
 std::string shell_word(const std::string& word);
 
-/// As JSON on a line. Bytes that are not UTF-8, which a file's name may have, become U+FFFD.
+/// Returns JSON on one line. Bytes that are not UTF-8, which a file's name may have, become U+FFFD.
 std::string one_line(const nlohmann::ordered_json& value);
 
-/// A value as people read it: numbers that are not whole, with so many significant digits.
+/// Returns a value as people read it: numbers that are not whole have `digits` significant digits.
 std::string for_people(const nlohmann::ordered_json& value, int digits);
 
 /// Writes to stdout and makes sure that it arrived. Throws EnvironmentError.

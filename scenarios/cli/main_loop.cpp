@@ -7,6 +7,7 @@
 #include <new>
 #include <sstream>
 #include <stdexcept>
+#include <string_view>
 #include <system_error>
 
 #include "engine/core/error.hpp"
@@ -100,12 +101,19 @@ void print(const std::string& text) {
 
 namespace {
 
-/// What CLI11 says for --help and --version.
+/// Prints what CLI11 says for --help and --version.
 int print_help(CLI::App& app, const CLI::ParseError& request) {
   std::ostringstream text;
   app.exit(request, text, text);
   print(text.str());
   return kOk;
+}
+
+/// The first argument that is not an option: the command's name.
+std::string_view command_word(int argc, char** argv) {
+  for (int i = 1; i < argc; ++i)
+    if (argv[i][0] != '-') return argv[i];
+  return "";
 }
 
 int parse_and_run(int argc, char** argv) {
@@ -118,9 +126,12 @@ int parse_and_run(int argc, char** argv) {
       "more.");
   Globals globals;
   globals.command_line = command_line(argc, argv);
-  app.add_flag("-q,--quiet", globals.quiet, "Nothing on stderr but errors");
+  globals.arguments = argv;
+  app.add_flag("-q,--quiet", globals.quiet, "Print nothing to stderr but errors");
   std::vector<Command> commands;
   for (const CommandEntry& entry : registered_commands()) commands.push_back(entry.add(app, globals));
+  for (const Command& command : commands)
+    if (command.parses_itself && command.app->get_name() == command_word(argc, argv)) return command.run();
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {

@@ -12,7 +12,7 @@
 namespace lrb::cli {
 namespace {
 
-/// The option that sets a field of a request: "--max-tests" for max_tests.
+/// Returns the option that sets a field of a request: "--max-tests" for max_tests.
 template <class Value>
 std::string option_of(Value CollideRequest::*member) {
   std::string out = "--";
@@ -30,14 +30,14 @@ void add_recursion(CLI::App& app, Target& recursion) {
                         "complete never misses; paper is the paper's own");
 }
 
-/// An option that takes a number of things, from 1.
+/// Adds an option that takes a number of things, from 1.
 void add_count(CLI::App& app, const std::string& name, std::uint64_t& count, const std::string& what) {
   app.add_option(name, count, what)
       ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1} << 62).description(""))
       ->type_name("N");
 }
 
-/// Makes an axis (0, 1, 2) the upward one, and stands where one stood with z upward.
+/// Makes an axis (0, 1, 2) the upward one, and turns the view with it.
 void turn_up(spec::FrameSpec& spec, int axis) {
   if (spec.views.empty()) spec.views.emplace_back();
   const auto turned = [axis](const Eigen::Vector3d& v) {
@@ -59,69 +59,72 @@ void add_recursion_option(CLI::App& app, std::optional<Recursion>& recursion) {
 
 void add_request_options(CLI::App& app, CollideRequest& request) {
   add_choice<Mode>(app, option_of(&CollideRequest::mode), request.mode,
-                   "All pairs; one, crossing if any does; or the first that meets");
+                   "all: every pair; first: one pair, which crosses if any does; any: the first that meets");
   add_recursion(app, request.recursion);
   add_choice<Predicates>(app, option_of(&CollideRequest::predicates), request.predicates,
                          "floating: without the exact fallback, wrong where doubles cannot decide");
   add_count(app, option_of(&CollideRequest::max_pairs), request.max_pairs,
-            "Pairs at most, beyond which a query is refused [" + std::to_string(kMostPairs) +
+            "Largest number of pairs; a query with more is refused [" + std::to_string(kMostPairs) +
                 "; with contacts " + std::to_string(kMostPairsWithContacts) + "]");
 }
 
 void add_coarse_options(CLI::App& app, CollideRequest& request) {
   app.add_option(option_of(&CollideRequest::tolerance), request.tolerance,
-                 "Keep regions closed that are no thicker; a length in the meshes' unit")
+                 "Of bodies that cross, list the pairs of wrappers that are no further off than this, in "
+                 "the meshes' unit")
       ->check(CLI::NonNegativeNumber)
       ->type_name("LENGTH");
   add_count(app, option_of(&CollideRequest::max_tests), request.max_tests,
-            "Face tests at most, coarsest first");
-  app.add_option(option_of(&CollideRequest::max_time), request.max_time, "Seconds at most, coarsest first")
+            "Largest number of face tests: one pair first, then wrappers, coarsest first");
+  app.add_option(option_of(&CollideRequest::max_time), request.max_time,
+                 "Longest time in seconds: one pair first, then wrappers, coarsest first")
       ->check(CLI::PositiveNumber)
       ->type_name("S");
 }
 
 void add_build_options(CLI::App& app, BuildOptions& options) {
-  app.add_option("--patch", options.patch_interior, "Interior vertices a patch aims at")
+  app.add_option("--patch", options.patch_interior, "Number of interior vertices to aim for in a patch")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str()
       ->type_name("N");
-  app.add_option("--max-outer", options.max_outer_faces, "Faces the outermost wrapper should have at most")
+  app.add_option("--max-outer", options.max_outer_faces,
+                 "Number of faces to aim for in the outermost wrapper")
       ->check(CLI::Range(4, 1000))
       ->capture_default_str()
       ->type_name("N");
-  app.add_option("--seed", options.seed, "Of the order in which patches grow")
+  app.add_option("--seed", options.seed, "Seed of the order in which patches grow")
       ->capture_default_str()
       ->type_name("N");
   app.add_option("--threads", options.threads,
-                 "To build on, all of the machine's by default; the LRB-rep is the same on any number")
+                 "Number of threads to build on [all of the machine's]; the LRB-rep does not depend on it")
       ->check(CLI::Range(1, 1024))
       ->type_name("N");
 }
 
 void add_picture_options(CLI::App& app, PictureOptions& options) {
-  app.add_option("--size", options.size, "Of the frames, pixels")->type_name("WxH");
+  app.add_option("--size", options.size, "Size of the frames in pixels")->type_name("WxH");
   app.add_option(
          "--dpi", options.dpi,
-         "For print: the size that --size has at 96 dpi, in more pixels; lines and texts grow with them")
+         "For print: keep the size that --size has at 96 dpi, in more pixels; lines and texts grow with them")
       ->check(CLI::Range(spec::kLeastDpi, spec::kMostDpi))
       ->type_name("N");
-  app.add_flag("--transparent", options.transparent, "No background");
+  app.add_flag("--transparent", options.transparent, "Draw without a background");
   app.add_option_function<std::string>(
          "--format", [&options](const std::string& word) { options.svg = word == "svg"; },
-         "svg: frames and montage as SVG as well, for 2D bodies")
+         "svg: write frames and montage as SVG as well, for 2D bodies")
       ->check(CLI::IsMember({"png", "svg"}).description(""))
       ->type_name("png|svg");
-  add_choice<spec::FrameSpec::At>(app, "--frames", options.at, "When to draw one");
+  add_choice<spec::FrameSpec::At>(app, "--frames", options.at, "When to draw a frame");
   app.add_option("--every", options.every, "Draw every N-th of these")
       ->check(CLI::Range(1, 1000000000))
       ->type_name("N");
-  app.add_option("--most", options.most, "Frames at most, evenly chosen")
+  app.add_option("--most", options.most, "Largest number of frames, evenly chosen")
       ->check(CLI::Range(1, 10000))
       ->type_name("N");
   app.add_option("--up", options.up, "Axis that points up in the pictures [z]")
       ->check(CLI::IsMember({"x", "y", "z"}).description(""))
       ->type_name("x|y|z");
-  add_choice<spec::FrameSpec::ColourBy>(app, "--colour-by", options.colour_by, "What colours mean");
+  add_choice<spec::FrameSpec::ColourBy>(app, "--colour-by", options.colour_by, "What the colours mean");
 }
 
 void apply(const PictureOptions& options, spec::FrameSpec& spec) {

@@ -13,7 +13,7 @@
 
 namespace lrb::cli {
 
-/// An option that takes one of an enum's words.
+/// Adds an option that takes one of an enum's words.
 template <class Enum, class Target>
 void add_choice(CLI::App& app, const std::string& name, Target& target, const std::string& what) {
   std::vector<std::string> words;
@@ -24,17 +24,17 @@ void add_choice(CLI::App& app, const std::string& name, Target& target, const st
       ->type_name(all_names<Enum>("|", "|"));
 }
 
-/// --mode, --recursion, --predicates and --max-pairs.
+/// Adds --mode, --recursion, --predicates and --max-pairs.
 void add_request_options(CLI::App& app, CollideRequest& request);
-/// --tolerance, --max-tests and --max-time.
+/// Adds --tolerance, --max-tests and --max-time.
 void add_coarse_options(CLI::App& app, CollideRequest& request);
-/// --recursion, over what a scenario says.
+/// Adds --recursion, which takes precedence over a scenario.
 void add_recursion_option(CLI::App& app, std::optional<Recursion>& recursion);
-/// --patch, --max-outer and --seed.
+/// Adds --patch, --max-outer and --seed.
 void add_build_options(CLI::App& app, BuildOptions& options);
 
-/// --size, --dpi, --transparent, --format, --frames, --every, --most, --colour-by and --up, over what a
-/// scenario says.
+/// The options --size, --dpi, --transparent, --format, --frames, --every, --most, --colour-by and --up, which
+/// take precedence over a scenario.
 struct PictureOptions {
   std::string size;
   std::optional<double> dpi;
@@ -48,13 +48,13 @@ struct PictureOptions {
 void add_picture_options(CLI::App& app, PictureOptions& options);
 void apply(const PictureOptions& options, spec::FrameSpec& spec);
 
-/// Two views side by side: the whole scene with the wrappers, and the contact with the bodies alone.
+/// Returns two views side by side: the whole scene with the wrappers, and the contact with the bodies alone.
 std::vector<spec::FrameSpec::View> whole_and_contact();
 
-/// How many threads there are; at least 1.
+/// Returns the number of threads of the machine; at least 1.
 std::uint32_t all_cores();
 
-/// Prints the end of a run; its exit code.
+/// Prints the outcome of a run and returns its exit code.
 int report_outcome(const run::RunOutcome& outcome, const std::string& folder, bool json,
                    const Globals& globals);
 

@@ -9,7 +9,7 @@
 namespace lrb::cli {
 namespace {
 
-/// https://no-color.org: set and not empty.
+/// Returns true if colours are not wanted (https://no-color.org): the variable is set and not empty.
 bool colour_wanted() {
   const char* no_colour = std::getenv("NO_COLOR");
   const char* terminal = std::getenv("TERM");

@@ -8,10 +8,10 @@
 
 namespace lrb::cli {
 
-/// A progress bar on stderr, drawn only on a terminal, and gone when the work is done.
+/// A progress bar on stderr, drawn on a terminal only, and removed when the work is done.
 class Progress {
  public:
-  /// total 0: not known, a counter instead of a bar.
+  /// `total` 0: not known; a counter is drawn instead of a bar.
   Progress(std::string label, std::uint64_t total, bool quiet);
   ~Progress() { finish(); }
   Progress(const Progress&) = delete;
@@ -28,7 +28,7 @@ class Progress {
   std::chrono::steady_clock::time_point begin_, last_;
 };
 
-/// Draws the progress of a job of several parts, a bar for each.
+/// Returns a function that draws the progress of a job of several parts, a bar for each.
 run::ProgressReport progress_report(bool quiet);
 
 }  // namespace lrb::cli

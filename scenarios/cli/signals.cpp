@@ -38,12 +38,12 @@ void die_of(int signal) {
 
 std::string farewell(int signal) {
   const char* name = signal == SIGINT ? "SIGINT" : signal == SIGTERM ? "SIGTERM" : "SIGHUP";
-  const char* clear = isatty(STDERR_FILENO) == 1 ? "\r\033[K" : "";  // a progress bar may stand there
+  const char* clear = isatty(STDERR_FILENO) == 1 ? "\r\033[K" : "";  // there may be a progress bar
   return std::string(clear) + "lrbscope: interrupted by " + name +
          ": files written so far are whole, the others are missing; run it again\n";
 }
 
-/// A thread may take locks and allocate, as a signal handler may not.
+/// Runs on a thread, which may take locks and allocate, as a signal handler may not.
 void wait_for(const sigset_t& signals) {
   int signal = 0;
   if (sigwait(&signals, &signal) != 0) return;
@@ -55,7 +55,7 @@ void wait_for(const sigset_t& signals) {
   die_of(signal);
 }
 
-/// There may be no memory: nothing here takes any.
+/// There may be no memory left, so nothing here takes any.
 [[noreturn]] void say_why_and_end() {
   std::string_view line = "lrbscope: internal error, please report it: std::terminate was called\n";
   try {
@@ -88,7 +88,8 @@ void end_cleanly_on_signals() {
   pthread_sigmask(SIG_BLOCK, &signals, &before);
   try {
     std::thread(wait_for, signals).detach();
-  } catch (const std::system_error&) {  // no thread to be had: then they end us at once, as ever
+  } catch (const std::system_error&) {  // no thread can be started: the signals then end us at once, as
+                                        // without us
     pthread_sigmask(SIG_SETMASK, &before, nullptr);
   }
 }

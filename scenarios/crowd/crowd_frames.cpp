@@ -17,11 +17,11 @@ namespace {
 
 using Mark = render::LegendItem::Mark;
 
-/// More kinds than this share colours.
+/// If there are more kinds than this, they share colours.
 constexpr std::uint32_t kColours = 24;
 
 render::Rgba colour_of(std::uint32_t kind) {
-  // The first ones are apart from the contacts' red and from each other for every eye.
+  // The first ones differ from the contacts' red and from each other for every eye.
   constexpr render::Rgba kFirst[] = {{86, 150, 205}, {222, 172, 76},  {92, 172, 140},
                                      {190, 178, 92}, {150, 140, 190}, {150, 150, 150}};
   kind %= kColours;
@@ -37,7 +37,7 @@ class FrameState {
   FrameState(const spec::Crowd& crowd, const CrowdRun& run, const spec::FrameSpec& spec)
       : crowd_(crowd), run_(run), spec_(spec) {}
 
-  /// What is to be seen of a moment. `wrappers`: with the lids that are left of them.
+  /// Returns the picture of a moment. `wrappers`: with the lids that are left of them.
   render::DrawList list(const CrowdMoment& m, bool wrappers) const {
     std::vector<render::SceneBody> bodies;
     std::vector<std::unique_ptr<Wrapper>> states;
@@ -58,7 +58,7 @@ class FrameState {
     highlight.contacts = m.contacts;
     render::SceneOptions options;
     options.scale = static_cast<float>(spec_.scale());
-    options.real_edges = false;  // thousands of small faces: their edges would be all there is to see
+    options.real_edges = false;  // thousands of small faces: one would see nothing but their edges
     render::Scene scene = render::build_scene(bodies, highlight, options);
     for (render::DrawLine& line : scene.list.lines)
       if (line.colour == render::palette::kContact) thin(line);
@@ -88,7 +88,7 @@ class FrameState {
     return o;
   }
 
-  /// Corners of all boxes at the moments drawn: what cameras are fitted to.
+  /// Returns what cameras are fitted to: the corners of all boxes at the moments drawn.
   run::Framing framing() const {
     run::Framing f;
     f.dim = run_.rep(0).dim();
@@ -111,14 +111,15 @@ class FrameState {
                                               [](const spec::FrameSpec::View& v) { return v.wrapper; });
   }
 
-  /// In a crowd, curves that show through everything in front of them would hide it.
+  /// Makes a contact's curve thin, and hidden by what lies in front of it: in a crowd, curves that show
+  /// through would hide the bodies.
   void thin(render::DrawLine& line) const {
     line.layer = render::Layer::opaque;
     line.width = static_cast<float>(1.6 * spec_.scale());
     line.halo_width = 0;
   }
 
-  /// The edges of the room.
+  /// Returns the edges of the room.
   std::vector<std::array<Eigen::Vector3d, 2>> room() const {
     std::vector<std::array<Eigen::Vector3d, 2>> edges;
     const Eigen::Vector3d half = crowd_.room / 2;
@@ -174,19 +175,19 @@ run::DrawnFrames draw_crowd(const spec::Crowd& crowd, const CrowdRun& run, const
   run::remove_old_frames(folder);
   run::DrawnFrames out;
   if (run.moments.empty()) return out;
-  const FrameState stage(crowd, run, spec);
+  const FrameState state(crowd, run, spec);
   const auto scale = static_cast<float>(spec.scale());
   std::vector<render::Overlay> overlays;
   std::vector<render::OverlayLayout> layouts;
   for (const CrowdMoment& m : run.moments) {
-    overlays.push_back(stage.overlay(m));
+    overlays.push_back(state.overlay(m));
     layouts.push_back(render::lay_out(overlays.back(), spec.width, spec.height, scale));
   }
   const render::PixelRect place = render::common_picture(layouts);
   std::vector<spec::FrameSpec::View> views = spec.views;
   if (views.empty()) views.emplace_back();
   const std::vector<render::PixelRect> places = run::view_places(place, views.size(), spec.scale());
-  const run::Framing framing = stage.framing();
+  const run::Framing framing = state.framing();
   render::Rasterizer rasterizer;
   render::FrameWriter writer;
   render::Image picture(place.width, place.height);
@@ -197,7 +198,7 @@ run::DrawnFrames draw_crowd(const spec::Crowd& crowd, const CrowdRun& run, const
         run.moments.size() > 1 ? static_cast<double>(i) / static_cast<double>(run.moments.size() - 1) : 0;
     run::paint_views(
         rasterizer, spec, views, places,
-        [&](const spec::FrameSpec::View& v) { return stage.list(m, v.wrapper); },
+        [&](const spec::FrameSpec::View& v) { return state.list(m, v.wrapper); },
         [&](std::size_t v) {
           return run::camera_for(views[v], framing, places[v].width, places[v].height, passed);
         },

@@ -8,31 +8,33 @@
 
 namespace lrb::crowd {
 
-/// The run in Chrome's Trace Event Format, as trace/trace_json.hpp has it for two bodies. Event clock: a
-/// query is as long as its own trace would be (CrowdQuery::events()), queries follow each other, and there is
-/// a track a body, on which each of its queries is shown; the same for any number of threads. Wall clock: a
-/// track a thread, microseconds. A track for steps and one for the broad phase stand above; counters are of
-/// the step. The metadata hold the bodies' poses (by step and body, each as in pose files), for as many steps
-/// as make no more poses than slices of queries are kept: all that replay_crowd() needs.
+/// Writes the run in Chrome's Trace Event Format, as trace/trace_json.hpp does for two bodies. On the event
+/// clock, a query is as long as its own trace would be (CrowdQuery::events()), queries follow each other, and
+/// each body has a track that shows its queries; the same for any number of threads. On the wall clock, in
+/// microseconds, each thread has a track. A track for steps and one for the broad phase stand above; counters
+/// are those of the step. The metadata hold the bodies' poses (by step and body, each as in pose files) for
+/// the first steps, at most as many poses as slices of queries are kept. That is all that replay_crowd()
+/// needs.
 void write_crowd_trace(const spec::Crowd& crowd, const CrowdRun& run, trace::ByteSink& sink);
 
 inline constexpr std::string_view kCrowdFormat = "lrbscope crowd";
-inline constexpr std::uint32_t kCrowdVersion = 2;  ///< of the format; 1 had no poses and cannot be replayed
+inline constexpr std::uint32_t kCrowdVersion = 2;  ///< of the format; version 1 had no poses and cannot be
+                                                   ///< replayed
 
-/// "kinds": what their bodies are, and how many there are.
+/// Writes "kinds": what their bodies are, and how many there are.
 void write_kinds(trace::JsonWriter& w, const spec::Crowd& crowd, const CrowdRun& run);
 
-/// The run in numbers, without times: the same for any number of threads.
+/// Returns the run in numbers, without times: the same for any number of threads.
 std::string crowd_summary(const spec::Crowd& crowd, const CrowdRun& run);
 
-/// How long it took: nanoseconds in all, and of each step.
+/// Returns the time it took: nanoseconds in all, and for each step.
 std::string crowd_timing(const CrowdRun& run);
 
-/// How many queries of a step answered so.
+/// Returns the number of queries of a step that gave this answer.
 std::size_t count(const CrowdStep& step, Relation relation);
-/// Bodies of a step that meet another.
+/// Returns the number of bodies of a step that meet another one.
 std::size_t bodies_in_contact(const CrowdStep& step, std::size_t bodies);
-/// Everything that the queries of a step counted (not the list by level).
+/// Adds up everything that the queries of a step counted (except the list by level).
 Counters sum(const CrowdStep& step);
 
 }  // namespace lrb::crowd

@@ -26,7 +26,7 @@ Eigen::Vector3d random_direction(Random& random, int dim) {
   }
 }
 
-/// Places in rows over the room, as many as there are bodies or a few more, shuffled.
+/// Returns places in rows over the room, shuffled: as many as there are bodies or a few more.
 std::vector<Eigen::Vector3d> grid_places(const Eigen::Vector3d& reach, std::uint32_t count, int dim,
                                          Random& random) {
   const double side = dim == 2 ? std::sqrt(count) : std::cbrt(count);
@@ -44,7 +44,7 @@ std::vector<Eigen::Vector3d> grid_places(const Eigen::Vector3d& reach, std::uint
   return places;
 }
 
-/// A point that goes straight on, seen between two mirrors at -reach and reach.
+/// Returns the coordinate of a point that moves straight on, seen between two mirrors at -reach and reach.
 double thrown_back(double x, double reach) {
   if (!(reach > 0)) return 0;
   double y = std::fmod(x + reach, 4 * reach);
@@ -52,7 +52,7 @@ double thrown_back(double x, double reach) {
   return (y > 2 * reach ? 4 * reach - y : y) - reach;
 }
 
-/// Farthest that a body reaches from its origin.
+/// Returns the largest distance of a body's points from its origin.
 double radius_of(const LrbRep& rep, const Pose& own) {
   double r = 0;
   for (FaceId f = 0; f < rep.real_face_count(); ++f)

@@ -9,13 +9,14 @@
 
 namespace lrb::crowd {
 
-/// Where every body of a crowd is at every step: straight on, thrown back by the walls of the room, in closed
-/// form, so that steps can be asked for in any order. Or as a trace has it.
+/// Knows where every body of a crowd is at every step. Bodies move straight and are thrown back by the walls
+/// of the room; this has a closed form, so that steps can be asked for in any order. Or it gives the poses
+/// that a trace holds.
 class CrowdMotion {
  public:
-  /// `reps`: one a kind, of one dimension.
+  /// `reps`: one for each kind, all of one dimension.
   CrowdMotion(const spec::Crowd& crowd, std::span<const LrbRep* const> reps);
-  /// As it was recorded: `poses` by step and body; no other step can be asked for.
+  /// Gives recorded poses: `poses` by step and body; no other step can be asked for.
   CrowdMotion(const spec::Crowd& crowd, std::vector<std::vector<Pose>> poses);
 
   /// Bodies are numbered kind by kind.
@@ -26,13 +27,14 @@ class CrowdMotion {
  private:
   struct Mover {
     Eigen::Vector3d start, speed, axis;
-    Eigen::Vector3d reach;  ///< how far from the room's middle its origin may go, so that it stays inside
+    Eigen::Vector3d reach;  ///< largest distance of its origin from the room's middle on each axis, so that
+                            ///< it stays inside
     Eigen::Matrix3d turned;
-    double spin;  ///< radians a step
+    double spin;  ///< radians for each step
     Pose own;     ///< of its kind, applied first
   };
-  std::vector<std::uint32_t> kinds_;  ///< of bodies
-  std::vector<Mover> movers_;         ///< of bodies; none where poses were recorded
+  std::vector<std::uint32_t> kinds_;  ///< the kind of each body
+  std::vector<Mover> movers_;         ///< of each body; empty where poses were recorded
   std::vector<std::vector<Pose>> recorded_;
 };
 

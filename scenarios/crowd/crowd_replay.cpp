@@ -13,7 +13,7 @@ std::string words(const CrowdTrace::Answer* a) {
                             " pairs, fingerprint " + trace::to_hex(a->fingerprint);
 }
 
-/// Throws at the first answer that is another one.
+/// Throws at the first answer that differs.
 void compare(const CrowdTrace& trace, const CrowdRun& run, std::size_t step) {
   std::vector<CrowdTrace::Answer> found;
   for (const CrowdQuery& q : run.steps[step].queries)

@@ -12,12 +12,12 @@ namespace lrb::crowd {
 std::string write_crowd(const spec::Crowd& crowd, const CrowdRun& run, const std::string& folder,
                         const std::string& command, const run::ProgressReport& progress);
 
-/// Of a replayed run: folder/{index.html, frames/}.
+/// Writes folder/{index.html, frames/} of a replayed run.
 void redraw_crowd(const spec::Crowd& crowd, const CrowdRun& run, const std::string& folder,
                   const std::string& command, const std::string& trace_file,
                   const run::ProgressReport& progress);
 
-/// How long a step took, in one line for people.
+/// Returns one line for people that says how long a step took.
 std::string crowd_speed(const CrowdRun& run);
 
 }  // namespace lrb::crowd

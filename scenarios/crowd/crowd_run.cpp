@@ -50,7 +50,7 @@ class Player {
     for (const bodies::LoadedBody& kind : run.kinds) extents_.emplace_back(kind.rep);
   }
 
-  /// Plays a step; `moment`: what is to be seen of it, or null.
+  /// Runs a step; `moment` gets what a picture of it needs, or is null.
   CrowdStep play(std::uint32_t number, CrowdMoment* moment) {
     CrowdStep step;
     const std::uint64_t begin = now();
@@ -85,7 +85,8 @@ class Player {
         std::chrono::duration_cast<std::chrono::nanoseconds>(Clock::now() - began_).count());
   }
 
-  /// Queries of the same two LRB-reps one after the other: their contexts stay as they are.
+  /// Returns an order of the pairs in which queries of the same two LRB-reps follow each other, so that their
+  /// contexts can be kept.
   std::vector<std::uint32_t> by_kinds(const std::vector<BodyPair>& pairs) const {
     std::vector<std::uint32_t> order(pairs.size());
     std::iota(order.begin(), order.end(), 0U);
@@ -143,10 +144,10 @@ class Player {
   const spec::Crowd& crowd_;
   CrowdRun& run_;
   Workers workers_;
-  std::vector<QueryContext> contexts_;  ///< one a thread
+  std::vector<QueryContext> contexts_;  ///< one for each thread
   std::vector<Pose> poses_;
   std::vector<Eigen::AlignedBox3d> boxes_;
-  std::vector<BodyExtent> extents_;  ///< one a kind
+  std::vector<BodyExtent> extents_;  ///< one for each kind
   std::vector<ExtremeVertices> extremes_;
   SweepAndPrune sweep_;
   Clock::time_point began_;

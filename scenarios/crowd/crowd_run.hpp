@@ -1,6 +1,6 @@
 #pragma once
-/// A crowd, played: at every step the broad phase, then a query for each pair of bodies whose boxes meet, on
-/// all threads. Nothing is drawn or written here.
+/// Runs a crowd: at every step the broad phase, then a query for each pair of bodies whose boxes meet, on all
+/// threads. Draws and writes nothing.
 
 #include <cstdint>
 #include <vector>
@@ -14,18 +14,19 @@
 
 namespace lrb::crowd {
 
-/// One query of two bodies: A is the one of the lower number.
+/// One query of two bodies; A is the one with the lower number.
 struct CrowdQuery {
   BodyPair bodies{0, 0};
   trace::StepResult result;
   std::uint64_t contact_regions = 0;       ///< 0 if contacts were not asked for
-  std::uint32_t thread = 0;                ///< which one asked it; the rest does not depend on it
+  std::uint32_t thread = 0;                ///< the thread that asked it; nothing else depends on it
   std::uint64_t begin_ns = 0, end_ns = 0;  ///< steady clock, since the run began
 
   bool meets() const {
     return result.relation != Relation::separate && result.relation != Relation::undefined;
   }
-  /// Events that the trace of this query alone would have: step, face tests, refinements, contacts, result.
+  /// Returns the number of events that a trace of this query alone would have: step, face tests, refinements,
+  /// contacts, result.
   std::uint64_t events() const {
     return 2 + result.counters.face_tests + result.counters.refinements + result.pair_count;
   }
@@ -41,13 +42,14 @@ struct CrowdStep {
 /// What a picture of one step needs.
 struct CrowdMoment {
   std::uint32_t step = 0;
-  std::vector<std::vector<RegionId>> opened;          ///< by body: in any of its queries, ascending
-  std::vector<std::vector<std::uint8_t>> in_contact;  ///< by body (|real F|): met a face of another; or empty
+  std::vector<std::vector<RegionId>> opened;  ///< by body: regions that any of its queries opened, ascending
+  std::vector<std::vector<std::uint8_t>> in_contact;  ///< by body (|real F|): the face met one of another
+                                                      ///< body; or empty
   std::vector<ContactRegion> contacts;
 };
 
 struct CrowdRun {
-  std::vector<bodies::LoadedBody> kinds;  ///< one a kind
+  std::vector<bodies::LoadedBody> kinds;  ///< one for each kind
   std::vector<std::string> names;         ///< of bodies: "gear 3"
   CrowdMotion motion;
   std::vector<CrowdStep> steps;
@@ -58,13 +60,13 @@ struct CrowdRun {
   const LrbRep& rep(std::uint32_t body) const { return kinds[motion.kind(body)].rep; }
 };
 
-/// The steps that `spec` wants drawn.
+/// Returns the steps that `spec` wants drawn.
 std::vector<std::uint32_t> drawn_steps(const spec::FrameSpec& spec, std::uint32_t steps);
 
-/// Builds the bodies and plays. Everything but threads and times is the same for any number of threads, at
-/// least 1. Throws InputError for bodies of different dimensions and for what collide() refuses.
+/// Builds the bodies and runs the crowd. Everything but threads and times is the same for any number of
+/// threads (at least 1). Throws InputError for bodies of different dimensions and for what collide() refuses.
 CrowdRun run_crowd(const spec::Crowd& crowd, std::uint32_t threads, const run::ProgressReport& progress);
-/// The same with bodies, one a kind, that are there already.
+/// Does the same with bodies, one for each kind, that have been built.
 CrowdRun play_crowd(const spec::Crowd& crowd, std::vector<bodies::LoadedBody> kinds, CrowdMotion motion,
                     std::uint32_t threads, const run::ProgressReport& progress);
 

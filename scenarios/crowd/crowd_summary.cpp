@@ -20,7 +20,7 @@ std::uint64_t pairs_of_faces(const CrowdStep& step) {
   return n;
 }
 
-/// Of all answers of a step: bodies, relation and the fingerprint of each.
+/// Returns a hash of all answers of a step: bodies, relation and fingerprint of each.
 std::uint64_t fingerprint_of(const CrowdStep& step) {
   Fnv64 h;
   for (const CrowdQuery& q : step.queries) {

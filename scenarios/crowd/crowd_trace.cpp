@@ -12,7 +12,7 @@ namespace {
 
 using trace::JsonWriter;
 
-/// Microseconds, or event numbers, which viewers take for microseconds.
+/// Writes times: microseconds, or event numbers, which viewers take for microseconds.
 struct Span {
   double begin = 0, length = 1;
 };
@@ -56,7 +56,7 @@ class Writer {
     end();
   }
 
-  /// Up to the arguments.
+  /// Writes the beginning of a line, up to the arguments.
   void begin(std::string_view name, std::string_view category, std::string_view phase, std::uint32_t track,
              const Span& span) {
     w_.begin_object().member("name", name).member("cat", category).member("ph", phase).key("ts");
@@ -139,7 +139,7 @@ class Writer {
     end();
   }
 
-  /// On the tracks of both bodies, or on the thread's.
+  /// Writes a query on the tracks of both bodies, or on the thread's.
   void query(const CrowdQuery& q, const Span& span) {
     if (wall_) {
       slice(q, span, kFirst + q.thread, run_.names[q.bodies.i] + " - " + run_.names[q.bodies.j]);

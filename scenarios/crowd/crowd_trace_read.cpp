@@ -37,7 +37,7 @@ class Reader {
   }
 
  private:
-  /// As in the trace, on one track or two.
+  /// Reads a query as the trace has it, on one track or two.
   struct Slice {
     std::uint32_t step;
     std::string a, b;
@@ -54,7 +54,7 @@ class Reader {
       queries_.push_back(args.at("queries").integer<std::uint32_t>());
     }
     if (!args.has("relation")) return;
-    // Version 1, which is refused once it is known, did not say the step.
+    // Version 1, which is refused once it is known, did not name the step.
     const auto step = args.has("time step") ? args.at("time step").integer<std::uint32_t>() : 0U;
     slices_.push_back({step, args.at("A").string(), args.at("B").string(),
                        args.at("relation").named<Relation>(), args.at("pairs").integer<std::uint64_t>(),
@@ -83,12 +83,12 @@ class Reader {
       const TraceNode node = kinds.at(k);
       spec::CrowdKind kind;
       kind.name = node.at("name").string();
-      // It names a file beside the trace.
+      // The name becomes that of a file beside the trace.
       if (kind.name.empty() || kind.name.find_first_of("/.\\") != std::string::npos)
         node.at("name").fail("the name of a kind of bodies");
       kind.count = node.at("count").integer<std::uint32_t>(spec::kMostCrowdBodies);
       if (kind.count == 0 || names_.size() + kind.count > spec::kMostCrowdBodies)
-        node.at("count").fail("1 body at least and 10000 in all at most");
+        node.at("count").fail("at least 1 body of a kind, and at most 10000 in all");
       for (std::uint32_t i = 1; i <= kind.count; ++i)
         if (!names_.emplace(kind.name + " " + std::to_string(i), names_.size()).second)
           node.at("name").fail("another name for each kind");
@@ -103,7 +103,7 @@ class Reader {
     const auto body = names_.find(name);
     if (body == names_.end())
       throw InputError(t_.file + ": a query names " + printable_name(name) +
-                       ", which is no body; the trace is damaged: record it again");
+                       ", but there is no such body; the trace is damaged: record it again");
     return static_cast<std::uint32_t>(body->second);
   }
 
@@ -112,7 +112,7 @@ class Reader {
     for (const Slice& s : slices_) {
       if (s.step >= queries_.size())
         throw InputError(t_.file + ": a query is of step " + std::to_string(s.step) +
-                         ", which there is not; the trace is damaged: record it again");
+                         ", which does not exist; the trace is damaged: record it again");
       const BodyPair bodies{body_called(s.a), body_called(s.b)};
       t_.answers[s.step].push_back({bodies, s.relation, s.pairs, s.fingerprint});
     }
@@ -159,7 +159,7 @@ class Reader {
 }  // namespace
 
 bool is_crowd_trace(std::string_view text) {
-  // The metadata come last; within a string the quotes would be escaped.
+  // The metadata come last. Within a string the quotes would be escaped.
   const std::size_t at = text.rfind("\"metadata\"");
   constexpr std::size_t kNear = 256;
   if (at == std::string_view::npos) return false;

@@ -58,7 +58,8 @@ class Approval {
   const GoldenRun& run_;
 };
 
-/// Nothing where files are missing or damaged and that `may_fail`: approving puts sound ones in their place.
+/// Calls something that reads a golden; returns nothing if files are missing or damaged and that `may_fail`,
+/// because approving replaces them by sound ones.
 std::optional<Golden> load_if_sound(const std::string& goldens, const std::string& name, bool may_fail) {
   try {
     return load_golden(goldens, name);

@@ -8,9 +8,9 @@
 
 namespace lrb::golden {
 
-/// Makes what was run the golden. Files that say the same already are left as they are; where a picture has
-/// changed, its old variants go. With `variant` the trace must be the approved one already, and pictures that
-/// differ are put beside the approved ones. Returns what was done, a line for each file; throws InputError.
+/// Makes a run the golden. Leaves files alone that say the same already; where a picture has changed, removes
+/// its old variants. With `variant` the trace must be the approved one already, and pictures that differ are
+/// put beside the approved ones. Returns what was done, a line for each file; throws InputError.
 std::vector<std::string> approve_golden(const std::string& goldens, const GoldenSpec& spec,
                                         const GoldenRun& run, const std::string& variant);
 

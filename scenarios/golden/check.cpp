@@ -60,7 +60,7 @@ std::vector<std::string> parts_of(const std::string& words) {
   }
 }
 
-/// Of two cameras in words, the first part that differs, and how many more do.
+/// Returns the first part in which the words for two cameras differ, and how many more parts do.
 std::string moved_words(const std::string& expected, const std::string& actual) {
   const std::vector<std::string> x = parts_of(expected), y = parts_of(actual);
   if (x.size() != y.size()) return "the camera changed: there were other views";
@@ -74,7 +74,7 @@ std::string moved_words(const std::string& expected, const std::string& actual) 
          (more > 0 ? ", and " + std::to_string(more) + " more such changes" : "");
 }
 
-/// What is behind a difference: another moment, another camera, or else other colours or shapes.
+/// Tells what is behind a difference: another moment, another camera, or else other colours or shapes.
 std::string explain(const render::DecodedPng& expected, const run::PaintedFrame& actual) {
   std::string out;
   const std::string event = text_of(expected, "lrbscope:event"), found = std::to_string(actual.event);

@@ -10,19 +10,19 @@ namespace {
 
 using Events = std::span<const trace::Event>;
 
-/// The same deed, whatever it was caused by: causes are numbers of events, which shift.
-bool same_deed(const trace::Event& x, const trace::Event& y) {
+/// Returns true if two events do the same, whatever caused them: causes are numbers of events, which shift.
+bool same_action(const trace::Event& x, const trace::Event& y) {
   return x.kind == y.kind && x.side == y.side && x.a == y.a && x.b == y.b && x.meet == y.meet;
 }
 
-/// Where a deed comes again after `from`; events.size(): nowhere.
-std::size_t find_after(Events events, std::size_t from, const trace::Event& deed) {
+/// Returns the index of the next event after `from` that does the same; events.size(): there is none.
+std::size_t find_after(Events events, std::size_t from, const trace::Event& action) {
   for (std::size_t i = from + 1; i < events.size(); ++i)
-    if (same_deed(events[i], deed)) return i;
+    if (same_action(events[i], action)) return i;
   return events.size();
 }
 
-/// "; the step has 53 contacts instead of 54", or nothing.
+/// Returns "; the step has 53 contacts instead of 54", or nothing.
 std::string contacts_words(Events expected, Events actual) {
   const std::uint64_t x = trace::count_events(expected).contacts, y = trace::count_events(actual).contacts;
   return x == y ? ""
@@ -50,7 +50,7 @@ std::string diagnose(const trace::Trace& expected, const trace::Trace& actual,
   if (!in_y) return several("lost", x.size() - i, event, x[i]) + contacts;
   if (!in_x) return several("added", y.size() - i, event, y[i]) + contacts;
   if (x[i].kind == y[i].kind && x[i].side == y[i].side && x[i].a == y[i].a && x[i].b == y[i].b)
-    return {};  // the same deed with another outcome: the message names the field
+    return {};  // the same action with another outcome: the message names the field
   const std::size_t found_in_x = find_after(x, i, y[i]), found_in_y = find_after(y, i, x[i]);
   const bool y_comes = found_in_x < x.size(), x_comes = found_in_y < y.size();
   if (y_comes && x_comes) {

@@ -6,8 +6,8 @@
 
 namespace lrb::golden {
 
-/// What happened at a divergence, told from the events that follow it in its step: events swapped, lost,
-/// added or replaced. One line; empty if it is not about an event.
+/// Tells what happened at a divergence from the events that follow it in its step: events swapped, lost,
+/// added or replaced. Returns one line; empty if it is not about an event.
 std::string diagnose(const trace::Trace& expected, const trace::Trace& actual,
                      const trace::Divergence& divergence);
 

@@ -17,8 +17,8 @@ const CollideResult* find_result(const GoldenRun& run, std::size_t step) {
   return step < run.recording.results.size() ? &run.recording.results[step] : nullptr;
 }
 
-/// The step that the runs part in: the one that was named, or, where they differ as a whole (the request, the
-/// number of steps), that of the first event that differs.
+/// Returns the step in which the runs begin to differ: the one that is named or, if they differ as a whole
+/// (the request, the number of steps), that of the first event that differs.
 std::optional<std::size_t> step_of(const trace::Trace& x, const trace::Trace& y, const trace::Divergence& d,
                                    std::optional<trace::EventId>& event) {
   if (d.step) return d.step;
@@ -28,20 +28,20 @@ std::optional<std::size_t> step_of(const trace::Trace& x, const trace::Trace& y,
   return std::min(x.step_of(*event), y.step_of(*event));
 }
 
-/// The event to show of a run: a step that has ended before shows its end.
+/// Returns the event of a run to show: if its step ended before, that is the step's end.
 trace::EventId event_to_show(const trace::Trace& trace, std::size_t step,
                              std::optional<trace::EventId> event) {
   const trace::EventId last = run::last_event(trace, step);
   return event ? std::min(*event, last) : last;
 }
 
-/// One of the two runs. What it does not share with the other one is its trace.
+/// One of the two runs; they differ in their traces.
 struct SideShown {
   const trace::Trace& trace;
   trace::EventId event;
 };
 
-/// The corners of what an event is about: the pair that it compares, or the regions that it opens.
+/// Returns the corners of what an event is about: the pair that it compares, or the regions that it opens.
 std::vector<Eigen::Vector3d> subject_of(const SideShown& side, const std::vector<const LrbRep*>& reps) {
   trace::Cursor cursor =
       reps.size() == 1 ? trace::Cursor(side.trace, *reps[0]) : trace::Cursor(side.trace, *reps[0], *reps[1]);
@@ -60,7 +60,7 @@ std::vector<Eigen::Vector3d> subject_of(const SideShown& side, const std::vector
   }
   const trace::Event& e = cursor.event();
   if (e.kind == EventKind::refine || e.kind == EventKind::coarsen)
-    for (const FaceId f : reps[static_cast<std::size_t>(e.side)]->collector(e.a))
+    for (const FaceId f : reps[static_cast<std::size_t>(e.side)]->collector(e.region()))
       for (const VertexId v : reps[static_cast<std::size_t>(e.side)]->face(f)) add(e.side, v);
   return out;
 }
@@ -71,7 +71,7 @@ spec::FrameSpec spec_for(const GoldenRun& run, bool close_up) {
   spec.width = kWidth;
   spec.height = kHeight;
   spec::FrameSpec::View whole;
-  if (!run.scenario.frames.views.empty()) {  // stand where the scenario stands
+  if (!run.scenario.frames.views.empty()) {  // look from where the scenario looks
     whole.from = run.scenario.frames.views[0].from;
     whole.up = run.scenario.frames.views[0].up;
   }
@@ -88,7 +88,7 @@ spec::FrameSpec spec_for(const GoldenRun& run, bool close_up) {
 
 run::PaintedFrame paint(const GoldenRun& run, const SideShown& side, spec::FrameSpec spec,
                         const run::Framing& framing, const std::string& title) {
-  run::RecordedRun p = performance_of(run);
+  run::RecordedRun p = recorded_run_of(run);
   p.title = run.scenario.name + ", " + title;
   p.trace = &side.trace;
   p.milestones.clear();
@@ -121,9 +121,9 @@ DivergencePictures draw_divergence(const Golden& golden, const GoldenRun& run,
   }
   const SideShown sides[2] = {{expected, event_to_show(expected, *step, event)},
                               {actual, event_to_show(actual, *step, event)}};
-  const std::vector<const LrbRep*> reps = performance_of(run).reps;
+  const std::vector<const LrbRep*> reps = recorded_run_of(run).reps;
   try {
-    // Around the step alone: both runs' bodies, and what both events are about.
+    // The cameras are fitted to this step alone: both runs' bodies, and what both events are about.
     run::Framing framing = run::frame_sequence(reps, actual, run.recording.results, run.scenario.frames);
     framing.contacts.clear();
     for (const SideShown& side : sides)

@@ -8,8 +8,8 @@
 
 namespace lrb::golden {
 
-/// The two runs where they part: at the first event that differs, or at the end of the step that does, whole
-/// and close up, through the same cameras.
+/// The two runs where they begin to differ: at the first event that differs, or at the end of the step that
+/// does; the whole and a close-up, through the same cameras.
 struct DivergencePictures {
   render::Image expected, actual;  ///< empty if there is nothing to draw
   std::string expected_caption, actual_caption;

@@ -26,7 +26,7 @@ std::string folder_of(const std::string& goldens, const std::string& name) {
   return (fs::path(goldens) / name).string();
 }
 
-/// Of "frame_12.png" and "frame_12.variant.png": 11; of other names: nothing.
+/// Returns 11 for "frame_12.png" and "frame_12.variant.png"; nothing for other names.
 std::optional<std::size_t> frame_of_file(std::string_view file) {
   if (!file.starts_with(kFrame) || !file.ends_with(kPng)) return std::nullopt;
   const char *first = file.data() + kFrame.size(), *last = file.data() + file.size();
@@ -44,16 +44,18 @@ std::vector<std::string> image_files(const std::string& folder, const Wanted& wa
     const std::string file = entry.path().filename().string();
     if (const auto frame = frame_of_file(file); frame && wanted(*frame)) out.push_back(file);
   }
-  // The one without a variant is the shortest of its frame.
+  // The file without a variant is the one with the shortest name of its frame.
   std::sort(out.begin(), out.end(), [](const std::string& x, const std::string& y) {
     return x.size() != y.size() ? x.size() < y.size() : x < y;
   });
   return out;
 }
 
-/// A picture of a golden: damaged ones are failures of their own, which leave the rest to be tested.
+/// Reads a picture of a golden. Keeps a damaged one with the reason: it is a failure of its own, and the
+/// others can still be tested.
 GoldenImage read_image(const std::string& folder, const std::string& file, const GoldenSpec& spec) {
-  constexpr std::uint64_t kLarger = 4;  // than golden.json says: another size is a difference like others
+  constexpr std::uint64_t kLarger = 4;  // times the pixels that golden.json says: a picture of another size
+                                        // is a difference like any other
   const auto expected = static_cast<std::uint64_t>(spec.width) * static_cast<std::uint64_t>(spec.height);
   GoldenImage image{file, {}, {}};
   try {

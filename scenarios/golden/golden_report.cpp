@@ -61,7 +61,7 @@ std::string counted(std::size_t n, const char* one, const char* many) {
   return render::group_digits(n) + " " + (n == 1 ? one : many);
 }
 
-/// "3 of 3 equal", "2 of 3 differ".
+/// Returns "3 of 3 equal", "2 of 3 differ".
 std::string images_words(const GoldenVerdict& verdict) {
   if (!verdict.refusal.empty()) return "not tested";
   std::size_t failed = 0, near = 0;

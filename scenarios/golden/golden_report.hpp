@@ -1,5 +1,5 @@
 #pragma once
-/// What a test of goldens leaves: files of what differs, and a page.
+/// Writes what a test of goldens leaves behind: files of what differs, and a page.
 
 #include <array>
 #include <string>
@@ -11,7 +11,7 @@
 
 namespace lrb::golden {
 
-/// One scenario's test, without its run.
+/// The result of testing one scenario, without its run.
 struct GoldenResult {
   std::string name, purpose;
   GoldenVerdict verdict;
@@ -22,24 +22,25 @@ struct GoldenResult {
       pngs;  ///< of each: expected, actual, difference; empty: there is none
 };
 
-/// Tests a run. Pictures of what passed are kept if `all`.
+/// Tests a run. With `all`, keeps the pictures of what passed, too.
 GoldenResult test_golden(const Golden& golden, const GoldenRun& run, const std::string& approve, bool all);
 
-/// The result of a golden that could not be tested, because it is damaged or its scenario is refused.
+/// Returns the result for a golden that could not be tested, because it is damaged or its scenario is
+/// refused.
 GoldenResult untested_golden(const std::string& name, const std::string& refusal, const std::string& approve);
 
 /// Removes what an earlier test of these goldens left in a folder, and nothing else.
 void clear_golden_report(const std::string& folder, const std::vector<std::string>& names);
 
-/// The failures of a test as folder/NAME/{frame_1,divergence}.{expected,actual,difference}.png and, where the
-/// events differ, NAME/actual.trace.json.gz, for `lrbscope render` and Perfetto.
+/// Writes the failures of a test: folder/NAME/{frame_1,divergence}.{expected,actual,difference}.png and,
+/// where events differ, NAME/actual.trace.json.gz, for `lrbscope render` and Perfetto.
 void write_failures(const GoldenResult& result, const GoldenRun& run, const std::string& folder);
 
-/// folder/index.html
+/// Writes folder/index.html.
 void write_golden_page(const std::vector<GoldenResult>& results, const std::string& folder,
                        const std::string& command);
 
-/// The lines that tell people about a scenario's test.
+/// Returns the lines that tell people about a scenario's test.
 std::string result_text(const GoldenResult& result);
 
 }  // namespace lrb::golden

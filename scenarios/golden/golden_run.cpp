@@ -50,14 +50,14 @@ GoldenRun play_golden(spec::Scenario scenario, const GoldenSpec& spec, const run
   frames.dpi = 0;
   frames.most = spec.frames;
   run.recording = run::record(run.scenario, progress);
-  for (trace::BodyInfo& body : run.recording.trace.header.bodies)  // no folder of this machine
+  for (trace::BodyInfo& body : run.recording.trace.header.bodies)  // names no folder of this machine
     if (body.source.find('/') != std::string::npos)
       body.source = std::filesystem::path(body.source).filename().string();
-  run.frames = run::paint_frames(performance_of(run), frames, progress);
+  run.frames = run::paint_frames(recorded_run_of(run), frames, progress);
   return run;
 }
 
-run::RecordedRun performance_of(const GoldenRun& run) {
+run::RecordedRun recorded_run_of(const GoldenRun& run) {
   run::RecordedRun p;
   p.title = run.scenario.name;
   p.trace = &run.recording.trace;

@@ -17,21 +17,21 @@ struct GoldenRun {
   std::vector<run::PaintedFrame> frames;
 };
 
-/// Always on the event clock, whatever the scenario says.
+/// Runs and draws a scenario, always on the event clock, whatever the scenario says.
 GoldenRun play_golden(spec::Scenario scenario, const GoldenSpec& spec, const run::ProgressReport& progress);
 
-run::RecordedRun performance_of(const GoldenRun& run);
+run::RecordedRun recorded_run_of(const GoldenRun& run);
 
-/// What an approved picture says about itself: scenario, event and camera, by which a later difference is
-/// explained. No version and no folder: the same picture is the same file.
+/// Returns what an approved picture says about itself: scenario, event and camera, by which a later
+/// difference is explained. It names no version and no folder, so that the same picture is the same file.
 std::vector<render::PngText> golden_text(const GoldenRun& run, std::size_t frame);
 
 inline const char* const kCameraText = "lrbscope:camera";
-/// The cameras of a frame in words, a view after the other; "; " stands between the parts.
+/// Describes the cameras of a frame in words, one view after the other, separated by "; ".
 std::string camera_words(const std::vector<render::Camera>& cameras);
 
-/// Size of a golden's pictures unless one is asked for: of the scenario's shape, small enough to be kept, and
-/// large enough for their text.
+/// Sets the size of a golden's pictures unless one is asked for: of the scenario's shape, small enough to be
+/// kept and large enough for their text.
 void set_default_size(GoldenSpec& spec, const spec::FrameSpec& frames);
 
 }  // namespace lrb::golden

@@ -1,6 +1,6 @@
 #pragma once
-/// Text files compiled into the program (cmake/embed.cmake): the page's template, the charting library, the
-/// schemas and the shipped scenarios, so that one binary does everything wherever it is copied to.
+/// Text files that are compiled into the program (cmake/embed.cmake): the page's template, the charting
+/// library, the schemas and the shipped scenarios. One binary then does everything wherever it is copied to.
 
 #include <span>
 #include <string_view>
@@ -13,7 +13,7 @@ struct EmbeddedFile {
 };
 
 std::span<const EmbeddedFile> embedded_files();
-/// Its text. Throws EnvironmentError if the program was built without it.
+/// Returns the text of a file. Throws EnvironmentError if the program was built without it.
 std::string_view embedded_file(std::string_view name);
 
 }  // namespace lrb::io

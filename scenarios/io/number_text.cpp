@@ -12,7 +12,7 @@ std::string number_text(double x, int digits) {
 }
 
 std::string fixed_text(double x, int decimals) {
-  std::array<char, 512> text{};  // a double has 309 digits before the point at most
+  std::array<char, 512> text{};  // a double has at most 309 digits before the point
   std::string out(
       text.data(),
       std::to_chars(text.data(), text.data() + text.size(), x, std::chars_format::fixed, decimals).ptr);

@@ -24,7 +24,7 @@ std::vector<std::string_view> words_of(std::string_view line) {
   return words;
 }
 
-/// A word as it can be shown in a one-line message.
+/// Returns a word as it can be shown in a one-line message.
 std::string shown(std::string_view word) {
   constexpr std::size_t kLongest = 32;
   std::string out;
@@ -33,7 +33,8 @@ std::string shown(std::string_view word) {
 }
 
 double number(std::string_view word, const std::string& where) {
-  const std::string_view digits = word.substr(word[0] == '+' ? 1 : 0);  // from_chars knows no plus sign
+  const std::string_view digits = word.substr(word[0] == '+' ? 1 : 0);  // from_chars does not read a plus
+                                                                        // sign
   double x = 0;
   const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), x);
   if (error == std::errc::result_out_of_range)

@@ -8,14 +8,15 @@
 
 namespace lrb::io {
 
-/// Poses from text: 12 numbers a line, row-major 3x4 (rotation and translation), between spaces, tabs or
-/// commas; blank lines and what follows a # are passed over. Throws InputError "name:line: ..." for anything
-/// else, and for a file without poses. `lines`, if given, gets the number of each pose's line.
+/// Reads poses: 12 numbers on each line, a 3x4 matrix row by row (rotation and translation), separated by
+/// spaces, tabs or commas; blank lines and what follows a # are skipped. Throws InputError "name:line: ..."
+/// for anything else, and for a file without poses. Puts the number of each pose's line into `lines`, if
+/// given.
 std::vector<Pose> parse_poses(const std::string& text, const std::string& name,
                               std::vector<std::size_t>* lines = nullptr);
 std::vector<Pose> read_poses(const std::string& path, std::vector<std::size_t>* lines = nullptr);
 
-/// Three numbers "X,Y,Z". Throws InputError.
+/// Reads three numbers "X,Y,Z"; `option` names them in the message. Throws InputError.
 Eigen::Vector3d parse_vector(const std::string& text, const std::string& option);
 
 }  // namespace lrb::io

@@ -1,7 +1,7 @@
 #pragma once
 /// One interface for everything that finds the pairs of triangles in which two bodies meet: ours, brute
-/// force, and engines of others. Bodies are built once and asked at many poses; what a query needs besides is
-/// kept from one to the next.
+/// force, and engines of others. Bodies are built once and queried at many poses; whatever else a query needs
+/// is kept from one to the next.
 
 #include <memory>
 #include <optional>
@@ -13,19 +13,20 @@
 
 namespace lrb::methods {
 
-/// What a method says of two bodies whose surfaces do not meet.
+/// What a method says about two bodies whose surfaces do not meet.
 enum class Says : std::uint8_t {
   nothing,   ///< only whether and where surfaces meet
   inside,    ///< whether one body lies in the other
   relation,  ///< all of Relation
 };
 
-/// How a method is drawn on charts. Methods of one title are one series: they look as the first of them does.
+/// How a method is drawn on charts. Methods of one title are one series, which looks as the first of them
+/// does.
 struct MethodStyle {
-  std::string title;   ///< for the key: "FCL"; empty: a style of its own is found, under the method's name
+  std::string title;   ///< for the key: "FCL"; empty: a style is chosen, under the method's name
   std::string colour;  ///< #rrggbb
   std::string shape;   ///< Chart.js's name of the point's shape
-  int point = 0;       ///< gnuplot's number of it
+  int point = 0;       ///< gnuplot's number of the point's shape
 };
 
 struct MethodInfo {
@@ -33,22 +34,22 @@ struct MethodInfo {
   std::string title;   ///< for people, with the version: "FCL 0.7.0, OBBRSS, double"
   std::string remark;  ///< what it answers, and how it was asked
   bool present = true;
-  bool pairs = true;  ///< lists the pairs; else it says only whether the surfaces meet
-  /// Its list is of pairs that are near or behind each other too, by what contact means to it: pairs too many
-  /// are counted, but wrong only where the bodies do not meet at all.
+  bool pairs = true;  ///< lists the pairs; else it only says whether the surfaces meet
+  /// Its list includes pairs that are near or behind each other, because that is what contact means to it:
+  /// extra pairs are counted, but are wrong only where the bodies do not meet at all.
   bool loose = false;
-  Says says = Says::nothing;  ///< besides
+  Says says = Says::nothing;  ///< what it says besides
   bool plane = false;         ///< takes 2D bodies
-  /// Moves vertices exactly as Pose::apply does. The others can be given the same question only with world
+  /// Moves vertices exactly as Pose::apply does. Other methods can be given the same question only with world
   /// coordinates in the body and poses that move nothing.
   bool moves_exactly = false;
-  bool hard_cases = true;  ///< takes part in `stability`; else in `bench` and `chart` alone
-  /// Pairs, or points of contact, up to an error that a knob trades for time.
+  bool hard_cases = true;  ///< takes part in `stability`; else only in `bench` and `chart`
+  /// Gives pairs, or points of contact, up to an error that a knob trades for time.
   bool approximate = false;
   bool convex = false;           ///< answers for the bodies' convex hulls
   bool own_rep = false;          ///< works on the LRB-rep as it comes: building a body means building that
   std::string knob;              ///< what `settings` set: "level"; empty: there is nothing to set
-  std::vector<double> settings;  ///< those worth a sweep, from coarse to fine
+  std::vector<double> settings;  ///< settings worth a sweep, from coarse to fine
   MethodStyle style = {};
   int rank = 1000;  ///< the methods' order in tables and charts: by rank, then by file
 };
@@ -60,30 +61,33 @@ class MethodBody {
 };
 
 struct MethodAnswer {
-  bool contact = false;              ///< the surfaces meet
-  std::vector<SimplexPair> pairs;    ///< ascending, each once; in Mode::first_pair at most one
-  std::optional<bool> inside;        ///< no contact, and one body lies in the other; unless it says nothing
-  std::optional<Relation> relation;  ///< if it says that
-  double microseconds = 0;           ///< of the query alone; not of sorting what a method found
-  std::uint64_t face_tests = 0;      ///< comparisons of two faces (or spheres), if it counts them
-  std::vector<Eigen::Vector3d> points;  ///< in the world, where it says where but not which faces
+  bool contact = false;            ///< the surfaces meet
+  std::vector<SimplexPair> pairs;  ///< ascending, each once; in Mode::first_pair at most one
+  std::optional<bool> inside;  ///< no contact, and one body lies in the other; nothing if the method does not
+                               ///< say
+  std::optional<Relation> relation;  ///< nothing if the method does not say
+  double microseconds = 0;           ///< the time of the query alone, without sorting what the method found
+  std::uint64_t face_tests = 0;      ///< number of comparisons of two faces (or spheres), if it counts them
+  std::vector<Eigen::Vector3d> points;  ///< in the world, if it says where the contact is but not which faces
+                                        ///< meet
 };
 
-/// Not for two threads at once.
+/// A method. Not for two threads at once.
 class Method {
  public:
   virtual ~Method() = default;
-  /// Turns the knob, for the queries that follow.
+  /// Sets the knob for the queries that follow.
   virtual void set(double) {}
-  /// The real simplices of a body. Throws InputError if the method cannot take it: a refusal.
+  /// Makes a body from the real simplices of an LRB-rep. Throws InputError if the method cannot take it,
+  /// which counts as a refusal.
   virtual std::unique_ptr<MethodBody> build(const LrbRep& rep) = 0;
-  /// Two bodies, different objects, built by this very method. Poses that are no rotations are refused by
-  /// most (InputError).
+  /// Answers for two bodies, different objects, that this very method has built. Most methods refuse poses
+  /// that are not rotations (InputError).
   virtual MethodAnswer query(const MethodBody& a, const Pose& pose_a, const MethodBody& b, const Pose& pose_b,
                              Mode mode) = 0;
 };
 
-/// A method that may be there or not.
+/// A method that this program may have or not.
 struct MethodEntry {
   MethodInfo info;
   std::unique_ptr<Method> (*make)() = nullptr;  ///< of those that are present
@@ -92,7 +96,7 @@ inline int rank_of(const MethodEntry& e) {
   return e.info.rank;
 }
 
-/// A method whose Debian package was not found when this was built.
+/// Returns the entry of a method whose Debian package was not found when the program was built.
 inline MethodEntry absent(const char* name, const char* title, const char* package, int rank = 1000,
                           MethodStyle style = {}) {
   MethodInfo info;
@@ -105,8 +109,9 @@ inline MethodEntry absent(const char* name, const char* title, const char* packa
   return {info};
 }
 
-/// Returns the methods of the program that this is linked to, in their order. A file NAME.cpp in own/ or peers/ defines
-/// `std::vector<MethodEntry> NAME_methods()`, and the program has them: they need no other list (cmake/registry.cmake).
+/// Returns the methods of the program that this is linked to, in their order. A file NAME.cpp in own/ or
+/// peers/ defines `std::vector<MethodEntry> NAME_methods()`, and the program has them: they need no other
+/// list (cmake/registry.cmake).
 std::vector<MethodEntry> registered_methods();
 
 /// Returns the method of that name. Throws InputError if there is none, or it is absent.

@@ -37,7 +37,7 @@ bool holds(const std::array<Vector2d, 3>& t, const Vector2d& p) {
   return (u >= 0 && v >= 0 && w >= 0) || (u <= 0 && v <= 0 && w <= 0);
 }
 
-/// Triangles of one plane, seen along the axis in which its normal is longest.
+/// Tests triangles of one plane, seen along the axis in which its normal is longest.
 bool coplanar_meet(const Vector3d& normal, const Vector3d a[3], const Vector3d b[3]) {
   Eigen::Index drop = 0;
   normal.cwiseAbs().maxCoeff(&drop);
@@ -68,7 +68,8 @@ bool one_side(const std::array<double, 3>& d) {
   return d[0] * d[1] > 0 && d[0] * d[2] > 0;
 }
 
-/// The corner that is alone on its side of the other's plane, or on the plane where the others share a side.
+/// Returns the corner that is alone on its side of the other's plane, or on the plane where the others share
+/// a side.
 int lone_corner(const std::array<double, 3>& d) {
   if (d[0] * d[1] > 0) return 2;
   if (d[0] * d[2] > 0) return 1;
@@ -76,7 +77,7 @@ int lone_corner(const std::array<double, 3>& d) {
   return d[1] != 0 ? 1 : 2;
 }
 
-/// Where a triangle cuts the common line, along one of its coordinates.
+/// Returns where a triangle cuts the common line, along one of its coordinates.
 std::array<double, 2> interval(const Vector3d t[3], const std::array<double, 3>& d, Eigen::Index axis) {
   const int lone = lone_corner(d);
   std::array<double, 2> ends{};

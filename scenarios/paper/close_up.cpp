@@ -11,9 +11,7 @@
 namespace lrb::paper {
 namespace {
 
-constexpr std::size_t kPaper = 0;  // of kRecursions
-
-/// The records of one collision, in the order of its steps, are what it took now.
+/// Returns true if the records of one collision, in the order of its steps, agree with what it took now.
 bool same_counts(std::span<const ContactStep> records, const CloseUp& found, const std::string& object) {
   std::size_t next = 0;
   for (const ContactStep& r : records) {

@@ -1,6 +1,5 @@
 #pragma once
-/// Single collisions of the sweep, looked at closely: asked again by the paper's recursion, every event of it
-/// written down.
+/// Repeats single collisions of the sweep by the paper's recursion and records every event.
 
 #include <array>
 #include <span>
@@ -20,13 +19,13 @@ struct PaperPair {
 
 struct CloseUp {
   std::uint32_t collision = 0;
-  std::uint64_t comparisons = 0;   ///< of all its counted time steps, by the paper's recursion
+  std::uint64_t comparisons = 0;   ///< number in all its counted time steps, by the paper's recursion
   std::vector<ContactStep> steps;  ///< with poses
-  trace::Trace trace;              ///< of the paper's recursion: a time step each
+  trace::Trace trace;              ///< of the paper's recursion: each counted step is a time step
 };
 
-/// The collisions with this object that took the fewest and the most comparisons of the paper's recursion
-/// over their counted time steps; the first of several. Throws InputError if there is none.
+/// Returns the collisions with this object that took the fewest and the most comparisons of the paper's
+/// recursion over their counted time steps; of several, the first. Throws InputError if there is none.
 std::array<std::uint32_t, 2> easiest_and_hardest(std::span<const ContactStep> steps,
                                                  const std::string& object);
 

@@ -1,7 +1,6 @@
 #pragma once
-/// The paper's experiment as a file: which bodies, by which protocol, and what is reported of them. The
-/// format is described by schema/experiment.schema.json; shipped/*.experiment.json hold the published
-/// numbers.
+/// The paper's experiment as a file: which bodies, by which protocol, and what is reported of them.
+/// schema/experiment.schema.json describes the format; shipped/*.experiment.json hold the published numbers.
 
 #include <string>
 #include <vector>
@@ -34,20 +33,20 @@ struct PaperExperiment {
   std::string close_up;           ///< the object of heat maps and refinement tree
 
   bool reports(PaperPart part) const;
-  /// Whether any part needs a collision.
+  /// Returns true if any part needs a collision.
   bool collides() const;
 };
 
-/// Throws InputError: "file:line:column: pointer: what is wrong, what is known".
+/// Reads an experiment. Throws InputError: "file:line:column: pointer: what is wrong, what is known".
 PaperExperiment parse_experiment(const std::string& text, const std::string& file);
-/// By the name of a shipped one, or from a file.
+/// Reads a shipped experiment by its name, or one from a file.
 PaperExperiment open_experiment(const std::string& name_or_path);
-/// The text of a shipped one, to be changed. Throws InputError for another name.
+/// Returns the text of a shipped experiment, to start one's own from. Throws InputError for another name.
 std::string shipped_experiment(const std::string& name);
 std::vector<std::string> shipped_experiments();
 
-/// Its bodies, all of the first one's diagonal. `notes` gets what was done to them. Throws InputError for
-/// bodies that are not 3D.
+/// Makes its bodies, all scaled to the first one's diagonal. Adds what was done to them to `notes`. Throws
+/// InputError for bodies that are not 3D.
 std::vector<PaperObject> make_objects(const PaperExperiment& experiment, std::vector<std::string>& notes);
 
 }  // namespace lrb::paper

@@ -8,17 +8,17 @@
 namespace lrb::paper {
 namespace {
 
-constexpr std::size_t kPaper = 0;  // of kRecursions
 constexpr double kBinWidth = 250;  // comparisons
 
-// Okabe and Ito's colours, which survive colour blindness; dash and point types survive greyscale.
+// Okabe and Ito's colours, which people with any colour vision tell apart; dash and point types are told
+// apart in grey, too.
 constexpr const char* kColours[] = {"#0072B2", "#E69F00", "#009E73", "#D55E00",
                                     "#56B4E9", "#CC79A7", "#000000"};
 
 }  // namespace
 
 report::Gnuplot figure_3_1(std::span<const ObjectRow> rows) {
-  constexpr double kBeside = 1.06;  // published bars stand this factor to the right of ours
+  constexpr double kBeside = 1.06;  // published bars stand to the right of ours by this factor
   const auto bar = [](double size, double average, double min, double max) {
     return io::fixed_text(size) + " " + io::fixed_text(average) + " " + io::fixed_text(min) + " " +
            io::fixed_text(max);

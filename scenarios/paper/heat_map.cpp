@@ -15,9 +15,10 @@ namespace lrb::paper {
 namespace {
 
 constexpr int kPanelWidth = 560, kPanelHeight = 500;
-constexpr double kAside = 0.45;  ///< how far from the other body's place one looks, over the distance
+constexpr double kAside = 0.45;  ///< how far the viewer stands aside from the other body's place, over the
+                                 ///< distance
 
-/// Shape is seen, and colours stay those of the scale.
+/// Lighting in which the shape is seen and colours stay those of the scale.
 const render::Lighting kSoft{.ambient = 0.78, .head = 0.1, .key = 0.16, .fill = 0.05};
 
 /// What one panel shows.
@@ -45,26 +46,26 @@ Eigen::AlignedBox3d box_of(const LrbRep& rep, const Pose& pose) {
   return box;
 }
 
-/// From where the other body is, a little aside: onto the faces that it met.
+/// Returns the direction from the place of the other body, a little aside, onto the faces that it met.
 render::ViewDirection view_of(const PaperPair& pair, const Sitter& s) {
   const ContactStep& last = s.collision->steps.back();
   const Eigen::Vector3d way =
       box_of(pair.x.rep, last.pose_x).center() - box_of(pair.a.rep, last.pose_a).center();
   const Eigen::Vector3d from = (s.side == Side::a ? way : -way).normalized();
-  int flat = 0;  // the axis that the direction leans to least
+  int flat = 0;  // the axis that is most nearly perpendicular to the direction
   from.cwiseAbs().minCoeff(&flat);
   const Eigen::Vector3d up = Eigen::Vector3d::Unit(flat), aside = from.cross(up).normalized();
   return {from + kAside * (aside + 0.7 * up), up};
 }
 
-/// Where the bodies meet in the last time step.
+/// Asks where the bodies meet in the last time step.
 CollideResult contact_of(const PaperPair& pair, const CloseUp& c) {
   CollideRequest request;
   request.contacts = true;
   return collide(pair.a.rep, c.steps.back().pose_a, pair.x.rep, c.steps.back().pose_x, request);
 }
 
-/// The contact region with most pairs of faces.
+/// Returns the points of the contact region with most pairs of faces.
 std::vector<Eigen::Vector3d> largest_contact(const CollideResult& contact) {
   const auto less = [](const ContactRegion& p, const ContactRegion& q) {
     return p.pairs.size() < q.pairs.size();
@@ -77,19 +78,20 @@ render::Camera camera_of(const PaperPair& pair, const Sitter& s) {
   const LrbRep& rep = pair.rep(s.side);
   render::FitOptions fit;
   fit.view = view_of(pair, s);
-  constexpr double kAround = 1.2, kLeast = 0.12;  // of the contact's size, of the body's
+  constexpr double kAround = 1.2, kLeast = 0.12;  // as shares of the contact's size and of the body's
   return s.near ? render::fit_contact(largest_contact(*s.contact), box_of(rep, pose_of(s)), kPanelWidth,
                                       kPanelHeight, fit, kAround, kLeast)
                 : render::fit_camera(render::body_points(rep, pose_of(s)), kPanelWidth, kPanelHeight, fit);
 }
 
-/// The scale: logarithmic, because a few faces get most of the tests. 0 for none, 1 for the most of all.
+/// Returns the place of a count on the scale, which is logarithmic because a few faces get most of the tests:
+/// 0 for none, 1 for the largest of all.
 double share(double tests, double most) {
   return most > 0 ? std::log1p(tests) / std::log1p(most) : 0;
 }
 
-/// The wrapper as the last time step left it, without anything translucent, so that colours are those of the
-/// scale; and where the bodies meet.
+/// Draws the wrapper as the last time step left it, without anything translucent, so that colours are those
+/// of the scale; and where the bodies meet.
 render::DrawList wrapper_list(const PaperPair& pair, const Sitter& s, double most) {
   const LrbRep& rep = pair.rep(s.side);
   const std::vector<double> tests = tests_of(pair, s);
@@ -160,7 +162,7 @@ render::Image draw_heat_maps(const PaperPair& pair, const CloseUp& easiest, cons
       {render::LegendItem::Mark::line, render::palette::kContact, "where the bodies meet in the end"},
       {render::LegendItem::Mark::dashed, render::palette::kContact, "the same, hidden"}};
   overlay.scale = render::ScaleBar{"face tests of a face (log scale)", 0, most};
-  constexpr int kRoom = 400;  // more than the legend needs; what it does not need is not drawn
+  constexpr int kRoom = 400;  // more than the legend needs; what it does not need is cut off
   const render::OverlayLayout tentative = render::lay_out(overlay, all.width(), all.height() + kRoom);
   const int height = all.height() + (all.height() + kRoom - tentative.picture.height);
   return render::compose_frame(all, all.rect(), overlay, all.width(), height);

@@ -17,8 +17,10 @@ namespace {
 using namespace render::svg_text;
 
 constexpr double kWidth = 1200, kMargin = 16, kRow = 24, kText = 15, kTitle = 18, kGap = 34;  // pixels
-constexpr double kRule = 0.7, kRuleShare = 0.2;  ///< white between boxes: pixels, of the box at most
-constexpr double kRoomForText = 2.5;             ///< box widths over the text's height that take a number
+constexpr double kRule = 0.7, kRuleShare = 0.2;  ///< white between boxes: pixels, and as a share of the box
+                                                 ///< at most
+constexpr double kRoomForText = 2.5;  ///< a box gets its number if it is at least this many times as wide as
+                                      ///< the text is high
 
 enum class State : std::uint8_t { refined, tested, real_tested, untouched };  // in the order of the boxes
 
@@ -36,10 +38,10 @@ render::Rgba colour_of(State s) {
   return render::palette::kRule;
 }
 
-/// A region, or the real faces of one that share a state.
+/// A region, or those of its real faces that share a state.
 struct Node {
   State state = State::untouched;
-  double width = 0;  ///< faces
+  double width = 0;  ///< number of faces
   std::string name, what;
   std::vector<Node> inside;
 };
@@ -61,13 +63,13 @@ class Tree {
   }
 
  private:
-  std::size_t slot(CellId cell) const { return is_region(cell) ? cell : rep_.region_count(); }
+  std::size_t slot(CellId cell) const { return is_region(cell) ? cell.value() : rep_.region_count(); }
 
-  /// What lies under an opened region, or under the outside.
+  /// Adds what lies below an opened region, or below the outside.
   Node open(CellId cell) const {
     Node n;
     for (const RegionId r : inside_[slot(cell)]) n.inside.push_back(node(r));
-    const auto floor = is_region(cell) ? rep_.floor(cell) : rep_.outermost_faces();
+    const auto floor = is_region(cell) ? rep_.floor(cell.as_region()) : rep_.outermost_faces();
     for (const State state : {State::real_tested, State::untouched}) {
       const auto count = std::count_if(floor.begin(), floor.end(), [&](FaceId f) {
         return rep_.is_real(f) && (tests_[f] > 0) == (state == State::real_tested);
@@ -102,7 +104,7 @@ class Tree {
     return n;
   }
 
-  /// All that lies under a lid that was not opened, as one box.
+  /// Adds everything below a lid that was not opened, as one box.
   Node hidden(RegionId r, double width) const {
     std::uint64_t regions = 0, faces = 0;
     std::vector<RegionId> left = {r};
@@ -123,7 +125,7 @@ class Tree {
   const LrbRep& rep_;
   const Wrapper& wrapper_;
   const std::vector<std::uint32_t>& tests_;
-  std::vector<std::vector<RegionId>> inside_;  ///< by parent; the last: the outside
+  std::vector<std::vector<RegionId>> inside_;  ///< by parent; the last entry is for the outside
 };
 
 int depth_of(const Node& n) {

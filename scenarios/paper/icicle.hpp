@@ -6,13 +6,14 @@
 
 namespace lrb::paper {
 
-/// The refinement trees of both bodies in the time step of a collision that took most comparisons, as icicle
-/// charts in one SVG. A row is a depth, from the outermost wrapper down; a box is a region, right under the
-/// one that hid it; under a refined region, boxes of its real faces. Width: the faces of the wrapper that the
-/// query ended with, each as wide as the next. Colour: refined, tested but not refined, neither.
+/// Returns the refinement trees of both bodies, in the time step of a collision that took most comparisons,
+/// as icicle charts in one SVG. A row is a depth, from the outermost wrapper down. A box is a region, right
+/// below the one that hid it; below a refined region are boxes of its real faces. Widths count the faces of
+/// the wrapper that the query ended with, all equally wide. Colours: refined; tested but not refined;
+/// neither.
 std::string icicle_svg(const PaperPair& pair, const CloseUp& collision);
 
-/// The time step that it shows: an index into collision.steps.
+/// Returns the time step that it shows: an index into collision.steps.
 std::size_t busiest_step(const CloseUp& collision);
 
 }  // namespace lrb::paper

@@ -1,5 +1,5 @@
 #pragma once
-/// Numbers as the reports write them.
+/// Writes numbers as the reports show them.
 
 #include <cmath>
 #include <iomanip>

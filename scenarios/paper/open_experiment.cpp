@@ -6,25 +6,19 @@
 #include "scenarios/spec/shipped.hpp"
 
 namespace lrb::paper {
-namespace {
-
-constexpr std::string_view kEnding = ".experiment.json";
-
-}  // namespace
-
 std::vector<std::string> shipped_experiments() {
-  return spec::shipped_names(kEnding);
+  return spec::shipped_names(spec::kExperimentEnding);
 }
 
 std::string shipped_experiment(const std::string& name) {
   const std::vector<std::string> names = shipped_experiments();
   if (std::find(names.begin(), names.end(), name) == names.end())
     throw InputError("no experiment is called \"" + name + "\"" + io::suggestion(name, names));
-  return spec::open_named(name, kEnding, "experiment").text;
+  return spec::open_named(name, spec::kExperimentEnding, "experiment").text;
 }
 
 PaperExperiment open_experiment(const std::string& name_or_path) {
-  const spec::NamedText experiment = spec::open_named(name_or_path, kEnding, "experiment");
+  const spec::NamedText experiment = spec::open_named(name_or_path, spec::kExperimentEnding, "experiment");
   return parse_experiment(experiment.text, experiment.file);
 }
 

@@ -20,7 +20,7 @@ constexpr std::array<const char*, 3> kTitles = {"the paper's recursion, each pai
                                                 "the paper's recursion, each region once (strict)",
                                                 "complete"};
 
-/// Whether an object of the paper has these very numbers of faces.
+/// Returns true if an object of the paper has these very numbers of faces.
 bool as_published(const PaperObject& o) {
   const auto published = generators::paper_objects();
   return std::any_of(published.begin(), published.end(), [&](const generators::FractalSpec& p) {
@@ -74,7 +74,7 @@ report::PageTable table2(std::span<const ObjectRow> rows, std::size_t recursion)
   return t;
 }
 
-/// What a reader must know before he compares.
+/// Returns what a reader must know before comparing.
 std::vector<std::string> differences(const PaperReport& r, std::span<const ObjectRow> rows) {
   std::vector<std::string> out;
   if (!all_as_published(r))
@@ -169,7 +169,7 @@ report::PageChart sizes_chart(std::span<const ObjectRow> rows) {
   return sizes;
 }
 
-/// Figures 3.1 and 3.2, as far as they are wanted and gnuplot is there.
+/// Draws figures 3.1 and 3.2, as far as they are wanted and gnuplot is there.
 void draw_charts(const PaperReport& r, std::span<const ObjectRow> rows, const std::string& folder,
                  report::Page& page, std::vector<std::string>& notes) {
   struct Figure {

@@ -1,5 +1,5 @@
 #pragma once
-/// The paper's experiment, reported: tables beside the published ones, figures, and what differs.
+/// Reports the paper's experiment: tables beside the published ones, figures, and what differs.
 
 #include <string>
 
@@ -13,15 +13,14 @@ struct PaperReport {
   std::span<const PaperObject> objects;  ///< A first
   std::span<const ContactStep> steps;
   const PaperExperiment& experiment;
-  std::string command;                                       ///< that made it
+  std::string command;                                       ///< the command that made it
   const SeriesReport* series = nullptr;                      ///< bodies at several resolutions; may be null
-  std::vector<std::pair<std::string, double>> seconds = {};  ///< what the parts took; may be empty
+  std::vector<std::pair<std::string, double>> seconds = {};  ///< times that its parts took; may be empty
 };
 
-/// Writes records.jsonl, tables.json, report.md, index.html and, with gnuplot, figure3-1 and figure3-2 as SVG
-/// and PNG; heat_maps.png and refinement_tree.svg: all as far as the experiment reports them; for a
-/// series, what add_series() writes. Returns lines for people (what could not be drawn). Throws
-/// EnvironmentError.
+/// Writes records.jsonl, tables.json, report.md, index.html, with gnuplot figure3-1 and figure3-2 as SVG and
+/// PNG, heat_maps.png and refinement_tree.svg, each if the experiment reports it; for a series, what
+/// add_series() writes. Returns lines for people (what could not be drawn). Throws EnvironmentError.
 std::vector<std::string> write_paper_report(const PaperReport& report, const std::string& folder);
 
 }  // namespace lrb::paper

@@ -2,11 +2,11 @@
 /// The experiment of the paper's section 4: object A against another one, 100 collisions, the number of face
 /// comparisons at every time step with a face contact.
 ///
-/// What the paper leaves open is decided here. Both bodies get a random rotation, the other one comes from a
-/// random direction on a line through the centres of both bounding boxes, in steps of a fixed share of the
-/// diagonal of A's bounding box, from where their bounding spheres touch. The other body is scaled to the
-/// same diagonal. Counting begins at the first step at which real faces meet, and goes on for `steps_after`
-/// steps; steps among them without a contact of real faces are not counted.
+/// What the paper leaves open is decided here. Both bodies get a random rotation. The other one comes from a
+/// random direction, on a line through the centres of both bounding boxes, in steps of a fixed share of the
+/// diagonal of A's bounding box, from where their bounding spheres touch. It is scaled to the same diagonal.
+/// Counting begins at the first step at which real faces meet, and goes on for `steps_after` steps; steps
+/// among them in which no real faces meet are not counted.
 
 #include <array>
 #include <cstdint>
@@ -22,7 +22,7 @@ namespace lrb::paper {
 struct PaperProtocol {
   std::uint32_t collisions = 100;
   std::uint32_t steps_after = 5;
-  double step = 0.005;  ///< of the diagonal
+  double step = 0.005;  ///< as a share of the diagonal
   std::uint64_t seed = 1;
 };
 inline constexpr std::uint32_t kMostCollisions = 100'000, kMostStepsAfter = 1000;
@@ -30,36 +30,40 @@ inline constexpr double kLeastStep = 1e-5, kMostStep = 0.5;
 
 inline constexpr std::array<Recursion, 3> kRecursions = {Recursion::paper, Recursion::paper_strict,
                                                          Recursion::complete};
+inline constexpr std::size_t kPaper = 0;  ///< the paper's own, of kRecursions
 
 /// What one recursion did at one time step.
 struct RecursionCount {
-  std::uint64_t comparisons = 0;  ///< of faces (paper: polygons; complete: the triangles they are fans of)
+  std::uint64_t comparisons = 0;  ///< number of faces compared (paper: polygons; complete: the triangles that
+                                  ///< they are fans of)
   std::uint64_t refinements = 0;
-  std::uint64_t pairs = 0;        ///< of real triangles that it found to meet
-  std::uint64_t missed = 0;       ///< pairs that meet, but that it did not find
-  std::uint64_t bound_tests = 0;  ///< boxes and planes, eight to a test counted as eight (complete only)
-  std::uint64_t nanoseconds = 0;  ///< that it took, once; of no record, because it is never the same again
+  std::uint64_t pairs = 0;        ///< number of pairs of real triangles that it found to meet
+  std::uint64_t missed = 0;       ///< number of pairs that meet but that it did not find
+  std::uint64_t bound_tests = 0;  ///< number of boxes and planes, eight at once counted as eight (complete
+                                  ///< only)
+  std::uint64_t nanoseconds = 0;  ///< time it took, once; not in the record, because it is never the same
+                                  ///< again
 };
 
 /// One time step with a face contact.
 struct ContactStep {
-  std::string object;           ///< that A met
+  std::string object;           ///< the one that A met
   std::uint32_t collision = 0;  ///< 0 .. collisions - 1
-  std::uint32_t step = 0;       ///< after the first contact
+  std::uint32_t step = 0;       ///< number of steps since the first contact
   Relation relation = Relation::separate;
   std::array<RecursionCount, 3> counts;  ///< in the order of kRecursions
-  Pose pose_a, pose_x;                   ///< of no record
+  Pose pose_a, pose_x;                   ///< not in the record
 };
 
-/// The steps of one collision. The numbers drawn depend on
-/// protocol.seed, the object's name and the collision's number alone. Reuses `context`.
+/// Returns the counted steps of one collision. The random numbers depend only on protocol.seed, the object's
+/// name and the collision's number. Reuses `context`.
 std::vector<ContactStep> run_collision(const LrbRep& a, const LrbRep& x, const std::string& object,
                                        std::uint32_t collision, const PaperProtocol& protocol,
                                        QueryContext& context);
 
-/// The same body with its coordinates multiplied.
+/// Returns the body with its coordinates multiplied.
 LrbRep scaled(const LrbRep& rep, double by);
-/// Diagonal of the bounding box of the real faces.
+/// Returns the diagonal of the bounding box of the real faces.
 double diagonal(const LrbRep& rep);
 
 }  // namespace lrb::paper

@@ -53,7 +53,7 @@ struct CloseUps {
   CloseUp easiest, hardest;
 };
 
-/// Nothing if the experiment reports none.
+/// Returns nothing if the experiment does not report them.
 std::optional<CloseUps> close_ups_of(const PaperReport& r) {
   if (!r.experiment.reports(PaperPart::heat_maps) && !r.experiment.reports(PaperPart::refinement_tree))
     return std::nullopt;

@@ -20,7 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Meshes in a folder, by name; other paths as they are.
+/// Returns the meshes in a folder, by name; other paths as they are.
 std::vector<std::string> files_of(const std::vector<std::string>& paths) {
   std::vector<std::string> files;
   for (const std::string& path : paths) {
@@ -42,7 +42,7 @@ std::vector<std::string> files_of(const std::vector<std::string>& paths) {
   return files;
 }
 
-/// Why no series can be made of it; empty if one can.
+/// Says why no series can be made of a mesh; empty if one can.
 std::string obstacle(const Mesh& mesh) {
   if (mesh.dim != 3) return "a body in the plane";
   const MeshReport report = check_mesh(mesh, false).when_turned();
@@ -122,7 +122,7 @@ std::vector<ContactStep> run_series(const LrbRep& a, std::span<const SeriesObjec
       const PaperObject pair[] = {{"", first}, {series_name(object, partner), object.rep, object.body}};
       std::uint64_t last = 0;
       for (ContactStep& s : run_sweep(pair, options, [&](std::uint64_t done, std::uint64_t of) {
-             last = of;  // each sweep has about as many
+             last = of;  // each sweep has about as many as this
              if (progress) progress(done_before + done, done_before + of * (2 * objects.size() - sweeps));
            }))
         steps.push_back(std::move(s));

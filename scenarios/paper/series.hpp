@@ -1,8 +1,10 @@
 #pragma once
-/// The paper's experiment on bodies at several resolutions: how comparisons and time grow with size.
+/// Runs the paper's experiment on bodies at several resolutions, to see how comparisons and time grow with
+/// size.
 ///
-/// Every resolution collides twice: with the paper's object A, as A's other objects do, so that one side
-/// grows; and with itself, so that both do. All resolutions of a body get the same directions and rotations.
+/// Every resolution collides twice: with the paper's object A, as the paper's other objects do, so that one
+/// side grows; and with itself, so that both do. All resolutions of a body get the same directions and
+/// rotations.
 
 #include <cstdint>
 #include <functional>
@@ -16,36 +18,36 @@
 
 namespace lrb::paper {
 
-/// A body at one resolution, of A's diagonal.
+/// A body at one resolution, scaled to A's diagonal.
 struct SeriesObject {
   std::string body;  ///< the mesh's name
-  LrbRep rep;        ///< by patch caps
+  LrbRep rep;        ///< built by patch caps
 };
 
 enum class SeriesPartner { a, itself };
 inline constexpr std::array<SeriesPartner, 2> kSeriesPartners = {SeriesPartner::a, SeriesPartner::itself};
 
-/// Under which name a resolution's collisions are recorded.
+/// Returns the name under which a resolution's collisions are recorded.
 std::string series_name(const SeriesObject& object, SeriesPartner partner);
 
-/// Two bodies of our own at high resolution, for who has no meshes.
+/// Makes two bodies of our own at high resolution, for users without meshes.
 std::vector<Mesh> own_series_bodies();
-/// Reads meshes from files and from the folders among `paths`; each is named as its file, without ending.
-/// What no LRB-rep can be built of is left out, and a note says why. Throws InputError if nothing is left, or
-/// if two have the same name.
+/// Reads meshes from the files and folders in `paths`; each is named after its file, without the ending.
+/// Leaves out a mesh that no LRB-rep can be built of, and a note says why. Throws InputError if nothing is
+/// left, or if two have the same name.
 std::vector<Mesh> read_series_bodies(const std::vector<std::string>& paths, std::vector<std::string>& notes);
 
-/// Bodies in order, the finest resolution of each first; scaled to this diagonal.
+/// Returns the bodies in order, the finest resolution of each first, scaled to this diagonal.
 std::vector<SeriesObject> make_series(std::span<const Mesh> bodies,
                                       const resolutions::ResolutionOptions& options, double diagonal,
                                       const std::function<void()>& progress);
 
-/// All collisions of the shard, in the order of merged().
+/// Runs all collisions of the shard; returns them in the order of merged().
 std::vector<ContactStep> run_series(const LrbRep& a, std::span<const SeriesObject> objects,
                                     const SweepOptions& options,
                                     const std::function<void(std::uint64_t, std::uint64_t)>& progress);
 
-/// What the steps took, which their records do not have: one JSON object on a line for each step.
+/// Returns the times of the steps, which their records do not have: one JSON object on a line for each step.
 std::string times_to_json_lines(std::span<const ContactStep> steps);
 /// Gives the steps their times, whatever their order. Throws InputError naming `file` if it is not about
 /// these steps.
@@ -59,7 +61,7 @@ struct SeriesRow {
   ObjectRow counts;
   std::array<double, 3> microseconds;  ///< median of a query, in the order of kRecursions
 };
-/// In the order of the partners, then of the objects. Throws InputError for steps of other objects.
+/// Returns the rows, by partner, then by object. Throws InputError for steps of other objects.
 std::vector<SeriesRow> series_rows(const LrbRep& a, std::span<const SeriesObject> objects,
                                    std::span<const ContactStep> steps);
 

@@ -12,9 +12,10 @@
 namespace lrb::paper {
 namespace {
 
-// Okabe and Ito's colours, which survive colour blindness; point types survive greyscale.
-constexpr std::array<const char*, 7> kColours = {"#0072B2", "#D55E00", "#009E73", "#E69F00",
-                                                 "#56B4E9", "#CC79A7", "#000000"};
+// Okabe and Ito's colours, which people with any colour vision tell apart; point types are told apart in
+// grey, too.
+constexpr std::array<const char*, 7> kBodyColours = {"#0072B2", "#D55E00", "#009E73", "#E69F00",
+                                                     "#56B4E9", "#CC79A7", "#000000"};
 constexpr std::array<int, 7> kPoints = {7, 5, 9, 13, 11, 4, 6};
 constexpr std::array<const char*, 3> kRecursionTitles = {"paper", "paper, strict", "complete"};
 
@@ -59,7 +60,7 @@ class Panel {
       if (points.empty()) continue;
       const std::string name = "series_" + std::to_string(panel_) + "_" + std::to_string(bodies);
       g_.add_data(name, points);
-      const std::string colour = kColours[bodies % kColours.size()];
+      const std::string colour = kBodyColours[bodies % kBodyColours.size()];
       const std::optional<resolutions::PowerFit>& power = fit_of_(fit);
       plot += (plot.empty() ? "plot $" : ", $") + name + " using 1:2:3:4 with yerrorbars lw 0.7 pt " +
               std::to_string(kPoints[bodies % kPoints.size()]) + " ps 0.5 lc rgb '" + colour + "' title " +
@@ -78,7 +79,7 @@ class Panel {
       g_.script += "set multiplot next\n";
       return;
     }
-    // Room above the points for the key.
+    // The key needs room above the points.
     const double share = static_cast<double>(bodies + 1) * kKeyLine * kPanelRows / g_.height;
     const double room = std::log10(highest / lowest) * share / (1 - share);
     g_.script += "set yrange [" + io::number_text(lowest / 1.3) + ":" +

@@ -15,8 +15,8 @@
 namespace lrb::paper {
 namespace {
 
-constexpr std::array<const char*, 3> kTitles = {"the paper's recursion", "the paper's recursion, strict",
-                                                "complete"};
+constexpr std::array<const char*, 3> kRecursionNames = {"the paper's recursion",
+                                                        "the paper's recursion, strict", "complete"};
 
 const char* against(SeriesPartner p) {
   return p == SeriesPartner::a ? "A" : "itself";
@@ -28,7 +28,7 @@ std::string text_of(const std::optional<resolutions::PowerFit>& fit) {
 
 report::PageTable table(std::span<const SeriesRow> rows, SeriesPartner partner, std::size_t recursion) {
   report::PageTable t;
-  t.title = std::string("Resolutions against ") + against(partner) + ", " + kTitles[recursion];
+  t.title = std::string("Resolutions against ") + against(partner) + ", " + kRecursionNames[recursion];
   t.columns = {
       "body",    "real faces",        "total faces",  "outermost",        "steps", "minimum", "average",
       "maximum", "refinements (avg)", "pairs missed", "time (median, µs)"};
@@ -60,7 +60,7 @@ report::PageTable fit_table(std::span<const SeriesFit> fits, std::uint32_t jobs)
       "would be above 1. Times are of one query each, on this machine" +
           (jobs > 1 ? ", while " + std::to_string(jobs) + " threads worked" : std::string()) + "."};
   for (const SeriesFit& f : fits)
-    t.rows.push_back({f.body, against(f.partner), kTitles[f.recursion], text_of(f.comparisons),
+    t.rows.push_back({f.body, against(f.partner), kRecursionNames[f.recursion], text_of(f.comparisons),
                       text_of(f.refinements), text_of(f.microseconds)});
   return t;
 }
@@ -74,11 +74,11 @@ report::PageChart chart(std::span<const SeriesRow> rows, SeriesPartner partner, 
   c.log_x = c.log_y = true;
   for (std::size_t i = 0; i < kRecursions.size(); ++i) {
     for (const SeriesRow& row : rows) {
-      const std::string label = row.body + ", " + kTitles[i];
+      const std::string label = row.body + ", " + kRecursionNames[i];
       const double y = time ? row.microseconds[i] : row.counts.recursions[i].comparisons.average;
       if (row.partner != partner || !(y > 0)) continue;
       if (c.series.empty() || c.series.back().label != label) c.series.push_back({label, {}, {}});
-      // Rows start with the finest, charts with the coarsest.
+      // Rows begin with the finest resolution, charts with the coarsest.
       c.series.back().x.insert(c.series.back().x.begin(), row.counts.total_faces);
       c.series.back().y.insert(c.series.back().y.begin(), y);
     }

@@ -13,7 +13,7 @@
 namespace lrb::paper {
 namespace {
 
-/// Of the whole: what shards of one experiment have in common.
+/// Returns what shards of one experiment have in common.
 nlohmann::ordered_json experiment(const ShardFile& s) {
   return {{"shards", s.shard.count},
           {"collisions", s.protocol.collisions},

@@ -1,6 +1,6 @@
 #pragma once
-/// All collisions of the experiment, shared out over threads and, as shards, over processes and machines.
-/// Which of them computes a collision changes nothing in its result.
+/// Runs all collisions of the experiment, distributed over threads and, as shards, over processes and
+/// machines. The result of a collision does not depend on who computes it.
 
 #include <cstdint>
 #include <functional>
@@ -18,7 +18,7 @@ struct PaperObject {
   std::string draws = {};  ///< the object whose directions and rotations it gets; empty: its own
 };
 
-/// Part `index` of `count`: the collisions whose number over all objects is index modulo count.
+/// Part `index` of `count`: the collisions whose number, counted over all objects, is index modulo count.
 struct Shard {
   std::uint32_t index = 0, count = 1;
 };
@@ -26,17 +26,17 @@ struct Shard {
 struct SweepOptions {
   PaperProtocol protocol;
   Shard shard;
-  std::uint32_t jobs = 1;  ///< threads
+  std::uint32_t jobs = 1;  ///< number of threads
 };
 
-/// objects[0] against each of the others; steps in the order (object, collision, step). `progress(done, of)`
-/// is called from one thread at a time.
+/// Collides objects[0] with each of the others; returns the steps in the order (object, collision, step).
+/// `progress(done, of)` is called from one thread at a time.
 std::vector<ContactStep> run_sweep(std::span<const PaperObject> objects, const SweepOptions& options,
                                    const std::function<void(std::uint64_t, std::uint64_t)>& progress);
 
-/// One JSON object on a line for each step.
+/// Returns one JSON object on a line for each step.
 std::string to_json_lines(std::span<const ContactStep> steps);
-/// Reads them back; throws InputError naming `file` and the line.
+/// Reads them back; throws InputError that names `file` and the line.
 std::vector<ContactStep> read_json_lines(const std::string& text, const std::string& file);
 /// Puts the steps of several shards in order. Throws InputError if a step is there twice.
 std::vector<ContactStep> merged(std::vector<ContactStep> steps);

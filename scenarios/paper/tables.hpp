@@ -17,32 +17,32 @@ struct Spread {
 /// What one recursion cost against one object, over all counted time steps.
 struct RecursionRow {
   Spread comparisons, refinements;
-  double bound_tests = 0;  ///< average
+  double bound_tests = 0;  ///< average number
   std::uint64_t pairs = 0, missed = 0;
 };
 
 struct ObjectRow {
   std::string object;
   std::uint32_t real_faces = 0, total_faces = 0;
-  std::uint64_t steps = 0;                 ///< counted time steps
+  std::uint64_t steps = 0;                 ///< number of counted time steps
   std::array<RecursionRow, 3> recursions;  ///< in the order of kRecursions
-  double n_log_n = 0, n_squared = 0;       ///< the paper's: total(X) log2(total(A)), total(A) total(X)
+  double n_log_n = 0, n_squared = 0;  ///< the paper's estimates: total(X) log2(total(A)), total(A) total(X)
 };
 
-/// A row of each object but the first, which the others met.
+/// Returns a row for each object but the first, which the others met.
 std::vector<ObjectRow> make_table(std::span<const PaperObject> objects, std::span<const ContactStep> steps);
 
-/// The paper's table 2; its table 1 is paper_objects().
+/// A row of the paper's table 2. (Its table 1 is paper_objects().)
 struct PublishedRow {
   const char* object;
   double min, average, max;
 };
 std::span<const PublishedRow> published_table2();
-/// The row of an object; null for one that the paper does not have.
+/// Returns the row of an object; null for one that the paper does not have.
 const PublishedRow* published(const std::string& object);
 
-/// Both tables as JSON: "table1_object_sizes", and "table2_face_comparisons_of_object_A_with" by the paper's
-/// recursion; the same with the suffixes "_paper_strict" and "_complete" by the others.
+/// Returns both tables as JSON: "table1_object_sizes", and "table2_face_comparisons_of_object_A_with" by the
+/// paper's recursion; for the other recursions the same with the suffixes "_paper_strict" and "_complete".
 std::string tables_json(std::span<const PaperObject> objects, std::span<const ObjectRow> rows,
                         const PaperProtocol& protocol);
 

@@ -12,7 +12,7 @@
 namespace lrb::run {
 namespace {
 
-/// Where B stands after `step` steps of `length`.
+/// Returns the pose of B after `step` steps of `length`.
 Pose pose_at(const spec::Motion& m, const Pose& start, double length, std::uint32_t step) {
   const double way = m.from.norm();
   const Eigen::Vector3d position = m.target + m.from * (1 - length * step / way);
@@ -33,7 +33,7 @@ double diagonal_of(const LrbRep& rep) {
 Approach find_approach(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& start,
                        const spec::Motion& motion) {
   const double length = motion.step_length * (diagonal_of(a) + diagonal_of(b));
-  // Beyond twice the way, B has gone past the target as far as it came from.
+  // Beyond twice the distance, B is as far behind the target as it was before it.
   const auto whole_way =
       static_cast<std::uint32_t>(std::min<double>(motion.steps, std::ceil(2 * motion.from.norm() / length)));
   CollideRequest request;

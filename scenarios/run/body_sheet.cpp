@@ -12,7 +12,7 @@
 
 namespace lrb::run {
 
-void draw_portrait(const LrbRep& rep, const std::string& path) {
+void draw_body_sheet(const LrbRep& rep, const std::string& path) {
   constexpr int kWidth = 640, kHeight = 520;
   constexpr std::size_t kMostPanels = 6;
   const std::vector<Eigen::Vector3d> points = render::body_points(rep, Pose{});

@@ -6,7 +6,8 @@
 
 namespace lrb::run {
 
-/// One picture of a body: itself, some wrappers between, and its outermost wrapper, as panels (a), (b), ...
-void draw_portrait(const LrbRep& rep, const std::string& path);
+/// Draws one picture of a body: itself, some wrappers between, and its outermost wrapper, as panels (a), (b),
+/// ...
+void draw_body_sheet(const LrbRep& rep, const std::string& path);
 
 }  // namespace lrb::run

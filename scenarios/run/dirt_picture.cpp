@@ -12,7 +12,7 @@
 namespace lrb::run {
 namespace {
 
-constexpr int kWidth = 1600, kGap = 4,
+constexpr int kSheetWidth = 1600, kGap = 4,
               kStrips = 120;         // pixels: of the picture, between panels, for title and legend
 constexpr double kShape = 0.72;      // a panel's height over its width
 constexpr float kTextHeight = 0.8F;  // of panels, over the title's
@@ -93,27 +93,27 @@ bool draw_dirt(const Mesh& given, const MeshReport& report, const std::string& p
   if (kinds.empty()) return false;
   const Mesh mesh = render::dirt::to_unit_size(given);
   const int across = columns(kinds.size() + 1), down = (static_cast<int>(kinds.size()) + across) / across;
-  const int cell = (kWidth - kGap * (across - 1)) / across;
+  const int cell = (kSheetWidth - kGap * (across - 1)) / across;
   const int height = kStrips + down * static_cast<int>(kShape * cell);
   render::Overlay overlay;
   overlay.title = std::filesystem::path(given.name).filename().string() + "  ·  " +
                   std::to_string(kinds.size()) + (kinds.size() == 1 ? " finding" : " findings");
   overlay.event = "Offenders by their numbers, counted from 0 in file order";
   overlay.key = render::dirt::legend(report, mesh.dim);
-  const render::OverlayLayout layout = render::lay_out(overlay, kWidth, height);
+  const render::OverlayLayout layout = render::lay_out(overlay, kSheetWidth, height);
   const int cell_height = (layout.picture.height - kGap * (down - 1)) / down;
   render::Image picture(layout.picture.width, layout.picture.height);
   const float text = std::max(kUsualText, kTextHeight * layout.text_height);
   render::Rasterizer rasterizer;
   for (std::size_t i = 0; i <= kinds.size(); ++i) {
-    const MeshFault* kind = i == 0 ? nullptr : &kinds[i - 1];  // none: the whole
+    const MeshFault* kind = i == 0 ? nullptr : &kinds[i - 1];  // null: the whole
     const int x = static_cast<int>(i) % across * (cell + kGap),
               y = static_cast<int>(i) / across * (cell_height + kGap);
     picture.paste(
         draw_panel(rasterizer, mesh, report, kind, static_cast<char>('a' + i), cell, cell_height, text), x,
         y);
   }
-  render::write_png(render::compose_frame(picture, layout.picture, overlay, kWidth, height), path);
+  render::write_png(render::compose_frame(picture, layout.picture, overlay, kSheetWidth, height), path);
   return true;
 }
 

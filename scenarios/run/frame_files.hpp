@@ -13,17 +13,17 @@
 
 namespace lrb::run {
 
-/// "frames/frame_0012", and the same with ".png".
+/// Returns "frames/frame_0012", and the same with ".png".
 std::string numbered_frame(std::size_t frame);
 std::string frame_file(std::size_t frame);
 
-/// Of an earlier run: frames, montage and its caption, certificate of separation.
+/// Removes what an earlier run left: frames, montage and its caption, certificate of separation.
 void remove_old_frames(const std::string& folder);
 
-/// The same frames with their size in pixels of the file.
+/// Returns the same frames with their size in pixels of the file.
 spec::FrameSpec in_pixels(spec::FrameSpec spec);
 
-/// The views' places in a picture, side by side along its longer side.
+/// Returns the views' places in a picture, side by side along its longer side.
 std::vector<render::PixelRect> view_places(const render::PixelRect& picture, std::size_t views, double scale);
 
 /// Draws each view, with its title, in its place of `picture`.
@@ -33,7 +33,7 @@ void paint_views(render::Rasterizer& rasterizer, const spec::FrameSpec& spec,
                  const std::function<render::DrawList(const spec::FrameSpec::View&)>& list_of,
                  const std::function<render::Camera(std::size_t)>& camera_of, render::Image& picture);
 
-/// Adds the items that are not there yet.
+/// Adds the items that `all` does not have yet.
 void merge_key(std::vector<render::LegendItem>& all, const std::vector<render::LegendItem>& some);
 
 }  // namespace lrb::run

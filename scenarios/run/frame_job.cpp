@@ -19,21 +19,22 @@
 namespace lrb::run {
 namespace {
 
-/// Texts first, for all frames: they decide how much room the pictures get, which is the same in every frame.
+/// The texts of all frames. They are laid out first, because they decide how much room the pictures get,
+/// which is the same in every frame.
 struct Script {
   std::vector<render::Overlay> overlays;
   render::PixelRect picture;
 };
 
-Script write_script(FrameState& stage, const std::vector<trace::EventId>& events, const std::string& title,
+Script write_script(FrameState& state, const std::vector<trace::EventId>& events, const std::string& title,
                     const spec::FrameSpec& spec) {
   Script script;
   std::vector<render::LegendItem> key;
   for (const trace::EventId event : events) {
-    stage.seek(event);
-    const render::Scene scene = stage.scene();
+    state.seek(event);
+    const render::Scene scene = state.scene();
     merge_key(key, scene.key);
-    script.overlays.push_back(stage.overlay(title));
+    script.overlays.push_back(state.overlay(title));
     script.overlays.back().scale = scene.scale;
   }
   std::vector<render::OverlayLayout> layouts;
@@ -54,11 +55,11 @@ class Painter {
     picture_ = render::Image(picture.width, picture.height);
   }
 
-  /// `plain`: see Stage::scene().
-  const render::Image& paint(const FrameState& stage, double progress, bool plain = false) {
+  /// `plain`: see FrameState::scene().
+  const render::Image& paint(const FrameState& state, double progress, bool plain = false) {
     paint_views(
         rasterizer_, spec_, views_, places_,
-        [&](const spec::FrameSpec::View& view) { return stage.scene(view.wrapper, plain).list; },
+        [&](const spec::FrameSpec::View& view) { return state.scene(view.wrapper, plain).list; },
         [&](std::size_t view) { return camera(view, progress); }, picture_);
     return picture_;
   }
@@ -69,8 +70,8 @@ class Painter {
     return out;
   }
 
-  /// Each view as SVG. `plain`: see Stage::scene().
-  std::vector<std::string> svgs(const FrameState& stage, double progress, const std::string& title,
+  /// Returns each view as SVG. `plain`: see FrameState::scene().
+  std::vector<std::string> svgs(const FrameState& state, double progress, const std::string& title,
                                 bool plain = false) const {
     std::vector<std::string> out;
     for (std::size_t i = 0; i < views_.size(); ++i) {
@@ -80,15 +81,15 @@ class Painter {
       options.title = title;
       options.units_per_pixel = spec_.scale();
       if (spec_.transparent) options.background.reset();
-      out.push_back(render::svg(stage.scene(views_[i].wrapper, plain).list, camera(i, progress), options));
+      out.push_back(render::svg(state.scene(views_[i].wrapper, plain).list, camera(i, progress), options));
     }
     return out;
   }
 
-  /// In files called `name`.svg, or `name`_1.svg and so on.
-  void write_svg(const FrameState& stage, double progress, const std::string& name,
+  /// Writes files called `name`.svg, or `name`_1.svg and so on.
+  void write_svg(const FrameState& state, double progress, const std::string& name,
                  const std::string& title) const {
-    const std::vector<std::string> all = svgs(stage, progress, title);
+    const std::vector<std::string> all = svgs(state, progress, title);
     for (std::size_t i = 0; i < all.size(); ++i)
       io::write_text(name + (all.size() > 1 ? "_" + std::to_string(i + 1) : "") + ".svg", all[i]);
   }
@@ -107,34 +108,34 @@ class Painter {
   render::Image picture_;
 };
 
-const std::vector<CollideResult>& results_of(const RecordedRun& performance) {
+const std::vector<CollideResult>& results_of(const RecordedRun& recorded) {
   static const std::vector<CollideResult> kNoResults;
-  return performance.results != nullptr ? *performance.results : kNoResults;
+  return recorded.results != nullptr ? *recorded.results : kNoResults;
 }
 
-/// What all frames of a performance have in common. At least one event.
+/// What all frames of a run have in common. There must be at least one event.
 struct FrameJob {
   const spec::FrameSpec& spec;
   std::vector<trace::EventId> events;
-  FrameState stage;
+  FrameState state;
   Script script;
   Painter painter;
 
   FrameJob(const RecordedRun& p, const spec::FrameSpec& s, std::vector<trace::EventId> at, Framing framing)
       : spec(s),
         events(std::move(at)),
-        stage(*p.trace, p.reps, results_of(p), s, p.milestones.empty() && s.at != spec::FrameSpec::At::step),
-        script(write_script(stage, events, p.title, s)),
+        state(*p.trace, p.reps, results_of(p), s, p.milestones.empty() && s.at != spec::FrameSpec::At::step),
+        script(write_script(state, events, p.title, s)),
         painter(s, script.picture, std::move(framing)) {}
 
-  /// How much of the sequence has passed at frame i, for orbits.
+  /// Returns the share of the sequence that has passed at frame i, for orbits.
   double passed(std::size_t i) const {
     return events.size() > 1 ? static_cast<double>(i) / static_cast<double>(events.size() - 1) : 0;
   }
-  /// Frame i, at which the stage stands.
+  /// Draws frame i; `state` must stand at its event.
   render::Image frame(std::size_t i) {
     const render::Rgba back = spec.transparent ? render::kTransparent : render::kWhite;
-    return render::compose_frame(painter.paint(stage, passed(i)), script.picture, script.overlays[i],
+    return render::compose_frame(painter.paint(state, passed(i)), script.picture, script.overlays[i],
                                  spec.width, spec.height, back, static_cast<float>(spec.scale()));
   }
 };
@@ -170,7 +171,7 @@ struct Montage {
   }
 
  private:
-  /// What a paper prints under the figure.
+  /// Returns the caption that a paper prints under the figure.
   std::string caption(std::string text) const {
     for (std::size_t i = 0; i < panels.size(); ++i)
       text += (i == 0 ? " " : "; ") + (panels.size() > 1 ? render::panel_letter(i) + " " : "") +
@@ -181,9 +182,9 @@ struct Montage {
 
 }  // namespace
 
-void check_frames(const RecordedRun& performance, const spec::FrameSpec& spec) {
-  static_cast<void>(moments(spec, *performance.trace, performance.milestones));
-  if (spec.svg && performance.reps[0]->dim() != 2)
+void check_frames(const RecordedRun& recorded, const spec::FrameSpec& spec) {
+  static_cast<void>(moments(spec, *recorded.trace, recorded.milestones));
+  if (spec.svg && recorded.reps[0]->dim() != 2)
     throw InputError(
         "frames as SVG are for 2D bodies, and these are 3D: leave svg out, and ask for a higher --dpi");
   check_frame_size(spec);
@@ -198,63 +199,60 @@ void check_frame_size(const spec::FrameSpec& spec) {
                      " pixels at this dpi, and 8192 a side is the most: lower --dpi or --size");
 }
 
-std::vector<PaintedFrame> paint_frames(const RecordedRun& performance, const spec::FrameSpec& given,
+std::vector<PaintedFrame> paint_frames(const RecordedRun& recorded, const spec::FrameSpec& given,
                                        const ProgressReport& progress, const Framing* framing) {
   const spec::FrameSpec spec = in_pixels(given);
   std::vector<PaintedFrame> out;
-  const std::vector<trace::EventId> events = moments(spec, *performance.trace, performance.milestones);
+  const std::vector<trace::EventId> events = moments(spec, *recorded.trace, recorded.milestones);
   if (events.empty()) return out;
-  FrameJob production(performance, spec, events,
-                      framing != nullptr ? *framing : framing_of(performance, spec));
+  FrameJob job(recorded, spec, events, framing != nullptr ? *framing : framing_of(recorded, spec));
   for (std::size_t i = 0; i < events.size(); ++i) {
     progress("draw", i, events.size());
-    production.stage.seek(events[i]);
-    out.push_back({production.frame(i), production.stage.caption(), events[i],
-                   production.painter.cameras(production.passed(i))});
+    job.state.seek(events[i]);
+    out.push_back({job.frame(i), job.state.caption(), events[i], job.painter.cameras(job.passed(i))});
   }
   return out;
 }
 
-DrawnFrames draw_frames(const RecordedRun& performance, const spec::FrameSpec& given,
-                        const std::string& folder,
+DrawnFrames draw_frames(const RecordedRun& recorded, const spec::FrameSpec& given, const std::string& folder,
                         const std::vector<std::pair<std::string, std::string>>& text,
                         const ProgressReport& progress) {
   const spec::FrameSpec spec = in_pixels(given);
   DrawnFrames out;
   io::make_folder(folder + "/frames");
   remove_old_frames(folder);
-  const std::vector<trace::EventId> events = moments(spec, *performance.trace, performance.milestones);
+  const std::vector<trace::EventId> events = moments(spec, *recorded.trace, recorded.milestones);
   if (events.empty()) return out;
 
-  FrameJob production(performance, spec, events, framing_of(performance, spec));
-  FrameState& stage = production.stage;
-  Painter& painter = production.painter;
+  FrameJob job(recorded, spec, events, framing_of(recorded, spec));
+  FrameState& state = job.state;
+  Painter& painter = job.painter;
   const std::vector<std::size_t> in_montage =
       spec.montage > 0 ? evenly(events.size(), spec.montage) : std::vector<std::size_t>();
   Montage together;
   render::FrameWriter writer;
   for (std::size_t i = 0; i < events.size(); ++i) {
     progress("draw", i, events.size());
-    stage.seek(events[i]);
-    const double passed = production.passed(i);
-    if (spec.svg) painter.write_svg(stage, passed, folder + "/" + numbered_frame(i), stage.caption());
+    state.seek(events[i]);
+    const double passed = job.passed(i);
+    if (spec.svg) painter.write_svg(state, passed, folder + "/" + numbered_frame(i), state.caption());
     render::PngOptions png{text, spec.dpi};
     png.text.emplace_back("lrbscope:event", std::to_string(events[i]));
-    writer.push(folder + "/" + frame_file(i), production.frame(i), png);
+    writer.push(folder + "/" + frame_file(i), job.frame(i), png);
     if (std::find(in_montage.begin(), in_montage.end(), i) != in_montage.end()) {
-      together.panels.push_back({painter.paint(stage, passed, true), stage.short_caption()});
+      together.panels.push_back({painter.paint(state, passed, true), state.short_caption()});
       if (spec.svg && spec.views.size() <= 1)
-        together.svgs.push_back(painter.svgs(stage, passed, stage.caption(), true).front());
+        together.svgs.push_back(painter.svgs(state, passed, state.caption(), true).front());
     }
-    out.frames.push_back({frame_file(i), stage.caption(), events[i], stage.step()});
+    out.frames.push_back({frame_file(i), state.caption(), events[i], state.step()});
   }
   if (!together.panels.empty())
-    out.montage = together.write(performance, spec, folder, {text, spec.dpi}, writer);
+    out.montage = together.write(recorded, spec, folder, {text, spec.dpi}, writer);
   writer.finish();
-  for (const trace::Step& step : performance.trace->steps)
+  for (const trace::Step& step : recorded.trace->steps)
     if (step.result.separation) out.proved = &step;
   if (out.proved != nullptr)
-    draw_separation(*performance.reps[0], out.proved->pose_a, *performance.reps[1], out.proved->pose_b,
+    draw_separation(*recorded.reps[0], out.proved->pose_a, *recorded.reps[1], out.proved->pose_b,
                     *out.proved->result.separation, folder + "/" + kSeparationFile);
   return out;
 }

@@ -10,17 +10,18 @@
 
 namespace lrb::run {
 
-/// A recorded run as the renderer sees it; `render` makes one from a trace file, `run` from what it recorded.
+/// A recorded run with its LRB-reps: what frames are drawn from. `render` makes one from a trace file, `run`
+/// from what it recorded.
 struct RecordedRun {
   std::string title;
-  std::string purpose;  ///< what the pictures are there to show; may be empty
+  std::string purpose;  ///< what the pictures should show; may be empty
   std::vector<const LrbRep*> reps;
   const trace::Trace* trace = nullptr;
-  const std::vector<CollideResult>* results = nullptr;  ///< one a step, or none
+  const std::vector<CollideResult>* results = nullptr;  ///< one for each step, or null
   std::vector<trace::EventId> milestones;
 };
 
-/// In the output folder: the last certificate of separation of the run.
+/// File in the output folder that shows the last certificate of separation of the run.
 inline constexpr const char* kSeparationFile = "separation.png";
 
 struct DrawnFrame {
@@ -33,31 +34,32 @@ struct DrawnFrame {
 struct DrawnFrames {
   std::vector<DrawnFrame> frames;
   std::vector<std::string> montage;     ///< montage.png, montage.svg, caption.txt; none: no montage
-  const trace::Step* proved = nullptr;  ///< whose certificate of separation is drawn; null: none
+  const trace::Step* proved = nullptr;  ///< the step whose certificate of separation is drawn; null: none
 };
 
-/// A frame that has not been written.
+/// A frame that has not been written to a file.
 struct PaintedFrame {
   render::Image image;
   std::string caption;
   trace::EventId event = 0;
-  std::vector<render::Camera> cameras;  ///< one a view
+  std::vector<render::Camera> cameras;  ///< one for each view
 };
 
 /// Throws InputError for frames of more pixels than can be drawn.
 void check_frame_size(const spec::FrameSpec& spec);
-/// Throws InputError for frames that cannot be drawn: of events that there are not, as SVG in 3D, too large.
-void check_frames(const RecordedRun& performance, const spec::FrameSpec& spec);
+/// Throws InputError for frames that cannot be drawn: of events that do not exist, as SVG in 3D, or too
+/// large.
+void check_frames(const RecordedRun& recorded, const spec::FrameSpec& spec);
 
-/// The same frames as draw_frames() makes, in memory: no montage, no SVG. `framing`: what the cameras hold,
-/// instead of what the performance itself shows.
-std::vector<PaintedFrame> paint_frames(const RecordedRun& performance, const spec::FrameSpec& spec,
+/// Draws the frames that draw_frames() makes, but in memory, and no montage or SVG. `framing` is what the
+/// cameras show, instead of what the run itself shows.
+std::vector<PaintedFrame> paint_frames(const RecordedRun& recorded, const spec::FrameSpec& spec,
                                        const ProgressReport& progress, const Framing* framing = nullptr);
 
-/// Draws into folder/frames/ and, if asked, folder/montage.png with folder/caption.txt; with certificates of
-/// separation the last one into folder/separation.png. `text` goes into every frame.
-DrawnFrames draw_frames(const RecordedRun& performance, const spec::FrameSpec& spec,
-                        const std::string& folder,
+/// Draws frames into folder/frames/ and, if asked, folder/montage.png with folder/caption.txt; where there
+/// are certificates of separation, the last one into folder/separation.png. Writes `text` into every frame's
+/// file.
+DrawnFrames draw_frames(const RecordedRun& recorded, const spec::FrameSpec& spec, const std::string& folder,
                         const std::vector<std::pair<std::string, std::string>>& text,
                         const ProgressReport& progress);
 

@@ -25,7 +25,7 @@ std::string relation_words(Relation r) {
   }
 }
 
-/// A mesh's name without folder and extension.
+/// Returns a mesh's name without folder and extension.
 std::string short_name(const LrbRep& rep) {
   return std::filesystem::path(rep.name()).stem().string();
 }
@@ -83,7 +83,7 @@ std::vector<std::uint8_t> FrameState::met(Side side) const {
   std::vector<std::uint8_t> out(rep.face_count());
   for (trace::EventId e = cursor_.step()->first_event; e <= cursor_.position(); ++e) {
     const trace::Event& event = trace_.events[e];
-    if (event.kind == EventKind::contact) out[rep.face_of_simplex(side == Side::a ? event.a : event.b)] = 1;
+    if (event.kind == EventKind::contact) out[rep.face_of_simplex(event.simplex(side))] = 1;
   }
   return out;
 }
@@ -165,23 +165,27 @@ render::Scene FrameState::scene(bool wrapper, bool plain) const {
 std::string FrameState::event_text() const {
   const trace::Event& e = cursor_.event();
   const std::string side = e.side == Side::a ? "A" : "B";
-  const auto face = [&](std::size_t i, SimplexId s) {
-    return (reps_[i]->is_real_simplex(s) ? "face " : "pseudo face ") + std::to_string(s);
+  const auto face_of = [&](Side of) {
+    return reps_[static_cast<std::size_t>(of)]->face_of_simplex(e.simplex(of));
+  };
+  const auto face = [&](Side of) {
+    const FaceId f = face_of(of);
+    return (reps_[static_cast<std::size_t>(of)]->is_real(f) ? "face " : "pseudo face ") + std::to_string(f);
   };
   const std::string region =
-      reps_.size() == 1 ? "region " + std::to_string(e.a) : "region " + std::to_string(e.a) + " of " + side;
+      "region " + std::to_string(e.region()) + (reps_.size() == 1 ? "" : " of " + side);
   switch (e.kind) {
     case EventKind::step:
       return reps_.size() == 1 ? "the outermost wrapper" : "both wrappers are the outermost ones";
     case EventKind::face_test:
-      return "face test " + std::to_string(e.a) + " against " + std::to_string(e.b) + ": " +
-             std::string(trace::name_of(e.meet));
+      return "face test " + std::to_string(face_of(Side::a)) + " against " +
+             std::to_string(face_of(Side::b)) + ": " + std::string(trace::name_of(e.meet));
     case EventKind::refine:
       return "refine " + region + ": " + counted(e.b, "face", "faces") + " under it";
     case EventKind::coarsen:
       return region + " added";
     case EventKind::contact:
-      return "contact: " + face(0, e.a) + " of A meets " + face(1, e.b) + " of B";
+      return "contact: " + face(Side::a) + " of A meets " + face(Side::b) + " of B";
     case EventKind::result:
       return result_text();
   }

@@ -8,7 +8,7 @@
 namespace lrb::run {
 namespace {
 
-/// Of many points, some that span nearly the same: the extreme ones in a few dozen directions.
+/// Returns some of many points that span nearly the same: the extreme ones in a few dozen directions.
 std::vector<Eigen::Vector3d> extremes(const std::vector<Eigen::Vector3d>& points) {
   constexpr int kTurns = 24, kRows = 7;
   std::vector<Eigen::Vector3d> out;
@@ -26,15 +26,15 @@ std::vector<Eigen::Vector3d> extremes(const std::vector<Eigen::Vector3d>& points
   return out;
 }
 
-/// Of coarse answers, which have no contact regions: the corners of all faces that meet.
+/// Adds the corners of all faces that meet: for coarse answers, which have no contact regions.
 void add_contacts(const std::vector<const LrbRep*>& reps, const trace::Trace& trace,
                   std::vector<Eigen::Vector3d>& points) {
   for (std::size_t step = 0; step < trace.steps.size(); ++step)
     for (const trace::Event& e : trace.events_of(step)) {
       if (e.kind != EventKind::contact) continue;
-      for (const VertexId v : reps[0]->face(reps[0]->face_of_simplex(e.a)))
+      for (const VertexId v : reps[0]->face(reps[0]->face_of_simplex(e.simplex(Side::a))))
         points.push_back(trace.steps[step].pose_a.apply(reps[0]->vertices()[v]));
-      for (const VertexId v : reps[1]->face(reps[1]->face_of_simplex(e.b)))
+      for (const VertexId v : reps[1]->face(reps[1]->face_of_simplex(e.simplex(Side::b))))
         points.push_back(trace.steps[step].pose_b.apply(reps[1]->vertices()[v]));
     }
 }
@@ -83,7 +83,7 @@ render::Camera camera_for(const spec::FrameSpec::View& view, const Framing& fram
     options.orthographic = view.orthographic;
     Eigen::AlignedBox3d box;
     for (const Eigen::Vector3d& p : framing.points) box.extend(p);
-    constexpr double kContext = 1.6;  // of the contacts' size around them
+    constexpr double kContext = 1.6;  // in sizes of the contacts
     camera = close ? render::fit_contact(framing.contacts, box, width, height, options, kContext)
                    : render::fit_camera(framing.points, width, height, options);
     if (view.camera == Kind::orbit)

@@ -9,7 +9,7 @@ namespace {
 
 using trace::EventId;
 
-/// Every n-th of the list, and its last.
+/// Returns every n-th of the list, and its last.
 std::vector<EventId> every(const std::vector<EventId>& all, std::uint32_t n) {
   std::vector<EventId> out;
   for (std::size_t i = 0; i < all.size(); ++i)
@@ -24,7 +24,7 @@ std::vector<EventId> step_ends(const trace::Trace& trace) {
   return out;
 }
 
-/// Each step's beginning and what changes a wrapper in it.
+/// Returns the beginning of each step and the events in it that change a wrapper.
 std::vector<EventId> wrapper_changes(const trace::Trace& trace) {
   std::vector<EventId> out;
   for (EventId e = 0; e < trace.events.size(); ++e) {

@@ -8,15 +8,15 @@
 
 namespace lrb::run {
 
-/// The events after which pictures are taken, ascending, at most spec.most of them. `milestones` stand in for
-/// refinements where there are any (construction).
+/// Returns the events after which pictures are taken, ascending, at most spec.most of them. Where there are
+/// `milestones` (construction), they take the place of refinements.
 std::vector<trace::EventId> moments(const spec::FrameSpec& spec, const trace::Trace& trace,
                                     const std::vector<trace::EventId>& milestones = {});
 
-/// `wanted` indices of `count`, as evenly spaced as can be, first and last among them.
+/// Returns `wanted` indices below `count`, as evenly spaced as can be, first and last among them.
 std::vector<std::size_t> evenly(std::size_t count, std::size_t wanted);
 
-/// The last stored event of a step.
+/// Returns the last stored event of a step.
 trace::EventId last_event(const trace::Trace& trace, std::size_t step);
 
 }  // namespace lrb::run

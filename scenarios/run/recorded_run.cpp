@@ -62,7 +62,8 @@ void record_collision(const spec::Scenario& s, Recording& r, const ProgressRepor
   r.trace = recorder.take();
 }
 
-/// Regions, those of the builder's last pass (the outermost ones) first: each is refined when it lies bare.
+/// Returns all regions, those of the builder's last pass (the outermost ones) first: each can then be refined
+/// when its turn comes.
 std::vector<RegionId> outside_in(const LrbRep& rep) {
   std::vector<RegionId> order(rep.region_count());
   std::iota(order.begin(), order.end(), RegionId{0});

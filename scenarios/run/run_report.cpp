@@ -24,12 +24,12 @@ std::string words(Relation r) {
   return out;
 }
 
-/// The step with the most to say: the last one.
+/// Returns the step with the most to say: the last one.
 const trace::Step* last_step(const trace::Trace& trace) {
   return trace.steps.empty() || !trace.steps.back().finished ? nullptr : &trace.steps.back();
 }
 
-/// Of the last step's answer: pairs of which not both faces are real.
+/// Returns the number of pairs of the last step's answer in which not both faces are real.
 std::size_t pseudo_pairs(const trace::Trace& trace) {
   const auto& bodies = trace.header.bodies;
   const auto events = trace.events_of(trace.steps.size() - 1);
@@ -81,13 +81,14 @@ std::vector<report::PageNumber> wrapper_numbers(const LrbRep& rep) {
            "in " + std::to_string(rep.layer_count()) + " layers"}};
 }
 
-/// In the complete query only real faces are compared: what hits is a contact, and one curve is enough.
+/// Returns true if hits and contacts are the same curve, which is then shown once. In the complete query only
+/// real faces are compared, so that every hit is a contact.
 bool same_as_contacts(const trace::Series& hits, const trace::Chart& chart) {
   return std::any_of(chart.series.begin(), chart.series.end(),
                      [&](const trace::Series& s) { return s.name == "contacts" && s.values == hits.values; });
 }
 
-/// Curves of the trace by unit: faces of the wrappers in one chart, counts in the other.
+/// Makes charts of the trace's curves by unit: faces of the wrappers in one, counts in the other.
 std::vector<report::PageChart> charts_of(const trace::Chart& chart, report::PageCursor cursor,
                                          const char* faces_title, const char* counts_title, bool stepped) {
   report::PageChart faces, counts;
@@ -99,7 +100,7 @@ std::vector<report::PageChart> charts_of(const trace::Chart& chart, report::Page
     if (s.unit == "ms") continue;
     if (s.name == "hits" && same_as_contacts(s, chart)) continue;
     report::PageChart& target = s.unit == "faces" ? faces : counts;
-    // A body that is not there, or a kind of event that never came, is no curve.
+    // There is no curve for a body that is missing, or for a kind of event that never came.
     if (std::none_of(s.values.begin(), s.values.end(), [](double v) { return v > 0; })) continue;
     target.series.push_back({std::string(s.name), chart.x, s.values});
   }
@@ -141,7 +142,7 @@ std::string faces_text(const Separation& s) {
   return render::group_digits(s.face_count[0]) + " + " + render::group_digits(s.face_count[1]) + " faces";
 }
 
-/// What was asked for, where it is less than the exact answer.
+/// Says what was asked for, if it is less than the exact answer.
 std::string coarse_words(const CollideRequest& request) {
   std::string limits;
   const auto add = [&](const std::string& limit) { limits += (limits.empty() ? "" : " and ") + limit; };
@@ -188,6 +189,59 @@ void add_links(report::Page& page, const DrawnFrames& drawn, const ReportText& t
         {"frames/", "frames/", std::to_string(drawn.frames.size()) + " full pictures (PNG)"});
 }
 
+/// Says what was asked for, and what came out.
+void add_answer(report::Page& page, const RecordedRun& p, const ReportText& text) {
+  page.title = text.title;
+  page.purpose = text.purpose;
+  page.command = text.command;
+  const bool two = p.reps.size() == 2;
+  if (const trace::Step* step = last_step(*p.trace); two && step != nullptr) {
+    page.verdict = words(step->result.relation);
+    page.numbers = collision_numbers(p, *step);
+  } else if (!two) {
+    page.numbers = wrapper_numbers(*p.reps[0]);
+  }
+  if (two && p.trace->header.request.recursion != Recursion::complete)
+    page.purpose += " (The paper's recursion was asked for: it can miss contacts.)";
+  if (two && p.trace->header.request.is_coarse()) page.purpose += coarse_words(p.trace->header.request);
+  if (p.trace->truncated())
+    page.purpose += " (The trace was cut: it holds " + render::group_digits(p.trace->events.size()) + " of " +
+                    render::group_digits(p.trace->events_seen) + " events, and so do frames and charts.)";
+}
+
+void add_mismatches(report::Page& page, const std::vector<std::string>& mismatches) {
+  if (mismatches.empty()) return;
+  report::PageTable t;
+  t.title = "Not as expected";
+  t.columns = {"expectation"};
+  for (const std::string& m : mismatches) t.rows.push_back({m});
+  page.tables.push_back(std::move(t));
+  page.verdict = "not as expected";
+}
+
+void add_charts(report::Page& page, const RecordedRun& p) {
+  const bool two = p.reps.size() == 2;
+  if (p.trace->steps.size() > 1)
+    page.charts = charts_of(trace::chart_over_steps(*p.trace), report::PageCursor::step,
+                            "Largest wrappers, step by step", "Work and answer, step by step", false);
+  std::vector<report::PageChart> by_event =
+      charts_of(trace::chart_over_events(*p.trace), report::PageCursor::event,
+                two ? "Wrappers, event by event" : "The wrapper, event by event",
+                "Work and answer, event by event", true);
+  // Of one body each event refines one region: there is nothing to count.
+  if (!two) by_event.resize(std::min<std::size_t>(by_event.size(), 1));
+  for (report::PageChart& c : by_event) page.charts.push_back(std::move(c));
+}
+
+/// Tables of a run of two bodies: contacts of the last step, and all steps unless they are many.
+void add_tables(report::Page& page, const RecordedRun& p) {
+  if (p.reps.size() != 2) return;
+  if (p.results != nullptr && !p.results->empty() && !p.results->back().regions.empty())
+    page.tables.push_back(contact_table(p.results->back(), p.trace->steps.back().index));
+  constexpr std::size_t kMostSteps = 200;
+  if (p.trace->steps.size() <= kMostSteps) page.tables.push_back(steps_table(*p.trace));
+}
+
 }  // namespace
 
 void add_frames(report::Page& page, const DrawnFrames& drawn, const std::string& folder) {
@@ -218,45 +272,11 @@ void add_figure(report::Page& page, const std::string& folder, const std::string
 report::Page run_page(const RecordedRun& p, const DrawnFrames& drawn, const std::string& folder,
                       const ReportText& text) {
   report::Page page;
-  page.title = text.title;
-  page.purpose = text.purpose;
-  page.command = text.command;
-  const bool two = p.reps.size() == 2;
-  if (const trace::Step* step = last_step(*p.trace); two && step != nullptr) {
-    page.verdict = words(step->result.relation);
-    page.numbers = collision_numbers(p, *step);
-  } else if (!two) {
-    page.numbers = wrapper_numbers(*p.reps[0]);
-  }
-  if (two && p.trace->header.request.recursion != Recursion::complete)
-    page.purpose += " (The paper's recursion was asked for: it can miss contacts.)";
-  if (two && p.trace->header.request.is_coarse()) page.purpose += coarse_words(p.trace->header.request);
-  if (p.trace->truncated())
-    page.purpose += " (The trace was cut: it holds " + render::group_digits(p.trace->events.size()) + " of " +
-                    render::group_digits(p.trace->events_seen) + " events, and so do frames and charts.)";
-  if (!text.mismatches.empty()) {
-    report::PageTable t;
-    t.title = "Not as expected";
-    t.columns = {"expectation"};
-    for (const std::string& m : text.mismatches) t.rows.push_back({m});
-    page.tables.push_back(std::move(t));
-    page.verdict = "not as expected";
-  }
+  add_answer(page, p, text);
+  add_mismatches(page, text.mismatches);
   add_frames(page, drawn, folder);
-  if (p.trace->steps.size() > 1)
-    page.charts = charts_of(trace::chart_over_steps(*p.trace), report::PageCursor::step,
-                            "Largest wrappers, step by step", "Work and answer, step by step", false);
-  std::vector<report::PageChart> by_event =
-      charts_of(trace::chart_over_events(*p.trace), report::PageCursor::event,
-                two ? "Wrappers, event by event" : "The wrapper, event by event",
-                "Work and answer, event by event", true);
-  if (!two)
-    by_event.resize(std::min<std::size_t>(by_event.size(), 1));  // one refinement an event: nothing to count
-  for (report::PageChart& c : by_event) page.charts.push_back(std::move(c));
-  if (two && p.results != nullptr && !p.results->empty() && !p.results->back().regions.empty())
-    page.tables.push_back(contact_table(p.results->back(), p.trace->steps.back().index));
-  constexpr std::size_t kMostSteps = 200;
-  if (two && p.trace->steps.size() <= kMostSteps) page.tables.push_back(steps_table(*p.trace));
+  add_charts(page, p);
+  add_tables(page, p);
   add_links(page, drawn, text);
   if (drawn.proved != nullptr)
     add_figure(page, folder, "Proof that the bodies are apart at step " + std::to_string(drawn.proved->index),

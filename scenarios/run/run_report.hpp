@@ -18,12 +18,12 @@ struct ReportText {
 /// Puts frames, whose files are in `folder`, into a page.
 void add_frames(report::Page& page, const DrawnFrames& drawn, const std::string& folder);
 
-/// A picture that is in the folder already, .svg or .png.
+/// Puts a picture that is in the folder already, .svg or .png, into a page.
 void add_figure(report::Page& page, const std::string& folder, const std::string& title,
                 const std::string& caption, const std::string& file);
 
-/// The page of a run whose files are in `folder`.
-report::Page run_page(const RecordedRun& performance, const DrawnFrames& drawn, const std::string& folder,
+/// Makes the page of a run whose files are in `folder`.
+report::Page run_page(const RecordedRun& recorded, const DrawnFrames& drawn, const std::string& folder,
                       const ReportText& text);
 
 }  // namespace lrb::run

@@ -15,7 +15,7 @@ namespace lrb::run {
 
 namespace {
 
-RecordedRun performance_of(const spec::Scenario& scenario, const Recording& recording) {
+RecordedRun recorded_run_of(const spec::Scenario& scenario, const Recording& recording) {
   RecordedRun p;
   p.title = scenario.name;
   p.purpose = scenario.purpose;
@@ -26,10 +26,10 @@ RecordedRun performance_of(const spec::Scenario& scenario, const Recording& reco
   return p;
 }
 
-/// Throws, before anything is written, if a frame is asked for that cannot be drawn.
-void check(const spec::Scenario& scenario, const RecordedRun& performance) {
+/// Throws, before anything is written, if the scenario wants a frame that cannot be drawn.
+void check(const spec::Scenario& scenario, const RecordedRun& recorded) {
   try {
-    check_frames(performance, scenario.frames);
+    check_frames(recorded, scenario.frames);
   } catch (const InputError& e) {
     throw InputError("scenario " + scenario.name + ": " + e.what());
   }
@@ -39,8 +39,8 @@ void check(const spec::Scenario& scenario, const RecordedRun& performance) {
 
 RunOutcome write_run(const spec::Scenario& scenario, const Recording& recording, const std::string& folder,
                      const std::string& command, const ProgressReport& progress) {
-  const RecordedRun performance = performance_of(scenario, recording);
-  check(scenario, performance);
+  const RecordedRun recorded = recorded_run_of(scenario, recording);
+  check(scenario, recorded);
   io::make_folder(folder);
   const io::FolderLock lock(folder);
   io::refuse_links(folder);
@@ -62,11 +62,11 @@ RunOutcome write_run(const spec::Scenario& scenario, const Recording& recording,
       {"lrbscope:scenario", scenario.name},
       {"lrbscope:scenario_hash", trace::to_hex(scenario.hash)},
   };
-  const DrawnFrames drawn = draw_frames(performance, scenario.frames, folder, text, progress);
+  const DrawnFrames drawn = draw_frames(recorded, scenario.frames, folder, text, progress);
   out.frames = drawn.frames.size();
   progress("page", 0, 1);
   const ReportText report{scenario.name, scenario.purpose, command, trace_file, out.mismatches};
-  io::write_text(folder + "/index.html", report::page_html(run_page(performance, drawn, folder, report)));
+  io::write_text(folder + "/index.html", report::page_html(run_page(recorded, drawn, folder, report)));
   return out;
 }
 

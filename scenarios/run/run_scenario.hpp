@@ -14,11 +14,11 @@ struct RunOutcome {
   std::size_t frames = 0;
 };
 
-/// Plays a scenario and writes folder/{index.html, trace.json[.gz], summary.json, a.lrb, b.lrb, frames/,
+/// Runs a scenario and writes folder/{index.html, trace.json[.gz], summary.json, a.lrb, b.lrb, frames/,
 /// montage.png}.
 RunOutcome run_scenario(const spec::Scenario& scenario, const std::string& folder, const std::string& command,
                         const ProgressReport& progress);
-/// The same for bodies that are built already.
+/// Writes the same for a run that has been recorded.
 RunOutcome write_run(const spec::Scenario& scenario, const Recording& recording, const std::string& folder,
                      const std::string& command, const ProgressReport& progress);
 

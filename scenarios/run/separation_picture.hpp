@@ -6,8 +6,8 @@
 
 namespace lrb::run {
 
-/// Two bodies that are apart under the wrappers that prove it: as they come in panel a, as far as they had to
-/// be refined in panel b.
+/// Draws two bodies that are apart under the wrappers that prove it: as they come in panel (a), refined as
+/// far as was needed in panel (b).
 void draw_separation(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
                      const Separation& separation, const std::string& path);
 

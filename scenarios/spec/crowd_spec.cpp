@@ -12,8 +12,6 @@
 namespace lrb::spec {
 namespace {
 
-constexpr std::uint32_t kMostSteps = 100'000;
-
 std::vector<CrowdKind> read_kinds(const io::JsonNode& node, const std::filesystem::path& folder,
                                   std::uint64_t seed) {
   std::vector<CrowdKind> kinds;
@@ -35,7 +33,7 @@ std::vector<CrowdKind> read_kinds(const io::JsonNode& node, const std::filesyste
   return kinds;
 }
 
-/// A number, or [least, most].
+/// Reads a number, or [least, most].
 std::array<double, 2> read_range(const io::JsonNode& node) {
   if (!node.is_array()) {
     const double x = node.number(0, kFar);
@@ -59,7 +57,7 @@ Eigen::Vector3d read_room(const io::JsonNode& node) {
   return room;
 }
 
-/// Of what frames of two bodies can be, those of a crowd are some.
+/// Reads frames of a crowd, which may use some of what frames of two bodies may.
 FrameSpec read_crowd_frames(const io::JsonNode& node) {
   FrameSpec frames = read_frames(node, {});
   for (const char* key : {"events", "colour_by", "explode", "montage", "format"})

@@ -2,18 +2,12 @@
 #include "scenarios/spec/shipped.hpp"
 
 namespace lrb::spec {
-namespace {
-
-constexpr std::string_view kEnding = ".crowd.json";
-
-}  // namespace
-
 std::vector<std::string> shipped_crowds() {
-  return shipped_names(kEnding);
+  return shipped_names(kCrowdEnding);
 }
 
 Crowd open_crowd(const std::string& name_or_path) {
-  const NamedText crowd = open_named(name_or_path, kEnding, "crowd");
+  const NamedText crowd = open_named(name_or_path, kCrowdEnding, "crowd");
   return parse_crowd(crowd.text, crowd.file);
 }
 

@@ -17,6 +17,9 @@
 
 namespace lrb::spec {
 
+/// The most steps that a scenario or a crowd may have.
+inline constexpr std::uint32_t kMostSteps = 100'000;
+
 /// What a scenario shows.
 enum class Show : std::uint8_t {
   collision,     ///< two bodies: a query at every time step
@@ -30,14 +33,14 @@ constexpr auto words_of(Show) {
 }
 
 struct BodySpec {
-  std::string file;  ///< mesh or .lrb, found from the scenario's folder; empty: generated
+  std::string file;  ///< mesh or .lrb, looked up from the scenario's folder; empty: generated
   std::string generator;
   generators::GeneratorValues parameters;
   BuildOptions build;
-  Pose pose;  ///< where it starts, or stays
+  Pose pose;  ///< where it starts and, if it does not move, stays
 };
 
-/// Where B goes while A stays. Each kind reads some of the fields.
+/// How B moves while A stays. Each kind reads some of the fields.
 struct Motion {
   enum class Kind : std::uint8_t { poses, keyframes, sweep, approach, spin };
   struct Keyframe {
@@ -47,15 +50,15 @@ struct Motion {
     double degrees = 0;
   };
   Kind kind = Kind::poses;
-  std::vector<Pose> poses;          ///< poses: one a step, applied to B as it is
-  std::vector<Keyframe> keyframes;  ///< keyframes: positions run straight, rotations along the shortest arc
+  std::vector<Pose> poses;          ///< poses: one for each step, applied to B as it is
+  std::vector<Keyframe> keyframes;  ///< keyframes: positions move straight, rotations along the shortest arc
   Eigen::Vector3d from{0, 0, 0};  ///< sweep: position of B; approach: where B starts, relative to the target
   Eigen::Vector3d to{0, 0, 0};    ///< sweep
   Eigen::Vector3d target{0, 0, 0};  ///< approach: the point that B's origin heads for
   Eigen::Vector3d axis{0, 0, 1};    ///< sweep, approach, spin: B turns about it
   double degrees = 0;               ///< sweep, spin: over all steps; approach: per step
-  std::uint32_t steps = 1;          ///< sweep, spin: number of steps; approach: the most that are tried
-  double step_length = 0.01;        ///< approach: over the sum of the bodies' diagonals
+  std::uint32_t steps = 1;          ///< sweep, spin: number of steps; approach: largest number that is tried
+  double step_length = 0.01;        ///< approach: as a share of the sum of the bodies' diagonals
   std::uint32_t before = 10;        ///< approach: steps shown before the first contact
   std::uint32_t into = 5;           ///< approach: steps shown after it
 };
@@ -68,9 +71,10 @@ constexpr auto words_of(Motion::Kind) {
                                         {Kind::spin, "spin"}});
 }
 
-/// Which moments become pictures.
+/// Which moments become pictures, and how these look.
 struct FrameSpec {
-  enum class At : std::uint8_t { none, step, refinement, every, events };  ///< events: by a list, no word
+  enum class At : std::uint8_t { none, step, refinement, every, events };  ///< events: given as a list, so
+                                                                           ///< the file has no word for it
   enum class Camera : std::uint8_t { scene, contact, fixed, orbit };
   enum class ColourBy : std::uint8_t { kind, layer, region, face_tests, refinements };
   struct View {
@@ -78,7 +82,8 @@ struct FrameSpec {
     bool orthographic = false;
     Eigen::Vector3d eye{0, 0, 0};             ///< fixed: place of the eye, world frame
     Eigen::Vector3d target{0, 0, 0};          ///< fixed: what it looks at
-    Eigen::Vector3d from{0.62, -0.68, 0.42};  ///< scene, contact, orbit: where to stand, seen from the target
+    Eigen::Vector3d from{0.62, -0.68, 0.42};  ///< scene, contact, orbit: direction from the target to the
+                                              ///< viewer
     Eigen::Vector3d up{0, 0, 1};
     double turn_degrees = 0;  ///< orbit: over all frames
     double zoom = 1;          ///< above 1: closer
@@ -88,22 +93,22 @@ struct FrameSpec {
   At at = At::step;
   std::uint32_t every = 1;            ///< steps, refinements or events between two frames
   std::vector<std::uint32_t> events;  ///< events: event numbers
-  std::uint32_t most = 120;           ///< frames at most; beyond, evenly chosen ones are drawn
-  int width = 1280, height = 720;     ///< pixels of a screen, 1/96 inch each
-  double dpi = 0;                     ///< pixels per inch of what is printed; 0: as on a screen, and not said
+  std::uint32_t most = 120;  ///< largest number of frames; if there are more, evenly chosen ones are drawn
+  int width = 1280, height = 720;  ///< pixels of a screen, 1/96 inch each
+  double dpi = 0;  ///< pixels per inch of what is printed; 0: as on a screen, and not written into the file
   int supersampling = 2;
   ColourBy colour_by = ColourBy::kind;
   std::vector<View> views;  ///< side by side; none: one of the whole scene
   bool transparent = false;
   std::array<std::vector<RegionId>, 2> isolate;  ///< regions of A and B to show alone; none: everything
-  bool ghost_rest = true;                        ///< of the rest, where some are: a ghost, or nothing
-  bool svg = false;                              ///< each view of a frame as SVG as well (2D)
-  double explode = 0;                            ///< regions moved outward by this share of their distance
-  std::uint32_t montage = 0;                     ///< panels of the montage, evenly chosen; 0: no montage
-  std::uint32_t montage_columns = 0;             ///< 0: nearly square
+  bool ghost_rest = true;     ///< what becomes of the rest where some are isolated: a ghost, or nothing
+  bool svg = false;           ///< writes each view of a frame as SVG as well (2D)
+  double explode = 0;         ///< regions are moved outward by this share of their distance
+  std::uint32_t montage = 0;  ///< number of panels of the montage, evenly chosen; 0: no montage
+  std::uint32_t montage_columns = 0;  ///< 0: nearly square
 
   static constexpr double kScreenDpi = 96;  ///< of CSS, by definition
-  /// Pixels per pixel of a screen.
+  /// Returns the number of pixels per pixel of a screen.
   double scale() const { return dpi > 0 ? dpi / kScreenDpi : 1; }
 };
 constexpr auto words_of(FrameSpec::At) {
@@ -147,10 +152,10 @@ struct Scenario {
   bool gzip = false;
   FrameSpec frames;
   std::vector<Expectation> expect;
-  std::uint64_t hash = 0;  ///< FNV-1a 64 of the file's bytes
+  std::uint64_t hash = 0;  ///< FNV-1a hash (64 bits) of the file's bytes
 };
 
-/// Reads a scenario; `file` is for messages and the folder that body files are looked up in. Throws
+/// Reads a scenario. `file` names it in messages, and its folder is where body files are looked up. Throws
 /// InputError: "file:line:column: pointer: what is wrong, what is known".
 Scenario parse_scenario(const std::string& text, const std::string& file);
 

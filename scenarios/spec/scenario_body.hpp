@@ -8,17 +8,17 @@
 
 namespace lrb::spec {
 
-/// What every JSON reader can hold.
+/// The largest integer that every reader of JSON can hold.
 inline constexpr std::uint64_t kAnySeed = std::numeric_limits<std::int64_t>::max();
 
-/// A body of a scenario or an experiment; files are looked up in `folder`, and `seed` is for whatever has
-/// none of its own.
+/// Reads a body of a scenario or an experiment. Files are looked up in `folder`; `seed` is for what does not
+/// name one.
 BodySpec read_body(const io::JsonNode& node, const std::filesystem::path& folder, std::uint64_t seed);
 
-/// The "query" part of a scenario. What the engine cannot give together is refused.
+/// Reads the "query" part of a scenario. Refuses what the engine cannot give together.
 CollideRequest read_query(const io::JsonNode& node);
 
-/// A name after which a folder can be called.
+/// Reads a name that a folder can have.
 std::string read_name(const io::JsonNode& node);
 
 }  // namespace lrb::spec

@@ -7,7 +7,7 @@ namespace lrb::spec {
 
 inline constexpr double kLeastDpi = 24, kMostDpi = 2400;
 
-/// The "frames" part of a scenario, over `fallback`.
+/// Reads the "frames" part of a scenario; what it leaves out is as in `fallback`.
 FrameSpec read_frames(const io::JsonNode& node, const FrameSpec& fallback);
 
 }  // namespace lrb::spec

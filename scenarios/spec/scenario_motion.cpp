@@ -9,7 +9,6 @@ namespace {
 
 constexpr double kDegree = std::numbers::pi / 180;
 constexpr double kFar = 1e150;  // coordinates whose squares are still finite
-constexpr std::uint32_t kMostSteps = 100'000;
 
 Eigen::Vector3d read_axis(const io::JsonNode& node) {
   const Eigen::Vector3d axis = node.vector();
@@ -54,7 +53,7 @@ void read_approach(const io::JsonNode& node, Motion& m) {
   m.from = node.at("from").vector();
   if (!(m.from.squaredNorm() > 0)) node.at("from").fail("expected a direction that is not zero");
   if (const auto n = node.get("target")) m.target = n->vector();
-  constexpr double kShortest = 1e-6;  // of the bodies' diagonals: a million steps across
+  constexpr double kShortest = 1e-6;  // as a share of the bodies' diagonals: a million steps across
   if (const auto n = node.get("step_length")) m.step_length = n->number(kShortest, 1);
   read_turn(node, m);
   m.before = read_steps(node, "before", m.before, 0);
@@ -68,7 +67,7 @@ Pose turned(const Eigen::Vector3d& axis, double degrees, const Eigen::Vector3d& 
 
 std::vector<Pose> keyframe_poses(const std::vector<Motion::Keyframe>& keys) {
   const auto rotation = [](const Motion::Keyframe& k) {
-    // In long double throughout, slerp as well: see engine/core/steady_math.hpp.
+    // Everything is in long double, slerp too: see engine/core/steady_math.hpp.
     return Eigen::Quaternion<long double>(
         Eigen::AngleAxis<long double>(k.degrees * kDegree, k.axis.normalized().cast<long double>()));
   };

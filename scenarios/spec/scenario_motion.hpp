@@ -1,5 +1,5 @@
 #pragma once
-/// Reading poses and motions of a scenario, and what the motions that need no query come to.
+/// Reads poses and motions of a scenario, and computes the poses of those motions that need no query.
 
 #include <vector>
 
@@ -8,15 +8,15 @@
 
 namespace lrb::spec {
 
-/// 12 numbers (row-major 3x4), or {position, axis, degrees}.
+/// Reads a pose: 12 numbers (3x4, row by row), or {position, axis, degrees}.
 Pose read_pose(const io::JsonNode& node);
 Motion read_motion(const io::JsonNode& node);
 
-/// Poses of B, one a step, for every kind but approach (approach.hpp). `start` is the body's own pose,
-/// applied first.
+/// Returns the poses of B, one for each step, for every kind of motion but approach (approach.hpp). `start`
+/// is the body's own pose, applied first.
 std::vector<Pose> poses_of(const Motion& motion, const Pose& start);
 
-/// first, then second.
+/// Returns the pose that applies `first`, then `second`.
 Pose then(const Pose& first, const Pose& second);
 
 }  // namespace lrb::spec

@@ -6,15 +6,10 @@
 #include "engine/core/error.hpp"
 #include "scenarios/io/embedded.hpp"
 #include "scenarios/io/files.hpp"
+#include "scenarios/io/json/json_node.hpp"
 #include "scenarios/io/json/suggest.hpp"
 
 namespace lrb::spec {
-namespace {
-
-constexpr std::string_view kScenario = ".scenario.json";
-
-}  // namespace
-
 std::vector<std::string> shipped_names(std::string_view ending) {
   std::vector<std::string> names;
   for (const io::EmbeddedFile& file : io::embedded_files())
@@ -38,17 +33,13 @@ NamedText open_named(const std::string& name_or_path, std::string_view ending, s
   return {io::read_small_text(name_or_path), name_or_path};
 }
 
-std::vector<ShippedScenario> shipped_scenarios() {
-  std::vector<ShippedScenario> out;
-  for (const std::string& name : shipped_names(kScenario)) {
-    const Scenario s = open_scenario(name);
-    out.push_back({s.name, s.purpose});
-  }
-  return out;
+std::string shipped_purpose(const std::string& name, std::string_view ending) {
+  const NamedText named = open_named(name, ending, "file");
+  return io::JsonNode(io::JsonText(named.text, named.file)).at("purpose").string();
 }
 
 Scenario open_scenario(const std::string& name_or_path) {
-  const NamedText scenario = open_named(name_or_path, kScenario, "scenario");
+  const NamedText scenario = open_named(name_or_path, kScenarioEnding, "scenario");
   return parse_scenario(scenario.text, scenario.file);
 }
 

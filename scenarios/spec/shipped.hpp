@@ -8,25 +8,24 @@
 
 namespace lrb::spec {
 
-/// The shipped files "NAME<ending>", by NAME, in the order of the alphabet.
+/// Returns the names NAME of the shipped files "NAME<ending>", in alphabetical order.
 std::vector<std::string> shipped_names(std::string_view ending);
+
+/// Returns the "purpose" that the shipped file "NAME<ending>" states.
+std::string shipped_purpose(const std::string& name, std::string_view ending);
 
 struct NamedText {
   std::string text, file;  ///< `file` is for messages
 };
 
-/// The text of a shipped file "NAME<ending>", or of a file by its path. `what` such a file holds, for messages.
-/// Throws InputError; for a word that is neither, with the nearest name.
+/// Returns the text of a shipped file "NAME<ending>", or of a file by its path. `what` tells in messages what
+/// such a file holds. Throws InputError; for a word that is neither, it names the nearest shipped name.
 NamedText open_named(const std::string& name_or_path, std::string_view ending, std::string_view what);
 
-struct ShippedScenario {
-  std::string name, purpose;
-};
+inline constexpr std::string_view kScenarioEnding = ".scenario.json", kCrowdEnding = ".crowd.json",
+                                  kExperimentEnding = ".experiment.json";
 
-/// The scenarios that are compiled in, by name.
-std::vector<ShippedScenario> shipped_scenarios();
-
-/// A scenario by the name of a shipped one, or from a file. Throws InputError.
+/// Reads a shipped scenario by its name, or a scenario from a file. Throws InputError.
 Scenario open_scenario(const std::string& name_or_path);
 
 }  // namespace lrb::spec

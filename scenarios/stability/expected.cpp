@@ -34,13 +34,14 @@ Expected expected_answer(const cases::Case& c) {
 
 ordered_json to_json(const std::vector<SimplexPair>& pairs) {
   ordered_json list = ordered_json::array();
-  for (const SimplexPair& p : pairs) list.push_back({p.a, p.b});
+  for (const SimplexPair& p : pairs) list.push_back({p.a.value(), p.b.value()});
   return list;
 }
 
 std::vector<SimplexPair> pairs_from(const json& pairs) {
   std::vector<SimplexPair> out;
-  for (const json& p : pairs) out.push_back({p.at(0).get<SimplexId>(), p.at(1).get<SimplexId>()});
+  for (const json& p : pairs)
+    out.push_back({SimplexId(p.at(0).get<std::uint32_t>()), SimplexId(p.at(1).get<std::uint32_t>())});
   return out;
 }
 
@@ -58,7 +59,7 @@ Expected expected_from(const std::string& line) {
 
 Relation relation_from(const std::string& word) {
   if (const auto r = from_name<Relation>(word); r && *r != Relation::unresolved) return *r;
-  throw InputError("'" + word + "' is no relation of two bodies");
+  throw InputError("'" + word + "' is not a relation of two bodies");
 }
 
 }  // namespace lrb::stability

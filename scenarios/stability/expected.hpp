@@ -1,5 +1,5 @@
 #pragma once
-/// The right answer to a case: exact brute force.
+/// The right answer to a case, by exact brute force.
 
 #include <string>
 #include <vector>
@@ -14,7 +14,7 @@ namespace lrb::stability {
 struct Expected {
   std::vector<SimplexPair> pairs;
   Relation relation = Relation::separate;
-  std::string refusal;  ///< not empty: the question has no answer, and this says why
+  std::string refusal;  ///< if not empty, the question has no answer, and this says why
 };
 
 Expected expected_answer(const cases::Case& c);
@@ -22,12 +22,12 @@ Expected expected_answer(const cases::Case& c);
 nlohmann::ordered_json to_json(const std::vector<SimplexPair>& pairs);
 std::vector<SimplexPair> pairs_from(const nlohmann::json& pairs);
 
-/// On a line, for the workers that compare with it.
+/// Writes it on one line, for the workers that compare with it.
 std::string to_line(const Expected& e);
-/// Throws nlohmann's exceptions: nobody writes these lines but us.
+/// Reads such a line. Throws nlohmann's exceptions: nobody writes these lines but us.
 Expected expected_from(const std::string& line);
 
-/// The word of to_string(). Throws InputError.
+/// Returns the relation that to_string() calls so. Throws InputError.
 Relation relation_from(const std::string& word);
 
 }  // namespace lrb::stability

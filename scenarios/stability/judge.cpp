@@ -66,7 +66,7 @@ void judge(Record& record, const MethodInfo& info, const MethodAnswer& answer, c
     record.relation = in_brief(answer.contact, *answer.inside);
     record.expected_relation = in_brief(!expected.pairs.empty(), is_inside(expected.relation));
   }
-  // Of bodies that are not closed only the surfaces can be asked about.
+  // Bodies that are not closed can only be asked about their surfaces.
   conclude(record, answer.relation || expected.relation != Relation::undefined,
            !info.loose || expected.pairs.empty());
 }

@@ -6,7 +6,7 @@
 namespace lrb::stability {
 namespace {
 
-/// How bad a record is, for comparison.
+/// Returns how bad a record is, for comparison.
 auto badness(const Record& r) {
   const int kind = r.outcome == Outcome::crashed ? 2 : r.outcome == Outcome::timed_out ? 1 : 0;
   return std::tuple(kind, r.missed + r.extra, -r.dial);

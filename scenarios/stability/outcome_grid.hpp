@@ -2,8 +2,8 @@
 /// The stability experiment: what every method answered to every case of every family, and the grid of
 /// families x methods that is counted from it.
 ///
-/// Raw records come first (JSON Lines, one per case and method); the grid, the page and the pictures are made
-/// of nothing else.
+/// Raw records come first (JSON Lines, one for each case and method); grid, page and pictures are made from
+/// nothing else.
 
 #include <array>
 #include <cstdint>
@@ -20,7 +20,7 @@ namespace lrb::stability {
 
 using cases::kDialSettings;
 
-/// What became of one case in the hands of one method.
+/// What became of one case that was put to one method.
 enum class Outcome : std::uint8_t {
   right,      ///< all that the method answers is right
   wrong,      ///< pairs missed or too many, or a wrong relation
@@ -46,22 +46,22 @@ struct Record {
   int dial = 0;  ///< 0 .. kDialSettings - 1
   std::uint64_t case_index = 0, seed = 0;
   Outcome outcome = Outcome::right;
-  std::uint64_t expected = 0;  ///< pairs that meet, by exact brute force
+  std::uint64_t expected = 0;  ///< number of pairs that meet, by exact brute force
   std::uint64_t missed = 0, extra = 0;
   std::string relation, expected_relation;  ///< empty: the method gives none
-  double microseconds = 0;                  ///< of the query alone
-  std::string message;                      ///< of a refusal, a crash
+  double microseconds = 0;                  ///< time of the query alone
+  std::string message;                      ///< of a refusal or a crash
 };
 
-/// One family in the hands of one method.
+/// One family put to one method.
 struct Cell {
   std::array<std::uint64_t, kDialSettings> cases{}, wrong{}, refused{}, crashed{}, timed_out{};
-  std::optional<Record> worst;  ///< of those that failed; the one with the lowest dial setting among equals
+  std::optional<Record> worst;  ///< one of those that failed, with the lowest dial setting
 
   static std::uint64_t sum(const std::array<std::uint64_t, kDialSettings>& counts);
-  /// Refusals are no failures.
+  /// Returns the number of failures; refusals are none.
   std::uint64_t failures() const { return sum(wrong) + sum(crashed) + sum(timed_out); }
-  /// Without those that were refused.
+  /// Returns the number of cases that were not refused.
   std::uint64_t answered() const { return sum(cases) - sum(refused); }
 };
 
@@ -69,7 +69,7 @@ struct Grid {
   std::vector<workers::MethodColumn> methods;
   std::vector<FamilyRow> families;
   std::vector<Cell> cells;  ///< (|families| x |methods|), row by row
-  std::string command;      ///< that made it
+  std::string command;      ///< the command that made it
   double seconds = 0;
 
   const Cell& at(std::size_t family, std::size_t method) const {
@@ -77,7 +77,7 @@ struct Grid {
   }
 };
 
-/// Counts records. Those of other methods and families are passed over.
+/// Counts records; skips those of other methods and families.
 Grid count_grid(std::vector<workers::MethodColumn> methods, std::vector<FamilyRow> families,
                 const std::vector<Record>& records);
 

@@ -1,5 +1,6 @@
 #pragma once
-/// Records as JSON Lines: what the experiment leaves behind, and what everything else is counted from.
+/// Writes and reads records as JSON Lines: what the experiment leaves behind, and what everything else is
+/// counted from.
 
 #include <string>
 #include <vector>
@@ -11,12 +12,12 @@
 namespace lrb::stability {
 
 nlohmann::ordered_json to_json(const Record& r);
-/// Throws InputError saying what is wrong with the value.
+/// Reads a record. Throws InputError that says what is wrong with the value.
 Record record_from(const nlohmann::json& value);
 
-/// A line each.
+/// Returns the records, one on each line.
 std::string to_lines(const std::vector<Record>& records);
-/// Throws InputError naming file and line.
+/// Reads them. Throws InputError that names file and line.
 std::vector<Record> read_records(const std::string& path);
 
 }  // namespace lrb::stability

@@ -18,14 +18,14 @@
 namespace lrb::stability {
 namespace {
 
-constexpr double kBruteForceTimeout = 120;  // seconds: it is slow, and never hangs
+constexpr double kBruteForceTimeout = 120;  // seconds: brute force is slow, but never hangs
 constexpr const char* kGivenFile = "/proc/self/fd/3";
 
 workers::Job::Clock::duration seconds(double s) {
   return std::chrono::duration_cast<workers::Job::Clock::duration>(std::chrono::duration<double>(s));
 }
 
-/// A file without a name: it goes when nobody has it open, whatever happens.
+/// A file without a name: it disappears when nobody has it open, whatever happens.
 class NamelessFile {
  public:
   NamelessFile() : file_(memfd_create("lrbscope-expected", MFD_CLOEXEC)) {
@@ -69,11 +69,11 @@ std::vector<std::string> command_of(const std::string& program, const std::strin
   return {program, "--family", family, "--cases", std::to_string(cases), "--seed", std::to_string(seed)};
 }
 
-/// What is known of one family while its jobs run.
+/// What is known about one family while its jobs run.
 struct FamilyWork {
   std::string name;
   NamelessFile expected;                      ///< a line for each case
-  std::vector<std::uint64_t> expected_pairs;  ///< how many, by case
+  std::vector<std::uint64_t> expected_pairs;  ///< number of pairs, by case
   bool expected_done = false;
   std::vector<std::vector<Record>> records;  ///< method by method
   std::size_t methods_begun = 0, methods_done = 0;
@@ -110,7 +110,8 @@ class Experiment {
     std::function<void()> on_done;
   };
 
-  /// The next method of a family whose right answers are known, or the right answers to the next family.
+  /// Starts the next method of a family whose right answers are known, or finds the right answers to the next
+  /// family.
   bool start_one() {
     for (const auto& family : open_)
       if (family->expected_done && family->methods_begun < o_.methods.size()) {
@@ -174,7 +175,7 @@ class Experiment {
     tell(family.name + ", " + o_.methods[m].column.name);
   }
 
-  /// Families in their order.
+  /// Hands over families in their order.
   void hand_over_finished() {
     while (!open_.empty() && open_.front()->methods_done == o_.methods.size()) {
       for (std::vector<Record>& r : open_.front()->records)
@@ -213,7 +214,7 @@ class Experiment {
   std::size_t next_family_ = 0;
   std::deque<std::unique_ptr<FamilyWork>> open_;
   std::vector<Record> records_;
-  std::list<Running> running_;  // after what its jobs refer to
+  std::list<Running> running_;  // declared after what its jobs refer to
 };
 
 }  // namespace

@@ -1,5 +1,5 @@
 #pragma once
-/// The stability experiment: every method is asked every case, in processes that may die or hang.
+/// The stability experiment: puts every case to every method, in processes that may die or hang.
 
 #include <functional>
 #include <optional>
@@ -13,20 +13,20 @@ namespace lrb::stability {
 
 struct ExperimentOptions {
   std::vector<std::string> families;           ///< by name
-  std::vector<workers::WorkerMethod> methods;  ///< absent ones are passed over
+  std::vector<workers::WorkerMethod> methods;  ///< absent ones are skipped
   std::uint64_t cases = 1;                     ///< for each setting of the dial
   std::uint64_t seed = 1;
-  std::optional<int> dial;  ///< this setting alone
-  unsigned jobs = 2;        ///< workers at a time
-  double timeout = 5;       ///< seconds a method has for a case, before it counts as hanging
+  std::optional<int> dial;  ///< only this setting; nothing: all
+  unsigned jobs = 2;        ///< number of workers at a time
+  double timeout = 5;       ///< time in seconds that a method has for a case before it counts as hanging
 };
 
 using ProgressFunction =
     std::function<void(std::uint64_t done, std::uint64_t total, const std::string& what)>;
 
-/// One record for every method and case, in the order of families, methods, dial and case: the same whatever
-/// the number of jobs, but for times. A family's right answers are found once, by exact brute force. Throws
-/// EnvironmentError if a worker cannot work.
+/// Returns one record for every method and case, in the order of families, methods, dial and case: the same,
+/// except for times, for any number of jobs. Finds a family's right answers once, by exact brute force.
+/// Throws EnvironmentError if a worker cannot work.
 std::vector<Record> run_experiment(const ExperimentOptions& options, const ProgressFunction& progress);
 
 /// One case again, in a process of its own.

@@ -1,7 +1,7 @@
 #include "scenarios/stability/stability_runner.hpp"
 
 #include "engine/core/error.hpp"
-#include "scenarios/methods/bodies.hpp"
+#include "scenarios/methods/body_parts.hpp"
 #include "scenarios/stability/judge.hpp"
 
 namespace lrb::stability {
@@ -22,7 +22,7 @@ void StabilityRunner::ask(const cases::Family& family, const cases::Case& c, con
   record.expected = expected.pairs.size();
   try {
     if (c.a->dim() == 2 && !info_.plane)
-      throw InputError("a 2D body: not asked, it answers for 3D bodies only");
+      throw InputError("a 2D body: not asked, because it answers for 3D bodies only");
     if (!expected.refusal.empty() && !info_.moves_exactly) throw InputError(expected.refusal + ": not asked");
     const Posed a = place(*c.a, c.pose_a, 0), b = place(*c.b, c.pose_b, 1);
     methods::MethodAnswer answer = method_->query(*a.body, a.pose, *b.body, b.pose, mode);

@@ -16,13 +16,14 @@ namespace lrb::stability {
 
 class StabilityRunner {
  public:
-  /// Of a method that is present.
+  /// The method must be present.
   explicit StabilityRunner(const methods::MethodEntry& entry) : info_(entry.info), method_(entry.make()) {}
 
-  /// Outcome, counts, relations, time and message of a record; what the method answered is kept.
+  /// Puts a case to the method and fills in outcome, counts, relations, time and message of the record; keeps
+  /// what the method answered.
   void ask(const cases::Family& family, const cases::Case& c, const Expected& expected, Record& record);
 
-  /// The pairs of the last ask(); nothing if there was no answer, or none that lists pairs.
+  /// Returns the pairs of the last ask(); nothing if there was no answer, or none that lists pairs.
   const std::optional<std::vector<SimplexPair>>& pairs() const { return pairs_; }
 
  private:

@@ -6,7 +6,7 @@
 namespace lrb::stability {
 namespace {
 
-/// The first setting at which something fails, or -1.
+/// Returns the first setting at which something fails, or -1.
 int first_failure(const Cell& c) {
   for (int d = 0; d < kDialSettings; ++d)
     if (c.wrong[d] + c.crashed[d] + c.timed_out[d] > 0) return d;

@@ -6,8 +6,8 @@
 
 namespace lrb::stability {
 
-/// The grid as text: a row for each family, failures/answered in each cell, from which setting of the dial on
-/// it fails, and what the columns mean.
+/// Returns the grid as text: a row for each family; in each cell failures/answered and the dial setting from
+/// which on it fails; and what the columns mean.
 std::string table(const Grid& grid);
 
 }  // namespace lrb::stability

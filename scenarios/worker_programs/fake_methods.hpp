@@ -1,6 +1,6 @@
 #pragma once
-/// Methods that misbehave, so that what becomes of them can be tested. In the list only if the environment
-/// has LRBSCOPE_FAKE_METHODS.
+/// Methods that misbehave, to test what becomes of them. The list has them only if the environment has
+/// LRBSCOPE_FAKE_METHODS.
 
 #include <vector>
 
@@ -8,9 +8,10 @@
 
 namespace lrb::worker_programs {
 
-/// All answer rightly where there is no contact. Where there is, "fake-crash" aborts, "fake-hang" never
-/// returns, "fake-refuse" refuses, "fake-throw" throws, and "fake-miss" forgets the first pair. "fake-absent"
-/// is not there. None if "ours", which they pretend to be, is not among the program's methods.
+/// Returns the fake methods. All answer rightly where there is no contact. Where there is, "fake-crash"
+/// aborts, "fake-hang" never returns, "fake-refuse" refuses, "fake-throw" throws, and "fake-miss" forgets the
+/// first pair. "fake-absent" is absent. Returns none if "ours", which they pretend to be, is not among the
+/// program's methods.
 std::vector<methods::MethodEntry> fake_methods(const std::vector<methods::MethodEntry>& methods);
 
 }  // namespace lrb::worker_programs

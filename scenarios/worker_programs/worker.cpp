@@ -28,7 +28,7 @@ struct WorkerOptions {
   std::uint64_t seed = 1, cases = 1, begin = 0, end = 0;
 };
 
-/// Our lines leave by a channel of their own: libraries that print to stdout print to stderr instead.
+/// Our lines have a channel of their own, and libraries that print to stdout print to stderr instead.
 class Lines {
  public:
   Lines() : out_(fdopen(dup(STDOUT_FILENO), "w")) { dup2(STDERR_FILENO, STDOUT_FILENO); }
@@ -65,7 +65,7 @@ void say_expected(const WorkerOptions& o, Lines& out) {
     out.say(stability::to_line(stability::expected_answer(make(family, o, k))));
 }
 
-/// The lines of the file from case `begin` on.
+/// Opens the file of right answers and skips to the line of case `begin`.
 std::ifstream open_expected(const WorkerOptions& o) {
   std::ifstream in(o.expected);
   std::string line;

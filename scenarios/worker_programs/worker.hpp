@@ -2,7 +2,7 @@
 /// The worker: a program beside lrbscope that puts cases to methods whose code lrbscope does not contain, and
 /// that may crash or hang.
 ///
-/// It says everything in JSON lines on stdout:
+/// It writes everything as JSON lines to stdout:
 ///   --list                the methods it has
 ///   --family F --seed S --cases N --begin K --end L
 ///                         the right answers (Expected) to cases K .. L - 1; case k is number k % N at

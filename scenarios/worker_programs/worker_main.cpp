@@ -1,4 +1,5 @@
-// The main() of every worker program: what differs is which methods it is linked with (scenarios/methods/methods.cmake).
+// The main() of every worker program: what differs is which methods it is linked with
+// (scenarios/methods/methods.cmake).
 #include "scenarios/worker_programs/worker.hpp"
 
 int main(int argc, char** argv) {

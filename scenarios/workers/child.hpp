@@ -1,5 +1,5 @@
 #pragma once
-/// A program of ours that runs beside us and says lines.
+/// Runs a program of ours beside this one and reads its lines.
 
 #include <chrono>
 #include <string>
@@ -9,23 +9,27 @@
 
 namespace lrb::workers {
 
-/// Killed when it goes out of scope, and when this process ends, however that ends (Linux). Its stderr leads
-/// nowhere.
+/// The exit code of a child whose program does not exist, as in shells.
+inline constexpr int kNoSuchProgram = 127;
+
+/// A process that is killed when this object goes, and when this process ends, however that ends (Linux). Its
+/// stderr is discarded.
 class Child {
  public:
-  /// `given`: a file descriptor that becomes the child's number 3, or -1. Throws EnvironmentError if the
-  /// machine has no room for another process; a program that is not there ends with code 127.
+  /// Starts a program. `given` is a file descriptor that becomes the child's number 3, or -1. Throws
+  /// EnvironmentError if the machine has no room for another process; a program that does not exist ends with
+  /// kNoSuchProgram.
   Child(const std::vector<std::string>& command, int given);
   ~Child();
   Child(Child&& other) noexcept;
   Child& operator=(Child&&) = delete;
 
-  /// Where to wait for lines.
+  /// Returns the file descriptor to wait on for lines.
   int output() const { return output_; }
-  /// Reads what there is, and appends the lines that are whole. False at the end.
+  /// Reads what there is, and appends the lines that are whole. Returns false at the end.
   bool read(std::vector<std::string>& lines);
   void kill();
-  /// Waits for the end: an exit code, or -signal.
+  /// Waits for the end; returns an exit code, or -signal.
   int wait();
 
  private:
@@ -34,7 +38,7 @@ class Child {
   std::string unfinished_;
 };
 
-/// All lines of a child that is expected to end soon; empty if it did not end with code 0 in time.
+/// Returns all lines of a child that should end soon; empty if it did not end with code 0 in time.
 std::vector<std::string> lines_of(const std::vector<std::string>& command, std::chrono::seconds limit);
 
 }  // namespace lrb::workers

@@ -11,8 +11,8 @@
 namespace lrb::workers {
 namespace {
 
-constexpr int kPatience = 3;                        // cases in a row on which a method may hang
-constexpr int kBadInput = 2, kNoSuchProgram = 127;  // exit codes that are no crash
+constexpr int kPatience = 3;  // number of cases in a row on which a method may hang
+constexpr int kBadInput = 2;  // an exit code that does not count as a crash
 
 std::string epitaph(int status) {
   if (status >= 0) return "ended with exit code " + std::to_string(status);
@@ -21,7 +21,7 @@ std::string epitaph(int status) {
          (name != nullptr ? std::string(" (") + name + ")" : "");
 }
 
-/// A worker's complaint about what we asked, or nothing.
+/// Returns a worker's complaint about what we asked, or nothing.
 std::string complaint(const std::string& line) {
   if (line.compare(0, std::strlen("{\"error\""), "{\"error\"") != 0) return "";
   const auto value = nlohmann::json::parse(line, nullptr, false);
@@ -55,7 +55,7 @@ void Job::receive() {
   if (status == kBadInput || status == kNoSuchProgram)
     throw EnvironmentError(task_.command.front() + ": " + epitaph(status) + "; build it again");
   if (next_ == task_.end)
-    child_.reset();  // whatever became of it after its last line
+    child_.reset();  // whatever became of it after its last line does not matter
   else
     go_on({false, epitaph(status)});
 }

@@ -1,7 +1,7 @@
 #pragma once
-/// One family in the hands of one method, or of exact brute force, as a chain of worker processes: where one
-/// dies or hangs the next begins behind the case it was at. One that hangs on several cases in a row is not
-/// asked the others, so that a run ends in time whatever a method does: they count as time-outs.
+/// Puts the cases of one family to one method, or to exact brute force, in a chain of worker processes: where
+/// one dies or hangs, the next begins after the case it was at. If several cases in a row hang, the remaining
+/// ones are not asked and count as time-outs, so that a run ends in time whatever a method does.
 
 #include <chrono>
 #include <functional>
@@ -26,9 +26,9 @@ class Job {
   struct Task {
     std::vector<std::string> command;  ///< without --begin and --end
     std::uint64_t begin = 0, end = 0;  ///< cases
-    int given = -1;                    ///< a file for the worker, see Child
+    int given = -1;                    ///< file descriptor that the worker gets, see Child
     Clock::duration limit{};           ///< for one case
-    /// Called in order: a case's line, or the mishap that took its place.
+    /// Called in order for each case, with its line or the mishap that took its place.
     std::function<void(std::uint64_t k, const std::string& line)> on_line;
     std::function<void(std::uint64_t k, const Mishap& mishap)> on_mishap;
   };
@@ -38,9 +38,9 @@ class Job {
   bool done() const { return !child_; }
   int output() const { return child_->output(); }
   Clock::time_point deadline() const { return deadline_; }
-  /// There is something to read.
+  /// Reads lines; call it when there is something to read.
   void receive();
-  /// The deadline has passed.
+  /// Ends the case at hand; call it when the deadline has passed.
   void expire();
 
  private:
@@ -49,12 +49,12 @@ class Job {
 
   Task task_;
   std::uint64_t next_;  ///< the case whose line comes next
-  int hung_ = 0;        ///< cases in a row
+  int hung_ = 0;        ///< number of cases in a row that hung
   std::optional<Child> child_;
   Clock::time_point deadline_;
 };
 
-/// Waits for all of a job's lines and mishaps.
+/// Runs a job to its end, with all its lines and mishaps.
 void run_to_end(Job job);
 
 }  // namespace lrb::workers

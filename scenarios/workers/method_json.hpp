@@ -1,5 +1,5 @@
 #pragma once
-/// What a worker says of its methods, on a line each.
+/// Writes and reads what a worker says about its methods, one line for each.
 
 #include <nlohmann/json.hpp>
 
@@ -8,7 +8,7 @@
 namespace lrb::workers {
 
 nlohmann::ordered_json to_json(const methods::MethodInfo& info);
-/// What is missing is as in a MethodInfo that nobody filled in.
+/// Reads a line; fields that are missing have the defaults of MethodInfo.
 methods::MethodInfo method_info_from(const nlohmann::json& value);
 
 }  // namespace lrb::workers

@@ -18,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::string_view kProgram = "lrbscope-methods";  // and those that begin with it
+constexpr std::string_view kProgram = "lrbscope-methods";  // and programs whose names begin with it
 constexpr std::chrono::seconds kListLimit(20);
 
 fs::path folder_of_workers() {

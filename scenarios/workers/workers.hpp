@@ -1,5 +1,5 @@
 #pragma once
-/// The worker programs beside lrbscope, and the methods that they have.
+/// Finds the worker programs beside lrbscope, and the methods that they have.
 
 #include <string>
 #include <vector>
@@ -18,13 +18,13 @@ struct MethodColumn {
 struct WorkerMethod {
   MethodColumn column;
   std::string program;       ///< path of the worker that has it
-  methods::MethodInfo info;  ///< the column's, and what else the worker says of it
+  methods::MethodInfo info;  ///< what the worker says about it, including what the column shows
 };
 
 /// Asks the workers in the folder of this very program, or in the one that the environment's LRBSCOPE_METHODS
-/// names. Throws EnvironmentError if there is none, or one does not answer.
+/// names. Throws EnvironmentError if there is none, or if one does not answer.
 std::vector<WorkerMethod> find_all_methods();
-/// Those that take part in the stability experiment.
+/// Returns those that take part in the stability experiment.
 std::vector<WorkerMethod> find_methods();
 
 }  // namespace lrb::workers

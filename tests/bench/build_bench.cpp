@@ -38,7 +38,8 @@ using lrb::bench::seconds_since;
 double hull_volume(const Mesh& mesh) {
   Mesh hull;
   hull.vertices = mesh.vertices;
-  for (const auto& t : lrb::construct::convex_hull(mesh.vertices)) hull.add_face(t);
+  for (const auto& t : lrb::construct::convex_hull(mesh.vertices))
+    hull.add_face(std::array{lrb::VertexId(t[0]), lrb::VertexId(t[1]), lrb::VertexId(t[2])});
   return lrb::construct::volume_of(hull);
 }
 

@@ -13,7 +13,7 @@
 #include "scenarios/run/frame_job.hpp"
 #include "scenarios/run/recorded_run.hpp"
 #include "tests/bench/timing.hpp"
-#include "tests/mesh/encode.hpp"
+#include "tests/mesh/io/encode.hpp"
 
 using namespace lrb;
 using bench::median;

@@ -8,6 +8,7 @@
 
 #include <benchmark/benchmark.h>
 
+#include "tests/support/folder.hpp"
 #include "tests/support/lrb_shapes.hpp"
 #include "trace/cursor.hpp"
 #include "trace/recorder.hpp"
@@ -20,28 +21,30 @@ using namespace lrb::trace;
 
 /// A body of `notches` notched plates side by side: as many regions as a real one, so that look-ups miss
 /// caches as they do there.
-LrbRep big_body(VertexId notches) {
+LrbRep big_body(std::uint32_t notches) {
   const LrbData one = toy::notched_plate();
   LrbData all;
   all.dim = 2;
   all.name = "many plates";
   all.closed = true;
-  for (VertexId n = 0; n < notches; ++n)
+  for (std::uint32_t n = 0; n < notches; ++n)
     for (const auto& v : one.vertices) all.vertices.push_back(v + Eigen::Vector3d(10.0 * n, 0, 0));
   const auto add = [&](FaceId from, FaceId to) {
-    const auto shifted = [](CellId cell, VertexId n) { return is_region(cell) ? cell + 3 * n : cell; };
-    for (VertexId n = 0; n < notches; ++n)
+    const auto shifted = [](CellId cell, std::uint32_t n) {
+      return is_region(cell) ? CellId(cell + 3 * n) : cell;
+    };
+    for (std::uint32_t n = 0; n < notches; ++n)
       for (FaceId f = from; f < to; ++f) {
         const auto corners = one.face(f);
-        const auto offset = static_cast<VertexId>(one.vertices.size()) * n;
-        toy::add_face(all, {corners[0] + offset, corners[1] + offset}, shifted(one.inner_cell[f], n),
-                      shifted(one.outer_cell[f], n));
+        const std::size_t offset = one.vertices.size() * n;
+        toy::add_face(all, {VertexId(corners[0] + offset), VertexId(corners[1] + offset)},
+                      shifted(one.inner_cell[f], n), shifted(one.outer_cell[f], n));
       }
   };
-  add(0, one.real_face_count);
+  add(0, FaceId(one.real_face_count));
   all.real_face_count = one.real_face_count * notches;
-  add(one.real_face_count, static_cast<FaceId>(one.face_count()));
-  for (VertexId n = 0; n < notches; ++n) all.region_layer.insert(all.region_layer.end(), {0, 1, 2});
+  add(FaceId(one.real_face_count), FaceId(one.face_count()));
+  for (std::uint32_t n = 0; n < notches; ++n) all.region_layer.insert(all.region_layer.end(), {0, 1, 2});
   return LrbRep(std::move(all));
 }
 
@@ -85,11 +88,11 @@ template <class Probe>
 void replay_calls(Probe& probe) {
   for (const Call& c : calls()) {
     if (c.kind == EventKind::face_test)
-      probe.face_test(c.a, c.b, c.meet, 1, 2);
+      probe.face_test(SimplexId(c.a), SimplexId(c.b), c.meet, 1, 2);
     else if (c.kind == EventKind::refine)
-      probe.refine(c.side, c.a, c.b);
+      probe.refine(c.side, RegionId(c.a), c.b);
     else
-      probe.contact(c.a, c.b, c.meet);
+      probe.contact(SimplexId(c.a), SimplexId(c.b), c.meet);
   }
 }
 
@@ -169,12 +172,11 @@ BENCHMARK(write_json)->ArgName("wall")->Arg(0)->Arg(1)->Unit(benchmark::kMillise
 
 void save_file(benchmark::State& state) {
   const Trace trace = recorded(Clock::event);
-  const auto path =
-      std::filesystem::temp_directory_path() / (state.range(0) ? "lrb_bench.json.gz" : "lrb_bench.json");
+  const test::Folder folder;
+  const auto path = folder.path / (state.range(0) ? "lrb_bench.json.gz" : "lrb_bench.json");
   for (auto _ : state) save_trace(trace, path.string());
   report(state);
   state.counters["bytes_per_event"] = static_cast<double>(std::filesystem::file_size(path)) / kEvents;
-  std::filesystem::remove(path);
 }
 BENCHMARK(save_file)->ArgName("gz")->Arg(0)->Arg(1)->Unit(benchmark::kMillisecond);
 

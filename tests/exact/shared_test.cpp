@@ -14,7 +14,7 @@ using lrb::test::Kind;
 
 namespace {
 
-using Ids = std::array<std::uint32_t, 3>;
+using Ids = std::array<VertexId, 3>;
 
 /// Gives b some of a's vertices, by index and by coordinates.
 Ids share_vertices(test::Rng& rng, test::SimplexPair& s, std::size_t n) {
@@ -24,7 +24,7 @@ Ids share_vertices(test::Rng& rng, test::SimplexPair& s, std::size_t n) {
     const auto i = static_cast<std::size_t>(test::random_int(rng, 0, 5));
     if (i >= n || used[i]) continue;
     used[i] = true;
-    ids[j] = static_cast<std::uint32_t>(i);
+    ids[j] = VertexId(i);
     s.p[3 + j] = s.p[i];
   }
   return ids;
@@ -91,7 +91,7 @@ TEST_CASE("a triangle that names a vertex twice is no triangle") {
   const double o[3] = {0, 0, 0}, x[3] = {1, 0, 0}, y[3] = {0, 1, 0}, z[3] = {0, 0, 1};
   const double* const a[3] = {o, o, x};
   const double* const b[3] = {o, y, z};
-  const std::uint32_t ia[3] = {0, 0, 1}, ib[3] = {0, 2, 3};
+  const VertexId ia[3] = {0, 0, 1}, ib[3] = {0, 2, 3};
   CHECK_FALSE(exact::meet_only_in_shared(a, ia, b, ib));
   CHECK_FALSE(exact::meet_only_in_shared(b, ib, a, ia));
 }

@@ -18,7 +18,7 @@
 #include "scenarios/bodies/shapes/hand_made.hpp"
 #include "scenarios/bodies/shapes/shapes.hpp"
 #include "tests/faults/failing_new.hpp"
-#include "tests/mesh/encode.hpp"
+#include "tests/mesh/io/encode.hpp"
 #include "tests/support/lrb_shapes.hpp"
 #include "trace/recorder.hpp"
 #include "trace/trace_json.hpp"

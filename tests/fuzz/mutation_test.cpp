@@ -56,7 +56,7 @@ void mutate(const std::string& name, int rounds) {
 
 }  // namespace
 
-// Meshes are damaged in tests/mesh/malformed_test.cpp.
+// Meshes are damaged in tests/mesh/io/malformed_test.cpp.
 TEST_CASE("damaged .lrb files are refused or safe to use") {
   mutate("lrb", 800);
 }

@@ -5,7 +5,7 @@
 #include "scenarios/bodies/shapes/hand_made.hpp"
 #include "scenarios/bodies/shapes/shapes.hpp"
 #include "tests/fuzz/feed.hpp"
-#include "tests/mesh/encode.hpp"
+#include "tests/mesh/io/encode.hpp"
 #include "tests/support/lrb_files.hpp"
 #include "tests/support/lrb_shapes.hpp"
 #include "tests/trace/runs.hpp"
@@ -108,8 +108,9 @@ std::vector<std::string> traces() {
   coarse.request.separation = true;
   trace::Recorder other(plate, plate, coarse);
   other.begin_step(0, Pose{});
-  other.face_test(1, plate.real_simplex_count(), exact::Meet::touch, 0, 0);
-  other.contact(1, plate.real_simplex_count(), exact::Meet::touch);
+  const SimplexId pseudo(plate.real_simplex_count());
+  other.face_test(1, pseudo, exact::Meet::touch, 0, 0);
+  other.contact(1, pseudo, exact::Meet::touch);
   CollideResult result;
   result.relation = Relation::unresolved;
   result.error_bound = 0.25;

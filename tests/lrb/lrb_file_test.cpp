@@ -15,7 +15,7 @@
 #include "scenarios/bodies/shapes/hand_made.hpp"
 #include "scenarios/bodies/shapes/random_pose.hpp"
 #include "scenarios/bodies/shapes/shapes.hpp"
-#include "tests/mesh/encode.hpp"
+#include "tests/mesh/io/encode.hpp"
 #include "tests/support/lrb_files.hpp"
 #include "tests/support/lrb_shapes.hpp"
 
@@ -307,7 +307,8 @@ TEST_CASE(
   RegionId over = kNull;
   for (RegionId r = 0; r < rep.region_count(); ++r)
     for (const FaceId lid : rep.lids(r))
-      if (is_region(rep.outer_cell(lid)) && rep.levels().needed()[r] > 0) over = rep.outer_cell(lid);
+      if (is_region(rep.outer_cell(lid)) && rep.levels().needed()[r] > 0)
+        over = rep.outer_cell(lid).as_region();
   REQUIRE(over != kNull);
   CHECK_THROWS_AS(make([&](Needed& n, Levels&) { n[over] = 0; }), InputError);
   const auto found = [&](auto change) { return !validate(make(change)).valid; };

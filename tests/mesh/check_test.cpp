@@ -261,9 +261,10 @@ TEST_CASE("faces turned against their neighbours") {
       moebius.vertices.emplace_back((1 + w * std::cos(half)) * std::cos(u),
                                     (1 + w * std::cos(half)) * std::sin(u), w * std::sin(half));
   }
-  for (VertexId i = 0; i < 8; ++i) {
-    moebius.add_face(std::array<VertexId, 3>{2 * i, 2 * i + 2, 2 * i + 1});
-    moebius.add_face(std::array<VertexId, 3>{2 * i + 1, 2 * i + 2, 2 * i + 3});
+  for (int i = 0; i < 8; ++i) {
+    const VertexId a(2 * i), b(2 * i + 1), c(2 * i + 2), d(2 * i + 3);
+    moebius.add_face(std::array{a, c, b});
+    moebius.add_face(std::array{b, c, d});
   }
   moebius.add_face(std::array<VertexId, 3>{16, 1, 17});
   moebius.add_face(std::array<VertexId, 3>{17, 1, 0});

@@ -66,7 +66,7 @@ std::set<FacePair> expected_in(const Mesh& m) {
   for (FaceId f = 0; f < m.face_count(); ++f) parts.push_back(triangles_of(m, f, use[f]));
   std::set<FacePair> found;
   for (FaceId f = 0; f < m.face_count(); ++f)
-    for (FaceId g = f + 1; g < m.face_count(); ++g) {
+    for (FaceId g(f + 1); g < m.face_count(); ++g) {
       const auto meets = [&](const Triangle& s) {
         return std::any_of(parts[g].begin(), parts[g].end(),
                            [&](const Triangle& t) { return !are_clear(m, s, t); });
@@ -144,13 +144,13 @@ TEST_CASE("at any size and place of the body") {
 
 TEST_CASE("a chord of a large face is not an edge that others may share") {
   // A fin that stands on the line between two corners of the drum's end that are no neighbours.
-  for (const VertexId other : {2u, 7u, kMany / 2, kMany - 2}) {
+  for (const std::uint32_t other : {2u, 7u, kMany / 2, kMany - 2}) {
     Mesh m = drum(kMany);
     const VertexId tip = static_cast<VertexId>(m.vertices.size());
     m.vertices.emplace_back(0.1, 0.2, 3);
-    m.add_face(std::array<VertexId, 3>{kMany, kMany + other, tip});
+    m.add_face(std::array{VertexId(kMany), VertexId(kMany + other), tip});
     CHECK(found_in(m).contains(FacePair{1, static_cast<FaceId>(m.face_count() - 1)}));
-    m.face_vertices[m.face_vertices.size() - 2] = kMany + 1;  // a neighbour
+    m.face_vertices[m.face_vertices.size() - 2] = VertexId(kMany + 1);  // a neighbour
     CHECK_FALSE(found_in(m).contains(FacePair{1, static_cast<FaceId>(m.face_count() - 1)}));
   }
 }

@@ -15,7 +15,7 @@ namespace {
 
 std::vector<FaceId> all_faces(const Mesh& m) {
   std::vector<FaceId> faces(m.face_count());
-  std::iota(faces.begin(), faces.end(), 0u);
+  std::iota(faces.begin(), faces.end(), FaceId{0});
   return faces;
 }
 

@@ -22,7 +22,7 @@ Pairs meeting_strangers(const Mesh& m) {
   Pairs found;
   const std::size_t n = static_cast<std::size_t>(m.dim);
   for (FaceId f = 0; f < m.face_count(); ++f)
-    for (FaceId g = f + 1; g < m.face_count(); ++g) {
+    for (FaceId g(f + 1); g < m.face_count(); ++g) {
       const auto a = m.face(f), b = m.face(g);
       if (std::find_first_of(a.begin(), a.end(), b.begin(), b.end()) != a.end()) continue;
       const double *pa[3], *pb[3];
@@ -137,14 +137,14 @@ TEST_CASE("corners in the middle of straight sides are no self-intersections") {
     m.add_face(top);
     m.add_face(bottom);
     for (VertexId i = 0; i < 8; ++i)
-      m.add_face(std::array<VertexId, 4>{i, (i + 1) % 8, 8 + (i + 1) % 8, 8 + i});
+      m.add_face(std::array{i, VertexId((i + 1) % 8), VertexId(8 + (i + 1) % 8), VertexId(8 + i)});
     CHECK(check_mesh(m).lines(m).empty());
   }
   Mesh three_sided;  // only three proper corners
   three_sided.vertices = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {4, 0, 0},
                           {2, 2, 0}, {0, 4, 0}, {0, 1, 0}, {0, 0, 3}};
   three_sided.add_face(std::array<VertexId, 7>{0, 6, 5, 4, 3, 2, 1});
-  for (VertexId i = 0; i < 7; ++i) three_sided.add_face(std::array<VertexId, 3>{i, (i + 1) % 7, 7});
+  for (VertexId i = 0; i < 7; ++i) three_sided.add_face(std::array<VertexId, 3>{i, VertexId((i + 1) % 7), 7});
   CHECK(check_mesh(three_sided).lines(three_sided).empty());
 }
 

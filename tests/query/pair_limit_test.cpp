@@ -26,8 +26,7 @@ LrbRep strips(int along) {
       if (along == 1) std::swap(v[0], v[1]);
       mesh.vertices.push_back(v);
     }
-    const auto first = static_cast<VertexId>(3 * i);
-    mesh.add_face(std::array{first, first + 1, first + 2});
+    mesh.add_face(std::array{VertexId(3 * i), VertexId(3 * i + 1), VertexId(3 * i + 2)});
   }
   return LrbRep::without_regions(mesh, false, false);
 }

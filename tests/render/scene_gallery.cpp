@@ -111,8 +111,8 @@ void gallery_2d(render::Rasterizer& r, const std::string& folder) {
   }
   render::write_png(render::montage(panels), folder + "/scene_2d_sequence.png");
   Wrapper wa(a), wb(b);
-  for (const RegionId i : {0U, 1U, 7U, 8U, 9U, 22U}) wa.refine(i);
-  for (const RegionId i : {2U, 3U}) wb.refine(i);
+  for (const RegionId i : std::initializer_list<RegionId>{0, 1, 7, 8, 9, 22}) wa.refine(i);
+  for (const RegionId i : std::initializer_list<RegionId>{2, 3}) wb.refine(i);
   const std::vector<render::SceneBody> bodies = {
       {&a, &wa, {}, {}, ""}, {&b, &wb, Pose::rotation({0, 0, 1}, 0.3, {1.35, 0.2, 0}), {}, ""}};
   render::SceneHighlight highlight;

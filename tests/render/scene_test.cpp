@@ -98,7 +98,7 @@ TEST_CASE("poses move bodies, names and sides are told apart") {
   for (const render::DrawTriangle& t : scene.list.triangles) {
     if (t.id >> 31 == 0) continue;
     for (const Vector3d& x : t.x) b.extend(x);
-    const auto corners = rep.face(t.id & 0x7fffffff);
+    const auto corners = rep.face(FaceId(t.id & 0x7fffffff));
     CHECK(t.x[0] == pose.apply(rep.vertices()[corners[0]]));
   }
   CHECK(b.center().x() == doctest::Approx(3).epsilon(0.05));
@@ -160,14 +160,14 @@ TEST_CASE("layers, regions and values give faces their colours and the frame its
   CHECK(scene.scale->high == 2);
   for (const render::DrawTriangle& t : scene.list.triangles) {
     if (t.layer != render::Layer::translucent) continue;
-    const std::uint16_t layer = rep.layer(rep.inner_cell(t.id));
+    const std::uint16_t layer = rep.layer(rep.inner_cell(FaceId(t.id)).as_region());
     CHECK(render::with_alpha(t.colour, 255) == render::palette::viridis(layer / 2.0));
   }
   options.colour_by = render::ColourBy::region;
   scene = render::build_scene(body, {}, options);
   for (const render::DrawTriangle& t : scene.list.triangles) {
     if (t.layer == render::Layer::translucent)
-      CHECK(render::with_alpha(t.colour, 255) == render::palette::category(rep.inner_cell(t.id)));
+      CHECK(render::with_alpha(t.colour, 255) == render::palette::category(rep.inner_cell(FaceId(t.id))));
   }
   options.colour_by = render::ColourBy::value;
   scene = render::build_scene(body, {}, options);
@@ -206,7 +206,7 @@ TEST_CASE("exploded regions keep their shape and move outward") {
   for (RegionId r = 0; r < rep.region_count(); ++r) in_regions += rep.collector(r).size();
   CHECK(count(scene.list).opaque == rep.real_face_count() + in_regions);
   for (const render::DrawTriangle& t : scene.list.triangles) {
-    const auto corners = rep.face(t.id);
+    const auto corners = rep.face(FaceId(t.id));
     const Vector3d before = rep.vertices()[corners[0]], moved = t.x[0] - before;
     CHECK((t.x[1] - rep.vertices()[corners[1]] - moved).norm() < 1e-12);
     if (moved.norm() > 0) CHECK(moved.dot(before) > 0);
@@ -370,7 +370,7 @@ TEST_CASE("scenes that make no sense are refused") {
                   InputError);
   const std::vector<render::SceneBody> body = {{&solid, nullptr, {}, {}, ""}};
   render::SceneHighlight highlight;
-  highlight.refining[0] = {solid.region_count()};
+  highlight.refining[0] = {RegionId(solid.region_count())};
   CHECK_THROWS_AS(render::build_scene(body, highlight), InputError);
   highlight = {};
   highlight.under_test = {0, 0};

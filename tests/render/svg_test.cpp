@@ -14,10 +14,12 @@
 #include "render/svg_montage.hpp"
 #include "tests/render/bodies.hpp"
 #include "tests/render/font_guard.hpp"
+#include "tests/support/text.hpp"
 
 using namespace lrb;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
+using lrb::test::count;
 
 namespace {
 
@@ -82,12 +84,6 @@ std::vector<PathFill> fills_in(const std::string& text) {
     out.push_back(f);
   }
   return out;
-}
-
-std::size_t count(const std::string& text, const std::string& what) {
-  std::size_t n = 0;
-  for (std::size_t at = text.find(what); at != std::string::npos; at = text.find(what, at + 1)) ++n;
-  return n;
 }
 
 }  // namespace

@@ -63,9 +63,9 @@ inline Mesh as_soup(const Mesh& m) {
     }
     soup.add_face(corners);
   });
-  const auto old = static_cast<VertexId>(m.vertices.size());
+  const auto old = static_cast<std::uint32_t>(m.vertices.size());
   out.vertices.erase(out.vertices.begin(), out.vertices.begin() + old);
-  for (VertexId& v : out.face_vertices) v -= old;
+  for (VertexId& v : out.face_vertices) v = VertexId(v - old);
   return out;
 }
 

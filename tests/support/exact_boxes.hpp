@@ -108,6 +108,12 @@ Exact outside(const Range& r, float centre, float half_size, float error) {
 }
 
 struct Share {
+  void operator+=(const Share& s) {
+    boxes += s.boxes;
+    culled += s.culled;
+    too_small += s.too_small;
+    wrong += s.wrong;
+  }
   std::uint64_t boxes = 0, culled = 0;
   std::uint64_t too_small = 0;  ///< boxes that, grown by the error, do not hold what they must
   std::uint64_t wrong = 0;      ///< culled, but not apart
@@ -177,6 +183,21 @@ void check_certain(const Scene& s, std::span<const Candidate> found, RandomEngin
   }
 }
 
+/// Returns the pairs that a kernel, made ready for the scene, does not drop.
+std::vector<Candidate> candidates_of(const Scene& s, TreeKernel& k, void (*run)(TreeKernel&)) {
+  std::vector<NodePair> stack(64 * (s.a->tree().height() + s.b->tree().height()) + 64);
+  std::vector<Candidate> out(64 + std::size_t{s.a->real_simplex_count()} * s.b->real_simplex_count());
+  k.stack = stack.data();
+  k.stack[0] = {0, 0};
+  k.stack_size = 1;
+  k.out = out.data();
+  k.out_capacity = static_cast<std::uint32_t>(out.size());
+  run(k);
+  REQUIRE(k.stack_size == 0);
+  out.resize(k.out_size);
+  return out;
+}
+
 /// Pairs that boxes or planes have dropped do not meet, says the rational oracle, and what is certain of the others
 /// is true. `found`: all that were not dropped.
 void check_outcome(const Scene& s, std::span<const Candidate> found, RandomEngine& random, int most,
@@ -193,6 +214,18 @@ void check_outcome(const Scene& s, std::span<const Candidate> found, RandomEngin
     REQUIRE(oracle_meet(s, sa, sb) == 0);
   }
   check_certain(s, found, random, 5 * most, asked);
+}
+
+/// So many boxes were compared, and so large a part of them culled, that something was tested.
+void check_extent(const Share& share, const Asked& asked, std::uint64_t boxes, double culled) {
+  CHECK(share.boxes > boxes);
+  CHECK(static_cast<double>(share.culled) > culled * static_cast<double>(share.boxes));
+  CHECK(asked.dropped > 100);
+  CHECK(asked.disjoint > 100);
+  CHECK(asked.cross > 100);
+  MESSAGE(share.boxes << " pairs of boxes on an axis, " << share.culled << " culled; " << asked.dropped
+                      << " dropped pairs asked again, " << asked.disjoint << " called disjoint, "
+                      << asked.cross << " called crossing");
 }
 
 }  // namespace

@@ -30,14 +30,14 @@ Mesh prism(const std::vector<Vector3d>& below, const std::vector<Vector3d>& abov
   mesh.vertices.insert(mesh.vertices.end(), above.begin(), above.end());
   std::vector<VertexId> bottom(n), top(n);
   for (std::uint32_t i = 0; i < n; ++i) {
-    bottom[i] = n - 1 - i;
-    top[i] = n + i;
+    bottom[i] = VertexId(n - 1 - i);
+    top[i] = VertexId(n + i);
   }
   mesh.add_face(bottom);
   mesh.add_face(top);
   for (std::uint32_t i = 0; i < n; ++i) {
     const std::uint32_t j = (i + 1) % n;
-    mesh.add_face(std::array<VertexId, 4>{i, j, n + j, n + i});
+    mesh.add_face(std::array{VertexId(i), VertexId(j), VertexId(n + j), VertexId(n + i)});
   }
   return mesh;
 }
@@ -53,8 +53,8 @@ void add_fan(Mesh& mesh, std::uint32_t n, const Vector3d& apex, bool up) {
   const auto tip = static_cast<VertexId>(mesh.vertices.size());
   mesh.vertices.push_back(apex);
   for (std::uint32_t i = 0; i < n; ++i) {
-    const std::uint32_t j = (i + 1) % n;
-    mesh.add_face(up ? std::array<VertexId, 3>{i, j, tip} : std::array<VertexId, 3>{j, i, tip});
+    const VertexId a(i), b((i + 1) % n);
+    mesh.add_face(up ? std::array{a, b, tip} : std::array{b, a, tip});
   }
 }
 
@@ -90,7 +90,7 @@ Mesh cone(std::uint32_t n) {
   Mesh mesh = ring(n);
   add_fan(mesh, n, {0, 0, 1}, true);
   std::vector<VertexId> base(n);
-  for (std::uint32_t i = 0; i < n; ++i) base[i] = n - 1 - i;
+  for (std::uint32_t i = 0; i < n; ++i) base[i] = VertexId(n - 1 - i);
   mesh.add_face(base);
   return mesh;
 }

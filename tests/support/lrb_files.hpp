@@ -5,7 +5,7 @@
 #include <string>
 
 #include "engine/lrb/lrb_file.hpp"
-#include "tests/mesh/encode.hpp"
+#include "tests/mesh/io/encode.hpp"
 
 namespace lrb::test {
 

@@ -34,7 +34,7 @@ inline LrbData notched_plate() {
   d.vertices = {{0, 0, 0}, {6, 0, 0}, {6, 6, 0}, {5, 6, 0}, {4, 4, 0},
                 {3, 2, 0}, {2, 4, 0}, {1, 6, 0}, {0, 6, 0}, {3, 7, 0}};
   const CellId outers[] = {kOutside, kOutside, 2, 1, 0, 0, 1, 2, kOutside};
-  for (VertexId i = 0; i < 9; ++i) add_face(d, {i, (i + 1) % 9}, kSolid, outers[i]);
+  for (VertexId i = 0; i < 9; ++i) add_face(d, {i, VertexId((i + 1) % 9)}, kSolid, outers[i]);
   d.real_face_count = 9;
   add_face(d, {4, 6}, 0, 1);
   add_face(d, {3, 7}, 1, 2);
@@ -53,7 +53,7 @@ inline LrbData small_plate() {
   d.closed = true;
   d.vertices = {{0, 0, 0}, {6, 0, 0}, {6, 6, 0}, {4, 4, 0}, {3, 1, 0}, {2, 4, 0}, {0, 6, 0}};
   const CellId outers[] = {kOutside, kOutside, 1, 0, 0, 1, kOutside};
-  for (VertexId i = 0; i < 7; ++i) add_face(d, {i, (i + 1) % 7}, kSolid, outers[i]);
+  for (VertexId i = 0; i < 7; ++i) add_face(d, {i, VertexId((i + 1) % 7)}, kSolid, outers[i]);
   d.real_face_count = 7;
   add_face(d, {3, 5}, 0, 1);
   add_face(d, {2, 6}, 1, kOutside);
@@ -90,14 +90,14 @@ inline LrbData dented_box() {
                 {0, 4, 4}, {1, 1, 4}, {3, 1, 4}, {3, 3, 4}, {1, 3, 4}, {2, 2, 2}};
   add_face(d, {0, 3, 2, 1}, kSolid, kOutside);
   for (VertexId i = 0; i < 4; ++i) {
-    const VertexId j = (i + 1) % 4;
-    add_face(d, {i, j, j + 4, i + 4}, kSolid, kOutside);
+    const VertexId j((i + 1) % 4);
+    add_face(d, {i, j, VertexId(j + 4), VertexId(i + 4)}, kSolid, kOutside);
   }
   for (VertexId i = 0; i < 4; ++i) {
-    const VertexId j = (i + 1) % 4;
-    add_face(d, {i + 4, j + 4, j + 8, i + 8}, kSolid, 1);
+    const VertexId j((i + 1) % 4);
+    add_face(d, {VertexId(i + 4), VertexId(j + 4), VertexId(j + 8), VertexId(i + 8)}, kSolid, 1);
   }
-  for (VertexId i = 0; i < 4; ++i) add_face(d, {i + 8, (i + 1) % 4 + 8, 12}, kSolid, 0);
+  for (VertexId i = 0; i < 4; ++i) add_face(d, {VertexId(i + 8), VertexId((i + 1) % 4 + 8), 12}, kSolid, 0);
   d.real_face_count = 13;
   add_face(d, {8, 9, 10, 11}, 0, 1);
   add_face(d, {4, 5, 6, 7}, 1, kOutside);

@@ -20,7 +20,7 @@ inline double random_unit(Rng& rng) {
   return static_cast<double>(rng() >> 11) * 0x1p-53;
 }
 
-/// How many rounds to run: `standard` times LRB_EXACT_EFFORT (a number, 1 if unset).
+/// Returns the number of rounds to run: `standard` times LRB_EXACT_EFFORT (a number, 1 if unset).
 inline int effort(int standard) {
   const char* text = std::getenv("LRB_EXACT_EFFORT");
   const double factor = text == nullptr ? 1 : std::atof(text);

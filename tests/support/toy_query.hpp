@@ -33,7 +33,7 @@ inline exact::Meet meet(int dim, const Corners& a, const Corners& b) {
 
 inline std::uint32_t depth_of(const LrbRep& rep, FaceId f) {
   const CellId cell = rep.outer_cell(f);
-  return is_region(cell) ? rep.depth(cell) : 0;
+  return is_region(cell) ? rep.depth(cell.as_region()) : 0;
 }
 
 /// `watch()` is called after each call of the probe.
@@ -70,7 +70,7 @@ class Query {
 
   bool test_faces(FaceId fa, FaceId fb) {
     const auto end_of = [](const LrbRep& rep, FaceId f) {
-      return f + 1 < rep.face_count() ? rep.first_simplex(f + 1) : rep.simplex_count();
+      return f + 1 < rep.face_count() ? rep.first_simplex(FaceId(f + 1)).value() : rep.simplex_count();
     };
     if (!tested_.insert({fa, fb}).second) return false;
     for (SimplexId sa = reps_[0]->first_simplex(fa); sa < end_of(*reps_[0], fa); ++sa)
@@ -99,7 +99,7 @@ class Query {
   bool refine(Side side, FaceId f) {
     const auto i = static_cast<std::size_t>(side);
     if (reps_[i]->is_real(f)) return false;
-    const RegionId r = reps_[i]->inner_cell(f);
+    const RegionId r = reps_[i]->inner_cell(f).as_region();
     const bool first = wrappers_[i].included(r);
     if (!wrappers_[i].refine_face(f)) return false;
     ++result_.counters.refinements;

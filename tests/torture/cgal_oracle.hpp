@@ -2,7 +2,7 @@
 
 namespace lrb::torture {
 
-/// Whether CGAL was found when this was built.
+/// Returns true if CGAL was found when this was built.
 bool has_cgal();
 
 /// CGAL's answer to "do these triangles meet?" with exact predicates: 1 or 0; -1 if it cannot be asked (no

@@ -56,7 +56,7 @@ bool holds(const Wrapper& w, const Eigen::Vector3d& p) {
   int crossings = 0;
   for (const FaceId f : w.boundary()) {
     const SimplexId first = rep.first_simplex(f);
-    const auto count = static_cast<SimplexId>(Mesh::simplices_of(rep.face(f).size(), rep.dim()));
+    const std::size_t count = Mesh::simplices_of(rep.face(f).size(), rep.dim());
     for (SimplexId s = first; s < first + count; ++s) {
       VertexId v[3];
       rep.simplex(s, v);
@@ -183,7 +183,7 @@ struct Simplices {
 
   void add(const LrbRep& rep, FaceId f) {
     const SimplexId first = rep.first_simplex(f);
-    const auto count = static_cast<SimplexId>(Mesh::simplices_of(rep.face(f).size(), rep.dim()));
+    const std::size_t count = Mesh::simplices_of(rep.face(f).size(), rep.dim());
     for (SimplexId s = first; s < first + count; ++s) {
       VertexId v[3];
       rep.simplex(s, v);

@@ -91,8 +91,8 @@ inline void clip(const SweptBody& a, const SweptBody& b, std::vector<SimplexId>&
                  std::vector<SimplexId>& in_b) {
   in_a.resize(a.rep().real_simplex_count());
   in_b.resize(b.rep().real_simplex_count());
-  std::iota(in_a.begin(), in_a.end(), 0u);
-  std::iota(in_b.begin(), in_b.end(), 0u);
+  std::iota(in_a.begin(), in_a.end(), SimplexId{0});
+  std::iota(in_b.begin(), in_b.end(), SimplexId{0});
   for (std::size_t before = 0; before != in_a.size() + in_b.size() && !in_a.empty() && !in_b.empty();) {
     before = in_a.size() + in_b.size();
     const auto of_a = SweptBody::whole(a, in_a);

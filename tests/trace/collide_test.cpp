@@ -113,15 +113,15 @@ TEST_CASE(
           if (e.cause == kNull) continue;
           const Event& test = run.trace.events[e.cause];
           const LrbRep& rep = e.side == Side::a ? *bodies.a : *bodies.b;
-          CHECK(rep.inner_cell(rep.face_of_simplex(e.side == Side::a ? test.a : test.b)) == e.a);
+          CHECK(rep.inner_cell(rep.face_of_simplex(test.simplex(e.side))) == e.region());
         }
         if (e.kind == EventKind::contact) {
           REQUIRE(e.cause != kNull);
           CHECK(run.trace.events[e.cause].kind == EventKind::face_test);
         }
         if (e.kind != EventKind::face_test) continue;
-        const CellId cover_a = bodies.a->outer_cell(bodies.a->face_of_simplex(e.a));
-        const CellId cover_b = bodies.b->outer_cell(bodies.b->face_of_simplex(e.b));
+        const CellId cover_a = bodies.a->outer_cell(bodies.a->face_of_simplex(e.simplex(Side::a)));
+        const CellId cover_b = bodies.b->outer_cell(bodies.b->face_of_simplex(e.simplex(Side::b)));
         CHECK((e.cause == kNull) == (!is_region(cover_a) && !is_region(cover_b)));
         if (e.cause == kNull) continue;
         const Event& refinement = run.trace.events[e.cause];
@@ -158,9 +158,9 @@ TEST_CASE(
         std::vector<SimplexPair> pairs;
         for (const Event& e : run.trace.events_of(step)) {
           if (e.kind != EventKind::contact) continue;
-          pairs.push_back({e.a, e.b});
-          pseudo_here += !bodies.a->is_real_simplex(e.a);
-          pseudo_here += !bodies.b->is_real_simplex(e.b);
+          pairs.push_back({e.simplex(Side::a), e.simplex(Side::b)});
+          pseudo_here += !bodies.a->is_real_simplex(e.simplex(Side::a));
+          pseudo_here += !bodies.b->is_real_simplex(e.simplex(Side::b));
           REQUIRE(e.cause != kNull);
           const Event& test = run.trace.events[e.cause];
           CHECK(test.kind == EventKind::face_test);

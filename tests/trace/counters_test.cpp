@@ -14,17 +14,10 @@
 using namespace lrb;
 using namespace lrb::trace;
 using exact::Meet;
+using runs::box;
+using runs::plate;
 
 namespace {
-
-const LrbRep& plate() {
-  static const LrbRep rep(toy::notched_plate());
-  return rep;
-}
-const LrbRep& box() {
-  static const LrbRep rep(toy::dented_box());
-  return rep;
-}
 
 /// Small enough to count by hand: 4 tests, 3 hits, 1 of them a touch; 3 refinements; 1 contact; 2 steps.
 Trace by_hand() {

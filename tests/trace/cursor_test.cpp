@@ -79,7 +79,7 @@ TEST_CASE("the cursor knows its step, pose, pair and regions") {
       REQUIRE(pair);
       CHECK(pair->event == cursor.position());
       CHECK(pair->simplex_a == e.a);
-      CHECK(pair->face_b == box.face_of_simplex(e.b));
+      CHECK(pair->face_b == box.face_of_simplex(e.simplex(Side::b)));
       CHECK(pair->meet == e.meet);
     }
     if (e.kind != EventKind::refine) {
@@ -112,7 +112,7 @@ TEST_CASE("one body alone: refining and coarsening") {
   const LrbRep plate(toy::notched_plate());
   Recorder recorder(plate, RecorderSettings{});
   recorder.begin_step(0, {});
-  for (const RegionId r : {2u, 1u, 0u}) recorder.refine(Side::a, r, 3);
+  for (const RegionId r : std::initializer_list<RegionId>{2, 1, 0}) recorder.refine(Side::a, r, 3);
   recorder.coarsen(Side::a, 0, 2);
   const Trace t = recorder.take();
   REQUIRE(t.header.bodies.size() == 1);

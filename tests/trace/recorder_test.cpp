@@ -9,13 +9,9 @@
 using namespace lrb;
 using namespace lrb::trace;
 using exact::Meet;
+using runs::plate;
 
 namespace {
-
-const LrbRep& plate() {
-  static const LrbRep rep(toy::notched_plate());
-  return rep;
-}
 
 RecorderSettings paper() {
   RecorderSettings settings;

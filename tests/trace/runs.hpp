@@ -12,6 +12,15 @@
 
 namespace lrb::trace::runs {
 
+inline const LrbRep& plate() {
+  static const LrbRep rep(toy::notched_plate());
+  return rep;
+}
+inline const LrbRep& box() {
+  static const LrbRep rep(toy::dented_box());
+  return rep;
+}
+
 struct Snapshot {
   std::vector<FaceId> a, b;  ///< boundaries
 };

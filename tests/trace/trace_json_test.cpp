@@ -23,17 +23,10 @@ using namespace lrb::trace;
 using Json = nlohmann::ordered_json;
 using namespace std::string_literals;
 namespace fs = std::filesystem;
+using runs::box;
+using runs::plate;
 
 namespace {
-
-const LrbRep& plate() {
-  static const LrbRep rep(toy::notched_plate());
-  return rep;
-}
-const LrbRep& box() {
-  static const LrbRep rep(toy::dented_box());
-  return rep;
-}
 
 Trace box_run(Clock clock = Clock::event, WrapperMode mode = WrapperMode::regularised) {
   RecorderSettings settings;
@@ -312,7 +305,7 @@ TEST_CASE("bad files are refused with one line that says where and what") {
         "/result/finished: expected true or false");
   names(replaced(coarse, "[7, 6]", "[7]"), "/result/separation/faces: expected two numbers");
   names(replaced(coarse, "[[0], [0]]", "[[0], [1000000]]"),
-        "step 0: its separation names a region that there is not");
+        "step 0: its separation names a region that does not exist");
   names(replaced(good, "\"name\":\"refine\"", "\"name\":\"refin\""), "refine");
   names(replaced(good, "\"meet\":\"cross\"", "\"meet\":\"crosses\""),
         "/args/meet: expected disjoint, touch or cross");

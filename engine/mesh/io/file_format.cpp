@@ -125,7 +125,7 @@ MeshFormat tell_format(std::string_view bytes, std::string_view name) {
   if (std::find(kObjWords.begin(), kObjWords.end(), first) != kObjWords.end()) return MeshFormat::obj;
   if (extension == "obj") return MeshFormat::obj;  // the OBJ reader names the offending line
   if (extension == "off" && is_number(first)) return MeshFormat::off;  // the keyword OFF may be left out
-  refuse(name, "text that begins with " + quoted(first));
+  refuse(name, "text that begins with " + in_quotes(first));
 }
 
 }  // namespace lrb

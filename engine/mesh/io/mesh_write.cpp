@@ -81,7 +81,7 @@ void write_obj(const Mesh& mesh, AtomicFile& out) {
 void write_mesh(const Mesh& mesh, const std::string& path, std::span<const FaceColour> face_colours) {
   const std::string extension = extension_of(path);
   if (extension != "ply" && extension != "obj")
-    throw InputError(printable_name(path) + ": found the extension " + quoted(extension) +
+    throw InputError(printable_name(path) + ": found the extension " + in_quotes(extension) +
                      ", expected ply or obj; choose one of them");
   if (mesh.dim == 2 && extension == "ply")
     throw InputError(printable_name(path) + ": found a 2D body, expected a 3D one for PLY; write it as OBJ");

@@ -68,8 +68,9 @@ class ObjReader {
     if (word == "fo") return face();  // the old name of f
     if (holds(kIgnored, word)) return;
     if (holds(kFreeForm, word))
-      text_.fail("the free-form statement " + quoted(word), "polygons (f)", "export the surface as polygons");
-    text_.fail(quoted(word), "an OBJ statement (v, vt, vn, f, l, o, g, s, usemtl, mtllib or #)",
+      text_.fail("the free-form statement " + in_quotes(word), "polygons (f)",
+                 "export the surface as polygons");
+    text_.fail(in_quotes(word), "an OBJ statement (v, vt, vn, f, l, o, g, s, usemtl, mtllib or #)",
                "check that this is an OBJ file and not damaged");
   }
 
@@ -125,14 +126,14 @@ class ObjReader {
     if (slash == std::string_view::npos) return;
     const std::string_view normal = rest.substr(slash + 1);
     if (normal.find('/') != std::string_view::npos)
-      text_.fail(quoted(token), "v, v/vt, v//vn or v/vt/vn", "correct the line");
+      text_.fail(in_quotes(token), "v, v/vt, v//vn or v/vt/vn", "correct the line");
     if (!normal.empty()) text_.integer(normal, "a face's normal index");
   }
 
   VertexId vertex_id(std::string_view token, std::int64_t index) {
     const auto count = static_cast<std::int64_t>(mesh_.vertices.size());
     if (index == 0)
-      text_.fail("vertex index 0 in " + quoted(token),
+      text_.fail("vertex index 0 in " + in_quotes(token),
                  "an index from 1 (or negative: -1 is the vertex read last)",
                  "OBJ counts from 1: correct the exporter");
     if (index < 0 && index < -count)

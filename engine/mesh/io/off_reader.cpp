@@ -28,7 +28,7 @@ class OffReader {
     for (std::uint64_t i = 0; i < faces_; ++i) face();
     const std::string_view extra = text_.any_token();
     if (!extra.empty())
-      text_.fail(quoted(extra), "the end of the file (all vertices and faces are read)",
+      text_.fail(in_quotes(extra), "the end of the file (all vertices and faces are read)",
                  "correct the counts");
     refuse_without_faces(mesh_, name_);
     return std::move(mesh_);
@@ -38,7 +38,7 @@ class OffReader {
   void take_header(const OffHeader& header, std::string_view shown) {
     header_ = header;
     if (header.dimensions_differ)
-      text_.fail("the header " + quoted(shown), "vertices in three dimensions (OFF, COFF, NOFF, STOFF)",
+      text_.fail("the header " + in_quotes(shown), "vertices in three dimensions (OFF, COFF, NOFF, STOFF)",
                  "export the mesh in 3D");
     TextCursor ahead = text_;
     if (ahead.token() == "BINARY")
@@ -69,7 +69,8 @@ class OffReader {
 
   std::uint64_t count(std::string_view token, std::string_view what) const {
     const std::int64_t value = text_.integer(token, what);
-    if (value < 0) text_.fail(quoted(token), "0 or more (" + std::string(what) + ")", "correct the counts");
+    if (value < 0)
+      text_.fail(in_quotes(token), "0 or more (" + std::string(what) + ")", "correct the counts");
     return static_cast<std::uint64_t>(value);
   }
 
@@ -120,7 +121,7 @@ class OffReader {
 
   void end_of_line(std::string_view expected) {
     const std::string_view extra = text_.token();
-    if (!extra.empty()) text_.fail(quoted(extra), expected, "correct the line");
+    if (!extra.empty()) text_.fail(in_quotes(extra), expected, "correct the line");
   }
 
   TextCursor text_;

@@ -95,7 +95,7 @@ class PlyHeaderReader {
     const auto& all = header_.elements;
     if (std::any_of(all.begin(), all.end() - 1,
                     [&](const PlyElement& other) { return other.name == e.name; }))
-      text_.fail("a second element " + quoted(e.name), "one of each name", "correct the header");
+      text_.fail("a second element " + in_quotes(e.name), "one of each name", "correct the header");
     end_of_line();
   }
 
@@ -117,7 +117,7 @@ class PlyHeaderReader {
     auto& known = header_.elements.back().properties;
     if (std::any_of(known.begin(), known.end(),
                     [&](const PlyProperty& other) { return other.name == p.name; }))
-      text_.fail("a second property " + quoted(p.name), "one of each name", "correct the header");
+      text_.fail("a second property " + in_quotes(p.name), "one of each name", "correct the header");
     known.push_back(std::move(p));
     end_of_line();
   }
@@ -131,7 +131,7 @@ class PlyHeaderReader {
 
   void end_of_line() {
     const std::string_view word = text_.token();
-    if (!word.empty()) text_.fail(quoted(word), "the end of the line", "correct the header");
+    if (!word.empty()) text_.fail(in_quotes(word), "the end of the line", "correct the header");
   }
 
   /// Finds where the data begins. Binary data begins right behind the end of the line, and may look like

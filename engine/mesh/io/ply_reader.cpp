@@ -75,7 +75,7 @@ class PlyReader {
   void elements(const PlyElement& e) {
     if (e.properties.empty()) return;  // such elements take no bytes, however many there are
     if (!source_.has_room(e))
-      source_.fail("fewer bytes than " + std::to_string(e.count) + " times " + quoted(e.name) + " need",
+      source_.fail("fewer bytes than " + std::to_string(e.count) + " times " + in_quotes(e.name) + " need",
                    "as many as the header says",
                    "the file is cut short or its header wrong: export or copy it again");
     if (&e == layout_.vertex) mesh_.vertices.reserve(e.count);

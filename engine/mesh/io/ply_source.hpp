@@ -34,7 +34,7 @@ class PlyText {
   void end() {
     const std::string_view extra = waiting_.empty() ? text_.token() : waiting_;
     if (!extra.empty())
-      fail(quoted(extra), "the end of the line", "the header says how many values a line has");
+      fail(in_quotes(extra), "the end of the line", "the header says how many values a line has");
   }
   double real(const PlyProperty& p) { return text_.number(next(p.name), p.name); }
   std::int64_t integer(PlyType, std::string_view what) { return text_.integer(next(what), what); }
@@ -45,7 +45,7 @@ class PlyText {
   void end_of_data() {
     const std::string_view extra = text_.any_token();
     if (!extra.empty())
-      fail(quoted(extra), "the end of the file (all elements of the header are read)",
+      fail(in_quotes(extra), "the end of the file (all elements of the header are read)",
            "correct the header's counts");
   }
   [[noreturn]] void fail(std::string_view found, std::string_view expected, std::string_view advice) const {
@@ -58,7 +58,7 @@ class PlyText {
     waiting_ = {};
     if (token.empty()) token = text_.token();
     if (token.empty())
-      fail(text_.shown(token), what.empty() ? "another element" : "a value for " + quoted(what),
+      fail(text_.shown(token), what.empty() ? "another element" : "a value for " + in_quotes(what),
            "the file is cut short or its header wrong: export or copy it again");
     return token;
   }
@@ -119,7 +119,7 @@ class PlyBytes {
   }
   [[noreturn]] void fail(std::string_view found, std::string_view expected, std::string_view advice) const {
     std::string message = printable_name(name_) + ": byte " + std::to_string(at_ - start_);
-    if (element_ != nullptr) message += ", " + quoted(element_->name) + " " + std::to_string(index_);
+    if (element_ != nullptr) message += ", " + in_quotes(element_->name) + " " + std::to_string(index_);
     message.append(": found ")
         .append(found)
         .append(", expected ")
@@ -139,7 +139,7 @@ class PlyBytes {
 
   const char* take(std::uint64_t size, std::string_view what) {
     if (size > bytes_left())
-      fail("the end of the file", "a value for " + quoted(what),
+      fail("the end of the file", "a value for " + in_quotes(what),
            "the file is cut short or its header wrong: export or copy it again");
     const char* from = at_;
     at_ += size;

@@ -115,7 +115,7 @@ void TextCursor::fail_at(std::uint64_t line, std::string_view found, std::string
 }
 
 std::string TextCursor::shown(std::string_view token) const {
-  if (!token.empty()) return quoted(token);
+  if (!token.empty()) return in_quotes(token);
   return at_ == end_ ? "the end of the file" : "the end of the line";
 }
 

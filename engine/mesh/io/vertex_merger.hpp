@@ -18,7 +18,7 @@ class VertexMerger {
 
   VertexId id(const Eigen::Vector3d& v) {
     if (2 * vertices_.size() >= slots_.size()) grow();
-    std::uint32_t& slot = find(v);
+    VertexId& slot = find(v);
     if (slot == kNull) {
       slot = static_cast<VertexId>(vertices_.size());
       vertices_.push_back(v);
@@ -39,7 +39,7 @@ class VertexMerger {
 
   /// Returns the slot of v, or the free slot where it belongs. The number of slots is a power of two, at most
   /// half of them used.
-  std::uint32_t& find(const Eigen::Vector3d& v) {
+  VertexId& find(const Eigen::Vector3d& v) {
     const std::size_t mask = slots_.size() - 1;
     for (std::size_t i = hash(v) & mask;; i = (i + 1) & mask)
       if (slots_[i] == kNull || vertices_[slots_[i]] == v) return slots_[i];
@@ -51,7 +51,7 @@ class VertexMerger {
   }
 
   std::vector<Eigen::Vector3d>& vertices_;
-  std::vector<std::uint32_t> slots_;
+  std::vector<VertexId> slots_;
 };
 
 }  // namespace lrb

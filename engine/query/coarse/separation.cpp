@@ -33,7 +33,7 @@ class WorldWrapper {
   /// Returns the region that a face of the boundary belongs to; kNull for a real face.
   RegionId region_at(FaceId f) const {
     const CellId inner = rep().inner_cell(f);
-    if (is_region(inner)) return wrapper_.included(inner) ? inner : rep().outer_cell(f);
+    if (is_region(inner)) return (wrapper_.included(inner) ? inner : rep().outer_cell(f)).as_region();
     return kNull;
   }
 
@@ -50,10 +50,10 @@ class WorldWrapper {
   bool apart(std::size_t i, WorldWrapper& other, std::size_t j) {
     if (!boxes_[i].intersects(other.boxes_[j])) return true;
     const double *a[3], *b[3];
-    for (SimplexId s = 0; s < simplices(faces_[i]); ++s)
-      for (SimplexId t = 0; t < other.simplices(other.faces_[j]); ++t) {
-        body_.world.corners(rep().first_simplex(faces_[i]) + s, a);
-        other.body_.world.corners(other.rep().first_simplex(other.faces_[j]) + t, b);
+    for (std::uint32_t s = 0; s < simplices(faces_[i]); ++s)
+      for (std::uint32_t t = 0; t < other.simplices(other.faces_[j]); ++t) {
+        body_.world.corners(SimplexId(rep().first_simplex(faces_[i]) + s), a);
+        other.body_.world.corners(SimplexId(other.rep().first_simplex(other.faces_[j]) + t), b);
         if (!separated_by(margin_, rep().dim(), a, b)) return false;
       }
     return true;
@@ -94,8 +94,8 @@ class WorldWrapper {
     int crossings = 0;
     const double* c[3];
     for (const FaceId f : faces)
-      for (SimplexId i = 0; i < simplices(f); ++i) {
-        body_.world.corners(rep().first_simplex(f) + i, c);
+      for (std::uint32_t i = 0; i < simplices(f); ++i) {
+        body_.world.corners(SimplexId(rep().first_simplex(f) + i), c);
         const exact::RayHit hit =
             rep().dim() == 3 ? exact::ray_crosses(point, c) : exact::ray_crosses_2d(point, c);
         crossings += hit == exact::RayHit::crosses;
@@ -182,8 +182,9 @@ class SeparationFinder {
   bool open_down_to(int side, CellId cell) {
     if (cell == kNull) return false;
     std::vector<RegionId> path;
-    for (; is_region(cell) && half_[side].wrapper().included(cell); cell = half_[side].rep().parent(cell))
-      path.push_back(cell);
+    for (; is_region(cell) && half_[side].wrapper().included(cell);
+         cell = half_[side].rep().parent(cell.as_region()))
+      path.push_back(cell.as_region());
     for (; !path.empty(); path.pop_back()) half_[side].refine(path.back());
     return true;
   }

@@ -14,7 +14,7 @@ constexpr double kMuchShorter = 0.4;
 constexpr std::uint32_t kMostFailures = 2;
 /// With every cache the remembered cost of the other kind is multiplied by this, so that it is tried again.
 constexpr double kForget = 0.95;
-/// The same for every query in which only a fixed cache could be made, and these did not pay.
+/// The factor for queries in which only a fixed cache could be made and these did not pay.
 constexpr double kForgetSlowly = 0.99;
 /// Queries from scratch that take no longer than this, in seconds, are not worth the effort of watching B's
 /// motion.

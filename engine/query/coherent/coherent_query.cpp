@@ -39,7 +39,7 @@ void reset_counters(Counters& c) {
 
 }  // namespace
 
-/// What is behind a CoherentQuery.
+/// The implementation of CoherentQuery.
 class CoherentQuery::Work {
  public:
   Work(const LrbRep& a, const LrbRep& b, const CollideRequest& request, CacheUse use);

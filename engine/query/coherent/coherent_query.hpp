@@ -7,8 +7,8 @@
 /// meet. Of the list, those pairs are tested that may meet at that point of the stretch: eight at a time in
 /// float arithmetic, exactly where that is not certain. Where B keeps no course the stretch is a place, and
 /// those pairs are tested that are no further apart there than B has moved from it. What that means, and what
-/// it allows for, is in relative_motion.hpp. Poses further from rotations than kRigid, scaled or sheared ones, are queried
-/// from scratch: as fast as collide(), and the answers the same.
+/// it allows for, is in relative_motion.hpp. Poses further from rotations than kRigid, scaled or sheared
+/// ones, are queried from scratch: as fast as collide(), and the answers the same.
 ///
 /// The answers are those of collide(): pairs, meets and relation always; what was opened, and the counters,
 /// describe this query's own work. In first_pair mode the pair may be another one; in any_pair mode too, and
@@ -28,15 +28,15 @@ class CoherentQuery {
   /// whenever one can be made (for tests). The answers do not depend on it.
   enum class CacheUse : std::uint8_t { as_it_pays, always };
 
-  /// Keeps references to the bodies, which must outlive it and stay as they are: do not assign to them, for what
-  /// is kept from query to query is of the bodies that were there. Other bodies need another CoherentQuery.
+  /// Keeps references to the bodies, which must outlive it. Do not assign to them, because what is kept from
+  /// query to query depends on them; other bodies need another CoherentQuery.
   CoherentQuery(const LrbRep& a, const LrbRep& b, const CollideRequest& request = {},
                 CacheUse use = CacheUse::as_it_pays);
 
   /// Returns the answer for these poses, valid until the next call. Throws InputError as collide() does.
   const CollideResult& collide(const Pose& pose_a, const Pose& pose_b);
 
-  /// What has been done so far.
+  /// Numbers of queries and caches so far.
   struct Statistics {
     std::uint64_t from_cache = 0;    ///< queries answered from the cache as it was
     std::uint64_t caches_made = 0;   ///< queries that made a new cache

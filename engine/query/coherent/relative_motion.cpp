@@ -22,7 +22,7 @@ constexpr double kDeviation = 0.25;
 /// For a sweep, in steps: how much longer it is than its steps at either end, and how wide it is at least;
 /// and how many times as wide it is as B is off it now, because the motion bends as much at the other end.
 constexpr double kBeyondEnd = 0.125, kLeastWidth = 1.0 / 16, kSpareWidth = 1.25;
-/// At least 1 + sqrt(3 / 2): the factor on defects for going from matrices to the rotations near them.
+/// The factor on defects for going from matrices to the rotations near them; at least 1 + sqrt(3 / 2).
 constexpr double kToRotations = 2.3;
 
 /// Returns the motion that takes B from one pose to the other, on A's axes: x -> m x + t.

@@ -8,8 +8,8 @@
 namespace lrb {
 namespace {
 
-/// A feature of a surface, named by its vertices (see Places) so that all simplices around it agree: a vertex (v, v), an
-/// edge (v < w), or the interior of a simplex (kNull, s).
+/// A feature of a surface, named by its vertices (see Places) so that all simplices around it agree: a vertex
+/// (v, v), an edge (v < w), or the interior of a simplex (kNull, s).
 using SurfaceFeature = std::pair<std::uint32_t, std::uint32_t>;
 
 /// Vertices by their place: of those that stand in the same one, as along seams of textures, the first that

@@ -28,8 +28,8 @@ double unit_for(std::span<const Vector3d> points) {
   return most > 0 ? std::ldexp(1.0, std::clamp(std::ilogb(most), -1022, 1023)) : 1;
 }
 
-/// Returns the unit normal of a real simplex in the world, out of the solid, also of one that is mirrored; zero for
-/// a degenerate one.
+/// Returns the unit normal of a real simplex in the world, out of the solid, also of one that is mirrored;
+/// zero for a degenerate one.
 Vector3d world_normal(QueryBody& body, SimplexId s, bool mirrored) {
   const double* c[3];
   body.world.corners(s, c);

@@ -19,8 +19,8 @@ namespace {
 
 using Corners = std::array<const double*, 3>;
 
-/// Whether the normals of two coplanar triangles of positive area point the same way, exactly: seen along an
-/// axis on which the first keeps its area, both turn the same way.
+/// Returns true if the normals of two coplanar triangles of positive area point the same way. Decides
+/// exactly: seen along an axis on which the first keeps its area, both then turn the same way.
 bool same_direction_3d(const double* const a[3], const double* const b[3]) {
   for (int axis = 0; axis < 3; ++axis) {
     const int u = (axis + 1) % 3, v = (axis + 2) % 3;

@@ -22,9 +22,9 @@ struct ContactLoop {
 };
 
 /// A connected part of the intersection of the two surfaces. Vertices that stand twice in one place (seams of
-/// textures) are one where their coordinates in the file are the same.
-/// A length or an area that is beyond a double is infinity: bodies of 1e155 units and more have such areas,
-/// of 1e307 and more such lengths. Points, centroid and normal stay finite.
+/// textures) count as one if their coordinates in the file are the same. A length or an area that is too
+/// large for a double is infinity, which can happen to areas of bodies of 1e155 units and more, and to
+/// lengths of 1e307 and more. Points, centroid and normal stay finite.
 struct ContactRegion {
   std::vector<std::uint32_t> pairs;  ///< indices into CollideResult::pairs, ascending
   std::vector<ContactLoop>
@@ -34,13 +34,12 @@ struct ContactRegion {
   Eigen::Vector3d centroid{
       0, 0, 0};  ///< of the area for coplanar contact, of the curve's length, else of the points
   Eigen::Vector3d normal{0, 0, 0};  ///< unit, from A to B, averaged; zero where it has no meaning
-  /// An estimate of how far B must move along `normal` to leave this region; 0: touch, or flush.
-  /// Measured along `normal`:
-  /// the part of A that this region encloses in B, its contact points included, reaches this far beyond the
-  /// nearest point of the part of B that it encloses in A; once B has moved that far a plane parts the two.
-  /// Nothing but these two parts is looked at. For convex bodies there is nothing else. Concave bodies may still
-  /// meet in other regions, each with a depth of its own, or come to meet on the way; and parts that lie beside
-  /// each other may be free after less.
+  /// An estimate of how far B must move along `normal` to leave this region; 0: it only touches, or the
+  /// bodies are flush. It is measured along `normal`: from the nearest point of the part of B that the region
+  /// encloses in A to the farthest point of the part of A that it encloses in B, contact points included.
+  /// Once B has moved that far a plane parts the two. Nothing but these two parts is considered; convex
+  /// bodies have nothing else. Concave bodies may still meet in other regions, each with its own depth, or
+  /// come to meet on the way; and parts that lie beside each other may be free after less.
   double depth = 0;
 };
 

@@ -10,7 +10,8 @@ namespace {
 
 /// Radix sort is worth its passes for more pairs than this. A digit has about as many values as there are
 /// pairs: this takes fewer passes than shorter digits, and its tables are no longer than what is sorted, so
-/// that they fit the first cache.
+/// that they fit the first cache. Boost's spreadsort, measured beside it on keys of 29 and 35 bits in random
+/// order and in runs, takes 0.6 to 0.8 times as long for 33 pairs, and 1.1 to 2.5 times for 100 to 100,000.
 constexpr std::size_t kWorthDigits = 32;
 constexpr unsigned kLeastDigitBits = 6, kMostDigitBits = 11;
 constexpr unsigned kMeetBits = 1;
@@ -37,15 +38,16 @@ struct Packing {
 
 /// Returns the packing for some pairs; no bits if they are in order already, without repetitions.
 Packing packing_of(std::span<const SimplexPair> pairs) {
-  SimplexPair all{0, 0};  // all bits that occur
+  std::uint32_t all_a = 0, all_b = 0;  // all bits that occur
   bool in_order = true;
   for (std::size_t i = 0; i < pairs.size(); ++i) {
     in_order &= i == 0 || pairs[i - 1] < pairs[i];
-    all = {all.a | pairs[i].a, all.b | pairs[i].b};
+    all_a |= pairs[i].a;
+    all_b |= pairs[i].b;
   }
   if (in_order) return {0, 0};
-  const auto bits_b = static_cast<unsigned>(std::bit_width(all.b));
-  return {bits_b, static_cast<unsigned>(std::bit_width(all.a)) + bits_b + kMeetBits};
+  const auto bits_b = static_cast<unsigned>(std::bit_width(all_b));
+  return {bits_b, static_cast<unsigned>(std::bit_width(all_a)) + bits_b + kMeetBits};
 }
 
 std::uint64_t key_of(const SimplexPair& p, unsigned bits_b) {

@@ -49,18 +49,18 @@ class PaperQuery {
     if (!a.is_real(fa) && !b.is_real(fb)) {
       // Case 1: "If faces are pseudo-faces then refine, bringing in new detail. The new faces added to each
       // respective wrapper are then recursively tested."
-      const RegionId ra = a.inner_cell(fa), rb = b.inner_cell(fb);
+      const RegionId ra = a.inner_cell(fa).as_region(), rb = b.inner_cell(fb).as_region();
       const bool new_a = refine(Side::a, fa), new_b = refine(Side::b, fb);
       if (strict() ? new_a && new_b : first_visit(kRegionRegion, ra, rb)) test_all(a.floor(ra), b.floor(rb));
     } else if (a.is_real(fa) != b.is_real(fb)) {
       // Case 2: "If one is a real face and the other is a pseudo face, only the pseudo face is refined and
       // the new faces are recursively tested against the real one."
       if (a.is_real(fa)) {
-        const RegionId rb = b.inner_cell(fb);
+        const RegionId rb = b.inner_cell(fb).as_region();
         const bool is_new = refine(Side::b, fb);
         if (strict() ? is_new : first_visit(kFaceRegion, fa, rb)) test_all(Faces(&fa, 1), b.floor(rb));
       } else {
-        const RegionId ra = a.inner_cell(fa);
+        const RegionId ra = a.inner_cell(fa).as_region();
         const bool is_new = refine(Side::a, fa);
         if (strict() ? is_new : first_visit(kRegionFace, ra, fb)) test_all(a.floor(ra), Faces(&fb, 1));
       }
@@ -82,7 +82,7 @@ class PaperQuery {
   /// Refines the region behind a face. Returns true if that had not happened before.
   bool refine(Side side, FaceId f) {
     QueryBody& body = ctx_[side];
-    const RegionId r = body.rep().inner_cell(f);
+    const RegionId r = body.rep().inner_cell(f).as_region();
     const bool is_new = body.wrapper->included(r);
     if (!body.wrapper->refine_face(f)) return false;
     ++result_.counters.refinements;
@@ -125,8 +125,7 @@ class PaperQuery {
   void for_each_simplex_pair(FaceId fa, FaceId fb, Visit visit) {
     const auto range = [](const LrbRep& rep, FaceId f) {
       const SimplexId first = rep.first_simplex(f);
-      return std::pair{first,
-                       first + static_cast<SimplexId>(Mesh::simplices_of(rep.face(f).size(), rep.dim()))};
+      return std::pair{first, SimplexId(first + Mesh::simplices_of(rep.face(f).size(), rep.dim()))};
     };
     const auto [a_begin, a_end] = range(ctx_[Side::a].rep(), fa);
     const auto [b_begin, b_end] = range(ctx_[Side::b].rep(), fb);

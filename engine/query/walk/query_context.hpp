@@ -61,7 +61,7 @@ struct QueryBody {
   /// Returns the number of regions between a face and the outside along parents.
   std::uint32_t depth_of(FaceId f) const {
     const CellId outer = rep().outer_cell(f);
-    return is_region(outer) ? rep().depth(outer) : 0;
+    return is_region(outer) ? rep().depth(outer.as_region()) : 0;
   }
 
  private:

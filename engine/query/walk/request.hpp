@@ -43,8 +43,8 @@ constexpr auto words_of(Predicates) {
       {{Predicates::exact, "exact"}, {Predicates::floating, "floating"}});
 }
 
-/// Pairs that a query keeps at most, unless it is asked for more or fewer. A pair takes about 25 bytes while
-/// it is found and sorted, and about 700 with its contact: less than 1 GB, and about 1.5 GB.
+/// The largest number of pairs that a query keeps, unless the request gives another. A pair takes 25 bytes
+/// while it is found and sorted, and 650 with its contact (docs/measurements.md): 0.8 GB, and 1.4 GB.
 inline constexpr std::uint64_t kMostPairs = std::uint64_t{1} << 25;
 inline constexpr std::uint64_t kMostPairsWithContacts = std::uint64_t{1} << 21;
 
@@ -71,9 +71,9 @@ struct CollideRequest {
   double max_time = 0;
   /// For separate bodies: finds CollideResult::separation. Takes longer than the query.
   bool separation = false;
-  /// Pairs that are kept at most: a query that finds more ends there with an InputError. (Two bodies of n
-  /// faces have up to n * n.) 0: kMostPairs, or kMostPairsWithContacts. The paper's recursions count a pair
-  /// as often as they find it.
+  /// The largest number of pairs that are kept: a query that finds more ends with an InputError. (Two bodies
+  /// of n faces have up to n * n.) 0: kMostPairs, or kMostPairsWithContacts. The paper's recursions count a
+  /// pair each time they find it.
   std::uint64_t max_pairs = 0;
 
   bool is_coarse() const { return tolerance > 0 || max_tests > 0 || max_time > 0; }

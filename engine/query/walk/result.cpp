@@ -20,7 +20,7 @@ const char* to_string(Recursion r) {
 void refuse_pairs(std::uint64_t limit) {
   throw InputError("the bodies meet in more than " + std::to_string(limit) +
                    " pairs of triangles, the most that are kept: raise max_pairs (--max-pairs) if there is "
-                   "memory for more, about 25 bytes a pair and 700 with its contact, or ask only whether "
+                   "memory for more, about 25 bytes a pair and 650 with its contact, or ask only whether "
                    "they meet (mode any or first)");
 }
 

@@ -77,10 +77,10 @@ struct Counters {
 
 struct CollideResult {
   Relation relation = Relation::separate;
-  /// crossing, inside: yes; separate: no; touching: if requested, else unknown (see Relation::touching: a
-  /// stack of boxes sinks unnoticed where nobody asks); a body that is not closed: unknown. Yes takes for
-  /// granted that rounding leaves the bodies a volume in the world. If requested, a crossing is yes only where
-  /// that is proved, else unknown; a body inside another is not asked whether it has become flat.
+  /// Crossing, inside: yes. Separate: no. Touching: unknown unless requested (see Relation::touching: without
+  /// the request, nobody notices that a stack of boxes sinks). A body that is not closed: unknown. Yes
+  /// assumes that rounding leaves the bodies a volume in the world. If requested, a crossing is yes only
+  /// where that is proved, else unknown; a body inside another is not checked for having become flat.
   Answer interiors_overlap = Answer::unknown;
   Recursion recursion = Recursion::complete;  ///< the recursion that was used
   Mode mode = Mode::all_pairs;
@@ -101,10 +101,11 @@ struct CollideResult {
   Counters counters;
 };
 
-/// Throws InputError: the query found more pairs than `limit`.
+/// Throws the InputError that the query found more pairs than `limit`.
 [[noreturn]] void refuse_pairs(std::uint64_t limit);
 
-/// FNV-1a 64 over the pairs, each as u32 a, u32 b little-endian; cbf29ce484222325 for none.
+/// Returns the FNV-1a hash (64 bits) of the pairs, each as u32 a, u32 b little-endian; cbf29ce484222325 for
+/// none.
 std::uint64_t fingerprint(const std::vector<SimplexPair>& pairs);
 
 }  // namespace lrb

@@ -8,7 +8,8 @@
 /// to separate the two; what is left is decided within proved bounds on float errors, or exactly. The proof
 /// uses neither the nesting of regions nor embedding: a poor LRB-rep can cost time, never a contact.
 ///
-/// What "proved apart" has to cover is in set_up_kernel() for rotations, in affine_pose.hpp for all other maps.
+/// What "proved apart" has to cover is in set_up_kernel() for rotations, in affine_pose.hpp for all other
+/// maps.
 
 #include <algorithm>
 #include <bit>
@@ -31,8 +32,8 @@ template <class Probe>
   QueryBody& body = ctx[side];
   const LrbRep& rep = body.rep();
   ctx.path.clear();  // a query that ended with an exception may have left some
-  for (CellId c = innermost; is_region(c) && body.wrapper->included(c); c = rep.parent(c))
-    ctx.path.push_back(c);
+  for (CellId c = innermost; is_region(c) && body.wrapper->included(c); c = rep.parent(c.as_region()))
+    ctx.path.push_back(c.as_region());
   for (; !ctx.path.empty(); ctx.path.pop_back()) {
     body.wrapper->refine(ctx.path.back());
     ++result.counters.refinements;
@@ -41,14 +42,14 @@ template <class Probe>
   }
 }
 
-/// Returns a kernel at the roots of what is queried of both bodies, at their poses, with the context's buffers:
-/// `capacity` candidates.
+/// Returns a kernel at the roots of what is queried of both bodies, at their poses. It uses the context's
+/// buffers, with room for `capacity` candidates.
 TreeKernel start_kernel(QueryContext& ctx, std::size_t capacity);
-/// Returns the same at other poses, set up by set_up_kernel() whatever they are.
+/// Returns the same for other poses, set up by set_up_kernel() whatever the poses are.
 TreeKernel start_rigid_kernel(QueryContext& ctx, const Pose& pose_a, const Pose& pose_b,
                               std::size_t capacity);
 
-/// Refines the wrapper of a body until a face shows: the regions that hide it, from the outside inward.
+/// Refines the wrapper of a body until a face shows: opens the regions that hide it, from the outside inward.
 /// Mostly there are none left. Returns the number of regions between the face and the outside.
 template <class Probe>
 inline std::uint32_t show_face(QueryContext& ctx, Side side, FaceId f, CollideResult& result, Probe& probe) {
@@ -56,7 +57,7 @@ inline std::uint32_t show_face(QueryContext& ctx, Side side, FaceId f, CollideRe
   const CellId outer = rep.outer_cell(f);
   if (!is_region(outer)) return 0;
   if (ctx[side].wrapper->included(outer)) open_regions_from(ctx, side, outer, result, probe);
-  return rep.depth(outer);
+  return rep.depth(outer.as_region());
 }
 
 /// The rules of the exact query; coarse_query.hpp has others.

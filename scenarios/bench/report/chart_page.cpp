@@ -12,7 +12,7 @@ std::string percent_or_dash(const std::optional<double>& x) {
   return x ? render::short_number(*x) : "\u2013";
 }
 
-/// What is said of a point when the mouse is over it, line by line.
+/// Returns what the page says about a point when the mouse is over it, line by line.
 std::string note_of(const Point& p) {
   std::string out = name_of(p.method, p.setting) + "\nmedian " + render::short_number(p.median) +
                     " \u00b5s, p95 " + render::short_number(p.p95) + ", p99 " + render::short_number(p.p99);

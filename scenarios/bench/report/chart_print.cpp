@@ -36,7 +36,9 @@ std::string plots_of(report::Gnuplot& chart, const SeriesStyles& styles, const s
     const std::string at = io::number_text(drawn_error(*p)) + " " + io::number_text(drawn_time(*p, slowest));
     if (styles.series_of(p->method) == styles.count()) continue;
     std::vector<std::string>& r = rows[styles.series_of(p->method)];
-    if (!r.empty() && !(p->setting && p->method == last)) r.emplace_back();  // a gap: no line between methods
+    if (!r.empty() && !(p->setting && p->method == last))
+      r.emplace_back();  // a gap, so that no line joins
+                         // two methods
     r.push_back(at);
     last = p->method;
     if (p->failed() > 0) failed.push_back(at);

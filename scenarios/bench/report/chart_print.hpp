@@ -8,8 +8,8 @@
 
 namespace lrb::bench {
 
-/// Speed against accuracy for print: a row of panels for each pair of bodies, a column for each class of
-/// poses.
+/// Makes the chart of speed against accuracy for print: a row of panels for each pair of bodies, a column for
+/// each class of poses.
 report::Gnuplot accuracy_chart(const std::vector<DataSet>& sets, const std::vector<Point>& points,
                                const std::vector<methods::MethodInfo>& methods);
 

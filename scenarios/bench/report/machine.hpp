@@ -4,9 +4,9 @@
 
 namespace lrb::bench {
 
-/// "2 cores of an AMD EPYC": what /proc/cpuinfo says.
+/// Returns what /proc/cpuinfo says: "2 cores of an AMD EPYC".
 std::string machine();
-/// "GCC 12.2, -O3 -march=native": what all code of ours, and others' headers, were compiled with.
+/// Returns what all our code and others' headers were compiled with: "GCC 12.2, -O3 -march=native".
 std::string build_flags();
 
 }  // namespace lrb::bench

@@ -39,7 +39,7 @@ bool gives_points(const methods::MethodInfo& m) {
   return m.approximate || m.convex;
 }
 
-/// Whether a method answers what a metric is about at all.
+/// Returns true if a method answers what a metric is about at all.
 bool applies(const methods::MethodInfo& info, Metric m) {
   if (m == Metric::contact) return true;
   if (m == Metric::hausdorff || m == Metric::centroid) return lists_pairs(info) || gives_points(info);
@@ -145,8 +145,8 @@ Point finished(Gathered g) {
   return p;
 }
 
-/// Nothing is both as fast and as right, and better in one of the two. What answered nothing has no time, and
-/// what says only yes or no does not answer the same question.
+/// Marks the points that no other point beats: none is at least as fast and as right, and better in one of
+/// the two. A point without an answer has no time, and one that says only yes or no answers another question.
 void mark_frontiers(std::vector<Point>& points) {
   for (Point& p : points) {
     const auto takes_part = [](const Point& x) { return x.median > 0 && x.gives_region(); };

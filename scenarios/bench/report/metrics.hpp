@@ -1,6 +1,6 @@
 #pragma once
-/// What is computed from records: one point for each method, at each setting, on each data set (two bodies at
-/// one class of poses).
+/// Computes from records one point for each method, at each setting, on each data set (two bodies at one
+/// class of poses).
 
 #include <functional>
 #include <optional>
@@ -12,11 +12,11 @@
 
 namespace lrb::bench {
 
-/// A way to be wrong, from 0 (not at all) to its worst value, which what is no answer scores.
+/// A way to be wrong, from 0 (not at all) to its worst value, which a question without an answer scores.
 enum class Metric : std::uint8_t {
   contact,    ///< says contact where there is none, or the reverse
-  precision,  ///< share of the pairs found that do not meet
-  recall,     ///< share of the pairs that meet and were not found
+  precision,  ///< share of the pairs found that do not meet (1 - precision)
+  recall,     ///< share of the pairs that meet and were not found (1 - recall)
   hausdorff,  ///< distance of the contact regions
   length,
   area,
@@ -33,7 +33,7 @@ struct MetricInfo {
 };
 const MetricInfo& metric_info(Metric m);
 
-/// What was answered to one question, judged; no value where a method does not answer that.
+/// The errors of the answer to one question; nothing where a method does not answer that.
 using Errors = std::array<std::optional<double>, kMetrics>;
 
 struct Point {
@@ -42,27 +42,28 @@ struct Point {
   PoseClass pose_class = PoseClass::apart;
   std::size_t questions = 0, refused = 0, crashed = 0, timed_out = 0;
   Errors errors;                        ///< means over the questions
-  double median = 0, p95 = 0, p99 = 0;  ///< microseconds, hot, all pairs, of those answered
-  double build_seconds = 0, bytes = 0;  ///< both bodies
+  double median = 0, p95 = 0, p99 = 0;  ///< microseconds, hot, all pairs, over the questions that were
+                                        ///< answered
+  double build_seconds = 0, bytes = 0;  ///< of both bodies
   double face_tests = 0;                ///< mean; 0: not counted
   std::uint64_t worst_question = 0;     ///< the one with the largest error
-  bool frontier = false;                ///< of its data set: nothing is both faster and less wrong
+  bool frontier = false;                ///< no other point of its data set is both faster and less wrong
 
   std::size_t failed() const { return refused + crashed + timed_out; }
-  /// The error that stands on the chart: of the contact region where the method gives one, else of its yes or
-  /// no.
+  /// Returns the error that the chart shows: that of the contact region if the method gives one, else that of
+  /// its yes or no.
   double error() const;
   bool gives_region() const { return errors[static_cast<std::size_t>(Metric::hausdorff)].has_value(); }
 };
 
 using MetricProgress = std::function<void(std::size_t done, std::size_t total)>;
 
-/// Points of all methods on all data sets, with their Pareto frontiers over time and error.
+/// Returns the points of all methods on all data sets, with their Pareto frontiers over time and error.
 std::vector<Point> measure_points(const std::vector<DataSet>& sets,
                                   const std::vector<methods::MethodInfo>& methods,
                                   const std::vector<Record>& records, const MetricProgress& progress = {});
 
-/// As JSON, a line each.
+/// Returns them as JSON, one on each line.
 std::string to_lines(const std::vector<Point>& points);
 
 }  // namespace lrb::bench

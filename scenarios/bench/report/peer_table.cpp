@@ -111,7 +111,7 @@ std::string ratios_of(const PeerTable& t, Mode mode) {
   return out + "\n";
 }
 
-/// Geometric mean of a method's ratios over data sets and classes of poses.
+/// Returns the geometric mean of a method's ratios over data sets and classes of poses.
 double mean_ratio(const PeerTable& t, const std::string& method, Mode mode, bool apart, bool cold) {
   std::vector<double> ratios;
   for (const PeerCell& c : t.cells)
@@ -153,7 +153,7 @@ std::string means_of(const PeerTable& t) {
   return out + "\n";
 }
 
-/// By class of poses and mode, all peers that are faster somewhere, and by how much at most: "2.1x
+/// Lists, by class of poses and mode, all peers that are faster somewhere, and by how much at most: "2.1x
 /// (cold 1.3x)".
 std::string ahead_of(const PeerTable& t) {
   std::string out;

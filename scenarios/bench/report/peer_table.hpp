@@ -1,5 +1,5 @@
 #pragma once
-/// Ours beside its peers: ratios, times and exactness, from records.
+/// Compares our method with its peers, from records: ratios, times and exactness.
 
 #include <string>
 #include <vector>
@@ -17,7 +17,7 @@ struct PeerCell {
   std::size_t questions = 0, answered = 0, crashed = 0, timed_out = 0;
   double hot = 0, hot_p95 = 0, cold = 0, cold_p95 = 0;  ///< microseconds: median and 95th percentile
   double ratio = 0, cold_ratio = 0;  ///< to ours: median over the questions; 0: no answer to compare
-  double pairs = 0;                  ///< found, on average
+  double pairs = 0;                  ///< average number found
   std::uint64_t missed = 0, extra = 0;
 };
 
@@ -29,14 +29,14 @@ struct PeerTable {
   const PeerCell* find(const std::string& set, const std::string& method, PoseClass c, Mode mode) const;
 };
 
-/// The method that everything is compared with is "ours".
+/// Makes the table. Everything is compared with the method "ours".
 PeerTable peer_table(const std::vector<DataSet>& sets, const std::vector<methods::MethodInfo>& methods,
                      const std::vector<Record>& records);
 
-/// For stdout: ratios, the geometric means against what was aimed at, where a peer is ahead, what exactness
-/// costs, and who answered exactly.
+/// Returns the text for stdout: ratios, their geometric means against what was aimed at, where a peer is
+/// ahead, what exactness costs, and who answered exactly.
 std::string in_brief(const PeerTable& table);
-/// A line for every cell, with all its numbers.
+/// Returns a line for every cell, with all its numbers.
 std::string in_full(const PeerTable& table);
 
 }  // namespace lrb::bench

@@ -11,7 +11,8 @@
 namespace lrb::bench {
 namespace {
 
-/// Points that distances are taken from and to: enough for three digits, few enough for all pairs of them.
+/// The number of points that distances are measured between: enough for three digits, few enough for all
+/// pairs of them.
 constexpr std::size_t kMostPoints = 1500;
 
 std::vector<Eigen::Vector3d> thinned(const std::vector<Eigen::Vector3d>& points) {
@@ -21,7 +22,7 @@ std::vector<Eigen::Vector3d> thinned(const std::vector<Eigen::Vector3d>& points)
   return out;
 }
 
-/// The largest distance of a point of `from` to its nearest in `to`.
+/// Returns the largest distance of a point of `from` to its nearest in `to`.
 double directed(const std::vector<Eigen::Vector3d>& from, const std::vector<Eigen::Vector3d>& to) {
   double worst = 0;
   for (const Eigen::Vector3d& p : from) {

@@ -1,6 +1,6 @@
 #pragma once
-/// How far what a method calls the contact is from the exact contact: of two posed bodies, the region that a
-/// list of pairs spans, or points that a method gave in place of pairs.
+/// Measures how far from the exact contact of two posed bodies it is what a method calls their contact: the
+/// region that a list of pairs spans, or the points that a method gave in place of pairs.
 
 #include <memory>
 #include <optional>
@@ -11,7 +11,7 @@
 
 namespace lrb::bench {
 
-/// Contact in few numbers and many points; all in the world frame and the meshes' unit.
+/// A contact in few numbers and many points; all in the world frame and the meshes' unit.
 struct Region {
   std::vector<Eigen::Vector3d> points;  ///< corners of the intersections, at most kMostPoints of them
   double length = 0, area = 0;          ///< sums over connected regions
@@ -32,8 +32,8 @@ struct RegionError {
 class RegionMaker {
  public:
   RegionMaker(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b);
-  /// Pairs that do not meet are left out of all but the points, where their triangles' middles stand for
-  /// them.
+  /// Describes the region of these pairs. Pairs that do not meet count only for the points, where the middles
+  /// of their triangles stand for them.
   Region of_pairs(const std::vector<SimplexPair>& pairs);
 
  private:
@@ -42,7 +42,7 @@ class RegionMaker {
 
 Region of_points(const std::vector<Eigen::Vector3d>& points);
 
-/// Nothing against nothing is no error; nothing against something is the worst.
+/// Returns the errors. Two empty regions have none; if only one is empty, all are the worst.
 RegionError region_error(const Region& exact, const Region& found, double diagonal);
 
 }  // namespace lrb::bench

@@ -12,7 +12,7 @@ namespace {
 
 using nlohmann::ordered_json;
 
-/// The question that most points call their worst; the first of the class if none has an error.
+/// Returns the question that most points call their worst; the first of the class if none has an error.
 std::uint64_t question_of(const DataSet& set, const std::vector<const Point*>& panel, PoseClass c) {
   std::map<std::uint64_t, std::size_t> votes;
   for (const Point* p : panel)

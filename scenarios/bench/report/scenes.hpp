@@ -1,5 +1,5 @@
 #pragma once
-/// What a point of a chart leads to: a question as a scenario, played, with trace, pictures and page.
+/// Makes what a point of a chart leads to: a question as a scenario, run, with trace, pictures and page.
 
 #include <functional>
 #include <map>
@@ -12,12 +12,12 @@
 
 namespace lrb::bench {
 
-/// A data set's name and a class of poses.
+/// The name of a data set and a class of poses.
 using SceneKey = std::pair<std::string, PoseClass>;
 
-/// For each data set and class of poses the question that most methods answer worst. Writes
-/// folder/scenes/SET-CLASS.scenario.json and, played, folder/scenes/SET-CLASS/; those that are there are
-/// kept. Gives their pages, relative to the folder.
+/// Chooses for each data set and class of poses the question that most methods answer worst. Writes
+/// folder/scenes/SET-CLASS.scenario.json and its run, folder/scenes/SET-CLASS/; keeps those that are there.
+/// Returns their pages, relative to the folder.
 std::map<SceneKey, std::string> write_scenes(const std::vector<DataSet>& sets,
                                              const std::vector<Point>& points, const std::string& folder,
                                              const run::ProgressReport& progress);

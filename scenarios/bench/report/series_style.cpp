@@ -12,7 +12,7 @@ struct Spare {
   int point;
 };
 
-/// For methods that do not say how they are drawn, in turn; none of our methods is drawn so.
+/// Styles for methods that do not say how they are drawn, taken in turn; none of our methods looks like this.
 constexpr std::array<Spare, 8> kSpares = {{
     {"#2f4b7c", "triangle", 11},
     {"#f95d6a", "rectRot", 12},

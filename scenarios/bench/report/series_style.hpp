@@ -9,9 +9,9 @@
 
 namespace lrb::bench {
 
-/// How the series of a chart are drawn: what every method says of itself, a series for each title (variants of ours, and
-/// engines of one house, may share one). A method that says nothing gets a series of its own under its name, with a colour
-/// and a shape that differ from those of the others as far as there are enough.
+/// How the series of a chart are drawn: what every method says of itself, a series for each title (variants
+/// of ours, and engines of one house, may share one). A method that says nothing gets a series of its own
+/// under its name, with a colour and a shape that differ from those of the others as far as there are enough.
 class SeriesStyles {
  public:
   /// The series come in the order of the methods.

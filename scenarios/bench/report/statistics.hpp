@@ -6,7 +6,7 @@
 
 namespace lrb::bench {
 
-/// The value below which a share of the others lies (nearest rank); 0 of none.
+/// Returns the value below which a share of the others lies (nearest rank); 0 if there are none.
 inline double quantile(std::vector<double> x, double share) {
   if (x.empty()) return 0;
   const auto rank = static_cast<std::size_t>(std::ceil(share * static_cast<double>(x.size())));
@@ -17,7 +17,7 @@ inline double quantile(std::vector<double> x, double share) {
 inline double median(const std::vector<double>& x) {
   return quantile(x, 0.5);
 }
-/// Of positive values; 0 of none.
+/// Returns the geometric mean of positive values; 0 if there are none.
 inline double geometric_mean(const std::vector<double>& x) {
   if (x.empty()) return 0;
   double sum = 0;

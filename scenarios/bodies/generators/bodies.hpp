@@ -1,5 +1,6 @@
 #pragma once
-/// The generators' functions, one file per idea. Every parameter has its value, checked by generate().
+/// The generators' functions, in one file for each idea. All parameters have their values, checked by
+/// generate().
 
 #include "scenarios/bodies/generators/generators.hpp"
 
@@ -23,7 +24,7 @@ inline void add_triangle(Mesh& mesh, VertexId a, VertexId b, VertexId c) {
   mesh.add_face(corners);
 }
 
-/// A closed polygon in the plane, counter-clockwise, as a 2D mesh.
+/// Makes a 2D mesh of a closed polygon in the plane, counter-clockwise.
 Mesh polygon_2d(const std::vector<Eigen::Vector2d>& outline);  // island.cpp
 
 }  // namespace lrb::generators

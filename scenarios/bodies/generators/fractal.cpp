@@ -20,36 +20,37 @@ namespace {
 using Eigen::Vector3d;
 using Point = Eigen::Matrix<std::int64_t, 3, 1>;
 
-// Coordinates are integers, 2^kUnitBits to the unit of length. The basic shape's are multiples of 2^-5; each
-// level of detail takes weights in sixteenths, that is four bits more.
+// Coordinates are integers, with 2^kUnitBits to the unit of length. Those of the basic shape are multiples of
+// 2^-5; each level of detail takes weights in sixteenths, that is, four bits more.
 constexpr int kUnitBits = 46, kBaseBits = 5, kLevelBits = 4;
 constexpr int kMaxLevel = (kUnitBits - kBaseBits) / kLevelBits;
 
-// Share of the room at an edge that one dent takes: the rest is for the dents in its walls.
+// The share of the room at an edge that one dent takes; the rest is for the dents in its walls.
 constexpr double kShare = 0.35;
-// No dent leans further under its neighbours than this, whatever the room (radians).
+// A dent never leans further under its neighbours than this, however much room there is (radians).
 constexpr double kMostRoom = 75 * std::numbers::pi / 180;
 constexpr double kWallRoom = 30 * std::numbers::pi / 180;
 constexpr double kSteepest = 60 * std::numbers::pi / 180;
 
-// How unevenly detail is spread: a face waits as if it were up to this many powers of two broader or
-// narrower.
+// How unevenly detail is spread: in the order of dents, a face counts as if it were broader or narrower by up
+// to this many powers of two.
 constexpr double kUneven = 2.5;
 
 struct Polygon {
   std::vector<VertexId> corners;  ///< counter-clockwise seen from outside
-  std::vector<double> room;  ///< angle between the face and what it may use of the solid, at edge (i, i + 1)
+  std::vector<double> room;  ///< angle between the face and the part of the solid that it may use, at edge
+                             ///< (i, i + 1)
   CellId inner = kSolid, outer = kOutside;
   int level = 0;
 };
 
-/// A kind of dent: what a lid with m corners gets behind it.
+/// A kind of dent: what is put behind a lid with m corners.
 struct Kind {
-  bool rim;    ///< a coplanar frame round the dent proper
-  bool flush;  ///< the rim and the inner lid are a region of their own, of no volume
+  bool rim;    ///< there is a coplanar frame around the dent proper
+  bool flush;  ///< the rim and the inner lid are a region of their own, with no volume
   bool flat;   ///< a frustum with a flat bottom; else a pyramid
   int lids() const { return flush ? 2 : 1; }
-  /// How many real faces more.
+  /// Returns the number of real faces that it adds.
   int gain(int m) const { return m - 1 + (flat ? 1 : 0) + (rim ? m : 0); }
 };
 
@@ -75,7 +76,7 @@ class Carver {
   }
 
  private:
-  /// A prism over a pentagon, lying on its side like a house.
+  /// Makes a prism over a pentagon, lying on its side like a house.
   void start() {
     const std::array<Eigen::Vector2d, 5> house = {{{-1, -0.75}, {1, -0.75}, {1, 0.25}, {0, 1}, {-1, 0.25}}};
     for (const double z : {-0.875, 0.875})
@@ -83,10 +84,10 @@ class Carver {
     add({4, 3, 2, 1, 0}, {}, kOutside, 0);
     add({5, 6, 7, 8, 9}, {}, kOutside, 0);
     for (VertexId i = 0; i < 5; ++i) {
-      const VertexId j = (i + 1) % 5;
-      add({i, j, j + 5, i + 5}, {}, kOutside, 0);
+      const VertexId j((i + 1) % 5);
+      add({i, j, VertexId(j + 5), VertexId(i + 5)}, {}, kOutside, 0);
     }
-    // Half of the angle between the two faces at each edge.
+    // Each edge may use half of the angle between its two faces.
     for (Polygon& f : faces_)
       for (std::size_t i = 0; i < f.corners.size(); ++i)
         for (const Polygon& g : faces_)
@@ -124,7 +125,7 @@ class Carver {
     return n.normalized();
   }
 
-  /// Distances of the mean of the corners from the edges.
+  /// Returns the distances of the mean of the corners from the edges.
   std::vector<double> distances(const Polygon& f) const {
     const std::size_t m = f.corners.size();
     const Vector3d c = centre(f);
@@ -145,15 +146,15 @@ class Carver {
     return *std::min_element(d.begin(), d.end());
   }
 
-  /// Broad faces are dented first: slivers, once there, stay as they are.
+  /// Adds a face and puts it in the queue for dents. Broad faces come first: a sliver stays as it is.
   void add(std::vector<VertexId> corners, std::vector<double> room, CellId outer, int level) {
     faces_.push_back({std::move(corners), std::move(room), kSolid, outer, level});
     const auto f = static_cast<FaceId>(faces_.size() - 1);
     waiting_.push({breadth(faces_[f]) * steady::exp2(random_.in(-kUneven, kUneven)), f});
   }
 
-  /// Whether some dents make up these numbers: a margin is kept while there are many, none is needed at the
-  /// end.
+  /// Returns true if some dents can add up to these numbers. Keeps a margin while there are many to make; at
+  /// the end none is needed.
   static bool fits(std::int64_t lids, std::int64_t gain) {
     if (lids < 0 || gain < 0) return false;
     if (lids == 0) return gain == 0;
@@ -161,7 +162,7 @@ class Carver {
     return 2 * gain >= 5 * lids && gain <= 7 * lids;
   }
 
-  /// Dents a large face in a way that leaves numbers which still fit.
+  /// Dents a large face so that the numbers that are left still fit.
   void carve_next() {
     std::vector<std::pair<double, FaceId>> passed_over;
     bool done = false;
@@ -181,7 +182,7 @@ class Carver {
     const int m = static_cast<int>(faces_[f].corners.size());
     const double wanted = static_cast<double>(gain_left_) / static_cast<double>(lids_left_);
     std::vector<std::pair<double, const Kind*>>
-        choice;  // (weight, kind): those near the average are likelier
+        choice;  // (weight, kind): kinds near the average are likelier
     double sum = 0;
     for (const Kind& k : kKinds) {
       if (!fits(lids_left_ - k.lids(), gain_left_ - k.gain(m))) continue;
@@ -200,7 +201,7 @@ class Carver {
     return true;
   }
 
-  /// The face shrunk about the mean of its m corners to 1 - m u / 16 of its size. Every corner moves by u /
+  /// Shrinks the face about the mean of its m corners to 1 - m u / 16 of its size. Every corner moves by u /
   /// 16 of its way to each of the others: integers stay integers, and the plane stays the plane.
   std::vector<Point> shrunk(const Polygon& f, int u) const {
     Point sum = Point::Zero();
@@ -231,14 +232,14 @@ class Carver {
   std::uint32_t regions_ = 0;
 };
 
-/// How deep a dent may be, and how steep its walls then are.
+/// How deep a dent may be, and how steep its walls are then.
 struct Slope {
   double depth;
   std::vector<double> angle;  ///< between face and wall, at each edge
 };
 
-/// `rim` and `floor`: how far wall tops and wall feet lie from the edges, as shares of the distance from edge
-/// to centre.
+/// Returns the shape of a dent. `rim` and `floor` tell how far the tops and the feet of its walls lie from
+/// the edges, as shares of the distance from edge to centre.
 Slope slope_of(const std::vector<double>& distance, const std::vector<double>& room, double rim,
                double floor) {
   Slope s{std::numeric_limits<double>::infinity(), {}};
@@ -261,7 +262,7 @@ void Carver::dent(FaceId index, const Kind& kind) {
   const auto share = [m](int u) { return static_cast<double>(u) * static_cast<double>(m) / 16; };
   Slope slope = slope_of(distance, f.room, share(rim), kind.flat ? share(foot) : 1);
 
-  CellId region = regions_++;
+  RegionId region(regions_++);
   faces_[index].inner = region;
   std::vector<VertexId> top = f.corners;
   std::vector<double> top_room;
@@ -276,8 +277,8 @@ void Carver::dent(FaceId index, const Kind& kind) {
       top_room[i] = std::min(under, kWallRoom);
     }
     if (kind.flush) {
-      faces_.push_back({top, {}, regions_, region, level});
-      region = regions_++;
+      faces_.push_back({top, {}, RegionId(regions_), region, level});
+      region = RegionId(regions_++);
     }
   }
   if (kind.flat) {
@@ -301,7 +302,7 @@ LrbData Carver::data() const {
   d.name = spec_.name;
   d.closed = true;
   for (const Point& p : points_) d.vertices.push_back(position(p));
-  // A region is made before the regions in it, so that layers can be counted from the last one back.
+  // A region is made before the regions inside it, so that layers can be counted back from the last one.
   d.region_layer.assign(regions_, 0);
   for (std::size_t f = faces_.size(); f-- > 0;)
     if (is_region(faces_[f].inner) && is_region(faces_[f].outer))

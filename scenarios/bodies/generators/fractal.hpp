@@ -1,6 +1,6 @@
 #pragma once
-/// The fractal bodies of the paper's section 4: one basic shape, to which local detail is added again and
-/// again, as dents under lids. The regions are known by construction, so no builder is needed.
+/// The fractal bodies of the paper's section 4: a basic shape to which local detail is added again and again,
+/// as dents under lids. The regions are known by construction, so that no builder is needed.
 
 #include <cstdint>
 #include <span>
@@ -17,17 +17,17 @@ struct FractalSpec {
   std::uint64_t seed = 1;
 };
 
-/// A body with exactly these numbers of faces. Its outermost wrapper is the basic shape's, a prism over a
-/// pentagon (7 faces); its size is about 2. Closed, free of self-intersections (a dent stays within the room
-/// that its face's edges leave it; tests prove it exactly for the paper's bodies), and exact: all coordinates
-/// are integer multiples of one power of two, so that corners of one face are coplanar in double arithmetic,
-/// and so are lids and the rims they cover.
+/// Makes a body with exactly these numbers of faces. Its outermost wrapper is the basic shape's, a prism over
+/// a pentagon (7 faces); its size is about 2. It is closed and free of self-intersections (a dent stays
+/// within the room that its face's edges leave it; tests prove it exactly for the paper's bodies). All
+/// coordinates are integer multiples of one power of two, so that corners of one face are coplanar in double
+/// arithmetic, and so are lids and the rims they cover.
 ///
 /// Every dent turns one face into a lid (a pseudo face) and adds 3 to 11 faces, so that the numbers have to
-/// fit: throws InputError if they do not (real_faces - 7 over pseudo faces must be between 2.5 and 7).
+/// fit: throws InputError if they do not ((real_faces - 7) / pseudo faces must be between 2.5 and 7).
 LrbRep fractal_body(const FractalSpec& spec);
 
-/// The paper's table 1: objects A to H.
+/// Returns the paper's table 1: objects A to H.
 std::span<const FractalSpec> paper_objects();
 
 }  // namespace lrb::generators

@@ -11,7 +11,7 @@ LrbRep fractal_rep(const GeneratorValues& v, std::uint64_t seed) {
   return fractal_body(spec);
 }
 
-/// Without the lids, and without the vertices that only lids had.
+/// Returns the body's real faces, without the vertices that only lids use.
 Mesh fractal(const GeneratorValues& v, std::uint64_t seed) {
   const LrbRep rep = fractal_rep(v, seed);
   Mesh mesh;

@@ -8,8 +8,8 @@
 namespace lrb::generators {
 namespace {
 
-/// Distance of a gear's outline from its axis, at a fraction of a tooth's pitch: steep flanks, flat tops and
-/// feet.
+/// Returns the distance of a gear's outline from its axis, at a fraction of a tooth's pitch: steep flanks,
+/// flat tops and feet.
 double tooth_radius(double pitch_fraction, double depth) {
   const double s = steady::cos(2 * std::numbers::pi * pitch_fraction);
   return 1 + 0.5 * depth * std::clamp(2.2 * s, -1.0, 1.0);
@@ -28,8 +28,9 @@ std::vector<Eigen::Vector2d> outline(const GeneratorValues& v) {
 
 }  // namespace
 
-/// A tube of rectangular section round the axis: a loop of rings (bore, top, teeth, bottom), each with one
-/// point per point of the outline. Star-shaped seen from the axis, so that it cannot meet itself.
+/// Makes a tube of rectangular section around the axis: a loop of rings (bore, top, teeth, bottom), each with
+/// one point for each point of the outline. It is star-shaped seen from the axis, so that it cannot meet
+/// itself.
 Mesh gear(const GeneratorValues& v, std::uint64_t) {
   const std::vector<Eigen::Vector2d> teeth = outline(v);
   const int n = static_cast<int>(teeth.size()), rings = static_cast<int>(v.at("rings"));

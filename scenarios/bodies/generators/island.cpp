@@ -8,9 +8,9 @@
 namespace lrb::generators {
 namespace {
 
-/// Each edge gets a bay in its middle third, as in a Koch curve turned inside out; the bay's apex wanders a
+/// Gives each edge a bay in its middle third, as in a Koch curve turned inside out. The bay's apex is moved a
 /// little, so that no two look alike. Depths below a third of an edge keep bays within the triangle that
-/// their edge owns.
+/// belongs to their edge.
 std::vector<Eigen::Vector2d> with_bays(const std::vector<Eigen::Vector2d>& outline, double depth,
                                        Random& random) {
   std::vector<Eigen::Vector2d> out;
@@ -19,7 +19,7 @@ std::vector<Eigen::Vector2d> with_bays(const std::vector<Eigen::Vector2d>& outli
     const Eigen::Vector2d inward(-along.y(), along.x());  // the solid is on the left
     out.push_back(a);
     out.push_back(a + along * random.in(0.30, 0.38));
-    // Drawn one after the other: compilers order operands differently.
+    // Drawn one after the other, because compilers evaluate operands in different orders.
     const double reach = random.in(0.7, 1.0), middle = random.in(0.44, 0.56);
     out.push_back(a + along * middle + inward * depth * reach);
     out.push_back(a + along * random.in(0.62, 0.70));
@@ -32,10 +32,10 @@ std::vector<Eigen::Vector2d> with_bays(const std::vector<Eigen::Vector2d>& outli
 Mesh polygon_2d(const std::vector<Eigen::Vector2d>& outline) {
   Mesh mesh;
   mesh.dim = 2;
-  const auto n = static_cast<VertexId>(outline.size());
+  const auto n = static_cast<std::uint32_t>(outline.size());
   for (VertexId i = 0; i < n; ++i) {
     mesh.vertices.emplace_back(outline[i].x(), outline[i].y(), 0);
-    const VertexId corners[2] = {i, (i + 1) % n};
+    const VertexId corners[2] = {i, VertexId((i + 1) % n)};
     mesh.add_face(corners);
   }
   return mesh;
@@ -43,7 +43,8 @@ Mesh polygon_2d(const std::vector<Eigen::Vector2d>& outline) {
 
 Mesh island(const GeneratorValues& v, std::uint64_t seed) {
   Random random(seed);
-  // The coarse outline: wide capes and one deep gulf, non-convex before any detail is cut into it.
+  // The coarse outline: wide capes and one deep gulf, so that it is not convex even before detail is cut into
+  // it.
   const double cape[][2] = {{1.00, 0.04}, {0.93, 0.10}, {0.98, 0.24}, {0.90, 0.37}, {0.38, 0.47},
                             {0.95, 0.58}, {1.00, 0.70}, {0.45, 0.80}, {1.00, 0.91}};  // radius, turn
   std::vector<Eigen::Vector2d> outline;

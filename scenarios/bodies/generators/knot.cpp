@@ -9,7 +9,7 @@
 namespace lrb::generators {
 namespace {
 
-/// A torus knot's middle line; t in [0, 1).
+/// The middle line of a torus knot, by t in [0, 1).
 struct KnotLine {
   double p, q, radius, swing;
   Eigen::Vector3d operator()(double t) const {
@@ -26,7 +26,7 @@ Mesh knot(const GeneratorValues& v, std::uint64_t) {
   const int n = static_cast<int>(v.at("segments")), sides = static_cast<int>(v.at("sides"));
   const double tube = v.at("tube") * line.radius;
 
-  // Frames carried along without twist, then turned evenly so that the last meets the first.
+  // Frames are carried along without twist, then turned evenly so that the last meets the first.
   std::vector<Eigen::Vector3d> tangent(n), side(n + 1);
   for (int i = 0; i < n; ++i) tangent[i] = (line((i + 0.5) / n) - line((i - 0.5) / n)).normalized();
   side[0] = tangent[0].unitOrthogonal();

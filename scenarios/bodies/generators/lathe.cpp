@@ -10,13 +10,13 @@ namespace {
 /// A profile in the half-plane (distance from the axis, height), from a point on the axis to another one.
 using Profile = std::vector<Eigen::Vector2d>;
 
-/// `rows` even steps from the profile's end to a point.
+/// Adds `rows` even steps from the profile's end to a point.
 void line_to(Profile& profile, const Eigen::Vector2d& end, int rows) {
   const Eigen::Vector2d begin = profile.back();
   for (int i = 1; i <= rows; ++i) profile.push_back(begin + (end - begin) * i / rows);
 }
 
-/// `rows` even steps on a circle round (0, height), between angles from the axis pointing down.
+/// Adds `rows` even steps on a circle around (0, height), between two angles from the axis pointing down.
 void arc(Profile& profile, double radius, double height, double from, double to, int rows) {
   for (int i = profile.empty() ? 0 : 1; i <= rows; ++i) {
     const double angle = from + (to - from) * i / rows;
@@ -24,8 +24,8 @@ void arc(Profile& profile, double radius, double height, double from, double to,
   }
 }
 
-/// Turns a profile round the z axis. The solid lies on the left of the profile's direction seen with the axis
-/// on the left and z up; first and last points are put on the axis.
+/// Turns a profile around the z axis. The solid lies on the left of the profile's direction, seen with the
+/// axis on the left and z up; the first and the last point are put on the axis.
 Mesh lathe(const Profile& profile, int segments) {
   Mesh mesh;
   const int rows = static_cast<int>(profile.size());

@@ -13,8 +13,8 @@
 namespace lrb::generators {
 namespace {
 
-/// An icosahedron whose edges are cut into `frequency` parts and whose vertices are put at radius(direction):
-/// a star-shaped surface for any positive radius, so that it cannot meet itself.
+/// Cuts the edges of an icosahedron into `frequency` parts and puts the vertices at radius(direction): a
+/// star-shaped surface for any positive radius, so that it cannot meet itself.
 class StarSurface {
  public:
   StarSurface(int frequency, const std::function<double(const Eigen::Vector3d&)>& radius)
@@ -38,8 +38,8 @@ class StarSurface {
     };
     for (int i = 0; i < n_; ++i) {
       for (int j = 0; i + j < n_; ++j) {
-        // Asked for one after the other, because id() numbers new vertices: compilers order arguments
-        // differently.
+        // Called one after the other, because id() numbers new vertices and compilers evaluate arguments in
+        // different orders.
         const VertexId up = id(i, j + 1), along = id(i + 1, j), here = id(i, j);
         add_triangle(mesh_, here, along, up);
         if (i + j + 1 >= n_) continue;
@@ -49,9 +49,10 @@ class StarSurface {
     }
   }
 
-  /// Faces share the vertices on their edges: found again by their place on the icosahedron, rounded.
+  /// Returns a vertex on an edge, which faces share; finds it again by its place on the icosahedron, rounded.
   VertexId vertex(const Eigen::Vector3d& on_icosahedron) {
-    constexpr double kGrid = 1 << 24;  // far below the distance of two vertices, far above rounding
+    constexpr double kGrid = 1 << 24;  // far finer than the distance of two vertices, far coarser than
+                                       // rounding
     const auto key = [&](int i) { return std::llround(on_icosahedron[i] * kGrid); };
     const auto [it, is_new] =
         ids_.try_emplace({key(0), key(1), key(2)}, static_cast<VertexId>(mesh_.vertices.size()));
@@ -83,7 +84,8 @@ Eigen::Vector3d random_direction(Random& random) {
   return {s * steady::cos(angle), s * steady::sin(angle), z};
 }
 
-/// Height of a crater's profile at the cosine of the angle from its middle: a bowl inside a soft raised rim.
+/// Returns the height of a crater's profile at the cosine of the angle from its middle: a bowl inside a soft
+/// raised rim.
 double crater_height(const Crater& c, double cosine) {
   const double t =
       (1 - cosine) / (1 - c.cos_rim);  // 0 in the middle, 1 on the rim, about the square of the angle

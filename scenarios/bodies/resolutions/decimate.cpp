@@ -23,10 +23,12 @@ using construct::HullMesh;
 using Slot = HullMesh::Slot;
 using Corner = HullMesh::Corner;
 
-/// Pull of a new vertex towards its edge's middle, and price of a long edge, relative to the distance from
-/// the planes around. Larger: more even triangles, rounder creases; smaller: on flat parts needles.
+/// How strongly a new vertex is drawn towards its edge's middle, and long edges are made expensive, relative
+/// to the distance from the planes around. Larger values give more even triangles and rounder creases,
+/// smaller ones give needles on flat parts.
 constexpr double kEvenness = 1e-3;
-/// Cosine of the angle by which a triangle may turn. Smaller: folds; larger: collapses stop early.
+/// Cosine of the largest angle by which a triangle may turn. Smaller values allow folds; with larger ones
+/// collapses stop early.
 constexpr double kLeastCosine = 0.3;
 /// A new triangle's shape (1: equilateral, 0: none) must be this good, or better than the worst it replaces.
 constexpr double kLeastShape = 0.1;
@@ -65,7 +67,7 @@ class Decimator {
         if (hull_.degree(c.u) > 0 && hull_.degree(c.v) > 0) try_collapse(c);
         if (2 * hull_.triangle_count() < planted_) plant();
       }
-      if (hull_.triangle_count() == before) return;  // all that is left is refused
+      if (hull_.triangle_count() == before) return;  // everything that is left is refused
     }
   }
 
@@ -90,11 +92,11 @@ class Decimator {
 
  private:
   /// An edge, and what its collapse costs. Both ends are gone after the collapse, so that an entry is either
-  /// right or names a vertex that is no longer there.
+  /// right or names a vertex that no longer exists.
   struct Collapse {
     double cost;
     Corner u, v;
-    bool operator<(const Collapse& other) const {  // the cheapest is the last in order: for heaps
+    bool operator<(const Collapse& other) const {  // the cheapest comes last: for heaps
       if (cost != other.cost) return cost > other.cost;
       return u != other.u ? u > other.u : v > other.v;
     }
@@ -135,8 +137,8 @@ class Decimator {
 
   bool in_star(Slot s) const { return std::find(star_.begin(), star_.end(), s) != star_.end(); }
 
-  /// Fills star_ and rim_; false if what the collapse leaves would be no surface: the rim must be one simple
-  /// loop (the link condition), and longer than a triangle's two sides.
+  /// Fills star_ and rim_. Returns false if what the collapse leaves would not be a surface: the rim must be
+  /// one simple loop (the link condition), with more than two edges.
   bool find_star(Corner u, Corner v) {
     star_.clear();
     hull_.for_each_around(u, [&](Slot s, int) { star_.push_back(s); });
@@ -174,7 +176,7 @@ class Decimator {
     return worst_new >= std::min(kLeastShape, worst_old);
   }
 
-  /// The exact proof: the new fan meets nothing but what it shares with it.
+  /// Proves exactly that the new fan meets nothing but what it shares with it.
   bool is_clear(const HullMesh::Point& w) {
     fan_.clear();
     for (const RimEdge& r : rim_) fan_.emplace_back(hull_.point(r.from), hull_.point(r.to), w);
@@ -204,13 +206,13 @@ class Decimator {
     for (const RimEdge& r : rim_) propose(r.from, added);
   }
 
-  /// The fan takes over the first slots of the star.
+  /// Replaces the star by the fan, which takes over its first slots.
   void fill_hole(Corner w) {
     const std::uint32_t component = hull_[star_[0]].component;
     const auto slot_from = [&](Corner v) {
       for (std::size_t i = 0; i < rim_.size(); ++i)
         if (rim_[i].from == v) return star_[i];
-      return kNull;
+      return NoId::kValue;
     };
     std::vector<HullMesh::Triangle> fan(rim_.size());
     for (std::size_t i = 0; i < rim_.size(); ++i) {
@@ -234,7 +236,7 @@ class Decimator {
   Vector3 origin_;
   std::vector<Quadric> quadrics_;  ///< (|points|), about origin_
   std::optional<AabbTree> tree_;
-  std::uint32_t planted_ = 0;  ///< triangles when the tree was made
+  std::uint32_t planted_ = 0;  ///< number of triangles when the tree was made
   std::vector<Collapse> queue_;
   std::vector<Slot> star_;
   std::vector<RimEdge> rim_;

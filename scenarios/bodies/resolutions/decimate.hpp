@@ -1,5 +1,5 @@
 #pragma once
-/// A surface with fewer faces: edges collapse, cheapest first.
+/// Reduces the faces of a surface: edges collapse, cheapest first.
 
 #include <cstdint>
 #include <span>
@@ -9,15 +9,16 @@
 
 namespace lrb::resolutions {
 
-/// The surface with at most targets[i] triangles, for each i (descending), all from one run of collapses.
+/// Returns the surface with at most targets[i] triangles, for each i (descending), all from one run of
+/// collapses.
 ///
-/// Quadric error metric (Garland and Heckbert, "Surface Simplification Using Quadric Error Metrics", 1997).
-/// Unlike theirs, the surface stays embedded: a collapse is done only if its edge's link allows it, and if,
-/// exactly, the triangles that it makes meet nothing of the surface in more than they share. So what comes
-/// out is closed, of the same genus, and free of self-intersections where `mesh` is. What cannot go down to a
-/// target stays above it: a component keeps four triangles, a handle more.
+/// By the quadric error metric (Garland and Heckbert, "Surface Simplification Using Quadric Error Metrics",
+/// 1997). Unlike theirs, the surface stays embedded: an edge collapses only if its link allows it, and if the
+/// new triangles, tested exactly, meet nothing of the surface in more than what they share. The result is
+/// therefore closed, of the same genus, and free of self-intersections where `mesh` is. A surface that cannot
+/// be reduced to a target stays above it: a component keeps four triangles, a handle more.
 ///
-/// `mesh` as MeshReport::buildable() wants it, in 3D. Polygons come out as triangles. Deterministic.
+/// `mesh` must be 3D and as MeshReport::buildable() requires. Polygons come out as triangles. Deterministic.
 std::vector<Mesh> decimate(const Mesh& mesh, std::span<const std::uint32_t> targets);
 
 }  // namespace lrb::resolutions

@@ -1,16 +1,16 @@
 #pragma once
-/// Squared distances from planes, added up.
+/// Adds up squared distances from planes.
 
 #include <Eigen/Core>
 
 namespace lrb::resolutions {
 
 /// The sum over some triangles of area times squared distance from the triangle's plane, as a function of the
-/// point: x^T a x - 2 b^T x + c, with a symmetric. Unit: length^4.
+/// point: x^T a x - 2 b^T x + c, with a symmetric. Its unit is length^4.
 class Quadric {
  public:
   Quadric() = default;
-  /// Of the plane through p with normal n (any length: the weight is n's length).
+  /// Starts with the plane through p with normal n; the length of n is the plane's weight.
   Quadric(const Eigen::Vector3d& n, const Eigen::Vector3d& p) {
     weight_ = n.norm();
     if (!(weight_ > 0)) return;
@@ -38,9 +38,10 @@ class Quadric {
   double weight() const { return weight_; }  ///< of all planes together
   double at(const Eigen::Vector3d& p) const { return p.dot(times(p)) - 2 * b_.dot(p) + c_; }
 
-  /// Where at(x) + pull |x - m|^2 is least; pull > 0.
+  /// Returns the point where at(x) + pull |x - m|^2 is least; pull > 0.
   Eigen::Vector3d lowest(const Eigen::Vector3d& m, double pull) const {
-    // Cramer's rule: positive definite because of the pull, and the same on every machine.
+    // By Cramer's rule: the matrix is positive definite because of the pull, and the result is the same on
+    // every machine.
     const double xx = xx_ + pull, yy = yy_ + pull, zz = zz_ + pull;
     const Eigen::Vector3d r = b_ + pull * m;
     const double cxx = yy * zz - yz_ * yz_, cxy = yz_ * xz_ - xy_ * zz, cxz = xy_ * yz_ - yy * xz_;

@@ -16,7 +16,7 @@ std::vector<Mesh> resolutions(const Mesh& mesh, const ResolutionOptions& options
     throw InputError(obstacles.empty() ? mesh.name + ": no LRB-rep can be built of it" : obstacles.front());
   }
   const std::uint32_t all[] = {~0u};
-  Mesh finest = decimate(mesh, all).front();  // no collapse: triangles
+  Mesh finest = decimate(mesh, all).front();  // without any collapse: only turns polygons into triangles
   for (std::uint32_t i = 0; i < options.subdivisions; ++i) finest = subdivide(finest);
   orient_outward(finest);
   std::vector<std::uint32_t> targets;

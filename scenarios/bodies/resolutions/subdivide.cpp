@@ -10,7 +10,7 @@ namespace {
 struct HalfEdge {
   VertexId low, high;   ///< its ends
   VertexId tip;         ///< the face's third corner
-  std::uint32_t place;  ///< 3 face + side
+  std::uint32_t place;  ///< 3 * face + side
 };
 
 std::vector<HalfEdge> half_edges(const Mesh& mesh) {
@@ -36,7 +36,7 @@ Mesh subdivide(const Mesh& mesh) {
   const std::vector<HalfEdge> edges = half_edges(mesh);
   Mesh out;
   out.name = mesh.name;
-  const auto old_count = static_cast<VertexId>(mesh.vertices.size());
+  const auto old_count = static_cast<std::uint32_t>(mesh.vertices.size());
   std::vector<Eigen::Vector3d> sum(old_count, Eigen::Vector3d::Zero());  // of the neighbours
   std::vector<std::uint32_t> degree(old_count, 0);
   std::vector<VertexId> middle(edges.size());  // by place
@@ -48,7 +48,7 @@ Mesh subdivide(const Mesh& mesh) {
     sum[e.high] += a;
     ++degree[e.low];
     ++degree[e.high];
-    middle[e.place] = middle[other.place] = old_count + static_cast<VertexId>(added.size());
+    middle[e.place] = middle[other.place] = VertexId(old_count + added.size());
     added.push_back((3 * (a + b) + mesh.vertices[e.tip] + mesh.vertices[other.tip]) / 8);
   }
   out.vertices.reserve(old_count + added.size());

@@ -4,10 +4,10 @@
 
 namespace lrb::resolutions {
 
-/// The surface with four triangles for each of its own, smoothed: Loop's scheme ("Smooth Subdivision Surfaces
-/// Based on Triangles", 1987) with Warren's weights. `mesh`: triangles, closed, every edge with two faces.
-/// New vertices follow the old ones. Where parts of the surface come near each other it may come to meet
-/// itself: check_mesh() tells.
+/// Replaces each triangle by four and smooths the surface: Loop's scheme ("Smooth Subdivision Surfaces Based
+/// on Triangles", 1987) with Warren's weights. `mesh` must consist of triangles and be closed, with two faces
+/// at every edge. New vertices follow the old ones. Where parts of the surface are close to each other the
+/// result may intersect itself, which check_mesh() finds.
 Mesh subdivide(const Mesh& mesh);
 
 }  // namespace lrb::resolutions

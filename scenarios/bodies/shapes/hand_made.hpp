@@ -5,12 +5,12 @@
 
 namespace lrb::shapes {
 
-/// A box [0, 4] x [0, 4] x [0, 2] whose top has a dent [1, 3] x [1, 3], 1 deep, under a lid: one region of
-/// volume 4. Triangles; real volume 28, outermost wrapper 32.
+/// Returns a box [0, 4] x [0, 4] x [0, 2] whose top has a dent [1, 3] x [1, 3], 1 deep, under a lid: one
+/// region of volume 4. Triangles; real volume 28, outermost wrapper 32.
 LrbRep dented_box();
 
-/// A staircase in the plane under two nested lids: region 1 (layer 1) hides region 0 (layer 0). Segments;
-/// area 10 real, 10.5 with region 0, 16 with both.
+/// Returns a staircase in the plane under two nested lids: region 1 (layer 1) hides region 0 (layer 0).
+/// Segments; real area 10, 10.5 with region 0, 16 with both.
 LrbRep stairs_2d();
 
 }  // namespace lrb::shapes

@@ -12,7 +12,8 @@ namespace lrb::shapes {
 
 using RandomEngine = std::mt19937_64;
 
-/// Uniform in [0, 1). Not from the standard library's distributions, which differ between implementations.
+/// Draws uniformly from [0, 1), by our own means: the standard library's distributions differ between
+/// implementations.
 inline double uniform(RandomEngine& random) {
   return static_cast<double>(random() >> 11) * 0x1p-53;
 }
@@ -22,7 +23,7 @@ inline double uniform(RandomEngine& random, double low, double high) {
 
 inline Eigen::Vector3d random_direction(RandomEngine& random) {
   while (true) {
-    // Braces: evaluated in order, so that every compiler draws the same numbers.
+    // Braces are evaluated in order, so that every compiler draws the same numbers.
     const Eigen::Vector3d d{uniform(random, -1, 1), uniform(random, -1, 1), uniform(random, -1, 1)};
     if (d.norm() > 0.1 && d.norm() <= 1) return d.normalized();
   }
@@ -40,8 +41,8 @@ inline Eigen::AlignedBox3d box_of(const LrbRep& rep) {
   return box;
 }
 
-/// A random rotation, and a translation that leaves the centres of the bodies' boxes about `share` of the sum
-/// of their radii apart: 1 just misses round bodies, 0 puts one into the other.
+/// Draws a random rotation, and a translation that leaves the centres of the bodies' boxes about `share`
+/// times the sum of their radii apart: 1 just misses round bodies, 0 puts one into the other.
 inline Pose random_pose(RandomEngine& random, const LrbRep& a, const LrbRep& b, double share) {
   const Eigen::AlignedBox3d box_a = box_of(a), box_b = box_of(b);
   Pose p;

@@ -54,7 +54,7 @@ Mesh make_torus(int n, int m, double major, double minor, bool quads) {
   return mesh;
 }
 
-/// Splits every triangle into four, new vertices in the middles of edges.
+/// Splits every triangle into four, with new vertices in the middles of edges.
 Mesh subdivided(const Mesh& in) {
   Mesh out;
   out.vertices = in.vertices;
@@ -96,7 +96,8 @@ Mesh unit_icosphere(int level) {
   return mesh;
 }
 
-/// Quarter circle from the pole (0, -radius) to the equator (radius, 0); the pole is on the axis exactly.
+/// Returns a quarter circle from the pole (0, -radius) to the equator (radius, 0); the pole lies exactly on
+/// the axis.
 std::vector<Point2> quarter(int stacks, double radius) {
   std::vector<Point2> arc;
   for (int i = 0; i <= stacks; ++i) {
@@ -315,7 +316,7 @@ Mesh several(const std::vector<Mesh>& meshes) {
     all.vertices.insert(all.vertices.end(), mesh.vertices.begin(), mesh.vertices.end());
     for (FaceId f = 0; f < mesh.face_count(); ++f) {
       std::vector<VertexId> corners(mesh.face(f).begin(), mesh.face(f).end());
-      for (VertexId& v : corners) v += base;
+      for (VertexId& v : corners) v = VertexId(v + base);
       all.add_face(corners);
     }
   }

@@ -1,7 +1,7 @@
 #pragma once
-/// Bodies that tests are made of. Unless its comment says otherwise a body is closed, manifold, free of
-/// self-intersections and oriented outward (2D: the solid on the left of every segment). Same arguments, same
-/// mesh.
+/// Makes bodies for tests. Unless its comment says otherwise a body is closed, manifold, free of
+/// self-intersections and oriented outward (2D: the solid on the left of every segment). The same arguments
+/// give the same mesh.
 
 #include <cstdint>
 #include <functional>
@@ -15,26 +15,26 @@ namespace lrb::shapes {
 using Point2 = Eigen::Vector2d;
 using Point3 = Eigen::Vector3d;
 
-// Boxes and their like.
+// Boxes and the like.
 Mesh tetrahedron(double size = 1);  ///< corners at 0 and on the axes; 4 triangles
 Mesh box(const Point3& low = {0, 0, 0}, const Point3& high = {1, 1, 1});       ///< 12 triangles
 Mesh quad_box(const Point3& low = {0, 0, 0}, const Point3& high = {1, 1, 1});  ///< 6 quads
-/// The boundary of the unit cells (i, j, k), 0 <= i < nx and so on, for which `solid` holds, as triangles.
-/// Cells that meet in an edge or vertex only make it non-manifold.
+/// Makes the boundary of the unit cells (i, j, k), 0 <= i < nx and so on, for which `solid` holds, in
+/// triangles. Cells that meet only in an edge or vertex make it non-manifold.
 Mesh voxels(int nx, int ny, int nz, const std::function<bool(int, int, int)>& solid, bool quads = false);
 Mesh l_shape();                        ///< three unit cells in an L
 Mesh comb(int teeth, int length = 4);  ///< a row of cells with a tooth of `length` cells on every second one
 Mesh box_with_void();                  ///< 3 x 3 x 3 cells without the middle one: two components, one a void
 
-// Round ones.
+// Round bodies.
 Mesh icosphere(int level, double radius = 1, const Point3& centre = {0, 0, 0});  ///< 20 * 4^level triangles
 Mesh bumpy_sphere(int level, std::uint64_t seed,
                   double amplitude = 0.2);  ///< star-shaped about 0, radius about 1
-/// Surface of revolution about z: `profile` has (radius, z) from the lower pole to the upper one, both on the
-/// axis, the others off it; triangles.
+/// Makes a surface of revolution about z: `profile` lists (radius, z) from the lower pole to the upper one,
+/// both on the axis and the others off it; triangles.
 Mesh revolve(const std::vector<Point2>& profile, int slices);
 Mesh uv_sphere(int slices, int stacks, double radius = 1);
-/// A thick hemispherical shell about 0, open to +z: outer radius 1, inner radius 1 - thickness.
+/// Makes a thick hemispherical shell about 0, open to +z: outer radius 1, inner radius 1 - thickness.
 Mesh bowl(int slices, int stacks, double thickness = 0.2);
 Mesh torus(int n, int m, double major = 1, double minor = 0.4);  ///< n round the axis, m round the tube
 Mesh quad_torus(int n, int m, double major = 1,
@@ -50,7 +50,7 @@ Mesh comb_2d(int teeth, double length = 4);
 Mesh l_shape_2d();
 Mesh ring_2d(int corners);  ///< a circle with a circular hole: two components
 
-// Made from others.
+// Bodies made from others.
 Mesh several(const std::vector<Mesh>& meshes);  ///< all of them, vertices and faces appended in order
 Mesh turned_inside_out(Mesh mesh);
 Mesh translated(Mesh mesh, const Point3& by);

@@ -27,7 +27,7 @@ struct BuildCommandOptions {
 
 constexpr double kMega = 1e6;
 
-/// Most memory that this process ever held, in bytes.
+/// Returns the largest amount of memory that this process ever held, in bytes.
 std::uint64_t peak_bytes() {
   rusage use{};
   getrusage(RUSAGE_SELF, &use);
@@ -71,7 +71,7 @@ int run_build(const BuildCommandOptions& o, const Globals& globals) {
   nlohmann::ordered_json j = bodies::body_figures(rep);
   j["seconds"] = seconds;
   j["peak_bytes"] = peak_bytes();
-  j["notes"] = notes;  // what was done to the mesh: nothing is, in silence
+  j["notes"] = notes;  // what was done to the mesh: nothing is done in silence
   ValidateReport report;
   if (o.no_validate) {
     j["valid"] = nullptr;
@@ -94,13 +94,13 @@ int run_build(const BuildCommandOptions& o, const Globals& globals) {
 }
 
 Command add_build(CLI::App& root, const Globals& globals) {
-  CLI::App* app = root.add_subcommand("build", "Mesh to LRB-rep: build it, prove it, save it");
+  CLI::App* app = root.add_subcommand("build", "Build a mesh's LRB-rep, prove that it is right, save it");
   const auto o = std::make_shared<BuildCommandOptions>();
   app->add_option("MESH", o->mesh, "OBJ, STL, PLY or OFF")->required();
   app->add_option("-o,--output", o->out, "Write the LRB-rep here")->type_name("FILE.lrb");
   o->build.threads = 0;
   add_build_options(*app, o->build);
-  app->add_flag("--json", o->json, "The figures as one JSON object");
+  app->add_flag("--json", o->json, "Print the figures as one JSON object");
   app->add_flag("--no-validate", o->no_validate, "Skip the proof that the LRB-rep keeps its promises");
   return {app, [o, &globals] { return run_build(*o, globals); }};
 }

@@ -28,13 +28,14 @@ Eigen::AlignedBox3d box_of(const LrbRep& rep) {
   return box;
 }
 
-/// B's middle heads for A's, from clear of it, and goes on for a while after the first contact.
+/// Returns a motion on which B's middle heads for A's, from where it is clear of it, and goes on for a while
+/// after the first contact.
 spec::Motion approach_from(const Eigen::Vector3d& direction, const LrbRep& a, const LrbRep& b) {
   const Eigen::AlignedBox3d box_a = box_of(a), box_b = box_of(b);
   spec::Motion m;
   m.kind = spec::Motion::Kind::approach;
   m.target = box_a.center() - box_b.center();
-  constexpr double kClear = 1.02;  // of the distance at which balls round both boxes touch
+  constexpr double kClear = 1.02;  // in distances at which balls around both boxes touch
   m.from = direction.normalized() * kClear * (box_a.diagonal().norm() + box_b.diagonal().norm()) / 2;
   m.step_length = 0.004;
   m.steps = 100'000;
@@ -43,8 +44,8 @@ spec::Motion approach_from(const Eigen::Vector3d& direction, const LrbRep& a, co
   return m;
 }
 
-/// Stands beside the way on which B comes, a little on B's side and above: the gap between the bodies is
-/// seen.
+/// Looks from beside the path on which B comes, a little on B's side and above, so that the gap between the
+/// bodies is seen.
 void look_from_the_side(const Eigen::Vector3d& coming_from, std::vector<spec::FrameSpec::View>& views) {
   for (spec::FrameSpec::View& view : views) {
     const Eigen::Vector3d up = view.up.normalized(), side = coming_from.cross(up);
@@ -67,7 +68,8 @@ spec::Scenario make_scenario(const CollideOptions& o, const std::vector<bodies::
     s.motion.kind = spec::Motion::Kind::poses;
     s.motion.poses = io::read_poses(o.poses);
   } else {
-    // Aslant by default: along an axis, bodies that are lined up with it would meet in whole faces first.
+    // The default direction is aslant: along an axis, bodies that are lined up with it would meet in whole
+    // faces first.
     Eigen::Vector3d direction(1, 0.35, 0.25);
     if (!o.from.empty()) direction = io::parse_vector(o.from, "--from");
     if (!(direction.squaredNorm() > 0)) throw InputError("--from: expected a direction that is not zero");
@@ -88,7 +90,7 @@ spec::Scenario make_scenario(const CollideOptions& o, const std::vector<bodies::
 }
 
 int run_collide(const CollideOptions& o, const Globals& globals) {
-  if (!o.poses.empty()) io::read_poses(o.poses);  // a typing error there should not cost a build
+  if (!o.poses.empty()) io::read_poses(o.poses);  // a typing error in this file should not cost a build
   const run::ProgressReport progress = progress_report(globals.quiet);
   std::vector<bodies::LoadedBody> bodies;
   for (const std::string& path : {o.a, o.b}) {
@@ -105,14 +107,15 @@ int run_collide(const CollideOptions& o, const Globals& globals) {
 }
 
 Command add_collide(CLI::App& root, const Globals& globals) {
-  CLI::App* app =
-      root.add_subcommand("collide", "Two bodies of yours: an approach until contact, drawn and explained");
+  CLI::App* app = root.add_subcommand(
+      "collide", "Let two bodies of yours approach each other until they touch, drawn and explained");
   const auto o = std::make_shared<CollideOptions>();
-  app->add_option("A", o->a, "Mesh or .lrb file; stays put")->required();
+  app->add_option("A", o->a, "Mesh or .lrb file; does not move")->required();
   app->add_option("B", o->b, "Mesh or .lrb file; moves")->required();
   app->add_option("-o,--output", o->folder, "Folder to write to [out/A-B]")->type_name("DIR");
   auto* poses =
-      app->add_option("--poses", o->poses, "Poses of B, one a step: lines of 12 numbers")->type_name("FILE");
+      app->add_option("--poses", o->poses, "File with the pose of B for each step: lines of 12 numbers")
+          ->type_name("FILE");
   app->add_option("--from", o->from, "Direction that B comes from, seen from A")
       ->type_name("X,Y,Z")
       ->excludes(poses);

@@ -37,21 +37,22 @@ int run_crowd_command(const CrowdOptions& o, const Globals& globals) {
 
 Command add_crowd(CLI::App& root, const Globals& globals) {
   CLI::App* app = root.add_subcommand(
-      "crowd", "Many bodies: a query for each pair whose boxes meet, step by step, on all cores");
+      "crowd", "Move many bodies: at each step a query for each pair whose boxes meet, on all cores");
   const auto o = std::make_shared<CrowdOptions>();
-  app->add_option("CROWD", o->crowd, "The shipped crowd, or a JSON file")
+  app->add_option("CROWD", o->crowd, "A shipped crowd (see lrbscope list), or a JSON file")
       ->type_name("NAME|FILE")
       ->default_val("crowd");
   app->add_option("-o,--output", o->folder, "Folder to write to [out/NAME]")->type_name("DIR");
-  app->add_option("--jobs", o->jobs, "Threads [all cores]; the result does not depend on it")
+  app->add_option("--jobs", o->jobs, "Number of threads [all cores]; the result does not depend on it")
       ->check(CLI::Range(1u, 1024u))
       ->type_name("N");
-  app->add_option("--steps", o->steps, "Time steps, over what the crowd says")
+  app->add_option("--steps", o->steps, "Number of time steps, instead of the crowd's own")
       ->check(CLI::Range(1u, 100000u))
       ->type_name("N");
   add_choice<trace::Clock>(
       *app, "--clock", o->clock,
-      "Of the trace: event, the same for any number of threads, a track a body; wall, a track a thread");
+      "Time in the trace. event: the same for any number of threads, a track for each body; "
+      "wall: a track for each thread");
   app->add_flag("--no-frames", o->no_frames, "Draw nothing");
   app->add_flag("--json", o->json, "Print the summary instead of the page's path");
   return {app, [o, &globals] { return run_crowd_command(*o, globals); }};

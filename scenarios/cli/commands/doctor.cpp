@@ -95,9 +95,10 @@ int run_doctor(bool json) {
 }
 
 Command add_doctor(CLI::App& root, const Globals&) {
-  CLI::App* app = root.add_subcommand("doctor", "Does this machine have what lrbscope needs? Exit 3 if not");
+  CLI::App* app =
+      root.add_subcommand("doctor", "Check that this machine has what lrbscope needs; exit code 3 if not");
   const auto json = std::make_shared<bool>(false);
-  app->add_flag("--json", *json, "As one JSON object");
+  app->add_flag("--json", *json, "Print one JSON object");
   return {app, [json] { return run_doctor(*json); }};
 }
 

@@ -27,10 +27,10 @@ std::string approve_command(const GoldenOptions& o, const std::string& name) {
 
 struct NamedGolden {
   std::string name;
-  std::optional<spec::Scenario> scenario;  ///< opened already
+  std::optional<spec::Scenario> scenario;  ///< nothing unless it has been opened
 };
 
-/// A golden by its own name, or by the scenario's: a shipped one's, or a file.
+/// Finds a golden by its own name, or by its scenario: the name of a shipped one, or a file.
 NamedGolden find_golden(const GoldenOptions& o, const std::string& word) {
   if (golden::has_golden(o.goldens, word)) return {word, std::nullopt};
   spec::Scenario scenario = spec::open_scenario(word);
@@ -63,7 +63,7 @@ std::string as_json(const golden::GoldenResult& r) {
   return one_line(line);
 }
 
-/// Tests one golden. What is damaged or refused fails alone: the others are tested all the same.
+/// Tests one golden. One that is damaged or refused fails by itself; the others are tested all the same.
 golden::GoldenResult test_one(const GoldenOptions& o, const Globals& globals, const NamedGolden& g,
                               bool report, std::optional<golden::GoldenRun>& run) {
   const std::string approve = approve_command(o, g.name);
@@ -79,7 +79,7 @@ golden::GoldenResult test_one(const GoldenOptions& o, const Globals& globals, co
   }
 }
 
-/// `report`: a page in any case, with every picture on it.
+/// `report`: writes a page in any case, with every picture on it.
 int run_test(const GoldenOptions& o, const Globals& globals, bool report) {
   const std::vector<NamedGolden> todo = goldens_to_test(o);
   std::vector<std::string> names;
@@ -152,7 +152,7 @@ CLI::App* add_part(CLI::App& golden, const std::string& name, const std::string&
                    const std::shared_ptr<GoldenOptions>& o, const std::string& none) {
   CLI::App* app = golden.add_subcommand(name, what);
   app->add_option("SCENARIO", o->scenarios, "Shipped scenarios, or JSON files [" + none + "]");
-  app->add_option("--goldens", o->goldens, "Folder of what is approved")
+  app->add_option("--goldens", o->goldens, "Folder with what is approved")
       ->type_name("DIR")
       ->capture_default_str();
   return app;
@@ -162,27 +162,30 @@ void add_output(CLI::App& app, const std::shared_ptr<GoldenOptions>& o) {
   app.add_option("-o,--output", o->folder, "Folder for the page and for what differs")
       ->type_name("DIR")
       ->capture_default_str();
-  app.add_flag("--json", o->json, "A line of JSON per scenario");
+  app.add_flag("--json", o->json, "Print a line of JSON for each scenario");
 }
 
 Command add_golden(CLI::App& root, const Globals& globals) {
-  CLI::App* app = root.add_subcommand("golden", "Runs against approved traces and pictures");
+  CLI::App* app = root.add_subcommand("golden", "Compare runs with approved traces and pictures");
   const auto o = std::make_shared<GoldenOptions>();
   app->require_subcommand(1);
-  CLI::App* test = add_part(
-      *app, "test", "Exit code 1 where events, counters or pictures differ; then a page", o, "all goldens");
+  CLI::App* test =
+      add_part(*app, "test", "Compare; if events, counters or pictures differ, write a page and exit with 1",
+               o, "all goldens");
   add_output(*test, o);
-  CLI::App* approve =
-      add_part(*app, "approve", "Makes today's runs the goldens, where they differ", o, "all goldens");
-  approve->add_option("--variant", o->variant, "Put pictures that differ beside the approved ones")
+  CLI::App* approve = add_part(
+      *app, "approve", "Approve today's runs where they differ: make them the goldens", o, "all goldens");
+  approve
+      ->add_option("--variant", o->variant,
+                   "Put pictures that differ beside the approved ones, under this name")
       ->type_name("NAME");
-  approve->add_option("--size", o->size, "Of the pictures [480 wide, of the scenario's shape]")
+  approve->add_option("--size", o->size, "Size of the pictures [480 wide, of the scenario's shape]")
       ->type_name("WxH");
-  approve->add_option("--frames", o->frames, "Pictures, evenly chosen from the scenario's [3]")
+  approve->add_option("--frames", o->frames, "Number of pictures, evenly chosen from the scenario's [3]")
       ->check(CLI::Range(1, 1000))
       ->type_name("N");
   CLI::App* report =
-      add_part(*app, "report", "The same as test, with a page of every picture", o, "all goldens");
+      add_part(*app, "report", "As test, but always with a page, of every picture", o, "all goldens");
   add_output(*report, o);
   return {app, [o, &globals, test, report] {
             if (test->parsed()) return run_test(*o, globals, false);

@@ -48,7 +48,7 @@ Json mesh_json(const Mesh& mesh, const MeshReport& report) {
   j["genus"] = report.genus >= 0 ? Json(report.genus) : Json(nullptr);
   j["closed"] = report.closed;
   j["bounds_solid"] = report.bounds_solid;
-  j["buildable"] = report.when_turned().buildable();  // `build` turns it
+  j["buildable"] = report.when_turned().buildable();  // because `build` turns it
   j["queryable"] = report.queryable();
   j["findings"] = report.lines(mesh);
   return j;
@@ -137,7 +137,7 @@ int run_inspect(const InspectOptions& o, const Globals& globals) {
     const std::string picture =
         o.picture.empty() ? "out/" + std::filesystem::path(o.file).stem().string() + ".png" : o.picture;
     io::make_folder(std::filesystem::path(picture).parent_path().string());
-    run::draw_portrait(*rep, picture);
+    run::draw_body_sheet(*rep, picture);
     j["picture"] = picture;
   }
   note(globals, notes);
@@ -146,16 +146,18 @@ int run_inspect(const InspectOptions& o, const Globals& globals) {
 }
 
 Command add_inspect(CLI::App& root, const Globals& globals) {
-  CLI::App* app = root.add_subcommand("inspect", "What a mesh or an LRB-rep is, and what is wrong with it");
+  CLI::App* app =
+      root.add_subcommand("inspect", "Tell what a mesh or an LRB-rep is, and what is wrong with it");
   const auto o = std::make_shared<InspectOptions>();
   app->add_option("FILE", o->file, "Mesh or .lrb file")->required();
   app->add_flag("--validate", o->validate,
-                "Prove the LRB-rep's promises (a mesh is built first); exit 1 if one is broken");
-  app->add_flag("--render", o->render, "Draw it: the body, its layers, its outermost wrapper");
-  app->add_option("--draw", o->drawing, "Draw what is wrong with a mesh: the first offenders, pointed out")
+                "Prove that the LRB-rep keeps its promises (a mesh is built first); exit code 1 if not");
+  app->add_flag("--render", o->render, "Draw the body, its layers and its outermost wrapper");
+  app->add_option("--draw", o->drawing,
+                  "Draw what is wrong with a mesh, to this picture: the first offenders are pointed out")
       ->type_name("FILE.png");
   app->add_option("-o,--output", o->picture, "Picture to write [out/NAME.png]")->type_name("FILE.png");
-  app->add_flag("--json", o->json, "As one JSON object");
+  app->add_flag("--json", o->json, "Print one JSON object");
   return {app, [o, &globals] { return run_inspect(*o, globals); }};
 }
 

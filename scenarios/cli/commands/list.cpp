@@ -8,8 +8,6 @@
 
 #include "scenarios/bodies/generators/generators.hpp"
 #include "scenarios/cli/command.hpp"
-#include "scenarios/paper/experiment.hpp"
-#include "scenarios/spec/crowd_spec.hpp"
 #include "scenarios/spec/shipped.hpp"
 
 namespace lrb::cli {
@@ -19,19 +17,20 @@ struct ListOptions {
   bool json = false, generators = false;
 };
 
-/// How a kind of shipped file is used.
-constexpr std::pair<std::string_view, std::string_view> kUses[] = {
-    {"scenario", "lrbscope run"}, {"crowd", "lrbscope crowd"}, {"experiment", "lrbscope paper --experiment"}};
+/// A kind of shipped file, how its names end, and what uses it.
+struct ShippedKind {
+  std::string_view name, ending, use;
+};
+constexpr ShippedKind kShipped[] = {{"scenario", spec::kScenarioEnding, "lrbscope run"},
+                                    {"crowd", spec::kCrowdEnding, "lrbscope crowd"},
+                                    {"experiment", spec::kExperimentEnding, "lrbscope paper --experiment"}};
 
 nlohmann::ordered_json shipped_json() {
   nlohmann::ordered_json out = nlohmann::ordered_json::array();
-  const auto add = [&](const char* kind, const std::string& name, const std::string& purpose) {
-    out.push_back({{"kind", kind}, {"name", name}, {"purpose", purpose}});
-  };
-  for (const spec::ShippedScenario& s : spec::shipped_scenarios()) add("scenario", s.name, s.purpose);
-  for (const std::string& name : spec::shipped_crowds()) add("crowd", name, spec::open_crowd(name).purpose);
-  for (const std::string& name : paper::shipped_experiments())
-    add("experiment", name, paper::open_experiment(name).purpose);
+  for (const ShippedKind& kind : kShipped)
+    for (const std::string& name : spec::shipped_names(kind.ending))
+      out.push_back(
+          {{"kind", kind.name}, {"name", name}, {"purpose", spec::shipped_purpose(name, kind.ending)}});
   return out;
 }
 
@@ -52,7 +51,7 @@ nlohmann::ordered_json generators_json() {
   return out;
 }
 
-std::string as_text(const nlohmann::ordered_json& list) {
+std::string list_text(const nlohmann::ordered_json& list) {
   std::ostringstream out;
   std::size_t width = 0;
   for (const auto& item : list) width = std::max(width, item["name"].get<std::string>().size() + 2);
@@ -60,8 +59,9 @@ std::string as_text(const nlohmann::ordered_json& list) {
   for (const auto& item : list) {
     const auto name = item["name"].get<std::string>(), kind = item.value("kind", "");
     if (kind != last) {
-      for (const auto& [of, use] : kUses)
-        if (of == kind) out << (last.empty() ? "" : "\n") << kind << "s, for " << use << "\n";
+      for (const ShippedKind& shipped : kShipped)
+        if (shipped.name == kind)
+          out << (last.empty() ? "" : "\n") << kind << "s, for " << shipped.use << "\n";
       last = kind;
     }
     out << (kind.empty() ? "" : "  ") << name << std::string(width - name.size(), ' ')
@@ -76,16 +76,16 @@ std::string as_text(const nlohmann::ordered_json& list) {
 
 int run_list(const ListOptions& o) {
   const nlohmann::ordered_json list = o.generators ? generators_json() : shipped_json();
-  print(o.json ? list.dump() + "\n" : as_text(list));
+  print(o.json ? list.dump() + "\n" : list_text(list));
   return kOk;
 }
 
 Command add_list(CLI::App& root, const Globals&) {
   CLI::App* app = root.add_subcommand(
-      "list", "The shipped scenarios, crowds and experiments, or the generators and their parameters");
+      "list", "List the shipped scenarios, crowds and experiments, or the generators and their parameters");
   const auto o = std::make_shared<ListOptions>();
-  app->add_flag("--generators", o->generators, "The generators of bodies instead");
-  app->add_flag("--json", o->json, "As JSON");
+  app->add_flag("--generators", o->generators, "List the generators of bodies instead");
+  app->add_flag("--json", o->json, "Print JSON");
   return {app, [o] { return run_list(*o); }};
 }
 

@@ -27,7 +27,7 @@ struct QueryOptions {
   std::uint32_t repeat = 0;
 };
 
-/// Median microseconds of `repeat` runs of one query, in a warm context.
+/// Returns the median time in microseconds of `repeat` runs of one query, in a warm context.
 double median_us(const LrbRep& a, const LrbRep& b, const Pose& pose, const QueryOptions& o,
                  QueryContext& context) {
   std::vector<double> us;
@@ -43,7 +43,7 @@ double median_us(const LrbRep& a, const LrbRep& b, const Pose& pose, const Query
   return us[middle];
 }
 
-/// PICTURE, or PICTURE with the pose's number where there are several.
+/// Returns PICTURE, or PICTURE with the pose's number if there are several poses.
 std::string picture_name(const std::string& path, std::size_t pose, std::size_t poses) {
   if (poses == 1) return path;
   const std::filesystem::path p(path);
@@ -51,8 +51,8 @@ std::string picture_name(const std::string& path, std::size_t pose, std::size_t 
       .string();
 }
 
-/// Touching bodies may overlap all the same (see Relation::touching). This is decided where it costs little:
-/// for as many pairs as take a few milliseconds, of a query that found all of them exactly.
+/// Touching bodies may overlap all the same (see Relation::touching). This is decided for a query that found
+/// all pairs exactly, if there are few enough of them: 1000 take 0.1 s and more (docs/measurements.md).
 constexpr std::size_t kMostPairsToDecide = 1000;
 
 bool tells_overlap(const CollideRequest& request) {
@@ -115,7 +115,7 @@ struct PoseLines {
   explicit PoseLines(const std::string& path)
       : file(printable_name(path)), poses(io::read_poses(path, &lines)) {}  // `lines` comes first
 
-  /// Calls ask(); an InputError gets the place of the pose before its message.
+  /// Calls ask(), and puts the place of the pose before the message of an InputError.
   template <class Ask>
   auto at(std::size_t i, const Ask& ask) const {
     try {
@@ -138,7 +138,7 @@ void check_queries(const LrbRep& a, const LrbRep& b, const PoseLines& list, cons
     list.at(i, [&] { check_query(a, Pose{}, b, list.poses[i]); });
 }
 
-/// Whether an answer depends on more than the bodies' faces: on wrappers.
+/// Returns true if an answer depends on more than the bodies' faces, namely on wrappers.
 bool needs_regions(const CollideRequest& request) {
   return request.recursion != Recursion::complete || request.is_coarse() || request.separation;
 }
@@ -173,20 +173,22 @@ int run_query(const QueryOptions& o, const Globals& globals) {
 }
 
 Command add_query(CLI::App& root, const Globals& globals) {
-  CLI::App* app = root.add_subcommand("query", "Exact answers for a list of poses of B, one JSON line each");
+  CLI::App* app =
+      root.add_subcommand("query", "Answer exactly for each pose of B in a list, one line of JSON each");
   const auto o = std::make_shared<QueryOptions>();
-  app->add_option("A", o->a, "Mesh or .lrb file; stays put")->required();
+  app->add_option("A", o->a, "Mesh or .lrb file; does not move")->required();
   app->add_option("B", o->b, "Mesh or .lrb file; the poses are applied to it")->required();
-  app->add_option("--poses", o->poses, "File of lines of 12 numbers (row-major 3x4)")->required();
+  app->add_option("--poses", o->poses, "File with poses: lines of 12 numbers (3x4, row by row)")->required();
   add_request_options(*app, o->request);
   add_coarse_options(*app, o->request);
   auto* separation = app->add_flag("--separation", o->request.separation,
-                                   "For separate bodies, the coarsest wrappers that prove it");
-  app->add_option("--draw-separation", o->draw, "Draw these wrappers: the picture's name")
+                                   "Add, for separate bodies, the coarsest wrappers that prove it");
+  app->add_option("--draw-separation", o->draw, "Draw these wrappers to this picture")
       ->needs(separation)
       ->type_name("PNG");
   app->add_flag("--pairs", o->pairs, "Add the sorted list of pairs");
-  app->add_option("--repeat", o->repeat, "Add the median microseconds of N repeats of each pose's query")
+  app->add_option("--repeat", o->repeat,
+                  "Repeat each pose's query N times, and add the median time in microseconds")
       ->check(CLI::Range(1, 1000000))
       ->type_name("N");
   return {app, [o, &globals] { return run_query(*o, globals); }};

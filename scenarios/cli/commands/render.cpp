@@ -39,7 +39,7 @@ std::string output_folder(const RenderOptions& o) {
              : o.folder;
 }
 
-/// The bodies that were recorded: named on the command line, or with these names beside the trace.
+/// Loads the bodies that were recorded: named on the command line, or found by their names beside the trace.
 std::vector<bodies::LoadedBody> find_bodies(const RenderOptions& o, const std::vector<std::string>& names) {
   std::vector<std::string> paths = o.bodies;
   if (paths.empty()) {
@@ -66,7 +66,7 @@ void check_events(const RenderOptions& o, const trace::Trace& trace,
   }
 }
 
-/// A trace holds pairs, not where they meet: the contact regions of each step are computed anew.
+/// Computes the contact regions of each step anew, because a trace holds pairs but not where they meet.
 std::vector<CollideResult> contacts_of(const trace::Trace& trace,
                                        const std::vector<bodies::LoadedBody>& bodies) {
   std::vector<CollideResult> out;
@@ -74,19 +74,19 @@ std::vector<CollideResult> contacts_of(const trace::Trace& trace,
     return out;
   CollideRequest request = trace.header.request;
   request.contacts = true;
-  request.separation = false;  // that the trace holds
+  request.separation = false;  // the trace holds it
   for (const trace::Step& step : trace.steps)
     out.push_back(collide(bodies[0].rep, step.pose_a, bodies[1].rep, step.pose_b, request));
   return out;
 }
 
-/// "12" and "a12" are region 12 of A, "b12" is one of B.
+/// Reads regions: "12" and "a12" are region 12 of A, "b12" is one of B.
 void isolate(const RenderOptions& o, const std::vector<bodies::LoadedBody>& bodies, spec::FrameSpec& spec) {
   for (const std::string& text : o.regions) {
     const bool named = text.starts_with('a') || text.starts_with('b');
     const std::size_t body = text.starts_with('b') ? 1 : 0;
     const char *first = text.data() + (named ? 1 : 0), *last = text.data() + text.size();
-    RegionId region = 0;
+    std::uint32_t region = 0;
     const auto [end, error] = std::from_chars(first, last, region);
     if (error != std::errc() || end != last)
       throw InputError("--region: expected a region's number, or a or b and the number, found " +
@@ -97,7 +97,7 @@ void isolate(const RenderOptions& o, const std::vector<bodies::LoadedBody>& bodi
                             ? "the body has " + std::to_string(bodies[body].rep.region_count()) +
                                   " regions, numbered from 0"
                             : "there is no body B in this trace"));
-    spec.isolate[body].push_back(region);
+    spec.isolate[body].emplace_back(region);
   }
   spec.ghost_rest = !o.hide_rest;
 }
@@ -115,7 +115,7 @@ spec::FrameSpec frame_spec(const RenderOptions& o, bool two_bodies) {
   return spec;
 }
 
-/// What frames of a crowd have none of.
+/// Throws for options that frames of a crowd do not have.
 void refuse_for_crowd(const RenderOptions& o) {
   const auto& at = o.picture.at;
   const std::pair<bool, const char*> none[] = {
@@ -128,7 +128,7 @@ void refuse_for_crowd(const RenderOptions& o) {
       {at == spec::FrameSpec::At::refinement || at == spec::FrameSpec::At::every,
        "--frames refinement or event"}};
   for (const auto& [given, name] : none)
-    if (given) throw InputError(std::string(name) + ": there is none for the trace of a crowd; leave it out");
+    if (given) throw InputError(std::string(name) + ": is not for the trace of a crowd; leave it out");
 }
 
 int render_crowd(const RenderOptions& o, const Globals& globals, const std::string& text) {
@@ -185,23 +185,25 @@ int run_render(const RenderOptions& o, const Globals& globals) {
 }
 
 Command add_render(CLI::App& root, const Globals& globals) {
-  CLI::App* app = root.add_subcommand("render", "Pictures of a recorded run, without running it again");
+  CLI::App* app = root.add_subcommand("render", "Draw pictures of a recorded run, without running it again");
   const auto o = std::make_shared<RenderOptions>();
   app->add_option("TRACE", o->trace, "trace.json or trace.json.gz")->required();
   app->add_option("-o,--output", o->folder, "Folder to write to")->type_name("DIR");
   app->add_option(
          "--bodies", o->bodies,
-         "The bodies that were recorded [a.lrb and b.lrb beside the trace; of a crowd KIND.lrb, each]")
+         "Bodies that were recorded [a.lrb and b.lrb beside the trace; KIND.lrb for each kind of a crowd]")
       ->type_name("FILE")
       ->expected(1, static_cast<int>(spec::kMostCrowdBodies));
   app->add_option("--events", o->events, "Draw after these events")->delimiter(',')->type_name("N,N,...");
-  app->add_option("--montage", o->montage, "Panels of a montage")->check(CLI::Range(1, 26))->type_name("N");
-  app->add_flag("--close-up", o->close_up, "A second view on the contact");
+  app->add_option("--montage", o->montage, "Number of panels of a montage")
+      ->check(CLI::Range(1, 26))
+      ->type_name("N");
+  app->add_flag("--close-up", o->close_up, "Add a second view, of the contact");
   app->add_option("--region", o->regions,
-                  "Show these regions alone: N or aN of A, bN of B; the rest as a ghost")
+                  "Show only these regions (N or aN of A, bN of B), and the rest as a ghost")
       ->delimiter(',')
       ->type_name("N,N,...");
-  app->add_flag("--no-ghost", o->hide_rest, "Leave out the rest where regions are shown alone");
+  app->add_flag("--no-ghost", o->hide_rest, "With --region: leave out the rest");
   add_picture_options(*app, o->picture);
   return {app, [o, &globals] { return run_render(*o, globals); }};
 }

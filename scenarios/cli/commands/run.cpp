@@ -43,7 +43,7 @@ int report_outcome(const run::RunOutcome& outcome, const std::string& folder, bo
 namespace {
 
 Command add_run(CLI::App& root, const Globals& globals) {
-  CLI::App* app = root.add_subcommand("run", "A scenario: frames, trace, numbers and a page");
+  CLI::App* app = root.add_subcommand("run", "Run a scenario: frames, trace, numbers and a page");
   const auto o = std::make_shared<RunCommandOptions>();
   app->add_option("SCENARIO", o->scenario, "A shipped scenario (see lrbscope list), or a JSON file")
       ->required();

@@ -1,6 +1,6 @@
 #pragma once
-/// Reading a JsonText by what is expected in it: a wrong type, value or key is an InputError that names its
-/// place.
+/// Reads a JsonText by naming what is expected at each place: a wrong type, value or key is an InputError
+/// that tells where it stands.
 
 #include <cstdint>
 #include <optional>
@@ -19,13 +19,13 @@ class JsonNode {
  public:
   explicit JsonNode(const JsonText& text) : text_(&text), value_(&text.root()) {}
 
-  /// As an object with no keys but these: an unknown one is an error with the nearest known word.
+  /// Requires an object with no keys but these; for an unknown one the error names the nearest known word.
   const JsonNode& object(const std::vector<std::string>& keys) const;
   bool has(const std::string& key) const { return value_->is_object() && value_->contains(key); }
-  JsonNode at(const std::string& key) const;  ///< must be there
+  JsonNode at(const std::string& key) const;  ///< requires the member to be there
   std::optional<JsonNode> get(const std::string& key) const;
 
-  /// As an array of at least `least` values.
+  /// Requires an array of at least `least` values.
   std::vector<JsonNode> items(std::size_t least = 0) const;
   bool is_array() const { return value_->is_array(); }
   bool is_object() const { return value_->is_object(); }
@@ -35,9 +35,9 @@ class JsonNode {
   std::uint64_t integer(std::uint64_t least, std::uint64_t most) const;
   bool boolean() const;
   std::string string() const;
-  std::vector<double> numbers(std::size_t count) const;  ///< an array of exactly so many
-  Eigen::Vector3d vector() const;                        ///< three numbers
-  /// One of these words.
+  std::vector<double> numbers(std::size_t count) const;  ///< requires an array of exactly `count` numbers
+  Eigen::Vector3d vector() const;                        ///< requires an array of three numbers
+  /// Requires one of these words.
   template <class T>
   T choice(const std::vector<std::pair<std::string, T>>& words) const {
     std::vector<std::string> known;
@@ -48,7 +48,7 @@ class JsonNode {
     fail_choice(known);
   }
 
-  /// One of the words of an enum.
+  /// Requires one of the words of an enum.
   template <class Enum>
   Enum choice() const {
     std::vector<std::pair<std::string, Enum>> words;
@@ -58,7 +58,7 @@ class JsonNode {
 
   /// Throws InputError: "file:line:column: pointer: message".
   [[noreturn]] void fail(const std::string& message) const;
-  /// The same with the place of the member's key.
+  /// Does the same, but names the place of the member's key.
   [[noreturn]] void fail_key(const std::string& key, const std::string& message) const;
   const nlohmann::json& json() const { return *value_; }
   const std::string& pointer() const { return pointer_; }

@@ -18,13 +18,13 @@ class Walker {
       : text_(text), offsets_(offsets), duplicate_(duplicate) {}
 
   void document() {
-    if (text_.starts_with("\xef\xbb\xbf")) at_ = 3;  // a byte order mark, which the parser passes over
+    if (text_.starts_with("\xef\xbb\xbf")) at_ = 3;  // skips a byte order mark, as the parser does
     value("");
   }
 
  private:
   void value(const std::string& pointer) {
-    constexpr int kDeepest = 64;  // levels: this walks by recursion, and no file of ours needs ten
+    constexpr int kDeepest = 64;  // levels: this walks by recursion, and none of our files needs ten
     if (++depth_ > kDeepest) throw InputError("nested more than 64 levels deep");
     skip_space();
     offsets_.emplace(pointer, at_);
@@ -92,7 +92,7 @@ class Walker {
   int depth_ = 0;
 };
 
-/// nlohmann's message without its own name, number and position.
+/// Returns nlohmann's message without its own name, number and position.
 std::string plain_reason(const std::string& what) {
   const std::size_t colon = what.find(": ");
   std::string reason = colon == std::string::npos ? what : what.substr(colon + 2);
@@ -101,11 +101,11 @@ std::string plain_reason(const std::string& what) {
     if (at == 0) reason.erase(0, std::string_view(mark).size());
   }
   const std::size_t last_read = reason.find("; last read: ");
-  if (last_read != std::string::npos) {  // keeps "expected ..." where there is one
+  if (last_read != std::string::npos) {  // keeps "expected ...", if it is there
     const std::size_t expected = reason.find("; expected ", last_read);
     reason = reason.substr(0, last_read) + (expected == std::string::npos ? "" : reason.substr(expected));
   }
-  return printable_name(reason);  // one line, whatever is quoted in it
+  return printable_name(reason);  // on one line, whatever it quotes
 }
 
 }  // namespace
@@ -123,7 +123,7 @@ void advance(TextPosition& p, const std::string& text, std::size_t from, std::si
   }
 }
 
-/// Accepts everything and remembers where the parser gave up: its exceptions say so for errors of syntax
+/// Accepts everything and remembers where the parser gave up. Its exceptions tell that for errors of syntax
 /// only, not for numbers beyond a double's range.
 class ErrorFinder : public nlohmann::json_sax<nlohmann::json> {
  public:

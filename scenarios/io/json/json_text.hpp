@@ -1,5 +1,5 @@
 #pragma once
-/// JSON that knows where in its file each value stands, so that a message can name file, line and column.
+/// JSON that remembers where in its file each value stands, so that a message can name file, line and column.
 
 #include <cstddef>
 #include <memory>
@@ -10,19 +10,19 @@
 
 namespace lrb::io {
 
-/// Line and column of a byte in a text, both from 1; columns count characters of UTF-8.
+/// The line and column of a byte in a text, both from 1; columns count characters of UTF-8.
 struct TextPosition {
   std::size_t line = 1, column = 1;
 };
 TextPosition position_in(const std::string& text, std::size_t offset);
 
-/// Offsets of the values of a JSON text by JSON pointer (RFC 6901), and of each member's key by the pointer
-/// with '#' behind it. Works on texts that a parser has accepted.
+/// Finds the offset of each value of a JSON text by its JSON pointer (RFC 6901), and of each member's key by
+/// the pointer followed by '#'. The text must be one that a parser has accepted.
 class JsonIndex {
  public:
   explicit JsonIndex(const std::string& text);
   std::size_t offset(const std::string& pointer) const;
-  /// Pointer of the first member whose key occurs twice in its object; empty if there is none.
+  /// Returns the pointer of the first member whose key occurs twice in its object; empty if there is none.
   const std::string& duplicate() const { return duplicate_; }
 
  private:
@@ -32,23 +32,23 @@ class JsonIndex {
 
 class JsonText {
  public:
-  /// Parses; throws InputError "file:line:column: ..." for bad syntax and for repeated keys.
+  /// Parses a text; throws InputError "file:line:column: ..." for bad syntax and for repeated keys.
   JsonText(std::string text, std::string file);
 
   const nlohmann::json& root() const { return root_; }
   const std::string& file() const { return file_; }
-  /// "file:line:column" of the value (or, with '#' behind it, the key) at a JSON pointer.
+  /// Returns "file:line:column" of the value (or, with '#' behind it, the key) at a JSON pointer.
   std::string where(const std::string& pointer) const;
 
  private:
   std::string text_, file_;
-  mutable TextPosition last_;  ///< of the place asked for last: asking in order costs one walk in all
+  mutable TextPosition last_;  ///< the place asked for last: asking in order walks the text once
   mutable std::size_t last_offset_ = 0;
   nlohmann::json root_;
   std::unique_ptr<JsonIndex> index_;
 };
 
-/// A member name or index as a part of a JSON pointer.
+/// Returns a member's name or an index as a part of a JSON pointer.
 std::string pointer_part(const std::string& key);
 
 }  // namespace lrb::io

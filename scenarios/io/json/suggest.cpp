@@ -21,7 +21,8 @@ std::size_t edit_distance(const std::string& a, const std::string& b) {
 }
 
 std::string nearest_word(const std::string& word, const std::vector<std::string>& known) {
-  constexpr std::size_t kLongestWord = 64;  // nobody meant anything by more, and the table above is quadratic
+  constexpr std::size_t kLongestWord = 64;  // no longer word is a typing error, and the table above is
+                                            // quadratic
   if (word.size() > kLongestWord) return {};
   std::string best;
   std::size_t best_distance = std::max<std::size_t>(1, word.size() / 3) + 1;

@@ -5,7 +5,7 @@
 #include "engine/exact/pair_contact.hpp"
 #include "engine/query/coherent/coherent_query.hpp"
 #include "engine/query/collide_impl.hpp"
-#include "scenarios/methods/bodies.hpp"
+#include "scenarios/methods/body_parts.hpp"
 #include "scenarios/methods/method.hpp"
 
 namespace lrb::methods {
@@ -16,19 +16,38 @@ struct OurBody : MethodBody {
   LrbRep rep;
 };
 
+const LrbRep& rep_of(const MethodBody& body) {
+  return static_cast<const OurBody&>(body).rep;
+}
+
+/// Returns what the peers are asked, too: all pairs, or one.
+CollideRequest request_for(Mode mode) {
+  CollideRequest request;
+  request.mode = mode == Mode::all_pairs ? mode : Mode::any_pair;
+  return request;
+}
+
+MethodAnswer answer_from(CollideResult result, double microseconds) {
+  MethodAnswer answer;
+  answer.microseconds = microseconds;
+  answer.contact = !result.pairs.empty();
+  answer.pairs = std::move(result.pairs);
+  answer.inside = result.relation == Relation::a_inside_b || result.relation == Relation::b_inside_a;
+  answer.relation = result.relation;
+  answer.face_tests = result.counters.face_tests;
+  return answer;
+}
+
 class Ours : public Method {
  public:
-  Ours(Recursion recursion, Predicates predicates) {
-    request_.recursion = recursion;
-    request_.predicates = predicates;
-  }
+  Ours(Recursion recursion, Predicates predicates) : recursion_(recursion), predicates_(predicates) {}
 
   std::unique_ptr<MethodBody> build(const LrbRep& rep) override {
-    if (request_.recursion != Recursion::complete) {
+    if (recursion_ != Recursion::complete) {
       try {
         return std::make_unique<OurBody>(build_lrb(real_mesh(rep)));
       } catch (const InputError&) {
-        // Not closed or not manifold: then with the regions that it has.
+        // Not closed or not manifold: the body keeps the regions that it has.
       }
     }
     return std::make_unique<OurBody>(rep);
@@ -36,24 +55,19 @@ class Ours : public Method {
 
   MethodAnswer query(const MethodBody& a, const Pose& pose_a, const MethodBody& b, const Pose& pose_b,
                      Mode mode) override {
-    const LrbRep& rep_a = static_cast<const OurBody&>(a).rep;
-    const LrbRep& rep_b = static_cast<const OurBody&>(b).rep;
-    request_.mode = mode == Mode::all_pairs ? mode : Mode::any_pair;  // what the peers are asked too
+    CollideRequest request = request_for(mode);
+    request.recursion = recursion_;
+    request.predicates = predicates_;
     NullProbe probe;
     const Stopwatch watch;
-    CollideResult result = collide(rep_a, pose_a, rep_b, pose_b, request_, context_, probe);
-    MethodAnswer answer;
-    answer.microseconds = watch.microseconds();
-    answer.contact = !result.pairs.empty();
-    answer.pairs = std::move(result.pairs);
-    answer.inside = result.relation == Relation::a_inside_b || result.relation == Relation::b_inside_a;
-    answer.relation = result.relation;
-    answer.face_tests = result.counters.face_tests;
-    return answer;
+    CollideResult result = collide(rep_of(a), pose_a, rep_of(b), pose_b, request, context_, probe);
+    const double microseconds = watch.microseconds();
+    return answer_from(std::move(result), microseconds);
   }
 
  private:
-  CollideRequest request_;
+  Recursion recursion_;
+  Predicates predicates_;
   QueryContext context_;
 };
 
@@ -63,36 +77,28 @@ double diagonal_of(const LrbRep& rep) {
   return box.diagonal().norm();
 }
 
-/// As the next of a few small steps: the query that keeps what it knows from one to the next. Only the last
-/// is timed.
+/// Asks the query that keeps what it knows from one step to the next: the pose is the last of a few small
+/// steps. Only that one is timed.
 class OursCoherent : public Method {
  public:
   std::unique_ptr<MethodBody> build(const LrbRep& rep) override { return std::make_unique<OurBody>(rep); }
 
   MethodAnswer query(const MethodBody& a, const Pose& pose_a, const MethodBody& b, const Pose& pose_b,
                      Mode mode) override {
-    const LrbRep &rep_a = static_cast<const OurBody&>(a).rep, &rep_b = static_cast<const OurBody&>(b).rep;
-    CollideRequest request;
-    request.mode = mode == Mode::all_pairs ? mode : Mode::any_pair;
-    CoherentQuery coherent(rep_a, rep_b, request);
+    CoherentQuery coherent(rep_of(a), rep_of(b), request_for(mode));
     constexpr int kSteps = 8;
-    constexpr double kStep = 1e-3;  // of A's diagonal
-    const Eigen::Vector3d step = kStep * diagonal_of(rep_a) * Eigen::Vector3d(1, 2, 2) / 3;
+    constexpr double kStep = 1e-3;  // as a share of A's diagonal
+    const Eigen::Vector3d step = kStep * diagonal_of(rep_of(a)) * Eigen::Vector3d(1, 2, 2) / 3;
     for (int i = kSteps; i > 0; --i) coherent.collide(pose_a, {pose_b.r, pose_b.t + i * step});
     const Stopwatch watch;
     const CollideResult& result = coherent.collide(pose_a, pose_b);
-    MethodAnswer answer;
-    answer.microseconds = watch.microseconds();
-    answer.contact = !result.pairs.empty();
-    answer.pairs = result.pairs;
-    answer.relation = result.relation;
-    answer.face_tests = result.counters.face_tests;
-    return answer;
+    const double microseconds = watch.microseconds();
+    return answer_from(result, microseconds);
   }
 };
 
-/// No more than was asked for: to a tolerance, or within a number of face tests. Its pairs are of wrappers'
-/// faces; what it gives is where these meet.
+/// Does no more than is asked for: to a tolerance, or within a number of face tests. Its pairs are of
+/// wrappers' faces; it answers with the points where these meet.
 class OursCoarse : public Method {
  public:
   explicit OursCoarse(bool by_tests) : by_tests_(by_tests) {}
@@ -105,9 +111,8 @@ class OursCoarse : public Method {
 
   MethodAnswer query(const MethodBody& a, const Pose& pose_a, const MethodBody& b, const Pose& pose_b,
                      Mode mode) override {
-    const LrbRep &rep_a = static_cast<const OurBody&>(a).rep, &rep_b = static_cast<const OurBody&>(b).rep;
-    CollideRequest request;
-    request.mode = mode == Mode::all_pairs ? mode : Mode::any_pair;
+    const LrbRep &rep_a = rep_of(a), &rep_b = rep_of(b);
+    CollideRequest request = request_for(mode);
     if (by_tests_)
       request.max_tests = static_cast<std::uint64_t>(setting_);
     else
@@ -125,7 +130,7 @@ class OursCoarse : public Method {
   }
 
  private:
-  /// Corners of the intersection; of faces that only come within rounding of each other, the middle.
+  /// Returns corners of the intersection; for faces that only come within rounding of each other, the middle.
   static void add_points(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
                          const SimplexPair& pair, std::vector<Eigen::Vector3d>& points) {
     Eigen::Vector3d p[3], q[3];

@@ -1,5 +1,5 @@
 #include "engine/core/error.hpp"
-#include "scenarios/methods/bodies.hpp"
+#include "scenarios/methods/body_parts.hpp"
 #include "scenarios/methods/method.hpp"
 #include "scenarios/methods/plain_tests.hpp"
 
@@ -12,7 +12,7 @@ struct PlainBody : MethodBody {
   std::vector<VertexId> corners;  ///< (|simplices| x dim)
 };
 
-/// Corners in the world, simplex by simplex.
+/// Returns the corners in the world, simplex by simplex.
 std::vector<Eigen::Vector3d> in_world(const PlainBody& body, const Pose& pose) {
   std::vector<Eigen::Vector3d> moved, out;
   for (const Eigen::Vector3d& v : body.vertices) moved.push_back(pose.apply(v));

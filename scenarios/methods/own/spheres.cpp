@@ -1,13 +1,13 @@
-// Two trees of spheres, descended together and stopped at a level: an answer in time, and an approximate one
-// (P. M. Hubbard, "Collision Detection for Interactive Graphics Applications", PhD thesis, Brown University,
-// 1994: the paper's Hub94). Spheres hold the triangles beneath them, so that nothing is missed; what overlaps
-// at the last level is taken for contact.
+// Two trees of spheres are descended together down to a level: an answer in time, and an approximate one (P.
+// M. Hubbard, "Collision Detection for Interactive Graphics Applications", PhD thesis, Brown University,
+// 1994: the paper's Hub94). Spheres contain the triangles beneath them, so that nothing is missed; spheres
+// that overlap at the last level count as contact.
 #include <algorithm>
 
 #include <Eigen/Geometry>
 
 #include "engine/core/error.hpp"
-#include "scenarios/methods/bodies.hpp"
+#include "scenarios/methods/body_parts.hpp"
 #include "scenarios/methods/method.hpp"
 
 namespace lrb::methods {
@@ -27,7 +27,7 @@ struct SphereBody : MethodBody {
   }
   using Iterator = std::vector<std::uint32_t>::iterator;
 
-  /// Halves at the median of the middles, along the longest side of their box.
+  /// Divides at the median of the middles, along the longest side of their box.
   std::uint32_t build(Iterator begin, Iterator end) {
     const auto index = static_cast<std::uint32_t>(spheres.size());
     spheres.push_back(round(begin, end));
@@ -98,7 +98,7 @@ class Spheres : public Method {
       if (way.squaredNorm() > reach * reach) continue;
       const bool leaf_a = p.left == 0, leaf_b = q.left == 0;
       if (item.level >= level_ || (leaf_a && leaf_b)) {
-        // Where the line of centres leaves the one and enters the other, on average.
+        // On average, the middle of where the line of centres leaves the one sphere and enters the other.
         const double length = way.norm();
         const double at = length > 0 ? (p.radius + length - q.radius) / (2 * length) : 0;
         answer.points.push_back(pose_a.apply(p.centre + at * way));

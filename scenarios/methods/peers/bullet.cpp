@@ -17,14 +17,12 @@ constexpr int kRank = 50;
 
 #ifdef LRB_HAS_BULLET
 
-#include <algorithm>
-
 #include <BulletCollision/Gimpact/btGImpactCollisionAlgorithm.h>
 #include <BulletCollision/Gimpact/btGImpactShape.h>
 #include <btBulletCollisionCommon.h>
 
 #include "engine/core/error.hpp"
-#include "scenarios/methods/bodies.hpp"
+#include "scenarios/methods/body_parts.hpp"
 
 namespace lrb::methods {
 namespace {
@@ -64,8 +62,8 @@ class Bullet : public Method {
  public:
   Bullet() : dispatcher_(&configuration_), world_(&dispatcher_, &broadphase_, &configuration_) {
     btGImpactCollisionAlgorithm::registerAlgorithm(&dispatcher_);
-    // That is not enough: contactPairTest() looks in a second table, and answers "nothing" if it finds
-    // nothing.
+    // That is not enough: contactPairTest() looks in a second table, and says that there is no contact if it
+    // finds no entry there.
     dispatcher_.registerClosestPointsCreateFunc(GIMPACT_SHAPE_PROXYTYPE, GIMPACT_SHAPE_PROXYTYPE, &create_);
   }
 
@@ -101,8 +99,7 @@ class Bullet : public Method {
     Gatherer gatherer(object_a);
     world_.contactPairTest(object_a, object_b, gatherer);
     answer.microseconds = watch.microseconds();
-    std::sort(gatherer.pairs.begin(), gatherer.pairs.end());
-    gatherer.pairs.erase(std::unique(gatherer.pairs.begin(), gatherer.pairs.end()), gatherer.pairs.end());
+    sort_pairs(gatherer.pairs);
     answer.pairs = std::move(gatherer.pairs);
     answer.contact = !answer.pairs.empty();
     if (mode == Mode::first_pair && answer.contact) answer.pairs.resize(1);

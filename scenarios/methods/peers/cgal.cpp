@@ -24,7 +24,7 @@ constexpr int kRank = 40;
 #include <CGAL/Surface_mesh.h>
 
 #include "engine/core/error.hpp"
-#include "scenarios/methods/bodies.hpp"
+#include "scenarios/methods/body_parts.hpp"
 
 namespace lrb::methods {
 namespace {
@@ -49,7 +49,7 @@ std::vector<Point> points_of(const Triangles& t) {
   return points;
 }
 
-/// Runs what CGAL does, and turns a precondition that does not hold into a refusal.
+/// Runs CGAL, and turns a precondition that does not hold into a refusal.
 template <class Run>
 auto asked(const Run& run) {
   try {
@@ -59,7 +59,7 @@ auto asked(const Run& run) {
   }
 }
 
-/// All bodies live in one set of meshes, as CGAL means it.
+/// All bodies are in one set of meshes, as CGAL intends.
 struct MeshSet {
   std::map<std::size_t, std::unique_ptr<SurfaceMesh>> meshes;  // trees point into them
   Detection detection;
@@ -135,7 +135,7 @@ class Pairs : public Method {
     return body;
   }
 
-  /// A's triangles are brought into B's frame.
+  /// Moves A's triangles into B's frame and asks B's tree about each.
   MethodAnswer query(const MethodBody& a, const Pose& pose_a, const MethodBody& b, const Pose& pose_b,
                      Mode mode) override {
     const auto& body_a = static_cast<const TreeBody&>(a);

@@ -1,6 +1,6 @@
-// Embree's rtcCollide: two trees of boxes round triangles, descended against each other; what their leaves
-// hold comes by callback, and the triangles are tested there, as Embree's own example does. Its boxes live in
-// the world: when a body moves its tree is refitted, or built again, before it can be asked.
+// Embree's rtcCollide: two trees of boxes around triangles are descended against each other; a callback gets
+// the contents of leaves that meet and tests the triangles, as in Embree's own example. Its boxes are in the
+// world: when a body moves, its tree must be refitted or built again before it can be asked.
 #include "scenarios/methods/method.hpp"
 
 namespace lrb::methods {
@@ -12,12 +12,10 @@ constexpr int kRank = 60;
 
 #ifdef LRB_HAS_EMBREE
 
-#include <algorithm>
-
 #include <embree3/rtcore.h>
 
 #include "engine/core/error.hpp"
-#include "scenarios/methods/bodies.hpp"
+#include "scenarios/methods/body_parts.hpp"
 #include "scenarios/methods/plain_tests.hpp"
 
 namespace lrb::methods {
@@ -105,9 +103,10 @@ struct Candidates {
     self.tests += count;
     Eigen::Vector3d p[3], q[3];
     for (unsigned i = 0; i < count; ++i) {
-      self.a->corners(found[i].primID0, p);
-      self.b->corners(found[i].primID1, q);
-      if (plain_triangles_meet(p, q)) self.pairs.push_back({found[i].primID0, found[i].primID1});
+      const SimplexPair pair{SimplexId(found[i].primID0), SimplexId(found[i].primID1)};
+      self.a->corners(pair.a, p);
+      self.b->corners(pair.b, q);
+      if (plain_triangles_meet(p, q)) self.pairs.push_back(pair);
     }
   }
 };
@@ -124,7 +123,7 @@ class Embree : public Method {
 
   MethodAnswer query(const MethodBody& a, const Pose& pose_a, const MethodBody& b, const Pose& pose_b,
                      Mode mode) override {
-    // What moves are our own copies of a body.
+    // Our own copies of the bodies are moved.
     auto& body_a = const_cast<EmbreeBody&>(static_cast<const EmbreeBody&>(a));
     auto& body_b = const_cast<EmbreeBody&>(static_cast<const EmbreeBody&>(b));
     body_a.move_to(pose_a);
@@ -134,9 +133,7 @@ class Embree : public Method {
     body_b.move(pose_b);
     rtcCollide(body_a.scene, body_b.scene, Candidates::add, &candidates);
     answer.microseconds = watch.microseconds();
-    std::sort(candidates.pairs.begin(), candidates.pairs.end());
-    candidates.pairs.erase(std::unique(candidates.pairs.begin(), candidates.pairs.end()),
-                           candidates.pairs.end());
+    sort_pairs(candidates.pairs);
     answer.pairs = std::move(candidates.pairs);
     answer.face_tests = candidates.tests;
     answer.contact = !answer.pairs.empty();

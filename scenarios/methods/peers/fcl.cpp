@@ -1,7 +1,7 @@
-// FCL's BVHModel with OBBRSS nodes, as its README asks for the collision of two meshes: collide() with as
-// many contacts as there may be, and without their positions. Compiled twice: against the packaged library,
-// with the flags of the packages, and (LRB_FCL_HEADERS) with all of FCL's templates instantiated here, with
-// our flags.
+// FCL's BVHModel with OBBRSS nodes, as its README recommends for the collision of two meshes: collide() with
+// as many contacts as there may be, and without their positions. It is compiled twice: against the packaged
+// library, with the flags of the packages, and (LRB_FCL_HEADERS) with all of FCL's templates instantiated
+// here, with our flags.
 #include "scenarios/methods/method.hpp"
 
 namespace lrb::methods {
@@ -21,14 +21,12 @@ constexpr int kRank = 30;
 #include "scenarios/methods/peers/fcl_instantiated.hpp"
 #endif
 
-#include <algorithm>
-
 #include <fcl/config.h>
 #include <fcl/geometry/bvh/BVH_model.h>
 #include <fcl/narrowphase/collision.h>
 
 #include "engine/core/error.hpp"
-#include "scenarios/methods/bodies.hpp"
+#include "scenarios/methods/body_parts.hpp"
 
 namespace lrb::methods {
 namespace {
@@ -80,8 +78,7 @@ class Fcl : public Method {
       const fcl::Contact<S>& c = result.getContact(i);
       answer.pairs.push_back({static_cast<SimplexId>(c.b1), static_cast<SimplexId>(c.b2)});
     }
-    std::sort(answer.pairs.begin(), answer.pairs.end());
-    answer.pairs.erase(std::unique(answer.pairs.begin(), answer.pairs.end()), answer.pairs.end());
+    sort_pairs(answer.pairs);
     answer.contact = result.isCollision();
     return answer;
   }

@@ -1,8 +1,8 @@
 #pragma once
-/// FCL's headers, with every template that its library has instantiated here instead. FCL declares them as
-/// `extern template`, so that whoever includes its headers runs the packaged code, compiled for any x86-64;
-/// without the word these declarations are instantiations. What FCL includes from elsewhere comes first, for
-/// there the word must stay.
+/// Includes FCL's headers so that every template that its library has is instantiated here instead. FCL
+/// declares them as `extern template`, which makes those who include its headers run the packaged code,
+/// compiled for any x86-64; without that word the declarations are instantiations. What FCL includes from
+/// elsewhere is included first, because there the word must stay.
 
 #include <algorithm>
 #include <array>

@@ -26,7 +26,7 @@ constexpr int kRank = 90;
 
 #include "engine/construct/convex_hull.hpp"
 #include "engine/core/error.hpp"
-#include "scenarios/methods/bodies.hpp"
+#include "scenarios/methods/body_parts.hpp"
 
 namespace lrb::methods {
 namespace {
@@ -59,7 +59,7 @@ struct OctreeBody : MethodBody {
   fcl::BVHModel<fcl::OBBRSSd> mesh;
 };
 
-/// Each triangle is sampled at half the cell's size.
+/// Makes an octree; each triangle is sampled at half the cell's size.
 std::shared_ptr<octomap::OcTree> cells_of(const Triangles& t, double cell) {
   auto tree = std::make_shared<octomap::OcTree>(cell);
   for (const auto& c : t.triangles) {
@@ -100,7 +100,7 @@ class Octree : public Method {
     return body;
   }
 
-  /// A's cells against B's mesh.
+  /// Asks for A's cells against B's mesh.
   MethodAnswer query(const MethodBody& a, const Pose& pose_a, const MethodBody& b, const Pose& pose_b,
                      Mode mode) override {
     check_rigid(pose_a);

@@ -10,17 +10,15 @@ constexpr int kRank = 70;
 
 #ifdef LRB_HAS_ODE
 
-#include <algorithm>
-
 #include <ode/ode.h>
 
 #include "engine/core/error.hpp"
-#include "scenarios/methods/bodies.hpp"
+#include "scenarios/methods/body_parts.hpp"
 
 namespace lrb::methods {
 namespace {
 
-constexpr int kMostContacts = 0xffff;  // as many as its flags can ask for
+constexpr int kMostContacts = 0xffff;  // the largest number that its flags can ask for
 
 struct OdeBody : MethodBody {
   explicit OdeBody(const Triangles& t) {
@@ -83,8 +81,7 @@ class Ode : public Method {
       answer.pairs.push_back({static_cast<SimplexId>(in_order ? c.side1 : c.side2),
                               static_cast<SimplexId>(in_order ? c.side2 : c.side1)});
     }
-    std::sort(answer.pairs.begin(), answer.pairs.end());
-    answer.pairs.erase(std::unique(answer.pairs.begin(), answer.pairs.end()), answer.pairs.end());
+    sort_pairs(answer.pairs);
     answer.contact = n > 0;
     return answer;
   }

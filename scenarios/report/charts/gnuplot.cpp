@@ -28,7 +28,7 @@ const char* program() {
 
 constexpr const char* kInstall = ": install Debian's gnuplot-nox, or set LRB_GNUPLOT to the program";
 
-/// A file without a name: it goes when it is closed, however this process ends.
+/// A file without a name: it disappears when it is closed, however this process ends.
 class Scratch {
  public:
   Scratch() : file_(std::tmpfile()) {
@@ -88,7 +88,7 @@ Finished run(const std::string& script) {
   return finished;
 }
 
-/// The command that sets the terminal. Fonts: DejaVu Sans everywhere, as in the pictures.
+/// Returns the command that sets the terminal. The font is DejaVu Sans everywhere, as in the pictures.
 std::string terminal(const Gnuplot& chart, const std::string& ending) {
   constexpr double kInch = 25.4, kPointsPerInch = 72, kDpi = 300, kPngDpi = 96;
   const std::string font = " font 'DejaVu Sans," + io::number_text(chart.font) + "'";
@@ -101,13 +101,14 @@ std::string terminal(const Gnuplot& chart, const std::string& ending) {
   if (ending == ".pdf")
     return "pdfcairo noenhanced size " + io::number_text(chart.width / kInch) + "," +
            io::number_text(chart.height / kInch) + font + " linewidth 0.75";
-  if (ending == ".png")  // its fonts and lines are for 96 dpi
+  if (ending == ".png")  // its fonts and lines are made for 96 dpi
     return "pngcairo noenhanced" + size(kDpi) + " fontscale " + io::number_text(kDpi / kPngDpi) + font +
            " linewidth " + io::number_text(kDpi / kPngDpi) + " pointscale " + io::number_text(kDpi / kPngDpi);
   throw InputError(ending + ": charts are written as .svg, .png or .pdf");
 }
 
-/// What gnuplot complained about, in one line: its last words, which name the line and the fault.
+/// Returns what gnuplot complained about, in one line: the end of its message, which names the line and the
+/// fault.
 std::string last_words(const std::string& errors) {
   std::istringstream in(errors);
   std::string line, last;

@@ -9,12 +9,12 @@ namespace lrb::report {
 namespace {
 
 constexpr std::array<const char*, kPageParts> kPartClasses = {"wrong", "crashed", "timed-out", "refused"};
-/// So that they are told apart without colour.
+/// Marks, by which parts are told apart without colour.
 constexpr std::array<const char*, kPageParts> kPartMarks = {"", "\u2715", "\u25f7", "\u2298"};
 
 std::string profile_svg(const PageGridCell& cell) {
   constexpr double kBar = 4, kStep = 5, kHeight = 20, kBase = 1;
-  constexpr double kLeast = 2.5;  // of a part that is there: always seen
+  constexpr double kLeast = 2.5;  // least height of a part that is there, so that it is always seen
   const double width = kStep * static_cast<double>(cell.bars.size()) - (kStep - kBar);
   std::string out = "<svg class=\"profile\" viewBox=\"-1 -1 " + io::number_text(width + 2) + " " +
                     io::number_text(kHeight + kBase + 2) +
@@ -68,7 +68,7 @@ std::string cell_html(const PageGrid& grid, const PageGridCell& cell) {
   return out + "</span>" + (linked ? "</a>" : "</div>") + "</td>";
 }
 
-/// Long names of functions break at their underscores.
+/// Lets long names of functions break at their underscores.
 std::string breakable(const std::string& text) {
   std::string out;
   for (const char c : render::escape_markup(text)) {
@@ -94,7 +94,7 @@ std::string row_html(const PageGridHead& head) {
   return out + "</th>";
 }
 
-/// Where all columns fit the page scrolls as a whole, under heads that stay; else the table scrolls in a
+/// Where all columns fit, the page scrolls as a whole, under heads that stay; else the table scrolls in a
 /// frame.
 std::string wide_style(const PageGrid& grid) {
   constexpr double kHead = 15, kColumn = 7.6, kMargins = 3.5;  // as in grid.css, rem
@@ -163,7 +163,7 @@ std::string grid_html(const PageGrid& grid) {
     out += "</tr>\n";
   }
   out += "</tbody></table></div>\n";
-  out += "<dl class=\"columns\">";  // in full, what the heads have no room for
+  out += "<dl class=\"columns\">";  // in full, because the heads have no room for it
   for (const PageGridHead& c : grid.columns)
     if (!c.text.empty())
       out += "<div><dt>" + breakable(c.title) + "</dt><dd>" + render::escape_markup(c.text) + "</dd></div>";

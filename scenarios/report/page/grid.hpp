@@ -9,7 +9,7 @@
 
 namespace lrb::report {
 
-/// The parts that a profile's bars are stacked of, from the bottom; they have a colour and a mark each.
+/// The parts that the bars of a profile are stacked of, from the bottom. Each has a colour and a mark.
 enum class PagePart : std::uint8_t { wrong, crashed, timed_out, refused };
 inline constexpr std::size_t kPageParts = 4;
 
@@ -21,13 +21,13 @@ struct PageGridHead {
 };
 
 struct PageGridCell {
-  /// Background: from 0, nothing to report, to 4; kOnlyRefused and kAbsent are looks of their own.
+  /// The background: from 0, nothing to report, to 4. kOnlyRefused and kAbsent have backgrounds of their own.
   static constexpr int kAbsent = -1, kOnlyRefused = -2;
   int level = kAbsent;
   std::string count, of;                             ///< "12", "of 55"
   std::array<std::string, kPageParts> marks;         ///< numbers shown beside the parts' marks; empty: none
   std::vector<std::array<double, kPageParts>> bars;  ///< shares in [0, 1]; a negative first one: not tried
-  std::string label;                                 ///< all of it in words
+  std::string label;                                 ///< the whole cell in words
   int detail = -1;                                   ///< index into PageGrid::details
 };
 
@@ -49,7 +49,7 @@ struct PageGrid {
   std::string note;
   std::vector<PageGridHead> columns, rows;
   std::vector<PageGridCell> cells;  ///< (|rows| x |columns|), row by row
-  std::size_t total_rows = 0;       ///< so many of the last rows are sums over those above
+  std::size_t total_rows = 0;       ///< this many of the last rows are sums over those above
   std::vector<PageGridDetail> details;
 
   bool empty() const { return cells.empty(); }

@@ -10,7 +10,7 @@
 namespace lrb::report {
 namespace {
 
-constexpr int kJpegQuality = 88;  // thin lines keep their edges; above, files grow fast
+constexpr int kJpegQuality = 88;  // thin lines keep their edges; with more, files grow fast
 
 void append(void* context, void* data, int size) {
   auto& out = *static_cast<std::vector<std::uint8_t>*>(context);
@@ -18,7 +18,7 @@ void append(void* context, void* data, int size) {
   out.insert(out.end(), bytes, bytes + size);
 }
 
-/// On white: JPEG knows no transparency.
+/// Encodes an image on white, because JPEG has no transparency.
 std::vector<std::uint8_t> as_jpeg(const render::Image& image) {
   std::vector<std::uint8_t> rgb;
   rgb.reserve(image.pixels().size() * 3);

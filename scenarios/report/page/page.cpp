@@ -12,7 +12,7 @@ namespace {
 
 using nlohmann::json;
 
-/// JSON that can stand in a script element: nothing in it can end the element.
+/// Returns JSON that can stand in a script element: nothing in it can end the element.
 std::string script_safe(const json& value) {
   std::string out;
   for (const char c : value.dump(-1, ' ', false, json::error_handler_t::replace))
@@ -109,7 +109,7 @@ std::string charts_html(const Page& page) {
   return out + "</section>\n";
 }
 
-constexpr std::size_t kProse = 60;  // characters: longer cells are broken into lines
+constexpr std::size_t kProse = 60;  // characters: cells longer than this are broken into lines
 
 bool looks_numeric(std::string_view cell) {
   // The last three bytes: a narrow space, between groups of digits.
@@ -209,7 +209,7 @@ std::string page_html(const Page& page) {
              (page.comparisons.empty() ? "" : std::string(io::embedded_file("comparison.js")));
     return {};
   };
-  // One pass over the template, so that marks within what is put in stay what they are.
+  // The template is filled in one pass, so that marks inside what is put in are left alone.
   std::string out;
   std::size_t at = 0;
   for (std::size_t open = shape.find("{{"); open != std::string_view::npos; open = shape.find("{{", at)) {

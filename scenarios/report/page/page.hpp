@@ -1,6 +1,6 @@
 #pragma once
-/// Every HTML page and chart of the project: one file that opens from disk, with style, script, charting
-/// library and pictures inside, and nothing fetched from anywhere.
+/// Makes every HTML page and chart of the project: one file that opens from disk, with style, script,
+/// charting library and pictures inside, and nothing fetched from anywhere.
 
 #include <string>
 #include <vector>
@@ -10,7 +10,7 @@
 
 namespace lrb::report {
 
-/// A number worth reading first.
+/// A number that is worth reading first.
 struct PageNumber {
   std::string label, value;
   std::string note;  ///< small print under it; may be empty
@@ -28,20 +28,21 @@ struct PageFrame {
 struct PageSeries {
   std::string label;
   std::vector<double> x, y;  ///< of one length, x ascending
-  // Scatter charts alone:
+  // For scatter charts only:
   std::string colour = {}, shape = {};    ///< #rrggbb and Chart.js's name of a shape; empty: the page chooses
-  bool line = false;                      ///< joined by steps, without points
-  std::vector<std::string> notes = {};    ///< (|x|) what is said of a point, in lines; or none
-  std::vector<std::string> targets = {};  ///< (|x|) where a click on it leads, relative to the page; or none
+  bool line = false;                      ///< points are joined by steps and not drawn
+  std::vector<std::string> notes = {};    ///< (|x|) what is said about each point, in lines; or empty
+  std::vector<std::string> targets = {};  ///< (|x|) where a click on each point leads, relative to the page;
+                                          ///< or empty
 };
 
 enum class PageCursor { none, event, step };
 
-/// A chart of lines, or of points if `scatter`. The frame on show is marked on it, and a click goes to a
-/// frame.
+/// A chart of lines, or of points if `scatter`. The frame that is shown is marked on it, and a click leads to
+/// a frame.
 struct PageChart {
   std::string title, x_label, y_label;
-  std::string note;  ///< one sentence on how to read it; may be empty
+  std::string note;  ///< one sentence on how to read the chart; may be empty
   std::vector<PageSeries> series;
   PageCursor cursor = PageCursor::none;  ///< what x counts
   bool log_x = false, log_y = false;
@@ -93,7 +94,7 @@ struct Page {
   std::string footer;
 };
 
-/// The page as HTML.
+/// Returns the page as HTML.
 std::string page_html(const Page& page);
 
 }  // namespace lrb::report

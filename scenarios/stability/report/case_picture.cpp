@@ -15,7 +15,7 @@ Side side(std::size_t body) {
   return body == 0 ? Side::a : Side::b;
 }
 
-/// Outlines tell the bodies apart; needles and faces without area have nothing else to show.
+/// Outlines tell the bodies apart, and needles and faces without area show nothing else.
 void add_outline(render::DrawList& list, const Piece& p, render::Rgba colour, float width,
                  std::int8_t nudge) {
   for (std::size_t k = 0; k < p.corners.size(); ++k) {
@@ -31,7 +31,7 @@ void add_outline(render::DrawList& list, const Piece& p, render::Rgba colour, fl
 
 void add_mark(render::DrawList& list, const Piece& p, Mark m, std::size_t body, bool see_through) {
   const render::Rgba colour = colour_of(m);
-  // What lies in one plane: the worse mark in front.
+  // Where marks lie in one plane, the worse one is drawn in front.
   const auto nudge = static_cast<std::int8_t>(2 * static_cast<int>(m) + static_cast<int>(body));
   for (std::size_t k = 2; k < p.corners.size(); ++k) {
     render::DrawTriangle t;
@@ -71,7 +71,7 @@ void add_body(render::DrawList& list, const Piece& p, std::size_t body, std::uin
   }
 }
 
-/// The inside of a 2D body, unless it is too large for this picture to be filled in doubles.
+/// Draws the inside of a 2D body, unless it is too large to be filled in doubles.
 void add_fill(render::DrawList& list, const PosedBody& body, std::size_t i, const PictureFrame& frame) {
   constexpr double kLargest = 1e6;
   render::DrawFill fill;

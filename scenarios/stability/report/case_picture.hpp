@@ -1,5 +1,5 @@
 #pragma once
-/// What a worst case's picture shows: two posed bodies, and what became of each of their simplices.
+/// What a worst case's picture shows: two posed bodies, and a mark on each of their simplices.
 
 #include <array>
 #include <optional>
@@ -14,16 +14,16 @@ namespace lrb::stability {
 
 using Pairs = std::vector<SimplexPair>;
 
-/// Of several for one simplex, the last one counts.
+/// What became of a simplex. A simplex with several marks shows the last of these.
 enum class Mark : std::uint8_t { none, found, extra, missed };
 render::Rgba colour_of(Mark m);
 
-/// Expected and answered pairs, told apart. Each ascending.
+/// Expected and answered pairs, told apart; each list ascending.
 struct Verdict {
   Pairs found, missed, extra;
-  bool listed = false;  ///< the method gave a list; else all that is expected counts as found
+  bool listed = false;  ///< the method gave a list; else everything expected counts as found
 
-  /// The pairs to look at.
+  /// Returns the pairs to look at.
   const Pairs& worst() const { return !missed.empty() ? missed : !extra.empty() ? extra : found; }
 };
 Verdict compare(std::span<const SimplexPair> expected, const std::optional<Pairs>& answered);
@@ -39,17 +39,18 @@ struct CasePicture {
 
   bool flat() const { return bodies[0].dim() == 2; }
   bool shows(Mark m) const;
-  /// Marks all over the bodies would hide one another.
+  /// Returns true if marks all over the bodies would hide one another.
   bool crowded() const;
 
  private:
   void mark(const Pairs& pairs, Mark m);
 };
 
-/// Bodies translucent, marks in their colours; what lies beyond [-reach, reach]^3 of the frame is cut off.
+/// Makes a draw list: bodies translucent, marks in their colours. What lies beyond [-reach, reach]^3 of the
+/// frame is cut off.
 render::DrawList draw_list(const CasePicture& s, const PictureFrame& frame, double reach);
 
-/// A mark smaller than `least`, in the frame's unit, becomes a dot.
+/// Adds a dot for each mark smaller than `least`, in the frame's unit.
 void add_dots(render::DrawList& list, const CasePicture& s, const PictureFrame& frame, double reach,
               double least);
 

@@ -12,13 +12,14 @@ struct CellSummary {
   std::uint64_t cases = 0, wrong = 0, refused = 0, crashed = 0, timed_out = 0;
   int first_failing = -1;  ///< the lowest dial setting with a failure; -1: none
 
-  /// A refusal is none: it gives no wrong answer. It has a mark of its own.
+  /// Returns the number of failures. A refusal is none, because it gives no wrong answer; it has a mark of
+  /// its own.
   std::uint64_t failures() const { return wrong + crashed + timed_out; }
   std::uint64_t answered() const { return cases - refused; }
   double failure_share() const {
     return answered() == 0 ? 0 : static_cast<double>(failures()) / static_cast<double>(answered());
   }
-  /// How bad, from 0 (no failure) to 4; see kLevelNames.
+  /// Returns how bad it is, from 0 (no failure) to 4; see kLevelNames.
   int level() const {
     const double share = failure_share();
     return share <= 0 ? 0 : share < 0.01 ? 1 : share < 0.1 ? 2 : share < 0.5 ? 3 : 4;
@@ -43,7 +44,7 @@ inline CellSummary summarise(const Cell& cell) {
   return s;
 }
 
-/// All families in the hands of one method.
+/// Returns all families put to one method, as one cell.
 inline Cell sum_of_column(const Grid& grid, std::size_t method) {
   Cell sum;
   for (std::size_t f = 0; f < grid.families.size(); ++f) {

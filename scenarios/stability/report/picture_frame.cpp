@@ -19,14 +19,14 @@ struct WidePiece {
   std::vector<bool> edges;
 };
 
-/// One pass of Sutherland and Hodgman (I. Sutherland, G. Hodgman, "Reentrant Polygon Clipping", 1974): keeps
-/// what has sign * x[axis] <= reach.
+/// Does one pass of Sutherland and Hodgman (I. Sutherland, G. Hodgman, "Reentrant Polygon Clipping", 1974):
+/// keeps the part with sign * x[axis] <= reach.
 WidePiece clip(const WidePiece& in, std::size_t axis, int sign, const Wide& reach) {
   WidePiece out;
   const std::size_t n = in.corners.size();
   const auto beyond = [&](const WidePoint& p) -> Wide { return sign * p[axis] - reach; };
   for (std::size_t i = 0; i < n; ++i) {
-    if (n == 2 && i == 1) {  // a segment has no way back
+    if (n == 2 && i == 1) {  // a segment has no second side
       if (beyond(in.corners[1]) <= 0) out.corners.push_back(in.corners[1]), out.edges.push_back(false);
       break;
     }
@@ -37,7 +37,8 @@ WidePiece clip(const WidePiece& in, std::size_t axis, int sign, const Wide& reac
       const Wide t = dp / (dp - dq);
       WidePoint cut;
       for (std::size_t k = 0; k < 3; ++k) cut[k] = p[k] + t * (q[k] - p[k]);
-      // Leaving: the next side runs along the cube, which is no outline. Entering: along the old side.
+      // On leaving, the next side runs along the cube, which is not an outline; on entering, along the old
+      // side.
       out.corners.push_back(cut), out.edges.push_back(dp > 0 && in.edges[i]);
     }
   }
@@ -69,7 +70,7 @@ Piece PosedBody::simplex(SimplexId s) const {
   rep_->simplex(s, v);
   if (rep_->dim() == 2) return {{x_[v[0]], x_[v[1]]}, {true, false}};
   const FaceId f = rep_->face_of_simplex(s);
-  const SimplexId i = s - rep_->first_simplex(f);
+  const std::uint32_t i = s - rep_->first_simplex(f);
   return {{x_[v[0]], x_[v[1]], x_[v[2]]}, {i == 0, true, i + 3 == rep_->face(f).size()}};
 }
 
@@ -89,7 +90,7 @@ PictureFrame::PictureFrame(const Eigen::AlignedBox3d& box) {
   const Eigen::Vector3d low = box.min() * before_, high = box.max() * before_;
   middle_ = low / 2 + high / 2;
   radius_ = (high - low).maxCoeff() / 2;
-  // Bodies that have collapsed to a point are drawn as one: any size does.
+  // Bodies that have collapsed to a point are drawn as a point, so that any size will do.
   if (!(radius_ > 0)) radius_ = std::max(largest * before_, std::numeric_limits<double>::min());
 }
 

@@ -1,5 +1,5 @@
 #pragma once
-/// Cases of any size and place, brought to where they can be drawn: bodies of 1e-120 and at 1e16 alike.
+/// Brings cases of any size and place to where they can be drawn, with bodies of 1e-120 as well as at 1e16.
 
 #include <span>
 #include <vector>
@@ -11,7 +11,7 @@
 namespace lrb::stability {
 
 /// A convex piece of a face in a picture's frame; `edges[i]` tells whether the side from corner i to the next
-/// one belongs to the face's outline. Two corners: a segment of a 2D body.
+/// one belongs to the face's outline. With two corners it is a segment of a 2D body.
 struct Piece {
   std::vector<Eigen::Vector3d> corners;
   std::vector<bool> edges;
@@ -20,7 +20,7 @@ struct Piece {
 /// The posed real simplices of one body, in world coordinates.
 class PosedBody {
  public:
-  /// Throws InputError naming the first vertex whose world coordinates are not finite.
+  /// Throws InputError that names the first vertex whose world coordinates are not finite.
   PosedBody(const LrbRep& rep, const Pose& pose);
 
   std::uint32_t size() const { return rep_->real_simplex_count(); }
@@ -31,24 +31,25 @@ class PosedBody {
 
  private:
   const LrbRep* rep_;
-  std::vector<Eigen::Vector3d> x_;  ///< (|V|); of vertices that pseudo faces alone use: as they come
+  std::vector<Eigen::Vector3d> x_;  ///< (|V|); vertices that only pseudo faces use may not be finite
   Eigen::AlignedBox3d box_;
 };
 
-/// Length of a box's diagonal, which may not fit into a double if squared.
+/// Returns the length of a box's diagonal, whose square may not fit into a double.
 double diagonal(const Eigen::AlignedBox3d& box);
 
-/// Takes a box of the world to the cube [-1, 1]^3: its middle to the origin, its longest side to 2.
+/// Maps a box of the world to the cube [-1, 1]^3: its middle to the origin, its longest side to 2.
 class PictureFrame {
  public:
   explicit PictureFrame(const Eigen::AlignedBox3d& box);
 
-  /// Differences first: exact near the middle, however far from the world's origin that is.
+  /// Maps a point. Takes differences first, which is exact near the middle, however far that is from the
+  /// world's origin.
   Eigen::Vector3d operator()(const Eigen::Vector3d& world) const {
     return (world * before_ - middle_) / radius_;
   }
-  /// What of a piece lies in [-reach, reach]^3; no corners if nothing does. A piece that may be 1e60 times as
-  /// large as the cube is cut in 100 digits.
+  /// Returns what of a piece lies in [-reach, reach]^3; no corners if nothing does. A piece may be 1e60 times
+  /// as large as the cube, so it is cut with 100 digits.
   Piece cut(const Piece& world, double reach) const;
 
  private:

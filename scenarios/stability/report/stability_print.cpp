@@ -11,7 +11,7 @@
 namespace lrb::stability {
 namespace {
 
-// ---- the grid: drawn in units of one cell, x to the right, y up, the first row's top at 0
+// ---- the grid. Units are those of one cell, x to the right, y up, with the first row's top at 0
 
 constexpr double kCellWidth = 17, kCellHeight = 10.5;  // millimetres
 constexpr double kLeft = 2.9, kBottom = 1.5;
@@ -23,7 +23,7 @@ constexpr render::Rgba kTimedOut{160, 69, 138};
 constexpr render::Rgba kRefused{154, 160, 166};
 constexpr render::Rgba kAbsent{247, 247, 246};
 constexpr render::Rgba kOnlyRefused{228, 230, 232};
-/// As on the page: pale blue where nothing fails, then ever more orange.
+/// Colours as on the page: pale blue where nothing fails, then ever more orange.
 constexpr std::array<render::Rgba, 5> kLevels = {render::Rgba{226, 238, 246}, render::Rgba{253, 241, 220},
                                                  render::Rgba{251, 220, 174}, render::Rgba{245, 180, 107},
                                                  render::Rgba{232, 138, 60}};
@@ -32,7 +32,7 @@ std::string colour(render::Rgba c) {
   return std::to_string((static_cast<unsigned>(c.r) << 16) + (static_cast<unsigned>(c.g) << 8) + c.b);
 }
 
-/// Rectangles and texts, and the commands that draw them in this order.
+/// Collects rectangles and texts, and the commands that draw them in this order.
 class Sheet {
  public:
   void rect(double x0, double y0, double x1, double y1, render::Rgba c) {
@@ -69,7 +69,7 @@ class Sheet {
   std::array<std::vector<std::string>, kStyles> texts_;
 };
 
-/// Breaks at spaces, and at underscores where a word is longer than a line.
+/// Breaks text at spaces, and at underscores where a word is longer than a line.
 std::vector<std::string> wrap(const std::string& text, std::size_t width) {
   std::vector<std::string> lines;
   std::istringstream in(text);
@@ -128,7 +128,7 @@ void add_cell(Sheet& sheet, const Cell& cell, double x, double y) {
   mark(s.crashed, "\u2715");
   mark(s.timed_out, "\u25f7");
   mark(s.refused, "\u2298");
-  // What does not fit beside the failures has a line of its own.
+  // What does not fit beside the failures gets a line of its own.
   constexpr std::size_t kBeside = 14;  // bytes; a mark's sign has three
   sheet.text(x + 0.95, y + (failures.size() + marks.size() > kBeside ? 0.61 : 0.8), Sheet::small_right,
              marks);
@@ -184,7 +184,7 @@ void add_legend(Sheet& sheet, double y, double columns) {
 
 constexpr int kProfileColumns = 4;
 
-/// Lines that differ in colour, dash and mark.
+/// Returns the style of line i; lines differ in colour, dash and mark.
 std::string line_style(std::size_t i) {
   static constexpr std::array<const char*, 8> kColours = {"#0072b2", "#d55e00", "#009e73", "#cc79a7",
                                                           "#1d1f22", "#56b4e9", "#e69f00", "#7a5195"};
@@ -217,6 +217,53 @@ std::vector<std::string> profile_rows(const Cell& cell, double shift) {
                    io::number_text(100 * failed / static_cast<double>(cell.cases[i])));
   }
   return rows;
+}
+
+constexpr int kKeyColumns = 2;
+constexpr double kPanelHeight = 34, kKeyLine = 3.6;  // millimetres
+
+/// Returns the commands that draw a family's panel, and adds its data to the chart.
+std::string family_panel(const Grid& grid, std::size_t family, const std::vector<std::size_t>& present,
+                         report::Gnuplot& chart) {
+  const int row = static_cast<int>(family) / kProfileColumns,
+            column = static_cast<int>(family) % kProfileColumns;
+  // The space that axis, title and labels need at the panel's sides.
+  constexpr double kLeftSide = 0.045, kPanelWidth = (1 - kLeftSide) / kProfileColumns;
+  std::string plots =
+      margins(kLeftSide + (column + 0.1) * kPanelWidth, kLeftSide + (column + 0.97) * kPanelWidth,
+              1 - (row + 0.8) * kPanelHeight / chart.height, 1 - (row + 0.15) * kPanelHeight / chart.height);
+  plots += panel_heading(grid.families[family], column == 0);
+  for (std::size_t line = 0; line < present.size(); ++line) {
+    const std::string name = "f" + std::to_string(family) + "m" + std::to_string(present[line]);
+    // Points stand side by side where lines would hide each other.
+    constexpr double kApart = 0.07;
+    const double shift = kApart * (static_cast<double>(line) - static_cast<double>(present.size() - 1) / 2);
+    chart.add_data(name, profile_rows(grid.at(family, present[line]), shift));
+    plots += (line > 0 ? ", $" : "plot $") + name + " using 1:2 with linespoints " + line_style(line);
+  }
+  return plots + "\n";
+}
+
+/// Returns the commands that draw the key, lines and titles in a panel of their own, in units of its columns
+/// and lines; adds its data to the chart.
+std::string profile_key(const Grid& grid, const std::vector<std::size_t>& present, int key_rows,
+                        report::Gnuplot& chart) {
+  std::string plots = margins(0.03, 1, 0, kKeyLine * key_rows / chart.height) +
+                      "unset border\nunset tics\nunset title\nunset xlabel\nunset ylabel\nset xrange [0:" +
+                      std::to_string(kKeyColumns) + "]\nset yrange [0:" + std::to_string(key_rows) + "]\n";
+  std::vector<std::string> titles;
+  for (std::size_t line = 0; line < present.size(); ++line) {
+    const double x = static_cast<double>(static_cast<int>(line) / key_rows);
+    const double y = key_rows - 0.5 - static_cast<int>(line) % key_rows;
+    const std::string name = "key" + std::to_string(line);
+    chart.add_data(name, {io::number_text(x) + " " + io::number_text(y),
+                          io::number_text(x + 0.12) + " " + io::number_text(y)});
+    titles.push_back(io::number_text(x + 0.15) + " " + io::number_text(y) + " " +
+                     report::gnuplot_data_text(grid.methods[present[line]].title));
+    plots += (line > 0 ? ", $" : "plot $") + name + " using 1:2 with linespoints " + line_style(line);
+  }
+  chart.add_data("titles", titles);
+  return plots + (present.empty() ? "plot" : ",") + " $titles using 1:2:3 with labels left";
 }
 
 }  // namespace
@@ -267,51 +314,14 @@ report::Gnuplot profile_chart(const Grid& grid) {
   std::vector<std::size_t> present;
   for (std::size_t m = 0; m < grid.methods.size(); ++m)
     if (grid.methods[m].present) present.push_back(m);
-  constexpr int kKeyColumns = 2;
   const int key_rows = std::max(1, (static_cast<int>(present.size()) + kKeyColumns - 1) / kKeyColumns);
-  constexpr double kPanelHeight = 34, kKeyLine = 3.6;  // millimetres
   report::Gnuplot chart;
   chart.width = 180;
   chart.height = kPanelHeight * rows + kKeyLine * key_rows + 3;
   chart.font = 6;
-
   std::string plots;
-  for (std::size_t f = 0; f < grid.families.size(); ++f) {
-    const int row = static_cast<int>(f) / kProfileColumns, column = static_cast<int>(f) % kProfileColumns;
-    // Of the panel: what axis, title and labels need at its sides.
-    constexpr double kLeftSide = 0.045, kPanelWidth = (1 - kLeftSide) / kProfileColumns;
-    plots += margins(kLeftSide + (column + 0.1) * kPanelWidth, kLeftSide + (column + 0.97) * kPanelWidth,
-                     1 - (row + 0.8) * kPanelHeight / chart.height,
-                     1 - (row + 0.15) * kPanelHeight / chart.height);
-    plots += panel_heading(grid.families[f], column == 0);
-    for (std::size_t line = 0; line < present.size(); ++line) {
-      const std::string name = "f" + std::to_string(f) + "m" + std::to_string(present[line]);
-      // Side by side where lines would hide each other.
-      constexpr double kApart = 0.07;
-      const double shift = kApart * (static_cast<double>(line) - static_cast<double>(present.size() - 1) / 2);
-      chart.add_data(name, profile_rows(grid.at(f, present[line]), shift));
-      plots += (line > 0 ? ", $" : "plot $") + name + " using 1:2 with linespoints " + line_style(line);
-    }
-    plots += "\n";
-  }
-  // The key: lines and titles in a panel of their own, in units of its columns and lines.
-  plots += margins(0.03, 1, 0, kKeyLine * key_rows / chart.height) +
-           "unset border\nunset tics\nunset title\nunset xlabel\nunset ylabel\nset xrange [0:" +
-           std::to_string(kKeyColumns) + "]\nset yrange [0:" + std::to_string(key_rows) + "]\n";
-  std::vector<std::string> titles;
-  for (std::size_t line = 0; line < present.size(); ++line) {
-    const double x = static_cast<double>(static_cast<int>(line) / key_rows);
-    const double y = key_rows - 0.5 - static_cast<int>(line) % key_rows;
-    const std::string name = "key" + std::to_string(line);
-    chart.add_data(name, {io::number_text(x) + " " + io::number_text(y),
-                          io::number_text(x + 0.12) + " " + io::number_text(y)});
-    titles.push_back(io::number_text(x + 0.15) + " " + io::number_text(y) + " " +
-                     report::gnuplot_data_text(grid.methods[present[line]].title));
-    plots += (line > 0 ? ", $" : "plot $") + name + " using 1:2 with linespoints " + line_style(line);
-  }
-  chart.add_data("titles", titles);
-  plots += std::string(present.empty() ? "plot" : ",") + " $titles using 1:2:3 with labels left";
-
+  for (std::size_t f = 0; f < grid.families.size(); ++f) plots += family_panel(grid, f, present, chart);
+  plots += profile_key(grid, present, key_rows, chart);
   chart.script +=
       "set multiplot\nunset key\nset border 3 lw 0.6 lc rgb '#8a8f95'\nset yrange [-3:103]\nset ytics "
       "0,50,100 nomirror scale 0.4 offset 0.6,0 tc rgb '#1c1e22'\n"

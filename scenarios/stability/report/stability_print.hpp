@@ -1,5 +1,5 @@
 #pragma once
-/// The grid and its profiles for print, drawn by gnuplot.
+/// Draws the grid and its profiles for print, with gnuplot.
 
 #include <string>
 #include <vector>
@@ -10,7 +10,8 @@
 namespace lrb::stability {
 
 report::Gnuplot grid_chart(const Grid& grid);
-/// One small chart per family: share of failures against the dial, a line per method that is present.
+/// Makes one small chart for each family: share of failures against the dial, a line for each method that is
+/// present.
 report::Gnuplot profile_chart(const Grid& grid);
 
 struct PrintFile {

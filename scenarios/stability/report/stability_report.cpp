@@ -58,14 +58,14 @@ report::PageGridCell page_cell(const Cell& cell, const std::string& where) {
   return out;
 }
 
-/// Letters, digits and dashes.
+/// Replaces everything but letters, digits and dashes.
 std::string plain(const std::string& text) {
   std::string out;
   for (const char c : text) out += std::isalnum(static_cast<unsigned char>(c)) != 0 ? c : '-';
   return out;
 }
 
-/// An outcome's name, for people.
+/// Returns an outcome's name, for people.
 std::string words(Outcome o) {
   std::string name(name_of(o));
   std::replace(name.begin(), name.end(), '_', ' ');
@@ -99,7 +99,7 @@ report::PageGridDetail page_detail(const Grid& grid, std::size_t f, std::size_t 
   return d;
 }
 
-/// Reads the pictures of all details, within what a page may weigh.
+/// Reads the pictures of all details, as far as a page may hold them.
 std::string inline_pictures(std::vector<report::PageGridDetail>& details, const std::string& folder) {
   std::vector<report::PngBytes> pngs;
   for (const report::PageGridDetail& d : details) {

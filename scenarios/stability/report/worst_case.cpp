@@ -16,23 +16,23 @@ namespace lrb::stability {
 namespace {
 
 constexpr int kWidth = 1280, kHeight = 720, kGap = 4;
-/// Marks that take up less of the scene than this get a close-up.
-constexpr double kSmall = 0.25;
-/// So do marks all over the bodies, if each is smaller than this.
+/// Marks that take up a smaller share of the scene than this get a close-up.
+constexpr double kSmallShare = 0.25;
+/// So do marks all over the bodies, if each is smaller than this share.
 constexpr double kTiny = 0.04;
-/// What a close-up shows, in units of what it is about.
+/// The extent of a close-up, in sizes of what it is about.
 constexpr double kContext = 2.4;
-/// Bodies are cut where close-ups cannot see them any more, in units of what they show.
+/// Bodies are cut where close-ups cannot see them any more, in extents of these.
 constexpr double kReach = 6;
 
 // ---- where to look
 
-/// Halves first: sums of the largest doubles overflow.
+/// Takes halves first: sums of the largest doubles overflow.
 Eigen::Vector3d middle_of(const Eigen::AlignedBox3d& box) {
   return box.min() / 2 + box.max() / 2;
 }
 
-/// Around where two simplices meet, or the smaller one if they do not.
+/// Returns a box around where two simplices meet, or around the smaller one if they do not.
 Eigen::AlignedBox3d place_of(const CasePicture& s, const SimplexPair& p) {
   const Eigen::AlignedBox3d a = s.bodies[0].box(p.a), b = s.bodies[1].box(p.b);
   const Eigen::AlignedBox3d& smaller = diagonal(a) < diagonal(b) ? a : b;
@@ -64,14 +64,14 @@ std::optional<CloseUp> close_up(const CasePicture& s, const Verdict& verdict) {
   for (const SimplexPair& p : pairs) all.extend(places.emplace_back(place_of(s, p)));
   for (const Eigen::AlignedBox3d& b : places)
     if (smallest == nullptr || diagonal(b) < diagonal(*smallest)) smallest = &b;
-  if (diagonal(all) < kSmall * whole) return CloseUp{all, std::string("close-up of what is ") + kind};
+  if (diagonal(all) < kSmallShare * whole) return CloseUp{all, std::string("close-up of what is ") + kind};
   if (diagonal(*smallest) < kTiny * whole)
     return CloseUp{*smallest, std::string("close-up of one pair ") + kind};
   return std::nullopt;
 }
 
-/// The side from which the marks are seen best: the sum of their areas in the picture, with some preference
-/// for the usual one.
+/// Returns the direction from which the marks are seen best, by the sum of their areas in the picture, with
+/// some preference for the usual one.
 render::ViewDirection best_view(const CasePicture& s, const PictureFrame& frame) {
   const render::ViewDirection usual;
   std::vector<Eigen::Vector3d> areas;
@@ -153,7 +153,7 @@ void write_caption(render::Image& image, const std::string& text) {
   render::default_font().draw(image, text, 10, 6, style);
 }
 
-/// Where the close-up lies in the whole: a frame in ink, never too small to see.
+/// Shows where the close-up lies in the whole: a frame in ink, never too small to see.
 void frame_place(render::Image& image, const render::Camera& camera,
                  const std::vector<Eigen::Vector3d>& corners, const Eigen::AlignedBox3d& scene) {
   const render::Projection projection(camera, image.width(), image.height(), scene);

@@ -55,7 +55,7 @@ std::vector<std::string> draw_worst_cases(
                       text_of(r, method.title), folder + "/" + file, rasterizer);
       pictures[i] = file;
     } catch (const InputError&) {
-      // Numbers that are not finite have no place in a picture; the record says what was asked.
+      // Coordinates that are not finite have no place in a picture; the record says what was asked.
     }
   }
   return pictures;

@@ -1,5 +1,5 @@
 #pragma once
-/// The pictures of all worst cases of a grid.
+/// Draws all worst cases of a grid.
 
 #include <functional>
 #include <optional>
@@ -18,12 +18,11 @@ struct AnsweredPairs {
   std::optional<std::vector<SimplexPair>> answered;
 };
 
-/// Draws the worst case of every cell that has one into folder/worst/FAMILY-METHOD.png; pictures of an
-/// earlier run go. `ask` puts a case to its method again; `progress` is told before each. Cases that cannot
-/// be drawn (coordinates that are not finite, families that are none of all_families()) get no picture.
-/// Returns
-/// (|cells|) paths relative to the folder, empty where there is no picture: ReportOptions::pictures. Throws
-/// EnvironmentError where drawing or writing fails.
+/// Draws the worst case of every cell that has one into folder/worst/FAMILY-METHOD.png, and removes pictures
+/// of an earlier run. `ask` puts a case to its method again; `progress` is called before each. Cases that
+/// cannot be drawn (coordinates that are not finite, families that are not in all_families()) get no picture.
+/// Returns (|cells|) paths relative to the folder, for ReportOptions::pictures; empty where there is no
+/// picture. Throws EnvironmentError if drawing or writing fails.
 std::vector<std::string> draw_worst_cases(
     const Grid& grid, const std::string& folder, const std::function<AnsweredPairs(const Record&)>& ask,
     const std::function<void(std::size_t done, std::size_t total)>& progress = {});

@@ -1,0 +1,191 @@
+#include <doctest/doctest.h>
+
+#include "engine/core/error.hpp"
+#include "engine/mesh/mesh_check.hpp"
+#include "scenarios/bodies/shapes/shapes.hpp"
+#include "tests/construct/build_checks.hpp"
+
+namespace lrb::test {
+
+using namespace shapes;
+namespace {
+
+TEST_CASE("small bodies: valid, embedded by brute force, few outer faces") {
+  const Mesh meshes[] = {
+      tetrahedron(),
+      box(),
+      quad_box(),
+      l_shape(),
+      comb(5),
+      icosphere(2),
+      bumpy_sphere(3, 1, 0.4),
+      uv_sphere(16, 8),
+      bowl(16, 8),
+      torus(16, 8),
+      quad_torus(16, 8),
+      voxels(
+          6, 6, 3, [](int x, int y, int z) { return z == 0 || (x / 2 + y) % 3 == 0; }, true),
+      revolve({{0, -1}, {1, -1}, {0.2, 0}, {1, 1}, {0, 1}}, 24)};
+  for (const Mesh& mesh : meshes) {
+    CAPTURE(mesh.name);
+    if (!check_mesh(mesh).buildable()) continue;
+    const LrbRep rep = build_lrb(mesh);
+    check_keeps_mesh(rep, mesh);
+    check_valid(rep);
+    CHECK(bad_pairs_by_brute_force(rep) == 0);
+    CHECK(rep.outermost_faces().size() <= 20);
+    CHECK(rep.closed());
+    CHECK_FALSE(rep.self_intersecting());
+  }
+}
+
+TEST_CASE("a body that is simple enough stays as it is") {
+  for (const Mesh& mesh : {tetrahedron(), box(), quad_box()}) CHECK(build_lrb(mesh).region_count() == 0);
+}
+
+TEST_CASE("every size of patch works, and larger ones make the structure smaller") {
+  const Mesh mesh = bumpy_sphere(4, 5);
+  std::uint32_t last = ~0u;
+  for (const std::uint32_t interior : {4u, 8u, 16u, 32u, 64u}) {
+    CAPTURE(interior);
+    BuildOptions options;
+    options.patch_interior = interior;
+    const LrbRep rep = build_lrb(mesh, options);
+    check_valid(rep);
+    CHECK(rep.outermost_faces().size() <= 20);
+    CHECK(rep.face_count() < last);
+    last = rep.face_count();
+  }
+}
+
+TEST_CASE("the number of outer faces is an option") {
+  for (const std::uint32_t most : {12u, 14u, 20u, 40u}) {
+    BuildOptions options;
+    options.max_outer_faces = most;
+    const LrbRep rep = build_lrb(bumpy_sphere(3, 2), options);
+    CHECK(rep.outermost_faces().size() <= most);
+    check_valid(rep);
+  }
+}
+
+TEST_CASE("polygons are covered whole: no face of the mesh borders two cells") {
+  const Mesh mesh = quad_torus(20, 10);
+  const LrbRep rep = build_lrb(mesh);
+  check_keeps_mesh(rep, mesh);
+  check_valid(rep);
+  for (FaceId f = 0; f < rep.real_face_count(); ++f) CHECK(is_region(rep.outer_cell(f)));
+}
+
+TEST_CASE("several components share one outermost wrapper") {
+  const Mesh apart =
+      several({icosphere(2), translated(icosphere(2), {3, 0, 0}), translated(torus(12, 8), {0, 4, 1})});
+  const Mesh small_beside_large = several({icosphere(3, 10), translated(icosphere(2, 0.3), {10.5, 0, 0})});
+  for (const Mesh& mesh : {apart, small_beside_large}) {
+    const LrbRep rep = build_lrb(mesh);
+    check_keeps_mesh(rep, mesh);
+    check_valid(rep);
+    CHECK(bad_pairs_by_brute_force(rep) == 0);
+    CHECK(rep.outermost_faces().size() <= 20);
+  }
+}
+
+TEST_CASE("voids have regions of their own, and a solid in a void has its wrapper there") {
+  const Mesh mesh = several(
+      {icosphere(3, 3), turned_inside_out(icosphere(3, 2)), translated(icosphere(2, 0.5), {0.7, 0, 0})});
+  const LrbRep rep = build_lrb(mesh);
+  check_keeps_mesh(rep, mesh);
+  check_valid(rep);
+  CHECK(bad_pairs_by_brute_force(rep) == 0);
+  std::uint32_t cores = 0;
+  for (RegionId r = 0; r < rep.region_count(); ++r) cores += rep.lids(r).empty();
+  CHECK(cores == 1);  // what is left of the void has a floor only
+  for (const FaceId f : rep.outermost_faces())
+    for (const VertexId v : rep.face(f)) CHECK(rep.vertices()[v].norm() > 2.9);
+  check_valid(build_lrb(box_with_void()));
+}
+
+/// Once a cap over the bowl's hollow was only checked against components in the cap's own box, so that a
+/// component deep in the hollow came to lie in a region that knew nothing of it: crossing faces, negative
+/// volumes.
+TEST_CASE("a component in another one's hollow is not buried under a cap") {
+  const Mesh ball_in_bowl = several({bowl(24, 10, 0.1), translated(icosphere(1, 0.1), {0.1, 0, -0.3})});
+  const LrbRep rep = build_lrb(ball_in_bowl);
+  check_keeps_mesh(rep, ball_in_bowl);
+  check_valid(rep);
+  CHECK(bad_pairs_by_brute_force(rep) == 0);
+}
+
+TEST_CASE("components that touch or cross: new faces still meet nothing") {
+  const Mesh touching_in_a_face = several({box(), translated(box(), {1, 0, 0})});
+  const Mesh touching_in_a_point = several({icosphere(2), translated(icosphere(2), {2, 0, 0})});
+  const Mesh crossing = several({icosphere(3), translated(icosphere(3), {1, 0.1, 0})});
+  const Mesh one_in_the_other = several({icosphere(3), icosphere(2, 0.5)});
+  for (const Mesh& mesh : {touching_in_a_face, touching_in_a_point, crossing}) {
+    const LrbRep rep = build_lrb(mesh);
+    check_keeps_mesh(rep, mesh);
+    check_valid(rep);
+    CHECK(bad_pairs_by_brute_force(rep) == 0);
+    CHECK(rep.outermost_faces().size() <= 20);
+  }
+  CHECK(build_lrb(crossing).self_intersecting());
+  const LrbRep twice = build_lrb(several({icosphere(2), icosphere(2)}));  // no face passes through another
+  check_valid(twice);
+  CHECK(twice.self_intersecting());
+  CHECK_FALSE(build_lrb(touching_in_a_face).self_intersecting());
+  CHECK_THROWS_WITH_AS(build_lrb(one_in_the_other), doctest::Contains("inside out"), InputError);
+}
+
+TEST_CASE("a vertex that joins two fans") {
+  const Mesh mesh = voxels(2, 2, 2, [](int x, int y, int z) { return x == y && y == z; });
+  const LrbRep rep = build_lrb(mesh);
+  check_valid(rep);
+  CHECK(bad_pairs_by_brute_force(rep) == 0);
+}
+
+TEST_CASE("size and place do not matter") {
+  for (const double scale : {1e-9, 1.0, 1e9}) {
+    const LrbRep rep = build_lrb(scaled(bumpy_sphere(3, 7), scale));
+    CAPTURE(scale);
+    check_valid(rep);
+    CHECK(rep.outermost_faces().size() <= 20);
+  }
+  check_valid(build_lrb(translated(bumpy_sphere(3, 7), {1e4, -1e4, 1e4})));
+}
+
+TEST_CASE("progress is told after each pass") {
+  std::vector<std::uint32_t> faces;
+  BuildOptions options;
+  options.progress = [&](std::uint32_t pass, std::uint32_t hull_faces) {
+    CHECK(pass == faces.size() + 1);
+    faces.push_back(hull_faces);
+  };
+  const LrbRep rep = build_lrb(icosphere(3), options);
+  CHECK(faces.size() == rep.layer_count());
+  CHECK(faces.front() < 1280);
+}
+
+TEST_CASE("what cannot be built is refused with its offenders, on one line") {
+  const auto message = [](const Mesh& mesh) {
+    try {
+      build_lrb(mesh);
+    } catch (const InputError& e) {
+      return std::string(e.what());
+    }
+    return std::string();
+  };
+  const std::string open = message(open_cylinder(8));
+  CHECK(open.find("an edge has a face on one side only") != std::string::npos);
+  CHECK(open.find("0-1") != std::string::npos);
+  CHECK(open.find('\n') == std::string::npos);
+  CHECK(message(Mesh{}).find("no faces") != std::string::npos);
+  CHECK(message(turned_inside_out(icosphere(1))).find("inside out") != std::string::npos);
+  Mesh flipped = icosphere(1);
+  std::swap(flipped.face_vertices[0], flipped.face_vertices[1]);
+  CHECK(message(flipped).find("disagree on which side is outside") != std::string::npos);
+  Mesh flat = box();
+  flat.vertices[7] = flat.vertices[6];
+  CHECK(message(flat).find("no area") != std::string::npos);
+}
+
+}  // namespace
+}  // namespace lrb::test

@@ -1,0 +1,77 @@
+#include "engine/core/atomic_file.hpp"
+
+#include <doctest/doctest.h>
+#include <sys/stat.h>
+
+#include "engine/core/error.hpp"
+#include "tests/mesh/io/encode.hpp"
+
+namespace lrb::test {
+
+TEST_CASE("a file is there whole after commit, and untouched before") {
+  const TemporaryDirectory directory;
+  const std::string path = directory.file("a.txt"), large(300000, 'x');
+  save(path, "before");
+  {
+    AtomicFile file(path);
+    file.write("one ");
+    file.write(large);
+    CHECK(load_bytes(path) == "before");
+    file.commit();
+  }
+  CHECK(load_bytes(path) == "one " + large);
+  CHECK(directory.entries() == 1);
+  write_file(path, std::string("a\0b", 3));
+  CHECK(load_bytes(path) == std::string("a\0b", 3));
+}
+
+TEST_CASE("a file that is not committed leaves nothing") {
+  const TemporaryDirectory directory;
+  {
+    AtomicFile file(directory.file("a.txt"));
+    file.write("half");
+  }
+  CHECK(directory.entries() == 0);
+}
+
+TEST_CASE("a path that cannot be written is named, with the reason") {
+  const TemporaryDirectory directory;
+  const auto message = [](const std::string& path) -> std::string {
+    try {
+      write_file(path, "x");
+      return "";
+    } catch (const InputError& e) {
+      return e.what();
+    }
+  };
+  const std::string missing = directory.file("none/a.txt");
+  CHECK(message(missing).starts_with(missing + ": cannot create the file (No such file or directory); "));
+  CHECK(message(directory.file("")).find("Is a directory") != std::string::npos);
+  CHECK(directory.entries() == 0);
+}
+
+TEST_CASE("a full disk is the machine's fault") {
+  if (!std::filesystem::exists("/dev/full")) {
+    MESSAGE("skipped: no /dev/full here");
+    return;
+  }
+  CHECK_THROWS_AS(write_file("/dev/full", "x"), EnvironmentError);
+}
+
+TEST_CASE("permissions and links are kept, special files are written to") {
+  const TemporaryDirectory directory;
+  const std::string path = directory.file("a.txt"), link = directory.file("link");
+  save(path, "before");
+  chmod(path.c_str(), 0640);
+  std::filesystem::create_symlink(path, link);
+  write_file(link, "after");
+  CHECK(load_bytes(path) == "after");
+  CHECK(std::filesystem::is_symlink(link));
+  struct stat status {};
+  REQUIRE(stat(path.c_str(), &status) == 0);
+  CHECK((status.st_mode & 0777) == 0640);
+  write_file("/dev/null", "x");
+  CHECK(std::filesystem::is_character_file("/dev/null"));
+}
+
+}  // namespace lrb::test

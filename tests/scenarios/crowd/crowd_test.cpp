@@ -1,0 +1,411 @@
+// Crowds: what the broad phase leaves out is apart, what it keeps is answered as brute force answers it, and
+// the number of threads shows in times alone.
+#include <atomic>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <set>
+#include <string>
+
+#include <doctest/doctest.h>
+#include <nlohmann/json.hpp>
+#include <valijson/adapters/nlohmann_json_adapter.hpp>
+#include <valijson/schema.hpp>
+#include <valijson/schema_parser.hpp>
+#include <valijson/validator.hpp>
+
+#include "engine/core/error.hpp"
+#include "engine/query/brute_force.hpp"
+#include "scenarios/crowd/crowd_frames.hpp"
+#include "scenarios/crowd/crowd_json.hpp"
+#include "scenarios/crowd/crowd_replay.hpp"
+#include "scenarios/crowd/crowd_report.hpp"
+#include "scenarios/io/embedded.hpp"
+#include "scenarios/io/files.hpp"
+#include "tests/support/folder.hpp"
+
+using namespace lrb;
+using nlohmann::json;
+
+namespace {
+
+const run::ProgressReport kSilent = [](const std::string&, std::uint64_t, std::uint64_t) {};
+
+/// A dozen small bodies, close together: some cross, some lie in others.
+json good() {
+  return json::parse(R"({"name": "few", "purpose": "p", "seed": 3, "room": [3, 3, 3], "arrangement": "random",
+    "bodies": [
+      {"name": "ball", "body": {"generator": "ball", "parameters": {"frequency": 3, "radius": 1.1}}, "count": 3},
+      {"name": "bead", "body": {"generator": "ball", "parameters": {"frequency": 2, "radius": 0.1}}, "count": 4},
+      {"name": "bowl", "body": {"generator": "bowl", "parameters": {"segments": 10, "rows": 4}}, "count": 2},
+      {"name": "stick", "body": {"generator": "stick", "parameters": {"segments": 6, "rows": 3},
+                                 "pose": {"position": [0, 0, 0.4], "axis": [1, 0, 0], "degrees": 20}}, "count": 3}],
+    "motion": {"steps": 5, "speed": [0.05, 0.2], "spin": 7},
+    "frames": {"at": "step", "every": 4, "size": [320, 240], "supersampling": 1}})");
+}
+
+json good_2d() {
+  return json::parse(R"({"name": "flat", "purpose": "p", "room": [6, 4, 0],
+    "bodies": [
+      {"name": "island", "body": {"generator": "island", "parameters": {"levels": 2, "radius": 0.8}}, "count": 5},
+      {"name": "cog", "body": {"generator": "cog2d", "parameters": {"radius": 0.6}}, "count": 6}],
+    "motion": {"steps": 4, "speed": 0.1, "spin": [2, 9]},
+    "frames": {"at": "step", "every": 3, "size": [320, 240], "supersampling": 1}})");
+}
+
+spec::Crowd crowd_of(const json& j) {
+  return spec::parse_crowd(j.dump(1), "dir/c.json");
+}
+
+json with(const std::string& pointer, const json& value) {
+  json j = good();
+  j[json::json_pointer(pointer)] = value;
+  return j;
+}
+
+std::string error_of(const json& j) {
+  try {
+    crowd_of(j);
+  } catch (const InputError& e) {
+    return e.what();
+  }
+  return {};
+}
+
+bool schema_accepts(const json& j) {
+  static const json document = json::parse(io::embedded_file("crowd.schema.json"));
+  static const json scenario = json::parse(io::embedded_file("scenario.schema.json"));
+  const auto fetch = [](const std::string&) { return &scenario; };
+  const auto release = [](const json*) {};
+  valijson::Schema schema;
+  valijson::SchemaParser(valijson::SchemaParser::kDraft7)
+      .populateSchema(valijson::adapters::NlohmannJsonAdapter(document), schema, fetch, release);
+  return valijson::Validator().validate(schema, valijson::adapters::NlohmannJsonAdapter(j), nullptr);
+}
+
+/// Whether the published schema of traces accepts a document; else its complaints.
+std::string complaint_about_trace(const json& trace) {
+  static const json document = json::parse(std::ifstream(LRB_TRACE_SCHEMA));
+  valijson::Schema schema;
+  valijson::SchemaParser(valijson::SchemaParser::kDraft7)
+      .populateSchema(valijson::adapters::NlohmannJsonAdapter(document), schema);
+  valijson::ValidationResults results;
+  std::string out;
+  if (valijson::Validator().validate(schema, valijson::adapters::NlohmannJsonAdapter(trace), &results))
+    return out;
+  for (valijson::ValidationResults::Error error; results.popError(error); out += error.description + "\n")
+    for (const std::string& part : error.context) out += part;
+  return out.empty() ? "refused" : out;
+}
+
+/// As write_crowd() left them.
+std::vector<bodies::LoadedBody> saved_kinds(const spec::Crowd& crowd, const std::string& folder) {
+  std::vector<bodies::LoadedBody> out;
+  for (const spec::CrowdKind& kind : crowd.kinds)
+    out.push_back(bodies::load_body(folder + "/" + kind.name + ".lrb"));
+  return out;
+}
+
+std::string trace_of(const spec::Crowd& crowd, const crowd::CrowdRun& run) {
+  trace::StringSink sink;
+  crowd::write_crowd_trace(crowd, run, sink);
+  return sink.text;
+}
+
+void check_against_brute_force(const crowd::CrowdRun& run, std::set<Relation>& seen) {
+  const std::uint32_t n = run.motion.body_count();
+  for (std::uint32_t step = 0; step < run.steps.size(); ++step) {
+    const std::vector<crowd::CrowdQuery>& queries = run.steps[step].queries;
+    auto next = queries.begin();
+    for (std::uint32_t i = 0; i < n; ++i)
+      for (std::uint32_t j = i + 1; j < n; ++j) {
+        const BruteForceResult slow =
+            brute_force(run.rep(i), run.motion.pose(i, step), run.rep(j), run.motion.pose(j, step));
+        const bool asked = next != queries.end() && next->bodies == BodyPair{i, j};
+        CAPTURE(step);
+        CAPTURE(i);
+        CAPTURE(j);
+        CHECK(slow.relation == (asked ? next->result.relation : Relation::separate));
+        CHECK(fingerprint(slow.pairs) == (asked ? next->result.fingerprint : fingerprint({})));
+        if (asked) seen.insert(slow.relation);
+        next += asked;
+      }
+    CHECK(next == queries.end());  // each asked once, in order
+  }
+}
+
+}  // namespace
+
+TEST_CASE("all pairs of a crowd, asked or not, are answered as brute force answers them") {
+  std::set<Relation> seen;
+  const crowd::CrowdRun run = crowd::run_crowd(crowd_of(good()), 2, kSilent);
+  check_against_brute_force(run, seen);
+  CHECK(seen.contains(Relation::crossing));
+  CHECK(seen.contains(Relation::b_inside_a));  // or the test shows little
+  std::size_t asked = 0;
+  for (const crowd::CrowdStep& s : run.steps) asked += s.queries.size();
+  CHECK(asked < run.steps.size() * 12 * 11 / 2);
+}
+
+TEST_CASE("a crowd of 2D bodies, too") {
+  std::set<Relation> seen;
+  const crowd::CrowdRun run = crowd::run_crowd(crowd_of(good_2d()), 2, kSilent);
+  check_against_brute_force(run, seen);
+  CHECK(seen.contains(Relation::crossing));
+}
+
+TEST_CASE("the number of threads does not show in trace, numbers or pictures") {
+  for (const json& j : {good(), good_2d()}) {
+    const spec::Crowd crowd = crowd_of(j);
+    const test::Folder scratch;
+    const auto& folder = scratch.path;
+    std::string trace, summary;
+    std::vector<std::string> frames;
+    for (const std::uint32_t threads : {1U, 2U, 5U}) {
+      const crowd::CrowdRun run = crowd::run_crowd(crowd, threads, kSilent);
+      const std::string out = (folder / std::to_string(threads)).string();
+      const std::string text = crowd::write_crowd(crowd, run, out, "lrbscope crowd", kSilent);
+      std::vector<std::string> files;
+      for (const char* f : {"frame_0000.png", "frame_0001.png"})
+        files.push_back(io::read_text(out + "/frames/" + f));
+      if (threads == 1) {
+        trace = io::read_text(out + "/trace.json");
+        summary = text;
+        frames = files;
+      }
+      CHECK(io::read_text(out + "/trace.json") == trace);
+      CHECK(text == summary);
+      CHECK((files == frames));
+      CHECK(io::read_text(out + "/index.html").find("<html") != std::string::npos);
+    }
+  }
+}
+
+TEST_CASE("a crowd's trace is enough to draw it again, pixel by pixel") {
+  const test::Folder scratch;
+  const auto& folder = scratch.path;
+  for (const json& j : {good(), good_2d()})
+    for (const trace::Clock clock : {trace::Clock::event, trace::Clock::wall}) {
+      spec::Crowd crowd = crowd_of(j);
+      crowd.clock = clock;
+      const crowd::CrowdRun run = crowd::run_crowd(crowd, 2, kSilent);
+      const std::string first = (folder / "run").string(), again = (folder / "again").string();
+      crowd::write_crowd(crowd, run, first, "lrbscope crowd", kSilent);
+      const std::string text = io::read_text(first + "/trace.json");
+      REQUIRE(crowd::is_crowd_trace(text));
+      crowd::CrowdTrace trace = crowd::read_crowd_trace(text, "t.json");
+      CHECK(trace.steps == crowd.steps);
+      CHECK(trace.crowd.steps == crowd.steps);
+      trace.crowd.frames = crowd.frames;
+      const crowd::CrowdRun replayed = crowd::replay_crowd(trace, saved_kinds(crowd, first), 1, kSilent);
+      CHECK(replayed.notes.empty());
+      CHECK(crowd::crowd_summary(trace.crowd, replayed).size() > 1000);
+      for (std::uint32_t step = 0; step < crowd.steps; ++step)
+        for (std::uint32_t i = 0; i < run.motion.body_count(); ++i)
+          REQUIRE(trace::equal(replayed.motion.pose(i, step), run.motion.pose(i, step)));
+      crowd::redraw_crowd(trace.crowd, replayed, again, "lrbscope render", first + "/trace.json", kSilent);
+      for (const char* f : {"/frames/frame_0000.png", "/frames/frame_0001.png"})
+        CHECK((io::read_text(again + f) == io::read_text(first + f)));
+      const std::string page = io::read_text(again + "/index.html");
+      CHECK(page.find("../run/trace.json") != std::string::npos);
+      CHECK(page.find("summary.json") == std::string::npos);
+    }
+}
+
+TEST_CASE("traces of crowds that are cut, damaged, old or of other bodies") {
+  spec::Crowd crowd = crowd_of(good());
+  crowd.frames.at = spec::FrameSpec::At::none;
+  const crowd::CrowdRun run = crowd::run_crowd(crowd, 1, kSilent);
+  const std::string text = trace_of(crowd, run);
+  const auto kinds = [&] {
+    std::vector<bodies::LoadedBody> out;
+    for (const spec::CrowdKind& kind : crowd.kinds) out.push_back(run::make_body(kind.body));
+    return out;
+  };
+  const auto error = [&](const std::string& damaged, std::vector<bodies::LoadedBody> bodies) -> std::string {
+    try {
+      static_cast<void>(
+          crowd::replay_crowd(crowd::read_crowd_trace(damaged, "t.json"), std::move(bodies), 1, kSilent));
+    } catch (const InputError& e) {
+      CHECK(std::string(e.what()).find('\n') == std::string::npos);
+      return e.what();
+    }
+    return {};
+  };
+  CHECK(error(text, kinds()).empty());
+  crowd.max_events = 150;
+  const crowd::CrowdTrace cut = crowd::read_crowd_trace(trace_of(crowd, run), "t.json");
+  CHECK(cut.steps == 5);
+  CHECK(cut.crowd.steps > 0);
+  CHECK(cut.crowd.steps < 5);
+  const crowd::CrowdRun part = crowd::replay_crowd(cut, kinds(), 1, kSilent);
+  CHECK(part.steps.size() == cut.crowd.steps);
+  CHECK(part.notes.at(0).find(" of 5 steps (trace.max_events)") != std::string::npos);
+  crowd.max_events = 3;
+  CHECK(error(trace_of(crowd, run), kinds()) ==
+        "t.json: holds no step whole: run the crowd again with a larger trace.max_events");
+
+  const json whole = json::parse(text);
+  const auto changed = [&](const std::string& pointer, const json& value) {
+    json j = whole;
+    j[json::json_pointer(pointer)] = value;
+    return error(j.dump(), kinds());
+  };
+  std::vector<bodies::LoadedBody> swapped = kinds();
+  std::swap(swapped[0], swapped[2]);
+  CHECK(error(text, std::move(swapped)).find("trace: body ball was recorded as ") == 0);
+  std::vector<bodies::LoadedBody> few = kinds();
+  few.pop_back();
+  CHECK(error(text, std::move(few)) == "t.json: has 4 kinds of bodies, given are 3");
+  CHECK(changed("/metadata/poses/2/0/3", 1.25).find("t.json: step 2, ball 1 and ") == 0);
+  CHECK(changed("/metadata/version", 1).find("run the crowd again") != std::string::npos);
+  CHECK(changed("/metadata/version", 3).find("written in format 3") != std::string::npos);
+  CHECK(changed("/metadata/kinds/0/name", "../x").find("/metadata/kinds/0/name: ") != std::string::npos);
+  CHECK(changed("/metadata/kinds/0/name", "bal").find("a query names ball 1, but there is no such body") !=
+        std::string::npos);
+  CHECK(changed("/metadata/kinds/1/name", "ball").find("/metadata/kinds/1/name: ") != std::string::npos);
+  CHECK(changed("/metadata/kinds/1/count", 100000).find("/metadata/kinds/1/count: ") != std::string::npos);
+  CHECK(changed("/metadata/kinds/1/body/dim", 2).find("bodies of one dimension") != std::string::npos);
+  CHECK(changed("/metadata/poses/0/1", json::array({1, 2})).find("/metadata/poses/0/1: expected 12") !=
+        std::string::npos);
+  CHECK(changed("/metadata/poses/0/1/3", 1e300).find("/metadata/poses/0/1: ") != std::string::npos);
+  CHECK(changed("/metadata/poses/0", json::array()).find("12 poses, one a body") != std::string::npos);
+  CHECK(changed("/metadata/room", json::array({1, 2, -1})).find("/metadata/room/2: ") != std::string::npos);
+  json other = whole;
+  for (json& e : other["traceEvents"])
+    if (e["args"].contains("fingerprint") && e["args"]["relation"] == "crossing")
+      e["args"]["fingerprint"] = "0000000000000000";
+  CHECK(error(other.dump(), kinds()).find(": recorded was crossing in ") != std::string::npos);
+}
+
+TEST_CASE("traces of crowds fulfil the schema of traces, on either clock; broken ones do not") {
+  for (json text : {good(), good_2d()}) {
+    for (const char* clock : {"event", "wall"}) {
+      text["trace"] = {{"clock", clock}};
+      const spec::Crowd c = crowd_of(text);
+      const json trace = json::parse(trace_of(c, crowd::run_crowd(c, 2, kSilent)));
+      CHECK(complaint_about_trace(trace) == "");
+      const auto broken = [&](const char* pointer, const json& value) {
+        json bad = trace;
+        bad[json::json_pointer(pointer)] = value;
+        CAPTURE(pointer);
+        CHECK(complaint_about_trace(bad) != "");
+      };
+      broken("/metadata/clock", "sun");
+      broken("/metadata/version", 3);
+      broken("/metadata/colour", 1);
+      broken("/metadata/kinds/0/body/dim", 4);
+      broken("/metadata/poses/0/0", json::array({1, 2}));
+      broken("/traceEvents/0/ph", "B");
+      for (std::size_t i = 0; i < trace["traceEvents"].size(); ++i) {
+        if (!trace["traceEvents"][i]["args"].contains("relation")) continue;
+        const std::string event = "/traceEvents/" + std::to_string(i);
+        broken((event + "/args/relation").c_str(), "near");
+        broken((event + "/args/colour").c_str(), "red");
+        broken((event + "/cat").c_str(), "test");
+        broken((event + "/tid").c_str(), 2);
+        break;
+      }
+    }
+  }
+}
+
+TEST_CASE("slices of a track lie one after the other, and say what was asked and answered") {
+  spec::Crowd crowd = crowd_of(good());
+  for (const trace::Clock clock : {trace::Clock::event, trace::Clock::wall}) {
+    crowd.clock = clock;
+    const crowd::CrowdRun run = crowd::run_crowd(crowd, 2, kSilent);
+    const json trace = json::parse(trace_of(crowd, run));
+    std::size_t queries = 0, slices = 0;
+    for (const crowd::CrowdStep& s : run.steps) queries += s.queries.size();
+    std::map<int, double> ends;
+    for (const json& e : trace["traceEvents"]) {
+      for (const char* key : {"name", "cat", "ph", "ts", "pid", "tid", "args"}) REQUIRE(e.contains(key));
+      if (e["ph"] != "X") continue;
+      const int track = e["tid"];
+      CHECK(e["ts"].get<double>() >= doctest::Approx(ends[track]));
+      ends[track] = e["ts"].get<double>() + e["dur"].get<double>();
+      if (!e["args"].contains("relation")) continue;
+      ++slices;
+      CHECK(e["args"]["fingerprint"].get<std::string>().size() == 16);
+    }
+    CHECK(slices == queries * (clock == trace::Clock::event ? 2 : 1));
+    CHECK(trace["metadata"]["query_slices"]["truncated"] == false);
+  }
+  crowd.max_events = 3;
+  const json cut = json::parse(trace_of(crowd, crowd::run_crowd(crowd, 1, kSilent)));
+  CHECK(cut["metadata"]["query_slices"]["truncated"] == true);
+  CHECK(cut["metadata"]["query_slices"]["stored"] == 3);
+}
+
+TEST_CASE("bodies stay in the room as far as they fit") {
+  for (const json& j : {good(), good_2d()}) {
+    spec::Crowd crowd = crowd_of(j);
+    crowd.speed = {0.5, 2};
+    crowd.frames.at = spec::FrameSpec::At::none;
+    crowd.steps = 1;
+    const crowd::CrowdRun run = crowd::run_crowd(crowd, 1, kSilent);
+    for (std::uint32_t step = 0; step < 40; ++step)
+      for (std::uint32_t i = 0; i < run.motion.body_count(); ++i)
+        for (FaceId f = 0; f < run.rep(i).real_face_count(); ++f)
+          for (const VertexId v : run.rep(i).face(f)) {
+            const Eigen::Vector3d x = run.motion.pose(i, step).apply(run.rep(i).vertices()[v]);
+            REQUIRE(((x.cwiseAbs() - crowd.room / 2).array() <= 0x1p-40).all());
+          }
+  }
+}
+
+TEST_CASE("the shipped crowd is valid and has about forty bodies") {
+  const spec::Crowd crowd = spec::open_crowd("crowd");
+  CHECK((spec::shipped_crowds() == std::vector<std::string>{"crowd"}));
+  CHECK(crowd.body_count() == 40);
+  CHECK(schema_accepts(json::parse(io::embedded_file("crowd.crowd.json"))));
+}
+
+TEST_CASE("schema and reader agree on good and bad crowds") {
+  const json texts[] = {good(),
+                        good_2d(),
+                        with("/arrangement", "grid"),
+                        with("/arrangement", "circle"),
+                        with("/room", {1, 2}),
+                        with("/room", {1, 2, -1}),
+                        with("/bodies", json::array()),
+                        with("/bodies/0/count", 0),
+                        with("/bodies/0/body/generator", "bal"),
+                        with("/bodies/0/name", "a b"),
+                        with("/bodies/0/colour", "red"),
+                        with("/motion/steps", 0),
+                        with("/motion/speed", {1, 2, 3}),
+                        with("/motion/speed", -1),
+                        with("/query", {{"contacts", false}}),
+                        with("/query/mode", "some"),
+                        with("/query/tolerance", 0.1),
+                        with("/query/max_tests", 10),
+                        with("/query/separation", true),
+                        with("/trace", {{"clock", "wall"}, {"max_events", 10}}),
+                        with("/trace/gzip", true),
+                        with("/frames/at", "none"),
+                        with("/frames/at", "refinement"),
+                        with("/frames/montage", {{"panels", 3}}),
+                        with("/frames/views", json::array({{{"camera", "orbit"}, {"turn_degrees", 90}}}))};
+  for (const json& j : texts) {
+    CAPTURE(j.dump());
+    CHECK(schema_accepts(j) == error_of(j).empty());
+  }
+}
+
+TEST_CASE("what is wrong with a crowd is said with its place") {
+  CHECK(error_of(with("/arrangement", "grd")).find("did you mean \"grid\"?") != std::string::npos);
+  CHECK(error_of(with("/motion/speed", {2, 1})).find("/motion/speed: expected 0 <= least <= most") !=
+        std::string::npos);
+  CHECK(error_of(with("/bodies/1/name", "ball")).find("other bodies are called ball") != std::string::npos);
+  CHECK(error_of(with("/query/tolerance", 0.1)).find("/query/tolerance: queries of a crowd are exact") !=
+        std::string::npos);
+  json mixed = good();
+  mixed["bodies"].push_back({{"name", "flat"}, {"body", {{"generator", "island"}}}});
+  CHECK_THROWS_WITH_AS(static_cast<void>(crowd::run_crowd(crowd_of(mixed), 1, kSilent)),
+                       "crowd few: flat is 2D and ball is 3D; give bodies of one dimension", InputError);
+  CHECK_THROWS_WITH_AS(static_cast<void>(spec::open_crowd("crowds")),
+                       "crowds: neither a shipped crowd nor a file; did you mean \"crowd\"? known: crowd",
+                       InputError);
+}

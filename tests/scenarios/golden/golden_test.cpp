@@ -1,0 +1,362 @@
+/// Goldens catch what they are there for, and say what it is.
+
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <string>
+
+#include <doctest/doctest.h>
+#include <nlohmann/json.hpp>
+
+#include "render/png.hpp"
+#include "scenarios/golden/approve.hpp"
+#include "scenarios/golden/golden_report.hpp"
+#include "tests/support/program.hpp"
+#include "trace/trace_json.hpp"
+
+namespace fs = std::filesystem;
+using namespace lrb;
+using namespace lrb::test;
+
+namespace {
+
+const run::ProgressReport kSilent = [](const std::string&, std::uint64_t, std::uint64_t) {};
+
+/// Two balls that meet; `frames` goes into the scenario's "frames".
+std::string two_balls(const std::string& frames = {}) {
+  return R"({"name": "balls", "purpose": "Two balls meet.",
+ "bodies": {"a": {"generator": "ball", "parameters": {"frequency": 4}},
+            "b": {"generator": "ball", "parameters": {"frequency": 4}}},
+ "motion": {"kind": "approach", "from": [3, 0.2, 0.1], "before": 2, "into": 2},
+ "frames": {"size": [480, 320])" +
+         frames + "}}\n";
+}
+
+bool has(const std::string& text, const std::string& word) {
+  return text.find(word) != std::string::npos;
+}
+
+std::size_t files_ending(const Folder& folder, const std::string& ending) {
+  const std::vector<std::string> tree = folder.tree();
+  return static_cast<std::size_t>(
+      std::count_if(tree.begin(), tree.end(), [&](const std::string& f) { return f.ends_with(ending); }));
+}
+
+/// A folder with an approved golden of two_balls().
+struct Approved : Folder {
+  Approved() {
+    write("balls.scenario.json", two_balls());
+    const Outcome o = test::run(*this, {"golden", "approve", "--frames", "2", "balls.scenario.json"});
+    REQUIRE_MESSAGE(o.code == 0, o.err);
+  }
+  Outcome test() const { return test::run(*this, {"golden", "test"}); }
+};
+
+golden::GoldenSpec small_spec() {
+  golden::GoldenSpec spec;
+  spec.scenario = "balls";
+  spec.width = 480;
+  spec.height = 320;
+  spec.frames = 1;
+  return spec;
+}
+
+golden::GoldenRun play() {
+  return golden::play_golden(spec::parse_scenario(two_balls(), "balls.scenario.json"), small_spec(), kSilent);
+}
+
+/// The golden of a run, without going through files.
+golden::Golden golden_of(const golden::GoldenRun& run) {
+  golden::Golden golden;
+  golden.name = run.scenario.name;
+  golden.spec = small_spec();
+  golden.trace = run.recording.trace;
+  for (std::size_t i = 0; i < run.frames.size(); ++i)
+    golden.frames.push_back(
+        {{golden::golden_image_file(i), {run.frames[i].image, golden::golden_text(run, i), 0}, {}}});
+  return golden;
+}
+
+/// As if an event had never been: all that follow, and all that they refer to, are one less.
+void lose(trace::Trace& t, trace::EventId lost) {
+  const std::size_t step = t.step_of(lost);
+  t.events.erase(t.events.begin() + lost);
+  for (trace::Event& e : t.events)
+    if (e.cause != kNull && e.cause > lost) --e.cause;
+  for (trace::Step& s : t.steps)
+    if (s.first_event > lost) --s.first_event;
+  --t.steps[step].events_seen;
+  --t.events_seen;
+}
+
+trace::EventId first_of(const trace::Trace& t, EventKind kind) {
+  const auto it = std::find_if(t.events.begin(), t.events.end(),
+                               [kind](const trace::Event& e) { return e.kind == kind; });
+  REQUIRE(it != t.events.end());
+  return static_cast<trace::EventId>(it - t.events.begin());
+}
+
+}  // namespace
+
+TEST_CASE("goldens: what is approved passes, and leaves nothing behind; approving again changes nothing") {
+  const Approved folder;
+  const std::vector<std::string> before = folder.tree();
+  CHECK(before == std::vector<std::string>{"balls.scenario.json", "goldens", "goldens/balls",
+                                           "goldens/balls/frame_1.png", "goldens/balls/frame_2.png",
+                                           "goldens/balls/golden.json", "goldens/balls/trace.json.gz"});
+  CHECK(slurp(folder / "goldens/balls/golden.json") ==
+        "{\"scenario\":\"../../balls.scenario.json\",\"size\":[480,320],\"frames\":2}\n");
+  const Outcome o = folder.test();
+  CAPTURE(o.out);
+  CHECK(o.code == 0);
+  CHECK(o.out.starts_with("ok    balls: "));
+  CHECK(folder.tree() == before);
+  CHECK(test::run(folder, {"golden", "approve"}).out == "unchanged balls\n");
+  CHECK(test::run(folder, {"golden", "test", "balls.scenario.json"}).code == 0);
+}
+
+TEST_CASE("goldens: approved twice, they are the same bytes") {
+  const Approved x, y;
+  for (const char* file : {"frame_1.png", "frame_2.png", "trace.json.gz"})
+    CHECK(slurp(x / (std::string("goldens/balls/") + file)) ==
+          slurp(y / (std::string("goldens/balls/") + file)));
+}
+
+TEST_CASE("goldens: any number of rasterizer threads gives equal pictures") {
+  const Approved folder;
+  for (const char* threads : {"0", "1", "3", "7"}) {
+    setenv("LP_NUM_THREADS", threads, 1);
+    const Outcome o = test::run(folder, {"golden", "test", "--json"});
+    unsetenv("LP_NUM_THREADS");
+    const auto answer = nlohmann::json::parse(o.out);
+    CHECK(answer["passed"] == true);
+    for (const auto& image : answer["images"]) CHECK(image["equal"] == true);
+  }
+}
+
+TEST_CASE("goldens: a moved camera is called a moved camera") {
+  const Approved folder;
+  folder.write("balls.scenario.json", two_balls(R"(, "views": [{"from": [0.62, -0.6, 0.42]}])"));
+  const Outcome o = folder.test();
+  CAPTURE(o.out);
+  CHECK(o.code == 1);
+  CHECK(has(o.out, "frame_1.png: too many pixels differ strongly"));
+  CHECK(has(o.out, "the camera moved: expected eye ("));
+  CHECK(has(o.out, "events equal; images: 2 of 2 differ"));
+  CHECK(has(o.out, "the scenario's file is not the one that was approved"));
+  CHECK(has(o.out, "lrbscope golden approve --goldens goldens balls\n"));
+  CHECK(files_ending(folder, ".expected.png") == 2);
+  CHECK(files_ending(folder, ".actual.png") == 2);
+  CHECK(files_ending(folder, ".difference.png") == 2);
+  const std::string page = slurp(folder / "out/golden/index.html");
+  for (const char* word : {"Side by side", "Swipe", "Difference", "the camera moved",
+                           "lrbscope golden approve --goldens goldens balls"})
+    CHECK(has(page, word));
+  CHECK_FALSE(has(page, "http:"));
+  CHECK_FALSE(has(page, "https:"));
+
+  // The command that was printed makes it pass, and the test cleans up.
+  CHECK(test::run(folder, {"golden", "approve", "--goldens", "goldens", "balls"}).code == 0);
+  CHECK(folder.test().code == 0);
+  CHECK(files_ending(folder, ".expected.png") == 0);
+  CHECK(files_ending(folder, "index.html") == 0);
+}
+
+TEST_CASE("goldens: a changed colour is told from a moved camera") {
+  const Approved folder;
+  const std::string picture = folder / "goldens/balls/frame_1.png";
+  render::DecodedPng png = render::read_png(picture);
+  for (render::Rgba& p : png.image.pixels()) std::swap(p.r, p.b);
+  render::write_png(png.image, picture, {png.text, 0});
+  const Outcome o = folder.test();
+  CAPTURE(o.out);
+  CHECK(o.code == 1);
+  CHECK(has(o.out, "the camera is the same; most often #"));
+  CHECK(has(o.out, "images: 1 of 2 differ"));
+  CHECK_FALSE(has(o.out, "camera moved"));
+}
+
+TEST_CASE("goldens: noise of processors passes, and is reported as such") {
+  const Approved folder;
+  const std::string picture = folder / "goldens/balls/frame_1.png";
+  render::DecodedPng png = render::read_png(picture);
+  for (std::size_t i = 0; i < png.image.pixels().size(); i += 10) png.image.pixels()[i].g ^= 1;
+  png.image.at(5, 5) = {0, 0, 0, 255};
+  render::write_png(png.image, picture, {png.text, 0});
+  const Outcome o = folder.test();
+  CHECK(o.code == 0);
+  CHECK(has(o.out, "images: 2 equal, 1 of them within tolerance"));
+}
+
+TEST_CASE("goldens: a variant is right as well; a picture that has changed loses its variants") {
+  const Approved folder;
+  const std::string base = folder / "goldens/balls/frame_1.png";
+  render::DecodedPng png = render::read_png(base);
+  png.image.fill({0, 0, 100, 100}, {1, 2, 3, 255});
+  render::write_png(png.image, base, {png.text, 0});
+  REQUIRE(folder.test().code == 1);
+  CHECK(test::run(folder, {"golden", "approve", "--variant", "here"}).code == 0);
+  CHECK(fs::exists(folder / "goldens/balls/frame_1.here.png"));
+  CHECK_FALSE(fs::exists(folder / "goldens/balls/frame_2.here.png"));
+  CHECK(folder.test().code == 0);
+
+  folder.write("balls.scenario.json", two_balls(R"(, "colour_by": "layer")"));
+  CHECK(folder.test().code == 1);
+  CHECK(test::run(folder, {"golden", "approve"}).code == 0);
+  CHECK_FALSE(fs::exists(folder / "goldens/balls/frame_1.here.png"));
+  CHECK(folder.test().code == 0);
+}
+
+TEST_CASE("goldens: two events swapped are named, and both sides are drawn") {
+  const Approved folder;
+  const std::string file = folder / "goldens/balls/trace.json.gz";
+  trace::Trace t = trace::load_trace(file);
+  trace::EventId e = first_of(t, EventKind::face_test);
+  while (t.events[e].kind != EventKind::face_test || t.events[e + 1].kind != EventKind::face_test) ++e;
+  std::swap(t.events[e], t.events[e + 1]);
+  trace::save_trace(t, file);
+  const Outcome o = folder.test();
+  CAPTURE(o.out);
+  CHECK(o.code == 1);
+  CHECK(has(o.out, "balls: events or counters differ; images: 2 equal"));
+  CHECK(has(o.out, "event " + std::to_string(e) + " (step "));
+  CHECK(has(o.out, "events " + std::to_string(e) + " and " + std::to_string(e + 1) + " are swapped"));
+  for (const char* kind : {"expected", "actual", "difference"})
+    CHECK(fs::exists(folder / ("out/golden/balls/divergence." + std::string(kind) + ".png")));
+  CHECK(fs::exists(folder / "out/golden/balls/actual.trace.json.gz"));
+  CHECK(render::read_png(folder / "out/golden/balls/divergence.expected.png").image !=
+        render::read_png(folder / "out/golden/balls/divergence.actual.png").image);
+  CHECK(test::run(folder, {"golden", "approve", "--variant", "here"}).code == 2);  // events have no variants
+}
+
+TEST_CASE("goldens: a contact that is lost is called lost, one that is new is called added") {
+  golden::GoldenRun run = play();
+  golden::Golden golden = golden_of(run);
+  REQUIRE(golden::check_golden(golden, run).passed());
+  const trace::EventId e = first_of(golden.trace, EventKind::contact);
+  const std::string contact = trace::describe(golden.trace.events[e]);
+
+  lose(run.recording.trace, e);
+  const golden::GoldenResult lost = golden::test_golden(golden, run, "approve", false);
+  CAPTURE(lost.verdict.diagnosis);
+  REQUIRE(lost.verdict.divergence);
+  CHECK(lost.verdict.divergence->event == e);
+  CHECK(lost.verdict.diagnosis.starts_with("event " + std::to_string(e) + " lost: " + contact));
+  CHECK(has(lost.verdict.diagnosis, "instead of"));
+  CHECK(has(golden::result_text(lost), " lost: contact: "));
+  REQUIRE(lost.pngs.size() == 1);  // the pictures of the run are as approved
+  CHECK_FALSE(lost.pngs[0][0].empty());
+  CHECK(lost.pngs[0][0] != lost.pngs[0][1]);
+
+  std::swap(golden.trace, run.recording.trace);
+  const golden::GoldenVerdict added = golden::check_golden(golden, run);
+  REQUIRE(added.divergence);
+  CHECK(added.diagnosis.starts_with("event " + std::to_string(e) + " added: " + contact));
+}
+
+TEST_CASE("goldens: counters, poses and bodies are part of the run") {
+  const golden::GoldenRun run = play();
+  golden::Golden golden = golden_of(run);
+  ++golden.trace.steps[2].result.counters.box_tests;
+  golden::GoldenVerdict v = golden::check_golden(golden, run);
+  REQUIRE(v.divergence);
+  CHECK(has(v.divergence->message(), "step 2: counter box_tests: expected "));
+
+  golden = golden_of(run);
+  golden.trace.header.request.contacts = false;
+  CHECK(has(golden::check_golden(golden, run).divergence.value().message(),
+            "request: contacts: expected false, found true"));
+  golden = golden_of(run);
+  golden.trace.header.request.interiors_overlap = true;
+  CHECK(has(golden::check_golden(golden, run).divergence.value().message(),
+            "request: interiors_overlap: expected true, found false"));
+
+  golden = golden_of(run);
+  golden.trace.steps[1].pose_b.t.x() += 1;
+  v = golden::check_golden(golden, run);
+  REQUIRE(v.divergence);
+  CHECK(has(v.divergence->message(), "step 1: pose of B"));
+
+  golden = golden_of(run);
+  ++golden.trace.header.bodies[1].hash;
+  const golden::GoldenResult body = golden::test_golden(golden, run, "approve", false);
+  REQUIRE(body.verdict.divergence);
+  CHECK(has(body.verdict.divergence->message(), "hash of body B"));
+  REQUIRE(body.comparisons.size() == 1);
+  CHECK(has(body.comparisons[0].text, "cannot be replayed"));
+}
+
+TEST_CASE("goldens: frames that one side alone has are failures") {
+  const Approved folder;
+  fs::remove(folder / "goldens/balls/frame_2.png");
+  CHECK(has(folder.test().out, "frame_2.png: not approved yet"));
+  fs::copy_file(folder / "goldens/balls/frame_1.png", folder / "goldens/balls/frame_2.png");
+  fs::copy_file(folder / "goldens/balls/frame_1.png", folder / "goldens/balls/frame_3.png");
+  CHECK(has(folder.test().out, "frame_3.png: approved, but the run has 2 frames only"));
+  CHECK(test::run(folder, {"golden", "approve"}).code == 0);
+  CHECK_FALSE(fs::exists(folder / "goldens/balls/frame_3.png"));
+  CHECK(folder.test().code == 0);
+}
+
+TEST_CASE("goldens: a report shows every picture, passed or not") {
+  const Approved folder;
+  const Outcome o = test::run(folder, {"golden", "report", "-o", "pages"});
+  CHECK(o.code == 0);
+  CHECK(has(o.out, "pages/index.html\n"));
+  const std::string page = slurp(folder / "pages/index.html");
+  CHECK(has(page, "balls: frame_1.png"));
+  CHECK(has(page, "balls: frame_2.png"));
+  CHECK(files_ending(folder, ".actual.png") == 0);
+}
+
+TEST_CASE("goldens: what cannot be tested ends with code 2 and one line") {
+  const Approved folder;
+  folder.write("other.scenario.json", two_balls().replace(10, 5, "other"));
+  const std::vector<std::vector<std::string>> bad = {
+      {"golden"},
+      {"golden", "test", "nonsense"},
+      {"golden", "test", "other.scenario.json"},
+      {"golden", "test", "--goldens", "missing"},
+      {"golden", "approve", "--size", "3x3"},
+      {"golden", "approve", "--variant", "a/b"},
+      {"golden", "approve", "--variant", "x", "other.scenario.json"},
+  };
+  for (const auto& arguments : bad) {
+    const Outcome o = test::run(folder, arguments);
+    CAPTURE(arguments.back());
+    CAPTURE(o.err);
+    CHECK(o.code == 2);
+    CHECK(o.error_lines() == 1);
+  }
+  CHECK(has(test::run(folder, {"golden", "test", "other.scenario.json"}).err, "lrbscope golden approve"));
+}
+
+TEST_CASE("goldens: what is damaged fails, and the others are tested all the same") {
+  const Approved folder;
+  folder.write("other.scenario.json", two_balls().replace(10, 5, "other"));
+  REQUIRE(test::run(folder, {"golden", "approve", "--frames", "1", "other.scenario.json"}).code == 0);
+  const auto check_fails = [&](const char* what) {
+    const Outcome o = folder.test();
+    CAPTURE(o.out);
+    CAPTURE(o.err);
+    CHECK(o.code == 1);
+    CHECK(has(o.out, "FAIL  balls: "));
+    CHECK(has(o.out, what));
+    CHECK(has(o.out, "ok    other: "));
+    CHECK(has(slurp(folder / "out/golden/index.html"), what));
+  };
+  const std::string sound = slurp(folder / "goldens/balls/trace.json.gz");
+  folder.write("goldens/balls/frame_1.png", "no picture");
+  check_fails("frame_1.png: not a readable PNG");
+  CHECK(has(folder.test().out, "events equal; images: 1 of 2 differ"));
+  CHECK(test::run(folder, {"golden", "approve", "balls"}).code == 0);  // which puts a sound one in its place
+  CHECK(folder.test().code == 0);
+  folder.write("goldens/balls/trace.json.gz", sound.substr(0, sound.size() / 2));
+  check_fails("ends too early");
+  const auto answer = nlohmann::json::parse(test::run(folder, {"golden", "test", "--json", "balls"}).out);
+  CHECK(answer["passed"] == false);
+  CHECK(has(answer["refusal"].get<std::string>(), "ends too early"));
+  folder.write("goldens/balls/trace.json.gz", sound);
+  folder.write("goldens/balls/golden.json", "{\"scenario\": \"balls\", \"size\": [1]}");
+  check_fails("golden.json:1:");
+}

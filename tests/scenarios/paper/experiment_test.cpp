@@ -1,0 +1,258 @@
+/// The paper's experiment as a file, and close-ups of single collisions.
+
+#include "scenarios/paper/experiment.hpp"
+
+#include <filesystem>
+#include <memory>
+#include <numeric>
+
+#include <doctest/doctest.h>
+#include <nlohmann/json.hpp>
+#include <valijson/adapters/nlohmann_json_adapter.hpp>
+#include <valijson/schema.hpp>
+#include <valijson/schema_parser.hpp>
+#include <valijson/validator.hpp>
+
+#include "engine/core/error.hpp"
+#include "render/png.hpp"
+#include "scenarios/bodies/generators/fractal.hpp"
+#include "scenarios/io/embedded.hpp"
+#include "scenarios/paper/close_up.hpp"
+#include "scenarios/paper/icicle.hpp"
+#include "tests/support/program.hpp"
+#include "tests/support/text.hpp"
+#include "trace/counters.hpp"
+
+using namespace lrb;
+using lrb::test::count;
+using nlohmann::json;
+
+namespace {
+
+bool schema_accepts(const std::string& text) {
+  const json document = json::parse(io::embedded_file("experiment.schema.json"));
+  const json scenario = json::parse(io::embedded_file("scenario.schema.json"));
+  valijson::Schema schema;
+  valijson::SchemaParser(valijson::SchemaParser::kDraft7)
+      .populateSchema(
+          valijson::adapters::NlohmannJsonAdapter(document), schema,
+          [&](const std::string&) { return &scenario; }, [](const json*) {});
+  const json experiment = json::parse(text);
+  return valijson::Validator().validate(schema, valijson::adapters::NlohmannJsonAdapter(experiment), nullptr);
+}
+
+std::string error_of(const std::string& text) {
+  try {
+    paper::parse_experiment(text, "dir/e.json");
+  } catch (const InputError& e) {
+    return e.what();
+  }
+  return {};
+}
+
+json good() {
+  return json::parse(R"({"name": "n", "purpose": "p", "protocol": {"collisions": 3},
+    "objects": [{"name": "A", "body": {"generator": "fractal", "parameters": {"real_faces": 144, "total_faces": 168}}},
+                {"name": "rock", "body": {"generator": "rock", "parameters": {"frequency": 4}}}]})");
+}
+
+std::string with(const std::string& pointer, const json& value) {
+  json e = good();
+  e[json::json_pointer(pointer)] = value;
+  return e.dump(1);
+}
+
+std::vector<paper::PaperObject> small_objects() {
+  std::vector<paper::PaperObject> objects;
+  for (const std::size_t i : {3u, 2u})
+    objects.push_back(
+        {generators::paper_objects()[i].name, generators::fractal_body(generators::paper_objects()[i])});
+  return objects;
+}
+
+}  // namespace
+
+TEST_CASE(
+    "shipped experiments: valid by schema and reader; their numbers are the paper's and the protocol's") {
+  const std::vector<std::string> names = paper::shipped_experiments();
+  CHECK(names.size() == 5);
+  for (const std::string& name : names) {
+    CAPTURE(name);
+    CHECK(schema_accepts(paper::shipped_experiment(name)));
+    const paper::PaperExperiment e = paper::open_experiment(name);
+    CHECK(e.name == name);
+    CHECK(e.protocol.collisions == paper::PaperProtocol{}.collisions);
+    CHECK(e.protocol.steps_after == paper::PaperProtocol{}.steps_after);
+    CHECK(e.protocol.step == paper::PaperProtocol{}.step);
+    CHECK(e.protocol.seed == paper::PaperProtocol{}.seed);
+    if (name != "close_up") CHECK(e.objects.size() == generators::paper_objects().size());
+    for (const paper::PaperExperiment::Object& o : e.objects) {
+      const auto p = std::find_if(generators::paper_objects().begin(), generators::paper_objects().end(),
+                                  [&](const generators::FractalSpec& s) { return s.name == o.name; });
+      REQUIRE(p != generators::paper_objects().end());
+      CHECK(o.body.generator == "fractal");
+      CHECK(o.body.parameters.at("real_faces") == p->real_faces);
+      CHECK(o.body.parameters.at("total_faces") == p->total_faces);
+      CHECK(o.body.build.seed == p->seed);
+    }
+  }
+  CHECK_FALSE(paper::open_experiment("table1").collides());
+}
+
+TEST_CASE("experiments: schema and reader agree on good and bad files") {
+  json lone = good();
+  lone["objects"].erase(1);
+  lone["report"] = {"table1"};
+  const std::string experiments[] = {
+      good().dump(),
+      lone.dump(),
+      with("/name", "../n"),
+      with("/protocl", 1),
+      with("/protocol", json{{"collisions", 0}}),
+      with("/protocol", json{{"collisions", 2.5}}),
+      with("/protocol", json{{"step", 0}}),
+      with("/protocol", json{{"steps_after", -1}}),
+      with("/protocol", json{{"steps", 1}}),
+      with("/protocol", json{{"seed", 7}, {"step", 0.01}, {"steps_after", 0}}),
+      with("/report", json::array()),
+      with("/report", json{"table2", "heat_maps"}),
+      with("/report", json{"table3"}),
+      with("/report", json{"table1", "table1"}),
+      with("/close_up", "rock"),
+      with("/objects", json::array()),
+      with("/objects/0/name", "A-B"),
+      with("/objects/0/name", ""),
+      with("/objects/0/body", json{{"file", "x.obj"}}),
+      with("/objects/0/body", json{{"generator", "rok"}}),
+      with("/objects/0/body", json{{"generator", "rock"}, {"pose", {{"degrees", 3}}}}),
+      with("/objects/0/pose", json::object()),
+  };
+  for (const std::string& text : experiments) {
+    CAPTURE(text);
+    CAPTURE(error_of(text));
+    CHECK(schema_accepts(text) == error_of(text).empty());
+  }
+}
+
+TEST_CASE("experiments: errors name file, line, column and the nearest word") {
+  CHECK(error_of("{\n \"name\": \"n\",\n \"purpos\": \"p\"}")
+            .rfind("dir/e.json:3:2: /purpos: unknown key; did you mean \"purpose\"?", 0) == 0);
+  CHECK(error_of(with("/close_up", "rok")).find("did you mean \"rock\"?") != std::string::npos);
+  CHECK(error_of(with("/objects/1/name", "A")).find("another object is called A") != std::string::npos);
+  json lone = good();
+  lone["objects"].erase(1);
+  CHECK(error_of(lone.dump()).find("expected a second object") != std::string::npos);
+  CHECK_THROWS_WITH_AS(paper::open_experiment("tabel1"), doctest::Contains("did you mean \"table1\"?"),
+                       InputError);
+  std::vector<std::string> notes;
+  CHECK_THROWS_WITH_AS(
+      paper::make_objects(
+          paper::parse_experiment(with("/objects/1/body", json{{"generator", "island"}}), "e"), notes),
+      doctest::Contains("is a 2D body"), InputError);
+}
+
+TEST_CASE("easiest and hardest: by comparisons over all time steps, the first of several") {
+  std::vector<paper::ContactStep> steps(5);
+  const std::uint32_t collisions[] = {3, 3, 5, 7, 9}, comparisons[] = {10, 10, 15, 15, 20};
+  for (std::size_t i = 0; i < steps.size(); ++i) {
+    steps[i].object = "C";
+    steps[i].collision = collisions[i];
+    steps[i].counts[0].comparisons = comparisons[i];
+  }
+  CHECK(paper::easiest_and_hardest(steps, "C") == std::array<std::uint32_t, 2>{5, 3});
+  CHECK_THROWS_AS(paper::easiest_and_hardest(steps, "D"), InputError);
+}
+
+TEST_CASE("a close-up is the recorded collision, event by event; records of another one are refused") {
+  const auto objects = small_objects();
+  paper::SweepOptions sweep;
+  sweep.protocol.collisions = 3;
+  const auto records = paper::run_sweep(objects, sweep, {});
+  const paper::PaperPair pair{objects[0], objects[1]};
+  const paper::CloseUp c = paper::close_up(pair, 1, sweep.protocol, records);
+  std::uint64_t sum = 0;
+  for (const paper::ContactStep& s : records) sum += s.collision == 1 ? s.counts[0].comparisons : 0;
+  CHECK(c.comparisons == sum);
+  CHECK(trace::count_events(c.trace.events).face_tests == sum);
+  for (const Side side : {Side::a, Side::b}) {
+    const auto tests = trace::count_faces(pair.rep(side), side, c.trace.events).tests;
+    CHECK(std::accumulate(tests.begin(), tests.end(), std::uint64_t{0}) == sum);
+  }
+  paper::PaperProtocol other = sweep.protocol;
+  other.seed = 2;
+  CHECK_THROWS_WITH_AS(paper::close_up(pair, 1, other, records), doctest::Contains("another experiment"),
+                       InputError);
+}
+
+TEST_CASE("the icicle chart has a box for each region that the query came to") {
+  const auto objects = small_objects();
+  paper::SweepOptions sweep;
+  sweep.protocol.collisions = 1;
+  const auto records = paper::run_sweep(objects, sweep, {});
+  const paper::PaperPair pair{objects[0], objects[1]};
+  const paper::CloseUp c = paper::close_up(pair, 0, sweep.protocol, records);
+  const std::string svg = paper::icicle_svg(pair, c);
+  CHECK(svg.starts_with("<svg "));
+  CHECK(svg.ends_with("</svg>\n"));
+  const std::size_t refined = c.steps[paper::busiest_step(c)].counts[0].refinements;
+  CHECK(refined > 0);
+  CHECK(count(svg, ", refined: ") == refined);
+  for (const paper::ContactStep& s : c.steps)
+    CHECK(s.counts[0].comparisons <= c.steps[paper::busiest_step(c)].counts[0].comparisons);
+  CHECK(count(svg, "<rect") == count(svg, "</rect>") + 5);  // the background and four colours of the legend
+}
+
+TEST_CASE("paper --experiment: only what is asked for, on bodies of one's own; pictures in report and page") {
+  const test::Folder folder;
+  const auto run = [&](std::vector<std::string> args) { return test::run(folder, std::move(args)); };
+  REQUIRE(run({"paper", "--experiment", "table1", "-o", "one"}).code == 0);
+  CHECK_FALSE(std::filesystem::exists(folder / "one/records.jsonl"));
+  CHECK(test::slurp(folder / "one/report.md").find("| H | 34474 | 43396 | 7 faces |") != std::string::npos);
+  const test::Outcome printed = run({"paper", "--experiment", "close_up", "--print"});
+  CHECK(printed.out == paper::shipped_experiment("close_up"));
+
+  folder.write("cube.obj", test::kCube);
+  json mine = good();
+  mine["objects"].push_back({{"name", "cube"}, {"body", {{"file", "cube.obj"}}}});
+  mine["report"] = {"table2", "heat_maps", "refinement_tree"};
+  mine["close_up"] = "rock";
+  folder.write("mine.json", mine.dump());
+  const test::Outcome o = run({"paper", "--experiment", "mine.json", "-o", "mine"});
+  CAPTURE(o.err);
+  REQUIRE(o.code == 0);
+  const std::string md = test::slurp(folder / "mine/report.md"),
+                    page = test::slurp(folder / "mine/index.html");
+  CHECK(md.find("3 collisions per object") != std::string::npos);
+  CHECK(md.find("Table 1") == std::string::npos);
+  for (const char* file : {"heat_maps.png", "refinement_tree.svg"}) {
+    CHECK(std::filesystem::exists(folder / (std::string("mine/") + file)));
+    CHECK(md.find(std::string("](") + file + ")") != std::string::npos);
+    CHECK(page.find(std::string("href=\"") + file + "\"><img src=\"data:image/") != std::string::npos);
+  }
+  const render::Image heat = render::read_png(folder / "mine/heat_maps.png").image;
+  CHECK(heat.width() > 2000);
+  REQUIRE(run({"paper", "--experiment", "mine.json", "-o", "again", "--jobs", "2"}).code == 0);
+  for (const char* file : {"/heat_maps.png", "/refinement_tree.svg", "/records.jsonl", "/tables.json"})
+    CHECK(test::slurp(folder / (std::string("mine") + file)) ==
+          test::slurp(folder / (std::string("again") + file)));
+  CHECK(run({"paper", "--experiment", "mine.json", "--seed", "9", "--merge", "mine/records.jsonl", "-o", "x"})
+            .code == 2);
+  CHECK(run({"paper", "--experiment", "mine.json", "--collisions", "2", "--merge", "mine/records.jsonl", "-o",
+             "x"})
+            .code == 2);
+  CHECK_FALSE(std::filesystem::exists(folder / "x"));
+  for (const std::vector<std::string>& bad : {std::vector<std::string>{"--experiment", "none.json"},
+                                              {"--experiment", "tabel1"},
+                                              {"--experiment", "cube.obj"},
+                                              {"--experiment", "table1", "--shard", "0/2"},
+                                              {"--collisions", "0"},
+                                              {"--step", "0"}}) {
+    std::vector<std::string> all = {"paper", "-o", "bad"};
+    all.insert(all.end(), bad.begin(), bad.end());
+    const test::Outcome refused = run(all);
+    CAPTURE(refused.err);
+    CHECK(refused.code == 2);
+    CHECK(refused.error_lines() == 1);
+    CHECK_FALSE(std::filesystem::exists(folder / "bad"));
+  }
+}

@@ -1,0 +1,157 @@
+#include <algorithm>
+
+#include <Eigen/Geometry>
+#include <doctest/doctest.h>
+
+#include "engine/lrb/validate.hpp"
+#include "engine/query/brute_force.hpp"
+#include "scenarios/bodies/body.hpp"
+#include "scenarios/bodies/generators/generators.hpp"
+#include "scenarios/bodies/hull_volume.hpp"
+#include "scenarios/run/approach.hpp"
+#include "scenarios/run/moments.hpp"
+#include "scenarios/run/recorded_run.hpp"
+#include "scenarios/spec/shipped.hpp"
+
+using namespace lrb;
+
+namespace {
+
+const run::ProgressReport kSilent = [](const std::string&, std::uint64_t, std::uint64_t) {};
+
+spec::Scenario two_balls() {
+  spec::Scenario s;
+  s.name = "two_balls";
+  s.bodies.resize(2);
+  for (spec::BodySpec& body : s.bodies) {
+    body.generator = "ball";
+    body.parameters = {{"frequency", 4}};
+  }
+  s.motion.kind = spec::Motion::Kind::approach;
+  s.motion.from = {3, 0.2, 0.1};
+  s.motion.steps = 1000;
+  s.motion.before = 3;
+  s.motion.into = 4;
+  return s;
+}
+
+}  // namespace
+
+TEST_CASE("an approach ends in contact: apart before, together from then on") {
+  const run::Recording r = run::record(two_balls(), kSilent);
+  REQUIRE(r.results.size() == 8);
+  for (std::size_t step = 0; step < 3; ++step) CHECK(r.results[step].relation == Relation::separate);
+  for (std::size_t step = 3; step < 8; ++step) CHECK(r.results[step].relation == Relation::crossing);
+  CHECK(r.trace.steps.size() == 8);
+}
+
+TEST_CASE("an approach that misses says so and still shows the way") {
+  spec::Scenario s = two_balls();
+  s.motion.target = {0, 5, 0};
+  const run::Recording r = run::record(s, kSilent);
+  CHECK(r.results.size() >= 2);
+  for (const CollideResult& result : r.results) CHECK(result.relation == Relation::separate);
+  REQUIRE(r.notes.size() == 1);
+  CHECK(r.notes[0].find("did not meet") != std::string::npos);
+}
+
+TEST_CASE("expectations that are not met are named, those that are met are not") {
+  spec::Scenario s = two_balls();
+  const run::Recording r = run::record(s, kSilent);
+  spec::Expectation e;
+  e.step = 3;
+  e.relation = Relation::crossing;
+  e.pairs = r.results[3].pairs.size();
+  e.fingerprint = fingerprint(r.results[3].pairs);
+  s.expect = {e};
+  CHECK(run::mismatches(s, r).empty());
+  s.expect[0].pairs = *e.pairs + 1;
+  s.expect[0].relation = Relation::touching;
+  s.expect[0].fingerprint = *e.fingerprint + 1;
+  CHECK(run::mismatches(s, r).size() == 3);
+  s.expect[0].step = 99;
+  CHECK(run::mismatches(s, r).size() == 1);
+}
+
+TEST_CASE("refinement goes from the outermost wrapper to the body, construction back again") {
+  spec::Scenario s;
+  s.name = "one";
+  s.bodies.resize(1);
+  s.bodies[0].generator = "rock";
+  s.bodies[0].parameters = {{"frequency", 6}};
+  s.show = spec::Show::refinement;
+  const run::Recording down = run::record(s, kSilent);
+  const LrbRep& rep = down.bodies[0].rep;
+  CHECK(down.trace.events.size() == 1 + rep.region_count());
+  CHECK(down.trace.events.back().boundary == rep.real_face_count());
+
+  s.show = spec::Show::construction;
+  const run::Recording up = run::record(s, kSilent);
+  REQUIRE(up.milestones.size() == rep.layer_count() + 1);
+  CHECK(up.trace.events[up.milestones.front()].boundary == rep.real_face_count());
+  CHECK(up.trace.events[up.milestones.back()].boundary == rep.outermost_faces().size());
+  CHECK(up.milestones.back() + 1 == up.trace.events.size());
+}
+
+TEST_CASE("moments: first and last are always there, never too many") {
+  const run::Recording r = run::record(two_balls(), kSilent);
+  spec::FrameSpec spec;
+  CHECK(run::moments(spec, r.trace).size() == 8);
+  spec.most = 3;
+  const std::vector<trace::EventId> three = run::moments(spec, r.trace);
+  REQUIRE(three.size() == 3);
+  CHECK(three.front() == run::last_event(r.trace, 0));
+  CHECK(three.back() == r.trace.events.size() - 1);
+  spec.at = spec::FrameSpec::At::none;
+  CHECK(run::moments(spec, r.trace).empty());
+  spec.at = spec::FrameSpec::At::refinement;
+  spec.most = 100'000;
+  for (const trace::EventId e : run::moments(spec, r.trace))
+    CHECK((r.trace.events[e].kind == EventKind::refine || r.trace.events[e].kind == EventKind::step));
+  CHECK(run::evenly(10, 4) == std::vector<std::size_t>{0, 3, 6, 9});
+  CHECK(run::evenly(2, 9) == std::vector<std::size_t>{0, 1});
+}
+
+TEST_CASE("hull volumes of bodies whose hull is known") {
+  std::vector<Eigen::Vector3d> cube;
+  for (int i = 0; i < 27; ++i)
+    cube.emplace_back(i % 3, i / 3 % 3, i / 9);  // with points on faces, edges and inside
+  CHECK(bodies::hull_volume(cube) == doctest::Approx(8));
+  CHECK(bodies::hull_volume(std::vector<Eigen::Vector3d>(cube.begin(), cube.begin() + 9)) == 0);  // flat
+  CHECK(bodies::hull_volume({}) == 0);
+  const Mesh ball = generators::generate("ball", {{"frequency", 6}});
+  const LrbRep rep = LrbRep::without_regions(ball, true, false);
+  std::vector<FaceId> faces(rep.real_face_count());
+  for (FaceId f = 0; f < faces.size(); ++f) faces[f] = f;
+  CHECK(bodies::hull_volume(ball.vertices) ==
+        doctest::Approx(enclosed_volume(rep, faces)));  // a convex body is its own hull
+  std::vector<Eigen::Vector3d> square = {{0, 0, 0}, {2, 0, 0}, {1, 1, 0}, {2, 2, 0}, {0, 2, 0}, {1, 0, 0}};
+  CHECK(bodies::hull_area(square) == doctest::Approx(4));
+}
+
+TEST_CASE("the shipped collisions come out as they promise, and as brute force has it") {
+  for (const std::string& name : spec::shipped_names(spec::kScenarioEnding)) {
+    const spec::Scenario s = spec::open_scenario(name);
+    if (s.show != spec::Show::collision) continue;
+    CAPTURE(s.name);
+    CHECK_FALSE(s.expect.empty());
+    const run::Recording r = run::record(s, kSilent);
+    for (const std::string& line : run::mismatches(s, r)) FAIL_CHECK(line);
+    const trace::Step& last = r.trace.steps.back();
+    const BruteForceResult truth = brute_force(r.bodies[0].rep, last.pose_a, r.bodies[1].rep, last.pose_b);
+    const CollideResult& answer = r.results.back();
+    CHECK(truth.relation == answer.relation);
+    if (!s.request.is_coarse()) {
+      CHECK(truth.pairs == answer.pairs);
+      continue;
+    }
+    CHECK(answer.error_bound > 0);
+    std::size_t real = 0;
+    for (const SimplexPair& p : answer.pairs) {
+      if (!r.bodies[0].rep.is_real_simplex(p.a) || !r.bodies[1].rep.is_real_simplex(p.b)) continue;
+      CHECK(std::binary_search(truth.pairs.begin(), truth.pairs.end(), p));
+      ++real;
+    }
+    CHECK(real < answer.pairs.size());  // or it shows nothing
+  }
+}

@@ -1,0 +1,66 @@
+#pragma once
+/// The program itself, run in a folder of its own.
+
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include <doctest/doctest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "tests/support/folder.hpp"
+
+namespace lrb::test {
+
+inline std::string slurp(const std::string& path) {
+  std::ostringstream out;
+  out << std::ifstream(path, std::ios::binary).rdbuf();
+  return out.str();
+}
+
+struct Outcome {
+  int code = -1;
+  std::string out, err;
+  std::size_t error_lines() const {
+    return static_cast<std::size_t>(std::count(err.begin(), err.end(), '\n'));
+  }
+};
+
+/// Runs the program in the folder; arguments are quoted for the shell.
+inline Outcome run(const Folder& folder, const std::vector<std::string>& arguments) {
+  std::string line = "cd '" + folder.path.string() + "' && '" LRBSCOPE_BINARY "'";
+  for (const std::string& a : arguments) line += " '" + a + "'";
+  line += " >'" + folder / "stdout" + "' 2>'" + folder / "stderr" + "' </dev/null";
+  const int status = std::system(line.c_str());
+  Outcome o;
+  o.code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  o.out = slurp(folder / "stdout");
+  o.err = slurp(folder / "stderr");
+  std::filesystem::remove(folder / "stdout");
+  std::filesystem::remove(folder / "stderr");
+  return o;
+}
+
+/// Runs the program with arguments that it refuses, in one line, before it writes anything.
+inline Outcome check_refused(const Folder& folder, const std::vector<std::string>& arguments) {
+  const std::vector<std::string> before = folder.tree();
+  const Outcome o = run(folder, arguments);
+  CAPTURE(o.err);
+  CHECK(o.code == 2);
+  CHECK(o.error_lines() == 1);
+  CHECK(o.out.empty());
+  CHECK(folder.tree() == before);
+  return o;
+}
+
+inline const char* const kCube =
+    "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\n"
+    "f 1 4 3 2\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n";
+inline const char* const kApart = "1 0 0 3 0 1 0 0 0 0 1 0\n";
+
+}  // namespace lrb::test

@@ -1,0 +1,160 @@
+// Whatever the query leaves out is exactly apart: the boxes of every pair of tree nodes, as the kernel turns
+// them from one body's axes to the other's and grows them, against exact arithmetic on the world coordinates
+// that the answer is about.
+#include <cmath>
+
+#include <doctest/doctest.h>
+
+#include "engine/query/walk/tree_query.hpp"
+#include "scenarios/bodies/shapes/shapes.hpp"
+#include "scenarios/cases/families.hpp"
+
+#define LRB_KERNEL_NAME run_tree_kernel_for_enclosure
+namespace lrb {
+void run_tree_kernel_for_enclosure(TreeKernel& k);
+}
+#include "engine/tree/tree_kernel.inl"
+#include "tests/support/exact_boxes.hpp"
+
+using namespace lrb;
+
+namespace {
+
+/// World coordinates of one body seen on A's axes, in query units: r_a^T (w - t_a) / unit.
+class Seen {
+ public:
+  Seen(const LrbRep& rep, const Pose& pose, const Pose& pose_a, double unit) : rep_(rep) {
+    const int e = -std::ilogb(unit);
+    for (const auto& v : rep.vertices()) {
+      const Eigen::Vector3d w = pose.apply(v);
+      Exact3 x;
+      for (int j = 0; j < 3; ++j)
+        for (int i = 0; i < 3; ++i)
+          x[j] = x[j] + (Exact(pose_a.r(i, j)) * (Exact(w[i]) - Exact(pose_a.t[i]))).times_power_of_two(e);
+      on_a_.push_back(x);
+    }
+  }
+  /// To B's axes: m^T (x - t), with the kernel's m and t.
+  void turn(const TreeKernel& k) {
+    for (Exact3& x : on_a_) {
+      Exact3 y;
+      for (int j = 0; j < 3; ++j)
+        for (int i = 0; i < 3; ++i) y[j] = y[j] + Exact(k.m[j][i]) * (x[i] - Exact(k.t[i]));
+      x = y;
+    }
+  }
+  /// Of every real simplex, in a node's coordinates.
+  std::vector<Range3> in_node(const TreeNode& n, float ratio) const {
+    std::vector<Exact3> y(on_a_.size());
+    for (std::size_t v = 0; v < y.size(); ++v)
+      for (int i = 0; i < 3; ++i)
+        for (int j = 0; j < 3; ++j)
+          y[v][i] = y[v][i] + Exact(n.frame[i][j]) * (on_a_[v][j] - Exact(n.origin[j]) * Exact(ratio));
+    std::vector<Range3> r(rep_.real_simplex_count());
+    for (SimplexId s = 0; s < r.size(); ++s) {
+      VertexId v[3];
+      rep_.simplex(s, v);
+      for (int corner = 0; corner < rep_.dim(); ++corner)
+        for (int i = 0; i < 3; ++i) r[s][i].extend(y[v[corner]][i]);
+    }
+    return r;
+  }
+
+ private:
+  const LrbRep& rep_;
+  std::vector<Exact3> on_a_;
+};
+
+Share check_nodes(const Scene& s) {
+  Share share;
+  const TreeKernel k = set_up_kernel(*s.a, s.pose_a, *s.b, s.pose_b);
+  const double unit = std::max(s.a->tree().unit(), s.b->tree().unit());
+  Seen a(*s.a, s.pose_a, s.pose_a, unit), b(*s.b, s.pose_b, s.pose_a, unit);
+  Seen a_turned = a, b_turned = b;
+  a_turned.turn(k);
+  b_turned.turn(k);
+  const auto &nodes_a = s.a->tree().nodes(), &nodes_b = s.b->tree().nodes();
+  struct View {
+    std::vector<Range3> of_a, of_b;
+  };
+  std::vector<View> on_a, on_b;
+  for (const TreeNode& n : nodes_a) on_a.push_back({a.in_node(n, k.ratio_a), b.in_node(n, k.ratio_a)});
+  for (const TreeNode& n : nodes_b)
+    on_b.push_back({a_turned.in_node(n, k.ratio_b), b_turned.in_node(n, k.ratio_b)});
+  for (std::uint32_t p = 0; p < nodes_a.size(); ++p)
+    for (std::uint32_t q = 0; q < nodes_b.size(); ++q) {
+      const Between w = between(k, nodes_a[p], nodes_b[q]);
+      if (!(w.error < 1e30f)) continue;  // overflow: nothing is culled
+      const Boxes boxes_a = decode(nodes_a[p], k.ratio_a), boxes_b = decode(nodes_b[q], k.ratio_b);
+      std::vector<Range3> a_on_a, b_on_a, a_on_b, b_on_b;
+      for (const auto& list : contents(*s.a, p)) {
+        a_on_a.push_back(united(on_a[p].of_a, list));
+        a_on_b.push_back(united(on_b[q].of_a, list));
+      }
+      for (const auto& list : contents(*s.b, q)) {
+        b_on_a.push_back(united(on_a[p].of_b, list));
+        b_on_b.push_back(united(on_b[q].of_b, list));
+      }
+      check_axes(a_on_a, b_on_a, boxes_a, turn_b<false>(boxes_b, w), w.error, share);
+      check_axes(b_on_b, a_on_b, boxes_b, turn_a<false>(boxes_a, w), w.error, share);
+    }
+  return share;
+}
+
+/// Pairs that boxes or planes have dropped do not meet, says the rational oracle.
+void check_dropped(const Scene& s, RandomEngine& random, int most, Asked& asked) {
+  TreeKernel k = set_up_kernel(*s.a, s.pose_a, *s.b, s.pose_b);
+  check_outcome(s, candidates_of(s, k, run_tree_kernel_for_enclosure), random, most, asked);
+}
+
+LrbRep closed(const Mesh& mesh, double size = 1) {
+  return LrbRep::without_regions(shapes::scaled(mesh, size), true, false);
+}
+
+/// Moves that strain the error terms: far off, an ulp from each other, no rotations.
+void spoil(Scene& s, RandomEngine& random, int kind) {
+  const Eigen::Vector3d far = std::pow(10, cases::pick(random, 0, 16)) * shapes::random_direction(random);
+  if (kind == 1) s.pose_b = s.pose_a;
+  if (kind == 2 || kind == 3) {
+    s.pose_a.t += far;
+    s.pose_b.t += far;
+  }
+  if (kind == 3) s.pose_b = s.pose_a;
+  if (kind == 4) s.pose_b.t += far;
+  if (kind == 5 || kind == 6)
+    for (Pose* p : {&s.pose_a, &s.pose_b}) {
+      p->r *= std::pow(10, shapes::uniform(random, -3, 3));
+      if (kind == 6) p->r(0, 1) += shapes::uniform(random, -1, 1);
+    }
+  if (kind == 7) s.pose_a.r = shapes::random_rotation(random) * Eigen::Vector3d(1, 1, 0).asDiagonal();
+  if (kind % 2)
+    for (int i = 0; i < 3; ++i) s.pose_b.t[i] = cases::nudged(s.pose_b.t[i], cases::pick(random, -1, 1));
+}
+
+}  // namespace
+
+TEST_CASE("whatever boxes leave out is apart in exact arithmetic: random and adversarial poses") {
+  RandomEngine random(31);
+  const double kSizes[] = {1, 1, 1e-12, 1e12, 1e-60, 1e100, 1e-308};
+  Share total;
+  Asked asked;
+  for (int i = 0; i < 56; ++i) {
+    CAPTURE(i);
+    const double size = kSizes[i % 7];
+    const bool both = i % 3 != 0;
+    const LrbRep a = closed(i % 2 ? shapes::bumpy_sphere(1, 3) : shapes::comb(3), both ? size : 1),
+                 b = closed(i % 5 ? shapes::icosphere(1) : shapes::torus(6, 5), size);
+    Scene s{&a, &b, cases::any_pose(random), {}};
+    s.pose_a.t *= both ? size : 1;
+    s.pose_b = shapes::random_pose(random, a, b, shapes::uniform(random, 0, 1.1));
+    s.pose_b.t = s.pose_a.apply(s.pose_b.t);
+    s.pose_b.r = s.pose_a.r * s.pose_b.r;
+    spoil(s, random, i % 8);
+    const Share share = check_nodes(s);
+    REQUIRE(share.too_small == 0);
+    REQUIRE(share.wrong == 0);
+    total += share;
+    check_dropped(s, random, 20, asked);
+  }
+  check_extent(total, asked, 1'000'000, 0.05);
+}
