@@ -69,7 +69,7 @@ class Recorder {
     if (faces_added != 0 && id != kNull) refined_by_[static_cast<std::size_t>(side)][region] = id + 1;
   }
 
-  /// Records that a wrapper grew back over a region. No query does so; runs that show a construction do.
+  /// Records that a wrapper grew back over a region: in a coarse query, or in a run that shows a construction.
   void coarsen(Side side, RegionId region, std::uint32_t faces_removed) {
     push({.a = region,
           .b = faces_removed,

@@ -84,6 +84,15 @@ inline constexpr double kThicknessRounding = 0x1p-40;
 /// lid could be missed; larger: bodies this close are refined further, or not proved apart.
 inline constexpr double kWrapperMargin = 0x1p-44;
 
+/// Factor on the kernel's slack where it walks wrappers. What it then drops or calls certain, a crossing as well as
+/// two faces that are apart, is so however the vertices are shifted by what rounding does to the wrappers and to the
+/// bodies in them. With S the sum of the largest terms of both bodies' world coordinates: a vertex is rounded by at
+/// most sqrt(3) 2^-51 of its own body's, so that in the deformation of coarse_query.hpp two vertices shift against
+/// each other by less than 2 sqrt(3) 2^-51 S < 2^-49 S; the kernel's own slack is at least 2^-46 S (kPoseSafety
+/// kWorldRounding S, and twice that for rotations), and so is what this factor adds. Smaller, but above 1 + 2^-3:
+/// enough, too; larger: more pairs are left to exact tests.
+inline constexpr float kWrapperSlack = 2;
+
 /// Largest deviation from a rotation (largest row sum of r^T r - 1) at which coherent queries still use
 /// candidate caches. Products of thousands of rotations drift less than this. The effect on lengths is
 /// allowed for (relative_motion.hpp), and this times a body's size is less than the motions that caches are

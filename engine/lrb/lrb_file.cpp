@@ -1,12 +1,14 @@
 #include "engine/lrb/lrb_file.hpp"
 
 #include <cstring>
+#include <optional>
 #include <vector>
 
 #include "engine/core/atomic_file.hpp"
 #include "engine/core/error.hpp"
 #include "engine/core/file_bytes.hpp"
 #include "engine/core/fnv.hpp"
+#include "engine/lrb/wrapper_level.hpp"
 
 namespace lrb {
 namespace {
@@ -14,8 +16,8 @@ namespace {
 /// Made like PNG's: a byte beyond ASCII and line ends reveal a file that was transferred as text.
 constexpr std::string_view kMagic("\x89LRB\r\n\x1a\n", 8);
 
-/// The first version that holds the hash and the tree.
-constexpr std::uint32_t kFirstWithTree = 2;
+/// The first versions that hold the hash and the tree, and levels.
+constexpr std::uint32_t kFirstWithTree = 2, kFirstWithLevels = 3;
 
 class Writer {
  public:
@@ -79,6 +81,40 @@ class Reader {
   std::size_t at_ = kMagic.size();
 };
 
+/// Writes whether there are levels, and what they cannot be made from quickly.
+void write_levels(const LrbRep& rep, Writer& w) {
+  w.value(static_cast<std::uint32_t>(rep.has_levels()));
+  if (!rep.has_levels()) return;
+  const WrapperLevels& levels = rep.levels();
+  w.array(levels.needed().data(), levels.needed().size());
+  w.value(static_cast<std::uint64_t>(levels.all().size()));
+  for (const WrapperLevel& level : levels.all()) {
+    w.value(level.bound);
+    w.array(level.tree.nodes());
+    w.array(level.tree.blocks());
+  }
+}
+
+struct StoredLevels {
+  std::vector<double> needed;
+  std::vector<WrapperLevels::StoredLevel> levels;
+};
+
+std::optional<StoredLevels> read_levels(Reader& r) {
+  const auto there = r.value<std::uint32_t>();
+  if (there > 1) r.refuse("it does not say whether there are levels");
+  if (there == 0) return std::nullopt;
+  StoredLevels s;
+  s.needed = r.array<double>();
+  for (auto count = r.value<std::uint64_t>(); count > 0; --count) {
+    WrapperLevels::StoredLevel& level = s.levels.emplace_back();
+    level.bound = r.value<double>();
+    level.nodes = r.array<TreeNode>();
+    level.blocks = r.array<LeafBlock>();
+  }
+  return s;
+}
+
 }  // namespace
 
 std::uint64_t lrb_checksum(std::string_view bytes, std::uint32_t version) {
@@ -106,6 +142,7 @@ void save_lrb(const LrbRep& rep, const std::string& path) {
   w.value(rep.hash());
   w.array(rep.tree().nodes());
   w.array(rep.tree().blocks());
+  write_levels(rep, w);
   w.value(lrb_checksum(w.bytes()));
   write_file(path, w.bytes());
 }
@@ -147,10 +184,14 @@ LrbRep load_lrb(std::string_view bytes, const std::string& name) {
   const auto hash = with_tree ? r.value<std::uint64_t>() : 0;
   auto nodes = with_tree ? r.array<TreeNode>() : std::vector<TreeNode>();
   auto blocks = with_tree ? r.array<LeafBlock>() : std::vector<LeafBlock>();
+  auto levels = version >= kFirstWithLevels ? read_levels(r) : std::nullopt;
   if (r.at() + sizeof stored != bytes.size()) r.refuse("there are bytes after the end of the .lrb data");
   if (d.face_offsets.empty()) r.refuse("the offsets of the faces are missing");
   try {
-    return with_tree ? LrbRep(std::move(d), std::move(nodes), std::move(blocks), hash) : LrbRep(std::move(d));
+    LrbRep rep =
+        with_tree ? LrbRep(std::move(d), std::move(nodes), std::move(blocks), hash) : LrbRep(std::move(d));
+    if (levels) rep.keep_levels(WrapperLevels(rep, std::move(levels->needed), std::move(levels->levels)));
+    return rep;
   } catch (const InputError& e) {
     throw InputError(printable_name(name) + ": " + e.what());
   }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <atomic>
 #include <map>
+#include <mutex>
 #include <numeric>
 
 #include <Eigen/Geometry>
@@ -11,6 +12,7 @@
 #include "engine/core/file_bytes.hpp"
 #include "engine/core/fnv.hpp"
 #include "engine/lrb/pieces.hpp"
+#include "engine/lrb/wrapper_level.hpp"
 
 namespace lrb {
 namespace {
@@ -68,6 +70,19 @@ double face_size(const LrbData& d, FaceId f) {
 
 }  // namespace
 
+/// The levels, once there are any.
+struct LrbRep::MadeLevels {
+  std::mutex making;
+  std::unique_ptr<const WrapperLevels> owner;
+  std::atomic<const WrapperLevels*> made{nullptr};  ///< what `owner` holds
+
+  const WrapperLevels& keep(WrapperLevels levels) {
+    owner = std::make_unique<const WrapperLevels>(std::move(levels));
+    made.store(owner.get(), std::memory_order_release);
+    return *owner;
+  }
+};
+
 LrbRep::LrbRep(LrbData data, unsigned threads) : d_(std::move(data)) {
   derive();
   hash_ = hash_of(d_);
@@ -99,6 +114,22 @@ void LrbRep::derive() {
       face_of_simplex_.insert(face_of_simplex_.end(), Mesh::simplices_of(d_.face(f).size(), 3), f);
   static std::atomic<std::uint64_t> next_serial{1};
   serial_ = next_serial++;
+  levels_ = std::make_shared<MadeLevels>();
+}
+
+const WrapperLevels& LrbRep::levels(unsigned threads) const {
+  if (const WrapperLevels* const made = levels_->made.load(std::memory_order_acquire)) return *made;
+  const std::lock_guard<std::mutex> lock(levels_->making);
+  if (const WrapperLevels* const made = levels_->made.load(std::memory_order_relaxed)) return *made;
+  return levels_->keep(WrapperLevels(*this, threads));
+}
+
+bool LrbRep::has_levels() const {
+  return levels_->made.load(std::memory_order_acquire) != nullptr;
+}
+
+void LrbRep::keep_levels(WrapperLevels levels) {
+  levels_->keep(std::move(levels));
 }
 
 LrbRep LrbRep::without_regions(const Mesh& mesh, bool closed, bool self_intersecting) {
@@ -184,7 +215,8 @@ std::size_t LrbRep::memory_bytes() const {
   return sizeof(*this) + bytes(d_.vertices) + bytes(d_.face_offsets) + bytes(d_.face_vertices) +
          bytes(d_.inner_cell) + bytes(d_.outer_cell) + bytes(d_.region_layer) + bytes(outermost_) +
          bytes(component_vertices_) + bytes(collector_offsets_) + bytes(collector_faces_) +
-         bytes(lid_count_) + bytes(parent_) + bytes(depth_) + bytes(face_of_simplex_) + tree_.memory_bytes();
+         bytes(lid_count_) + bytes(parent_) + bytes(depth_) + bytes(face_of_simplex_) + tree_.memory_bytes() +
+         (has_levels() ? levels().memory_bytes() : 0);
 }
 
 std::uint64_t hash_of(const LrbData& d) {

@@ -9,8 +9,8 @@
 /// its faces: its *lids* (the faces that it lies behind) and its *floor* (the faces that it lies in front
 /// of). A region may have zero volume.
 ///
-/// An LRB-rep does not change once built; it is const and has no caches, so that threads and bodies can share
-/// one.
+/// An LRB-rep does not change once built, so that threads and bodies can share one. What it keeps beside the
+/// complex, its levels, is made once by whoever asks first, and shared by all copies.
 ///
 /// It departs from the paper in one point: each face keeps an "inner" and an "outer" cell instead of an
 /// unordered pair, which costs nothing and makes "which cell hides which" a look-up. A mesh that cannot be
@@ -18,6 +18,7 @@
 /// a closed one has an inside.
 
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
@@ -51,6 +52,8 @@ struct LrbData {
     return {face_vertices.data() + face_offsets[f], face_offsets[f + 1] - face_offsets[f]};
   }
 };
+
+class WrapperLevels;
 
 /// Returns the FNV-1a hash (64 bits) of all members but the name.
 std::uint64_t hash_of(const LrbData& data);
@@ -139,6 +142,14 @@ class LrbRep {
   /// Returns the simplices as the tree sees them; the view refers to this LRB-rep.
   SimplexView simplices() const;
   const ObbTree& tree() const { return tree_; }
+  /// Returns the levels that coarse queries walk (wrapper_level.hpp). They come from the file, or are made by the
+  /// first call, which takes time of the order of building; other threads that call wait for it. `threads`: 1 inside
+  /// work that is shared among threads already.
+  const WrapperLevels& levels(unsigned threads = 1) const;
+  /// Returns true if the levels are there already.
+  bool has_levels() const;
+  /// Takes levels made for this LRB-rep, as a file stored them.
+  void keep_levels(WrapperLevels levels);
   /// Returns hash_of(data()), which identifies this very complex in traces and files.
   std::uint64_t hash() const { return hash_; }
   /// Returns a number that differs between any two LRB-reps made in this process (copies share it), so that
@@ -148,6 +159,8 @@ class LrbRep {
   std::size_t memory_bytes() const;
 
  private:
+  struct MadeLevels;
+
   void derive();
   void link_faces_to_regions();
   void find_parents();
@@ -167,6 +180,7 @@ class LrbRep {
   std::uint64_t hash_ = 0;
   std::uint64_t serial_ = 0;
   ObbTree tree_;
+  std::shared_ptr<MadeLevels> levels_;
 };
 
 }  // namespace lrb

@@ -10,7 +10,9 @@
 #include "engine/exact/predicates.hpp"
 #include "engine/exact/simplex_test.hpp"
 #include "engine/lrb/boundary_sum.hpp"
+#include "engine/lrb/thickness.hpp"
 #include "engine/lrb/wrapper.hpp"
+#include "engine/lrb/wrapper_level.hpp"
 #include "engine/mesh/face_pairs.hpp"
 #include "engine/tree/self_pairs.hpp"
 
@@ -54,6 +56,20 @@ class Validator {
     if (!rep_.tree().bounds_hold(rep_.simplices()))
       violation("the query's tree has bounds that do not hold its faces");
     if (hash_of(rep_.data()) != rep_.hash()) violation("the stored hash is not that of the complex");
+    if (rep_.has_levels()) check_levels(rep_.levels());
+  }
+
+  /// Checks what is taken on trust of levels from a file; the rest was checked when they were read.
+  void check_levels(const WrapperLevels& levels) {
+    if (levels.needed().empty()) return;
+    const std::vector<double> thickness = region_thickness(rep_);
+    for (RegionId r = 0; r < rep_.region_count(); ++r)
+      if (levels.needed()[r] < thickness[r])
+        violation("region " + std::to_string(r) + " is stored as thinner than can be proved");
+    for (const WrapperLevel& level : levels.all())
+      if (!level.tree.bounds_hold(rep_.simplices()))
+        violation("the tree of the level of " + std::to_string(level.face_count) +
+                  " faces has bounds that do not hold its faces");
   }
 
   void check_closed(const std::string& what) {

@@ -2,22 +2,43 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
+#include <string>
 
+#include "engine/core/error.hpp"
+#include "engine/core/parallel.hpp"
 #include "engine/lrb/pieces.hpp"
 #include "engine/lrb/thickness.hpp"
-#include "engine/lrb/wrapper.hpp"
 
 namespace lrb {
 namespace {
 
-// The number of levels kept; without a limit, a sweep over tolerances would keep one for each.
-constexpr std::size_t kMostLevels = 24;
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+/// From one level to the next the number of faces grows by this factor at most, where regions are small enough.
+/// Smaller: more levels to make and keep; larger: a tolerance between two levels costs that many faces more.
+constexpr double kLevelStep = 4.0 / 3;
+/// A wrapper with a larger share of the body's own faces is no level: the exact query costs hardly more. Also
+/// limits what all levels take together: about twice as many faces as the body has.
+constexpr double kMostFaces = 0.5;
+/// More levels than kLevelStep makes of the largest body: a file with more is not one of ours.
+constexpr std::size_t kMostLevels = 128;
+
+[[noreturn]] void refuse(const std::string& what) {
+  throw InputError("the levels of the LRB-rep " + what + "; build it again from its mesh");
+}
+
+bool has_levels(const LrbRep& rep) {
+  return rep.region_count() > 0 && rep.closed() && !rep.self_intersecting();
+}
 
 /// Returns, for each region, the largest thickness among the region and all that it hides. Passes values
 /// outward until none grows.
 std::vector<double> needed_tolerances(const LrbRep& rep) {
   std::vector<double> needed = region_thickness(rep);
+  for (RegionId r = 0; r < rep.region_count(); ++r)
+    if (rep.lids(r).empty()) needed[r] = kInfinity;
   std::vector<RegionId> work(rep.region_count());
   std::iota(work.begin(), work.end(), RegionId{0});
   while (!work.empty()) {
@@ -33,48 +54,153 @@ std::vector<double> needed_tolerances(const LrbRep& rep) {
   return needed;
 }
 
+/// Throws InputError if a region could be included without something that it hides.
+void check_needed(const LrbRep& rep, const std::vector<double>& needed) {
+  if (needed.size() != (has_levels(rep) ? rep.region_count() : 0)) refuse("are not for its regions");
+  for (RegionId r = 0; r < needed.size(); ++r) {
+    if (!(needed[r] >= 0)) refuse("need a tolerance that is none for region " + std::to_string(r));
+    if (rep.lids(r).empty() && needed[r] != kInfinity)
+      refuse("include region " + std::to_string(r) + ", which has no lid");
+    for (const FaceId lid : rep.lids(r)) {
+      const CellId over = rep.outer_cell(lid);
+      if (is_region(over) && needed[over] < needed[r])
+        refuse("include region " + std::to_string(over) + " without region " + std::to_string(r) +
+               ", which it hides");
+    }
+  }
+}
+
+/// Tells which faces bound the wrapper of a tolerance. Regions need no more than what hides them, so that the
+/// wrapper of each tolerance shows a face from where the cell behind it is included until the one before it is.
+class Boundaries {
+ public:
+  Boundaries(const LrbRep& rep, std::span<const double> needed) : rep_(rep), needed_(needed) {}
+
+  /// Returns the faces at each of some descending tolerances.
+  std::vector<std::vector<FaceId>> faces(std::span<const double> tolerances) const {
+    std::vector<std::vector<FaceId>> out(tolerances.size());
+    const auto count_from = [&](double x) {  // how many are x or more
+      return std::partition_point(tolerances.begin(), tolerances.end(), [&](double t) { return t >= x; }) -
+             tolerances.begin();
+    };
+    for (FaceId f = 0; f < rep_.face_count(); ++f) {
+      const auto end = count_from(need(rep_.inner_cell(f)));
+      for (auto i = count_from(need(rep_.outer_cell(f))); i < end; ++i)
+        out[static_cast<std::size_t>(i)].push_back(f);
+    }
+    return out;
+  }
+
+  /// Returns the number of faces at each of some ascending tolerances.
+  std::vector<std::uint32_t> face_counts(std::span<const double> tolerances) const {
+    const auto place = [&](CellId cell) {
+      return std::lower_bound(tolerances.begin(), tolerances.end(), need(cell)) - tolerances.begin();
+    };
+    std::vector<std::int64_t> change(tolerances.size() + 1, 0);
+    for (FaceId f = 0; f < rep_.face_count(); ++f) {
+      ++change[static_cast<std::size_t>(place(rep_.inner_cell(f)))];
+      --change[static_cast<std::size_t>(place(rep_.outer_cell(f)))];
+    }
+    std::partial_sum(change.begin(), change.end(), change.begin());
+    return {change.begin(), change.end() - 1};
+  }
+
+ private:
+  /// The solid is in every wrapper, the outside in none.
+  double need(CellId cell) const { return is_region(cell) ? needed_[cell] : cell == kSolid ? 0 : kInfinity; }
+
+  const LrbRep& rep_;
+  std::span<const double> needed_;
+};
+
+/// Returns the bounds of the levels that are worth their memory, coarsest first.
+std::vector<double> choose_bounds(const LrbRep& rep, std::span<const double> needed) {
+  std::vector<double> bounds;
+  std::copy_if(needed.begin(), needed.end(), std::back_inserter(bounds),
+               [](double x) { return x < kInfinity; });
+  std::sort(bounds.begin(), bounds.end());
+  bounds.erase(std::unique(bounds.begin(), bounds.end()), bounds.end());
+  const std::vector<std::uint32_t> faces = Boundaries(rep, needed).face_counts(bounds);
+  std::vector<std::size_t> chosen;
+  const auto choose = [&](std::size_t i) {
+    while (!chosen.empty() && faces[chosen.back()] >= faces[i]) chosen.pop_back();  // finer for no more faces
+    chosen.push_back(i);
+  };
+  const auto is_beyond = [&](std::size_t i) {
+    return chosen.empty() || faces[i] > kLevelStep * faces[chosen.back()];
+  };
+  std::size_t i = bounds.size();
+  for (; i-- > 0 && faces[i] <= kMostFaces * rep.real_face_count();) {
+    if (!is_beyond(i)) continue;
+    if (!chosen.empty()) choose(i + 1);
+    if (is_beyond(i)) choose(i);
+  }
+  if (!chosen.empty()) choose(i + 1);  // the finest
+  std::vector<double> out;
+  for (const std::size_t at : chosen) out.push_back(bounds[at]);
+  return out;
+}
+
+/// Fills in a level but for its tree. Returns the simplices that the tree holds.
+std::vector<SimplexId> outline(const LrbRep& rep, double bound, std::span<const FaceId> faces,
+                               WrapperLevel& level) {
+  level.bound = bound;
+  level.face_count = static_cast<std::uint32_t>(faces.size());
+  level.component_vertices = piece_vertices(rep, faces);
+  std::vector<SimplexId> simplices;
+  for (const FaceId f : faces) {
+    level.pseudo_count += !rep.is_real(f);
+    const std::size_t count = Mesh::simplices_of(rep.face(f).size(), rep.dim());
+    for (std::size_t i = 0; i < count; ++i) simplices.emplace_back(rep.first_simplex(f) + i);
+  }
+  return simplices;
+}
+
 }  // namespace
 
-WrapperLevels::WrapperLevels(const LrbRep& rep) : rep_(rep) {
-  if (!rep.closed() || rep.self_intersecting()) return;
+WrapperLevels::WrapperLevels(const LrbRep& rep, unsigned threads) {
+  if (!has_levels(rep)) return;
   needed_ = needed_tolerances(rep);
-  for (const double x : needed_) {
-    if (!std::isfinite(x)) continue;
-    largest_ = std::max(largest_, x);
-    smallest_ = smallest_ == 0 ? x : std::min(smallest_, x);
+  const std::vector<double> bounds = choose_bounds(rep, needed_);
+  const std::vector<std::vector<FaceId>> faces = Boundaries(rep, needed_).faces(bounds);
+  levels_.resize(bounds.size());
+  Workers workers(threads);
+  workers.for_each(bounds.size(), [&](std::size_t i, unsigned) {
+    const std::vector<SimplexId> simplices = outline(rep, bounds[i], faces[i], levels_[i]);
+    levels_[i].tree = ObbTree(rep.simplices(), simplices);
+  });
+}
+
+WrapperLevels::WrapperLevels(const LrbRep& rep, std::vector<double> needed, std::vector<StoredLevel> stored)
+    : needed_(std::move(needed)) {
+  check_needed(rep, needed_);
+  if (stored.size() > (needed_.empty() ? 0 : kMostLevels)) refuse("are too many");
+  std::vector<double> bounds;
+  for (const StoredLevel& from : stored) {
+    if (!(from.bound >= 0 && from.bound < (bounds.empty() ? kInfinity : bounds.back())))
+      refuse("are not in order");
+    bounds.push_back(from.bound);
+  }
+  const std::vector<std::vector<FaceId>> faces = Boundaries(rep, needed_).faces(bounds);
+  levels_.resize(bounds.size());
+  for (std::size_t i = 0; i < bounds.size(); ++i) {
+    const std::vector<SimplexId> simplices = outline(rep, bounds[i], faces[i], levels_[i]);
+    levels_[i].tree =
+        ObbTree(rep.simplices(), simplices, std::move(stored[i].nodes), std::move(stored[i].blocks));
   }
 }
 
-const WrapperLevel& WrapperLevels::at(double tolerance) {
-  for (const auto& level : levels_)
-    if (level->tolerance == tolerance) return *level;
-  auto level = make(tolerance);
-  if (levels_.size() == kMostLevels) levels_.clear();
-  levels_.push_back(std::move(level));
-  return *levels_.back();
+const WrapperLevel* WrapperLevels::within(double tolerance) const {
+  const auto level = std::find_if(levels_.begin(), levels_.end(),
+                                  [&](const WrapperLevel& x) { return x.bound <= tolerance; });
+  return level == levels_.end() ? nullptr : &*level;
 }
 
-std::unique_ptr<WrapperLevel> WrapperLevels::make(double tolerance) const {
-  auto level = std::make_unique<WrapperLevel>();
-  level->tolerance = tolerance;
-  Wrapper wrapper(rep_);
-  for (RegionId r = 0; r < rep_.region_count(); ++r) {
-    if (!needed_.empty() && needed_[r] <= tolerance)
-      level->bound = std::max(level->bound, needed_[r]);
-    else
-      wrapper.refine(r);
-  }
-  std::vector<SimplexId> simplices;
-  const std::vector<FaceId> faces = wrapper.boundary();
-  for (const FaceId f : faces) {
-    level->pseudo_count += !rep_.is_real(f);
-    const std::size_t count = Mesh::simplices_of(rep_.face(f).size(), rep_.dim());
-    for (std::size_t i = 0; i < count; ++i) simplices.emplace_back(rep_.first_simplex(f) + i);
-  }
-  level->face_count = static_cast<std::uint32_t>(faces.size());
-  level->component_vertices = piece_vertices(rep_, faces);
-  level->tree = ObbTree(rep_.simplices(), simplices);
-  return level;
+std::size_t WrapperLevels::memory_bytes() const {
+  std::size_t bytes = needed_.capacity() * sizeof(double) + levels_.capacity() * sizeof(WrapperLevel);
+  for (const WrapperLevel& level : levels_)
+    bytes += level.tree.memory_bytes() + level.component_vertices.capacity() * sizeof(VertexId);
+  return bytes;
 }
 
 }  // namespace lrb

@@ -2,7 +2,8 @@
 /// Levels of a body: wrappers that include every region no thicker than a tolerance, ready to be queried like
 /// a body.
 
-#include <memory>
+#include <cstdint>
+#include <span>
 #include <vector>
 
 #include "engine/lrb/lrb_rep.hpp"
@@ -11,37 +12,47 @@
 namespace lrb {
 
 struct WrapperLevel {
-  double tolerance = 0;  ///< the tolerance that was asked for, mesh's unit
-  /// No point of the wrapper is further than this from a real face; 0: it is the body itself.
+  /// No point of its lids is further than this from a real face; mesh's unit. Every region that is no thicker,
+  /// and hides none that is, is included.
   double bound = 0;
   ObbTree tree;  ///< over the simplices of its boundary, numbered as in the LRB-rep
   std::vector<VertexId> component_vertices;  ///< one vertex of each connected piece of the boundary
   std::uint32_t face_count = 0, pseudo_count = 0;
 };
 
-/// The levels of one body, each made when it is first asked for. An LRB-rep without regions, or of a body
-/// that is not closed or intersects itself, has only one level: itself.
+/// The levels of one body: a row of wrappers from the outermost one inward, each with about a third more faces
+/// than the one before, up to half the body's. LrbRep::levels() makes and keeps them. An LRB-rep without
+/// regions, or of a body that is not closed or intersects itself, has none.
 ///
 /// A region is included only together with everything that it hides, so that the wrapper encloses the body.
-/// That it does so rests on the LRB-rep being embedded (validate.hpp), as those that the builders make are.
+/// That it does so rests on the LRB-rep being embedded (validate.hpp), as those that the builders make are. A
+/// region that nothing hides, such as a void, is never included: it has no lid that could be near the body.
 class WrapperLevels {
  public:
-  explicit WrapperLevels(const LrbRep& rep);
+  /// The tree of a level, as a file stores it.
+  struct StoredLevel {
+    double bound;
+    std::vector<TreeNode> nodes;
+    std::vector<LeafBlock> blocks;
+  };
 
-  /// Returns the level for a tolerance >= 0 (mesh's unit). The reference is valid until the next call with a
-  /// tolerance that was not asked for before.
-  const WrapperLevel& at(double tolerance);
-  /// Returns the least tolerance that includes all regions that can be included: 0 if none can.
-  double largest_thickness() const { return largest_; }
-  double smallest_thickness() const { return smallest_; }
+  explicit WrapperLevels(const LrbRep& rep, unsigned threads = 1);
+  /// Takes levels as they were stored. Throws InputError unless every wrapper encloses the body as far as the
+  /// LRB-rep is embedded, and its tree can be walked safely and holds the faces of the wrapper once each. That
+  /// `needed` is not too small, and that the trees' bounds are right, is assumed: validate() tells.
+  WrapperLevels(const LrbRep& rep, std::vector<double> needed, std::vector<StoredLevel> stored);
+
+  /// Returns the coarsest level that is off by no more than a tolerance (mesh's unit); null: only the body is.
+  const WrapperLevel* within(double tolerance) const;
+  std::span<const WrapperLevel> all() const { return levels_; }  ///< coarsest first; bounds fall, faces rise
+  /// Returns, for each region, the tolerance from which on it is included: the largest thickness among the
+  /// region and all that it hides. Empty for a body without levels; infinite where it never is.
+  std::span<const double> needed() const { return needed_; }
+  std::size_t memory_bytes() const;
 
  private:
-  std::unique_ptr<WrapperLevel> make(double tolerance) const;
-
-  const LrbRep& rep_;
-  std::vector<double> needed_;  ///< (|R|): the tolerance from which on a region is included
-  double largest_ = 0, smallest_ = 0;
-  std::vector<std::unique_ptr<WrapperLevel>> levels_;
+  std::vector<double> needed_;
+  std::vector<WrapperLevel> levels_;
 };
 
 }  // namespace lrb

@@ -17,6 +17,9 @@ class Teller {
   void refine(Side side, RegionId region, std::uint32_t faces_added) {
     probe_.refine(side, region, faces_added);
   }
+  void coarsen(Side side, RegionId region, std::uint32_t faces_removed) {
+    probe_.coarsen(side, region, faces_removed);
+  }
   void contact(SimplexId a, SimplexId b, exact::Meet meet) { probe_.contact(a, b, meet); }
 
  private:
@@ -27,6 +30,7 @@ class Teller {
 
 void CollideProbe::face_test(SimplexId, SimplexId, exact::Meet, std::uint32_t, std::uint32_t) {}
 void CollideProbe::refine(Side, RegionId, std::uint32_t) {}
+void CollideProbe::coarsen(Side, RegionId, std::uint32_t) {}
 void CollideProbe::contact(SimplexId, SimplexId, exact::Meet) {}
 
 CollideResult collide(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,

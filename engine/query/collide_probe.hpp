@@ -18,7 +18,9 @@ class CollideProbe {
   /// A region of a body's wrapper was refined, which brought in as many faces. After a face test that hit,
   /// that test is the cause.
   virtual void refine(Side side, RegionId region, std::uint32_t faces_added);
-  /// Two real simplices meet: part of the answer.
+  /// A region was taken back in: a coarse query has asked the bodies for a first pair and goes on with wrappers.
+  virtual void coarsen(Side side, RegionId region, std::uint32_t faces_removed);
+  /// Two simplices meet: part of the answer. They are real, but for coarse queries.
   virtual void contact(SimplexId a, SimplexId b, exact::Meet meet);
 };
 

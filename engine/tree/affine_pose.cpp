@@ -112,6 +112,7 @@ TreeKernel set_up_affine_kernel(const ObbTree& a, const Pose& pose_a, const ObbT
   const AffineMap maps[2] = {AffineMap(pose_a, a, dim), AffineMap(pose_b, b, dim)};
   const int exponent = query_exponent(maps[0], pose_a, maps[1], pose_b);
   TreeKernel k{};
+  k.most_node_pairs = kNoLimit;
   terms = {};
   terms.exponent = exponent;
   k.affine = &terms;

@@ -61,6 +61,7 @@ TreeKernel kernel_of(const RelativeTurn& turn, const ObbTree& a, const Pose& pos
   k.slack = static_cast<float>(kPoseSafety * (on_a + on_b)) * kFloatUp + kKernelTiny;
   k.m_size = static_cast<float>(turn_m) * kFloatUp;
   k.needles = a.has_needles() && b.has_needles();
+  k.most_node_pairs = kNoLimit;
   return k;
 }
 
@@ -83,11 +84,11 @@ TreeKernel set_up_any_kernel(const ObbTree& a, const Pose& pose_a, const ObbTree
              : set_up_affine_kernel(a, pose_a, b, pose_b, dim, terms);
 }
 
-void double_slack(TreeKernel& k) {
-  k.slack *= 2;
+void allow_for_wrappers(TreeKernel& k) {
+  k.slack *= kWrapperSlack;
   if (k.affine == nullptr) return;
-  for (AffineTerms::Axes& axes : k.affine->axes) axes.slack *= 2;
-  k.affine->world_slack *= 2;
+  for (AffineTerms::Axes& axes : k.affine->axes) axes.slack *= kWrapperSlack;
+  k.affine->world_slack *= kWrapperSlack;
 }
 
 }  // namespace lrb

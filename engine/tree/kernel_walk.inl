@@ -112,24 +112,9 @@ inline void push(TreeKernel& k, std::uint32_t a, std::uint32_t b) {
   k.stack[k.stack_size++] = {a, b};
 }
 
-/// Sorts the pairs that were pushed last, so that the one with the least gap comes last; if there are many,
-/// moves only that one.
-inline void nearest_last(NodePair* pairs, float* gaps, std::uint32_t size) {
-  constexpr std::uint32_t kFew = 8;
-  if (size <= kFew) {
-    for (std::uint32_t i = 1; i < size; ++i) {
-      const NodePair pair = pairs[i];
-      const float gap = gaps[i];
-      std::uint32_t at = i;
-      for (; at > 0 && gaps[at - 1] < gap; --at) {
-        gaps[at] = gaps[at - 1];
-        pairs[at] = pairs[at - 1];
-      }
-      gaps[at] = gap;
-      pairs[at] = pair;
-    }
-    return;
-  }
+/// Moves the pair with the least gap to the end of those that were pushed last; the others need no order.
+inline void nearest_last(NodePair* pairs, const float* gaps, std::uint32_t size) {
+  if (size == 0) return;
   std::uint32_t nearest = 0;
   for (std::uint32_t i = 1; i < size; ++i)
     if (gaps[i] < gaps[nearest]) nearest = i;
@@ -247,9 +232,14 @@ inline void leaf_pair(TreeKernel& k, const TreeNode& na, const TreeNode& nb) {
 /// boxes would meet the same few of its own.
 constexpr float kMuchLarger = 3;
 
+/// The nearest pair of boxes is looked for in the first so many pairs of nodes: bodies that meet mostly show it in
+/// these, and for bodies that do not meet any order is as good.
+constexpr std::uint64_t kNearestPairs = 24;
+
 template <class Walk, bool kNearest>
 void run(TreeKernel& k) {
-  while (k.stack_size != 0 && k.out_capacity - k.out_size >= 64) {
+  const std::uint64_t end = kNearest && kNearestPairs < k.most_node_pairs ? kNearestPairs : k.most_node_pairs;
+  while (k.stack_size != 0 && k.out_capacity - k.out_size >= 64 && k.node_pairs < end) {
     const NodePair p = k.stack[--k.stack_size];
     const TreeNode& a = k.nodes_a[p.a];
     const TreeNode& b = k.nodes_b[p.b];
@@ -267,6 +257,8 @@ void run(TreeKernel& k) {
     else
       descend_both<Walk, kNearest>(k, a, b);
   }
+  if constexpr (kNearest)
+    if (k.node_pairs >= kNearestPairs) run<Walk, false>(k);
 }
 
 }  // namespace

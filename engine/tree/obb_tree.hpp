@@ -60,6 +60,9 @@ class ObbTree {
   /// Takes a tree as it was stored. Throws InputError unless it can be walked safely and its leaves hold
   /// every real simplex once. Assumes that its bounds are right: bounds_hold() tells.
   ObbTree(const SimplexView& body, std::vector<TreeNode> nodes, std::vector<LeafBlock> blocks);
+  /// Does the same with a tree over the listed simplices.
+  ObbTree(const SimplexView& body, std::span<const SimplexId> simplices, std::vector<TreeNode> nodes,
+          std::vector<LeafBlock> blocks);
 
   /// Returns true if every node's boxes hold what lies beneath: the query's completeness rests on this.
   bool bounds_hold(const SimplexView& body) const;

@@ -16,9 +16,9 @@ namespace {
                    "; build the LRB-rep again from its mesh");
 }
 
-/// Checks a leaf and notes its simplices.
+/// Checks a leaf and takes its simplices from those that are missing.
 void check_leaf(std::size_t i, const TreeNode& node, const std::vector<LeafBlock>& blocks,
-                std::vector<bool>& block_seen, std::vector<bool>& simplex_seen) {
+                std::vector<bool>& block_seen, std::vector<bool>& missing) {
   if (node.first >= blocks.size() || block_seen[node.first]) refuse(i, "has no block of its own");
   block_seen[node.first] = true;
   for (std::uint32_t k = 0; k < kTreeWidth; ++k) {
@@ -27,24 +27,26 @@ void check_leaf(std::size_t i, const TreeNode& node, const std::vector<LeafBlock
       if (s != kNull) refuse(i, "has a block with more faces than it counts");
       continue;
     }
-    if (s >= simplex_seen.size() || simplex_seen[s])
-      refuse(i, "holds a face that does not exist or is in another leaf, too");
-    simplex_seen[s] = true;
+    if (s >= missing.size() || !missing[s])
+      refuse(i, "holds a face that is not the tree's or is in another leaf, too");
+    missing[s] = false;
   }
 }
 
 /// Checks that everything is reached once from the root, and that children come after their parents.
 void check_structure(const std::vector<TreeNode>& nodes, const std::vector<LeafBlock>& blocks,
-                     std::uint32_t simplices) {
-  std::vector<bool> node_seen(nodes.size(), false), block_seen(blocks.size(), false),
-      simplex_seen(simplices, false);
+                     std::span<const SimplexId> simplices) {
+  std::vector<bool> node_seen(nodes.size(), false), block_seen(blocks.size(), false);
+  std::vector<bool> missing(
+      simplices.empty() ? 0 : *std::max_element(simplices.begin(), simplices.end()) + std::size_t{1}, false);
+  for (const SimplexId s : simplices) missing[s] = true;
   for (std::size_t i = 0; i < nodes.size(); ++i) {
     const TreeNode& node = nodes[i];
     if (i > 0 && !node_seen[i]) refuse(i, "has no parent before it");
     if (node.count == 0 || node.count > kTreeWidth) refuse(i, "has no children, or too many");
     if (node.is_leaf > 1) refuse(i, "is neither leaf nor inner");
     if (node.is_leaf != 0) {
-      check_leaf(i, node, blocks, block_seen, simplex_seen);
+      check_leaf(i, node, blocks, block_seen, missing);
       continue;
     }
     if (node.first <= i || node.first > nodes.size() || node.count > nodes.size() - node.first)
@@ -54,7 +56,7 @@ void check_structure(const std::vector<TreeNode>& nodes, const std::vector<LeafB
       node_seen[node.first + k] = true;
     }
   }
-  if (std::find(simplex_seen.begin(), simplex_seen.end(), false) != simplex_seen.end() ||
+  if (std::find(missing.begin(), missing.end(), true) != missing.end() ||
       std::find(block_seen.begin(), block_seen.end(), false) != block_seen.end())
     refuse(0, "does not hold all faces");
 }
@@ -98,9 +100,13 @@ bool is_orthonormal(const TreeNode& node) {
 }  // namespace
 
 ObbTree::ObbTree(const SimplexView& body, std::vector<TreeNode> nodes, std::vector<LeafBlock> blocks)
+    : ObbTree(body, body.real_simplices(), std::move(nodes), std::move(blocks)) {}
+
+ObbTree::ObbTree(const SimplexView& body, std::span<const SimplexId> simplices, std::vector<TreeNode> nodes,
+                 std::vector<LeafBlock> blocks)
     : nodes_(std::move(nodes)), blocks_(std::move(blocks)) {
-  measure(body, body.real_simplices());
-  check_structure(nodes_, blocks_, body.real_count);
+  measure(body, simplices);
+  check_structure(nodes_, blocks_, simplices);
   std::vector<std::uint32_t> height(nodes_.size(), 1);
   for (std::size_t i = 0; i < nodes_.size(); ++i) {
     height_ = std::max(height_, height[i]);

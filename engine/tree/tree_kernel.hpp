@@ -56,6 +56,9 @@ struct AffineTerms {
   float span[2];  ///< about the size in the world, in query units, of a length of 1 in the tree's units
 };
 
+/// TreeKernel::most_node_pairs of a kernel that stops only when it is done.
+inline constexpr std::uint64_t kNoLimit = ~std::uint64_t{0};
+
 /// One traversal. All lengths are in the query's unit: the larger of the two trees' units.
 struct TreeKernel {
   const TreeNode* nodes_a;
@@ -73,7 +76,7 @@ struct TreeKernel {
   float margin;
   alignas(32) double sweep[3][4], sweep_t[4];  ///< laid out as m and t
   float sweep_turn;                            ///< >= the Euclidean norm of sweep
-  bool nearest_first;                          ///< without a margin: descend first where boxes overlap most
+  bool nearest_first;   ///< without a margin: descend first where boxes overlap most, at the beginning
   AffineTerms* affine;  ///< null, or these maps take the place of m, t and slack (without a margin)
 
   bool needles;  ///< both trees are full of needles: try more directions (see kernel_needles.inl)
@@ -85,12 +88,13 @@ struct TreeKernel {
   std::uint32_t out_size;
 
   std::uint64_t node_pairs, box_tests, prefilter_tests;
+  std::uint64_t most_node_pairs;  ///< where to stop; may be raised to go on
 };
 
-/// Traverses until the stack is empty or fewer than 64 places are left in `out`. Uses the newest instruction
-/// set that the processor has; the environment variable LRB_SIMD, read at the first call, limits it to AVX2
-/// ("avx2") or to what every processor has ("baseline"). The outcome is the same, counters included
-/// (tests/repeat/repeat.sh).
+/// Traverses until the stack is empty, fewer than 64 places are left in `out`, or most_node_pairs are reached.
+/// Uses the newest instruction set that the processor has; the environment variable LRB_SIMD, read at the first
+/// call, limits it to AVX2 ("avx2") or to what every processor has ("baseline"). The outcome is the same, counters
+/// included (tests/repeat/repeat.sh).
 void run_tree_kernel(TreeKernel& k);
 
 }  // namespace lrb

@@ -70,13 +70,14 @@ void add_request_options(CLI::App& app, CollideRequest& request) {
 
 void add_coarse_options(CLI::App& app, CollideRequest& request) {
   app.add_option(option_of(&CollideRequest::tolerance), request.tolerance,
-                 "Do not refine regions that are no thicker than this, in the meshes' unit")
+                 "Of bodies that cross, list the pairs of wrappers that are no further off than this, in "
+                 "the meshes' unit")
       ->check(CLI::NonNegativeNumber)
       ->type_name("LENGTH");
   add_count(app, option_of(&CollideRequest::max_tests), request.max_tests,
-            "Largest number of face tests, coarsest wrappers first");
+            "Largest number of face tests: one pair first, then wrappers, coarsest first");
   app.add_option(option_of(&CollideRequest::max_time), request.max_time,
-                 "Longest time in seconds, coarsest wrappers first")
+                 "Longest time in seconds: one pair first, then wrappers, coarsest first")
       ->check(CLI::PositiveNumber)
       ->type_name("S");
 }

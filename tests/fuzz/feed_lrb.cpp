@@ -47,6 +47,11 @@ void use(const LrbRep& rep, int how) {
     default:
       request.mode = Mode::any_pair;
       static_cast<void>(collide(rep, Pose{}, rep, Pose::translation({0.5, 0.25, 0}), request));
+      if (!rep.has_levels()) return;
+      request = {};
+      request.predicates = Predicates::floating;
+      request.tolerance = 1;
+      static_cast<void>(collide(rep, Pose{}, rep, Pose::translation({0.5, 0.25, 0}), request));
       return;
   }
 }

@@ -41,6 +41,8 @@ std::vector<std::string> lrb_files() {
       flat(LrbRep::without_regions(shapes::tetrahedron(), true, false));
   std::vector<std::string> files;
   for (const LrbRep& rep : {plate, pit, two_blocks, flat}) files.push_back(test::lrb_bytes(rep));
+  plate.levels();
+  files.push_back(test::lrb_bytes(plate));
   for (const LrbRep& rep : {plate, pit, LrbRep(toy::dented_box())})
     files.push_back(test::lrb_bytes_version_1(rep));
   std::vector<std::string> out;

@@ -10,6 +10,7 @@
 #include "engine/construct/build.hpp"
 #include "engine/core/error.hpp"
 #include "engine/lrb/validate.hpp"
+#include "engine/lrb/wrapper_level.hpp"
 #include "engine/query/collide.hpp"
 #include "scenarios/bodies/shapes/hand_made.hpp"
 #include "scenarios/bodies/shapes/random_pose.hpp"
@@ -120,7 +121,7 @@ TEST_CASE("a newer version is refused politely, before anything else is looked a
   std::string newer = bytes_of(shapes::stairs_2d());
   newer[kVersionAt] = static_cast<char>(kLrbFileVersion + 1);
   CHECK(complaint(newer) ==
-        "body.lrb: byte 8: the file has version 3, this program reads up to 2; use a newer lrbscope");
+        "body.lrb: byte 8: the file has version 4, this program reads up to 3; use a newer lrbscope");
 }
 
 TEST_CASE("lengths beyond the file are refused before memory is taken") {
@@ -156,7 +157,7 @@ TEST_CASE("lengths beyond the file are refused before memory is taken") {
     }
     skip(size);
   }
-  CHECK(at + 8 == whole.size());
+  CHECK(at + sizeof(std::uint32_t) + 8 == whole.size());  // no levels
 }
 
 TEST_CASE("numbers that make no LRB-rep are refused, whatever the checksum says") {
@@ -188,7 +189,9 @@ TEST_CASE("a 2D body lies in the plane") {
 TEST_CASE("damaged files with a right checksum are refused or harmless") {
   RandomEngine random(9);
   int taken = 0, refused = 0;
-  for (const LrbRep& rep : {shapes::dented_box(), shapes::stairs_2d()}) {
+  const LrbRep with_levels = build_lrb(shapes::icosphere(1));
+  with_levels.levels();
+  for (const LrbRep& rep : {shapes::dented_box(), shapes::stairs_2d(), with_levels}) {
     const std::string whole = bytes_of(rep);
     for (int i = 0; i < 4000; ++i) {
       std::string damaged = whole;
@@ -200,6 +203,7 @@ TEST_CASE("damaged files with a right checksum are refused or harmless") {
         const LrbRep back = load_lrb(std::string_view(with_right_checksum(damaged)), "body.lrb");
         Wrapper w(back);
         w.refine_all();
+        if (back.has_levels()) CHECK(back.levels().all().size() <= 128);
         CHECK(w.boundary().size() <= back.face_count());
         CollideRequest request;
         request.contacts = request.interiors_overlap = true;
@@ -226,6 +230,97 @@ std::pair<std::vector<TreeNode>, std::vector<LeafBlock>> changed(const LrbRep& r
 }
 
 }  // namespace
+
+TEST_CASE("files of version 2 are read, and have no levels") {
+  const LrbRep rep = build_lrb(shapes::bumpy_sphere(2, 1));
+  std::string old = bytes_of(rep);
+  old.erase(old.size() - 8 - sizeof(std::uint32_t), sizeof(std::uint32_t));
+  const std::uint32_t version = 2;
+  std::memcpy(old.data() + kVersionAt, &version, sizeof version);
+  const std::uint64_t sum = lrb_checksum(std::string_view(old).substr(0, old.size() - 8), version);
+  std::memcpy(old.data() + old.size() - 8, &sum, sizeof sum);
+  const LrbRep back = load_lrb(std::string_view(old), "body.lrb");
+  CHECK(!back.has_levels());
+  CHECK(bytes_of(back) == bytes_of(rep));
+}
+
+TEST_CASE("levels that were made are in the file, and come back as they were") {
+  for (const Mesh& mesh : {shapes::bumpy_sphere(3, 1), shapes::quad_torus(20, 12), shapes::gear(40)}) {
+    const LrbRep rep = build_lrb(mesh);
+    const std::string without = bytes_of(rep);
+    CHECK(!load_lrb(std::string_view(without), "body.lrb").has_levels());
+    const WrapperLevels& levels = rep.levels();
+    REQUIRE(levels.all().size() > 2);
+    const std::string whole = bytes_of(rep);
+    CHECK(whole.size() > without.size());
+    const LrbRep back = load_lrb(std::string_view(whole), "body.lrb");
+    REQUIRE(back.has_levels());
+    CHECK(bytes_of(back) == whole);
+    CHECK(validate(back).valid);
+    CHECK(std::equal(levels.needed().begin(), levels.needed().end(), back.levels().needed().begin()));
+    REQUIRE(back.levels().all().size() == levels.all().size());
+    for (std::size_t i = 0; i < levels.all().size(); ++i) {
+      const WrapperLevel &x = levels.all()[i], &y = back.levels().all()[i];
+      CHECK(x.bound == y.bound);
+      CHECK(x.face_count == y.face_count);
+      CHECK(x.pseudo_count == y.pseudo_count);
+      CHECK(x.component_vertices == y.component_vertices);
+      CHECK(x.tree.extent() == y.tree.extent());
+    }
+    CollideRequest request;
+    request.tolerance = levels.all()[1].bound;
+    const Pose p = Pose::translation({0.3, 0.2, 0});
+    const CollideResult before = collide(rep, Pose{}, rep, p, request),
+                        after = collide(back, Pose{}, back, p, request);
+    CHECK(before.pairs == after.pairs);
+    CHECK(before.counters == after.counters);
+  }
+}
+
+TEST_CASE(
+    "stored levels that are not the body's: wrappers that leave some of it out are refused, lies are found") {
+  const LrbRep rep = build_lrb(shapes::bumpy_sphere(3, 1));
+  using Needed = std::vector<double>;
+  using Levels = std::vector<WrapperLevels::StoredLevel>;
+  const auto make = [&](auto change) {
+    Needed needed(rep.levels().needed().begin(), rep.levels().needed().end());
+    Levels levels;
+    for (const WrapperLevel& level : rep.levels().all())
+      levels.push_back({level.bound, level.tree.nodes(), level.tree.blocks()});
+    change(needed, levels);
+    LrbRep changed(rep.data());
+    changed.keep_levels(WrapperLevels(changed, needed, std::move(levels)));
+    return changed;
+  };
+  CHECK_THROWS_AS(make([](Needed& n, Levels&) { n.pop_back(); }), InputError);
+  CHECK_THROWS_AS(make([](Needed& n, Levels&) { n[0] = -1; }), InputError);
+  CHECK_THROWS_AS(make([](Needed& n, Levels&) { n[0] = std::numeric_limits<double>::quiet_NaN(); }),
+                  InputError);
+  CHECK_THROWS_AS(make([](Needed&, Levels& l) { l[0].bound = std::numeric_limits<double>::infinity(); }),
+                  InputError);
+  CHECK_THROWS_AS(make([](Needed&, Levels& l) { l[1].bound = l[0].bound; }), InputError);
+  CHECK_THROWS_AS(make([](Needed&, Levels& l) { std::swap(l[0].nodes, l[1].nodes); }), InputError);
+  CHECK_THROWS_AS(make([](Needed&, Levels& l) { l[2].blocks[0].simplex[0] = 0xfffffff; }), InputError);
+  CHECK_THROWS_AS(make([](Needed&, Levels& l) { l[2].nodes[0].first = 0; }), InputError);
+  CHECK_THROWS_AS(make([](Needed&, Levels& l) { l.resize(1000); }), InputError);
+  // A region that is included without what it hides: the wrapper would leave some of the body out.
+  RegionId over = kNull;
+  for (RegionId r = 0; r < rep.region_count(); ++r)
+    for (const FaceId lid : rep.lids(r))
+      if (is_region(rep.outer_cell(lid)) && rep.levels().needed()[r] > 0)
+        over = rep.outer_cell(lid).as_region();
+  REQUIRE(over != kNull);
+  CHECK_THROWS_AS(make([&](Needed& n, Levels&) { n[over] = 0; }), InputError);
+  const auto found = [&](auto change) { return !validate(make(change)).valid; };
+  CHECK(found([](Needed&, Levels& l) { l[1].nodes[0].hi[1][0] = l[1].nodes[0].lo[1][0]; }));
+  // All regions half as thick as they are, and the levels, too: wrappers that enclose the body, and bounds that are
+  // not proved.
+  CHECK(found([](Needed& n, Levels& l) {
+    for (double& x : n) x /= 2;
+    for (auto& level : l) level.bound /= 2;
+  }));
+  CHECK_FALSE(found([](Needed&, Levels&) {}));
+}
 
 TEST_CASE("files of version 1 are read, and written as this version's") {
   const LrbRep rep = build_lrb(shapes::bumpy_sphere(2, 1));

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "engine/core/error.hpp"
 
@@ -11,8 +12,8 @@ namespace {
 /// Factor from one tolerance of the ladder to the next. Smaller: more queries before the exact one; larger:
 /// coarser answers where a limit is reached.
 constexpr double kLadderStep = 4;
-/// A level with more than this share of the bodies' own faces is left out: the exact query costs hardly more.
-constexpr double kWorthwhile = 0.7;
+/// Levels with more than this share of the bodies' own faces are left out: the exact query costs hardly more.
+constexpr double kWorthwhile = 0.6;
 
 }  // namespace
 
@@ -30,30 +31,46 @@ void check_coarse_request(const CollideRequest& request) {
     throw InputError("a tolerance or limit needs regularised wrappers; leave \"unregularised\" out");
 }
 
-std::vector<double> coarse_ladder(QueryContext& context, const CollideRequest& request) {
+namespace {
+
+/// Returns the level of a body for a tolerance; null: the body itself. A limit in time leaves none to make levels.
+const WrapperLevel* level_of(const LrbRep& rep, double tolerance, const CollideRequest& request) {
+  return request.max_time > 0 && !rep.has_levels() ? nullptr : rep.levels().within(tolerance);
+}
+
+std::uint32_t faces_of(const LrbRep& rep, const WrapperLevel* level) {
+  return level == nullptr ? rep.real_face_count() : level->face_count;
+}
+
+/// Returns the levels for a tolerance, or the bodies where that is hardly more work.
+CoarseStep step_of(const LrbRep& a, const LrbRep& b, double tolerance, const CollideRequest& request) {
+  const CoarseStep step{level_of(a, tolerance, request), level_of(b, tolerance, request)};
+  const double faces = static_cast<double>(faces_of(a, step.a)) + faces_of(b, step.b);
+  return faces > kWorthwhile * (static_cast<double>(a.real_face_count()) + b.real_face_count()) ? CoarseStep{}
+                                                                                                : step;
+}
+
+}  // namespace
+
+std::vector<CoarseStep> coarse_steps(const LrbRep& a, const LrbRep& b, const CollideRequest& request) {
   // A surface that bounds nothing hides nothing: both bodies have to be queried as they are.
-  for (const Side side : {Side::a, Side::b})
-    if (!context[side].rep().closed() || context[side].rep().self_intersecting()) return {0};
-  std::vector<double> ladder;
-  WrapperLevels &a = context[Side::a].levels(), &b = context[Side::b].levels();
-  const double largest = std::max(a.largest_thickness(), b.largest_thickness());
-  const double smallest = std::min(a.smallest_thickness(), b.smallest_thickness());
-  if ((request.max_tests > 0 || request.max_time > 0) && largest > 0) {
-    const double real = static_cast<double>(context[Side::a].rep().real_face_count()) +
-                        context[Side::b].rep().real_face_count();
+  for (const LrbRep* rep : {&a, &b})
+    if (!rep->closed() || rep->self_intersecting()) return {CoarseStep{}};
+  std::vector<CoarseStep> steps;
+  const CoarseStep coarsest = step_of(a, b, std::numeric_limits<double>::max(), request);
+  if ((request.max_tests > 0 || request.max_time > 0) && !coarsest.exact()) {
     // Use powers of two, so that bodies of similar size share levels from pair to pair.
     int exponent = 0;
-    std::frexp(largest, &exponent);
-    for (double x = std::ldexp(1.0, exponent); x > request.tolerance && x >= smallest; x /= kLadderStep) {
-      const double faces = static_cast<double>(a.at(x).face_count) + b.at(x).face_count;
-      if (faces > kWorthwhile * real) break;
-      ladder.push_back(x);
+    std::frexp(std::max(coarsest.a ? coarsest.a->bound : 0, coarsest.b ? coarsest.b->bound : 0), &exponent);
+    for (double x = std::ldexp(1.0, exponent); x > request.tolerance; x /= kLadderStep) {
+      const CoarseStep step = step_of(a, b, x, request);
+      if (step.exact()) break;
+      if (steps.empty() || step.a != steps.back().a || step.b != steps.back().b) steps.push_back(step);
     }
   }
-  ladder.push_back(request.tolerance);
-  a.at(request.tolerance);
-  b.at(request.tolerance);
-  return ladder;
+  const CoarseStep last = step_of(a, b, request.tolerance, request);
+  if (steps.empty() || last.a != steps.back().a || last.b != steps.back().b) steps.push_back(last);
+  return steps;
 }
 
 bool wrappers_nested(QueryContext& context) {

@@ -1,19 +1,35 @@
 #pragma once
-/// Queries that do no more than a scene needs: between wrappers as coarse as a tolerance allows, or coarsest
-/// first until a limit is reached.
+/// Queries that do no more than a scene needs: to a tolerance, or as far as a limit of tests or time allows.
 ///
-/// Why they never call bodies separate that meet. Each wrapper encloses its body (wrapper_level.hpp), so
-/// bodies whose wrappers share no point share none. Two wrappers share no point if no two of their faces meet
-/// and no connected piece of either one's boundary has a point in the other: pairs of faces are found as the
-/// complete query finds them, and pieces are located exactly. In the world, rounding moves hidden vertices
-/// and lids separately: faces therefore count as separate only if they keep wrapper_margin(), which is enough
-/// for all of that.
+/// How. The exact query is asked first, until a pair crosses: bodies that are apart it tells apart faster than
+/// wrappers could, and of bodies that cross it finds a pair at once, since it looks where boxes overlap most. So
+/// the relation is exact, and so is an answer of one pair. Only the list of all pairs of bodies that cross is then
+/// left to wrappers, whose faces are fewer: to the level that the tolerance allows or, within limits, to one level
+/// after another, coarsest first. Where surfaces of wrappers do not meet though the bodies do, one wrapper being
+/// in the other, and where no level is much smaller than the bodies, the exact query finds the pairs. The first
+/// question may take half of a limit; should it end without an answer, levels tell what they can.
+///
+/// Why levels never call bodies separate that meet. Each wrapper encloses its body (wrapper_level.hpp), so bodies
+/// whose wrappers share no point share none. Two wrappers share no point if no two of their faces meet and no
+/// connected piece of either one's boundary has a point in the other: pairs of faces are found as the complete
+/// query finds them, and pieces are located exactly. But in the world, rounding moves hidden vertices and lids
+/// separately. Let x be a point in which the bodies meet as rounded. There are points p and q of the bodies as
+/// they would be without rounding, no further from x than a vertex of each is rounded. Move every vertex of the
+/// wrappers from its rounded place to its true one, and then wrapper B by p - q: now both wrappers hold p. If no
+/// two faces meet all the way, then a piece of one boundary lies in the other wrapper now, and did at the
+/// beginning, where it was looked for. So it is enough that faces which count as apart stay apart when vertices
+/// shift against each other by twice what both bodies are rounded:
+/// - the kernel vouches for this in all that it drops and in all that it calls certain (kWrapperSlack);
+/// - what it leaves open is tested exactly, and counts as apart only with wrapper_margin() between.
 
+#include <algorithm>
 #include <chrono>
 #include <limits>
+#include <utility>
 #include <vector>
 
 #include "engine/core/tolerances.hpp"
+#include "engine/lrb/wrapper_level.hpp"
 #include "engine/query/coarse/separating_slab.hpp"
 #include "engine/query/walk/relation.hpp"
 #include "engine/query/walk/tree_query.hpp"
@@ -24,33 +40,54 @@ namespace lrb {
 /// Throws InputError if a coarse query is combined with a request that it cannot answer.
 void check_coarse_request(const CollideRequest& request);
 
-/// Returns the tolerances to be tried, coarsest first; the last is the one asked for.
-std::vector<double> coarse_ladder(QueryContext& context, const CollideRequest& request);
+/// One step of a coarse query: a level of each body; null: the body itself.
+struct CoarseStep {
+  const WrapperLevel *a = nullptr, *b = nullptr;
+  bool exact() const { return a == nullptr && b == nullptr; }
+};
+
+/// Returns the steps to be tried, coarsest first; the last is as fine as was asked for.
+std::vector<CoarseStep> coarse_steps(const LrbRep& a, const LrbRep& b, const CollideRequest& request);
 
 /// Returns true if the boundary of either wrapper has a piece in the other. For wrappers whose faces do not
 /// meet.
 bool wrappers_nested(QueryContext& context);
 
-struct CoarseRules {
-  static constexpr bool kCoarse = true;
+/// Rules of an exact query within limits.
+struct LimitedRules {
+  static constexpr bool kLimited = true, kWrappers = false;
   using Clock = std::chrono::steady_clock;
 
-  bool exact = false;  ///< the wrappers are the bodies themselves
-  double margin = 0;
   std::uint64_t max_tests = 0;
   bool has_deadline = false;
   Clock::time_point deadline;
+  bool keeps_touching = false;
   bool stopped = false;  ///< a limit was reached
-  bool near = false;     ///< real faces do not meet, but come within the margin
+  unsigned asked = 0;
 
-  bool must_stop() { return stopped |= has_deadline && Clock::now() >= deadline; }
+  bool time_is_up() { return stopped |= has_deadline && Clock::now() >= deadline; }
   /// Asked only when there is a test to be done: the last one that is allowed may be the last one needed.
-  bool no_test_left(std::uint64_t tests) { return stopped |= max_tests > 0 && tests >= max_tests; }
-  bool one_is_enough() const { return !exact; }
+  bool no_test_left(std::uint64_t tests) {
+    constexpr unsigned kTestsAtOnce = 16;  // a few microseconds
+    if (max_tests > 0 && tests >= max_tests) stopped = true;
+    return stopped || (has_deadline && ++asked % kTestsAtOnce == 0 && time_is_up());
+  }
+  /// Returns how many node pairs the kernel may have done when it comes back.
+  std::uint64_t most_node_pairs(std::uint64_t done) const {
+    constexpr std::uint64_t kPairsAtOnce = 128;  // about ten microseconds
+    return has_deadline ? done + kPairsAtOnce : kNoLimit;
+  }
+};
 
-  /// Returns how to count a pair that does not meet.
+/// Rules of a query between wrappers, within limits.
+struct WrapperRules : LimitedRules {
+  static constexpr bool kWrappers = true;
+
+  double margin = 0;
+  bool near = false;  ///< real faces do not meet, but come within the margin
+
+  /// Returns how to count a pair that does not meet, which the kernel could not tell.
   exact::Meet meet_of_near(QueryContext& ctx, SimplexId a, SimplexId b) {
-    if (exact) return exact::Meet::disjoint;
     const double *ca[3], *cb[3];
     ctx[Side::a].world.corners(a, ca);
     ctx[Side::b].world.corners(b, cb);
@@ -66,31 +103,28 @@ template <class Probe>
 class CoarseQuery {
  public:
   CoarseQuery(QueryContext& ctx, const CollideRequest& request, CollideResult& result, Probe& probe)
-      : ctx_(ctx), request_(request), result_(result), probe_(probe) {}
+      : ctx_(ctx), request_(request), result_(result), probe_{probe}, began_(Clock::now()) {}
 
   void run() {
-    const std::vector<double> ladder = coarse_ladder(ctx_, request_);
-    CoarseRules rules;
-    rules.max_tests = request_.max_tests;
-    rules.has_deadline = request_.max_time > 0;
-    if (rules.has_deadline)
-      rules.deadline = CoarseRules::Clock::now() +
-                       std::chrono::duration_cast<CoarseRules::Clock::duration>(
-                           std::chrono::duration<double>(std::min(request_.max_time, kLongest)));
     result_.relation = Relation::unresolved;
-    result_.error_bound = std::numeric_limits<double>::infinity();
+    result_.error_bound = kInfinity;
     result_.finished = false;
-    for (std::size_t i = 0; i < ladder.size() && !result_.finished; ++i)
-      if (!step(ladder[i], rules, i + 1 == ladder.size())) break;
+    const std::vector<CoarseStep> steps = coarse_steps(ctx_[Side::a].rep(), ctx_[Side::b].rep(), request_);
+    if (steps.front().exact())
+      ask_exactly(0);
+    else if (!first_pair_decides())
+      climb(steps);
     if constexpr (Probe::kEnabled)
       for (std::size_t i = 0; i < result_.pairs.size(); ++i)
-        probe_.contact(result_.pairs[i].a, result_.pairs[i].b, result_.meets[i]);
+        probe_.probe.contact(result_.pairs[i].a, result_.pairs[i].b, result_.meets[i]);
   }
 
  private:
+  using Clock = LimitedRules::Clock;
+  static constexpr double kInfinity = std::numeric_limits<double>::infinity();
   static constexpr double kLongest = 1e6;  ///< seconds: more does not fit the clock on every machine
 
-  /// Keeps contacts from the probe: those of a level are part of the answer only if it is the last.
+  /// Keeps contacts from the probe: those of a step are part of the answer only if it is the last.
   struct WithoutContacts {
     static constexpr bool kEnabled = Probe::kEnabled;
     Probe& probe;
@@ -101,67 +135,163 @@ class CoarseQuery {
     void contact(SimplexId, SimplexId, exact::Meet) {}
   };
 
-  /// Queries one level. Returns false if a limit was reached before its end: the answer then stays that of
-  /// the level before.
-  bool step(double tolerance, CoarseRules rules, bool last) {
-    QueryBody &a = ctx_[Side::a], &b = ctx_[Side::b];
-    const WrapperLevel &la = a.levels().at(tolerance), &lb = b.levels().at(tolerance);
-    rules.exact = la.bound == 0 && lb.bound == 0;
-    la.bound == 0 ? a.query_body() : a.query_level(la);
-    lb.bound == 0 ? b.query_body() : b.query_level(lb);
-    rules.margin = wrapper_margin(a.world.pose(), a.tree(), b.world.pose(), b.tree());
-    CollideResult level;
-    level.counters = std::move(result_.counters);
-    WithoutContacts probe{probe_};
-    TreeQuery<WithoutContacts, CoarseRules> query(ctx_, request_, level, probe, rules);
+  /// Sets the limits of a step: all that is left, or as much as leaves half of it.
+  void limit(LimitedRules& rules, bool half) const {
+    rules.max_tests = half ? (request_.max_tests + 1) / 2 : request_.max_tests;
+    rules.has_deadline = request_.max_time > 0;
+    const double seconds = std::min(request_.max_time, kLongest);
+    if (rules.has_deadline)
+      rules.deadline = began_ + std::chrono::duration_cast<Clock::duration>(
+                                    std::chrono::duration<double>(half ? seconds / 2 : seconds));
+  }
+
+  /// Walks what the bodies are set to. Returns false if a limit was reached before the end.
+  template <class Rules>
+  bool walk(const CollideRequest& request, CollideResult& found, Rules& rules) {
+    found.counters = std::move(result_.counters);
+    TreeQuery<WithoutContacts, Rules> query(ctx_, request, found, probe_, rules);
     query.run();
-    result_.counters = std::move(level.counters);
-    if (query.rules().stopped) return false;
-    ctx_.pair_order.sort(level);
-    decide(level, query.rules(), off(la, a.world.pose()) + off(lb, b.world.pose()));
-    result_.pairs.swap(level.pairs);
-    result_.meets.swap(level.meets);
-    result_.relation = level.relation;
-    result_.interiors_overlap = level.interiors_overlap;
-    result_.error_bound = level.error_bound;
-    result_.finished = last || level.error_bound == 0;
+    result_.counters = std::move(found.counters);
+    rules = query.rules();
+    return !rules.stopped;
+  }
+
+  /// Makes what was found the answer.
+  void answer(CollideResult& found, double error_bound, bool finished) {
+    result_.pairs.swap(found.pairs);
+    result_.meets.swap(found.meets);
+    result_.relation = found.relation;
+    result_.interiors_overlap = found.interiors_overlap;
+    result_.error_bound = error_bound;
+    result_.finished = finished;
+  }
+
+  /// Asks the bodies as they are. Finds no better answer within the limits, or the exact one, of which
+  /// `error_bound` is said all the same.
+  void ask_exactly(double error_bound) {
+    for (const Side side : {Side::a, Side::b}) ctx_[side].query_body();
+    CollideResult found;
+    LimitedRules rules;
+    limit(rules, false);
+    if (!walk(request_, found, rules)) return;
+    ctx_.pair_order.sort(found);
+    decide_relation(ctx_, found);
+    answer(found, error_bound, true);
+  }
+
+  /// Asks the bodies as they are until a pair crosses. Returns true if that is the whole answer: they do not
+  /// cross, and then all pairs that touch are known, or one pair is all that was asked for.
+  bool first_pair_decides() {
+    CollideRequest request = request_;
+    if (request.mode == Mode::all_pairs) request.mode = Mode::first_pair;
+    LimitedRules rules;
+    rules.keeps_touching = request_.mode == Mode::all_pairs;
+    limit(rules, true);
+    CollideResult found;
+    const bool known = walk(request, found, rules);
+    if (known) {
+      const bool all =
+          request_.mode != Mode::all_pairs || found.meets.empty() || found.meets[0] != exact::Meet::cross;
+      ctx_.pair_order.sort(found);
+      decide_relation(ctx_, found);
+      answer(found, all ? 0 : kInfinity, all);
+      if (all) return true;
+    }
+    take_back(Side::a);
+    take_back(Side::b);
+    return false;
+  }
+
+  /// Takes back all regions: those that were refined show real faces.
+  void take_back(Side side) {
+    Wrapper& wrapper = *ctx_[side].wrapper;
+    if constexpr (Probe::kEnabled)
+      for (auto r = wrapper.excluded().rbegin(); r != wrapper.excluded().rend(); ++r)
+        probe_.probe.coarsen(side, *r, static_cast<std::uint32_t>(ctx_[side].rep().floor(*r).size()));
+    wrapper.reset();
+  }
+
+  /// Goes from level to level until a limit is reached or the answer is as fine as was asked for.
+  void climb(const std::vector<CoarseStep>& steps) {
+    for (std::size_t i = 0; i < steps.size() && !result_.finished; ++i) {
+      if (steps[i].exact()) return ask_exactly(0);
+      const bool last = i + 1 == steps.size(), crosses = result_.relation == Relation::crossing;
+      if (!(crosses ? add_level(steps[i], last) : try_level(steps[i], last))) return;
+    }
+  }
+
+  /// Walks a level of each body. Returns false if a limit was reached before its end.
+  bool walk_level(const CoarseStep& step, CollideResult& found, WrapperRules& rules) {
+    QueryBody &a = ctx_[Side::a], &b = ctx_[Side::b];
+    step.a == nullptr ? a.query_body() : a.query_level(*step.a);
+    step.b == nullptr ? b.query_body() : b.query_level(*step.b);
+    rules.margin = wrapper_margin(a.world.pose(), a.tree(), b.world.pose(), b.tree());
+    limit(rules, false);
+    if (!walk(request_, found, rules)) return false;
+    ctx_.pair_order.sort(found);
+    const double off = off_body(step.a, a.world.pose()) + off_body(step.b, b.world.pose());
+    found.error_bound = (off + rules.margin) * (1 + kKernelRounding);
     return true;
   }
 
   /// Returns how far a level is off its body in the world at most. Not a product where it would be 0 times infinity.
-  static double off(const WrapperLevel& level, const Pose& pose) {
-    return level.bound == 0 ? 0 : level.bound * stretch(pose);
+  static double off_body(const WrapperLevel* level, const Pose& pose) {
+    return level == nullptr || level->bound == 0 ? 0 : level->bound * stretch(pose);
   }
 
-  void decide(CollideResult& level, const CoarseRules& rules, double bound) {
-    if (rules.exact) {
-      decide_relation(ctx_, level);
-      return;
+  /// Finds the pairs of a level, of bodies that cross. Returns false if a limit was reached before its end: the
+  /// answer then stays that of the level before.
+  bool add_level(const CoarseStep& step, bool last) {
+    CollideResult found;
+    WrapperRules rules;
+    if (!walk_level(step, found, rules)) return false;
+    found.relation = result_.relation;
+    found.interiors_overlap = result_.interiors_overlap;
+    const bool nested = found.pairs.empty();
+    const double bound = found.error_bound;
+    answer(found, bound, last && !nested);
+    // That the pairs are better than was asked for is luck: with less tolerance the bound would be larger.
+    if (last && nested) ask_exactly(bound);
+    return true;
+  }
+
+  /// Finds out what a level tells of bodies of which nothing is known. Returns false if a limit was reached before
+  /// its end, or if there is no more to be found out.
+  bool try_level(const CoarseStep& step, bool last) {
+    CollideResult found;
+    WrapperRules rules;
+    if (!walk_level(step, found, rules)) return false;
+    double bound = found.error_bound;
+    found.relation = Relation::unresolved;
+    if (found.pairs.empty() && !rules.near) {
+      // A wrapper in the other: nothing tells how far the bodies are from each other.
+      const bool nested = wrappers_nested(ctx_);
+      if (!nested) found.relation = Relation::separate;
+      bound = nested ? kInfinity : 0;
+    } else if (has_real_crossing(found)) {
+      found.relation = Relation::crossing;
+      found.interiors_overlap = Answer::yes;
+      if (request_.mode != Mode::all_pairs) bound = 0;
     }
-    level.error_bound = (bound + rules.margin) * (1 + kKernelRounding);
-    level.relation = Relation::unresolved;
-    level.interiors_overlap = Answer::unknown;
-    if (level.pairs.empty() && !rules.near && !wrappers_nested(ctx_)) {
-      level.relation = Relation::separate;
-      level.interiors_overlap = Answer::no;
-      level.error_bound = 0;
-      return;
-    }
-    for (std::size_t i = 0; i < level.pairs.size(); ++i) {
-      if (level.meets[i] != exact::Meet::cross || !ctx_[Side::a].rep().is_real_simplex(level.pairs[i].a) ||
-          !ctx_[Side::b].rep().is_real_simplex(level.pairs[i].b))
-        continue;
-      level.relation = Relation::crossing;
-      level.interiors_overlap = Answer::yes;
-      if (request_.mode != Mode::all_pairs) level.error_bound = 0;
-      return;
-    }
+    if (found.relation == Relation::separate) found.interiors_overlap = Answer::no;
+    const bool resolved = found.relation != Relation::unresolved;
+    answer(found, bound, bound == 0 || (last && resolved));
+    return !result_.finished;
+  }
+
+  bool has_real_crossing(const CollideResult& found) {
+    for (std::size_t i = 0; i < found.pairs.size(); ++i)
+      if (found.meets[i] == exact::Meet::cross && ctx_[Side::a].rep().is_real_simplex(found.pairs[i].a) &&
+          ctx_[Side::b].rep().is_real_simplex(found.pairs[i].b))
+        return true;
+    return false;
   }
 
   QueryContext& ctx_;
   const CollideRequest& request_;
   CollideResult& result_;
-  Probe& probe_;
+  WithoutContacts probe_;
+  Clock::time_point began_;
 };
 
 }  // namespace lrb

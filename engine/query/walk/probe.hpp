@@ -38,6 +38,8 @@ struct NullProbe {
   void face_test(SimplexId, SimplexId, exact::Meet, std::uint32_t /*depth_a*/, std::uint32_t /*depth_b*/) {}
   /// A region of a body's wrapper was refined. If a face test that hit came before, that test is the cause.
   void refine(Side, RegionId, std::uint32_t /*faces_added*/) {}
+  /// A region was taken back in: what refined it was not for the wrapper that is queried next.
+  void coarsen(Side, RegionId, std::uint32_t /*faces_removed*/) {}
   /// Two real simplices meet; they are part of the answer.
   void contact(SimplexId, SimplexId, exact::Meet) {}
 };

@@ -49,16 +49,6 @@ struct QueryBody {
     component_vertices_ = level.component_vertices;
   }
 
-  /// Returns the body's levels; made when first asked for, kept as long as the body stays the same.
-  WrapperLevels& levels() {
-    if (!levels_ || levels_serial_ != rep().serial() || levels_rep_ != &rep()) {
-      levels_ = std::make_unique<WrapperLevels>(rep());
-      levels_serial_ = rep().serial();
-      levels_rep_ = &rep();
-    }
-    return *levels_;
-  }
-
   /// Returns the body's surface graph; made when first asked for, kept as long as the body stays the same.
   const SurfaceGraph& surface_graph() {
     if (!graph_ || graph_serial_ != rep().serial()) {
@@ -77,9 +67,6 @@ struct QueryBody {
  private:
   const ObbTree* tree_ = nullptr;
   std::span<const VertexId> component_vertices_;
-  std::unique_ptr<WrapperLevels> levels_;
-  std::uint64_t levels_serial_ = 0;
-  const LrbRep* levels_rep_ = nullptr;
   std::unique_ptr<SurfaceGraph> graph_;
   std::uint64_t graph_serial_ = 0;
 };

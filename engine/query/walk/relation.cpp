@@ -66,11 +66,39 @@ class RayWalk {
            (body_.rep().dim() == 3 && std::abs(c.z() - p_[2]) > h.z());
   }
 
-  /// Returns true if the ray misses the whole body, as most do.
+  /// Returns true if the ray misses the whole body, as most do: the root's box, as it lies along the world's axes
+  /// or as it lies itself.
   bool misses_all() const {
     const TreeNode& root = tree_.nodes()[0];
+    const Frame f = frame_of(root);
     return misses(
-        root, frame_of(root), [](int) { return 0; }, [](int) { return kQuantizedMost; });
+               root, f, [](int) { return 0; }, [](int) { return kQuantizedMost; }) ||
+           (body_.rep().dim() == 3 && misses_oriented(root, f));
+  }
+
+  /// Returns true if a plane parts the ray from a node's whole box: one along a side of the box, or one along the
+  /// ray and an edge of it. Any direction proves what it shows, however it came about: the box may reach across it
+  /// by what its half axes and `grow` allow, and the ray from its beginning on, on that side to which it goes.
+  bool misses_oriented(const TreeNode& n, const Frame& f) const {
+    Vector3d centre = f.origin, half[3];
+    for (int i = 0; i < 3; ++i) {
+      const double scale = n.scale[i], middle = n.base[i] + scale * 0.5 * kQuantizedMost;
+      centre += f.axes.col(i) * middle;
+      half[i] = f.axes.col(i) * (scale * 0.5 * kQuantizedMost);
+    }
+    const Vector3d way = p_ - centre;
+    const auto parts = [&](const Vector3d& d) {
+      constexpr double kFarFromUnderflow = 0x1p-960;
+      const double errors = f.grow * d.cwiseAbs().sum();
+      if (!(errors > kFarFromUnderflow)) return false;
+      const double gap = d.dot(way), reach = std::abs(d.dot(half[0])) + std::abs(d.dot(half[1])) +
+                                             std::abs(d.dot(half[2])) + errors;
+      return (d.x() >= 0 && gap > reach) || (d.x() <= 0 && -gap > reach);
+    };
+    const Matrix3d axes = f.axes / tree_.unit();  // about as long as 1
+    for (int i = 0; i < 3; ++i)
+      if (parts(axes.col(i).cross(axes.col((i + 1) % 3))) || parts({0, -axes(2, i), axes(1, i)})) return true;
+    return false;
   }
 
   void visit(std::uint32_t index) {

@@ -57,13 +57,18 @@ struct CollideRequest {
   bool interiors_overlap =
       false;  ///< decide CollideResult::interiors_overlap for bodies that meet (all_pairs)
 
-  /// Limits on the effort. With any of these three the answer may be about wrappers instead of the bodies,
-  /// and says so (CollideResult::error_bound). It never calls bodies separate that meet. Only for `complete`,
-  /// without contacts, interiors_overlap or unregularised wrappers (else InputError). What a body needs for
-  /// this is made when it is first asked for, and kept in the context; that time is not counted.
-  double tolerance = 0;         ///< regions no thicker than this are not refined; unit: the meshes'
-  std::uint64_t max_tests = 0;  ///< largest number of face tests; 0: no limit
-  double max_time = 0;          ///< longest time in seconds, checked every few face tests; 0: no limit
+  /// Limits on the effort: coarse queries (docs/queries.md says when to use which). Only for `complete`, without
+  /// contacts, interiors_overlap or unregularised wrappers (else InputError). Bodies that meet are never called
+  /// separate. The levels that they walk are made when they are first asked for, unless LrbRep::levels() was
+  /// called before or a file had them; a query with max_time does without rather than make them.
+  ///
+  /// tolerance: the relation is exact, and so is an answer of one pair; the list of all pairs of bodies that cross
+  /// may be that of wrappers no further off than this, each. Unit: the meshes'.
+  double tolerance = 0;
+  /// Limits on tests (face tests; 0: no limit) and time (seconds; 0: no limit). Where a limit is reached the best
+  /// answer so far is given: nothing, the relation with one pair, or that of a level, coarser ones first.
+  std::uint64_t max_tests = 0;
+  double max_time = 0;
   /// For separate bodies: finds CollideResult::separation. Takes longer than the query.
   bool separation = false;
   /// The largest number of pairs that are kept: a query that finds more ends with an InputError. (Two bodies

@@ -62,7 +62,8 @@ inline std::uint32_t show_face(QueryContext& ctx, Side side, FaceId f, CollideRe
 
 /// The rules of the exact query; coarse_query.hpp has others.
 struct ExactRules {
-  static constexpr bool kCoarse = false;
+  static constexpr bool kLimited = false;   ///< may stop before the answer is complete
+  static constexpr bool kWrappers = false;  ///< what is walked stands for bodies that lie within it
 };
 
 template <class Probe, class Rules = ExactRules>
@@ -82,17 +83,16 @@ class TreeQuery {
   void run() {
     const ObbTree &a = ctx_[Side::a].tree(), &b = ctx_[Side::b].tree();
     if (a.empty() || b.empty()) return;
-    // A small buffer where one pair may be enough, or time may run out, so that little is searched beyond it.
-    TreeKernel k = start_kernel(ctx_, mode_ == Mode::all_pairs && !Rules::kCoarse ? 1024 : 64);
+    // A small buffer where one pair may be enough, so that little is searched beyond it.
+    TreeKernel k = start_kernel(ctx_, mode_ == Mode::all_pairs ? 1024 : 64);
     k.nearest_first = mode_ != Mode::all_pairs;
-    if constexpr (Rules::kCoarse)
-      double_slack(k);  // pairs that are dropped are then apart by more than
-                        // rounding
+    if constexpr (Rules::kWrappers) allow_for_wrappers(k);
     bool done = false;
     while (k.stack_size != 0 && !done) {
       k.out_size = 0;
+      if constexpr (Rules::kLimited) k.most_node_pairs = rules_.most_node_pairs(k.node_pairs);
       run_tree_kernel(k);
-      if constexpr (Rules::kCoarse) done = rules_.must_stop();
+      if constexpr (Rules::kLimited) done = rules_.time_is_up();
       for (std::uint32_t i = 0; i < k.out_size && !done; ++i) done = test(k.out[i]);
       if (result_.pairs.size() > pair_limit_) refuse_pairs(pair_limit_);
     }
@@ -106,27 +106,37 @@ class TreeQuery {
   /// first_pair mode if it crosses; a pair that only touches is kept while a crossing one is looked for, so
   /// that the relation is exact in that mode too.
   bool test(const Candidate& c) {
-    if constexpr (Rules::kCoarse)
+    if constexpr (Rules::kLimited)
       if (rules_.no_test_left(result_.counters.face_tests)) return true;
     const FaceId fa = ctx_[Side::a].rep().face_of_simplex(c.a), fb = ctx_[Side::b].rep().face_of_simplex(c.b);
     const std::uint32_t depth_a = show_face(ctx_, Side::a, fa, result_, probe_);
     const std::uint32_t depth_b = show_face(ctx_, Side::b, fb, result_, probe_);
     exact::Meet meet = meet_of(c);
-    if constexpr (Rules::kCoarse)
-      if (meet == exact::Meet::disjoint) meet = rules_.meet_of_near(ctx_, c.a, c.b);
+    if constexpr (Rules::kWrappers)
+      if (meet == exact::Meet::disjoint && c.certainty != Certainty::disjoint)
+        meet = rules_.meet_of_near(ctx_, c.a, c.b);
     const bool real = ctx_[Side::a].rep().is_real(fa) && ctx_[Side::b].rep().is_real(fb);
     count_face_test(real, std::max(depth_a, depth_b), result_.counters);
     if constexpr (Probe::kEnabled) probe_.face_test(c.a, c.b, meet, depth_a, depth_b);
     if (meet == exact::Meet::disjoint) return false;
     if (mode_ == Mode::first_pair && !result_.pairs.empty()) {
-      if (meet != exact::Meet::cross) return false;
-      result_.pairs.clear();
-      result_.meets.clear();
+      if (meet == exact::Meet::cross) {
+        result_.pairs.clear();
+        result_.meets.clear();
+      } else if (!keeps_touching()) {
+        return false;
+      }
     }
     record_pair(result_, probe_, c.a, c.b, meet);
-    if constexpr (Rules::kCoarse)
-      if (mode_ != Mode::all_pairs && rules_.one_is_enough()) return true;
+    if constexpr (Rules::kWrappers)
+      if (mode_ != Mode::all_pairs) return true;
     return mode_ == Mode::any_pair || (mode_ == Mode::first_pair && meet == exact::Meet::cross);
+  }
+
+  /// Returns true if all pairs that touch are kept in first_pair mode, as long as none crosses.
+  bool keeps_touching() const {
+    if constexpr (Rules::kLimited) return rules_.keeps_touching;
+    return false;
   }
 
   /// Returns how a candidate meets. Most are certain: then no corner needs to be moved to the world.

@@ -84,6 +84,7 @@ int run_build(const BuildCommandOptions& o, const Globals& globals) {
     j["violations"] = report.violations;
   }
   if (!o.out.empty()) {
+    rep.levels(o.build.threads);
     save_lrb(rep, o.out);
     j["file"] = o.out;
     note(globals, {"wrote " + o.out});

@@ -153,6 +153,8 @@ int run_query(const QueryOptions& o, const Globals& globals) {
   note(globals, a.notes);
   note(globals, b.notes);
   check_queries(a.rep, b.rep, list, o.request);
+  if (o.request.is_coarse())
+    for (const bodies::LoadedBody* body : {&a, &b}) body->rep.levels(0);
   QueryContext context;
   NullProbe probe;
   Progress progress("query", poses.size(), globals.quiet);

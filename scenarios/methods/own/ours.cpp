@@ -104,7 +104,10 @@ class OursCoarse : public Method {
   explicit OursCoarse(bool by_tests) : by_tests_(by_tests) {}
   void set(double setting) override { setting_ = setting; }
 
-  std::unique_ptr<MethodBody> build(const LrbRep& rep) override { return std::make_unique<OurBody>(rep); }
+  std::unique_ptr<MethodBody> build(const LrbRep& rep) override {
+    rep.levels();
+    return std::make_unique<OurBody>(rep);
+  }
 
   MethodAnswer query(const MethodBody& a, const Pose& pose_a, const MethodBody& b, const Pose& pose_b,
                      Mode mode) override {
@@ -209,8 +212,8 @@ MethodEntry ours_coherent() {
 MethodEntry ours_tolerance() {
   MethodInfo info =
       our_info("ours-tolerance", "lrbscope, to a tolerance",
-               "Regions no thicker than the tolerance stay closed: contact, and where wrappers meet. The "
-               "knob is the tolerance over A's diagonal. Never calls bodies apart that meet.",
+               "Whether they meet, exactly; and where their wrappers do, whose regions no thicker than the "
+               "tolerance stay closed. The knob is the tolerance over A's diagonal.",
                14);
   coarse(info);
   info.knob = "tolerance";
