@@ -30,7 +30,7 @@ void add_request_options(CLI::App& app, CollideRequest& request);
 void add_coarse_options(CLI::App& app, CollideRequest& request);
 /// --recursion, over what a scenario says.
 void add_recursion_option(CLI::App& app, std::optional<Recursion>& recursion);
-/// --patch, --max-outer and --seed.
+/// --patch, --max-outer, --lean, --seed and --threads.
 void add_build_options(CLI::App& app, BuildOptions& options);
 
 /// --size, --dpi, --transparent, --format, --frames, --every, --most, --colour-by and --up, over what a
