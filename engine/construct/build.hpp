@@ -15,8 +15,10 @@ struct BuildOptions {
   /// the structure small.
   std::uint32_t patch_interior = 16;
   std::uint32_t max_outer_faces = 20;  ///< number of faces to aim for in the outermost wrapper
-  std::uint64_t seed = 1;              ///< seeds the order in which patches grow
-  unsigned threads = 1;  ///< 0: as many as the machine runs at once. The result does not depend on it
+  /// Builds a small structure (about 1.5 faces per real face) in place of wrappers that fit (about 2).
+  bool lean = false;
+  std::uint64_t seed = 1;  ///< seeds the order in which patches grow
+  unsigned threads = 1;    ///< 0: as many as the machine runs at once. The result does not depend on it
   /// Called after each pass with the pass's number and the number of faces of the hull. May be empty.
   std::function<void(std::uint32_t pass, std::uint32_t hull_faces)> progress;
 };

@@ -56,6 +56,7 @@ void CapSurface::load_faces(const HullMesh& hull, const Patch& patch) {
     face.plane = plane_of(face.v[0], face.v[1], face.v[2]);
     face.kept = f;
     face.alive = true;
+    face.extra = t.extra;
     patch_area_ += face.plane.area;
   }
 }
@@ -203,6 +204,7 @@ void CapSurface::replace(const Star& star, int w) {
     face.plane = plane_of(r.a, r.b, w);
     face.kept = -1;
     face.alive = true;
+    face.extra = 0;
     set_across(r.across, r.a, r.b, r.face);
     if (!is_ring(r.a)) face_of_[r.a] = r.face;
     if (!is_ring(r.b)) face_of_[r.b] = r.face;

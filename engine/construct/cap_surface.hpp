@@ -28,6 +28,7 @@ class CapSurface {
     Plane plane;
     int kept;  ///< the patch's triangle (index into Patch::slots) if it is still that one, else -1
     bool alive;
+    double extra;  ///< see HullMesh::Triangle
   };
   /// The triangles round an interior vertex u, or round an edge u, v, and the polygon around them.
   struct Star {
@@ -54,6 +55,10 @@ class CapSurface {
   const Eigen::Vector3d& x(int v) const { return points_[v].x; }
   /// Returns a vertex's number in the complex; for new vertices, the one that they have if all of them stay.
   VertexId id(int v) const { return points_[v].id; }
+  /// Returns how far a vertex is off the body; see HullMesh::Point.
+  double off(int v) const { return points_[v].off; }
+  void set_off(int v, double off) { points_[v].off = off; }
+  void set_extra(int f, double extra) { faces_[f].extra = extra; }
   /// Returns the hull's vertex that an old vertex is.
   HullMesh::Corner corner(int v) const { return corners_[v]; }
 

@@ -8,6 +8,7 @@
 #include "engine/construct/chain_cap.hpp"
 #include "engine/construct/complex_builder.hpp"
 #include "engine/construct/convex_polygon.hpp"
+#include "engine/construct/fitting.hpp"
 #include "engine/construct/hull_loops.hpp"
 #include "engine/construct/hull_regions.hpp"
 #include "engine/construct/pass_counter.hpp"
@@ -40,6 +41,7 @@ class ChainBuilder {
 
   LrbData run() {
     plan_polygon();
+    if (!options_.lean) fit();
     simplify(kCapWorth);
     simplify(kLastCapWorth);
     if (outer_size() > max_outer_ && bridge()) simplify(kLastCapWorth);
@@ -106,17 +108,25 @@ class ChainBuilder {
     }
   }
 
+  void fit() {
+    Box box;
+    for (const Box& b : boxes_) box.extend(b);
+    fit_hulls(
+        box.sizes().maxCoeff(), frozen_.size(), kFitDownTo, [&] { return hull_.segment_count(); },
+        [&](const CapGoal& goal) { pass(goal); });
+  }
+
   void simplify(double worth) {
     for (;;) {
       const std::uint32_t before = hull_.segment_count();
       if (before <= max_outer_) return;
-      pass(worth);
+      pass({worth});
       if (hull_.segment_count() > kLeastGain * before) return;
     }
   }
 
   /// Puts on the caps that add least area for each segment they save, on chains that do not overlap.
-  void pass(double worth) {
+  void pass(const CapGoal& goal) {
     const std::vector<Slot> slots = hull_.alive_slots();
     std::vector<Box> slot_boxes(hull_.slot_count());
     for (const Slot s : slots) slot_boxes[s] = box_of(hull_, s);
@@ -133,10 +143,11 @@ class ChainBuilder {
       std::uint32_t length = 1;
       for (Slot t = s; length <= longest && !taken[t] && hull_[t].next != s; t = hull_[t].next, ++length) {
         if (length < 2) continue;
-        const auto cap = find_cap(hull_, s, length, bounds_, kCapVolumeLimit);
+        auto cap = find_cap(hull_, s, length, bounds_, kCapVolumeLimit);
         if (!cap || (cap->apex && length < 3)) continue;
         const double saved = length - (cap->apex ? 2.0 : 1.0);
-        if ((cap->apex ? 2.0 : 1.0) > worth * length) continue;
+        if ((cap->apex ? 2.0 : 1.0) > goal.worth * length) continue;
+        if (goal.off > 0 && !measure_cap(hull_, *cap, goal.off)) continue;
         proposals.push_back({cap->area / saved, *cap});
       }
     }
@@ -169,9 +180,11 @@ class ChainBuilder {
     for (const Slot s : chain) complex_.set_outer_cell(hull_[s].face, region);
     const VertexId a = hull_[chain.front()].a, b = hull_[chain.back()].b;
     std::vector<VertexId> corners = {a, b};
-    if (cap.apex) corners = {a, hull_.add_point(*cap.apex), b};
+    if (cap.apex) corners = {a, hull_.add_point(*cap.apex, cap.apex_off), b};
     if (cap.apex) complex_.add_vertex(*cap.apex);
-    return add_segments(chain, corners, region);
+    std::vector<Slot> added = add_segments(chain, corners, region);
+    for (std::size_t i = 0; i < added.size(); ++i) hull_.set_extra(added[i], cap.extra[i]);
+    return added;
   }
 
   /// Puts the polyline in place of the chain, with the region behind it.
@@ -213,7 +226,7 @@ class ChainBuilder {
     for (std::size_t i = 0; i < corners.size(); ++i) {
       const std::uint32_t next =
           i + 1 < corners.size() ? corners[i + 1] : corners[0] + static_cast<std::uint32_t>(points.size());
-      const ChainCap cap{outline[corners[i]], next - corners[i], std::nullopt, 0};
+      const ChainCap cap{outline[corners[i]], next - corners[i], std::nullopt, 0, 0, {0, 0}};
       if (cap.length < 2) continue;
       if (!chain_cap_is_clear(hull_, tree, cap, boxes_)) return false;
       caps.push_back(cap);
@@ -247,6 +260,8 @@ class ChainBuilder {
   void end_pass() { passes_.end_pass(complex_, hull_.segment_count()); }
 
   static constexpr std::uint32_t kMostOuter = 8;  ///< segments of the outermost wrapper
+  /// Fitting ends when the hull has no more segments than this.
+  static constexpr std::uint32_t kFitDownTo = 16;
   /// A pass that leaves a larger share of the segments is the last.
   static constexpr double kLeastGain = 0.95;
 

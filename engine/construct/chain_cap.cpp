@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "engine/core/tolerances.hpp"
 #include "engine/exact/locate.hpp"
 #include "engine/exact/predicates.hpp"
 #include "engine/exact/simplex_test.hpp"
+#include "engine/mesh/nearest_on_simplex.hpp"
 
 namespace lrb::construct {
 namespace {
@@ -70,6 +72,32 @@ bool region_holds(const HullLoops& hull, const std::vector<Slot>& chain,
   return inside;
 }
 
+/// Returns how far q is off the body, as the chain's segments show it.
+double off_by_chain(const HullLoops& hull, const std::vector<Slot>& chain, const Vector3& q) {
+  double least = std::numeric_limits<double>::infinity();
+  for (const Slot s : chain) {
+    const SimplexPoint near = nearest_on_segment(q, hull.start(s), hull.end(s));
+    least = std::min(least, std::sqrt(near.distance_sq) + near.weight[0] * hull.off(hull[s].a) +
+                                near.weight[1] * hull.off(hull[s].b) + hull[s].extra);
+  }
+  return least;
+}
+
+/// Measures a segment over a chain at points in between its ends, whose `off` is known. Returns false if one is
+/// off by more than `most`.
+bool extra_of_segment(const HullLoops& hull, const std::vector<Slot>& chain, const Vector3& a, double off_a,
+                      const Vector3& b, double off_b, double most, double& extra) {
+  constexpr int kParts = 8;
+  extra = 0;
+  for (int i = 1; i < kParts; ++i) {
+    const double t = static_cast<double>(i) / kParts;
+    const double off = off_by_chain(hull, chain, a + t * (b - a));
+    if (!(off <= most)) return false;
+    extra = std::max(extra, off - (1 - t) * off_a - t * off_b);
+  }
+  return true;
+}
+
 std::optional<Vector3> find_apex(const HullLoops& hull, const std::vector<Slot>& chain,
                                  std::span<const HalfSpace> bounds, double radius) {
   const Vector3 &a = hull.start(chain.front()), &b = hull.end(chain.back());
@@ -103,7 +131,7 @@ std::optional<ChainCap> find_cap(const HullLoops& hull, Slot first, std::uint32_
                                  std::span<const HalfSpace> bounds, double area_limit) {
   const std::vector<Slot> chain = chain_of(hull, first, length);
   const Vector3 &a = hull.start(chain.front()), &b = hull.end(chain.back());
-  ChainCap cap{first, length, std::nullopt, 0};
+  ChainCap cap{first, length, std::nullopt, 0, 0, {0, 0}};
   double size = 0;
   bool chord = true;
   for (const Slot s : chain) {
@@ -120,6 +148,20 @@ std::optional<ChainCap> find_cap(const HullLoops& hull, Slot first, std::uint32_
   }
   if (!(cap.area <= area_limit * size * size)) return std::nullopt;
   return cap;
+}
+
+bool measure_cap(const HullLoops& hull, ChainCap& cap, double most) {
+  const std::vector<Slot> chain = chain_of(hull, cap.first, cap.length);
+  const VertexId first = hull[chain.front()].a, last = hull[chain.back()].b;
+  if (!cap.apex)
+    return extra_of_segment(hull, chain, hull.x(first), hull.off(first), hull.x(last), hull.off(last), most,
+                            cap.extra[0]);
+  cap.apex_off = off_by_chain(hull, chain, *cap.apex);
+  return cap.apex_off <= most &&
+         extra_of_segment(hull, chain, hull.x(first), hull.off(first), *cap.apex, cap.apex_off, most,
+                          cap.extra[0]) &&
+         extra_of_segment(hull, chain, *cap.apex, cap.apex_off, hull.x(last), hull.off(last), most,
+                          cap.extra[1]);
 }
 
 bool chain_cap_is_clear(const HullLoops& hull, const AabbTree& tree, const ChainCap& cap,

@@ -20,6 +20,8 @@ struct ChainCap {
   std::uint32_t length = 0;
   std::optional<Eigen::Vector3d> apex;  ///< none if the cap is the chord
   double area = 0;                      ///< area between chain and cap; unit squared
+  /// What measure_cap() finds: how far the apex is off the body, and each segment beyond its ends.
+  double apex_off = 0, extra[2] = {0, 0};
 };
 
 /// Returns the slots of the chain, in order.
@@ -31,6 +33,10 @@ std::vector<HullLoops::Slot> chain_of(const HullLoops& hull, HullLoops::Slot fir
 /// the square of the chain's length.
 std::optional<ChainCap> find_cap(const HullLoops& hull, HullLoops::Slot first, std::uint32_t length,
                                  std::span<const HalfSpace> bounds, double area_limit);
+
+/// Measures how far the cap is off the body, at a few points of each segment, by what is known of the chain: an
+/// estimate. Returns false if that is more than `most`.
+bool measure_cap(const HullLoops& hull, ChainCap& cap, double most);
 
 /// Returns true if, exactly, the cap meets nothing of the hull and of the chain but the chain's ends, leaves
 /// these between the chain and its neighbours on the outer side, and no other component lies beneath it.

@@ -2,7 +2,7 @@
 
 namespace lrb::construct {
 
-HullLoops::HullLoops(const Mesh& mesh) : points_(mesh.vertices) {
+HullLoops::HullLoops(const Mesh& mesh) : points_(mesh.vertices), off_(mesh.vertices.size(), 0) {
   std::vector<Slot> leaving(points_.size(), kNull);
   for (FaceId f = 0; f < mesh.face_count(); ++f) {
     const auto c = mesh.face(f);
@@ -26,8 +26,9 @@ std::vector<HullLoops::Slot> HullLoops::alive_slots() const {
   return slots;
 }
 
-VertexId HullLoops::add_point(const Eigen::Vector3d& x) {
+VertexId HullLoops::add_point(const Eigen::Vector3d& x, double off) {
   points_.push_back(x);
+  off_.push_back(off);
   return static_cast<VertexId>(points_.size() - 1);
 }
 

@@ -22,6 +22,7 @@ class HullLoops {
     Slot next = kNull, prev = kNull;
     FaceId face = kNull;  ///< the face of the complex; kNull: the slot is empty
     std::uint32_t component = kNull;
+    double extra = 0;  ///< how much further off the body than its ends it is somewhere; mesh's unit
   };
 
   /// Makes the loops of a mesh, which must be 2D and closed, every vertex with one segment in and one out.
@@ -36,8 +37,11 @@ class HullLoops {
   const Eigen::Vector3d& start(Slot s) const { return points_[segments_[s].a]; }
   const Eigen::Vector3d& end(Slot s) const { return points_[segments_[s].b]; }
   std::vector<Slot> alive_slots() const;
+  /// Returns how far a vertex is off the body: 0 for the mesh's own, else an estimate; mesh's unit.
+  double off(VertexId v) const { return off_[v]; }
 
-  VertexId add_point(const Eigen::Vector3d& x);
+  VertexId add_point(const Eigen::Vector3d& x, double off = 0);
+  void set_extra(Slot s, double extra) { segments_[s].extra = extra; }
   void set_component(Slot s, std::uint32_t component) { segments_[s].component = component; }
   /// Empties slots without closing the gap: place() must follow.
   void remove(std::span<const Slot> slots);
@@ -50,6 +54,7 @@ class HullLoops {
 
  private:
   std::vector<Eigen::Vector3d> points_;
+  std::vector<double> off_;  ///< (|points|)
   std::vector<Segment> segments_;
   std::uint32_t alive_ = 0, components_ = 0;
 };

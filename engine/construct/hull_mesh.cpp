@@ -130,8 +130,8 @@ void HullMesh::find_components() {
   }
 }
 
-HullMesh::Corner HullMesh::add_point(const Eigen::Vector3d& x, VertexId id) {
-  points_.push_back({x, id});
+HullMesh::Corner HullMesh::add_point(const Eigen::Vector3d& x, VertexId id, double off) {
+  points_.push_back({x, id, off});
   slot_of_.push_back(kNull);
   degree_.push_back(0);
   return point_count() - 1;

@@ -25,12 +25,16 @@ class HullMesh {
     std::array<Slot, 3> across;   ///< neighbour over the edge v[i], v[i + 1]
     FaceId face = kNull;          ///< the face of the complex; kNull: the slot is empty
     std::uint32_t component = 0;  ///< component of the mesh's surface
+    /// How much further off the body than its corners the triangle is somewhere; an estimate, mesh's unit.
+    double extra = 0;
   };
 
   /// A vertex's position and its number in the complex.
   struct Point {
     Eigen::Vector3d x;
     VertexId id;
+    double off = 0;  ///< distance from the body: 0 for the mesh's own vertices, else an estimate; mesh's unit
+    double patience = 0;  ///< how far off caps must be allowed to be before one is tried here again
   };
 
   /// Makes the surface of a mesh, which must be closed, oriented, and manifold but for vertices with several
@@ -90,7 +94,8 @@ class HullMesh {
   }
   bool has_polygons() const { return !unit_first_.empty(); }
 
-  Corner add_point(const Eigen::Vector3d& x, VertexId id);
+  Corner add_point(const Eigen::Vector3d& x, VertexId id, double off = 0);
+  void set_patience(Corner v, double off) { points_[v].patience = off; }
 
   /// Removes triangles without closing the gap: add() must follow.
   void remove(std::span<const Slot> slots);

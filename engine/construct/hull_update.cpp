@@ -67,15 +67,18 @@ Sheet make_sheet(const HullMesh& hull, const Patch& patch, const CapSurface& cap
     } else {
       corners[v] = Sheet::kNewPoint + static_cast<Corner>(sheet.new_points.size());
       sheet.new_points.push_back(cap.x(v));
+      sheet.new_off.push_back(cap.off(v));
     }
   }
   std::vector<bool> stays(patch.slots.size(), false);
   for (const auto& f : cap.faces()) {
     if (!f.alive) continue;
-    if (f.kept >= 0)
+    if (f.kept >= 0) {
       stays[f.kept] = true;
-    else
+    } else {
       sheet.added.push_back({corners[f.v[0]], corners[f.v[1]], corners[f.v[2]]});
+      sheet.added_extra.push_back(f.extra);
+    }
   }
   for (std::size_t i = 0; i < patch.slots.size(); ++i)
     (stays[i] ? sheet.kept : sheet.removed).push_back(patch.slots[i]);
@@ -86,7 +89,9 @@ Sheet make_sheet(const HullMesh& hull, const Patch& patch, const CapSurface& cap
 std::vector<Slot> cover(HullMesh& hull, ComplexBuilder& complex, const Sheet& sheet, std::uint16_t layer,
                         std::uint32_t component) {
   const Corner first_new = hull.point_count();
-  for (const Eigen::Vector3d& x : sheet.new_points) hull.add_point(x, complex.add_vertex(x));
+  for (std::size_t i = 0; i < sheet.new_points.size(); ++i)
+    hull.add_point(sheet.new_points[i], complex.add_vertex(sheet.new_points[i]),
+                   sheet.new_off.empty() ? 0 : sheet.new_off[i]);
   const std::vector<Slot>& removed = sheet.removed;
   const std::uint32_t first_region = complex.region_count();
   for (std::uint32_t p = 0; p < sheet.pieces.count; ++p) complex.add_region(layer);
@@ -118,6 +123,7 @@ std::vector<Slot> cover(HullMesh& hull, ComplexBuilder& complex, const Sheet& sh
     }
     t.face = complex.add_pseudo_face(ids, RegionId(first_region + sheet.pieces.of_added[i]), kOutside);
     t.component = component;
+    if (!sheet.added_extra.empty()) t.extra = sheet.added_extra[i];
   }
   hull.remove(removed);
   for (std::size_t i = 0; i < slots.size(); ++i) hull.add(slots[i], triangles[i]);

@@ -23,6 +23,8 @@ struct Sheet {
   std::vector<HullMesh::Slot> kept;     ///< for a patch: the triangles that its cap keeps
   std::vector<PointTriangle> added;     ///< corners are the hull's vertices
   std::vector<Eigen::Vector3d> new_points;
+  /// (|new_points|), (|added|) how far they are off the body, see HullMesh; empty if nobody measured it.
+  std::vector<double> new_off, added_extra;
   RegionPieces pieces;
   /// (|added|) what lies beyond each edge: another added triangle or, at the boundary, what lay beyond a
   /// removed one.

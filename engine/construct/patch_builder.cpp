@@ -8,6 +8,7 @@
 #include "engine/construct/closing.hpp"
 #include "engine/construct/complex_builder.hpp"
 #include "engine/construct/component_nesting.hpp"
+#include "engine/construct/fitting.hpp"
 #include "engine/construct/hull_mesh.hpp"
 #include "engine/construct/hull_regions.hpp"
 #include "engine/construct/pass_counter.hpp"
@@ -40,6 +41,7 @@ class PatchBuilder {
   }
 
   LrbData run() {
+    if (!options_.lean) fit();
     simplify(kCapWorth);
     simplify(kLastCapWorth);
     if (outer_size() > options_.max_outer_faces && bridge()) simplify(kLastCapWorth);
@@ -64,20 +66,33 @@ class PatchBuilder {
     return points;
   }
 
+  void fit() {
+    Eigen::AlignedBox3d box;
+    for (Corner v = 0; v < hull_.point_count(); ++v) box.extend(hull_.x(v));
+    fit_hulls(
+        box.sizes().maxCoeff(), frozen_.size(), kFitDownTo, [&] { return hull_.triangle_count(); },
+        [&](const CapGoal& goal) { pass(goal); });
+  }
+
   /// Makes passes until they no longer help. `worth`: the largest share of triangles that a cap may have.
   void simplify(double worth) {
     for (;;) {
       const std::uint32_t before = hull_.triangle_count();
       if (before <= options_.max_outer_faces) return;
-      if (before <= kPolytopeFrom) plan_polytope();
-      // On a small hull patches are small, so that there are still several.
-      const std::uint32_t interior =
-          std::max(kLeastInterior, std::min(options_.patch_interior, before / kLeastPatches));
-      PatchPass(hull_, complex_, bounds_, frozen_, component_boxes_, workers_)
-          .run({interior, std::max(4 * interior, kLeastTriangles)}, worth, passes_.layer(), random_);
-      end_pass();
+      pass({worth});
       if (hull_.triangle_count() > kLeastGain * before) return;
     }
+  }
+
+  void pass(const CapGoal& goal) {
+    const std::uint32_t triangles = hull_.triangle_count();
+    if (triangles <= kPolytopeFrom) plan_polytope();
+    // On a small hull patches are small, so that there are still several.
+    const std::uint32_t interior =
+        std::max(kLeastInterior, std::min(options_.patch_interior, triangles / kLeastPatches));
+    PatchPass(hull_, complex_, bounds_, frozen_, component_boxes_, workers_)
+        .run({interior, std::max(4 * interior, kLeastTriangles)}, goal, passes_.layer(), random_);
+    end_pass();
   }
 
   bool bridge() {
@@ -122,6 +137,8 @@ class PatchBuilder {
 
   void end_pass() { passes_.end_pass(complex_, hull_.triangle_count()); }
 
+  /// Fitting ends when the hull has no more triangles than this.
+  static constexpr std::uint32_t kFitDownTo = 200;
   /// The outermost wrapper is planned when the hull has no more triangles than this: few enough for that to
   /// be quick, and still close to the mesh.
   static constexpr std::uint32_t kPolytopeFrom = 30000;

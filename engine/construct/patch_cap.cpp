@@ -38,15 +38,23 @@ void PatchCap::simplify(const Patch& patch, const Limits& limits) {
       }
       if (!confirm(*now)) continue;
       ++version_;
-      if (cap_.is_ring(now->v)) {
-        cap_.collapse_onto_ring(star_);
-        for (const auto& r : star_.rim)
-          if (!cap_.is_ring(r.a)) propose(r.a, now->v);
-      } else {
-        propose_around(cap_.collapse_to_new(star_, now->w));
-      }
+      collapse(*now);
     }
   }
+}
+
+/// Collapses the edge whose star is in star_, and proposes what has become possible.
+void PatchCap::collapse(const Candidate& c) {
+  const bool onto_ring = cap_.is_ring(c.v);
+  int w = c.v;
+  if (onto_ring)
+    cap_.collapse_onto_ring(star_);
+  else
+    w = cap_.collapse_to_new(star_, c.w);
+  if (limits_.gauge) limits_.gauge->settle(cap_, star_, w);
+  if (!onto_ring) return propose_around(w);
+  for (const auto& r : star_.rim)
+    if (!cap_.is_ring(r.a)) propose(r.a, w);
 }
 
 void PatchCap::propose_all() {
@@ -103,6 +111,7 @@ std::optional<PatchCap::Candidate> PatchCap::evaluate(int u, int v) {
   if (c.cost > limits_.volume) return std::nullopt;
   c.cost += kCapShapeWeight * area * std::sqrt(area) / shape_of_fan(c.w);
   if (!(c.cost <= limits_.volume)) return std::nullopt;
+  if (limits_.gauge && !limits_.gauge->may_stand(cap_, star_, c.w)) return std::nullopt;
   return c;
 }
 
@@ -178,6 +187,7 @@ double PatchCap::shape_of_fan(const Vector3& w) const {
 }
 
 bool PatchCap::confirm(const Candidate& c) const {
+  if (limits_.gauge && !limits_.gauge->is_near(cap_, star_, c.w)) return false;
   for (const int f : star_.faces) {
     const auto& v = cap_.faces()[f].v;
     if (v[0] == c.v && cap_.is_ring(c.v)) continue;

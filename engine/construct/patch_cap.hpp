@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "engine/construct/body_bounds.hpp"
+#include "engine/construct/cap_gauge.hpp"
 #include "engine/construct/cap_surface.hpp"
 #include "engine/construct/embed_check.hpp"
 
@@ -22,6 +23,7 @@ class PatchCap {
     /// How far the point that is projected lies below the star's centre; in radii of the star.
     double depth = 1;
     EmbedCheck* check = nullptr;  ///< if set, every collapse must pass it
+    CapGauge* gauge = nullptr;    ///< if set, every collapse must stay within its limit
   };
 
   PatchCap(CapSurface& cap, const BodyBounds& bounds) : cap_(cap), bounds_(bounds) {}
@@ -51,6 +53,7 @@ class PatchCap {
   double shape_of_fan(const Eigen::Vector3d& w) const;
   void collect_half_spaces(const Eigen::Vector3d& centre, double margin);
   bool confirm(const Candidate& c) const;
+  void collapse(const Candidate& c);
 
   CapSurface& cap_;
   const BodyBounds& bounds_;

@@ -14,11 +14,21 @@ using Corner = HullMesh::Corner;
 /// Patches of a batch per thread. Longer batches would seldom come about before two of their patches touch.
 constexpr std::size_t kBatchPerThread = 32;
 
-/// Returns the vertices in use, in random order.
-std::vector<Corner> seeds_of(const HullMesh& hull, Random& random) {
+/// See PatchCap::Limits::depth; where caps are to fit.
+constexpr double kFittingDepth = 10;
+
+/// Where no cap was found, none is tried before it may be this many times as far off. Smaller: more time, most of
+/// it in vain.
+constexpr double kPatience = 1.2;
+/// A pass of caps that fit ends when after this many patches fewer than one in kLeastCaps got a cap: the distance
+/// is too small for most of the hull.
+constexpr std::size_t kTries = 32, kLeastCaps = 24;
+
+/// Returns the vertices in use at which a cap may be found, in random order.
+std::vector<Corner> seeds_of(const HullMesh& hull, double off, Random& random) {
   std::vector<Corner> seeds;
   for (Corner v = 0; v < hull.point_count(); ++v)
-    if (hull.degree(v) > 0) seeds.push_back(v);
+    if (hull.degree(v) > 0 && (off == 0 || hull.point(v).patience <= off)) seeds.push_back(v);
   random.shuffle(seeds);
   return seeds;
 }
@@ -34,24 +44,31 @@ PatchPass::PatchPass(HullMesh& hull, ComplexBuilder& complex, const BodyBounds& 
   jobs_.resize(workers.count() == 1 ? 1 : kBatchPerThread * workers.count());
 }
 
-void PatchPass::run(const GrowLimits& limits, double worth, std::uint16_t layer, Random& random) {
+void PatchPass::run(const GrowLimits& limits, const CapGoal& goal, std::uint16_t layer, Random& random) {
   PatchGrower grower(hull_, limits);
   for (Slot s = 0; s < hull_.slot_count(); ++s)
     if (hull_.alive(s) && ((hull_[s].face < frozen_.size() && frozen_[hull_[s].face]) || hull_.is_crowded(s)))
       grower.take(s);
   tried_.assign(hull_.point_count(), false);
-  seeds_ = seeds_of(hull_, random);
+  seeds_ = seeds_of(hull_, goal.off, random);
   next_seed_ = 0;
+  std::size_t tried = 0, found = 0;
   while (next_seed_ < seeds_.size()) {
     grow_batch(grower);
     workers_.for_each(batch_,
-                      [&](std::size_t i, unsigned worker) { make_cap(jobs_[i], worth, *benches_[worker]); });
+                      [&](std::size_t i, unsigned worker) { make_cap(jobs_[i], goal, *benches_[worker]); });
     changed_.clear();
     for (std::size_t i = 0; i < batch_; ++i) {
       Job& job = jobs_[i];
       const auto touches = [&](const Eigen::AlignedBox3d& box) { return box.intersects(job.seen); };
-      if (std::any_of(changed_.begin(), changed_.end(), touches)) make_cap(job, worth, *benches_[0]);
+      if (std::any_of(changed_.begin(), changed_.end(), touches)) make_cap(job, goal, *benches_[0]);
       if (job.has_cap) put_on(job, layer, grower);
+      if (goal.off == 0) continue;
+      ++tried;
+      found += job.has_cap;
+      if (!job.has_cap)
+        for (const Corner v : job.patch.interior) hull_.set_patience(v, kPatience * goal.off);
+      if (tried >= kTries && kLeastCaps * found < tried) return;
     }
   }
 }
@@ -72,16 +89,16 @@ void PatchPass::grow_batch(PatchGrower& grower) {
   }
 }
 
-void PatchPass::make_cap(Job& job, double worth, Bench& bench) const {
+void PatchPass::make_cap(Job& job, const CapGoal& goal, Bench& bench) const {
   bench.check.forget_seen();
-  job.has_cap = find_cap(job.patch, worth, bench);
+  job.has_cap = find_cap(job.patch, goal, bench);
   job.seen = bench.check.seen();
   if (job.has_cap) job.sheet = make_sheet(hull_, job.patch, bench.cap);
 }
 
 /// Finds a cap, at first without looking at anything but the patch itself; if that cap turns out to hit
 /// something, tries again with a proof for each collapse.
-bool PatchPass::find_cap(const Patch& patch, double worth, Bench& bench) const {
+bool PatchPass::find_cap(const Patch& patch, const CapGoal& goal, Bench& bench) const {
   CapSurface& cap = bench.cap;
   for (const bool careful : {false, true}) {
     cap.load(hull_, patch, static_cast<VertexId>(complex_.vertices().size()));
@@ -89,11 +106,17 @@ bool PatchPass::find_cap(const Patch& patch, double worth, Bench& bench) const {
     PatchCap::Limits limits;
     limits.volume = kCapVolumeLimit * area * std::sqrt(area);
     limits.check = careful ? &bench.check : nullptr;
+    if (goal.off > 0) {
+      bench.gauge.load(hull_, patch, cap, goal.off);
+      limits.gauge = &bench.gauge;
+      limits.depth = kFittingDepth;
+    }
     bench.collapse.simplify(patch, limits);
     if (!cap.keep_polygons_whole(hull_, patch)) return false;
     const int kept = cap.alive_faces() - cap.new_faces();
     const int removed = static_cast<int>(patch.slots.size()) - kept;
-    if (cap.new_faces() > worth * removed || removed == 0) return false;
+    if (cap.new_faces() > goal.worth * removed || removed == 0) return false;
+    if (limits.gauge && hull_.has_polygons() && !bench.gauge.measure_again(cap)) return false;
     if (bench.check.cap_is_clear(patch, cap)) return true;
   }
   return false;

@@ -11,6 +11,7 @@
 #include "engine/construct/body_bounds.hpp"
 #include "engine/construct/complex_builder.hpp"
 #include "engine/construct/embed_check.hpp"
+#include "engine/construct/fitting.hpp"
 #include "engine/construct/hull_mesh.hpp"
 #include "engine/construct/hull_update.hpp"
 #include "engine/construct/patch_cap.hpp"
@@ -36,9 +37,8 @@ class PatchPass {
             const std::vector<bool>& frozen, const std::vector<Eigen::AlignedBox3d>& component_boxes,
             Workers& workers);
 
-  /// Covers what it can with regions of this layer, taking seeds in random order. `worth`: the largest share
-  /// of the triangles it covers that a cap may have.
-  void run(const GrowLimits& limits, double worth, std::uint16_t layer, Random& random);
+  /// Covers what it can with regions of this layer, taking seeds in random order.
+  void run(const GrowLimits& limits, const CapGoal& goal, std::uint16_t layer, Random& random);
 
  private:
   /// The memory that one worker needs to make caps.
@@ -49,6 +49,7 @@ class PatchPass {
       check.set_component_boxes(component_boxes);
     }
     CapSurface cap;
+    CapGauge gauge;
     EmbedCheck check;
     PatchCap collapse;
   };
@@ -60,8 +61,8 @@ class PatchPass {
   };
 
   void grow_batch(PatchGrower& grower);
-  void make_cap(Job& job, double worth, Bench& bench) const;
-  bool find_cap(const Patch& patch, double worth, Bench& bench) const;
+  void make_cap(Job& job, const CapGoal& goal, Bench& bench) const;
+  bool find_cap(const Patch& patch, const CapGoal& goal, Bench& bench) const;
   void put_on(const Job& job, std::uint16_t layer, PatchGrower& grower);
 
   HullMesh& hull_;

@@ -74,9 +74,11 @@ inline constexpr double kNearEnough = 0x1p100;
 /// flat ones.
 inline constexpr double kFlatness = 0x1p-8;
 
-/// Added to distances that bound a region's thickness, in units (coordinates are at most about 1): covers the
-/// rounding of a dozen operations on them, which is under 2^-46. Smaller: an error bound could be exceeded by
-/// a rounding error; larger: it is that much looser.
+/// Added to distances that bound a region's thickness, in units (coordinates are at most about 1). Covers, with
+/// u = 2^-53: a distance is the length of the difference between a point and a weighted sum of corners, a dozen
+/// operations on numbers below 4, together under 2^-46; a lid is cut in pieces, and a new corner lies beside its
+/// edge by three operations on each coordinate, under 2^-50, at most kMostCuts = 2^8 times over (thickness.cpp):
+/// under 2^-42. Smaller: an error bound could be exceeded by a rounding error; larger: it is that much looser.
 inline constexpr double kThicknessRounding = 0x1p-40;
 /// Distance that faces of two wrappers must keep to count as apart, relative to the largest term of any world
 /// coordinate. What is hidden may stand out of its lid by the rounding of world coordinates (under 2^-50 for

@@ -6,14 +6,13 @@
 
 namespace lrb {
 
-/// Returns the thickness of each region: an upper bound on the distance from any of its points (its lids
-/// included) to the nearest real face, in the mesh's unit. Rounded upward; infinite where regions hide each
-/// other in a circle.
+/// Returns the thickness of each region: an upper bound on the distance from any point of its lids to the nearest
+/// real face, in the mesh's unit. Rounded upward; within a twentieth of the largest such distance, as a rule, where
+/// that is more than a millionth of the body. Infinite for a region without lids, which nothing hides. Says
+/// nothing of points inside the region: under a lid over the neck of a bottle they may be further off.
 ///
-/// From a point of a lid this distance is at most the max over the lid's triangles T of the min over the
-/// floor's triangles F of (the max over T's corners of the distance to F, which is convex, + F's own bound);
-/// lids are cut in four where that is not tight. A point inside the region is no further from the region's
-/// boundary than half the region's width in any direction.
-std::vector<double> region_thickness(const LrbRep& rep);
+/// The one-sided Hausdorff distance from the lids to the set of all real faces, by branch and bound: see
+/// thickness.cpp. Takes `threads` threads (see BuildOptions); the result does not depend on them.
+std::vector<double> region_thickness(const LrbRep& rep, unsigned threads = 1);
 
 }  // namespace lrb

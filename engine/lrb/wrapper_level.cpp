@@ -35,10 +35,8 @@ bool has_levels(const LrbRep& rep) {
 
 /// Returns, for each region, the largest thickness among the region and all that it hides. Passes values
 /// outward until none grows.
-std::vector<double> needed_tolerances(const LrbRep& rep) {
-  std::vector<double> needed = region_thickness(rep);
-  for (RegionId r = 0; r < rep.region_count(); ++r)
-    if (rep.lids(r).empty()) needed[r] = kInfinity;
+std::vector<double> needed_tolerances(const LrbRep& rep, unsigned threads) {
+  std::vector<double> needed = region_thickness(rep, threads);
   std::vector<RegionId> work(rep.region_count());
   std::iota(work.begin(), work.end(), RegionId{0});
   while (!work.empty()) {
@@ -160,7 +158,7 @@ std::vector<SimplexId> outline(const LrbRep& rep, double bound, std::span<const 
 
 WrapperLevels::WrapperLevels(const LrbRep& rep, unsigned threads) {
   if (!has_levels(rep)) return;
-  needed_ = needed_tolerances(rep);
+  needed_ = needed_tolerances(rep, threads);
   const std::vector<double> bounds = choose_bounds(rep, needed_);
   const std::vector<std::vector<FaceId>> faces = Boundaries(rep, needed_).faces(bounds);
   levels_.resize(bounds.size());

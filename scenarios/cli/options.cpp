@@ -92,6 +92,8 @@ void add_build_options(CLI::App& app, BuildOptions& options) {
       ->check(CLI::Range(4, 1000))
       ->capture_default_str()
       ->type_name("N");
+  app.add_flag("--lean", options.lean,
+               "Build fewer faces in all (1.5 a real face, not 2), for wrappers that fit less well");
   app.add_option("--seed", options.seed, "Seed of the order in which patches grow")
       ->capture_default_str()
       ->type_name("N");

@@ -30,7 +30,7 @@ void add_request_options(CLI::App& app, CollideRequest& request);
 void add_coarse_options(CLI::App& app, CollideRequest& request);
 /// Adds --recursion, which takes precedence over a scenario.
 void add_recursion_option(CLI::App& app, std::optional<Recursion>& recursion);
-/// Adds --patch, --max-outer and --seed.
+/// Adds --patch, --max-outer, --lean, --seed and --threads.
 void add_build_options(CLI::App& app, BuildOptions& options);
 
 /// The options --size, --dpi, --transparent, --format, --frames, --every, --most, --colour-by and --up, which

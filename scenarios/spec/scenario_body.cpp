@@ -8,13 +8,14 @@ namespace lrb::spec {
 namespace {
 
 BuildOptions read_build(const io::JsonNode& node, std::uint64_t seed) {
-  node.object({"patch_interior", "max_outer_faces", "seed"});
+  node.object({"patch_interior", "max_outer_faces", "lean", "seed"});
   BuildOptions o;
   o.seed = seed;
   if (const auto n = node.get("patch_interior"))
     o.patch_interior = static_cast<std::uint32_t>(n->integer(1, 1000));
   if (const auto n = node.get("max_outer_faces"))
     o.max_outer_faces = static_cast<std::uint32_t>(n->integer(4, 1000));
+  if (const auto n = node.get("lean")) o.lean = n->boolean();
   if (const auto n = node.get("seed")) o.seed = n->integer(0, kAnySeed);
   return o;
 }
@@ -57,7 +58,7 @@ BodySpec read_body(const io::JsonNode& node, const std::filesystem::path& folder
   if (const auto build = node.get("build")) {
     body.build = read_build(*build, seed);
     const generators::Generator* generator = generators::find_generator(body.generator);
-    for (const char* key : {"patch_interior", "max_outer_faces"})
+    for (const char* key : {"patch_interior", "max_outer_faces", "lean"})
       if (generator != nullptr && generator->make_rep != nullptr && build->has(key))
         build->fail_key(key, "the regions of this body are known by construction: remove it");
   }

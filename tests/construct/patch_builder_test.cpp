@@ -43,13 +43,17 @@ TEST_CASE("a body that is simple enough stays as it is") {
   for (const Mesh& mesh : {tetrahedron(), box(), quad_box()}) CHECK(build_lrb(mesh).region_count() == 0);
 }
 
-TEST_CASE("every size of patch works, and larger ones make the structure smaller") {
+TEST_CASE("every size of patch works, and larger ones make a lean structure smaller") {
   const Mesh mesh = bumpy_sphere(4, 5);
   std::uint32_t last = ~0u;
   for (const std::uint32_t interior : {4u, 8u, 16u, 32u, 64u}) {
     CAPTURE(interior);
     BuildOptions options;
     options.patch_interior = interior;
+    const LrbRep fitting = build_lrb(mesh, options);
+    check_valid(fitting);
+    CHECK(fitting.outermost_faces().size() <= 20);
+    options.lean = true;
     const LrbRep rep = build_lrb(mesh, options);
     check_valid(rep);
     CHECK(rep.outermost_faces().size() <= 20);

@@ -12,6 +12,7 @@
 #include "engine/mesh/io/mesh_io.hpp"
 #include "scenarios/bodies/body.hpp"
 #include "scenarios/bodies/hull_figures.hpp"
+#include "scenarios/bodies/level_json.hpp"
 #include "scenarios/cli/command.hpp"
 #include "scenarios/cli/options.hpp"
 #include "scenarios/cli/progress.hpp"
@@ -69,6 +70,8 @@ int run_build(const BuildCommandOptions& o, const Globals& globals) {
   note(globals, notes);
 
   nlohmann::ordered_json j = bodies::body_figures(rep);
+  if (o.json)
+    j["levels"] = bodies::level_json(bodies::level_figures(rep, bodies::kLevelShares, o.build.threads));
   j["seconds"] = seconds;
   j["peak_bytes"] = peak_bytes();
   j["notes"] = notes;  // what was done to the mesh: nothing is done in silence

@@ -89,7 +89,7 @@ double median(std::vector<double> x) {
 
 }  // namespace
 
-TEST_CASE("no point of a region is further from the real faces than its thickness") {
+TEST_CASE("no point of a region's lids is further from the real faces than its thickness") {
   RandomEngine random(3);
   double tightest = 0;
   for (const Bodies& pair : bodies()) {
@@ -99,17 +99,14 @@ TEST_CASE("no point of a region is further from the real faces than its thicknes
     const std::vector<double> thickness = region_thickness(rep);
     REQUIRE(thickness.size() == rep.region_count());
     for (RegionId r = 0; r < rep.region_count(); ++r) {
-      REQUIRE(std::isfinite(thickness[r]));
+      REQUIRE(std::isfinite(thickness[r]) == !rep.lids(r).empty());
+      if (rep.lids(r).empty()) continue;
       std::vector<std::vector<Eigen::Vector3d>> sides;
-      for (const FaceId f : rep.collector(r))
+      for (const FaceId f : rep.lids(r))
         for (std::uint32_t i = 0; i < Mesh::simplices_of(rep.face(f).size(), rep.dim()); ++i)
           sides.push_back(test::simplex_points(rep, Pose{}, SimplexId(rep.first_simplex(f) + i)));
       for (int sample = 0; sample < 12; ++sample) {
-        // Between two points of its boundary: in the region, as it is mostly convex, or checked to be.
-        Eigen::Vector3d x = test::random_point_of(random, sides[random() % sides.size()]);
-        const Eigen::Vector3d y = test::random_point_of(random, sides[random() % sides.size()]);
-        if (sample % 2 != 0) x = 0.5 * (x + y);
-        if (sample % 2 != 0 && !test::inside_by_parity(sides, x, rep.dim())) continue;
+        const Eigen::Vector3d x = test::random_point_of(random, sides[random() % sides.size()]);
         double least = INFINITY;
         for (const auto& s : real) least = std::min(least, test::simplex_distance({x}, s));
         REQUIRE(least <= thickness[r]);

@@ -7,8 +7,10 @@
 #include <doctest/doctest.h>
 #include <nlohmann/json.hpp>
 
+#include "engine/mesh/io/mesh_io.hpp"
 #include "engine/query/collide.hpp"
 #include "render/png.hpp"
+#include "scenarios/bodies/shapes/shapes.hpp"
 #include "tests/support/program.hpp"
 
 namespace fs = std::filesystem;
@@ -245,6 +247,31 @@ TEST_CASE("build: the figures, the proof, and a file that can be used in the mes
   CHECK(run(folder, {"query", "a.lrb", "a.lrb", "--poses", "p.txt"}).out ==
         run(folder, {"query", "a.obj", "a.obj", "--poses", "p.txt"}).out);
   CHECK(run(folder, {"inspect", "a.lrb", "--validate"}).code == 0);
+}
+
+TEST_CASE("levels: faces and proved distances at a row of tolerances, the same from build --json") {
+  const Folder folder;
+  lrb::write_mesh(lrb::shapes::icosphere(3), (folder.path / "ball.obj").string());
+  const json built = json::parse(run(folder, {"build", "ball.obj", "-o", "ball.lrb", "--json"}).out);
+  const Outcome o = run(folder, {"levels", "ball.lrb", "--json"});
+  CAPTURE(o.err);
+  REQUIRE(o.code == 0);
+  const json j = json::parse(o.out);
+  CHECK(j["levels"] == built["levels"]);
+  REQUIRE(j["levels"].size() >= 5);
+  std::uint32_t last = 1280;
+  for (const json& level : j["levels"]) {
+    CHECK(level["bound"].get<double>() <= level["tolerance"].get<double>());
+    CHECK(level["faces"].get<std::uint32_t>() <= last);
+    last = level["faces"].get<std::uint32_t>();
+  }
+  CHECK(last < 640);
+  const json coarse =
+      json::parse(run(folder, {"levels", "ball.obj", "--at", "0.02", "--lean", "--json"}).out);
+  REQUIRE(coarse["levels"].size() == 1);
+  CHECK(coarse["levels"][0]["share"] == 0.02);
+  CHECK(run(folder, {"levels", "ball.lrb"}).out.find("proved off") != std::string::npos);
+  CHECK(run(folder, {"levels", "ball.lrb", "--at", "2"}).code == 2);
 }
 
 TEST_CASE("inspect: faults are findings, not errors") {

@@ -1,0 +1,147 @@
+#include "engine/construct/cap_gauge.hpp"
+
+#include <algorithm>
+#include <limits>
+
+#include <Eigen/Geometry>
+
+#include "engine/mesh/nearest_on_simplex.hpp"
+
+namespace lrb::construct {
+
+using Eigen::Vector3d;
+
+void CapGauge::load(const HullMesh& hull, const Patch& patch, const CapSurface& cap, double most) {
+  floor_.load(hull, patch);
+  most_ = most;
+  cover_.assign(cap.first_new(), -1);
+  face_mark_.assign(cap.faces().size(), 0);
+  marker_ = 0;
+}
+
+void CapGauge::find_covered(const CapSurface& cap, const CapSurface::Star& star) {
+  ++marker_;
+  for (const int f : star.faces) face_mark_[f] = marker_;
+  covered_.clear();
+  for (int p = cap.ring_size(); p < cap.first_new(); ++p)
+    if (cover_[p] >= 0 ? face_mark_[cover_[p]] == marker_ : p == star.u || (p == star.v && !cap.is_ring(p)))
+      covered_.push_back(p);
+}
+
+/// Lays the rim and what is covered into the star's mean plane. Returns false if it has none.
+bool CapGauge::flatten(const CapSurface& cap, const CapSurface::Star& star) {
+  Vector3d outward = Vector3d::Zero();
+  for (const int f : star.faces) outward += cap.faces()[f].plane.n * cap.faces()[f].plane.area;
+  const double length = outward.norm();
+  if (!(length > 0)) return false;
+  outward /= length;
+  int least = 0;
+  outward.cwiseAbs().minCoeff(&least);
+  along_x_ = outward.cross(Vector3d::Unit(least)).normalized();
+  along_y_ = outward.cross(along_x_);
+  flat_rim_.clear();
+  for (const auto& r : star.rim) flat_rim_.push_back(flat(cap.x(r.a)));
+  flat_rim_.push_back(flat(cap.x(star.rim.back().b)));
+  flat_covered_.clear();
+  for (const int p : covered_) flat_covered_.push_back(flat(cap.x(p)));
+  return true;
+}
+
+/// Returns the rim edge whose triangle with `centre` holds q; if none does, the one that is nearest to doing so.
+std::size_t CapGauge::sector(const Flat& q, const Flat& centre) const {
+  std::size_t best = 0;
+  double most = -std::numeric_limits<double>::infinity();
+  const double qx = q.x - centre.x, qy = q.y - centre.y;
+  double ax = flat_rim_[0].x - centre.x, ay = flat_rim_[0].y - centre.y;
+  double left_of_a = ax * qy - ay * qx;
+  for (std::size_t k = 0; k + 1 < flat_rim_.size(); ++k) {
+    const double bx = flat_rim_[k + 1].x - centre.x, by = flat_rim_[k + 1].y - centre.y;
+    const double left_of_b = bx * qy - by * qx;
+    const double inside = std::min(left_of_a, -left_of_b);
+    if (ax * qx + ay * qy + bx * qx + by * qy > 0 || (qx == 0 && qy == 0)) {
+      if (inside >= 0 && ax * by - ay * bx > 0) return k;
+      if (inside > most) most = inside, best = k;
+    }
+    ax = bx, ay = by, left_of_a = left_of_b;
+  }
+  return best;
+}
+
+bool CapGauge::may_stand(const CapSurface& cap, const CapSurface::Star& star, const Vector3d& w) {
+  if (!cap.is_ring(star.v) && !floor_.is_within(w, most_)) return false;
+  find_covered(cap, star);
+  if (!flatten(cap, star)) return false;
+  const Flat centre = flat(w);
+  for (std::size_t i = 0; i < covered_.size(); ++i) {
+    const auto& r = star.rim[sector(flat_covered_[i], centre)];
+    const Vector3d &a = cap.x(r.a), &p = cap.x(covered_[i]);
+    const Vector3d normal = (cap.x(r.b) - a).cross(w - a);
+    const double square = normal.squaredNorm(), height = normal.dot(w - p);  // times the normal's length
+    const double left = most_ - cap.off(covered_[i]);
+    if (!(square > 0) || height <= 0 || (left > 0 && height * height <= left * left * square)) continue;
+    if (!floor_.is_within(p + normal * (height / square), most_)) return false;
+  }
+  return true;
+}
+
+bool CapGauge::is_near(const CapSurface& cap, const CapSurface::Star& star, const Vector3d& w) const {
+  const bool open = cap.is_ring(star.v);
+  for (std::size_t k = 0; k < star.rim.size(); ++k) {
+    const Vector3d &a = cap.x(star.rim[k].a), &b = cap.x(star.rim[k].b);
+    if (!floor_.is_within((a + b + w) / 3, most_) || !floor_.is_within(0.25 * (a + b) + 0.5 * w, most_))
+      return false;
+    if (open && k == 0) continue;  // this spoke is an edge already
+    for (const double share : {0.5, 0.25, 0.75})
+      if (!floor_.is_within(a + share * (w - a), most_)) return false;
+  }
+  return true;
+}
+
+void CapGauge::settle(CapSurface& cap, const CapSurface::Star& star, int w) {
+  if (!cap.is_ring(w)) cap.set_off(w, floor_.off(cap.x(w)));
+  const Flat centre = flat(cap.x(w));
+  for (std::size_t i = 0; i < covered_.size(); ++i) {
+    const int face = star.rim[sector(flat_covered_[i], centre)].face;
+    cover_[covered_[i]] = face;
+    raise_extra(cap, face, covered_[i]);
+  }
+}
+
+/// Raises what a face is off beyond its corners to what a vertex under it shows.
+void CapGauge::raise_extra(CapSurface& cap, int face, int covered) const {
+  const auto& f = cap.faces()[face];
+  const Vector3d& p = cap.x(covered);
+  const double height = f.plane.d - f.plane.n.dot(p);
+  const SimplexPoint foot = nearest_on_triangle(p, cap.x(f.v[0]), cap.x(f.v[1]), cap.x(f.v[2]));
+  double by_corners = 0;
+  for (int i = 0; i < 3; ++i) by_corners += foot.weight[i] * cap.off(f.v[i]);
+  const double over = height + cap.off(covered);
+  if (over <= by_corners + f.extra) return;
+  const double off = std::min(over, floor_.off(p + f.plane.n * height));
+  if (off - by_corners > f.extra) cap.set_extra(face, off - by_corners);
+}
+
+bool CapGauge::measure_again(CapSurface& cap) const {
+  constexpr double kAt[7][3] = {{1 / 3., 1 / 3., 1 / 3.}, {.5, .5, 0},    {0, .5, .5},   {.5, 0, .5},
+                                {.5, .25, .25},           {.25, .5, .25}, {.25, .25, .5}};
+  for (int f = 0; f < static_cast<int>(cap.faces().size()); ++f) {
+    const auto& face = cap.faces()[f];
+    if (!face.alive || face.kept >= 0) continue;
+    double extra = 0;
+    for (const auto& at : kAt) {
+      Vector3d q = Vector3d::Zero();
+      double by_corners = 0;
+      for (int i = 0; i < 3; ++i) {
+        q += at[i] * cap.x(face.v[i]);
+        by_corners += at[i] * cap.off(face.v[i]);
+      }
+      const double off = floor_.off(q);
+      if (!(off <= most_)) return false;
+      extra = std::max(extra, off - by_corners);
+    }
+    cap.set_extra(f, extra);
+  }
+  return true;
+}
+
+}  // namespace lrb::construct

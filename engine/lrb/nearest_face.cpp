@@ -1,0 +1,93 @@
+#include "engine/lrb/nearest_face.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/mesh/nearest_on_simplex.hpp"
+
+namespace lrb {
+namespace {
+
+/// Writes the squared distances from p (units) to the boxes of a node's children, in float: only the order of
+/// the search depends on them, and what it takes for the nearest.
+void box_distances_sq(const TreeNode& node, const Eigen::Vector3d& p, float out[kTreeWidth]) {
+  const float from_origin[3] = {static_cast<float>(p.x() - node.origin[0]),
+                                static_cast<float>(p.y() - node.origin[1]),
+                                static_cast<float>(p.z() - node.origin[2])};
+  for (std::uint32_t k = 0; k < kTreeWidth; ++k) out[k] = 0;
+  for (int i = 0; i < 3; ++i) {
+    const float q = node.frame[i][0] * from_origin[0] + node.frame[i][1] * from_origin[1] +
+                    node.frame[i][2] * from_origin[2] - node.base[i];
+    for (std::uint32_t k = 0; k < kTreeWidth; ++k) {
+      const float low = node.scale[i] * static_cast<float>(node.lo[i][k]) - q;
+      const float high = q - node.scale[i] * static_cast<float>(node.hi[i][k]);
+      const float d = std::max(std::max(low, high), 0.0f);
+      out[k] += d * d;
+    }
+  }
+}
+
+/// Writes the children whose distance is below a limit to `order`, nearest first. Returns their number.
+std::uint32_t sort_below(const float d[kTreeWidth], std::uint32_t children, double limit_sq,
+                         std::uint32_t order[kTreeWidth]) {
+  std::uint32_t count = 0;
+  for (std::uint32_t k = 0; k < children; ++k) {
+    if (!(static_cast<double>(d[k]) < limit_sq)) continue;
+    std::uint32_t at = count++;
+    for (; at > 0 && d[order[at - 1]] > d[k]; --at) order[at] = order[at - 1];
+    order[at] = k;
+  }
+  return count;
+}
+
+}  // namespace
+
+std::vector<Eigen::Vector3d> vertices_in_units(const LrbRep& rep) {
+  std::vector<Eigen::Vector3d> out;
+  out.reserve(rep.vertices().size());
+  for (const Eigen::Vector3d& v : rep.vertices()) out.push_back(v / rep.tree().unit());
+  return out;
+}
+
+double NearestFace::distance_sq(const Eigen::Vector3d& p, SimplexId s) const {
+  VertexId v[3];
+  rep_.simplex(s, v);
+  return rep_.dim() == 3 ? nearest_on_triangle(p, x_[v[0]], x_[v[1]], x_[v[2]]).distance_sq
+                         : nearest_on_segment(p, x_[v[0]], x_[v[1]]).distance_sq;
+}
+
+double NearestFace::distance(const Eigen::Vector3d& p, SimplexId s) const {
+  return std::sqrt(distance_sq(p, s));
+}
+
+/// Goes down to the nearest boxes first. On a stack of its own: a tree from a file may be as high as it likes.
+NearFace NearestFace::find(const Eigen::Vector3d& p, NearFace known) {
+  const ObbTree& tree = rep_.tree();
+  NearFace best = known;
+  double best_sq = known.distance * known.distance;
+  stack_.clear();
+  if (!tree.empty()) stack_.push_back({0, 0});
+  while (!stack_.empty()) {
+    const Branch branch = stack_.back();
+    stack_.pop_back();
+    if (!(static_cast<double>(branch.distance_sq) < best_sq)) continue;
+    const TreeNode& node = tree.nodes()[branch.node];
+    float d[kTreeWidth];
+    std::uint32_t order[kTreeWidth];
+    box_distances_sq(node, p, d);
+    const std::uint32_t count = sort_below(d, node.count, best_sq, order);
+    if (node.is_leaf == 0) {
+      for (std::uint32_t i = count; i-- > 0;) stack_.push_back({node.first + order[i], d[order[i]]});
+      continue;
+    }
+    for (std::uint32_t i = 0; i < count && static_cast<double>(d[order[i]]) < best_sq; ++i) {
+      const SimplexId s = tree.blocks()[node.first].simplex[order[i]];
+      const double square = distance_sq(p, s);
+      if (square < best_sq) best_sq = square, best.simplex = s;
+    }
+  }
+  if (best.simplex != known.simplex) best.distance = std::sqrt(best_sq);
+  return best;
+}
+
+}  // namespace lrb

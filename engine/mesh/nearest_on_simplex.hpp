@@ -1,0 +1,65 @@
+#pragma once
+/// The nearest point of a triangle or a segment.
+
+#include <Eigen/Core>
+
+namespace lrb {
+
+/// A point of a simplex by the weights of its corners, which are at least 0 and add up to 1 but for rounding.
+struct SimplexPoint {
+  double weight[3];
+  double distance_sq;  ///< from the point that it was looked for from
+};
+
+/// Returns the point of the segment a, b that is nearest to p but for rounding: whatever is rounded, the
+/// distance is that of a point of the segment, never less than the true one (to rounding of the result). So it
+/// is for triangles.
+inline SimplexPoint nearest_on_segment(const Eigen::Vector3d& p, const Eigen::Vector3d& a,
+                                       const Eigen::Vector3d& b) {
+  const Eigen::Vector3d ab = b - a, ap = p - a;
+  const double along = ab.dot(ap), length_sq = ab.squaredNorm();
+  if (!(along > 0)) return {{1, 0, 0}, ap.squaredNorm()};
+  if (!(along < length_sq)) return {{0, 1, 0}, (p - b).squaredNorm()};
+  const double t = along / length_sq;
+  return {{1 - t, t, 0}, (ap - t * ab).squaredNorm()};
+}
+
+/// Returns the nearest point of a triangle (Ericson, "Real-Time Collision Detection", 5.1.5), which may be one
+/// without area.
+inline SimplexPoint nearest_on_triangle(const Eigen::Vector3d& p, const Eigen::Vector3d& a,
+                                        const Eigen::Vector3d& b, const Eigen::Vector3d& c) {
+  const Eigen::Vector3d ab = b - a, ac = c - a, ap = p - a;
+  const double d1 = ab.dot(ap), d2 = ac.dot(ap);
+  if (d1 <= 0 && d2 <= 0) return {{1, 0, 0}, ap.squaredNorm()};
+  const Eigen::Vector3d bp = p - b;
+  const double d3 = ab.dot(bp), d4 = ac.dot(bp);
+  if (d3 >= 0 && d4 <= d3) return {{0, 1, 0}, bp.squaredNorm()};
+  const Eigen::Vector3d cp = p - c;
+  const double d5 = ab.dot(cp), d6 = ac.dot(cp);
+  if (d6 >= 0 && d5 <= d6) return {{0, 0, 1}, cp.squaredNorm()};
+  const double vc = d1 * d4 - d3 * d2, vb = d5 * d2 - d1 * d6, va = d3 * d6 - d5 * d4;
+  if (vc <= 0 && d1 >= 0 && d3 <= 0 && d1 > d3) {
+    const double t = d1 / (d1 - d3);
+    return {{1 - t, t, 0}, (ap - t * ab).squaredNorm()};
+  }
+  if (vb <= 0 && d2 >= 0 && d6 <= 0 && d2 > d6) {
+    const double t = d2 / (d2 - d6);
+    return {{1 - t, 0, t}, (ap - t * ac).squaredNorm()};
+  }
+  if (va <= 0 && d4 >= d3 && d5 >= d6 && (d4 - d3) + (d5 - d6) > 0) {
+    const double t = (d4 - d3) / ((d4 - d3) + (d5 - d6));
+    return {{0, 1 - t, t}, (bp - t * (c - b)).squaredNorm()};
+  }
+  const double sum = va + vb + vc;
+  if (!(va >= 0 && vb >= 0 && vc >= 0 && sum > 0)) {  // rounding, or no area
+    SimplexPoint best = nearest_on_segment(p, a, b);
+    const SimplexPoint bc = nearest_on_segment(p, b, c), ca = nearest_on_segment(p, c, a);
+    if (bc.distance_sq < best.distance_sq) best = {{0, bc.weight[0], bc.weight[1]}, bc.distance_sq};
+    if (ca.distance_sq < best.distance_sq) best = {{ca.weight[1], 0, ca.weight[0]}, ca.distance_sq};
+    return best;
+  }
+  const double v = vb / sum, w = vc / sum;
+  return {{1 - v - w, v, w}, (ap - v * ab - w * ac).squaredNorm()};
+}
+
+}  // namespace lrb

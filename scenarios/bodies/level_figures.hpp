@@ -1,0 +1,26 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "engine/lrb/lrb_rep.hpp"
+
+namespace lrb::bodies {
+
+/// The wrapper that keeps closed everything that a tolerance allows.
+struct LevelFigures {
+  double share;         ///< the tolerance as a share of the largest side of the body's box
+  double tolerance;     ///< mesh's unit
+  std::uint32_t faces;  ///< of the wrapper
+  double bound;         ///< proved: no point of the wrapper is further from the body than this; mesh's unit
+};
+
+/// Tolerances to look at, as shares of the largest side of the body's box.
+inline constexpr double kLevelShares[] = {0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1};
+
+/// Returns the wrappers at a row of tolerances, on `threads` threads. A region is in a wrapper with all that it
+/// hides or not at all. Of a body that is not closed or intersects itself every wrapper is the body itself.
+std::vector<LevelFigures> level_figures(const LrbRep& rep, std::span<const double> shares, unsigned threads);
+
+}  // namespace lrb::bodies
