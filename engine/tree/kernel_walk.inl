@@ -112,9 +112,24 @@ inline void push(TreeKernel& k, std::uint32_t a, std::uint32_t b) {
   k.stack[k.stack_size++] = {a, b};
 }
 
-/// Moves the pair with the least gap to the end of those that were pushed last; the others need no order.
-inline void nearest_last(NodePair* pairs, const float* gaps, std::uint32_t size) {
-  if (size == 0) return;
+/// Sorts the pairs that were pushed last, so that the one with the least gap comes last; if there are many,
+/// moves only that one.
+inline void nearest_last(NodePair* pairs, float* gaps, std::uint32_t size) {
+  constexpr std::uint32_t kFew = 8;
+  if (size <= kFew) {
+    for (std::uint32_t i = 1; i < size; ++i) {
+      const NodePair pair = pairs[i];
+      const float gap = gaps[i];
+      std::uint32_t at = i;
+      for (; at > 0 && gaps[at - 1] < gap; --at) {
+        gaps[at] = gaps[at - 1];
+        pairs[at] = pairs[at - 1];
+      }
+      gaps[at] = gap;
+      pairs[at] = pair;
+    }
+    return;
+  }
   std::uint32_t nearest = 0;
   for (std::uint32_t i = 1; i < size; ++i)
     if (gaps[i] < gaps[nearest]) nearest = i;
