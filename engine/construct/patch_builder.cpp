@@ -5,6 +5,7 @@
 #include "engine/construct/aabb_tree.hpp"
 #include "engine/construct/body_bounds.hpp"
 #include "engine/construct/bridging.hpp"
+#include "engine/construct/buried_faces.hpp"
 #include "engine/construct/closing.hpp"
 #include "engine/construct/complex_builder.hpp"
 #include "engine/construct/component_nesting.hpp"
@@ -36,6 +37,7 @@ class PatchBuilder {
         component_boxes_(hull_.component_count()),
         passes_(options) {
     for (const FaceId f : meeting) frozen_[f] = true;
+    for (const FaceId f : find_buried(mesh, hull_, meeting)) frozen_[f] = true;
     for (Slot s = 0; s < hull_.slot_count(); ++s)
       component_boxes_[hull_[s].component].extend(box_of(hull_, s));
   }
@@ -156,7 +158,8 @@ class PatchBuilder {
   const std::vector<std::uint32_t> home_;  ///< (components) see find_nesting()
   BodyBounds bounds_;
   Random random_;
-  std::vector<bool> frozen_;  ///< (|real faces|) true for faces that meet others
+  std::vector<bool>
+      frozen_;  ///< (|real faces|) true for faces that meet others or lie within other components
   std::vector<Eigen::AlignedBox3d> component_boxes_;
   Mesh polytope_;  ///< empty until planned
   PassCounter passes_;

@@ -229,7 +229,7 @@ std::vector<Mesh> all_kinds() {
           quad_torus(24, 12),
           comb(6),
           voxels(
-              8, 8, 3, [](int x, int y, int z) { return z == 0 || (x / 2 + y) % 3 == 0; }, true),
+              8, 8, 3, [](int x, int, int z) { return z == 0 || x % 3 == 0; }, true),
           revolve({{0, -1}, {1, -1}, {0.2, 0}, {1, 1}, {0, 1}}, 32),
           several({icosphere(3), translated(torus(16, 8), {0, 4, 1})}),
           several({icosphere(3, 3), turned_inside_out(icosphere(3, 2)),
