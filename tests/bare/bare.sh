@@ -6,6 +6,7 @@
 # Steps: root clone stranger run check user again peers clang sanitizers fuzz tidy; --until ends after one of them.
 # Kept between runs, in ${XDG_CACHE_HOME:-~/.cache}/lrbscope-bare: the bare root and downloaded packages; and this machine's
 # compiler cache is used. --no-cache does without all three, for honest times. --keep leaves the root to be looked at.
+# Exits with 1 if a step failed, 2 if it may not run here, 3 if no root could be made.
 # Needs root and debootstrap. Everything runs in a mount namespace of its own, so that no mount can stay behind.
 set -euo pipefail
 script=$(readlink -f "${BASH_SOURCE[0]}")
@@ -14,7 +15,7 @@ repository=$(cd "$here/../.." && pwd)
 suite=bookworm
 home=/root/lrbscope # the clone, inside the root
 
-usage() { sed -n '2,9s/^# //p' "$script" >&2 && exit 2; }
+usage() { sed -n '2,10s/^# //p' "$script" >&2 && exit 2; }
 refuse() { echo "bare.sh: $1" >&2 && exit 2; }
 
 # ---- the package sources of this machine
@@ -152,6 +153,7 @@ finish() {
   done
   if [ ${#failed[@]} -gt 0 ]; then
     echo "bare.sh: ${failed[*]} FAILED at $(git -C "$repository" log -1 --format='%h %s' "$commit")"
+    [ "${failed[0]}" != root ] || exit 3
     exit 1
   fi
   exit 0

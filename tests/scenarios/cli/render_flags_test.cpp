@@ -123,9 +123,9 @@ TEST_CASE("run --format svg: frames, montage and caption; the former run's are g
   const Folder folder;
   REQUIRE(run(folder, {"run", "figure2", "-o", "two", "--most", "4"}).code == 0);
   const std::string montage = slurp(folder / "two/montage.svg"), caption = slurp(folder / "two/caption.txt");
-  CHECK(caption.find("(a) outermost wrapper, 7 faces; (b) ") != std::string::npos);
+  CHECK(caption.find("(a) outermost wrapper, 8 faces; (b) ") != std::string::npos);
   CHECK(caption.find("(d) the body itself, 144 faces.") != std::string::npos);
-  CHECK(montage.find(">(a) outermost wrapper, 7 faces</text>") != std::string::npos);
+  CHECK(montage.find(">(a) outermost wrapper, 8 faces</text>") != std::string::npos);
   CHECK(std::filesystem::exists(folder / "two/frames/frame_0003.svg"));
   REQUIRE(run(folder, {"run", "figure2", "-o", "two", "--most", "2", "--format", "png"}).code == 0);
   for (const char* gone : {"two/montage.svg", "two/frames/frame_0000.svg"})
