@@ -3,7 +3,7 @@
 # 12. Makes a root with debootstrap, from the package sources of this machine, clones commit C (HEAD) into it, and runs
 # ./run and ./check there as root would type them, in a clean environment; then again as a user without root; then with
 # the engines of others installed, and the rest of ./check --full. Prints how long every step took.
-# Steps: root clone stranger run check user again peers clang sanitizers fuzz tidy; --until ends after one of them.
+# Steps: root clone stranger run check user peers again clang sanitizers fuzz tidy; --until ends after one of them.
 # Kept between runs, in ${XDG_CACHE_HOME:-~/.cache}/lrbscope-bare: the bare root and downloaded packages; and this machine's
 # compiler cache is used. --no-cache does without all three, for honest times. --keep leaves the root to be looked at.
 # Exits with 1 if a step failed, 2 if it may not run here, 3 if no root could be made.
@@ -219,7 +219,7 @@ step_tidy() { inside ./check tidy; }
 
 all_steps() {
   local name
-  for name in root clone stranger run check user again peers clang sanitizers fuzz tidy; do step "$name" "step_$name"; done
+  for name in root clone stranger run check user peers again clang sanitizers fuzz tidy; do step "$name" "step_$name"; done
   finish
 }
 
@@ -237,7 +237,7 @@ if [ "${1:-}" != --inside ]; then
     esac
     shift
   done
-  case " root clone stranger run check user again peers clang sanitizers fuzz tidy " in *" $until "*) ;; *) usage ;; esac
+  case " root clone stranger run check user peers again clang sanitizers fuzz tidy " in *" $until "*) ;; *) usage ;; esac
   [ "$(id -u)" = 0 ] || refuse "needs root, to make a root of its own"
   command -v debootstrap >/dev/null || refuse "needs debootstrap (apt-get install debootstrap)"
   commit=$(git -C "$repository" rev-parse --verify -q "$commit^{commit}") || refuse "no such commit"
