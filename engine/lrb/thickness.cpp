@@ -26,7 +26,6 @@
 #include "engine/core/parallel.hpp"
 #include "engine/core/tolerances.hpp"
 #include "engine/lrb/nearest_face.hpp"
-#include "engine/mesh/nearest_on_simplex.hpp"
 
 namespace lrb {
 namespace {
@@ -142,11 +141,6 @@ class RegionMeter {
       piece.face.distance = std::max(piece.face.distance, nearest_.distance(piece.x[k], piece.face.simplex));
   }
 
-  double distance(const Vector3d& p, const Simplex& t) const {
-    return std::sqrt(corners_ == 3 ? nearest_on_triangle(p, t[0], t[1], t[2]).distance_sq
-                                   : nearest_on_segment(p, t[0], t[1]).distance_sq);
-  }
-
   /// Gives the piece this face if it is better than the one it has.
   void try_face(Piece& piece, SimplexId s) const {
     if (s == piece.face.simplex) return;
@@ -191,9 +185,7 @@ class RegionMeter {
         most_ = std::max(most_, worst.face.distance);  // the others are no worse
         return;
       }
-      VertexId v[3] = {};
-      rep_.simplex(worst.face.simplex, v);
-      for (Piece& part : divided(worst, choose_cut(worst, corners_of(v)))) {
+      for (Piece& part : divided(worst, choose_cut(worst))) {
         find_face(part);
         add(part);
       }
@@ -208,13 +200,16 @@ class RegionMeter {
     return parts;
   }
 
-  Cut choose_cut(const Piece& piece, const Simplex& face) const {
+  Cut choose_cut(const Piece& piece) const {
+    VertexId v[3] = {};
+    rep_.simplex(piece.face.simplex, v);
+    const Simplex face = corners_of(v);
     const auto [longest, length_sq] = longest_edge(piece.x, corners_);
     if (length_sq > kMuchLonger * kMuchLonger * longest_edge(face, corners_).second) return longest;
     int worst = 0;
     double most = -1;
     for (int k = 0; k < corners_; ++k)
-      if (const double d = distance(piece.x[k], face); d > most) most = d, worst = k;
+      if (const double d = nearest_.distance(piece.x[k], piece.face.simplex); d > most) most = d, worst = k;
     const Cut at_border = cut_at_border(piece.x, worst, face, corners_);
     return at_border.share > 0 ? at_border : longest;
   }

@@ -216,7 +216,8 @@ void check_outcome(const Scene& s, std::span<const Candidate> found, RandomEngin
   check_certain(s, found, random, 5 * most, asked);
 }
 
-/// So many boxes were compared, and so large a part of them culled, that something was tested.
+/// Checks that more than `boxes` pairs were compared, and more than the share `culled` of them culled: else nothing was
+/// tested.
 void check_extent(const Share& share, const Asked& asked, std::uint64_t boxes, double culled) {
   CHECK(share.boxes > boxes);
   CHECK(static_cast<double>(share.culled) > culled * static_cast<double>(share.boxes));

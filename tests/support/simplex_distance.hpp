@@ -108,24 +108,4 @@ inline Eigen::Vector3d random_point_of(shapes::RandomEngine& random, const Point
   return sum / weights;
 }
 
-/// In floating point: for points that were chosen at random.
-inline bool inside_by_parity(const std::vector<Points>& surface, const Eigen::Vector3d& p, int dim) {
-  const Eigen::Vector3d ray = dim == 2 ? Eigen::Vector3d(1, 0.1234, 0) : Eigen::Vector3d(1, 0.1234, 0.0567);
-  int crossings = 0;
-  for (const Points& s : surface) {
-    if (dim == 2) {
-      const Eigen::Vector3d u = s[0] - p, v = s[1] - p;
-      const double cu = ray.cross(u).z(), cv = ray.cross(v).z();
-      if ((cu > 0) != (cv > 0)) crossings += (u + cu / (cu - cv) * (v - u)).dot(ray) > 0;
-    } else {
-      const Eigen::Vector3d e = s[1] - s[0], f = s[2] - s[0], h = ray.cross(f), w = p - s[0], q = w.cross(e);
-      const double det = e.dot(h);
-      if (det == 0) continue;
-      const double x = w.dot(h) / det, y = ray.dot(q) / det, t = f.dot(q) / det;
-      crossings += x > 0 && y > 0 && x + y < 1 && t > 0;
-    }
-  }
-  return crossings % 2 != 0;
-}
-
 }  // namespace lrb::test
