@@ -14,6 +14,7 @@
 #include "scenarios/run/recorded_run.hpp"
 #include "tests/bench/timing.hpp"
 #include "tests/mesh/io/encode.hpp"
+#include "tests/support/folder.hpp"
 
 using namespace lrb;
 using bench::median;
@@ -49,7 +50,7 @@ int main(int argc, char** argv) {
   for (const bodies::LoadedBody& body : recording.bodies) performance.reps.push_back(&body.rep);
   performance.trace = &recording.trace;
   performance.results = &recording.results;
-  const test::TemporaryDirectory directory;
+  const test::Folder directory;
   std::printf("%d frames of 1280x720, %u faces\n", frames, recording.bodies[1].rep.real_face_count());
   std::vector<double> alone, whole;
   for (int i = 0; i < repeats; ++i) {
@@ -57,7 +58,7 @@ int main(int argc, char** argv) {
     run::paint_frames(performance, scenario.frames, quiet, nullptr);
     alone.push_back(seconds_since(start) / frames);
     start = std::chrono::steady_clock::now();
-    run::draw_frames(performance, scenario.frames, directory.file("sequence"), {}, quiet);
+    run::draw_frames(performance, scenario.frames, directory / "sequence", {}, quiet);
     whole.push_back(seconds_since(start) / frames);
   }
   const double rate = median(alone) / median(whole);

@@ -5,12 +5,13 @@
 
 #include "engine/core/error.hpp"
 #include "tests/mesh/io/encode.hpp"
+#include "tests/support/folder.hpp"
 
 namespace lrb::test {
 
 TEST_CASE("a file is there whole after commit, and untouched before") {
-  const TemporaryDirectory directory;
-  const std::string path = directory.file("a.txt"), large(300000, 'x');
+  const Folder directory;
+  const std::string path = directory / "a.txt", large(300000, 'x');
   save(path, "before");
   {
     AtomicFile file(path);
@@ -20,22 +21,22 @@ TEST_CASE("a file is there whole after commit, and untouched before") {
     file.commit();
   }
   CHECK(load_bytes(path) == "one " + large);
-  CHECK(directory.entries() == 1);
+  CHECK(directory.tree().size() == 1);
   write_file(path, std::string("a\0b", 3));
   CHECK(load_bytes(path) == std::string("a\0b", 3));
 }
 
 TEST_CASE("a file that is not committed leaves nothing") {
-  const TemporaryDirectory directory;
+  const Folder directory;
   {
-    AtomicFile file(directory.file("a.txt"));
+    AtomicFile file(directory / "a.txt");
     file.write("half");
   }
-  CHECK(directory.entries() == 0);
+  CHECK(directory.tree().size() == 0);
 }
 
 TEST_CASE("a path that cannot be written is named, with the reason") {
-  const TemporaryDirectory directory;
+  const Folder directory;
   const auto message = [](const std::string& path) -> std::string {
     try {
       write_file(path, "x");
@@ -44,10 +45,10 @@ TEST_CASE("a path that cannot be written is named, with the reason") {
       return e.what();
     }
   };
-  const std::string missing = directory.file("none/a.txt");
+  const std::string missing = directory / "none/a.txt";
   CHECK(message(missing).starts_with(missing + ": cannot create the file (No such file or directory); "));
-  CHECK(message(directory.file("")).find("Is a directory") != std::string::npos);
-  CHECK(directory.entries() == 0);
+  CHECK(message(directory / "").find("Is a directory") != std::string::npos);
+  CHECK(directory.tree().size() == 0);
 }
 
 TEST_CASE("a full disk is the machine's fault") {
@@ -59,8 +60,8 @@ TEST_CASE("a full disk is the machine's fault") {
 }
 
 TEST_CASE("permissions and links are kept, special files are written to") {
-  const TemporaryDirectory directory;
-  const std::string path = directory.file("a.txt"), link = directory.file("link");
+  const Folder directory;
+  const std::string path = directory / "a.txt", link = directory / "link";
   save(path, "before");
   chmod(path.c_str(), 0640);
   std::filesystem::create_symlink(path, link);

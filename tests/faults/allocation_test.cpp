@@ -19,6 +19,7 @@
 #include "scenarios/bodies/shapes/shapes.hpp"
 #include "tests/faults/failing_new.hpp"
 #include "tests/mesh/io/encode.hpp"
+#include "tests/support/folder.hpp"
 #include "tests/support/lrb_shapes.hpp"
 #include "trace/recorder.hpp"
 #include "trace/trace_json.hpp"
@@ -112,8 +113,8 @@ TEST_CASE("a mesh that is read and checked while memory runs out") {
 }
 
 TEST_CASE("a .lrb that is saved while memory runs out leaves no file, or a whole one") {
-  const TemporaryDirectory folder;
-  const std::string path = folder.file("x.lrb");
+  const Folder folder;
+  const std::string path = folder / "x.lrb";
   const LrbRep rep(shapes::dented_box());
   const auto save = [&] {
     save_lrb(rep, path);

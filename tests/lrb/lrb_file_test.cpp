@@ -16,6 +16,7 @@
 #include "scenarios/bodies/shapes/random_pose.hpp"
 #include "scenarios/bodies/shapes/shapes.hpp"
 #include "tests/mesh/io/encode.hpp"
+#include "tests/support/folder.hpp"
 #include "tests/support/lrb_files.hpp"
 #include "tests/support/lrb_shapes.hpp"
 
@@ -25,10 +26,10 @@ using shapes::RandomEngine;
 namespace {
 
 std::string bytes_of(const LrbRep& rep) {
-  const test::TemporaryDirectory directory;
-  const std::string path = directory.file("body.lrb");
+  const test::Folder directory;
+  const std::string path = directory / "body.lrb";
   save_lrb(rep, path);
-  CHECK(directory.entries() == 1);
+  CHECK(directory.tree().size() == 1);
   return test::load_bytes(path);
 }
 

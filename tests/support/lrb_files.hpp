@@ -6,15 +6,16 @@
 
 #include "engine/lrb/lrb_file.hpp"
 #include "tests/mesh/io/encode.hpp"
+#include "tests/support/folder.hpp"
 
 namespace lrb::test {
 
 inline constexpr std::size_t kVersionAt = 8, kNameAt = 24;  ///< where these stand in the file
 
 inline std::string lrb_bytes(const LrbRep& rep) {
-  const TemporaryDirectory folder;
-  save_lrb(rep, folder.file("body.lrb"));
-  return load_bytes(folder.file("body.lrb"));
+  const Folder folder;
+  save_lrb(rep, folder / "body.lrb");
+  return load_bytes(folder / "body.lrb");
 }
 
 /// As version 1 was written.

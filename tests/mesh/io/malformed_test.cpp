@@ -6,6 +6,7 @@
 #include "engine/mesh/io/mesh_io.hpp"
 #include "scenarios/bodies/shapes/shapes.hpp"
 #include "tests/mesh/io/encode.hpp"
+#include "tests/support/folder.hpp"
 
 namespace lrb::test {
 
@@ -292,7 +293,7 @@ TEST_CASE("files of other kinds are named for what they look like") {
 }
 
 TEST_CASE("paths that are no files") {
-  const TemporaryDirectory directory;
+  const Folder directory;
   const auto message = [](const std::string& path) -> std::string {
     try {
       read_mesh(path);
@@ -301,8 +302,8 @@ TEST_CASE("paths that are no files") {
       return e.what();
     }
   };
-  CHECK(message(directory.file("none.obj")) == directory.file("none.obj") + ": no such file; check the path");
-  CHECK(message(directory.file("")).find("found a directory, expected a file") != std::string::npos);
+  CHECK(message(directory / "none.obj") == (directory / "none.obj") + ": no such file; check the path");
+  CHECK(message(directory / "").find("found a directory, expected a file") != std::string::npos);
 }
 
 TEST_CASE("a file cut short anywhere is refused, or read as far as its format can tell") {

@@ -8,6 +8,7 @@
 #include "engine/mesh/mesh_check.hpp"
 #include "scenarios/bodies/shapes/shapes.hpp"
 #include "tests/mesh/io/encode.hpp"
+#include "tests/support/folder.hpp"
 
 namespace lrb::test {
 
@@ -232,11 +233,11 @@ TEST_CASE("content decides, not the extension") {
 }
 
 TEST_CASE("round trips through files keep every bit") {
-  const TemporaryDirectory directory;
+  const Folder directory;
   for (const Mesh& body :
        {bumpy_sphere(2, 7), quad_torus(9, 7), tetrahedron(1e-300), scaled(torus(5, 4), 1e150)}) {
     for (const char* name : {"m.obj", "m.PLY"}) {
-      const std::string path = directory.file(name);
+      const std::string path = directory / name;
       write_mesh(body, path);
       check_same(read_mesh(path), body);
     }
@@ -246,13 +247,13 @@ TEST_CASE("round trips through files keep every bit") {
     check_same(read_mesh(to_ply_binary(body, false), "m.ply"), body);
   }
   const Mesh flat = ring_2d(12);
-  write_mesh(flat, directory.file("flat.obj"));
-  check_same(read_mesh(directory.file("flat.obj")), flat);
-  CHECK(directory.entries() == 3);  // no temporary file is left
+  write_mesh(flat, directory / "flat.obj");
+  check_same(read_mesh(directory / "flat.obj"), flat);
+  CHECK(directory.tree().size() == 3);  // no temporary file is left
 }
 
 TEST_CASE("PLY with a polygon of more than 255 corners, and with colours") {
-  const TemporaryDirectory directory;
+  const Folder directory;
   Mesh disk = circle(300);
   disk.dim = 3;
   disk.face_offsets = {0};
@@ -260,16 +261,16 @@ TEST_CASE("PLY with a polygon of more than 255 corners, and with colours") {
   std::vector<VertexId> corners(300);
   for (VertexId v = 0; v < 300; ++v) corners[v] = v;
   disk.add_face(corners);
-  write_mesh(disk, directory.file("disk.ply"));
-  check_same(read_mesh(directory.file("disk.ply")), disk);
+  write_mesh(disk, directory / "disk.ply");
+  check_same(read_mesh(directory / "disk.ply"), disk);
 
   const std::vector<FaceColour> colours(4, {255, 128, 0});
-  write_mesh(tetrahedron(), directory.file("colours.ply"), colours);
-  check_same(read_mesh(directory.file("colours.ply")), tetrahedron());
-  CHECK(load_bytes(directory.file("colours.ply")).ends_with("\xff\x80" + std::string(1, '\0')));
-  CHECK_THROWS_AS(write_mesh(disk, directory.file("x.ply"), colours), InputError);
-  CHECK_THROWS_AS(write_mesh(disk, directory.file("x.stl")), InputError);
-  CHECK_THROWS_AS(write_mesh(circle(5), directory.file("x.ply")), InputError);
+  write_mesh(tetrahedron(), directory / "colours.ply", colours);
+  check_same(read_mesh(directory / "colours.ply"), tetrahedron());
+  CHECK(load_bytes(directory / "colours.ply").ends_with("\xff\x80" + std::string(1, '\0')));
+  CHECK_THROWS_AS(write_mesh(disk, directory / "x.ply", colours), InputError);
+  CHECK_THROWS_AS(write_mesh(disk, directory / "x.stl"), InputError);
+  CHECK_THROWS_AS(write_mesh(circle(5), directory / "x.ply"), InputError);
 }
 
 }  // namespace lrb::test
