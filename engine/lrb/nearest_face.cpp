@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "engine/mesh/nearest_on_simplex.hpp"
-
 namespace lrb {
 namespace {
 
@@ -49,15 +47,33 @@ std::vector<Eigen::Vector3d> vertices_in_units(const LrbRep& rep) {
   return out;
 }
 
-double NearestFace::distance_sq(const Eigen::Vector3d& p, SimplexId s) const {
+SimplexPoint NearestFace::nearest_point(const Eigen::Vector3d& p, SimplexId s) const {
   VertexId v[3];
   rep_.simplex(s, v);
-  return rep_.dim() == 3 ? nearest_on_triangle(p, x_[v[0]], x_[v[1]], x_[v[2]]).distance_sq
-                         : nearest_on_segment(p, x_[v[0]], x_[v[1]]).distance_sq;
+  return rep_.dim() == 3 ? nearest_on_triangle(p, x_[v[0]], x_[v[1]], x_[v[2]])
+                         : nearest_on_segment(p, x_[v[0]], x_[v[1]]);
 }
 
 double NearestFace::distance(const Eigen::Vector3d& p, SimplexId s) const {
-  return std::sqrt(distance_sq(p, s));
+  return std::sqrt(nearest_point(p, s).distance_sq);
+}
+
+/// A nearer point can lie beyond a border only where the nearest one so far lies on it: there it crosses.
+NearFace NearestFace::walk(const Eigen::Vector3d& p, SimplexId from) const {
+  const int corners = rep_.dim();
+  SimplexPoint nearest = nearest_point(p, from);
+  for (bool moves = true; moves;) {
+    moves = false;
+    const SimplexPoint here = nearest;
+    const Across& across = neighbours_[from];
+    for (int e = 0; e < corners; ++e) {
+      const bool on_border = here.weight[corners == 3 ? (e + 2) % 3 : 1 - e] == 0;
+      if (!on_border || across[e] == kNull) continue;
+      const SimplexPoint there = nearest_point(p, across[e]);
+      if (there.distance_sq < nearest.distance_sq) nearest = there, from = across[e], moves = true;
+    }
+  }
+  return {from, std::sqrt(nearest.distance_sq)};
 }
 
 /// Goes down to the nearest boxes first. On a stack of its own: a tree from a file may be as high as it likes.
@@ -82,7 +98,7 @@ NearFace NearestFace::find(const Eigen::Vector3d& p, NearFace known) {
     }
     for (std::uint32_t i = 0; i < count && static_cast<double>(d[order[i]]) < best_sq; ++i) {
       const SimplexId s = tree.blocks()[node.first].simplex[order[i]];
-      const double square = distance_sq(p, s);
+      const double square = nearest_point(p, s).distance_sq;
       if (square < best_sq) best_sq = square, best.simplex = s;
     }
   }

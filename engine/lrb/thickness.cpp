@@ -5,7 +5,10 @@
 // bound is, so a search in floats may choose them; the distances are computed in double.
 //
 // Pieces are cut, worst first, until the bound is within kTight of a distance that some point of the lids
-// really has. A piece that hangs over the border of its face is cut there: its other part is nearer another
+// really has. Which face is near is found by walking from the face that the piece has to its neighbours, and in the
+// tree only where the walk ends further off than anything found so far, that is, where it would raise what the bound
+// is compared with: on 100,000 faces one walk in 28, and a quarter of the time that the tree took for each piece.
+// A piece that hangs over the border of its face is cut there: its other part is nearer another
 // face. So a flat lid over a floor of many coplanar faces takes as many pieces as there are faces under it.
 //
 // Rounding. A cut puts a new corner on an edge, up to 2^-50 beside it (in units, in which coordinates are
@@ -47,9 +50,17 @@ using Simplex = std::array<Vector3d, 3>;
 /// Part of a lid.
 struct Piece {
   Simplex x;
-  NearFace face;  ///< the real simplex, and the largest distance of a corner from it
+  std::array<double, 3> off;                              ///< of each corner from the face
+  SimplexId face = kNull;                                 ///< a real simplex
+  double most = std::numeric_limits<double>::infinity();  ///< the largest of `off`
   std::uint32_t cuts = 0;
-  bool operator<(const Piece& other) const { return face.distance < other.face.distance; }
+};
+
+/// A place in the list of pieces.
+struct Waiting {
+  double most;  ///< the piece's
+  std::uint32_t piece;
+  bool operator<(const Waiting& other) const { return most < other.most; }
 };
 
 /// Where a piece is to be cut: between two of its corners.
@@ -102,13 +113,15 @@ Cut cut_at_border(const Simplex& piece, int worst, const Simplex& face, int corn
 class RegionMeter {
  public:
   /// `near`: (|V|) a real simplex near each vertex.
-  RegionMeter(const LrbRep& rep, const std::vector<Vector3d>& x, const std::vector<NearFace>& near)
-      : rep_(rep), x_(x), near_(near), nearest_(rep, x), corners_(rep.dim()) {}
+  RegionMeter(const LrbRep& rep, const std::vector<Vector3d>& x, const std::vector<Across>& neighbours,
+              const std::vector<NearFace>& near)
+      : rep_(rep), x_(x), near_(near), nearest_(rep, x, neighbours), corners_(rep.dim()) {}
 
   /// Returns the region's thickness in units.
   double measure(RegionId r) {
     if (rep_.lids(r).empty()) return std::numeric_limits<double>::infinity();
     heap_.clear();
+    pieces_.clear();
     most_ = found_ = 0;
     for (const FaceId f : rep_.lids(r))
       for (const VertexId v : rep_.face(f)) found_ = std::max(found_, near_[v].distance);
@@ -134,22 +147,17 @@ class RegionMeter {
     }
   }
 
-  /// Measures the piece anew from the face that it has.
-  void find_face(Piece& piece) const {
-    piece.face.distance = 0;
-    for (int k = 0; k < corners_; ++k)
-      piece.face.distance = std::max(piece.face.distance, nearest_.distance(piece.x[k], piece.face.simplex));
-  }
-
   /// Gives the piece this face if it is better than the one it has.
   void try_face(Piece& piece, SimplexId s) const {
-    if (s == piece.face.simplex) return;
+    if (s == piece.face) return;
+    std::array<double, 3> off{};
     double most = 0;
     for (int k = 0; k < corners_; ++k) {
-      most = std::max(most, nearest_.distance(piece.x[k], s));
-      if (most >= piece.face.distance) return;
+      off[k] = nearest_.distance(piece.x[k], s);
+      most = std::max(most, off[k]);
+      if (most >= piece.most) return;
     }
-    piece.face = {s, most};
+    piece.face = s, piece.off = off, piece.most = most;
   }
 
   Vector3d middle_of(const Piece& piece) const {
@@ -158,59 +166,74 @@ class RegionMeter {
     return middle / corners_;
   }
 
-  /// Finds a face for a piece that has one already, and puts it where it belongs.
-  void add(Piece& piece) {
-    if (piece.face.distance > limit()) {
+  /// Looks for a better face for a piece that has one already. Returns true if the piece is within the limit then.
+  bool is_settled(Piece& piece) {
+    if (piece.most > limit()) {
       const Vector3d middle = middle_of(piece);
-      const SimplexId s = piece.face.simplex;
-      const NearFace nearest = nearest_.find(middle, {s, nearest_.distance(middle, s)});
-      found_ = std::max(found_, nearest.distance);
-      try_face(piece, nearest.simplex);
+      NearFace near = nearest_.walk(middle, piece.face);
+      // The walk may end where the body is near by way of other faces only.
+      if (near.distance > found_) near = nearest_.find(middle, near);
+      found_ = std::max(found_, near.distance);
+      try_face(piece, near.simplex);
     }
-    if (piece.face.distance <= limit()) {
-      most_ = std::max(most_, piece.face.distance);
-      return;
-    }
-    heap_.push_back(piece);
+    if (piece.most > limit()) return false;
+    most_ = std::max(most_, piece.most);
+    return true;
+  }
+
+  void add(Piece& piece) {
+    if (is_settled(piece)) return;
+    pieces_.push_back(piece);
+    wait(pieces_.size() - 1);
+  }
+
+  void wait(std::size_t piece) {
+    heap_.push_back({pieces_[piece].most, static_cast<std::uint32_t>(piece)});
     std::push_heap(heap_.begin(), heap_.end());
   }
 
-  /// Cuts the worst piece on the heap until it is within the limit, or there are too many.
+  /// Cuts the worst piece that waits until it is within the limit, or there are too many.
   void cut_worst() {
     for (std::size_t cuts = 0; !heap_.empty(); ++cuts) {
-      std::pop_heap(heap_.begin(), heap_.end());
-      const Piece worst = heap_.back();
-      heap_.pop_back();
-      if (worst.face.distance <= limit() || worst.cuts == kMostCuts || cuts == kMostPieces) {
-        most_ = std::max(most_, worst.face.distance);  // the others are no worse
+      const Waiting worst = heap_.front();
+      Piece& piece = pieces_[worst.piece];
+      if (worst.most <= limit() || piece.cuts == kMostCuts || cuts == kMostPieces) {
+        most_ = std::max(most_, worst.most);  // the others are no worse
         return;
       }
-      for (Piece& part : divided(worst, choose_cut(worst))) {
-        find_face(part);
-        add(part);
-      }
+      std::pop_heap(heap_.begin(), heap_.end());
+      heap_.pop_back();
+      Piece part = divide(piece, choose_cut(piece));
+      if (!is_settled(piece)) wait(worst.piece);
+      add(part);
     }
   }
 
-  std::array<Piece, 2> divided(const Piece& piece, const Cut& cut) const {
+  /// Leaves one part in its place. Returns the other.
+  Piece divide(Piece& piece, const Cut& cut) const {
     const Vector3d between = piece.x[cut.from] + cut.share * (piece.x[cut.to] - piece.x[cut.from]);
-    std::array<Piece, 2> parts = {piece, piece};
-    parts[0].x[cut.from] = parts[1].x[cut.to] = between;
-    for (Piece& part : parts) ++part.cuts;
-    return parts;
+    const double off = nearest_.distance(between, piece.face);
+    ++piece.cuts;
+    Piece other = piece;
+    move_corner(piece, cut.from, between, off);
+    move_corner(other, cut.to, between, off);
+    return other;
+  }
+
+  void move_corner(Piece& piece, int k, const Vector3d& to, double off) const {
+    piece.x[k] = to;
+    piece.off[k] = off;
+    piece.most = *std::max_element(piece.off.begin(), piece.off.begin() + corners_);
   }
 
   Cut choose_cut(const Piece& piece) const {
     VertexId v[3] = {};
-    rep_.simplex(piece.face.simplex, v);
+    rep_.simplex(piece.face, v);
     const Simplex face = corners_of(v);
     const auto [longest, length_sq] = longest_edge(piece.x, corners_);
     if (length_sq > kMuchLonger * kMuchLonger * longest_edge(face, corners_).second) return longest;
-    int worst = 0;
-    double most = -1;
-    for (int k = 0; k < corners_; ++k)
-      if (const double d = nearest_.distance(piece.x[k], piece.face.simplex); d > most) most = d, worst = k;
-    const Cut at_border = cut_at_border(piece.x, worst, face, corners_);
+    const auto worst = std::max_element(piece.off.begin(), piece.off.begin() + corners_) - piece.off.begin();
+    const Cut at_border = cut_at_border(piece.x, static_cast<int>(worst), face, corners_);
     return at_border.share > 0 ? at_border : longest;
   }
 
@@ -218,26 +241,40 @@ class RegionMeter {
   const std::vector<Vector3d>& x_;
   const std::vector<NearFace>& near_;
   NearestFace nearest_;
-  const int corners_;        ///< of a piece and of a real simplex
-  std::vector<Piece> heap_;  ///< pieces whose bound is still above the limit, worst first
-  double most_ = 0;          ///< bound of the pieces that are done
-  double found_ = 0;         ///< largest distance that some point of the lids has
+  const int corners_;  ///< of a piece and of a real simplex
+  std::vector<Piece> pieces_;
+  std::vector<Waiting> heap_;  ///< pieces whose bound is still above the limit, worst first
+  double most_ = 0;            ///< bound of the pieces that are done
+  double found_ = 0;           ///< largest distance that some point of the lids has
 };
+
+/// Returns a real simplex near each vertex: one of its own where it has one.
+std::vector<NearFace> near_vertices(const LrbRep& rep, const std::vector<Vector3d>& x,
+                                    const std::vector<Across>& neighbours, Workers& workers) {
+  std::vector<NearFace> near(x.size());
+  for (SimplexId s = 0; s < rep.real_simplex_count(); ++s) {
+    VertexId v[3];
+    rep.simplex(s, v);
+    for (int k = 0; k < rep.dim(); ++k) near[v[k]] = {s, 0};
+  }
+  std::vector<NearestFace> finders(workers.count(), NearestFace(rep, x, neighbours));
+  workers.for_each(x.size(), [&](std::size_t v, unsigned worker) {
+    if (near[v].simplex == kNull) near[v] = finders[worker].find(x[v]);
+  });
+  return near;
+}
 
 }  // namespace
 
 std::vector<double> region_thickness(const LrbRep& rep, unsigned threads) {
   Workers workers(threads);
   const std::vector<Vector3d> x = vertices_in_units(rep);
-  std::vector<NearFace> near(x.size());
-  std::vector<std::unique_ptr<NearestFace>> finders(workers.count());
-  for (auto& finder : finders) finder = std::make_unique<NearestFace>(rep, x);
-  workers.for_each(x.size(), [&](std::size_t v, unsigned worker) { near[v] = finders[worker]->find(x[v]); });
-  std::vector<std::unique_ptr<RegionMeter>> meters(workers.count());
-  for (auto& meter : meters) meter = std::make_unique<RegionMeter>(rep, x, near);
+  const std::vector<Across> neighbours = real_neighbours(rep);
+  const std::vector<NearFace> near = near_vertices(rep, x, neighbours, workers);
+  std::vector<RegionMeter> meters(workers.count(), RegionMeter(rep, x, neighbours, near));
   std::vector<double> out(rep.region_count());
   workers.for_each(out.size(), [&](std::size_t r, unsigned worker) {
-    out[r] = meters[worker]->measure(static_cast<RegionId>(r)) * rep.tree().unit();
+    out[r] = meters[worker].measure(static_cast<RegionId>(r)) * rep.tree().unit();
   });
   return out;
 }
