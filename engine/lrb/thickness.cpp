@@ -34,8 +34,9 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// The bound may be this many times a distance that was found.
-constexpr double kTight = 1.05;
+/// The bound may be this many times a distance that was found. 1.05: 2 to 7 % more faces for a tolerance (six real
+/// meshes), in about the same time, for most cuts are those at the borders of faces.
+constexpr double kTight = 1.01;
 /// Distances below this share of the unit count as this: bounds so small need not be tight.
 constexpr double kSmall = 1e-6;
 /// Cuts that lead to one piece, and pieces of one region, after which the bound stays as it is.
