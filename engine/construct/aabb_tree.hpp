@@ -29,6 +29,13 @@ class AabbTree {
   /// Calls visit(slot) for every slot whose box meets `box` (closed).
   template <class Visit>
   void for_each_in(const Box& box, Visit&& visit) const {
+    for_each_near(
+        box, [](const Box&) { return true; }, visit);
+  }
+
+  /// Does the same, but leaves out what lies in boxes of which near(box) is false.
+  template <class Near, class Visit>
+  void for_each_near(const Box& box, Near&& near, Visit&& visit) const {
     if (nodes_.empty()) return;
     std::uint32_t stack[kMaxDepth];
     int top = 0;
@@ -36,10 +43,10 @@ class AabbTree {
     while (top > 0) {
       const std::uint32_t n = stack[--top];
       const Node& node = nodes_[n];
-      if (!node.box.intersects(box)) continue;
+      if (!node.box.intersects(box) || !near(node.box)) continue;
       if (node.right == 0) {
         for (std::uint32_t i = node.first; i < node.last; ++i)
-          if (boxes_[i].intersects(box)) visit(slots_[i]);
+          if (boxes_[i].intersects(box) && near(boxes_[i])) visit(slots_[i]);
         continue;
       }
       stack[top++] = node.right;

@@ -1,6 +1,7 @@
 #include "engine/construct/embed_check.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "engine/exact/predicates.hpp"
 #include "engine/exact/simplex_test.hpp"
@@ -42,6 +43,22 @@ bool CheckedTriangle::clear_of(const CheckedTriangle& other) const {
          exact::meet_only_in_shared(x.data(), id.data(), other.x.data(), other.id.data());
 }
 
+TriangleReach::TriangleReach(const CheckedTriangle& t)
+    : box_(t.box), corner_(t.x[0][0], t.x[0][1], t.x[0][2]) {
+  const Vector3 u = Vector3(t.x[1][0], t.x[1][1], t.x[1][2]) - corner_;
+  const Vector3 v = Vector3(t.x[2][0], t.x[2][1], t.x[2][2]) - corner_;
+  normal_ = u.cross(v);
+  // The normal is off by under 2^-50 |u| |v|, and so is each product with it, relative to the other factor.
+  slack_ = 0x1p-40 * u.norm() * v.norm();
+}
+
+bool TriangleReach::may_meet(const Box& other) const {
+  if (!box_.intersects(other)) return false;
+  const Vector3 half = other.sizes() / 2, from_corner = other.center() - corner_;
+  const double reach = normal_.cwiseAbs().dot(half) + slack_ * (half.norm() + from_corner.norm());
+  return !(std::abs(normal_.dot(from_corner)) > reach);
+}
+
 bool EmbedCheck::cap_is_clear(const Patch& patch, const CapSurface& cap) {
   if (!ring_turns_outward(patch, cap)) return false;
   added_.clear();
@@ -62,7 +79,8 @@ bool EmbedCheck::cap_is_clear(const Patch& patch, const CapSurface& cap) {
   if (component_boxes_.size() > 1)  // another component may lie in between, under the cap and clear of it
     for (const CheckedTriangle& t : obstacles_) box.extend(t.box);
   gather_hull(patch, cap, box);
-  return added_are_clear() && !encloses_component(patch, cap, box);
+  if (!added_are_clear()) return false;
+  return component_boxes_.size() < 2 || !encloses_component(patch, cap, box);
 }
 
 bool EmbedCheck::fan_is_clear(const Patch& patch, const CapSurface& cap, const CapSurface::Star& star,
@@ -95,19 +113,35 @@ void EmbedCheck::add_patch(const Patch& patch) {
   }
 }
 
+/// Looks at what the new triangles may meet only: the box of a cap that spans a good part of a component holds all
+/// that is nested in it.
 void EmbedCheck::gather_hull(const Patch& patch, const CapSurface& cap, const Box& box) {
   seen_.extend(box);
+  reach_.clear();
+  for (const CheckedTriangle& t : added_) reach_.emplace_back(t);
+  const auto near = [&](const Box& other) {
+    return std::any_of(reach_.begin(), reach_.end(),
+                       [&](const TriangleReach& t) { return t.may_meet(other); });
+  };
+  tree_.for_each_near(box, near, [&](HullMesh::Slot s) {
+    if (!hull_.alive(s) || cap.local_face(patch, s) >= 0) return;
+    const auto& t = hull_[s];
+    obstacles_.emplace_back(hull_.point(t.v[0]), hull_.point(t.v[1]), hull_.point(t.v[2]));
+  });
+}
+
+/// Finds a triangle of each other component that lies in the box as a whole.
+void EmbedCheck::gather_strangers(const Patch& patch, const Box& box) {
   strangers_.clear();
   ++stamp_;
   met_.resize(hull_.component_count(), 0);
   const std::uint32_t own = hull_[patch.slots[0]].component;
   tree_.for_each_in(box, [&](HullMesh::Slot s) {
-    if (!hull_.alive(s) || cap.local_face(patch, s) >= 0) return;
-    const auto& t = hull_[s];
-    obstacles_.emplace_back(hull_.point(t.v[0]), hull_.point(t.v[1]), hull_.point(t.v[2]));
-    if (t.component == own || met_[t.component] == stamp_) return;
-    met_[t.component] = stamp_;
-    strangers_.push_back(s);
+    if (!hull_.alive(s)) return;
+    const std::uint32_t component = hull_[s].component;
+    if (component == own || met_[component] == stamp_) return;
+    met_[component] = stamp_;
+    if (box.contains(component_boxes_[component])) strangers_.push_back(s);
   });
 }
 
@@ -153,11 +187,10 @@ bool EmbedCheck::rim_turns_outward(const CapSurface& cap, const CapSurface::Star
 
 /// Returns true if another component may lie in the region between patch and cap. If it does, it lies there
 /// as a whole.
-bool EmbedCheck::encloses_component(const Patch& patch, const CapSurface& cap, const Box& box) const {
+bool EmbedCheck::encloses_component(const Patch& patch, const CapSurface& cap, const Box& box) {
+  gather_strangers(patch, box);
   Mesh region;
   for (const HullMesh::Slot stranger : strangers_) {
-    const Box& other = component_boxes_[hull_[stranger].component];
-    if (!box.contains(other)) continue;
     if (region.vertices.empty()) {
       for (int v = 0; v < cap.vertex_count(); ++v) region.vertices.push_back(cap.x(v));
       for (const auto& f : cap.faces()) {

@@ -25,6 +25,19 @@ struct CheckedTriangle {
   bool clear_of(const CheckedTriangle& other) const;
 };
 
+/// Tells boxes that a triangle cannot meet by the triangle's own box and by its plane.
+class TriangleReach {
+ public:
+  explicit TriangleReach(const CheckedTriangle& t);
+  /// Returns false only if the triangle is surely outside the box.
+  bool may_meet(const Eigen::AlignedBox3d& other) const;
+
+ private:
+  Eigen::AlignedBox3d box_;
+  Eigen::Vector3d corner_, normal_;
+  double slack_;  ///< for rounding, relative to distances from the corner
+};
+
 class EmbedCheck {
  public:
   EmbedCheck(const HullMesh& hull, const AabbTree& tree) : hull_(hull), tree_(tree) {}
@@ -46,17 +59,19 @@ class EmbedCheck {
 
  private:
   void gather_hull(const Patch& patch, const CapSurface& cap, const Eigen::AlignedBox3d& box);
+  void gather_strangers(const Patch& patch, const Eigen::AlignedBox3d& box);
   void add_patch(const Patch& patch);
   bool added_are_clear() const;
   bool ring_turns_outward(const Patch& patch, const CapSurface& cap) const;
   bool rim_turns_outward(const CapSurface& cap, const CapSurface::Star& star, const Eigen::Vector3d& w) const;
-  bool encloses_component(const Patch& patch, const CapSurface& cap, const Eigen::AlignedBox3d& box) const;
+  bool encloses_component(const Patch& patch, const CapSurface& cap, const Eigen::AlignedBox3d& box);
 
   const HullMesh& hull_;
   const AabbTree& tree_;
   std::vector<Eigen::AlignedBox3d> component_boxes_;
   Eigen::AlignedBox3d seen_;
   std::vector<CheckedTriangle> obstacles_, added_;
+  std::vector<TriangleReach> reach_;       ///< of `added_`
   std::vector<HullMesh::Slot> strangers_;  ///< triangles of other components met while gathering, one of each
   std::vector<std::uint32_t> met_;         ///< (components) == stamp_: met while gathering
   std::uint32_t stamp_ = 0;
