@@ -92,7 +92,7 @@ Mesh rock(std::uint32_t level) {
 
 const bool added =
     add_query("rock", {2, 3, 4}, {5, 6}, rock) && add_query("drum", kShare, kMore, drum) &&
-    add_query("drum with concave ends", kShare, kMore, cog) &&
+    add_query("drum with concave ends", kShare, {16000}, cog) &&  // beyond, it has more pairs than are kept
     add_query("box of many corners", kShare, kMore, fine_box) && add_query("cone", kShare, kMore, cone) &&
     add_query("bipyramid", kShare, kMore, bipyramid) && add_query("crown", kShare, kMore, crown) &&
     add_query("fan disk", kShare, kMore, fan_disk) && add_query("frustum", kShare, kMore, frustum) &&
