@@ -1,9 +1,10 @@
 #!/usr/bin/env bash
-# tests/bare/bare.sh [--commit C] [--until STEP] [--no-cache] [--keep]: proves the README's two commands on a bare Debian
-# 12. Makes a root with debootstrap, from the package sources of this machine, clones commit C (HEAD) into it, and runs
-# ./run and ./check there as root would type them, in a clean environment; then again as a user without root; then with
-# the engines of others installed, and the rest of ./check --full. Prints how long every step took.
-# Steps: root clone stranger run check user peers again clang sanitizers fuzz tidy; --until ends after one of them.
+# tests/bare/bare.sh [--commit C] [--until STEP] [--minutes M] [--no-cache] [--keep]: proves the README's two commands on a
+# bare Debian 12. Makes a root with debootstrap, from the package sources of this machine, clones commit C (HEAD) into it,
+# and runs ./run and ./check there as root would type them, in a clean environment; then again as a user without root; then
+# the rest of ./check --full, in the end with the engines of others installed. Prints how long every step took.
+# Steps: root clone stranger run check user sanitizers clang fuzz again peers tidy; --until ends after one of them.
+# --minutes: steps after `user` end when M minutes are over, and the table says which were left out.
 # Kept between runs, in ${XDG_CACHE_HOME:-~/.cache}/lrbscope-bare: the bare root and downloaded packages; and this machine's
 # compiler cache is used. --no-cache does without all three, for honest times. --keep leaves the root to be looked at.
 # Exits with 1 if a step failed, 2 if it may not run here, 3 if no root could be made.
@@ -15,7 +16,7 @@ repository=$(cd "$here/../.." && pwd)
 suite=bookworm
 home=/root/lrbscope # the clone, inside the root
 
-usage() { sed -n '2,10s/^# //p' "$script" >&2 && exit 2; }
+usage() { sed -n '2,11s/^# //p' "$script" >&2 && exit 2; }
 refuse() { echo "bare.sh: $1" >&2 && exit 2; }
 
 # ---- the package sources of this machine
@@ -98,6 +99,7 @@ try() { [ "$mounts" = 1 ] && "$@"; }
 
 # Runs words in the root, as root would in a shell of its own; with the compiler cache if there is one.
 inside() { as root /root "$@"; }
+limit=() # timeout and its words, in steps that may be cut short
 # as USER HOME WORD...
 as() {
   local user=$1 home_of=$2 clean=(TERM=dumb PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin)
@@ -105,13 +107,14 @@ as() {
   if [ "$user" = root ] && [ -x "$root/usr/bin/ccache" ]; then
     clean+=(CCACHE_DIR=/var/cache/ccache "CCACHE_BASEDIR=$home")
   fi
-  env -i HOME="$home_of" USER="$user" LOGNAME="$user" "${clean[@]}" chroot --userspec="$user" "$root" \
+  "${limit[@]}" env -i HOME="$home_of" USER="$user" LOGNAME="$user" "${clean[@]}" chroot --userspec="$user" "$root" \
     /bin/bash -c 'cd "$1" && shift && exec "$@"' bash "$home" "$@" </dev/null
 }
 
 # ---- steps
 
-names=() seconds=() busy=() failed=()
+all=(root clone stranger run check user sanitizers clang fuzz again peers tidy)
+names=() seconds=() busy=() failed=() left_out=()
 # step NAME FUNCTION: runs it, with its output, and notes how long it took and whether it failed. Ends here if it was the
 # last wanted.
 step() {
@@ -123,7 +126,9 @@ step() {
   names+=("$name")
   seconds+=("$(awk '{ printf "%.0f", $1 }' "$work/$name.time")")
   busy+=("$(awk '{ printf "%.0f", $2 + $3 }' "$work/$name.time")")
-  if [ "$code" != 0 ]; then
+  if [ "$code" = 124 ] && [ ${#limit[@]} -gt 0 ]; then
+    left_out+=("$name")
+  elif [ "$code" != 0 ]; then
     echo "bare.sh: $name FAILED"
     failed+=("$name")
     case $name in root | clone | stranger | run | check) finish ;; esac # the others do not need each other
@@ -138,6 +143,7 @@ table() {
     all=$((all + seconds[i])) all_busy=$((all_busy + busy[i]))
   done
   printf '%-12s %8d %18d\n' all $all $all_busy
+  [ ${#left_out[@]} = 0 ] || echo "no time was left for, or to end: ${left_out[*]}"
   echo "on $(nproc) processors, load $(cut -d' ' -f1-3 /proc/loadavg), caches $([ "$cached" = 1 ] && echo kept || echo off)"
 }
 finish() {
@@ -145,7 +151,7 @@ finish() {
   if [ "$cached" = 1 ] && [ "$mounts" = 0 ]; then cp -n "$root"/var/cache/apt/archives/*.deb "$cache/debs/" 2>/dev/null || true; fi
   # The closing lines of every ctest, the main one last.
   local name
-  for name in user again peers clang sanitizers check; do
+  for name in user sanitizers clang again peers check; do
     if [ -f "$work/$name.log" ] && grep -q 'tests passed' "$work/$name.log"; then
       printf '\n%s:\n' "$name"
       grep -E '% tests passed|^Total Test time' "$work/$name.log"
@@ -218,26 +224,36 @@ step_fuzz() { inside ./check fuzz; }
 step_tidy() { inside ./check tidy; }
 
 all_steps() {
-  local name
-  for name in root clone stranger run check user peers again clang sanitizers fuzz tidy; do step "$name" "step_$name"; done
+  local name left needed=1
+  for name in "${all[@]}"; do
+    if [ $needed = 0 ] && [ "$minutes" -gt 0 ]; then
+      left=$((60 * minutes - SECONDS))
+      if [ $left -lt 10 ]; then left_out+=("$name") && continue; fi
+      limit=(timeout --kill-after=5 "$left")
+    fi
+    step "$name" "step_$name"
+    [ "$name" != user ] || needed=0
+  done
   finish
 }
 
 # ---- from here on: this machine
 
-commit=HEAD until=tidy cached=1 keep=0
+commit=HEAD until=tidy minutes=0 cached=1 keep=0
 if [ "${1:-}" != --inside ]; then
   while [ $# -gt 0 ]; do
     case "$1" in
       --commit) commit=${2:?a commit} && shift ;;
       --until) until=${2:?a step} && shift ;;
+      --minutes) minutes=${2:?a number of minutes} && shift ;;
       --no-cache) cached=0 ;;
       --keep) keep=1 ;;
       *) usage ;;
     esac
     shift
   done
-  case " root clone stranger run check user peers again clang sanitizers fuzz tidy " in *" $until "*) ;; *) usage ;; esac
+  case " ${all[*]} " in *" $until "*) ;; *) usage ;; esac
+  [[ $minutes =~ ^[0-9]+$ ]] || usage
   [ "$(id -u)" = 0 ] || refuse "needs root, to make a root of its own"
   command -v debootstrap >/dev/null || refuse "needs debootstrap (apt-get install debootstrap)"
   commit=$(git -C "$repository" rev-parse --verify -q "$commit^{commit}") || refuse "no such commit"
@@ -263,14 +279,14 @@ if [ "${1:-}" != --inside ]; then
   if [ $mounts = 0 ]; then
     mknod "$work/null" c 1 3 2>/dev/null && : >"$work/null" || refuse "may neither mount nor make devices here"
   fi
-  "${apart[@]}" bash "$script" --inside "$commit" "$until" "$cached" "$mounts" "$cache" "$work" &
+  "${apart[@]}" bash "$script" --inside "$commit" "$until" "$minutes" "$cached" "$mounts" "$cache" "$work" &
   child=$!
   code=0
   wait "$child" || code=$?
   child=""
   exit $code
 fi
-commit=$2 until=$3 cached=$4 mounts=$5 cache=$6 work=$7
+commit=$2 until=$3 minutes=$4 cached=$5 mounts=$6 cache=$7 work=$8
 objects=${CCACHE_DIR:-${XDG_CACHE_HOME:-$HOME/.cache}/ccache} # this machine's: an object is what it is wherever it was made
 root=$work/root
 all_steps
