@@ -105,7 +105,10 @@ constexpr Side other(Side s) {
 
 }  // namespace lrb
 
+// Doxygen 1.9 finds no scope for it.
+/// @cond
 template <class Kind>
 struct std::hash<lrb::Id<Kind>> {
   std::size_t operator()(lrb::Id<Kind> id) const noexcept { return std::hash<std::uint32_t>()(id); }
 };
+/// @endcond
