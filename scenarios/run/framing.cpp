@@ -83,8 +83,8 @@ render::Camera camera_for(const spec::FrameSpec::View& view, const Framing& fram
     options.orthographic = view.orthographic;
     Eigen::AlignedBox3d box;
     for (const Eigen::Vector3d& p : framing.points) box.extend(p);
-    constexpr double kContext = 1.6;  // in sizes of the contacts
-    camera = close ? render::fit_contact(framing.contacts, box, width, height, options, kContext)
+    constexpr double kRoomAround = 1.6;  // in sizes of the contacts
+    camera = close ? render::fit_contact(framing.contacts, box, width, height, options, kRoomAround)
                    : render::fit_camera(framing.points, width, height, options);
     if (view.camera == Kind::orbit)
       camera = render::orbit(camera, view.turn_degrees * progress * std::numbers::pi / 180);

@@ -1,0 +1,102 @@
+#pragma once
+/// Explains answers of the complete query: how it comes from the roots of both trees to two faces and what decides
+/// between these, and what proves two bodies apart. Everything is asked of the query's own kernel, one pair of tree
+/// nodes at a time, so that what is told is what happens.
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "engine/core/enum_words.hpp"
+#include "engine/core/pose.hpp"
+#include "engine/lrb/lrb_rep.hpp"
+#include "engine/query/walk/result.hpp"
+
+namespace lrb {
+
+/// Two boxes that the query compared, as they lie in the world.
+struct BoxPair {
+  /// Of A's tree and of B's: the nodes whose boxes they are; of the boxes of faces, the leaves that hold them.
+  std::array<std::uint32_t, 2> node = {0, 0};
+  /// The distance of the boxes along the axis on which they are furthest apart, mesh's unit; negative where they
+  /// overlap on all axes. Computed in double: what the kernel does with errors allowed for, but for these.
+  double gap = 0;
+  int axis = 0;  ///< that axis: 0 to 2 those of A's box, 3 to 5 those of B's
+};
+
+/// What decided about two faces.
+enum class DecidedBy : std::uint8_t {
+  node_boxes,  ///< boxes of nodes above them are apart
+  needles,     ///< so are these, along directions that are tried for trees full of needles
+  face_boxes,  ///< the boxes of the faces themselves are apart
+  planes,      ///< the plane of one has all of the other on one side, in floats with bounded errors
+  floats,      ///< other tests in floats with bounded errors
+  exact,       ///< the exact test, because floats were not certain
+};
+constexpr auto words_of(DecidedBy) {
+  return std::to_array<EnumWord<DecidedBy>>({{DecidedBy::node_boxes, "node_boxes"},
+                                             {DecidedBy::needles, "needles"},
+                                             {DecidedBy::face_boxes, "face_boxes"},
+                                             {DecidedBy::planes, "planes"},
+                                             {DecidedBy::floats, "floats"},
+                                             {DecidedBy::exact, "exact"}});
+}
+
+/// On which sides of a face's plane (2D: line) the corners of the other face lie: 1 in front, -1 behind, 0 in it.
+struct PlaneSides {
+  std::array<int, 3> exact = {0, 0, 0};
+  std::array<int, 3> in_double = {0, 0, 0};    ///< as plain double arithmetic has it, right or wrong
+  std::array<double, 3> distance = {0, 0, 0};  ///< signed, mesh's unit, in double; 0 where there is no plane
+};
+
+struct PairExplanation {
+  SimplexPair pair;
+  exact::Meet meet = exact::Meet::disjoint;
+  DecidedBy decided_by = DecidedBy::exact;
+  /// From the roots down. The last ones are the leaves of both faces, or the boxes that are apart.
+  std::vector<BoxPair> nodes;
+  bool reaches_faces = false;  ///< the query came to the boxes of the faces
+  BoxPair face_boxes;          ///< valid if it did
+  /// The regions that hide A's and B's face in the outermost wrapper, from the outside inward.
+  std::array<std::vector<RegionId>, 2> hidden_by;
+  std::array<PlaneSides, 2> sides;  ///< A's corners by B's plane, B's corners by A's
+  exact::PairContact contact;       ///< of faces that meet
+  /// Of faces that do not meet: their nearest points (world) and distance (mesh's unit), in double. The plane
+  /// across the line between these points, at its middle, has the faces on different sides.
+  std::array<Eigen::Vector3d, 2> nearest;
+  double distance = 0;
+  double ulp = 0;  ///< of the largest world coordinate of the two faces
+};
+
+/// Explains how two real simplices come out. Throws InputError if a simplex is not real or does not exist, and as
+/// collide() does.
+PairExplanation explain_pair(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
+                             const SimplexPair& pair);
+
+/// The pairs of nodes at one depth.
+struct WalkDepth {
+  std::uint64_t node_pairs = 0;  ///< compared
+  std::uint64_t ended = 0;       ///< those of them of which no two boxes meet
+};
+
+/// The walk of the complete query over two bodies.
+struct WalkExplanation {
+  CollideResult result;           ///< as collide() gives it, with a separation where there is one
+  BoxPair roots;                  ///< the boxes round both bodies
+  std::vector<WalkDepth> depths;  ///< by the number of steps from the roots
+  std::uint64_t leaf_pairs = 0;   ///< pairs of leaves compared
+  std::uint64_t face_pairs = 0;   ///< pairs of faces whose boxes meet
+  std::uint64_t left = 0;         ///< those of them that planes do not part; these are compared one by one
+  std::uint64_t certain = 0;      ///< those of them about which floats are certain
+  /// The pairs among those left that are nearest to each other, of bodies that do not meet: nearest first, at most
+  /// kMostNear.
+  std::vector<SimplexPair> near;
+  static constexpr std::size_t kMostNear = 5;
+};
+
+/// Walks both trees as the complete query for all pairs does, and tells what it did. Throws as collide() does.
+WalkExplanation explain_walk(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b);
+
+}  // namespace lrb

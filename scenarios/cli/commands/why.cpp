@@ -1,0 +1,300 @@
+#include <algorithm>
+#include <filesystem>
+#include <iomanip>
+#include <memory>
+#include <sstream>
+
+#include <nlohmann/json.hpp>
+
+#include "engine/core/error.hpp"
+#include "engine/core/file_bytes.hpp"
+#include "engine/query/explain.hpp"
+#include "scenarios/bodies/body.hpp"
+#include "scenarios/cli/command.hpp"
+#include "scenarios/io/files.hpp"
+#include "scenarios/io/pose_file.hpp"
+#include "scenarios/run/pair_picture.hpp"
+
+namespace lrb::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct WhyOptions {
+  std::string a, b, poses, picture;
+  std::size_t pose = 0;
+  std::vector<std::uint32_t> pair;
+  bool json = false;
+};
+
+/// Two bodies, where they stand, and what they are called.
+struct Scene {
+  const LrbRep& a;
+  const LrbRep& b;
+  Pose pose;
+};
+
+Json point_json(const Eigen::Vector3d& x) {
+  return {x.x(), x.y(), x.z()};
+}
+
+const char* axis_name(int axis) {
+  constexpr const char* names[] = {"A's x", "A's y", "A's z", "B's x", "B's y", "B's z"};
+  return names[axis];
+}
+
+Json boxes_json(const BoxPair& p) {
+  return {{"a", p.node[0]}, {"b", p.node[1]}, {"gap", p.gap}, {"axis", axis_name(p.axis)}};
+}
+
+template <class T>
+Json ordered_pair(const T& of_a, const T& of_b) {
+  return {{"A", of_a}, {"B", of_b}};
+}
+
+Json regions_json(const LrbRep& rep, const std::vector<RegionId>& regions) {
+  Json out = Json::array();
+  for (const RegionId r : regions)
+    out.push_back({{"region", r.value()}, {"layer", rep.layer(r)}, {"lids", rep.lids(r).size()}});
+  return out;
+}
+
+Json sides_json(const PlaneSides& sides, int corners) {
+  Json out = Json::array();
+  for (int i = 0; i < corners; ++i)
+    out.push_back(
+        {{"exact", sides.exact[i]}, {"in_double", sides.in_double[i]}, {"distance", sides.distance[i]}});
+  return out;
+}
+
+Json contact_json(const exact::PairContact& contact) {
+  Json corners = Json::array();
+  for (int i = 0; i < contact.corner_count; ++i) corners.push_back(point_json(contact.corners[i].x));
+  return {{"coplanar", contact.coplanar}, {"points", corners}};
+}
+
+Json as_json(const PairExplanation& e, const Scene& scene) {
+  Json j;
+  j["pair"] = {e.pair.a.value(), e.pair.b.value()};
+  j["faces"] = {scene.a.face_of_simplex(e.pair.a).value(), scene.b.face_of_simplex(e.pair.b).value()};
+  j["meet"] = name_of(e.meet);
+  j["decided_by"] = name_of(e.decided_by);
+  j["nodes"] = Json::array();
+  for (const BoxPair& p : e.nodes) j["nodes"].push_back(boxes_json(p));
+  if (e.reaches_faces) j["face_boxes"] = boxes_json(e.face_boxes);
+  j["hidden_by"] = ordered_pair(regions_json(scene.a, e.hidden_by[0]), regions_json(scene.b, e.hidden_by[1]));
+  const int corners = scene.a.dim();
+  j["corners_by_the_other_plane"] =
+      ordered_pair(sides_json(e.sides[0], corners), sides_json(e.sides[1], corners));
+  if (e.meet != exact::Meet::disjoint) {
+    j["contact"] = contact_json(e.contact);
+  } else {
+    j["distance"] = e.distance;
+    j["distance_in_ulps"] = e.distance / e.ulp;
+    j["nearest"] = {point_json(e.nearest[0]), point_json(e.nearest[1])};
+  }
+  return j;
+}
+
+Json as_json(const WalkExplanation& e) {
+  Json j;
+  j["relation"] = name_of(e.result.relation);
+  j["pairs"] = e.result.pairs.size();
+  j["roots"] = boxes_json(e.roots);
+  j["depths"] = Json::array();
+  for (const WalkDepth& d : e.depths)
+    j["depths"].push_back({{"node_pairs", d.node_pairs}, {"ended", d.ended}});
+  j["leaf_pairs"] = e.leaf_pairs;
+  j["face_pairs"] = e.face_pairs;
+  j["left_by_planes"] = e.left;
+  j["certain"] = e.certain;
+  j["nearest_pairs"] = Json::array();
+  for (const SimplexPair& p : e.near) j["nearest_pairs"].push_back({p.a.value(), p.b.value()});
+  if (e.result.separation) {
+    const auto& [refined, faces] = *e.result.separation;
+    j["separation"] = {{"refined", {refined[0].size(), refined[1].size()}}, {"faces", {faces[0], faces[1]}}};
+  }
+  return j;
+}
+
+constexpr int kDigits = 6;
+
+/// Writes one line for each pair of boxes.
+void write_way(std::ostream& out, const PairExplanation& e) {
+  constexpr int kNode = 10, kGap = 14;
+  out << "the way from the roots, largest gap of the boxes first, negative: they overlap\n";
+  out << std::setw(kNode) << "A's node" << std::setw(kNode) << "B's node" << std::setw(kGap) << "gap"
+      << "  along\n";
+  const auto line = [&](const BoxPair& p, const char* what) {
+    out << std::setw(kNode) << p.node[0] << std::setw(kNode) << p.node[1] << std::setw(kGap) << p.gap << "  "
+        << axis_name(p.axis) << what << "\n";
+  };
+  for (const BoxPair& p : e.nodes) line(p, "");
+  if (e.reaches_faces) line(e.face_boxes, ", the faces' own boxes");
+}
+
+void write_regions(std::ostream& out, const LrbRep& rep, const std::vector<RegionId>& regions,
+                   const char* whose) {
+  out << whose << " face is hidden by " << regions.size() << (regions.size() == 1 ? " region" : " regions");
+  for (std::size_t i = 0; i < regions.size(); ++i)
+    out << (i == 0 ? ", from the outside inward: " : ", ") << regions[i].value() << " (layer "
+        << rep.layer(regions[i]) << ")";
+  out << "\n";
+}
+
+void write_sides(std::ostream& out, const PlaneSides& sides, int corners, const char* whose,
+                 const char* other) {
+  out << whose << " corners by the " << (corners == 3 ? "plane" : "line") << " of " << other << " face: ";
+  for (int i = 0; i < corners; ++i) {
+    const int sign = sides.exact[i];
+    out << (i == 0 ? "" : ", ")
+        << (sign > 0   ? "in front"
+            : sign < 0 ? "behind"
+                       : "in it")
+        << " (" << sides.distance[i] << ")";
+    if (sides.in_double[i] != sign) out << " where double arithmetic has " << sides.in_double[i];
+  }
+  out << "\n";
+}
+
+std::string words(DecidedBy by) {
+  switch (by) {
+    case DecidedBy::node_boxes:
+      return "boxes of the trees' nodes, which are apart";
+    case DecidedBy::needles:
+      return "a direction across the boxes of two nodes full of needles";
+    case DecidedBy::face_boxes:
+      return "the faces' own boxes, which are apart";
+    case DecidedBy::planes:
+      return "the plane of one face, which has all of the other on one side, in floats with bounded errors";
+    case DecidedBy::floats:
+      return "floats with bounded errors, which are certain here";
+    case DecidedBy::exact:
+      return "the exact test, because floats were not certain";
+  }
+  return {};
+}
+
+std::string as_text(const PairExplanation& e, const Scene& scene) {
+  std::ostringstream out;
+  out << std::setprecision(kDigits);
+  out << "simplex " << e.pair.a << " of A (face " << scene.a.face_of_simplex(e.pair.a) << " of "
+      << scene.a.name() << ") and " << e.pair.b << " of B (face " << scene.b.face_of_simplex(e.pair.b)
+      << " of " << scene.b.name() << "): " << name_of(e.meet) << "\n";
+  out << "decided by " << words(e.decided_by) << "\n\n";
+  write_way(out, e);
+  out << "\n";
+  write_regions(out, scene.a, e.hidden_by[0], "A's");
+  write_regions(out, scene.b, e.hidden_by[1], "B's");
+  const int corners = scene.a.dim();
+  write_sides(out, e.sides[0], corners, "A's", "B's");
+  write_sides(out, e.sides[1], corners, "B's", "A's");
+  const auto point = [&](const Eigen::Vector3d& x) {
+    out << "(" << x.x() << ", " << x.y() << ", " << x.z() << ")";
+  };
+  if (e.meet == exact::Meet::disjoint) {
+    out << "nearest points: ";
+    point(e.nearest[0]);
+    out << " and ";
+    point(e.nearest[1]);
+    out << "\ndistance " << e.distance << ", " << e.distance / e.ulp
+        << " units in the last place of the largest coordinate\n";
+  } else {
+    constexpr const char* kinds[] = {"nothing", "point", "segment"};
+    out << "contact: " << (e.contact.corner_count < 3 ? kinds[e.contact.corner_count] : "polygon");
+    for (int i = 0; i < e.contact.corner_count; ++i) {
+      out << (i == 0 ? " " : " to ");
+      point(e.contact.corners[i].x);
+    }
+    out << "\n";
+  }
+  return out.str();
+}
+
+std::string as_text(const WalkExplanation& e) {
+  constexpr int kWidth = 12;
+  std::ostringstream out;
+  out << std::setprecision(kDigits);
+  out << name_of(e.result.relation) << ", " << e.result.pairs.size() << " pairs\n";
+  out << "boxes round the bodies: gap " << e.roots.gap << " along " << axis_name(e.roots.axis) << "\n\n";
+  out << std::setw(kWidth) << "depth" << std::setw(kWidth) << "node pairs" << std::setw(kWidth) << "apart"
+      << "\n";
+  for (std::size_t i = 0; i < e.depths.size(); ++i)
+    out << std::setw(kWidth) << i << std::setw(kWidth) << e.depths[i].node_pairs << std::setw(kWidth)
+        << e.depths[i].ended << "\n";
+  out << "\npairs of leaves " << e.leaf_pairs << ", pairs of faces whose boxes meet " << e.face_pairs
+      << "; planes left " << e.left << " of them, about " << e.certain << " of which floats are certain\n";
+  if (!e.near.empty()) {
+    out << "nearest of those left, for --pair:";
+    for (const SimplexPair& p : e.near) out << " " << p.a << "," << p.b;
+    out << "\n";
+  }
+  if (e.result.pairs.empty() && e.left == 0) out << "no two faces come as far as a comparison of their own\n";
+  if (e.result.separation) {
+    const auto& [refined, faces] = *e.result.separation;
+    out << "wrappers of " << faces[0] << " and " << faces[1] << " faces, with " << refined[0].size()
+        << " and " << refined[1].size()
+        << " regions refined, prove it too (`query --draw-separation` draws them)\n";
+  }
+  return out.str();
+}
+
+Pose pose_of(const WhyOptions& o) {
+  if (o.poses.empty()) return {};
+  const std::vector<Pose> poses = io::read_poses(o.poses);
+  if (o.pose >= poses.size())
+    throw InputError(printable_name(o.poses) + ": has " + std::to_string(poses.size()) +
+                     " poses, numbered from 0; there is no pose " + std::to_string(o.pose));
+  return poses[o.pose];
+}
+
+int run_why(const WhyOptions& o, const Globals& globals) {
+  const Pose pose = pose_of(o);
+  const bodies::LoadedBody a = bodies::load_body(o.a), b = bodies::load_body(o.b);
+  note(globals, a.notes);
+  note(globals, b.notes);
+  const Scene scene{a.rep, b.rep, pose};
+  if (o.pair.empty()) {
+    const WalkExplanation e = explain_walk(scene.a, {}, scene.b, pose);
+    print(o.json ? one_line(as_json(e)) : as_text(e));
+    return kOk;
+  }
+  const PairExplanation e =
+      explain_pair(scene.a, {}, scene.b, pose, {SimplexId(o.pair[0]), SimplexId(o.pair[1])});
+  if (!o.picture.empty()) {
+    io::make_folder(std::filesystem::path(o.picture).parent_path().string());
+    run::draw_pair(scene.a, {}, scene.b, pose, e, o.picture);
+  }
+  print(o.json ? one_line(as_json(e, scene)) : as_text(e, scene));
+  return kOk;
+}
+
+Command add_why(CLI::App& root, const Globals& globals) {
+  CLI::App* app =
+      root.add_subcommand("why", "Tell why two faces are in an answer, or are not, or why bodies are apart");
+  const auto o = std::make_shared<WhyOptions>();
+  app->add_option("A", o->a, "Mesh or .lrb file; does not move")->required();
+  app->add_option("B", o->b, "Mesh or .lrb file; the pose is applied to it")->required();
+  auto* poses = app->add_option("--poses", o->poses, "File with poses, as for `query` [B stays in place]");
+  app->add_option("--pose", o->pose, "Number of the pose in the file, from 0")
+      ->needs(poses)
+      ->capture_default_str();
+  auto* pair =
+      app->add_option("--pair", o->pair, "A simplex of A and one of B, as `query --pairs` numbers them")
+          ->delimiter(',')
+          ->expected(2)
+          ->type_name("I,J");
+  app->add_option("-o,--output", o->picture, "Draw the two faces with what is about them to this picture")
+      ->needs(pair)
+      ->type_name("FILE.png");
+  app->add_flag("--json", o->json, "Print one JSON object");
+  return {app, [o, &globals] { return run_why(*o, globals); }};
+}
+
+}  // namespace
+
+std::vector<CommandEntry> why_commands() {
+  return {{add_why, 45}};
+}
+
+}  // namespace lrb::cli

@@ -1,0 +1,141 @@
+#include "scenarios/run/pair_picture.hpp"
+
+#include <array>
+#include <vector>
+
+#include <Eigen/Geometry>
+
+#include "render/overlay.hpp"
+#include "render/palette.hpp"
+#include "render/png.hpp"
+#include "render/rasterize.hpp"
+#include "render/scene.hpp"
+
+namespace lrb::run {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr int kPairWidth = 1200, kPairHeight = 900;
+
+std::vector<Vector3d> corners_of(const LrbRep& rep, const Pose& pose, SimplexId s) {
+  VertexId v[3];
+  rep.simplex(s, v);
+  std::vector<Vector3d> out;
+  for (int k = 0; k < rep.simplex_size(); ++k) out.push_back(pose.apply(rep.vertices()[v[k]]));
+  return out;
+}
+
+/// Outlines a face over everything that hides it.
+void outline(render::DrawList& list, std::vector<Vector3d> corners, render::Rgba colour) {
+  render::DrawLine line;
+  line.closed = corners.size() > 2;
+  line.points = std::move(corners);
+  line.colour = colour;
+  line.width = 3;
+  line.halo = render::kWhite;
+  line.halo_width = 1.5F;
+  line.layer = render::Layer::on_top;
+  list.lines.push_back(line);
+}
+
+void mark(render::DrawList& list, const std::vector<Vector3d>& points, bool closed) {
+  for (const Vector3d& x : points) {
+    render::DrawPoint point;
+    point.x = x;
+    point.colour = render::palette::kContact;
+    point.radius = 5;
+    point.halo = render::kWhite;
+    point.halo_width = 1.5F;
+    point.layer = render::Layer::on_top;
+    list.points.push_back(point);
+  }
+  if (points.size() < 2) return;
+  render::DrawLine line;
+  line.points = points;
+  line.closed = closed;
+  line.colour = render::palette::kContact;
+  line.width = 4;
+  line.halo = render::kWhite;
+  line.halo_width = 1.5F;
+  line.layer = render::Layer::on_top;
+  list.lines.push_back(line);
+}
+
+/// Draws a square of the plane across the line between two points, in its middle. `side`: its length.
+void add_plane(render::DrawList& list, const std::array<Vector3d, 2>& nearest, double side) {
+  const Vector3d normal = (nearest[1] - nearest[0]).normalized(), u = normal.unitOrthogonal() * (side / 2);
+  const Vector3d v = normal.cross(u), middle = (nearest[0] + nearest[1]) / 2;
+  render::DrawTriangle like;
+  like.colour = render::palette::kGreen;
+  like.colour.a = 90;
+  like.layer = render::Layer::translucent;
+  like.lit = false;
+  list.add_polygon({middle + u + v, middle - u + v, middle - u - v, middle + u - v}, like);
+}
+
+render::Overlay overlay_of(const LrbRep& a, const LrbRep& b, const PairExplanation& pair,
+                           std::vector<render::LegendItem> key) {
+  render::Overlay out;
+  out.title = a.name() + ", simplex " + std::to_string(pair.pair.a) + "  ·  " + b.name() + ", simplex " +
+              std::to_string(pair.pair.b);
+  const bool apart = pair.meet == exact::Meet::disjoint;
+  out.event = apart                             ? "apart by " + render::short_number(pair.distance)
+              : pair.meet == exact::Meet::cross ? "the faces cross"
+                                                : "the faces touch";
+  out.key = std::move(key);
+  using Mark = render::LegendItem::Mark;
+  out.key.push_back({Mark::line, render::palette::kContact, apart ? "nearest points" : "contact"});
+  if (apart && a.dim() == 3)
+    out.key.push_back({Mark::translucent, render::palette::kGreen, "plane that parts them"});
+  return out;
+}
+
+}  // namespace
+
+void draw_pair(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
+               const PairExplanation& pair, const std::string& path) {
+  std::array<render::SceneBody, 2> bodies;
+  bodies[0].rep = &a;
+  bodies[0].pose = pose_a;
+  bodies[1].rep = &b;
+  bodies[1].pose = pose_b;
+  render::SceneHighlight highlight;
+  highlight.under_test = {pair.pair.a, pair.pair.b};
+  render::Scene scene = render::build_scene(bodies, highlight);
+  const std::vector<Vector3d> of_a = corners_of(a, pose_a, pair.pair.a),
+                              of_b = corners_of(b, pose_b, pair.pair.b);
+  std::vector<Vector3d> both = of_a;
+  both.insert(both.end(), of_b.begin(), of_b.end());
+  Eigen::AlignedBox3d part, all;
+  for (const Vector3d& x : both) part.extend(x);
+  for (const render::SceneBody& body : bodies)
+    for (const Vector3d& x : render::body_points(*body.rep, body.pose)) all.extend(x);
+  outline(scene.list, of_a, render::palette::edge_of(render::palette::body(Side::a)));
+  outline(scene.list, of_b, render::palette::edge_of(render::palette::body(Side::b)));
+  if (pair.meet == exact::Meet::disjoint) {
+    mark(scene.list, {pair.nearest[0], pair.nearest[1]}, false);
+    if (a.dim() == 3 && pair.distance > 0) add_plane(scene.list, pair.nearest, part.diagonal().norm());
+  } else {
+    std::vector<Vector3d> contact;
+    for (int i = 0; i < pair.contact.corner_count; ++i) contact.push_back(pair.contact.corners[i].x);
+    mark(scene.list, contact, contact.size() > 2);
+  }
+  const render::Overlay overlay = overlay_of(a, b, pair, scene.key);
+  const render::OverlayLayout layout = render::lay_out(overlay, kPairWidth, kPairHeight);
+  render::FitOptions fit;
+  const Vector3d across = pair.nearest[1] - pair.nearest[0];
+  if (a.dim() == 3 && across.norm() > 0) fit.view = render::view_beside(across);
+  const render::Camera camera =
+      a.dim() == 2
+          ? render::fit_top(both, layout.picture.width, layout.picture.height, 0.3)
+          : render::fit_contact(both, all, layout.picture.width, layout.picture.height, fit, 2.5, 0.001);
+  render::RasterOptions options;
+  options.width = layout.picture.width;
+  options.height = layout.picture.height;
+  render::Rasterizer rasterizer;
+  const render::Image picture = rasterizer.draw(scene.list, camera, options);
+  render::write_png(render::compose_frame(picture, layout.picture, overlay, kPairWidth, kPairHeight), path);
+}
+
+}  // namespace lrb::run

@@ -1,0 +1,86 @@
+// lrbscope why: what it prints agrees with `query`, and bad input is refused before anything is written.
+#include <string>
+
+#include <doctest/doctest.h>
+#include <nlohmann/json.hpp>
+
+#include "engine/mesh/io/mesh_io.hpp"
+#include "render/png.hpp"
+#include "scenarios/bodies/shapes/shapes.hpp"
+#include "tests/support/folder.hpp"
+#include "tests/support/program.hpp"
+
+namespace lrb::test {
+namespace {
+
+struct Bodies {
+  Folder folder;
+  Bodies() {
+    write_mesh(shapes::icosphere(2), folder / "ball.obj");
+    write_mesh(shapes::torus(16, 8), folder / "ring.obj");
+    folder.write("poses.txt", "1 0 0 0.9  0 1 0 0  0 0 1 0.1\n1 0 0 9  0 1 0 0  0 0 1 0\n");
+  }
+  Outcome why(std::vector<std::string> more) const {
+    std::vector<std::string> args = {"--quiet", "why", "ball.obj", "ring.obj", "--poses", "poses.txt"};
+    args.insert(args.end(), more.begin(), more.end());
+    return run(folder, args);
+  }
+};
+
+TEST_CASE("why: a pair of the answer, as JSON, as text and as a picture") {
+  const Bodies bodies;
+  const auto query =
+      run(bodies.folder, {"--quiet", "query", "ball.obj", "ring.obj", "--poses", "poses.txt", "--pairs"});
+  const auto list = nlohmann::json::parse(query.out.substr(0, query.out.find('\n')))["list"];
+  REQUIRE(!list.empty());
+  const std::string pair =
+      std::to_string(list[0][0].get<int>()) + "," + std::to_string(list[0][1].get<int>());
+  const Outcome json = bodies.why({"--pair", pair, "--json", "-o", "pictures/pair.png"});
+  CHECK(json.code == 0);
+  const auto j = nlohmann::json::parse(json.out);
+  CHECK(j["pair"] == list[0]);
+  CHECK(j["meet"] != "disjoint");
+  CHECK(j["nodes"][0]["a"] == 0);
+  CHECK(j["contact"]["points"].size() > 0);
+  CHECK(render::read_png(bodies.folder / "pictures/pair.png").image.width() == 1200);
+  const Outcome text = bodies.why({"--pair", pair});
+  CHECK(text.out.find("decided by") != std::string::npos);
+  CHECK(text.out.find("contact: segment") != std::string::npos);
+}
+
+TEST_CASE("why: bodies that are apart") {
+  const Bodies bodies;
+  const Outcome text = bodies.why({"--pose", "1"});
+  CHECK(text.code == 0);
+  CHECK(text.out.rfind("separate, 0 pairs\nboxes round the bodies: gap ", 0) == 0);
+  CHECK(text.out.find("prove it too") != std::string::npos);
+  const auto j = nlohmann::json::parse(bodies.why({"--pose", "1", "--json"}).out);
+  CHECK(j["roots"]["gap"] > 5);
+  CHECK(j["separation"]["refined"] == nlohmann::json({0, 0}));
+  const auto pair =
+      nlohmann::json::parse(bodies.why({"--pose", "1", "--pair", "0,0", "--json", "-o", "apart.png"}).out);
+  CHECK(pair["meet"] == "disjoint");
+  CHECK(pair["decided_by"] == "node_boxes");
+  CHECK(pair["distance"] > 5);
+  CHECK(render::read_png(bodies.folder / "apart.png").image.width() == 1200);
+}
+
+TEST_CASE("why: bad input is refused in one line, and nothing is written") {
+  const Bodies bodies;
+  const auto refused = [&](std::vector<std::string> more, const std::string& what) {
+    more.insert(more.end(), {"-o", "no.png"});
+    const Outcome o = bodies.why(more);
+    CHECK(o.code == 2);
+    CHECK(o.err.find(what) != std::string::npos);
+    CHECK(o.out.empty());
+    CHECK_FALSE(std::filesystem::exists(bodies.folder.path / "no.png"));
+  };
+  refused({"--pair", "0,99999"}, "no simplex 99999 of B: there are ");
+  refused({"--pair", "0,0", "--pose", "2"}, "has 2 poses, numbered from 0; there is no pose 2");
+  refused({}, "--pair");
+  refused({"--pair", "0"}, "--pair");
+  refused({"--pair", "-1,0"}, "--pair");
+}
+
+}  // namespace
+}  // namespace lrb::test
