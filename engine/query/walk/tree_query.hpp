@@ -13,6 +13,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <span>
 
 #include "engine/exact/exact_sign.hpp"
 #include "engine/exact/predicates.hpp"
@@ -29,17 +30,12 @@ inline TreeKernel set_up_kernel(const LrbRep& a, const Pose& pose_a, const LrbRe
 template <class Probe>
 [[gnu::noinline]] void open_regions_from(QueryContext& ctx, Side side, CellId innermost,
                                          CollideResult& result, Probe& probe) {
-  QueryBody& body = ctx[side];
-  const LrbRep& rep = body.rep();
-  ctx.path.clear();  // a query that ended with an exception may have left some
-  for (CellId c = innermost; is_region(c) && body.wrapper->included(c); c = rep.parent(c.as_region()))
-    ctx.path.push_back(c.as_region());
-  for (; !ctx.path.empty(); ctx.path.pop_back()) {
-    body.wrapper->refine(ctx.path.back());
-    ++result.counters.refinements;
-    if constexpr (Probe::kEnabled)
-      probe.refine(side, ctx.path.back(), static_cast<std::uint32_t>(rep.floor(ctx.path.back()).size()));
-  }
+  Wrapper& wrapper = *ctx[side].wrapper;
+  const std::size_t before = wrapper.excluded().size();
+  result.counters.refinements += wrapper.refine_path(innermost);
+  if constexpr (Probe::kEnabled)
+    for (const RegionId r : std::span(wrapper.excluded()).subspan(before))
+      probe.refine(side, r, static_cast<std::uint32_t>(wrapper.rep().floor(r).size()));
 }
 
 /// Returns a kernel at the roots of what is queried of both bodies, at their poses. It uses the context's
@@ -150,17 +146,16 @@ class TreeQuery {
   /// Returns true if the candidate's corners are corners of the other simplex too. Without branches, because
   /// which corners are shared cannot be predicted.
   bool shares_corners(const Candidate& c) {
-    const double *of_a[3], *of_b[3];
-    ctx_[Side::a].world.corners(c.a, of_a);
-    ctx_[Side::b].world.corners(c.b, of_b);
-    unsigned shared[2] = {0, 0};
-    for (int i = 0; i < 3; ++i)
-      for (int j = 0; j < 3; ++j) {
-        const unsigned same = has_bits_of(of_a[i], of_b[j]);
-        shared[0] |= same << i;
-        shared[1] |= same << j;
-      }
-    return (c.corners & ~shared[static_cast<int>(c.side)]) == 0;
+    const double *own[3], *others[3];
+    ctx_[Side::a].world.corners(c.a, c.side == Side::a ? own : others);
+    ctx_[Side::b].world.corners(c.b, c.side == Side::a ? others : own);
+    unsigned shared = 0;
+    for (int i = 0; i < 3; ++i) {
+      const bool is_shared =
+          has_bits_of(own[i], others[0]) | has_bits_of(own[i], others[1]) | has_bits_of(own[i], others[2]);
+      shared |= static_cast<unsigned>(is_shared) << i;
+    }
+    return (c.corners & ~shared) == 0;
   }
 
   /// Returns true if two points are equal bit by bit. Points that only differ in the sign of a zero are left
