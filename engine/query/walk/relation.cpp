@@ -133,22 +133,6 @@ class RayWalk {
   bool on_surface_ = false;
 };
 
-struct Enclosed {
-  std::size_t inside = 0, components = 0;
-  bool all() const { return inside == components && components > 0; }
-  bool some() const { return inside > 0; }
-};
-
-/// Returns how many components of `inner` lie inside `outer`, given that the surfaces do not meet.
-Enclosed components_inside(QueryBody& inner, QueryBody& outer) {
-  Enclosed s;
-  for (const VertexId v : inner.component_vertices()) {
-    ++s.components;
-    s.inside += locate(outer, inner.world(v)) == Where::inside;
-  }
-  return s;
-}
-
 }  // namespace
 
 Where locate(QueryBody& body, const double* point) {
@@ -161,22 +145,22 @@ Where locate(QueryBody& body, const exact::RationalPoint& point) {
   return body.tree().empty() ? Where::outside : RayWalk(body, point, point.rounded()).run();
 }
 
-void decide_relation(QueryContext& ctx, CollideResult& result) {
-  if (!result.pairs.empty()) {
-    const bool crosses =
-        std::find(result.meets.begin(), result.meets.end(), exact::Meet::cross) != result.meets.end();
-    result.relation = crosses ? Relation::crossing : Relation::touching;
-    const bool solids = ctx[Side::a].rep().closed() && ctx[Side::b].rep().closed();
-    result.interiors_overlap = crosses && solids ? Answer::yes : Answer::unknown;
-    return;
-  }
-  QueryBody &a = ctx[Side::a], &b = ctx[Side::b];
-  if (!a.rep().closed() || !b.rep().closed()) {
+bool decide_without_points(QueryContext& ctx, CollideResult& result) {
+  const bool solids = ctx[Side::a].rep().closed() && ctx[Side::b].rep().closed();
+  if (result.pairs.empty() && solids) return false;
+  if (result.pairs.empty()) {
     result.relation = Relation::undefined;
     result.interiors_overlap = Answer::unknown;
-    return;
+    return true;
   }
-  const Enclosed a_in_b = components_inside(a, b), b_in_a = components_inside(b, a);
+  const bool crosses =
+      std::find(result.meets.begin(), result.meets.end(), exact::Meet::cross) != result.meets.end();
+  result.relation = crosses ? Relation::crossing : Relation::touching;
+  result.interiors_overlap = crosses && solids ? Answer::yes : Answer::unknown;
+  return true;
+}
+
+void decide_by_enclosure(const Enclosed& a_in_b, const Enclosed& b_in_a, CollideResult& result) {
   if (a_in_b.all())
     result.relation = Relation::a_inside_b;
   else if (b_in_a.all())
@@ -188,6 +172,10 @@ void decide_relation(QueryContext& ctx, CollideResult& result) {
   else
     result.relation = Relation::separate;
   result.interiors_overlap = result.relation == Relation::separate ? Answer::no : Answer::yes;
+}
+
+void decide_relation(QueryContext& ctx, CollideResult& result) {
+  decide_relation(ctx, result, [] { return true; });
 }
 
 }  // namespace lrb

@@ -88,7 +88,7 @@ class TreeQuery {
       k.out_size = 0;
       if constexpr (Rules::kLimited) k.most_node_pairs = rules_.most_node_pairs(k.node_pairs);
       run_tree_kernel(k);
-      if constexpr (Rules::kLimited) done = rules_.time_is_up();
+      if constexpr (Rules::kLimited) done = rules_.time_is_up(result_.pairs.size());
       for (std::uint32_t i = 0; i < k.out_size && !done; ++i) done = test(k.out[i]);
       if (result_.pairs.size() > pair_limit_) refuse_pairs(pair_limit_);
     }
@@ -103,7 +103,9 @@ class TreeQuery {
   /// that the relation is exact in that mode too.
   bool test(const Candidate& c) {
     if constexpr (Rules::kLimited)
-      if (rules_.no_test_left(result_.counters.face_tests)) return true;
+      if (rules_.no_test_left(result_.counters.face_tests, c.certainty != Certainty::none,
+                              result_.pairs.size()))
+        return true;
     const FaceId fa = ctx_[Side::a].rep().face_of_simplex(c.a), fb = ctx_[Side::b].rep().face_of_simplex(c.b);
     const std::uint32_t depth_a = show_face(ctx_, Side::a, fa, result_, probe_);
     const std::uint32_t depth_b = show_face(ctx_, Side::b, fb, result_, probe_);
