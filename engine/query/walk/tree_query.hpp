@@ -145,19 +145,19 @@ class TreeQuery {
     return test_simplices(ctx_, c.a, c.b);
   }
 
-  /// Returns true if the candidate's corners are corners of the other simplex too. Without branches, because
-  /// which corners are shared cannot be predicted.
+  /// Returns true if the candidate's corners are corners of the other simplex too. Compares each with all three
+  /// without branches, because which one it is cannot be predicted.
   bool shares_corners(const Candidate& c) {
     const double *own[3], *others[3];
     ctx_[Side::a].world.corners(c.a, c.side == Side::a ? own : others);
     ctx_[Side::b].world.corners(c.b, c.side == Side::a ? others : own);
-    unsigned shared = 0;
-    for (int i = 0; i < 3; ++i) {
-      const bool is_shared =
-          has_bits_of(own[i], others[0]) | has_bits_of(own[i], others[1]) | has_bits_of(own[i], others[2]);
-      shared |= static_cast<unsigned>(is_shared) << i;
+    bool shared = true;
+    for (unsigned left = c.corners; left != 0; left &= left - 1) {
+      const double* const corner = own[std::countr_zero(left)];
+      shared &=
+          has_bits_of(corner, others[0]) | has_bits_of(corner, others[1]) | has_bits_of(corner, others[2]);
     }
-    return (c.corners & ~shared) == 0;
+    return shared;
   }
 
   /// Returns true if two points are equal bit by bit. Points that only differ in the sign of a zero are left
