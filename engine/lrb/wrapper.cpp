@@ -20,14 +20,8 @@ void Wrapper::reset() {
   }
 }
 
-bool Wrapper::refine(RegionId r) {
-  if (!included(r)) return false;
-  order_.push_back(r);  // first: it may throw
-  region_stamp_[r] = epoch_;
-  ++excluded_count_;
-  if (mode_ == WrapperMode::unregularised)
-    for (const FaceId lid : rep_->lids(r)) discarded_stamp_[lid] = epoch_;
-  return true;
+void Wrapper::discard_lids(RegionId r) {
+  for (const FaceId lid : rep_->lids(r)) discarded_stamp_[lid] = epoch_;
 }
 
 bool Wrapper::refine_face(FaceId f) {

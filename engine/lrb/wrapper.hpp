@@ -6,6 +6,8 @@
 /// nothing in the LRB-rep changes. The state is one stamp per region, so that reset() costs O(1) and a query
 /// O(regions it opened).
 
+#include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -37,7 +39,23 @@ class Wrapper {
     return is_region(cell) ? region_stamp_[cell] != epoch_ : cell == kSolid;
   }
   /// Excludes a region. Returns false if it was excluded already.
-  bool refine(RegionId r);
+  bool refine(RegionId r) {
+    if (!included(r)) return false;
+    order_.push_back(r);  // first: it may throw
+    region_stamp_[r] = epoch_;
+    ++excluded_count_;
+    if (mode_ == WrapperMode::unregularised) discard_lids(r);
+    return true;
+  }
+  /// Excludes a cell if it is a region, and those between it and the outside along parents, up to the first that is
+  /// excluded already. Counts as if the outermost had been refined first. Returns how many there were.
+  std::size_t refine_path(CellId innermost) {
+    const std::size_t before = order_.size();
+    for (CellId c = innermost; is_region(c) && included(c); c = rep_->parent(c.as_region()))
+      refine(c.as_region());
+    std::reverse(order_.begin() + static_cast<std::ptrdiff_t>(before), order_.end());
+    return order_.size() - before;
+  }
   /// Refines the region behind a face. regularised: refine(inner_cell(f)). unregularised: discards f, and
   /// adds the floor if f is the first of the region's lids to be refined. Returns false if f is real or not
   /// on the boundary.
@@ -59,6 +77,8 @@ class Wrapper {
   std::uint32_t excluded_count() const { return excluded_count_; }
 
  private:
+  void discard_lids(RegionId r);
+
   const LrbRep* rep_;
   WrapperMode mode_;
   std::uint32_t epoch_ = 1;

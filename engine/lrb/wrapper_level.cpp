@@ -19,11 +19,13 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 /// From one level to the next the number of faces grows by this factor at most, where regions are small enough.
 /// Smaller: more levels to make and keep; larger: a tolerance between two levels costs that many faces more.
 constexpr double kLevelStep = 4.0 / 3;
+/// The same for levels with at most kFewFaces of the body's own: these take little memory, even if there are many.
+constexpr double kFewFaces = 1.0 / 16, kSmallStep = 1.1;
 /// A wrapper with a larger share of the body's own faces is no level: the exact query costs hardly more. Also
-/// limits what all levels take together: about twice as many faces as the body has.
+/// limits what all levels take together: between two and three times as many faces as the body has.
 constexpr double kMostFaces = 0.5;
 /// More levels than kLevelStep makes of the largest body: a file with more is not one of ours.
-constexpr std::size_t kMostLevels = 128;
+constexpr std::size_t kMostLevels = 256;
 
 [[noreturn]] void refuse(const std::string& what) {
   throw InputError("the levels of the LRB-rep " + what + "; build it again from its mesh");
@@ -125,7 +127,8 @@ std::vector<double> choose_bounds(const LrbRep& rep, std::span<const double> nee
     chosen.push_back(i);
   };
   const auto is_beyond = [&](std::size_t i) {
-    return chosen.empty() || faces[i] > kLevelStep * faces[chosen.back()];
+    const double step = faces[i] <= kFewFaces * rep.real_face_count() ? kSmallStep : kLevelStep;
+    return chosen.empty() || faces[i] > step * faces[chosen.back()];
   };
   std::size_t i = bounds.size();
   for (; i-- > 0 && faces[i] <= kMostFaces * rep.real_face_count();) {
@@ -189,8 +192,8 @@ WrapperLevels::WrapperLevels(const LrbRep& rep, std::vector<double> needed, std:
 }
 
 const WrapperLevel* WrapperLevels::within(double tolerance) const {
-  const auto level = std::find_if(levels_.begin(), levels_.end(),
-                                  [&](const WrapperLevel& x) { return x.bound <= tolerance; });
+  const auto level = std::partition_point(levels_.begin(), levels_.end(),
+                                          [&](const WrapperLevel& x) { return x.bound > tolerance; });
   return level == levels_.end() ? nullptr : &*level;
 }
 

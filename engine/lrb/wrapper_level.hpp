@@ -20,9 +20,9 @@ struct WrapperLevel {
   std::uint32_t face_count = 0, pseudo_count = 0;
 };
 
-/// The levels of one body: a row of wrappers from the outermost one inward, each with about a third more faces
-/// than the one before, up to half the body's. LrbRep::levels() makes and keeps them. An LRB-rep without
-/// regions, or of a body that is not closed or intersects itself, has none.
+/// The levels of one body: a row of wrappers from the outermost one inward, up to half the body's faces. Each has
+/// about a third more faces than the one before, or a tenth where there are few. LrbRep::levels() makes and keeps
+/// them. An LRB-rep without regions, or of a body that is not closed or intersects itself, has none.
 ///
 /// A region is included only together with everything that it hides, so that the wrapper encloses the body.
 /// That it does so rests on the LRB-rep being embedded (validate.hpp), as those that the builders make are. A

@@ -14,6 +14,7 @@ struct AffineWalk {
   static Skewed between(const TreeKernel& k, const TreeNode& a, const TreeNode& b) {
     return between_skewed(k, a, b);
   }
+  static bool has_more_directions(const TreeKernel&) { return false; }
   static bool more_parts(const TreeKernel&, const TreeNode&, const TreeNode&) { return false; }
   static float size(const TreeKernel& k, const TreeNode& n, Side side) {
     return n.radius * k.affine->span[static_cast<int>(side)];

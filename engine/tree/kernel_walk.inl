@@ -22,16 +22,30 @@ struct Gaps {
   Float8 of[8];
 };
 
-/// Returns true if the rows of a mask together have more than one bit.
-inline bool is_more_than_one(std::uint32_t rows, const std::uint32_t mask[8]) {
-  if (rows == 0) return false;
-  const std::uint32_t first = mask[__builtin_ctz(rows)];
-  return (rows & (rows - 1)) != 0 || (first & (first - 1)) != 0;
+/// One of A's boxes, on its own axes and on B's.
+struct Row {
+  float own_centre[3], own_half[3], turned_centre[3], turned_half[3];
+};
+
+inline Row row_of(const Boxes& own, const Turned& turned, int i) {
+  const auto* own_centre = reinterpret_cast<const float*>(own.centre);
+  const auto* own_half = reinterpret_cast<const float*>(own.half);
+  const auto* turned_centre = reinterpret_cast<const float*>(turned.centre);
+  const auto* turned_half = reinterpret_cast<const float*>(turned.half);
+  return {{own_centre[i], own_centre[8 + i], own_centre[16 + i]},
+          {own_half[i], own_half[8 + i], own_half[16 + i]},
+          {turned_centre[i], turned_centre[8 + i], turned_centre[16 + i]},
+          {turned_half[i], turned_half[8 + i], turned_half[16 + i]}};
+}
+
+inline Float8 gaps_of(const Row& row, const Boxes& own_b, const Turned& bt) {
+  return larger(gap_between(bt.centre, bt.half, row.own_centre, row.own_half),
+                gap_between(own_b.centre, own_b.half, row.turned_centre, row.turned_half));
 }
 
 /// Finds which of A's boxes may meet which of B's: mask[k] has a bit for each of B's boxes that A's box k may
-/// meet. Most pairs of nodes are apart, and most of these show it in the first test.
-template <bool kMargin, class Lie>
+/// meet. Most pairs of nodes are apart, and most of these show it in the first test. kGaps: finds the gaps, too.
+template <bool kMargin, bool kGaps, class Lie>
 inline std::uint32_t pair_masks(TreeKernel& k, const TreeNode& na, const TreeNode& nb, const Lie& w,
                                 std::uint32_t mask[8], Gaps* gaps = nullptr) {
   k.box_tests += na.count + nb.count;
@@ -45,38 +59,29 @@ inline std::uint32_t pair_masks(TreeKernel& k, const TreeNode& na, const TreeNod
   const Turned at = turn_a<kMargin>(a, w);
   const std::uint32_t mask_a = ~bits(apart(at.centre, at.half, whole_b.centre, whole_b.half)) & present(na);
   const Boxes &own_a = boxes_on_own(a, Side::a, w), &own_b = boxes_on_own(b, Side::b, w);
-  const auto* a_centre = reinterpret_cast<const float*>(own_a.centre);
-  const auto* a_half = reinterpret_cast<const float*>(own_a.half);
-  const auto* at_centre = reinterpret_cast<const float*>(at.centre);
-  const auto* at_half = reinterpret_cast<const float*>(at.half);
   const auto in_mask_b = static_cast<unsigned>(__builtin_popcount(mask_b));
   std::uint32_t rows = 0;
+  int alone =
+      -1;  // the only row so far, if it has one pair: its gap is not needed unless there is another row
   for (std::uint32_t todo = mask_a; todo != 0; todo &= todo - 1) {
     const int i = __builtin_ctz(todo);
-    const float own_centre[3] = {a_centre[i], a_centre[8 + i], a_centre[16 + i]};
-    const float own_half[3] = {a_half[i], a_half[8 + i], a_half[16 + i]};
-    const float turned_centre[3] = {at_centre[i], at_centre[8 + i], at_centre[16 + i]};
-    const float turned_half[3] = {at_half[i], at_half[8 + i], at_half[16 + i]};
-    const Lanes gap = either(apart(bt.centre, bt.half, own_centre, own_half),
-                             apart(own_b.centre, own_b.half, turned_centre, turned_half));
+    const Row row = row_of(own_a, at, i);
+    const Lanes gap = either(apart(bt.centre, bt.half, row.own_centre, row.own_half),
+                             apart(own_b.centre, own_b.half, row.turned_centre, row.turned_half));
     mask[i] = ~bits(gap) & mask_b;
-    rows |= static_cast<std::uint32_t>(mask[i] != 0) << i;
     k.box_tests += in_mask_b;
-  }
-  if (gaps && is_more_than_one(rows, mask))
-    for (std::uint32_t todo = rows; todo != 0; todo &= todo - 1) {
-      const int i = __builtin_ctz(todo);
-      const auto of_row = [i](const float* x, float* row) {
-        for (int axis = 0; axis < 3; ++axis) row[axis] = x[8 * axis + i];
-      };
-      float own_centre[3], own_half[3], turned_centre[3], turned_half[3];
-      of_row(a_centre, own_centre);
-      of_row(a_half, own_half);
-      of_row(at_centre, turned_centre);
-      of_row(at_half, turned_half);
-      gaps->of[i] = larger(gap_between(bt.centre, bt.half, own_centre, own_half),
-                           gap_between(own_b.centre, own_b.half, turned_centre, turned_half));
+    if constexpr (kGaps) {
+      if (mask[i] == 0) continue;
+      if (rows == 0 && (mask[i] & (mask[i] - 1)) == 0) {
+        alone = i;
+      } else {
+        if (alone >= 0) gaps->of[alone] = gaps_of(row_of(own_a, at, alone), own_b, bt);
+        alone = -1;
+        gaps->of[i] = gaps_of(row, own_b, bt);
+      }
     }
+    rows |= static_cast<std::uint32_t>(mask[i] != 0) << i;
+  }
   return rows;
 }
 
@@ -145,7 +150,7 @@ inline void descend_both(TreeKernel& k, const TreeNode& na, const TreeNode& nb) 
   std::uint32_t mask[8];
   Gaps gaps;
   const std::uint32_t rows =
-      pair_masks<Walk::kMargin>(k, na, nb, Walk::between(k, na, nb), mask, kNearest ? &gaps : nullptr);
+      pair_masks<Walk::kMargin, kNearest>(k, na, nb, Walk::between(k, na, nb), mask, &gaps);
   if (rows == 0) return;
   float gap_of[64];
   const std::uint32_t bottom = k.stack_size;
@@ -215,7 +220,7 @@ inline void leaf_pair(TreeKernel& k, const TreeNode& na, const TreeNode& nb) {
   constexpr bool kMargin = Walk::kMargin;
   const auto w = Walk::between(k, na, nb);
   std::uint32_t mask[8];
-  const std::uint32_t rows = pair_masks<kMargin>(k, na, nb, w, mask);
+  const std::uint32_t rows = pair_masks<kMargin, false>(k, na, nb, w, mask);
   if (rows == 0) return;
   const LeafBlock& block_a = k.blocks_a[na.first];
   const LeafBlock& block_b = k.blocks_b[nb.first];
@@ -254,12 +259,13 @@ constexpr std::uint64_t kNearestPairs = 24;
 template <class Walk, bool kNearest>
 void run(TreeKernel& k) {
   const std::uint64_t end = kNearest && kNearestPairs < k.most_node_pairs ? kNearestPairs : k.most_node_pairs;
+  const bool has_more_directions = Walk::has_more_directions(k);
   while (k.stack_size != 0 && k.out_capacity - k.out_size >= 64 && k.node_pairs < end) {
     const NodePair p = k.stack[--k.stack_size];
     const TreeNode& a = k.nodes_a[p.a];
     const TreeNode& b = k.nodes_b[p.b];
     ++k.node_pairs;
-    if (Walk::more_parts(k, a, b)) continue;
+    if (has_more_directions && Walk::more_parts(k, a, b)) continue;
     const float size_a = Walk::size(k, a, Side::a), size_b = Walk::size(k, b, Side::b);
     const bool hold_a = a.is_leaf || size_b > kMuchLarger * size_a;
     const bool hold_b = b.is_leaf || size_a > kMuchLarger * size_b;

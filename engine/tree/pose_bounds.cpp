@@ -1,6 +1,7 @@
 #include "engine/tree/pose_bounds.hpp"
 
 #include <cmath>
+#include <cstdlib>
 
 #include "engine/core/tolerances.hpp"
 
@@ -22,11 +23,14 @@ double wrapper_margin(const Pose& pose_a, const ObbTree& a, const Pose& pose_b, 
   return kWrapperMargin * (world_size(pose_a, a) + world_size(pose_b, b) + kWorldUnderflow);
 }
 
-/// Scales by a power of two, which is exact, so that squares fit into doubles, and back.
+/// Scales by a power of two, which is exact, so that squares fit into doubles, and back; mostly by a product, which
+/// is faster.
 double stretch(const Pose& pose) {
   int exponent = 0;
   std::frexp(pose.r.cwiseAbs().maxCoeff(), &exponent);
-  const Eigen::Matrix3d r = pose.r.unaryExpr([exponent](double x) { return std::ldexp(x, -exponent); });
+  const Eigen::Matrix3d r = std::abs(exponent) <= 1000
+                                ? Eigen::Matrix3d(pose.r * std::ldexp(1.0, -exponent))
+                                : pose.r.unaryExpr([exponent](double x) { return std::ldexp(x, -exponent); });
   const double norm = std::sqrt((r.transpose() * r).cwiseAbs().rowwise().sum().maxCoeff());
   const double size = std::ldexp(norm * (1 + kWrapperMargin), exponent);
   return exponent < -1000 ? size + kWorldUnderflow : size;

@@ -18,10 +18,10 @@ struct RigidWalk {
   static Between between(const TreeKernel& k, const TreeNode& a, const TreeNode& b) {
     return lrb::between<kMargin>(k, a, b);
   }
-  /// Returns true if one of the directions that are tried only for trees full of needles parts the two nodes.
+  /// Returns true if there are more directions that may part two nodes: they are tried for trees full of needles.
+  static bool has_more_directions(const TreeKernel& k) { return !kMargin && k.needles; }
   static bool more_parts(const TreeKernel& k, const TreeNode& a, const TreeNode& b) {
-    if constexpr (kMargin) return false;
-    return k.needles && needles_apart(k, a, b);
+    return needles_apart(k, a, b);
   }
   static float size(const TreeKernel& k, const TreeNode& n, Side side) {
     return n.radius * (side == Side::a ? k.ratio_a : k.ratio_b);

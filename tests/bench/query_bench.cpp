@@ -4,7 +4,6 @@
 //
 //   query_bench A.obj B.obj [--scale-b S] [--poses N] [--verify]
 #include <algorithm>
-#include <chrono>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
@@ -12,8 +11,7 @@
 #include "engine/construct/build.hpp"
 #include "engine/mesh/io/mesh_io.hpp"
 #include "engine/query/brute_force.hpp"
-#include "engine/query/collide_impl.hpp"
-#include "scenarios/bodies/shapes/random_pose.hpp"
+#include "tests/bench/approaches.hpp"
 #include "tests/bench/timing.hpp"
 
 #ifdef LRB_WITH_FCL
@@ -21,6 +19,7 @@
 #endif
 
 using namespace lrb;
+using bench::best_microseconds;
 using bench::median;
 
 namespace {
@@ -31,18 +30,6 @@ struct PoseClass {
 };
 constexpr PoseClass kClasses[] = {
     {"shallow 1 %", 0.01}, {"deep 10 %", 0.1}, {"0.1 % apart", -0.001}, {"0.5 % apart", -0.005}};
-
-template <class F>
-double best_microseconds(int repeats, F&& f) {
-  double best = 1e300;
-  for (int i = 0; i < repeats; ++i) {
-    const auto start = std::chrono::steady_clock::now();
-    f();
-    best = std::min(
-        best, std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - start).count());
-  }
-  return best;
-}
 
 #ifdef LRB_WITH_FCL
 class Fcl {
@@ -73,37 +60,6 @@ class Fcl {
   std::shared_ptr<fcl::BVHModel<fcl::OBBRSSd>> model_;
 };
 #endif
-
-/// Poses of B at first contact along random directions, with random rotations.
-struct Approach {
-  Pose contact;
-  Eigen::Vector3d direction;
-};
-
-std::vector<Approach> approaches(const LrbRep& a, const LrbRep& b, double diagonal, int count) {
-  shapes::RandomEngine random(1);
-  QueryContext context;
-  NullProbe probe;
-  CollideRequest first;
-  first.mode = Mode::first_pair;
-  std::vector<Approach> list;
-  while (static_cast<int>(list.size()) < count) {
-    Pose p;
-    p.r = shapes::random_rotation(random);
-    const Eigen::Vector3d d = shapes::random_direction(random);
-    const auto meets = [&](double s) {
-      p.t = s * d;
-      return !collide(a, Pose{}, b, p, first, context, probe).pairs.empty();
-    };
-    double near = 2 * diagonal, step = 0.005 * diagonal;
-    while (near > -2 * diagonal && !meets(near)) near -= step;
-    if (near <= -2 * diagonal) continue;
-    for (int i = 0; i < 40; ++i) (meets(near + (step /= 2)) ? near += step : near);
-    p.t = near * d;
-    list.push_back({p, d});
-  }
-  return list;
-}
 
 int verify(const LrbRep& a, const LrbRep& b, const Pose& p, const CollideResult& result) {
   const BruteForceResult expected = brute_force(a, Pose{}, b, p);
@@ -143,9 +99,8 @@ int main(int argc, char** argv) {
     for (const Mode mode : {Mode::all_pairs, Mode::first_pair}) {
       std::vector<double> ours, theirs, ratios;
       double pairs = 0, node_pairs = 0, tests = 0;
-      for (const Approach& approach : approaches(a, b, diagonal, count)) {
-        Pose p = approach.contact;
-        p.t -= c.depth * diagonal * approach.direction;
+      for (const bench::Approach& approach : bench::approaches(a, b, diagonal, count)) {
+        const Pose p = approach.beyond(c.depth * diagonal);
         CollideRequest request;
         request.mode = mode;
         CollideResult result;

@@ -21,6 +21,7 @@ struct Guarded {
   Mode mode;
   Predicates predicates;
   bool watched = false;  ///< with a probe that is told everything and does nothing
+  double tolerance = 0;
 };
 
 /// What the events themselves cost: nothing, if the query works out nothing for them alone.
@@ -37,6 +38,9 @@ constexpr Guarded kGuarded[] = {
     {"shallow_watched", 0.85, Mode::all_pairs, Predicates::exact, true},
     {"deep", 0.4, Mode::all_pairs, Predicates::exact},
     {"identical", 0, Mode::all_pairs, Predicates::exact},
+    {"apart_coarse", 1.05, Mode::all_pairs, Predicates::exact, false, 0.03},
+    {"shallow_coarse", 0.85, Mode::all_pairs, Predicates::exact, false, 0.03},
+    {"deep_coarse", 0.4, Mode::all_pairs, Predicates::exact, false, 0.03},
 };
 
 constexpr int kPoses = 5;
@@ -46,6 +50,7 @@ void ask(const Guarded& g, const LrbRep& a, const LrbRep& b) {
   CollideRequest request;
   request.mode = g.mode;
   request.predicates = g.predicates;
+  request.tolerance = g.tolerance;
   QueryContext context;
   Probe probe;
   shapes::RandomEngine random(1);

@@ -24,13 +24,13 @@ inline bool wrappers_are_apart(const LrbRep& a, const Pose& pose_a, const LrbRep
     body.begin(*reps[side], *poses[side], WrapperMode::regularised);
     if (const WrapperLevel* const level = reps[side]->levels().within(tolerance)) body.query_level(*level);
   }
-  WrapperRules rules;
+  WrapperRules<> rules;
   rules.margin = wrapper_margin(pose_a, context.body[0].tree(), pose_b, context.body[1].tree());
   CollideResult found;
   const CollideRequest request;
-  TreeQuery<NullProbe, WrapperRules> query(context, request, found, probe, rules);
+  TreeQuery<NullProbe, WrapperRules<>> query(context, request, found, probe, rules);
   query.run();
-  return found.pairs.empty() && !query.rules().near && !wrappers_nested(context);
+  return found.pairs.empty() && !query.rules().near && wrappers_nested(context, [] { return true; }) == false;
 }
 
 /// The real faces of two bodies in the world, to measure from points.

@@ -50,36 +50,34 @@ CoarseStep step_of(const LrbRep& a, const LrbRep& b, double tolerance, const Col
                                                                                                 : step;
 }
 
+bool is_limited(const CollideRequest& request) {
+  return request.max_tests > 0 || request.max_time > 0;
+}
+
 }  // namespace
 
-std::vector<CoarseStep> coarse_steps(const LrbRep& a, const LrbRep& b, const CollideRequest& request) {
+CoarseStep first_step(const LrbRep& a, const LrbRep& b, const CollideRequest& request) {
   // A surface that bounds nothing hides nothing: both bodies have to be queried as they are.
   for (const LrbRep* rep : {&a, &b})
-    if (!rep->closed() || rep->self_intersecting()) return {CoarseStep{}};
+    if (!rep->closed() || rep->self_intersecting()) return {};
+  return step_of(a, b, is_limited(request) ? std::numeric_limits<double>::max() : request.tolerance, request);
+}
+
+std::vector<CoarseStep> coarse_steps(const LrbRep& a, const LrbRep& b, const CollideRequest& request) {
+  const CoarseStep first = first_step(a, b, request);
+  if (first.exact() || !is_limited(request)) return {first};
   std::vector<CoarseStep> steps;
-  const CoarseStep coarsest = step_of(a, b, std::numeric_limits<double>::max(), request);
-  if ((request.max_tests > 0 || request.max_time > 0) && !coarsest.exact()) {
-    // Use powers of two, so that bodies of similar size share levels from pair to pair.
-    int exponent = 0;
-    std::frexp(std::max(coarsest.a ? coarsest.a->bound : 0, coarsest.b ? coarsest.b->bound : 0), &exponent);
-    for (double x = std::ldexp(1.0, exponent); x > request.tolerance; x /= kLadderStep) {
-      const CoarseStep step = step_of(a, b, x, request);
-      if (step.exact()) break;
-      if (steps.empty() || step.a != steps.back().a || step.b != steps.back().b) steps.push_back(step);
-    }
+  // Use powers of two, so that bodies of similar size share levels from pair to pair.
+  int exponent = 0;
+  std::frexp(std::max(first.a ? first.a->bound : 0, first.b ? first.b->bound : 0), &exponent);
+  for (double x = std::ldexp(1.0, exponent); x > request.tolerance; x /= kLadderStep) {
+    const CoarseStep step = step_of(a, b, x, request);
+    if (step.exact()) break;
+    if (steps.empty() || step.a != steps.back().a || step.b != steps.back().b) steps.push_back(step);
   }
   const CoarseStep last = step_of(a, b, request.tolerance, request);
   if (steps.empty() || last.a != steps.back().a || last.b != steps.back().b) steps.push_back(last);
   return steps;
-}
-
-bool wrappers_nested(QueryContext& context) {
-  const auto has_piece_in = [](QueryBody& inner, QueryBody& outer) {
-    return std::any_of(inner.component_vertices().begin(), inner.component_vertices().end(),
-                       [&](VertexId v) { return locate(outer, inner.world(v)) != Where::outside; });
-  };
-  QueryBody &a = context[Side::a], &b = context[Side::b];
-  return has_piece_in(a, b) || has_piece_in(b, a);
 }
 
 }  // namespace lrb

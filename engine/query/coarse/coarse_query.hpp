@@ -25,6 +25,7 @@
 #include <algorithm>
 #include <chrono>
 #include <limits>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -46,41 +47,69 @@ struct CoarseStep {
   bool exact() const { return a == nullptr && b == nullptr; }
 };
 
+/// Returns the first step to be tried: the only one, or within limits the coarsest. Exact where no level is worth it.
+CoarseStep first_step(const LrbRep& a, const LrbRep& b, const CollideRequest& request);
+
 /// Returns the steps to be tried, coarsest first; the last is as fine as was asked for.
 std::vector<CoarseStep> coarse_steps(const LrbRep& a, const LrbRep& b, const CollideRequest& request);
 
-/// Returns true if the boundary of either wrapper has a piece in the other. For wrappers whose faces do not
-/// meet.
-bool wrappers_nested(QueryContext& context);
+/// Returns whether the boundary of either wrapper has a piece in the other; nothing if `in_time()`, which is asked
+/// before each point is located, returns false. For wrappers whose faces do not meet.
+template <class InTime>
+std::optional<bool> wrappers_nested(QueryContext& ctx, InTime&& in_time) {
+  for (const Side side : {Side::a, Side::b}) {
+    QueryBody &inner = ctx[side], &outer = ctx[other(side)];
+    for (const VertexId v : inner.component_vertices()) {
+      if (!in_time()) return std::nullopt;
+      if (locate(outer, inner.world(v)) != Where::outside) return true;
+    }
+  }
+  return false;
+}
 
-/// Rules of an exact query within limits.
+/// How much a query with a limit in time does between two looks at the clock, which take as long as one to three
+/// tests. Less: queries with a limit in time do less; more: they miss it by more, on old processors above all.
+namespace between_looks {
+constexpr std::uint64_t kNodePairs = 16;  ///< one or two microseconds; four without AVX2
+constexpr unsigned kTests = 32;           ///< that are certain: less than a microsecond
+constexpr unsigned kUncertainTests = 8;   ///< about a microsecond; twenty where all are decided exactly
+}  // namespace between_looks
+
+/// Rules of an exact query within limits. Clock: std::chrono::steady_clock, or one that a test turns.
+template <class Clock = std::chrono::steady_clock>
 struct LimitedRules {
   static constexpr bool kLimited = true, kWrappers = false;
-  using Clock = std::chrono::steady_clock;
+  /// What is left to do with each pair when all are found: to sort it.
+  static constexpr std::chrono::nanoseconds kAfterwards{20};
 
   std::uint64_t max_tests = 0;
   bool has_deadline = false;
-  Clock::time_point deadline;
+  typename Clock::time_point deadline;
   bool keeps_touching = false;
   bool stopped = false;  ///< a limit was reached
-  unsigned asked = 0;
+  unsigned done = 0;     ///< since the last look at the clock, in certain tests
 
-  bool time_is_up() { return stopped |= has_deadline && Clock::now() >= deadline; }
+  bool time_is_up(std::size_t pairs = 0) {
+    done = 0;
+    return stopped |=
+           has_deadline && Clock::now() + static_cast<std::int64_t>(pairs) * kAfterwards >= deadline;
+  }
   /// Asked only when there is a test to be done: the last one that is allowed may be the last one needed.
-  bool no_test_left(std::uint64_t tests) {
-    constexpr unsigned kTestsAtOnce = 16;  // a few microseconds
+  bool no_test_left(std::uint64_t tests, bool certain, std::size_t pairs) {
     if (max_tests > 0 && tests >= max_tests) stopped = true;
-    return stopped || (has_deadline && ++asked % kTestsAtOnce == 0 && time_is_up());
+    if (stopped || !has_deadline) return stopped;
+    done += certain ? 1 : between_looks::kTests / between_looks::kUncertainTests;
+    return done >= between_looks::kTests && time_is_up(pairs);
   }
   /// Returns how many node pairs the kernel may have done when it comes back.
-  std::uint64_t most_node_pairs(std::uint64_t done) const {
-    constexpr std::uint64_t kPairsAtOnce = 128;  // about ten microseconds
-    return has_deadline ? done + kPairsAtOnce : kNoLimit;
+  std::uint64_t most_node_pairs(std::uint64_t pairs) const {
+    return has_deadline ? pairs + between_looks::kNodePairs : kNoLimit;
   }
 };
 
 /// Rules of a query between wrappers, within limits.
-struct WrapperRules : LimitedRules {
+template <class Clock = std::chrono::steady_clock>
+struct WrapperRules : LimitedRules<Clock> {
   static constexpr bool kWrappers = true;
 
   double margin = 0;
@@ -99,7 +128,7 @@ struct WrapperRules : LimitedRules {
   }
 };
 
-template <class Probe>
+template <class Probe, class Clock = std::chrono::steady_clock>
 class CoarseQuery {
  public:
   CoarseQuery(QueryContext& ctx, const CollideRequest& request, CollideResult& result, Probe& probe)
@@ -109,18 +138,17 @@ class CoarseQuery {
     result_.relation = Relation::unresolved;
     result_.error_bound = kInfinity;
     result_.finished = false;
-    const std::vector<CoarseStep> steps = coarse_steps(ctx_[Side::a].rep(), ctx_[Side::b].rep(), request_);
-    if (steps.front().exact())
+    const LrbRep &a = ctx_[Side::a].rep(), &b = ctx_[Side::b].rep();
+    if (first_step(a, b, request_).exact())
       ask_exactly(0);
     else if (!first_pair_decides())
-      climb(steps);
+      climb(coarse_steps(a, b, request_));
     if constexpr (Probe::kEnabled)
       for (std::size_t i = 0; i < result_.pairs.size(); ++i)
         probe_.probe.contact(result_.pairs[i].a, result_.pairs[i].b, result_.meets[i]);
   }
 
  private:
-  using Clock = LimitedRules::Clock;
   static constexpr double kInfinity = std::numeric_limits<double>::infinity();
   static constexpr double kLongest = 1e6;  ///< seconds: more does not fit the clock on every machine
 
@@ -136,12 +164,12 @@ class CoarseQuery {
   };
 
   /// Sets the limits of a step: all that is left, or as much as leaves half of it.
-  void limit(LimitedRules& rules, bool half) const {
+  void limit(LimitedRules<Clock>& rules, bool half) const {
     rules.max_tests = half ? (request_.max_tests + 1) / 2 : request_.max_tests;
     rules.has_deadline = request_.max_time > 0;
     const double seconds = std::min(request_.max_time, kLongest);
     if (rules.has_deadline)
-      rules.deadline = began_ + std::chrono::duration_cast<Clock::duration>(
+      rules.deadline = began_ + std::chrono::duration_cast<typename Clock::duration>(
                                     std::chrono::duration<double>(half ? seconds / 2 : seconds));
   }
 
@@ -154,6 +182,11 @@ class CoarseQuery {
     result_.counters = std::move(found.counters);
     rules = query.rules();
     return !rules.stopped;
+  }
+
+  /// Returns what decide_relation() asks before it locates a point: whether there is time.
+  static auto in_time(LimitedRules<Clock>& rules) {
+    return [&rules] { return !rules.has_deadline || !rules.time_is_up(); };
   }
 
   /// Makes what was found the answer.
@@ -171,12 +204,11 @@ class CoarseQuery {
   void ask_exactly(double error_bound) {
     for (const Side side : {Side::a, Side::b}) ctx_[side].query_body();
     CollideResult found;
-    LimitedRules rules;
+    LimitedRules<Clock> rules;
     limit(rules, false);
     if (!walk(request_, found, rules)) return;
     ctx_.pair_order.sort(found);
-    decide_relation(ctx_, found);
-    answer(found, error_bound, true);
+    if (decide_relation(ctx_, found, in_time(rules))) answer(found, error_bound, true);
   }
 
   /// Asks the bodies as they are until a pair crosses. Returns true if that is the whole answer: they do not
@@ -184,18 +216,18 @@ class CoarseQuery {
   bool first_pair_decides() {
     CollideRequest request = request_;
     if (request.mode == Mode::all_pairs) request.mode = Mode::first_pair;
-    LimitedRules rules;
+    LimitedRules<Clock> rules;
     rules.keeps_touching = request_.mode == Mode::all_pairs;
     limit(rules, true);
     CollideResult found;
-    const bool known = walk(request, found, rules);
-    if (known) {
+    const bool walked = walk(request, found, rules);
+    if (walked) {
       const bool all =
           request_.mode != Mode::all_pairs || found.meets.empty() || found.meets[0] != exact::Meet::cross;
       ctx_.pair_order.sort(found);
-      decide_relation(ctx_, found);
-      answer(found, all ? 0 : kInfinity, all);
-      if (all) return true;
+      const bool known = decide_relation(ctx_, found, in_time(rules));
+      if (known) answer(found, all ? 0 : kInfinity, all);
+      if (known && all) return true;
     }
     take_back(Side::a);
     take_back(Side::b);
@@ -221,7 +253,7 @@ class CoarseQuery {
   }
 
   /// Walks a level of each body. Returns false if a limit was reached before its end.
-  bool walk_level(const CoarseStep& step, CollideResult& found, WrapperRules& rules) {
+  bool walk_level(const CoarseStep& step, CollideResult& found, WrapperRules<Clock>& rules) {
     QueryBody &a = ctx_[Side::a], &b = ctx_[Side::b];
     step.a == nullptr ? a.query_body() : a.query_level(*step.a);
     step.b == nullptr ? b.query_body() : b.query_level(*step.b);
@@ -243,7 +275,7 @@ class CoarseQuery {
   /// answer then stays that of the level before.
   bool add_level(const CoarseStep& step, bool last) {
     CollideResult found;
-    WrapperRules rules;
+    WrapperRules<Clock> rules;
     if (!walk_level(step, found, rules)) return false;
     found.relation = result_.relation;
     found.interiors_overlap = result_.interiors_overlap;
@@ -259,15 +291,16 @@ class CoarseQuery {
   /// its end, or if there is no more to be found out.
   bool try_level(const CoarseStep& step, bool last) {
     CollideResult found;
-    WrapperRules rules;
+    WrapperRules<Clock> rules;
     if (!walk_level(step, found, rules)) return false;
     double bound = found.error_bound;
     found.relation = Relation::unresolved;
     if (found.pairs.empty() && !rules.near) {
       // A wrapper in the other: nothing tells how far the bodies are from each other.
-      const bool nested = wrappers_nested(ctx_);
-      if (!nested) found.relation = Relation::separate;
-      bound = nested ? kInfinity : 0;
+      const std::optional<bool> nested = wrappers_nested(ctx_, in_time(rules));
+      if (!nested) return false;
+      if (!*nested) found.relation = Relation::separate;
+      bound = *nested ? kInfinity : 0;
     } else if (has_real_crossing(found)) {
       found.relation = Relation::crossing;
       found.interiors_overlap = Answer::yes;
@@ -291,7 +324,7 @@ class CoarseQuery {
   const CollideRequest& request_;
   CollideResult& result_;
   WithoutContacts probe_;
-  Clock::time_point began_;
+  typename Clock::time_point began_;
 };
 
 }  // namespace lrb

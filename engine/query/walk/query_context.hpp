@@ -77,7 +77,6 @@ class QueryContext {
   std::vector<NodePair> stack;
   std::vector<Candidate> candidates;
   AffineTerms affine;  ///< of the kernel that runs, if it has any
-  std::vector<RegionId> path;
   PairOrder pair_order;
   std::unordered_set<std::uint64_t> visited[3];  ///< paper: region x region, face x region, region x face
 

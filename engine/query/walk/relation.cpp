@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <type_traits>
 
 #include "engine/core/tolerances.hpp"
 #include "engine/exact/locate.hpp"
@@ -13,29 +15,58 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-/// Walks the tree along the ray from a point (doubles, or exact::RationalPoint) in direction +x and counts
-/// the simplices that it crosses. `near` is the point rounded to doubles, for the boxes.
+/// The direction of a ray: along an axis of the world, or against it. The parity of crossings is the same in each.
+struct Direction {
+  int axis = 0;
+  bool backward = false;
+
+  /// Writes a point's coordinates as they are seen where the ray runs in direction +x. Exact: nothing but swapped
+  /// and negated.
+  void see(const double* x, int dim, double* out) const {
+    for (int k = 0; k < dim; ++k) {
+      const double value = x[(axis + k) % dim];
+      out[k] = k == 0 && backward ? -value : value;
+    }
+  }
+};
+
+/// Walks the tree along the ray from a point (doubles, or exact::RationalPoint) and counts the simplices that it
+/// crosses. `near` is the point rounded to doubles, for the boxes.
 template <class Point>
 class RayWalk {
  public:
   RayWalk(QueryBody& body, const Point& point, const Vector3d& near)
-      : body_(body), tree_(body.tree()), point_(point), p_(near) {
+      : body_(body), tree_(body.tree()), dim_(body.rep().dim()), point_(point), p_(near) {
     const Pose& pose = body.world.pose();
     margin_ = kWorldRounding * (world_size(pose, tree_) + near.cwiseAbs().maxCoeff() + kWorldUnderflow);
     turn_ = pose.r.cwiseAbs().rowwise().sum().maxCoeff();
   }
 
   Where run() {
-    if (!misses_all()) visit(0);
+    const TreeNode& root = tree_.nodes()[0];
+    const Frame f = frame_of(root);
+    const Bounds whole = bounds_of(
+        root, f, [](int) { return 0; }, [](int) { return kQuantizedMost; });
+    if (is_beside(whole) || (dim_ == 3 && is_beside_oriented(root, f))) return Where::outside;
+    if constexpr (kMayTurn) choose_direction(whole);
+    visit(0);
     return on_surface_ ? Where::on_surface : crossings_ % 2 ? Where::inside : Where::outside;
   }
 
  private:
+  /// Rays of rational points run in direction +x.
+  static constexpr bool kMayTurn = std::is_same_v<Point, const double*>;
+
   /// The axes and origin of a node in the world.
   struct Frame {
     Matrix3d axes;
     Vector3d origin;
     double grow;  ///< by how much boxes grow to cover all errors
+  };
+
+  /// A box along the world's axes.
+  struct Bounds {
+    Vector3d centre, half;
   };
 
   Frame frame_of(const TreeNode& n) const {
@@ -50,36 +81,28 @@ class RayWalk {
     return f;
   }
 
-  /// Returns true if the ray certainly misses a box whose quantized ends are `lo` and `hi`. Conservative, as
-  /// the kernel's boxes are.
+  /// Returns what holds a box whose quantized ends are `lo` and `hi`. Conservative, as the kernel's boxes are.
   template <class Lo, class Hi>
-  bool misses(const TreeNode& n, const Frame& f, const Lo& lo, const Hi& hi) const {
+  static Bounds bounds_of(const TreeNode& n, const Frame& f, const Lo& lo, const Hi& hi) {
     Vector3d centre, half;
     for (int i = 0; i < 3; ++i) {
       const double base = n.base[i], scale = n.scale[i];
       centre[i] = base + scale * 0.5 * (lo(i) + hi(i));
       half[i] = scale * 0.5 * (hi(i) - lo(i));
     }
-    const Vector3d c = f.origin + f.axes * centre;
-    const Vector3d h = f.axes.cwiseAbs() * half + Vector3d::Constant(f.grow);
-    return c.x() + h.x() < p_[0] || std::abs(c.y() - p_[1]) > h.y() ||
-           (body_.rep().dim() == 3 && std::abs(c.z() - p_[2]) > h.z());
+    return {f.origin + f.axes * centre, f.axes.cwiseAbs() * half + Vector3d::Constant(f.grow)};
   }
 
-  /// Returns true if the ray misses the whole body, as most do: the root's box, as it lies along the world's axes
-  /// or as it lies itself.
-  bool misses_all() const {
-    const TreeNode& root = tree_.nodes()[0];
-    const Frame f = frame_of(root);
-    return misses(
-               root, f, [](int) { return 0; }, [](int) { return kQuantizedMost; }) ||
-           (body_.rep().dim() == 3 && misses_oriented(root, f));
+  /// Returns true if the point is certainly not in a box.
+  bool is_beside(const Bounds& b) const {
+    bool beside = false;
+    for (int k = 0; k < dim_; ++k) beside |= std::abs(b.centre[k] - p_[k]) > b.half[k];
+    return beside;
   }
 
-  /// Returns true if a plane parts the ray from a node's whole box: one along a side of the box, or one along the
-  /// ray and an edge of it. Any direction proves what it shows, however it came about: the box may reach across it
-  /// by what its half axes and `grow` allow, and the ray from its beginning on, on that side to which it goes.
-  bool misses_oriented(const TreeNode& n, const Frame& f) const {
+  /// Returns true if the point certainly lies beyond a side of a node's whole box. A plane along a side proves that,
+  /// however its direction came about: the box may reach across it by what its half axes and `grow` allow.
+  bool is_beside_oriented(const TreeNode& n, const Frame& f) const {
     Vector3d centre = f.origin, half[3];
     for (int i = 0; i < 3; ++i) {
       const double scale = n.scale[i], middle = n.base[i] + scale * 0.5 * kQuantizedMost;
@@ -87,18 +110,41 @@ class RayWalk {
       half[i] = f.axes.col(i) * (scale * 0.5 * kQuantizedMost);
     }
     const Vector3d way = p_ - centre;
-    const auto parts = [&](const Vector3d& d) {
+    const auto is_beyond = [&](const Vector3d& d) {
       constexpr double kFarFromUnderflow = 0x1p-960;
       const double errors = f.grow * d.cwiseAbs().sum();
       if (!(errors > kFarFromUnderflow)) return false;
-      const double gap = d.dot(way), reach = std::abs(d.dot(half[0])) + std::abs(d.dot(half[1])) +
-                                             std::abs(d.dot(half[2])) + errors;
-      return (d.x() >= 0 && gap > reach) || (d.x() <= 0 && -gap > reach);
+      return std::abs(d.dot(way)) >
+             std::abs(d.dot(half[0])) + std::abs(d.dot(half[1])) + std::abs(d.dot(half[2])) + errors;
     };
     const Matrix3d axes = f.axes / tree_.unit();  // about as long as 1
     for (int i = 0; i < 3; ++i)
-      if (parts(axes.col(i).cross(axes.col((i + 1) % 3))) || parts({0, -axes(2, i), axes(1, i)})) return true;
+      if (is_beyond(axes.col(i).cross(axes.col((i + 1) % 3)))) return true;
     return false;
+  }
+
+  /// Chooses the direction in which the ray leaves the body's box soonest.
+  void choose_direction(const Bounds& whole) {
+    double least = std::numeric_limits<double>::infinity();
+    for (int axis = 0; axis < dim_; ++axis)
+      for (const bool backward : {false, true}) {
+        const double beyond = p_[axis] - whole.centre[axis];
+        const double left = whole.half[axis] + (backward ? beyond : -beyond);
+        if (!(left < least)) continue;
+        least = left;
+        direction_ = {axis, backward};
+      }
+    direction_.see(point_, dim_, seen_);
+  }
+
+  /// Returns true if the ray certainly misses a box.
+  bool misses(const Bounds& b) const {
+    bool missed = false;
+    for (int k = 0; k < dim_; ++k) {
+      const double off = b.centre[k] - p_[k];  // the box lies that far ahead
+      missed |= (k != direction_.axis ? std::abs(off) : direction_.backward ? off : -off) > b.half[k];
+    }
+    return missed;
   }
 
   void visit(std::uint32_t index) {
@@ -110,44 +156,40 @@ class RayWalk {
     }
     const Frame f = frame_of(n);
     for (std::uint32_t k = 0; k < n.count && !on_surface_; ++k)
-      if (!misses(
-              n, f, [&](int i) { return n.lo[i][k]; }, [&](int i) { return n.hi[i][k]; }))
+      if (!misses(bounds_of(
+              n, f, [&](int i) { return n.lo[i][k]; }, [&](int i) { return n.hi[i][k]; })))
         visit(n.first + k);
   }
 
   void cross(SimplexId s) {
     const double* corners[3];
     body_.world.corners(s, corners);
-    const exact::RayHit hit =
-        body_.rep().dim() == 3 ? exact::ray_crosses(point_, corners) : exact::ray_crosses_2d(point_, corners);
+    exact::RayHit hit;
+    if constexpr (kMayTurn) {
+      double seen[3][3];
+      for (int k = 0; k < dim_; ++k) {
+        direction_.see(corners[k], dim_, seen[k]);
+        corners[k] = seen[k];
+      }
+      hit = dim_ == 3 ? exact::ray_crosses(seen_, corners) : exact::ray_crosses_2d(seen_, corners);
+    } else {
+      hit = dim_ == 3 ? exact::ray_crosses(point_, corners) : exact::ray_crosses_2d(point_, corners);
+    }
     on_surface_ |= hit == exact::RayHit::on_face;
     crossings_ += hit == exact::RayHit::crosses;
   }
 
   QueryBody& body_;
   const ObbTree& tree_;
+  const int dim_;
   const Point& point_;
   Vector3d p_;
+  Direction direction_;
+  double seen_[3];  ///< the point, seen as direction_ says
   double margin_, turn_;
   int crossings_ = 0;
   bool on_surface_ = false;
 };
-
-struct Enclosed {
-  std::size_t inside = 0, components = 0;
-  bool all() const { return inside == components && components > 0; }
-  bool some() const { return inside > 0; }
-};
-
-/// Returns how many components of `inner` lie inside `outer`, given that the surfaces do not meet.
-Enclosed components_inside(QueryBody& inner, QueryBody& outer) {
-  Enclosed s;
-  for (const VertexId v : inner.component_vertices()) {
-    ++s.components;
-    s.inside += locate(outer, inner.world(v)) == Where::inside;
-  }
-  return s;
-}
 
 }  // namespace
 
@@ -161,22 +203,22 @@ Where locate(QueryBody& body, const exact::RationalPoint& point) {
   return body.tree().empty() ? Where::outside : RayWalk(body, point, point.rounded()).run();
 }
 
-void decide_relation(QueryContext& ctx, CollideResult& result) {
-  if (!result.pairs.empty()) {
-    const bool crosses =
-        std::find(result.meets.begin(), result.meets.end(), exact::Meet::cross) != result.meets.end();
-    result.relation = crosses ? Relation::crossing : Relation::touching;
-    const bool solids = ctx[Side::a].rep().closed() && ctx[Side::b].rep().closed();
-    result.interiors_overlap = crosses && solids ? Answer::yes : Answer::unknown;
-    return;
-  }
-  QueryBody &a = ctx[Side::a], &b = ctx[Side::b];
-  if (!a.rep().closed() || !b.rep().closed()) {
+bool decide_without_points(QueryContext& ctx, CollideResult& result) {
+  const bool solids = ctx[Side::a].rep().closed() && ctx[Side::b].rep().closed();
+  if (result.pairs.empty() && solids) return false;
+  if (result.pairs.empty()) {
     result.relation = Relation::undefined;
     result.interiors_overlap = Answer::unknown;
-    return;
+    return true;
   }
-  const Enclosed a_in_b = components_inside(a, b), b_in_a = components_inside(b, a);
+  const bool crosses =
+      std::find(result.meets.begin(), result.meets.end(), exact::Meet::cross) != result.meets.end();
+  result.relation = crosses ? Relation::crossing : Relation::touching;
+  result.interiors_overlap = crosses && solids ? Answer::yes : Answer::unknown;
+  return true;
+}
+
+void decide_by_enclosure(const Enclosed& a_in_b, const Enclosed& b_in_a, CollideResult& result) {
   if (a_in_b.all())
     result.relation = Relation::a_inside_b;
   else if (b_in_a.all())
@@ -188,6 +230,10 @@ void decide_relation(QueryContext& ctx, CollideResult& result) {
   else
     result.relation = Relation::separate;
   result.interiors_overlap = result.relation == Relation::separate ? Answer::no : Answer::yes;
+}
+
+void decide_relation(QueryContext& ctx, CollideResult& result) {
+  decide_relation(ctx, result, [] { return true; });
 }
 
 }  // namespace lrb

@@ -14,9 +14,40 @@ enum class Where : std::uint8_t { outside, inside, on_surface };
 Where locate(QueryBody& body, const double* point);
 Where locate(QueryBody& body, const exact::RationalPoint& point);
 
+/// How many components of a body lie inside the other one.
+struct Enclosed {
+  std::size_t inside = 0, components = 0;
+  bool all() const { return inside == components && components > 0; }
+  bool some() const { return inside > 0; }
+};
+
+/// Decides the relation where pairs were found, or where inside has no meaning. Returns false elsewhere.
+bool decide_without_points(QueryContext& ctx, CollideResult& result);
+/// Decides the relation of closed bodies whose surfaces do not meet.
+void decide_by_enclosure(const Enclosed& a_in_b, const Enclosed& b_in_a, CollideResult& result);
+
 /// Sets result.relation from result.pairs or, if there are none, from the position of one vertex of each
 /// component. A body of which only some components are enclosed by the other still counts as inside, because
-/// the bodies are then not separate.
+/// the bodies are then not separate. Returns false, without a relation, if `in_time()`, which is asked before
+/// each point is located, does.
+template <class InTime>
+bool decide_relation(QueryContext& ctx, CollideResult& result, InTime&& in_time) {
+  if (decide_without_points(ctx, result)) return true;
+  Enclosed in_other[2];
+  for (const Side side : {Side::a, Side::b}) {
+    QueryBody &inner = ctx[side], &outer = ctx[other(side)];
+    Enclosed& count = in_other[static_cast<int>(side)];
+    for (const VertexId v : inner.component_vertices()) {
+      if (!in_time()) return false;
+      ++count.components;
+      count.inside += locate(outer, inner.world(v)) == Where::inside;
+    }
+  }
+  decide_by_enclosure(in_other[0], in_other[1], result);
+  return true;
+}
+
+/// Does the same, however long it takes.
 void decide_relation(QueryContext& ctx, CollideResult& result);
 
 }  // namespace lrb

@@ -6,7 +6,8 @@ namespace {
 
 void give_buffers(QueryContext& ctx, std::size_t capacity, TreeKernel& k) {
   const ObbTree &a = ctx[Side::a].tree(), &b = ctx[Side::b].tree();
-  ctx.stack.resize(64 * (a.height() + b.height()) + 64);
+  const std::size_t deepest = 64 * (a.height() + b.height()) + 64;
+  if (ctx.stack.size() < deepest) ctx.stack.resize(deepest);
   if (ctx.candidates.size() < capacity) ctx.candidates.resize(capacity);
   k.stack = ctx.stack.data();
   k.stack[0] = {0, 0};

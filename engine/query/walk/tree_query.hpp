@@ -13,6 +13,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <span>
 
 #include "engine/exact/exact_sign.hpp"
 #include "engine/exact/predicates.hpp"
@@ -29,17 +30,12 @@ inline TreeKernel set_up_kernel(const LrbRep& a, const Pose& pose_a, const LrbRe
 template <class Probe>
 [[gnu::noinline]] void open_regions_from(QueryContext& ctx, Side side, CellId innermost,
                                          CollideResult& result, Probe& probe) {
-  QueryBody& body = ctx[side];
-  const LrbRep& rep = body.rep();
-  ctx.path.clear();  // a query that ended with an exception may have left some
-  for (CellId c = innermost; is_region(c) && body.wrapper->included(c); c = rep.parent(c.as_region()))
-    ctx.path.push_back(c.as_region());
-  for (; !ctx.path.empty(); ctx.path.pop_back()) {
-    body.wrapper->refine(ctx.path.back());
-    ++result.counters.refinements;
-    if constexpr (Probe::kEnabled)
-      probe.refine(side, ctx.path.back(), static_cast<std::uint32_t>(rep.floor(ctx.path.back()).size()));
-  }
+  Wrapper& wrapper = *ctx[side].wrapper;
+  const std::size_t before = wrapper.excluded().size();
+  result.counters.refinements += wrapper.refine_path(innermost);
+  if constexpr (Probe::kEnabled)
+    for (const RegionId r : std::span(wrapper.excluded()).subspan(before))
+      probe.refine(side, r, static_cast<std::uint32_t>(wrapper.rep().floor(r).size()));
 }
 
 /// Returns a kernel at the roots of what is queried of both bodies, at their poses. It uses the context's
@@ -92,7 +88,7 @@ class TreeQuery {
       k.out_size = 0;
       if constexpr (Rules::kLimited) k.most_node_pairs = rules_.most_node_pairs(k.node_pairs);
       run_tree_kernel(k);
-      if constexpr (Rules::kLimited) done = rules_.time_is_up();
+      if constexpr (Rules::kLimited) done = rules_.time_is_up(result_.pairs.size());
       for (std::uint32_t i = 0; i < k.out_size && !done; ++i) done = test(k.out[i]);
       if (result_.pairs.size() > pair_limit_) refuse_pairs(pair_limit_);
     }
@@ -107,7 +103,9 @@ class TreeQuery {
   /// that the relation is exact in that mode too.
   bool test(const Candidate& c) {
     if constexpr (Rules::kLimited)
-      if (rules_.no_test_left(result_.counters.face_tests)) return true;
+      if (rules_.no_test_left(result_.counters.face_tests, c.certainty != Certainty::none,
+                              result_.pairs.size()))
+        return true;
     const FaceId fa = ctx_[Side::a].rep().face_of_simplex(c.a), fb = ctx_[Side::b].rep().face_of_simplex(c.b);
     const std::uint32_t depth_a = show_face(ctx_, Side::a, fa, result_, probe_);
     const std::uint32_t depth_b = show_face(ctx_, Side::b, fb, result_, probe_);
@@ -147,20 +145,19 @@ class TreeQuery {
     return test_simplices(ctx_, c.a, c.b);
   }
 
-  /// Returns true if the candidate's corners are corners of the other simplex too. Without branches, because
-  /// which corners are shared cannot be predicted.
+  /// Returns true if the candidate's corners are corners of the other simplex too. Compares each with all three
+  /// without branches, because which one it is cannot be predicted.
   bool shares_corners(const Candidate& c) {
-    const double *of_a[3], *of_b[3];
-    ctx_[Side::a].world.corners(c.a, of_a);
-    ctx_[Side::b].world.corners(c.b, of_b);
-    unsigned shared[2] = {0, 0};
-    for (int i = 0; i < 3; ++i)
-      for (int j = 0; j < 3; ++j) {
-        const unsigned same = has_bits_of(of_a[i], of_b[j]);
-        shared[0] |= same << i;
-        shared[1] |= same << j;
-      }
-    return (c.corners & ~shared[static_cast<int>(c.side)]) == 0;
+    const double *own[3], *others[3];
+    ctx_[Side::a].world.corners(c.a, c.side == Side::a ? own : others);
+    ctx_[Side::b].world.corners(c.b, c.side == Side::a ? others : own);
+    bool shared = true;
+    for (unsigned left = c.corners; left != 0; left &= left - 1) {
+      const double* const corner = own[std::countr_zero(left)];
+      shared &=
+          has_bits_of(corner, others[0]) | has_bits_of(corner, others[1]) | has_bits_of(corner, others[2]);
+    }
+    return shared;
   }
 
   /// Returns true if two points are equal bit by bit. Points that only differ in the sign of a zero are left
