@@ -1,10 +1,10 @@
 // Coarse queries beside exact ones of the same bodies and poses, in one run, on one core.
 //
-//   coarse_bench [speed|bound|time]... [--poses N] [--repeats N] [BODY...]
+//   coarse_bench [speed|bound|time]... [--poses N] [--repeats N] [--draw FILE] [BODY...]
 //
 // speed: how long answers to a tolerance take, against exact ones; what the first coarse query costs, and the second.
 // bound: the error bound against the distance that pairs really are off the bodies.
-// time:  what is known after which time, and by how much limits in time are missed; a table to draw.
+// time:  what is known after which time, and by how much limits in time are missed; drawn with --draw by gnuplot.
 //
 // BODY: a mesh or an .lrb file, which meets a copy of itself; without any those of ../shared/meshes, and a rock of a
 // million faces made here. Tolerances are shares of the largest side of its box. Times are the least of some runs
@@ -21,6 +21,8 @@
 #include "engine/lrb/lrb_file.hpp"
 #include "engine/mesh/io/mesh_io.hpp"
 #include "scenarios/bodies/shapes/shapes.hpp"
+#include "scenarios/io/number_text.hpp"
+#include "scenarios/report/charts/gnuplot.hpp"
 #include "tests/bench/approaches.hpp"
 #include "tests/bench/timing.hpp"
 #include "tests/support/coarse_checks.hpp"
@@ -45,6 +47,13 @@ struct Options {
   std::set<std::string> parts;
   std::vector<std::string> bodies;
   int poses = 30, repeats = 7;
+  std::string drawing;  ///< file for the curves of error bound against time
+};
+
+/// How the error bound of one body falls: rows of limit (us) and bound (share of the size).
+struct Curve {
+  std::string name;
+  std::vector<std::string> rows;
 };
 
 struct Body {
@@ -147,13 +156,14 @@ void bound(const Body& body, const std::vector<Approach>& list, const Options&) 
   }
 }
 
-void time(const Body& body, const std::vector<Approach>& list, const Options& options) {
+Curve time(const Body& body, const std::vector<Approach>& list, const Options& options) {
   QueryContext context;
+  Curve curve{body.name, {}};
   std::printf(
       "# %s: limit us; took us, median and 95 %%; relation known and finished, shares; error bound, share of "
       "the size, median\n",
       body.name.c_str());
-  for (double limit = 1; limit <= 4096; limit *= 2) {
+  for (double limit = 1; limit <= 4096; limit *= std::sqrt(2.0)) {
     std::vector<double> took, bounds;
     double known = 0, finished = 0;
     CollideRequest request;
@@ -169,10 +179,34 @@ void time(const Body& body, const std::vector<Approach>& list, const Options& op
       }
     std::sort(took.begin(), took.end());
     const auto count = static_cast<double>(took.size());
+    const double bound = median(bounds);
     std::printf("%6.0f %8.1f %8.1f %6.2f %6.2f %10.5f\n", limit, median(took),
-                took[static_cast<std::size_t>(0.95 * count)], known / count, finished / count,
-                median(bounds));
+                took[static_cast<std::size_t>(0.95 * count)], known / count, finished / count, bound);
+    if (std::isfinite(bound)) curve.rows.push_back(io::number_text(limit) + " " + io::number_text(bound));
   }
+  return curve;
+}
+
+void draw(const std::vector<Curve>& curves, const std::string& path) {
+  report::Gnuplot chart;
+  std::string plots;
+  for (std::size_t i = 0; i < curves.size(); ++i) {
+    const std::string id = "body" + std::to_string(i);
+    chart.add_data(id, curves[i].rows);
+    plots += (i == 0 ? "plot $" : ", $") + id +
+             " using 1:($2 > 0 ? $2 : 0.0005) with linespoints lw 1.5 pt 7 ps 0.4 title " +
+             report::gnuplot_text(curves[i].name);
+  }
+  chart.script += R"(set logscale xy
+set yrange [0.0004:1]
+set ytics add ('exact' 0.0005)
+set xlabel 'limit in time, microseconds'
+set ylabel 'error bound, share of the size (median over poses)'
+set grid x y lc rgb '#dddddd'
+set border 3
+set tics nomirror out
+)" + plots + "\n";
+  report::draw(chart, path);
 }
 
 LrbRep load(const std::string& path) {
@@ -183,7 +217,7 @@ std::string name_of(const std::string& path) {
   return std::filesystem::path(path).filename().string();
 }
 
-void run(Body body, const Options& options) {
+void run(Body body, const Options& options, std::vector<Curve>& curves) {
   const auto start = std::chrono::steady_clock::now();
   body.rep.levels();
   std::printf("%s: %u faces, levels made in %.3f s\n", body.name.c_str(), body.rep.real_face_count(),
@@ -192,7 +226,7 @@ void run(Body body, const Options& options) {
   const auto wanted = [&](const char* part) { return options.parts.empty() || options.parts.contains(part); };
   if (wanted("speed")) speed(body, list, options);
   if (wanted("bound")) bound(body, list, options);
-  if (wanted("time")) time(body, list, options);
+  if (wanted("time")) curves.push_back(time(body, list, options));
 }
 
 Options options_of(int argc, char** argv) {
@@ -205,6 +239,8 @@ Options options_of(int argc, char** argv) {
       o.poses = std::atoi(argv[++i]);
     else if (word == "--repeats" && i + 1 < argc)
       o.repeats = std::atoi(argv[++i]);
+    else if (word == "--draw" && i + 1 < argc)
+      o.drawing = argv[++i];
     else
       o.bodies.push_back(word);
   }
@@ -216,12 +252,14 @@ Options options_of(int argc, char** argv) {
 int main(int argc, char** argv) {
   Options options = options_of(argc, argv);
   if (options.poses < 1 || options.repeats < 1) {
-    std::fprintf(stderr, "usage: coarse_bench [speed|bound|time]... [--poses N] [--repeats N] [BODY...]\n");
+    std::fprintf(stderr, "usage: coarse_bench [speed|bound|time]... [--poses N] [--repeats N] [--draw FILE] [BODY...]\n");
     return 2;
   }
   const bool chosen = !options.bodies.empty();
   if (!chosen && !test::shared_meshes().empty())
     for (const char* model : kModels) options.bodies.push_back((test::shared_meshes() / model).string());
-  for (const std::string& path : options.bodies) run(Body(name_of(path), load(path)), options);
-  if (!chosen) run(Body("rock", build_lrb(shapes::bumpy_sphere(8, 1, 0.3))), options);
+  std::vector<Curve> curves;
+  for (const std::string& path : options.bodies) run(Body(name_of(path), load(path)), options, curves);
+  if (!chosen) run(Body("rock", build_lrb(shapes::bumpy_sphere(8, 1, 0.3))), options, curves);
+  if (!options.drawing.empty() && !curves.empty()) draw(curves, options.drawing);
 }

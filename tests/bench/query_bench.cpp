@@ -15,7 +15,7 @@
 #include "tests/bench/timing.hpp"
 
 #ifdef LRB_WITH_FCL
-#include <fcl/fcl.h>
+#include "scenarios/methods/peers/fcl_instantiated.hpp"
 #endif
 
 using namespace lrb;

@@ -69,7 +69,7 @@ struct CollideRequest {
   /// answer so far is given: nothing, the relation with one pair, or that of a level, coarser ones first.
   std::uint64_t max_tests = 0;
   double max_time = 0;
-  /// For separate bodies: finds CollideResult::separation. Takes longer than the query.
+  /// For separate bodies: finds CollideResult::separation. Takes longer than the query, and no limit ends it.
   bool separation = false;
   /// The largest number of pairs that are kept: a query that finds more ends with an InputError. (Two bodies
   /// of n faces have up to n * n.) 0: kMostPairs, or kMostPairsWithContacts. The paper's recursions count a
