@@ -17,6 +17,20 @@ constexpr double kPictureShare = 0.5;  ///< of the frame's height, at least
 constexpr const char* kNarrowSpace = "\u202f";
 constexpr const char* kRoom = "0\u202f000";
 
+/// Returns 1, 2 and 5 times powers of ten between two positive values, which may be among them; on a long
+/// scale the powers alone.
+std::vector<double> log_ticks(double low, double high) {
+  constexpr double kRounding = 1e-9, kLong = 1e3;
+  std::vector<double> out;
+  for (int power = static_cast<int>(std::floor(std::log10(low))); std::pow(10, power) <= high; ++power)
+    for (const int digit : {1, 2, 5}) {
+      if (digit > 1 && high > kLong * low) continue;
+      const double value = digit * std::pow(10, power);
+      if (value >= low * (1 - kRounding) && value <= high * (1 + kRounding)) out.push_back(value);
+    }
+  return out;
+}
+
 /// Places things one after the other from the left, in as many rows as they need.
 class Flow {
  public:
@@ -109,7 +123,7 @@ class Layouter {
     for (const OverlayCounter& c : o_.counters) place_counter(flow, c);
     flow.new_row();
     for (const LegendItem& item : o_.key) place_key(flow, item);
-    const int bottom = std::max(flow.bottom(), o_.scale ? y + scale_rows() * row_ : y);
+    const int bottom = std::max(flow.bottom(), o_.scale ? y + (o_.scale->log ? 3 : 2) * row_ : y);
     if (measuring) out_.texts.resize(texts);
     return bottom - y;
   }
@@ -134,10 +148,30 @@ class Layouter {
     return line ? 2 * mark_ : mark_;
   }
 
-  static int scale_rows() { return 2; }
+  int place_scale(int y) { return o_.scale->log ? place_log_scale(y) : place_linear_scale(y); }
+
+  /// Lays out the scale at the right: the quantity above, then the bar, then values below it. Returns its
+  /// width.
+  int place_log_scale(int y) {
+    const std::vector<double> values = log_ticks(o_.scale->low, o_.scale->high);
+    int widest = 0;
+    for (const double v : values) widest = std::max(widest, text_width(short_number(v)));
+    const int count = static_cast<int>(values.size());
+    const int bar = std::max({8 * mark_, text_width(o_.scale->text), (count + 1) * (widest + margin_ / 2)});
+    const int total = bar + widest, left = width_ - margin_ - total;
+    add_text({0, y, width_, row_}, left + (total - text_width(o_.scale->text)) / 2, o_.scale->text);
+    out_.bar = {left + widest / 2, y + row_ + (row_ - mark_) / 2, bar, mark_};
+    out_.ticks.clear();
+    for (const double v : values) {
+      const int x = out_.bar.x + static_cast<int>(std::lround(place_on(*o_.scale, v) * (bar - 1)));
+      out_.ticks.push_back(x);
+      add_text({0, y + 2 * row_, width_, row_}, x - text_width(short_number(v)) / 2, short_number(v));
+    }
+    return total;
+  }
 
   /// Lays out the scale at the right: the quantity above; low end, bar and high end below. Returns its width.
-  int place_scale(int y) {
+  int place_linear_scale(int y) {
     const std::string low = short_number(o_.scale->low), high = short_number(o_.scale->high);
     const int low_width = text_width(low), high_width = text_width(high), gap = margin_ / 2;
     const int bar = std::max(8 * mark_, text_width(o_.scale->text) - low_width - high_width - 2 * gap);
@@ -217,6 +251,12 @@ void draw_mark(Image& image, const PixelRect& r, const LegendItem& item, int thi
 
 }  // namespace
 
+double place_on(const ScaleBar& scale, double value) {
+  const double t = scale.log ? std::log(value / scale.low) / std::log(scale.high / scale.low)
+                             : (value - scale.low) / (scale.high - scale.low);
+  return t > 0 ? std::min(t, 1.0) : 0;
+}
+
 OverlayLayout lay_out(const Overlay& overlay, int width, int height, float scale) {
   if (overlay.empty()) {
     OverlayLayout layout;
@@ -260,6 +300,10 @@ void draw_overlay(Image& image, const Overlay& overlay, const OverlayLayout& lay
     const double t = layout.bar.width > 1 ? static_cast<double>(x) / (layout.bar.width - 1) : 0;
     image.fill({layout.bar.x + x, layout.bar.y, 1, layout.bar.height}, palette::viridis(t));
   }
+  const PixelRect& bar = layout.bar;
+  for (const int x : layout.ticks)
+    image.fill({x - hairline(layout.scale) / 2, bar.bottom(), hairline(layout.scale), bar.height / 3},
+               palette::kInk);
   for (const OverlayLayout::Text& t : layout.texts) {
     TextStyle style;
     style.height = layout.text_height;

@@ -22,7 +22,12 @@ struct LegendItem {
 struct ScaleBar {
   std::string text;          ///< quantity and unit
   double low = 0, high = 1;  ///< values at both ends
+  bool log = false;          ///< logarithmic, with ticks at 1, 2 and 5 times powers of ten; low > 0
 };
+
+/// Returns the place of a value on a scale, from 0 at the low end to 1 at the high one; beyond them, the
+/// ends.
+double place_on(const ScaleBar& scale, double value);
 
 struct OverlayCounter {
   std::string name, value;
@@ -52,6 +57,7 @@ struct OverlayLayout {
   PixelRect event_mark;              ///< empty: none
   std::vector<PixelRect> key_marks;  ///< one per key item
   PixelRect bar;                     ///< the scale's colour bar itself; empty: none
+  std::vector<int> ticks;            ///< x of the marks below the bar
 };
 
 /// Lays out for a frame of the given size. Text shrinks, as far as it stays legible, until at least half of

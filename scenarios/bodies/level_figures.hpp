@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "engine/lrb/lrb_rep.hpp"
+#include "engine/lrb/wrapper.hpp"
 
 namespace lrb::bodies {
 
@@ -19,8 +20,15 @@ struct LevelFigures {
 /// Tolerances to look at, as shares of the largest side of the body's box.
 inline constexpr double kLevelShares[] = {0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1};
 
-/// Returns the wrappers at a row of tolerances, on `threads` threads. A region is in a wrapper with all that it
-/// hides or not at all. Of a body that is not closed or intersects itself every wrapper is the body itself.
+/// Returns the largest side of the box round the real faces; mesh's unit.
+double largest_side(const LrbRep& rep);
+
+/// Returns the wrapper at a tolerance (mesh's unit); it refers to `rep`.
+Wrapper wrapper_at(const LrbRep& rep, double tolerance, unsigned threads);
+
+/// Returns the wrappers at a row of tolerances, on `threads` threads. A region is in a wrapper with all that
+/// it hides or not at all. Of a body that is not closed or intersects itself every wrapper is the body
+/// itself.
 std::vector<LevelFigures> level_figures(const LrbRep& rep, std::span<const double> shares, unsigned threads);
 
 }  // namespace lrb::bodies

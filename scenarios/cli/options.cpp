@@ -37,20 +37,6 @@ void add_count(CLI::App& app, const std::string& name, std::uint64_t& count, con
       ->type_name("N");
 }
 
-/// Makes an axis (0, 1, 2) the upward one, and turns the view with it.
-void turn_up(spec::FrameSpec& spec, int axis) {
-  if (spec.views.empty()) spec.views.emplace_back();
-  const auto turned = [axis](const Eigen::Vector3d& v) {
-    Eigen::Vector3d out;
-    for (int i = 0; i < 3; ++i) out[(i + axis + 1) % 3] = v[i];
-    return out;
-  };
-  for (spec::FrameSpec::View& view : spec.views) {
-    view.from = turned(view.from);
-    view.up = turned(view.up);
-  }
-}
-
 }  // namespace
 
 void add_recursion_option(CLI::App& app, std::optional<Recursion>& recursion) {
@@ -123,9 +109,7 @@ void add_picture_options(CLI::App& app, PictureOptions& options) {
   app.add_option("--most", options.most, "Largest number of frames, evenly chosen")
       ->check(CLI::Range(1, 10000))
       ->type_name("N");
-  app.add_option("--up", options.up, "Axis that points up in the pictures [z]")
-      ->check(CLI::IsMember({"x", "y", "z"}).description(""))
-      ->type_name("x|y|z");
+  add_up_option(app, options.up);
   add_choice<spec::FrameSpec::ColourBy>(app, "--colour-by", options.colour_by, "What the colours mean");
 }
 
@@ -152,7 +136,28 @@ void apply(const PictureOptions& options, spec::FrameSpec& spec) {
   if (options.every) spec.every = *options.every;
   if (options.most) spec.most = *options.most;
   if (options.colour_by) spec.colour_by = *options.colour_by;
-  if (!options.up.empty()) turn_up(spec, options.up[0] - 'x');
+  if (options.up.empty()) return;
+  if (spec.views.empty()) spec.views.emplace_back();
+  for (spec::FrameSpec::View& view : spec.views) {
+    const render::ViewDirection turned = turned_up({view.from, view.up}, options.up[0] - 'x');
+    view.from = turned.from;
+    view.up = turned.up;
+  }
+}
+
+void add_up_option(CLI::App& app, std::string& up) {
+  app.add_option("--up", up, "Axis that points up in the pictures [z]")
+      ->check(CLI::IsMember({"x", "y", "z"}).description(""))
+      ->type_name("x|y|z");
+}
+
+render::ViewDirection turned_up(const render::ViewDirection& view, int axis) {
+  const auto turned = [axis](const Eigen::Vector3d& v) {
+    Eigen::Vector3d out;
+    for (int i = 0; i < 3; ++i) out[(i + axis + 1) % 3] = v[i];
+    return out;
+  };
+  return {turned(view.from), turned(view.up)};
 }
 
 std::uint32_t all_cores() {

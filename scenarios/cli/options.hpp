@@ -7,6 +7,7 @@
 
 #include "engine/construct/build.hpp"
 #include "engine/query/collide.hpp"
+#include "render/camera.hpp"
 #include "scenarios/cli/command.hpp"
 #include "scenarios/run/run_scenario.hpp"
 #include "scenarios/spec/scenario.hpp"
@@ -47,6 +48,11 @@ struct PictureOptions {
 };
 void add_picture_options(CLI::App& app, PictureOptions& options);
 void apply(const PictureOptions& options, spec::FrameSpec& spec);
+
+/// Adds --up, which takes x, y or z.
+void add_up_option(CLI::App& app, std::string& up);
+/// Returns a view in which an axis (0, 1, 2) points up in place of z.
+render::ViewDirection turned_up(const render::ViewDirection& view, int axis);
 
 /// Returns two views side by side: the whole scene with the wrappers, and the contact with the bodies alone.
 std::vector<spec::FrameSpec::View> whole_and_contact();

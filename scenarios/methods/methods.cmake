@@ -61,3 +61,13 @@ foreach(program IN LISTS LRB_WORKER_PROGRAMS)
   target_link_libraries(${program} PRIVATE lrb_worker_programs)
   lrb_register_methods(${program} ${names})
 endforeach()
+
+# What makes the simplification that `levels` compares wrappers with, where CGAL is installed.
+if(CGAL_FOUND)
+  find_package(Eigen3 3.3 REQUIRED NO_MODULE)
+  add_executable(lrbscope-simplify worker_programs/simplify.cpp)
+  target_link_libraries(lrbscope-simplify PRIVATE CGAL::CGAL Eigen3::Eigen)
+  target_compile_definitions(lrbscope-simplify PRIVATE NDEBUG)
+  target_compile_features(lrbscope-simplify PRIVATE cxx_std_20)
+  target_compile_options(lrbscope-simplify PRIVATE -w)
+endif()

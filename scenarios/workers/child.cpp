@@ -97,8 +97,9 @@ int Child::wait() {
   return WIFSIGNALED(status) ? -WTERMSIG(status) : WEXITSTATUS(status);
 }
 
-std::vector<std::string> lines_of(const std::vector<std::string>& command, std::chrono::seconds limit) {
-  Child child(command, -1);
+std::vector<std::string> lines_of(const std::vector<std::string>& command, std::chrono::seconds limit,
+                                  int given) {
+  Child child(command, given);
   std::vector<std::string> lines;
   const auto end = std::chrono::steady_clock::now() + limit;
   while (true) {

@@ -38,7 +38,9 @@ class Child {
   std::string unfinished_;
 };
 
-/// Returns all lines of a child that should end soon; empty if it did not end with code 0 in time.
-std::vector<std::string> lines_of(const std::vector<std::string>& command, std::chrono::seconds limit);
+/// Returns all lines of a child that should end soon; empty if it did not end with code 0 in time. `given` as
+/// for Child.
+std::vector<std::string> lines_of(const std::vector<std::string>& command, std::chrono::seconds limit,
+                                  int given = -1);
 
 }  // namespace lrb::workers

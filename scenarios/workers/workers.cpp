@@ -78,4 +78,9 @@ std::vector<WorkerMethod> find_all_methods() {
   return methods;
 }
 
+std::string program_beside(const std::string& name) {
+  const std::string path = (folder_of_workers() / name).string();
+  return access(path.c_str(), X_OK) == 0 ? path : "";
+}
+
 }  // namespace lrb::workers

@@ -27,4 +27,7 @@ std::vector<WorkerMethod> find_all_methods();
 /// Returns those that take part in the stability experiment.
 std::vector<WorkerMethod> find_methods();
 
+/// Returns the path of another program in that folder; empty if it is not there.
+std::string program_beside(const std::string& name);
+
 }  // namespace lrb::workers

@@ -1,3 +1,6 @@
+#include <algorithm>
+#include <cmath>
+
 #include <doctest/doctest.h>
 
 #include "engine/core/error.hpp"
@@ -58,6 +61,37 @@ TEST_CASE("in frames of the usual sizes nothing overlaps or is cut off") {
     }
   }
   CHECK_THROWS_AS(render::lay_out(overlay, 100, 60), InputError);
+}
+
+TEST_CASE("a logarithmic scale has its values below it, each at its place") {
+  if (!test::have_font()) return;
+  render::Overlay overlay = full_overlay();
+  overlay.scale = render::ScaleBar{"distance / largest side", 0.0005, 0.1, true};
+  const render::ScaleBar& scale = *overlay.scale;
+  CHECK(render::place_on(scale, 0.0005) == 0);
+  CHECK(render::place_on(scale, 0.1) == 1);
+  CHECK(render::place_on(scale, 0) == 0);
+  CHECK(render::place_on(scale, 7) == 1);
+  CHECK(render::place_on(scale, std::sqrt(0.0005 * 0.1)) == doctest::Approx(0.5));
+  CHECK(render::place_on({"linear", 2, 4}, 3) == 0.5);
+  const render::OverlayLayout layout = render::lay_out(overlay, 1280, 720);
+  const auto all = boxes(layout);
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    CHECK(render::PixelRect{0, 0, 1280, 720}.contains(all[i]));
+    for (std::size_t j = 0; j < i; ++j) CHECK(!all[i].overlaps(all[j]));
+  }
+  const std::vector<std::string> values = {"0.0005", "0.001", "0.002", "0.005",
+                                           "0.01",   "0.02",  "0.05",  "0.1"};
+  REQUIRE(layout.ticks.size() == values.size());
+  REQUIRE(layout.texts.size() > values.size());
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const double at = layout.bar.x + render::place_on(scale, std::stod(values[i])) * (layout.bar.width - 1);
+    CHECK(std::abs(layout.ticks[i] - at) <= 0.5);
+    const auto text = std::find_if(layout.texts.begin(), layout.texts.end(),
+                                   [&](const auto& t) { return t.text == values[i]; });
+    REQUIRE(text != layout.texts.end());
+    CHECK(std::abs(text->box.x + text->box.width / 2 - layout.ticks[i]) <= 1);
+  }
 }
 
 TEST_CASE("more pixels an inch change nothing but the number of pixels") {

@@ -151,18 +151,18 @@ class TreeQuery {
     const double *own[3], *others[3];
     ctx_[Side::a].world.corners(c.a, c.side == Side::a ? own : others);
     ctx_[Side::b].world.corners(c.b, c.side == Side::a ? others : own);
-    bool shared = true;
+    unsigned shared = 1;
     for (unsigned left = c.corners; left != 0; left &= left - 1) {
       const double* const corner = own[std::countr_zero(left)];
       shared &=
           has_bits_of(corner, others[0]) | has_bits_of(corner, others[1]) | has_bits_of(corner, others[2]);
     }
-    return shared;
+    return shared != 0;
   }
 
-  /// Returns true if two points are equal bit by bit. Points that only differ in the sign of a zero are left
+  /// Returns 1 if two points are equal bit by bit, else 0. Points that only differ in the sign of a zero are left
   /// to the exact test.
-  static bool has_bits_of(const double* x, const double* y) {
+  static unsigned has_bits_of(const double* x, const double* y) {
     std::uint64_t difference = 0;
     for (int i = 0; i < 3; ++i)
       difference |= std::bit_cast<std::uint64_t>(x[i]) ^ std::bit_cast<std::uint64_t>(y[i]);

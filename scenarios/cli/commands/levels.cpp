@@ -9,12 +9,13 @@
 #include "scenarios/bodies/level_json.hpp"
 #include "scenarios/cli/command.hpp"
 #include "scenarios/cli/options.hpp"
+#include "scenarios/levels/level_report.hpp"
 
 namespace lrb::cli {
 namespace {
 
 struct LevelsOptions {
-  std::string body;
+  std::string body, folder, up;
   std::vector<double> shares;
   BuildOptions build;
   bool json = false;
@@ -35,16 +36,22 @@ std::string as_table(const std::vector<bodies::LevelFigures>& levels, const LrbR
 
 int run_levels(const LevelsOptions& o, const Globals& globals) {
   const bodies::LoadedBody body = bodies::load_body(o.body, o.build);
+  levels::LevelReportOptions report{o.shares, {}, o.build.threads, globals.command_line};
+  if (!o.up.empty()) report.view = turned_up(report.view, o.up[0] - 'x');
+  if (!o.folder.empty()) levels::check_drawable(body.rep, report.shares);
   note(globals, body.notes);
+  if (!o.folder.empty()) note(globals, levels::write_level_report(body.rep, report, o.folder));
+  const std::string page = o.folder.empty() ? "" : o.folder + "/index.html";
   const auto levels = bodies::level_figures(body.rep, o.shares, o.build.threads);
   if (o.json) {
     nlohmann::ordered_json j;
     j["name"] = body.rep.name();
     j["real_faces"] = body.rep.real_face_count();
     j["levels"] = bodies::level_json(levels);
+    if (!page.empty()) j["page"] = page;
     print(one_line(j));
   } else {
-    print(as_table(levels, body.rep));
+    print(as_table(levels, body.rep) + (page.empty() ? "" : page + "\n"));
   }
   return kOk;
 }
@@ -59,6 +66,11 @@ Command add_levels(CLI::App& root, const Globals& globals) {
       ->check(CLI::Range(0.0, 1.0).description(""))
       ->type_name("SHARE...")
       ->capture_default_str();
+  app->add_option(
+         "-o,--output", o->folder,
+         "Draw the wrappers, how far they are off and how many faces that takes: pictures and a page")
+      ->type_name("FOLDER");
+  add_up_option(*app, o->up);
   o->build.threads = 0;
   add_build_options(*app, o->build);
   app->add_flag("--json", o->json, "As one JSON object");
