@@ -12,8 +12,10 @@ namespace lrb::construct {
 using Eigen::Vector3d;
 
 void CapGauge::load(const HullMesh& hull, const Patch& patch, const CapSurface& cap, double most) {
-  floor_.load(hull, patch);
+  floor_.load(hull, patch, most);
   most_ = most;
+  under_.resize(cap.faces().size());
+  for (std::size_t f = 0; f < under_.size(); ++f) under_[f] = static_cast<int>(f);
   cover_.assign(cap.first_new(), -1);
   face_mark_.assign(cap.faces().size(), 0);
   marker_ = 0;
@@ -67,10 +69,15 @@ std::size_t CapGauge::sector(const Flat& q, const Flat& centre) const {
   return best;
 }
 
-bool CapGauge::may_stand(const CapSurface& cap, const CapSurface::Star& star, const Vector3d& w) {
-  if (!cap.is_ring(star.v) && !floor_.is_within(w, most_)) return false;
+bool CapGauge::prepare(const CapSurface& cap, const CapSurface::Star& star) {
   find_covered(cap, star);
-  if (!flatten(cap, star)) return false;
+  return flatten(cap, star);
+}
+
+bool CapGauge::may_stand(const CapSurface& cap, const CapSurface::Star& star, const Vector3d& w) {
+  int under = under_[star.faces[0]];
+  if (!cap.is_ring(star.v) && !floor_.is_within(w, under)) return false;
+  if (!prepare(cap, star)) return false;
   const Flat centre = flat(w);
   for (std::size_t i = 0; i < covered_.size(); ++i) {
     const auto& r = star.rim[sector(flat_covered_[i], centre)];
@@ -79,20 +86,21 @@ bool CapGauge::may_stand(const CapSurface& cap, const CapSurface::Star& star, co
     const double square = normal.squaredNorm(), height = normal.dot(w - p);  // times the normal's length
     const double left = most_ - cap.off(covered_[i]);
     if (!(square > 0) || height <= 0 || (left > 0 && height * height <= left * left * square)) continue;
-    if (!floor_.is_within(p + normal * (height / square), most_)) return false;
+    if (!floor_.is_within(p + normal * (height / square), under)) return false;
   }
   return true;
 }
 
-bool CapGauge::is_near(const CapSurface& cap, const CapSurface::Star& star, const Vector3d& w) const {
+bool CapGauge::is_near(const CapSurface& cap, const CapSurface::Star& star, const Vector3d& w) {
   const bool open = cap.is_ring(star.v);
   for (std::size_t k = 0; k < star.rim.size(); ++k) {
     const Vector3d &a = cap.x(star.rim[k].a), &b = cap.x(star.rim[k].b);
-    if (!floor_.is_within((a + b + w) / 3, most_) || !floor_.is_within(0.25 * (a + b) + 0.5 * w, most_))
+    int& under = under_[star.rim[k].face];
+    if (!floor_.is_within((a + b + w) / 3, under) || !floor_.is_within(0.25 * (a + b) + 0.5 * w, under))
       return false;
     if (open && k == 0) continue;  // this spoke is an edge already
     for (const double share : {0.5, 0.25, 0.75})
-      if (!floor_.is_within(a + share * (w - a), most_)) return false;
+      if (!floor_.is_within(a + share * (w - a), under)) return false;
   }
   return true;
 }

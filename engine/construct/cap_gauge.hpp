@@ -23,8 +23,10 @@ class CapGauge {
   /// that it covers.
   bool may_stand(const CapSurface& cap, const CapSurface::Star& star, const Eigen::Vector3d& w);
   /// Returns true if it is at points in between, too.
-  bool is_near(const CapSurface& cap, const CapSurface::Star& star, const Eigen::Vector3d& w) const;
-  /// Notes that vertex w now stands over the star that may_stand() was asked about last.
+  bool is_near(const CapSurface& cap, const CapSurface::Star& star, const Eigen::Vector3d& w);
+  /// Prepares for settle(), before the star is replaced.
+  bool prepare(const CapSurface& cap, const CapSurface::Star& star);
+  /// Notes that vertex w now stands over the star that was prepared last.
   void settle(CapSurface& cap, const CapSurface::Star& star, int w);
 
   /// Measures all new triangles anew: for caps that were changed by something else than collapses. Returns false
@@ -45,6 +47,7 @@ class CapGauge {
 
   PatchFloor floor_;
   double most_ = 0;
+  std::vector<int> under_;  ///< (faces) a triangle of the floor near to which a point of it was found to be
   std::vector<int> cover_;  ///< (old vertices) the cap's face over one; -1: it is in the cap itself
   std::vector<std::uint32_t> face_mark_;  ///< (faces) == marker_: in the star
   std::uint32_t marker_ = 0;

@@ -60,6 +60,7 @@ bool CapSurface::flip_outward(int f, int i) {
   face.across = {beyond_bc, g, beyond_wb};
   face.kept = -1;
   face.extra = other.extra = 0;
+  face.since = other.since = ++version_;
   --kept_;
   other.v = {c, a, w};
   other.across = {beyond_ca, beyond_aw, f};

@@ -1,5 +1,7 @@
 #include "engine/construct/cap_surface.hpp"
 
+#include <algorithm>
+
 #include <Eigen/Geometry>
 
 namespace lrb::construct {
@@ -35,6 +37,7 @@ void CapSurface::load_faces(const HullMesh& hull, const Patch& patch) {
   faces_.resize(patch.slots.size());
   ring_face_.assign(patch.ring.size(), -1);
   alive_ = kept_ = static_cast<int>(faces_.size());
+  version_ = 1;
   patch_area_ = 0;
   for (int f = 0; f < alive_; ++f) {
     const auto& t = hull[patch.slots[f]];
@@ -57,6 +60,8 @@ void CapSurface::load_faces(const HullMesh& hull, const Patch& patch) {
     face.kept = f;
     face.alive = true;
     face.extra = t.extra;
+    face.since = version_;
+    face.refused = {};
     patch_area_ += face.plane.area;
   }
 }
@@ -104,6 +109,7 @@ bool CapSurface::find_star(int u, int v, Star& star) {
   star.v = v;
   star.faces.clear();
   star.rim.clear();
+  star.since = 0;
   ++marker_;
   int first = face_of_[u];
   for (int i = index_of(first, u); faces_[first].v[(i + 1) % 3] != v; i = index_of(first, u)) {
@@ -118,7 +124,8 @@ bool CapSurface::find_star(int u, int v, Star& star) {
     const int a = t.v[(i + 1) % 3], b = t.v[(i + 2) % 3];
     star.faces.push_back(f);
     mark_[a] = marker_;
-    if (a != v && b != v) star.rim.push_back({a, b, t.across[(i + 1) % 3], f});
+    if (a != v && b != v) add_to_rim(star, {a, b, t.across[(i + 1) % 3], f});
+    star.since = std::max(star.since, t.since);
     if (a == v) star.across_first = t.across[(i + 1) % 3];
     if (b == v) star.across_last = t.across[(i + 1) % 3];
     last = f;
@@ -140,12 +147,28 @@ bool CapSurface::find_star(int u, int v, Star& star) {
     common += mark_[a] == marker_;
     if (a != u && b != u) {
       star.faces.push_back(f);
-      star.rim.push_back({a, b, t.across[(i + 1) % 3], f});
+      add_to_rim(star, {a, b, t.across[(i + 1) % 3], f});
+      star.since = std::max(star.since, t.since);
     }
     f = t.across[(i + 2) % 3];
     if (f == last) break;
   }
   return common == 2 && star.rim.size() >= 3;
+}
+
+void CapSurface::add_to_rim(Star& star, const Star::Rim& rim) const {
+  star.rim.push_back(rim);
+  if (rim.across >= 0) star.since = std::max(star.since, faces_[rim.across].since);
+}
+
+bool CapSurface::is_behind_a_face_at(int u, int v) const {
+  int f = face_of_[u];
+  do {
+    const Face& t = faces_[f];
+    if (t.v[0] != v && t.v[1] != v && t.v[2] != v && t.plane.n.dot(x(v)) < t.plane.d) return true;
+    f = t.across[(index_of(f, u) + 2) % 3];
+  } while (f != face_of_[u]);
+  return false;
 }
 
 int CapSurface::count_marked_neighbours_of_ring(int r) const {
@@ -175,16 +198,19 @@ void CapSurface::collapse_onto_ring(const Star& star) {
 
 void CapSurface::move(int v, const Eigen::Vector3d& position) {
   points_[v].x = position;
+  ++version_;
   int f = face_of_[v];
   do {
     const int i = index_of(f, v);
     faces_[f].plane = plane_of(faces_[f].v[0], faces_[f].v[1], faces_[f].v[2]);
+    faces_[f].since = version_;
     f = faces_[f].across[(i + 2) % 3];
   } while (f != face_of_[v]);
 }
 
 /// Replaces the star's triangles by a fan from w over its rim. New faces take the places of old ones.
 void CapSurface::replace(const Star& star, int w) {
+  ++version_;
   for (const int f : star.faces) {
     faces_[f].alive = false;
     kept_ -= faces_[f].kept >= 0;
@@ -205,6 +231,8 @@ void CapSurface::replace(const Star& star, int w) {
     face.kept = -1;
     face.alive = true;
     face.extra = 0;
+    face.since = version_;
+    face.refused = {};
     set_across(r.across, r.a, r.b, r.face);
     if (!is_ring(r.a)) face_of_[r.a] = r.face;
     if (!is_ring(r.b)) face_of_[r.b] = r.face;

@@ -28,7 +28,10 @@ class CapSurface {
     Plane plane;
     int kept;  ///< the patch's triangle (index into Patch::slots) if it is still that one, else -1
     bool alive;
-    double extra;  ///< see HullMesh::Triangle
+    double extra;         ///< see HullMesh::Triangle
+    std::uint32_t since;  ///< the version of the surface that it came with
+    /// The version at which the collapse of the edge v[i], v[i + 1] was refused; 0: never.
+    std::array<std::uint32_t, 3> refused;
   };
   /// The triangles round an interior vertex u, or round an edge u, v, and the polygon around them.
   struct Star {
@@ -42,6 +45,8 @@ class CapSurface {
     std::vector<Rim> rim;  ///< in order; an open chain from v back to v if v is on the ring
     int across_first = -1,
         across_last = -1;  ///< open chain: what lies beyond the edges v, rim.front().a and rim.back().b, v
+    /// The version that the newest of its triangles, and of those beyond the rim, came with.
+    std::uint32_t since = 0;
   };
 
   /// Loads a patch. `first_id`: the number in the complex of the first new vertex.
@@ -79,6 +84,19 @@ class CapSurface {
   /// v. Returns false if the collapse would not leave a surface (link condition), or if it would make an edge
   /// between ring vertices that the hull has already.
   bool find_star(int u, int v, Star& star);
+  /// Returns a number that grows with each change.
+  std::uint32_t version() const { return version_; }
+  /// Notes that the star's edge cannot be collapsed.
+  void refuse(const Star& star) { faces_[star.faces[0]].refused[index_of(star.faces[0], star.u)] = version_; }
+  /// Returns true if that was noted, and neither the star nor the triangles around it have changed since.
+  bool was_refused(const Star& star) const {
+    return faces_[star.faces[0]].refused[index_of(star.faces[0], star.u)] >= star.since;
+  }
+  void forget_refused() {
+    for (Face& f : faces_) f.refused = {};
+  }
+  /// Returns true if v, a neighbour of u, lies behind the plane of a triangle at u that it is not a corner of.
+  bool is_behind_a_face_at(int u, int v) const;
   /// Collapses u and v into a new vertex at x. Returns its number.
   int collapse_to_new(const Star& star, const Eigen::Vector3d& x);
   void collapse_onto_ring(const Star& star);
@@ -128,6 +146,7 @@ class CapSurface {
   void load_surroundings(const HullMesh& hull, const Patch& patch);
   bool chord_outside(int a, int b) const { return chords_[a * ring_size_ + b]; }
   int count_marked_neighbours_of_ring(int r) const;
+  void add_to_rim(Star& star, const Star::Rim& rim) const;
   void replace(const Star& star, int w);
   void set_across(int code, int a, int b, int f);
   bool are_neighbours(int a, int b) const;
@@ -145,6 +164,7 @@ class CapSurface {
   std::uint32_t marker_ = 0;
   VertexId next_id_ = 0;
   int ring_size_ = 0, first_new_ = 0, alive_ = 0, kept_ = 0;
+  std::uint32_t version_ = 0;  ///< 1: as loaded
   double patch_area_ = 0;
 
   // From the hull's numbers to local ones; an entry is valid if the local one points back to it.

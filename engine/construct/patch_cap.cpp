@@ -19,26 +19,27 @@ using Vector3 = Eigen::Vector3d;
 void PatchCap::simplify(const Patch& patch, const Limits& limits) {
   patch_ = &patch;
   limits_ = limits;
-  version_ = 0;
+  cap_.forget_refused();
   // A collapse that is impossible now may become possible after others: go round until nothing changes.
-  for (std::uint32_t before = version_ + 1; before != version_;) {
-    before = version_;
+  for (std::uint32_t before = cap_.version() + 1; before != cap_.version();) {
+    before = cap_.version();
     propose_all();
     while (!queue_.empty() && cap_.alive_faces() > limits_.faces) {
       std::pop_heap(queue_.begin(), queue_.end());
       const Candidate c = queue_.back();
       queue_.pop_back();
       if (!cap_.is_used(c.u) || !cap_.is_used(c.v)) continue;
-      const auto now = evaluate(c.u, c.v);
+      const auto now = evaluate_again(c);
       if (!now) continue;
-      if (c.version != version_ && now->cost > c.cost) {
+      if (now->cost > c.cost) {
         queue_.push_back(*now);
         std::push_heap(queue_.begin(), queue_.end());
         continue;
       }
-      if (!confirm(*now)) continue;
-      ++version_;
-      collapse(*now);
+      if (confirm(*now))
+        collapse(*now);
+      else if (!limits_.check)  // what the check finds may change far from here
+        cap_.refuse(star_);
     }
   }
 }
@@ -47,14 +48,21 @@ void PatchCap::simplify(const Patch& patch, const Limits& limits) {
 void PatchCap::collapse(const Candidate& c) {
   const bool onto_ring = cap_.is_ring(c.v);
   int w = c.v;
+  if (limits_.gauge) limits_.gauge->prepare(cap_, star_);
   if (onto_ring)
     cap_.collapse_onto_ring(star_);
   else
     w = cap_.collapse_to_new(star_, c.w);
   if (limits_.gauge) limits_.gauge->settle(cap_, star_, w);
   if (!onto_ring) return propose_around(w);
-  for (const auto& r : star_.rim)
-    if (!cap_.is_ring(r.a)) propose(r.a, w);
+  rim_ = star_.rim;
+  for (std::size_t k = 0; k < rim_.size(); ++k) {
+    if (cap_.is_ring(rim_[k].a)) continue;
+    propose(rim_[k].a, w);
+    // Lean bodies are built as they always were, which is by going on with the rim that was looked at last: the
+    // edges that are passed over wait for the next round.
+    if (!fits()) std::copy_n(star_.rim.begin(), std::min(rim_.size(), star_.rim.size()), rim_.begin());
+  }
 }
 
 void PatchCap::propose_all() {
@@ -85,14 +93,34 @@ void PatchCap::propose(int u, int v) {
 
 /// Evaluates the collapse of an edge; leaves the edge's star in star_.
 std::optional<PatchCap::Candidate> PatchCap::evaluate(int u, int v) {
-  if (!cap_.find_star(u, v, star_)) return std::nullopt;
+  if (fits() && cap_.is_ring(v) && cap_.is_behind_a_face_at(u, v)) return std::nullopt;  // four in five are
+  if (!cap_.find_star(u, v, star_) || cap_.was_refused(star_)) return std::nullopt;
+  return evaluate_star(u, v);
+}
+
+/// Returns the candidate as it is now, if it still is one; leaves the edge's star in star_.
+std::optional<PatchCap::Candidate> PatchCap::evaluate_again(const Candidate& c) {
+  if (!cap_.find_star(c.u, c.v, star_) || cap_.was_refused(star_)) return std::nullopt;
+  return c.version < star_.since ? evaluate_star(c.u, c.v) : c;
+}
+
+/// Evaluates the collapse of the edge whose star is in star_; it rests on the star and on the triangles across its
+/// rim alone, so that a refusal holds until one of these changes.
+std::optional<PatchCap::Candidate> PatchCap::evaluate_star(int u, int v) {
+  auto c = measure_star(u, v);
+  if (!c) cap_.refuse(star_);
+  return c;
+}
+
+/// Does that, but takes no note of refusals.
+std::optional<PatchCap::Candidate> PatchCap::measure_star(int u, int v) {
   Vector3 centre = Vector3::Zero();
   for (const auto& r : star_.rim) centre += cap_.x(r.a);
   centre /= static_cast<double>(star_.rim.size());
   double radius_sq = 0;
   for (const auto& r : star_.rim) radius_sq = std::max(radius_sq, (cap_.x(r.a) - centre).squaredNorm());
   const double radius = std::sqrt(radius_sq);
-  Candidate c{0, u, v, version_, {}};
+  Candidate c{0, u, v, cap_.version(), {}};
   if (cap_.is_ring(v)) {
     if (!ring_vertex_is_in_front(v, radius)) return std::nullopt;
     c.w = cap_.x(v);
@@ -101,6 +129,7 @@ std::optional<PatchCap::Candidate> PatchCap::evaluate(int u, int v) {
     if (!w) return std::nullopt;
     c.w = *w;
   }
+  if (fits() && !limits_.gauge->may_stand(cap_, star_, c.w)) return std::nullopt;
   double volume = 0, area = 0;
   for (const int f : star_.faces) {
     const auto& plane = cap_.faces()[f].plane;
@@ -111,7 +140,6 @@ std::optional<PatchCap::Candidate> PatchCap::evaluate(int u, int v) {
   if (c.cost > limits_.volume) return std::nullopt;
   c.cost += kCapShapeWeight * area * std::sqrt(area) / shape_of_fan(c.w);
   if (!(c.cost <= limits_.volume)) return std::nullopt;
-  if (limits_.gauge && !limits_.gauge->may_stand(cap_, star_, c.w)) return std::nullopt;
   return c;
 }
 
@@ -126,14 +154,18 @@ std::optional<Vector3> PatchCap::place(double radius, const Vector3& centre) {
   if (!(length > 0)) return std::nullopt;
   collect_half_spaces(centre, margin);
   const Vector3 target = outward * (-limits_.depth * radius / length);
-  auto w = nearest_point(target, half_spaces_, slack);
+  const auto nearest = [&] {
+    return fits() ? nearest_point_worst_first(target, half_spaces_, slack)
+                  : nearest_point(target, half_spaces_, slack);
+  };
+  auto w = nearest();
   if (!w) return std::nullopt;
   const double reach = 2 * radius;
   if (w->cwiseAbs().maxCoeff() > reach || !bounds_.contains(*w + centre)) {
     for (int i = 0; i < 3; ++i)
       for (const double sign : {-1.0, 1.0}) half_spaces_.push_back({sign * Vector3::Unit(i), -reach});
     for (const HalfSpace& h : bounds_.half_spaces()) half_spaces_.push_back({h.n, h.d - h.n.dot(centre)});
-    w = nearest_point(target, half_spaces_, slack);
+    w = nearest();
     if (!w) return std::nullopt;
   }
   return Vector3(*w + centre);

@@ -36,7 +36,7 @@ class PatchCap {
   struct Candidate {
     double cost;
     int u, v;
-    std::uint32_t version;  ///< number of collapses when it was evaluated
+    std::uint32_t version;  ///< the surface's when it was evaluated
     Eigen::Vector3d w;
     bool operator<(const Candidate& other) const {  // orders the cheapest last, for heaps
       if (cost != other.cost) return cost > other.cost;
@@ -44,10 +44,14 @@ class PatchCap {
     }
   };
 
+  bool fits() const { return limits_.gauge != nullptr; }
   void propose_all();
   void propose_around(int w);
   void propose(int u, int v);
   std::optional<Candidate> evaluate(int u, int v);
+  std::optional<Candidate> evaluate_star(int u, int v);
+  std::optional<Candidate> measure_star(int u, int v);
+  std::optional<Candidate> evaluate_again(const Candidate& c);
   std::optional<Eigen::Vector3d> place(double radius, const Eigen::Vector3d& centre);
   bool ring_vertex_is_in_front(int r, double radius) const;
   double shape_of_fan(const Eigen::Vector3d& w) const;
@@ -61,8 +65,8 @@ class PatchCap {
   const Patch* patch_ = nullptr;
   std::vector<Candidate> queue_;
   CapSurface::Star star_;
+  std::vector<CapSurface::Star::Rim> rim_;  ///< a copy of the star's
   std::vector<HalfSpace> half_spaces_;
-  std::uint32_t version_ = 0;
 };
 
 }  // namespace lrb::construct

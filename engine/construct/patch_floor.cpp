@@ -12,52 +12,83 @@ namespace lrb::construct {
 
 using Eigen::Vector3d;
 
-void PatchFloor::load(const HullMesh& hull, const Patch& patch) {
+namespace {
+
+constexpr double kFar = std::numeric_limits<double>::infinity();
+
+}  // namespace
+
+void PatchFloor::load(const HullMesh& hull, const Patch& patch, double most) {
   triangles_.clear();
-  last_ = 0;
+  balls_.clear();
+  most_ = most;
   for (const HullMesh::Slot s : patch.slots) {
     Triangle t;
+    std::array<double, 3> off;
     double radius_sq = 0;
     for (int i = 0; i < 3; ++i) {
       const HullMesh::Point& p = hull.point(hull[s].v[i]);
       t.x[i] = p.x;
-      t.off[i] = p.off + hull[s].extra;
+      off[i] = p.off + hull[s].extra;
     }
-    t.least = *std::min_element(t.off.begin(), t.off.end());
+    t.off = off[0];
+    t.off_b = off[1] - off[0];
+    t.off_c = off[2] - off[0];
+    t.least = *std::min_element(off.begin(), off.end());
     t.middle = (t.x[0] + t.x[1] + t.x[2]) / 3;
     for (const Vector3d& x : t.x) radius_sq = std::max(radius_sq, (x - t.middle).squaredNorm());
     t.radius = std::sqrt(radius_sq);
-    t.normal = (t.x[1] - t.x[0]).cross(t.x[2] - t.x[0]).normalized();
+    set_weights(t);
     triangles_.push_back(t);
+    const double left = most - t.least, reach = left + t.radius;
+    balls_.push_back({t.middle, left < 0 ? -1 : reach * reach});
   }
 }
 
-double PatchFloor::off_by(const Triangle& t, const Vector3d& q) {
+void PatchFloor::set_weights(Triangle& t) {
+  const Vector3d ab = t.x[1] - t.x[0], ac = t.x[2] - t.x[0], normal = ab.cross(ac);
+  const double square = normal.squaredNorm();
+  if (!(square > 0)) {
+    t.normal = t.to_b = t.to_c = Vector3d::Zero();
+    t.height = {0, 0, 0};
+    t.weight = -1;
+    return;
+  }
+  t.normal = normal / std::sqrt(square);
+  t.to_b = ac.cross(normal) / square;
+  t.to_c = normal.cross(ab) / square;
+  t.height = {1 / (t.to_b + t.to_c).norm(), 1 / t.to_b.norm(), 1 / t.to_c.norm()};
+  t.weight = 1 / 3.;
+}
+
+/// Returns how far the triangle shows q to be off; if that is more than `most`, perhaps just that it is far.
+double PatchFloor::off_by(const Triangle& t, const Vector3d& q, double most) {
+  const Vector3d from_middle = q - t.middle;
+  const double left = most - t.least, up = std::abs(t.normal.dot(from_middle));
+  if (up > left) return kFar;
+  const double b = t.to_b.dot(from_middle) + t.weight, c = t.to_c.dot(from_middle) + t.weight;
+  if (b >= 0 && c >= 0 && b + c <= 1) return up + t.off + b * t.off_b + c * t.off_c;
+  const double beside = std::max(std::max(-b * t.height[1], -c * t.height[2]), (b + c - 1) * t.height[0]);
+  if (beside * beside + up * up > left * left) return kFar;
   const SimplexPoint near = nearest_on_triangle(q, t.x[0], t.x[1], t.x[2]);
-  return std::sqrt(near.distance_sq) + near.weight[0] * t.off[0] + near.weight[1] * t.off[1] +
-         near.weight[2] * t.off[2];
+  return std::sqrt(near.distance_sq) + t.off + near.weight[1] * t.off_b + near.weight[2] * t.off_c;
 }
 
 double PatchFloor::off(const Vector3d& q) const {
-  double best = std::numeric_limits<double>::infinity();
+  double best = kFar;
   for (const Triangle& t : triangles_) {
-    const double left = best - t.least;
-    if (left <= 0 || std::abs(t.normal.dot(q - t.middle)) >= left) continue;
-    if ((q - t.middle).squaredNorm() >= (left + t.radius) * (left + t.radius)) continue;
-    best = std::min(best, off_by(t, q));
+    const double left = best - t.least, reach = left + t.radius;
+    if (left <= 0 || (q - t.middle).squaredNorm() >= reach * reach) continue;
+    best = std::min(best, off_by(t, q, best));
   }
   return best;
 }
 
-bool PatchFloor::is_within(const Vector3d& q, double most) const {
-  const std::size_t count = triangles_.size();
-  for (std::size_t i = 0, k = last_; i < count; ++i, k = k + 1 < count ? k + 1 : 0) {
-    const Triangle& t = triangles_[k];
-    const double left = most - t.least;
-    if (left < 0 || std::abs(t.normal.dot(q - t.middle)) > left) continue;
-    if ((q - t.middle).squaredNorm() > (left + t.radius) * (left + t.radius)) continue;
-    if (!(off_by(t, q) <= most)) continue;
-    last_ = k;
+bool PatchFloor::is_within(const Vector3d& q, int& first) const {
+  if (shows(first, q)) return true;
+  for (std::size_t t = 0; t < triangles_.size(); ++t) {
+    if (!shows(t, q)) continue;
+    first = static_cast<int>(t);
     return true;
   }
   return false;

@@ -17,8 +17,8 @@ constexpr std::size_t kBatchPerThread = 32;
 /// See PatchCap::Limits::depth; where caps are to fit.
 constexpr double kFittingDepth = 10;
 
-/// Where no cap was found, none is tried before it may be this many times as far off. Smaller: more time, most of
-/// it in vain.
+/// Where no cap was found, none is tried before it may be this many times as far off, at least. Smaller: more time,
+/// most of it in vain.
 constexpr double kPatience = 1.2;
 /// A pass of caps that fit ends when after this many patches fewer than one in kLeastCaps got a cap: the distance
 /// is too small for most of the hull.
@@ -35,10 +35,10 @@ std::vector<Corner> seeds_of(const HullMesh& hull, double off, Random& random) {
 
 }  // namespace
 
-PatchPass::PatchPass(HullMesh& hull, ComplexBuilder& complex, const BodyBounds& bounds,
+PatchPass::PatchPass(HullMesh& hull, AabbTree& tree, ComplexBuilder& complex, const BodyBounds& bounds,
                      const std::vector<bool>& frozen, const std::vector<Eigen::AlignedBox3d>& component_boxes,
                      Workers& workers)
-    : hull_(hull), complex_(complex), frozen_(frozen), workers_(workers), tree_(hull) {
+    : hull_(hull), complex_(complex), frozen_(frozen), workers_(workers), tree_(tree) {
   for (unsigned w = 0; w < workers.count(); ++w)
     benches_.push_back(std::make_unique<Bench>(hull, tree_, bounds, component_boxes));
   jobs_.resize(workers.count() == 1 ? 1 : kBatchPerThread * workers.count());
@@ -67,7 +67,7 @@ void PatchPass::run(const GrowLimits& limits, const CapGoal& goal, std::uint16_t
       ++tried;
       found += job.has_cap;
       if (!job.has_cap)
-        for (const Corner v : job.patch.interior) hull_.set_patience(v, kPatience * goal.off);
+        for (const Corner v : job.patch.interior) hull_.set_patience(v, job.next_off);
       if (tried >= kTries && kLeastCaps * found < tried) return;
     }
   }
@@ -92,6 +92,7 @@ void PatchPass::grow_batch(PatchGrower& grower) {
 void PatchPass::make_cap(Job& job, const CapGoal& goal, Bench& bench) const {
   bench.check.forget_seen();
   job.has_cap = find_cap(job.patch, goal, bench);
+  if (goal.off > 0 && !job.has_cap) job.next_off = goal.off * patience(job.patch, bench.cap, goal.worth);
   job.seen = bench.check.seen();
   if (job.has_cap) job.sheet = make_sheet(hull_, job.patch, bench.cap);
 }
@@ -120,6 +121,13 @@ bool PatchPass::find_cap(const Patch& patch, const CapGoal& goal, Bench& bench) 
     if (bench.check.cap_is_clear(patch, cap)) return true;
   }
   return false;
+}
+
+/// Returns how many times as far off a cap must be allowed to be before there may be one where there is none now.
+/// The faces that are needed fall about in proportion to the distance, so that is by how much those of the cap that
+/// was not worth it are too many. (Trying at each distance takes a third more time for the same hulls.)
+double PatchPass::patience(const Patch& patch, const CapSurface& cap, double worth) {
+  return std::max(kPatience, cap.alive_faces() / (worth * static_cast<double>(patch.slots.size())));
 }
 
 void PatchPass::put_on(const Job& job, std::uint16_t layer, PatchGrower& grower) {

@@ -33,7 +33,8 @@ class PatchPass {
  public:
   /// `frozen` (|real faces|): faces not to be covered. `component_boxes`: boxes of the hull's components, or
   /// of parts of them that tell where the component is as a whole.
-  PatchPass(HullMesh& hull, ComplexBuilder& complex, const BodyBounds& bounds,
+  /// `tree`: over the hull; follows it.
+  PatchPass(HullMesh& hull, AabbTree& tree, ComplexBuilder& complex, const BodyBounds& bounds,
             const std::vector<bool>& frozen, const std::vector<Eigen::AlignedBox3d>& component_boxes,
             Workers& workers);
 
@@ -56,6 +57,7 @@ class PatchPass {
   struct Job {
     Patch patch;
     bool has_cap = false;
+    double next_off = 0;       ///< if not: the limit at which one is to be tried again
     Sheet sheet;               ///< the cap, if there is one
     Eigen::AlignedBox3d seen;  ///< where the hull was looked at
   };
@@ -63,13 +65,14 @@ class PatchPass {
   void grow_batch(PatchGrower& grower);
   void make_cap(Job& job, const CapGoal& goal, Bench& bench) const;
   bool find_cap(const Patch& patch, const CapGoal& goal, Bench& bench) const;
+  static double patience(const Patch& patch, const CapSurface& cap, double worth);
   void put_on(const Job& job, std::uint16_t layer, PatchGrower& grower);
 
   HullMesh& hull_;
   ComplexBuilder& complex_;
   const std::vector<bool>& frozen_;
   Workers& workers_;
-  AabbTree tree_;
+  AabbTree& tree_;
   std::vector<std::unique_ptr<Bench>> benches_;  ///< one for each worker
   std::vector<HullMesh::Corner> seeds_;
   std::size_t next_seed_ = 0;

@@ -95,4 +95,22 @@ std::optional<Vector3> nearest_point(const Vector3& target, std::span<const Half
   return p;
 }
 
+std::optional<Vector3> nearest_point_worst_first(const Vector3& target, std::span<HalfSpace> half_spaces,
+                                                 double slack) {
+  Vector3 p = target;
+  for (std::size_t used = 0;; ++used) {
+    std::size_t worst = half_spaces.size();
+    double most = slack;
+    for (std::size_t i = used; i < half_spaces.size(); ++i) {
+      const double behind = half_spaces[i].d - half_spaces[i].n.dot(p);
+      if (behind > most) most = behind, worst = i;
+    }
+    if (worst == half_spaces.size()) return p;
+    std::swap(half_spaces[used], half_spaces[worst]);
+    const auto q = nearest_on_plane(half_spaces[used], half_spaces.first(used), target, slack);
+    if (!q) return std::nullopt;
+    p = *q;
+  }
+}
+
 }  // namespace lrb::construct

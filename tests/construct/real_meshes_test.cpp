@@ -47,7 +47,7 @@ TEST_CASE("real models meet the targets: faces, outer faces, volume, embedding, 
     return;
   }
   for (const Target& target : {Target{"spot", {4400, 1700, 820}}, Target{"homer", {2700, 1280, 615}},
-                               Target{"fandisk", {470, 240, 225}}, Target{"cheburashka", {2900, 1420, 710}},
+                               Target{"fandisk", {410, 240, 225}}, Target{"cheburashka", {2840, 1400, 710}},
                                Target{"rocker-arm", {2220, 980, 470}}}) {
     CAPTURE(target.name);
     const Mesh mesh = read_mesh((folder / (std::string(target.name) + ".obj")).string());
