@@ -99,6 +99,7 @@ Reply BenchRunner::ask(const Question& q, Mode mode) {
   r.contact = answer.contact;
   r.count = answer.pairs.size();
   r.face_tests = answer.face_tests;
+  r.error_bound = answer.error_bound;
   if (info_.pairs && mode == Mode::all_pairs) {
     r.missed = difference(q.expected, answer.pairs);
     r.extra = difference(answer.pairs, q.expected);

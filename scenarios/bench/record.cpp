@@ -17,6 +17,7 @@ ordered_json reply_json(const Reply& r) {
   ordered_json out = {{"contact", r.contact},      {"count", r.count},     {"missed", r.missed},
                       {"extra", r.extra},          {"cold_us", r.cold_us}, {"hot_us", r.hot_us},
                       {"face_tests", r.face_tests}};
+  if (r.error_bound) out["error_bound"] = *r.error_bound;
   if (!r.pairs.empty()) out["pairs"] = flat(r.pairs);
   for (const Eigen::Vector3d& p : r.points) out["points"].push_back({p.x(), p.y(), p.z()});
   return out;
@@ -31,6 +32,7 @@ Reply reply_from(const json& value) {
   value.at("cold_us").get_to(r.cold_us);
   value.at("hot_us").get_to(r.hot_us);
   value.at("face_tests").get_to(r.face_tests);
+  if (value.contains("error_bound")) r.error_bound = value.at("error_bound").get<double>();
   if (value.contains("pairs")) r.pairs = pairs_from(value.at("pairs"));
   if (value.contains("points"))
     for (const json& p : value.at("points"))

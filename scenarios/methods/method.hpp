@@ -47,6 +47,7 @@ struct MethodInfo {
   /// Gives pairs, or points of contact, up to an error that a knob trades for time.
   bool approximate = false;
   bool convex = false;           ///< answers for the bodies' convex hulls
+  bool told_more = false;        ///< knows the poses before: not an answer to the same question
   bool own_rep = false;          ///< works on the LRB-rep as it comes: building a body means building that
   std::string knob;              ///< what `settings` set: "level"; empty: there is nothing to set
   std::vector<double> settings;  ///< settings worth a sweep, from coarse to fine
@@ -68,6 +69,9 @@ struct MethodAnswer {
   std::optional<Relation> relation;  ///< nothing if the method does not say
   double microseconds = 0;           ///< the time of the query alone, without sorting what the method found
   std::uint64_t face_tests = 0;      ///< number of comparisons of two faces (or spheres), if it counts them
+  /// Proved: for any point of the answer, the distances to the two bodies add up to no more; world. Nothing
+  /// if that is not proved.
+  std::optional<double> error_bound;
   std::vector<Eigen::Vector3d> points;  ///< in the world, if it says where the contact is but not which faces
                                         ///< meet
 };

@@ -8,7 +8,6 @@
 
 #include <nlohmann/json.hpp>
 
-#include "engine/construct/build.hpp"
 #include "engine/core/error.hpp"
 #include "engine/core/file_bytes.hpp"
 #include "engine/mesh/io/mesh_io.hpp"
@@ -98,12 +97,13 @@ std::vector<Mesh> read_series_bodies(const std::vector<std::string>& paths, std:
 }
 
 std::vector<SeriesObject> make_series(std::span<const Mesh> bodies,
-                                      const resolutions::ResolutionOptions& options, double diagonal_of_a,
+                                      const resolutions::ResolutionOptions& options,
+                                      const BuildOptions& building, double diagonal_of_a,
                                       const std::function<void()>& progress) {
   std::vector<SeriesObject> objects;
   for (const Mesh& body : bodies) {
     for (const Mesh& mesh : resolutions::resolutions(body, options)) {
-      const LrbRep rep = build_lrb(mesh);
+      const LrbRep rep = build_lrb(mesh, building);
       objects.push_back({body.name, scaled(rep, diagonal_of_a / diagonal(rep))});
       if (progress) progress();
     }

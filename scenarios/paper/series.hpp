@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/construct/build.hpp"
 #include "engine/mesh/mesh.hpp"
 #include "scenarios/bodies/resolutions/resolutions.hpp"
 #include "scenarios/paper/tables.hpp"
@@ -39,7 +40,8 @@ std::vector<Mesh> read_series_bodies(const std::vector<std::string>& paths, std:
 
 /// Returns the bodies in order, the finest resolution of each first, scaled to this diagonal.
 std::vector<SeriesObject> make_series(std::span<const Mesh> bodies,
-                                      const resolutions::ResolutionOptions& options, double diagonal,
+                                      const resolutions::ResolutionOptions& options,
+                                      const BuildOptions& building, double diagonal,
                                       const std::function<void()>& progress);
 
 /// Runs all collisions of the shard; returns them in the order of merged().

@@ -21,7 +21,8 @@ nlohmann::ordered_json experiment(const ShardFile& s) {
           {"steps_after_first_contact", s.protocol.steps_after},
           {"seed", s.protocol.seed},
           {"resolutions", s.resolutions.most},
-          {"subdivisions", s.resolutions.subdivisions}};
+          {"subdivisions", s.resolutions.subdivisions},
+          {"lean", s.lean}};
 }
 
 ShardFile read(const std::string& path) {
@@ -35,6 +36,7 @@ ShardFile read(const std::string& path) {
     s.protocol.seed = j.at("seed").get<std::uint64_t>();
     s.resolutions.most = j.at("resolutions").get<std::uint32_t>();
     s.resolutions.subdivisions = j.at("subdivisions").get<std::uint32_t>();
+    s.lean = j.value("lean", false);
     return s;
   } catch (const nlohmann::json::exception& e) {
     throw InputError(printable_name(path) +

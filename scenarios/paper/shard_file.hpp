@@ -13,6 +13,7 @@ struct ShardFile {
   Shard shard;
   PaperProtocol protocol;
   resolutions::ResolutionOptions resolutions;  ///< of the series; most = 0: there is none
+  bool lean = false;                           ///< the series' bodies are built lean (BuildOptions)
 };
 
 /// Returns its path: beside the records.jsonl of the shard.

@@ -12,6 +12,7 @@ nlohmann::ordered_json to_json(const methods::MethodInfo& info) {
           {"hard_cases", info.hard_cases},
           {"approximate", info.approximate},
           {"convex", info.convex},
+          {"told_more", info.told_more},
           {"own_rep", info.own_rep},
           {"knob", info.knob},
           {"settings", info.settings},
@@ -33,6 +34,7 @@ methods::MethodInfo method_info_from(const nlohmann::json& value) {
   info.hard_cases = value.value("hard_cases", info.hard_cases);
   info.approximate = value.value("approximate", info.approximate);
   info.convex = value.value("convex", info.convex);
+  info.told_more = value.value("told_more", info.told_more);
   info.own_rep = value.value("own_rep", info.own_rep);
   info.knob = value.value("knob", "");
   info.settings = value.value("settings", std::vector<double>());

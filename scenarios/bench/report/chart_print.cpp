@@ -1,5 +1,6 @@
 #include "scenarios/bench/report/chart_print.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "scenarios/bench/report/series_style.hpp"
@@ -11,6 +12,7 @@ namespace {
 constexpr double kPanelWidth = 50, kPanelHeight = 46, kLeft = 19, kTop = 7, kBottom = 12,
                  kKeyHeight = 16;  // mm
 constexpr int kKeyColumns = 5;
+constexpr const char* kProvedPoint = "pt 1 ps 0.5 lw 0.9 lc rgb '#0072b2'";
 
 std::string style_text(const methods::MethodStyle& s, double size) {
   return " lc rgb '" + s.colour + "' pt " + std::to_string(s.point) + " ps " + io::number_text(size);
@@ -30,7 +32,7 @@ struct Layout {
 std::string plots_of(report::Gnuplot& chart, const SeriesStyles& styles, const std::string& id,
                      const std::vector<const Point*>& panel, double slowest) {
   std::vector<std::vector<std::string>> rows(styles.count());
-  std::vector<std::string> failed, best;
+  std::vector<std::string> failed, best, proved;
   std::string last;
   for (const Point* p : panel) {
     const std::string at = io::number_text(drawn_error(*p)) + " " + io::number_text(drawn_time(*p, slowest));
@@ -42,6 +44,8 @@ std::string plots_of(report::Gnuplot& chart, const SeriesStyles& styles, const s
     r.push_back(at);
     last = p->method;
     if (p->failed() > 0) failed.push_back(at);
+    if (p->proved_off && *p->proved_off > 0)
+      proved.push_back(at + " " + io::number_text(std::max(kNoError, *p->proved_off) - drawn_error(*p)));
   }
   for (const Point* p : frontier(panel))
     best.push_back(io::number_text(drawn_error(*p)) + " " + io::number_text(p->median));
@@ -56,12 +60,17 @@ std::string plots_of(report::Gnuplot& chart, const SeriesStyles& styles, const s
   for (std::size_t i = 0; i < rows.size(); ++i)
     add(id + "m" + std::to_string(i), rows[i],
         "linespoints lw 0.6" + style_text(styles.style(i), i == 0 ? 0.75 : 0.5));
+  if (!proved.empty()) {
+    chart.add_data(id + "proved", proved);
+    plots += ", $" + id + "proved using 1:2:3:(0) with vectors nohead lw 0.5 dt 3 lc rgb '#0072b2', $" + id +
+             "proved using ($1+$3):2 with points " + kProvedPoint;
+  }
   add(id + "failed", failed, "points pt 2 ps 0.9 lw 1.6 lc rgb '#d00000'");
   return plots.empty() ? "" : plots + "\n";
 }
 
 std::string key_of(report::Gnuplot& chart, const SeriesStyles& styles, const Layout& layout) {
-  const auto n = static_cast<int>(styles.count()) + 2;
+  const auto n = static_cast<int>(styles.count()) + 3;
   const int lines = (n + kKeyColumns - 1) / kKeyColumns;
   std::string out =
       layout.margins(2, layout.width - 2, 1, kKeyHeight - 1) +
@@ -74,17 +83,20 @@ std::string key_of(report::Gnuplot& chart, const SeriesStyles& styles, const Lay
     const double x = i / lines, y = lines - 0.5 - i % lines;
     const std::string name = "key" + std::to_string(i);
     const auto k = static_cast<std::size_t>(i);
-    const bool frontier = k == styles.count(), failed = k == styles.count() + 1;
+    const bool frontier = k == styles.count(), failed = k == styles.count() + 1,
+               proved = k == styles.count() + 2;
     std::vector<std::string> at = {io::number_text(x + 0.05) + " " + io::number_text(y)};
     if (frontier) at.push_back(io::number_text(x + 0.09) + " " + io::number_text(y));
     chart.add_data(name, at);
     plots += (i == 0 ? "plot $" : ", $") + name + " using 1:2 with " +
              (frontier ? std::string("lines lw 2.2 lc rgb '#c9d6df'")
               : failed ? std::string("points pt 2 ps 0.9 lw 1.6 lc rgb '#d00000'")
+              : proved ? std::string("points ") + kProvedPoint
                        : "points" + style_text(styles.style(k), 0.75));
     titles.push_back(io::number_text(x + 0.11) + " " + io::number_text(y) + " " +
                      report::gnuplot_data_text(frontier ? "Pareto frontier"
                                                : failed ? "crash, refusal or time-out: the worst"
+                                               : proved ? "off the bodies by at most this: proved"
                                                         : styles.style(k).title));
   }
   chart.add_data("titles", titles);

@@ -17,6 +17,10 @@ constexpr MetricInfo kInfos[kMetrics] = {
     {"precision", "1 - precision: share of the pairs listed that do not meet", 1},
     {"recall", "1 - recall: share of the pairs that meet and are not listed", 1},
     {"hausdorff", "Hausdorff distance of the contact regions, over the larger body's diagonal", 1},
+    {"off",
+     "largest distance of a point of the answer from the one body and from the other, added up, over the "
+     "diagonal",
+     1},
     {"length", "error of the contact curves' length, over the larger of both", 1},
     {"area", "error of the contact's area, over the larger of both", 1},
     {"centroid", "distance of the contacts' centroids, over the diagonal", 1},
@@ -24,9 +28,9 @@ constexpr MetricInfo kInfos[kMetrics] = {
     {"depth", "error of the largest depth, over the diagonal", 1},
 };
 
-constexpr Metric kAll[kMetrics] = {Metric::contact,   Metric::precision, Metric::recall,
-                                   Metric::hausdorff, Metric::length,    Metric::area,
-                                   Metric::centroid,  Metric::normal,    Metric::depth};
+constexpr Metric kAll[kMetrics] = {Metric::contact, Metric::precision, Metric::recall, Metric::hausdorff,
+                                   Metric::off,     Metric::length,    Metric::area,   Metric::centroid,
+                                   Metric::normal,  Metric::depth};
 
 std::optional<double>& at(Errors& e, Metric m) {
   return e[static_cast<std::size_t>(m)];
@@ -42,7 +46,8 @@ bool gives_points(const methods::MethodInfo& m) {
 /// Returns true if a method answers what a metric is about at all.
 bool applies(const methods::MethodInfo& info, Metric m) {
   if (m == Metric::contact) return true;
-  if (m == Metric::hausdorff || m == Metric::centroid) return lists_pairs(info) || gives_points(info);
+  if (m == Metric::hausdorff || m == Metric::off || m == Metric::centroid)
+    return lists_pairs(info) || gives_points(info);
   return lists_pairs(info);
 }
 
@@ -70,6 +75,7 @@ class Judge {
       : diagonal_(set.diagonal),
         q_(q),
         maker_(a, q.pose_a, b, q.pose_b),
+        bodies_(a, q.pose_a, b, q.pose_b),
         exact_(maker_.of_pairs(q.expected)) {}
 
   Errors errors(const methods::MethodInfo& info, const Record& r) {
@@ -79,20 +85,27 @@ class Judge {
     if (lists_pairs(info)) {
       at(e, Metric::precision) = share(without(r.all.pairs, q_.expected), r.all.pairs.size());
       at(e, Metric::recall) = share(without(q_.expected, r.all.pairs), q_.expected.size());
-      set_region(e, info, r.all.pairs == q_.expected ? RegionError{} : error(maker_.of_pairs(r.all.pairs)));
+      if (r.all.pairs == q_.expected)
+        set_region(e, info, {}, 0);
+      else
+        set_region(e, info, maker_.of_pairs(r.all.pairs));
     } else if (gives_points(info)) {
-      set_region(e, info, error(of_points(r.all.points)));
+      set_region(e, info, of_points(r.all.points));
     }
     return e;
   }
 
  private:
-  RegionError error(const Region& found) const { return region_error(exact_, found, diagonal_); }
+  void set_region(Errors& e, const methods::MethodInfo& info, const Region& found) {
+    set_region(e, info, region_error(exact_, found, diagonal_),
+               std::min(1.0, bodies_.off(found.points) / diagonal_));
+  }
 
-  static void set_region(Errors& e, const methods::MethodInfo& info, const RegionError& r) {
-    const std::pair<Metric, double> values[] = {
-        {Metric::hausdorff, r.hausdorff}, {Metric::length, r.length}, {Metric::area, r.area},
-        {Metric::centroid, r.centroid},   {Metric::normal, r.normal}, {Metric::depth, r.depth}};
+  static void set_region(Errors& e, const methods::MethodInfo& info, const RegionError& r, double off) {
+    const std::pair<Metric, double> values[] = {{Metric::hausdorff, r.hausdorff}, {Metric::off, off},
+                                                {Metric::length, r.length},       {Metric::area, r.area},
+                                                {Metric::centroid, r.centroid},   {Metric::normal, r.normal},
+                                                {Metric::depth, r.depth}};
     for (const auto& [m, value] : values)
       if (applies(info, m)) at(e, m) = value;
   }
@@ -100,6 +113,7 @@ class Judge {
   double diagonal_;
   const Question& q_;
   RegionMaker maker_;
+  BodyDistance bodies_;
   Region exact_;
 };
 
@@ -108,10 +122,11 @@ struct Gathered {
   Point point;
   std::vector<double> us;
   Errors sums;
+  std::optional<double> proved_sum = 0;  ///< nothing as soon as an answer comes without a proof
   double worst = -1;
 };
 
-void add(Gathered& g, const Record& r, const Errors& e) {
+void add(Gathered& g, const Record& r, const Errors& e, double diagonal) {
   Point& p = g.point;
   ++p.questions;
   p.refused += r.outcome == Outcome::refused;
@@ -126,6 +141,10 @@ void add(Gathered& g, const Record& r, const Errors& e) {
     g.worst = one.error();
     p.worst_question = r.question;
   }
+  if (r.outcome != Outcome::answered || !r.all.error_bound || !g.proved_sum)
+    g.proved_sum.reset();
+  else
+    *g.proved_sum += std::min(1.0, *r.all.error_bound / diagonal);
   if (r.outcome != Outcome::answered) return;
   g.us.push_back(r.all.hot_us);
   p.build_seconds = std::max(p.build_seconds, r.build_seconds);
@@ -138,6 +157,7 @@ Point finished(Gathered g) {
   const auto n = static_cast<double>(p.questions);
   for (const Metric m : kAll)
     if (const auto& sum = at(g.sums, m)) at(p.errors, m) = *sum / n;
+  if (g.proved_sum) p.proved_off = *g.proved_sum / n;
   p.median = median(g.us);
   p.p95 = quantile(g.us, 0.95);
   p.p99 = quantile(g.us, 0.99);
@@ -146,10 +166,15 @@ Point finished(Gathered g) {
 }
 
 /// Marks the points that no other point beats: none is at least as fast and as right, and better in one of
-/// the two. A point without an answer has no time, and one that says only yes or no answers another question.
-void mark_frontiers(std::vector<Point>& points) {
+/// the two. A point without an answer has no time; one that says only yes or no, or knows the poses before,
+/// answers another question.
+void mark_frontiers(std::vector<Point>& points, const std::vector<methods::MethodInfo>& methods) {
+  const auto told_more = [&](const Point& p) {
+    return std::any_of(methods.begin(), methods.end(),
+                       [&](const methods::MethodInfo& m) { return m.name == p.method && m.told_more; });
+  };
   for (Point& p : points) {
-    const auto takes_part = [](const Point& x) { return x.median > 0 && x.gives_region(); };
+    const auto takes_part = [&](const Point& x) { return x.median > 0 && x.gives_region() && !told_more(x); };
     p.frontier = takes_part(p);
     for (const Point& other : points) {
       if (other.set != p.set || other.pose_class != p.pose_class || !takes_part(other)) continue;
@@ -194,13 +219,13 @@ std::vector<Point> measure_points(const std::vector<DataSet>& sets,
         g.point.method = r->method;
         g.point.setting = r->setting;
         g.point.pose_class = q.pose_class;
-        add(g, *r, judge.errors(*info, *r));
+        add(g, *r, judge.errors(*info, *r), set.diagonal);
         if (progress) progress(++done, records.size());
       }
     }
     for (auto& [key, g] : gathered) points.push_back(finished(std::move(g)));
   }
-  mark_frontiers(points);
+  mark_frontiers(points, methods);
   return points;
 }
 
@@ -215,6 +240,7 @@ std::string to_lines(const std::vector<Point>& points) {
     value["timed_out"] = p.timed_out;
     for (const Metric m : kAll)
       if (const auto& e = p.errors[static_cast<std::size_t>(m)]) value["errors"][metric_info(m).name] = *e;
+    if (p.proved_off) value["proved_off"] = *p.proved_off;
     value["us"] = {{"median", p.median}, {"p95", p.p95}, {"p99", p.p99}};
     value["build_s"] = p.build_seconds;
     value["bytes"] = p.bytes;

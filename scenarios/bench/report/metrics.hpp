@@ -18,13 +18,14 @@ enum class Metric : std::uint8_t {
   precision,  ///< share of the pairs found that do not meet (1 - precision)
   recall,     ///< share of the pairs that meet and were not found (1 - recall)
   hausdorff,  ///< distance of the contact regions
+  off,        ///< distance of the answer's points from both bodies
   length,
   area,
   centroid,
   normal,
   depth,
 };
-inline constexpr std::size_t kMetrics = 9;
+inline constexpr std::size_t kMetrics = 10;
 
 struct MetricInfo {
   const char* name;
@@ -41,7 +42,8 @@ struct Point {
   std::optional<double> setting;
   PoseClass pose_class = PoseClass::apart;
   std::size_t questions = 0, refused = 0, crashed = 0, timed_out = 0;
-  Errors errors;                        ///< means over the questions
+  Errors errors;                     ///< means over the questions
+  std::optional<double> proved_off;  ///< what Metric::off is proved to be at most, mean; nothing: not proved
   double median = 0, p95 = 0, p99 = 0;  ///< microseconds, hot, all pairs, over the questions that were
                                         ///< answered
   double build_seconds = 0, bytes = 0;  ///< of both bodies

@@ -94,6 +94,24 @@ Region RegionMaker::of_pairs(const std::vector<SimplexPair>& pairs) {
   return out;
 }
 
+BodyDistance::BodyDistance(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b)
+    : a_(a, pose_a), b_(b, pose_b) {}
+
+BodyDistance::Side::Side(const LrbRep& rep, const Pose& p)
+    : unit(rep.tree().unit()), pose(p), vertices(vertices_in_units(rep)), nearest(rep, vertices) {}
+
+/// For poses that are rotations, as those of data sets are.
+double BodyDistance::Side::distance(const Eigen::Vector3d& world) {
+  const Eigen::Vector3d x = pose.r.transpose() * (world - pose.t);
+  return nearest.find(x / unit).distance * unit;
+}
+
+double BodyDistance::off(const std::vector<Eigen::Vector3d>& points) {
+  double most = 0;
+  for (const Eigen::Vector3d& p : points) most = std::max(most, a_.distance(p) + b_.distance(p));
+  return most;
+}
+
 Region of_points(const std::vector<Eigen::Vector3d>& points) {
   Region out;
   out.points = thinned(points);

@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "engine/lrb/nearest_face.hpp"
 #include "engine/query/collide_impl.hpp"
 #include "scenarios/bench/record.hpp"
 
@@ -38,6 +39,28 @@ class RegionMaker {
 
  private:
   QueryContext context_;
+};
+
+/// Tells how far points in the world are off two posed bodies.
+class BodyDistance {
+ public:
+  BodyDistance(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b);
+  BodyDistance(const BodyDistance&) = delete;  // its parts refer to each other
+  BodyDistance& operator=(const BodyDistance&) = delete;
+  /// Returns the largest sum of the distances from the one body's surface and from the other's; 0 without
+  /// points.
+  double off(const std::vector<Eigen::Vector3d>& points);
+
+ private:
+  struct Side {
+    Side(const LrbRep& rep, const Pose& pose);
+    double distance(const Eigen::Vector3d& world);
+    double unit;
+    Pose pose;
+    std::vector<Eigen::Vector3d> vertices;  ///< in units
+    NearestFace nearest;
+  };
+  Side a_, b_;
 };
 
 Region of_points(const std::vector<Eigen::Vector3d>& points);

@@ -84,6 +84,7 @@ void settle(PaperOptions& o, paper::PaperExperiment& experiment) {
     const paper::ShardFile whole = paper::read_shard_files(o.merge);
     experiment.protocol = whole.protocol;
     o.series.resolutions = whole.resolutions;
+    o.series.lean = whole.lean;
   } else if (!experiment.collides() || (experiment.name != "paper" && o.series.meshes.empty())) {
     o.series.resolutions.most = 0;  // other experiments have a series only with meshes for it
   }
@@ -93,7 +94,7 @@ void settle(PaperOptions& o, paper::PaperExperiment& experiment) {
 void write_shard(const PaperOptions& o, const paper::SweepOptions& sweep,
                  const std::vector<paper::ContactStep>& steps,
                  const std::vector<paper::ContactStep>* series_steps) {
-  paper::write_shard_file({sweep.shard, sweep.protocol, o.series.resolutions}, o.folder);
+  paper::write_shard_file({sweep.shard, sweep.protocol, o.series.resolutions, o.series.lean}, o.folder);
   io::write_text(o.folder + "/records.jsonl", paper::to_json_lines(steps));
   if (series_steps != nullptr) write_series_shard(*series_steps, o.folder);
   print(o.folder + "/records.jsonl\n");
@@ -174,7 +175,7 @@ Command add_paper(CLI::App& root, const Globals& globals) {
                            ->excludes(shard);
   add_series_options(*app, o->series);
   for (const char* of_shards :
-       {"--collisions", "--step", "--steps-after", "--seed", "--resolutions", "--subdivide"})
+       {"--collisions", "--step", "--steps-after", "--seed", "--resolutions", "--subdivide", "--lean"})
     merge->excludes(app->get_option(of_shards));
   app->add_flag("--json", o->json, "Print the tables instead of the page's path");
   return {app, [o, &globals] { return run_paper(*o, globals); }};

@@ -24,6 +24,8 @@ void add_series_options(CLI::App& app, PaperSeriesOptions& o) {
       ->check(CLI::Range(0, 4))
       ->type_name("N")
       ->capture_default_str();
+  app.add_flag("--lean", o.lean,
+               "Build these bodies with fewer faces in all, for wrappers that fit less well");
 }
 
 std::vector<paper::SeriesObject> make_series(const PaperSeriesOptions& o, const LrbRep& a,
@@ -35,7 +37,10 @@ std::vector<paper::SeriesObject> make_series(const PaperSeriesOptions& o, const 
   note(globals, notes);
   Progress progress("resolutions", 0, globals.quiet);
   std::uint64_t done = 0;
-  return paper::make_series(bodies, o.resolutions, paper::diagonal(a), [&] { progress.set(++done); });
+  BuildOptions building;
+  building.lean = o.lean;
+  return paper::make_series(bodies, o.resolutions, building, paper::diagonal(a),
+                            [&] { progress.set(++done); });
 }
 
 std::vector<paper::ContactStep> run_series(const LrbRep& a, std::span<const paper::SeriesObject> objects,

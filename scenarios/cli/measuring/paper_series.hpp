@@ -9,6 +9,7 @@ namespace lrb::cli {
 struct PaperSeriesOptions {
   std::vector<std::string> meshes;
   resolutions::ResolutionOptions resolutions;  ///< most = 0: no series
+  bool lean = false;
 };
 void add_series_options(CLI::App& app, PaperSeriesOptions& options);
 

@@ -1,3 +1,5 @@
+#include <cmath>
+
 #include <Eigen/Geometry>
 
 #include "engine/construct/build.hpp"
@@ -61,8 +63,9 @@ class Ours : public Method {
     NullProbe probe;
     const Stopwatch watch;
     CollideResult result = collide(rep_of(a), pose_a, rep_of(b), pose_b, request, context_, probe);
-    const double microseconds = watch.microseconds();
-    return answer_from(std::move(result), microseconds);
+    MethodAnswer answer = answer_from(std::move(result), watch.microseconds());
+    if (recursion_ == Recursion::complete && predicates_ == Predicates::exact) answer.error_bound = 0;
+    return answer;
   }
 
  private:
@@ -93,15 +96,20 @@ class OursCoherent : public Method {
     const Stopwatch watch;
     const CollideResult& result = coherent.collide(pose_a, pose_b);
     const double microseconds = watch.microseconds();
-    return answer_from(result, microseconds);
+    MethodAnswer answer = answer_from(result, microseconds);
+    answer.error_bound = 0;
+    return answer;
   }
 };
 
-/// Does no more than is asked for: to a tolerance, or within a number of face tests. Its pairs are of
-/// wrappers' faces; it answers with the points where these meet.
+/// What an answer is content with.
+enum class Content : std::uint8_t { one_pair, tolerance, tests };
+
+/// Does no more than is asked for: one pair of faces, to a tolerance, or within a number of face tests. Its
+/// pairs may be of wrappers' faces; it answers with the points where these meet.
 class OursCoarse : public Method {
  public:
-  explicit OursCoarse(bool by_tests) : by_tests_(by_tests) {}
+  explicit OursCoarse(Content content) : content_(content) {}
   void set(double setting) override { setting_ = setting; }
 
   std::unique_ptr<MethodBody> build(const LrbRep& rep) override {
@@ -113,10 +121,9 @@ class OursCoarse : public Method {
                      Mode mode) override {
     const LrbRep &rep_a = rep_of(a), &rep_b = rep_of(b);
     CollideRequest request = request_for(mode);
-    if (by_tests_)
-      request.max_tests = static_cast<std::uint64_t>(setting_);
-    else
-      request.tolerance = setting_ * diagonal_of(rep_a);
+    if (content_ == Content::one_pair) request.mode = Mode::first_pair;
+    if (content_ == Content::tolerance) request.tolerance = setting_ * diagonal_of(rep_a);
+    if (content_ == Content::tests) request.max_tests = static_cast<std::uint64_t>(setting_);
     NullProbe probe;
     const Stopwatch watch;
     const CollideResult result = collide(rep_a, pose_a, rep_b, pose_b, request, context_, probe);
@@ -124,6 +131,7 @@ class OursCoarse : public Method {
     answer.microseconds = watch.microseconds();
     answer.contact = !result.pairs.empty();
     answer.face_tests = result.counters.face_tests;
+    if (std::isfinite(result.error_bound)) answer.error_bound = result.error_bound;
     if (mode == Mode::all_pairs)
       for (const SimplexPair& p : result.pairs) add_points(rep_a, pose_a, rep_b, pose_b, p, answer.points);
     return answer;
@@ -146,7 +154,7 @@ class OursCoarse : public Method {
     if (c.corner_count == 0) points.push_back((p[0] + p[1] + p[2] + q[0] + q[1] + q[2]) / 6);
   }
 
-  bool by_tests_;
+  Content content_;
   double setting_ = 0;
   QueryContext context_;
 };
@@ -206,7 +214,16 @@ MethodEntry ours_coherent() {
       "As ours, at the last of nine poses that are 0.1 % of A's diagonal apart; the others are not timed.",
       13);
   info.hard_cases = false;
+  info.told_more = true;
   return {info, []() -> std::unique_ptr<Method> { return std::make_unique<OursCoherent>(); }};
+}
+
+MethodEntry ours_one_pair() {
+  MethodInfo info = our_info("ours-one-pair", "lrbscope, one pair",
+                             "Whether they meet, exactly; and where one pair of faces that cross does.", 14);
+  coarse(info);
+  info.style = {"lrbscope, one pair", "#0072b2", "rectRounded", 15};
+  return {info, []() -> std::unique_ptr<Method> { return std::make_unique<OursCoarse>(Content::one_pair); }};
 }
 
 MethodEntry ours_tolerance() {
@@ -214,11 +231,12 @@ MethodEntry ours_tolerance() {
       our_info("ours-tolerance", "lrbscope, to a tolerance",
                "Whether they meet, exactly; and where their wrappers do, whose regions no thicker than the "
                "tolerance stay closed. The knob is the tolerance over A's diagonal.",
-               14);
+               15);
   coarse(info);
   info.knob = "tolerance";
-  info.settings = {0.1, 0.03, 0.01, 0.003, 0.001};
-  return {info, []() -> std::unique_ptr<Method> { return std::make_unique<OursCoarse>(false); }};
+  info.settings = {0.1, 0.05, 0.03, 0.02, 0.01, 0.005, 0.002, 0.001};
+  info.style = {"lrbscope, to a tolerance", "#0072b2", "rectRot", 13};
+  return {info, []() -> std::unique_ptr<Method> { return std::make_unique<OursCoarse>(Content::tolerance); }};
 }
 
 MethodEntry ours_budget() {
@@ -226,17 +244,19 @@ MethodEntry ours_budget() {
       our_info("ours-budget", "lrbscope, within a number of face tests",
                "An answer in time: contact, and where the wrappers reached so far meet. The knob is the "
                "number of face tests. Never calls bodies apart that meet.",
-               15);
+               16);
   coarse(info);
   info.knob = "tests";
-  info.settings = {16, 64, 256, 1024, 4096};
-  return {info, []() -> std::unique_ptr<Method> { return std::make_unique<OursCoarse>(true); }};
+  info.settings = {16, 32, 64, 128, 256, 1024};
+  info.style = {"lrbscope, within a budget", "#56b4e9", "rect", 4};
+  return {info, []() -> std::unique_ptr<Method> { return std::make_unique<OursCoarse>(Content::tests); }};
 }
 
 }  // namespace
 
 std::vector<MethodEntry> ours_methods() {
-  return {ours(), ours_floating(), ours_paper(), ours_coherent(), ours_tolerance(), ours_budget()};
+  return {ours(),          ours_floating(),  ours_paper(), ours_coherent(),
+          ours_one_pair(), ours_tolerance(), ours_budget()};
 }
 
 }  // namespace lrb::methods

@@ -7,6 +7,7 @@
 #include "engine/construct/build.hpp"
 #include "engine/core/error.hpp"
 #include "engine/query/brute_force.hpp"
+#include "scenarios/bench/bench_runner.hpp"
 #include "scenarios/bench/data_set.hpp"
 #include "scenarios/bench/make_sets.hpp"
 #include "scenarios/bench/oracle.hpp"
@@ -194,27 +195,79 @@ TEST_CASE("errors of a contact region: none for the exact list, the worst for no
         0.5);
 }
 
+TEST_CASE("how far points are off two bodies: both distances together") {
+  const LrbRep a = build_lrb(shapes::bumpy_sphere(2, 1));
+  const Pose near = Pose::translation({1.2, 0.1, 0}), far = Pose::translation({10, 0, 0});
+  bench::RegionMaker maker(a, Pose{}, a, near);
+  const bench::Region exact = maker.of_pairs(bench::exact_pairs(a, Pose{}, a, near));
+  REQUIRE(exact.points.size() > 10);
+  CHECK(bench::BodyDistance(a, Pose{}, a, near).off(exact.points) < 1e-12);
+  CHECK(bench::BodyDistance(a, Pose{}, a, near).off({}) == 0);
+  // A point of A, whose nearest point of B is a vertex of it or not much nearer.
+  const Eigen::Vector3d x = a.vertices()[0];
+  double nearest = 1e9;
+  for (FaceId f = 0; f < a.real_face_count(); ++f)
+    for (const VertexId v : a.face(f)) nearest = std::min(nearest, (far.apply(a.vertices()[v]) - x).norm());
+  CHECK(bench::BodyDistance(a, Pose{}, a, far).off({x}) <= nearest);
+  CHECK(bench::BodyDistance(a, Pose{}, a, far).off({x}) > nearest - 0.1);
+}
+
+TEST_CASE(
+    "an answer to a tolerance is no further off than it says, and one pair that meets is off by nothing") {
+  const Folder folder;
+  const bench::DataSet set = bench::make_data_set(small_pair(), few(), folder.path.string());
+  const auto entries = methods::registered_methods();
+  std::vector<bench::Record> records;
+  std::vector<methods::MethodInfo> infos;
+  for (const char* name : {"ours-tolerance", "ours-one-pair"}) {
+    const methods::MethodEntry& entry = methods::find_method(entries, name);
+    infos.push_back(entry.info);
+    bench::BenchRunner runner(entry, entry.info.knob.empty() ? std::nullopt : std::optional(0.1), set, true);
+    for (std::uint64_t q = 0; q < set.questions.size(); ++q) records.push_back(runner.ask(q));
+  }
+  bool any_off = false;
+  for (const bench::Point& p : bench::measure_points({set}, infos, records)) {
+    CAPTURE(p.method);
+    const double off = *p.errors[static_cast<std::size_t>(bench::Metric::off)];
+    REQUIRE(p.proved_off);
+    CHECK(off <= *p.proved_off + 1e-12);
+    CHECK(*p.errors[static_cast<std::size_t>(bench::Metric::contact)] == 0);
+    if (p.method == "ours-one-pair") CHECK(*p.proved_off == 0);
+    any_off |= off > 1e-6;
+  }
+  CHECK(any_off);
+}
+
 TEST_CASE("points: what fails scores the worst, and the frontier is what nothing beats in both") {
   const Folder folder;
   const bench::DataSet set = bench::make_data_set(small_pair(), few(), folder.path.string());
-  std::vector<methods::MethodInfo> infos = {info("right"), info("blind"), info("dead"), info("slow")};
+  std::vector<methods::MethodInfo> infos = {info("right"), info("blind"), info("dead"), info("slow"),
+                                            info("told")};
+  infos.back().told_more = true;
   std::vector<bench::Record> records;
   for (std::uint64_t q = 0; q < set.questions.size(); ++q)
     for (const methods::MethodInfo& m : infos) {
       bench::Record r = answer(m.name, q, set.questions[q].pose_class,
                                m.name == "slow"    ? 9
                                : m.name == "blind" ? 1
+                               : m.name == "told"  ? 0.5
                                                    : 2);
       r.set = set.name;
       if (m.name != "blind") r.all.pairs = set.questions[q].expected;
       r.all.contact = !r.all.pairs.empty();
+      if (m.name == "right" || (m.name == "slow" && q > 0)) r.all.error_bound = 0.25 * set.diagonal;
       if (m.name == "dead") r.outcome = bench::Outcome::timed_out;
       records.push_back(r);
     }
   std::size_t seen = 0;
+  const bench::PoseClass first_class = set.questions[0].pose_class;
   for (const bench::Point& p : bench::measure_points({set}, infos, records)) {
     const bool meets = p.pose_class != bench::PoseClass::apart;
+    CHECK(p.proved_off.has_value() ==
+          (p.method == "right" || (p.method == "slow" && p.pose_class != first_class)));
+    if (p.method == "told") CHECK_FALSE(p.frontier);  // it knew more
     if (p.method == "right") {
+      CHECK(*p.proved_off == doctest::Approx(0.25));
       CHECK(p.error() == 0);
       CHECK(p.frontier == meets);  // apart, to see nothing is as right, and faster
     }
@@ -231,7 +284,7 @@ TEST_CASE("points: what fails scores the worst, and the frontier is what nothing
     }
     ++seen;
   }
-  CHECK(seen == 4 * std::size(bench::kPoseClasses));
+  CHECK(seen == 5 * std::size(bench::kPoseClasses));
 }
 
 TEST_CASE("a sphere tree misses nothing, and is closer to the truth at deeper levels") {

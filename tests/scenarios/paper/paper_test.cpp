@@ -146,6 +146,7 @@ TEST_CASE("paper: the program's shards make the report of the whole, and bad inp
   refused({"--merge", "part0/records.jsonl", "other/records.jsonl"}, "another experiment");
   refused({"--merge", "whole/records.jsonl"}, "whole/shard.json");
   refused({"--collisions", "2", "--merge", "part0/records.jsonl"}, "--collisions");
+  refused({"--lean", "--merge", "part0/records.jsonl"}, "--lean");
   folder.write("part0/shard.json", "{\"shard\": -1}");
   refused({"--merge", "part0/records.jsonl", "part1/records.jsonl"}, "part0/shard.json");
   for (const char* bad : {"2/2", "x", "1", "0/0", "-1/2", "0/2x"})
@@ -171,8 +172,13 @@ TEST_CASE("the series: rows and powers from records; records of other bodies are
     m.name = "rock";
     return m;
   }();
-  const auto objects = paper::make_series({&rock, 1}, {0, 3, 100}, paper::diagonal(a), {});
+  const auto objects = paper::make_series({&rock, 1}, {0, 3, 100}, {}, paper::diagonal(a), {});
   REQUIRE(objects.size() == 3);
+  BuildOptions lean;
+  lean.lean = true;
+  const auto leaner = paper::make_series({&rock, 1}, {0, 1, 100}, lean, paper::diagonal(a), {});
+  CHECK(leaner[0].rep.real_face_count() == 2000);
+  CHECK(leaner[0].rep.face_count() < objects[0].rep.face_count());
   CHECK(objects[0].rep.real_face_count() == 2000);
   CHECK(objects[2].rep.real_face_count() == 500);
   CHECK(paper::diagonal(objects[2].rep) == doctest::Approx(paper::diagonal(a)));
