@@ -297,13 +297,14 @@ TEST_CASE("no point of a lid is further from the real faces, exactly, than is pr
 }
 
 TEST_CASE("a flat lid over coplanar faces is off by nothing") {
-  // A board with a thousand faces on each side: lids over them lie in their plane but for the builder's margin.
+  // A board with a thousand faces on each side: lids over them lie in their plane but for the builder's margin. The
+  // other regions go round its edges.
   const Mesh board = voxels(24, 24, 1, [](int, int, int) { return true; });
   const LrbRep rep = build_lrb(board);
   const std::vector<double> proved = region_thickness(rep);
   std::size_t flat = 0;
   for (const double t : proved) flat += t < 1e-4;
-  CHECK(2 * flat > proved.size());
+  CHECK(3 * flat > proved.size());
 }
 
 TEST_CASE("any number of threads proves the same") {
