@@ -252,7 +252,9 @@ Options options_of(int argc, char** argv) {
 int main(int argc, char** argv) {
   Options options = options_of(argc, argv);
   if (options.poses < 1 || options.repeats < 1) {
-    std::fprintf(stderr, "usage: coarse_bench [speed|bound|time]... [--poses N] [--repeats N] [--draw FILE] [BODY...]\n");
+    std::fprintf(
+        stderr,
+        "usage: coarse_bench [speed|bound|time]... [--poses N] [--repeats N] [--draw FILE] [BODY...]\n");
     return 2;
   }
   const bool chosen = !options.bodies.empty();
