@@ -1,11 +1,11 @@
-// Prints, for each mesh given (or all of LRB_MESHES), what its LRB-rep costs:
+// Prints, for each mesh given (or all of LRB_MESHES), what its LRB-rep costs, built lean and to fit, and how many faces its
+// wrappers have at tolerances, as shares of its largest side:
 //   build_bench [-k INTERIOR] [-r REPEATS] [--threads N] [--validate] MESH...
 // or how building and loading grow with size, on each mesh (or the generated rock) at resolutions of it:
 //   build_bench --growth [-r REPEATS] [--threads N] [--validate] [--subdivide N] [--resolutions N]
 //   [MESH|rock]...
 
 #include <algorithm>
-#include <chrono>
 #include <cstdio>
 #include <cstdlib>
 #include <ctime>
@@ -26,14 +26,13 @@
 #include "engine/lrb/validate.hpp"
 #include "engine/mesh/io/mesh_io.hpp"
 #include "scenarios/bodies/generators/generators.hpp"
+#include "scenarios/bodies/level_figures.hpp"
 #include "scenarios/bodies/resolutions/power_fit.hpp"
 #include "scenarios/bodies/resolutions/resolutions.hpp"
-#include "tests/bench/timing.hpp"
 
 namespace {
 
 using lrb::Mesh;
-using lrb::bench::seconds_since;
 
 double hull_volume(const Mesh& mesh) {
   Mesh hull;
@@ -41,37 +40,6 @@ double hull_volume(const Mesh& mesh) {
   for (const auto& t : lrb::construct::convex_hull(mesh.vertices))
     hull.add_face(std::array{lrb::VertexId(t[0]), lrb::VertexId(t[1]), lrb::VertexId(t[2])});
   return lrb::construct::volume_of(hull);
-}
-
-void report(const std::string& path, const lrb::BuildOptions& options, int repeats, bool validating) {
-  Mesh mesh = lrb::read_mesh(path);
-  std::vector<double> times;
-  for (int i = 1; i < repeats; ++i) {
-    const auto start = std::chrono::steady_clock::now();
-    build_lrb(mesh, options);
-    times.push_back(seconds_since(start));
-  }
-  const auto start = std::chrono::steady_clock::now();
-  const lrb::LrbRep rep = build_lrb(mesh, options);
-  times.push_back(seconds_since(start));
-  std::sort(times.begin(), times.end());
-  double lids = 0, floor = 0;
-  for (lrb::RegionId r = 0; r < rep.region_count(); ++r) {
-    lids += static_cast<double>(rep.lids(r).size());
-    floor += static_cast<double>(rep.floor(r).size());
-  }
-  const double regions = std::max(1u, rep.region_count());
-  const std::vector<lrb::FaceId> outer(rep.outermost_faces().begin(), rep.outermost_faces().end());
-  std::printf("| %s | %u | %.3f | %.3f | %zu | %.2f | %u | %u | %.0f/%.0f |",
-              std::filesystem::path(path).stem().c_str(), rep.real_face_count(), times[times.size() / 2],
-              static_cast<double>(rep.face_count()) / rep.real_face_count(), outer.size(),
-              enclosed_volume(rep, outer) / hull_volume(mesh), rep.region_count(), rep.layer_count(),
-              floor / regions, lids / regions);
-  if (validating) {
-    const lrb::ValidateReport v = validate(rep);
-    std::printf(" %s |", v.valid ? "valid" : v.violations.front().c_str());
-  }
-  std::printf("\n");
 }
 
 double cpu_seconds() {
@@ -101,6 +69,32 @@ Times least_times(int repeats, const Work& work) {
     least = i == 0 ? t : Times{std::min(least.cpu, t.cpu), std::min(least.wall, t.wall)};
   }
   return least;
+}
+
+/// How a mesh is built, lean and to fit, its levels, and what comes of it.
+void report(const std::string& path, const lrb::BuildOptions& options, int repeats, bool validating) {
+  const Mesh mesh = lrb::read_mesh(path);
+  lrb::BuildOptions lean = options;
+  lean.lean = true;
+  const double lean_seconds = least_times(repeats, [&] { build_lrb(mesh, lean); }).cpu;
+  std::optional<lrb::LrbRep> rep;
+  const double seconds = least_times(repeats, [&] { rep = build_lrb(mesh, options); }).cpu;
+  const double levels = least_times(1, [&] { rep->levels(options.threads); }).cpu;
+  const std::vector<lrb::FaceId> outer(rep->outermost_faces().begin(), rep->outermost_faces().end());
+  std::printf("| %s | %u | %.3f | %.3f | %.2f | %.3f |", std::filesystem::path(path).stem().c_str(),
+              rep->real_face_count(), lean_seconds, seconds, seconds / lean_seconds, levels);
+  constexpr double kShares[] = {0.005, 0.01, 0.02};
+  for (const lrb::bodies::LevelFigures& l : lrb::bodies::level_figures(*rep, kShares, options.threads))
+    std::printf(" %u |", l.faces);
+  std::printf(" %.3f | %zu | %.2f | %u | %u |",
+              static_cast<double>(rep->face_count()) / rep->real_face_count(), outer.size(),
+              enclosed_volume(*rep, outer) / hull_volume(mesh), rep->region_count(), rep->layer_count());
+  if (validating) {
+    const lrb::ValidateReport v = validate(*rep);
+    std::printf(" %s |", v.valid ? "valid" : v.violations.front().c_str());
+  }
+  std::printf("\n");
+  std::fflush(stdout);
 }
 
 /// What Linux says of this process's memory in bytes: "VmRSS:", "VmHWM:" (the most of the former so far).
@@ -218,8 +212,8 @@ int main(int argc, char** argv) try {
     return 2;
   }
   std::printf(
-      "| mesh | faces | build s | total/real | outer faces | outer/hull volume | regions | layers | "
-      "floor/lids |\n");
+      "| mesh | faces | lean: CPU s | CPU s | times lean | levels: CPU s | faces at 0.005 | 0.01 | 0.02 | total/real | "
+      "outer faces | outer/hull volume | regions | layers |\n");
   for (const std::string& path : paths) report(path, options, repeats, validating);
 } catch (const lrb::InputError& e) {
   std::fprintf(stderr, "%s\n", e.what());
