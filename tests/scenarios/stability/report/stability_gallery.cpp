@@ -22,8 +22,8 @@ std::vector<SimplexPair> spoilt(const std::vector<SimplexPair>& pairs, const cas
   for (std::size_t i = 0; i < pairs.size(); ++i)
     if (i % 3 != 1) out.push_back(pairs[i]);
   if (!pairs.empty())
-    out.push_back(
-        {(pairs[0].a + 1) % c.a->real_simplex_count(), (pairs[0].b + 1) % c.b->real_simplex_count()});
+    out.push_back({SimplexId((pairs[0].a + 1) % c.a->real_simplex_count()),
+                   SimplexId((pairs[0].b + 1) % c.b->real_simplex_count())});
   return out;
 }
 
