@@ -59,13 +59,14 @@ double NearestFace::distance(const Eigen::Vector3d& p, SimplexId s) const {
 }
 
 /// A nearer point can lie beyond a border only where the nearest one so far lies on it: there it crosses.
-NearFace NearestFace::walk(const Eigen::Vector3d& p, SimplexId from) const {
+NearFace NearestFace::walk(const Eigen::Vector3d& p, SimplexId from,
+                           const std::vector<Across>& neighbours) const {
   const int corners = rep_.dim();
   SimplexPoint nearest = nearest_point(p, from);
   for (bool moves = true; moves;) {
     moves = false;
     const SimplexPoint here = nearest;
-    const Across& across = neighbours_[from];
+    const Across& across = neighbours[from];
     for (int e = 0; e < corners; ++e) {
       const bool on_border = here.weight[corners == 3 ? (e + 2) % 3 : 1 - e] == 0;
       if (!on_border || across[e] == kNull) continue;

@@ -115,7 +115,7 @@ class RegionMeter {
   /// `near`: (|V|) a real simplex near each vertex.
   RegionMeter(const LrbRep& rep, const std::vector<Vector3d>& x, const std::vector<Across>& neighbours,
               const std::vector<NearFace>& near)
-      : rep_(rep), x_(x), near_(near), nearest_(rep, x, neighbours), corners_(rep.dim()) {}
+      : rep_(rep), x_(x), neighbours_(neighbours), near_(near), nearest_(rep, x), corners_(rep.dim()) {}
 
   /// Returns the region's thickness in units.
   double measure(RegionId r) {
@@ -170,7 +170,7 @@ class RegionMeter {
   bool is_settled(Piece& piece) {
     if (piece.most > limit()) {
       const Vector3d middle = middle_of(piece);
-      NearFace near = nearest_.walk(middle, piece.face);
+      NearFace near = nearest_.walk(middle, piece.face, neighbours_);
       // The walk may end where the body is near by way of other faces only.
       if (near.distance > found_) near = nearest_.find(middle, near);
       found_ = std::max(found_, near.distance);
@@ -239,6 +239,7 @@ class RegionMeter {
 
   const LrbRep& rep_;
   const std::vector<Vector3d>& x_;
+  const std::vector<Across>& neighbours_;
   const std::vector<NearFace>& near_;
   NearestFace nearest_;
   const int corners_;  ///< of a piece and of a real simplex
@@ -249,15 +250,14 @@ class RegionMeter {
 };
 
 /// Returns a real simplex near each vertex: one of its own where it has one.
-std::vector<NearFace> near_vertices(const LrbRep& rep, const std::vector<Vector3d>& x,
-                                    const std::vector<Across>& neighbours, Workers& workers) {
+std::vector<NearFace> near_vertices(const LrbRep& rep, const std::vector<Vector3d>& x, Workers& workers) {
   std::vector<NearFace> near(x.size());
   for (SimplexId s = 0; s < rep.real_simplex_count(); ++s) {
     VertexId v[3];
     rep.simplex(s, v);
     for (int k = 0; k < rep.dim(); ++k) near[v[k]] = {s, 0};
   }
-  std::vector<NearestFace> finders(workers.count(), NearestFace(rep, x, neighbours));
+  std::vector<NearestFace> finders(workers.count(), NearestFace(rep, x));
   workers.for_each(x.size(), [&](std::size_t v, unsigned worker) {
     if (near[v].simplex == kNull) near[v] = finders[worker].find(x[v]);
   });
@@ -270,7 +270,7 @@ std::vector<double> region_thickness(const LrbRep& rep, unsigned threads) {
   Workers workers(threads);
   const std::vector<Vector3d> x = vertices_in_units(rep);
   const std::vector<Across> neighbours = real_neighbours(rep);
-  const std::vector<NearFace> near = near_vertices(rep, x, neighbours, workers);
+  const std::vector<NearFace> near = near_vertices(rep, x, workers);
   std::vector<RegionMeter> meters(workers.count(), RegionMeter(rep, x, neighbours, near));
   std::vector<double> out(rep.region_count());
   workers.for_each(out.size(), [&](std::size_t r, unsigned worker) {

@@ -48,8 +48,8 @@ void cut_lid(const LrbRep& rep, FaceId lid, double longest, std::vector<LidPiece
 /// Measures points one after another; the face that was nearest to one is tried first for the next.
 class Gauge {
  public:
-  Gauge(const LrbRep& rep, const std::vector<Vector3d>& vertices, const std::vector<Across>& neighbours)
-      : unit_(rep.tree().unit()), nearest_(rep, vertices, neighbours) {}
+  Gauge(const LrbRep& rep, const std::vector<Vector3d>& vertices)
+      : unit_(rep.tree().unit()), nearest_(rep, vertices) {}
 
   double off(const Vector3d& x) {
     const Vector3d p = x / unit_;
@@ -69,12 +69,11 @@ class Gauge {
 MeasuredLids measure_lids(const LrbRep& rep, std::span<const FaceId> lids, double longest, unsigned threads) {
   constexpr std::size_t kAtOnce = 16;  // lids
   const std::vector<Vector3d> vertices = vertices_in_units(rep);
-  const std::vector<Across> neighbours = real_neighbours(rep);
   std::vector<MeasuredLids> parts((lids.size() + kAtOnce - 1) / kAtOnce);
   const int corners = rep.dim();
   Workers(threads).for_each(parts.size(), [&](std::size_t i, unsigned) {
     MeasuredLids& part = parts[i];
-    Gauge gauge(rep, vertices, neighbours);
+    Gauge gauge(rep, vertices);
     for (const FaceId lid : lids.subspan(i * kAtOnce, std::min(kAtOnce, lids.size() - i * kAtOnce))) {
       const std::size_t first = part.pieces.size();
       cut_lid(rep, lid, longest, part.pieces);

@@ -98,11 +98,7 @@ BodyDistance::BodyDistance(const LrbRep& a, const Pose& pose_a, const LrbRep& b,
     : a_(a, pose_a), b_(b, pose_b) {}
 
 BodyDistance::Side::Side(const LrbRep& rep, const Pose& p)
-    : unit(rep.tree().unit()),
-      pose(p),
-      vertices(vertices_in_units(rep)),
-      neighbours(real_neighbours(rep)),
-      nearest(rep, vertices, neighbours) {}
+    : unit(rep.tree().unit()), pose(p), vertices(vertices_in_units(rep)), nearest(rep, vertices) {}
 
 /// For poses that are rotations, as those of data sets are.
 double BodyDistance::Side::distance(const Eigen::Vector3d& world) {

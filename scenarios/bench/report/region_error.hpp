@@ -58,7 +58,6 @@ class BodyDistance {
     double unit;
     Pose pose;
     std::vector<Eigen::Vector3d> vertices;  ///< in units
-    std::vector<Across> neighbours;
     NearestFace nearest;
   };
   Side a_, b_;
