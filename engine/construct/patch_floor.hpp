@@ -36,7 +36,7 @@ class PatchFloor {
     std::array<double, 3> height;  ///< of the corners over the opposite edges
     double radius;                 ///< of a ball about the middle
     double off, off_b, off_c;      ///< at the corners, `extra` included: a, and how much more b and c
-    double least;                  ///< of these
+    double least;                  ///< the least at a corner
   };
   /// Holds all points that a triangle may show to be within the limit.
   struct Ball {

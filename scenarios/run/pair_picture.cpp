@@ -26,40 +26,34 @@ std::vector<Vector3d> corners_of(const LrbRep& rep, const Pose& pose, SimplexId 
   return out;
 }
 
-/// Outlines a face over everything that hides it.
-void outline(render::DrawList& list, std::vector<Vector3d> corners, render::Rgba colour) {
+constexpr float kHalo = 1.5F;
+
+/// Draws a segment, or the outline of a polygon, over everything that hides it.
+void outline(render::DrawList& list, const std::vector<Vector3d>& corners, render::Rgba colour, float width) {
   render::DrawLine line;
+  line.points = corners;
   line.closed = corners.size() > 2;
-  line.points = std::move(corners);
   line.colour = colour;
-  line.width = 3;
+  line.width = width;
   line.halo = render::kWhite;
-  line.halo_width = 1.5F;
+  line.halo_width = kHalo;
   line.layer = render::Layer::on_top;
   list.lines.push_back(line);
 }
 
-void mark(render::DrawList& list, const std::vector<Vector3d>& points, bool closed) {
+/// Draws the corners of a contact, or the nearest points, and what they span.
+void mark(render::DrawList& list, const std::vector<Vector3d>& points) {
   for (const Vector3d& x : points) {
     render::DrawPoint point;
     point.x = x;
     point.colour = render::palette::kContact;
     point.radius = 5;
     point.halo = render::kWhite;
-    point.halo_width = 1.5F;
+    point.halo_width = kHalo;
     point.layer = render::Layer::on_top;
     list.points.push_back(point);
   }
-  if (points.size() < 2) return;
-  render::DrawLine line;
-  line.points = points;
-  line.closed = closed;
-  line.colour = render::palette::kContact;
-  line.width = 4;
-  line.halo = render::kWhite;
-  line.halo_width = 1.5F;
-  line.layer = render::Layer::on_top;
-  list.lines.push_back(line);
+  if (points.size() > 1) outline(list, points, render::palette::kContact, 4);
 }
 
 /// Draws a square of the plane across the line between two points, in its middle. `side`: its length.
@@ -111,15 +105,15 @@ void draw_pair(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose&
   for (const Vector3d& x : both) part.extend(x);
   for (const render::SceneBody& body : bodies)
     for (const Vector3d& x : render::body_points(*body.rep, body.pose)) all.extend(x);
-  outline(scene.list, of_a, render::palette::edge_of(render::palette::body(Side::a)));
-  outline(scene.list, of_b, render::palette::edge_of(render::palette::body(Side::b)));
+  outline(scene.list, of_a, render::palette::edge_of(render::palette::body(Side::a)), 3);
+  outline(scene.list, of_b, render::palette::edge_of(render::palette::body(Side::b)), 3);
   if (pair.meet == exact::Meet::disjoint) {
-    mark(scene.list, {pair.nearest[0], pair.nearest[1]}, false);
+    mark(scene.list, {pair.nearest[0], pair.nearest[1]});
     if (a.dim() == 3 && pair.distance > 0) add_plane(scene.list, pair.nearest, part.diagonal().norm());
   } else {
     std::vector<Vector3d> contact;
     for (int i = 0; i < pair.contact.corner_count; ++i) contact.push_back(pair.contact.corners[i].x);
-    mark(scene.list, contact, contact.size() > 2);
+    mark(scene.list, contact);
   }
   const render::Overlay overlay = overlay_of(a, b, pair, scene.key);
   const render::OverlayLayout layout = render::lay_out(overlay, kPairWidth, kPairHeight);

@@ -126,7 +126,7 @@ void speed(const Body& body, const std::vector<Approach>& list, const Options& o
   for (const PoseClass& c : kClasses) speed_of(body, c, list, options.repeats);
 }
 
-/// How far the pairs of an answer are off: some of them, evenly chosen, where there are many.
+/// Returns the most that a pair of an answer is off; of many pairs looks at some, evenly chosen.
 double off_of(const test::RealSurfaces& real, const std::vector<SimplexPair>& pairs) {
   constexpr std::size_t kMost = 200;
   double most = 0;

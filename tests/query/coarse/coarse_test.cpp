@@ -153,8 +153,8 @@ TEST_CASE("a query with a tolerance gives the exact relation, and keeps its erro
   CHECK(with_pseudo > 50);
 }
 
-/// How many times as large the error bounds of answers about two bodies are as what their pairs are off at most;
-/// none where the answer is exact. Tolerances are shares of the larger body's size.
+/// Returns the error bounds of answers about two bodies, each divided by the most that one of its pairs is off.
+/// Leaves out exact answers. Tolerances are shares of the larger body's size.
 std::vector<double> bounds_over_truth(const Bodies& pair, int poses, std::initializer_list<double> tolerances,
                                       RandomEngine& random) {
   const auto size_of = [](const LrbRep& rep) { return shapes::box_of(rep).sizes().maxCoeff(); };
