@@ -50,6 +50,7 @@ class FrameState {
   std::vector<std::uint8_t> met(Side side) const;
   std::vector<double> values_of(Side side) const;
   std::string event_text() const;
+  static std::string node_pair_text(const trace::Event& e);
   std::string result_text() const;
   trace::Totals totals() const;  ///< Counts the events of the step so far.
 

@@ -170,6 +170,10 @@ int run_render(const RenderOptions& o, const Globals& globals) {
       {"lrbscope:scenario", trace.header.scenario},
       {"lrbscope:scenario_hash", trace::to_hex(trace.header.scenario_hash)},
   };
+  if (spec::needed_level(spec.colour_by) > trace.header.level)
+    throw InputError("--colour-by " + std::string(name_of(spec.colour_by)) + ": " + printable_name(o.trace) +
+                     " does not hold the events for it; record the run with --events " +
+                     std::string(name_of(spec::needed_level(spec.colour_by))));
   run::check_frames(p, spec);  // throws before anything is written
   io::make_folder(folder);
   const io::FolderLock lock(folder);
