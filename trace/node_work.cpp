@@ -4,7 +4,6 @@
 
 #include "engine/core/error.hpp"
 #include "engine/lrb/wrapper_level.hpp"
-#include "engine/tree/tree_quality.hpp"
 
 namespace lrb::trace {
 
@@ -18,19 +17,18 @@ const ObbTree& walked_tree(const LrbRep& rep, std::uint32_t walked) {
   return levels[walked - 1].tree;
 }
 
-NodeCounts count_nodes(const LrbRep& rep, Side side, std::span<const Event> events) {
-  const std::size_t n = rep.tree().nodes().size();
-  NodeCounts counts{std::vector<std::uint32_t>(n), std::vector<std::uint32_t>(n),
-                    std::vector<std::uint32_t>(n)};
+NodeCounts count_nodes(const TreeShape& tree, Side side, std::span<const Event> events) {
+  const std::vector<std::uint32_t> none(tree.size());
+  NodeCounts counts{none, none, none};
   bool is_body = true;
   for (const Event& e : events) {
     if (e.kind == EventKind::begin && e.phase() == Phase::walk)
       is_body = (side == Side::a ? e.depth_a : e.depth_b) == 0;
     if (e.kind != EventKind::node_pair || !is_body) continue;
     const std::uint32_t node = side == Side::a ? e.a : e.b;
-    if (node >= n)
-      throw InputError("body " + rep.name() + ": the trace visits node " + std::to_string(node) +
-                       " of its tree, which has " + std::to_string(n) +
+    if (node >= tree.size())
+      throw InputError("the trace visits node " + std::to_string(node) + " of " + std::string(name_of(side)) +
+                       "'s tree, which has " + std::to_string(tree.size()) +
                        "; the trace is damaged: record it again");
     ++counts.visits[node];
     counts.ended[node] += e.work().met == 0;
@@ -39,41 +37,25 @@ NodeCounts count_nodes(const LrbRep& rep, Side side, std::span<const Event> even
   return counts;
 }
 
-std::vector<double> box_tests_by_face(const LrbRep& rep, const NodeCounts& counts) {
+std::vector<double> box_tests_by_face(const LrbRep& rep, const TreeShape& tree, const NodeCounts& counts) {
   std::vector<double> out(rep.face_count());
-  const ObbTree& tree = rep.tree();
-  if (tree.empty()) return out;
-  const std::vector<std::uint32_t> beneath = simplices_beneath(tree);
-  struct Visit {
-    std::uint32_t node;
-    double share;  // of the nodes above, for each simplex
-  };
-  std::vector<Visit> stack = {{0, 0}};
-  while (!stack.empty()) {
-    const Visit v = stack.back();
-    stack.pop_back();
-    const TreeNode& node = tree.nodes()[v.node];
-    const double share = v.share + static_cast<double>(counts.box_tests[v.node]) / beneath[v.node];
-    for (std::uint32_t k = 0; k < node.count; ++k)
-      if (node.is_leaf)
-        out[rep.face_of_simplex(tree.blocks()[node.first].simplex[k])] += share;
-      else
-        stack.push_back({node.first + k, share});
+  std::vector<double> share(tree.size());  // of the node and those above, for each simplex
+  for (const std::uint32_t node : tree.from_root()) {
+    share[node] += static_cast<double>(counts.box_tests[node]) / tree.beneath(node);
+    for (const std::uint32_t child : tree.children(node)) share[child] = share[node];
+    for (const SimplexId s : tree.simplices(node)) out[rep.face_of_simplex(s)] += share[node];
   }
   return out;
 }
 
-std::vector<DepthWork> work_by_depth(const LrbRep& rep, const NodeCounts& counts) {
-  const ObbTree& tree = rep.tree();
+std::vector<DepthWork> work_by_depth(const TreeShape& tree, const NodeCounts& counts) {
   std::vector<DepthWork> out;
-  if (tree.empty()) return out;
-  const double root = node_area(tree, 0);
-  const std::vector<std::uint32_t> depth = node_depths(tree);
-  for (std::uint32_t n = 0; n < depth.size(); ++n) {
-    if (depth[n] >= out.size()) out.resize(depth[n] + 1);
-    DepthWork& w = out[depth[n]];
+  const double root = tree.size() > 0 ? tree.box(0).area() : 0;
+  for (const std::uint32_t n : tree.from_root()) {
+    if (tree.depth(n) >= out.size()) out.resize(tree.depth(n) + 1);
+    DepthWork& w = out[tree.depth(n)];
     ++w.nodes;
-    w.expected += root > 0 ? node_area(tree, n) / root : 0;
+    w.expected += root > 0 ? tree.box(n).area() / root : 0;
     w.nodes_visited += counts.visits[n] > 0;
     w.visits += counts.visits[n];
     w.ended += counts.ended[n];

@@ -8,6 +8,7 @@
 
 #include "engine/lrb/lrb_rep.hpp"
 #include "trace/trace.hpp"
+#include "trace/tree_shape.hpp"
 
 namespace lrb::trace {
 
@@ -21,13 +22,13 @@ struct NodeCounts {
   std::vector<std::uint32_t> ended;      ///< those of them of which no two boxes met
   std::vector<std::uint32_t> box_tests;  ///< of these pairs
 };
-/// Counts over walks of the body itself; walks of levels are left out. `rep` is the body that was recorded as `side`.
-/// Throws InputError if an event names a node that the tree does not have.
-NodeCounts count_nodes(const LrbRep& rep, Side side, std::span<const Event> events);
+/// Counts over walks of the body itself; walks of levels are left out. `tree` is that of the body that was recorded as
+/// `side`. Throws InputError if an event names a node that the tree does not have.
+NodeCounts count_nodes(const TreeShape& tree, Side side, std::span<const Event> events);
 
 /// Returns, for each face (|F|), the box tests of the nodes above it: each node's are shared evenly by the simplices
 /// beneath it, so that the sum over all faces is that over all nodes.
-std::vector<double> box_tests_by_face(const LrbRep& rep, const NodeCounts& counts);
+std::vector<double> box_tests_by_face(const LrbRep& rep, const TreeShape& tree, const NodeCounts& counts);
 
 /// The nodes of one depth of a body's tree, beside what the surface area heuristic expects.
 struct DepthWork {
@@ -37,6 +38,6 @@ struct DepthWork {
   std::uint64_t visits = 0, ended = 0, box_tests = 0;
 };
 /// Returns the work by depth, the root's first.
-std::vector<DepthWork> work_by_depth(const LrbRep& rep, const NodeCounts& counts);
+std::vector<DepthWork> work_by_depth(const TreeShape& tree, const NodeCounts& counts);
 
 }  // namespace lrb::trace

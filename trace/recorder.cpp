@@ -68,6 +68,7 @@ void Recorder::start_over() {
   header.clock = settings_.clock;
   header.event_cap = settings_.event_cap;
   header.level = settings_.level;
+  header.engine = settings_.engine;
   for (std::size_t side = 0; side < 2; ++side) {
     if (!reps_[side]) continue;
     header.bodies.push_back(describe_body(*reps_[side], settings_.sources[side]));
@@ -128,7 +129,7 @@ Trace Recorder::take() {
   close_step();
   trace_.events_seen = seen_;
   if (settings_.request.is_coarse()) find_causes(trace_.events);
-  if (settings_.level != EventLevel::faces) find_axes(trace_, reps_);
+  if (settings_.level != EventLevel::faces && settings_.engine.empty()) find_axes(trace_, reps_);
   Replay replay(reps_, settings_.request.wrapper);
   for (Event& event : trace_.events)
     if (replay.apply(event, trace_.events)) event.boundary = replay.boundary_size(event.side);

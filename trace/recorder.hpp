@@ -31,6 +31,7 @@ struct RecorderSettings {
   std::uint32_t event_cap =
       1'000'000;  ///< events beyond this number are counted but not stored (at most kMaxId)
   EventLevel level = EventLevel::faces;
+  std::string engine;  ///< another one whose walk is told, over trees of its own; empty: ours
 };
 
 class Recorder {

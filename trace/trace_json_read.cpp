@@ -126,6 +126,7 @@ class Reader {
     h.scenario_hash = scenario.at("hash").hash();
     h.clock = metadata.at("clock").named<Clock>();
     if (metadata.has("level")) h.level = metadata.at("level").named<EventLevel>();
+    if (metadata.has("engine")) h.engine = metadata.at("engine").string();
     h.request = read_request(metadata.at("request"));
     const TraceNode bodies = metadata.at("bodies");
     const std::size_t count = bodies.array_size();

@@ -46,6 +46,7 @@ void write_metadata(const Trace& trace, JsonOut& out) {
   write_scenario(w, h);
   w.member("clock", name_of(h.clock));
   if (h.level != EventLevel::faces) w.member("level", name_of(h.level));
+  if (!h.engine.empty()) w.member("engine", h.engine);
   w.key("events");
   write_event_counts(w, trace);
   w.key("totals");

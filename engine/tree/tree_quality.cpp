@@ -1,20 +1,7 @@
 #include "engine/tree/tree_quality.hpp"
 
-#include <algorithm>
-
 namespace lrb {
 namespace {
-
-/// Returns the nodes in an order in which parents come before their children.
-std::vector<std::uint32_t> from_the_root(const ObbTree& tree) {
-  std::vector<std::uint32_t> order;
-  if (!tree.empty()) order.push_back(0);
-  for (std::size_t i = 0; i < order.size(); ++i) {
-    const TreeNode& n = tree.nodes()[order[i]];
-    for (std::uint32_t k = 0; !n.is_leaf && k < n.count; ++k) order.push_back(n.first + k);
-  }
-  return order;
-}
 
 bool children_overlap(const TreeNode& n, int x, int y) {
   for (int axis = 0; axis < 3; ++axis)
@@ -22,45 +9,23 @@ bool children_overlap(const TreeNode& n, int x, int y) {
   return true;
 }
 
-}  // namespace
-
-std::vector<std::uint32_t> node_depths(const ObbTree& tree) {
-  std::vector<std::uint32_t> depth(tree.nodes().size(), 0);
-  for (const std::uint32_t i : from_the_root(tree)) {
-    const TreeNode& n = tree.nodes()[i];
-    for (std::uint32_t k = 0; !n.is_leaf && k < n.count; ++k) depth[n.first + k] = depth[i] + 1;
-  }
-  return depth;
-}
-
-std::vector<std::uint32_t> simplices_beneath(const ObbTree& tree) {
-  std::vector<std::uint32_t> count(tree.nodes().size(), 0);
-  std::vector<std::uint32_t> order = from_the_root(tree);
-  std::reverse(order.begin(), order.end());
-  for (const std::uint32_t i : order) {
-    const TreeNode& n = tree.nodes()[i];
-    if (n.is_leaf) count[i] = n.count;
-    for (std::uint32_t k = 0; !n.is_leaf && k < n.count; ++k) count[i] += count[n.first + k];
-  }
-  return count;
-}
-
-double node_area(const ObbTree& tree, std::uint32_t node) {
-  const TreeNode& n = tree.nodes()[node];
+/// Returns the surface area of a node's box, tree units squared.
+double area_of(const TreeNode& n) {
   double side[3];
   for (int i = 0; i < 3; ++i) side[i] = static_cast<double>(n.scale[i]) * kQuantizedMost;
   return 2 * (side[0] * side[1] + side[1] * side[2] + side[2] * side[0]);
 }
+
+}  // namespace
 
 TreeQuality tree_quality(const ObbTree& tree) {
   TreeQuality q;
   if (tree.empty()) return q;
   q.height = tree.height();
   std::uint64_t children = 0, pairs = 0, overlapping = 0;
-  const double root = node_area(tree, 0);
-  for (const std::uint32_t i : from_the_root(tree)) {
-    const TreeNode& n = tree.nodes()[i];
-    const double share = root > 0 ? node_area(tree, i) / root : 0;
+  const double root = area_of(tree.nodes()[0]);
+  for (const TreeNode& n : tree.nodes()) {
+    const double share = root > 0 ? area_of(n) / root : 0;
     ++q.nodes;
     if (n.is_leaf) {
       ++q.leaves;

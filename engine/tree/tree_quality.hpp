@@ -2,18 +2,10 @@
 /// How good a tree is for walking: figures of its shape that cost no query.
 
 #include <cstdint>
-#include <vector>
 
 #include "engine/tree/obb_tree.hpp"
 
 namespace lrb {
-
-/// Return, for each node (nodes): the number of nodes between it and the root; the number of simplices beneath it.
-std::vector<std::uint32_t> node_depths(const ObbTree& tree);
-std::vector<std::uint32_t> simplices_beneath(const ObbTree& tree);
-
-/// Returns the surface area of a node's box, tree units squared.
-double node_area(const ObbTree& tree, std::uint32_t node);
 
 struct TreeQuality {
   std::uint32_t nodes = 0, leaves = 0, simplices = 0, height = 0;

@@ -53,11 +53,12 @@ std::string error_bound_text(double bound) {
 
 FrameState::FrameState(const trace::Trace& trace, std::vector<const LrbRep*> reps,
                        const std::vector<CollideResult>& results, const spec::FrameSpec& spec,
-                       bool point_out_refined)
+                       bool point_out_refined, const FrameExtras& extras)
     : trace_(trace),
       reps_(std::move(reps)),
       results_(results),
       spec_(spec),
+      extras_(extras),
       point_out_refined_(point_out_refined),
       cursor_(make_cursor(trace, reps_)) {}
 
@@ -111,8 +112,11 @@ std::vector<double> FrameState::values_of(Side side) const {
   const trace::EventId first = cursor_.step()->first_event;
   const std::span<const trace::Event> events(trace_.events.data() + first,
                                              cursor_.position() + std::size_t{1} - first);
-  if (spec_.colour_by == ColourBy::box_tests)
-    return trace::box_tests_by_face(rep, trace::count_nodes(rep, side, events));
+  if (spec_.colour_by == ColourBy::box_tests) {
+    if (extras_.trees == nullptr || extras_.trees->empty()) return {};
+    const trace::TreeShape& tree = (*extras_.trees)[static_cast<std::size_t>(side)];
+    return trace::box_tests_by_face(rep, tree, trace::count_nodes(tree, side, events));
+  }
   const trace::FaceCounts counts = trace::count_faces(rep, side, events);
   const auto chosen = [&]() -> const std::vector<std::uint32_t>& {
     switch (spec_.colour_by) {
@@ -181,6 +185,7 @@ render::Scene FrameState::scene(bool wrapper, bool plain) const {
       std::replace(options.value_name.begin(), options.value_name.end(), '_', ' ');
       if (spec_.colour_by == spec::FrameSpec::ColourBy::box_tests)
         options.value_range = box_test_range(values);
+      if (extras_.value_range) options.value_range = extras_.value_range;
       break;
   }
   options.explode = spec_.explode;
@@ -279,6 +284,10 @@ render::Overlay FrameState::overlay(const std::string& title) const {
                   {"refined", render::group_digits(refined[0]) + " + " + render::group_digits(refined[1])},
                   {"face tests", render::group_digits(t.face_tests)},
                   {"contacts", render::group_digits(t.contacts)}};
+    if (!trace_.header.engine.empty()) {  // it has no wrappers
+      o.counters.erase(o.counters.begin(), o.counters.begin() + 3);
+      o.counters.insert(o.counters.begin(), {"pairs of boxes", render::group_digits(t.node_pairs)});
+    }
     if (const trace::StepResult* answer = answer_here(); answer && trace_.header.request.is_coarse())
       o.counters.push_back({"error bound", error_bound_text(answer->error_bound)});
   }

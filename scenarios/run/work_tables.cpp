@@ -44,11 +44,11 @@ report::PageTable share_table(const trace::Trace& trace) {
 }
 
 report::PageTable depth_table(const RecordedRun& p, Side side) {
-  const LrbRep& rep = *p.reps[static_cast<std::size_t>(side)];
+  const trace::TreeShape& tree = (*p.trees)[static_cast<std::size_t>(side)];
   report::PageTable t;
   t.title = "The walk of " + std::string(name_of(side)) + "'s tree, by depth";
   t.columns = {"depth", "nodes", "expected", "visited", "visits", "ended here", "box tests"};
-  const auto depths = trace::work_by_depth(rep, trace::count_nodes(rep, side, p.trace->events));
+  const auto depths = trace::work_by_depth(tree, trace::count_nodes(tree, side, p.trace->events));
   for (std::size_t d = 0; d < depths.size(); ++d) {
     const trace::DepthWork& w = depths[d];
     t.rows.push_back({std::to_string(d), group_digits(w.nodes), short_number(w.expected),
@@ -102,7 +102,7 @@ const std::vector<Quality>& qualities() {
 }  // namespace
 
 std::vector<report::PageTable> work_tables(const RecordedRun& run) {
-  if (run.trace->header.level == EventLevel::faces || run.reps.size() != 2) return {};
+  if (run.trees == nullptr || run.trees->empty()) return {};
   return {share_table(*run.trace), depth_table(run, Side::a), depth_table(run, Side::b)};
 }
 

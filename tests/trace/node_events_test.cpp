@@ -14,7 +14,6 @@
 #include "engine/lrb/wrapper_level.hpp"
 #include "engine/query/collide_impl.hpp"
 #include "engine/query/collide_probe.hpp"
-#include "engine/tree/tree_quality.hpp"
 #include "scenarios/bodies/shapes/random_pose.hpp"
 #include "scenarios/bodies/shapes/shapes.hpp"
 #include "tests/support/json_schema.hpp"
@@ -320,13 +319,14 @@ TEST_CASE("box tests are shared by the faces beneath the nodes: what faces have 
     const LrbRep* const reps[] = {bodies.a, bodies.b};
     for (const Side side : {Side::a, Side::b}) {
       const LrbRep& rep = *reps[static_cast<int>(side)];
-      const NodeCounts counts = count_nodes(rep, side, run.trace.events);
+      const TreeShape tree(rep.tree());
+      const NodeCounts counts = count_nodes(tree, side, run.trace.events);
       CHECK(std::accumulate(counts.box_tests.begin(), counts.box_tests.end(), std::uint64_t{0}) == box_tests);
-      const std::vector<double> faces = box_tests_by_face(rep, counts);
+      const std::vector<double> faces = box_tests_by_face(rep, tree, counts);
       CHECK(std::accumulate(faces.begin(), faces.end(), 0.0) ==
             doctest::Approx(static_cast<double>(box_tests)));
       std::uint64_t visits = 0, nodes = 0;
-      const std::vector<DepthWork> depths = work_by_depth(rep, counts);
+      const std::vector<DepthWork> depths = work_by_depth(tree, counts);
       for (const DepthWork& d : depths) visits += d.visits, nodes += d.nodes;
       CHECK(visits == std::accumulate(counts.visits.begin(), counts.visits.end(), std::uint64_t{0}));
       CHECK(nodes == rep.tree().nodes().size());
@@ -337,7 +337,7 @@ TEST_CASE("box tests are shared by the faces beneath the nodes: what faces have 
   Trace damaged = record(all_bodies()[3], {}, EventLevel::nodes).trace;
   for (Event& e : damaged.events)
     if (e.kind == EventKind::node_pair) e.a = 1'000'000;
-  CHECK_THROWS_AS(count_nodes(*all_bodies()[3].a, Side::a, damaged.events), InputError);
+  CHECK_THROWS_AS(count_nodes(TreeShape(all_bodies()[3].a->tree()), Side::a, damaged.events), InputError);
 }
 
 TEST_CASE("a probe from outside the engine sees the walk, too") {

@@ -162,6 +162,8 @@ int run_render(const RenderOptions& o, const Globals& globals) {
   p.trace = &trace;
   p.results = &results;
   for (const bodies::LoadedBody& body : bodies) p.reps.push_back(&body.rep);
+  const std::vector<trace::TreeShape> trees = run::trees_of(trace, p.reps);
+  p.trees = &trees;
   const std::string folder = output_folder(o);
   spec::FrameSpec spec = frame_spec(o, bodies.size() == 2);
   isolate(o, bodies, spec);
