@@ -37,7 +37,7 @@ void find_axes(Trace& trace, const std::array<const LrbRep*, 2>& reps) {
       tree = {&walked_tree(*reps[0], e.depth_a), &walked_tree(*reps[1], e.depth_b)};
     if (e.kind != EventKind::node_pair || e.work().met != 0) continue;
     BoxPair boxes;
-    compare(box_of(*tree[0], e.a, kWhole, trace.steps[step].pose_a),
+    compare_boxes(box_of(*tree[0], e.a, kWhole, trace.steps[step].pose_a),
             box_of(*tree[1], e.b, kWhole, trace.steps[step].pose_b), boxes);
     NodeEnd end = e.node_end();
     end.axis = boxes.axis;

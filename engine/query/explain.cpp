@@ -125,7 +125,7 @@ class Way {
       box[s] = box_of(tree(side), child[s] == kWhole ? node(s) : path_[s].nodes[at_[s] - 1], child[s],
                       ctx_[side].world.pose());
     }
-    compare(box[0], box[1], pair);
+    compare_boxes(box[0], box[1], pair);
     out_.nodes.push_back(pair);
   }
 
@@ -147,8 +147,9 @@ class Way {
   void compare_faces(const Stepper::Outcome& outcome) {
     out_.reaches_faces = true;
     out_.face_boxes.node = {node(0), node(1)};
-    compare(box_of(tree(Side::a), node(0), path_[0].place, ctx_[Side::a].world.pose()),
-            box_of(tree(Side::b), node(1), path_[1].place, ctx_[Side::b].world.pose()), out_.face_boxes);
+    compare_boxes(box_of(tree(Side::a), node(0), path_[0].place, ctx_[Side::a].world.pose()),
+                  box_of(tree(Side::b), node(1), path_[1].place, ctx_[Side::b].world.pose()),
+                  out_.face_boxes);
     const auto found =
         std::find_if(outcome.candidates.begin(), outcome.candidates.end(),
                      [&](const Candidate& c) { return c.a == out_.pair.a && c.b == out_.pair.b; });
@@ -333,7 +334,7 @@ WalkExplanation explain_walk(const LrbRep& a, const Pose& pose_a, const LrbRep& 
   out.result = collide(a, pose_a, b, pose_b, request, ctx, probe);
   begin(ctx, a, pose_a, b, pose_b);
   if (a.tree().empty() || b.tree().empty()) return out;
-  compare(box_of(a.tree(), 0, kWhole, pose_a), box_of(b.tree(), 0, kWhole, pose_b), out.roots);
+  compare_boxes(box_of(a.tree(), 0, kWhole, pose_a), box_of(b.tree(), 0, kWhole, pose_b), out.roots);
   Stepper stepper(ctx);
   NearestPairs nearest(ctx);
   std::vector<NodePair> now = {{0, 0}}, then;

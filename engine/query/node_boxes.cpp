@@ -32,7 +32,7 @@ WorldBox box_of(const ObbTree& tree, std::uint32_t node, int child, const Pose& 
   return out;
 }
 
-void compare(const WorldBox& a, const WorldBox& b, BoxPair& out) {
+void compare_boxes(const WorldBox& a, const WorldBox& b, BoxPair& out) {
   out.gap = -std::numeric_limits<double>::infinity();
   for (int axis = 0; axis < 6; ++axis) {
     const Vector3d& n = axis < 3 ? a.across[axis] : b.across[axis - 3];

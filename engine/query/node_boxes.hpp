@@ -48,6 +48,6 @@ constexpr int kWhole = -1;
 WorldBox box_of(const ObbTree& tree, std::uint32_t node, int child, const Pose& pose);
 
 /// Sets the gap and the axis of two boxes.
-void compare(const WorldBox& a, const WorldBox& b, BoxPair& out);
+void compare_boxes(const WorldBox& a, const WorldBox& b, BoxPair& out);
 
 }  // namespace lrb

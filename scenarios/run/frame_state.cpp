@@ -107,6 +107,7 @@ trace::Totals FrameState::totals() const {
 
 std::vector<double> FrameState::values_of(Side side) const {
   using ColourBy = spec::FrameSpec::ColourBy;
+  if (extras_.face_values != nullptr) return (*extras_.face_values)[static_cast<std::size_t>(side)];
   if (spec_.colour_by < ColourBy::face_tests) return {};
   const LrbRep& rep = *reps_[static_cast<std::size_t>(side)];
   const trace::EventId first = cursor_.step()->first_event;
@@ -185,6 +186,7 @@ render::Scene FrameState::scene(bool wrapper, bool plain) const {
       std::replace(options.value_name.begin(), options.value_name.end(), '_', ' ');
       if (spec_.colour_by == spec::FrameSpec::ColourBy::box_tests)
         options.value_range = box_test_range(values);
+      if (!extras_.value_name.empty()) options.value_name = extras_.value_name;
       if (extras_.value_range) options.value_range = extras_.value_range;
       break;
   }

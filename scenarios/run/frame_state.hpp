@@ -22,6 +22,8 @@ std::string error_bound_text(double bound);
 struct FrameExtras {
   const std::vector<trace::TreeShape>* trees = nullptr;
   std::optional<std::array<double, 2>> value_range = {};
+  const std::array<std::vector<double>, 2>* face_values = nullptr;
+  std::string value_name = {};
 };
 
 class FrameState {

@@ -100,7 +100,7 @@ void record_wrapper(const spec::Scenario& s, Recording& r) {
 
 std::vector<trace::TreeShape> trees_of(const trace::Trace& trace, const std::vector<const LrbRep*>& reps) {
   std::vector<trace::TreeShape> out;
-  if (trace.header.level == EventLevel::faces || reps.size() != 2) return out;
+  if (trace.header.level == EventLevel::faces || !trace.header.engine.empty() || reps.size() != 2) return out;
   for (const LrbRep* rep : reps) out.emplace_back(rep->tree());
   return out;
 }

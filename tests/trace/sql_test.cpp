@@ -125,8 +125,8 @@ TEST_CASE("the SQL for Perfetto gives the numbers of the summary") {
     const auto totals = tables.run_file("totals.sql");
     REQUIRE(totals.size() == 1);
     CHECK(totals[0].size() == 10);
-    for (const auto& [name, value] : totals[0])
-      CHECK_MESSAGE(value == summary["totals"].at(name).dump(), name);
+    for (const auto& total : totals[0])
+      CHECK_MESSAGE(total.second == summary["totals"].at(total.first).dump(), total.first);
 
     const auto steps = tables.run_file("steps.sql");
     REQUIRE(steps.size() == t.steps.size());
