@@ -6,6 +6,7 @@
 #include "scenarios/io/files.hpp"
 #include "scenarios/report/page/inline_image.hpp"
 #include "scenarios/run/frame_state.hpp"
+#include "scenarios/run/scene_json.hpp"
 #include "scenarios/run/work_tables.hpp"
 #include "trace/counters.hpp"
 #include "trace/hex.hpp"
@@ -247,13 +248,13 @@ void add_tables(report::Page& page, const RecordedRun& p) {
 
 }  // namespace
 
-void add_frames(report::Page& page, const DrawnFrames& drawn, const std::string& folder) {
+void add_frames(report::Page& page, const DrawnFrames& drawn, const std::string& folder, std::size_t budget) {
   std::vector<report::PngBytes> pngs;
   for (const DrawnFrame& f : drawn.frames) {
     const std::string bytes = io::read_text(folder + "/" + f.file);
     pngs.emplace_back(bytes.begin(), bytes.end());
   }
-  report::InlinedImages images = report::inline_pngs(pngs);
+  report::InlinedImages images = report::inline_pngs(pngs, budget);
   page.frames_note = images.note;
   for (std::size_t i = 0; i < drawn.frames.size(); ++i) {
     const DrawnFrame& f = drawn.frames[i];
@@ -277,7 +278,10 @@ report::Page run_page(const RecordedRun& p, const DrawnFrames& drawn, const std:
   report::Page page;
   add_answer(page, p, text);
   add_mismatches(page, text.mismatches);
-  add_frames(page, drawn, folder);
+  page.scene = scene_json(p, text.trace_file);
+  // In three dimensions they are what is left where a browser has no WebGL, and can be smaller.
+  constexpr std::size_t kBesideView = 2'500'000;
+  add_frames(page, drawn, folder, p.reps[0]->dim() == 3 ? kBesideView : report::kInlineBudget);
   add_charts(page, p);
   add_tables(page, p);
   add_links(page, drawn, text);

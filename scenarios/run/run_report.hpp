@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "scenarios/report/page/inline_image.hpp"
 #include "scenarios/report/page/page.hpp"
 #include "scenarios/run/frame_job.hpp"
 
@@ -15,8 +16,9 @@ struct ReportText {
   std::vector<std::string> mismatches;
 };
 
-/// Puts frames, whose files are in `folder`, into a page.
-void add_frames(report::Page& page, const DrawnFrames& drawn, const std::string& folder);
+/// Puts frames, whose files are in `folder`, into a page. `budget`: see inline_pngs().
+void add_frames(report::Page& page, const DrawnFrames& drawn, const std::string& folder,
+                std::size_t budget = report::kInlineBudget);
 
 /// Puts a picture that is in the folder already, .svg or .png, into a page.
 void add_figure(report::Page& page, const std::string& folder, const std::string& title,

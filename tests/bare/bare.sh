@@ -3,7 +3,7 @@
 # bare Debian 12. Makes a root with debootstrap, from the package sources of this machine, clones commit C (HEAD) into it,
 # and runs ./run and ./check there as root would type them, in a clean environment; then again as a user without root; then
 # the rest of ./check --full, in the end with the engines of others installed. Prints how long every step took.
-# Steps: root clone stranger run check user api sanitizers clang fuzz again peers tidy; --until ends after one of them.
+# Steps: root clone stranger run check user api browser sanitizers clang fuzz again peers tidy; --until ends after one of them.
 # --minutes: steps after `user` end when M minutes are over, and the table says which were left out.
 # Kept between runs, in ${XDG_CACHE_HOME:-~/.cache}/lrbscope-bare: the bare root and downloaded packages; and this machine's
 # compiler cache is used. --no-cache does without all three, for honest times. --keep leaves the root to be looked at.
@@ -113,7 +113,7 @@ as() {
 
 # ---- steps
 
-all=(root clone stranger run check user api sanitizers clang fuzz again peers tidy)
+all=(root clone stranger run check user api browser sanitizers clang fuzz again peers tidy)
 names=() seconds=() busy=() failed=() left_out=()
 # step NAME FUNCTION: runs it, with its output, and notes how long it took and whether it failed. Ends here if it was the
 # last wanted.
@@ -217,6 +217,7 @@ step_user() {
   return $code
 }
 step_api() { inside ./check api; }
+step_browser() { inside ./check browser; }
 step_again() { inside ./check again; }
 step_peers() { inside ./check peers; }
 step_clang() { inside ./check clang; }

@@ -2,6 +2,7 @@
 
 #include "render/image.hpp"
 #include "render/png.hpp"
+#include "scenarios/report/page/packed.hpp"
 
 #define STB_IMAGE_WRITE_IMPLEMENTATION
 #define STB_IMAGE_WRITE_STATIC
@@ -70,16 +71,7 @@ InlinedImages as_jpegs(const std::vector<PngBytes>& pngs, int halvings, std::siz
 }  // namespace
 
 std::string data_uri(const std::string& type, const std::uint8_t* bytes, std::size_t size) {
-  static constexpr char kDigits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string out = "data:" + type + ";base64,";
-  out.reserve(out.size() + size / 3 * 4 + 4);
-  for (std::size_t i = 0; i < size; i += 3) {
-    const std::size_t have = std::min<std::size_t>(3, size - i);
-    std::uint32_t word = 0;
-    for (std::size_t j = 0; j < 3; ++j) word = word << 8 | (j < have ? bytes[i + j] : 0u);
-    for (std::size_t j = 0; j < 4; ++j) out += j <= have ? kDigits[word >> (18 - 6 * j) & 63] : '=';
-  }
-  return out;
+  return "data:" + type + ";base64," + base64(bytes, size);
 }
 
 InlinedImages inline_pngs(const std::vector<PngBytes>& pngs, std::size_t budget) {

@@ -13,9 +13,10 @@ namespace {
 using nlohmann::json;
 
 /// Returns JSON that can stand in a script element: nothing in it can end the element.
-std::string script_safe(const json& value) {
+std::string script_safe(std::string_view text) {
   std::string out;
-  for (const char c : value.dump(-1, ' ', false, json::error_handler_t::replace))
+  out.reserve(text.size());
+  for (const char c : text)
     if (c == '<')
       out += "\\u003c";
     else
@@ -88,12 +89,20 @@ std::string texts_html(const Page& page) {
   return out + "</div>\n";
 }
 
+void fill_in(std::string& text, std::string_view mark, const std::string& with) {
+  text.replace(text.find(mark), mark.size(), with);
+}
+
 std::string player_html(const Page& page) {
   if (page.frames.empty()) return {};
   std::string out(io::embedded_file("player.html"));
-  const std::string mark = "{{note}}";
-  out.replace(out.find(mark), mark.size(), render::escape_markup(page.frames_note));
-  return out;
+  fill_in(out, "{{note}}", render::escape_markup(page.frames_note));
+  // Beside the view of the run, keys move from event to event, and frames are what is left without it.
+  fill_in(out, "{{keys}}",
+          page.scene.empty() ? "Keys: ← → one frame, shift ten, Home, End, space plays. " : "");
+  if (page.scene.empty()) return out;
+  return "<details class=\"frames\" id=\"frames\"><summary>Frames, as lrbscope drew them: " +
+         std::to_string(page.frames.size()) + "</summary>\n" + out + "</details>\n";
 }
 
 std::string charts_html(const Page& page) {
@@ -174,6 +183,30 @@ std::string source_html(const Page& page) {
   return out;
 }
 
+/// Returns the scripts of others that the page needs.
+std::string libraries(const Page& page) {
+  std::string out;
+  if (!page.charts.empty()) out += io::embedded_file("chart.min.js");
+  if (!page.scene.empty())
+    for (const char* name : {"three.min.js", "OrbitControls.js"})
+      out.append("\n").append(io::embedded_file(name));
+  return out;
+}
+
+/// Returns ours for the view of a run, each after those that it builds on.
+std::string scene_scripts(const Page& page) {
+  std::string out;
+  if (page.scene.empty()) return out;
+  for (const char* name :
+       {"packed",          "scene_body",    "scene_events", "scene_wrappers", "scene_words",
+        "scene_selection", "scene_filter",  "scene_table",  "scene_form",     "scene_panel",
+        "scene_counts",    "scene_colours", "scene_meshes", "scene_bodyview", "scene_marks",
+        "scene_legend",    "scene_camera",  "scene_view",   "scene_time",     "scene_keys",
+        "scene_controls",  "scene"})
+    out += io::embedded_file(name + std::string(".js"));
+  return out;
+}
+
 }  // namespace
 
 std::string page_html(const Page& page) {
@@ -189,11 +222,14 @@ std::string page_html(const Page& page) {
                  : "<span class=\"verdict\">" + render::escape_markup(page.verdict) + "</span>";
     if (key == "style")
       return std::string(io::embedded_file("page.css")) +
+             (page.scene.empty() ? "" : std::string(io::embedded_file("scene.css"))) +
              (page.grid.empty() ? "" : std::string(io::embedded_file("grid.css"))) +
              (page.comparisons.empty() ? "" : std::string(io::embedded_file("comparison.css")));
     if (key == "texts") return texts_html(page);
     if (key == "grid") return grid_html(page.grid);
     if (key == "numbers") return numbers_html(page);
+    if (key == "layout") return page.scene.empty() ? "" : " class=\"wide\"";
+    if (key == "scene") return page.scene.empty() ? "" : std::string(io::embedded_file("scene.html"));
     if (key == "player") return player_html(page);
     if (key == "charts") return charts_html(page);
     if (key == "tables") return tables_html(page);
@@ -201,10 +237,15 @@ std::string page_html(const Page& page) {
     if (key == "comparisons") return comparisons_html(page.comparisons);
     if (key == "source") return source_html(page);
     if (key == "footer") return render::escape_markup(page.footer);
-    if (key == "data") return script_safe(page_json(page));
-    if (key == "library") return page.charts.empty() ? "" : std::string(io::embedded_file("chart.min.js"));
+    if (key == "data")
+      return script_safe(page_json(page).dump(-1, ' ', false, json::error_handler_t::replace));
+    if (key == "scene_data")
+      return page.scene.empty() ? ""
+                                : "<script type=\"application/json\" id=\"scene-data\">" +
+                                      script_safe(page.scene) + "</script>\n";
+    if (key == "library") return libraries(page);
     if (key == "script")
-      return std::string(io::embedded_file("page.js")) +
+      return std::string(io::embedded_file("page.js")) + scene_scripts(page) +
              (page.grid.empty() ? "" : std::string(io::embedded_file("grid.js"))) +
              (page.comparisons.empty() ? "" : std::string(io::embedded_file("comparison.js")));
     return {};

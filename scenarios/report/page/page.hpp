@@ -84,6 +84,7 @@ struct Page {
   std::vector<PageNumber> numbers;
   PageGrid grid;
   std::vector<PageComparison> comparisons;
+  std::string scene;  ///< a run as JSON, for the view in three dimensions (scene.js); empty: none
   std::vector<PageFrame> frames;
   std::string frames_note;
   std::vector<PageChart> charts;

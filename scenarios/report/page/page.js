@@ -3,13 +3,35 @@ const data = JSON.parse(document.getElementById("data").textContent);
 const byId = (id) => document.getElementById(id);
 const style = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
 
-// ---- the frames: one index, and everybody who wants to know when it changes
-let current = 0;
+// ---- the moment on show: a frame, or an event of the run with the frame that shows it best; and everybody who wants to know when
+// it changes
+let current = 0; // index of the frame
+const moment = { event: -1, step: -1 }; // negative: not known
 const listeners = [];
+function tell() { for (const listener of listeners) listener(data.frames[current], current); }
 function show(index) {
   current = Math.max(0, Math.min(data.frames.length - 1, index));
-  for (const listener of listeners) listener(data.frames[current], current);
+  moment.event = data.frames[current].event;
+  moment.step = data.frames[current].step;
+  tell();
 }
+/** Shows an event, by its number in the trace, of a time step. */
+function showEvent(event, step) {
+  moment.event = event;
+  moment.step = step;
+  current = Math.max(0, frameOf(event, step));
+  tell();
+}
+/** Returns the frame nearest to an event, one of its time step if there is any; -1: there are no frames. */
+function frameOf(event, step) {
+  const far = (f) => (f.step === step ? 0 : 1e12) + Math.abs(f.event - event);
+  return data.frames.reduce((best, f, i) => (best < 0 || far(f) < far(data.frames[best]) ? i : best), -1);
+}
+/** Leads to where a value of a chart's x axis is. */
+let seek = (key, value) => {
+  const frame = nearestFrame(key, value);
+  if (frame >= 0) show(frame);
+};
 
 function startPlayer() {
   const image = byId("frame"), link = byId("frame-link"), scrub = byId("scrub"), play = byId("play");
@@ -22,7 +44,7 @@ function startPlayer() {
     byId("caption").textContent = frame.caption;
     byId("count").textContent = `${index + 1} / ${data.frames.length}`;
     scrub.value = index;
-    history.replaceState(null, "", `#${index + 1}`);
+    if (!byId("scene")) history.replaceState(null, "", `#${index + 1}`);
   });
 
   let timer = null;
@@ -46,7 +68,7 @@ function startPlayer() {
     ArrowLeft: (e) => go(current - (e.shiftKey ? 10 : 1)), ArrowRight: (e) => go(current + (e.shiftKey ? 10 : 1)),
     Home: () => go(0), End: () => go(data.frames.length - 1), " ": toggle,
   };
-  document.addEventListener("keydown", (e) => {
+  if (!byId("scene")) document.addEventListener("keydown", (e) => { // there, keys move from event to event
     if (!keys[e.key] || e.ctrlKey || e.metaKey || e.altKey || e.target.tagName === "SELECT") return;
     if (e.key === " " && e.target.tagName === "BUTTON") return; // space presses the button that has the focus
     e.preventDefault();
@@ -57,7 +79,7 @@ function startPlayer() {
 }
 
 // ---- the charts
-/** Marks where the frame on show stands. */
+/** Marks where the moment on show stands. */
 const cursorPlugin = {
   id: "cursor",
   afterDatasetsDraw(chart) {
@@ -119,26 +141,34 @@ function makeChart(spec, canvas) {
         const point = hit.map((p) => datasets[p.datasetIndex].data[p.index]).find((p) => p.target);
         if (point) location.href = point.target;
         if (!spec.cursor) return;
-        const frame = nearestFrame(spec.cursor, chart.scales.x.getValueForPixel(e.x));
-        if (frame >= 0) show(frame);
+        seek(spec.cursor, chart.scales.x.getValueForPixel(e.x));
       },
     },
   });
-  if (spec.cursor) listeners.push((frame) => { chart.options.cursorAt = frame[spec.cursor]; chart.draw(); });
   return chart;
 }
 
 function startCharts() {
   if (!data.charts.length) return;
   Chart.defaults.font.family = getComputedStyle(document.body).fontFamily;
-  const base = listeners.length;
-  let charts = [];
+  let charts = [], waiting = false;
+  const mark = () => {
+    waiting = false;
+    charts.forEach((c, i) => {
+      if (!data.charts[i].cursor) return;
+      c.options.cursorAt = moment[data.charts[i].cursor];
+      c.draw();
+    });
+  };
   const draw = () => {
     charts.forEach((c) => c.destroy());
-    listeners.length = base;
     charts = data.charts.map((spec, i) => makeChart(spec, byId(`chart-${i}`)));
-    if (data.frames.length) show(current);
+    mark();
   };
+  listeners.push(() => { // events can follow each other faster than charts are drawn
+    if (!waiting) requestAnimationFrame(mark);
+    waiting = true;
+  });
   draw();
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", draw); // colours are read when drawn
 }

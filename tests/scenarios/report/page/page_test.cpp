@@ -67,6 +67,34 @@ TEST_CASE("text cannot become markup or end the data") {
   CHECK(count(html, "<script") == count(html, "</script>"));
 }
 
+TEST_CASE("a page with a run's data has the view in three dimensions, and nothing of it comes from outside") {
+  report::Page page = full_page();
+  page.scene = R"({"name":"</script><b>"})";
+  std::string html = report::page_html(page);
+  for (const char* name : {"three.min.js", "OrbitControls.js", "chart.min.js"}) {
+    const std::string library(io::embedded_file(name));
+    const std::size_t at = html.find(library);
+    REQUIRE(at != std::string::npos);
+    html.erase(at, library.size());
+  }
+  CHECK(html.find("http:") == std::string::npos);
+  CHECK(html.find("https:") == std::string::npos);
+  CHECK(html.find("id=\"view-canvas\"") != std::string::npos);
+  CHECK(html.find("function startScene()") != std::string::npos);
+  CHECK(html.find("{\"name\":\"\\u003c/script>\\u003cb>\"}") != std::string::npos);
+  CHECK(html.find("<details class=\"frames\"") != std::string::npos);
+  CHECK(count(html, "<script") == count(html, "</script>"));
+}
+
+TEST_CASE("every script of the view is in the page, none twice") {
+  report::Page page;
+  page.scene = "{}";
+  const std::string html = report::page_html(page);
+  for (const io::EmbeddedFile& file : io::embedded_files())
+    if (file.name.starts_with("scene") && file.name.ends_with(".js"))
+      CHECK_MESSAGE(count(html, std::string(file.text)) == 1, file.name);
+}
+
 TEST_CASE("parts that a page does not have leave nothing behind") {
   report::Page page;
   page.title = "t";
@@ -74,7 +102,8 @@ TEST_CASE("parts that a page does not have leave nothing behind") {
   CHECK(html.find("<canvas") == std::string::npos);
   CHECK(html.find("id=\"player\"") == std::string::npos);
   CHECK(html.find("<table") == std::string::npos);
-  CHECK(html.size() < 40'000);  // nor the charting library
+  CHECK(html.find("id=\"scene\"") == std::string::npos);
+  CHECK(html.size() < 40'000);  // nor the libraries
 }
 
 TEST_CASE("base64") {

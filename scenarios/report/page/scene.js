@@ -1,0 +1,106 @@
+// ---- the run's page: puts table, panel, sliders and the view in three dimensions together
+function startScene() {
+  const scene = JSON.parse(byId("scene-data").textContent),
+    bodies = scene.bodies.map((b, side) => new Body(b, side));
+  const events = new Events(scene, bodies),
+    complete = bodies.every((b) => b.complete);
+  if (!events.count) {
+    byId("scene").hidden = true;
+    return null;
+  }
+  const selection = new Selection(events),
+    wrappers = complete ? new Wrappers(bodies, events, scene.wrapper) : null;
+  if (wrappers)
+    selection.listeners.push((what) => {
+      if (what === "event") wrappers.seek(selection.event);
+    }); // before those who show them
+  const timeline = new Timeline(events, selection),
+    panel = new Panel(events, selection, wrappers);
+  const filter = new EventFilter(),
+    table = new EventTable(events, selection, filter),
+    form = new FilterForm(events, filter, table);
+  const view = openView(scene, selection, wrappers),
+    controls = view ? new ViewControls(view, selection) : null;
+  byId("thinned").textContent = scene.thinned;
+  byId("thinned").hidden = !scene.thinned;
+  selection.listeners.push((what) => {
+    if (what === "event") byId("view-caption").textContent = eventSentence(events, wrappers, selection.event);
+  });
+  byId("picked-events").onclick = () => {
+    form.showPicked(selection.picked);
+    byId("events").scrollIntoView({ block: "nearest" });
+  };
+  followPage(events, selection);
+  listenToKeys(keysOf(timeline, table, selection, controls));
+  const first = scene.firstContact >= 0 ? scene.firstContact : 0,
+    asked = /^#e(\d+)$/.exec(location.hash);
+  selection.goTo(events.at(asked ? Number(asked[1]) : first));
+  if (view) view.frameAll(VIEW_FROM);
+  return { scene, events, selection, wrappers, timeline, table, filter, form, panel, view, controls };
+}
+
+/** Returns the view; null, with the reason on the page, where there can be none. Frames are then what there is to see. */
+function openView(scene, selection, wrappers) {
+  const no = (reason) => {
+    byId("stage").classList.add("without-view");
+    byId("no-view").textContent = reason;
+    byId("no-view").hidden = false;
+    if (byId("frames")) byId("frames").open = true;
+    return null;
+  };
+  const frames = data.frames.length ? " The frames below show the run." : "";
+  if (scene.tooLarge) return no(scene.tooLarge);
+  if (scene.dim === 2) return no(`These bodies lie in the plane: there is nothing to turn.${frames}`);
+  if (!webglWorks())
+    return no(`This browser has no WebGL, which the view in three dimensions needs.${frames}`);
+  return new SceneView(scene, selection, wrappers);
+}
+
+function webglWorks() {
+  const canvas = document.createElement("canvas");
+  return Boolean(canvas.getContext("webgl") || canvas.getContext("experimental-webgl"));
+}
+
+/** Frames and charts lead to events, and the other way round; the address names the event. */
+function followPage(events, selection) {
+  let timer = 0;
+  listeners.push(() => {
+    if (moment.event >= 0 && events.at(moment.event) !== selection.event)
+      selection.standAt(events.at(moment.event)); // by a frame
+    clearTimeout(timer);
+    timer = setTimeout(() => history.replaceState(null, "", `#e${events.id(selection.event)}`), 300);
+  });
+  seek = (key, value) => {
+    if (key === "event") return selection.goTo(events.at(Math.max(0, Math.round(value))));
+    const step = Math.max(0, lastAtMost(events.stepNumbers, Math.round(value)));
+    selection.goTo(events.endOfStep(step) - 1);
+  };
+}
+
+function keysOf(timeline, table, selection, controls) {
+  const keys = {
+    ArrowLeft: (shift) => timeline.go(() => timeline.by(shift ? -10 : -1)),
+    ArrowRight: (shift) => timeline.go(() => timeline.by(shift ? 10 : 1)),
+    ArrowUp: (shift) => timeline.go(() => table.step(shift ? -10 : -1)),
+    ArrowDown: (shift) => timeline.go(() => table.step(shift ? 10 : 1)),
+    Home: () => timeline.go(() => selection.goTo(timeline.firstHere)),
+    End: () => timeline.go(() => selection.goTo(timeline.lastHere)),
+    "[": () => timeline.go(() => timeline.byStep(-1)),
+    "]": () => timeline.go(() => timeline.byStep(1)),
+    " ": () => timeline.toggle(),
+    r: (shift) => timeline.go(() => timeline.toChange(shift ? -1 : 1)),
+    c: (shift) => timeline.go(() => timeline.toContact(shift ? -1 : 1)),
+    "?": () => {
+      const help = byId("help");
+      if (help.open) help.close();
+      else help.showModal();
+    },
+    Escape: () => {
+      selection.pick(null);
+      if (controls) controls.isolate(null);
+    },
+  };
+  return controls ? { ...keys, ...controls.keys() } : keys;
+}
+
+const run = startScene();

@@ -1,0 +1,129 @@
+// ---- buttons and keys of the view in three dimensions
+const EXPLODED = 0.6; // what the key sets; the slider goes from 0 to 2
+
+class ViewControls {
+  constructor(view, selection) {
+    Object.assign(this, { view, selection });
+    const deepest = view.bodies.reduce((most, b) => b.boxes.depth.reduce((m, d) => Math.max(m, d), most), 0);
+    for (let depth = 0; depth <= deepest; depth++)
+      byId("boxes").append(new Option(depth === 0 ? "depth 0, the root" : `depth ${depth}`, depth));
+    const left = view.bodies
+      .filter((b) => b.boxes.node.length < b.boxes.nodes)
+      .map((b) => `${SIDES[b.side]} has ${digits(b.boxes.nodes)} nodes to depth ${b.boxes.height - 1}`);
+    byId("boxes").title = left.length
+      ? `The page has the boxes of the first levels; ${left.join(", ")}`
+      : "The boxes of the tree's nodes";
+    const change = (id, action) => byId(id).addEventListener("input", () => action(byId(id)));
+    change("colour-by", (e) => this.colourBy(e.value));
+    change("colour-per", (e) => view.look({ per: e.value }));
+    change("colour-scope", (e) => view.look({ scope: e.value }));
+    change("boxes", (e) => view.look({ boxes: Number(e.value) }));
+    change("explode", (e) => this.explode(Number(e.value)));
+    byId("ghost").onclick = () => this.toggle("ghost");
+    byId("lids").onclick = () => this.toggle("lids");
+    byId("isolate").onclick = byId("picked-isolate").onclick = () => this.isolatePicked();
+    byId("orthographic").onclick = () => this.orthographic();
+    byId("frame-all").onclick = () => view.frameAll();
+    byId("frame-it").onclick = byId("picked-frame").onclick = () => view.frameSelection();
+    byId("copy-camera").onclick = () => this.copyCamera();
+    selection.listeners.push(() => this.show());
+    this.show();
+  }
+
+  /** Shows on the buttons how things are. */
+  show() {
+    const { now, camera } = this.view,
+      picked = this.selection.picked;
+    for (const [id, on] of [
+      ["ghost", now.ghost],
+      ["lids", now.lids],
+      ["isolate", Boolean(now.isolate)],
+      ["orthographic", camera.orthographic],
+    ])
+      byId(id).setAttribute("aria-pressed", on);
+    byId("isolate").disabled = !now.isolate && !(picked && picked.region !== NONE);
+    byId("explode").value = now.explode;
+    byId("boxes").value = now.boxes;
+    byId("colour-by").value = now.by;
+    for (const id of ["colour-per", "colour-scope"]) byId(id).hidden = !COUNTERS.includes(now.by);
+  }
+
+  change(what) {
+    this.view.look(what);
+    this.show();
+  }
+  toggle(name) {
+    this.change({ [name]: !this.view.now[name] });
+  }
+  /** Most of what is tested lies inside: with counters the bodies become ghosts, until somebody wants them solid. */
+  colourBy(by) {
+    const was = COUNTERS.includes(this.view.now.by),
+      is = COUNTERS.includes(by);
+    this.change(was === is ? { by } : { by, ghost: is });
+  }
+  explode(share) {
+    this.change({ explode: share, isolate: null });
+    this.view.draw(); // what is framed has to be there
+    this.view.frameAll();
+  }
+  isolate(region) {
+    this.change({ isolate: region });
+  }
+  isolatePicked() {
+    const picked = this.selection.picked;
+    if (this.view.now.isolate) return this.isolate(null);
+    if (!picked || picked.region === NONE) return;
+    this.isolate({ side: picked.side, region: picked.region });
+    this.view.frameSelection();
+  }
+  orthographic() {
+    this.view.camera.setOrthographic(!this.view.camera.orthographic);
+    this.change({});
+  }
+  /** Moves a choice on by so many places, round the end. */
+  cycle(id, by) {
+    const select = byId(id);
+    select.selectedIndex = (select.selectedIndex + by + select.length) % select.length;
+    select.dispatchEvent(new Event("input"));
+  }
+
+  async copyCamera() {
+    const text = JSON.stringify(this.view.camera.json()),
+      box = byId("camera-json");
+    box.value = text;
+    byId("camera").hidden = false;
+    let copied = true;
+    try {
+      await navigator.clipboard.writeText(text);
+    } catch {
+      // pages from disk may have no clipboard
+      box.select();
+      copied = document.execCommand("copy");
+    }
+    byId("camera-note").textContent =
+      `${copied ? "Copied. " : ""}Put it into "frames": {"views": [...]} of a scenario.`;
+  }
+
+  keys() {
+    const { view } = this,
+      turn = 0.09;
+    return {
+      g: () => this.toggle("ghost"),
+      w: () => this.toggle("lids"),
+      x: () => this.explode(view.now.explode > 0 ? 0 : EXPLODED),
+      i: () => this.isolatePicked(),
+      n: (shift) => this.cycle("boxes", shift ? -1 : 1),
+      k: (shift) => this.cycle("colour-by", shift ? -1 : 1),
+      o: () => this.orthographic(),
+      f: (shift) => (shift ? view.frameAll() : view.frameSelection()),
+      v: () => this.copyCamera(),
+      "+": () => view.camera.zoom(1.2),
+      "=": () => view.camera.zoom(1.2),
+      "-": () => view.camera.zoom(1 / 1.2),
+      a: () => view.camera.turn(-turn, 0),
+      d: () => view.camera.turn(turn, 0),
+      e: () => view.camera.turn(0, turn),
+      q: () => view.camera.turn(0, -turn),
+    };
+  }
+}

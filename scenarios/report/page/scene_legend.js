@@ -1,0 +1,54 @@
+// ---- what the colours of the view mean
+class Legend {
+  constructor(view) {
+    this.view = view;
+  }
+
+  /** `key`: the scale of the colours; null: bodies have one colour each. */
+  show(key) {
+    const { colours, bodies, now } = this.view,
+      css = (c) => `rgb(${c.map((x) => Math.round(255 * x)).join(" ")})`,
+      items = [];
+    bodies.forEach((b) => {
+      const name = bodies.length > 1 ? `${SIDES[b.side]} ${b.name}` : b.name,
+        colour = colours.bodies[b.side];
+      items.push([
+        css(key ? mixed(colour, WHITE, 0.78) : colour),
+        `${name}, real faces${key && COUNTERS.includes(now.by) ? ` without ${now.by}` : ""}`,
+        "",
+      ]);
+      if (!key && now.by === "kind")
+        items.push([css(mixed(colour, WHITE, 0.7)), `${name}, pseudo faces`, css(colours.edge(b.side))]);
+    });
+    if (now.by === "region")
+      items.push([css(colours.categories[0]), "pseudo faces, a colour for each region", ""]);
+    items.push(
+      [css(colours.contact), "faces that meet", ""],
+      [css(colours.refining), "region being refined", ""],
+      [css(colours.underTest), "pair under test", ""],
+      [css(colours.selected), "selected", ""],
+    );
+    byId("legend").replaceChildren(
+      ...items.map(([colour, text, rim]) => {
+        const item = document.createElement("span"),
+          dot = document.createElement("i");
+        dot.style.background = colour;
+        if (rim) dot.style.outline = `1.5px solid ${rim}`;
+        item.append(dot, text);
+        return item;
+      }),
+    );
+    this.showScale(key);
+  }
+
+  showScale(key) {
+    const { colours, bodies, now } = this.view;
+    byId("scale").hidden = !key;
+    if (!key) return;
+    byId("scale-bar").style.background = `linear-gradient(to right, ${colours.stops.join(", ")})`;
+    byId("scale-most").textContent = digits(key.most);
+    byId("scale-title").textContent =
+      key.title ||
+      `${now.by}, for each ${now.per}${bodies.length > 1 ? " of both bodies" : ""}, ${now.scope === "run" ? "in the whole run" : "in this step so far"}`;
+  }
+}

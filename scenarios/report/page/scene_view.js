@@ -1,0 +1,328 @@
+// ---- the view in three dimensions: draws what is selected, and selects what is clicked
+class SceneView {
+  constructor(scene, selection, wrappers) {
+    Object.assign(this, { selection, wrappers, events: selection.events, bodies: selection.events.bodies });
+    this.canvas = byId("view-canvas");
+    this.colours = new Colours(scene.colours);
+    this.poses = scene.steps.poses.map(unpack);
+    /** How things are shown; change it through look(). */
+    this.now = {
+      ghost: false,
+      explode: 0,
+      isolate: null,
+      lids: true,
+      boxes: -1,
+      by: "kind",
+      per: "face",
+      scope: "run",
+    };
+    this.renderer = new THREE.WebGLRenderer({ canvas: this.canvas, antialias: true, alpha: true });
+    this.renderer.setPixelRatio(Math.min(2, window.devicePixelRatio || 1));
+    this.size = new THREE.Vector2(1, 1);
+    this.stage = new THREE.Scene();
+    this.camera = new SceneCamera(this.canvas, scene, () => this.redraw());
+    this.stage.add(new THREE.AmbientLight(0xffffff, 0.54), this.camera.perspective, this.camera.flat);
+    this.views = this.bodies.map((b) => new BodyView(b, this.colours));
+    this.views.forEach((v) => this.stage.add(v.group));
+    this.marks = new Marks(this.views, this.colours, this.size);
+    this.legend = new Legend(this);
+    this.keys = {};
+    selection.listeners.push(() => this.redraw());
+    new ResizeObserver(() => this.resize()).observe(this.canvas.parentElement);
+    this.listen();
+    this.resize();
+  }
+
+  look(change) {
+    Object.assign(this.now, change);
+    this.redraw();
+  }
+
+  redraw() {
+    if (this.waiting) return;
+    this.waiting = true;
+    requestAnimationFrame(() => {
+      this.waiting = false;
+      this.draw();
+    });
+  }
+
+  resize() {
+    const { clientWidth: width, clientHeight: height } = this.canvas.parentElement;
+    if (!width || !height) return;
+    this.size.set(width, height);
+    this.renderer.setSize(width, height, false);
+    this.camera.resize(width, height);
+    this.redraw();
+  }
+
+  draw() {
+    this.place();
+    this.paint();
+    this.shape();
+    this.paint(); // what shape() has made
+    this.mark();
+    this.camera.prepare(this.reach().radius);
+    this.renderer.render(this.stage, this.camera.camera);
+    this.circle();
+  }
+
+  /** Puts a ring around the faces that the event compares, where they are too small to be noticed. */
+  circle() {
+    const faces = this.events.faces(this.selection.event),
+      ring = byId("ring"),
+      ball = this.ballOfFaces(faces);
+    const radius = (ball.radius * this.size.y) / (2 * this.camera.halfHeight),
+      at = ball.centre.project(this.camera.camera);
+    ring.hidden = !faces.length || radius > 18 || Math.abs(at.x) > 1 || Math.abs(at.y) > 1 || at.z > 1;
+    ring.style.left = `${50 * (1 + at.x)}%`;
+    ring.style.top = `${50 * (1 - at.y)}%`;
+  }
+
+  /** Does something again if what it depends on has changed. */
+  once(what, key, action) {
+    if (this.keys[what] === key) return;
+    this.keys[what] = key;
+    action();
+  }
+
+  place() {
+    const step = this.events.step(this.selection.event);
+    this.views.forEach((view, side) => {
+      const poses = this.poses[side];
+      view.setPose(poses.length > 12 ? poses.subarray(12 * step, 12 * step + 12) : poses);
+      view.group.updateMatrixWorld(true);
+    });
+  }
+
+  /** Shows or hides parts of the bodies. */
+  shape() {
+    const { ghost, explode, isolate, lids, boxes, by, per } = this.now,
+      exploded = explode > 0 && !isolate;
+    const insideOnly = ghost && per === "face" && COUNTERS.includes(by); // the faces that were tested, which lids would veil
+    this.views.forEach((view, side) => {
+      const shown = lids && !isolate && !exploded && !insideOnly;
+      view.lids.mesh.visible = view.lidEdges.visible = shown;
+      if (shown)
+        this.once(`lids${side}`, this.wrappers.version, () =>
+          view.showLids((f) => this.wrappers.onBoundary(side, f)),
+        );
+      this.once(`ghost${side}`, ghost || Boolean(isolate), () => view.ghost(ghost || Boolean(isolate)));
+      this.once(`boxes${side}`, boxes, () => view.showBoxes(boxes));
+      this.once(
+        `pieces${side}`,
+        isolate
+          ? `isolate ${isolate.side} ${isolate.region}`
+          : exploded
+            ? `explode ${explode} ${this.wrappers.version}`
+            : "",
+        () => {
+          if (exploded) view.showRegions(this.includedRegions(side), explode, false);
+          else if (isolate && isolate.side === side) view.showRegions([isolate.region], 0, true);
+          else view.clearPieces();
+          this.keys.paint = null;
+        },
+      );
+    });
+  }
+
+  includedRegions(side) {
+    return Array.from({ length: this.bodies[side].regionCount }, (_, r) => r).filter((r) =>
+      this.wrappers.included(side, r, true),
+    );
+  }
+
+  paint() {
+    const { by, per, scope } = this.now,
+      counter = COUNTERS.includes(by);
+    this.once(
+      "paint",
+      `${by} ${per} ${scope} ${counter && scope === "step" ? this.selection.event : ""}`,
+      () => {
+        const counts = counter ? this.countsOf(by, per, scope) : null,
+          mode = this.colours.mode(this.bodies, by, counts);
+        const veil = by === "kind" ? 0.49 : counter && per === "face" ? 0.2 : 0.69; // mostly real faces are tested: they must be seen
+        this.views.forEach((view, side) => {
+          view.paint(mode, veil);
+          view.showCounted(
+            counter
+              ? [...counts[side].keys()].filter((f) => counts[side][f] > 0 && this.bodies[side].isReal(f))
+              : [],
+            (f) => mode.of(side, f),
+          );
+        });
+        this.legend.show(mode.key);
+      },
+    );
+  }
+
+  countsOf(by, per, scope) {
+    const all =
+      scope === "run" ? this.bodies.map((b) => b.counts) : countsSoFar(this.events, this.selection.event);
+    return this.bodies.map((b, side) => (per === "region" ? sumsOfRegions(b, all[side][by]) : all[side][by]));
+  }
+
+  // -- what is pointed out
+  mark() {
+    const { events, colours } = this,
+      i = this.selection.event,
+      kind = events.kind[i],
+      test = events.test(i);
+    const contacts = this.contacts();
+    const counting = COUNTERS.includes(this.now.by); // then the faces' own colours are to be seen
+    this.marks.set(
+      "contacts",
+      counting ? "" : `${events.step(i)} ${contacts.length}`,
+      counting ? [] : contacts,
+      { colour: colours.contact },
+    );
+    this.marks.set("tested", `${test} ${kind === events.CONTACT}`, test >= 0 ? events.faces(test) : [], {
+      colour: kind === events.CONTACT ? colours.contact : colours.underTest,
+      opacity: 0.85,
+      over: true,
+    });
+    const refined = kind === events.REFINE || kind === events.COARSEN ? events.regions(i) : [];
+    this.marks.set(
+      "refined",
+      refined.length ? i : -1,
+      refined.flatMap((r) => [...this.bodies[r.side].lids(r.region)].map((face) => ({ side: r.side, face }))),
+      { colour: colours.refining, opacity: 0.5, width: 2 },
+    );
+    const nodes = events.about(i, "node");
+    this.marks.setBoxes("nodes", nodes.length ? i : -1, nodes, colours.underTest);
+    const p = this.selection.picked;
+    this.marks.set("picked", p ? `${p.side} ${p.face} ${p.region}` : "", this.pickedFaces(), {
+      colour: colours.selected,
+      opacity: 0.65,
+      width: 2.5,
+      over: p && p.face !== NONE,
+    });
+  }
+
+  /** Returns the faces in contact so far in this step, each once: [{side, face}]. */
+  contacts() {
+    const { events } = this,
+      seen = this.bodies.map(() => new Set());
+    for (let i = events.firstOfStep[events.step(this.selection.event)]; i <= this.selection.event; i++)
+      if (events.kind[i] === events.CONTACT) for (const f of events.faces(i)) seen[f.side].add(f.face);
+    return seen.flatMap((faces, side) => [...faces].map((face) => ({ side, face })));
+  }
+
+  pickedFaces() {
+    const p = this.selection.picked;
+    if (!p || this.now.isolate) return [];
+    return p.face !== NONE
+      ? [{ side: p.side, face: p.face }]
+      : [...this.bodies[p.side].lids(p.region)].map((face) => ({ side: p.side, face }));
+  }
+
+  // -- where to look
+  /** Returns points that reach as far as both bodies do where they stand. */
+  extremes() {
+    this.place();
+    return this.views.flatMap((view) => view.reached.map((p) => view.toWorld(p)));
+  }
+
+  /** Returns a ball around them. */
+  reach() {
+    const points = this.extremes();
+    const ball = ballOf(new THREE.Box3().setFromPoints(points));
+    ball.radius = points.reduce((most, p) => Math.max(most, p.distanceTo(ball.centre)), 1e-6);
+    return ball;
+  }
+
+  ballOfFaces(faces) {
+    const box = new THREE.Box3();
+    for (const f of faces)
+      this.views[f.side].eachCorner([f.face], (x, y, z) =>
+        box.expandByPoint(this.views[f.side].toWorld([x, y, z])),
+      );
+    return ballOf(box);
+  }
+
+  /** Frames what is selected, else what the event is about, else everything. */
+  frameSelection() {
+    const picked = this.selection.picked,
+      i = this.selection.event,
+      test = this.events.test(i);
+    const faces = picked
+      ? picked.face !== NONE
+        ? [picked]
+        : this.collector(picked)
+      : test >= 0
+        ? this.events.faces(test)
+        : this.events.regions(i).flatMap((r) => this.collector(r));
+    if (!faces.length) return this.frameAll();
+    const ball = this.ballOfFaces(faces);
+    this.camera.lookAt(ball.centre, Math.max(ball.radius * 2.2, 0.02 * this.reach().radius));
+    this.redraw();
+  }
+
+  collector({ side, region }) {
+    return [...this.bodies[side].lids(region), ...this.bodies[side].floor(region)].map((face) => ({
+      side,
+      face,
+    }));
+  }
+
+  frameAll(from) {
+    this.camera.fit(this.extremes(), from);
+    this.redraw();
+  }
+
+  // -- clicks
+  listen() {
+    let down = null;
+    this.canvas.addEventListener("pointerdown", (e) => {
+      down = [e.clientX, e.clientY];
+    });
+    this.canvas.addEventListener("click", (e) => {
+      if (down && Math.hypot(e.clientX - down[0], e.clientY - down[1]) > 4) return; // the view was turned
+      const hit = this.faceUnder(e.clientX, e.clientY, e.altKey);
+      if (hit) this.selection.pickFace(hit.side, hit.face);
+      else this.selection.pick(null);
+    });
+    this.canvas.addEventListener("dblclick", (e) => {
+      if (this.faceUnder(e.clientX, e.clientY, e.altKey)) this.frameSelection();
+      else this.frameAll();
+    });
+    this.canvas.addEventListener("webglcontextlost", (e) => {
+      e.preventDefault();
+    });
+    this.canvas.addEventListener("webglcontextrestored", () => this.redraw());
+  }
+
+  /** Returns the face under a point of the screen, {side, face}; `through`: lids are looked through. */
+  faceUnder(x, y, through) {
+    const box = this.canvas.getBoundingClientRect(),
+      ray = new THREE.Raycaster();
+    ray.setFromCamera(
+      new THREE.Vector2((2 * (x - box.left)) / box.width - 1, 1 - (2 * (y - box.top)) / box.height),
+      this.camera.camera,
+    );
+    const ghosts = this.now.ghost || this.now.isolate,
+      targets = [];
+    for (const view of this.views) {
+      targets.push(...view.pieces.map((p) => p.mesh));
+      if (view.lids.mesh.visible && !through) targets.push(view.lids.mesh);
+      if (!ghosts || !view.lids.mesh.visible) targets.push(view.real.mesh);
+    }
+    const hits = ray.intersectObjects(targets.filter((mesh) => mesh.geometry.attributes.position.count > 0));
+    const solid =
+      hits.find(
+        (h) => !this.now.isolate || this.views.some((v) => v.pieces.includes(h.object.userData.faces)),
+      ) || hits[0];
+    return solid
+      ? { side: solid.object.userData.faces.body.side, face: solid.object.userData.faces.faceAt(solid) }
+      : null;
+  }
+}
+
+function ballOf(box) {
+  const centre = new THREE.Vector3();
+  if (box.isEmpty()) return { centre, radius: 1 };
+  return {
+    centre: box.getCenter(centre),
+    radius: Math.max(1e-6, box.getSize(new THREE.Vector3()).length() / 2),
+  };
+}

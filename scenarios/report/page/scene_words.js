@@ -1,0 +1,44 @@
+// ---- an event, a face, a region in words
+/** Returns a whole number with its digits in groups, as the rest of the page has them. */
+const digits = (n) => String(n).replace(/\B(?=(\d{3})+$)/g, "\u202f");
+const plural = (n, one, many = one + "s") => `${digits(n)} ${n === 1 ? one : many}`;
+const relationWords = (name) =>
+  ({ a_inside_b: "A inside B", b_inside_a: "B inside A" })[name] || name.replaceAll("_", " ");
+
+/** Returns what an event is about. */
+function eventWords(events, i) {
+  const two = events.bodies.length > 1,
+    kind = events.kind[i],
+    a = events.a[i],
+    b = events.b[i];
+  const side = two ? ` of ${SIDES[events.side[i]]}` : "";
+  if (kind === events.STEP) return two ? "both wrappers are the outermost ones" : "the outermost wrapper";
+  if (kind === events.REFINE) return `region ${digits(a)}${side}: ${plural(b, "face")} under it`;
+  if (kind === events.COARSEN) return `region ${digits(a)}${side} added`;
+  if (kind === events.RESULT)
+    return `${relationWords(events.relations[a] || String(a))}: ${plural(b, "pair of faces meets", "pairs of faces meet")}`;
+  const faces = events.faces(i);
+  if (faces.length)
+    return faces.map((f) => `${events.bodies[f.side].faceWords(f.face)} of ${SIDES[f.side]}`).join(", ");
+  const { a: ra, b: rb } = events.kindOf(i);
+  return [
+    [ra, a],
+    [rb, b],
+  ]
+    .filter(([r, n]) => r.sort && n !== NONE)
+    .map(([r, n]) => `${r.words} ${digits(n)}`)
+    .join(", ");
+}
+
+/** Returns how a compared pair came out; empty for other events. */
+const meetWords = (events, i) =>
+  events.about(i, "simplex").length ? events.meets[events.meet[i]] || "" : "";
+
+/** Returns a sentence on an event and the wrappers after it. */
+function eventSentence(events, wrappers, i) {
+  const meet = meetWords(events, i);
+  const about = `Step ${digits(events.stepNumber(i))}, event ${digits(events.id(i))}, ${events.kindOf(i).name}: ${eventWords(events, i)}${meet ? ` (${meet})` : ""}.`;
+  return wrappers
+    ? `${about} ${wrappers.sizes.length > 1 ? "Wrappers" : "Wrapper"}: ${wrappers.sizes.map((n) => digits(n)).join(" + ")} faces.`
+    : about;
+}

@@ -1,0 +1,297 @@
+#include "scenarios/run/scene_json.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include <Eigen/Geometry>
+#include <nlohmann/json.hpp>
+
+#include "render/overlay.hpp"
+#include "render/palette.hpp"
+#include "scenarios/report/page/packed.hpp"
+#include "scenarios/run/thinned_events.hpp"
+#include "scenarios/run/tree_boxes.hpp"
+#include "trace/counters.hpp"
+#include "trace/names.hpp"
+
+namespace lrb::run {
+namespace {
+
+using nlohmann::json;
+using report::packed;
+using Numbers = std::vector<std::uint32_t>;
+
+/// Packs one number of each of many.
+template <class Range, class Get>
+std::string packed_each(const Range& range, Get get) {
+  Numbers out;
+  out.reserve(std::size(range));
+  for (const auto& item : range) out.push_back(static_cast<std::uint32_t>(get(item)));
+  return packed(out);
+}
+
+std::string css(render::Rgba c) {
+  static constexpr char kDigits[] = "0123456789abcdef";
+  std::string out = "#";
+  for (const std::uint8_t byte : {c.r, c.g, c.b}) {
+    out += kDigits[byte >> 4];
+    out += kDigits[byte & 15];
+  }
+  return out;
+}
+
+json colours() {
+  namespace palette = render::palette;
+  constexpr std::uint32_t kStops = 17, kCategories = 96;
+  json scale = json::array(), categories = json::array();
+  for (std::uint32_t i = 0; i < kStops; ++i)
+    scale.push_back(css(palette::viridis(static_cast<double>(i) / (kStops - 1))));
+  for (std::uint32_t i = 0; i < kCategories; ++i) categories.push_back(css(palette::category(i)));
+  return {{"bodies", {css(palette::body(Side::a)), css(palette::body(Side::b))}},
+          {"contact", css(palette::kContact)},
+          {"refining", css(palette::kRefining)},
+          {"underTest", css(palette::kUnderTest)},
+          {"selected", css(palette::kPurple)},
+          {"ink", css(palette::kInk)},
+          {"scale", std::move(scale)},
+          {"categories", std::move(categories)}};
+}
+
+// ---- where things are
+
+/// The frame of the page: x_page = (x - origin) / unit.
+struct SceneFrame {
+  Eigen::Vector3d origin{0, 0, 0};
+  double unit = 1;
+};
+
+Eigen::AlignedBox3d box_of(const LrbRep& rep) {
+  Eigen::AlignedBox3d box;
+  for (const Eigen::Vector3d& v : rep.vertices()) box.extend(v);
+  return box;
+}
+
+Eigen::Vector3d middle_of(const LrbRep& rep) {
+  return rep.vertices().empty() ? Eigen::Vector3d(0, 0, 0) : Eigen::Vector3d(box_of(rep).center());
+}
+
+const Pose& pose_in(const trace::Step& step, std::size_t body) {
+  return body == 0 ? step.pose_a : step.pose_b;
+}
+
+SceneFrame scene_frame(const RecordedRun& p) {
+  SceneFrame frame;
+  if (p.trace->steps.empty()) return frame;
+  const trace::Step& first = p.trace->steps.front();
+  double size = 0;
+  for (std::size_t i = 0; i < p.reps.size(); ++i) {
+    Eigen::AlignedBox3d placed;
+    for (const Eigen::Vector3d& v : p.reps[i]->vertices()) placed.extend(pose_in(first, i).apply(v));
+    if (!placed.isEmpty()) size = std::max(size, placed.diagonal().norm());
+  }
+  frame.origin = first.pose_a.apply(middle_of(*p.reps[0]));
+  if (size > 0 && std::isfinite(size)) frame.unit = std::exp2(std::floor(std::log2(size)));
+  return frame;
+}
+
+std::vector<float> flat(const Eigen::Vector3d& v) {
+  return {static_cast<float>(v.x()), static_cast<float>(v.y()), static_cast<float>(v.z())};
+}
+
+/// Returns the poses of a body in the page's frame, or one if it never moves: rows of [R | t], for vertices
+/// relative to the body's middle.
+std::vector<float> poses_of(const RecordedRun& p, std::size_t body, const Numbers& steps,
+                            const SceneFrame& frame) {
+  const Eigen::Vector3d middle = middle_of(*p.reps[body]);
+  std::vector<float> out;
+  const auto add = [&](const Pose& pose) {
+    const Eigen::Vector3d at = (pose.apply(middle) - frame.origin) / frame.unit;
+    for (int row = 0; row < 3; ++row) {
+      for (int column = 0; column < 3; ++column) out.push_back(static_cast<float>(pose.r(row, column)));
+      out.push_back(static_cast<float>(at[row]));
+    }
+  };
+  const auto pose = [&](std::uint32_t step) -> const Pose& { return pose_in(p.trace->steps[step], body); };
+  const bool stays = std::all_of(steps.begin(), steps.end(),
+                                 [&](std::uint32_t s) { return trace::equal(pose(s), pose(steps.front())); });
+  for (const std::uint32_t s : steps)
+    if (!stays || out.empty()) add(pose(s));
+  return out;
+}
+
+// ---- bodies
+
+json geometry(const LrbRep& rep, const SceneFrame& frame) {
+  const Eigen::Vector3d middle = middle_of(rep);
+  std::vector<float> vertices;
+  for (const Eigen::Vector3d& v : rep.vertices())
+    for (const float x : flat((v - middle) / frame.unit)) vertices.push_back(x);
+  Numbers sizes, inner, outer, parents, layers;
+  const auto region_or_null = [](CellId c) { return is_region(c) ? c.value() : std::uint32_t{kNull}; };
+  for (FaceId f = 0; f < rep.face_count(); ++f) {
+    sizes.push_back(static_cast<std::uint32_t>(rep.face(f).size()));
+    inner.push_back(region_or_null(rep.inner_cell(f)));
+    outer.push_back(region_or_null(rep.outer_cell(f)));
+  }
+  for (RegionId r = 0; r < rep.region_count(); ++r) {
+    parents.push_back(region_or_null(rep.parent(r)));
+    layers.push_back(rep.layer(r));
+  }
+  return {{"vertices", packed(vertices)},
+          {"sizes", packed(sizes)},
+          {"corners", packed_each(rep.data().face_vertices, [](VertexId v) { return v.value(); })},
+          {"inner", packed(inner)},
+          {"outer", packed(outer)},
+          {"parent", packed(parents)},
+          {"layer", packed(layers)}};
+}
+
+json boxes_json(const LrbRep& rep, const SceneFrame& frame, std::size_t most) {
+  const std::vector<TreeBox> boxes = tree_boxes(rep.tree(), most);
+  const Eigen::Vector3d middle = middle_of(rep);
+  std::vector<float> places;  // centre and three half axes each
+  for (const TreeBox& box : boxes) {
+    for (const float x : flat((box.centre - middle) / frame.unit)) places.push_back(x);
+    for (int i = 0; i < 3; ++i)
+      for (const float x : flat(box.half.col(i) / frame.unit)) places.push_back(x);
+  }
+  return {{"node", packed_each(boxes, [](const TreeBox& b) { return b.node; })},
+          {"depth", packed_each(boxes, [](const TreeBox& b) { return b.depth; })},
+          {"places", packed(places)},
+          {"nodes", rep.tree().nodes().size()},
+          {"height", rep.tree().height()}};
+}
+
+json body_json(const RecordedRun& p, std::size_t i, const SceneFrame& frame, const SceneLimits& limits,
+               bool with_geometry) {
+  const LrbRep& rep = *p.reps[i];
+  json out = {{"name", std::filesystem::path(rep.name()).stem().string()},
+              {"faces", rep.face_count()},
+              {"realFaces", rep.real_face_count()},
+              {"regions", rep.region_count()}};
+  if (!with_geometry) return out;
+  const trace::FaceCounts counts = trace::count_faces(rep, static_cast<Side>(i), p.trace->events);
+  out["geometry"] = geometry(rep, frame);
+  out["boxes"] = boxes_json(rep, frame, limits.boxes);
+  out["counts"] = {{"tests", packed(counts.tests)},
+                   {"hits", packed(counts.hits)},
+                   {"contacts", packed(counts.contacts)},
+                   {"refinements", packed(counts.refinements)}};
+  return out;
+}
+
+// ---- events
+
+json kinds_json() {
+  json out = json::array();
+  for (std::size_t i = 0; i < trace::kEventKinds; ++i) {
+    const auto kind = static_cast<EventKind>(i);
+    const trace::EventFields fields = trace::fields_of(kind);
+    out.push_back({{"name", name_of(kind)},
+                   {"a", fields.a},
+                   {"b", fields.b},
+                   {"colour", css(render::palette::event(kind))}});
+  }
+  return out;
+}
+
+template <class Enum>
+json words_json() {
+  json out = json::array();
+  for (const auto& entry : kWords<Enum>) out.push_back(entry.word);
+  return out;
+}
+
+json events_json(const trace::Trace& trace, const std::vector<trace::EventId>& kept) {
+  const auto column = [&](auto get) {
+    return packed_each(kept, [&](trace::EventId id) { return get(trace.events[id]); });
+  };
+  using trace::Event;
+  return {{"count", kept.size()},
+          {"id", kept.size() < trace.events.size() ? packed(kept) : ""},
+          {"kind", column([](const Event& e) { return e.kind; })},
+          {"side", column([](const Event& e) { return e.side; })},
+          {"meet", column([](const Event& e) { return e.meet; })},
+          {"a", column([](const Event& e) { return e.a; })},
+          {"b", column([](const Event& e) { return e.b; })},
+          {"cause", column([](const Event& e) { return e.cause; })},
+          {"boundary", column([](const Event& e) { return e.boundary; })},
+          {"depthA", column([](const Event& e) { return e.depth_a; })},
+          {"depthB", column([](const Event& e) { return e.depth_b; })}};
+}
+
+json steps_json(const RecordedRun& p, const Numbers& steps, const SceneFrame& frame) {
+  const auto column = [&](auto get) {
+    return packed_each(steps, [&](std::uint32_t s) { return get(p.trace->steps[s]); });
+  };
+  json poses = json::array();
+  for (std::size_t i = 0; i < p.reps.size(); ++i) poses.push_back(packed(poses_of(p, i, steps, frame)));
+  return {{"count", steps.size()},
+          {"index", column([](const trace::Step& s) { return s.index; })},
+          {"first", column([](const trace::Step& s) { return s.first_event; })},
+          {"poses", std::move(poses)}};
+}
+
+Numbers steps_of(const trace::Trace& trace, const std::vector<trace::EventId>& kept) {
+  Numbers out;
+  for (const trace::EventId id : kept) {
+    if (!out.empty() && id < trace.steps[out.back()].first_event + trace.events_of(out.back()).size())
+      continue;
+    out.push_back(static_cast<std::uint32_t>(trace.step_of(id)));
+  }
+  return out;
+}
+
+std::string thinned_words(const trace::Trace& trace, const ThinnedEvents& events,
+                          const std::string& trace_file) {
+  if (events.all(trace)) return {};
+  std::string out = "Of the run's " + render::group_digits(trace.events.size()) + " events this page has " +
+                    render::group_digits(events.kept.size()) + ": ";
+  out += events.cut ? "the first refinements"
+         : events.steps < trace.steps.size()
+             ? "of " + render::group_digits(events.steps) + " of " +
+                   render::group_digits(trace.steps.size()) + " time steps all refinements"
+             : "all refinements, then contacts";
+  return out + ", and evenly chosen others as far as there is room. " + trace_file + " has them all.";
+}
+
+std::string too_large_words(std::size_t faces, const SceneLimits& limits) {
+  return "No view in three dimensions: the bodies have " + render::group_digits(faces) +
+         " faces with those of their regions, and a page takes " + render::group_digits(limits.faces) +
+         ". lrbscope render draws them.";
+}
+
+}  // namespace
+
+std::string scene_json(const RecordedRun& p, const std::string& trace_file, const SceneLimits& limits) {
+  const trace::Trace& trace = *p.trace;
+  const ThinnedEvents events = thin_events(trace, limits.events);
+  const Numbers steps = steps_of(trace, events.kept);
+  const SceneFrame frame = scene_frame(p);
+  std::size_t faces = 0;
+  for (const LrbRep* rep : p.reps) faces += rep->face_count();
+  json bodies = json::array();
+  for (std::size_t i = 0; i < p.reps.size(); ++i)
+    bodies.push_back(body_json(p, i, frame, limits, faces <= limits.faces));
+  const json out = {{"dim", p.reps[0]->dim()},
+                    {"origin", {frame.origin.x(), frame.origin.y(), frame.origin.z()}},
+                    {"unit", frame.unit},
+                    {"wrapper", name_of(trace.header.request.wrapper)},
+                    {"thinned", thinned_words(trace, events, trace_file)},
+                    {"tooLarge", faces <= limits.faces ? "" : too_large_words(faces, limits)},
+                    {"trace", trace_file},
+                    {"firstContact", static_cast<std::int64_t>(first_contact(trace) == kNull
+                                                                   ? std::int64_t{-1}
+                                                                   : std::int64_t{first_contact(trace)})},
+                    {"kinds", kinds_json()},
+                    {"meets", words_json<exact::Meet>()},
+                    {"relations", words_json<Relation>()},
+                    {"colours", colours()},
+                    {"bodies", std::move(bodies)},
+                    {"steps", steps_json(p, steps, frame)},
+                    {"events", events_json(trace, events.kept)}};
+  return out.dump(-1, ' ', false, json::error_handler_t::replace);
+}
+
+}  // namespace lrb::run

@@ -1,0 +1,25 @@
+#pragma once
+/// Makes a run into data for its page: for the view in three dimensions, the table of events and the panel of
+/// faces and regions (report/page/scene_*.js).
+
+#include <cstddef>
+#include <string>
+
+#include "scenarios/run/frame_job.hpp"
+
+namespace lrb::run {
+
+/// How much a page holds at most; it opens in a second or two with all of that.
+struct SceneLimits {
+  std::size_t events = 200'000;
+  std::size_t faces = 300'000;  ///< of both bodies; with more, there is no view in three dimensions
+  std::size_t boxes = 4'096;    ///< of tree nodes, for each body
+};
+
+/// Returns the run as JSON. Coordinates are rounded to float, relative to the middle of their body and in
+/// units of the scene's size. What the limits leave out is said in it, with `trace_file` as the place where
+/// it is.
+std::string scene_json(const RecordedRun& recorded, const std::string& trace_file,
+                       const SceneLimits& limits = {});
+
+}  // namespace lrb::run

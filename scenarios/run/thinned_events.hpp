@@ -1,0 +1,30 @@
+#pragma once
+/// Chooses the events that a page holds, where a trace has more than a page should.
+
+#include <cstddef>
+#include <vector>
+
+#include "trace/trace.hpp"
+
+namespace lrb::run {
+
+struct ThinnedEvents {
+  std::vector<trace::EventId> kept;  ///< ascending
+  /// Of the steps whose events are among `kept`, everything that changes a wrapper is, so that wrappers can
+  /// be replayed from them. Other steps have none.
+  std::size_t steps = 0;
+  /// The one step that is left has more such events than there is room for: the first of them are kept, and
+  /// nothing else.
+  bool cut = false;
+
+  bool all(const trace::Trace& trace) const { return kept.size() == trace.events.size(); }
+};
+
+/// Keeps at most `most` events: all if they fit; else what changes wrappers, or that of some evenly chosen
+/// steps, then contacts, then evenly chosen ones of the rest. The first contact is kept, too.
+ThinnedEvents thin_events(const trace::Trace& trace, std::size_t most);
+
+/// Returns the first contact of a run; kNull: there is none.
+trace::EventId first_contact(const trace::Trace& trace);
+
+}  // namespace lrb::run

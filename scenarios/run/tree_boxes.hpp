@@ -1,0 +1,24 @@
+#pragma once
+/// The boxes of a tree's nodes, for looking at.
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "engine/tree/obb_tree.hpp"
+
+namespace lrb::run {
+
+struct TreeBox {
+  std::uint32_t node = 0;   ///< index into ObbTree::nodes()
+  std::uint32_t depth = 0;  ///< 0: the root
+  Eigen::Vector3d centre;   ///< body frame
+  Eigen::Matrix3d half;     ///< columns: from the centre to the middles of three sides
+};
+
+/// Returns the boxes of all nodes down to the greatest depth at which they are no more than `most`, by depth.
+std::vector<TreeBox> tree_boxes(const ObbTree& tree, std::size_t most);
+
+}  // namespace lrb::run

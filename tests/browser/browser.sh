@@ -1,0 +1,69 @@
+#!/usr/bin/env bash
+# browser.sh LRBSCOPE: makes the page of a run, opens it in Chromium without a window, and uses it as a person would (drive.js):
+# clicks, filters, slides, presses keys. Fails on anything that does not come out as the trace says, and on any error in the
+# browser's console. Skipped (77) where there is no Chromium.
+set -euo pipefail
+lrbscope=$(realpath "$1")
+here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
+browser=""
+for name in chromium chromium-browser google-chrome; do
+  if command -v "$name" >/dev/null; then browser=$name && break; fi
+done
+if [ -z "$browser" ]; then
+  echo "browser.sh: skipped: no Chromium here (Debian's package chromium)"
+  exit 77
+fi
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+export HOME=$work # where the browser keeps its things
+
+script() { printf '<script>%s\n</script>\n' "$(cat "$here/$1")"; } # FILE
+
+# page SCENARIO: runs it; its page with watch.js before all scripts, and drive.js after them, is $work/page.html.
+page() {
+  "$lrbscope" --quiet run "$1" -o "$work/out" >/dev/null
+  {
+    sed '/^<head>$/q' "$work/out/index.html"
+    script watch.js
+    sed -e '1,/^<head>$/d' -e '/^<\/body>$/,$d' "$work/out/index.html"
+    script drive.js
+    echo '</body></html>'
+  } >"$work/page.html"
+}
+
+# in_frame WIDTH: $work/frame.html, the page in a frame as wide as that: windows of browsers are not as narrow as telephones.
+in_frame() {
+  cat >"$work/frame.html" <<END
+<!DOCTYPE html><body style="margin: 0"><iframe src="page.html?drive=layout" style="border: 0; width: $1px; height: 900px"></iframe>
+<script>onmessage = (e) => { const out = document.createElement("pre"); out.id = "driven"; out.textContent = e.data; document.body.append(out); };</script>
+END
+}
+
+# drive WIDTH HEIGHT FILE OPTION...: opens a file of $work and prints what drive.js found.
+drive() {
+  local size=$1,$2 file=$3
+  shift 3
+  "$browser" --headless --no-sandbox --disable-dev-shm-usage --hide-scrollbars --window-size="$size" \
+    --virtual-time-budget=60000 "$@" --dump-dom "file://$work/$file" >"$work/dom" 2>"$work/browser.log" || true
+  sed -n '/<pre id="driven">/,/<\/pre>/p' "$work/dom" |
+    sed -e 's/.*<pre id="driven">//' -e 's/<\/pre>.*//' -e 's/&lt;/</g' -e 's/&gt;/>/g' -e 's/&amp;/\&/g' >"$work/driven"
+  sed "s/^/$size: /" "$work/driven"
+  if grep -q '^FAIL' "$work/driven" || ! grep -q '^done' "$work/driven"; then
+    echo "browser.sh: the page failed at $size" >&2
+    tail -5 "$work/browser.log" >&2
+    failed=1
+  fi
+}
+
+failed=0
+webgl=(--use-angle=swiftshader --enable-unsafe-swiftshader --ignore-gpu-blocklist)
+page "$here/meet.json"
+drive 1600 1200 'page.html?drive=all' "${webgl[@]}"
+# A scenario takes the camera that the page copies.
+camera=$(sed -n 's/^camera //p' "$work/driven")
+scenario=$(cat "$here/meet.json")
+printf '%s\n' "${scenario/'"frames": {'/"\"frames\": { \"most\": 1, \"views\": [$camera],"}" >"$work/copied.json"
+"$lrbscope" --quiet run "$work/copied.json" -o "$work/copied" >/dev/null
+for width in 400 3000; do in_frame "$width" && drive 3200 1000 frame.html "${webgl[@]}"; done
+drive 1200 900 'page.html?drive=flat' --disable-gpu --disable-3d-apis --disable-software-rasterizer
+exit "$failed"

@@ -1,0 +1,305 @@
+// Uses a run's page as a person does, and writes down what came out: "ok ...", "FAIL ...", and "done" at the end.
+(async function () {
+  const lines = [],
+    wait = (ms) => new Promise((then) => setTimeout(then, ms));
+  // Time is virtual here and does not wait for pictures: they are asked for.
+  const frame = async () => {
+    await wait(20);
+    if (run.view) run.view.draw();
+  };
+  const check = (is, what, found = "") =>
+    lines.push(`${is ? "ok" : "FAIL"} ${what}${is ? "" : `: ${found}`}`);
+  const equal = (found, wanted, what) => check(found === wanted, what, `found ${found}, wanted ${wanted}`);
+  const press = (key, shiftKey = false) =>
+    document.body.dispatchEvent(
+      new KeyboardEvent("keydown", { key, shiftKey, bubbles: true, cancelable: true }),
+    );
+  const input = (id, value) => {
+    byId(id).value = value;
+    byId(id).dispatchEvent(new Event("input", { bubbles: true }));
+  };
+  const shownRows = () => document.querySelectorAll("#event-body .row").length;
+  const ofKind = (kind) => run.events.kind.reduce((n, k) => n + (k === kind ? 1 : 0), 0);
+  const recordedSize = (i) => run.wrappers.sizes[run.events.side[i]] === run.events.boundary[i];
+
+  function opensAtFirstContact() {
+    const { events, selection } = run;
+    equal(events.kind[selection.event], events.CONTACT, "opens at a contact");
+    equal(events.kind.indexOf(events.CONTACT), selection.event, "which is the first");
+    equal(data.frames[current].step, events.stepNumber(selection.event), "frames stand at the same step");
+    check(
+      byId("view-caption").textContent.includes("contact"),
+      "the caption says so",
+      byId("view-caption").textContent,
+    );
+  }
+
+  function replaysAsRecorded() {
+    const { events, selection, wrappers } = run,
+      changes = [...events.kind.keys()].filter((i) => events.changesWrapper(i));
+    check(changes.length > 20, "there are refinements", changes.length);
+    for (const [order, list] of [
+      ["forward", changes],
+      ["backward", changes.slice().reverse()],
+    ]) {
+      const wrong = list.filter((i) => {
+        wrappers.seek(i);
+        return !recordedSize(i);
+      });
+      equal(wrong.length, 0, `wrappers have as many faces as recorded, ${order}`);
+    }
+    selection.goTo(selection.event);
+  }
+
+  async function slides() {
+    const { events, selection, timeline } = run,
+      first = timeline.firstHere,
+      change = [...Array(timeline.lastHere - first).keys()]
+        .reverse()
+        .find((i) => events.changesWrapper(first + i));
+    input("event", change);
+    await frame();
+    equal(selection.event, first + change, "the slider moves to its event");
+    check(
+      recordedSize(selection.event),
+      "and the wrapper has the faces that the trace says",
+      run.wrappers.sizes,
+    );
+    check(
+      byId("event-facts").textContent.includes(digits(run.events.boundary[selection.event])),
+      "the panel says how many",
+      byId("event-facts").textContent,
+    );
+    input("step", 0);
+    equal(events.step(selection.event), 0, "the slider of steps moves to its step");
+    check(document.querySelector("#event-body [aria-selected=true]"), "the table shows the event");
+  }
+
+  async function clicks() {
+    run.timeline.toStep(run.events.firstOfStep.length - 1);
+    run.view.frameAll();
+    await frame();
+    const box = byId("view-canvas").getBoundingClientRect(),
+      points = [];
+    for (let x = 0.1; x < 1; x += 0.05)
+      for (let y = 0.1; y < 1; y += 0.1)
+        points.push([Math.round(box.left + x * box.width), Math.round(box.top + y * box.height)]);
+    const at = points.find(([x, y]) => {
+      const hit = run.view.faceUnder(x, y);
+      return hit && !run.events.bodies[hit.side].isReal(hit.face);
+    });
+    check(at, "a pseudo face can be seen");
+    if (!at) return;
+    for (const type of ["pointerdown", "click"])
+      byId("view-canvas").dispatchEvent(
+        new MouseEvent(type, { clientX: at[0], clientY: at[1], bubbles: true }),
+      );
+    await frame();
+    check(
+      /^Pseudo face/.test(byId("picked-title").textContent),
+      "a click on it fills the panel",
+      byId("picked-title").textContent,
+    );
+    for (const word of ["layer", "lids", "floor", "tests", "hits", "misses"])
+      check(byId("picked-facts").textContent.includes(word), `with ${word}`);
+    byId("picked-events").click();
+    check(run.table.rows.length < run.events.count, "its button filters the table", run.table.rows.length);
+    byId("filter-clear").click();
+  }
+
+  function filters() {
+    const { events, table } = run;
+    equal(table.rows.length, events.count, "all events are listed");
+    check(shownRows() > 3 && shownRows() < 60, "and only some rows made", shownRows());
+    input("filter-kind", events.REFINE);
+    equal(table.rows.length, ofKind(events.REFINE), "the filter of kinds leaves the refinements");
+    input("filter-side", "1");
+    check(table.rows.length > 0 && table.rows.every((i) => events.side[i] === 1), "that of sides those of B");
+    input("filter-level", "2-3");
+    check(
+      table.rows.length > 0 && table.rows.every((i) => events.level(i) >= 2 && events.level(i) <= 3),
+      "that of levels those at 2 and 3",
+    );
+    byId("filter-clear").click();
+    const contact = events.kind.indexOf(events.CONTACT),
+      [a, b] = events.faces(contact);
+    input("filter-pair", `${a.face}, ${b.face}`);
+    check(
+      table.rows.length > 0 &&
+        table.rows.every((i) => events.faces(i)[0].face === a.face && events.faces(i)[1].face === b.face),
+      "that of pairs one pair",
+    );
+    input("filter-pair", "x");
+    equal(byId("filter-pair").getAttribute("aria-invalid"), "true", "nonsense is marked");
+    byId("filter-clear").click();
+    input("filter-kind", events.REFINE);
+    press("ArrowDown");
+    equal(events.kind[run.selection.event], events.REFINE, "the arrow keys walk along what is listed");
+    byId("filter-clear").click();
+    document.querySelectorAll("#event-body .row")[2].click();
+    equal(run.selection.event, run.table.rows[run.table.first + 2], "a click on a row selects its event");
+  }
+
+  async function presses() {
+    const { selection, view } = run,
+      before = selection.event;
+    press("ArrowRight");
+    equal(selection.event, before + 1, "an arrow key moves by one event");
+    press("ArrowLeft", true);
+    equal(selection.event, Math.max(0, before - 9), "with shift by ten");
+    press("g");
+    equal(byId("ghost").getAttribute("aria-pressed"), "true", "g makes ghosts");
+    await frame();
+    equal(view.views[0].materials.real.transparent, true, "of the bodies");
+    press("g");
+    run.selection.pickRegion(0, run.events.bodies[0].regionCount - 1);
+    press("i");
+    await frame();
+    check(
+      view.views[0].pieces.some((p) => p.triangles > 0),
+      "i isolates the selected region",
+    );
+    press("i");
+    press("x");
+    await frame();
+    check(
+      view.views.every((v) => v.pieces.some((p) => p.triangles > 0)),
+      "x takes the wrappers apart",
+    );
+    press("x");
+    press("n");
+    await frame();
+    check(
+      view.views.every((v) => v.boxLines),
+      "n shows the boxes of the trees",
+    );
+    press("n", true);
+    press("?");
+    equal(byId("help").open, true, "? lists the keys");
+    byId("help").close();
+    press("o");
+    await frame();
+    equal(view.camera.camera.isOrthographicCamera, true, "o looks along parallels");
+    press("o");
+    press("v");
+    await frame();
+    lines.push(`camera ${byId("camera-json").value}`);
+  }
+
+  async function colours() {
+    const most = run.events.bodies.reduce((m, b) => Math.max(m, ...b.counts.misses), 0);
+    equal(
+      run.events.bodies.reduce((n, b) => n + b.counts.tests.reduce((s, t) => s + t, 0), 0),
+      2 * ofKind(run.events.FACE_TEST),
+      "every test counts for a face of each body",
+    );
+    for (const by of ["layer", "region", "tests", "hits", "misses"]) {
+      input("colour-by", by);
+      await frame();
+    }
+    equal(byId("scale").hidden, false, "counters have a scale");
+    equal(byId("scale-most").textContent, digits(most), "that goes to the most of both bodies");
+    input("colour-scope", "step");
+    input("colour-per", "region");
+    await frame();
+    input("colour-by", "kind");
+    await frame();
+    equal(byId("scale").hidden, true, "and none without counters");
+  }
+
+  async function plays() {
+    run.selection.goTo(run.timeline.firstHere);
+    const before = run.selection.event;
+    byId("play-speed").value = "30";
+    press(" ");
+    for (let k = 0; k < 40 && run.selection.event === before; k++) await wait(50);
+    press(" ");
+    check(run.selection.event > before, "space plays", run.selection.event);
+    seek("event", run.events.id(run.events.count - 1));
+    equal(run.selection.event, run.events.count - 1, "a chart leads to its event");
+    show(0);
+    equal(run.events.stepNumber(run.selection.event), data.frames[0].step, "a frame leads to its event");
+  }
+
+  /** A table of a million events, which the page's own repeat. */
+  function largeTable() {
+    const { events } = run,
+      many = Object.create(events),
+      count = 1e6;
+    for (const name of ["kind", "side", "meet", "a", "b", "cause", "boundary", "depthA", "depthB"])
+      many[name] = Uint32Array.from({ length: count }, (_, i) => events[name][i % events.count]);
+    Object.assign(many, { count, ids: null });
+    const { table } = run;
+    table.events = many;
+    table.refilter();
+    table.box.scrollTop = 1e9;
+    table.box.dispatchEvent(new Event("scroll"));
+    check(shownRows() < 60, "a table of a million events makes few rows", shownRows());
+    equal(
+      Number(document.querySelector("#event-body .row:last-child").dataset.event),
+      count - 1,
+      "and scrolls to its last",
+    );
+    input("filter-kind", events.REFINE);
+    check(table.rows.length > 0 && table.rows.length < count, "and filters them");
+    table.events = events;
+    byId("filter-clear").click();
+  }
+
+  function fitsTheWidth() {
+    equal(
+      document.documentElement.scrollWidth,
+      document.documentElement.clientWidth,
+      `nothing sticks out of ${innerWidth} pixels`,
+    );
+  }
+
+  async function withoutWebgl() {
+    equal(run.view, null, "without WebGL there is no view");
+    check(
+      /WebGL/.test(byId("no-view").textContent) && !byId("no-view").hidden,
+      "and the page says so",
+      byId("no-view").textContent,
+    );
+    equal(byId("frames").open, true, "and shows the frames");
+    input("filter-kind", run.events.REFINE);
+    equal(run.table.rows.length, ofKind(run.events.REFINE), "the table works as before");
+    press("ArrowRight");
+    check(
+      byId("event-title").textContent.startsWith("Event"),
+      "and so do keys",
+      byId("event-title").textContent,
+    );
+  }
+
+  const parts = {
+    all: [
+      opensAtFirstContact,
+      replaysAsRecorded,
+      slides,
+      clicks,
+      filters,
+      presses,
+      colours,
+      plays,
+      largeTable,
+      fitsTheWidth,
+    ],
+    layout: [fitsTheWidth],
+    flat: [opensAtFirstContact, withoutWebgl],
+  };
+  for (const part of parts[new URLSearchParams(location.search).get("drive")]) {
+    try {
+      await frame();
+      await part();
+    } catch (e) {
+      check(false, part.name, e.stack || e);
+    }
+  }
+  check(complaints.length === 0, "the console is empty", complaints.join("; "));
+  const out = document.createElement("pre");
+  out.id = "driven";
+  out.textContent = [...lines, "done"].join("\n");
+  if (parent === window) document.body.append(out);
+  else parent.postMessage(out.textContent, "*");
+})();

@@ -1,0 +1,171 @@
+#include "scenarios/run/scene_json.hpp"
+
+#include <algorithm>
+
+#include <doctest/doctest.h>
+#include <nlohmann/json.hpp>
+
+#include "scenarios/run/recorded_run.hpp"
+#include "scenarios/run/thinned_events.hpp"
+#include "scenarios/run/tree_boxes.hpp"
+#include "trace/names.hpp"
+
+using namespace lrb;
+using nlohmann::json;
+
+namespace {
+
+run::Recording rocks_that_meet(WrapperMode mode = WrapperMode::regularised) {
+  spec::Scenario s;
+  s.name = "rocks";
+  s.bodies.resize(2);
+  for (spec::BodySpec& body : s.bodies) {
+    body.generator = "rock";
+    body.parameters = {{"frequency", 6}};
+  }
+  s.request.wrapper = mode;
+  if (mode == WrapperMode::unregularised) s.request.recursion = Recursion::paper;
+  s.motion.kind = spec::Motion::Kind::approach;
+  s.motion.from = {3, 0.2, 0.1};
+  s.motion.steps = 1000;
+  s.motion.before = 3;
+  s.motion.into = 4;
+  return run::record(s, [](const std::string&, std::uint64_t, std::uint64_t) {});
+}
+
+run::RecordedRun run_of(const run::Recording& r) {
+  run::RecordedRun p;
+  p.trace = &r.trace;
+  for (const bodies::LoadedBody& body : r.bodies) p.reps.push_back(&body.rep);
+  return p;
+}
+
+bool changes_wrapper(const trace::Event& e) {
+  return e.kind == EventKind::refine || e.kind == EventKind::coarsen;
+}
+
+std::size_t changes(const trace::Trace& trace) {
+  return static_cast<std::size_t>(std::count_if(trace.events.begin(), trace.events.end(), changes_wrapper));
+}
+
+}  // namespace
+
+TEST_CASE("thinned events: all of them where they fit") {
+  const run::Recording r = rocks_that_meet();
+  const run::ThinnedEvents t = run::thin_events(r.trace, r.trace.events.size());
+  CHECK(t.all(r.trace));
+  CHECK(t.steps == r.trace.steps.size());
+}
+
+TEST_CASE("thinned events: what changes wrappers comes first, and the first contact is among them") {
+  const run::Recording r = rocks_that_meet();
+  const std::size_t most = changes(r.trace) + 3 * r.trace.steps.size();
+  REQUIRE(most < r.trace.events.size());
+  const run::ThinnedEvents t = run::thin_events(r.trace, most);
+  CHECK(t.kept.size() == most);
+  CHECK(t.steps == r.trace.steps.size());
+  CHECK_FALSE(t.cut);
+  CHECK(std::is_sorted(t.kept.begin(), t.kept.end()));
+  CHECK(static_cast<std::size_t>(std::count_if(t.kept.begin(), t.kept.end(), [&](trace::EventId e) {
+          return changes_wrapper(r.trace.events[e]);
+        })) == changes(r.trace));
+  CHECK(std::binary_search(t.kept.begin(), t.kept.end(), run::first_contact(r.trace)));
+}
+
+TEST_CASE("thinned events: where even those are too many, whole steps are left out") {
+  const run::Recording r = rocks_that_meet();
+  const run::ThinnedEvents t = run::thin_events(r.trace, changes(r.trace) / 2);
+  CHECK(t.kept.size() <= changes(r.trace) / 2);
+  CHECK(t.steps < r.trace.steps.size());
+  CHECK_FALSE(t.cut);
+  for (std::size_t s = 0; s < r.trace.steps.size(); ++s) {
+    const trace::EventId first = r.trace.steps[s].first_event;
+    const auto events = r.trace.events_of(s);
+    const auto kept = [&](std::size_t i) {
+      return std::binary_search(t.kept.begin(), t.kept.end(), static_cast<trace::EventId>(first + i));
+    };
+    for (std::size_t i = 0; i < events.size(); ++i)
+      if (changes_wrapper(events[i])) CHECK(kept(i) == kept(0));
+  }
+  CHECK(std::binary_search(t.kept.begin(), t.kept.end(), run::first_contact(r.trace)));
+}
+
+TEST_CASE("thinned events: of a single step that is too long, the beginning is left") {
+  const run::Recording r = rocks_that_meet();
+  const run::ThinnedEvents t = run::thin_events(r.trace, 5);
+  CHECK(t.cut);
+  CHECK(t.steps == 1);
+  CHECK(t.kept.size() == 5);
+}
+
+TEST_CASE("thinned events: a refinement face by face keeps the test that caused it") {
+  const run::Recording r = rocks_that_meet(WrapperMode::unregularised);
+  const run::ThinnedEvents t = run::thin_events(r.trace, r.trace.events.size() - 1);
+  std::size_t causes = 0;
+  for (const trace::EventId id : t.kept) {
+    const trace::Event& e = r.trace.events[id];
+    if (!changes_wrapper(e) || e.cause == kNull) continue;
+    ++causes;
+    CHECK(std::binary_search(t.kept.begin(), t.kept.end(), e.cause));
+  }
+  CHECK(causes > 0);
+}
+
+TEST_CASE("boxes of tree nodes hold the faces, and each depth those of the one below") {
+  const run::Recording r = rocks_that_meet();
+  const LrbRep& rep = r.bodies[0].rep;
+  const std::vector<run::TreeBox> boxes = run::tree_boxes(rep.tree(), 100'000);
+  CHECK(boxes.size() == rep.tree().nodes().size());
+  CHECK(boxes.back().depth + 1 == rep.tree().height());
+  const auto holds = [](const run::TreeBox& box, const Eigen::Vector3d& x) {
+    for (int i = 0; i < 3; ++i) {
+      const Eigen::Vector3d axis = box.half.col(i);
+      if (std::abs(axis.dot(x - box.centre)) > axis.squaredNorm() * (1 + 1e-6) + 1e-12) return false;
+    }
+    return true;
+  };
+  for (std::uint32_t depth = 0; depth < 2; ++depth)
+    for (FaceId f = 0; f < rep.real_face_count(); ++f)
+      for (const VertexId v : rep.face(f))
+        CHECK(std::any_of(boxes.begin(), boxes.end(), [&](const run::TreeBox& b) {
+          return b.depth == depth && holds(b, rep.vertices()[v]);
+        }));
+}
+
+TEST_CASE("boxes of tree nodes: whole depths, as many as fit") {
+  const run::Recording r = rocks_that_meet();
+  const ObbTree& tree = r.bodies[0].rep.tree();
+  const std::vector<run::TreeBox> all = run::tree_boxes(tree, 100'000);
+  const auto upper = static_cast<std::size_t>(
+      std::count_if(all.begin(), all.end(), [](const run::TreeBox& b) { return b.depth <= 1; }));
+  CHECK(run::tree_boxes(tree, upper).size() == upper);
+  CHECK(run::tree_boxes(tree, upper - 1).size() == 1);
+}
+
+TEST_CASE("a run as data of its page: bodies, steps and events, and nothing said where nothing is left out") {
+  const run::Recording r = rocks_that_meet();
+  const json scene = json::parse(run::scene_json(run_of(r), "trace.json"));
+  CHECK(scene["bodies"].size() == 2);
+  CHECK(scene["bodies"][0]["faces"] == r.bodies[0].rep.face_count());
+  CHECK(scene["steps"]["count"] == r.trace.steps.size());
+  CHECK(scene["events"]["count"] == r.trace.events.size());
+  CHECK(scene["events"]["id"] == "");
+  CHECK(scene["firstContact"] == run::first_contact(r.trace));
+  CHECK(scene["thinned"] == "");
+  CHECK(scene["tooLarge"] == "");
+  CHECK(scene["kinds"].size() == trace::kEventKinds);
+}
+
+TEST_CASE("a run as data of its page says what it left out, and where that is") {
+  const run::Recording r = rocks_that_meet();
+  run::SceneLimits limits;
+  limits.events = 100;
+  limits.faces = 10;
+  const json scene = json::parse(run::scene_json(run_of(r), "trace.json.gz", limits));
+  CHECK(scene["events"]["count"] <= 100);
+  CHECK(scene["events"]["id"] != "");
+  const std::string thinned = scene["thinned"], large = scene["tooLarge"];
+  CHECK(thinned.find("trace.json.gz has them all") != std::string::npos);
+  CHECK(large.find("a page takes 10") != std::string::npos);
+  CHECK_FALSE(scene["bodies"][0].contains("geometry"));
+}
