@@ -118,6 +118,11 @@ void add_picture_options(CLI::App& app, PictureOptions& options) {
       ->type_name("N");
   add_up_option(app, options.up);
   add_choice<spec::FrameSpec::ColourBy>(app, "--colour-by", options.colour_by, "What the colours mean");
+  app.add_option(
+         "--node-boxes", options.node_boxes,
+         "Draw the boxes of tree nodes of this depth that the walk came to: solid where they met, else dashed")
+      ->check(CLI::Range(0U, spec::kMostDepth))
+      ->type_name("DEPTH");
 }
 
 void apply(const PictureOptions& options, spec::FrameSpec& spec) {
@@ -143,6 +148,7 @@ void apply(const PictureOptions& options, spec::FrameSpec& spec) {
   if (options.every) spec.every = *options.every;
   if (options.most) spec.most = *options.most;
   if (options.colour_by) spec.colour_by = *options.colour_by;
+  if (options.node_boxes) spec.node_boxes = options.node_boxes;
   if (options.up.empty()) return;
   if (spec.views.empty()) spec.views.emplace_back();
   for (spec::FrameSpec::View& view : spec.views) {

@@ -6,6 +6,7 @@
 
 #include "render/palette.hpp"
 #include "scenarios/run/moments.hpp"
+#include "scenarios/run/node_box_lines.hpp"
 #include "trace/names.hpp"
 #include "trace/node_work.hpp"
 
@@ -195,7 +196,15 @@ render::Scene FrameState::scene(bool wrapper, bool plain) const {
   options.scale = static_cast<float>(spec_.scale());
   options.isolate = spec_.isolate;
   options.ghost_rest = spec_.ghost_rest;
-  return render::build_scene(bodies, highlight, options);
+  render::Scene scene = render::build_scene(bodies, highlight, options);
+  if (spec_.node_boxes && extras_.trees != nullptr && !extras_.trees->empty()) {
+    const trace::EventId first = cursor_.step()->first_event;
+    for (const Side side : {Side::a, Side::b})
+      add_node_boxes(scene, (*extras_.trees)[static_cast<std::size_t>(side)], side, cursor_.pose(side),
+                     *spec_.node_boxes,
+                     {trace_.events.data() + first, cursor_.position() + std::size_t{1} - first});
+  }
+  return scene;
 }
 
 std::string FrameState::event_text() const {

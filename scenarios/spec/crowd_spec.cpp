@@ -60,7 +60,7 @@ Eigen::Vector3d read_room(const io::JsonNode& node) {
 /// Reads frames of a crowd, which may use some of what frames of two bodies may.
 FrameSpec read_crowd_frames(const io::JsonNode& node) {
   FrameSpec frames = read_frames(node, {});
-  for (const char* key : {"events", "colour_by", "explode", "montage", "format"})
+  for (const char* key : {"events", "colour_by", "node_boxes", "explode", "montage", "format"})
     if (node.has(key)) node.fail_key(key, "frames of a crowd have none: remove it");
   if (frames.at != FrameSpec::At::step && frames.at != FrameSpec::At::none)
     node.at("at").fail("frames of a crowd are drawn at a step, or none are");

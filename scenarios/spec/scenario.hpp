@@ -114,10 +114,12 @@ struct FrameSpec {
   std::vector<View> views;  ///< side by side; none: one of the whole scene
   bool transparent = false;
   std::array<std::vector<RegionId>, 2> isolate;  ///< regions of A and B to show alone; none: everything
-  bool ghost_rest = true;     ///< what becomes of the rest where some are isolated: a ghost, or nothing
-  bool svg = false;           ///< writes each view of a frame as SVG as well (2D)
-  double explode = 0;         ///< regions are moved outward by this share of their distance
-  std::uint32_t montage = 0;  ///< number of panels of the montage, evenly chosen; 0: no montage
+  bool ghost_rest = true;  ///< what becomes of the rest where some are isolated: a ghost, or nothing
+  bool svg = false;        ///< writes each view of a frame as SVG as well (2D)
+  std::optional<std::uint32_t>
+      node_boxes;                     ///< draws the boxes of tree nodes of this depth that the walk came to
+  double explode = 0;                 ///< regions are moved outward by this share of their distance
+  std::uint32_t montage = 0;          ///< number of panels of the montage, evenly chosen; 0: no montage
   std::uint32_t montage_columns = 0;  ///< 0: nearly square
 
   static constexpr double kScreenDpi = 96;  ///< of CSS, by definition
@@ -149,11 +151,17 @@ constexpr auto words_of(FrameSpec::ColourBy) {
                                             {ColourBy::box_tests, "box_tests"},
                                             {ColourBy::plane_tests, "plane_tests"}});
 }
-/// Returns the events that a number needs.
+/// Returns the events that colours need.
 constexpr EventLevel needed_level(FrameSpec::ColourBy by) {
   using ColourBy = FrameSpec::ColourBy;
   if (by == ColourBy::plane_tests) return EventLevel::all;
   return by == ColourBy::expansions || by == ColourBy::box_tests ? EventLevel::nodes : EventLevel::faces;
+}
+
+/// Returns the events that frames need.
+constexpr EventLevel needed_level(const FrameSpec& frames) {
+  const EventLevel colours = needed_level(frames.colour_by);
+  return frames.node_boxes && colours == EventLevel::faces ? EventLevel::nodes : colours;
 }
 
 struct Expectation {

@@ -47,7 +47,7 @@ void read_moments(const io::JsonNode& node, FrameSpec& f) {
 
 FrameSpec read_frames(const io::JsonNode& node, const FrameSpec& fallback) {
   node.object({"at", "every", "events", "most", "size", "dpi", "format", "supersampling", "colour_by",
-               "views", "transparent", "explode", "montage"});
+               "views", "transparent", "node_boxes", "explode", "montage"});
   FrameSpec f = fallback;
   read_moments(node, f);
   if (const auto n = node.get("size")) {
@@ -64,6 +64,8 @@ FrameSpec read_frames(const io::JsonNode& node, const FrameSpec& fallback) {
     for (const io::JsonNode& item : n->items(1)) f.views.push_back(read_view(item));
   if (f.views.size() > 6) node.at("views").fail("expected at most 6 views");
   if (const auto n = node.get("transparent")) f.transparent = n->boolean();
+  if (const auto n = node.get("node_boxes"))
+    f.node_boxes = static_cast<std::uint32_t>(n->integer(0, kMostDepth));
   if (const auto n = node.get("explode")) f.explode = n->number(0, 10);
   if (const auto n = node.get("montage")) {
     n->object({"panels", "columns"});

@@ -6,6 +6,8 @@
 namespace lrb::spec {
 
 inline constexpr double kLeastDpi = 24, kMostDpi = 2400;
+/// The greatest depth of tree nodes whose boxes can be asked for.
+inline constexpr std::uint32_t kMostDepth = 64;
 
 /// Reads the "frames" part of a scenario; what it leaves out is as in `fallback`.
 FrameSpec read_frames(const io::JsonNode& node, const FrameSpec& fallback);

@@ -83,6 +83,7 @@ void refuse_for_crowd(const RenderOptions& o) {
       {o.hide_rest, "--no-ghost"},
       {o.picture.svg.value_or(false), "--format svg"},
       {o.picture.colour_by.has_value(), "--colour-by"},
+      {o.picture.node_boxes.has_value(), "--node-boxes"},
       {at == spec::FrameSpec::At::refinement || at == spec::FrameSpec::At::every,
        "--frames refinement or event"}};
   for (const auto& [given, name] : none)
@@ -129,13 +130,14 @@ int run_render(const RenderOptions& o, const Globals& globals) {
       {"lrbscope:scenario", trace.header.scenario},
       {"lrbscope:scenario_hash", trace::to_hex(trace.header.scenario_hash)},
   };
-  if (spec::needed_level(spec.colour_by) > trace.header.level)
-    throw InputError("--colour-by " + std::string(name_of(spec.colour_by)) + ": " + printable_name(o.trace) +
-                     " does not hold the events for it; record the run with --events " +
-                     std::string(name_of(spec::needed_level(spec.colour_by))));
-  if (spec.colour_by == spec::FrameSpec::ColourBy::box_tests && recording.trees.empty())
-    throw InputError("--colour-by box_tests: " + printable_name(o.trace) + " is of " + trace.header.engine +
-                     ", whose trees are not in it; `lrbscope xray` draws them");
+  if (const EventLevel needed = spec::needed_level(spec); needed > trace.header.level)
+    throw InputError(
+        printable_name(o.trace) +
+        " does not hold the events for --colour-by or --node-boxes; record the run with --events " +
+        std::string(name_of(needed)));
+  if (spec::needed_level(spec) == EventLevel::nodes && recording.trees.empty())
+    throw InputError("--colour-by or --node-boxes: " + printable_name(o.trace) + " is of " +
+                     trace.header.engine + ", whose trees are not in it; `lrbscope xray` draws them");
   run::check_frames(p, spec);  // throws before anything is written
   io::make_folder(folder);
   const io::FolderLock lock(folder);
