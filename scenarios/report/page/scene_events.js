@@ -1,5 +1,7 @@
-// ---- the run's events, as far as the page has them. An event is known here by its index among these; what people see is its id,
-// its number in the trace. What the numbers `a` and `b` of a kind mean is taken from the kind's words, so that new kinds are shown too.
+// ---- the run's events, as far as the page has them. An event is known here by its index among these; what
+// people see is its id, its number in the trace. What the numbers `a` and `b` of a kind mean is taken from
+// the
+// kind's words, so that new kinds are shown too.
 class Events {
   constructor(json, bodies) {
     this.bodies = bodies;
@@ -70,7 +72,8 @@ class Events {
       if (r.sort === sort && number !== NONE) out.push({ side: r.side >= 0 ? r.side : this.side[i], number });
     return out;
   }
-  /** Returns the faces that an event compares: [{side, face}]; none if the bodies are too large for the page. */
+  /** Returns the faces that an event compares: [{side, face}]; none if the bodies are too large for the
+      page. */
   faces(i) {
     return this.about(i, "simplex")
       .filter((s) => this.bodies[s.side].complete)
@@ -79,7 +82,8 @@ class Events {
   regions(i) {
     return this.about(i, "region").map((r) => ({ side: r.side, region: r.number }));
   }
-  /** Returns the number of regions between what the event is about and the outside; of two faces the greater; -1: none. */
+  /** Returns the number of regions between what the event is about and the outside; of two faces the
+      greater; -1: none. */
   level(i) {
     const [region] = this.regions(i);
     if (region) return this.bodies[region.side].complete ? this.bodies[region.side].depth(region.region) : -1;

@@ -41,7 +41,7 @@ class Panel {
       kind = events.kindOf(i),
       level = events.level(i),
       cause = events.find(events.cause[i]);
-    byId("event-title").textContent = `Event ${digits(events.id(i))}, step ${digits(events.stepNumber(i))}`;
+    byId("event-title").textContent = eventPlace(events, i);
     const rows = [
       ["kind", kind.name],
       ["what", eventWords(events, i)],

@@ -16,7 +16,7 @@ function eventWords(events, i) {
   if (kind === events.REFINE) return `region ${digits(a)}${side}: ${plural(b, "face")} under it`;
   if (kind === events.COARSEN) return `region ${digits(a)}${side} added`;
   if (kind === events.RESULT)
-    return `${relationWords(events.relations[a] || String(a))}: ${plural(b, "pair of faces meets", "pairs of faces meet")}`;
+    return `${relationWords(events.relations[a])}: ${plural(b, "pair of faces meets", "pairs of faces meet")}`;
   const faces = events.faces(i);
   if (faces.length)
     return faces.map((f) => `${events.bodies[f.side].faceWords(f.face)} of ${SIDES[f.side]}`).join(", ");
@@ -34,11 +34,20 @@ function eventWords(events, i) {
 const meetWords = (events, i) =>
   events.about(i, "simplex").length ? events.meets[events.meet[i]] || "" : "";
 
+/** Returns where an event is in the run. */
+function eventPlace(events, i) {
+  const event = `event ${digits(events.id(i))}`;
+  return events.firstOfStep.length > 1
+    ? `Step ${digits(events.stepNumber(i))}, ${event}`
+    : `E${event.slice(1)}`;
+}
+
 /** Returns a sentence on an event and the wrappers after it. */
 function eventSentence(events, wrappers, i) {
   const meet = meetWords(events, i);
-  const about = `Step ${digits(events.stepNumber(i))}, event ${digits(events.id(i))}, ${events.kindOf(i).name}: ${eventWords(events, i)}${meet ? ` (${meet})` : ""}.`;
-  return wrappers
-    ? `${about} ${wrappers.sizes.length > 1 ? "Wrappers" : "Wrapper"}: ${wrappers.sizes.map((n) => digits(n)).join(" + ")} faces.`
-    : about;
+  const result = meet ? ` (${meet})` : "";
+  const about = `${eventPlace(events, i)}, ${events.kindOf(i).name}: ${eventWords(events, i)}${result}.`;
+  if (!wrappers) return about;
+  const sizes = wrappers.sizes.map(digits).join(" + ");
+  return `${about} ${wrappers.sizes.length > 1 ? "Wrappers" : "Wrapper"}: ${sizes} faces.`;
 }
