@@ -15,7 +15,7 @@ state_of() {
   command=$(python3 - "$1" "$database" <<'P'
 import json, os, re, sys
 for entry in json.load(open(sys.argv[2] + "/compile_commands.json")):
-    if os.path.samefile(entry["file"], sys.argv[1]):
+    if os.path.realpath(entry["file"]) == os.path.realpath(sys.argv[1]):  # other files may be made only by building
         print("cd", entry["directory"], "&&", re.sub(r" -o \S+", "", entry["command"]), "-MM")
         break
 P

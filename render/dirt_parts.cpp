@@ -34,7 +34,8 @@ Parts parts_of(const Mesh& mesh, MeshFault kind, const Element& e) {
 }
 
 std::string number_of(MeshFault kind, const Element& e) {
-  const std::string a = std::to_string(e[0]), b = std::to_string(e[1]);
+  std::string a = std::to_string(e[0]);
+  const std::string b = std::to_string(e[1]);
   switch (kind) {
     case MeshFault::open_edge:
     case MeshFault::non_manifold_edge:

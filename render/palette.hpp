@@ -64,6 +64,13 @@ constexpr Rgba event(EventKind kind) {
       return kPurple;
     case EventKind::contact:
       return kContact;
+    case EventKind::node_pair:
+    case EventKind::plane_test:
+    case EventKind::point:
+      return kUnderTest;
+    case EventKind::begin:
+    case EventKind::end:
+      return kFaint;
     case EventKind::result:
       return kInk;
   }

@@ -113,7 +113,8 @@ class Scene3dBuilder {
     if (any_in_contact) c_.add_key(Mark::solid, palette::kContact, "real faces that meet");
     if (c_.options.colour_by == ColourBy::value) {
       c_.add_key(Mark::solid, mix(c_.colour(), kWhite, 0.78),
-                 c_.name() + ", faces without " + c_.options.value_name);
+                 c_.name() + (c_.value_low > 0 ? ", faces with fewer " : ", faces without ") +
+                     c_.options.value_name);
     } else {
       c_.add_key(Mark::solid, c_.colour_of(0, kSolid), c_.name() + ", real faces");
     }

@@ -81,8 +81,15 @@ Totals count_events(std::span<const Event> events) {
       case EventKind::contact:
         ++t.contacts;
         break;
+      case EventKind::node_pair:
+        ++t.node_pairs;
+        break;
       case EventKind::step:
       case EventKind::result:
+      case EventKind::plane_test:
+      case EventKind::point:
+      case EventKind::begin:
+      case EventKind::end:
         break;
     }
   }
@@ -175,14 +182,18 @@ Histogram steps_by_tests(const Trace& trace, std::size_t bins) {
 
 FaceCounts count_faces(const LrbRep& rep, Side side, std::span<const Event> events) {
   const std::size_t n = rep.face_count();
-  FaceCounts counts{std::vector<std::uint32_t>(n), std::vector<std::uint32_t>(n),
-                    std::vector<std::uint32_t>(n), std::vector<std::uint32_t>(n)};
+  const std::vector<std::uint32_t> none(n);
+  FaceCounts counts{none, none, none, none, none, none, none};
   const auto face_of = [&](const Event& e) { return rep.face_of_simplex(e.simplex(side)); };
   for (const Event& e : events) {
     if (e.kind == EventKind::face_test) {
       const FaceId face = face_of(e);
       ++counts.tests[face];
       counts.hits[face] += is_hit(e);
+      counts.misses[face] += !is_hit(e);
+      counts.expansions[face] += e.tested_by() == TestedBy::expansions;
+    } else if (e.kind == EventKind::plane_test) {
+      ++counts.plane_tests[face_of(e)];
     } else if (e.kind == EventKind::contact) {
       ++counts.contacts[face_of(e)];
     } else if (e.kind == EventKind::refine && e.side == side) {

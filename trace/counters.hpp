@@ -25,6 +25,7 @@ struct Totals {
   std::array<std::uint64_t, 2> coarsenings{};
   std::uint64_t faces_added = 0;  ///< by the refinements
   std::uint64_t contacts = 0;     ///< pairs of real simplices that meet: the answer's size
+  std::uint64_t node_pairs = 0;   ///< pairs of tree nodes; from EventLevel::nodes on
 
   friend bool operator==(const Totals&, const Totals&) = default;
 };
@@ -68,8 +69,13 @@ Histogram steps_by_tests(const Trace& trace, std::size_t bins = 20);
 
 /// Counts for each face of one body, for heat maps. All (|F|).
 struct FaceCounts {
-  std::vector<std::uint32_t> tests;     ///< number of tests of the face
-  std::vector<std::uint32_t> hits;      ///< number of those in which it met the other face
+  std::vector<std::uint32_t> tests;   ///< number of tests of the face
+  std::vector<std::uint32_t> hits;    ///< number of those in which it met the other face
+  std::vector<std::uint32_t> misses;  ///< number of those in which it did not: work that led to nothing
+  std::vector<std::uint32_t>
+      expansions;  ///< number of those that exact arithmetic decided; from EventLevel::nodes on
+  std::vector<std::uint32_t>
+      plane_tests;                      ///< number of faces that a plane parted it from; at EventLevel::all
   std::vector<std::uint32_t> contacts;  ///< number of contacts; real faces only
   std::vector<std::uint32_t>
       refinements;  ///< number of refinements of the region behind a pseudo face, or of the one that covers a

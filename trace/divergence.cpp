@@ -109,6 +109,17 @@ void compare_fields(Comparison& c, const Record& x, const Record& y, const std::
   });
 }
 
+void compare_nodes(Comparison& c, const Event& x, const Event& y) {
+  const NodeWork p = x.work(), q = y.work();
+  c.same("step", x.node_end().step, y.node_end().step);
+  c.same("box tests", std::uint64_t{p.box_tests}, std::uint64_t{q.box_tests});
+  c.same("boxes that meet", std::uint64_t{p.met}, std::uint64_t{q.met});
+  c.same("parted by planes", std::uint64_t{p.parted}, std::uint64_t{q.parted});
+  c.same("certain", std::uint64_t{p.certain}, std::uint64_t{q.certain});
+  c.same("axis", x.node_end().axis, y.node_end().axis);
+  c.same("boxes apart", x.node_end().apart, y.node_end().apart);
+}
+
 void compare_events(Comparison& c, const Event& x, const Event& y) {
   c.same("kind", x.kind, y.kind);
   if (c.differs()) return;
@@ -116,6 +127,8 @@ void compare_events(Comparison& c, const Event& x, const Event& y) {
   c.same("side", x.side, y.side);
   if (x.kind == EventKind::result)
     c.same("relation", static_cast<Relation>(x.a), static_cast<Relation>(y.a));
+  else if (x.kind == EventKind::begin || x.kind == EventKind::end)
+    c.same("phase", x.phase(), y.phase());
   else
     c.same_or_none(std::string(a), x.a, y.a);
   c.same_or_none(std::string(b), x.b, y.b);
@@ -123,7 +136,12 @@ void compare_events(Comparison& c, const Event& x, const Event& y) {
   c.same_or_none("depth of A", x.depth_a, y.depth_a);
   c.same_or_none("depth of B", x.depth_b, y.depth_b);
   c.same_or_none("cause", x.cause, y.cause);
-  c.same_or_none("wrapper faces", x.boundary, y.boundary);
+  if (x.kind == EventKind::face_test) c.same("decided by", x.tested_by(), y.tested_by());
+  if (x.kind == EventKind::point) c.same("where", x.where(), y.where());
+  if (x.kind == EventKind::node_pair)
+    compare_nodes(c, x, y);
+  else
+    c.same_or_none("wrapper faces", x.boundary, y.boundary);
 }
 
 void compare_results(Comparison& c, const Step& x, const Step& y) {
@@ -172,12 +190,18 @@ std::string describe(const Event& e) {
   const auto add = [&](std::string_view name, const std::string& value) {
     out.append(out.back() == ':' ? " " : ", ").append(name).append(" ").append(value);
   };
+  const bool is_phase = e.kind == EventKind::begin || e.kind == EventKind::end;
   if (!a.empty())
-    add(a, e.kind == EventKind::result ? words(static_cast<Relation>(e.a)) : std::to_string(e.a));
+    add(a, e.kind == EventKind::result ? words(static_cast<Relation>(e.a))
+           : is_phase                  ? words(e.phase())
+                                       : std::to_string(e.a));
   if (e.kind == EventKind::refine || e.kind == EventKind::coarsen) out += " of " + words(e.side);
   if (!b.empty()) add(b, std::to_string(e.b));
   if (e.kind == EventKind::face_test || e.kind == EventKind::contact) add("meet", words(e.meet));
-  if (e.boundary != kNull) add("wrapper faces", std::to_string(e.boundary));
+  if (e.kind == EventKind::node_pair)
+    add("boxes that meet", std::to_string(e.work().met));
+  else if (e.boundary != kNull)
+    add("wrapper faces", std::to_string(e.boundary));
   if (e.cause != kNull) add("cause", std::to_string(e.cause));
   return out;
 }

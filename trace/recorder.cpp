@@ -4,6 +4,7 @@
 #include <unordered_map>
 
 #include "engine/core/error.hpp"
+#include "trace/node_work.hpp"
 #include "trace/replay.hpp"
 
 namespace lrb::trace {
@@ -22,6 +23,26 @@ void find_causes(std::vector<Event>& events) {
     if (e.kind != EventKind::contact) continue;
     const auto test = tests.find(pair);
     e.cause = test == tests.end() ? kNull : test->second;
+  }
+}
+
+/// Finds along which axes pairs of nodes ended, of which no two boxes met.
+void find_axes(Trace& trace, const std::array<const LrbRep*, 2>& reps) {
+  std::array<const ObbTree*, 2> tree{};
+  std::size_t step = 0;
+  for (EventId i = 0; i < trace.events.size(); ++i) {
+    Event& e = trace.events[i];
+    if (e.kind == EventKind::step) step = trace.step_of(i);
+    if (e.kind == EventKind::begin && e.phase() == Phase::walk)
+      tree = {&walked_tree(*reps[0], e.depth_a), &walked_tree(*reps[1], e.depth_b)};
+    if (e.kind != EventKind::node_pair || e.work().met != 0) continue;
+    BoxPair boxes;
+    compare_boxes(box_of(*tree[0], e.a, kWhole, trace.steps[step].pose_a),
+            box_of(*tree[1], e.b, kWhole, trace.steps[step].pose_b), boxes);
+    NodeEnd end = e.node_end();
+    end.axis = boxes.axis;
+    end.apart = boxes.gap > 0;
+    e.detail = end.bits();
   }
 }
 
@@ -46,6 +67,8 @@ void Recorder::start_over() {
   header.request = settings_.request;
   header.clock = settings_.clock;
   header.event_cap = settings_.event_cap;
+  header.level = settings_.level;
+  header.engine = settings_.engine;
   for (std::size_t side = 0; side < 2; ++side) {
     if (!reps_[side]) continue;
     header.bodies.push_back(describe_body(*reps_[side], settings_.sources[side]));
@@ -53,7 +76,7 @@ void Recorder::start_over() {
   }
   seen_ = seen_before_step_ = last_ns_ = 0;
   step_event_ = 0;
-  last_hit_ = kNull;
+  last_hit_ = last_test_ = last_pair_ = phase_ = kNull;
   began_ = std::chrono::steady_clock::now();
 }
 
@@ -71,7 +94,7 @@ void Recorder::begin_step(std::uint32_t index, const Pose& pose_a, const Pose& p
   close_step();
   seen_before_step_ = seen_;
   step_event_ = static_cast<EventId>(trace_.events.size());
-  last_hit_ = kNull;
+  last_hit_ = last_test_ = last_pair_ = phase_ = kNull;
   Step step;
   step.index = index;
   step.pose_a = pose_a;
@@ -106,6 +129,7 @@ Trace Recorder::take() {
   close_step();
   trace_.events_seen = seen_;
   if (settings_.request.is_coarse()) find_causes(trace_.events);
+  if (settings_.level != EventLevel::faces && settings_.engine.empty()) find_axes(trace_, reps_);
   Replay replay(reps_, settings_.request.wrapper);
   for (Event& event : trace_.events)
     if (replay.apply(event, trace_.events)) event.boundary = replay.boundary_size(event.side);

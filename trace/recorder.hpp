@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <chrono>
 #include <cstdint>
 #include <string>
@@ -29,6 +30,8 @@ struct RecorderSettings {
   Clock clock = Clock::event;
   std::uint32_t event_cap =
       1'000'000;  ///< events beyond this number are counted but not stored (at most kMaxId)
+  EventLevel level = EventLevel::faces;
+  std::string engine;  ///< another one whose walk is told, over trees of its own; empty: ours
 };
 
 class Recorder {
@@ -55,6 +58,7 @@ class Recorder {
                              .depth_b = saturated(depth_b),
                              .kind = EventKind::face_test,
                              .meet = meet});
+    last_test_ = id;
     last_hit_ = meet == exact::Meet::disjoint ? kNull : id;
   }
 
@@ -82,10 +86,52 @@ class Recorder {
     push({.a = a, .b = b, .cause = last_hit_, .kind = EventKind::contact, .meet = meet});
   }
 
+  EventLevel level() const { return settings_.level; }
+
+  std::uint32_t node_pair(const NodeVisit& visit) {
+    const std::uint32_t depth = visit.parent == kNull ? 0 : trace_.events[visit.parent].depth_a + 1u;
+    const NodeWork work{visit.box_tests, visit.met, visit.parted, visit.certain};
+    last_pair_ = push({.a = visit.a,
+                       .b = visit.b,
+                       .cause = visit.parent,
+                       .boundary = std::bit_cast<std::uint32_t>(work),
+                       .depth_a = saturated(depth),
+                       .kind = EventKind::node_pair,
+                       .detail = static_cast<std::uint8_t>(visit.step)});
+    return last_pair_;
+  }
+
+  void plane_test(SimplexId a, SimplexId b, Side whose) {
+    push({.a = a, .b = b, .cause = last_pair_, .kind = EventKind::plane_test, .side = whose});
+  }
+
+  void tested_by(TestedBy how) {
+    if (last_test_ != kNull) trace_.events[last_test_].detail = static_cast<std::uint8_t>(how);
+  }
+
+  void point(Side whose, VertexId v, Where where) {
+    push({.a = v, .kind = EventKind::point, .side = whose, .detail = static_cast<std::uint8_t>(where)});
+  }
+
+  void begin(Phase phase, std::uint32_t walked_a, std::uint32_t walked_b) {
+    phase_ = push({.a = static_cast<std::uint32_t>(phase),
+                   .depth_a = saturated(walked_a),
+                   .depth_b = saturated(walked_b),
+                   .kind = EventKind::begin});
+  }
+
+  void end(Phase phase, std::uint64_t count) {
+    push({.a = static_cast<std::uint32_t>(phase),
+          .b = static_cast<std::uint32_t>(std::min(count, std::uint64_t{kMaxId})),
+          .cause = phase_,
+          .kind = EventKind::end});
+    phase_ = kNull;
+  }
+
   std::uint64_t events_seen() const { return seen_; }
   std::uint64_t events_stored() const { return trace_.events.size(); }
 
-  /// Replays what was recorded to fill in Event::boundary, and hands the trace over. The recorder is then
+  /// Replays what was recorded to fill in Event::boundary and where pairs of nodes ended, and hands the trace over. The recorder is then
   /// empty and can begin another run with the same settings. Throws std::logic_error if there were events
   /// before the first step.
   Trace take();
@@ -139,6 +185,7 @@ class Recorder {
   std::uint64_t seen_before_step_ = 0;
   EventId step_event_ = 0;    ///< first event of the current step
   EventId last_hit_ = kNull;  ///< the last face test, if it hit
+  EventId last_test_ = kNull, last_pair_ = kNull, phase_ = kNull;
   std::chrono::steady_clock::time_point began_;
   std::uint64_t last_ns_ = 0;
 };

@@ -6,6 +6,7 @@
 #include "trace/counters.hpp"
 #include "trace/json_out.hpp"
 #include "trace/json_parts.hpp"
+#include "trace/work_shares.hpp"
 
 namespace lrb::trace {
 
@@ -50,6 +51,20 @@ void write_histogram(JsonWriter& w, const Histogram& h) {
   w.end_array().end_object();
 }
 
+void write_work(JsonWriter& w, const Trace& trace) {
+  w.key("work").begin_array();
+  for (const WorkShare& s : work_shares(trace)) {
+    w.begin_object()
+        .member("part", s.name)
+        .member("events", s.events)
+        .member("count", s.count)
+        .member("of", s.what);
+    if (trace.header.clock == Clock::wall) w.member("seconds", s.seconds);
+    w.end_object();
+  }
+  w.end_array();
+}
+
 }  // namespace
 
 std::string summary_json(const Trace& trace) {
@@ -69,6 +84,7 @@ std::string summary_json(const Trace& trace) {
   for (std::size_t i = 0; i < trace.steps.size(); ++i) write_step(w, trace, i);
   w.end_array().key("totals");
   write_totals(w, count_events(trace.events));
+  if (trace.header.level != EventLevel::faces) write_work(w, trace);
   write_statistics(w, trace);
   w.key("histograms").begin_array();
   for (const Histogram& h : {tests_by_depth(trace), refinements_by_size(trace), steps_by_tests(trace)})

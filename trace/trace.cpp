@@ -61,7 +61,8 @@ bool equal(const Step& x, const Step& y) {
 
 bool equal(const TraceHeader& x, const TraceHeader& y) {
   return x.lrbscope == y.lrbscope && x.scenario == y.scenario && x.scenario_hash == y.scenario_hash &&
-         x.bodies == y.bodies && x.request == y.request && x.clock == y.clock && x.event_cap == y.event_cap;
+         x.bodies == y.bodies && x.request == y.request && x.clock == y.clock && x.event_cap == y.event_cap &&
+         x.level == y.level && x.engine == y.engine;
 }
 
 /// Checks the parts of one trace; every failure is one line that names the event or step.
@@ -148,9 +149,11 @@ class Checker {
     switch (e.kind) {
       case EventKind::face_test:
       case EventKind::contact:
+      case EventKind::plane_test:
         if (bodies < 2) bad("needs two bodies");
         if (e.a >= t_.header.bodies[0].simplices) bad("A has no such simplex");
         if (e.b >= t_.header.bodies[1].simplices) bad("B has no such simplex");
+        if (e.kind == EventKind::face_test && e.detail >= kWords<TestedBy>.size()) bad("unknown tester");
         break;
       case EventKind::refine:
       case EventKind::coarsen:
@@ -159,6 +162,18 @@ class Checker {
         break;
       case EventKind::result:
         if (e.a >= kWords<Relation>.size()) bad("unknown relation");
+        break;
+      case EventKind::node_pair:
+        if (bodies < 2) bad("needs two bodies");
+        if (static_cast<std::size_t>(e.node_end().step) >= kWords<NodeStep>.size()) bad("unknown step");
+        if (static_cast<std::size_t>(e.node_end().axis) >= kWords<BoxAxis>.size()) bad("unknown axis");
+        break;
+      case EventKind::point:
+        if (static_cast<std::size_t>(e.detail) >= kWords<Where>.size()) bad("unknown place");
+        break;
+      case EventKind::begin:
+      case EventKind::end:
+        if (e.a >= kWords<Phase>.size()) bad("unknown phase");
         break;
       case EventKind::step:
         break;

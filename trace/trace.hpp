@@ -2,6 +2,7 @@
 /// A recorded run: header, time steps and events as flat arrays. Everything else is made from it: replays
 /// (cursor.hpp), numbers (counters.hpp), pictures (render/) and files (trace_json.hpp).
 
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -16,14 +17,14 @@
 #include "engine/core/pose.hpp"
 #include "engine/lrb/lrb_rep.hpp"
 #include "engine/query/collide.hpp"
+#include "engine/query/node_boxes.hpp"
 #include "engine/query/walk/probe.hpp"
 
 namespace lrb::trace {
 
-/// The newest version of the trace format. A reader takes it and older ones, and refuses newer ones. Version
-/// 2 is written for queries with a tolerance, with a limit or with certificates of separation; all others are
-/// still written as version 1.
-inline constexpr std::uint32_t kTraceVersion = 2;
+/// The version of the trace format that is written. A reader takes it and older ones, and refuses newer ones. Version
+/// 3 has names of steps that say what was found, an arrow to each face test, and the events from EventLevel::nodes on.
+inline constexpr std::uint32_t kTraceVersion = 3;
 
 /// The name of the format in a trace's metadata.
 inline constexpr std::string_view kTraceFormat = "lrbscope trace";
@@ -34,6 +35,27 @@ const char* lrbscope_version();
 /// Index of an event in Trace::events; kNull: none.
 using EventId = std::uint32_t;
 
+/// The numbers of a node pair: see NodeVisit.
+struct NodeWork {
+  std::uint8_t box_tests = 0, met = 0, parted = 0, certain = 0;
+
+  friend bool operator==(const NodeWork&, const NodeWork&) = default;
+};
+/// Where a pair of nodes ended, of which no two boxes met. All three fit a byte.
+struct NodeEnd {
+  NodeStep step = NodeStep::descend_both;
+  BoxAxis axis = BoxAxis::a1;  ///< along which the nodes' own boxes are furthest apart, or overlap least
+  bool apart = false;          ///< these are apart
+
+  static NodeEnd from_bits(std::uint8_t bits) {
+    return {static_cast<NodeStep>(bits & 7), static_cast<BoxAxis>(bits >> 3 & 7), (bits >> 6 & 1) != 0};
+  }
+  std::uint8_t bits() const {
+    return static_cast<std::uint8_t>(static_cast<unsigned>(step) | static_cast<unsigned>(axis) << 3 |
+                                     static_cast<unsigned>(apart) << 6);
+  }
+};
+
 /// One event, 24 bytes. The meaning of `a` and `b` depends on the kind: see LRB_EVENTS in
 /// engine/query/walk/probe.hpp.
 struct Event {
@@ -42,21 +64,28 @@ struct Event {
   EventId cause =
       kNull;  ///< an earlier event. Contact: the face test that found it. Refine: the face test that hit just
               ///< before (kNull in the complete query, which opens regions before it tests). Face test: the
-              ///< later of the refinements that brought in its faces
+  ///< later of the refinements that brought in its faces. Node pair: the pair above. Plane test: the
+  ///< pair of leaves. End: the beginning of the phase
   std::uint32_t boundary =
-      kNull;  ///< refine, coarsen: number of faces of that wrapper afterwards; kNull: not known
+      kNull;  ///< refine, coarsen: number of faces of that wrapper afterwards; kNull: not known. Node pair: work()
   std::uint16_t depth_a =
-      0;  ///< face test: number of regions between A's face and the outside (65535: that or more)
-  std::uint16_t depth_b = 0;  ///< the same for B
+      0;  ///< face test: number of regions between A's face and the outside (65535: that or
+          ///< more). Node pair: number of pairs above. Begin: what is walked of A, see NullProbe
+  std::uint16_t depth_b = 0;  ///< face test, begin: the same for B
   EventKind kind = EventKind::step;
-  Side side = Side::a;                       ///< refine, coarsen: whose wrapper
+  Side side = Side::a;  ///< refine, coarsen: whose wrapper; plane test: whose plane; point: whose vertex
   exact::Meet meet = exact::Meet::disjoint;  ///< face test, contact
-  std::uint8_t unused = 0;
+  std::uint8_t detail = 0;  ///< face test: tested_by(); node pair: node_end(); point: where()
 
   /// Return what the numbers `a` and `b` stand for: in a face test or a contact the simplex of a body, in a
   /// refinement or a coarsening the region.
   SimplexId simplex(Side of) const { return SimplexId(of == Side::a ? a : b); }
   RegionId region() const { return RegionId(a); }
+  TestedBy tested_by() const { return static_cast<TestedBy>(detail); }
+  NodeWork work() const { return std::bit_cast<NodeWork>(boundary); }
+  NodeEnd node_end() const { return NodeEnd::from_bits(detail); }
+  Where where() const { return static_cast<Where>(detail); }
+  Phase phase() const { return static_cast<Phase>(a); }
 
   friend bool operator==(const Event&, const Event&) = default;
 };
@@ -124,6 +153,8 @@ struct TraceHeader {
   CollideRequest request;
   Clock clock = Clock::event;
   std::uint32_t event_cap = 0;  ///< largest number of events that are stored
+  EventLevel level = EventLevel::faces;
+  std::string engine;  ///< the one that was recorded, in words; empty: ours
 };
 
 struct Trace {

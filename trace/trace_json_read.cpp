@@ -1,5 +1,6 @@
 /// Reads what trace_json_write.cpp wrote.
 
+#include <bit>
 #include <string>
 
 #include "trace/json_read.hpp"
@@ -16,6 +17,50 @@ std::uint32_t read_contact(const TraceNode& args, Side side) {
   return args.at(args.has(pseudo) ? pseudo : side == Side::a ? a.data() : b.data()).integer<std::uint32_t>();
 }
 
+/// Returns the kind of an event: steps and phases have names that say more, and a category.
+EventKind kind_of(const TraceNode& node) {
+  const std::string& category = node.at("cat").string();
+  const std::string& name = node.at("name").string();
+  if (category == "step" && name != name_of(EventKind::result)) return EventKind::step;
+  if (category == "phase" && name != name_of(EventKind::end)) return EventKind::begin;
+  return node.at("name").named<EventKind>();
+}
+
+void read_node_pair(const TraceNode& args, Event& e) {
+  NodeEnd end;
+  NodeWork work;
+  end.step = args.at("step").named<NodeStep>();
+  work.box_tests = args.at("box tests").integer<std::uint8_t>();
+  work.met = args.at("boxes that meet").integer<std::uint8_t>();
+  if (end.step == NodeStep::leaves) {
+    work.parted = args.at("parted by planes").integer<std::uint8_t>();
+    work.certain = args.at("certain").integer<std::uint8_t>();
+  }
+  if (work.met == 0) {
+    end.apart = args.has("apart along");
+    end.axis = args.at(end.apart ? "apart along" : "overlap least along").named<BoxAxis>();
+  }
+  e.depth_a = args.at("pairs above").integer<std::uint16_t>();
+  e.boundary = std::bit_cast<std::uint32_t>(work);
+  e.detail = end.bits();
+}
+
+/// Reads what only the events from EventLevel::nodes on have.
+void read_more(const TraceNode& args, Event& e) {
+  if (e.kind == EventKind::face_test && args.has("decided by"))
+    e.detail = static_cast<std::uint8_t>(args.at("decided by").named<TestedBy>());
+  if (e.kind == EventKind::node_pair) read_node_pair(args, e);
+  if (e.kind == EventKind::plane_test) e.side = args.at("plane of").named<Side>();
+  if (e.kind == EventKind::point) {
+    e.side = args.at("of").named<Side>();
+    e.detail = static_cast<std::uint8_t>(args.at("where").named<Where>());
+  }
+  if (e.kind == EventKind::begin && e.phase() == Phase::walk) {
+    e.depth_a = args.at("level of A").integer<std::uint16_t>();
+    e.depth_b = args.at("level of B").integer<std::uint16_t>();
+  }
+}
+
 void read_fields(const TraceNode& args, Event& e) {
   const auto [a, b] = fields_of(e.kind);
   if (e.kind == EventKind::refine || e.kind == EventKind::coarsen) e.side = args.at("side").named<Side>();
@@ -24,7 +69,9 @@ void read_fields(const TraceNode& args, Event& e) {
     e.b = read_contact(args, Side::b);
   } else if (!a.empty()) {
     const TraceNode node = args.at(a.data());
+    const bool is_phase = e.kind == EventKind::begin || e.kind == EventKind::end;
     e.a = e.kind == EventKind::result ? static_cast<std::uint32_t>(node.named<Relation>())
+          : is_phase                  ? static_cast<std::uint32_t>(node.named<Phase>())
                                       : node.integer<std::uint32_t>();
   }
   if (!b.empty() && e.kind != EventKind::contact) e.b = args.at(b.data()).integer<std::uint32_t>();
@@ -36,6 +83,7 @@ void read_fields(const TraceNode& args, Event& e) {
   }
   if (args.has("wrapper faces")) e.boundary = args.at("wrapper faces").integer<std::uint32_t>();
   if (args.has("cause")) e.cause = args.at("cause").integer<std::uint32_t>();
+  read_more(args, e);
 }
 
 class Reader {
@@ -60,7 +108,7 @@ class Reader {
     if (node.at("ph").string() != "X") return;  // names, counters and flows follow from the rest
     if (t_.events.size() >= kMaxId) node.fail("fewer events");
     Event e;
-    e.kind = node.at("name").named<EventKind>();
+    e.kind = kind_of(node);
     const TraceNode args = node.at("args");
     const auto number = args.at("event").integer<EventId>();
     if (number != t_.events.size())
@@ -77,6 +125,8 @@ class Reader {
     h.scenario = scenario.at("name").string();
     h.scenario_hash = scenario.at("hash").hash();
     h.clock = metadata.at("clock").named<Clock>();
+    if (metadata.has("level")) h.level = metadata.at("level").named<EventLevel>();
+    if (metadata.has("engine")) h.engine = metadata.at("engine").string();
     h.request = read_request(metadata.at("request"));
     const TraceNode bodies = metadata.at("bodies");
     const std::size_t count = bodies.array_size();

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -13,12 +14,19 @@ namespace lrb::trace {
 
 namespace {
 
-enum class Thread : std::uint8_t { steps = 1, tests, wrapper_a, wrapper_b, answer };
-constexpr std::pair<Thread, std::string_view> kThreads[] = {{Thread::steps, "time steps"},
-                                                            {Thread::tests, "face tests"},
-                                                            {Thread::wrapper_a, "wrapper A"},
-                                                            {Thread::wrapper_b, "wrapper B"},
-                                                            {Thread::answer, "answer"}};
+enum class Thread : std::uint8_t { steps = 1, tests, wrapper_a, wrapper_b, answer, phases, walk };
+struct ThreadName {
+  Thread thread;
+  std::string_view name;
+  EventLevel from = EventLevel::faces;  ///< level of events from which on it has any
+};
+constexpr ThreadName kThreads[] = {{Thread::steps, "time steps"},
+                                   {Thread::tests, "face tests"},
+                                   {Thread::wrapper_a, "wrapper A"},
+                                   {Thread::wrapper_b, "wrapper B"},
+                                   {Thread::answer, "answer"},
+                                   {Thread::phases, "phases", EventLevel::nodes},
+                                   {Thread::walk, "tree walk", EventLevel::nodes}};
 
 /// The number of events from one "work" counter to the next: small enough for a smooth curve, large enough to
 /// cost little.
@@ -36,6 +44,13 @@ Thread thread_of(const Event& e) {
       return e.side == Side::a ? Thread::wrapper_a : Thread::wrapper_b;
     case EventKind::contact:
       return Thread::answer;
+    case EventKind::node_pair:
+    case EventKind::plane_test:
+      return Thread::walk;
+    case EventKind::point:
+    case EventKind::begin:
+    case EventKind::end:
+      return Thread::phases;
   }
   return Thread::steps;
 }
@@ -52,56 +67,23 @@ std::string_view category_of(EventKind kind) {
       return "wrapper";
     case EventKind::contact:
       return "answer";
+    case EventKind::node_pair:
+    case EventKind::plane_test:
+      return "walk";
+    case EventKind::point:
+      return "point";
+    case EventKind::begin:
+    case EventKind::end:
+      return "phase";
   }
   return "";
 }
 
-/// One end of an arrow: refinement `flow` has an arrow from or to `event`.
-struct FlowEnd {
-  EventId event, flow;
-};
-
-/// Where arrows begin and end, found in one pass before writing.
-struct Flows {
-  std::vector<FlowEnd> starts;    ///< at face tests that caused a refinement; ascending by event
-  std::vector<FlowEnd> finishes;  ///< at the first face test that a refinement led to; ascending by event
-
-  explicit Flows(const std::vector<Event>& events) {
-    for (EventId i = 0; i < events.size(); ++i) {
-      const Event& e = events[i];
-      if (e.cause == kNull) continue;
-      const EventKind cause = events[e.cause].kind;
-      if (e.kind == EventKind::refine && cause == EventKind::face_test) starts.push_back({e.cause, i});
-      if (e.kind == EventKind::face_test && cause == EventKind::refine) finishes.push_back({i, e.cause});
-    }
-    // Keeps the first of all tests that a refinement led to.
-    std::sort(finishes.begin(), finishes.end(), [](const FlowEnd& x, const FlowEnd& y) {
-      return std::pair(x.flow, x.event) < std::pair(y.flow, y.event);
-    });
-    finishes.erase(std::unique(finishes.begin(), finishes.end(),
-                               [](const FlowEnd& x, const FlowEnd& y) { return x.flow == y.flow; }),
-                   finishes.end());
-    by_flow_ = finishes;
-    const auto by_event = [](const FlowEnd& x, const FlowEnd& y) {
-      return std::pair(x.event, x.flow) < std::pair(y.event, y.flow);
-    };
-    std::sort(starts.begin(), starts.end(), by_event);
-    std::sort(finishes.begin(), finishes.end(), by_event);
-  }
-
-  bool goes_on(EventId refinement) const {
-    const auto it = std::lower_bound(by_flow_.begin(), by_flow_.end(), refinement,
-                                     [](const FlowEnd& x, EventId flow) { return x.flow < flow; });
-    return it != by_flow_.end() && it->flow == refinement;
-  }
-
- private:
-  std::vector<FlowEnd> by_flow_;
-};
-
 class TraceWriter {
  public:
-  TraceWriter(const Trace& trace, ByteSink& sink) : t_(trace), out_(sink), flows_(trace.events) {
+  TraceWriter(const Trace& trace, ByteSink& sink) : t_(trace), out_(sink) {
+    find_ends();
+    find_arrows();
     for (std::size_t k = 0; k < kEventKinds; ++k) prepare(static_cast<EventKind>(k));
   }
 
@@ -118,17 +100,22 @@ class TraceWriter {
  private:
   /// The constant parts of the lines for events of one kind.
   struct Parts {
-    std::string head;  ///< up to the time
+    std::string head;  ///< from the name to the thread
     std::string a, b;  ///< `, "name": ` of its two numbers; empty: not written
   };
 
   void prepare(EventKind kind) {
     Parts& p = parts_[static_cast<std::size_t>(kind)];
-    p.head = ",\n{\"name\":\"" + std::string(name_of(kind)) + "\",\"cat\":\"" +
-             std::string(category_of(kind)) + "\",\"ph\":\"X\",\"pid\":1,\"tid\":";
+    p.head = "\",\"cat\":\"" + std::string(category_of(kind)) + "\",\"ph\":\"X\",\"pid\":1,\"tid\":";
     const auto [a, b] = fields_of(kind);
     if (!a.empty()) p.a = ",\"" + std::string(a) + "\":";
     if (!b.empty()) p.b = ",\"" + std::string(b) + "\":";
+  }
+
+  /// Finds where the phases end that begin at an event.
+  void find_ends() {
+    for (EventId i = 0; i < t_.events.size(); ++i)
+      if (t_.events[i].kind == EventKind::end && t_.events[i].cause != kNull) ends_[t_.events[i].cause] = i;
   }
 
   void write_names() {
@@ -137,7 +124,8 @@ class TraceWriter {
         "\"args\":{\"name\":");
     out_.string("lrbscope: " + t_.header.scenario);
     out_.raw("}}");
-    for (const auto& [thread, name] : kThreads) {
+    for (const auto& [thread, name, from] : kThreads) {
+      if (t_.header.level < from) continue;
       write_thread_field(thread, "thread_name", "name");
       out_.string(name);
       out_.raw("}}");
@@ -159,17 +147,27 @@ class TraceWriter {
 
   bool wall() const { return t_.header.clock == Clock::wall; }
 
+  /// Returns true if an event's slice holds the events up to another one.
+  static bool lasts(const Event& e) { return e.kind == EventKind::step || e.kind == EventKind::begin; }
+
+  /// Returns the last event of a step or a phase; that of the step if the phase's end was cut off.
+  EventId last_of(EventId i) const {
+    const auto end = ends_.find(i);
+    if (end != ends_.end()) return end->second;
+    const std::size_t step = t_.step_of(i);
+    return t_.steps[step].first_event + static_cast<EventId>(t_.events_of(step).size()) - 1;
+  }
+
   /// Returns when the slice of an event begins: event numbers, or nanoseconds.
   std::uint64_t begin_of(EventId i) const {
     if (!wall()) return i;
-    return t_.events[i].kind == EventKind::step ? t_.wall_ns[i] : t_.wall_ns[i - 1];
+    return lasts(t_.events[i]) ? t_.wall_ns[i] : t_.wall_ns[i - 1];
   }
 
   /// Returns how long it lasts, in the same unit; never 0, because viewers drop such slices.
   std::uint64_t duration_of(EventId i) const {
-    if (t_.events[i].kind != EventKind::step) return wall() ? t_.wall_ns[i] - begin_of(i) : 1;
-    const std::size_t step = t_.step_of(i);
-    const EventId last = i + static_cast<EventId>(t_.events_of(step).size()) - 1;
+    if (!lasts(t_.events[i])) return wall() ? t_.wall_ns[i] - begin_of(i) : 1;
+    const EventId last = last_of(i);
     return wall() ? std::max<std::uint64_t>(t_.wall_ns[last] - t_.wall_ns[i], 1) : last - i + 1;
   }
 
@@ -186,6 +184,8 @@ class TraceWriter {
   void write_event(EventId i) {
     const Event& e = t_.events[i];
     const Parts& parts = parts_[static_cast<std::size_t>(e.kind)];
+    out_.raw(",\n{\"name\":\"");
+    write_name(e, i);
     out_.raw(parts.head);
     out_.number(static_cast<std::uint64_t>(thread_of(e)));
     out_.raw(",\"ts\":");
@@ -204,6 +204,23 @@ class TraceWriter {
     count(e, i);
   }
 
+  /// Steps are named by what they found, phases by what they are, all others by their kind.
+  void write_name(const Event& e, EventId i) {
+    if (e.kind == EventKind::begin) return out_.raw(name_of(e.phase()));
+    out_.raw(name_of(e.kind));
+    if (e.kind != EventKind::step) return;
+    const Step& step = t_.steps[t_.step_of(i)];
+    out_.raw(" ");
+    out_.number(std::uint64_t{step.index});
+    if (!step.finished) return;
+    out_.raw(": ");
+    out_.raw(name_of(step.result.relation));
+    if (step.result.pair_count == 0) return;
+    out_.raw(", ");
+    out_.number(step.result.pair_count);
+    out_.raw(step.result.pair_count == 1 ? " pair" : " pairs");
+  }
+
   void write_fields(const Event& e, const Parts& parts) {
     if (e.kind == EventKind::refine || e.kind == EventKind::coarsen)
       out_.raw(e.side == Side::a ? ",\"side\":\"A\"" : ",\"side\":\"B\"");
@@ -212,6 +229,8 @@ class TraceWriter {
       out_.raw(parts.a);
       if (e.kind == EventKind::result)
         out_.string(name_of(static_cast<Relation>(e.a)));
+      else if (e.kind == EventKind::begin || e.kind == EventKind::end)
+        out_.string(name_of(e.phase()));
       else
         out_.number(std::uint64_t{e.a});
     }
@@ -225,11 +244,50 @@ class TraceWriter {
       out_.number(std::uint64_t{e.depth_a});
       out_.raw(",\"depth of B\":");
       out_.number(std::uint64_t{e.depth_b});
+      if (e.tested_by() != TestedBy::untold) write_word("decided by", name_of(e.tested_by()));
+    }
+    if (e.kind == EventKind::node_pair) return write_node_pair(e);
+    if (e.kind == EventKind::plane_test) write_word("plane of", name_of(e.side));
+    if (e.kind == EventKind::point) {
+      write_word("of", name_of(e.side));
+      write_word("where", name_of(e.where()));
+    }
+    if (e.kind == EventKind::begin && e.phase() == Phase::walk) {
+      write_number("level of A", e.depth_a);
+      write_number("level of B", e.depth_b);
     }
     if (e.boundary != kNull) {
       out_.raw(",\"wrapper faces\":");
       out_.number(std::uint64_t{e.boundary});
     }
+    write_cause(e.cause);
+  }
+
+  void write_word(std::string_view name, std::string_view word) {
+    out_.raw(",\"");
+    out_.raw(name);
+    out_.raw("\":");
+    out_.string(word);
+  }
+  void write_number(std::string_view name, std::uint64_t number) {
+    out_.raw(",\"");
+    out_.raw(name);
+    out_.raw("\":");
+    out_.number(number);
+  }
+
+  void write_node_pair(const Event& e) {
+    const NodeEnd end = e.node_end();
+    const NodeWork work = e.work();
+    write_word("step", name_of(end.step));
+    write_number("box tests", work.box_tests);
+    write_number("boxes that meet", work.met);
+    if (end.step == NodeStep::leaves) {
+      write_number("parted by planes", work.parted);
+      write_number("certain", work.certain);
+    }
+    if (work.met == 0) write_word(end.apart ? "apart along" : "overlap least along", name_of(end.axis));
+    write_number("pairs above", e.depth_a);
     write_cause(e.cause);
   }
 
@@ -264,11 +322,12 @@ class TraceWriter {
     out_.number(std::uint64_t{cause});
   }
 
-  void write_flow(char phase, EventId flow, EventId at) {
+  /// Writes one end of the arrow to an event from its cause.
+  void write_flow(char phase, EventId effect, EventId at) {
     out_.raw(",\n{\"name\":\"cause\",\"cat\":\"flow\",\"ph\":\"");
     out_.raw(phase);
     out_.raw("\",\"id\":");
-    out_.number(std::uint64_t{flow});
+    out_.number(std::uint64_t{effect});
     out_.raw(",\"bp\":\"e\",\"pid\":1,\"tid\":");
     out_.number(static_cast<std::uint64_t>(thread_of(t_.events[at])));
     out_.raw(",\"ts\":");
@@ -276,17 +335,26 @@ class TraceWriter {
     out_.raw(",\"args\":{}}");
   }
 
+  /// Returns true if an arrow leads to an event from its cause: to each face test from the refinement that showed its
+  /// face, and to a refinement from the test that caused it.
+  bool has_arrow(const Event& e) const {
+    if (e.cause == kNull) return false;
+    const EventKind cause = t_.events[e.cause].kind;
+    return (e.kind == EventKind::refine && cause == EventKind::face_test) ||
+           (e.kind == EventKind::face_test && cause == EventKind::refine);
+  }
+
+  void find_arrows() {
+    for (EventId i = 0; i < t_.events.size(); ++i)
+      if (has_arrow(t_.events[i])) arrows_.push_back({t_.events[i].cause, i});
+    std::sort(arrows_.begin(), arrows_.end());
+  }
+
+  /// Writes the ends of arrows that are at an event, since times must not fall.
   void write_flows(EventId i) {
-    if (t_.events[i].kind == EventKind::refine) {
-      const EventId cause = t_.events[i].cause;
-      const bool from = cause != kNull && t_.events[cause].kind == EventKind::face_test;
-      const bool on = flows_.goes_on(i);
-      if (from || on) write_flow(!from ? 's' : on ? 't' : 'f', i, i);
-    }
-    for (; next_start_ < flows_.starts.size() && flows_.starts[next_start_].event == i; ++next_start_)
-      write_flow('s', flows_.starts[next_start_].flow, i);
-    for (; next_finish_ < flows_.finishes.size() && flows_.finishes[next_finish_].event == i; ++next_finish_)
-      write_flow('f', flows_.finishes[next_finish_].flow, i);
+    if (has_arrow(t_.events[i])) write_flow('f', i, i);
+    for (; next_arrow_ < arrows_.size() && arrows_[next_arrow_].first == i; ++next_arrow_)
+      write_flow('s', arrows_[next_arrow_].second, i);
   }
 
   void count(const Event& e, EventId i) {
@@ -296,6 +364,13 @@ class TraceWriter {
         break;
       case EventKind::face_test:
         ++tests_;
+        if (pending_tests_ > 0) --pending_tests_;
+        break;
+      case EventKind::node_pair:
+        count_pending(e);
+        break;
+      case EventKind::begin:
+        if (e.phase() == Phase::walk) pending_pairs_ = 1, pending_tests_ = 0;
         break;
       case EventKind::refine:
         ++refinements_;
@@ -305,17 +380,34 @@ class TraceWriter {
         break;
       case EventKind::coarsen:
       case EventKind::result:
+      case EventKind::plane_test:
+      case EventKind::point:
+        break;
+      case EventKind::end:  // a query that found what was asked for leaves the rest
+        pending_pairs_ = pending_tests_ = 0;
         break;
     }
     const bool change = e.kind == EventKind::refine || e.kind == EventKind::coarsen;
     if (change && e.boundary != kNull) faces_[static_cast<std::size_t>(e.side)] = e.boundary;
     if (change || e.kind == EventKind::step) write_wrapper_counter(i);
-    if (i % kWorkInterval == 0 || e.kind == EventKind::step || e.kind == EventKind::result)
-      write_work_counter(i);
+    if (i % kWorkInterval != 0 && e.kind != EventKind::step && e.kind != EventKind::result) return;
+    write_work_counter(i);
+    if (t_.header.level != EventLevel::faces) write_pending_counter(i);
+  }
+
+  /// Counts what a pair of nodes leaves to be done.
+  void count_pending(const Event& e) {
+    const NodeWork work = e.work();
+    if (pending_pairs_ > 0) --pending_pairs_;
+    if (e.node_end().step == NodeStep::leaves)
+      pending_tests_ += work.met - std::min(work.met, work.parted);
+    else
+      pending_pairs_ += work.met;
   }
 
   void begin_counting() {
     tests_ = refinements_ = contacts_ = 0;
+    pending_pairs_ = pending_tests_ = 0;
     for (std::size_t s = 0; s < t_.header.bodies.size(); ++s) faces_[s] = t_.header.bodies[s].outer_faces;
   }
 
@@ -349,13 +441,24 @@ class TraceWriter {
     out_.raw("}}");
   }
 
+  void write_pending_counter(EventId i) {
+    begin_counter("pending", i);
+    out_.raw("\"node pairs\":");
+    out_.number(pending_pairs_);
+    out_.raw(",\"face tests\":");
+    out_.number(pending_tests_);
+    out_.raw("}}");
+  }
+
   const Trace& t_;
   JsonOut out_;
-  Flows flows_;
+  std::unordered_map<EventId, EventId> ends_;        ///< the end of each phase, by its beginning
+  std::vector<std::pair<EventId, EventId>> arrows_;  ///< from, to; ascending
+  std::size_t next_arrow_ = 0;
   std::array<Parts, kEventKinds> parts_;
-  std::size_t next_start_ = 0, next_finish_ = 0;
   std::array<std::uint32_t, 2> faces_{};
   std::uint32_t tests_ = 0, refinements_ = 0, contacts_ = 0;
+  std::uint64_t pending_pairs_ = 0, pending_tests_ = 0;
 };
 
 }  // namespace

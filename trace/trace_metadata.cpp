@@ -29,7 +29,9 @@ void write_totals(JsonWriter& w, const Trace& t) {
   std::array<std::uint64_t, kEventKinds> totals{};
   for (const Event& e : t.events) ++totals[static_cast<std::size_t>(e.kind)];
   w.begin_object();
-  for (std::size_t k = 0; k < kEventKinds; ++k) w.member(name_of(static_cast<EventKind>(k)), totals[k]);
+  for (std::size_t k = 0; k < kEventKinds; ++k)
+    if (k <= static_cast<std::size_t>(EventKind::result) || t.header.level != EventLevel::faces)
+      w.member(name_of(static_cast<EventKind>(k)), totals[k]);
   w.end_object();
 }
 
@@ -39,11 +41,12 @@ void write_metadata(const Trace& trace, JsonOut& out) {
   const TraceHeader& h = trace.header;
   JsonWriter w(out, 2);
   w.begin_object();
-  const std::uint32_t version = h.request.is_coarse() || h.request.separation ? kTraceVersion : 1;
-  w.member("format", kTraceFormat).member("version", version).member("lrbscope", h.lrbscope);
+  w.member("format", kTraceFormat).member("version", kTraceVersion).member("lrbscope", h.lrbscope);
   w.key("scenario");
   write_scenario(w, h);
   w.member("clock", name_of(h.clock));
+  if (h.level != EventLevel::faces) w.member("level", name_of(h.level));
+  if (!h.engine.empty()) w.member("engine", h.engine);
   w.key("events");
   write_event_counts(w, trace);
   w.key("totals");

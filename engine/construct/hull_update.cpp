@@ -18,6 +18,7 @@ void work_out(const HullMesh& hull, Sheet& sheet) {
   std::sort(corners.begin(), corners.end());
   corners.erase(std::unique(corners.begin(), corners.end()), corners.end());
   std::vector<Eigen::Vector3d> points;
+  points.reserve(corners.size());
   for (const Corner c : corners)
     points.push_back(c < Sheet::kNewPoint ? hull.x(c) : sheet.new_points[c - Sheet::kNewPoint]);
   const auto local = [&](const PointTriangle& t) {

@@ -138,6 +138,7 @@ std::vector<double> choose_bounds(const LrbRep& rep, std::span<const double> nee
   }
   if (!chosen.empty()) choose(i + 1);  // the finest
   std::vector<double> out;
+  out.reserve(chosen.size());
   for (const std::size_t at : chosen) out.push_back(bounds[at]);
   return out;
 }

@@ -43,13 +43,23 @@ CollideResult collide(const LrbRep& a, const Pose& pose_a, const LrbRep& b, cons
         TreeQuery<Probe>(context, request, result, probe).run();
       else
         PaperQuery<Probe>(context, request, result, probe).run();
-      context.pair_order.sort(result);
-      decide_relation(context, result);
+      in_phase(probe, Phase::sort, [&] {
+        context.pair_order.sort(result);
+        return result.pairs.size();
+      });
+      decide_relation_watched(context, result, probe, [] { return true; });
     }
   }
   if (request.separation && result.relation == Relation::separate)
-    result.separation = find_separation(context);
-  describe_contact(context, request, result);
+    in_phase(probe, Phase::separation, [&] {
+      result.separation = find_separation(context);
+      return result.separation ? result.separation->face_count[0] + result.separation->face_count[1] : 0;
+    });
+  if (request.contacts || request.interiors_overlap)
+    in_phase(probe, Phase::contacts, [&] {
+      describe_contact(context, request, result);
+      return result.regions.size();
+    });
   for (int side = 0; side < 2; ++side) {
     result.opened[side] = context.body[side].wrapper->excluded();
     result.counters.regions_opened += result.opened[side].size();

@@ -21,6 +21,15 @@ class Teller {
     probe_.coarsen(side, region, faces_removed);
   }
   void contact(SimplexId a, SimplexId b, exact::Meet meet) { probe_.contact(a, b, meet); }
+  EventLevel level() const { return probe_.level(); }
+  std::uint32_t node_pair(const NodeVisit& visit) { return probe_.node_pair(visit); }
+  void plane_test(SimplexId a, SimplexId b, Side whose) { probe_.plane_test(a, b, whose); }
+  void tested_by(TestedBy how) { probe_.tested_by(how); }
+  void point(Side whose, VertexId v, Where where) { probe_.point(whose, v, where); }
+  void begin(Phase phase, std::uint32_t walked_a, std::uint32_t walked_b) {
+    probe_.begin(phase, walked_a, walked_b);
+  }
+  void end(Phase phase, std::uint64_t count) { probe_.end(phase, count); }
 
  private:
   CollideProbe& probe_;
@@ -32,6 +41,17 @@ void CollideProbe::face_test(SimplexId, SimplexId, exact::Meet, std::uint32_t, s
 void CollideProbe::refine(Side, RegionId, std::uint32_t) {}
 void CollideProbe::coarsen(Side, RegionId, std::uint32_t) {}
 void CollideProbe::contact(SimplexId, SimplexId, exact::Meet) {}
+EventLevel CollideProbe::level() const {
+  return EventLevel::faces;
+}
+std::uint32_t CollideProbe::node_pair(const NodeVisit&) {
+  return kNull;
+}
+void CollideProbe::plane_test(SimplexId, SimplexId, Side) {}
+void CollideProbe::tested_by(TestedBy) {}
+void CollideProbe::point(Side, VertexId, Where) {}
+void CollideProbe::begin(Phase, std::uint32_t, std::uint32_t) {}
+void CollideProbe::end(Phase, std::uint64_t) {}
 
 CollideResult collide(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
                       const CollideRequest& request, CollideProbe& probe) {

@@ -7,61 +7,17 @@
 #include <string>
 
 #include <Eigen/Geometry>
-#include <Eigen/LU>
 
 #include "engine/core/error.hpp"
 #include "engine/exact/predicates.hpp"
 #include "engine/mesh/nearest_on_simplex.hpp"
 #include "engine/query/collide_impl.hpp"
+#include "engine/query/node_boxes.hpp"
 
 namespace lrb {
 namespace {
 
 using Eigen::Vector3d;
-
-/// A box in the world: a parallelepiped, for poses that are no rotations.
-struct WorldBox {
-  Vector3d centre;
-  std::array<Vector3d, 3> half;    ///< from the centre to the middle of a side
-  std::array<Vector3d, 3> across;  ///< unit vectors across the sides
-};
-
-constexpr int kWhole = -1;
-
-/// Returns the box of a node's child or simplex, or of the whole node.
-WorldBox box_of(const ObbTree& tree, std::uint32_t node, int child, const Pose& pose) {
-  const TreeNode& n = tree.nodes()[node];
-  Vector3d local, half;
-  Eigen::Matrix3d frame;
-  for (int i = 0; i < 3; ++i) {
-    const double low = child == kWhole ? 0 : n.lo[i][child],
-                 high = child == kWhole ? kQuantizedMost : n.hi[i][child];
-    local[i] = n.base[i] + n.scale[i] * (low + high) / 2;
-    half[i] = n.scale[i] * (high - low) / 2;
-    for (int j = 0; j < 3; ++j) frame(i, j) = n.frame[i][j];
-  }
-  WorldBox out;
-  const Vector3d origin(n.origin[0], n.origin[1], n.origin[2]);
-  out.centre = pose.apply((origin + frame.transpose() * local) * tree.unit());
-  const double volume = pose.r.determinant();
-  const Eigen::Matrix3d normals = volume != 0 ? Eigen::Matrix3d(pose.r.inverse().transpose()) : pose.r;
-  for (int i = 0; i < 3; ++i) {
-    out.half[i] = pose.r * (frame.row(i).transpose() * (half[i] * tree.unit()));
-    out.across[i] = (normals * frame.row(i).transpose()).normalized();
-  }
-  return out;
-}
-
-/// Sets the gap and the axis of two boxes.
-void compare(const WorldBox& a, const WorldBox& b, BoxPair& out) {
-  out.gap = -std::numeric_limits<double>::infinity();
-  for (int axis = 0; axis < 6; ++axis) {
-    const Vector3d& n = axis < 3 ? a.across[axis] : b.across[axis - 3];
-    double gap = std::abs(n.dot(a.centre - b.centre));
-    for (int i = 0; i < 3; ++i) gap -= std::abs(n.dot(a.half[i])) + std::abs(n.dot(b.half[i]));
-    if (gap > out.gap) out.gap = gap, out.axis = axis;
-  }
-}
 
 /// Where a simplex stands in a tree.
 struct Path {
@@ -169,7 +125,7 @@ class Way {
       box[s] = box_of(tree(side), child[s] == kWhole ? node(s) : path_[s].nodes[at_[s] - 1], child[s],
                       ctx_[side].world.pose());
     }
-    compare(box[0], box[1], pair);
+    compare_boxes(box[0], box[1], pair);
     out_.nodes.push_back(pair);
   }
 
@@ -191,8 +147,9 @@ class Way {
   void compare_faces(const Stepper::Outcome& outcome) {
     out_.reaches_faces = true;
     out_.face_boxes.node = {node(0), node(1)};
-    compare(box_of(tree(Side::a), node(0), path_[0].place, ctx_[Side::a].world.pose()),
-            box_of(tree(Side::b), node(1), path_[1].place, ctx_[Side::b].world.pose()), out_.face_boxes);
+    compare_boxes(box_of(tree(Side::a), node(0), path_[0].place, ctx_[Side::a].world.pose()),
+                  box_of(tree(Side::b), node(1), path_[1].place, ctx_[Side::b].world.pose()),
+                  out_.face_boxes);
     const auto found =
         std::find_if(outcome.candidates.begin(), outcome.candidates.end(),
                      [&](const Candidate& c) { return c.a == out_.pair.a && c.b == out_.pair.b; });
@@ -377,7 +334,7 @@ WalkExplanation explain_walk(const LrbRep& a, const Pose& pose_a, const LrbRep& 
   out.result = collide(a, pose_a, b, pose_b, request, ctx, probe);
   begin(ctx, a, pose_a, b, pose_b);
   if (a.tree().empty() || b.tree().empty()) return out;
-  compare(box_of(a.tree(), 0, kWhole, pose_a), box_of(b.tree(), 0, kWhole, pose_b), out.roots);
+  compare_boxes(box_of(a.tree(), 0, kWhole, pose_a), box_of(b.tree(), 0, kWhole, pose_b), out.roots);
   Stepper stepper(ctx);
   NearestPairs nearest(ctx);
   std::vector<NodePair> now = {{0, 0}}, then;

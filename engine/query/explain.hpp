@@ -12,19 +12,10 @@
 #include "engine/core/enum_words.hpp"
 #include "engine/core/pose.hpp"
 #include "engine/lrb/lrb_rep.hpp"
+#include "engine/query/node_boxes.hpp"
 #include "engine/query/walk/result.hpp"
 
 namespace lrb {
-
-/// Two boxes that the query compared, as they lie in the world.
-struct BoxPair {
-  /// Of A's tree and of B's: the nodes whose boxes they are; of the boxes of faces, the leaves that hold them.
-  std::array<std::uint32_t, 2> node = {0, 0};
-  /// The distance of the boxes along the axis on which they are furthest apart, mesh's unit; negative where they
-  /// overlap on all axes. Computed in double: what the kernel does with errors allowed for, but for these.
-  double gap = 0;
-  int axis = 0;  ///< that axis: 0 to 2 those of A's box, 3 to 5 those of B's
-};
 
 /// What decided about two faces.
 enum class DecidedBy : std::uint8_t {

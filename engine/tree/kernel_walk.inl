@@ -215,6 +215,17 @@ inline void list_pairs(std::uint32_t rows, const std::uint32_t mask[8], PairList
   __builtin_memset(list.b + list.size, 0, 8);
 }
 
+/// Notes the pairs that planes part, of eight in a list.
+[[gnu::noinline, gnu::cold]] inline void note_parted(TreeKernel& k, const LeafBlock& a, const LeafBlock& b,
+                                                     const PairList& list, std::uint32_t begin,
+                                                     std::uint32_t by_a, std::uint32_t by_b) {
+  for (std::uint32_t c = by_a | by_b; c != 0; c &= c - 1) {
+    const std::uint32_t lane = static_cast<std::uint32_t>(__builtin_ctz(c));
+    k.parted[k.parted_size++] = {a.simplex[list.a[begin + lane]], b.simplex[list.b[begin + lane]],
+                                 by_a >> lane & 1 ? Side::a : Side::b};
+  }
+}
+
 template <class Walk>
 inline void leaf_pair(TreeKernel& k, const TreeNode& na, const TreeNode& nb) {
   constexpr bool kMargin = Walk::kMargin;
@@ -235,6 +246,8 @@ inline void leaf_pair(TreeKernel& k, const TreeNode& na, const TreeNode& nb) {
     const SideLanes a_sides = sides_of_planes<kMargin>(some_b, some_a, errors, errors.edge_error[1]);
     const std::uint32_t here = list.size - begin < 8 ? (1u << (list.size - begin)) - 1 : 255u;
     const std::uint32_t left = ~bits(either(a_sides.parted, b_sides.parted)) & here;
+    if (k.parted != nullptr && left != here) [[unlikely]]
+      note_parted(k, block_a, block_b, list, begin, bits(b_sides.parted) & here, bits(a_sides.parted) & here);
     if (left == 0) continue;
     EightCertainties certainties;
     if constexpr (!kMargin) certainties = certainties_of(some_a, a_sides, some_b, b_sides, errors, left);
@@ -247,10 +260,6 @@ inline void leaf_pair(TreeKernel& k, const TreeNode& na, const TreeNode& nb) {
     }
   }
 }
-
-/// A node that is this many times as large as the other is descended by itself, because all of the other's
-/// boxes would meet the same few of its own.
-constexpr float kMuchLarger = 3;
 
 /// The nearest pair of boxes is looked for in the first so many pairs of nodes: bodies that meet mostly show it in
 /// these, and for bodies that do not meet any order is as good.

@@ -32,6 +32,16 @@ struct Candidate {
   std::uint8_t corners;  ///< bit k: corner k
 };
 
+/// A pair of real simplices that a plane parts.
+struct PartedPair {
+  SimplexId a, b;
+  Side whose;  ///< the simplex whose plane it is; A's if both planes part them
+};
+
+/// A node that is this many times as large as the other is descended by itself, because all of the other's
+/// boxes would meet the same few of its own.
+inline constexpr float kMuchLarger = 3;
+
 /// A linear map: columns for double arithmetic, rows rounded for that in floats.
 struct KernelMap {
   alignas(32) double columns[3][4];
@@ -86,6 +96,10 @@ struct TreeKernel {
   Candidate* out;
   std::uint32_t out_capacity;  ///< at least 64
   std::uint32_t out_size;
+
+  PartedPair*
+      parted;  ///< null, or room for 64 pairs: those that planes part; only for one pair of nodes at a time
+  std::uint32_t parted_size;
 
   std::uint64_t node_pairs, box_tests, prefilter_tests;
   std::uint64_t most_node_pairs;  ///< where to stop; may be raised to go on

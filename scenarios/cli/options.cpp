@@ -43,6 +43,13 @@ void add_recursion_option(CLI::App& app, std::optional<Recursion>& recursion) {
   add_recursion(app, recursion);
 }
 
+void add_events_option(CLI::App& app, std::optional<EventLevel>& level) {
+  add_choice<EventLevel>(
+      app, "--events", level,
+      "What is recorded. faces: face tests, refinements and contacts; nodes: pairs of tree nodes and "
+      "phases, too; all: also the pairs that planes part");
+}
+
 void add_request_options(CLI::App& app, CollideRequest& request) {
   add_choice<Mode>(app, option_of(&CollideRequest::mode), request.mode,
                    "all: every pair; first: one pair, which crosses if any does; any: the first that meets");

@@ -31,6 +31,8 @@ void add_request_options(CLI::App& app, CollideRequest& request);
 void add_coarse_options(CLI::App& app, CollideRequest& request);
 /// Adds --recursion, which takes precedence over a scenario.
 void add_recursion_option(CLI::App& app, std::optional<Recursion>& recursion);
+/// Adds --events, which takes precedence over a scenario.
+void add_events_option(CLI::App& app, std::optional<EventLevel>& level);
 /// Adds --patch, --max-outer, --lean, --seed and --threads.
 void add_build_options(CLI::App& app, BuildOptions& options);
 

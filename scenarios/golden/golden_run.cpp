@@ -6,6 +6,7 @@
 #include <numbers>
 #include <sstream>
 
+#include "scenarios/run/run_scenario.hpp"
 #include "trace/hex.hpp"
 
 namespace lrb::golden {
@@ -58,12 +59,8 @@ GoldenRun play_golden(spec::Scenario scenario, const GoldenSpec& spec, const run
 }
 
 run::RecordedRun recorded_run_of(const GoldenRun& run) {
-  run::RecordedRun p;
-  p.title = run.scenario.name;
-  p.trace = &run.recording.trace;
-  p.results = &run.recording.results;
-  p.milestones = run.recording.milestones;
-  for (const bodies::LoadedBody& body : run.recording.bodies) p.reps.push_back(&body.rep);
+  run::RecordedRun p = run::recorded_run_of(run.scenario, run.recording);
+  p.purpose.clear();  // approved pictures say what they show without it
   return p;
 }
 

@@ -124,7 +124,8 @@ struct FrameJob {
   FrameJob(const RecordedRun& p, const spec::FrameSpec& s, std::vector<trace::EventId> at, Framing framing)
       : spec(s),
         events(std::move(at)),
-        state(*p.trace, p.reps, results_of(p), s, p.milestones.empty() && s.at != spec::FrameSpec::At::step),
+        state(*p.trace, p.reps, results_of(p), s, p.milestones.empty() && s.at != spec::FrameSpec::At::step,
+              {p.trees, p.value_range, p.face_values, p.value_name}),
         script(write_script(state, events, p.title, s)),
         painter(s, script.picture, std::move(framing)) {}
 

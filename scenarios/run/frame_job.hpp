@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,6 +21,12 @@ struct RecordedRun {
   const trace::Trace* trace = nullptr;
   const std::vector<CollideResult>* results = nullptr;  ///< one for each step, or null
   std::vector<trace::EventId> milestones;
+  const std::vector<trace::TreeShape>* trees = nullptr;  ///< A's and B's, or none: as Recording::trees
+  /// Ends of the scale of colours that mean numbers; nothing: as the frame has them.
+  std::optional<std::array<double, 2>> value_range = {};
+  /// Numbers of A's and B's faces to be shown instead of those that the frame's colours mean, and what they are; null: none.
+  const std::array<std::vector<double>, 2>* face_values = nullptr;
+  std::string value_name = {};
 };
 
 /// File in the output folder that shows the last certificate of separation of the run.

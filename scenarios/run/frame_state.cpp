@@ -1,11 +1,13 @@
 #include "scenarios/run/frame_state.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 
 #include "render/palette.hpp"
 #include "scenarios/run/moments.hpp"
 #include "trace/names.hpp"
+#include "trace/node_work.hpp"
 
 namespace lrb::run {
 namespace {
@@ -25,6 +27,15 @@ std::string relation_words(Relation r) {
   }
 }
 
+/// Returns the ends of the scale of box tests. Nodes near the root hold most faces, so that all have a small share.
+std::array<double, 2> box_test_range(std::span<const std::vector<double>> values) {
+  constexpr double kFew = 0.02;
+  double high = 0;
+  for (const std::vector<double>& of_body : values)
+    for (const double v : of_body) high = std::max(high, v);
+  return {kFew * high, high};
+}
+
 /// Returns a mesh's name without folder and extension.
 std::string short_name(const LrbRep& rep) {
   return std::filesystem::path(rep.name()).stem().string();
@@ -42,11 +53,12 @@ std::string error_bound_text(double bound) {
 
 FrameState::FrameState(const trace::Trace& trace, std::vector<const LrbRep*> reps,
                        const std::vector<CollideResult>& results, const spec::FrameSpec& spec,
-                       bool point_out_refined)
+                       bool point_out_refined, const FrameExtras& extras)
     : trace_(trace),
       reps_(std::move(reps)),
       results_(results),
       spec_(spec),
+      extras_(extras),
       point_out_refined_(point_out_refined),
       cursor_(make_cursor(trace, reps_)) {}
 
@@ -94,13 +106,35 @@ trace::Totals FrameState::totals() const {
 }
 
 std::vector<double> FrameState::values_of(Side side) const {
-  const bool tests = spec_.colour_by == spec::FrameSpec::ColourBy::face_tests;
-  if (!tests && spec_.colour_by != spec::FrameSpec::ColourBy::refinements) return {};
+  using ColourBy = spec::FrameSpec::ColourBy;
+  if (extras_.face_values != nullptr) return (*extras_.face_values)[static_cast<std::size_t>(side)];
+  if (spec_.colour_by < ColourBy::face_tests) return {};
+  const LrbRep& rep = *reps_[static_cast<std::size_t>(side)];
   const trace::EventId first = cursor_.step()->first_event;
-  const trace::FaceCounts counts =
-      trace::count_faces(*reps_[static_cast<std::size_t>(side)], side,
-                         {trace_.events.data() + first, cursor_.position() + std::size_t{1} - first});
-  const std::vector<std::uint32_t>& chosen = tests ? counts.tests : counts.refinements;
+  const std::span<const trace::Event> events(trace_.events.data() + first,
+                                             cursor_.position() + std::size_t{1} - first);
+  if (spec_.colour_by == ColourBy::box_tests) {
+    if (extras_.trees == nullptr || extras_.trees->empty()) return {};
+    const trace::TreeShape& tree = (*extras_.trees)[static_cast<std::size_t>(side)];
+    return trace::box_tests_by_face(rep, tree, trace::count_nodes(tree, side, events));
+  }
+  const trace::FaceCounts counts = trace::count_faces(rep, side, events);
+  const auto chosen = [&]() -> const std::vector<std::uint32_t>& {
+    switch (spec_.colour_by) {
+      case ColourBy::refinements:
+        return counts.refinements;
+      case ColourBy::hits:
+        return counts.hits;
+      case ColourBy::misses:
+        return counts.misses;
+      case ColourBy::expansions:
+        return counts.expansions;
+      case ColourBy::plane_tests:
+        return counts.plane_tests;
+      default:
+        return counts.tests;
+    }
+  }();
   return {chosen.begin(), chosen.end()};
 }
 
@@ -146,12 +180,14 @@ render::Scene FrameState::scene(bool wrapper, bool plain) const {
     case spec::FrameSpec::ColourBy::region:
       options.colour_by = render::ColourBy::region;
       break;
-    case spec::FrameSpec::ColourBy::face_tests:
+    default:
       options.colour_by = render::ColourBy::value;
-      break;
-    case spec::FrameSpec::ColourBy::refinements:
-      options.colour_by = render::ColourBy::value;
-      options.value_name = "refinements";
+      options.value_name = std::string(name_of(spec_.colour_by));
+      std::replace(options.value_name.begin(), options.value_name.end(), '_', ' ');
+      if (spec_.colour_by == spec::FrameSpec::ColourBy::box_tests)
+        options.value_range = box_test_range(values);
+      if (!extras_.value_name.empty()) options.value_name = extras_.value_name;
+      if (extras_.value_range) options.value_range = extras_.value_range;
       break;
   }
   options.explode = spec_.explode;
@@ -188,8 +224,33 @@ std::string FrameState::event_text() const {
       return "contact: " + face(Side::a) + " of A meets " + face(Side::b) + " of B";
     case EventKind::result:
       return result_text();
+    case EventKind::plane_test:
+      return "simplex " + std::to_string(e.a) + " of A and " + std::to_string(e.b) +
+             " of B: parted by the plane of " + side + "'s";
+    case EventKind::node_pair:
+      return node_pair_text(e);
+    case EventKind::point:
+      return "vertex " + std::to_string(e.a) + " of " + side + ": " + std::string(name_of(e.where())) +
+             (e.side == Side::a ? " of B" : " of A");
+    case EventKind::begin:
+      return std::string(name_of(e.phase())) + " begins";
+    case EventKind::end:
+      return std::string(name_of(e.phase())) + " ends";
   }
   return {};
+}
+
+std::string FrameState::node_pair_text(const trace::Event& e) {
+  const trace::NodeWork work = e.work();
+  const trace::NodeEnd end = e.node_end();
+  std::string out = "nodes " + std::to_string(e.a) + " of A and " + std::to_string(e.b) + " of B: ";
+  if (end.step == NodeStep::needles) return out + "apart across needles";
+  if (work.met == 0)
+    return out + (end.apart ? "apart along " + std::string(name_of(end.axis)) : "no boxes in them meet");
+  if (end.step != NodeStep::leaves)
+    return out + counted(work.met, "pair of boxes meets", "pairs of boxes meet");
+  return out + counted(work.met, "pair of faces", "pairs of faces") + ", " +
+         counted(work.met - work.parted, "left to test", "left to test");
 }
 
 std::string FrameState::result_text() const {
@@ -225,6 +286,10 @@ render::Overlay FrameState::overlay(const std::string& title) const {
                   {"refined", render::group_digits(refined[0]) + " + " + render::group_digits(refined[1])},
                   {"face tests", render::group_digits(t.face_tests)},
                   {"contacts", render::group_digits(t.contacts)}};
+    if (!trace_.header.engine.empty()) {  // it has no wrappers
+      o.counters.erase(o.counters.begin(), o.counters.begin() + 3);
+      o.counters.insert(o.counters.begin(), {"pairs of boxes", render::group_digits(t.node_pairs)});
+    }
     if (const trace::StepResult* answer = answer_here(); answer && trace_.header.request.is_coarse())
       o.counters.push_back({"error bound", error_bound_text(answer->error_bound)});
   }

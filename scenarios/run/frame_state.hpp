@@ -1,6 +1,7 @@
 #pragma once
 /// The state of a recorded run after any of its events, as a picture shows it and in words.
 
+#include <array>
 #include <optional>
 #include <string>
 #include <vector>
@@ -10,17 +11,27 @@
 #include "scenarios/spec/scenario.hpp"
 #include "trace/counters.hpp"
 #include "trace/cursor.hpp"
+#include "trace/tree_shape.hpp"
 
 namespace lrb::run {
 
 /// Returns CollideResult::error_bound in a word or two.
 std::string error_bound_text(double bound);
 
+/// What not every run has: see RecordedRun.
+struct FrameExtras {
+  const std::vector<trace::TreeShape>* trees = nullptr;
+  std::optional<std::array<double, 2>> value_range = {};
+  const std::array<std::vector<double>, 2>* face_values = nullptr;
+  std::string value_name = {};
+};
+
 class FrameState {
  public:
   /// `results`: one for each step, for contact regions; may be empty. All arguments must outlive this object.
   FrameState(const trace::Trace& trace, std::vector<const LrbRep*> reps,
-             const std::vector<CollideResult>& results, const spec::FrameSpec& spec, bool point_out_refined);
+             const std::vector<CollideResult>& results, const spec::FrameSpec& spec, bool point_out_refined,
+             const FrameExtras& extras = {});
 
   void seek(trace::EventId event);
 
@@ -50,6 +61,7 @@ class FrameState {
   std::vector<std::uint8_t> met(Side side) const;
   std::vector<double> values_of(Side side) const;
   std::string event_text() const;
+  static std::string node_pair_text(const trace::Event& e);
   std::string result_text() const;
   trace::Totals totals() const;  ///< Counts the events of the step so far.
 
@@ -57,6 +69,7 @@ class FrameState {
   std::vector<const LrbRep*> reps_;
   const std::vector<CollideResult>& results_;
   const spec::FrameSpec& spec_;
+  FrameExtras extras_;
   bool point_out_refined_;  ///< frames follow refinements, so that the last one is what is new
   trace::Cursor cursor_;
 };

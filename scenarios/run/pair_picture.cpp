@@ -22,6 +22,7 @@ std::vector<Vector3d> corners_of(const LrbRep& rep, const Pose& pose, SimplexId 
   VertexId v[3];
   rep.simplex(s, v);
   std::vector<Vector3d> out;
+  out.reserve(3);
   for (int k = 0; k < rep.simplex_size(); ++k) out.push_back(pose.apply(rep.vertices()[v[k]]));
   return out;
 }
@@ -112,6 +113,7 @@ void draw_pair(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose&
     if (a.dim() == 3 && pair.distance > 0) add_plane(scene.list, pair.nearest, part.diagonal().norm());
   } else {
     std::vector<Vector3d> contact;
+    contact.reserve(static_cast<std::size_t>(pair.contact.corner_count));
     for (int i = 0; i < pair.contact.corner_count; ++i) contact.push_back(pair.contact.corners[i].x);
     mark(scene.list, contact);
   }

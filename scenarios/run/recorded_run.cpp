@@ -26,6 +26,7 @@ trace::RecorderSettings recorder_settings(const spec::Scenario& s) {
   settings.request = s.request;
   settings.clock = s.clock;
   settings.event_cap = s.event_cap;
+  settings.level = std::max(s.events, spec::needed_level(s.frames.colour_by));
   return settings;
 }
 
@@ -97,6 +98,13 @@ void record_wrapper(const spec::Scenario& s, Recording& r) {
 
 }  // namespace
 
+std::vector<trace::TreeShape> trees_of(const trace::Trace& trace, const std::vector<const LrbRep*>& reps) {
+  std::vector<trace::TreeShape> out;
+  if (trace.header.level == EventLevel::faces || !trace.header.engine.empty() || reps.size() != 2) return out;
+  for (const LrbRep* rep : reps) out.emplace_back(rep->tree());
+  return out;
+}
+
 bodies::LoadedBody make_body(const spec::BodySpec& spec) {
   if (!spec.file.empty()) return bodies::load_body(spec.file, spec.build);
   if (std::optional<LrbRep> rep = generators::generate_rep(spec.generator, spec.parameters, spec.build.seed))
@@ -124,6 +132,9 @@ Recording record(const spec::Scenario& scenario, std::vector<bodies::LoadedBody>
     record_collision(scenario, r, progress);
   else
     record_wrapper(scenario, r);
+  std::vector<const LrbRep*> reps;
+  for (const bodies::LoadedBody& body : r.bodies) reps.push_back(&body.rep);
+  r.trees = trees_of(r.trace, reps);
   if (r.trace.truncated())
     r.notes.push_back("the trace holds the first " + std::to_string(r.trace.events.size()) + " of " +
                       std::to_string(r.trace.events_seen) + " events (trace.max_events)");

@@ -8,6 +8,7 @@
 #include "scenarios/bodies/body.hpp"
 #include "scenarios/spec/scenario.hpp"
 #include "trace/trace.hpp"
+#include "trace/tree_shape.hpp"
 
 namespace lrb::run {
 
@@ -19,8 +20,13 @@ struct Recording {
   trace::Trace trace;
   std::vector<CollideResult> results;      ///< one for each step; none for one body
   std::vector<trace::EventId> milestones;  ///< construction: the last event of each pass
-  std::vector<std::string> notes;          ///< for people
+  std::vector<trace::TreeShape>
+      trees;                       ///< A's and B's, that were walked, if pairs of their nodes were recorded
+  std::vector<std::string> notes;  ///< for people
 };
+
+/// Returns the trees of the bodies that a trace with pairs of nodes is about; none for other traces.
+std::vector<trace::TreeShape> trees_of(const trace::Trace& trace, const std::vector<const LrbRep*>& reps);
 
 bodies::LoadedBody make_body(const spec::BodySpec& spec);
 

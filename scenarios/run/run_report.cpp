@@ -7,6 +7,7 @@
 #include "scenarios/report/page/inline_image.hpp"
 #include "scenarios/run/frame_state.hpp"
 #include "scenarios/run/scene_json.hpp"
+#include "scenarios/run/work_tables.hpp"
 #include "trace/counters.hpp"
 #include "trace/hex.hpp"
 #include "trace/names.hpp"
@@ -240,7 +241,9 @@ void add_tables(report::Page& page, const RecordedRun& p) {
   if (p.results != nullptr && !p.results->empty() && !p.results->back().regions.empty())
     page.tables.push_back(contact_table(p.results->back(), p.trace->steps.back().index));
   constexpr std::size_t kMostSteps = 200;
+  for (report::PageTable& table : work_tables(p)) page.tables.push_back(std::move(table));
   if (p.trace->steps.size() <= kMostSteps) page.tables.push_back(steps_table(*p.trace));
+  page.tables.push_back(quality_table(p));
 }
 
 }  // namespace

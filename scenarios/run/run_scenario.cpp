@@ -15,17 +15,6 @@ namespace lrb::run {
 
 namespace {
 
-RecordedRun recorded_run_of(const spec::Scenario& scenario, const Recording& recording) {
-  RecordedRun p;
-  p.title = scenario.name;
-  p.purpose = scenario.purpose;
-  p.trace = &recording.trace;
-  p.results = &recording.results;
-  p.milestones = recording.milestones;
-  for (const bodies::LoadedBody& body : recording.bodies) p.reps.push_back(&body.rep);
-  return p;
-}
-
 /// Throws, before anything is written, if the scenario wants a frame that cannot be drawn.
 void check(const spec::Scenario& scenario, const RecordedRun& recorded) {
   try {
@@ -36,6 +25,18 @@ void check(const spec::Scenario& scenario, const RecordedRun& recorded) {
 }
 
 }  // namespace
+
+RecordedRun recorded_run_of(const spec::Scenario& scenario, const Recording& recording) {
+  RecordedRun p;
+  p.title = scenario.name;
+  p.purpose = scenario.purpose;
+  p.trace = &recording.trace;
+  p.results = &recording.results;
+  p.milestones = recording.milestones;
+  p.trees = &recording.trees;
+  for (const bodies::LoadedBody& body : recording.bodies) p.reps.push_back(&body.rep);
+  return p;
+}
 
 RunOutcome write_run(const spec::Scenario& scenario, const Recording& recording, const std::string& folder,
                      const std::string& command, const ProgressReport& progress) {

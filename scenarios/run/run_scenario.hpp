@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "scenarios/run/frame_job.hpp"
 #include "scenarios/run/recorded_run.hpp"
 
 namespace lrb::run {
@@ -13,6 +14,9 @@ struct RunOutcome {
   std::string summary;                  ///< summary.json
   std::size_t frames = 0;
 };
+
+/// Returns what frames of a recording are drawn from; both must outlive it.
+RecordedRun recorded_run_of(const spec::Scenario& scenario, const Recording& recording);
 
 /// Runs a scenario and writes folder/{index.html, trace.json[.gz], summary.json, a.lrb, b.lrb, frames/,
 /// montage.png}.

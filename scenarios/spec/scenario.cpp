@@ -48,8 +48,9 @@ std::vector<BodySpec> read_bodies(const io::JsonNode& node, Show show, const std
 }
 
 void read_trace(const io::JsonNode& node, Scenario& s) {
-  node.object({"clock", "max_events", "gzip"});
+  node.object({"clock", "events", "max_events", "gzip"});
   if (const auto n = node.get("clock")) s.clock = n->choice<trace::Clock>();
+  if (const auto n = node.get("events")) s.events = n->choice<EventLevel>();
   if (const auto n = node.get("max_events"))
     s.event_cap = static_cast<std::uint32_t>(n->integer(1, 50'000'000));
   if (const auto n = node.get("gzip")) s.gzip = n->boolean();

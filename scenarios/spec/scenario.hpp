@@ -76,7 +76,20 @@ struct FrameSpec {
   enum class At : std::uint8_t { none, step, refinement, every, events };  ///< events: given as a list, so
                                                                            ///< the file has no word for it
   enum class Camera : std::uint8_t { scene, contact, fixed, orbit };
-  enum class ColourBy : std::uint8_t { kind, layer, region, face_tests, refinements };
+  /// What the colours of faces mean. From face_tests on: numbers of the time step so far (trace/counters.hpp); some
+  /// need more events than face tests: needed_level().
+  enum class ColourBy : std::uint8_t {
+    kind,
+    layer,
+    region,
+    face_tests,
+    refinements,
+    hits,
+    misses,
+    expansions,
+    box_tests,
+    plane_tests,
+  };
   struct View {
     Camera camera = Camera::scene;
     bool orthographic = false;
@@ -129,7 +142,18 @@ constexpr auto words_of(FrameSpec::ColourBy) {
                                             {ColourBy::layer, "layer"},
                                             {ColourBy::region, "region"},
                                             {ColourBy::face_tests, "face_tests"},
-                                            {ColourBy::refinements, "refinements"}});
+                                            {ColourBy::refinements, "refinements"},
+                                            {ColourBy::hits, "hits"},
+                                            {ColourBy::misses, "misses"},
+                                            {ColourBy::expansions, "expansions"},
+                                            {ColourBy::box_tests, "box_tests"},
+                                            {ColourBy::plane_tests, "plane_tests"}});
+}
+/// Returns the events that a number needs.
+constexpr EventLevel needed_level(FrameSpec::ColourBy by) {
+  using ColourBy = FrameSpec::ColourBy;
+  if (by == ColourBy::plane_tests) return EventLevel::all;
+  return by == ColourBy::expansions || by == ColourBy::box_tests ? EventLevel::nodes : EventLevel::faces;
 }
 
 struct Expectation {
@@ -149,6 +173,7 @@ struct Scenario {
   CollideRequest request;
   trace::Clock clock = trace::Clock::event;
   std::uint32_t event_cap = 1'000'000;
+  EventLevel events = EventLevel::faces;  ///< that are recorded
   bool gzip = false;
   FrameSpec frames;
   std::vector<Expectation> expect;

@@ -89,11 +89,11 @@ void meet_triangles(benchmark::State& state, Case kind) {
       static_cast<double>(exact::exact_fallbacks() - before) / static_cast<double>(calls);
 }
 
-void only_in_shared(benchmark::State& state, Case kind, std::array<std::uint32_t, 3> ib) {
+void only_in_shared(benchmark::State& state, Case kind, std::array<VertexId, 3> ib) {
   test::Rng rng(6);
   std::vector<SimplexPair> pairs(1000);
   for (auto& s : pairs) s = make(rng, kind);
-  const std::uint32_t ia[3] = {0, 1, 2};
+  const VertexId ia[3] = {0, 1, 2};
   std::uint64_t calls = 0, clean = 0;
   for (auto _ : state) {
     for (const auto& s : pairs)

@@ -1,5 +1,6 @@
 /// What recording and writing cost, per event. Run: build/tests/bench/trace_bench --benchmark_repetitions=5
 
+#include <algorithm>
 #include <filesystem>
 #include <random>
 #include <string>
@@ -8,6 +9,9 @@
 
 #include <benchmark/benchmark.h>
 
+#include "engine/construct/build.hpp"
+#include "engine/query/collide_impl.hpp"
+#include "scenarios/bodies/shapes/shapes.hpp"
 #include "tests/support/folder.hpp"
 #include "tests/support/lrb_shapes.hpp"
 #include "trace/cursor.hpp"
@@ -151,6 +155,37 @@ void record(benchmark::State& state) {
   report(state);
 }
 BENCHMARK(record)->ArgName("wall")->Arg(0)->Arg(1);
+
+/// A query of two bodies that cross, alone (-1) or recorded at a level of events. An event costs what a query takes longer
+/// than alone, divided by its events.
+void watched_query(benchmark::State& state) {
+  static const LrbRep rock = build_lrb(shapes::bumpy_sphere(5, 7, 0.3));
+  const Pose pose = Pose::translation({0.9, 0.3, 0.2});
+  const bool alone = state.range(0) < 0;
+  RecorderSettings settings;
+  settings.level = static_cast<EventLevel>(std::max<std::int64_t>(state.range(0), 0));
+  QueryContext context;
+  std::uint64_t events = 0;
+  for (auto _ : state) {
+    if (alone) {
+      NullProbe probe;
+      benchmark::DoNotOptimize(collide(rock, {}, rock, pose, {}, context, probe).pairs.size());
+      continue;
+    }
+    state.PauseTiming();
+    {
+      Recorder recorder(rock, rock, settings);
+      recorder.begin_step(0, {}, pose);
+      state.ResumeTiming();
+      benchmark::DoNotOptimize(collide(rock, {}, rock, pose, {}, context, recorder).pairs.size());
+      state.PauseTiming();
+      events = recorder.events_stored();
+    }
+    state.ResumeTiming();
+  }
+  state.counters["events"] = static_cast<double>(events);
+}
+BENCHMARK(watched_query)->ArgName("level")->DenseRange(-1, 2)->Unit(benchmark::kMicrosecond);
 
 /// Bytes that go nowhere.
 struct Nowhere final : ByteSink {

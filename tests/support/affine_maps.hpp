@@ -29,8 +29,8 @@ inline constexpr int kMapKinds = static_cast<int>(MapKind::last);
 /// A random map of a kind, turned at random; of a plane body where dim is 2. Its size is about 1 but for `scaled`.
 inline Eigen::Matrix3d random_map(shapes::RandomEngine& random, MapKind kind, int dim = 3) {
   using shapes::uniform;
-  const Eigen::Matrix3d turn = shapes::random_rotation(random, dim),
-                        again = shapes::random_rotation(random, dim);
+  Eigen::Matrix3d turn = shapes::random_rotation(random, dim);
+  const Eigen::Matrix3d again = shapes::random_rotation(random, dim);
   const auto diagonal = [&](double x, double y, double z) -> Eigen::Matrix3d {
     return turn * Eigen::Vector3d(x, y, dim == 2 ? 1 : z).asDiagonal() * again;
   };

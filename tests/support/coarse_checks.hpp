@@ -30,7 +30,9 @@ inline bool wrappers_are_apart(const LrbRep& a, const Pose& pose_a, const LrbRep
   const CollideRequest request;
   TreeQuery<NullProbe, WrapperRules<>> query(context, request, found, probe, rules);
   query.run();
-  return found.pairs.empty() && !query.rules().near && wrappers_nested(context, [] { return true; }) == false;
+  return found.pairs.empty() && !query.rules().near &&
+         wrappers_nested(
+             context, [] { return true; }, [](Side, VertexId, Where) {}) == false;
 }
 
 /// The real faces of two bodies in the world, to measure from points.

@@ -86,6 +86,7 @@ inline double surface_distance(const std::vector<Points>& a, const std::vector<P
     return ball;
   };
   std::vector<Ball> balls;
+  balls.reserve(b.size());
   for (const Points& t : b) balls.push_back(ball_of(t));
   double least = INFINITY;
   for (const Points& s : a) {

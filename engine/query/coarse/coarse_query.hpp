@@ -54,14 +54,17 @@ CoarseStep first_step(const LrbRep& a, const LrbRep& b, const CollideRequest& re
 std::vector<CoarseStep> coarse_steps(const LrbRep& a, const LrbRep& b, const CollideRequest& request);
 
 /// Returns whether the boundary of either wrapper has a piece in the other; nothing if `in_time()`, which is asked
-/// before each point is located, returns false. For wrappers whose faces do not meet.
-template <class InTime>
-std::optional<bool> wrappers_nested(QueryContext& ctx, InTime&& in_time) {
+/// before each point is located, returns false. For wrappers whose faces do not meet. Calls see(side, vertex, where)
+/// for each point.
+template <class InTime, class See>
+std::optional<bool> wrappers_nested(QueryContext& ctx, InTime&& in_time, See&& see) {
   for (const Side side : {Side::a, Side::b}) {
     QueryBody &inner = ctx[side], &outer = ctx[other(side)];
     for (const VertexId v : inner.component_vertices()) {
       if (!in_time()) return std::nullopt;
-      if (locate(outer, inner.world(v)) != Where::outside) return true;
+      const Where where = locate(outer, inner.world(v));
+      see(side, v, where);
+      if (where != Where::outside) return true;
     }
   }
   return false;
@@ -161,7 +164,22 @@ class CoarseQuery {
     }
     void refine(Side side, RegionId r, std::uint32_t added) { probe.refine(side, r, added); }
     void contact(SimplexId, SimplexId, exact::Meet) {}
+    EventLevel level() const { return probe.level(); }
+    std::uint32_t node_pair(const NodeVisit& visit) { return probe.node_pair(visit); }
+    void plane_test(SimplexId a, SimplexId b, Side whose) { probe.plane_test(a, b, whose); }
+    void tested_by(TestedBy how) { probe.tested_by(how); }
+    void point(Side whose, VertexId v, Where where) { probe.point(whose, v, where); }
+    void begin(Phase phase, std::uint32_t a, std::uint32_t b) { probe.begin(phase, a, b); }
+    void end(Phase phase, std::uint64_t count) { probe.end(phase, count); }
   };
+
+  /// Sorts the pairs that were found.
+  void sort(CollideResult& found) {
+    in_phase(probe_, Phase::sort, [&] {
+      ctx_.pair_order.sort(found);
+      return found.pairs.size();
+    });
+  }
 
   /// Sets the limits of a step: all that is left, or as much as leaves half of it.
   void limit(LimitedRules<Clock>& rules, bool half) const {
@@ -207,8 +225,8 @@ class CoarseQuery {
     LimitedRules<Clock> rules;
     limit(rules, false);
     if (!walk(request_, found, rules)) return;
-    ctx_.pair_order.sort(found);
-    if (decide_relation(ctx_, found, in_time(rules))) answer(found, error_bound, true);
+    sort(found);
+    if (decide_relation_watched(ctx_, found, probe_, in_time(rules))) answer(found, error_bound, true);
   }
 
   /// Asks the bodies as they are until a pair crosses. Returns true if that is the whole answer: they do not
@@ -224,8 +242,8 @@ class CoarseQuery {
     if (walked) {
       const bool all =
           request_.mode != Mode::all_pairs || found.meets.empty() || found.meets[0] != exact::Meet::cross;
-      ctx_.pair_order.sort(found);
-      const bool known = decide_relation(ctx_, found, in_time(rules));
+      sort(found);
+      const bool known = decide_relation_watched(ctx_, found, probe_, in_time(rules));
       if (known) answer(found, all ? 0 : kInfinity, all);
       if (known && all) return true;
     }
@@ -260,7 +278,7 @@ class CoarseQuery {
     rules.margin = wrapper_margin(a.world.pose(), a.tree(), b.world.pose(), b.tree());
     limit(rules, false);
     if (!walk(request_, found, rules)) return false;
-    ctx_.pair_order.sort(found);
+    sort(found);
     const double off = off_body(step.a, a.world.pose()) + off_body(step.b, b.world.pose());
     found.error_bound = (off + rules.margin) * (1 + kKernelRounding);
     return true;
@@ -297,7 +315,7 @@ class CoarseQuery {
     found.relation = Relation::unresolved;
     if (found.pairs.empty() && !rules.near) {
       // A wrapper in the other: nothing tells how far the bodies are from each other.
-      const std::optional<bool> nested = wrappers_nested(ctx_, in_time(rules));
+      const std::optional<bool> nested = locate_wrappers(rules);
       if (!nested) return false;
       if (!*nested) found.relation = Relation::separate;
       bound = *nested ? kInfinity : 0;
@@ -310,6 +328,20 @@ class CoarseQuery {
     const bool resolved = found.relation != Relation::unresolved;
     answer(found, bound, bound == 0 || (last && resolved));
     return !result_.finished;
+  }
+
+  std::optional<bool> locate_wrappers(LimitedRules<Clock>& rules) {
+    std::optional<bool> nested;
+    in_phase(probe_, Phase::relation, [&] {
+      std::uint64_t points = 0;
+      nested = wrappers_nested(ctx_, in_time(rules), [&](Side side, VertexId v, Where where) {
+        ++points;
+        if constexpr (Probe::kEnabled)
+          if (probe_.level() != EventLevel::faces) probe_.point(side, v, where);
+      });
+      return points;
+    });
+    return nested;
   }
 
   bool has_real_crossing(const CollideResult& found) {

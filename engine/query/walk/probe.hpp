@@ -6,6 +6,7 @@
 
 #include "engine/core/ids.hpp"
 #include "engine/exact/simplex_test.hpp"
+#include "engine/query/walk/watch.hpp"
 
 namespace lrb {
 
@@ -17,7 +18,12 @@ namespace lrb {
   LRB_EVENT(refine, "refine", "region", "faces added")                    \
   LRB_EVENT(coarsen, "coarsen", "region", "faces removed")                \
   LRB_EVENT(contact, "contact", "real simplex of A", "real simplex of B") \
-  LRB_EVENT(result, "result", "relation", "pairs")
+  LRB_EVENT(result, "result", "relation", "pairs")                        \
+  LRB_EVENT(node_pair, "node pair", "node of A", "node of B")             \
+  LRB_EVENT(plane_test, "plane test", "simplex of A", "simplex of B")     \
+  LRB_EVENT(point, "point", "vertex", "")                                 \
+  LRB_EVENT(begin, "begin", "phase", "")                                  \
+  LRB_EVENT(end, "end", "phase", "count")
 
 enum class EventKind : std::uint8_t {
 #define LRB_EVENT(name, json, a, b) name,
@@ -33,6 +39,8 @@ constexpr auto words_of(EventKind) {
 /// Does nothing and costs nothing. Also the list of what a probe must have.
 struct NullProbe {
   static constexpr bool kEnabled = false;
+  /// How much is to be told. What follows contact() is told only from EventLevel::nodes on.
+  EventLevel level() const { return EventLevel::faces; }
   /// A simplex of A was compared exactly with one of B. depth_a/b: number of regions between each and the
   /// outside.
   void face_test(SimplexId, SimplexId, exact::Meet, std::uint32_t /*depth_a*/, std::uint32_t /*depth_b*/) {}
@@ -42,6 +50,33 @@ struct NullProbe {
   void coarsen(Side, RegionId, std::uint32_t /*faces_removed*/) {}
   /// Two real simplices meet; they are part of the answer.
   void contact(SimplexId, SimplexId, exact::Meet) {}
+
+  /// The walk came to a pair of nodes. Returns what stands for it as NodeVisit::parent of pairs beneath it.
+  std::uint32_t node_pair(const NodeVisit&) { return kNull; }
+  /// Told at EventLevel::all: a plane parts two simplices, that of the one of `whose`. They are of the leaves of the
+  /// pair of nodes that was told last.
+  void plane_test(SimplexId, SimplexId, Side /*whose*/) {}
+  /// What decided the face test that was told last.
+  void tested_by(TestedBy) {}
+  /// A vertex of `whose` body was located in the other one.
+  void point(Side /*whose*/, VertexId, Where) {}
+  /// A phase begins. walked_a/b: what is walked of each body: 0 for the body itself, i + 1 for level i.
+  void begin(Phase, std::uint32_t /*walked_a*/, std::uint32_t /*walked_b*/) {}
+  /// The phase that began last ends.
+  void end(Phase, std::uint64_t /*count*/) {}
 };
+
+/// Does a phase of a query and tells the probe where it begins and ends. work() returns the phase's count.
+template <class Probe, class Work>
+void in_phase(Probe& probe, Phase phase, const Work& work) {
+  if constexpr (Probe::kEnabled) {
+    if (probe.level() != EventLevel::faces) {
+      probe.begin(phase, 0, 0);
+      probe.end(phase, work());
+      return;
+    }
+  }
+  work();
+}
 
 }  // namespace lrb

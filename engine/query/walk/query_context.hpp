@@ -41,12 +41,19 @@ struct QueryBody {
   }
 
   void query_body() {
+    level_ = nullptr;
     tree_ = &rep().tree();
     component_vertices_ = rep().component_vertices();
   }
   void query_level(const WrapperLevel& level) {
+    level_ = &level;
     tree_ = &level.tree;
     component_vertices_ = level.component_vertices;
+  }
+
+  /// Returns what is queried: 0 for the body, i + 1 for level i.
+  std::uint32_t walked() const {
+    return level_ == nullptr ? 0 : static_cast<std::uint32_t>(level_ - rep().levels().all().data()) + 1;
   }
 
   /// Returns the body's surface graph; made when first asked for, kept as long as the body stays the same.
@@ -66,6 +73,7 @@ struct QueryBody {
 
  private:
   const ObbTree* tree_ = nullptr;
+  const WrapperLevel* level_ = nullptr;  ///< null: the body itself
   std::span<const VertexId> component_vertices_;
   std::unique_ptr<SurfaceGraph> graph_;
   std::uint64_t graph_serial_ = 0;
@@ -76,6 +84,8 @@ class QueryContext {
   QueryBody body[2];
   std::vector<NodePair> stack;
   std::vector<Candidate> candidates;
+  std::vector<std::uint32_t> parents;  ///< of the pairs on the stack, in queries that are watched
+  std::vector<PartedPair> parted;
   AffineTerms affine;  ///< of the kernel that runs, if it has any
   PairOrder pair_order;
   std::unordered_set<std::uint64_t> visited[3];  ///< paper: region x region, face x region, region x face

@@ -2,11 +2,10 @@
 /// Finds how two bodies lie to each other, once the pairs that meet are known.
 
 #include "engine/exact/locate.hpp"
+#include "engine/query/walk/probe.hpp"
 #include "engine/query/walk/query_context.hpp"
 
 namespace lrb {
-
-enum class Where : std::uint8_t { outside, inside, on_surface };
 
 /// Tells where a point of the world lies in a closed body, by the parity of an axis-parallel ray: exact, with
 /// ties broken symbolically (exact/locate.hpp), so that no ray is ever degenerate. Nested and overlapping
@@ -29,9 +28,9 @@ void decide_by_enclosure(const Enclosed& a_in_b, const Enclosed& b_in_a, Collide
 /// Sets result.relation from result.pairs or, if there are none, from the position of one vertex of each
 /// component. A body of which only some components are enclosed by the other still counts as inside, because
 /// the bodies are then not separate. Returns false, without a relation, if `in_time()`, which is asked before
-/// each point is located, does.
-template <class InTime>
-bool decide_relation(QueryContext& ctx, CollideResult& result, InTime&& in_time) {
+/// each point is located, does. Calls see(side, vertex, where) for each point.
+template <class InTime, class See>
+bool decide_relation(QueryContext& ctx, CollideResult& result, InTime&& in_time, See&& see) {
   if (decide_without_points(ctx, result)) return true;
   Enclosed in_other[2];
   for (const Side side : {Side::a, Side::b}) {
@@ -40,14 +39,36 @@ bool decide_relation(QueryContext& ctx, CollideResult& result, InTime&& in_time)
     for (const VertexId v : inner.component_vertices()) {
       if (!in_time()) return false;
       ++count.components;
-      count.inside += locate(outer, inner.world(v)) == Where::inside;
+      const Where where = locate(outer, inner.world(v));
+      see(side, v, where);
+      count.inside += where == Where::inside;
     }
   }
   decide_by_enclosure(in_other[0], in_other[1], result);
   return true;
 }
 
+template <class InTime>
+bool decide_relation(QueryContext& ctx, CollideResult& result, InTime&& in_time) {
+  return decide_relation(ctx, result, in_time, [](Side, VertexId, Where) {});
+}
 /// Does the same, however long it takes.
 void decide_relation(QueryContext& ctx, CollideResult& result);
+
+/// Does the same as a phase of its own, and tells the probe of each point.
+template <class Probe, class InTime>
+bool decide_relation_watched(QueryContext& ctx, CollideResult& result, Probe& probe, InTime&& in_time) {
+  bool decided = false;
+  in_phase(probe, Phase::relation, [&] {
+    std::uint64_t points = 0;
+    decided = decide_relation(ctx, result, in_time, [&](Side side, VertexId v, Where where) {
+      ++points;
+      if constexpr (Probe::kEnabled)
+        if (probe.level() != EventLevel::faces) probe.point(side, v, where);
+    });
+    return points;
+  });
+  return decided;
+}
 
 }  // namespace lrb

@@ -17,6 +17,7 @@
 
 #include "engine/exact/exact_sign.hpp"
 #include "engine/exact/predicates.hpp"
+#include "engine/query/walk/node_watch.hpp"
 #include "engine/query/walk/query_context.hpp"
 #include "engine/tree/kernel_setup.hpp"
 
@@ -79,6 +80,23 @@ class TreeQuery {
   void run() {
     const ObbTree &a = ctx_[Side::a].tree(), &b = ctx_[Side::b].tree();
     if (a.empty() || b.empty()) return;
+    if (!is_watched()) {
+      walk();
+      return;
+    }
+    probe_.begin(Phase::walk, ctx_[Side::a].walked(), ctx_[Side::b].walked());
+    probe_.end(Phase::walk, walk());
+  }
+
+ private:
+  /// Returns true if more than face tests is to be told.
+  bool is_watched() const {
+    if constexpr (Probe::kEnabled) return probe_.level() != EventLevel::faces;
+    return false;
+  }
+
+  /// Returns the number of pairs of nodes.
+  std::uint64_t walk() {
     // A small buffer where one pair may be enough, so that little is searched beyond it.
     TreeKernel k = start_kernel(ctx_, mode_ == Mode::all_pairs ? 1024 : 64);
     k.nearest_first = mode_ != Mode::all_pairs;
@@ -87,7 +105,7 @@ class TreeQuery {
     while (k.stack_size != 0 && !done) {
       k.out_size = 0;
       if constexpr (Rules::kLimited) k.most_node_pairs = rules_.most_node_pairs(k.node_pairs);
-      run_tree_kernel(k);
+      is_watched() ? NodeWatch<Probe>(ctx_, probe_).run(k) : run_tree_kernel(k);
       if constexpr (Rules::kLimited) done = rules_.time_is_up(result_.pairs.size());
       for (std::uint32_t i = 0; i < k.out_size && !done; ++i) done = test(k.out[i]);
       if (result_.pairs.size() > pair_limit_) refuse_pairs(pair_limit_);
@@ -95,9 +113,9 @@ class TreeQuery {
     result_.counters.node_pairs += k.node_pairs;
     result_.counters.box_tests += k.box_tests;
     result_.counters.prefilter_tests += k.prefilter_tests;
+    return k.node_pairs;
   }
 
- private:
   /// Tests a candidate. Returns true if the answer is complete. One pair is enough in any_pair mode, and in
   /// first_pair mode if it crosses; a pair that only touches is kept while a crossing one is looked for, so
   /// that the relation is exact in that mode too.
@@ -109,13 +127,17 @@ class TreeQuery {
     const FaceId fa = ctx_[Side::a].rep().face_of_simplex(c.a), fb = ctx_[Side::b].rep().face_of_simplex(c.b);
     const std::uint32_t depth_a = show_face(ctx_, Side::a, fa, result_, probe_);
     const std::uint32_t depth_b = show_face(ctx_, Side::b, fb, result_, probe_);
+    const std::uint64_t fallbacks = is_watched() ? exact::exact_fallbacks() : 0;
     exact::Meet meet = meet_of(c);
     if constexpr (Rules::kWrappers)
       if (meet == exact::Meet::disjoint && c.certainty != Certainty::disjoint)
         meet = rules_.meet_of_near(ctx_, c.a, c.b);
     const bool real = ctx_[Side::a].rep().is_real(fa) && ctx_[Side::b].rep().is_real(fb);
     count_face_test(real, std::max(depth_a, depth_b), result_.counters);
-    if constexpr (Probe::kEnabled) probe_.face_test(c.a, c.b, meet, depth_a, depth_b);
+    if constexpr (Probe::kEnabled) {
+      probe_.face_test(c.a, c.b, meet, depth_a, depth_b);
+      if (is_watched()) probe_.tested_by(tested_by(c, fallbacks));
+    }
     if (meet == exact::Meet::disjoint) return false;
     if (mode_ == Mode::first_pair && !result_.pairs.empty()) {
       if (meet == exact::Meet::cross) {
@@ -143,6 +165,14 @@ class TreeQuery {
     if (c.certainty == Certainty::disjoint) return exact::Meet::disjoint;
     if (c.certainty == Certainty::touch_if_shared && exactly_ && shares_corners(c)) return exact::Meet::touch;
     return test_simplices(ctx_, c.a, c.b);
+  }
+
+  /// Returns what decided a candidate. fallbacks: exact::exact_fallbacks() before that.
+  TestedBy tested_by(const Candidate& c, std::uint64_t fallbacks) {
+    if (c.certainty == Certainty::cross || c.certainty == Certainty::disjoint) return TestedBy::floats;
+    if (exact::exact_fallbacks() != fallbacks) return TestedBy::expansions;
+    const bool shares = c.certainty == Certainty::touch_if_shared && exactly_ && shares_corners(c);
+    return shares ? TestedBy::shared_corners : TestedBy::filter;
   }
 
   /// Returns true if the candidate's corners are corners of the other simplex too. Compares each with all three

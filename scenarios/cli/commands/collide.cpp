@@ -18,6 +18,7 @@ struct CollideOptions {
   std::string a, b, folder, poses, from;
   CollideRequest request;
   PictureOptions picture;
+  std::optional<EventLevel> events;
   bool json = false;
 };
 
@@ -62,6 +63,7 @@ spec::Scenario make_scenario(const CollideOptions& o, const std::vector<bodies::
   s.bodies[1].file = o.b;
   s.request = o.request;
   s.request.contacts = o.request.mode == Mode::all_pairs;
+  if (o.events) s.events = *o.events;
   s.frames.montage = 6;
   s.frames.views = whole_and_contact();
   if (!o.poses.empty()) {
@@ -120,6 +122,7 @@ Command add_collide(CLI::App& root, const Globals& globals) {
       ->type_name("X,Y,Z")
       ->excludes(poses);
   add_request_options(*app, o->request);
+  add_events_option(*app, o->events);
   add_picture_options(*app, o->picture);
   app->add_flag("--json", o->json, "Print the summary instead of the page's path");
   return {app, [o, &globals] { return run_collide(*o, globals); }};

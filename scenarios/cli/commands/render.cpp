@@ -4,7 +4,6 @@
 
 #include "engine/core/error.hpp"
 #include "engine/core/file_bytes.hpp"
-#include "engine/query/collide.hpp"
 #include "scenarios/bodies/body.hpp"
 #include "scenarios/cli/command.hpp"
 #include "scenarios/cli/options.hpp"
@@ -13,8 +12,8 @@
 #include "scenarios/crowd/crowd_report.hpp"
 #include "scenarios/io/files.hpp"
 #include "scenarios/run/frame_job.hpp"
+#include "scenarios/run/open_run.hpp"
 #include "scenarios/run/run_report.hpp"
-#include "trace/cursor.hpp"
 #include "trace/hex.hpp"
 #include "trace/trace_json.hpp"
 
@@ -37,47 +36,6 @@ std::string output_folder(const RenderOptions& o) {
   return o.folder.empty()
              ? "out/" + std::filesystem::path(o.trace).parent_path().filename().string() + "-render"
              : o.folder;
-}
-
-/// Loads the bodies that were recorded: named on the command line, or found by their names beside the trace.
-std::vector<bodies::LoadedBody> find_bodies(const RenderOptions& o, const std::vector<std::string>& names) {
-  std::vector<std::string> paths = o.bodies;
-  if (paths.empty()) {
-    const std::filesystem::path beside = std::filesystem::path(o.trace).parent_path();
-    for (const std::string& name : names) paths.push_back((beside / name).string());
-  }
-  if (paths.size() != names.size())
-    throw InputError(o.trace + ": has " + std::to_string(names.size()) + " bodies, --bodies names " +
-                     std::to_string(paths.size()));
-  std::vector<bodies::LoadedBody> out;
-  for (const std::string& path : paths) out.push_back(bodies::load_body(path));
-  return out;
-}
-
-/// Throws, before anything is drawn or written, if the trace cannot have come from these bodies.
-void check_events(const RenderOptions& o, const trace::Trace& trace,
-                  const std::vector<bodies::LoadedBody>& bodies) {
-  try {
-    trace::Cursor cursor = bodies.size() == 1 ? trace::Cursor(trace, bodies[0].rep)
-                                              : trace::Cursor(trace, bodies[0].rep, bodies[1].rep);
-    if (!trace.events.empty()) cursor.seek(static_cast<trace::EventId>(trace.events.size() - 1));
-  } catch (const InputError& e) {
-    throw InputError(printable_name(o.trace) + ": " + e.what());
-  }
-}
-
-/// Computes the contact regions of each step anew, because a trace holds pairs but not where they meet.
-std::vector<CollideResult> contacts_of(const trace::Trace& trace,
-                                       const std::vector<bodies::LoadedBody>& bodies) {
-  std::vector<CollideResult> out;
-  if (bodies.size() < 2 || trace.header.request.mode != Mode::all_pairs || trace.header.request.is_coarse())
-    return out;
-  CollideRequest request = trace.header.request;
-  request.contacts = true;
-  request.separation = false;  // the trace holds it
-  for (const trace::Step& step : trace.steps)
-    out.push_back(collide(bodies[0].rep, step.pose_a, bodies[1].rep, step.pose_b, request));
-  return out;
 }
 
 /// Reads regions: "12" and "a12" are region 12 of A, "b12" is one of B.
@@ -140,7 +98,8 @@ int render_crowd(const RenderOptions& o, const Globals& globals, const std::stri
   std::vector<std::string> names;
   for (const spec::CrowdKind& kind : trace.crowd.kinds) names.push_back(kind.name + ".lrb");
   const run::ProgressReport progress = progress_report(globals.quiet);
-  const crowd::CrowdRun run = crowd::replay_crowd(trace, find_bodies(o, names), all_cores(), progress);
+  const crowd::CrowdRun run =
+      crowd::replay_crowd(trace, run::find_bodies(o.trace, o.bodies, names), all_cores(), progress);
   note(globals, run.notes);
   const std::string folder = output_folder(o);
   crowd::redraw_crowd(trace.crowd, run, folder, globals.command_line, o.trace, progress);
@@ -151,16 +110,16 @@ int render_crowd(const RenderOptions& o, const Globals& globals, const std::stri
 int run_render(const RenderOptions& o, const Globals& globals) {
   std::string json = trace::load_trace_text(o.trace);
   if (crowd::is_crowd_trace(json)) return render_crowd(o, globals, json);
-  const trace::Trace trace = trace::trace_from_json(json, printable_name(o.trace));
+  trace::Trace read = trace::trace_from_json(json, printable_name(o.trace));
   json = {};
-  const std::vector<bodies::LoadedBody> bodies =
-      trace.header.bodies.size() == 1 ? find_bodies(o, {"a.lrb"}) : find_bodies(o, {"a.lrb", "b.lrb"});
-  check_events(o, trace, bodies);
-  const std::vector<CollideResult> results = contacts_of(trace, bodies);
+  const run::Recording recording = run::open_run(std::move(read), o.trace, o.bodies);
+  const trace::Trace& trace = recording.trace;
+  const std::vector<bodies::LoadedBody>& bodies = recording.bodies;
   run::RecordedRun p;
   p.title = trace.header.scenario;
   p.trace = &trace;
-  p.results = &results;
+  p.results = &recording.results;
+  p.trees = &recording.trees;
   for (const bodies::LoadedBody& body : bodies) p.reps.push_back(&body.rep);
   const std::string folder = output_folder(o);
   spec::FrameSpec spec = frame_spec(o, bodies.size() == 2);
@@ -170,6 +129,13 @@ int run_render(const RenderOptions& o, const Globals& globals) {
       {"lrbscope:scenario", trace.header.scenario},
       {"lrbscope:scenario_hash", trace::to_hex(trace.header.scenario_hash)},
   };
+  if (spec::needed_level(spec.colour_by) > trace.header.level)
+    throw InputError("--colour-by " + std::string(name_of(spec.colour_by)) + ": " + printable_name(o.trace) +
+                     " does not hold the events for it; record the run with --events " +
+                     std::string(name_of(spec::needed_level(spec.colour_by))));
+  if (spec.colour_by == spec::FrameSpec::ColourBy::box_tests && recording.trees.empty())
+    throw InputError("--colour-by box_tests: " + printable_name(o.trace) + " is of " + trace.header.engine +
+                     ", whose trees are not in it; `lrbscope xray` draws them");
   run::check_frames(p, spec);  // throws before anything is written
   io::make_folder(folder);
   const io::FolderLock lock(folder);

@@ -15,6 +15,7 @@ struct RunCommandOptions {
   std::string scenario, folder;
   PictureOptions picture;
   std::optional<Recursion> recursion;
+  std::optional<EventLevel> events;
   bool json = false;
 };
 
@@ -22,6 +23,7 @@ int run_run(const RunCommandOptions& o, const Globals& globals) {
   spec::Scenario scenario = spec::open_scenario(o.scenario);
   apply(o.picture, scenario.frames);
   if (o.recursion) scenario.request.recursion = *o.recursion;
+  if (o.events) scenario.events = *o.events;
   const std::string folder = o.folder.empty() ? "out/" + scenario.name : o.folder;
   if (o.folder.empty()) io::refuse_run_of_another(folder, o.scenario);
   run::RunOutcome outcome =
@@ -49,6 +51,7 @@ Command add_run(CLI::App& root, const Globals& globals) {
       ->required();
   app->add_option("-o,--output", o->folder, "Folder to write to [out/NAME]")->type_name("DIR");
   add_recursion_option(*app, o->recursion);
+  add_events_option(*app, o->events);
   add_picture_options(*app, o->picture);
   app->add_flag("--json", o->json, "Print the summary instead of the page's path");
   return {app, [o, &globals] { return run_run(*o, globals); }};

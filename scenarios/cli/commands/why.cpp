@@ -38,13 +38,8 @@ Json point_json(const Eigen::Vector3d& x) {
   return {x.x(), x.y(), x.z()};
 }
 
-const char* axis_name(int axis) {
-  constexpr const char* names[] = {"A's x", "A's y", "A's z", "B's x", "B's y", "B's z"};
-  return names[axis];
-}
-
 Json boxes_json(const BoxPair& p) {
-  return {{"a", p.node[0]}, {"b", p.node[1]}, {"gap", p.gap}, {"axis", axis_name(p.axis)}};
+  return {{"a", p.node[0]}, {"b", p.node[1]}, {"gap", p.gap}, {"axis", name_of(p.axis)}};
 }
 
 template <class T>
@@ -127,7 +122,7 @@ void write_way(std::ostream& out, const PairExplanation& e) {
       << "  along\n";
   const auto line = [&](const BoxPair& p, const char* what) {
     out << std::setw(kNode) << p.node[0] << std::setw(kNode) << p.node[1] << std::setw(kGap) << p.gap << "  "
-        << axis_name(p.axis) << what << "\n";
+        << name_of(p.axis) << what << "\n";
   };
   for (const BoxPair& p : e.nodes) line(p, "");
   if (e.reaches_faces) line(e.face_boxes, ", the faces' own boxes");
@@ -216,7 +211,7 @@ std::string as_text(const WalkExplanation& e) {
   std::ostringstream out;
   out << std::setprecision(kDigits);
   out << name_of(e.result.relation) << ", " << e.result.pairs.size() << " pairs\n";
-  out << "boxes round the bodies: gap " << e.roots.gap << " along " << axis_name(e.roots.axis) << "\n\n";
+  out << "boxes round the bodies: gap " << e.roots.gap << " along " << name_of(e.roots.axis) << "\n\n";
   out << std::setw(kWidth) << "depth" << std::setw(kWidth) << "node pairs" << std::setw(kWidth) << "apart"
       << "\n";
   for (std::size_t i = 0; i < e.depths.size(); ++i)

@@ -1,0 +1,70 @@
+#include <array>
+#include <filesystem>
+#include <memory>
+
+#include "scenarios/cli/command.hpp"
+#include "scenarios/cli/options.hpp"
+#include "scenarios/cli/progress.hpp"
+#include "scenarios/compare/compare_report.hpp"
+#include "scenarios/run/open_run.hpp"
+
+namespace lrb::cli {
+namespace {
+
+struct CompareOptions {
+  std::string first, second, folder, up;
+};
+
+/// Returns what the pictures of a run need: its name, and where to look from.
+spec::Scenario scenario_of(const run::Recording& recording, const std::string& up) {
+  spec::Scenario s;
+  s.name = recording.trace.header.scenario;
+  s.frames.views.emplace_back();
+  PictureOptions picture;
+  picture.up = up;
+  apply(picture, s.frames);
+  return s;
+}
+
+/// Returns short names of two folders: their last parts, if these differ.
+std::array<std::string, 2> names_of(const std::string& first, const std::string& second) {
+  const auto last = [](const std::string& path) {
+    const std::filesystem::path p(path);
+    return (p.has_filename() ? p.filename() : p.parent_path().filename()).string();
+  };
+  if (last(first) == last(second)) return {first, second};
+  return {last(first), last(second)};
+}
+
+int run_compare(const CompareOptions& o, const Globals& globals) {
+  const std::array<run::Recording, 2> recordings = {run::open_run(o.first), run::open_run(o.second)};
+  const std::array<spec::Scenario, 2> scenarios = {scenario_of(recordings[0], o.up),
+                                                   scenario_of(recordings[1], o.up)};
+  const compare::Runs runs{
+      {&recordings[0], &recordings[1]}, names_of(o.first, o.second), {&scenarios[0], &scenarios[1]}};
+  const std::string folder = o.folder.empty() ? "out/compare" : o.folder;
+  compare::write_comparison(runs, globals.command_line, folder, progress_report(globals.quiet));
+  const std::optional<std::string> difference = compare::first_difference(runs);
+  print(difference.value_or("the runs are the same") + "\n" + folder + "/index.html\n");
+  return kOk;
+}
+
+Command add_compare(CLI::App& root, const Globals& globals) {
+  CLI::App* app =
+      root.add_subcommand("compare", "Show two recorded runs side by side, and what differs first");
+  const auto o = std::make_shared<CompareOptions>();
+  app->add_option("RUN1", o->first, "Folder of a run of two bodies, as run, collide and xray write it")
+      ->required();
+  app->add_option("RUN2", o->second, "Another one: of another build, request or version")->required();
+  app->add_option("-o,--output", o->folder, "Folder to write to [out/compare]")->type_name("DIR");
+  add_up_option(*app, o->up);
+  return {app, [o, &globals] { return run_compare(*o, globals); }};
+}
+
+}  // namespace
+
+std::vector<CommandEntry> compare_commands() {
+  return {{add_compare, 69}};
+}
+
+}  // namespace lrb::cli

@@ -1,0 +1,93 @@
+#include <filesystem>
+#include <memory>
+
+#include "engine/core/error.hpp"
+#include "engine/core/fnv.hpp"
+#include "scenarios/bodies/body.hpp"
+#include "scenarios/cli/command.hpp"
+#include "scenarios/cli/options.hpp"
+#include "scenarios/cli/progress.hpp"
+#include "scenarios/io/pose_file.hpp"
+#include "scenarios/xray/foreign_run.hpp"
+#include "scenarios/xray/xray_report.hpp"
+
+namespace lrb::cli {
+namespace {
+
+struct XrayOptions {
+  std::string a, b, method = "fcl", poses, folder;
+  PictureOptions picture;
+};
+
+spec::Scenario scenario_of(const XrayOptions& o, const std::vector<bodies::LoadedBody>& bodies) {
+  spec::Scenario s;
+  s.name = std::filesystem::path(o.a).stem().string() + "-" + std::filesystem::path(o.b).stem().string() +
+           ", " + o.method;
+  s.bodies = {{}, {}};
+  s.bodies[0].file = o.a;
+  s.bodies[1].file = o.b;
+  s.motion.kind = spec::Motion::Kind::poses;
+  s.motion.poses = io::read_poses(o.poses);
+  s.request.contacts = true;
+  s.events = EventLevel::nodes;
+  s.frames.views = whole_and_contact();
+  s.frames.views[0].wrapper = false;
+  s.frames.views[0].title = "Whole";
+  s.frames.most = 12;
+  s.frames.colour_by = spec::FrameSpec::ColourBy::box_tests;
+  Fnv64 hash;
+  for (const bodies::LoadedBody& body : bodies) hash.add_value(body.rep.hash());
+  for (const Pose& pose : s.motion.poses) {
+    hash.add_bytes(pose.r.data(), sizeof(double) * 9);
+    hash.add_bytes(pose.t.data(), sizeof(double) * 3);
+  }
+  s.hash = hash.value();
+  apply(o.picture, s.frames);
+  return s;
+}
+
+int run_xray(const XrayOptions& o, const Globals& globals) {
+  std::vector<xray::PosePair> poses;
+  for (const Pose& pose : io::read_poses(o.poses)) poses.push_back({{}, pose});
+  const run::ProgressReport progress = progress_report(globals.quiet);
+  std::vector<bodies::LoadedBody> bodies;
+  for (const std::string& path : {o.a, o.b}) {
+    progress("build", bodies.size(), 2);
+    bodies.push_back(bodies::load_body(path));
+  }
+  const xray::ForeignWalk walk = xray::walk_of(o.method, bodies[0].rep, bodies[1].rep, poses);
+  const spec::Scenario scenario = scenario_of(o, bodies);
+  const run::Recording ours = run::record(scenario, std::move(bodies), progress);
+  const run::Recording theirs = xray::recording_of(walk, ours, scenario);
+  const std::string folder = o.folder.empty() ? "out/xray-" + o.method : o.folder;
+  note(globals, xray::write_xray({scenario, walk, theirs, ours, o.method, globals.command_line,
+                                  "lrbscope why " + o.a + " " + o.b + " --poses " + o.poses},
+                                 folder, progress));
+  print(folder + "/index.html\n");
+  return kOk;
+}
+
+Command add_xray(CLI::App& root, const Globals& globals) {
+  CLI::App* app = root.add_subcommand("xray", "Record another engine's walk, and show it beside ours");
+  const auto o = std::make_shared<XrayOptions>();
+  app->add_option("A", o->a, "Mesh or .lrb file, 3D; does not move")->required();
+  app->add_option("B", o->b, "Mesh or .lrb file, 3D; moves")->required();
+  app->add_option("--method", o->method, "The other engine, where it was installed when lrbscope was built")
+      ->check(CLI::IsMember({"fcl", "cgal"}).description(""))
+      ->type_name("fcl|cgal")
+      ->capture_default_str();
+  app->add_option("--poses", o->poses, "File with the poses of B: lines of 12 numbers")
+      ->type_name("FILE")
+      ->required();
+  app->add_option("-o,--output", o->folder, "Folder to write to [out/xray-METHOD]")->type_name("DIR");
+  add_picture_options(*app, o->picture);
+  return {app, [o, &globals] { return run_xray(*o, globals); }};
+}
+
+}  // namespace
+
+std::vector<CommandEntry> xray_commands() {
+  return {{add_xray, 68}};
+}
+
+}  // namespace lrb::cli

@@ -1,0 +1,105 @@
+#include "scenarios/compare/compare_report.hpp"
+
+#include <algorithm>
+
+#include "engine/core/error.hpp"
+#include "render/overlay.hpp"
+#include "render/png.hpp"
+#include "scenarios/io/files.hpp"
+#include "scenarios/run/run_report.hpp"
+#include "trace/divergence.hpp"
+
+namespace lrb::compare {
+namespace {
+
+using render::group_digits;
+
+constexpr const char* kPicture = "compare.png";
+constexpr std::size_t kMostSteps = 200;
+
+/// Returns the first event of a step that is not the same in both.
+std::optional<std::string> different_event(const Runs& runs) {
+  const trace::Trace &x = runs.of[0]->trace, &y = runs.of[1]->trace;
+  for (std::size_t step = 0; step < step_count(runs); ++step) {
+    const auto p = x.events_of(step), q = y.events_of(step);
+    const std::size_t both = std::min(p.size(), q.size());
+    for (std::size_t i = 0; i < both; ++i)
+      if (!(p[i] == q[i]))
+        return "step " + std::to_string(x.steps[step].index) + ", event " + std::to_string(i) +
+               " of the step: \"" + describe(p[i]) + "\" in " + runs.names[0] + ", \"" + describe(q[i]) +
+               "\" in " + runs.names[1];
+    if (p.size() != q.size())
+      return "step " + std::to_string(x.steps[step].index) + ": " + group_digits(p.size()) + " events in " +
+             runs.names[0] + ", " + group_digits(q.size()) + " in " + runs.names[1];
+  }
+  return {};
+}
+
+report::PageTable steps_table(const Runs& runs) {
+  report::PageTable t;
+  t.title = "Step by step";
+  t.columns = {"step", "answer"};
+  for (const char* what : {"pairs", "face tests", "box tests"})
+    for (const std::string& name : runs.names) t.columns.push_back(std::string(what) + ", " + name);
+  for (std::size_t i = 0; i < std::min(step_count(runs), kMostSteps); ++i) {
+    const trace::Step &x = runs.of[0]->trace.steps[i], &y = runs.of[1]->trace.steps[i];
+    const bool same = x.result.relation == y.result.relation && x.result.fingerprint == y.result.fingerprint;
+    t.rows.push_back({std::to_string(x.index), same ? std::string(to_string(x.result.relation))
+                                                    : std::string(to_string(x.result.relation)) + " / " +
+                                                          to_string(y.result.relation) +
+                                                          ", NOT the same pairs"});
+    std::vector<std::string>& row = t.rows.back();
+    for (const auto value : {+[](const trace::Step& s) { return s.result.pair_count; },
+                             +[](const trace::Step& s) { return s.result.counters.face_tests; },
+                             +[](const trace::Step& s) { return s.result.counters.box_tests; }})
+      for (const trace::Step* s : {&x, &y}) row.push_back(group_digits(value(*s)));
+  }
+  if (step_count(runs) > kMostSteps) t.note = "The first " + std::to_string(kMostSteps) + " steps.";
+  return t;
+}
+
+}  // namespace
+
+std::optional<std::string> first_difference(const Runs& runs) {
+  const std::optional<trace::Divergence> first =
+      trace::first_divergence(runs.of[0]->trace, runs.of[1]->trace);
+  if (!first) return {};
+  if (first->step) return first->message();
+  const std::optional<std::string> event = different_event(runs);
+  return first->message() + (event ? "; " + *event : std::string("; all events are the same"));
+}
+
+void write_comparison(const Runs& runs, const std::string& command, const std::string& folder,
+                      const run::ProgressReport& progress) {
+  for (std::size_t i = 0; i < 2; ++i)
+    if (runs.of[i]->bodies.size() != 2)
+      throw InputError(runs.names[i] + ": is a run of one body; compare runs of two");
+  if (step_count(runs) == 0) throw InputError("there is no step that both runs have");
+  const std::size_t step = busiest_step(runs);
+  const render::Image picture = draw(runs, step, progress);
+  const std::optional<std::string> difference = first_difference(runs);
+  report::Page page;
+  page.title = runs.names[0] + " and " + runs.names[1];
+  page.purpose = "Two recorded runs, step by step.";
+  page.verdict = difference ? "differ" : "the same";
+  page.texts = {
+      {"The first difference", difference.value_or("There is none: all events and answers are the same.")}};
+  page.command = command;
+  page.charts = {chart_of(runs, "Tests of boxes, step by step", "box tests", &Counters::box_tests),
+                 chart_of(runs, "Tests of faces, step by step", "face tests", &Counters::face_tests)};
+  page.tables = {totals_of(runs), steps_table(runs)};
+  page.footer =
+      "lrbscope " + runs.of[0]->trace.header.lrbscope + ". This page holds all it needs and fetches nothing.";
+  io::make_folder(folder);
+  const io::FolderLock lock(folder);
+  io::refuse_links(folder);
+  render::write_png(picture, folder + "/" + kPicture);
+  run::add_figure(
+      page, folder, "Where the work went, at step " + std::to_string(runs.of[0]->trace.steps[step].index),
+      "Both runs on one scale, seen by one camera; and how much they differ, face by face, where the bodies have "
+      "the same faces. Pale faces have fewer than a fiftieth of the most.",
+      kPicture);
+  io::write_text(folder + "/index.html", report::page_html(page));
+}
+
+}  // namespace lrb::compare

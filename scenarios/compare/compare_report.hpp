@@ -1,0 +1,19 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "scenarios/compare/side_by_side.hpp"
+
+namespace lrb::compare {
+
+/// Returns where the two runs begin to differ, in words: their bodies and requests, and the first event or answer that is
+/// not the same; nothing if they are the same.
+std::optional<std::string> first_difference(const Runs& runs);
+
+/// Writes folder/index.html and folder/compare.png: what differs first, answers and work step by step, and where the work
+/// went in each. Throws InputError for runs of one body.
+void write_comparison(const Runs& runs, const std::string& command, const std::string& folder,
+                      const run::ProgressReport& progress);
+
+}  // namespace lrb::compare

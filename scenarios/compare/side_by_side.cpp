@@ -1,0 +1,183 @@
+#include "scenarios/compare/side_by_side.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "render/montage.hpp"
+#include "render/overlay.hpp"
+#include "scenarios/run/moments.hpp"
+#include "scenarios/run/run_scenario.hpp"
+#include "trace/counters.hpp"
+#include "trace/node_work.hpp"
+
+namespace lrb::compare {
+namespace {
+
+using render::group_digits;
+using ColourBy = spec::FrameSpec::ColourBy;
+using FaceValues = std::array<std::vector<double>, 2>;  ///< of A and of B
+
+/// Returns the numbers of faces that colours mean, in a step.
+FaceValues values_of(const run::Recording& r, ColourBy by, std::size_t step) {
+  FaceValues out;
+  for (const Side side : {Side::a, Side::b}) {
+    const auto i = static_cast<std::size_t>(side);
+    const LrbRep& rep = r.bodies[i].rep;
+    const auto events = r.trace.events_of(step);
+    if (by == ColourBy::box_tests) {
+      out[i] = trace::box_tests_by_face(rep, r.trees[i], trace::count_nodes(r.trees[i], side, events));
+    } else {
+      const trace::FaceCounts counts = trace::count_faces(rep, side, events);
+      out[i].assign(counts.tests.begin(), counts.tests.end());
+    }
+  }
+  return out;
+}
+
+double largest(const FaceValues& values) {
+  double out = 0;
+  for (const std::vector<double>& of_body : values)
+    for (const double v : of_body) out = std::max(out, v);
+  return out;
+}
+
+/// Returns |x - y| for each real face; empty unless the bodies have as many.
+FaceValues difference(const Runs& runs, const std::array<FaceValues, 2>& values) {
+  FaceValues out;
+  for (std::size_t i = 0; i < 2; ++i) {
+    const std::uint32_t n = runs.of[0]->bodies[i].rep.real_face_count();
+    if (n != runs.of[1]->bodies[i].rep.real_face_count()) return {};
+    out[i].resize(values[0][i].size());
+    for (std::uint32_t f = 0; f < n; ++f) out[i][f] = std::abs(values[0][i][f] - values[1][i][f]);
+  }
+  return out;
+}
+
+/// Returns what a camera has to show: the bodies of one step.
+run::Framing framing_of(const run::RecordedRun& run, std::size_t step) {
+  const trace::Step& s = run.trace->steps[step];
+  run::Framing out;
+  out.dim = run.reps[0]->dim();
+  for (const auto& [rep, pose] : {std::pair{run.reps[0], &s.pose_a}, {run.reps[1], &s.pose_b}})
+    for (const Eigen::Vector3d& v : rep->vertices()) out.points.push_back(pose->apply(v));
+  return out;
+}
+
+struct Panels {
+  const Runs& runs;
+  std::size_t step;
+  const run::ProgressReport& progress;
+  run::Framing framing = {};
+  std::vector<render::Panel> all = {};
+
+  void add(std::size_t which, const std::string& title, ColourBy by, const FaceValues& values,
+           const std::string& value_name) {
+    constexpr double kFew = 0.02;  // nodes near the root hold most faces, so that all have a small share
+    const run::Recording& recording = *runs.of[which];
+    run::RecordedRun recorded = run::recorded_run_of(*runs.scenarios[which], recording);
+    if (framing.points.empty()) framing = framing_of(recorded, step);
+    spec::FrameSpec frame = runs.scenarios[which]->frames;
+    frame.colour_by = by;
+    frame.at = spec::FrameSpec::At::events;
+    frame.events = {run::last_event(recording.trace, step)};
+    frame.width = 900;
+    frame.height = 700;
+    frame.montage = 0;
+    if (frame.views.empty()) frame.views.emplace_back();
+    frame.views.resize(1);
+    frame.views[0].wrapper = false;
+    frame.views[0].title = title;
+    const double most = std::max(largest(values), 1e-9);
+    recorded.value_range = {{kFew * most, most}};
+    if (!value_name.empty()) {
+      recorded.face_values = &values;
+      recorded.value_name = value_name;
+    }
+    all.push_back({std::move(run::paint_frames(recorded, frame, progress, &framing).front().image), ""});
+  }
+};
+
+}  // namespace
+
+std::size_t step_count(const Runs& runs) {
+  return std::min(runs.of[0]->trace.steps.size(), runs.of[1]->trace.steps.size());
+}
+
+std::size_t busiest_step(const Runs& runs) {
+  std::size_t best = 0;
+  const auto work = [&](std::size_t i) {
+    return runs.of[0]->trace.steps[i].result.counters.box_tests +
+           runs.of[1]->trace.steps[i].result.counters.box_tests;
+  };
+  for (std::size_t i = 1; i < step_count(runs); ++i)
+    if (work(i) > work(best)) best = i;
+  return best;
+}
+
+ColourBy common_colours(const Runs& runs) {
+  return runs.of[0]->trees.empty() || runs.of[1]->trees.empty() ? ColourBy::face_tests : ColourBy::box_tests;
+}
+
+render::Image draw(const Runs& runs, std::size_t step, const run::ProgressReport& progress) {
+  const ColourBy by = common_colours(runs);
+  const std::array<FaceValues, 2> values = {values_of(*runs.of[0], by, step),
+                                            values_of(*runs.of[1], by, step)};
+  const FaceValues& larger = largest(values[0]) > largest(values[1]) ? values[0] : values[1];
+  Panels panels{runs, step, progress};
+  for (std::size_t i = 0; i < 2; ++i) panels.add(i, runs.names[i], by, larger, "");
+  const FaceValues off = difference(runs, values);
+  if (largest(off) > 0)
+    panels.add(0, "Difference", by, off,
+               by == ColourBy::box_tests ? "difference of box tests" : "difference of face tests");
+  render::MontageOptions options;
+  options.columns = static_cast<int>(panels.all.size());
+  options.letters = false;
+  return render::montage(panels.all, options);
+}
+
+report::PageChart chart_of(const Runs& runs, const std::string& title, const std::string& what,
+                           std::uint64_t Counters::*counter) {
+  report::PageChart c;
+  c.title = title;
+  c.x_label = "time step";
+  c.y_label = what;
+  c.log_y = true;
+  c.note = "0 is drawn as 1.";
+  for (std::size_t i = 0; i < 2; ++i) {
+    report::PageSeries s{runs.names[i], {}, {}};
+    for (const trace::Step& step : runs.of[i]->trace.steps) {
+      s.x.push_back(step.index);
+      s.y.push_back(static_cast<double>(std::max<std::uint64_t>(step.result.counters.*counter, 1)));
+    }
+    c.series.push_back(std::move(s));
+  }
+  return c;
+}
+
+std::uint64_t sum_of(const run::Recording& run, std::uint64_t Counters::*counter) {
+  std::uint64_t out = 0;
+  for (const trace::Step& s : run.trace.steps) out += s.result.counters.*counter;
+  return out;
+}
+
+std::uint64_t pairs_of(const run::Recording& run) {
+  std::uint64_t out = 0;
+  for (const trace::Step& s : run.trace.steps) out += s.result.pair_count;
+  return out;
+}
+
+report::PageTable totals_of(const Runs& runs) {
+  report::PageTable t;
+  t.title = "All steps together";
+  t.columns = {"run", "pairs of nodes", "box tests", "face tests", "regions opened", "pairs found"};
+  for (std::size_t i = 0; i < 2; ++i) {
+    const run::Recording& r = *runs.of[i];
+    t.rows.push_back({runs.names[i], group_digits(sum_of(r, &Counters::node_pairs)),
+                      group_digits(sum_of(r, &Counters::box_tests)),
+                      group_digits(sum_of(r, &Counters::face_tests)),
+                      group_digits(sum_of(r, &Counters::regions_opened)), group_digits(pairs_of(r))});
+  }
+  return t;
+}
+
+}  // namespace lrb::compare

@@ -1,0 +1,44 @@
+#pragma once
+/// Two recorded runs of the same steps beside each other: pictures on one scale with one camera, and charts.
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "render/image.hpp"
+#include "scenarios/report/page/page.hpp"
+#include "scenarios/run/frame_job.hpp"
+
+namespace lrb::compare {
+
+struct Runs {
+  std::array<const run::Recording*, 2> of;
+  std::array<std::string, 2> names;
+  std::array<const spec::Scenario*, 2> scenarios;
+};
+
+/// Returns the number of steps that both runs have.
+std::size_t step_count(const Runs& runs);
+/// Returns the step at which both together test most boxes.
+std::size_t busiest_step(const Runs& runs);
+
+/// What colours mean: box tests where both runs have recorded pairs of nodes, else face tests.
+spec::FrameSpec::ColourBy common_colours(const Runs& runs);
+
+/// Draws the bodies of both runs at the end of a step, coloured by common_colours() on one scale, and where the bodies
+/// have as many faces in both and these differ, a third picture: how much more each face has in one of the runs than in the other.
+render::Image draw(const Runs& runs, std::size_t step, const run::ProgressReport& progress);
+
+/// Returns a chart of a counter over the steps of both.
+report::PageChart chart_of(const Runs& runs, const std::string& title, const std::string& what,
+                           std::uint64_t Counters::*counter);
+
+/// Return a counter, and the number of pairs found, summed over all steps.
+std::uint64_t sum_of(const run::Recording& run, std::uint64_t Counters::*counter);
+std::uint64_t pairs_of(const run::Recording& run);
+
+/// Returns a table of counters and pairs, summed over all steps: a row for each run.
+report::PageTable totals_of(const Runs& runs);
+
+}  // namespace lrb::compare

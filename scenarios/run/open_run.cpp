@@ -1,0 +1,84 @@
+#include "scenarios/run/open_run.hpp"
+
+#include <filesystem>
+
+#include "engine/core/error.hpp"
+#include "engine/core/file_bytes.hpp"
+#include "engine/query/collide.hpp"
+#include "trace/cursor.hpp"
+#include "trace/trace_json.hpp"
+
+namespace lrb::run {
+namespace {
+
+/// Throws if the trace cannot have come from these bodies.
+void check_events(const std::string& path, const trace::Trace& trace,
+                  const std::vector<bodies::LoadedBody>& bodies) {
+  try {
+    trace::Cursor cursor = bodies.size() == 1 ? trace::Cursor(trace, bodies[0].rep)
+                                              : trace::Cursor(trace, bodies[0].rep, bodies[1].rep);
+    if (!trace.events.empty()) cursor.seek(static_cast<trace::EventId>(trace.events.size() - 1));
+  } catch (const InputError& e) {
+    throw InputError(printable_name(path) + ": " + e.what());
+  }
+}
+
+std::vector<CollideResult> contacts_of(const trace::Trace& trace,
+                                       const std::vector<bodies::LoadedBody>& bodies) {
+  std::vector<CollideResult> out;
+  if (bodies.size() < 2 || trace.header.request.mode != Mode::all_pairs || trace.header.request.is_coarse())
+    return out;
+  CollideRequest request = trace.header.request;
+  request.contacts = true;
+  request.separation = false;  // the trace holds it
+  for (const trace::Step& step : trace.steps)
+    out.push_back(collide(bodies[0].rep, step.pose_a, bodies[1].rep, step.pose_b, request));
+  return out;
+}
+
+}  // namespace
+
+std::vector<bodies::LoadedBody> find_bodies(const std::string& trace_path,
+                                            const std::vector<std::string>& given,
+                                            const std::vector<std::string>& names) {
+  std::vector<std::string> paths = given;
+  if (paths.empty()) {
+    const std::filesystem::path beside = std::filesystem::path(trace_path).parent_path();
+    for (const std::string& name : names) paths.push_back((beside / name).string());
+  }
+  if (paths.size() != names.size())
+    throw InputError(trace_path + ": has " + std::to_string(names.size()) + " bodies, --bodies names " +
+                     std::to_string(paths.size()));
+  std::vector<bodies::LoadedBody> out;
+  for (const std::string& path : paths) out.push_back(bodies::load_body(path));
+  return out;
+}
+
+Recording open_run(trace::Trace trace, const std::string& trace_path,
+                   const std::vector<std::string>& bodies) {
+  Recording out;
+  out.trace = std::move(trace);
+  const bool alone = out.trace.header.bodies.size() == 1;
+  out.bodies =
+      find_bodies(trace_path, bodies,
+                  alone ? std::vector<std::string>{"a.lrb"} : std::vector<std::string>{"a.lrb", "b.lrb"});
+  check_events(trace_path, out.trace, out.bodies);
+  out.results = contacts_of(out.trace, out.bodies);
+  std::vector<const LrbRep*> reps;
+  for (const bodies::LoadedBody& body : out.bodies) reps.push_back(&body.rep);
+  out.trees = trees_of(out.trace, reps);
+  return out;
+}
+
+Recording open_run(const std::string& folder) {
+  std::string path = folder + "/trace.json";
+  std::error_code error;
+  if (!std::filesystem::exists(path, error)) path += ".gz";
+  if (!std::filesystem::exists(path, error))
+    throw InputError(
+        printable_name(folder) +
+        ": there is no trace.json or trace.json.gz: give the folder of a run, as `lrbscope run -o` writes it");
+  return open_run(trace::load_trace(path), path);
+}
+
+}  // namespace lrb::run

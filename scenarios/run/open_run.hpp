@@ -1,0 +1,25 @@
+#pragma once
+/// Opens a run that was recorded and written.
+
+#include <string>
+#include <vector>
+
+#include "scenarios/run/recorded_run.hpp"
+
+namespace lrb::run {
+
+/// Loads the bodies that were recorded: those named by `given`, or if it is empty those of these names beside the trace.
+std::vector<bodies::LoadedBody> find_bodies(const std::string& trace_path,
+                                            const std::vector<std::string>& given,
+                                            const std::vector<std::string>& names);
+
+/// Returns the run whose trace has been read, with its bodies (see find_bodies()). Computes the contact regions of each
+/// step anew, because a trace holds pairs but not where they meet. Throws InputError if the trace cannot have come from
+/// these bodies.
+Recording open_run(trace::Trace trace, const std::string& trace_path,
+                   const std::vector<std::string>& bodies = {});
+
+/// Returns the run in a folder: its trace.json or trace.json.gz, with a.lrb and b.lrb beside it.
+Recording open_run(const std::string& folder);
+
+}  // namespace lrb::run

@@ -1,0 +1,45 @@
+#pragma once
+/// What another engine does when it is asked for the collisions of two bodies: recorded inside that engine, by a program
+/// of its own (worker_programs/xray_*.cpp).
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "engine/core/pose.hpp"
+#include "engine/lrb/lrb_rep.hpp"
+#include "trace/tree_shape.hpp"
+
+namespace lrb::xray {
+
+/// A test of two bounding volumes, or of two triangles.
+struct ForeignEvent {
+  bool is_leaf_test;
+  std::uint32_t a, b;  ///< nodes of the engine's trees, or simplices
+  bool meet;           ///< they overlap, or the triangles meet, as the engine has it
+};
+
+struct ForeignStep {
+  std::vector<ForeignEvent> events;             ///< in the engine's order
+  std::uint64_t box_tests = 0, leaf_tests = 0;  ///< as the engine counts them itself
+};
+
+struct ForeignWalk {
+  std::string title;  ///< "FCL 0.7.0, BVHModel<OBBRSS>"
+  std::array<trace::TreeShape, 2> trees;
+  std::vector<ForeignStep> steps;
+};
+
+/// The poses of A and B at one time, body to world.
+struct PosePair {
+  Pose a, b;
+};
+
+/// Lets an engine ("fcl", "cgal") run on the real triangles of two 3D bodies. Throws InputError for bodies and poses that
+/// it does not take, and EnvironmentError if its program is not there or fails.
+ForeignWalk walk_of(const std::string& engine, const LrbRep& a, const LrbRep& b,
+                    std::span<const PosePair> poses);
+
+}  // namespace lrb::xray

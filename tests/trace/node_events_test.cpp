@@ -1,0 +1,367 @@
+/// What a watched query tells of its walk: pairs of tree nodes, planes, points and phases.
+
+#include <algorithm>
+#include <fstream>
+#include <map>
+#include <numeric>
+#include <set>
+
+#include <doctest/doctest.h>
+#include <nlohmann/json.hpp>
+
+#include "engine/construct/build.hpp"
+#include "engine/core/error.hpp"
+#include "engine/lrb/wrapper_level.hpp"
+#include "engine/query/collide_impl.hpp"
+#include "engine/query/collide_probe.hpp"
+#include "scenarios/bodies/shapes/random_pose.hpp"
+#include "scenarios/bodies/shapes/shapes.hpp"
+#include "tests/support/json_schema.hpp"
+#include "trace/counters.hpp"
+#include "trace/divergence.hpp"
+#include "trace/node_work.hpp"
+#include "trace/recorder.hpp"
+#include "trace/trace_json.hpp"
+
+using namespace lrb;
+using namespace lrb::trace;
+using Json = nlohmann::json;
+
+namespace {
+
+struct Bodies {
+  const LrbRep *a, *b;
+};
+
+const std::vector<Bodies>& all_bodies() {
+  static const LrbRep rock = build_lrb(shapes::bumpy_sphere(3, 7, 0.3)),
+                      ring = build_lrb(shapes::torus(24, 12)), gear = build_lrb(shapes::gear(20)),
+                      box = build_lrb(shapes::box());
+  static const std::vector<Bodies> all = {{&rock, &ring}, {&rock, &rock}, {&gear, &gear}, {&ring, &box}};
+  return all;
+}
+
+struct Recorded {
+  Trace trace;
+  std::vector<CollideResult> results;
+};
+
+/// Records poses that are apart, touch and cross, and one at the very same place.
+Recorded record(const Bodies& bodies, const CollideRequest& request, EventLevel level, int steps = 6) {
+  RecorderSettings settings;
+  settings.request = request;
+  settings.level = level;
+  Recorder recorder(*bodies.a, *bodies.b, settings);
+  QueryContext context;
+  shapes::RandomEngine random(5);
+  Recorded out;
+  for (int i = 0; i < steps; ++i) {
+    Pose pose = shapes::random_pose(random, *bodies.a, *bodies.b, shapes::uniform(random, 0, 1.2));
+    if (i == 0) pose = {};
+    if (i == 1) pose.r *= 1.5;  // walked by the kernel for affine maps
+    recorder.begin_step(static_cast<std::uint32_t>(i), {}, pose);
+    out.results.push_back(collide(*bodies.a, {}, *bodies.b, pose, request, context, recorder));
+    recorder.end_step(out.results.back());
+  }
+  out.trace = recorder.take();
+  return out;
+}
+
+std::vector<CollideRequest> requests() {
+  return {{},
+          {.mode = Mode::first_pair},
+          {.mode = Mode::any_pair},
+          {.contacts = true},
+          {.tolerance = 0.2},
+          {.separation = true}};
+}
+
+std::string complaint(const Json& document) {
+  static const Json schema = Json::parse(std::ifstream(LRB_TRACE_SCHEMA));
+  return test::schema_faults(schema, document);
+}
+
+bool is_more(const Event& e) {
+  return e.kind > EventKind::result;
+}
+
+}  // namespace
+
+TEST_CASE("a query that is watched more closely does the same") {
+  for (const Bodies& bodies : all_bodies())
+    for (const CollideRequest& request : requests()) {
+      const Recorded faces = record(bodies, request, EventLevel::faces);
+      for (const EventLevel level : {EventLevel::nodes, EventLevel::all}) {
+        const Recorded more = record(bodies, request, level);
+        for (std::size_t i = 0; i < faces.results.size(); ++i) {
+          CHECK(more.results[i].counters == faces.results[i].counters);
+          CHECK((more.results[i].pairs == faces.results[i].pairs));
+          CHECK(more.results[i].relation == faces.results[i].relation);
+        }
+        std::vector<Event> same = more.trace.events;
+        std::erase_if(same, is_more);
+        REQUIRE(same.size() == faces.trace.events.size());
+        for (std::size_t i = 0; i < same.size(); ++i) {
+          CHECK(same[i].kind == faces.trace.events[i].kind);
+          CHECK(same[i].a == faces.trace.events[i].a);
+          CHECK(same[i].b == faces.trace.events[i].b);
+          CHECK(same[i].boundary == faces.trace.events[i].boundary);
+          if (same[i].kind == EventKind::face_test) CHECK(same[i].tested_by() != TestedBy::untold);
+        }
+      }
+    }
+}
+
+TEST_CASE("the events of a step add up to its counters") {
+  std::set<NodeStep> seen;
+  std::uint64_t apart = 0, inside_apart = 0, planes = 0, expansions = 0;
+  for (const Bodies& bodies : all_bodies())
+    for (const CollideRequest& request : requests()) {
+      const Recorded run = record(bodies, request, EventLevel::all);
+      for (std::size_t step = 0; step < run.results.size(); ++step) {
+        std::uint64_t pairs = 0, boxes = 0, met = 0, parted = 0, plane_tests = 0, told = 0;
+        for (const Event& e : run.trace.events_of(step)) {
+          plane_tests += e.kind == EventKind::plane_test;
+          expansions += e.kind == EventKind::face_test && e.tested_by() == TestedBy::expansions;
+          if (e.kind == EventKind::end && e.phase() == Phase::walk) told += e.b;
+          if (e.kind != EventKind::node_pair) continue;
+          const NodeWork work = e.work();
+          ++pairs;
+          boxes += work.box_tests;
+          seen.insert(e.node_end().step);
+          if (e.node_end().step == NodeStep::leaves) {
+            met += work.met;
+            parted += work.parted;
+            CHECK(work.parted + work.certain <= work.met);
+          }
+          if (work.met == 0) ++(e.node_end().apart ? apart : inside_apart);
+        }
+        const Counters& c = run.results[step].counters;
+        CHECK(pairs == c.node_pairs);
+        CHECK(told == c.node_pairs);
+        CHECK(boxes == c.box_tests);
+        CHECK(met == c.prefilter_tests);
+        CHECK(plane_tests == parted);
+        if (request.mode == Mode::all_pairs && !request.is_coarse()) CHECK(met - parted == c.face_tests);
+        planes += plane_tests;
+      }
+    }
+  for (const NodeStep step : {NodeStep::descend_both, NodeStep::descend_a, NodeStep::leaves})
+    CHECK(seen.count(step) == 1);
+  CHECK(apart > 100);
+  CHECK(inside_apart > 100);
+  CHECK(planes > 1000);
+  CHECK(expansions > 0);
+}
+
+TEST_CASE("pairs of nodes hang together: each pair's children are those whose boxes met, one step below") {
+  for (const Bodies& bodies : all_bodies()) {
+    const Trace t = record(bodies, {}, EventLevel::nodes).trace;
+    std::map<EventId, std::uint32_t> children;
+    for (EventId i = 0; i < t.events.size(); ++i) {
+      const Event& e = t.events[i];
+      if (e.kind != EventKind::node_pair) continue;
+      if (e.cause == kNull) {
+        CHECK((e.a == 0 && e.b == 0 && e.depth_a == 0));
+        continue;
+      }
+      ++children[e.cause];
+      const Event& above = t.events[e.cause];
+      REQUIRE(above.kind == EventKind::node_pair);
+      CHECK(e.depth_a == above.depth_a + 1);
+      const NodeStep step = above.node_end().step;
+      const auto is_child = [](const LrbRep& rep, std::uint32_t parent, std::uint32_t child) {
+        const TreeNode& n = rep.tree().nodes()[parent];
+        return !n.is_leaf && child >= n.first && child < n.first + n.count;
+      };
+      CHECK((step == NodeStep::descend_b ? e.a == above.a : is_child(*bodies.a, above.a, e.a)));
+      CHECK((step == NodeStep::descend_a ? e.b == above.b : is_child(*bodies.b, above.b, e.b)));
+    }
+    for (EventId i = 0; i < t.events.size(); ++i)
+      if (t.events[i].kind == EventKind::node_pair && t.events[i].node_end().step != NodeStep::leaves)
+        CHECK(children[i] == t.events[i].work().met);
+  }
+}
+
+TEST_CASE(
+    "a pair of leaves, its plane tests and the face tests that are left are all pairs of the leaves' simplices") {
+  for (const Bodies& bodies : all_bodies()) {
+    const Recorded run = record(bodies, {}, EventLevel::all);
+    const Trace& t = run.trace;
+    for (const Event& e : t.events) {
+      if (e.kind != EventKind::plane_test) continue;
+      REQUIRE(e.cause != kNull);
+      const Event& leaves = t.events[e.cause];
+      CHECK(leaves.node_end().step == NodeStep::leaves);
+      const auto holds = [](const LrbRep& rep, std::uint32_t node, std::uint32_t simplex) {
+        const TreeNode& n = rep.tree().nodes()[node];
+        const SimplexId* block = rep.tree().blocks()[n.first].simplex;
+        return std::find(block, block + n.count, SimplexId(simplex)) != block + n.count;
+      };
+      CHECK(holds(*bodies.a, leaves.a, e.a));
+      CHECK(holds(*bodies.b, leaves.b, e.b));
+    }
+  }
+}
+
+TEST_CASE("the axis of a pair that ended parts the nodes' boxes where they are said to be apart") {
+  const Bodies& bodies = all_bodies()[0];
+  const Recorded run = record(bodies, {}, EventLevel::nodes);
+  std::size_t step = 0;
+  for (EventId i = 0; i < run.trace.events.size(); ++i) {
+    const Event& e = run.trace.events[i];
+    if (e.kind == EventKind::step) step = run.trace.step_of(i);
+    if (e.kind != EventKind::node_pair || e.work().met != 0) continue;
+    const WorldBox box[2] = {box_of(bodies.a->tree(), e.a, kWhole, run.trace.steps[step].pose_a),
+                             box_of(bodies.b->tree(), e.b, kWhole, run.trace.steps[step].pose_b)};
+    const auto axis = static_cast<std::size_t>(e.node_end().axis);
+    const Eigen::Vector3d n = box[axis / 3].across[axis % 3];
+    double low[2], high[2];
+    for (int s = 0; s < 2; ++s) {
+      double reach = 0;
+      for (const Eigen::Vector3d& half : box[s].half) reach += std::abs(n.dot(half));
+      low[s] = n.dot(box[s].centre) - reach;
+      high[s] = n.dot(box[s].centre) + reach;
+    }
+    const double gap = std::max(low[0] - high[1], low[1] - high[0]);
+    CHECK((gap > 1e-12 || !e.node_end().apart));
+    CHECK((gap < -1e-12 || e.node_end().apart || std::abs(gap) <= 1e-12));
+  }
+}
+
+TEST_CASE("phases nest in steps, begin and end once, and count what they say") {
+  for (const CollideRequest& request : requests()) {
+    const Recorded run = record(all_bodies()[1], request, EventLevel::nodes);
+    EventId open = kNull;
+    std::map<Phase, int> ended;
+    for (EventId i = 0; i < run.trace.events.size(); ++i) {
+      const Event& e = run.trace.events[i];
+      if (e.kind == EventKind::begin) {
+        CHECK(open == kNull);
+        open = i;
+      }
+      if (e.kind == EventKind::end) {
+        CHECK(e.cause == open);
+        CHECK(run.trace.events[open].phase() == e.phase());
+        if (e.phase() == Phase::relation) {
+          const auto points = std::count_if(run.trace.events.begin() + open, run.trace.events.begin() + i,
+                                            [](const Event& p) { return p.kind == EventKind::point; });
+          CHECK(points == e.b);
+        }
+        ++ended[e.phase()];
+        open = kNull;
+      }
+      if (e.kind == EventKind::node_pair || e.kind == EventKind::point) CHECK(open != kNull);
+    }
+    CHECK(open == kNull);
+    CHECK(ended[Phase::walk] >= 6);
+    CHECK(ended[Phase::sort] >= 6);
+    CHECK(ended[Phase::relation] >= 6);
+    CHECK((ended[Phase::contacts] > 0) == request.contacts);
+    CHECK((ended[Phase::separation] > 0) == request.separation);
+  }
+}
+
+TEST_CASE("traces of all levels are read back as they were, and fulfil the schema") {
+  for (const Clock clock : {Clock::event, Clock::wall})
+    for (const CollideRequest& request : requests()) {
+      RecorderSettings settings;
+      settings.request = request;
+      settings.level = EventLevel::all;
+      settings.clock = clock;
+      const Bodies& bodies = all_bodies()[2];
+      Recorder recorder(*bodies.a, *bodies.b, settings);
+      QueryContext context;
+      for (std::uint32_t i = 0; i < 3; ++i) {
+        const Pose pose = Pose::translation({0.3 + 0.9 * i, 0.1, 0});
+        recorder.begin_step(i, {}, pose);
+        recorder.end_step(collide(*bodies.a, {}, *bodies.b, pose, request, context, recorder));
+      }
+      const Trace t = recorder.take();
+      const std::string text = trace_to_json(t);
+      CHECK(trace_from_json(text, "t.json") == t);
+      CHECK(complaint(Json::parse(text)) == "");
+      Trace other = t;
+      const auto pair = std::find_if(other.events.begin(), other.events.end(),
+                                     [](const Event& e) { return e.kind == EventKind::node_pair; });
+      REQUIRE(pair != other.events.end());
+      NodeWork work = pair->work();
+      ++work.box_tests;
+      pair->boundary = std::bit_cast<std::uint32_t>(work);
+      CHECK(first_divergence(t, other)->message().find("box tests") != std::string::npos);
+    }
+}
+
+TEST_CASE("a recording that is cut keeps its rules, and is read back") {
+  const Bodies& bodies = all_bodies()[0];
+  for (const std::uint32_t cap : {1u, 2u, 3u, 10u, 37u, 200u}) {
+    RecorderSettings settings;
+    settings.level = EventLevel::all;
+    settings.event_cap = cap;
+    Recorder recorder(*bodies.a, *bodies.b, settings);
+    QueryContext context;
+    recorder.begin_step(0, {}, Pose::translation({0.5, 0.1, 0}));
+    recorder.end_step(collide(*bodies.a, {}, *bodies.b, Pose::translation({0.5, 0.1, 0}), settings.request,
+                              context, recorder));
+    const Trace t = recorder.take();
+    CHECK(t.events.size() == cap);
+    const std::string text = trace_to_json(t);
+    CHECK(trace_from_json(text, "t.json") == t);
+    CHECK(complaint(Json::parse(text)) == "");
+  }
+}
+
+TEST_CASE("box tests are shared by the faces beneath the nodes: what faces have is what nodes have") {
+  for (const Bodies& bodies : all_bodies()) {
+    const Recorded run = record(bodies, {}, EventLevel::nodes);
+    std::uint64_t box_tests = 0;
+    for (const CollideResult& r : run.results) box_tests += r.counters.box_tests;
+    const LrbRep* const reps[] = {bodies.a, bodies.b};
+    for (const Side side : {Side::a, Side::b}) {
+      const LrbRep& rep = *reps[static_cast<int>(side)];
+      const TreeShape tree(rep.tree());
+      const NodeCounts counts = count_nodes(tree, side, run.trace.events);
+      CHECK(std::accumulate(counts.box_tests.begin(), counts.box_tests.end(), std::uint64_t{0}) == box_tests);
+      const std::vector<double> faces = box_tests_by_face(rep, tree, counts);
+      CHECK(std::accumulate(faces.begin(), faces.end(), 0.0) ==
+            doctest::Approx(static_cast<double>(box_tests)));
+      std::uint64_t visits = 0, nodes = 0;
+      const std::vector<DepthWork> depths = work_by_depth(tree, counts);
+      for (const DepthWork& d : depths) visits += d.visits, nodes += d.nodes;
+      CHECK(visits == std::accumulate(counts.visits.begin(), counts.visits.end(), std::uint64_t{0}));
+      CHECK(nodes == rep.tree().nodes().size());
+      CHECK(depths[0].expected == doctest::Approx(1));
+      CHECK(depths.size() == rep.tree().height());
+    }
+  }
+  Trace damaged = record(all_bodies()[3], {}, EventLevel::nodes).trace;
+  for (Event& e : damaged.events)
+    if (e.kind == EventKind::node_pair) e.a = 1'000'000;
+  CHECK_THROWS_AS(count_nodes(TreeShape(all_bodies()[3].a->tree()), Side::a, damaged.events), InputError);
+}
+
+TEST_CASE("a probe from outside the engine sees the walk, too") {
+  struct Walk : CollideProbe {
+    EventLevel level() const override { return EventLevel::all; }
+    std::uint32_t node_pair(const NodeVisit& v) override {
+      boxes += v.box_tests;
+      parted += v.parted;
+      CHECK((v.parent == kNull ? pairs == 0 : v.parent < pairs));
+      return pairs++;
+    }
+    void plane_test(SimplexId, SimplexId, Side) override { ++planes; }
+    void end(Phase phase, std::uint64_t count) override { counts[phase] += count; }
+    std::uint32_t pairs = 0;
+    std::uint64_t boxes = 0, parted = 0, planes = 0;
+    std::map<Phase, std::uint64_t> counts;
+  } probe;
+  const Bodies& bodies = all_bodies()[1];
+  const CollideResult result =
+      collide(*bodies.a, {}, *bodies.b, Pose::translation({0.4, 0.3, 0.1}), CollideRequest{}, probe);
+  CHECK(probe.pairs == result.counters.node_pairs);
+  CHECK(probe.boxes == result.counters.box_tests);
+  CHECK(probe.planes == probe.parted);
+  CHECK(probe.planes > 0);
+  CHECK(probe.counts[Phase::walk] == result.counters.node_pairs);
+  CHECK(probe.counts[Phase::sort] == result.pairs.size());
+}

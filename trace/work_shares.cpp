@@ -1,0 +1,123 @@
+#include "trace/work_shares.hpp"
+
+#include <array>
+#include <optional>
+
+namespace lrb::trace {
+
+namespace {
+
+enum class Part : std::uint8_t {
+  traversal,
+  leaves,
+  float_tests,
+  shared_corner_tests,
+  filter_tests,
+  expansion_tests,
+  wrappers,
+  sorting,
+  relation,
+  separation,
+  contact_geometry,
+};
+constexpr std::array<WorkShare, 11> kParts = {{{"traversal", "box tests"},
+                                               {"leaves", "pairs of faces"},
+                                               {"float_tests", "face tests"},
+                                               {"shared_corner_tests", "face tests"},
+                                               {"filter_tests", "face tests"},
+                                               {"expansion_tests", "face tests"},
+                                               {"wrappers", "regions refined or taken back"},
+                                               {"sorting", "pairs"},
+                                               {"relation", "points located"},
+                                               {"separation", "faces of the wrappers"},
+                                               {"contact_geometry", "contact regions"}}};
+
+std::optional<Part> part_of_test(TestedBy by) {
+  switch (by) {
+    case TestedBy::untold:
+      return {};
+    case TestedBy::floats:
+      return Part::float_tests;
+    case TestedBy::shared_corners:
+      return Part::shared_corner_tests;
+    case TestedBy::filter:
+      return Part::filter_tests;
+    case TestedBy::expansions:
+      return Part::expansion_tests;
+  }
+  return {};
+}
+
+std::optional<Part> part_of_phase(Phase phase) {
+  switch (phase) {
+    case Phase::walk:
+      return {};
+    case Phase::sort:
+      return Part::sorting;
+    case Phase::relation:
+      return Part::relation;
+    case Phase::separation:
+      return Part::separation;
+    case Phase::contacts:
+      return Part::contact_geometry;
+  }
+  return {};
+}
+
+std::optional<Part> part_of(const Event& e) {
+  switch (e.kind) {
+    case EventKind::node_pair:
+      return e.node_end().step == NodeStep::leaves ? Part::leaves : Part::traversal;
+    case EventKind::face_test:
+      return part_of_test(e.tested_by());
+    case EventKind::refine:
+    case EventKind::coarsen:
+      return Part::wrappers;
+    case EventKind::point:
+      return Part::relation;
+    case EventKind::end:
+      return part_of_phase(e.phase());
+    case EventKind::plane_test:
+      return Part::leaves;
+    case EventKind::step:
+    case EventKind::contact:
+    case EventKind::result:
+    case EventKind::begin:
+      return {};
+  }
+  return {};
+}
+
+std::uint64_t count_of(const Event& e) {
+  switch (e.kind) {
+    case EventKind::node_pair:
+      return e.node_end().step == NodeStep::leaves ? e.work().met : e.work().box_tests;
+    case EventKind::end:
+      return e.b;
+    case EventKind::point:  // the phase's end has their number
+    case EventKind::plane_test:
+      return 0;
+    default:
+      return 1;
+  }
+}
+
+}  // namespace
+
+std::vector<WorkShare> work_shares(const Trace& trace) {
+  std::vector<WorkShare> out(kParts.begin(), kParts.end());
+  constexpr double kNanosecond = 1e-9;
+  for (EventId i = 0; i < trace.events.size(); ++i) {
+    const Event& e = trace.events[i];
+    const std::optional<Part> part = part_of(e);
+    if (!part) continue;
+    WorkShare& share = out[static_cast<std::size_t>(*part)];
+    ++share.events;
+    share.count += count_of(e);
+    if (!trace.wall_ns.empty())
+      share.seconds += kNanosecond * static_cast<double>(trace.wall_ns[i] - trace.wall_ns[i - 1]);
+  }
+  return out;
+}
+
+}  // namespace lrb::trace
