@@ -186,6 +186,24 @@
     lines.push(`camera ${byId("camera-json").value}`);
   }
 
+  /** Events of the walk through the trees: nodes have boxes, phases have names. */
+  async function walks() {
+    const { events, selection, view } = run;
+    const pair = events.kind.findIndex((_, i) => events.about(i, "node").length === 2);
+    check(pair >= 0, "there are pairs of nodes");
+    selection.goTo(pair);
+    await frame();
+    equal(view.marks.shown.get("nodes").parts.length, 2, "whose boxes are shown");
+    check(byId("event-facts").textContent.includes("result"), "with what became of the pair");
+    const phase = events.kinds.findIndex((k) => k.name === "begin");
+    selection.goTo(events.kind.indexOf(phase));
+    check(
+      byId("event-facts").textContent.includes("tree walk"),
+      "a phase has a name",
+      byId("event-facts").textContent,
+    );
+  }
+
   async function colours() {
     const most = run.events.bodies.reduce((m, b) => Math.max(m, ...b.counts.misses), 0);
     equal(
@@ -281,6 +299,7 @@
       clicks,
       filters,
       presses,
+      walks,
       colours,
       plays,
       largeTable,

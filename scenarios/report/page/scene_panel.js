@@ -46,7 +46,7 @@ class Panel {
       ["kind", kind.name],
       ["what", eventWords(events, i)],
     ];
-    if (meetWords(events, i)) rows.push(["result", meetWords(events, i)]);
+    if (outcomeWords(events, i)) rows.push(["result", outcomeWords(events, i)]);
     if (level >= 0) rows.push(["level", level, "number of regions between it and the outside"]);
     if (cause >= 0)
       rows.push([

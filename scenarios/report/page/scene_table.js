@@ -110,7 +110,7 @@ class EventTable {
       digits(events.stepNumber(i)),
       events.kindOf(i).name,
       eventWords(events, i),
-      meetWords(events, i),
+      outcomeWords(events, i),
       level < 0 ? "" : level,
       cause === NONE ? "" : digits(cause),
     ];

@@ -10,7 +10,7 @@ class SceneView {
       ghost: false,
       explode: 0,
       isolate: null,
-      lids: true,
+      lids: !scene.engine, // another engine compares the bodies themselves
       boxes: -1,
       by: "kind",
       per: "face",

@@ -21,18 +21,21 @@ function eventWords(events, i) {
   if (faces.length)
     return faces.map((f) => `${events.bodies[f.side].faceWords(f.face)} of ${SIDES[f.side]}`).join(", ");
   const { a: ra, b: rb } = events.kindOf(i);
+  const one = (r, n) => {
+    if (r.sort === "phase") return events.phases[n];
+    return `${r.words} ${digits(n)}${r.sort === "vertex" ? side : ""}`;
+  };
   return [
     [ra, a],
     [rb, b],
   ]
     .filter(([r, n]) => r.sort && n !== NONE)
-    .map(([r, n]) => `${r.words} ${digits(n)}`)
+    .map(([r, n]) => one(r, n))
     .join(", ");
 }
 
-/** Returns how a compared pair came out; empty for other events. */
-const meetWords = (events, i) =>
-  events.about(i, "simplex").length ? events.meets[events.meet[i]] || "" : "";
+/** Returns how an event came out; empty: nothing can be said. */
+const outcomeWords = (events, i) => events.outcomes[events.outcome[i]] || "";
 
 /** Returns where an event is in the run. */
 function eventPlace(events, i) {
@@ -44,7 +47,7 @@ function eventPlace(events, i) {
 
 /** Returns a sentence on an event and the wrappers after it. */
 function eventSentence(events, wrappers, i) {
-  const meet = meetWords(events, i);
+  const meet = outcomeWords(events, i);
   const result = meet ? ` (${meet})` : "";
   const about = `${eventPlace(events, i)}, ${events.kindOf(i).name}: ${eventWords(events, i)}${result}.`;
   if (!wrappers) return about;
