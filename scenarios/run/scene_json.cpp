@@ -173,7 +173,8 @@ json body_json(const RecordedRun& p, std::size_t i, const SceneFrame& frame, con
   if (!with_geometry) return out;
   const trace::FaceCounts counts = trace::count_faces(rep, static_cast<Side>(i), p.trace->events);
   out["geometry"] = geometry(rep, frame);
-  out["boxes"] = boxes_json(rep, frame, limits.boxes);
+  // Another engine walks trees of its own.
+  out["boxes"] = boxes_json(rep, frame, p.trace->header.engine.empty() ? limits.boxes : 0);
   out["counts"] = {{"tests", packed(counts.tests)},
                    {"hits", packed(counts.hits)},
                    {"contacts", packed(counts.contacts)},
@@ -203,6 +204,39 @@ json words_json() {
   return out;
 }
 
+/// Returns how an event came out, in a word or two; empty: nothing can be said.
+std::string_view outcome_of(const trace::Event& e) {
+  switch (e.kind) {
+    case EventKind::face_test:
+    case EventKind::contact:
+      return name_of(e.meet);
+    case EventKind::node_pair:
+      return name_of(e.node_end().step);
+    case EventKind::point:
+      return name_of(e.where());
+    default:
+      return {};
+  }
+}
+
+/// The outcomes of events: words, and for each event the number of its own.
+json outcomes_json(const trace::Trace& trace, const std::vector<trace::EventId>& kept) {
+  std::vector<std::string_view> words;
+  const auto number = [&](trace::EventId id) -> std::uint32_t {
+    const std::string_view word = outcome_of(trace.events[id]);
+    if (word.empty()) return kNull;
+    const auto at = std::find(words.begin(), words.end(), word);
+    if (at == words.end()) words.push_back(word);
+    return static_cast<std::uint32_t>(std::find(words.begin(), words.end(), word) - words.begin());
+  };
+  const std::string numbers = packed_each(kept, number);
+  return {{"words", words}, {"numbers", numbers}};
+}
+
+bool changes_wrapper(const trace::Event& e) {
+  return e.kind == EventKind::refine || e.kind == EventKind::coarsen;
+}
+
 json events_json(const trace::Trace& trace, const std::vector<trace::EventId>& kept) {
   const auto column = [&](auto get) {
     return packed_each(kept, [&](trace::EventId id) { return get(trace.events[id]); });
@@ -216,7 +250,9 @@ json events_json(const trace::Trace& trace, const std::vector<trace::EventId>& k
           {"a", column([](const Event& e) { return e.a; })},
           {"b", column([](const Event& e) { return e.b; })},
           {"cause", column([](const Event& e) { return e.cause; })},
-          {"boundary", column([](const Event& e) { return e.boundary; })},
+          {"boundary",
+           column([](const Event& e) { return changes_wrapper(e) ? e.boundary : std::uint32_t{kNull}; })},
+          {"outcomes", outcomes_json(trace, kept)},
           {"depthA", column([](const Event& e) { return e.depth_a; })},
           {"depthB", column([](const Event& e) { return e.depth_b; })}};
 }
@@ -285,7 +321,8 @@ std::string scene_json(const RecordedRun& p, const std::string& trace_file, cons
                                                                    ? std::int64_t{-1}
                                                                    : std::int64_t{first_contact(trace)})},
                     {"kinds", kinds_json()},
-                    {"meets", words_json<exact::Meet>()},
+                    {"phases", words_json<Phase>()},
+                    {"engine", trace.header.engine},
                     {"relations", words_json<Relation>()},
                     {"colours", colours()},
                     {"bodies", std::move(bodies)},

@@ -1,4 +1,4 @@
-// Uses a run's page as a person does, and writes down what came out: "ok ...", "FAIL ...", and "done" at the end.
+// Uses a run's page as a person does, and writes down what came out: "ok ...", "FAIL ...", "done" at the end.
 (async function () {
   const lines = [],
     wait = (ms) => new Promise((then) => setTimeout(then, ms));
@@ -85,7 +85,7 @@
       for (let y = 0.1; y < 1; y += 0.1)
         points.push([Math.round(box.left + x * box.width), Math.round(box.top + y * box.height)]);
     const at = points.find(([x, y]) => {
-      const hit = run.view.faceUnder(x, y);
+      const hit = run.view.picker.under(x, y);
       return hit && !run.events.bodies[hit.side].isReal(hit.face);
     });
     check(at, "a pseudo face can be seen");
@@ -186,6 +186,24 @@
     lines.push(`camera ${byId("camera-json").value}`);
   }
 
+  /** Events of the walk through the trees: nodes have boxes, phases have names. */
+  async function walks() {
+    const { events, selection, view } = run;
+    const pair = events.kind.findIndex((_, i) => events.about(i, "node").length === 2);
+    check(pair >= 0, "there are pairs of nodes");
+    selection.goTo(pair);
+    await frame();
+    equal(view.marks.shown.get("nodes").parts.length, 2, "whose boxes are shown");
+    check(byId("event-facts").textContent.includes("result"), "with what became of the pair");
+    const phase = events.kinds.findIndex((k) => k.name === "begin");
+    selection.goTo(events.kind.indexOf(phase));
+    check(
+      byId("event-facts").textContent.includes("tree walk"),
+      "a phase has a name",
+      byId("event-facts").textContent,
+    );
+  }
+
   async function colours() {
     const most = run.events.bodies.reduce((m, b) => Math.max(m, ...b.counts.misses), 0);
     equal(
@@ -261,15 +279,16 @@
       "and the page says so",
       byId("no-view").textContent,
     );
-    equal(byId("frames").open, true, "and shows the frames");
+    equal(
+      byId("frames").open && byId("stage").contains(byId("frames")),
+      true,
+      "and shows frames in its place",
+    );
     input("filter-kind", run.events.REFINE);
     equal(run.table.rows.length, ofKind(run.events.REFINE), "the table works as before");
+    const before = run.selection.event;
     press("ArrowRight");
-    check(
-      byId("event-title").textContent.startsWith("Event"),
-      "and so do keys",
-      byId("event-title").textContent,
-    );
+    equal(run.selection.event, before + 1, "and so do keys");
   }
 
   const parts = {
@@ -280,6 +299,7 @@
       clicks,
       filters,
       presses,
+      walks,
       colours,
       plays,
       largeTable,

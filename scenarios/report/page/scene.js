@@ -39,16 +39,21 @@ function startScene() {
   return { scene, events, selection, wrappers, timeline, table, filter, form, panel, view, controls };
 }
 
-/** Returns the view; null, with the reason on the page, where there can be none. Frames are then what there is to see. */
+/** Returns the view; null, with the reason on the page, where there can be none. Frames are then what
+    there is to see. */
 function openView(scene, selection, wrappers) {
   const no = (reason) => {
     byId("stage").classList.add("without-view");
     byId("no-view").textContent = reason;
     byId("no-view").hidden = false;
-    if (byId("frames")) byId("frames").open = true;
+    const pictures = byId("frames");
+    if (pictures) {
+      pictures.open = true;
+      byId("no-view").after(pictures); // in the place of the view
+    }
     return null;
   };
-  const frames = data.frames.length ? " The frames below show the run." : "";
+  const frames = data.frames.length ? " These frames show the run." : "";
   if (scene.tooLarge) return no(scene.tooLarge);
   if (scene.dim === 2) return no(`These bodies lie in the plane: there is nothing to turn.${frames}`);
   if (!webglWorks())

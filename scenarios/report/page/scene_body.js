@@ -50,7 +50,8 @@ class Body {
   faceOfSimplex(simplex) {
     return lastAtMost(this.firstSimplex, simplex);
   }
-  /** Returns the region that a face belongs to: the one that a pseudo face hides, or that covers a real face; NONE: none. */
+  /** Returns the region that a face belongs to: the one that a pseudo face hides, or that covers a real
+      face; NONE: none. */
   regionOf(face) {
     return this.isReal(face) ? this.outer[face] : this.inner[face];
   }

@@ -1,5 +1,7 @@
-// ---- one body in the view: its real faces, the lids of its wrapper, regions on their own, and the boxes of its tree
-const LAYER_STEP = 0.12; // exploded: extra way for each layer, as a share of the body's radius; as in the frames
+// ---- one body in the view: its real faces, the lids of its wrapper, regions on their own, and the boxes
+// of its tree
+// Exploded: extra way for each layer, as a share of the body's radius; as in the frames.
+const LAYER_STEP = 0.12;
 
 class BodyView {
   constructor(body, colours) {
@@ -91,7 +93,8 @@ class BodyView {
     });
   }
 
-  /** Returns the points that reach farthest in some directions; `each` calls its argument with every point. */
+  /** Returns the points that reach farthest in some directions; `each` calls its argument with every
+      point. */
   farthest(each) {
     const ways = [];
     for (const x of [-1, 0, 1])
@@ -243,7 +246,8 @@ class BodyView {
     return out.map((x) => (x * share * way) / length);
   }
 
-  /** Shows faces that have a counter in exactly the colour that the scale has, without light; of a ghost, these are solid. */
+  /** Shows faces that have a counter in exactly the colour that the scale has, without light; of a ghost,
+      these are solid. */
   showCounted(faces, colourOf) {
     if (this.counted) {
       this.group.remove(this.counted.mesh);

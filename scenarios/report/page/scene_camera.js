@@ -67,7 +67,8 @@ class SceneCamera {
     this.controls.update();
   }
 
-  /** Shows all points as large as can be, from where one stands or from a direction; as render/camera.hpp does. */
+  /** Shows all points as large as can be, from where one stands or from a direction; as render/camera.hpp
+      does. */
   fit(points, from) {
     const out = (
       from ? new THREE.Vector3(...from) : this.camera.position.clone().sub(this.controls.target)

@@ -55,7 +55,8 @@ class ViewControls {
   toggle(name) {
     this.change({ [name]: !this.view.now[name] });
   }
-  /** Most of what is tested lies inside: with counters the bodies become ghosts, until somebody wants them solid. */
+  /** Most of what is tested lies inside: with counters the bodies become ghosts, until somebody wants them
+      solid. */
   colourBy(by) {
     const was = COUNTERS.includes(this.view.now.by),
       is = COUNTERS.includes(by);

@@ -1,5 +1,7 @@
-// ---- the run's events, as far as the page has them. An event is known here by its index among these; what people see is its id,
-// its number in the trace. What the numbers `a` and `b` of a kind mean is taken from the kind's words, so that new kinds are shown too.
+// ---- the run's events, as far as the page has them. An event is known here by its index among these; what
+// people see is its id, its number in the trace. What the numbers `a` and `b` of a kind mean is taken from
+// the
+// kind's words, so that new kinds are shown too.
 class Events {
   constructor(json, bodies) {
     this.bodies = bodies;
@@ -8,7 +10,9 @@ class Events {
       this[name] = unpack(json.events[name]);
     this.ids = json.events.id ? unpack(json.events.id) : null;
     this.kinds = json.kinds.map((k) => ({ name: k.name, colour: k.colour, a: role(k.a), b: role(k.b) }));
-    this.meets = json.meets;
+    this.outcome = unpack(json.events.outcomes.numbers);
+    this.outcomes = json.events.outcomes.words;
+    this.phases = json.phases;
     this.relations = json.relations;
     this.stepNumbers = unpack(json.steps.index);
     this.firstOfStep = unpack(json.steps.first).map((id) => this.from(id));
@@ -55,6 +59,12 @@ class Events {
   changesWrapper(i) {
     return this.kind[i] === this.REFINE || this.kind[i] === this.COARSEN;
   }
+  /** Tells whether an event concerns a body. */
+  concerns(i, side) {
+    const { a, b } = this.kindOf(i);
+    if (a.side >= 0 || b.side >= 0) return true; // both
+    return (a.sort === "region" || a.sort === "vertex") && this.side[i] === side;
+  }
   isHit(i) {
     return this.meet[i] > 0;
   }
@@ -70,7 +80,8 @@ class Events {
       if (r.sort === sort && number !== NONE) out.push({ side: r.side >= 0 ? r.side : this.side[i], number });
     return out;
   }
-  /** Returns the faces that an event compares: [{side, face}]; none if the bodies are too large for the page. */
+  /** Returns the faces that an event compares: [{side, face}]; none if the bodies are too large for the
+      page. */
   faces(i) {
     return this.about(i, "simplex")
       .filter((s) => this.bodies[s.side].complete)
@@ -79,7 +90,8 @@ class Events {
   regions(i) {
     return this.about(i, "region").map((r) => ({ side: r.side, region: r.number }));
   }
-  /** Returns the number of regions between what the event is about and the outside; of two faces the greater; -1: none. */
+  /** Returns the number of regions between what the event is about and the outside; of two faces the
+      greater; -1: none. */
   level(i) {
     const [region] = this.regions(i);
     if (region) return this.bodies[region.side].complete ? this.bodies[region.side].depth(region.region) : -1;
@@ -93,19 +105,9 @@ class Events {
   }
 }
 
-/** Returns what a number of an event stands for: {sort, side}; side -1: that of the event. */
+/** Returns what a number of an event stands for: {sort, side, words}; side -1: that of the event, if it has one. */
 function role(words) {
   const side = / of A$/.test(words) ? 0 : / of B$/.test(words) ? 1 : -1;
-  const sort = /simplex/.test(words)
-    ? "simplex"
-    : /\bnode\b/.test(words)
-      ? "node"
-      : /^region/.test(words)
-        ? "region"
-        : words === "relation"
-          ? "relation"
-          : words
-            ? "number"
-            : "";
-  return { sort, side, words };
+  const sorts = ["simplex", "node", "region", "vertex", "relation", "phase"];
+  return { sort: sorts.find((sort) => words.split(" ").includes(sort)) || words, side, words };
 }

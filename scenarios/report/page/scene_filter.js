@@ -44,12 +44,7 @@ class EventFilter {
     const out = [],
       { side, region, leastLevel, mostLevel, pair } = this;
     if (this.kind >= 0) out.push((i) => events.kind[i] === this.kind);
-    if (side >= 0)
-      out.push((i) =>
-        events.changesWrapper(i)
-          ? events.side[i] === side
-          : events.about(i, "simplex").length + events.about(i, "node").length > 0,
-      );
+    if (side >= 0) out.push((i) => events.concerns(i, side));
     if (region !== NONE) out.push((i) => this.concernsRegion(events, i));
     if (leastLevel > 0 || mostLevel < Infinity)
       out.push((i) => {

@@ -47,8 +47,8 @@ class Legend {
     if (!key) return;
     byId("scale-bar").style.background = `linear-gradient(to right, ${colours.stops.join(", ")})`;
     byId("scale-most").textContent = digits(key.most);
-    byId("scale-title").textContent =
-      key.title ||
-      `${now.by}, for each ${now.per}${bodies.length > 1 ? " of both bodies" : ""}, ${now.scope === "run" ? "in the whole run" : "in this step so far"}`;
+    const whose = bodies.length > 1 ? " of both bodies" : "";
+    const when = now.scope === "run" ? "in the whole run" : "in this step so far";
+    byId("scale-title").textContent = key.title || `${now.by}, for each ${now.per}${whose}, ${when}`;
   }
 }

@@ -1,4 +1,5 @@
-// ---- what the event is about, and what is selected: painted over the bodies, with rims that are seen through everything
+// ---- what the event is about, and what is selected: painted over the bodies, with rims that are seen
+// through everything
 class Marks {
   constructor(views, colours, size) {
     this.views = views;

@@ -1,5 +1,6 @@
 // ---- triangles and lines of faces, for three.js
-/** Some faces of a body as a mesh that can be coloured, and shown in part, face by face. `shifts`, if any, moves each of them. */
+/** Some faces of a body as a mesh that can be coloured, and shown in part, face by face. `shifts`, if any,
+    moves each of them. */
 class FaceMesh {
   constructor(body, faces, material, shifts) {
     this.body = body;
@@ -101,7 +102,8 @@ function thinLines(body, edges, material) {
   return new THREE.LineSegments(geometry, material);
 }
 
-/** Returns lines of any width, in pixels: browsers draw those of WebGL one pixel wide. `ends`: six numbers for each line. */
+/** Returns lines of any width, in pixels: browsers draw those of WebGL one pixel wide. `ends`: six numbers
+    for each line. */
 function thickLines(ends, material) {
   const count = ends.length / 6,
     at = new Float32Array(12 * count),

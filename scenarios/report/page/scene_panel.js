@@ -41,12 +41,12 @@ class Panel {
       kind = events.kindOf(i),
       level = events.level(i),
       cause = events.find(events.cause[i]);
-    byId("event-title").textContent = `Event ${digits(events.id(i))}, step ${digits(events.stepNumber(i))}`;
+    byId("event-title").textContent = eventPlace(events, i);
     const rows = [
       ["kind", kind.name],
       ["what", eventWords(events, i)],
     ];
-    if (meetWords(events, i)) rows.push(["result", meetWords(events, i)]);
+    if (outcomeWords(events, i)) rows.push(["result", outcomeWords(events, i)]);
     if (level >= 0) rows.push(["level", level, "number of regions between it and the outside"]);
     if (cause >= 0)
       rows.push([

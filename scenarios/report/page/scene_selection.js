@@ -1,9 +1,11 @@
-// ---- what all views show: one event, and perhaps a face or a region. Views change it here and are told by their listeners.
+// ---- what all views show: one event, and perhaps a face or a region. Views change it here and are told
+// by their listeners.
 class Selection {
   constructor(events) {
     this.events = events;
     this.event = 0;
-    this.picked = null; // {side, face, region}: face NONE: a region as a whole; region NONE: a face that no region hides
+    // {side, face, region}: face NONE: a region as a whole; region NONE: a face that no region hides.
+    this.picked = null;
     this.listeners = [];
   }
 

@@ -1,4 +1,5 @@
-// ---- the events as a table. Only the rows that can be seen are in the document, so that a million is as quick as ten.
+// ---- the events as a table. Only the rows that can be seen are in the document, so that a million is as
+// quick as ten.
 const TALLEST = 5e6; // pixels: browsers cannot scroll much further
 
 class EventTable {
@@ -109,7 +110,7 @@ class EventTable {
       digits(events.stepNumber(i)),
       events.kindOf(i).name,
       eventWords(events, i),
-      meetWords(events, i),
+      outcomeWords(events, i),
       level < 0 ? "" : level,
       cause === NONE ? "" : digits(cause),
     ];

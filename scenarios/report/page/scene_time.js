@@ -68,13 +68,16 @@ class Timeline {
     this.stepSlider.value = this.step;
     this.eventSlider.max = this.lastHere - this.firstHere;
     this.eventSlider.value = selection.event - this.firstHere;
-    byId("step-count").textContent =
-      `step ${digits(events.stepNumber(selection.event))} (${digits(events.stepNumbers[0])}–${digits(events.stepNumbers[events.stepNumbers.length - 1])})`;
-    byId("event-place").textContent =
-      `event ${digits(selection.event - this.firstHere + 1)} of ${digits(this.lastHere - this.firstHere + 1)}${events.firstOfStep.length > 1 ? " in this step" : ""}`;
+    const [first, last] = [0, -1].map((at) => digits(events.stepNumbers.at(at)));
+    byId("step-count").textContent = `step ${digits(events.stepNumber(selection.event))} (${first}–${last})`;
+    const here = digits(selection.event - this.firstHere + 1);
+    const all = digits(this.lastHere - this.firstHere + 1);
+    const where = events.firstOfStep.length > 1 ? " in this step" : "";
+    byId("event-place").textContent = `event ${here} of ${all}${where}`;
   }
 
-  // -- playing: the wrappers of this step are refined, one region after the other; or all events; or the steps
+  // -- playing: the wrappers of this step are refined, one region after the other; or all events; or the
+  // steps
   toggle() {
     if (this.playing) this.pause();
     else this.play();

@@ -10,7 +10,7 @@ class SceneView {
       ghost: false,
       explode: 0,
       isolate: null,
-      lids: true,
+      lids: !scene.engine, // another engine compares the bodies themselves
       boxes: -1,
       by: "kind",
       per: "face",
@@ -29,7 +29,9 @@ class SceneView {
     this.keys = {};
     selection.listeners.push(() => this.redraw());
     new ResizeObserver(() => this.resize()).observe(this.canvas.parentElement);
-    this.listen();
+    this.picker = new Picker(this);
+    this.canvas.addEventListener("webglcontextlost", (e) => e.preventDefault()); // it comes back
+    this.canvas.addEventListener("webglcontextrestored", () => this.redraw());
     this.resize();
   }
 
@@ -99,7 +101,8 @@ class SceneView {
   shape() {
     const { ghost, explode, isolate, lids, boxes, by, per } = this.now,
       exploded = explode > 0 && !isolate;
-    const insideOnly = ghost && per === "face" && COUNTERS.includes(by); // the faces that were tested, which lids would veil
+    // The faces that were tested, which lids would veil.
+    const insideOnly = ghost && per === "face" && COUNTERS.includes(by);
     this.views.forEach((view, side) => {
       const shown = lids && !isolate && !exploded && !insideOnly;
       view.lids.mesh.visible = view.lidEdges.visible = shown;
@@ -141,7 +144,8 @@ class SceneView {
       () => {
         const counts = counter ? this.countsOf(by, per, scope) : null,
           mode = this.colours.mode(this.bodies, by, counts);
-        const veil = by === "kind" ? 0.49 : counter && per === "face" ? 0.2 : 0.69; // mostly real faces are tested: they must be seen
+        // Mostly real faces are tested: they must be seen.
+        const veil = by === "kind" ? 0.49 : counter && per === "face" ? 0.2 : 0.69;
         this.views.forEach((view, side) => {
           view.paint(mode, veil);
           view.showCounted(
@@ -268,53 +272,6 @@ class SceneView {
   frameAll(from) {
     this.camera.fit(this.extremes(), from);
     this.redraw();
-  }
-
-  // -- clicks
-  listen() {
-    let down = null;
-    this.canvas.addEventListener("pointerdown", (e) => {
-      down = [e.clientX, e.clientY];
-    });
-    this.canvas.addEventListener("click", (e) => {
-      if (down && Math.hypot(e.clientX - down[0], e.clientY - down[1]) > 4) return; // the view was turned
-      const hit = this.faceUnder(e.clientX, e.clientY, e.altKey);
-      if (hit) this.selection.pickFace(hit.side, hit.face);
-      else this.selection.pick(null);
-    });
-    this.canvas.addEventListener("dblclick", (e) => {
-      if (this.faceUnder(e.clientX, e.clientY, e.altKey)) this.frameSelection();
-      else this.frameAll();
-    });
-    this.canvas.addEventListener("webglcontextlost", (e) => {
-      e.preventDefault();
-    });
-    this.canvas.addEventListener("webglcontextrestored", () => this.redraw());
-  }
-
-  /** Returns the face under a point of the screen, {side, face}; `through`: lids are looked through. */
-  faceUnder(x, y, through) {
-    const box = this.canvas.getBoundingClientRect(),
-      ray = new THREE.Raycaster();
-    ray.setFromCamera(
-      new THREE.Vector2((2 * (x - box.left)) / box.width - 1, 1 - (2 * (y - box.top)) / box.height),
-      this.camera.camera,
-    );
-    const ghosts = this.now.ghost || this.now.isolate,
-      targets = [];
-    for (const view of this.views) {
-      targets.push(...view.pieces.map((p) => p.mesh));
-      if (view.lids.mesh.visible && !through) targets.push(view.lids.mesh);
-      if (!ghosts || !view.lids.mesh.visible) targets.push(view.real.mesh);
-    }
-    const hits = ray.intersectObjects(targets.filter((mesh) => mesh.geometry.attributes.position.count > 0));
-    const solid =
-      hits.find(
-        (h) => !this.now.isolate || this.views.some((v) => v.pieces.includes(h.object.userData.faces)),
-      ) || hits[0];
-    return solid
-      ? { side: solid.object.userData.faces.body.side, face: solid.object.userData.faces.faceAt(solid) }
-      : null;
   }
 }
 

@@ -16,29 +16,41 @@ function eventWords(events, i) {
   if (kind === events.REFINE) return `region ${digits(a)}${side}: ${plural(b, "face")} under it`;
   if (kind === events.COARSEN) return `region ${digits(a)}${side} added`;
   if (kind === events.RESULT)
-    return `${relationWords(events.relations[a] || String(a))}: ${plural(b, "pair of faces meets", "pairs of faces meet")}`;
+    return `${relationWords(events.relations[a])}: ${plural(b, "pair of faces meets", "pairs of faces meet")}`;
   const faces = events.faces(i);
   if (faces.length)
     return faces.map((f) => `${events.bodies[f.side].faceWords(f.face)} of ${SIDES[f.side]}`).join(", ");
   const { a: ra, b: rb } = events.kindOf(i);
+  const one = (r, n) => {
+    if (r.sort === "phase") return events.phases[n];
+    return `${r.words} ${digits(n)}${r.sort === "vertex" ? side : ""}`;
+  };
   return [
     [ra, a],
     [rb, b],
   ]
     .filter(([r, n]) => r.sort && n !== NONE)
-    .map(([r, n]) => `${r.words} ${digits(n)}`)
+    .map(([r, n]) => one(r, n))
     .join(", ");
 }
 
-/** Returns how a compared pair came out; empty for other events. */
-const meetWords = (events, i) =>
-  events.about(i, "simplex").length ? events.meets[events.meet[i]] || "" : "";
+/** Returns how an event came out; empty: nothing can be said. */
+const outcomeWords = (events, i) => events.outcomes[events.outcome[i]] || "";
+
+/** Returns where an event is in the run. */
+function eventPlace(events, i) {
+  const event = `event ${digits(events.id(i))}`;
+  return events.firstOfStep.length > 1
+    ? `Step ${digits(events.stepNumber(i))}, ${event}`
+    : `E${event.slice(1)}`;
+}
 
 /** Returns a sentence on an event and the wrappers after it. */
 function eventSentence(events, wrappers, i) {
-  const meet = meetWords(events, i);
-  const about = `Step ${digits(events.stepNumber(i))}, event ${digits(events.id(i))}, ${events.kindOf(i).name}: ${eventWords(events, i)}${meet ? ` (${meet})` : ""}.`;
-  return wrappers
-    ? `${about} ${wrappers.sizes.length > 1 ? "Wrappers" : "Wrapper"}: ${wrappers.sizes.map((n) => digits(n)).join(" + ")} faces.`
-    : about;
+  const meet = outcomeWords(events, i);
+  const result = meet ? ` (${meet})` : "";
+  const about = `${eventPlace(events, i)}, ${events.kindOf(i).name}: ${eventWords(events, i)}${result}.`;
+  if (!wrappers) return about;
+  const sizes = wrappers.sizes.map(digits).join(" + ");
+  return `${about} ${wrappers.sizes.length > 1 ? "Wrappers" : "Wrapper"}: ${sizes} faces.`;
 }

@@ -1,4 +1,5 @@
-// ---- both wrappers after an event: replayed from the beginning of its time step, as trace/replay.hpp does it
+// ---- both wrappers after an event: replayed from the beginning of its time step, as trace/replay.hpp
+// does it
 class Wrappers {
   constructor(bodies, events, mode) {
     this.bodies = bodies;
@@ -49,7 +50,8 @@ class Wrappers {
     this.version++;
   }
 
-  /** Returns the face that a refinement takes away where wrappers are refined face by face; -1: all of the region. */
+  /** Returns the face that a refinement takes away where wrappers are refined face by face; -1: all of the
+      region. */
   refinedFace(event, side, region) {
     const cause = this.events.find(this.events.cause[event]);
     if (cause < 0 || this.events.kind[cause] !== this.events.FACE_TEST) return -1;
