@@ -38,7 +38,7 @@ void find_axes(Trace& trace, const std::array<const LrbRep*, 2>& reps) {
     if (e.kind != EventKind::node_pair || e.work().met != 0) continue;
     BoxPair boxes;
     compare_boxes(box_of(*tree[0], e.a, kWhole, trace.steps[step].pose_a),
-            box_of(*tree[1], e.b, kWhole, trace.steps[step].pose_b), boxes);
+                  box_of(*tree[1], e.b, kWhole, trace.steps[step].pose_b), boxes);
     NodeEnd end = e.node_end();
     end.axis = boxes.axis;
     end.apart = boxes.gap > 0;
