@@ -199,7 +199,8 @@ std::string describe(const Event& e) {
   if (!b.empty()) add(b, std::to_string(e.b));
   if (e.kind == EventKind::face_test || e.kind == EventKind::contact) add("meet", words(e.meet));
   if (e.kind == EventKind::node_pair)
-    add("boxes that meet", std::to_string(e.work().met));
+    add("step", words(e.node_end().step)), add("box tests", std::to_string(e.work().box_tests)),
+        add("boxes that meet", std::to_string(e.work().met));
   else if (e.boundary != kNull)
     add("wrapper faces", std::to_string(e.boundary));
   if (e.cause != kNull) add("cause", std::to_string(e.cause));

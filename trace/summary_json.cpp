@@ -59,6 +59,7 @@ void write_work(JsonWriter& w, const Trace& trace) {
         .member("events", s.events)
         .member("count", s.count)
         .member("of", s.what);
+    if (s.box_tests > 0) w.member("box_tests", s.box_tests);
     if (trace.header.clock == Clock::wall) w.member("seconds", s.seconds);
     w.end_object();
   }

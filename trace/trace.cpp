@@ -166,6 +166,8 @@ class Checker {
       case EventKind::node_pair:
         if (bodies < 2) bad("needs two bodies");
         if (static_cast<std::size_t>(e.node_end().step) >= kWords<NodeStep>.size()) bad("unknown step");
+        if (e.work().parted + e.work().certain > e.work().met)
+          bad("more pairs are parted or certain than meet");
         if (static_cast<std::size_t>(e.node_end().axis) >= kWords<BoxAxis>.size()) bad("unknown axis");
         break;
       case EventKind::point:

@@ -14,28 +14,30 @@ enum class Part : std::uint8_t {
   shared_corner_tests,
   filter_tests,
   expansion_tests,
+  other_tests,
   wrappers,
   sorting,
   relation,
   separation,
   contact_geometry,
 };
-constexpr std::array<WorkShare, 11> kParts = {{{"traversal", "box tests"},
+constexpr std::array<WorkShare, 12> kParts = {{{"traversal", "pairs of boxes that meet"},
                                                {"leaves", "pairs of faces"},
                                                {"float_tests", "face tests"},
                                                {"shared_corner_tests", "face tests"},
                                                {"filter_tests", "face tests"},
                                                {"expansion_tests", "face tests"},
+                                               {"other_tests", "face tests"},
                                                {"wrappers", "regions refined or taken back"},
                                                {"sorting", "pairs"},
                                                {"relation", "points located"},
                                                {"separation", "faces of the wrappers"},
                                                {"contact_geometry", "contact regions"}}};
 
-std::optional<Part> part_of_test(TestedBy by) {
+Part part_of_test(TestedBy by) {
   switch (by) {
     case TestedBy::untold:
-      return {};
+      return Part::other_tests;
     case TestedBy::floats:
       return Part::float_tests;
     case TestedBy::shared_corners:
@@ -45,7 +47,7 @@ std::optional<Part> part_of_test(TestedBy by) {
     case TestedBy::expansions:
       return Part::expansion_tests;
   }
-  return {};
+  return Part::other_tests;
 }
 
 std::optional<Part> part_of_phase(Phase phase) {
@@ -91,7 +93,7 @@ std::optional<Part> part_of(const Event& e) {
 std::uint64_t count_of(const Event& e) {
   switch (e.kind) {
     case EventKind::node_pair:
-      return e.node_end().step == NodeStep::leaves ? e.work().met : e.work().box_tests;
+      return e.work().met;
     case EventKind::end:
       return e.b;
     case EventKind::point:  // the phase's end has their number
@@ -114,6 +116,7 @@ std::vector<WorkShare> work_shares(const Trace& trace) {
     WorkShare& share = out[static_cast<std::size_t>(*part)];
     ++share.events;
     share.count += count_of(e);
+    if (e.kind == EventKind::node_pair) share.box_tests += e.work().box_tests;
     if (!trace.wall_ns.empty())
       share.seconds += kNanosecond * static_cast<double>(trace.wall_ns[i] - trace.wall_ns[i - 1]);
   }

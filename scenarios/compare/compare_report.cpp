@@ -63,7 +63,9 @@ report::PageTable steps_table(const Runs& runs) {
 std::optional<std::string> first_difference(const Runs& runs) {
   const std::optional<trace::Divergence> first =
       trace::first_divergence(runs.of[0]->trace, runs.of[1]->trace);
-  if (!first) return {};
+  const std::string cut = cut_words(runs);
+  if (!first && cut.empty()) return {};
+  if (!first) return "none among the events that were stored. " + cut;
   if (first->step) return first->message();
   const std::optional<std::string> event = different_event(runs);
   return first->message() + (event ? "; " + *event : std::string("; all events are the same"));
@@ -75,6 +77,7 @@ void write_comparison(const Runs& runs, const std::string& command, const std::s
     if (runs.of[i]->bodies.size() != 2)
       throw InputError(runs.names[i] + ": is a run of one body; compare runs of two");
   if (step_count(runs) == 0) throw InputError("there is no step that both runs have");
+  refuse_folder_of_run(folder);
   const std::size_t step = busiest_step(runs);
   const render::Image picture = draw(runs, step, progress);
   const std::optional<std::string> difference = first_difference(runs);
@@ -82,6 +85,7 @@ void write_comparison(const Runs& runs, const std::string& command, const std::s
   page.title = runs.names[0] + " and " + runs.names[1];
   page.purpose = "Two recorded runs, step by step.";
   page.verdict = difference ? "differ" : "the same";
+  if (const std::string cut = cut_words(runs); !cut.empty()) page.purpose += " " + cut;
   page.texts = {
       {"The first difference", difference.value_or("There is none: all events and answers are the same.")}};
   page.command = command;

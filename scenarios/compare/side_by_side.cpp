@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 
+#include "engine/core/error.hpp"
+#include "engine/core/file_bytes.hpp"
 #include "render/montage.hpp"
 #include "render/overlay.hpp"
 #include "scenarios/run/moments.hpp"
@@ -109,9 +112,36 @@ std::size_t busiest_step(const Runs& runs) {
     return runs.of[0]->trace.steps[i].result.counters.box_tests +
            runs.of[1]->trace.steps[i].result.counters.box_tests;
   };
-  for (std::size_t i = 1; i < step_count(runs); ++i)
-    if (work(i) > work(best)) best = i;
+  bool found = false;
+  for (std::size_t i = 0; i < step_count(runs); ++i) {
+    if (!is_whole(*runs.of[0], i) || !is_whole(*runs.of[1], i)) continue;
+    if (!found || work(i) > work(best)) best = i;
+    found = true;
+  }
+  if (!found)
+    throw InputError("no step was recorded whole in both runs: record them with a larger trace.max_events");
   return best;
+}
+
+bool is_whole(const run::Recording& run, std::size_t step) {
+  return run.trace.steps[step].events_seen == run.trace.events_of(step).size();
+}
+
+std::string cut_words(const Runs& runs) {
+  std::string out;
+  for (std::size_t i = 0; i < 2; ++i)
+    if (const trace::Trace& t = runs.of[i]->trace; t.truncated())
+      out += (out.empty() ? "" : " ") + runs.names[i] + " was cut: its trace holds " +
+             group_digits(t.events.size()) + " of " + group_digits(t.events_seen) + " events.";
+  return out;
+}
+
+void refuse_folder_of_run(const std::string& folder) {
+  std::error_code error;
+  for (const char* file : {"/trace.json", "/trace.json.gz"})
+    if (std::filesystem::exists(folder + file, error))
+      throw InputError(printable_name(folder) +
+                       ": holds a run, whose page would be lost: give another folder with -o");
 }
 
 ColourBy common_colours(const Runs& runs) {

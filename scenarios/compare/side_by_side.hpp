@@ -20,8 +20,14 @@ struct Runs {
 
 /// Returns the number of steps that both runs have.
 std::size_t step_count(const Runs& runs);
-/// Returns the step at which both together test most boxes.
+/// Returns true if all events of a step were stored.
+bool is_whole(const run::Recording& run, std::size_t step);
+/// Returns the step at which both together test most boxes, of those that are whole in both. Throws InputError if none is.
 std::size_t busiest_step(const Runs& runs);
+/// Says which of the runs were cut, in a sentence; empty if none was.
+std::string cut_words(const Runs& runs);
+/// Throws InputError if a folder holds a run of its own, whose page would be lost.
+void refuse_folder_of_run(const std::string& folder);
 
 /// What colours mean: box tests where both runs have recorded pairs of nodes, else face tests.
 spec::FrameSpec::ColourBy common_colours(const Runs& runs);

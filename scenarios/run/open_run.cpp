@@ -6,6 +6,7 @@
 #include "engine/core/file_bytes.hpp"
 #include "engine/query/collide.hpp"
 #include "trace/cursor.hpp"
+#include "trace/node_work.hpp"
 #include "trace/trace_json.hpp"
 
 namespace lrb::run {
@@ -18,6 +19,14 @@ void check_events(const std::string& path, const trace::Trace& trace,
     trace::Cursor cursor = bodies.size() == 1 ? trace::Cursor(trace, bodies[0].rep)
                                               : trace::Cursor(trace, bodies[0].rep, bodies[1].rep);
     if (!trace.events.empty()) cursor.seek(static_cast<trace::EventId>(trace.events.size() - 1));
+    if (trace.header.level == EventLevel::faces || !trace.header.engine.empty() || bodies.size() != 2) return;
+    for (const Side side : {Side::a, Side::b}) {
+      const LrbRep& rep = bodies[static_cast<std::size_t>(side)].rep;
+      trace::count_nodes(trace::TreeShape(rep.tree()), side, trace.events);
+      for (const trace::Event& e : trace.events)
+        if (e.kind == EventKind::begin && e.phase() == Phase::walk)
+          trace::walked_tree(rep, side == Side::a ? e.depth_a : e.depth_b);
+    }
   } catch (const InputError& e) {
     throw InputError(printable_name(path) + ": " + e.what());
   }

@@ -22,7 +22,7 @@ std::string percent(double share) {
 report::PageTable share_table(const trace::Trace& trace) {
   report::PageTable t;
   t.title = "Where the work went";
-  t.columns = {"part of the query", "events", "count", "of"};
+  t.columns = {"part of the query", "events", "box tests", "count", "of"};
   const bool timed = !trace.wall_ns.empty();
   if (timed) t.columns.insert(t.columns.end(), {"microseconds", "share"});
   const std::vector<trace::WorkShare> shares = trace::work_shares(trace);
@@ -32,7 +32,8 @@ report::PageTable share_table(const trace::Trace& trace) {
     if (s.events == 0) continue;
     std::string name(s.name);
     std::replace(name.begin(), name.end(), '_', ' ');
-    t.rows.push_back({name, group_digits(s.events), group_digits(s.count), std::string(s.what)});
+    t.rows.push_back({name, group_digits(s.events), s.box_tests > 0 ? group_digits(s.box_tests) : "",
+                      group_digits(s.count), std::string(s.what)});
     if (timed)
       t.rows.back().insert(t.rows.back().end(), {short_number(1e6 * s.seconds), percent(s.seconds / all)});
   }
@@ -56,7 +57,7 @@ report::PageTable depth_table(const RecordedRun& p, Side side) {
                       group_digits(w.box_tests)});
   }
   t.note =
-      "Over all time steps. Expected: nodes that a random line through the root's box meets, by the surface area "
+      "Over all time steps; walks of levels are left out. Expected: nodes that a random line through the root's box meets, by the surface area "
       "heuristic. Visited: different nodes; visits: pairs of nodes, a node once with each of the other body's.";
   return t;
 }

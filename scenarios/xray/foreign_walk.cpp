@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "engine/core/error.hpp"
+#include "engine/core/file_bytes.hpp"
 #include "scenarios/io/number_text.hpp"
 #include "scenarios/methods/body_parts.hpp"
 #include "scenarios/workers/child.hpp"
@@ -158,6 +159,9 @@ ForeignWalk walk_of(const std::string& engine, const LrbRep& a, const LrbRep& b,
   if (program.empty())
     throw EnvironmentError("--method " + engine + ": there is no program lrbscope-xray-" + engine +
                            " beside lrbscope; it is built where lib" + engine + "-dev is installed");
+  for (const LrbRep* rep : {&a, &b})
+    if (rep->real_simplex_count() < 2)
+      throw InputError(printable_name(rep->name()) + ": has one triangle; give a body with two or more");
   std::string text;
   append(text, a);
   append(text, b);

@@ -35,8 +35,12 @@ report::PageTable wrong_table(const Xray& x, std::uint64_t& wrong) {
                             x.why + " --pose " + std::to_string(i) + " --pair " + std::to_string(p.a) + "," +
                                 std::to_string(p.b)});
   }
-  t.note = "Against exact answers. " + group_digits(wrong) +
-           (wrong == 1 ? " pair is wrong." : " pairs are wrong.");
+  t.note = "Against exact answers. " + group_digits(wrong);
+  t.note += wrong == 1 ? " pair is wrong." : " pairs are wrong.";
+  if (x.method == "cgal")
+    t.note +=
+        " CGAL is asked as its manual shows, with A's triangles moved into B's frame: its predicates are exact, but "
+        "the corners that they see were rounded on the way.";
   return t;
 }
 
@@ -45,6 +49,7 @@ report::PageTable wrong_table(const Xray& x, std::uint64_t& wrong) {
 std::vector<std::string> write_xray(const Xray& x, const std::string& folder,
                                     const run::ProgressReport& progress) {
   std::vector<std::string> notes;
+  compare::refuse_folder_of_run(folder);
   io::make_folder(folder);
   const io::FolderLock lock(folder);
   io::refuse_links(folder);
@@ -66,6 +71,10 @@ std::vector<std::string> write_xray(const Xray& x, const std::string& folder,
   page.purpose = "What " + x.walk.title + " does for two bodies at " + std::to_string(x.walk.steps.size()) +
                  (x.walk.steps.size() == 1 ? " pose" : " poses") +
                  ", recorded in its own traversal, beside what lrbscope does.";
+  if (const std::string cut =
+          compare::cut_words({{&x.theirs, &x.ours}, {x.walk.title, "lrbscope"}, {&x.scenario, &x.scenario}});
+      !cut.empty())
+    page.purpose += " " + cut;
   page.command = x.command;
   std::uint64_t wrong = 0;
   report::PageTable wrong_pairs = wrong_table(x, wrong);

@@ -30,6 +30,7 @@ spec::Scenario scenario_of(const XrayOptions& o, const std::vector<bodies::Loade
   s.motion.poses = io::read_poses(o.poses);
   s.request.contacts = true;
   s.events = EventLevel::nodes;
+  s.event_cap = 20'000'000;  // half a gigabyte
   s.frames.views = whole_and_contact();
   s.frames.views[0].wrapper = false;
   s.frames.views[0].title = "Whole";
@@ -61,7 +62,8 @@ int run_xray(const XrayOptions& o, const Globals& globals) {
   const run::Recording theirs = xray::recording_of(walk, ours, scenario);
   const std::string folder = o.folder.empty() ? "out/xray-" + o.method : o.folder;
   note(globals, xray::write_xray({scenario, walk, theirs, ours, o.method, globals.command_line,
-                                  "lrbscope why " + o.a + " " + o.b + " --poses " + o.poses},
+                                  "lrbscope why " + shell_word(o.a) + " " + shell_word(o.b) + " --poses " +
+                                      shell_word(o.poses)},
                                  folder, progress));
   print(folder + "/index.html\n");
   return kOk;
