@@ -97,6 +97,11 @@ TEST_CASE("a query that is watched more closely does the same") {
           CHECK(more.results[i].counters == faces.results[i].counters);
           CHECK((more.results[i].pairs == faces.results[i].pairs));
           CHECK(more.results[i].relation == faces.results[i].relation);
+          CHECK(more.results[i].error_bound == faces.results[i].error_bound);
+          CHECK(more.results[i].finished == faces.results[i].finished);
+          CHECK((more.results[i].separation == faces.results[i].separation));
+          CHECK((more.results[i].opened == faces.results[i].opened));
+          CHECK(more.results[i].regions.size() == faces.results[i].regions.size());
         }
         std::vector<Event> same = more.trace.events;
         std::erase_if(same, is_more);
@@ -106,6 +111,8 @@ TEST_CASE("a query that is watched more closely does the same") {
           CHECK(same[i].a == faces.trace.events[i].a);
           CHECK(same[i].b == faces.trace.events[i].b);
           CHECK(same[i].boundary == faces.trace.events[i].boundary);
+          CHECK(same[i].depth_a == faces.trace.events[i].depth_a);
+          CHECK(same[i].depth_b == faces.trace.events[i].depth_b);
           if (same[i].kind == EventKind::face_test) CHECK(same[i].tested_by() != TestedBy::untold);
         }
       }
@@ -202,6 +209,35 @@ TEST_CASE(
       CHECK(holds(*bodies.b, leaves.b, e.b));
     }
   }
+}
+
+TEST_CASE("walks of levels say which level they walk, and are not counted as walks of the body") {
+  static const LrbRep rock = build_lrb(shapes::bumpy_sphere(4, 7, 0.3));
+  RecorderSettings settings;
+  settings.level = EventLevel::nodes;
+  settings.request.tolerance = 0.3;
+  Recorder recorder(rock, rock, settings);
+  QueryContext context;
+  const Pose pose = Pose::translation({0.7, 0.2, 0.1});
+  recorder.begin_step(0, {}, pose);
+  recorder.end_step(collide(rock, {}, rock, pose, settings.request, context, recorder));
+  const Trace t = recorder.take();
+  std::uint64_t of_body = 0, of_levels = 0;
+  std::uint32_t walked = 0;
+  for (const Event& e : t.events) {
+    if (e.kind == EventKind::begin && e.phase() == Phase::walk) {
+      walked = e.depth_a;
+      CHECK(walked <= rock.levels().all().size());
+    }
+    if (e.kind != EventKind::node_pair) continue;
+    ++(walked == 0 ? of_body : of_levels);
+    CHECK(e.a < walked_tree(rock, walked).nodes().size());
+  }
+  CHECK(of_body > 0);
+  CHECK(of_levels > 0);
+  const NodeCounts counts = count_nodes(TreeShape(rock.tree()), Side::a, t.events);
+  CHECK(std::accumulate(counts.visits.begin(), counts.visits.end(), std::uint64_t{0}) == of_body);
+  CHECK_THROWS_AS(walked_tree(rock, 1000), InputError);
 }
 
 TEST_CASE("the axis of a pair that ended parts the nodes' boxes where they are said to be apart") {
