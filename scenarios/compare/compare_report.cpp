@@ -71,8 +71,8 @@ std::optional<std::string> first_difference(const Runs& runs) {
   return first->message() + (event ? "; " + *event : std::string("; all events are the same"));
 }
 
-void write_comparison(const Runs& runs, const std::string& command, const std::string& folder,
-                      const run::ProgressReport& progress) {
+std::optional<std::string> write_comparison(const Runs& runs, const std::string& command,
+                                            const std::string& folder, const run::ProgressReport& progress) {
   for (std::size_t i = 0; i < 2; ++i)
     if (runs.of[i]->bodies.size() != 2)
       throw InputError(runs.names[i] + ": is a run of one body; compare runs of two");
@@ -104,6 +104,7 @@ void write_comparison(const Runs& runs, const std::string& command, const std::s
       "the same faces. Pale faces have fewer than a fiftieth of the most.",
       kPicture);
   io::write_text(folder + "/index.html", report::page_html(page));
+  return difference;
 }
 
 }  // namespace lrb::compare

@@ -12,8 +12,8 @@ namespace lrb::compare {
 std::optional<std::string> first_difference(const Runs& runs);
 
 /// Writes folder/index.html and folder/compare.png: what differs first, answers and work step by step, and where the work
-/// went in each. Throws InputError for runs of one body.
-void write_comparison(const Runs& runs, const std::string& command, const std::string& folder,
-                      const run::ProgressReport& progress);
+/// went in each. Returns first_difference(). Throws InputError for runs of one body.
+std::optional<std::string> write_comparison(const Runs& runs, const std::string& command,
+                                            const std::string& folder, const run::ProgressReport& progress);
 
 }  // namespace lrb::compare

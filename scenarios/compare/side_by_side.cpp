@@ -3,15 +3,15 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <optional>
 
 #include "engine/core/error.hpp"
 #include "engine/core/file_bytes.hpp"
 #include "render/montage.hpp"
 #include "render/overlay.hpp"
+#include "scenarios/run/face_values.hpp"
 #include "scenarios/run/moments.hpp"
 #include "scenarios/run/run_scenario.hpp"
-#include "trace/counters.hpp"
-#include "trace/node_work.hpp"
 
 namespace lrb::compare {
 namespace {
@@ -23,25 +23,14 @@ using FaceValues = std::array<std::vector<double>, 2>;  ///< of A and of B
 /// Returns the numbers of faces that colours mean, in a step.
 FaceValues values_of(const run::Recording& r, ColourBy by, std::size_t step) {
   FaceValues out;
-  for (const Side side : {Side::a, Side::b}) {
-    const auto i = static_cast<std::size_t>(side);
-    const LrbRep& rep = r.bodies[i].rep;
-    const auto events = r.trace.events_of(step);
-    if (by == ColourBy::box_tests) {
-      out[i] = trace::box_tests_by_face(rep, r.trees[i], trace::count_nodes(r.trees[i], side, events));
-    } else {
-      const trace::FaceCounts counts = trace::count_faces(rep, side, events);
-      out[i].assign(counts.tests.begin(), counts.tests.end());
-    }
-  }
+  for (std::size_t i = 0; i < out.size(); ++i)
+    out[i] = run::face_values(by, r.bodies[i].rep, static_cast<Side>(i), r.trace.events_of(step),
+                              r.trees.empty() ? nullptr : &r.trees[i]);
   return out;
 }
 
 double largest(const FaceValues& values) {
-  double out = 0;
-  for (const std::vector<double>& of_body : values)
-    for (const double v : of_body) out = std::max(out, v);
-  return out;
+  return run::scale_without_the_smallest(values)[1];
 }
 
 /// Returns |x - y| for each real face; empty unless the bodies have as many.
@@ -75,7 +64,6 @@ struct Panels {
 
   void add(std::size_t which, const std::string& title, ColourBy by, const FaceValues& values,
            const std::string& value_name) {
-    constexpr double kFew = 0.02;  // nodes near the root hold most faces, so that all have a small share
     const run::Recording& recording = *runs.of[which];
     run::RecordedRun recorded = run::recorded_run_of(*runs.scenarios[which], recording);
     if (framing.points.empty()) framing = framing_of(recorded, step);
@@ -90,8 +78,7 @@ struct Panels {
     frame.views.resize(1);
     frame.views[0].wrapper = false;
     frame.views[0].title = title;
-    const double most = std::max(largest(values), 1e-9);
-    recorded.value_range = {{kFew * most, most}};
+    recorded.value_range = run::scale_without_the_smallest(values);
     if (!value_name.empty()) {
       recorded.face_values = &values;
       recorded.value_name = value_name;
@@ -107,20 +94,16 @@ std::size_t step_count(const Runs& runs) {
 }
 
 std::size_t busiest_step(const Runs& runs) {
-  std::size_t best = 0;
   const auto work = [&](std::size_t i) {
     return runs.of[0]->trace.steps[i].result.counters.box_tests +
            runs.of[1]->trace.steps[i].result.counters.box_tests;
   };
-  bool found = false;
-  for (std::size_t i = 0; i < step_count(runs); ++i) {
-    if (!is_whole(*runs.of[0], i) || !is_whole(*runs.of[1], i)) continue;
-    if (!found || work(i) > work(best)) best = i;
-    found = true;
-  }
-  if (!found)
+  std::optional<std::size_t> best;
+  for (std::size_t i = 0; i < step_count(runs); ++i)
+    if (is_whole(*runs.of[0], i) && is_whole(*runs.of[1], i) && (!best || work(i) > work(*best))) best = i;
+  if (!best)
     throw InputError("no step was recorded whole in both runs: record them with a larger trace.max_events");
-  return best;
+  return *best;
 }
 
 bool is_whole(const run::Recording& run, std::size_t step) {

@@ -5,10 +5,10 @@
 #include <filesystem>
 
 #include "render/palette.hpp"
+#include "scenarios/run/face_values.hpp"
 #include "scenarios/run/moments.hpp"
 #include "scenarios/run/node_box_lines.hpp"
 #include "trace/names.hpp"
-#include "trace/node_work.hpp"
 
 namespace lrb::run {
 namespace {
@@ -26,15 +26,6 @@ std::string relation_words(Relation r) {
     default:
       return to_string(r);
   }
-}
-
-/// Returns the ends of the scale of box tests. Nodes near the root hold most faces, so that all have a small share.
-std::array<double, 2> box_test_range(std::span<const std::vector<double>> values) {
-  constexpr double kFew = 0.02;
-  double high = 0;
-  for (const std::vector<double>& of_body : values)
-    for (const double v : of_body) high = std::max(high, v);
-  return {kFew * high, high};
 }
 
 /// Returns a mesh's name without folder and extension.
@@ -102,41 +93,23 @@ std::vector<std::uint8_t> FrameState::met(Side side) const {
 }
 
 trace::Totals FrameState::totals() const {
+  return trace::count_events(events_so_far());
+}
+
+const trace::TreeShape* FrameState::tree_of(Side side) const {
+  if (extras_.trees == nullptr || extras_.trees->empty()) return nullptr;
+  return &(*extras_.trees)[static_cast<std::size_t>(side)];
+}
+
+std::span<const trace::Event> FrameState::events_so_far() const {
   const trace::EventId first = cursor_.step()->first_event;
-  return trace::count_events({trace_.events.data() + first, cursor_.position() + std::size_t{1} - first});
+  return {trace_.events.data() + first, cursor_.position() + std::size_t{1} - first};
 }
 
 std::vector<double> FrameState::values_of(Side side) const {
-  using ColourBy = spec::FrameSpec::ColourBy;
-  if (extras_.face_values != nullptr) return (*extras_.face_values)[static_cast<std::size_t>(side)];
-  if (spec_.colour_by < ColourBy::face_tests) return {};
-  const LrbRep& rep = *reps_[static_cast<std::size_t>(side)];
-  const trace::EventId first = cursor_.step()->first_event;
-  const std::span<const trace::Event> events(trace_.events.data() + first,
-                                             cursor_.position() + std::size_t{1} - first);
-  if (spec_.colour_by == ColourBy::box_tests) {
-    if (extras_.trees == nullptr || extras_.trees->empty()) return {};
-    const trace::TreeShape& tree = (*extras_.trees)[static_cast<std::size_t>(side)];
-    return trace::box_tests_by_face(rep, tree, trace::count_nodes(tree, side, events));
-  }
-  const trace::FaceCounts counts = trace::count_faces(rep, side, events);
-  const auto chosen = [&]() -> const std::vector<std::uint32_t>& {
-    switch (spec_.colour_by) {
-      case ColourBy::refinements:
-        return counts.refinements;
-      case ColourBy::hits:
-        return counts.hits;
-      case ColourBy::misses:
-        return counts.misses;
-      case ColourBy::expansions:
-        return counts.expansions;
-      case ColourBy::plane_tests:
-        return counts.plane_tests;
-      default:
-        return counts.tests;
-    }
-  }();
-  return {chosen.begin(), chosen.end()};
+  const auto i = static_cast<std::size_t>(side);
+  if (extras_.face_values != nullptr) return (*extras_.face_values)[i];
+  return face_values(spec_.colour_by, *reps_[i], side, events_so_far(), tree_of(side));
 }
 
 render::Scene FrameState::scene(bool wrapper, bool plain) const {
@@ -186,7 +159,7 @@ render::Scene FrameState::scene(bool wrapper, bool plain) const {
       options.value_name = std::string(name_of(spec_.colour_by));
       std::replace(options.value_name.begin(), options.value_name.end(), '_', ' ');
       if (spec_.colour_by == spec::FrameSpec::ColourBy::box_tests)
-        options.value_range = box_test_range(values);
+        options.value_range = scale_without_the_smallest(values);
       if (!extras_.value_name.empty()) options.value_name = extras_.value_name;
       if (extras_.value_range) options.value_range = extras_.value_range;
       break;
@@ -197,13 +170,9 @@ render::Scene FrameState::scene(bool wrapper, bool plain) const {
   options.isolate = spec_.isolate;
   options.ghost_rest = spec_.ghost_rest;
   render::Scene scene = render::build_scene(bodies, highlight, options);
-  if (spec_.node_boxes && extras_.trees != nullptr && !extras_.trees->empty()) {
-    const trace::EventId first = cursor_.step()->first_event;
-    for (const Side side : {Side::a, Side::b})
-      add_node_boxes(scene, (*extras_.trees)[static_cast<std::size_t>(side)], side, cursor_.pose(side),
-                     *spec_.node_boxes,
-                     {trace_.events.data() + first, cursor_.position() + std::size_t{1} - first});
-  }
+  for (const Side side : {Side::a, Side::b})
+    if (const trace::TreeShape* tree = tree_of(side); spec_.node_boxes && tree != nullptr)
+      add_node_boxes(scene, *tree, side, cursor_.pose(side), *spec_.node_boxes, events_so_far());
   return scene;
 }
 

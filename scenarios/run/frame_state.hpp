@@ -3,6 +3,7 @@
 
 #include <array>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -59,6 +60,8 @@ class FrameState {
                                                  ///< shown.
   /// (|F|) Marks the faces of a coarse answer so far; empty if the answer is one for contact regions.
   std::vector<std::uint8_t> met(Side side) const;
+  const trace::TreeShape* tree_of(Side side) const;     ///< Returns null where there is none.
+  std::span<const trace::Event> events_so_far() const;  ///< Returns those of the step.
   std::vector<double> values_of(Side side) const;
   std::string event_text() const;
   static std::string node_pair_text(const trace::Event& e);

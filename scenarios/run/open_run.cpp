@@ -12,20 +12,19 @@
 namespace lrb::run {
 namespace {
 
-/// Throws if the trace cannot have come from these bodies.
-void check_events(const std::string& path, const trace::Trace& trace,
-                  const std::vector<bodies::LoadedBody>& bodies) {
+/// Throws if the trace cannot have come from the run's bodies.
+void check_events(const std::string& path, const Recording& run) {
+  const trace::Trace& trace = run.trace;
   try {
-    trace::Cursor cursor = bodies.size() == 1 ? trace::Cursor(trace, bodies[0].rep)
-                                              : trace::Cursor(trace, bodies[0].rep, bodies[1].rep);
+    trace::Cursor cursor = run.bodies.size() == 1
+                               ? trace::Cursor(trace, run.bodies[0].rep)
+                               : trace::Cursor(trace, run.bodies[0].rep, run.bodies[1].rep);
     if (!trace.events.empty()) cursor.seek(static_cast<trace::EventId>(trace.events.size() - 1));
-    if (trace.header.level == EventLevel::faces || !trace.header.engine.empty() || bodies.size() != 2) return;
-    for (const Side side : {Side::a, Side::b}) {
-      const LrbRep& rep = bodies[static_cast<std::size_t>(side)].rep;
-      trace::count_nodes(trace::TreeShape(rep.tree()), side, trace.events);
+    for (std::size_t i = 0; i < run.trees.size(); ++i) {
+      trace::count_nodes(run.trees[i], static_cast<Side>(i), trace.events);
       for (const trace::Event& e : trace.events)
         if (e.kind == EventKind::begin && e.phase() == Phase::walk)
-          trace::walked_tree(rep, side == Side::a ? e.depth_a : e.depth_b);
+          trace::walked_tree(run.bodies[i].rep, i == 0 ? e.depth_a : e.depth_b);
     }
   } catch (const InputError& e) {
     throw InputError(printable_name(path) + ": " + e.what());
@@ -71,11 +70,9 @@ Recording open_run(trace::Trace trace, const std::string& trace_path,
   out.bodies =
       find_bodies(trace_path, bodies,
                   alone ? std::vector<std::string>{"a.lrb"} : std::vector<std::string>{"a.lrb", "b.lrb"});
-  check_events(trace_path, out.trace, out.bodies);
+  out.trees = trees_of(out.trace, out.bodies);
+  check_events(trace_path, out);
   out.results = contacts_of(out.trace, out.bodies);
-  std::vector<const LrbRep*> reps;
-  for (const bodies::LoadedBody& body : out.bodies) reps.push_back(&body.rep);
-  out.trees = trees_of(out.trace, reps);
   return out;
 }
 

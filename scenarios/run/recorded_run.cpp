@@ -98,10 +98,12 @@ void record_wrapper(const spec::Scenario& s, Recording& r) {
 
 }  // namespace
 
-std::vector<trace::TreeShape> trees_of(const trace::Trace& trace, const std::vector<const LrbRep*>& reps) {
+std::vector<trace::TreeShape> trees_of(const trace::Trace& trace,
+                                       const std::vector<bodies::LoadedBody>& bodies) {
   std::vector<trace::TreeShape> out;
-  if (trace.header.level == EventLevel::faces || !trace.header.engine.empty() || reps.size() != 2) return out;
-  for (const LrbRep* rep : reps) out.emplace_back(rep->tree());
+  if (trace.header.level == EventLevel::faces || !trace.header.engine.empty() || bodies.size() != 2)
+    return out;
+  for (const bodies::LoadedBody& body : bodies) out.emplace_back(body.rep.tree());
   return out;
 }
 
@@ -132,9 +134,7 @@ Recording record(const spec::Scenario& scenario, std::vector<bodies::LoadedBody>
     record_collision(scenario, r, progress);
   else
     record_wrapper(scenario, r);
-  std::vector<const LrbRep*> reps;
-  for (const bodies::LoadedBody& body : r.bodies) reps.push_back(&body.rep);
-  r.trees = trees_of(r.trace, reps);
+  r.trees = trees_of(r.trace, r.bodies);
   if (r.trace.truncated())
     r.notes.push_back("the trace holds the first " + std::to_string(r.trace.events.size()) + " of " +
                       std::to_string(r.trace.events_seen) + " events (trace.max_events)");

@@ -26,7 +26,8 @@ struct Recording {
 };
 
 /// Returns the trees of the bodies that a trace with pairs of nodes is about; none for other traces.
-std::vector<trace::TreeShape> trees_of(const trace::Trace& trace, const std::vector<const LrbRep*>& reps);
+std::vector<trace::TreeShape> trees_of(const trace::Trace& trace,
+                                       const std::vector<bodies::LoadedBody>& bodies);
 
 bodies::LoadedBody make_body(const spec::BodySpec& spec);
 

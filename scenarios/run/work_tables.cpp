@@ -57,8 +57,8 @@ report::PageTable depth_table(const RecordedRun& p, Side side) {
                       group_digits(w.box_tests)});
   }
   t.note =
-      "Over all time steps; walks of levels are left out. Expected: nodes that a random line through the root's box meets, by the surface area "
-      "heuristic. Visited: different nodes; visits: pairs of nodes, a node once with each of the other body's.";
+      "Over all time steps; walks of levels are left out. Expected: nodes that a random line through the root's box "
+      "meets, by the surface area heuristic. Visited: different nodes; visits: pairs of nodes, a node once with each of the other body's.";
   return t;
 }
 

@@ -1,10 +1,7 @@
-/// lrbscope-xray-cgal: as lrbscope-xray-fcl (xray_fcl.cpp has the form of input and output), for CGAL's AABB_tree: asks
-/// the tree over B's triangles for those that meet, with one triangle of A after another, moved into B's frame, by traits
+/// lrbscope-xray-cgal: as lrbscope-xray-fcl, for CGAL's AABB_tree (xray_form.hpp: input and output): asks the tree over B's triangles for those that meet, with one triangle of A after another, moved into B's frame, by traits
 /// that do what CGAL's own do and tell it. A's tree is a root with a leaf for each triangle. A program of its own, because
 /// CGAL's licence is the GPL.
 #include <cstdio>
-#include <exception>
-#include <fstream>
 #include <map>
 #include <vector>
 
@@ -12,6 +9,8 @@
 #include <CGAL/AABB_tree.h>
 #include <CGAL/AABB_triangle_primitive.h>
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+
+#include "scenarios/worker_programs/xray_form.hpp"
 
 namespace {
 
@@ -24,41 +23,23 @@ using Traits = CGAL::AABB_traits<Kernel, Primitive>;
 using Tree = CGAL::AABB_tree<Traits>;
 using Node = CGAL::AABB_node<Traits>;
 
-struct BadInput {};
-
-template <class T>
-T next(std::istream& in) {
-  T value;
-  if (!(in >> value)) throw BadInput();
-  return value;
-}
-
 Triangles read_triangles(std::istream& in) {
-  const auto vertex_count = next<std::size_t>(in), triangle_count = next<std::size_t>(in);
+  const xray_form::Triangles t = xray_form::read_triangles(in);
   std::vector<Point> points;
-  for (std::size_t i = 0; i < vertex_count; ++i) {
-    const auto x = next<double>(in), y = next<double>(in), z = next<double>(in);
-    points.emplace_back(x, y, z);
-  }
+  for (const auto& v : t.vertices) points.emplace_back(v[0], v[1], v[2]);
   Triangles out;
-  for (std::size_t i = 0; i < triangle_count; ++i) {
-    const auto a = next<std::size_t>(in), b = next<std::size_t>(in), c = next<std::size_t>(in);
-    out.emplace_back(points.at(a), points.at(b), points.at(c));
-  }
+  for (const auto& c : t.corners) out.emplace_back(points[c[0]], points[c[1]], points[c[2]]);
   return out;
 }
 
 Kernel::Aff_transformation_3 read_pose(std::istream& in) {
-  double m[12];
-  for (double& x : m) x = next<double>(in);
+  const auto m = xray_form::next_numbers<12, double>(in);
   return {m[0], m[1], m[2], m[3], m[4], m[5], m[6], m[7], m[8], m[9], m[10], m[11]};
 }
 
 void print_box(const CGAL::Bbox_3& box) {
-  for (int k = 0; k < 3; ++k) std::printf(" %.17g", (box.min(k) + box.max(k)) / 2);
-  for (int axis = 0; axis < 3; ++axis)
-    for (int k = 0; k < 3; ++k) std::printf(" %.17g", k == axis ? (box.max(k) - box.min(k)) / 2 : 0.0);
-  std::printf("\n");
+  xray_form::print_box([&](int k) { return (box.min(k) + box.max(k)) / 2; },
+                       [&](int axis, int k) { return k == axis ? (box.max(k) - box.min(k)) / 2 : 0.0; });
 }
 
 /// Numbers of a tree's nodes; leaves for single triangles, which CGAL has no nodes for, follow them. CGAL's traversal shows
@@ -157,17 +138,16 @@ void print_flat_tree(const Triangles& triangles) {
   }
 }
 
-int run() {
-  std::ifstream in("/proc/self/fd/3");
+int run(std::istream& in) {
   const Triangles a = read_triangles(in), b = read_triangles(in);
-  if (a.empty() || b.size() < 2) throw BadInput();
+  if (a.empty() || b.size() < 2) throw xray_form::BadInput();
   Tree tree(b.cbegin(), b.cend());
   tree.build();
   const Numbers numbers(tree, b);
   std::printf("title CGAL %s, AABB_tree\n", CGAL_VERSION_STR);
   print_flat_tree(a);
   numbers.print();
-  const auto poses = next<int>(in);
+  const auto poses = xray_form::next<int>(in);
   for (int p = 0; p < poses; ++p) {
     const auto pose_a = read_pose(in), pose_b = read_pose(in);
     const auto relative = pose_b.inverse() * pose_a;
@@ -187,13 +167,5 @@ int run() {
 }  // namespace
 
 int main() {
-  constexpr int kBadInput = 2;
-  try {
-    return run();
-  } catch (const BadInput&) {
-    return kBadInput;
-  } catch (const std::exception& e) {
-    std::fprintf(stderr, "%s\n", e.what());
-    return 1;
-  }
+  return xray_form::exit_code_of(run);
 }

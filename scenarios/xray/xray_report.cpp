@@ -48,6 +48,8 @@ report::PageTable wrong_table(const Xray& x, std::uint64_t& wrong) {
 
 std::vector<std::string> write_xray(const Xray& x, const std::string& folder,
                                     const run::ProgressReport& progress) {
+  const compare::Runs runs{{&x.theirs, &x.ours}, {x.walk.title, "lrbscope"}, {&x.scenario, &x.scenario}};
+  const std::size_t step = compare::busiest_step(runs);
   std::vector<std::string> notes;
   compare::refuse_folder_of_run(folder);
   io::make_folder(folder);
@@ -64,17 +66,12 @@ std::vector<std::string> write_xray(const Xray& x, const std::string& folder,
         run::write_run(scenario, *recording, folder + "/" + name, x.command, progress);
     notes.insert(notes.end(), outcome.notes.begin(), outcome.notes.end());
   }
-  const compare::Runs runs{{&x.theirs, &x.ours}, {x.walk.title, "lrbscope"}, {&x.scenario, &x.scenario}};
-  const std::size_t step = compare::busiest_step(runs);
   report::Page page;
   page.title = x.scenario.name;
   page.purpose = "What " + x.walk.title + " does for two bodies at " + std::to_string(x.walk.steps.size()) +
                  (x.walk.steps.size() == 1 ? " pose" : " poses") +
                  ", recorded in its own traversal, beside what lrbscope does.";
-  if (const std::string cut =
-          compare::cut_words({{&x.theirs, &x.ours}, {x.walk.title, "lrbscope"}, {&x.scenario, &x.scenario}});
-      !cut.empty())
-    page.purpose += " " + cut;
+  if (const std::string cut = compare::cut_words(runs); !cut.empty()) page.purpose += " " + cut;
   page.command = x.command;
   std::uint64_t wrong = 0;
   report::PageTable wrong_pairs = wrong_table(x, wrong);

@@ -332,15 +332,7 @@ class CoarseQuery {
 
   std::optional<bool> locate_wrappers(LimitedRules<Clock>& rules) {
     std::optional<bool> nested;
-    in_phase(probe_, Phase::relation, [&] {
-      std::uint64_t points = 0;
-      nested = wrappers_nested(ctx_, in_time(rules), [&](Side side, VertexId v, Where where) {
-        ++points;
-        if constexpr (Probe::kEnabled)
-          if (probe_.level() != EventLevel::faces) probe_.point(side, v, where);
-      });
-      return points;
-    });
+    locate_in_phase(probe_, [&](const auto& see) { nested = wrappers_nested(ctx_, in_time(rules), see); });
     return nested;
   }
 

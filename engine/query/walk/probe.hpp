@@ -66,17 +66,35 @@ struct NullProbe {
   void end(Phase, std::uint64_t /*count*/) {}
 };
 
+/// Returns true if a probe is told more than face tests, refinements and contacts.
+template <class Probe>
+bool is_told_more(const Probe& probe) {
+  if constexpr (Probe::kEnabled) return probe.level() != EventLevel::faces;
+  return false;
+}
+
 /// Does a phase of a query and tells the probe where it begins and ends. work() returns the phase's count.
 template <class Probe, class Work>
 void in_phase(Probe& probe, Phase phase, const Work& work) {
-  if constexpr (Probe::kEnabled) {
-    if (probe.level() != EventLevel::faces) {
-      probe.begin(phase, 0, 0);
-      probe.end(phase, work());
-      return;
-    }
+  if (!is_told_more(probe)) {
+    work();
+    return;
   }
-  work();
+  probe.begin(phase, 0, 0);
+  probe.end(phase, work());
+}
+
+/// Locates points as a phase. work(see) calls see(side, vertex, where) for each point.
+template <class Probe, class Work>
+void locate_in_phase(Probe& probe, const Work& work) {
+  in_phase(probe, Phase::relation, [&] {
+    std::uint64_t points = 0;
+    work([&](Side side, VertexId v, Where where) {
+      ++points;
+      if (is_told_more(probe)) probe.point(side, v, where);
+    });
+    return points;
+  });
 }
 
 }  // namespace lrb

@@ -59,15 +59,7 @@ void decide_relation(QueryContext& ctx, CollideResult& result);
 template <class Probe, class InTime>
 bool decide_relation_watched(QueryContext& ctx, CollideResult& result, Probe& probe, InTime&& in_time) {
   bool decided = false;
-  in_phase(probe, Phase::relation, [&] {
-    std::uint64_t points = 0;
-    decided = decide_relation(ctx, result, in_time, [&](Side side, VertexId v, Where where) {
-      ++points;
-      if constexpr (Probe::kEnabled)
-        if (probe.level() != EventLevel::faces) probe.point(side, v, where);
-    });
-    return points;
-  });
+  locate_in_phase(probe, [&](const auto& see) { decided = decide_relation(ctx, result, in_time, see); });
   return decided;
 }
 

@@ -80,7 +80,7 @@ class TreeQuery {
   void run() {
     const ObbTree &a = ctx_[Side::a].tree(), &b = ctx_[Side::b].tree();
     if (a.empty() || b.empty()) return;
-    if (!is_watched()) {
+    if (!is_told_more(probe_)) {
       walk();
       return;
     }
@@ -89,12 +89,6 @@ class TreeQuery {
   }
 
  private:
-  /// Returns true if more than face tests is to be told.
-  bool is_watched() const {
-    if constexpr (Probe::kEnabled) return probe_.level() != EventLevel::faces;
-    return false;
-  }
-
   /// Returns the number of pairs of nodes.
   std::uint64_t walk() {
     // A small buffer where one pair may be enough, so that little is searched beyond it.
@@ -105,7 +99,7 @@ class TreeQuery {
     while (k.stack_size != 0 && !done) {
       k.out_size = 0;
       if constexpr (Rules::kLimited) k.most_node_pairs = rules_.most_node_pairs(k.node_pairs);
-      is_watched() ? NodeWatch<Probe>(ctx_, probe_).run(k) : run_tree_kernel(k);
+      is_told_more(probe_) ? NodeWatch<Probe>(ctx_, probe_).run(k) : run_tree_kernel(k);
       if constexpr (Rules::kLimited) done = rules_.time_is_up(result_.pairs.size());
       for (std::uint32_t i = 0; i < k.out_size && !done; ++i) done = test(k.out[i]);
       if (result_.pairs.size() > pair_limit_) refuse_pairs(pair_limit_);
@@ -127,7 +121,7 @@ class TreeQuery {
     const FaceId fa = ctx_[Side::a].rep().face_of_simplex(c.a), fb = ctx_[Side::b].rep().face_of_simplex(c.b);
     const std::uint32_t depth_a = show_face(ctx_, Side::a, fa, result_, probe_);
     const std::uint32_t depth_b = show_face(ctx_, Side::b, fb, result_, probe_);
-    const std::uint64_t fallbacks = is_watched() ? exact::exact_fallbacks() : 0;
+    const std::uint64_t fallbacks = is_told_more(probe_) ? exact::exact_fallbacks() : 0;
     exact::Meet meet = meet_of(c);
     if constexpr (Rules::kWrappers)
       if (meet == exact::Meet::disjoint && c.certainty != Certainty::disjoint)
@@ -136,7 +130,7 @@ class TreeQuery {
     count_face_test(real, std::max(depth_a, depth_b), result_.counters);
     if constexpr (Probe::kEnabled) {
       probe_.face_test(c.a, c.b, meet, depth_a, depth_b);
-      if (is_watched()) probe_.tested_by(tested_by(c, fallbacks));
+      if (is_told_more(probe_)) probe_.tested_by(tested_by(c, fallbacks));
     }
     if (meet == exact::Meet::disjoint) return false;
     if (mode_ == Mode::first_pair && !result_.pairs.empty()) {

@@ -43,8 +43,8 @@ int run_compare(const CompareOptions& o, const Globals& globals) {
   const compare::Runs runs{
       {&recordings[0], &recordings[1]}, names_of(o.first, o.second), {&scenarios[0], &scenarios[1]}};
   const std::string folder = o.folder.empty() ? "out/compare" : o.folder;
-  compare::write_comparison(runs, globals.command_line, folder, progress_report(globals.quiet));
-  const std::optional<std::string> difference = compare::first_difference(runs);
+  const std::optional<std::string> difference =
+      compare::write_comparison(runs, globals.command_line, folder, progress_report(globals.quiet));
   print(difference.value_or("the runs are the same") + "\n" + folder + "/index.html\n");
   return kOk;
 }
