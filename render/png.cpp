@@ -166,6 +166,7 @@ class Reader {
     int count = 0;
     png_get_text(png_, info_, &texts, &count);
     std::vector<PngText> out;
+    out.reserve(static_cast<std::size_t>(count));
     for (int i = 0; i < count; ++i) out.emplace_back(texts[i].key, texts[i].text);
     return out;
   }
@@ -228,6 +229,7 @@ DecodedPng decode_png(std::span<const std::uint8_t> bytes, const std::string& na
   DecodedPng out;
   out.image = Image(static_cast<int>(reader.width()), static_cast<int>(reader.height()));
   std::vector<png_bytep> rows;
+  rows.reserve(reader.height());
   for (int y = 0; y < out.image.height(); ++y)
     rows.push_back(reinterpret_cast<png_bytep>(&out.image.at(0, y)));
   refuse_unless(reader.read_pixels(rows));

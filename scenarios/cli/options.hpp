@@ -18,6 +18,7 @@ namespace lrb::cli {
 template <class Enum, class Target>
 void add_choice(CLI::App& app, const std::string& name, Target& target, const std::string& what) {
   std::vector<std::string> words;
+  words.reserve(kWords<Enum>.size());
   for (const EnumWord<Enum>& entry : kWords<Enum>) words.emplace_back(entry.word);
   app.add_option_function<std::string>(
          name, [&target](const std::string& word) { target = from_name<Enum>(word).value(); }, what)

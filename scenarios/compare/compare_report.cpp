@@ -80,7 +80,7 @@ std::optional<std::string> write_comparison(const Runs& runs, const std::string&
   refuse_folder_of_run(folder);
   const std::size_t step = busiest_step(runs);
   const render::Image picture = draw(runs, step, progress);
-  const std::optional<std::string> difference = first_difference(runs);
+  std::optional<std::string> difference = first_difference(runs);
   report::Page page;
   page.title = runs.names[0] + " and " + runs.names[1];
   page.purpose = "Two recorded runs, step by step.";

@@ -109,8 +109,8 @@ class Painter {
 };
 
 const std::vector<CollideResult>& results_of(const RecordedRun& recorded) {
-  static const std::vector<CollideResult> kNoResults;
-  return recorded.results != nullptr ? *recorded.results : kNoResults;
+  static const std::vector<CollideResult> none;
+  return recorded.results != nullptr ? *recorded.results : none;
 }
 
 /// What all frames of a run have in common. There must be at least one event.

@@ -58,6 +58,7 @@ std::vector<bodies::LoadedBody> find_bodies(const std::string& trace_path,
     throw InputError(trace_path + ": has " + std::to_string(names.size()) + " bodies, --bodies names " +
                      std::to_string(paths.size()));
   std::vector<bodies::LoadedBody> out;
+  out.reserve(paths.size());
   for (const std::string& path : paths) out.push_back(bodies::load_body(path));
   return out;
 }

@@ -52,7 +52,7 @@ void read_motion(const io::JsonNode& node, Crowd& c) {
 }
 
 Eigen::Vector3d read_room(const io::JsonNode& node) {
-  const Eigen::Vector3d room = node.vector();
+  Eigen::Vector3d room = node.vector();
   if (!(room.minCoeff() >= 0 && room.maxCoeff() <= kFar)) node.fail("expected three sizes of at least 0");
   return room;
 }

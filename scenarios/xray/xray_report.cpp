@@ -1,6 +1,7 @@
 #include "scenarios/xray/xray_report.hpp"
 
 #include <algorithm>
+#include <filesystem>
 
 #include "render/overlay.hpp"
 #include "render/png.hpp"
@@ -62,8 +63,8 @@ std::vector<std::string> write_xray(const Xray& x, const std::string& folder,
             ? "Recorded in " + x.walk.title +
                   ". It has no wrappers, so that none is refined; contact curves are exact ones."
             : "Recorded in lrbscope.";
-    const run::RunOutcome outcome =
-        run::write_run(scenario, *recording, folder + "/" + name, x.command, progress);
+    const run::RunOutcome outcome = run::write_run(
+        scenario, *recording, (std::filesystem::path(folder) / name).string(), x.command, progress);
     notes.insert(notes.end(), outcome.notes.begin(), outcome.notes.end());
   }
   report::Page page;

@@ -49,7 +49,7 @@ inline Outcome run(const Folder& folder, const std::vector<std::string>& argumen
 /// Runs the program with arguments that it refuses, in one line, before it writes anything.
 inline Outcome check_refused(const Folder& folder, const std::vector<std::string>& arguments) {
   const std::vector<std::string> before = folder.tree();
-  const Outcome o = run(folder, arguments);
+  Outcome o = run(folder, arguments);
   CAPTURE(o.err);
   CHECK(o.code == 2);
   CHECK(o.error_lines() == 1);

@@ -259,7 +259,7 @@ TEST_CASE("bad files are refused with one line that says where and what") {
     try {
       trace_from_json(text, "t.json");
     } catch (const InputError& e) {
-      const std::string what = e.what();
+      std::string what = e.what();
       CHECK(what.find('\n') == std::string::npos);
       CHECK(what.starts_with("t.json: "));
       return what;

@@ -52,6 +52,7 @@ class JsonNode {
   template <class Enum>
   Enum choice() const {
     std::vector<std::pair<std::string, Enum>> words;
+    words.reserve(kWords<Enum>.size());
     for (const EnumWord<Enum>& entry : kWords<Enum>) words.emplace_back(entry.word, entry.value);
     return choice(words);
   }

@@ -164,9 +164,9 @@ const std::vector<std::string>& seeds(const std::string& format) {
 
 TEST_CASE("malformed .lrb") {
   const std::string good = test::lrb_bytes(LrbRep(toy::dented_box()));
-  const std::size_t name = 8 + 4 * 4, vertices = name + 8 + std::strlen("dented box"),
-                    offsets = vertices + 8 + 13 * 24, corners = offsets + 8 + 16 * 4,
-                    inner = corners + 8 + 56 * 4;
+  const std::size_t name = 8 + 4UL * 4, vertices = name + 8 + std::strlen("dented box"),
+                    offsets = vertices + 8 + 13UL * 24, corners = offsets + 8 + 16UL * 4,
+                    inner = corners + 8 + 56UL * 4;
   std::string flipped = good;
   flipped[vertices + 20] ^= 1;
   check_all("m.lrb", {"inspect", "FILE", "--validate", "--render", "-o", "new/x.png"},

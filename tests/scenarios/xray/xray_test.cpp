@@ -42,8 +42,7 @@ run::Recording tetrahedra(spec::Scenario& scenario) {
   scenario.motion.poses = {Pose::translation({0.1, 0.1, 0.1})};
   scenario.bodies = {{}, {}};
   scenario.events = EventLevel::nodes;
-  std::vector<bodies::LoadedBody> bodies;
-  for (int i = 0; i < 2; ++i) bodies.push_back(bodies::body_of_mesh(shapes::tetrahedron()));
+  std::vector<bodies::LoadedBody> bodies(2, bodies::body_of_mesh(shapes::tetrahedron()));
   return run::record(scenario, std::move(bodies), [](const std::string&, std::uint64_t, std::uint64_t) {});
 }
 
