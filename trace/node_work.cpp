@@ -22,7 +22,7 @@ NodeCounts count_nodes(const TreeShape& tree, Side side, std::span<const Event> 
   NodeCounts counts{none, none, none};
   bool is_body = true;
   for (const Event& e : events) {
-    if (e.kind == EventKind::begin && e.phase() == Phase::walk)
+    if (e.kind == EventKind::begin && walks_trees(e.phase()))
       is_body = (side == Side::a ? e.depth_a : e.depth_b) == 0;
     if (e.kind != EventKind::node_pair || !is_body) continue;
     const std::uint32_t node = side == Side::a ? e.a : e.b;

@@ -33,7 +33,7 @@ void find_axes(Trace& trace, const std::array<const LrbRep*, 2>& reps) {
   for (EventId i = 0; i < trace.events.size(); ++i) {
     Event& e = trace.events[i];
     if (e.kind == EventKind::step) step = trace.step_of(i);
-    if (e.kind == EventKind::begin && e.phase() == Phase::walk)
+    if (e.kind == EventKind::begin && walks_trees(e.phase()))
       tree = {&walked_tree(*reps[0], e.depth_a), &walked_tree(*reps[1], e.depth_b)};
     if (e.kind != EventKind::node_pair || e.work().met != 0) continue;
     BoxPair boxes;
@@ -69,6 +69,7 @@ void Recorder::start_over() {
   header.event_cap = settings_.event_cap;
   header.level = settings_.level;
   header.engine = settings_.engine;
+  header.coherent = settings_.coherent;
   for (std::size_t side = 0; side < 2; ++side) {
     if (!reps_[side]) continue;
     header.bodies.push_back(describe_body(*reps_[side], settings_.sources[side]));

@@ -18,6 +18,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/query/collide_probe.hpp"
 #include "trace/trace.hpp"
 
 namespace lrb::trace {
@@ -31,10 +32,11 @@ struct RecorderSettings {
   std::uint32_t event_cap =
       1'000'000;  ///< events beyond this number are counted but not stored (at most kMaxId)
   EventLevel level = EventLevel::faces;
-  std::string engine;  ///< another one whose walk is told, over trees of its own; empty: ours
+  std::string engine;     ///< another one whose walk is told, over trees of its own; empty: ours
+  bool coherent = false;  ///< steps go on from the ones before
 };
 
-class Recorder {
+class Recorder final : public CollideProbe {
  public:
   static constexpr bool kEnabled = true;
 
@@ -48,7 +50,8 @@ class Recorder {
   void begin_step(std::uint32_t index, const Pose& pose_a, const Pose& pose_b = {});
   void end_step(const CollideResult& result);
 
-  void face_test(SimplexId a, SimplexId b, exact::Meet meet, std::uint32_t depth_a, std::uint32_t depth_b) {
+  void face_test(SimplexId a, SimplexId b, exact::Meet meet, std::uint32_t depth_a,
+                 std::uint32_t depth_b) override {
     // Whichever of the two refinements came later made the test possible. None is 0, and 0 - 1 is kNull.
     const std::uint32_t cause = std::max(brought_in(0, a), brought_in(1, b)) - 1u;
     const EventId id = push({.a = a,
@@ -62,7 +65,7 @@ class Recorder {
     last_hit_ = meet == exact::Meet::disjoint ? kNull : id;
   }
 
-  void refine(Side side, RegionId region, std::uint32_t faces_added) {
+  void refine(Side side, RegionId region, std::uint32_t faces_added) override {
     const EventId id = push({.a = region,
                              .b = faces_added,
                              .cause = cause_of_refinement(),
@@ -74,7 +77,7 @@ class Recorder {
   }
 
   /// Records that a wrapper grew back over a region: in a coarse query, or in a run that shows a construction.
-  void coarsen(Side side, RegionId region, std::uint32_t faces_removed) {
+  void coarsen(Side side, RegionId region, std::uint32_t faces_removed) override {
     push({.a = region,
           .b = faces_removed,
           .cause = cause_of_refinement(),
@@ -82,13 +85,13 @@ class Recorder {
           .side = side});
   }
 
-  void contact(SimplexId a, SimplexId b, exact::Meet meet) {
+  void contact(SimplexId a, SimplexId b, exact::Meet meet) override {
     push({.a = a, .b = b, .cause = last_hit_, .kind = EventKind::contact, .meet = meet});
   }
 
-  EventLevel level() const { return settings_.level; }
+  EventLevel level() const override { return settings_.level; }
 
-  std::uint32_t node_pair(const NodeVisit& visit) {
+  std::uint32_t node_pair(const NodeVisit& visit) override {
     const std::uint32_t depth = visit.parent == kNull ? 0 : trace_.events[visit.parent].depth_a + 1u;
     const NodeWork work{visit.box_tests, visit.met, visit.parted, visit.certain};
     last_pair_ = push({.a = visit.a,
@@ -101,26 +104,26 @@ class Recorder {
     return last_pair_;
   }
 
-  void plane_test(SimplexId a, SimplexId b, Side whose) {
+  void plane_test(SimplexId a, SimplexId b, Side whose) override {
     push({.a = a, .b = b, .cause = last_pair_, .kind = EventKind::plane_test, .side = whose});
   }
 
-  void tested_by(TestedBy how) {
+  void tested_by(TestedBy how) override {
     if (last_test_ != kNull) trace_.events[last_test_].detail = static_cast<std::uint8_t>(how);
   }
 
-  void point(Side whose, VertexId v, Where where) {
+  void point(Side whose, VertexId v, Where where) override {
     push({.a = v, .kind = EventKind::point, .side = whose, .detail = static_cast<std::uint8_t>(where)});
   }
 
-  void begin(Phase phase, std::uint32_t walked_a, std::uint32_t walked_b) {
+  void begin(Phase phase, std::uint32_t walked_a, std::uint32_t walked_b) override {
     phase_ = push({.a = static_cast<std::uint32_t>(phase),
                    .depth_a = saturated(walked_a),
                    .depth_b = saturated(walked_b),
                    .kind = EventKind::begin});
   }
 
-  void end(Phase phase, std::uint64_t count) {
+  void end(Phase phase, std::uint64_t count) override {
     push({.a = static_cast<std::uint32_t>(phase),
           .b = static_cast<std::uint32_t>(std::min(count, std::uint64_t{kMaxId})),
           .cause = phase_,

@@ -154,7 +154,8 @@ struct TraceHeader {
   Clock clock = Clock::event;
   std::uint32_t event_cap = 0;  ///< largest number of events that are stored
   EventLevel level = EventLevel::faces;
-  std::string engine;  ///< the one that was recorded, in words; empty: ours
+  std::string engine;     ///< the one that was recorded, in words; empty: ours
+  bool coherent = false;  ///< each step went on from the one before, by a CoherentQuery
 };
 
 struct Trace {

@@ -55,7 +55,7 @@ void read_more(const TraceNode& args, Event& e) {
     e.side = args.at("of").named<Side>();
     e.detail = static_cast<std::uint8_t>(args.at("where").named<Where>());
   }
-  if (e.kind == EventKind::begin && e.phase() == Phase::walk) {
+  if (e.kind == EventKind::begin && walks_trees(e.phase())) {
     e.depth_a = args.at("level of A").integer<std::uint16_t>();
     e.depth_b = args.at("level of B").integer<std::uint16_t>();
   }
@@ -127,6 +127,7 @@ class Reader {
     h.clock = metadata.at("clock").named<Clock>();
     if (metadata.has("level")) h.level = metadata.at("level").named<EventLevel>();
     if (metadata.has("engine")) h.engine = metadata.at("engine").string();
+    if (metadata.has("coherent")) h.coherent = metadata.at("coherent").boolean();
     h.request = read_request(metadata.at("request"));
     const TraceNode bodies = metadata.at("bodies");
     const std::size_t count = bodies.array_size();

@@ -252,7 +252,7 @@ class TraceWriter {
       write_word("of", name_of(e.side));
       write_word("where", name_of(e.where()));
     }
-    if (e.kind == EventKind::begin && e.phase() == Phase::walk) {
+    if (e.kind == EventKind::begin && walks_trees(e.phase())) {
       write_number("level of A", e.depth_a);
       write_number("level of B", e.depth_b);
     }
@@ -370,7 +370,7 @@ class TraceWriter {
         count_pending(e);
         break;
       case EventKind::begin:
-        if (e.phase() == Phase::walk) pending_pairs_ = 1, pending_tests_ = 0;
+        if (walks_trees(e.phase())) pending_pairs_ = 1, pending_tests_ = 0;
         break;
       case EventKind::refine:
         ++refinements_;

@@ -47,6 +47,7 @@ void write_metadata(const Trace& trace, JsonOut& out) {
   w.member("clock", name_of(h.clock));
   if (h.level != EventLevel::faces) w.member("level", name_of(h.level));
   if (!h.engine.empty()) w.member("engine", h.engine);
+  if (h.coherent) w.member("coherent", true);
   w.key("events");
   write_event_counts(w, trace);
   w.key("totals");

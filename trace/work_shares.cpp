@@ -20,8 +20,9 @@ enum class Part : std::uint8_t {
   relation,
   separation,
   contact_geometry,
+  cache,
 };
-constexpr std::array<WorkShare, 12> kParts = {{{"traversal", "pairs of boxes that meet"},
+constexpr std::array<WorkShare, 13> kParts = {{{"traversal", "pairs of boxes that meet"},
                                                {"leaves", "pairs of faces"},
                                                {"float_tests", "face tests"},
                                                {"shared_corner_tests", "face tests"},
@@ -32,7 +33,8 @@ constexpr std::array<WorkShare, 12> kParts = {{{"traversal", "pairs of boxes tha
                                                {"sorting", "pairs"},
                                                {"relation", "points located"},
                                                {"separation", "faces of the wrappers"},
-                                               {"contact_geometry", "contact regions"}}};
+                                               {"contact_geometry", "contact regions"},
+                                               {"cache_making", "pairs kept"}}};
 
 Part part_of_test(TestedBy by) {
   switch (by) {
@@ -62,6 +64,11 @@ std::optional<Part> part_of_phase(Phase phase) {
       return Part::separation;
     case Phase::contacts:
       return Part::contact_geometry;
+    case Phase::cache:
+      return Part::cache;
+    case Phase::kept:    // its regions are counted with the wrappers'
+    case Phase::cached:  // its tests are counted with the others
+      return {};
   }
   return {};
 }

@@ -23,7 +23,7 @@ void check_events(const std::string& path, const Recording& run) {
     for (std::size_t i = 0; i < run.trees.size(); ++i) {
       trace::count_nodes(run.trees[i], static_cast<Side>(i), trace.events);
       for (const trace::Event& e : trace.events)
-        if (e.kind == EventKind::begin && e.phase() == Phase::walk)
+        if (e.kind == EventKind::begin && walks_trees(e.phase()))
           trace::walked_tree(run.bodies[i].rep, i == 0 ? e.depth_a : e.depth_b);
     }
   } catch (const InputError& e) {

@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <numeric>
+#include <optional>
 
 #include "engine/core/error.hpp"
 #include "engine/core/file_bytes.hpp"
+#include "engine/query/coherent/coherent_query.hpp"
 #include "engine/query/collide_impl.hpp"
 #include "scenarios/run/approach.hpp"
 #include "scenarios/spec/scenario_motion.hpp"
@@ -27,6 +29,7 @@ trace::RecorderSettings recorder_settings(const spec::Scenario& s) {
   settings.clock = s.clock;
   settings.event_cap = s.event_cap;
   settings.level = std::max(s.events, spec::needed_level(s.frames));
+  settings.coherent = s.coherent;
   return settings;
 }
 
@@ -39,25 +42,40 @@ std::vector<Pose> poses_of_b(const spec::Scenario& s, Recording& r) {
   return std::move(approach.poses);
 }
 
-CollideResult query_of_step(const spec::Scenario& s, const Recording& r, const Pose& pose_b,
-                            std::uint32_t step, QueryContext& context, trace::Recorder& recorder) {
-  const LrbRep &a = r.bodies[0].rep, &b = r.bodies[1].rep;
-  try {
-    return collide(a, s.bodies[0].pose, b, pose_b, s.request, context, recorder);
-  } catch (const InputError& e) {
-    throw InputError("scenario " + s.name + ", step " + std::to_string(step) + ": " + e.what());
+/// Asks the queries of a run's steps, one after another.
+class StepQueries {
+ public:
+  StepQueries(const spec::Scenario& s, const LrbRep& a, const LrbRep& b) : s_(s), a_(a), b_(b) {
+    // Caches are made whenever they can be: where they pay is a matter of time, and a trace is to be the same again.
+    if (s.coherent) coherent_.emplace(a, b, s.request, CoherentQuery::CacheUse::always);
   }
-}
+
+  CollideResult ask(std::uint32_t step, const Pose& pose_b, trace::Recorder& recorder) {
+    const Pose& pose_a = s_.bodies[0].pose;
+    try {
+      if (coherent_) return coherent_->collide(pose_a, pose_b, recorder);
+      return collide(a_, pose_a, b_, pose_b, s_.request, context_, recorder);
+    } catch (const InputError& e) {
+      throw InputError("scenario " + s_.name + ", step " + std::to_string(step) + ": " + e.what());
+    }
+  }
+
+ private:
+  const spec::Scenario& s_;
+  const LrbRep &a_, &b_;
+  std::optional<CoherentQuery> coherent_;
+  QueryContext context_;
+};
 
 void record_collision(const spec::Scenario& s, Recording& r, const ProgressReport& progress) {
   const LrbRep &a = r.bodies[0].rep, &b = r.bodies[1].rep;
   const std::vector<Pose> poses = poses_of_b(s, r);
   trace::Recorder recorder(a, b, recorder_settings(s));
-  QueryContext context;
+  StepQueries queries(s, a, b);
   for (std::uint32_t step = 0; step < poses.size(); ++step) {
     progress("query", step, poses.size());
     recorder.begin_step(step, s.bodies[0].pose, poses[step]);
-    r.results.push_back(query_of_step(s, r, poses[step], step, context, recorder));
+    r.results.push_back(queries.ask(step, poses[step], recorder));
     recorder.end_step(r.results.back());
   }
   r.trace = recorder.take();

@@ -182,6 +182,7 @@ struct Scenario {
   trace::Clock clock = trace::Clock::event;
   std::uint32_t event_cap = 1'000'000;
   EventLevel events = EventLevel::faces;  ///< that are recorded
+  bool coherent = false;                  ///< each step goes on from the one before: engine/query/coherent
   bool gzip = false;
   FrameSpec frames;
   std::vector<Expectation> expect;

@@ -12,12 +12,14 @@
 #include "engine/construct/build.hpp"
 #include "engine/core/error.hpp"
 #include "engine/lrb/wrapper_level.hpp"
+#include "engine/query/coherent/coherent_query.hpp"
 #include "engine/query/collide_impl.hpp"
 #include "engine/query/collide_probe.hpp"
 #include "scenarios/bodies/shapes/random_pose.hpp"
 #include "scenarios/bodies/shapes/shapes.hpp"
 #include "tests/support/json_schema.hpp"
 #include "trace/counters.hpp"
+#include "trace/cursor.hpp"
 #include "trace/divergence.hpp"
 #include "trace/node_work.hpp"
 #include "trace/recorder.hpp"
@@ -117,6 +119,78 @@ TEST_CASE("a query that is watched more closely does the same") {
         }
       }
     }
+}
+
+TEST_CASE(
+    "coherent queries that are watched answer and count as those that are not, and tell what adds up to that") {
+  std::map<Phase, std::uint64_t> phases;
+  std::uint64_t refined_again = 0, taken_back = 0;
+  for (const Bodies& bodies : all_bodies())
+    for (const Mode mode : {Mode::all_pairs, Mode::first_pair, Mode::any_pair}) {
+      const CollideRequest request{.mode = mode, .contacts = mode == Mode::all_pairs};
+      CoherentQuery alone(*bodies.a, *bodies.b, request, CoherentQuery::CacheUse::always),
+          watched(*bodies.a, *bodies.b, request, CoherentQuery::CacheUse::always);
+      RecorderSettings settings;
+      settings.request = request;
+      settings.level = EventLevel::all;
+      settings.coherent = true;
+      Recorder recorder(*bodies.a, *bodies.b, settings);
+      std::vector<CollideResult> results;
+      for (std::uint32_t i = 0; i < 30; ++i) {
+        Pose pose = Pose::rotation({0, 0, 1}, 0.01 * i);
+        pose.t = {0.5 + 0.02 * i + (i > 20 ? 0.3 : 0), 0.1, 0};  // straight on, but for a jump
+        recorder.begin_step(i, {}, pose);
+        results.push_back(watched.collide({}, pose, recorder));
+        recorder.end_step(results.back());
+        const CollideResult& expected = alone.collide({}, pose);
+        CHECK(results.back().counters == expected.counters);
+        CHECK((results.back().pairs == expected.pairs));
+        CHECK((results.back().meets == expected.meets));
+        CHECK(results.back().relation == expected.relation);
+        CHECK((results.back().opened == expected.opened));
+        CHECK(results.back().regions.size() == expected.regions.size());
+      }
+      CHECK(watched.statistics().from_cache == alone.statistics().from_cache);
+      const Trace t = recorder.take();
+      check_trace(t, "t");
+      CHECK(t == trace_from_json(trace_to_json(t), "t.json"));
+      CHECK(complaint(Json::parse(trace_to_json(t))) == "");
+      Cursor cursor(t, *bodies.a, *bodies.b);  // throws where a wrapper does not come out as recorded
+      for (std::size_t step = 0; step < results.size(); ++step) {
+        std::uint64_t pairs = 0, boxes = 0, tests = 0;
+        std::vector<SimplexPair> contacts;
+        std::size_t opened = 0;
+        bool again = false;
+        for (const Event& e : t.events_of(step)) {
+          pairs += e.kind == EventKind::node_pair;
+          boxes += e.kind == EventKind::node_pair ? e.work().box_tests : 0;
+          tests += e.kind == EventKind::face_test;
+          if (e.kind == EventKind::face_test) CHECK(e.tested_by() != TestedBy::untold);
+          if (e.kind == EventKind::contact) contacts.push_back({e.simplex(Side::a), e.simplex(Side::b)});
+          if (e.kind == EventKind::begin) {
+            ++phases[e.phase()];
+            again = e.phase() == Phase::kept;
+          }
+          if (e.kind == EventKind::end) again = false;
+          refined_again += e.kind == EventKind::refine && again;
+          taken_back += e.kind == EventKind::coarsen;
+          opened += e.kind == EventKind::refine;
+          opened -= e.kind == EventKind::coarsen;
+        }
+        CHECK(pairs == results[step].counters.node_pairs);
+        CHECK(boxes == results[step].counters.box_tests);
+        CHECK(tests == results[step].counters.face_tests);
+        CHECK(opened == results[step].opened[0].size() + results[step].opened[1].size());
+        std::sort(contacts.begin(), contacts.end());
+        if (mode == Mode::all_pairs) CHECK((contacts == results[step].pairs));
+        cursor.seek(static_cast<EventId>(t.steps[step].first_event + t.events_of(step).size() - 1));
+      }
+    }
+  for (const Phase p :
+       {Phase::walk, Phase::relation, Phase::contacts, Phase::kept, Phase::cache, Phase::cached})
+    CHECK(phases[p] > 0);
+  CHECK(refined_again > 0);
+  CHECK(taken_back > 0);
 }
 
 TEST_CASE("the events of a step add up to its counters") {

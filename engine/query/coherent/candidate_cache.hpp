@@ -6,6 +6,7 @@
 
 #include <bit>
 #include <cstdint>
+#include <type_traits>
 #include <vector>
 
 #include "engine/exact/simplex_test.hpp"
@@ -69,10 +70,15 @@ class CandidateCache {
   /// Returns true if no pair may meet on the way from here to there, both in the sweep.
   bool none_between(const SweepPoint& here, const SweepPoint& there) const;
 
+  /// Stands for an observer of update() that does not look.
+  struct Unseen {
+    void operator()(SimplexPair, exact::Meet, bool) const {}
+  };
   /// Finds out how the chosen pairs meet at the pose of k; the others do not meet. Calls exact(pair) where
-  /// floats are not certain. Returns true if anything has changed since the last update.
-  template <class Exact>
-  bool update(const TreeKernel& k, Exact&& exact);
+  /// floats are not certain, and see(pair, meet, is_certain) for each chosen pair, in order. Returns true if
+  /// anything has changed since the last update.
+  template <class Exact, class See = Unseen>
+  bool update(const TreeKernel& k, Exact&& exact, See&& see = {});
 
   /// Appends the pairs that meet, ascending.
   void append_meeting(CollideResult& result) const;
@@ -111,8 +117,9 @@ class CandidateCache {
   std::vector<Meeting> meeting_, before_;  ///< ascending; now, and before the last update
 };
 
-template <class Exact>
-bool CandidateCache::update(const TreeKernel& k, Exact&& exact) {
+template <class Exact, class See>
+bool CandidateCache::update(const TreeKernel& k, Exact&& exact, See&& see) {
+  constexpr bool kIsSeen = !std::is_same_v<std::remove_cvref_t<See>, Unseen>;
   PairKernel kernel = kernel_at(k, chosen_places_);
   kernel.block_count = static_cast<std::uint32_t>((chosen_count_ + 7) / 8);
   kernel.verdicts = verdicts_.data();
@@ -122,11 +129,15 @@ bool CandidateCache::update(const TreeKernel& k, Exact&& exact) {
   for (std::size_t i = 0; i < chosen_count_; i += 8) {
     const unsigned present = chosen_count_ - i < 8 ? (1u << (chosen_count_ - i)) - 1 : 255u;
     const PairVerdicts v = verdicts_[i / 8];
-    for (unsigned left = present & ~unsigned{v.disjoint}; left != 0; left &= left - 1) {
+    const unsigned looked_at = kIsSeen ? present : present & ~unsigned{v.disjoint};
+    for (unsigned left = looked_at; left != 0; left &= left - 1) {
       const int lane = std::countr_zero(left);
       const std::uint32_t pair = chosen_[i + static_cast<std::size_t>(lane)];
-      const bool crosses = (v.cross >> lane & 1) != 0;
-      const exact::Meet meet = crosses ? exact::Meet::cross : exact(pairs_[pair]);
+      const bool crosses = (v.cross >> lane & 1) != 0, parted = kIsSeen && (v.disjoint >> lane & 1) != 0;
+      const exact::Meet meet = crosses  ? exact::Meet::cross
+                               : parted ? exact::Meet::disjoint
+                                        : exact(pairs_[pair]);
+      see(pairs_[pair], meet, crosses || parted);
       if (meet != exact::Meet::disjoint) meeting_.push_back({pair, meet});
     }
   }

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <ranges>
 #include <utility>
 
 #include "engine/core/tolerances.hpp"
@@ -12,6 +13,7 @@
 #include "engine/query/coherent/candidate_cache.hpp"
 #include "engine/query/coherent/relative_motion.hpp"
 #include "engine/query/collide_impl.hpp"
+#include "engine/query/walk/teller.hpp"
 
 namespace lrb {
 namespace {
@@ -43,16 +45,35 @@ void reset_counters(Counters& c) {
 class CoherentQuery::Work {
  public:
   Work(const LrbRep& a, const LrbRep& b, const CollideRequest& request, CacheUse use);
-  const CollideResult& collide(const Pose& pose_a, const Pose& pose_b);
+  template <class Probe>
+  const CollideResult& collide(const Pose& pose_a, const Pose& pose_b, Probe& probe);
   const Statistics& statistics() const { return statistics_; }
 
  private:
-  void answer(const Pose& pose_a, const Pose& pose_b);
-  void query_from_scratch();
-  bool still_crosses();
-  bool make_cache(const CachePolicy::Plan& plan);
-  void answer_from_cache(const SweepPoint& where);
+  template <class Probe>
+  void answer(const Pose& pose_a, const Pose& pose_b, Probe& probe);
+  template <class Probe>
+  void query_from_scratch(Probe& probe);
+  template <class Probe>
+  bool still_crosses(Probe& probe);
+  template <class Probe>
+  bool make_cache(const CachePolicy::Plan& plan, Probe& probe);
+  template <class Probe>
+  bool find_candidates(TreeKernel& k, Probe& probe);
+  template <class Probe>
+  void answer_from_cache(const SweepPoint& where, Probe& probe);
+  template <class Probe>
+  bool test_cached(const TreeKernel& k, Probe& probe);
+  template <class Probe>
+  void tell_test(const SimplexPair& p, exact::Meet meet, TestedBy by, Probe& probe);
+  template <class Probe>
+  void tell_kept(Probe& probe);
+  template <class Probe>
+  void tell_reset(Probe& probe);
+  std::uint32_t depth(Side side, SimplexId s) const;
   void collect_answer();
+  template <class Probe>
+  void describe(Probe& probe);
   void show_opened();
   void note_step(double step);
   std::optional<CachePolicy::Plan> next_plan();
@@ -89,9 +110,9 @@ CoherentQuery::Work::Work(const LrbRep& a, const LrbRep& b, const CollideRequest
   if (plain_) motion_ = {a, b};
 }
 
-const CollideResult& CoherentQuery::Work::collide(const Pose& pose_a, const Pose& pose_b) {
+template <class Probe>
+const CollideResult& CoherentQuery::Work::collide(const Pose& pose_a, const Pose& pose_b, Probe& probe) {
   if (!plain_) {
-    NullProbe probe;
     result_ = lrb::collide(a_, pose_a, b_, pose_b, request_, context_, probe);
     ++statistics_.from_scratch;
     return result_;
@@ -104,47 +125,49 @@ const CollideResult& CoherentQuery::Work::collide(const Pose& pose_a, const Pose
   }
   const std::uint64_t fallbacks = exact::exact_fallbacks();
   reset_counters(result_.counters);
-  answer(pose_a, pose_b);
+  answer(pose_a, pose_b, probe);
   result_.counters.exact_fallbacks = exact::exact_fallbacks() - fallbacks;
   at_work_ = false;
   return result_;
 }
 
-void CoherentQuery::Work::answer(const Pose& pose_a, const Pose& pose_b) {
+template <class Probe>
+void CoherentQuery::Work::answer(const Pose& pose_a, const Pose& pose_b, Probe& probe) {
   context_.body[0].world.begin(a_, pose_a);
   context_.body[1].world.begin(b_, pose_b);
   if (policy_.rests()) {
     motion_.forget();
-    query_from_scratch();
+    query_from_scratch(probe);
     return;
   }
   if (!motion_.see(pose_a, pose_b)) {
-    query_from_scratch();
+    query_from_scratch(probe);
     return;
   }
   const auto began = Clock::now();
   note_step(motion_.step());
   const SweepPoint where = has_cache_ ? motion_.along(sweep_) : SweepPoint{};
   if (policy_.must_wait()) {
-    query_from_scratch();
+    query_from_scratch(probe);
     policy_.scratch_took(seconds_since(began));
   } else if (has_cache_ && where.off <= sweep_.width) {
     ++statistics_.from_cache;
-    answer_from_cache(where);
+    answer_from_cache(where, probe);
     policy_.step_took(seconds_since(began));
-  } else if (request_.mode != Mode::all_pairs && still_crosses()) {
+  } else if (request_.mode != Mode::all_pairs && still_crosses(probe)) {
     has_cache_ = false;
   } else if (const auto plan = next_plan()) {
-    if (!make_cache(*plan)) query_from_scratch();
+    if (!make_cache(*plan, probe)) query_from_scratch(probe);
     policy_.build_took(plan->kind, seconds_since(began));
   } else {
-    query_from_scratch();
+    query_from_scratch(probe);
     policy_.scratch_took(seconds_since(began));
   }
 }
 
 /// Does what collide() does, but into the existing result.
-void CoherentQuery::Work::query_from_scratch() {
+template <class Probe>
+void CoherentQuery::Work::query_from_scratch(Probe& probe) {
   has_cache_ = false;
   ++statistics_.from_scratch;
   for (QueryBody& body : context_.body) body.begin_at_pose(request_.wrapper);
@@ -153,12 +176,24 @@ void CoherentQuery::Work::query_from_scratch() {
   result_.meets.clear();
   result_.contacts.clear();
   result_.regions.clear();
-  NullProbe probe;
-  TreeQuery<NullProbe>(context_, request_, result_, probe).run();
-  context_.pair_order.sort(result_);
-  decide_relation(context_, result_);
-  describe_contact(context_, request_, result_);
+  TreeQuery<Probe>(context_, request_, result_, probe).run();
+  in_phase(probe, Phase::sort, [&] {
+    context_.pair_order.sort(result_);
+    return result_.pairs.size();
+  });
+  decide_relation_watched(context_, result_, probe, [] { return true; });
+  describe(probe);
   show_opened();
+}
+
+/// Describes the contact where that was asked for.
+template <class Probe>
+void CoherentQuery::Work::describe(Probe& probe) {
+  if (!request_.contacts && !request_.interiors_overlap) return;
+  in_phase(probe, Phase::contacts, [&] {
+    describe_contact(context_, request_, result_);
+    return result_.regions.size();
+  });
 }
 
 void CoherentQuery::Work::show_opened() {
@@ -168,11 +203,62 @@ void CoherentQuery::Work::show_opened() {
   }
 }
 
+/// Returns the number of regions between a simplex and the outside.
+std::uint32_t CoherentQuery::Work::depth(Side side, SimplexId s) const {
+  const LrbRep& rep = side == Side::a ? a_ : b_;
+  const CellId outer = rep.outer_cell(rep.face_of_simplex(s));
+  return is_region(outer) ? rep.depth(outer.as_region()) : 0;
+}
+
+template <class Probe>
+void CoherentQuery::Work::tell_test(const SimplexPair& p, exact::Meet meet, TestedBy by, Probe& probe) {
+  probe.face_test(p.a, p.b, meet, depth(Side::a, p.a), depth(Side::b, p.b));
+  if (is_told_more(probe)) probe.tested_by(by);
+}
+
+/// Tells which regions are open since earlier queries.
+template <class Probe>
+void CoherentQuery::Work::tell_kept(Probe& probe) {
+  if constexpr (Probe::kEnabled)
+    in_phase(probe, Phase::kept, [&] {
+      std::uint64_t count = 0;
+      for (const Side side : {Side::a, Side::b}) {
+        const Wrapper& wrapper = *context_[side].wrapper;
+        count += wrapper.excluded().size();
+        for (const RegionId r : wrapper.excluded())
+          probe.refine(side, r, static_cast<std::uint32_t>(wrapper.rep().floor(r).size()));
+      }
+      return count;
+    });
+}
+
+/// Tells that the wrappers will be whole again.
+template <class Probe>
+void CoherentQuery::Work::tell_reset(Probe& probe) {
+  if constexpr (Probe::kEnabled)
+    for (const Side side : {Side::b, Side::a}) {
+      const Wrapper& wrapper = *context_[side].wrapper;
+      for (const RegionId r : std::views::reverse(wrapper.excluded()))
+        probe.coarsen(side, r, static_cast<std::uint32_t>(wrapper.rep().floor(r).size()));
+    }
+}
+
 /// Returns true if the pair found last time still crosses: where one pair is enough, it is as good as any.
-bool CoherentQuery::Work::still_crosses() {
+template <class Probe>
+bool CoherentQuery::Work::still_crosses(Probe& probe) {
   if (result_.pairs.size() != 1 || result_.meets[0] != exact::Meet::cross) return false;
   ++result_.counters.face_tests;
-  if (test_simplices(context_, result_.pairs[0].a, result_.pairs[0].b) != exact::Meet::cross) return false;
+  const SimplexPair p = result_.pairs[0];
+  const std::uint64_t fallbacks = exact::exact_fallbacks();
+  const exact::Meet meet = test_simplices(context_, p.a, p.b);
+  const TestedBy by = exact::exact_fallbacks() == fallbacks ? TestedBy::filter : TestedBy::expansions;
+  tell_kept(probe);
+  if constexpr (Probe::kEnabled) tell_test(p, meet, by, probe);
+  if (meet != exact::Meet::cross) {
+    tell_reset(probe);
+    return false;
+  }
+  if constexpr (Probe::kEnabled) probe.contact(p.a, p.b, meet);
   ++statistics_.from_cache;
   return true;
 }
@@ -193,8 +279,8 @@ std::optional<CachePolicy::Plan> CoherentQuery::Work::next_plan() {
 
 /// Makes a cache and answers from it. Returns false, without a cache, if that takes too long or lengths
 /// overflow.
-bool CoherentQuery::Work::make_cache(const CachePolicy::Plan& plan) {
-  const auto began = Clock::now();
+template <class Probe>
+bool CoherentQuery::Work::make_cache(const CachePolicy::Plan& plan, Probe& probe) {
   const bool is_swept = plan.kind == CachePolicy::Kind::swept;
   sweep_ = is_swept ? motion_.ahead(plan.steps) : motion_.about(plan.steps * usual_step_);
   const SweepPoint where = motion_.along(sweep_);
@@ -205,48 +291,88 @@ bool CoherentQuery::Work::make_cache(const CachePolicy::Plan& plan) {
   aim_at(sweep_, rounding, query_unit(a_.tree(), b_.tree()), k);
   // A margin that is not a number, as infinite widths and no defect make it, would count as none.
   if (!(k.margin < std::numeric_limits<float>::infinity())) return false;
-  cache_.clear();
-  while (k.stack_size != 0) {
-    k.out_size = 0;
-    run_tree_kernel(k);
-    for (std::uint32_t i = 0; i < k.out_size; ++i) cache_.add({k.out[i].a, k.out[i].b});
-    if (cache_.pairs().size() > request_.pair_limit())
-      return false;  // the query itself counts those that meet
-    if (use_ == CacheUse::as_it_pays && seconds_since(began) > policy_.patience()) return false;
-  }
-  cache_.arrange(a_, b_, k, sweep_, rounding, context_.pair_order);
+  bool complete = false;
+  in_phase(probe, Phase::cache, [&] {
+    complete = find_candidates(k, probe);
+    if (complete) cache_.arrange(a_, b_, k, sweep_, rounding, context_.pair_order);
+    return complete ? cache_.pairs().size() : 0;
+  });
+  result_.counters.node_pairs = k.node_pairs;
+  result_.counters.box_tests = k.box_tests;
+  result_.counters.prefilter_tests = k.prefilter_tests;
+  if (!complete) return false;
   has_cache_ = true;
   has_answer_ = false;
   ++statistics_.caches_made;
   statistics_.swept_caches += is_swept;
-  NullProbe probe;
   for (const SimplexPair& p : cache_.pairs()) {
     show_face(context_, Side::a, a_.face_of_simplex(p.a), result_, probe);
     show_face(context_, Side::b, b_.face_of_simplex(p.b), result_, probe);
   }
   show_opened();
-  result_.counters.node_pairs = k.node_pairs;
-  result_.counters.box_tests = k.box_tests;
-  result_.counters.prefilter_tests = k.prefilter_tests;
-  answer_from_cache(where);
+  answer_from_cache(where, probe);
   return true;
 }
 
+/// Walks the trees for the pairs to keep. Returns false if that takes too long, or if there are too many.
+template <class Probe>
+bool CoherentQuery::Work::find_candidates(TreeKernel& k, Probe& probe) {
+  const auto began = Clock::now();
+  cache_.clear();
+  while (k.stack_size != 0) {
+    k.out_size = 0;
+    is_told_more(probe) ? NodeWatch<Probe>(context_, probe).run(k) : run_tree_kernel(k);
+    for (std::uint32_t i = 0; i < k.out_size; ++i) cache_.add({k.out[i].a, k.out[i].b});
+    if (cache_.pairs().size() > request_.pair_limit())
+      return false;  // the query itself counts those that meet
+    if (use_ == CacheUse::as_it_pays && seconds_since(began) > policy_.patience()) return false;
+  }
+  return true;
+}
+
+/// Tests the chosen pairs of the cache. Returns true if anything has changed since the last time.
+template <class Probe>
+bool CoherentQuery::Work::test_cached(const TreeKernel& k, Probe& probe) {
+  std::uint64_t fallbacks = exact::exact_fallbacks();
+  const auto exactly = [&](const SimplexPair& p) { return test_simplices(context_, p.a, p.b); };
+  if constexpr (!Probe::kEnabled) return cache_.update(k, exactly);
+  bool found = false, crossing = false;
+  return cache_.update(k, exactly, [&](const SimplexPair& p, exact::Meet meet, bool is_certain) {
+    const bool exact_needed = std::exchange(fallbacks, exact::exact_fallbacks()) != exact::exact_fallbacks();
+    tell_test(p, meet,
+              is_certain     ? TestedBy::floats
+              : exact_needed ? TestedBy::expansions
+                             : TestedBy::filter,
+              probe);
+    if (meet == exact::Meet::disjoint) return;
+    const bool is_better = request_.mode == Mode::first_pair && meet == exact::Meet::cross && !crossing;
+    if (request_.mode == Mode::all_pairs || !found || is_better) probe.contact(p.a, p.b, meet);
+    found = true;
+    crossing = crossing || meet == exact::Meet::cross;
+  });
+}
+
 /// Answers from the cache; B must be where it is complete.
-void CoherentQuery::Work::answer_from_cache(const SweepPoint& where) {
+template <class Probe>
+void CoherentQuery::Work::answer_from_cache(const SweepPoint& where, Probe& probe) {
+  if (has_answer_) tell_kept(probe);  // else the cache has just been made, and its regions told
   const TreeKernel k = set_up_kernel(a_, context_.body[0].world.pose(), b_, context_.body[1].world.pose());
   const bool has_answer = std::exchange(has_answer_, true);
   const SweepPoint before = std::exchange(where_, where);
   const std::size_t tested = cache_.choose(where);
-  const bool changed =
-      cache_.update(k, [&](const SimplexPair& p) { return test_simplices(context_, p.a, p.b); });
+  bool changed = false;
+  in_phase(probe, Phase::cached, [&] {
+    changed = test_cached(k, probe);
+    return cache_.pairs().size() - tested;
+  });
   result_.counters.face_tests += tested;
   statistics_.tests_saved += cache_.pairs().size() - tested;
   if (changed || !has_answer) collect_answer();
-  if (!has_answer || tested > 0 || !cache_.none_between(before, where)) decide_relation(context_, result_);
+  if (!has_answer || tested > 0 || !cache_.none_between(before, where))
+    decide_relation_watched(context_, result_, probe, [] { return true; });
   result_.contacts.clear();
   result_.regions.clear();
-  describe_contact(context_, request_, result_);
+  describe(probe);
 }
 
 void CoherentQuery::Work::collect_answer() {
@@ -271,7 +397,13 @@ CoherentQuery::CoherentQuery(CoherentQuery&&) noexcept = default;
 CoherentQuery& CoherentQuery::operator=(CoherentQuery&&) noexcept = default;
 
 const CollideResult& CoherentQuery::collide(const Pose& pose_a, const Pose& pose_b) {
-  return work_->collide(pose_a, pose_b);
+  NullProbe probe;
+  return work_->collide(pose_a, pose_b, probe);
+}
+
+const CollideResult& CoherentQuery::collide(const Pose& pose_a, const Pose& pose_b, CollideProbe& probe) {
+  Teller teller(probe);
+  return work_->collide(pose_a, pose_b, teller);
 }
 
 const CoherentQuery::Statistics& CoherentQuery::statistics() const {

@@ -22,6 +22,8 @@
 
 namespace lrb {
 
+class CollideProbe;
+
 class CoherentQuery {
  public:
   /// When caches are made: where they turned out to be faster than queries from scratch, by the clock; or
@@ -35,6 +37,10 @@ class CoherentQuery {
 
   /// Returns the answer for these poses, valid until the next call. Throws InputError as collide() does.
   const CollideResult& collide(const Pose& pose_a, const Pose& pose_b);
+  /// Does the same, and tells the probe everything that happens, in order, each query beginning with wrappers
+  /// that are whole: regions that are still open from earlier queries are told as refined again, in
+  /// Phase::kept. With CacheUse::always the same queries tell the same.
+  const CollideResult& collide(const Pose& pose_a, const Pose& pose_b, CollideProbe& probe);
 
   /// Numbers of queries and caches so far.
   struct Statistics {

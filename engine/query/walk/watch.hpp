@@ -27,13 +27,23 @@ enum class Phase : std::uint8_t {
   relation,    ///< finds how the bodies lie to each other: points located
   separation,  ///< looks for wrappers that prove the bodies apart: faces of both; 0: none
   contacts,    ///< computes the geometry of contact: contact regions
+  kept,        ///< coherent: shows again the regions that earlier queries opened: regions
+  cache,       ///< coherent: walks both trees for pairs that may meet on the way ahead: pairs kept
+  cached,  ///< coherent: tests the pairs of the cache that may meet here: pairs of the cache that need no test
 };
 constexpr auto words_of(Phase) {
   return std::to_array<EnumWord<Phase>>({{Phase::walk, "tree walk"},
                                          {Phase::sort, "sorting"},
                                          {Phase::relation, "relation"},
                                          {Phase::separation, "separation"},
-                                         {Phase::contacts, "contact geometry"}});
+                                         {Phase::contacts, "contact geometry"},
+                                         {Phase::kept, "wrappers kept"},
+                                         {Phase::cache, "cache making"},
+                                         {Phase::cached, "cached pairs"}});
+}
+/// Returns true if pairs of tree nodes are visited in the phase.
+constexpr bool walks_trees(Phase phase) {
+  return phase == Phase::walk || phase == Phase::cache;
 }
 
 /// What the query does with a pair of tree nodes.
