@@ -11,8 +11,8 @@
 
 namespace lrb::exact {
 
-__extension__ typedef __int128 Int128;
-__extension__ typedef unsigned __int128 UInt128;
+__extension__ using Int128 = __int128;
+__extension__ using UInt128 = unsigned __int128;
 
 /// Turns the coordinates of N points along one axis into integers below 2^62 in magnitude, by multiplying
 /// them by a common power of two, which changes no sign of a determinant. Returns false if they do not fit:

@@ -16,11 +16,11 @@ std::vector<T> chosen(const std::vector<T>& all, const std::vector<std::string>&
                       const NameOf& name_of) {
   if (names.empty()) return all;
   std::vector<std::string> known;
-  for (const T& t : all) known.push_back(name_of(t));
+  std::transform(all.begin(), all.end(), std::back_inserter(known), name_of);
   for (const std::string& name : names) {
     if (std::find(known.begin(), known.end(), name) != known.end()) continue;
     std::string list;
-    for (const std::string& k : known) list += (list.empty() ? "" : ", ") + k;
+    for (const std::string& k : known) list.append(list.empty() ? "" : ", ").append(k);
     throw InputError(std::string("there is no ") + what + " '" + name + "'; known: " + list);
   }
   std::vector<T> out;

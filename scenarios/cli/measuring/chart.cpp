@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <iostream>
+#include <iterator>
 #include <memory>
 
 #include "engine/core/error.hpp"
@@ -43,7 +44,7 @@ std::vector<bench::DataSet> read_sets(const std::string& folder) {
     throw InputError(printable_name(folder) + ": no data sets there; run `lrbscope chart measure` first");
   std::sort(files.begin(), files.end());
   std::vector<bench::DataSet> sets;
-  for (const std::string& f : files) sets.push_back(bench::read_data_set(f));
+  std::transform(files.begin(), files.end(), std::back_inserter(sets), bench::read_data_set);
   return sets;
 }
 
@@ -70,7 +71,8 @@ void measure(const ChartOptions& o, const std::vector<workers::WorkerMethod>& me
 void draw(const ChartOptions& o, const std::vector<workers::WorkerMethod>& methods, const Globals& globals) {
   const std::vector<bench::DataSet> sets = read_sets(o.folder);
   std::vector<methods::MethodInfo> infos;
-  for (const workers::WorkerMethod& m : methods) infos.push_back(m.info);
+  std::transform(methods.begin(), methods.end(), std::back_inserter(infos),
+                 [](const workers::WorkerMethod& m) { return m.info; });
   std::vector<bench::Point> points;
   {
     Progress bar("errors", 0, globals.quiet);

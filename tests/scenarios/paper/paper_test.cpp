@@ -120,7 +120,7 @@ TEST_CASE("paper: the program's shards make the report of the whole, and bad inp
   const test::Folder folder;
   const auto run = [&](std::vector<std::string> args) {
     args.insert(args.begin(), "paper");
-    return test::run(folder, std::move(args));
+    return test::run(folder, args);
   };
   const auto shard = [&](const char* collisions, const std::string& i, const std::string& out) {
     CHECK(run({"--collisions", collisions, "--resolutions", "0", "--shard", i, "-o", out}).code == 0);
