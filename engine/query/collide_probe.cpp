@@ -1,7 +1,7 @@
 #include "engine/query/collide_probe.hpp"
 
 #include "engine/query/collide_impl.hpp"
-#include "engine/query/walk/teller.hpp"
+#include "engine/query/teller.hpp"
 
 namespace lrb {
 void CollideProbe::face_test(SimplexId, SimplexId, exact::Meet, std::uint32_t, std::uint32_t) {}

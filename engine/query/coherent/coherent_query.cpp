@@ -13,7 +13,7 @@
 #include "engine/query/coherent/candidate_cache.hpp"
 #include "engine/query/coherent/relative_motion.hpp"
 #include "engine/query/collide_impl.hpp"
-#include "engine/query/walk/teller.hpp"
+#include "engine/query/teller.hpp"
 
 namespace lrb {
 namespace {
