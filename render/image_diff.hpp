@@ -15,6 +15,8 @@ struct ImageTolerance {
   double large_share = 0.0005;  ///< at most this share of pixels may have one
   int small = 2;                ///< a difference of 1 .. small is noise of rounding
   double small_share = 0.15;    ///< at most this share of pixels may have one
+
+  friend bool operator==(const ImageTolerance&, const ImageTolerance&) = default;
 };
 
 struct ImageDifference {

@@ -5,17 +5,15 @@
 #include <optional>
 
 #include "engine/core/error.hpp"
+#include "engine/mesh/io/mesh_io.hpp"
 #include "scenarios/golden/check.hpp"
+#include "scenarios/golden/kept_body.hpp"
 #include "scenarios/io/files.hpp"
 #include "trace/trace_json.hpp"
 
 namespace lrb::golden {
 namespace fs = std::filesystem;
 namespace {
-
-bool same(const GoldenSpec& x, const GoldenSpec& y) {
-  return x.scenario == y.scenario && x.width == y.width && x.height == y.height && x.frames == y.frames;
-}
 
 void check_variant(const std::string& variant) {
   const bool plain = variant.size() <= 64 && std::all_of(variant.begin(), variant.end(), [](char c) {
@@ -41,6 +39,16 @@ class Approval {
     render::write_png(run_.frames[i].image, folder_ + "/" + file, png);
     say("approved", file);
   }
+  /// Keeps the meshes of bodies that came from files: those that are generated are known by their scenario.
+  void meshes() {
+    for (std::size_t i = 0; i < run_.recording.bodies.size(); ++i) {
+      if (run_.scenario.bodies[i].file.empty()) continue;
+      const LrbRep& rep = run_.recording.bodies[i].rep;
+      const std::string file = kept_file(i, rep.dim());
+      write_mesh(kept_mesh(rep), folder_ + "/" + file);
+      say("approved", file);
+    }
+  }
   void remove(const std::vector<std::string>& files) {
     for (const std::string& file : files) {
       std::error_code error;
@@ -48,12 +56,12 @@ class Approval {
       say("removed", file);
     }
   }
-  std::vector<std::string> done;
-
- private:
   void say(const std::string& what, const std::string& file) {
     done.push_back(what + " " + (fs::path(folder_) / file).generic_string());
   }
+  std::vector<std::string> done;
+
+ private:
   std::string folder_;
   const GoldenRun& run_;
 };
@@ -72,6 +80,7 @@ std::optional<Golden> load_if_sound(const std::string& goldens, const std::strin
 std::vector<std::string> approve_all(Approval approval, const GoldenRun& run, const std::string& folder) {
   approval.remove(image_files_from(folder, 0));
   approval.trace();
+  approval.meshes();
   for (std::size_t i = 0; i < run.frames.size(); ++i) approval.frame(i, {});
   return std::move(approval.done);
 }
@@ -102,17 +111,23 @@ std::vector<std::string> approve_golden(const std::string& goldens, const Golden
     throw InputError(name + ": has no golden yet; approve it first, without --variant");
   io::make_folder(folder);
   const io::FolderLock lock(folder);
+  const GoldenFacts facts = facts_of(run);
   const std::optional<Golden> old = known ? load_if_sound(goldens, name, variant.empty()) : std::nullopt;
   if (!old) {
-    write_golden_spec(goldens, name, spec);
+    write_golden_spec(goldens, name, spec, facts);
     return approve_all({folder, run}, run, folder);
   }
-  const Golden& golden = *old;
+  Golden golden = *old;
+  if (variant.empty()) golden.spec.levels = GoldenSpec{}.levels;  // all that differs is approved
   const GoldenVerdict verdict = check_golden(golden, run);
   if (!variant.empty()) return approve_variant({folder, run}, verdict, name, variant);
-  if (!same(golden.spec, spec)) write_golden_spec(goldens, name, spec);
   Approval approval(folder, run);
+  if (old->spec != spec || old->facts != facts) {
+    write_golden_spec(goldens, name, spec, facts);
+    approval.say("approved", kGoldenSpec);
+  }
   if (verdict.divergence) approval.trace();
+  if (old->facts.meshes != facts.meshes) approval.meshes();
   for (const ImageVerdict& image : verdict.images) {
     if (image.passed) continue;
     approval.remove(image_files_of(folder, image.frame));

@@ -6,6 +6,7 @@
 #include <unordered_map>
 
 #include "render/image_diff.hpp"
+#include "scenarios/golden/causes.hpp"
 #include "scenarios/golden/diagnosis.hpp"
 
 namespace lrb::golden {
@@ -86,7 +87,7 @@ std::string explain(const render::DecodedPng& expected, const run::PaintedFrame&
 }
 
 ImageVerdict check_frame(const std::vector<GoldenImage>& variants, const run::PaintedFrame& actual,
-                         std::size_t frame) {
+                         std::size_t frame, const render::ImageTolerance& tolerance) {
   ImageVerdict best;
   best.frame = frame;
   best.has_actual = true;
@@ -108,8 +109,8 @@ ImageVerdict check_frame(const std::vector<GoldenImage>& variants, const run::Pa
     const render::Image& expected = variants[i].png.image;
     const bool equal = render::hash(expected) == print;
     const render::ImageDifference d =
-        equal ? render::ImageDifference{} : render::compare(expected, actual.image);
-    const bool passed = equal || d.within();
+        equal ? render::ImageDifference{} : render::compare(expected, actual.image, tolerance);
+    const bool passed = equal || d.within(tolerance);
     const bool nearer = passed != best.passed            ? passed
                         : d.same_size != least.same_size ? d.same_size
                                                          : d.large < least.large;
@@ -121,7 +122,7 @@ ImageVerdict check_frame(const std::vector<GoldenImage>& variants, const run::Pa
     best.equal = equal;
     best.text = equal ? "the images are equal"
                 : d.same_size
-                    ? d.text()
+                    ? d.text(tolerance)
                     : "expected " + size_words(expected) + " pixels, found " + size_words(actual.image);
     if (equal) return best;
   }
@@ -132,6 +133,24 @@ ImageVerdict check_frame(const std::vector<GoldenImage>& variants, const run::Pa
   return best;
 }
 
+std::vector<ImageVerdict> check_frames(const Golden& golden, const GoldenRun& run) {
+  static const std::vector<GoldenImage> none;
+  std::vector<ImageVerdict> out;
+  for (std::size_t i = 0; i < run.frames.size(); ++i)
+    out.push_back(check_frame(i < golden.frames.size() ? golden.frames[i] : none, run.frames[i], i,
+                              golden.spec.tolerance));
+  for (std::size_t i = run.frames.size(); i < golden.frames.size(); ++i) {
+    if (golden.frames[i].empty()) continue;
+    ImageVerdict missing;
+    missing.frame = i;
+    missing.file = golden.frames[i][0].file;
+    missing.has_expected = golden.frames[i][0].damage.empty();
+    missing.text = "approved, but the run has " + std::to_string(run.frames.size()) + " frames only";
+    out.push_back(missing);
+  }
+  return out;
+}
+
 }  // namespace
 
 bool GoldenVerdict::images_passed() const {
@@ -140,21 +159,16 @@ bool GoldenVerdict::images_passed() const {
 
 GoldenVerdict check_golden(const Golden& golden, const GoldenRun& run) {
   GoldenVerdict out;
-  out.divergence = trace::first_divergence(golden.trace, run.recording.trace);
-  if (out.divergence) out.diagnosis = diagnose(golden.trace, run.recording.trace, *out.divergence);
-  out.scenario_changed = golden.trace.header.scenario_hash != run.scenario.hash;
-  static const std::vector<GoldenImage> kNone;
-  for (std::size_t i = 0; i < run.frames.size(); ++i)
-    out.images.push_back(check_frame(i < golden.frames.size() ? golden.frames[i] : kNone, run.frames[i], i));
-  for (std::size_t i = run.frames.size(); i < golden.frames.size(); ++i) {
-    if (golden.frames[i].empty()) continue;
-    ImageVerdict missing;
-    missing.frame = i;
-    missing.file = golden.frames[i][0].file;
-    missing.has_expected = golden.frames[i][0].damage.empty();
-    missing.text = "approved, but the run has " + std::to_string(run.frames.size()) + " frames only";
-    out.images.push_back(missing);
+  out.effects = find_effects(golden, run);
+  if (golden.spec.compares(Level::answers))
+    out.answers_differ = std::any_of(out.effects.begin(), out.effects.end(),
+                                     [](const Effect& e) { return e.kind == Effect::Kind::answer; });
+  if (golden.spec.compares(Level::events)) {
+    out.divergence = trace::first_divergence(golden.trace, run.recording.trace);
+    if (out.divergence) out.diagnosis = diagnose(golden.trace, run.recording.trace, *out.divergence);
   }
+  if (golden.spec.compares(Level::pictures)) out.images = check_frames(golden, run);
+  if (!out.passed()) out.causes = find_causes(golden, run);
   return out;
 }
 

@@ -1,11 +1,12 @@
 #pragma once
-/// Compares a run with what was approved, on two levels: events and counters exactly; pictures by hash and,
-/// if that differs, within what processors differ by (ImageTolerance).
+/// Compares a run with what was approved, on the levels that the golden asks for: answers, events and counters
+/// exactly; pictures by hash and, if that differs, within a tolerance: what processors differ by.
 
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "scenarios/golden/effects.hpp"
 #include "scenarios/golden/golden.hpp"
 #include "scenarios/golden/golden_run.hpp"
 #include "trace/divergence.hpp"
@@ -23,14 +24,15 @@ struct ImageVerdict {
 };
 
 struct GoldenVerdict {
-  std::string refusal;  ///< why it could not be tested at all; everything else is empty then
-  std::optional<trace::Divergence> divergence;
+  std::string refusal;          ///< why it could not be tested at all; everything else is empty then
+  std::vector<Effect> effects;  ///< what came out otherwise: answers and counters
+  bool answers_differ = false;  ///< and answers are compared
+  std::optional<trace::Divergence> divergence;  ///< nothing if events are not compared
   std::string diagnosis;  ///< what was swapped, lost or added at the divergence; may be empty
   std::vector<ImageVerdict> images;
-  bool scenario_changed = false;  ///< the scenario's file is not the one that was approved: a hint, not a
-                                  ///< failure
+  std::vector<std::string> causes;  ///< what may be behind a failure; none if it passed
   bool images_passed() const;
-  bool passed() const { return refusal.empty() && !divergence && images_passed(); }
+  bool passed() const { return refusal.empty() && !answers_differ && !divergence && images_passed(); }
 };
 
 GoldenVerdict check_golden(const Golden& golden, const GoldenRun& run);

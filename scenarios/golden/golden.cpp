@@ -9,18 +9,21 @@
 
 #include "engine/core/error.hpp"
 #include "engine/core/file_bytes.hpp"
+#include "engine/mesh/io/mesh_io.hpp"
+#include "scenarios/golden/kept_body.hpp"
 #include "scenarios/io/files.hpp"
 #include "scenarios/io/json/json_node.hpp"
 #include "scenarios/spec/shipped.hpp"
+#include "trace/hex.hpp"
 #include "trace/trace_json.hpp"
 
 namespace lrb::golden {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr const char* kSpecFile = "golden.json";
 constexpr std::string_view kFrame = "frame_", kPng = ".png";
 constexpr std::uint64_t kMostFrames = 1000;
+constexpr double kLongest = 1e308;  // length of a contact
 
 std::string folder_of(const std::string& goldens, const std::string& name) {
   return (fs::path(goldens) / name).string();
@@ -66,6 +69,15 @@ GoldenImage read_image(const std::string& folder, const std::string& file, const
   return image;
 }
 
+render::ImageTolerance read_tolerance(const io::JsonNode& node) {
+  node.object({"large", "large_share", "small_share"});
+  render::ImageTolerance t;
+  if (const auto n = node.get("large")) t.large = static_cast<int>(n->integer(1, 255));
+  if (const auto n = node.get("large_share")) t.large_share = n->number(0, 1);
+  if (const auto n = node.get("small_share")) t.small_share = n->number(0, 1);
+  return t;
+}
+
 }  // namespace
 
 std::string golden_image_file(std::size_t frame, const std::string& variant) {
@@ -84,7 +96,7 @@ std::vector<std::string> image_files_from(const std::string& folder, std::size_t
 bool has_golden(const std::string& goldens, const std::string& name) {
   std::error_code error;
   return !name.empty() && name.find('/') == std::string::npos &&
-         fs::is_regular_file(fs::path(goldens) / name / kSpecFile, error);
+         fs::is_regular_file(fs::path(goldens) / name / kGoldenSpec, error);
 }
 
 std::vector<std::string> golden_names(const std::string& goldens) {
@@ -102,10 +114,10 @@ std::vector<std::string> golden_names(const std::string& goldens) {
 }
 
 GoldenSpec read_golden_spec(const std::string& goldens, const std::string& name) {
-  const std::string file = (fs::path(goldens) / name / kSpecFile).string();
+  const std::string file = (fs::path(goldens) / name / kGoldenSpec).string();
   const io::JsonText json(io::read_small_text(file), file);
   const io::JsonNode root(json);
-  root.object({"scenario", "size", "frames"});
+  root.object({"scenario", "size", "frames", "compare", "tolerance", "meshes", "contact_lengths"});
   GoldenSpec spec;
   spec.scenario = root.at("scenario").string();
   const std::vector<io::JsonNode> size = root.at("size").items();
@@ -113,13 +125,63 @@ GoldenSpec read_golden_spec(const std::string& goldens, const std::string& name)
   spec.width = static_cast<int>(size[0].integer(64, 8192));
   spec.height = static_cast<int>(size[1].integer(64, 8192));
   spec.frames = static_cast<std::uint32_t>(root.at("frames").integer(1, kMostFrames));
+  if (const auto n = root.get("compare")) {
+    spec.levels = {};
+    for (const io::JsonNode& word : n->items(1))
+      spec.levels[static_cast<std::size_t>(word.choice<Level>())] = true;
+  }
+  if (const auto n = root.get("tolerance")) spec.tolerance = read_tolerance(*n);
   return spec;
 }
 
-void write_golden_spec(const std::string& goldens, const std::string& name, const GoldenSpec& spec) {
-  const nlohmann::ordered_json json = {
+GoldenFacts read_facts(const std::string& file) {
+  const io::JsonText json(io::read_small_text(file), file);
+  const io::JsonNode root(json);
+  GoldenFacts facts;
+  if (const auto n = root.get("meshes"))
+    for (const io::JsonNode& word : n->items()) {
+      const auto hash = trace::from_hex(word.string());
+      if (!hash) word.fail("expected 16 lower-case hexadecimal digits");
+      facts.meshes.push_back(*hash);
+    }
+  if (const auto n = root.get("contact_lengths"))
+    for (const io::JsonNode& length : n->items()) facts.contact_lengths.push_back(length.number(0, kLongest));
+  return facts;
+}
+
+/// Reads the meshes that were kept of the bodies. One that is missing or damaged only means that less can be
+/// said of a difference.
+std::vector<std::optional<Mesh>> read_meshes(const std::string& folder, const trace::Trace& trace) {
+  std::vector<std::optional<Mesh>> out;
+  for (std::size_t i = 0; i < trace.header.bodies.size(); ++i) {
+    const std::string file = folder + "/" + kept_file(i, static_cast<int>(trace.header.bodies[i].dim));
+    std::error_code error;
+    out.emplace_back();
+    if (!fs::exists(file, error)) continue;
+    try {
+      out.back() = read_mesh(file);
+    } catch (const InputError&) {
+    }
+  }
+  return out;
+}
+
+void write_golden_spec(const std::string& goldens, const std::string& name, const GoldenSpec& spec,
+                       const GoldenFacts& facts) {
+  nlohmann::ordered_json json = {
       {"scenario", spec.scenario}, {"size", {spec.width, spec.height}}, {"frames", spec.frames}};
-  io::write_text((fs::path(goldens) / name / kSpecFile).string(), json.dump() + "\n");
+  if (spec.levels != GoldenSpec{}.levels) {
+    json["compare"] = nlohmann::ordered_json::array();
+    for (const EnumWord<Level>& w : kWords<Level>)
+      if (spec.compares(w.value)) json["compare"].push_back(w.word);
+  }
+  if (!(spec.tolerance == render::ImageTolerance{}))
+    json["tolerance"] = {{"large", spec.tolerance.large},
+                         {"large_share", spec.tolerance.large_share},
+                         {"small_share", spec.tolerance.small_share}};
+  for (const std::uint64_t hash : facts.meshes) json["meshes"].push_back(trace::to_hex(hash));
+  for (const double length : facts.contact_lengths) json["contact_lengths"].push_back(length);
+  io::write_text((fs::path(goldens) / name / kGoldenSpec).string(), json.dump() + "\n");
 }
 
 std::string scenario_reference(const std::string& goldens, const spec::Scenario& scenario,
@@ -135,7 +197,7 @@ spec::Scenario golden_scenario(const std::string& goldens, const std::string& na
   spec::Scenario scenario = spec::open_scenario(
       shipped ? spec.scenario : (fs::path(goldens) / name / spec.scenario).lexically_normal().string());
   if (scenario.name != name)
-    throw InputError(printable_name(folder_of(goldens, name)) + ": " + kSpecFile +
+    throw InputError(printable_name(folder_of(goldens, name)) + ": " + kGoldenSpec +
                      " leads to a scenario that is called " + scenario.name +
                      "; rename the folder, or remove it and approve the scenario anew");
   return scenario;
@@ -146,7 +208,9 @@ Golden load_golden(const std::string& goldens, const std::string& name) {
   golden.name = name;
   golden.spec = read_golden_spec(goldens, name);
   const std::string folder = folder_of(goldens, name);
+  golden.facts = read_facts(folder + "/" + kGoldenSpec);
   golden.trace = trace::load_trace(folder + "/" + kGoldenTrace);
+  golden.meshes = read_meshes(folder, golden.trace);
   for (const std::string& file : image_files_from(folder, 0)) {
     const std::size_t frame = *frame_of_file(file);
     if (frame >= kMostFrames) continue;

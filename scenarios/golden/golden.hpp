@@ -2,15 +2,22 @@
 /// Reads and writes goldens: what has been approved of a scenario's run. A folder of goldens has a folder for
 /// each scenario, with
 ///
-///   golden.json            which scenario, drawn how
+///   golden.json            which scenario, drawn how, compared how
 ///   trace.json.gz          the run, on the event clock
+///   a.ply, b.ply           the bodies' meshes, if they came from files (2D: .obj)
 ///   frame_1.png ...        its pictures
 ///   frame_1.VARIANT.png    further pictures that are right as well, of other processors or drivers
 
+#include <array>
+#include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "engine/mesh/mesh.hpp"
+#include "render/image_diff.hpp"
 #include "render/png.hpp"
+#include "scenarios/golden/level.hpp"
 #include "scenarios/spec/scenario.hpp"
 #include "trace/trace.hpp"
 
@@ -21,6 +28,21 @@ struct GoldenSpec {
   std::string scenario;  ///< name of a shipped one, or a file, looked up from the golden's own folder
   int width = 0, height = 0;
   std::uint32_t frames = 3;  ///< largest number of pictures, evenly chosen from the scenario's frames
+  /// (kLevels) what is compared.
+  std::array<bool, kLevels> levels = {true, true, true};
+  render::ImageTolerance tolerance;  ///< of pictures
+
+  bool compares(Level level) const { return levels[static_cast<std::size_t>(level)]; }
+  friend bool operator==(const GoldenSpec&, const GoldenSpec&) = default;
+};
+
+/// What golden.json notes of the run that the trace does not hold, for later differences to be explained.
+struct GoldenFacts {
+  std::vector<std::uint64_t> meshes;  ///< mesh_hash() of each body; empty: not noted
+  std::vector<double>
+      contact_lengths;  ///< of each step, in the scenario's unit; empty: not asked for, or not noted
+
+  friend bool operator==(const GoldenFacts&, const GoldenFacts&) = default;
 };
 
 /// A picture that was approved.
@@ -33,7 +55,9 @@ struct GoldenImage {
 struct Golden {
   std::string name;  ///< of the scenario, and of its folder
   GoldenSpec spec;
+  GoldenFacts facts;
   trace::Trace trace;
+  std::vector<std::optional<Mesh>> meshes;       ///< of the bodies; nothing where none was kept
   std::vector<std::vector<GoldenImage>> frames;  ///< the variants of each frame; the one without a name first
 };
 
@@ -52,7 +76,8 @@ spec::Scenario golden_scenario(const std::string& goldens, const std::string& na
 /// Returns what golden.json says about a scenario opened as `name_or_path`.
 std::string scenario_reference(const std::string& goldens, const spec::Scenario& scenario,
                                const std::string& name_or_path);
-void write_golden_spec(const std::string& goldens, const std::string& name, const GoldenSpec& spec);
+void write_golden_spec(const std::string& goldens, const std::string& name, const GoldenSpec& spec,
+                       const GoldenFacts& facts);
 
 /// Returns "frame_2.png", or "frame_2.avx512.png". Frames count from 0 here, from 1 in names.
 std::string golden_image_file(std::size_t frame, const std::string& variant = {});
@@ -61,6 +86,7 @@ std::vector<std::string> image_files_of(const std::string& folder, std::size_t f
 /// Returns the files of pictures of this frame and all later ones, which a shorter run no longer has.
 std::vector<std::string> image_files_from(const std::string& folder, std::size_t first_frame);
 
+inline const char* const kGoldenSpec = "golden.json";
 inline const char* const kGoldenTrace = "trace.json.gz";
 
 }  // namespace lrb::golden

@@ -1,12 +1,15 @@
 #include "scenarios/golden/golden_report.hpp"
 
+#include <algorithm>
 #include <filesystem>
+#include <set>
 
 #include "engine/core/atomic_file.hpp"
 #include "render/image_diff.hpp"
 #include "render/overlay.hpp"
 #include "scenarios/golden/divergence_picture.hpp"
 #include "scenarios/io/files.hpp"
+#include "scenarios/io/number_text.hpp"
 #include "scenarios/report/page/inline_image.hpp"
 #include "trace/trace_json.hpp"
 
@@ -62,8 +65,10 @@ std::string counted(std::size_t n, const char* one, const char* many) {
 }
 
 /// Returns "3 of 3 equal", "2 of 3 differ".
-std::string images_words(const GoldenVerdict& verdict) {
+std::string images_words(const GoldenResult& result) {
+  const GoldenVerdict& verdict = result.verdict;
   if (!verdict.refusal.empty()) return "not tested";
+  if (!result.spec.compares(Level::pictures)) return "not compared";
   std::size_t failed = 0, near = 0;
   for (const ImageVerdict& v : verdict.images) {
     failed += v.passed ? 0 : 1;
@@ -72,6 +77,43 @@ std::string images_words(const GoldenVerdict& verdict) {
   const std::string of = std::to_string(verdict.images.size());
   if (failed > 0) return std::to_string(failed) + " of " + of + " differ";
   return of + " equal" + (near > 0 ? ", " + std::to_string(near) + " of them within tolerance" : "");
+}
+
+std::string answers_words(const GoldenResult& r) {
+  if (!r.verdict.refusal.empty()) return "not tested";
+  if (!r.spec.compares(Level::answers)) return "not compared";
+  if (!r.verdict.answers_differ) return counted(r.steps, "step", "steps") + ": equal";
+  std::set<std::uint32_t> steps;
+  for (const Effect& e : r.verdict.effects)
+    if (e.kind == Effect::Kind::answer) steps.insert(e.step);
+  return "differ in " + std::to_string(steps.size()) + " of " + counted(r.steps, "step", "steps");
+}
+
+std::string events_words(const GoldenResult& r) {
+  if (!r.verdict.refusal.empty()) return r.verdict.refusal;
+  if (!r.spec.compares(Level::events)) return "not compared";
+  return r.verdict.divergence ? r.verdict.divergence->message()
+                              : counted(r.events, "event", "events") + ": equal";
+}
+
+/// What came out otherwise, step by step, with what may be behind it below.
+report::PageTable effects_table(const GoldenResult& r) {
+  constexpr std::size_t kMostRows = 200;
+  report::PageTable t;
+  t.title = r.name + ": what came out otherwise";
+  t.columns = {"step", "what", "approved", "found"};
+  for (std::size_t i = 0; i < std::min(r.verdict.effects.size(), kMostRows); ++i) {
+    const Effect& e = r.verdict.effects[i];
+    t.rows.push_back({std::to_string(e.step), e.what, e.expected, e.found});
+  }
+  if (r.verdict.effects.size() > kMostRows)
+    t.note = "And " + render::group_digits(r.verdict.effects.size() - kMostRows) + " more. ";
+  if (r.verdict.effects.empty()) t.rows.push_back({"all", "answers and counters", "", "as approved"});
+  for (const std::string& cause : r.verdict.causes) t.note += "Cause: " + cause + ". ";
+  if (r.verdict.causes.empty())
+    t.note +=
+        "Scenario, bodies, poses, request and version are as approved: the program itself answers otherwise.";
+  return t;
 }
 
 std::string file_of(const std::string& id, const std::string& name, const char* kind) {
@@ -100,6 +142,7 @@ GoldenResult test_golden(const Golden& golden, const GoldenRun& run, const std::
   GoldenResult result;
   result.name = golden.name;
   result.purpose = run.scenario.purpose;
+  result.spec = golden.spec;
   result.verdict = check_golden(golden, run);
   result.steps = run.recording.trace.steps.size();
   result.events = run.recording.trace.events.size();
@@ -148,7 +191,8 @@ void write_golden_page(const std::vector<GoldenResult>& results, const std::stri
   std::size_t failed = 0, images = 0, images_failed = 0, events = 0;
   report::PageTable table;
   table.title = "Scenarios";
-  table.columns = {"scenario", "verdict", "events and counters", "images"};
+  table.columns = {"scenario", "verdict", "answers", "events and counters", "images", "seconds"};
+  std::vector<report::PageTable> effect_tables;
   std::vector<report::PngBytes> pngs;
   for (const GoldenResult& r : results) {
     const GoldenVerdict& v = r.verdict;
@@ -156,12 +200,9 @@ void write_golden_page(const std::vector<GoldenResult>& results, const std::stri
     images += v.images.size();
     for (const ImageVerdict& image : v.images) images_failed += image.passed ? 0 : 1;
     events += r.events;
-    table.rows.push_back({r.name, v.passed() ? "passed" : "FAILED",
-                          !v.refusal.empty() ? v.refusal
-                          : v.divergence     ? v.divergence->message()
-                                             : counted(r.steps, "step", "steps") + ", " +
-                                               counted(r.events, "event", "events") + ": equal",
-                          images_words(v)});
+    table.rows.push_back({r.name, v.passed() ? "passed" : "FAILED", answers_words(r), events_words(r),
+                          images_words(r), io::fixed_text(r.seconds, 1)});
+    if (!v.effects.empty() || !v.causes.empty()) effect_tables.push_back(effects_table(r));
     for (const auto& three : r.pngs)
       for (const report::PngBytes& png : three)
         if (!png.empty()) pngs.push_back(png);
@@ -174,7 +215,9 @@ void write_golden_page(const std::vector<GoldenResult>& results, const std::stri
   page.numbers = {{"scenarios", std::to_string(results.size()), std::to_string(failed) + " failed"},
                   {"events compared", render::group_digits(events), "each field, exactly"},
                   {"images", std::to_string(images), std::to_string(images_failed) + " failed"}};
-  page.tables = {std::move(table)};
+  page.is_bad = failed > 0;
+  page.tables = std::move(effect_tables);
+  page.tables.insert(page.tables.begin(), std::move(table));
   const report::InlinedImages inlined = report::inline_pngs(pngs);
   std::size_t next = 0;
   for (const GoldenResult& r : results) {
@@ -190,21 +233,34 @@ void write_golden_page(const std::vector<GoldenResult>& results, const std::stri
 }
 
 std::string result_text(const GoldenResult& r) {
+  constexpr std::size_t kMostLines = 12;
   const GoldenVerdict& v = r.verdict;
   if (!v.refusal.empty())
     return "FAIL  " + r.name + ": " + v.refusal + "\n      approve it once that is mended: " + r.approve +
            "\n";
+  std::string head = v.answers_differ                 ? "answers " + answers_words(r)
+                     : v.divergence                   ? "events or counters differ"
+                     : r.spec.compares(Level::events) ? counted(r.events, "event", "events") + " equal"
+                                                      : "answers of " + answers_words(r);
   std::string out =
-      (v.passed() ? "ok    " : "FAIL  ") + r.name + ": " +
-      (v.divergence ? "events or counters differ" : counted(r.events, "event", "events") + " equal") +
-      "; images: " + images_words(v) + "\n";
-  if (v.divergence) out += "      " + v.divergence->message() + "\n";
+      (v.passed() ? "ok    " : "FAIL  ") + r.name + ": " + head + "; images: " + images_words(r) + "\n";
+  if (v.passed()) return out;
+  std::size_t lines = 0;
+  for (const Effect& e : v.effects)
+    if (lines++ < kMostLines)
+      out += "      step " + std::to_string(e.step) + ": " + e.what + ": expected " + e.expected +
+             ", found " + e.found + "\n";
+  if (lines > kMostLines)
+    out += "      and " + std::to_string(lines - kMostLines) + " more differences like these\n";
+  for (const std::string& cause : v.causes) out += "      cause: " + cause + "\n";
+  if (v.divergence) out += "      first difference: " + v.divergence->message() + "\n";
   if (!v.diagnosis.empty()) out += "      " + v.diagnosis + "\n";
   for (const ImageVerdict& image : v.images)
     if (!image.passed) out += "      " + image.file + ": " + image.text + "\n";
-  if (!v.passed() && v.scenario_changed)
-    out += "      the scenario's file is not the one that was approved\n";
-  if (!v.passed()) out += "      approve it: " + r.approve + "\n";
+  if (!r.page.empty())
+    for (const report::PageComparison& c : r.comparisons)
+      if (!c.passed) out += "      " + r.page + "#" + c.id + "\n";
+  out += "      approve it: " + r.approve + "\n";
   return out;
 }
 

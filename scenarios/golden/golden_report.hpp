@@ -14,9 +14,12 @@ namespace lrb::golden {
 /// The result of testing one scenario, without its run.
 struct GoldenResult {
   std::string name, purpose;
+  GoldenSpec spec;
   GoldenVerdict verdict;
   std::size_t steps = 0, events = 0;
-  std::string approve;                              ///< the command
+  double seconds = 0;   ///< that the test took: the run, its pictures and the comparison
+  std::string approve;  ///< the command
+  std::string page;     ///< that will show it, for people; empty: none
   std::vector<report::PageComparison> comparisons;  ///< for the page, pictures without their data
   std::vector<std::array<report::PngBytes, 3>>
       pngs;  ///< of each: expected, actual, difference; empty: there is none

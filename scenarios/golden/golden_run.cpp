@@ -6,6 +6,8 @@
 #include <numbers>
 #include <sstream>
 
+#include "scenarios/golden/effects.hpp"
+#include "scenarios/golden/kept_body.hpp"
 #include "scenarios/run/run_scenario.hpp"
 #include "trace/hex.hpp"
 
@@ -41,7 +43,8 @@ void set_default_size(GoldenSpec& spec, const spec::FrameSpec& frames) {
                  kLeastHeight, 4 * kDefaultWidth);
 }
 
-GoldenRun play_golden(spec::Scenario scenario, const GoldenSpec& spec, const run::ProgressReport& progress) {
+GoldenRun record_golden(spec::Scenario scenario, const GoldenSpec& spec,
+                        const run::ProgressReport& progress) {
   GoldenRun run;
   run.scenario = std::move(scenario);
   run.scenario.clock = trace::Clock::event;
@@ -54,8 +57,26 @@ GoldenRun play_golden(spec::Scenario scenario, const GoldenSpec& spec, const run
   for (trace::BodyInfo& body : run.recording.trace.header.bodies)  // names no folder of this machine
     if (body.source.find('/') != std::string::npos)
       body.source = std::filesystem::path(body.source).filename().string();
-  run.frames = run::paint_frames(recorded_run_of(run), frames, progress);
   return run;
+}
+
+void paint_golden(GoldenRun& run, const GoldenSpec& spec, const run::ProgressReport& progress) {
+  if (spec.compares(Level::pictures))
+    run.frames = run::paint_frames(recorded_run_of(run), run.scenario.frames, progress);
+}
+
+GoldenRun play_golden(spec::Scenario scenario, const GoldenSpec& spec, const run::ProgressReport& progress) {
+  GoldenRun run = record_golden(std::move(scenario), spec, progress);
+  paint_golden(run, spec, progress);
+  return run;
+}
+
+GoldenFacts facts_of(const GoldenRun& run) {
+  GoldenFacts facts;
+  for (const bodies::LoadedBody& body : run.recording.bodies)
+    facts.meshes.push_back(mesh_hash(kept_mesh(body.rep)));
+  facts.contact_lengths = contact_lengths(run.recording);
+  return facts;
 }
 
 run::RecordedRun recorded_run_of(const GoldenRun& run) {

@@ -17,8 +17,16 @@ struct GoldenRun {
   std::vector<run::PaintedFrame> frames;
 };
 
-/// Runs and draws a scenario, always on the event clock, whatever the scenario says.
+/// Runs a scenario, always on the event clock, whatever the scenario says, and draws nothing. Several threads may
+/// do this at once.
+GoldenRun record_golden(spec::Scenario scenario, const GoldenSpec& spec, const run::ProgressReport& progress);
+/// Draws its pictures, if these are compared.
+void paint_golden(GoldenRun& run, const GoldenSpec& spec, const run::ProgressReport& progress);
+/// Does both.
 GoldenRun play_golden(spec::Scenario scenario, const GoldenSpec& spec, const run::ProgressReport& progress);
+
+/// Returns what golden.json notes of a run.
+GoldenFacts facts_of(const GoldenRun& run);
 
 run::RecordedRun recorded_run_of(const GoldenRun& run);
 

@@ -1,4 +1,7 @@
+#include <chrono>
 #include <filesystem>
+#include <functional>
+#include <future>
 #include <memory>
 #include <optional>
 
@@ -8,6 +11,7 @@
 #include "scenarios/cli/progress.hpp"
 #include "scenarios/golden/approve.hpp"
 #include "scenarios/golden/golden_report.hpp"
+#include "scenarios/golden/junit.hpp"
 #include "scenarios/io/files.hpp"
 #include "scenarios/spec/shipped.hpp"
 
@@ -18,8 +22,21 @@ struct GoldenOptions {
   std::vector<std::string> scenarios;
   std::string goldens = "goldens", folder = "out/golden", variant, size;
   std::optional<std::uint32_t> frames;
+  std::vector<golden::Level> levels;  ///< none: as each golden says
+  std::optional<double> large_share;  ///< of pixels; none: as each golden says
+  std::string junit;
+  unsigned jobs = 1;
   bool json = false;
 };
+
+/// Applies what the call says of how to compare.
+void apply(const GoldenOptions& o, golden::GoldenSpec& spec) {
+  if (!o.levels.empty()) {
+    spec.levels = {};
+    for (const golden::Level level : o.levels) spec.levels[static_cast<std::size_t>(level)] = true;
+  }
+  if (o.large_share) spec.tolerance.large_share = *o.large_share;
+}
 
 std::string approve_command(const GoldenOptions& o, const std::string& name) {
   return "lrbscope golden approve --goldens " + shell_word(o.goldens) + " " + name;
@@ -53,9 +70,16 @@ std::string as_json(const golden::GoldenResult& r) {
   nlohmann::ordered_json images = nlohmann::ordered_json::array();
   for (const golden::ImageVerdict& v : r.verdict.images)
     images.push_back({{"file", v.file}, {"passed", v.passed}, {"equal", v.equal}, {"text", v.text}});
-  nlohmann::ordered_json line = {{"scenario", r.name},    {"passed", r.verdict.passed()},
-                                 {"steps", r.steps},      {"events", r.events},
-                                 {"divergence", nullptr}, {"images", std::move(images)}};
+  nlohmann::ordered_json line = {
+      {"scenario", r.name}, {"passed", r.verdict.passed()}, {"seconds", r.seconds},       {"steps", r.steps},
+      {"events", r.events}, {"divergence", nullptr},        {"images", std::move(images)}};
+  for (const golden::Effect& e : r.verdict.effects)
+    line["effects"].push_back({{"step", e.step},
+                               {"what", e.what},
+                               {"expected", e.expected},
+                               {"found", e.found},
+                               {"answer", e.kind == golden::Effect::Kind::answer}});
+  for (const std::string& cause : r.verdict.causes) line["causes"].push_back(cause);
   if (!r.verdict.refusal.empty()) line["refusal"] = r.verdict.refusal;
   if (r.verdict.divergence) line["divergence"] = r.verdict.divergence->message();
   if (!r.verdict.diagnosis.empty()) line["diagnosis"] = r.verdict.diagnosis;
@@ -63,20 +87,78 @@ std::string as_json(const golden::GoldenResult& r) {
   return one_line(line);
 }
 
-/// Tests one golden. One that is damaged or refused fails by itself; the others are tested all the same.
-golden::GoldenResult test_one(const GoldenOptions& o, const Globals& globals, const NamedGolden& g,
-                              bool report, std::optional<golden::GoldenRun>& run) {
-  const std::string approve = approve_command(o, g.name);
+/// A golden whose scenario has been run, or why it could not be.
+struct Tried {
+  std::optional<golden::Golden> golden;
+  std::optional<golden::GoldenRun> run;
+  std::string refusal;
+  double seconds = 0;
+};
+
+using Clock = std::chrono::steady_clock;
+double seconds_since(Clock::time_point began) {
+  return std::chrono::duration<double>(Clock::now() - began).count();
+}
+
+/// Reads a golden and runs its scenario. One that is damaged or refused fails by itself; the others are tested
+/// all the same.
+Tried try_one(const GoldenOptions& o, const NamedGolden& g, const run::ProgressReport& progress) {
+  const auto began = Clock::now();
+  Tried out;
   try {
-    const golden::Golden golden = golden::load_golden(o.goldens, g.name);
+    out.golden = golden::load_golden(o.goldens, g.name);
+    apply(o, out.golden->spec);
     spec::Scenario scenario =
-        g.scenario ? *g.scenario : golden::golden_scenario(o.goldens, g.name, golden.spec);
-    run = golden::play_golden(std::move(scenario), golden.spec, progress_report(globals.quiet));
-    return golden::test_golden(golden, *run, approve, report);
+        g.scenario ? *g.scenario : golden::golden_scenario(o.goldens, g.name, out.golden->spec);
+    out.run = golden::record_golden(std::move(scenario), out.golden->spec, progress);
   } catch (const InputError& e) {
-    run.reset();
-    return golden::untested_golden(g.name, e.what(), approve);
+    out.refusal = e.what();
   }
+  out.seconds = seconds_since(began);
+  return out;
+}
+
+/// Runs scenarios on several threads, at most --jobs ahead of the one that is asked for: runs take memory.
+class Trials {
+ public:
+  Trials(const GoldenOptions& o, const Globals& globals, const std::vector<NamedGolden>& todo)
+      : o_(o), todo_(todo), progress_(o.jobs > 1 ? silent() : progress_report(globals.quiet)) {}
+
+  Tried take(std::size_t i) {
+    if (o_.jobs <= 1) return try_one(o_, todo_[i], progress_);
+    for (; begun_.size() < std::min(todo_.size(), i + o_.jobs);)
+      begun_.push_back(std::async(std::launch::async, try_one, std::cref(o_), std::cref(todo_[begun_.size()]),
+                                  std::cref(progress_)));
+    return begun_[i].get();
+  }
+
+ private:
+  static run::ProgressReport silent() {
+    return [](const std::string&, std::uint64_t, std::uint64_t) {};
+  }
+  const GoldenOptions& o_;
+  const std::vector<NamedGolden>& todo_;
+  run::ProgressReport progress_;
+  std::vector<std::future<Tried>> begun_;
+};
+
+/// Draws the pictures of what was tried, and compares.
+golden::GoldenResult judge(Tried& tried, const NamedGolden& g, const GoldenOptions& o, const Globals& globals,
+                           bool report) {
+  const auto began = Clock::now();
+  const std::string approve = approve_command(o, g.name);
+  golden::GoldenResult result;
+  try {
+    if (!tried.refusal.empty()) throw InputError(tried.refusal);
+    golden::paint_golden(*tried.run, tried.golden->spec, progress_report(globals.quiet));
+    result = golden::test_golden(*tried.golden, *tried.run, approve, report);
+  } catch (const InputError& e) {
+    tried.run.reset();
+    result = golden::untested_golden(g.name, e.what(), approve);
+  }
+  result.seconds = tried.seconds + seconds_since(began);
+  result.page = o.folder + "/index.html";
+  return result;
 }
 
 /// `report`: writes a page in any case, with every picture on it.
@@ -92,20 +174,61 @@ int run_test(const GoldenOptions& o, const Globals& globals, bool report) {
   if (report || std::filesystem::exists(o.folder)) lock_folder();
   golden::clear_golden_report(o.folder, names);
   std::vector<golden::GoldenResult> results;
+  Trials trials(o, globals, todo);
   bool passed = true;
-  for (const NamedGolden& g : todo) {
-    std::optional<golden::GoldenRun> run;
-    results.push_back(test_one(o, globals, g, report, run));
+  for (std::size_t i = 0; i < todo.size(); ++i) {
+    Tried tried = trials.take(i);
+    results.push_back(judge(tried, todo[i], o, globals, report));
     passed = passed && results.back().verdict.passed();
     if (!passed) lock_folder();
-    if (run) golden::write_failures(results.back(), *run, o.folder);
+    if (tried.run) golden::write_failures(results.back(), *tried.run, o.folder);
     print(o.json ? as_json(results.back()) : golden::result_text(results.back()));
   }
   if (report || !passed) {
     golden::write_golden_page(results, o.folder, globals.command_line);
     if (!o.json) print(o.folder + "/index.html\n");
   }
+  if (!o.junit.empty()) io::write_text(o.junit, golden::junit_xml(results));
   return passed ? kOk : kMismatch;
+}
+
+std::uintmax_t bytes_in(const std::string& folder) {
+  std::uintmax_t bytes = 0;
+  std::error_code error;
+  for (const auto& file : std::filesystem::directory_iterator(folder, error))
+    if (file.is_regular_file(error)) bytes += file.file_size(error);
+  return bytes;
+}
+
+std::string levels_words(const golden::GoldenSpec& spec) {
+  std::string out;
+  for (const EnumWord<golden::Level>& w : kWords<golden::Level>)
+    if (spec.compares(w.value)) out.append(out.empty() ? "" : ", ").append(w.word);
+  return out;
+}
+
+int run_list(const GoldenOptions& o) {
+  std::uintmax_t all = 0;
+  const std::vector<std::string> names = golden::golden_names(o.goldens);
+  for (const std::string& name : names) {
+    const golden::GoldenSpec spec = golden::read_golden_spec(o.goldens, name);
+    const std::uintmax_t bytes = bytes_in((std::filesystem::path(o.goldens) / name).string());
+    all += bytes;
+    if (o.json)
+      print(one_line({{"golden", name},
+                      {"scenario", spec.scenario},
+                      {"compare", levels_words(spec)},
+                      {"size", {spec.width, spec.height}},
+                      {"frames", spec.frames},
+                      {"bytes", bytes}}));
+    else
+      print(name + ": " + spec.scenario + "; compares " + levels_words(spec) + "; up to " +
+            std::to_string(spec.frames) + " pictures of " + std::to_string(spec.width) + "x" +
+            std::to_string(spec.height) + "; " + std::to_string((bytes + 1023) / 1024) + " KiB\n");
+  }
+  if (!o.json)
+    print(std::to_string(names.size()) + " goldens, " + std::to_string((all + 1023) / 1024) + " KiB\n");
+  return kOk;
 }
 
 golden::GoldenSpec spec_to_approve(const GoldenOptions& o, const std::string& name,
@@ -127,6 +250,7 @@ golden::GoldenSpec spec_to_approve(const GoldenOptions& o, const std::string& na
     spec.height = frames.height;
   }
   if (o.frames) spec.frames = *o.frames;
+  apply(o, spec);
   return spec;
 }
 
@@ -148,17 +272,47 @@ int run_approve(const GoldenOptions& o, const Globals& globals) {
   return kOk;
 }
 
+void add_folder(CLI::App& app, const std::shared_ptr<GoldenOptions>& o) {
+  app.add_option("--goldens", o->goldens, "Folder with what is approved")
+      ->type_name("DIR")
+      ->capture_default_str();
+}
+
 CLI::App* add_part(CLI::App& golden, const std::string& name, const std::string& what,
                    const std::shared_ptr<GoldenOptions>& o, const std::string& none) {
   CLI::App* app = golden.add_subcommand(name, what);
   app->add_option("SCENARIO", o->scenarios, "Shipped scenarios, or JSON files [" + none + "]");
-  app->add_option("--goldens", o->goldens, "Folder with what is approved")
-      ->type_name("DIR")
-      ->capture_default_str();
+  add_folder(*app, o);
   return app;
 }
 
+/// How to compare: for a call of test, or kept by approve.
+void add_comparison(CLI::App& app, const std::shared_ptr<GoldenOptions>& o) {
+  std::vector<std::string> words;
+  for (const EnumWord<golden::Level>& w : kWords<golden::Level>) words.emplace_back(w.word);
+  app.add_option_function<std::vector<std::string>>(
+         "--compare",
+         [o](const std::vector<std::string>& chosen) {
+           for (const std::string& word : chosen) o->levels.push_back(from_name<golden::Level>(word).value());
+         },
+         "What must be as approved, separated by commas: answers, events, pictures [all, or as the golden says]")
+      ->delimiter(',')
+      ->check(CLI::IsMember(words).description(""))
+      ->type_name(all_names<golden::Level>(",", ","));
+  app.add_option("--picture-tolerance", o->large_share,
+                 "Share of a picture's pixels that may differ strongly [0.0005, or as the golden says]")
+      ->check(CLI::Range(0.0, 1.0))
+      ->type_name("SHARE");
+}
+
 void add_output(CLI::App& app, const std::shared_ptr<GoldenOptions>& o) {
+  add_comparison(app, o);
+  app.add_option("--junit", o->junit, "Write the results as JUnit XML, too")->type_name("FILE");
+  app.add_option("--jobs", o->jobs,
+                 "Number of scenarios that are run at the same time; results do not depend on it")
+      ->check(CLI::Range(1, 256))
+      ->type_name("N")
+      ->capture_default_str();
   app.add_option("-o,--output", o->folder, "Folder for the page and for what differs")
       ->type_name("DIR")
       ->capture_default_str();
@@ -184,10 +338,16 @@ Command add_golden(CLI::App& root, const Globals& globals) {
   approve->add_option("--frames", o->frames, "Number of pictures, evenly chosen from the scenario's [3]")
       ->check(CLI::Range(1, 1000))
       ->type_name("N");
+  add_comparison(*approve, o);
+  CLI::App* list = app->add_subcommand(
+      "list", "List what has been approved, how it is compared, and what it takes on disk");
+  add_folder(*list, o);
+  list->add_flag("--json", o->json, "Print a line of JSON for each golden");
   CLI::App* report =
       add_part(*app, "report", "As test, but always with a page, of every picture", o, "all goldens");
   add_output(*report, o);
-  return {app, [o, &globals, test, report] {
+  return {app, [o, &globals, test, report, list] {
+            if (list->parsed()) return run_list(*o);
             if (test->parsed()) return run_test(*o, globals, false);
             if (report->parsed()) return run_test(*o, globals, true);
             return run_approve(*o, globals);

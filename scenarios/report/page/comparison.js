@@ -1,7 +1,7 @@
 // Comparisons: each has its own way of being looked at; dragging over a swiped picture moves the edge.
 for (const section of document.querySelectorAll(".comparison")) {
   const pictures = section.querySelector(".pictures"), slider = section.querySelector(".modes input");
-  if (!slider) continue;
+  if (!slider) continue; // there is one picture only
   const buttons = [...section.querySelectorAll(".modes button")];
   const swipe = (percent) => {
     slider.value = percent;
@@ -10,6 +10,7 @@ for (const section of document.querySelectorAll(".comparison")) {
   const look = (mode) => {
     pictures.dataset.mode = mode;
     section.classList.toggle("swiping", mode === "swipe");
+    if (mode === "swipe") pictures.classList.remove("full");
     for (const b of buttons) b.setAttribute("aria-pressed", String(b.dataset.mode === mode));
   };
   for (const b of buttons) b.onclick = () => look(b.dataset.mode);
@@ -21,6 +22,19 @@ for (const section of document.querySelectorAll(".comparison")) {
   };
   pictures.addEventListener("pointerdown", drag);
   pictures.addEventListener("pointermove", drag);
+  // A click, or Enter, shows the pictures in full, two pixels of the screen to each of theirs; and again, as before.
+  for (const image of pictures.querySelectorAll("img")) {
+    image.tabIndex = 0;
+    const measure = () => image.style.setProperty("--pixels", `${image.naturalWidth}px`);
+    image.complete ? measure() : (image.onload = measure);
+    const toggle = () => pictures.dataset.mode !== "swipe" && pictures.classList.toggle("full");
+    image.addEventListener("click", toggle);
+    image.addEventListener("keydown", (e) => e.key === "Enter" && toggle());
+  }
+  section.addEventListener("keydown", (e) => {
+    const mode = { s: "side", w: "swipe", d: "difference" }[e.key];
+    if (mode && !e.ctrlKey && !e.metaKey && !e.altKey) look(mode);
+  });
   const asked = new URLSearchParams(location.search).get("compare"); // ?compare=swipe opens all that way
   if (asked && buttons.some((b) => b.dataset.mode === asked)) look(asked);
 }

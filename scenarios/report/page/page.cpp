@@ -142,6 +142,7 @@ std::string tables_html(const Page& page) {
       for (const std::string& cell : row) {
         const bool prose = cell.size() > kProse;
         out += std::string(looks_numeric(cell) ? "<td class=\"n\">"
+                           : cell == "FAILED"  ? "<td class=\"bad\">"
                            : prose             ? "<td class=\"prose\">"
                                                : "<td>") +
                render::escape_markup(cell) + "</td>";
@@ -216,9 +217,9 @@ std::string page_html(const Page& page) {
       return page.purpose.empty() ? ""
                                   : "<p class=\"purpose\">" + render::escape_markup(page.purpose) + "</p>";
     if (key == "verdict")
-      return page.verdict.empty()
-                 ? ""
-                 : "<span class=\"verdict\">" + render::escape_markup(page.verdict) + "</span>";
+      return page.verdict.empty() ? ""
+                                  : "<span class=\"verdict" + std::string(page.is_bad ? " bad" : "") + "\">" +
+                                        render::escape_markup(page.verdict) + "</span>";
     if (key == "style")
       return std::string(io::embedded_file("page.css")) +
              (page.scene.empty() ? "" : std::string(io::embedded_file("scene.css"))) +

@@ -80,6 +80,7 @@ struct Page {
   std::string title;
   std::string purpose;          ///< one or two sentences under the title
   std::string verdict;          ///< a short word beside the title, such as the relation of the bodies
+  bool is_bad = false;          ///< the verdict is shown as a failure
   std::vector<PageText> texts;  ///< what a reader should know first, side by side
   std::vector<PageNumber> numbers;
   PageGrid grid;

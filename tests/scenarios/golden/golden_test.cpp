@@ -70,6 +70,7 @@ golden::Golden golden_of(const golden::GoldenRun& run) {
   golden::Golden golden;
   golden.name = run.scenario.name;
   golden.spec = small_spec();
+  golden.facts = golden::facts_of(run);
   golden.trace = run.recording.trace;
   for (std::size_t i = 0; i < run.frames.size(); ++i)
     golden.frames.push_back(
@@ -104,8 +105,13 @@ TEST_CASE("goldens: what is approved passes, and leaves nothing behind; approvin
   CHECK(before == std::vector<std::string>{"balls.scenario.json", "goldens", "goldens/balls",
                                            "goldens/balls/frame_1.png", "goldens/balls/frame_2.png",
                                            "goldens/balls/golden.json", "goldens/balls/trace.json.gz"});
-  CHECK(slurp(folder / "goldens/balls/golden.json") ==
-        "{\"scenario\":\"../../balls.scenario.json\",\"size\":[480,320],\"frames\":2}\n");
+  const auto spec = nlohmann::json::parse(slurp(folder / "goldens/balls/golden.json"));
+  CHECK(spec["scenario"] == "../../balls.scenario.json");
+  CHECK(spec["size"] == nlohmann::json({480, 320}));
+  CHECK(spec["frames"] == 2);
+  CHECK(spec["meshes"].size() == 2);
+  CHECK(spec["contact_lengths"].size() == 5);
+  CHECK_FALSE(spec.contains("compare"));
   const Outcome o = folder.test();
   CAPTURE(o.out);
   CHECK(o.code == 0);
@@ -359,4 +365,130 @@ TEST_CASE("goldens: what is damaged fails, and the others are tested all the sam
   folder.write("goldens/balls/trace.json.gz", sound);
   folder.write("goldens/balls/golden.json", "{\"scenario\": \"balls\", \"size\": [1]}");
   check_fails("golden.json:1:");
+}
+
+namespace {
+
+/// A folder with an approved golden of two tetrahedra in files, the first of which has its tip in the other.
+struct ApprovedFiles : Folder {
+  ApprovedFiles() {
+    write_tips(1);
+    write("b.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n");
+    write("tips.scenario.json", R"({"name": "tips", "purpose": "Two tetrahedra.",
+      "bodies": {"a": {"file": "a.obj"}, "b": {"file": "b.obj"}},
+      "motion": {"kind": "poses", "poses": [[1,0,0,-0.2, 0,1,0,-0.2, 0,0,1,0.9], [1,0,0,5, 0,1,0,0, 0,0,1,0]]},
+      "frames": {"size": [480, 320]}})");
+    const Outcome o = test::run(*this, {"golden", "approve", "--frames", "1", "tips.scenario.json"});
+    REQUIRE_MESSAGE(o.code == 0, o.err);
+  }
+  void write_tips(double tip) {
+    write("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 " + std::to_string(tip) +
+                       "\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n");
+  }
+};
+
+}  // namespace
+
+TEST_CASE("goldens: effects come first, then which vertex moved and by how much") {
+  ApprovedFiles folder;
+  CHECK(fs::exists(folder / "goldens/tips/a.ply"));
+  CHECK(test::run(folder, {"golden", "test"}).code == 0);
+  folder.write_tips(0.5);  // no longer reaches into B
+  const Outcome o = test::run(folder, {"golden", "test", "--junit", "results.xml"});
+  CAPTURE(o.out);
+  CHECK(o.code == 1);
+  CHECK(has(o.out, "FAIL  tips: answers differ in 1 of 2 steps"));
+  CHECK(has(o.out, "step 0: relation: expected crossing, found separate"));
+  CHECK(has(o.out, "step 0: length of contact: expected "));
+  CHECK(has(o.out, "cause: body A (a.obj): its mesh changed: vertex 3 moved by 0.5 ("));
+  CHECK_FALSE(has(o.out, "cause: body B"));
+  CHECK(o.out.find("relation: expected") < o.out.find("face tests: expected"));
+  CHECK(o.out.find("face tests: expected") < o.out.find("cause: "));
+  CHECK(has(o.out, "out/golden/index.html#tips-frame_1\n"));
+  const std::string page = slurp(folder / "out/golden/index.html");
+  CHECK(has(page, "tips: what came out otherwise"));
+  CHECK(has(page, "id=\"tips-frame_1\""));
+  const std::string junit = slurp(folder / "results.xml");
+  CHECK(has(junit, "<testsuite name=\"lrbscope golden\" tests=\"1\" failures=\"1\" errors=\"0\""));
+  CHECK(has(junit, "<failure message=\"FAIL  tips: answers differ in 1 of 2 steps"));
+}
+
+TEST_CASE("goldens: a body built otherwise from the same mesh is told from another mesh") {
+  golden::GoldenRun run = play();
+  golden::Golden golden = golden_of(run);
+  ++golden.trace.header.bodies[0].hash;
+  CHECK(has(golden::check_golden(golden, run).causes.at(0),
+            "the mesh is the same, its LRB-rep was built otherwise"));
+  ++golden.facts.meshes[0];
+  CHECK(has(golden::check_golden(golden, run).causes.at(0), "its mesh changed: "));
+  golden.facts.meshes.clear();
+  CHECK(has(golden::check_golden(golden, run).causes.at(0), "its mesh or its LRB-rep is another one"));
+  golden = golden_of(run);
+  golden.trace.steps[1].pose_b.t.x() += 1;
+  CHECK(has(golden::check_golden(golden, run).causes.at(0),
+            "step 1: body B is elsewhere: its origin moved by 1"));
+  golden = golden_of(run);
+  golden.trace.header.request.contacts = false;
+  CHECK(has(golden::check_golden(golden, run).causes.at(0), "the query asks otherwise: contacts"));
+}
+
+TEST_CASE("goldens: what is compared can be chosen, by the golden or by the call") {
+  ApprovedFiles folder;
+  golden::GoldenRun run = play();
+  golden::Golden golden = golden_of(run);
+  ++golden.trace.steps[2].result.counters.box_tests;
+  ++golden.trace.header.bodies[1].hash;
+  golden.frames[0][0].png.image.fill({0, 0, 100, 100}, {1, 2, 3, 255});
+  CHECK_FALSE(golden::check_golden(golden, run).passed());
+  golden.spec.levels = {true, false, false};  // answers alone: a better builder, or another camera, passes
+  CHECK(golden::check_golden(golden, run).passed());
+  golden.trace.steps[2].result.fingerprint ^= 1;
+  CHECK(golden::check_golden(golden, run).answers_differ);
+  golden.spec.levels = {false, false, true};
+  CHECK_FALSE(golden::check_golden(golden, run).images_passed());
+  golden.spec.tolerance.large_share = 0.2;
+  CHECK(golden::check_golden(golden, run).passed());
+
+  folder.write_tips(0.99);  // another mesh, the same answers but for the pairs' geometry
+  CHECK(test::run(folder, {"golden", "test"}).code == 1);
+  CHECK(test::run(folder, {"golden", "test", "--compare", "answers"}).code == 0);
+  CHECK(test::run(folder, {"golden", "test", "--compare", "answers,events"}).code == 1);
+  CHECK(test::run(folder, {"golden", "test", "--compare", "nonsense"}).code == 2);
+  CHECK(test::run(folder, {"golden", "approve", "--compare", "answers"}).code == 0);
+  CHECK_FALSE(fs::exists(folder / "goldens/tips/frame_1.png"));
+  folder.write_tips(1.01);
+  const Outcome o = test::run(folder, {"golden", "test"});
+  CAPTURE(o.out);
+  CHECK(o.code == 0);
+  CHECK(has(o.out, "ok    tips: answers of 2 steps: equal; images: not compared"));
+}
+
+TEST_CASE(
+    "goldens: jobs change nothing but the time; one that cannot run fails alone; list says what there is") {
+  Approved folder;
+  for (const char* name : {"other", "third", "gone"}) {
+    const std::string file = std::string(name) + ".scenario.json";
+    folder.write(file, two_balls().replace(10, 5, name));
+    REQUIRE(test::run(folder, {"golden", "approve", "--frames", "1", file}).code == 0);
+  }
+  fs::remove(folder / "gone.scenario.json");
+  const auto tested = [&](const char* jobs) {
+    const Outcome o = test::run(folder, {"golden", "test", "--jobs", jobs, "--junit", "j.xml"});
+    CHECK(o.code == 1);
+    CHECK(has(slurp(folder / "j.xml"), "tests=\"4\" failures=\"0\" errors=\"1\""));
+    return o.out;
+  };
+  const std::string one = tested("1");
+  CHECK(has(one, "FAIL  gone: "));
+  for (const char* name : {"balls", "other", "third"}) CHECK(has(one, "ok    " + std::string(name)));
+  CHECK(tested("3") == one);
+  const Outcome list = test::run(folder, {"golden", "list"});
+  CHECK(has(
+      list.out,
+      "balls: ../../balls.scenario.json; compares answers, events, pictures; up to 2 pictures of 480x320; "));
+  CHECK(has(list.out, "4 goldens, "));
+  const std::string lines = test::run(folder, {"golden", "list", "--json"}).out;
+  const auto line = nlohmann::json::parse(lines.substr(0, lines.find('\n')));
+  CHECK(line["golden"] == "balls");
+  CHECK(line["bytes"].get<int>() > 1000);
 }
