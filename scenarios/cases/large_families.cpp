@@ -83,9 +83,9 @@ Mesh cone(int n) {
 }
 
 Case make_kiss(RandomEngine& random, double dial) {
-  static const std::vector<Body> kCubes = {body(shapes::box()), body(shapes::quad_box())};
+  static const std::vector<Body> cubes = {body(shapes::box()), body(shapes::quad_box())};
   const double gap = steady::exp2(-std::round(4 + 48 * dial));  // at the end of the dial an ulp of 1
-  Case c{kCubes[random() % 2], kCubes[random() % 2], {}, {}, {}, {}};
+  Case c{cubes[random() % 2], cubes[random() % 2], {}, {}, {}, {}};
   const int axes = pick(random, 1, 3);  // in contact along: a face, an edge, a vertex
   bool apart = false, touch = false;
   for (int k = 0; k < 3; ++k) {
@@ -186,21 +186,21 @@ Case make_polygon(RandomEngine& random, double dial) {
 
 Case make_fractal(RandomEngine& random, double dial) {
   static const Body kSponge = body(menger(2)), kHub = body(cone(400));
-  static const std::vector<Body> kDented = {body(dented_cube(1)), body(dented_cube(2)), body(menger(1))};
-  static const std::vector<Body> kProbes = {body(shapes::scaled(shapes::box(), 1.0 / 9)),
+  static const std::vector<Body> dented = {body(dented_cube(1)), body(dented_cube(2)), body(menger(1))};
+  static const std::vector<Body> probes = {body(shapes::scaled(shapes::box(), 1.0 / 9)),
                                             body(shapes::scaled(shapes::box(), 1.0 / 7)),
                                             body(shapes::scaled(shapes::icosphere(0), 0.1))};
-  Case c{kSponge, kProbes[random() % 3], {}, {}, {}, {}};
+  Case c{kSponge, probes[random() % 3], {}, {}, {}, {}};
   const int kind = pick(random, 0, 15);
   const double fine = steady::pow10(-17 * dial);
   if (kind < 8) {  // a plug for a hole of the sponge, of a dented cube
-    if (kind % 2) c.a = kDented[random() % 3];
+    if (kind % 2) c.a = dented[random() % 3];
     const double cell = 1.0 / (kind % 2 ? 7 : 9);
     c.pose_b = {grid_turn(random), cell * pick_point(random, {-1, -1, -1}, {9, 9, 9})};
     c.pose_b.t += fine * shapes::random_direction(random);
   } else if (kind < 14) {  // cube in dent, on the grid or nearly
-    c.a = kDented[random() % 3];
-    c.b = kDented[random() % 3];
+    c.a = dented[random() % 3];
+    c.b = dented[random() % 3];
     c.pose_b = {grid_turn(random), pick_point(random, {4, -8, -8}, {8, 8, 8}) / 7};
     c.pose_b.t += fine * shapes::random_direction(random);
   } else if (kind == 14) {  // hundreds of faces in a point, one of the other's corners in it
@@ -210,7 +210,7 @@ Case make_fractal(RandomEngine& random, double dial) {
     const Vector3d corner = c.b->vertices()[random() % c.b->vertices().size()];
     c.pose_b.t = -(c.pose_b.r * corner);
   } else {
-    c.b = random() % 8 ? kDented[random() % 3] : kSponge;
+    c.b = random() % 8 ? dented[random() % 3] : kSponge;
     c.pose_b = any_pose(random, 1.5);
   }
   if (pick(random, 0, 3) == 0) move_both(c, any_pose(random));

@@ -33,8 +33,8 @@ Pose sized(const Eigen::Matrix3d& map, const Eigen::Vector3d& at, double body, d
 }
 
 Scene random_scene(RandomEngine& random, int dim, int i) {
-  const double kSizes[] = {1, 1, 1, 1e-150, 1e150, 1e-12, 1e9};
-  const double size_a = kSizes[random() % 7], size_b = kSizes[random() % 7], world = kSizes[random() % 7];
+  const double sizes[] = {1, 1, 1, 1e-150, 1e150, 1e-12, 1e9};
+  const double size_a = sizes[random() % 7], size_b = sizes[random() % 7], world = sizes[random() % 7];
   const auto kind = [&] { return static_cast<MapKind>(random() % test::kMapKinds); };
   const auto first = static_cast<MapKind>(i % test::kMapKinds);
   const Eigen::Matrix3d map_a = test::random_map(random, i % 3 ? kind() : first, dim),

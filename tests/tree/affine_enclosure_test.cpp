@@ -122,12 +122,12 @@ Pose sized(Pose pose, double r, double t) {
 
 TEST_CASE("whatever boxes leave out under affine maps is apart in exact arithmetic") {
   RandomEngine random(17);
-  const double kSizes[] = {1, 1, 1e-150, 1e150, 1e-12};
+  const double sizes[] = {1, 1, 1e-150, 1e150, 1e-12};
   Share total;
   Asked asked;
   for (int i = 0; i < 5 * test::kMapKinds; ++i) {
     CAPTURE(i);
-    const double size_a = kSizes[i % 5], size_b = kSizes[i / 2 % 5], world = i % 3 ? 1 : kSizes[i % 4];
+    const double size_a = sizes[i % 5], size_b = sizes[i / 2 % 5], world = i % 3 ? 1 : sizes[i % 4];
     const LrbRep a = closed(i % 2 ? shapes::bumpy_sphere(1, 3) : shapes::comb(3), size_a),
                  b = closed(i % 5 ? shapes::icosphere(1) : shapes::torus(6, 5), size_b);
     const auto kind = static_cast<test::MapKind>(i % test::kMapKinds),

@@ -202,22 +202,22 @@ TEST_CASE("named pipes are refused and not waited for; pipes that a shell makes 
 }
 
 TEST_CASE("pictures that claim or unpack to more than they can be are refused") {
-  CHECK(refusal_of_png(png_of(64, 64, 64 * 193)).empty());
-  CHECK(refusal_of_png(png_of(64, 64, 64 * 193), 4095).find("has 64x64 pixels, more than the 4095") !=
+  CHECK(refusal_of_png(png_of(64, 64, 64UL * 193)).empty());
+  CHECK(refusal_of_png(png_of(64, 64, 64UL * 193), 4095).find("has 64x64 pixels, more than the 4095") !=
         std::string::npos);
   CHECK(refusal_of_png(png_of(20'000, 20'000, 1000)).find("has 20000x20000 pixels, more than the") !=
         std::string::npos);
   CHECK(refusal_of_png(png_of(8000, 8000, 1000)).find("8000x8000 pixels cannot be in ") != std::string::npos);
-  CHECK(refusal_of_png(png_of(40'000, 2, 2 * 120'001)).find("has 40000x2 pixels, a side longer than the") !=
+  CHECK(refusal_of_png(png_of(40'000, 2, 2UL * 120'001)).find("has 40000x2 pixels, a side longer than the") !=
         std::string::npos);
 }
 
 TEST_CASE("pictures that are damaged are refused in words that say how") {
-  const std::string good = png_of(64, 64, 64 * 193);
+  const std::string good = png_of(64, 64, 64UL * 193);
   CHECK(refusal_of_png("GIF89a, or so") == "p.png: not a readable PNG (Not a PNG file)");
   CHECK(refusal_of_png(png_of(64, 64, 20 * kMega)) ==
         "p.png: not a readable PNG (IDAT: Too much image data)");
-  CHECK(refusal_of_png(png_of(64, 64, 64 * 193 - 1)) == "p.png: not a readable PNG (Not enough image data)");
+  CHECK(refusal_of_png(png_of(64, 64, 64UL * 193 - 1)) == "p.png: not a readable PNG (Not enough image data)");
   for (const std::size_t missing : {std::size_t{1}, std::size_t{13}, good.size() - 8, good.size() - 40})
     CHECK(refusal_of_png(good.substr(0, good.size() - missing)) ==
           "p.png: not a readable PNG (it ends too early)");
@@ -264,7 +264,7 @@ TEST_CASE("a golden of bombs fails within little memory, and the others are test
     if (kCountsMemory) CHECK(m.peak_mb < usual_mb + 40);
   };
   const std::string picture = slurp(folder / "goldens/bomb/frame_1.png");
-  folder.write("goldens/bomb/frame_1.png", png_of(8000, 8000, 8000 * 24001));
+  folder.write("goldens/bomb/frame_1.png", png_of(8000, 8000, 8000UL * 24001));
   check_fails("has 8000x8000 pixels, more than the");
   folder.write("goldens/bomb/frame_1.png", png_of(480, 320, 150 * kMega));
   check_fails("Too much image data");
