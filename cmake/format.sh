@@ -9,7 +9,7 @@ case "${1:-}" in
   *) sed -n '2s/^# //p' "${BASH_SOURCE[0]}" >&2 && exit 2 ;;
 esac
 # Versions format differently; this is Debian 12's.
-program=$(command -v clang-format-14) || { echo "format.sh: clang-format-14 is missing" >&2 && exit 3; }
+program=$(command -v clang-format-14) || { echo "format.sh: clang-format-14 is missing: apt-get install clang-format-14" >&2 && exit 3; }
 find engine trace render scenarios tests '(' -name '*.cpp' -o -name '*.hpp' -o -name '*.inl' ')' -print0 |
   xargs -0 -P "$(nproc)" -n 40 "$program" --style=file "${how[@]}" ||
   { echo "format.sh: run cmake/format.sh --mend" >&2 && exit 1; }

@@ -65,15 +65,15 @@ png_text as_chunk(const PngText& text) {
   return out;
 }
 
-class Writer {
+class PngWriter {
  public:
-  Writer() : png_(png_create_write_struct(PNG_LIBPNG_VER_STRING, &complaint_, complain, keep_silent)) {
+  PngWriter() : png_(png_create_write_struct(PNG_LIBPNG_VER_STRING, &complaint_, complain, keep_silent)) {
     if (png_ != nullptr) info_ = png_create_info_struct(png_);
     if (info_ != nullptr) png_set_write_fn(png_, this, append, [](png_structp) {});
   }
-  ~Writer() { png_destroy_write_struct(&png_, &info_); }
-  Writer(const Writer&) = delete;
-  Writer& operator=(const Writer&) = delete;
+  ~PngWriter() { png_destroy_write_struct(&png_, &info_); }
+  PngWriter(const PngWriter&) = delete;
+  PngWriter& operator=(const PngWriter&) = delete;
 
   bool write(const Image& image, const std::vector<png_text>& text, png_uint_32 per_metre) {
     return info_ != nullptr && succeeds(png_, [&] {
@@ -107,7 +107,7 @@ class Writer {
   static void append(png_structp png, png_bytep data, std::size_t size) {
     bool room = true;
     try {
-      Bytes& bytes = static_cast<Writer*>(png_get_io_ptr(png))->bytes;
+      Bytes& bytes = static_cast<PngWriter*>(png_get_io_ptr(png))->bytes;
       bytes.insert(bytes.end(), data, data + size);
     } catch (const std::bad_alloc&) {
       room = false;
@@ -120,9 +120,9 @@ class Writer {
   png_infop info_ = nullptr;
 };
 
-class Reader {
+class PngReader {
  public:
-  explicit Reader(std::span<const std::uint8_t> bytes)
+  explicit PngReader(std::span<const std::uint8_t> bytes)
       : rest_(bytes),
         png_(png_create_read_struct(PNG_LIBPNG_VER_STRING, &complaint_, complain, keep_silent)) {
     if (png_ != nullptr) info_ = png_create_info_struct(png_);
@@ -135,9 +135,9 @@ class Reader {
     png_set_chunk_malloc_max(png_, kLongestChunk);
     png_set_chunk_cache_max(png_, kMostChunks);
   }
-  ~Reader() { png_destroy_read_struct(&png_, &info_, nullptr); }
-  Reader(const Reader&) = delete;
-  Reader& operator=(const Reader&) = delete;
+  ~PngReader() { png_destroy_read_struct(&png_, &info_, nullptr); }
+  PngReader(const PngReader&) = delete;
+  PngReader& operator=(const PngReader&) = delete;
 
   bool read_header() {
     return succeeds(png_, [&] { png_read_info(png_, info_); });
@@ -176,7 +176,7 @@ class Reader {
 
  private:
   static void take(png_structp png, png_bytep to, std::size_t size) {
-    auto& rest = static_cast<Reader*>(png_get_io_ptr(png))->rest_;
+    auto& rest = static_cast<PngReader*>(png_get_io_ptr(png))->rest_;
     if (size > rest.size()) png_error(png, "it ends too early");
     std::memcpy(to, rest.data(), size);
     rest = rest.subspan(size);
@@ -189,7 +189,7 @@ class Reader {
 };
 
 /// Refuses, before any memory is taken, a picture that would take far more than its file can hold.
-void check_size(const Reader& reader, std::size_t file_bytes, const std::string& name,
+void check_size(const PngReader& reader, std::size_t file_bytes, const std::string& name,
                 std::uint64_t most_pixels) {
   const std::string size = std::to_string(reader.width()) + "x" + std::to_string(reader.height()) + " pixels";
   if (reader.width() * reader.height() > most_pixels)
@@ -211,7 +211,7 @@ Bytes encode_png(const Image& image, const PngOptions& options) {
   std::vector<png_text> text;
   for (const PngText& t : options.text) text.push_back(as_chunk(t));
   const double per_metre = std::max(0.0, options.dpi) * kInchesPerMetre;
-  Writer writer;
+  PngWriter writer;
   if (!writer.write(image, text, static_cast<png_uint_32>(std::lround(per_metre))))
     throw EnvironmentError("cannot encode a PNG of " + std::to_string(image.width()) + "x" +
                            std::to_string(image.height()) + " pixels: " + writer.complaint());
@@ -220,7 +220,7 @@ Bytes encode_png(const Image& image, const PngOptions& options) {
 
 DecodedPng decode_png(std::span<const std::uint8_t> bytes, const std::string& name,
                       std::uint64_t most_pixels) {
-  Reader reader(bytes);
+  PngReader reader(bytes);
   const auto refuse_unless = [&](bool readable) {
     if (!readable) throw InputError(name + ": not a readable PNG (" + reader.complaint() + ")");
   };

@@ -41,7 +41,7 @@ struct NodeWork {
 
   friend bool operator==(const NodeWork&, const NodeWork&) = default;
 };
-/// Where a pair of nodes ended, of which no two boxes met. All three fit a byte.
+/// Why a pair of nodes, of which no two boxes met, was not descended. All three fit a byte.
 struct NodeEnd {
   NodeStep step = NodeStep::descend_both;
   BoxAxis axis = BoxAxis::a1;  ///< along which the nodes' own boxes are furthest apart, or overlap least
@@ -61,11 +61,10 @@ struct NodeEnd {
 struct Event {
   std::uint32_t a = 0;
   std::uint32_t b = 0;
-  EventId cause =
-      kNull;  ///< an earlier event. Contact: the face test that found it. Refine: the face test that hit just
-              ///< before (kNull in the complete query, which opens regions before it tests). Face test: the
-  ///< later of the refinements that brought in its faces. Node pair: the pair above. Plane test: the
-  ///< pair of leaves. End: the beginning of the phase
+  /// An earlier event. Contact: the face test that found it. Refine: the face test that hit just before (kNull in the
+  /// complete query, which opens regions before it tests). Face test: the later of the refinements that brought in its
+  /// faces. Node pair: the pair above. Plane test: the pair of leaves. End: the beginning of the phase.
+  EventId cause = kNull;
   std::uint32_t boundary =
       kNull;  ///< refine, coarsen: number of faces of that wrapper afterwards; kNull: not known. Node pair: work()
   std::uint16_t depth_a =

@@ -35,7 +35,7 @@ class GzipSink final : public ByteSink {
     constexpr int kGzipHeader = 16;  // added to the window bits: gzip instead of zlib
     constexpr int kMemLevel = 8;
     if (deflateInit2(&stream_, 1, Z_DEFLATED, MAX_WBITS + kGzipHeader, kMemLevel, Z_DEFAULT_STRATEGY) != Z_OK)
-      throw EnvironmentError("zlib cannot begin to compress: out of memory?");
+      throw EnvironmentError("zlib could not start to compress (out of memory)");
   }
   ~GzipSink() override { deflateEnd(&stream_); }
   GzipSink(const GzipSink&) = delete;

@@ -10,8 +10,8 @@
 namespace lrb::construct {
 
 /// Returns the void in front of each component of the mesh's surface: (components) itself for a void, kNull
-/// where the outside is. `hull` is the mesh's own surface still. Exact, but that components which cross a
-/// void's wall count as in it or not by a vertex.
+/// where the outside is. `hull` is the mesh's own surface still. Exact, except that a component that
+/// crosses a void's wall is placed by one of its vertices.
 std::vector<std::uint32_t> find_nesting(const Mesh& mesh, const HullMesh& hull);
 
 }  // namespace lrb::construct

@@ -15,15 +15,15 @@ struct CapGoal {
   double off = 0;  ///< how far a cap may stand off the body, mesh's unit; 0: as far as it likes
 };
 
-/// What caps may be off the body, as shares of its largest side: at first, where fitting ends, and from one
-/// distance to the next. Measured on six bodies: a start at 0.0003 takes three times as long and gains nothing from
+/// Limits on a cap's distance from the body, as shares of its largest side: the first, the last, and the factor from
+/// one to the next. Measured on six bodies: a start at 0.0003 takes three times as long and gains nothing from
 /// 0.005 on; a step of 2 in place of 1.25 costs a sixth more faces.
 inline constexpr double kFirstOff = 0.001, kLastOff = 0.1, kOffStep = 1.25;
 /// A pass that leaves a larger share of the hull's faces is the last for its distance.
 inline constexpr double kFitGain = 0.8;
 inline constexpr int kPassesForOff = 8;
-/// A cap that leaves x of the faces it covers costs x / (1 - x) faces for each that it saves. This much is paid on
-/// the mesh itself, and more on simpler hulls, by the root of how much simpler they are: a face there costs little.
+/// A cap that leaves x of the faces it covers costs x / (1 - x) faces for each that it saves. This is the largest
+/// price accepted on the mesh itself; on simpler hulls it is divided by the square root of hull faces / real faces.
 /// Larger: hulls fit better; smaller: fewer faces in all (0.74: 1.7 to 2 per real face on six bodies).
 inline constexpr double kFitBudget = 0.74;
 

@@ -34,7 +34,8 @@ class HullMesh {
     Eigen::Vector3d x;
     VertexId id;
     double off = 0;  ///< distance from the body: 0 for the mesh's own vertices, else an estimate; mesh's unit
-    double patience = 0;  ///< how far off caps must be allowed to be before one is tried here again
+    double patience =
+        0;  ///< limit on a cap's distance from the body (CapGoal::off) from which one is tried here again
   };
 
   /// Makes the surface of a mesh, which must be closed, oriented, and manifold but for vertices with several
@@ -82,9 +83,8 @@ class HullMesh {
                ? SlotRange{unit_first_[s], unit_first_[s] + unit_size_[s]}
                : SlotRange{s, s + 1};
   }
-  /// Part of a polygon with very many corners, or at a vertex with very many triangles. Such come into a
-  /// patch only as a whole, and what a patch costs grows with the square of its triangles: so they come into
-  /// none.
+  /// Returns true for a triangle that no patch may contain: one of a polygon with very many corners, or at a vertex with
+  /// very many triangles. A patch would have to take all of these, and costs the square of its triangles.
   bool is_crowded(Slot s) const {
     constexpr std::uint32_t kMost = 512;
     const SlotRange polygon = unit(s);

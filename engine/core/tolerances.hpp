@@ -66,7 +66,8 @@ inline constexpr double kPoseSafety = 4;
 /// smaller: rotations that have been multiplied and rounded thousands of times take the slower way of other
 /// maps.
 inline constexpr double kNearRotation = 0x1p-30;
-/// Largest world coordinate, in bodies, at which they are: floats of the kernel must not overflow.
+/// Largest world coordinate, in sizes of the bodies, at which poses are treated as rotations: floats of the kernel must
+/// not overflow.
 inline constexpr double kNearEnough = 0x1p100;
 /// Least singular value of a map, relative to its largest, at which boxes are compared on the body's own axes
 /// as they are; flatter bodies are looked at as if they were as thick as this. Smaller: the kernel's

@@ -11,9 +11,8 @@ struct SimplexPoint {
   double distance_sq;  ///< from the point that it was looked for from
 };
 
-/// Returns the point of the segment a, b that is nearest to p but for rounding: whatever is rounded, the
-/// distance is that of a point of the segment, never less than the true one (to rounding of the result). So it
-/// is for triangles.
+/// Returns the point of the segment a, b nearest to p, up to rounding. The distance is that of a point of the segment,
+/// so it is never less than the true one (up to rounding of the result). The same holds for triangles.
 inline SimplexPoint nearest_on_segment(const Eigen::Vector3d& p, const Eigen::Vector3d& a,
                                        const Eigen::Vector3d& b) {
   const Eigen::Vector3d ab = b - a, ap = p - a;

@@ -1,5 +1,5 @@
 #pragma once
-/// How good a tree is for walking: figures of its shape that cost no query.
+/// Measures a tree's quality from its shape, without running a query.
 
 #include <cstdint>
 
@@ -14,8 +14,7 @@ struct TreeQuality {
   double sah_leaves = 0;  ///< the same of leaves
   double child_fill = 0;  ///< children / (inner nodes x 8); best 1
   double leaf_fill = 0;   ///< simplices / (leaves x 8); best 1
-  /// Of pairs of children of one node, the share whose boxes overlap; best near 0. Boxes as the node holds them, on its
-  /// axes.
+  /// Share of pairs of siblings whose boxes overlap, as the parent holds them, on its axes; best near 0.
   double sibling_overlap = 0;
   double bytes_per_simplex = 0;
 };

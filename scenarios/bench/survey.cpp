@@ -1,6 +1,8 @@
 #include "scenarios/bench/survey.hpp"
 
+#include <cerrno>
 #include <cstdio>
+#include <cstring>
 #include <fstream>
 #include <map>
 #include <tuple>
@@ -20,7 +22,7 @@ class Appender {
   explicit Appender(const std::string& path) : path_(path), out_(path, std::ios::app) {}
   void add(const std::string& line) {
     if (!(out_ << line << "\n" << std::flush))
-      throw EnvironmentError(printable_name(path_) + ": cannot be written; is there room?");
+      throw EnvironmentError(printable_name(path_) + ": cannot be written: " + std::strerror(errno));
   }
 
  private:

@@ -9,7 +9,7 @@
 
 namespace lrb::bodies {
 
-/// The wrapper that keeps closed everything that a tolerance allows.
+/// The coarsest wrapper within a tolerance, in numbers.
 struct LevelFigures {
   double share;         ///< the tolerance as a share of the largest side of the body's box
   double tolerance;     ///< mesh's unit

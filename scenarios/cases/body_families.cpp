@@ -344,7 +344,7 @@ std::vector<Family> body_families() {
        "on the grid", false, 150},
       {"dented", "bodies with regions, made by hand and by the builder", make_dented, "0.1 off the grid",
        "on the grid", false, 160},
-      {"containment", "inside, in a cavity, in the wall around one, nested shells, swallowed pieces",
+      {"containment", "inside, in a cavity, in the wall around one, nested shells, enclosed pieces",
        make_containment, "0.1 of the room left", "1e-14 of the room left", false, 170},
       {"voxels", "random cells of one grid: interiors overlap exactly if a cell is shared", make_voxels,
        "0.1 off the grid", "on the grid, or on half of it", false, 180},

@@ -188,8 +188,8 @@ Case make_fractal(RandomEngine& random, double dial) {
   static const Body kSponge = body(menger(2)), kHub = body(cone(400));
   static const std::vector<Body> dented = {body(dented_cube(1)), body(dented_cube(2)), body(menger(1))};
   static const std::vector<Body> probes = {body(shapes::scaled(shapes::box(), 1.0 / 9)),
-                                            body(shapes::scaled(shapes::box(), 1.0 / 7)),
-                                            body(shapes::scaled(shapes::icosphere(0), 0.1))};
+                                           body(shapes::scaled(shapes::box(), 1.0 / 7)),
+                                           body(shapes::scaled(shapes::icosphere(0), 0.1))};
   Case c{kSponge, probes[random() % 3], {}, {}, {}, {}};
   const int kind = pick(random, 0, 15);
   const double fine = steady::pow10(-17 * dial);

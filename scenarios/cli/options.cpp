@@ -63,14 +63,14 @@ void add_request_options(CLI::App& app, CollideRequest& request) {
 
 void add_coarse_options(CLI::App& app, CollideRequest& request) {
   app.add_option(option_of(&CollideRequest::tolerance), request.tolerance,
-                 "Of bodies that cross, list the pairs of wrappers that are no further off than this, in "
-                 "the meshes' unit")
+                 "Answer with the coarsest wrappers that are no further off the bodies than this, in the "
+                 "meshes' unit, and list their pairs")
       ->check(CLI::NonNegativeNumber)
       ->type_name("LENGTH");
   add_count(app, option_of(&CollideRequest::max_tests), request.max_tests,
             "Largest number of face tests: one pair first, then wrappers, coarsest first");
   app.add_option(option_of(&CollideRequest::max_time), request.max_time,
-                 "Longest time in seconds: one pair first, then wrappers, coarsest first")
+                 "Time limit of a query in seconds; gives the best answer found by then")
       ->check(CLI::PositiveNumber)
       ->type_name("S");
 }

@@ -24,7 +24,8 @@ struct RecordedRun {
   const std::vector<trace::TreeShape>* trees = nullptr;  ///< A's and B's, or none: as Recording::trees
   /// Ends of the scale of colours that mean numbers; nothing: as the frame has them.
   std::optional<std::array<double, 2>> value_range = {};
-  /// Numbers of A's and B's faces to be shown instead of those that the frame's colours mean, and what they are; null: none.
+  /// Values to colour A's and B's faces by, in place of those that FrameSpec::colour_by computes, and their name; null:
+  /// compute them.
   const std::array<std::vector<double>, 2>* face_values = nullptr;
   std::string value_name = {};
 };

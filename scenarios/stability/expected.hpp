@@ -27,7 +27,7 @@ std::string to_line(const Expected& e);
 /// Reads such a line. Throws nlohmann's exceptions: nobody writes these lines but us.
 Expected expected_from(const std::string& line);
 
-/// Returns the relation that to_string() calls so. Throws InputError.
+/// Returns the relation with this name. Throws InputError.
 Relation relation_from(const std::string& word);
 
 }  // namespace lrb::stability

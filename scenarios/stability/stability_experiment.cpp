@@ -1,6 +1,8 @@
 #include "scenarios/stability/stability_experiment.hpp"
 
 #include <algorithm>
+#include <cerrno>
+#include <cstring>
 #include <deque>
 #include <list>
 #include <memory>
@@ -29,7 +31,9 @@ workers::Job::Clock::duration seconds(double s) {
 class NamelessFile {
  public:
   NamelessFile() : file_(memfd_create("lrbscope-expected", MFD_CLOEXEC)) {
-    if (file_ < 0) throw EnvironmentError("no file in memory to be had; free some memory");
+    if (file_ < 0)
+      throw EnvironmentError(std::string("cannot create a file in memory (memfd_create): ") +
+                             std::strerror(errno));
   }
   ~NamelessFile() { close(file_); }
   NamelessFile(const NamelessFile&) = delete;

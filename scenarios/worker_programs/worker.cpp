@@ -76,7 +76,7 @@ std::ifstream open_expected(const WorkerOptions& o) {
 
 void say_records(const WorkerOptions& o, const methods::MethodEntry& entry, Lines& out) {
   const cases::Family& family = family_of(o);
-  stability::StabilityRunner asker(entry);
+  stability::StabilityRunner runner(entry);
   std::ifstream known;
   if (!o.expected.empty()) known = open_expected(o);
   for (std::uint64_t k = o.begin; k < o.end; ++k) {
@@ -91,11 +91,11 @@ void say_records(const WorkerOptions& o, const methods::MethodEntry& entry, Line
     record.dial = static_cast<int>(k / o.cases);
     record.case_index = k % o.cases;
     record.seed = o.seed;
-    asker.ask(family, c, expected, record);
+    runner.ask(family, c, expected, record);
     ordered_json value = stability::to_json(record);
     if (o.pairs) {
       value["expected_pairs"] = stability::to_json(expected.pairs);
-      if (asker.pairs()) value["answered_pairs"] = stability::to_json(*asker.pairs());
+      if (runner.pairs()) value["answered_pairs"] = stability::to_json(*runner.pairs());
     }
     out.say(dump(value));
   }
@@ -107,8 +107,8 @@ void work(const WorkerOptions& o, const std::vector<methods::MethodEntry>& entri
   const methods::MethodEntry& entry = methods::find_method(entries, o.method);
   if (o.questions.empty()) return say_records(o, entry, out);
   const bench::DataSet set = bench::read_data_set(o.questions);
-  bench::BenchRunner asker(entry, o.setting, set, o.pairs);
-  for (std::uint64_t k = o.begin; k < o.end; ++k) out.say(dump(to_json(asker.ask(k))));
+  bench::BenchRunner runner(entry, o.setting, set, o.pairs);
+  for (std::uint64_t k = o.begin; k < o.end; ++k) out.say(dump(to_json(runner.ask(k))));
 }
 
 }  // namespace

@@ -45,7 +45,8 @@ Child::Child(const std::vector<std::string>& command, int given) {
   arguments.push_back(nullptr);
   int ends[2];
   if (pipe2(ends, O_CLOEXEC) != 0)
-    throw EnvironmentError(std::string("no pipe to be had (") + std::strerror(errno) + "); try fewer --jobs");
+    throw EnvironmentError(std::string("cannot create a pipe (") + std::strerror(errno) +
+                           "); try fewer --jobs");
   const pid_t parent = getpid();
   pid_ = fork();
   if (pid_ == 0) become(arguments.data(), ends[1], given, parent);
@@ -54,7 +55,7 @@ Child::Child(const std::vector<std::string>& command, int given) {
   output_ = ends[0];
   if (pid_ < 0) {
     close(output_);
-    throw EnvironmentError(std::string("no process to be had (") + std::strerror(reason) +
+    throw EnvironmentError(std::string("cannot start a process (") + std::strerror(reason) +
                            "); try fewer --jobs");
   }
 }

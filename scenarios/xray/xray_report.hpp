@@ -1,5 +1,5 @@
 #pragma once
-/// Two engines under the same lamp: a page with what each did for the same bodies at the same poses.
+/// Writes a page with what two engines did for the same bodies at the same poses.
 
 #include <string>
 #include <vector>

@@ -3,11 +3,11 @@
 # bare Debian 12. Makes a root with debootstrap, from the package sources of this machine, clones commit C (HEAD) into it,
 # and runs ./run and ./check there as root would type them, in a clean environment; then again as a user without root; then
 # the rest of ./check --full, in the end with the engines of others installed. Prints how long every step took.
-# Steps: root clone stranger run check user api browser sanitizers clang fuzz again peers tidy; --until ends after one of them.
+# Steps: root clone stranger run check user api browser again peers sanitizers clang fuzz tidy; --until ends after one of them.
 # --minutes: steps after `user` end when M minutes are over, and the table says which were left out.
 # Kept between runs, in ${XDG_CACHE_HOME:-~/.cache}/lrbscope-bare: the bare root and downloaded packages; and this machine's
 # compiler cache is used. --no-cache does without all three, for honest times. --keep leaves the root to be looked at.
-# Exits with 1 if a step failed, 2 if it may not run here, 3 if no root could be made.
+# Exits with 1 if a step failed, 2 for words that it does not know, 3 where it may not run or can make no root.
 # Needs root and debootstrap. Everything runs in a mount namespace of its own, so that no mount can stay behind.
 set -euo pipefail
 script=$(readlink -f "${BASH_SOURCE[0]}")
@@ -17,7 +17,7 @@ suite=bookworm
 home=/root/lrbscope # the clone, inside the root
 
 usage() { sed -n '2,11s/^# //p' "$script" >&2 && exit 2; }
-refuse() { echo "bare.sh: $1" >&2 && exit 2; }
+refuse() { echo "bare.sh: $1" >&2 && exit 3; }
 
 # ---- the package sources of this machine
 
@@ -113,7 +113,7 @@ as() {
 
 # ---- steps
 
-all=(root clone stranger run check user api browser sanitizers clang fuzz again peers tidy)
+all=(root clone stranger run check user api browser again peers sanitizers clang fuzz tidy)
 names=() seconds=() busy=() failed=() left_out=()
 # step NAME FUNCTION: runs it, with its output, and notes how long it took and whether it failed. Ends here if it was the
 # last wanted.
@@ -258,7 +258,7 @@ if [ "${1:-}" != --inside ]; then
   [[ $minutes =~ ^[0-9]+$ ]] || usage
   [ "$(id -u)" = 0 ] || refuse "needs root, to make a root of its own"
   command -v debootstrap >/dev/null || refuse "needs debootstrap (apt-get install debootstrap)"
-  commit=$(git -C "$repository" rev-parse --verify -q "$commit^{commit}") || refuse "no such commit"
+  commit=$(git -C "$repository" rev-parse --verify -q "$commit^{commit}") || { echo "bare.sh: no such commit" >&2 && exit 2; }
   cache=${XDG_CACHE_HOME:-$HOME/.cache}/lrbscope-bare
   mkdir -p "$cache"
   for old in "$cache"/work-*; do # of runs that were killed

@@ -7,7 +7,7 @@
 set -eu
 here=$(cd "$(dirname "$0")" && pwd)
 known=$here/guard.txt
-build=$here/../../build/release tolerance=2 approve=
+build=$here/../../build/release tolerance=1 approve=
 while [ $# -gt 0 ]; do
   case $1 in
     --tolerance) [ $# -gt 1 ] || { echo "guard: --tolerance needs a number of percent" >&2; exit 2; }

@@ -1,11 +1,11 @@
 #!/usr/bin/env bash
-# tests/spread/spread.sh LRBSCOPE [SECONDS]: the README's two lines for a sweep over machines, run as they stand there but for
+# tests/spread/spread.sh LRBSCOPE [SECONDS]: the two lines of docs/paper.md for a sweep over machines, run as they stand there but for
 # smaller numbers, with several numbers of local ranks: the report's data must be the same bytes as those of one process.
 # Each run may take SECONDS (120). Exits 77 (skipped) without mpirun.
 set -euo pipefail
 program=$1
 seconds=${2:-120}
-readme=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)/README.md
+page=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)/docs/paper.md
 if ! command -v mpirun >/dev/null; then
   echo "skipped: there is no mpirun (Debian: openmpi-bin)"
   exit 77
@@ -29,10 +29,10 @@ awk 'BEGIN { n = 24; m = 24
     a = i * m + j + 1; b = (i + 1) % n * m + j + 1; c = (i + 1) % n * m + (j + 1) % m + 1; d = i * m + (j + 1) % m + 1
     printf "f %d %d %d\nf %d %d %d\n", a, b, c, a, c, d } }' >torus.obj
 
-spread=$(grep '^mpirun .*lrbscope paper' "$readme")
-merge=$(grep '^lrbscope paper --merge' "$readme" | sed 's/ *#.*//')
+spread=$(grep '^mpirun .*lrbscope paper' "$page")
+merge=$(grep '^lrbscope paper --merge' "$page" | sed 's/ *#.*//')
 smaller() { sed "s/-np [0-9]*/-np $1/; s/--collisions [0-9]*/--collisions 3 --meshes torus.obj/" <<<"$spread"; }
-[ "$(smaller 3)" != "$spread" ] || { echo "the README's line has other options than this test knows: $spread"; exit 1; }
+[ "$(smaller 3)" != "$spread" ] || { echo "the page's line has other options than this test knows: $spread"; exit 1; }
 
 lrbscope paper --collisions 3 --meshes torus.obj -o whole >/dev/null
 [ "$(wc -l <whole/series.jsonl)" -gt 20 ] || { echo "no series to compare"; exit 1; }

@@ -70,7 +70,7 @@ std::optional<bool> wrappers_nested(QueryContext& ctx, InTime&& in_time, See&& s
   return false;
 }
 
-/// How much a query with a limit in time does between two looks at the clock, which take as long as one to three
+/// Work of a query with a limit in time between two readings of the clock, each of which takes as long as one to three
 /// tests. Less: queries with a limit in time do less; more: they miss it by more, on old processors above all.
 namespace between_looks {
 constexpr std::uint64_t kNodePairs = 16;  ///< one or two microseconds; four without AVX2
@@ -217,8 +217,8 @@ class CoarseQuery {
     result_.finished = finished;
   }
 
-  /// Asks the bodies as they are. Finds no better answer within the limits, or the exact one, of which
-  /// `error_bound` is said all the same.
+  /// Queries the bodies themselves. The answer is exact if the limits allow it; `error_bound` is reported as for a
+  /// level.
   void ask_exactly(double error_bound) {
     for (const Side side : {Side::a, Side::b}) ctx_[side].query_body();
     CollideResult found;

@@ -390,8 +390,8 @@ void CoherentQuery::Work::collect_answer() {
   result_.meets = {result_.meets[i]};
 }
 
-CoherentQuery::CoherentQuery(const LrbRep& a, const LrbRep& b, const CollideRequest& request, CacheUse lists)
-    : work_(std::make_unique<Work>(a, b, request, lists)) {}
+CoherentQuery::CoherentQuery(const LrbRep& a, const LrbRep& b, const CollideRequest& request, CacheUse use)
+    : work_(std::make_unique<Work>(a, b, request, use)) {}
 CoherentQuery::~CoherentQuery() = default;
 CoherentQuery::CoherentQuery(CoherentQuery&&) noexcept = default;
 CoherentQuery& CoherentQuery::operator=(CoherentQuery&&) noexcept = default;

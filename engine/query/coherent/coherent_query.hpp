@@ -2,13 +2,12 @@
 /// Queries two bodies again and again as they move by little from one query to the next (the paper's future
 /// work).
 ///
-/// Kept from one query to the next: the wrappers, and a list of the pairs of simplices that were not proved
-/// to stay apart along a stretch of B's course, seen from A, and nearby. While B is there no other pair can
-/// meet. Of the list, those pairs are tested that may meet at that point of the stretch: eight at a time in
-/// float arithmetic, exactly where that is not certain. Where B keeps no course the stretch is a place, and
-/// those pairs are tested that are no further apart there than B has moved from it. What that means, and what
-/// it allows for, is in relative_motion.hpp. Poses further from rotations than kRigid, scaled or sheared
-/// ones, are queried from scratch: as fast as collide(), and the answers the same.
+/// Keeps the wrappers and a candidate cache: all pairs of simplices that may meet while B stays within a sweep
+/// of its motion relative to A. If that motion is not steady, the cache is for the surroundings of one fixed
+/// pose. A query tests only the cached pairs that may meet at its pose: eight at a time in floats, exactly
+/// where floats are not certain. relative_motion.hpp says what a sweep holds and which errors it allows for.
+/// Poses further from rotations than kRigid, scaled or sheared ones, are queried from scratch: as fast as
+/// collide(), and the answers the same.
 ///
 /// The answers are those of collide(): pairs, meets and relation always; what was opened, and the counters,
 /// describe this query's own work. In first_pair mode the pair may be another one; in any_pair mode too, and

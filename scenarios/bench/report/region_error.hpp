@@ -1,6 +1,6 @@
 #pragma once
-/// Measures how far from the exact contact of two posed bodies it is what a method calls their contact: the
-/// region that a list of pairs spans, or the points that a method gave in place of pairs.
+/// Measures the distance between the contact region that a method reports, by a list of pairs or by points, and the
+/// exact one of the two posed bodies.
 
 #include <memory>
 #include <optional>

@@ -27,7 +27,7 @@ class SeriesStyles {
   std::map<std::string, std::size_t> series_of_;
 };
 
-/// Where no error stands on an axis that has no place for 0.
+/// The value at which an error of zero is drawn on a logarithmic axis.
 inline constexpr double kNoError = 1e-7;
 inline double drawn_error(const Point& p) {
   return p.error() > kNoError ? p.error() : kNoError;

@@ -55,7 +55,7 @@ Command add_compare(CLI::App& root, const Globals& globals) {
   const auto o = std::make_shared<CompareOptions>();
   app->add_option("RUN1", o->first, "Folder of a run of two bodies, as run, collide and xray write it")
       ->required();
-  app->add_option("RUN2", o->second, "Another one: of another build, request or version")->required();
+  app->add_option("RUN2", o->second, "Folder of the run to compare it with")->required();
   app->add_option("-o,--output", o->folder, "Folder to write to [out/compare]")->type_name("DIR");
   add_up_option(*app, o->up);
   return {app, [o, &globals] { return run_compare(*o, globals); }};

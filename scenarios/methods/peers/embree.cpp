@@ -24,7 +24,7 @@ namespace {
 class Device {
  public:
   Device() : device_(rtcNewDevice("threads=1,set_affinity=0")) {
-    if (device_ == nullptr) throw EnvironmentError("embree: no device to be had");
+    if (device_ == nullptr) throw EnvironmentError("Embree could not create a device");
   }
   ~Device() { rtcReleaseDevice(device_); }
   Device(const Device&) = delete;

@@ -42,7 +42,7 @@ class Scratch {
   int descriptor() const { return fileno(file_); }
   void fill(const std::string& text) {
     if (std::fwrite(text.data(), 1, text.size(), file_) != text.size() || std::fflush(file_) != 0)
-      throw EnvironmentError(std::string("gnuplot: no room for its script: ") + std::strerror(errno));
+      throw EnvironmentError(std::string("gnuplot: cannot write its script: ") + std::strerror(errno));
     std::rewind(file_);
   }
   std::string text() {

@@ -217,7 +217,8 @@ TEST_CASE("pictures that are damaged are refused in words that say how") {
   CHECK(refusal_of_png("GIF89a, or so") == "p.png: not a readable PNG (Not a PNG file)");
   CHECK(refusal_of_png(png_of(64, 64, 20 * kMega)) ==
         "p.png: not a readable PNG (IDAT: Too much image data)");
-  CHECK(refusal_of_png(png_of(64, 64, 64UL * 193 - 1)) == "p.png: not a readable PNG (Not enough image data)");
+  CHECK(refusal_of_png(png_of(64, 64, 64UL * 193 - 1)) ==
+        "p.png: not a readable PNG (Not enough image data)");
   for (const std::size_t missing : {std::size_t{1}, std::size_t{13}, good.size() - 8, good.size() - 40})
     CHECK(refusal_of_png(good.substr(0, good.size() - missing)) ==
           "p.png: not a readable PNG (it ends too early)");
