@@ -10,6 +10,8 @@
 #include "render/overlay.hpp"
 #include "render/palette.hpp"
 #include "scenarios/report/page/packed.hpp"
+#include "scenarios/run/explanations.hpp"
+#include "scenarios/run/scene_frame.hpp"
 #include "scenarios/run/thinned_events.hpp"
 #include "scenarios/run/tree_boxes.hpp"
 #include "trace/counters.hpp"
@@ -60,12 +62,6 @@ json colours() {
 
 // ---- where things are
 
-/// The frame of the page: x_page = (x - origin) / unit.
-struct SceneFrame {
-  Eigen::Vector3d origin{0, 0, 0};
-  double unit = 1;
-};
-
 Eigen::AlignedBox3d box_of(const LrbRep& rep) {
   Eigen::AlignedBox3d box;
   for (const Eigen::Vector3d& v : rep.vertices()) box.extend(v);
@@ -95,10 +91,6 @@ SceneFrame scene_frame(const RecordedRun& p) {
   return frame;
 }
 
-std::vector<float> flat(const Eigen::Vector3d& v) {
-  return {static_cast<float>(v.x()), static_cast<float>(v.y()), static_cast<float>(v.z())};
-}
-
 /// Returns the poses of a body in the page's frame, or one if it never moves: rows of [R | t], for vertices
 /// relative to the body's middle.
 std::vector<float> poses_of(const RecordedRun& p, std::size_t body, const Numbers& steps,
@@ -125,8 +117,7 @@ std::vector<float> poses_of(const RecordedRun& p, std::size_t body, const Number
 json geometry(const LrbRep& rep, const SceneFrame& frame) {
   const Eigen::Vector3d middle = middle_of(rep);
   std::vector<float> vertices;
-  for (const Eigen::Vector3d& v : rep.vertices())
-    for (const float x : flat((v - middle) / frame.unit)) vertices.push_back(x);
+  for (const Eigen::Vector3d& v : rep.vertices()) frame.add_vector(vertices, v - middle);
   Numbers sizes, inner, outer, parents, layers;
   const auto region_or_null = [](CellId c) { return is_region(c) ? c.value() : std::uint32_t{kNull}; };
   for (FaceId f = 0; f < rep.face_count(); ++f) {
@@ -152,9 +143,8 @@ json boxes_json(const LrbRep& rep, const SceneFrame& frame, std::size_t most) {
   const Eigen::Vector3d middle = middle_of(rep);
   std::vector<float> places;  // centre and three half axes each
   for (const TreeBox& box : boxes) {
-    for (const float x : flat((box.centre - middle) / frame.unit)) places.push_back(x);
-    for (int i = 0; i < 3; ++i)
-      for (const float x : flat(box.half.col(i) / frame.unit)) places.push_back(x);
+    frame.add_vector(places, box.centre - middle);
+    for (int i = 0; i < 3; ++i) frame.add_vector(places, box.half.col(i));
   }
   return {{"node", packed_each(boxes, [](const TreeBox& b) { return b.node; })},
           {"depth", packed_each(boxes, [](const TreeBox& b) { return b.depth; })},
@@ -300,7 +290,7 @@ std::string too_large_words(std::size_t faces, const SceneLimits& limits) {
 
 }  // namespace
 
-std::string scene_json(const RecordedRun& p, const std::string& trace_file, const SceneLimits& limits) {
+std::string scene_json(const RecordedRun& p, const SceneSource& source, const SceneLimits& limits) {
   const trace::Trace& trace = *p.trace;
   const ThinnedEvents events = thin_events(trace, limits.events);
   const Numbers steps = steps_of(trace, events.kept);
@@ -314,9 +304,9 @@ std::string scene_json(const RecordedRun& p, const std::string& trace_file, cons
                     {"origin", {frame.origin.x(), frame.origin.y(), frame.origin.z()}},
                     {"unit", frame.unit},
                     {"wrapper", name_of(trace.header.request.wrapper)},
-                    {"thinned", thinned_words(trace, events, trace_file)},
+                    {"thinned", thinned_words(trace, events, source.trace_file)},
                     {"tooLarge", faces <= limits.faces ? "" : too_large_words(faces, limits)},
-                    {"trace", trace_file},
+                    {"trace", source.trace_file},
                     {"firstContact", static_cast<std::int64_t>(first_contact(trace) == kNull
                                                                    ? std::int64_t{-1}
                                                                    : std::int64_t{first_contact(trace)})},
@@ -326,6 +316,7 @@ std::string scene_json(const RecordedRun& p, const std::string& trace_file, cons
                     {"relations", words_json<Relation>()},
                     {"colours", colours()},
                     {"bodies", std::move(bodies)},
+                    {"why", explanations_json(p, {events.kept, steps}, frame, source.why, limits.explained)},
                     {"steps", steps_json(p, steps, frame)},
                     {"events", events_json(trace, events.kept)}};
   return out.dump(-1, ' ', false, json::error_handler_t::replace);

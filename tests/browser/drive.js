@@ -183,7 +183,7 @@
     press("o");
     press("v");
     await frame();
-    lines.push(`camera ${byId("camera-json").value}`);
+    lines.push(`camera ${byId("camera-json").textContent}`);
   }
 
   /** Events of the walk through the trees: nodes have boxes, phases have names. */
@@ -202,6 +202,59 @@
       "a phase has a name",
       byId("event-facts").textContent,
     );
+  }
+
+  /** Why: of an event's faces, of two that are chosen, and of a step in which the bodies are apart. */
+  async function explains() {
+    const { events, selection, view, why } = run,
+      contact = events.kind.indexOf(events.CONTACT);
+    selection.goTo(contact);
+    await frame();
+    const text = () => byId("why").textContent;
+    equal(byId("why").hidden, false, "a contact is explained");
+    check(/The faces (cross|touch)\. Decided by /.test(text()), "with a verdict", text());
+    const rows = byId("why-way").querySelectorAll("tr");
+    check(rows.length > 1 && rows[0].textContent.startsWith("0, 0"), "the way begins at the roots", rows.length);
+    check(byId("why-facts").textContent.includes("contact"), "the contact is told");
+    check(view.whyMarks.group.children.length > 0, "and shown");
+    const [a, b] = events.faces(contact).map((f, side) => events.bodies[side].firstSimplex[f.face]);
+    equal(
+      byId("why-command").textContent.split(" --run ")[1].split(" ").slice(1).join(" "),
+      `--step ${events.stepNumber(contact)} --pair ${a},${b}`,
+      "the command names step and pair",
+    );
+    lines.push(`command ${byId("why-command").textContent}`);
+    lines.push(`verdict ${byId("why-verdict").textContent}`);
+    rows[0].querySelector("button").click();
+    await frame();
+    equal(view.marks.shown.get("way").parts.length, 2, "a click on a row shows its boxes");
+    rows[0].querySelector("button").click();
+    const hiding = byId("why-regions").querySelector("button");
+    hiding.click();
+    equal(selection.picked.face, NONE, "a click on a region selects it");
+    press("Escape");
+    const meets = (i) => why.explanations.pair(events.step(i), [events.a[i], events.b[i]])?.meet;
+    const apart = [...events.kind.keys()].find((i) => events.kind[i] === events.FACE_TEST && meets(i) === 0);
+    check(apart !== undefined, "pairs that do not meet are explained too");
+    selection.goTo(apart);
+    await frame();
+    check(/apart.*distance/s.test(text()), "with their distance", text());
+    selection.goTo(events.endOfStep(events.step(contact)) - 1);
+    selection.pickFace(0, 0);
+    selection.pickFace(1, 0);
+    await frame();
+    check(/--pair 0,0$/.test(byId("why-command").textContent), "two faces that are picked are asked about");
+    press("Escape");
+    const empty = [...why.explanations.steps.keys()];
+    check(empty.length > 0, "steps without contact are explained");
+    selection.goTo(events.endOfStep(empty[0]) - 1);
+    await frame();
+    check(/What parts the bodies.*Apart/s.test(text()), "in words", text());
+    check(view.whyMarks.group.children.length > 0, "and in the view");
+    press("y");
+    await frame();
+    equal(view.whyMarks.group.children.length, 0, "y hides it");
+    press("y");
   }
 
   async function colours() {
@@ -300,6 +353,7 @@
       filters,
       presses,
       walks,
+      explains,
       colours,
       plays,
       largeTable,
