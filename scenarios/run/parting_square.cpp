@@ -8,10 +8,10 @@
 namespace lrb::run {
 namespace {
 
-double size_of(const LrbRep& rep, const Pose& pose) {
+Eigen::AlignedBox3d box_of(const LrbRep& rep, const Pose& pose) {
   Eigen::AlignedBox3d box;
   for (const Eigen::Vector3d& v : rep.vertices()) box.extend(pose.apply(v));
-  return box.isEmpty() ? 0 : box.diagonal().norm();
+  return box;
 }
 
 /// Returns a square round a point that is carried into the plane n.x = at.
@@ -30,9 +30,10 @@ Square square(const Eigen::Vector3d& n, double at, Eigen::Vector3d middle, doubl
 Square parting_square(const PartingPlane& plane, const LrbRep& a, const Pose& pose_a, const LrbRep& b,
                       const Pose& pose_b) {
   constexpr double kShare = 0.35;  // of the smaller body's diagonal, from the middle to a corner
-  const double half = kShare * std::min(size_of(a, pose_a), size_of(b, pose_b));
-  return square(plane.normal, (plane.of_a + plane.of_b) / 2, (plane.reach[0] + plane.reach[1]) / 2, half,
-                a.dim());
+  const Eigen::AlignedBox3d of_a = box_of(a, pose_a), of_b = box_of(b, pose_b);
+  const Eigen::AlignedBox3d& smaller = of_a.diagonal().norm() < of_b.diagonal().norm() ? of_a : of_b;
+  return square(plane.normal, (plane.of_a + plane.of_b) / 2, smaller.center(),
+                kShare * smaller.diagonal().norm(), a.dim());
 }
 
 Square parting_square(const PartedBoxes& parted, int dim) {

@@ -17,6 +17,7 @@
 #include "scenarios/run/explanation_words.hpp"
 #include "scenarios/run/open_run.hpp"
 #include "scenarios/run/pair_picture.hpp"
+#include "scenarios/run/parting_picture.hpp"
 
 namespace lrb::cli {
 namespace {
@@ -244,15 +245,23 @@ Pose pose_of(const WhyOptions& o) {
 }
 
 int explain(const WhyOptions& o, const Scene& scene) {
-  if (!o.picture.empty()) io::make_folder(std::filesystem::path(o.picture).parent_path().string());
+  const auto make_folder = [&] { io::make_folder(std::filesystem::path(o.picture).parent_path().string()); };
   if (o.pair.empty()) {
     const WalkExplanation e = explain_walk(scene.a, scene.pose_a, scene.b, scene.pose_b);
+    if (!o.picture.empty() && !e.result.pairs.empty())
+      throw InputError(
+          "-o: the bodies meet, so that nothing parts them; draw two of their faces with --pair");
+    if (!o.picture.empty()) make_folder();
+    if (!o.picture.empty()) run::draw_parting(scene.a, scene.pose_a, scene.b, scene.pose_b, e, o.picture);
     print(o.json ? one_line(as_json(e)) : as_text(e));
     return kOk;
   }
   const PairExplanation e = explain_pair(scene.a, scene.pose_a, scene.b, scene.pose_b,
                                          {SimplexId(o.pair[0]), SimplexId(o.pair[1])});
-  if (!o.picture.empty()) run::draw_pair(scene.a, scene.pose_a, scene.b, scene.pose_b, e, o.picture);
+  if (!o.picture.empty()) {
+    make_folder();
+    run::draw_pair(scene.a, scene.pose_a, scene.b, scene.pose_b, e, o.picture);
+  }
   print(o.json ? one_line(as_json(e, scene)) : as_text(e, scene));
   return kOk;
 }
@@ -285,13 +294,12 @@ Command add_why(CLI::App& root, const Globals& globals) {
                   ->excludes(poses)
                   ->type_name("DIR");
   app->add_option("--step", o->step, "Number of the run's time step [the last]")->needs(run)->type_name("N");
-  auto* pair =
-      app->add_option("--pair", o->pair, "A simplex of A and one of B, as `query --pairs` numbers them")
-          ->delimiter(',')
-          ->expected(2)
-          ->type_name("I,J");
-  app->add_option("-o,--output", o->picture, "Draw the two faces with what is about them to this picture")
-      ->needs(pair)
+  app->add_option("--pair", o->pair, "A simplex of A and one of B, as `query --pairs` numbers them")
+      ->delimiter(',')
+      ->expected(2)
+      ->type_name("I,J");
+  app->add_option("-o,--output", o->picture,
+                  "Draw the two faces with what is about them, or without --pair what parts the bodies")
       ->type_name("FILE.png");
   app->add_flag("--json", o->json, "Print one JSON object");
   return {app, [o, &globals] { return run_why(*o, globals); }};

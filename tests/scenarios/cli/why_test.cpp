@@ -67,9 +67,11 @@ TEST_CASE("why: bodies that are apart") {
 
 TEST_CASE("why: what parts bodies that are apart") {
   const Bodies bodies;
-  CHECK(bodies.why({"--pose", "1"}).out.find("has all of A on one side") != std::string::npos);
+  CHECK(bodies.why({"--pose", "1", "-o", "plane.png"}).out.find("has all of A on one side") !=
+        std::string::npos);
   const auto j = nlohmann::json::parse(bodies.why({"--pose", "1", "--json"}).out);
   CHECK(j["plane"]["gap"] > 5);
+  CHECK(render::read_png(bodies.folder / "plane.png").image.width() == 1200);
   CHECK(j["plane"]["normal"][0] == doctest::Approx(1));
 }
 
@@ -116,7 +118,7 @@ TEST_CASE("why: bad input is refused in one line, and nothing is written") {
   };
   refused({"--pair", "0,99999"}, "no simplex 99999 of B: there are ");
   refused({"--pair", "0,0", "--pose", "2"}, "has 2 poses, numbered from 0; there is no pose 2");
-  refused({}, "--pair");
+  refused({}, "-o: the bodies meet");
   refused({"--pair", "0"}, "--pair");
   refused({"--pair", "-1,0"}, "--pair");
 }
