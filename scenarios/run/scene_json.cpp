@@ -16,6 +16,7 @@
 #include "scenarios/run/tree_boxes.hpp"
 #include "trace/counters.hpp"
 #include "trace/names.hpp"
+#include "trace/work_chart.hpp"
 
 namespace lrb::run {
 namespace {
@@ -227,7 +228,22 @@ bool changes_wrapper(const trace::Event& e) {
   return e.kind == EventKind::refine || e.kind == EventKind::coarsen;
 }
 
-json events_json(const trace::Trace& trace, const std::vector<trace::EventId>& kept) {
+/// Returns the parts of the work; null where pairs of nodes were not recorded.
+json work_json(const trace::Trace& trace, const trace::WorkChart& chart) {
+  if (trace.header.level == EventLevel::faces || chart.outcomes.empty()) return nullptr;
+  constexpr double kMicros = 1e6;
+  json out = json::array();
+  for (const trace::WorkOutcome& o : chart.outcomes)
+    out.push_back({{"phase", o.phase},
+                   {"outcome", o.outcome},
+                   {"events", o.events},
+                   {"operations", o.operations},
+                   {"micros", kMicros * o.seconds}});
+  return {{"outcomes", std::move(out)}, {"timed", !trace.wall_ns.empty()}};
+}
+
+json events_json(const trace::Trace& trace, const trace::WorkChart& chart,
+                 const std::vector<trace::EventId>& kept) {
   const auto column = [&](auto get) {
     return packed_each(kept, [&](trace::EventId id) { return get(trace.events[id]); });
   };
@@ -243,6 +259,11 @@ json events_json(const trace::Trace& trace, const std::vector<trace::EventId>& k
           {"boundary",
            column([](const Event& e) { return changes_wrapper(e) ? e.boundary : std::uint32_t{kNull}; })},
           {"outcomes", outcomes_json(trace, kept)},
+          {"work", packed_each(kept,
+                               [&](trace::EventId id) {
+                                 const std::uint8_t part = chart.of_event[id];
+                                 return part == trace::WorkChart::kNone ? std::uint32_t{kNull} : part;
+                               })},
           {"depthA", column([](const Event& e) { return e.depth_a; })},
           {"depthB", column([](const Event& e) { return e.depth_b; })}};
 }
@@ -295,6 +316,7 @@ std::string scene_json(const RecordedRun& p, const SceneSource& source, const Sc
   const ThinnedEvents events = thin_events(trace, limits.events);
   const Numbers steps = steps_of(trace, events.kept);
   const SceneFrame frame = scene_frame(p);
+  const trace::WorkChart work = trace::work_chart(trace);
   std::size_t faces = 0;
   for (const LrbRep* rep : p.reps) faces += rep->face_count();
   json bodies = json::array();
@@ -310,6 +332,7 @@ std::string scene_json(const RecordedRun& p, const SceneSource& source, const Sc
                     {"firstContact", static_cast<std::int64_t>(first_contact(trace) == kNull
                                                                    ? std::int64_t{-1}
                                                                    : std::int64_t{first_contact(trace)})},
+                    {"work", work_json(trace, work)},
                     {"kinds", kinds_json()},
                     {"phases", words_json<Phase>()},
                     {"engine", trace.header.engine},
@@ -318,7 +341,7 @@ std::string scene_json(const RecordedRun& p, const SceneSource& source, const Sc
                     {"bodies", std::move(bodies)},
                     {"why", explanations_json(p, {events.kept, steps}, frame, source.why, limits.explained)},
                     {"steps", steps_json(p, steps, frame)},
-                    {"events", events_json(trace, events.kept)}};
+                    {"events", events_json(trace, work, events.kept)}};
   return out.dump(-1, ' ', false, json::error_handler_t::replace);
 }
 

@@ -257,6 +257,31 @@
     press("y");
   }
 
+  /** Parts of the work: a click on one lists its events. */
+  async function shares() {
+    const { events, table, work } = run,
+      groups = () => [...byId("work-chart").querySelectorAll("[data-parts]")],
+      named = (name) => groups().find((g) => g.querySelector("title").textContent.startsWith(`${name}:`));
+    equal(byId("work").hidden, false, "the work is charted");
+    check(named("walk of the bodies") && named("boxes of nodes"), "with phases and what decided in them");
+    const of = (parts) => events.work.reduce((n, w) => n + (parts.includes(w) ? 1 : 0), 0);
+    const press = (name) => named(name).dispatchEvent(new MouseEvent("click", { bubbles: true }));
+    press("boxes of nodes");
+    const parts = named("boxes of nodes").dataset.parts.split(" ").map(Number);
+    equal(table.rows.length, of(parts), "a click on a part lists its events");
+    equal(table.rows.length, work.work.outcomes[parts[0]].events, "as many as the part says");
+    equal(named("boxes of nodes").getAttribute("aria-pressed"), "true", "and marks it");
+    press("boxes of nodes");
+    equal(table.rows.length, events.count, "a second click lists all");
+    press("walk of the bodies");
+    check(table.rows.length > of(parts), "a phase has the events of its parts", table.rows.length);
+    check(!named("relation") && named("boxes of nodes"), "and fills the chart");
+    byId("filter-clear").click();
+    equal(table.rows.length, events.count, "show all does, too");
+    run.selection.goTo(events.work.indexOf(parts[0]));
+    check(named("boxes of nodes").classList.contains("here"), "the chart marks the part of the event");
+  }
+
   async function colours() {
     const most = run.events.bodies.reduce((m, b) => Math.max(m, ...b.counts.misses), 0);
     equal(
@@ -354,6 +379,7 @@
       presses,
       walks,
       explains,
+      shares,
       colours,
       plays,
       largeTable,

@@ -19,6 +19,7 @@ function startScene() {
   const filter = new EventFilter(),
     table = new EventTable(events, selection, filter),
     form = new FilterForm(events, filter, table);
+  const work = new WorkIcicle(scene.work, events, filter, form, selection);
   const why = new WhyPanel(new Explanations(scene.why), events, selection);
   const view = openView(scene, selection, wrappers, why),
     controls = view ? new ViewControls(view, selection) : null;
@@ -37,7 +38,7 @@ function startScene() {
     asked = /^#e(\d+)$/.exec(location.hash);
   selection.goTo(events.at(asked ? Number(asked[1]) : first));
   if (view) view.frameAll(VIEW_FROM);
-  return { scene, events, selection, wrappers, timeline, table, filter, form, panel, why, view, controls };
+  return { scene, events, selection, wrappers, timeline, table, filter, form, panel, why, work, view, controls };
 }
 
 /** Returns the view; null, with the reason on the page, where there can be none. Frames are then what

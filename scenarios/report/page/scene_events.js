@@ -15,6 +15,7 @@ class Events {
     this.dim = json.dim;
     this.engine = json.engine;
     this.frame = { origin: json.origin, unit: json.unit }; // x_world = origin + unit * x
+    this.work = unpack(json.events.work); // number of the part of the work that the event is; NONE: none
     this.phases = json.phases;
     this.relations = json.relations;
     this.stepNumbers = unpack(json.steps.index);

@@ -172,6 +172,11 @@ TEST_CASE("a run as data of its page says what it left out, and where that is") 
   CHECK_FALSE(scene["bodies"][0].contains("geometry"));
 }
 
+TEST_CASE("a run as data of its page has no chart of the work where pairs of nodes were not recorded") {
+  const run::Recording r = rocks_that_meet();
+  CHECK(json::parse(run::scene_json(run_of(r), {"trace.json", ""}))["work"].is_null());
+}
+
 TEST_CASE("a run as data of its page explains each pair of a step once, and each step without any") {
   const run::Recording r = rocks_that_meet();
   const json why = json::parse(run::scene_json(run_of(r), {"trace.json", "lrbscope why --run x"}))["why"];
