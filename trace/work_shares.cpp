@@ -113,6 +113,12 @@ std::uint64_t count_of(const Event& e) {
 
 }  // namespace
 
+std::optional<std::size_t> work_part(const Event& e) {
+  const std::optional<Part> part = part_of(e);
+  if (!part) return {};
+  return static_cast<std::size_t>(*part);
+}
+
 std::vector<WorkShare> work_shares(const Trace& trace) {
   std::vector<WorkShare> out(kParts.begin(), kParts.end());
   constexpr double kNanosecond = 1e-9;

@@ -1,7 +1,9 @@
 #pragma once
 /// What the parts of a query cost, from a trace's events from EventLevel::nodes on.
 
+#include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string_view>
 #include <vector>
 
@@ -21,5 +23,8 @@ struct WorkShare {
 /// leaves), float_tests, shared_corner_tests, filter_tests and expansion_tests (face tests by what decided them), other_tests (those of the paper's recursions),
 /// wrappers (refinements), sorting, relation, separation and contact_geometry.
 std::vector<WorkShare> work_shares(const Trace& trace);
+
+/// Returns which of these parts an event belongs to; nothing: none, it takes no work of its own.
+std::optional<std::size_t> work_part(const Event& e);
 
 }  // namespace lrb::trace

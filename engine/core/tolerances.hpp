@@ -54,6 +54,10 @@ inline constexpr float kKernelTiny = 0x1p-120f;
 /// Bound on the rounding of world coordinates and of the relative pose, relative to the largest term that
 /// occurs: 4 u for each body's coordinates and 16 u for the relative pose, u = 2^-53.
 inline constexpr double kWorldRounding = 0x1p-48;
+/// Bound on the error of a product of a unit vector and a point, relative to the sum of the point's coordinates: three
+/// products and two sums, 3 u, u = 2^-53, and as much for the vector's length. Smaller: a plane could be said to part
+/// bodies that it cuts by a rounding error.
+inline constexpr double kPlaneRounding = 0x1p-50;
 /// World coordinates below this size are treated as if they were this large when their rounding is bounded:
 /// it is the least normal double. Unit: the mesh's. Smaller: contacts of bodies made of denormals could be
 /// missed.

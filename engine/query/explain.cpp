@@ -10,37 +10,47 @@
 
 #include "engine/core/error.hpp"
 #include "engine/exact/predicates.hpp"
-#include "engine/mesh/nearest_on_simplex.hpp"
-#include "engine/query/collide_impl.hpp"
+#include "engine/query/explain_parts.hpp"
 #include "engine/query/node_boxes.hpp"
 
 namespace lrb {
 namespace {
 
+using namespace explain;
 using Eigen::Vector3d;
 
-/// Where a simplex stands in a tree.
+/// Where the simplices of a tree stand.
+struct Places {
+  std::vector<std::uint32_t> parent;  ///< of each node
+  std::vector<std::uint32_t> leaf;    ///< of each simplex
+  std::vector<std::uint8_t> place;    ///< of each simplex in its leaf
+
+  Places(const ObbTree& tree, std::uint32_t simplices)
+      : parent(tree.nodes().size(), 0), leaf(simplices, 0), place(simplices, 0) {
+    const std::vector<TreeNode>& all = tree.nodes();
+    for (std::uint32_t n = 0; n < all.size(); ++n)
+      for (std::uint32_t k = 0; k < all[n].count; ++k) {
+        if (all[n].is_leaf == 0) {
+          parent[all[n].first + k] = n;
+          continue;
+        }
+        const SimplexId s = tree.blocks()[all[n].first].simplex[k];
+        leaf[s] = n;
+        place[s] = static_cast<std::uint8_t>(k);
+      }
+  }
+};
+
+/// The way to a simplex in a tree.
 struct Path {
   std::vector<std::uint32_t> nodes;  ///< from the root to the leaf
   std::vector<int> child;            ///< (|nodes|) which child of its parent; kWhole: the root
-  int place = 0;                     ///< of the simplex in its leaf
+  int place;                         ///< of the simplex in its leaf
 
-  Path(const ObbTree& tree, SimplexId s) {
-    const auto& all = tree.nodes();
-    std::vector<std::uint32_t> parent(all.size(), 0);
-    std::uint32_t leaf = 0;
-    for (std::uint32_t n = 0; n < all.size(); ++n) {
-      if (all[n].is_leaf == 0) {
-        for (std::uint32_t k = 0; k < all[n].count; ++k) parent[all[n].first + k] = n;
-        continue;
-      }
-      const SimplexId* held = tree.blocks()[all[n].first].simplex;
-      const SimplexId* at = std::find(held, held + all[n].count, s);
-      if (at != held + all[n].count) leaf = n, place = static_cast<int>(at - held);
-    }
-    for (std::uint32_t n = leaf;; n = parent[n]) {
+  Path(const ObbTree& tree, const Places& places, SimplexId s) : place(places.place[s]) {
+    for (std::uint32_t n = places.leaf[s];; n = places.parent[n]) {
       nodes.push_back(n);
-      child.push_back(n == 0 ? kWhole : static_cast<int>(n - all[parent[n]].first));
+      child.push_back(n == 0 ? kWhole : static_cast<int>(n - tree.nodes()[places.parent[n]].first));
       if (n == 0) break;
     }
     std::reverse(nodes.begin(), nodes.end());
@@ -48,47 +58,14 @@ struct Path {
   }
 };
 
-/// Steps through the walk of two trees.
-class Stepper {
- public:
-  explicit Stepper(QueryContext& ctx) : ctx_(ctx), k_(start_kernel(ctx, kCapacity)) {}
-
-  /// What came of one pair of nodes: pairs of children, or of simplices.
-  struct Outcome {
-    std::vector<NodePair> children;
-    std::vector<Candidate> candidates;
-    std::uint64_t face_pairs;  ///< whose boxes meet
-  };
-
-  Outcome step(const NodePair& pair) {
-    k_.stack[0] = pair;
-    k_.stack_size = 1;
-    k_.out_size = 0;
-    k_.most_node_pairs = k_.node_pairs + 1;
-    const std::uint64_t before = k_.prefilter_tests;
-    run_tree_kernel(k_);
-    return {
-        {k_.stack, k_.stack + k_.stack_size}, {k_.out, k_.out + k_.out_size}, k_.prefilter_tests - before};
-  }
-
-  bool is_leaf(Side side, std::uint32_t node) const { return tree(side).nodes()[node].is_leaf != 0; }
-  const ObbTree& tree(Side side) const { return ctx_[side].tree(); }
-
- private:
-  static constexpr std::size_t kCapacity = 128;
-
-  QueryContext& ctx_;
-  TreeKernel k_;
-};
-
 /// Follows the way from the roots to two simplices.
 class Way {
  public:
-  Way(QueryContext& ctx, PairExplanation& out)
+  Way(QueryContext& ctx, Stepper& stepper, const std::array<Places, 2>& places, PairExplanation& out)
       : ctx_(ctx),
         out_(out),
-        stepper_(ctx),
-        path_{Path(tree(Side::a), out.pair.a), Path(tree(Side::b), out.pair.b)} {}
+        stepper_(stepper),
+        path_{Path(tree(Side::a), places[0], out.pair.a), Path(tree(Side::b), places[1], out.pair.b)} {}
 
   void follow() {
     add_nodes({kWhole, kWhole});
@@ -163,17 +140,11 @@ class Way {
 
   QueryContext& ctx_;
   PairExplanation& out_;
-  Stepper stepper_;
+  Stepper& stepper_;
   std::array<Path, 2> path_;
   std::array<std::size_t, 2> at_ = {0, 0};  ///< places on the paths
   bool goes_on_ = false;
 };
-
-using Corners = std::array<const double*, 3>;
-
-Vector3d point(const double* x) {
-  return {x[0], x[1], x[2]};
-}
 
 PlaneSides sides_of(int dim, const Corners& corners, const Corners& plane) {
   PlaneSides out;
@@ -190,48 +161,6 @@ PlaneSides sides_of(int dim, const Corners& corners, const Corners& plane) {
     out.in_double[i] = sign();
     out.distance[i] = length > 0 ? normal.dot(point(corners[i]) - origin) / length : 0;
   }
-  return out;
-}
-
-/// Two points, one of each of two simplices.
-struct NearPoints {
-  Vector3d a, b;
-  double distance_sq = std::numeric_limits<double>::infinity();
-
-  void see(const Vector3d& of_a, const Vector3d& of_b) {
-    const double d = (of_a - of_b).squaredNorm();
-    if (d < distance_sq) a = of_a, b = of_b, distance_sq = d;
-  }
-};
-
-/// Sees the nearest points of the lines through two segments, if they are on the segments. (Else a corner of one is
-/// nearest to the other.)
-void see_edges(const Vector3d& p, const Vector3d& q, const Vector3d& r, const Vector3d& s, NearPoints& out) {
-  const Vector3d d = q - p, e = s - r, w = p - r;
-  const double dd = d.dot(d), ee = e.dot(e), de = d.dot(e), dw = d.dot(w), ew = e.dot(w);
-  const double det = dd * ee - de * de;
-  if (!(det > 0)) return;
-  const double x = (de * ew - ee * dw) / det, y = (dd * ew - de * dw) / det;
-  if (x >= 0 && x <= 1 && y >= 0 && y <= 1) out.see(p + x * d, r + y * e);
-}
-
-NearPoints nearest_points(int dim, const Corners& a, const Corners& b) {
-  NearPoints out;
-  const auto on = [dim](const Vector3d& p, const Corners& t) {
-    const SimplexPoint n = dim == 3 ? nearest_on_triangle(p, point(t[0]), point(t[1]), point(t[2]))
-                                    : nearest_on_segment(p, point(t[0]), point(t[1]));
-    Vector3d x = n.weight[0] * point(t[0]) + n.weight[1] * point(t[1]);
-    if (dim == 3) x += n.weight[2] * point(t[2]);
-    return x;
-  };
-  for (int i = 0; i < dim; ++i) {
-    out.see(point(a[i]), on(point(a[i]), b));
-    out.see(on(point(b[i]), a), point(b[i]));
-  }
-  if (dim == 3)
-    for (int i = 0; i < 3; ++i)
-      for (int j = 0; j < 3; ++j)
-        see_edges(point(a[i]), point(a[(i + 1) % 3]), point(b[j]), point(b[(j + 1) % 3]), out);
   return out;
 }
 
@@ -273,91 +202,40 @@ void check_simplex(const LrbRep& rep, SimplexId s, const char* whose) {
                    std::to_string(rep.real_simplex_count()) + ", numbered from 0");
 }
 
-void begin(QueryContext& ctx, const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b) {
-  check_query(a, pose_a, b, pose_b);
-  ctx[Side::a].begin(a, pose_a, WrapperMode::regularised);
-  ctx[Side::b].begin(b, pose_b, WrapperMode::regularised);
-}
+}  // namespace
 
-/// The nearest pairs of those that were compared.
-class NearestPairs {
- public:
-  explicit NearestPairs(QueryContext& ctx) : ctx_(ctx) {}
-
-  void see(const SimplexPair& pair) {
-    Corners a{}, b{};
-    ctx_[Side::a].world.corners(pair.a, a.data());
-    ctx_[Side::b].world.corners(pair.b, b.data());
-    found_.push_back({nearest_points(ctx_[Side::a].rep().dim(), a, b).distance_sq, pair});
-    std::sort(found_.begin(), found_.end(), [](const Found& x, const Found& y) {
-      return x.distance_sq != y.distance_sq ? x.distance_sq < y.distance_sq : x.pair < y.pair;
-    });
-    if (found_.size() > WalkExplanation::kMostNear) found_.pop_back();
-  }
-
-  std::vector<SimplexPair> take() const {
-    std::vector<SimplexPair> out;
-    for (const Found& f : found_) out.push_back(f.pair);
-    return out;
-  }
-
- private:
-  struct Found {
-    double distance_sq;
-    SimplexPair pair;
-  };
-  QueryContext& ctx_;
-  std::vector<Found> found_;
+struct PairExplainer::Parts {
+  const LrbRep &a, &b;
+  std::array<Places, 2> places;
+  QueryContext ctx;
+  std::optional<Stepper> stepper = {};  ///< of the poses
 };
 
-}  // namespace
+PairExplainer::PairExplainer(const LrbRep& a, const LrbRep& b)
+    : parts_(new Parts{
+          a, b, {Places(a.tree(), a.real_simplex_count()), Places(b.tree(), b.real_simplex_count())}, {}}) {}
+PairExplainer::~PairExplainer() = default;
+
+void PairExplainer::place(const Pose& pose_a, const Pose& pose_b) {
+  begin(parts_->ctx, parts_->a, pose_a, parts_->b, pose_b);
+  parts_->stepper.emplace(parts_->ctx);
+}
+
+PairExplanation PairExplainer::explain(const SimplexPair& pair) {
+  check_simplex(parts_->a, pair.a, "A");
+  check_simplex(parts_->b, pair.b, "B");
+  PairExplanation out;
+  out.pair = pair;
+  Way(parts_->ctx, *parts_->stepper, parts_->places, out).follow();
+  explain_faces(parts_->ctx, out);
+  return out;
+}
 
 PairExplanation explain_pair(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
                              const SimplexPair& pair) {
-  check_simplex(a, pair.a, "A");
-  check_simplex(b, pair.b, "B");
-  QueryContext ctx;
-  begin(ctx, a, pose_a, b, pose_b);
-  PairExplanation out;
-  out.pair = pair;
-  Way(ctx, out).follow();
-  explain_faces(ctx, out);
-  return out;
-}
-
-WalkExplanation explain_walk(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b) {
-  QueryContext ctx;
-  NullProbe probe;
-  WalkExplanation out;
-  CollideRequest request;
-  request.separation = true;
-  out.result = collide(a, pose_a, b, pose_b, request, ctx, probe);
-  begin(ctx, a, pose_a, b, pose_b);
-  if (a.tree().empty() || b.tree().empty()) return out;
-  compare_boxes(box_of(a.tree(), 0, kWhole, pose_a), box_of(b.tree(), 0, kWhole, pose_b), out.roots);
-  Stepper stepper(ctx);
-  NearestPairs nearest(ctx);
-  std::vector<NodePair> now = {{0, 0}}, then;
-  for (; !now.empty(); now.swap(then)) {
-    then.clear();
-    WalkDepth depth;
-    for (const NodePair& pair : now) {
-      const Stepper::Outcome outcome = stepper.step(pair);
-      ++depth.node_pairs;
-      depth.ended += outcome.children.empty() && outcome.face_pairs == 0;
-      out.leaf_pairs += stepper.is_leaf(Side::a, pair.a) && stepper.is_leaf(Side::b, pair.b);
-      out.face_pairs += outcome.face_pairs;
-      out.left += outcome.candidates.size();
-      for (const Candidate& c : outcome.candidates) {
-        out.certain += c.certainty == Certainty::cross || c.certainty == Certainty::disjoint;
-        if (out.result.pairs.empty()) nearest.see({c.a, c.b});
-      }
-      then.insert(then.end(), outcome.children.begin(), outcome.children.end());
-    }
-    out.depths.push_back(depth);
-  }
-  out.near = nearest.take();
-  return out;
+  PairExplainer explainer(a, b);
+  explainer.place(pose_a, pose_b);
+  return explainer.explain(pair);
 }
 
 }  // namespace lrb

@@ -5,6 +5,8 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
+#include <optional>
 #include <vector>
 
 #include <Eigen/Core>
@@ -61,8 +63,26 @@ struct PairExplanation {
   double ulp = 0;  ///< of the largest world coordinate of the two faces
 };
 
-/// Explains how two real simplices come out. Throws InputError if a simplex is not real or does not exist, and as
-/// collide() does.
+/// Explains pairs of two bodies, one after the other.
+class PairExplainer {
+ public:
+  /// The bodies must outlive this object.
+  PairExplainer(const LrbRep& a, const LrbRep& b);
+  ~PairExplainer();
+  PairExplainer(const PairExplainer&) = delete;
+  PairExplainer& operator=(const PairExplainer&) = delete;
+
+  /// Puts the bodies where they stand; comes before the first explain(). Throws as collide() does.
+  void place(const Pose& pose_a, const Pose& pose_b);
+  /// Explains how two real simplices come out. Throws InputError if a simplex is not real or does not exist.
+  PairExplanation explain(const SimplexPair& pair);
+
+ private:
+  struct Parts;
+  std::unique_ptr<Parts> parts_;
+};
+
+/// Explains one pair, as PairExplainer does.
 PairExplanation explain_pair(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
                              const SimplexPair& pair);
 
@@ -70,6 +90,22 @@ PairExplanation explain_pair(const LrbRep& a, const Pose& pose_a, const LrbRep& 
 struct WalkDepth {
   std::uint64_t node_pairs = 0;  ///< compared
   std::uint64_t ended = 0;       ///< those of them of which no two boxes meet
+};
+
+/// A plane that has one body on each side: n.x <= of_a for all of A, n.x >= of_b > of_a for all of B.
+struct PartingPlane {
+  Eigen::Vector3d normal{0, 0, 0};       ///< length 1, world, from A to B
+  double of_a = 0, of_b = 0;             ///< mesh's unit
+  std::array<Eigen::Vector3d, 2> reach;  ///< a vertex of A, and one of B, that reach so far; world
+
+  double gap() const { return of_b - of_a; }
+};
+
+/// Two boxes that the query compared and found apart.
+struct PartedBoxes {
+  BoxPair pair;  ///< the nodes that are these boxes' own; of boxes of faces, the leaves
+  std::array<WorldBox, 2> boxes;
+  bool of_faces = false;  ///< both are boxes of faces
 };
 
 /// The walk of the complete query over two bodies.
@@ -81,6 +117,10 @@ struct WalkExplanation {
   std::uint64_t face_pairs = 0;   ///< pairs of faces whose boxes meet
   std::uint64_t left = 0;         ///< those of them that planes do not part; these are compared one by one
   std::uint64_t certain = 0;      ///< those of them about which floats are certain
+  /// Of bodies that do not meet: the two boxes among those found apart that are nearest to each other. All others have a
+  /// larger gap: the walk's proof has no weaker link.
+  std::optional<PartedBoxes> nearest_boxes;
+  std::optional<PartingPlane> plane;  ///< of separate bodies: the best that was found; often none exists
   /// The pairs among those left that are nearest to each other, of bodies that do not meet: nearest first, at most
   /// kMostNear.
   std::vector<SimplexPair> near;

@@ -9,6 +9,8 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
+#include "scenarios/io/shell_word.hpp"
+
 namespace lrb::cli {
 
 inline constexpr int kOk = 0, kMismatch = 1, kBadInput = 2, kEnvironment = 3;
@@ -46,8 +48,7 @@ int main(int argc, char** argv);
 /// Prints lines for people to stderr, unless quiet.
 void note(const Globals& globals, const std::vector<std::string>& lines);
 
-/// Quotes a word, if need be, so that it can stand in a shell's command line.
-std::string shell_word(const std::string& word);
+using io::shell_word;
 
 /// Returns JSON on one line. Bytes that are not UTF-8, which a file's name may have, become U+FFFD.
 std::string one_line(const nlohmann::ordered_json& value);

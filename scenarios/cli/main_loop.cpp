@@ -52,16 +52,6 @@ int guarded(const Run& run) {
 
 }  // namespace
 
-std::string shell_word(const std::string& word) {
-  const bool plain = !word.empty() && word.find_first_not_of(
-                                          "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ"
-                                          "0123456789_-+=./,:@%") == std::string::npos;
-  if (plain) return word;
-  std::string out = "'";
-  for (const char c : word) out += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return out + "'";
-}
-
 void note(const Globals& globals, const std::vector<std::string>& lines) {
   if (globals.quiet) return;
   for (const std::string& line : lines) std::cerr << "note: " << line << "\n";

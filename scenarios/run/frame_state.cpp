@@ -8,6 +8,7 @@
 #include "scenarios/run/face_values.hpp"
 #include "scenarios/run/moments.hpp"
 #include "scenarios/run/node_box_lines.hpp"
+#include "scenarios/run/parting_picture.hpp"
 #include "trace/names.hpp"
 
 namespace lrb::run {
@@ -74,6 +75,19 @@ const trace::StepResult* FrameState::answer_here() const {
 const Separation* FrameState::proof_here() const {
   const trace::StepResult* answer = answer_here();
   return answer != nullptr && answer->separation ? &*answer->separation : nullptr;
+}
+
+const WalkExplanation* FrameState::parting_here() const {
+  const CollideRequest& request = trace_.header.request;
+  const trace::StepResult* answer = answer_here();
+  if (answer == nullptr || answer->separation || answer->relation != Relation::separate ||
+      request.recursion != Recursion::complete || request.is_coarse() || !trace_.header.engine.empty() ||
+      spec_.colour_by >= spec::FrameSpec::ColourBy::face_tests)
+    return nullptr;
+  if (!parting_ || parting_->step != cursor_.step_number())
+    parting_ = {cursor_.step_number(),
+                explain_walk(*reps_[0], cursor_.pose(Side::a), *reps_[1], cursor_.pose(Side::b))};
+  return &parting_->walk;
 }
 
 std::uint32_t FrameState::boundary_size(Side side) const {
@@ -170,6 +184,8 @@ render::Scene FrameState::scene(bool wrapper, bool plain) const {
   options.isolate = spec_.isolate;
   options.ghost_rest = spec_.ghost_rest;
   render::Scene scene = render::build_scene(bodies, highlight, options);
+  if (const WalkExplanation* walk = plain ? nullptr : parting_here())
+    add_parting(scene.list, *walk, *reps_[0], cursor_.pose(Side::a), *reps_[1], cursor_.pose(Side::b));
   for (const Side side : {Side::a, Side::b})
     if (const trace::TreeShape* tree = tree_of(side); spec_.node_boxes && tree != nullptr)
       add_node_boxes(scene, *tree, side, cursor_.pose(side), *spec_.node_boxes, events_so_far());
@@ -240,6 +256,8 @@ std::string FrameState::result_text() const {
     return std::isfinite(r.error_bound)
                ? "unresolved: in contact, or no further apart than " + render::short_number(r.error_bound)
                : "unresolved: the limit came before the coarsest wrappers were compared";
+  if (const WalkExplanation* walk = parting_here())
+    if (const std::string words = parting_words(*walk); !words.empty()) return "separate: " + words;
   return relation_words(r.relation) + ": " +
          counted(r.pair_count, "pair of faces meets", "pairs of faces meet");
 }
@@ -249,7 +267,7 @@ render::Overlay FrameState::overlay(const std::string& title) const {
   o.title = title;
   if (reps_.size() > 1) o.title += "  ·  step " + std::to_string(step());
   o.event = event_text();
-  o.event_colour = render::palette::event(cursor_.event().kind);
+  o.event_colour = parting_here() != nullptr ? kPartingColour : render::palette::event(cursor_.event().kind);
   const trace::Totals t = totals();
   if (reps_.size() == 1) {
     o.counters = {{"wrapper", render::group_digits(cursor_.boundary_size(Side::a)) + " faces"},

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "engine/query/collide.hpp"
+#include "engine/query/explain.hpp"
 #include "render/scene.hpp"
 #include "scenarios/spec/scenario.hpp"
 #include "trace/counters.hpp"
@@ -56,6 +57,9 @@ class FrameState {
   const trace::StepResult* answer_here() const;  ///< Returns the same, as the trace has it.
   const Separation* proof_here() const;  ///< Returns the answer's certificate of separation, whose wrappers
                                          ///< are then shown.
+  /// Returns the walk of a step that ends here without contact; null: of another, or where what parts the bodies is not
+  /// to be shown: numbers of faces need the picture for themselves.
+  const WalkExplanation* parting_here() const;
   std::uint32_t boundary_size(Side side) const;  ///< Returns the number of faces of the wrapper that is
                                                  ///< shown.
   /// (|F|) Marks the faces of a coarse answer so far; empty if the answer is one for contact regions.
@@ -75,6 +79,11 @@ class FrameState {
   FrameExtras extras_;
   bool point_out_refined_;  ///< frames follow refinements, so that the last one is what is new
   trace::Cursor cursor_;
+  struct Parting {
+    std::size_t step;
+    WalkExplanation walk;
+  };
+  mutable std::optional<Parting> parting_;  ///< of the step that was asked for last
 };
 
 }  // namespace lrb::run

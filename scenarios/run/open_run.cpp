@@ -1,5 +1,6 @@
 #include "scenarios/run/open_run.hpp"
 
+#include <algorithm>
 #include <filesystem>
 
 #include "engine/core/error.hpp"
@@ -77,7 +78,9 @@ Recording open_run(trace::Trace trace, const std::string& trace_path,
   return out;
 }
 
-Recording open_run(const std::string& folder) {
+namespace {
+
+std::string trace_in(const std::string& folder) {
   std::string path = folder + "/trace.json";
   std::error_code error;
   if (!std::filesystem::exists(path, error)) path += ".gz";
@@ -85,7 +88,36 @@ Recording open_run(const std::string& folder) {
     throw InputError(
         printable_name(folder) +
         ": there is no trace.json or trace.json.gz: give the folder of a run, as `lrbscope run -o` writes it");
+  return path;
+}
+
+}  // namespace
+
+Recording open_run(const std::string& folder) {
+  const std::string path = trace_in(folder);
   return open_run(trace::load_trace(path), path);
+}
+
+OpenStep open_step(const std::string& run, std::optional<std::uint32_t> number) {
+  std::error_code error;
+  const std::string path = std::filesystem::is_directory(run, error) ? trace_in(run) : run;
+  const trace::Trace trace = trace::load_trace(path);
+  if (trace.header.bodies.size() != 2)
+    throw InputError(printable_name(path) + ": is of one body, and pairs are of two");
+  if (trace.steps.empty()) throw InputError(printable_name(path) + ": has no time step");
+  const auto at = number ? std::find_if(trace.steps.begin(), trace.steps.end(),
+                                        [&](const trace::Step& s) { return s.index == *number; })
+                         : trace.steps.end() - 1;
+  if (at == trace.steps.end())
+    throw InputError(printable_name(path) + ": has no step " + std::to_string(*number) +
+                     "; its steps go from " + std::to_string(trace.steps.front().index) + " to " +
+                     std::to_string(trace.steps.back().index));
+  OpenStep out{find_bodies(path, {}, {"a.lrb", "b.lrb"}), *at};
+  for (std::size_t i = 0; i < out.bodies.size(); ++i)
+    if (out.bodies[i].rep.hash() != trace.header.bodies[i].hash)
+      throw InputError(printable_name(path) + ": the body beside it is not the one that was recorded as " +
+                       (i == 0 ? "A" : "B"));
+  return out;
 }
 
 }  // namespace lrb::run

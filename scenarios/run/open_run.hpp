@@ -1,6 +1,8 @@
 #pragma once
 /// Opens a run that was recorded and written.
 
+#include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -21,5 +23,15 @@ Recording open_run(trace::Trace trace, const std::string& trace_path,
 
 /// Returns the run in a folder: its trace.json or trace.json.gz, with a.lrb and b.lrb beside it.
 Recording open_run(const std::string& folder);
+
+/// Two bodies as they stood at a step of a run.
+struct OpenStep {
+  std::vector<bodies::LoadedBody> bodies;
+  trace::Step step;
+};
+
+/// Opens one step of a run, by its number; without a number the last. `run`: its folder, or its trace with the bodies
+/// beside it. Throws InputError if there is no such step, or only one body.
+OpenStep open_step(const std::string& run, std::optional<std::uint32_t> number);
 
 }  // namespace lrb::run

@@ -278,7 +278,7 @@ report::Page run_page(const RecordedRun& p, const DrawnFrames& drawn, const std:
   report::Page page;
   add_answer(page, p, text);
   add_mismatches(page, text.mismatches);
-  page.scene = scene_json(p, text.trace_file);
+  page.scene = scene_json(p, {text.trace_file, text.why});
   // In three dimensions they are what is left where a browser has no WebGL, and can be smaller.
   constexpr std::size_t kBesideView = 2'500'000;
   add_frames(page, drawn, folder, p.reps[0]->dim() == 3 ? kBesideView : report::kInlineBudget);

@@ -14,6 +14,8 @@ struct ReportText {
   std::string title, purpose, command;
   std::string trace_file;  ///< relative to the folder
   std::vector<std::string> mismatches;
+  /// The command that explains a pair of this run, but for --step and --pair; empty: there is none.
+  std::string why = {};
 };
 
 /// Puts frames, whose files are in `folder`, into a page. `budget`: see inline_pngs().

@@ -5,6 +5,7 @@
 #include "engine/core/error.hpp"
 #include "engine/lrb/lrb_file.hpp"
 #include "scenarios/io/files.hpp"
+#include "scenarios/io/shell_word.hpp"
 #include "scenarios/run/frame_job.hpp"
 #include "scenarios/run/run_report.hpp"
 #include "trace/hex.hpp"
@@ -66,7 +67,8 @@ RunOutcome write_run(const spec::Scenario& scenario, const Recording& recording,
   const DrawnFrames drawn = draw_frames(recorded, scenario.frames, folder, text, progress);
   out.frames = drawn.frames.size();
   progress("page", 0, 1);
-  const ReportText report{scenario.name, scenario.purpose, command, trace_file, out.mismatches};
+  const ReportText report{scenario.name, scenario.purpose, command,
+                          trace_file,    out.mismatches,   "lrbscope why --run " + io::shell_word(folder)};
   io::write_text(folder + "/index.html", report::page_html(run_page(recorded, drawn, folder, report)));
   return out;
 }

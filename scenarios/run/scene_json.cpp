@@ -10,10 +10,13 @@
 #include "render/overlay.hpp"
 #include "render/palette.hpp"
 #include "scenarios/report/page/packed.hpp"
+#include "scenarios/run/explanations.hpp"
+#include "scenarios/run/scene_frame.hpp"
 #include "scenarios/run/thinned_events.hpp"
 #include "scenarios/run/tree_boxes.hpp"
 #include "trace/counters.hpp"
 #include "trace/names.hpp"
+#include "trace/work_chart.hpp"
 
 namespace lrb::run {
 namespace {
@@ -60,12 +63,6 @@ json colours() {
 
 // ---- where things are
 
-/// The frame of the page: x_page = (x - origin) / unit.
-struct SceneFrame {
-  Eigen::Vector3d origin{0, 0, 0};
-  double unit = 1;
-};
-
 Eigen::AlignedBox3d box_of(const LrbRep& rep) {
   Eigen::AlignedBox3d box;
   for (const Eigen::Vector3d& v : rep.vertices()) box.extend(v);
@@ -95,10 +92,6 @@ SceneFrame scene_frame(const RecordedRun& p) {
   return frame;
 }
 
-std::vector<float> flat(const Eigen::Vector3d& v) {
-  return {static_cast<float>(v.x()), static_cast<float>(v.y()), static_cast<float>(v.z())};
-}
-
 /// Returns the poses of a body in the page's frame, or one if it never moves: rows of [R | t], for vertices
 /// relative to the body's middle.
 std::vector<float> poses_of(const RecordedRun& p, std::size_t body, const Numbers& steps,
@@ -125,8 +118,7 @@ std::vector<float> poses_of(const RecordedRun& p, std::size_t body, const Number
 json geometry(const LrbRep& rep, const SceneFrame& frame) {
   const Eigen::Vector3d middle = middle_of(rep);
   std::vector<float> vertices;
-  for (const Eigen::Vector3d& v : rep.vertices())
-    for (const float x : flat((v - middle) / frame.unit)) vertices.push_back(x);
+  for (const Eigen::Vector3d& v : rep.vertices()) frame.add_vector(vertices, v - middle);
   Numbers sizes, inner, outer, parents, layers;
   const auto region_or_null = [](CellId c) { return is_region(c) ? c.value() : std::uint32_t{kNull}; };
   for (FaceId f = 0; f < rep.face_count(); ++f) {
@@ -152,9 +144,8 @@ json boxes_json(const LrbRep& rep, const SceneFrame& frame, std::size_t most) {
   const Eigen::Vector3d middle = middle_of(rep);
   std::vector<float> places;  // centre and three half axes each
   for (const TreeBox& box : boxes) {
-    for (const float x : flat((box.centre - middle) / frame.unit)) places.push_back(x);
-    for (int i = 0; i < 3; ++i)
-      for (const float x : flat(box.half.col(i) / frame.unit)) places.push_back(x);
+    frame.add_vector(places, box.centre - middle);
+    for (int i = 0; i < 3; ++i) frame.add_vector(places, box.half.col(i));
   }
   return {{"node", packed_each(boxes, [](const TreeBox& b) { return b.node; })},
           {"depth", packed_each(boxes, [](const TreeBox& b) { return b.depth; })},
@@ -237,7 +228,22 @@ bool changes_wrapper(const trace::Event& e) {
   return e.kind == EventKind::refine || e.kind == EventKind::coarsen;
 }
 
-json events_json(const trace::Trace& trace, const std::vector<trace::EventId>& kept) {
+/// Returns the parts of the work; null where pairs of nodes were not recorded.
+json work_json(const trace::Trace& trace, const trace::WorkChart& chart) {
+  if (trace.header.level == EventLevel::faces || chart.outcomes.empty()) return nullptr;
+  constexpr double kMicros = 1e6;
+  json out = json::array();
+  for (const trace::WorkOutcome& o : chart.outcomes)
+    out.push_back({{"phase", o.phase},
+                   {"outcome", o.outcome},
+                   {"events", o.events},
+                   {"operations", o.operations},
+                   {"micros", kMicros * o.seconds}});
+  return {{"outcomes", std::move(out)}, {"timed", !trace.wall_ns.empty()}};
+}
+
+json events_json(const trace::Trace& trace, const trace::WorkChart& chart,
+                 const std::vector<trace::EventId>& kept) {
   const auto column = [&](auto get) {
     return packed_each(kept, [&](trace::EventId id) { return get(trace.events[id]); });
   };
@@ -253,6 +259,11 @@ json events_json(const trace::Trace& trace, const std::vector<trace::EventId>& k
           {"boundary",
            column([](const Event& e) { return changes_wrapper(e) ? e.boundary : std::uint32_t{kNull}; })},
           {"outcomes", outcomes_json(trace, kept)},
+          {"work", packed_each(kept,
+                               [&](trace::EventId id) {
+                                 const std::uint8_t part = chart.of_event[id];
+                                 return part == trace::WorkChart::kNone ? std::uint32_t{kNull} : part;
+                               })},
           {"depthA", column([](const Event& e) { return e.depth_a; })},
           {"depthB", column([](const Event& e) { return e.depth_b; })}};
 }
@@ -300,11 +311,12 @@ std::string too_large_words(std::size_t faces, const SceneLimits& limits) {
 
 }  // namespace
 
-std::string scene_json(const RecordedRun& p, const std::string& trace_file, const SceneLimits& limits) {
+std::string scene_json(const RecordedRun& p, const SceneSource& source, const SceneLimits& limits) {
   const trace::Trace& trace = *p.trace;
   const ThinnedEvents events = thin_events(trace, limits.events);
   const Numbers steps = steps_of(trace, events.kept);
   const SceneFrame frame = scene_frame(p);
+  const trace::WorkChart work = trace::work_chart(trace);
   std::size_t faces = 0;
   for (const LrbRep* rep : p.reps) faces += rep->face_count();
   json bodies = json::array();
@@ -314,20 +326,22 @@ std::string scene_json(const RecordedRun& p, const std::string& trace_file, cons
                     {"origin", {frame.origin.x(), frame.origin.y(), frame.origin.z()}},
                     {"unit", frame.unit},
                     {"wrapper", name_of(trace.header.request.wrapper)},
-                    {"thinned", thinned_words(trace, events, trace_file)},
+                    {"thinned", thinned_words(trace, events, source.trace_file)},
                     {"tooLarge", faces <= limits.faces ? "" : too_large_words(faces, limits)},
-                    {"trace", trace_file},
+                    {"trace", source.trace_file},
                     {"firstContact", static_cast<std::int64_t>(first_contact(trace) == kNull
                                                                    ? std::int64_t{-1}
                                                                    : std::int64_t{first_contact(trace)})},
+                    {"work", work_json(trace, work)},
                     {"kinds", kinds_json()},
                     {"phases", words_json<Phase>()},
                     {"engine", trace.header.engine},
                     {"relations", words_json<Relation>()},
                     {"colours", colours()},
                     {"bodies", std::move(bodies)},
+                    {"why", explanations_json(p, {events.kept, steps}, frame, source.why, limits.explained)},
                     {"steps", steps_json(p, steps, frame)},
-                    {"events", events_json(trace, events.kept)}};
+                    {"events", events_json(trace, work, events.kept)}};
   return out.dump(-1, ' ', false, json::error_handler_t::replace);
 }
 

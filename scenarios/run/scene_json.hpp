@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <string>
 
+#include "scenarios/run/explanations.hpp"
 #include "scenarios/run/frame_job.hpp"
 
 namespace lrb::run {
@@ -14,12 +15,19 @@ struct SceneLimits {
   std::size_t events = 200'000;
   std::size_t faces = 300'000;  ///< of both bodies; with more, there is no view in three dimensions
   std::size_t boxes = 4'096;    ///< of tree nodes, for each body
+  ExplainLimits explained = {};
+};
+
+/// Where the page's reader finds more.
+struct SceneSource {
+  std::string trace_file;
+  std::string why;  ///< see ReportText::why
 };
 
 /// Returns the run as JSON. Coordinates are rounded to float, relative to the middle of their body and in
-/// units of the scene's size. What the limits leave out is said in it, with `trace_file` as the place where
+/// units of the scene's size. What the limits leave out is said in it, with the trace as the place where
 /// it is.
-std::string scene_json(const RecordedRun& recorded, const std::string& trace_file,
+std::string scene_json(const RecordedRun& recorded, const SceneSource& source,
                        const SceneLimits& limits = {});
 
 }  // namespace lrb::run

@@ -64,6 +64,13 @@ camera=$(sed -n 's/^camera //p' "$work/driven")
 scenario=$(cat "$here/meet.json")
 printf '%s\n' "${scenario/'"frames": {'/"\"frames\": { \"most\": 1, \"views\": [$camera],"}" >"$work/copied.json"
 "$lrbscope" --quiet run "$work/copied.json" -o "$work/copied" >/dev/null
+# The command that the page gives says what the page says.
+command=$(sed -n 's/^command lrbscope //p' "$work/driven")
+verdict=$(sed -n 's/^verdict .*Decided by \(.*\)\./\1/p' "$work/driven")
+if ! eval "\"$lrbscope\" $command" | grep -qxF "decided by $verdict"; then
+  echo "browser.sh: \"$command\" does not say \"decided by $verdict\"" >&2
+  failed=1
+fi
 for width in 400 3000; do in_frame "$width" && drive 3200 1000 frame.html "${webgl[@]}"; done
 drive 1200 900 'page.html?drive=flat' --disable-gpu --disable-3d-apis --disable-software-rasterizer
 exit "$failed"

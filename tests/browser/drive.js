@@ -183,7 +183,7 @@
     press("o");
     press("v");
     await frame();
-    lines.push(`camera ${byId("camera-json").value}`);
+    lines.push(`camera ${byId("camera-json").textContent}`);
   }
 
   /** Events of the walk through the trees: nodes have boxes, phases have names. */
@@ -202,6 +202,84 @@
       "a phase has a name",
       byId("event-facts").textContent,
     );
+  }
+
+  /** Why: of an event's faces, of two that are chosen, and of a step in which the bodies are apart. */
+  async function explains() {
+    const { events, selection, view, why } = run,
+      contact = events.kind.indexOf(events.CONTACT);
+    selection.goTo(contact);
+    await frame();
+    const text = () => byId("why").textContent;
+    equal(byId("why").hidden, false, "a contact is explained");
+    check(/The faces (cross|touch)\. Decided by /.test(text()), "with a verdict", text());
+    const rows = byId("why-way").querySelectorAll("tr");
+    check(rows.length > 1 && rows[0].textContent.startsWith("0, 0"), "the way begins at the roots", rows.length);
+    check(byId("why-facts").textContent.includes("contact"), "the contact is told");
+    check(view.whyMarks.group.children.length > 0, "and shown");
+    const [a, b] = events.faces(contact).map((f, side) => events.bodies[side].firstSimplex[f.face]);
+    equal(
+      byId("why-command").textContent.split(" --run ")[1].split(" ").slice(1).join(" "),
+      `--step ${events.stepNumber(contact)} --pair ${a},${b}`,
+      "the command names step and pair",
+    );
+    lines.push(`command ${byId("why-command").textContent}`);
+    lines.push(`verdict ${byId("why-verdict").textContent}`);
+    rows[0].querySelector("button").click();
+    await frame();
+    equal(view.marks.shown.get("way").parts.length, 2, "a click on a row shows its boxes");
+    rows[0].querySelector("button").click();
+    const hiding = byId("why-regions").querySelector("button");
+    hiding.click();
+    equal(selection.picked.face, NONE, "a click on a region selects it");
+    press("Escape");
+    const meets = (i) => why.explanations.pair(events.step(i), [events.a[i], events.b[i]])?.meet;
+    const apart = [...events.kind.keys()].find((i) => events.kind[i] === events.FACE_TEST && meets(i) === 0);
+    check(apart !== undefined, "pairs that do not meet are explained too");
+    selection.goTo(apart);
+    await frame();
+    check(/apart.*distance/s.test(text()), "with their distance", text());
+    selection.goTo(events.endOfStep(events.step(contact)) - 1);
+    selection.pickFace(0, 0);
+    selection.pickFace(1, 0);
+    await frame();
+    check(/--pair 0,0$/.test(byId("why-command").textContent), "two faces that are picked are asked about");
+    press("Escape");
+    const empty = [...why.explanations.steps.keys()];
+    check(empty.length > 0, "steps without contact are explained");
+    selection.goTo(events.endOfStep(empty[0]) - 1);
+    await frame();
+    check(/What parts the bodies.*Apart/s.test(text()), "in words", text());
+    check(view.whyMarks.group.children.length > 0, "and in the view");
+    press("y");
+    await frame();
+    equal(view.whyMarks.group.children.length, 0, "y hides it");
+    press("y");
+  }
+
+  /** Parts of the work: a click on one lists its events. */
+  async function shares() {
+    const { events, table, work } = run,
+      groups = () => [...byId("work-chart").querySelectorAll("[data-parts]")],
+      named = (name) => groups().find((g) => g.querySelector("title").textContent.startsWith(`${name}:`));
+    equal(byId("work").hidden, false, "the work is charted");
+    check(named("walk of the bodies") && named("boxes of nodes"), "with phases and what decided in them");
+    const of = (parts) => events.work.reduce((n, w) => n + (parts.includes(w) ? 1 : 0), 0);
+    const press = (name) => named(name).dispatchEvent(new MouseEvent("click", { bubbles: true }));
+    press("boxes of nodes");
+    const parts = named("boxes of nodes").dataset.parts.split(" ").map(Number);
+    equal(table.rows.length, of(parts), "a click on a part lists its events");
+    equal(table.rows.length, work.work.outcomes[parts[0]].events, "as many as the part says");
+    equal(named("boxes of nodes").getAttribute("aria-pressed"), "true", "and marks it");
+    press("boxes of nodes");
+    equal(table.rows.length, events.count, "a second click lists all");
+    press("walk of the bodies");
+    check(table.rows.length > of(parts), "a phase has the events of its parts", table.rows.length);
+    check(!named("relation") && named("boxes of nodes"), "and fills the chart");
+    byId("filter-clear").click();
+    equal(table.rows.length, events.count, "show all does, too");
+    run.selection.goTo(events.work.indexOf(parts[0]));
+    check(named("boxes of nodes").classList.contains("here"), "the chart marks the part of the event");
   }
 
   async function colours() {
@@ -300,6 +378,8 @@
       filters,
       presses,
       walks,
+      explains,
+      shares,
       colours,
       plays,
       largeTable,

@@ -2,6 +2,7 @@
 #include "engine/query/explain.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <string>
 
 #include <doctest/doctest.h>
@@ -114,6 +115,75 @@ TEST_CASE("the walk that is told is the one that the query does") {
     if (result.pairs.empty() && e.left > 0)
       CHECK(e.near.size() == std::min<std::size_t>(e.left, e.kMostNear));
   }
+}
+
+TEST_CASE("pairs are explained one after the other, and at other poses, as they are alone") {
+  for (const Scene& s : scenes()) {
+    PairExplainer explainer(s.a, s.b);
+    for (const Pose& pose : {s.pose, Pose{}}) {
+      explainer.place({}, pose);
+      for (const std::uint32_t i : {0U, 5U, 11U}) {
+        const SimplexPair pair{SimplexId(i), SimplexId(s.b.real_simplex_count() - 1 - i)};
+        const PairExplanation one = explainer.explain(pair), other = explain_pair(s.a, {}, s.b, pose, pair);
+        CHECK(one.meet == other.meet);
+        CHECK(one.decided_by == other.decided_by);
+        CHECK(one.distance == other.distance);
+        REQUIRE(one.nodes.size() == other.nodes.size());
+        for (std::size_t n = 0; n < one.nodes.size(); ++n) {
+          CHECK(one.nodes[n].node == other.nodes[n].node);
+          CHECK(one.nodes[n].gap == other.nodes[n].gap);
+        }
+      }
+    }
+  }
+}
+
+/// Returns the largest n.x over a body's vertices.
+double reach(const LrbRep& rep, const Pose& pose, const Eigen::Vector3d& n) {
+  double out = -std::numeric_limits<double>::infinity();
+  for (const Eigen::Vector3d& v : rep.vertices()) out = std::max(out, n.dot(pose.apply(v)));
+  return out;
+}
+
+TEST_CASE("what parts bodies: the nearest of the boxes found apart, and a plane where one was found") {
+  int planes = 0, boxes = 0;
+  for (const Scene& s : scenes())
+    for (const double factor : {1.0, 1.5, 4.0}) {
+      Pose pose = s.pose;
+      pose.t *= factor;
+      const WalkExplanation e = explain_walk(s.a, {}, s.b, pose);
+      if (!e.result.pairs.empty()) CHECK_FALSE((e.nearest_boxes || e.plane));
+      if (e.result.relation != Relation::separate) CHECK_FALSE(e.plane);
+      if (e.nearest_boxes) {
+        ++boxes;
+        BoxPair again;
+        compare_boxes(e.nearest_boxes->boxes[0], e.nearest_boxes->boxes[1], again);
+        CHECK(again.gap == e.nearest_boxes->pair.gap);
+        CHECK(again.gap > 0);
+      }
+      if (e.plane) {
+        ++planes;
+        CHECK(e.plane->normal.norm() == doctest::Approx(1));
+        CHECK(reach(s.a, {}, e.plane->normal) <= e.plane->of_a);
+        CHECK(reach(s.b, pose, -e.plane->normal) <= -e.plane->of_b);
+        CHECK(e.plane->gap() > 0);
+        CHECK(e.plane->normal.dot(e.plane->reach[0]) == doctest::Approx(e.plane->of_a));
+        CHECK(e.plane->normal.dot(e.plane->reach[1]) == doctest::Approx(e.plane->of_b));
+      }
+    }
+  CHECK(planes > 10);
+  CHECK(boxes > 10);
+}
+
+TEST_CASE("linked rings are apart, and no plane parts them") {
+  const LrbRep ring = build_lrb(torus(24, 12));
+  Pose through;
+  through.r << 1, 0, 0, 0, 0, -1, 0, 1, 0;
+  through.t = {1, 0, 0};
+  const WalkExplanation e = explain_walk(ring, {}, ring, through);
+  REQUIRE(e.result.relation == Relation::separate);
+  CHECK_FALSE(e.plane);
+  CHECK(e.nearest_boxes);
 }
 
 TEST_CASE("faces are hidden by the regions that a wrapper opens to show them") {

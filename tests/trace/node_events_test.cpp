@@ -24,6 +24,8 @@
 #include "trace/node_work.hpp"
 #include "trace/recorder.hpp"
 #include "trace/trace_json.hpp"
+#include "trace/work_chart.hpp"
+#include "trace/work_shares.hpp"
 
 using namespace lrb;
 using namespace lrb::trace;
@@ -448,6 +450,29 @@ TEST_CASE("box tests are shared by the faces beneath the nodes: what faces have 
   for (Event& e : damaged.events)
     if (e.kind == EventKind::node_pair) e.a = 1'000'000;
   CHECK_THROWS_AS(count_nodes(TreeShape(all_bodies()[3].a->tree()), Side::a, damaged.events), InputError);
+}
+
+TEST_CASE("the chart of the work holds what its parts hold, each event once") {
+  for (const CollideRequest& request : requests()) {
+    const Recorded r = record(all_bodies()[0], request, EventLevel::all);
+    const WorkChart chart = work_chart(r.trace);
+    std::uint64_t shares = 0, of_events = 0, box_tests = 0, operations = 0, levels = 0;
+    for (const WorkShare& s : work_shares(r.trace)) shares += s.events, box_tests += s.box_tests;
+    REQUIRE(chart.of_event.size() == r.trace.events.size());
+    std::vector<std::uint64_t> events(chart.outcomes.size());
+    for (const std::uint8_t of : chart.of_event)
+      if (of != WorkChart::kNone) ++events.at(of), ++of_events;
+    for (std::size_t i = 0; i < events.size(); ++i) {
+      const WorkOutcome& o = chart.outcomes[i];
+      CHECK(o.events == events[i]);
+      CHECK(o.events > 0);
+      if (o.outcome.starts_with("boxes")) operations += o.operations;
+      if (o.phase == "walk of levels") levels += o.events;
+    }
+    CHECK(of_events == shares);
+    CHECK(operations >= box_tests);  // with planes
+    CHECK((levels > 0) == (request.tolerance > 0));
+  }
 }
 
 TEST_CASE("a probe from outside the engine sees the walk, too") {

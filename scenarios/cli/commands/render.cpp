@@ -145,6 +145,7 @@ int run_render(const RenderOptions& o, const Globals& globals) {
   const run::DrawnFrames drawn = run::draw_frames(p, spec, folder, text, progress_report(globals.quiet));
   const std::string trace_link = std::filesystem::relative(o.trace, folder).generic_string();
   run::ReportText report{trace.header.scenario, kFromTrace, globals.command_line, trace_link, {}};
+  if (o.bodies.empty()) report.why = "lrbscope why --run " + shell_word(o.trace);
   report::Page page = run::run_page(p, drawn, folder, report);
   std::erase_if(page.links, [](const report::PageLink& l) { return l.target == "summary.json"; });
   io::write_text(folder + "/index.html", report::page_html(page));

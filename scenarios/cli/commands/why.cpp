@@ -2,6 +2,7 @@
 #include <filesystem>
 #include <iomanip>
 #include <memory>
+#include <optional>
 #include <sstream>
 
 #include <nlohmann/json.hpp>
@@ -13,7 +14,10 @@
 #include "scenarios/cli/command.hpp"
 #include "scenarios/io/files.hpp"
 #include "scenarios/io/pose_file.hpp"
+#include "scenarios/run/explanation_words.hpp"
+#include "scenarios/run/open_run.hpp"
 #include "scenarios/run/pair_picture.hpp"
+#include "scenarios/run/parting_picture.hpp"
 
 namespace lrb::cli {
 namespace {
@@ -21,17 +25,18 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 struct WhyOptions {
-  std::string a, b, poses, picture;
+  std::string a, b, poses, run, picture;
   std::size_t pose = 0;
+  std::optional<std::uint32_t> step;
   std::vector<std::uint32_t> pair;
   bool json = false;
 };
 
-/// Two bodies, where they stand, and what they are called.
+/// Two bodies, and where they stand.
 struct Scene {
   const LrbRep& a;
   const LrbRep& b;
-  Pose pose;
+  Pose pose_a, pose_b;
 };
 
 Json point_json(const Eigen::Vector3d& x) {
@@ -105,6 +110,11 @@ Json as_json(const WalkExplanation& e) {
   j["certain"] = e.certain;
   j["nearest_pairs"] = Json::array();
   for (const SimplexPair& p : e.near) j["nearest_pairs"].push_back({p.a.value(), p.b.value()});
+  if (e.nearest_boxes) {
+    j["nearest_boxes"] = boxes_json(e.nearest_boxes->pair);
+    j["nearest_boxes"]["of_faces"] = e.nearest_boxes->of_faces;
+  }
+  if (e.plane) j["plane"] = {{"gap", e.plane->gap()}, {"normal", point_json(e.plane->normal)}};
   if (e.result.separation) {
     const auto& [refined, faces] = *e.result.separation;
     j["separation"] = {{"refined", {refined[0].size(), refined[1].size()}}, {"faces", {faces[0], faces[1]}}};
@@ -152,31 +162,13 @@ void write_sides(std::ostream& out, const PlaneSides& sides, int corners, const 
   out << "\n";
 }
 
-std::string words(DecidedBy by) {
-  switch (by) {
-    case DecidedBy::node_boxes:
-      return "boxes of the trees' nodes, which are apart";
-    case DecidedBy::needles:
-      return "a direction across the boxes of two nodes full of needles";
-    case DecidedBy::face_boxes:
-      return "the faces' own boxes, which are apart";
-    case DecidedBy::planes:
-      return "the plane of one face, which has all of the other on one side, in floats with bounded errors";
-    case DecidedBy::floats:
-      return "floats with bounded errors, which are certain here";
-    case DecidedBy::exact:
-      return "the exact test, because floats were not certain";
-  }
-  return {};
-}
-
 std::string as_text(const PairExplanation& e, const Scene& scene) {
   std::ostringstream out;
   out << std::setprecision(kDigits);
   out << "simplex " << e.pair.a << " of A (face " << scene.a.face_of_simplex(e.pair.a) << " of "
       << scene.a.name() << ") and " << e.pair.b << " of B (face " << scene.b.face_of_simplex(e.pair.b)
       << " of " << scene.b.name() << "): " << name_of(e.meet) << "\n";
-  out << "decided by " << words(e.decided_by) << "\n\n";
+  out << "decided by " << run::words(e.decided_by) << "\n\n";
   write_way(out, e);
   out << "\n";
   write_regions(out, scene.a, e.hidden_by[0], "A's");
@@ -225,6 +217,15 @@ std::string as_text(const WalkExplanation& e) {
     out << "\n";
   }
   if (e.result.pairs.empty() && e.left == 0) out << "no two faces come as far as a comparison of their own\n";
+  if (const auto& boxes = e.nearest_boxes)
+    out << "the nearest of the boxes found apart, of "
+        << (boxes->of_faces ? "faces in the leaves " : "nodes ") << boxes->pair.node[0] << " of A and "
+        << boxes->pair.node[1] << " of B: gap " << boxes->pair.gap << " along " << name_of(boxes->pair.axis)
+        << "\n";
+  if (e.plane)
+    out << "a plane across (" << e.plane->normal.x() << ", " << e.plane->normal.y() << ", "
+        << e.plane->normal.z() << ") has all of A on one side and all of B on the other, " << e.plane->gap()
+        << " apart\n";
   if (e.result.separation) {
     const auto& [refined, faces] = *e.result.separation;
     out << "wrappers of " << faces[0] << " and " << faces[1] << " faces, with " << refined[0].size()
@@ -243,44 +244,62 @@ Pose pose_of(const WhyOptions& o) {
   return poses[o.pose];
 }
 
+int explain(const WhyOptions& o, const Scene& scene) {
+  const auto make_folder = [&] { io::make_folder(std::filesystem::path(o.picture).parent_path().string()); };
+  if (o.pair.empty()) {
+    const WalkExplanation e = explain_walk(scene.a, scene.pose_a, scene.b, scene.pose_b);
+    if (!o.picture.empty() && !e.result.pairs.empty())
+      throw InputError(
+          "-o: the bodies meet, so that nothing parts them; draw two of their faces with --pair");
+    if (!o.picture.empty()) make_folder();
+    if (!o.picture.empty()) run::draw_parting(scene.a, scene.pose_a, scene.b, scene.pose_b, e, o.picture);
+    print(o.json ? one_line(as_json(e)) : as_text(e));
+    return kOk;
+  }
+  const PairExplanation e = explain_pair(scene.a, scene.pose_a, scene.b, scene.pose_b,
+                                         {SimplexId(o.pair[0]), SimplexId(o.pair[1])});
+  if (!o.picture.empty()) {
+    make_folder();
+    run::draw_pair(scene.a, scene.pose_a, scene.b, scene.pose_b, e, o.picture);
+  }
+  print(o.json ? one_line(as_json(e, scene)) : as_text(e, scene));
+  return kOk;
+}
+
 int run_why(const WhyOptions& o, const Globals& globals) {
+  if (!o.run.empty()) {
+    const run::OpenStep open = run::open_step(o.run, o.step);
+    return explain(o, {open.bodies[0].rep, open.bodies[1].rep, open.step.pose_a, open.step.pose_b});
+  }
+  if (o.b.empty()) throw InputError("why: expected two bodies, A and B, or --run with a step of a run");
   const Pose pose = pose_of(o);
   const bodies::LoadedBody a = bodies::load_body(o.a), b = bodies::load_body(o.b);
   note(globals, a.notes);
   note(globals, b.notes);
-  const Scene scene{a.rep, b.rep, pose};
-  if (o.pair.empty()) {
-    const WalkExplanation e = explain_walk(scene.a, {}, scene.b, pose);
-    print(o.json ? one_line(as_json(e)) : as_text(e));
-    return kOk;
-  }
-  const PairExplanation e =
-      explain_pair(scene.a, {}, scene.b, pose, {SimplexId(o.pair[0]), SimplexId(o.pair[1])});
-  if (!o.picture.empty()) {
-    io::make_folder(std::filesystem::path(o.picture).parent_path().string());
-    run::draw_pair(scene.a, {}, scene.b, pose, e, o.picture);
-  }
-  print(o.json ? one_line(as_json(e, scene)) : as_text(e, scene));
-  return kOk;
+  return explain(o, {a.rep, b.rep, {}, pose});
 }
 
 Command add_why(CLI::App& root, const Globals& globals) {
   CLI::App* app =
       root.add_subcommand("why", "Tell why two faces are in an answer, or are not, or why bodies are apart");
   const auto o = std::make_shared<WhyOptions>();
-  app->add_option("A", o->a, "Mesh or .lrb file; does not move")->required();
-  app->add_option("B", o->b, "Mesh or .lrb file; the pose is applied to it")->required();
+  auto* a = app->add_option("A", o->a, "Mesh or .lrb file; does not move");
+  app->add_option("B", o->b, "Mesh or .lrb file; the pose is applied to it");
   auto* poses = app->add_option("--poses", o->poses, "File with poses, as for `query` [B stays in place]");
   app->add_option("--pose", o->pose, "Number of the pose in the file, from 0")
       ->needs(poses)
       ->capture_default_str();
-  auto* pair =
-      app->add_option("--pair", o->pair, "A simplex of A and one of B, as `query --pairs` numbers them")
-          ->delimiter(',')
-          ->expected(2)
-          ->type_name("I,J");
-  app->add_option("-o,--output", o->picture, "Draw the two faces with what is about them to this picture")
-      ->needs(pair)
+  auto* run = app->add_option("--run", o->run, "A run's folder or trace, in the place of A and B")
+                  ->excludes(a)
+                  ->excludes(poses)
+                  ->type_name("DIR");
+  app->add_option("--step", o->step, "Number of the run's time step [the last]")->needs(run)->type_name("N");
+  app->add_option("--pair", o->pair, "A simplex of A and one of B, as `query --pairs` numbers them")
+      ->delimiter(',')
+      ->expected(2)
+      ->type_name("I,J");
+  app->add_option("-o,--output", o->picture,
+                  "Draw the two faces with what is about them, or without --pair what parts the bodies")
       ->type_name("FILE.png");
   app->add_flag("--json", o->json, "Print one JSON object");
   return {app, [o, &globals] { return run_why(*o, globals); }};

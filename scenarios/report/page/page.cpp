@@ -198,11 +198,16 @@ std::string libraries(const Page& page) {
 std::string scene_scripts(const Page& page) {
   std::string out;
   if (page.scene.empty()) return out;
-  for (const char* name :
-       {"packed",       "scene_body",     "scene_events", "scene_wrappers", "scene_words",  "scene_selection",
-        "scene_filter", "scene_table",    "scene_form",   "scene_panel",    "scene_counts", "scene_colours",
-        "scene_meshes", "scene_bodyview", "scene_marks",  "scene_legend",   "scene_camera", "scene_pick",
-        "scene_view",   "scene_time",     "scene_keys",   "scene_controls", "scene"})
+  for (const char* name : {"packed",        "scene_dom",          "scene_body",
+                           "scene_events",  "scene_explanations", "scene_wrappers",
+                           "scene_words",   "scene_selection",    "scene_filter",
+                           "scene_table",   "scene_form",         "scene_panel",
+                           "scene_why",     "scene_work",         "scene_counts",
+                           "scene_colours", "scene_meshes",       "scene_bodyview",
+                           "scene_marks",   "scene_why_marks",    "scene_legend",
+                           "scene_camera",  "scene_pick",         "scene_view",
+                           "scene_time",    "scene_keys",         "scene_controls",
+                           "scene"})
     out += io::embedded_file(name + std::string(".js"));
   return out;
 }

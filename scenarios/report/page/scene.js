@@ -19,7 +19,9 @@ function startScene() {
   const filter = new EventFilter(),
     table = new EventTable(events, selection, filter),
     form = new FilterForm(events, filter, table);
-  const view = openView(scene, selection, wrappers),
+  const work = new WorkIcicle(scene.work, events, filter, form, selection);
+  const why = new WhyPanel(new Explanations(scene.why), events, selection);
+  const view = openView(scene, selection, wrappers, why),
     controls = view ? new ViewControls(view, selection) : null;
   byId("thinned").textContent = scene.thinned;
   byId("thinned").hidden = !scene.thinned;
@@ -36,12 +38,12 @@ function startScene() {
     asked = /^#e(\d+)$/.exec(location.hash);
   selection.goTo(events.at(asked ? Number(asked[1]) : first));
   if (view) view.frameAll(VIEW_FROM);
-  return { scene, events, selection, wrappers, timeline, table, filter, form, panel, view, controls };
+  return { scene, events, selection, wrappers, timeline, table, filter, form, panel, why, work, view, controls };
 }
 
 /** Returns the view; null, with the reason on the page, where there can be none. Frames are then what
     there is to see. */
-function openView(scene, selection, wrappers) {
+function openView(scene, selection, wrappers, why) {
   const no = (reason) => {
     byId("stage").classList.add("without-view");
     byId("no-view").textContent = reason;
@@ -58,7 +60,7 @@ function openView(scene, selection, wrappers) {
   if (scene.dim === 2) return no(`These bodies lie in the plane: there is nothing to turn.${frames}`);
   if (!webglWorks())
     return no(`This browser has no WebGL, which the view in three dimensions needs.${frames}`);
-  return new SceneView(scene, selection, wrappers);
+  return new SceneView(scene, selection, wrappers, why);
 }
 
 function webglWorks() {

@@ -22,6 +22,7 @@ class ViewControls {
     byId("ghost").onclick = () => this.toggle("ghost");
     byId("lids").onclick = () => this.toggle("lids");
     byId("isolate").onclick = byId("picked-isolate").onclick = () => this.isolatePicked();
+    byId("proof").onclick = () => this.toggle("why");
     byId("orthographic").onclick = () => this.orthographic();
     byId("frame-all").onclick = () => view.frameAll();
     byId("frame-it").onclick = byId("picked-frame").onclick = () => view.frameSelection();
@@ -39,6 +40,7 @@ class ViewControls {
       ["lids", now.lids],
       ["isolate", Boolean(now.isolate)],
       ["orthographic", camera.orthographic],
+      ["proof", now.why],
     ])
       byId(id).setAttribute("aria-pressed", on);
     byId("isolate").disabled = !now.isolate && !(picked && picked.region !== NONE);
@@ -89,18 +91,10 @@ class ViewControls {
   }
 
   async copyCamera() {
-    const text = JSON.stringify(this.view.camera.json()),
-      box = byId("camera-json");
-    box.value = text;
+    const text = JSON.stringify(this.view.camera.json());
+    byId("camera-json").textContent = text;
     byId("camera").hidden = false;
-    let copied = true;
-    try {
-      await navigator.clipboard.writeText(text);
-    } catch {
-      // pages from disk may have no clipboard
-      box.select();
-      copied = document.execCommand("copy");
-    }
+    const copied = await copyText(text, byId("camera-json"));
     byId("camera-note").textContent =
       `${copied ? "Copied. " : ""}Put it into "frames": {"views": [...]} of a scenario.`;
   }
@@ -118,6 +112,7 @@ class ViewControls {
       o: () => this.orthographic(),
       f: (shift) => (shift ? view.frameAll() : view.frameSelection()),
       v: () => this.copyCamera(),
+      y: () => this.toggle("why"),
       "+": () => view.camera.zoom(1.2),
       "=": () => view.camera.zoom(1.2),
       "-": () => view.camera.zoom(1 / 1.2),

@@ -12,6 +12,10 @@ class Events {
     this.kinds = json.kinds.map((k) => ({ name: k.name, colour: k.colour, a: role(k.a), b: role(k.b) }));
     this.outcome = unpack(json.events.outcomes.numbers);
     this.outcomes = json.events.outcomes.words;
+    this.dim = json.dim;
+    this.engine = json.engine;
+    this.frame = { origin: json.origin, unit: json.unit }; // x_world = origin + unit * x
+    this.work = unpack(json.events.work); // number of the part of the work that the event is; NONE: none
     this.phases = json.phases;
     this.relations = json.relations;
     this.stepNumbers = unpack(json.steps.index);

@@ -10,6 +10,7 @@ class EventFilter {
     this.region = NONE;
     this.leastLevel = 0;
     this.mostLevel = Infinity;
+    this.work = null; // {name, phase, parts: numbers of parts of the work}; null: any
     this.pair = [NONE, NONE]; // faces of A and B; NONE: any
   }
 
@@ -44,6 +45,7 @@ class EventFilter {
     const out = [],
       { side, region, leastLevel, mostLevel, pair } = this;
     if (this.kind >= 0) out.push((i) => events.kind[i] === this.kind);
+    if (this.work) out.push((i) => this.work.parts.has(events.work[i]));
     if (side >= 0) out.push((i) => events.concerns(i, side));
     if (region !== NONE) out.push((i) => this.concernsRegion(events, i));
     if (leastLevel > 0 || mostLevel < Infinity)

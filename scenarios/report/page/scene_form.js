@@ -2,6 +2,7 @@
 class FilterForm {
   constructor(events, filter, table) {
     Object.assign(this, { events, filter, table });
+    this.listeners = []; // told when another part of the work is listed
     const kind = byId("filter-kind"),
       present = new Set(events.kind);
     events.kinds.forEach((k, i) => {
@@ -24,12 +25,23 @@ class FilterForm {
     this.filter.region = /^\d+$/.test(value("region")) ? Number(value("region")) : NONE;
     valid("level", this.filter.setLevel(value("level")));
     valid("pair", this.filter.setPair(value("pair")));
+    byId("filter-work").hidden = !this.filter.work;
+    byId("filter-work").textContent = this.filter.work ? `part: ${this.filter.work.name}` : "";
     this.table.refilter();
+    for (const listener of this.listeners) listener();
   }
 
   clear() {
+    this.filter.work = null;
     byId("filter-kind").value = byId("filter-side").value = "-1";
     for (const field of ["region", "level", "pair"]) byId(`filter-${field}`).value = "";
+    this.read();
+  }
+
+  /** Lists the events of a part of the work; null: all. */
+  showWork(work) {
+    this.clear();
+    this.filter.work = work;
     this.read();
   }
 

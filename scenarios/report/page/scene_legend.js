@@ -2,12 +2,37 @@
 class Legend {
   constructor(view) {
     this.view = view;
+    this.items = [];
+    this.more = [];
+  }
+
+  /** Adds what is pointed out at the moment: [[colour, words]]. */
+  also(items) {
+    this.more = items.map(([colour, text]) => [Legend.css(colour), text, ""]);
+    this.write();
+  }
+
+  static css(c) {
+    return `rgb(${c.map((x) => Math.round(255 * x)).join(" ")})`;
+  }
+
+  write() {
+    byId("legend").replaceChildren(
+      ...[...this.items, ...this.more].map(([colour, text, rim]) => {
+        const item = document.createElement("span"),
+          dot = document.createElement("i");
+        dot.style.background = colour;
+        if (rim) dot.style.outline = `1.5px solid ${rim}`;
+        item.append(dot, text);
+        return item;
+      }),
+    );
   }
 
   /** `key`: the scale of the colours; null: bodies have one colour each. */
   show(key) {
     const { colours, bodies, now } = this.view,
-      css = (c) => `rgb(${c.map((x) => Math.round(255 * x)).join(" ")})`,
+      { css } = Legend,
       items = [];
     bodies.forEach((b) => {
       const name = bodies.length > 1 ? `${SIDES[b.side]} ${b.name}` : b.name,
@@ -28,16 +53,8 @@ class Legend {
       [css(colours.underTest), "pair under test", ""],
       [css(colours.selected), "selected", ""],
     );
-    byId("legend").replaceChildren(
-      ...items.map(([colour, text, rim]) => {
-        const item = document.createElement("span"),
-          dot = document.createElement("i");
-        dot.style.background = colour;
-        if (rim) dot.style.outline = `1.5px solid ${rim}`;
-        item.append(dot, text);
-        return item;
-      }),
-    );
+    this.items = items;
+    this.write();
     this.showScale(key);
   }
 

@@ -64,9 +64,13 @@ class FaceMesh {
     geometry.setDrawRange(0, n);
   }
 
-  /** Returns the face that a hit of a ray is on. */
-  faceAt(hit) {
-    return this.faceOf[(hit.face.a / 3) | 0];
+  /** Returns the face and the simplex that a hit of a ray is on. */
+  at(hit) {
+    const triangle = (hit.face.a / 3) | 0,
+      face = this.faceOf[triangle];
+    let first = triangle;
+    while (first > 0 && this.faceOf[first - 1] === face) first--;
+    return { face, simplex: this.body.firstSimplex[face] + triangle - first };
   }
   dispose() {
     this.mesh.geometry.dispose();

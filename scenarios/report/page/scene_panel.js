@@ -13,28 +13,6 @@ class Panel {
     return this.bodies.length > 1 ? ` of ${SIDES[side]}` : "";
   }
 
-  button(text, action) {
-    const button = document.createElement("button");
-    button.type = "button";
-    button.className = "text";
-    button.textContent = text;
-    button.onclick = action;
-    return button;
-  }
-
-  fill(list, rows) {
-    list.replaceChildren(
-      ...rows.flatMap(([term, value, title]) => {
-        const dt = document.createElement("dt"),
-          dd = document.createElement("dd");
-        dt.textContent = term;
-        if (title) dt.title = title;
-        dd.append(value);
-        return [dt, dd];
-      }),
-    );
-  }
-
   showEvent() {
     const i = this.selection.event,
       events = this.events,
@@ -51,7 +29,7 @@ class Panel {
     if (cause >= 0)
       rows.push([
         "cause",
-        this.button(`event ${digits(events.id(cause))}`, () => this.selection.goTo(cause)),
+        textButton(`event ${digits(events.id(cause))}`, () => this.selection.goTo(cause)),
       ]);
     if (this.wrappers)
       rows.push([
@@ -60,12 +38,12 @@ class Panel {
           .map((n, s) => `${this.bodies.length > 1 ? SIDES[s] + " " : ""}${digits(n)}`)
           .join(" + ") + " faces",
       ]);
-    this.fill(byId("event-facts"), rows);
+    fillList(byId("event-facts"), rows);
     const parts = [
       ...events
         .faces(i)
         .map((f) =>
-          this.button(this.bodies[f.side].faceWords(f.face) + this.name(f.side), () =>
+          textButton(this.bodies[f.side].faceWords(f.face) + this.name(f.side), () =>
             this.selection.pickFace(f.side, f.face),
           ),
         ),
@@ -73,7 +51,7 @@ class Panel {
         .regions(i)
         .filter((r) => this.bodies[r.side].complete)
         .map((r) =>
-          this.button(`region ${digits(r.region)}${this.name(r.side)}`, () =>
+          textButton(`region ${digits(r.region)}${this.name(r.side)}`, () =>
             this.selection.pickRegion(r.side, r.region),
           ),
         ),
@@ -90,7 +68,7 @@ class Panel {
       hasFace = picked.face !== NONE;
     const name = hasFace ? body.faceWords(picked.face) : `region ${digits(picked.region)}`;
     byId("picked-title").textContent = name[0].toUpperCase() + name.slice(1) + this.name(picked.side);
-    this.fill(byId("picked-facts"), [
+    fillList(byId("picked-facts"), [
       ...(hasFace ? this.faceRows(body, picked.face) : []),
       ...this.regionRows(body, picked.region),
       ...this.countRows(body, picked),
@@ -112,14 +90,14 @@ class Panel {
     const parent = body.parent[region],
       side = body.side;
     return [
-      ["region", this.button(digits(region), () => this.selection.pickRegion(side, region))],
+      ["region", textButton(digits(region), () => this.selection.pickRegion(side, region))],
       ["layer", body.layer[region], "pass of the builder that made the region; 0 lies on the solid"],
       ["depth", body.depth(region), "number of steps to the outside, along parents"],
       [
         "parent",
         parent === NONE
           ? "the outside"
-          : this.button(digits(parent), () => this.selection.pickRegion(side, parent)),
+          : textButton(digits(parent), () => this.selection.pickRegion(side, parent)),
       ],
       ["lids", body.lids(region).length, "faces that hide the region"],
       ["floor", body.floor(region).length, "faces that the region hides"],

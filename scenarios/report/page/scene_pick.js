@@ -10,7 +10,7 @@ class Picker {
     canvas.addEventListener("click", (e) => {
       if (down && Math.hypot(e.clientX - down[0], e.clientY - down[1]) > 4) return; // the view was turned
       const hit = this.under(e.clientX, e.clientY, e.altKey);
-      if (hit) selection.pickFace(hit.side, hit.face);
+      if (hit) selection.pickFace(hit.side, hit.face, hit.simplex);
       else selection.pick(null);
     });
     canvas.addEventListener("dblclick", (e) => {
@@ -19,7 +19,7 @@ class Picker {
     });
   }
 
-  /** Returns the face under a point of the screen, {side, face}; `through`: lids are looked through. */
+  /** Returns the face under a point of the screen, {side, face, simplex}; `through`: lids are looked through. */
   under(x, y, through = false) {
     const { views, now } = this.view;
     const pieces = views.flatMap((v) => v.pieces);
@@ -44,6 +44,6 @@ class Picker {
     );
     if (!hit) return null;
     const faces = hit.object.userData.faces;
-    return { side: faces.body.side, face: faces.faceAt(hit) };
+    return { side: faces.body.side, ...faces.at(hit) };
   }
 }

@@ -6,6 +6,7 @@ class Selection {
     this.event = 0;
     // {side, face, region}: face NONE: a region as a whole; region NONE: a face that no region hides.
     this.picked = null;
+    this.chosen = [NONE, NONE]; // simplices of A and B that were picked one after the other
     this.listeners = [];
   }
 
@@ -16,6 +17,7 @@ class Selection {
   /** Moves to an event, by its index, where frames and charts stand already. */
   standAt(event) {
     this.event = Math.max(0, Math.min(this.events.count - 1, event));
+    this.chosen = [NONE, NONE];
     this.tell("event");
   }
   /** Moves to an event; frames and charts follow. */
@@ -24,13 +26,26 @@ class Selection {
     showEvent(this.events.id(this.event), this.events.stepNumber(this.event));
   }
 
-  pickFace(side, face) {
-    this.pick({ side, face, region: this.events.bodies[side].regionOf(face) });
+  /** `simplex`: the one of the face that is meant; without it the first. */
+  pickFace(side, face, simplex) {
+    const body = this.events.bodies[side],
+      meant = simplex === undefined ? body.firstSimplex[face] : simplex;
+    this.chosen = this.chosen.map((s, i) => (i !== side ? s : body.isReal(face) ? meant : NONE));
+    this.pickOnly({ side, face, region: body.regionOf(face) });
   }
   pickRegion(side, region) {
     this.pick({ side, face: NONE, region });
   }
+  /** Picks a simplex of A and one of B. */
+  choose(simplices) {
+    this.chosen = simplices.slice();
+    this.pickOnly(null);
+  }
   pick(picked) {
+    this.chosen = [NONE, NONE];
+    this.pickOnly(picked);
+  }
+  pickOnly(picked) {
     this.picked = picked;
     this.tell("pick");
   }

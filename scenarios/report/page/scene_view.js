@@ -1,6 +1,6 @@
 // ---- the view in three dimensions: draws what is selected, and selects what is clicked
 class SceneView {
-  constructor(scene, selection, wrappers) {
+  constructor(scene, selection, wrappers, why) {
     Object.assign(this, { selection, wrappers, events: selection.events, bodies: selection.events.bodies });
     this.canvas = byId("view-canvas");
     this.colours = new Colours(scene.colours);
@@ -15,6 +15,7 @@ class SceneView {
       by: "kind",
       per: "face",
       scope: "run",
+      why: true,
     };
     this.renderer = new THREE.WebGLRenderer({ canvas: this.canvas, antialias: true, alpha: true });
     this.renderer.setPixelRatio(Math.min(2, window.devicePixelRatio || 1));
@@ -26,6 +27,7 @@ class SceneView {
     this.views.forEach((v) => this.stage.add(v.group));
     this.marks = new Marks(this.views, this.colours, this.size);
     this.legend = new Legend(this);
+    this.whyMarks = new WhyMarks(this, why);
     this.keys = {};
     selection.listeners.push(() => this.redraw());
     new ResizeObserver(() => this.resize()).observe(this.canvas.parentElement);
@@ -64,6 +66,7 @@ class SceneView {
     this.shape();
     this.paint(); // what shape() has made
     this.mark();
+    this.whyMarks.draw();
     this.camera.prepare(this.reach().radius);
     this.renderer.render(this.stage, this.camera.camera);
     this.circle();
@@ -71,7 +74,7 @@ class SceneView {
 
   /** Puts a ring around the faces that the event compares, where they are too small to be noticed. */
   circle() {
-    const faces = this.events.faces(this.selection.event),
+    const faces = this.comparedFaces(),
       ring = byId("ring"),
       ball = this.ballOfFaces(faces);
     const radius = (ball.radius * this.size.y) / (2 * this.camera.halfHeight),
@@ -171,7 +174,7 @@ class SceneView {
     const { events, colours } = this,
       i = this.selection.event,
       kind = events.kind[i],
-      test = events.test(i);
+      compared = this.comparedFaces();
     const contacts = this.contacts();
     const counting = COUNTERS.includes(this.now.by); // then the faces' own colours are to be seen
     this.marks.set(
@@ -180,7 +183,8 @@ class SceneView {
       counting ? [] : contacts,
       { colour: colours.contact },
     );
-    this.marks.set("tested", `${test} ${kind === events.CONTACT}`, test >= 0 ? events.faces(test) : [], {
+    const key = compared.map((f) => f.face);
+    this.marks.set("tested", `${key} ${kind === events.CONTACT}`, compared, {
       colour: kind === events.CONTACT ? colours.contact : colours.underTest,
       opacity: 0.85,
       over: true,
@@ -201,6 +205,15 @@ class SceneView {
       width: 2.5,
       over: p && p.face !== NONE,
     });
+  }
+
+  /** Returns the two faces that were chosen, or else those that the event is about: [{side, face}]. */
+  comparedFaces() {
+    const { chosen, event } = this.selection;
+    if (chosen.every((s) => s !== NONE))
+      return chosen.map((s, side) => ({ side, face: this.bodies[side].faceOfSimplex(s) }));
+    const test = this.events.test(event);
+    return test >= 0 ? this.events.faces(test) : [];
   }
 
   /** Returns the faces in contact so far in this step, each once: [{side, face}]. */
@@ -246,16 +259,15 @@ class SceneView {
 
   /** Frames what is selected, else what the event is about, else everything. */
   frameSelection() {
-    const picked = this.selection.picked,
-      i = this.selection.event,
-      test = this.events.test(i);
+    const { picked, event } = this.selection,
+      compared = this.comparedFaces();
     const faces = picked
       ? picked.face !== NONE
         ? [picked]
         : this.collector(picked)
-      : test >= 0
-        ? this.events.faces(test)
-        : this.events.regions(i).flatMap((r) => this.collector(r));
+      : compared.length
+        ? compared
+        : this.events.regions(event).flatMap((r) => this.collector(r));
     if (!faces.length) return this.frameAll();
     const ball = this.ballOfFaces(faces);
     this.camera.lookAt(ball.centre, Math.max(ball.radius * 2.2, 0.02 * this.reach().radius));

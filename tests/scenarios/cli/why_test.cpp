@@ -65,6 +65,47 @@ TEST_CASE("why: bodies that are apart") {
   CHECK(render::read_png(bodies.folder / "apart.png").image.width() == 1200);
 }
 
+TEST_CASE("why: what parts bodies that are apart") {
+  const Bodies bodies;
+  CHECK(bodies.why({"--pose", "1", "-o", "plane.png"}).out.find("has all of A on one side") !=
+        std::string::npos);
+  const auto j = nlohmann::json::parse(bodies.why({"--pose", "1", "--json"}).out);
+  CHECK(j["plane"]["gap"] > 5);
+  CHECK(render::read_png(bodies.folder / "plane.png").image.width() == 1200);
+  CHECK(j["plane"]["normal"][0] == doctest::Approx(1));
+}
+
+TEST_CASE("why: a step of a run, by the run's folder or its trace") {
+  const Bodies bodies;
+  REQUIRE(run(bodies.folder, {"--quiet", "collide", "ball.obj", "ring.obj", "--poses", "poses.txt", "-o",
+                              "out", "--most", "1"})
+              .code == 0);
+  const auto why = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), {"--quiet", "why"});
+    return run(bodies.folder, more);
+  };
+  for (const char* place : {"out", "out/trace.json"}) {
+    CHECK(why({"--run", place, "--step", "0", "--pair", "3,4", "--json"}).out ==
+          bodies.why({"--pair", "3,4", "--json"}).out);
+    CHECK(why({"--run", place, "--json"}).out == bodies.why({"--pose", "1", "--json"}).out);  // the last step
+  }
+  const auto refused = [&](const std::vector<std::string>& more, const std::string& what) {
+    const Outcome o = why(more);
+    CHECK(o.code == 2);
+    CHECK(o.error_lines() == 1);
+    CAPTURE(o.err);
+    CHECK(o.err.find(what) != std::string::npos);
+  };
+  refused({"--run", "out", "--step", "2"}, "has no step 2; its steps go from 0 to 1");
+  refused({"--run", "nowhere"}, "nowhere");
+  refused({"--run", "out", "ball.obj", "ring.obj"}, "--run");
+  refused({"--step", "1"}, "--run");
+  refused({"ball.obj"}, "expected two bodies, A and B, or --run");
+  std::filesystem::copy_file(bodies.folder / "out/b.lrb", bodies.folder / "out/a.lrb",
+                             std::filesystem::copy_options::overwrite_existing);
+  refused({"--run", "out"}, "the body beside it is not the one that was recorded as A");
+}
+
 TEST_CASE("why: bad input is refused in one line, and nothing is written") {
   const Bodies bodies;
   const auto refused = [&](std::vector<std::string> more, const std::string& what) {
@@ -77,7 +118,7 @@ TEST_CASE("why: bad input is refused in one line, and nothing is written") {
   };
   refused({"--pair", "0,99999"}, "no simplex 99999 of B: there are ");
   refused({"--pair", "0,0", "--pose", "2"}, "has 2 poses, numbered from 0; there is no pose 2");
-  refused({}, "--pair");
+  refused({}, "-o: the bodies meet");
   refused({"--pair", "0"}, "--pair");
   refused({"--pair", "-1,0"}, "--pair");
 }

@@ -1,6 +1,8 @@
 #include "scenarios/run/scene_json.hpp"
 
 #include <algorithm>
+#include <array>
+#include <set>
 
 #include <doctest/doctest.h>
 #include <nlohmann/json.hpp>
@@ -144,7 +146,7 @@ TEST_CASE("boxes of tree nodes: whole depths, as many as fit") {
 
 TEST_CASE("a run as data of its page: bodies, steps and events, and nothing said where nothing is left out") {
   const run::Recording r = rocks_that_meet();
-  const json scene = json::parse(run::scene_json(run_of(r), "trace.json"));
+  const json scene = json::parse(run::scene_json(run_of(r), {"trace.json", ""}));
   CHECK(scene["bodies"].size() == 2);
   CHECK(scene["bodies"][0]["faces"] == r.bodies[0].rep.face_count());
   CHECK(scene["steps"]["count"] == r.trace.steps.size());
@@ -161,11 +163,55 @@ TEST_CASE("a run as data of its page says what it left out, and where that is") 
   run::SceneLimits limits;
   limits.events = 100;
   limits.faces = 10;
-  const json scene = json::parse(run::scene_json(run_of(r), "trace.json.gz", limits));
+  const json scene = json::parse(run::scene_json(run_of(r), {"trace.json.gz", ""}, limits));
   CHECK(scene["events"]["count"] <= 100);
   CHECK(scene["events"]["id"] != "");
   const std::string thinned = scene["thinned"], large = scene["tooLarge"];
   CHECK(thinned.find("trace.json.gz has them all") != std::string::npos);
   CHECK(large.find("a page takes 10") != std::string::npos);
   CHECK_FALSE(scene["bodies"][0].contains("geometry"));
+}
+
+TEST_CASE("a run as data of its page has no chart of the work where pairs of nodes were not recorded") {
+  const run::Recording r = rocks_that_meet();
+  CHECK(json::parse(run::scene_json(run_of(r), {"trace.json", ""}))["work"].is_null());
+}
+
+TEST_CASE("a run as data of its page explains each pair of a step once, and each step without any") {
+  const run::Recording r = rocks_that_meet();
+  const json why = json::parse(run::scene_json(run_of(r), {"trace.json", "lrbscope why --run x"}))["why"];
+  std::set<std::array<std::uint32_t, 3>> pairs;
+  std::size_t empty = 0;
+  for (std::uint32_t s = 0; s < r.trace.steps.size(); ++s) {
+    empty += r.trace.steps[s].result.pair_count == 0 ? 1 : 0;
+    for (const trace::Event& e : r.trace.events_of(s))
+      if (e.kind == EventKind::face_test) pairs.insert({s, e.a, e.b});
+  }
+  REQUIRE(empty > 0);
+  CHECK(why["pairs"]["count"] == pairs.size());
+  CHECK(why["steps"].size() == empty);
+  CHECK(why["cut"] == "");
+  CHECK(why["command"] == "lrbscope why --run x");
+  for (const json& step : why["steps"]) {
+    CHECK(step["relation"] == "separate");
+    CHECK((step["roots"]["gap"] > 0 || !step["boxes"].is_null() || step["facePairs"] > 0));
+    if (!step["plane"].is_null()) CHECK(step["plane"]["gap"] > 0);
+  }
+}
+
+TEST_CASE("a run as data of its page says how many pairs it explains where it leaves some out") {
+  const run::Recording r = rocks_that_meet();
+  run::SceneLimits limits;
+  limits.explained.pairs = 5;
+  limits.explained.steps = 1;
+  const json why = json::parse(run::scene_json(run_of(r), {"trace.json", ""}, limits))["why"];
+  CHECK(why["pairs"]["count"] == 5);
+  CHECK(why["steps"].size() == 1);
+  const std::string cut = why["cut"];
+  CHECK(cut.rfind("This page explains 5 of the ", 0) == 0);
+}
+
+TEST_CASE("a run as data of its page explains nothing that the complete query does not answer") {
+  const run::Recording r = rocks_that_meet(WrapperMode::unregularised);
+  CHECK(json::parse(run::scene_json(run_of(r), {"trace.json", ""}))["why"].is_null());
 }

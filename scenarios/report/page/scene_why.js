@@ -1,0 +1,236 @@
+// ---- beside the view: why the two faces of an event, or two that were clicked, come out as they do; and for a
+// step without contact what parts the bodies
+/** Returns a number with four digits. */
+const short = (x) => {
+  const text = Math.abs(x) >= 1e6 ? x.toExponential(2) : String(Number(x.toPrecision(4)));
+  return text.replace("e+", "e").replace("-", "\u2212");
+};
+
+class WhyPanel {
+  constructor(explanations, events, selection) {
+    Object.assign(this, { explanations, events, selection });
+    this.listeners = []; // told when what is explained, or the row that is pointed out, has changed
+    this.now = null; // {kind: "pair" | "step", key, found}
+    this.row = -1; // of the way, whose boxes the view shows
+    byId("why-copy").onclick = () => this.copy();
+    byId("why-way").addEventListener("click", (e) => this.point(e.target.closest("[data-row]")));
+    if (!explanations.none) selection.listeners.push(() => this.show());
+  }
+
+  tell() {
+    for (const listener of this.listeners) listener();
+  }
+
+  /** Returns the two simplices that are to be explained; null: none. */
+  asked() {
+    const { events, selection } = this,
+      chosen = selection.chosen;
+    if (chosen.every((s) => s !== NONE)) return chosen;
+    const test = events.test(selection.event);
+    if (test < 0) return null;
+    const simplices = [NONE, NONE];
+    for (const s of events.about(test, "simplex")) simplices[s.side] = s.number;
+    return simplices.some((s) => s === NONE) ? null : simplices;
+  }
+
+  show() {
+    const { events, selection, explanations } = this,
+      step = events.step(selection.event),
+      simplices = this.asked(),
+      parting = simplices ? null : explanations.step(step);
+    this.row = -1;
+    const found = simplices ? explanations.pair(step, simplices) : parting;
+    this.now = found && {
+      kind: simplices ? "pair" : "step",
+      key: `${step} ${simplices || ""}`,
+      found,
+    };
+    byId("why").hidden = !simplices && !parting;
+    if (simplices) this.showPair(simplices, found);
+    else if (parting) this.showStep(parting);
+    this.command = explanations.commandFor(events.stepNumber(selection.event), simplices);
+    byId("why-command").textContent = this.command;
+    byId("why-ask").hidden = !this.command;
+    byId("why-copied").textContent = "";
+    this.tell();
+  }
+
+  title(text) {
+    const engine = this.events.engine ? ", by lrbscope\u2019s own walk" : "";
+    byId("why-title").textContent = text + engine;
+  }
+
+  // -- a pair
+  showPair(simplices, e) {
+    const { events } = this;
+    const names = simplices.map((s, side) => {
+      const body = events.bodies[side];
+      return body.complete
+        ? `${body.faceWords(body.faceOfSimplex(s))} of ${SIDES[side]}`
+        : `simplex ${digits(s)} of ${SIDES[side]}`;
+    });
+    this.title(`Why: ${names.join(", ")}`);
+    byId("why-note").textContent = e
+      ? ""
+      : `${this.explanations.cut || "Not among the pairs that were compared one by one here."} ` +
+        "The command below explains it.";
+    byId("why-verdict").textContent = e
+      ? `${["The faces are apart", "The faces touch", "The faces cross"][e.meet]}. Decided by ${e.by}.`
+      : "";
+    this.showWay(e ? e.rows : []);
+    this.showFacts(e ? this.pairFacts(e) : []);
+    this.showRegions(simplices);
+  }
+
+  pairFacts(e) {
+    const rows = e.corners.map((corners, side) => [
+      `${SIDES[side]}\u2019s corners`,
+      corners
+        .slice(0, this.events.dim)
+        .map(({ distance, exact, inDouble }) => {
+          const where = exact > 0 ? "in front" : exact < 0 ? "behind" : "in it";
+          const wrong = inDouble === exact ? "" : `, where doubles say ${inDouble}`;
+          return `${where}${exact ? ` ${short(Math.abs(distance))}` : ""}${wrong}`;
+        })
+        .join("; "),
+      `On which side of the other face\u2019s ${this.events.dim === 3 ? "plane" : "line"}, exactly, and how far off`,
+    ]);
+    if (e.meet === 0)
+      rows.push(["distance", `${short(e.distance)}, ${short(e.ulps)} ulps`, "Of the largest coordinate"]);
+    else
+      rows.push([
+        "contact",
+        `${["nothing", "a point", "a segment"][e.points.length] || "a polygon"}, ` +
+          e.points.map((p) => `(${this.world(p).map(short).join(", ")})`).join(" to "),
+      ]);
+    return rows;
+  }
+
+  world(p) {
+    return p.map((x, i) => this.events.frame.origin[i] + this.events.frame.unit * x);
+  }
+
+  /** The regions that hide the faces, from the outside inward. */
+  showRegions(simplices) {
+    const lines = simplices.map((s, side) => {
+      const body = this.events.bodies[side],
+        line = document.createElement("p");
+      if (!body.complete) return line;
+      const regions = [];
+      for (let r = body.outer[body.faceOfSimplex(s)]; r !== NONE; r = body.parent[r]) regions.unshift(r);
+      line.className = "parts";
+      const words = regions.length ? `hidden by ${plural(regions.length, "region")}:` : "hidden by no region";
+      line.append(
+        `${SIDES[side]}\u2019s face is ${words} `,
+        ...regions.map((r) =>
+          textButton(
+            digits(r),
+            () => this.selection.pickRegion(side, r),
+            `Region ${digits(r)} of ${SIDES[side]}, layer ${body.layer[r]}`,
+          ),
+        ),
+      );
+      return line;
+    });
+    byId("why-regions").replaceChildren(...lines);
+  }
+
+  // -- a step
+  showStep(e) {
+    this.title("What parts the bodies");
+    byId("why-note").textContent = "";
+    byId("why-regions").replaceChildren();
+    byId("why-verdict").textContent = this.stepWords(e);
+    this.showWay([]);
+    const pairs = e.depths.reduce((n, [all]) => n + all, 0);
+    this.showFacts([
+      ["boxes round them", e.roots.gap > 0 ? `${short(e.roots.gap)} apart` : `overlap by ${short(-e.roots.gap)}`],
+      ["pairs of nodes", `${digits(pairs)}, to depth ${e.depths.length - 1}`],
+      [
+        "pairs of faces",
+        e.facePairs > 0
+          ? `${digits(e.facePairs)} whose boxes meet; planes part ${digits(e.facePairs - e.left)}, ` +
+            `${digits(e.left)} are compared`
+          : "none: the walk did not come so far",
+      ],
+      ...(e.boxes ? [["nearest boxes", this.boxWords(e.boxes)]] : []),
+      ...(e.plane
+        ? [["plane", `across (${e.plane.normal.map(short).join(", ")}), gap ${short(e.plane.gap)}`]]
+        : []),
+      ...(e.near ? [["nearest faces", this.nearButton(e.near)]] : []),
+    ]);
+  }
+
+  stepWords(e) {
+    const inside = e.relation !== "separate";
+    if (e.plane)
+      return `Apart: a plane has all of A on one side and all of B on the other, ${short(e.plane.gap)} between them.`;
+    const what = inside
+      ? "No two faces meet, though one body is inside the other"
+      : "Apart, though no plane was found that has one body on each side";
+    const last =
+      e.left > 0
+        ? ", or in faces that planes and tests part"
+        : e.facePairs > 0
+          ? ", or in faces that planes part"
+          : "";
+    return `${what}: the walk ended in pairs of boxes that are apart${last}.`;
+  }
+
+  boxWords(boxes) {
+    const of = boxes.ofFaces ? "faces in nodes" : "nodes";
+    return `${of} ${digits(boxes.a)} of A and ${digits(boxes.b)} of B, ${short(boxes.gap)} apart along ${boxes.axis}`;
+  }
+
+  nearButton(near) {
+    return textButton("why they do not meet", () => this.selection.choose(near));
+  }
+
+  // -- the way from the roots, and facts
+  showWay(rows) {
+    byId("why-table").hidden = !rows.length;
+    byId("why-way").replaceChildren(
+      ...rows.map((row, k) => {
+        const line = document.createElement("tr"),
+          cell = (content, numeric) => {
+            const td = document.createElement("td");
+            if (numeric) td.className = "n";
+            td.append(content);
+            line.append(td);
+          };
+        const button = textButton(row.nodes.map(digits).join(", "), null, "Show the two boxes");
+        button.dataset.row = k;
+        button.setAttribute("aria-pressed", false);
+        if (row.faces) cell("the faces\u2019 own");
+        else cell(button);
+        cell(short(row.gap), true);
+        cell(row.axis);
+        return line;
+      }),
+    );
+  }
+
+  /** Points out the boxes of a row, or no longer. */
+  point(button) {
+    if (!button) return;
+    const row = Number(button.dataset.row);
+    this.row = this.row === row ? -1 : row;
+    for (const b of byId("why-way").querySelectorAll("[data-row]"))
+      b.setAttribute("aria-pressed", Number(b.dataset.row) === this.row);
+    this.tell();
+  }
+
+  /** Returns the nodes of the row that is pointed out. */
+  nodes() {
+    if (this.row < 0 || !this.now || this.now.kind !== "pair") return [];
+    return this.now.found.rows[this.row].nodes.map((number, side) => ({ side, number }));
+  }
+
+  showFacts(rows) {
+    fillList(byId("why-facts"), rows);
+  }
+
+  async copy() {
+    byId("why-copied").textContent = (await copyText(this.command, byId("why-command"))) ? "Copied." : "";
+  }
+}
