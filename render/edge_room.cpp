@@ -11,8 +11,13 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Returns a triangle's lowest altitude on the screen; nothing if it reaches behind the eye.
-std::optional<double> altitude(const DrawTriangle& t, const Projection& projection) {
+/// What a triangle takes of the screen.
+struct OnScreen {
+  double altitude, area;
+};
+
+/// Returns a triangle's lowest altitude on the screen, and its area; nothing if it reaches behind the eye.
+std::optional<OnScreen> on_screen(const DrawTriangle& t, const Projection& projection) {
   std::array<Eigen::Vector2d, 3> at;
   for (std::size_t i = 0; i < 3; ++i) {
     const auto pixel = projection.to_pixel(t.x[i]);
@@ -22,7 +27,7 @@ std::optional<double> altitude(const DrawTriangle& t, const Projection& projecti
   const Eigen::Vector2d u = at[1] - at[0], v = at[2] - at[0];
   const double twice_area = std::abs(u.x() * v.y() - u.y() * v.x());
   const double longest = std::max({u.norm(), v.norm(), (v - u).norm()});
-  return longest > 0 ? twice_area / longest : 0;
+  return OnScreen{longest > 0 ? twice_area / longest : 0, twice_area / 2};
 }
 
 struct Corner {
@@ -48,7 +53,8 @@ std::vector<double> edge_room(const DrawList& list, const Projection& projection
     const DrawTriangle& t = list.triangles[i];
     if (t.edges == 0) continue;
     // A triangle that comes right up to the eye is large.
-    own[i] = altitude(t, projection).value_or(projection.height());
+    const std::optional<OnScreen> seen = on_screen(t, projection);
+    own[i] = seen ? seen->altitude : projection.height();
     for (const Vector3d& x : t.x) corners.push_back({x, i, t.edge_style});
   }
   std::sort(corners.begin(), corners.end(), [](const Corner& a, const Corner& b) {
@@ -64,6 +70,30 @@ std::vector<double> edge_room(const DrawList& list, const Projection& projection
     for (std::size_t i = first; i < end; ++i) room[corners[i].triangle] += share;
   }
   return room;
+}
+
+std::vector<double> even_edge_room(const DrawList& list, const Projection& projection) {
+  std::vector<std::vector<OnScreen>> styles(list.edge_styles.size());
+  for (const DrawTriangle& t : list.triangles) {
+    if (t.edges == 0) continue;
+    if (const std::optional<OnScreen> seen = on_screen(t, projection)) styles[t.edge_style].push_back(*seen);
+  }
+  std::vector<double> room;
+  for (std::vector<OnScreen>& parts : styles) {
+    std::sort(parts.begin(), parts.end(),
+              [](const OnScreen& x, const OnScreen& y) { return x.altitude > y.altitude; });
+    double all = 0, sum = 0, half = projection.height();
+    for (const OnScreen& p : parts) all += p.area;
+    for (const OnScreen& p : parts) {
+      half = p.altitude;
+      if ((sum += p.area) >= 0.5 * all) break;
+    }
+    room.push_back(half);
+  }
+  std::vector<double> out;
+  out.reserve(list.triangles.size());
+  for (const DrawTriangle& t : list.triangles) out.push_back(t.edges == 0 ? 0 : room[t.edge_style]);
+  return out;
 }
 
 double fade_between(double x, double gone, double full) {

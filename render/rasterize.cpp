@@ -264,7 +264,8 @@ struct Rasterizer::State {
     check_size(options.width * n, options.height * n);
     context.make_current();
     const Projection projection(camera, options.width * n, options.height * n, bounds(list));
-    const ScreenMesh mesh = make_screen_mesh(list, projection, n, options.lighting);
+    const ScreenMesh mesh =
+        make_screen_mesh(list, projection, n * options.unit, options.lighting, options.even_edges);
     resize(options.width * n, options.height * n);
     upload(faces, mesh.faces);
     upload(lines, mesh.lines);
@@ -310,6 +311,29 @@ struct Rasterizer::State {
     }
     return out;
   }
+
+  DepthImage draw_depths(const DrawList& list, const Camera& camera, int w, int h) {
+    check_size(w, h);
+    context.make_current();
+    const Projection projection(camera, w, h, bounds(list));
+    const ScreenMesh mesh = make_screen_mesh(list, projection, 1);
+    const Target target = scene_target(GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, w, h);
+    upload(faces, mesh.faces);
+    begin(target, w, h);
+    gl.UseProgram(id);
+    gl.Enable(GL_DEPTH_TEST);
+    gl.DepthFunc(GL_LESS);
+    draw(faces, mesh.face_layers[static_cast<std::size_t>(Layer::opaque)]);
+    std::vector<float> rows(static_cast<std::size_t>(w) * h);
+    gl.PixelStorei(GL_PACK_ALIGNMENT, 4);
+    gl.ReadPixels(0, 0, w, h, GL_DEPTH_COMPONENT, GL_FLOAT, rows.data());
+    context.check("drawing depths");
+    DepthImage out{w, h, {}};
+    out.depths.reserve(rows.size());
+    for (int y = h - 1; y >= 0; --y)
+      for (int x = 0; x < w; ++x) out.depths.push_back(2 * rows[static_cast<std::size_t>(y) * w + x] - 1);
+    return out;
+  }
 };
 
 Rasterizer::Rasterizer() : state_(std::make_unique<State>()) {}
@@ -325,6 +349,10 @@ Image Rasterizer::draw(const DrawList& list, const Camera& camera, const RasterO
 
 IdImage Rasterizer::ids(const DrawList& list, const Camera& camera, int width, int height, bool translucent) {
   return state_->draw_ids(list, camera, width, height, translucent);
+}
+
+DepthImage Rasterizer::depths(const DrawList& list, const Camera& camera, int width, int height) {
+  return state_->draw_depths(list, camera, width, height);
 }
 
 void draw_labels(Image& image, const DrawList& list, const Camera& camera) {

@@ -19,7 +19,9 @@ struct RasterOptions {
   int supersample = 2;             ///< samples per pixel along each axis, 1 to 4; averaged in integers
   std::optional<Rgba> background = kWhite;  ///< nothing: transparent
   Lighting lighting;
-  bool labels = true;  ///< draws the list's labels (needs the font if there are any)
+  bool labels = true;       ///< draws the list's labels (needs the font if there are any)
+  double unit = 1;          ///< pixels in a unit of the list's widths and radii
+  bool even_edges = false;  ///< edges of faces fade by style, not place by place: see even_edge_room()
 };
 
 /// The id of what is seen at each pixel, row by row from the top.
@@ -27,6 +29,13 @@ struct IdImage {
   int width = 0, height = 0;
   std::vector<std::uint32_t> ids;  ///< kNoId where there is nothing
   std::uint32_t at(int x, int y) const { return ids[static_cast<std::size_t>(y) * width + x]; }
+};
+
+/// The depth of what is seen at each pixel, row by row from the top, in [-1, 1] as Projection::to_screen() has it.
+struct DepthImage {
+  int width = 0, height = 0;
+  std::vector<float> depths;  ///< 1 where there is nothing
+  float at(int x, int y) const { return depths[static_cast<std::size_t>(y) * width + x]; }
 };
 
 /// Holds the context, programs and buffers from one frame to the next. Use it on the thread that made it.
@@ -44,6 +53,9 @@ class Rasterizer {
   /// Returns the ids of fills and of opaque triangles (with `translucent`: of translucent ones too, as if
   /// they were opaque), from one sample in the middle of each pixel.
   IdImage ids(const DrawList& list, const Camera& camera, int width, int height, bool translucent = false);
+
+  /// Returns the depths of opaque triangles, from one sample in the middle of each pixel.
+  DepthImage depths(const DrawList& list, const Camera& camera, int width, int height);
 
  private:
   struct State;

@@ -17,9 +17,6 @@ using Eigen::Vector3d;
 
 /// Corners are rounded to 1/256 pixel, the grid of Mesa's rasterizer, so that it has nothing to round.
 constexpr double kSnap = 256;
-/// One step of DrawTriangle::nudge, as a share of the picture's height at that depth. It is small enough not
-/// to uncover what visibly lies behind, and large enough to keep a line on the face it runs along.
-constexpr double kNudge = 1.2e-4;
 /// A line's halo lies this share of a step behind the line.
 constexpr double kHaloNudge = 0.25;
 /// Corners farther outside than this many picture sizes are clipped, so that float coordinates stay precise.
@@ -46,9 +43,9 @@ Vector3d homogeneous(const Projection& p, const Vector3d& eye) {
 class ScreenMeshBuilder {
  public:
   ScreenMeshBuilder(const DrawList& list, const Projection& projection, double scale,
-                    const Lighting& lighting)
+                    const Lighting& lighting, bool even_edges)
       : list_(list), p_(projection), scale_(scale), lighting_(lighting), soft_(lighting) {
-    room_ = edge_room(list, projection);
+    room_ = even_edges ? even_edge_room(list, projection) : edge_room(list, projection);
     soft_.ambient = lighting.ambient + kSoften * (1 - lighting.ambient);
     for (double* share : {&soft_.head, &soft_.key, &soft_.fill}) *share *= 1 - kSoften;
   }
@@ -356,8 +353,8 @@ Rgba shade(Rgba colour, const Vector3d& normal, const Eigen::Matrix3d& axes, con
 }
 
 ScreenMesh make_screen_mesh(const DrawList& list, const Projection& projection, double scale,
-                            const Lighting& lighting) {
-  return ScreenMeshBuilder(list, projection, scale, lighting).build();
+                            const Lighting& lighting, bool even_edges) {
+  return ScreenMeshBuilder(list, projection, scale, lighting, even_edges).build();
 }
 
 }  // namespace lrb::render

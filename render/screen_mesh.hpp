@@ -15,6 +15,10 @@
 
 namespace lrb::render {
 
+/// One step of DrawTriangle::nudge, as a share of the picture's height at that depth. It is small enough not
+/// to uncover what visibly lies behind, and large enough to keep a line on the face it runs along.
+inline constexpr double kNudge = 1.2e-4;
+
 /// A corner of a face. Position and edge distances are interpolated linearly over the screen.
 struct FaceVertex {
   glm::vec3 x{0};     ///< normalised device coordinates
@@ -69,8 +73,9 @@ struct Lighting {
 Rgba shade(Rgba colour, const Eigen::Vector3d& normal, const Eigen::Matrix3d& axes, const Lighting& lighting);
 
 /// Makes the screen mesh. `scale` is the number of device pixels per pixel of the final image
-/// (supersampling); `projection` is in device pixels.
+/// (supersampling); `projection` is in device pixels. `even_edges`: edges fade where faces are small by style, not place by
+/// place.
 ScreenMesh make_screen_mesh(const DrawList& list, const Projection& projection, double scale,
-                            const Lighting& lighting = {});
+                            const Lighting& lighting = {}, bool even_edges = false);
 
 }  // namespace lrb::render

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <cstdio>
 
+#include "render/canvas.hpp"
+
 namespace lrb::render::svg_text {
 
 std::string number(double x) {
@@ -31,7 +33,6 @@ std::string paint(const std::string& what, Rgba c) {
 }
 
 std::string font(double height) {
-  constexpr double kHeightOfFont = 1.164;  // of DejaVu Sans from ascent to descent, in font sizes
   return attribute("font-family", "DejaVu Sans, sans-serif") +
          attribute("font-size", number(height / kHeightOfFont));
 }

@@ -6,6 +6,7 @@
 #include <type_traits>
 
 #include "engine/core/error.hpp"
+#include "scenarios/io/pose_file.hpp"
 #include "scenarios/spec/scenario_frames.hpp"
 #include "trace/record_fields.hpp"
 
@@ -116,7 +117,11 @@ void add_picture_options(CLI::App& app, PictureOptions& options) {
   app.add_option("--most", options.most, "Largest number of frames, evenly chosen")
       ->check(CLI::Range(1, 10000))
       ->type_name("N");
-  add_up_option(app, options.up);
+  add_camera_options(app, options.camera);
+  add_colour_options(app, options);
+}
+
+void add_colour_options(CLI::App& app, PictureOptions& options) {
   add_choice<spec::FrameSpec::ColourBy>(app, "--colour-by", options.colour_by, "What the colours mean");
   app.add_option(
          "--node-boxes", options.node_boxes,
@@ -149,12 +154,51 @@ void apply(const PictureOptions& options, spec::FrameSpec& spec) {
   if (options.most) spec.most = *options.most;
   if (options.colour_by) spec.colour_by = *options.colour_by;
   if (options.node_boxes) spec.node_boxes = options.node_boxes;
-  if (options.up.empty()) return;
-  if (spec.views.empty()) spec.views.emplace_back();
-  for (spec::FrameSpec::View& view : spec.views) {
-    const render::ViewDirection turned = turned_up({view.from, view.up}, options.up[0] - 'x');
-    view.from = turned.from;
-    view.up = turned.up;
+  apply(options.camera, spec.views);
+}
+
+void add_camera_options(CLI::App& app, CameraOptions& options) {
+  app.add_option("--from", options.from,
+                 "Direction to look from, seen from the bodies, in the axes of their files")
+      ->type_name("X,Y,Z");
+  app.add_option("--look-at", options.look_at, "Point in the middle of the picture [the bodies' middle]")
+      ->type_name("X,Y,Z");
+  app.add_option("--zoom", options.zoom, "Above 1: closer")->check(CLI::Range(0.01, 1000.0))->type_name("N");
+  app.add_option_function<std::string>(
+         "--projection",
+         [&options](const std::string& word) { options.orthographic = word == "orthographic"; },
+         "How depth is shown")
+      ->check(CLI::IsMember({"perspective", "orthographic"}).description(""))
+      ->type_name("perspective|orthographic");
+  add_up_option(app, options.up);
+}
+
+void apply(const CameraOptions& options, std::vector<spec::FrameSpec::View>& views) {
+  const bool any = !options.from.empty() || !options.look_at.empty() || !options.up.empty() || options.zoom ||
+                   options.orthographic;
+  if (!any) return;
+  if (views.empty()) views.emplace_back();
+  for (spec::FrameSpec::View& view : views) {
+    if (!options.up.empty()) {
+      const int axis = options.up[0] - 'x';
+      const render::ViewDirection turned = turned_up({view.from, view.up}, axis);
+      const render::ViewDirection fixed = turned_up({view.eye, view.target}, axis);
+      view.from = turned.from;
+      view.up = turned.up;
+      view.eye = fixed.from;
+      view.target = fixed.up;
+    }
+    if (!options.from.empty()) {
+      view.from = io::parse_vector(options.from, "--from");
+      if (view.camera == spec::FrameSpec::Camera::fixed) view.camera = spec::FrameSpec::Camera::scene;
+    }
+    if (!(view.from.cross(view.up).squaredNorm() > 0))
+      throw InputError(
+          "--from: expected a direction that is not zero and does not lie along the one that points up (" +
+          (options.up.empty() ? "z" : options.up) + "; see --up)");
+    if (!options.look_at.empty()) view.look_at = io::parse_vector(options.look_at, "--look-at");
+    if (options.zoom) view.zoom = *options.zoom;
+    if (options.orthographic) view.orthographic = *options.orthographic;
   }
 }
 

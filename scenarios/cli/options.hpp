@@ -37,9 +37,22 @@ void add_events_option(CLI::App& app, std::optional<EventLevel>& level);
 /// Adds --patch, --max-outer, --lean, --seed and --threads.
 void add_build_options(CLI::App& app, BuildOptions& options);
 
-/// The options --size, --dpi, --transparent, --format, --frames, --every, --most, --colour-by, --node-boxes and --up, which
-/// take precedence over a scenario.
+/// The options --from, --look-at, --zoom, --projection and --up: where pictures are seen from. They take precedence over a
+/// scenario.
+struct CameraOptions {
+  std::string from, look_at, up;
+  std::optional<double> zoom;
+  std::optional<bool> orthographic;
+};
+void add_camera_options(CLI::App& app, CameraOptions& options);
+/// Changes all views. --up turns what they have; --from and --look-at are given in the axes of the bodies' files, and are not
+/// turned. Throws InputError for what is no camera.
+void apply(const CameraOptions& options, std::vector<spec::FrameSpec::View>& views);
+
+/// The options of cameras, and --size, --dpi, --transparent, --format, --frames, --every, --most, --colour-by and
+/// --node-boxes, which take precedence over a scenario.
 struct PictureOptions {
+  CameraOptions camera;
   std::string size;
   std::optional<double> dpi;
   std::optional<bool> svg;
@@ -48,9 +61,10 @@ struct PictureOptions {
   std::optional<std::uint32_t> every, most;
   std::optional<spec::FrameSpec::ColourBy> colour_by;
   std::optional<std::uint32_t> node_boxes;
-  std::string up;
 };
 void add_picture_options(CLI::App& app, PictureOptions& options);
+/// Adds --colour-by and --node-boxes alone.
+void add_colour_options(CLI::App& app, PictureOptions& options);
 void apply(const PictureOptions& options, spec::FrameSpec& spec);
 
 /// Adds --up, which takes x, y or z.

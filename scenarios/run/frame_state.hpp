@@ -46,6 +46,8 @@ class FrameState {
   std::string caption() const;
   /// Returns the same in a few words, for a panel of a montage.
   std::string short_caption() const;
+  /// Returns true if the answer that is shown has contact regions.
+  bool in_contact() const { return result_here() != nullptr && !result_here()->regions.empty(); }
   std::uint32_t step() const { return cursor_.step()->index; }
   Pose pose(Side side) const { return cursor_.pose(side); }
   const std::vector<const LrbRep*>& reps() const { return reps_; }

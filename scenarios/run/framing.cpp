@@ -89,6 +89,10 @@ render::Camera camera_for(const spec::FrameSpec::View& view, const Framing& fram
     if (view.camera == Kind::orbit)
       camera = render::orbit(camera, view.turn_degrees * progress * std::numbers::pi / 180);
   }
+  if (view.look_at) {
+    camera.eye += *view.look_at - camera.target;
+    camera.target = *view.look_at;
+  }
   camera.half_height /= view.zoom;
   if (!camera.orthographic) camera.eye = camera.target + (camera.eye - camera.target) / view.zoom;
   return camera;

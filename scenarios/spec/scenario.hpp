@@ -98,6 +98,8 @@ struct FrameSpec {
     Eigen::Vector3d from{0.62, -0.68, 0.42};  ///< scene, contact, orbit: direction from the target to the
                                               ///< viewer
     Eigen::Vector3d up{0, 0, 1};
+    std::optional<Eigen::Vector3d>
+        look_at;              ///< in the middle of the picture, at the same scale; nothing: what is shown
     double turn_degrees = 0;  ///< orbit: over all frames
     double zoom = 1;          ///< above 1: closer
     bool wrapper = true;      ///< false: the bodies alone, without the lids of their wrappers

@@ -80,3 +80,27 @@ TEST_CASE("fading is smooth between its ends") {
   CHECK(render::fade_between(5, 2, 4) == 1);
   CHECK(render::fade_between(2.01, 2, 4) < 0.001);
 }
+
+TEST_CASE("the even room of edges is one number for each style, by what its triangles cover") {
+  render::DrawList list;
+  render::DrawTriangle t;
+  t.edges = 7;
+  t.x = {Vector3d(-4, -1, 0), {0, -1, 0}, {-2, 2, 0}};  // large
+  list.triangles.push_back(t);
+  for (int i = 0; i < 9; ++i) {  // many small ones, which cover less together
+    t.x = {Vector3d(1 + 0.2 * i, 0, 0), {1.1 + 0.2 * i, 0, 0}, {1 + 0.2 * i, 0.1, 0}};
+    list.triangles.push_back(t);
+  }
+  t.edge_style = list.edge_style({render::kBlack, 3});
+  list.triangles.push_back(t);
+  t.edges = 0;
+  list.triangles.push_back(t);
+  const auto points = render::extent_points(list);
+  const render::Projection projection(render::fit_top(points, 640, 480), 640, 480, render::bounds(list));
+  const std::vector<double> room = render::even_edge_room(list, projection);
+  REQUIRE(room.size() == list.triangles.size());
+  for (std::size_t i = 0; i < 10; ++i)
+    CHECK(room[i] == doctest::Approx(altitude(list.triangles[0], projection)));
+  CHECK(room[10] == doctest::Approx(altitude(list.triangles[10], projection)));
+  CHECK(room[11] == 0);
+}

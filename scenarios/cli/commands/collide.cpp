@@ -15,7 +15,7 @@ namespace lrb::cli {
 namespace {
 
 struct CollideOptions {
-  std::string a, b, folder, poses, from;
+  std::string a, b, folder, poses, approach;
   CollideRequest request;
   PictureOptions picture;
   std::optional<EventLevel> events;
@@ -73,8 +73,8 @@ spec::Scenario make_scenario(const CollideOptions& o, const std::vector<bodies::
     // The default direction is aslant: along an axis, bodies that are lined up with it would meet in whole
     // faces first.
     Eigen::Vector3d direction(1, 0.35, 0.25);
-    if (!o.from.empty()) direction = io::parse_vector(o.from, "--from");
-    if (!(direction.squaredNorm() > 0)) throw InputError("--from: expected a direction that is not zero");
+    if (!o.approach.empty()) direction = io::parse_vector(o.approach, "--approach");
+    if (!(direction.squaredNorm() > 0)) throw InputError("--approach: expected a direction that is not zero");
     if (bodies[0].rep.dim() == 2) direction.z() = 0;
     s.motion = approach_from(direction, bodies[0].rep, bodies[1].rep);
   }
@@ -87,7 +87,8 @@ spec::Scenario make_scenario(const CollideOptions& o, const std::vector<bodies::
   hash.add_bytes(s.motion.from.data(), sizeof(double) * 3);
   s.hash = hash.value();
   apply(o.picture, s.frames);
-  if (s.motion.kind == spec::Motion::Kind::approach) look_from_the_side(s.motion.from, s.frames.views);
+  if (s.motion.kind == spec::Motion::Kind::approach && o.picture.camera.from.empty())
+    look_from_the_side(s.motion.from, s.frames.views);
   return s;
 }
 
@@ -118,7 +119,7 @@ Command add_collide(CLI::App& root, const Globals& globals) {
   auto* poses =
       app->add_option("--poses", o->poses, "File with the pose of B for each step: lines of 12 numbers")
           ->type_name("FILE");
-  app->add_option("--from", o->from, "Direction that B comes from, seen from A")
+  app->add_option("--approach", o->approach, "Direction that B comes from, seen from A")
       ->type_name("X,Y,Z")
       ->excludes(poses);
   add_request_options(*app, o->request);

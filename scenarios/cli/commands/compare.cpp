@@ -21,7 +21,7 @@ spec::Scenario scenario_of(const run::Recording& recording, const std::string& u
   s.name = recording.trace.header.scenario;
   s.frames.views.emplace_back();
   PictureOptions picture;
-  picture.up = up;
+  picture.camera.up = up;
   apply(picture, s.frames);
   return s;
 }

@@ -7,9 +7,11 @@
 #include <span>
 #include <string>
 
+#include "render/base64.hpp"
+
 namespace lrb::report {
 
-std::string base64(const std::uint8_t* bytes, std::size_t size);
+using render::base64;
 
 /// Packs the numbers into as few bytes each as the largest needs. The largest number of so many bytes stands
 /// for kNull.

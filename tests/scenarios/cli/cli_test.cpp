@@ -201,7 +201,7 @@ TEST_CASE("bad input: one line on stderr, exit 2, nothing on stdout, nothing lef
       {"run", "collision", "--size", "12", "-o", "out"},
       {"collide", "a.obj", "broken.obj", "-o", "out"},
       {"collide", "a.obj", "flat.obj", "-o", "out"},
-      {"collide", "a.obj", "a.obj", "--from", "0,0,0", "-o", "out"},
+      {"collide", "a.obj", "a.obj", "--approach", "0,0,0", "-o", "out"},
       {"collide", "a.obj", "a.obj", "--poses", "eleven.txt", "-o", "out"},
       {"render", "missing.json"},
       {"render", "bad.json"},
@@ -331,7 +331,7 @@ TEST_CASE("collide: two files of the user's own") {
   const Folder folder;
   folder.write("a cube.obj", kCube);
   const Outcome o = run(folder, {"collide", "a cube.obj", "a cube.obj", "-o", "out dir", "--size", "320x240",
-                                 "--most", "3", "--from", "0.3,0.2,1"});
+                                 "--most", "3", "--approach", "0.3,0.2,1"});
   CAPTURE(o.err);
   REQUIRE(o.code == 0);
   CHECK(fs::exists(folder / "out dir/index.html"));

@@ -1,0 +1,320 @@
+#include "scenarios/figure/figure.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include "engine/core/error.hpp"
+#include "render/cairo_canvas.hpp"
+#include "render/montage.hpp"
+#include "render/paint_list.hpp"
+#include "render/palette.hpp"
+#include "render/png.hpp"
+#include "render/svg_canvas.hpp"
+#include "scenarios/figure/figure_layout.hpp"
+#include "scenarios/figure/paint_key.hpp"
+#include "scenarios/figure/panel_camera.hpp"
+#include "scenarios/run/frame_files.hpp"
+#include "scenarios/run/frame_state.hpp"
+#include "scenarios/run/framing.hpp"
+
+namespace lrb::figure {
+namespace {
+
+using Eigen::AlignedBox2d;
+using Eigen::Vector2d;
+using View = spec::FrameSpec::View;
+
+/// What a panel shows, in words.
+struct PanelWords {
+  std::string title, caption;
+};
+
+const std::vector<CollideResult>& results_of(const run::RecordedRun& recorded) {
+  static const std::vector<CollideResult> none;
+  return recorded.results != nullptr ? *recorded.results : none;
+}
+
+/// Returns the frames' spec with widths in points: a thin line, of width 1, is as wide as the figure's.
+spec::FrameSpec in_points(spec::FrameSpec frames, const FigureSpec& figure) {
+  frames.dpi = figure.line_width * spec::FrameSpec::kScreenDpi;
+  if (frames.views.empty()) frames.views.emplace_back();
+  return frames;
+}
+
+class FigureJob {
+ public:
+  FigureJob(const run::RecordedRun& recorded, const spec::FrameSpec& frames, const FigureSpec& figure)
+      : recorded_(recorded),
+        figure_(figure),
+        frames_(in_points(frames, figure)),
+        dpi_(figure.dpi > 0 ? figure.dpi : default_dpi(figure.format)),
+        events_(choose(recorded, figure.choice)),
+        framing_(run::frame_sequence(recorded.reps, *recorded.trace, results_of(recorded), frames_)),
+        extras_{recorded.trees, common_range(), recorded.face_values, recorded.value_name},
+        state_(*recorded.trace, recorded.reps, results_of(recorded), frames_, false, extras_) {}
+
+  Figure draw(const run::ProgressReport& progress) {
+    survey();
+    Figure out;
+    out.panels = words_.size();
+    out.caption = caption();
+    layout_ = lay_out(blocks_, figure_.legend ? key_ : std::vector<render::LegendItem>(),
+                      figure_.legend ? bar_ : std::nullopt, figure_.caption ? out.caption : "", options());
+    const auto paint = [&](render::Canvas& canvas) { paint_all(canvas, progress); };
+    const std::optional<render::Rgba> background =
+        frames_.transparent ? std::nullopt : std::optional(render::kWhite);
+    const std::string program = "lrbscope " + recorded_.trace->header.lrbscope;
+    const render::PaperPage page{figure_.width, layout_.height, background, recorded_.title, program};
+    switch (figure_.format) {
+      case FigureSpec::Format::pdf:
+        out.bytes = render::paint_pdf(page, paint);
+        break;
+      case FigureSpec::Format::svg: {
+        render::SvgCanvas canvas;
+        paint(canvas);
+        out.bytes = render::svg_file(
+            canvas, {page.width, page.height, kPointsPerScreenPixel, page.title, background});
+        break;
+      }
+      case FigureSpec::Format::png: {
+        const auto png =
+            render::encode_png(render::paint_pixels(page, dpi_, paint),
+                               {{{"Software", program}, {"lrbscope:scenario", recorded_.title}}, dpi_});
+        out.bytes.assign(png.begin(), png.end());
+        break;
+      }
+    }
+    return out;
+  }
+
+ private:
+  static constexpr double kPointsPerScreenPixel = 0.75;
+
+  bool flat() const { return framing_.dim == 2; }
+  std::size_t moments() const { return events_.size(); }
+
+  LayoutOptions options() const {
+    constexpr double kWidest =
+        3;  // of half the lines that are drawn, contacts with their halo: in thin lines
+    LayoutOptions o;
+    o.width = figure_.width;
+    o.font_size = figure_.font_size;
+    o.margin = kWidest * figure_.line_width;
+    o.grid = flat() && figure_.format != FigureSpec::Format::png ? 0 : render::kPointsPerInch / dpi_;
+    o.columns = figure_.columns;
+    return o;
+  }
+
+  /// Returns the ends of the scale of colours over all panels: a bar for the whole figure means the same in each.
+  std::optional<std::array<double, 2>> common_range() {
+    if (recorded_.value_range) return recorded_.value_range;
+    std::optional<std::array<double, 2>> range;
+    run::FrameState state(*recorded_.trace, recorded_.reps, results_of(recorded_), frames_, false,
+                          {recorded_.trees, {}, recorded_.face_values, recorded_.value_name});
+    if (!shows_values()) return range;
+    for (const trace::EventId event : events_) {
+      state.seek(event);
+      const render::Scene scene = state.scene();
+      if (!scene.scale) continue;
+      if (!range) range = {scene.scale->low, scene.scale->high};
+      range = {std::min((*range)[0], scene.scale->low), std::max((*range)[1], scene.scale->high)};
+    }
+    return range;
+  }
+
+  bool shows_values() const {
+    using ColourBy = spec::FrameSpec::ColourBy;
+    const ColourBy by = frames_.colour_by;
+    return by != ColourBy::kind && by != ColourBy::layer && by != ColourBy::region;
+  }
+
+  /// Returns true if what is seen of a panel of the block is cut off by the view, as in a close-up.
+  static bool runs_over(const Block& block) {
+    constexpr double kRim = 1e-3 * kViewSide;
+    return std::any_of(block.seen.begin(), block.seen.end(), [](const AlignedBox2d& seen) {
+      return seen.min().minCoeff() < kRim || seen.max().maxCoeff() > kViewSide - kRim;
+    });
+  }
+
+  render::Camera camera(const View& view, std::size_t moment) const {
+    const double progress =
+        moments() > 1 ? static_cast<double>(moment) / (static_cast<double>(moments()) - 1) : 0;
+    return run::camera_for(view, framing_, kViewSide, kViewSide, progress);
+  }
+
+  render::Scene scene(const View& view, std::size_t moment) {
+    state_.seek(events_[moment]);
+    render::Scene scene = state_.scene(view.wrapper, true);
+    const auto least = static_cast<float>(kHairline);
+    for (render::DrawLine& l : scene.list.lines) l.width = std::max(l.width, least);
+    for (render::EdgeStyle& e : scene.list.edge_styles) e.width = std::max(e.width, least);
+    return scene;
+  }
+
+  /// Finds out what each panel shows, how large it is, and what all of them need in the legend.
+  void survey() {
+    for (const View& view : frames_.views) {
+      Block block;
+      std::vector<std::size_t> shown_moments;
+      for (std::size_t i = 0; i < moments(); ++i) {
+        const render::Scene shown = scene(view, i);
+        if (!shows_anything(view)) continue;
+        run::merge_key(key_, shown.key);
+        if (shown.scale) bar_ = shown.scale;
+        block.seen.push_back(seen_box(shown.list, camera(view, i)));
+        const std::string words = state_.short_caption();
+        words_.push_back({words, view.title.empty() ? words : view.title + ", " + words});
+        shown_moments.push_back(i);
+      }
+      if (block.seen.empty()) continue;
+      blocks_.push_back(std::move(block));
+      views_.push_back({&view, std::move(shown_moments)});
+    }
+    if (blocks_.empty()) throw InputError("a figure of contacts needs a contact, and these panels have none");
+    letter();
+  }
+
+  /// Returns false for a close-up of a contact where there is none, beside other views.
+  bool shows_anything(const View& view) const {
+    return view.camera != spec::FrameSpec::Camera::contact || frames_.views.size() == 1 ||
+           state_.in_contact();
+  }
+
+  void letter() {
+    const bool letters = words_.size() > 1;
+    if (!letters && !figure_.titles) return;
+    std::size_t panel = 0;
+    for (Block& block : blocks_)
+      for (std::size_t i = 0; i < block.seen.size(); ++i, ++panel)
+        block.texts.push_back((letters ? render::panel_letter(panel) : "") +
+                              (letters && figure_.titles ? " " : "") +
+                              (figure_.titles ? words_[panel].title : ""));
+  }
+
+  std::string caption() const {
+    std::string text = recorded_.purpose.empty() ? recorded_.title + "." : recorded_.purpose;
+    for (std::size_t i = 0; i < words_.size(); ++i)
+      text += (i == 0 ? " " : "; ") + (words_.size() > 1 ? render::panel_letter(i) + " " : "") +
+              words_[i].caption;
+    return text + ".";
+  }
+
+  void paint_all(render::Canvas& canvas, const run::ProgressReport& progress) {
+    std::size_t panel = 0;
+    for (std::size_t v = 0; v < views_.size(); ++v) {
+      const BlockLayout& block = layout_.blocks[v];
+      const View& view = *views_[v].view;
+      for (std::size_t i = 0; i < block.panels.size(); ++i, ++panel) {
+        progress("draw", panel, words_.size());
+        const PanelPlace& place = block.panels[i];
+        const std::size_t moment = views_[v].moments[i];
+        const render::Scene shown = scene(view, moment);
+        flat() ? paint_flat(canvas, shown.list, camera(view, moment), place, block.scale)
+               : paint_deep(canvas, shown.list, camera(view, moment), place, block.scale);
+        if (runs_over(blocks_[v]))
+          canvas.stroke(render::corners(place.box), true, {render::palette::kFaint, kHairline, 0});
+        double y = place.box.max().y() + 0.65 * figure_.font_size;
+        for (const std::string& line : place.lines) {
+          canvas.text({{place.box.center().x(), y},
+                       line,
+                       layout_.text_height,
+                       false,
+                       render::palette::kInk,
+                       render::Align::centre});
+          y += 1.3 * figure_.font_size;
+        }
+      }
+    }
+    paint_key(canvas, layout_, figure_.legend ? key_ : std::vector<render::LegendItem>(),
+              figure_.legend ? bar_ : std::nullopt);
+    for (const auto& [y, line] : layout_.caption)
+      canvas.text({{0, y}, line, layout_.text_height, false, render::palette::kInk});
+  }
+
+  void paint_flat(render::Canvas& canvas, const render::DrawList& list, const render::Camera& camera,
+                  const PanelPlace& place, double scale) const {
+    const double side = kViewSide * scale, margin = options().margin;
+    const render::Projection projection(camera, side, side, render::bounds(list));
+    canvas.begin_clip(place.box);
+    render::paint_flat(canvas, list, projection,
+                       place.box.min() + Vector2d(margin, margin) - place.seen_from * scale);
+    canvas.end_clip();
+  }
+
+  /// Draws the faces as pixels, of which the panel's box holds a whole number, and paints lines and texts over them.
+  void paint_deep(render::Canvas& canvas, const render::DrawList& list, const render::Camera& whole,
+                  const PanelPlace& place, double scale) {
+    const double pixel = render::kPointsPerInch / dpi_, margin = options().margin,
+                 middle = 0.5 * kViewSide * scale;
+    const Vector2d low =
+        place.seen_from * scale - Vector2d(margin, margin);  // of the box, in the view, points
+    const Eigen::Vector2i size = (place.box.sizes() / pixel).array().round().cast<int>();
+    // The part of the view about its middle that holds the box, with a pixel to spare on each side.
+    const Vector2d reach =
+        (low.array() - middle).abs().max((low + place.box.sizes()).array() - middle) + 2 * pixel;
+    const Eigen::Vector2i drawn = (2 * reach / pixel).array().ceil().cast<int>();
+    const Vector2d paper = drawn.cast<double>() * pixel;
+    const render::Camera camera = middle_part(whole, paper.y() / scale);
+    const Eigen::Vector2i from =
+        ((low - Vector2d(middle, middle) + 0.5 * paper) / pixel).array().round().cast<int>();
+
+    render::RasterOptions raster;
+    raster.width = drawn.x(), raster.height = drawn.y();
+    raster.supersample = frames_.supersampling;
+    raster.unit = 1 / pixel;
+    raster.labels = false;
+    raster.even_edges = true;
+    if (frames_.transparent) raster.background.reset();
+    const render::Image picture = rasterizer_.draw(render::under_lines(list), camera, raster);
+    render::Image part(size.x(), size.y(), render::kTransparent);
+    part.paste(picture, -from.x(), -from.y());
+    const render::DepthImage depths = rasterizer_.depths(list, camera, drawn.x(), drawn.y());
+    canvas.picture(part, place.box);
+    canvas.begin_clip(place.box);
+    render::paint_over(canvas, list, render::Projection(camera, paper.x(), paper.y(), render::bounds(list)),
+                       depths, place.box.min() - from.cast<double>() * pixel);
+    canvas.end_clip();
+  }
+
+  const run::RecordedRun& recorded_;
+  const FigureSpec& figure_;
+  spec::FrameSpec frames_;
+  double dpi_;
+  std::vector<trace::EventId> events_;
+  run::Framing framing_;
+  run::FrameExtras extras_;
+  run::FrameState state_;
+  render::Rasterizer rasterizer_;
+  struct ViewPanels {
+    const View* view;
+    std::vector<std::size_t> moments;
+  };
+  std::vector<ViewPanels> views_;  ///< those that show something, with the moments at which they do
+  std::vector<Block> blocks_;      ///< one for each of them
+  std::vector<PanelWords> words_;
+  std::vector<render::LegendItem> key_;
+  std::optional<render::ScaleBar> bar_;
+  FigureLayout layout_;
+};
+
+}  // namespace
+
+FigureSpec::Format format_of(const std::string& path) {
+  const std::string ending = std::filesystem::path(path).extension().string();
+  if (ending == ".pdf") return FigureSpec::Format::pdf;
+  if (ending == ".svg") return FigureSpec::Format::svg;
+  if (ending == ".png") return FigureSpec::Format::png;
+  throw InputError(path + ": a figure is a .pdf, an .svg or a .png file: end its name in one of these");
+}
+
+double default_dpi(FigureSpec::Format format) {
+  return format == FigureSpec::Format::png ? 300 : 600;
+}
+
+Figure draw_figure(const run::RecordedRun& recorded, const spec::FrameSpec& frames, const FigureSpec& figure,
+                   const run::ProgressReport& progress) {
+  return FigureJob(recorded, frames, figure).draw(progress);
+}
+
+}  // namespace lrb::figure

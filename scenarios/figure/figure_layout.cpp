@@ -1,0 +1,222 @@
+#include "scenarios/figure/figure_layout.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "engine/core/error.hpp"
+#include "render/canvas.hpp"
+#include "render/text.hpp"
+#include "scenarios/figure/length.hpp"
+
+namespace lrb::figure {
+namespace {
+
+using Eigen::AlignedBox2d;
+using Eigen::Vector2d;
+
+constexpr double kLine = 1.3;    ///< from one line of text to the next, in font sizes
+constexpr double kGutter = 0.8;  ///< between panels, in font sizes
+constexpr double kGap = 0.5;     ///< above legend, bar and caption, in font sizes
+constexpr double kShape = 1.5;   ///< width to height that automatic columns aim at
+constexpr double kGapCost = 2;   ///< of empty places, in logarithms of that shape, where all places are empty
+constexpr double kTallest = 1.4;  ///< a block is at most so many of its widths high
+constexpr double kLeastPanel = 5 * kPointsPerMm, kLeastAutomatic = 12 * kPointsPerMm;
+constexpr double kBarWidth = 0.45;  ///< of the colour bar, as a share of the figure's
+
+/// Wraps text of a font size in points.
+std::vector<std::string> wrap(const std::string& text, double width, double font_size) {
+  constexpr double kFine = 32;  // widths are measured in whole pixels
+  render::TextStyle style;
+  style.height = static_cast<float>(font_size * render::kHeightOfFont * kFine);
+  return render::default_font().wrap(text, static_cast<int>(width * kFine), style);
+}
+
+/// One block in a given number of columns, its top at zero.
+struct Arranged {
+  BlockLayout layout;
+  double height = 0;
+};
+
+class BlockLayouter {
+ public:
+  BlockLayouter(const Block& block, const LayoutOptions& options, std::size_t columns)
+      : block_(block), o_(options), columns_(std::min(columns, block.seen.size())) {
+    rows_ = (block.seen.size() + columns_ - 1) / columns_;
+    column_.resize(columns_);
+    row_.resize(rows_);
+    for (std::size_t i = 0; i < block.seen.size(); ++i) {
+      extend(column_[i % columns_], block.seen[i].min().x(), block.seen[i].max().x());
+      extend(row_[i / columns_], block.seen[i].min().y(), block.seen[i].max().y());
+    }
+  }
+
+  double panel_width() const {
+    return (o_.width - (static_cast<double>(columns_) - 1) * gutter()) / static_cast<double>(columns_);
+  }
+
+  Arranged arrange() {
+    const double room = o_.width - (static_cast<double>(columns_) - 1) * gutter() -
+                        2 * o_.margin * static_cast<double>(columns_);
+    const double width = sum(column_), height = sum(row_);
+    Arranged out;
+    double scale = room / width;
+    scale = std::min(scale, kTallest * o_.width / height);
+    out.layout.scale = scale;
+    std::vector<std::vector<std::string>> lines;
+    std::vector<std::size_t> most(rows_, 0);
+    for (std::size_t i = 0; i < block_.seen.size(); ++i) {
+      const double own = column_[i % columns_].length() * scale + 2 * o_.margin;
+      lines.push_back(block_.texts.empty() ? std::vector<std::string>()
+                                           : wrap(block_.texts[i], own, o_.font_size));
+      most[i / columns_] = std::max(most[i / columns_], lines.back().size());
+    }
+    const double used = width * scale + 2 * o_.margin * static_cast<double>(columns_) +
+                        (static_cast<double>(columns_) - 1) * gutter();
+    double y = 0;
+    for (std::size_t row = 0; row < rows_; ++row) {
+      double x = 0.5 * (o_.width - used);
+      const double high = row_[row].length() * scale + 2 * o_.margin;
+      for (std::size_t i = row * columns_; i < std::min(block_.seen.size(), (row + 1) * columns_); ++i) {
+        const Interval& column = column_[i % columns_];
+        const double wide = column.length() * scale + 2 * o_.margin;
+        PanelPlace place;
+        place.box = AlignedBox2d(Vector2d(x, y), Vector2d(x + wide, y + high));
+        place.seen_from = {column.low, row_[row].low};
+        place.lines = std::move(lines[i]);
+        out.layout.panels.push_back(std::move(place));
+        x += wide + gutter();
+      }
+      y += high + static_cast<double>(most[row]) * kLine * o_.font_size + (row + 1 < rows_ ? gutter() : 0);
+    }
+    out.height = y;
+    return out;
+  }
+
+ private:
+  struct Interval {
+    double low = std::numeric_limits<double>::infinity(), high = -low;
+    double length() const { return high - low; }
+  };
+  static void extend(Interval& i, double low, double high) {
+    i.low = std::min(i.low, low), i.high = std::max(i.high, high);
+  }
+  static double sum(const std::vector<Interval>& all) {
+    double out = 0;
+    for (const Interval& i : all) out += i.length();
+    return out;
+  }
+  double gutter() const { return kGutter * o_.font_size; }
+
+  const Block& block_;
+  const LayoutOptions& o_;
+  std::size_t columns_, rows_ = 0;
+  std::vector<Interval> column_, row_;
+};
+
+/// Returns a block in the columns asked for, or in those that bring it closest to its shape.
+Arranged arrange(const Block& block, const LayoutOptions& options) {
+  if (options.columns > 0) {
+    BlockLayouter layouter(block, options, options.columns);
+    if (layouter.panel_width() < kLeastPanel)
+      throw InputError("--columns " + std::to_string(options.columns) + ": leaves panels of less than " +
+                       length_words(kLeastPanel) + " in a figure of " + length_words(options.width) +
+                       ": ask for fewer, or a larger --width");
+    return layouter.arrange();
+  }
+  std::optional<Arranged> best;
+  double least = std::numeric_limits<double>::infinity();
+  const std::size_t n = block.seen.size();
+  for (std::size_t columns = 1; columns <= n; ++columns) {
+    BlockLayouter layouter(block, options, columns);
+    if (best && layouter.panel_width() < kLeastAutomatic) break;
+    Arranged arranged = layouter.arrange();
+    const std::size_t rows = (n + columns - 1) / columns;
+    const double gaps = static_cast<double>(rows * columns - n) / static_cast<double>(n);
+    const double off = std::abs(std::log(options.width / arranged.height / kShape)) + kGapCost * gaps;
+    if (off < least) least = off, best = std::move(arranged);
+  }
+  return std::move(*best);
+}
+
+/// Moves everything of a block to its place, on the grid.
+void place(BlockLayout& block, double top, double grid) {
+  const auto snapped = [&](double x) { return grid > 0 ? grid * std::round(x / grid) : x; };
+  for (PanelPlace& p : block.panels) {
+    const Vector2d low(snapped(p.box.min().x()), snapped(p.box.min().y() + top));
+    const Vector2d high(snapped(p.box.max().x()), snapped(p.box.max().y() + top));
+    p.box = AlignedBox2d(low, high);
+  }
+}
+
+/// Places entries one after the other in as many rows as they need, each row in the middle. Returns the bottom.
+double place_legend(const std::vector<render::LegendItem>& legend, const LayoutOptions& o, double top,
+                    FigureLayout& out) {
+  const double em = o.font_size, row = kLine * em,
+               room = o.width - 0.2 * em;  // outlines of marks stay on the paper
+  std::vector<double> widths, marks;
+  for (const render::LegendItem& item : legend) {
+    const bool line =
+        item.mark == render::LegendItem::Mark::line || item.mark == render::LegendItem::Mark::dashed;
+    marks.push_back(line ? 1.8 * em : 0.9 * em);
+    widths.push_back(marks.back() + 0.4 * em + render::text_width(item.text, out.text_height));
+    if (widths.back() > room)
+      throw InputError("the legend's entry \"" + item.text + "\" is wider than the figure of " +
+                       length_words(o.width) +
+                       ": ask for a smaller --font-size, a larger --width, or --no-legend");
+  }
+  const double gap = 1.2 * em;
+  for (std::size_t first = 0, end = 0; first < legend.size(); first = end) {
+    double used = -gap;
+    for (end = first; end < legend.size() && (end == first || used + gap + widths[end] <= room); ++end)
+      used += gap + widths[end];
+    double x = 0.5 * (o.width - used);
+    for (std::size_t i = first; i < end; ++i) {
+      const double middle = top + 0.5 * row, half = 0.36 * em;
+      out.legend.push_back({AlignedBox2d(Vector2d(x, middle - half), Vector2d(x + marks[i], middle + half)),
+                            {x + marks[i] + 0.4 * em, middle}});
+      x += widths[i] + gap;
+    }
+    top += row;
+  }
+  return top;
+}
+
+}  // namespace
+
+FigureLayout lay_out(const std::vector<Block>& blocks, const std::vector<render::LegendItem>& legend,
+                     const std::optional<render::ScaleBar>& scale, const std::string& caption,
+                     const LayoutOptions& options) {
+  FigureLayout out;
+  const double em = options.font_size;
+  out.text_height = em * render::kHeightOfFont;
+  double y = 0;
+  for (const Block& block : blocks) {
+    if (y > 0) y += kGutter * em;
+    Arranged arranged = arrange(block, options);
+    place(arranged.layout, y, options.grid);
+    out.blocks.push_back(std::move(arranged.layout));
+    y += arranged.height;
+  }
+  if (!legend.empty()) y = place_legend(legend, options, y + kGap * em, out);
+  if (scale) {
+    y += kGap * em;
+    out.bar_text = {0.5 * options.width, y + 0.5 * kLine * em};
+    y += kLine * em;
+    const double half = 0.5 * kBarWidth * options.width;
+    out.bar = AlignedBox2d(Vector2d(0.5 * options.width - half, y + 0.25 * em),
+                           Vector2d(0.5 * options.width + half, y + 1.05 * em));
+    y += kLine * em;
+  }
+  if (!caption.empty()) {
+    y += kGap * em;
+    for (std::string& line : wrap(caption, options.width, em)) {
+      out.caption.emplace_back(y + 0.5 * kLine * em, std::move(line));
+      y += kLine * em;
+    }
+  }
+  out.height = options.grid > 0 ? options.grid * std::ceil(y / options.grid) : y;
+  return out;
+}
+
+}  // namespace lrb::figure

@@ -1,0 +1,60 @@
+#pragma once
+/// Where the parts of a figure go on paper. Lengths are in points, x to the right, y down.
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <Eigen/Geometry>
+
+#include "render/overlay.hpp"
+
+namespace lrb::figure {
+
+/// Panels of one view: they have one scale, and stand in rows and columns so that what did not move stays in its place.
+struct Block {
+  std::vector<Eigen::AlignedBox2d> seen;  ///< of each panel: what is drawn in it, in the view's own units
+  std::vector<std::string> texts;         ///< below each: letter and title; empty: no room is left for them
+};
+
+struct LayoutOptions {
+  double width = 0;
+  double font_size = 8;
+  double margin = 1;        ///< around what is seen of each panel: room for the width of lines
+  double grid = 0;          ///< panels begin and end on multiples of it: pixels of what is drawn as pixels
+  std::size_t columns = 0;  ///< 0: those that bring each block closest to 3:2
+};
+
+struct PanelPlace {
+  Eigen::AlignedBox2d box;  ///< of the panel on the paper
+  Eigen::Vector2d
+      seen_from;  ///< the place in the view, in its own units, at the box's corner plus the margin
+  std::vector<std::string> lines;
+};
+
+struct BlockLayout {
+  double scale = 1;  ///< points in a unit of the view
+  std::vector<PanelPlace> panels;
+};
+
+struct FigureLayout {
+  double height = 0;
+  double text_height = 0;  ///< ascent to descent
+  std::vector<BlockLayout> blocks;
+  struct Mark {
+    Eigen::AlignedBox2d mark;
+    Eigen::Vector2d text;  ///< left end of its middle line
+  };
+  std::vector<Mark> legend;                             ///< as many as there are entries
+  std::optional<Eigen::AlignedBox2d> bar;               ///< the colour bar
+  Eigen::Vector2d bar_text{0, 0};                       ///< middle of its quantity's text, above it
+  std::vector<std::pair<double, std::string>> caption;  ///< middle of each line, from the top, and the line
+};
+
+/// Lays a figure out. What is left empty takes no room. Throws InputError where the width is too small for the columns or for an
+/// entry of the legend.
+FigureLayout lay_out(const std::vector<Block>& blocks, const std::vector<render::LegendItem>& legend,
+                     const std::optional<render::ScaleBar>& scale, const std::string& caption,
+                     const LayoutOptions& options);
+
+}  // namespace lrb::figure

@@ -1,0 +1,230 @@
+#include "scenarios/figure/figure.hpp"
+
+#include <cmath>
+
+#include <doctest/doctest.h>
+
+#include "engine/core/error.hpp"
+#include "render/png.hpp"
+#include "scenarios/figure/figure_layout.hpp"
+#include "scenarios/run/run_scenario.hpp"
+#include "scenarios/spec/shipped.hpp"
+#include "tests/support/program.hpp"
+#include "tests/support/text.hpp"
+
+using namespace lrb;
+using namespace lrb::figure;
+using Eigen::AlignedBox2d;
+using Eigen::Vector2d;
+using lrb::test::count;
+
+namespace {
+
+const run::ProgressReport kSilent = [](const std::string&, std::uint64_t, std::uint64_t) {};
+
+/// A shipped scenario, recorded.
+struct Shipped {
+  spec::Scenario scenario;
+  run::Recording recording;
+  run::RecordedRun run;
+  explicit Shipped(const std::string& name)
+      : scenario(spec::open_scenario(name)),
+        recording(run::record(scenario, kSilent)),
+        run(run::recorded_run_of(scenario, recording)) {}
+};
+
+std::vector<std::uint32_t> faces_after(const Shipped& s, const std::vector<trace::EventId>& events) {
+  std::vector<std::uint32_t> out;
+  for (const trace::EventId e : events)
+    out.push_back(e == 0 ? s.recording.trace.header.bodies[0].outer_faces
+                         : s.recording.trace.events[e].boundary);
+  return out;
+}
+
+Block squares(std::size_t n) {
+  Block block;
+  for (std::size_t i = 0; i < n; ++i) block.seen.emplace_back(Vector2d(0, 0), Vector2d(100, 80));
+  return block;
+}
+
+LayoutOptions at_width(double width) {
+  LayoutOptions o;
+  o.width = width;
+  return o;
+}
+
+}  // namespace
+
+TEST_CASE("lengths on paper") {
+  CHECK(parse_length("85mm", "--width", 1, 1000) == doctest::Approx(240.945));
+  CHECK(parse_length("8.5cm", "--width", 1, 1000) == doctest::Approx(240.945));
+  CHECK(parse_length("2in", "--width", 1, 1000) == 144);
+  CHECK(parse_length("0.25pt", "--line-width", 0.25, 3) == 0.25);
+  for (const char* bad : {"85", "mm", "85 mm", "85px", "", "-3mm", "1e9mm", "nanmm"}) {
+    CAPTURE(std::string(bad));
+    CHECK_THROWS_AS(parse_length(bad, "--width", 1, 1000), InputError);
+  }
+}
+
+TEST_CASE("panels of one body: from the outermost wrapper to the body, in equal ratios of faces") {
+  const Shipped s("figure2");
+  const std::vector<std::uint32_t> faces = faces_after(s, choose(s.run, {}));
+  REQUIRE(faces.size() == 6);
+  CHECK(faces.front() == s.recording.trace.header.bodies[0].outer_faces);
+  CHECK(faces.back() == s.recording.trace.header.bodies[0].real_faces);
+  const double whole = std::log(static_cast<double>(faces.back()) / faces.front());
+  for (std::size_t i = 1; i < faces.size(); ++i) {
+    CAPTURE(i);
+    CHECK(std::log(static_cast<double>(faces[i]) / faces[i - 1]) == doctest::Approx(whole / 5).epsilon(0.35));
+  }
+  const std::vector<std::uint32_t> asked = faces_after(s, choose(s.run, {Choice::By::faces, {9, 40, 1000}}));
+  REQUIRE(asked.size() == 3);
+  CHECK(std::abs(static_cast<int>(asked[1]) - 40) <= 3);
+  CHECK(asked[2] == faces.back());
+  const auto layers = choose(s.run, {Choice::By::layers, {}});
+  CHECK(layers.size() == s.recording.trace.header.bodies[0].layers + 1);
+  CHECK(layers.back() + 1 == s.recording.trace.events.size());
+}
+
+TEST_CASE("panels of two bodies: time steps, the first contact among them") {
+  const Shipped s("islands");
+  std::uint32_t first = 0;
+  while (s.recording.trace.steps[first].result.pair_count == 0) ++first;
+  bool found = false;
+  for (const trace::EventId e : choose(s.run, {}))
+    found |= s.recording.trace.steps[s.recording.trace.step_of(e)].index == first;
+  CHECK(found);
+  const auto asked = choose(s.run, {Choice::By::steps, {2, 0}});
+  REQUIRE(asked.size() == 2);
+  CHECK(s.recording.trace.step_of(asked[0]) == 0);
+  CHECK(s.recording.trace.step_of(asked[1]) == 2);
+  CHECK_THROWS_AS(choose(s.run, {Choice::By::steps, {100'000}}), InputError);
+  CHECK_THROWS_AS(choose(s.run, {Choice::By::events, {100'000'000}}), InputError);
+  CHECK_THROWS_AS(choose(s.run, {Choice::By::layers, {}}), InputError);
+}
+
+TEST_CASE("panels fill the width; what is left out takes no room") {
+  Block block = squares(6);
+  const FigureLayout bare = lay_out({block}, {}, {}, "", at_width(240));
+  double right = 0;
+  for (const PanelPlace& p : bare.blocks[0].panels) right = std::max(right, p.box.max().x());
+  CHECK(right == doctest::Approx(240));
+  CHECK(bare.blocks[0].panels[0].box.min().norm() < 1e-9);
+  CHECK(bare.blocks[0].panels[3].box.min().x() < 1e-9);  // three columns
+  CHECK(bare.height == doctest::Approx(bare.blocks[0].panels[5].box.max().y()));
+  block.texts = {"(a)", "(b)", "(c)", "(d)", "(e)", "(f)"};
+  const FigureLayout lettered = lay_out({block}, {}, {}, "", at_width(240));
+  CHECK(lettered.height > bare.height + 15);
+  const std::vector<render::LegendItem> legend = {{render::LegendItem::Mark::solid, {}, "A"}};
+  CHECK(lay_out({block}, legend, {}, "", at_width(240)).height > lettered.height + 8);
+  CHECK(lay_out({block}, {}, render::ScaleBar{"tests", 0, 9}, "", at_width(240)).height >
+        lettered.height + 16);
+  CHECK(lay_out({block}, {}, {}, "What it shows.", at_width(240)).height > lettered.height + 8);
+}
+
+TEST_CASE("panels that differ in size keep one scale, and their places in row and column") {
+  Block block = squares(4);
+  block.seen[3] = AlignedBox2d(Vector2d(20, 30), Vector2d(60, 60));  // smaller, inside
+  LayoutOptions o = at_width(200);
+  o.columns = 2;
+  const FigureLayout layout = lay_out({block}, {}, {}, "", o);
+  const auto& panels = layout.blocks[0].panels;
+  CHECK(panels[3].seen_from == Vector2d(0, 0));  // as its neighbours, so that nothing jumps
+  CHECK(panels[3].box.sizes().isApprox(panels[0].box.sizes()));
+  CHECK(panels[0].box.sizes().x() == doctest::Approx(100 * layout.blocks[0].scale + 2 * o.margin));
+  o.columns = 26;
+  o.width = 60;
+  Block many = squares(26);
+  CHECK_THROWS_AS(lay_out({many}, {}, {}, "", o), InputError);
+  CHECK_THROWS_AS(
+      lay_out({block}, {{render::LegendItem::Mark::solid, {}, std::string(60, 'w')}}, {}, "", at_width(100)),
+      InputError);
+}
+
+TEST_CASE("panels lie on the grid of pixels") {
+  LayoutOptions o = at_width(241);
+  o.grid = 0.24;
+  const FigureLayout layout = lay_out({squares(5)}, {}, {}, "", o);
+  for (const PanelPlace& p : layout.blocks[0].panels)
+    for (const double x : {p.box.min().x(), p.box.min().y(), p.box.max().x(), p.box.max().y()})
+      CHECK(std::abs(x / o.grid - std::round(x / o.grid)) < 1e-9);
+}
+
+TEST_CASE("a figure of a 2D body is lines and text, and no pixels") {
+  const Shipped s("figure2");
+  FigureSpec spec;
+  spec.format = FigureSpec::Format::svg;
+  const Figure svg = draw_figure(s.run, {}, spec, kSilent);
+  CHECK(svg.panels == 6);
+  CHECK(count(svg.bytes, "<image") == 0);
+  CHECK(count(svg.bytes, ">(f)</text>") == 1);
+  CHECK(count(svg.bytes, ">island, wrapper</text>") == 1);
+  CHECK(svg.caption.find("(a) outermost wrapper, 8 faces; (b)") != std::string::npos);
+  spec.legend = false;
+  const Figure bare = draw_figure(s.run, {}, spec, kSilent);
+  CHECK(count(bare.bytes, ">island, wrapper</text>") == 0);
+  spec.titles = true;
+  CHECK(count(draw_figure(s.run, {}, spec, kSilent).bytes, "(a) outermost") == 1);
+  spec.format = FigureSpec::Format::pdf;
+  const Figure pdf = draw_figure(s.run, {}, spec, kSilent);
+  CHECK(count(pdf.bytes, "/Subtype /Image") == 0);
+  CHECK(pdf.bytes == draw_figure(s.run, {}, spec, kSilent).bytes);
+}
+
+TEST_CASE("a figure of 3D bodies: faces as pixels, contacts and texts as lines and text") {
+  const Shipped s("stick_through_wall");
+  FigureSpec spec;
+  spec.format = FigureSpec::Format::svg;
+  spec.dpi = 150;
+  spec.choice.panels = 2;
+  const Figure svg = draw_figure(s.run, {}, spec, kSilent);
+  CHECK(count(svg.bytes, "<image") == svg.panels);
+  CHECK(count(svg.bytes, "stroke=\"#c41230\"") > 0);  // palette::kContact
+  CHECK(count(svg.bytes, ">(a)</text>") == 1);
+  spec.format = FigureSpec::Format::png;
+  const Figure png = draw_figure(s.run, {}, spec, kSilent);
+  const auto bytes = std::vector<std::uint8_t>(png.bytes.begin(), png.bytes.end());
+  const render::DecodedPng read = render::decode_png(bytes);
+  CHECK(read.image.width() == static_cast<int>(std::ceil(85 / 25.4 * 150)));
+  CHECK(read.dpi == doctest::Approx(150).epsilon(0.001));
+}
+
+TEST_CASE("colours that mean numbers mean the same in all panels") {
+  const Shipped s("collision");
+  FigureSpec spec;
+  spec.format = FigureSpec::Format::svg;
+  spec.dpi = 40;
+  spec::FrameSpec frames;
+  frames.colour_by = spec::FrameSpec::ColourBy::face_tests;
+  const Figure all = draw_figure(s.run, frames, spec, kSilent);
+  CHECK(count(all.bytes, ">face tests</text>") == 1);
+}
+
+TEST_CASE("lrbscope figure: files, and what it refuses before it writes anything") {
+  const test::Folder folder;
+  test::Outcome o =
+      test::run(folder, {"figure", "figure1", "-o", "out/fig.pdf", "--width", "60mm", "--caption"});
+  CAPTURE(o.err);
+  CHECK(o.code == 0);
+  CHECK(o.out == "out/fig.pdf\n");
+  CHECK(test::slurp(folder / "out/fig.pdf").starts_with("%PDF"));
+  CHECK(!test::slurp(folder / "out/fig.caption.txt").empty());
+  folder.write("cube.obj", test::kCube);
+  CHECK(test::run(folder, {"figure", "cube.obj", "-o", "cube.svg", "--columns", "1", "--up", "y"}).code == 0);
+  const std::vector<std::vector<std::string>> bad = {
+      {"figure", "figure1", "-o", "fig.eps"},
+      {"figure", "figure1", "-o", "fig.pdf", "--width", "85"},
+      {"figure", "figure1", "-o", "fig.pdf", "--width", "2mm"},
+      {"figure", "figure1", "-o", "fig.pdf", "--line-width", "0.1pt"},
+      {"figure", "figure1", "-o", "fig.pdf", "--font-size", "90"},
+      {"figure", "figure2", "-o", "fig.pdf", "--columns", "20", "--panels", "26"},
+      {"figure", "figure2", "-o", "fig.pdf", "--panels", "3", "--faces", "20"},
+      {"figure", "figure2", "-o", "fig.pdf", "--steps", "3"},
+      {"figure", "figure2", "-o", "fig.pdf", "--colour-by", "box_tests"},
+      {"figure", "cube.obj", "-o", "fig.pdf", "--from", "0,0,1"},
+      {"figure", "no such scenario", "-o", "fig.pdf"},
+      {"figure", ".", "-o", "fig.pdf"},
+      {"figure", "missing.obj", "-o", "fig.pdf"},
+  };
+  for (const auto& arguments : bad) test::check_refused(folder, arguments);
+}
