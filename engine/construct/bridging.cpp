@@ -33,53 +33,78 @@ PointTriangle smallest_first(const PointTriangle& t) {
   return {t[i], t[(i + 1) % 3], t[(i + 2) % 3]};
 }
 
-bool are_clear(const HullMesh& hull, const std::vector<PointTriangle>& added) {
+CapVerdict judge(const HullMesh& hull, const std::vector<PointTriangle>& added) {
   const AabbTree tree(hull);
   std::vector<CheckedTriangle> checked;
   for (const PointTriangle& t : added)
     checked.emplace_back(hull.point(t[0]), hull.point(t[1]), hull.point(t[2]));
   for (std::size_t i = 0; i < checked.size(); ++i) {
     for (std::size_t j = 0; j < i; ++j)
-      if (!checked[i].clear_of(checked[j])) return false;
+      if (!checked[i].clear_of(checked[j])) return CapVerdict::meets_itself;
     bool clear = true;
     tree.for_each_in(checked[i].box, [&](Slot s) {
       const auto& v = hull[s].v;
       clear = clear && checked[i].clear_of({hull.point(v[0]), hull.point(v[1]), hull.point(v[2])});
     });
-    if (!clear) return false;
+    if (!clear) return CapVerdict::meets_hull;
   }
-  return true;
+  return CapVerdict::stands;
+}
+
+/// The faces of the convex hull that are not the hull's own already, and what they cover.
+struct Bridge {
+  std::vector<PointTriangle> added;
+  std::vector<Slot> removed;
+};
+
+/// Finds them, among all faces of the convex hull, which are ascending. Triangles that are in both stay.
+Bridge find_bridge(const HullMesh& hull, const std::vector<Slot>& slots, std::vector<PointTriangle> convex) {
+  Bridge bridge;
+  std::vector<PointTriangle> kept;
+  for (const Slot s : slots) {
+    const PointTriangle t = smallest_first(hull[s].v);
+    if (std::binary_search(convex.begin(), convex.end(), t))
+      kept.push_back(t);
+    else
+      bridge.removed.push_back(s);
+  }
+  std::sort(kept.begin(), kept.end());
+  std::erase_if(convex,
+                [&](const PointTriangle& t) { return std::binary_search(kept.begin(), kept.end(), t); });
+  bridge.added = std::move(convex);
+  return bridge;
+}
+
+CapVerdict judge(const HullMesh& hull, const std::vector<Slot>& slots, std::size_t convex_faces,
+                 const Bridge& bridge) {
+  if (convex_faces == 0) return CapVerdict::flat;
+  const bool worth = static_cast<double>(convex_faces) <= kLastCapWorth * static_cast<double>(slots.size());
+  if (!worth || bridge.removed.empty()) return CapVerdict::too_many_faces;
+  return judge(hull, bridge.added);
 }
 
 }  // namespace
 
-bool bridge_concavities(HullMesh& hull, ComplexBuilder& complex, const std::vector<bool>& joined,
-                        std::uint16_t layer) {
+CapVerdict bridge_concavities(HullMesh& hull, ComplexBuilder& complex, const std::vector<bool>& joined,
+                              std::uint16_t layer, ConstructProbe* probe) {
   std::vector<Slot> slots = hull.alive_slots();
   std::erase_if(slots, [&](Slot s) { return !joined[hull[s].component]; });
-  std::vector<PointTriangle> added = convex_hull_of(hull, slots);
-  if (added.empty()) return false;
-  for (PointTriangle& t : added) t = smallest_first(t);
-  std::sort(added.begin(), added.end());
-  // Triangles that are in both stay.
-  std::vector<PointTriangle> kept;
-  std::vector<Slot> removed;
-  for (const Slot s : slots) {
-    const PointTriangle t = smallest_first(hull[s].v);
-    if (std::binary_search(added.begin(), added.end(), t))
-      kept.push_back(t);
-    else
-      removed.push_back(s);
+  std::vector<PointTriangle> convex = convex_hull_of(hull, slots);
+  for (PointTriangle& t : convex) t = smallest_first(t);
+  std::sort(convex.begin(), convex.end());
+  const std::size_t convex_faces = convex.size();
+  const Bridge bridge = find_bridge(hull, slots, std::move(convex));
+  const CapVerdict verdict = judge(hull, slots, convex_faces, bridge);
+  if (probe) {
+    probe->patch({hull.point(hull[slots[0]].v[0]).id, static_cast<std::uint32_t>(slots.size()), 0});
+    probe->cap({static_cast<std::uint32_t>(bridge.added.size()),
+                static_cast<std::uint32_t>(bridge.removed.size()), verdict, false, -1});
   }
-  if (static_cast<double>(added.size()) > kLastCapWorth * static_cast<double>(slots.size())) return false;
-  std::sort(kept.begin(), kept.end());
-  std::erase_if(added,
-                [&](const PointTriangle& t) { return std::binary_search(kept.begin(), kept.end(), t); });
-  if (removed.empty() || !are_clear(hull, added)) return false;
+  if (verdict != CapVerdict::stands) return verdict;
   const std::uint32_t component = hull[slots[0]].component;
   for (const Slot s : slots) hull.set_component(s, component);
-  cover(hull, complex, make_sheet(hull, removed, added), layer, component);
-  return true;
+  cover(hull, complex, make_sheet(hull, bridge.removed, bridge.added), layer, component, probe);
+  return verdict;
 }
 
 }  // namespace lrb::construct

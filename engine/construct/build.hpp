@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <functional>
 
+#include "engine/construct/construct_probe.hpp"
 #include "engine/lrb/lrb_rep.hpp"
 #include "engine/mesh/checked_mesh.hpp"
 #include "engine/mesh/mesh.hpp"
@@ -21,6 +22,7 @@ struct BuildOptions {
   unsigned threads = 1;    ///< 0: as many as the machine runs at once. The result does not depend on it
   /// Called after each pass with the pass's number and the number of faces of the hull. May be empty.
   std::function<void(std::uint32_t pass, std::uint32_t hull_faces)> progress;
+  ConstructProbe* probe = nullptr;  ///< is told everything that happens; null: nobody. Must outlive the build
 };
 
 /// Builds by patch caps on progressive hulls (patch_builder.hpp); 2D meshes go through chain_builder.hpp. The

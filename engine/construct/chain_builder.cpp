@@ -45,8 +45,10 @@ class ChainBuilder {
     simplify(kCapWorth);
     simplify(kLastCapWorth);
     if (outer_size() > max_outer_ && bridge()) simplify(kLastCapWorth);
-    fill_voids(hull_, home_, passes_.layer(), complex_);
-    if (outer_size() > max_outer_) close();
+    fill();
+    const std::uint32_t outer = outer_size();
+    const bool is_closed = outer > max_outer_ && close();
+    if (options_.probe) options_.probe->closed(is_closed ? polygon_size() : outer);
     return complex_.finish(true, false);
   }
 
@@ -113,56 +115,97 @@ class ChainBuilder {
     for (const Box& b : boxes_) box.extend(b);
     fit_hulls(
         box.sizes().maxCoeff(), frozen_.size(), kFitDownTo, [&] { return hull_.segment_count(); },
-        [&](const CapGoal& goal) { pass(goal); });
+        [&](const CapGoal& goal) { pass(BuildStage::fit, goal); });
   }
 
   void simplify(double worth) {
     for (;;) {
       const std::uint32_t before = hull_.segment_count();
       if (before <= max_outer_) return;
-      pass({worth});
+      pass(BuildStage::simplify, {worth});
       if (hull_.segment_count() > kLeastGain * before) return;
     }
   }
 
+  struct Proposal {
+    double cost;
+    ChainCap cap;
+    CapVerdict verdict;
+    VertexId start;  ///< of the chain
+  };
+
   /// Puts on the caps that add least area for each segment they save, on chains that do not overlap.
-  void pass(const CapGoal& goal) {
+  void pass(BuildStage stage, const CapGoal& goal) {
     const std::vector<Slot> slots = hull_.alive_slots();
     std::vector<Box> slot_boxes(hull_.slot_count());
     for (const Slot s : slots) slot_boxes[s] = box_of(hull_, s);
     AabbTree tree(slots, slot_boxes);
-    struct Proposal {
-      double cost;
-      ChainCap cap;
-    };
-    std::vector<Proposal> proposals;
+    passes_.tell_begin(stage, hull_.segment_count(), goal.off);
+    PassEnd end;
     std::vector<bool> taken(hull_.slot_count(), false);
-    for (const Slot s : slots) taken[s] = hull_[s].face < frozen_.size() && frozen_[hull_[s].face];
-    const std::uint32_t longest = std::max(options_.patch_interior / 4, 1u) + 1;
     for (const Slot s : slots) {
-      std::uint32_t length = 1;
-      for (Slot t = s; length <= longest && !taken[t] && hull_[t].next != s; t = hull_[t].next, ++length) {
-        if (length < 2) continue;
-        auto cap = find_cap(hull_, s, length, bounds_, kCapVolumeLimit);
-        if (!cap || (cap->apex && length < 3)) continue;
-        const double saved = length - (cap->apex ? 2.0 : 1.0);
-        if ((cap->apex ? 2.0 : 1.0) > goal.worth * length) continue;
-        if (goal.off > 0 && !measure_cap(hull_, *cap, goal.off)) continue;
-        proposals.push_back({cap->area / saved, *cap});
-      }
+      taken[s] = hull_[s].face < frozen_.size() && frozen_[hull_[s].face];
+      end.barred += taken[s];
     }
-    std::stable_sort(proposals.begin(), proposals.end(),
-                     [](const Proposal& p, const Proposal& q) { return p.cost < q.cost; });
-    for (const Proposal& p : proposals) {
+    for (const Proposal& p : find_proposals(slots, taken, goal)) {
       const auto chain = chain_of_untaken(p.cap, taken);
-      if (chain.empty() || !chain_cap_is_clear(hull_, tree, p.cap, boxes_)) continue;
+      const CapVerdict verdict =
+          chain.empty() ? CapVerdict::overlaps : judge_chain_cap(hull_, tree, p.cap, boxes_);
+      tell_cap(p, verdict, goal.off);
+      if (verdict != CapVerdict::stands) continue;
       for (const Slot s : replace(p.cap, chain)) {
         taken[s] = true;
         tree.update(s, box_of(hull_, s));
       }
       for (const Slot s : chain) taken[s] = true;
     }
+    end.hull_faces = hull_.segment_count();
+    passes_.tell_end(end);
     end_pass();
+  }
+
+  /// Returns caps over all chains that are worth it, those that add least area for each segment they save first.
+  std::vector<Proposal> find_proposals(const std::vector<Slot>& slots, const std::vector<bool>& taken,
+                                       const CapGoal& goal) const {
+    std::vector<Proposal> proposals;
+    const std::uint32_t longest = std::max(options_.patch_interior / 4, 1u) + 1;
+    for (const Slot s : slots) {
+      std::uint32_t length = 1;
+      std::optional<Proposal> refused;
+      const std::size_t before = proposals.size();
+      for (Slot t = s; length <= longest && !taken[t] && hull_[t].next != s; t = hull_[t].next, ++length) {
+        if (length < 2) continue;
+        const Proposal p = propose(s, length, goal);
+        if (p.verdict == CapVerdict::stands) proposals.push_back(p);
+        if (!refused || p.verdict < refused->verdict) refused = p;
+      }
+      if (refused && proposals.size() == before) tell_cap(*refused, refused->verdict, 0);
+    }
+    std::stable_sort(proposals.begin(), proposals.end(),
+                     [](const Proposal& p, const Proposal& q) { return p.cost < q.cost; });
+    return proposals;
+  }
+
+  /// Finds a cap over a chain; it stands if it is worth it, whatever else it may meet.
+  Proposal propose(Slot first, std::uint32_t length, const CapGoal& goal) const {
+    CapVerdict why = CapVerdict::stands;
+    auto cap = find_cap(hull_, first, length, bounds_, kCapVolumeLimit, why);
+    const VertexId start = hull_[first].a;
+    if (!cap) return {0, ChainCap{first, length, std::nullopt, 0, 0, {0, 0}}, why, start};
+    if (cap->segments() >= length || cap->segments() > goal.worth * length)
+      return {0, *cap, CapVerdict::too_many_faces, start};
+    if (goal.off > 0 && !measure_cap(hull_, *cap, goal.off)) return {0, *cap, CapVerdict::too_thick, start};
+    return {cap->area / (length - cap->segments()), *cap, CapVerdict::stands, start};
+  }
+
+  /// `most_off`: how far it may stand off the body, if that was measured; else 0.
+  void tell_cap(const Proposal& p, CapVerdict verdict, double most_off) const {
+    if (!options_.probe) return;
+    const ChainCap& cap = p.cap;
+    const bool measured = verdict == CapVerdict::stands && most_off > 0;
+    options_.probe->patch({p.start, cap.length, cap.length - 1});
+    options_.probe->cap(
+        {cap.segments(), cap.length, verdict, false, measured ? std::min(most_off, off_of(hull_, cap)) : -1});
   }
 
   /// Returns the cap's chain if all of it is still there and free, else nothing.
@@ -184,6 +227,7 @@ class ChainBuilder {
     if (cap.apex) complex_.add_vertex(*cap.apex);
     std::vector<Slot> added = add_segments(chain, corners, region);
     for (std::size_t i = 0; i < added.size(); ++i) hull_.set_extra(added[i], cap.extra[i]);
+    if (options_.probe) options_.probe->region(region);
     return added;
   }
 
@@ -208,18 +252,34 @@ class ChainBuilder {
 
   /// Makes regions of the pockets between a single outline and its convex hull.
   bool bridge() {
+    passes_.tell_begin(BuildStage::bridge, hull_.segment_count());
+    std::vector<ChainCap> caps;
+    const CapVerdict verdict = find_bridge(caps);
+    std::uint32_t covered = 0;
+    for (const ChainCap& cap : caps) covered += cap.length;
+    tell_whole_cap(static_cast<std::uint32_t>(caps.size()), covered, verdict);
+    const bool stands = verdict == CapVerdict::stands;
+    if (stands)
+      for (const ChainCap& cap : caps) replace(cap, chain_of(hull_, cap.first, cap.length));
+    passes_.tell_end({.hull_faces = hull_.segment_count()});
+    if (stands) end_pass();
+    return stands;
+  }
+
+  /// Finds the sides of the convex hull that are not the outline's own. Returns whether they may stand.
+  CapVerdict find_bridge(std::vector<ChainCap>& caps) const {
     const std::vector<Slot> slots = outer_slots();
     for (const Slot s : slots)
-      if (hull_[s].component != hull_[slots[0]].component) return false;
+      if (hull_[s].component != hull_[slots[0]].component) return CapVerdict::several_outlines;
     // Use positions along the outline, so that a side of the hull covers the chain between its ends.
     const std::vector<Slot> outline = chain_of(hull_, slots[0], static_cast<std::uint32_t>(slots.size()));
     std::vector<Vector3> points;
     for (const Slot s : outline) points.push_back(hull_.start(s));
     std::vector<std::uint32_t> corners = convex_outline(points);
-    if (corners.size() < 3) return false;
+    if (corners.size() < 3) return CapVerdict::flat;
     std::rotate(corners.begin(), std::min_element(corners.begin(), corners.end()), corners.end());
-    if (!std::is_sorted(corners.begin(), corners.end())) return false;  // the outline crosses itself
-    std::vector<ChainCap> caps;
+    if (!std::is_sorted(corners.begin(), corners.end()))
+      return CapVerdict::flat;  // the outline crosses itself
     std::vector<Box> slot_boxes(hull_.slot_count());
     for (const Slot s : hull_.alive_slots()) slot_boxes[s] = box_of(hull_, s);
     const AabbTree tree(hull_.alive_slots(), slot_boxes);
@@ -228,25 +288,56 @@ class ChainBuilder {
           i + 1 < corners.size() ? corners[i + 1] : corners[0] + static_cast<std::uint32_t>(points.size());
       const ChainCap cap{outline[corners[i]], next - corners[i], std::nullopt, 0, 0, {0, 0}};
       if (cap.length < 2) continue;
-      if (!chain_cap_is_clear(hull_, tree, cap, boxes_)) return false;
       caps.push_back(cap);
+      const CapVerdict verdict = judge_chain_cap(hull_, tree, cap, boxes_);
+      if (verdict != CapVerdict::stands) return verdict;
     }
-    for (const ChainCap& cap : caps) replace(cap, chain_of(hull_, cap.first, cap.length));
-    if (!caps.empty()) end_pass();
-    return !caps.empty();
+    return caps.empty() ? CapVerdict::too_many_faces : CapVerdict::stands;
   }
 
-  void close() {
+  /// Tells of a cap over the outer outlines as a whole, and how much of them it covers.
+  void tell_whole_cap(std::uint32_t segments, std::uint32_t covered, CapVerdict verdict) const {
+    if (!options_.probe) return;
+    const std::vector<Slot> slots = outer_slots();
+    options_.probe->patch({hull_[slots.front()].a, static_cast<std::uint32_t>(slots.size()), 0});
+    options_.probe->cap({segments, covered, verdict, false, -1});
+  }
+
+  void fill() {
+    const std::uint32_t before = complex_.region_count(), faces = hull_.segment_count();
+    fill_voids(hull_, home_, passes_.layer(), complex_);
+    if (complex_.region_count() == before) return;
+    passes_.tell_begin(BuildStage::fill, faces);
+    passes_.tell_regions(complex_, before);
+    passes_.tell_end({.hull_faces = outer_size()});
+  }
+
+  /// Puts the outermost wrapper around everything. Returns false if there can be none.
+  bool close() {
+    const std::uint32_t outer = outer_size(), before = complex_.region_count();
+    passes_.tell_begin(BuildStage::close, outer);
+    const CapVerdict verdict = find_closing();
+    tell_whole_cap(polygon_size(), outer, verdict);
+    const bool stands = verdict == CapVerdict::stands;
+    if (stands) enclose(hull_, home_, outline_mesh(polygon_), passes_.layer(), complex_);
+    passes_.tell_regions(complex_, before);
+    passes_.tell_end({.hull_faces = stands ? polygon_size() : outer});
+    if (stands) end_pass();
+    return stands;
+  }
+
+  CapVerdict find_closing() {
     const auto points = outer_points();
     const auto holds_all = [&] {
-      return !polygon_.empty() && std::all_of(points.begin(), points.end(),
-                                              [&](const Vector3& p) { return holds_2d(polygon_, p); });
+      return std::all_of(points.begin(), points.end(),
+                         [&](const Vector3& p) { return holds_2d(polygon_, p); });
     };
-    if (!holds_all()) polygon_ = enclosing_polygon(points, max_outer_, kPolytopeDistance);
-    if (!holds_all()) return;
-    enclose(hull_, home_, outline_mesh(polygon_), passes_.layer(), complex_);
-    end_pass();
+    if (polygon_.empty() || !holds_all()) polygon_ = enclosing_polygon(points, max_outer_, kPolytopeDistance);
+    if (polygon_.empty()) return CapVerdict::too_far_out;
+    return holds_all() ? CapVerdict::stands : CapVerdict::leaves_out;
   }
+
+  std::uint32_t polygon_size() const { return static_cast<std::uint32_t>(polygon_.size()); }
 
   static Mesh outline_mesh(const std::vector<Vector3>& polygon) {
     Mesh mesh;

@@ -128,7 +128,7 @@ std::vector<Slot> chain_of(const HullLoops& hull, Slot first, std::uint32_t leng
 }
 
 std::optional<ChainCap> find_cap(const HullLoops& hull, Slot first, std::uint32_t length,
-                                 std::span<const HalfSpace> bounds, double area_limit) {
+                                 std::span<const HalfSpace> bounds, double area_limit, CapVerdict& why) {
   const std::vector<Slot> chain = chain_of(hull, first, length);
   const Vector3 &a = hull.start(chain.front()), &b = hull.end(chain.back());
   ChainCap cap{first, length, std::nullopt, 0, 0, {0, 0}};
@@ -140,12 +140,14 @@ std::optional<ChainCap> find_cap(const HullLoops& hull, Slot first, std::uint32_
     cap.area -= cross_2d(hull.start(s) - a, hull.end(s) - a) / 2;
   }
   if (!chord) {
+    why = CapVerdict::no_place;
     cap.apex = find_apex(hull, chain, bounds, size / 2);
     if (!cap.apex) return std::nullopt;
     for (const Slot s : chain)
       if (turn(hull.start(s), hull.end(s), *cap.apex) >= 0) return std::nullopt;
     cap.area += cross_2d(*cap.apex - a, b - a) / 2;
   }
+  why = CapVerdict::too_much_volume;
   if (!(cap.area <= area_limit * size * size)) return std::nullopt;
   return cap;
 }
@@ -164,8 +166,15 @@ bool measure_cap(const HullLoops& hull, ChainCap& cap, double most) {
                           cap.extra[1]);
 }
 
-bool chain_cap_is_clear(const HullLoops& hull, const AabbTree& tree, const ChainCap& cap,
-                        std::span<const Eigen::AlignedBox3d> boxes) {
+double off_of(const HullLoops& hull, const ChainCap& cap) {
+  const std::vector<Slot> chain = chain_of(hull, cap.first, cap.length);
+  const double first = hull.off(hull[chain.front()].a), last = hull.off(hull[chain.back()].b);
+  if (!cap.apex) return std::max(first, last) + cap.extra[0];
+  return std::max(std::max(first, cap.apex_off) + cap.extra[0], std::max(cap.apex_off, last) + cap.extra[1]);
+}
+
+CapVerdict judge_chain_cap(const HullLoops& hull, const AabbTree& tree, const ChainCap& cap,
+                           std::span<const Eigen::AlignedBox3d> boxes) {
   const std::vector<Slot> chain = chain_of(hull, cap.first, cap.length);
   const Slot front = chain.front(), back = chain.back();
   const Vector3 &a = hull.start(front), &b = hull.end(back);
@@ -173,26 +182,29 @@ bool chain_cap_is_clear(const HullLoops& hull, const AabbTree& tree, const Chain
   if (cap.apex) {
     added.emplace_back(a, hull[front].a, *cap.apex, kNull);
     added.emplace_back(*cap.apex, kNull, b, hull[back].b);
-    if (!added[0].clear_of(added[1])) return false;
+    if (!added[0].clear_of(added[1])) return CapVerdict::meets_itself;
   } else {
     added.emplace_back(a, hull[front].a, b, hull[back].b);
   }
   // The outside is to the right: at a vertex it lies between the incoming segment and the outgoing one.
-  if (!in_sector(a, hull.start(hull[front].prev), hull.end(front), *added.front().b)) return false;
-  if (!in_sector(b, hull.start(back), hull.end(hull[back].next), *added.back().a)) return false;
+  if (!in_sector(a, hull.start(hull[front].prev), hull.end(front), *added.front().b) ||
+      !in_sector(b, hull.start(back), hull.end(hull[back].next), *added.back().a))
+    return CapVerdict::turns_inward;
   Eigen::AlignedBox3d box = added.front().box;
   box.extend(added.back().box);
   for (const Slot s : chain) box.extend(box_of(hull, s));  // another component may lie in between
-  bool clear = true;
+  CapVerdict verdict = CapVerdict::stands;
   tree.for_each_in(box, [&](Slot s) {
-    if (!clear || !hull.alive(s)) return;
+    if (verdict != CapVerdict::stands || !hull.alive(s)) return;
     const CheckedSegment other = checked(hull, s);
-    for (const CheckedSegment& t : added) clear = clear && t.clear_of(other);
+    for (const CheckedSegment& t : added)
+      if (!t.clear_of(other)) verdict = CapVerdict::meets_hull;
     const std::uint32_t component = hull[s].component;
-    if (component != hull[front].component && box.contains(boxes[component]))
-      clear = clear && !region_holds(hull, chain, added, hull.start(s));
+    if (verdict == CapVerdict::stands && component != hull[front].component &&
+        box.contains(boxes[component]) && region_holds(hull, chain, added, hull.start(s)))
+      verdict = CapVerdict::holds_component;
   });
-  return clear;
+  return verdict;
 }
 
 }  // namespace lrb::construct

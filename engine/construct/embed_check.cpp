@@ -59,8 +59,8 @@ bool TriangleReach::may_meet(const Box& other) const {
   return !(std::abs(normal_.dot(from_corner)) > reach);
 }
 
-bool EmbedCheck::cap_is_clear(const Patch& patch, const CapSurface& cap) {
-  if (!ring_turns_outward(patch, cap)) return false;
+CapVerdict EmbedCheck::judge_cap(const Patch& patch, const CapSurface& cap) {
+  if (!ring_turns_outward(patch, cap)) return CapVerdict::turns_inward;
   added_.clear();
   obstacles_.clear();
   Box box;
@@ -72,20 +72,20 @@ bool EmbedCheck::cap_is_clear(const Patch& patch, const CapSurface& cap) {
     added_.emplace_back(points[f.v[0]], points[f.v[1]], points[f.v[2]]);
     box.extend(added_.back().box);
   }
-  for (std::size_t i = 0; i < added_.size(); ++i)
-    for (std::size_t j = 0; j < i; ++j)
-      if (!added_[i].clear_of(added_[j])) return false;
+  if (added_meet_each_other()) return CapVerdict::meets_itself;
   add_patch(patch);
+  const std::size_t of_patch = obstacles_.size();
   if (component_boxes_.size() > 1)  // another component may lie in between, under the cap and clear of it
     for (const CheckedTriangle& t : obstacles_) box.extend(t.box);
   gather_hull(patch, cap, box);
-  if (!added_are_clear()) return false;
-  return component_boxes_.size() < 2 || !encloses_component(patch, cap, box);
+  const CapVerdict verdict = judge_added(of_patch);
+  if (verdict != CapVerdict::stands || component_boxes_.size() < 2) return verdict;
+  return encloses_component(patch, cap, box) ? CapVerdict::holds_component : CapVerdict::stands;
 }
 
-bool EmbedCheck::fan_is_clear(const Patch& patch, const CapSurface& cap, const CapSurface::Star& star,
-                              const HullMesh::Point& w) {
-  if (!rim_turns_outward(cap, star, w.x)) return false;
+CapVerdict EmbedCheck::judge_fan(const Patch& patch, const CapSurface& cap, const CapSurface::Star& star,
+                                 const HullMesh::Point& w) {
+  if (!rim_turns_outward(cap, star, w.x)) return CapVerdict::turns_inward;
   added_.clear();
   obstacles_.clear();
   Box box;
@@ -98,12 +98,11 @@ bool EmbedCheck::fan_is_clear(const Patch& patch, const CapSurface& cap, const C
   }
   for (const auto& f : cap.faces())
     if (f.alive && f.kept < 0) obstacles_.emplace_back(points[f.v[0]], points[f.v[1]], points[f.v[2]]);
-  for (std::size_t i = 0; i < added_.size(); ++i)
-    for (std::size_t j = 0; j < i; ++j)
-      if (!added_[i].clear_of(added_[j])) return false;
+  if (added_meet_each_other()) return CapVerdict::meets_itself;
   add_patch(patch);
+  const std::size_t of_patch = obstacles_.size();
   gather_hull(patch, cap, box);
-  return added_are_clear();
+  return judge_added(of_patch);
 }
 
 void EmbedCheck::add_patch(const Patch& patch) {
@@ -145,11 +144,19 @@ void EmbedCheck::gather_strangers(const Patch& patch, const Box& box) {
   });
 }
 
-bool EmbedCheck::added_are_clear() const {
+bool EmbedCheck::added_meet_each_other() const {
+  for (std::size_t i = 0; i < added_.size(); ++i)
+    for (std::size_t j = 0; j < i; ++j)
+      if (!added_[i].clear_of(added_[j])) return true;
+  return false;
+}
+
+/// Compares the new triangles with the obstacles; the first `of_patch` are the cap's own and the patch's.
+CapVerdict EmbedCheck::judge_added(std::size_t of_patch) const {
   for (const CheckedTriangle& t : added_)
-    for (const CheckedTriangle& o : obstacles_)
-      if (!t.clear_of(o)) return false;
-  return true;
+    for (std::size_t i = 0; i < obstacles_.size(); ++i)
+      if (!t.clear_of(obstacles_[i])) return i < of_patch ? CapVerdict::meets_patch : CapVerdict::meets_hull;
+  return CapVerdict::stands;
 }
 
 /// If one neighbour is outside, all of the patch's component is: it is connected and meets the region's

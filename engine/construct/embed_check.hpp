@@ -10,6 +10,7 @@
 
 #include "engine/construct/aabb_tree.hpp"
 #include "engine/construct/cap_surface.hpp"
+#include "engine/construct/construct_probe.hpp"
 #include "engine/construct/hull_mesh.hpp"
 
 namespace lrb::construct {
@@ -45,12 +46,13 @@ class EmbedCheck {
   /// hides another.
   void set_component_boxes(std::vector<Eigen::AlignedBox3d> boxes) { component_boxes_ = std::move(boxes); }
 
-  /// Returns true if nothing meets the cap's new triangles, neither the hull outside the patch nor the patch
-  /// nor each other, and all of the hull outside the patch lies outside the region between patch and cap.
-  bool cap_is_clear(const Patch& patch, const CapSurface& cap);
+  /// Returns CapVerdict::stands if nothing meets the cap's new triangles, neither the hull outside the patch nor
+  /// the patch nor each other, and all of the hull outside the patch lies outside the region between patch and
+  /// cap; else what is in the way.
+  CapVerdict judge_cap(const Patch& patch, const CapSurface& cap);
   /// Does the same for a fan from w that is about to replace a star of the cap.
-  bool fan_is_clear(const Patch& patch, const CapSurface& cap, const CapSurface::Star& star,
-                    const HullMesh::Point& w);
+  CapVerdict judge_fan(const Patch& patch, const CapSurface& cap, const CapSurface::Star& star,
+                       const HullMesh::Point& w);
 
   /// Returns a box around all places at which the hull outside the patch was looked at, beyond the triangles
   /// that share a vertex with the patch.
@@ -61,7 +63,8 @@ class EmbedCheck {
   void gather_hull(const Patch& patch, const CapSurface& cap, const Eigen::AlignedBox3d& box);
   void gather_strangers(const Patch& patch, const Eigen::AlignedBox3d& box);
   void add_patch(const Patch& patch);
-  bool added_are_clear() const;
+  bool added_meet_each_other() const;
+  CapVerdict judge_added(std::size_t of_patch) const;
   bool ring_turns_outward(const Patch& patch, const CapSurface& cap) const;
   bool rim_turns_outward(const CapSurface& cap, const CapSurface::Star& star, const Eigen::Vector3d& w) const;
   bool encloses_component(const Patch& patch, const CapSurface& cap, const Eigen::AlignedBox3d& box);

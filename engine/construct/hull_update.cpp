@@ -48,6 +48,11 @@ void work_out(const HullMesh& hull, Sheet& sheet) {
   }
 }
 
+void tell(ConstructProbe& probe, std::uint32_t first_region, const RegionPieces& pieces) {
+  for (std::uint32_t p = 0; p < pieces.count; ++p) probe.region(RegionId(first_region + p));
+  if (pieces.merged > 0) probe.merged(RegionId(first_region + pieces.into), pieces.merged);
+}
+
 }  // namespace
 
 Sheet make_sheet(const HullMesh& hull, std::span<const Slot> removed, std::span<const PointTriangle> added) {
@@ -88,7 +93,7 @@ Sheet make_sheet(const HullMesh& hull, const Patch& patch, const CapSurface& cap
 }
 
 std::vector<Slot> cover(HullMesh& hull, ComplexBuilder& complex, const Sheet& sheet, std::uint16_t layer,
-                        std::uint32_t component) {
+                        std::uint32_t component, ConstructProbe* probe) {
   const Corner first_new = hull.point_count();
   for (std::size_t i = 0; i < sheet.new_points.size(); ++i)
     hull.add_point(sheet.new_points[i], complex.add_vertex(sheet.new_points[i]),
@@ -128,6 +133,7 @@ std::vector<Slot> cover(HullMesh& hull, ComplexBuilder& complex, const Sheet& sh
   }
   hull.remove(removed);
   for (std::size_t i = 0; i < slots.size(); ++i) hull.add(slots[i], triangles[i]);
+  if (probe) tell(*probe, first_region, sheet.pieces);
   return slots;
 }
 

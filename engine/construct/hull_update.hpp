@@ -8,6 +8,7 @@
 
 #include "engine/construct/cap_surface.hpp"
 #include "engine/construct/complex_builder.hpp"
+#include "engine/construct/construct_probe.hpp"
 #include "engine/construct/hull_mesh.hpp"
 #include "engine/construct/region_split.hpp"
 
@@ -43,8 +44,9 @@ Sheet make_sheet(const HullMesh& hull, const Patch& patch, const CapSurface& cap
 
 /// Takes the sheet's removed triangles out of the hull and puts the added ones in their place. These become
 /// pseudo faces of `component` with regions of this layer behind them and, for now, the outside in front; the
-/// faces that they cover get those regions in front. Returns the new slots.
+/// faces that they cover get those regions in front. Returns the new slots. Tells `probe` of the regions, if there
+/// is one.
 std::vector<HullMesh::Slot> cover(HullMesh& hull, ComplexBuilder& complex, const Sheet& sheet,
-                                  std::uint16_t layer, std::uint32_t component);
+                                  std::uint16_t layer, std::uint32_t component, ConstructProbe* probe);
 
 }  // namespace lrb::construct

@@ -48,8 +48,10 @@ class PatchBuilder {
     simplify(kCapWorth);
     simplify(kLastCapWorth);
     if (outer_size() > options_.max_outer_faces && bridge()) simplify(kLastCapWorth);
-    fill_voids(hull_, home_, passes_.layer(), complex_);
-    if (outer_size() > options_.max_outer_faces) close();
+    fill();
+    const std::uint32_t outer = outer_size();
+    const bool is_closed = outer > options_.max_outer_faces && close();
+    if (options_.probe) options_.probe->closed(is_closed ? polytope_size() : outer);
     return complex_.finish(true, false);
   }
 
@@ -61,6 +63,8 @@ class PatchBuilder {
     for (Slot s = 0; s < hull_.slot_count(); ++s) count += hull_.alive(s) && is_outer(s);
     return count;
   }
+
+  std::uint32_t polytope_size() const { return static_cast<std::uint32_t>(polytope_.face_count()); }
 
   std::vector<Eigen::Vector3d> outer_points() const {
     std::vector<Eigen::Vector3d> points;
@@ -74,7 +78,7 @@ class PatchBuilder {
     for (Corner v = 0; v < hull_.point_count(); ++v) box.extend(hull_.x(v));
     fit_hulls(
         box.sizes().maxCoeff(), frozen_.size(), kFitDownTo, [&] { return hull_.triangle_count(); },
-        [&](const CapGoal& goal) { pass(goal); });
+        [&](const CapGoal& goal) { pass(BuildStage::fit, goal); });
   }
 
   /// Makes passes until they no longer help. `worth`: the largest share of triangles that a cap may have.
@@ -82,12 +86,12 @@ class PatchBuilder {
     for (;;) {
       const std::uint32_t before = hull_.triangle_count();
       if (before <= options_.max_outer_faces) return;
-      pass({worth});
+      pass(BuildStage::simplify, {worth});
       if (hull_.triangle_count() > kLeastGain * before) return;
     }
   }
 
-  void pass(const CapGoal& goal) {
+  void pass(BuildStage stage, const CapGoal& goal) {
     const std::uint32_t triangles = hull_.triangle_count();
     if (triangles <= kPolytopeFrom) plan_polytope();
     // On a small hull patches are small, so that there are still several.
@@ -95,22 +99,54 @@ class PatchBuilder {
         goal.off > 0 ? kFitPatch * options_.patch_interior / 4 : options_.patch_interior;
     const std::uint32_t interior = std::max(kLeastInterior, std::min(most, triangles / kLeastPatches));
     if (!tree_ || !tree_->fits(hull_)) tree_.emplace(hull_);
-    PatchPass(hull_, *tree_, complex_, bounds_, frozen_, component_boxes_, workers_)
-        .run({interior, std::max(4 * interior, kLeastTriangles)}, goal, passes_.layer(), random_);
+    passes_.tell_begin(stage, triangles, goal.off);
+    PatchPass pass(hull_, *tree_, complex_, bounds_, frozen_, component_boxes_, workers_, options_.probe);
+    PassEnd end =
+        pass.run({interior, std::max(4 * interior, kLeastTriangles)}, goal, passes_.layer(), random_);
+    end.hull_faces = hull_.triangle_count();
+    passes_.tell_end(end);
     end_pass();
   }
 
   bool bridge() {
-    // The convex hull of thousands of points that lie in one plane takes as many steps as their pairs.
-    for (Slot s = 0; s < hull_.slot_count(); ++s)
-      if (hull_.alive(s) && hull_.is_crowded(s)) return false;
-    std::vector<bool> joined(hull_.component_count());
-    for (std::uint32_t c = 0; c < joined.size(); ++c) joined[c] = home_[c] == kNull;
-    plan_polytope();
-    if (!bridge_concavities(hull_, complex_, joined, passes_.layer())) return false;
+    passes_.tell_begin(BuildStage::bridge, hull_.triangle_count());
+    const bool stands = bridge_pockets();
+    passes_.tell_end({.hull_faces = hull_.triangle_count()});
+    if (!stands) return false;
     tree_.reset();
     end_pass();
     return true;
+  }
+
+  bool bridge_pockets() {
+    // The convex hull of thousands of points that lie in one plane takes as many steps as their pairs.
+    for (Slot s = 0; s < hull_.slot_count(); ++s)
+      if (hull_.alive(s) && hull_.is_crowded(s)) return tell_whole_cap(0, CapVerdict::too_crowded);
+    std::vector<bool> joined(hull_.component_count());
+    for (std::uint32_t c = 0; c < joined.size(); ++c) joined[c] = home_[c] == kNull;
+    plan_polytope();
+    return bridge_concavities(hull_, complex_, joined, passes_.layer(), options_.probe) == CapVerdict::stands;
+  }
+
+  /// Tells of a cap of so many faces over the outer hull as a whole. Returns whether it stands.
+  bool tell_whole_cap(std::uint32_t faces, CapVerdict verdict) const {
+    if (options_.probe) {
+      Slot first = 0;
+      while (!hull_.alive(first) || !is_outer(first)) ++first;
+      const std::uint32_t outer = outer_size();
+      options_.probe->patch({hull_.point(hull_[first].v[0]).id, outer, 0});
+      options_.probe->cap({faces, outer, verdict, false, -1});
+    }
+    return verdict == CapVerdict::stands;
+  }
+
+  void fill() {
+    const std::uint32_t before = complex_.region_count(), faces = hull_.triangle_count();
+    fill_voids(hull_, home_, passes_.layer(), complex_);
+    if (complex_.region_count() == before) return;
+    passes_.tell_begin(BuildStage::fill, faces);
+    passes_.tell_regions(complex_, before);
+    passes_.tell_end({.hull_faces = outer_size()});
   }
 
   /// Plans the outermost wrapper; from here on all hulls stay inside it.
@@ -127,18 +163,30 @@ class PatchBuilder {
     return box.sizes().maxCoeff();
   }
 
-  void close() {
+  /// Puts the outermost wrapper around everything. Returns false if there can be none.
+  bool close() {
+    const std::uint32_t outer = outer_size(), before = complex_.region_count();
+    passes_.tell_begin(BuildStage::close, outer);
+    const CapVerdict verdict = find_closing();
+    const bool stands = tell_whole_cap(polytope_size(), verdict);
+    if (stands) enclose(hull_, home_, polytope_, passes_.layer(), complex_);
+    passes_.tell_regions(complex_, before);
+    passes_.tell_end({.hull_faces = stands ? polytope_size() : outer});
+    if (stands) end_pass();
+    return stands;
+  }
+
+  CapVerdict find_closing() {
     plan_polytope();
     const std::vector<Eigen::Vector3d> points = outer_points();
     const auto holds_all = [&] {
       return std::all_of(points.begin(), points.end(), [&](const auto& p) { return holds(polytope_, p); });
     };
-    if (polytope_.face_count() == 0) return;
+    if (polytope_.face_count() == 0) return CapVerdict::too_far_out;
     if (!holds_all())
       polytope_ = enclosing_polytope(points, options_.max_outer_faces, kPolytopeDistance, workers_);
-    if (polytope_.face_count() == 0 || !holds_all()) return;
-    enclose(hull_, home_, polytope_, passes_.layer(), complex_);
-    end_pass();
+    if (polytope_.face_count() == 0) return CapVerdict::too_far_out;
+    return holds_all() ? CapVerdict::stands : CapVerdict::leaves_out;
   }
 
   void end_pass() { passes_.end_pass(complex_, hull_.triangle_count()); }

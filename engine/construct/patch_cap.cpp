@@ -1,7 +1,9 @@
 #include "engine/construct/patch_cap.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <initializer_list>
 #include <limits>
 
 #include <Eigen/Geometry>
@@ -36,7 +38,7 @@ void PatchCap::simplify(const Patch& patch, const Limits& limits) {
         std::push_heap(queue_.begin(), queue_.end());
         continue;
       }
-      if (confirm(*now))
+      if (confirm(*now) == CapVerdict::stands)
         collapse(*now);
       else if (!limits_.check)  // what the check finds may change far from here
         cap_.refuse(star_);
@@ -122,14 +124,14 @@ std::optional<PatchCap::Candidate> PatchCap::measure_star(int u, int v) {
   const double radius = std::sqrt(radius_sq);
   Candidate c{0, u, v, cap_.version(), {}};
   if (cap_.is_ring(v)) {
-    if (!ring_vertex_is_in_front(v, radius)) return std::nullopt;
+    if (!ring_vertex_is_in_front(v, radius)) return refuse(CapVerdict::no_place);
     c.w = cap_.x(v);
   } else {
     const auto w = place(radius, centre);
-    if (!w) return std::nullopt;
+    if (!w) return refuse(CapVerdict::no_place);
     c.w = *w;
   }
-  if (fits() && !limits_.gauge->may_stand(cap_, star_, c.w)) return std::nullopt;
+  if (fits() && !limits_.gauge->may_stand(cap_, star_, c.w)) return refuse(CapVerdict::too_thick);
   double volume = 0, area = 0;
   for (const int f : star_.faces) {
     const auto& plane = cap_.faces()[f].plane;
@@ -137,9 +139,9 @@ std::optional<PatchCap::Candidate> PatchCap::measure_star(int u, int v) {
     area += plane.area;
   }
   c.cost = volume / 3;
-  if (c.cost > limits_.volume) return std::nullopt;
+  if (c.cost > limits_.volume) return refuse(CapVerdict::too_much_volume);
   c.cost += kCapShapeWeight * area * std::sqrt(area) / shape_of_fan(c.w);
-  if (!(c.cost <= limits_.volume)) return std::nullopt;
+  if (!(c.cost <= limits_.volume)) return refuse(CapVerdict::too_thin);
   return c;
 }
 
@@ -218,17 +220,48 @@ double PatchCap::shape_of_fan(const Vector3& w) const {
   return worst * (2 * std::sqrt(3.0));
 }
 
-bool PatchCap::confirm(const Candidate& c) const {
-  if (limits_.gauge && !limits_.gauge->is_near(cap_, star_, c.w)) return false;
+/// Returns CapVerdict::stands if the collapse may be made, else why not.
+CapVerdict PatchCap::confirm(const Candidate& c) const {
+  if (limits_.gauge && !limits_.gauge->is_near(cap_, star_, c.w)) return CapVerdict::too_thick;
   for (const int f : star_.faces) {
     const auto& v = cap_.faces()[f].v;
     if (v[0] == c.v && cap_.is_ring(c.v)) continue;
     if ((v[1] == c.v || v[2] == c.v) && cap_.is_ring(c.v)) continue;
     if (exact::PlaneSide(cap_.x(v[0]).data(), cap_.x(v[1]).data(), cap_.x(v[2]).data()).side(c.w.data()) <= 0)
-      return false;
+      return CapVerdict::no_place;
   }
-  return !limits_.check ||
-         limits_.check->fan_is_clear(*patch_, cap_, star_, {c.w, cap_.is_ring(c.v) ? cap_.id(c.v) : kNull});
+  if (!limits_.check) return CapVerdict::stands;
+  return limits_.check->judge_fan(*patch_, cap_, star_, {c.w, cap_.is_ring(c.v) ? cap_.id(c.v) : kNull});
+}
+
+CapVerdict PatchCap::verdict_on_edge(int u, int v) {
+  if (fits() && cap_.is_ring(v) && cap_.is_behind_a_face_at(u, v)) return CapVerdict::no_place;
+  if (!cap_.find_star(u, v, star_)) return CapVerdict::no_surface;
+  const auto candidate = measure_star(u, v);
+  return candidate ? confirm(*candidate) : why_;
+}
+
+CapVerdict PatchCap::what_holds_back() {
+  std::array<std::uint32_t, kWords<CapVerdict>.size()> edges{};
+  for (int u = cap_.ring_size(); u < cap_.vertex_count(); ++u) {
+    if (!cap_.is_used(u)) continue;
+    cap_.for_each_neighbour(u, [&](int v) {
+      if (cap_.is_ring(v) || u < v) ++edges[static_cast<std::size_t>(verdict_on_edge(u, v))];
+    });
+  }
+  const auto most = [&](std::initializer_list<CapVerdict> of) {
+    CapVerdict best = CapVerdict::stands;
+    std::uint32_t count = 0;
+    for (const CapVerdict v : of)
+      if (edges[static_cast<std::size_t>(v)] > count) best = v, count = edges[static_cast<std::size_t>(v)];
+    return best;
+  };
+  using enum CapVerdict;
+  const CapVerdict limit =
+      most({too_thick, too_much_volume, too_thin, meets_hull, meets_patch, meets_itself, turns_inward});
+  if (limit != stands) return limit;
+  const CapVerdict geometry = most({no_place, no_surface});
+  return geometry != stands ? geometry : too_many_faces;
 }
 
 }  // namespace lrb::construct

@@ -8,6 +8,7 @@
 #include "engine/construct/body_bounds.hpp"
 #include "engine/construct/cap_gauge.hpp"
 #include "engine/construct/cap_surface.hpp"
+#include "engine/construct/construct_probe.hpp"
 #include "engine/construct/embed_check.hpp"
 
 namespace lrb::construct {
@@ -30,6 +31,10 @@ class PatchCap {
 
   /// Collapses edges of the loaded surface until no collapse is allowed any more.
   void simplify(const Patch& patch, const Limits& limits);
+
+  /// Returns why simplify() went no further: what forbids most of the collapses that are left. Limits that were
+  /// set come before what geometry forbids, because nearly every edge at the ring is of that kind.
+  CapVerdict what_holds_back();
 
  private:
   /// A collapse and its cost; w is set only if v is not on the ring.
@@ -56,7 +61,12 @@ class PatchCap {
   bool ring_vertex_is_in_front(int r, double radius) const;
   double shape_of_fan(const Eigen::Vector3d& w) const;
   void collect_half_spaces(const Eigen::Vector3d& centre, double margin);
-  bool confirm(const Candidate& c) const;
+  CapVerdict confirm(const Candidate& c) const;
+  CapVerdict verdict_on_edge(int u, int v);
+  std::nullopt_t refuse(CapVerdict why) {
+    why_ = why;
+    return std::nullopt;
+  }
   void collapse(const Candidate& c);
 
   CapSurface& cap_;
@@ -67,6 +77,7 @@ class PatchCap {
   CapSurface::Star star_;
   std::vector<CapSurface::Star::Rim> rim_;  ///< a copy of the star's
   std::vector<HalfSpace> half_spaces_;
+  CapVerdict why_ = CapVerdict::stands;  ///< why measure_star() returned nothing
 };
 
 }  // namespace lrb::construct

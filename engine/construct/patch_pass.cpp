@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "engine/core/tolerances.hpp"
 
@@ -24,34 +25,52 @@ constexpr double kPatience = 1.2;
 /// is too small for most of the hull.
 constexpr std::size_t kTries = 32, kLeastCaps = 24;
 
-/// Returns the vertices in use at which a cap may be found, in random order.
-std::vector<Corner> seeds_of(const HullMesh& hull, double off, Random& random) {
-  std::vector<Corner> seeds;
-  for (Corner v = 0; v < hull.point_count(); ++v)
-    if (hull.degree(v) > 0 && (off == 0 || hull.point(v).patience <= off)) seeds.push_back(v);
-  random.shuffle(seeds);
-  return seeds;
-}
-
 }  // namespace
 
 PatchPass::PatchPass(HullMesh& hull, AabbTree& tree, ComplexBuilder& complex, const BodyBounds& bounds,
                      const std::vector<bool>& frozen, const std::vector<Eigen::AlignedBox3d>& component_boxes,
-                     Workers& workers)
-    : hull_(hull), complex_(complex), frozen_(frozen), workers_(workers), tree_(tree) {
+                     Workers& workers, ConstructProbe* probe)
+    : hull_(hull), complex_(complex), frozen_(frozen), workers_(workers), tree_(tree), probe_(probe) {
   for (unsigned w = 0; w < workers.count(); ++w)
     benches_.push_back(std::make_unique<Bench>(hull, tree_, bounds, component_boxes));
   jobs_.resize(workers.count() == 1 ? 1 : kBatchPerThread * workers.count());
 }
 
-void PatchPass::run(const GrowLimits& limits, const CapGoal& goal, std::uint16_t layer, Random& random) {
+/// Takes the faces that no patch may have. Returns how many there are.
+std::uint32_t PatchPass::bar_faces(PatchGrower& grower) const {
+  std::uint32_t barred = 0;
+  for (Slot s = 0; s < hull_.slot_count(); ++s) {
+    if (!hull_.alive(s)) continue;
+    const bool frozen = hull_[s].face < frozen_.size() && frozen_[hull_[s].face];
+    if (!frozen && !hull_.is_crowded(s)) continue;
+    grower.take(s);
+    ++barred;
+  }
+  return barred;
+}
+
+/// Returns the vertices in use at which a cap may be found, in random order, and counts those that wait.
+std::vector<Corner> PatchPass::find_seeds(double off, Random& random, std::uint32_t& waiting) const {
+  std::vector<Corner> seeds;
+  for (Corner v = 0; v < hull_.point_count(); ++v) {
+    if (hull_.degree(v) == 0) continue;
+    if (off == 0 || hull_.point(v).patience <= off)
+      seeds.push_back(v);
+    else
+      ++waiting;
+  }
+  random.shuffle(seeds);
+  return seeds;
+}
+
+PassEnd PatchPass::run(const GrowLimits& limits, const CapGoal& goal, std::uint16_t layer, Random& random) {
+  PassEnd end;
   PatchGrower grower(hull_, limits);
-  for (Slot s = 0; s < hull_.slot_count(); ++s)
-    if (hull_.alive(s) && ((hull_[s].face < frozen_.size() && frozen_[hull_[s].face]) || hull_.is_crowded(s)))
-      grower.take(s);
+  end.barred = bar_faces(grower);
   tried_.assign(hull_.point_count(), false);
-  seeds_ = seeds_of(hull_, goal.off, random);
+  seeds_ = find_seeds(goal.off, random, end.waiting);
   next_seed_ = 0;
+  no_patch_ = 0;
   std::size_t tried = 0, found = 0;
   while (next_seed_ < seeds_.size()) {
     grow_batch(grower);
@@ -62,15 +81,22 @@ void PatchPass::run(const GrowLimits& limits, const CapGoal& goal, std::uint16_t
       Job& job = jobs_[i];
       const auto touches = [&](const Eigen::AlignedBox3d& box) { return box.intersects(job.seen); };
       if (std::any_of(changed_.begin(), changed_.end(), touches)) make_cap(job, goal, *benches_[0]);
+      end.no_patch += job.no_patch;
+      if (probe_) tell(job);
       if (job.has_cap) put_on(job, layer, grower);
       if (goal.off == 0) continue;
       ++tried;
       found += job.has_cap;
       if (!job.has_cap)
         for (const Corner v : job.patch.interior) hull_.set_patience(v, job.next_off);
-      if (tried >= kTries && kLeastCaps * found < tried) return;
+      if (tried >= kTries && kLeastCaps * found < tried) {
+        end.given_up = true;
+        return end;
+      }
     }
   }
+  end.no_patch += no_patch_;
+  return end;
 }
 
 void PatchPass::grow_batch(PatchGrower& grower) {
@@ -82,16 +108,20 @@ void PatchPass::grow_batch(PatchGrower& grower) {
     Patch& patch = jobs_[batch_].patch;
     const bool grown = grower.grow(seed, patch);
     if (grower.met_batch()) return;
-    if (!grown) continue;
+    if (!grown) {
+      ++no_patch_;
+      continue;
+    }
     for (const Corner v : patch.interior) tried_[v] = true;
     grower.add_to_batch(patch);
+    jobs_[batch_].no_patch = std::exchange(no_patch_, 0);
     ++batch_;
   }
 }
 
 void PatchPass::make_cap(Job& job, const CapGoal& goal, Bench& bench) const {
   bench.check.forget_seen();
-  job.has_cap = find_cap(job.patch, goal, bench);
+  find_cap(job, goal, bench);
   if (goal.off > 0 && !job.has_cap) job.next_off = goal.off * patience(job.patch, bench.cap, goal.worth);
   job.seen = bench.check.seen();
   if (job.has_cap) job.sheet = make_sheet(hull_, job.patch, bench.cap);
@@ -99,28 +129,61 @@ void PatchPass::make_cap(Job& job, const CapGoal& goal, Bench& bench) const {
 
 /// Finds a cap, at first without looking at anything but the patch itself; if that cap turns out to hit
 /// something, tries again with a proof for each collapse.
-bool PatchPass::find_cap(const Patch& patch, const CapGoal& goal, Bench& bench) const {
-  CapSurface& cap = bench.cap;
+void PatchPass::find_cap(Job& job, const CapGoal& goal, Bench& bench) const {
+  job.has_cap = false;
+  job.tries = 0;
   for (const bool careful : {false, true}) {
-    cap.load(hull_, patch, static_cast<VertexId>(complex_.vertices().size()));
-    const double area = cap.patch_area();
-    PatchCap::Limits limits;
-    limits.volume = kCapVolumeLimit * area * std::sqrt(area);
-    limits.check = careful ? &bench.check : nullptr;
-    if (goal.off > 0) {
-      bench.gauge.load(hull_, patch, cap, goal.off);
-      limits.gauge = &bench.gauge;
-      limits.depth = kFittingDepth;
-    }
-    bench.collapse.simplify(patch, limits);
-    if (!cap.keep_polygons_whole(hull_, patch)) return false;
-    const int kept = cap.alive_faces() - cap.new_faces();
-    const int removed = static_cast<int>(patch.slots.size()) - kept;
-    if (cap.new_faces() > goal.worth * removed || removed == 0) return false;
-    if (limits.gauge && hull_.has_polygons() && !bench.gauge.measure_again(cap)) return false;
-    if (bench.check.cap_is_clear(patch, cap)) return true;
+    CapVerdict verdict = simplify(job.patch, goal, bench, careful);
+    const bool is_simple = verdict == CapVerdict::stands;
+    if (is_simple) verdict = bench.check.judge_cap(job.patch, bench.cap);
+    const auto added = static_cast<std::uint32_t>(bench.cap.new_faces());
+    const auto kept = static_cast<std::uint32_t>(bench.cap.alive_faces()) - added;
+    const auto covered = static_cast<std::uint32_t>(job.patch.slots.size()) - kept;
+    job.tried[job.tries++] = {added, covered, verdict, careful, -1};
+    job.has_cap = verdict == CapVerdict::stands;
+    if (job.has_cap || !is_simple) break;
   }
-  return false;
+  if (probe_ && job.has_cap && goal.off > 0)
+    job.tried[job.tries - 1].off = std::min(goal.off, off_of(bench.cap));
+}
+
+/// Makes a cap of the patch that is worth it; what it meets is not looked at, or of single collapses if `careful`.
+CapVerdict PatchPass::simplify(const Patch& patch, const CapGoal& goal, Bench& bench, bool careful) const {
+  CapSurface& cap = bench.cap;
+  cap.load(hull_, patch, static_cast<VertexId>(complex_.vertices().size()));
+  const double area = cap.patch_area();
+  PatchCap::Limits limits;
+  limits.volume = kCapVolumeLimit * area * std::sqrt(area);
+  limits.check = careful ? &bench.check : nullptr;
+  if (goal.off > 0) {
+    bench.gauge.load(hull_, patch, cap, goal.off);
+    limits.gauge = &bench.gauge;
+    limits.depth = kFittingDepth;
+  }
+  bench.collapse.simplify(patch, limits);
+  if (!cap.keep_polygons_whole(hull_, patch)) return CapVerdict::splits_polygon;
+  const int kept = cap.alive_faces() - cap.new_faces();
+  const int removed = static_cast<int>(patch.slots.size()) - kept;
+  if (cap.new_faces() > goal.worth * removed || removed == 0)
+    return probe_ ? bench.collapse.what_holds_back() : CapVerdict::too_many_faces;
+  if (limits.gauge && hull_.has_polygons() && !bench.gauge.measure_again(cap)) return CapVerdict::too_thick;
+  return CapVerdict::stands;
+}
+
+/// Returns how far the cap's new triangles stand off the body, as it was measured: an estimate.
+double PatchPass::off_of(const CapSurface& cap) {
+  double most = 0;
+  for (const CapSurface::Face& f : cap.faces())
+    if (f.alive && f.kept < 0)
+      most = std::max(most, std::max({cap.off(f.v[0]), cap.off(f.v[1]), cap.off(f.v[2])}) + f.extra);
+  return most;
+}
+
+void PatchPass::tell(const Job& job) const {
+  const Patch& patch = job.patch;
+  probe_->patch({hull_.point(patch.interior.front()).id, static_cast<std::uint32_t>(patch.slots.size()),
+                 static_cast<std::uint32_t>(patch.interior.size())});
+  for (std::size_t i = 0; i < job.tries; ++i) probe_->cap(job.tried[i]);
 }
 
 /// Returns how many times as far off a cap must be allowed to be before there may be one where there is none now.
@@ -134,7 +197,7 @@ void PatchPass::put_on(const Job& job, std::uint16_t layer, PatchGrower& grower)
   Eigen::AlignedBox3d changed;
   for (const Slot s : job.patch.slots) changed.extend(box_of(hull_, s));
   const std::uint32_t component = hull_[job.patch.slots[0]].component;
-  for (const Slot s : cover(hull_, complex_, job.sheet, layer, component)) {
+  for (const Slot s : cover(hull_, complex_, job.sheet, layer, component, probe_)) {
     grower.take(s);
     const Eigen::AlignedBox3d box = box_of(hull_, s);
     tree_.update(s, box);

@@ -1,6 +1,7 @@
 #pragma once
 /// One pass: patches all over the hull, and a cap on each.
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <vector>
@@ -10,6 +11,7 @@
 #include "engine/construct/aabb_tree.hpp"
 #include "engine/construct/body_bounds.hpp"
 #include "engine/construct/complex_builder.hpp"
+#include "engine/construct/construct_probe.hpp"
 #include "engine/construct/embed_check.hpp"
 #include "engine/construct/fitting.hpp"
 #include "engine/construct/hull_mesh.hpp"
@@ -33,13 +35,13 @@ class PatchPass {
  public:
   /// `frozen` (|real faces|): faces not to be covered. `component_boxes`: boxes of the hull's components, or
   /// of parts of them that tell where the component is as a whole.
-  /// `tree`: over the hull; follows it.
+  /// `tree`: over the hull; follows it. `probe` is told of patches, caps and regions; may be null.
   PatchPass(HullMesh& hull, AabbTree& tree, ComplexBuilder& complex, const BodyBounds& bounds,
             const std::vector<bool>& frozen, const std::vector<Eigen::AlignedBox3d>& component_boxes,
-            Workers& workers);
+            Workers& workers, ConstructProbe* probe);
 
-  /// Covers what it can with regions of this layer, taking seeds in random order.
-  void run(const GrowLimits& limits, const CapGoal& goal, std::uint16_t layer, Random& random);
+  /// Covers what it can with regions of this layer, taking seeds in random order. Returns how it went.
+  PassEnd run(const GrowLimits& limits, const CapGoal& goal, std::uint16_t layer, Random& random);
 
  private:
   /// The memory that one worker needs to make caps.
@@ -56,6 +58,9 @@ class PatchPass {
   };
   struct Job {
     Patch patch;
+    std::uint32_t no_patch = 0;  ///< vertices before this one's at which no patch could be grown
+    std::array<TriedCap, 2> tried;
+    std::size_t tries = 0;
     bool has_cap = false;
     double next_off = 0;       ///< if not: the limit at which one is to be tried again
     Sheet sheet;               ///< the cap, if there is one
@@ -64,7 +69,12 @@ class PatchPass {
 
   void grow_batch(PatchGrower& grower);
   void make_cap(Job& job, const CapGoal& goal, Bench& bench) const;
-  bool find_cap(const Patch& patch, const CapGoal& goal, Bench& bench) const;
+  void find_cap(Job& job, const CapGoal& goal, Bench& bench) const;
+  CapVerdict simplify(const Patch& patch, const CapGoal& goal, Bench& bench, bool careful) const;
+  static double off_of(const CapSurface& cap);
+  std::uint32_t bar_faces(PatchGrower& grower) const;
+  std::vector<HullMesh::Corner> find_seeds(double off, Random& random, std::uint32_t& waiting) const;
+  void tell(const Job& job) const;
   static double patience(const Patch& patch, const CapSurface& cap, double worth);
   void put_on(const Job& job, std::uint16_t layer, PatchGrower& grower);
 
@@ -73,12 +83,14 @@ class PatchPass {
   const std::vector<bool>& frozen_;
   Workers& workers_;
   AabbTree& tree_;
+  ConstructProbe* probe_;
   std::vector<std::unique_ptr<Bench>> benches_;  ///< one for each worker
   std::vector<HullMesh::Corner> seeds_;
   std::size_t next_seed_ = 0;
   std::vector<bool> tried_;  ///< (points at the start)
   std::vector<Job> jobs_;
-  std::size_t batch_ = 0;                     ///< number of jobs_ in use
+  std::size_t batch_ = 0;       ///< number of jobs_ in use
+  std::uint32_t no_patch_ = 0;  ///< vertices at which no patch could be grown since the last job
   std::vector<Eigen::AlignedBox3d> changed_;  ///< where the batch has changed the hull so far
 };
 

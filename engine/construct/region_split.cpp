@@ -61,6 +61,8 @@ void merge_shells(RegionPieces& pieces, const std::vector<double>& volumes) {
     if (stays(p)) renumbered[p] = next++;
   for (std::uint32_t p = 0; p < pieces.count; ++p)
     if (!stays(p)) renumbered[p] = renumbered[largest];
+  pieces.merged = pieces.count - next;
+  pieces.into = renumbered[largest];
   pieces.count = next;
   for (auto* list : {&pieces.of_old, &pieces.of_added})
     for (std::uint32_t& p : *list) p = renumbered[p];

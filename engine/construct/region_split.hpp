@@ -16,6 +16,8 @@ using PointTriangle = std::array<std::uint32_t, 3>;
 /// Tells which piece each triangle bounds: pieces 0 .. count - 1.
 struct RegionPieces {
   std::uint32_t count = 0;
+  std::uint32_t merged = 0;             ///< pieces without volume that became part of another one...
+  std::uint32_t into = 0;               ///< ...which is this
   std::vector<std::uint32_t> of_old;    ///< (|old|)
   std::vector<std::uint32_t> of_added;  ///< (|added|)
 };

@@ -1,0 +1,243 @@
+// What a builder tells of itself adds up to the body that it built, on any number of threads, and changes nothing.
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include <doctest/doctest.h>
+
+#include "engine/construct/build.hpp"
+#include "engine/core/error.hpp"
+#include "scenarios/bodies/shapes/shapes.hpp"
+
+namespace lrb::test {
+
+using namespace shapes;
+namespace {
+
+struct Told {
+  enum class Kind : std::uint8_t { pass, patch, cap, region, merged, end_pass, closed } kind;
+  PassStart start = {};
+  PassEnd end = {};
+  GrownPatch patch = {};
+  TriedCap cap = {};
+  std::uint32_t number = 0, pieces = 0;
+
+  /// All that was told, in words: to compare.
+  std::string words() const {
+    const std::array<double, 18> all = {static_cast<double>(kind),
+                                        static_cast<double>(start.stage),
+                                        double(start.layer),
+                                        double(start.hull_faces),
+                                        start.most_off,
+                                        double(end.hull_faces),
+                                        double(end.barred),
+                                        double(end.no_patch),
+                                        double(end.waiting),
+                                        double(end.given_up),
+                                        double(patch.vertex),
+                                        double(patch.faces),
+                                        double(patch.interior),
+                                        double(cap.faces),
+                                        double(cap.covered),
+                                        static_cast<double>(cap.verdict) + (cap.careful ? 0.5 : 0),
+                                        cap.off,
+                                        number + pieces / 1e6};
+    std::string out;
+    for (const double x : all) out += std::to_string(x) + " ";
+    return out;
+  }
+};
+
+struct Listener final : ConstructProbe {
+  std::vector<Told> told;
+  void pass(const PassStart& p) override { told.push_back({.kind = Told::Kind::pass, .start = p}); }
+  void patch(const GrownPatch& p) override { told.push_back({.kind = Told::Kind::patch, .patch = p}); }
+  void cap(const TriedCap& c) override { told.push_back({.kind = Told::Kind::cap, .cap = c}); }
+  void region(RegionId r) override { told.push_back({.kind = Told::Kind::region, .number = r}); }
+  void merged(RegionId into, std::uint32_t pieces) override {
+    told.push_back({.kind = Told::Kind::merged, .number = into, .pieces = pieces});
+  }
+  void end_pass(const PassEnd& e) override { told.push_back({.kind = Told::Kind::end_pass, .end = e}); }
+  void closed(std::uint32_t faces) override { told.push_back({.kind = Told::Kind::closed, .number = faces}); }
+};
+
+LrbRep build_told(const Mesh& mesh, Listener& listener, unsigned threads = 1, bool lean = false) {
+  BuildOptions options;
+  options.threads = threads;
+  options.lean = lean;
+  options.probe = &listener;
+  return build_lrb(mesh, options);
+}
+
+/// So small that a patch is a ball as a whole: then the ball's surface is an inner shell of its region.
+Mesh many_balls() {
+  std::vector<Mesh> balls;
+  for (int i = 0; i < 40; ++i) balls.push_back(translated(icosphere(0), {3.0 * (i % 7), 3.0 * (i / 7), 0}));
+  return several(balls);
+}
+
+/// Bodies of one component and of several, crossing, nested, with voids, of polygons and in the plane.
+std::vector<Mesh> bodies() {
+  return {bumpy_sphere(4, 3),
+          comb(12),
+          quad_torus(40, 20),
+          bowl(40, 20),
+          several({bumpy_sphere(3, 5), translated(bumpy_sphere(3, 6), {0.9, 0.1, 0.2}),
+                   translated(icosphere(3), {4, 0, 0}),
+                   translated(turned_inside_out(icosphere(2, 0.5)), {4, 0, 0})}),
+          several({icosphere(4), turned_inside_out(icosphere(4, 1.02)), icosphere(3, 1.5)}),
+          many_balls(),
+          gear(100),
+          comb_2d(20),
+          ring_2d(60),
+          several({circle(40, 3), turned_inside_out(circle(30, 2)), star(5)}),
+          several({star(5), translated(star(7), {3, 0, 0}), translated(gear(30), {0, 3, 0})})};
+}
+
+std::size_t segments_or_triangles(const Mesh& mesh) {
+  std::size_t count = 0;
+  for (FaceId f = 0; f < mesh.face_count(); ++f) count += mesh.dim == 2 ? 1 : mesh.face(f).size() - 2;
+  return count;
+}
+
+/// Follows what is told of one body, and checks that each part follows from what came before.
+/// Returns the number of pieces that were merged.
+std::size_t check_story(const std::vector<Told>& told, const LrbRep& rep, std::size_t mesh_faces) {
+  std::uint32_t regions = 0, hull = static_cast<std::uint32_t>(mesh_faces), lids = 0;
+  bool open = false;
+  PassStart pass;
+  TriedCap last;
+  std::size_t merged = 0;
+  for (const Told& t : told) {
+    switch (t.kind) {
+      case Told::Kind::pass:
+        CHECK_FALSE(open);
+        open = true;
+        pass = t.start;
+        CHECK(pass.hull_faces == hull);
+        last = {};
+        break;
+      case Told::Kind::patch:
+        CHECK(open);
+        CHECK(t.patch.faces > 0);
+        CHECK(t.patch.vertex < rep.vertices().size());
+        break;
+      case Told::Kind::cap:
+        last = t.cap;
+        if (last.off >= 0) CHECK(last.off <= pass.most_off);
+        if (last.verdict != CapVerdict::stands) break;
+        lids += last.faces;
+        if (pass.stage == BuildStage::close)
+          hull = last.faces;
+        else
+          hull = hull + last.faces - last.covered;
+        break;
+      case Told::Kind::region:
+        CHECK(last.verdict == CapVerdict::stands);
+        CHECK(t.number == regions++);
+        REQUIRE(t.number < rep.region_count());
+        CHECK(rep.layer(RegionId(t.number)) == pass.layer);
+        break;
+      case Told::Kind::merged:
+        CHECK(t.number < regions);
+        merged += t.pieces;
+        break;
+      case Told::Kind::end_pass:
+        CHECK(open);
+        open = false;
+        if (pass.stage == BuildStage::fill) hull = t.end.hull_faces;  // walls of voids are no longer hull
+        CHECK(t.end.hull_faces == hull);
+        break;
+      case Told::Kind::closed:
+        CHECK(&t == &told.back());
+        CHECK(t.number == hull);
+        CHECK(t.number == rep.outermost_faces().size());
+        break;
+    }
+  }
+  REQUIRE_FALSE(told.empty());
+  CHECK(told.back().kind == Told::Kind::closed);
+  CHECK(regions == rep.region_count());
+  CHECK(lids == rep.face_count() - rep.real_face_count());
+  return merged;
+}
+
+std::vector<std::string> words(const std::vector<Told>& told) {
+  std::vector<std::string> out;
+  for (const Told& t : told) out.push_back(t.words());
+  return out;
+}
+
+std::size_t count(const std::vector<Told>& told, CapVerdict verdict) {
+  std::size_t n = 0;
+  for (const Told& t : told) n += t.kind == Told::Kind::cap && t.cap.verdict == verdict;
+  return n;
+}
+
+TEST_CASE("what is told adds up to the body, which is the same without; 1, 2 and 4 threads tell the same") {
+  std::array<std::size_t, kWords<CapVerdict>.size()> verdicts{};
+  std::size_t merged = 0;
+  for (const Mesh& mesh : bodies()) {
+    CAPTURE(mesh.name);
+    CAPTURE(mesh.face_count());
+    Listener one;
+    const LrbRep rep = build_told(mesh, one);
+    CHECK(rep.hash() == build_lrb(mesh).hash());
+    merged += check_story(one.told, rep, segments_or_triangles(mesh));
+    for (std::size_t v = 0; v < verdicts.size(); ++v)
+      verdicts[v] += count(one.told, static_cast<CapVerdict>(v));
+    for (const unsigned threads : {2u, 4u}) {
+      Listener many;
+      CHECK(build_told(mesh, many, threads).hash() == rep.hash());
+      CHECK((words(many.told) == words(one.told)));
+    }
+  }
+  CHECK(merged > 0);
+  using enum CapVerdict;
+  for (const CapVerdict v :
+       {stands, too_thick, too_much_volume, too_many_faces, no_place, meets_hull, overlaps, several_outlines})
+    CHECK_MESSAGE(verdicts[static_cast<std::size_t>(v)] > 0, name_of(v));
+}
+
+TEST_CASE("lean bodies, and those of patches of any size, tell a story that adds up") {
+  for (const Mesh& mesh : {bumpy_sphere(4, 7), comb(12), gear(60)}) {
+    Listener listener;
+    const LrbRep rep = build_told(mesh, listener, 1, true);
+    check_story(listener.told, rep, segments_or_triangles(mesh));
+    for (const Told& t : listener.told)
+      if (t.kind == Told::Kind::pass) CHECK(t.start.stage != BuildStage::fit);
+  }
+}
+
+TEST_CASE("a thin gap refuses caps because they meet the hull, and faces that cross others are barred") {
+  Listener gap;
+  const Mesh nested = several({icosphere(4), turned_inside_out(icosphere(4, 1.003)), icosphere(3, 1.5)});
+  build_told(nested, gap);
+  CHECK(count(gap.told, CapVerdict::meets_hull) > 0);
+
+  Listener crossing;
+  build_told(several({bumpy_sphere(3, 5), translated(bumpy_sphere(3, 6), {0.9, 0.1, 0.2})}), crossing);
+  std::uint32_t barred = 0;
+  for (const Told& t : crossing.told) barred = std::max(barred, t.end.barred);
+  CHECK(barred > 0);
+}
+
+TEST_CASE("what a probe throws ends the build") {
+  struct Thrower final : ConstructProbe {
+    void region(RegionId) override { throw InputError("enough"); }
+  } thrower;
+  BuildOptions options;
+  options.probe = &thrower;
+  CHECK_THROWS_WITH_AS(build_lrb(bumpy_sphere(3, 3), options), "enough", InputError);
+}
+
+TEST_CASE("a cap's cost: new faces for each that the hull loses") {
+  CHECK(TriedCap{.faces = 5, .covered = 20}.cost() == doctest::Approx(1.0 / 3));
+  CHECK(TriedCap{.faces = 5, .covered = 5}.cost() == std::numeric_limits<double>::infinity());
+}
+
+}  // namespace
+}  // namespace lrb::test
