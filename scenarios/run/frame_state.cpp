@@ -214,8 +214,9 @@ std::string FrameState::event_text() const {
       return std::string(name_of(e.phase())) + " begins";
     case EventKind::end:
       return std::string(name_of(e.phase())) + " ends";
+    default:  // of constructions
+      return {};
   }
-  return {};
 }
 
 std::string FrameState::node_pair_text(const trace::Event& e) {
