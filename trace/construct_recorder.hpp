@@ -30,8 +30,9 @@ class ConstructRecorder final : public ConstructProbe {
   /// Returns true if no builder has told anything.
   bool empty() const { return seen_ == 1; }
 
-  /// Replays what was recorded on the body that was built, which counts the faces of the hull, and hands the trace
-  /// over: one time step, at whose beginning the wrapper is the body itself. The recorder is then empty.
+  /// Replays what was recorded on the body that was built, which counts the faces of the hull, and hands the
+  /// trace over: one time step, at whose beginning the wrapper is the body itself. The recorder is then
+  /// empty.
   Trace take(const LrbRep& rep, const Pose& pose);
 
  private:
@@ -44,7 +45,8 @@ class ConstructRecorder final : public ConstructProbe {
   EventId pass_ = kNull, patch_ = kNull, cap_ = kNull;
 };
 
-/// Returns the trace of a body that came with its regions: what would have been told of passes that made them.
+/// Returns the trace of a body that came with its regions: what would have been told of passes that made
+/// them.
 Trace known_construction(const LrbRep& rep, const Pose& pose, const RecorderSettings& settings);
 
 }  // namespace lrb::trace

@@ -37,8 +37,8 @@ struct PassSummary {
 /// Returns the passes of a construction, in order; none for other traces.
 std::vector<PassSummary> passes_of(const Trace& trace);
 
-/// Returns the number of faces of the hull over the events, from the body's on: at each event that changes it, and at
-/// the last.
+/// Returns the number of faces of the hull over the events, from the body's on: at each event that changes
+/// it, and at the last.
 Chart chart_over_construction(const Trace& trace);
 /// Returns curves over the passes: patches that got a cap, and those that did not by the commonest reasons.
 Chart chart_over_passes(const Trace& trace);

@@ -21,8 +21,9 @@ class Replay {
   /// Makes all wrappers the outermost ones again, or the bodies themselves.
   void reset();
   /// Applies an event: a step resets all wrappers, a refinement or coarsening changes the wrapper of its
-  /// side, and so does a region that was built; other kinds do nothing. Returns true if it changes one. `events` are those of the whole
-  /// trace, in which causes are looked up; indices must be in range (check_trace).
+  /// side, and so does a region that was built; other kinds do nothing. Returns true if it changes one.
+  /// `events` are those of the whole trace, in which causes are looked up; indices must be in range
+  /// (check_trace).
   ///
   /// In unregularised mode a wrapper is refined face by face: a refinement takes away the face that its
   /// cause, a face test, compared. Without such a cause the whole region is refined.

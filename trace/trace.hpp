@@ -23,9 +23,9 @@
 
 namespace lrb::trace {
 
-/// The version of the trace format that is written. A reader takes it and older ones, and refuses newer ones. Version
-/// 3 has names of steps that say what was found, an arrow to each face test, the events from EventLevel::nodes on, and
-/// those of constructions.
+/// The version of the trace format that is written. A reader takes it and older ones, and refuses newer ones.
+/// Version 3 has names of steps that say what was found, an arrow to each face test, the events from
+/// EventLevel::nodes on, and those of constructions.
 inline constexpr std::uint32_t kTraceVersion = 3;
 
 /// The name of the format in a trace's metadata.
@@ -95,8 +95,8 @@ struct Event {
   Phase phase() const { return static_cast<Phase>(a); }
   BuildStage stage() const { return static_cast<BuildStage>(detail); }
   CapVerdict verdict() const { return static_cast<CapVerdict>(detail); }
-  /// Returns how far caps may stand off the body in this pass (0: as far as they like), or how far this one does
-  /// (not finite: nobody measured); mesh's unit.
+  /// Returns how far caps may stand off the body in this pass (0: as far as they like), or how far this one
+  /// does (not finite: nobody measured); mesh's unit.
   float off() const { return std::bit_cast<float>(boundary); }
   /// Returns true if it changes a wrapper.
   bool changes_wrapper() const {

@@ -9,8 +9,8 @@ namespace lrb::trace {
 /// Times the events of a recording.
 class WallClock {
  public:
-  /// Returns the nanoseconds since this began, and never the same number twice, so that no two events of a timeline
-  /// coincide.
+  /// Returns the nanoseconds since this began, and never the same number twice, so that no two events of a
+  /// timeline coincide.
   std::uint64_t now_ns() {
     const auto elapsed = std::chrono::steady_clock::now() - began_;
     const auto ns = std::chrono::duration_cast<std::chrono::nanoseconds>(elapsed).count();

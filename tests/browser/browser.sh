@@ -66,4 +66,6 @@ printf '%s\n' "${scenario/'"frames": {'/"\"frames\": { \"most\": 1, \"views\": [
 "$lrbscope" --quiet run "$work/copied.json" -o "$work/copied" >/dev/null
 for width in 400 3000; do in_frame "$width" && drive 3200 1000 frame.html "${webgl[@]}"; done
 drive 1200 900 'page.html?drive=flat' --disable-gpu --disable-3d-apis --disable-software-rasterizer
+page "$here/build.json"
+drive 1400 1000 'page.html?drive=build' "${webgl[@]}"
 exit "$failed"

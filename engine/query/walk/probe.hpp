@@ -10,8 +10,8 @@
 
 namespace lrb {
 
-/// The events of a query and, from pass on, of a construction (ConstructProbe), in one table: enumerator, name in
-/// traces, meaning of the fields a and b.
+/// The events of a query and, from pass on, of a construction (ConstructProbe), in one table: enumerator,
+/// name in traces, meaning of the fields a and b.
 /// LRB_EVENT(enumerator, json_name, meaning of a, meaning of b)
 #define LRB_EVENTS(LRB_EVENT)                                                     \
   LRB_EVENT(step, "step", "time step", "")                                        \
