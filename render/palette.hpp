@@ -71,7 +71,18 @@ constexpr Rgba event(EventKind kind) {
     case EventKind::begin:
     case EventKind::end:
       return kFaint;
+    case EventKind::cap:
+      return kVermillion;
+    case EventKind::patch:
+      return kUnderTest;
+    case EventKind::region:
+    case EventKind::merged:
+      return kRefining;
+    case EventKind::pass:
+    case EventKind::pass_end:
+      return kBlue;
     case EventKind::result:
+    case EventKind::closed:
       return kInk;
   }
   return kInk;

@@ -30,6 +30,15 @@ bool Context::refining(RegionId r) const {
   return std::find(refining().begin(), refining().end(), r) != refining().end();
 }
 
+bool Context::built(RegionId r) const {
+  return building() &&
+         std::find(highlight.built->begin(), highlight.built->end(), r) != highlight.built->end();
+}
+
+Rgba Context::built_colour(RegionId r) const {
+  return options.colour_by == ColourBy::kind ? palette::kRefining : region_colour(r);
+}
+
 std::vector<Eigen::Vector3d> Context::corners(FaceId f, const Eigen::Vector3d& moved) const {
   std::vector<Eigen::Vector3d> x;
   for (const VertexId v : body.rep->face(f)) x.push_back(body.pose.apply(body.rep->vertices()[v]) + moved);
@@ -127,7 +136,9 @@ void check(std::span<const SceneBody> bodies, const SceneHighlight& highlight, c
        !options.isolate[0].empty() || !options.isolate[1].empty()))
     throw InputError("regions and pairs can be pointed out among two bodies at most");
   for (std::size_t i = 0; i < 2; ++i) {
-    for (const auto* regions : {&highlight.refining[i], &options.isolate[i]}) {
+    static const std::vector<RegionId> kNone;
+    const std::vector<RegionId>& built = i == 0 && highlight.built ? *highlight.built : kNone;
+    for (const auto* regions : {&highlight.refining[i], &options.isolate[i], &built}) {
       for (const RegionId r : *regions) {
         if (i < bodies.size() && r < bodies[i].rep->region_count()) continue;
         throw InputError("body " + std::string(i == 0 ? "A" : "B") + " has no region " + std::to_string(r) +

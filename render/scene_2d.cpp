@@ -51,11 +51,24 @@ class Scene2dBuilder {
     const bool telling = c_.options.colour_by == ColourBy::layer || c_.options.colour_by == ColourBy::region;
     fill.colour = telling ? mix(c_.region_colour(r), kWhite, 0.35) : with_alpha(body_, 78);
     if (c_.refining(r)) fill.colour = palette::kRefining2d;
+    if (c_.building()) fill.colour = built_colour(r);
     for (const FaceId f : rep_.collector(r)) add_segment(fill, f, moved(r));
     c_.out.list.fills.push_back(std::move(fill));
+    if (c_.building()) return built_key(r);
     if (!telling && !c_.refining(r)) c_.add_key(Mark::translucent, body_, c_.name() + ", regions");
     if (c_.options.colour_by == ColourBy::region)
       c_.add_key(Mark::solid, palette::category(0), "regions, a colour each");
+  }
+
+  /// Returns the colour of a region of a construction: those of earlier passes are pale.
+  Rgba built_colour(RegionId r) const { return mix(c_.built_colour(r), kWhite, c_.built(r) ? 0.15 : 0.78); }
+
+  void built_key(RegionId r) {
+    const bool each = c_.options.colour_by == ColourBy::region;
+    if (c_.built(r))
+      c_.add_key(Mark::solid, built_colour(r), each ? "new regions, a colour each" : "new regions");
+    else
+      c_.add_key(Mark::solid, built_colour(r), "regions of earlier passes");
   }
 
   void solid() {
@@ -106,8 +119,9 @@ class Scene2dBuilder {
       }
     }
     add_lines(inside, mix(body_, kWhite, 0.15), 1.1F, 0);
-    add_lines(gone, mix(body_, kWhite, 0.45), 1, 5);
-    if (!gone.empty()) c_.add_key(Mark::dashed, mix(body_, kWhite, 0.45), c_.name() + ", refined away");
+    if (!c_.building()) add_lines(gone, mix(body_, kWhite, 0.45), 1, 5);  // there, they are yet to come
+    if (!gone.empty() && !c_.building())
+      c_.add_key(Mark::dashed, mix(body_, kWhite, 0.45), c_.name() + ", refined away");
   }
 
   void wrapper_line() {
@@ -118,7 +132,7 @@ class Scene2dBuilder {
       return;
     }
     add_lines(boundary, colour, 3, 0);
-    c_.add_key(Mark::line, colour, c_.name() + ", wrapper");
+    c_.add_key(Mark::line, colour, c_.name() + (c_.building() ? ", hull" : ", wrapper"));
   }
 
   void add_segment(DrawFill& fill, FaceId f, const Vector3d& by) const {

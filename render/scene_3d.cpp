@@ -21,6 +21,9 @@ constexpr float kLidEdgeBack = 0.3F;
 constexpr std::uint8_t kTellingAlpha = 175;  ///< where their colour says something
 constexpr std::uint8_t kRefiningAlpha = 120;
 constexpr std::uint8_t kGhostAlpha = 14;
+/// Of a construction, lids of earlier passes: their colour, from the region's towards white, and its opacity.
+constexpr double kEarlierPale = 0.72;
+constexpr std::uint8_t kEarlierAlpha = 215;
 constexpr double kLayerStep = 0.12;  ///< exploded: extra way per layer, as a share of the body's radius
 
 class Scene3dBuilder {
@@ -60,9 +63,10 @@ class Scene3dBuilder {
     lids_in_contact();
     std::vector<FaceId> lids;
     for (const FaceId f : c_.body.wrapper->boundary()) {
-      if (!rep_.is_real(f) && !c_.in_contact(f) &&
-          !(is_region(rep_.inner_cell(f)) && c_.refining(rep_.inner_cell(f).as_region())))
-        lids.push_back(f);
+      const CellId behind = rep_.inner_cell(f);
+      const bool drawn_apart =
+          is_region(behind) && (c_.refining(behind.as_region()) || c_.built(behind.as_region()));
+      if (!rep_.is_real(f) && !c_.in_contact(f) && !drawn_apart) lids.push_back(f);
     }
     const bool telling = c_.options.colour_by != ColourBy::kind;
     for (const FaceId f : lids) {
@@ -73,11 +77,35 @@ class Scene3dBuilder {
       t.edge_style = lid_edges_;
       add_face(f, t);
     }
+    if (c_.building()) return built_lids(!lids.empty());
     if (lids.empty()) return;
     if (!telling) c_.add_key(Mark::translucent, c_.colour(), c_.name() + ", pseudo faces");
     if (c_.options.colour_by == ColourBy::region) {
       c_.add_key(Mark::translucent, palette::category(0), "pseudo faces, a colour for each region");
     }
+  }
+
+  /// Draws the lids that a construction has just put on, as opaque as real faces. `others`: there are earlier
+  /// ones.
+  void built_lids(bool others) {
+    for (const RegionId r : *c_.highlight.built) {
+      std::vector<FaceId> lids;
+      for (const FaceId f : rep_.lids(r))
+        if (c_.on_boundary(f)) lids.push_back(f);
+      DrawTriangle t;
+      t.colour = c_.built_colour(r);
+      t.nudge = 2;  // where they lie on what they cover
+      t.edges = 7;
+      t.edge_style = cell_edges_;
+      for (const FaceId f : lids) add_face(f, t);
+      add_outlines(lids, {mix(t.colour, palette::kInk, 0.6), 2.2F * c_.options.scale}, Edges::rim);
+    }
+    const bool each = c_.options.colour_by == ColourBy::region;
+    if (!c_.highlight.built->empty())
+      c_.add_key(Mark::solid, c_.built_colour(c_.highlight.built->front()),
+                 each ? "new lids, a colour for each region" : "new lids");
+    const Rgba earlier = each ? mix(palette::category(0), kWhite, kEarlierPale) : c_.colour();
+    if (others) c_.add_key(each ? Mark::solid : Mark::translucent, earlier, "lids of earlier passes");
   }
 
   void lids_in_contact() {
@@ -94,7 +122,7 @@ class Scene3dBuilder {
     if (c_.body.wrapper != nullptr) faces = c_.pseudo_in_contact();
     for (FaceId f = 0; f < rep_.real_face_count(); ++f)
       if (c_.in_contact(f)) faces.push_back(f);
-    add_outlines(faces, {palette::kContact, 2 * c_.options.scale}, true);
+    add_outlines(faces, {palette::kContact, 2 * c_.options.scale}, Edges::rim_on_top);
   }
 
   void real_faces() {
@@ -121,6 +149,8 @@ class Scene3dBuilder {
   }
 
   Rgba lid_colour(FaceId f) const {
+    if (c_.building() && c_.options.colour_by == ColourBy::region)
+      return with_alpha(mix(c_.colour_of(f, rep_.inner_cell(f)), kWhite, kEarlierPale), kEarlierAlpha);
     const Rgba colour = c_.colour_of(f, rep_.inner_cell(f));
     switch (c_.options.colour_by) {
       case ColourBy::kind:
@@ -144,7 +174,8 @@ class Scene3dBuilder {
     for (const FaceId f : lids) add_face(f, t);
     t.colour = with_alpha(t.colour, 0);
     for (const FaceId f : floor) add_face(f, t);
-    add_outlines(lids, {mix(palette::kRefining, palette::kInk, 0.4), 2 * c_.options.scale}, true);
+    add_outlines(lids, {mix(palette::kRefining, palette::kInk, 0.4), 2 * c_.options.scale},
+                 Edges::rim_on_top);
   }
 
   // ---- regions on their own
@@ -226,9 +257,15 @@ class Scene3dBuilder {
     c_.out.list.add_polygon(c_.corners(f, moved), like);
   }
 
+  enum class Edges : std::uint8_t {
+    all,
+    rim,         ///< those of a single face
+    rim_on_top,  ///< the same, seen through everything
+  };
+
   /// Draws edges of faces as lines, each once. Lines keep their width at outlines, where edges of faces show
-  /// half of it. `rim`: only edges of a single face, which are seen through everything.
-  void add_outlines(const std::vector<FaceId>& faces, const EdgeStyle& style, bool rim = false) {
+  /// half of it.
+  void add_outlines(const std::vector<FaceId>& faces, const EdgeStyle& style, Edges which = Edges::all) {
     std::vector<std::array<VertexId, 2>> edges;
     for (const FaceId f : faces) {
       const auto corners = rep_.face(f);
@@ -242,12 +279,12 @@ class Scene3dBuilder {
     for (std::size_t first = 0; first < edges.size(); first = end) {
       const auto [a, b] = edges[first];
       for (end = first; end < edges.size() && edges[end] == edges[first];) ++end;
-      if (rim && end - first > 1) continue;
+      if (which != Edges::all && end - first > 1) continue;
       DrawLine line;
       line.points = {c_.body.pose.apply(rep_.vertices()[a]), c_.body.pose.apply(rep_.vertices()[b])};
       line.colour = style.colour;
       line.width = style.width;
-      line.layer = rim ? Layer::on_top : Layer::translucent;
+      line.layer = which == Edges::rim_on_top ? Layer::on_top : Layer::translucent;
       line.nudge = 2;
       c_.out.list.lines.push_back(std::move(line));
     }

@@ -30,6 +30,8 @@ struct Context {
   bool isolating() const;  ///< Returns true if regions of either body are isolated.
   bool isolated(RegionId r) const;
   bool refining(RegionId r) const;
+  bool building() const { return highlight.built.has_value(); }
+  bool built(RegionId r) const;  ///< just now
   std::vector<Eigen::Vector3d> corners(FaceId f,
                                        const Eigen::Vector3d& moved = Eigen::Vector3d::Zero()) const;
   /// Returns the mean of the faces' corners.
@@ -39,6 +41,8 @@ struct Context {
   Rgba colour_of(FaceId f, CellId cell) const;
   bool has_value(FaceId f) const { return f < body.face_values.size() && body.face_values[f] > value_low; }
   Rgba region_colour(RegionId r) const;
+  /// Returns the colour of a region that a construction has just made.
+  Rgba built_colour(RegionId r) const;
   void add_key(LegendItem::Mark mark, Rgba colour, const std::string& text) const;
 };
 

@@ -27,8 +27,7 @@ class WrapperSizes {
 
   void take(const Event& e) {
     if (e.kind == EventKind::step) reset();
-    const bool change = e.kind == EventKind::refine || e.kind == EventKind::coarsen;
-    if (change && e.boundary != kNull) faces[static_cast<std::size_t>(e.side)] = e.boundary;
+    if (e.changes_wrapper() && e.boundary != kNull) faces[static_cast<std::size_t>(e.side)] = e.boundary;
   }
 
   std::array<std::uint32_t, 2> faces{};
@@ -36,7 +35,8 @@ class WrapperSizes {
  private:
   void reset() {
     for (std::size_t i = 0; i < trace_->header.bodies.size(); ++i)
-      faces[i] = trace_->header.bodies[i].outer_faces;
+      faces[i] = trace_->header.construction ? trace_->header.bodies[i].real_faces
+                                             : trace_->header.bodies[i].outer_faces;
   }
 
   const Trace* trace_;
@@ -90,6 +90,13 @@ Totals count_events(std::span<const Event> events) {
       case EventKind::point:
       case EventKind::begin:
       case EventKind::end:
+      case EventKind::pass:  // what is built: passes_of()
+      case EventKind::patch:
+      case EventKind::cap:
+      case EventKind::region:
+      case EventKind::merged:
+      case EventKind::pass_end:
+      case EventKind::closed:
         break;
     }
   }

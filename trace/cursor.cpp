@@ -34,7 +34,7 @@ Cursor::Cursor(const Trace& trace, const LrbRep& a, const LrbRep& b)
 Cursor::Cursor(const Trace& trace, const LrbRep& a) : Cursor(trace, std::vector<const LrbRep*>{&a}) {}
 
 Cursor::Cursor(const Trace& trace, std::vector<const LrbRep*> reps)
-    : trace_(&trace), replay_(reps, trace.header.request.wrapper) {
+    : trace_(&trace), replay_(reps, trace.header.request.wrapper, trace.header.construction) {
   check_trace(trace, "trace");
   if (reps.size() != trace.header.bodies.size())
     throw InputError("trace: recorded with " + std::to_string(trace.header.bodies.size()) +
@@ -42,9 +42,8 @@ Cursor::Cursor(const Trace& trace, std::vector<const LrbRep*> reps)
   for (std::size_t i = 0; i < reps.size(); ++i)
     require_same_body(trace.header.bodies[i], *reps[i], std::string(name_of(static_cast<Side>(i))));
   for (EventId e = 0; e < trace.events.size(); ++e) {
-    const EventKind kind = trace.events[e].kind;
-    if (kind == EventKind::step || kind == EventKind::refine || kind == EventKind::coarsen)
-      changes_.push_back(e);
+    const Event& event = trace.events[e];
+    if (event.kind == EventKind::step || event.changes_wrapper()) changes_.push_back(e);
   }
 }
 

@@ -79,7 +79,7 @@ class Cursor {
 
   const Trace* trace_;
   Replay replay_;
-  std::vector<EventId> changes_;  ///< events that change a wrapper (step, refine, coarsen), ascending
+  std::vector<EventId> changes_;  ///< steps, and events that change a wrapper; ascending
   std::size_t applied_ = 0;       ///< number of these events that the wrappers have gone through
   EventId position_ = kNull;
   std::size_t step_ = 0;

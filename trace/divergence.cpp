@@ -133,13 +133,21 @@ void compare_events(Comparison& c, const Event& x, const Event& y) {
     c.same_or_none(std::string(a), x.a, y.a);
   c.same_or_none(std::string(b), x.b, y.b);
   c.same("meet", x.meet, y.meet);
-  c.same_or_none("depth of A", x.depth_a, y.depth_a);
+  c.same_or_none(x.kind < EventKind::pass     ? "depth of A"
+                 : x.kind == EventKind::patch ? "interior vertices"
+                 : x.kind == EventKind::cap   ? "careful"
+                                              : "given up",
+                 x.depth_a, y.depth_a);
   c.same_or_none("depth of B", x.depth_b, y.depth_b);
   c.same_or_none("cause", x.cause, y.cause);
   if (x.kind == EventKind::face_test) c.same("decided by", x.tested_by(), y.tested_by());
   if (x.kind == EventKind::point) c.same("where", x.where(), y.where());
+  if (x.kind == EventKind::pass) c.same("stage", x.stage(), y.stage());
+  if (x.kind == EventKind::cap) c.same("verdict", x.verdict(), y.verdict());
   if (x.kind == EventKind::node_pair)
     compare_nodes(c, x, y);
+  else if (x.kind == EventKind::pass || x.kind == EventKind::cap)
+    c.same("distance", double{x.off()}, double{y.off()});
   else
     c.same_or_none("wrapper faces", x.boundary, y.boundary);
 }
@@ -201,6 +209,10 @@ std::string describe(const Event& e) {
   if (e.kind == EventKind::node_pair)
     add("step", words(e.node_end().step)), add("box tests", std::to_string(e.work().box_tests)),
         add("boxes that meet", std::to_string(e.work().met));
+  else if (e.kind == EventKind::pass)
+    add("stage", words(e.stage()));
+  else if (e.kind == EventKind::cap)
+    add("verdict", words(e.verdict()));
   else if (e.boundary != kNull)
     add("wrapper faces", std::to_string(e.boundary));
   if (e.cause != kNull) add("cause", std::to_string(e.cause));
@@ -217,6 +229,7 @@ std::string Divergence::message() const {
 
 std::optional<Divergence> first_divergence(const Trace& expected, const Trace& actual) {
   Comparison c;
+  c.same("construction", expected.header.construction, actual.header.construction);
   compare_bodies(c, expected.header, actual.header);
   compare_fields(c, expected.header.request, actual.header.request, "request: ");
   if (!c.differs()) compare_steps(c, expected, actual);

@@ -2,7 +2,8 @@
 
 namespace lrb::trace {
 
-void JsonOut::number(double value) {
+template <class Floating>
+void JsonOut::floating(Floating value) {
   if (!std::isfinite(value)) return raw("null");
   reserve_number();
   char* const begin = buffer_.data() + used_;
@@ -13,6 +14,13 @@ void JsonOut::number(double value) {
     *end++ = '0';
   }
   used_ += static_cast<std::size_t>(end - begin);
+}
+
+void JsonOut::number(double value) {
+  floating(value);
+}
+void JsonOut::number(float value) {
+  floating(value);
 }
 
 namespace {

@@ -57,6 +57,9 @@ class JsonOut {
   /// word for that). It always has a point or an exponent, so that -0.0 stays a double.
   void number(double value);
 
+  /// Does the same for a float: the shortest decimal that reads back as the same float.
+  void number(float value);
+
   /// Writes a string in quotes, escaped; bytes that are not UTF-8 become U+FFFD.
   void string(std::string_view text);
 
@@ -69,6 +72,8 @@ class JsonOut {
   static constexpr std::size_t kBuffer = 1 << 16;
   static constexpr std::size_t kNumber = 32;  ///< to_chars needs at most 24 for a double, 20 for an integer
 
+  template <class Floating>
+  void floating(Floating value);
   void reserve_number() {
     if (buffer_.size() - used_ < kNumber) flush();
   }
@@ -101,7 +106,7 @@ class JsonWriter {
     if constexpr (std::is_same_v<T, bool>)
       out_->raw(v ? "true" : "false");
     else if constexpr (std::is_floating_point_v<T>)
-      out_->number(static_cast<double>(v));
+      out_->number(v);
     else if constexpr (std::is_unsigned_v<T>)
       out_->number(static_cast<std::uint64_t>(v));
     else

@@ -75,10 +75,10 @@ void Recorder::start_over() {
     header.bodies.push_back(describe_body(*reps_[side], settings_.sources[side]));
     refined_by_[side].assign(reps_[side]->region_count(), 0);
   }
-  seen_ = seen_before_step_ = last_ns_ = 0;
+  seen_ = seen_before_step_ = 0;
   step_event_ = 0;
   last_hit_ = last_test_ = last_pair_ = phase_ = kNull;
-  began_ = std::chrono::steady_clock::now();
+  clock_ = {};
 }
 
 void Recorder::close_step() {

@@ -13,13 +13,13 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <chrono>
 #include <cstdint>
 #include <string>
 #include <vector>
 
 #include "engine/query/collide_probe.hpp"
 #include "trace/trace.hpp"
+#include "trace/wall_clock.hpp"
 
 namespace lrb::trace {
 
@@ -76,7 +76,7 @@ class Recorder final : public CollideProbe {
     if (faces_added != 0 && id != kNull) refined_by_[static_cast<std::size_t>(side)][region] = id + 1;
   }
 
-  /// Records that a wrapper grew back over a region: in a coarse query, or in a run that shows a construction.
+  /// Records that a wrapper grew back over a region, in a coarse query.
   void coarsen(Side side, RegionId region, std::uint32_t faces_removed) override {
     push({.a = region,
           .b = faces_removed,
@@ -164,16 +164,8 @@ class Recorder final : public CollideProbe {
     ++seen_;
     if (trace_.events.size() >= settings_.event_cap) return kNull;
     trace_.events.push_back(event);
-    if (settings_.clock == Clock::wall) trace_.wall_ns.push_back(now_ns());
+    if (settings_.clock == Clock::wall) trace_.wall_ns.push_back(clock_.now_ns());
     return static_cast<EventId>(trace_.events.size() - 1);
-  }
-
-  /// Returns the time since the recorder began, and never the same twice, so that no two events of a timeline
-  /// coincide.
-  std::uint64_t now_ns() {
-    const auto elapsed = std::chrono::steady_clock::now() - began_;
-    const auto ns = std::chrono::duration_cast<std::chrono::nanoseconds>(elapsed).count();
-    return last_ns_ = std::max(last_ns_ + 1, static_cast<std::uint64_t>(ns));
   }
 
   void start_over();
@@ -189,8 +181,7 @@ class Recorder final : public CollideProbe {
   EventId step_event_ = 0;    ///< first event of the current step
   EventId last_hit_ = kNull;  ///< the last face test, if it hit
   EventId last_test_ = kNull, last_pair_ = kNull, phase_ = kNull;
-  std::chrono::steady_clock::time_point began_;
-  std::uint64_t last_ns_ = 0;
+  WallClock clock_;
 };
 
 }  // namespace lrb::trace

@@ -23,7 +23,7 @@ FaceId refined_face(const Event& event, std::span<const Event> events, const Lrb
 }
 
 void change(Wrapper& wrapper, const Event& event, std::span<const Event> events) {
-  if (event.kind == EventKind::coarsen) {
+  if (event.kind != EventKind::refine) {
     wrapper.coarsen(event.region());
     return;
   }
@@ -37,7 +37,7 @@ void change(Wrapper& wrapper, const Event& event, std::span<const Event> events)
 
 }  // namespace
 
-Replay::Replay(std::span<const LrbRep* const> reps, WrapperMode mode) {
+Replay::Replay(std::span<const LrbRep* const> reps, WrapperMode mode, bool bare) : bare_(bare) {
   for (const LrbRep* rep : reps)
     if (rep) wrappers_.emplace_back(*rep, mode);
   reset();
@@ -46,13 +46,15 @@ Replay::Replay(std::span<const LrbRep* const> reps, WrapperMode mode) {
 void Replay::reset() {
   for (std::size_t i = 0; i < wrappers_.size(); ++i) {
     wrappers_[i].reset();
-    sizes_[i] = static_cast<std::uint32_t>(wrappers_[i].rep().outermost_faces().size());
+    if (bare_) wrappers_[i].refine_all();
+    const LrbRep& rep = wrappers_[i].rep();
+    sizes_[i] = bare_ ? rep.real_face_count() : static_cast<std::uint32_t>(rep.outermost_faces().size());
   }
 }
 
 bool Replay::apply(const Event& event, std::span<const Event> events) {
   if (event.kind == EventKind::step) reset();
-  if (event.kind != EventKind::refine && event.kind != EventKind::coarsen) return false;
+  if (!event.changes_wrapper()) return false;
   const auto side = static_cast<std::size_t>(event.side);
   const std::uint32_t before = visible_faces(wrappers_[side], event.region());
   change(wrappers_[side], event, events);

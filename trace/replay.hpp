@@ -15,13 +15,15 @@ namespace lrb::trace {
 /// The wrappers of one or two bodies, and the number of faces on the boundary of each.
 class Replay {
  public:
-  Replay(std::span<const LrbRep* const> reps, WrapperMode mode);
+  /// `bare`: wrappers begin with the body itself, as in constructions.
+  Replay(std::span<const LrbRep* const> reps, WrapperMode mode, bool bare = false);
 
-  /// Makes all wrappers the outermost ones again.
+  /// Makes all wrappers the outermost ones again, or the bodies themselves.
   void reset();
   /// Applies an event: a step resets all wrappers, a refinement or coarsening changes the wrapper of its
-  /// side, other kinds do nothing. Returns true for refine and coarsen. `events` are those of the whole
-  /// trace, in which causes are looked up; indices must be in range (check_trace).
+  /// side, and so does a region that was built; other kinds do nothing. Returns true if it changes one.
+  /// `events` are those of the whole trace, in which causes are looked up; indices must be in range
+  /// (check_trace).
   ///
   /// In unregularised mode a wrapper is refined face by face: a refinement takes away the face that its
   /// cause, a face test, compared. Without such a cause the whole region is refined.
@@ -35,6 +37,7 @@ class Replay {
  private:
   std::vector<Wrapper> wrappers_;
   std::array<std::uint32_t, 2> sizes_{};
+  bool bare_;
 };
 
 }  // namespace lrb::trace

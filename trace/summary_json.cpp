@@ -6,6 +6,7 @@
 #include "trace/counters.hpp"
 #include "trace/json_out.hpp"
 #include "trace/json_parts.hpp"
+#include "trace/passes.hpp"
 #include "trace/work_shares.hpp"
 
 namespace lrb::trace {
@@ -66,6 +67,56 @@ void write_work(JsonWriter& w, const Trace& trace) {
   w.end_array();
 }
 
+void write_caps(JsonWriter& w, const std::array<std::uint32_t, kWords<CapVerdict>.size()>& caps) {
+  w.begin_object();
+  for (std::size_t v = 1; v < caps.size(); ++v)
+    if (caps[v] > 0) w.member(name_of(static_cast<CapVerdict>(v)), caps[v]);
+  w.end_object();
+}
+
+void write_pass(JsonWriter& w, const PassSummary& p) {
+  w.begin_object().member("stage", name_of(p.stage));
+  if (p.regions > 0) w.member("layer", p.layer);
+  if (p.most_off > 0) w.member("distance_allowed", p.most_off);
+  w.member("faces_before", p.faces_before).member("faces_after", p.faces_after);
+  w.member("regions", p.regions).member("pieces_merged", p.merged);
+  w.member("patches", p.patches).member("accepted", p.accepted()).member("retried", p.retried);
+  w.key("refused");
+  write_caps(w, p.caps);
+  w.member("lids", p.lids).member("faces_covered", p.covered);
+  if (p.off > 0) w.member("distance", p.off);
+  w.member("faces_barred", p.barred).member("vertices_without_patch", p.no_patch);
+  w.member("vertices_that_wait", p.waiting).member("given_up", p.given_up).end_object();
+}
+
+void write_construction(JsonWriter& w, const Trace& trace) {
+  const std::vector<PassSummary> passes = passes_of(trace);
+  const auto caps = caps_of(passes);
+  std::uint64_t patches = 0, regions = 0;
+  for (const PassSummary& p : passes) patches += p.patches, regions += p.regions;
+  w.key("construction").begin_object();
+  w.member("patches", patches).member("accepted", caps[0]).member("regions", regions);
+  w.key("refused");
+  write_caps(w, caps);
+  w.key("passes").begin_array();
+  for (const PassSummary& p : passes) write_pass(w, p);
+  w.end_array().end_object();
+}
+
+/// Writes what queries are measured by.
+void write_queries(JsonWriter& w, const Trace& trace) {
+  w.key("steps").begin_array();
+  for (std::size_t i = 0; i < trace.steps.size(); ++i) write_step(w, trace, i);
+  w.end_array().key("totals");
+  write_totals(w, count_events(trace.events));
+  if (trace.header.level != EventLevel::faces) write_work(w, trace);
+  write_statistics(w, trace);
+  w.key("histograms").begin_array();
+  for (const Histogram& h : {tests_by_depth(trace), refinements_by_size(trace), steps_by_tests(trace)})
+    write_histogram(w, h);
+  w.end_array();
+}
+
 }  // namespace
 
 std::string summary_json(const Trace& trace) {
@@ -81,16 +132,11 @@ std::string summary_json(const Trace& trace) {
   for (const BodyInfo& body : trace.header.bodies) write_json(w, body);
   w.end_array().key("events");
   write_event_counts(w, trace);
-  w.key("steps").begin_array();
-  for (std::size_t i = 0; i < trace.steps.size(); ++i) write_step(w, trace, i);
-  w.end_array().key("totals");
-  write_totals(w, count_events(trace.events));
-  if (trace.header.level != EventLevel::faces) write_work(w, trace);
-  write_statistics(w, trace);
-  w.key("histograms").begin_array();
-  for (const Histogram& h : {tests_by_depth(trace), refinements_by_size(trace), steps_by_tests(trace)})
-    write_histogram(w, h);
-  w.end_array().end_object();
+  if (trace.header.construction)
+    write_construction(w, trace);
+  else
+    write_queries(w, trace);
+  w.end_object();
   out.raw('\n');
   out.flush();
   return std::move(sink.text);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <initializer_list>
 
 #include "engine/core/error.hpp"
 #include "trace/names.hpp"
@@ -62,7 +63,8 @@ bool equal(const Step& x, const Step& y) {
 bool equal(const TraceHeader& x, const TraceHeader& y) {
   return x.lrbscope == y.lrbscope && x.scenario == y.scenario && x.scenario_hash == y.scenario_hash &&
          x.bodies == y.bodies && x.request == y.request && x.clock == y.clock && x.event_cap == y.event_cap &&
-         x.level == y.level && x.engine == y.engine && x.coherent == y.coherent;
+         x.level == y.level && x.engine == y.engine && x.coherent == y.coherent &&
+         x.construction == y.construction;
 }
 
 /// Checks the parts of one trace; every failure is one line that names the event or step.
@@ -87,6 +89,7 @@ class Checker {
 
   void check_sizes() const {
     require(t_.header.bodies.size() == 1 || t_.header.bodies.size() == 2, "expected one body or two");
+    require(!t_.header.construction || t_.header.bodies.size() == 1, "a construction has one body");
     require(t_.events.size() <= kMaxId, "too many events");
     require(t_.events_seen >= t_.events.size(), "fewer events seen than stored");
     require(t_.wall_ns.size() == (t_.header.clock == Clock::wall ? t_.events.size() : 0),
@@ -177,9 +180,41 @@ class Checker {
       case EventKind::end:
         if (e.a >= kWords<Phase>.size()) bad("unknown phase");
         break;
+      case EventKind::pass:
+      case EventKind::patch:
+      case EventKind::cap:
+      case EventKind::region:
+      case EventKind::merged:
+      case EventKind::pass_end:
+      case EventKind::closed:
+        check_built(id);
+        break;
       case EventKind::step:
         break;
     }
+  }
+
+  /// Checks an event of a construction.
+  void check_built(EventId id) const {
+    const Event& e = t_.events[id];
+    const auto bad = [&](const char* what) {
+      fail("event " + std::to_string(id) + " (" + std::string(name_of(e.kind)) + "): " + what);
+    };
+    const auto has_cause = [&](std::initializer_list<EventKind> kinds) {
+      return e.cause != kNull &&
+             std::find(kinds.begin(), kinds.end(), t_.events[e.cause].kind) != kinds.end();
+    };
+    if (!t_.header.construction) bad("the trace is not that of a construction");
+    if (e.side != Side::a) bad("there is no such body");
+    const bool names_region = e.kind == EventKind::region || e.kind == EventKind::merged;
+    if (names_region && e.a >= t_.header.bodies[0].regions) bad("there is no such region");
+    if (names_region && !has_cause({EventKind::cap, EventKind::pass})) bad("its cause is no cap and no pass");
+    if (e.kind == EventKind::pass && e.detail >= kWords<BuildStage>.size()) bad("unknown stage");
+    if (e.kind == EventKind::pass && !(e.off() >= 0)) bad("its distance is not a number from 0 on");
+    if (e.kind == EventKind::cap && e.detail >= kWords<CapVerdict>.size()) bad("unknown verdict");
+    if (e.kind == EventKind::cap && !has_cause({EventKind::patch})) bad("its cause is no patch");
+    const bool in_pass = e.kind == EventKind::patch || e.kind == EventKind::pass_end;
+    if (in_pass && !has_cause({EventKind::pass})) bad("its cause is no pass");
   }
 
   const Trace& t_;

@@ -12,6 +12,7 @@
 #include <string_view>
 #include <vector>
 
+#include "engine/construct/construct_probe.hpp"
 #include "engine/core/enum_words.hpp"
 #include "engine/core/ids.hpp"
 #include "engine/core/pose.hpp"
@@ -22,8 +23,9 @@
 
 namespace lrb::trace {
 
-/// The version of the trace format that is written. A reader takes it and older ones, and refuses newer ones. Version
-/// 3 has names of steps that say what was found, an arrow to each face test, and the events from EventLevel::nodes on.
+/// The version of the trace format that is written. A reader takes it and older ones, and refuses newer ones.
+/// Version 3 has names of steps that say what was found, an arrow to each face test, the events from
+/// EventLevel::nodes on, and those of constructions.
 inline constexpr std::uint32_t kTraceVersion = 3;
 
 /// The name of the format in a trace's metadata.
@@ -64,17 +66,22 @@ struct Event {
   /// An earlier event. Contact: the face test that found it. Refine: the face test that hit just before (kNull in the
   /// complete query, which opens regions before it tests). Face test: the later of the refinements that brought in its
   /// faces. Node pair: the pair above. Plane test: the pair of leaves. End: the beginning of the phase.
+  /// Patch, pass end: the pass. Cap: the patch. Region, merged: the cap, or the pass if it has none.
   EventId cause = kNull;
   std::uint32_t boundary =
-      kNull;  ///< refine, coarsen: number of faces of that wrapper afterwards; kNull: not known. Node pair: work()
+      kNull;  ///< refine, coarsen, region, pass end: number of faces of that wrapper afterwards; kNull: not known.
+              ///< Node pair: work(). Pass, cap: off()
   std::uint16_t depth_a =
       0;  ///< face test: number of regions between A's face and the outside (65535: that or
-          ///< more). Node pair: number of pairs above. Begin: what is walked of A, see NullProbe
+          ///< more). Node pair: number of pairs above. Begin: what is walked of A, see NullProbe. Patch:
+          ///< interior vertices. Cap: 1 if TriedCap::careful. Pass end: 1 if PassEnd::given_up
   std::uint16_t depth_b = 0;  ///< face test, begin: the same for B
   EventKind kind = EventKind::step;
   Side side = Side::a;  ///< refine, coarsen: whose wrapper; plane test: whose plane; point: whose vertex
   exact::Meet meet = exact::Meet::disjoint;  ///< face test, contact
-  std::uint8_t detail = 0;  ///< face test: tested_by(); node pair: node_end(); point: where()
+  std::uint8_t detail =
+      0;  ///< face test: tested_by(); node pair: node_end(); point: where(); pass: stage(); cap:
+          ///< verdict()
 
   /// Return what the numbers `a` and `b` stand for: in a face test or a contact the simplex of a body, in a
   /// refinement or a coarsening the region.
@@ -85,6 +92,15 @@ struct Event {
   NodeEnd node_end() const { return NodeEnd::from_bits(detail); }
   Where where() const { return static_cast<Where>(detail); }
   Phase phase() const { return static_cast<Phase>(a); }
+  BuildStage stage() const { return static_cast<BuildStage>(detail); }
+  CapVerdict verdict() const { return static_cast<CapVerdict>(detail); }
+  /// Returns how far caps may stand off the body in this pass (0: as far as they like), or how far this one
+  /// does (not finite: nobody measured); mesh's unit.
+  float off() const { return std::bit_cast<float>(boundary); }
+  /// Returns true if it changes a wrapper.
+  bool changes_wrapper() const {
+    return kind == EventKind::refine || kind == EventKind::coarsen || kind == EventKind::region;
+  }
 
   friend bool operator==(const Event&, const Event&) = default;
 };
@@ -155,6 +171,8 @@ struct TraceHeader {
   EventLevel level = EventLevel::faces;
   std::string engine;     ///< the one that was recorded, in words; empty: ours
   bool coherent = false;  ///< each step went on from the one before, by a CoherentQuery
+  /// The construction of one body: its wrapper, the hull, begins with the body itself, and grows.
+  bool construction = false;
 };
 
 struct Trace {

@@ -3,8 +3,8 @@
 /// chrome://tracing open as it is. Everything needed to read a trace back exactly stands in the events'
 /// `args` and in `metadata`, which comes last. trace/schema/trace.schema.json describes the format.
 ///
-/// A trace looks so there: one process with the threads "time steps", "face tests", "wrapper A", "wrapper B"
-/// and "answer", and from EventLevel::nodes on "phases" and "tree walk".
+/// A trace of queries looks so there: one process with the threads "time steps", "face tests", "wrapper A",
+/// "wrapper B" and "answer", and from EventLevel::nodes on "phases" and "tree walk".
 /// - Every event is a slice (ph X): a step, named by what it found, spans its events, and so does a phase; the others
 ///   lie side by side. On the event clock, event i is [i, i + 1); on the wall clock (microseconds) it reaches from the
 ///   event before to this one, that is, over the time it took.
@@ -13,6 +13,9 @@
 ///   pairs and face tests that are known and not done).
 /// - Flows (ph s, f; their id is the number of the event that they lead to) lead from the refinement that showed a
 ///   face to each of its tests, and in the paper's recursions from the face test that caused a refinement to that.
+///
+/// A construction has the threads "construction", "passes", named by what they made, "patches and caps" and
+/// "hull", and the counter "hull" (faces, regions).
 
 #include <string>
 #include <string_view>

@@ -22,6 +22,7 @@ EventKind kind_of(const TraceNode& node) {
   const std::string& category = node.at("cat").string();
   const std::string& name = node.at("name").string();
   if (category == "step" && name != name_of(EventKind::result)) return EventKind::step;
+  if (category == "pass" && name != name_of(EventKind::pass_end)) return EventKind::pass;
   if (category == "phase" && name != name_of(EventKind::end)) return EventKind::begin;
   return node.at("name").named<EventKind>();
 }
@@ -61,6 +62,26 @@ void read_more(const TraceNode& args, Event& e) {
   }
 }
 
+std::uint32_t read_distance(const TraceNode& args, const char* name, std::uint32_t none) {
+  return args.has(name) ? std::bit_cast<std::uint32_t>(static_cast<float>(args.at(name).least(0))) : none;
+}
+
+/// Reads what only the events of a construction have.
+void read_built(const TraceNode& args, Event& e) {
+  const auto is_set = [&](const char* name) { return args.has(name) && args.at(name).boolean(); };
+  if (e.kind == EventKind::pass) {
+    e.detail = static_cast<std::uint8_t>(args.at("stage").named<BuildStage>());
+    e.boundary = read_distance(args, "distance allowed", 0);
+  }
+  if (e.kind == EventKind::patch) e.depth_a = args.at("interior vertices").integer<std::uint16_t>();
+  if (e.kind == EventKind::cap) {
+    e.detail = static_cast<std::uint8_t>(args.at("verdict").named<CapVerdict>());
+    e.depth_a = is_set("careful");
+    e.boundary = read_distance(args, "distance", kNull);
+  }
+  if (e.kind == EventKind::pass_end) e.depth_a = is_set("given up");
+}
+
 void read_fields(const TraceNode& args, Event& e) {
   const auto [a, b] = fields_of(e.kind);
   if (e.kind == EventKind::refine || e.kind == EventKind::coarsen) e.side = args.at("side").named<Side>();
@@ -84,6 +105,7 @@ void read_fields(const TraceNode& args, Event& e) {
   if (args.has("wrapper faces")) e.boundary = args.at("wrapper faces").integer<std::uint32_t>();
   if (args.has("cause")) e.cause = args.at("cause").integer<std::uint32_t>();
   read_more(args, e);
+  if (e.kind >= EventKind::pass) read_built(args, e);
 }
 
 class Reader {
@@ -128,6 +150,7 @@ class Reader {
     if (metadata.has("level")) h.level = metadata.at("level").named<EventLevel>();
     if (metadata.has("engine")) h.engine = metadata.at("engine").string();
     if (metadata.has("coherent")) h.coherent = metadata.at("coherent").boolean();
+    if (metadata.has("construction")) h.construction = metadata.at("construction").boolean();
     h.request = read_request(metadata.at("request"));
     const TraceNode bodies = metadata.at("bodies");
     const std::size_t count = bodies.array_size();

@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <array>
+#include <span>
 #include <unordered_map>
 #include <utility>
 #include <vector>
 
 #include "trace/names.hpp"
+#include "trace/passes.hpp"
 #include "trace/trace_json.hpp"
 #include "trace/trace_metadata.hpp"
 
@@ -14,7 +16,18 @@ namespace lrb::trace {
 
 namespace {
 
-enum class Thread : std::uint8_t { steps = 1, tests, wrapper_a, wrapper_b, answer, phases, walk };
+enum class Thread : std::uint8_t {
+  steps = 1,
+  tests,
+  wrapper_a,
+  wrapper_b,
+  answer,
+  phases,
+  walk,
+  passes,
+  caps,
+  hull
+};
 struct ThreadName {
   Thread thread;
   std::string_view name;
@@ -27,6 +40,10 @@ constexpr ThreadName kThreads[] = {{Thread::steps, "time steps"},
                                    {Thread::answer, "answer"},
                                    {Thread::phases, "phases", EventLevel::nodes},
                                    {Thread::walk, "tree walk", EventLevel::nodes}};
+constexpr ThreadName kBuildThreads[] = {{Thread::steps, "construction"},
+                                        {Thread::passes, "passes"},
+                                        {Thread::caps, "patches and caps"},
+                                        {Thread::hull, "hull"}};
 
 /// The number of events from one "work" counter to the next: small enough for a smooth curve, large enough to
 /// cost little.
@@ -51,6 +68,16 @@ Thread thread_of(const Event& e) {
     case EventKind::begin:
     case EventKind::end:
       return Thread::phases;
+    case EventKind::pass:
+    case EventKind::pass_end:
+      return Thread::passes;
+    case EventKind::patch:
+    case EventKind::cap:
+      return Thread::caps;
+    case EventKind::region:
+    case EventKind::merged:
+    case EventKind::closed:
+      return Thread::hull;
   }
   return Thread::steps;
 }
@@ -75,6 +102,16 @@ std::string_view category_of(EventKind kind) {
     case EventKind::begin:
     case EventKind::end:
       return "phase";
+    case EventKind::pass:
+    case EventKind::pass_end:
+      return "pass";
+    case EventKind::patch:
+    case EventKind::cap:
+      return "cap";
+    case EventKind::region:
+    case EventKind::merged:
+    case EventKind::closed:
+      return "hull";
   }
   return "";
 }
@@ -82,6 +119,7 @@ std::string_view category_of(EventKind kind) {
 class TraceWriter {
  public:
   TraceWriter(const Trace& trace, ByteSink& sink) : t_(trace), out_(sink) {
+    for (const PassSummary& p : passes_of(t_)) passes_[p.first] = p;
     find_ends();
     find_arrows();
     for (std::size_t k = 0; k < kEventKinds; ++k) prepare(static_cast<EventKind>(k));
@@ -112,10 +150,13 @@ class TraceWriter {
     if (!b.empty()) p.b = ",\"" + std::string(b) + "\":";
   }
 
-  /// Finds where the phases end that begin at an event.
+  /// Finds where the phases and passes end that begin at an event.
   void find_ends() {
-    for (EventId i = 0; i < t_.events.size(); ++i)
-      if (t_.events[i].kind == EventKind::end && t_.events[i].cause != kNull) ends_[t_.events[i].cause] = i;
+    for (EventId i = 0; i < t_.events.size(); ++i) {
+      const Event& e = t_.events[i];
+      const bool ends = e.kind == EventKind::end || e.kind == EventKind::pass_end;
+      if (ends && e.cause != kNull) ends_[e.cause] = i;
+    }
   }
 
   void write_names() {
@@ -124,7 +165,9 @@ class TraceWriter {
         "\"args\":{\"name\":");
     out_.string("lrbscope: " + t_.header.scenario);
     out_.raw("}}");
-    for (const auto& [thread, name, from] : kThreads) {
+    const std::span<const ThreadName> threads =
+        t_.header.construction ? std::span<const ThreadName>(kBuildThreads) : kThreads;
+    for (const auto& [thread, name, from] : threads) {
       if (t_.header.level < from) continue;
       write_thread_field(thread, "thread_name", "name");
       out_.string(name);
@@ -148,9 +191,11 @@ class TraceWriter {
   bool wall() const { return t_.header.clock == Clock::wall; }
 
   /// Returns true if an event's slice holds the events up to another one.
-  static bool lasts(const Event& e) { return e.kind == EventKind::step || e.kind == EventKind::begin; }
+  static bool lasts(const Event& e) {
+    return e.kind == EventKind::step || e.kind == EventKind::begin || e.kind == EventKind::pass;
+  }
 
-  /// Returns the last event of a step or a phase; that of the step if the phase's end was cut off.
+  /// Returns the last event of a step, a phase or a pass; that of the step if the end was cut off.
   EventId last_of(EventId i) const {
     const auto end = ends_.find(i);
     if (end != ends_.end()) return end->second;
@@ -204,9 +249,11 @@ class TraceWriter {
     count(e, i);
   }
 
-  /// Steps are named by what they found, phases by what they are, all others by their kind.
+  /// Steps and passes are named by what they found, phases by what they are, all others by their kind.
   void write_name(const Event& e, EventId i) {
     if (e.kind == EventKind::begin) return out_.raw(name_of(e.phase()));
+    if (e.kind == EventKind::pass) return write_pass_name(passes_.at(i));
+    if (e.kind == EventKind::step && t_.header.construction) return out_.raw("construction");
     out_.raw(name_of(e.kind));
     if (e.kind != EventKind::step) return;
     const Step& step = t_.steps[t_.step_of(i)];
@@ -219,6 +266,20 @@ class TraceWriter {
     out_.raw(", ");
     out_.number(step.result.pair_count);
     out_.raw(step.result.pair_count == 1 ? " pair" : " pairs");
+  }
+
+  void write_pass_name(const PassSummary& p) {
+    out_.raw("pass ");
+    out_.number(std::uint64_t{p.number()});
+    out_.raw(": ");
+    out_.raw(name_of(p.stage));
+    out_.raw(", ");
+    out_.number(std::uint64_t{p.regions});
+    out_.raw(p.regions == 1 ? " region, " : " regions, ");
+    out_.number(std::uint64_t{p.faces_before});
+    out_.raw(" to ");
+    out_.number(std::uint64_t{p.faces_after});
+    out_.raw(" faces");
   }
 
   void write_fields(const Event& e, const Parts& parts) {
@@ -248,6 +309,9 @@ class TraceWriter {
     }
     if (e.kind == EventKind::node_pair) return write_node_pair(e);
     if (e.kind == EventKind::plane_test) write_word("plane of", name_of(e.side));
+    if (e.kind == EventKind::pass || e.kind == EventKind::cap) return write_built(e);
+    if (e.kind == EventKind::patch) write_number("interior vertices", e.depth_a);
+    if (e.kind == EventKind::pass_end && e.depth_a != 0) out_.raw(",\"given up\":true");
     if (e.kind == EventKind::point) {
       write_word("of", name_of(e.side));
       write_word("where", name_of(e.where()));
@@ -288,6 +352,20 @@ class TraceWriter {
     }
     if (work.met == 0) write_word(end.apart ? "apart along" : "overlap least along", name_of(end.axis));
     write_number("pairs above", e.depth_a);
+    write_cause(e.cause);
+  }
+
+  /// Writes what a pass allows, or what became of a cap.
+  void write_built(const Event& e) {
+    if (e.kind == EventKind::pass)
+      write_word("stage", name_of(e.stage()));
+    else
+      write_word("verdict", name_of(e.verdict()));
+    if (e.kind == EventKind::cap && e.depth_a != 0) out_.raw(",\"careful\":true");
+    if (e.kind == EventKind::pass ? e.off() > 0 : e.boundary != kNull) {
+      out_.raw(e.kind == EventKind::pass ? ",\"distance allowed\":" : ",\"distance\":");
+      out_.number(e.off());
+    }
     write_cause(e.cause);
   }
 
@@ -382,13 +460,26 @@ class TraceWriter {
       case EventKind::result:
       case EventKind::plane_test:
       case EventKind::point:
+      case EventKind::pass:
+      case EventKind::patch:
+      case EventKind::cap:
+      case EventKind::merged:
+      case EventKind::pass_end:
+      case EventKind::closed:
+        break;
+      case EventKind::region:
+        ++regions_;
         break;
       case EventKind::end:  // a query that found what was asked for leaves the rest
         pending_pairs_ = pending_tests_ = 0;
         break;
     }
-    const bool change = e.kind == EventKind::refine || e.kind == EventKind::coarsen;
+    const bool change = e.changes_wrapper();
     if (change && e.boundary != kNull) faces_[static_cast<std::size_t>(e.side)] = e.boundary;
+    if (t_.header.construction) {
+      if (change || e.kind == EventKind::step) write_hull_counter(i);
+      return;
+    }
     if (change || e.kind == EventKind::step) write_wrapper_counter(i);
     if (i % kWorkInterval != 0 && e.kind != EventKind::step && e.kind != EventKind::result) return;
     write_work_counter(i);
@@ -408,7 +499,9 @@ class TraceWriter {
   void begin_counting() {
     tests_ = refinements_ = contacts_ = 0;
     pending_pairs_ = pending_tests_ = 0;
-    for (std::size_t s = 0; s < t_.header.bodies.size(); ++s) faces_[s] = t_.header.bodies[s].outer_faces;
+    regions_ = 0;
+    for (std::size_t s = 0; s < t_.header.bodies.size(); ++s)
+      faces_[s] = t_.header.construction ? t_.header.bodies[s].real_faces : t_.header.bodies[s].outer_faces;
   }
 
   void begin_counter(std::string_view name, EventId i) {
@@ -432,6 +525,15 @@ class TraceWriter {
     out_.raw("}}");
   }
 
+  void write_hull_counter(EventId i) {
+    begin_counter("hull", i);
+    out_.raw("\"faces\":");
+    out_.number(std::uint64_t{faces_[0]});
+    out_.raw(",\"regions\":");
+    out_.number(std::uint64_t{regions_});
+    out_.raw("}}");
+  }
+
   void write_work_counter(EventId i) {
     begin_counter("work", i);
     out_.raw("\"face tests\":");
@@ -452,12 +554,13 @@ class TraceWriter {
 
   const Trace& t_;
   JsonOut out_;
-  std::unordered_map<EventId, EventId> ends_;        ///< the end of each phase, by its beginning
+  std::unordered_map<EventId, EventId> ends_;        ///< the end of each phase or pass, by its beginning
   std::vector<std::pair<EventId, EventId>> arrows_;  ///< from, to; ascending
   std::size_t next_arrow_ = 0;
   std::array<Parts, kEventKinds> parts_;
   std::array<std::uint32_t, 2> faces_{};
-  std::uint32_t tests_ = 0, refinements_ = 0, contacts_ = 0;
+  std::unordered_map<EventId, PassSummary> passes_;  ///< by their first event
+  std::uint32_t tests_ = 0, refinements_ = 0, contacts_ = 0, regions_ = 0;
   std::uint64_t pending_pairs_ = 0, pending_tests_ = 0;
 };
 

@@ -25,13 +25,18 @@ void write_step(JsonWriter& w, const Step& s, const TraceHeader& header) {
   w.end_object();
 }
 
+/// Returns true if a trace can have events of a kind.
+bool is_told(EventKind kind, const TraceHeader& header) {
+  if (kind <= EventKind::result) return true;
+  return kind < EventKind::pass ? header.level != EventLevel::faces : header.construction;
+}
+
 void write_totals(JsonWriter& w, const Trace& t) {
   std::array<std::uint64_t, kEventKinds> totals{};
   for (const Event& e : t.events) ++totals[static_cast<std::size_t>(e.kind)];
   w.begin_object();
   for (std::size_t k = 0; k < kEventKinds; ++k)
-    if (k <= static_cast<std::size_t>(EventKind::result) || t.header.level != EventLevel::faces)
-      w.member(name_of(static_cast<EventKind>(k)), totals[k]);
+    if (is_told(static_cast<EventKind>(k), t.header)) w.member(name_of(static_cast<EventKind>(k)), totals[k]);
   w.end_object();
 }
 
@@ -48,6 +53,7 @@ void write_metadata(const Trace& trace, JsonOut& out) {
   if (h.level != EventLevel::faces) w.member("level", name_of(h.level));
   if (!h.engine.empty()) w.member("engine", h.engine);
   if (h.coherent) w.member("coherent", true);
+  if (h.construction) w.member("construction", true);
   w.key("events");
   write_event_counts(w, trace);
   w.key("totals");

@@ -13,7 +13,7 @@ namespace {
 struct PartWords {
   std::string_view phase, outcome;
 };
-constexpr std::array<PartWords, 12> kPartWords = {{{"", "boxes of nodes"},
+constexpr std::array<PartWords, 13> kPartWords = {{{"", "boxes of nodes"},
                                                    {"", "boxes and planes of faces"},
                                                    {"", "face tests: floats"},
                                                    {"", "face tests: shared corners"},
@@ -24,10 +24,11 @@ constexpr std::array<PartWords, 12> kPartWords = {{{"", "boxes of nodes"},
                                                    {"sorting", ""},
                                                    {"relation", ""},
                                                    {"separation", ""},
-                                                   {"contact geometry", ""}}};
-constexpr std::size_t kWalks = 3;
+                                                   {"contact geometry", ""},
+                                                   {"cache making", "pairs kept"}}};
+constexpr std::size_t kWalks = 5;
 constexpr std::array<std::string_view, kWalks> kWalkWords = {"walk of the bodies", "walk of levels",
-                                                             "recursion"};
+                                                             "recursion", "cache making", "cached pairs"};
 
 /// Follows which walk is going on.
 class WalkFollower {
@@ -36,8 +37,10 @@ class WalkFollower {
       : walk_(trace.header.request.recursion == Recursion::complete ? 0 : 2) {}
 
   void see(const Event& e) {
-    if (e.kind == EventKind::begin && e.phase() == Phase::walk)
-      walk_ = e.depth_a > 0 || e.depth_b > 0 ? 1 : 0;
+    if (e.kind != EventKind::begin) return;
+    if (e.phase() == Phase::walk) walk_ = e.depth_a > 0 || e.depth_b > 0 ? 1 : 0;
+    if (e.phase() == Phase::cache) walk_ = 3;
+    if (e.phase() == Phase::cached || e.phase() == Phase::kept) walk_ = 4;
   }
   std::size_t walk() const { return walk_; }
 

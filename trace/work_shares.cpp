@@ -92,6 +92,13 @@ std::optional<Part> part_of(const Event& e) {
     case EventKind::contact:
     case EventKind::result:
     case EventKind::begin:
+    case EventKind::pass:
+    case EventKind::patch:
+    case EventKind::cap:
+    case EventKind::region:
+    case EventKind::merged:
+    case EventKind::pass_end:
+    case EventKind::closed:
       return {};
   }
   return {};

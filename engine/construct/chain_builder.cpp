@@ -164,7 +164,8 @@ class ChainBuilder {
     end_pass();
   }
 
-  /// Returns caps over all chains that are worth it, those that add least area for each segment they save first.
+  /// Returns caps over all chains that are worth it, those that add least area for each segment they save
+  /// first.
   std::vector<Proposal> find_proposals(const std::vector<Slot>& slots, const std::vector<bool>& taken,
                                        const CapGoal& goal) const {
     std::vector<Proposal> proposals;

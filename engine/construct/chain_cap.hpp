@@ -44,9 +44,9 @@ bool measure_cap(const HullLoops& hull, ChainCap& cap, double most);
 /// Returns how far the cap stands off the body by what measure_cap() found: at its ends or between.
 double off_of(const HullLoops& hull, const ChainCap& cap);
 
-/// Returns CapVerdict::stands if, exactly, the cap meets nothing of the hull and of the chain but the chain's ends,
-/// leaves these between the chain and its neighbours on the outer side, and no other component lies beneath it;
-/// else what is in the way. `boxes` (components).
+/// Returns CapVerdict::stands if, exactly, the cap meets nothing of the hull and of the chain but the chain's
+/// ends, leaves these between the chain and its neighbours on the outer side, and no other component lies
+/// beneath it; else what is in the way. `boxes` (components).
 CapVerdict judge_chain_cap(const HullLoops& hull, const AabbTree& tree, const ChainCap& cap,
                            std::span<const Eigen::AlignedBox3d> boxes);
 

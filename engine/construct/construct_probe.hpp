@@ -29,8 +29,9 @@ constexpr auto words_of(BuildStage) {
                                               {BuildStage::known, "known regions"}});
 }
 
-/// What became of a cap: it stands, or why it was given up. The words fit behind a number: "9 met the hull". What
-/// is told of a chain in the plane is the first in this order, of all lengths that were tried from a segment on.
+/// What became of a cap: it stands, or why it was given up. The words fit behind a number: "9 met the hull".
+/// What is told of a chain in the plane is the first in this order, of all lengths that were tried from a
+/// segment on.
 enum class CapVerdict : std::uint8_t {
   stands,
   too_thick,         ///< with fewer faces it would stand off the body by more than the pass allows
@@ -107,7 +108,8 @@ struct TriedCap {
   std::uint32_t covered = 0;  ///< faces of the hull that go under them
   CapVerdict verdict = CapVerdict::stands;
   bool careful = false;  ///< made with a proof for each collapse, after one without had failed at the end
-  /// How far it stands off the body where it was measured, mesh's unit, an estimate; negative: nobody measured.
+  /// How far it stands off the body where it was measured, mesh's unit, an estimate; negative: nobody
+  /// measured.
   double off = -1;
 
   /// Returns how many new faces there are for each face that the hull loses; best near 0.
@@ -117,7 +119,8 @@ struct TriedCap {
   }
 };
 
-/// What is told: pass() { patch() cap() ... region() ... merged() ... } end_pass(), and again; closed() is last.
+/// What is told: pass() { patch() cap() ... region() ... merged() ... } end_pass(), and again; closed() is
+/// last.
 class ConstructProbe {
  public:
   virtual ~ConstructProbe() = default;
@@ -126,8 +129,8 @@ class ConstructProbe {
   virtual void cap(const TriedCap&) {}
   /// A region was made: by the cap that was told last, if that stands; a cap can make several.
   virtual void region(RegionId) {}
-  /// So many pieces of the space under the cap are no regions: each is the inner shell of one that was told just
-  /// before, and became part of it.
+  /// So many pieces of the space under the cap are no regions: each is the inner shell of one that was told
+  /// just before, and became part of it.
   virtual void merged(RegionId /*into*/, std::uint32_t /*pieces*/) {}
   virtual void end_pass(const PassEnd&) {}
   /// The body is built. `faces`: of its outermost wrapper, as triangles or segments.

@@ -46,9 +46,9 @@ class EmbedCheck {
   /// hides another.
   void set_component_boxes(std::vector<Eigen::AlignedBox3d> boxes) { component_boxes_ = std::move(boxes); }
 
-  /// Returns CapVerdict::stands if nothing meets the cap's new triangles, neither the hull outside the patch nor
-  /// the patch nor each other, and all of the hull outside the patch lies outside the region between patch and
-  /// cap; else what is in the way.
+  /// Returns CapVerdict::stands if nothing meets the cap's new triangles, neither the hull outside the patch
+  /// nor the patch nor each other, and all of the hull outside the patch lies outside the region between
+  /// patch and cap; else what is in the way.
   CapVerdict judge_cap(const Patch& patch, const CapSurface& cap);
   /// Does the same for a fan from w that is about to replace a star of the cap.
   CapVerdict judge_fan(const Patch& patch, const CapSurface& cap, const CapSurface::Star& star,

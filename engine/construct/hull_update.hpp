@@ -44,8 +44,8 @@ Sheet make_sheet(const HullMesh& hull, const Patch& patch, const CapSurface& cap
 
 /// Takes the sheet's removed triangles out of the hull and puts the added ones in their place. These become
 /// pseudo faces of `component` with regions of this layer behind them and, for now, the outside in front; the
-/// faces that they cover get those regions in front. Returns the new slots. Tells `probe` of the regions, if there
-/// is one.
+/// faces that they cover get those regions in front. Returns the new slots. Tells `probe` of the regions, if
+/// there is one.
 std::vector<HullMesh::Slot> cover(HullMesh& hull, ComplexBuilder& complex, const Sheet& sheet,
                                   std::uint16_t layer, std::uint32_t component, ConstructProbe* probe);
 

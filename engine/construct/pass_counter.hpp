@@ -8,8 +8,8 @@
 
 namespace lrb::construct {
 
-/// Counts the passes of a builder, and tells its probe of them. A region's layer is the number of the pass that
-/// made it; a pass that makes no region does not count, so that no layer is empty.
+/// Counts the passes of a builder, and tells its probe of them. A region's layer is the number of the pass
+/// that made it; a pass that makes no region does not count, so that no layer is empty.
 class PassCounter {
  public:
   explicit PassCounter(const BuildOptions& options) : options_(options) {}

@@ -32,8 +32,8 @@ class PatchCap {
   /// Collapses edges of the loaded surface until no collapse is allowed any more.
   void simplify(const Patch& patch, const Limits& limits);
 
-  /// Returns why simplify() went no further: what forbids most of the collapses that are left. Limits that were
-  /// set come before what geometry forbids, because nearly every edge at the ring is of that kind.
+  /// Returns why simplify() went no further: what forbids most of the collapses that are left. Limits that
+  /// were set come before what geometry forbids, because nearly every edge at the ring is of that kind.
   CapVerdict what_holds_back();
 
  private:

@@ -59,7 +59,7 @@ std::vector<Eigen::Vector3d> subject_of(const SideShown& side, const std::vector
     }
   }
   const trace::Event& e = cursor.event();
-  if (e.kind == EventKind::refine || e.kind == EventKind::coarsen)
+  if (e.changes_wrapper())
     for (const FaceId f : reps[static_cast<std::size_t>(e.side)]->collector(e.region()))
       for (const VertexId v : reps[static_cast<std::size_t>(e.side)]->face(f)) add(e.side, v);
   return out;
@@ -91,7 +91,6 @@ run::PaintedFrame paint(const GoldenRun& run, const SideShown& side, spec::Frame
   run::RecordedRun p = recorded_run_of(run);
   p.title = run.scenario.name + ", " + title;
   p.trace = &side.trace;
-  p.milestones.clear();
   spec.events = {side.event};
   const run::ProgressReport silent = [](const std::string&, std::uint64_t, std::uint64_t) {};
   return run::paint_frames(p, spec, silent, &framing).at(0);

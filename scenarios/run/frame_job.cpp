@@ -124,7 +124,7 @@ struct FrameJob {
   FrameJob(const RecordedRun& p, const spec::FrameSpec& s, std::vector<trace::EventId> at, Framing framing)
       : spec(s),
         events(std::move(at)),
-        state(*p.trace, p.reps, results_of(p), s, p.milestones.empty() && s.at != spec::FrameSpec::At::step,
+        state(*p.trace, p.reps, results_of(p), s, s.at != spec::FrameSpec::At::step,
               {p.trees, p.value_range, p.face_values, p.value_name}),
         script(write_script(state, events, p.title, s)),
         painter(s, script.picture, std::move(framing)) {}
@@ -184,7 +184,7 @@ struct Montage {
 }  // namespace
 
 void check_frames(const RecordedRun& recorded, const spec::FrameSpec& spec) {
-  static_cast<void>(moments(spec, *recorded.trace, recorded.milestones));
+  static_cast<void>(moments(spec, *recorded.trace));
   if (spec.svg && recorded.reps[0]->dim() != 2)
     throw InputError(
         "frames as SVG are for 2D bodies, and these are 3D: leave svg out, and ask for a higher --dpi");
@@ -204,7 +204,7 @@ std::vector<PaintedFrame> paint_frames(const RecordedRun& recorded, const spec::
                                        const ProgressReport& progress, const Framing* framing) {
   const spec::FrameSpec spec = in_pixels(given);
   std::vector<PaintedFrame> out;
-  const std::vector<trace::EventId> events = moments(spec, *recorded.trace, recorded.milestones);
+  const std::vector<trace::EventId> events = moments(spec, *recorded.trace);
   if (events.empty()) return out;
   FrameJob job(recorded, spec, events, framing != nullptr ? *framing : framing_of(recorded, spec));
   for (std::size_t i = 0; i < events.size(); ++i) {
@@ -222,7 +222,7 @@ DrawnFrames draw_frames(const RecordedRun& recorded, const spec::FrameSpec& give
   DrawnFrames out;
   io::make_folder(folder + "/frames");
   remove_old_frames(folder);
-  const std::vector<trace::EventId> events = moments(spec, *recorded.trace, recorded.milestones);
+  const std::vector<trace::EventId> events = moments(spec, *recorded.trace);
   if (events.empty()) return out;
 
   FrameJob job(recorded, spec, events, framing_of(recorded, spec));

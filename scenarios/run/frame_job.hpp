@@ -19,8 +19,7 @@ struct RecordedRun {
   std::string purpose;  ///< what the pictures should show; may be empty
   std::vector<const LrbRep*> reps;
   const trace::Trace* trace = nullptr;
-  const std::vector<CollideResult>* results = nullptr;  ///< one for each step, or null
-  std::vector<trace::EventId> milestones;
+  const std::vector<CollideResult>* results = nullptr;   ///< one for each step, or null
   const std::vector<trace::TreeShape>* trees = nullptr;  ///< A's and B's, or none: as Recording::trees
   /// Ends of the scale of colours that mean numbers; nothing: as the frame has them.
   std::optional<std::array<double, 2>> value_range = {};

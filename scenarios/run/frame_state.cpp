@@ -1,6 +1,7 @@
 #include "scenarios/run/frame_state.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <filesystem>
 
@@ -9,6 +10,7 @@
 #include "scenarios/run/moments.hpp"
 #include "scenarios/run/node_box_lines.hpp"
 #include "scenarios/run/parting_picture.hpp"
+#include "scenarios/run/pass_words.hpp"
 #include "trace/names.hpp"
 
 namespace lrb::run {
@@ -34,10 +36,6 @@ std::string short_name(const LrbRep& rep) {
   return std::filesystem::path(rep.name()).stem().string();
 }
 
-std::string counted(std::uint64_t n, const char* one, const char* many) {
-  return render::group_digits(n) + " " + (n == 1 ? one : many);
-}
-
 }  // namespace
 
 std::string error_bound_text(double bound) {
@@ -53,10 +51,31 @@ FrameState::FrameState(const trace::Trace& trace, std::vector<const LrbRep*> rep
       spec_(spec),
       extras_(extras),
       point_out_refined_(point_out_refined),
-      cursor_(make_cursor(trace, reps_)) {}
+      cursor_(make_cursor(trace, reps_)),
+      passes_(trace::passes_of(trace)) {}
 
 void FrameState::seek(trace::EventId event) {
   cursor_.seek(event);
+}
+
+const trace::PassSummary* FrameState::pass_here() const {
+  const auto after = std::find_if(passes_.begin(), passes_.end(),
+                                  [&](const trace::PassSummary& p) { return p.first > cursor_.position(); });
+  return after == passes_.begin() ? nullptr : &*(after - 1);
+}
+
+bool FrameState::at_pass_end() const {
+  const trace::PassSummary* pass = pass_here();
+  return pass != nullptr && pass->last == cursor_.position() && pass->regions > 0;
+}
+
+std::vector<RegionId> FrameState::built_here() const {
+  std::vector<RegionId> out;
+  const trace::PassSummary* pass = pass_here();
+  if (pass == nullptr || cursor_.event().kind == EventKind::closed) return out;
+  for (trace::EventId e = pass->first; e <= cursor_.position(); ++e)
+    if (trace_.events[e].kind == EventKind::region) out.push_back(trace_.events[e].region());
+  return out;
 }
 
 bool FrameState::at_step_end() const {
@@ -158,6 +177,7 @@ render::Scene FrameState::scene(bool wrapper, bool plain) const {
   if (const auto pair = cursor_.pair_under_test(); wrapper && !plain && pair && !at_step_end())
     highlight.under_test = {pair->simplex_a, pair->simplex_b};
   if (const CollideResult* result = result_here()) highlight.contacts = result->regions;
+  if (wrapper && trace_.header.construction) highlight.built = built_here();
   render::SceneOptions options;
   switch (spec_.colour_by) {
     case spec::FrameSpec::ColourBy::kind:
@@ -194,6 +214,11 @@ render::Scene FrameState::scene(bool wrapper, bool plain) const {
 
 std::string FrameState::event_text() const {
   const trace::Event& e = cursor_.event();
+  if (trace_.header.construction) {
+    if (e.kind == EventKind::step)
+      return "the body, " + counted(reps_[0]->real_face_count(), "face", "faces");
+    return e.kind == EventKind::pass_end ? pass_words(*pass_here()) : built_words(e);
+  }
   const std::string side = e.side == Side::a ? "A" : "B";
   const auto face_of = [&](Side of) {
     return reps_[static_cast<std::size_t>(of)]->face_of_simplex(e.simplex(of));
@@ -230,8 +255,9 @@ std::string FrameState::event_text() const {
       return std::string(name_of(e.phase())) + " begins";
     case EventKind::end:
       return std::string(name_of(e.phase())) + " ends";
+    default:  // of constructions
+      return {};
   }
-  return {};
 }
 
 std::string FrameState::node_pair_text(const trace::Event& e) {
@@ -268,6 +294,10 @@ render::Overlay FrameState::overlay(const std::string& title) const {
   if (reps_.size() > 1) o.title += "  ·  step " + std::to_string(step());
   o.event = event_text();
   o.event_colour = parting_here() != nullptr ? kPartingColour : render::palette::event(cursor_.event().kind);
+  if (trace_.header.construction) {
+    add_construction(o);
+    return o;
+  }
   const trace::Totals t = totals();
   if (reps_.size() == 1) {
     o.counters = {{"wrapper", render::group_digits(cursor_.boundary_size(Side::a)) + " faces"},
@@ -292,7 +322,44 @@ render::Overlay FrameState::overlay(const std::string& title) const {
   return o;
 }
 
+void FrameState::add_construction(render::Overlay& o) const {
+  std::uint64_t made = 0;
+  for (const trace::PassSummary& p : passes_)
+    if (p.last <= cursor_.position()) made += p.regions;
+  if (const trace::PassSummary* pass = pass_here(); pass != nullptr) {
+    if (pass->last > cursor_.position()) made += built_here().size();
+    o.title += "  ·  " + stage_words(*pass);
+  }
+  o.counters = {
+      {"hull", counted(cursor_.boundary_size(Side::a), "face", "faces")},
+      {"regions", render::group_digits(made) + " of " + render::group_digits(reps_[0]->region_count())}};
+}
+
+std::string FrameState::construction_caption() const {
+  std::string text = event_text();
+  text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
+  const trace::PassSummary* pass = pass_here();
+  if (!at_pass_end())
+    return text + ". Hull: " + counted(cursor_.boundary_size(Side::a), "face", "faces") + ".";
+  text += ". " + std::string(name_of(pass->stage));
+  if (pass->most_off > 0)
+    text += " by caps at most " + render::short_number(pass->most_off) +
+            " off the body (the farthest: " + render::short_number(pass->off) + ")";
+  if (pass->covered > 0)
+    text += "; " + counted(pass->accepted(), "cap", "caps") + " of " + counted(pass->lids, "face", "faces") +
+            " over " + render::group_digits(pass->covered);
+  return text + ".";
+}
+
 std::string FrameState::short_caption() const {
+  if (trace_.header.construction) {
+    const std::uint32_t faces = cursor_.boundary_size(Side::a);
+    const bool built = faces == reps_[0]->outermost_faces().size();
+    const trace::PassSummary* pass = pass_here();
+    if (pass == nullptr) return "the body, " + counted(faces, "face", "faces");
+    return "pass " + std::to_string(pass->number()) + (built ? ", the outermost wrapper" : "") + ", " +
+           counted(faces, "face", "faces");
+  }
   if (reps_.size() == 1) {
     const trace::Totals t = totals();
     const std::uint64_t refined = t.refinements[0] - t.coarsenings[0], all = reps_[0]->region_count();
@@ -306,6 +373,7 @@ std::string FrameState::short_caption() const {
 }
 
 std::string FrameState::caption() const {
+  if (trace_.header.construction) return construction_caption();
   const trace::Totals t = totals();
   std::string out = reps_.size() > 1 ? "Step " + std::to_string(step()) + ", event " : "Event ";
   out += std::to_string(cursor_.position()) + ": " + event_text() + ". ";

@@ -13,6 +13,7 @@
 #include "scenarios/spec/scenario.hpp"
 #include "trace/counters.hpp"
 #include "trace/cursor.hpp"
+#include "trace/passes.hpp"
 #include "trace/tree_shape.hpp"
 
 namespace lrb::run {
@@ -70,6 +71,13 @@ class FrameState {
   std::span<const trace::Event> events_so_far() const;  ///< Returns those of the step.
   std::vector<double> values_of(Side side) const;
   std::string event_text() const;
+  /// Returns the pass of a construction that the event belongs to; null before the first, and for other runs.
+  const trace::PassSummary* pass_here() const;
+  /// Returns true at the end of a pass that made regions.
+  bool at_pass_end() const;
+  std::vector<RegionId> built_here() const;  ///< Returns the regions of this pass so far.
+  void add_construction(render::Overlay& o) const;
+  std::string construction_caption() const;
   static std::string node_pair_text(const trace::Event& e);
   std::string result_text() const;
   trace::Totals totals() const;  ///< Counts the events of the step so far.
@@ -86,6 +94,7 @@ class FrameState {
     WalkExplanation walk;
   };
   mutable std::optional<Parting> parting_;  ///< of the step that was asked for last
+  std::vector<trace::PassSummary> passes_;  ///< of a construction
 };
 
 }  // namespace lrb::run

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "engine/core/error.hpp"
+#include "trace/passes.hpp"
 
 namespace lrb::run {
 namespace {
@@ -28,9 +29,18 @@ std::vector<EventId> step_ends(const trace::Trace& trace) {
 std::vector<EventId> wrapper_changes(const trace::Trace& trace) {
   std::vector<EventId> out;
   for (EventId e = 0; e < trace.events.size(); ++e) {
-    const EventKind kind = trace.events[e].kind;
-    if (kind == EventKind::step || kind == EventKind::refine || kind == EventKind::coarsen) out.push_back(e);
+    if (trace.events[e].kind == EventKind::step || trace.events[e].changes_wrapper()) out.push_back(e);
   }
+  return out;
+}
+
+/// Returns the event at which the body stands bare, and the last one of each pass that made regions.
+std::vector<EventId> pass_ends(const trace::Trace& trace) {
+  if (!trace.header.construction)
+    throw InputError("frames after passes are for constructions: take step, refinement or event");
+  std::vector<EventId> out = {0};
+  for (const trace::PassSummary& p : trace::passes_of(trace))
+    if (p.regions > 0) out.push_back(p.last);
   return out;
 }
 
@@ -61,8 +71,7 @@ std::vector<std::size_t> evenly(std::size_t count, std::size_t wanted) {
   return out;
 }
 
-std::vector<EventId> moments(const spec::FrameSpec& spec, const trace::Trace& trace,
-                             const std::vector<EventId>& milestones) {
+std::vector<EventId> moments(const spec::FrameSpec& spec, const trace::Trace& trace) {
   if (trace.events.empty()) return {};
   std::vector<EventId> all;
   switch (spec.at) {
@@ -72,7 +81,10 @@ std::vector<EventId> moments(const spec::FrameSpec& spec, const trace::Trace& tr
       all = every(step_ends(trace), spec.every);
       break;
     case spec::FrameSpec::At::refinement:
-      all = every(milestones.empty() ? wrapper_changes(trace) : milestones, spec.every);
+      all = every(wrapper_changes(trace), spec.every);
+      break;
+    case spec::FrameSpec::At::pass:
+      all = every(pass_ends(trace), spec.every);
       break;
     case spec::FrameSpec::At::every: {
       std::vector<EventId> events(trace.events.size());

@@ -8,10 +8,9 @@
 
 namespace lrb::run {
 
-/// Returns the events after which pictures are taken, ascending, at most spec.most of them. Where there are
-/// `milestones` (construction), they take the place of refinements.
-std::vector<trace::EventId> moments(const spec::FrameSpec& spec, const trace::Trace& trace,
-                                    const std::vector<trace::EventId>& milestones = {});
+/// Returns the events after which pictures are taken, ascending, at most spec.most of them. Throws InputError
+/// for events that the trace does not have, and for passes of what is no construction.
+std::vector<trace::EventId> moments(const spec::FrameSpec& spec, const trace::Trace& trace);
 
 /// Returns `wanted` indices below `count`, as evenly spaced as can be, first and last among them.
 std::vector<std::size_t> evenly(std::size_t count, std::size_t wanted);

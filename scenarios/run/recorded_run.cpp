@@ -10,6 +10,7 @@
 #include "engine/query/collide_impl.hpp"
 #include "scenarios/run/approach.hpp"
 #include "scenarios/spec/scenario_motion.hpp"
+#include "trace/construct_recorder.hpp"
 #include "trace/hex.hpp"
 #include "trace/recorder.hpp"
 
@@ -91,27 +92,50 @@ std::vector<RegionId> outside_in(const LrbRep& rep) {
   return order;
 }
 
-void record_wrapper(const spec::Scenario& s, Recording& r) {
+void require_closed(const spec::Scenario& s, const LrbRep& rep) {
+  if (rep.closed()) return;
+  throw InputError("scenario " + s.name + ": body a, " + printable_name(source_of(s.bodies[0])) +
+                   ", is open: it has no inside, and so no wrapper to refine or to construct; close it "
+                   "(lrbscope inspect names its open edges), or show a collision");
+}
+
+void record_refinement(const spec::Scenario& s, Recording& r) {
   const LrbRep& rep = r.bodies[0].rep;
-  if (!rep.closed())
-    throw InputError("scenario " + s.name + ": body a, " + printable_name(source_of(s.bodies[0])) +
-                     ", is open: it has no inside, and so no wrapper to refine or to construct; close it "
-                     "(lrbscope inspect names its open edges), or show a collision");
+  require_closed(s, rep);
   trace::Recorder recorder(rep, recorder_settings(s));
   recorder.begin_step(0, s.bodies[0].pose);
-  std::vector<RegionId> order = outside_in(rep);
-  for (const RegionId region : order)
+  for (const RegionId region : outside_in(rep))
     recorder.refine(Side::a, region, static_cast<std::uint32_t>(rep.floor(region).size()));
-  if (s.show == spec::Show::construction) {
-    r.milestones.push_back(static_cast<trace::EventId>(order.size()));  // the step's own event comes first
-    std::reverse(order.begin(), order.end());
-    for (std::size_t i = 0; i < order.size(); ++i) {
-      recorder.coarsen(Side::a, order[i], static_cast<std::uint32_t>(rep.floor(order[i]).size()));
-      const bool pass_ends = i + 1 == order.size() || rep.layer(order[i + 1]) != rep.layer(order[i]);
-      if (pass_ends) r.milestones.push_back(static_cast<trace::EventId>(order.size() + i + 1));
-    }
-  }
   r.trace = recorder.take();
+}
+
+void record_known(const spec::Scenario& s, Recording& r) {
+  const LrbRep& rep = r.bodies[0].rep;
+  require_closed(s, rep);
+  r.trace = trace::known_construction(rep, s.bodies[0].pose, recorder_settings(s));
+  if (rep.region_count() > 0)
+    r.notes.push_back(rep.name() +
+                      ": came with its regions: no builder could be watched, and they are shown by layers");
+}
+
+void record_construction(const spec::Scenario& s, Recording& r) {
+  trace::ConstructRecorder recorder(recorder_settings(s));
+  spec::BodySpec body = s.bodies[0];
+  body.build.probe = &recorder;
+  r.bodies.push_back(make_body(body));
+  if (recorder.empty()) return record_known(s, r);
+  r.trace = recorder.take(r.bodies[0].rep, body.pose);
+}
+
+/// Adds what people should know of a run.
+void add_notes(Recording& r) {
+  std::vector<std::string> of_bodies;
+  for (const bodies::LoadedBody& body : r.bodies)
+    of_bodies.insert(of_bodies.end(), body.notes.begin(), body.notes.end());
+  r.notes.insert(r.notes.begin(), of_bodies.begin(), of_bodies.end());
+  if (r.trace.truncated())
+    r.notes.push_back("the trace holds the first " + std::to_string(r.trace.events.size()) + " of " +
+                      std::to_string(r.trace.events_seen) + " events (trace.max_events)");
 }
 
 }  // namespace
@@ -134,6 +158,13 @@ bodies::LoadedBody make_body(const spec::BodySpec& spec) {
 }
 
 Recording record(const spec::Scenario& scenario, const ProgressReport& progress) {
+  if (scenario.show == spec::Show::construction) {
+    progress("build", 0, 1);
+    Recording r;
+    record_construction(scenario, r);
+    add_notes(r);
+    return r;
+  }
   std::vector<bodies::LoadedBody> bodies;
   for (std::size_t i = 0; i < scenario.bodies.size(); ++i) {
     progress("build", i, scenario.bodies.size());
@@ -146,16 +177,19 @@ Recording record(const spec::Scenario& scenario, std::vector<bodies::LoadedBody>
                  const ProgressReport& progress) {
   Recording r;
   r.bodies = std::move(bodies);
-  for (const bodies::LoadedBody& body : r.bodies)
-    r.notes.insert(r.notes.end(), body.notes.begin(), body.notes.end());
-  if (scenario.show == spec::Show::collision)
-    record_collision(scenario, r, progress);
-  else
-    record_wrapper(scenario, r);
+  switch (scenario.show) {
+    case spec::Show::collision:
+      record_collision(scenario, r, progress);
+      break;
+    case spec::Show::refinement:
+      record_refinement(scenario, r);
+      break;
+    case spec::Show::construction:
+      record_known(scenario, r);
+      break;
+  }
   r.trees = trees_of(r.trace, r.bodies);
-  if (r.trace.truncated())
-    r.notes.push_back("the trace holds the first " + std::to_string(r.trace.events.size()) + " of " +
-                      std::to_string(r.trace.events_seen) + " events (trace.max_events)");
+  add_notes(r);
   return r;
 }
 

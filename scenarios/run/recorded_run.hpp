@@ -18,8 +18,7 @@ using ProgressReport = std::function<void(const std::string& what, std::uint64_t
 struct Recording {
   std::vector<bodies::LoadedBody> bodies;  ///< A and B, or A alone
   trace::Trace trace;
-  std::vector<CollideResult> results;      ///< one for each step; none for one body
-  std::vector<trace::EventId> milestones;  ///< construction: the last event of each pass
+  std::vector<CollideResult> results;  ///< one for each step; none for one body
   std::vector<trace::TreeShape>
       trees;                       ///< A's and B's, that were walked, if pairs of their nodes were recorded
   std::vector<std::string> notes;  ///< for people
@@ -31,7 +30,8 @@ std::vector<trace::TreeShape> trees_of(const trace::Trace& trace,
 
 bodies::LoadedBody make_body(const spec::BodySpec& spec);
 
-/// Builds the bodies and runs the scenario.
+/// Builds the bodies and runs the scenario. A construction is recorded while the builder works; a body that
+/// comes with its regions is shown layer by layer.
 Recording record(const spec::Scenario& scenario, const ProgressReport& progress);
 /// Runs it with bodies that have been built.
 Recording record(const spec::Scenario& scenario, std::vector<bodies::LoadedBody> bodies,

@@ -5,6 +5,7 @@
 #include "render/overlay.hpp"
 #include "scenarios/io/files.hpp"
 #include "scenarios/report/page/inline_image.hpp"
+#include "scenarios/run/construct_report.hpp"
 #include "scenarios/run/frame_state.hpp"
 #include "scenarios/run/scene_json.hpp"
 #include "scenarios/run/work_tables.hpp"
@@ -178,10 +179,12 @@ report::PageTable steps_table(const trace::Trace& trace) {
   return t;
 }
 
-void add_links(report::Page& page, const DrawnFrames& drawn, const ReportText& text) {
+void add_links(report::Page& page, const DrawnFrames& drawn, const ReportText& text, bool construction) {
   page.links.push_back({text.trace_file, text.trace_file,
                         "every event; drag it onto ui.perfetto.dev or chrome://tracing to walk through it"});
-  page.links.push_back({"summary.json", "summary.json", "totals, statistics and every time step as JSON"});
+  page.links.push_back({"summary.json", "summary.json",
+                        construction ? "every pass with its caps, and why they were refused, as JSON"
+                                     : "totals, statistics and every time step as JSON"});
   for (const std::string& file : drawn.montage)
     page.links.push_back({file, file,
                           file.ends_with(".txt") ? "what to print under the montage"
@@ -282,9 +285,13 @@ report::Page run_page(const RecordedRun& p, const DrawnFrames& drawn, const std:
   // In three dimensions they are what is left where a browser has no WebGL, and can be smaller.
   constexpr std::size_t kBesideView = 2'500'000;
   add_frames(page, drawn, folder, p.reps[0]->dim() == 3 ? kBesideView : report::kInlineBudget);
-  add_charts(page, p);
-  add_tables(page, p);
-  add_links(page, drawn, text);
+  if (p.trace->header.construction) {
+    add_construction(page, p);
+  } else {
+    add_charts(page, p);
+    add_tables(page, p);
+  }
+  add_links(page, drawn, text, p.trace->header.construction);
   if (drawn.proved != nullptr)
     add_figure(page, folder, "Proof that the bodies are apart at step " + std::to_string(drawn.proved->index),
                "(a) the outermost wrappers, (b) refined as far as it takes until they have no point in "

@@ -33,7 +33,6 @@ RecordedRun recorded_run_of(const spec::Scenario& scenario, const Recording& rec
   p.purpose = scenario.purpose;
   p.trace = &recording.trace;
   p.results = &recording.results;
-  p.milestones = recording.milestones;
   p.trees = &recording.trees;
   for (const bodies::LoadedBody& body : recording.bodies) p.reps.push_back(&body.rep);
   return p;

@@ -11,6 +11,7 @@
 #include "render/palette.hpp"
 #include "scenarios/report/page/packed.hpp"
 #include "scenarios/run/explanations.hpp"
+#include "scenarios/run/pass_words.hpp"
 #include "scenarios/run/scene_frame.hpp"
 #include "scenarios/run/thinned_events.hpp"
 #include "scenarios/run/tree_boxes.hpp"
@@ -205,6 +206,10 @@ std::string_view outcome_of(const trace::Event& e) {
       return name_of(e.node_end().step);
     case EventKind::point:
       return name_of(e.where());
+    case EventKind::cap:
+      return name_of(e.verdict());
+    case EventKind::pass:
+      return name_of(e.stage());
     default:
       return {};
   }
@@ -222,10 +227,6 @@ json outcomes_json(const trace::Trace& trace, const std::vector<trace::EventId>&
   };
   const std::string numbers = packed_each(kept, number);
   return {{"words", words}, {"numbers", numbers}};
-}
-
-bool changes_wrapper(const trace::Event& e) {
-  return e.kind == EventKind::refine || e.kind == EventKind::coarsen;
 }
 
 /// Returns the parts of the work; null where pairs of nodes were not recorded.
@@ -256,8 +257,9 @@ json events_json(const trace::Trace& trace, const trace::WorkChart& chart,
           {"a", column([](const Event& e) { return e.a; })},
           {"b", column([](const Event& e) { return e.b; })},
           {"cause", column([](const Event& e) { return e.cause; })},
-          {"boundary",
-           column([](const Event& e) { return changes_wrapper(e) ? e.boundary : std::uint32_t{kNull}; })},
+          {"boundary", column([](const Event& e) {
+             return e.changes_wrapper() || e.kind == EventKind::pass_end ? e.boundary : std::uint32_t{kNull};
+           })},
           {"outcomes", outcomes_json(trace, kept)},
           {"work", packed_each(kept,
                                [&](trace::EventId id) {
@@ -295,12 +297,23 @@ std::string thinned_words(const trace::Trace& trace, const ThinnedEvents& events
   if (events.all(trace)) return {};
   std::string out = "Of the run's " + render::group_digits(trace.events.size()) + " events this page has " +
                     render::group_digits(events.kept.size()) + ": ";
+  if (trace.header.construction)
+    return out + "all regions, and evenly chosen others. " + trace_file + " has them all.";
   out += events.cut ? "the first refinements"
          : events.steps < trace.steps.size()
              ? "of " + render::group_digits(events.steps) + " of " +
                    render::group_digits(trace.steps.size()) + " time steps all refinements"
              : "all refinements, then contacts";
   return out + ", and evenly chosen others as far as there is room. " + trace_file + " has them all.";
+}
+
+/// Returns the passes of a construction: where they end, and what they made, in words; null for other runs.
+json passes_json(const trace::Trace& trace) {
+  if (!trace.header.construction) return nullptr;
+  json out = json::array();
+  for (const trace::PassSummary& p : trace::passes_of(trace))
+    out.push_back({{"first", p.first}, {"last", p.last}, {"words", pass_words(p)}});
+  return out;
 }
 
 std::string too_large_words(std::size_t faces, const SceneLimits& limits) {
@@ -336,6 +349,7 @@ std::string scene_json(const RecordedRun& p, const SceneSource& source, const Sc
                     {"kinds", kinds_json()},
                     {"phases", words_json<Phase>()},
                     {"engine", trace.header.engine},
+                    {"passes", passes_json(trace)},
                     {"relations", words_json<Relation>()},
                     {"colours", colours()},
                     {"bodies", std::move(bodies)},

@@ -15,11 +15,11 @@ std::vector<std::uint8_t> ranks(const trace::Trace& trace) {
   const bool by_face = trace.header.request.wrapper == WrapperMode::unregularised;
   for (std::size_t i = 0; i < out.size(); ++i) {
     const trace::Event& e = trace.events[i];
-    const bool changes = e.kind == EventKind::refine || e.kind == EventKind::coarsen;
+    const bool changes = e.changes_wrapper() || e.kind == EventKind::pass_end;
     if (changes || e.kind == EventKind::step || e.kind == EventKind::result) out[i] = kChange;
     if (e.kind == EventKind::contact) out[i] = kMeeting;
     // The face that such a refinement takes away is that of its cause.
-    if (changes && by_face && e.cause != kNull) out[e.cause] = kChange;
+    if (e.changes_wrapper() && by_face && e.cause != kNull) out[e.cause] = kChange;
   }
   if (const trace::EventId first = first_contact(trace); first != kNull) out[first] = kChange;
   return out;

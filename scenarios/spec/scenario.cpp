@@ -121,8 +121,10 @@ Scenario parse_scenario(const std::string& text, const std::string& file) {
   s.request.contacts = true;
   if (const auto n = root.get("query")) s.request = read_query(*n, &s.coherent);
   if (const auto n = root.get("trace")) read_trace(*n, s);
-  s.frames.at = s.show == Show::collision ? FrameSpec::At::step : FrameSpec::At::refinement;
+  s.frames = default_frames(s.show);
   if (const auto n = root.get("frames")) s.frames = read_frames(*n, s.frames);
+  if (s.frames.at == FrameSpec::At::pass && s.show != Show::construction)
+    root.at("frames").fail_key("at", "only a construction has passes: take step, refinement or event");
   if (const auto n = root.get("expect"))
     for (const io::JsonNode& item : n->items()) s.expect.push_back(read_expectation(item, json));
   Fnv64 hash;

@@ -24,7 +24,7 @@ inline constexpr std::uint32_t kMostSteps = 100'000;
 enum class Show : std::uint8_t {
   collision,     ///< two bodies: a query at every time step
   refinement,    ///< one body: its wrapper from the outermost one down to the body itself
-  construction,  ///< one body: its hull growing outward, one builder's pass after the other
+  construction,  ///< one body: how the builder made its regions, pass by pass, from the body outward
 };
 constexpr auto words_of(Show) {
   return std::to_array<EnumWord<Show>>({{Show::collision, "collision"},
@@ -73,8 +73,14 @@ constexpr auto words_of(Motion::Kind) {
 
 /// Which moments become pictures, and how these look.
 struct FrameSpec {
-  enum class At : std::uint8_t { none, step, refinement, every, events };  ///< events: given as a list, so
-                                                                           ///< the file has no word for it
+  enum class At : std::uint8_t {
+    none,
+    step,
+    refinement,
+    pass,   ///< of a construction: the body itself, and the end of each pass that made regions
+    every,  ///< event
+    events  ///< given as a list, so the file has no word for it
+  };
   enum class Camera : std::uint8_t { scene, contact, fixed, orbit };
   /// What the colours of faces mean. From face_tests on: numbers of the time step so far (trace/counters.hpp); some
   /// need more events than face tests: needed_level().
@@ -130,8 +136,11 @@ struct FrameSpec {
 };
 constexpr auto words_of(FrameSpec::At) {
   using At = FrameSpec::At;
-  return std::to_array<EnumWord<At>>(
-      {{At::none, "none"}, {At::step, "step"}, {At::refinement, "refinement"}, {At::every, "event"}});
+  return std::to_array<EnumWord<At>>({{At::none, "none"},
+                                      {At::step, "step"},
+                                      {At::refinement, "refinement"},
+                                      {At::pass, "pass"},
+                                      {At::every, "event"}});
 }
 constexpr auto words_of(FrameSpec::Camera) {
   using Camera = FrameSpec::Camera;

@@ -45,6 +45,15 @@ void read_moments(const io::JsonNode& node, FrameSpec& f) {
 
 }  // namespace
 
+FrameSpec default_frames(Show show) {
+  FrameSpec f;
+  f.at = show == Show::collision    ? FrameSpec::At::step
+         : show == Show::refinement ? FrameSpec::At::refinement
+                                    : FrameSpec::At::pass;
+  if (show == Show::construction) f.colour_by = FrameSpec::ColourBy::region;
+  return f;
+}
+
 FrameSpec read_frames(const io::JsonNode& node, const FrameSpec& fallback) {
   node.object({"at", "every", "events", "most", "size", "dpi", "format", "supersampling", "colour_by",
                "views", "transparent", "node_boxes", "explode", "montage"});

@@ -73,4 +73,6 @@ if ! eval "\"$lrbscope\" $command" | grep -qxF "decided by $verdict"; then
 fi
 for width in 400 3000; do in_frame "$width" && drive 3200 1000 frame.html "${webgl[@]}"; done
 drive 1200 900 'page.html?drive=flat' --disable-gpu --disable-3d-apis --disable-software-rasterizer
+page "$here/build.json"
+drive 1400 1000 'page.html?drive=build' "${webgl[@]}"
 exit "$failed"

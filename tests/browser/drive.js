@@ -37,7 +37,7 @@
   function replaysAsRecorded() {
     const { events, selection, wrappers } = run,
       changes = [...events.kind.keys()].filter((i) => events.changesWrapper(i));
-    check(changes.length > 20, "there are refinements", changes.length);
+    check(changes.length > 20, "wrappers change", changes.length);
     for (const [order, list] of [
       ["forward", changes],
       ["backward", changes.slice().reverse()],
@@ -369,7 +369,37 @@
     equal(run.selection.event, before + 1, "and so do keys");
   }
 
+  function opensAtTheBody() {
+    const { events, selection, wrappers } = run;
+    equal(events.kind[selection.event], events.STEP, "a construction opens at its first event");
+    equal(wrappers.sizes[0], events.bodies[0].realCount, "where the hull has the body's faces");
+    const words = byId("help").textContent + document.body.innerText;
+    check(!/refine/i.test(words), "and the page has no word of refinement", /.{20}refine.{20}/i.exec(words));
+  }
+
+  async function buildsPassByPass() {
+    const { events, selection, wrappers, timeline, view } = run;
+    byId("play-what").value = "pass";
+    let passes = 0,
+      refusals = 0;
+    for (let next = timeline.next(); next; next = timeline.next()) {
+      next();
+      if (events.kind[selection.event] !== events.PASS_END) continue;
+      passes++;
+      if (!recordedSize(selection.event)) check(false, "the hull after a pass", wrappers.sizes);
+      await frame();
+      refusals += /refused: \d+ /.test(byId("view-caption").textContent);
+      const made = events.builtIn(selection.event).length;
+      const marked = view.marks.shown.get("refined").parts.length > 0;
+      if (marked !== made > 0) check(false, "new lids are pointed out after a pass", `${made} regions`);
+    }
+    equal(passes, events.passes.length, "passes can be played one by one");
+    equal(wrappers.sizes[0], wrappers.outermost[0], "to the outermost wrapper");
+    check(refusals > 3, "and say why caps were refused", refusals);
+  }
+
   const parts = {
+    build: [opensAtTheBody, replaysAsRecorded, buildsPassByPass, fitsTheWidth],
     all: [
       opensAtFirstContact,
       replaysAsRecorded,

@@ -1,4 +1,5 @@
-// What a builder tells of itself adds up to the body that it built, on any number of threads, and changes nothing.
+// What a builder tells of itself adds up to the body that it built, on any number of threads, and changes
+// nothing.
 
 #include <algorithm>
 #include <array>

@@ -17,6 +17,7 @@
 #include "engine/construct/build.hpp"
 #include "engine/query/collide_impl.hpp"
 #include "scenarios/bodies/shapes/shapes.hpp"
+#include "trace/construct_recorder.hpp"
 #include "trace/recorder.hpp"
 #include "trace/summary_json.hpp"
 #include "trace/trace_json.hpp"
@@ -169,9 +170,31 @@ TEST_CASE("the SQL for Perfetto gives the numbers of the summary") {
   }
 }
 
+TEST_CASE("and of a construction, pass by pass") {
+  for (const Clock clock : {Clock::event, Clock::wall}) {
+    RecorderSettings settings;
+    settings.clock = clock;
+    ConstructRecorder recorder(settings);
+    BuildOptions options;
+    options.probe = &recorder;
+    const LrbRep rep = build_lrb(shapes::bumpy_sphere(3, 7, 0.3), options);
+    const Trace t = recorder.take(rep, {});
+    const Json passes = Json::parse(summary_json(t))["construction"]["passes"];
+    TraceTables tables(Json::parse(trace_to_json(t)));
+    const auto rows = tables.run_file("passes.sql");
+    REQUIRE(rows.size() == passes.size());
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      CHECK(rows[i].at("stage") == passes[i]["stage"].get<std::string>());
+      for (const char* number : {"patches", "accepted", "regions", "pieces_merged", "faces_after"})
+        CHECK_MESSAGE(rows[i].at(number) == passes[i].at(number).dump(), number);
+    }
+    CHECK(tables.run_file("totals.sql")[0].at("events") == std::to_string(t.events.size()));
+  }
+}
+
 TEST_CASE("every file of SQL is tested") {
   std::size_t files = 0;
   for (const auto& entry : std::filesystem::directory_iterator(LRB_SOURCE_DIR "/trace/sql"))
     files += entry.path().extension() == ".sql";
-  CHECK(files == 5);
+  CHECK(files == 6);
 }

@@ -1,6 +1,6 @@
 -- The totals of summary.json, over the events that were stored.
 SELECT
-  (SELECT COUNT(*) FROM slice WHERE category IN ('step', 'test', 'wrapper', 'answer', 'walk', 'point', 'phase')) AS events,
+  (SELECT COUNT(*) FROM slice WHERE category IN ('step', 'test', 'wrapper', 'answer', 'walk', 'point', 'phase', 'pass', 'cap', 'hull')) AS events,
   (SELECT COUNT(*) FROM slice WHERE name = 'face test') AS face_tests,
   (SELECT COUNT(*) FROM slice WHERE name = 'face test' AND EXTRACT_ARG(arg_set_id, 'args.meet') != 'disjoint') AS hits,
   (SELECT COUNT(*) FROM slice WHERE name = 'face test' AND EXTRACT_ARG(arg_set_id, 'args.meet') = 'cross') AS crossings,

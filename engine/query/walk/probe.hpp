@@ -10,20 +10,28 @@
 
 namespace lrb {
 
-/// The events of a query, in one table: enumerator, name in traces, meaning of the fields a and b.
+/// The events of a query and, from pass on, of a construction (ConstructProbe), in one table: enumerator,
+/// name in traces, meaning of the fields a and b.
 /// LRB_EVENT(enumerator, json_name, meaning of a, meaning of b)
-#define LRB_EVENTS(LRB_EVENT)                                             \
-  LRB_EVENT(step, "step", "time step", "")                                \
-  LRB_EVENT(face_test, "face test", "simplex of A", "simplex of B")       \
-  LRB_EVENT(refine, "refine", "region", "faces added")                    \
-  LRB_EVENT(coarsen, "coarsen", "region", "faces removed")                \
-  LRB_EVENT(contact, "contact", "real simplex of A", "real simplex of B") \
-  LRB_EVENT(result, "result", "relation", "pairs")                        \
-  LRB_EVENT(node_pair, "node pair", "node of A", "node of B")             \
-  LRB_EVENT(plane_test, "plane test", "simplex of A", "simplex of B")     \
-  LRB_EVENT(point, "point", "vertex", "")                                 \
-  LRB_EVENT(begin, "begin", "phase", "")                                  \
-  LRB_EVENT(end, "end", "phase", "count")
+#define LRB_EVENTS(LRB_EVENT)                                                     \
+  LRB_EVENT(step, "step", "time step", "")                                        \
+  LRB_EVENT(face_test, "face test", "simplex of A", "simplex of B")               \
+  LRB_EVENT(refine, "refine", "region", "faces added")                            \
+  LRB_EVENT(coarsen, "coarsen", "region", "faces removed")                        \
+  LRB_EVENT(contact, "contact", "real simplex of A", "real simplex of B")         \
+  LRB_EVENT(result, "result", "relation", "pairs")                                \
+  LRB_EVENT(node_pair, "node pair", "node of A", "node of B")                     \
+  LRB_EVENT(plane_test, "plane test", "simplex of A", "simplex of B")             \
+  LRB_EVENT(point, "point", "vertex", "")                                         \
+  LRB_EVENT(begin, "begin", "phase", "")                                          \
+  LRB_EVENT(end, "end", "phase", "count")                                         \
+  LRB_EVENT(pass, "pass", "layer", "faces barred")                                \
+  LRB_EVENT(patch, "patch", "vertex", "faces")                                    \
+  LRB_EVENT(cap, "cap", "faces", "faces covered")                                 \
+  LRB_EVENT(region, "region", "region", "faces covered")                          \
+  LRB_EVENT(merged, "merged", "region", "pieces")                                 \
+  LRB_EVENT(pass_end, "pass end", "vertices without patch", "vertices that wait") \
+  LRB_EVENT(closed, "closed", "regions", "outermost faces")
 
 enum class EventKind : std::uint8_t {
 #define LRB_EVENT(name, json, a, b) name,

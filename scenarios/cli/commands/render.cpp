@@ -14,6 +14,7 @@
 #include "scenarios/run/frame_job.hpp"
 #include "scenarios/run/open_run.hpp"
 #include "scenarios/run/run_report.hpp"
+#include "scenarios/spec/scenario_frames.hpp"
 #include "trace/hex.hpp"
 #include "trace/trace_json.hpp"
 
@@ -60,9 +61,8 @@ void isolate(const RenderOptions& o, const std::vector<bodies::LoadedBody>& bodi
   spec.ghost_rest = !o.hide_rest;
 }
 
-spec::FrameSpec frame_spec(const RenderOptions& o, bool two_bodies) {
-  spec::FrameSpec spec;
-  spec.at = two_bodies ? spec::FrameSpec::At::step : spec::FrameSpec::At::refinement;
+spec::FrameSpec frame_spec(const RenderOptions& o, spec::Show show) {
+  spec::FrameSpec spec = spec::default_frames(show);
   if (o.close_up) spec.views = whole_and_contact();
   apply(o.picture, spec);
   if (!o.events.empty()) {
@@ -73,8 +73,15 @@ spec::FrameSpec frame_spec(const RenderOptions& o, bool two_bodies) {
   return spec;
 }
 
+/// Returns what a recorded run shows.
+spec::Show show_of(const trace::Trace& trace, std::size_t bodies) {
+  if (trace.header.construction) return spec::Show::construction;
+  return bodies == 2 ? spec::Show::collision : spec::Show::refinement;
+}
+
 /// Throws for options that frames of a crowd do not have.
 void refuse_for_crowd(const RenderOptions& o) {
+  using At = spec::FrameSpec::At;
   const auto& at = o.picture.at;
   const std::pair<bool, const char*> none[] = {
       {!o.events.empty(), "--events"},
@@ -84,8 +91,7 @@ void refuse_for_crowd(const RenderOptions& o) {
       {o.picture.svg.value_or(false), "--format svg"},
       {o.picture.colour_by.has_value(), "--colour-by"},
       {o.picture.node_boxes.has_value(), "--node-boxes"},
-      {at == spec::FrameSpec::At::refinement || at == spec::FrameSpec::At::every,
-       "--frames refinement or event"}};
+      {at == At::refinement || at == At::pass || at == At::every, "--frames refinement, pass or event"}};
   for (const auto& [given, name] : none)
     if (given) throw InputError(std::string(name) + ": is not for the trace of a crowd; leave it out");
 }
@@ -94,7 +100,7 @@ int render_crowd(const RenderOptions& o, const Globals& globals, const std::stri
   refuse_for_crowd(o);
   crowd::CrowdTrace trace = crowd::read_crowd_trace(text, o.trace);
   trace.crowd.purpose = kFromTrace;
-  trace.crowd.frames = frame_spec(o, true);
+  trace.crowd.frames = frame_spec(o, spec::Show::collision);
   run::check_frame_size(trace.crowd.frames);
   std::vector<std::string> names;
   for (const spec::CrowdKind& kind : trace.crowd.kinds) names.push_back(kind.name + ".lrb");
@@ -123,7 +129,7 @@ int run_render(const RenderOptions& o, const Globals& globals) {
   p.trees = &recording.trees;
   for (const bodies::LoadedBody& body : bodies) p.reps.push_back(&body.rep);
   const std::string folder = output_folder(o);
-  spec::FrameSpec spec = frame_spec(o, bodies.size() == 2);
+  spec::FrameSpec spec = frame_spec(o, show_of(trace, bodies.size()));
   isolate(o, bodies, spec);
   const std::vector<std::pair<std::string, std::string>> text = {
       {"Software", "lrbscope " + trace.header.lrbscope},

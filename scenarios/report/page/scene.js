@@ -8,6 +8,8 @@ function startScene() {
     byId("scene").hidden = true;
     return null;
   }
+  leaveOut(events.passes ? ".of-query" : ".of-build");
+  byId("scene").classList.toggle("building", Boolean(events.passes));
   const selection = new Selection(events),
     wrappers = complete ? new Wrappers(bodies, events, scene.wrapper) : null;
   if (wrappers)
@@ -38,7 +40,13 @@ function startScene() {
     asked = /^#e(\d+)$/.exec(location.hash);
   selection.goTo(events.at(asked ? Number(asked[1]) : first));
   if (view) view.frameAll(VIEW_FROM);
+  if (controls && events.passes) controls.colourBy("region");
   return { scene, events, selection, wrappers, timeline, table, filter, form, panel, why, work, view, controls };
+}
+
+/** Takes out what is about queries where a construction is shown, or the other way round. */
+function leaveOut(which) {
+  for (const part of document.querySelectorAll(which)) part.remove();
 }
 
 /** Returns the view; null, with the reason on the page, where there can be none. Frames are then what

@@ -27,6 +27,13 @@ class Events {
     this.COARSEN = kind("coarsen");
     this.CONTACT = kind("contact");
     this.RESULT = kind("result");
+    this.PATCH = kind("patch");
+    this.CAP = kind("cap");
+    this.REGION = kind("region");
+    this.PASS = kind("pass");
+    this.PASS_END = kind("pass end");
+    /** Of a construction, which begins with the body itself: [{first, last, words}], ids of events; else null. */
+    this.passes = json.passes;
   }
 
   id(i) {
@@ -61,7 +68,7 @@ class Events {
     return this.kinds[this.kind[i]];
   }
   changesWrapper(i) {
-    return this.kind[i] === this.REFINE || this.kind[i] === this.COARSEN;
+    return [this.REFINE, this.COARSEN, this.REGION].includes(this.kind[i]);
   }
   /** Tells whether an event concerns a body. */
   concerns(i, side) {
@@ -100,6 +107,19 @@ class Events {
     const [region] = this.regions(i);
     if (region) return this.bodies[region.side].complete ? this.bodies[region.side].depth(region.region) : -1;
     return this.kind[i] === this.FACE_TEST ? Math.max(this.depthA[i], this.depthB[i]) : -1;
+  }
+  /** Returns the pass of a construction that an event belongs to; null: none. */
+  pass(i) {
+    const id = this.id(i);
+    return (this.passes || []).find((p) => p.first <= id && id <= p.last) || null;
+  }
+  /** Returns the regions that a construction made in the pass of an event, so far: [{side, region}]. */
+  builtIn(i) {
+    const pass = this.pass(i),
+      out = [];
+    for (let k = pass ? this.from(pass.first) : i + 1; k <= i; k++)
+      if (this.kind[k] === this.REGION) out.push({ side: 0, region: this.a[k] });
+    return out;
   }
   /** Returns the event that compares the faces which led to this one; -1: none that is here. */
   test(i) {

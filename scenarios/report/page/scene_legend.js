@@ -47,12 +47,14 @@ class Legend {
     });
     if (now.by === "region")
       items.push([css(colours.categories[0]), "pseudo faces, a colour for each region", ""]);
-    items.push(
-      [css(colours.contact), "faces that meet", ""],
-      [css(colours.refining), "region being refined", ""],
-      [css(colours.underTest), "pair under test", ""],
-      [css(colours.selected), "selected", ""],
-    );
+    if (this.view.events.passes) items.push([css(colours.refining), "lids that are new in this pass", ""]);
+    else
+      items.push(
+        [css(colours.contact), "faces that meet", ""],
+        [css(colours.refining), "region being refined", ""],
+        [css(colours.underTest), "pair under test", ""],
+      );
+    items.push([css(colours.selected), "selected", ""]);
     this.items = items;
     this.write();
     this.showScale(key);

@@ -8,8 +8,9 @@ class Marks {
     this.shown = new Map(); // by name: {key, parts: [{group, object}]}
   }
 
-  /** Shows faces in a colour. Nothing is made again while `key` stays the same. */
-  set(name, key, faces, { colour, opacity = 1, width = 1.5, over = false }) {
+  /** Shows faces in a colour. Nothing is made again while `key` stays the same. `through`: rims are seen through
+      everything. */
+  set(name, key, faces, { colour, opacity = 1, width = 1.5, over = false, through = true }) {
     const before = this.shown.get(name);
     if (before && before.key === key) return;
     this.clear(name);
@@ -35,6 +36,8 @@ class Marks {
         thickMaterial(mixed(colour, this.colours.ink, 0.35), width, this.size),
       );
       rim.renderOrder = 6;
+      if (!through)
+        Object.assign(rim.material, { depthTest: true, polygonOffset: true, polygonOffsetFactor: 0, polygonOffsetUnits: -40 });
       view.group.add(mesh, rim);
       parts.push({ group: view.group, object: mesh }, { group: view.group, object: rim });
     });

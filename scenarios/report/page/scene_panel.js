@@ -33,7 +33,7 @@ class Panel {
       ]);
     if (this.wrappers)
       rows.push([
-        "wrapper",
+        events.passes ? "hull" : "wrapper",
         this.wrappers.sizes
           .map((n, s) => `${this.bodies.length > 1 ? SIDES[s] + " " : ""}${digits(n)}`)
           .join(" + ") + " faces",
@@ -71,7 +71,7 @@ class Panel {
     fillList(byId("picked-facts"), [
       ...(hasFace ? this.faceRows(body, picked.face) : []),
       ...this.regionRows(body, picked.region),
-      ...this.countRows(body, picked),
+      ...(this.events.passes ? [] : this.countRows(body, picked)),
     ]);
     byId("picked-isolate").disabled = picked.region === NONE;
   }

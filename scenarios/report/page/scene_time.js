@@ -114,8 +114,10 @@ class Timeline {
     const what = byId("play-what").value,
       end = this.lastHere;
     if (what === "step") return this.step + 1 < this.events.firstOfStep.length ? () => this.byStep(1) : null;
+    const stops = (i) =>
+      what === "pass" ? this.events.kind[i] === this.events.PASS_END : this.events.changesWrapper(i);
     for (let i = this.selection.event + 1; i <= end; i++)
-      if (what === "event" || this.events.changesWrapper(i) || i === end) return () => this.selection.goTo(i);
+      if (what === "event" || i === end || stops(i)) return () => this.selection.goTo(i);
     return null;
   }
 }

@@ -189,12 +189,22 @@ class SceneView {
       opacity: 0.85,
       over: true,
     });
-    const refined = kind === events.REFINE || kind === events.COARSEN ? events.regions(i) : [];
+    const refined = events.passes
+      ? events.builtIn(i)
+      : kind === events.REFINE || kind === events.COARSEN
+        ? events.regions(i)
+        : [];
+    const lastly = refined.length ? refined[refined.length - 1].region : -1;
     this.marks.set(
       "refined",
-      refined.length ? i : -1,
+      refined.length ? (events.passes ? `built ${refined.length} ${lastly} ${this.now.by}` : i) : -1,
       refined.flatMap((r) => [...this.bodies[r.side].lids(r.region)].map((face) => ({ side: r.side, face }))),
-      { colour: colours.refining, opacity: 0.5, width: 2 },
+      {
+        colour: colours.refining,
+        opacity: events.passes && this.now.by === "region" ? 0.25 : 0.5,
+        width: events.passes ? 4 : 2,
+        through: !events.passes,
+      },
     );
     const nodes = events.about(i, "node");
     this.marks.setBoxes("nodes", nodes.length ? i : -1, nodes, colours.underTest);

@@ -12,6 +12,7 @@ function eventWords(events, i) {
     a = events.a[i],
     b = events.b[i];
   const side = two ? ` of ${SIDES[events.side[i]]}` : "";
+  if (events.passes) return builtWords(events, i);
   if (kind === events.STEP) return two ? "both wrappers are the outermost ones" : "the outermost wrapper";
   if (kind === events.REFINE) return `region ${digits(a)}${side}: ${plural(b, "face")} under it`;
   if (kind === events.COARSEN) return `region ${digits(a)}${side} added`;
@@ -34,6 +35,28 @@ function eventWords(events, i) {
     .join(", ");
 }
 
+/** Returns what an event of a construction is about. */
+function builtWords(events, i) {
+  const a = events.a[i],
+    b = events.b[i];
+  switch (events.kind[i]) {
+    case events.STEP:
+      return "the body itself";
+    case events.PASS:
+      return `pass ${digits(a + 1)} begins`;
+    case events.PATCH:
+      return `${plural(b, "face")}, grown from vertex ${digits(a)}`;
+    case events.CAP:
+      return b ? `${plural(a, "face")} over ${digits(b)}` : "none: nothing could be left out";
+    case events.REGION:
+      return `region ${digits(a)}: ${plural(b, "face")} under it`;
+    case events.PASS_END:
+      return events.pass(i).words;
+  }
+  const kind = events.kindOf(i);
+  return `${digits(a)} ${kind.a.words}, ${digits(b)} ${kind.b.words}`;
+}
+
 /** Returns how an event came out; empty: nothing can be said. */
 const outcomeWords = (events, i) => events.outcomes[events.outcome[i]] || "";
 
@@ -52,5 +75,6 @@ function eventSentence(events, wrappers, i) {
   const about = `${eventPlace(events, i)}, ${events.kindOf(i).name}: ${eventWords(events, i)}${result}.`;
   if (!wrappers) return about;
   const sizes = wrappers.sizes.map(digits).join(" + ");
+  if (events.passes) return `${about} Hull: ${sizes} faces.`;
   return `${about} ${wrappers.sizes.length > 1 ? "Wrappers" : "Wrapper"}: ${sizes} faces.`;
 }

@@ -7,6 +7,7 @@ class Wrappers {
     this.byFace = mode === "unregularised";
     this.excluded = bodies.map((b) => new Uint8Array(b.regionCount));
     this.discarded = bodies.map((b) => (this.byFace ? new Uint8Array(b.faceCount) : null));
+    this.bare = events.passes !== null; // wrappers begin with the bodies themselves
     this.outermost = bodies.map((b) => b.outer.reduce((n, cell) => n + (cell === NONE ? 1 : 0), 0));
     this.at = -1; // the event that the wrappers stand after
     this.version = 0; // grows whenever a wrapper changes
@@ -14,8 +15,9 @@ class Wrappers {
   }
 
   reset() {
-    for (const flags of [...this.excluded, ...this.discarded]) if (flags) flags.fill(0);
-    this.sizes = this.outermost.slice(); // numbers of faces on the boundaries
+    for (const flags of this.excluded) flags.fill(this.bare ? 1 : 0);
+    for (const flags of this.discarded) if (flags) flags.fill(0);
+    this.sizes = this.bare ? this.bodies.map((b) => b.realCount) : this.outermost.slice(); // faces on the boundaries
     this.version++;
   }
 
@@ -44,7 +46,7 @@ class Wrappers {
     const side = this.events.side[event],
       region = this.events.a[event];
     const before = this.visibleOf(side, region);
-    if (this.events.kind[event] === this.events.COARSEN) this.coarsen(side, region);
+    if (this.events.kind[event] !== this.events.REFINE) this.coarsen(side, region);
     else this.refine(side, region, this.byFace ? this.refinedFace(event, side, region) : -1);
     this.sizes[side] += this.visibleOf(side, region) - before;
     this.version++;

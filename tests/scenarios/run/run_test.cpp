@@ -3,14 +3,18 @@
 #include <Eigen/Geometry>
 #include <doctest/doctest.h>
 
+#include "engine/core/error.hpp"
 #include "engine/lrb/validate.hpp"
 #include "engine/query/brute_force.hpp"
 #include "scenarios/bodies/body.hpp"
 #include "scenarios/bodies/generators/generators.hpp"
 #include "scenarios/bodies/hull_volume.hpp"
 #include "scenarios/run/approach.hpp"
+#include "scenarios/run/frame_state.hpp"
 #include "scenarios/run/moments.hpp"
 #include "scenarios/run/recorded_run.hpp"
+#include "scenarios/run/run_scenario.hpp"
+#include "scenarios/spec/scenario_frames.hpp"
 #include "scenarios/spec/shipped.hpp"
 
 using namespace lrb;
@@ -73,24 +77,73 @@ TEST_CASE("expectations that are not met are named, those that are met are not")
   CHECK(run::mismatches(s, r).size() == 1);
 }
 
-TEST_CASE("refinement goes from the outermost wrapper to the body, construction back again") {
+spec::Scenario one_rock(spec::Show show) {
   spec::Scenario s;
   s.name = "one";
   s.bodies.resize(1);
   s.bodies[0].generator = "rock";
   s.bodies[0].parameters = {{"frequency", 6}};
-  s.show = spec::Show::refinement;
-  const run::Recording down = run::record(s, kSilent);
+  s.show = show;
+  s.frames = spec::default_frames(show);
+  return s;
+}
+
+TEST_CASE(
+    "refinement goes from the outermost wrapper to the body, construction from the body to the wrapper") {
+  const run::Recording down = run::record(one_rock(spec::Show::refinement), kSilent);
   const LrbRep& rep = down.bodies[0].rep;
   CHECK(down.trace.events.size() == 1 + rep.region_count());
   CHECK(down.trace.events.back().boundary == rep.real_face_count());
 
-  s.show = spec::Show::construction;
+  const spec::Scenario s = one_rock(spec::Show::construction);
   const run::Recording up = run::record(s, kSilent);
-  REQUIRE(up.milestones.size() == rep.layer_count() + 1);
-  CHECK(up.trace.events[up.milestones.front()].boundary == rep.real_face_count());
-  CHECK(up.trace.events[up.milestones.back()].boundary == rep.outermost_faces().size());
-  CHECK(up.milestones.back() + 1 == up.trace.events.size());
+  CHECK(up.bodies[0].rep.hash() == rep.hash());
+  const std::vector<trace::EventId> frames = run::moments(s.frames, up.trace);
+  REQUIRE(frames.size() == rep.layer_count() + 1);
+  CHECK(frames.front() == 0);
+  CHECK(up.trace.events[frames.back()].boundary == rep.outermost_faces().size());
+  CHECK(up.trace.events.back().kind == EventKind::closed);
+  CHECK_THROWS_AS(run::moments(s.frames, down.trace), InputError);
+}
+
+TEST_CASE("a construction's frames say what each pass made and refused, and nothing of refinements") {
+  const spec::Scenario s = one_rock(spec::Show::construction);
+  const run::Recording r = run::record(s, kSilent);
+  const run::RecordedRun p = run::recorded_run_of(s, r);
+  run::FrameState state(r.trace, p.reps, r.results, s.frames, false);
+  std::string all;
+  std::size_t refusals = 0;
+  for (const trace::EventId e : run::moments(s.frames, r.trace)) {
+    state.seek(e);
+    const render::Overlay overlay = state.overlay(s.name);
+    const render::Scene scene = state.scene();
+    all += overlay.title + overlay.event + state.caption() + state.short_caption();
+    for (const render::OverlayCounter& c : overlay.counters) all += c.name + c.value;
+    for (const render::LegendItem& item : scene.key) all += item.text;
+    refusals += overlay.event.find("refused: ") != std::string::npos;
+    CHECK((e == 0 || overlay.event.starts_with("pass ")));
+    const bool new_lids = std::any_of(scene.key.begin(), scene.key.end(), [](const render::LegendItem& i) {
+      return i.text == "new lids, a colour for each region";
+    });
+    CHECK(new_lids == (e != 0));
+  }
+  CHECK(refusals > 3);
+  CHECK(all.find("refine") == std::string::npos);
+  state.seek(static_cast<trace::EventId>(r.trace.events.size() - 1));
+  CHECK(state.caption().starts_with("Built: "));
+}
+
+TEST_CASE("a body that comes with its regions is shown layer by layer") {
+  spec::Scenario s = one_rock(spec::Show::construction);
+  s.bodies[0].generator = "fractal";
+  s.bodies[0].parameters = {};
+  const run::Recording r = run::record(s, kSilent);
+  const LrbRep& rep = r.bodies[0].rep;
+  CHECK(r.trace.header.construction);
+  CHECK(r.notes.size() == 1);
+  const std::vector<trace::EventId> frames = run::moments(s.frames, r.trace);
+  REQUIRE(frames.size() == rep.layer_count() + 1);
+  CHECK(r.trace.events[frames.back()].boundary == rep.outermost_faces().size());
 }
 
 TEST_CASE("moments: first and last are always there, never too many") {

@@ -1,0 +1,246 @@
+/// Constructions as traces: what they hold, files, schema, summary, SQL and divergence.
+
+#include <array>
+#include <bit>
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include <doctest/doctest.h>
+#include <nlohmann/json.hpp>
+
+#include "engine/construct/build.hpp"
+#include "engine/core/error.hpp"
+#include "scenarios/bodies/shapes/shapes.hpp"
+#include "tests/support/json_schema.hpp"
+#include "trace/construct_recorder.hpp"
+#include "trace/counters.hpp"
+#include "trace/cursor.hpp"
+#include "trace/divergence.hpp"
+#include "trace/passes.hpp"
+#include "trace/summary_json.hpp"
+#include "trace/trace_json.hpp"
+
+using namespace lrb;
+using namespace lrb::trace;
+using Json = nlohmann::json;
+
+namespace {
+
+struct Built {
+  LrbRep rep;
+  Trace trace;
+};
+
+Built build(const Mesh& mesh, unsigned threads = 1, RecorderSettings settings = {}) {
+  ConstructRecorder recorder(settings);
+  BuildOptions options;
+  options.threads = threads;
+  options.probe = &recorder;
+  LrbRep rep = build_lrb(mesh, options);
+  Trace trace = recorder.take(rep, {});
+  return {std::move(rep), std::move(trace)};
+}
+
+std::vector<Mesh> meshes() {
+  using namespace shapes;
+  return {bumpy_sphere(3, 5), quad_torus(20, 10),
+          several({icosphere(2), turned_inside_out(icosphere(2, 1.05)), icosphere(3, 1.5)}), gear(40),
+          ring_2d(40)};
+}
+
+const Built& rock() {
+  static const Built built = build(shapes::bumpy_sphere(3, 7, 0.3));
+  return built;
+}
+
+EventId find(const Trace& t, EventKind kind) {
+  for (EventId i = 0; i < t.events.size(); ++i)
+    if (t.events[i].kind == kind) return i;
+  FAIL("no such event");
+  return kNull;
+}
+
+std::string complaint(const Trace& trace) {
+  static const Json schema = Json::parse(std::ifstream(LRB_TRACE_SCHEMA));
+  return test::schema_faults(schema, Json::parse(trace_to_json(trace)));
+}
+
+/// Checks that each pass begins where the one before ended, and that its numbers add up.
+void check_passes(const Built& built) {
+  const std::vector<PassSummary> passes = passes_of(built.trace);
+  REQUIRE_FALSE(passes.empty());
+  std::uint32_t faces = built.rep.real_face_count(), regions = 0, lids = 0;
+  for (const PassSummary& p : passes) {
+    CHECK(p.faces_before == faces);
+    CHECK((p.regions > 0 || p.faces_after == faces));
+    faces = p.faces_after;
+    std::uint32_t caps = 0;
+    for (const std::uint32_t n : p.caps) caps += n;
+    CHECK(caps == p.patches);
+    CHECK(p.off <= p.most_off);
+    regions += p.regions;
+    lids += p.lids;
+  }
+  CHECK(faces == built.rep.outermost_faces().size());
+  CHECK(regions == built.rep.region_count());
+  CHECK(lids == built.rep.face_count() - built.rep.real_face_count());
+}
+
+}  // namespace
+
+TEST_CASE("a construction begins with the body, falls pass by pass, and ends with the outermost wrapper") {
+  for (const Mesh& mesh : meshes()) {
+    CAPTURE(mesh.name);
+    const Built built = build(mesh);
+    check_passes(built);
+    const Trace& t = built.trace;
+    CHECK(t.events.front().kind == EventKind::step);
+    CHECK(t.events.back().kind == EventKind::closed);
+    CHECK(t.events.back().a == built.rep.region_count());
+    CHECK(t.events.back().b == built.rep.outermost_faces().size());
+    Cursor cursor(t, built.rep);
+    cursor.seek(0);
+    CHECK(cursor.boundary_size(Side::a) == built.rep.real_face_count());
+    CHECK(cursor.wrapper(Side::a).boundary().size() == built.rep.real_face_count());
+    for (const PassSummary& p : passes_of(t)) {
+      cursor.seek(p.last);
+      CHECK(cursor.boundary_size(Side::a) == p.faces_after);
+      CHECK(cursor.wrapper(Side::a).boundary().size() == p.faces_after);
+    }
+    cursor.seek(0);  // and backward
+    CHECK(cursor.boundary_size(Side::a) == built.rep.real_face_count());
+    const Chart chart = chart_over_construction(t);
+    CHECK(chart.series[0].values.front() == built.rep.real_face_count());
+    CHECK(chart.series[0].values.back() == built.rep.outermost_faces().size());
+  }
+}
+
+TEST_CASE("the same trace on any number of threads") {
+  for (const Mesh& mesh : meshes()) {
+    CAPTURE(mesh.name);
+    const Built one = build(mesh);
+    for (const unsigned threads : {2u, 4u}) CHECK((build(mesh, threads).trace == one.trace));
+  }
+}
+
+TEST_CASE("a construction survives a file, and fulfils the schema, on both clocks and cut anywhere") {
+  const Mesh mesh = shapes::bumpy_sphere(3, 7, 0.3);
+  const auto events = static_cast<std::uint32_t>(rock().trace.events.size());
+  for (const std::uint32_t cap : {0u, 1u, 2u, 3u, 40u, events - 1, events}) {
+    CAPTURE(cap);
+    for (const Clock clock : {Clock::event, Clock::wall}) {
+      RecorderSettings settings;
+      settings.event_cap = cap;
+      settings.clock = clock;
+      settings.scenario = "rock";
+      const Trace t = build(mesh, 1, settings).trace;
+      CHECK(t.events.size() == cap);
+      CHECK(t.events_seen == events);
+      CHECK(complaint(t) == "");
+      CHECK((trace_from_json(trace_to_json(t), "t.json") == t));
+      passes_of(t);
+      summary_json(t);
+    }
+  }
+}
+
+TEST_CASE("a body that came with its regions tells of its layers") {
+  const LrbRep& rep = rock().rep;
+  const Built known{rep, known_construction(rep, {}, {})};
+  const std::vector<PassSummary> passes = passes_of(known.trace);
+  CHECK(passes.size() == rep.layer_count());
+  std::uint32_t faces = rep.real_face_count(), regions = 0;
+  for (const PassSummary& p : passes) {
+    CHECK(p.stage == BuildStage::known);
+    CHECK(p.faces_before == faces);
+    faces = p.faces_after;
+    regions += p.regions;
+  }
+  CHECK(faces == rep.outermost_faces().size());
+  CHECK(regions == rep.region_count());
+  CHECK(complaint(known.trace) == "");
+  CHECK((trace_from_json(trace_to_json(known.trace), "t.json") == known.trace));
+}
+
+TEST_CASE("summaries say why caps were refused, and nothing of refinements") {
+  const std::string text = summary_json(rock().trace);
+  CHECK(text.find("refine") == std::string::npos);
+  const Json c = Json::parse(text).at("construction");
+  const std::vector<PassSummary> passes = passes_of(rock().trace);
+  REQUIRE(c.at("passes").size() == passes.size());
+  std::uint64_t refused = 0;
+  for (const auto& [why, n] : c.at("refused").items()) {
+    CHECK(from_name<CapVerdict>(why));
+    refused += n.get<std::uint64_t>();
+  }
+  CHECK(refused > 0);
+  CHECK(c.at("patches") == c.at("accepted").get<std::uint64_t>() + refused);
+  CHECK(c.at("regions") == rock().rep.region_count());
+  CHECK(c.at("passes").at(0).at("faces_before") == rock().rep.real_face_count());
+  CHECK(c.at("passes").at(0).at("stage") == "fitting");
+}
+
+TEST_CASE("refusals in words, most frequent first") {
+  std::array<std::uint32_t, kWords<CapVerdict>.size()> caps{};
+  CHECK(refusal_words(caps) == "");
+  caps[static_cast<std::size_t>(CapVerdict::stands)] = 7;
+  caps[static_cast<std::size_t>(CapVerdict::too_thick)] = 3;
+  caps[static_cast<std::size_t>(CapVerdict::meets_hull)] = 9;
+  CHECK(refusal_words(caps) == "9 met the hull, 3 too thick");
+}
+
+TEST_CASE("two constructions that differ: in which event, and in what") {
+  const Trace& x = rock().trace;
+  const auto differ = [&](EventKind kind, auto change) {
+    Trace y = x;
+    change(y.events[find(y, kind)]);
+    const auto d = first_divergence(x, y);
+    REQUIRE(d);
+    CHECK(d->event == find(x, kind));
+    return d->what;
+  };
+  CHECK_FALSE(first_divergence(x, x));
+  CHECK(differ(EventKind::pass, [](Event& e) { ++e.detail; }) == "stage");
+  CHECK(differ(EventKind::pass, [](Event& e) { e.boundary = std::bit_cast<std::uint32_t>(7.f); }) ==
+        "distance");
+  CHECK(differ(EventKind::patch, [](Event& e) { ++e.b; }) == "faces");
+  CHECK(differ(EventKind::patch, [](Event& e) { ++e.depth_a; }) == "interior vertices");
+  CHECK(differ(EventKind::cap, [](Event& e) { e.detail ^= 1; }) == "verdict");
+  CHECK(differ(EventKind::region, [](Event& e) { ++e.boundary; }) == "wrapper faces");
+  CHECK(differ(EventKind::pass_end, [](Event& e) { e.depth_a = 1 - e.depth_a; }) == "given up");
+  Trace query = x;
+  query.header.construction = false;
+  CHECK(first_divergence(x, query)->what == "construction");
+}
+
+TEST_CASE("damaged constructions are refused") {
+  const auto refused = [](EventKind kind, auto change) {
+    Trace t = rock().trace;
+    change(t, t.events[find(t, kind)]);
+    CHECK_THROWS_AS(check_trace(t, "t.json"), InputError);
+  };
+  check_trace(rock().trace, "t.json");
+  refused(EventKind::pass, [](Trace& t, Event&) { t.header.construction = false; });
+  refused(EventKind::pass, [](Trace&, Event& e) { e.detail = 200; });
+  refused(EventKind::pass, [](Trace&, Event& e) { e.boundary = std::bit_cast<std::uint32_t>(-1.f); });
+  refused(EventKind::cap, [](Trace&, Event& e) { e.detail = 200; });
+  refused(EventKind::cap, [](Trace&, Event& e) { e.cause = kNull; });
+  refused(EventKind::patch, [](Trace&, Event& e) { e.cause = 0; });
+  refused(EventKind::region, [](Trace&, Event& e) { e.a = 1'000'000; });
+  refused(EventKind::region, [](Trace&, Event& e) { e.cause = 0; });
+  refused(EventKind::region, [](Trace&, Event& e) { e.side = Side::b; });
+  refused(EventKind::pass_end, [](Trace&, Event& e) { e.cause = kNull; });
+  Trace two = rock().trace;
+  two.header.bodies.push_back(two.header.bodies[0]);
+  CHECK_THROWS_AS(check_trace(two, "t.json"), InputError);
+}
+
+TEST_CASE("stages and verdicts are those of the schema") {
+  const Json schema = Json::parse(std::ifstream(LRB_TRACE_SCHEMA));
+  Json stages = Json::array(), verdicts = Json::array();
+  for (const auto& entry : kWords<BuildStage>) stages.push_back(entry.word);
+  for (const auto& entry : kWords<CapVerdict>) verdicts.push_back(entry.word);
+  CHECK(schema.at("/definitions/stage/enum"_json_pointer) == stages);
+  CHECK(schema.at("/definitions/verdict/enum"_json_pointer) == verdicts);
+}
