@@ -31,8 +31,7 @@ bool Context::refining(RegionId r) const {
 }
 
 bool Context::built(RegionId r) const {
-  return building() &&
-         std::find(highlight.built->begin(), highlight.built->end(), r) != highlight.built->end();
+  return building() && std::binary_search(highlight.built->begin(), highlight.built->end(), r);
 }
 
 Rgba Context::built_colour(RegionId r) const {

@@ -47,8 +47,8 @@ struct SceneHighlight {
   std::array<std::vector<RegionId>, 2> refining;       ///< of A and B
   std::optional<std::array<SimplexId, 2>> under_test;  ///< a simplex of A, one of B
   std::span<const ContactRegion> contacts;
-  /// Regions of A that a construction has just made, in full colour with a rim; those that it made before are
-  /// pale. Nothing: no construction is shown.
+  /// Regions of A that a construction has just made, ascending: in full colour with a rim, and those that it
+  /// made before pale. Nothing: no construction is shown.
   std::optional<std::vector<RegionId>> built = {};
 };
 
