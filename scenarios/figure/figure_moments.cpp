@@ -22,7 +22,11 @@ struct State {
 /// construction), of two the ends of time steps.
 std::vector<EventId> candidates(const run::RecordedRun& recorded) {
   const trace::Trace& trace = *recorded.trace;
-  if (trace.header.construction) return run::pass_ends(trace);
+  if (trace.header.construction) {
+    spec::FrameSpec passes;
+    passes.at = spec::FrameSpec::At::pass;
+    return run::moments(passes, trace);
+  }
   std::vector<EventId> out;
   if (recorded.reps.size() == 1) {
     for (EventId e = 0; e < trace.events.size(); ++e) {

@@ -141,7 +141,6 @@ int run_figure(const FigureOptions& o, const Globals& globals) {
   recorded.purpose = source.purpose;
   recorded.trace = &source.recording.trace;
   recorded.results = &source.recording.results;
-  recorded.milestones = source.recording.milestones;
   recorded.trees = &source.recording.trees;
   for (const bodies::LoadedBody& body : source.recording.bodies) recorded.reps.push_back(&body.rep);
   const figure::Figure drawn = figure::draw_figure(recorded, frames, spec, progress);
