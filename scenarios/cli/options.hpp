@@ -36,7 +36,7 @@ void add_events_option(CLI::App& app, std::optional<EventLevel>& level);
 /// Adds --patch, --max-outer, --lean, --seed and --threads.
 void add_build_options(CLI::App& app, BuildOptions& options);
 
-/// The options --size, --dpi, --transparent, --format, --frames, --every, --most, --colour-by, --node-boxes and --up, which
+/// The options --size, --dpi, --transparent, --format, --frames, --every, --most, --colour-by, --colour-per, --node-boxes and --up, which
 /// take precedence over a scenario.
 struct PictureOptions {
   std::string size;
@@ -46,6 +46,7 @@ struct PictureOptions {
   std::optional<spec::FrameSpec::At> at;
   std::optional<std::uint32_t> every, most;
   std::optional<spec::FrameSpec::ColourBy> colour_by;
+  std::optional<spec::FrameSpec::ColourPer> colour_per;
   std::optional<std::uint32_t> node_boxes;
   std::string up;
 };

@@ -21,7 +21,8 @@ struct RecordedRun {
   const trace::Trace* trace = nullptr;
   const std::vector<CollideResult>* results = nullptr;  ///< one for each step, or null
   std::vector<trace::EventId> milestones;
-  const std::vector<trace::TreeShape>* trees = nullptr;  ///< A's and B's, or none: as Recording::trees
+  const std::vector<trace::TreeShape>* trees = nullptr;        ///< A's and B's, or none: as Recording::trees
+  const std::vector<std::vector<WrongPair>>* wrong = nullptr;  ///< as Recording::wrong, or null
   /// Ends of the scale of colours that mean numbers; nothing: as the frame has them.
   std::optional<std::array<double, 2>> value_range = {};
   /// Numbers of A's and B's faces to be shown instead of those that the frame's colours mean, and what they are; null: none.

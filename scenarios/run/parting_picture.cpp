@@ -13,7 +13,7 @@
 namespace lrb::run {
 namespace {
 
-constexpr int kWidth = 1200, kHeight = 900;
+constexpr int kPartingWidth = 1200, kPartingHeight = 900;
 constexpr float kLine = 1.5F, kStrip = 3;
 
 void add_square(render::DrawList& list, const Square& corners, int dim) {
@@ -80,7 +80,7 @@ void draw_parting(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Po
   if (const std::string words = parting_words(walk); !words.empty()) overlay.event += ": " + words;
   overlay.event_colour = kPartingColour;
   overlay.key = scene.key;
-  const render::OverlayLayout layout = render::lay_out(overlay, kWidth, kHeight);
+  const render::OverlayLayout layout = render::lay_out(overlay, kPartingWidth, kPartingHeight);
   std::vector<Eigen::Vector3d> points = render::body_points(a, pose_a);
   for (const Eigen::Vector3d& x : render::body_points(b, pose_b)) points.push_back(x);
   render::RasterOptions options;
@@ -90,7 +90,7 @@ void draw_parting(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Po
                                              : render::fit_camera(points, options.width, options.height);
   render::Rasterizer rasterizer;
   render::write_png(render::compose_frame(rasterizer.draw(scene.list, camera, options), layout.picture,
-                                          overlay, kWidth, kHeight),
+                                          overlay, kPartingWidth, kPartingHeight),
                     path);
 }
 

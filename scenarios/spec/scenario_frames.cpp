@@ -47,7 +47,7 @@ void read_moments(const io::JsonNode& node, FrameSpec& f) {
 
 FrameSpec read_frames(const io::JsonNode& node, const FrameSpec& fallback) {
   node.object({"at", "every", "events", "most", "size", "dpi", "format", "supersampling", "colour_by",
-               "views", "transparent", "node_boxes", "explode", "montage"});
+               "colour_per", "views", "transparent", "node_boxes", "explode", "montage"});
   FrameSpec f = fallback;
   read_moments(node, f);
   if (const auto n = node.get("size")) {
@@ -60,6 +60,7 @@ FrameSpec read_frames(const io::JsonNode& node, const FrameSpec& fallback) {
   if (const auto n = node.get("format")) f.svg = n->choice<bool>({{"png", false}, {"svg", true}});
   if (const auto n = node.get("supersampling")) f.supersampling = static_cast<int>(n->integer(1, 4));
   if (const auto n = node.get("colour_by")) f.colour_by = n->choice<FrameSpec::ColourBy>();
+  if (const auto n = node.get("colour_per")) f.colour_per = n->choice<FrameSpec::ColourPer>();
   if (const auto n = node.get("views"))
     for (const io::JsonNode& item : n->items(1)) f.views.push_back(read_view(item));
   if (f.views.size() > 6) node.at("views").fail("expected at most 6 views");

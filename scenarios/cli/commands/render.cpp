@@ -83,6 +83,7 @@ void refuse_for_crowd(const RenderOptions& o) {
       {o.hide_rest, "--no-ghost"},
       {o.picture.svg.value_or(false), "--format svg"},
       {o.picture.colour_by.has_value(), "--colour-by"},
+      {o.picture.colour_per.has_value(), "--colour-per"},
       {o.picture.node_boxes.has_value(), "--node-boxes"},
       {at == spec::FrameSpec::At::refinement || at == spec::FrameSpec::At::every,
        "--frames refinement or event"}};
