@@ -30,6 +30,7 @@ inline constexpr Rgba kPaleBack{178, 170, 160};
 
 /// Contacts: darker than vermillion, so that they stand out from both bodies also in grey.
 inline constexpr Rgba kContact{196, 18, 48};
+inline constexpr Rgba kWrong{255, 0, 0};  ///< what another engine got wrong: brighter than contacts
 inline constexpr Rgba kRefining = kGreen;
 inline constexpr Rgba kRefining2d = mix(kGreen, kWhite, 0.4);  ///< as a fill, under lines
 inline constexpr Rgba kUnderTest = kYellow;

@@ -24,6 +24,9 @@ std::string words(double value) {
   std::array<char, 32> digits{};
   return {digits.data(), std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr};
 }
+std::string words(const std::string& text) {
+  return text.empty() ? "lrbscope" : text;
+}
 std::string words(const std::optional<Separation>& s) {
   return s ? "wrappers of " + std::to_string(s->face_count[0]) + " and " + std::to_string(s->face_count[1]) +
                  " faces"
@@ -232,6 +235,8 @@ std::optional<Divergence> first_divergence(const Trace& expected, const Trace& a
   c.same("construction", expected.header.construction, actual.header.construction);
   compare_bodies(c, expected.header, actual.header);
   compare_fields(c, expected.header.request, actual.header.request, "request: ");
+  c.same("level of events", expected.header.level, actual.header.level);
+  c.same("engine", expected.header.engine, actual.header.engine);
   if (!c.differs()) compare_steps(c, expected, actual);
   return std::move(c).result();
 }

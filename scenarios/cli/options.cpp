@@ -123,6 +123,9 @@ void add_picture_options(CLI::App& app, PictureOptions& options) {
 
 void add_colour_options(CLI::App& app, PictureOptions& options) {
   add_choice<spec::FrameSpec::ColourBy>(app, "--colour-by", options.colour_by, "What the colours mean");
+  add_choice<spec::FrameSpec::ColourPer>(
+      app, "--colour-per", options.colour_per,
+      "Whose number colours a face: its own, or its region's or level's sum");
   app.add_option(
          "--node-boxes", options.node_boxes,
          "Draw the boxes of tree nodes of this depth that the walk came to: solid where they met, else dashed")
@@ -153,6 +156,7 @@ void apply(const PictureOptions& options, spec::FrameSpec& spec) {
   if (options.every) spec.every = *options.every;
   if (options.most) spec.most = *options.most;
   if (options.colour_by) spec.colour_by = *options.colour_by;
+  if (options.colour_per) spec.colour_per = *options.colour_per;
   if (options.node_boxes) spec.node_boxes = options.node_boxes;
   apply(options.camera, spec.views);
 }

@@ -49,8 +49,8 @@ void add_camera_options(CLI::App& app, CameraOptions& options);
 /// turned. Throws InputError for what is no camera.
 void apply(const CameraOptions& options, std::vector<spec::FrameSpec::View>& views);
 
-/// The options of cameras, and --size, --dpi, --transparent, --format, --frames, --every, --most, --colour-by and
-/// --node-boxes, which take precedence over a scenario.
+/// The options of cameras, and --size, --dpi, --transparent, --format, --frames, --every, --most, --colour-by,
+/// --colour-per and --node-boxes, which take precedence over a scenario.
 struct PictureOptions {
   CameraOptions camera;
   std::string size;
@@ -60,6 +60,7 @@ struct PictureOptions {
   std::optional<spec::FrameSpec::At> at;
   std::optional<std::uint32_t> every, most;
   std::optional<spec::FrameSpec::ColourBy> colour_by;
+  std::optional<spec::FrameSpec::ColourPer> colour_per;
   std::optional<std::uint32_t> node_boxes;
 };
 void add_picture_options(CLI::App& app, PictureOptions& options);

@@ -92,8 +92,7 @@ std::optional<std::string> write_comparison(const Runs& runs, const std::string&
   page.charts = {chart_of(runs, "Tests of boxes, step by step", "box tests", &Counters::box_tests),
                  chart_of(runs, "Tests of faces, step by step", "face tests", &Counters::face_tests)};
   page.tables = {totals_of(runs), steps_table(runs)};
-  page.footer =
-      "lrbscope " + runs.of[0]->trace.header.lrbscope + ". This page holds all it needs and fetches nothing.";
+  page.footer = report::footer(runs.of[0]->trace.header.lrbscope);
   io::make_folder(folder);
   const io::FolderLock lock(folder);
   io::refuse_links(folder);

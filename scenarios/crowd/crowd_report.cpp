@@ -149,8 +149,7 @@ report::Page crowd_page(const spec::Crowd& crowd, const CrowdRun& run, const run
   if (!drawn.frames.empty())
     page.links.push_back(
         {"frames/", "frames/", std::to_string(drawn.frames.size()) + " full pictures (PNG)"});
-  page.footer = std::string("lrbscope ") + trace::lrbscope_version() +
-                ". This page holds all it needs and fetches nothing.";
+  page.footer = report::footer(trace::lrbscope_version());
   return page;
 }
 

@@ -79,7 +79,7 @@ report::Page page_of(const LrbRep& rep, const LevelCurve& curve, const std::stri
   page.tables = {level_table(curve)};
   page.command = command;
   page.links = {{"levels.json", "levels.json", "all of these numbers"}};
-  page.footer = "This page holds all it needs and fetches nothing.";
+  page.footer = report::footer();
   return page;
 }
 

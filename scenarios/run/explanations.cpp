@@ -35,7 +35,7 @@ bool is_answered(const RecordedRun& p) {
   return p.reps.size() == 2 && request.recursion == Recursion::complete && !request.is_coarse();
 }
 
-/// Returns the different pairs of real faces that events compare, by step.
+/// Returns the different pairs of real faces that events compare, and those that another engine got wrong, by step.
 std::vector<Asked> pairs_of(const RecordedRun& p, const Explained& what) {
   std::vector<Asked> out;
   std::size_t step = 0;
@@ -48,6 +48,9 @@ std::vector<Asked> pairs_of(const RecordedRun& p, const Explained& what) {
                    {SimplexId(e.a), SimplexId(e.b)},
                    e.kind == EventKind::contact || e.meet != exact::Meet::disjoint});
   }
+  if (p.wrong != nullptr && !p.wrong->empty())
+    for (const std::uint32_t s : what.steps)
+      for (const WrongPair& w : (*p.wrong)[s]) out.push_back({s, w.pair, w.missed});
   std::sort(out.begin(), out.end(), [](const Asked& x, const Asked& y) {
     if (!x.same_pair(y)) return x.step != y.step ? x.step < y.step : x.pair < y.pair;
     return x.meets > y.meets;

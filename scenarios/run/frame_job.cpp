@@ -125,7 +125,7 @@ struct FrameJob {
       : spec(s),
         events(std::move(at)),
         state(*p.trace, p.reps, results_of(p), s, s.at != spec::FrameSpec::At::step,
-              {p.trees, p.value_range, p.face_values, p.value_name}),
+              {p.trees, p.wrong, p.value_range, p.face_values, p.value_name}),
         script(write_script(state, events, p.title, s)),
         painter(s, script.picture, std::move(framing)) {}
 
@@ -181,6 +181,19 @@ struct Montage {
   }
 };
 
+/// Throws InputError for colours or boxes that come from a walk of trees, where none is recorded.
+void check_colours(const RecordedRun& recorded, const spec::FrameSpec& spec) {
+  if (spec::needed_level(spec) == EventLevel::faces) return;
+  const std::string what = spec::needed_level(spec.colour_by) == EventLevel::faces
+                               ? std::string("boxes of tree nodes")
+                               : "colours by " + std::string(name_of(spec.colour_by));
+  if (recorded.reps.size() != 2)
+    throw InputError(what + " need two bodies, whose trees are walked, and this run is of one");
+  if (recorded.trace->header.request.recursion != Recursion::complete)
+    throw InputError(what + " need the complete query: --recursion " +
+                     std::string(name_of(recorded.trace->header.request.recursion)) + " walks no trees");
+}
+
 }  // namespace
 
 void check_frames(const RecordedRun& recorded, const spec::FrameSpec& spec) {
@@ -188,6 +201,7 @@ void check_frames(const RecordedRun& recorded, const spec::FrameSpec& spec) {
   if (spec.svg && recorded.reps[0]->dim() != 2)
     throw InputError(
         "frames as SVG are for 2D bodies, and these are 3D: leave svg out, and ask for a higher --dpi");
+  check_colours(recorded, spec);
   check_frame_size(spec);
 }
 

@@ -19,8 +19,9 @@ struct RecordedRun {
   std::string purpose;  ///< what the pictures should show; may be empty
   std::vector<const LrbRep*> reps;
   const trace::Trace* trace = nullptr;
-  const std::vector<CollideResult>* results = nullptr;   ///< one for each step, or null
-  const std::vector<trace::TreeShape>* trees = nullptr;  ///< A's and B's, or none: as Recording::trees
+  const std::vector<CollideResult>* results = nullptr;         ///< one for each step, or null
+  const std::vector<trace::TreeShape>* trees = nullptr;        ///< A's and B's, or none: as Recording::trees
+  const std::vector<std::vector<WrongPair>>* wrong = nullptr;  ///< as Recording::wrong, or null
   /// Ends of the scale of colours that mean numbers; nothing: as the frame has them.
   std::optional<std::array<double, 2>> value_range = {};
   /// Values to colour A's and B's faces by, in place of those that FrameSpec::colour_by computes, and their name; null:

@@ -6,9 +6,11 @@
 #include <filesystem>
 
 #include "render/palette.hpp"
+#include "scenarios/run/face_groups.hpp"
 #include "scenarios/run/face_values.hpp"
 #include "scenarios/run/moments.hpp"
 #include "scenarios/run/node_box_lines.hpp"
+#include "scenarios/run/pair_lines.hpp"
 #include "scenarios/run/parting_picture.hpp"
 #include "scenarios/run/pass_words.hpp"
 #include "trace/names.hpp"
@@ -109,6 +111,11 @@ const WalkExplanation* FrameState::parting_here() const {
   return &parting_->walk;
 }
 
+std::span<const WrongPair> FrameState::wrong_here() const {
+  if (extras_.wrong == nullptr || !at_step_end() || cursor_.step_number() >= extras_.wrong->size()) return {};
+  return (*extras_.wrong)[cursor_.step_number()];
+}
+
 std::uint32_t FrameState::boundary_size(Side side) const {
   const Separation* proof = proof_here();
   return proof != nullptr ? proof->face_count[static_cast<std::size_t>(side)] : cursor_.boundary_size(side);
@@ -142,7 +149,8 @@ std::span<const trace::Event> FrameState::events_so_far() const {
 std::vector<double> FrameState::values_of(Side side) const {
   const auto i = static_cast<std::size_t>(side);
   if (extras_.face_values != nullptr) return (*extras_.face_values)[i];
-  return face_values(spec_.colour_by, *reps_[i], side, events_so_far(), tree_of(side));
+  return grouped(face_values(spec_.colour_by, *reps_[i], side, events_so_far(), tree_of(side)),
+                 spec_.colour_per, *reps_[i]);
 }
 
 render::Scene FrameState::scene(bool wrapper, bool plain) const {
@@ -192,7 +200,9 @@ render::Scene FrameState::scene(bool wrapper, bool plain) const {
       options.colour_by = render::ColourBy::value;
       options.value_name = std::string(name_of(spec_.colour_by));
       std::replace(options.value_name.begin(), options.value_name.end(), '_', ' ');
-      if (spec_.colour_by == spec::FrameSpec::ColourBy::box_tests)
+      if (spec_.colour_per != spec::FrameSpec::ColourPer::face)
+        options.value_name += " in the " + std::string(name_of(spec_.colour_per));
+      else if (spec_.colour_by == spec::FrameSpec::ColourBy::box_tests)
         options.value_range = scale_without_the_smallest(values);
       if (!extras_.value_name.empty()) options.value_name = extras_.value_name;
       if (extras_.value_range) options.value_range = extras_.value_range;
@@ -206,6 +216,10 @@ render::Scene FrameState::scene(bool wrapper, bool plain) const {
   render::Scene scene = render::build_scene(bodies, highlight, options);
   if (const WalkExplanation* walk = plain ? nullptr : parting_here())
     add_parting(scene.list, *walk, *reps_[0], cursor_.pose(Side::a), *reps_[1], cursor_.pose(Side::b));
+  if (const std::span<const WrongPair> wrong = wrong_here(); !plain && !wrong.empty()) {
+    add_wrong_pairs(scene.list, wrong, *reps_[0], cursor_.pose(Side::a), *reps_[1], cursor_.pose(Side::b));
+    scene.key.push_back({render::LegendItem::Mark::line, render::palette::kWrong, "pair got wrong"});
+  }
   for (const Side side : {Side::a, Side::b})
     if (const trace::TreeShape* tree = tree_of(side); spec_.node_boxes && tree != nullptr)
       add_node_boxes(scene, *tree, side, cursor_.pose(side), *spec_.node_boxes, events_so_far());
@@ -316,6 +330,8 @@ render::Overlay FrameState::overlay(const std::string& title) const {
       o.counters.erase(o.counters.begin(), o.counters.begin() + 3);
       o.counters.insert(o.counters.begin(), {"pairs of boxes", render::group_digits(t.node_pairs)});
     }
+    if (const std::size_t wrong = wrong_here().size(); wrong > 0)
+      o.counters.push_back({"wrong pairs", render::group_digits(wrong)});
     if (const trace::StepResult* answer = answer_here(); answer && trace_.header.request.is_coarse())
       o.counters.push_back({"error bound", error_bound_text(answer->error_bound)});
   }

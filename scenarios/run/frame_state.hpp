@@ -10,6 +10,7 @@
 #include "engine/query/collide.hpp"
 #include "engine/query/explain.hpp"
 #include "render/scene.hpp"
+#include "scenarios/run/recorded_run.hpp"
 #include "scenarios/spec/scenario.hpp"
 #include "trace/counters.hpp"
 #include "trace/cursor.hpp"
@@ -24,6 +25,7 @@ std::string error_bound_text(double bound);
 /// What not every run has: see RecordedRun.
 struct FrameExtras {
   const std::vector<trace::TreeShape>* trees = nullptr;
+  const std::vector<std::vector<WrongPair>>* wrong = nullptr;
   std::optional<std::array<double, 2>> value_range = {};
   const std::array<std::vector<double>, 2>* face_values = nullptr;
   std::string value_name = {};
@@ -63,6 +65,8 @@ class FrameState {
   /// Returns the walk of a step that ends here without contact; null: of another, or where what parts the bodies is not
   /// to be shown: numbers of faces need the picture for themselves.
   const WalkExplanation* parting_here() const;
+  /// Returns the pairs that another engine got wrong in the step, once its last event has come.
+  std::span<const WrongPair> wrong_here() const;
   std::uint32_t boundary_size(Side side) const;  ///< Returns the number of faces of the wrapper that is
                                                  ///< shown.
   /// (|F|) Marks the faces of a coarse answer so far; empty if the answer is one for contact regions.

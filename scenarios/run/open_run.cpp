@@ -13,6 +13,16 @@
 namespace lrb::run {
 namespace {
 
+/// Throws if the body has no vertex that an event says was located.
+void check_vertex(const Recording& run, const trace::Event& e) {
+  const std::size_t side = static_cast<std::size_t>(e.side);
+  const std::size_t count =
+      side < run.bodies.size() ? run.bodies[side].rep.vertices().size() : std::size_t{0};
+  if (e.a >= count)
+    throw InputError("an event is about vertex " + std::to_string(e.a) + " of " +
+                     std::string(name_of(e.side)) + ", which has " + std::to_string(count));
+}
+
 /// Throws if the trace cannot have come from the run's bodies.
 void check_events(const std::string& path, const Recording& run) {
   const trace::Trace& trace = run.trace;
@@ -21,6 +31,8 @@ void check_events(const std::string& path, const Recording& run) {
                                ? trace::Cursor(trace, run.bodies[0].rep)
                                : trace::Cursor(trace, run.bodies[0].rep, run.bodies[1].rep);
     if (!trace.events.empty()) cursor.seek(static_cast<trace::EventId>(trace.events.size() - 1));
+    for (const trace::Event& e : trace.events)
+      if (e.kind == EventKind::point) check_vertex(run, e);
     for (std::size_t i = 0; i < run.trees.size(); ++i) {
       trace::count_nodes(run.trees[i], static_cast<Side>(i), trace.events);
       for (const trace::Event& e : trace.events)

@@ -10,6 +10,7 @@
 #include "render/png.hpp"
 #include "render/rasterize.hpp"
 #include "render/scene.hpp"
+#include "scenarios/run/pair_lines.hpp"
 
 namespace lrb::run {
 namespace {
@@ -17,30 +18,6 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr int kPairWidth = 1200, kPairHeight = 900;
-
-std::vector<Vector3d> corners_of(const LrbRep& rep, const Pose& pose, SimplexId s) {
-  VertexId v[3];
-  rep.simplex(s, v);
-  std::vector<Vector3d> out;
-  out.reserve(3);
-  for (int k = 0; k < rep.simplex_size(); ++k) out.push_back(pose.apply(rep.vertices()[v[k]]));
-  return out;
-}
-
-constexpr float kHalo = 1.5F;
-
-/// Draws a segment, or the outline of a polygon, over everything that hides it.
-void outline(render::DrawList& list, const std::vector<Vector3d>& corners, render::Rgba colour, float width) {
-  render::DrawLine line;
-  line.points = corners;
-  line.closed = corners.size() > 2;
-  line.colour = colour;
-  line.width = width;
-  line.halo = render::kWhite;
-  line.halo_width = kHalo;
-  line.layer = render::Layer::on_top;
-  list.lines.push_back(line);
-}
 
 /// Draws the corners of a contact, or the nearest points, and what they span.
 void mark(render::DrawList& list, const std::vector<Vector3d>& points) {

@@ -15,12 +15,20 @@ namespace lrb::run {
 /// Called with the progress of a long job: what it is doing, how much is done, how much there is.
 using ProgressReport = std::function<void(const std::string& what, std::uint64_t done, std::uint64_t total)>;
 
+/// A pair that another engine got wrong: it reported faces that do not meet, or missed faces that do.
+struct WrongPair {
+  SimplexPair pair;
+  bool missed = false;
+};
+
 struct Recording {
   std::vector<bodies::LoadedBody> bodies;  ///< A and B, or A alone
   trace::Trace trace;
   std::vector<CollideResult> results;  ///< one for each step; none for one body
   std::vector<trace::TreeShape>
-      trees;                       ///< A's and B's, that were walked, if pairs of their nodes were recorded
+      trees;  ///< A's and B's, that were walked, if pairs of their nodes were recorded
+  /// Of each step, if another engine was recorded: what it got wrong, first those that it reported, then those that it missed.
+  std::vector<std::vector<WrongPair>> wrong;
   std::vector<std::string> notes;  ///< for people
 };
 

@@ -7,6 +7,7 @@
 #include "scenarios/report/page/inline_image.hpp"
 #include "scenarios/run/construct_report.hpp"
 #include "scenarios/run/frame_state.hpp"
+#include "scenarios/run/group_tables.hpp"
 #include "scenarios/run/scene_json.hpp"
 #include "scenarios/run/work_tables.hpp"
 #include "trace/counters.hpp"
@@ -245,6 +246,7 @@ void add_tables(report::Page& page, const RecordedRun& p) {
     page.tables.push_back(contact_table(p.results->back(), p.trace->steps.back().index));
   constexpr std::size_t kMostSteps = 200;
   for (report::PageTable& table : work_tables(p)) page.tables.push_back(std::move(table));
+  for (report::PageTable& table : group_tables(p)) page.tables.push_back(std::move(table));
   if (p.trace->steps.size() <= kMostSteps) page.tables.push_back(steps_table(*p.trace));
   page.tables.push_back(quality_table(p));
 }
@@ -298,8 +300,7 @@ report::Page run_page(const RecordedRun& p, const DrawnFrames& drawn, const std:
                "common: " +
                    faces_text(*drawn.proved->result.separation) + ". Each holds its body.",
                kSeparationFile);
-  page.footer =
-      "lrbscope " + p.trace->header.lrbscope + ". This page holds all it needs and fetches nothing.";
+  page.footer = report::footer(p.trace->header.lrbscope);
   return page;
 }
 

@@ -34,6 +34,7 @@ RecordedRun recorded_run_of(const spec::Scenario& scenario, const Recording& rec
   p.trace = &recording.trace;
   p.results = &recording.results;
   p.trees = &recording.trees;
+  p.wrong = &recording.wrong;
   for (const bodies::LoadedBody& body : recording.bodies) p.reps.push_back(&body.rep);
   return p;
 }

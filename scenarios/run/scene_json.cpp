@@ -57,6 +57,7 @@ json colours() {
           {"refining", css(palette::kRefining)},
           {"underTest", css(palette::kUnderTest)},
           {"selected", css(palette::kPurple)},
+          {"wrong", css(palette::kWrong)},
           {"ink", css(palette::kInk)},
           {"scale", std::move(scale)},
           {"categories", std::move(categories)}};
@@ -292,6 +293,20 @@ Numbers steps_of(const trace::Trace& trace, const std::vector<trace::EventId>& k
   return out;
 }
 
+/// The pairs that another engine got wrong, by the page's steps; null: none are known.
+json wrong_json(const RecordedRun& p, const Numbers& steps) {
+  if (p.wrong == nullptr || p.wrong->empty()) return nullptr;
+  Numbers step, a, b, missed;
+  for (std::uint32_t i = 0; i < steps.size(); ++i)
+    for (const WrongPair& w : (*p.wrong)[steps[i]]) {
+      step.push_back(i);
+      a.push_back(w.pair.a.value());
+      b.push_back(w.pair.b.value());
+      missed.push_back(w.missed ? 1 : 0);
+    }
+  return {{"step", packed(step)}, {"a", packed(a)}, {"b", packed(b)}, {"missed", packed(missed)}};
+}
+
 std::string thinned_words(const trace::Trace& trace, const ThinnedEvents& events,
                           const std::string& trace_file) {
   if (events.all(trace)) return {};
@@ -346,6 +361,7 @@ std::string scene_json(const RecordedRun& p, const SceneSource& source, const Sc
                                                                    ? std::int64_t{-1}
                                                                    : std::int64_t{first_contact(trace)})},
                     {"work", work_json(trace, work)},
+                    {"wrong", wrong_json(p, steps)},
                     {"kinds", kinds_json()},
                     {"phases", words_json<Phase>()},
                     {"engine", trace.header.engine},

@@ -96,6 +96,8 @@ struct FrameSpec {
     box_tests,
     plane_tests,
   };
+  /// Whose numbers colour a face: its own, or the sum over the faces of its region or of its level.
+  enum class ColourPer : std::uint8_t { face, region, level };
   struct View {
     Camera camera = Camera::scene;
     bool orthographic = false;
@@ -119,6 +121,7 @@ struct FrameSpec {
   double dpi = 0;  ///< pixels per inch of what is printed; 0: as on a screen, and not written into the file
   int supersampling = 2;
   ColourBy colour_by = ColourBy::kind;
+  ColourPer colour_per = ColourPer::face;
   std::vector<View> views;  ///< side by side; none: one of the whole scene
   bool transparent = false;
   std::array<std::vector<RegionId>, 2> isolate;  ///< regions of A and B to show alone; none: everything
@@ -161,6 +164,11 @@ constexpr auto words_of(FrameSpec::ColourBy) {
                                             {ColourBy::expansions, "expansions"},
                                             {ColourBy::box_tests, "box_tests"},
                                             {ColourBy::plane_tests, "plane_tests"}});
+}
+constexpr auto words_of(FrameSpec::ColourPer) {
+  using ColourPer = FrameSpec::ColourPer;
+  return std::to_array<EnumWord<ColourPer>>(
+      {{ColourPer::face, "face"}, {ColourPer::region, "region"}, {ColourPer::level, "level"}});
 }
 /// Returns the events that colours need.
 constexpr EventLevel needed_level(FrameSpec::ColourBy by) {

@@ -56,7 +56,7 @@ FrameSpec default_frames(Show show) {
 
 FrameSpec read_frames(const io::JsonNode& node, const FrameSpec& fallback) {
   node.object({"at", "every", "events", "most", "size", "dpi", "format", "supersampling", "colour_by",
-               "views", "transparent", "node_boxes", "explode", "montage"});
+               "colour_per", "views", "transparent", "node_boxes", "explode", "montage"});
   FrameSpec f = fallback;
   read_moments(node, f);
   if (const auto n = node.get("size")) {
@@ -69,6 +69,7 @@ FrameSpec read_frames(const io::JsonNode& node, const FrameSpec& fallback) {
   if (const auto n = node.get("format")) f.svg = n->choice<bool>({{"png", false}, {"svg", true}});
   if (const auto n = node.get("supersampling")) f.supersampling = static_cast<int>(n->integer(1, 4));
   if (const auto n = node.get("colour_by")) f.colour_by = n->choice<FrameSpec::ColourBy>();
+  if (const auto n = node.get("colour_per")) f.colour_per = n->choice<FrameSpec::ColourPer>();
   if (const auto n = node.get("views"))
     for (const io::JsonNode& item : n->items(1)) f.views.push_back(read_view(item));
   if (f.views.size() > 6) node.at("views").fail("expected at most 6 views");

@@ -151,6 +151,10 @@ run::Recording recording_of(const ForeignWalk& walk, const run::Recording& ours,
     const trace::Step& step = ours.trace.steps[i];
     recorder.begin_step(step.index, step.pose_a, step.pose_b);
     recorder.end_step(replay(walk.steps[i], descent, recorder));
+    const WrongPairs wrong = wrong_pairs(walk.steps[i], ours.results[i].pairs);
+    std::vector<run::WrongPair>& here = out.wrong.emplace_back();
+    for (const SimplexPair& pair : wrong.too_many) here.push_back({pair, false});
+    for (const SimplexPair& pair : wrong.missing) here.push_back({pair, true});
   }
   out.trace = recorder.take();
   if (out.trace.truncated())

@@ -102,8 +102,7 @@ std::vector<std::string> write_xray(const Xray& x, const std::string& folder,
   page.links.push_back({x.method + "/index.html", x.method + "/index.html",
                         "the run of " + x.walk.title + ", with its trace"});
   page.links.push_back({"ours/index.html", "ours/index.html", "the run of lrbscope, with its trace"});
-  page.footer =
-      "lrbscope " + x.ours.trace.header.lrbscope + ". This page holds all it needs and fetches nothing.";
+  page.footer = report::footer(x.ours.trace.header.lrbscope);
   io::write_text(folder + "/index.html", report::page_html(page));
   return notes;
 }

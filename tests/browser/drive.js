@@ -295,8 +295,23 @@
     }
     equal(byId("scale").hidden, false, "counters have a scale");
     equal(byId("scale-most").textContent, digits(most), "that goes to the most of both bodies");
+    for (const body of run.events.bodies)
+      for (const per of ["region", "level"]) {
+        const sums = sumsOfGroups(body, per, body.counts.tests),
+          seen = new Set();
+        let total = 0;
+        sums.forEach((n, f) => {
+          const group = per === "region" ? body.regionOf(f) : body.depth(body.outer[f]);
+          if (group !== NONE && seen.has(group)) return;
+          seen.add(group);
+          total += n;
+        });
+        equal(total, ofKind(run.events.FACE_TEST), `sums of ${per}s count every test once`);
+      }
     input("colour-scope", "step");
     input("colour-per", "region");
+    await frame();
+    input("colour-per", "level");
     await frame();
     input("colour-by", "kind");
     await frame();

@@ -114,6 +114,12 @@ TEST_CASE("what is around the events is compared too") {
   y.header.request.tolerance = 0.5;
   CHECK(difference(x, y) == "run: request: tolerance: expected 0, found 0.5");
   y = x;
+  y.header.level = EventLevel::nodes;
+  CHECK(difference(x, y) == "run: level of events: expected faces, found nodes");
+  y = x;
+  y.header.engine = "FCL 0.7";
+  CHECK(difference(x, y) == "run: engine: expected lrbscope, found FCL 0.7");
+  y = x;
   y.steps[0].result.error_bound = 0.25;
   CHECK(difference(x, y) == "step 0: error_bound: expected 0, found 0.25");
   y = x;

@@ -174,7 +174,7 @@ report::Page accuracy_page(const std::vector<DataSet>& sets, const std::vector<P
   for (const DataSet& set : sets)
     for (const PoseClass c : kPoseClasses) page.charts.push_back(chart_of(set, c, points, styles, scene_of));
   page.tables = {table_of_metrics(), table_of_methods(methods), table_of_points(points)};
-  page.footer = "This page holds all it needs and fetches nothing.";
+  page.footer = report::footer();
   return page;
 }
 

@@ -90,6 +90,7 @@ void refuse_for_crowd(const RenderOptions& o) {
       {o.hide_rest, "--no-ghost"},
       {o.picture.svg.value_or(false), "--format svg"},
       {o.picture.colour_by.has_value(), "--colour-by"},
+      {o.picture.colour_per.has_value(), "--colour-per"},
       {o.picture.node_boxes.has_value(), "--node-boxes"},
       {at == At::refinement || at == At::pass || at == At::every, "--frames refinement, pass or event"}};
   for (const auto& [given, name] : none)

@@ -2,12 +2,14 @@
 #include <memory>
 
 #include "engine/core/error.hpp"
+#include "engine/core/file_bytes.hpp"
 #include "engine/core/fnv.hpp"
 #include "scenarios/bodies/body.hpp"
 #include "scenarios/cli/command.hpp"
 #include "scenarios/cli/options.hpp"
 #include "scenarios/cli/progress.hpp"
 #include "scenarios/io/pose_file.hpp"
+#include "scenarios/methods/body_parts.hpp"
 #include "scenarios/xray/foreign_run.hpp"
 #include "scenarios/xray/xray_report.hpp"
 
@@ -47,14 +49,31 @@ spec::Scenario scenario_of(const XrayOptions& o, const std::vector<bodies::Loade
   return s;
 }
 
+/// Reads the poses of B. Throws InputError for one that is no rotation and translation, by file and line.
+std::vector<xray::PosePair> rigid_poses(const std::string& path) {
+  std::vector<std::size_t> lines;
+  std::vector<xray::PosePair> out;
+  for (const Pose& pose : io::read_poses(path, &lines)) {
+    try {
+      methods::check_rigid(pose);
+    } catch (const InputError& e) {
+      throw InputError(printable_name(path) + ":" + std::to_string(lines[out.size()]) + ": pose " +
+                       std::to_string(out.size()) + ": " + e.what());
+    }
+    out.push_back({{}, pose});
+  }
+  return out;
+}
+
 int run_xray(const XrayOptions& o, const Globals& globals) {
-  std::vector<xray::PosePair> poses;
-  for (const Pose& pose : io::read_poses(o.poses)) poses.push_back({{}, pose});
+  const std::vector<xray::PosePair> poses = rigid_poses(o.poses);
   const run::ProgressReport progress = progress_report(globals.quiet);
   std::vector<bodies::LoadedBody> bodies;
   for (const std::string& path : {o.a, o.b}) {
     progress("build", bodies.size(), 2);
     bodies.push_back(bodies::load_body(path));
+    if (bodies.back().rep.dim() != 3)
+      throw InputError(printable_name(path) + ": a 2D body; the other engines answer for 3D bodies only");
   }
   const xray::ForeignWalk walk = xray::walk_of(o.method, bodies[0].rep, bodies[1].rep, poses);
   const spec::Scenario scenario = scenario_of(o, bodies);

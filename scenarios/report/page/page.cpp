@@ -214,6 +214,11 @@ std::string scene_scripts(const Page& page) {
 
 }  // namespace
 
+std::string footer(const std::string& version) {
+  return (version.empty() ? "" : "lrbscope " + version + ". ") +
+         "This page holds all it needs and fetches nothing.";
+}
+
 std::string page_html(const Page& page) {
   const std::string_view shape = io::embedded_file("page.html");
   const auto part = [&](std::string_view key) -> std::string {

@@ -96,6 +96,9 @@ struct Page {
   std::string footer;
 };
 
+/// Returns what stands at a page's foot: the version that made it, if given, and that it is complete.
+std::string footer(const std::string& version = {});
+
 /// Returns the page as HTML.
 std::string page_html(const Page& page);
 

@@ -8,56 +8,7 @@ class BodyView {
     this.body = body;
     this.group = new THREE.Group();
     this.group.matrixAutoUpdate = false;
-    const edge = new THREE.Color(...colours.edge(body.side)),
-      solid = { vertexColors: THREE.VertexColors, polygonOffset: true };
-    this.materials = {
-      real: new THREE.MeshLambertMaterial({
-        ...solid,
-        side: THREE.DoubleSide,
-        polygonOffsetFactor: 2,
-        polygonOffsetUnits: 2,
-      }),
-      lids: new THREE.MeshLambertMaterial({
-        ...solid,
-        side: THREE.DoubleSide,
-        transparent: true,
-        depthWrite: false,
-        polygonOffsetFactor: 1,
-        polygonOffsetUnits: 1,
-      }),
-      piece: new THREE.MeshLambertMaterial({
-        ...solid,
-        side: THREE.DoubleSide,
-        polygonOffsetFactor: 1,
-        polygonOffsetUnits: 1,
-      }),
-      counted: new THREE.MeshBasicMaterial({
-        ...solid,
-        side: THREE.DoubleSide,
-        polygonOffsetFactor: 1,
-        polygonOffsetUnits: 1,
-      }),
-      openLids: new THREE.MeshLambertMaterial({
-        ...solid,
-        side: THREE.DoubleSide,
-        transparent: true,
-        opacity: 0.6,
-        depthWrite: false,
-      }),
-      edges: new THREE.LineBasicMaterial({
-        color: edge,
-        transparent: true,
-        opacity: 0.35,
-        depthWrite: false,
-      }),
-      lidEdges: new THREE.LineBasicMaterial({
-        color: edge,
-        transparent: true,
-        opacity: 0.6,
-        depthWrite: false,
-      }),
-      boxes: new THREE.LineBasicMaterial({ color: edge, transparent: true, opacity: 0.8 }),
-    };
+    this.materials = BodyView.materialsOf(new THREE.Color(...colours.edge(body.side)));
     const range = (from, to) => Uint32Array.from({ length: to - from }, (_, i) => from + i);
     this.real = new FaceMesh(body, range(0, body.realCount), this.materials.real);
     this.lids = new FaceMesh(body, range(body.realCount, body.faceCount), this.materials.lids);
@@ -74,6 +25,32 @@ class BodyView {
     this.pieces = [];
     this.boxLines = null;
     this.measure();
+  }
+
+  /** Returns what faces and lines are made of; `edge`: the colour of lines. */
+  static materialsOf(edge) {
+    const faces = (Material, before, more = {}) =>
+        new Material({
+          vertexColors: THREE.VertexColors,
+          side: THREE.DoubleSide,
+          polygonOffset: true,
+          polygonOffsetFactor: before,
+          polygonOffsetUnits: before,
+          ...more,
+        }),
+      lines = (opacity, depthWrite = false) =>
+        new THREE.LineBasicMaterial({ color: edge, transparent: true, opacity, depthWrite }),
+      glass = { transparent: true, depthWrite: false };
+    return {
+      real: faces(THREE.MeshLambertMaterial, 2),
+      lids: faces(THREE.MeshLambertMaterial, 1, glass),
+      piece: faces(THREE.MeshLambertMaterial, 1),
+      counted: faces(THREE.MeshBasicMaterial, 1),
+      openLids: faces(THREE.MeshLambertMaterial, 0, { ...glass, opacity: 0.6 }),
+      edges: lines(0.35),
+      lidEdges: lines(0.6),
+      boxes: lines(0.8, true),
+    };
   }
 
   /** Finds the middle of the outermost wrapper and how far it reaches. */

@@ -16,12 +16,12 @@ function countsSoFar(events, event) {
   return out;
 }
 
-/** Gives each face the sum over the faces of its region: its lids and its floor. */
-function sumsOfRegions(body, counts) {
-  const sums = new Uint32Array(body.regionCount);
-  for (let r = 0; r < body.regionCount; r++) {
-    for (const f of body.lids(r)) sums[r] += counts[f];
-    for (const f of body.floor(r)) sums[r] += counts[f];
-  }
-  return counts.map((n, f) => (body.regionOf(f) === NONE ? n : sums[body.regionOf(f)]));
+/** Gives each face the sum over the faces of its group, "region" or "level". A real face belongs to the region that covers
+    it, a pseudo face to the one that it hides; a face without one keeps its own number. */
+function sumsOfGroups(body, per, counts) {
+  const groupOf = per === "region" ? (f) => body.regionOf(f) : (f) => body.depth(body.outer[f]),
+    sums = new Map();
+  const groups = Uint32Array.from(counts, (_, f) => groupOf(f));
+  counts.forEach((n, f) => sums.set(groups[f], (sums.get(groups[f]) || 0) + n));
+  return counts.map((n, f) => (groups[f] === NONE ? n : sums.get(groups[f])));
 }

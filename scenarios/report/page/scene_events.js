@@ -16,6 +16,7 @@ class Events {
     this.engine = json.engine;
     this.frame = { origin: json.origin, unit: json.unit }; // x_world = origin + unit * x
     this.work = unpack(json.events.work); // number of the part of the work that the event is; NONE: none
+    this.wrong = wrongPairs(json.wrong, json.steps.count);
     this.phases = json.phases;
     this.relations = json.relations;
     this.stepNumbers = unpack(json.steps.index);
@@ -134,4 +135,13 @@ function role(words) {
   const side = / of A$/.test(words) ? 0 : / of B$/.test(words) ? 1 : -1;
   const sorts = ["simplex", "node", "region", "vertex", "relation", "phase"];
   return { sort: sorts.find((sort) => words.split(" ").includes(sort)) || words, side, words };
+}
+
+/** Returns, for each step, the pairs that another engine got wrong: [{simplices, missed}]. */
+function wrongPairs(json, steps) {
+  const out = Array.from({ length: steps }, () => []);
+  if (!json) return out;
+  const [step, a, b, missed] = ["step", "a", "b", "missed"].map((name) => unpack(json[name]));
+  step.forEach((s, i) => out[s].push({ simplices: [a[i], b[i]], missed: missed[i] === 1 }));
+  return out;
 }

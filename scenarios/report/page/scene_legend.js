@@ -55,6 +55,8 @@ class Legend {
         [css(colours.underTest), "pair under test", ""],
       );
     items.push([css(colours.selected), "selected", ""]);
+    if (this.view.events.wrong.some((pairs) => pairs.length))
+      items.push([css(colours.wrong), `pairs that ${this.view.events.engine} got wrong`, ""]);
     this.items = items;
     this.write();
     this.showScale(key);

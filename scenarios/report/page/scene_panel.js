@@ -38,6 +38,8 @@ class Panel {
           .map((n, s) => `${this.bodies.length > 1 ? SIDES[s] + " " : ""}${digits(n)}`)
           .join(" + ") + " faces",
       ]);
+    const wrong = events.wrong[events.step(i)];
+    if (wrong.length) rows.push(["wrong", this.wrongButton(wrong), "Pairs that the engine got wrong in this step"]);
     fillList(byId("event-facts"), rows);
     const parts = [
       ...events
@@ -57,6 +59,17 @@ class Panel {
         ),
     ];
     byId("event-parts").replaceChildren(...parts);
+  }
+
+  /** Goes from one wrong pair of the step to the next, and asks why. */
+  wrongButton(wrong) {
+    let next = 0;
+    const button = textButton(plural(wrong.length, "wrong pair"), () => {
+      const { simplices, missed } = wrong[next % wrong.length];
+      button.textContent = `${(next++ % wrong.length) + 1} of ${wrong.length}: ${missed ? "missed" : "reported"}`;
+      this.selection.choose(simplices);
+    });
+    return button;
   }
 
   showPicked() {

@@ -166,7 +166,7 @@ class SceneView {
   countsOf(by, per, scope) {
     const all =
       scope === "run" ? this.bodies.map((b) => b.counts) : countsSoFar(this.events, this.selection.event);
-    return this.bodies.map((b, side) => (per === "region" ? sumsOfRegions(b, all[side][by]) : all[side][by]));
+    return this.bodies.map((b, side) => (per === "face" ? all[side][by] : sumsOfGroups(b, per, all[side][by])));
   }
 
   // -- what is pointed out
@@ -206,6 +206,13 @@ class SceneView {
         through: !events.passes,
       },
     );
+    const wrong = events.wrong[events.step(i)];
+    this.marks.set("wrong", wrong.length ? events.step(i) : -1, this.facesOfPairs(wrong), {
+      colour: colours.wrong,
+      opacity: 0.7,
+      width: 3,
+      over: true,
+    });
     const nodes = events.about(i, "node");
     this.marks.setBoxes("nodes", nodes.length ? i : -1, nodes, colours.underTest);
     const p = this.selection.picked;
@@ -224,6 +231,13 @@ class SceneView {
       return chosen.map((s, side) => ({ side, face: this.bodies[side].faceOfSimplex(s) }));
     const test = this.events.test(event);
     return test >= 0 ? this.events.faces(test) : [];
+  }
+
+  /** Returns the faces of pairs of simplices, each once: [{side, face}]. */
+  facesOfPairs(pairs) {
+    return this.bodies.flatMap((body, side) =>
+      [...new Set(pairs.map((p) => body.faceOfSimplex(p.simplices[side])))].map((face) => ({ side, face })),
+    );
   }
 
   /** Returns the faces in contact so far in this step, each once: [{side, face}]. */

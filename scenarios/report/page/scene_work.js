@@ -1,5 +1,5 @@
 // ---- where the work went, as an icicle: the query above, its phases, and beneath each what decided
-const SVG = "http://www.w3.org/2000/svg";
+const SVG = document.querySelector(".about svg").namespaceURI;
 
 class WorkIcicle {
   /** `work`: {outcomes: [{phase, outcome, events, operations, micros}], timed}; null: was not recorded. */

@@ -228,7 +228,7 @@ report::Page stability_page(const Grid& grid, const std::string& folder, const R
   page.grid = page_grid(grid, folder, options);
   page.command = grid.command;
   page.links = options.links;
-  page.footer = "This page holds all it needs and fetches nothing.";
+  page.footer = report::footer();
   return page;
 }
 

@@ -171,6 +171,23 @@ TEST_CASE("render: of a crowd's trace, with the flags that fit") {
   }
 }
 
+TEST_CASE(
+    "run: colours and boxes of a walk are refused where no trees are walked, before anything is written") {
+  const Folder folder;
+  folder.write("one.json", scenario("knot"));
+  for (const char* by : {"box_tests", "plane_tests", "expansions"}) {
+    const std::string what = std::string("colours by ") + by + " need ";
+    const Outcome one = check_refused(folder, {"--quiet", "run", "one.json", "-o", "out", "--colour-by", by});
+    CHECK(one.err.find(what + "two bodies") != std::string::npos);
+  }
+  const Outcome boxes =
+      check_refused(folder, {"--quiet", "run", "one.json", "-o", "out", "--node-boxes", "1"});
+  CHECK(boxes.err.find("boxes of tree nodes need two bodies") != std::string::npos);
+  const Outcome paper = check_refused(
+      folder, {"--quiet", "run", "islands", "-o", "out", "--recursion", "paper", "--colour-by", "box_tests"});
+  CHECK(paper.err.find("--recursion paper walks no trees") != std::string::npos);
+}
+
 TEST_CASE("render: flags that do not fit are refused before anything is written") {
   const Folder folder;
   folder.write("s.json", scenario("ball"));

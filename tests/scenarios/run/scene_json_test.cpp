@@ -17,8 +17,10 @@ using nlohmann::json;
 
 namespace {
 
-run::Recording rocks_that_meet(WrapperMode mode = WrapperMode::regularised) {
+run::Recording rocks_that_meet(WrapperMode mode = WrapperMode::regularised,
+                               EventLevel level = EventLevel::faces) {
   spec::Scenario s;
+  s.events = level;
   s.name = "rocks";
   s.bodies.resize(2);
   for (spec::BodySpec& body : s.bodies) {
@@ -170,6 +172,22 @@ TEST_CASE("a run as data of its page says what it left out, and where that is") 
   CHECK(thinned.find("trace.json.gz has them all") != std::string::npos);
   CHECK(large.find("a page takes 10") != std::string::npos);
   CHECK_FALSE(scene["bodies"][0].contains("geometry"));
+}
+
+TEST_CASE("a run as data of its page says in a word how each event came out") {
+  const run::Recording r = rocks_that_meet(WrapperMode::regularised, EventLevel::all);
+  const json events = json::parse(run::scene_json(run_of(r), {"trace.json", ""}))["events"];
+  const std::vector<std::string> words = events["outcomes"]["words"];
+  std::set<std::string> expected;
+  for (const trace::Event& e : r.trace.events) {
+    if (e.kind == EventKind::face_test || e.kind == EventKind::contact) expected.emplace(name_of(e.meet));
+    if (e.kind == EventKind::node_pair) expected.emplace(name_of(e.node_end().step));
+    if (e.kind == EventKind::point) expected.emplace(name_of(e.where()));
+  }
+  CHECK(std::set<std::string>(words.begin(), words.end()) == expected);
+  CHECK(words.size() == expected.size());
+  CHECK(expected.count("cross") == 1);
+  CHECK(expected.count(std::string(name_of(NodeStep::leaves))) == 1);
 }
 
 TEST_CASE("a run as data of its page has no chart of the work where pairs of nodes were not recorded") {

@@ -89,6 +89,7 @@ TEST_CASE("a scenario's query has the fields of requests, and its words are the 
   CHECK(at("/properties/expect/items/properties/relation") == words<Relation>());
   CHECK(at("/definitions/frames/properties/at") == words<spec::FrameSpec::At>());
   CHECK(at("/definitions/frames/properties/colour_by") == words<spec::FrameSpec::ColourBy>());
+  CHECK(at("/definitions/frames/properties/colour_per") == words<spec::FrameSpec::ColourPer>());
   CHECK(at("/definitions/view/properties/camera") == words<spec::FrameSpec::Camera>());
   json kinds = json::array();
   for (const json& kind : document["definitions"]["motion"]["oneOf"])

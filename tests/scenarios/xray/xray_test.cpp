@@ -93,6 +93,17 @@ TEST_CASE("a walk of another engine becomes a trace: which pair led to which, an
   CHECK(step.result.pair_count == 1);
   CHECK(theirs.trace.header.engine == "Toy 1.0");
   CHECK(trace::trace_from_json(trace::trace_to_json(theirs.trace), "t.json") == theirs.trace);
+  // What it got wrong is told step by step.
+  const xray::WrongPairs told = xray::wrong_pairs(walk.steps[0], ours.results[0].pairs);
+  REQUIRE(theirs.wrong.size() == 1);
+  REQUIRE(theirs.wrong[0].size() == told.too_many.size() + told.missing.size());
+  REQUIRE(!told.missing.empty());  // it looked at one pair of faces alone
+  for (std::size_t i = 0; i < theirs.wrong[0].size(); ++i) {
+    const run::WrongPair& w = theirs.wrong[0][i];
+    const std::size_t many = told.too_many.size();
+    CHECK(w.missed == (i >= many));
+    CHECK(w.pair == (w.missed ? told.missing[i - many] : told.too_many[i]));
+  }
   const trace::NodeCounts counts = trace::count_nodes(theirs.trees[0], Side::a, theirs.trace.events);
   CHECK(counts.visits == std::vector<std::uint32_t>{1, 3, 1, 3, 1, 0, 0});
   const xray::WrongPairs wrong = xray::wrong_pairs(walk.steps[0], {{0, 1}, {2, 2}});
@@ -176,11 +187,13 @@ TEST_CASE("xray: a page with both runs, or one clear error") {
     const Outcome refused = with("wide.txt");
     CHECK(refused.code != 0);
     CHECK(refused.error_lines() == 1);
+    CHECK(refused.err.find("wide.txt:1: pose 0: ") != std::string::npos);
   }
   const Outcome flat =
       run(folder, {"--quiet", "xray", "circle.obj", "circle.obj", "--poses", "poses.txt", "-o", "flat"});
   CHECK(flat.code != 0);
   CHECK(flat.error_lines() == 1);
+  CHECK(flat.err.find("circle.obj: a 2D body") != std::string::npos);
   CHECK_FALSE(std::filesystem::exists(folder / "flat"));
 }
 

@@ -1,0 +1,35 @@
+#include "scenarios/run/open_run.hpp"
+
+#include <algorithm>
+
+#include <doctest/doctest.h>
+
+#include "engine/core/error.hpp"
+#include "engine/lrb/lrb_file.hpp"
+#include "tests/support/folder.hpp"
+#include "trace/trace_json.hpp"
+
+using namespace lrb;
+
+TEST_CASE("a run whose trace names a vertex that the body does not have is refused") {
+  spec::Scenario s;
+  s.bodies.resize(2);
+  for (spec::BodySpec& body : s.bodies) body.generator = "ball";
+  s.events = EventLevel::nodes;
+  s.motion.kind = spec::Motion::Kind::poses;
+  s.motion.poses = {Pose::translation({0.1, 0, 5})};
+  run::Recording r = run::record(s, [](const std::string&, std::uint64_t, std::uint64_t) {});
+  const test::Folder folder;
+  save_lrb(r.bodies[0].rep, folder / "a.lrb");
+  save_lrb(r.bodies[1].rep, folder / "b.lrb");
+  const auto write = [&] { trace::save_trace(r.trace, folder / "trace.json"); };
+  write();
+  CHECK(run::open_run(folder.path.string()).trace == r.trace);
+  const auto point = std::find_if(r.trace.events.begin(), r.trace.events.end(),
+                                  [](const trace::Event& e) { return e.kind == EventKind::point; });
+  REQUIRE(point != r.trace.events.end());
+  point->a =
+      static_cast<std::uint32_t>(r.bodies[static_cast<std::size_t>(point->side)].rep.vertices().size());
+  write();
+  CHECK_THROWS_AS(run::open_run(folder.path.string()), InputError);
+}
