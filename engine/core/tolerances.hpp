@@ -106,6 +106,27 @@ inline constexpr float kWrapperSlack = 2;
 /// made for. Larger: larger caches.
 inline constexpr double kRigid = 0x1p-24;
 
+/// The distance query.
+
+/// Share by which a length that the distance kernel computes may be off, beside the errors of coordinates: node's axes are
+/// orthonormal to kFrameDefect, which changes lengths by half of that; poses are rotations to kNearRotation; squares, sums
+/// and roots take a few 2^-24. Smaller than 2^-21: a nearer pair could be dropped; larger: more pairs are kept.
+inline constexpr float kDistanceRounding = 0x1p-18f;
+/// Bound on the error of a distance of two simplices in doubles, relative to the largest difference of any coordinates:
+/// 64 u, u = 2^-53 (pair_bounds.cpp). Smaller: an interval could miss the distance; larger: wider intervals.
+inline constexpr double kPairRounding = 0x1p-47;
+/// Width to which an interval is narrowed unless the request asks for less, relative to the larger body's size; but not
+/// below a few units in the last place of the distance (kDistanceWidthUlps, relative to it).
+inline constexpr double kDistanceWidth = 1e-12;
+inline constexpr double kDistanceWidthUlps = 0x1p-50;
+/// Bodies whose origins are further apart than this many of the larger one's units are walked in doubles: floats could
+/// not tell their near sides from their far ones. Larger: more pairs are kept, in floats; smaller: doubles are slower.
+inline constexpr double kFarForFloats = 32;
+/// From this many of their sizes on, two bodies' intervals are kFarWidth of the distance wide, because their world
+/// coordinates have hardly a digit for their shapes. Larger: such bodies' faces are all compared with each other.
+inline constexpr double kVeryFar = 0x1p36;
+inline constexpr double kFarWidth = 0x1p-42;
+
 /// The builders. None of these constants decides whether an LRB-rep is right: what the builders propose is
 /// confirmed exactly.
 

@@ -1,0 +1,235 @@
+/// The squared distance of two simplices is the least of those between their corners and edges, between lines
+/// of edges that are nearest in the inside of both edges, and between corners and planes whose nearest point
+/// is inside the triangle (Ericson, "Real-Time Collision Detection", 5.1). Each is a fraction of two
+/// integers, because doubles are integers times a power of two; which is least, and whether a point is
+/// inside, are signs of integers.
+
+#include "engine/exact/pair_distance.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include <boost/multiprecision/cpp_int.hpp>
+
+namespace lrb::exact {
+namespace {
+
+using boost::multiprecision::cpp_int;
+
+using Whole3 = std::array<cpp_int, 3>;
+
+Whole3 minus(const Whole3& x, const Whole3& y) {
+  return {x[0] - y[0], x[1] - y[1], x[2] - y[2]};
+}
+cpp_int dot(const Whole3& x, const Whole3& y) {
+  return x[0] * y[0] + x[1] * y[1] + x[2] * y[2];
+}
+Whole3 cross(const Whole3& x, const Whole3& y) {
+  return {x[1] * y[2] - x[2] * y[1], x[2] * y[0] - x[0] * y[2], x[0] * y[1] - x[1] * y[0]};
+}
+
+/// num / den, den > 0.
+struct Fraction {
+  cpp_int num = 0, den = 1;
+};
+
+bool less(const Fraction& x, const Fraction& y) {
+  return x.num * y.den < y.num * x.den;
+}
+
+/// Returns a fraction of [0, 1], within 2^-53.
+double as_share(const Fraction& f) {
+  constexpr unsigned kBits = 62;
+  return std::ldexp(static_cast<cpp_int>((f.num << kBits) / f.den).convert_to<double>(), -int{kBits});
+}
+
+/// A point of a simplex: from the feature's corner (a face's first) along its edges.
+struct Spot {
+  Feature on;
+  Fraction along[2];
+};
+
+struct Nearest {
+  Fraction square;
+  Spot spot[2];
+};
+
+/// The smallest exponent of a bit that is set in any of some numbers.
+struct LastBit {
+  int exponent = std::numeric_limits<int>::max();
+  static constexpr int kMantissaBits = 53;
+
+  void see(double x) {
+    if (x == 0) return;
+    int e = 0;
+    std::frexp(x, &e);
+    exponent = std::min(exponent, e - kMantissaBits);
+  }
+  cpp_int to_integer(double x) const {
+    if (x == 0) return 0;
+    int e = 0;
+    const double mantissa = std::ldexp(std::frexp(x, &e), kMantissaBits);
+    return static_cast<cpp_int>(static_cast<std::int64_t>(mantissa)) << (e - kMantissaBits - exponent);
+  }
+};
+
+class Pair {
+ public:
+  /// `also`: a number that the same power of two must turn into an integer.
+  Pair(const double* const* a, const double* const* b, int n, double also = 0) : n_(n) {
+    const double* const* const given[2] = {a, b};
+    last_.see(also);
+    for (const auto* simplex : given)
+      for (int k = 0; k < n; ++k)
+        for (int axis = 0; axis < n; ++axis) last_.see(simplex[k][axis]);
+    if (last_.exponent == std::numeric_limits<int>::max()) last_.exponent = 0;
+    for (int side = 0; side < 2; ++side)
+      for (int k = 0; k < n; ++k)
+        for (int axis = 0; axis < n; ++axis)
+          x_[side][k][static_cast<std::size_t>(axis)] = last_.to_integer(given[side][k][axis]);
+    find();
+  }
+
+  const Nearest& nearest() const { return nearest_; }
+  /// Coordinates are integers times 2^exponent().
+  int exponent() const { return last_.exponent; }
+  cpp_int to_integer(double x) const { return last_.to_integer(x); }
+
+ private:
+  int edges() const { return n_ == 3 ? 3 : 1; }
+  const Whole3& corner(int side, int k) const { return x_[side][k % n_]; }
+  Whole3 edge(int side, int k) const { return minus(corner(side, k + 1), corner(side, k)); }
+
+  void find() {
+    for (int side = 0; side < 2; ++side)
+      for (int k = 0; k < n_; ++k) {
+        for (int j = 0; j < edges(); ++j) corner_to_edge(side, k, j);
+        if (n_ == 3) corner_to_face(side, k);
+      }
+    if (n_ != 3) return;  // segments that do not meet are nearest at an end
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j) edge_to_edge(i, j);
+  }
+
+  /// `spot`: of the simplex of `side`, and of the other one.
+  void see(Fraction square, int side, Spot spot, Spot other) {
+    if (found_ && !less(square, nearest_.square)) return;
+    found_ = true;
+    nearest_.square = std::move(square);
+    nearest_.spot[side] = std::move(spot);
+    nearest_.spot[1 - side] = std::move(other);
+  }
+
+  static Feature feature(int dim, int index) {
+    return {static_cast<std::uint8_t>(dim), static_cast<std::uint8_t>(index)};
+  }
+
+  void corner_to_edge(int side, int k, int j) {
+    const Whole3 way = minus(corner(side, k), corner(1 - side, j)), along = edge(1 - side, j);
+    const cpp_int at = dot(way, along), length = dot(along, along);
+    const Spot here{feature(0, k), {}};
+    if (at <= 0) {
+      see({dot(way, way), 1}, side, here, {feature(0, j), {}});
+    } else if (at >= length) {
+      const Whole3 from_end = minus(corner(side, k), corner(1 - side, j + 1));
+      see({dot(from_end, from_end), 1}, side, here, {feature(0, (j + 1) % n_), {}});
+    } else {
+      see({length * dot(way, way) - at * at, length}, side, here, {feature(1, j), {{at, length}, {}}});
+    }
+  }
+
+  void corner_to_face(int side, int k) {
+    const Whole3 u = edge(1 - side, 0), v = minus(corner(1 - side, 2), corner(1 - side, 0));
+    const Whole3 way = minus(corner(side, k), corner(1 - side, 0)), normal = cross(u, v);
+    const cpp_int area = dot(normal, normal);
+    if (area == 0) return;
+    const cpp_int uu = dot(u, u), vv = dot(v, v), uv = dot(u, v), uw = dot(u, way), vw = dot(v, way);
+    const cpp_int s = vv * uw - uv * vw, t = uu * vw - uv * uw;
+    if (s <= 0 || t <= 0 || s + t >= area) return;
+    const cpp_int height = dot(normal, way);
+    see({height * height, area}, side, {feature(0, k), {}}, {feature(2, 0), {{s, area}, {t, area}}});
+  }
+
+  void edge_to_edge(int i, int j) {
+    const Whole3 u = edge(0, i), v = edge(1, j), way = minus(corner(0, i), corner(1, j)),
+                 normal = cross(u, v);
+    const cpp_int sine = dot(normal, normal);
+    if (sine == 0) return;
+    const cpp_int uu = dot(u, u), vv = dot(v, v), uv = dot(u, v), uw = dot(u, way), vw = dot(v, way);
+    const cpp_int s = uv * vw - vv * uw, t = uu * vw - uv * uw;
+    if (s <= 0 || t <= 0 || s >= sine || t >= sine) return;
+    const cpp_int height = dot(normal, way);
+    see({height * height, sine}, 0, {feature(1, i), {{s, sine}, {}}}, {feature(1, j), {{t, sine}, {}}});
+  }
+
+  int n_;
+  LastBit last_;
+  Whole3 x_[2][3];
+  bool found_ = false;
+  Nearest nearest_;
+};
+
+/// Sets doubles that hold sqrt(square) 2^exponent.
+void enclose_root(const Fraction& square, int exponent, double& lower, double& upper) {
+  if (square.num == 0) {
+    lower = upper = 0;
+    return;
+  }
+  constexpr int kBits = 130, kMantissaBits = 53;  // of the fraction, so that its root has 64 or more
+  int shift = kBits - static_cast<int>(msb(square.num)) + static_cast<int>(msb(square.den));
+  shift += shift & 1;
+  const cpp_int above = shift > 0 ? square.num << shift : square.num;
+  const cpp_int below = shift < 0 ? square.den << -shift : square.den;
+  const cpp_int whole = above / below;
+  const cpp_int root = sqrt(whole);
+  const int spare = static_cast<int>(msb(root)) + 1 - kMantissaBits;
+  const cpp_int low = root >> spare;
+  const bool is_exact = whole * below == above && root * root == whole && (low << spare) == root;
+  const int scale = exponent - shift / 2 + spare;
+  const auto scaled = [scale](const cpp_int& x) { return std::ldexp(x.convert_to<double>(), scale); };
+  lower = scaled(low);
+  upper = is_exact ? lower : scaled(low + 1);
+  constexpr int kLeastNormal = -1022;  // below, scaling rounds
+  if (scale + kMantissaBits - 1 < kLeastNormal) {
+    lower = std::max(0.0, std::nextafter(lower, -1.0));
+    upper = std::nextafter(upper, 1.0);
+  }
+  if (std::isinf(lower)) lower = std::numeric_limits<double>::max();
+}
+
+/// Returns a spot in doubles.
+Eigen::Vector3d place(const Spot& spot, const double* const* corners, int n) {
+  const auto at = [&](int k) {
+    const double* x = corners[k % n];
+    return Eigen::Vector3d(x[0], x[1], n == 3 ? x[2] : 0);
+  };
+  if (spot.on.dim == 0) return at(spot.on.index);
+  const int first = spot.on.dim == 1 ? spot.on.index : 0;
+  const double s = as_share(spot.along[0]), t = spot.on.dim == 2 ? as_share(spot.along[1]) : 0;
+  return (1 - s - t) * at(first) + s * at(first + 1) + t * at(first + 2);
+}
+
+}  // namespace
+
+PairDistance distance_of_simplices(const double* const* a, const double* const* b, int n) {
+  const Pair pair(a, b, n);
+  const Nearest& nearest = pair.nearest();
+  PairDistance out;
+  enclose_root(nearest.square, pair.exponent(), out.lower, out.upper);
+  for (int side = 0; side < 2; ++side) {
+    out.point[side] = place(nearest.spot[side], side == 0 ? a : b, n);
+    out.on[side] = nearest.spot[side].on;
+  }
+  return out;
+}
+
+int compare_distance(const double* const* a, const double* const* b, int n, double distance) {
+  const Pair pair(a, b, n, distance);
+  const cpp_int whole = pair.to_integer(distance);
+  const Fraction &square = pair.nearest().square, given{whole * whole, 1};
+  return less(square, given) ? -1 : less(given, square) ? 1 : 0;
+}
+
+}  // namespace lrb::exact

@@ -1,0 +1,91 @@
+#include "engine/query/distance/distance.hpp"
+
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include "engine/core/error.hpp"
+#include "engine/core/parallel.hpp"
+#include "engine/query/collide_impl.hpp"
+#include "engine/query/distance/distance_impl.hpp"
+#include "engine/query/distance/world_walk.hpp"
+#include "engine/tree/kernel_setup.hpp"
+
+namespace lrb {
+namespace {
+
+DistanceResult of_nothing(const DistanceRequest& request) {
+  DistanceResult result;
+  result.lower = result.upper = std::numeric_limits<double>::infinity();
+  if (request.within) result.within = false;
+  return result;
+}
+
+void check_number(double x, const char* name) {
+  if (!(x >= 0) || std::isinf(x))
+    throw InputError(std::string("the distance query's ") + name + " is " + std::to_string(x) +
+                     "; give a finite number that is not negative");
+}
+
+}  // namespace
+
+void check_request(const DistanceRequest& request) {
+  if (request.within) check_number(*request.within, "`within`");
+  check_number(request.tolerance, "`tolerance`");
+  check_number(request.relative_tolerance, "`relative_tolerance`");
+}
+
+DistanceResult distance(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
+                        const DistanceRequest& request, DistanceContext& context,
+                        const std::array<SimplexId, 2>* likely) {
+  check_query(a, pose_a, b, pose_b);
+  check_request(request);
+  if (a.tree().empty() || b.tree().empty()) return of_nothing(request);
+  QueryContext& query = context.query;
+  query.body[0].begin(a, pose_a, WrapperMode::regularised);
+  query.body[1].begin(b, pose_b, WrapperMode::regularised);
+  NearestPairs found(query, request, context.pairs);
+  DistanceResult result;
+  const bool is_likely = likely != nullptr && (*likely)[0] != kNull;
+  if (is_likely)
+    found.measure((*likely)[0], (*likely)[1], 0);
+  else if (request.max_steps > 0 || request.within)  // there must be an upper end, however early it stops
+    found.measure(a.tree().blocks()[0].simplex[0], b.tree().blocks()[0].simplex[0], 0);
+  const TreeKernel tree = set_up_any_kernel(a.tree(), pose_a, b.tree(), pose_b, a.dim(), query.affine);
+  bool finished = false;
+  double rest = 0;
+  if (suits_floats(tree)) {
+    FloatWalk walk(context, found, request, tree, query_unit(a.tree(), b.tree()), !is_likely);
+    finished = walk.run();
+    if (!found.known_to_meet()) rest = walk.measure();
+    walk.count(result.counters);
+  } else {
+    WorldWalk walk(query, found);
+    finished = walk.run(request.max_steps);
+    rest = walk.rest();
+    result.counters.steps = walk.steps();
+    result.counters.box_tests = walk.box_tests();
+  }
+  found.finish(rest, finished, result);
+  return result;
+}
+
+DistanceResult distance(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
+                        const DistanceRequest& request) {
+  DistanceContext context;
+  return distance(a, pose_a, b, pose_b, request, context);
+}
+
+std::vector<DistanceResult> distances(const LrbRep& a, const Pose& pose_a, const LrbRep& b,
+                                      std::span<const Pose> poses_b, const DistanceRequest& request,
+                                      unsigned threads) {
+  Workers workers(threads);
+  std::vector<DistanceContext> contexts(workers.count());
+  std::vector<DistanceResult> results(poses_b.size());
+  workers.for_each(poses_b.size(), [&](std::size_t i, unsigned worker) {
+    results[i] = distance(a, pose_a, b, poses_b[i], request, contexts[worker]);
+  });
+  return results;
+}
+
+}  // namespace lrb

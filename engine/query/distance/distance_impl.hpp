@@ -1,0 +1,61 @@
+#pragma once
+/// One distance query, with memory that the next one can use again: for code of ours. Users of the installed
+/// engine have distance.hpp.
+
+#include <vector>
+
+#include "engine/query/distance/distance_kernel.hpp"
+#include "engine/query/distance/nearest_pairs.hpp"
+
+namespace lrb {
+
+/// Memory of a query; one for each thread.
+struct DistanceContext {
+  QueryContext query;
+  std::vector<WaitingNodes> waiting;
+  std::vector<NearPair> near;
+  std::vector<MeasuredPair> pairs;
+  std::vector<NodeEnd> ends[2];
+  std::uint32_t turn = 0;  ///< the last that was used in `ends`
+};
+
+/// Answers as distance() in distance.hpp does. likely: null, or a simplex of A and one of B that are likely
+/// to be the nearest; kNull: none.
+DistanceResult distance(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
+                        const DistanceRequest& request, DistanceContext& context,
+                        const std::array<SimplexId, 2>* likely = nullptr);
+
+/// Throws InputError if a request cannot be answered.
+void check_request(const DistanceRequest& request);
+
+/// Returns true if floats can tell how far the bodies of a kernel are apart: they are rotated, not far from
+/// each other, and their coordinates are not so large that rounding outweighs their sizes.
+bool suits_floats(const TreeKernel& tree);
+
+/// Walks two trees in floats and measures in doubles what is left.
+class FloatWalk {
+ public:
+  /// `tree`: as suits_floats() wants it. unit: query_unit(). descend: no pair is known that is likely to be
+  /// the nearest.
+  FloatWalk(DistanceContext& context, NearestPairs& found, const DistanceRequest& request,
+            const TreeKernel& tree, double unit, bool descend);
+
+  /// Returns true if the walk came to its end, or found that the surfaces meet.
+  bool run();
+  /// Measures the pairs that may be the nearest. Returns a bound on the distances of all others.
+  double measure();
+  void count(DistanceCounters& counters) const;
+
+ private:
+  void begin_ends();
+  void give_room();
+  double dropped() const;
+  double waiting_lower() const;
+
+  DistanceContext& context_;
+  NearestPairs& found_;
+  double unit_;
+  DistanceKernel k_;
+};
+
+}  // namespace lrb

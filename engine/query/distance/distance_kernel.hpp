@@ -1,0 +1,84 @@
+#pragma once
+/// The inner loop of the distance query: the walk of two OBB trees, pairs of nodes whose boxes are nearest
+/// first, in eight-wide float arithmetic whose every error is bounded, so that a pair of simplices is dropped
+/// only if it is proved to be no nearer than what was found.
+///
+/// Contains only plain structures: this header is compiled once per instruction set (distance_kernel_*.cpp).
+
+#include <cstdint>
+
+#include "engine/tree/tree_kernel.hpp"
+
+namespace lrb {
+
+/// A pair of nodes that waits. `bound`: their boxes' squared distance, rounded down; where boxes overlap,
+/// minus how much.
+struct WaitingNodes {
+  float bound;
+  std::uint32_t a, b;
+};
+
+/// How far a node reaches along a direction: A's ahead, B's back; set where `turn` is DistanceKernel::turn.
+struct NodeEnd {
+  float end;
+  std::uint32_t turn;
+};
+
+/// A pair of simplices that may be the nearest.
+struct NearPair {
+  SimplexId a, b;
+  float lower;  ///< a bound on its distance, query units
+};
+
+enum class KernelStop : std::uint8_t {
+  done,      ///< no pair of nodes that waits can be nearer than the bound allows
+  room,      ///< the buffers must grow
+  limit,     ///< most_node_pairs are reached
+  enough,    ///< `upper` is no more than `enough`
+  doubtful,  ///< two simplices could not be proved apart: ask whether the bodies meet
+};
+
+/// One walk. Lengths are in query units: TreeKernel.
+struct DistanceKernel {
+  TreeKernel tree;  ///< the bodies, set up for rotations, without a stack
+  float upper;      ///< the distance is no more than this
+  float spare;      ///< pairs are dropped that are no nearer than upper - spare, ...
+  float share;      ///< ... or upper (1 - share)
+  float widest;     ///< ... but pairs are dropped, too, that are further apart than this
+  float enough;     ///< stop where `upper` is no more than this; -1: never
+  bool descend;     ///< go straight down to a pair of simplices first: there is no good upper end yet
+  bool begun;       ///< set by the kernel
+  bool apart;       ///< the bodies are known not to meet: do not stop as `doubtful`
+
+  /// About where B is, seen from A's frame, on A's axes and on B's: of length 1, or 0 if it is not known.
+  float direction[2][3];
+  float ahead;  ///< how far B's root's origin is ahead of A's in that direction, less all errors of what is
+                ///< compared along it
+  /// (nodes of A, of B) how far nodes reach in that direction, from their root's origin.
+  NodeEnd* ends[2];
+  std::uint32_t turn;  ///< NodeEnd::turn of this direction
+
+  WaitingNodes* waiting;  ///< a heap, the least bound first
+  std::uint32_t waiting_size, waiting_capacity;
+  NearPair* near;
+  std::uint32_t near_size, near_capacity;
+  SimplexId best_a, best_b;  ///< the pair that gave `upper`; kNull: none of this walk
+
+  std::uint64_t triangle_pairs;  ///< compared in floats
+  KernelStop stop;
+};
+
+/// Room that both buffers need before a step, and twice that before the first.
+inline constexpr std::uint32_t kRoomForStep = 64;
+
+/// Returns the distance from which on pairs are dropped: rounded so that a pair that is dropped is no nearer.
+inline float dropped_from(const DistanceKernel& k) {
+  const float by_spare = k.upper - k.spare, by_share = k.upper * (1 - k.share);
+  const float least = by_spare > by_share ? by_spare : by_share;
+  return least < k.widest ? least : k.widest;
+}
+
+/// Walks until there is a reason to stop. May be called again.
+void run_distance_kernel(DistanceKernel& k);
+
+}  // namespace lrb

@@ -1,0 +1,143 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "engine/core/tolerances.hpp"
+#include "engine/query/distance/distance_impl.hpp"
+
+namespace lrb {
+namespace {
+
+constexpr float kNothing = std::numeric_limits<float>::infinity();
+
+float rounded_up(double x) {
+  return static_cast<float>(x) * kFloatUp + kKernelTiny;
+}
+float rounded_down(double x) {
+  return std::max(0.0F, static_cast<float>(x) * (2 - kFloatUp) - kKernelTiny);
+}
+
+/// Returns about where B is, seen from A's frame.
+Eigen::Vector3d direction_of(const DistanceContext& context, const NearestPairs& found,
+                             const TreeKernel& tree) {
+  const Eigen::Vector3d way = context.query.body[0].world.pose().r.transpose() * found.way();
+  if (way.squaredNorm() > 0) return way.normalized();
+  Eigen::Vector3d middles;
+  for (int i = 0; i < 3; ++i) {
+    const double *a = tree.nodes_a[0].origin, *b = tree.nodes_b[0].origin;
+    const double at_b = tree.m[0][i] * b[0] + tree.m[1][i] * b[1] + tree.m[2][i] * b[2];
+    middles[i] = at_b * tree.ratio_b + tree.t[i] - a[i] * tree.ratio_a;
+  }
+  return middles.squaredNorm() > 0 ? Eigen::Vector3d(middles.normalized()) : middles;
+}
+
+}  // namespace
+
+bool suits_floats(const TreeKernel& tree) {
+  constexpr float kTooRough = 0x1p-10F;
+  if (tree.affine != nullptr || !(tree.slack < kTooRough)) return false;
+  for (int axis = 0; axis < 3; ++axis)
+    if (!(std::abs(tree.t[axis]) < kFarForFloats)) return false;
+  return true;
+}
+
+FloatWalk::FloatWalk(DistanceContext& context, NearestPairs& found, const DistanceRequest& request,
+                     const TreeKernel& tree, double unit, bool descend)
+    : context_(context), found_(found), unit_(unit), k_{} {
+  k_.tree = tree;
+  k_.tree.most_node_pairs = request.max_steps > 0 ? request.max_steps : kNoLimit;
+  k_.upper = rounded_up(found.upper() / unit);
+  k_.spare = rounded_down(request.tolerance / unit);
+  k_.share = std::min(1.0F, rounded_down(request.relative_tolerance));
+  k_.widest = request.within ? rounded_up(*request.within / unit) : kNothing;
+  k_.enough = request.within ? rounded_down(*request.within / unit) : -1;
+  k_.best_a = k_.best_b = kNull;
+  const Eigen::Vector3d direction = direction_of(context, found, tree);
+  for (int i = 0; i < 3; ++i) k_.direction[0][i] = static_cast<float>(direction[i]);
+  k_.descend = descend;
+  begin_ends();
+  if (context.waiting.size() < 4 * kRoomForStep) context.waiting.resize(16 * kRoomForStep);
+  if (context.near.size() < 4 * kRoomForStep) context.near.resize(16 * kRoomForStep);
+  context.waiting[0] = {-kNothing, 0, 0};
+  k_.waiting_size = 1;
+}
+
+/// Makes room for the ends of all nodes. What they hold is of other directions, because each has a number of
+/// its own.
+void FloatWalk::begin_ends() {
+  constexpr std::uint32_t kLastTurn = 0xf0000000;
+  const bool begins_again = context_.turn > kLastTurn;
+  if (begins_again) context_.turn = 0;
+  for (int side = 0; side < 2; ++side) {
+    std::vector<NodeEnd>& ends = context_.ends[side];
+    if (begins_again) std::fill(ends.begin(), ends.end(), NodeEnd{0, 0});
+    const std::size_t nodes = context_.query.body[side].tree().nodes().size();
+    if (ends.size() < nodes) ends.resize(nodes);
+    k_.ends[side] = ends.data();
+  }
+  k_.turn = context_.turn;
+}
+
+void FloatWalk::give_room() {
+  if (context_.waiting.size() - k_.waiting_size < kRoomForStep)
+    context_.waiting.resize(2 * context_.waiting.size());
+  if (context_.near.size() - k_.near_size < kRoomForStep) context_.near.resize(2 * context_.near.size());
+  k_.waiting = context_.waiting.data();
+  k_.near = context_.near.data();
+  k_.waiting_capacity = static_cast<std::uint32_t>(context_.waiting.size());
+  k_.near_capacity = static_cast<std::uint32_t>(context_.near.size());
+}
+
+bool FloatWalk::run() {
+  k_.apart = found_.known_apart();
+  for (;;) {
+    give_room();
+    run_distance_kernel(k_);
+    context_.turn = k_.turn;
+    if (k_.stop == KernelStop::doubtful) {
+      if (found_.surfaces_meet()) return true;
+      k_.apart = true;
+    } else if (k_.stop != KernelStop::room) {
+      return k_.stop == KernelStop::done;
+    }
+  }
+}
+
+double FloatWalk::waiting_lower() const {
+  if (k_.waiting_size == 0 || k_.stop == KernelStop::done) return std::numeric_limits<double>::infinity();
+  const float bound = k_.waiting[0].bound;
+  return bound > 0 ? std::sqrt(static_cast<double>(bound)) * (1 - kDistanceRounding) * unit_ : 0;
+}
+
+/// Returns a bound on the distances of all pairs that are not among the near ones; world.
+double FloatWalk::dropped() const {
+  return std::min(waiting_lower(), static_cast<double>(dropped_from(k_)) * unit_);
+}
+
+double FloatWalk::measure() {
+  NearPair* const end = context_.near.data() + k_.near_size;
+  const float limit = dropped_from(k_);
+  NearPair* const last = std::partition(context_.near.data(), end,
+                                        [limit](const NearPair& pair) { return pair.lower <= limit; });
+  k_.near_size = static_cast<std::uint32_t>(last - context_.near.data());
+  std::sort(context_.near.data(), last, [](const NearPair& x, const NearPair& y) {
+    return x.lower != y.lower ? x.lower < y.lower : x.a != y.a ? x.a < y.a : x.b < y.b;
+  });
+  if (k_.best_a != kNull) found_.measure(k_.best_a, k_.best_b, 0);
+  double rest = dropped();
+  for (const NearPair* pair = context_.near.data(); pair != last; ++pair) {
+    const double lower = static_cast<double>(pair->lower) * unit_;
+    if (lower >= found_.dropped_from()) return std::min(rest, lower);
+    if (found_.is_near_enough()) return std::min(rest, lower);
+    found_.measure(pair->a, pair->b, lower);
+  }
+  return rest;
+}
+
+void FloatWalk::count(DistanceCounters& counters) const {
+  counters.steps += k_.tree.node_pairs;
+  counters.box_tests += k_.tree.box_tests;
+  counters.pairs_in_floats += k_.triangle_pairs;
+}
+
+}  // namespace lrb

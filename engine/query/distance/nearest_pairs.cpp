@@ -1,0 +1,198 @@
+#include "engine/query/distance/nearest_pairs.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/core/tolerances.hpp"
+#include "engine/exact/pair_distance.hpp"
+#include "engine/query/collide_impl.hpp"
+#include "engine/tree/pose_bounds.hpp"
+
+namespace lrb {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+double world_radius(const QueryBody& body) {
+  const ObbTree& tree = body.tree();
+  return static_cast<double>(tree.nodes()[0].radius) * tree.unit() * stretch(body.world.pose());
+}
+
+}  // namespace
+
+NearestPairs::NearestPairs(QueryContext& ctx, const DistanceRequest& request,
+                           std::vector<MeasuredPair>& pairs)
+    : ctx_(ctx), request_(request), pairs_(pairs), dim_(ctx[Side::a].rep().dim()) {
+  pairs_.clear();
+  best_.upper = kInfinity;
+  size_ = std::max(world_radius(ctx[Side::a]), world_radius(ctx[Side::b]));
+}
+
+Eigen::Vector3d NearestPairs::way() const {
+  return best_simplex_[0] == kNull ? Eigen::Vector3d(0, 0, 0)
+                                   : Eigen::Vector3d(best_.point[1] - best_.point[0]);
+}
+
+double NearestPairs::dropped_from() const {
+  const double asked = std::max(
+      {upper() - request_.tolerance, upper() * (1 - request_.relative_tolerance), upper() - allowed_});
+  // An upper end that is not known yet gives "not a number" or infinity.
+  const double least = asked >= 0 ? std::min(asked, upper()) : 0;
+  const double by_upper = upper() < kInfinity ? least : kInfinity;
+  return request_.within ? std::min(by_upper, std::nextafter(*request_.within, kInfinity)) : by_upper;
+}
+
+/// Returns how wide the interval may be.
+double NearestPairs::width() const {
+  return std::max({request_.tolerance, request_.relative_tolerance * upper(), allowed_,
+                   kDistanceWidth * size_, kDistanceWidthUlps * upper()});
+}
+
+void NearestPairs::corners(SimplexId a, SimplexId b, const double** of_a, const double** of_b) {
+  ctx_[Side::a].world.corners(a, of_a);
+  ctx_[Side::b].world.corners(b, of_b);
+}
+
+void NearestPairs::see(const MeasuredPair& pair, const PairBounds& bounds) {
+  if (best_simplex_[0] != kNull && !(bounds.upper < best_.upper)) return;
+  best_ = bounds;
+  best_simplex_[0] = pair.a;
+  best_simplex_[1] = pair.b;
+}
+
+bool NearestPairs::measure(SimplexId a, SimplexId b, double lower) {
+  const double *of_a[3], *of_b[3];
+  corners(a, b, of_a, of_b);
+  const PairBounds bounds = bound_distance(of_a, of_b, dim_);
+  ++counters_.pairs_in_doubles;
+  pairs_.push_back({a, b, std::min(std::max(bounds.lower, lower), bounds.upper), bounds.upper});
+  see(pairs_.back(), bounds);
+  return pairs_.back().lower > 0;
+}
+
+bool NearestPairs::surfaces_meet() {
+  if (asked_) return meet_;
+  asked_ = true;
+  CollideRequest any;
+  any.mode = Mode::any_pair;
+  CollideResult found;
+  NullProbe probe;
+  TreeQuery<NullProbe>(ctx_, any, found, probe).run();
+  meet_ = !found.pairs.empty();
+  if (!meet_) return false;
+  best_simplex_[0] = found.pairs[0].a;
+  best_simplex_[1] = found.pairs[0].b;
+  met_ = found.meets[0] == exact::Meet::cross ? Relation::crossing : Relation::touching;
+  write_contact();
+  return true;
+}
+
+/// Sets the witness to a point of the pair that meets.
+void NearestPairs::write_contact() {
+  const double *of_a[3], *of_b[3];
+  corners(best_simplex_[0], best_simplex_[1], of_a, of_b);
+  const exact::PairContact contact =
+      dim_ == 3 ? exact::contact_of_triangles(of_a, of_b) : exact::contact_of_segments(of_a, of_b);
+  const exact::ContactCorner& corner = contact.corners[0];
+  best_.lower = best_.upper = 0;
+  best_.point[0] = best_.point[1] = corner.x;
+  best_.on[0] = corner.on_a;
+  best_.on[1] = corner.on_b;
+}
+
+double NearestPairs::least_lower() const {
+  double least = kInfinity;
+  for (const MeasuredPair& pair : pairs_) least = std::min(least, pair.lower);
+  return least;
+}
+
+/// Measures exactly where doubles left too much. `rest`: what was not measured is at least this far apart.
+void NearestPairs::narrow(double rest) {
+  const double least = std::min(least_lower(), rest);
+  const bool is_wide = !(upper() - least <= width()) || !(least > 0);
+  if (!is_wide || surfaces_meet()) return;
+  std::sort(pairs_.begin(), pairs_.end(), [](const MeasuredPair& x, const MeasuredPair& y) {
+    return x.lower != y.lower ? x.lower < y.lower : x.a != y.a ? x.a < y.a : x.b < y.b;
+  });
+  for (MeasuredPair& pair : pairs_) {
+    if (pair.lower > 0 && pair.lower >= upper() - width()) break;
+    const double *of_a[3], *of_b[3];
+    corners(pair.a, pair.b, of_a, of_b);
+    const exact::PairDistance exact = exact::distance_of_simplices(of_a, of_b, dim_);
+    ++counters_.pairs_exact;
+    pair.lower = exact.lower;
+    pair.upper = exact.upper;
+    see(pair, {exact.lower, exact.upper, {exact.point[0], exact.point[1]}, {exact.on[0], exact.on[1]}});
+  }
+}
+
+/// Decides whether the surfaces are as near as asked, exactly. finished: what was not measured is not that
+/// near.
+void NearestPairs::decide_within(double rest, bool finished, DistanceResult& result) {
+  const double most = *request_.within;
+  if (upper() <= most || (least_lower() <= most && surfaces_meet())) {
+    result.within = true;
+    return;
+  }
+  for (const MeasuredPair& pair : pairs_) {
+    if (pair.lower > most) continue;
+    const double *of_a[3], *of_b[3];
+    corners(pair.a, pair.b, of_a, of_b);
+    ++counters_.pairs_exact;
+    if (exact::compare_distance(of_a, of_b, dim_, most) > 0) continue;
+    result.within = true;
+    return;
+  }
+  if (finished || rest > most) result.within = false;
+}
+
+void NearestPairs::write_witness(int side, DistanceResult& result) const {
+  Witness& w = result.witness[side];
+  w.simplex = best_simplex_[side];
+  if (w.simplex == kNull) return;
+  const LrbRep& rep = ctx_.body[side].rep();
+  w.point = best_.point[side];
+  w.feature = best_.on[side];
+  w.face = rep.face_of_simplex(w.simplex);
+  VertexId v[3];
+  rep.simplex(w.simplex, v);
+  w.corner_count = w.feature.dim + 1;
+  for (int k = 0; k < w.corner_count; ++k) {
+    const int first = w.feature.dim == 2 ? 0 : w.feature.index;
+    w.corners[static_cast<std::size_t>(k)] = v[(first + k) % dim_];
+  }
+}
+
+void NearestPairs::write_relation(DistanceResult& result) {
+  result.relation = Relation::undefined;
+  if (meet_) {
+    result.relation = met_;
+  } else if (!(result.lower > 0)) {
+    result.relation = Relation::unresolved;
+  } else if (request_.relation) {
+    CollideResult none;
+    decide_relation(ctx_, none);
+    result.relation = none.relation;
+  }
+}
+
+void NearestPairs::finish(double rest, bool finished, DistanceResult& result) {
+  if (!meet_ && finished && !request_.within) narrow(rest);
+  if (request_.within && !meet_) decide_within(rest, finished, result);
+  result.meet = meet_;
+  if (meet_) {
+    if (request_.within) result.within = true;
+  } else {
+    result.upper = upper();
+    result.lower = std::min({least_lower(), rest, upper()});
+    result.finished = request_.within ? result.within.has_value() : finished;
+  }
+  write_relation(result);
+  for (int side = 0; side < 2; ++side) write_witness(side, result);
+  counters_.steps = result.counters.steps;
+  counters_.box_tests = result.counters.box_tests;
+  counters_.pairs_in_floats = result.counters.pairs_in_floats;
+  result.counters = counters_;
+}
+
+}  // namespace lrb

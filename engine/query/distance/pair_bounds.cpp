@@ -1,0 +1,200 @@
+/// The upper end is the distance of two points, one of each simplex, found as in Ericson, "Real-Time
+/// Collision Detection", 5.1: among edge and edge (5.1.9, after Lumelsky, 1985), and corner and plane. The
+/// lower end is the width of a slab between the simplices: along any direction n, the simplices are at least
+///     (least n . b over the corners of B - largest n . a over those of A) / |n|
+/// apart. Whatever errors n has, this holds; only the rounding of the products counts. The best n is the
+/// direction between the nearest points. Because their difference loses digits where the simplices are near
+/// each other, n is taken from the edges of the features that are nearest: across both edges, across the
+/// face, across the edge.
+///
+/// Errors. Let R be the largest coordinate of any corner, seen from A's first, and u = 2^-53. Coordinates are
+/// off by at most u R each (one subtraction). A product n . x is off by u R |n|_1 for that, and by 3 u R |n|_1
+/// for its three products and two sums; the difference of two is off by twice that, and by rounding: less than
+/// 16 u R |n|_1. The way between two points at given shares of their edges is off by 20 u R in each
+/// coordinate: 4 u R for the way between corners, 6 u R for each of two edges times a share, 4 u R for two
+/// sums; by 35 u R in length. A face's two shares may add up to 1 + u, which makes 4 u R more. kPairRounding
+/// is 64 u.
+
+#include "engine/query/distance/pair_bounds.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <Eigen/Geometry>
+
+#include "engine/core/tolerances.hpp"
+
+namespace lrb {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+double clamp_share(double x) {
+  return x > 0 ? std::min(x, 1.0) : 0;  // not a number: 0
+}
+
+/// Two points, by the features that they lie on and the shares of these features' edges.
+struct Nearest {
+  double square = kInfinity;
+  Vector3d way{0, 0, 0};  ///< from the point of A to that of B
+  exact::Feature on[2];
+  double share[2][2] = {};
+};
+
+class Pair {
+ public:
+  Pair(const double* const* a, const double* const* b, int n) : n_(n) {
+    for (int axis = 0; axis < n; ++axis)
+      for (int k = 0; k < n; ++k) {
+        x_[0][k][axis] = a[k][axis] - a[0][axis];
+        x_[1][k][axis] = b[k][axis] - a[0][axis];
+        reach_ = std::max({reach_, std::abs(x_[0][k][axis]), std::abs(x_[1][k][axis])});
+      }
+    for (int side = 0; side < 2; ++side)
+      for (int k = 0; k < n; ++k) edge_[side][k] = x_[side][(k + 1) % n] - x_[side][k];
+  }
+
+  /// Returns true if squares, and squares of products, neither overflow nor vanish.
+  bool is_in_range() const { return reach_ > 0x1p-200 && reach_ < 0x1p200; }
+
+  void find() {
+    for (int i = 0; i < edges(); ++i)
+      for (int j = 0; j < edges(); ++j) edge_to_edge(i, j);
+    if (n_ != 3) return;
+    for (int side = 0; side < 2; ++side) corners_to_face(side);
+  }
+
+  const Nearest& nearest() const { return nearest_; }
+  double upper() const { return (std::sqrt(nearest_.square) + kPairRounding * reach_) * kRootUp; }
+
+  double lower() const {
+    double most = std::max(width(nearest_.way), width(across_features()));
+    if (n_ == 3)
+      for (const auto& edge : edge_)
+        if (most < upper() - 2 * kPairRounding * reach_) most = std::max(most, width(edge[0].cross(edge[1])));
+    return most;
+  }
+
+ private:
+  static constexpr double kRootUp = 1 + 0x1p-51, kRootDown = 1 - 0x1p-50;
+
+  int edges() const { return n_ == 3 ? 3 : 1; }
+
+  void edge_to_edge(int i, int j) {
+    const Vector3d &u = edge_[0][i], &v = edge_[1][j];
+    const Vector3d way = x_[1][j] - x_[0][i];
+    const double uu = u.squaredNorm(), vv = v.squaredNorm(), uv = u.dot(v), uw = u.dot(way), vw = v.dot(way);
+    double s = clamp_share((vv * uw - uv * vw) / (uu * vv - uv * uv));
+    const double t = clamp_share((uv * s - vw) / vv);
+    s = clamp_share((uv * t + uw) / uu);
+    const Vector3d d = way + t * v - s * u;
+    const double square = d.squaredNorm();
+    if (!(square < nearest_.square)) return;
+    nearest_ = {square, d, {on_edge(i, s), on_edge(j, t)}, {{s, 0}, {t, 0}}};
+  }
+
+  exact::Feature on_edge(int k, double share) const {
+    if (share <= 0) return {0, static_cast<std::uint8_t>(k)};
+    if (share >= 1) return {0, static_cast<std::uint8_t>((k + 1) % n_)};
+    return {1, static_cast<std::uint8_t>(k)};
+  }
+
+  /// Corners of the other simplex over the face of `side`.
+  void corners_to_face(int side) {
+    const Vector3d &u = edge_[side][0], v = -edge_[side][2], &first = x_[side][0];
+    const double uu = u.squaredNorm(), vv = v.squaredNorm(), uv = u.dot(v), area = uu * vv - uv * uv;
+    if (!(area > 0)) return;
+    for (int k = 0; k < 3; ++k) {
+      const Vector3d way = x_[1 - side][k] - first;
+      const double uw = u.dot(way), vw = v.dot(way);
+      const double s = (vv * uw - uv * vw) / area, t = (uu * vw - uv * uw) / area;
+      if (!(s > 0 && t > 0 && s + t < 1)) continue;
+      const Vector3d d = way - s * u - t * v;
+      const double square = d.squaredNorm();
+      if (!(square < nearest_.square)) continue;
+      nearest_.square = square;
+      nearest_.way = side == 0 ? d : Vector3d(-d);
+      nearest_.on[side] = {2, 0};
+      nearest_.on[1 - side] = {0, static_cast<std::uint8_t>(k)};
+      nearest_.share[side][0] = s;
+      nearest_.share[side][1] = t;
+    }
+  }
+
+  /// Returns a direction across the nearest features that does not suffer where the two are near each other.
+  Vector3d across_features() const {
+    const exact::Feature &a = nearest_.on[0], &b = nearest_.on[1];
+    if (a.dim == 2) return edge_[0][0].cross(edge_[0][1]);
+    if (b.dim == 2) return edge_[1][0].cross(edge_[1][1]);
+    if (a.dim == 1 && b.dim == 1 && n_ == 3) {
+      const Vector3d n = edge_[0][a.index].cross(edge_[1][b.index]);
+      if (n.squaredNorm() > 0) return n;
+    }
+    const Vector3d* along = a.dim == 1 ? &edge_[0][a.index] : b.dim == 1 ? &edge_[1][b.index] : nullptr;
+    if (along == nullptr) return nearest_.way;
+    if (n_ == 2) return {-along->y(), along->x(), 0};
+    return nearest_.way - nearest_.way.dot(*along) / along->squaredNorm() * *along;
+  }
+
+  /// Returns the width of the slab between the simplices along a direction of any length, rounded down; at
+  /// least 0.
+  double width(Vector3d n) const {
+    const double largest = n.cwiseAbs().maxCoeff();
+    if (!(largest > 0)) return 0;
+    n *= std::ldexp(1.0, -std::ilogb(largest));
+    double low[2] = {kInfinity, kInfinity}, high[2] = {-kInfinity, -kInfinity};
+    for (int side = 0; side < 2; ++side)
+      for (int k = 0; k < n_; ++k) {
+        const double x = n.dot(x_[side][k]);
+        low[side] = std::min(low[side], x);
+        high[side] = std::max(high[side], x);
+      }
+    const double gap = std::max(low[1] - high[0], low[0] - high[1]);
+    const double sure = gap - 0.25 * kPairRounding * reach_ * n.cwiseAbs().sum();
+    return sure > 0 ? sure / n.norm() * kRootDown : 0;
+  }
+
+  int n_;
+  Vector3d x_[2][3] = {{Vector3d::Zero(), Vector3d::Zero(), Vector3d::Zero()},
+                       {Vector3d::Zero(), Vector3d::Zero(), Vector3d::Zero()}};
+  Vector3d edge_[2][3];
+  double reach_ = 0;
+  Nearest nearest_;
+};
+
+/// Returns the point of a simplex at given shares of the feature's edges, in the world.
+Vector3d place(const exact::Feature& on, const double* share, const double* const* corners, int n) {
+  const auto at = [&](int k) {
+    const double* x = corners[k % n];
+    return Vector3d(x[0], x[1], n == 3 ? x[2] : 0);
+  };
+  if (on.dim == 0) return at(on.index);
+  const int first = on.dim == 1 ? on.index : 0;
+  const Vector3d from = at(first);
+  Vector3d x = from + share[0] * (at(first + 1) - from);
+  if (on.dim == 2) x += share[1] * (at(2) - from);
+  return x;
+}
+
+}  // namespace
+
+PairBounds bound_distance(const double* const* a, const double* const* b, int n) {
+  Pair pair(a, b, n);
+  PairBounds out;
+  out.upper = kInfinity;
+  if (!pair.is_in_range()) return out;
+  pair.find();
+  const Nearest& nearest = pair.nearest();
+  out.upper = pair.upper();
+  out.lower = std::min(pair.lower(), out.upper);
+  for (int side = 0; side < 2; ++side) {
+    out.on[side] = nearest.on[side];
+    out.point[side] = place(nearest.on[side], nearest.share[side], side == 0 ? a : b, n);
+  }
+  return out;
+}
+
+}  // namespace lrb

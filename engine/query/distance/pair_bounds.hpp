@@ -1,0 +1,23 @@
+#pragma once
+/// The distance of two simplices in doubles, as an interval that is proved.
+
+#include <Eigen/Core>
+
+#include "engine/exact/pair_contact.hpp"
+
+namespace lrb {
+
+struct PairBounds {
+  /// Hold the distance. Not finite, or 0, where doubles do not suffice: then exact arithmetic has to.
+  double lower = 0, upper = 0;
+  Eigen::Vector3d
+      point[2];  ///< the points that gave `upper`, on the simplex of A and on that of B, but for rounding
+  exact::Feature on[2];  ///< where they lie
+};
+
+/// Bounds the distance of two triangles (n = 3) in space, or of two segments (n = 2) in the plane z = 0.
+/// Simplices that meet get a lower end of 0, and an upper end that may be too large by no more than what is
+/// inside.
+PairBounds bound_distance(const double* const* a, const double* const* b, int n);
+
+}  // namespace lrb
