@@ -46,7 +46,7 @@ class WhyMarks {
     const square = unpack((plane || boxes || { square: "f4:" }).square);
     if (square.length) this.addSquare([0, 3, 6, 9].map((i) => [...square.subarray(i, i + 3)]));
     this.view.legend.also([
-      ...(boxes ? [[colours.ink, "nearest of the boxes found apart"]] : []),
+      ...(boxes ? [[mixed(colours.bodies[0], colours.ink, 0.3), "nearest of the boxes found apart"]] : []),
       ...(square.length
         ? [[colours.refining, plane ? "plane that parts the bodies" : "plane that parts these boxes"]]
         : []),
