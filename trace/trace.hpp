@@ -156,6 +156,7 @@ struct TraceHeader {
   EventLevel level = EventLevel::faces;
   std::string engine;     ///< the one that was recorded, in words; empty: ours
   bool coherent = false;  ///< each step went on from the one before, by a CoherentQuery
+  std::string pictures;   ///< how the run was drawn, as a JSON object that traces only carry; empty: not said
 };
 
 struct Trace {

@@ -48,6 +48,7 @@ void write_metadata(const Trace& trace, JsonOut& out) {
   if (h.level != EventLevel::faces) w.member("level", name_of(h.level));
   if (!h.engine.empty()) w.member("engine", h.engine);
   if (h.coherent) w.member("coherent", true);
+  if (!h.pictures.empty()) w.key("pictures").json(h.pictures);
   w.key("events");
   write_event_counts(w, trace);
   w.key("totals");

@@ -35,6 +35,13 @@ const std::vector<CollideResult>& results_of(const run::RecordedRun& recorded) {
   return recorded.results != nullptr ? *recorded.results : none;
 }
 
+/// Returns a caption without what goes without saying.
+std::string shortened(std::string words) {
+  const std::string none = ": 0 pairs of faces meet";
+  if (words.ends_with(none)) words.resize(words.size() - none.size());
+  return words;
+}
+
 /// Returns the frames' spec with widths in points: a thin line, of width 1, is as wide as the figure's.
 spec::FrameSpec in_points(spec::FrameSpec frames, const FigureSpec& figure) {
   frames.dpi = figure.line_width * spec::FrameSpec::kScreenDpi;
@@ -163,7 +170,7 @@ class FigureJob {
         run::merge_key(key_, shown.key);
         if (shown.scale) bar_ = shown.scale;
         block.seen.push_back(seen_box(shown.list, camera(view, i)));
-        const std::string words = state_.short_caption();
+        const std::string words = shortened(state_.short_caption());
         words_.push_back({words, view.title.empty() ? words : view.title + ", " + words});
         shown_moments.push_back(i);
       }

@@ -9,6 +9,7 @@
 #include "engine/query/coherent/coherent_query.hpp"
 #include "engine/query/collide_impl.hpp"
 #include "scenarios/run/approach.hpp"
+#include "scenarios/spec/scenario_frames.hpp"
 #include "scenarios/spec/scenario_motion.hpp"
 #include "trace/hex.hpp"
 #include "trace/recorder.hpp"
@@ -152,6 +153,7 @@ Recording record(const spec::Scenario& scenario, std::vector<bodies::LoadedBody>
     record_collision(scenario, r, progress);
   else
     record_wrapper(scenario, r);
+  r.trace.header.pictures = spec::pictures_text(scenario.frames);
   r.trees = trees_of(r.trace, r.bodies);
   if (r.trace.truncated())
     r.notes.push_back("the trace holds the first " + std::to_string(r.trace.events.size()) + " of " +
