@@ -142,7 +142,7 @@ int run_figure(const FigureOptions& o, const Globals& globals) {
   const Source source = open_source(o, progress);
   const std::string file = o.file.empty() ? "out/" + source.name + ".pdf" : o.file;
   const figure::FigureSpec spec = figure_spec(o, file);
-  const spec::FrameSpec frames = frame_spec(o, source);
+  spec::FrameSpec frames = frame_spec(o, source);
   run::RecordedRun recorded;
   recorded.title = source.name;
   recorded.purpose = source.purpose;
@@ -151,6 +151,12 @@ int run_figure(const FigureOptions& o, const Globals& globals) {
   recorded.milestones = source.recording.milestones;
   recorded.trees = &source.recording.trees;
   for (const bodies::LoadedBody& body : source.recording.bodies) recorded.reps.push_back(&body.rep);
+  if (o.close_up)
+    for (spec::FrameSpec::View& view : frames.views)
+      if (run::close_up_is_whole(recorded, view)) {  // hardly closer, and heads would be cut off
+        view.camera = spec::FrameSpec::Camera::scene;
+        view.title = view.wrapper ? view.title : "Bodies alone";
+      }
   const figure::Figure drawn = figure::draw_figure(recorded, frames, spec, progress);
   note(globals, source.recording.notes);
   const std::filesystem::path path(file);
