@@ -113,6 +113,12 @@ class JsonWriter {
       out_->string(v);
     return *this;
   }
+  /// Writes a value that is JSON already, on one line.
+  JsonWriter& json(std::string_view text) {
+    separate();
+    out_->raw(text);
+    return *this;
+  }
   template <class Kind>
   JsonWriter& value(Id<Kind> id) {
     return value(id.value());

@@ -63,6 +63,11 @@ class TraceNode {
     if (!j_->is_string()) fail("a string");
     return j_->get_ref<const std::string&>();
   }
+  /// Returns an object as text, its keys in alphabetical order.
+  std::string object_text() const {
+    if (!j_->is_object()) fail("an object");
+    return j_->dump(-1, ' ', false, Json::error_handler_t::replace);
+  }
   std::uint64_t hash() const {
     const auto value = j_->is_string() ? from_hex(string()) : std::nullopt;
     if (!value) fail("a hash of 16 hexadecimal digits");

@@ -173,6 +173,7 @@ struct TraceHeader {
   bool coherent = false;  ///< each step went on from the one before, by a CoherentQuery
   /// The construction of one body: its wrapper, the hull, begins with the body itself, and grows.
   bool construction = false;
+  std::string pictures;  ///< how the run was drawn, as a JSON object that traces only carry; empty: not said
 };
 
 struct Trace {

@@ -151,6 +151,7 @@ class Reader {
     if (metadata.has("engine")) h.engine = metadata.at("engine").string();
     if (metadata.has("coherent")) h.coherent = metadata.at("coherent").boolean();
     if (metadata.has("construction")) h.construction = metadata.at("construction").boolean();
+    if (metadata.has("pictures")) h.pictures = metadata.at("pictures").object_text();
     h.request = read_request(metadata.at("request"));
     const TraceNode bodies = metadata.at("bodies");
     const std::size_t count = bodies.array_size();

@@ -54,6 +54,7 @@ void write_metadata(const Trace& trace, JsonOut& out) {
   if (!h.engine.empty()) w.member("engine", h.engine);
   if (h.coherent) w.member("coherent", true);
   if (h.construction) w.member("construction", true);
+  if (!h.pictures.empty()) w.key("pictures").json(h.pictures);
   w.key("events");
   write_event_counts(w, trace);
   w.key("totals");

@@ -7,6 +7,7 @@
 
 #include "engine/core/error.hpp"
 #include "scenarios/io/pose_file.hpp"
+#include "scenarios/run/animation.hpp"
 #include "scenarios/spec/scenario_frames.hpp"
 #include "trace/record_fields.hpp"
 
@@ -36,6 +37,27 @@ void add_count(CLI::App& app, const std::string& name, std::uint64_t& count, con
   app.add_option(name, count, what)
       ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1} << 62).description(""))
       ->type_name("N");
+}
+
+/// Reads --size.
+void apply_size(const std::string& size, spec::FrameSpec& spec) {
+  if (size.empty()) return;
+  const char* end = size.data() + size.size();
+  const auto [x, e1] = std::from_chars(size.data(), end, spec.width);
+  const bool has_x = e1 == std::errc() && x != end && *x == 'x';
+  const auto [last, e2] = has_x ? std::from_chars(x + 1, end, spec.height)
+                                : std::from_chars_result{x, std::errc::invalid_argument};
+  constexpr int kLeast = 64, kMost = 8192;
+  if (e2 != std::errc() || last != end || spec.width < kLeast || spec.height < kLeast || spec.width > kMost ||
+      spec.height > kMost)
+    throw InputError("--size: expected WIDTHxHEIGHT from 64x64 to 8192x8192, found \"" + size + "\"");
+}
+
+void add_orbit_option(CLI::App& app, CameraOptions& options) {
+  app.add_option("--orbit", options.orbit,
+                 "Turn the camera round the bodies by so many degrees, from the first frame to the last")
+      ->check(CLI::Range(-36000.0, 36000.0))
+      ->type_name("DEGREES");
 }
 
 }  // namespace
@@ -97,13 +119,17 @@ void add_build_options(CLI::App& app, BuildOptions& options) {
       ->type_name("N");
 }
 
-void add_picture_options(CLI::App& app, PictureOptions& options) {
+void add_size_options(CLI::App& app, PictureOptions& options) {
   app.add_option("--size", options.size, "Size of the frames in pixels")->type_name("WxH");
   app.add_option(
          "--dpi", options.dpi,
          "For print: keep the size that --size has at 96 dpi, in more pixels; lines and texts grow with them")
       ->check(CLI::Range(spec::kLeastDpi, spec::kMostDpi))
       ->type_name("N");
+}
+
+void add_picture_options(CLI::App& app, PictureOptions& options) {
+  add_size_options(app, options);
   app.add_flag("--transparent", options.transparent, "Draw without a background");
   app.add_option_function<std::string>(
          "--format", [&options](const std::string& word) { options.svg = word == "svg"; },
@@ -118,6 +144,7 @@ void add_picture_options(CLI::App& app, PictureOptions& options) {
       ->check(CLI::Range(1, 10000))
       ->type_name("N");
   add_camera_options(app, options.camera);
+  add_orbit_option(app, options.camera);
   add_colour_options(app, options);
 }
 
@@ -134,18 +161,8 @@ void add_colour_options(CLI::App& app, PictureOptions& options) {
 }
 
 void apply(const PictureOptions& options, spec::FrameSpec& spec) {
-  if (!options.size.empty()) {
-    const char* end = options.size.data() + options.size.size();
-    const auto [x, e1] = std::from_chars(options.size.data(), end, spec.width);
-    const bool has_x = e1 == std::errc() && x != end && *x == 'x';
-    const auto [last, e2] = has_x ? std::from_chars(x + 1, end, spec.height)
-                                  : std::from_chars_result{x, std::errc::invalid_argument};
-    constexpr int kLeast = 64, kMost = 8192;
-    if (e2 != std::errc() || last != end || spec.width < kLeast || spec.height < kLeast ||
-        spec.width > kMost || spec.height > kMost)
-      throw InputError("--size: expected WIDTHxHEIGHT from 64x64 to 8192x8192, found \"" + options.size +
-                       "\"");
-  }
+  if (!options.animation.empty()) run::check_animation(options.animation);
+  apply_size(options.size, spec);
   if (options.dpi) spec.dpi = *options.dpi;
   if (options.svg) spec.svg = *options.svg;
   spec.transparent |= options.transparent;
@@ -179,7 +196,7 @@ void add_camera_options(CLI::App& app, CameraOptions& options) {
 
 void apply(const CameraOptions& options, std::vector<spec::FrameSpec::View>& views) {
   const bool any = !options.from.empty() || !options.look_at.empty() || !options.up.empty() || options.zoom ||
-                   options.orthographic;
+                   options.orthographic || options.orbit;
   if (!any) return;
   if (views.empty()) views.emplace_back();
   for (spec::FrameSpec::View& view : views) {
@@ -203,6 +220,10 @@ void apply(const CameraOptions& options, std::vector<spec::FrameSpec::View>& vie
     if (!options.look_at.empty()) view.look_at = io::parse_vector(options.look_at, "--look-at");
     if (options.zoom) view.zoom = *options.zoom;
     if (options.orthographic) view.orthographic = *options.orthographic;
+    if (options.orbit) {
+      view.camera = spec::FrameSpec::Camera::orbit;
+      view.turn_degrees = *options.orbit;
+    }
   }
 }
 
@@ -221,12 +242,31 @@ render::ViewDirection turned_up(const render::ViewDirection& view, int axis) {
   return {turned(view.from), turned(view.up)};
 }
 
+void add_animation_option(CLI::App& app, PictureOptions& options) {
+  app.add_option("--animate", options.animation, "Make a moving picture of the frames too, by ffmpeg")
+      ->type_name("OUT.mp4|gif|webp");
+}
+
+void animate_frames(const PictureOptions& options, const std::string& folder, const Globals& globals) {
+  if (options.animation.empty()) return;
+  if (run::animate(folder, options.animation)) return;
+  std::string line;
+  for (const std::string& word : run::animation_command(folder, options.animation))
+    line += (line.empty() ? "" : " ") + shell_word(word);
+  note(globals, {"there is no ffmpeg to make " + options.animation + "; where there is one: " + line});
+}
+
 std::uint32_t all_cores() {
   return std::max(1U, std::thread::hardware_concurrency());
 }
 
-std::vector<spec::FrameSpec::View> whole_and_contact() {
+std::vector<spec::FrameSpec::View> whole_and_contact(const std::vector<spec::FrameSpec::View>& as) {
   spec::FrameSpec::View whole, contact;
+  if (!as.empty() && as[0].camera != spec::FrameSpec::Camera::fixed) {
+    whole.from = contact.from = as[0].from;
+    whole.up = contact.up = as[0].up;
+    whole.orthographic = contact.orthographic = as[0].orthographic;
+  }
   whole.title = "Whole, with wrappers";
   contact.title = "Contact, bodies alone";
   contact.camera = spec::FrameSpec::Camera::contact;

@@ -37,10 +37,11 @@ void add_events_option(CLI::App& app, std::optional<EventLevel>& level);
 /// Adds --patch, --max-outer, --lean, --seed and --threads.
 void add_build_options(CLI::App& app, BuildOptions& options);
 
-/// The options --from, --look-at, --zoom, --projection and --up: where pictures are seen from. They take precedence over a
+/// The options --from, --look-at, --zoom, --projection, --orbit and --up: where pictures are seen from. They take precedence over a
 /// scenario.
 struct CameraOptions {
   std::string from, look_at, up;
+  std::optional<double> orbit;
   std::optional<double> zoom;
   std::optional<bool> orthographic;
 };
@@ -53,7 +54,7 @@ void apply(const CameraOptions& options, std::vector<spec::FrameSpec::View>& vie
 /// --colour-per and --node-boxes, which take precedence over a scenario.
 struct PictureOptions {
   CameraOptions camera;
-  std::string size;
+  std::string size, animation;
   std::optional<double> dpi;
   std::optional<bool> svg;
   bool transparent = false;
@@ -64,9 +65,16 @@ struct PictureOptions {
   std::optional<std::uint32_t> node_boxes;
 };
 void add_picture_options(CLI::App& app, PictureOptions& options);
+/// Adds --size and --dpi alone.
+void add_size_options(CLI::App& app, PictureOptions& options);
 /// Adds --colour-by and --node-boxes alone.
 void add_colour_options(CLI::App& app, PictureOptions& options);
 void apply(const PictureOptions& options, spec::FrameSpec& spec);
+
+/// Adds --animate, for commands that call animate_frames().
+void add_animation_option(CLI::App& app, PictureOptions& options);
+/// Makes the moving picture that was asked for of the frames in a folder; where there is no ffmpeg, tells the line that would.
+void animate_frames(const PictureOptions& options, const std::string& folder, const Globals& globals);
 
 /// Adds --up, which takes x, y or z.
 void add_up_option(CLI::App& app, std::string& up);
@@ -74,7 +82,8 @@ void add_up_option(CLI::App& app, std::string& up);
 render::ViewDirection turned_up(const render::ViewDirection& view, int axis);
 
 /// Returns two views side by side: the whole scene with the wrappers, and the contact with the bodies alone.
-std::vector<spec::FrameSpec::View> whole_and_contact();
+/// They look from where the first of the views given does.
+std::vector<spec::FrameSpec::View> whole_and_contact(const std::vector<spec::FrameSpec::View>& as = {});
 
 /// Returns the number of threads of the machine; at least 1.
 std::uint32_t all_cores();

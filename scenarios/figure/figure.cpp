@@ -35,6 +35,13 @@ const std::vector<CollideResult>& results_of(const run::RecordedRun& recorded) {
   return recorded.results != nullptr ? *recorded.results : none;
 }
 
+/// Returns a caption without what goes without saying.
+std::string shortened(std::string words) {
+  const std::string none = ": 0 pairs of faces meet";
+  if (words.ends_with(none)) words.resize(words.size() - none.size());
+  return words;
+}
+
 /// Returns the frames' spec with widths in points: a thin line, of width 1, is as wide as the figure's.
 spec::FrameSpec in_points(spec::FrameSpec frames, const FigureSpec& figure) {
   frames.dpi = figure.line_width * spec::FrameSpec::kScreenDpi;
@@ -51,7 +58,7 @@ class FigureJob {
         dpi_(figure.dpi > 0 ? figure.dpi : default_dpi(figure.format)),
         events_(choose(recorded, figure.choice)),
         framing_(run::frame_sequence(recorded.reps, *recorded.trace, results_of(recorded), frames_)),
-        extras_{recorded.trees, common_range(), recorded.face_values, recorded.value_name},
+        extras_{recorded.trees, recorded.wrong, common_range(), recorded.face_values, recorded.value_name},
         state_(*recorded.trace, recorded.reps, results_of(recorded), frames_, false, extras_) {}
 
   Figure draw(const run::ProgressReport& progress) {
@@ -110,8 +117,9 @@ class FigureJob {
   std::optional<std::array<double, 2>> common_range() {
     if (recorded_.value_range) return recorded_.value_range;
     std::optional<std::array<double, 2>> range;
-    run::FrameState state(*recorded_.trace, recorded_.reps, results_of(recorded_), frames_, false,
-                          {recorded_.trees, {}, recorded_.face_values, recorded_.value_name});
+    run::FrameState state(
+        *recorded_.trace, recorded_.reps, results_of(recorded_), frames_, false,
+        {recorded_.trees, recorded_.wrong, {}, recorded_.face_values, recorded_.value_name});
     if (!shows_values()) return range;
     for (const trace::EventId event : events_) {
       state.seek(event);
@@ -163,7 +171,7 @@ class FigureJob {
         run::merge_key(key_, shown.key);
         if (shown.scale) bar_ = shown.scale;
         block.seen.push_back(seen_box(shown.list, camera(view, i)));
-        const std::string words = state_.short_caption();
+        const std::string words = shortened(state_.short_caption());
         words_.push_back({words, view.title.empty() ? words : view.title + ", " + words});
         shown_moments.push_back(i);
       }

@@ -8,19 +8,25 @@
 #include "render/png.hpp"
 #include "render/rasterize.hpp"
 #include "render/scene.hpp"
+#include "scenarios/run/frame_files.hpp"
+#include "scenarios/run/framing.hpp"
 #include "scenarios/run/moments.hpp"
 
 namespace lrb::run {
 
-void draw_body_sheet(const LrbRep& rep, const std::string& path) {
-  constexpr int kWidth = 640, kHeight = 520;
+void draw_body_sheet(const LrbRep& rep, const std::string& path, const spec::FrameSpec& given) {
   constexpr std::size_t kMostPanels = 6;
-  const std::vector<Eigen::Vector3d> points = render::body_points(rep, Pose{});
-  const render::Camera camera =
-      rep.dim() == 2 ? render::fit_top(points, kWidth, kHeight) : render::fit_camera(points, kWidth, kHeight);
+  const spec::FrameSpec frames = in_pixels(given);
+  Framing framing;
+  framing.points = render::body_points(rep, Pose{});
+  framing.dim = rep.dim();
+  const spec::FrameSpec::View view = frames.views.empty() ? spec::FrameSpec::View{} : frames.views[0];
+  const render::Camera camera = camera_for(view, framing, frames.width, frames.height, 0);
   render::RasterOptions options;
-  options.width = kWidth;
-  options.height = kHeight;
+  options.width = frames.width;
+  options.height = frames.height;
+  render::SceneOptions scene_options;
+  scene_options.scale = static_cast<float>(frames.scale());
   render::Rasterizer rasterizer;
   std::vector<render::Panel> panels;
   // Layers [0, hidden) are included: none is the body itself, all is the outermost wrapper.
@@ -31,11 +37,11 @@ void draw_body_sheet(const LrbRep& rep, const std::string& path) {
     render::SceneBody body;
     body.rep = &rep;
     body.wrapper = &wrapper;
-    const render::Scene scene = render::build_scene(std::vector<render::SceneBody>{body});
+    const render::Scene scene = render::build_scene(std::vector<render::SceneBody>{body}, {}, scene_options);
     panels.push_back({rasterizer.draw(scene.list, camera, options),
                       render::group_digits(wrapper.boundary_size()) + " faces"});
   }
-  render::write_png(render::montage(panels), path);
+  render::write_png(render::montage(panels), path, {{}, frames.dpi});
 }
 
 }  // namespace lrb::run

@@ -9,6 +9,7 @@
 #include "engine/query/coherent/coherent_query.hpp"
 #include "engine/query/collide_impl.hpp"
 #include "scenarios/run/approach.hpp"
+#include "scenarios/spec/scenario_frames.hpp"
 #include "scenarios/spec/scenario_motion.hpp"
 #include "trace/construct_recorder.hpp"
 #include "trace/hex.hpp"
@@ -162,6 +163,7 @@ Recording record(const spec::Scenario& scenario, const ProgressReport& progress)
     progress("build", 0, 1);
     Recording r;
     record_construction(scenario, r);
+    r.trace.header.pictures = spec::pictures_text(scenario.frames);
     add_notes(r);
     return r;
   }
@@ -188,6 +190,7 @@ Recording record(const spec::Scenario& scenario, std::vector<bodies::LoadedBody>
       record_known(scenario, r);
       break;
   }
+  r.trace.header.pictures = spec::pictures_text(scenario.frames);
   r.trees = trees_of(r.trace, r.bodies);
   add_notes(r);
   return r;

@@ -9,8 +9,8 @@ constexpr std::uint64_t kMostFrames = 10'000;
 
 FrameSpec::View read_view(const io::JsonNode& node) {
   using Camera = FrameSpec::Camera;
-  node.object(
-      {"camera", "projection", "eye", "target", "from", "up", "turn_degrees", "zoom", "draw", "title"});
+  node.object({"camera", "projection", "eye", "target", "from", "up", "look_at", "turn_degrees", "zoom",
+               "draw", "title"});
   FrameSpec::View v;
   if (const auto n = node.get("camera")) v.camera = n->choice<Camera>();
   if (const auto n = node.get("projection"))
@@ -21,6 +21,7 @@ FrameSpec::View read_view(const io::JsonNode& node) {
   if (const auto n = node.get("target")) v.target = n->vector();
   if (const auto n = node.get("from")) v.from = n->vector();
   if (const auto n = node.get("up")) v.up = n->vector();
+  if (const auto n = node.get("look_at")) v.look_at = n->vector();
   if (const auto n = node.get("turn_degrees")) v.turn_degrees = n->number(-36000, 36000);
   if (const auto n = node.get("zoom")) v.zoom = n->number(0.01, 1000);
   if (const auto n = node.get("draw")) v.wrapper = n->choice<bool>({{"wrapper", true}, {"body", false}});
@@ -43,6 +44,28 @@ void read_moments(const io::JsonNode& node, FrameSpec& f) {
   if (const auto n = node.get("most")) f.most = static_cast<std::uint32_t>(n->integer(1, kMostFrames));
 }
 
+nlohmann::json to_json(const Eigen::Vector3d& v) {
+  return {v.x(), v.y(), v.z()};
+}
+
+nlohmann::json to_json(const FrameSpec::View& v) {
+  nlohmann::json j;
+  j["camera"] = name_of(v.camera);
+  j["projection"] = v.orthographic ? "orthographic" : "perspective";
+  if (v.camera == FrameSpec::Camera::fixed) {
+    j["eye"] = to_json(v.eye);
+    j["target"] = to_json(v.target);
+  }
+  j["from"] = to_json(v.from);
+  j["up"] = to_json(v.up);
+  if (v.look_at) j["look_at"] = to_json(*v.look_at);
+  if (v.turn_degrees != 0) j["turn_degrees"] = v.turn_degrees;
+  j["zoom"] = v.zoom;
+  j["draw"] = v.wrapper ? "wrapper" : "body";
+  if (!v.title.empty()) j["title"] = v.title;
+  return j;
+}
+
 }  // namespace
 
 FrameSpec default_frames(Show show) {
@@ -52,6 +75,24 @@ FrameSpec default_frames(Show show) {
                                     : FrameSpec::At::pass;
   if (show == Show::construction) f.colour_by = FrameSpec::ColourBy::region;
   return f;
+}
+
+std::string pictures_text(const FrameSpec& frames) {
+  nlohmann::json j;
+  j["size"] = {frames.width, frames.height};
+  if (frames.dpi > 0) j["dpi"] = frames.dpi;
+  for (const FrameSpec::View& v : frames.views) j["views"].push_back(to_json(v));
+  if (frames.montage > 0) {
+    j["montage"]["panels"] = frames.montage;
+    if (frames.montage_columns > 0) j["montage"]["columns"] = frames.montage_columns;
+  }
+  return j.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+}
+
+FrameSpec read_pictures(const std::string& text, const std::string& name, const FrameSpec& fallback) {
+  if (text.empty()) return fallback;
+  const io::JsonText json(text, name + ", pictures");
+  return read_frames(io::JsonNode(json), fallback);
 }
 
 FrameSpec read_frames(const io::JsonNode& node, const FrameSpec& fallback) {

@@ -1,7 +1,10 @@
 #include "render/image.hpp"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <random>
+#include <vector>
 
 #include <doctest/doctest.h>
 
@@ -95,6 +98,58 @@ TEST_CASE("colours that must be told apart differ in grey") {
     CHECK(std::abs(render::luma(render::palette::solid_2d(render::palette::body(side))) -
                    render::luma(render::palette::region_2d(render::palette::body(side)))) > 60);
   }
+}
+
+namespace {
+
+using Matrix = std::array<std::array<double, 3>, 3>;
+
+std::array<double, 3> times(const Matrix& m, const std::array<double, 3>& v) {
+  std::array<double, 3> out{};
+  for (std::size_t i = 0; i < 3; ++i)
+    for (std::size_t j = 0; j < 3; ++j) out[i] += m[i][j] * v[j];
+  return out;
+}
+
+/// Lightness and the two hues of CIE 1976 of a colour of sRGB, as somebody sees it whose linear RGB is `seen` times ours.
+std::array<double, 3> lab(render::Rgba c, const Matrix& seen) {
+  const auto linear = [](std::uint8_t byte) {
+    const double x = byte / 255.0;
+    return x <= 0.04045 ? x / 12.92 : std::pow((x + 0.055) / 1.055, 2.4);
+  };
+  constexpr Matrix kToXyz = {{{0.4124, 0.3576, 0.1805}, {0.2126, 0.7152, 0.0722}, {0.0193, 0.1192, 0.9505}}};
+  const std::array<double, 3> xyz = times(kToXyz, times(seen, {linear(c.r), linear(c.g), linear(c.b)}));
+  const std::array<double, 3> white = times(kToXyz, {1, 1, 1});
+  const auto root = [&](std::size_t i) {
+    const double t = std::max(xyz[i] / white[i], 0.0);
+    return t > 216.0 / 24389 ? std::cbrt(t) : (24389.0 / 27 * t + 16) / 116;
+  };
+  return {116 * root(1) - 16, 500 * (root(0) - root(1)), 200 * (root(1) - root(2))};
+}
+
+}  // namespace
+
+TEST_CASE("kinds differ in lightness, and to people with any common colour vision") {
+  // Severity 1 of G. Machado, M. Oliveira, L. Fernandes, "A physiologically-based model for simulation of color vision
+  // deficiency", 2009: nobody's, protanopes', deuteranopes', tritanopes'.
+  const std::vector<Matrix> eyes = {
+      {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}},
+      {{{0.152286, 1.052583, -0.204868}, {0.114503, 0.786281, 0.099216}, {-0.003882, -0.048116, 1.051998}}},
+      {{{0.367322, 0.860646, -0.227968}, {0.280085, 0.672501, 0.047413}, {-0.011820, 0.042940, 0.968881}}},
+      {{{1.255528, -0.076749, -0.178779}, {-0.078411, 0.930809, 0.147602}, {0.004733, 0.691367, 0.303900}}}};
+  namespace palette = render::palette;
+  const std::vector<render::Rgba> kinds = {palette::body(Side::a), palette::body(Side::b), palette::kContact,
+                                           palette::kRefining, palette::kUnderTest};
+  for (std::size_t eye = 0; eye < eyes.size(); ++eye)
+    for (std::size_t i = 0; i < kinds.size(); ++i)
+      for (std::size_t j = 0; j < i; ++j) {
+        CAPTURE(eye);
+        CAPTURE(i);
+        CAPTURE(j);
+        const auto x = lab(kinds[i], eyes[eye]), y = lab(kinds[j], eyes[eye]);
+        CHECK(std::hypot(x[0] - y[0], x[1] - y[1], x[2] - y[2]) > 10);  // 2.3 can just be noticed
+        if (eye == 0) CHECK(std::abs(x[0] - y[0]) > 6);
+      }
 }
 
 TEST_CASE("viridis brightens from end to end and is clamped") {

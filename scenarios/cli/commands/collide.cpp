@@ -9,7 +9,9 @@
 #include "scenarios/cli/options.hpp"
 #include "scenarios/cli/progress.hpp"
 #include "scenarios/io/pose_file.hpp"
+#include "scenarios/run/chosen_view.hpp"
 #include "scenarios/run/run_scenario.hpp"
+#include "scenarios/spec/scenario_frames.hpp"
 
 namespace lrb::cli {
 namespace {
@@ -22,17 +24,10 @@ struct CollideOptions {
   bool json = false;
 };
 
-Eigen::AlignedBox3d box_of(const LrbRep& rep) {
-  Eigen::AlignedBox3d box;
-  for (FaceId f = 0; f < rep.real_face_count(); ++f)
-    for (const VertexId v : rep.face(f)) box.extend(rep.vertices()[v]);
-  return box;
-}
-
 /// Returns a motion on which B's middle heads for A's, from where it is clear of it, and goes on for a while
 /// after the first contact.
 spec::Motion approach_from(const Eigen::Vector3d& direction, const LrbRep& a, const LrbRep& b) {
-  const Eigen::AlignedBox3d box_a = box_of(a), box_b = box_of(b);
+  const Eigen::AlignedBox3d box_a = run::box_of(a), box_b = run::box_of(b);
   spec::Motion m;
   m.kind = spec::Motion::Kind::approach;
   m.target = box_a.center() - box_b.center();
@@ -45,14 +40,30 @@ spec::Motion approach_from(const Eigen::Vector3d& direction, const LrbRep& a, co
   return m;
 }
 
-/// Looks from beside the path on which B comes, a little on B's side and above, so that the gap between the
-/// bodies is seen.
-void look_from_the_side(const Eigen::Vector3d& coming_from, std::vector<spec::FrameSpec::View>& views) {
-  for (spec::FrameSpec::View& view : views) {
-    const Eigen::Vector3d up = view.up.normalized(), side = coming_from.cross(up);
-    if (!(side.squaredNorm() > 0)) continue;  // B comes from above or below: any side will do
-    view.from = 0.8 * side.normalized() + 0.3 * coming_from.normalized() + 0.45 * up;
+/// Returns a direction beside the path on which B comes, a little on B's side and above, so that the gap between the bodies
+/// is seen; for bodies that do not come, `otherwise`.
+Eigen::Vector3d beside(const spec::Motion& motion, const Eigen::Vector3d& up,
+                       const Eigen::Vector3d& otherwise) {
+  const Eigen::Vector3d side = motion.from.cross(up.normalized());
+  if (motion.kind != spec::Motion::Kind::approach || !(side.squaredNorm() > 0)) return otherwise;
+  return 0.8 * side.normalized() + 0.3 * motion.from.normalized() + 0.45 * up.normalized();
+}
+
+/// Looks from where least of the contacts is hidden, and makes no close-up of what is nearly the whole.
+void choose_views(const CollideOptions& o, spec::Scenario& scenario, run::Recording& recording) {
+  const run::RecordedRun recorded = run::recorded_run_of(scenario, recording);
+  std::vector<spec::FrameSpec::View>& views = scenario.frames.views;
+  const Eigen::Vector3d up = views[0].up;
+  if (o.picture.camera.from.empty()) {
+    const Eigen::Vector3d from = run::least_hidden(recorded, up, beside(scenario.motion, up, views[0].from));
+    for (spec::FrameSpec::View& view : views) view.from = from;
   }
+  for (spec::FrameSpec::View& view : views)
+    if (view.camera == spec::FrameSpec::Camera::contact && run::close_up_is_whole(recorded, view)) {
+      view.camera = spec::FrameSpec::Camera::scene;
+      view.title = "Bodies alone";
+    }
+  recording.trace.header.pictures = spec::pictures_text(scenario.frames);
 }
 
 spec::Scenario make_scenario(const CollideOptions& o, const std::vector<bodies::LoadedBody>& bodies) {
@@ -87,8 +98,6 @@ spec::Scenario make_scenario(const CollideOptions& o, const std::vector<bodies::
   hash.add_bytes(s.motion.from.data(), sizeof(double) * 3);
   s.hash = hash.value();
   apply(o.picture, s.frames);
-  if (s.motion.kind == spec::Motion::Kind::approach && o.picture.camera.from.empty())
-    look_from_the_side(s.motion.from, s.frames.views);
   return s;
 }
 
@@ -102,11 +111,13 @@ int run_collide(const CollideOptions& o, const Globals& globals) {
   }
   if (bodies[0].rep.dim() != bodies[1].rep.dim())
     throw InputError(o.a + " and " + o.b + ": one is 2D, the other 3D: give two of a kind");
-  const spec::Scenario scenario = make_scenario(o, bodies);
+  spec::Scenario scenario = make_scenario(o, bodies);
   const std::string folder = o.folder.empty() ? "out/" + scenario.name : o.folder;
-  const run::Recording recording = run::record(scenario, std::move(bodies), progress);
-  return report_outcome(run::write_run(scenario, recording, folder, globals.command_line, progress), folder,
-                        o.json, globals);
+  run::Recording recording = run::record(scenario, std::move(bodies), progress);
+  choose_views(o, scenario, recording);
+  const run::RunOutcome outcome = run::write_run(scenario, recording, folder, globals.command_line, progress);
+  animate_frames(o.picture, folder, globals);
+  return report_outcome(outcome, folder, o.json, globals);
 }
 
 Command add_collide(CLI::App& root, const Globals& globals) {
@@ -125,6 +136,7 @@ Command add_collide(CLI::App& root, const Globals& globals) {
   add_request_options(*app, o->request);
   add_events_option(*app, o->events);
   add_picture_options(*app, o->picture);
+  add_animation_option(*app, o->picture);
   app->add_flag("--json", o->json, "Print the summary instead of the page's path");
   return {app, [o, &globals] { return run_collide(*o, globals); }};
 }

@@ -13,6 +13,7 @@
 #include "scenarios/cli/progress.hpp"
 #include "scenarios/crowd/crowd_replay.hpp"
 #include "scenarios/io/files.hpp"
+#include "scenarios/run/chosen_view.hpp"
 #include "scenarios/run/open_run.hpp"
 #include "scenarios/run/run_scenario.hpp"
 #include "scenarios/spec/scenario_frames.hpp"
@@ -36,6 +37,7 @@ struct Source {
   std::string name, purpose;
   run::Recording recording;
   spec::FrameSpec frames;
+  bool own_view = false;  ///< nobody has said where it is to be seen from
 };
 
 bool is_mesh_name(const std::string& path) {
@@ -50,13 +52,12 @@ Source refine_body(const std::string& path, const run::ProgressReport& progress)
   s.show = spec::Show::refinement;
   s.bodies.resize(1);
   s.bodies[0].file = path;
-  Source out{s.name, {}, run::record(s, progress), {}};
-  return out;
+  return {s.name, {}, run::record(s, progress), {}, true};
 }
 
 Source run_of_scenario(const std::string& name, const run::ProgressReport& progress) {
   const spec::Scenario s = spec::open_scenario(name);
-  return {s.name, s.purpose, run::record(s, progress), s.frames};
+  return {s.name, s.purpose, run::record(s, progress), s.frames, false};
 }
 
 Source open_trace(const std::string& path, const std::vector<std::string>& bodies) {
@@ -66,6 +67,7 @@ Source open_trace(const std::string& path, const std::vector<std::string>& bodie
   Source out;
   out.recording = run::open_run(trace::trace_from_json(json, printable_name(path)), path, bodies);
   out.name = out.recording.trace.header.scenario;
+  out.frames = spec::read_pictures(out.recording.trace.header.pictures, printable_name(path));
   return out;
 }
 
@@ -117,10 +119,15 @@ figure::FigureSpec figure_spec(const FigureOptions& o, const std::string& file) 
 
 spec::FrameSpec frame_spec(const FigureOptions& o, const Source& source) {
   spec::FrameSpec frames = source.frames;
-  if (o.close_up) frames.views = whole_and_contact();
+  if (o.close_up) frames.views = whole_and_contact(frames.views);
   PictureOptions picture = o.picture;
   picture.dpi.reset();  // it is the figure's
   apply(picture, frames);
+  if (source.own_view && picture.camera.from.empty()) {
+    if (frames.views.empty()) frames.views.emplace_back();
+    for (spec::FrameSpec::View& view : frames.views)
+      view.from = run::broadside(run::box_of(source.recording.bodies[0].rep), view.up);
+  }
   const trace::TraceHeader& header = source.recording.trace.header;
   if (const EventLevel needed = spec::needed_level(frames); needed > header.level)
     throw InputError(
@@ -135,7 +142,7 @@ int run_figure(const FigureOptions& o, const Globals& globals) {
   const Source source = open_source(o, progress);
   const std::string file = o.file.empty() ? "out/" + source.name + ".pdf" : o.file;
   const figure::FigureSpec spec = figure_spec(o, file);
-  const spec::FrameSpec frames = frame_spec(o, source);
+  spec::FrameSpec frames = frame_spec(o, source);
   run::RecordedRun recorded;
   recorded.title = source.name;
   recorded.purpose = source.purpose;
@@ -143,6 +150,12 @@ int run_figure(const FigureOptions& o, const Globals& globals) {
   recorded.results = &source.recording.results;
   recorded.trees = &source.recording.trees;
   for (const bodies::LoadedBody& body : source.recording.bodies) recorded.reps.push_back(&body.rep);
+  if (o.close_up)
+    for (spec::FrameSpec::View& view : frames.views)
+      if (run::close_up_is_whole(recorded, view)) {  // hardly closer, and heads would be cut off
+        view.camera = spec::FrameSpec::Camera::scene;
+        view.title = view.wrapper ? view.title : "Bodies alone";
+      }
   const figure::Figure drawn = figure::draw_figure(recorded, frames, spec, progress);
   note(globals, source.recording.notes);
   const std::filesystem::path path(file);

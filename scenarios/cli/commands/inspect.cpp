@@ -15,9 +15,13 @@
 #include "scenarios/bodies/body.hpp"
 #include "scenarios/bodies/hull_figures.hpp"
 #include "scenarios/cli/command.hpp"
+#include "scenarios/cli/options.hpp"
 #include "scenarios/io/files.hpp"
 #include "scenarios/run/body_sheet.hpp"
+#include "scenarios/run/chosen_view.hpp"
 #include "scenarios/run/dirt_picture.hpp"
+#include "scenarios/run/frame_job.hpp"
+
 namespace lrb::cli {
 namespace {
 
@@ -25,6 +29,7 @@ using Json = nlohmann::ordered_json;
 
 struct InspectOptions {
   std::string file, picture, drawing;
+  PictureOptions pictures;
   bool validate = false, render = false, json = false;
 };
 
@@ -99,7 +104,28 @@ void draw_findings(const Mesh& mesh, const MeshReport& report, const std::string
   notes.push_back(mesh.name + ": nothing to draw: there are no findings; " + path + " was not written");
 }
 
+/// Returns how the body is to be drawn.
+spec::FrameSpec sheet_frames(const InspectOptions& o) {
+  const CameraOptions& camera = o.pictures.camera;
+  const bool any = !o.pictures.size.empty() || o.pictures.dpi || !camera.from.empty() ||
+                   !camera.look_at.empty() || !camera.up.empty() || camera.zoom || camera.orthographic;
+  if (any && !o.render)
+    throw InputError("--size, --dpi and where to look from are for --render: add it, or leave them out");
+  spec::FrameSpec frames;
+  frames.width = run::kBodySheetWidth;
+  frames.height = run::kBodySheetHeight;
+  apply(o.pictures, frames);
+  run::check_frame_size(frames);
+  return frames;
+}
+
+void look_broadside(const LrbRep& rep, spec::FrameSpec& frames) {
+  if (frames.views.empty()) frames.views.emplace_back();
+  frames.views[0].from = run::broadside(run::box_of(rep), frames.views[0].up);
+}
+
 int run_inspect(const InspectOptions& o, const Globals& globals) {
+  spec::FrameSpec frames = sheet_frames(o);
   Json j;
   std::unique_ptr<LrbRep> rep;
   std::vector<std::string> notes;
@@ -137,7 +163,8 @@ int run_inspect(const InspectOptions& o, const Globals& globals) {
     const std::string picture =
         o.picture.empty() ? "out/" + std::filesystem::path(o.file).stem().string() + ".png" : o.picture;
     io::make_folder(std::filesystem::path(picture).parent_path().string());
-    run::draw_body_sheet(*rep, picture);
+    if (o.pictures.camera.from.empty()) look_broadside(*rep, frames);
+    run::draw_body_sheet(*rep, picture, frames);
     j["picture"] = picture;
   }
   note(globals, notes);
@@ -157,6 +184,8 @@ Command add_inspect(CLI::App& root, const Globals& globals) {
                   "Draw what is wrong with a mesh, to this picture: the first offenders are pointed out")
       ->type_name("FILE.png");
   app->add_option("-o,--output", o->picture, "Picture to write [out/NAME.png]")->type_name("FILE.png");
+  add_size_options(*app, o->pictures);
+  add_camera_options(*app, o->pictures.camera);
   app->add_flag("--json", o->json, "Print one JSON object");
   return {app, [o, &globals] { return run_inspect(*o, globals); }};
 }

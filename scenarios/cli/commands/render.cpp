@@ -26,7 +26,7 @@ struct RenderOptions {
   std::vector<std::string> bodies;
   std::vector<std::uint32_t> events;
   PictureOptions picture;
-  std::uint32_t montage = 0;
+  std::uint32_t montage = 0, columns = 0;
   bool close_up = false, hide_rest = false;
   std::vector<std::string> regions;
 };
@@ -61,15 +61,17 @@ void isolate(const RenderOptions& o, const std::vector<bodies::LoadedBody>& bodi
   spec.ghost_rest = !o.hide_rest;
 }
 
-spec::FrameSpec frame_spec(const RenderOptions& o, spec::Show show) {
-  spec::FrameSpec spec = spec::default_frames(show);
-  if (o.close_up) spec.views = whole_and_contact();
+/// Returns how to draw: as the run was drawn, `pictures`, but for what the call says.
+spec::FrameSpec frame_spec(const RenderOptions& o, spec::Show show, const std::string& pictures = "") {
+  spec::FrameSpec spec = spec::read_pictures(pictures, printable_name(o.trace), spec::default_frames(show));
+  if (o.close_up) spec.views = whole_and_contact(spec.views);
   apply(o.picture, spec);
   if (!o.events.empty()) {
     spec.at = spec::FrameSpec::At::events;
     spec.events = o.events;
   }
-  spec.montage = o.montage;
+  if (o.montage > 0) spec.montage = o.montage;
+  if (o.columns > 0) spec.montage_columns = o.columns;
   return spec;
 }
 
@@ -86,6 +88,7 @@ void refuse_for_crowd(const RenderOptions& o) {
   const std::pair<bool, const char*> none[] = {
       {!o.events.empty(), "--events"},
       {o.montage > 0, "--montage"},
+      {o.columns > 0, "--columns"},
       {!o.regions.empty(), "--region"},
       {o.hide_rest, "--no-ghost"},
       {o.picture.svg.value_or(false), "--format svg"},
@@ -111,6 +114,7 @@ int render_crowd(const RenderOptions& o, const Globals& globals, const std::stri
   note(globals, run.notes);
   const std::string folder = output_folder(o);
   crowd::redraw_crowd(trace.crowd, run, folder, globals.command_line, o.trace, progress);
+  animate_frames(o.picture, folder, globals);
   print(folder + "/index.html\n");
   return kOk;
 }
@@ -130,7 +134,7 @@ int run_render(const RenderOptions& o, const Globals& globals) {
   p.trees = &recording.trees;
   for (const bodies::LoadedBody& body : bodies) p.reps.push_back(&body.rep);
   const std::string folder = output_folder(o);
-  spec::FrameSpec spec = frame_spec(o, show_of(trace, bodies.size()));
+  spec::FrameSpec spec = frame_spec(o, show_of(trace, bodies.size()), trace.header.pictures);
   isolate(o, bodies, spec);
   const std::vector<std::pair<std::string, std::string>> text = {
       {"Software", "lrbscope " + trace.header.lrbscope},
@@ -156,6 +160,7 @@ int run_render(const RenderOptions& o, const Globals& globals) {
   report::Page page = run::run_page(p, drawn, folder, report);
   std::erase_if(page.links, [](const report::PageLink& l) { return l.target == "summary.json"; });
   io::write_text(folder + "/index.html", report::page_html(page));
+  animate_frames(o.picture, folder, globals);
   print(folder + "/index.html\n");
   return kOk;
 }
@@ -171,7 +176,10 @@ Command add_render(CLI::App& root, const Globals& globals) {
       ->type_name("FILE")
       ->expected(1, static_cast<int>(spec::kMostCrowdBodies));
   app->add_option("--events", o->events, "Draw after these events")->delimiter(',')->type_name("N,N,...");
-  app->add_option("--montage", o->montage, "Number of panels of a montage")
+  app->add_option("--montage", o->montage, "Number of panels of a montage [as the run had them]")
+      ->check(CLI::Range(1, 26))
+      ->type_name("N");
+  app->add_option("--columns", o->columns, "Columns of the montage [as the run had them]")
       ->check(CLI::Range(1, 26))
       ->type_name("N");
   app->add_flag("--close-up", o->close_up, "Add a second view, of the contact");
@@ -181,6 +189,7 @@ Command add_render(CLI::App& root, const Globals& globals) {
       ->type_name("N,N,...");
   app->add_flag("--no-ghost", o->hide_rest, "With --region: leave out the rest");
   add_picture_options(*app, o->picture);
+  add_animation_option(*app, o->picture);
   return {app, [o, &globals] { return run_render(*o, globals); }};
 }
 

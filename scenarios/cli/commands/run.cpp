@@ -29,6 +29,7 @@ int run_run(const RunCommandOptions& o, const Globals& globals) {
   run::RunOutcome outcome =
       run::run_scenario(scenario, folder, globals.command_line, progress_report(globals.quiet));
   if (o.folder.empty()) io::mark_run(folder, o.scenario);
+  animate_frames(o.picture, folder, globals);
   return report_outcome(outcome, folder, o.json, globals);
 }
 
@@ -53,6 +54,7 @@ Command add_run(CLI::App& root, const Globals& globals) {
   add_recursion_option(*app, o->recursion);
   add_events_option(*app, o->events);
   add_picture_options(*app, o->picture);
+  add_animation_option(*app, o->picture);
   app->add_flag("--json", o->json, "Print the summary instead of the page's path");
   return {app, [o, &globals] { return run_run(*o, globals); }};
 }

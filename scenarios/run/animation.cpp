@@ -1,0 +1,98 @@
+#include "scenarios/run/animation.hpp"
+
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+
+#include <fcntl.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "engine/core/error.hpp"
+
+extern char** environ;
+
+namespace lrb::run {
+namespace {
+
+std::string ending_of(const std::string& file) {
+  return std::filesystem::path(file).extension().string();
+}
+
+std::string program() {
+  const char* given = std::getenv("LRB_FFMPEG");
+  return given != nullptr && *given != '\0' ? given : "ffmpeg";
+}
+
+std::vector<std::string> codec(const std::string& ending) {
+  // Colours of their own for a GIF, which has 256; sizes that are even for H.264, in colours that every player has.
+  if (ending == ".gif") return {"-filter_complex", "split[a][b];[a]palettegen[p];[b][p]paletteuse"};
+  if (ending == ".webp") return {"-c:v", "libwebp", "-lossless", "1", "-loop", "0"};
+  return {"-vf",    "pad=ceil(iw/2)*2:ceil(ih/2)*2:color=white", "-c:v", "libx264", "-crf", "16", "-pix_fmt",
+          "yuv420p"};
+}
+
+/// Runs a program without input or output but its errors. Returns its exit code; -1: it is not installed.
+int run_program(const std::vector<std::string>& words) {
+  std::vector<char*> arguments;
+  for (const std::string& word : words) arguments.push_back(const_cast<char*>(word.c_str()));
+  arguments.push_back(nullptr);
+  posix_spawn_file_actions_t files;
+  posix_spawn_file_actions_init(&files);
+  posix_spawn_file_actions_addopen(&files, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
+  posix_spawn_file_actions_addopen(&files, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
+  pid_t child = 0;
+  const int error = posix_spawnp(&child, arguments[0], &files, nullptr, arguments.data(), environ);
+  posix_spawn_file_actions_destroy(&files);
+  if (error == ENOENT) return -1;
+  if (error != 0) throw EnvironmentError(words[0] + ": cannot be started: " + std::strerror(error));
+  int status = 0;
+  while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
+  }
+  return WIFEXITED(status) ? WEXITSTATUS(status) : 1;
+}
+
+}  // namespace
+
+void check_animation(const std::string& file) {
+  const std::string ending = ending_of(file);
+  if (ending != ".mp4" && ending != ".gif" && ending != ".webp")
+    throw InputError("--animate: expected a .mp4, .gif or .webp file, found \"" + file + "\"");
+}
+
+std::vector<std::string> animation_command(const std::string& folder, const std::string& file) {
+  std::vector<std::string> out = {program(),
+                                  "-y",
+                                  "-loglevel",
+                                  "error",
+                                  "-framerate",
+                                  "12",
+                                  "-start_number",
+                                  "0",
+                                  "-i",
+                                  folder + "/frames/frame_%04d.png"};
+  const std::vector<std::string> how = codec(ending_of(file));
+  out.insert(out.end(), how.begin(), how.end());
+  out.insert(out.end(), {"-fflags", "+bitexact", "-flags:v", "+bitexact", file});
+  return out;
+}
+
+bool animate(const std::string& folder, const std::string& file) {
+  const std::filesystem::path path(file);
+  // Beside its place, under another name, so that a file that is half written is never seen under its own.
+  const std::string part =
+      (path.parent_path() / ("." + path.stem().string() + ".part" + path.extension().string())).string();
+  const int code = run_program(animation_command(folder, part));
+  std::error_code error;
+  if (code != 0) std::filesystem::remove(part, error);
+  if (code == -1) return false;
+  if (code != 0)
+    throw EnvironmentError(file + ": ffmpeg could not write it (exit code " + std::to_string(code) + ")");
+  std::filesystem::rename(part, path, error);
+  if (error) throw EnvironmentError(file + ": cannot be written: " + error.message());
+  return true;
+}
+
+}  // namespace lrb::run

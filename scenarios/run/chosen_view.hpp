@@ -1,0 +1,24 @@
+#pragma once
+/// Chooses where to look from, when nobody says.
+
+#include <Eigen/Geometry>
+
+#include "scenarios/run/frame_job.hpp"
+
+namespace lrb::run {
+
+/// Returns the box around a body's real faces.
+Eigen::AlignedBox3d box_of(const LrbRep& rep);
+
+/// Returns a direction from which a box is seen from its longer level side, aslant and slightly from above. `up` is an axis.
+Eigen::Vector3d broadside(const Eigen::AlignedBox3d& box, const Eigen::Vector3d& up);
+
+/// Returns the direction, of many all round and from above, from which the bodies hide least of the contacts of the last step
+/// that has any; where several hide about as little, the one nearest to `like`. Returns `like` if there is no contact.
+Eigen::Vector3d least_hidden(const RecordedRun& recorded, const Eigen::Vector3d& up,
+                             const Eigen::Vector3d& like);
+
+/// Returns true if a close-up of the contacts would show hardly less than both bodies, and so cut off parts of them for nothing.
+bool close_up_is_whole(const RecordedRun& recorded, const spec::FrameSpec::View& close_up);
+
+}  // namespace lrb::run

@@ -1,0 +1,122 @@
+/// Cameras: chosen, given, and kept in traces.
+
+#include <doctest/doctest.h>
+
+#include "engine/core/error.hpp"
+#include "render/png.hpp"
+#include "scenarios/run/chosen_view.hpp"
+#include "scenarios/spec/scenario_frames.hpp"
+#include "tests/support/program.hpp"
+
+using namespace lrb;
+using Eigen::Vector3d;
+
+TEST_CASE("what a trace keeps of pictures is read back as it was") {
+  spec::FrameSpec frames;
+  frames.width = 300, frames.height = 200, frames.dpi = 150;
+  frames.montage = 6, frames.montage_columns = 3;
+  spec::FrameSpec::View view;
+  view.camera = spec::FrameSpec::Camera::fixed;
+  view.eye = {1, 2, 3}, view.target = {0.1, 0.2, 1.0 / 3};
+  view.orthographic = true, view.zoom = 1.5, view.wrapper = false;
+  view.title = "a \"title\"";
+  view.look_at = Vector3d(0, 0.5, 0);
+  frames.views = {view, {}};
+  const spec::FrameSpec read = spec::read_pictures(spec::pictures_text(frames), "x");
+  CHECK(spec::pictures_text(read) == spec::pictures_text(frames));
+  REQUIRE(read.views.size() == 2);
+  CHECK(read.views[0].target == view.target);
+  CHECK(read.views[0].look_at == view.look_at);
+  CHECK(read.views[0].orthographic);
+  CHECK(read.montage_columns == 3);
+  CHECK(spec::read_pictures("", "x", frames).width == 300);
+  CHECK_THROWS_AS(spec::read_pictures(R"({"size":[1,2]})", "x"), InputError);
+  CHECK_THROWS_AS(spec::read_pictures(R"({"view":[]})", "x"), InputError);
+}
+
+TEST_CASE("a long body is seen from its long side, whatever points up") {
+  const Eigen::AlignedBox3d along_x(Vector3d(0, 0, 0), Vector3d(4, 1, 1));
+  const Vector3d z_up = run::broadside(along_x, {0, 0, 1});
+  CHECK(std::abs(z_up.y()) > 2 * std::abs(z_up.x()));
+  CHECK(z_up.z() > 0);
+  const Vector3d y_up = run::broadside(along_x, {0, 1, 0});
+  CHECK(std::abs(y_up.z()) > 2 * std::abs(y_up.x()));
+  CHECK(y_up.y() > 0);
+}
+
+TEST_CASE("render draws a trace as run drew it: view, projection, size") {
+  const test::Folder folder;
+  folder.write("s.json",
+               R"({"name": "x", "purpose": "y", "show": "refinement", "bodies": {"a": {"generator": "gear"}},
+    "frames": {"at": "refinement", "most": 2, "size": [320, 300], "montage": {"panels": 2, "columns": 1},
+               "views": [{"from": [1, 0.2, 0.3], "projection": "orthographic", "zoom": 1.3, "look_at": [0.1, 0, 0]}]}})");
+  REQUIRE(test::run(folder, {"run", "s.json", "-o", "run"}).code == 0);
+  REQUIRE(test::run(folder, {"render", "run/trace.json", "--most", "2", "-o", "again"}).code == 0);
+  for (const char* frame : {"frames/frame_0000.png", "frames/frame_0001.png", "montage.png"}) {
+    CAPTURE(std::string(frame));
+    const render::Image first = render::read_png(folder / (std::string("run/") + frame)).image;
+    CHECK(first == render::read_png(folder / (std::string("again/") + frame)).image);
+  }
+  REQUIRE(test::run(folder, {"render", "run/trace.json", "--most", "2", "--from", "0,-1,0.2", "-o", "turned"})
+              .code == 0);
+  CHECK(render::read_png(folder / "run/frames/frame_0000.png").image !=
+        render::read_png(folder / "turned/frames/frame_0000.png").image);
+}
+
+TEST_CASE("--up turns what a scenario gives; --from is in the axes of the files") {
+  const test::Folder folder;
+  folder.write("cube.obj", test::kCube);
+  const auto picture = [&](std::vector<std::string> more, const std::string& name) {
+    std::vector<std::string> all = {"inspect", "cube.obj", "--render", "--size", "200x160", "-o", name};
+    all.insert(all.end(), more.begin(), more.end());
+    REQUIRE(test::run(folder, all).code == 0);
+    return render::read_png(folder / name).image;
+  };
+  const render::Image above = picture({"--from", "0.01,0,1", "--projection", "orthographic"}, "a.png");
+  CHECK(above != picture({"--from", "1,0.01,0", "--projection", "orthographic", "--up", "z"}, "b.png"));
+  CHECK(above != picture({"--from", "0.01,0,1", "--zoom", "0.5", "--projection", "orthographic"}, "c.png"));
+  CHECK(above.width() < 500);  // panels have the size that was asked for
+  for (const char* bad : {"0,0,1", "0,0,0", "1,2"})
+    test::check_refused(folder, {"inspect", "cube.obj", "--render", "--from", bad, "-o", "no.png"});
+  test::check_refused(folder, {"inspect", "cube.obj", "--up", "y"});
+  test::check_refused(folder, {"inspect", "cube.obj", "--render", "--size", "5x5", "-o", "no.png"});
+}
+
+TEST_CASE("--animate: by ffmpeg, or the line that would") {
+  const test::Folder folder;
+  folder.write("s.json",
+               R"({"name": "x", "purpose": "y", "show": "refinement", "bodies": {"a": {"generator": "gear"}},
+    "frames": {"at": "refinement", "most": 3, "size": [321, 300]}})");
+  // A program that takes ffmpeg's place: it makes the last word's file of the names of the frames.
+  folder.write("ffmpeg", "#!/bin/sh\nfor last; do :; done\nls run/frames >\"$last\"\n");
+  std::filesystem::permissions(folder / "ffmpeg", std::filesystem::perms::owner_all);
+  ::setenv("LRB_FFMPEG", (folder / "ffmpeg").c_str(), 1);
+  test::Outcome o = test::run(folder, {"run", "s.json", "-o", "run", "--orbit", "40", "--animate", "x.gif"});
+  CAPTURE(o.err);
+  CHECK(o.code == 0);
+  CHECK(test::slurp(folder / "x.gif") == "frame_0000.png\nframe_0001.png\nframe_0002.png\n");
+  ::setenv("LRB_FFMPEG", "/no such program", 1);
+  o = test::run(folder, {"run", "s.json", "-o", "run", "--animate", "y.mp4"});
+  CHECK(o.code == 0);
+  CHECK(o.err.find("there is no ffmpeg") != std::string::npos);
+  CHECK(o.err.find("y.mp4") != std::string::npos);
+  ::setenv("LRB_FFMPEG", "/bin/false", 1);
+  CHECK(test::run(folder, {"run", "s.json", "-o", "run", "--animate", "z.webp"}).code == 3);
+  ::unsetenv("LRB_FFMPEG");
+  for (const char* none : {"y.mp4", "z.webp"}) CHECK(!std::filesystem::exists(folder / none));
+  test::check_refused(folder, {"run", "s.json", "-o", "other", "--animate", "x.avi"});
+}
+
+TEST_CASE("collide keeps the view that it chose in the trace") {
+  const test::Folder folder;
+  folder.write("cube.obj", test::kCube);
+  REQUIRE(test::run(folder, {"collide", "cube.obj", "cube.obj", "--frames", "none", "-o", "run"}).code == 0);
+  const std::string chosen = test::slurp(folder / "run/trace.json");
+  REQUIRE(test::run(folder, {"collide", "cube.obj", "cube.obj", "--frames", "none", "--from", "0.25,-1,0.5",
+                             "-o", "run"})
+              .code == 0);
+  const std::string given = test::slurp(folder / "run/trace.json");
+  CHECK(given.find("\"from\":[0.25,-1.0,0.5]") != std::string::npos);
+  CHECK(chosen.find("\"from\":[0.25,-1.0,0.5]") == std::string::npos);
+  CHECK(chosen.find("\"pictures\"") != std::string::npos);
+}
