@@ -54,7 +54,7 @@ Matrix3d axes_along(const Vector3d& way) {
 }  // namespace
 
 WorldWalk::WorldWalk(QueryContext& ctx, NearestPairs& found)
-    : ctx_(ctx), found_(found), axes_(Matrix3d::Identity()) {
+    : found_(found), axes_(Matrix3d::Identity()) {
   const auto size_of = [](const QueryBody& body) { return world_size(body.world.pose(), body.tree()); };
   exponent_ = exponent_above(std::max(size_of(ctx.body[0]), size_of(ctx.body[1])));
   const auto middle_of = [&](const QueryBody& body) -> Vector3d {
