@@ -114,13 +114,14 @@ class Row {
       work.pairs_in_doubles += result.counters.pairs_in_doubles;
       work.pairs_exact += result.counters.pairs_exact;
       // Half asked for a little more than there is, half for a little less.
+      const double upper = result.upper;
       DistanceRequest is_near;
       is_near.within = gap * (ours.count % 2 == 0 ? 1.05 : 0.95);
       const double within_us =
           best_microseconds(5, [&] { result = distance(rep_, Pose{}, rep_, pose, is_near, context_); });
 #ifdef LRB_WITH_FCL
-      const double rss_us = best_microseconds(2, [&] { check(rss_->distance(pose), result.upper); });
-      const double obbrss_us = best_microseconds(2, [&] { check(obbrss_->distance(pose), result.upper); });
+      const double rss_us = best_microseconds(2, [&] { check(rss_->distance(pose), upper); });
+      const double obbrss_us = best_microseconds(2, [&] { check(obbrss_->distance(pose), upper); });
       rss.add(rss_us / us);
       obbrss.add(obbrss_us / us);
       within.add(std::min(rss_us, obbrss_us) / within_us);

@@ -22,8 +22,8 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-/// Covers the rounding of the axes, of squares and of a root.
-constexpr double kRootDown = 1 - 0x1p-40;
+/// Covers the rounding of the axes, 10 u, of squares and of a root, 4 u; u = 2^-53.
+constexpr double kRootDown = 1 - 0x1p-48;
 
 int exponent_above(double x) {
   return std::isfinite(x) ? (x > 0 ? std::ilogb(x) + 1 : -1022) : 1024;
