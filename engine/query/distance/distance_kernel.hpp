@@ -42,8 +42,8 @@ enum class KernelStop : std::uint8_t {
 struct DistanceKernel {
   TreeKernel tree;  ///< the bodies, set up for rotations, without a stack
   float upper;      ///< the distance is no more than this
-  float spare;      ///< pairs are dropped that are no nearer than upper - spare, ...
-  float share;      ///< ... or upper (1 - share)
+  float spare;      ///< pairs are dropped that are no nearer than the lesser of upper - spare, ...
+  float share;      ///< ... and upper (1 - share)
   float widest;     ///< ... but pairs are dropped, too, that are further apart than this
   float enough;     ///< stop where `upper` is no more than this; -1: never
   bool descend;     ///< go straight down to a pair of simplices first: there is no good upper end yet
@@ -74,7 +74,7 @@ inline constexpr std::uint32_t kRoomForStep = 64;
 /// Returns the distance from which on pairs are dropped: rounded so that a pair that is dropped is no nearer.
 inline float dropped_from(const DistanceKernel& k) {
   const float by_spare = k.upper - k.spare, by_share = k.upper * (1 - k.share);
-  const float least = by_spare > by_share ? by_spare : by_share;
+  const float least = by_spare < by_share ? by_spare : by_share;
   return least < k.widest ? least : k.widest;
 }
 

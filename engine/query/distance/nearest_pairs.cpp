@@ -34,8 +34,8 @@ Eigen::Vector3d NearestPairs::way() const {
 }
 
 double NearestPairs::dropped_from() const {
-  const double asked = std::max(
-      {upper() - request_.tolerance, upper() * (1 - request_.relative_tolerance), upper() - allowed_});
+  const double asked =
+      upper() - std::max({request_.tolerance, upper() * request_.relative_tolerance, allowed_});
   // An upper end that is not known yet gives "not a number" or infinity.
   const double least = asked >= 0 ? std::min(asked, upper()) : 0;
   const double by_upper = upper() < kInfinity ? least : kInfinity;
@@ -60,11 +60,23 @@ void NearestPairs::see(const MeasuredPair& pair, const PairBounds& bounds) {
   best_simplex_[1] = pair.b;
 }
 
+/// Returns the bounds of two simplices that do not meet.
+PairBounds NearestPairs::measured_exactly(const double* const* of_a, const double* const* of_b) {
+  ++counters_.pairs_exact;
+  const exact::PairDistance exact = exact::distance_of_simplices(of_a, of_b, dim_);
+  return {exact.lower, exact.upper, {exact.point[0], exact.point[1]}, {exact.on[0], exact.on[1]}};
+}
+
 bool NearestPairs::measure(SimplexId a, SimplexId b, double lower) {
   const double *of_a[3], *of_b[3];
   corners(a, b, of_a, of_b);
-  const PairBounds bounds = bound_distance(of_a, of_b, dim_);
+  PairBounds bounds = bound_distance(of_a, of_b, dim_);
   ++counters_.pairs_in_doubles;
+  if (!std::isfinite(bounds.upper)) {  // too large, or too small, for doubles
+    if (!(lower > 0) && surfaces_meet()) return false;
+    corners(a, b, of_a, of_b);
+    bounds = measured_exactly(of_a, of_b);
+  }
   pairs_.push_back({a, b, std::min(std::max(bounds.lower, lower), bounds.upper), bounds.upper});
   see(pairs_.back(), bounds);
   return pairs_.back().lower > 0;
@@ -118,11 +130,10 @@ void NearestPairs::narrow(double rest) {
     if (pair.lower > 0 && pair.lower >= upper() - width()) break;
     const double *of_a[3], *of_b[3];
     corners(pair.a, pair.b, of_a, of_b);
-    const exact::PairDistance exact = exact::distance_of_simplices(of_a, of_b, dim_);
-    ++counters_.pairs_exact;
+    const PairBounds exact = measured_exactly(of_a, of_b);
     pair.lower = exact.lower;
     pair.upper = exact.upper;
-    see(pair, {exact.lower, exact.upper, {exact.point[0], exact.point[1]}, {exact.on[0], exact.on[1]}});
+    see(pair, exact);
   }
 }
 

@@ -50,6 +50,7 @@ class NearestPairs {
   double least_lower() const;
   void narrow(double rest);
   void decide_within(double rest, bool finished, DistanceResult& result);
+  PairBounds measured_exactly(const double* const* of_a, const double* const* of_b);
   void see(const MeasuredPair& pair, const PairBounds& bounds);
   void corners(SimplexId a, SimplexId b, const double** of_a, const double** of_b);
   void write_witness(int side, DistanceResult& result) const;

@@ -22,8 +22,8 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-/// Covers the rounding of the axes, of squares and of a root.
-constexpr double kRootDown = 1 - 0x1p-40;
+/// Covers the rounding of the axes, 10 u, of squares and of a root, 4 u; u = 2^-53.
+constexpr double kRootDown = 1 - 0x1p-48;
 
 int exponent_above(double x) {
   return std::isfinite(x) ? (x > 0 ? std::ilogb(x) + 1 : -1022) : 1024;
@@ -53,8 +53,7 @@ Matrix3d axes_along(const Vector3d& way) {
 
 }  // namespace
 
-WorldWalk::WorldWalk(QueryContext& ctx, NearestPairs& found)
-    : ctx_(ctx), found_(found), axes_(Matrix3d::Identity()) {
+WorldWalk::WorldWalk(QueryContext& ctx, NearestPairs& found) : found_(found), axes_(Matrix3d::Identity()) {
   const auto size_of = [](const QueryBody& body) { return world_size(body.world.pose(), body.tree()); };
   exponent_ = exponent_above(std::max(size_of(ctx.body[0]), size_of(ctx.body[1])));
   const auto middle_of = [&](const QueryBody& body) -> Vector3d {

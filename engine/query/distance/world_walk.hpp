@@ -48,7 +48,6 @@ class WorldWalk {
   void open(const Waiting& pair);
   void see(const Waiting& parent, std::uint32_t a, std::uint32_t b, double bound, bool leaves);
 
-  QueryContext& ctx_;
   NearestPairs& found_;
   int exponent_;   ///< a unit of the walk is 2^exponent_
   Matrix3d axes_;  ///< rows: the walk's axes in the world

@@ -1,17 +1,15 @@
-#include <algorithm>
-#include <chrono>
 #include <filesystem>
 #include <memory>
 #include <utility>
 
-#include "engine/core/file_bytes.hpp"
 #include "engine/query/collide.hpp"
 #include "engine/query/collide_impl.hpp"
 #include "scenarios/bodies/body.hpp"
 #include "scenarios/cli/command.hpp"
+#include "scenarios/cli/median_time.hpp"
 #include "scenarios/cli/options.hpp"
+#include "scenarios/cli/pose_lines.hpp"
 #include "scenarios/cli/progress.hpp"
-#include "scenarios/io/pose_file.hpp"
 #include "scenarios/run/separation_picture.hpp"
 #include "trace/hex.hpp"
 #include "trace/json_out.hpp"
@@ -27,20 +25,14 @@ struct QueryOptions {
   std::uint32_t repeat = 0;
 };
 
-/// Returns the median time in microseconds of `repeat` runs of one query, in a warm context.
-double median_us(const LrbRep& a, const LrbRep& b, const Pose& pose, const QueryOptions& o,
-                 QueryContext& context) {
-  std::vector<double> us;
+/// Returns the median time in microseconds of the repeated runs of one query, in a warm context.
+double repeated_us(const LrbRep& a, const LrbRep& b, const Pose& pose, const QueryOptions& o,
+                   QueryContext& context) {
   NullProbe probe;
-  for (std::uint32_t i = 0; i < o.repeat; ++i) {
-    const auto begin = std::chrono::steady_clock::now();
+  return median_us(o.repeat, [&] {
     const CollideResult result = collide(a, Pose{}, b, pose, o.request, context, probe);
-    us.push_back(std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - begin).count());
     if (result.mode != o.request.mode) throw std::logic_error("the query changed its mode");
-  }
-  const std::size_t middle = us.size() / 2;
-  std::nth_element(us.begin(), us.begin() + static_cast<std::ptrdiff_t>(middle), us.end());
-  return us[middle];
+  });
 }
 
 /// Returns PICTURE, or PICTURE with the pose's number if there are several poses.
@@ -110,26 +102,6 @@ std::string line_of(std::size_t pose, const CollideResult& result, const QueryOp
   return std::move(sink.text);
 }
 
-/// The poses of a query, and where each stands in its file.
-struct PoseLines {
-  explicit PoseLines(const std::string& path)
-      : file(printable_name(path)), poses(io::read_poses(path, &lines)) {}  // `lines` comes first
-
-  /// Calls ask(), and puts the place of the pose before the message of an InputError.
-  template <class Ask>
-  auto at(std::size_t i, const Ask& ask) const {
-    try {
-      return ask();
-    } catch (const InputError& e) {
-      throw InputError(file + ":" + std::to_string(lines[i]) + ": " + e.what());
-    }
-  }
-
-  std::string file;
-  std::vector<std::size_t> lines;
-  std::vector<Pose> poses;
-};
-
 /// Throws InputError, before anything is printed, if a query cannot be asked.
 void check_queries(const LrbRep& a, const LrbRep& b, const PoseLines& list, const CollideRequest& request) {
   check_query(a, Pose{}, b, Pose{});
@@ -162,7 +134,7 @@ int run_query(const QueryOptions& o, const Globals& globals) {
     CollideResult result =
         list.at(i, [&] { return collide(a.rep, Pose{}, b.rep, poses[i], o.request, context, probe); });
     if (tells_overlap(o.request)) decide_overlap(context, o.request, result);
-    const double us = o.repeat > 0 ? median_us(a.rep, b.rep, poses[i], o, context) : 0;
+    const double us = o.repeat > 0 ? repeated_us(a.rep, b.rep, poses[i], o, context) : 0;
     print(line_of(i, result, o, us, a.rep, b.rep));
     if (!o.draw.empty() && result.separation)
       run::draw_separation(a.rep, Pose{}, b.rep, poses[i], *result.separation,

@@ -242,6 +242,10 @@ TEST_CASE("bodies 1e12 of their sizes away, and of extreme sizes") {
       if (far <= 1e2) check(a, Pose{}, b, pose, t);
       check(few, Pose{}, few, pose, t);
     }
+  // No more pairs are measured than from nearby, where doubles leave as many digits.
+  const LrbRep many = closed(shapes::bumpy_sphere(3, 5));
+  for (const double far : {1e12, 1e15, 1e200})
+    CHECK(distance(many, Pose{}, many, Pose::translation({far, 1, 2})).counters.pairs_in_doubles < 5000);
   for (const double scale : {1e-300, 1e-160, 1e150, 1e300}) {
     CAPTURE(scale);
     const LrbRep c = closed(shapes::scaled(shapes::icosphere(0), scale));
@@ -269,6 +273,8 @@ TEST_CASE("a tolerance and a budget only widen the interval, and more steps only
           i % 2 == 0 ? share * exact.upper : share;
       const DistanceResult d = distance(a, Pose{}, b, pose, request);
       CHECK(d.finished);
+      CHECK(d.counters.steps <= exact.counters.steps);
+      if (share == 0.5) CHECK(2 * d.counters.steps < exact.counters.steps);
       CHECK(d.lower <= exact.upper);
       CHECK(d.upper >= exact.lower);
       CHECK(d.upper - d.lower <= share * std::max(d.upper, exact.upper) * (1 + 1e-5) + 1e-12);

@@ -1,0 +1,116 @@
+#include <limits>
+#include <memory>
+#include <utility>
+
+#include "engine/query/collide_impl.hpp"
+#include "engine/query/distance/distance_impl.hpp"
+#include "scenarios/bodies/body.hpp"
+#include "scenarios/cli/command.hpp"
+#include "scenarios/cli/median_time.hpp"
+#include "scenarios/cli/pose_lines.hpp"
+#include "scenarios/cli/progress.hpp"
+#include "trace/json_out.hpp"
+
+namespace lrb::cli {
+namespace {
+
+struct DistanceOptions {
+  std::string a, b, poses;
+  DistanceRequest request;
+  std::uint32_t repeat = 0;
+  bool features = false;
+};
+
+void write_point(trace::JsonWriter& w, const char* name, const Eigen::Vector3d& x) {
+  w.key(name).begin_array().value(x.x()).value(x.y()).value(x.z()).end_array();
+}
+
+/// Writes the face, and what of it is nearest: the vertices that span it.
+void write_feature(trace::JsonWriter& w, const char* name, const Witness& witness) {
+  static constexpr const char* kNames[] = {"vertex", "edge", "face"};
+  w.key(name).begin_object().member("face", witness.face.value());
+  w.member("simplex", witness.simplex.value()).member("feature", kNames[witness.corner_count - 1]);
+  w.key("vertices").begin_array();
+  for (int k = 0; k < witness.corner_count; ++k)
+    w.value(witness.corners[static_cast<std::size_t>(k)].value());
+  w.end_array().end_object();
+}
+
+std::string line_of(std::size_t pose, const DistanceResult& result, const DistanceOptions& o, double us) {
+  trace::StringSink sink;
+  trace::JsonOut out(sink);
+  trace::JsonWriter w(out, trace::JsonWriter::kCompact);
+  w.begin_object().member("pose", std::uint64_t{pose});
+  w.member("lower", result.lower).member("upper", result.upper);
+  write_point(w, "point_a", result.witness[0].point);
+  write_point(w, "point_b", result.witness[1].point);
+  if (result.solids_meet() && result.upper > 0) w.member("solids", 0.0);
+  if (o.request.within) {
+    w.key("within");
+    result.within ? w.value(*result.within) : w.value(std::numeric_limits<double>::quiet_NaN());  // null
+  }
+  if (o.request.max_steps > 0) w.member("finished", result.finished);
+  if (o.features) {
+    write_feature(w, "on_a", result.witness[0]);
+    write_feature(w, "on_b", result.witness[1]);
+  }
+  if (o.repeat > 0) w.member("us", us);
+  w.end_object();
+  out.raw('\n');
+  out.flush();
+  return std::move(sink.text);
+}
+
+int run_distance(const DistanceOptions& o, const Globals& globals) {
+  const PoseLines list(o.poses);
+  check_request(o.request);
+  const bodies::LoadedBody a = bodies::load_faces(o.a), b = bodies::load_faces(o.b);
+  note(globals, a.notes);
+  note(globals, b.notes);
+  check_query(a.rep, Pose{}, b.rep, Pose{});
+  for (std::size_t i = 0; i < list.poses.size(); ++i)
+    list.at(i, [&] { check_query(a.rep, Pose{}, b.rep, list.poses[i]); });
+  DistanceContext context;
+  Progress progress("distance", list.poses.size(), globals.quiet);
+  for (std::size_t i = 0; i < list.poses.size(); ++i) {
+    const auto ask = [&] { return distance(a.rep, Pose{}, b.rep, list.poses[i], o.request, context); };
+    const DistanceResult result = ask();
+    print(line_of(i, result, o, o.repeat > 0 ? median_us(o.repeat, ask) : 0));
+    progress.set(i + 1);
+  }
+  return kOk;
+}
+
+Command add_distance(CLI::App& root, const Globals& globals) {
+  CLI::App* app = root.add_subcommand(
+      "distance", "Bound the distance of two bodies for each pose of B in a list, one line of JSON each");
+  const auto o = std::make_shared<DistanceOptions>();
+  app->add_option("A", o->a, "Mesh or .lrb file; does not move")->required();
+  app->add_option("B", o->b, "Mesh or .lrb file; the poses are applied to it")->required();
+  app->add_option("--poses", o->poses, "File with poses: lines of 12 numbers (3x4, row by row)")->required();
+  app->add_option("--within", o->request.within, "Only say whether the surfaces are at most this far apart")
+      ->type_name("D");
+  app->add_option("--tolerance", o->request.tolerance,
+                  "Stop when the interval is this narrow, in the meshes' unit")
+      ->type_name("E");
+  app->add_option("--relative-tolerance", o->request.relative_tolerance,
+                  "Stop when the interval is this narrow, as a share of the distance")
+      ->type_name("E");
+  app->add_option("--budget", o->request.max_steps, "Stop after this many steps, pairs of boxes opened")
+      ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1} << 62).description(""))
+      ->type_name("N");
+  app->add_flag("--features", o->features, "Add the vertex, edge or face of each body that is nearest");
+  app->add_option("--repeat", o->repeat,
+                  "Repeat each pose's query N times, and add the median time in microseconds")
+      ->check(CLI::Range(1, 1000000))
+      ->type_name("N");
+  return {app, [o, &globals] { return run_distance(*o, globals); }};
+}
+
+}  // namespace
+
+std::vector<CommandEntry> distance_commands() {
+  return {{add_distance, 45}};
+}
+
+}  // namespace lrb::cli
