@@ -1,11 +1,13 @@
 #include "scenarios/compare/compare_report.hpp"
 
 #include <algorithm>
+#include <filesystem>
 
 #include "engine/core/error.hpp"
 #include "render/overlay.hpp"
 #include "render/png.hpp"
 #include "scenarios/io/files.hpp"
+#include "scenarios/io/url_path.hpp"
 #include "scenarios/run/run_report.hpp"
 #include "trace/divergence.hpp"
 
@@ -71,6 +73,18 @@ std::optional<std::string> first_difference(const Runs& runs) {
   return first->message() + (event ? "; " + *event : std::string("; all events are the same"));
 }
 
+std::vector<report::PageView> views_of(const Runs& runs, const std::string& folder) {
+  std::vector<report::PageView> out;
+  for (std::size_t i = 0; i < 2; ++i) {
+    std::error_code error;
+    const std::filesystem::path page = std::filesystem::absolute(runs.pages[i], error).lexically_normal();
+    if (runs.pages[i].empty() || !std::filesystem::is_regular_file(page, error)) return {};
+    const std::filesystem::path from = std::filesystem::absolute(folder, error).lexically_normal();
+    out.push_back({runs.names[i], io::url_path(page.lexically_relative(from).generic_string())});
+  }
+  return out;
+}
+
 std::optional<std::string> write_comparison(const Runs& runs, const std::string& command,
                                             const std::string& folder, const run::ProgressReport& progress) {
   for (std::size_t i = 0; i < 2; ++i)
@@ -92,6 +106,7 @@ std::optional<std::string> write_comparison(const Runs& runs, const std::string&
   page.charts = {chart_of(runs, "Tests of boxes, step by step", "box tests", &Counters::box_tests),
                  chart_of(runs, "Tests of faces, step by step", "face tests", &Counters::face_tests)};
   page.tables = {totals_of(runs), steps_table(runs)};
+  page.views = views_of(runs, folder);
   page.footer = report::footer(runs.of[0]->trace.header.lrbscope);
   io::make_folder(folder);
   const io::FolderLock lock(folder);

@@ -16,6 +16,7 @@ struct Runs {
   std::array<const run::Recording*, 2> of;
   std::array<std::string, 2> names;
   std::array<const spec::Scenario*, 2> scenarios;
+  std::array<std::string, 2> pages = {};  ///< of the runs, as paths; empty: there is none
 };
 
 /// Returns the number of steps that both runs have.

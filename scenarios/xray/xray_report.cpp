@@ -102,6 +102,7 @@ std::vector<std::string> write_xray(const Xray& x, const std::string& folder,
   page.links.push_back({x.method + "/index.html", x.method + "/index.html",
                         "the run of " + x.walk.title + ", with its trace"});
   page.links.push_back({"ours/index.html", "ours/index.html", "the run of lrbscope, with its trace"});
+  page.views = {{x.walk.title, x.method + "/index.html"}, {"lrbscope", "ours/index.html"}};
   page.footer = report::footer(x.ours.trace.header.lrbscope);
   io::write_text(folder + "/index.html", report::page_html(page));
   return notes;

@@ -36,12 +36,20 @@ std::array<std::string, 2> names_of(const std::string& first, const std::string&
   return {last(first), last(second)};
 }
 
+/// Returns the page of a run that is given by its folder, or by its trace.
+std::string page_of(const std::string& run) {
+  const std::filesystem::path p(run);
+  return ((std::filesystem::is_directory(p) ? p : p.parent_path()) / "index.html").string();
+}
+
 int run_compare(const CompareOptions& o, const Globals& globals) {
   const std::array<run::Recording, 2> recordings = {run::open_run(o.first), run::open_run(o.second)};
   const std::array<spec::Scenario, 2> scenarios = {scenario_of(recordings[0], o.up),
                                                    scenario_of(recordings[1], o.up)};
-  const compare::Runs runs{
-      {&recordings[0], &recordings[1]}, names_of(o.first, o.second), {&scenarios[0], &scenarios[1]}};
+  const compare::Runs runs{{&recordings[0], &recordings[1]},
+                           names_of(o.first, o.second),
+                           {&scenarios[0], &scenarios[1]},
+                           {page_of(o.first), page_of(o.second)}};
   const std::string folder = o.folder.empty() ? "out/compare" : o.folder;
   const std::optional<std::string> difference =
       compare::write_comparison(runs, globals.command_line, folder, progress_report(globals.quiet));

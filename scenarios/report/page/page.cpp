@@ -156,6 +156,18 @@ std::string tables_html(const Page& page) {
   return out;
 }
 
+std::string views_html(const Page& page) {
+  if (page.views.empty()) return {};
+  std::string out = "<section class=\"views\"><h2>Seen by one camera</h2>\n<div class=\"pair\">";
+  for (const PageView& v : page.views)
+    out += "<figure><figcaption>" + render::escape_markup(v.title) + "</figcaption><iframe src=\"" +
+           render::escape_markup(v.target) + "?alone\" title=\"" + render::escape_markup(v.title) +
+           "\"></iframe></figure>";
+  return out +
+         "</div>\n<p class=\"note\">These are the runs' own pages, which this one only frames: they must stay where they "
+         "are. Turning one turns the other; a time step of one is shown in the other.</p></section>\n";
+}
+
 std::string figures_html(const Page& page) {
   std::string out;
   for (const PageFigure& f : page.figures)
@@ -198,16 +210,13 @@ std::string libraries(const Page& page) {
 std::string scene_scripts(const Page& page) {
   std::string out;
   if (page.scene.empty()) return out;
-  for (const char* name : {"packed",        "scene_dom",          "scene_body",
-                           "scene_events",  "scene_explanations", "scene_wrappers",
-                           "scene_words",   "scene_selection",    "scene_filter",
-                           "scene_table",   "scene_form",         "scene_panel",
-                           "scene_why",     "scene_work",         "scene_counts",
-                           "scene_colours", "scene_meshes",       "scene_bodyview",
-                           "scene_marks",   "scene_why_marks",    "scene_legend",
-                           "scene_camera",  "scene_pick",         "scene_view",
-                           "scene_time",    "scene_keys",         "scene_controls",
-                           "scene"})
+  for (const char* name :
+       {"packed",         "scene_dom",      "scene_body",      "scene_events", "scene_explanations",
+        "scene_wrappers", "scene_words",    "scene_selection", "scene_filter", "scene_table",
+        "scene_form",     "scene_panel",    "scene_why",       "scene_work",   "scene_counts",
+        "scene_colours",  "scene_meshes",   "scene_bodyview",  "scene_marks",  "scene_why_marks",
+        "scene_legend",   "scene_camera",   "scene_pick",      "scene_view",   "scene_time",
+        "scene_keys",     "scene_controls", "scene_together",  "scene"})
     out += io::embedded_file(name + std::string(".js"));
   return out;
 }
@@ -234,6 +243,7 @@ std::string page_html(const Page& page) {
       return std::string(io::embedded_file("page.css")) +
              (page.scene.empty() ? "" : std::string(io::embedded_file("scene.css"))) +
              (page.grid.empty() ? "" : std::string(io::embedded_file("grid.css"))) +
+             (page.views.empty() ? "" : std::string(io::embedded_file("views.css"))) +
              (page.comparisons.empty() ? "" : std::string(io::embedded_file("comparison.css")));
     if (key == "texts") return texts_html(page);
     if (key == "grid") return grid_html(page.grid);
@@ -244,6 +254,8 @@ std::string page_html(const Page& page) {
     if (key == "charts") return charts_html(page);
     if (key == "tables") return tables_html(page);
     if (key == "figures") return figures_html(page);
+    if (key == "views") return views_html(page);
+    if (key == "frames") return page.views.empty() ? "" : "; frame-src file: 'self'";
     if (key == "comparisons") return comparisons_html(page.comparisons);
     if (key == "source") return source_html(page);
     if (key == "footer") return render::escape_markup(page.footer);
@@ -257,6 +269,7 @@ std::string page_html(const Page& page) {
     if (key == "script")
       return std::string(io::embedded_file("page.js")) + scene_scripts(page) +
              (page.grid.empty() ? "" : std::string(io::embedded_file("grid.js"))) +
+             (page.views.empty() ? "" : std::string(io::embedded_file("views.js"))) +
              (page.comparisons.empty() ? "" : std::string(io::embedded_file("comparison.js")));
     return {};
   };

@@ -65,6 +65,12 @@ struct PageFigure {
   std::string file;      ///< link to the full picture, relative to the page; may be empty
 };
 
+/// The view in three dimensions of another page, beside this one.
+struct PageView {
+  std::string title;
+  std::string target;  ///< of the page that has it, relative to this one
+};
+
 /// A heading and a paragraph.
 struct PageText {
   std::string title, text;
@@ -85,7 +91,8 @@ struct Page {
   std::vector<PageNumber> numbers;
   PageGrid grid;
   std::vector<PageComparison> comparisons;
-  std::string scene;  ///< a run as JSON, for the view in three dimensions (scene.js); empty: none
+  std::vector<PageView> views;  ///< side by side, with one camera and one time step
+  std::string scene;            ///< a run as JSON, for the view in three dimensions (scene.js); empty: none
   std::vector<PageFrame> frames;
   std::string frames_note;
   std::vector<PageChart> charts;

@@ -41,6 +41,7 @@ function startScene() {
   selection.goTo(events.at(asked ? Number(asked[1]) : first));
   if (view) view.frameAll(VIEW_FROM);
   if (controls && events.passes) controls.colourBy("region");
+  if (view && new URLSearchParams(location.search).has("alone")) new Together(view, selection, events);
   return { scene, events, selection, wrappers, timeline, table, filter, form, panel, why, work, view, controls };
 }
 

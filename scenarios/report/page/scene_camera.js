@@ -152,6 +152,18 @@ class SceneCamera {
     next.add(this.lamp);
     this.camera = this.controls.object = next;
     this.controls.update();
+    this.controls.dispatchEvent({ type: "change" }); // which update() only does if the camera has moved
+  }
+
+  /** Looks as json() of another view says. */
+  set({ projection, eye, target }) {
+    const { origin, unit } = this.frame,
+      local = (x) => new THREE.Vector3(...x.map((v, i) => (v - origin[i]) / unit));
+    if ((projection === "orthographic") !== this.orthographic) this.setOrthographic(!this.orthographic);
+    this.controls.target.copy(local(target));
+    this.camera.position.copy(local(eye));
+    this.flat.zoom = 1 / (this.distance * Math.tan(FIELD / 2));
+    this.controls.update();
   }
 
   /** Returns the camera as a view of a scenario's frames ("views", scenario.schema.json). */

@@ -55,5 +55,22 @@ TEST_CASE("compare: the same run, another recursion, other levels of events; and
   CHECK_FALSE(std::filesystem::exists(runs.folder / "out3"));
 }
 
+TEST_CASE("compare: both runs' views stand side by side as long as both pages are there") {
+  const Runs runs;
+  const auto page = [&](const std::string& folder) { return slurp(runs.folder / (folder + "/index.html")); };
+  REQUIRE(run(runs.folder, {"--quiet", "compare", "one", "paper", "-o", "a b/out"}).code == 0);
+  const std::string both = page("a b/out");
+  CHECK(both.find("<iframe src=\"../../one/index.html?alone\"") != std::string::npos);
+  CHECK(both.find("<iframe src=\"../../paper/index.html?alone\"") != std::string::npos);
+  CHECK(both.find("frame-src file:") != std::string::npos);
+  CHECK(page("one").find("frame-src") == std::string::npos);  // nothing else may be framed
+  std::filesystem::rename(runs.folder / "paper", runs.folder / "pa per#");
+  REQUIRE(run(runs.folder, {"--quiet", "compare", "one", "pa per#", "-o", "quoted"}).code == 0);
+  CHECK(page("quoted").find("<iframe src=\"../pa%20per%23/index.html?alone\"") != std::string::npos);
+  std::filesystem::remove(runs.folder / "pa per#/index.html");
+  REQUIRE(run(runs.folder, {"--quiet", "compare", "one", "pa per#", "-o", "alone"}).code == 0);
+  CHECK(page("alone").find("<iframe") == std::string::npos);
+}
+
 }  // namespace
 }  // namespace lrb::test
