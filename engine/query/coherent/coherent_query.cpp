@@ -5,7 +5,6 @@
 #include <cmath>
 #include <limits>
 #include <optional>
-#include <ranges>
 #include <utility>
 
 #include "engine/core/tolerances.hpp"
@@ -238,8 +237,9 @@ void CoherentQuery::Work::tell_reset(Probe& probe) {
   if constexpr (Probe::kEnabled)
     for (const Side side : {Side::b, Side::a}) {
       const Wrapper& wrapper = *context_[side].wrapper;
-      for (const RegionId r : std::views::reverse(wrapper.excluded()))
-        probe.coarsen(side, r, static_cast<std::uint32_t>(wrapper.rep().floor(r).size()));
+      const auto& open = wrapper.excluded();
+      for (auto r = open.rbegin(); r != open.rend(); ++r)
+        probe.coarsen(side, *r, static_cast<std::uint32_t>(wrapper.rep().floor(*r).size()));
     }
 }
 
