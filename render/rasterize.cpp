@@ -284,14 +284,20 @@ struct Rasterizer::State {
     return downsample(samples, options.width, options.height, n);
   }
 
-  IdImage draw_ids(const DrawList& list, const Camera& camera, int w, int h, bool translucent) {
+  /// Begins a pass in which each pixel is that of one face, for its id or its depth. The target must live as long.
+  std::pair<ScreenMesh, Target> begin_faces(const DrawList& list, const Camera& camera, int w, int h) {
     check_size(w, h);
     context.make_current();
     const Projection projection(camera, w, h, bounds(list));
-    const ScreenMesh mesh = make_screen_mesh(list, projection, 1);
-    const Target target = scene_target(GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, w, h);
-    upload(faces, mesh.faces);
-    begin(target, w, h);
+    std::pair<ScreenMesh, Target> out{make_screen_mesh(list, projection, 1),
+                                      scene_target(GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, w, h)};
+    upload(faces, out.first.faces);
+    begin(out.second, w, h);
+    return out;
+  }
+
+  IdImage draw_ids(const DrawList& list, const Camera& camera, int w, int h, bool translucent) {
+    const auto [mesh, target] = begin_faces(list, camera, w, h);
     gl.ClearBufferuiv(GL_COLOR, 0, glm::value_ptr(glm::uvec4(kNoId, 0, 0, 0)));
     gl.UseProgram(id);
     draw_fills(mesh, false);
@@ -313,13 +319,7 @@ struct Rasterizer::State {
   }
 
   DepthImage draw_depths(const DrawList& list, const Camera& camera, int w, int h) {
-    check_size(w, h);
-    context.make_current();
-    const Projection projection(camera, w, h, bounds(list));
-    const ScreenMesh mesh = make_screen_mesh(list, projection, 1);
-    const Target target = scene_target(GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, w, h);
-    upload(faces, mesh.faces);
-    begin(target, w, h);
+    const auto [mesh, target] = begin_faces(list, camera, w, h);
     gl.UseProgram(id);
     gl.Enable(GL_DEPTH_TEST);
     gl.DepthFunc(GL_LESS);

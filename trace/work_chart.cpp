@@ -49,18 +49,9 @@ class WalkFollower {
 };
 
 std::uint64_t operations_of(const Event& e) {
-  switch (e.kind) {
-    case EventKind::node_pair:
-      return std::uint64_t{e.work().box_tests} +
-             (e.node_end().step == NodeStep::leaves ? std::uint64_t{e.work().met} : 0);
-    case EventKind::end:
-      return e.b;
-    case EventKind::point:  // the phase's end has their number
-    case EventKind::plane_test:
-      return 0;
-    default:
-      return 1;
-  }
+  if (e.kind != EventKind::node_pair) return work_count(e);
+  return std::uint64_t{e.work().box_tests} +
+         (e.node_end().step == NodeStep::leaves ? std::uint64_t{e.work().met} : 0);
 }
 
 }  // namespace

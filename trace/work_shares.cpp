@@ -104,7 +104,9 @@ std::optional<Part> part_of(const Event& e) {
   return {};
 }
 
-std::uint64_t count_of(const Event& e) {
+}  // namespace
+
+std::uint64_t work_count(const Event& e) {
   switch (e.kind) {
     case EventKind::node_pair:
       return e.work().met;
@@ -117,8 +119,6 @@ std::uint64_t count_of(const Event& e) {
       return 1;
   }
 }
-
-}  // namespace
 
 std::optional<std::size_t> work_part(const Event& e) {
   const std::optional<Part> part = part_of(e);
@@ -135,7 +135,7 @@ std::vector<WorkShare> work_shares(const Trace& trace) {
     if (!part) continue;
     WorkShare& share = out[static_cast<std::size_t>(*part)];
     ++share.events;
-    share.count += count_of(e);
+    share.count += work_count(e);
     if (e.kind == EventKind::node_pair) share.box_tests += e.work().box_tests;
     if (!trace.wall_ns.empty())
       share.seconds += kNanosecond * static_cast<double>(trace.wall_ns[i] - trace.wall_ns[i - 1]);

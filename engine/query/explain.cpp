@@ -21,9 +21,9 @@ using Eigen::Vector3d;
 
 /// Where the simplices of a tree stand.
 struct Places {
-  std::vector<std::uint32_t> parent;  ///< of each node
-  std::vector<std::uint32_t> leaf;    ///< of each simplex
-  std::vector<std::uint8_t> place;    ///< of each simplex in its leaf
+  std::vector<std::uint32_t> parent;  ///< (nodes) the node above
+  std::vector<std::uint32_t> leaf;    ///< (simplices) the leaf that holds it
+  std::vector<std::uint8_t> place;    ///< (simplices) its place in that leaf
 
   Places(const ObbTree& tree, std::uint32_t simplices)
       : parent(tree.nodes().size(), 0), leaf(simplices, 0), place(simplices, 0) {

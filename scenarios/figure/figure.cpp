@@ -30,11 +30,6 @@ struct PanelWords {
   std::string title, caption;
 };
 
-const std::vector<CollideResult>& results_of(const run::RecordedRun& recorded) {
-  static const std::vector<CollideResult> none;
-  return recorded.results != nullptr ? *recorded.results : none;
-}
-
 /// Returns a caption without what goes without saying.
 std::string shortened(std::string words) {
   const std::string none = ": 0 pairs of faces meet";

@@ -13,7 +13,7 @@ namespace lrb::figure {
 
 /// Panels of one view: they have one scale, and stand in rows and columns so that what did not move stays in its place.
 struct Block {
-  std::vector<Eigen::AlignedBox2d> seen;  ///< of each panel: what is drawn in it, in the view's own units
+  std::vector<Eigen::AlignedBox2d> seen;  ///< (panels) the box around what is drawn, in the view's own units
   std::vector<std::string> texts;         ///< below each: letter and title; empty: no room is left for them
 };
 

@@ -78,6 +78,58 @@ render::ImageTolerance read_tolerance(const io::JsonNode& node) {
   return t;
 }
 
+std::string spec_file(const std::string& goldens, const std::string& name) {
+  return (fs::path(goldens) / name / kGoldenSpec).string();
+}
+
+GoldenSpec read_spec(const io::JsonNode& root) {
+  root.object({"scenario", "size", "frames", "compare", "tolerance", "meshes", "contact_lengths"});
+  GoldenSpec spec;
+  spec.scenario = root.at("scenario").string();
+  const std::vector<io::JsonNode> size = root.at("size").items();
+  if (size.size() != 2) root.at("size").fail("expected [width, height]");
+  spec.width = static_cast<int>(size[0].integer(64, 8192));
+  spec.height = static_cast<int>(size[1].integer(64, 8192));
+  spec.frames = static_cast<std::uint32_t>(root.at("frames").integer(1, kMostFrames));
+  if (const auto n = root.get("compare")) {
+    spec.levels = {};
+    for (const io::JsonNode& word : n->items(1))
+      spec.levels[static_cast<std::size_t>(word.choice<Level>())] = true;
+  }
+  if (const auto n = root.get("tolerance")) spec.tolerance = read_tolerance(*n);
+  return spec;
+}
+
+GoldenFacts read_facts(const io::JsonNode& root) {
+  GoldenFacts facts;
+  if (const auto n = root.get("meshes"))
+    for (const io::JsonNode& word : n->items()) {
+      const auto hash = trace::from_hex(word.string());
+      if (!hash) word.fail("expected 16 lower-case hexadecimal digits");
+      facts.meshes.push_back(*hash);
+    }
+  if (const auto n = root.get("contact_lengths"))
+    for (const io::JsonNode& length : n->items()) facts.contact_lengths.push_back(length.number(0, kLongest));
+  return facts;
+}
+
+/// Reads the meshes that were kept of the bodies. One that is missing or damaged only means that less can be
+/// said of a difference.
+std::vector<std::optional<Mesh>> read_meshes(const std::string& folder, const trace::Trace& trace) {
+  std::vector<std::optional<Mesh>> out;
+  for (std::size_t i = 0; i < trace.header.bodies.size(); ++i) {
+    const std::string file = folder + "/" + kept_file(i, static_cast<int>(trace.header.bodies[i].dim));
+    std::error_code error;
+    out.emplace_back();
+    if (!fs::exists(file, error)) continue;
+    try {
+      out.back() = read_mesh(file);
+    } catch (const InputError&) {
+    }
+  }
+  return out;
+}
+
 }  // namespace
 
 std::string golden_image_file(std::size_t frame, const std::string& variant) {
@@ -114,56 +166,9 @@ std::vector<std::string> golden_names(const std::string& goldens) {
 }
 
 GoldenSpec read_golden_spec(const std::string& goldens, const std::string& name) {
-  const std::string file = (fs::path(goldens) / name / kGoldenSpec).string();
+  const std::string file = spec_file(goldens, name);
   const io::JsonText json(io::read_small_text(file), file);
-  const io::JsonNode root(json);
-  root.object({"scenario", "size", "frames", "compare", "tolerance", "meshes", "contact_lengths"});
-  GoldenSpec spec;
-  spec.scenario = root.at("scenario").string();
-  const std::vector<io::JsonNode> size = root.at("size").items();
-  if (size.size() != 2) root.at("size").fail("expected [width, height]");
-  spec.width = static_cast<int>(size[0].integer(64, 8192));
-  spec.height = static_cast<int>(size[1].integer(64, 8192));
-  spec.frames = static_cast<std::uint32_t>(root.at("frames").integer(1, kMostFrames));
-  if (const auto n = root.get("compare")) {
-    spec.levels = {};
-    for (const io::JsonNode& word : n->items(1))
-      spec.levels[static_cast<std::size_t>(word.choice<Level>())] = true;
-  }
-  if (const auto n = root.get("tolerance")) spec.tolerance = read_tolerance(*n);
-  return spec;
-}
-
-GoldenFacts read_facts(const std::string& file) {
-  const io::JsonText json(io::read_small_text(file), file);
-  const io::JsonNode root(json);
-  GoldenFacts facts;
-  if (const auto n = root.get("meshes"))
-    for (const io::JsonNode& word : n->items()) {
-      const auto hash = trace::from_hex(word.string());
-      if (!hash) word.fail("expected 16 lower-case hexadecimal digits");
-      facts.meshes.push_back(*hash);
-    }
-  if (const auto n = root.get("contact_lengths"))
-    for (const io::JsonNode& length : n->items()) facts.contact_lengths.push_back(length.number(0, kLongest));
-  return facts;
-}
-
-/// Reads the meshes that were kept of the bodies. One that is missing or damaged only means that less can be
-/// said of a difference.
-std::vector<std::optional<Mesh>> read_meshes(const std::string& folder, const trace::Trace& trace) {
-  std::vector<std::optional<Mesh>> out;
-  for (std::size_t i = 0; i < trace.header.bodies.size(); ++i) {
-    const std::string file = folder + "/" + kept_file(i, static_cast<int>(trace.header.bodies[i].dim));
-    std::error_code error;
-    out.emplace_back();
-    if (!fs::exists(file, error)) continue;
-    try {
-      out.back() = read_mesh(file);
-    } catch (const InputError&) {
-    }
-  }
-  return out;
+  return read_spec(io::JsonNode(json));
 }
 
 void write_golden_spec(const std::string& goldens, const std::string& name, const GoldenSpec& spec,
@@ -181,7 +186,7 @@ void write_golden_spec(const std::string& goldens, const std::string& name, cons
                          {"small_share", spec.tolerance.small_share}};
   for (const std::uint64_t hash : facts.meshes) json["meshes"].push_back(trace::to_hex(hash));
   for (const double length : facts.contact_lengths) json["contact_lengths"].push_back(length);
-  io::write_text((fs::path(goldens) / name / kGoldenSpec).string(), json.dump() + "\n");
+  io::write_text(spec_file(goldens, name), json.dump() + "\n");
 }
 
 std::string scenario_reference(const std::string& goldens, const spec::Scenario& scenario,
@@ -206,9 +211,10 @@ spec::Scenario golden_scenario(const std::string& goldens, const std::string& na
 Golden load_golden(const std::string& goldens, const std::string& name) {
   Golden golden;
   golden.name = name;
-  golden.spec = read_golden_spec(goldens, name);
-  const std::string folder = folder_of(goldens, name);
-  golden.facts = read_facts(folder + "/" + kGoldenSpec);
+  const std::string about = spec_file(goldens, name), folder = folder_of(goldens, name);
+  const io::JsonText json(io::read_small_text(about), about);
+  golden.spec = read_spec(io::JsonNode(json));
+  golden.facts = read_facts(io::JsonNode(json));
   golden.trace = trace::load_trace(folder + "/" + kGoldenTrace);
   golden.meshes = read_meshes(folder, golden.trace);
   for (const std::string& file : image_files_from(folder, 0)) {

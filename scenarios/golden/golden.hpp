@@ -38,9 +38,9 @@ struct GoldenSpec {
 
 /// What golden.json notes of the run that the trace does not hold, for later differences to be explained.
 struct GoldenFacts {
-  std::vector<std::uint64_t> meshes;  ///< mesh_hash() of each body; empty: not noted
-  std::vector<double>
-      contact_lengths;  ///< of each step, in the scenario's unit; empty: not asked for, or not noted
+  std::vector<std::uint64_t> meshes;  ///< (bodies) mesh_hash(); empty: not noted
+  /// (steps) the length of contact, in the scenario's unit; empty: not asked for, or not noted.
+  std::vector<double> contact_lengths;
 
   friend bool operator==(const GoldenFacts&, const GoldenFacts&) = default;
 };

@@ -64,6 +64,26 @@ std::vector<Vector3d> directions(const Vector3d& up) {
   return out;
 }
 
+/// Returns true if a close-up of the contacts would show hardly less than both bodies.
+bool close_up_is_whole(const RecordedRun& recorded, const spec::FrameSpec::View& close_up) {
+  const std::size_t step = last_contact(recorded);
+  if (step >= recorded.trace->steps.size() || recorded.reps[0]->dim() != 3) return false;
+  constexpr double kCloser = 1.8;  // a close-up is to show things so many times as large
+  Framing framing;
+  framing.points = points_at(recorded, step);
+  for (const CollideResult& result : *recorded.results)
+    for (const Vector3d& p : render::contact_points(result.regions)) framing.contacts.push_back(p);
+  spec::FrameSpec::View whole = close_up;
+  whole.camera = spec::FrameSpec::Camera::scene;
+  Eigen::AlignedBox3d box;
+  for (const Vector3d& p : framing.points) box.extend(p);
+  const auto unit = [&](const spec::FrameSpec::View& view) {
+    const render::Camera camera = camera_for(view, framing, kWidth, kHeight, 0);
+    return render::Projection(camera, kWidth, kHeight, box).unit_per_pixel(camera.target);
+  };
+  return unit(whole) < kCloser * unit(close_up);
+}
+
 }  // namespace
 
 Eigen::AlignedBox3d box_of(const LrbRep& rep) {
@@ -117,23 +137,12 @@ Vector3d least_hidden(const RecordedRun& recorded, const Vector3d& up, const Vec
   return best;
 }
 
-bool close_up_is_whole(const RecordedRun& recorded, const spec::FrameSpec::View& close_up) {
-  const std::size_t step = last_contact(recorded);
-  if (step >= recorded.trace->steps.size() || recorded.reps[0]->dim() != 3) return false;
-  constexpr double kCloser = 1.8;  // a close-up is to show things so many times as large
-  Framing framing;
-  framing.points = points_at(recorded, step);
-  for (const CollideResult& result : *recorded.results)
-    for (const Vector3d& p : render::contact_points(result.regions)) framing.contacts.push_back(p);
-  spec::FrameSpec::View whole = close_up;
-  whole.camera = spec::FrameSpec::Camera::scene;
-  Eigen::AlignedBox3d box;
-  for (const Vector3d& p : framing.points) box.extend(p);
-  const auto unit = [&](const spec::FrameSpec::View& view) {
-    const render::Camera camera = camera_for(view, framing, kWidth, kHeight, 0);
-    return render::Projection(camera, kWidth, kHeight, box).unit_per_pixel(camera.target);
-  };
-  return unit(whole) < kCloser * unit(close_up);
+void widen_close_ups(const RecordedRun& recorded, std::vector<spec::FrameSpec::View>& views) {
+  for (spec::FrameSpec::View& view : views) {
+    if (view.camera != spec::FrameSpec::Camera::contact || !close_up_is_whole(recorded, view)) continue;
+    view.camera = spec::FrameSpec::Camera::scene;
+    if (!view.wrapper) view.title = "Bodies alone";
+  }
 }
 
 }  // namespace lrb::run

@@ -18,7 +18,7 @@ Eigen::Vector3d broadside(const Eigen::AlignedBox3d& box, const Eigen::Vector3d&
 Eigen::Vector3d least_hidden(const RecordedRun& recorded, const Eigen::Vector3d& up,
                              const Eigen::Vector3d& like);
 
-/// Returns true if a close-up of the contacts would show hardly less than both bodies, and so cut off parts of them for nothing.
-bool close_up_is_whole(const RecordedRun& recorded, const spec::FrameSpec::View& close_up);
+/// Shows both bodies wholly in close-ups of the contacts that would be hardly closer, and so cut off parts of them for nothing.
+void widen_close_ups(const RecordedRun& recorded, std::vector<spec::FrameSpec::View>& views);
 
 }  // namespace lrb::run

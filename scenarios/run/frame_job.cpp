@@ -108,11 +108,6 @@ class Painter {
   render::Image picture_;
 };
 
-const std::vector<CollideResult>& results_of(const RecordedRun& recorded) {
-  static const std::vector<CollideResult> none;
-  return recorded.results != nullptr ? *recorded.results : none;
-}
-
 /// What all frames of a run have in common. There must be at least one event.
 struct FrameJob {
   const spec::FrameSpec& spec;
@@ -195,6 +190,11 @@ void check_colours(const RecordedRun& recorded, const spec::FrameSpec& spec) {
 }
 
 }  // namespace
+
+const std::vector<CollideResult>& results_of(const RecordedRun& recorded) {
+  static const std::vector<CollideResult> none;
+  return recorded.results != nullptr ? *recorded.results : none;
+}
 
 void check_frames(const RecordedRun& recorded, const spec::FrameSpec& spec) {
   static_cast<void>(moments(spec, *recorded.trace));

@@ -30,6 +30,9 @@ struct RecordedRun {
   std::string value_name = {};
 };
 
+/// Returns the results of a run's steps; none if they are not known.
+const std::vector<CollideResult>& results_of(const RecordedRun& recorded);
+
 /// File in the output folder that shows the last certificate of separation of the run.
 inline constexpr const char* kSeparationFile = "separation.png";
 

@@ -90,8 +90,6 @@ Recording open_run(trace::Trace trace, const std::string& trace_path,
   return out;
 }
 
-namespace {
-
 std::string trace_in(const std::string& folder) {
   std::string path = folder + "/trace.json";
   std::error_code error;
@@ -102,8 +100,6 @@ std::string trace_in(const std::string& folder) {
         ": there is no trace.json or trace.json.gz: give the folder of a run, as `lrbscope run -o` writes it");
   return path;
 }
-
-}  // namespace
 
 Recording open_run(const std::string& folder) {
   const std::string path = trace_in(folder);

@@ -21,6 +21,9 @@ std::vector<bodies::LoadedBody> find_bodies(const std::string& trace_path,
 Recording open_run(trace::Trace trace, const std::string& trace_path,
                    const std::vector<std::string>& bodies = {});
 
+/// Returns the path of a run's trace in its folder. Throws InputError if there is none.
+std::string trace_in(const std::string& folder);
+
 /// Returns the run in a folder: its trace.json or trace.json.gz, with a.lrb and b.lrb beside it.
 Recording open_run(const std::string& folder);
 

@@ -128,8 +128,10 @@ void record_construction(const spec::Scenario& s, Recording& r) {
   r.trace = recorder.take(r.bodies[0].rep, body.pose);
 }
 
-/// Adds what people should know of a run.
-void add_notes(Recording& r) {
+/// Adds what follows from a run that has been recorded: how it is to be drawn, its trees, what people should know of it.
+void finish(const spec::Scenario& s, Recording& r) {
+  r.trace.header.pictures = spec::pictures_text(s.frames);
+  r.trees = trees_of(r.trace, r.bodies);
   std::vector<std::string> of_bodies;
   for (const bodies::LoadedBody& body : r.bodies)
     of_bodies.insert(of_bodies.end(), body.notes.begin(), body.notes.end());
@@ -163,8 +165,7 @@ Recording record(const spec::Scenario& scenario, const ProgressReport& progress)
     progress("build", 0, 1);
     Recording r;
     record_construction(scenario, r);
-    r.trace.header.pictures = spec::pictures_text(scenario.frames);
-    add_notes(r);
+    finish(scenario, r);
     return r;
   }
   std::vector<bodies::LoadedBody> bodies;
@@ -190,9 +191,7 @@ Recording record(const spec::Scenario& scenario, std::vector<bodies::LoadedBody>
       record_known(scenario, r);
       break;
   }
-  r.trace.header.pictures = spec::pictures_text(scenario.frames);
-  r.trees = trees_of(r.trace, r.bodies);
-  add_notes(r);
+  finish(scenario, r);
   return r;
 }
 

@@ -28,9 +28,14 @@ void check(const spec::Scenario& scenario, const RecordedRun& recorded) {
 }  // namespace
 
 RecordedRun recorded_run_of(const spec::Scenario& scenario, const Recording& recording) {
+  return recorded_run_of(scenario.name, scenario.purpose, recording);
+}
+
+RecordedRun recorded_run_of(const std::string& title, const std::string& purpose,
+                            const Recording& recording) {
   RecordedRun p;
-  p.title = scenario.name;
-  p.purpose = scenario.purpose;
+  p.title = title;
+  p.purpose = purpose;
   p.trace = &recording.trace;
   p.results = &recording.results;
   p.trees = &recording.trees;

@@ -17,6 +17,8 @@ struct RunOutcome {
 
 /// Returns what frames of a recording are drawn from; both must outlive it.
 RecordedRun recorded_run_of(const spec::Scenario& scenario, const Recording& recording);
+/// Returns the same of a run without a scenario.
+RecordedRun recorded_run_of(const std::string& title, const std::string& purpose, const Recording& recording);
 
 /// Runs a scenario and writes folder/{index.html, trace.json[.gz], summary.json, a.lrb, b.lrb, frames/,
 /// montage.png}.

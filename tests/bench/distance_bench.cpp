@@ -20,7 +20,7 @@
 #include "tests/support/shared_meshes.hpp"
 
 #ifdef LRB_WITH_FCL
-#include "scenarios/methods/peers/fcl_instantiated.hpp"
+#include "tests/bench/fcl_model.hpp"
 #define extern
 #include <fcl/narrowphase/distance.h>
 #undef extern
@@ -48,22 +48,9 @@ struct Mean {
 template <class Volume>
 class Fcl {
  public:
-  explicit Fcl(const LrbRep& rep) : model_(std::make_shared<fcl::BVHModel<Volume>>()) {
-    std::vector<fcl::Vector3d> points(rep.vertices().begin(), rep.vertices().end());
-    std::vector<fcl::Triangle> triangles;
-    for (SimplexId s = 0; s < rep.real_simplex_count(); ++s) {
-      VertexId v[3];
-      rep.simplex(s, v);
-      triangles.emplace_back(v[0], v[1], v[2]);
-    }
-    model_->beginModel();
-    model_->addSubModel(points, triangles);
-    model_->endModel();
-  }
+  explicit Fcl(const LrbRep& rep) : model_(bench::fcl_model<Volume>(rep)) {}
   double distance(const Pose& p) const {
-    fcl::Transform3d t = fcl::Transform3d::Identity();
-    t.linear() = p.r;
-    t.translation() = p.t;
+    const fcl::Transform3d t = bench::fcl_pose(p);
     fcl::DistanceResultd result;
     return fcl::distance(model_.get(), fcl::Transform3d::Identity(), model_.get(), t, fcl::DistanceRequestd(),
                          result);

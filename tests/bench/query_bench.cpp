@@ -15,7 +15,7 @@
 #include "tests/bench/timing.hpp"
 
 #ifdef LRB_WITH_FCL
-#include "scenarios/methods/peers/fcl_instantiated.hpp"
+#include "tests/bench/fcl_model.hpp"
 #endif
 
 using namespace lrb;
@@ -34,22 +34,9 @@ constexpr PoseClass kClasses[] = {
 #ifdef LRB_WITH_FCL
 class Fcl {
  public:
-  explicit Fcl(const LrbRep& rep) : model_(std::make_shared<fcl::BVHModel<fcl::OBBRSSd>>()) {
-    std::vector<fcl::Vector3d> points(rep.vertices().begin(), rep.vertices().end());
-    std::vector<fcl::Triangle> triangles;
-    for (SimplexId s = 0; s < rep.real_simplex_count(); ++s) {
-      VertexId v[3];
-      rep.simplex(s, v);
-      triangles.emplace_back(v[0], v[1], v[2]);
-    }
-    model_->beginModel();
-    model_->addSubModel(points, triangles);
-    model_->endModel();
-  }
+  explicit Fcl(const LrbRep& rep) : model_(bench::fcl_model<fcl::OBBRSSd>(rep)) {}
   static std::size_t pairs(const Fcl& a, const Fcl& b, const Pose& p, bool all) {
-    fcl::Transform3d t = fcl::Transform3d::Identity();
-    t.linear() = p.r;
-    t.translation() = p.t;
+    const fcl::Transform3d t = bench::fcl_pose(p);
     fcl::CollisionResultd result;
     fcl::collide(a.model_.get(), fcl::Transform3d::Identity(), b.model_.get(), t,
                  fcl::CollisionRequestd(all ? 100000000 : 1, false), result);

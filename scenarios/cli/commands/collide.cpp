@@ -58,11 +58,7 @@ void choose_views(const CollideOptions& o, spec::Scenario& scenario, run::Record
     const Eigen::Vector3d from = run::least_hidden(recorded, up, beside(scenario.motion, up, views[0].from));
     for (spec::FrameSpec::View& view : views) view.from = from;
   }
-  for (spec::FrameSpec::View& view : views)
-    if (view.camera == spec::FrameSpec::Camera::contact && run::close_up_is_whole(recorded, view)) {
-      view.camera = spec::FrameSpec::Camera::scene;
-      view.title = "Bodies alone";
-    }
+  run::widen_close_ups(recorded, views);
   recording.trace.header.pictures = spec::pictures_text(scenario.frames);
 }
 

@@ -79,12 +79,7 @@ bool is_trace_name(const std::string& path) {
 
 Source open_source(const FigureOptions& o, const run::ProgressReport& progress) {
   std::error_code error;
-  if (std::filesystem::is_directory(o.source, error)) {
-    for (const char* name : {"/trace.json", "/trace.json.gz"})
-      if (std::filesystem::exists(o.source + name, error)) return open_trace(o.source + name, o.bodies);
-    throw InputError(printable_name(o.source) +
-                     ": there is no trace.json or trace.json.gz in it: give the folder of a run");
-  }
+  if (std::filesystem::is_directory(o.source, error)) return open_trace(run::trace_in(o.source), o.bodies);
   if (is_trace_name(o.source)) return open_trace(o.source, o.bodies);
   if (!o.bodies.empty())
     throw InputError("--bodies: is for a trace, and " + printable_name(o.source) + " is none");
@@ -143,19 +138,8 @@ int run_figure(const FigureOptions& o, const Globals& globals) {
   const std::string file = o.file.empty() ? "out/" + source.name + ".pdf" : o.file;
   const figure::FigureSpec spec = figure_spec(o, file);
   spec::FrameSpec frames = frame_spec(o, source);
-  run::RecordedRun recorded;
-  recorded.title = source.name;
-  recorded.purpose = source.purpose;
-  recorded.trace = &source.recording.trace;
-  recorded.results = &source.recording.results;
-  recorded.trees = &source.recording.trees;
-  for (const bodies::LoadedBody& body : source.recording.bodies) recorded.reps.push_back(&body.rep);
-  if (o.close_up)
-    for (spec::FrameSpec::View& view : frames.views)
-      if (run::close_up_is_whole(recorded, view)) {  // hardly closer, and heads would be cut off
-        view.camera = spec::FrameSpec::Camera::scene;
-        view.title = view.wrapper ? view.title : "Bodies alone";
-      }
+  const run::RecordedRun recorded = run::recorded_run_of(source.name, source.purpose, source.recording);
+  if (o.close_up) run::widen_close_ups(recorded, frames.views);
   const figure::Figure drawn = figure::draw_figure(recorded, frames, spec, progress);
   note(globals, source.recording.notes);
   const std::filesystem::path path(file);

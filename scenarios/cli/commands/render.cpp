@@ -127,12 +127,7 @@ int run_render(const RenderOptions& o, const Globals& globals) {
   const run::Recording recording = run::open_run(std::move(read), o.trace, o.bodies);
   const trace::Trace& trace = recording.trace;
   const std::vector<bodies::LoadedBody>& bodies = recording.bodies;
-  run::RecordedRun p;
-  p.title = trace.header.scenario;
-  p.trace = &trace;
-  p.results = &recording.results;
-  p.trees = &recording.trees;
-  for (const bodies::LoadedBody& body : bodies) p.reps.push_back(&body.rep);
+  const run::RecordedRun p = run::recorded_run_of(trace.header.scenario, {}, recording);
   const std::string folder = output_folder(o);
   spec::FrameSpec spec = frame_spec(o, show_of(trace, bodies.size()), trace.header.pictures);
   isolate(o, bodies, spec);

@@ -1,0 +1,37 @@
+#pragma once
+/// What benchmarks ask FCL with.
+
+#include <memory>
+#include <vector>
+
+#include "engine/core/pose.hpp"
+#include "engine/lrb/lrb_rep.hpp"
+#include "scenarios/methods/peers/fcl_instantiated.hpp"
+
+namespace lrb::bench {
+
+/// Returns a body's real simplices as a model with a tree of these volumes.
+template <class Volume>
+std::shared_ptr<fcl::BVHModel<Volume>> fcl_model(const LrbRep& rep) {
+  auto model = std::make_shared<fcl::BVHModel<Volume>>();
+  const std::vector<fcl::Vector3d> points(rep.vertices().begin(), rep.vertices().end());
+  std::vector<fcl::Triangle> triangles;
+  for (SimplexId s = 0; s < rep.real_simplex_count(); ++s) {
+    VertexId v[3];
+    rep.simplex(s, v);
+    triangles.emplace_back(v[0], v[1], v[2]);
+  }
+  model->beginModel();
+  model->addSubModel(points, triangles);
+  model->endModel();
+  return model;
+}
+
+inline fcl::Transform3d fcl_pose(const Pose& p) {
+  fcl::Transform3d t = fcl::Transform3d::Identity();
+  t.linear() = p.r;
+  t.translation() = p.t;
+  return t;
+}
+
+}  // namespace lrb::bench
