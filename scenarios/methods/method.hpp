@@ -19,6 +19,10 @@ enum class Says : std::uint8_t {
   inside,    ///< whether one body lies in the other
   relation,  ///< all of Relation
 };
+constexpr auto words_of(Says) {
+  return std::to_array<EnumWord<Says>>(
+      {{Says::nothing, "nothing"}, {Says::inside, "inside"}, {Says::relation, "relation"}});
+}
 
 /// How a method is drawn on charts. Methods of one title are one series, which looks as the first of them
 /// does.
@@ -27,6 +31,7 @@ struct MethodStyle {
   std::string colour;  ///< #rrggbb
   std::string shape;   ///< Chart.js's name of the point's shape
   int point = 0;       ///< gnuplot's number of the point's shape
+  friend bool operator==(const MethodStyle&, const MethodStyle&) = default;
 };
 
 struct MethodInfo {
