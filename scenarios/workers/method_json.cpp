@@ -28,6 +28,7 @@ inline constexpr auto kFields<methods::MethodInfo> =
                field("knob", &methods::MethodInfo::knob),
                field("settings", &methods::MethodInfo::settings),
                field("style", &methods::MethodInfo::style),
+               field("role", &methods::MethodInfo::role),
                field("rank", &methods::MethodInfo::rank)};
 
 static_assert(covers_all_fields<methods::MethodStyle>);
