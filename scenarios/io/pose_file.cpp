@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "engine/core/error.hpp"
+#include "scenarios/io/files.hpp"
 
 namespace lrb::io {
 namespace {
@@ -33,7 +34,8 @@ std::string shown(std::string_view word) {
   return "\"" + out + (word.size() > kLongest ? "...\"" : "\"");
 }
 
-double number(std::string_view word, const std::string& where) {
+/// wanted: what each line must have, for the message.
+double number(std::string_view word, const std::string& where, const std::string& wanted) {
   const std::string_view digits = word.substr(word[0] == '+' ? 1 : 0);  // from_chars does not read a plus
                                                                         // sign
   double x = 0;
@@ -41,7 +43,7 @@ double number(std::string_view word, const std::string& where) {
   if (error == std::errc::result_out_of_range)
     throw InputError(where + shown(word) + " is beyond the range of a double");
   if (error != std::errc() || end != digits.data() + digits.size())
-    throw InputError(where + shown(word) + " is not a number: expected 12 numbers a line");
+    throw InputError(where + shown(word) + " is not a number: expected " + wanted);
   if (!std::isfinite(x))
     throw InputError(where + shown(word) + " is not finite: every number of a pose must be");
   return x;
@@ -102,7 +104,7 @@ std::array<std::size_t, 12> columns_of(const std::vector<std::string_view>& name
 double number_in(const std::vector<std::string_view>& cells, std::size_t column, const std::string& where) {
   if (cells[column].empty())
     throw InputError(where + "cell " + std::to_string(column + 1) + " is empty: expected a number");
-  return number(cells[column], where);
+  return number(cells[column], where, "12 numbers a line");
 }
 
 /// Throws unless the last four of 16 cells are the last row of a pose.
@@ -110,6 +112,26 @@ void check_last_row(const std::vector<std::string_view>& cells, const std::strin
   for (std::size_t i = 12; i < 16; ++i)
     if (number_in(cells, i, where) != (i == 15 ? 1 : 0))
       throw InputError(where + "the last row of the 4x4 pose is not 0, 0, 0, 1");
+}
+
+/// Calls see(numbers, line) for each line of `count` numbers; `meaning` says what these are.
+template <class See>
+void read_lines(const std::string& text, const std::string& name, std::size_t count, const char* meaning,
+                See&& see) {
+  const std::string numbers = std::to_string(count) + " numbers";
+  std::vector<double> x(count);
+  std::size_t line_number = 0;
+  for (std::size_t at = 0; at < text.size();) {
+    const std::vector<std::string_view> words = words_of(next_line(text, at));
+    const std::string where = name + ":" + std::to_string(++line_number) + ": ";
+    if (words.empty()) continue;
+    for (std::size_t i = 0; i < words.size() && i < count; ++i)
+      x[i] = number(words[i], where, numbers + " a line");
+    if (words.size() != count)
+      throw InputError(where + "expected " + numbers + " (" + meaning + "), found " +
+                       std::to_string(words.size()));
+    see(std::span<const double>(x), line_number);
+  }
 }
 
 }  // namespace
@@ -135,21 +157,26 @@ std::array<double, 12> rows_of(const Pose& pose) {
 std::vector<Pose> parse_poses(const std::string& text, const std::string& name,
                               std::vector<std::size_t>* lines) {
   std::vector<Pose> poses;
-  std::size_t line_number = 0;
-  for (std::size_t at = 0; at < text.size();) {
-    const std::vector<std::string_view> words = words_of(next_line(text, at));
-    const std::string where = name + ":" + std::to_string(++line_number) + ": ";
-    if (words.empty()) continue;
-    std::array<double, 12> x{};
-    for (std::size_t i = 0; i < words.size() && i < 12; ++i) x[i] = number(words[i], where);
-    if (words.size() != 12)
-      throw InputError(where + "expected 12 numbers (a row-major 3x4 pose), found " +
-                       std::to_string(words.size()));
-    poses.push_back(pose_of(x));
-    if (lines != nullptr) lines->push_back(line_number);
-  }
+  read_lines(text, name, 12, "a row-major 3x4 pose", [&](std::span<const double> x, std::size_t line) {
+    poses.push_back(pose_of(x.first<12>()));
+    if (lines != nullptr) lines->push_back(line);
+  });
   if (poses.empty()) throw InputError(name + ": no poses: expected lines of 12 numbers (row-major 3x4)");
   return poses;
+}
+
+std::vector<PosePair> parse_motions(const std::string& text, const std::string& name) {
+  std::vector<PosePair> motions;
+  read_lines(text, name, 24, "two row-major 3x4 poses", [&](std::span<const double> x, std::size_t line) {
+    motions.push_back({pose_of(x.first<12>()), pose_of(x.last<12>()), line});
+  });
+  if (motions.empty())
+    throw InputError(name + ": no motions: expected lines of 24 numbers (two poses, row-major 3x4)");
+  return motions;
+}
+
+std::vector<PosePair> read_motions(const std::string& path) {
+  return parse_motions(read_text(path), path);
 }
 
 std::vector<Pose> parse_pose_table(const std::string& text, const std::string& name,
@@ -191,7 +218,8 @@ Eigen::Vector3d parse_vector(const std::string& text, const std::string& option)
     throw InputError(option + ": expected three numbers X,Y,Z, found " + std::to_string(words.size()) +
                      " in \"" + text + "\"");
   const std::string where = option + ": ";
-  return {number(words[0], where), number(words[1], where), number(words[2], where)};
+  const auto x = [&](std::size_t i) { return number(words[i], where, "three numbers X,Y,Z"); };
+  return {x(0), x(1), x(2)};
 }
 
 }  // namespace lrb::io

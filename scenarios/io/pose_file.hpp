@@ -33,6 +33,16 @@ inline constexpr std::array<std::string_view, 12> kPoseColumns = {"r00", "r01", 
 Pose pose_of(std::span<const double, 12> rows);
 std::array<double, 12> rows_of(const Pose& pose);
 
+/// The poses at which a motion begins and ends, and the number of their line.
+struct PosePair {
+  Pose start, end;
+  std::size_t line = 0;
+};
+
+/// Reads motions: 24 numbers on each line, two poses; else as parse_poses().
+std::vector<PosePair> parse_motions(const std::string& text, const std::string& name);
+std::vector<PosePair> read_motions(const std::string& path);
+
 /// Reads three numbers "X,Y,Z"; `option` names them in the message. Throws InputError.
 Eigen::Vector3d parse_vector(const std::string& text, const std::string& option);
 
