@@ -69,4 +69,29 @@ std::optional<std::vector<RationalPoint>> sample_cells(const double* const tri[3
 std::optional<std::vector<RationalPoint>> sample_cells_2d(
     const double* const seg[2], std::span<const std::array<const double*, 2>> others, std::size_t limit);
 
+/// A triangle that others cut into cells, as sample_cells() has them.
+class CutFace {
+ public:
+  /// Returns nothing if the triangle has no area, or where sample_cells() gives up.
+  static std::optional<CutFace> make(const double* const tri[3],
+                                     std::span<const std::array<const double*, 3>> others, std::size_t limit);
+
+  /// Returns one point strictly inside each cell.
+  const std::vector<RationalPoint>& samples() const { return samples_; }
+  /// Returns the cell that borders on the edge from corner `edge` to the next, at a point of the edge that is on
+  /// no cut.
+  std::size_t cell_beside(int edge, const RationalPoint& p) const;
+
+ private:
+  struct Parts;
+  std::vector<RationalPoint> samples_;
+  std::shared_ptr<const Parts> parts_;
+};
+
+/// Returns a point of each part into which a segment is cut by the planes of some triangles or, where it lies
+/// in such a plane, by the lines through the triangle's edges. Nothing if the segment is a point, or a triangle in
+/// whose plane it would lie has no area.
+std::optional<std::vector<RationalPoint>> sample_edge(
+    const double* from, const double* to, std::span<const std::array<const double*, 3>> triangles);
+
 }  // namespace lrb::exact

@@ -1,4 +1,4 @@
-// Finds one point in each cell of a face that others cut.
+// Finds the cells of a face that others cut, and a point in each.
 
 #include <algorithm>
 #include <utility>
@@ -12,7 +12,8 @@
 #include "engine/exact/rational_point.hpp"
 
 namespace lrb::exact {
-namespace {
+/// Named, because CutFace keeps what is in it.
+namespace cutting {
 
 /// Every end and crossing of cuts divides the cells further, into gaps, and the work is done gap by gap.
 /// Larger: faces with a hundred cuts are decided too, in minutes each.
@@ -63,7 +64,12 @@ class CutTriangle {
     }
   }
 
+  /// The first three are the triangle's edges.
   const std::vector<Cut>& cuts() const { return cuts_; }
+
+  Planar project(const RationalVec& p) const {
+    return {p[static_cast<std::size_t>(axes_.x)], p[static_cast<std::size_t>(axes_.y)]};
+  }
 
   /// Returns the point of the triangle's plane that has this projection.
   RationalPoint lift(const Planar& p) const {
@@ -77,10 +83,6 @@ class CutTriangle {
   }
 
  private:
-  Planar project(const RationalVec& p) const {
-    return {p[static_cast<std::size_t>(axes_.x)], p[static_cast<std::size_t>(axes_.y)]};
-  }
-
   Planar where_edge_cuts(const RationalVec& p, const RationalVec& q) const {
     const Rational hp = volume_determinant(exact_[0], exact_[1], exact_[2], p);
     const Rational hq = volume_determinant(exact_[0], exact_[1], exact_[2], q);
@@ -167,18 +169,46 @@ class Slabs {
  public:
   /// Divides the projection into slabs; gives up at more than `limit` gaps.
   Slabs(const std::vector<Cut>& cuts, std::size_t limit) : cuts_(cuts) {
-    const std::vector<Rational> events = events_of(cuts);
+    events_ = events_of(cuts);
     std::size_t previous = 0;
-    for (std::size_t e = 0; e + 1 < events.size() && gaps_.size() <= limit; ++e) {
+    for (std::size_t e = 0; e + 1 < events_.size() && gaps_.size() <= limit; ++e) {
       const std::size_t first = gaps_.size();
-      add_gaps(events[e], events[e + 1]);
-      join_neighbours(previous, first, events[e]);
+      first_gap_.push_back(first);
+      add_gaps(events_[e], events_[e + 1]);
+      join_neighbours(previous, first, events_[e]);
       previous = first;
     }
+    first_gap_.push_back(gaps_.size());
     whole_ = gaps_.size() <= limit;
   }
 
   bool whole() const { return whole_; }
+
+  /// Returns the first gap of the cell that borders on the cut `edge`, one of the triangle's, at a point of it
+  /// that is on no other cut. Near such a point there is but one cell, and every slab that reaches the point has a
+  /// gap of it along the edge; a vertical edge ends the first slab or the last.
+  std::size_t gap_beside(std::size_t edge, const Planar& p) const {
+    const bool vertical = cuts_[edge].is_vertical();
+    for (std::size_t e = 0; e + 1 < events_.size(); ++e) {
+      if (p.x < events_[e] || p.x > events_[e + 1]) continue;
+      for (std::size_t i = first_gap_[e]; i < first_gap_[e + 1]; ++i) {
+        const Gap& gap = gaps_[i];
+        if (vertical ? cuts_[gap.below].y_at(p.x) < p.y && p.y < cuts_[gap.above].y_at(p.x)
+                     : gap.below == edge || gap.above == edge)
+          return first_of(i);
+      }
+    }
+    return gaps_.size();
+  }
+
+  /// Returns the first gap of each cell.
+  std::vector<std::size_t> cells() const {
+    std::vector<std::size_t> r;
+    for (std::size_t i = 0; i < gaps_.size(); ++i) {
+      if (gaps_[i].link == i) r.push_back(i);
+    }
+    return r;
+  }
 
   /// Returns one point of each cell.
   std::vector<Planar> middles() const {
@@ -254,11 +284,97 @@ class Slabs {
   }
 
   const std::vector<Cut>& cuts_;
+  std::vector<Rational> events_;        ///< where slabs begin and end
+  std::vector<std::size_t> first_gap_;  ///< (slabs + 1)
   std::vector<Gap> gaps_;
   bool whole_ = false;
 };
 
+}  // namespace cutting
+
+using namespace cutting;
+
+struct CutFace::Parts {
+  CutTriangle triangle;
+  std::unique_ptr<Slabs> slabs;
+  std::vector<std::size_t> cells;  ///< the first gap of each
+
+  Parts(const double* const tri[3], const Axes& axes) : triangle(tri, axes) {}
+};
+
+std::optional<CutFace> CutFace::make(const double* const tri[3],
+                                     std::span<const std::array<const double*, 3>> others,
+                                     std::size_t limit) {
+  const Axes axes = axes_for(tri[0], tri[1], tri[2]);
+  if (axes.turn == 0) return std::nullopt;
+  const auto parts = std::make_shared<Parts>(tri, axes);
+  for (const auto& other : others) {
+    parts->triangle.cut_by(other.data());
+    if (parts->triangle.cuts().size() > limit + 3) return std::nullopt;
+  }
+  parts->slabs = std::make_unique<Slabs>(parts->triangle.cuts(), kGapsPerCell * limit);
+  if (!parts->slabs->whole()) return std::nullopt;
+  parts->cells = parts->slabs->cells();
+  CutFace face;
+  for (const Planar& p : parts->slabs->middles()) face.samples_.push_back(parts->triangle.lift(p));
+  face.parts_ = parts;
+  return face;
+}
+
+std::size_t CutFace::cell_beside(int edge, const RationalPoint& p) const {
+  const std::size_t gap =
+      parts_->slabs->gap_beside(static_cast<std::size_t>(edge), parts_->triangle.project(p.coordinates().x));
+  const auto cell = std::lower_bound(parts_->cells.begin(), parts_->cells.end(), gap);
+  return static_cast<std::size_t>(cell - parts_->cells.begin());
+}
+
+namespace {
+
+/// Adds the shares of the segment p, q at which its line meets the edges of a triangle in whose plane it lies.
+/// Returns false if the triangle has no area.
+bool add_shares_in_plane(const RationalVec& p, const RationalVec& q, const double* const t[3],
+                         std::vector<Rational>& shares) {
+  const Axes axes = axes_for(t[0], t[1], t[2]);
+  if (axes.turn == 0) return false;
+  const std::size_t k = p[0] != q[0] ? 0 : p[1] != q[1] ? 1 : 2;
+  for (int i = 0; i < 3; ++i) {
+    const RationalVec a = to_rational(t[i]), b = to_rational(t[(i + 1) % 3]);
+    const Rational at_p = area_determinant(a, b, p, axes.x, axes.y);
+    const Rational at_q = area_determinant(a, b, q, axes.x, axes.y);
+    if (at_p == 0 && at_q == 0) {
+      shares.push_back((a[k] - p[k]) / (q[k] - p[k]));
+      shares.push_back((b[k] - p[k]) / (q[k] - p[k]));
+    } else if (at_p != at_q) {
+      shares.push_back(at_p / (at_p - at_q));
+    }
+  }
+  return true;
+}
+
 }  // namespace
+
+std::optional<std::vector<RationalPoint>> sample_edge(
+    const double* from, const double* to, std::span<const std::array<const double*, 3>> triangles) {
+  const RationalVec p = to_rational(from), q = to_rational(to);
+  if (p == q) return std::nullopt;
+  std::vector<Rational> all, shares{Rational(0)};
+  for (const auto& t : triangles) {
+    const RationalVec a = to_rational(t[0]), b = to_rational(t[1]), c = to_rational(t[2]);
+    const Rational at_p = volume_determinant(a, b, c, p), at_q = volume_determinant(a, b, c, q);
+    if (at_p != at_q)
+      all.push_back(at_p / (at_p - at_q));
+    else if (at_p == 0 && !add_shares_in_plane(p, q, t.data(), all))
+      return std::nullopt;
+  }
+  std::sort(all.begin(), all.end());
+  for (const Rational& t : all)
+    if (t > shares.back() && t < 1) shares.push_back(t);
+  shares.emplace_back(1);
+  std::vector<RationalPoint> samples;
+  for (std::size_t i = 0; i + 1 < shares.size(); ++i)
+    samples.push_back(make_point(between(p, q, (shares[i] + shares[i + 1]) / 2)));
+  return samples;
+}
 
 std::optional<std::vector<RationalPoint>> sample_cells(const double* const tri[3],
                                                        std::span<const std::array<const double*, 3>> others,

@@ -122,7 +122,8 @@ std::vector<report::PageChart> charts_of(const trace::Chart& chart, report::Page
 report::PageTable contact_table(const CollideResult& result, std::uint32_t step) {
   report::PageTable t;
   t.title = "Contact regions at step " + std::to_string(step);
-  t.columns = {"region", "pairs", "curves", "length", "area", "depth", "centroid", "normal, A to B"};
+  t.columns = {"region",           "pairs",    "curves",        "length", "area",
+               "depth, estimated", "centroid", "normal, A to B"};
   constexpr std::size_t kMostRows = 30;
   for (std::size_t i = 0; i < std::min(result.regions.size(), kMostRows); ++i) {
     const ContactRegion& r = result.regions[i];
@@ -132,10 +133,11 @@ report::PageTable contact_table(const CollideResult& result, std::uint32_t step)
                       std::to_string(closed) + " closed, " +
                           std::to_string(r.loops.size() - static_cast<std::size_t>(closed)) + " open",
                       render::short_number(r.length), render::short_number(r.area),
-                      render::short_number(r.depth), vector_text(r.centroid), vector_text(r.normal)});
+                      render::short_number(r.depth_estimate), vector_text(r.centroid),
+                      vector_text(r.normal)});
   }
   t.note =
-      "World frame; lengths in the meshes' unit. Depth is an estimate: how far B must move along the normal "
+      "World frame; lengths in the meshes' unit. Depth is an estimate for the region, how far B must move along the normal "
       "to leave the region.";
   if (result.regions.size() > kMostRows)
     t.note += " " + std::to_string(result.regions.size() - kMostRows) + " more are left out here.";

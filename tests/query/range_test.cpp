@@ -102,7 +102,7 @@ TEST_CASE("a power of two scales contact regions exactly") {
         const ContactRegion &p = plain.regions[r], &s = scaled.regions[r];
         CHECK(s.length / by == doctest::Approx(p.length));
         CHECK(s.area / by / by == doctest::Approx(p.area));
-        CHECK(s.depth / by == doctest::Approx(p.depth));
+        CHECK(s.depth_estimate / by == doctest::Approx(p.depth_estimate));
         CHECK((s.centroid / by - p.centroid).norm() < 1e-12);
         CHECK((s.normal - p.normal).norm() < 1e-12);
       }

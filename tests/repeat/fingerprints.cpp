@@ -59,7 +59,7 @@ void add_answer(Fnv64& h, const CollideResult& r) {
     h.add_array(region.pairs);
     for (const ContactLoop& loop : region.loops)
       for (const Eigen::Vector3d& x : loop.points) add_vector(h, x);
-    for (const double x : {region.length, region.area, region.depth}) h.add_value(x);
+    for (const double x : {region.length, region.area, region.depth_estimate}) h.add_value(x);
     add_vector(h, region.centroid);
     add_vector(h, region.normal);
   }

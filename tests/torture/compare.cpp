@@ -157,7 +157,8 @@ class Comparison {
     bool sound = r.centroid.allFinite() && r.normal.allFinite();
     const Eigen::AlignedBox3d box = box_of(r);
     const bool large = box.max().cwiseAbs().cwiseMax(box.min().cwiseAbs()).maxCoeff() > 1e140;
-    for (const double x : {r.length, r.area, r.depth}) sound &= large ? !std::isnan(x) : std::isfinite(x);
+    for (const double x : {r.length, r.area, r.depth_estimate})
+      sound &= large ? !std::isnan(x) : std::isfinite(x);
     for (const ContactLoop& loop : r.loops)
       for (const auto& p : loop.points) sound &= p.allFinite();
     return sound;
@@ -175,7 +176,7 @@ class Comparison {
       seen.insert(seen.end(), r.pairs.begin(), r.pairs.end());
       const double n = r.normal.norm();
       if (!is_sound(r)) complain(t_.wrong_lists, "a contact region with a number that is not finite");
-      if (r.area < 0 || r.length < 0 || r.depth < 0 || (n != 0 && std::abs(n - 1) > 1e-9))
+      if (r.area < 0 || r.length < 0 || r.depth_estimate < 0 || (n != 0 && std::abs(n - 1) > 1e-9))
         complain(t_.wrong_lists, "a contact region with an impossible number");
       if (!near_its_points(r)) complain(t_.wrong_lists, "a contact region whose centroid is off");
     }

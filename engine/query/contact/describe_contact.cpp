@@ -105,7 +105,7 @@ class RegionMaker {
     add_loops(regions);
     for (std::uint32_t r = 0; r < regions.size(); ++r) {
       if (rank[r] == 2) regions[r].area = spanned_area(regions[r]);
-      regions[r].depth = penetration(regions[r]);
+      regions[r].depth_estimate = penetration(regions[r]);
     }
     for (ContactRegion& region : regions) leave_unit(region);
     return regions;
@@ -117,7 +117,7 @@ class RegionMaker {
       for (Vector3d& p : loop.points) p *= unit_;
     region.centroid *= unit_;
     region.length *= unit_;
-    region.depth *= unit_;
+    region.depth_estimate *= unit_;
     region.area = region.area * unit_ * unit_;
   }
 

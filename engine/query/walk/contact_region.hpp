@@ -40,7 +40,7 @@ struct ContactRegion {
   /// Once B has moved that far a plane parts the two. Nothing but these two parts is considered; convex
   /// bodies have nothing else. Concave bodies may still meet in other regions, each with its own depth, or
   /// come to meet on the way; and parts that lie beside each other may be free after less.
-  double depth = 0;
+  double depth_estimate = 0;
 };
 
 }  // namespace lrb

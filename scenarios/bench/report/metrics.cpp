@@ -25,7 +25,7 @@ constexpr MetricInfo kInfos[kMetrics] = {
     {"area", "error of the contact's area, over the larger of both", 1},
     {"centroid", "distance of the contacts' centroids, over the diagonal", 1},
     {"normal", "angle between the normals of the largest contact, over 180 degrees", 1},
-    {"depth", "error of the largest depth, over the diagonal", 1},
+    {"depth", "error of the largest estimated depth, over the diagonal", 1},
 };
 
 constexpr Metric kAll[kMetrics] = {Metric::contact, Metric::precision, Metric::recall, Metric::hausdorff,

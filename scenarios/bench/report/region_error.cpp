@@ -85,7 +85,7 @@ Region RegionMaker::of_pairs(const std::vector<SimplexPair>& pairs) {
   for (const ContactRegion& r : result.regions) {
     out.length += r.length;
     out.area += r.area;
-    out.depth = std::max(out.depth, r.depth);
+    out.depth = std::max(out.depth, r.depth_estimate);
     if (r.length + r.area > largest) out.normal = r.normal;
     largest = std::max(largest, r.length + r.area);
   }

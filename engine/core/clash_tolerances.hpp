@@ -1,0 +1,62 @@
+#pragma once
+/// The small constants of the clash query, as tolerances.hpp has them for the rest of the engine: each with its unit, its
+/// reason, and what breaks if it is changed.
+///
+/// The clash query. It sees bodies in units in which no coordinate, nor any difference of two, exceeds 1 (unit_bodies.hpp):
+/// lengths and volumes are in these units. u = 2^-53.
+
+namespace lrb {
+
+/// Bound on what a coordinate in units is off: it is at most 1/2, and a difference of doubles.
+inline constexpr double kUnitRounding = 0x1p-53;
+/// A half-space that holds everything, in units.
+inline constexpr double kUnitReach = 2;
+/// Distance by which a triangle must lie beyond a plane to be proved beyond it, per unit of the normal's |n|_1: two
+/// products n . x of points whose coordinates are at most 1, each off by 3 u |n|_1, twice the point's own kUnitRounding
+/// |n|_1 (the triangle's corner, and the point that was found inside), and the sum with this margin, u: 9 u in all, of 16.
+inline constexpr double kConvexMargin = 0x1p-49;
+/// Shares by which convex sets are shrunk until they are proved to lie in a body. Larger: looser lower ends of depths.
+inline constexpr double kShrinks[] = {0x1p-42, 0x1p-36, 0x1p-28, 0x1p-18};
+/// A triangle whose doubled area is less than this share of its longest edge's square says nothing about being convex;
+/// neither do corners less than kHollow in front of a face. Anything else is proved, so these only save work.
+inline constexpr double kSliver = 0x1p-20, kHollow = 0x1p-28;
+/// Number of triangles that may need another's plane, and of corners times triangles, up to which a body is tried as a
+/// convex one. Larger: seconds.
+inline constexpr unsigned kMostHardTriangles = 1000;
+inline constexpr double kMostConvexWork = 1e9;
+/// Share of its first offset that a half-space about a point keeps when others' triangles are put behind it; the number of
+/// half-spaces; and how near the surface may come to the point. Larger share: more half-spaces, larger sets.
+inline constexpr double kLittleLost = 0.97;
+inline constexpr unsigned kMostHalfSpaces = 400;
+inline constexpr double kLeastClearance = 0x1p-36;
+/// Gain from which on the hull of differences is grown, and how often it may be. Smaller: no nearer to the depth than
+/// rounding; fewer: wide intervals for round bodies.
+inline constexpr double kDepthGain = 0x1p-48;
+inline constexpr unsigned kMostDepthSteps = 1500;
+/// Bound on the error of a difference of two points of convex sets whose coordinates are at most 1: 2 u in length for
+/// the difference, and 4 u where one of them was moved by a product before.
+inline constexpr double kDifferenceRounding = 0x1p-50;
+/// What is added to a translation before it is proved to part two bodies, times 8 as often as that is needed, up to
+/// kMostPartingMargin; and how narrow the way out is narrowed down to. Smaller: nothing between rounding and it.
+inline constexpr double kPartingMargin = 0x1p-42, kMostPartingMargin = 0x1p-6;
+/// Largest world coordinate up to which translations are tried: beyond it they could overflow.
+inline constexpr double kLargestMoved = 0x1p1020;
+/// Where to look for the shortest way out of bodies that are not convex. Nothing is proved by these, they only say how long
+/// it is looked for: directions nearer than 0.6 degrees count as one (kSameDirection: the cosine), at most so many are
+/// told apart, and so many tried; in each, so many lengths; the best one is turned by ever less.
+inline constexpr double kSameDirection = 0.99995;
+inline constexpr unsigned kMostDirections = 2000, kDirectionsInContact = 32, kDirectionsOfFaces = 16;
+inline constexpr int kDirectionSamples = 16, kWaySamples = 128;
+inline constexpr double kDirectionGain = 0x1p-20;
+inline constexpr double kFirstTurn = 0.2, kLeastTurn = 1e-5, kTurnGain = 0x1p-6;
+inline constexpr unsigned kMostSteps = 200;
+/// Where to look for the point that lies deepest in both bodies: points of a grid, and so many between the corners of what
+/// they share; then steps, until they are this share of its clearance.
+inline constexpr int kStartGrid = 4;
+inline constexpr unsigned kMostStarts = 24;
+inline constexpr double kStartStep = 0x1p-6;
+/// How often the proof of a way out goes on from another common point, and where along the way it went before.
+inline constexpr unsigned kMostWaySteps = 40;
+inline constexpr double kWayShare = 0.9;
+
+}  // namespace lrb

@@ -1,0 +1,161 @@
+#include "engine/query/clash/clash.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "engine/core/error.hpp"
+#include "engine/query/clash/clash_impl.hpp"
+#include "engine/query/clash/depth.hpp"
+#include "engine/query/clash/shared_volume.hpp"
+#include "engine/query/clash/surface_pieces.hpp"
+#include "engine/query/collide_impl.hpp"
+#include "engine/query/contact/interiors.hpp"
+
+namespace lrb {
+namespace {
+
+using parting::UnitBodies;
+
+/// Returns the kind of bodies whose interiors share no point but whose surfaces meet: by what of the highest
+/// dimension they share.
+ClashKind touching_kind(QueryContext& query, const CollideResult& found) {
+  int most = 1;
+  for (const SimplexPair& pair : found.pairs) {
+    const double *a[3], *b[3];
+    query[Side::a].world.corners(pair.a, a);
+    query[Side::b].world.corners(pair.b, b);
+    most = std::max(most, std::min<int>(exact::contact_of_triangles(a, b).corner_count, 3));
+  }
+  return most == 3   ? ClashKind::touching_face
+         : most == 2 ? ClashKind::touching_edge
+                     : ClashKind::touching_point;
+}
+
+/// Returns the kind of bodies whose interiors overlap. One holds the other if nothing of the other's surface
+/// lies outside of it, nor any of its own surface in the other (a cavity), nor the two back to back (a cavity
+/// that the other fills).
+ClashKind overlapping_kind(const std::array<SurfacePieces, 2>& pieces) {
+  const SurfacePieces &a = pieces[0], &b = pieces[1];
+  const bool a_in_b = a.outside == 0 && b.inside == 0 && !a.on_opposite;
+  const bool b_in_a = b.outside == 0 && a.inside == 0 && !a.on_opposite;
+  if (a_in_b) return b_in_a ? ClashKind::equal : ClashKind::a_inside_b;
+  if (b_in_a) return ClashKind::b_inside_a;
+  if (b.most_outside > 1) return ClashKind::cuts_through;
+  return a.most_outside > 1 ? ClashKind::pierces : ClashKind::protrudes;
+}
+
+/// Measures how far solids without a point in common are apart, and compares that with the clearance.
+void measure_gap(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
+                 const ClashRequest& request, ClashContext& context, ClashResult& result) {
+  DistanceRequest ask;
+  ask.relation = false;
+  const DistanceResult d = distance(a, pose_a, b, pose_b, ask, context.distance);
+  result.distance = {d.lower, d.upper};
+  bool within = d.upper <= request.clearance;
+  if (!within && d.lower <= request.clearance) {
+    ask.within = request.clearance;
+    within = distance(a, pose_a, b, pose_b, ask, context.distance).within.value_or(false);
+  }
+  result.kind = within ? ClashKind::within_clearance : ClashKind::apart;
+}
+
+/// Decides the kind of bodies that have a point in common.
+void decide_kind(QueryContext& query, const CollideResult& found, ClashResult& result) {
+  const auto pieces = parting::surface_pieces(query, found);
+  if (!pieces) return;
+  result.pieces = *pieces;
+  const bool enters = (*pieces)[0].inside + (*pieces)[1].inside > 0;
+  if (enters)
+    result.interiors_overlap = Answer::yes;
+  else
+    result.interiors_overlap = (*pieces)[0].on_same ? interiors_overlap(query, found) : Answer::no;
+  result.shares_faces = (*pieces)[0].on_same && result.interiors_overlap == Answer::yes;
+  if (result.interiors_overlap == Answer::yes) result.kind = overlapping_kind(*pieces);
+  if (result.interiors_overlap == Answer::no) result.kind = touching_kind(query, found);
+}
+
+double to_world_cube(double volume, int exponent) {
+  // Not at once: three times the exponent may be out of range where the product is not.
+  return std::ldexp(std::ldexp(std::ldexp(volume, exponent), exponent), exponent);
+}
+
+/// Returns a volume in the world's unit; what leaves the range of normal doubles is rounded outward.
+ProvedInterval world_volume(const ProvedInterval& unit, int exponent) {
+  constexpr double kLeast = std::numeric_limits<double>::min(), kMost = std::numeric_limits<double>::max();
+  ProvedInterval v{to_world_cube(unit.lower, exponent), to_world_cube(unit.upper, exponent)};
+  if (v.lower < kLeast) v.lower = 0;
+  v.lower = std::min(v.lower, kMost);
+  if (unit.upper > 0) v.upper = std::max(v.upper, kLeast);
+  return v;
+}
+
+/// Finds how deep bodies are in each other, and the volume that they share.
+void measure_overlap(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
+                     const ClashRequest& request, QueryContext& query, const CollideResult& found,
+                     ClashResult& result) {
+  const UnitBodies bodies = parting::unit_bodies(query);
+  if (request.depth || request.along) {
+    parting::Parting parting(a, pose_a, b, pose_b, bodies);
+    parting::DepthFinder finder(query, found, bodies, parting);
+    if (request.depth) {
+      const auto depth = finder.depth();
+      result.depth = depth.length;
+      result.translation = depth.translation;
+    }
+    if (request.along) result.along = finder.along(request.along->stableNormalized());
+  }
+  if (request.volume && !a.self_intersecting() && !b.self_intersecting())
+    result.volume = world_volume(parting::shared_volume(bodies), bodies.frame.exponent);
+}
+
+void write_no_overlap(const ClashRequest& request, ClashResult& result) {
+  if (request.depth) result.depth = ProvedInterval{};
+  if (request.along) result.along = ProvedInterval{};
+  if (request.volume) result.volume = ProvedInterval{};
+}
+
+}  // namespace
+
+const char* to_string(ClashKind k) {
+  return name_of(k).data();
+}
+
+void check_request(const LrbRep& a, const ClashRequest& request) {
+  if (a.dim() != 3) throw InputError("the clash query is for bodies in space; these are in the plane");
+  if (!(request.clearance >= 0) || std::isinf(request.clearance))
+    throw InputError("the clash query's clearance is " + std::to_string(request.clearance) +
+                     "; give a finite number that is not negative");
+  if (request.along && (!request.along->allFinite() || request.along->isZero(0)))
+    throw InputError("the clash query's direction has no length, or none that is finite");
+}
+
+ClashResult clash(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
+                  const ClashRequest& request, ClashContext& context) {
+  check_query(a, pose_a, b, pose_b);
+  check_request(a, request);
+  NullProbe probe;
+  const CollideResult found = collide(a, pose_a, b, pose_b, {}, context.query, probe);
+  ClashResult result;
+  const bool solids = a.closed() && b.closed();
+  if (found.relation == Relation::separate || (found.pairs.empty() && !solids)) {
+    measure_gap(a, pose_a, b, pose_b, request, context, result);
+    result.interiors_overlap = solids ? Answer::no : Answer::unknown;
+    if (solids) write_no_overlap(request, result);
+    return result;
+  }
+  decide_kind(context.query, found, result);
+  if (result.interiors_overlap == Answer::no)
+    write_no_overlap(request, result);
+  else if (solids)
+    measure_overlap(a, pose_a, b, pose_b, request, context.query, found, result);
+  return result;
+}
+
+ClashResult clash(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
+                  const ClashRequest& request) {
+  ClashContext context;
+  return clash(a, pose_a, b, pose_b, request, context);
+}
+
+}  // namespace lrb

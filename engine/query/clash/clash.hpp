@@ -1,0 +1,105 @@
+#pragma once
+/// What kind of contact two solids have, and how deep it is: the kind, decided exactly; a translation that
+/// parts them; bounds of the depth and of the volume that they share, as intervals that are proved.
+///
+/// All of it is about the solids that the triangles of the world bound, whose corners are the doubles that
+/// Pose::apply() gives. A translation moves those corners by exactly the same vector.
+
+#include <array>
+#include <cstdint>
+#include <optional>
+
+#include <Eigen/Core>
+
+#include "engine/core/enum_words.hpp"
+#include "engine/core/pose.hpp"
+#include "engine/lrb/lrb_rep.hpp"
+#include "engine/query/walk/result.hpp"
+
+namespace lrb {
+
+/// How two solids lie to each other. A *piece* of one's surface is a connected part of it that is wholly
+/// inside the other solid, wholly outside, or on its surface.
+enum class ClashKind : std::uint8_t {
+  apart,             ///< no point in common, and further apart than the clearance
+  within_clearance,  ///< no point in common, and at most the clearance apart
+  touching_point,    ///< interiors share no point; surfaces meet in points alone
+  touching_edge,     ///< interiors share no point; surfaces meet along lines, in no area
+  touching_face,     ///< interiors share no point; surfaces meet in an area
+  protrudes,         ///< interiors overlap, and neither is parted: each has one piece at most outside the
+                     ///< other (of each component of its surface)
+  pierces,           ///< A goes through B: A is parted, into pieces outside of B; B is not
+  cuts_through,      ///< A parts B: of B, two pieces or more of a component lie outside A
+  a_inside_b,        ///< B holds all of A, whether or not surfaces touch
+  b_inside_a,
+  equal,      ///< the same solid
+  undecided,  ///< surfaces meet, but a body is not closed or intersects itself, so that inside has no
+              ///< meaning; or faces are cut by more of the other's than kInteriorCellsPerFace
+};
+constexpr auto words_of(ClashKind) {
+  return std::to_array<EnumWord<ClashKind>>({{ClashKind::apart, "apart"},
+                                             {ClashKind::within_clearance, "within_clearance"},
+                                             {ClashKind::touching_point, "touching_point"},
+                                             {ClashKind::touching_edge, "touching_edge"},
+                                             {ClashKind::touching_face, "touching_face"},
+                                             {ClashKind::protrudes, "protrudes"},
+                                             {ClashKind::pierces, "pierces"},
+                                             {ClashKind::cuts_through, "cuts_through"},
+                                             {ClashKind::a_inside_b, "a_inside_b"},
+                                             {ClashKind::b_inside_a, "b_inside_a"},
+                                             {ClashKind::equal, "equal"},
+                                             {ClashKind::undecided, "undecided"}});
+}
+const char* to_string(ClashKind k);
+
+struct ClashRequest {
+  /// The distance up to which solids without a point in common are `within_clearance`. Finite, at least 0;
+  /// unit: the world's.
+  double clearance = 0;
+  /// A direction of one's own, of any length but 0, along which B is to leave A.
+  std::optional<Eigen::Vector3d> along;
+  bool depth = true;   ///< find ClashResult::depth and ClashResult::translation
+  bool volume = true;  ///< find ClashResult::volume
+};
+
+/// Two doubles that hold a number.
+struct ProvedInterval {
+  double lower = 0, upper = 0;
+};
+
+/// The pieces of a solid's surface, by where they lie to the other solid.
+struct SurfacePieces {
+  std::uint32_t inside = 0, outside = 0;
+  std::uint32_t most_outside = 0;  ///< the most of one component of the surface
+  bool on_same = false;            ///< an area lies on the other's surface, with both solids on the same side
+  bool on_opposite = false;        ///< ..., with the solids on opposite sides
+};
+
+struct ClashResult {
+  ClashKind kind = ClashKind::undecided;
+  bool shares_faces = false;  ///< surfaces coincide over an area, with both solids on the same side of it
+  Answer interiors_overlap = Answer::unknown;
+  std::array<SurfacePieces, 2> pieces;  ///< of A's surface and of B's; counted where surfaces meet
+  /// The distance of the solids.
+  ProvedInterval distance;
+  /// The penetration depth: the length of the shortest translation of B after which the interiors share no
+  /// point. None for solids that are not closed. If interiors do not overlap: 0. The upper end is the length
+  /// of `translation`; infinite if none was found.
+  std::optional<ProvedInterval> depth;
+  /// Moved by this, B is proved to share no interior point with A: the solids are apart.
+  Eigen::Vector3d translation{0, 0, 0};
+  /// ClashRequest::along: how far B has to move in that direction until the interiors share no point for the
+  /// first time: for all that is less than the lower end they do, and at the upper end they do not.
+  std::optional<ProvedInterval> along;
+  /// The volume that the solids share, unit cubed. None for solids that are not closed or intersect
+  /// themselves.
+  std::optional<ProvedInterval> volume;
+};
+
+/// Returns what kind of contact body `a` at pose_a and body `b` at pose_b have, and how deep it is. Both must
+/// be 3D; poses may be any finite maps, and world coordinates must be finite. Throws InputError for these,
+/// and for numbers of the request that have no meaning.
+ClashResult clash(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
+                  const ClashRequest& request = {});
+
+}  // namespace lrb

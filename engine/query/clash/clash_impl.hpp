@@ -1,0 +1,23 @@
+#pragma once
+/// One clash query, with memory that the next one can use again: for code of ours. Users of the installed
+/// engine have clash.hpp.
+
+#include "engine/query/clash/clash.hpp"
+#include "engine/query/distance/distance_impl.hpp"
+
+namespace lrb {
+
+/// Memory of a query; one for each thread.
+struct ClashContext {
+  QueryContext query;
+  DistanceContext distance;
+};
+
+/// Answers as clash() in clash.hpp does.
+ClashResult clash(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
+                  const ClashRequest& request, ClashContext& context);
+
+/// Throws InputError if a request cannot be answered.
+void check_request(const LrbRep& a, const ClashRequest& request);
+
+}  // namespace lrb

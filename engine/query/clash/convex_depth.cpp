@@ -1,0 +1,153 @@
+#include "engine/query/clash/convex_depth.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/Geometry>
+
+#include "engine/core/clash_tolerances.hpp"
+#include "engine/query/distance/pair_bounds.hpp"
+
+namespace lrb::parting {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+const Vector3d& farthest(const ConvexPoints& points, const Vector3d& n) {
+  const Vector3d* best = &points[0];
+  double most = -kInfinity;
+  for (const Vector3d& x : points) {
+    const double d = n.dot(x);
+    if (d > most) {
+      most = d;
+      best = &x;
+    }
+  }
+  return *best;
+}
+
+}  // namespace
+
+ConvexDifference::ConvexDifference(const ConvexPoints& a, const ConvexPoints& b) : a_(a), b_(b) {
+  solid_ = begin();
+}
+
+Vector3d ConvexDifference::support(const Vector3d& n) const {
+  return farthest(a_, n) - farthest(b_, -n);
+}
+
+double ConvexDifference::width(const Vector3d& n) const {
+  return n.dot(support(n));
+}
+
+bool ConvexDifference::begin() {
+  const Vector3d first = support(Vector3d::UnitX());
+  Vector3d second = first, third = first, fourth = first;
+  const auto consider = [](Vector3d& best, double& most, const Vector3d& x, double value) {
+    if (value > most) {
+      most = value;
+      best = x;
+    }
+  };
+  double most = 0;
+  for (int k = 0; k < 3; ++k)
+    for (const double sign : {-1.0, 1.0}) {
+      const Vector3d x = support(sign * Vector3d::Unit(k));
+      consider(second, most, x, (x - first).norm());
+    }
+  if (!(most > 0)) return false;
+  const Vector3d along = (second - first).normalized();
+  const Vector3d across = along.unitOrthogonal(), other = along.cross(across);
+  most = 0;
+  for (const Vector3d& n : {across, other, Vector3d(-across), Vector3d(-other)}) {
+    const Vector3d x = support(n);
+    consider(third, most, x, along.cross(x - first).norm());
+  }
+  if (!(most > 0)) return false;
+  const Vector3d normal = along.cross(third - first).normalized();
+  most = 0;
+  for (const Vector3d& n : {normal, Vector3d(-normal)}) {
+    const Vector3d x = support(n);
+    consider(fourth, most, x, std::abs(normal.dot(x - first)));
+  }
+  return hull_.begin({first, second, third, fourth});
+}
+
+bool ConvexDifference::grow(std::size_t facet) {
+  PointHull::Facet& f = hull_.facets()[facet];
+  f.is_final = true;  // unless it is replaced
+  if (f.normal.isZero()) return false;
+  const Vector3d x = support(f.normal);
+  const double width = f.normal.dot(x);
+  if (width < upper_) {
+    upper_ = width;
+    direction_ = f.normal;
+  }
+  return width - f.offset > kDepthGain && hull_.add(x);
+}
+
+void ConvexDifference::find_depth() {
+  if (!solid_) return;
+  for (unsigned step = 0; step < kMostDepthSteps && upper_ > 0; ++step) {
+    const std::vector<PointHull::Facet>& facets = hull_.facets();
+    std::size_t nearest = facets.size();
+    for (std::size_t i = 0; i < facets.size(); ++i)
+      if (!facets[i].is_final && (nearest == facets.size() || facets[i].offset < facets[nearest].offset))
+        nearest = i;
+    if (nearest == facets.size() || facets[nearest].offset >= upper_ - kDepthGain) return;
+    grow(nearest);
+  }
+}
+
+double ConvexDifference::exit_of(const PointHull::Facet& f, const Vector3d& n) {
+  const double slope = f.normal.dot(n);
+  return slope > 0 ? f.offset / slope : kInfinity;
+}
+
+void ConvexDifference::follow(const Vector3d& n) {
+  if (!solid_) return;
+  for (unsigned step = 0; step < kMostDepthSteps; ++step) {
+    const std::vector<PointHull::Facet>& facets = hull_.facets();
+    std::size_t first = 0;
+    for (std::size_t i = 1; i < facets.size(); ++i)
+      if (exit_of(facets[i], n) < exit_of(facets[first], n)) first = i;
+    if (facets[first].is_final || !grow(first)) return;
+  }
+}
+
+/// The hull's points are off by kDifferenceRounding, so that the true differences hold the hull but for a
+/// layer of this thickness.
+double ConvexDifference::depth_lower() const {
+  const Vector3d origin = Vector3d::Zero();
+  if (!solid_ || !hull_.holds_inside(origin)) return 0;
+  const double* const point[3] = {origin.data(), origin.data(), origin.data()};
+  double least = kInfinity;
+  for (const PointHull::Facet& f : hull_.facets()) {
+    const double* const corners[3] = {hull_.point(f.v[0]).data(), hull_.point(f.v[1]).data(),
+                                      hull_.point(f.v[2]).data()};
+    const double distance = bound_distance(point, corners, 3).lower;
+    if (!(distance > 0)) return 0;
+    least = std::min(least, distance);
+  }
+  return std::max(0.0, least - kDifferenceRounding);
+}
+
+/// If the hull P holds x = s n and a ball of radius r about the origin, all differences hold (1 - e / r) P,
+/// where e is kDifferenceRounding: their supports are at least those of P less e, and these are at least r.
+double ConvexDifference::along_lower(const Vector3d& n) const {
+  const double radius = depth_lower();
+  if (!(radius > 0)) return 0;
+  double exit = kInfinity;
+  for (const PointHull::Facet& f : hull_.facets()) exit = std::min(exit, exit_of(f, n));
+  if (!(exit < kInfinity)) return 0;
+  const double lost = kDifferenceRounding / radius;
+  for (double share = kDepthGain; share < 1; share *= 4) {
+    const double s = exit * (1 - share);
+    const Vector3d x = s * n;
+    // x, too, is rounded.
+    if (hull_.holds_inside(x)) return std::max(0.0, s * (1 - 2 * lost) - 2 * kDifferenceRounding);
+  }
+  return 0;
+}
+
+}  // namespace lrb::parting

@@ -1,0 +1,297 @@
+#include "engine/query/clash/depth.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/Geometry>
+
+#include "engine/core/clash_tolerances.hpp"
+#include "engine/exact/pair_contact.hpp"
+#include "engine/query/walk/relation.hpp"
+
+namespace lrb::parting {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+Vector3d normal_of(const UnitBody& body, std::uint32_t triangle) {
+  const auto& t = body.triangles[triangle];
+  const Vector3d &a = body.points[t[0]], &b = body.points[t[1]], &c = body.points[t[2]];
+  return 0.5 * (b - a).cross(c - a);
+}
+
+/// Directions, each with the area of the faces that it is normal to, merged where they are nearly the same.
+class Directions {
+ public:
+  void add(const Vector3d& normal) {
+    const double area = normal.stableNorm();
+    if (!(area > 0)) return;
+    const Vector3d n = normal / area;
+    for (auto& [known, sum] : list_)
+      if (known.dot(n) > kSameDirection) {
+        sum += area;
+        return;
+      }
+    if (list_.size() < kMostDirections) list_.push_back({n, area});
+  }
+  /// Returns those of the largest areas.
+  std::vector<Vector3d> largest(std::size_t count) {
+    std::stable_sort(list_.begin(), list_.end(),
+                     [](const auto& a, const auto& b) { return a.second > b.second; });
+    std::vector<Vector3d> out;
+    for (const auto& [n, area] : list_)
+      if (out.size() < count) out.push_back(n);
+    return out;
+  }
+
+ private:
+  std::vector<std::pair<Vector3d, double>> list_;
+};
+
+ConvexPoints moved(ConvexPoints points, const Vector3d& by) {
+  for (Vector3d& x : points) x += by;
+  return points;
+}
+
+double farthest(const UnitBody& body, const Vector3d& n) {
+  double most = -kInfinity;
+  for (const Vector3d& x : body.points) most = std::max(most, n.dot(x));
+  return most;
+}
+
+}  // namespace
+
+DepthFinder::DepthFinder(QueryContext& query, const CollideResult& result, const UnitBodies& bodies,
+                         Parting& parting)
+    : query_(query), result_(result), bodies_(bodies), parting_(parting) {
+  for (const Side side : {Side::a, Side::b}) whole_[static_cast<int>(side)] = shrunken(side);
+}
+
+/// Returns a point that is found inside a body, in units, near x. shift: what B is thought to be moved by.
+std::optional<Vector3d> DepthFinder::inside_point(Side side, const Vector3d& x, const Vector3d& shift) {
+  const Vector3d world = bodies_.frame.to_world(side == Side::a ? x : Vector3d(x - shift));
+  if (!world.allFinite() || locate(query_[side], world.data()) != Where::inside) return std::nullopt;
+  return bodies_.frame.to_unit(world);
+}
+
+std::optional<ConvexPoints> DepthFinder::shrunken(Side side) {
+  const UnitBody& body = bodies_.body[static_cast<int>(side)];
+  // The middle of the surface, because that does not depend on how finely it is divided.
+  Vector3d centre = Vector3d::Zero();
+  double area = 0;
+  for (std::uint32_t i = 0; i < body.triangles.size(); ++i) {
+    const auto& t = body.triangles[i];
+    const double share = normal_of(body, i).stableNorm();
+    centre += share / 3 * (body.points[t[0]] + body.points[t[1]] + body.points[t[2]]);
+    area += share;
+  }
+  if (!(area > 0)) return std::nullopt;
+  const std::optional<Vector3d> inside = inside_point(side, centre / area, Vector3d::Zero());
+  return inside ? shrunken_body(body, *inside) : std::nullopt;
+}
+
+double DepthFinder::common_clearance(const Vector3d& x, const Vector3d& shift) {
+  double least = kInfinity;
+  for (const Side side : {Side::a, Side::b}) {
+    const std::optional<Vector3d> inside = inside_point(side, x, shift);
+    if (!inside) return 0;
+    least = std::min(least, rough_clearance(bodies_.body[static_cast<int>(side)], *inside));
+  }
+  return least;
+}
+
+/// Returns points from which to look for a deep one: about the corners of what the bodies share.
+std::vector<Vector3d> DepthFinder::starts(const Vector3d& shift) const {
+  std::vector<Vector3d> corners, out;
+  Eigen::AlignedBox3d boxes[2], box;
+  for (int side = 0; side < 2; ++side)
+    for (const Vector3d& x : bodies_.body[side].points)
+      boxes[side].extend(side == 0 ? x : Vector3d(x + shift));
+  box = boxes[0].intersection(boxes[1]);
+  if (box.isEmpty()) return out;
+  if (shift.isZero()) {
+    for (const SimplexPair& pair : result_.pairs) {
+      const double *a[3], *b[3];
+      query_[Side::a].world.corners(pair.a, a);
+      query_[Side::b].world.corners(pair.b, b);
+      const exact::PairContact contact = exact::contact_of_triangles(a, b);
+      for (int c = 0; c < contact.corner_count; ++c)
+        corners.push_back(bodies_.frame.to_unit(contact.corners[static_cast<std::size_t>(c)].x));
+    }
+  }
+  for (int side = 0; side < 2; ++side) {
+    std::vector<Vector3d> within;
+    for (const Vector3d& x : bodies_.body[side].points) {
+      const Vector3d at = side == 0 ? x : Vector3d(x + shift);
+      if (boxes[1 - side].contains(at)) within.push_back(at);
+    }
+    const std::size_t stride = within.size() / kMostStarts + 1;
+    for (std::size_t i = 0; i < within.size(); i += stride) corners.push_back(within[i]);
+  }
+  for (int i = 0; i < kStartGrid * kStartGrid * kStartGrid; ++i) {
+    const Vector3d share((i % kStartGrid + 0.5) / kStartGrid,
+                         (i / kStartGrid % kStartGrid + 0.5) / kStartGrid,
+                         (i / (kStartGrid * kStartGrid) + 0.5) / kStartGrid);
+    out.push_back(box.min() + share.cwiseProduct(box.sizes()));
+  }
+  if (corners.empty()) return out;
+  Vector3d middle = Vector3d::Zero();
+  for (const Vector3d& x : corners) middle += x / static_cast<double>(corners.size());
+  out.push_back(middle);
+  const std::size_t stride = corners.size() / kMostStarts + 1, n = corners.size();
+  for (std::size_t i = 0; i < n; i += stride) {
+    out.push_back(0.5 * (corners[i] + middle));
+    out.push_back(0.5 * (corners[i] + corners[(i + n / 2) % n]));
+    out.push_back((corners[i] + corners[(i + n / 3) % n] + corners[(i + 2 * n / 3) % n]) / 3);
+  }
+  return out;
+}
+
+std::optional<Vector3d> DepthFinder::deepest_common(const Vector3d& shift) {
+  Vector3d best = Vector3d::Zero();
+  double most = 0;
+  for (const Vector3d& x : starts(shift)) {
+    const double clearance = common_clearance(x, shift);
+    if (clearance > most) {
+      most = clearance;
+      best = x;
+    }
+  }
+  if (!(most > 0)) return std::nullopt;
+  unsigned tries = 0;
+  for (double step = most; step > kStartStep * most && tries < kMostSteps;) {
+    bool moved = false;
+    for (int k = 0; k < 3; ++k)
+      for (const double sign : {-1.0, 1.0}) {
+        const Vector3d x = best + sign * step * Vector3d::Unit(k);
+        const double clearance = common_clearance(x, shift);
+        ++tries;
+        if (!(clearance > most)) continue;
+        most = clearance;
+        best = x;
+        moved = true;
+      }
+    if (!moved) step /= 2;
+  }
+  return best;
+}
+
+std::optional<DepthFinder::Common> DepthFinder::common_sets(const Vector3d& shift) {
+  if (whole_[0] && whole_[1]) return Common{*whole_[0], moved(*whole_[1], shift)};
+  const std::optional<Vector3d> x = deepest_common(shift);
+  if (!x) return std::nullopt;
+  std::optional<ConvexPoints> sets[2];
+  for (const Side side : {Side::a, Side::b}) {
+    const int i = static_cast<int>(side);
+    sets[i] = whole_[i] ? whole_[i] : convex_about(bodies_.body[i], *inside_point(side, *x, shift));
+    if (!sets[i]) return std::nullopt;
+  }
+  return Common{std::move(*sets[0]), moved(std::move(*sets[1]), shift)};
+}
+
+double DepthFinder::hull_width(const Vector3d& n) const {
+  return farthest(bodies_.body[0], n) + farthest(bodies_.body[1], -n);
+}
+
+/// Returns the normals of the faces that meet the other body, and of the largest ones; B leaves a face of A
+/// along its normal, and takes its own faces the other way.
+std::vector<Vector3d> DepthFinder::directions() {
+  Directions in_contact, all;
+  for (const SimplexPair& pair : result_.pairs) {
+    in_contact.add(normal_of(bodies_.body[0], pair.a));
+    in_contact.add(-normal_of(bodies_.body[1], pair.b));
+  }
+  for (int side = 0; side < 2; ++side)
+    for (std::uint32_t i = 0; i < bodies_.body[side].triangles.size(); ++i)
+      all.add((side == 0 ? 1 : -1) * normal_of(bodies_.body[side], i));
+  std::vector<Vector3d> out = in_contact.largest(kDirectionsInContact);
+  for (const Vector3d& n : all.largest(kDirectionsOfFaces)) out.push_back(n);
+  return out;
+}
+
+void DepthFinder::improve(const Vector3d& n, double& best, Vector3d& best_n) {
+  const double width = hull_width(n);
+  if (!(width > 0)) return;
+  const double most = std::min(width, best * (1 - kDirectionGain));
+  const double s = parting_.least_apart(n, most, kDirectionSamples);
+  if (s >= most && (most < width || !(width < best))) return;
+  best = s;
+  best_n = n;
+}
+
+/// Turns the direction by less and less, as long as that shortens the way.
+void DepthFinder::refine(double& best, Vector3d& best_n) {
+  unsigned tries = 0;
+  for (double step = kFirstTurn; step > kLeastTurn && tries < kMostSteps;) {
+    const Vector3d across = best_n.unitOrthogonal(), other = best_n.cross(across);
+    bool shorter = false;
+    for (const Vector3d& way : {across, other, Vector3d(-across), Vector3d(-other)}) {
+      const Vector3d n = (best_n + step * way).normalized();
+      const double s = best * (1 - kTurnGain * step);
+      ++tries;
+      if (!parting_.is_apart(n, s)) continue;
+      best = parting_.least_apart(n, s, 1);
+      best_n = n;
+      shorter = true;
+      break;
+    }
+    if (!shorter) step /= 2;
+  }
+}
+
+DepthFinder::Depth DepthFinder::depth() {
+  Depth out;
+  out.length.upper = kInfinity;
+  const bool convex = whole_[0] && whole_[1];
+  if (const std::optional<Common> sets = common_sets(Vector3d::Zero())) {
+    ConvexDifference difference(sets->a, sets->b);
+    difference.find_depth();
+    out.length.lower = bodies_.frame.length_to_world(difference.depth_lower());
+  }
+  const ConvexPoints &a = bodies_.body[0].points, &b = bodies_.body[1].points;
+  ConvexDifference hulls(a, b);
+  hulls.find_depth();
+  double best = hulls.depth_upper();
+  Vector3d best_n = hulls.direction();
+  if (!convex) {
+    for (const Vector3d& n : directions()) improve(n, best, best_n);
+    if (best < kInfinity) refine(best, best_n);
+  }
+  if (!(best < kInfinity)) return out;
+  std::optional<PartingMove> move = parting_.prove(best_n, best);
+  if (!move) move = parting_.prove(hulls.direction(), hulls.depth_upper());
+  if (!move) return out;
+  out.translation = move->translation;
+  out.length.upper = move->length;
+  return out;
+}
+
+/// Goes from one common point to the next: convex sets about it overlap for all translations up to the next.
+double DepthFinder::along_lower(const Vector3d& n) {
+  double from = 0, lower = 0;
+  for (unsigned step = 0; step < kMostWaySteps; ++step) {
+    const std::optional<Common> sets = common_sets(from * n);
+    if (!sets) break;
+    ConvexDifference difference(sets->a, sets->b);
+    difference.find_depth();
+    difference.follow(n);
+    const double gain = difference.along_lower(n);
+    const double next = (from + gain) * (1 - 0x1p-50);
+    if (!(next > lower + kPartingMargin)) break;
+    lower = next;
+    if (whole_[0] && whole_[1]) break;
+    from += kWayShare * gain;
+  }
+  return lower;
+}
+
+ProvedInterval DepthFinder::along(const Vector3d& n) {
+  const double lower = along_lower(n), width = hull_width(n);
+  std::optional<double> upper = parting_.prove_along(n, lower);
+  if (!upper) upper = parting_.prove_along(n, parting_.least_apart(n, width, kWaySamples));
+  if (!upper) upper = parting_.prove_along(n, width);
+  const UnitFrame& frame = bodies_.frame;
+  return {frame.length_to_world(lower), upper ? frame.length_to_world(*upper) : kInfinity};
+}
+
+}  // namespace lrb::parting

@@ -1,0 +1,51 @@
+#pragma once
+/// The penetration depth of two solids whose interiors overlap, and the way out along a direction.
+
+#include <optional>
+
+#include "engine/query/clash/clash.hpp"
+#include "engine/query/clash/convex_depth.hpp"
+#include "engine/query/clash/parting.hpp"
+
+namespace lrb::parting {
+
+/// Bounds depths. Lower ends are those of convex sets inside the bodies, upper ends those of translations that
+/// the query proves. Between convex bodies both meet.
+class DepthFinder {
+ public:
+  /// `query`: begun with the bodies. `result`: all pairs of simplices that meet. Bodies must be closed.
+  DepthFinder(QueryContext& query, const CollideResult& result, const UnitBodies& bodies, Parting& parting);
+
+  struct Depth {
+    ProvedInterval length;  ///< world
+    Vector3d translation{0, 0, 0};
+  };
+  Depth depth();
+  /// `n`: of length about 1.
+  ProvedInterval along(const Vector3d& n);
+
+ private:
+  /// Convex sets of both bodies about a point of both.
+  struct Common {
+    ConvexPoints a, b;
+  };
+  std::optional<Vector3d> inside_point(Side side, const Vector3d& unit, const Vector3d& shift);
+  std::optional<ConvexPoints> shrunken(Side side);
+  std::vector<Vector3d> starts(const Vector3d& shift) const;
+  std::optional<Vector3d> deepest_common(const Vector3d& shift);
+  double common_clearance(const Vector3d& x, const Vector3d& shift);
+  std::optional<Common> common_sets(const Vector3d& shift);
+  std::vector<Vector3d> directions();
+  void improve(const Vector3d& n, double& best, Vector3d& best_n);
+  void refine(double& best, Vector3d& best_n);
+  double hull_width(const Vector3d& n) const;
+  double along_lower(const Vector3d& n);
+
+  QueryContext& query_;
+  const CollideResult& result_;
+  const UnitBodies& bodies_;
+  Parting& parting_;
+  std::optional<ConvexPoints> whole_[2];  ///< of a body that is convex
+};
+
+}  // namespace lrb::parting

@@ -1,0 +1,253 @@
+#include "engine/query/clash/surface_pieces.hpp"
+
+#include <algorithm>
+#include <map>
+#include <numeric>
+#include <span>
+#include <vector>
+
+#include "engine/core/tolerances.hpp"
+#include "engine/exact/locate.hpp"
+#include "engine/exact/pair_contact.hpp"
+#include "engine/query/contact/face_cutters.hpp"
+#include "engine/query/contact/reflection.hpp"
+#include "engine/query/walk/relation.hpp"
+
+namespace lrb::parting {
+namespace {
+
+class Groups {
+ public:
+  explicit Groups(std::size_t n) : leader_(n) { std::iota(leader_.begin(), leader_.end(), 0u); }
+  std::uint32_t add() {
+    leader_.push_back(static_cast<std::uint32_t>(leader_.size()));
+    return leader_.back();
+  }
+  std::uint32_t of(std::uint32_t i) {
+    while (leader_[i] != i) i = leader_[i] = leader_[leader_[i]];
+    return i;
+  }
+  void join(std::uint32_t i, std::uint32_t j) {
+    const std::uint32_t a = of(i), b = of(j);
+    leader_[std::max(a, b)] = std::min(a, b);
+  }
+  std::uint32_t size() const { return static_cast<std::uint32_t>(leader_.size()); }
+
+ private:
+  std::vector<std::uint32_t> leader_;
+};
+
+/// Returns for each vertex the first one at its place in the body: those of seams stand twice.
+std::vector<VertexId> places_of(const LrbRep& rep) {
+  std::vector<VertexId> order(rep.vertices().size()), out(rep.vertices().size());
+  for (std::uint32_t i = 0; i < order.size(); ++i) order[i] = VertexId(i);
+  const auto less = [&](VertexId a, VertexId b) {
+    const Eigen::Vector3d &x = rep.vertices()[a], &y = rep.vertices()[b];
+    return std::lexicographical_compare(x.data(), x.data() + 3, y.data(), y.data() + 3);
+  };
+  std::stable_sort(order.begin(), order.end(), less);
+  for (std::size_t i = 0; i < order.size(); ++i)
+    out[order[i]] = i > 0 && !less(order[i - 1], order[i]) ? out[order[i - 1]] : order[i];
+  return out;
+}
+
+/// A use of an edge by a simplex.
+struct EdgeUse {
+  VertexId from, to;  ///< by place, from < to
+  SimplexId simplex;
+  int edge;
+};
+
+/// A simplex that meets the other body.
+struct TouchedFace {
+  std::vector<std::uint32_t> pairs;  ///< into the result
+  std::optional<exact::CutFace> cut;
+  std::uint32_t first_node = 0;
+};
+
+/// The surface of one body, cut by the other.
+class CutSurface {
+ public:
+  CutSurface(QueryContext& ctx, Side side, const CollideResult& result,
+             const std::vector<exact::PairContact>& contacts)
+      : body_(ctx[side]),
+        holder_(ctx[other(side)]),
+        side_(side),
+        result_(result),
+        contacts_(contacts),
+        nodes_(body_.rep().real_simplex_count()),
+        surface_(body_.rep().real_simplex_count()) {}
+
+  std::optional<SurfacePieces> run() {
+    if (!cut_faces()) return std::nullopt;
+    const std::vector<EdgeUse> uses = edge_uses();
+    for (std::size_t i = 0; i < uses.size();) {
+      std::size_t end = i + 1;
+      while (end < uses.size() && uses[end].from == uses[i].from && uses[end].to == uses[i].to) ++end;
+      if (!join_at({uses.data() + i, end - i})) return std::nullopt;
+      i = end;
+    }
+    return count();
+  }
+
+ private:
+  SimplexId own(const SimplexPair& p) const { return side_ == Side::a ? p.a : p.b; }
+  SimplexId others(const SimplexPair& p) const { return side_ == Side::a ? p.b : p.a; }
+
+  bool cut_faces() {
+    for (std::uint32_t i = 0; i < result_.pairs.size(); ++i)
+      touched_[own(result_.pairs[i])].pairs.push_back(i);
+    for (auto& [s, face] : touched_) {
+      const double* corners[3];
+      body_.world.corners(s, corners);
+      FaceCutters cutters(corners, holder_);
+      for (const std::uint32_t i : face.pairs) cutters.add(others(result_.pairs[i]));
+      face.cut = exact::CutFace::make(corners, cutters.all(), kInteriorCellsPerFace);
+      if (!face.cut) return false;
+      face.first_node = nodes_.size();
+      for (std::size_t i = 0; i < face.cut->samples().size(); ++i) nodes_.add();
+    }
+    return true;
+  }
+
+  std::vector<EdgeUse> edge_uses() const {
+    const LrbRep& rep = body_.rep();
+    const std::vector<VertexId> place = places_of(rep);
+    std::vector<EdgeUse> uses;
+    for (SimplexId s = 0; s < rep.real_simplex_count(); ++s) {
+      VertexId v[3] = {0, 0, 0};  // gcc 12 does not see that simplex() sets three
+      rep.simplex(s, v);
+      for (int k = 0; k < 3; ++k) {
+        const auto [low, high] = std::minmax(place[v[k]], place[v[(k + 1) % 3]]);
+        uses.push_back({low, high, s, k});
+      }
+    }
+    std::sort(uses.begin(), uses.end(), [](const EdgeUse& a, const EdgeUse& b) {
+      return std::tie(a.from, a.to, a.simplex) < std::tie(b.from, b.to, b.simplex);
+    });
+    return uses;
+  }
+
+  /// Joins what borders on one edge. Returns false where that cannot be decided.
+  bool join_at(std::span<const EdgeUse> uses) {
+    for (const EdgeUse& use : uses) surface_.join(uses[0].simplex, use.simplex);
+    const double *from = body_.world(uses[0].from), *to = body_.world(uses[0].to);
+    bool is_free = false, any_touched = false;
+    for (const EdgeUse& use : uses) (touched_.contains(use.simplex) ? any_touched : is_free) = true;
+    if (!any_touched) {
+      for (const EdgeUse& use : uses) nodes_.join(uses[0].simplex, use.simplex);
+      return true;
+    }
+    std::vector<std::array<const double*, 3>> cutting;
+    bool ends_touched[2] = {false, false};
+    if (!is_free) is_free = find_cutting(uses, cutting, ends_touched);
+    const auto samples = exact::sample_edge(from, to, cutting);
+    if (!samples) return false;
+    for (const exact::RationalPoint& p : *samples)
+      if (is_free || locate(holder_, p) != Where::on_surface) join_beside(uses, p);
+    return true;
+  }
+
+  /// Finds the triangles of the other body that the inside of an edge meets in a point or in the end of a
+  /// segment. Returns true if no such point is there and an end of the edge meets nothing, so that nothing of
+  /// the edge's inside does.
+  bool find_cutting(std::span<const EdgeUse> uses, std::vector<std::array<const double*, 3>>& cutting,
+                    bool ends_touched[2]) {
+    for (const EdgeUse& use : uses)
+      for (const std::uint32_t i : touched_.at(use.simplex).pairs) {
+        bool on_edge = false;
+        for (int c = 0; c < contacts_[i].corner_count; ++c) {
+          const exact::ContactCorner& corner = contacts_[i].corners[static_cast<std::size_t>(c)];
+          const exact::Feature on = side_ == Side::a ? corner.on_a : corner.on_b;
+          on_edge |= on.dim == 1 && on.index == use.edge;
+          for (int end = 0; end < 2; ++end)
+            ends_touched[end] |= on.dim == 0 && on.index == (use.edge + end) % 3;
+        }
+        if (!on_edge) continue;
+        std::array<const double*, 3> corners;
+        holder_.world.corners(others(result_.pairs[i]), corners.data());
+        cutting.push_back(corners);
+      }
+    return cutting.empty() && !(ends_touched[0] && ends_touched[1]);
+  }
+
+  std::uint32_t node_beside(const EdgeUse& use, const exact::RationalPoint& p) const {
+    const auto face = touched_.find(use.simplex);
+    if (face == touched_.end()) return use.simplex.value();
+    return face->second.first_node + static_cast<std::uint32_t>(face->second.cut->cell_beside(use.edge, p));
+  }
+
+  void join_beside(std::span<const EdgeUse> uses, const exact::RationalPoint& p) {
+    const std::uint32_t first = node_beside(uses[0], p);
+    for (const EdgeUse& use : uses) nodes_.join(first, node_beside(use, p));
+  }
+
+  SurfacePieces count() {
+    SurfacePieces out;
+    std::map<std::uint32_t, std::uint32_t> outside;  // of each component of the surface
+    std::vector<bool> seen(nodes_.size(), false);
+    const auto see = [&](std::uint32_t node, SimplexId s, const auto& where) {
+      const std::uint32_t group = nodes_.of(node);
+      if (seen[group]) return;
+      seen[group] = true;
+      const Where w = where();
+      if (w == Where::inside) ++out.inside;
+      if (w == Where::outside)
+        out.most_outside = std::max(out.most_outside, ++outside[surface_.of(s.value())]);
+      out.outside += w == Where::outside;
+    };
+    for (SimplexId s = 0; s < body_.rep().real_simplex_count(); ++s) {
+      const auto face = touched_.find(s);
+      if (face == touched_.end()) {
+        VertexId v[3];
+        body_.rep().simplex(s, v);
+        see(s.value(), s, [&] { return locate(holder_, body_.world(v[0])); });
+        continue;
+      }
+      const auto& samples = face->second.cut->samples();
+      for (std::uint32_t i = 0; i < samples.size(); ++i)
+        see(face->second.first_node + i, s, [&] { return locate(holder_, samples[i]); });
+    }
+    return out;
+  }
+
+  QueryBody& body_;
+  QueryBody& holder_;
+  const Side side_;
+  const CollideResult& result_;
+  const std::vector<exact::PairContact>& contacts_;
+  std::map<SimplexId, TouchedFace> touched_;
+  Groups nodes_;    ///< simplices that meet nothing, by their number, then cells
+  Groups surface_;  ///< simplices
+};
+
+}  // namespace
+
+std::optional<std::array<SurfacePieces, 2>> surface_pieces(QueryContext& context,
+                                                           const CollideResult& result) {
+  for (const Side side : {Side::a, Side::b})
+    if (!context[side].rep().closed() || context[side].rep().self_intersecting()) return std::nullopt;
+  std::vector<exact::PairContact> contacts;
+  bool on_same = false, on_opposite = false;
+  const bool mirrored =
+      is_reflection(context[Side::a].world.pose(), 3) != is_reflection(context[Side::b].world.pose(), 3);
+  for (const SimplexPair& pair : result.pairs) {
+    const double *a[3], *b[3];
+    context[Side::a].world.corners(pair.a, a);
+    context[Side::b].world.corners(pair.b, b);
+    contacts.push_back(exact::contact_of_triangles(a, b));
+    if (!contacts.back().coplanar || contacts.back().corner_count < 3) continue;
+    (same_direction_3d(a, b) != mirrored ? on_same : on_opposite) = true;
+  }
+  std::array<SurfacePieces, 2> out;
+  for (const Side side : {Side::a, Side::b}) {
+    const std::optional<SurfacePieces> pieces = CutSurface(context, side, result, contacts).run();
+    if (!pieces) return std::nullopt;
+    out[static_cast<std::size_t>(side)] = *pieces;
+    out[static_cast<std::size_t>(side)].on_same = on_same;
+    out[static_cast<std::size_t>(side)].on_opposite = on_opposite;
+  }
+  return out;
+}
+
+}  // namespace lrb::parting

@@ -1,0 +1,80 @@
+// lrbscope clash: what it prints, and what it refuses.
+#include <string>
+
+#include <doctest/doctest.h>
+#include <nlohmann/json.hpp>
+
+#include "engine/mesh/io/mesh_io.hpp"
+#include "scenarios/bodies/shapes/shapes.hpp"
+#include "tests/support/folder.hpp"
+#include "tests/support/program.hpp"
+
+namespace lrb::test {
+namespace {
+
+using Json = nlohmann::json;
+
+struct ClashingBoxes {
+  Folder folder;
+  ClashingBoxes() {
+    write_mesh(shapes::box(), folder / "a.obj");
+    write_mesh(shapes::box({-1, 0.25, 0.25}, {0, 0.5, 0.5}), folder / "b.obj");
+    // 0.25 into a side; touching it; 0.5 away; through
+    folder.write("poses.txt",
+                 "1 0 0 0.25  0 1 0 0  0 0 1 0\n1 0 0 0  0 1 0 0  0 0 1 0\n1 0 0 -0.5  0 1 0 0  0 0 1 0\n"
+                 "3 0 0 2  0 1 0 0  0 0 1 0\n");
+    folder.write("plane.obj", "v 0 0\nv 1 0\nv 0 1\nl 1 2\nl 2 3\nl 3 1\n");
+  }
+  std::vector<std::string> arguments(std::vector<std::string> more) const {
+    std::vector<std::string> args = {"--quiet", "clash", "a.obj", "b.obj", "--poses", "poses.txt"};
+    args.insert(args.end(), more.begin(), more.end());
+    return args;
+  }
+};
+
+TEST_CASE("clash: a line for each pose, and a table") {
+  const ClashingBoxes boxes;
+  const Outcome o = run(boxes.folder, boxes.arguments({"--clearance", "0.5", "--along", "-1,0,0"}));
+  CAPTURE(o.err);
+  REQUIRE(o.code == 0);
+  std::vector<Json> lines;
+  std::istringstream in(o.out);
+  for (std::string line; std::getline(in, line);) lines.push_back(Json::parse(line));
+  REQUIRE(lines.size() == 4);
+  const char* kinds[] = {"protrudes", "touching_face", "within_clearance", "cuts_through"};
+  const double depths[] = {0.25, 0, 0, 0.5}, volumes[] = {0.015625, 0, 0, 0.0625}, ways[] = {0.25, 0, 0, 2};
+  const auto holds = [](const Json& interval, double value) {
+    return interval[0] <= value && interval[1] >= value &&
+           interval[1].get<double>() - interval[0].get<double>() < 1e-10;
+  };
+  for (std::size_t i = 0; i < 4; ++i) {
+    CAPTURE(lines[i].dump());
+    CHECK(lines[i]["pose"] == i);
+    CHECK(lines[i]["kind"] == kinds[i]);
+    CHECK(holds(lines[i]["depth"], depths[i]));
+    CHECK(holds(lines[i]["volume"], volumes[i]));
+    CHECK(holds(lines[i]["along"], ways[i]));
+    CHECK(holds(lines[i]["distance"], i == 2 ? 0.5 : 0));
+    CHECK(lines[i].contains("pieces_a") == (i != 2));
+  }
+  CHECK(lines[0]["translation"][0].get<double>() == doctest::Approx(-0.25));
+  const Outcome table = run(boxes.folder, boxes.arguments({"--table"}));
+  REQUIRE(table.code == 0);
+  CHECK(table.out.find("pose") == 0);
+  CHECK(table.out.find("touching_face") != std::string::npos);
+  CHECK(table.out.find("0.015625") != std::string::npos);
+}
+
+TEST_CASE("clash: what cannot be asked is refused in one line") {
+  const ClashingBoxes boxes;
+  check_refused(boxes.folder, boxes.arguments({"--clearance", "-1"}));
+  check_refused(boxes.folder, boxes.arguments({"--clearance", "nan"}));
+  check_refused(boxes.folder, boxes.arguments({"--along", "0,0,0"}));
+  check_refused(boxes.folder, boxes.arguments({"--along", "1,2"}));
+  check_refused(boxes.folder, boxes.arguments({"--along", "nan,0,0"}));
+  check_refused(boxes.folder, {"clash", "a.obj", "none.obj", "--poses", "poses.txt"});
+  check_refused(boxes.folder, {"clash", "plane.obj", "plane.obj", "--poses", "poses.txt"});
+}
+
+}  // namespace
+}  // namespace lrb::test
