@@ -94,7 +94,11 @@ LoadedBody load_body(const std::string& path, const BuildOptions& options) {
 
 LoadedBody load_faces(const std::string& path) {
   if (is_lrb_file(path)) return {load_lrb(path), {}, 0};
-  CheckedMesh mesh = check(read_mesh(path));
+  return faces_of_mesh(read_mesh(path));
+}
+
+LoadedBody faces_of_mesh(Mesh unchecked) {
+  CheckedMesh mesh = check(std::move(unchecked));
   refuse_unless_queryable(mesh);
   std::vector<std::string> notes;
   if (mesh.report().when_turned().buildable())
