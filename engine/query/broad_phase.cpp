@@ -10,6 +10,9 @@ namespace {
 
 using Box = Eigen::AlignedBox3d;
 
+/// More swaps than this for each body take longer than sorting afresh.
+constexpr std::uint64_t kSwapsOfABody = 32;
+
 /// Returns how crowded an axis is: the average number of boxes over a point of it, up to a factor that all
 /// axes have, which is the sum of the boxes' lengths over the length that they cover. Halves before it
 /// subtracts, against overflow.
@@ -17,6 +20,7 @@ double crowding(std::span<const Box> boxes, int axis) {
   double low = 0, high = 0, lengths = 0;
   bool any = false;
   for (const Box& b : boxes) {
+    if (b.isEmpty()) continue;
     const double from = b.min()[axis] / 2, to = b.max()[axis] / 2;
     if (!std::isfinite(from) || !std::isfinite(to)) continue;
     low = any ? std::min(low, from) : from;
@@ -50,11 +54,16 @@ void SweepAndPrune::sort(std::span<const Box> boxes) {
     std::sort(order_.begin(), order_.end(), before);
     return;
   }
-  for (std::size_t k = 1; k < order_.size(); ++k)
+  for (std::size_t k = 1; k < order_.size(); ++k) {
+    if (work_.swaps > kSwapsOfABody * order_.size()) {  // the order is no help: bodies have jumped
+      std::sort(order_.begin(), order_.end(), before);
+      return;
+    }
     for (std::size_t l = k; l > 0 && before(order_[l], order_[l - 1]); --l) {
       std::swap(order_[l], order_[l - 1]);
       ++work_.swaps;
     }
+  }
 }
 
 const std::vector<BodyPair>& SweepAndPrune::update(std::span<const Box> boxes) {

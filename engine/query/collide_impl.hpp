@@ -22,13 +22,13 @@ namespace lrb {
 void check_query(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b);
 
 /// Asks for body `a` at pose_a against body `b` at pose_b, as collide() in collide.hpp does. `context`:
-/// memory that a query needs and the next one can use again, one per thread. `probe`: see NullProbe.
+/// memory that a query needs and the next one can use again, one per thread. `probe`: see NullProbe. `result`: new,
+/// or emptied by clear().
 template <class Probe>
-CollideResult collide(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
-                      const CollideRequest& request, QueryContext& context, Probe& probe) {
+void collide_into(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
+                  const CollideRequest& request, QueryContext& context, Probe& probe, CollideResult& result) {
   check_query(a, pose_a, b, pose_b);
   if (request.is_coarse()) check_coarse_request(request);
-  CollideResult result;
   result.recursion = request.recursion;
   result.mode = request.mode;
   context.body[0].begin(a, pose_a, request.wrapper);
@@ -65,6 +65,14 @@ CollideResult collide(const LrbRep& a, const Pose& pose_a, const LrbRep& b, cons
     result.counters.regions_opened += result.opened[side].size();
   }
   result.counters.exact_fallbacks = exact::exact_fallbacks() - fallbacks;
+}
+
+/// Does the same into a new result.
+template <class Probe>
+CollideResult collide(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
+                      const CollideRequest& request, QueryContext& context, Probe& probe) {
+  CollideResult result;
+  collide_into(a, pose_a, b, pose_b, request, context, probe, result);
   return result;
 }
 

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/body/body_of_mesh.hpp"
 #include "engine/construct/build.hpp"
 #include "engine/lrb/lrb_rep.hpp"
 #include "engine/mesh/mesh.hpp"
@@ -16,8 +17,7 @@ struct LoadedBody {
   double build_seconds = 0;        ///< 0 if nothing was built
 };
 
-/// Returns true if the file says it is an LRB-rep (by its first bytes, not its name).
-bool is_lrb_file(const std::string& path);
+using lrb::is_lrb_file;
 
 /// Reads a mesh and builds its LRB-rep, or reads an LRB-rep. A mesh that cannot have one (open, non-manifold)
 /// becomes a body without regions, and a note says why. Throws InputError if it cannot be queried at all.

@@ -30,14 +30,6 @@ double seconds_since(Clock::time_point began) {
   return std::chrono::duration<double>(Clock::now() - began).count();
 }
 
-/// Resets the counters but keeps their memory.
-void reset_counters(Counters& c) {
-  std::vector<std::uint32_t> levels = std::move(c.face_tests_by_level);
-  levels.clear();
-  c = {};
-  c.face_tests_by_level = std::move(levels);
-}
-
 }  // namespace
 
 /// The implementation of CoherentQuery.
@@ -123,7 +115,7 @@ const CollideResult& CoherentQuery::Work::collide(const Pose& pose_a, const Pose
     result_.pairs.clear();
   }
   const std::uint64_t fallbacks = exact::exact_fallbacks();
-  reset_counters(result_.counters);
+  clear(result_.counters);
   answer(pose_a, pose_b, probe);
   result_.counters.exact_fallbacks = exact::exact_fallbacks() - fallbacks;
   at_work_ = false;

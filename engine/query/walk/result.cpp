@@ -1,6 +1,7 @@
 #include "engine/query/walk/result.hpp"
 
 #include <string>
+#include <utility>
 
 #include "engine/core/error.hpp"
 #include "engine/core/fnv.hpp"
@@ -15,6 +16,29 @@ const char* to_string(Answer a) {
 }
 const char* to_string(Recursion r) {
   return name_of(r).data();
+}
+
+void clear(Counters& counters) {
+  std::vector<std::uint32_t> levels = std::move(counters.face_tests_by_level);
+  levels.clear();
+  counters = {};
+  counters.face_tests_by_level = std::move(levels);
+}
+
+void clear(CollideResult& result) {
+  CollideResult old = std::exchange(result, {});
+  clear(old.counters);
+  old.pairs.clear();
+  old.meets.clear();
+  old.contacts.clear();
+  old.regions.clear();
+  for (std::vector<RegionId>& opened : old.opened) opened.clear();
+  result.counters = std::move(old.counters);
+  result.pairs = std::move(old.pairs);
+  result.meets = std::move(old.meets);
+  result.contacts = std::move(old.contacts);
+  result.regions = std::move(old.regions);
+  result.opened = std::move(old.opened);
 }
 
 void refuse_pairs(std::uint64_t limit) {

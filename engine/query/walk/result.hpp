@@ -101,6 +101,10 @@ struct CollideResult {
   Counters counters;
 };
 
+/// Make an answer and its counters as new, but keep their memory.
+void clear(CollideResult& result);
+void clear(Counters& counters);
+
 /// Throws the InputError that the query found more pairs than `limit`.
 [[noreturn]] void refuse_pairs(std::uint64_t limit);
 

@@ -1,0 +1,135 @@
+#include "engine/body/body.hpp"
+
+#include <utility>
+
+#include "engine/body/body_of_mesh.hpp"
+#include "engine/core/file_bytes.hpp"
+#include "engine/lrb/lrb_file.hpp"
+#include "engine/mesh/io/mesh_io.hpp"
+
+namespace lrb {
+namespace {
+
+/// Arrays of a body, row by row.
+template <class Number>
+struct Rows {
+  std::span<const Number> numbers;
+  std::size_t each;  ///< numbers in a row
+};
+
+/// Returns why the shapes of two arrays are not those of vertices and faces; empty: they are.
+template <class Number>
+std::string shape_fault(const Rows<double>& vertices, const Rows<Number>& faces) {
+  const bool is_flat = faces.each == 2;
+  if (faces.each < 2)
+    return "faces have " + std::to_string(faces.each) + " corners; give 3 or more, or 2 in the plane";
+  if (vertices.each != 3 && !(is_flat && vertices.each == 2))
+    return "vertices have " + std::to_string(vertices.each) + " coordinates; give " +
+           (is_flat ? "2 or 3" : "3");
+  if (vertices.numbers.size() % vertices.each != 0)
+    return std::to_string(vertices.numbers.size()) + " coordinates do not make vertices of " +
+           std::to_string(vertices.each);
+  if (faces.numbers.size() % faces.each != 0)
+    return std::to_string(faces.numbers.size()) + " corners do not make faces of " +
+           std::to_string(faces.each);
+  if (vertices.numbers.size() / vertices.each > kMaxId || faces.numbers.size() > kMaxId)
+    return "it has more vertices or corners than 32 bits count; give " + std::to_string(kMaxId) + " at most";
+  return {};
+}
+
+template <class Number>
+Expected<Mesh> mesh_of(const Rows<double>& vertices, const Rows<Number>& faces, const std::string& name) {
+  const std::string who = printable_name(name);
+  if (const std::string fault = shape_fault(vertices, faces); !fault.empty())
+    return Refusal{who + ": " + fault};
+  Mesh mesh;
+  mesh.name = who;
+  mesh.dim = faces.each == 2 ? 2 : 3;
+  const std::size_t count = vertices.numbers.size() / vertices.each;
+  mesh.vertices.reserve(count);
+  for (std::size_t v = 0; v < count; ++v) {
+    const double* const x = vertices.numbers.data() + v * vertices.each;
+    mesh.vertices.emplace_back(x[0], x[1], vertices.each == 3 ? x[2] : 0);
+    if (mesh.dim == 2 && mesh.vertices.back().z() != 0)
+      return Refusal{who + ": vertex " + std::to_string(v) + " of a body in the plane has a z; give 0"};
+  }
+  mesh.face_vertices.reserve(faces.numbers.size());
+  mesh.face_offsets.reserve(faces.numbers.size() / faces.each + 1);
+  for (std::size_t i = 0; i < faces.numbers.size(); ++i) {
+    const Number corner = faces.numbers[i];
+    if (std::cmp_less(corner, 0) || std::cmp_greater_equal(corner, count))
+      return Refusal{who + ": face " + std::to_string(i / faces.each) + " names vertex " +
+                     std::to_string(corner) + ", which does not exist; give 0 to " + std::to_string(count) +
+                     " - 1"};
+    mesh.face_vertices.push_back(VertexId(corner));
+    if ((i + 1) % faces.each == 0) mesh.face_offsets.push_back(static_cast<std::uint32_t>(i + 1));
+  }
+  return mesh;
+}
+
+template <class Number>
+Expected<Body> body_of(const Rows<double>& vertices, const Rows<Number>& faces, const BodyOptions& options) {
+  Expected<Mesh> mesh = mesh_of(vertices, faces, options.name);
+  if (!mesh) return mesh.error();
+  return Body::from(std::move(*mesh), options);
+}
+
+/// Says what cannot be asked of a body that bounds no solid.
+std::string note_no_solid(const LrbRep& rep) {
+  return rep.name() +
+         ": bounds no solid: pairs, contacts and distances are exact; nothing is inside it, and where its surface "
+         "meets nothing the relation is `undefined`";
+}
+
+}  // namespace
+
+Body Body::made(Mesh mesh, const BodyOptions& options) {
+  CheckedMesh checked = check(std::move(mesh));
+  MadeBody made = options.regions ? make_body(std::move(checked), options.build, options.turn)
+                                  : make_body_of_faces(std::move(checked), options.turn);
+  if (!made.rep.closed()) made.notes.push_back(note_no_solid(made.rep));
+  return Body(std::make_shared<const Held>(Held{std::move(made.rep), std::move(made.notes), made.turned}));
+}
+
+Expected<Body> Body::from_rows(std::span<const double> coordinates, std::size_t each,
+                               std::span<const std::int64_t> corners, std::size_t each_face,
+                               const BodyOptions& options) {
+  return body_of(Rows<double>{coordinates, each}, Rows<std::int64_t>{corners, each_face}, options);
+}
+
+Expected<Body> Body::from(std::span<const double> coordinates, std::span<const std::uint32_t> corners,
+                          const BodyOptions& options) {
+  return body_of(Rows<double>{coordinates, 3}, Rows<std::uint32_t>{corners, 3}, options);
+}
+
+Expected<Body> Body::from(std::span<const double> coordinates, std::span<const std::int32_t> corners,
+                          const BodyOptions& options) {
+  return body_of(Rows<double>{coordinates, 3}, Rows<std::int32_t>{corners, 3}, options);
+}
+
+Expected<Body> Body::from(std::span<const double> coordinates, std::span<const std::int64_t> corners,
+                          const BodyOptions& options) {
+  return body_of(Rows<double>{coordinates, 3}, Rows<std::int64_t>{corners, 3}, options);
+}
+
+Expected<Body> Body::from(Mesh mesh, const BodyOptions& options) try {
+  if (mesh.name.empty()) mesh.name = printable_name(options.name);
+  return made(std::move(mesh), options);
+} catch (const InputError& e) {
+  return Refusal{e.what()};
+}
+
+Body Body::from(LrbRep rep) {
+  std::vector<std::string> notes;
+  if (!rep.closed()) notes.push_back(note_no_solid(rep));
+  return Body(std::make_shared<const Held>(Held{std::move(rep), std::move(notes), 0}));
+}
+
+Expected<Body> Body::load(const std::string& path, const BodyOptions& options) try {
+  if (is_lrb_file(path)) return from(load_lrb(path));
+  return made(read_mesh(path), options);
+} catch (const InputError& e) {
+  return Refusal{e.what()};
+}
+
+}  // namespace lrb

@@ -1,0 +1,93 @@
+#include "engine/body/body_of_mesh.hpp"
+
+#include <chrono>
+#include <filesystem>
+#include <fstream>
+
+#include "engine/core/error.hpp"
+#include "engine/lrb/lrb_file.hpp"
+
+namespace lrb {
+namespace {
+
+/// Returns a mesh's findings on one line, after its name.
+std::string joined(const Mesh& mesh, const std::vector<std::string>& lines) {
+  const std::string name = mesh.name + ": ";
+  std::string out;
+  for (const std::string& line : lines)
+    out += (out.empty() ? "" : " | ") + (line.starts_with(name) ? line.substr(name.size()) : line);
+  return out;
+}
+
+void refuse_unless_queryable(const CheckedMesh& mesh) {
+  if (!mesh.report().queryable())
+    throw InputError(mesh.mesh().name +
+                     ": cannot be queried: " + joined(mesh.mesh(), mesh.report().lines(mesh.mesh())));
+}
+
+std::string note_without_regions(const CheckedMesh& mesh, bool turn) {
+  const std::string why =
+      turn ? obstacles_to_build(mesh) : joined(mesh.mesh(), mesh.report().obstacles(mesh.mesh()));
+  return mesh.mesh().name + ": queried without regions, because it cannot have any: " + why;
+}
+
+bool can_be_built(const CheckedMesh& mesh, bool turn) {
+  return turn ? mesh.report().when_turned().buildable() : mesh.report().buildable();
+}
+
+}  // namespace
+
+bool is_lrb_file(const std::string& path) {
+  std::error_code ignored;  // what is read from a pipe is gone, and a named pipe would have to be waited for
+  if (!std::filesystem::is_regular_file(path, ignored)) return false;
+  constexpr std::size_t kEnough = 64;  // bytes: more than any magic
+  std::ifstream in(path, std::ios::binary);
+  std::string start(kEnough, '\0');
+  in.read(start.data(), static_cast<std::streamsize>(start.size()));
+  return looks_like_lrb(std::string_view(start).substr(0, static_cast<std::size_t>(in.gcount())));
+}
+
+std::string obstacles_to_build(const CheckedMesh& mesh) {
+  return joined(mesh.mesh(), mesh.report().when_turned().obstacles(mesh.mesh()));
+}
+
+std::uint32_t turn_outward(CheckedMesh& mesh, std::vector<std::string>& notes) {
+  const std::uint32_t turned = mesh.turn_outward();
+  if (turned > 0)
+    notes.push_back(mesh.mesh().name + ": turned " + std::to_string(turned) +
+                    (turned == 1 ? " component that was inside out" : " components that were inside out"));
+  return turned;
+}
+
+MadeBody make_body(CheckedMesh mesh, const BuildOptions& options, bool turn) {
+  using Clock = std::chrono::steady_clock;
+  refuse_unless_queryable(mesh);
+  std::vector<std::string> notes;
+  if (can_be_built(mesh, turn)) {
+    const std::uint32_t turned = turn ? turn_outward(mesh, notes) : 0;
+    const auto begin = Clock::now();
+    LrbRep rep = build_lrb(mesh, options);
+    const double seconds = std::chrono::duration<double>(Clock::now() - begin).count();
+    return {std::move(rep), std::move(notes), seconds, turned};
+  }
+  notes.push_back(note_without_regions(mesh, turn));
+  Workers workers(options.threads);
+  const bool self_intersecting = !mesh.self_intersecting_faces(workers).empty();
+  return {LrbRep::without_regions(mesh.mesh(), mesh.report().bounds_solid, self_intersecting),
+          std::move(notes)};
+}
+
+MadeBody make_body_of_faces(CheckedMesh mesh, bool turn) {
+  refuse_unless_queryable(mesh);
+  std::vector<std::string> notes;
+  std::uint32_t turned = 0;
+  if (!can_be_built(mesh, turn))
+    notes.push_back(note_without_regions(mesh, turn));
+  else if (turn)
+    turned = turn_outward(mesh, notes);
+  constexpr bool kNotAsked = false;  // whether it intersects itself matters to regions only
+  return {LrbRep::without_regions(mesh.mesh(), mesh.report().bounds_solid, kNotAsked), std::move(notes), 0,
+          turned};
+}
+
+}  // namespace lrb

@@ -1,0 +1,113 @@
+#include "engine/query/batch/batch.hpp"
+
+#include <algorithm>
+#include <numeric>
+#include <tuple>
+
+#include "engine/core/parallel.hpp"
+#include "engine/query/batch/workspace_memory.hpp"
+
+namespace lrb {
+
+class Batch::Work {
+ public:
+  explicit Work(unsigned threads) : workers_(threads), workspaces_(workers_.count()) {}
+  unsigned threads() const { return workers_.count(); }
+
+  /// Calls ask(i, workspace) for i = 0 .. n - 1.
+  template <class Ask>
+  void for_each(std::size_t n, const Ask& ask) {
+    workers_.for_each(n, [&](std::size_t i, unsigned worker) { ask(i, workspaces_[worker]); });
+  }
+
+  /// Does the same for pairs, those of the same two bodies after one another, because a workspace then keeps more of
+  /// what it has.
+  template <class Ask>
+  void for_each(std::span<const PosedPair> pairs, const Ask& ask) {
+    order_.resize(pairs.size());
+    std::iota(order_.begin(), order_.end(), std::size_t{0});
+    std::sort(order_.begin(), order_.end(), [&](std::size_t x, std::size_t y) {
+      const auto key = [&](std::size_t i) {
+        return std::tuple(pairs[i].a->serial(), pairs[i].b->serial(), i);
+      };
+      return key(x) < key(y);
+    });
+    for_each(pairs.size(), [&](std::size_t k, Workspace& workspace) { ask(order_[k], workspace); });
+  }
+
+ private:
+  Workers workers_;
+  std::vector<Workspace> workspaces_;  ///< (threads)
+  std::vector<std::size_t> order_;
+};
+
+Batch::Batch(unsigned threads) : work_(std::make_unique<Work>(threads)) {}
+Batch::~Batch() = default;
+Batch::Batch(Batch&&) noexcept = default;
+Batch& Batch::operator=(Batch&&) noexcept = default;
+
+unsigned Batch::threads() const {
+  return work_->threads();
+}
+
+void Batch::collide(const LrbRep& a, const Pose& pose_a, const LrbRep& b, std::span<const Pose> poses_b,
+                    const CollideRequest& request, CollideAnswers& answers) {
+  answers.resize(poses_b.size());
+  work_->for_each(poses_b.size(), [&](std::size_t i, Workspace& w) {
+    collide_into(a, pose_a, b, poses_b[i], request, w.memory().context.query, answers[i]);
+  });
+}
+
+void Batch::collide(std::span<const PosedPair> pairs, const CollideRequest& request,
+                    CollideAnswers& answers) {
+  answers.resize(pairs.size());
+  work_->for_each(pairs, [&](std::size_t i, Workspace& w) {
+    const PosedPair& p = pairs[i];
+    collide_into(*p.a, p.pose_a, *p.b, p.pose_b, request, w.memory().context.query, answers[i]);
+  });
+}
+
+void Batch::distance(const LrbRep& a, const Pose& pose_a, const LrbRep& b, std::span<const Pose> poses_b,
+                     const DistanceRequest& request, DistanceAnswers& answers) {
+  answers.resize(poses_b.size());
+  work_->for_each(poses_b.size(), [&](std::size_t i, Workspace& w) {
+    answers[i] = lrb::distance(a, pose_a, b, poses_b[i], request, w);
+  });
+}
+
+void Batch::distance(std::span<const PosedPair> pairs, const DistanceRequest& request,
+                     DistanceAnswers& answers) {
+  answers.resize(pairs.size());
+  work_->for_each(pairs, [&](std::size_t i, Workspace& w) {
+    const PosedPair& p = pairs[i];
+    answers[i] = lrb::distance(*p.a, p.pose_a, *p.b, p.pose_b, request, w);
+  });
+}
+
+CollideAnswers collide(const LrbRep& a, const Pose& pose_a, const LrbRep& b, std::span<const Pose> poses_b,
+                       const CollideRequest& request, unsigned threads) {
+  CollideAnswers answers;
+  Batch(threads).collide(a, pose_a, b, poses_b, request, answers);
+  return answers;
+}
+
+CollideAnswers collide(std::span<const PosedPair> pairs, const CollideRequest& request, unsigned threads) {
+  CollideAnswers answers;
+  Batch(threads).collide(pairs, request, answers);
+  return answers;
+}
+
+DistanceAnswers distance(const LrbRep& a, const Pose& pose_a, const LrbRep& b, std::span<const Pose> poses_b,
+                         const DistanceRequest& request, unsigned threads) {
+  DistanceAnswers answers;
+  Batch(threads).distance(a, pose_a, b, poses_b, request, answers);
+  return answers;
+}
+
+DistanceAnswers distance(std::span<const PosedPair> pairs, const DistanceRequest& request, unsigned threads) {
+  DistanceAnswers answers;
+  Batch(threads).distance(pairs, request, answers);
+  return answers;
+}
+
+}  // namespace lrb

@@ -1,0 +1,66 @@
+// Poses from what others keep them in, to the bit.
+#include "engine/core/pose_of.hpp"
+
+#include <limits>
+
+#include <doctest/doctest.h>
+
+using namespace lrb;
+
+namespace {
+
+const Pose kPose = Pose::rotation({1, -2, 3}, 0.7, {4, 5, 1e-300});
+
+void check_equal(const Pose& x, const Pose& y) {
+  CHECK(x.r == y.r);
+  CHECK(x.t == y.t);
+}
+
+}  // namespace
+
+TEST_CASE("a pose comes out of Eigen's types as it went in") {
+  check_equal(pose_of(transform_of(kPose)), kPose);
+  Eigen::Isometry3d isometry = Eigen::Isometry3d::Identity();
+  isometry.linear() = kPose.r;
+  isometry.translation() = kPose.t;
+  check_equal(pose_of(isometry), kPose);
+  check_equal(pose_of(Eigen::AffineCompact3d(matrix_of(kPose).topRows<3>())), kPose);
+  check_equal(pose_of(matrix_of(kPose)).value(), kPose);
+  check_equal(pose_of(Eigen::Matrix<double, 3, 4>(matrix_of(kPose).topRows<3>())).value(), kPose);
+  const Eigen::Quaterniond turn(Eigen::AngleAxisd(0.5, Eigen::Vector3d::UnitX()));
+  check_equal(pose_of(turn, {1, 2, 3}), {turn.toRotationMatrix(), {1, 2, 3}});
+}
+
+TEST_CASE("a pose comes out of rows of numbers, 3 x 4 or 4 x 4") {
+  const double rows[16] = {1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 0, 0, 0, 1};
+  Pose expected;
+  expected.r << 1, 2, 3, 5, 6, 7, 9, 10, 11;
+  expected.t << 4, 8, 12;
+  check_equal(pose_of_rows(rows).value(), expected);
+  check_equal(pose_of_rows(std::span(rows).first(12)).value(), expected);
+  std::vector<double> three;
+  for (int i = 0; i < 3; ++i) three.insert(three.end(), rows, rows + 16);
+  REQUIRE(poses_of_rows(three, 3).value().size() == 3);
+  check_equal(poses_of_rows(three, 3).value()[2], expected);
+  CHECK(poses_of_rows(std::span(three).first(36), 3).value().size() == 3);  // (3, 3, 4)
+  CHECK(poses_of_rows({}, 0).value().empty());
+}
+
+TEST_CASE("what is no pose is refused, and the reason says which") {
+  double rows[32] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1,
+                     1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
+  CHECK(pose_of_rows(std::span(rows).first(9)).error().reason ==
+        "the pose has 9 numbers; give 12 (3 x 4) or 16 (4 x 4), row by row");
+  CHECK(pose_of(Eigen::Matrix3d(Eigen::Matrix3d::Zero())).error().reason ==
+        "the pose is a matrix of 3 x 3; give one of 3 x 4 or 4 x 4");
+  CHECK(poses_of_rows(rows, 3).error().reason ==
+        "32 numbers are not 3 poses; give 12 (3 x 4) or 16 (4 x 4) for each, row by row");
+  CHECK(!poses_of_rows({}, 2));
+  CHECK(!poses_of_rows(rows, 0));
+  rows[31] = 2;
+  CHECK(
+      poses_of_rows(rows, 2).error().reason ==
+      "pose 1 has a last row other than 0 0 0 1; give a matrix that columns are multiplied by, without perspective");
+  rows[31] = std::numeric_limits<double>::quiet_NaN();
+  CHECK(!poses_of_rows(rows, 2));
+}

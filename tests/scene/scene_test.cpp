@@ -1,0 +1,250 @@
+// Scenes against brute force, over random adds, removals and moves, for any number of threads.
+#include "engine/scene/scene.hpp"
+
+#include <cmath>
+#include <limits>
+#include <map>
+
+#include <doctest/doctest.h>
+
+#include "engine/query/brute_force.hpp"
+#include "scenarios/bodies/shapes/random_pose.hpp"
+#include "scenarios/bodies/shapes/shapes.hpp"
+
+using namespace lrb;
+using shapes::RandomEngine;
+
+namespace {
+
+/// What a scene is told, kept in the plainest way.
+struct Plain {
+  struct Entry {
+    Body body;
+    Pose pose;
+  };
+  std::map<BodyKey, Entry> entries;
+};
+
+bool is_told(Relation r) {
+  return r != Relation::separate && r != Relation::undefined;
+}
+
+std::vector<Body> some_bodies() {
+  BodyOptions faces;
+  faces.regions = false;
+  return {Body::from(shapes::box({-0.5, -0.5, -0.5}, {0.5, 0.5, 0.5})).value(),
+          Body::from(shapes::icosphere(1, 0.6)).value(), Body::from(shapes::tetrahedron(1.5)).value(),
+          Body::from(shapes::open_cylinder(8), faces).value(),
+          Body::from(shapes::icosphere(0, 2), faces).value()};
+}
+
+Pose random_place(RandomEngine& random, double room) {
+  Pose pose;
+  pose.r = shapes::random_rotation(random);
+  if (random() % 4 == 0) pose.r.setIdentity();  // whole numbers: boxes and faces that touch
+  for (int k = 0; k < 3; ++k) pose.t[k] = std::floor(2 * shapes::uniform(random, 0, room)) / 2;
+  return pose;
+}
+
+/// Checks what a scene tells of all its pairs against the answer for each pair.
+void check_collide(Scene& scene, const Plain& plain) {
+  std::vector<std::pair<BodyKey, BodyKey>> expected;
+  std::vector<BruteForceResult> answers;
+  for (auto i = plain.entries.begin(); i != plain.entries.end(); ++i)
+    for (auto j = std::next(i); j != plain.entries.end(); ++j) {
+      BruteForceResult r = brute_force(i->second.body, i->second.pose, j->second.body, j->second.pose);
+      if (!is_told(r.relation)) continue;
+      expected.emplace_back(i->first, j->first);
+      answers.push_back(std::move(r));
+    }
+  const auto told = scene.collide();
+  REQUIRE(told.size() == expected.size());
+  for (std::size_t k = 0; k < told.size(); ++k) {
+    CHECK(std::pair(told[k].a, told[k].b) == expected[k]);
+    REQUIRE(told[k].result.has_value());
+    CHECK(told[k].result->relation == answers[k].relation);
+    CHECK(told[k].result->pairs == answers[k].pairs);
+  }
+}
+
+void check_nearest(const std::optional<SceneDistance>& found, double expected) {
+  REQUIRE(found.has_value());
+  REQUIRE(found->result.has_value());
+  CHECK(found->result->upper == expected);
+}
+
+/// Checks the least distance of a body to those of a scene, and which of them it meets.
+void check_alone(Scene& scene, const Plain& plain, const Body& body, const Pose& pose) {
+  double least = std::numeric_limits<double>::infinity();
+  std::vector<BodyKey> expected;
+  for (const auto& [key, entry] : plain.entries) {
+    least = std::min(least, distance(body, pose, entry.body, entry.pose).upper);
+    if (is_told(brute_force(body, pose, entry.body, entry.pose).relation)) expected.push_back(key);
+  }
+  const auto told = scene.collide(body, pose);
+  REQUIRE(told.size() == expected.size());
+  for (std::size_t k = 0; k < told.size(); ++k) {
+    CHECK(told[k].b == expected[k]);
+    CHECK(told[k].result->pairs ==
+          brute_force(body, pose, scene.body(told[k].b), scene.pose(told[k].b)).pairs);
+  }
+  if (plain.entries.empty())
+    CHECK(!scene.nearest(body, pose));
+  else
+    check_nearest(scene.nearest(body, pose), least);
+}
+
+double least_distance(const Plain& plain) {
+  double least = std::numeric_limits<double>::infinity();
+  for (auto i = plain.entries.begin(); i != plain.entries.end(); ++i)
+    for (auto j = std::next(i); j != plain.entries.end(); ++j)
+      least = std::min(least, distance(i->second.body, i->second.pose, j->second.body, j->second.pose).upper);
+  return least;
+}
+
+/// Adds, removes and moves at random, a scene and what is plain alike.
+void change(Scene& scene, Plain& plain, const std::vector<Body>& bodies, RandomEngine& random, double room) {
+  const auto any = [&] {
+    auto entry = plain.entries.begin();
+    std::advance(entry, static_cast<std::ptrdiff_t>(random() % plain.entries.size()));
+    return entry;
+  };
+  const auto kind = random() % 6;
+  if (plain.entries.empty() || kind < 2) {
+    const Body& body = bodies[random() % bodies.size()];
+    const Pose pose = random_place(random, room);
+    plain.entries.emplace(scene.add(body, pose), Plain::Entry{body, pose});
+  } else if (kind == 2) {
+    const auto entry = any();
+    CHECK(scene.remove(entry->first));
+    CHECK(!scene.has(entry->first));
+    CHECK(!scene.remove(entry->first));
+    CHECK(!scene.move(entry->first, Pose{}));
+    plain.entries.erase(entry);
+  } else {
+    const auto entry = any();
+    entry->second.pose = random_place(random, room);
+    CHECK(scene.move(entry->first, entry->second.pose));
+  }
+}
+
+}  // namespace
+
+TEST_CASE("a scene tells what all pairs tell, whatever comes, goes and moves") {
+  const std::vector<Body> bodies = some_bodies();
+  for (std::uint64_t round = 0; round < 6; ++round) {
+    RandomEngine random(round + 1);
+    const double room = round % 2 == 0 ? 3 : 5;
+    Scene scene(round % 3 == 0 ? 1 : 2);
+    Plain plain;
+    std::size_t told = 0;
+    for (int step = 0; step < 25; ++step) {
+      for (auto changes = random() % 12; changes > 0; --changes) change(scene, plain, bodies, random, room);
+      CAPTURE(step);
+      CHECK(scene.size() == plain.entries.size());
+      check_collide(scene, plain);
+      told += scene.collide().size();
+      check_alone(scene, plain, bodies[random() % bodies.size()], random_place(random, room));
+      if (step % 5 == 4 && plain.entries.size() > 1) check_nearest(scene.nearest(), least_distance(plain));
+    }
+    CHECK(told > 100);
+    std::vector<BodyKey> keys;
+    for (const auto& [key, entry] : plain.entries) keys.push_back(key);
+    CHECK(scene.keys() == keys);
+  }
+}
+
+TEST_CASE("bodies that hardly touch are at no distance, and the nearest of many is found among few") {
+  const Body ball = Body::from(shapes::icosphere(2, 0.4)).value();
+  Scene scene(2);
+  CHECK(!scene.nearest());
+  std::vector<BodyKey> keys;
+  for (int i = 0; i < 400; ++i)
+    keys.push_back(scene.add(ball, Pose::translation({1.0 * (i % 20), 1.0 * (i / 20), 0.001 * i})));
+  CHECK(scene.collide().empty());
+  scene.move(keys[210], Pose::translation({10.05, 10, 0.21}));
+  const std::optional<SceneDistance> found = scene.nearest();
+  REQUIRE(found.has_value());
+  CHECK(found->a == keys[210]);
+  CHECK(found->b == keys[211]);
+  CHECK(found->result->upper == distance(ball, scene.pose(keys[210]), ball, scene.pose(keys[211])).upper);
+  scene.move(keys[210], scene.pose(keys[211]));
+  CHECK(scene.nearest()->result->upper == 0);
+}
+
+TEST_CASE("two scenes meet where their bodies do") {
+  const std::vector<Body> bodies = some_bodies();
+  RandomEngine random(9);
+  for (int round = 0; round < 8; ++round) {
+    Scene x(2), y(2);
+    for (int i = 0; i < 15; ++i) x.add(bodies[random() % bodies.size()], random_place(random, 6));
+    for (int i = 0; i < 20; ++i) y.add(bodies[random() % bodies.size()], random_place(random, 6));
+    std::vector<std::pair<BodyKey, BodyKey>> expected, found;
+    double least = std::numeric_limits<double>::infinity();
+    for (const BodyKey i : x.keys())
+      for (const BodyKey j : y.keys()) {
+        if (is_told(brute_force(x.body(i), x.pose(i), y.body(j), y.pose(j)).relation))
+          expected.emplace_back(i, j);
+        least = std::min(least, distance(x.body(i), x.pose(i), y.body(j), y.pose(j)).upper);
+      }
+    for (const SceneAnswer& answer : x.collide(y)) found.emplace_back(answer.a, answer.b);
+    CHECK(found == expected);
+    check_nearest(x.nearest(y), least);
+  }
+  Scene empty;
+  CHECK(!empty.nearest(empty));
+}
+
+TEST_CASE("a scene's request is that of its queries, and what is refused says why") {
+  Scene scene(2);
+  const Body box = Body::from(shapes::box()).value(),
+             square = Body::from(shapes::polygon({{0, 0}, {1, 0}, {0, 1}})).value();
+  const BodyKey a = scene.add(box), b = scene.add(box, Pose::translation({0.5, 0.4, 0.3}));
+  CollideRequest request;
+  request.contacts = true;
+  REQUIRE(scene.collide(request).size() == 1);
+  CHECK(scene.collide(request)[0].result->regions.size() == 1);
+  request = {};
+  request.mode = Mode::any_pair;
+  CHECK(scene.collide(request)[0].result->pairs.size() == 1);
+  CHECK(scene.nearest()->result->meet);
+  scene.move(b, Pose::translation({std::numeric_limits<double>::quiet_NaN(), 0, 0}));
+  REQUIRE(scene.collide().size() == 1);
+  CHECK(scene.collide()[0].result.error().reason ==
+        "a pose has a number that is not finite; give twelve finite numbers");
+  CHECK(!scene.nearest()->result.has_value());
+  scene.remove(b);
+  scene.add(square);
+  CHECK(scene.collide()[0].result.error().reason ==
+        "a 3D body cannot meet a 2D body; give two of the same dimension");
+  CHECK(scene.collide()[0].a == a);
+}
+
+TEST_CASE("thousands of bodies: the order is kept while they move by little") {
+  const Body ball = Body::from(shapes::icosphere(1, 0.55)).value();
+  Scene scene(2);
+  std::vector<BodyKey> keys;
+  constexpr int kSide = 14;  // 2744 bodies
+  for (int i = 0; i < kSide * kSide * kSide; ++i)
+    keys.push_back(scene.add(ball, Pose::translation({1.0 * (i % kSide), 1.01 * (i / kSide % kSide),
+                                                      1.02 * (i / kSide / kSide)})));
+  CollideRequest any;
+  any.mode = Mode::any_pair;
+  const std::size_t met = scene.collide(any).size();
+  CHECK(met > keys.size());
+  CHECK(scene.work().sorted_afresh);
+  for (int step = 0; step < 5; ++step) {
+    for (const BodyKey key : keys) {
+      Pose pose = scene.pose(key);
+      pose.t.x() += 1e-3;
+      scene.move(key, pose);
+    }
+    CHECK(scene.collide(any).size() == met);
+    CHECK(scene.work().moved == keys.size());
+    CHECK(!scene.work().sorted_afresh);
+    CHECK(scene.work().swaps < keys.size());
+  }
+  scene.move(keys[5], Pose{});
+  scene.collide(any);
+  CHECK(scene.work().moved == 1);
+}
