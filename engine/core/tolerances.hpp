@@ -127,6 +127,15 @@ inline constexpr double kFarForFloats = 32;
 inline constexpr double kVeryFar = 0x1p36;
 inline constexpr double kFarWidth = 0x1p-42;
 
+/// First contact.
+
+/// Largest deviation from a rotation (largest row sum of r^T r - 1) of the poses that a screw leads between: as of matrices
+/// written with three digits. Larger: the logarithm is that of a matrix that is not nearly a rotation.
+inline constexpr double kMotionDefect = 4e-3;
+/// Bound on the error of a moving vertex, relative to the largest terms of its place: 8 u, u = 2^-53; derived in
+/// motion_bounds.hpp. Smaller: a contact could be missed by a rounding error; larger: wider intervals where bodies graze.
+inline constexpr double kMotionRounding = 0x1p-50;
+
 /// The builders. None of these constants decides whether an LRB-rep is right: what the builders propose is
 /// confirmed exactly.
 

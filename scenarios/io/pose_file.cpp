@@ -32,7 +32,8 @@ std::string shown(std::string_view word) {
   return "\"" + out + (word.size() > kLongest ? "...\"" : "\"");
 }
 
-double number(std::string_view word, const std::string& where) {
+/// wanted: what each line must have, for the message.
+double number(std::string_view word, const std::string& where, const std::string& wanted) {
   const std::string_view digits = word.substr(word[0] == '+' ? 1 : 0);  // from_chars does not read a plus
                                                                         // sign
   double x = 0;
@@ -40,17 +41,27 @@ double number(std::string_view word, const std::string& where) {
   if (error == std::errc::result_out_of_range)
     throw InputError(where + shown(word) + " is beyond the range of a double");
   if (error != std::errc() || end != digits.data() + digits.size())
-    throw InputError(where + shown(word) + " is not a number: expected 12 numbers a line");
+    throw InputError(where + shown(word) + " is not a number: expected " + wanted);
   if (!std::isfinite(x))
     throw InputError(where + shown(word) + " is not finite: every number of a pose must be");
   return x;
 }
 
-}  // namespace
+Pose pose_of(const double* x) {
+  Pose pose;
+  for (int r = 0; r < 3; ++r) {
+    for (int c = 0; c < 3; ++c) pose.r(r, c) = x[4 * r + c];
+    pose.t[r] = x[4 * r + 3];
+  }
+  return pose;
+}
 
-std::vector<Pose> parse_poses(const std::string& text, const std::string& name,
-                              std::vector<std::size_t>* lines) {
-  std::vector<Pose> poses;
+/// Calls see(numbers, line) for each line of `count` numbers; `meaning` says what these are.
+template <class See>
+void read_lines(const std::string& text, const std::string& name, std::size_t count, const char* meaning,
+                See&& see) {
+  const std::string numbers = std::to_string(count) + " numbers";
+  std::vector<double> x(count);
   std::size_t line_number = 0;
   for (std::size_t at = 0; at < text.size();) {
     const std::size_t end = std::min(text.find('\n', at), text.size());
@@ -58,21 +69,40 @@ std::vector<Pose> parse_poses(const std::string& text, const std::string& name,
     at = end + 1;
     const std::string where = name + ":" + std::to_string(++line_number) + ": ";
     if (words.empty()) continue;
-    double x[12];
-    for (std::size_t i = 0; i < words.size() && i < 12; ++i) x[i] = number(words[i], where);
-    if (words.size() != 12)
-      throw InputError(where + "expected 12 numbers (a row-major 3x4 pose), found " +
+    for (std::size_t i = 0; i < words.size() && i < count; ++i)
+      x[i] = number(words[i], where, numbers + " a line");
+    if (words.size() != count)
+      throw InputError(where + "expected " + numbers + " (" + meaning + "), found " +
                        std::to_string(words.size()));
-    Pose pose;
-    for (int r = 0; r < 3; ++r) {
-      for (int c = 0; c < 3; ++c) pose.r(r, c) = x[4 * r + c];
-      pose.t[r] = x[4 * r + 3];
-    }
-    poses.push_back(pose);
-    if (lines != nullptr) lines->push_back(line_number);
+    see(x.data(), line_number);
   }
+}
+
+}  // namespace
+
+std::vector<Pose> parse_poses(const std::string& text, const std::string& name,
+                              std::vector<std::size_t>* lines) {
+  std::vector<Pose> poses;
+  read_lines(text, name, 12, "a row-major 3x4 pose", [&](const double* x, std::size_t line) {
+    poses.push_back(pose_of(x));
+    if (lines != nullptr) lines->push_back(line);
+  });
   if (poses.empty()) throw InputError(name + ": no poses: expected lines of 12 numbers (row-major 3x4)");
   return poses;
+}
+
+std::vector<PosePair> parse_motions(const std::string& text, const std::string& name) {
+  std::vector<PosePair> motions;
+  read_lines(text, name, 24, "two row-major 3x4 poses", [&](const double* x, std::size_t line) {
+    motions.push_back({pose_of(x), pose_of(x + 12), line});
+  });
+  if (motions.empty())
+    throw InputError(name + ": no motions: expected lines of 24 numbers (two poses, row-major 3x4)");
+  return motions;
+}
+
+std::vector<PosePair> read_motions(const std::string& path) {
+  return parse_motions(read_text(path), path);
 }
 
 std::vector<Pose> read_poses(const std::string& path, std::vector<std::size_t>* lines) {
@@ -85,7 +115,8 @@ Eigen::Vector3d parse_vector(const std::string& text, const std::string& option)
     throw InputError(option + ": expected three numbers X,Y,Z, found " + std::to_string(words.size()) +
                      " in \"" + text + "\"");
   const std::string where = option + ": ";
-  return {number(words[0], where), number(words[1], where), number(words[2], where)};
+  const auto x = [&](std::size_t i) { return number(words[i], where, "three numbers X,Y,Z"); };
+  return {x(0), x(1), x(2)};
 }
 
 }  // namespace lrb::io

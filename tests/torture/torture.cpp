@@ -7,6 +7,8 @@
 //   torture --pairs 10000000 --jobs 2
 // a million coarse queries near contact:
 //   torture --coarse 1000000 --jobs 2
+// a hundred thousand motions:
+//   torture --sweeps 100000 --jobs 2
 
 #include <algorithm>
 #include <chrono>
@@ -26,6 +28,7 @@
 #include "tests/torture/models.hpp"
 #include "tests/torture/pairs.hpp"
 #include "tests/torture/regions.hpp"
+#include "tests/torture/sweeps.hpp"
 
 using namespace lrb;
 using namespace lrb::cases;
@@ -39,6 +42,7 @@ struct Options {
   std::uint64_t poses = 1000;  ///< of each class; of the slow ones a quarter
   std::uint64_t pairs = 0;     ///< pairs of simplices instead of poses
   std::uint64_t coarse = 0;    ///< coarse queries instead of poses
+  std::uint64_t sweeps = 0;    ///< motions instead of poses
   std::uint64_t seed = 1;
   std::int64_t only = -1;  ///< this pose alone, in this process
   unsigned jobs = 1;
@@ -137,7 +141,8 @@ int usage(const std::string& complaint) {
       "usage: torture [--poses N] [--jobs N] [--class NAME] [--seed S] [--only POSE] [--oracle PAIRS]\n"
       "               [--models FOLDER]   N poses of a class (slow ones: N / 4), compared with every oracle\n"
       "       torture --pairs N [--jobs N] [--seed S]   N pairs of degenerate simplices\n"
-      "       torture --coarse N [--jobs N] [--seed S]   N coarse queries near contact\nclasses:\n");
+      "       torture --coarse N [--jobs N] [--seed S]   N coarse queries near contact\n"
+      "       torture --sweeps N [--jobs N] [--seed S]   N first contacts of motions\nclasses:\n");
   for (const cases::Family& f : cases::all_families()) std::fprintf(stderr, "  %-12s %s\n", f.name, f.what);
   std::fprintf(stderr, "  %-12s %s\n", kModels.name, kModels.what);
   return 2;
@@ -155,6 +160,8 @@ bool take(Options& o, const std::string& key, const char* value) {
     o.pairs = number(value);
   else if (key == "--coarse")
     o.coarse = number(value);
+  else if (key == "--sweeps")
+    o.sweeps = number(value);
   else if (key == "--jobs")
     o.jobs = static_cast<unsigned>(std::max<std::uint64_t>(1, number(value)));
   else if (key == "--class")
@@ -213,6 +220,7 @@ int main(int argc, char** argv) {
   }
   if (o.pairs > 0) return torture_pairs(o.pairs, o.seed, o.jobs) == 0 ? 0 : 1;
   if (o.coarse > 0) return torture_coarse(o.coarse, o.seed, o.jobs) == 0 ? 0 : 1;
+  if (o.sweeps > 0) return torture_sweeps(o.sweeps, o.seed, o.jobs) == 0 ? 0 : 1;
   if (!o.name.empty() && o.name != kModels.name && cases::find_family(o.name) == nullptr)
     return usage("unknown class " + o.name);
   if (o.only >= 0 && o.name.empty()) return usage("--only needs --class");

@@ -157,21 +157,27 @@ void NearestPairs::decide_within(double rest, bool finished, DistanceResult& res
   if (finished || rest > most) result.within = false;
 }
 
-void NearestPairs::write_witness(int side, DistanceResult& result) const {
-  Witness& w = result.witness[side];
-  w.simplex = best_simplex_[side];
-  if (w.simplex == kNull) return;
-  const LrbRep& rep = ctx_.body[side].rep();
-  w.point = best_.point[side];
-  w.feature = best_.on[side];
-  w.face = rep.face_of_simplex(w.simplex);
+Witness witness_of(const LrbRep& rep, SimplexId simplex, const exact::Feature& on,
+                   const Eigen::Vector3d& point) {
+  Witness w;
+  w.simplex = simplex;
+  w.point = point;
+  w.feature = on;
+  w.face = rep.face_of_simplex(simplex);
   VertexId v[3];
-  rep.simplex(w.simplex, v);
-  w.corner_count = w.feature.dim + 1;
+  rep.simplex(simplex, v);
+  w.corner_count = on.dim + 1;
   for (int k = 0; k < w.corner_count; ++k) {
-    const int first = w.feature.dim == 2 ? 0 : w.feature.index;
-    w.corners[static_cast<std::size_t>(k)] = v[(first + k) % dim_];
+    const int first = on.dim == 2 ? 0 : on.index;
+    w.corners[static_cast<std::size_t>(k)] = v[(first + k) % rep.dim()];
   }
+  return w;
+}
+
+void NearestPairs::write_witness(int side, DistanceResult& result) const {
+  const SimplexId simplex = best_simplex_[side];
+  if (simplex == kNull) return;
+  result.witness[side] = witness_of(ctx_.body[side].rep(), simplex, best_.on[side], best_.point[side]);
 }
 
 void NearestPairs::write_relation(DistanceResult& result) {

@@ -16,6 +16,10 @@ struct MeasuredPair {
   double lower, upper;
 };
 
+/// Returns a point of a body's simplex as a witness. on: where it lies on the simplex.
+Witness witness_of(const LrbRep& rep, SimplexId simplex, const exact::Feature& on,
+                   const Eigen::Vector3d& point);
+
 class NearestPairs {
  public:
   /// Begins a query of the bodies that `ctx` has been begun with. `pairs`: memory that can be used again.

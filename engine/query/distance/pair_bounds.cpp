@@ -70,11 +70,20 @@ class Pair {
   const Nearest& nearest() const { return nearest_; }
   double upper() const { return (std::sqrt(nearest_.square) + kPairRounding * reach_) * kRootUp; }
 
-  double lower() const {
-    double most = std::max(width(nearest_.way), width(across_features()));
+  /// Returns the lower end, and writes the direction that gave it.
+  double lower(Vector3d& direction) const {
+    double most = 0;
+    const auto see = [&](const Vector3d& n) {
+      const double wide = width(n);
+      if (!(wide > most)) return;
+      most = wide;
+      direction = n;
+    };
+    see(nearest_.way);
+    see(across_features());
     if (n_ == 3)
       for (const auto& edge : edge_)
-        if (most < upper() - 2 * kPairRounding * reach_) most = std::max(most, width(edge[0].cross(edge[1])));
+        if (most < upper() - 2 * kPairRounding * reach_) see(edge[0].cross(edge[1]));
     return most;
   }
 
@@ -189,7 +198,7 @@ PairBounds bound_distance(const double* const* a, const double* const* b, int n)
   pair.find();
   const Nearest& nearest = pair.nearest();
   out.upper = pair.upper();
-  out.lower = std::min(pair.lower(), out.upper);
+  out.lower = std::min(pair.lower(out.direction), out.upper);
   for (int side = 0; side < 2; ++side) {
     out.on[side] = nearest.on[side];
     out.point[side] = place(nearest.on[side], nearest.share[side], side == 0 ? a : b, n);

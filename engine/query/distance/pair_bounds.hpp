@@ -13,6 +13,8 @@ struct PairBounds {
   Eigen::Vector3d
       point[2];  ///< the points that gave `upper`, on the simplex of A and on that of B, but for rounding
   exact::Feature on[2];  ///< where they lie
+  Eigen::Vector3d direction{0, 0,
+                            0};  ///< across the slab whose width is `lower`, of any length; 0: there is none
 };
 
 /// Bounds the distance of two triangles (n = 3) in space, or of two segments (n = 2) in the plane z = 0.

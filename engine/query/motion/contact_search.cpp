@@ -1,0 +1,292 @@
+/// The search in one piece of both motions. What is free was proved free, by find_swept_pairs(), by
+/// PairMotion::parted_for() or by a distance; what is in contact, by the exact query or PairMotion::has_passed(); all
+/// else is doubtful, and said to be. Everything else here decides only how much work that takes.
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "engine/core/tolerances.hpp"
+#include "engine/query/motion/first_contact_impl.hpp"
+#include "engine/query/walk/tree_query.hpp"
+
+namespace lrb {
+namespace {
+
+using Eigen::Vector3d;
+
+/// From so many pairs on, shorter spans are looked at, unless they are hardly longer than the tolerance.
+constexpr std::uint64_t kFewPairs = 128;
+constexpr double kHardlyLonger = 64;
+/// A pair stops when it comes no further than this many tolerances in a step, and a pair that is stuck when it comes no
+/// further than that many.
+constexpr double kLeastStep = 0x1p-3, kLeastStuckStep = 0x1p-20;
+constexpr int kMostStepsOfPair = 256;
+/// How much longer each span is in which a way out of a doubtful place is looked for; and which share of it bodies must
+/// be sure to go on for.
+constexpr double kLonger = 4, kGoesOn = 0.25;
+constexpr std::uint64_t kMostStuckPairs = 1 << 20;
+constexpr int kProbes = 8;
+
+/// Returns t + step, rounded down.
+double later(double t, double step) {
+  return step > 0 ? std::max(t, std::nextafter(t + step, t)) : t;
+}
+
+}  // namespace
+
+void FirstContactSearch::search_piece(const MovingBody& a, const MovingBody& b, double end) {
+  a_ = &a;
+  b_ = &b;
+  is_swept_ = suits_sweeps(a, b);
+  is_swept_ ? search_swept(end) : search_by_distance(end);
+}
+
+bool FirstContactSearch::find_pairs(TimeSpan span, std::uint64_t most) {
+  ++result_.counters.spans;
+  const bool found_all = find_swept_pairs(query(), *a_, *b_, span, most, context_.pairs);
+  result_.counters.pairs += context_.pairs.size();
+  if (request_.history) result_.history.push_back({span, context_.pairs.size(), free_until_});
+  return found_all;
+}
+
+void FirstContactSearch::search_swept(double end) {
+  double width = end - free_until_;
+  while (free_until_ < end && !is_over()) {
+    const double t = free_until_;
+    const TimeSpan span{t, end - t > width ? t + width : end};
+    const bool is_short = span.end - t <= kHardlyLonger * request_.tolerance;
+    if (!find_pairs(span, is_short ? kNoLimit : kFewPairs)) {
+      width = (span.end - t) / 2;
+      continue;
+    }
+    free_until_ = advance_all(span, kLeastStep * request_.tolerance);
+    width = 2 * (span.end - t);
+    if (free_until_ >= span.end) continue;
+    free_until_ = look_closer(free_until_, end);
+    width = kHardlyLonger * request_.tolerance;
+  }
+}
+
+/// Returns for how long after t the bodies are proved apart, by their distance.
+double FirstContactSearch::parted_by_distance(double t) {
+  DistanceRequest rough;
+  rough.relative_tolerance = 0.25;
+  rough.relation = false;
+  ++result_.counters.steps;
+  const DistanceResult at =
+      distance(*rep_[0], a_->at(t).pose, *rep_[1], b_->at(t).pose, rough, context_.distance);
+  const double gap = at.lower - 2 * (a_->rounding() + b_->rounding()) * (1 + kWorldRounding);
+  const double speed =
+      ((b_->travel() - a_->travel()).norm() + a_->spin() + b_->spin()) * (1 + kWorldRounding);
+  return gap > 0 ? gap / speed * (1 - kWorldRounding) : 0;
+}
+
+void FirstContactSearch::search_by_distance(double end) {
+  while (free_until_ < end && !is_over()) {
+    const double parted = parted_by_distance(free_until_);
+    free_until_ = std::min(end, later(free_until_, parted));
+    if (parted < kLeastStep * request_.tolerance && free_until_ < end)
+      free_until_ = look_closer(free_until_, end);
+  }
+}
+
+/// Moves a pair on from the states at the span's begin for as long as it is parted, and steps are at least this long.
+double FirstContactSearch::advance(SimplexPair pair, const PieceState& at_a, const PieceState& at_b,
+                                   TimeSpan span, double least) {
+  PairMotion moving(*a_, *b_, pair);
+  moving.place(at_a, at_b);
+  double t = span.begin;
+  Vector3d n = hint_;
+  for (int i = 0;; ++i) {
+    ++result_.counters.steps;
+    double parted = moving.parted_for(n);
+    if (later(t, parted) < span.end) {
+      const Vector3d across = moving.bounds().direction;
+      const double parted_across = moving.parted_for(across);
+      if (parted_across > parted) {
+        parted = parted_across;
+        n = across;
+      }
+    }
+    t = std::min(span.end, later(t, parted));
+    if (t >= span.end) hint_ = n;
+    if (t >= span.end || parted < least || i >= kMostStepsOfPair) return t;
+    moving.place(a_->at(t), b_->at(t));
+  }
+}
+
+/// Returns until when all pairs that were found in a span are proved not to meet.
+double FirstContactSearch::advance_all(TimeSpan span, double least) {
+  const PieceState at_a = a_->at(span.begin), at_b = b_->at(span.begin);
+  double until = span.end;
+  for (const SimplexPair& pair : context_.pairs)
+    until = advance(pair, at_a, at_b, {span.begin, until}, least);
+  return until;
+}
+
+/// Looks whether the bodies meet right after t, until when they do not. Returns until when else they are known not to,
+/// but for what is doubtful.
+double FirstContactSearch::look_closer(double t, double end) {
+  const double soon = std::min(end, std::max(t + request_.tolerance / 2, std::nextafter(t, 2)));
+  if (const auto pair = meets_at(soon)) {
+    contact_in({t, soon}, *pair);
+    return t;
+  }
+  const double until = advance_stuck({t, soon});
+  if (until >= soon || meets_right_after({until, soon}) || has_passed({t, soon})) return until;
+  return look_further(until, end);
+}
+
+/// Asks the exact query at a few times right after the span's begin. Returns true, and notes the contact, if it finds
+/// one: bodies that pass each other in less than the tolerance do.
+bool FirstContactSearch::meets_right_after(TimeSpan span) {
+  for (const double share : {0x1p-24, 0x1p-16, 0x1p-8}) {
+    const double t = std::max(span.begin + share * request_.tolerance, std::nextafter(span.begin, 2));
+    if (t >= span.end) return false;
+    if (const auto pair = meets_at(t)) {
+      contact_in({span.begin, t}, *pair);
+      return true;
+    }
+  }
+  return false;
+}
+
+/// Returns until when bodies are proved not to meet, in steps as short as need be. Keeps the pairs that do not come to
+/// the span's end.
+double FirstContactSearch::advance_stuck(TimeSpan span) {
+  const double least = kLeastStuckStep * request_.tolerance;
+  context_.stuck.clear();
+  double until = span.end;
+  if (!is_swept_) {
+    double t = span.begin, parted = span.end - t;
+    for (int i = 0; i < kMostStepsOfPair && t < until && parted >= least; ++i) {
+      parted = parted_by_distance(t);
+      t = std::min(until, later(t, parted));
+    }
+    return t;
+  }
+  find_pairs(span, kNoLimit);
+  const PieceState at_a = a_->at(span.begin), at_b = b_->at(span.begin);
+  for (const SimplexPair& pair : context_.pairs) {
+    const double gone = advance(pair, at_a, at_b, span, least);
+    if (gone < span.end) context_.stuck.push_back(pair);
+    until = std::min(until, gone);
+  }
+  return until;
+}
+
+/// Returns true, and notes the contact, if one of the pairs that are stuck is proved to have met in the span.
+bool FirstContactSearch::has_passed(TimeSpan span) {
+  const double time = (span.end - span.begin) * (1 + kWorldRounding);
+  for (const SimplexPair& pair : context_.stuck) {
+    PairMotion before(*a_, *b_, pair), now(*a_, *b_, pair);
+    before.place(a_->at(span.begin), b_->at(span.begin));
+    now.place(a_->at(span.end), b_->at(span.end));
+    Vector3d n = before.bounds().direction;
+    if (n.dot(before.ahead()) < 0) n = -n;
+    if (!now.has_passed(before, n, time)) continue;
+    result_.passed = true;
+    contact_in(span, pair);
+    return true;
+  }
+  return false;
+}
+
+/// Looks for the end of the time after t in which the bodies are as near each other as rounding.
+double FirstContactSearch::look_further(double t, double end) {
+  for (double width = request_.tolerance; !is_over(); width *= kLonger) {
+    const TimeSpan span{t, end - t > width ? std::max(t + width, std::nextafter(t, 2)) : end};
+    if (auto pair = meets_at(span.end)) {
+      contact_at_last(span, *pair);
+      return t;
+    }
+    if (is_swept_) {
+      const bool found_all = find_pairs(span, kMostStuckPairs);
+      context_.stuck = context_.pairs;
+      if (has_passed(span)) return t;
+      if (!found_all) continue;
+    }
+    if (span.end < end && !goes_on_from(span)) continue;
+    if (!found_between(span)) doubt(span);
+    return span.end;
+  }
+  return t;
+}
+
+/// Returns true if the pairs that may meet in a span are sure not to right after it.
+bool FirstContactSearch::goes_on_from(TimeSpan span) {
+  const double wanted = kGoesOn * (span.end - span.begin);
+  if (!is_swept_) return parted_by_distance(span.end) >= wanted;
+  const PieceState at_a = a_->at(span.end), at_b = b_->at(span.end);
+  return std::all_of(context_.pairs.begin(), context_.pairs.end(), [&](const SimplexPair& pair) {
+    PairMotion moving(*a_, *b_, pair);
+    moving.place(at_a, at_b);
+    return moving.parted_for(hint_) >= wanted || moving.parted_for(moving.bounds().direction) >= wanted;
+  });
+}
+
+/// Asks the exact query at a few times within a doubtful span. Returns true, and notes the contact, if it finds one.
+bool FirstContactSearch::found_between(TimeSpan span) {
+  double before = span.begin;
+  for (int i = 1; i < kProbes; ++i) {
+    const double t = span.begin + (span.end - span.begin) * i / kProbes;
+    if (!(t > before) || !(t < span.end)) continue;
+    if (auto pair = meets_at(t)) {
+      contact_at_last({span.begin, t}, *pair);
+      return true;
+    }
+    before = t;
+  }
+  return false;
+}
+
+/// Notes a contact at the end of a span; first looks for an earlier one, by halves.
+void FirstContactSearch::contact_at_last(TimeSpan span, SimplexPair pair) {
+  double none = span.begin;
+  while (span.end - none > request_.tolerance / 2) {
+    const double middle = none + (span.end - none) / 2;
+    if (!(middle > none && middle < span.end)) break;
+    if (const auto earlier = meets_at(middle)) {
+      span.end = middle;
+      pair = *earlier;
+    } else {
+      none = middle;
+    }
+  }
+  contact_in(span, pair);
+}
+
+void FirstContactSearch::contact_in(TimeSpan span, SimplexPair pair) {
+  is_done_ = true;
+  result_.outcome = Outcome::contact;
+  result_.t0 = span.begin;
+  result_.t1 = span.end;
+  result_.grazing = span.end - span.begin > request_.tolerance;
+  result_.pair = pair;
+  write_features(span.begin, pair);
+}
+
+void FirstContactSearch::doubt(TimeSpan span) {
+  std::vector<TimeSpan>& list = result_.doubtful;
+  if (!list.empty() && list.back().end >= span.begin)
+    list.back().end = span.end;
+  else
+    list.push_back(span);
+}
+
+void FirstContactSearch::write_features(double t, SimplexPair pair) {
+  PairMotion moving(*a_, *b_, pair);
+  moving.place(a_->at(t), b_->at(t));
+  const PairBounds at = moving.bounds();
+  if (!std::isfinite(at.upper)) return;
+  result_.witness = {witness_of(*rep_[0], pair.a, at.on[0], at.point[0]),
+                     witness_of(*rep_[1], pair.b, at.on[1], at.point[1])};
+  const double length = at.direction.stableNorm();
+  if (!(length > 0)) return;
+  result_.normal = at.direction / length;
+  if (result_.normal.dot(moving.ahead()) < 0) result_.normal = -result_.normal;
+  result_.speed = moving.approach_speed(at, result_.normal);
+}
+
+}  // namespace lrb

@@ -1,0 +1,130 @@
+#include "engine/query/motion/first_contact.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "engine/core/error.hpp"
+#include "engine/core/parallel.hpp"
+#include "engine/query/collide_impl.hpp"
+#include "engine/query/motion/first_contact_impl.hpp"
+
+namespace lrb {
+
+void check_request(const FirstContactRequest& request) {
+  if (!(request.tolerance > 0 && request.tolerance <= 1))
+    throw InputError("the tolerance of a first contact is " + std::to_string(request.tolerance) +
+                     "; give more than 0 and at most 1, as a share of the motion");
+}
+
+FirstContactSearch::FirstContactSearch(const LrbRep& a, const Motion& motion_a, const LrbRep& b,
+                                       const Motion& motion_b, const FirstContactRequest& request,
+                                       FirstContactContext& context)
+    : rep_{&a, &b}, motion_{&motion_a, &motion_b}, request_(request), context_(context) {}
+
+bool FirstContactSearch::is_out_of_steps() const {
+  const FirstContactCounters& c = result_.counters;
+  return request_.max_steps > 0 && c.spans + c.steps + c.exact_queries >= request_.max_steps;
+}
+
+/// Asks the exact query, and leaves the bodies of its context at their poses.
+std::optional<SimplexPair> FirstContactSearch::meets_at(double t) {
+  ++result_.counters.exact_queries;
+  const Pose pose_a = motion_[0]->at(t), pose_b = motion_[1]->at(t);
+  check_query(*rep_[0], pose_a, *rep_[1], pose_b);
+  query().body[0].begin(*rep_[0], pose_a, WrapperMode::regularised);
+  query().body[1].begin(*rep_[1], pose_b, WrapperMode::regularised);
+  CollideRequest any;
+  any.mode = Mode::any_pair;
+  CollideResult found;
+  NullProbe probe;
+  TreeQuery<NullProbe>(query(), any, found, probe).run();
+  if (found.pairs.empty()) return std::nullopt;
+  return found.pairs[0];
+}
+
+/// Writes where and how a pair meets with which the bodies begin.
+void FirstContactSearch::write_start(SimplexPair pair) {
+  const double *of_a[3], *of_b[3];
+  query()[Side::a].world.corners(pair.a, of_a);
+  query()[Side::b].world.corners(pair.b, of_b);
+  const exact::PairContact contact =
+      rep_[0]->dim() == 3 ? exact::contact_of_triangles(of_a, of_b) : exact::contact_of_segments(of_a, of_b);
+  const exact::ContactCorner& corner = contact.corners[0];
+  result_.outcome = Outcome::contact;
+  result_.t0 = result_.t1 = 0;
+  result_.at_start = true;
+  result_.at_begin = contact.meet == exact::Meet::cross ? Relation::crossing : Relation::touching;
+  result_.pair = pair;
+  result_.witness = {witness_of(*rep_[0], pair.a, corner.on_a, corner.x),
+                     witness_of(*rep_[1], pair.b, corner.on_b, corner.x)};
+}
+
+bool FirstContactSearch::meets_at_start() {
+  if (const auto pair = meets_at(0)) {
+    write_start(*pair);
+    return true;
+  }
+  if (request_.relation) {
+    CollideResult none;
+    decide_relation(query(), none);
+    result_.at_begin = none.relation;
+  }
+  return false;
+}
+
+FirstContactResult FirstContactSearch::run() {
+  check_request(request_);
+  for (const double t : {0.0, 1.0}) check_query(*rep_[0], motion_[0]->at(t), *rep_[1], motion_[1]->at(t));
+  if (rep_[0]->tree().empty() || rep_[1]->tree().empty()) return result_;
+  if (meets_at_start()) return result_;
+  const std::vector<Motion::Piece>*const of_a = &motion_[0]->pieces(), *const of_b = &motion_[1]->pieces();
+  for (std::size_t i = 0, j = 0; i < of_a->size() && j < of_b->size() && !is_over();) {
+    const MovingBody a(*rep_[0], (*of_a)[i]), b(*rep_[1], (*of_b)[j]);
+    const double end_a = a.piece().end, end_b = b.piece().end;
+    search_piece(a, b, std::min(end_a, end_b));
+    i += end_a <= end_b;
+    j += end_b <= end_a;
+  }
+  return finish();
+}
+
+FirstContactResult FirstContactSearch::finish() {
+  if (!is_done_) {
+    result_.finished = free_until_ >= 1;
+    if (!result_.finished) doubt({free_until_, 1});
+    if (!result_.doubtful.empty()) {
+      result_.outcome = Outcome::undecided;
+      result_.t1 = result_.doubtful.back().end;
+    }
+  }
+  if (!result_.doubtful.empty()) result_.t0 = result_.doubtful[0].begin;
+  result_.grazing = result_.grazing || (result_.finished && !result_.doubtful.empty());
+  return std::move(result_);
+}
+
+FirstContactResult first_contact(const LrbRep& a, const Motion& motion_a, const LrbRep& b,
+                                 const Motion& motion_b, const FirstContactRequest& request,
+                                 FirstContactContext& context) {
+  return FirstContactSearch(a, motion_a, b, motion_b, request, context).run();
+}
+
+FirstContactResult first_contact(const LrbRep& a, const Motion& motion_a, const LrbRep& b,
+                                 const Motion& motion_b, const FirstContactRequest& request) {
+  FirstContactContext context;
+  return first_contact(a, motion_a, b, motion_b, request, context);
+}
+
+std::vector<FirstContactResult> first_contacts(const LrbRep& a, const Motion& motion_a, const LrbRep& b,
+                                               std::span<const Motion> motions_b,
+                                               const FirstContactRequest& request, unsigned threads) {
+  Workers workers(threads);
+  std::vector<FirstContactContext> contexts(workers.count());
+  std::vector<FirstContactResult> results(motions_b.size());
+  workers.for_each(motions_b.size(), [&](std::size_t i, unsigned worker) {
+    results[i] = first_contact(a, motion_a, b, motions_b[i], request, contexts[worker]);
+  });
+  return results;
+}
+
+}  // namespace lrb

@@ -1,0 +1,152 @@
+/// Poses are computed in long double, whose functions round alike everywhere (core/steady_math.hpp), and
+/// rounded to double once. motion_bounds.hpp says how far off that is.
+
+#include "engine/query/motion/motion.hpp"
+
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include <Eigen/Geometry>
+
+#include "engine/core/error.hpp"
+#include "engine/core/tolerances.hpp"
+#include "engine/query/motion/piece_state.hpp"
+#include "engine/tree/pose_bounds.hpp"
+
+namespace lrb {
+namespace {
+
+using Real = long double;
+static_assert(std::numeric_limits<Real>::digits >= 64, "poses of motions need long doubles");
+using Matrix = Eigen::Matrix<Real, 3, 3>;
+using Vector = Eigen::Matrix<Real, 3, 1>;
+
+Matrix rotation_by(const Vector& turn) {
+  const Real angle = turn.norm();
+  if (!(angle > 0)) return Matrix::Identity();
+  return Eigen::AngleAxis<Real>(angle, turn / angle).toRotationMatrix();
+}
+
+/// Returns the rotation vector of a matrix that is nearly a rotation, of length pi at most.
+Eigen::Vector3d logarithm(const Matrix& m) {
+  Eigen::Quaternion<Real> q(m);
+  q.normalize();
+  Vector axis = q.vec();
+  const Real sine = axis.norm();
+  if (!(sine > 0)) return {0, 0, 0};
+  int first = 0;
+  while (axis[first] == 0) ++first;
+  if (q.w() < 0 || (q.w() == 0 && axis[first] < 0)) axis = -axis;
+  return (axis * (2 * std::atan2(sine, std::abs(q.w())) / sine)).cast<double>();
+}
+
+void check_rotation(const Eigen::Matrix3d& r, const char* which) {
+  const double defect = rotation_defect(r);
+  if (!(defect <= kMotionDefect))
+    throw InputError(
+        std::string("the matrix of the motion's ") + which +
+        " pose is no rotation: give one whose columns are of length 1 and at right angles to 0.001");
+}
+
+/// Returns the piece that leads from one pose to another.
+Motion::Piece piece_between(const Pose& start, const Pose& end) {
+  Motion::Piece piece;
+  piece.r = start.r;
+  piece.from = start.t;
+  piece.to = end.t;
+  if (start.r == end.r) return piece;
+  check_rotation(start.r, "first");
+  check_rotation(end.r, "second");
+  const Matrix turn = start.r.cast<Real>().transpose() * end.r.cast<Real>();
+  if (!(turn.determinant() > 0))
+    throw InputError("one of the motion's poses is mirrored and the other is not: give two rotations");
+  piece.turn = logarithm(turn);
+  return piece;
+}
+
+bool is_finite(const Motion::Piece& p) {
+  return std::isfinite(p.begin) && std::isfinite(p.end) && p.first.r.allFinite() && p.first.t.allFinite() &&
+         p.turn.allFinite() && p.r.allFinite() && p.from.allFinite() && p.to.allFinite();
+}
+
+}  // namespace
+
+Motion::Motion(std::vector<Piece> pieces) : pieces_(std::move(pieces)) {
+  double t = 0;
+  for (const Piece& piece : pieces_) {
+    if (!is_finite(piece)) throw InputError("a motion has a number that is not finite");
+    if (piece.begin != t || !(piece.end > piece.begin))
+      throw InputError(
+          "a motion's times do not ascend from 0 to 1: each piece begins where the one before ends");
+    t = piece.end;
+  }
+  if (t != 1) throw InputError("a motion's times do not ascend from 0 to 1");
+}
+
+Motion Motion::still(const Pose& pose) {
+  return linear(pose, pose.t);
+}
+
+Motion Motion::linear(const Pose& start, const Eigen::Vector3d& end) {
+  Piece piece;
+  piece.r = start.r;
+  piece.from = start.t;
+  piece.to = end;
+  return Motion(std::vector<Piece>{piece});
+}
+
+Motion Motion::screw(const Pose& start, const Pose& end) {
+  return Motion(std::vector<Piece>{piece_between(start, end)});
+}
+
+Motion Motion::turning(const Pose& start, const Eigen::Vector3d& turn, const Eigen::Vector3d& centre,
+                       const Eigen::Vector3d& way) {
+  Piece piece;
+  piece.first = {start.r, start.t - centre};
+  piece.turn = turn;
+  piece.from = centre;
+  piece.to = centre + way;
+  return Motion(std::vector<Piece>{piece});
+}
+
+Motion Motion::key_frames(std::span<const KeyFrame> frames) {
+  if (frames.empty()) throw InputError("a motion has no key frames");
+  if (frames.size() == 1 && frames[0].t == 0) return still(frames[0].pose);
+  std::vector<Piece> pieces;
+  for (std::size_t i = 1; i < frames.size(); ++i) {
+    pieces.push_back(piece_between(frames[i - 1].pose, frames[i].pose));
+    pieces.back().begin = frames[i - 1].t;
+    pieces.back().end = frames[i].t;
+  }
+  return Motion(std::move(pieces));
+}
+
+PieceState state_of(const Motion::Piece& piece, double t) {
+  const Real s = (static_cast<Real>(t) - static_cast<Real>(piece.begin)) /
+                 (static_cast<Real>(piece.end) - static_cast<Real>(piece.begin));
+  const Vector from = piece.from.cast<Real>(), to = piece.to.cast<Real>();
+  const Vector at = from + s * (to - from);
+  PieceState state;
+  if (piece.turn.isZero(0)) {
+    state.turned = piece.r;
+    state.pose.r = piece.first.r.isIdentity(0)
+                       ? piece.r
+                       : (piece.r.cast<Real>() * piece.first.r.cast<Real>()).cast<double>();
+    state.pose.t = (at + piece.r.cast<Real>() * piece.first.t.cast<Real>()).cast<double>();
+    return state;
+  }
+  const Matrix turned = piece.r.cast<Real>() * rotation_by(s * piece.turn.cast<Real>());
+  state.turned = turned.cast<double>();
+  state.pose.r = (turned * piece.first.r.cast<Real>()).cast<double>();
+  state.pose.t = (at + turned * piece.first.t.cast<Real>()).cast<double>();
+  return state;
+}
+
+Pose Motion::at(double t) const {
+  std::size_t i = pieces_.size() - 1;
+  while (i > 0 && t < pieces_[i].begin) --i;
+  return state_of(pieces_[i], t).pose;
+}
+
+}  // namespace lrb

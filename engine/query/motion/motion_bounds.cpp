@@ -1,0 +1,81 @@
+#include "engine/query/motion/motion_bounds.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/Geometry>
+
+#include "engine/core/tolerances.hpp"
+#include "engine/tree/pose_bounds.hpp"
+
+namespace lrb {
+namespace {
+
+using Eigen::Vector3d;
+
+/// Covers a dozen roundings of numbers that are not negative.
+constexpr double kUp = 1 + kWorldRounding;
+
+/// Calls see(origin, radius), in the body's unit, for balls that together hold the body: two levels of its tree.
+template <class See>
+void for_each_ball(const ObbTree& tree, See&& see) {
+  const auto nodes = tree.nodes().data();
+  const auto show = [&](const TreeNode& n) {
+    see(Vector3d(n.origin[0], n.origin[1], n.origin[2]) * tree.unit(),
+        static_cast<double>(n.radius) * tree.unit());
+  };
+  const TreeNode& root = nodes[0];
+  if (root.is_leaf) return show(root);
+  for (std::uint32_t i = 0; i < root.count; ++i) {
+    const TreeNode& child = nodes[root.first + i];
+    if (child.is_leaf) show(child);
+    for (std::uint32_t j = 0; !child.is_leaf && j < child.count; ++j) show(nodes[child.first + j]);
+  }
+}
+
+}  // namespace
+
+MovingBody::MovingBody(const LrbRep& rep, const Motion::Piece& piece) : rep_(&rep), piece_(&piece) {
+  const double time = piece.end - piece.begin, angle = piece.turn.stableNorm() * kUp;
+  travel_ = (piece.to - piece.from) / time;
+  rate_ = piece.turn / time;
+  stretch_ = stretch({piece.r, {0, 0, 0}});
+  turn_rate_ = angle / time * kUp;
+  spin_ = angle > 0 ? stretch_ * farthest_from_axis() * kUp : 0;
+  const double size = std::sqrt(3.0) * rep.tree().extent();
+  const double frobenius = std::sqrt(3.0) * stretch(piece.first);
+  const double turned = stretch_ * (frobenius * size + piece.first.t.stableNorm());
+  const double path = std::max(piece.from.stableNorm(), piece.to.stableNorm());
+  const double share = kMotionRounding * (1 + 0x1p-10 * angle);
+  rounding_ = share * (turned + path) * kUp + kWorldUnderflow;
+  velocity_rounding_ = 4 * share * (angle * turned + 2 * path) / time * kUp + kWorldUnderflow;
+}
+
+/// Returns a bound on |w x z|.
+double MovingBody::farthest_from_axis() const {
+  const double size = stretch(piece_->first);
+  double most = 0;
+  for_each_ball(rep_->tree(), [&](const Vector3d& origin, double radius) {
+    const Vector3d z = piece_->first.r * origin + piece_->first.t;
+    const double rounding =
+        4 * kMotionRounding * (2 * size * rep_->tree().extent() + piece_->first.t.stableNorm());
+    most = std::max(most, rate_.cross(z).stableNorm() + turn_rate_ * (size * radius + rounding));
+  });
+  return most * kUp;
+}
+
+double MovingBody::turned_by(double time) const {
+  // A chord is no longer than its arc, nor than twice the distance from the axis.
+  return turn_rate_ > 0 ? std::min(spin_ * time, 2 * spin_ / turn_rate_) * kUp : 0;
+}
+
+MovingBody::Spin MovingBody::spin_of(const Vector3d& x) const {
+  if (!(turn_rate_ > 0)) return {Vector3d::Zero(), 0};
+  const Vector3d z = piece_->first.r * x + piece_->first.t;
+  Spin spin{rate_.cross(z), 0};
+  const double rounding = 4 * kMotionRounding * turn_rate_ * (z.norm() + piece_->first.t.norm());
+  spin.acceleration = stretch_ * turn_rate_ * (spin.velocity.norm() + rounding) * kUp;
+  return spin;
+}
+
+}  // namespace lrb

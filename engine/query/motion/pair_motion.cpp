@@ -1,0 +1,202 @@
+#include "engine/query/motion/pair_motion.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <Eigen/Geometry>
+
+#include "engine/core/tolerances.hpp"
+
+namespace lrb {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+/// Roots are taken back by this share, which covers their rounding: 8 u, u = 2^-53.
+constexpr double kRootDown = 1 - 0x1p-40;
+
+/// Returns the largest d up to which c + v d - k d^2 / 2 is more than 0, for c > 0 and k >= 0, rounded down.
+double first_root(double c, double v, double k) {
+  if (!(k > 0)) return v >= 0 ? kInfinity : c / -v * kRootDown;
+  const double root = std::sqrt(v * v + 2 * k * c);
+  return (v >= 0 ? (v + root) / k : 2 * c / (root - v)) * kRootDown;
+}
+
+/// A direction across n.
+Vector3d across(const Vector3d& n) {
+  int least = 0;
+  n.cwiseAbs().minCoeff(&least);
+  return n.cross(Vector3d::Unit(least)).normalized();
+}
+
+/// Two coordinates of the difference of two corners, and how far B's is ahead.
+struct Difference {
+  double u, v;
+};
+
+double cross(const Difference& x, const Difference& y) {
+  return x.u * y.v - x.v * y.u;
+}
+
+/// Returns true if a triangle in the plane holds the origin, and does so however its corners move by `way`.
+bool holds_origin(const Difference* k, double way) {
+  double sign = 0;
+  for (int i = 0; i < 3; ++i) {
+    const Difference &x = k[i], &y = k[(i + 1) % 3];
+    const double turn = cross(x, y);
+    const double most = std::abs(x.u) + std::abs(x.v) + std::abs(y.u) + std::abs(y.v);
+    if (!(std::abs(turn) > 2 * way * (most + way) + kPairRounding * most * most)) return false;
+    if (i > 0 && (turn > 0) != (sign > 0)) return false;
+    sign = turn;
+  }
+  return true;
+}
+
+}  // namespace
+
+PairMotion::PairMotion(const MovingBody& a, const MovingBody& b, SimplexPair pair)
+    : body_{&a, &b}, n_(a.rep().dim()) {
+  for (int side = 0; side < 2; ++side) {
+    const LrbRep& rep = body_[side]->rep();
+    VertexId v[3];
+    rep.simplex(side == 0 ? pair.a : pair.b, v);
+    for (int k = 0; k < n_; ++k) {
+      Corner& corner = corner_[side][k];
+      corner.in_body = rep.vertices()[v[k]];
+      const MovingBody::Spin spin = body_[side]->spin_of(corner.in_body);
+      corner.spin = spin.velocity;
+      corner.acceleration = spin.acceleration;
+    }
+  }
+}
+
+void PairMotion::place(const PieceState& a, const PieceState& b) {
+  reach_ = 0;
+  for (int side = 0; side < 2; ++side) {
+    const PieceState& state = side == 0 ? a : b;
+    const bool turns = body_[side]->turn_rate() > 0;
+    for (int k = 0; k < n_; ++k) {
+      Corner& corner = corner_[side][k];
+      corner.x = state.pose.apply(corner.in_body);
+      corner.v = body_[side]->travel();
+      if (turns) corner.v += state.turned * corner.spin;
+      reach_ = std::max(reach_, (corner.x - corner_[0][0].x).cwiseAbs().maxCoeff());
+    }
+  }
+}
+
+/// Returns how far a product of n and a difference of two corners may be off, once for now and once for later.
+double PairMotion::places_rounding(const Vector3d& n) const {
+  return 0.25 * kPairRounding * reach_ * n.cwiseAbs().sum() +
+         2 * n.norm() * (1 + kWorldRounding) * (body_[0]->rounding() + body_[1]->rounding());
+}
+
+double PairMotion::parted_for(const Vector3d& n) const {
+  const double length = n.norm() * (1 + kWorldRounding);
+  if (!(length > 0) || !(length < kInfinity)) return 0;
+  double ahead[2][3], speed[2][3];
+  double low[2] = {kInfinity, kInfinity}, high[2] = {-kInfinity, -kInfinity};
+  for (int side = 0; side < 2; ++side)
+    for (int k = 0; k < n_; ++k) {
+      const Corner& corner = corner_[side][k];
+      ahead[side][k] = n.dot(corner.x - corner_[0][0].x);
+      speed[side][k] = n.dot(corner.v);
+      low[side] = std::min(low[side], ahead[side][k]);
+      high[side] = std::max(high[side], ahead[side][k]);
+    }
+  const double sign = low[1] - high[0] >= low[0] - high[1] ? 1 : -1;
+  const double rounding = places_rounding(n);
+  const double speed_rounding = length * (body_[0]->velocity_rounding() + body_[1]->velocity_rounding());
+  double least = kInfinity;
+  for (int i = 0; i < n_; ++i)
+    for (int j = 0; j < n_; ++j) {
+      const double c = sign * (ahead[1][j] - ahead[0][i]) - rounding;
+      if (!(c > 0)) return 0;
+      const double v = sign * (speed[1][j] - speed[0][i]) - speed_rounding;
+      least = std::min(least,
+                       first_root(c, v, length * (corner_[0][i].acceleration + corner_[1][j].acceleration)));
+    }
+  return least > 0 ? least : 0;  // not a number: 0
+}
+
+Vector3d PairMotion::middle(int side) const {
+  Vector3d sum(0, 0, 0);
+  for (int k = 0; k < n_; ++k) sum += corner_[side][k].x;
+  return sum / n_;
+}
+
+PairBounds PairMotion::bounds() const {
+  const double* x[2][3];
+  for (int side = 0; side < 2; ++side)
+    for (int k = 0; k < n_; ++k) x[side][k] = corner_[side][k].x.data();
+  return bound_distance(x[0], x[1], n_);
+}
+
+/// Velocities are linear in the place, so that a feature's corners give those of its points.
+Vector3d PairMotion::velocity_at(int side, const exact::Feature& on, const Vector3d& point) const {
+  const Corner* const corner = corner_[side];
+  const int first = on.dim == 2 ? 0 : on.index;
+  const Corner &from = corner[first], &to = corner[(first + 1) % n_];
+  const Vector3d along = to.x - from.x, way = point - from.x;
+  if (on.dim == 0 || !(along.squaredNorm() > 0)) return from.v;
+  if (on.dim == 1) return from.v + way.dot(along) / along.squaredNorm() * (to.v - from.v);
+  const Vector3d other = corner[2].x - from.x;
+  const double uu = along.squaredNorm(), vv = other.squaredNorm(), uv = along.dot(other);
+  const double area = uu * vv - uv * uv, uw = along.dot(way), vw = other.dot(way);
+  if (!(area > 0)) return from.v;
+  return from.v + (vv * uw - uv * vw) / area * (to.v - from.v) +
+         (uu * vw - uv * uw) / area * (corner[2].v - from.v);
+}
+
+double PairMotion::approach_speed(const PairBounds& at, const Vector3d& n) const {
+  return -n.dot(velocity_at(1, at.on[1], at.point[1]) - velocity_at(0, at.on[0], at.point[0]));
+}
+
+/// Returns the direction along which differences are looked at in has_passed(), of length 1: that of the motion, across
+/// which there is least of it, unless it goes along the slab.
+Vector3d PairMotion::look_along(const Vector3d& n) const {
+  constexpr double kLeastCosine = 1e-3;
+  const Vector3d way = body_[1]->travel() - body_[0]->travel();
+  return std::abs(way.dot(n)) > kLeastCosine * way.norm() * n.norm() ? way.normalized() : n.normalized();
+}
+
+/// Simplices meet where the origin is in the set of all differences b - a of their points: the convex hull of the
+/// differences of their corners, nine or (2D) four points. Let three of these (2D: two) be ahead along n before, and
+/// behind now, and let the triangle (segment) between them, seen along some direction d that is not across n, hold the
+/// origin before and however its corners move meanwhile. Then it holds the origin all the while, seen along d, and the
+/// point of the triangle that hides the origin, or is hidden by it, moves continuously along that line from ahead to
+/// behind: at some time it is the origin.
+bool PairMotion::has_passed(const PairMotion& before, const Vector3d& n, double time) const {
+  const Vector3d d = look_along(n);
+  const Vector3d u = n_ == 3 ? across(d) : Vector3d(-d.y(), d.x(), 0), v = d.cross(u);
+  const double sure = places_rounding(n), sure_before = before.places_rounding(n);
+  const Vector3d travel = body_[1]->travel() - body_[0]->travel();
+  const double aside = std::abs(u.dot(travel)) + std::abs(v.dot(travel)) + 4 * kWorldRounding * travel.norm();
+  const double moved =
+      (time * aside + body_[0]->turned_by(time) + body_[1]->turned_by(time)) * (1 + kWorldRounding) +
+      2 * (body_[0]->rounding() + body_[1]->rounding()) + kPairRounding * reach_;
+  Difference turned[9];
+  int count = 0;
+  for (int i = 0; i < n_; ++i)
+    for (int j = 0; j < n_; ++j) {
+      const Vector3d was = before.corner_[1][j].x - before.corner_[0][i].x;
+      if (!(n.dot(was) > sure_before) || !(n.dot(corner_[1][j].x - corner_[0][i].x) < -sure)) continue;
+      turned[count++] = {u.dot(was), v.dot(was)};
+    }
+  if (n_ == 2) {
+    const auto ahead = [&](const Difference& k) { return k.u > moved; };
+    const auto behind = [&](const Difference& k) { return k.u < -moved; };
+    return std::any_of(turned, turned + count, ahead) && std::any_of(turned, turned + count, behind);
+  }
+  for (int i = 0; i < count; ++i)
+    for (int j = i + 1; j < count; ++j)
+      for (int k = j + 1; k < count; ++k) {
+        const Difference three[3] = {turned[i], turned[j], turned[k]};
+        if (holds_origin(three, moved)) return true;
+      }
+  return false;
+}
+
+}  // namespace lrb
