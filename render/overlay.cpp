@@ -333,6 +333,10 @@ std::string group_digits(std::uint64_t n) {
   return out;
 }
 
+std::string counted(std::uint64_t n, const char* one, const char* many) {
+  return group_digits(n) + " " + (n == 1 ? one : many);
+}
+
 std::string short_number(double value) {
   if (value == std::floor(value) && std::abs(value) < 1e6) {
     const std::string digits = group_digits(static_cast<std::uint64_t>(std::abs(value)));

@@ -79,6 +79,8 @@ Image compose_frame(const Image& picture, const PixelRect& place, const Overlay&
 
 /// Returns 1234567 as "1 234 567", with narrow spaces.
 std::string group_digits(std::uint64_t n);
+/// Returns a number with its noun: "1 face", "2 faces".
+std::string counted(std::uint64_t n, const char* one, const char* many);
 
 /// Returns a value as a scale shows it: with four digits at most.
 std::string short_number(double value);

@@ -133,12 +133,16 @@ void check_vertices(const Mesh& mesh, MeshReport& report) {
   std::vector<bool> used(mesh.vertices.size());
   for (const VertexId v : mesh.face_vertices)
     if (v < used.size()) used[v] = true;
-  for (VertexId v = 0; v < used.size(); ++v)
-    if (!used[v]) note(report, MeshFault::unused_vertex, v);
   const auto& x = mesh.vertices;
+  const auto is_joined = [&](VertexId v) {
+    return std::binary_search(mesh.joined.begin(), mesh.joined.end(), v);
+  };
   std::vector<VertexId> order;
-  for (VertexId v = 0; v < x.size(); ++v)
+  for (VertexId v = 0; v < used.size(); ++v) {
+    if (!used[v] && is_joined(v)) continue;
+    if (!used[v]) note(report, MeshFault::unused_vertex, v);
     if (x[v].allFinite()) order.push_back(v);
+  }
   std::sort(order.begin(), order.end(), [&](VertexId v, VertexId w) {
     for (int axis = 0; axis < 3; ++axis)
       if (x[v][axis] != x[w][axis]) return x[v][axis] < x[w][axis];

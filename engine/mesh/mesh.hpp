@@ -20,7 +20,9 @@ struct Mesh {
   std::vector<Eigen::Vector3d> vertices;          ///< (|V| x 3), unit of the file; z = 0 in 2D
   std::vector<std::uint32_t> face_offsets = {0};  ///< (|F| + 1), into face_vertices
   std::vector<VertexId> face_vertices;            ///< corners of all faces, one after the other
-  std::string name;                               ///< for messages: the file's name, or the generator's
+  std::vector<VertexId>
+      joined;        ///< ascending: those whose corners join_corners() gave to others; mostly none
+  std::string name;  ///< for messages: the file's name, or the generator's
 
   std::size_t face_count() const { return face_offsets.size() - 1; }
   std::span<const VertexId> face(FaceId f) const {

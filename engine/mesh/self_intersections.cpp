@@ -256,6 +256,15 @@ void find_self_intersections(const Mesh& mesh, const std::vector<FaceUse>& use,
   find_pairs(mesh, use, test, found);
 }
 
+void find_self_intersections(const Mesh& mesh, const std::vector<FaceUse>& use,
+                             const std::function<bool(FaceId, FaceId)>& wanted,
+                             const std::function<void(FaceId, FaceId)>& found) {
+  const auto test = [&](const Pieces& pieces, FaceId f, FaceId g) {
+    return wanted(f, g) && pieces.meet_outside_shared(f, g);
+  };
+  find_pairs(mesh, use, test, found);
+}
+
 std::vector<FaceId> self_intersecting_faces(const Mesh& mesh, const std::vector<FaceUse>& use,
                                             Workers& workers) {
   const Pieces pieces(mesh, use);

@@ -16,6 +16,11 @@ namespace lrb {
 void find_self_intersections(const Mesh& mesh, const std::vector<FaceUse>& use,
                              const std::function<void(FaceId, FaceId)>& found);
 
+/// Does the same for pairs for which wanted(f, g) holds.
+void find_self_intersections(const Mesh& mesh, const std::vector<FaceUse>& use,
+                             const std::function<bool(FaceId, FaceId)>& wanted,
+                             const std::function<void(FaceId, FaceId)>& found);
+
 /// Returns the faces that find_self_intersections() would name, ascending: faster, and with memory for the
 /// faces alone, where there are millions of pairs.
 std::vector<FaceId> self_intersecting_faces(const Mesh& mesh, const std::vector<FaceUse>& use,

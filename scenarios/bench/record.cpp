@@ -6,96 +6,69 @@
 
 #include "engine/core/error.hpp"
 #include "scenarios/io/files.hpp"
+#include "scenarios/workers/pairs_json.hpp"
+
+template <>
+struct lrb::io::JsonOf<std::vector<Eigen::Vector3d>> {
+  static nlohmann::ordered_json write(const std::vector<Eigen::Vector3d>& points) {
+    nlohmann::ordered_json out = nlohmann::ordered_json::array();
+    for (const Eigen::Vector3d& p : points) out.push_back({p.x(), p.y(), p.z()});
+    return out;
+  }
+  static std::vector<Eigen::Vector3d> read(const nlohmann::json& value) {
+    std::vector<Eigen::Vector3d> out;
+    for (const nlohmann::json& p : value)
+      out.emplace_back(p.at(0).get<double>(), p.at(1).get<double>(), p.at(2).get<double>());
+    return out;
+  }
+};
+
+namespace lrb {
+
+template <>
+inline constexpr auto kFields<bench::Reply> =
+    std::tuple{field("contact", &bench::Reply::contact),
+               field("count", &bench::Reply::count),
+               field("missed", &bench::Reply::missed),
+               field("extra", &bench::Reply::extra),
+               field("cold_us", &bench::Reply::cold_us),
+               field("hot_us", &bench::Reply::hot_us),
+               field("face_tests", &bench::Reply::face_tests),
+               field("error_bound", &bench::Reply::error_bound, Kept::if_set),
+               field("pairs", &bench::Reply::pairs, Kept::if_set),
+               field("points", &bench::Reply::points, Kept::if_set)};
+
+template <>
+inline constexpr auto kFields<bench::Record> =
+    std::tuple{field("set", &bench::Record::set),
+               field("method", &bench::Record::method),
+               field("setting", &bench::Record::setting, Kept::if_set),
+               field("question", &bench::Record::question),
+               field("class", &bench::Record::pose_class),
+               field("outcome", &bench::Record::outcome),
+               field("message", &bench::Record::message, Kept::if_set),
+               field("all", &bench::Record::all, Kept::if_set),
+               field("first", &bench::Record::first, Kept::if_set),
+               field("build_s", &bench::Record::build_seconds, Kept::if_set),
+               field("bytes", &bench::Record::bytes, Kept::if_set)};
+
+static_assert(covers_all_fields<bench::Reply>);
+static_assert(covers_all_fields<bench::Record>);
+
+}  // namespace lrb
 
 namespace lrb::bench {
-namespace {
 
 using nlohmann::json;
-using nlohmann::ordered_json;
 
-ordered_json reply_json(const Reply& r) {
-  ordered_json out = {{"contact", r.contact},      {"count", r.count},     {"missed", r.missed},
-                      {"extra", r.extra},          {"cold_us", r.cold_us}, {"hot_us", r.hot_us},
-                      {"face_tests", r.face_tests}};
-  if (r.error_bound) out["error_bound"] = *r.error_bound;
-  if (!r.pairs.empty()) out["pairs"] = flat(r.pairs);
-  for (const Eigen::Vector3d& p : r.points) out["points"].push_back({p.x(), p.y(), p.z()});
-  return out;
-}
-
-Reply reply_from(const json& value) {
-  Reply r;
-  value.at("contact").get_to(r.contact);
-  value.at("count").get_to(r.count);
-  value.at("missed").get_to(r.missed);
-  value.at("extra").get_to(r.extra);
-  value.at("cold_us").get_to(r.cold_us);
-  value.at("hot_us").get_to(r.hot_us);
-  value.at("face_tests").get_to(r.face_tests);
-  if (value.contains("error_bound")) r.error_bound = value.at("error_bound").get<double>();
-  if (value.contains("pairs")) r.pairs = pairs_from(value.at("pairs"));
-  if (value.contains("points"))
-    for (const json& p : value.at("points"))
-      r.points.emplace_back(p.at(0).get<double>(), p.at(1).get<double>(), p.at(2).get<double>());
-  return r;
-}
-
-template <class T>
-T value_of(const std::string& word, const char* what) {
-  if (const auto value = from_name<T>(word)) return *value;
-  throw InputError("'" + word + "' is no " + what);
-}
-
-}  // namespace
-
-ordered_json flat(const std::vector<SimplexPair>& pairs) {
-  ordered_json out = ordered_json::array();
-  for (const SimplexPair& p : pairs) {
-    out.push_back(p.a.value());
-    out.push_back(p.b.value());
-  }
-  return out;
-}
-
-std::vector<SimplexPair> pairs_from(const json& flat) {
-  std::vector<SimplexPair> out;
-  for (std::size_t i = 0; i + 1 < flat.size(); i += 2)
-    out.push_back({SimplexId(flat[i].get<std::uint32_t>()), SimplexId(flat[i + 1].get<std::uint32_t>())});
-  return out;
-}
-
-ordered_json to_json(const Record& r) {
-  ordered_json out = {{"set", r.set}, {"method", r.method}};
-  if (r.setting) out["setting"] = *r.setting;
-  out["question"] = r.question;
-  out["class"] = name_of(r.pose_class);
-  out["outcome"] = name_of(r.outcome);
-  if (!r.message.empty()) out["message"] = r.message;
-  if (r.outcome != Outcome::answered) return out;
-  out["all"] = reply_json(r.all);
-  out["first"] = reply_json(r.first);
-  out["build_s"] = r.build_seconds;
-  out["bytes"] = r.bytes;
-  return out;
+nlohmann::ordered_json to_json(const Record& r) {
+  return io::record_to_json(r);
 }
 
 Record record_from(const json& value) {
   try {
-    Record r;
-    value.at("set").get_to(r.set);
-    value.at("method").get_to(r.method);
-    if (value.contains("setting")) r.setting = value.at("setting").get<double>();
-    value.at("question").get_to(r.question);
-    r.pose_class = value_of<PoseClass>(value.at("class").get<std::string>(), "class of poses");
-    r.outcome = value_of<Outcome>(value.at("outcome").get<std::string>(), "outcome");
-    r.message = value.value("message", "");
-    if (r.outcome != Outcome::answered) return r;
-    r.all = reply_from(value.at("all"));
-    r.first = reply_from(value.at("first"));
-    value.at("build_s").get_to(r.build_seconds);
-    value.at("bytes").get_to(r.bytes);
-    return r;
-  } catch (const json::exception& e) {
+    return io::record_from_json<Record>(value);
+  } catch (const InputError& e) {
     throw InputError(std::string("not a record of lrbscope bench or chart: ") + e.what());
   }
 }

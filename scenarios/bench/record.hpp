@@ -33,6 +33,7 @@ struct Reply {
   std::optional<double> error_bound;    ///< as in methods::MethodAnswer
   std::vector<SimplexPair> pairs;       ///< if they are kept
   std::vector<Eigen::Vector3d> points;  ///< if they are kept, and the method gives them
+  friend bool operator==(const Reply&, const Reply&) = default;
 };
 
 struct Record {
@@ -53,10 +54,6 @@ Record record_from(const nlohmann::json& value);
 /// Reads a file of records; none if there is no file. Skips lines that are not whole, which a run that was
 /// interrupted leaves.
 std::vector<Record> read_records(const std::string& path);
-
-/// Returns pairs as one array of numbers.
-nlohmann::ordered_json flat(const std::vector<SimplexPair>& pairs);
-std::vector<SimplexPair> pairs_from(const nlohmann::json& flat);
 
 /// Returns the method with its setting: "fcl", "spheres 4".
 std::string name_of(const Record& r);

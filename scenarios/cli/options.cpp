@@ -18,7 +18,7 @@ namespace {
 template <class Value>
 std::string option_of(Value CollideRequest::*member) {
   std::string out = "--";
-  trace::for_each_field<CollideRequest>([&](const auto& field) {
+  for_each_field<CollideRequest>([&](const auto& field) {
     if constexpr (std::is_same_v<std::remove_cvref_t<decltype((field.member))>, Value CollideRequest::*>)
       if (field.member == member) out += field.name;
   });

@@ -1,18 +1,18 @@
 #pragma once
 
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "engine/core/error.hpp"
-#include "engine/core/file_bytes.hpp"
-#include "scenarios/io/pose_file.hpp"
+#include "scenarios/io/json/pose_list.hpp"
 
 namespace lrb::cli {
 
 /// The poses of a command, and where each stands in its file.
 struct PoseLines {
-  explicit PoseLines(const std::string& path)
-      : file(printable_name(path)), poses(io::read_poses(path, &lines)) {}  // `lines` comes first
+  explicit PoseLines(const std::string& path) : PoseLines(io::open_poses(path)) {}
+  explicit PoseLines(io::PoseList list) : poses(std::move(list.poses)), places(std::move(list.places)) {}
 
   /// Calls ask(), and puts the place of the pose before the message of an InputError.
   template <class Ask>
@@ -20,13 +20,12 @@ struct PoseLines {
     try {
       return ask();
     } catch (const InputError& e) {
-      throw InputError(file + ":" + std::to_string(lines[i]) + ": " + e.what());
+      throw InputError(places[i] + ": " + e.what());
     }
   }
 
-  std::string file;
-  std::vector<std::size_t> lines;
   std::vector<Pose> poses;
+  std::vector<std::string> places;
 };
 
 }  // namespace lrb::cli

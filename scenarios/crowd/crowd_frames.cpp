@@ -28,10 +28,6 @@ render::Rgba colour_of(std::uint32_t kind) {
   return kind < std::size(kFirst) ? kFirst[kind] : render::palette::category(kind);
 }
 
-std::string counted(std::uint64_t n, const char* one, const char* many) {
-  return render::group_digits(n) + " " + (n == 1 ? one : many);
-}
-
 class FrameState {
  public:
   FrameState(const spec::Crowd& crowd, const CrowdRun& run, const spec::FrameSpec& spec)
@@ -70,7 +66,8 @@ class FrameState {
     const CrowdStep& step = run_.steps[m.step];
     render::Overlay o;
     o.title = crowd_.name + "  ·  step " + std::to_string(m.step);
-    o.event = counted(count(step, Relation::crossing), "pair of bodies crosses", "pairs of bodies cross");
+    o.event =
+        render::counted(count(step, Relation::crossing), "pair of bodies crosses", "pairs of bodies cross");
     o.event_colour = render::palette::kContact;
     const Counters c = sum(step);
     const std::uint64_t n = run_.motion.body_count();
@@ -160,8 +157,8 @@ std::string crowd_caption(const CrowdRun& run, std::uint32_t step) {
   const std::size_t crossing = count(s, Relation::crossing), touching = count(s, Relation::touching),
                     inside = count(s, Relation::a_inside_b) + count(s, Relation::b_inside_a);
   std::string out = "Step " + std::to_string(step) + ": " +
-                    counted(s.queries.size(), "pair of boxes meets", "pairs of boxes meet") + ", " +
-                    counted(crossing, "pair of bodies crosses", "pairs of bodies cross");
+                    render::counted(s.queries.size(), "pair of boxes meets", "pairs of boxes meet") + ", " +
+                    render::counted(crossing, "pair of bodies crosses", "pairs of bodies cross");
   if (touching > 0) out += ", " + render::group_digits(touching) + " touch";
   if (inside > 0) out += ", " + render::group_digits(inside) + " lie one in the other";
   return out + ".";

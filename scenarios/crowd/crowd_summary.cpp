@@ -101,7 +101,7 @@ std::size_t bodies_in_contact(const CrowdStep& step, std::size_t bodies) {
 Counters sum(const CrowdStep& step) {
   Counters all;
   for (const CrowdQuery& q : step.queries) {
-    trace::for_each_field<Counters>([&](const auto& field) {
+    for_each_field<Counters>([&](const auto& field) {
       if constexpr (std::is_same_v<decltype(field.member), std::uint64_t Counters::*>)
         all.*field.member += q.result.counters.*field.member;
     });

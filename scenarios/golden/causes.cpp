@@ -35,7 +35,7 @@ std::string body_cause(const Golden& golden, const GoldenRun& run, std::size_t i
 /// Names the fields of the request that are not as approved.
 std::string request_cause(const CollideRequest& x, const CollideRequest& y) {
   std::string names;
-  trace::for_each_field<CollideRequest>([&](const auto& field) {
+  for_each_field<CollideRequest>([&](const auto& field) {
     if (x.*field.member != y.*field.member) names.append(names.empty() ? "" : ", ").append(field.name);
   });
   return names.empty() ? names : "the query asks otherwise: " + names;

@@ -44,7 +44,7 @@ std::string name_in_words(std::string_view name) {
 template <class Record>
 void compare(const Record& x, const Record& y, Effect like, std::vector<Effect>& out) {
   std::vector<Effect> counters;
-  trace::for_each_field<Record>([&](const auto& field) {
+  for_each_field<Record>([&](const auto& field) {
     const auto &expected = x.*field.member, &found = y.*field.member;
     if (expected == found) return;
     if constexpr (std::is_same_v<decltype(expected), const Counters&>) {
@@ -56,7 +56,7 @@ void compare(const Record& x, const Record& y, Effect like, std::vector<Effect>&
       like.expected = words(expected);
       like.found = words(found);
       if constexpr (std::is_same_v<decltype(expected), const std::uint64_t&>)
-        if (field.form == trace::Form::hash) {
+        if (field.form == Form::hash) {
           like.expected = trace::to_hex(expected);
           like.found = trace::to_hex(found);
         }

@@ -60,10 +60,6 @@ void add_image(GoldenResult& result, const Golden& golden, const GoldenRun& run,
                  v.has_actual ? run.frames[v.frame].image : render::Image());
 }
 
-std::string counted(std::size_t n, const char* one, const char* many) {
-  return render::group_digits(n) + " " + (n == 1 ? one : many);
-}
-
 /// Returns "3 of 3 equal", "2 of 3 differ".
 std::string images_words(const GoldenResult& result) {
   const GoldenVerdict& verdict = result.verdict;
@@ -82,18 +78,18 @@ std::string images_words(const GoldenResult& result) {
 std::string answers_words(const GoldenResult& r) {
   if (!r.verdict.refusal.empty()) return "not tested";
   if (!r.spec.compares(Level::answers)) return "not compared";
-  if (!r.verdict.answers_differ) return counted(r.steps, "step", "steps") + ": equal";
+  if (!r.verdict.answers_differ) return render::counted(r.steps, "step", "steps") + ": equal";
   std::set<std::uint32_t> steps;
   for (const Effect& e : r.verdict.effects)
     if (e.kind == Effect::Kind::answer) steps.insert(e.step);
-  return "differ in " + std::to_string(steps.size()) + " of " + counted(r.steps, "step", "steps");
+  return "differ in " + std::to_string(steps.size()) + " of " + render::counted(r.steps, "step", "steps");
 }
 
 std::string events_words(const GoldenResult& r) {
   if (!r.verdict.refusal.empty()) return r.verdict.refusal;
   if (!r.spec.compares(Level::events)) return "not compared";
   return r.verdict.divergence ? r.verdict.divergence->message()
-                              : counted(r.events, "event", "events") + ": equal";
+                              : render::counted(r.events, "event", "events") + ": equal";
 }
 
 /// What came out otherwise, step by step, with what may be behind it below.
@@ -207,7 +203,7 @@ void write_golden_page(const std::vector<GoldenResult>& results, const std::stri
       for (const report::PngBytes& png : three)
         if (!png.empty()) pngs.push_back(png);
   }
-  page.verdict = failed == 0 ? "passed" : counted(failed, "failure", "failures");
+  page.verdict = failed == 0 ? "passed" : render::counted(failed, "failure", "failures");
   page.purpose =
       "Runs against what was approved of them: events and counters must be equal; pictures may differ by "
       "what "
@@ -238,10 +234,11 @@ std::string result_text(const GoldenResult& r) {
   if (!v.refusal.empty())
     return "FAIL  " + r.name + ": " + v.refusal + "\n      approve it once that is mended: " + r.approve +
            "\n";
-  std::string head = v.answers_differ                 ? "answers " + answers_words(r)
-                     : v.divergence                   ? "events or counters differ"
-                     : r.spec.compares(Level::events) ? counted(r.events, "event", "events") + " equal"
-                                                      : "answers of " + answers_words(r);
+  std::string head = v.answers_differ ? "answers " + answers_words(r)
+                     : v.divergence   ? "events or counters differ"
+                     : r.spec.compares(Level::events)
+                         ? render::counted(r.events, "event", "events") + " equal"
+                         : "answers of " + answers_words(r);
   std::string out =
       (v.passed() ? "ok    " : "FAIL  ") + r.name + ": " + head + "; images: " + images_words(r) + "\n";
   if (v.passed()) return out;

@@ -22,4 +22,9 @@ std::string fixed_text(double x, int decimals) {
   return out;
 }
 
+std::string exact_text(double x) {
+  std::array<char, 32> text{};
+  return {text.data(), std::to_chars(text.data(), text.data() + text.size(), x).ptr};
+}
+
 }  // namespace lrb::io

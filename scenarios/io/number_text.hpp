@@ -11,4 +11,7 @@ std::string number_text(double x, int digits = 7);
 /// Returns a number with `decimals` decimals at most: no exponent, no zeros at the end.
 std::string fixed_text(double x, int decimals = 6);
 
+/// Returns the shortest text that reads back as the same number.
+std::string exact_text(double x);
+
 }  // namespace lrb::io

@@ -1,7 +1,10 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
+#include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "engine/core/pose.hpp"
@@ -14,7 +17,21 @@ namespace lrb::io {
 /// given.
 std::vector<Pose> parse_poses(const std::string& text, const std::string& name,
                               std::vector<std::size_t>* lines = nullptr);
-std::vector<Pose> read_poses(const std::string& path, std::vector<std::size_t>* lines = nullptr);
+
+/// Reads poses from a table with commas, as spreadsheets write it: 12 numbers on each line as parse_poses()
+/// has them, or 16, a 4x4 matrix whose last row is 0, 0, 0, 1. A first line with names says which columns are
+/// which: kPoseColumns in any order; columns of other names are left alone. Throws InputError as
+/// parse_poses() does.
+std::vector<Pose> parse_pose_table(const std::string& text, const std::string& name,
+                                   std::vector<std::size_t>* lines = nullptr);
+
+/// The columns of a pose: its 3x4 matrix row by row.
+inline constexpr std::array<std::string_view, 12> kPoseColumns = {"r00", "r01", "r02", "tx",  "r10", "r11",
+                                                                  "r12", "ty",  "r20", "r21", "r22", "tz"};
+
+/// Makes a pose of 12 numbers row by row, and takes it apart again.
+Pose pose_of(std::span<const double, 12> rows);
+std::array<double, 12> rows_of(const Pose& pose);
 
 /// The poses at which a motion begins and ends, and the number of their line.
 struct PosePair {

@@ -19,6 +19,28 @@ enum class Says : std::uint8_t {
   inside,    ///< whether one body lies in the other
   relation,  ///< all of Relation
 };
+constexpr auto words_of(Says) {
+  return std::to_array<EnumWord<Says>>(
+      {{Says::nothing, "nothing"}, {Says::inside, "inside"}, {Says::relation, "relation"}});
+}
+
+/// The part that a method plays where methods are compared.
+enum class Role : std::uint8_t {
+  peer,         ///< answers the question that `ours` does
+  ours,         ///< the one that all others are compared with, and that must not fail
+  ours_double,  ///< ours without the exact fallback: what exactness costs
+  ours_other,   ///< ours, asked otherwise
+  aim,          ///< the peer that our aims are set against
+  no_peer,      ///< answers another question, or takes minutes: in no table of peers
+};
+constexpr auto words_of(Role) {
+  return std::to_array<EnumWord<Role>>({{Role::peer, "peer"},
+                                        {Role::ours, "ours"},
+                                        {Role::ours_double, "ours_double"},
+                                        {Role::ours_other, "ours_other"},
+                                        {Role::aim, "aim"},
+                                        {Role::no_peer, "no_peer"}});
+}
 
 /// How a method is drawn on charts. Methods of one title are one series, which looks as the first of them
 /// does.
@@ -27,6 +49,7 @@ struct MethodStyle {
   std::string colour;  ///< #rrggbb
   std::string shape;   ///< Chart.js's name of the point's shape
   int point = 0;       ///< gnuplot's number of the point's shape
+  friend bool operator==(const MethodStyle&, const MethodStyle&) = default;
 };
 
 struct MethodInfo {
@@ -52,6 +75,7 @@ struct MethodInfo {
   std::string knob;              ///< what `settings` set: "level"; empty: there is nothing to set
   std::vector<double> settings;  ///< settings worth a sweep, from coarse to fine
   MethodStyle style = {};
+  Role role = Role::peer;
   int rank = 1000;  ///< the methods' order in tables and charts: by rank, then by file
 };
 

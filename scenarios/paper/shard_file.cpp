@@ -9,40 +9,39 @@
 #include "engine/core/error.hpp"
 #include "engine/core/file_bytes.hpp"
 #include "scenarios/io/files.hpp"
+#include "scenarios/io/json/record_json.hpp"
+#include "scenarios/paper/fields.hpp"
 
 namespace lrb::paper {
 namespace {
 
 /// Returns what shards of one experiment have in common.
 nlohmann::ordered_json experiment(const ShardFile& s) {
-  return {{"shards", s.shard.count},
-          {"collisions", s.protocol.collisions},
-          {"time_step_of_diagonal", s.protocol.step},
-          {"steps_after_first_contact", s.protocol.steps_after},
-          {"seed", s.protocol.seed},
-          {"resolutions", s.resolutions.most},
-          {"subdivisions", s.resolutions.subdivisions},
-          {"lean", s.lean}};
+  nlohmann::ordered_json out = {{"shards", s.shard.count}};
+  out.update(io::record_to_json(s.protocol));
+  out.update(io::record_to_json(s.resolutions));
+  out["lean"] = s.lean;
+  return out;
 }
 
 ShardFile read(const std::string& path) {
+  const auto refuse = [&](const char* why) {
+    throw InputError(printable_name(path) + ": not written by `lrbscope paper --shard`: " +
+                     printable_name(why) + "; give the records.jsonl in the folders that its shards wrote");
+  };
+  const auto j = nlohmann::json::parse(io::read_text(path), nullptr, false);
+  ShardFile s;
   try {
-    const auto j = nlohmann::json::parse(io::read_text(path));
-    ShardFile s;
     s.shard = {j.at("shard").get<std::uint32_t>(), j.at("shards").get<std::uint32_t>()};
-    s.protocol.collisions = j.at("collisions").get<std::uint32_t>();
-    s.protocol.step = j.at("time_step_of_diagonal").get<double>();
-    s.protocol.steps_after = j.at("steps_after_first_contact").get<std::uint32_t>();
-    s.protocol.seed = j.at("seed").get<std::uint64_t>();
-    s.resolutions.most = j.at("resolutions").get<std::uint32_t>();
-    s.resolutions.subdivisions = j.at("subdivisions").get<std::uint32_t>();
+    s.protocol = io::record_from_json<PaperProtocol>(j);
+    s.resolutions = io::record_from_json<resolutions::ResolutionOptions>(j);
     s.lean = j.value("lean", false);
-    return s;
   } catch (const nlohmann::json::exception& e) {
-    throw InputError(printable_name(path) +
-                     ": not written by `lrbscope paper --shard`: " + printable_name(e.what()) +
-                     "; give the records.jsonl in the folders that its shards wrote");
+    refuse(e.what());
+  } catch (const InputError& e) {
+    refuse(e.what());
   }
+  return s;
 }
 
 }  // namespace

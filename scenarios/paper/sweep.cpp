@@ -9,6 +9,8 @@
 #include "engine/core/file_bytes.hpp"
 #include "engine/core/parallel.hpp"
 #include "engine/query/walk/query_context.hpp"
+#include "scenarios/io/json/record_json.hpp"
+#include "scenarios/paper/fields.hpp"
 #include "trace/names.hpp"
 
 namespace lrb::paper {
@@ -18,17 +20,10 @@ using nlohmann::json;
 using nlohmann::ordered_json;
 
 ordered_json to_json(const ContactStep& s) {
-  ordered_json j = {{"object", s.object},
-                    {"collision", s.collision},
-                    {"step", s.step},
-                    {"relation", trace::name_of(s.relation)}};
+  ordered_json j = {
+      {"object", s.object}, {"collision", s.collision}, {"step", s.step}, {"relation", name_of(s.relation)}};
   for (std::size_t i = 0; i < kRecursions.size(); ++i) {
-    const RecursionCount& n = s.counts[i];
-    j[std::string(trace::name_of(kRecursions[i]))] = {{"comparisons", n.comparisons},
-                                                      {"refinements", n.refinements},
-                                                      {"pairs", n.pairs},
-                                                      {"missed", n.missed},
-                                                      {"bound_tests", n.bound_tests}};
+    j[std::string(name_of(kRecursions[i]))] = io::record_to_json(s.counts[i]);
   }
   return j;
 }
@@ -38,13 +33,9 @@ ContactStep from_json(const json& j) {
   s.object = j.at("object").get<std::string>();
   s.collision = j.at("collision").get<std::uint32_t>();
   s.step = j.at("step").get<std::uint32_t>();
-  const auto relation = trace::from_name<Relation>(j.at("relation").get<std::string>());
-  if (!relation) throw InputError("\"relation\" must be " + trace::all_names<Relation>());
-  s.relation = *relation;
+  s.relation = io::JsonOf<Relation>::read(j.at("relation"));
   for (std::size_t i = 0; i < kRecursions.size(); ++i) {
-    const json& n = j.at(std::string(trace::name_of(kRecursions[i])));
-    const auto at = [&](const char* key) { return n.at(key).get<std::uint64_t>(); };
-    s.counts[i] = {at("comparisons"), at("refinements"), at("pairs"), at("missed"), at("bound_tests")};
+    s.counts[i] = io::record_from_json<RecursionCount>(j.at(std::string(name_of(kRecursions[i]))));
   }
   return s;
 }

@@ -6,6 +6,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "scenarios/io/json/record_json.hpp"
+#include "scenarios/paper/fields.hpp"
 #include "trace/names.hpp"
 
 namespace lrb::paper {
@@ -86,10 +88,7 @@ std::string tables_json(std::span<const PaperObject> objects, std::span<const Ob
                         const PaperProtocol& protocol) {
   nlohmann::ordered_json j;
   j["source"] = "measured by lrbscope paper";
-  j["protocol"] = {{"collisions", protocol.collisions},
-                   {"time_step_of_diagonal", protocol.step},
-                   {"steps_after_first_contact", protocol.steps_after},
-                   {"seed", protocol.seed}};
+  j["protocol"] = io::record_to_json(protocol);
   for (const PaperObject& o : objects)
     j["table1_object_sizes"][o.name] = {{"real_faces", o.rep.real_face_count()},
                                         {"total_faces", o.rep.face_count()}};

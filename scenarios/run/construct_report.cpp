@@ -73,9 +73,10 @@ report::PageTable pass_table(const Passes& passes) {
     return n;
   };
   if (const std::uint64_t merged = sum(&trace::PassSummary::merged); merged > 0)
-    t.note += " " + counted(merged, "piece", "pieces") + " of space became part of the region around.";
+    t.note +=
+        " " + render::counted(merged, "piece", "pieces") + " of space became part of the region around.";
   if (const std::uint64_t retried = sum(&trace::PassSummary::retried); retried > 0)
-    t.note += " " + counted(retried, "cap", "caps") +
+    t.note += " " + render::counted(retried, "cap", "caps") +
               " met something at first, and another was made with a proof for each collapse.";
   return t;
 }
@@ -106,7 +107,7 @@ std::string left_out_words(const Passes& passes) {
   std::uint32_t barred = 0;
   for (const trace::PassSummary& p : passes) barred = std::max(barred, p.barred);
   if (barred == 0) return {};
-  return counted(barred, "face was", "faces were") +
+  return render::counted(barred, "face was", "faces were") +
          " left to the outermost wrapper alone: they meet others, lie within another component, or belong to a very "
          "large polygon or fan.";
 }

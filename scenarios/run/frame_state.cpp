@@ -230,7 +230,7 @@ std::string FrameState::event_text() const {
   const trace::Event& e = cursor_.event();
   if (trace_.header.construction) {
     if (e.kind == EventKind::step)
-      return "the body, " + counted(reps_[0]->real_face_count(), "face", "faces");
+      return "the body, " + render::counted(reps_[0]->real_face_count(), "face", "faces");
     return e.kind == EventKind::pass_end ? pass_words(*pass_here()) : built_words(e);
   }
   const std::string side = e.side == Side::a ? "A" : "B";
@@ -250,7 +250,7 @@ std::string FrameState::event_text() const {
       return "face test " + std::to_string(face_of(Side::a)) + " against " +
              std::to_string(face_of(Side::b)) + ": " + std::string(trace::name_of(e.meet));
     case EventKind::refine:
-      return "refine " + region + ": " + counted(e.b, "face", "faces") + " under it";
+      return "refine " + region + ": " + render::counted(e.b, "face", "faces") + " under it";
     case EventKind::coarsen:
       return region + " added";
     case EventKind::contact:
@@ -282,16 +282,16 @@ std::string FrameState::node_pair_text(const trace::Event& e) {
   if (work.met == 0)
     return out + (end.apart ? "apart along " + std::string(name_of(end.axis)) : "no boxes in them meet");
   if (end.step != NodeStep::leaves)
-    return out + counted(work.met, "pair of boxes meets", "pairs of boxes meet");
-  return out + counted(work.met, "pair of faces", "pairs of faces") + ", " +
-         counted(work.met - work.parted, "left to test", "left to test");
+    return out + render::counted(work.met, "pair of boxes meets", "pairs of boxes meet");
+  return out + render::counted(work.met, "pair of faces", "pairs of faces") + ", " +
+         render::counted(work.met - work.parted, "left to test", "left to test");
 }
 
 std::string FrameState::result_text() const {
   const trace::StepResult& r = cursor_.step()->result;
   if (const Separation* proof = proof_here())
     return "separate: wrappers of " + render::group_digits(proof->face_count[0]) + " and " +
-           counted(proof->face_count[1], "face prove it", "faces prove it");
+           render::counted(proof->face_count[1], "face prove it", "faces prove it");
   if (r.relation == Relation::unresolved)
     return std::isfinite(r.error_bound)
                ? "unresolved: in contact, or no further apart than " + render::short_number(r.error_bound)
@@ -299,7 +299,7 @@ std::string FrameState::result_text() const {
   if (const WalkExplanation* walk = parting_here())
     if (const std::string words = parting_words(*walk); !words.empty()) return "separate: " + words;
   return relation_words(r.relation) + ": " +
-         counted(r.pair_count, "pair of faces meets", "pairs of faces meet");
+         render::counted(r.pair_count, "pair of faces meets", "pairs of faces meet");
 }
 
 render::Overlay FrameState::overlay(const std::string& title) const {
@@ -347,7 +347,7 @@ void FrameState::add_construction(render::Overlay& o) const {
     o.title += "  ·  " + stage_words(*pass);
   }
   o.counters = {
-      {"hull", counted(cursor_.boundary_size(Side::a), "face", "faces")},
+      {"hull", render::counted(cursor_.boundary_size(Side::a), "face", "faces")},
       {"regions", render::group_digits(made) + " of " + render::group_digits(reps_[0]->region_count())}};
 }
 
@@ -356,14 +356,14 @@ std::string FrameState::construction_caption() const {
   text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
   const trace::PassSummary* pass = pass_here();
   if (!at_pass_end())
-    return text + ". Hull: " + counted(cursor_.boundary_size(Side::a), "face", "faces") + ".";
+    return text + ". Hull: " + render::counted(cursor_.boundary_size(Side::a), "face", "faces") + ".";
   text += ". " + std::string(name_of(pass->stage));
   if (pass->most_off > 0)
     text += " by caps at most " + render::short_number(pass->most_off) +
             " off the body (the farthest: " + render::short_number(pass->off) + ")";
   if (pass->covered > 0)
-    text += "; " + counted(pass->accepted(), "cap", "caps") + " of " + counted(pass->lids, "face", "faces") +
-            " over " + render::group_digits(pass->covered);
+    text += "; " + render::counted(pass->accepted(), "cap", "caps") + " of " +
+            render::counted(pass->lids, "face", "faces") + " over " + render::group_digits(pass->covered);
   return text + ".";
 }
 
@@ -372,9 +372,9 @@ std::string FrameState::short_caption() const {
     const std::uint32_t faces = cursor_.boundary_size(Side::a);
     const bool built = faces == reps_[0]->outermost_faces().size();
     const trace::PassSummary* pass = pass_here();
-    if (pass == nullptr) return "the body, " + counted(faces, "face", "faces");
+    if (pass == nullptr) return "the body, " + render::counted(faces, "face", "faces");
     return "pass " + std::to_string(pass->number()) + (built ? ", the outermost wrapper" : "") + ", " +
-           counted(faces, "face", "faces");
+           render::counted(faces, "face", "faces");
   }
   if (reps_.size() == 1) {
     const trace::Totals t = totals();
@@ -382,8 +382,8 @@ std::string FrameState::short_caption() const {
     const std::string state = refined == 0     ? "outermost wrapper"
                               : refined == all ? "the body itself"
                                                : render::group_digits(refined) + " of " +
-                                                     counted(all, "region", "regions") + " refined";
-    return state + ", " + counted(cursor_.boundary_size(Side::a), "face", "faces");
+                                                     render::counted(all, "region", "regions") + " refined";
+    return state + ", " + render::counted(cursor_.boundary_size(Side::a), "face", "faces");
   }
   return "step " + std::to_string(step()) + ": " + event_text();
 }
@@ -397,8 +397,8 @@ std::string FrameState::caption() const {
              ? "Wrapper: " + render::group_digits(cursor_.boundary_size(Side::a)) + " faces."
              : "Wrappers: " + render::group_digits(boundary_size(Side::a)) + " + " +
                    render::group_digits(boundary_size(Side::b)) + " faces; " +
-                   counted(t.face_tests, "face test", "face tests") + ", " +
-                   counted(t.refinements[0] + t.refinements[1], "refinement", "refinements") + ".";
+                   render::counted(t.face_tests, "face test", "face tests") + ", " +
+                   render::counted(t.refinements[0] + t.refinements[1], "refinement", "refinements") + ".";
   if (const trace::StepResult* answer = answer_here(); answer && trace_.header.request.is_coarse())
     out += " Error bound: " + error_bound_text(answer->error_bound) +
            (answer->finished ? "." : "; a limit was reached.");

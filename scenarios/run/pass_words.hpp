@@ -8,9 +8,6 @@
 
 namespace lrb::run {
 
-/// Returns a number with its noun: "1 face", "2 faces".
-std::string counted(std::uint64_t n, const char* one, const char* many);
-
 /// Returns what a pass made: "pass 3: 47 regions, 1 064 to 340 faces, 12 caps refused: 9 met the hull, 3 too
 /// thick".
 std::string pass_words(const trace::PassSummary& pass);

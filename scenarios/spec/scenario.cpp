@@ -78,13 +78,13 @@ CollideRequest read_query(const io::JsonNode& node, bool* coherent) {
                   "how far a query comes in a time differs from run to run, and the same file is to give the "
                   "same trace: give max_tests instead");
   std::vector<std::string> keys;
-  trace::for_each_field<CollideRequest>([&](const auto& field) { keys.emplace_back(field.name); });
+  for_each_field<CollideRequest>([&](const auto& field) { keys.emplace_back(field.name); });
   std::erase(keys, "max_time");
   if (coherent != nullptr) keys.emplace_back("coherent");
   node.object(keys);
   if (coherent != nullptr && node.has("coherent")) *coherent = node.at("coherent").boolean();
   CollideRequest r;
-  trace::for_each_field<CollideRequest>([&](const auto& field) {
+  for_each_field<CollideRequest>([&](const auto& field) {
     if (const auto n = node.get(std::string(field.name))) read_value(*n, r.*field.member);
   });
   if (!node.has("contacts"))

@@ -2,12 +2,20 @@
 
 #include "engine/core/error.hpp"
 #include "engine/query/brute_force.hpp"
+#include "scenarios/workers/pairs_json.hpp"
+
+namespace lrb {
+
+template <>
+inline constexpr auto kFields<stability::Expected> =
+    std::tuple{field("pairs", &stability::Expected::pairs), field("relation", &stability::Expected::relation),
+               field("refusal", &stability::Expected::refusal, Kept::if_set)};
+static_assert(covers_all_fields<stability::Expected>);
+
+}  // namespace lrb
 
 namespace lrb::stability {
 namespace {
-
-using nlohmann::json;
-using nlohmann::ordered_json;
 
 std::string why_not(const cases::Case& c) {
   char name = 'A';
@@ -32,29 +40,12 @@ Expected expected_answer(const cases::Case& c) {
   return e;
 }
 
-ordered_json to_json(const std::vector<SimplexPair>& pairs) {
-  ordered_json list = ordered_json::array();
-  for (const SimplexPair& p : pairs) list.push_back({p.a.value(), p.b.value()});
-  return list;
-}
-
-std::vector<SimplexPair> pairs_from(const json& pairs) {
-  std::vector<SimplexPair> out;
-  for (const json& p : pairs)
-    out.push_back({SimplexId(p.at(0).get<std::uint32_t>()), SimplexId(p.at(1).get<std::uint32_t>())});
-  return out;
-}
-
 std::string to_line(const Expected& e) {
-  ordered_json line = {{"relation", to_string(e.relation)}, {"pairs", to_json(e.pairs)}};
-  if (!e.refusal.empty()) line["refusal"] = e.refusal;
-  return line.dump() + "\n";
+  return io::record_to_json(e).dump() + "\n";
 }
 
 Expected expected_from(const std::string& line) {
-  const json value = json::parse(line);
-  return {pairs_from(value.at("pairs")), relation_from(value.at("relation").get<std::string>()),
-          value.value("refusal", "")};
+  return io::record_from_json<Expected>(nlohmann::json::parse(line));
 }
 
 Relation relation_from(const std::string& word) {

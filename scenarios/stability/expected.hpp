@@ -4,8 +4,6 @@
 #include <string>
 #include <vector>
 
-#include <nlohmann/json.hpp>
-
 #include "engine/query/collide.hpp"
 #include "scenarios/cases/families.hpp"
 
@@ -19,12 +17,9 @@ struct Expected {
 
 Expected expected_answer(const cases::Case& c);
 
-nlohmann::ordered_json to_json(const std::vector<SimplexPair>& pairs);
-std::vector<SimplexPair> pairs_from(const nlohmann::json& pairs);
-
 /// Writes it on one line, for the workers that compare with it.
 std::string to_line(const Expected& e);
-/// Reads such a line. Throws nlohmann's exceptions: nobody writes these lines but us.
+/// Reads such a line. Throws InputError, or nlohmann's exceptions for what is no JSON.
 Expected expected_from(const std::string& line);
 
 /// Returns the relation with this name. Throws InputError.

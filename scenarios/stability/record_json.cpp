@@ -5,56 +5,45 @@
 #include "engine/core/error.hpp"
 #include "engine/core/file_bytes.hpp"
 #include "scenarios/io/files.hpp"
+#include "scenarios/io/json/record_json.hpp"
+
+namespace lrb {
+
+template <>
+inline constexpr auto kFields<stability::Record> =
+    std::tuple{field("family", &stability::Record::family),
+               field("method", &stability::Record::method),
+               field("dial", &stability::Record::dial),
+               field("case", &stability::Record::case_index),
+               field("seed", &stability::Record::seed),
+               field("outcome", &stability::Record::outcome),
+               field("expected", &stability::Record::expected),
+               field("missed", &stability::Record::missed),
+               field("extra", &stability::Record::extra),
+               field("relation", &stability::Record::relation),
+               field("expected_relation", &stability::Record::expected_relation),
+               field("us", &stability::Record::microseconds),
+               field("message", &stability::Record::message)};
+static_assert(covers_all_fields<stability::Record>);
+
+}  // namespace lrb
 
 namespace lrb::stability {
-namespace {
 
 using nlohmann::json;
 using nlohmann::ordered_json;
 
-Outcome outcome_from(const std::string& word) {
-  if (const auto outcome = from_name<Outcome>(word)) return *outcome;
-  throw InputError("outcome '" + word + "': use " + all_names<Outcome>());
-}
-
-}  // namespace
-
 ordered_json to_json(const Record& r) {
-  return {{"family", r.family},
-          {"method", r.method},
-          {"dial", r.dial},
-          {"case", r.case_index},
-          {"seed", r.seed},
-          {"outcome", name_of(r.outcome)},
-          {"expected", r.expected},
-          {"missed", r.missed},
-          {"extra", r.extra},
-          {"relation", r.relation},
-          {"expected_relation", r.expected_relation},
-          {"us", r.microseconds},
-          {"message", r.message}};
+  return io::record_to_json(r);
 }
 
 Record record_from(const json& value) {
   try {
-    Record r;
-    value.at("family").get_to(r.family);
-    value.at("method").get_to(r.method);
-    value.at("dial").get_to(r.dial);
-    value.at("case").get_to(r.case_index);
-    value.at("seed").get_to(r.seed);
-    r.outcome = outcome_from(value.at("outcome").get<std::string>());
-    value.at("expected").get_to(r.expected);
-    value.at("missed").get_to(r.missed);
-    value.at("extra").get_to(r.extra);
-    value.at("relation").get_to(r.relation);
-    value.at("expected_relation").get_to(r.expected_relation);
-    value.at("us").get_to(r.microseconds);
-    value.at("message").get_to(r.message);
+    const auto r = io::record_from_json<Record>(value);
     if (r.dial < 0 || r.dial >= kDialSettings)
       throw InputError("dial " + std::to_string(r.dial) + ": use 0 to " + std::to_string(kDialSettings - 1));
     return r;
-  } catch (const json::exception& e) {
+  } catch (const InputError& e) {
     throw InputError(std::string("not a record of lrbscope stability: ") + e.what());
   }
 }

@@ -16,6 +16,7 @@
 #include "scenarios/stability/expected.hpp"
 #include "scenarios/stability/record_json.hpp"
 #include "scenarios/workers/job.hpp"
+#include "scenarios/workers/pairs_json.hpp"
 
 namespace lrb::stability {
 namespace {
@@ -257,7 +258,8 @@ Replay replay(const workers::WorkerMethod& method, const std::string& family, in
   asked.on_line = [&](std::uint64_t, const std::string& line) {
     const auto value = nlohmann::json::parse(line);
     result.record = record_from(value);
-    if (value.contains("answered_pairs")) result.answered = pairs_from(value.at("answered_pairs"));
+    if (value.contains("answered_pairs"))
+      result.answered = workers::PairsJson::read(value.at("answered_pairs"));
   };
   asked.on_mishap = [&](std::uint64_t, const workers::Mishap& m) {
     Record r = blank_record(family, method.column.name, k, cases, seed);

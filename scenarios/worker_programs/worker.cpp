@@ -15,6 +15,7 @@
 #include "scenarios/stability/stability_runner.hpp"
 #include "scenarios/worker_programs/fake_methods.hpp"
 #include "scenarios/workers/method_json.hpp"
+#include "scenarios/workers/pairs_json.hpp"
 
 namespace lrb::worker_programs {
 namespace {
@@ -93,10 +94,7 @@ void say_records(const WorkerOptions& o, const methods::MethodEntry& entry, Line
     record.seed = o.seed;
     runner.ask(family, c, expected, record);
     ordered_json value = stability::to_json(record);
-    if (o.pairs) {
-      value["expected_pairs"] = stability::to_json(expected.pairs);
-      if (runner.pairs()) value["answered_pairs"] = stability::to_json(*runner.pairs());
-    }
+    if (o.pairs && runner.pairs()) value["answered_pairs"] = workers::PairsJson::write(*runner.pairs());
     out.say(dump(value));
   }
 }

@@ -1,49 +1,49 @@
 #include "scenarios/workers/method_json.hpp"
 
+#include "scenarios/io/json/record_json.hpp"
+
+namespace lrb {
+
+template <>
+inline constexpr auto kFields<methods::MethodStyle> =
+    std::tuple{field("title", &methods::MethodStyle::title), field("colour", &methods::MethodStyle::colour),
+               field("shape", &methods::MethodStyle::shape), field("point", &methods::MethodStyle::point)};
+
+template <>
+inline constexpr auto kFields<methods::MethodInfo> =
+    std::tuple{field("name", &methods::MethodInfo::name),
+               field("title", &methods::MethodInfo::title),
+               field("remark", &methods::MethodInfo::remark),
+               field("present", &methods::MethodInfo::present),
+               field("pairs", &methods::MethodInfo::pairs),
+               field("loose", &methods::MethodInfo::loose),
+               field("says", &methods::MethodInfo::says),
+               field("plane", &methods::MethodInfo::plane),
+               field("moves_exactly", &methods::MethodInfo::moves_exactly),
+               field("hard_cases", &methods::MethodInfo::hard_cases),
+               field("approximate", &methods::MethodInfo::approximate),
+               field("convex", &methods::MethodInfo::convex),
+               field("told_more", &methods::MethodInfo::told_more),
+               field("own_rep", &methods::MethodInfo::own_rep),
+               field("knob", &methods::MethodInfo::knob),
+               field("settings", &methods::MethodInfo::settings),
+               field("style", &methods::MethodInfo::style),
+               field("role", &methods::MethodInfo::role),
+               field("rank", &methods::MethodInfo::rank)};
+
+static_assert(covers_all_fields<methods::MethodStyle>);
+static_assert(covers_all_fields<methods::MethodInfo>);
+
+}  // namespace lrb
+
 namespace lrb::workers {
 
 nlohmann::ordered_json to_json(const methods::MethodInfo& info) {
-  return {{"name", info.name},
-          {"title", info.title},
-          {"remark", info.remark},
-          {"present", info.present},
-          {"pairs", info.pairs},
-          {"loose", info.loose},
-          {"hard_cases", info.hard_cases},
-          {"approximate", info.approximate},
-          {"convex", info.convex},
-          {"told_more", info.told_more},
-          {"own_rep", info.own_rep},
-          {"knob", info.knob},
-          {"settings", info.settings},
-          {"style",
-           {{"title", info.style.title},
-            {"colour", info.style.colour},
-            {"shape", info.style.shape},
-            {"point", info.style.point}}}};
+  return io::record_to_json(info);
 }
 
 methods::MethodInfo method_info_from(const nlohmann::json& value) {
-  methods::MethodInfo info;
-  info.name = value.value("name", "");
-  info.title = value.value("title", "");
-  info.remark = value.value("remark", "");
-  info.present = value.value("present", false);
-  info.pairs = value.value("pairs", info.pairs);
-  info.loose = value.value("loose", info.loose);
-  info.hard_cases = value.value("hard_cases", info.hard_cases);
-  info.approximate = value.value("approximate", info.approximate);
-  info.convex = value.value("convex", info.convex);
-  info.told_more = value.value("told_more", info.told_more);
-  info.own_rep = value.value("own_rep", info.own_rep);
-  info.knob = value.value("knob", "");
-  info.settings = value.value("settings", std::vector<double>());
-  const nlohmann::json style = value.value("style", nlohmann::json::object());
-  info.style.title = style.value("title", "");
-  info.style.colour = style.value("colour", "");
-  info.style.shape = style.value("shape", "");
-  info.style.point = style.value("point", 0);
-  return info;
+  return io::record_from_json<methods::MethodInfo>(value);
 }
 
 }  // namespace lrb::workers

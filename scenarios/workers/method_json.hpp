@@ -8,7 +8,7 @@
 namespace lrb::workers {
 
 nlohmann::ordered_json to_json(const methods::MethodInfo& info);
-/// Reads a line; fields that are missing have the defaults of MethodInfo.
+/// Reads a line. Throws InputError that says what is wrong with it.
 methods::MethodInfo method_info_from(const nlohmann::json& value);
 
 }  // namespace lrb::workers

@@ -1,4 +1,5 @@
 #include "scenarios/crowd/crowd_replay.hpp"
+#include "scenarios/io/json/pose_list.hpp"
 #include "scenarios/io/pose_file.hpp"
 #include "scenarios/paper/experiment.hpp"
 #include "scenarios/spec/scenario.hpp"
@@ -17,10 +18,15 @@ void judge_name(const std::string& name) {
 }  // namespace
 
 bool feed_poses(std::string_view bytes) {
-  return accepted("p.txt", [&] {
-    for (const Pose& pose : io::parse_poses(std::string(bytes), "p.txt"))
+  const auto judge = [](const std::vector<Pose>& poses) {
+    for (const Pose& pose : poses)
       if (!pose.r.allFinite() || !pose.t.allFinite()) throw std::logic_error("a pose is not finite");
-  });
+  };
+  const std::string text(bytes);
+  const bool lines = accepted("p.txt", [&] { judge(io::parse_poses(text, "p.txt")); });
+  const bool table = accepted("p.csv", [&] { judge(io::parse_pose_table(text, "p.csv")); });
+  const bool json = accepted("p.json", [&] { judge(io::parse_pose_json(text, "p.json").poses); });
+  return lines || table || json;
 }
 
 bool feed_scenario(std::string_view bytes) {

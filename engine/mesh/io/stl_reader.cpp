@@ -9,7 +9,7 @@
 #include "engine/mesh/io/byte_scan.hpp"
 #include "engine/mesh/io/readers.hpp"
 #include "engine/mesh/io/text_scan.hpp"
-#include "engine/mesh/io/vertex_merger.hpp"
+#include "engine/mesh/vertex_merger.hpp"
 
 namespace lrb {
 namespace {

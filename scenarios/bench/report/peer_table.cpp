@@ -10,8 +10,8 @@
 namespace lrb::bench {
 namespace {
 
-constexpr const char* kOurs = "ours";
-constexpr const char* kFloating = "ours-floating";
+using methods::Role;
+
 constexpr Mode kModes[] = {Mode::all_pairs, Mode::first_pair};
 
 const Reply& reply(const Record& r, Mode mode) {
@@ -27,10 +27,21 @@ const Reply& reply(const Record& r, Mode mode) {
   return buffer;
 }
 
+bool is_peer(const methods::MethodInfo& m) {
+  return m.role == Role::peer || m.role == Role::aim;
+}
+
+/// Returns the name of the method that plays a part; "" if there is none.
+std::string name_of(const std::vector<methods::MethodInfo>& methods, Role role) {
+  for (const methods::MethodInfo& m : methods)
+    if (m.role == role) return m.name;
+  return "";
+}
+
 using Key = std::tuple<std::string, std::string, std::uint64_t>;
 
-PeerCell cell_of(const DataSet& set, const std::string& method, PoseClass c, Mode mode,
-                 const std::map<Key, const Record*>& by_key) {
+PeerCell cell_of(const DataSet& set, const std::string& method, const std::string& ours_name, PoseClass c,
+                 Mode mode, const std::map<Key, const Record*>& by_key) {
   PeerCell cell;
   cell.set = set.name;
   cell.method = method;
@@ -53,7 +64,7 @@ PeerCell cell_of(const DataSet& set, const std::string& method, PoseClass c, Mod
     cell.pairs += static_cast<double>(answer.count);
     cell.missed += answer.missed;
     cell.extra += answer.extra;
-    const auto ours = by_key.find({set.name, kOurs, q});
+    const auto ours = by_key.find({set.name, ours_name, q});
     if (ours == by_key.end() || ours->second->outcome != Outcome::answered) continue;
     ratios.push_back(answer.hot_us / reply(*ours->second, mode).hot_us);
     cold_ratios.push_back(answer.cold_us / reply(*ours->second, mode).cold_us);
@@ -66,10 +77,6 @@ PeerCell cell_of(const DataSet& set, const std::string& method, PoseClass c, Mod
   cell.ratio = median(ratios);
   cell.cold_ratio = median(cold_ratios);
   return cell;
-}
-
-bool is_peer(const std::string& method) {
-  return method.rfind(kOurs, 0) != 0;
 }
 
 std::string ratio_text(const PeerCell* c, double ratio) {
@@ -92,17 +99,17 @@ std::string ratios_of(const PeerTable& t, Mode mode) {
   out += padded("bodies", kSet, true) + padded("pose", kClass, true) + padded("pairs", kNumber) +
          padded("ours us", kNumber) + padded("p95", kNumber);
   for (const methods::MethodInfo& m : t.methods)
-    if (m.name != kOurs && m.present) out += "  " + m.name;
+    if (m.role != Role::ours && m.present) out += "  " + m.name;
   out += "\n";
   for (const std::string& set : t.sets)
     for (const PoseClass c : kPoseClasses) {
-      const PeerCell* ours = t.find(set, kOurs, c, mode);
+      const PeerCell* ours = t.find(set, name_of(t.methods, Role::ours), c, mode);
       if (ours == nullptr || ours->questions == 0) continue;
       out += padded(set, kSet, true) + padded(title(c), kClass, true) +
              padded(text("%.0f", ours->pairs), kNumber) + padded(text("%.1f", ours->hot), kNumber) +
              padded(text("%.1f", ours->hot_p95), kNumber);
       for (const methods::MethodInfo& m : t.methods) {
-        if (m.name == kOurs || !m.present) continue;
+        if (m.role == Role::ours || !m.present) continue;
         const PeerCell* cell = t.find(set, m.name, c, mode);
         out += "  " + padded(ratio_text(cell, cell == nullptr ? 0 : cell->ratio), m.name.size());
       }
@@ -164,7 +171,7 @@ std::string ahead_of(const PeerTable& t) {
         std::string peers;
         for (const methods::MethodInfo& m : t.methods) {
           const PeerCell* cell = t.find(set, m.name, c, mode);
-          if (!is_peer(m.name) || cell == nullptr || cell->ratio <= 0) continue;
+          if (!is_peer(m) || cell == nullptr || cell->ratio <= 0) continue;
           ++compared;
           if (cell->ratio >= 1 && cell->cold_ratio >= 1) continue;
           ++behind;
@@ -183,7 +190,7 @@ std::string ahead_of(const PeerTable& t) {
 }
 
 std::string targets_of(const PeerTable& t) {
-  const std::string fcl = "fcl-headers";
+  const std::string fcl = name_of(t.methods, Role::aim);
   std::string out = "AIMED AT, against FCL compiled with our flags, hot\n";
   const auto line = [&](const char* what, double reached, double aim) {
     out += reached <= 0 ? text("  %-42s not measured: FCL is absent\n", what)
@@ -199,8 +206,9 @@ std::string targets_of(const PeerTable& t) {
 std::string price_of(const PeerTable& t) {
   std::vector<double> ordinary;
   std::string identical;
+  const std::string in_doubles = name_of(t.methods, Role::ours_double);
   for (const PeerCell& c : t.cells) {
-    if (c.method != kFloating || c.ratio <= 0) continue;
+    if (c.method != in_doubles || c.ratio <= 0) continue;
     if (c.pose_class != PoseClass::identical)
       ordinary.push_back(1 / c.ratio);
     else if (c.mode == Mode::all_pairs)
@@ -226,6 +234,7 @@ PeerTable peer_table(const std::vector<DataSet>& sets, const std::vector<methods
                      const std::vector<Record>& records) {
   std::map<Key, const Record*> by_key;
   for (const Record& r : records) by_key[{r.set, name_of(r), r.question}] = &r;
+  const std::string ours_name = name_of(methods, Role::ours);
   PeerTable t;
   t.methods = methods;
   for (const DataSet& set : sets) {
@@ -234,7 +243,7 @@ PeerTable peer_table(const std::vector<DataSet>& sets, const std::vector<methods
       for (const PoseClass c : kPoseClasses)
         for (const Mode mode : kModes)
           if (m.present && (m.pairs || mode == Mode::first_pair))  // a method without a list answers less
-            t.cells.push_back(cell_of(set, m.name, c, mode, by_key));
+            t.cells.push_back(cell_of(set, m.name, ours_name, c, mode, by_key));
   }
   return t;
 }

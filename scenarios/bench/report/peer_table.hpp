@@ -29,7 +29,7 @@ struct PeerTable {
   const PeerCell* find(const std::string& set, const std::string& method, PoseClass c, Mode mode) const;
 };
 
-/// Makes the table. Everything is compared with the method "ours".
+/// Makes the table. Everything is compared with the method whose role is `ours`.
 PeerTable peer_table(const std::vector<DataSet>& sets, const std::vector<methods::MethodInfo>& methods,
                      const std::vector<Record>& records);
 

@@ -8,6 +8,7 @@
 #include "scenarios/cli/command.hpp"
 #include "scenarios/cli/options.hpp"
 #include "scenarios/cli/progress.hpp"
+#include "scenarios/io/json/pose_list.hpp"
 #include "scenarios/io/pose_file.hpp"
 #include "scenarios/run/chosen_view.hpp"
 #include "scenarios/run/run_scenario.hpp"
@@ -75,7 +76,7 @@ spec::Scenario make_scenario(const CollideOptions& o, const std::vector<bodies::
   s.frames.views = whole_and_contact();
   if (!o.poses.empty()) {
     s.motion.kind = spec::Motion::Kind::poses;
-    s.motion.poses = io::read_poses(o.poses);
+    s.motion.poses = io::open_poses(o.poses).poses;
   } else {
     // The default direction is aslant: along an axis, bodies that are lined up with it would meet in whole
     // faces first.
@@ -98,7 +99,7 @@ spec::Scenario make_scenario(const CollideOptions& o, const std::vector<bodies::
 }
 
 int run_collide(const CollideOptions& o, const Globals& globals) {
-  if (!o.poses.empty()) io::read_poses(o.poses);  // a typing error in this file should not cost a build
+  if (!o.poses.empty()) io::open_poses(o.poses);  // a typing error in this file should not cost a build
   const run::ProgressReport progress = progress_report(globals.quiet);
   std::vector<bodies::LoadedBody> bodies;
   for (const std::string& path : {o.a, o.b}) {
@@ -123,9 +124,9 @@ Command add_collide(CLI::App& root, const Globals& globals) {
   app->add_option("A", o->a, "Mesh or .lrb file; does not move")->required();
   app->add_option("B", o->b, "Mesh or .lrb file; moves")->required();
   app->add_option("-o,--output", o->folder, "Folder to write to [out/A-B]")->type_name("DIR");
-  auto* poses =
-      app->add_option("--poses", o->poses, "File with the pose of B for each step: lines of 12 numbers")
-          ->type_name("FILE");
+  auto* poses = app->add_option("--poses", o->poses,
+                                "File with the pose of B for each step: lines of 12 numbers, .csv or .json")
+                    ->type_name("FILE");
   app->add_option("--approach", o->approach, "Direction that B comes from, seen from A")
       ->type_name("X,Y,Z")
       ->excludes(poses);

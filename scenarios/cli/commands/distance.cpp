@@ -87,7 +87,7 @@ Command add_distance(CLI::App& root, const Globals& globals) {
   const auto o = std::make_shared<DistanceOptions>();
   app->add_option("A", o->a, "Mesh or .lrb file; does not move")->required();
   app->add_option("B", o->b, "Mesh or .lrb file; the poses are applied to it")->required();
-  app->add_option("--poses", o->poses, "File with poses: lines of 12 numbers (3x4, row by row)")->required();
+  app->add_option("--poses", o->poses, io::kPoseFileHelp)->required();
   app->add_option("--within", o->request.within, "Only say whether the surfaces are at most this far apart")
       ->type_name("D");
   app->add_option("--tolerance", o->request.tolerance,

@@ -150,7 +150,7 @@ Command add_query(CLI::App& root, const Globals& globals) {
   const auto o = std::make_shared<QueryOptions>();
   app->add_option("A", o->a, "Mesh or .lrb file; does not move")->required();
   app->add_option("B", o->b, "Mesh or .lrb file; the poses are applied to it")->required();
-  app->add_option("--poses", o->poses, "File with poses: lines of 12 numbers (3x4, row by row)")->required();
+  app->add_option("--poses", o->poses, io::kPoseFileHelp)->required();
   add_request_options(*app, o->request);
   add_coarse_options(*app, o->request);
   auto* separation = app->add_flag("--separation", o->request.separation,

@@ -13,7 +13,7 @@
 #include "scenarios/bodies/body.hpp"
 #include "scenarios/cli/command.hpp"
 #include "scenarios/io/files.hpp"
-#include "scenarios/io/pose_file.hpp"
+#include "scenarios/io/json/pose_list.hpp"
 #include "scenarios/run/explanation_words.hpp"
 #include "scenarios/run/open_run.hpp"
 #include "scenarios/run/pair_picture.hpp"
@@ -237,7 +237,7 @@ std::string as_text(const WalkExplanation& e) {
 
 Pose pose_of(const WhyOptions& o) {
   if (o.poses.empty()) return {};
-  const std::vector<Pose> poses = io::read_poses(o.poses);
+  const std::vector<Pose> poses = io::open_poses(o.poses).poses;
   if (o.pose >= poses.size())
     throw InputError(printable_name(o.poses) + ": has " + std::to_string(poses.size()) +
                      " poses, numbered from 0; there is no pose " + std::to_string(o.pose));

@@ -8,7 +8,7 @@
 #include "scenarios/cli/command.hpp"
 #include "scenarios/cli/options.hpp"
 #include "scenarios/cli/progress.hpp"
-#include "scenarios/io/pose_file.hpp"
+#include "scenarios/io/json/pose_list.hpp"
 #include "scenarios/methods/body_parts.hpp"
 #include "scenarios/xray/foreign_run.hpp"
 #include "scenarios/xray/xray_report.hpp"
@@ -29,7 +29,7 @@ spec::Scenario scenario_of(const XrayOptions& o, const std::vector<bodies::Loade
   s.bodies[0].file = o.a;
   s.bodies[1].file = o.b;
   s.motion.kind = spec::Motion::Kind::poses;
-  s.motion.poses = io::read_poses(o.poses);
+  s.motion.poses = io::open_poses(o.poses).poses;
   s.request.contacts = true;
   s.events = EventLevel::nodes;
   s.event_cap = 20'000'000;  // half a gigabyte
@@ -51,14 +51,13 @@ spec::Scenario scenario_of(const XrayOptions& o, const std::vector<bodies::Loade
 
 /// Reads the poses of B. Throws InputError for one that is no rotation and translation, by file and line.
 std::vector<xray::PosePair> rigid_poses(const std::string& path) {
-  std::vector<std::size_t> lines;
+  const io::PoseList list = io::open_poses(path);
   std::vector<xray::PosePair> out;
-  for (const Pose& pose : io::read_poses(path, &lines)) {
+  for (const Pose& pose : list.poses) {
     try {
       methods::check_rigid(pose);
     } catch (const InputError& e) {
-      throw InputError(printable_name(path) + ":" + std::to_string(lines[out.size()]) + ": pose " +
-                       std::to_string(out.size()) + ": " + e.what());
+      throw InputError(list.places[out.size()] + ": pose " + std::to_string(out.size()) + ": " + e.what());
     }
     out.push_back({{}, pose});
   }
@@ -97,7 +96,7 @@ Command add_xray(CLI::App& root, const Globals& globals) {
       ->check(CLI::IsMember({"fcl", "cgal"}).description(""))
       ->type_name("fcl|cgal")
       ->capture_default_str();
-  app->add_option("--poses", o->poses, "File with the poses of B: lines of 12 numbers")
+  app->add_option("--poses", o->poses, "File with the poses of B: lines of 12 numbers, .csv or .json")
       ->type_name("FILE")
       ->required();
   app->add_option("-o,--output", o->folder, "Folder to write to [out/xray-METHOD]")->type_name("DIR");

@@ -23,10 +23,9 @@ struct BenchOptions : MeasureOptions {
   std::vector<std::uint32_t> faces = {20000, 100000};
 };
 
-/// Returns true for peers, engines that answer the same question: no approximations, no textbook loop over
-/// all pairs, which takes minutes here, and not the paper's recursion, which misses contacts.
+/// Returns true for ours and for engines that answer the same question.
 bool is_peer(const workers::WorkerMethod& m) {
-  return !m.info.approximate && !m.info.convex && m.info.name != "plain" && m.info.name != "ours-paper";
+  return !m.info.approximate && !m.info.convex && m.info.role != methods::Role::no_peer;
 }
 
 int run_bench(const BenchOptions& o, const Globals& globals) {

@@ -148,10 +148,10 @@ void write_report(const StabilityOptions& o, const std::vector<workers::WorkerMe
 }
 
 /// Our methods must not fail; others may.
-bool ours_failed(const Grid& grid) {
-  for (std::size_t m = 0; m < grid.methods.size(); ++m)
+bool ours_failed(const Grid& grid, const std::vector<workers::WorkerMethod>& methods) {
+  for (std::size_t m = 0; m < methods.size(); ++m)
     for (std::size_t f = 0; f < grid.families.size(); ++f)
-      if (grid.methods[m].name == "ours" && grid.at(f, m).failures() > 0) return true;
+      if (methods[m].info.role == methods::Role::ours && grid.at(f, m).failures() > 0) return true;
   return false;
 }
 
@@ -167,7 +167,7 @@ int run_stability(const StabilityOptions& o, const Globals& globals) {
   print(table(grid));
   print(o.folder + "/records.jsonl\n");
   write_report(o, methods, grid, globals);
-  if (!ours_failed(grid)) return kOk;
+  if (!ours_failed(grid, methods)) return kOk;
   std::cerr << "lrbscope: mismatch: our own answers differ from exact brute force\n";
   return kMismatch;
 }

@@ -167,6 +167,7 @@ MethodInfo our_info(const char* name, const char* title, const char* remark, int
   info.says = Says::relation;
   info.plane = info.moves_exactly = info.own_rep = true;
   info.rank = rank;
+  info.role = Role::ours_other;
   info.style = {"lrbscope, variants", "#4aa3dc", "circle", 6};
   return info;
 }
@@ -181,31 +182,35 @@ MethodEntry ours() {
   MethodInfo info = our_info("ours", "lrbscope, complete",
                              "All pairs and the relation; given the bodies and their poses.", 10);
   info.style = {"lrbscope, exact", "#0072b2", "circle", 7};
+  info.role = Role::ours;
   return {info, []() -> std::unique_ptr<Method> {
             return std::make_unique<Ours>(Recursion::complete, Predicates::exact);
           }};
 }
 
 MethodEntry ours_floating() {
-  return {our_info("ours-floating", "lrbscope without the exact fallback",
-                   "As ours, but the sign of a predicate that double precision cannot decide is guessed from "
-                   "its rounded value.",
-                   11),
-          []() -> std::unique_ptr<Method> {
+  MethodInfo info =
+      our_info("ours-floating", "lrbscope without the exact fallback",
+               "As ours, but the sign of a predicate that double precision cannot decide is guessed from "
+               "its rounded value.",
+               11);
+  info.role = Role::ours_double;
+  return {info, []() -> std::unique_ptr<Method> {
             return std::make_unique<Ours>(Recursion::complete, Predicates::floating);
           }};
 }
 
 MethodEntry ours_paper() {
-  return {
+  MethodInfo info =
       our_info("ours-paper", "lrbscope, the paper's recursion",
                "Section 4 of the paper to the letter, with exact predicates, on an LRB-rep built from the "
                "body; where none can be built (open, not manifold), on the regions that the body has. "
                "Misses contacts under lids that nothing touches.",
-               12),
-      []() -> std::unique_ptr<Method> {
-        return std::make_unique<Ours>(Recursion::paper, Predicates::exact);
-      }};
+               12);
+  info.role = Role::no_peer;
+  return {info, []() -> std::unique_ptr<Method> {
+            return std::make_unique<Ours>(Recursion::paper, Predicates::exact);
+          }};
 }
 
 MethodEntry ours_coherent() {

@@ -62,6 +62,7 @@ std::vector<MethodEntry> plain_double_methods() {
   info.rank = 20;
   info.style = {"brute force", "#6b6b6b", "crossRot", 2};
   info.name = "plain";
+  info.role = Role::no_peer;  // takes minutes
   info.title = "brute force, double, epsilon 1e-6";
   info.remark =
       "Every pair of triangles by Moeller's test of intervals (1997) with its usual epsilon; 2D: by sides. "

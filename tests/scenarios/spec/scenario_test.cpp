@@ -74,7 +74,7 @@ TEST_CASE("a scenario's query has the fields of requests, and its words are the 
   const json document = json::parse(io::embedded_file("scenario.schema.json"));
   json keys = json::object();
   const json& query = document["properties"]["query"]["properties"];
-  trace::for_each_field<CollideRequest>([&](const auto& field) {
+  for_each_field<CollideRequest>([&](const auto& field) {
     const std::string name(field.name);
     CAPTURE(name);
     if (name == "max_time") return;  // differs from run to run

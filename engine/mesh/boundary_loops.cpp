@@ -1,0 +1,146 @@
+#include "engine/mesh/boundary_loops.hpp"
+
+#include <algorithm>
+#include <cstdint>
+
+#include "engine/mesh/polygon_shape.hpp"
+
+namespace lrb {
+namespace {
+
+/// A side of a face is named by the corner at which it starts, an index into Mesh::face_vertices.
+class LoopFinder {
+ public:
+  LoopFinder(const Mesh& mesh, const std::vector<FaceUse>& use)
+      : mesh_(mesh), next_(mesh.face_vertices.size(), kNull), twin_(mesh.face_vertices.size(), kNull) {
+    for (FaceId f = 0; f < mesh.face_count(); ++f)
+      if (use[f] != FaceUse::nothing) add_sides(f);
+    std::sort(sides_.begin(), sides_.end());
+    for (std::size_t i = 0, end = 0; i < sides_.size(); i = end) {
+      while (end < sides_.size() && sides_[end].edge == sides_[i].edge) ++end;
+      pair_sides(i, end);
+    }
+    std::sort(open_.begin(), open_.end());
+  }
+
+  std::vector<BoundaryLoop> run() {
+    std::vector<bool> has_predecessor(next_.size(), false);
+    successor_.assign(next_.size(), kNull);
+    for (const std::uint32_t side : open_) {
+      successor_[side] = next_open(side);
+      if (successor_[side] != kNull) has_predecessor[successor_[side]] = true;
+    }
+    seen_.assign(next_.size(), false);
+    place_.assign(mesh_.vertices.size(), kNull);
+    for (const std::uint32_t side : open_)
+      if (!has_predecessor[side]) follow(side);
+    for (const std::uint32_t side : open_)
+      if (!seen_[side]) follow(side);
+    for (BoundaryLoop& loop : loops_) measure(loop);
+    std::stable_sort(loops_.begin(), loops_.end(),
+                     [](const auto& a, const auto& b) { return a.length > b.length; });
+    return std::move(loops_);
+  }
+
+ private:
+  struct SideOfEdge {
+    std::uint64_t edge;  ///< smaller vertex, larger vertex
+    std::uint32_t side;
+    auto operator<=>(const SideOfEdge&) const = default;
+  };
+
+  VertexId start(std::uint32_t side) const { return mesh_.face_vertices[side]; }
+
+  void add_sides(FaceId f) {
+    const auto corners = mesh_.face(f);
+    const std::uint32_t first = mesh_.face_offsets[f];
+    std::vector<VertexId> different(corners.begin(), corners.end());
+    std::sort(different.begin(), different.end());
+    if (std::unique(different.begin(), different.end()) - different.begin() < 3) return;
+    const auto n = static_cast<std::uint32_t>(corners.size());
+    for (std::uint32_t i = 0; i < n; ++i) {
+      const VertexId a = corners[i];
+      std::uint32_t k = (i + 1) % n;
+      if (a == corners[k]) continue;  // a corner named twice in a row: no side
+      sides_.push_back({std::uint64_t{std::min(a, corners[k])} << 32 | std::max(a, corners[k]), first + i});
+      while (corners[k] == corners[(k + 1) % n]) k = (k + 1) % n;
+      next_[first + i] = first + k;
+    }
+  }
+
+  void pair_sides(std::size_t i, std::size_t end) {
+    const std::uint32_t s = sides_[i].side, t = sides_[end - 1].side;
+    if (end - i == 1) open_.push_back(s);
+    if (end - i != 2 || start(s) == start(t)) return;
+    twin_[s] = t;
+    twin_[t] = s;
+  }
+
+  bool is_open(std::uint32_t side) const { return std::binary_search(open_.begin(), open_.end(), side); }
+
+  /// Turns about the end of an open side, through the faces there, to the open side that leaves it; kNull if
+  /// the faces do not lead to one.
+  std::uint32_t next_open(std::uint32_t from) const {
+    std::uint32_t side = next_[from];
+    while (!is_open(side)) {
+      if (twin_[side] == kNull) return kNull;
+      side = next_[twin_[side]];
+    }
+    return side;
+  }
+
+  /// Follows a rim to its end or round to its beginning, and cuts off a loop whenever a vertex comes again.
+  void follow(std::uint32_t first) {
+    std::vector<VertexId> row = {start(first)};
+    place_[row[0]] = 0;
+    for (std::uint32_t side = first; side != kNull && !seen_[side]; side = successor_[side]) {
+      seen_[side] = true;
+      const VertexId end = start(next_[side]);
+      if (place_[end] == kNull) {
+        place_[end] = static_cast<std::uint32_t>(row.size());
+        row.push_back(end);
+        continue;
+      }
+      BoundaryLoop& loop = loops_.emplace_back();
+      loop.is_loop = true;
+      loop.vertices.assign(row.begin() + place_[end], row.end());
+      for (std::size_t i = place_[end] + std::size_t{1}; i < row.size(); ++i) place_[row[i]] = kNull;
+      row.resize(place_[end] + std::size_t{1}, VertexId(0));
+    }
+    for (const VertexId v : row) place_[v] = kNull;
+    if (row.size() > 1) loops_.emplace_back().vertices = std::move(row);
+  }
+
+  void measure(BoundaryLoop& loop) const {
+    const auto& x = mesh_.vertices;
+    for (std::size_t i = 0; i < loop.edges(); ++i)
+      loop.length += (x[loop.vertices[(i + 1) % loop.vertices.size()]] - x[loop.vertices[i]]).norm();
+    bool finite = true;
+    for (const VertexId v : loop.vertices) {
+      loop.box.extend(x[v]);
+      finite &= x[v].allFinite();
+    }
+    if (!finite) return;
+    const auto plane = spanning_corners(mesh_, loop.vertices);
+    loop.planar = !plane || is_planar(mesh_, loop.vertices, *plane);
+  }
+
+  const Mesh& mesh_;
+  std::vector<SideOfEdge> sides_;
+  std::vector<std::uint32_t> next_;  ///< (corners) the side after this one in its face; kNull: no side
+  std::vector<std::uint32_t>
+      twin_;  ///< (corners) the other face's side of an edge that has just two, opposite
+  std::vector<std::uint32_t> open_, successor_;
+  std::vector<bool> seen_;
+  std::vector<std::uint32_t> place_;  ///< (|V|) in the row that is followed; kNull: not in it
+  std::vector<BoundaryLoop> loops_;
+};
+
+}  // namespace
+
+std::vector<BoundaryLoop> find_boundary_loops(const Mesh& mesh, const std::vector<FaceUse>& use) {
+  if (mesh.dim == 2) return {};
+  return LoopFinder(mesh, use).run();
+}
+
+}  // namespace lrb

@@ -1,0 +1,138 @@
+#include "engine/mesh/join_corners.hpp"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+#include <vector>
+
+#include "engine/core/disjoint_sets.hpp"
+#include "engine/mesh/vertex_merger.hpp"
+
+namespace lrb {
+namespace {
+
+/// A side of a face (2D: an end of a segment), by the places of its ends and by its vertices there.
+struct PlacedSide {
+  std::array<std::uint32_t, 2> place;  ///< smaller, larger (2D: the same twice)
+  std::array<VertexId, 2> vertex;      ///< at the one, at the other
+  bool forward;                        ///< it runs from the first to the second (2D: it leaves the place)
+};
+
+class CornerJoiner {
+ public:
+  explicit CornerJoiner(Mesh& mesh) : mesh_(mesh), sets_(mesh.vertices.size()), used_(mesh.vertices.size()) {}
+
+  JoinedCorners run() {
+    find_places();
+    for (FaceId f = 0; f < mesh_.face_count(); ++f) add_sides(f);
+    out_.before = out_.after = static_cast<std::uint32_t>(std::count(used_.begin(), used_.end(), true));
+    if (places_ == mesh_.vertices.size()) return out_;
+    std::sort(sides_.begin(), sides_.end(),
+              [](const PlacedSide& a, const PlacedSide& b) { return a.place < b.place; });
+    out_.open_before = count_open();
+    do {
+      while (join_groups(true)) {
+      }
+    } while (join_groups(false));
+    out_.open_after = count_open();
+    rename_corners();
+    return out_;
+  }
+
+ private:
+  /// The vertices at a side's ends, as joined so far, and its index.
+  using NamedSide = std::pair<std::array<std::uint32_t, 2>, std::size_t>;
+
+  void find_places() {
+    std::vector<Eigen::Vector3d> places;
+    VertexMerger merger(places);
+    for (const Eigen::Vector3d& x : mesh_.vertices) place_.push_back(merger.id(x));
+    places_ = places.size();
+  }
+
+  bool can_be_used(FaceId f) const {
+    const auto corners = mesh_.face(f);
+    return std::all_of(corners.begin(), corners.end(), [&](VertexId v) {
+      return v < mesh_.vertices.size() && mesh_.vertices[v].allFinite();
+    });
+  }
+
+  void add_sides(FaceId f) {
+    if (!can_be_used(f)) return;
+    const auto corners = mesh_.face(f);
+    for (std::size_t i = 0; i < corners.size(); ++i) {
+      const VertexId v = corners[i], w = corners[(i + 1) % corners.size()];
+      used_[v] = true;
+      const std::uint32_t p = place_[v], q = place_[w];
+      if (mesh_.dim == 2)
+        sides_.push_back({{p, p}, {v, v}, i == 0});
+      else if (p != q)
+        sides_.push_back(p < q ? PlacedSide{{p, q}, {v, w}, true} : PlacedSide{{q, p}, {w, v}, false});
+    }
+  }
+
+  /// Calls visit(open) for each place of sides: those that share their vertices, as joined so far, with no
+  /// other side there.
+  template <class Visit>
+  void for_each_place(Visit visit) {
+    std::vector<NamedSide> there;
+    std::vector<const PlacedSide*> open;
+    for (std::size_t i = 0, end = 0; i < sides_.size(); i = end) {
+      there.clear();
+      for (; end < sides_.size() && sides_[end].place == sides_[i].place; ++end)
+        there.push_back({{sets_.leader(sides_[end].vertex[0]), sets_.leader(sides_[end].vertex[1])}, end});
+      std::sort(there.begin(), there.end());
+      open.clear();
+      for (std::size_t k = 0; k < there.size(); ++k)
+        if ((k == 0 || there[k - 1].first != there[k].first) &&
+            (k + 1 == there.size() || there[k + 1].first != there[k].first))
+          open.push_back(&sides_[there[k].second]);
+      visit(open);
+    }
+  }
+
+  std::uint32_t count_open() {
+    std::size_t count = 0;
+    for_each_place([&](const auto& open) { count += open.size(); });
+    return static_cast<std::uint32_t>(count);
+  }
+
+  /// Joins the open sides of each place: only where there are two in opposite directions, or all. Returns true
+  /// if any were joined.
+  bool join_groups(bool only_pairs) {
+    bool any = false;
+    for_each_place([&](const std::vector<const PlacedSide*>& open) {
+      if (open.size() < 2 || (only_pairs && (open.size() > 2 || open[0]->forward == open[1]->forward)))
+        return;
+      for (const PlacedSide* side : open)
+        for (int end = 0; end < 2; ++end) any |= sets_.join(open[0]->vertex[end], side->vertex[end]);
+    });
+    return any;
+  }
+
+  void rename_corners() {
+    for (FaceId f = 0; f < mesh_.face_count(); ++f)
+      if (can_be_used(f))
+        for (std::uint32_t i = mesh_.face_offsets[f]; i < mesh_.face_offsets[f + 1]; ++i)
+          mesh_.face_vertices[i] = VertexId(sets_.leader(mesh_.face_vertices[i]));
+    for (VertexId v = 0; v < used_.size(); ++v)
+      if (used_[v] && sets_.leader(v) != v) mesh_.joined.push_back(v);
+    out_.after = out_.before - static_cast<std::uint32_t>(mesh_.joined.size());
+  }
+
+  Mesh& mesh_;
+  DisjointSets sets_;  ///< of vertices that have become one
+  std::vector<bool> used_;
+  std::vector<VertexId> place_;  ///< (|V|)
+  std::size_t places_ = 0;
+  std::vector<PlacedSide> sides_;
+  JoinedCorners out_;
+};
+
+}  // namespace
+
+JoinedCorners join_corners(Mesh& mesh) {
+  return CornerJoiner(mesh).run();
+}
+
+}  // namespace lrb

@@ -1,0 +1,255 @@
+#include "engine/mesh/lid_triangles.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <Eigen/Geometry>
+
+#include "engine/exact/orient_axes.hpp"
+#include "engine/exact/predicates.hpp"
+
+namespace lrb::lids {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+/// Says on which side of the line from a to b, in a view, c lies.
+int turn(const Mesh& mesh, const LidView& view, VertexId a, VertexId b, VertexId c) {
+  const auto& x = mesh.vertices;
+  return exact::orient_axes(x[a].data(), x[b].data(), x[c].data(), view.x, view.y);
+}
+
+class CornerCutter {
+ public:
+  CornerCutter(const Mesh& mesh, std::span<const VertexId> rim, const LidView& view,
+               const EdgeAllowed& allowed)
+      : mesh_(mesh),
+        view_(view),
+        allowed_(allowed),
+        rim_(rim.begin(), rim.end()),
+        worth_(rim.size(), kUnknown) {}
+
+  std::optional<Lid> run() {
+    Lid lid;
+    while (rim_.size() > 3) {
+      std::size_t best = find_best();
+      if (worth_[best] <= 0) {  // what was in the way may have been cut off
+        std::fill(worth_.begin(), worth_.end(), kUnknown);
+        best = find_best();
+        if (worth_[best] <= 0) return std::nullopt;
+      }
+      lid.triangles.push_back({at(best, -1), rim_[best], at(best, +1)});
+      erase(best);
+    }
+    if (turn(mesh_, view_, rim_[0], rim_[1], rim_[2]) <= 0) return std::nullopt;
+    lid.triangles.push_back({rim_[0], rim_[1], rim_[2]});
+    return lid;
+  }
+
+ private:
+  static constexpr double kUnknown = -1;
+
+  VertexId at(std::size_t i, int step) const {
+    return rim_[(i + rim_.size() + static_cast<std::size_t>(step)) % rim_.size()];
+  }
+
+  void erase(std::size_t i) {
+    rim_.erase(rim_.begin() + static_cast<std::ptrdiff_t>(i));
+    worth_.erase(worth_.begin() + static_cast<std::ptrdiff_t>(i));
+    worth_[i % rim_.size()] = worth_[(i + rim_.size() - 1) % rim_.size()] = kUnknown;
+  }
+
+  std::size_t find_best() {
+    for (std::size_t i = 0; i < rim_.size(); ++i)
+      if (worth_[i] == kUnknown) worth_[i] = worth(i);
+    return static_cast<std::size_t>(std::max_element(worth_.begin(), worth_.end()) - worth_.begin());
+  }
+
+  /// Returns 0 for a corner that cannot be cut off, else how good its triangle is.
+  double worth(std::size_t i) const {
+    const VertexId a = at(i, -1), b = rim_[i], c = at(i, +1);
+    if (a == c || turn(mesh_, view_, a, b, c) <= 0 || (rim_.size() > 3 && !allowed_(a, c))) return 0;
+    for (const VertexId v : rim_)
+      if (v != a && v != b && v != c && turn(mesh_, view_, a, b, v) >= 0 &&
+          turn(mesh_, view_, b, c, v) >= 0 && turn(mesh_, view_, c, a, v) >= 0)
+        return 0;
+    const auto& x = mesh_.vertices;
+    const double longest = std::max({(x[a] - x[b]).norm(), (x[b] - x[c]).norm(), (x[c] - x[a]).norm()});
+    const double area = (x[b] - x[a]).cross(x[c] - x[a]).norm();
+    const double shape = area / longest / longest;
+    return std::isfinite(shape) && shape > 0 ? shape : std::numeric_limits<double>::min();
+  }
+
+  const Mesh& mesh_;
+  const LidView& view_;
+  const EdgeAllowed& allowed_;
+  std::vector<VertexId> rim_;  ///< what is left
+  std::vector<double> worth_;
+};
+
+/// Returns true if the open segment from a to b passes through or touches the closed one from c to d, which
+/// may share ends with it.
+bool is_blocked(const Mesh& mesh, const LidView& view, VertexId a, VertexId b, VertexId c, VertexId d) {
+  const auto between = [&](VertexId v) {
+    if (v == a || v == b || turn(mesh, view, a, b, v) != 0) return false;
+    const auto& x = mesh.vertices;
+    const int k = x[a][view.x] != x[b][view.x] ? view.x : view.y;
+    return (x[v][k] > std::min(x[a][k], x[b][k])) && (x[v][k] < std::max(x[a][k], x[b][k]));
+  };
+  if (between(c) || between(d)) return true;
+  if (a == c || a == d || b == c || b == d) return false;
+  return turn(mesh, view, a, b, c) * turn(mesh, view, a, b, d) < 0 &&
+         turn(mesh, view, c, d, a) * turn(mesh, view, c, d, b) < 0;
+}
+
+bool is_blocked_by(const Mesh& mesh, const LidView& view, VertexId a, VertexId b,
+                   std::span<const VertexId> rim) {
+  for (std::size_t i = 0; i < rim.size(); ++i)
+    if (is_blocked(mesh, view, a, b, rim[i], rim[(i + 1) % rim.size()])) return true;
+  return false;
+}
+
+/// Returns true if the way to b leaves the polygon's i-th corner into the polygon.
+bool leaves_inward(const Mesh& mesh, const LidView& view, std::span<const VertexId> rim, std::size_t i,
+                   VertexId b) {
+  const VertexId before = rim[(i + rim.size() - 1) % rim.size()], v = rim[i],
+                 after = rim[(i + 1) % rim.size()];
+  const bool left_of_in = turn(mesh, view, before, v, b) > 0, left_of_out = turn(mesh, view, v, after, b) > 0;
+  return turn(mesh, view, before, v, after) > 0 ? left_of_in && left_of_out : left_of_in || left_of_out;
+}
+
+struct Bridge {
+  std::size_t hole = 0, from = 0, to = 0;  ///< which hole; corner of the polygon, corner of the hole
+  double length_sq = 0;
+};
+
+/// Holes with more pairs of corners than this are left: nobody waits for so many.
+constexpr std::size_t kMostBridges = 4'000'000;
+
+/// Returns the shortest bridge that passes between all edges.
+std::optional<Bridge> find_bridge(const Mesh& mesh, std::span<const VertexId> rim,
+                                  const std::vector<std::vector<VertexId>>& holes, const LidView& view) {
+  std::size_t corners = 0;
+  for (const auto& hole : holes) corners += hole.size();
+  if (corners * rim.size() > kMostBridges) return std::nullopt;
+  std::vector<Bridge> bridges;
+  for (std::size_t h = 0; h < holes.size(); ++h)
+    for (std::size_t k = 0; k < holes[h].size(); ++k)
+      for (std::size_t i = 0; i < rim.size(); ++i)
+        bridges.push_back({h, i, k, (mesh.vertices[rim[i]] - mesh.vertices[holes[h][k]]).squaredNorm()});
+  std::stable_sort(bridges.begin(), bridges.end(),
+                   [](const Bridge& a, const Bridge& b) { return a.length_sq < b.length_sq; });
+  for (const Bridge& bridge : bridges) {
+    const VertexId a = rim[bridge.from], b = holes[bridge.hole][bridge.to];
+    const auto in_way = [&](const auto& hole) { return is_blocked_by(mesh, view, a, b, hole); };
+    if (leaves_inward(mesh, view, rim, bridge.from, b) && !is_blocked_by(mesh, view, a, b, rim) &&
+        std::none_of(holes.begin(), holes.end(), in_way))
+      return bridge;
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::optional<LidView> view_of(const Mesh& mesh, std::span<const VertexId> rim) {
+  Vector3d normal = Vector3d::Zero();
+  const Vector3d o = mesh.vertices[rim[0]];
+  for (std::size_t i = 1; i + 1 < rim.size(); ++i)
+    normal += (mesh.vertices[rim[i]] - o).cross(mesh.vertices[rim[i + 1]] - o);
+  int axis = 0;
+  if (!(normal.cwiseAbs().maxCoeff(&axis) > 0) || !normal.allFinite()) return std::nullopt;
+  const int x = (axis + 1) % 3, y = (axis + 2) % 3;
+  return normal[axis] > 0 ? LidView{x, y} : LidView{y, x};
+}
+
+std::optional<Lid> cut_corners(const Mesh& mesh, std::span<const VertexId> rim, const LidView& view,
+                               const EdgeAllowed& allowed) {
+  return CornerCutter(mesh, rim, view, allowed).run();
+}
+
+std::optional<Lid> least_area(const Mesh& mesh, std::span<const VertexId> rim, const EdgeAllowed& allowed) {
+  const std::size_t n = rim.size();
+  if (n > kMostForLeastArea) return std::nullopt;
+  const auto x = [&](std::size_t i) -> const Vector3d& { return mesh.vertices[rim[i]]; };
+  const auto area = [&](std::size_t i, std::size_t k, std::size_t j) {
+    if (exact::collinear3d(x(i).data(), x(k).data(), x(j).data())) return kInfinity;
+    return (x(k) - x(i)).cross(x(j) - x(i)).norm();
+  };
+  // cost[i n + j]: the least area between the rim from i to j and the edge that joins them (Klincsek 1980).
+  std::vector<double> cost(n * n, 0);
+  std::vector<std::size_t> third(n * n, 0);
+  for (std::size_t span = 2; span < n; ++span)
+    for (std::size_t i = 0; i + span < n; ++i) {
+      const std::size_t j = i + span;
+      double& best = cost[i * n + j] = kInfinity;
+      if (span + 1 < n && !allowed(rim[i], rim[j])) continue;
+      for (std::size_t k = i + 1; k < j; ++k) {
+        const double rest = cost[i * n + k] + cost[k * n + j];
+        if (!(rest < best)) continue;
+        const double sum = rest + area(i, k, j);
+        if (sum < best) best = sum, third[i * n + j] = k;
+      }
+    }
+  if (!(cost[n - 1] < kInfinity)) return std::nullopt;
+  Lid lid;
+  std::vector<std::array<std::size_t, 2>> open = {{0, n - 1}};
+  while (!open.empty()) {
+    const auto [i, j] = open.back();
+    open.pop_back();
+    if (j - i < 2) continue;
+    const std::size_t k = third[i * n + j];
+    lid.triangles.push_back({rim[i], rim[k], rim[j]});
+    open.push_back({i, k});
+    open.push_back({k, j});
+  }
+  return lid;
+}
+
+Lid fan_about_middle(const Mesh& mesh, std::span<const VertexId> rim) {
+  Lid lid;
+  Vector3d middle = Vector3d::Zero();
+  for (const VertexId v : rim) middle += mesh.vertices[v] / static_cast<double>(rim.size());
+  lid.middle = middle;
+  for (std::size_t i = 0; i < rim.size(); ++i)
+    lid.triangles.push_back({rim[i], rim[(i + 1) % rim.size()], kMiddle});
+  return lid;
+}
+
+std::optional<std::vector<VertexId>> bridge_holes(const Mesh& mesh, std::vector<VertexId> rim,
+                                                  std::vector<std::vector<VertexId>> holes,
+                                                  const LidView& view) {
+  while (!holes.empty()) {
+    const std::optional<Bridge> bridge = find_bridge(mesh, rim, holes, view);
+    if (!bridge) return std::nullopt;
+    const std::vector<VertexId>& hole = holes[bridge->hole];
+    const auto from = static_cast<std::ptrdiff_t>(bridge->from);
+    std::vector<VertexId> joined(rim.begin(), rim.begin() + from + 1);
+    for (std::size_t i = 0; i <= hole.size(); ++i) joined.push_back(hole[(bridge->to + i) % hole.size()]);
+    joined.insert(joined.end(), rim.begin() + from, rim.end());
+    rim = std::move(joined);
+    holes.erase(holes.begin() + static_cast<std::ptrdiff_t>(bridge->hole));
+  }
+  return rim;
+}
+
+bool lies_inside(const Mesh& mesh, std::span<const VertexId> rim, VertexId point, const LidView& view) {
+  bool inside = false;
+  const auto& x = mesh.vertices;
+  const double height = x[point][view.y];
+  for (std::size_t i = 0; i < rim.size(); ++i) {
+    const VertexId a = rim[i], b = rim[(i + 1) % rim.size()];
+    const bool a_above = x[a][view.y] > height, b_above = x[b][view.y] > height;
+    const int side = turn(mesh, view, a, b, point);
+    if (side == 0 && std::min(x[a][view.x], x[b][view.x]) <= x[point][view.x] &&
+        x[point][view.x] <= std::max(x[a][view.x], x[b][view.x]) &&
+        std::min(x[a][view.y], x[b][view.y]) <= height && height <= std::max(x[a][view.y], x[b][view.y]))
+      return false;
+    if (a_above != b_above && (side > 0) == b_above) inside = !inside;
+  }
+  return inside;
+}
+
+}  // namespace lrb::lids

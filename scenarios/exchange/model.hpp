@@ -1,0 +1,56 @@
+#pragma once
+/// What is written to files that other programs open: points, lines and polygons with a colour and a row of
+/// numbers each.
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "render/colour.hpp"
+
+namespace lrb::exchange {
+
+enum class Shape : std::uint8_t { points, lines, polygons };
+
+/// The name of a number that every cell has. A number that a cell does not have is -1.
+struct Column {
+  std::string_view name;
+  bool whole = true;  ///< its numbers are integers
+};
+
+/// Cells of one shape. Their corners are numbered within the part.
+struct Part {
+  std::string name;
+  Shape shape = Shape::polygons;
+  bool in_regions = true;                    ///< its cells are faces, which have regions
+  std::vector<Eigen::Vector3d> vertices;     ///< world frame
+  std::vector<std::uint32_t> offsets = {0};  ///< (cells + 1), into corners
+  std::vector<std::uint32_t> corners;        ///< of a polygon counter-clockwise seen from outside
+  std::vector<render::Rgba> colours;         ///< (cells)
+  std::vector<std::vector<double>> values;   ///< (columns) x (cells)
+
+  std::size_t cell_count() const { return offsets.size() - 1; }
+  std::span<const std::uint32_t> cell(std::size_t i) const {
+    return {corners.data() + offsets[i], offsets[i + 1] - offsets[i]};
+  }
+  void add_cell(std::span<const std::uint32_t> at, render::Rgba colour, std::span<const double> row);
+};
+
+struct Model {
+  std::string title;            ///< what it shows, one line
+  std::vector<Column> columns;  ///< of all parts
+  std::string_view quality;     ///< the column by which programs are to colour; empty: none
+  std::vector<Part> parts;      ///< none is empty
+
+  std::size_t column(std::string_view name) const;  ///< Returns its index; the model must have it.
+};
+
+/// Returns the parts with the faces of each region apart, by the column "region": NAME_region_N, and
+/// NAME_no_region for the rest.
+std::vector<Part> split_by_region(const Model& model);
+
+}  // namespace lrb::exchange

@@ -1,0 +1,138 @@
+#include "engine/mesh/join_corners.hpp"
+
+#include <array>
+#include <vector>
+
+#include <doctest/doctest.h>
+
+#include "engine/mesh/mesh_check.hpp"
+#include "scenarios/bodies/shapes/shapes.hpp"
+#include "tests/support/dirt.hpp"
+
+namespace lrb::test {
+
+using namespace shapes;
+namespace {
+
+std::vector<std::vector<Point3>> corner_places(const Mesh& m) {
+  std::vector<std::vector<Point3>> out;
+  for (FaceId f = 0; f < m.face_count(); ++f) {
+    out.emplace_back();
+    for (const VertexId v : m.face(f)) out.back().push_back(m.vertices[v]);
+  }
+  return out;
+}
+
+/// Checks that no face and no vertex has moved or changed its number, and returns the report.
+MeshReport joined_report(Mesh m, JoinedCorners* said = nullptr) {
+  const Mesh before = m;
+  const JoinedCorners joined = join_corners(m);
+  if (said) *said = joined;
+  CHECK(corner_places(m) == corner_places(before));
+  CHECK(m.vertices == before.vertices);
+  CHECK(m.joined.size() == joined.before - joined.after);
+  const MeshReport report = check_mesh(m);
+  CHECK(report[MeshFault::open_edge].count == joined.open_after);
+  CHECK(report[MeshFault::unused_vertex].count == check_mesh(before, false)[MeshFault::unused_vertex].count);
+  return report;
+}
+
+}  // namespace
+
+TEST_CASE("faces with vertices of their own become the body that they came from") {
+  for (const Mesh& body :
+       {box(), quad_box(), comb(3), torus(8, 5), icosphere(2), box_with_void(), l_shape()}) {
+    JoinedCorners said;
+    const MeshReport was = check_mesh(body), is = joined_report(as_soup(body), &said);
+    CHECK(said.open_before == as_soup(body).face_vertices.size());
+    CHECK(said.open_after == 0);
+    CHECK(said.after == body.vertices.size());
+    CHECK(is.buildable());
+    CHECK(is.genus == was.genus);
+    CHECK(is.components == was.components);
+    CHECK(is[MeshFault::duplicate_vertex].count == 0);
+  }
+}
+
+TEST_CASE("bodies that are closed stay as they are, wherever they touch") {
+  const Mesh edge = several({box(), box({1, 1, 0}, {2, 2, 1})}),
+             corner = several({box(), box({1, 1, 1}, {2, 2, 2})}),
+             face = several({quad_box(), quad_box({1, 0, 0}, {2, 1, 1})}), twice = several({box(), box()});
+  for (const Mesh& body : {edge, corner, face, twice}) {
+    Mesh m = body;
+    CHECK_FALSE(join_corners(m).any());
+    CHECK(m.face_vertices == body.face_vertices);
+    CHECK(m.joined.empty());
+  }
+  // Nor does an open body that touches one take hold of it.
+  Mesh m = several({box(), as_soup(box({1, 1, 0}, {2, 2, 1}))});
+  join_corners(m);
+  for (FaceId f = 0; f < 12; ++f)
+    for (const VertexId v : m.face(f)) CHECK(v < 8);
+  CHECK(check_mesh(m).buildable());
+}
+
+TEST_CASE("loose faces of two bodies that touch become two bodies, if their other edges tell") {
+  for (const Mesh& other : {box({1, 1, 0}, {2, 2, 1}), box({1, 1, 1}, {2, 2, 2})}) {
+    const MeshReport report = joined_report(as_soup(several({box(), other})));
+    CHECK(report.components == 2);
+    CHECK(report.buildable());
+  }
+  // Two faces in one place: nothing tells which belongs to which body, but both are closed as one.
+  const MeshReport stacked = joined_report(as_soup(several({quad_box(), quad_box({1, 0, 0}, {2, 1, 1})})));
+  CHECK(stacked[MeshFault::open_edge].count == 0);
+  CHECK(stacked.bounds_solid);
+}
+
+TEST_CASE("rims in one place are sewn up; what is a fault stays one") {
+  const auto half = [](bool upper) {  // of a box, cut at z = 1
+    const Mesh b = upper ? box({0, 0, 1}, {1, 1, 2}) : box();
+    std::set<FaceId> gone;
+    for (FaceId f = 0; f < b.face_count(); ++f) {
+      bool flat = true;
+      for (const VertexId v : b.face(f)) flat &= b.vertices[v].z() == 1;
+      if (flat) gone.insert(f);
+    }
+    return without_faces(b, gone);
+  };
+  JoinedCorners said;
+  CHECK(joined_report(several({half(false), half(true)}), &said).buildable());
+  CHECK(said.open_before == 8);
+
+  const Mesh ball = icosphere(0);
+  const MeshReport hole = joined_report(as_soup(without_faces(ball, {3})));
+  CHECK(hole[MeshFault::open_edge].count == 3);
+  const Mesh flipped = as_soup(with_flipped(ball, {3}));
+  CHECK(joined_report(flipped)[MeshFault::flipped_face].count == 3);
+  const Mesh doubled = as_soup(with_doubled(ball, {3}));
+  CHECK(joined_report(doubled)[MeshFault::non_manifold_edge].count == 3);
+}
+
+TEST_CASE("0 and -0 are one place, an ulp more is another") {
+  Mesh m = as_soup(box());
+  for (Point3& x : m.vertices)
+    if (x.x() == 0 && (&x - m.vertices.data()) % 2 == 0) x.x() = -0.0;
+  CHECK(joined_report(m).buildable());
+  m.vertices[0].x() = std::nextafter(m.vertices[0].x(), 2);
+  CHECK(joined_report(m)[MeshFault::open_edge].count > 0);
+}
+
+TEST_CASE("segments with vertices of their own become a polygon") {
+  for (const Mesh& body : {star(5), ring_2d(12)}) {
+    JoinedCorners said;
+    CHECK(joined_report(as_soup(body), &said).buildable());
+    CHECK(said.open_before == 2 * body.face_count());
+  }
+}
+
+TEST_CASE("faces that name what is not there, or no number, are left alone") {
+  Mesh m = as_soup(box());
+  m.face_vertices[0] = VertexId(1000);
+  m.vertices[5].y() = std::numeric_limits<double>::quiet_NaN();
+  const Mesh before = m;
+  join_corners(m);
+  CHECK(m.face(FaceId(0))[0] == 1000);
+  CHECK(std::equal(m.face(FaceId(1)).begin(), m.face(FaceId(1)).end(), before.face(FaceId(1)).begin()));
+}
+
+}  // namespace lrb::test
