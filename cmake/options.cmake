@@ -19,6 +19,9 @@ endif()
 # about moved short strings if their header was precompiled.
 target_compile_options(lrb_own_options INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion -Wno-psabi
                                              $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict -Wno-stringop-overread>)
+# The same objects go into programs and into the Python module. Nobody replaces our functions when a program starts, so that
+# the compiler may inline them as it would without -fPIC.
+target_compile_options(lrb_own_options INTERFACE -fPIC -fno-semantic-interposition)
 if(LRB_WARNINGS_AS_ERRORS)
   target_compile_options(lrb_own_options INTERFACE -Werror)
 endif()
@@ -33,7 +36,8 @@ if(LRB_SANITIZE)
 endif()
 if(LRB_HARDEN)
   # Checked copies, guarded stacks, addresses that are random and tables that are read-only once loaded.
-  target_compile_options(lrb_options INTERFACE -fstack-protector-strong -fPIE
+  target_compile_options(lrb_options INTERFACE -fstack-protector-strong
+                                               $<BUILD_INTERFACE:-fPIC> $<INSTALL_INTERFACE:-fPIE>
                                                $<$<NOT:$<CONFIG:Debug>>:-U_FORTIFY_SOURCE -D_FORTIFY_SOURCE=2>)
   # With it gcc 12 misjudges the sizes of Boost.Multiprecision's integers.
   target_compile_options(lrb_options INTERFACE $<$<CXX_COMPILER_ID:GNU>:-Wno-stringop-overflow -Wno-array-bounds>)

@@ -36,7 +36,11 @@ LoadedBody load_body(const std::string& path, const BuildOptions& options) {
 
 LoadedBody load_faces(const std::string& path) {
   if (is_lrb_file(path)) return {load_lrb(path), {}, 0};
-  return loaded(make_body_of_faces(check(read_mesh(path))));
+  return faces_of_mesh(read_mesh(path));
+}
+
+LoadedBody faces_of_mesh(Mesh mesh) {
+  return loaded(make_body_of_faces(check(std::move(mesh))));
 }
 
 }  // namespace lrb::bodies

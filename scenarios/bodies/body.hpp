@@ -29,6 +29,7 @@ LoadedBody body_of_mesh(CheckedMesh mesh, const BuildOptions& options = {});
 /// LRB-rep from a mesh, and proves nothing about it that the answer does not need. Faces have the numbers
 /// that load_body() gives them, and answers are the same. (An .lrb file is read as it is.)
 LoadedBody load_faces(const std::string& path);
+LoadedBody faces_of_mesh(Mesh mesh);
 
 /// Turns what is inside out, and builds; throws InputError with a list of the offenders if that cannot be
 /// done. Adds what was done on the way to `notes`.

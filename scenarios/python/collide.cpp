@@ -1,0 +1,197 @@
+#include "scenarios/python/collide.hpp"
+
+#include "engine/core/parallel.hpp"
+#include "engine/query/collide_impl.hpp"
+#include "scenarios/python/answers.hpp"
+#include "scenarios/python/batch.hpp"
+#include "scenarios/python/request.hpp"
+
+namespace lrb {
+/// The engine's own, so that queries from Python run the code that those from C++ do.
+extern template CollideResult collide<NullProbe>(const LrbRep&, const Pose&, const LrbRep&, const Pose&,
+                                                 const CollideRequest&, QueryContext&, NullProbe&);
+}  // namespace lrb
+
+namespace lrb::python {
+namespace {
+
+CollideResult ask(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
+                  const CollideRequest& request, QueryContext& context) {
+  NullProbe probe;
+  return lrb::collide(a, pose_a, b, pose_b, request, context, probe);
+}
+
+/// Returns the memory of queries one after another on this thread.
+QueryContext& own_context() {
+  thread_local QueryContext context;
+  return context;
+}
+
+py::object collide_one(const Body& a, const Pose& pose_a, const Body& b, const Pose& pose_b,
+                       const CollideRequest& request) {
+  auto result = std::make_shared<CollideResult>();
+  {
+    const py::gil_scoped_release unlocked;
+    *result = ask(a.rep(), pose_a, b.rep(), pose_b, request, own_context());
+  }
+  return py::cast(Answer{std::move(result), a.shared(), b.shared()});
+}
+
+py::object collide_many(const Body& a, const Pose& pose_a, const Body& b, const std::vector<Pose>& poses_b,
+                        const CollideRequest& request, unsigned threads) {
+  auto results = std::make_shared<std::vector<CollideResult>>(poses_b.size());
+  std::vector<QueryContext> contexts(threads);
+  run_batch(poses_b.size(), threads, [&](std::size_t i, unsigned worker) {
+    (*results)[i] = ask(a.rep(), pose_a, b.rep(), poses_b[i], request, contexts[worker]);
+  });
+  return py::cast(Answers{std::move(results), a.shared(), b.shared()});
+}
+
+py::object collide(py::handle a, py::handle b, py::handle poses_b, py::handle pose_a, py::handle mode,
+                   py::handle contacts, py::handle interiors_overlap, py::handle tolerance,
+                   py::handle max_tests, py::handle max_time, py::handle separation, py::handle max_pairs,
+                   py::handle recursion, py::handle threads) {
+  const Body &body_a = body(a, "a"), &body_b = body(b, "b");
+  const Poses at = poses(poses_b, "poses_b");
+  const Pose at_a = pose(pose_a, "pose_a");
+  const CollideRequest request = request_of(
+      {mode, contacts, interiors_overlap, tolerance, max_tests, max_time, separation, max_pairs, recursion});
+  if (at.one) return collide_one(body_a, at_a, body_b, at.all[0], request);
+  return collide_many(body_a, at_a, body_b, at.all, request, threads_of(count(threads, "threads")));
+}
+
+/// A row of bodies with their poses.
+struct Row {
+  std::vector<std::shared_ptr<const LrbRep>> reps;
+  std::vector<Pose> poses;
+};
+
+Row row_of(const py::sequence& bodies, py::handle given, const char* what, const char* what_poses) {
+  Row out;
+  for (const py::handle one : bodies) out.reps.push_back(body(one, what).shared());
+  out.poses = poses(given, what_poses).all;
+  if (out.poses.size() != out.reps.size())
+    throw InputError(std::string(what_poses) + ": expected as many as " + what + ", " +
+                     std::to_string(out.reps.size()) + ", got " + std::to_string(out.poses.size()));
+  return out;
+}
+
+py::list collide_pairs(const py::sequence& bodies_a, py::handle poses_a, const py::sequence& bodies_b,
+                       py::handle poses_b, py::handle mode, py::handle contacts, py::handle max_pairs,
+                       py::handle threads) {
+  const Row a = row_of(bodies_a, poses_a, "bodies_a", "poses_a");
+  const Row b = row_of(bodies_b, poses_b, "bodies_b", "poses_b");
+  if (a.reps.size() != b.reps.size())
+    throw InputError("bodies_b: expected as many as bodies_a, " + std::to_string(a.reps.size()) + ", got " +
+                     std::to_string(b.reps.size()));
+  const py::none no;
+  const CollideRequest request = request_of({mode, contacts, no, no, no, no, no, max_pairs, no});
+  const unsigned n = threads_of(count(threads, "threads"));
+  auto results = std::make_shared<std::vector<CollideResult>>(a.reps.size());
+  std::vector<QueryContext> contexts(n);
+  run_batch(a.reps.size(), n, [&](std::size_t i, unsigned worker) {
+    (*results)[i] = ask(*a.reps[i], a.poses[i], *b.reps[i], b.poses[i], request, contexts[worker]);
+  });
+  py::list out;
+  for (std::size_t i = 0; i < results->size(); ++i)
+    out.append(Answer{{results, &(*results)[i]}, a.reps[i], b.reps[i]});
+  return out;
+}
+
+py::object contacts(py::handle a, py::handle b, py::handle poses_b, py::handle pose_a, py::handle max_pairs,
+                    py::handle threads) {
+  const py::none no;
+  const py::object found =
+      collide(a, b, poses_b, pose_a, no, py::bool_(true), no, no, no, no, no, max_pairs, no, threads);
+  if (py::isinstance<Answer>(found)) return regions_of(found.cast<const Answer&>());
+  const auto& many = found.cast<const Answers&>();
+  py::list out;
+  for (std::size_t i = 0; i < many.all->size(); ++i) out.append(regions_of(many.at(i)));
+  return out;
+}
+
+/// Asks as a program in C++ would, and returns nothing: what calls from Python are compared with (tests/python/bench.py).
+void collide_alone(py::handle a, py::handle b, py::handle given, unsigned threads) {
+  const LrbRep &rep_a = body(a, "a").rep(), &rep_b = body(b, "b").rep();
+  const std::vector<Pose> poses_b = poses(given, "poses_b").all;
+  const py::gil_scoped_release unlocked;
+  std::vector<CollideResult> results(poses_b.size());
+  std::vector<QueryContext> contexts(threads);
+  Workers workers(threads);
+  workers.for_each(poses_b.size(), [&](std::size_t i, unsigned worker) {
+    results[i] = ask(rep_a, {}, rep_b, poses_b[i], {}, contexts[worker]);
+  });
+}
+
+constexpr const char* kCollideText =
+    R"(collide(a, b, poses_b=None, pose_a=None, *, mode='all', contacts=False, interiors_overlap=False,
+        tolerance=0, max_tests=0, max_time=0, separation=False, max_pairs=0, recursion='complete', threads=0)
+
+Finds whether two bodies meet, which of their triangles do, and how the bodies lie to each other; exactly.
+
+poses_b: where B stands: a (4, 4) float matrix from body to world, applied to columns (x, y, z, 1); any affine map.
+    (k, 4, 4): k poses, answered on all cores without Python's lock; Ctrl-C ends the batch.
+pose_a: (4, 4), of A, in all of them. None is the identity for both.
+mode: 'all' pairs; 'first': one that crosses, if any; 'any': the first pair that is found, the fastest.
+contacts: fill Result.regions: curves, area, normal and depth of each contact region.
+tolerance (the meshes' unit), max_tests, max_time (s), separation: ask for no more than a scene needs.
+max_pairs: refuse answers of more pairs; 0: of more than 33,554,432, with contacts 2,097,152.
+threads: of a batch; 0: all cores. Answers are the same for any number.
+
+Returns a Result, or for (k, 4, 4) a Results.
+
+>>> collide(cube, cube, shifted(0.5, 0, 0)).relation
+'touching'
+>>> r = collide(cube, cube, [shifted(0.5, 0.25, 0.125), shifted(2, 0, 0)])
+>>> r.relations.tolist(), r.counts.tolist()
+(['crossing', 'separate'], [12, 0]))";
+
+constexpr const char* kCollidePairsText =
+    R"(collide_pairs(bodies_a, poses_a, bodies_b, poses_b, *, mode='all', contacts=False, max_pairs=0, threads=0)
+
+Asks for k pairs of bodies, on all cores: bodies_a[i] at poses_a[i] against bodies_b[i] at poses_b[i].
+
+bodies_a, bodies_b: sequences of k bodies; poses_a, poses_b: (k, 4, 4) float.
+
+Returns a list of k Results, in order.)";
+
+constexpr const char* kContactsText =
+    R"(contacts(a, b, poses_b=None, pose_a=None, *, max_pairs=0, threads=0)
+
+Returns the contact regions of two bodies at a pose, a list of ContactRegion; for (k, 4, 4) poses a list of such lists.
+
+>>> [len(r.curves) for r in contacts(cube, cube, shifted(0.5, 0.25, 0.125))]
+[1])";
+
+}  // namespace
+
+CollideRequest request_of(const RequestArguments& given) {
+  CollideRequest r;
+  r.mode = word(given.mode, "mode", r.mode);
+  r.contacts = flag(given.contacts, "contacts");
+  r.interiors_overlap = flag(given.interiors_overlap, "interiors_overlap");
+  r.tolerance = size(given.tolerance, "tolerance");
+  r.max_tests = count(given.max_tests, "max_tests");
+  r.max_time = size(given.max_time, "max_time");
+  r.separation = flag(given.separation, "separation");
+  r.max_pairs = count(given.max_pairs, "max_pairs");
+  r.recursion = word(given.recursion, "recursion", r.recursion);
+  return r;
+}
+
+void bind_collide(py::module_& m) {
+  const py::none no;
+  m.def("collide", &collide, py::arg("a"), py::arg("b"), py::arg("poses_b") = no, py::arg("pose_a") = no,
+        py::kw_only(), py::arg("mode") = no, py::arg("contacts") = no, py::arg("interiors_overlap") = no,
+        py::arg("tolerance") = no, py::arg("max_tests") = no, py::arg("max_time") = no,
+        py::arg("separation") = no, py::arg("max_pairs") = no, py::arg("recursion") = no,
+        py::arg("threads") = no, kCollideText);
+  m.def("collide_pairs", &collide_pairs, py::arg("bodies_a"), py::arg("poses_a"), py::arg("bodies_b"),
+        py::arg("poses_b"), py::kw_only(), py::arg("mode") = no, py::arg("contacts") = no,
+        py::arg("max_pairs") = no, py::arg("threads") = no, kCollidePairsText);
+  m.def("_collide_alone", &collide_alone);
+  m.def("contacts", &contacts, py::arg("a"), py::arg("b"), py::arg("poses_b") = no, py::arg("pose_a") = no,
+        py::kw_only(), py::arg("max_pairs") = no, py::arg("threads") = no, kContactsText);
+}
+
+}  // namespace lrb::python

@@ -1,0 +1,77 @@
+"""Exact collision queries on meshes, with pictures of how they were answered.
+
+>>> import numpy as np
+>>> import lrbscope
+>>> v = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1.0]])
+>>> f = np.array([[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])
+>>> body = lrbscope.Body(v, f)
+>>> pose = np.eye(4)
+>>> pose[:3, 3] = 0.2, 0.1, 0.05
+>>> lrbscope.collide(body, body, pose).relation
+'crossing'
+
+Arrays are as the field has them: vertices (n, 3) float, faces (m, 3) int, poses (4, 4) or (k, 4, 4) float that map
+body to world coordinates, pairs (p, 2). Lengths are in the meshes' unit, times in seconds. Answers are exact for the
+vertices' world coordinates, and the same for any number of threads.
+"""
+
+from . import _core
+from ._core import (
+    Body,
+    ContactRegion,
+    Distance,
+    Distances,
+    EnvironmentError,
+    InputError,
+    Outcome,
+    Result,
+    Results,
+    Scenario,
+    SweepAndPrune,
+    Trace,
+    Wrapper,
+    __version__,
+    collide,
+    collide_pairs,
+    contacts,
+    distance,
+    render,
+    scenarios,
+    trace,
+)
+from ._picture import Picture
+from .collision import CollisionManager, ContactData, DistanceData
+
+# Objects say, and pickle, where users find them.
+for _name in dir(_core):
+    _object = getattr(_core, _name)
+    if isinstance(_object, type):
+        _object.__module__ = __name__
+del _name, _object
+
+# EnvironmentError is left out: it would hide Python's own.
+__all__ = [
+    "Body",
+    "CollisionManager",
+    "ContactData",
+    "ContactRegion",
+    "Distance",
+    "DistanceData",
+    "Distances",
+    "InputError",
+    "Outcome",
+    "Picture",
+    "Result",
+    "Results",
+    "Scenario",
+    "SweepAndPrune",
+    "Trace",
+    "Wrapper",
+    "collide",
+    "collide_pairs",
+    "contacts",
+    "distance",
+    "render",
+    "scenarios",
+    "trace",
+]

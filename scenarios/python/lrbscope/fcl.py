@@ -1,0 +1,766 @@
+"""The interface of python-fcl, answered by lrbscope: `from lrbscope import fcl`.
+
+>>> from lrbscope import fcl
+>>> box = fcl.Box(1, 2, 3)
+>>> near = fcl.CollisionObject(box, fcl.Transform(np.array([0.5, 0.25, 0.125])))
+>>> result = fcl.CollisionResult()
+>>> fcl.collide(fcl.CollisionObject(box), near, fcl.CollisionRequest(), result), result.is_collision
+(1, True)
+
+Meshes (BVHModel) and boxes are as they are. Round shapes are polyhedra whose corners lie on them, with `facets` facets
+around: they lie inside the shape, by 0.0012 of its radius at most for 64. What meets is decided exactly for these.
+
+As in FCL, a mesh is a surface, and a shape is a solid: what lies inside a shape collides with it. Depths are estimates. What
+is not there raises Unsupported: Halfspace, Plane, OcTree, costs, signed distances of shapes that overlap.
+"""
+
+import enum
+import math
+import sys
+
+import numpy as np
+
+from . import _core
+from ._objects import by_gap, meeting
+from .collision import contacts_of
+
+facets = 64
+"""int: the number of facets around of shapes that are made from now on."""
+
+
+class Unsupported(NotImplementedError):
+    """Raised for what FCL has and this module has not."""
+
+
+class GJKSolverType(enum.IntEnum):
+    """Which solver FCL is to use; has no effect here."""
+
+    GST_LIBCCD = 0
+    GST_INDEP = 1
+
+
+class CCDMotionType(enum.IntEnum):
+    """How objects move between two poses."""
+
+    CCDM_TRANS = 0
+    CCDM_LINEAR = 1
+    CCDM_SCREW = 2
+    CCDM_SPLINE = 3
+
+
+class CCDSolverType(enum.IntEnum):
+    """Which solver FCL is to use; has no effect here."""
+
+    CCDC_NAIVE = 0
+    CCDC_CONSERVATIVE_ADVANCEMENT = 1
+    CCDC_RAY_SHOOTING = 2
+    CCDC_POLYNOMIAL_SOLVER = 3
+
+
+def _vector(given, size, what):
+    out = np.array(given, dtype=float).squeeze()
+    if out.shape != (size,):
+        raise ValueError(f"{what}: expected {size} numbers, got shape {np.shape(given)}")
+    return out
+
+
+def _matrix(given):
+    out = np.array(given, dtype=float)
+    if out.shape != (3, 3):
+        raise ValueError(f"a rotation: expected shape (3, 3), got {out.shape}")
+    return out
+
+
+def _matrix_of_quaternion(given):
+    """Return the rotation of w, x, y, z, of any length but 0."""
+    q = _vector(given, 4, "a quaternion")
+    length = np.linalg.norm(q)
+    if not length > 0:
+        raise ValueError("a quaternion: expected one that is not zero")
+    w, x, y, z = q / length
+    return np.array(
+        [
+            [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
+            [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
+            [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)],
+        ]
+    )
+
+
+def _quaternion_of_matrix(r):
+    """Return w, x, y, z with w >= 0; the largest component first, so that nothing is lost to rounding."""
+    squares = np.array([r[0, 0] + r[1, 1] + r[2, 2], *(2 * np.diag(r) - np.trace(r))]) + 1
+    differences = {(0, 1): r[2, 1] - r[1, 2], (0, 2): r[0, 2] - r[2, 0], (0, 3): r[1, 0] - r[0, 1]}
+    sums = {(1, 2): r[0, 1] + r[1, 0], (1, 3): r[0, 2] + r[2, 0], (2, 3): r[1, 2] + r[2, 1]}
+    products = {**differences, **sums}  # four times q[i] q[j]
+    i = int(np.argmax(squares))
+    q = np.array([squares[i] if j == i else products[tuple(sorted((i, j)))] for j in range(4)])
+    q /= np.linalg.norm(q)
+    return -q if q[0] < 0 else q
+
+
+class Transform:
+    """A rotation and a translation: Transform(), (q), (R), (T), (q, T), (R, T) or (Transform); q is w, x, y, z."""
+
+    def __init__(self, *args):
+        self._r, self._t = np.eye(3), np.zeros(3)
+        if len(args) > 2:
+            raise ValueError("Too many arguments to Transform().")
+        if len(args) == 1 and isinstance(args[0], Transform):
+            self._r, self._t = args[0].getRotation(), args[0].getTranslation()
+        elif len(args) == 1 and np.shape(args[0]) == (3,):
+            self.setTranslation(args[0])
+        elif args:
+            if np.shape(args[0]) == (3, 3):
+                self.setRotation(args[0])
+            elif np.shape(args[0]) == (4,):
+                self.setQuatRotation(args[0])
+            else:
+                raise ValueError("Invalid input to Transform().")
+            if len(args) == 2:
+                self.setTranslation(args[1])
+
+    def getRotation(self):
+        """Return the rotation, (3, 3)."""
+        return self._r.copy()
+
+    def getTranslation(self):
+        """Return the translation, (3,)."""
+        return self._t.copy()
+
+    def getQuatRotation(self):
+        """Return the rotation as w, x, y, z."""
+        return _quaternion_of_matrix(self._r)
+
+    def setRotation(self, R):
+        """Set the rotation, (3, 3)."""
+        self._r = _matrix(R)
+
+    def setTranslation(self, T):
+        """Set the translation, (3,)."""
+        self._t = _vector(T, 3, "a translation")
+
+    def setQuatRotation(self, q):
+        """Set the rotation from w, x, y, z."""
+        self._r = _matrix_of_quaternion(q)
+
+    def _pose(self):
+        pose = np.eye(4)
+        pose[:3, :3], pose[:3, 3] = self._r, self._t
+        return pose
+
+
+class CollisionGeometry:
+    """A shape. Its body is made when it is first asked for."""
+
+    _node_type = 0
+    _object_type = 0
+    _is_shape = True  # a solid; else a surface
+
+    _made = None
+
+    def getNodeType(self):
+        """Return FCL's number of the kind of shape."""
+        return self._node_type
+
+    def _surface(self):
+        """Return vertices and faces."""
+        raise ValueError("this geometry has no surface: take one of its kinds, such as BVHModel")
+
+    def _body(self):
+        if self._made is None:
+            self._made = _core.Body(*self._surface(), regions=False, name=type(self).__name__)
+        return self._made
+
+    def __getstate__(self):
+        return {key: value for key, value in self.__dict__.items() if key != "_made"}
+
+
+class BVHModel(CollisionGeometry):
+    """A triangle mesh: beginModel(), then addSubModel(), addTriangle() or addVertex(), then endModel()."""
+
+    _node_type = 5  # OBBRSS, as python-fcl has it
+    _object_type = 1
+    _is_shape = False
+
+    def __init__(self):
+        self._state = 0  # 1: begun, 2: ended
+        self._vertices, self._triangles = [], []
+
+    def num_tries_(self):
+        """Return the number of triangles."""
+        return len(self._triangles)
+
+    def buildState(self):
+        """Return 0 if nothing was begun, 1 between beginModel() and endModel(), then 2."""
+        return self._state
+
+    def beginModel(self, num_tris_=0, num_vertices_=0):
+        """Begin anew. The numbers are not needed. Returns 0."""
+        self._state, self._vertices, self._triangles, self._made = 1, [], [], None
+        return 0
+
+    def addVertex(self, x, y, z):
+        """Add a vertex."""
+        self._check(1)
+        self._vertices.append(_vector([x, y, z], 3, "a vertex"))
+        return True
+
+    def addTriangle(self, v1, v2, v3):
+        """Add a triangle of three points, (3,) each."""
+        self._check(1)
+        n = len(self._vertices)
+        self._vertices += [_vector(v, 3, "a vertex") for v in (v1, v2, v3)]
+        self._triangles.append((n, n + 1, n + 2))
+        return True
+
+    def addSubModel(self, verts, triangles):
+        """Add a mesh: verts (n, 3) float, triangles (m, 3) int."""
+        self._check(1)
+        verts, triangles = np.asarray(verts, dtype=float), np.asarray(triangles)
+        for a, what in ((verts, "verts"), (triangles, "triangles")):
+            if a.ndim != 2 or a.shape[1] != 3:
+                raise ValueError(f"{what}: expected shape (n, 3), got {a.shape}")
+        if triangles.dtype.kind not in "iu":
+            raise ValueError(f"triangles: expected integers, got {triangles.dtype}")
+        n = len(self._vertices)
+        self._vertices += list(verts)
+        self._triangles += [tuple(int(i) + n for i in t) for t in triangles]
+        return True
+
+    def endModel(self):
+        """End. Returns 0."""
+        self._check(1)
+        self._state = 2
+        self._body()  # complains now, if the mesh cannot be queried
+        return 0
+
+    def _check(self, state):
+        if self._state != state:
+            raise ValueError("BVH construction does not follow correct sequence")
+
+    def _surface(self):
+        self._check(2)
+        return np.array(self._vertices).reshape(-1, 3), np.array(self._triangles, dtype=np.int64).reshape(-1, 3)
+
+
+class Convex(CollisionGeometry):
+    """A convex polyhedron: vertices (n, 3), the number of faces, and for each its number of corners and these, in a row."""
+
+    _node_type = 15
+    _object_type = 2
+
+    def __init__(self, vertices, num_faces, faces):
+        self.num_faces = num_faces
+        faces, self._faces, at = [int(i) for i in faces], [], 0
+        while at < len(faces):
+            self._faces.append(faces[at + 1 : at + 1 + faces[at]])
+            at += 1 + faces[at]
+        if len(self._faces) != num_faces:
+            raise ValueError(f"faces: expected {num_faces}, got {len(self._faces)}")
+        self._vertices = np.array(vertices, dtype=float)
+
+    def _surface(self):
+        return self._vertices, self._faces
+
+
+class TriangleP(CollisionGeometry):
+    """A triangle of three points, (3,) each."""
+
+    _node_type = 18
+    _object_type = 2
+
+    def __init__(self, a, b, c):
+        self.a, self.b, self.c = (_vector(v, 3, "a corner") for v in (a, b, c))
+
+    def _surface(self):
+        return np.array([self.a, self.b, self.c]), np.array([[0, 1, 2]])
+
+
+class Box(CollisionGeometry):
+    """A box with these sides, its middle in the origin."""
+
+    _node_type = 9
+    _object_type = 2
+
+    def __init__(self, x, y, z):
+        self.side = np.array([x, y, z], dtype=float)
+
+    def _surface(self):
+        corners = np.array([[i >> 2 & 1, i >> 1 & 1, i & 1] for i in range(8)]) - 0.5
+        sides = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
+        return corners * self.side, [t for a, b, c, d in sides for t in ((a, b, c), (a, c, d))]
+
+
+def _turned(profile):
+    """Return the surface of a profile, points (radius, z) from the lower pole to the upper, turned about z."""
+    angles = 2 * np.pi * np.arange(facets) / facets
+    around = np.stack([np.cos(angles), np.sin(angles)], axis=1)
+    rings = [np.column_stack([around * r, np.full(facets, z)]) for r, z in profile[1:-1]]
+    poles = [np.array([[0, 0, z]]) for _, z in (profile[0], profile[-1])]
+    faces = []
+    for k in range(facets):
+        n = (k + 1) % facets
+        faces.append((0, 1 + n, 1 + k))
+        for ring in range(len(rings) - 1):
+            low, high = 1 + ring * facets, 1 + (ring + 1) * facets
+            faces += [(low + k, low + n, high + n), (low + k, high + n, high + k)]
+        last = 1 + (len(rings) - 1) * facets
+        faces.append((last + facets, last + k, last + n))
+    return np.concatenate([poles[0], *rings, poles[1]]), faces
+
+
+def _half_circle(radius, begin, end):
+    """Return points of a half circle between two angles of latitude."""
+    angles = np.linspace(begin, end, facets // 2 + 1 if end - begin > 2 else facets // 4 + 1)
+    return [(radius * math.cos(a), radius * math.sin(a)) for a in angles]
+
+
+class Ellipsoid(CollisionGeometry):
+    """An ellipsoid with these radii along x, y and z."""
+
+    _node_type = 11
+    _object_type = 2
+
+    def __init__(self, a, b, c):
+        self.radii = np.array([a, b, c], dtype=float)
+
+    def _surface(self):
+        vertices, faces = _turned(_half_circle(1, -math.pi / 2, math.pi / 2))
+        return vertices * self.radii, faces
+
+
+class Sphere(CollisionGeometry):
+    """A sphere."""
+
+    _node_type = 10
+    _object_type = 2
+
+    def __init__(self, radius):
+        self.radius = float(radius)
+
+    def _surface(self):
+        vertices, faces = _turned(_half_circle(1, -math.pi / 2, math.pi / 2))
+        return vertices * self.radius, faces
+
+
+class Capsule(CollisionGeometry):
+    """A cylinder of height lz along z with a half sphere on either end."""
+
+    _node_type = 12
+    _object_type = 2
+
+    def __init__(self, radius, lz):
+        self.radius, self.lz = float(radius), float(lz)
+
+    def _surface(self):
+        half = self.lz / 2
+        low = [(r, z - half) for r, z in _half_circle(self.radius, -math.pi / 2, 0)]
+        high = [(r, z + half) for r, z in _half_circle(self.radius, 0, math.pi / 2)]
+        return _turned(low + high)
+
+
+class Cone(CollisionGeometry):
+    """A cone of height lz along z, its base below, the middle of its height in the origin."""
+
+    _node_type = 13
+    _object_type = 2
+
+    def __init__(self, radius, lz):
+        self.radius, self.lz = float(radius), float(lz)
+
+    def _surface(self):
+        half = self.lz / 2
+        return _turned([(0, -half), (self.radius, -half), (0, half)])
+
+
+class Cylinder(CollisionGeometry):
+    """A cylinder of height lz along z, its middle in the origin."""
+
+    _node_type = 14
+    _object_type = 2
+
+    def __init__(self, radius, lz):
+        self.radius, self.lz = float(radius), float(lz)
+
+    def _surface(self):
+        half = self.lz / 2
+        return _turned([(0, -half), (self.radius, -half), (self.radius, half), (0, half)])
+
+
+def _missing(name, why):
+    class Missing(CollisionGeometry):
+        def __init__(self, *args, **kwargs):
+            raise Unsupported(f"lrbscope.fcl has no {name}: {why}")
+
+    Missing.__name__ = Missing.__qualname__ = name
+    Missing.__doc__ = f"Raises Unsupported: {why}."
+    return Missing
+
+
+Halfspace = _missing("Halfspace", "it has no end; take a Box that is large enough")
+Plane = _missing("Plane", "it has no end; take a thin Box that is large enough")
+OcTree = _missing("OcTree", "make a mesh of its occupied cells")
+
+
+class CollisionObject:
+    """A geometry that stands somewhere."""
+
+    def __init__(self, geom=None, tf=None, _no_instance=False):
+        if geom is None:
+            raise ValueError("a CollisionObject needs a geometry")
+        self._geom = geom
+        self._tf = Transform() if tf is None else Transform(tf)
+
+    def getObjectType(self):
+        """Return FCL's number: 1 a mesh, 2 a shape."""
+        return self._geom._object_type
+
+    def getNodeType(self):
+        """Return FCL's number of the kind of shape."""
+        return self._geom.getNodeType()
+
+    def getTranslation(self):
+        """Return the translation, (3,)."""
+        return self._tf.getTranslation()
+
+    def setTranslation(self, vec):
+        """Set the translation, (3,)."""
+        self._tf.setTranslation(vec)
+
+    def getRotation(self):
+        """Return the rotation, (3, 3)."""
+        return self._tf.getRotation()
+
+    def setRotation(self, mat):
+        """Set the rotation, (3, 3)."""
+        self._tf.setRotation(mat)
+
+    def getQuatRotation(self):
+        """Return the rotation as w, x, y, z."""
+        return self._tf.getQuatRotation()
+
+    def setQuatRotation(self, q):
+        """Set the rotation from w, x, y, z."""
+        self._tf.setQuatRotation(q)
+
+    def getTransform(self):
+        """Return where it stands."""
+        return Transform(self._tf)
+
+    def setTransform(self, tf):
+        """Set where it stands."""
+        self._tf = Transform(tf)
+
+    def isOccupied(self):
+        """Return True: it is not one of an octree's cells."""
+        return True
+
+    def isFree(self):
+        """Return False."""
+        return False
+
+    def isUncertain(self):
+        """Return False."""
+        return False
+
+    @property
+    def body(self):
+        """The lrbscope.Body of its geometry."""
+        return self._geom._body()
+
+    @property
+    def pose(self):
+        """(4, 4) float: where it stands."""
+        return self._tf._pose()
+
+    def _box(self):
+        return self.body.box(self.pose)
+
+
+class Contact:
+    """Where two objects meet. b1, b2: triangles, -1 of shapes; normal: from o1 to o2; pos: world frame."""
+
+    def __init__(self):
+        self.o1 = self.o2 = None
+        self.b1 = self.b2 = -1
+        self.normal, self.pos = np.zeros(3), np.zeros(3)
+        self.penetration_depth = 0.0
+
+
+class CostSource:
+    """Never made: there are no costs here."""
+
+
+class CollisionRequest:
+    """num_max_contacts: how many contacts to list; enable_contact: with point, normal and depth."""
+
+    def __init__(
+        self,
+        num_max_contacts=1,
+        enable_contact=False,
+        num_max_cost_sources=1,
+        enable_cost=False,
+        use_approximate_cost=True,
+        gjk_solver_type=GJKSolverType.GST_LIBCCD,
+    ):
+        if enable_cost:
+            raise Unsupported("lrbscope.fcl has no costs: leave enable_cost out")
+        self.num_max_contacts, self.enable_contact = num_max_contacts, enable_contact
+        self.num_max_cost_sources, self.enable_cost = num_max_cost_sources, enable_cost
+        self.use_approximate_cost, self.gjk_solver_type = use_approximate_cost, gjk_solver_type
+
+
+class CollisionResult:
+    """is_collision: bool; contacts: list of Contact."""
+
+    def __init__(self):
+        self.is_collision, self.contacts, self.cost_sources = False, [], []
+
+
+class DistanceRequest:
+    """Nearest points are always found."""
+
+    def __init__(self, enable_nearest_points=False, enable_signed_distance=False, gjk_solver_type=GJKSolverType.GST_LIBCCD):
+        self.enable_nearest_points, self.enable_signed_distance = enable_nearest_points, enable_signed_distance
+        self.gjk_solver_type = gjk_solver_type
+
+
+class DistanceResult:
+    """min_distance; nearest_points: two (3,) arrays, world frame; b1, b2: triangles, -1 of shapes."""
+
+    def __init__(self, min_distance_=sys.float_info.max):
+        self.min_distance, self.nearest_points = min_distance_, [None, None]
+        self.o1 = self.o2 = None
+        self.b1 = self.b2 = -1
+
+
+class ContinuousCollisionRequest:
+    """toc_err: how far off the time of contact may be. The rest has no effect here."""
+
+    def __init__(
+        self,
+        num_max_iterations=10,
+        toc_err=0.0001,
+        ccd_motion_type=CCDMotionType.CCDM_TRANS,
+        gjk_solver_type=GJKSolverType.GST_LIBCCD,
+        ccd_solver_type=CCDSolverType.CCDC_NAIVE,
+    ):
+        self.num_max_iterations, self.toc_err, self.ccd_motion_type = num_max_iterations, toc_err, ccd_motion_type
+        self.gjk_solver_type, self.ccd_solver_type = gjk_solver_type, ccd_solver_type
+
+
+class ContinuousCollisionResult:
+    """is_collide: bool; time_of_contact: from 0 to 1, 1 if they do not meet."""
+
+    def __init__(self, is_collide=False, time_of_contact=1.0):
+        self.is_collide, self.time_of_contact = is_collide, time_of_contact
+
+
+class CollisionData:
+    """What managers hand to callbacks of collisions."""
+
+    def __init__(self, request=None, result=None):
+        self.request = CollisionRequest() if request is None else request
+        self.result = CollisionResult() if result is None else result
+        self.done = False
+
+
+class DistanceData:
+    """What managers hand to callbacks of distances."""
+
+    def __init__(self, request=None, result=None):
+        self.request = DistanceRequest() if request is None else request
+        self.result = DistanceResult() if result is None else result
+        self.done = False
+
+
+def _holds(o1, o2, relation):
+    """Return whether a shape holds the other object. Inside a mesh there is nothing."""
+    return (relation == "a_inside_b" and o2._geom._is_shape) or (relation == "b_inside_a" and o1._geom._is_shape)
+
+
+def _contact(o1, o2, b1=-1, b2=-1):
+    c = Contact()
+    c.o1, c.o2 = o1._geom, o2._geom
+    c.b1, c.b2 = (-1 if o._geom._is_shape else int(b) for o, b in ((o1, b1), (o2, b2)))
+    return c
+
+
+def _contacts(o1, o2, result, full):
+    """Yield a Contact for each pair of triangles; where one object is a shape, for each triangle of the other; of two shapes
+    for each contact region."""
+    found = contacts_of(result, o1, o2) if full else ((i, None, None, 0.0) for i in range(len(result.pairs)))
+    of_region = {}
+    if full and o1._geom._is_shape and o2._geom._is_shape:
+        of_region = {int(i): n for n, region in enumerate(result.regions) for i in region.pairs}
+    seen = set()
+    for i, point, normal, depth in found:
+        c = _contact(o1, o2, *result.pairs[i])
+        key = (c.b1, c.b2, of_region.get(i))
+        if key in seen:
+            continue
+        seen.add(key)
+        if full:
+            c.pos = result.regions[of_region[i]].centroid if of_region else point
+            c.normal, c.penetration_depth = normal, depth
+        yield c
+
+
+def collide(o1, o2, request=None, result=None):
+    """Find whether two objects collide, and where. Returns the number of contacts; adds to `result`."""
+    request = CollisionRequest() if request is None else request
+    result = CollisionResult() if result is None else result
+    many = request.num_max_contacts > 1 or request.enable_contact
+    found = _core.collide(
+        o1.body, o2.body, o2.pose, o1.pose, mode="all" if many else "any", contacts=bool(request.enable_contact)
+    )
+    contacts = []
+    if len(found.pairs):
+        for c in _contacts(o1, o2, found, request.enable_contact):
+            if len(contacts) >= request.num_max_contacts:
+                break
+            contacts.append(c)
+    elif _holds(o1, o2, found.relation):
+        contacts.append(_contact(o1, o2))
+        inner = o1 if found.relation == "a_inside_b" else o2
+        contacts[0].pos = inner.pose[:3, :3] @ inner.body.vertices[0] + inner.pose[:3, 3]
+    result.is_collision = result.is_collision or bool(len(found.pairs)) or bool(contacts)
+    result.contacts += contacts
+    return len(contacts)
+
+
+def distance(o1, o2, request=None, result=None):
+    """Find how far two objects are apart.
+
+    Returns the distance, the world's unit: 0 for meshes that meet, -1 where a shape and something else overlap. Improves
+    `result` if they are nearer.
+    """
+    request = DistanceRequest() if request is None else request
+    result = DistanceResult() if result is None else result
+    found = _core.distance(o1.body, o2.body, o2.pose, o1.pose)
+    shapes = o1._geom._is_shape or o2._geom._is_shape
+    value = found.upper
+    if (found.meet and shapes) or _holds(o1, o2, found.relation):
+        if request.enable_signed_distance and o1._geom._is_shape and o2._geom._is_shape:
+            raise Unsupported("lrbscope.fcl has no signed distance of shapes that overlap: leave enable_signed_distance out")
+        value = -1.0
+    if value < result.min_distance:
+        result.min_distance = value
+        result.nearest_points = [found.points[0], found.points[1]]
+        ids = _contact(o1, o2, *found.triangles)
+        result.o1, result.o2, result.b1, result.b2 = ids.o1, ids.o2, ids.b1, ids.b2
+    return value
+
+
+def defaultCollisionCallback(o1, o2, cdata):
+    """Collide two objects; returns True when there are more contacts than were asked for."""
+    if cdata.done:
+        return True
+    collide(o1, o2, cdata.request, cdata.result)
+    if cdata.result.is_collision and len(cdata.result.contacts) > cdata.request.num_max_contacts:
+        cdata.done = True
+    return cdata.done
+
+
+def defaultDistanceCallback(o1, o2, cdata):
+    """Measure two objects; returns whether that is all, and the least distance so far."""
+    if cdata.done:
+        return True, cdata.result.min_distance
+    distance(o1, o2, cdata.request, cdata.result)
+    nearest = cdata.result.min_distance
+    return cdata.done or nearest <= 0, nearest
+
+
+class DynamicAABBTreeCollisionManager:
+    """Many objects. Their boxes are looked at when it is asked, so that setup() and update() have nothing to do."""
+
+    def __init__(self):
+        self._objects = []
+        self._sweep = _core.SweepAndPrune()
+
+    def registerObjects(self, other_objs):
+        """Add objects."""
+        for o in other_objs:
+            self.registerObject(o)
+
+    def registerObject(self, obj):
+        """Add an object."""
+        if not isinstance(obj, CollisionObject):
+            raise TypeError(f"expected a CollisionObject, got {type(obj).__name__}")
+        self._objects.append(obj)
+
+    def unregisterObject(self, obj):
+        """Take an object out, if it is there."""
+        self._objects = [o for o in self._objects if o is not obj]
+
+    def setup(self):
+        """Do nothing."""
+
+    def update(self, arg=None):
+        """Do nothing."""
+
+    def getObjects(self):
+        """Return a list of the objects."""
+        return list(self._objects)
+
+    def clear(self):
+        """Take all objects out."""
+        self._objects = []
+
+    def empty(self):
+        """Return whether there are no objects."""
+        return not self._objects
+
+    def size(self):
+        """Return the number of objects."""
+        return len(self._objects)
+
+    def _boxes(self):
+        return np.array([o._box() for o in self._objects]) if self._objects else np.empty((0, 2, 3))
+
+    def _arguments(self, args):
+        """Return the other objects, None for our own, and data and callback."""
+        if len(args) not in (2, 3) or not callable(args[-1]):
+            raise ValueError("expected (data, callback), (object, data, callback) or (manager, data, callback)")
+        if len(args) == 2:
+            return None, args[0], args[1]
+        others = args[0]._objects if isinstance(args[0], DynamicAABBTreeCollisionManager) else [args[0]]
+        return others, args[1], args[2]
+
+    def collide(self, *args):
+        """collide(data, callback), (object, data, callback) or (manager, data, callback).
+
+        Calls callback(o1, o2, data) for objects whose boxes meet, until it returns True.
+        """
+        others, data, callback = self._arguments(args)
+        boxes = self._boxes()
+        if others is None:
+            pairs = ((self._objects[i], self._objects[j]) for i, j in self._sweep.update(boxes))
+        else:
+            pairs = ((self._objects[i], o) for o in others for i in meeting(o._box(), boxes))
+        for one, other in pairs:
+            if callback(one, other, data):
+                return
+
+    def distance(self, *args):
+        """distance(data, callback), (object, data, callback) or (manager, data, callback).
+
+        Calls callback(o1, o2, data), which returns whether that is all and the least distance so far, for objects whose boxes
+        are nearer than that.
+        """
+        others, data, callback = self._arguments(args)
+        boxes = self._boxes()
+        theirs = None if others is None else np.array([o._box() for o in others]).reshape(-1, 2, 3)
+        nearest = math.inf
+        for gap, i, j in by_gap(boxes, theirs):
+            if gap > nearest:
+                continue
+            done, nearest = callback(self._objects[i], (self._objects if others is None else others)[j], data)
+            if done:
+                return
+
+
+def continuousCollide(o1, tf1_end, o2, tf2_end, request=None, result=None):
+    """Raise Unsupported: the engine has no such query yet."""
+    raise Unsupported("lrbscope.fcl has no continuousCollide: ask collide() for poses along the way")

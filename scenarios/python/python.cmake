@@ -1,0 +1,56 @@
+# The Python module: the package lrbscope in build/.../python, by pybind11, where Python's and pybind11's headers are. The system's
+# Python is meant, for which Debian's packages are, even if another comes first in PATH; -DPython3_EXECUTABLE names another.
+option(LRB_PYTHON "Build the Python module, where Python and pybind11 are installed" ON)
+set(LRB_PYTHON_DIR lib/python3/dist-packages CACHE STRING "Where the Python package is installed, below the prefix")
+set(LRB_PYTHON_EXECUTABLE "" CACHE INTERNAL "The Python that the module is for; empty: there is no module")
+
+function(lrb_find_python why)
+  if(NOT LRB_PYTHON OR LRB_SANITIZE OR LRB_FUZZ)
+    set(${why} "switched off, or under sanitizers" PARENT_SCOPE)
+    return()
+  endif()
+  if(NOT Python3_EXECUTABLE AND NOT SKBUILD AND EXISTS /usr/bin/python3)
+    set(Python3_EXECUTABLE /usr/bin/python3 CACHE FILEPATH "The Python to build the module for")
+  endif()
+  find_package(Python3 3.9 QUIET COMPONENTS Interpreter Development.Module)
+  find_package(pybind11 2.10 CONFIG QUIET)
+  if(NOT Python3_Development.Module_FOUND OR NOT pybind11_FOUND)
+    set(${why} "the part [python] of packages.txt is not installed" PARENT_SCOPE)
+    return()
+  endif()
+  set(LRB_PYTHON_EXECUTABLE "${Python3_EXECUTABLE}" CACHE INTERNAL "")
+endfunction()
+
+set(lrb_no_python "")
+lrb_find_python(lrb_no_python)
+if(NOT LRB_PYTHON_EXECUTABLE)
+  message(STATUS "Python module: left out (${lrb_no_python})")
+  return()
+endif()
+message(STATUS "Python module: for ${LRB_PYTHON_EXECUTABLE}")
+
+set(lrb_python_out ${PROJECT_BINARY_DIR}/python/lrbscope)
+file(GLOB lrb_python_sources CONFIGURE_DEPENDS python/*.cpp)
+pybind11_add_module(lrb_python MODULE NO_EXTRAS ${lrb_python_sources})
+# gcc 12 sees members of pybind11's casters as uninitialized that are read only if set.
+target_compile_options(lrb_python PRIVATE $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>)
+target_link_libraries(lrb_python PRIVATE lrb::run lrb::bodies lrb_options)
+# What the module has beside its entry is its own: no other module's code is taken for it.
+target_link_options(lrb_python PRIVATE LINKER:--exclude-libs,ALL)
+set_target_properties(lrb_python PROPERTIES OUTPUT_NAME _core LIBRARY_OUTPUT_DIRECTORY ${lrb_python_out} UNITY_BUILD OFF)
+
+file(GLOB lrb_python_files CONFIGURE_DEPENDS python/lrbscope/*.py python/lrbscope/*.pyi python/lrbscope/py.typed)
+set(lrb_python_copies "")
+foreach(file IN LISTS lrb_python_files)
+  get_filename_component(name ${file} NAME)
+  add_custom_command(OUTPUT ${lrb_python_out}/${name} COMMAND ${CMAKE_COMMAND} -E copy ${file} ${lrb_python_out}/${name} DEPENDS ${file})
+  list(APPEND lrb_python_copies ${lrb_python_out}/${name})
+endforeach()
+add_custom_target(lrb_python_package ALL DEPENDS ${lrb_python_copies})
+add_dependencies(lrb_python_package lrb_python)
+
+if(SKBUILD)
+  set(LRB_PYTHON_DIR .)  # scikit-build-core makes a wheel of what is installed
+endif()
+install(TARGETS lrb_python LIBRARY DESTINATION ${LRB_PYTHON_DIR}/lrbscope COMPONENT python OPTIONAL)
+install(FILES ${lrb_python_files} DESTINATION ${LRB_PYTHON_DIR}/lrbscope COMPONENT python)

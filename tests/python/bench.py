@@ -1,0 +1,69 @@
+#!/usr/bin/python3
+"""What calls from Python cost beside those from C++: PYTHONPATH=build/release/python tests/python/bench.py [MESH]
+
+Compares with the figures that the module measures inside itself, without Python in between. Ratios within one run.
+"""
+
+import os
+import sys
+import time
+
+import numpy as np
+
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+
+import lrbscope
+from lrbscope import _core
+from shapes import ball_arrays, random_poses, shifted
+
+
+def best(action, repeats=7):
+    """Return the least time that an action took, in seconds."""
+    times = []
+    for _ in range(repeats):
+        begin = time.perf_counter()
+        action()
+        times.append(time.perf_counter() - begin)
+    return min(times)
+
+
+def calls(a, b, pose, n=20000):
+    """Print the time of a call from Python and of the query alone."""
+
+    def loop():
+        ask = lrbscope.collide
+        for _ in range(n):
+            ask(a, b, pose)
+
+    alone = best(lambda: _core._collide_alone(a, b, np.broadcast_to(pose, (n, 4, 4)), 1)) / n
+    from_python = best(loop) / n
+    print(f"  a call: {1e6 * from_python:.2f} us, the query alone {1e6 * alone:.2f} us, beyond it {1e6 * (from_python - alone):.2f} us")
+
+
+def batches(a, b, poses):
+    """Print the time of batches beside the same loop in C++."""
+    threads = [1] if os.cpu_count() == 1 else [1, os.cpu_count()]
+    times = {}
+    for n in threads:
+        alone = best(lambda: _core._collide_alone(a, b, poses, n), 5)
+        times[n] = best(lambda: lrbscope.collide(a, b, poses, threads=n), 5)
+        print(f"  {len(poses)} poses, {n} threads: {times[n] / alone:.3f} of C++ ({1e3 * times[n]:.1f} ms)")
+    if len(threads) > 1:
+        print(f"  {threads[1]} threads are {times[1] / times[threads[1]]:.2f} times as fast as one")
+
+
+def main():
+    rng = np.random.default_rng(1)
+    body = lrbscope.Body.load(sys.argv[1]) if len(sys.argv) > 1 else lrbscope.Body(*ball_arrays(4))
+    box = body.box()
+    size = np.linalg.norm(box[1] - box[0])
+    print(f"{body.name}, {body.real_face_count} faces, with itself")
+    print("apart:")
+    calls(body, body, shifted(2 * size, 0, 0))
+    print("in contact:")
+    calls(body, body, shifted(0.4 * size, 0.1 * size, 0.05 * size), 2000)
+    batches(body, body, random_poses(rng, 10000, 0.5 * size))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,92 @@
+"""Meshes and poses for the tests."""
+
+import numpy as np
+
+
+class Mesh:
+    """What the tests give as a mesh of somebody else's: anything with vertices and faces."""
+
+    def __init__(self, vertices, faces):
+        self.vertices, self.faces = vertices, faces
+
+
+def cube_arrays(side=1.0):
+    """Return a cube from the origin on, twelve triangles."""
+    v = np.array([[i >> 2 & 1, i >> 1 & 1, i & 1] for i in range(8)], dtype=float) * side
+    sides = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
+    return v, np.array([t for a, b, c, d in sides for t in ((a, b, c), (a, c, d))])
+
+
+def ball_arrays(splits=2, radius=1.0):
+    """Return an octahedron, split again and again and blown up to a ball: 8 * 4 ** splits triangles."""
+    vertices = [tuple(sign * row) for row in np.eye(3) for sign in (1.0, -1.0)]
+    faces = [(x, y, z) for x in (0, 1) for y in (2, 3) for z in (4, 5)]
+    faces = [(a, b, c) if (a + b + c) % 2 == 0 else (a, c, b) for a, b, c in faces]
+    for _ in range(splits):
+        middles, split = {}, []
+
+        def middle(a, b):
+            key = (min(a, b), max(a, b))
+            if key not in middles:
+                m = np.add(vertices[a], vertices[b])
+                middles[key] = len(vertices)
+                vertices.append(tuple(m / np.linalg.norm(m)))
+            return middles[key]
+
+        for a, b, c in faces:
+            ab, bc, ca = middle(a, b), middle(b, c), middle(c, a)
+            split += [(a, ab, ca), (b, bc, ab), (c, ca, bc), (ab, bc, ca)]
+        faces = split
+    return np.array(vertices) * radius, np.array(faces)
+
+
+def shifted(x, y, z):
+    """Return a pose that translates."""
+    pose = np.eye(4)
+    pose[:3, 3] = x, y, z
+    return pose
+
+
+def random_poses(rng, n, reach):
+    """Return rotations by random angles with translations up to `reach`, (n, 4, 4)."""
+    poses = np.tile(np.eye(4), (n, 1, 1))
+    for pose in poses:
+        q, _ = np.linalg.qr(rng.normal(size=(3, 3)))
+        pose[:3, :3] = q * np.sign(np.linalg.det(q))
+        pose[:3, 3] = rng.uniform(-reach, reach, 3)
+    return poses
+
+
+def placed(vertices, pose):
+    """Return points in the world, rounded as the engine defines it: products added from left to right."""
+    x, y, z = np.asarray(vertices, dtype=float).T
+    return np.stack([((r[0] * x + r[1] * y) + r[2] * z) + r[3] for r in np.asarray(pose)[:3]], axis=1)
+
+
+def _edges_through(starts, ends, tri):
+    """Return (e, t): whether each segment passes through each triangle, for segments in no triangle's plane."""
+
+    def volume(a, b, c, d):
+        return np.einsum("...i,...i", np.cross(b - a, c - a), d - a)
+
+    p, q = starts[:, None], ends[:, None]
+    a, b, c = (tri[None, :, i] for i in range(3))
+    sides = [volume(p, q, x, y) for x, y in ((a, b), (b, c), (c, a))]
+    straddles = volume(a, b, c, p) * volume(a, b, c, q) < 0
+    return straddles & (all_of(s > 0 for s in sides) | all_of(s < 0 for s in sides))
+
+
+def all_of(conditions):
+    """Return where all conditions hold."""
+    return np.logical_and.reduce(list(conditions))
+
+
+def brute_pairs(va, fa, vb, fb):
+    """Return the pairs of triangles that meet, ascending: an edge of one passes through the other. For bodies in general
+    position."""
+    ta, tb = va[fa], vb[fb]
+    meet = np.zeros((len(ta), len(tb)), dtype=bool)
+    for i in range(3):
+        meet |= _edges_through(ta[:, i], ta[:, (i + 1) % 3], tb)
+        meet |= _edges_through(tb[:, i], tb[:, (i + 1) % 3], ta).T
+    return np.argwhere(meet)

@@ -1,0 +1,197 @@
+"""Bodies: from arrays and files, their properties, what is refused."""
+
+import copy
+import pickle
+
+import numpy as np
+import pytest
+
+import lrbscope
+from lrbscope import Body, InputError
+from shapes import ball_arrays, cube_arrays, shifted
+
+
+def test_arrays_come_back_without_a_copy():
+    vertices, faces = ball_arrays(1)
+    body = Body(vertices, faces)
+    assert np.array_equal(body.vertices, vertices) and body.vertices.dtype == np.float64
+    assert np.array_equal(body.faces, faces) and body.faces.dtype == np.uint32
+    assert np.shares_memory(body.vertices, body.vertices) and np.shares_memory(body.faces, body.triangles)
+    assert np.shares_memory(body.vertices, body.all_vertices)
+    with pytest.raises(ValueError):
+        body.vertices[0, 0] = 1
+
+
+def test_views_keep_the_body_alive():
+    vertices = Body(*cube_arrays()).vertices
+    assert np.array_equal(vertices, cube_arrays()[0])
+
+
+@pytest.mark.parametrize("dtype", [np.int8, np.uint8, np.int16, np.int32, np.uint32, np.int64, np.uint64])
+def test_faces_of_any_integers(dtype):
+    vertices, faces = cube_arrays()
+    assert Body(vertices, faces.astype(dtype)).hash == Body(vertices, faces).hash
+
+
+@pytest.mark.parametrize("dtype", [np.float32, np.int32, np.float64])
+def test_vertices_of_any_numbers(dtype):
+    vertices, faces = cube_arrays()
+    assert Body(vertices.astype(dtype), faces).hash == Body(vertices, faces).hash
+
+
+def test_lists_and_strided_arrays():
+    vertices, faces = cube_arrays()
+    wanted = Body(vertices, faces).hash
+    assert Body(vertices.tolist(), faces.tolist()).hash == wanted
+    wide = np.zeros((8, 6))
+    wide[:, ::2] = vertices
+    assert Body(wide[:, ::2], np.asfortranarray(faces)).hash == wanted
+
+
+def test_polygons_and_triangles_of_their_fans():
+    vertices, _ = cube_arrays()
+    quads = np.array([(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)])
+    body = Body(vertices, quads)
+    assert body.is_solid and np.array_equal(body.faces, quads)
+    assert np.array_equal(body.triangles, cube_arrays()[1])
+    assert body.face_of_triangle.tolist() == [i // 2 for i in range(12)]
+    mixed = [(0, 1, 3), (0, 3, 2)] + quads[1:].tolist()
+    again = Body(vertices, mixed)
+    assert [f.tolist() for f in again.faces] == [list(f) for f in mixed]
+    r = lrbscope.collide(body, again, shifted(0.5, 0.25, 0.125))
+    assert r.face_pairs.max() < 7 and len(r.face_pairs) == len(r.pairs)
+
+
+def test_a_body_in_the_plane():
+    square = Body([[0, 0], [1, 0], [1, 1], [0, 1]], [[0, 1], [1, 2], [2, 3], [3, 0]])
+    assert square.dim == 2 and square.is_solid and square.faces.shape == (4, 2)
+    assert lrbscope.collide(square, square, shifted(0.5, 0.5, 0)).relation == "crossing"
+
+
+def test_what_is_inside_out_is_turned_and_said():
+    vertices, faces = cube_arrays()
+    body = Body(vertices, faces[:, ::-1], name="inverted")
+    assert any("inside out" in note for note in body.notes)
+    assert lrbscope.collide(Body(vertices * 0.5 + 0.25, faces), body).relation == "a_inside_b"
+
+
+def test_an_open_surface_is_a_body_but_no_solid():
+    vertices, faces = cube_arrays()
+    body = Body(vertices, faces[:-1])
+    assert not body.is_solid and body.region_count == 0 and body.notes
+    assert lrbscope.collide(body, body, shifted(0.5, 0.25, 0.125)).relation == "crossing"
+    assert lrbscope.collide(body, body, shifted(5, 0, 0)).relation == "undefined"
+
+
+def test_answers_do_not_depend_on_regions(ball):
+    plain = Body(*ball_arrays(3), regions=False)
+    assert plain.region_count == 0 and ball.region_count > 0
+    pose = shifted(1.1, 0.3, 0.2)
+    assert lrbscope.collide(ball, plain, pose).fingerprint == lrbscope.collide(plain, ball, pose).fingerprint
+
+
+@pytest.mark.parametrize("ending", ["lrb", "ply", "obj"])
+def test_files(ball, tmp_path, ending):
+    path = tmp_path / f"ball.{ending}"
+    ball.save(path)
+    again = Body.load(str(path))
+    assert np.array_equal(again.vertices, ball.vertices) and np.array_equal(again.faces, ball.faces)
+    assert again.hash == ball.hash
+    assert Body.load(path, regions=False).real_face_count == ball.real_face_count
+
+
+def test_files_that_are_not_there(tmp_path):
+    with pytest.raises(InputError, match="nowhere.obj"):
+        Body.load(tmp_path / "nowhere.obj")
+    with pytest.raises(TypeError, match="expected a path, got int"):
+        Body.load(3)
+
+
+def one_line(error):
+    text = str(error.value)
+    assert "\n" not in text and text
+    return text
+
+
+@pytest.mark.parametrize(
+    ("vertices", "faces", "said"),
+    [
+        (np.zeros((4, 4)), cube_arrays()[1], r"vertices: expected shape \(n, 3\).*got shape \(4, 4\)"),
+        (np.zeros(12), cube_arrays()[1], r"vertices: .*got shape \(12,\)"),
+        ("text", cube_arrays()[1], "vertices: expected numbers"),
+        (np.zeros((4, 3), dtype=complex), cube_arrays()[1], "vertices: expected numbers.*complex128"),
+        (None, cube_arrays()[1], "vertices: expected numbers"),
+        (cube_arrays()[0], np.zeros((2, 3)), "faces: expected integers.*float64"),
+        (cube_arrays()[0], np.zeros(3, dtype=int), r"faces: .*got shape \(3,\)"),
+        (cube_arrays()[0], [[0, 1]], "faces: face 0 has 2 corners"),
+        (cube_arrays()[0], [[0, 1, 8]], "faces: face 0 names vertex 8, but there are 8"),
+        (cube_arrays()[0], [[0, 1, 2], [0, -1, 2]], "faces: face 1 names vertex -1"),
+        (cube_arrays()[0], [[0, 1, 2**32]], "faces: face 0 names vertex 4294967296"),
+        (cube_arrays()[0], [[0, 1, 2], [0, 1, 2.5, 3]], "faces: expected integers"),
+        (cube_arrays()[0], "text", "faces: "),
+        (cube_arrays()[0], [], "no faces"),
+        ([], [], "no faces"),
+        ([[0, 0, 0], [1, 0, 0], [np.nan, 0, 1]], [[0, 1, 2]], "not finite.*2"),
+        ([[0, 0, 0], [1, 0, 0], [np.inf, 0, 1]], [[0, 1, 2]], "not finite.*2"),
+    ],
+)
+def test_what_is_refused(vertices, faces, said):
+    with pytest.raises(InputError, match=said) as error:
+        Body(vertices, faces)
+    assert isinstance(error.value, ValueError)
+    one_line(error)
+
+
+def test_pickles(ball):
+    for body in (ball, Body(*cube_arrays(), regions=False)):
+        again = pickle.loads(pickle.dumps(body))
+        assert again.hash == body.hash and again.name == body.name and again.notes == body.notes
+        assert np.array_equal(again.vertices, body.vertices) and np.array_equal(again.faces, body.faces)
+    pose = shifted(1.1, 0.3, 0.2)
+    assert lrbscope.collide(again, again, pose).fingerprint == lrbscope.collide(body, body, pose).fingerprint
+    assert copy.copy(ball) is ball and copy.deepcopy(ball) is ball
+
+
+def test_a_damaged_pickle_is_refused(cube):
+    state = list(cube.__getstate__())
+    with pytest.raises(InputError, match="another version"):
+        Body.__new__(Body).__setstate__((99, *state[1:]))
+    faces = state[4]
+    with pytest.raises(InputError):
+        Body.__new__(Body).__setstate__((*state[:4], faces[:-4] + b"\xff\xff\xff\x7f", *state[5:]))
+
+
+def test_figures_and_levels(ball):
+    figures = ball.figures()
+    assert figures["real_faces"] == ball.real_face_count == 512
+    assert figures["total_faces"] == ball.face_count and figures["regions"] == ball.region_count
+    assert figures["build_seconds"] == ball.build_seconds > 0
+    assert 4.0 < figures["volume_solid"] < 4.19 < figures["volume_outer"]
+    bounds = [level["bound"] for level in ball.levels()]
+    assert bounds == sorted(bounds, reverse=True)
+
+
+def test_the_build_does_not_depend_on_threads():
+    arrays = ball_arrays(4)
+    assert len({Body(*arrays, threads=n).hash for n in (0, 1, 3)}) == 1
+    assert Body(*arrays, seed=2).hash != Body(*arrays, seed=1).hash
+    assert Body(*arrays, lean=True).face_count < Body(*arrays).face_count
+
+
+def test_box(cube, ball, rng):
+    assert cube.box(shifted(1, 2, 3)).tolist() == [[1, 2, 3], [2, 3, 4]]
+    from shapes import placed, random_poses
+
+    for pose in random_poses(rng, 5, 3):
+        world = placed(ball.vertices, pose)
+        assert np.array_equal(ball.box(pose), [world.min(axis=0), world.max(axis=0)])
+
+
+def test_options_are_checked():
+    arrays = cube_arrays()
+    with pytest.raises(TypeError, match="lean: expected True or False, got str"):
+        Body(*arrays, lean="yes")
+    with pytest.raises(InputError, match="threads: expected an integer from 0 on, got -1"):
+        Body(*arrays, threads=-1)
+    with pytest.raises(TypeError, match="seed: expected an integer, got float"):
+        Body(*arrays, seed=0.5)

@@ -1,0 +1,68 @@
+"""distance(), against known distances and samples."""
+
+import numpy as np
+import pytest
+
+import lrbscope
+from lrbscope import Body, InputError, distance
+from shapes import cube_arrays, placed, random_poses, shifted
+
+
+def test_cubes(cube):
+    d = distance(cube, cube, shifted(3, 0, 0))
+    assert d.lower <= 2 <= d.upper and d.upper - d.lower < 1e-11 and float(d) == d.upper
+    assert d.points[0, 0] == 1 and d.points[1, 0] == 3
+    assert d.relation == "separate" and not d.meet and d.finished
+    assert d.solids == (d.lower, d.upper)
+    corner = distance(cube, cube, shifted(2, 2, 2))
+    assert corner.features == ("corner", "corner") and np.isclose(corner.upper, np.sqrt(3))
+    assert [c.tolist() for c in corner.corners] == [[7], [0]]
+
+
+def test_surfaces_that_meet_and_solids(cube):
+    d = distance(cube, cube, shifted(0.5, 0.25, 0.125))
+    assert d.meet and d.lower == d.upper == 0
+    small = Body(cube_arrays()[0] * 0.5 + 0.25, cube_arrays()[1])
+    inside = distance(small, cube)
+    assert not inside.meet and np.isclose(inside.upper, 0.25) and inside.solids == (0, 0)
+    assert inside.relation == "a_inside_b"
+
+
+def test_intervals_hold_what_samples_show(ball, cube, rng):
+    weights = rng.dirichlet((1, 1, 1), 40)
+    samples = np.einsum("wk,tkx->twx", weights, ball.vertices[ball.faces]).reshape(-1, 3)
+    poses = random_poses(rng, 20, 3)
+    found = distance(cube, ball, poses)
+    assert len(found) == 20
+    for pose, d in zip(poses, found):
+        if d.relation != "separate":
+            continue
+        world = placed(samples, pose)
+        nearest = np.linalg.norm(world - np.clip(world, 0, 1), axis=1).min()
+        assert d.lower <= nearest + 1e-9 and np.isclose(np.linalg.norm(d.points[0] - d.points[1]), d.upper)
+        assert nearest - d.upper < 0.05
+    assert np.array_equal(found.upper, [d.upper for d in found])
+    assert np.array_equal(found.lower, [float(distance(cube, ball, p).lower) for p in poses])
+
+
+def test_within_and_limits(cube):
+    assert distance(cube, cube, shifted(3, 0, 0), within=2.5).within is True
+    assert distance(cube, cube, shifted(3, 0, 0), within=1.5).within is False
+    assert distance(cube, cube, shifted(3, 0, 0)).within is None
+    rough = distance(cube, cube, shifted(3, 0, 0), tolerance=0.5)
+    assert rough.upper - rough.lower <= 0.5 and rough.lower <= 2 <= rough.upper
+    assert distance(cube, cube, shifted(3, 0, 0), relation=False).relation == "undefined"
+    with pytest.raises(InputError, match="within"):
+        distance(cube, cube, within=-1)
+    with pytest.raises(InputError):
+        distance(cube, cube, tolerance=np.nan)
+    with pytest.raises(TypeError, match="b: expected a Body"):
+        distance(cube, 3)
+
+
+def test_faces_and_counters(ball):
+    d = distance(ball, ball, shifted(3, 0.1, 0.2))
+    for side in (0, 1):
+        assert d.faces[side] == d.triangles[side] < ball.real_face_count
+    assert d.counters["box_tests"] > 0
+    assert lrbscope.Distance.__module__ == "lrbscope"

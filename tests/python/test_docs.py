@@ -1,0 +1,123 @@
+"""Docstrings, the stub and the pages: examples run, names agree."""
+
+import ast
+import doctest
+import inspect
+import os
+import re
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+
+import lrbscope
+import lrbscope.collision
+import lrbscope.fcl
+from lrbscope import _core
+from shapes import ball_arrays, cube_arrays, shifted
+
+ROOT = os.path.abspath(os.path.join(os.path.dirname(__file__), "..", ".."))
+PACKAGE = os.path.dirname(lrbscope.__file__)
+
+
+def documented():
+    """Return (name, docstring) of the modules and of all public functions, classes and their members."""
+    found = []
+    for module in (lrbscope, lrbscope.collision, lrbscope.fcl):
+        found.append((module.__name__, module.__doc__))
+        names = module.__all__ if hasattr(module, "__all__") else [n for n in vars(module) if not n.startswith("_")]
+        for name in names:
+            thing = getattr(module, name)
+            if not (inspect.isclass(thing) or callable(thing)):
+                continue
+            found.append((f"{module.__name__}.{name}", thing.__doc__))
+            if inspect.isclass(thing) and thing.__module__.startswith("lrbscope"):
+                for member, value in vars(thing).items():
+                    if not member.startswith("_") and (callable(value) or isinstance(value, (property, staticmethod))):
+                        found.append((f"{module.__name__}.{name}.{member}", getattr(value, "__doc__", None)))
+    return found
+
+
+DOCUMENTED = documented()
+
+
+def test_everything_public_has_a_docstring():
+    assert len(DOCUMENTED) > 150
+    assert [name for name, text in DOCUMENTED if not (text and text.strip())] == []
+
+
+@pytest.mark.parametrize("name", [name for name, text in DOCUMENTED if text and ">>>" in text])
+def test_docstrings_do_as_they_say(name, cube):
+    text = dict(DOCUMENTED)[name]
+    names = {**vars(lrbscope), **vars(lrbscope.collision), "cube": cube, "shifted": shifted, "np": np}
+    test = doctest.DocTestParser().get_doctest(text, names, name, None, 0)
+    assert test.examples
+    said = []
+    doctest.DocTestRunner(optionflags=doctest.ELLIPSIS).run(test, out=said.append)
+    assert not said, "".join(said)
+
+
+def stubs():
+    with open(os.path.join(PACKAGE, "_core.pyi")) as file:
+        return ast.parse(file.read()).body
+
+
+def test_the_stub_has_what_the_module_has():
+    def public(names):
+        return {n for n in names if not n.startswith("_")}
+
+    classes = {n.name: n for n in stubs() if isinstance(n, ast.ClassDef)}
+    functions = {n.name: n for n in stubs() if isinstance(n, ast.FunctionDef)}
+    assert public(vars(_core)) == set(classes) | set(functions)
+    for name, node in classes.items():
+        members = {n.name for n in node.body if isinstance(n, ast.FunctionDef)}
+        members |= {n.target.id for n in node.body if isinstance(n, ast.AnnAssign)}
+        assert public(members) == public(vars(getattr(_core, name))), name
+
+
+def parameters_of(node):
+    return [a.arg for a in node.args.args + node.args.kwonlyargs if a.arg != "self"]
+
+
+def test_the_stub_has_the_parameters_that_functions_take():
+    """Docstrings begin with the signature; a function called with each name alone complains of what is missing, not of it."""
+    nodes = {n.name: n for n in stubs() if isinstance(n, ast.FunctionDef)}
+    for node in stubs():
+        if isinstance(node, ast.ClassDef):
+            nodes.update({f"{node.name}.{n.name}": n for n in node.body if isinstance(n, ast.FunctionDef)})
+    checked = 0
+    for name, node in nodes.items():
+        thing = _core
+        for part in name.split("."):
+            thing = getattr(thing, part)
+        text = (thing.__doc__ or "").strip()
+        short = name.split(".")[0] if name.endswith("__init__") else name.split(".")[-1]
+        if isinstance(thing, property) or not text.startswith(short + "(") or "..." in text.split("\n\n")[0]:
+            continue
+        signature = re.match(r"\w+\((.*?)\)\s*\n\n", text + "\n\n", re.S).group(1)
+        found = [p.strip().split("=")[0] for p in re.split(r",(?![^(]*\))", signature)]
+        assert [p for p in found if p and p != "*"] == parameters_of(node), name
+        checked += 1
+    assert checked > 20
+
+
+def blocks(page):
+    """Return the Python blocks of a page, and the lines that they begin at."""
+    with open(os.path.join(ROOT, page)) as file:
+        text = file.read()
+    return [(text[: m.start()].count("\n") + 1, m.group(1)) for m in re.finditer(r"^```python\n(.*?)^```", text, re.S | re.M)]
+
+
+@pytest.mark.parametrize("page", ["docs/python.md", "README.md"])
+def test_blocks_of_pages_run(page, tmp_path):
+    """All blocks of a page as one script, in a folder with the files that they read."""
+    lrbscope.Body(*ball_arrays(4)).save(tmp_path / "cow.obj")
+    lrbscope.Body(*cube_arrays(1.3)).save(tmp_path / "man.obj")
+    found = blocks(page)
+    assert found
+    script = "\n".join("\n" * 2 + f"# {page}:{line}\n" + text for line, text in found)
+    done = subprocess.run([sys.executable, "-c", script], cwd=tmp_path, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    for line in re.findall(r"print\(.*\)  # (.*)", script):
+        assert line in done.stdout, f"{line}\n{done.stdout}"

@@ -1,0 +1,148 @@
+"""CollisionManager: method names, arguments and return values as trimesh has them."""
+
+import inspect
+import math
+
+import numpy as np
+import pytest
+
+import lrbscope
+from lrbscope import CollisionManager, InputError
+from shapes import Mesh, ball_arrays, cube_arrays, random_poses, shifted
+
+
+@pytest.fixture()
+def box():
+    return Mesh(*cube_arrays())
+
+
+@pytest.fixture()
+def three(box):
+    """Two cubes that cross, and one far away."""
+    m = CollisionManager()
+    m.add_object("b", box)
+    m.add_object("a", box, shifted(0.5, 0.25, 0.125))
+    m.add_object("far", box, shifted(9, 0, 0))
+    return m
+
+
+def test_signatures_are_those_of_trimesh():
+    wanted = {
+        "add_object": "name, mesh, transform",
+        "remove_object": "name",
+        "set_transform": "name, transform",
+        "in_collision_single": "mesh, transform, return_names, return_data",
+        "in_collision_internal": "return_names, return_data",
+        "in_collision_other": "other_manager, return_names, return_data",
+        "min_distance_single": "mesh, transform, return_name, return_data",
+        "min_distance_internal": "return_names, return_data",
+        "min_distance_other": "other_manager, return_names, return_data",
+    }
+    for name, parameters in wanted.items():
+        found = list(inspect.signature(getattr(CollisionManager, name)).parameters)[1:]
+        assert ", ".join(found) == parameters
+
+
+def test_single(three, box):
+    assert three.in_collision_single(box, shifted(9.5, 0.1, 0.1)) is True
+    assert three.in_collision_single(box, shifted(50, 0, 0)) is False
+    assert three.in_collision_single(box, shifted(50, 0, 0), return_names=True, return_data=True) == (False, set(), [])
+    hit, names = three.in_collision_single(box, shifted(0.2, 0.1, 0.05), return_names=True)
+    assert hit and names == {"a", "b"}
+    hit, data = three.in_collision_single(box, shifted(9.5, 0.1, 0.1), return_data=True)
+    assert hit and data and {frozenset(c.names) for c in data} == {frozenset(("far", "__external"))}
+    wanted = lrbscope.collide(three._objects["far"].body, three._objects["far"].body, shifted(9.5, 0.1, 0.1), shifted(9, 0, 0))
+    assert sorted([c.index("far"), c.index("__external")] for c in data) == wanted.pairs.tolist()
+    for c in data:
+        assert c.point.shape == (3,) and (c.point >= (9.5, 0, 0)).all() and (c.point <= (10, 1.1, 1.1)).all()
+        assert np.isclose(np.linalg.norm(c.normal), 1) and c.depth >= 0
+
+
+def test_internal(three):
+    assert three.in_collision_internal() is True
+    hit, names, data = three.in_collision_internal(return_names=True, return_data=True)
+    assert hit and names == {("a", "b")} and all(c.names == {"a", "b"} for c in data)
+    three.set_transform("a", shifted(3, 0, 0))
+    assert three.in_collision_internal(return_names=True) == (False, set())
+    three.set_transform("a", shifted(8.5, 0.1, 0.1))
+    assert three.in_collision_internal(return_names=True) == (True, {("a", "far")})
+
+
+def test_other(three, box):
+    other = CollisionManager()
+    other.add_object("x", box, shifted(9.5, 0.1, 0.1))
+    assert three.in_collision_other(other, return_names=True) == (True, {("far", "x")})
+    assert other.in_collision_other(three, return_names=True) == (True, {("x", "far")})
+    other.set_transform("x", shifted(20, 0, 0))
+    assert three.in_collision_other(other) is False
+
+
+def test_distances(three, box):
+    assert np.isclose(three.min_distance_single(box, shifted(12, 0, 0)), 2)
+    distance, name, data = three.min_distance_single(box, shifted(12, 0, 0), return_name=True, return_data=True)
+    assert name == "far" and data.names == {"far", "__external"} and data.distance == distance
+    assert data.point("far")[0] == 10 and data.point("__external")[0] == 12
+    assert three._objects["far"].body.vertices[three._objects["far"].body.faces[data.index("far")]][:, 0].max() == 1
+    assert three.min_distance_internal() == 0
+    three.remove_object("b")
+    distance, names, data = three.min_distance_internal(return_names=True, return_data=True)
+    assert np.isclose(distance, 7.5) and names == ("a", "far")
+    assert np.isclose(np.linalg.norm(data.point("a") - data.point("far")), distance)
+    other = CollisionManager()
+    assert three.min_distance_other(other) == math.inf
+    other.add_object("x", box, shifted(12, 0, 0))
+    distance, names = three.min_distance_other(other, return_names=True)
+    assert np.isclose(distance, 2) and names == ("far", "x")
+    assert other.min_distance_other(three, return_names=True)[1] == ("x", "far")
+
+
+def test_one_in_another_collides():
+    m = CollisionManager()
+    m.add_object("outer", Mesh(*cube_arrays()))
+    inner = Mesh(cube_arrays()[0] * 0.25 + 0.3, cube_arrays()[1])
+    assert m.in_collision_single(inner, return_names=True, return_data=True) == (True, {"outer"}, [])
+    assert m.min_distance_single(inner) == 0
+    m.add_object("outer", Mesh(cube_arrays()[0], cube_arrays()[1][:-1]))  # open: no solid
+    assert m.in_collision_single(inner) is False and m.min_distance_single(inner) > 0.2
+
+
+def test_objects_come_and_go(box):
+    m = CollisionManager()
+    assert m.in_collision_internal(return_names=True, return_data=True) == (False, set(), [])
+    assert m.min_distance_internal(return_names=True) == (math.inf, (None, None))
+    body = m.add_object("x", box)
+    assert isinstance(body, lrbscope.Body) and m.add_object("y", body) is body
+    assert m.add_object("x", box, shifted(5, 0, 0)) is body, "the same mesh is taken in once"
+    assert not m.in_collision_internal()
+    for action in (m.remove_object, lambda name: m.set_transform(name, np.eye(4))):
+        with pytest.raises(ValueError, match="nobody not in collision manager!"):
+            action("nobody")
+    with pytest.raises(TypeError, match="expected something with vertices and faces, got int"):
+        m.add_object("z", 3)
+    with pytest.raises(InputError, match=r"transform: expected shape \(4, 4\)"):
+        m.add_object("z", box, np.eye(3))
+    assert "z" not in m._objects
+    changed = Mesh(box.vertices * 2, box.faces)
+    assert m.add_object("x", changed) is not body
+
+
+def test_names_of_any_kind(box):
+    m = CollisionManager()
+    m.add_object(1, box)
+    m.add_object("one", box, shifted(0.5, 0.25, 0.125))
+    assert m.in_collision_internal(return_names=True)[1] == {(1, "one")}
+
+
+def test_many_against_all_pairs(rng):
+    m, mesh = CollisionManager(), Mesh(*ball_arrays(1, 0.5))
+    poses = random_poses(rng, 60, 3)
+    for i, pose in enumerate(poses):
+        m.add_object(i, mesh, pose)
+    body = m._objects[0].body
+    apart = {(i, j): lrbscope.distance(body, body, poses[j], poses[i]).solids[1] for j in range(60) for i in range(j)}
+    assert m.in_collision_internal(return_names=True)[1] == {pair for pair, d in apart.items() if d == 0}
+    for pair in [pair for pair, d in apart.items() if d == 0]:
+        if pair[0] in m._objects:
+            m.remove_object(pair[0])
+    left = {pair: d for pair, d in apart.items() if all(i in m._objects for i in pair)}
+    assert m.min_distance_internal(return_names=True) == (min(left.values()), min(left, key=left.get))

@@ -1,0 +1,135 @@
+"""Threads, forks, interrupts."""
+
+import multiprocessing
+import os
+import signal
+import subprocess
+import sys
+import textwrap
+import threading
+import time
+from concurrent.futures import ThreadPoolExecutor
+
+import numpy as np
+import pytest
+
+import lrbscope
+from lrbscope import Body, collide
+from shapes import ball_arrays, random_poses, shifted
+
+
+def test_threads_share_bodies(ball, rng):
+    poses = random_poses(rng, 64, 1.5)
+    wanted = [collide(ball, ball, p).fingerprint for p in poses]
+    with ThreadPoolExecutor(4) as pool:
+        for _ in range(3):
+            assert list(pool.map(lambda p: collide(ball, ball, p).fingerprint, poses)) == wanted
+            batches = pool.map(lambda _: collide(ball, ball, poses).fingerprints.tolist(), range(4))
+            assert all(b == wanted for b in batches)
+        nearest = list(pool.map(lambda p: lrbscope.distance(ball, ball, p).upper, poses))
+    assert nearest == lrbscope.distance(ball, ball, poses).upper.tolist()
+
+
+def test_a_batch_lets_other_threads_run(ball, rng):
+    poses = random_poses(rng, 5000, 1.0)
+    turns, done = [0], threading.Event()
+
+    def turn():
+        while not done.is_set():
+            turns[0] += 1
+            time.sleep(0)
+
+    thread = threading.Thread(target=turn)
+    thread.start()
+    before = turns[0]
+    collide(ball, ball, poses, mode="any")
+    during = turns[0] - before
+    done.set()
+    thread.join()
+    assert during > 10
+
+
+def _asked_in_a_child(pose):
+    body = Body(*ball_arrays(3))
+    return collide(body, body, [pose] * 10, threads=0).fingerprints.tolist() + [collide(body, body, pose).fingerprint]
+
+
+@pytest.mark.parametrize("way", ["fork", "spawn"])
+def test_processes(ball, way):
+    poses = [shifted(1.1 + 0.1 * i, 0.2, 0.3) for i in range(4)]
+    collide(ball, ball, poses)  # threads have been started before the fork
+    with multiprocessing.get_context(way).Pool(2) as pool:
+        found = pool.map(_asked_in_a_child, poses)
+    for pose, prints in zip(poses, found):
+        assert set(prints) == {collide(ball, ball, pose).fingerprint}
+
+
+def _asked_of_a_copy(body):
+    return collide(body, body, [shifted(1.1, 0.2, 0.3)] * 3).fingerprints.tolist()
+
+
+def test_bodies_go_to_other_processes(ball):
+    with multiprocessing.get_context("fork").Pool(2) as pool:
+        assert pool.map(_asked_of_a_copy, [ball]) == [_asked_of_a_copy(ball)]
+
+
+INTERRUPTED = """
+    import sys
+    import time
+    import numpy as np
+    import lrbscope
+    sys.path.insert(0, {here!r})
+    from shapes import ball_arrays, random_poses
+    ball = lrbscope.Body(*ball_arrays(4))
+    poses = np.tile(random_poses(np.random.default_rng(1), 100, 0.3), (3000, 1, 1))
+    print("ready", flush=True)
+    try:
+        {call}
+    except KeyboardInterrupt:
+        print("interrupted", flush=True)
+"""
+
+
+@pytest.mark.parametrize(
+    "call",
+    ["lrbscope.collide(ball, ball, poses)", "lrbscope.distance(ball, ball, poses)", "lrbscope.trace(ball, ball, poses, max_events=1)"],
+)
+def test_interrupts_end_a_batch(call):
+    here = os.path.dirname(os.path.abspath(__file__))
+    script = textwrap.dedent(INTERRUPTED).format(here=here, call=call)
+    with subprocess.Popen([sys.executable, "-c", script], stdout=subprocess.PIPE, text=True) as child:
+        assert child.stdout.readline() == "ready\n"
+        time.sleep(0.3)
+        child.send_signal(signal.SIGINT)
+        try:
+            said, _ = child.communicate(timeout=60)
+        except subprocess.TimeoutExpired:
+            child.kill()
+            raise
+    assert said == "interrupted\n" and child.returncode == 0
+
+
+def test_memory_is_given_back(ball):
+    """Results and views in a loop do not pile up."""
+    pose = shifted(1.1, 0.3, 0.2)
+
+    def resident():
+        with open("/proc/self/statm") as file:
+            return int(file.read().split()[1])
+
+    def ask(n):
+        for _ in range(n):
+            r = collide(ball, ball, pose, contacts=True)
+            assert r.pairs.base is not None and r.regions[0].curves
+
+    ask(200)
+    before = resident()
+    ask(1000)
+    assert resident() - before < 2000  # pages; 1000 answers would be 10,000
+
+
+def test_arrays_are_not_changed(ball, rng):
+    poses = random_poses(rng, 8, 1)
+    kept = poses.copy()
+    collide(ball, ball, poses)
+    assert np.array_equal(poses, kept)
