@@ -33,6 +33,8 @@ inline constexpr double kLeastClearance = 0x1p-36;
 /// rounding; fewer: wide intervals for round bodies.
 inline constexpr double kDepthGain = 0x1p-48;
 inline constexpr unsigned kMostDepthSteps = 1500;
+/// The same where the hull has to hold the origin, or to give a direction to begin with, and no more.
+inline constexpr unsigned kRoughDepthSteps = 100;
 /// Bound on the error of a difference of two points of convex sets whose coordinates are at most 1: 2 u in length for
 /// the difference, and 4 u where one of them was moved by a product before.
 inline constexpr double kDifferenceRounding = 0x1p-50;
@@ -58,5 +60,10 @@ inline constexpr double kStartStep = 0x1p-6;
 /// How often the proof of a way out goes on from another common point, and where along the way it went before.
 inline constexpr unsigned kMostWaySteps = 40;
 inline constexpr double kWayShare = 0.9;
+
+/// Bound on the error of a point's share of an edge, 1e-13 for the point and a few roundings; where coordinates are larger
+/// than the edge, 2^-8 of this and more for each time that they are, which is 16 of their roundings. Larger: more faces are
+/// cut in rational arithmetic.
+inline constexpr double kShareRounding = 0x1p-41;
 
 }  // namespace lrb

@@ -245,12 +245,12 @@ DepthFinder::Depth DepthFinder::depth() {
   const bool convex = whole_[0] && whole_[1];
   if (const std::optional<Common> sets = common_sets(Vector3d::Zero())) {
     ConvexDifference difference(sets->a, sets->b);
-    difference.find_depth();
+    difference.find_depth(kMostDepthSteps);
     out.length.lower = bodies_.frame.length_to_world(difference.depth_lower());
   }
   const ConvexPoints &a = bodies_.body[0].points, &b = bodies_.body[1].points;
   ConvexDifference hulls(a, b);
-  hulls.find_depth();
+  hulls.find_depth(convex ? kMostDepthSteps : kRoughDepthSteps);
   double best = hulls.depth_upper();
   Vector3d best_n = hulls.direction();
   if (!convex) {
@@ -273,7 +273,7 @@ double DepthFinder::along_lower(const Vector3d& n) {
     const std::optional<Common> sets = common_sets(from * n);
     if (!sets) break;
     ConvexDifference difference(sets->a, sets->b);
-    difference.find_depth();
+    difference.find_depth(kRoughDepthSteps);
     difference.follow(n);
     const double gain = difference.along_lower(n);
     const double next = (from + gain) * (1 - 0x1p-50);
