@@ -4,7 +4,7 @@
 # and runs ./run and ./check there as root would type them, in a clean environment; then again as a user without root; then
 # the rest of ./check --full, in the end with the engines of others installed. Debian packages are made there, and installed in
 # another bare root, where the program runs and a stranger's project is built. Prints how long every step took.
-# Steps: root clone stranger run check user debs api browser again peers sanitizers clang fuzz tidy; --until ends after one of them.
+# Steps: root clone stranger run check user api browser again python debs site peers sanitizers clang fuzz tidy; --until ends after one of them.
 # --minutes: steps after `user` end when M minutes are over, and the table says which were left out.
 # Kept between runs, in ${XDG_CACHE_HOME:-~/.cache}/lrbscope-bare: the bare root and downloaded packages; and this machine's
 # compiler cache is used. --no-cache does without all three, for honest times. --keep leaves the root to be looked at.
@@ -114,7 +114,7 @@ as() {
 
 # ---- steps
 
-all=(root clone stranger run check user debs api browser again peers sanitizers clang fuzz tidy)
+all=(root clone stranger run check user api browser again python debs site peers sanitizers clang fuzz tidy)
 names=() seconds=() busy=() failed=() left_out=()
 # step NAME FUNCTION: runs it, with its output, and notes how long it took and whether it failed. Ends here if it was the
 # last wanted.
@@ -152,7 +152,7 @@ finish() {
   if [ "$cached" = 1 ] && [ "$mounts" = 0 ]; then cp -n "$root"/var/cache/apt/archives/*.deb "$cache/debs/" 2>/dev/null || true; fi
   # The closing lines of every ctest, the main one last.
   local name
-  for name in user sanitizers clang again peers check; do
+  for name in user sanitizers clang again python peers check; do
     if [ -f "$work/$name.log" ] && grep -q 'tests passed' "$work/$name.log"; then
       printf '\n%s:\n' "$name"
       grep -E '% tests passed|^Total Test time' "$work/$name.log"
@@ -238,6 +238,8 @@ step_debs() {
 step_api() { inside ./check api; }
 step_browser() { inside ./check browser; }
 step_again() { inside ./check again; }
+step_python() { inside ./check python; }
+step_site() { inside ./check site; }
 step_peers() { inside ./check peers; }
 step_clang() { inside ./check clang; }
 step_sanitizers() { inside ./check sanitizers; }
