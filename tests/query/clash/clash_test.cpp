@@ -577,6 +577,8 @@ TEST_CASE("clash: the same solid in more faces gives the same intervals") {
   };
   compare(shapes::box(), shapes::box(), 1e-10);
   compare(shapes::tetrahedron(2), shapes::box(), 1e-10);
+  compare(shapes::l_shape(), shapes::box(), 1e-9);
+  compare(shapes::l_shape(), shapes::comb(2, 2), 1e-9);
 }
 
 TEST_CASE("clash: anywhere, at any size") {
