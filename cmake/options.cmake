@@ -31,14 +31,23 @@ if(LRB_SANITIZE)
   target_compile_options(lrb_own_options INTERFACE -fsanitize=${LRB_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
   target_link_options(lrb_own_options INTERFACE -fsanitize=${LRB_SANITIZE})
 endif()
+# Shared libraries can be loaded anywhere. Nobody replaces our functions when a program starts, so that the compiler may inline them
+# as it would without -fPIC.
+set(lrb_position -fPIE)
+if(BUILD_SHARED_LIBS)
+  set(lrb_position -fPIC -fno-semantic-interposition)
+  target_compile_options(lrb_options INTERFACE "$<BUILD_INTERFACE:${lrb_position}>")
+endif()
 if(LRB_HARDEN)
   # Checked copies, guarded stacks, addresses that are random and tables that are read-only once loaded.
-  target_compile_options(lrb_options INTERFACE -fstack-protector-strong -fPIE
-                                               $<$<NOT:$<CONFIG:Debug>>:-U_FORTIFY_SOURCE -D_FORTIFY_SOURCE=2>)
+  set(lrb_fortify -U_FORTIFY_SOURCE -D_FORTIFY_SOURCE=2)
+  target_compile_options(lrb_options INTERFACE "$<BUILD_INTERFACE:-fstack-protector-strong;${lrb_position}>"
+                                               "$<BUILD_INTERFACE:$<$<NOT:$<CONFIG:Debug>>:${lrb_fortify}>>")
   # With it gcc 12 misjudges the sizes of Boost.Multiprecision's integers.
-  target_compile_options(lrb_options INTERFACE $<$<CXX_COMPILER_ID:GNU>:-Wno-stringop-overflow -Wno-array-bounds>)
-  target_link_options(lrb_options INTERFACE LINKER:-z,relro LINKER:-z,now
-                                            $<$<STREQUAL:$<TARGET_PROPERTY:TYPE>,EXECUTABLE>:-pie>)
+  set(lrb_misjudged -Wno-stringop-overflow -Wno-array-bounds)
+  target_compile_options(lrb_options INTERFACE "$<BUILD_INTERFACE:$<$<CXX_COMPILER_ID:GNU>:${lrb_misjudged}>>")
+  target_link_options(lrb_options INTERFACE $<BUILD_INTERFACE:LINKER:-z,relro> $<BUILD_INTERFACE:LINKER:-z,now>
+                                            $<BUILD_INTERFACE:$<$<STREQUAL:$<TARGET_PROPERTY:TYPE>,EXECUTABLE>:-pie>>)
 endif()
 if(LRB_FUZZ)
   if(NOT CMAKE_CXX_COMPILER_ID STREQUAL "Clang")
