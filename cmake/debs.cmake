@@ -50,7 +50,8 @@ comparison and every refinement, as pictures, pages and traces.")
 set(CPACK_DEBIAN_DEV_PACKAGE_NAME liblrbscope-dev)
 set(CPACK_DEBIAN_DEV_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_DEV_PACKAGE_SHLIBDEPS OFF)
-set(CPACK_DEBIAN_DEV_PACKAGE_DEPENDS "libeigen3-dev, libboost-dev, libtbb-dev")
+set(CPACK_DEBIAN_DEV_PACKAGE_DEPENDS "libeigen3-dev, libboost-dev, libtbb-dev, nlohmann-json3-dev, zlib1g-dev, libosmesa6-dev, \
+libcairo2-dev, libpng-dev, libglm-dev")
 set(CPACK_COMPONENT_DEV_DESCRIPTION "${lrb_about}This package has the headers and the library for find_package(lrbscope).")
 
 if(library IN_LIST CPACK_COMPONENTS_ALL)

@@ -4,6 +4,7 @@
 add_library(lrb_options INTERFACE)
 target_compile_features(lrb_options INTERFACE cxx_std_20)
 target_include_directories(lrb_options INTERFACE $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>
+                                                 $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/engine/interfaces>
                                                  $<INSTALL_INTERFACE:include/lrbscope>)
 
 # The compiler must not contract a * b + c into a fused multiply-add: the engine's answer is defined for coordinates that
@@ -19,7 +20,7 @@ endif()
 # about moved short strings if their header was precompiled.
 target_compile_options(lrb_own_options INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion -Wno-psabi
                                              $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict -Wno-stringop-overread>)
-# The same objects go into programs and into the Python module. Nobody replaces our functions when a program starts, so that
+# The same objects go into programs, shared libraries and the Python module. Nobody replaces our functions when a program starts, so that
 # the compiler may inline them as it would without -fPIC.
 target_compile_options(lrb_own_options INTERFACE -fPIC -fno-semantic-interposition)
 if(LRB_WARNINGS_AS_ERRORS)
@@ -36,13 +37,14 @@ if(LRB_SANITIZE)
 endif()
 if(LRB_HARDEN)
   # Checked copies, guarded stacks, addresses that are random and tables that are read-only once loaded.
-  target_compile_options(lrb_options INTERFACE -fstack-protector-strong
-                                               $<BUILD_INTERFACE:-fPIC> $<INSTALL_INTERFACE:-fPIE>
-                                               $<$<NOT:$<CONFIG:Debug>>:-U_FORTIFY_SOURCE -D_FORTIFY_SOURCE=2>)
+  set(lrb_fortify -U_FORTIFY_SOURCE -D_FORTIFY_SOURCE=2)
+  target_compile_options(lrb_options INTERFACE $<BUILD_INTERFACE:-fstack-protector-strong>
+                                               "$<BUILD_INTERFACE:$<$<NOT:$<CONFIG:Debug>>:${lrb_fortify}>>")
   # With it gcc 12 misjudges the sizes of Boost.Multiprecision's integers.
-  target_compile_options(lrb_options INTERFACE $<$<CXX_COMPILER_ID:GNU>:-Wno-stringop-overflow -Wno-array-bounds>)
-  target_link_options(lrb_options INTERFACE LINKER:-z,relro LINKER:-z,now
-                                            $<$<STREQUAL:$<TARGET_PROPERTY:TYPE>,EXECUTABLE>:-pie>)
+  set(lrb_misjudged -Wno-stringop-overflow -Wno-array-bounds)
+  target_compile_options(lrb_options INTERFACE "$<BUILD_INTERFACE:$<$<CXX_COMPILER_ID:GNU>:${lrb_misjudged}>>")
+  target_link_options(lrb_options INTERFACE $<BUILD_INTERFACE:LINKER:-z,relro> $<BUILD_INTERFACE:LINKER:-z,now>
+                                            $<BUILD_INTERFACE:$<$<STREQUAL:$<TARGET_PROPERTY:TYPE>,EXECUTABLE>:-pie>>)
 endif()
 if(LRB_FUZZ)
   if(NOT CMAKE_CXX_COMPILER_ID STREQUAL "Clang")

@@ -1,10 +1,12 @@
 #pragma once
 /// Writes down what a builder does, as events of a trace.
 ///
-///   ConstructRecorder recorder(settings);
-///   options.probe = &recorder;
-///   LrbRep rep = build_lrb(mesh, options);
-///   Trace trace = recorder.take(rep, pose);
+/// ```
+/// ConstructRecorder recorder(settings);
+/// options.probe = &recorder;
+/// LrbRep rep = build_lrb(mesh, options);
+/// Trace trace = recorder.take(rep, pose);
+/// ```
 
 #include <cstdint>
 

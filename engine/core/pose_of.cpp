@@ -59,15 +59,4 @@ Expected<std::vector<Pose>> poses_of_rows(std::span<const double> numbers, std::
   return poses;
 }
 
-Eigen::Matrix4d matrix_of(const Pose& pose) {
-  Eigen::Matrix4d m = Eigen::Matrix4d::Identity();
-  m.topLeftCorner<3, 3>() = pose.r;
-  m.topRightCorner<3, 1>() = pose.t;
-  return m;
-}
-
-Eigen::Affine3d transform_of(const Pose& pose) {
-  return Eigen::Affine3d(matrix_of(pose));
-}
-
 }  // namespace lrb

@@ -35,10 +35,17 @@ Expected<Pose> pose_of_rows(std::span<const double> numbers);
 /// pose.
 Expected<std::vector<Pose>> poses_of_rows(std::span<const double> numbers, std::size_t count);
 
-/// Returns the matrix (4 x 4) of a pose.
-Eigen::Matrix4d matrix_of(const Pose& pose);
+/// Returns the matrix (4 x 4) of a pose. (Inline, because how Eigen aligns it depends on the compiler's flags.)
+inline Eigen::Matrix4d matrix_of(const Pose& pose) {
+  Eigen::Matrix4d m = Eigen::Matrix4d::Identity();
+  m.topLeftCorner<3, 3>() = pose.r;
+  m.topRightCorner<3, 1>() = pose.t;
+  return m;
+}
 
 /// Returns a pose as Eigen's type for maps of any kind.
-Eigen::Affine3d transform_of(const Pose& pose);
+inline Eigen::Affine3d transform_of(const Pose& pose) {
+  return Eigen::Affine3d(matrix_of(pose));
+}
 
 }  // namespace lrb

@@ -1,16 +1,67 @@
-# Installs the build in BUILD to a folder beside it, builds the user there, and runs it.
-set(prefix "${BUILD}/package test")
-file(REMOVE_RECURSE "${prefix}")
+# Builds and runs a stranger's project. HOW:
+#   package  installs the build in BUILD, finds it there by find_package() and by pkg-config
+#   shared   the same for shared libraries, which it builds and installs first
+#   fetched  fetches our tree by FetchContent
+# SOURCE: this folder. BUILD: a build of ours, beside which everything happens. VERSION, GENERATOR, COMPILER, FLAGS, LAUNCHER.
+get_filename_component(tree "${SOURCE}/../.." ABSOLUTE)
+set(place "${BUILD}/package test ${HOW}")
+set(prefix "${place}/installed")
+file(REMOVE_RECURSE "${place}")
+
 function(run)
   execute_process(COMMAND ${ARGN} RESULT_VARIABLE code OUTPUT_VARIABLE out ERROR_VARIABLE out)
   if(NOT code EQUAL 0)
     message(FATAL_ERROR "${ARGN}\n${out}")
   endif()
+  set(said "${out}" PARENT_SCOPE)
 endfunction()
-run(${CMAKE_COMMAND} --install "${BUILD}" --prefix "${prefix}")
-run(${CMAKE_COMMAND} -S "${SOURCE}" -B "${prefix}/user" -G "${GENERATOR}" "-DCMAKE_PREFIX_PATH=${prefix}"
-    "-DCMAKE_CXX_COMPILER=${COMPILER}" "-DCMAKE_CXX_FLAGS=${FLAGS}" "-DLRB_TREE=${SOURCE}/../..")
-run(${CMAKE_COMMAND} --build "${prefix}/user")
-run("${prefix}/user/user")
-run("${prefix}/bin/lrbscope" --version)
-file(REMOVE_RECURSE "${prefix}")
+
+set(toolchain -G "${GENERATOR}" "-DCMAKE_CXX_COMPILER=${COMPILER}" "-DCMAKE_CXX_FLAGS=${FLAGS}")
+# Not optimised: it is about what is found and linked.
+set(ours "-DCMAKE_CXX_COMPILER_LAUNCHER=${LAUNCHER}" -DCMAKE_UNITY_BUILD=ON -DCMAKE_BUILD_TYPE=Debug
+    -DCMAKE_CXX_FLAGS_DEBUG=-O0)
+if(HOW STREQUAL "fetched")
+  run(${CMAKE_COMMAND} -S "${SOURCE}" -B "${place}/user" ${toolchain} ${ours} -DLRB_FROM=fetched "-DLRB_TREE=${tree}")
+  run(${CMAKE_COMMAND} --build "${place}/user" --target user)
+  run("${place}/user/user")
+  file(REMOVE_RECURSE "${place}")
+  return()
+endif()
+
+if(HOW STREQUAL "shared")
+  run(${CMAKE_COMMAND} -S "${tree}" -B "${place}/build" ${toolchain} ${ours} -DBUILD_SHARED_LIBS=ON -DLRB_BUILD_TESTS=OFF
+      -DLRB_BUILD_PROGRAM=OFF)
+  run(${CMAKE_COMMAND} --build "${place}/build")
+  run(${CMAKE_COMMAND} --install "${place}/build" --prefix "${prefix}")
+  # The name by which programs find it carries the version that they were compiled for.
+  file(GLOB_RECURSE library "${prefix}/liblrb_engine.so.${VERSION}")
+  run(objdump -p "${library}")
+  string(REGEX MATCH "^[0-9]+\\.[0-9]+" minor "${VERSION}")
+  if(NOT said MATCHES "SONAME +liblrb_engine\\.so\\.${minor}\n")
+    message(FATAL_ERROR "liblrb_engine.so: expected the soname to end in .${minor}\n${said}")
+  endif()
+else()
+  run(${CMAKE_COMMAND} --install "${BUILD}" --prefix "${prefix}")
+  run("${prefix}/bin/lrbscope" --version)
+  set(more -DLRB_WITH_PROGRAM=ON)
+endif()
+
+run(${CMAKE_COMMAND} -S "${SOURCE}" -B "${place}/user" ${toolchain} "-DCMAKE_PREFIX_PATH=${prefix}" -DLRB_FROM=package
+    "-DLRB_TREE=${tree}" "-DLRB_VERSION=${VERSION}" ${more})
+run(${CMAKE_COMMAND} --build "${place}/user")
+run("${place}/user/user")
+run("${place}/user/user_picture")
+
+# By hand and pkg-config, as in a Makefile.
+file(GLOB_RECURSE pc "${prefix}/lrbscope.pc")
+get_filename_component(pc "${pc}" DIRECTORY)
+get_filename_component(lib "${pc}" DIRECTORY)
+foreach(what IN ITEMS "user lrbscope" "user_picture lrbscope-trace lrbscope-render")
+  separate_arguments(what UNIX_COMMAND "${what}")
+  list(POP_FRONT what program)
+  string(REPLACE ";" " " packages "${what}")
+  set(command "eval \"'${COMPILER}' ${FLAGS} -std=c++20 '${SOURCE}/${program}.cpp' -o '${place}/${program}' $(pkg-config --cflags --libs ${packages})\"")
+  run(${CMAKE_COMMAND} -E env "PKG_CONFIG_PATH=${pc}" sh -c "${command}")
+  run(${CMAKE_COMMAND} -E env "LD_LIBRARY_PATH=${lib}" "${place}/${program}")
+endforeach()
+file(REMOVE_RECURSE "${place}")

@@ -1,18 +1,14 @@
 #include <iostream>
+#include <vector>
 
-#include "engine/construct/build.hpp"
-#include "engine/query/collide.hpp"
+#include "engine/body/body.hpp"
+#include "engine/core/pose_of.hpp"
+#include "engine/query/batch/batch.hpp"
+#include "engine/query/batch/workspace.hpp"
 #include "engine/query/collide_probe.hpp"
+#include "engine/scene/scene.hpp"
 
-lrb::LrbRep body(const Eigen::MatrixX3d& v, const Eigen::MatrixX3i& f) {  // vertices, triangles
-  lrb::Mesh mesh;
-  for (Eigen::Index i = 0; i < v.rows(); ++i) mesh.vertices.push_back(v.row(i).transpose());
-  for (Eigen::Index i = 0; i < f.rows(); ++i) {
-    const lrb::VertexId corners[3] = {lrb::VertexId(f(i, 0)), lrb::VertexId(f(i, 1)), lrb::VertexId(f(i, 2))};
-    mesh.add_face(corners);
-  }
-  return lrb::build_lrb(mesh);
-}
+namespace {
 
 /// Counts what it is told.
 struct Counter : lrb::CollideProbe {
@@ -20,19 +16,32 @@ struct Counter : lrb::CollideProbe {
   std::size_t contacts = 0;
 };
 
+}  // namespace
+
 int main() {
   Eigen::MatrixX3d v(4, 3);
   v << 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1;
   Eigen::MatrixX3i f(4, 3);
   f << 0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3;
-  const lrb::LrbRep a = body(v, f), b = body(v, f);
+  const lrb::Expected<lrb::Body> made = lrb::Body::from(v, f);
+  if (!made) return 1;
+  const lrb::Body& body = *made;
+  const lrb::Pose pose = lrb::pose_of(Eigen::Isometry3d(Eigen::Translation3d(0.25, 0.1, 0.05)));
+
   lrb::CollideRequest request;
   request.contacts = true;
-  const lrb::CollideResult r =
-      lrb::collide(a, lrb::Pose{}, b, lrb::Pose::translation({0.25, 0.1, 0.05}), request);
-  std::cout << lrb::to_string(r.relation) << " " << r.pairs.size() << " " << r.regions.size() << "\n";
+  lrb::Workspace workspace;
+  const auto r = lrb::collide(body, lrb::Pose{}, body, pose, request, workspace);
+  if (!r || r->relation != lrb::Relation::crossing || r->regions.empty()) return 2;
   Counter probe;
-  lrb::collide(a, lrb::Pose{}, b, lrb::Pose::translation({0.25, 0.1, 0.05}), request, probe);
-  if (probe.contacts != r.pairs.size()) return 2;
-  return r.relation == lrb::Relation::crossing && !r.regions.empty() ? 0 : 1;
+  lrb::collide(body, lrb::Pose{}, body, pose, request, probe);
+  if (probe.contacts != r->pairs.size()) return 3;
+  const auto answers = lrb::collide(body, lrb::Pose{}, body, std::vector<lrb::Pose>(100, pose));
+  if (answers.size() != 100 || answers[99]->pairs != r->pairs) return 4;
+  lrb::Scene scene;
+  scene.add(body);
+  scene.add(body, pose);
+  if (scene.collide().size() != 1) return 5;
+  f(2, 2) = 7;
+  std::cout << lrb::Body::from(v, f).error().reason << "\n";
 }

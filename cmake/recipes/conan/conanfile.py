@@ -38,7 +38,8 @@ class LrbscopeConan(ConanFile):
 
     def generate(self):
         toolchain = CMakeToolchain(self)
-        toolchain.cache_variables["LRB_BUILD_PROGRAMS"] = False
+        toolchain.cache_variables["LRB_BUILD_PROGRAM"] = False
+        toolchain.cache_variables["LRB_COMPONENTS"] = "engine"
         toolchain.cache_variables["LRB_BUILD_TESTS"] = False
         toolchain.cache_variables["LRB_WARNINGS_AS_ERRORS"] = False
         toolchain.generate()

@@ -4,7 +4,7 @@ get_filename_component(SOURCE_PATH "${CMAKE_CURRENT_LIST_DIR}/../../../.." ABSOL
 vcpkg_check_linkage(ONLY_STATIC_LIBRARY)
 vcpkg_cmake_configure(
   SOURCE_PATH "${SOURCE_PATH}"
-  OPTIONS -DLRB_BUILD_PROGRAMS=OFF -DLRB_BUILD_TESTS=OFF -DLRB_WARNINGS_AS_ERRORS=OFF)
+  OPTIONS -DLRB_BUILD_PROGRAM=OFF -DLRB_COMPONENTS=engine -DLRB_BUILD_TESTS=OFF -DLRB_WARNINGS_AS_ERRORS=OFF)
 vcpkg_cmake_install()
 vcpkg_cmake_config_fixup(PACKAGE_NAME lrbscope CONFIG_PATH lib/cmake/lrbscope)
 file(REMOVE_RECURSE "${CURRENT_PACKAGES_DIR}/debug/include" "${CURRENT_PACKAGES_DIR}/debug/share")
