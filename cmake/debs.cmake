@@ -71,6 +71,7 @@ python3-numpy, fonts-dejavu-core")
 endif()
 
 # Every package's copyright and changelogs.
+find_program(LRB_GZIP gzip DOC "gzip, for manual pages and changelogs")
 string(TIMESTAMP lrb_deb_date "%a, %d %b %Y %H:%M:%S +0000" UTC)
 foreach(component IN LISTS CPACK_COMPONENTS_ALL)
   string(TOUPPER ${component} upper)

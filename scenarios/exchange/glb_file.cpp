@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <optional>
 
 #include <Eigen/Geometry>
 #include <nlohmann/json.hpp>
@@ -69,11 +70,9 @@ class GlbOut {
 
   std::string write() {
     json_["asset"] = {{"version", "2.0"}, {"generator", model_.title}};
-    json_["extensionsUsed"] = Json::array({"KHR_materials_unlit"});
     json_["scene"] = 0;
     json_["scenes"] = Json::array({Json{{"nodes", Json::array({0})}}});
     json_["nodes"].push_back(root());
-    add_materials();
     const std::vector<Part> split = options_.regions ? split_by_region(model_) : std::vector<Part>();
     for (const Part& part : options_.regions ? split : model_.parts) add_node(part);
     json_["buffers"] = Json::array({Json{{"byteLength", bin_.size()}}});
@@ -95,16 +94,22 @@ class GlbOut {
     return out;
   }
 
-  void add_materials() {
-    const auto material = [](const char* name) {
-      return Json{{"name", name},
-                  {"pbrMetallicRoughness", {{"metallicFactor", 0.0}, {"roughnessFactor", 0.9}}},
-                  {"doubleSided", true}};
-    };
-    Json translucent = material("translucent"), unlit = material("unlit");
-    translucent["alphaMode"] = "BLEND";
-    unlit["extensions"] = {{"KHR_materials_unlit", Json::object()}};
-    json_["materials"] = Json::array({material("opaque"), translucent, unlit});
+  /// Returns the number of a material, which is added when it is asked for first.
+  std::size_t number_of(Material kind) {
+    std::optional<std::size_t>& number = materials_[kind];
+    if (number) return *number;
+    constexpr std::array kNames = {"opaque", "translucent", "unlit"};
+    Json material = {{"name", kNames[kind]},
+                     {"pbrMetallicRoughness", {{"metallicFactor", 0.0}, {"roughnessFactor", 0.9}}},
+                     {"doubleSided", true}};
+    if (kind == kTranslucent) material["alphaMode"] = "BLEND";
+    if (kind == kUnlit) {
+      material["extensions"] = {{"KHR_materials_unlit", Json::object()}};
+      json_["extensionsUsed"] = Json::array({"KHR_materials_unlit"});
+    }
+    number = json_["materials"].size();
+    json_["materials"].push_back(std::move(material));
+    return *number;
   }
 
   void add_node(const Part& part) {
@@ -118,7 +123,7 @@ class GlbOut {
     Json mesh = {{"name", part.name}, {"primitives", Json::array()}};
     for (std::size_t m = 0; m < primitives.size(); ++m)
       if (!primitives[m].indices.empty())
-        mesh["primitives"].push_back(primitive_json(primitives[m], m, part.shape));
+        mesh["primitives"].push_back(primitive_json(primitives[m], static_cast<Material>(m), part.shape));
     const std::size_t node = json_["nodes"].size(), number = json_["meshes"].size();
     json_["nodes"][0]["children"].push_back(node);
     json_["nodes"].push_back({{"name", part.name}, {"mesh", number}, {"extras", extras(part)}});
@@ -143,7 +148,7 @@ class GlbOut {
     return out;
   }
 
-  Json primitive_json(const Primitive& p, std::size_t material, Shape shape) {
+  Json primitive_json(const Primitive& p, Material material, Shape shape) {
     std::array<float, 3> low, high;
     low.fill(std::numeric_limits<float>::max());
     high.fill(std::numeric_limits<float>::lowest());
@@ -167,7 +172,7 @@ class GlbOut {
     Json index = accessor(indices, kElementArrayBuffer, kUnsignedInt, "SCALAR", p.indices.size());
     return {{"attributes", {{"POSITION", add(positions)}, {"COLOR_0", add(colour)}}},
             {"indices", add(index)},
-            {"material", material},
+            {"material", number_of(material)},
             {"mode", kMode[static_cast<std::size_t>(shape)]}};
   }
 
@@ -209,6 +214,7 @@ class GlbOut {
   const Model& model_;
   const FileOptions& options_;
   Eigen::Vector3d centre_ = Eigen::Vector3d::Zero();
+  std::array<std::optional<std::size_t>, 3> materials_;  ///< by Material
   Json json_;
   std::string bin_;
 };

@@ -111,7 +111,8 @@ def main():
     tree, options = sys.argv[1:]
     cmake = open(tree + "/CMakeLists.txt").read()
     version = re.search(r"project\(lrbscope VERSION ([0-9.]+)", cmake).group(1)
-    known = set(re.findall(r"option\((LRB_\w+)", cmake))
+    known = set(re.findall(r"option\((LRB_\w+)|set\((LRB_\w+)[^)]*\bCACHE\b", cmake))
+    known = {a or b for a, b in known}
     check_vcpkg(tree, version)
     of_vcpkg = cmake_options([open(options).read()])
     of_conan, of_conda = check_conan(tree, version), check_conda(tree, version)

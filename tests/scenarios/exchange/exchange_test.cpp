@@ -227,9 +227,9 @@ TEST_CASE("PLY and OBJ: our own readers find the same mesh, to the last bit") {
   const Model model = make_model(moment_of(ball(), nullptr), {true, false, false, {true, true}});
   const Mesh expected = mesh_of(model.parts.at(0));
   const test::Folder folder;
-  for (const auto& [name, ascii] : {std::pair{"b.ply", false}, {"t.ply", true}, {"b.OBJ", false}}) {
+  for (const std::string name : {"b.ply", "t.ply", "b.OBJ"}) {
     CAPTURE(name);
-    save_model(model, folder / name, {ascii, false, 2});
+    save_model(model, folder / name, {name == "t.ply", false, 2});
     const Mesh read = read_mesh(folder / name);
     CHECK(read.vertices == expected.vertices);
     CHECK(read.face_offsets == expected.face_offsets);
