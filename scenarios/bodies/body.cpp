@@ -8,6 +8,7 @@
 #include "engine/lrb/lrb_file.hpp"
 #include "engine/mesh/checked_mesh.hpp"
 #include "engine/mesh/io/mesh_io.hpp"
+#include "engine/mesh/join_corners.hpp"
 
 namespace lrb::bodies {
 namespace {
@@ -87,16 +88,33 @@ LoadedBody body_of_mesh(CheckedMesh mesh, const BuildOptions& options) {
           std::move(notes), 0};
 }
 
-LoadedBody load_body(const std::string& path, const BuildOptions& options) {
-  if (is_lrb_file(path)) return {load_lrb(path), {}, 0};
-  return body_of_mesh(read_mesh(path), options);
+Mesh read_body(const std::string& path, Corners corners, std::vector<std::string>& notes) {
+  Mesh mesh = read_mesh(path);
+  if (corners == Corners::apart) return mesh;
+  const JoinedCorners joined = join_corners(mesh);
+  if (joined.any())
+    notes.push_back(mesh.name +
+                    ": joined corners in exactly the same place: " + std::to_string(joined.before) +
+                    " vertices became " + std::to_string(joined.after) + ", " +
+                    std::to_string(joined.open_before) + (mesh.dim == 2 ? " loose ends " : " open edges ") +
+                    "became " + std::to_string(joined.open_after) + " (--no-join keeps them apart)");
+  return mesh;
 }
 
-LoadedBody load_faces(const std::string& path) {
+LoadedBody load_body(const std::string& path, const BuildOptions& options, Corners corners) {
   if (is_lrb_file(path)) return {load_lrb(path), {}, 0};
-  CheckedMesh mesh = check(read_mesh(path));
-  refuse_unless_queryable(mesh);
   std::vector<std::string> notes;
+  Mesh mesh = read_body(path, corners, notes);
+  LoadedBody body = body_of_mesh(std::move(mesh), options);
+  body.notes.insert(body.notes.begin(), notes.begin(), notes.end());
+  return body;
+}
+
+LoadedBody load_faces(const std::string& path, Corners corners) {
+  if (is_lrb_file(path)) return {load_lrb(path), {}, 0};
+  std::vector<std::string> notes;
+  CheckedMesh mesh = check(read_body(path, corners, notes));
+  refuse_unless_queryable(mesh);
   if (mesh.report().when_turned().buildable())
     turn_outward(mesh, notes);
   else
