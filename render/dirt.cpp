@@ -104,11 +104,47 @@ bool is_inside_out(const Mesh& mesh, const MeshReport& report, FaceId f) {
   });
 }
 
+/// Looks along a normal, a little aslant.
+ViewDirection tilted(const Vector3d& n) {
+  ViewDirection view;
+  view.from = n.normalized() + kTilt * ViewDirection{}.from.normalized();
+  constexpr double kSteep = 0.9;  // of a unit vector along z: steeper than this, y is up
+  if (std::abs(view.from.normalized().z()) > kSteep) view.up = {0, 1, 0};
+  return view;
+}
+
+/// Returns " in 3 loops, of 9, 4 and 3", the first few of them.
+std::string loops_text(std::span<const BoundaryLoop> loops) {
+  constexpr std::size_t kMost = 8;
+  std::string out = " in " + group_digits(loops.size()) + (loops.size() == 1 ? " loop" : " loops");
+  if (loops.size() == 1) return out;
+  for (std::size_t i = 0; i < std::min(loops.size(), kMost); ++i)
+    out += (i == 0 ? ", of " : i + 1 == loops.size() ? " and " : ", ") + group_digits(loops[i].edges());
+  return out + (loops.size() > kMost ? ", …" : "");
+}
+
 Eigen::AlignedBox3d box_of_faces(const Mesh& mesh) {
   Eigen::AlignedBox3d box;
   for (const VertexId v : mesh.face_vertices) box.extend(mesh.vertices[v]);
   return box;
 }
+
+/// Moves and scales points so that a mesh's faces come to lie in [-1, 1].
+class UnitSize {
+ public:
+  explicit UnitSize(const Mesh& mesh) {
+    const Eigen::AlignedBox3d box = box_of_faces(mesh);
+    if (box.isEmpty()) return;
+    centre_ = 0.5 * box.min() + 0.5 * box.max();
+    const double half = (0.5 * box.max() - 0.5 * box.min()).maxCoeff();
+    if (half > 0) half_ = half;
+  }
+  Vector3d operator()(const Vector3d& x) const { return (x - centre_) / half_; }
+
+ private:
+  Vector3d centre_ = Vector3d::Zero();
+  double half_ = 1;
+};
 
 }  // namespace
 
@@ -144,23 +180,42 @@ LegendItem key(MeshFault kind, int dim) {
           look.colour, dim == 2 ? look.one_2d : look.one};
 }
 
-std::string caption(MeshFault kind, const MeshFinding& finding, int dim) {
+std::string caption(MeshFault kind, const MeshFinding& finding, int dim,
+                    std::span<const BoundaryLoop> loops) {
   const Look look = look_of(kind);
   const bool one = finding.count == 1;
   std::string out = group_digits(finding.count) + " " +
-                    (dim == 2 ? (one ? look.one_2d : look.many_2d) : (one ? look.one : look.many)) + ": ";
+                    (dim == 2 ? (one ? look.one_2d : look.many_2d) : (one ? look.one : look.many));
+  if (kind == MeshFault::open_edge && !loops.empty()) return out + loops_text(loops);
+  out += ": ";
   for (std::size_t i = 0; i < finding.first.size(); ++i)
     out += (i > 0 ? ", " : "") + number_of(kind, finding.first[i]);
   return out + (finding.count > finding.first.size() ? ", …" : "");
 }
 
 Mesh to_unit_size(const Mesh& mesh) {
-  Eigen::AlignedBox3d box = box_of_faces(mesh);
   Mesh out = mesh;
-  if (box.isEmpty()) return out;
-  const Vector3d centre = 0.5 * box.min() + 0.5 * box.max();
-  const double half = (0.5 * box.max() - 0.5 * box.min()).maxCoeff();
-  for (Vector3d& x : out.vertices) x = half > 0 ? Vector3d((x - centre) / half) : Vector3d(x - centre);
+  const UnitSize unit(mesh);
+  for (Vector3d& x : out.vertices) x = unit(x);
+  return out;
+}
+
+Vector3d to_unit_size(const Mesh& mesh, const Vector3d& x) {
+  return UnitSize(mesh)(x);
+}
+
+CloseUp close_up_of_loop(const Mesh& mesh, const BoundaryLoop& loop) {
+  CloseUp out;
+  Vector3d n = Vector3d::Zero();
+  const Vector3d first = mesh.vertices[loop.vertices[0]];
+  for (std::size_t i = 0; i < loop.vertices.size(); ++i) {
+    const Vector3d x = mesh.vertices[loop.vertices[i]];
+    out.points.push_back(x);
+    // The rim runs with its faces on the left, so that a lid's normal is the other way round.
+    n += (mesh.vertices[loop.vertices[(i + 1) % loop.vertices.size()]] - first).cross(x - first);
+  }
+  if (!(n.norm() > 0)) return out;
+  out.view = tilted(n);
   return out;
 }
 
@@ -174,7 +229,9 @@ std::vector<Vector3d> whole(const Mesh& mesh, const MeshReport& report) {
   return out;
 }
 
-CloseUp close_up(const Mesh& mesh, const MeshReport& report, MeshFault kind) {
+CloseUp close_up(const Mesh& mesh, const MeshReport& report, MeshFault kind,
+                 std::span<const BoundaryLoop> loops) {
+  if (kind == MeshFault::open_edge && !loops.empty()) return close_up_of_loop(mesh, loops[0]);
   const Parts parts = parts_of(mesh, kind, report[kind].first.front());
   const std::vector<FaceId> at = faces_at(mesh, parts);
   const bool doubtful = kind == MeshFault::flipped_face || kind == MeshFault::duplicate_face;
@@ -205,9 +262,7 @@ CloseUp close_up(const Mesh& mesh, const MeshReport& report, MeshFault kind) {
   if (doubtful && n.dot(middle) < 0) n = -n;
   if (!(n.norm() > 0)) n = middle;
   if (!(n.norm() > 0)) return out;
-  out.view.from = n.normalized() + kTilt * ViewDirection{}.from.normalized();
-  constexpr double kSteep = 0.9;  // of a unit vector along z: steeper than this, y is up
-  if (std::abs(out.view.from.normalized().z()) > kSteep) out.view.up = {0, 1, 0};
+  out.view = tilted(n);
   return out;
 }
 

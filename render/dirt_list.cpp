@@ -36,13 +36,18 @@ class DirtListBuilder {
     std::stable_partition(marked.begin(), marked.end(),
                           [&](MeshFault k) { return !o_.focus || k != *o_.focus; });
     for (const MeshFault kind : marked)
-      for (const Element& e : report_[kind].first) mark(kind, e);
+      if (has_loops(kind))
+        rims();
+      else
+        for (const Element& e : report_[kind].first) mark(kind, e);
     Eigen::AlignedBox3d scene = bounds(out_);
     projection_.emplace(camera_, o_.width, o_.height, scene);
     char letter = 'b';
     for (const MeshFault kind : kinds(report_)) {
       if (!o_.focus)
         point_at(kind, std::string(1, letter++));
+      else if (*o_.focus == kind && has_loops(kind))
+        number_rims();
       else if (*o_.focus == kind)
         for (const Element& e : report_[kind].first)
           if (o_.near.isEmpty() || o_.near.contains(place(kind, e)))
@@ -53,6 +58,28 @@ class DirtListBuilder {
 
  private:
   Rgba colour(MeshFault kind) const { return key(kind, mesh_.dim).colour; }
+
+  bool has_loops(MeshFault kind) const { return kind == MeshFault::open_edge && !o_.loops.empty(); }
+
+  void rims() {
+    for (const BoundaryLoop& loop : o_.loops) {
+      std::vector<Vector3d> points;
+      for (const VertexId v : loop.vertices) points.push_back(mesh_.vertices[v]);
+      if (loop.is_loop) points.push_back(points[0]);
+      line(points, colour(MeshFault::open_edge), 4, true);
+    }
+  }
+
+  void number_rims() {
+    for (std::size_t i = 0; i < o_.loops.size(); ++i) {
+      const Vector3d x = on_rim(o_.loops[i]);
+      if (o_.near.isEmpty() || o_.near.contains(x)) label(x, std::to_string(i), 0);
+    }
+  }
+
+  Vector3d on_rim(const BoundaryLoop& loop) const {
+    return (mesh_.vertices[loop.vertices[0]] + mesh_.vertices[loop.vertices[1]]) / 2;
+  }
 
   /// Returns the fault that colours a face: the first it has, but the one that a close-up is about goes
   /// first.
@@ -185,6 +212,7 @@ class DirtListBuilder {
   }
 
   Vector3d place(MeshFault kind, const Element& e) const {
+    if (has_loops(kind)) return on_rim(o_.loops[0]);
     const Parts parts = parts_of(mesh_, kind, e);
     std::vector<Vector3d> x;
     for (const VertexId v : parts.vertices) x.push_back(mesh_.vertices[v]);

@@ -44,16 +44,6 @@ std::vector<Eigen::Vector3d> Context::corners(FaceId f, const Eigen::Vector3d& m
   return x;
 }
 
-Eigen::Vector3d Context::middle(std::span<const FaceId> faces) const {
-  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  std::size_t count = 0;
-  for (const FaceId f : faces) {
-    for (const Eigen::Vector3d& x : corners(f)) sum += x;
-    count += body.rep->face(f).size();
-  }
-  return count > 0 ? Eigen::Vector3d(sum / static_cast<double>(count)) : sum;
-}
-
 std::vector<FaceId> Context::pseudo_in_contact() const {
   std::vector<FaceId> faces;
   for (FaceId f(body.rep->real_face_count()); f < body.rep->face_count(); ++f)
@@ -273,6 +263,35 @@ std::vector<Eigen::Vector3d> body_points(const LrbRep& rep, const Pose& pose) {
   std::vector<Eigen::Vector3d> out;
   for (const auto& x : rep.vertices()) out.push_back(pose.apply(x));
   return out;
+}
+
+namespace {
+
+/// Returns the mean of the faces' corners, posed.
+Eigen::Vector3d middle(const LrbRep& rep, const Pose& pose, std::span<const FaceId> faces) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  std::size_t count = 0;
+  for (const FaceId f : faces) {
+    for (const VertexId v : rep.face(f)) sum += pose.apply(rep.vertices()[v]);
+    count += rep.face(f).size();
+  }
+  return count > 0 ? Eigen::Vector3d(sum / static_cast<double>(count)) : sum;
+}
+
+}  // namespace
+
+Eigen::Vector3d exploded_way(const LrbRep& rep, const Pose& pose, RegionId r, double explode) {
+  constexpr double kLayerStep = 0.12;  // in space: extra way per layer, as a share of the body's radius
+  const Eigen::Vector3d centre = middle(rep, pose, rep.outermost_faces());
+  const Eigen::Vector3d out = middle(rep, pose, rep.collector(r)) - centre;
+  if (rep.dim() == 2) return explode * out;
+  double radius = 0;
+  for (const FaceId f : rep.outermost_faces())
+    for (const VertexId v : rep.face(f))
+      radius = std::max(radius, (pose.apply(rep.vertices()[v]) - centre).norm());
+  const double length = out.norm();
+  const double way = length + kLayerStep * radius * (1 + rep.layer(r));
+  return length > 0 ? Eigen::Vector3d(out * (explode * way / length)) : Eigen::Vector3d::Zero();
 }
 
 std::vector<Eigen::Vector3d> contact_points(std::span<const ContactRegion> contacts) {

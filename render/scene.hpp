@@ -91,6 +91,9 @@ constexpr std::uint32_t region_id(Side side, RegionId r) {
 /// fitted to them.
 std::vector<Eigen::Vector3d> body_points(const LrbRep& rep, const Pose& pose);
 
+/// Returns how far SceneOptions::explode moves a region of a posed body away from the body's middle.
+Eigen::Vector3d exploded_way(const LrbRep& rep, const Pose& pose, RegionId r, double explode);
+
 /// Returns all points of the contact regions.
 std::vector<Eigen::Vector3d> contact_points(std::span<const ContactRegion> contacts);
 

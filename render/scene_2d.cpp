@@ -41,7 +41,7 @@ class Scene2dBuilder {
 
   Vector3d moved(RegionId r) const {
     if (!(c_.options.explode > 0)) return Vector3d::Zero();
-    return c_.options.explode * (c_.middle(rep_.collector(r)) - c_.middle(rep_.outermost_faces()));
+    return exploded_way(rep_, c_.body.pose, r, c_.options.explode);
   }
 
   void region(RegionId r) {

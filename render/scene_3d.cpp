@@ -24,7 +24,6 @@ constexpr std::uint8_t kGhostAlpha = 14;
 /// Of a construction, lids of earlier passes: their colour, from the region's towards white, and its opacity.
 constexpr double kEarlierPale = 0.72;
 constexpr std::uint8_t kEarlierAlpha = 215;
-constexpr double kLayerStep = 0.12;  ///< exploded: extra way per layer, as a share of the body's radius
 
 class Scene3dBuilder {
  public:
@@ -199,18 +198,10 @@ class Scene3dBuilder {
 
   void explode() {
     real_faces();
-    const Vector3d centre = c_.middle(rep_.outermost_faces());
-    double radius = 0;
-    for (const FaceId f : rep_.outermost_faces()) {
-      for (const Vector3d& x : c_.corners(f)) radius = std::max(radius, (x - centre).norm());
-    }
     bool any = false;
     for (RegionId r = 0; r < rep_.region_count(); ++r) {
       if (c_.body.wrapper != nullptr && !c_.included(r)) continue;
-      const Vector3d out = c_.middle(rep_.collector(r)) - centre;
-      const double length = out.norm();
-      const double way = length + kLayerStep * radius * (1 + rep_.layer(r));
-      region(r, length > 0 ? Vector3d(out * (c_.options.explode * way / length)) : Vector3d::Zero(), false);
+      region(r, exploded_way(rep_, c_.body.pose, r, c_.options.explode), false);
       any = true;
     }
     if (any) {

@@ -34,8 +34,6 @@ struct Context {
   bool built(RegionId r) const;  ///< just now
   std::vector<Eigen::Vector3d> corners(FaceId f,
                                        const Eigen::Vector3d& moved = Eigen::Vector3d::Zero()) const;
-  /// Returns the mean of the faces' corners.
-  Eigen::Vector3d middle(std::span<const FaceId> faces) const;
   /// Returns the colour of a face by SceneOptions::colour_by; `cell` is the region that it stands for. Where
   /// values are shown, faces without one or with the lowest are pale, so that the few that matter stand out.
   Rgba colour_of(FaceId f, CellId cell) const;

@@ -83,12 +83,13 @@ std::string note_no_solid(const LrbRep& rep) {
 
 }  // namespace
 
-Body Body::made(Mesh mesh, const BodyOptions& options) {
+Body Body::made(Mesh mesh, const BodyOptions& options, std::vector<std::string> notes) {
   CheckedMesh checked = check(std::move(mesh));
   MadeBody made = options.regions ? make_body(std::move(checked), options.build, options.turn)
                                   : make_body_of_faces(std::move(checked), options.turn);
-  if (!made.rep.closed()) made.notes.push_back(note_no_solid(made.rep));
-  return Body(std::make_shared<const Held>(Held{std::move(made.rep), std::move(made.notes), made.turned}));
+  notes.insert(notes.end(), made.notes.begin(), made.notes.end());
+  if (!made.rep.closed()) notes.push_back(note_no_solid(made.rep));
+  return Body(std::make_shared<const Held>(Held{std::move(made.rep), std::move(notes), made.turned}));
 }
 
 Expected<Body> Body::from_rows(std::span<const double> coordinates, std::size_t each,
@@ -127,7 +128,11 @@ Body Body::from(LrbRep rep) {
 
 Expected<Body> Body::load(const std::string& path, const BodyOptions& options) try {
   if (is_lrb_file(path)) return from(load_lrb(path));
-  return made(read_mesh(path), options);
+  Mesh mesh = read_mesh(path);
+  std::vector<std::string> notes;
+  if (options.join)
+    if (std::string note = join_corners_of_mesh(mesh); !note.empty()) notes.push_back(std::move(note));
+  return made(std::move(mesh), options, std::move(notes));
 } catch (const InputError& e) {
   return Refusal{e.what()};
 }

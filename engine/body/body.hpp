@@ -21,6 +21,8 @@ struct BodyOptions {
   BuildOptions build;   ///< threads, quality (`lean`, `patch_interior`, `max_outer_faces`), seed, progress
   bool regions = true;  ///< false: faces alone, in a tenth of the time or less; then there are no wrappers
   bool turn = true;     ///< turn components that are inside out; Body::notes() says so
+  bool join =
+      true;  ///< join corners in exactly the same place when a file is read, where the surface is open there
   std::string name = "body";  ///< for messages, of bodies that come from no file
 };
 
@@ -85,7 +87,7 @@ class Body {
   static Expected<Body> from_rows(std::span<const double> coordinates, std::size_t each,
                                   std::span<const std::int64_t> corners, std::size_t each_face,
                                   const BodyOptions& options);
-  static Body made(Mesh mesh, const BodyOptions& options);
+  static Body made(Mesh mesh, const BodyOptions& options, std::vector<std::string> notes = {});
 
   std::shared_ptr<const Held> held_;
 };

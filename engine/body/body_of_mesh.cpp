@@ -6,6 +6,7 @@
 
 #include "engine/core/error.hpp"
 #include "engine/lrb/lrb_file.hpp"
+#include "engine/mesh/join_corners.hpp"
 
 namespace lrb {
 namespace {
@@ -45,6 +46,14 @@ bool is_lrb_file(const std::string& path) {
   std::string start(kEnough, '\0');
   in.read(start.data(), static_cast<std::streamsize>(start.size()));
   return looks_like_lrb(std::string_view(start).substr(0, static_cast<std::size_t>(in.gcount())));
+}
+
+std::string join_corners_of_mesh(Mesh& mesh) {
+  const JoinedCorners joined = join_corners(mesh);
+  if (!joined.any()) return "";
+  return mesh.name + ": joined corners in exactly the same place: " + std::to_string(joined.before) +
+         " vertices became " + std::to_string(joined.after) + ", " + std::to_string(joined.open_before) +
+         (mesh.dim == 2 ? " loose ends " : " open edges ") + "became " + std::to_string(joined.open_after);
 }
 
 std::string obstacles_to_build(const CheckedMesh& mesh) {

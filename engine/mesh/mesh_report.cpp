@@ -56,7 +56,7 @@ Help help_for(MeshFault fault) {
     case MeshFault::duplicate_face:
       return {Offender::two_faces, "remove one of them"};
     case MeshFault::open_edge:
-      return {Offender::edge, "close the hole"};
+      return {Offender::edge, "close the hole (lrbscope close)"};
     case MeshFault::non_manifold_edge:
       return {Offender::edge, "separate the parts or remove inner faces"};
     case MeshFault::flipped_face:

@@ -29,14 +29,30 @@ LoadedBody body_of_mesh(CheckedMesh mesh, const BuildOptions& options) {
   return loaded(make_body(std::move(mesh), options));
 }
 
-LoadedBody load_body(const std::string& path, const BuildOptions& options) {
-  if (is_lrb_file(path)) return {load_lrb(path), {}, 0};
-  return body_of_mesh(read_mesh(path), options);
+Mesh read_body(const std::string& path, Corners corners, std::vector<std::string>& notes) {
+  Mesh mesh = read_mesh(path);
+  if (corners == Corners::apart) return mesh;
+  const std::string note = join_corners_of_mesh(mesh);
+  if (!note.empty()) notes.push_back(note + " (--no-join keeps them apart)");
+  return mesh;
 }
 
-LoadedBody load_faces(const std::string& path) {
+LoadedBody load_body(const std::string& path, const BuildOptions& options, Corners corners) {
   if (is_lrb_file(path)) return {load_lrb(path), {}, 0};
-  return faces_of_mesh(read_mesh(path));
+  std::vector<std::string> notes;
+  Mesh mesh = read_body(path, corners, notes);
+  LoadedBody body = body_of_mesh(std::move(mesh), options);
+  body.notes.insert(body.notes.begin(), notes.begin(), notes.end());
+  return body;
+}
+
+LoadedBody load_faces(const std::string& path, Corners corners) {
+  if (is_lrb_file(path)) return {load_lrb(path), {}, 0};
+  std::vector<std::string> notes;
+  Mesh mesh = read_body(path, corners, notes);
+  LoadedBody body = faces_of_mesh(std::move(mesh));
+  body.notes.insert(body.notes.begin(), notes.begin(), notes.end());
+  return body;
 }
 
 LoadedBody faces_of_mesh(Mesh mesh) {

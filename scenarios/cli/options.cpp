@@ -98,6 +98,13 @@ void add_coarse_options(CLI::App& app, CollideRequest& request) {
       ->type_name("S");
 }
 
+void add_join_option(CLI::App& app, bodies::Corners& corners) {
+  app.add_flag_callback(
+      "--no-join", [&corners] { corners = bodies::Corners::apart; },
+      "Keep corners of a mesh apart that lie in exactly the same place [where the surface is open there, they "
+      "are joined; faces keep their numbers]. Corners of STL files are always joined");
+}
+
 void add_build_options(CLI::App& app, BuildOptions& options) {
   app.add_option("--patch", options.patch_interior, "Number of interior vertices to aim for in a patch")
       ->check(CLI::Range(1, 1000))
@@ -200,6 +207,8 @@ void apply(const CameraOptions& options, std::vector<spec::FrameSpec::View>& vie
   if (!any) return;
   if (views.empty()) views.emplace_back();
   for (spec::FrameSpec::View& view : views) {
+    view.directed = !options.from.empty() || !options.up.empty() || options.orthographic.has_value() ||
+                    options.orbit.has_value();
     if (!options.up.empty()) {
       const int axis = options.up[0] - 'x';
       const render::ViewDirection turned = turned_up({view.from, view.up}, axis);

@@ -8,6 +8,7 @@
 #include "engine/construct/build.hpp"
 #include "engine/query/collide.hpp"
 #include "render/camera.hpp"
+#include "scenarios/bodies/body.hpp"
 #include "scenarios/cli/command.hpp"
 #include "scenarios/run/run_scenario.hpp"
 #include "scenarios/spec/scenario.hpp"
@@ -34,6 +35,8 @@ void add_coarse_options(CLI::App& app, CollideRequest& request);
 void add_recursion_option(CLI::App& app, std::optional<Recursion>& recursion);
 /// Adds --events, which takes precedence over a scenario.
 void add_events_option(CLI::App& app, std::optional<EventLevel>& level);
+/// Adds --no-join.
+void add_join_option(CLI::App& app, bodies::Corners& corners);
 /// Adds --patch, --max-outer, --lean, --seed and --threads.
 void add_build_options(CLI::App& app, BuildOptions& options);
 

@@ -38,8 +38,10 @@ void draw_body_sheet(const LrbRep& rep, const std::string& path, const spec::Fra
     body.rep = &rep;
     body.wrapper = &wrapper;
     const render::Scene scene = render::build_scene(std::vector<render::SceneBody>{body}, {}, scene_options);
-    panels.push_back({rasterizer.draw(scene.list, camera, options),
-                      render::group_digits(wrapper.boundary_size()) + " faces"});
+    panels.push_back(
+        {rasterizer.draw(scene.list, camera, options),
+         render::group_digits(wrapper.boundary_size()) +
+             (rep.region_count() > 0 ? " faces" : " faces: the body itself, which has no wrappers")});
   }
   render::write_png(render::montage(panels), path, {{}, frames.dpi});
 }

@@ -8,47 +8,65 @@
 #include "render/png.hpp"
 #include "render/rasterize.hpp"
 #include "render/text.hpp"
+#include "scenarios/run/frame_files.hpp"
+#include "scenarios/run/framing.hpp"
 
 namespace lrb::run {
 namespace {
 
-constexpr int kSheetWidth = 1600, kGap = 4,
-              kStrips = 120;         // pixels: of the picture, between panels, for title and legend
-constexpr double kShape = 0.72;      // a panel's height over its width
-constexpr float kTextHeight = 0.8F;  // of panels, over the title's
-constexpr double kLonely = 0.5;      // of the body's size, about a point without faces
-constexpr float kUsualText = 16;     // pixels: lines and points are made for it
-constexpr double kContext = 1.15;    // of the close-ups' sizes
-constexpr double kLeast = 1e-6;      // of the body's size, in a close-up of what has none
+constexpr int kGap = 4, kStrips = 120;  // pixels of a screen: between panels, for title and legend
+constexpr double kShape = 0.72;         // a panel's height over its width
+constexpr float kTextHeight = 0.8F;     // of panels, over the title's
+constexpr double kLonely = 0.5;         // of the body's size, about a point without faces
+constexpr float kUsualText = 16;        // pixels: lines and points are made for it
+constexpr double kContext = 1.15;       // of the close-ups' sizes
+constexpr double kRimContext = 1.6;     // the same of a rim, which is no use without what it bounds
+constexpr double kLeast = 1e-6;         // of the body's size, in a close-up of what has none
 
 int columns(std::size_t panels) {
   return panels == 2 || panels == 4 ? 2 : 3;
 }
 
-render::Camera camera_of(const Mesh& mesh, const MeshReport& report, const MeshFault* kind, int width,
-                         int height) {
-  const std::vector<Eigen::Vector3d> all = render::dirt::whole(mesh, report);
-  Eigen::AlignedBox3d box;
-  for (const Eigen::Vector3d& x : all) box.extend(x);
-  const render::dirt::CloseUp close =
-      kind ? render::dirt::close_up(mesh, report, *kind) : render::dirt::CloseUp{all, {}};
+/// A panel to draw: the whole, or a kind of findings close up.
+struct DirtPanel {
+  const MeshFault* kind = nullptr;  ///< null: the whole
+  char letter = 'a';
+  int width = 0, height = 0;
+  float text = kUsualText;
+};
+
+render::Camera camera_of_whole(const DirtyMesh& dirty, const spec::FrameSpec& frames,
+                               const DirtPanel& panel) {
+  Framing framing;
+  framing.points = render::dirt::whole(dirty.mesh, dirty.report);
+  framing.dim = dirty.mesh.dim;
+  constexpr double kCaptionRoom = 0.92;
+  spec::FrameSpec::View view = frames.views.empty() ? spec::FrameSpec::View{} : frames.views[0];
+  view.zoom *= kCaptionRoom;
+  return camera_for(view, framing, panel.width, panel.height, 0);
+}
+
+render::Camera camera_of(const DirtyMesh& dirty, const spec::FrameSpec& frames, const DirtPanel& panel) {
+  if (panel.kind == nullptr) return camera_of_whole(dirty, frames, panel);
   constexpr double kMargin = 0.1;  // for labels and the caption
+  const render::dirt::CloseUp close =
+      render::dirt::close_up(dirty.mesh, dirty.report, *panel.kind, dirty.loops);
   render::FitOptions fit;
   fit.margin = kMargin;
   fit.view = close.view;
-  if (!kind)
-    return mesh.dim == 2 ? render::fit_top(all, width, height, kMargin)
-                         : render::fit_camera(all, width, height, fit);
-  Eigen::AlignedBox3d part;
+  Eigen::AlignedBox3d box, part;
+  for (const Eigen::Vector3d& x : render::dirt::whole(dirty.mesh, dirty.report)) box.extend(x);
   for (const Eigen::Vector3d& x : close.points) part.extend(x);
-  if (mesh.dim == 3) {
-    const bool lone = !(part.diagonal().norm() > 0);
-    return render::fit_contact(close.points, box, width, height, fit, kContext, lone ? kLonely : kLeast);
+  const bool lone = !(part.diagonal().norm() > 0);
+  if (dirty.mesh.dim == 3) {
+    const bool rim = *panel.kind == MeshFault::open_edge && !dirty.loops.empty();
+    return render::fit_contact(close.points, box, panel.width, panel.height, fit,
+                               rim ? kRimContext : kContext, lone ? kLonely : kLeast);
   }
   std::vector<Eigen::Vector3d> points = close.points;
-  if (!(part.diagonal().norm() > 0))
+  if (lone)
     for (const double side : {-0.05, 0.05}) points.push_back(part.center() + side * box.diagonal());
-  return render::fit_top(points, width, height, kMargin);
+  return render::fit_top(points, panel.width, panel.height, kMargin);
 }
 
 void write_caption(render::Image& panel, const std::string& text, float height) {
@@ -65,55 +83,82 @@ void write_caption(render::Image& panel, const std::string& text, float height) 
   }
 }
 
-render::Image draw_panel(render::Rasterizer& rasterizer, const Mesh& mesh, const MeshReport& report,
-                         const MeshFault* kind, char letter, int width, int height, float text) {
-  const render::Camera camera = camera_of(mesh, report, kind, width, height);
+render::Image draw_panel(render::Rasterizer& rasterizer, const DirtyMesh& dirty,
+                         const spec::FrameSpec& frames, const DirtPanel& panel) {
+  const render::Camera camera = camera_of(dirty, frames, panel);
   render::RasterOptions raster;
-  raster.width = width;
-  raster.height = height;
+  raster.width = panel.width;
+  raster.height = panel.height;
   render::dirt::Options options;
-  if (kind != nullptr) options.focus = *kind;
-  if (kind != nullptr)
-    for (const Eigen::Vector3d& x : render::dirt::close_up(mesh, report, *kind).points)
+  options.loops = dirty.loops;
+  if (panel.kind != nullptr) {
+    options.focus = *panel.kind;
+    for (const Eigen::Vector3d& x :
+         render::dirt::close_up(dirty.mesh, dirty.report, *panel.kind, dirty.loops).points)
       options.near.extend(x);
-  options.scale = text / kUsualText;
-  options.width = width;
-  options.height = height;
-  render::Image panel = rasterizer.draw(render::dirt::list(mesh, report, camera, options), camera, raster);
-  const std::string what = kind ? render::dirt::caption(*kind, report[*kind], mesh.dim) : "the whole";
-  write_caption(panel, "(" + std::string(1, letter) + ") " + what, text);
-  panel.stroke(panel.rect(), render::palette::kRule);
-  return panel;
+  }
+  options.scale = panel.text / kUsualText;
+  options.width = panel.width;
+  options.height = panel.height;
+  render::Image image =
+      rasterizer.draw(render::dirt::list(dirty.mesh, dirty.report, camera, options), camera, raster);
+  const std::string what =
+      panel.kind ? render::dirt::caption(*panel.kind, dirty.report[*panel.kind], dirty.mesh.dim, dirty.loops)
+                 : "the whole";
+  write_caption(image, "(" + std::string(1, panel.letter) + ") " + what, panel.text);
+  image.stroke(image.rect(), render::palette::kRule);
+  return image;
+}
+
+/// Draws the panels row by row into a picture of a size.
+render::Image draw_panels(const DirtyMesh& dirty, const spec::FrameSpec& frames,
+                          const std::vector<MeshFault>& kinds, const render::OverlayLayout& layout) {
+  const int across = columns(kinds.size() + 1), down = (static_cast<int>(kinds.size()) + across) / across;
+  DirtPanel panel;
+  panel.width = (layout.picture.width - kGap * (across - 1)) / across;
+  panel.height = (layout.picture.height - kGap * (down - 1)) / down;
+  panel.text = std::max(kUsualText * static_cast<float>(frames.scale()), kTextHeight * layout.text_height);
+  render::Image picture(layout.picture.width, layout.picture.height);
+  render::Rasterizer rasterizer;
+  for (std::size_t i = 0; i <= kinds.size(); ++i) {
+    panel.kind = i == 0 ? nullptr : &kinds[i - 1];
+    panel.letter = static_cast<char>('a' + i);
+    picture.paste(draw_panel(rasterizer, dirty, frames, panel),
+                  static_cast<int>(i) % across * (panel.width + kGap),
+                  static_cast<int>(i) / across * (panel.height + kGap));
+  }
+  return picture;
+}
+
+/// Returns the height that the whole needs.
+int height_for(std::size_t kinds, const spec::FrameSpec& frames) {
+  const int across = columns(kinds + 1), down = (static_cast<int>(kinds) + across) / across;
+  const int cell = (frames.width - kGap * (across - 1)) / across;
+  return static_cast<int>(kStrips * frames.scale()) + down * static_cast<int>(kShape * cell);
 }
 
 }  // namespace
 
-bool draw_dirt(const Mesh& given, const MeshReport& report, const std::string& path) {
-  const std::vector<MeshFault> kinds = render::dirt::kinds(report);
+bool draw_dirt(const DirtyMesh& given, const std::string& path, const spec::FrameSpec& asked) {
+  const std::vector<MeshFault> kinds = render::dirt::kinds(given.report);
   if (kinds.empty()) return false;
-  const Mesh mesh = render::dirt::to_unit_size(given);
-  const int across = columns(kinds.size() + 1), down = (static_cast<int>(kinds.size()) + across) / across;
-  const int cell = (kSheetWidth - kGap * (across - 1)) / across;
-  const int height = kStrips + down * static_cast<int>(kShape * cell);
+  const Mesh mesh = render::dirt::to_unit_size(given.mesh);
+  const DirtyMesh dirty{mesh, given.report, given.loops};
+  spec::FrameSpec frames = in_pixels(asked);
+  for (spec::FrameSpec::View& view : frames.views)
+    if (view.look_at) view.look_at = render::dirt::to_unit_size(given.mesh, *view.look_at);
+  if (frames.height == 0) frames.height = height_for(kinds.size(), frames);
   render::Overlay overlay;
-  overlay.title = std::filesystem::path(given.name).filename().string() + "  ·  " +
+  overlay.title = std::filesystem::path(given.mesh.name).filename().string() + "  ·  " +
                   std::to_string(kinds.size()) + (kinds.size() == 1 ? " finding" : " findings");
   overlay.event = "Offenders by their numbers, counted from 0 in file order";
-  overlay.key = render::dirt::legend(report, mesh.dim);
-  const render::OverlayLayout layout = render::lay_out(overlay, kSheetWidth, height);
-  const int cell_height = (layout.picture.height - kGap * (down - 1)) / down;
-  render::Image picture(layout.picture.width, layout.picture.height);
-  const float text = std::max(kUsualText, kTextHeight * layout.text_height);
-  render::Rasterizer rasterizer;
-  for (std::size_t i = 0; i <= kinds.size(); ++i) {
-    const MeshFault* kind = i == 0 ? nullptr : &kinds[i - 1];  // null: the whole
-    const int x = static_cast<int>(i) % across * (cell + kGap),
-              y = static_cast<int>(i) / across * (cell_height + kGap);
-    picture.paste(
-        draw_panel(rasterizer, mesh, report, kind, static_cast<char>('a' + i), cell, cell_height, text), x,
-        y);
-  }
-  render::write_png(render::compose_frame(picture, layout.picture, overlay, kSheetWidth, height), path);
+  overlay.key = render::dirt::legend(given.report, mesh.dim);
+  const auto scale = static_cast<float>(frames.scale());
+  const render::OverlayLayout layout = render::lay_out(overlay, frames.width, frames.height, scale);
+  const render::Image picture = draw_panels(dirty, frames, kinds, layout);
+  render::write_png(render::compose_frame(picture, layout.picture, overlay, frames.width, frames.height,
+                                          render::kWhite, scale),
+                    path, {{}, frames.dpi});
   return true;
 }
 

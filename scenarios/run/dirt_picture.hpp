@@ -1,13 +1,28 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
+#include "engine/mesh/boundary_loops.hpp"
 #include "engine/mesh/mesh_check.hpp"
+#include "scenarios/spec/scenario.hpp"
 
 namespace lrb::run {
 
+/// A mesh and what is wrong with it.
+struct DirtyMesh {
+  const Mesh& mesh;
+  const MeshReport& report;
+  const std::vector<BoundaryLoop>& loops;
+};
+
 /// Draws a mesh's findings: the whole mesh in panel (a), the first offender of each kind close up in a panel
-/// each. Returns false, and writes nothing, if there is nothing to point at.
-bool draw_dirt(const Mesh& mesh, const MeshReport& report, const std::string& path);
+/// each. Of open edges all are drawn, and the longest loop close up. `frames` says how large the whole is to be
+/// (height 0: as it needs) and, by its first view, from where the whole is seen. Returns false, and writes
+/// nothing, if there is nothing to point at.
+bool draw_dirt(const DirtyMesh& dirty, const std::string& path, const spec::FrameSpec& frames);
+
+/// The width of the picture unless one is asked for.
+inline constexpr int kDirtSheetWidth = 1600;
 
 }  // namespace lrb::run

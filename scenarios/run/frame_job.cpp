@@ -196,7 +196,15 @@ const std::vector<CollideResult>& results_of(const RecordedRun& recorded) {
   return recorded.results != nullptr ? *recorded.results : none;
 }
 
+void check_views(const std::vector<spec::FrameSpec::View>& views, int dim) {
+  if (dim == 2 && std::any_of(views.begin(), views.end(), [](const auto& view) { return view.directed; }))
+    throw InputError(
+        "--from, --up, --projection and --orbit: bodies in the plane are seen from above: leave them out; --look-at "
+        "and --zoom are for them too");
+}
+
 void check_frames(const RecordedRun& recorded, const spec::FrameSpec& spec) {
+  check_views(spec.views, recorded.reps[0]->dim());
   static_cast<void>(moments(spec, *recorded.trace));
   if (spec.svg && recorded.reps[0]->dim() != 2)
     throw InputError(

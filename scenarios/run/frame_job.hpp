@@ -59,6 +59,8 @@ struct PaintedFrame {
 
 /// Throws InputError for frames of more pixels than can be drawn.
 void check_frame_size(const spec::FrameSpec& spec);
+/// Throws InputError for views that bodies of this dimension cannot have.
+void check_views(const std::vector<spec::FrameSpec::View>& views, int dim);
 /// Throws InputError for frames that cannot be drawn: of events that do not exist, as SVG in 3D, or too
 /// large.
 void check_frames(const RecordedRun& recorded, const spec::FrameSpec& spec);

@@ -13,6 +13,7 @@
 #include "scenarios/run/pair_lines.hpp"
 #include "scenarios/run/parting_picture.hpp"
 #include "scenarios/run/pass_words.hpp"
+#include "scenarios/run/region_words.hpp"
 #include "trace/names.hpp"
 
 namespace lrb::run {
@@ -181,7 +182,7 @@ render::Scene FrameState::scene(bool wrapper, bool plain) const {
   render::SceneHighlight highlight;
   if (wrapper && !plain && point_out_refined_)
     for (const trace::RefinedRegion& r : cursor_.refined())
-      highlight.refining[static_cast<std::size_t>(r.side)].push_back(r.region);
+      if (is_shown(r)) highlight.refining[static_cast<std::size_t>(r.side)].push_back(r.region);
   if (const auto pair = cursor_.pair_under_test(); wrapper && !plain && pair && !at_step_end())
     highlight.under_test = {pair->simplex_a, pair->simplex_b};
   if (const CollideResult* result = result_here()) highlight.contacts = result->regions;
@@ -226,7 +227,24 @@ render::Scene FrameState::scene(bool wrapper, bool plain) const {
   return scene;
 }
 
+bool FrameState::is_shown(const trace::RefinedRegion& r) const {
+  if (spec_.isolate[0].empty() && spec_.isolate[1].empty()) return true;
+  const std::vector<RegionId>& of_side = spec_.isolate[static_cast<std::size_t>(r.side)];
+  return std::find(of_side.begin(), of_side.end(), r.region) != of_side.end();
+}
+
+std::string FrameState::isolated_text() const {
+  std::string out;
+  for (std::size_t i = 0; i < reps_.size(); ++i) {
+    if (spec_.isolate[i].empty()) continue;
+    const std::string owner = reps_.size() == 1 ? "" : i == 0 ? " of A" : " of B";
+    out += (out.empty() ? "" : "; ") + region_words(*reps_[i], spec_.isolate[i], owner);
+  }
+  return out;
+}
+
 std::string FrameState::event_text() const {
+  if (const std::string regions = isolated_text(); !regions.empty()) return regions;
   const trace::Event& e = cursor_.event();
   if (trace_.header.construction) {
     if (e.kind == EventKind::step)
@@ -245,7 +263,7 @@ std::string FrameState::event_text() const {
       "region " + std::to_string(e.region()) + (reps_.size() == 1 ? "" : " of " + side);
   switch (e.kind) {
     case EventKind::step:
-      return reps_.size() == 1 ? "the outermost wrapper" : "both wrappers are the outermost ones";
+      return first_wrappers_text();
     case EventKind::face_test:
       return "face test " + std::to_string(face_of(Side::a)) + " against " +
              std::to_string(face_of(Side::b)) + ": " + std::string(trace::name_of(e.meet));
@@ -274,6 +292,25 @@ std::string FrameState::event_text() const {
   }
 }
 
+std::string FrameState::first_wrappers_text() const {
+  const auto has_none = [](const LrbRep* rep) { return rep->region_count() == 0; };
+  if (reps_.size() == 1)
+    return has_none(reps_[0]) ? "the body itself, which has no wrapper" : "the outermost wrapper";
+  const bool a = has_none(reps_[0]), b = has_none(reps_[1]);
+  if (a && b) return "the bodies themselves, which have no wrappers";
+  if (a || b)
+    return std::string(a ? "A itself, which has no wrapper; B's" : "B itself, which has no wrapper; A's") +
+           " is the outermost one";
+  return "both wrappers are the outermost ones";
+}
+
+std::string FrameState::open_text() const {
+  const bool a = !reps_[0]->closed(), b = !reps_[1]->closed();
+  return a && b ? "undefined, for both bodies are open"
+         : a    ? "undefined, for A is open"
+                : "undefined, for B is open";
+}
+
 std::string FrameState::node_pair_text(const trace::Event& e) {
   const trace::NodeWork work = e.work();
   const trace::NodeEnd end = e.node_end();
@@ -298,7 +335,8 @@ std::string FrameState::result_text() const {
                : "unresolved: the limit came before the coarsest wrappers were compared";
   if (const WalkExplanation* walk = parting_here())
     if (const std::string words = parting_words(*walk); !words.empty()) return "separate: " + words;
-  return relation_words(r.relation) + ": " +
+  const bool open = !reps_[0]->closed() || !reps_[1]->closed();
+  return (r.relation == Relation::undefined && open ? open_text() : relation_words(r.relation)) + ": " +
          render::counted(r.pair_count, "pair of faces meets", "pairs of faces meet");
 }
 
@@ -321,8 +359,12 @@ render::Overlay FrameState::overlay(const std::string& title) const {
     const Separation* proof = proof_here();
     const std::uint64_t refined[2] = {proof != nullptr ? proof->refined[0].size() : t.refinements[0],
                                       proof != nullptr ? proof->refined[1].size() : t.refinements[1]};
-    o.counters = {{"wrapper A", render::group_digits(boundary_size(Side::a))},
-                  {"wrapper B", render::group_digits(boundary_size(Side::b))},
+    const auto name_of_wrapper = [&](Side side) {
+      const bool has = reps_[static_cast<std::size_t>(side)]->region_count() > 0;
+      return std::string(has ? "wrapper " : "no wrapper, ") + (side == Side::a ? "A" : "B");
+    };
+    o.counters = {{name_of_wrapper(Side::a), render::group_digits(boundary_size(Side::a))},
+                  {name_of_wrapper(Side::b), render::group_digits(boundary_size(Side::b))},
                   {"refined", render::group_digits(refined[0]) + " + " + render::group_digits(refined[1])},
                   {"face tests", render::group_digits(t.face_tests)},
                   {"contacts", render::group_digits(t.contacts)}};
@@ -379,7 +421,8 @@ std::string FrameState::short_caption() const {
   if (reps_.size() == 1) {
     const trace::Totals t = totals();
     const std::uint64_t refined = t.refinements[0] - t.coarsenings[0], all = reps_[0]->region_count();
-    const std::string state = refined == 0     ? "outermost wrapper"
+    const std::string state = all == 0         ? "the body itself, which has no wrappers"
+                              : refined == 0   ? "outermost wrapper"
                               : refined == all ? "the body itself"
                                                : render::group_digits(refined) + " of " +
                                                      render::counted(all, "region", "regions") + " refined";

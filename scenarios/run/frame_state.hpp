@@ -83,6 +83,14 @@ class FrameState {
   void add_construction(render::Overlay& o) const;
   std::string construction_caption() const;
   static std::string node_pair_text(const trace::Event& e);
+  /// Returns true unless other regions are isolated.
+  bool is_shown(const trace::RefinedRegion& r) const;
+  /// Says what the isolated regions are; empty if there are none.
+  std::string isolated_text() const;
+  /// Says which wrappers a step begins with.
+  std::string first_wrappers_text() const;
+  /// Says why a relation is undefined.
+  std::string open_text() const;
   std::string result_text() const;
   trace::Totals totals() const;  ///< Counts the events of the step so far.
 

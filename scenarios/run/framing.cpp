@@ -39,20 +39,42 @@ void add_contacts(const std::vector<const LrbRep*>& reps, const trace::Trace& tr
     }
 }
 
+/// Returns what a body shows: all its wrappers, with regions moved apart where they are; or the isolated
+/// regions, with some room round them where the rest is there too.
+std::vector<Eigen::Vector3d> shown_points(const LrbRep& rep, const std::vector<RegionId>& isolated,
+                                          bool alone, const spec::FrameSpec& spec) {
+  std::vector<Eigen::Vector3d> out;
+  if (alone) {
+    for (const RegionId r : isolated)
+      for (const FaceId face : rep.collector(r))
+        for (const VertexId v : rep.face(face)) out.push_back(rep.vertices()[v]);
+    if (!spec.ghost_rest || out.empty()) return out;
+    constexpr double kAround = 0.5;  // of the regions' size, on each side
+    Eigen::AlignedBox3d box;
+    for (const Eigen::Vector3d& x : out) box.extend(x);
+    const Eigen::Vector3d middle = box.center();
+    for (Eigen::Vector3d& x : out) x = middle + (1 + kAround) * (x - middle);
+    return out;
+  }
+  out = render::body_points(rep, Pose{});
+  for (RegionId r = 0; spec.explode > 0 && r < rep.region_count(); ++r) {
+    const Eigen::Vector3d way = render::exploded_way(rep, Pose{}, r, spec.explode);
+    for (const FaceId face : rep.collector(r))
+      for (const VertexId v : rep.face(face)) out.push_back(rep.vertices()[v] + way);
+  }
+  return out;
+}
+
 }  // namespace
 
 Framing frame_sequence(const std::vector<const LrbRep*>& reps, const trace::Trace& trace,
                        const std::vector<CollideResult>& results, const spec::FrameSpec& spec) {
-  const bool regions_alone = !spec.ghost_rest && !(spec.isolate[0].empty() && spec.isolate[1].empty());
+  const bool regions_alone = !(spec.isolate[0].empty() && spec.isolate[1].empty());
   Framing f;
   f.dim = reps[0]->dim();
   for (std::size_t i = 0; i < reps.size(); ++i) {
-    std::vector<Eigen::Vector3d> shown;
-    for (const RegionId r : spec.isolate[i])
-      for (const FaceId face : reps[i]->collector(r))
-        for (const VertexId v : reps[i]->face(face)) shown.push_back(reps[i]->vertices()[v]);
-    if (!regions_alone) shown = render::body_points(*reps[i], Pose{});
-    const std::vector<Eigen::Vector3d> body = extremes(shown);
+    const std::vector<Eigen::Vector3d> body =
+        extremes(shown_points(*reps[i], spec.isolate[i], regions_alone, spec));
     for (const trace::Step& step : trace.steps) {
       const Pose& pose = i == 0 ? step.pose_a : step.pose_b;
       for (const Eigen::Vector3d& p : body) f.points.push_back(pose.apply(p));

@@ -18,7 +18,8 @@ struct Framing {
   int dim = 3;
 };
 
-/// Collects what a sequence shows. Where `spec` shows regions alone and no ghosts, that is these regions.
+/// Collects what a sequence shows. Where `spec` isolates regions, that is these regions, with some room
+/// round them if the rest is there as a ghost; where it explodes bodies, regions as they are moved.
 Framing frame_sequence(const std::vector<const LrbRep*>& reps, const trace::Trace& trace,
                        const std::vector<CollideResult>& results, const spec::FrameSpec& spec);
 

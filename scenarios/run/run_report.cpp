@@ -43,6 +43,15 @@ std::size_t pseudo_pairs(const trace::Trace& trace) {
   }));
 }
 
+/// Returns the names of the bodies of which this holds: "A", "B" or "A and B".
+template <class Test>
+std::string sides_of(const RecordedRun& p, Test test) {
+  std::string out;
+  for (std::size_t i = 0; i < p.reps.size(); ++i)
+    if (test(*p.reps[i])) out += (out.empty() ? "" : " and ") + std::string(i == 0 ? "A" : "B");
+  return out;
+}
+
 std::vector<report::PageNumber> collision_numbers(const RecordedRun& p, const trace::Step& step) {
   const trace::StepResult& r = step.result;
   const auto at = "at step " + std::to_string(step.index);
@@ -56,6 +65,14 @@ std::vector<report::PageNumber> collision_numbers(const RecordedRun& p, const tr
   std::vector<report::PageNumber> out = {
       {"Relation", words(r.relation), at},
       {"Pairs of faces that meet", render::group_digits(r.pair_count), at}};
+  const std::string open = sides_of(p, [](const LrbRep& rep) { return !rep.closed(); });
+  if (r.relation == Relation::undefined && !open.empty())
+    out[0].note +=
+        "; " + open + (open.size() > 1 ? " are" : " is") + " open: nothing tells inside from outside";
+  if (const std::string bare = sides_of(p, [](const LrbRep& rep) { return rep.region_count() == 0; });
+      !bare.empty())
+    out.push_back(
+        {"Without wrapper", bare, "no region is built on it, and all of its faces are always shown"});
   if (const CollideRequest& request = p.trace->header.request; request.is_coarse()) {
     out.back().note +=
         "; of wrappers: " + render::group_digits(pseudo_pairs(*p.trace)) + " with a pseudo face";
@@ -92,9 +109,17 @@ bool same_as_contacts(const trace::Series& hits, const trace::Chart& chart) {
                      [&](const trace::Series& s) { return s.name == "contacts" && s.values == hits.values; });
 }
 
+/// Returns true for the curve of a wrapper that its body does not have.
+bool is_of_no_wrapper(const trace::Series& s, const RecordedRun& p) {
+  return s.unit == "faces" &&
+         ((s.name.ends_with(" A") && p.reps[0]->region_count() == 0) ||
+          (s.name.ends_with(" B") && p.reps.size() > 1 && p.reps[1]->region_count() == 0));
+}
+
 /// Makes charts of the trace's curves by unit: faces of the wrappers in one, counts in the other.
-std::vector<report::PageChart> charts_of(const trace::Chart& chart, report::PageCursor cursor,
-                                         const char* faces_title, const char* counts_title, bool stepped) {
+std::vector<report::PageChart> charts_of(const RecordedRun& p, const trace::Chart& chart,
+                                         report::PageCursor cursor, const char* faces_title,
+                                         const char* counts_title, bool stepped) {
   report::PageChart faces, counts;
   faces.title = faces_title;
   counts.title = counts_title;
@@ -103,6 +128,7 @@ std::vector<report::PageChart> charts_of(const trace::Chart& chart, report::Page
   for (const trace::Series& s : chart.series) {
     if (s.unit == "ms") continue;
     if (s.name == "hits" && same_as_contacts(s, chart)) continue;
+    if (is_of_no_wrapper(s, p)) continue;
     report::PageChart& target = s.unit == "faces" ? faces : counts;
     // There is no curve for a body that is missing, or for a kind of event that never came.
     if (std::none_of(s.values.begin(), s.values.end(), [](double v) { return v > 0; })) continue;
@@ -230,10 +256,10 @@ void add_mismatches(report::Page& page, const std::vector<std::string>& mismatch
 void add_charts(report::Page& page, const RecordedRun& p) {
   const bool two = p.reps.size() == 2;
   if (p.trace->steps.size() > 1)
-    page.charts = charts_of(trace::chart_over_steps(*p.trace), report::PageCursor::step,
+    page.charts = charts_of(p, trace::chart_over_steps(*p.trace), report::PageCursor::step,
                             "Largest wrappers, step by step", "Work and answer, step by step", false);
   std::vector<report::PageChart> by_event =
-      charts_of(trace::chart_over_events(*p.trace), report::PageCursor::event,
+      charts_of(p, trace::chart_over_events(*p.trace), report::PageCursor::event,
                 two ? "Wrappers, event by event" : "The wrapper, event by event",
                 "Work and answer, event by event", true);
   // Of one body each event refines one region: there is nothing to count.

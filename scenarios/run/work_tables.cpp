@@ -95,7 +95,10 @@ const std::vector<Quality>& qualities() {
       {"LRB-rep: layers", [](const LrbRep& r, const TreeQuality&) { return std::to_string(r.layer_count()); },
        ""},
       {"LRB-rep: faces of the outermost wrapper",
-       [](const LrbRep& r, const TreeQuality&) { return group_digits(r.outermost_faces().size()); }, "few"},
+       [](const LrbRep& r, const TreeQuality&) {
+         return r.region_count() == 0 ? "no wrapper" : group_digits(r.outermost_faces().size());
+       },
+       "few"},
   };
   return all;
 }

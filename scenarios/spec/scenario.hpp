@@ -112,6 +112,8 @@ struct FrameSpec {
     double zoom = 1;          ///< above 1: closer
     bool wrapper = true;      ///< false: the bodies alone, without the lids of their wrappers
     std::string title;
+    bool directed =
+        false;  ///< a call says from where to look, or how depth is shown: not for bodies in the plane
   };
   At at = At::step;
   std::uint32_t every = 1;            ///< steps, refinements or events between two frames

@@ -304,7 +304,7 @@ TEST_CASE("findings say what, how often and where, in one line each") {
   CHECK(lines[0] ==
         "box.obj: an edge has a face on one side only (3 times): edge (by its vertices) 0-2, 0-3, 2-3, "
         "counted from 0 "
-        "in file order; close the hole");
+        "in file order; close the hole (lrbscope close)");
   const Mesh many = open_cylinder(50);
   const MeshReport report = check_mesh(many);
   const std::string line = report.lines(many).at(0);

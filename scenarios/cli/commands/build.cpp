@@ -13,6 +13,7 @@
 #include "scenarios/bodies/body.hpp"
 #include "scenarios/bodies/hull_figures.hpp"
 #include "scenarios/bodies/level_json.hpp"
+#include "scenarios/bodies/region_figures.hpp"
 #include "scenarios/cli/command.hpp"
 #include "scenarios/cli/options.hpp"
 #include "scenarios/cli/progress.hpp"
@@ -21,6 +22,7 @@ namespace lrb::cli {
 namespace {
 
 struct BuildCommandOptions {
+  bodies::Corners corners = bodies::Corners::joined;
   std::string mesh, out;
   BuildOptions build;
   bool json = false, no_validate = false;
@@ -56,8 +58,8 @@ std::string as_text(const nlohmann::ordered_json& j, const ValidateReport* repor
 }
 
 int run_build(const BuildCommandOptions& o, const Globals& globals) {
-  Mesh mesh = read_mesh(o.mesh);
   std::vector<std::string> notes;
+  Mesh mesh = bodies::read_body(o.mesh, o.corners, notes);
   BuildOptions options = o.build;
   Progress progress("build", 0, globals.quiet);
   options.progress = [&](std::uint32_t pass, std::uint32_t faces) {
@@ -67,6 +69,7 @@ int run_build(const BuildCommandOptions& o, const Globals& globals) {
   const LrbRep rep = bodies::build_from_mesh(check(std::move(mesh)), options, notes);
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   progress.finish();
+  if (const std::string poor = bodies::poor_line(rep, o.build); !poor.empty()) notes.push_back(poor);
   note(globals, notes);
 
   nlohmann::ordered_json j = bodies::body_figures(rep);
@@ -74,7 +77,7 @@ int run_build(const BuildCommandOptions& o, const Globals& globals) {
     j["levels"] = bodies::level_json(bodies::level_figures(rep, bodies::kLevelShares, o.build.threads));
   j["seconds"] = seconds;
   j["peak_bytes"] = peak_bytes();
-  j["notes"] = notes;  // what was done to the mesh: nothing is done in silence
+  j["notes"] = notes;  // what was done to the mesh, for nothing is done in silence, and what is poor
   ValidateReport report;
   if (o.no_validate) {
     j["valid"] = nullptr;
@@ -105,6 +108,7 @@ Command add_build(CLI::App& root, const Globals& globals) {
   add_build_options(*app, o->build);
   app->add_flag("--json", o->json, "Print the figures as one JSON object");
   app->add_flag("--no-validate", o->no_validate, "Skip the proof that the LRB-rep keeps its promises");
+  add_join_option(*app, o->corners);
   return {app, [o, &globals] { return run_build(*o, globals); }};
 }
 

@@ -18,6 +18,7 @@ namespace lrb::cli {
 namespace {
 
 struct CollideOptions {
+  bodies::Corners corners = bodies::Corners::joined;
   std::string a, b, folder, poses, approach;
   CollideRequest request;
   PictureOptions picture;
@@ -104,7 +105,7 @@ int run_collide(const CollideOptions& o, const Globals& globals) {
   std::vector<bodies::LoadedBody> bodies;
   for (const std::string& path : {o.a, o.b}) {
     progress("build", bodies.size(), 2);
-    bodies.push_back(bodies::load_body(path));
+    bodies.push_back(bodies::load_body(path, {}, o.corners));
   }
   if (bodies[0].rep.dim() != bodies[1].rep.dim())
     throw InputError(o.a + " and " + o.b + ": one is 2D, the other 3D: give two of a kind");
@@ -135,6 +136,7 @@ Command add_collide(CLI::App& root, const Globals& globals) {
   add_picture_options(*app, o->picture);
   add_animation_option(*app, o->picture);
   app->add_flag("--json", o->json, "Print the summary instead of the page's path");
+  add_join_option(*app, o->corners);
   return {app, [o, &globals] { return run_collide(*o, globals); }};
 }
 

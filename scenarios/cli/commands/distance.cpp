@@ -15,6 +15,7 @@ namespace lrb::cli {
 namespace {
 
 struct DistanceOptions {
+  bodies::Corners corners = bodies::Corners::joined;
   std::string a, b, poses;
   DistanceRequest request;
   std::uint32_t repeat = 0;
@@ -64,7 +65,7 @@ std::string line_of(std::size_t pose, const DistanceResult& result, const Distan
 int run_distance(const DistanceOptions& o, const Globals& globals) {
   const PoseLines list(o.poses);
   check_request(o.request);
-  const bodies::LoadedBody a = bodies::load_faces(o.a), b = bodies::load_faces(o.b);
+  const bodies::LoadedBody a = bodies::load_faces(o.a, o.corners), b = bodies::load_faces(o.b, o.corners);
   note(globals, a.notes);
   note(globals, b.notes);
   check_query(a.rep, Pose{}, b.rep, Pose{});
@@ -104,6 +105,7 @@ Command add_distance(CLI::App& root, const Globals& globals) {
                   "Repeat each pose's query N times, and add the median time in microseconds")
       ->check(CLI::Range(1, 1000000))
       ->type_name("N");
+  add_join_option(*app, o->corners);
   return {app, [o, &globals] { return run_distance(*o, globals); }};
 }
 

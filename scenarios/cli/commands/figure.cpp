@@ -118,6 +118,7 @@ spec::FrameSpec frame_spec(const FigureOptions& o, const Source& source) {
   PictureOptions picture = o.picture;
   picture.dpi.reset();  // it is the figure's
   apply(picture, frames);
+  run::check_views(frames.views, source.recording.bodies[0].rep.dim());
   if (source.own_view && picture.camera.from.empty()) {
     if (frames.views.empty()) frames.views.emplace_back();
     for (spec::FrameSpec::View& view : frames.views)

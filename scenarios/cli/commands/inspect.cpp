@@ -10,17 +10,21 @@
 #include "engine/core/file_bytes.hpp"
 #include "engine/lrb/lrb_file.hpp"
 #include "engine/lrb/validate.hpp"
+#include "engine/mesh/boundary_loops.hpp"
 #include "engine/mesh/checked_mesh.hpp"
 #include "engine/mesh/io/mesh_io.hpp"
 #include "scenarios/bodies/body.hpp"
 #include "scenarios/bodies/hull_figures.hpp"
+#include "scenarios/bodies/region_figures.hpp"
 #include "scenarios/cli/command.hpp"
 #include "scenarios/cli/options.hpp"
+#include "scenarios/cli/region_tables.hpp"
 #include "scenarios/io/files.hpp"
 #include "scenarios/run/body_sheet.hpp"
 #include "scenarios/run/chosen_view.hpp"
 #include "scenarios/run/dirt_picture.hpp"
 #include "scenarios/run/frame_job.hpp"
+#include "scenarios/run/region_sheet.hpp"
 
 namespace lrb::cli {
 namespace {
@@ -28,9 +32,13 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 struct InspectOptions {
+  bodies::Corners corners = bodies::Corners::joined;
   std::string file, picture, drawing;
   PictureOptions pictures;
   bool validate = false, render = false, json = false;
+  bool regions = false, tried = false;
+  bodies::RegionOrder sort = bodies::RegionOrder::waste;
+  unsigned threads = 0;
 };
 
 Json box_json(const std::vector<Eigen::Vector3d>& vertices) {
@@ -41,7 +49,45 @@ Json box_json(const std::vector<Eigen::Vector3d>& vertices) {
           {"high", {box.max().x(), box.max().y(), box.max().z()}}};
 }
 
-Json mesh_json(const Mesh& mesh, const MeshReport& report) {
+Json loops_json(const std::vector<BoundaryLoop>& loops) {
+  Json out = Json::array();
+  for (const BoundaryLoop& l : loops) {
+    const Eigen::Vector3d &low = l.box.min(), &high = l.box.max();
+    Json vertices = Json::array();
+    for (const VertexId v : l.vertices) vertices.push_back(v.value());
+    out.push_back({{"edges", l.edges()},
+                   {"length", l.length},
+                   {"low", {low.x(), low.y(), low.z()}},
+                   {"high", {high.x(), high.y(), high.z()}},
+                   {"planar", l.planar},
+                   {"is_loop", l.is_loop},
+                   {"vertices", std::move(vertices)}});
+  }
+  return out;
+}
+
+/// Returns boundary loops for people: the longest, a line each.
+std::string loops_text(const Json& loops) {
+  constexpr std::size_t kMostLines = 20;
+  constexpr int kDigits = 4;
+  std::size_t edges = 0;
+  for (const Json& l : loops) edges += l["edges"].get<std::size_t>();
+  std::ostringstream out;
+  out << "boundary: " << edges << " open edges in " << loops.size()
+      << (loops.size() == 1 ? " loop" : " loops") << (loops.empty() ? "\n" : ", the longest first:\n");
+  for (std::size_t i = 0; i < std::min(loops.size(), kMostLines); ++i) {
+    const Json& l = loops[i];
+    out << "  " << i << ": " << l["edges"] << " edges, length " << for_people(l["length"], kDigits) << ", "
+        << (l["planar"] ? "flat" : "not flat") << (l["is_loop"] ? "" : ", interrupted") << ", from "
+        << for_people(l["low"], kDigits) << " to " << for_people(l["high"], kDigits) << "\n";
+  }
+  if (loops.size() > kMostLines) out << "  and " << loops.size() - kMostLines << " more: --json lists all\n";
+  return out.str();
+}
+
+Json mesh_json(const CheckedMesh& checked, const std::vector<BoundaryLoop>& loops) {
+  const Mesh& mesh = checked.mesh();
+  const MeshReport& report = checked.report();
   Json j;
   j["file"] = mesh.name;
   j["kind"] = "mesh";
@@ -56,6 +102,7 @@ Json mesh_json(const Mesh& mesh, const MeshReport& report) {
   j["buildable"] = report.when_turned().buildable();  // because `build` turns it
   j["queryable"] = report.queryable();
   j["findings"] = report.lines(mesh);
+  j["boundary_loops"] = loops_json(loops);
   return j;
 }
 
@@ -71,12 +118,79 @@ Json layers_json(const LrbRep& rep) {
   return out;
 }
 
+/// Returns how pictures are to be drawn; of findings (`drawing`), as high as they need unless a size is given.
+spec::FrameSpec sheet_frames(const InspectOptions& o, bool drawing) {
+  const CameraOptions& camera = o.pictures.camera;
+  const bool any = !o.pictures.size.empty() || o.pictures.dpi || !camera.from.empty() ||
+                   !camera.look_at.empty() || !camera.up.empty() || camera.zoom || camera.orthographic;
+  if (any && !o.render && o.drawing.empty())
+    throw InputError(
+        "--size, --dpi and where to look from are for --render and --draw: add one, or leave them out");
+  spec::FrameSpec frames;
+  frames.width = drawing ? run::kDirtSheetWidth : run::kBodySheetWidth;
+  frames.height = drawing ? 0 : run::kBodySheetHeight;
+  apply(o.pictures, frames);
+  if (frames.height > 0) run::check_frame_size(frames);
+  return frames;
+}
+
+void draw_findings(const run::DirtyMesh& dirty, const InspectOptions& o, Json& j,
+                   std::vector<std::string>& notes) {
+  const std::string& path = o.drawing;
+  const std::string folder = std::filesystem::path(path).parent_path().string();
+  const auto& findings = dirty.report.findings;
+  const bool any =
+      std::any_of(findings.begin(), findings.end(), [](const MeshFinding& f) { return f.count > 0; });
+  const spec::FrameSpec frames = sheet_frames(o, true);
+  run::check_views(frames.views, dirty.mesh.dim);
+  if (any && !folder.empty()) io::make_folder(folder);
+  if (any && run::draw_dirt(dirty, path, frames)) {
+    j["drawing"] = path;
+    return;
+  }
+  j["drawing"] = nullptr;
+  notes.push_back(dirty.mesh.name + ": nothing to draw: there are no findings; " + path + " was not written");
+}
+
+/// Measures the regions, and draws the worst ten if pictures are asked for (`picture` is not empty).
+void tell_regions(const LrbRep& rep, const InspectOptions& o, const spec::FrameSpec& frames,
+                  const std::string& picture, Json& j) {
+  if (rep.region_count() == 0)
+    throw InputError(rep.name() + ": has no regions to list: it is open, or no LRB-rep can be made of it");
+  const std::vector<bodies::RegionFigures> regions = bodies::region_figures(rep, o.sort, o.threads);
+  j["total_waste"] = bodies::total_waste(regions);
+  j["region_figures"] = regions_json(regions);
+  if (!picture.empty()) {
+    constexpr std::size_t kWorst = 10;
+    std::vector<run::ShownRegion> shown;
+    for (std::size_t i = 0; i < std::min(kWorst, regions.size()); ++i)
+      shown.push_back({regions[i].region, region_caption(regions[i])});
+    run::draw_region_sheet(rep, bodies::waste_over_faces(rep, regions), "a face's share of the waste", shown,
+                           picture, frames);
+  }
+  if (!o.tried) return;
+  const std::vector<bodies::Trial> trials = bodies::try_settings(rep, o.threads);
+  j["trials"] = trials_json(trials);
+  j["advice"] = bodies::advice(trials);
+}
+
+void look_broadside(const LrbRep& rep, spec::FrameSpec& frames) {
+  if (frames.views.empty()) frames.views.emplace_back();
+  frames.views[0].from = run::broadside(run::box_of(rep), frames.views[0].up);
+}
+
 std::string as_text(const Json& j) {
   std::ostringstream out;
   for (const auto& [key, value] : j.items()) {
-    if (value.is_array() && (key == "findings" || key == "violations")) {
+    if (value.is_array() && (key == "findings" || key == "violations" || key == "advice")) {
       out << key << (value.empty() ? ": none\n" : ":\n");
       for (const auto& line : value) out << "  " << line.get<std::string>() << "\n";
+    } else if (key == "boundary_loops") {
+      if (!value.empty()) out << loops_text(value);
+    } else if (key == "region_figures") {
+      out << regions_text(value);
+    } else if (key == "trials") {
+      out << trials_text(value);
     } else if (key == "layers_from_the_solid") {
       out << "layers, from the solid outward:\n";
       for (const auto& l : value)
@@ -90,42 +204,8 @@ std::string as_text(const Json& j) {
   return out.str();
 }
 
-void draw_findings(const Mesh& mesh, const MeshReport& report, const std::string& path, Json& j,
-                   std::vector<std::string>& notes) {
-  const std::string folder = std::filesystem::path(path).parent_path().string();
-  const bool any = std::any_of(report.findings.begin(), report.findings.end(),
-                               [](const MeshFinding& f) { return f.count > 0; });
-  if (any && !folder.empty()) io::make_folder(folder);
-  if (any && run::draw_dirt(mesh, report, path)) {
-    j["drawing"] = path;
-    return;
-  }
-  j["drawing"] = nullptr;
-  notes.push_back(mesh.name + ": nothing to draw: there are no findings; " + path + " was not written");
-}
-
-/// Returns how the body is to be drawn.
-spec::FrameSpec sheet_frames(const InspectOptions& o) {
-  const CameraOptions& camera = o.pictures.camera;
-  const bool any = !o.pictures.size.empty() || o.pictures.dpi || !camera.from.empty() ||
-                   !camera.look_at.empty() || !camera.up.empty() || camera.zoom || camera.orthographic;
-  if (any && !o.render)
-    throw InputError("--size, --dpi and where to look from are for --render: add it, or leave them out");
-  spec::FrameSpec frames;
-  frames.width = run::kBodySheetWidth;
-  frames.height = run::kBodySheetHeight;
-  apply(o.pictures, frames);
-  run::check_frame_size(frames);
-  return frames;
-}
-
-void look_broadside(const LrbRep& rep, spec::FrameSpec& frames) {
-  if (frames.views.empty()) frames.views.emplace_back();
-  frames.views[0].from = run::broadside(run::box_of(rep), frames.views[0].up);
-}
-
 int run_inspect(const InspectOptions& o, const Globals& globals) {
-  spec::FrameSpec frames = sheet_frames(o);
+  spec::FrameSpec frames = sheet_frames(o, false);
   Json j;
   std::unique_ptr<LrbRep> rep;
   std::vector<std::string> notes;
@@ -140,13 +220,14 @@ int run_inspect(const InspectOptions& o, const Globals& globals) {
     j.update(bodies::body_figures(*rep));
     j["layers_from_the_solid"] = layers_json(*rep);
   } else {
-    CheckedMesh mesh = check(read_mesh(o.file));
+    CheckedMesh mesh = check(bodies::read_body(o.file, o.corners, notes));
     mesh.find_self_intersections();
-    j = mesh_json(mesh.mesh(), mesh.report());
-    if (!o.drawing.empty()) draw_findings(mesh.mesh(), mesh.report(), o.drawing, j, notes);
+    const std::vector<BoundaryLoop> loops = find_boundary_loops(mesh.mesh(), mesh.use());
+    j = mesh_json(mesh, loops);
+    if (!o.drawing.empty()) draw_findings({mesh.mesh(), mesh.report(), loops}, o, j, notes);
     if (o.validate)
       rep = std::make_unique<LrbRep>(bodies::build_from_mesh(std::move(mesh), {}, notes));
-    else if (o.render)
+    else if (o.render || o.regions)
       rep = std::make_unique<LrbRep>(bodies::body_of_mesh(std::move(mesh)).rep);
   }
   bool valid = true;
@@ -159,14 +240,18 @@ int run_inspect(const InspectOptions& o, const Globals& globals) {
     j["violations"] = report.violations;
     j["volume_error"] = report.volume_error;
   }
+  std::string picture;
   if (o.render) {
-    const std::string picture =
-        o.picture.empty() ? "out/" + std::filesystem::path(o.file).stem().string() + ".png" : o.picture;
+    run::check_views(frames.views, rep->dim());
+    picture = o.picture.empty() ? "out/" + std::filesystem::path(o.file).stem().string() +
+                                      (o.regions ? "-regions.png" : ".png")
+                                : o.picture;
     io::make_folder(std::filesystem::path(picture).parent_path().string());
     if (o.pictures.camera.from.empty()) look_broadside(*rep, frames);
-    run::draw_body_sheet(*rep, picture, frames);
+    if (!o.regions) run::draw_body_sheet(*rep, picture, frames);
     j["picture"] = picture;
   }
+  if (o.regions) tell_regions(*rep, o, frames, picture, j);
   note(globals, notes);
   print(o.json ? one_line(j) : as_text(j));
   return valid ? kOk : kMismatch;
@@ -179,7 +264,16 @@ Command add_inspect(CLI::App& root, const Globals& globals) {
   app->add_option("FILE", o->file, "Mesh or .lrb file")->required();
   app->add_flag("--validate", o->validate,
                 "Prove that the LRB-rep keeps its promises (a mesh is built first); exit code 1 if not");
-  app->add_flag("--render", o->render, "Draw the body, its layers and its outermost wrapper");
+  app->add_flag(
+      "--render", o->render,
+      "Draw the body, its layers and its outermost wrapper; with --regions, where regions waste most and the "
+      "worst ten");
+  auto* regions =
+      app->add_flag("--regions", o->regions, "List the regions (a mesh is built first), the worst first");
+  add_choice<bodies::RegionOrder>(*app, "--sort", o->sort, "What is worst [waste]");
+  app->add_flag("--try", o->tried, "With --regions: build it with other settings, and tell which help")
+      ->needs(regions);
+  app->get_option("--sort")->needs(regions);
   app->add_option("--draw", o->drawing,
                   "Draw what is wrong with a mesh, to this picture: the first offenders are pointed out")
       ->type_name("FILE.png");
@@ -187,6 +281,7 @@ Command add_inspect(CLI::App& root, const Globals& globals) {
   add_size_options(*app, o->pictures);
   add_camera_options(*app, o->pictures.camera);
   app->add_flag("--json", o->json, "Print one JSON object");
+  add_join_option(*app, o->corners);
   return {app, [o, &globals] { return run_inspect(*o, globals); }};
 }
 

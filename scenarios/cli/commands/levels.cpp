@@ -15,6 +15,7 @@ namespace lrb::cli {
 namespace {
 
 struct LevelsOptions {
+  bodies::Corners corners = bodies::Corners::joined;
   std::string body, folder, up;
   std::vector<double> shares;
   BuildOptions build;
@@ -35,7 +36,7 @@ std::string as_table(const std::vector<bodies::LevelFigures>& levels, const LrbR
 }
 
 int run_levels(const LevelsOptions& o, const Globals& globals) {
-  const bodies::LoadedBody body = bodies::load_body(o.body, o.build);
+  const bodies::LoadedBody body = bodies::load_body(o.body, o.build, o.corners);
   levels::LevelReportOptions report{o.shares, {}, o.build.threads, globals.command_line};
   if (!o.up.empty()) report.view = turned_up(report.view, o.up[0] - 'x');
   if (!o.folder.empty()) levels::check_drawable(body.rep, report.shares);
@@ -74,6 +75,7 @@ Command add_levels(CLI::App& root, const Globals& globals) {
   o->build.threads = 0;
   add_build_options(*app, o->build);
   app->add_flag("--json", o->json, "As one JSON object");
+  add_join_option(*app, o->corners);
   return {app, [o, &globals] { return run_levels(*o, globals); }};
 }
 

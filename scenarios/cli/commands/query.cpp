@@ -19,6 +19,7 @@ namespace lrb::cli {
 namespace {
 
 struct QueryOptions {
+  bodies::Corners corners = bodies::Corners::joined;
   std::string a, b, poses, draw;
   CollideRequest request;
   bool pairs = false;
@@ -119,7 +120,8 @@ int run_query(const QueryOptions& o, const Globals& globals) {
   const PoseLines list(o.poses);
   const std::vector<Pose>& poses = list.poses;
   const auto load = [&](const std::string& path) {
-    return needs_regions(o.request) ? bodies::load_body(path) : bodies::load_faces(path);
+    return needs_regions(o.request) ? bodies::load_body(path, {}, o.corners)
+                                    : bodies::load_faces(path, o.corners);
   };
   const bodies::LoadedBody a = load(o.a), b = load(o.b);
   note(globals, a.notes);
@@ -163,6 +165,7 @@ Command add_query(CLI::App& root, const Globals& globals) {
                   "Repeat each pose's query N times, and add the median time in microseconds")
       ->check(CLI::Range(1, 1000000))
       ->type_name("N");
+  add_join_option(*app, o->corners);
   return {app, [o, &globals] { return run_query(*o, globals); }};
 }
 

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <charconv>
 #include <filesystem>
 #include <memory>
@@ -28,7 +29,7 @@ struct RenderOptions {
   PictureOptions picture;
   std::uint32_t montage = 0, columns = 0;
   bool close_up = false, hide_rest = false;
-  std::vector<std::string> regions;
+  std::vector<std::string> regions, layers;
 };
 
 constexpr const char* kFromTrace = "Drawn from a recorded run.";
@@ -39,24 +40,56 @@ std::string output_folder(const RenderOptions& o) {
              : o.folder;
 }
 
-/// Reads regions: "12" and "a12" are region 12 of A, "b12" is one of B.
+/// A number of one of the bodies, as options name it.
+struct OfBody {
+  std::size_t body = 0;
+  std::uint32_t number = 0;
+};
+
+/// Reads a number: "12" and "a12" are A's, "b12" is B's. `what` is numbered, and body b has counts[b] of it.
+OfBody read_of_body(const std::string& option, const std::string& what, const std::string& text,
+                    const std::vector<std::uint32_t>& counts) {
+  const bool named = text.starts_with('a') || text.starts_with('b');
+  OfBody out;
+  out.body = text.starts_with('b') ? 1 : 0;
+  const char *first = text.data() + (named ? 1 : 0), *last = text.data() + text.size();
+  const auto [end, error] = std::from_chars(first, last, out.number);
+  if (error != std::errc() || end != last)
+    throw InputError(option + ": expected a " + what + "'s number, or a or b and the number, found " +
+                     printable_name(text));
+  if (out.body >= counts.size()) throw InputError(option + " " + text + ": there is no body B in this trace");
+  if (out.number >= counts[out.body])
+    throw InputError(option + " " + text + ": the body has " + std::to_string(counts[out.body]) + " " + what +
+                     "s, numbered from 0");
+  return out;
+}
+
+/// Shows the regions alone that are asked for, and says of each what it is: once, unless frames are asked for.
 void isolate(const RenderOptions& o, const std::vector<bodies::LoadedBody>& bodies, spec::FrameSpec& spec) {
+  std::vector<std::uint32_t> regions, layers;
+  for (const bodies::LoadedBody& body : bodies) {
+    regions.push_back(body.rep.region_count());
+    layers.push_back(body.rep.layer_count());
+  }
   for (const std::string& text : o.regions) {
-    const bool named = text.starts_with('a') || text.starts_with('b');
-    const std::size_t body = text.starts_with('b') ? 1 : 0;
-    const char *first = text.data() + (named ? 1 : 0), *last = text.data() + text.size();
-    std::uint32_t region = 0;
-    const auto [end, error] = std::from_chars(first, last, region);
-    if (error != std::errc() || end != last)
-      throw InputError("--region: expected a region's number, or a or b and the number, found " +
-                       printable_name(text));
-    if (body >= bodies.size() || region >= bodies[body].rep.region_count())
-      throw InputError("--region " + text + ": " +
-                       (body < bodies.size()
-                            ? "the body has " + std::to_string(bodies[body].rep.region_count()) +
-                                  " regions, numbered from 0"
-                            : "there is no body B in this trace"));
-    spec.isolate[body].emplace_back(region);
+    const OfBody r = read_of_body("--region", "region", text, regions);
+    spec.isolate[r.body].emplace_back(r.number);
+  }
+  for (const std::string& text : o.layers) {
+    const OfBody layer = read_of_body("--layer", "layer", text, layers);
+    const LrbRep& rep = bodies[layer.body].rep;
+    for (RegionId r = 0; r < rep.region_count(); ++r)
+      if (rep.layer(r) == layer.number) spec.isolate[layer.body].push_back(r);
+  }
+  if (o.regions.empty() && o.layers.empty()) return;
+  for (std::vector<RegionId>& of_body : spec.isolate) {
+    std::sort(of_body.begin(), of_body.end());
+    of_body.erase(std::unique(of_body.begin(), of_body.end()), of_body.end());
+  }
+  if (o.events.empty() && !o.picture.at) {
+    spec.at = spec::FrameSpec::At::events;
+    spec.events = {0};
+    if (o.montage == 0) spec.montage = 0;
   }
   spec.ghost_rest = !o.hide_rest;
 }
@@ -90,6 +123,7 @@ void refuse_for_crowd(const RenderOptions& o) {
       {o.montage > 0, "--montage"},
       {o.columns > 0, "--columns"},
       {!o.regions.empty(), "--region"},
+      {!o.layers.empty(), "--layer"},
       {o.hide_rest, "--no-ghost"},
       {o.picture.svg.value_or(false), "--format svg"},
       {o.picture.colour_by.has_value(), "--colour-by"},
@@ -179,10 +213,14 @@ Command add_render(CLI::App& root, const Globals& globals) {
       ->type_name("N");
   app->add_flag("--close-up", o->close_up, "Add a second view, of the contact");
   app->add_option("--region", o->regions,
-                  "Show only these regions (N or aN of A, bN of B), and the rest as a ghost")
+                  "Show only these regions (N or aN of A, bN of B), close up, and the rest as a ghost")
       ->delimiter(',')
       ->type_name("N,N,...");
-  app->add_flag("--no-ghost", o->hide_rest, "With --region: leave out the rest");
+  app->add_option("--layer", o->layers,
+                  "Show only the regions of these layers (K or aK of A, bK of B; 0 lies on the body)")
+      ->delimiter(',')
+      ->type_name("K,K,...");
+  app->add_flag("--no-ghost", o->hide_rest, "With --region or --layer: leave out the rest");
   add_picture_options(*app, o->picture);
   add_animation_option(*app, o->picture);
   return {app, [o, &globals] { return run_render(*o, globals); }};

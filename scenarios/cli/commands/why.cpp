@@ -25,6 +25,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 struct WhyOptions {
+  bodies::Corners corners = bodies::Corners::joined;
   std::string a, b, poses, run, picture;
   std::size_t pose = 0;
   std::optional<std::uint32_t> step;
@@ -273,7 +274,8 @@ int run_why(const WhyOptions& o, const Globals& globals) {
   }
   if (o.b.empty()) throw InputError("why: expected two bodies, A and B, or --run with a step of a run");
   const Pose pose = pose_of(o);
-  const bodies::LoadedBody a = bodies::load_body(o.a), b = bodies::load_body(o.b);
+  const bodies::LoadedBody a = bodies::load_body(o.a, {}, o.corners),
+                           b = bodies::load_body(o.b, {}, o.corners);
   note(globals, a.notes);
   note(globals, b.notes);
   return explain(o, {a.rep, b.rep, {}, pose});
@@ -302,6 +304,7 @@ Command add_why(CLI::App& root, const Globals& globals) {
                   "Draw the two faces with what is about them, or without --pair what parts the bodies")
       ->type_name("FILE.png");
   app->add_flag("--json", o->json, "Print one JSON object");
+  add_join_option(*app, o->corners);
   return {app, [o, &globals] { return run_why(*o, globals); }};
 }
 

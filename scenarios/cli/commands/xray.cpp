@@ -17,6 +17,7 @@ namespace lrb::cli {
 namespace {
 
 struct XrayOptions {
+  bodies::Corners corners = bodies::Corners::joined;
   std::string a, b, method = "fcl", poses, folder;
   PictureOptions picture;
 };
@@ -70,7 +71,7 @@ int run_xray(const XrayOptions& o, const Globals& globals) {
   std::vector<bodies::LoadedBody> bodies;
   for (const std::string& path : {o.a, o.b}) {
     progress("build", bodies.size(), 2);
-    bodies.push_back(bodies::load_body(path));
+    bodies.push_back(bodies::load_body(path, {}, o.corners));
     if (bodies.back().rep.dim() != 3)
       throw InputError(printable_name(path) + ": a 2D body; the other engines answer for 3D bodies only");
   }
@@ -101,6 +102,7 @@ Command add_xray(CLI::App& root, const Globals& globals) {
       ->required();
   app->add_option("-o,--output", o->folder, "Folder to write to [out/xray-METHOD]")->type_name("DIR");
   add_picture_options(*app, o->picture);
+  add_join_option(*app, o->corners);
   return {app, [o, &globals] { return run_xray(*o, globals); }};
 }
 

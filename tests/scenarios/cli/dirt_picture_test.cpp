@@ -3,6 +3,7 @@
 #include <doctest/doctest.h>
 #include <nlohmann/json.hpp>
 
+#include "engine/mesh/checked_mesh.hpp"
 #include "engine/mesh/io/mesh_io.hpp"
 #include "render/dirt.hpp"
 #include "render/palette.hpp"
@@ -76,7 +77,7 @@ TEST_CASE("the picture shows each kind of dirt in its colour") {
     CAPTURE(std::string(d.kind));
     const Folder folder;
     write_mesh(d.mesh, folder / "m.obj");
-    const Outcome o = run(folder, {"inspect", "m.obj", "--json", "--draw", "new/m.png"});
+    const Outcome o = run(folder, {"inspect", "m.obj", "--json", "--no-join", "--draw", "new/m.png"});
     CAPTURE(o.err);
     REQUIRE(o.code == 0);
     CHECK(o.err.empty());
@@ -87,6 +88,45 @@ TEST_CASE("the picture shows each kind of dirt in its colour") {
       CHECK(pixels_of(image, colour) > 40);
     }
   }
+}
+
+TEST_CASE("all rims are drawn, however many edges are open, and the picture is as large as asked") {
+  const Folder folder;
+  // Every hundredth face is missing: 13 holes, of which the first eight open edges show three.
+  const Mesh ball = icosphere(3);
+  std::set<FaceId> gone;
+  for (std::uint32_t f = 0; f < ball.face_count(); f += 100) gone.insert(FaceId(f));
+  write_mesh(without_faces(ball, gone), folder / "m.obj");
+  write_mesh(without_faces(ball, {0}), folder / "one.obj");
+  const auto drawn = [&](const std::string& mesh, std::vector<std::string> more) {
+    more.insert(more.begin(), {"inspect", mesh, "--json", "--draw", "m.png"});
+    const Outcome o = run(folder, more);
+    CAPTURE(o.err);
+    REQUIRE(o.code == 0);
+    CHECK(json::parse(o.out)["boundary_loops"].size() == (mesh == "one.obj" ? 1 : gone.size()));
+    return render::read_png(folder / "m.png").image;
+  };
+  const render::Image all = drawn("m.obj", {"--from", "0,-1,0.2"}),
+                      one = drawn("one.obj", {"--from", "0,-1,0.2"});
+  CHECK(all.width() == 1600);
+  const auto whole = [](const render::Image& image) {  // the left half: the first of two panels
+    std::size_t count = 0;
+    for (int y = 0; y < image.height() * 7 / 8; ++y)
+      for (int x = 0; x < image.width() / 2; ++x) count += image.at(x, y) == render::palette::kVermillion;
+    return count;
+  };
+  CHECK(whole(all) > 3 * whole(one));
+  const render::Image small = drawn("m.obj", {"--size", "900x500"});
+  CHECK(small.width() == 900);
+  CHECK(small.height() == 500);
+}
+
+TEST_CASE("open edges are counted by loops") {
+  const Mesh m = without_faces(icosphere(1), {7, 40});
+  const MeshReport report = check_mesh(m);
+  const std::vector<BoundaryLoop> loops = find_boundary_loops(m, examine(m).use);
+  CHECK(render::dirt::caption(MeshFault::open_edge, report[MeshFault::open_edge], 3, loops) ==
+        "6 open edges in 2 loops, of 3 and 3");
 }
 
 TEST_CASE("a clean mesh says that there is nothing to draw, and no picture is written") {

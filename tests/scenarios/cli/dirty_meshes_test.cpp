@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "engine/mesh/io/mesh_io.hpp"
+#include "engine/mesh/join_corners.hpp"
 #include "engine/query/brute_force.hpp"
 #include "engine/query/collide.hpp"
 #include "scenarios/bodies/shapes/shapes.hpp"
@@ -164,10 +165,10 @@ std::vector<Row> rows_3d() {
        Build::refused,
        kNone,
        {0.2, 0.2, 0.2}},
-      {"duplicate vertices",
-       as_soup(ball),
-       {"an edge has a face on one side only (240 times)", meet,
-        "two vertices lie in one place (198 times): vertex "},
+      {"duplicate vertices", as_soup(ball), {}, Build::done, kHeld},
+      {"duplicate vertices and a hole",
+       as_soup(without_faces(ball, {7})),
+       {"an edge has a face on one side only (3 times): edge (by its vertices) "},
        Build::refused,
        kNone},
       {"unused vertices",
@@ -296,10 +297,16 @@ void check_pairs(const json& answer, const Mesh& a, const Mesh& b, const Pose& p
   CHECK(answer["fingerprint"] == trace::to_hex(fingerprint(slow.pairs)));
 }
 
+bool is_joined(const Row& row) {
+  Mesh m = row.mesh;
+  return join_corners(m).any();
+}
+
 void check_inspect(const Folder& folder, const Row& row) {
   const Outcome o = run(folder, {"inspect", "m.obj", "--json"});
   REQUIRE(o.code == 0);
-  CHECK(o.err.empty());
+  CHECK(o.err.starts_with(is_joined(row) ? "note: m.obj: joined corners in exactly the same place: " : ""));
+  CHECK(o.error_lines() == is_joined(row));
   const json j = json::parse(o.out);
   CAPTURE(j["findings"].dump(1));
   CHECK(j["findings"].size() == row.findings.size());
@@ -328,7 +335,11 @@ void check_build(const Folder& folder, const Row& row) {
   const bool turned = std::any_of(row.findings.begin(), row.findings.end(), [](const std::string& f) {
     return f.starts_with("the body is inside out");
   });
-  CHECK(j["notes"].size() == (turned ? 1 : 0));
+  const auto of_the_mesh = std::count_if(j["notes"].begin(), j["notes"].end(), [](const json& note) {
+    const auto text = note.get<std::string>();
+    return text.find(": joined ") != std::string::npos || text.find(": turned ") != std::string::npos;
+  });
+  CHECK(of_the_mesh == int{turned} + int{is_joined(row)});
   std::filesystem::remove(folder / "m.lrb");
 }
 
@@ -366,6 +377,29 @@ void check_row(const Row& row) {
 
 TEST_CASE("dirt, kind by kind: inspect, build, query") {
   for (const Row& row : rows_3d()) check_row(row);
+}
+
+TEST_CASE("corners in one place are kept apart if that is asked for") {
+  const Folder folder;
+  write_mesh(as_soup(icosphere(1)), folder / "m.obj");
+  const Outcome o = run(folder, {"inspect", "m.obj", "--json", "--no-join"});
+  CHECK(o.err.empty());
+  const json findings = json::parse(o.out)["findings"];
+  REQUIRE(findings.size() == 3);
+  CHECK(findings[0].get<std::string>().starts_with("m.obj: an edge has a face on one side only (240 times)"));
+  CHECK(findings[2].get<std::string>().starts_with("m.obj: two vertices lie in one place (198 times)"));
+  check_refused(folder, {"build", "m.obj", "--no-join"});
+  std::string notes;
+  folder.write("pose.txt", pose_line(Pose::translation({0, 0, 0.4})));
+  for (const bool apart : {false, true}) {
+    std::vector<std::string> words = {"query", "m.obj", "m.obj", "--poses", "pose.txt"};
+    if (apart) words.emplace_back("--no-join");
+    const Outcome q = run(folder, words);
+    CHECK((q.err.find("joined corners") == std::string::npos) == apart);
+    const json answer = json::parse(q.out);
+    check_pairs(answer, as_soup(icosphere(1)), as_soup(icosphere(1)), Pose::translation({0, 0, 0.4}));
+    CHECK(answer["relation"] == "crossing");
+  }
 }
 
 TEST_CASE("dirt in the plane, kind by kind: inspect, build, query") {

@@ -1,0 +1,242 @@
+#include "scenarios/bodies/region_figures.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
+
+#include "engine/lrb/thickness.hpp"
+#include "engine/lrb/validate.hpp"
+#include "scenarios/bodies/hull_figures.hpp"
+
+namespace lrb::bodies {
+namespace {
+
+double number_of(const RegionFigures& r, RegionOrder order) {
+  switch (order) {
+    case RegionOrder::thickness:
+      return r.thickness;
+    case RegionOrder::volume:
+      return r.volume;
+    case RegionOrder::lids:
+      return r.lids;
+    default:
+      return r.waste;
+  }
+}
+
+std::vector<RegionFigures> in_order_of_numbers(const LrbRep& rep) {
+  const double wrapper = enclosed_volume(rep, rep.outermost_faces());
+  std::vector<RegionFigures> out;
+  for (RegionId r = 0; r < rep.region_count(); ++r) {
+    RegionFigures& f = out.emplace_back();
+    f.region = r;
+    f.layer = rep.layer(r);
+    f.lids = static_cast<std::uint32_t>(rep.lids(r).size());
+    f.floor = static_cast<std::uint32_t>(rep.floor(r).size());
+    f.volume = std::max(0.0, region_volume(rep, r));
+    f.parent = rep.parent(r);
+    f.waste = wrapper > 0 ? f.floor * (f.volume / wrapper) : 0;
+  }
+  return out;
+}
+
+RepFigures figures_of(const LrbRep& rep) {
+  const nlohmann::ordered_json j = body_figures(rep);
+  RepFigures out;
+  out.total_per_real = j["total_per_real"];
+  out.outer_faces = j["outer_faces"];
+  const double hull = j["volume_hull"];
+  out.outer_per_hull = hull > 0 ? j["volume_outer"].get<double>() / hull : 0;
+  out.waste = total_waste(in_order_of_numbers(rep));
+  return out;
+}
+
+/// Returns the mesh that a body was built from, without vertices of pseudo faces: a build keeps within what
+/// all vertices span.
+Mesh real_faces(const LrbRep& rep) {
+  Mesh mesh;
+  mesh.dim = rep.dim();
+  mesh.name = rep.name();
+  std::uint32_t vertices = 0;
+  for (FaceId f = 0; f < rep.real_face_count(); ++f) {
+    mesh.add_face(rep.face(f));
+    for (const VertexId v : rep.face(f)) vertices = std::max(vertices, v + 1);
+  }
+  mesh.vertices.assign(rep.vertices().begin(), rep.vertices().begin() + vertices);
+  return mesh;
+}
+
+std::string rounded(double x) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.3g", x);
+  return text;
+}
+
+struct Setting {
+  const char* text;
+  std::uint32_t patch, outer;
+  bool lean;
+};
+constexpr Setting kTried[] = {{"--patch 8", 8, 20, false},       {"--patch 40", 40, 20, false},
+                              {"--max-outer 40", 16, 40, false}, {"--max-outer 80", 16, 80, false},
+                              {"--lean", 16, 20, true},          {"--lean --patch 40", 40, 20, true}};
+
+/// Returns the sizes of a body along its principal axes, ascending.
+Eigen::Vector3d principal_sizes(const LrbRep& rep) {
+  std::vector<Eigen::Vector3d> points;
+  for (FaceId f = 0; f < rep.real_face_count(); ++f)
+    for (const VertexId v : rep.face(f)) points.push_back(rep.vertices()[v]);
+  Eigen::AlignedBox3d box;
+  for (const Eigen::Vector3d& x : points) box.extend(x);
+  const Eigen::Vector3d middle = box.center();
+  const double unit = std::max(box.sizes().maxCoeff(), std::numeric_limits<double>::min());
+  Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
+  for (const Eigen::Vector3d& x : points) {
+    const Eigen::Vector3d d = (x - middle) / unit;
+    spread += d * d.transpose();
+  }
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(spread);
+  Eigen::AlignedBox3d turned;
+  for (const Eigen::Vector3d& x : points)
+    turned.extend(axes.eigenvectors().transpose() * ((x - middle) / unit));
+  Eigen::Vector3d sizes = turned.sizes() * unit;
+  std::sort(sizes.begin(), sizes.end());
+  return sizes;
+}
+
+/// Says why the outermost wrapper is much larger than the hull.
+std::string why_loose(const LrbRep& rep) {
+  constexpr double kThin =
+      20;  // times as long as thick, the distance that the wrapper keeps is 10 % of the thickness
+  const Eigen::Vector3d sizes = principal_sizes(rep);
+  if (rep.dim() == 3 && sizes[2] > kThin * sizes[0])
+    return "the body is " + (sizes[0] > 0 ? rounded(sizes[2] / sizes[0]) : "infinitely many") +
+           " times as long as it is thick, and the wrapper keeps 0.5 % of the length off it on each side";
+  return "so few faces do not fit it closer: try --max-outer";
+}
+
+/// Says which region opens a large part of the body at once; empty if none does.
+std::string crowded_region(const LrbRep& rep) {
+  constexpr std::size_t kFew = 200, kPart = 10;  // of real faces, one in so many
+  RegionId worst(0);
+  for (RegionId r = 0; r < rep.region_count(); ++r)
+    if (rep.floor(r).size() > rep.floor(worst).size()) worst = r;
+  const std::size_t faces = rep.floor(worst).size();
+  if (faces < kFew || faces * kPart < rep.real_face_count()) return {};
+  return "region " + std::to_string(worst) + " opens " + std::to_string(faces) + " faces at once" +
+         (rep.self_intersecting()
+              ? ": its pieces overlap, and faces that meet others cannot be covered; unite them first"
+              : "");
+}
+
+}  // namespace
+
+std::vector<RegionFigures> region_figures(const LrbRep& rep, RegionOrder order, unsigned threads) {
+  std::vector<RegionFigures> out = in_order_of_numbers(rep);
+  const std::vector<double> thickness = region_thickness(rep, threads);
+  for (RegionFigures& r : out) r.thickness = thickness[r.region];
+  std::stable_sort(out.begin(), out.end(), [order](const RegionFigures& a, const RegionFigures& b) {
+    return number_of(a, order) > number_of(b, order);
+  });
+  return out;
+}
+
+double total_waste(std::span<const RegionFigures> regions) {
+  double sum = 0;
+  for (const RegionFigures& r : regions) sum += r.waste;
+  return sum;
+}
+
+std::vector<double> waste_over_faces(const LrbRep& rep, std::span<const RegionFigures> regions) {
+  std::vector<double> share(rep.region_count(), 0), out;
+  std::vector<std::uint32_t> faces(rep.region_count(), 0);
+  const auto for_each_above = [&](FaceId f, auto visit) {
+    for (CellId c = rep.outer_cell(f); is_region(c); c = rep.parent(c.as_region())) visit(c.as_region());
+  };
+  for (FaceId f = 0; f < rep.real_face_count(); ++f) for_each_above(f, [&](RegionId r) { ++faces[r]; });
+  for (const RegionFigures& r : regions)
+    if (faces[r.region] > 0) share[r.region] = r.waste / faces[r.region];
+  for (FaceId f = 0; f < rep.real_face_count(); ++f) {
+    double sum = 0;
+    for_each_above(f, [&](RegionId r) { sum += share[r]; });
+    out.push_back(sum);
+  }
+  return out;
+}
+
+std::vector<Trial> try_settings(const LrbRep& rep, unsigned threads) {
+  std::vector<Trial> out = {{"", figures_of(rep)}};
+  const CheckedMesh mesh = check(real_faces(rep));
+  for (const Setting& s : kTried) {
+    BuildOptions options;
+    options.patch_interior = s.patch;
+    options.max_outer_faces = s.outer;
+    options.lean = s.lean;
+    options.threads = threads;
+    const auto begin = std::chrono::steady_clock::now();
+    const LrbRep built = build_lrb(mesh, options);
+    const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - begin;
+    out.push_back({s.text, figures_of(built)});
+    out.back().figures.seconds = seconds.count();
+  }
+  return out;
+}
+
+std::vector<std::string> advice(std::span<const Trial> trials) {
+  constexpr double kWorth = 0.95;  // of what it is: smaller gains come and go with the seed
+  const RepFigures& now = trials[0].figures;
+  const auto least = [&](auto number) -> const Trial& {
+    return *std::min_element(trials.begin(), trials.end(), [&](const Trial& a, const Trial& b) {
+      return number(a.figures) < number(b.figures);
+    });
+  };
+  const auto change = [](double from, double to) { return rounded(to) + " in place of " + rounded(from); };
+  std::vector<std::string> out;
+  const Trial& tight = least([](const RepFigures& f) { return f.waste; });
+  if (tight.figures.waste < kWorth * now.waste)
+    out.push_back(tight.setting + " wastes least: " + change(now.waste, tight.figures.waste) +
+                  " faces a point, with " + change(now.total_per_real, tight.figures.total_per_real) +
+                  " faces per real face");
+  const Trial& small = least([](const RepFigures& f) { return f.total_per_real; });
+  if (small.figures.total_per_real < kWorth * now.total_per_real)
+    out.push_back(small.setting +
+                  " has the fewest faces: " + change(now.total_per_real, small.figures.total_per_real) +
+                  " per real face, and wastes " + change(now.waste, small.figures.waste));
+  const Trial& close = least([](const RepFigures& f) { return f.outer_per_hull; });
+  if (close.figures.outer_per_hull < kWorth * now.outer_per_hull)
+    out.push_back(close.setting + " has the closest outermost wrapper: " +
+                  change(now.outer_per_hull, close.figures.outer_per_hull) + " times the hull, and wastes " +
+                  change(now.waste, close.figures.waste));
+  if (out.empty()) out.emplace_back("none of the settings tried is better by more than 5 %");
+  return out;
+}
+
+std::string poor_line(const LrbRep& rep, const BuildOptions& build) {
+  constexpr double kLoose = 2, kMany = 2.5, kOpen = 2;  // 1.1 to 1.4, 1.5 to 2, and 1 are usual
+  if (rep.region_count() == 0) return rep.name() + ": has no regions: every query starts from its faces";
+  const RepFigures f = figures_of(rep);
+  std::vector<std::string> faults;
+  if (f.outer_per_hull > kLoose)
+    faults.push_back("its outermost wrapper has " + rounded(f.outer_per_hull) + " times the hull's " +
+                     (rep.dim() == 2 ? "area: " : "volume: ") + why_loose(rep));
+  if (f.outer_faces > kOpen * build.max_outer_faces)
+    faults.push_back("its outermost wrapper has " + std::to_string(f.outer_faces) + " faces, not " +
+                     std::to_string(build.max_outer_faces) + ": nothing simpler was proved to enclose it");
+  if (f.total_per_real > kMany)
+    faults.push_back("it has " + rounded(f.total_per_real) +
+                     " faces per real face: patches of this size save little");
+  if (const std::string crowd = crowded_region(rep); !crowd.empty()) faults.push_back(crowd);
+  if (faults.empty()) return {};
+  std::string line = rep.name() + ": the LRB-rep is poor: ";
+  for (std::size_t i = 0; i < faults.size(); ++i) line += (i > 0 ? "; " : "") + faults[i];
+  if (const std::size_t pieces = rep.component_vertices().size(); pieces > 1)
+    line += "; it is in " + std::to_string(pieces) + " pieces, each of which has wrappers of its own first";
+  return line + "; lrbscope inspect --regions --try shows where, and what helps";
+}
+
+}  // namespace lrb::bodies
