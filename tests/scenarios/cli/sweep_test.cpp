@@ -78,7 +78,7 @@ TEST_CASE("sweep: tolerance, budget, features, history and times") {
   const MovingBoxes boxes;
   const auto wide = boxes.lines({"--tolerance", "0.01"});
   CHECK(wide[0]["t1"].get<double>() - wide[0]["t0"].get<double>() <= 0.01);
-  const auto few = boxes.lines({"--budget", "3"});
+  const auto few = boxes.lines({"--budget", "1"});
   CHECK(few[0]["contact"].is_null());
   CHECK(few[0]["finished"] == false);
   CHECK(few[0]["t0"].get<double>() <= 0.5);
