@@ -30,32 +30,83 @@ double diagonal_of(const LrbRep& rep) {
   return box.isEmpty() ? 0 : box.diagonal().norm();
 }
 
+namespace {
+
+/// The steps of a motion that approaches, of which it takes so many to pass the target by as much as it began before it:
+/// B is as far behind it then.
+struct Steps {
+  const spec::Motion& motion;
+  const Pose& start;
+  double length;
+  std::uint32_t count;
+
+  Pose pose(std::uint32_t step) const { return pose_at(motion, start, length, step); }
+
+  /// Returns the whole motion, from 0 to 1.
+  Motion whole() const {
+    Motion::Piece piece;
+    piece.first = start;
+    piece.turn = motion.axis.normalized() * (motion.degrees * count * std::numbers::pi / 180);
+    piece.from = motion.target + motion.from;
+    piece.to = motion.target + motion.from * (1 - length * count / motion.from.norm());
+    return Motion(std::vector<Motion::Piece>{piece});
+  }
+};
+
+/// Sets the poses at whole steps, given from which step on there may be contacts.
+void find_step(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Steps& steps, std::uint32_t from,
+               Approach& out) {
+  CollideRequest request;
+  request.mode = Mode::first_pair;
+  QueryContext context;
+  NullProbe probe;
+  for (std::uint32_t step = from; step <= steps.count && !out.met; ++step) {
+    const Relation r = collide(a, pose_a, b, steps.pose(step), request, context, probe).relation;
+    if (r == Relation::separate || r == Relation::undefined) continue;
+    out.met = true;
+    const std::uint32_t first = step - std::min(step, steps.motion.before);
+    out.first_contact = step - first;
+    for (std::uint32_t s = first; s <= step + steps.motion.into; ++s) out.poses.push_back(steps.pose(s));
+  }
+}
+
+/// Sets the poses at whole steps from the first contact.
+void stand_at_contact(const Steps& steps, double t, Approach& out) {
+  out.met = true;
+  const Motion whole = steps.whole();
+  const auto before = std::min(steps.motion.before, static_cast<std::uint32_t>(t * steps.count));
+  out.first_contact = before;
+  for (std::uint32_t i = 0; i <= before + steps.motion.into; ++i) {
+    const double step = static_cast<double>(i) - before;
+    out.poses.push_back(whole.at(step == 0 ? t : std::max(0.0, t + step / steps.count)));
+  }
+}
+
+}  // namespace
+
 Approach find_approach(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& start,
                        const spec::Motion& motion) {
   const double length = motion.step_length * (diagonal_of(a) + diagonal_of(b));
   // Beyond twice the distance, B is as far behind the target as it was before it.
   const auto whole_way =
       static_cast<std::uint32_t>(std::min<double>(motion.steps, std::ceil(2 * motion.from.norm() / length)));
-  CollideRequest request;
-  request.mode = Mode::first_pair;
-  QueryContext context;
-  NullProbe probe;
+  const Steps steps{motion, start, length, whole_way};
+  FirstContactRequest request;
+  request.max_steps = 200'000;
+  const FirstContactResult found = first_contact(a, Motion::still(pose_a), b, steps.whole(), request);
   Approach out;
-  for (std::uint32_t step = 0; step <= whole_way && !out.met; ++step) {
-    const Relation r =
-        collide(a, pose_a, b, pose_at(motion, start, length, step), request, context, probe).relation;
-    if (r == Relation::separate || r == Relation::undefined) continue;
-    out.met = true;
-    const std::uint32_t first = step - std::min(step, motion.before);
-    out.first_contact = step - first;
-    for (std::uint32_t s = first; s <= step + motion.into; ++s)
-      out.poses.push_back(pose_at(motion, start, length, s));
+  if (found.is_contact()) out.steps_to_contact = TimeSpan{found.t0 * whole_way, found.t1 * whole_way};
+  const bool inside = found.at_begin == Relation::a_inside_b || found.at_begin == Relation::b_inside_a;
+  if (!(motion.exact && found.is_contact() && !found.passed) || inside) {
+    const auto from = static_cast<std::uint32_t>(found.t0 * whole_way);
+    if (inside || found.outcome != Outcome::never)
+      find_step(a, pose_a, b, steps, inside || from == 0 ? 0 : from - 1, out);
   }
+  if (!out.met && found.is_contact()) stand_at_contact(steps, found.t1, out);
   if (!out.met) {
     const std::uint32_t wanted = motion.before + motion.into + 1;
     const std::uint32_t stride = std::max(1u, whole_way / wanted);
-    for (std::uint32_t s = 0; s <= whole_way; s += stride)
-      out.poses.push_back(pose_at(motion, start, length, s));
+    for (std::uint32_t s = 0; s <= whole_way; s += stride) out.poses.push_back(steps.pose(s));
   }
   return out;
 }

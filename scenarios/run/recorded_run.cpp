@@ -1,6 +1,7 @@
 #include "scenarios/run/recorded_run.hpp"
 
 #include <algorithm>
+#include <cstdio>
 #include <numeric>
 #include <optional>
 
@@ -41,6 +42,16 @@ std::vector<Pose> poses_of_b(const spec::Scenario& s, Recording& r) {
       find_approach(r.bodies[0].rep, s.bodies[0].pose, r.bodies[1].rep, s.bodies[1].pose, s.motion);
   r.notes.push_back(approach.met ? "first contact at step " + std::to_string(approach.first_contact)
                                  : "the bodies did not meet on the way");
+  if (approach.steps_to_contact) {
+    const auto steps = [](double count) {
+      char text[32];
+      std::snprintf(text, sizeof text, "%.9g", count);
+      return std::string(text);
+    };
+    r.first_contact = steps(approach.steps_to_contact->end) + " steps";
+    r.notes.back() += ", after " + r.first_contact + " of the way, and not before " +
+                      steps(approach.steps_to_contact->begin);
+  }
   return std::move(approach.poses);
 }
 

@@ -29,6 +29,7 @@ struct Recording {
       trees;  ///< A's and B's, that were walked, if pairs of their nodes were recorded
   /// Of each step, if another engine was recorded: what it got wrong, first those that it reported, then those that it missed.
   std::vector<std::vector<WrongPair>> wrong;
+  std::string first_contact;       ///< when an approach first meets, in words; empty: it does not, or is none
   std::vector<std::string> notes;  ///< for people
 };
 

@@ -82,6 +82,9 @@ std::vector<report::PageNumber> collision_numbers(const RecordedRun& p, const tr
   } else if (p.results != nullptr && !p.results->empty()) {
     out.push_back({"Contact regions", render::group_digits(p.results->back().regions.size()), at});
   }
+  if (!p.first_contact.empty())
+    out.push_back(
+        {"First contact", p.first_contact, "of the way; until then the surfaces are proved not to meet"});
   out.push_back({"Face tests", render::group_digits(r.counters.face_tests),
                  at + "; all pairs would be " +
                      render::group_digits(std::uint64_t{p.reps[0]->real_simplex_count()} *

@@ -61,6 +61,8 @@ struct Motion {
   double step_length = 0.01;        ///< approach: as a share of the sum of the bodies' diagonals
   std::uint32_t before = 10;        ///< approach: steps shown before the first contact
   std::uint32_t into = 5;           ///< approach: steps shown after it
+  bool exact =
+      false;  ///< approach: a step is at the first contact itself, not at the first of equal steps that meets
 };
 constexpr auto words_of(Motion::Kind) {
   using Kind = Motion::Kind;

@@ -49,7 +49,8 @@ void read_turn(const io::JsonNode& node, Motion& m) {
 }
 
 void read_approach(const io::JsonNode& node, Motion& m) {
-  node.object({"kind", "from", "target", "step_length", "axis", "degrees", "before", "into", "most_steps"});
+  node.object(
+      {"kind", "from", "target", "step_length", "axis", "degrees", "before", "into", "most_steps", "exact"});
   m.from = node.at("from").vector();
   if (!(m.from.squaredNorm() > 0)) node.at("from").fail("expected a direction that is not zero");
   if (const auto n = node.get("target")) m.target = n->vector();
@@ -59,6 +60,7 @@ void read_approach(const io::JsonNode& node, Motion& m) {
   m.before = read_steps(node, "before", m.before, 0);
   m.into = read_steps(node, "into", m.into, 0);
   m.steps = read_steps(node, "most_steps", 10'000, 1);
+  if (const auto n = node.get("exact")) m.exact = n->boolean();
 }
 
 Pose turned(const Eigen::Vector3d& axis, double degrees, const Eigen::Vector3d& position) {

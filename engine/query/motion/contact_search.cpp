@@ -25,6 +25,8 @@ constexpr int kMostStepsOfPair = 256;
 /// How much longer each span is in which a way out of a doubtful place is looked for; and which share of it bodies must
 /// be sure to go on for.
 constexpr double kLonger = 4, kGoesOn = 0.25;
+/// To which share of its length the end of a doubtful span is found.
+constexpr double kNarrow = 0x1p-10;
 constexpr std::uint64_t kMostStuckPairs = 1 << 20;
 constexpr int kProbes = 8;
 
@@ -208,10 +210,24 @@ double FirstContactSearch::look_further(double t, double end) {
       if (!found_all) continue;
     }
     if (span.end < end && !goes_on_from(span)) continue;
-    if (!found_between(span)) doubt(span);
-    return span.end;
+    const TimeSpan shortest = shortened(span, width / kLonger);
+    if (!found_between(shortest)) doubt(shortest);
+    return shortest.end;
   }
   return t;
+}
+
+/// Returns the shortest span, by halves, after which bodies are sure to go on, given one after which they are, or
+/// nothing remains, and a length of spans after which they are not.
+TimeSpan FirstContactSearch::shortened(TimeSpan span, double too_short) {
+  double doubtful = std::min(span.begin + too_short, span.end);
+  while (span.end - doubtful > std::max(request_.tolerance, kNarrow * (span.end - span.begin)) &&
+         !is_over()) {
+    const double middle = doubtful + (span.end - doubtful) / 2;
+    if (is_swept_ && !find_pairs({span.begin, middle}, kMostStuckPairs)) break;
+    (goes_on_from({span.begin, middle}) ? span.end : doubtful) = middle;
+  }
+  return span;
 }
 
 /// Returns true if the pairs that may meet in a span are sure not to right after it.

@@ -54,6 +54,7 @@ class FirstContactSearch {
   double advance_stuck(TimeSpan span);
   double look_further(double t, double end);
   bool goes_on_from(TimeSpan span);
+  TimeSpan shortened(TimeSpan span, double too_short);
   bool has_passed(TimeSpan span);
   bool found_between(TimeSpan span);
   void contact_at_last(TimeSpan span, SimplexPair pair);

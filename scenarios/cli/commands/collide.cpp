@@ -39,6 +39,7 @@ spec::Motion approach_from(const Eigen::Vector3d& direction, const LrbRep& a, co
   m.steps = 100'000;
   m.before = 12;
   m.into = 18;
+  m.exact = true;
   return m;
 }
 

@@ -290,6 +290,7 @@ TEST_CASE("grazing bodies get an interval that is wider, and said to be") {
   CHECK(r.outcome == Outcome::undecided);
   CHECK(r.grazing);
   CHECK(r.t0 == doctest::Approx(0.5));
+  CHECK(r.t1 == doctest::Approx(1));
   // Above it by a little more: they do not meet.
   r = checked(box, kStill, box,
               Motion::linear(Pose::translation({3, 0.25, 1 + 1e-12}), {-1, 0.25, 1 + 1e-12}));

@@ -1,0 +1,89 @@
+// Approaches: the step of first contact, and that nothing is passed through between two steps.
+#include "scenarios/run/approach.hpp"
+
+#include <doctest/doctest.h>
+
+#include "engine/query/collide.hpp"
+#include "scenarios/bodies/shapes/shapes.hpp"
+
+using namespace lrb;
+
+namespace {
+
+spec::Motion coming(double step_length) {
+  spec::Motion m;
+  m.kind = spec::Motion::Kind::approach;
+  m.from = {0, 0, 3.3};
+  m.step_length = step_length;
+  m.steps = 1000;
+  m.before = 3;
+  m.into = 2;
+  return m;
+}
+
+const LrbRep& box() {
+  static const LrbRep rep = LrbRep::without_regions(shapes::box(), true, false);
+  return rep;
+}
+
+Relation relation_at(const LrbRep& a, const Pose& pose) {
+  return collide(a, Pose{}, box(), pose).relation;
+}
+
+}  // namespace
+
+TEST_CASE("approach: whole steps, the first that meets") {
+  const run::Approach found = run::find_approach(box(), {}, box(), {}, coming(0.05));
+  REQUIRE(found.met);
+  REQUIRE(found.poses.size() == 6);
+  CHECK(found.first_contact == 3);
+  CHECK(relation_at(box(), found.poses[2]) == Relation::separate);
+  CHECK(relation_at(box(), found.poses[3]) != Relation::separate);
+  // Boxes of 1 meet after a way of 2.3, in steps of 0.05 of both diagonals.
+  REQUIRE(found.steps_to_contact.has_value());
+  const double steps = 2.3 / (0.05 * 2 * std::sqrt(3.0));
+  CHECK(found.steps_to_contact->begin <= steps);
+  CHECK(found.steps_to_contact->end >= steps);
+  CHECK(found.steps_to_contact->end - found.steps_to_contact->begin < 1e-7);
+}
+
+TEST_CASE("approach: a step at the first contact itself") {
+  spec::Motion motion = coming(0.05);
+  motion.exact = true;
+  motion.degrees = 3;
+  const run::Approach found = run::find_approach(box(), {}, box(), {}, motion);
+  REQUIRE(found.met);
+  REQUIRE(found.poses.size() == 6);
+  CHECK(found.first_contact == 3);
+  CHECK(relation_at(box(), found.poses[2]) == Relation::separate);
+  CHECK(relation_at(box(), found.poses[3]) != Relation::separate);
+  CHECK(found.poses[3].t.z() == doctest::Approx(1));
+  CHECK(found.poses[3].t.z() <= 1);
+  CHECK((found.poses[3].t - found.poses[2].t).norm() == doctest::Approx(0.05 * 2 * std::sqrt(3.0)));
+}
+
+TEST_CASE("approach: a sheet that is passed between two steps is met all the same") {
+  Mesh mesh;
+  mesh.vertices = {{-9, -9, 0}, {9, -9, 0}, {9, 9, 0}, {-9, 9, 0}};
+  mesh.add_face(std::array<VertexId, 4>{0, 1, 2, 3});
+  const LrbRep sheet = LrbRep::without_regions(mesh, false, false);
+  spec::Motion motion = coming(0.1);
+  motion.from = {0, 0, 7};
+  // Steps of 2.7, and the box is 1: it stands at 1.5 before the sheet, and then 0.2 behind it.
+  const run::Approach found = run::find_approach(sheet, {}, box(), {}, motion);
+  REQUIRE(found.met);
+  CHECK(relation_at(sheet, found.poses[found.first_contact]) != Relation::undefined);
+}
+
+TEST_CASE("approach: bodies inside each other meet at once; bodies that miss do not") {
+  const LrbRep large = LrbRep::without_regions(shapes::box({-9, -9, -9}, {9, 9, 9}), true, false);
+  const run::Approach inside = run::find_approach(large, {}, box(), {}, coming(0.05));
+  CHECK(inside.met);
+  CHECK(inside.first_contact == 0);
+  spec::Motion past = coming(0.05);
+  past.target = {5, 0, 0};
+  const run::Approach missed = run::find_approach(box(), {}, box(), {}, past);
+  CHECK(!missed.met);
+  CHECK(!missed.steps_to_contact.has_value());
+  CHECK(missed.poses.size() > 5);
+}
