@@ -7,7 +7,11 @@ set(LRB_CMAKE_DIR ${CMAKE_INSTALL_LIBDIR}/cmake/lrbscope)
 set_target_properties(lrb_engine PROPERTIES EXPORT_NAME engine)
 set_target_properties(lrb_options PROPERTIES EXPORT_NAME options)
 
-install(TARGETS lrbscope lrbscope-measure RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+# What is installed without a component is for those who build with the engine: the parts of packages (cmake/debs.cmake).
+set(CMAKE_INSTALL_DEFAULT_COMPONENT_NAME dev)
+if(LRB_BUILD_PROGRAMS)
+  install(TARGETS lrbscope lrbscope-measure RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT program)
+endif()
 install(TARGETS lrb_engine lrb_options EXPORT lrbscopeTargets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
 
 # The public headers. They may include only public headers, so that what is installed is what is documented.

@@ -13,8 +13,10 @@ inline constexpr double kUnitRounding = 0x1p-53;
 inline constexpr double kUnitReach = 2;
 /// Distance by which a triangle must lie beyond a plane to be proved beyond it, per unit of the normal's |n|_1: two
 /// products n . x of points whose coordinates are at most 1, each off by 3 u |n|_1, twice the point's own kUnitRounding
-/// |n|_1 (the triangle's corner, and the point that was found inside), and the sum with this margin, u: 9 u in all, of 16.
-inline constexpr double kConvexMargin = 0x1p-49;
+/// |n|_1 (the triangle's corner, and the point that was found inside), the sum with this margin, u, and half of u for each
+/// time that a triangle was divided: 15 u in all, of 32.
+inline constexpr double kConvexMargin = 0x1p-48;
+inline constexpr unsigned kMostSplits = 6;
 /// Shares by which convex sets are shrunk until they are proved to lie in a body. Larger: looser lower ends of depths.
 inline constexpr double kShrinks[] = {0x1p-42, 0x1p-36, 0x1p-28, 0x1p-18};
 /// A triangle whose doubled area is less than this share of its longest edge's square says nothing about being convex;
@@ -27,12 +29,16 @@ inline constexpr double kMostConvexWork = 1e9;
 /// Share of its first offset that a half-space about a point keeps when others' triangles are put behind it; the number of
 /// half-spaces; and how near the surface may come to the point. Larger share: more half-spaces, larger sets.
 inline constexpr double kLittleLost = 0.97;
+/// Share of an offset by which a plane is moved as if for rounding, and by which what is clipped by it may stand before it.
+inline constexpr double kFlatShare = 0x1p-40, kClipShare = 0x1p-45;
 inline constexpr unsigned kMostHalfSpaces = 400;
 inline constexpr double kLeastClearance = 0x1p-36;
 /// Gain from which on the hull of differences is grown, and how often it may be. Smaller: no nearer to the depth than
 /// rounding; fewer: wide intervals for round bodies.
 inline constexpr double kDepthGain = 0x1p-48;
 inline constexpr unsigned kMostDepthSteps = 1500;
+/// The same where the hull has to hold the origin, or to give a direction to begin with, and no more.
+inline constexpr unsigned kRoughDepthSteps = 100;
 /// Bound on the error of a difference of two points of convex sets whose coordinates are at most 1: 2 u in length for
 /// the difference, and 4 u where one of them was moved by a product before.
 inline constexpr double kDifferenceRounding = 0x1p-50;
@@ -50,13 +56,17 @@ inline constexpr int kDirectionSamples = 16, kWaySamples = 128;
 inline constexpr double kDirectionGain = 0x1p-20;
 inline constexpr double kFirstTurn = 0.2, kLeastTurn = 1e-5, kTurnGain = 0x1p-6;
 inline constexpr unsigned kMostSteps = 200;
-/// Where to look for the point that lies deepest in both bodies: points of a grid, and so many between the corners of what
-/// they share; then steps, until they are this share of its clearance.
-inline constexpr int kStartGrid = 4;
-inline constexpr unsigned kMostStarts = 24;
-inline constexpr double kStartStep = 0x1p-6;
+/// Where to look for the point that lies deepest in both bodies: points of a grid, so many each way; then steps, until they
+/// are this share of its clearance. A point counts as deeper if it is so by more than rounding (kClearlyMore).
+inline constexpr int kStartGrid = 6;
+inline constexpr double kStartStep = 0x1p-6, kClearlyMore = 1e-9;
 /// How often the proof of a way out goes on from another common point, and where along the way it went before.
 inline constexpr unsigned kMostWaySteps = 40;
 inline constexpr double kWayShare = 0.9;
+
+/// Bound on the error of a point's share of an edge, 1e-13 for the point and a few roundings; where coordinates are larger
+/// than the edge, 2^-8 of this and more for each time that they are, which is 16 of their roundings. Larger: more faces are
+/// cut in rational arithmetic.
+inline constexpr double kShareRounding = 0x1p-41;
 
 }  // namespace lrb

@@ -13,7 +13,9 @@
 #include "engine/core/error.hpp"
 #include "engine/core/file_bytes.hpp"
 #include "scenarios/cli/command.hpp"
+#include "scenarios/cli/measuring_program.hpp"
 #include "scenarios/cli/signals.hpp"
+#include "scenarios/cli/words/words.hpp"
 #include "trace/trace.hpp"
 
 namespace lrb::cli {
@@ -106,6 +108,16 @@ std::string_view command_word(int argc, char** argv) {
   return "";
 }
 
+/// Adds the hidden command by which one program tells the other, and tests, what it understands.
+Command add_words(CLI::App& root) {
+  CLI::App* app = root.add_subcommand(std::string(kWordsCommand), "Print all commands and options as JSON");
+  app->group("");
+  return {app, [&root] {
+            print(one_line(words::to_json(words::words_of(root))));
+            return kOk;
+          }};
+}
+
 int parse_and_run(int argc, char** argv) {
   CLI::App app("An exact two-body collision engine that can be watched.", "lrbscope");
   app.set_version_flag("--version", std::string("lrbscope ") + trace::lrbscope_version());
@@ -120,6 +132,7 @@ int parse_and_run(int argc, char** argv) {
   app.add_flag("-q,--quiet", globals.quiet, "Print nothing to stderr but errors");
   std::vector<Command> commands;
   for (const CommandEntry& entry : registered_commands()) commands.push_back(entry.add(app, globals));
+  commands.push_back(add_words(app));
   for (const Command& command : commands)
     if (command.parses_itself && command.app->get_name() == command_word(argc, argv)) return command.run();
   try {

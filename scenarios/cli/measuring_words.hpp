@@ -10,8 +10,6 @@
 
 namespace lrb::cli {
 
-inline constexpr std::string_view kMeasuringProgram = "lrbscope-measure";
-
 struct MeasuringWord {
   std::string_view name, purpose;
   int rank;  ///< as in CommandEntry

@@ -2,8 +2,9 @@
 # tests/bare/bare.sh [--commit C] [--until STEP] [--minutes M] [--no-cache] [--keep]: proves the README's two commands on a
 # bare Debian 12. Makes a root with debootstrap, from the package sources of this machine, clones commit C (HEAD) into it,
 # and runs ./run and ./check there as root would type them, in a clean environment; then again as a user without root; then
-# the rest of ./check --full, in the end with the engines of others installed. Prints how long every step took.
-# Steps: root clone stranger run check user api browser again peers sanitizers clang fuzz tidy; --until ends after one of them.
+# the rest of ./check --full, in the end with the engines of others installed. Debian packages are made there, and installed in
+# another bare root, where the program runs and a stranger's project is built. Prints how long every step took.
+# Steps: root clone stranger run check user api browser again python debs site peers sanitizers clang fuzz tidy; --until ends after one of them.
 # --minutes: steps after `user` end when M minutes are over, and the table says which were left out.
 # Kept between runs, in ${XDG_CACHE_HOME:-~/.cache}/lrbscope-bare: the bare root and downloaded packages; and this machine's
 # compiler cache is used. --no-cache does without all three, for honest times. --keep leaves the root to be looked at.
@@ -16,7 +17,7 @@ repository=$(cd "$here/../.." && pwd)
 suite=bookworm
 home=/root/lrbscope # the clone, inside the root
 
-usage() { sed -n '2,11s/^# //p' "$script" >&2 && exit 2; }
+usage() { sed -n '2,12s/^# //p' "$script" >&2 && exit 2; }
 refuse() { echo "bare.sh: $1" >&2 && exit 3; }
 
 # ---- the package sources of this machine
@@ -113,7 +114,7 @@ as() {
 
 # ---- steps
 
-all=(root clone stranger run check user api browser again peers sanitizers clang fuzz tidy)
+all=(root clone stranger run check user api browser again python debs site peers sanitizers clang fuzz tidy)
 names=() seconds=() busy=() failed=() left_out=()
 # step NAME FUNCTION: runs it, with its output, and notes how long it took and whether it failed. Ends here if it was the
 # last wanted.
@@ -151,7 +152,7 @@ finish() {
   if [ "$cached" = 1 ] && [ "$mounts" = 0 ]; then cp -n "$root"/var/cache/apt/archives/*.deb "$cache/debs/" 2>/dev/null || true; fi
   # The closing lines of every ctest, the main one last.
   local name
-  for name in user sanitizers clang again peers check; do
+  for name in user sanitizers clang again python peers check; do
     if [ -f "$work/$name.log" ] && grep -q 'tests passed' "$work/$name.log"; then
       printf '\n%s:\n' "$name"
       grep -E '% tests passed|^Total Test time' "$work/$name.log"
@@ -216,9 +217,29 @@ step_user() {
   chown -R 0:0 "$root$home"
   return $code
 }
+# The packages of the clone, in a root that has nothing of it.
+step_debs() {
+  inside ./check debs
+  local made=$root$home/build/release/debs root=$work/fresh home=/root
+  make_root "$root" && mount_parts "$root"
+  cp "$made"/*.deb "$root/root/"
+  inside bash -c 'apt-get update -q && apt-get install -y -q --no-install-recommends ./lrbscope_*.deb'
+  inside lrbscope --version
+  inside lrbscope --quiet run collision -o out
+  [ -s "$root/root/out/index.html" ] || { echo "the installed program made no page" && return 1; }
+  [ -s "$root/usr/share/man/man1/lrbscope-run.1.gz" ] || { echo "there is no manual page" && return 1; }
+  cp -r "$(dirname "$script")/stranger" "$root/root/stranger"
+  inside bash -c 'apt-get install -y -q --no-install-recommends cmake make g++ ./liblrbscope*.deb'
+  inside bash -c 'cmake -S stranger -B built && cmake --build built && built/stranger'
+  if compgen -G "$made/python3-lrbscope_*.deb" >/dev/null; then
+    inside bash -c 'apt-get install -y -q --no-install-recommends ./python3-lrbscope_*.deb && python3 -c "import lrbscope"'
+  fi
+}
 step_api() { inside ./check api; }
 step_browser() { inside ./check browser; }
 step_again() { inside ./check again; }
+step_python() { inside ./check python; }
+step_site() { inside ./check site; }
 step_peers() { inside ./check peers; }
 step_clang() { inside ./check clang; }
 step_sanitizers() { inside ./check sanitizers; }

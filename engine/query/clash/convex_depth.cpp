@@ -86,9 +86,9 @@ bool ConvexDifference::grow(std::size_t facet) {
   return width - f.offset > kDepthGain && hull_.add(x);
 }
 
-void ConvexDifference::find_depth() {
+void ConvexDifference::find_depth(unsigned most_steps) {
   if (!solid_) return;
-  for (unsigned step = 0; step < kMostDepthSteps && upper_ > 0; ++step) {
+  for (unsigned step = 0; step < most_steps && upper_ > 0; ++step) {
     const std::vector<PointHull::Facet>& facets = hull_.facets();
     std::size_t nearest = facets.size();
     for (std::size_t i = 0; i < facets.size(); ++i)

@@ -100,49 +100,40 @@ double DepthFinder::common_clearance(const Vector3d& x, const Vector3d& shift) {
   return least;
 }
 
-/// Returns points from which to look for a deep one: about the corners of what the bodies share.
-std::vector<Vector3d> DepthFinder::starts(const Vector3d& shift) const {
-  std::vector<Vector3d> corners, out;
-  Eigen::AlignedBox3d boxes[2], box;
+/// Returns the box of what the bodies share, about, or one that holds it. Its corners are points where faces of
+/// the two meet, and corners of one in the other.
+Eigen::AlignedBox3d DepthFinder::common_box(const Vector3d& shift) {
+  Eigen::AlignedBox3d boxes[2], out;
   for (int side = 0; side < 2; ++side)
     for (const Vector3d& x : bodies_.body[side].points)
       boxes[side].extend(side == 0 ? x : Vector3d(x + shift));
-  box = boxes[0].intersection(boxes[1]);
+  if (!shift.isZero(0)) return boxes[0].intersection(boxes[1]);
+  for (const SimplexPair& pair : result_.pairs) {
+    const double *a[3], *b[3];
+    query_[Side::a].world.corners(pair.a, a);
+    query_[Side::b].world.corners(pair.b, b);
+    const exact::PairContact contact = exact::contact_of_triangles(a, b);
+    for (int c = 0; c < contact.corner_count; ++c)
+      out.extend(bodies_.frame.to_unit(contact.corners[static_cast<std::size_t>(c)].x));
+  }
+  for (const Side side : {Side::a, Side::b})
+    for (const Vector3d& x : bodies_.body[static_cast<int>(side)].points)
+      if (boxes[1 - static_cast<int>(side)].contains(x) && !out.contains(x) &&
+          inside_point(other(side), x, Vector3d::Zero()))
+        out.extend(x);
+  return out;
+}
+
+/// Returns points from which to look for a deep one: of a grid in the box of what the bodies share.
+std::vector<Vector3d> DepthFinder::starts(const Vector3d& shift) {
+  std::vector<Vector3d> out;
+  const Eigen::AlignedBox3d box = common_box(shift);
   if (box.isEmpty()) return out;
-  if (shift.isZero()) {
-    for (const SimplexPair& pair : result_.pairs) {
-      const double *a[3], *b[3];
-      query_[Side::a].world.corners(pair.a, a);
-      query_[Side::b].world.corners(pair.b, b);
-      const exact::PairContact contact = exact::contact_of_triangles(a, b);
-      for (int c = 0; c < contact.corner_count; ++c)
-        corners.push_back(bodies_.frame.to_unit(contact.corners[static_cast<std::size_t>(c)].x));
-    }
-  }
-  for (int side = 0; side < 2; ++side) {
-    std::vector<Vector3d> within;
-    for (const Vector3d& x : bodies_.body[side].points) {
-      const Vector3d at = side == 0 ? x : Vector3d(x + shift);
-      if (boxes[1 - side].contains(at)) within.push_back(at);
-    }
-    const std::size_t stride = within.size() / kMostStarts + 1;
-    for (std::size_t i = 0; i < within.size(); i += stride) corners.push_back(within[i]);
-  }
   for (int i = 0; i < kStartGrid * kStartGrid * kStartGrid; ++i) {
     const Vector3d share((i % kStartGrid + 0.5) / kStartGrid,
                          (i / kStartGrid % kStartGrid + 0.5) / kStartGrid,
                          (i / (kStartGrid * kStartGrid) + 0.5) / kStartGrid);
     out.push_back(box.min() + share.cwiseProduct(box.sizes()));
-  }
-  if (corners.empty()) return out;
-  Vector3d middle = Vector3d::Zero();
-  for (const Vector3d& x : corners) middle += x / static_cast<double>(corners.size());
-  out.push_back(middle);
-  const std::size_t stride = corners.size() / kMostStarts + 1, n = corners.size();
-  for (std::size_t i = 0; i < n; i += stride) {
-    out.push_back(0.5 * (corners[i] + middle));
-    out.push_back(0.5 * (corners[i] + corners[(i + n / 2) % n]));
-    out.push_back((corners[i] + corners[(i + n / 3) % n] + corners[(i + 2 * n / 3) % n]) / 3);
   }
   return out;
 }
@@ -152,7 +143,7 @@ std::optional<Vector3d> DepthFinder::deepest_common(const Vector3d& shift) {
   double most = 0;
   for (const Vector3d& x : starts(shift)) {
     const double clearance = common_clearance(x, shift);
-    if (clearance > most) {
+    if (clearance > most * (1 + kClearlyMore)) {
       most = clearance;
       best = x;
     }
@@ -166,7 +157,7 @@ std::optional<Vector3d> DepthFinder::deepest_common(const Vector3d& shift) {
         const Vector3d x = best + sign * step * Vector3d::Unit(k);
         const double clearance = common_clearance(x, shift);
         ++tries;
-        if (!(clearance > most)) continue;
+        if (!(clearance > most * (1 + kClearlyMore))) continue;
         most = clearance;
         best = x;
         moved = true;
@@ -245,12 +236,12 @@ DepthFinder::Depth DepthFinder::depth() {
   const bool convex = whole_[0] && whole_[1];
   if (const std::optional<Common> sets = common_sets(Vector3d::Zero())) {
     ConvexDifference difference(sets->a, sets->b);
-    difference.find_depth();
+    difference.find_depth(kMostDepthSteps);
     out.length.lower = bodies_.frame.length_to_world(difference.depth_lower());
   }
   const ConvexPoints &a = bodies_.body[0].points, &b = bodies_.body[1].points;
   ConvexDifference hulls(a, b);
-  hulls.find_depth();
+  hulls.find_depth(convex ? kMostDepthSteps : kRoughDepthSteps);
   double best = hulls.depth_upper();
   Vector3d best_n = hulls.direction();
   if (!convex) {
@@ -273,7 +264,7 @@ double DepthFinder::along_lower(const Vector3d& n) {
     const std::optional<Common> sets = common_sets(from * n);
     if (!sets) break;
     ConvexDifference difference(sets->a, sets->b);
-    difference.find_depth();
+    difference.find_depth(kRoughDepthSteps);
     difference.follow(n);
     const double gain = difference.along_lower(n);
     const double next = (from + gain) * (1 - 0x1p-50);

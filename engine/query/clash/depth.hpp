@@ -3,6 +3,8 @@
 
 #include <optional>
 
+#include <Eigen/Geometry>
+
 #include "engine/query/clash/clash.hpp"
 #include "engine/query/clash/convex_depth.hpp"
 #include "engine/query/clash/parting.hpp"
@@ -31,7 +33,8 @@ class DepthFinder {
   };
   std::optional<Vector3d> inside_point(Side side, const Vector3d& unit, const Vector3d& shift);
   std::optional<ConvexPoints> shrunken(Side side);
-  std::vector<Vector3d> starts(const Vector3d& shift) const;
+  Eigen::AlignedBox3d common_box(const Vector3d& shift);
+  std::vector<Vector3d> starts(const Vector3d& shift);
   std::optional<Vector3d> deepest_common(const Vector3d& shift);
   double common_clearance(const Vector3d& x, const Vector3d& shift);
   std::optional<Common> common_sets(const Vector3d& shift);

@@ -20,7 +20,8 @@ std::optional<ConvexPoints> shrunken_body(const UnitBody& body, const Vector3d& 
 
 /// Returns a large convex set about a point inside: planes between it and the nearest triangles, one after
 /// the other, bound it (as in Deits and Tedrake, "Computing Large Convex Regions of Obstacle-Free Space", 2015,
-/// without their ellipsoids). None if the surface is too near for proofs.
+/// without their ellipsoids). None if the surface is too near for proofs. Does not depend on how the surface is
+/// divided, but for rounding, unless only the way that takes whole triangles leads to a proof.
 std::optional<ConvexPoints> convex_about(const UnitBody& body, const Vector3d& inside);
 
 /// Returns the distance of a point to a body's surface, about.

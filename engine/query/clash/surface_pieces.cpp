@@ -9,6 +9,7 @@
 #include "engine/core/tolerances.hpp"
 #include "engine/exact/locate.hpp"
 #include "engine/exact/pair_contact.hpp"
+#include "engine/query/clash/simple_cut.hpp"
 #include "engine/query/contact/face_cutters.hpp"
 #include "engine/query/contact/reflection.hpp"
 #include "engine/query/walk/relation.hpp"
@@ -56,25 +57,33 @@ struct EdgeUse {
   VertexId from, to;  ///< by place, from < to
   SimplexId simplex;
   int edge;
+  bool reversed;  ///< the simplex has it from `to` to `from`
 };
 
-/// A simplex that meets the other body.
+/// A simplex that meets the other body. Its cells are known by its border, if it is as simple as nearly all
+/// are, else from rational arithmetic.
 struct TouchedFace {
   std::vector<std::uint32_t> pairs;  ///< into the result
+  std::optional<SimpleCut> simple;
   std::optional<exact::CutFace> cut;
   std::uint32_t first_node = 0;
+
+  std::size_t cell_count() const { return simple ? simple->cell_count() : cut->samples().size(); }
 };
 
 /// The surface of one body, cut by the other.
 class CutSurface {
  public:
   CutSurface(QueryContext& ctx, Side side, const CollideResult& result,
-             const std::vector<exact::PairContact>& contacts)
+             const std::vector<exact::PairContact>& contacts, bool only_rational)
       : body_(ctx[side]),
         holder_(ctx[other(side)]),
         side_(side),
         result_(result),
         contacts_(contacts),
+        only_rational_(only_rational),
+        place_(places_of(body_.rep())),
+        holder_place_(places_of(holder_.rep())),
         nodes_(body_.rep().real_simplex_count()),
         surface_(body_.rep().real_simplex_count()) {}
 
@@ -98,28 +107,63 @@ class CutSurface {
     for (std::uint32_t i = 0; i < result_.pairs.size(); ++i)
       touched_[own(result_.pairs[i])].pairs.push_back(i);
     for (auto& [s, face] : touched_) {
-      const double* corners[3];
-      body_.world.corners(s, corners);
-      FaceCutters cutters(corners, holder_);
-      for (const std::uint32_t i : face.pairs) cutters.add(others(result_.pairs[i]));
-      face.cut = exact::CutFace::make(corners, cutters.all(), kInteriorCellsPerFace);
-      if (!face.cut) return false;
+      if (!only_rational_) face.simple = simple_cut(s, face);
+      if (!face.simple) face.cut = rational_cut(s, face);
+      if (!face.simple && !face.cut) return false;
       face.first_node = nodes_.size();
-      for (std::size_t i = 0; i < face.cut->samples().size(); ++i) nodes_.add();
+      for (std::size_t i = 0; i < face.cell_count(); ++i) nodes_.add();
     }
     return true;
   }
 
+  std::optional<exact::CutFace> rational_cut(SimplexId s, const TouchedFace& face) {
+    const double* corners[3];
+    body_.world.corners(s, corners);
+    FaceCutters cutters(corners, holder_);
+    for (const std::uint32_t i : face.pairs) cutters.add(others(result_.pairs[i]));
+    return exact::CutFace::make(corners, cutters.all(), kInteriorCellsPerFace);
+  }
+
+  std::optional<SimpleCut> simple_cut(SimplexId s, const TouchedFace& face) {
+    SimpleCut cut;
+    const double* corners[3];
+    body_.world.corners(s, corners);
+    for (const std::uint32_t i : face.pairs) {
+      const exact::PairContact& contact = contacts_[i];
+      if (contact.meet != exact::Meet::cross || contact.coplanar || contact.corner_count != 2)
+        return std::nullopt;
+      const SimplexId t = others(result_.pairs[i]);
+      VertexId v[3] = {0, 0, 0};
+      holder_.rep().simplex(t, v);
+      SimpleCut::End ends[2];
+      for (std::size_t c = 0; c < 2; ++c) {
+        const exact::ContactCorner& corner = contact.corners[c];
+        const exact::Feature own = side_ == Side::a ? corner.on_a : corner.on_b;
+        const exact::Feature other = side_ == Side::a ? corner.on_b : corner.on_a;
+        if (own.dim == 1 && other.dim == 2) {
+          ends[c] = SimpleCut::End::on_border(own.index, corner.x, corners, t);
+        } else if (own.dim == 2 && other.dim == 1) {
+          const auto [low, high] =
+              std::minmax(holder_place_[v[other.index]], holder_place_[v[(other.index + 1) % 3]]);
+          ends[c] = SimpleCut::End::inside(low, high);
+        } else {
+          return std::nullopt;
+        }
+      }
+      cut.add(ends[0], ends[1]);
+    }
+    return cut.close() ? std::optional(std::move(cut)) : std::nullopt;
+  }
+
   std::vector<EdgeUse> edge_uses() const {
     const LrbRep& rep = body_.rep();
-    const std::vector<VertexId> place = places_of(rep);
     std::vector<EdgeUse> uses;
     for (SimplexId s = 0; s < rep.real_simplex_count(); ++s) {
       VertexId v[3] = {0, 0, 0};  // gcc 12 does not see that simplex() sets three
       rep.simplex(s, v);
       for (int k = 0; k < 3; ++k) {
-        const auto [low, high] = std::minmax(place[v[k]], place[v[(k + 1) % 3]]);
-        uses.push_back({low, high, s, k});
+        const VertexId from = place_[v[k]], to = place_[v[(k + 1) % 3]];
+        uses.push_back({std::min(from, to), std::max(from, to), s, k, to < from});
       }
     }
     std::sort(uses.begin(), uses.end(), [](const EdgeUse& a, const EdgeUse& b) {
@@ -138,14 +182,53 @@ class CutSurface {
       for (const EdgeUse& use : uses) nodes_.join(uses[0].simplex, use.simplex);
       return true;
     }
+    if (const std::size_t parts = simple_parts(uses)) {
+      for (std::size_t i = 0; i < parts; ++i) join_parts(uses, i);
+      return true;
+    }
     std::vector<std::array<const double*, 3>> cutting;
     bool ends_touched[2] = {false, false};
     if (!is_free) is_free = find_cutting(uses, cutting, ends_touched);
     const auto samples = exact::sample_edge(from, to, cutting);
     if (!samples) return false;
-    for (const exact::RationalPoint& p : *samples)
-      if (is_free || locate(holder_, p) != Where::on_surface) join_beside(uses, p);
+    for (const EdgeUse& use : uses)
+      if (const auto face = touched_.find(use.simplex);
+          face != touched_.end() && face->second.simple &&
+          face->second.simple->part_count(use.edge) != samples->size())
+        return false;
+    for (std::size_t i = 0; i < samples->size(); ++i)
+      if (is_free || locate(holder_, (*samples)[i]) != Where::on_surface) join_beside(uses, (*samples)[i], i);
     return true;
+  }
+
+  /// Returns into how many parts an edge is cut between simplices that meet nothing or are simple; 0: there
+  /// are others.
+  std::size_t simple_parts(std::span<const EdgeUse> uses) const {
+    std::size_t parts = 0;
+    for (const EdgeUse& use : uses) {
+      const auto face = touched_.find(use.simplex);
+      const bool is_touched = face != touched_.end();
+      if (is_touched && !face->second.simple) return 0;
+      const std::size_t own = is_touched ? face->second.simple->part_count(use.edge) : 1;
+      if (parts != 0 && own != parts) return 0;
+      parts = own;
+    }
+    return parts;
+  }
+
+  void join_parts(std::span<const EdgeUse> uses, std::size_t part) {
+    const std::uint32_t first = node_at(uses[0], part);
+    for (const EdgeUse& use : uses) nodes_.join(first, node_at(use, part));
+  }
+
+  /// Returns the node that borders on a part of an edge, counted from its lower end, if the simplex meets
+  /// nothing or is simple.
+  std::uint32_t node_at(const EdgeUse& use, std::size_t part) const {
+    const auto face = touched_.find(use.simplex);
+    if (face == touched_.end()) return use.simplex.value();
+    const SimpleCut& cut = *face->second.simple;
+    const std::size_t own = use.reversed ? cut.part_count(use.edge) - 1 - part : part;
+    return face->second.first_node + cut.cell_beside(use.edge, own);
   }
 
   /// Finds the triangles of the other body that the inside of an edge meets in a point or in the end of a
@@ -171,15 +254,17 @@ class CutSurface {
     return cutting.empty() && !(ends_touched[0] && ends_touched[1]);
   }
 
-  std::uint32_t node_beside(const EdgeUse& use, const exact::RationalPoint& p) const {
+  std::uint32_t node_beside(const EdgeUse& use, const exact::RationalPoint& p, std::size_t part) const {
     const auto face = touched_.find(use.simplex);
-    if (face == touched_.end()) return use.simplex.value();
+    if (face == touched_.end() || face->second.simple) return node_at(use, part);
     return face->second.first_node + static_cast<std::uint32_t>(face->second.cut->cell_beside(use.edge, p));
   }
 
-  void join_beside(std::span<const EdgeUse> uses, const exact::RationalPoint& p) {
-    const std::uint32_t first = node_beside(uses[0], p);
-    for (const EdgeUse& use : uses) nodes_.join(first, node_beside(use, p));
+  /// Where a simple face is among them, the edge is cut where it meets the other surface and nowhere else, so
+  /// that parts and samples have the same numbers.
+  void join_beside(std::span<const EdgeUse> uses, const exact::RationalPoint& p, std::size_t part) {
+    const std::uint32_t first = node_beside(uses[0], p, part);
+    for (const EdgeUse& use : uses) nodes_.join(first, node_beside(use, p, part));
   }
 
   SurfacePieces count() {
@@ -204,11 +289,22 @@ class CutSurface {
         see(s.value(), s, [&] { return locate(holder_, body_.world(v[0])); });
         continue;
       }
-      const auto& samples = face->second.cut->samples();
-      for (std::uint32_t i = 0; i < samples.size(); ++i)
-        see(face->second.first_node + i, s, [&] { return locate(holder_, samples[i]); });
+      for (std::uint32_t i = 0; i < face->second.cell_count(); ++i)
+        see(face->second.first_node + i, s, [&] { return locate_cell(s, face->second, i); });
     }
     return out;
+  }
+
+  Where locate_cell(SimplexId s, const TouchedFace& face, std::uint32_t cell) {
+    if (!face.simple) return locate(holder_, face.cut->samples()[cell]);
+    const double* corners[3];
+    body_.world.corners(s, corners);
+    const auto [edge, share] = face.simple->place_on_border(cell);
+    if (share == 0) return locate(holder_, corners[edge]);
+    const exact::RationalPoint ends[] = {exact::RationalPoint(corners[edge]),
+                                         exact::RationalPoint(corners[(edge + 1) % 3])};
+    const double weights[] = {1 - share, share};
+    return locate(holder_, exact::RationalPoint::combination(ends, weights));
   }
 
   QueryBody& body_;
@@ -216,6 +312,8 @@ class CutSurface {
   const Side side_;
   const CollideResult& result_;
   const std::vector<exact::PairContact>& contacts_;
+  const bool only_rational_;
+  const std::vector<VertexId> place_, holder_place_;
   std::map<SimplexId, TouchedFace> touched_;
   Groups nodes_;    ///< simplices that meet nothing, by their number, then cells
   Groups surface_;  ///< simplices
@@ -223,8 +321,8 @@ class CutSurface {
 
 }  // namespace
 
-std::optional<std::array<SurfacePieces, 2>> surface_pieces(QueryContext& context,
-                                                           const CollideResult& result) {
+std::optional<std::array<SurfacePieces, 2>> surface_pieces(QueryContext& context, const CollideResult& result,
+                                                           bool only_rational) {
   for (const Side side : {Side::a, Side::b})
     if (!context[side].rep().closed() || context[side].rep().self_intersecting()) return std::nullopt;
   std::vector<exact::PairContact> contacts;
@@ -241,7 +339,8 @@ std::optional<std::array<SurfacePieces, 2>> surface_pieces(QueryContext& context
   }
   std::array<SurfacePieces, 2> out;
   for (const Side side : {Side::a, Side::b}) {
-    const std::optional<SurfacePieces> pieces = CutSurface(context, side, result, contacts).run();
+    const std::optional<SurfacePieces> pieces =
+        CutSurface(context, side, result, contacts, only_rational).run();
     if (!pieces) return std::nullopt;
     out[static_cast<std::size_t>(side)] = *pieces;
     out[static_cast<std::size_t>(side)].on_same = on_same;

@@ -14,8 +14,9 @@ namespace lrb::parting {
 ///
 /// A face that meets the other surface is cut into cells by it, each of which lies inside, outside or on the
 /// other. Cells and whole faces belong to one piece if they share a part of an edge that is not on the other
-/// surface: edges are cut where they meet it, and a point of each part decides.
-std::optional<std::array<SurfacePieces, 2>> surface_pieces(QueryContext& context,
-                                                           const CollideResult& result);
+/// surface: edges are cut where they meet it, and a point of each part decides. only_rational: asks rational
+/// arithmetic for all faces, not only for those that are no SimpleCut; the answer is the same.
+std::optional<std::array<SurfacePieces, 2>> surface_pieces(QueryContext& context, const CollideResult& result,
+                                                           bool only_rational = false);
 
 }  // namespace lrb::parting

@@ -1,5 +1,4 @@
 /// In lrbscope, the commands that measure: each becomes lrbscope-measure, which has them.
-#include <filesystem>
 #include <utility>
 
 #include <unistd.h>
@@ -7,15 +6,14 @@
 #include "engine/core/error.hpp"
 #include "engine/core/file_bytes.hpp"
 #include "scenarios/cli/command.hpp"
+#include "scenarios/cli/measuring_program.hpp"
 #include "scenarios/cli/measuring_words.hpp"
 
 namespace lrb::cli {
 namespace {
 
 [[noreturn]] void become_measuring_program(char** arguments) {
-  std::error_code error;
-  const std::filesystem::path self = std::filesystem::read_symlink("/proc/self/exe", error);
-  const std::string program = (self.parent_path() / kMeasuringProgram).string();
+  const std::string program = measuring_program();
   execv(program.c_str(), arguments);
   throw EnvironmentError(printable_name(program) + ": cannot be started, and has the command \"" +
                          printable_name(arguments[1]) +

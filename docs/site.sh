@@ -1,0 +1,112 @@
+#!/usr/bin/env bash
+# docs/site.sh OUT [API]: makes a site of these pages in OUT/html, with mkdocs (Debian's package), which must not warn. Links out of
+# this folder lead to copies of what they name. API: the folder with Doxygen's HTML, if it has been made. Then looks whether
+# every link in the site leads somewhere, anchors included, and whether a page would fetch anything from elsewhere.
+set -euo pipefail
+docs=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
+tree=$(dirname "$docs")
+out=${1:?a folder}
+api=${2:-}
+command -v mkdocs >/dev/null || { echo "site.sh: needs mkdocs (apt-get install mkdocs)" >&2 && exit 77; }
+rm -rf "$out"
+mkdir -p "$out/pages/source"
+out=$(cd "$out" && pwd)
+
+cp "$docs"/*.md "$docs"/*.png "$docs"/*.svg "$out/pages/"
+mv "$out/pages/start.md" "$out/pages/index.md"
+cp "$tree/CHANGELOG.md" "$out/pages/changelog.md"
+cp "$tree/CONTRIBUTING.md" "$out/pages/contributing.md"
+{
+  echo "# C++ reference"
+  echo
+  if [ -n "$api" ]; then
+    cp -r "$api" "$out/pages/api"
+    echo "[The reference of all public headers](api/index.html), made by Doxygen."
+  else
+    echo "\`cmake --build --preset release --target api\` makes the reference of all public headers with Doxygen. The headers:"
+  fi
+  echo
+  sed -n 's|^engine/.*|- [&](../&)|p' "$tree/engine/public_headers.txt"
+} >"$out/pages/reference.md"
+
+# Lists of lines need a blank line before them, which hosts of repositories do not ask for; links out of the folder get copies.
+python3 - "$tree" "$out/pages" <<'P'
+import glob, os, re, shutil, sys
+
+tree, pages = sys.argv[1:]
+renamed = {"CHANGELOG.md": "changelog.md", "CONTRIBUTING.md": "contributing.md", "README.md": "index.md"}
+
+
+def target(page, link):
+    path, _, anchor = link.partition("#")
+    if "://" in link or link.startswith("mailto:") or not path:
+        return link
+    if page in ("changelog.md", "contributing.md"):  # from the top of the tree
+        path = path[len("docs/"):] if path.startswith("docs/") else "../" + path
+    if path == "start.md":
+        path = "index.md"
+    if not path.startswith("../") and not os.path.exists(os.path.join(pages, path)):
+        path = "../docs/" + path
+    if not path.startswith("../"):
+        return path + ("#" + anchor if anchor else "")
+    name = os.path.normpath(path[len("../"):])
+    if name in renamed:
+        return renamed[name] + ("#" + anchor if anchor else "")
+    copy = "source/" + name.replace("/", "_") + ".txt"
+    source = os.path.join(tree, name)
+    if os.path.isdir(source):
+        with open(os.path.join(pages, copy), "w") as listing:
+            listing.write("".join(os.path.join(name, f) + "\n" for f in sorted(os.listdir(source))))
+    else:
+        shutil.copyfile(source, os.path.join(pages, copy))
+    return copy
+
+
+for file in glob.glob(pages + "/*.md"):
+    page = os.path.basename(file)
+    lines, fenced = [], False
+    for line in open(file):
+        if line.startswith("```"):
+            fenced = not fenced
+        elif not fenced:
+            line = re.sub(r"\]\(([^) ]+)\)", lambda m: "](" + target(page, m.group(1)) + ")", line)
+            starts = re.match(r"(- |\d+\. )", line)
+            if starts and lines and lines[-1].strip() and not re.match(r"(- |\d+\. |  )", lines[-1]):
+                lines.append("\n")
+        lines.append(line)
+    open(file, "w").writelines(lines)
+P
+
+# Pages that are not there (yet) have no place in the menu.
+while IFS= read -r line; do
+  page=$(sed -n 's/.*: \([a-z]*\.md\)$/\1/p' <<<"$line")
+  [ -z "$page" ] || [ -f "$out/pages/$page" ] || { echo "site.sh: there is no $page" >&2 && continue; }
+  printf '%s\n' "$line"
+done <"$docs/mkdocs.yml" >"$out/mkdocs.yml"
+(cd "$out" && mkdocs build --strict --quiet)
+
+python3 - "$out/html" <<'P'
+import glob, os, re, sys, urllib.parse
+
+site, bad, count = sys.argv[1], [], 0
+texts = {f: open(f, encoding="utf-8").read() for f in glob.glob(site + "/*.html")}
+ids = {f: set(re.findall(r'\bid="([^"]+)"', t)) for f, t in texts.items()}
+for file, text in texts.items():
+    if file.endswith("/404.html"):
+        continue  # its links are absolute
+    for fetched in re.findall(r'<(?:script|img|link)[^>]+(?:src|href)="((?:https?:)?//[^"]+)"', text):
+        bad.append("%s fetches %s" % (os.path.basename(file), fetched))
+    for link in re.findall(r'(?:href|src)="([^"]+)"', text):
+        if re.match(r"[a-z]+:|//|#$", link):
+            continue
+        path, _, anchor = urllib.parse.unquote(link).partition("#")
+        at = os.path.normpath(os.path.join(site, path)) if path else file
+        count += 1
+        if not os.path.exists(at):
+            bad.append("%s: no %s" % (os.path.basename(file), link))
+        elif anchor and at in ids and anchor not in ids[at]:
+            bad.append("%s: no heading %s" % (os.path.basename(file), link))
+print("\n".join(sorted(set(bad))) or "%d pages, %d links: all lead somewhere" % (len(texts), count))
+sys.exit(bool(bad))
+P
+echo "$out/html/index.html"
