@@ -99,7 +99,8 @@ void bind_result(py::module_& m) {
       "not meet and a body is not closed), 'unresolved' (within limits only).");
   c.def_property_readonly(
       "pairs", &pairs_of,
-      "(p, 2) uint32: the triangles of A and of B that meet, ascending. One pair at most unless mode is 'all'.");
+      "(p, 2) uint32: the triangles of A and of B that meet, ascending. One pair at most unless "
+      "mode is 'all'.");
   c.def_property_readonly("face_pairs", &face_pairs_of,
                           "(p, 2) uint32: the faces that these are of; differs for polygons only.");
   c.def_property_readonly("crosses", &crosses_of,
@@ -113,14 +114,16 @@ void bind_result(py::module_& m) {
   c.def_property_readonly("regions", &regions_of, "list of ContactRegion, if contacts were asked for.");
   c.def_property_readonly(
       "points", &points_of,
-      "((c, 3) float64, (c,) uint32): corners of the intersections of pairs, world frame, and the pair of each, if\n"
+      "((c, 3) float64, (c,) uint32): corners of the intersections of pairs, world frame, and the "
+      "pair of each, if\n"
       "contacts were asked for.");
   c.def_property_readonly(
       "counters", [](const Answer& a) { return counters_of(a.result->counters); },
       "dict: the work of the query, in numbers of operations.");
   c.def_property_readonly(
       "error_bound", [](const Answer& a) { return a.result->error_bound; },
-      "float: 0 if the answer is exact; else how far the wrappers that meet are off both bodies together, world's unit.");
+      "float: 0 if the answer is exact; else how far the wrappers that meet are off both bodies "
+      "together, world's unit.");
   c.def_property_readonly(
       "finished", [](const Answer& a) { return a.result->finished; },
       "bool: False if a limit was reached before the tolerance.");
@@ -246,7 +249,7 @@ void bind_region(py::module_& m) {
       "normal", [](const Region& r) { return array_of(r.region->normal); },
       "(3,) float64: unit, from A to B, averaged; zero where it has no meaning.");
   c.def_property_readonly(
-      "depth", [](const Region& r) { return r.region->depth; },
+      "depth_estimate", [](const Region& r) { return r.region->depth_estimate; },
       "float: an estimate of how far B must move along `normal` to leave the region.");
   c.def("__repr__", [](const Region& r) {
     return "<lrbscope.ContactRegion of " + std::to_string(r.region->pairs.size()) + " pairs>";

@@ -190,20 +190,20 @@ Eigen::Vector3d vector(py::handle given, const char* what) {
 
 Poses poses(py::handle given, const char* what) {
   Poses out;
-  if (given.is_none()) {
-    out.all.emplace_back();
-    return out;
-  }
+  if (given.is_none()) return out;
   const Numbers m = numbers(given, what, kPoses);
-  const bool empty = m.ndim() == 1 && m.size() == 0;  // an empty list: no poses
   out.one = m.ndim() == 2;
-  if (empty) return out;
+  if (m.ndim() == 1 && m.size() == 0) return out;  // an empty list: no poses
   const py::ssize_t rows = m.ndim() >= 2 ? m.shape(m.ndim() - 2) : 0;
   if ((m.ndim() != 2 && m.ndim() != 3) || m.shape(m.ndim() - 1) != 4 || (rows != 3 && rows != 4))
     refuse_shape(what, kPoses, m);
-  const py::ssize_t n = out.one ? 1 : m.shape(0);
-  out.all.reserve(static_cast<std::size_t>(n));
-  for (py::ssize_t i = 0; i < n; ++i) out.all.push_back(read_pose(m.data() + 4 * rows * i, rows, what));
+  if (out.one) {
+    out.first = read_pose(m.data(), rows, what);
+    return out;
+  }
+  out.many.reserve(static_cast<std::size_t>(m.shape(0)));
+  for (py::ssize_t i = 0; i < m.shape(0); ++i)
+    out.many.push_back(read_pose(m.data() + 4 * rows * i, rows, what));
   return out;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
-/// What callers from Python give, as what the engine takes. Everything here throws InputError in one line that names the
-/// argument, or TypeError where an argument is of another kind altogether. The lock of Python must be held.
+/// What callers from Python give, as what the engine takes. Everything here throws InputError in one line
+/// that names the argument, or TypeError where an argument is of another kind altogether. The lock of Python
+/// must be held.
 
 #include <cstdint>
 #include <span>
@@ -44,21 +45,25 @@ Enum word(py::handle given, const char* what, Enum fallback) {
   throw InputError(std::string(what) + ": \"" + name + "\" is not one of " + all_names<Enum>());
 }
 
-/// Poses of a body, and whether they were given as one.
+/// Poses of a body: one, or many in a row.
 struct Poses {
-  std::vector<Pose> all;
   bool one = true;
+  Pose first;              ///< if there is one
+  std::vector<Pose> many;  ///< if not: a single query asks for no memory
+
+  std::vector<Pose> to_vector() const { return one ? std::vector<Pose>{first} : many; }
 };
 /// Reads (4, 4) or (3, 4) as one pose, (k, 4, 4) or (k, 3, 4) as many; None is the identity.
 Poses poses(py::handle given, const char* what);
 /// Reads one pose; throws for many.
 Pose pose(py::handle given, const char* what);
 
-/// Returns the mesh of arrays: vertices (n, 3) and faces (m, k) with k >= 3 or a sequence of sequences; of a body in the
-/// plane vertices (n, 2) and segments (m, 2).
+/// Returns the mesh of arrays: vertices (n, 3) and faces (m, k) with k >= 3 or a sequence of sequences; of a
+/// body in the plane vertices (n, 2) and segments (m, 2).
 Mesh mesh_of_arrays(py::handle vertices, py::handle faces, const std::string& name);
 
-/// Returns an array that nobody can write to and that shows memory of `owner`, which it keeps alive. T: as numpy has it.
+/// Returns an array that nobody can write to and that shows memory of `owner`, which it keeps alive. T: as
+/// numpy has it.
 template <class T>
 py::array_t<T> view(std::vector<py::ssize_t> shape, const T* data, py::handle owner) {
   py::array_t<T> out(std::move(shape), data, owner);

@@ -254,16 +254,17 @@ void bind_geometry(BodyClass& c) {
       [](const py::object& self) {
         return faces_of(self, FaceId{0}, FaceId(self.cast<const Body&>().rep().real_face_count()));
       },
-      "(m, 3) uint32: the corners of each face; a list of arrays if faces differ in their number of corners.");
+      "(m, 3) uint32: the corners of each face; a list of arrays if faces differ in their number of "
+      "corners.");
   c.def_property_readonly(
       "triangles", &triangles_of,
       "(t, 3) uint32: the corners of each triangle, which pairs name. A polygon is its fan from the "
       "first corner.");
   c.def_property_readonly("face_of_triangle", &face_of_triangle,
                           "(t,) uint32: the face that each triangle is of.");
-  c.def(
-      "box", &box, py::arg("pose") = py::none(),
-      "box(pose=None)\n\nReturns the box of the body at a pose, (2, 3) float64: least and greatest coordinates, exact.");
+  c.def("box", &box, py::arg("pose") = py::none(),
+        "box(pose=None)\n\nReturns the box of the body at a pose, (2, 3) float64: least and greatest "
+        "coordinates, exact.");
 }
 
 void bind_numbers(BodyClass& c) {
@@ -295,15 +296,16 @@ void bind_numbers(BodyClass& c) {
                           "float: that the build took; 0 if there was none.");
   c.def_property_readonly(
       "memory_bytes", [](const Body& b) { return b.rep().memory_bytes(); }, "int");
-  c.def(
-      "figures", &figures,
-      "figures()\n\nReturns the LRB-rep in numbers, a dict with the keys of `lrbscope build --json`: faces, regions, layers,\n"
-      "volumes (unit cubed) of solid, outermost wrapper and hull, bytes, build_seconds.");
-  c.def(
-      "levels", &levels, py::kw_only(), py::arg("threads") = 0,
-      "levels(*, threads=0)\n\nReturns the wrappers that queries to a tolerance walk, coarsest first: a list of dicts with\n"
-      "`bound` (no point of the wrapper is further from the body; the mesh's unit), `faces`, `pseudo_faces`.\n"
-      "The first call makes them.");
+  c.def("figures", &figures,
+        "figures()\n\nReturns the LRB-rep in numbers, a dict with the keys of `lrbscope build "
+        "--json`: faces, regions, layers,\n"
+        "volumes (unit cubed) of solid, outermost wrapper and hull, bytes, build_seconds.");
+  c.def("levels", &levels, py::kw_only(), py::arg("threads") = 0,
+        "levels(*, threads=0)\n\nReturns the wrappers that queries to a tolerance walk, coarsest "
+        "first: a list of dicts with\n"
+        "`bound` (no point of the wrapper is further from the body; the mesh's unit), `faces`, "
+        "`pseudo_faces`.\n"
+        "The first call makes them.");
 }
 
 }  // namespace
@@ -324,9 +326,15 @@ const BodyExtent& Body::extent() const {
 }
 
 const Body& body(py::handle given, const char* what) {
+  // What isinstance() and cast() look up is the same in each call, and they take as long as a query.
+  static PyTypeObject* const type = reinterpret_cast<PyTypeObject*>(py::type::of<Body>().ptr());
+  if (Py_TYPE(given.ptr()) == type) {
+    auto* object = reinterpret_cast<py::detail::instance*>(given.ptr());
+    if (const auto* found = object->get_value_and_holder().value_ptr<Body>()) return *found;
+  }
   if (!py::isinstance<Body>(given))
     throw py::type_error(std::string(what) + ": expected a Body, got " + described(given));
-  return *given.cast<Body*>();
+  return given.cast<const Body&>();
 }
 
 BodyPtr shared_body(py::handle given, const char* what) {

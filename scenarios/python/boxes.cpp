@@ -31,15 +31,16 @@ py::array_t<std::uint32_t> pairs_of(SweepAndPrune& sweep, const Boxes& given) {
 void bind_boxes(py::module_& m) {
   py::class_<SweepAndPrune>(
       m, "SweepAndPrune",
-      R"(The broad phase: finds which of many boxes meet, by sort and sweep; quick if they have moved little since.
+      R"(The broad phase: finds which of many boxes meet, by sort and sweep; quick if they have moved little.
 
->>> SweepAndPrune().update([cube.box(), cube.box(shifted(0.5, 0, 0)), cube.box(shifted(9, 0, 0))]).tolist()
+>>> boxes = [cube.box(), cube.box(shifted(0.5, 0, 0)), cube.box(shifted(9, 0, 0))]
+>>> SweepAndPrune().update(boxes).tolist()
 [[0, 1]])")
       .def(py::init<>())
-      .def(
-          "update", &pairs_of, py::arg("boxes"),
-          "update(boxes)\n\nReturns the pairs of boxes with a point in common, (p, 2) uint32 ascending. boxes: (n, 2, 3) float, least\n"
-          "and greatest coordinates.");
+      .def("update", &pairs_of, py::arg("boxes"),
+           "update(boxes)\n\nReturns the pairs of boxes with a point in common, (p, 2) uint32 "
+           "ascending. boxes: (n, 2, 3) float, least\n"
+           "and greatest coordinates.");
 }
 
 }  // namespace lrb::python

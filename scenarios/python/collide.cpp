@@ -56,8 +56,8 @@ py::object collide(py::handle a, py::handle b, py::handle poses_b, py::handle po
   const Pose at_a = pose(pose_a, "pose_a");
   const CollideRequest request = request_of(
       {mode, contacts, interiors_overlap, tolerance, max_tests, max_time, separation, max_pairs, recursion});
-  if (at.one) return collide_one(body_a, at_a, body_b, at.all[0], request);
-  return collide_many(body_a, at_a, body_b, at.all, request, threads_of(count(threads, "threads")));
+  if (at.one) return collide_one(body_a, at_a, body_b, at.first, request);
+  return collide_many(body_a, at_a, body_b, at.many, request, threads_of(count(threads, "threads")));
 }
 
 /// A row of bodies with their poses.
@@ -69,7 +69,7 @@ struct Row {
 Row row_of(const py::sequence& bodies, py::handle given, const char* what, const char* what_poses) {
   Row out;
   for (const py::handle one : bodies) out.reps.push_back(body(one, what).shared());
-  out.poses = poses(given, what_poses).all;
+  out.poses = poses(given, what_poses).to_vector();
   if (out.poses.size() != out.reps.size())
     throw InputError(std::string(what_poses) + ": expected as many as " + what + ", " +
                      std::to_string(out.reps.size()) + ", got " + std::to_string(out.poses.size()));
@@ -110,10 +110,11 @@ py::object contacts(py::handle a, py::handle b, py::handle poses_b, py::handle p
   return out;
 }
 
-/// Asks as a program in C++ would, and returns nothing: what calls from Python are compared with (tests/python/bench.py).
+/// Asks as a program in C++ would, and returns nothing: what calls from Python are compared with
+/// (tests/python/bench.py).
 void collide_alone(py::handle a, py::handle b, py::handle given, unsigned threads) {
   const LrbRep &rep_a = body(a, "a").rep(), &rep_b = body(b, "b").rep();
-  const std::vector<Pose> poses_b = poses(given, "poses_b").all;
+  const std::vector<Pose> poses_b = poses(given, "poses_b").to_vector();
   const py::gil_scoped_release unlocked;
   std::vector<CollideResult> results(poses_b.size());
   std::vector<QueryContext> contexts(threads);
@@ -129,7 +130,8 @@ constexpr const char* kCollideText =
 
 Finds whether two bodies meet, which of their triangles do, and how the bodies lie to each other; exactly.
 
-poses_b: where B stands: a (4, 4) float matrix from body to world, applied to columns (x, y, z, 1); any affine map.
+poses_b: where B stands: a (4, 4) float matrix from body to world, applied to columns (x, y, z, 1); any affine
+map.
     (k, 4, 4): k poses, answered on all cores without Python's lock; Ctrl-C ends the batch.
 pose_a: (4, 4), of A, in all of them. None is the identity for both.
 mode: 'all' pairs; 'first': one that crosses, if any; 'any': the first pair that is found, the fastest.
@@ -147,7 +149,8 @@ Returns a Result, or for (k, 4, 4) a Results.
 (['crossing', 'separate'], [12, 0]))";
 
 constexpr const char* kCollidePairsText =
-    R"(collide_pairs(bodies_a, poses_a, bodies_b, poses_b, *, mode='all', contacts=False, max_pairs=0, threads=0)
+    R"(collide_pairs(bodies_a, poses_a, bodies_b, poses_b, *, mode='all', contacts=False, max_pairs=0,
+              threads=0)
 
 Asks for k pairs of bodies, on all cores: bodies_a[i] at poses_a[i] against bodies_b[i] at poses_b[i].
 
@@ -158,7 +161,8 @@ Returns a list of k Results, in order.)";
 constexpr const char* kContactsText =
     R"(contacts(a, b, poses_b=None, pose_a=None, *, max_pairs=0, threads=0)
 
-Returns the contact regions of two bodies at a pose, a list of ContactRegion; for (k, 4, 4) poses a list of such lists.
+Returns the contact regions of two bodies at a pose, a list of ContactRegion; for (k, 4, 4) poses a list of
+such lists.
 
 >>> [len(r.curves) for r in contacts(cube, cube, shifted(0.5, 0.25, 0.125))]
 [1])";

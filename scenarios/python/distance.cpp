@@ -38,15 +38,15 @@ py::object distance(py::handle a, py::handle b, py::handle poses_b, py::handle p
     auto result = std::make_shared<DistanceResult>();
     {
       const py::gil_scoped_release unlocked;
-      *result = lrb::distance(body_a.rep(), at_a, body_b.rep(), at.all[0], request, own_context());
+      *result = lrb::distance(body_a.rep(), at_a, body_b.rep(), at.first, request, own_context());
     }
     return py::cast(Distance{std::move(result)});
   }
   const unsigned n = threads_of(count(threads, "threads"));
-  auto results = std::make_shared<std::vector<DistanceResult>>(at.all.size());
+  auto results = std::make_shared<std::vector<DistanceResult>>(at.many.size());
   std::vector<DistanceContext> contexts(n);
-  run_batch(at.all.size(), n, [&](std::size_t i, unsigned worker) {
-    (*results)[i] = lrb::distance(body_a.rep(), at_a, body_b.rep(), at.all[i], request, contexts[worker]);
+  run_batch(at.many.size(), n, [&](std::size_t i, unsigned worker) {
+    (*results)[i] = lrb::distance(body_a.rep(), at_a, body_b.rep(), at.many[i], request, contexts[worker]);
   });
   return py::cast(Distances{std::move(results)});
 }
@@ -183,8 +183,9 @@ Finds how far the surfaces of two bodies are apart, as an interval that is prove
 
 poses_b: (4, 4) float, or (k, 4, 4) for many poses on all cores; pose_a: (4, 4). None: the identity.
 within: ask only whether they are this near (the world's unit): Distance.within.
-tolerance (the world's unit), relative_tolerance: how wide the interval may be. 0, 0: about 1e-12 of the bodies' size.
-max_steps: of the search; 0: no limit. relation: decide how bodies lie whose surfaces do not meet.
+tolerance (the world's unit), relative_tolerance: how wide the interval may be. 0, 0: about 1e-12 of the
+bodies' size. max_steps: of the search; 0: no limit. relation: decide how bodies lie whose surfaces do not
+meet.
 
 Returns a Distance, or for (k, 4, 4) a Distances.
 

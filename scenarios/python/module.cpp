@@ -1,8 +1,10 @@
 #include "scenarios/python/answers.hpp"
 #include "scenarios/python/body.hpp"
 #include "scenarios/python/boxes.hpp"
+#include "scenarios/python/clash.hpp"
 #include "scenarios/python/collide.hpp"
 #include "scenarios/python/distance.hpp"
+#include "scenarios/python/first_contact.hpp"
 #include "scenarios/python/recorded.hpp"
 #include "scenarios/python/scenario.hpp"
 #include "scenarios/python/wrapper.hpp"
@@ -23,6 +25,8 @@ PYBIND11_MODULE(_core, m) {
   bind_answers(m);
   bind_collide(m);
   bind_distance(m);
+  bind_first_contact(m);
+  bind_clash(m);
   bind_wrapper(m);
   bind_boxes(m);
   bind_recorded(m);

@@ -34,6 +34,11 @@ file(GLOB lrb_python_sources CONFIGURE_DEPENDS python/*.cpp)
 pybind11_add_module(lrb_python MODULE NO_EXTRAS ${lrb_python_sources})
 # gcc 12 sees members of pybind11's casters as uninitialized that are read only if set.
 target_compile_options(lrb_python PRIVATE $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>)
+if(CMAKE_BUILD_TYPE STREQUAL "Release")
+  target_compile_options(lrb_python PRIVATE -O2)  # the work is done in the engine
+endif()
+target_precompile_headers(lrb_python PRIVATE <algorithm> <functional> <memory> <span> <string> <vector> <Eigen/Core>
+                          <Eigen/Geometry> <pybind11/numpy.h> <pybind11/pybind11.h> <pybind11/stl.h>)
 target_link_libraries(lrb_python PRIVATE lrb::run lrb::bodies lrb_options)
 # What the module has beside its entry is its own: no other module's code is taken for it.
 target_link_options(lrb_python PRIVATE LINKER:--exclude-libs,ALL)

@@ -58,7 +58,7 @@ RecordedPtr trace_of(py::handle a, py::handle b, py::handle poses_b, py::handle 
   settings.sources = {out->bodies[0]->name(), out->bodies[1]->name()};
   settings.scenario = out->title;
   const py::gil_scoped_release unlocked;
-  record(*out, at_a, at.all, settings);
+  record(*out, at_a, at.to_vector(), settings);
   return out;
 }
 
@@ -166,12 +166,15 @@ py::object render_bodies(py::handle a, py::handle b, py::handle pose_b, py::hand
 void bind_trace(py::module_& m) {
   py::class_<Recorded, RecordedPtr> c(
       m, "Trace",
-      "A recorded run: every event of its queries. Made by trace() and Scenario.record(). In a notebook: a page on\n"
+      "A recorded run: every event of its queries. Made by trace() and Scenario.record(). In a "
+      "notebook: a page on\n"
       "which the bodies can be turned after any event.");
   c.def_property_readonly(
       "events", &events_of,
-      "(e,) records of a, b, cause, boundary (uint32), depth_a, depth_b (uint16), kind, side, meet, detail (uint8);\n"
-      "`kind` counts in `kinds`, and what a and b are depends on it (docs/scenarios.md). Shares the trace's memory.");
+      "(e,) records of a, b, cause, boundary (uint32), depth_a, depth_b (uint16), kind, side, meet, "
+      "detail (uint8);\n"
+      "`kind` counts in `kinds`, and what a and b are depends on it (docs/scenarios.md). Shares the "
+      "trace's memory.");
   c.attr("kinds") = words<EventKind>();
   c.def_property_readonly(
       "steps", &steps_of,
@@ -207,7 +210,8 @@ void bind_trace(py::module_& m) {
               {size, view_from, up, look_at, zoom, orthographic, wrappers, close_up, colour_by, transparent});
         },
         py::arg("step") = -1, py::kw_only(), names...,
-        "picture(step=-1, *, ...)\n\nDraws the end of a step, counted from the end if negative. Options and result as of render().");
+        "picture(step=-1, *, ...)\n\nDraws the end of a step, counted from the end if negative. "
+        "Options and result as of render().");
   });
 }
 
@@ -240,24 +244,26 @@ std::shared_ptr<Recorded> recorded_of(run::Recording recording, const spec::Scen
 void bind_recorded(py::module_& m) {
   bind_trace(m);
   const py::none no;
-  m.def(
-      "trace", &trace_of, py::arg("a"), py::arg("b"), py::arg("poses_b") = no, py::arg("pose_a") = no,
-      py::kw_only(), py::arg("events") = no, py::arg("max_events") = no, py::arg("mode") = no,
-      py::arg("contacts") = no, py::arg("tolerance") = no, py::arg("max_tests") = no,
-      py::arg("separation") = no, py::arg("recursion") = no,
-      R"(trace(a, b, poses_b=None, pose_a=None, *, events='faces', max_events=1000000, mode='all', contacts=None,
-      tolerance=0, max_tests=0, separation=False, recursion='complete')
+  m.def("trace", &trace_of, py::arg("a"), py::arg("b"), py::arg("poses_b") = no, py::arg("pose_a") = no,
+        py::kw_only(), py::arg("events") = no, py::arg("max_events") = no, py::arg("mode") = no,
+        py::arg("contacts") = no, py::arg("tolerance") = no, py::arg("max_tests") = no,
+        py::arg("separation") = no, py::arg("recursion") = no,
+        R"(trace(a, b, poses_b=None, pose_a=None, *, events='faces', max_events=1000000, mode='all',
+      contacts=None, tolerance=0, max_tests=0, separation=False, recursion='complete')
 
 Records the query of two bodies at each pose, a step each: every comparison and every refinement.
 
-poses_b, pose_a: as of collide(). events: 'faces'; 'nodes' adds pairs of tree nodes, phases, points; 'all' adds pairs
-of triangles that planes part. max_events: how many are kept; more are counted. The rest: as of collide().
+poses_b, pose_a: as of collide(). events: 'faces'; 'nodes' adds pairs of tree nodes, phases, points; 'all'
+adds pairs of triangles that planes part. max_events: how many are kept; more are counted. The rest: as of
+collide().
 
 Returns a Trace.
 
 >>> t = trace(cube, cube, shifted(0.5, 0.25, 0.125))
->>> t.steps['relation'].tolist(), sum(t.events['kind'] == Trace.kinds.index('contact')) == len(t.results[0].pairs)
-(['crossing'], True))");
+>>> t.steps['relation'].tolist()
+['crossing']
+>>> int(sum(t.events['kind'] == Trace.kinds.index('contact'))) == len(t.results[0].pairs)
+True)");
   with_picture_arguments([&](auto&&... names) {
     m.def(
         "render",
@@ -270,15 +276,17 @@ Returns a Trace.
         },
         py::arg("a"), py::arg("b") = no, py::arg("pose_b") = no, py::arg("pose_a") = no, py::kw_only(),
         names...,
-        R"(render(a, b=None, pose_b=None, pose_a=None, *, size=(960, 720), view_from=None, up=(0, 0, 1), look_at=None,
-       zoom=1, orthographic=False, wrappers=False, close_up=False, colour_by='kind', transparent=False)
+        R"(render(a, b=None, pose_b=None, pose_a=None, *, size=(960, 720), view_from=None, up=(0, 0, 1),
+       look_at=None, zoom=1, orthographic=False, wrappers=False, close_up=False, colour_by='kind',
+       transparent=False)
 
 Draws a body, or two and where they meet.
 
-size: pixels, width and height. view_from: the direction from the bodies to the viewer; None: from where least of the
-contact is hidden. up: the direction upwards in the picture. look_at: the point in its middle; zoom: above 1 closer.
-wrappers: show the wrappers that the query worked on. close_up: show the contact alone. colour_by: 'kind', 'layer',
-'region', 'face_tests', 'refinements', 'hits', 'misses'. transparent: no background.
+size: pixels, width and height. view_from: the direction from the bodies to the viewer; None: from where least
+of the contact is hidden. up: the direction upwards in the picture. look_at: the point in its middle; zoom:
+above 1 closer. wrappers: show the wrappers that the query worked on. close_up: show the contact alone.
+colour_by: 'kind', 'layer', 'region', 'face_tests', 'refinements', 'hits', 'misses'. transparent: no
+background.
 
 Returns a Picture, (height, width, 3) uint8; transparent: (height, width, 4).
 

@@ -10,7 +10,8 @@
 
 namespace lrb::python {
 
-/// A recorded run as Python has it: what the pictures and pages of scenarios/run are made of, with bodies that it shares.
+/// A recorded run as Python has it: what the pictures and pages of scenarios/run are made of, with bodies
+/// that it shares.
 class Recorded {
  public:
   std::vector<std::shared_ptr<const LrbRep>> bodies;  ///< A and B, or A alone

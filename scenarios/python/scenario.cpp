@@ -20,7 +20,8 @@ run::ProgressReport report_to(const py::object& progress) {
   const bool told = !progress.is_none();
   if (told && !PyCallable_Check(progress.ptr()))
     throw py::type_error("progress: expected a callable, got " + described(progress));
-  // A plain pointer, because copies are made and destroyed without the lock; the caller's argument keeps it alive.
+  // A plain pointer, because copies are made and destroyed without the lock; the caller's argument keeps it
+  // alive.
   PyObject* const callee = progress.ptr();
   return [told, callee](const std::string& what, std::uint64_t done, std::uint64_t total) {
     check_signals();
@@ -93,12 +94,12 @@ void bind_scenario(py::module_& m) {
       "name", [](const spec::Scenario& s) { return s.name; }, "str");
   c.def_property_readonly(
       "purpose", [](const spec::Scenario& s) { return s.purpose; }, "str: what the pictures should show.");
-  c.def(
-      "record", &record, py::kw_only(), py::arg("progress") = py::none(),
-      "record(*, progress=None)\n\nRuns the scenario and draws nothing. progress(what, done, total): is called now and then. Returns a Trace.");
-  c.def(
-      "run", &run_into, py::arg("out"), py::kw_only(), py::arg("progress") = py::none(),
-      "run(out, *, progress=None)\n\nRuns the scenario and writes page, frames, trace, numbers and bodies into the folder `out`. Returns an Outcome.");
+  c.def("record", &record, py::kw_only(), py::arg("progress") = py::none(),
+        "record(*, progress=None)\n\nRuns the scenario and draws nothing. progress(what, done, "
+        "total): is called now and then. Returns a Trace.");
+  c.def("run", &run_into, py::arg("out"), py::kw_only(), py::arg("progress") = py::none(),
+        "run(out, *, progress=None)\n\nRuns the scenario and writes page, frames, trace, numbers and "
+        "bodies into the folder `out`. Returns an Outcome.");
   c.def("__repr__", [](const spec::Scenario& s) { return "<lrbscope.Scenario '" + s.name + "'>"; });
   m.def("scenarios", &shipped, "scenarios()\n\nReturns the names of the scenarios that lrbscope ships.");
   m.def("_encode_png", &png_of, py::arg("pixels"));

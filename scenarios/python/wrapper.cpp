@@ -91,21 +91,22 @@ void bind_wrapper(py::module_& m) {
 >>> w.refine_all()
 >>> len(w) == cube.real_face_count
 True)");
-  c.def(
-      py::init(&made), py::arg("body"), py::arg("mode") = py::none(),
-      "Wrapper(body, mode='regularised')\n\nMakes the outermost wrapper. mode: or 'unregularised', in which refining a face\n"
-      "discards that face alone.");
-  c.def_static(
-      "at", &at, py::arg("body"), py::arg("tolerance"), py::kw_only(), py::arg("threads") = 0,
-      "at(body, tolerance, *, threads=0)\n\nMakes the coarsest wrapper that is off the body by no more than a tolerance (the\n"
-      "mesh's unit).");
+  c.def(py::init(&made), py::arg("body"), py::arg("mode") = py::none(),
+        "Wrapper(body, mode='regularised')\n\nMakes the outermost wrapper. mode: or 'unregularised', "
+        "in which refining a face\n"
+        "discards that face alone.");
+  c.def_static("at", &at, py::arg("body"), py::arg("tolerance"), py::kw_only(), py::arg("threads") = 0,
+               "at(body, tolerance, *, threads=0)\n\nMakes the coarsest wrapper that is off the body by no "
+               "more than a tolerance (the\n"
+               "mesh's unit).");
   c.def(
       "refine", [](BodyWrapper& w, py::handle r) { return w.wrapper.refine(region(w, r)); },
       py::arg("region"), "refine(region)\n\nExcludes a region. Returns False if it was excluded already.");
   c.def(
       "refine_face", [](BodyWrapper& w, py::handle f) { return w.wrapper.refine_face(face(w, f)); },
       py::arg("face"),
-      "refine_face(face)\n\nRefines the region behind a face. Returns False if it is real or not on the boundary.");
+      "refine_face(face)\n\nRefines the region behind a face. Returns False if it is real or not on "
+      "the boundary.");
   c.def(
       "coarsen", [](BodyWrapper& w, py::handle r) { return w.wrapper.coarsen(region(w, r)); },
       py::arg("region"),
@@ -118,9 +119,9 @@ True)");
   c.def(
       "includes", [](const BodyWrapper& w, py::handle r) { return w.wrapper.included(region(w, r)); },
       py::arg("region"), "includes(region)\n\nReturns whether a region counts as part of the body.");
-  c.def(
-      "region_behind", &region_behind, py::arg("face"),
-      "region_behind(face)\n\nReturns the region that is behind a face of the boundary; None of a real face, or one that is not on it.");
+  c.def("region_behind", &region_behind, py::arg("face"),
+        "region_behind(face)\n\nReturns the region that is behind a face of the boundary; None of a "
+        "real face, or one that is not on it.");
   c.def_property_readonly(
       "body", [](const BodyWrapper& w) { return w.body; }, "Body");
   c.def_property_readonly(

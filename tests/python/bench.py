@@ -1,7 +1,10 @@
 #!/usr/bin/python3
-"""What calls from Python cost beside those from C++: PYTHONPATH=build/release/python tests/python/bench.py [MESH]
+"""What calls from Python cost beside those from C++.
 
-Compares with the figures that the module measures inside itself, without Python in between. Ratios within one run.
+PYTHONPATH=build/release/python tests/python/bench.py [MESH]
+
+Compares with the figures that the module measures inside itself, without Python in between. Ratios within one
+run.
 """
 
 import os
@@ -37,7 +40,9 @@ def calls(a, b, pose, n=20000):
 
     alone = best(lambda: _core._collide_alone(a, b, np.broadcast_to(pose, (n, 4, 4)), 1)) / n
     from_python = best(loop) / n
-    print(f"  a call: {1e6 * from_python:.2f} us, the query alone {1e6 * alone:.2f} us, beyond it {1e6 * (from_python - alone):.2f} us")
+    beyond = from_python - alone
+    times = [f"{1e6 * t:.2f} us" for t in (from_python, alone, beyond)]
+    print("  a call: {}, the query alone {}, beyond it {}".format(*times))
 
 
 def batches(a, b, poses):

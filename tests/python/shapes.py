@@ -64,7 +64,9 @@ def placed(vertices, pose):
 
 
 def _edges_through(starts, ends, tri):
-    """Return (e, t): whether each segment passes through each triangle, for segments in no triangle's plane."""
+    """Return (e, t): whether each segment passes through each triangle, for segments in no triangle's
+    plane.
+    """
 
     def volume(a, b, c, d):
         return np.einsum("...i,...i", np.cross(b - a, c - a), d - a)
@@ -82,8 +84,10 @@ def all_of(conditions):
 
 
 def brute_pairs(va, fa, vb, fb):
-    """Return the pairs of triangles that meet, ascending: an edge of one passes through the other. For bodies in general
-    position."""
+    """Return the pairs of triangles that meet, ascending: an edge of one passes through the other.
+
+    For bodies in general position.
+    """
     ta, tb = va[fa], vb[fb]
     meet = np.zeros((len(ta), len(tb)), dtype=bool)
     for i in range(3):

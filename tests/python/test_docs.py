@@ -26,7 +26,7 @@ def documented():
     found = []
     for module in (lrbscope, lrbscope.collision, lrbscope.fcl):
         found.append((module.__name__, module.__doc__))
-        names = module.__all__ if hasattr(module, "__all__") else [n for n in vars(module) if not n.startswith("_")]
+        names = getattr(module, "__all__", [n for n in vars(module) if not n.startswith("_")])
         for name in names:
             thing = getattr(module, name)
             if not (inspect.isclass(thing) or callable(thing)):
@@ -34,7 +34,8 @@ def documented():
             found.append((f"{module.__name__}.{name}", thing.__doc__))
             if inspect.isclass(thing) and thing.__module__.startswith("lrbscope"):
                 for member, value in vars(thing).items():
-                    if not member.startswith("_") and (callable(value) or isinstance(value, (property, staticmethod))):
+                    is_shown = callable(value) or isinstance(value, (property, staticmethod))
+                    if is_shown and not member.startswith("_"):
                         found.append((f"{module.__name__}.{name}.{member}", getattr(value, "__doc__", None)))
     return found
 
@@ -81,7 +82,9 @@ def parameters_of(node):
 
 
 def test_the_stub_has_the_parameters_that_functions_take():
-    """Docstrings begin with the signature; a function called with each name alone complains of what is missing, not of it."""
+    """Docstrings begin with the signature; a function called with each name alone complains of what is
+    missing, not of it.
+    """
     nodes = {n.name: n for n in stubs() if isinstance(n, ast.FunctionDef)}
     for node in stubs():
         if isinstance(node, ast.ClassDef):
@@ -106,7 +109,8 @@ def blocks(page):
     """Return the Python blocks of a page, and the lines that they begin at."""
     with open(os.path.join(ROOT, page)) as file:
         text = file.read()
-    return [(text[: m.start()].count("\n") + 1, m.group(1)) for m in re.finditer(r"^```python\n(.*?)^```", text, re.S | re.M)]
+    found = re.finditer(r"^```python\n(.*?)^```", text, re.S | re.M)
+    return [(text[: m.start()].count("\n") + 1, m.group(1)) for m in found]
 
 
 @pytest.mark.parametrize("page", ["docs/python.md", "README.md"])

@@ -46,12 +46,14 @@ def test_signatures_are_those_of_trimesh():
 def test_single(three, box):
     assert three.in_collision_single(box, shifted(9.5, 0.1, 0.1)) is True
     assert three.in_collision_single(box, shifted(50, 0, 0)) is False
-    assert three.in_collision_single(box, shifted(50, 0, 0), return_names=True, return_data=True) == (False, set(), [])
+    nothing = three.in_collision_single(box, shifted(50, 0, 0), return_names=True, return_data=True)
+    assert nothing == (False, set(), [])
     hit, names = three.in_collision_single(box, shifted(0.2, 0.1, 0.05), return_names=True)
     assert hit and names == {"a", "b"}
     hit, data = three.in_collision_single(box, shifted(9.5, 0.1, 0.1), return_data=True)
     assert hit and data and {frozenset(c.names) for c in data} == {frozenset(("far", "__external"))}
-    wanted = lrbscope.collide(three._objects["far"].body, three._objects["far"].body, shifted(9.5, 0.1, 0.1), shifted(9, 0, 0))
+    body = three._objects["far"].body
+    wanted = lrbscope.collide(body, body, shifted(9.5, 0.1, 0.1), shifted(9, 0, 0))
     assert sorted([c.index("far"), c.index("__external")] for c in data) == wanted.pairs.tolist()
     for c in data:
         assert c.point.shape == (3,) and (c.point >= (9.5, 0, 0)).all() and (c.point <= (10, 1.1, 1.1)).all()
@@ -79,10 +81,12 @@ def test_other(three, box):
 
 def test_distances(three, box):
     assert np.isclose(three.min_distance_single(box, shifted(12, 0, 0)), 2)
-    distance, name, data = three.min_distance_single(box, shifted(12, 0, 0), return_name=True, return_data=True)
+    at = shifted(12, 0, 0)
+    distance, name, data = three.min_distance_single(box, at, return_name=True, return_data=True)
     assert name == "far" and data.names == {"far", "__external"} and data.distance == distance
     assert data.point("far")[0] == 10 and data.point("__external")[0] == 12
-    assert three._objects["far"].body.vertices[three._objects["far"].body.faces[data.index("far")]][:, 0].max() == 1
+    body = three._objects["far"].body
+    assert body.vertices[body.faces[data.index("far")]][:, 0].max() == 1
     assert three.min_distance_internal() == 0
     three.remove_object("b")
     distance, names, data = three.min_distance_internal(return_names=True, return_data=True)
@@ -139,7 +143,8 @@ def test_many_against_all_pairs(rng):
     for i, pose in enumerate(poses):
         m.add_object(i, mesh, pose)
     body = m._objects[0].body
-    apart = {(i, j): lrbscope.distance(body, body, poses[j], poses[i]).solids[1] for j in range(60) for i in range(j)}
+    pairs = [(i, j) for j in range(60) for i in range(j)]
+    apart = {(i, j): lrbscope.distance(body, body, poses[j], poses[i]).solids[1] for i, j in pairs}
     assert m.in_collision_internal(return_names=True)[1] == {pair for pair, d in apart.items() if d == 0}
     for pair in [pair for pair, d in apart.items() if d == 0]:
         if pair[0] in m._objects:

@@ -51,7 +51,8 @@ def test_a_batch_lets_other_threads_run(ball, rng):
 
 def _asked_in_a_child(pose):
     body = Body(*ball_arrays(3))
-    return collide(body, body, [pose] * 10, threads=0).fingerprints.tolist() + [collide(body, body, pose).fingerprint]
+    one = collide(body, body, pose)
+    return collide(body, body, [pose] * 10, threads=0).fingerprints.tolist() + [one.fingerprint]
 
 
 @pytest.mark.parametrize("way", ["fork", "spawn"])
@@ -92,7 +93,11 @@ INTERRUPTED = """
 
 @pytest.mark.parametrize(
     "call",
-    ["lrbscope.collide(ball, ball, poses)", "lrbscope.distance(ball, ball, poses)", "lrbscope.trace(ball, ball, poses, max_events=1)"],
+    [
+        "lrbscope.collide(ball, ball, poses)",
+        "lrbscope.distance(ball, ball, poses)",
+        "lrbscope.trace(ball, ball, poses, max_events=1)",
+    ],
 )
 def test_interrupts_end_a_batch(call):
     here = os.path.dirname(os.path.abspath(__file__))

@@ -10,18 +10,21 @@
 >>> lrbscope.collide(body, body, pose).relation
 'crossing'
 
-Arrays are as the field has them: vertices (n, 3) float, faces (m, 3) int, poses (4, 4) or (k, 4, 4) float that map
-body to world coordinates, pairs (p, 2). Lengths are in the meshes' unit, times in seconds. Answers are exact for the
-vertices' world coordinates, and the same for any number of threads.
+Arrays are as the field has them: vertices (n, 3) float, faces (m, 3) int, poses (4, 4) or (k, 4, 4) float
+that map body to world coordinates, pairs (p, 2). Lengths are in the meshes' unit, times in seconds. Answers
+are exact for the vertices' world coordinates, and the same for any number of threads.
 """
 
 from . import _core
 from ._core import (
     Body,
+    Clash,
     ContactRegion,
     Distance,
     Distances,
     EnvironmentError,
+    FirstContact,
+    FirstContacts,
     InputError,
     Outcome,
     Result,
@@ -31,10 +34,12 @@ from ._core import (
     Trace,
     Wrapper,
     __version__,
+    clash,
     collide,
     collide_pairs,
     contacts,
     distance,
+    first_contact,
     render,
     scenarios,
     trace,
@@ -52,12 +57,15 @@ del _name, _object
 # EnvironmentError is left out: it would hide Python's own.
 __all__ = [
     "Body",
+    "Clash",
     "CollisionManager",
     "ContactData",
     "ContactRegion",
     "Distance",
     "DistanceData",
     "Distances",
+    "FirstContact",
+    "FirstContacts",
     "InputError",
     "Outcome",
     "Picture",
@@ -67,10 +75,12 @@ __all__ = [
     "SweepAndPrune",
     "Trace",
     "Wrapper",
+    "clash",
     "collide",
     "collide_pairs",
     "contacts",
     "distance",
+    "first_contact",
     "render",
     "scenarios",
     "trace",

@@ -17,7 +17,16 @@ _Mode = Literal["all", "first", "any"]
 _Recursion = Literal["complete", "paper", "paper_strict"]
 _Relation = Literal["separate", "crossing", "touching", "a_inside_b", "b_inside_a", "undefined", "unresolved"]
 _Colours = Literal[
-    "kind", "layer", "region", "face_tests", "refinements", "hits", "misses", "expansions", "box_tests", "plane_tests"
+    "kind",
+    "layer",
+    "region",
+    "face_tests",
+    "refinements",
+    "hits",
+    "misses",
+    "expansions",
+    "box_tests",
+    "plane_tests",
 ]
 _Vector = npt.ArrayLike
 _Progress = Callable[[str, int, int], object]
@@ -92,7 +101,7 @@ class ContactRegion:
     @property
     def normal(self) -> _Floats: ...
     @property
-    def depth(self) -> float: ...
+    def depth_estimate(self) -> float: ...
 
 class Result:
     @property
@@ -176,6 +185,63 @@ class Distances:
     def upper(self) -> _Floats: ...
     def __len__(self) -> int: ...
     def __getitem__(self, i: int) -> Distance: ...
+
+class Clash:
+    @property
+    def kind(self) -> str: ...
+    @property
+    def interiors_overlap(self) -> bool | None: ...
+    @property
+    def shares_faces(self) -> bool: ...
+    @property
+    def distance(self) -> tuple[float, float]: ...
+    @property
+    def depth(self) -> tuple[float, float] | None: ...
+    @property
+    def translation(self) -> _Floats: ...
+    @property
+    def along(self) -> tuple[float, float] | None: ...
+    @property
+    def volume(self) -> tuple[float, float] | None: ...
+
+class FirstContact:
+    @property
+    def outcome(self) -> Literal["contact", "never", "undecided"]: ...
+    @property
+    def t0(self) -> float: ...
+    @property
+    def t1(self) -> float: ...
+    @property
+    def at_start(self) -> bool: ...
+    @property
+    def grazing(self) -> bool: ...
+    @property
+    def passed(self) -> bool: ...
+    @property
+    def finished(self) -> bool: ...
+    @property
+    def speed(self) -> float: ...
+    @property
+    def at_begin(self) -> _Relation: ...
+    @property
+    def doubtful(self) -> _Floats: ...
+    @property
+    def pair(self) -> tuple[int, int] | None: ...
+    @property
+    def points(self) -> _Floats: ...
+    @property
+    def normal(self) -> _Floats: ...
+    @property
+    def counters(self) -> dict[str, int]: ...
+    def __bool__(self) -> bool: ...
+
+class FirstContacts:
+    @property
+    def t0(self) -> _Floats: ...
+    @property
+    def t1(self) -> _Floats: ...
+    def __len__(self) -> int: ...
+    def __getitem__(self, i: int) -> FirstContact: ...
 
 class Wrapper:
     def __init__(self, body: Body, mode: Literal["regularised", "unregularised"] | None = None) -> None: ...
@@ -305,6 +371,29 @@ def distance(
     within: float | None = None,
     tolerance: float | None = None,
     relative_tolerance: float | None = None,
+    max_steps: int | None = None,
+    relation: bool | None = None,
+    threads: int | None = None,
+) -> Any: ...
+def clash(
+    a: Body,
+    b: Body,
+    poses_b: npt.ArrayLike | None = None,
+    pose_a: npt.ArrayLike | None = None,
+    *,
+    clearance: float | None = None,
+    along: npt.ArrayLike | None = None,
+    depth: bool | None = None,
+    volume: bool | None = None,
+    threads: int | None = None,
+) -> Any: ...
+def first_contact(
+    a: Body,
+    b: Body,
+    motion_b: npt.ArrayLike,
+    motion_a: npt.ArrayLike | None = None,
+    *,
+    tolerance: float | None = None,
     max_steps: int | None = None,
     relation: bool | None = None,
     threads: int | None = None,

@@ -20,13 +20,16 @@ class BodyCache:
         self._bodies = OrderedDict()
 
     def body(self, mesh):
-        """Return the body of anything with `vertices` and `faces`; without regions, which no answer here needs."""
+        """Return the body of anything with `vertices` and `faces`; without regions, which no answer here
+        needs.
+        """
         if isinstance(mesh, _core.Body):
             return mesh
         try:
             vertices, faces = mesh.vertices, mesh.faces
         except AttributeError:
-            raise TypeError(f"mesh: expected something with vertices and faces, got {type(mesh).__name__}") from None
+            kind = type(mesh).__name__
+            raise TypeError(f"mesh: expected something with vertices and faces, got {kind}") from None
         vertices, faces = np.ascontiguousarray(vertices), np.ascontiguousarray(faces)
         key = tuple(
             (a.dtype.str, a.shape, hashlib.blake2b(a.view(np.uint8).reshape(-1) if a.size else b"").digest())
@@ -41,7 +44,9 @@ class BodyCache:
 
 
 def gaps(box, boxes):
-    """Return how far a box (2, 3) is from each of some boxes (n, 2, 3): (n,), rounded down, 0 where they meet."""
+    """Return how far a box (2, 3) is from each of some boxes (n, 2, 3): (n,), rounded down, 0 where they
+    meet.
+    """
     apart = np.maximum(boxes[:, 0] - box[1], box[0] - boxes[:, 1])
     return np.linalg.norm(np.maximum(apart, 0), axis=1) * _ROUNDING
 
@@ -52,7 +57,9 @@ def meeting(box, boxes):
 
 
 def by_gap(boxes_a, boxes_b=None):
-    """Yield (gap, i, j) for pairs of boxes, in each row the nearest first; without boxes_b the pairs i < j of boxes_a."""
+    """Yield (gap, i, j) for pairs of boxes, in each row the nearest first; without boxes_b the pairs i <
+    j of boxes_a.
+    """
     for i, box in enumerate(boxes_a):
         first = i + 1 if boxes_b is None else 0
         row = gaps(box, (boxes_a if boxes_b is None else boxes_b)[first:])

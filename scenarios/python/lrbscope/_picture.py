@@ -6,7 +6,7 @@ from . import _core
 
 
 class Picture(np.ndarray):
-    """Pixels, (height, width, 3) uint8, or (height, width, 4) with opacity: a numpy array that a notebook shows.
+    """Pixels that a notebook shows: an array (height, width, 3) of uint8, or with opacity (height, width, 4).
 
     `caption` says in a sentence what is drawn.
     """

@@ -11,8 +11,8 @@ False
 >>> m.in_collision_internal(return_names=True)
 (True, {('left', 'right')})
 
-Objects collide if their surfaces meet, or if one lies in another that is a solid. Contacts are where surfaces meet; an
-object inside another has none. Distances are those of the solids, 0 where objects collide.
+Objects collide if their surfaces meet, or if one lies in another that is a solid. Contacts are where surfaces
+meet; an object inside another has none. Distances are those of the solids, 0 where objects collide.
 """
 
 import math
@@ -38,7 +38,9 @@ class ContactData:
 
     @property
     def normal(self):
-        """(3,) float: unit, from the first object to the second, averaged over the contact region; else of the first's face."""
+        """(3,) float: unit, from the first object to the second, averaged over the contact region; else
+        of the first's face.
+        """
         return self._normal
 
     @property
@@ -48,7 +50,9 @@ class ContactData:
 
     @property
     def depth(self):
-        """float: an estimate of how deep the objects are in each other in the contact region, along the normal."""
+        """float: an estimate of how deep the objects are in each other in the contact region, along the
+        normal.
+        """
         return self._depth
 
     def index(self, name):
@@ -101,14 +105,16 @@ def _face_normal(thing, face):
 
 
 def contacts_of(result, a, b):
-    """Yield (pair's number, point, normal, depth) for each pair of a result with contacts. a: has `body` and `pose`."""
+    """Yield (pair's number, point, normal, depth) for each pair of a result with contacts. a: has `body`
+    and `pose`.
+    """
     points, pair_of_point = result.points
     middles = np.zeros((len(result.pairs), 3))
     np.add.at(middles, pair_of_point, points)
     middles /= np.maximum(np.bincount(pair_of_point, minlength=len(middles)), 1)[:, None]
     faces = result.face_pairs
     for region in result.regions:
-        normal, depth = region.normal, region.depth
+        normal, depth = region.normal, region.depth_estimate
         for i in region.pairs:
             yield int(i), middles[i], normal if normal.any() else _face_normal(a, faces[i, 0]), depth
 
@@ -122,7 +128,9 @@ def _contact_data(names, result, a, b):
 
 
 def _answer(first, *rest):
-    """Return what was asked for: `first` alone, or with those of `rest` that are wanted, (wanted, value) each."""
+    """Return what was asked for: `first` alone, or with those of `rest` that are wanted, (wanted, value)
+    each.
+    """
     more = tuple(value for wanted, value in rest if wanted)
     return (first, *more) if more else first
 
@@ -135,7 +143,9 @@ def _sorted_names(names):
 
 
 class CollisionManager:
-    """Objects by name, and which of them collide or are near. Takes whatever has `vertices` and `faces`, or a Body."""
+    """Objects by name, and which of them collide or are near. Takes whatever has `vertices` and `faces`,
+    or a Body.
+    """
 
     _CHUNK = 1024  # pairs that are asked for at once where one is enough
 
@@ -160,8 +170,8 @@ class CollisionManager:
     def in_collision_single(self, mesh, transform=None, return_names=False, return_data=False):
         """Ask whether a mesh collides with any object.
 
-        Returns bool; with return_names also a set of names; with return_data also a list of ContactData, in which the mesh is
-        called '__external'.
+        Returns bool; with return_names also a set of names; with return_data also a list of ContactData, in
+        which the mesh is called '__external'.
         """
         other = _Object(self._cache.body(mesh), transform)
         mine = [(name, thing) for name, thing in self._objects.items()]
@@ -172,8 +182,8 @@ class CollisionManager:
     def in_collision_internal(self, return_names=False, return_data=False):
         """Ask whether any two objects collide.
 
-        Returns bool; with return_names also a set of pairs of names, each in alphabetical order; with return_data also a list
-        of ContactData.
+        Returns bool; with return_names also a set of pairs of names, each in alphabetical order; with
+        return_data also a list of ContactData.
         """
         mine = list(self._objects.items())
         pairs = [(mine[i], mine[j]) for i, j in self._sweep.update(self._boxes())]
@@ -183,10 +193,11 @@ class CollisionManager:
     def in_collision_other(self, other_manager, return_names=False, return_data=False):
         """Ask whether any object collides with one of another manager.
 
-        Returns bool; with return_names also a set of pairs of names, this manager's first; with return_data also a list of
-        ContactData.
+        Returns bool; with return_names also a set of pairs of names, this manager's first; with return_data
+        also a list of ContactData.
         """
-        mine, theirs, boxes = list(self._objects.items()), list(other_manager._objects.items()), other_manager._boxes()
+        mine, theirs = list(self._objects.items()), list(other_manager._objects.items())
+        boxes = other_manager._boxes()
         pairs = [(one, theirs[j]) for one in mine for j in meeting(one[1].box, boxes)]
         hit, names, data = self._collide(pairs, return_names, return_data)
         return _answer(hit, (return_names, set(names)), (return_data, data))
@@ -194,8 +205,8 @@ class CollisionManager:
     def min_distance_single(self, mesh, transform=None, return_name=False, return_data=False):
         """Find how far a mesh is from the nearest object.
 
-        Returns float, inf if there is none; with return_name also its name; with return_data also a DistanceData, in which the
-        mesh is called '__external'.
+        Returns float, inf if there is none; with return_name also its name; with return_data also a
+        DistanceData, in which the mesh is called '__external'.
         """
         other = _Object(self._cache.body(mesh), transform)
         mine = list(self._objects.items())
@@ -206,18 +217,19 @@ class CollisionManager:
     def min_distance_internal(self, return_names=False, return_data=False):
         """Find how far the two nearest objects are apart.
 
-        Returns float, inf if there are not two; with return_names also their names in alphabetical order; with return_data
-        also a DistanceData.
+        Returns float, inf if there are not two; with return_names also their names in alphabetical order;
+        with return_data also a DistanceData.
         """
         mine = list(self._objects.items())
         distance, names, data = self._nearest(by_gap(self._boxes()), mine, mine)
-        return _answer(distance, (return_names, names if data is None else _sorted_names(names)), (return_data, data))
+        names = names if data is None else _sorted_names(names)
+        return _answer(distance, (return_names, names), (return_data, data))
 
     def min_distance_other(self, other_manager, return_names=False, return_data=False):
         """Find how far the objects are from the nearest of another manager.
 
-        Returns float, inf if one has no objects; with return_names also the names, this manager's first; with return_data also
-        a DistanceData.
+        Returns float, inf if one has no objects; with return_names also the names, this manager's first; with
+        return_data also a DistanceData.
         """
         rows = by_gap(self._boxes(), other_manager._boxes())
         found = self._nearest(rows, list(self._objects.items()), list(other_manager._objects.items()))
@@ -233,7 +245,9 @@ class CollisionManager:
         return np.array(boxes) if boxes else np.empty((0, 2, 3))
 
     def _collide(self, pairs, want_names, want_data):
-        """Ask for pairs of (name, object). Returns whether any collides, names of those that do, and their contacts."""
+        """Ask for pairs of (name, object). Returns whether any collides, names of those that do, and
+        their contacts.
+        """
         names, data = [], []
         for begin in range(0, len(pairs), self._CHUNK):
             chunk = pairs[begin : begin + self._CHUNK]

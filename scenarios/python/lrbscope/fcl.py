@@ -7,11 +7,13 @@
 >>> fcl.collide(fcl.CollisionObject(box), near, fcl.CollisionRequest(), result), result.is_collision
 (1, True)
 
-Meshes (BVHModel) and boxes are as they are. Round shapes are polyhedra whose corners lie on them, with `facets` facets
-around: they lie inside the shape, by 0.0012 of its radius at most for 64. What meets is decided exactly for these.
+Meshes (BVHModel) and boxes are as they are. Round shapes are polyhedra whose corners lie on them, with
+`facets` facets around: they lie inside the shape, by 0.0012 of its radius at most for 64. What meets is
+decided exactly for these.
 
-As in FCL, a mesh is a surface, and a shape is a solid: what lies inside a shape collides with it. Depths are estimates. What
-is not there raises Unsupported: Halfspace, Plane, OcTree, costs, signed distances of shapes that overlap.
+As in FCL, a mesh is a surface, and a shape is a solid: what lies inside a shape collides with it. Depths are
+estimates, but signed distances of shapes are proved. What is not there raises Unsupported: Halfspace, Plane,
+OcTree, costs, motions other than CCDM_TRANS and CCDM_LINEAR.
 """
 
 import enum
@@ -100,7 +102,9 @@ def _quaternion_of_matrix(r):
 
 
 class Transform:
-    """A rotation and a translation: Transform(), (q), (R), (T), (q, T), (R, T) or (Transform); q is w, x, y, z."""
+    """A rotation and a translation: Transform(), (q), (R), (T), (q, T), (R, T) or (Transform); q is w, x,
+    y, z.
+    """
 
     def __init__(self, *args):
         self._r, self._t = np.eye(3), np.zeros(3)
@@ -241,11 +245,14 @@ class BVHModel(CollisionGeometry):
 
     def _surface(self):
         self._check(2)
-        return np.array(self._vertices).reshape(-1, 3), np.array(self._triangles, dtype=np.int64).reshape(-1, 3)
+        vertices, triangles = np.array(self._vertices), np.array(self._triangles, dtype=np.int64)
+        return vertices.reshape(-1, 3), triangles.reshape(-1, 3)
 
 
 class Convex(CollisionGeometry):
-    """A convex polyhedron: vertices (n, 3), the number of faces, and for each its number of corners and these, in a row."""
+    """A convex polyhedron: vertices (n, 3), the number of faces, and for each its number of corners and
+    these, in a row.
+    """
 
     _node_type = 15
     _object_type = 2
@@ -293,7 +300,9 @@ class Box(CollisionGeometry):
 
 
 def _turned(profile):
-    """Return the surface of a profile, points (radius, z) from the lower pole to the upper, turned about z."""
+    """Return the surface of a profile, points (radius, z) from the lower pole to the upper, turned about
+    z.
+    """
     angles = 2 * np.pi * np.arange(facets) / facets
     around = np.stack([np.cos(angles), np.sin(angles)], axis=1)
     rings = [np.column_stack([around * r, np.full(facets, z)]) for r, z in profile[1:-1]]
@@ -521,8 +530,14 @@ class CollisionResult:
 class DistanceRequest:
     """Nearest points are always found."""
 
-    def __init__(self, enable_nearest_points=False, enable_signed_distance=False, gjk_solver_type=GJKSolverType.GST_LIBCCD):
-        self.enable_nearest_points, self.enable_signed_distance = enable_nearest_points, enable_signed_distance
+    def __init__(
+        self,
+        enable_nearest_points=False,
+        enable_signed_distance=False,
+        gjk_solver_type=GJKSolverType.GST_LIBCCD,
+    ):
+        self.enable_nearest_points = enable_nearest_points
+        self.enable_signed_distance = enable_signed_distance
         self.gjk_solver_type = gjk_solver_type
 
 
@@ -546,7 +561,8 @@ class ContinuousCollisionRequest:
         gjk_solver_type=GJKSolverType.GST_LIBCCD,
         ccd_solver_type=CCDSolverType.CCDC_NAIVE,
     ):
-        self.num_max_iterations, self.toc_err, self.ccd_motion_type = num_max_iterations, toc_err, ccd_motion_type
+        self.num_max_iterations, self.toc_err = num_max_iterations, toc_err
+        self.ccd_motion_type = ccd_motion_type
         self.gjk_solver_type, self.ccd_solver_type = gjk_solver_type, ccd_solver_type
 
 
@@ -577,7 +593,8 @@ class DistanceData:
 
 def _holds(o1, o2, relation):
     """Return whether a shape holds the other object. Inside a mesh there is nothing."""
-    return (relation == "a_inside_b" and o2._geom._is_shape) or (relation == "b_inside_a" and o1._geom._is_shape)
+    holder = {"a_inside_b": o2, "b_inside_a": o1}.get(relation)
+    return holder is not None and holder._geom._is_shape
 
 
 def _contact(o1, o2, b1=-1, b2=-1):
@@ -588,8 +605,10 @@ def _contact(o1, o2, b1=-1, b2=-1):
 
 
 def _contacts(o1, o2, result, full):
-    """Yield a Contact for each pair of triangles; where one object is a shape, for each triangle of the other; of two shapes
-    for each contact region."""
+    """Yield a Contact for each pair of triangles.
+
+    Where one object is a shape, for each triangle of the other; of two shapes for each contact region.
+    """
     found = contacts_of(result, o1, o2) if full else ((i, None, None, 0.0) for i in range(len(result.pairs)))
     of_region = {}
     if full and o1._geom._is_shape and o2._geom._is_shape:
@@ -613,7 +632,12 @@ def collide(o1, o2, request=None, result=None):
     result = CollisionResult() if result is None else result
     many = request.num_max_contacts > 1 or request.enable_contact
     found = _core.collide(
-        o1.body, o2.body, o2.pose, o1.pose, mode="all" if many else "any", contacts=bool(request.enable_contact)
+        o1.body,
+        o2.body,
+        o2.pose,
+        o1.pose,
+        mode="all" if many else "any",
+        contacts=bool(request.enable_contact),
     )
     contacts = []
     if len(found.pairs):
@@ -633,18 +657,18 @@ def collide(o1, o2, request=None, result=None):
 def distance(o1, o2, request=None, result=None):
     """Find how far two objects are apart.
 
-    Returns the distance, the world's unit: 0 for meshes that meet, -1 where a shape and something else overlap. Improves
-    `result` if they are nearer.
+    Returns the distance, the world's unit: 0 for meshes that meet, -1 where a shape and something else
+    overlap. Improves `result` if they are nearer.
     """
     request = DistanceRequest() if request is None else request
     result = DistanceResult() if result is None else result
     found = _core.distance(o1.body, o2.body, o2.pose, o1.pose)
-    shapes = o1._geom._is_shape or o2._geom._is_shape
+    shapes = [o for o in (o1, o2) if o._geom._is_shape]
     value = found.upper
     if (found.meet and shapes) or _holds(o1, o2, found.relation):
-        if request.enable_signed_distance and o1._geom._is_shape and o2._geom._is_shape:
-            raise Unsupported("lrbscope.fcl has no signed distance of shapes that overlap: leave enable_signed_distance out")
         value = -1.0
+        if request.enable_signed_distance and len(shapes) == 2:
+            value = -_core.clash(o1.body, o2.body, o2.pose, o1.pose, volume=False).depth[1]
     if value < result.min_distance:
         result.min_distance = value
         result.nearest_points = [found.points[0], found.points[1]]
@@ -673,7 +697,9 @@ def defaultDistanceCallback(o1, o2, cdata):
 
 
 class DynamicAABBTreeCollisionManager:
-    """Many objects. Their boxes are looked at when it is asked, so that setup() and update() have nothing to do."""
+    """Many objects. Their boxes are looked at when it is asked, so that setup() and update() have nothing
+    to do.
+    """
 
     def __init__(self):
         self._objects = []
@@ -722,7 +748,7 @@ class DynamicAABBTreeCollisionManager:
     def _arguments(self, args):
         """Return the other objects, None for our own, and data and callback."""
         if len(args) not in (2, 3) or not callable(args[-1]):
-            raise ValueError("expected (data, callback), (object, data, callback) or (manager, data, callback)")
+            raise ValueError("expected data and callback, after an object or a manager if there is one")
         if len(args) == 2:
             return None, args[0], args[1]
         others = args[0]._objects if isinstance(args[0], DynamicAABBTreeCollisionManager) else [args[0]]
@@ -746,8 +772,8 @@ class DynamicAABBTreeCollisionManager:
     def distance(self, *args):
         """distance(data, callback), (object, data, callback) or (manager, data, callback).
 
-        Calls callback(o1, o2, data), which returns whether that is all and the least distance so far, for objects whose boxes
-        are nearer than that.
+        Calls callback(o1, o2, data), which returns whether that is all and the least distance so far, for
+        objects whose boxes are nearer than that.
         """
         others, data, callback = self._arguments(args)
         boxes = self._boxes()
@@ -761,6 +787,29 @@ class DynamicAABBTreeCollisionManager:
                 return
 
 
+def _motion(o, tf_end, kind):
+    """Return the poses between which an object moves, (2, 4, 4)."""
+    end = Transform(tf_end)
+    if kind == CCDMotionType.CCDM_TRANS:
+        end.setRotation(o.getRotation())
+    elif kind != CCDMotionType.CCDM_LINEAR:
+        raise Unsupported("lrbscope.fcl has no CCDM_SCREW and CCDM_SPLINE: take CCDM_TRANS or CCDM_LINEAR")
+    return np.array([o.pose, end._pose()])
+
+
 def continuousCollide(o1, tf1_end, o2, tf2_end, request=None, result=None):
-    """Raise Unsupported: the engine has no such query yet."""
-    raise Unsupported("lrbscope.fcl has no continuousCollide: ask collide() for poses along the way")
+    """Find when two objects first collide while they move from where they stand to the given Transforms.
+
+    As ccd_motion_type says they keep their rotation (CCDM_TRANS), or turn by the shortest arc (CCDM_LINEAR).
+    Returns a time from 0 to 1, 1 if they do not collide: they do not before it, and do at most toc_err later.
+    Objects so near each other that rounding hides whether they meet count as colliding.
+    """
+    request = ContinuousCollisionRequest() if request is None else request
+    result = ContinuousCollisionResult() if result is None else result
+    motions = [_motion(o, end, request.ccd_motion_type) for o, end in ((o1, tf1_end), (o2, tf2_end))]
+    found = _core.first_contact(o1.body, o2.body, motions[1], motions[0], tolerance=min(request.toc_err, 1.0))
+    collides = found.outcome != "never" or _holds(o1, o2, found.at_begin)
+    time = 0.0 if _holds(o1, o2, found.at_begin) else found.t0
+    result.is_collide = result.is_collide or collides
+    result.time_of_contact = min(time, result.time_of_contact)
+    return time
