@@ -39,6 +39,10 @@ class SceneCamera {
       { passive: true, capture: true },
     );
     this.controls.addEventListener("change", changed);
+    this.fitted = false; // all is shown, until somebody looks closer: then all is shown in another window, too
+    this.controls.addEventListener("start", () => {
+      this.fitted = false;
+    });
   }
 
   get orthographic() {
@@ -67,6 +71,7 @@ class SceneCamera {
 
   /** Looks at a ball from where one stands. */
   lookAt(centre, radius) {
+    this.fitted = false;
     const way = this.camera.position.clone().sub(this.controls.target);
     const least = Math.min(1, this.aspect),
       half = FIELD / 2;
@@ -80,6 +85,7 @@ class SceneCamera {
   /** Shows all points as large as can be, from where one stands or from a direction; as render/camera.hpp
       does. */
   fit(points, from) {
+    this.fitted = true;
     const out = (
       from ? new THREE.Vector3(...from) : this.camera.position.clone().sub(this.controls.target)
     ).normalize();
@@ -122,6 +128,7 @@ class SceneCamera {
 
   /** Zooms by a factor; above 1: closer. */
   zoom(factor) {
+    this.fitted = false;
     this.camera.position.sub(this.controls.target).divideScalar(factor).add(this.controls.target);
     this.flat.zoom *= factor;
     this.controls.update();
@@ -168,6 +175,7 @@ class SceneCamera {
 
   /** Looks as json() of another view says. */
   set({ projection, eye, target }) {
+    this.fitted = false;
     const { origin, unit } = this.frame,
       local = (x) => new THREE.Vector3(...x.map((v, i) => (v - origin[i]) / unit));
     if ((projection === "orthographic") !== this.orthographic) this.setOrthographic(!this.orthographic);

@@ -65,6 +65,7 @@ class SceneView {
     this.size.set(width, height);
     this.renderer.setSize(width, height, false);
     this.camera.resize(width, height);
+    if (this.camera.fitted) this.camera.fit(this.extremes());
     this.redraw();
   }
 
