@@ -79,7 +79,7 @@ double slack(double dial) {
 
 std::string rounded_value(double value) {
   char text[32];
-  std::snprintf(text, sizeof text, value >= 0.1 && value < 1000 ? "%.2g" : "%.0e", value);
+  std::snprintf(text, sizeof text, value >= 0.1 && value < 99.5 ? "%.2g" : "%.0e", value);
   const std::string out = text;
   const std::size_t e = out.find('e');
   if (e == std::string::npos || value == 0) return value == 0 ? "0" : out;
