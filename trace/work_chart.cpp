@@ -56,6 +56,23 @@ std::uint64_t operations_of(const Event& e) {
 
 }  // namespace
 
+std::vector<WorkOutcome> outcomes_of_step(const Trace& trace, const WorkChart& chart, std::size_t step) {
+  constexpr double kNanosecond = 1e-9;
+  std::vector<WorkOutcome> out = chart.outcomes;
+  for (WorkOutcome& o : out) o.events = o.operations = 0, o.seconds = 0;
+  const EventId first = trace.steps[step].first_event;
+  const auto end = first + static_cast<EventId>(trace.events_of(step).size());
+  for (EventId i = first; i < end; ++i) {
+    if (chart.of_event[i] == WorkChart::kNone) continue;
+    WorkOutcome& o = out[chart.of_event[i]];
+    ++o.events;
+    o.operations += operations_of(trace.events[i]);
+    if (!trace.wall_ns.empty())
+      o.seconds += kNanosecond * static_cast<double>(trace.wall_ns[i] - trace.wall_ns[i - 1]);
+  }
+  return out;
+}
+
 WorkChart work_chart(const Trace& trace) {
   constexpr std::size_t kParts = kPartWords.size();
   constexpr double kNanosecond = 1e-9;

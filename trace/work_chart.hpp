@@ -2,6 +2,7 @@
 /// The work of a run's queries as a chart of nested parts shows it: query, phase, what decided. From a trace's events from
 /// EventLevel::nodes on.
 
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <string_view>
@@ -27,6 +28,9 @@ struct WorkChart {
   std::vector<WorkOutcome> outcomes;   ///< those that came, by phase, in the order of a query
   std::vector<std::uint8_t> of_event;  ///< (|events|) index of each event's; kNone: it has none
 };
+
+/// Returns the chart's outcomes with what they count in one step, in the chart's order.
+std::vector<WorkOutcome> outcomes_of_step(const Trace& trace, const WorkChart& chart, std::size_t step);
 
 /// Returns the chart: the parts of work_shares(), with walks of bodies and of levels told apart.
 WorkChart work_chart(const Trace& trace);

@@ -248,17 +248,18 @@ Case make_quadratic(RandomEngine& random, double dial) {
 std::vector<Family> contact_families() {
   return {
       {"touch", "random bodies stopped within an ulp of contact", make_touch, "0.2 from first contact",
-       "an ulp from first contact", false, 10},
+       "an ulp from first contact", false, 10,
+       [](double dial) { return rounded_value(12 * steady::exp2(-static_cast<int>(6 + 54 * dial))); }},
       {"shared", "a face, edge or vertex in common, exactly or nearly", make_shared, "0.1 off",
-       "in common exactly", false, 20},
+       "in common exactly", false, 20, slack_value},
       {"coplanar", "face on face: shifted, turned in the plane, tilted", make_coplanar,
-       "0.1 off and tilted by 0.1", "in one plane, or an ulp off", false, 30},
+       "0.1 off and tilted by 0.1", "in one plane, or an ulp off", false, 30, slack_value},
       {"identical", "the same body at the same pose, or under a symmetry", make_identical, "0.1 off",
-       "the same pose, or an ulp off", false, 40},
+       "the same pose, or an ulp off", false, 40, slack_value},
       {"hub", "many faces in a point; faces of many corners", make_hub, "3 faces, 0.1 off",
        "100 faces, exactly in the point", false, 50},
       {"interlock", "combs with all flanks in contact, chain links, screw in nut", make_interlock, "0.1 off",
-       "all flanks in contact", false, 60},
+       "all flanks in contact", false, 60, slack_value},
       {"quadratic", "every plate of one through every plate of the other", make_quadratic,
        "2 plates, 0.1 off", "6 plates, faces in one plane", false, 70},
   };

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cmath>
+#include <cstdio>
 #include <cstring>
 #include <limits>
 
@@ -74,6 +75,19 @@ void move_both(Case& c, const Pose& by) {
 
 double slack(double dial) {
   return dial >= 1 ? 0 : 0.1 * steady::pow10(-15 * dial / 0.9);
+}
+
+std::string rounded_value(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, value >= 0.1 && value < 99.5 ? "%.2g" : "%.0e", value);
+  const std::string out = text;
+  const std::size_t e = out.find('e');
+  if (e == std::string::npos || value == 0) return value == 0 ? "0" : out;
+  return out.substr(0, e + 1) + std::to_string(std::stoi(out.substr(e + 1)));
+}
+
+std::string slack_value(double dial) {
+  return rounded_value(slack(dial));
 }
 
 void loosen(RandomEngine& random, Case& c, double by) {

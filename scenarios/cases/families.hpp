@@ -37,6 +37,8 @@ struct Family {
   const char* degenerate = "";  ///< what dial 1 means: "exactly in contact"
   bool both_ways = false;       ///< the question is whether the answer to (B, A) is that to (A, B) transposed
   int rank = 1000;              ///< the families' order in tables: by rank, then by file
+  /// Returns what a setting of the dial means, in a few characters such as "1e-6"; null: it has no one number.
+  std::string (*value)(double dial) = nullptr;
 };
 inline int rank_of(const Family& f) {
   return f.rank;
@@ -73,6 +75,8 @@ void move_both(Case& c, const Pose& by);
 /// Returns the distance of a case from the configuration that its family is about: 0.1 at dial 0, 1e-16 at
 /// 0.9, 0 at 1. In the unit of the bodies, which are a few wide.
 double slack(double dial);
+std::string slack_value(double dial);     ///< the same in a few characters
+std::string rounded_value(double value);  ///< one digit and an exponent: "0.1", "2e-3", "6e4"
 /// Moves B by `by` in a random direction and turns it by up to `by` radians. For 0 it moves nothing, but
 /// draws as many random numbers.
 void loosen(RandomEngine& random, Case& c, double by);

@@ -222,9 +222,11 @@ Case make_fractal(RandomEngine& random, double dial) {
 std::vector<Family> large_families() {
   return {
       {"kiss", "cubes that share a face, an edge, a vertex; the same a gap apart, a gap inside", make_kiss,
-       "gap 1/16", "gap 1 ulp", false, 210},
+       "gap 1/16", "gap 1 ulp", false, 210,
+       [](double dial) { return rounded_value(steady::exp2(-std::round(4 + 48 * dial))); }},
       {"nested", "shell in shell in shell, solid by parity, with pieces in the walls and between them",
-       make_nested, "2 walls, 0.1 of the room left", "32 walls, 1e-14 of the room left", false, 220},
+       make_nested, "2 walls, 0.1 of the room left", "32 walls, 1e-14 of the room left", false, 220,
+       [](double dial) { return rounded_value(steady::pow10(-1 - 13 * dial)); }},
       {"polygon", "faces with thousands of corners, convex and not", make_polygon, "8 corners, anywhere",
        "4096 corners, end to end", false, 230},
       {"fractal", "sponges, dented cubes and hubs of hundreds of faces against plugs that fit", make_fractal,

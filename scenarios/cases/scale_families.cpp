@@ -190,18 +190,21 @@ Case make_matrix(RandomEngine& random, double dial) {
 
 std::vector<Family> scale_families() {
   return {
-      {"sliver", "needles and sheets", make_sliver, "aspect 1", "aspect 1e8", false, 80},
+      {"sliver", "needles and sheets", make_sliver, "aspect 1", "aspect 1e8", false, 80,
+       [](double dial) { return rounded_value(steady::pow10(8 * dial)); }},
       {"zero-area", "faces that collapse to segments and points", make_zero_area, "corners 0.1 from collapse",
-       "no area at all", false, 90},
+       "no area at all", false, 90, slack_value},
       {"far", "far from the world's or the bodies' own origin", make_far, "1 from the origin",
-       "1e16 from the origin", false, 100},
-      {"scale", "tiny and huge", make_scale, "size 1", "size 1e-120 or 1e120", false, 110},
+       "1e16 from the origin", false, 100,
+       [](double dial) { return rounded_value(steady::pow10(16 * dial)); }},
+      {"scale", "tiny and huge", make_scale, "size 1", "size 1e-120 or 1e120", false, 110,
+       [](double dial) { return rounded_value(steady::pow10(120 * dial)); }},
       {"extreme", "tiny and huge to the ends of double, and beyond", make_extreme, "size 1",
        "size 4e-322 or 1.6e308", false, 120},
       {"ratio", "bodies of different sizes", make_ratio, "equal sizes", "sizes 1e12 or 1e60 apart", false,
-       130},
+       130, [](double dial) { return rounded_value(steady::pow10(12 * dial)); }},
       {"matrix", "poses that scale, shear, reflect or flatten", make_matrix, "by 1e-3", "by 1e3, or flat",
-       false, 140},
+       false, 140, [](double dial) { return rounded_value(steady::pow10(6 * dial - 3)); }},
   };
 }
 

@@ -6,6 +6,7 @@
 #include "engine/core/error.hpp"
 #include "render/overlay.hpp"
 #include "render/png.hpp"
+#include "scenarios/compare/compare_bodies.hpp"
 #include "scenarios/io/files.hpp"
 #include "scenarios/io/url_path.hpp"
 #include "scenarios/run/run_report.hpp"
@@ -60,6 +61,27 @@ report::PageTable steps_table(const Runs& runs) {
   return t;
 }
 
+void check_runs(const Runs& runs) {
+  const std::size_t one = runs.of[0]->bodies.size(), other = runs.of[1]->bodies.size();
+  if (one != other)
+    throw InputError(runs.names[one == 1 ? 0 : 1] + ": is a run of one body, and " +
+                     runs.names[one == 1 ? 1 : 0] + " of two");
+  if (step_count(runs) == 0) throw InputError("there is no step that both runs have");
+}
+
+void add_steps(report::Page& page, const Runs& runs) {
+  page.charts = {chart_of(runs, "Tests of boxes, step by step", "box tests", &Counters::box_tests),
+                 chart_of(runs, "Tests of faces, step by step", "face tests", &Counters::face_tests)};
+  page.tables = {totals_of(runs), steps_table(runs)};
+}
+
+void add_bodies(report::Page& page, const Runs& runs) {
+  page.charts = {faces_chart(runs)};
+  page.tables = {body_table(runs)};
+  if (report::PageTable passes = pass_table(runs); !passes.rows.empty())
+    page.tables.push_back(std::move(passes));
+}
+
 }  // namespace
 
 std::optional<std::string> first_difference(const Runs& runs) {
@@ -87,36 +109,39 @@ std::vector<report::PageView> views_of(const Runs& runs, const std::string& fold
 
 std::optional<std::string> write_comparison(const Runs& runs, const std::string& command,
                                             const std::string& folder, const run::ProgressReport& progress) {
-  for (std::size_t i = 0; i < 2; ++i)
-    if (runs.of[i]->bodies.size() != 2)
-      throw InputError(runs.names[i] + ": is a run of one body; compare runs of two");
-  if (step_count(runs) == 0) throw InputError("there is no step that both runs have");
+  check_runs(runs);
   refuse_folder_of_run(folder);
-  const std::size_t step = busiest_step(runs);
-  const render::Image picture = draw(runs, step, progress);
+  const bool alone = of_one_body(runs);
+  const std::size_t step = alone ? 0 : busiest_step(runs);
+  const render::Image picture = alone ? draw_bodies(runs, progress) : draw(runs, step, progress);
   std::optional<std::string> difference = first_difference(runs);
   report::Page page;
   page.title = runs.names[0] + " and " + runs.names[1];
-  page.purpose = "Two recorded runs, step by step.";
+  page.purpose = alone ? "Two recorded runs of one body each." : "Two recorded runs, step by step.";
   page.verdict = difference ? "differ" : "the same";
   if (const std::string cut = cut_words(runs); !cut.empty()) page.purpose += " " + cut;
   page.texts = {
       {"The first difference", difference.value_or("There is none: all events and answers are the same.")}};
   page.command = command;
-  page.charts = {chart_of(runs, "Tests of boxes, step by step", "box tests", &Counters::box_tests),
-                 chart_of(runs, "Tests of faces, step by step", "face tests", &Counters::face_tests)};
-  page.tables = {totals_of(runs), steps_table(runs)};
+  if (alone)
+    add_bodies(page, runs);
+  else
+    add_steps(page, runs);
   page.views = views_of(runs, folder);
   page.footer = report::footer(runs.of[0]->trace.header.lrbscope);
   io::make_folder(folder);
   const io::FolderLock lock(folder);
   io::refuse_links(folder);
   render::write_png(picture, folder + "/" + kPicture);
-  run::add_figure(
-      page, folder, "Where the work went, at step " + std::to_string(runs.of[0]->trace.steps[step].index),
-      "Both runs on one scale, seen by one camera; and how much they differ, face by face, where the bodies have "
-      "the same faces. Pale faces have fewer than a fiftieth of the most.",
-      kPicture);
+  if (alone)
+    run::add_figure(page, folder, "After the last event", "A colour for each region, seen by one camera.",
+                    kPicture);
+  else
+    run::add_figure(
+        page, folder, "Where the work went, at step " + std::to_string(runs.of[0]->trace.steps[step].index),
+        "Both runs on one scale, seen by one camera; and how much they differ, face by face, where the bodies have "
+        "the same faces. Pale faces have fewer than a fiftieth of the most.",
+        kPicture);
   io::write_text(folder + "/index.html", report::page_html(page));
   return difference;
 }

@@ -17,7 +17,8 @@ std::optional<std::string> first_difference(const Runs& runs);
 std::vector<report::PageView> views_of(const Runs& runs, const std::string& folder);
 
 /// Writes folder/index.html and folder/compare.png: what differs first, answers and work step by step, and where the work
-/// went in each. Returns first_difference(). Throws InputError for runs of one body.
+/// went in each. Of runs of one body: how the hull or the wrapper changed, and the regions of both. Returns
+/// first_difference(). Throws InputError if one run is of one body and the other of two.
 std::optional<std::string> write_comparison(const Runs& runs, const std::string& command,
                                             const std::string& folder, const run::ProgressReport& progress);
 

@@ -108,6 +108,7 @@ report::PageTable region_table(const RecordedRun& p, Side side) {
   });
   report::PageTable t;
   t.title = "Counters of " + std::string(name_of(side)) + " by region";
+  t.rows_are = side == Side::a ? report::PageRows::regions_of_a : report::PageRows::regions_of_b;
   t.columns = {"region", "layer", "depth"};
   append(t.columns, groups.columns());
   t.columns.emplace_back("refined");
@@ -129,7 +130,7 @@ report::PageTable region_table(const RecordedRun& p, Side side) {
   add({"no region", "", ""}, groups.sums.back());
   add({"all", "", ""}, groups.total());
   t.note =
-      "Over all time steps; those with the most tests. A real face belongs to the region that covers it, a pseudo face "
+      "Over all time steps; those with the most tests. A click on a row selects the region in the view. A real face belongs to the region that covers it, a pseudo face "
       "to the one that it hides.";
   return t;
 }

@@ -191,6 +191,7 @@ std::string coarse_words(const CollideRequest& request) {
 report::PageTable steps_table(const trace::Trace& trace) {
   report::PageTable t;
   t.title = "Every time step";
+  t.rows_are = report::PageRows::steps;
   t.columns = {"step", "relation", "pairs", "face tests", "refinements", "fingerprint"};
   const CollideRequest& request = trace.header.request;
   if (request.is_coarse()) t.columns.insert(t.columns.end(), {"error bound", "finished"});

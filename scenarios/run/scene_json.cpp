@@ -16,6 +16,7 @@
 #include "scenarios/run/thinned_events.hpp"
 #include "scenarios/run/tree_boxes.hpp"
 #include "trace/counters.hpp"
+#include "trace/hex.hpp"
 #include "trace/names.hpp"
 #include "trace/work_chart.hpp"
 
@@ -141,8 +142,24 @@ json geometry(const LrbRep& rep, const SceneFrame& frame) {
           {"layer", packed(layers)}};
 }
 
-json boxes_json(const LrbRep& rep, const SceneFrame& frame, std::size_t most) {
-  const std::vector<TreeBox> boxes = tree_boxes(rep.tree(), most);
+/// Returns the real simplices of a body that events compare, in the events' order: contacts first.
+std::vector<SimplexId> compared_simplices(const RecordedRun& p, Side side) {
+  std::vector<SimplexId> out;
+  for (const EventKind kind : {EventKind::contact, EventKind::face_test})
+    for (const trace::Event& e : p.trace->events)
+      if (e.kind == kind) out.push_back(e.simplex(side));
+  return out;
+}
+
+/// Boxes of nodes: all down to some depth, and below it those on the ways to faces that were compared.
+json boxes_json(const LrbRep& rep, const SceneFrame& frame, std::size_t most,
+                const std::vector<SimplexId>& compared) {
+  std::vector<TreeBox> boxes = tree_boxes(rep.tree(), most);
+  const std::uint32_t whole = boxes.empty() ? 0 : boxes.back().depth;
+  if (!boxes.empty() && boxes.size() < rep.tree().nodes().size()) {
+    const std::vector<TreeBox> deeper = boxes_on_ways(rep.tree(), whole, compared, most);
+    boxes.insert(boxes.end(), deeper.begin(), deeper.end());
+  }
   const Eigen::Vector3d middle = middle_of(rep);
   std::vector<float> places;  // centre and three half axes each
   for (const TreeBox& box : boxes) {
@@ -152,14 +169,15 @@ json boxes_json(const LrbRep& rep, const SceneFrame& frame, std::size_t most) {
   return {{"node", packed_each(boxes, [](const TreeBox& b) { return b.node; })},
           {"depth", packed_each(boxes, [](const TreeBox& b) { return b.depth; })},
           {"places", packed(places)},
-          {"nodes", rep.tree().nodes().size()},
-          {"height", rep.tree().height()}};
+          {"whole", whole},
+          {"atDepth", packed(nodes_by_depth(rep.tree()))}};
 }
 
 json body_json(const RecordedRun& p, std::size_t i, const SceneFrame& frame, const SceneLimits& limits,
                bool with_geometry) {
   const LrbRep& rep = *p.reps[i];
   json out = {{"name", std::filesystem::path(rep.name()).stem().string()},
+              {"hash", trace::to_hex(rep.hash())},
               {"faces", rep.face_count()},
               {"realFaces", rep.real_face_count()},
               {"regions", rep.region_count()}};
@@ -167,7 +185,10 @@ json body_json(const RecordedRun& p, std::size_t i, const SceneFrame& frame, con
   const trace::FaceCounts counts = trace::count_faces(rep, static_cast<Side>(i), p.trace->events);
   out["geometry"] = geometry(rep, frame);
   // Another engine walks trees of its own.
-  out["boxes"] = boxes_json(rep, frame, p.trace->header.engine.empty() ? limits.boxes : 0);
+  const bool ours = p.trace->header.engine.empty();
+  out["boxes"] = boxes_json(rep, frame, ours ? limits.boxes : 0, compared_simplices(p, static_cast<Side>(i)));
+  const Eigen::Vector3d middle = middle_of(rep);
+  out["middle"] = {middle.x(), middle.y(), middle.z()};
   out["counts"] = {{"tests", packed(counts.tests)},
                    {"hits", packed(counts.hits)},
                    {"contacts", packed(counts.contacts)},
@@ -230,6 +251,25 @@ json outcomes_json(const trace::Trace& trace, const std::vector<trace::EventId>&
   return {{"words", words}, {"numbers", numbers}};
 }
 
+/// Returns what the parts count in each step, steps one after the other.
+json work_by_step(const trace::Trace& trace, const trace::WorkChart& chart) {
+  constexpr double kMicros = 1e6;
+  Numbers index, events, operations;
+  std::vector<float> micros;
+  for (std::size_t step = 0; step < trace.steps.size(); ++step) {
+    index.push_back(trace.steps[step].index);
+    for (const trace::WorkOutcome& o : trace::outcomes_of_step(trace, chart, step)) {
+      events.push_back(static_cast<std::uint32_t>(o.events));
+      operations.push_back(static_cast<std::uint32_t>(o.operations));
+      micros.push_back(static_cast<float>(kMicros * o.seconds));
+    }
+  }
+  return {{"index", packed(index)},
+          {"events", packed(events)},
+          {"operations", packed(operations)},
+          {"micros", packed(micros)}};
+}
+
 /// Returns the parts of the work; null where pairs of nodes were not recorded.
 json work_json(const trace::Trace& trace, const trace::WorkChart& chart) {
   if (trace.header.level == EventLevel::faces || chart.outcomes.empty()) return nullptr;
@@ -241,7 +281,8 @@ json work_json(const trace::Trace& trace, const trace::WorkChart& chart) {
                    {"events", o.events},
                    {"operations", o.operations},
                    {"micros", kMicros * o.seconds}});
-  return {{"outcomes", std::move(out)}, {"timed", !trace.wall_ns.empty()}};
+  return {
+      {"outcomes", std::move(out)}, {"timed", !trace.wall_ns.empty()}, {"steps", work_by_step(trace, chart)}};
 }
 
 json events_json(const trace::Trace& trace, const trace::WorkChart& chart,
@@ -367,6 +408,8 @@ std::string scene_json(const RecordedRun& p, const SceneSource& source, const Sc
                     {"engine", trace.header.engine},
                     {"passes", passes_json(trace)},
                     {"relations", words_json<Relation>()},
+                    {"meets", words_json<exact::Meet>()},
+                    {"allEvents", trace.events.size()},
                     {"colours", colours()},
                     {"bodies", std::move(bodies)},
                     {"why", explanations_json(p, {events.kept, steps}, frame, source.why, limits.explained)},

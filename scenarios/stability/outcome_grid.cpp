@@ -51,10 +51,35 @@ std::uint64_t Cell::sum(const std::array<std::uint64_t, cases::kDialSettings>& c
   return n;
 }
 
+Grid present_part(const Grid& grid) {
+  Grid out;
+  out.families = grid.families;
+  out.command = grid.command;
+  out.seconds = grid.seconds;
+  for (const workers::MethodColumn& m : grid.methods)
+    if (m.present) out.methods.push_back(m);
+  for (std::size_t i = 0; i < grid.cells.size(); ++i)
+    if (grid.methods[i % grid.methods.size()].present) out.cells.push_back(grid.cells[i]);
+  return out;
+}
+
+std::string absent_words(const Grid& grid) {
+  std::string names;
+  std::size_t absent = 0;
+  for (const workers::MethodColumn& m : grid.methods)
+    if (!m.present) names += (absent++ > 0 ? ", " : "") + m.title;
+  if (absent == 0) return {};
+  return std::to_string(absent) + (absent == 1 ? " method is" : " methods are") +
+         " not installed here: " + names + ".";
+}
+
 std::vector<FamilyRow> family_rows() {
   std::vector<FamilyRow> rows;
-  for (const cases::Family& f : cases::all_families())
+  for (const cases::Family& f : cases::all_families()) {
     rows.push_back({f.name, f.what, f.benign, f.degenerate});
+    for (int d = 0; f.value != nullptr && d < kDialSettings; ++d)
+      rows.back().values.push_back(f.value(cases::dial_value(d)));
+  }
   return rows;
 }
 

@@ -38,7 +38,8 @@ constexpr auto words_of(Outcome) {
 
 struct FamilyRow {
   std::string name, what;
-  std::string benign, degenerate;  ///< what the ends of the dial mean: "gap 1e-1", "gap 1 ulp"
+  std::string benign, degenerate;        ///< what the ends of the dial mean: "gap 1e-1", "gap 1 ulp"
+  std::vector<std::string> values = {};  ///< (kDialSettings) what each setting means, "1e-6"; or empty
 };
 
 struct Record {
@@ -80,6 +81,11 @@ struct Grid {
 /// Counts records; skips those of other methods and families.
 Grid count_grid(std::vector<workers::MethodColumn> methods, std::vector<FamilyRow> families,
                 const std::vector<Record>& records);
+
+/// Returns the grid without the methods that are absent from this build.
+Grid present_part(const Grid& grid);
+/// Names these in a sentence; empty: none is absent.
+std::string absent_words(const Grid& grid);
 
 /// Returns the families of all_families(), in their order.
 std::vector<FamilyRow> family_rows();

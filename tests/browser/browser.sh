@@ -5,29 +5,16 @@
 set -euo pipefail
 lrbscope=$(realpath "$1")
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
-browser=""
-for name in chromium chromium-browser google-chrome; do
-  if command -v "$name" >/dev/null; then browser=$name && break; fi
-done
-if [ -z "$browser" ]; then
-  echo "browser.sh: skipped: no Chromium here (Debian's package chromium)"
-  exit 77
-fi
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
-export HOME=$work # where the browser keeps its things
+source "$here/chromium.sh"
 
-script() { printf '<script>%s\n</script>\n' "$(cat "$here/$1")"; } # FILE
-
-# page SCENARIO: runs it; its page with watch.js before all scripts, and drive.js after them, is $work/page.html.
+# page SCENARIO: runs it; its page with the scripts of this folder, and its trace, is $work/page.html.
 page() {
   "$lrbscope" --quiet run "$1" -o "$work/out" >/dev/null
   {
-    sed '/^<head>$/q' "$work/out/index.html"
-    script watch.js
-    sed -e '1,/^<head>$/d' -e '/^<\/body>$/,$d' "$work/out/index.html"
-    script drive.js
-    echo '</body></html>'
+    with_scripts "$work/out/index.html" drive.js
+    echo '<script type="application/json" id="trace-data">'
+    sed 's/</\\u003c/g' "$work/out/trace.json"
+    echo '</script>'
   } >"$work/page.html"
 }
 
@@ -43,10 +30,9 @@ END
 drive() {
   local size=$1,$2 file=$3
   shift 3
-  "$browser" --headless --no-sandbox --disable-dev-shm-usage --hide-scrollbars --window-size="$size" \
-    --virtual-time-budget=60000 "$@" --dump-dom "file://$work/$file" >"$work/dom" 2>"$work/browser.log" || true
+  browse --window-size="$size" --virtual-time-budget=60000 "$@" "file://$work/$file" >"$work/dom" || true
   sed -n '/<pre id="driven">/,/<\/pre>/p' "$work/dom" |
-    sed -e 's/.*<pre id="driven">//' -e 's/<\/pre>.*//' -e 's/&lt;/</g' -e 's/&gt;/>/g' -e 's/&amp;/\&/g' >"$work/driven"
+    sed -e 's/.*<pre id="driven">//' -e 's/<\/pre>.*//' | unmarked >"$work/driven"
   sed "s/^/$size: /" "$work/driven"
   if grep -q '^FAIL' "$work/driven" || ! grep -q '^done' "$work/driven"; then
     echo "browser.sh: the page failed at $size" >&2
@@ -56,7 +42,6 @@ drive() {
 }
 
 failed=0
-webgl=(--use-angle=swiftshader --enable-unsafe-swiftshader --ignore-gpu-blocklist)
 page "$here/meet.json"
 drive 1600 1200 'page.html?drive=all' "${webgl[@]}"
 # A scenario takes the camera that the page copies.
@@ -75,4 +60,6 @@ for width in 400 3000; do in_frame "$width" && drive 3200 1000 frame.html "${web
 drive 1200 900 'page.html?drive=flat' --disable-gpu --disable-3d-apis --disable-software-rasterizer
 page "$here/build.json"
 drive 1400 1000 'page.html?drive=build' "${webgl[@]}"
+page "$here/plane.json"
+drive 1400 1000 'page.html?drive=plane' "${webgl[@]}"
 exit "$failed"

@@ -233,7 +233,7 @@
     hiding.click();
     equal(selection.picked.face, NONE, "a click on a region selects it");
     press("Escape");
-    const meets = (i) => why.explanations.pair(events.step(i), [events.a[i], events.b[i]])?.meet;
+    const meets = (i) => why.explanations.pair(events.stepNumber(i), [events.a[i], events.b[i]])?.meet;
     const apart = [...events.kind.keys()].find((i) => events.kind[i] === events.FACE_TEST && meets(i) === 0);
     check(apart !== undefined, "pairs that do not meet are explained too");
     selection.goTo(apart);
@@ -247,7 +247,7 @@
     press("Escape");
     const empty = [...why.explanations.steps.keys()];
     check(empty.length > 0, "steps without contact are explained");
-    selection.goTo(events.endOfStep(empty[0]) - 1);
+    selection.goTo(events.endOfStep(lastAtMost(events.stepNumbers, empty[0])) - 1);
     await frame();
     check(/What parts the bodies.*Apart/s.test(text()), "in words", text());
     check(view.whyMarks.group.children.length > 0, "and in the view");
@@ -280,6 +280,104 @@
     equal(table.rows.length, events.count, "show all does, too");
     run.selection.goTo(events.work.indexOf(parts[0]));
     check(named("boxes of nodes").classList.contains("here"), "the chart marks the part of the event");
+  }
+
+  /** The same chart for one step: shares of all steps are those of the run. */
+  async function sharesOfSteps() {
+    const { work, timeline } = run,
+      total = (outcomes) => outcomes.reduce((n, o) => n + o.operations, 0),
+      query = () => byId("work-chart").querySelector("title").textContent;
+    const steps = [...work.ofStep.values()];
+    equal(
+      steps.reduce((n, o) => n + total(o), 0),
+      total(work.work.outcomes),
+      "the work of all steps is that of the run",
+    );
+    input("work-measure", "operations");
+    const whole = query();
+    input("work-scope", "step");
+    for (const step of [0, steps.length - 1]) {
+      timeline.toStep(step);
+      await frame();
+      check(
+        query().includes(`${digits(total(steps[step]))} operation`),
+        "the chart can show one step's",
+        query(),
+      );
+    }
+    input("work-scope", "run");
+    equal(query(), whole, "and all again");
+  }
+
+  /** Rows of tables lead to regions and steps, and are marked where these are selected otherwise. */
+  async function rowsLead() {
+    const { selection, events } = run,
+      rows = (what) => [...document.querySelectorAll(`table[data-rows="${what}"] tr.leads`)],
+      current = () => [...document.querySelectorAll("tr[aria-current]")];
+    const [row, other] = rows("region 1");
+    row.click();
+    await frame();
+    equal(selection.picked.side, 1, "a row of B's table selects a region of B");
+    equal(digits(selection.picked.region), row.cells[0].textContent, "that which it is about");
+    check(current().includes(row) && !current().includes(other), "and is marked");
+    check(run.view.marks.shown.get("picked").parts.length > 0, "and the view shows the region");
+    selection.pickRegion(1, Number(other.cells[0].textContent));
+    check(current().includes(other) && !current().includes(row), "a region of the view marks its row");
+    selection.pick(null);
+    const last = rows("step").at(-1);
+    last.dispatchEvent(new KeyboardEvent("keydown", { key: "Enter", bubbles: true, cancelable: true }));
+    equal(digits(events.stepNumber(selection.event)), last.cells[0].textContent, "a row of a step leads to it");
+  }
+
+  /** A page that has a part of the events takes all of them from the trace. */
+  async function loadsTheTrace() {
+    const { events, loader, selection } = run,
+      names = ["kind", "side", "meet", "a", "b", "cause", "boundary", "work"],
+      trace = JSON.parse(byId("trace-data").textContent);
+    const whole = { count: events.count, stepNumbers: events.stepNumbers, firstOfStep: events.firstOfStep };
+    for (const name of [...names, "depthA", "depthB", "outcome"]) whole[name] = events[name];
+    const word = (i) => events.outcomes[events.outcome[i]] || "";
+    const words = Array.from({ length: whole.count }, (_, i) => word(i)),
+      kept = [...whole.kind.keys()].filter((i) => i % 3 === 0 || whole.kind[i] === events.STEP);
+    const thin = { ids: Uint32Array.from(kept), count: kept.length, stepNumbers: whole.stepNumbers };
+    for (const name of [...names, "depthA", "depthB", "outcome"])
+      thin[name] = Uint32Array.from(kept, (i) => whole[name][i]);
+    thin.firstOfStep = Uint32Array.from(whole.firstOfStep, (id) => kept.indexOf(id));
+    events.replace(thin);
+    run.table.refilter();
+    const foreign = structuredClone(trace);
+    foreign.metadata.bodies[0].hash = "0";
+    for (const [wrong, what] of [
+      [{}, "what is no trace"],
+      [foreign, "the trace of other bodies"],
+    ]) {
+      let refused = "";
+      try {
+        loader.take(wrong);
+      } catch (e) {
+        refused = e.message;
+      }
+      check(refused !== "" && events.count === kept.length, `${what} is refused`, refused);
+    }
+    const poses = run.view.poses.map((p) => p.slice());
+    await loader.open(new File([JSON.stringify(trace)], "trace.json"));
+    equal(byId("load-state").textContent, "", "the trace is read");
+    equal(events.count, whole.count, "all events are here");
+    for (const name of names) {
+      const sorts = { a: "a", b: "b" }[name];
+      const differ = [...whole.kind.keys()].filter(
+        (i) => events[name][i] !== whole[name][i] && (!sorts || events.kindOf(i)[sorts].words !== ""),
+      );
+      equal(differ.length, 0, `${name} of each is as the page had it`);
+    }
+    equal(words.findIndex((w, i) => w !== word(i)), -1, "and so are their results");
+    const off = run.view.poses.map((p, side) =>
+      p.reduce((m, x, i) => Math.max(m, Math.abs(x - poses[side][i % poses[side].length])), 0),
+    );
+    check(off.every((d) => d < 1e-5), "and so are poses", off);
+    equal(run.table.rows.length, whole.count, "the table lists them");
+    selection.goTo(events.count - 1);
+    check(recordedSize([...whole.kind.keys()].filter((i) => events.changesWrapper(i)).at(-1)), "wrappers are replayed");
   }
 
   async function colours() {
@@ -409,11 +507,60 @@
       if (marked !== made > 0) check(false, "new lids are pointed out after a pass", `${made} regions`);
     }
     equal(passes, events.passes.length, "passes can be played one by one");
+    const layers = [...events.bodies[0].layer],
+      newest = Math.max(...layers),
+      lidOf = (layer) => events.bodies[0].lids(layers.indexOf(layer))[0],
+      pale = view.colours.mode(events.bodies, "region", null, newest),
+      full = view.colours.mode(events.bodies, "region", null);
+    check(newest > 0, "there are several layers", newest);
+    check(pale.of(0, lidOf(0)).every((c, i) => c >= full.of(0, lidOf(0))[i]), "early lids are paled");
+    check(`${pale.of(0, lidOf(0))}` !== `${full.of(0, lidOf(0))}`, "visibly");
+    equal(`${pale.of(0, lidOf(newest))}`, `${full.of(0, lidOf(newest))}`, "and new ones are not");
     equal(wrappers.sizes[0], wrappers.outermost[0], "to the outermost wrapper");
     check(refusals > 3, "and say why caps were refused", refusals);
   }
 
+  /** Bodies of the plane are seen from above, and cannot be turned. */
+  async function liesFlat() {
+    const { view, events, selection } = run,
+      { camera } = view;
+    check(view && camera.orthographic, "flat bodies have a view, seen along parallels");
+    for (const id of ["orthographic", "copy-camera"]) equal(byId(id), null, `without ${id}`);
+    view.frameAll();
+    await frame();
+    const before = camera.camera.position.toArray().join();
+    for (const key of ["a", "e", "o"]) press(key);
+    await frame();
+    equal(camera.camera.position.toArray().join(), before, "that keys do not turn");
+    const way = camera.camera.position.clone().sub(camera.controls.target).normalize();
+    check(way.z > 0.999, "from above", way.toArray());
+    run.timeline.toStep(events.firstOfStep.length - 1);
+    await frame();
+    check(view.views.every((v) => v.real.mesh.geometry.boundingSphere.radius > 0), "their segments are drawn");
+    const body = events.bodies[0],
+      [p, q] = body.face(0),
+      middle = [0, 1, 2].map((i) => (body.vertices[3 * p + i] + body.vertices[3 * q + i]) / 2),
+      at = view.views[0].toWorld(middle).project(camera.camera),
+      box = byId("view-canvas").getBoundingClientRect();
+    const hit = view.picker.under(
+      box.left + ((1 + at.x) / 2) * box.width,
+      box.top + ((1 - at.y) / 2) * box.height,
+      true,
+    );
+    check(hit && hit.side === 0 && hit.face === 0, "a click finds the segment under it", JSON.stringify(hit));
+    const zoom = camera.flat.zoom;
+    press("+");
+    await frame();
+    check(camera.flat.zoom > zoom, "keys zoom");
+    selection.pickRegion(0, 0);
+    press("i");
+    await frame();
+    check(view.views[0].pieces.some((piece) => piece.triangles > 0), "a region can be isolated");
+    press("i");
+  }
+
   const parts = {
+    plane: [opensAtFirstContact, replaysAsRecorded, liesFlat, fitsTheWidth],
     build: [opensAtTheBody, replaysAsRecorded, buildsPassByPass, fitsTheWidth],
     all: [
       opensAtFirstContact,
@@ -425,9 +572,12 @@
       walks,
       explains,
       shares,
+      sharesOfSteps,
+      rowsLead,
       colours,
       plays,
       largeTable,
+      loadsTheTrace,
       fitsTheWidth,
     ],
     layout: [fitsTheWidth],

@@ -471,6 +471,12 @@ TEST_CASE("the chart of the work holds what its parts hold, each event once") {
     }
     CHECK(of_events == shares);
     CHECK(operations >= box_tests);  // with planes
+    std::vector<std::uint64_t> of_steps(chart.outcomes.size());
+    for (std::size_t step = 0; step < r.trace.steps.size(); ++step) {
+      const std::vector<WorkOutcome> parts = outcomes_of_step(r.trace, chart, step);
+      for (std::size_t i = 0; i < parts.size(); ++i) of_steps.at(i) += parts[i].operations;
+    }
+    for (std::size_t i = 0; i < of_steps.size(); ++i) CHECK(of_steps[i] == chart.outcomes[i].operations);
     CHECK((levels > 0) == (request.tolerance > 0));
   }
 }

@@ -40,7 +40,6 @@ std::string profile_svg(const PageGridCell& cell) {
 }
 
 std::string cell_class(const PageGridCell& cell) {
-  if (cell.level == PageGridCell::kAbsent) return "absent";
   if (cell.level == PageGridCell::kOnlyRefused) return "only-refused";
   return "level-" + std::to_string(cell.level);
 }
@@ -53,7 +52,6 @@ std::string mark_html(std::size_t part, const std::string& text) {
 std::string cell_html(const PageGrid& grid, const PageGridCell& cell) {
   const std::string label = render::escape_markup(cell.label);
   std::string out = "<td class=\"" + cell_class(cell) + "\" title=\"" + label + "\">";
-  if (cell.level == PageGridCell::kAbsent) return out + "<span class=\"none\">absent</span></td>";
   const bool linked = cell.detail >= 0;
   if (linked)
     out += "<a href=\"#" + render::escape_markup(grid.details[static_cast<std::size_t>(cell.detail)].id) +
@@ -79,10 +77,21 @@ std::string breakable(const std::string& text) {
 }
 
 std::string column_html(const PageGridHead& head) {
-  std::string out = std::string("<th scope=\"col\"") + (head.faint ? " class=\"faint\"" : "") + " title=\"" +
-                    render::escape_markup(head.text) + "\"><b>" + breakable(head.title) + "</b>";
+  std::string out = "<th scope=\"col\" title=\"" + render::escape_markup(head.text) + "\"><b>" +
+                    breakable(head.title) + "</b>";
   if (!head.text.empty()) out += "<small>" + render::escape_markup(head.text) + "</small>";
   return out + "</th>";
+}
+
+/// Returns marks under a line as wide as a profile: every third bar has its value.
+std::string axis_html(const std::vector<std::string>& axis) {
+  constexpr std::size_t kEvery = 3;
+  std::string out = "<small class=\"axis\" aria-hidden=\"true\">";
+  for (std::size_t i = 0; i < axis.size(); i += kEvery)
+    out += "<i style=\"left:" +
+           io::number_text(100 * (static_cast<double>(i) + 0.5) / static_cast<double>(axis.size()), 4) +
+           "%\">" + render::escape_markup(axis[i]) + "</i>";
+  return out + "</small>";
 }
 
 std::string row_html(const PageGridHead& head) {
@@ -91,13 +100,14 @@ std::string row_html(const PageGridHead& head) {
   if (!head.low.empty() || !head.high.empty())
     out += "<small class=\"dial\"><span>" + render::escape_markup(head.low) + "</span> \u2192 <span>" +
            render::escape_markup(head.high) + "</span></small>";
+  if (!head.axis.empty()) out += axis_html(head.axis);
   return out + "</th>";
 }
 
 /// Where all columns fit, the page scrolls as a whole, under heads that stay; else the table scrolls in a
 /// frame.
 std::string wide_style(const PageGrid& grid) {
-  constexpr double kHead = 15, kColumn = 7.6, kMargins = 3.5;  // as in grid.css, rem
+  constexpr double kHead = 15, kColumn = 5.6, kMargins = 3.5;  // as in grid.css, rem
   return "<style>@media (min-width: " +
          io::number_text(kHead + kMargins + kColumn * static_cast<double>(grid.columns.size())) +
          "rem) { .frame { overflow: visible; max-height: none; } }</style>\n";
@@ -109,7 +119,7 @@ std::string legend_html(const PageGrid& grid) {
     out += "<li><i class=\"swatch level-" + std::to_string(i) + "\"></i>" +
            render::escape_markup(grid.level_names[i]) + "</li>";
   out += "<li><i class=\"swatch only-refused\"></i>refusals alone</li>";
-  out += "<li><i class=\"swatch absent\"></i>method absent</li></ul><ul class=\"key\">";
+  out += "</ul><ul class=\"key\">";
   for (std::size_t k = 0; k < kPageParts; ++k)
     out += "<li><svg class=\"swatch\" viewBox=\"0 0 1 1\" aria-hidden=\"true\"><rect class=\"" +
            std::string(kPartClasses[k]) + "\" width=\"1\" height=\"1\"/></svg>" +
@@ -149,6 +159,8 @@ std::string grid_html(const PageGrid& grid) {
   std::string out =
       "<section class=\"grid\" id=\"grid\"><h2>" + render::escape_markup(grid.title) + "</h2>\n";
   out += wide_style(grid) + legend_html(grid);
+  if (!grid.missing.empty())
+    out += "<p class=\"missing note\">" + render::escape_markup(grid.missing) + "</p>\n";
   out += "<div class=\"frame\" tabindex=\"0\" role=\"region\" aria-label=\"" +
          render::escape_markup(grid.title) +
          "\"><table style=\"--columns:" + std::to_string(grid.columns.size()) +

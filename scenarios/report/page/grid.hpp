@@ -15,15 +15,15 @@ inline constexpr std::size_t kPageParts = 4;
 
 struct PageGridHead {
   std::string title;
-  std::string text;       ///< small print under it
-  std::string low, high;  ///< rows: what the ends of the profiles mean; may be empty
-  bool faint = false;     ///< there is nothing to show
+  std::string text;               ///< small print under it
+  std::string low, high;          ///< rows: what the ends of the profiles mean; may be empty
+  std::vector<std::string> axis;  ///< rows: what each bar of the profiles means, "1e-6"; or empty
 };
 
 struct PageGridCell {
-  /// The background: from 0, nothing to report, to 4. kOnlyRefused and kAbsent have backgrounds of their own.
-  static constexpr int kAbsent = -1, kOnlyRefused = -2;
-  int level = kAbsent;
+  /// The background: from 0, nothing to report, to 4; kOnlyRefused has one of its own.
+  static constexpr int kOnlyRefused = -1;
+  int level = 0;
   std::string count, of;                             ///< "12", "of 55"
   std::array<std::string, kPageParts> marks;         ///< numbers shown beside the parts' marks; empty: none
   std::vector<std::array<double, kPageParts>> bars;  ///< shares in [0, 1]; a negative first one: not tried
@@ -47,6 +47,7 @@ struct PageGrid {
   std::vector<std::string> level_names;  ///< of levels 0 to 4
   std::array<std::string, kPageParts> part_names;
   std::string note;
+  std::string missing;  ///< what could have a column and has none, in a sentence; may be empty
   std::vector<PageGridHead> columns, rows;
   std::vector<PageGridCell> cells;  ///< (|rows| x |columns|), row by row
   std::size_t total_rows = 0;       ///< this many of the last rows are sums over those above

@@ -120,17 +120,35 @@ std::string charts_html(const Page& page) {
 
 constexpr std::size_t kProse = 60;  // characters: cells longer than this are broken into lines
 
+constexpr std::size_t kLong = 30;  // rows: tables of more scroll by themselves
+
 bool looks_numeric(std::string_view cell) {
   // The last three bytes: a narrow space, between groups of digits.
   return cell.find_first_of("0123456789") != std::string_view::npos &&
          cell.find_first_not_of("0123456789.,+-eE %x\xE2\x80\xAF") == std::string_view::npos;
 }
 
+/// Tells the page's script what the rows of a table lead to.
+std::string rows_attribute(PageRows rows) {
+  switch (rows) {
+    case PageRows::regions_of_a:
+      return " data-rows=\"region 0\"";
+    case PageRows::regions_of_b:
+      return " data-rows=\"region 1\"";
+    case PageRows::steps:
+      return " data-rows=\"step\"";
+    case PageRows::plain:
+      break;
+  }
+  return {};
+}
+
 std::string tables_html(const Page& page) {
   std::string out;
   for (const PageTable& t : page.tables) {
-    out +=
-        "<section><h2>" + render::escape_markup(t.title) + "</h2>\n<div class=\"scroll\"><table><thead><tr>";
+    out += "<section><h2>" + render::escape_markup(t.title) + "</h2>\n<div class=\"scroll" +
+           (t.rows.size() > kLong ? " long\" tabindex=\"0" : "") + "\"><table" + rows_attribute(t.rows_are) +
+           "><thead><tr>";
     for (std::size_t c = 0; c < t.columns.size(); ++c) {
       const bool numeric = !t.rows.empty() && c < t.rows[0].size() && looks_numeric(t.rows[0][c]);
       out +=
@@ -216,7 +234,8 @@ std::string scene_scripts(const Page& page) {
         "scene_form",     "scene_panel",    "scene_why",       "scene_work",   "scene_counts",
         "scene_colours",  "scene_meshes",   "scene_bodyview",  "scene_marks",  "scene_why_marks",
         "scene_legend",   "scene_camera",   "scene_pick",      "scene_view",   "scene_time",
-        "scene_keys",     "scene_controls", "scene_together",  "scene"})
+        "scene_keys",     "scene_controls", "scene_together",  "scene_rows",   "scene_load",
+        "scene"})
     out += io::embedded_file(name + std::string(".js"));
   return out;
 }

@@ -2,6 +2,7 @@
 /// Makes every HTML page and chart of the project: one file that opens from disk, with style, script,
 /// charting library and pictures inside, and nothing fetched from anywhere.
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -51,11 +52,15 @@ struct PageChart {
   double least_x = 0, most_x = 0;  ///< ends of the x axis; equal: as the data have it
 };
 
+/// What the first cells of a table's rows number: a click on a row leads to it in the view of the run.
+enum class PageRows : std::uint8_t { plain, regions_of_a, regions_of_b, steps };
+
 struct PageTable {
   std::string title;
   std::vector<std::string> columns;
   std::vector<std::vector<std::string>> rows;  ///< numbers in them are aligned right
   std::string note;
+  PageRows rows_are = PageRows::plain;
 };
 
 /// A picture with its caption.

@@ -115,9 +115,24 @@ function nearestFrame(key, value) {
   return best;
 }
 
+/** Returns a colour, #rrggbb, as far towards that of text as it takes to be seen on a card, three to one. */
+function seen(colour) {
+  const parts = (hex) => [1, 3, 5].map((i) => parseInt(hex.slice(i, i + 2), 16));
+  const light = (rgb) => {
+    const [r, g, b] = rgb.map((x) => (x / 255 <= 0.03928 ? x / 255 / 12.92 : ((x / 255 + 0.055) / 1.055) ** 2.4));
+    return 0.2126 * r + 0.7152 * g + 0.0722 * b + 0.05;
+  };
+  const from = parts(colour), ink = parts(style("--ink")), card = light(parts(style("--card")));
+  for (let t = 0; ; t += 0.1) {
+    const mixed = from.map((x, i) => Math.round(x + (ink[i] - x) * Math.min(1, t))), l = light(mixed);
+    if (t >= 1 || Math.max(l, card) / Math.min(l, card) >= 3) return `rgb(${mixed.join(", ")})`;
+  }
+}
+
 function makeChart(spec, canvas) {
+  const colours = spec.series.map((s, i) => seen(s.colour || style(`--s${i % 7}`)));
   const datasets = spec.series.map((s, i) => ({
-    label: s.label, data: s.data, borderColor: s.colour || style(`--s${i % 7}`), backgroundColor: s.colour || style(`--s${i % 7}`),
+    label: s.label, data: s.data, borderColor: colours[i], backgroundColor: colours[i],
     borderWidth: 1.8, stepped: spec.stepped || s.line ? "before" : false, showLine: !spec.scatter || s.line,
     pointRadius: s.line ? 0 : spec.scatter ? 4 : s.data.length > 80 ? 0 : 2.2, pointHitRadius: s.line ? 0 : 8,
     pointStyle: s.shape || "circle", clip: 12,

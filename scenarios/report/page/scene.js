@@ -1,9 +1,10 @@
 // ---- the run's page: puts table, panel, sliders and the view in three dimensions together
 function startScene() {
   const scene = JSON.parse(byId("scene-data").textContent),
-    bodies = scene.bodies.map((b, side) => new Body(b, side));
+    bodies = scene.bodies.map((b, side) => new Body(b, side, scene.dim));
   const events = new Events(scene, bodies),
     complete = bodies.every((b) => b.complete);
+  let shownId = 0; // of the event
   if (!events.count) {
     byId("scene").hidden = true;
     return null;
@@ -22,13 +23,25 @@ function startScene() {
     table = new EventTable(events, selection, filter),
     form = new FilterForm(events, filter, table);
   const work = new WorkIcicle(scene.work, events, filter, form, selection);
-  const why = new WhyPanel(new Explanations(scene.why), events, selection);
+  const why = new WhyPanel(new Explanations(scene.why, events.stepNumbers.slice()), events, selection);
   const view = openView(scene, selection, wrappers, why),
     controls = view ? new ViewControls(view, selection) : null;
   byId("thinned").textContent = scene.thinned;
   byId("thinned").hidden = !scene.thinned;
   selection.listeners.push((what) => {
     if (what === "event") byId("view-caption").textContent = eventSentence(events, wrappers, selection.event);
+  });
+  new RowLinks(events, selection);
+  const loader = new TraceLoader(scene, events, (poses) => {
+    if (wrappers) wrappers.at = -1;
+    if (view) view.takePoses(poses);
+    form.listKinds();
+    timeline.measure();
+    table.refilter();
+    selection.goTo(events.at(shownId));
+  });
+  selection.listeners.push((what) => {
+    if (what === "event") shownId = events.id(selection.event);
   });
   byId("picked-events").onclick = () => {
     form.showPicked(selection.picked);
@@ -39,10 +52,10 @@ function startScene() {
   const first = scene.firstContact >= 0 ? scene.firstContact : 0,
     asked = /^#e(\d+)$/.exec(location.hash);
   selection.goTo(events.at(asked ? Number(asked[1]) : first));
-  if (view) view.frameAll(VIEW_FROM);
+  if (view) view.frameAll(view.camera.from);
   if (controls && events.passes) controls.colourBy("region");
   if (view && new URLSearchParams(location.search).has("alone")) new Together(view, selection, events);
-  return { scene, events, selection, wrappers, timeline, table, filter, form, panel, why, work, view, controls };
+  return { scene, events, selection, wrappers, timeline, table, filter, form, panel, why, work, view, controls, loader };
 }
 
 /** Takes out what is about queries where a construction is shown, or the other way round. */
@@ -65,8 +78,8 @@ function openView(scene, selection, wrappers, why) {
     return null;
   };
   const frames = data.frames.length ? " These frames show the run." : "";
+  leaveOut(scene.dim === 2 ? ".of-solids" : ".of-flat");
   if (scene.tooLarge) return no(scene.tooLarge);
-  if (scene.dim === 2) return no(`These bodies lie in the plane: there is nothing to turn.${frames}`);
   if (!webglWorks())
     return no(`This browser has no WebGL, which the view in three dimensions needs.${frames}`);
   return new SceneView(scene, selection, wrappers, why);

@@ -2,8 +2,9 @@
 const SIDES = ["A", "B"];
 
 class Body {
-  constructor(json, side) {
+  constructor(json, side, dim) {
     this.side = side;
+    this.dim = dim; // 2: faces are segments
     this.name = json.name;
     this.faceCount = json.faces;
     this.realCount = json.realFaces;
@@ -24,8 +25,8 @@ class Body {
       node: unpack(json.boxes.node),
       depth: unpack(json.boxes.depth),
       places: unpack(json.boxes.places),
-      nodes: json.boxes.nodes,
-      height: json.boxes.height,
+      whole: json.boxes.whole, // down to this depth the page has all of them
+      atDepth: unpack(json.boxes.atDepth), // how many there are
     };
     this.counts = Object.fromEntries(Object.entries(json.counts).map(([name, text]) => [name, unpack(text)]));
     this.counts.misses = this.counts.tests.map((n, f) => n - this.counts.hits[f]);

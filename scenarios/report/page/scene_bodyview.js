@@ -27,6 +27,14 @@ class BodyView {
     this.measure();
   }
 
+  /** Draws the segments of a flat body as strips; `pixel`: how wide a pixel is. */
+  widen(pixel) {
+    this.real.widen(3 * pixel);
+    this.lids.widen(3 * pixel);
+    for (const piece of this.pieces) piece.widen(3 * pixel);
+    if (this.counted) this.counted.widen(4 * pixel);
+  }
+
   /** Returns what faces and lines are made of; `edge`: the colour of lines. */
   static materialsOf(edge) {
     const faces = (Material, before, more = {}) =>

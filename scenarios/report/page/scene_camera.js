@@ -8,12 +8,22 @@ class SceneCamera {
     this.perspective = new THREE.PerspectiveCamera((FIELD * 180) / Math.PI, 1, 0.01, 100);
     this.flat = new THREE.OrthographicCamera(-1, 1, 1, -1, -100, 100);
     this.camera = this.perspective;
+    this.plane = frame.dim === 2; // seen from above, without turning
+    this.from = this.plane ? [0, 0, 1] : VIEW_FROM;
+    this.up = this.plane ? new THREE.Vector3(0, 1, 0) : new THREE.Vector3(0, 0, 1);
     this.lamp = new THREE.DirectionalLight(0xffffff, 0.5);
     this.lamp.position.set(-0.4, 0.7, 1);
-    for (const camera of [this.perspective, this.flat]) camera.up.set(0, 0, 1);
+    for (const camera of [this.perspective, this.flat]) camera.up.copy(this.up);
     this.camera.add(this.lamp);
     this.controls = new THREE.OrbitControls(this.camera, canvas);
     this.controls.enableKeys = false;
+    if (this.plane) {
+      this.controls.enableRotate = false;
+      this.controls.mouseButtons.LEFT = THREE.MOUSE.PAN;
+      this.controls.touches.ONE = THREE.TOUCH.PAN;
+      this.perspective.position.set(0, 0, 1);
+      this.setOrthographic(true);
+    }
     this.controls.enableZoom = false; // until the view has the focus: the wheel scrolls the page
     canvas.addEventListener("focus", () => {
       this.controls.enableZoom = true;
@@ -29,6 +39,10 @@ class SceneCamera {
       { passive: true, capture: true },
     );
     this.controls.addEventListener("change", changed);
+    this.fitted = false; // all is shown, until somebody looks closer: then all is shown in another window, too
+    this.controls.addEventListener("start", () => {
+      this.fitted = false;
+    });
   }
 
   get orthographic() {
@@ -57,6 +71,7 @@ class SceneCamera {
 
   /** Looks at a ball from where one stands. */
   lookAt(centre, radius) {
+    this.fitted = false;
     const way = this.camera.position.clone().sub(this.controls.target);
     const least = Math.min(1, this.aspect),
       half = FIELD / 2;
@@ -70,10 +85,11 @@ class SceneCamera {
   /** Shows all points as large as can be, from where one stands or from a direction; as render/camera.hpp
       does. */
   fit(points, from) {
+    this.fitted = true;
     const out = (
       from ? new THREE.Vector3(...from) : this.camera.position.clone().sub(this.controls.target)
     ).normalize();
-    const right = new THREE.Vector3(0, 0, 1).cross(out).normalize(),
+    const right = this.up.clone().cross(out).normalize(),
       up = out.clone().cross(right);
     const share = 0.92,
       slopeY = Math.tan(FIELD / 2) * share,
@@ -112,6 +128,7 @@ class SceneCamera {
 
   /** Zooms by a factor; above 1: closer. */
   zoom(factor) {
+    this.fitted = false;
     this.camera.position.sub(this.controls.target).divideScalar(factor).add(this.controls.target);
     this.flat.zoom *= factor;
     this.controls.update();
@@ -119,6 +136,7 @@ class SceneCamera {
 
   /** Turns about the target, in radians. */
   turn(azimuth, elevation) {
+    if (this.plane) return;
     const s = new THREE.Spherical().setFromVector3(
       this.camera.position
         .clone()
@@ -157,6 +175,7 @@ class SceneCamera {
 
   /** Looks as json() of another view says. */
   set({ projection, eye, target }) {
+    this.fitted = false;
     const { origin, unit } = this.frame,
       local = (x) => new THREE.Vector3(...x.map((v, i) => (v - origin[i]) / unit));
     if ((projection === "orthographic") !== this.orthographic) this.setOrthographic(!this.orthographic);

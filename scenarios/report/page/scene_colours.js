@@ -21,8 +21,9 @@ class Colours {
     return mixed(this.bodies[side], [18 / 255, 20 / 255, 24 / 255], 0.72);
   }
 
-  /** Returns what colours faces in a mode: {of(side, face), key: {most, title} or null}. */
-  mode(bodies, by, counts) {
+  /** Returns what colours faces in a mode: {of(side, face), key: {most, title} or null}. `newest`: regions of earlier layers
+      are pale; 0: none is. */
+  mode(bodies, by, counts, newest = 0) {
     const layers = 1 + bodies.reduce((most, b) => b.layer.reduce((m, l) => Math.max(m, l), most), 0);
     const pale = (side) => mixed(this.bodies[side], WHITE, 0.75);
     if (by === "kind")
@@ -44,7 +45,11 @@ class Colours {
         of: (side, face) =>
           bodies[side].isReal(face)
             ? pale(side)
-            : this.categories[bodies[side].inner[face] % this.categories.length],
+            : mixed(
+                this.categories[bodies[side].inner[face] % this.categories.length],
+                WHITE,
+                bodies[side].layer[bodies[side].inner[face]] < newest ? 0.68 : 0,
+              ),
         key: null,
       };
     const most = counts.reduce((m, values) => values.reduce((x, v) => Math.max(x, v), m), 0);

@@ -4,15 +4,7 @@ const EXPLODED = 0.6; // what the key sets; the slider goes from 0 to 2
 class ViewControls {
   constructor(view, selection) {
     Object.assign(this, { view, selection });
-    const deepest = view.bodies.reduce((most, b) => b.boxes.depth.reduce((m, d) => Math.max(m, d), most), 0);
-    for (let depth = 0; depth <= deepest; depth++)
-      byId("boxes").append(new Option(depth === 0 ? "depth 0, the root" : `depth ${depth}`, depth));
-    const left = view.bodies
-      .filter((b) => b.boxes.node.length < b.boxes.nodes)
-      .map((b) => `${SIDES[b.side]} has ${digits(b.boxes.nodes)} nodes to depth ${b.boxes.height - 1}`);
-    byId("boxes").title = left.length
-      ? `The page has the boxes of the first levels; ${left.join(", ")}`
-      : "The boxes of the tree's nodes";
+    this.listDepths();
     const change = (id, action) => byId(id).addEventListener("input", () => action(byId(id)));
     change("colour-by", (e) => this.colourBy(e.value));
     change("colour-per", (e) => view.look({ per: e.value }));
@@ -23,12 +15,26 @@ class ViewControls {
     byId("lids").onclick = () => this.toggle("lids");
     byId("isolate").onclick = byId("picked-isolate").onclick = () => this.isolatePicked();
     byId("proof").onclick = () => this.toggle("why");
-    byId("orthographic").onclick = () => this.orthographic();
+    if (!view.camera.plane) byId("orthographic").onclick = () => this.orthographic();
     byId("frame-all").onclick = () => view.frameAll();
     byId("frame-it").onclick = byId("picked-frame").onclick = () => view.frameSelection();
-    byId("copy-camera").onclick = () => this.copyCamera();
+    if (!view.camera.plane) byId("copy-camera").onclick = () => this.copyCamera();
     selection.listeners.push(() => this.show());
     this.show();
+  }
+
+  /** Offers the depths of boxes. Below those that the page has whole, it has the boxes above faces that were compared. */
+  listDepths() {
+    const { bodies } = this.view,
+      deepest = bodies.reduce((most, b) => b.boxes.depth.reduce((m, d) => Math.max(m, d), most), 0);
+    for (let depth = 0; depth <= deepest; depth++) {
+      const whole = bodies.every((b) => depth <= b.boxes.whole || depth >= b.boxes.atDepth.length),
+        here = bodies.reduce((n, b) => n + b.boxes.depth.reduce((m, d) => m + (d === depth), 0), 0),
+        all = bodies.reduce((n, b) => n + (b.boxes.atDepth[depth] || 0), 0);
+      const words = depth === 0 ? "depth 0, the root" : `depth ${depth}`;
+      byId("boxes").append(new Option(whole ? words : `${words}: ${digits(here)} of ${digits(all)}`, depth));
+    }
+    byId("boxes").title = "The boxes of the tree's nodes; of deep ones those above faces that were compared";
   }
 
   /** Shows on the buttons how things are. */
@@ -39,7 +45,7 @@ class ViewControls {
       ["ghost", now.ghost],
       ["lids", now.lids],
       ["isolate", Boolean(now.isolate)],
-      ["orthographic", camera.orthographic],
+      ...(camera.plane ? [] : [["orthographic", camera.orthographic]]),
       ["proof", now.why],
     ])
       byId(id).setAttribute("aria-pressed", on);
@@ -102,24 +108,29 @@ class ViewControls {
   keys() {
     const { view } = this,
       turn = 0.09;
+    const ofSolids = view.camera.plane
+      ? {}
+      : {
+          o: () => this.orthographic(),
+          v: () => this.copyCamera(),
+          a: () => view.camera.turn(-turn, 0),
+          d: () => view.camera.turn(turn, 0),
+          e: () => view.camera.turn(0, turn),
+          q: () => view.camera.turn(0, -turn),
+        };
     return {
+      ...ofSolids,
       g: () => this.toggle("ghost"),
       w: () => this.toggle("lids"),
       x: () => this.explode(view.now.explode > 0 ? 0 : EXPLODED),
       i: () => this.isolatePicked(),
       n: (shift) => this.cycle("boxes", shift ? -1 : 1),
       k: (shift) => this.cycle("colour-by", shift ? -1 : 1),
-      o: () => this.orthographic(),
       f: (shift) => (shift ? view.frameAll() : view.frameSelection()),
-      v: () => this.copyCamera(),
       y: () => this.toggle("why"),
       "+": () => view.camera.zoom(1.2),
       "=": () => view.camera.zoom(1.2),
       "-": () => view.camera.zoom(1 / 1.2),
-      a: () => view.camera.turn(-turn, 0),
-      d: () => view.camera.turn(turn, 0),
-      e: () => view.camera.turn(0, turn),
-      q: () => view.camera.turn(0, -turn),
     };
   }
 }

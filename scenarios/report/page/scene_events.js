@@ -37,6 +37,13 @@ class Events {
     this.passes = json.passes;
   }
 
+  /** Takes other events of the same run: all of them. */
+  replace(columns) {
+    const wrong = new Map([...this.stepNumbers].map((number, step) => [number, this.wrong[step]]));
+    Object.assign(this, columns);
+    this.wrong = [...this.stepNumbers].map((number) => wrong.get(number) || []);
+  }
+
   id(i) {
     return this.ids ? this.ids[i] : i;
   }

@@ -1,7 +1,7 @@
 // ---- why two faces come out as they do, and what parts bodies that are apart: what explanations.cpp packed
 class Explanations {
-  /** `json`: null where the page explains nothing. */
-  constructor(json) {
+  /** `json`: null where the page explains nothing. `stepNumbers`: of the steps that it was made for. */
+  constructor(json, stepNumbers) {
     this.none = !json;
     if (!json) return;
     const { by, meets, axes, cut, command, pairs, steps } = json;
@@ -9,11 +9,12 @@ class Explanations {
     this.columns = Object.fromEntries(
       Object.entries(pairs).map(([name, text]) => [name, typeof text === "string" ? unpack(text) : text]),
     );
-    this.steps = new Map(steps.map((s) => [s.step, s]));
+    const number = (step) => stepNumbers[step]; // steps are known by their numbers: more may be loaded
+    this.steps = new Map(steps.map((s) => [number(s.step), s]));
     this.numbers = new Map();
     for (let i = 0; i < pairs.count; i++)
       this.numbers.set(
-        Explanations.key(this.columns.step[i], [this.columns.a[i], this.columns.b[i]]),
+        Explanations.key(number(this.columns.step[i]), [this.columns.a[i], this.columns.b[i]]),
         i,
       );
   }
@@ -22,7 +23,7 @@ class Explanations {
     return `${step} ${a} ${b}`;
   }
 
-  /** Returns the explanation of a pair of simplices at a step (an index among the page's); null: none. */
+  /** Returns the explanation of a pair of simplices at a step, by its number; null: none. */
   pair(step, simplices) {
     const i = this.none ? undefined : this.numbers.get(Explanations.key(step, simplices));
     if (i === undefined) return null;

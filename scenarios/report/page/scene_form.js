@@ -3,17 +3,25 @@ class FilterForm {
   constructor(events, filter, table) {
     Object.assign(this, { events, filter, table });
     this.listeners = []; // told when another part of the work is listed
-    const kind = byId("filter-kind"),
-      present = new Set(events.kind);
-    events.kinds.forEach((k, i) => {
-      if (present.has(i)) kind.append(new Option(k.name, i));
-    });
+    this.listKinds();
     byId("filter-side").closest("label").hidden = byId("filter-pair").closest("label").hidden =
       events.bodies.length < 2;
     for (const field of ["kind", "side", "region", "level", "pair"])
       byId(`filter-${field}`).addEventListener("input", () => this.read());
     byId("filters").addEventListener("submit", (e) => e.preventDefault());
     byId("filter-clear").onclick = () => this.clear();
+  }
+
+  /** Offers the kinds of events that there are. */
+  listKinds() {
+    const kind = byId("filter-kind"),
+      present = new Set(this.events.kind),
+      chosen = kind.value;
+    kind.replaceChildren(new Option("all", -1));
+    this.events.kinds.forEach((k, i) => {
+      if (present.has(i)) kind.append(new Option(k.name, i));
+    });
+    kind.value = chosen;
   }
 
   read() {

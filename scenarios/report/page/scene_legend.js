@@ -32,6 +32,7 @@ class Legend {
   /** `key`: the scale of the colours; null: bodies have one colour each. */
   show(key) {
     const { colours, bodies, now } = this.view,
+      { passes } = this.view.events,
       { css } = Legend,
       items = [];
     bodies.forEach((b) => {
@@ -40,13 +41,13 @@ class Legend {
       items.push([
         css(key ? mixed(colour, WHITE, 0.78) : colour),
         `${name}, real faces${key && COUNTERS.includes(now.by) ? ` without ${now.by}` : ""}`,
-        "",
+        key ? css(colours.edge(b.side)) : "",
       ]);
       if (!key && now.by === "kind")
         items.push([css(mixed(colour, WHITE, 0.7)), `${name}, pseudo faces`, css(colours.edge(b.side))]);
     });
     if (now.by === "region")
-      items.push([css(colours.categories[0]), "pseudo faces, a colour for each region", ""]);
+      items.push([css(colours.categories[0]), `pseudo faces, a colour for each region${passes ? "; pale: of earlier passes" : ""}`, ""]);
     if (this.view.events.passes) items.push([css(colours.refining), "lids that are new in this pass", ""]);
     else
       items.push(

@@ -29,7 +29,8 @@ class Marks {
         polygonOffsetFactor: 0,
         polygonOffsetUnits: -2,
       });
-      const mesh = new FaceMesh(view.body, own, material).mesh;
+      const strips = new FaceMesh(view.body, own, material),
+        mesh = strips.mesh;
       mesh.renderOrder = over ? 5 : opacity < 1 ? 3 : 0;
       const rim = thickLines(
         edgesOf(view.body, own, true).flatMap((v) => view.point(v)),
@@ -42,6 +43,12 @@ class Marks {
       parts.push({ group: view.group, object: mesh }, { group: view.group, object: rim });
     });
     this.shown.set(name, { key, parts });
+  }
+
+  /** As BodyView's, a little wider. */
+  widen(pixel) {
+    for (const { parts } of this.shown.values())
+      for (const { object } of parts) if (object.userData.faces) object.userData.faces.widen(6 * pixel);
   }
 
   /** Shows boxes of tree nodes. */

@@ -4,12 +4,17 @@
 class FaceMesh {
   constructor(body, faces, material, shifts) {
     this.body = body;
-    this.triangles = faces.reduce((n, f) => n + Math.max(0, body.offsets[f + 1] - body.offsets[f] - 2), 0);
+    this.flat = body.dim === 2 ? { faces, shifts, width: 0 } : null;
+    this.triangles = this.flat
+      ? 2 * faces.length
+      : faces.reduce((n, f) => n + Math.max(0, body.offsets[f + 1] - body.offsets[f] - 2), 0);
     this.faceOf = new Uint32Array(this.triangles); // of each triangle
     const positions = new Float32Array(9 * this.triangles),
       normals = new Float32Array(9 * this.triangles);
     let t = 0;
+    if (this.flat) faces.forEach((face, k) => this.faceOf.fill(face, 2 * k, 2 * k + 2));
     faces.forEach((face, k) => {
+      if (this.flat) return;
       const corners = body.face(face);
       for (let i = 1; i + 1 < corners.length; i++, t++) {
         this.faceOf[t] = face;
@@ -44,6 +49,29 @@ class FaceMesh {
       }
   }
 
+  /** Makes the segments of a flat body strips of a width. */
+  widen(width) {
+    if (!this.flat || Math.abs(this.flat.width - width) < 0.1 * width) return;
+    this.flat.width = width;
+    const { position, normal } = this.mesh.geometry.attributes,
+      v = this.body.vertices;
+    this.flat.faces.forEach((face, k) => {
+      const [p, q] = this.body.face(face),
+        shift = this.flat.shifts ? this.flat.shifts[k] : [0, 0, 0],
+        at = (c) => [v[3 * c] + shift[0], v[3 * c + 1] + shift[1]],
+        [a, b] = [at(p), at(q)],
+        length = Math.hypot(b[0] - a[0], b[1] - a[1]) || 1,
+        along = [((b[0] - a[0]) / length) * (width / 2), ((b[1] - a[1]) / length) * (width / 2)],
+        // A little longer than the segment, so that strips join at corners.
+        corner = (end, s, t) => [end[0] + 0.7 * s * along[0] - t * along[1], end[1] + 0.7 * s * along[1] + t * along[0], 0];
+      const [w, x, y, z] = [corner(a, -1, -1), corner(b, 1, -1), corner(b, 1, 1), corner(a, -1, 1)];
+      position.array.set([w, x, y, w, y, z].flat(), 18 * k);
+      for (let i = 0; i < 6; i++) normal.array.set([0, 0, 1], 18 * k + 3 * i);
+    });
+    position.needsUpdate = normal.needsUpdate = true;
+    this.mesh.geometry.computeBoundingSphere();
+  }
+
   paint(colourOf) {
     const colour = this.mesh.geometry.attributes.color;
     for (let t = 0; t < this.triangles; t++) {
@@ -68,6 +96,7 @@ class FaceMesh {
   at(hit) {
     const triangle = (hit.face.a / 3) | 0,
       face = this.faceOf[triangle];
+    if (this.flat) return { face, simplex: this.body.firstSimplex[face] };
     let first = triangle;
     while (first > 0 && this.faceOf[first - 1] === face) first--;
     return { face, simplex: this.body.firstSimplex[face] + triangle - first };
@@ -93,7 +122,7 @@ function edgesOf(body, faces, rim = false) {
     out = [];
   for (let first = 0, end = 0; first < sorted.length; first = end) {
     while (end < sorted.length && sorted[end] === sorted[first]) end++;
-    if (!rim || end - first === 1) out.push(Math.floor(sorted[first] / vertices), sorted[first] % vertices);
+    if (!rim || end - first === 1 || body.dim === 2) out.push(Math.floor(sorted[first] / vertices), sorted[first] % vertices);
   }
   return out;
 }

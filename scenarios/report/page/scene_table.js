@@ -118,6 +118,7 @@ class EventTable {
       const cell = document.createElement("span");
       cell.setAttribute("role", "cell");
       cell.textContent = text;
+      cell.title = text; // which may not fit
       if (column === 2) cell.style.setProperty("--kind", events.kindOf(i).colour);
       line.append(cell);
     });

@@ -6,8 +6,7 @@ class Timeline {
     this.eventSlider = byId("event");
     this.button = byId("play-events");
     this.playing = 0; // handle of the next tick
-    this.stepSlider.max = events.firstOfStep.length - 1;
-    byId("step-row").hidden = events.firstOfStep.length < 2;
+    this.measure();
     this.stepSlider.oninput = () => this.go(() => this.toStep(Number(this.stepSlider.value)));
     this.eventSlider.oninput = () =>
       this.go(() => selection.goTo(this.firstHere + Number(this.eventSlider.value)));
@@ -22,6 +21,12 @@ class Timeline {
     selection.listeners.push((what) => {
       if (what === "event") this.show();
     });
+  }
+
+  /** Makes the slider as long as there are steps. */
+  measure() {
+    this.stepSlider.max = this.events.firstOfStep.length - 1;
+    byId("step-row").hidden = this.events.firstOfStep.length < 2;
   }
 
   get step() {

@@ -37,6 +37,14 @@ class SceneView {
     this.resize();
   }
 
+  /** Takes the poses of all steps, of other events. */
+  takePoses(poses) {
+    this.poses = poses;
+    this.keys = {};
+    for (const name of [...this.marks.shown.keys()]) this.marks.clear(name);
+    this.redraw();
+  }
+
   look(change) {
     Object.assign(this.now, change);
     this.redraw();
@@ -57,6 +65,7 @@ class SceneView {
     this.size.set(width, height);
     this.renderer.setSize(width, height, false);
     this.camera.resize(width, height);
+    if (this.camera.fitted) this.camera.fit(this.extremes());
     this.redraw();
   }
 
@@ -67,6 +76,11 @@ class SceneView {
     this.paint(); // what shape() has made
     this.mark();
     this.whyMarks.draw();
+    if (this.camera.plane) {
+      const pixel = (2 * this.camera.halfHeight) / this.size.y;
+      for (const view of this.views) view.widen(pixel);
+      this.marks.widen(pixel);
+    }
     this.camera.prepare(this.reach().radius);
     this.renderer.render(this.stage, this.camera.camera);
     this.circle();
@@ -140,13 +154,14 @@ class SceneView {
 
   paint() {
     const { by, per, scope } = this.now,
-      counter = COUNTERS.includes(by);
+      counter = COUNTERS.includes(by),
+      newest = by === "region" ? this.newestLayer() : 0;
     this.once(
       "paint",
-      `${by} ${per} ${scope} ${counter && scope === "step" ? this.selection.event : ""}`,
+      `${by} ${per} ${scope} ${newest} ${counter && scope === "step" ? this.selection.event : ""}`,
       () => {
         const counts = counter ? this.countsOf(by, per, scope) : null,
-          mode = this.colours.mode(this.bodies, by, counts);
+          mode = this.colours.mode(this.bodies, by, counts, newest);
         // Mostly real faces are tested: they must be seen.
         const veil = by === "kind" ? 0.49 : counter && per === "face" ? 0.2 : 0.69;
         this.views.forEach((view, side) => {
@@ -161,6 +176,13 @@ class SceneView {
         this.legend.show(mode.key);
       },
     );
+  }
+
+  /** Returns the layer that a construction makes in the pass on show; 0 between passes. */
+  newestLayer() {
+    const { events } = this,
+      built = events.passes && events.pass(this.selection.event) ? events.builtIn(this.selection.event) : [];
+    return built.length ? this.bodies[0].layer[built[built.length - 1].region] : 0;
   }
 
   countsOf(by, per, scope) {

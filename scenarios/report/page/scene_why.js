@@ -35,7 +35,7 @@ class WhyPanel {
 
   show() {
     const { events, selection, explanations } = this,
-      step = events.step(selection.event),
+      step = events.stepNumber(selection.event),
       simplices = this.asked(),
       parting = simplices ? null : explanations.step(step);
     this.row = -1;

@@ -11,12 +11,41 @@ class WorkIcicle {
     byId("work-measure").closest("label").hidden = !work.timed;
     if (!work.timed) byId("work-measure").value = "operations";
     byId("work-measure").addEventListener("input", () => this.draw());
+    byId("work-scope").addEventListener("input", () => this.draw());
+    byId("work-scope").closest("label").hidden = work.steps.index.length < 2;
+    this.ofStep = WorkIcicle.bySteps(work);
     new ResizeObserver(() => this.draw()).observe(this.box);
     form.listeners.push(() => this.draw());
     selection.listeners.push((what) => {
-      if (what === "event") this.mark();
+      if (what !== "event") return;
+      if (this.scope === "step" && this.shownStep !== events.stepNumber(selection.event)) this.draw();
+      else this.mark();
     });
     this.draw();
+  }
+
+  /** Returns the parts of each step, by its number. */
+  static bySteps({ outcomes, steps }) {
+    const columns = Object.fromEntries(
+      ["events", "operations", "micros"].map((name) => [name, unpack(steps[name])]),
+    );
+    return new Map(
+      [...unpack(steps.index)].map((number, k) => [
+        number,
+        outcomes.map((o, i) => {
+          const at = k * outcomes.length + i;
+          return { ...o, events: columns.events[at], operations: columns.operations[at], micros: columns.micros[at] };
+        }),
+      ]),
+    );
+  }
+
+  get scope() {
+    return byId("work-scope").value;
+  }
+  /** The parts that the chart shows: of the run, or of the step that is on show. */
+  get outcomes() {
+    return this.scope === "run" ? this.work.outcomes : this.ofStep.get(this.shownStep) || [];
   }
 
   /** The phase that fills the chart; null: all do. */
@@ -27,7 +56,7 @@ class WorkIcicle {
   /** Returns the parts, a row for each depth: {key, name, value, from, parts: numbers of outcomes}. `wide`: returns the
       value of an outcome that shows. */
   rows(wide) {
-    const { outcomes } = this.work;
+    const { outcomes } = this;
     const row = (nameOf) => {
       const out = [];
       let from = 0;
@@ -53,25 +82,26 @@ class WorkIcicle {
   }
 
   draw() {
+    this.shownStep = this.events.stepNumber(this.selection.event);
     const width = Math.max(240, this.box.clientWidth),
       height = 30,
       gap = 2;
     const measure = byId("work-measure").value,
       { zoom } = this,
       rows = this.rows((o) => (zoom === null || o.phase === zoom ? o[measure] : 0)),
-      shown = rows[0][0].value,
+      shown = rows[0].length ? rows[0][0].value : 0,
       svg = document.createElementNS(SVG, "svg");
     svg.setAttribute("viewBox", `0 0 ${width} ${rows.length * (height + gap)}`);
     svg.setAttribute("role", "group");
     svg.setAttribute("aria-label", "Parts of the query by their work");
-    const all = this.work.outcomes.reduce((n, o) => n + o[measure], 0);
-    const phases = [...new Set(this.work.outcomes.map((o) => o.phase))];
+    const all = this.outcomes.reduce((n, o) => n + o[measure], 0);
+    const phases = [...new Set(this.outcomes.map((o) => o.phase))];
     rows.forEach((row, depth) => {
       for (const part of row) {
         if (!(part.value > 0)) continue;
         const x = (part.from / shown) * width,
           w = Math.max(1.5, (part.value / shown) * width - gap);
-        const phase = phases.indexOf(this.work.outcomes[part.parts[0]].phase),
+        const phase = phases.indexOf(this.outcomes[part.parts[0]].phase),
           colour = depth === 0 ? "" : `var(--s${phase % 7})`;
         svg.append(this.part(depth === 0 ? { ...part, value: all } : part, all, { x, y: depth * (height + gap), w, height, colour, depth }));
       }
@@ -87,7 +117,7 @@ class WorkIcicle {
       title = document.createElementNS(SVG, "title"),
       text = document.createElementNS(SVG, "text");
     const share = `${short((100 * part.value) / all)} %`,
-      events = part.parts.reduce((n, i) => n + this.work.outcomes[i].events, 0),
+      events = part.parts.reduce((n, i) => n + this.outcomes[i].events, 0),
       micros = byId("work-measure").value === "micros",
       amount = micros ? `${short(part.value)} \u00b5s` : plural(part.value, "operation");
     title.textContent = `${part.name}: ${amount}, ${share}; ${plural(events, "event")}`;

@@ -14,14 +14,13 @@ namespace {
 // ---- the grid. Units are those of one cell, x to the right, y up, with the first row's top at 0
 
 constexpr double kCellWidth = 17, kCellHeight = 10.5;  // millimetres
-constexpr double kLeft = 2.9, kBottom = 1.5;
+constexpr double kLeft = 2.9, kBottom = 1.8;
 constexpr double kFont = 6.5, kSmall = 0.8, kLine = 0.24;  // points; share of it
 
 constexpr render::Rgba kWrong = render::palette::kVermillion;
 constexpr render::Rgba kCrashed{20, 22, 26};
 constexpr render::Rgba kTimedOut{160, 69, 138};
 constexpr render::Rgba kRefused{154, 160, 166};
-constexpr render::Rgba kAbsent{247, 247, 246};
 constexpr render::Rgba kOnlyRefused{228, 230, 232};
 /// Colours as on the page: pale blue where nothing fails, then ever more orange.
 constexpr std::array<render::Rgba, 5> kLevels = {render::Rgba{226, 238, 246}, render::Rgba{253, 241, 220},
@@ -135,11 +134,6 @@ void add_cell(Sheet& sheet, const Cell& cell, double x, double y) {
   add_bars(sheet, cell, x, y);
 }
 
-std::string ends_of(const FamilyRow& family) {
-  if (family.benign.empty() && family.degenerate.empty()) return " ";
-  return family.benign + " \u2192 " + family.degenerate;
-}
-
 void add_row_head(Sheet& sheet, const FamilyRow& family, double y) {
   sheet.text(-0.08, y + 0.76, Sheet::bold, family.name);
   if (family.benign.empty() && family.degenerate.empty()) return;
@@ -151,10 +145,10 @@ void add_column_head(Sheet& sheet, const workers::MethodColumn& method, double x
   const std::vector<std::string> lines = title_lines(method);
   for (std::size_t i = 0; i < lines.size(); ++i)
     sheet.text(x + 0.5, 0.2 + kLine * static_cast<double>(lines.size() - 1 - i), Sheet::small_centre,
-               lines[i], method.present ? render::palette::kInk : render::palette::kFaint);
+               lines[i]);
 }
 
-void add_legend(Sheet& sheet, double y, double columns) {
+void add_legend(Sheet& sheet, double y, double columns, const std::string& absent) {
   double x = -kLeft + 0.1;
   const auto item = [&](render::Rgba c, const std::string& text) {
     constexpr double kCharacter = 0.066;
@@ -178,6 +172,7 @@ void add_legend(Sheet& sheet, double y, double columns) {
   sheet.text(-kLeft + 0.1, y - 0.42, Sheet::small,
              "Failures/cases not refused; bars: share of cases along the dial, benign to degenerate.",
              render::palette::kFaint);
+  sheet.text(-kLeft + 0.1, y - 0.72, Sheet::small, absent, render::palette::kFaint);
 }
 
 // ---- the profiles
@@ -200,11 +195,30 @@ std::string margins(double left, double right, double bottom, double top) {
          "\nset tmargin at screen " + io::number_text(top) + "\n";
 }
 
+/// Returns a tick's label: gnuplot takes these for formats.
+std::string tick_text(std::string text) {
+  for (std::size_t at = text.find('%'); at != std::string::npos; at = text.find('%', at + 2))
+    text.insert(at, 1, '%');
+  return report::gnuplot_text(text);
+}
+
+/// Returns the commands that name a family, say under its axis what every third setting means, and below that the ends,
+/// each on a line of its own: together they are wider than a panel.
 std::string panel_heading(const FamilyRow& family, bool first) {
+  constexpr int kEvery = 3;
   std::string out =
       "set title " + report::gnuplot_text(family.name) + " font 'DejaVu Sans Bold,6.5' offset 0,-0.6\n";
-  out += "set xlabel " + report::gnuplot_text(ends_of(family)) +
-         " offset 0,0.8 font 'DejaVu Sans,5' tc rgb '#62676e'\n";
+  std::string marks;
+  for (std::size_t i = 0; i < kDialSettings; i += kEvery)
+    marks += (i > 0 ? ", " : "") + tick_text(family.values.empty() ? "" : family.values[i]) + " " +
+             std::to_string(i);
+  out += "set xtics (" + marks + ") nomirror scale 0.4 offset 0,0.5 font 'DejaVu Sans,5' tc rgb '#62676e'\n";
+  const auto end = [&](int number, const std::string& text, const char* where) {
+    out += "set label " + std::to_string(number) + " " + report::gnuplot_text(text) + " at graph " + where +
+           " font 'DejaVu Sans,5' tc rgb '#62676e'\n";
+  };
+  end(1, family.benign.empty() ? " " : family.benign + " \u2192", "0,-0.23 left");
+  end(2, family.degenerate.empty() ? " " : family.degenerate, "1,-0.34 right");
   return out + (first ? "set ylabel 'failures, %' offset 1.5,0\n" : "unset ylabel\n");
 }
 
@@ -220,7 +234,7 @@ std::vector<std::string> profile_rows(const Cell& cell, double shift) {
 }
 
 constexpr int kKeyColumns = 2;
-constexpr double kPanelHeight = 34, kKeyLine = 3.6;  // millimetres
+constexpr double kPanelHeight = 40, kKeyLine = 3.6;  // millimetres
 
 /// Returns the commands that draw a family's panel, and adds its data to the chart.
 std::string family_panel(const Grid& grid, std::size_t family, const std::vector<std::size_t>& present,
@@ -231,7 +245,7 @@ std::string family_panel(const Grid& grid, std::size_t family, const std::vector
   constexpr double kLeftSide = 0.045, kPanelWidth = (1 - kLeftSide) / kProfileColumns;
   std::string plots =
       margins(kLeftSide + (column + 0.1) * kPanelWidth, kLeftSide + (column + 0.97) * kPanelWidth,
-              1 - (row + 0.8) * kPanelHeight / chart.height, 1 - (row + 0.15) * kPanelHeight / chart.height);
+              1 - (row + 0.74) * kPanelHeight / chart.height, 1 - (row + 0.15) * kPanelHeight / chart.height);
   plots += panel_heading(grid.families[family], column == 0);
   for (std::size_t line = 0; line < present.size(); ++line) {
     const std::string name = "f" + std::to_string(family) + "m" + std::to_string(present[line]);
@@ -248,9 +262,10 @@ std::string family_panel(const Grid& grid, std::size_t family, const std::vector
 /// and lines; adds its data to the chart.
 std::string profile_key(const Grid& grid, const std::vector<std::size_t>& present, int key_rows,
                         report::Gnuplot& chart) {
-  std::string plots = margins(0.03, 1, 0, kKeyLine * key_rows / chart.height) +
-                      "unset border\nunset tics\nunset title\nunset xlabel\nunset ylabel\nset xrange [0:" +
-                      std::to_string(kKeyColumns) + "]\nset yrange [0:" + std::to_string(key_rows) + "]\n";
+  std::string plots =
+      margins(0.03, 1, 0, kKeyLine * key_rows / chart.height) +
+      "unset border\nunset tics\nunset title\nunset label\nunset xlabel\nunset ylabel\nset xrange [0:" +
+      std::to_string(kKeyColumns) + "]\nset yrange [0:" + std::to_string(key_rows) + "]\n";
   std::vector<std::string> titles;
   for (std::size_t line = 0; line < present.size(); ++line) {
     const double x = static_cast<double>(static_cast<int>(line) / key_rows);
@@ -268,7 +283,8 @@ std::string profile_key(const Grid& grid, const std::vector<std::size_t>& presen
 
 }  // namespace
 
-report::Gnuplot grid_chart(const Grid& grid) {
+report::Gnuplot grid_chart(const Grid& whole) {
+  const Grid grid = present_part(whole);
   const double columns = static_cast<double>(grid.methods.size());
   const double rows = static_cast<double>(grid.families.size()) + 1.1;  // a little room above the sums
   std::size_t most_lines = 1;
@@ -285,19 +301,14 @@ report::Gnuplot grid_chart(const Grid& grid) {
     add_column_head(sheet, grid.methods[m], x);
     for (std::size_t f = 0; f < grid.families.size(); ++f) {
       const double y = -1 - static_cast<double>(f);
-      if (grid.methods[m].present) {
-        add_cell(sheet, grid.at(f, m), x, y);
-      } else {
-        sheet.rect(x + 0.02, y + 0.02, x + 0.98, y + 0.98, kAbsent);
-        sheet.text(x + 0.5, y + 0.5, Sheet::small_centre, "absent", render::palette::kFaint);
-      }
+      add_cell(sheet, grid.at(f, m), x, y);
     }
-    if (grid.methods[m].present) add_cell(sheet, sum_of_column(grid, m), x, -rows);
+    add_cell(sheet, sum_of_column(grid, m), x, -rows);
   }
   for (std::size_t f = 0; f < grid.families.size(); ++f)
     add_row_head(sheet, grid.families[f], -1 - static_cast<double>(f));
   sheet.text(-0.08, -rows + 0.5, Sheet::bold, "all families");
-  add_legend(sheet, -rows - 0.35, columns);
+  add_legend(sheet, -rows - 0.35, columns, absent_words(whole));
 
   chart.script =
       "unset border\nunset tics\nunset key\nset style fill solid 1 noborder\n"
@@ -325,7 +336,7 @@ report::Gnuplot profile_chart(const Grid& grid) {
   chart.script +=
       "set multiplot\nunset key\nset border 3 lw 0.6 lc rgb '#8a8f95'\nset yrange [-3:103]\nset ytics "
       "0,50,100 nomirror scale 0.4 offset 0.6,0 tc rgb '#1c1e22'\n"
-      "set xtics 0,1 nomirror scale 0.4 format ''\nset grid ytics lw 0.4 lc rgb '#d8dadc' dt 1\n";
+      "set grid ytics lw 0.4 lc rgb '#d8dadc' dt 1\n";
   chart.script +=
       "set xrange [-0.6:" + io::number_text(kDialSettings - 0.4) + "]\n" + plots + "\nunset multiplot\n";
   return chart;

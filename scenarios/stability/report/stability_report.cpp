@@ -19,7 +19,14 @@ std::string count_of(std::uint64_t n, const char* one, const char* many) {
   return render::group_digits(n) + " " + (n == 1 ? one : many);
 }
 
-std::string sentence(const CellSummary& s) {
+/// Returns a setting of the dial, with what it means if that is known: "7 of 0 to 10 (4e-13)".
+std::string setting_words(const FamilyRow& family, int dial) {
+  std::string out = std::to_string(dial) + " of 0 to " + std::to_string(kDialSettings - 1);
+  if (!family.values.empty()) out += " (" + family.values[static_cast<std::size_t>(dial)] + ")";
+  return out;
+}
+
+std::string sentence(const CellSummary& s, const FamilyRow& family) {
   std::string out =
       render::group_digits(s.failures()) + " of " + count_of(s.answered(), "case fails", "cases fail");
   const auto add = [&](std::uint64_t n, const std::string& what) {
@@ -29,13 +36,11 @@ std::string sentence(const CellSummary& s) {
   add(s.crashed, "by a crash");
   add(s.timed_out, "by a time-out");
   add(s.refused, "refused");
-  if (s.first_failing >= 0)
-    out += "; first at setting " + std::to_string(s.first_failing) + " of 0 to " +
-           std::to_string(kDialSettings - 1);
+  if (s.first_failing >= 0) out += "; first at setting " + setting_words(family, s.first_failing);
   return out;
 }
 
-report::PageGridCell page_cell(const Cell& cell, const std::string& where) {
+report::PageGridCell page_cell(const Cell& cell, const FamilyRow& family, const std::string& where) {
   const CellSummary s = summarise(cell);
   report::PageGridCell out;
   out.level = s.only_refused() ? report::PageGridCell::kOnlyRefused : s.level();
@@ -43,7 +48,7 @@ report::PageGridCell page_cell(const Cell& cell, const std::string& where) {
   out.of = s.answered() > 0 ? "of " + render::group_digits(s.answered()) : "all refused";
   const auto mark = [](std::uint64_t n) { return n > 0 ? render::group_digits(n) : std::string(); };
   out.marks = {"", mark(s.crashed), mark(s.timed_out), mark(s.refused)};
-  out.label = where + ": " + sentence(s);
+  out.label = where + ": " + sentence(s, family);
   for (std::size_t i = 0; i < kDialSettings; ++i) {
     if (cell.cases[i] == 0) {
       out.bars.push_back({-1, 0, 0, 0});
@@ -91,10 +96,10 @@ report::PageGridDetail page_detail(const Grid& grid, std::size_t f, std::size_t 
   }
   d.facts.emplace_back("Relation", r.expected_relation.empty() ? "\u2013" : r.expected_relation);
   if (answered) d.facts.emplace_back("Answered", r.relation.empty() ? "no relation" : r.relation);
-  d.facts.emplace_back("Dial", std::to_string(r.dial) + " of 0 to " + std::to_string(kDialSettings - 1));
+  d.facts.emplace_back("Dial", setting_words(family, r.dial));
   d.facts.emplace_back("Case, seed", render::group_digits(r.case_index) + ", " + std::to_string(r.seed));
   if (answered) d.facts.emplace_back("Query", render::short_number(r.microseconds) + " \u00b5s");
-  d.note = "Of this family, with this method: " + sentence(s) + ".";
+  d.note = "Of this family, with this method: " + sentence(s, family) + ".";
   if (options.command) d.command = options.command(r);
   return d;
 }
@@ -120,34 +125,23 @@ report::PageGrid page_grid(const Grid& grid, const std::string& folder, const Re
   out.corner = "family, and its dial from benign to degenerate";
   out.level_names.assign(kLevelNames.begin(), kLevelNames.end());
   out.part_names = {"wrong answer", "crashed", "timed out", "refused"};
-  for (const workers::MethodColumn& m : grid.methods)
-    out.columns.push_back(
-        {m.title, m.present ? m.remark : "not installed when this was built", "", "", !m.present});
+  for (const workers::MethodColumn& m : grid.methods) out.columns.push_back({m.title, m.remark, "", "", {}});
   for (std::size_t f = 0; f < grid.families.size(); ++f) {
     const FamilyRow& family = grid.families[f];
-    out.rows.push_back({family.name, family.what, family.benign, family.degenerate, false});
+    out.rows.push_back({family.name, family.what, family.benign, family.degenerate, family.values});
     for (std::size_t m = 0; m < grid.methods.size(); ++m) {
       const std::string where = family.name + " \u00d7 " + grid.methods[m].title;
-      report::PageGridCell cell;
-      cell.label = where + ": absent";
-      if (grid.methods[m].present) {
-        cell = page_cell(grid.at(f, m), where);
-        if (grid.at(f, m).worst) {
-          cell.detail = static_cast<int>(out.details.size());
-          out.details.push_back(page_detail(grid, f, m, options));
-        }
-      }
-      out.cells.push_back(std::move(cell));
+      out.cells.push_back(page_cell(grid.at(f, m), family, where));
+      if (!grid.at(f, m).worst) continue;
+      out.cells.back().detail = static_cast<int>(out.details.size());
+      out.details.push_back(page_detail(grid, f, m, options));
     }
   }
-  out.rows.push_back({"all families", "", "", "", false});
+  out.rows.push_back({"all families", "", "", "", {}});
   out.total_rows = 1;
   for (std::size_t m = 0; m < grid.methods.size(); ++m) {
     const std::string where = "all families \u00d7 " + grid.methods[m].title;
-    report::PageGridCell cell;
-    cell.label = where + ": absent";
-    if (grid.methods[m].present) cell = page_cell(sum_of_column(grid, m), where);
-    out.cells.push_back(std::move(cell));
+    out.cells.push_back(page_cell(sum_of_column(grid, m), {}, where));
   }
   out.note =
       "In each cell: failures of the cases that were not refused, and below them one bar per setting of the "
@@ -208,24 +202,28 @@ std::string answer_text(const Record& r) {
   return out;
 }
 
-report::Page stability_page(const Grid& grid, const std::string& folder, const ReportOptions& options) {
-  check(grid);
+report::Page stability_page(const Grid& whole, const std::string& folder, const ReportOptions& given) {
+  check(whole);
+  const Grid grid = present_part(whole);
+  ReportOptions options = given;
+  options.pictures.clear();
+  for (std::size_t i = 0; i < given.pictures.size(); ++i)
+    if (whole.methods[i % whole.methods.size()].present) options.pictures.push_back(given.pictures[i]);
   std::uint64_t answers = 0;
-  std::size_t present = 0;
-  for (const workers::MethodColumn& m : grid.methods) present += m.present ? 1 : 0;
   for (const Cell& c : grid.cells) answers += summarise(c).cases;
+  const std::size_t absent = whole.methods.size() - grid.methods.size();
   report::Page page;
   page.title = "Where collision methods fail";
   page.texts = texts();
-  page.numbers = {{"Families", render::group_digits(grid.families.size()),
-                   std::to_string(kDialSettings) + " settings of the dial each"},
-                  {"Methods", render::group_digits(present),
-                   present == grid.methods.size() ? "all that are known"
-                                                  : render::group_digits(grid.methods.size() - present) +
-                                                        " more absent from this build"},
-                  {"Answers judged", render::group_digits(answers), "one per case and method"},
-                  {"Time taken", render::short_number(grid.seconds) + " s", ""}};
+  page.numbers = {
+      {"Families", render::group_digits(grid.families.size()),
+       std::to_string(kDialSettings) + " settings of the dial each"},
+      {"Methods", render::group_digits(grid.methods.size()),
+       absent == 0 ? "all that are known" : render::group_digits(absent) + " more not installed here"},
+      {"Answers judged", render::group_digits(answers), "one per case and method"},
+      {"Time taken", render::short_number(grid.seconds) + " s", ""}};
   page.grid = page_grid(grid, folder, options);
+  page.grid.missing = absent_words(whole);
   page.command = grid.command;
   page.links = options.links;
   page.footer = report::footer();

@@ -72,5 +72,31 @@ TEST_CASE("compare: both runs' views stand side by side as long as both pages ar
   CHECK(page("alone").find("<iframe") == std::string::npos);
 }
 
+TEST_CASE("compare: two constructions of a body, pass by pass; not one body with two") {
+  const Runs runs;
+  const auto scenario = [](const std::string& build) {
+    return "{\"name\": \"built\", \"purpose\": \"Built.\", \"show\": \"construction\", \"bodies\": {\"a\": {\"generator\": "
+           "\"rock\", \"parameters\": {\"frequency\": 5}" +
+           build + "}}, \"frames\": {\"at\": \"pass\", \"most\": 1}}";
+  };
+  runs.folder.write("few.json", scenario(", \"build\": {\"patch_interior\": 8}"));
+  runs.folder.write("many.json", scenario(", \"build\": {\"patch_interior\": 40}"));
+  for (const std::string name : {"few", "many"})
+    REQUIRE(run(runs.folder, {"--quiet", "run", name + ".json", "-o", name}).code == 0);
+  const Outcome differ = run(runs.folder, {"--quiet", "compare", "few", "many", "-o", "built"});
+  CHECK(differ.code == 0);
+  CHECK(differ.out.find("step 0, event ") != std::string::npos);
+  const std::string page = slurp(runs.folder / "built/index.html");
+  for (const char* part : {"Pass by pass", "regions, few", "The hull, event by event", "outermost wrapper"})
+    CHECK(page.find(part) != std::string::npos);
+  CHECK(render::read_png(runs.folder / "built/compare.png").image.width() > 900);
+  const Outcome same = run(runs.folder, {"--quiet", "compare", "few", "few", "-o", "same"});
+  CHECK(same.out.find("the runs are the same") != std::string::npos);
+  const Outcome mixed = run(runs.folder, {"--quiet", "compare", "one", "few", "-o", "mixed"});
+  CHECK(mixed.code == 2);
+  CHECK(mixed.error_lines() == 1);
+  CHECK(mixed.err.find("few: is a run of one body, and one of two") != std::string::npos);
+}
+
 }  // namespace
 }  // namespace lrb::test

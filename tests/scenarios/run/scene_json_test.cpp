@@ -146,6 +146,34 @@ TEST_CASE("boxes of tree nodes: whole depths, as many as fit") {
   CHECK(run::tree_boxes(tree, upper - 1).size() == 1);
 }
 
+TEST_CASE(
+    "boxes of deep nodes: those on the ways to faces, as many as fit, each where the whole tree has it") {
+  const run::Recording r = rocks_that_meet();
+  const ObbTree& tree = r.bodies[0].rep.tree();
+  const std::vector<run::TreeBox> all = run::tree_boxes(tree, 100'000);
+  REQUIRE(tree.height() > 2);
+  std::vector<SimplexId> simplices;
+  for (SimplexId s = 0; s < r.bodies[0].rep.real_simplex_count(); ++s) simplices.push_back(s);
+  const std::vector<run::TreeBox> deep = run::boxes_on_ways(tree, 0, simplices, 100'000);
+  CHECK(deep.size() + 1 == all.size());  // every node is on the way to a face; the root is not below itself
+  for (const run::TreeBox& box : deep) {
+    const auto same = std::find_if(all.begin(), all.end(), [&](const auto& b) { return b.node == box.node; });
+    REQUIRE(same != all.end());
+    CHECK(same->depth == box.depth);
+    CHECK(same->centre == box.centre);
+    CHECK(same->half == box.half);
+  }
+  const auto one = run::boxes_on_ways(tree, 0, {SimplexId(0)}, 100'000);
+  CHECK(one.size() >= 1);
+  CHECK(one.size() < tree.height());
+  CHECK(run::boxes_on_ways(tree, 0, simplices, 3).size() == 3);
+  CHECK(run::boxes_on_ways(tree, 0, {SimplexId(1'000'000)}, 3).empty());  // no real simplex
+  const std::vector<std::uint32_t> counts = run::nodes_by_depth(tree);
+  CHECK(counts.size() == tree.height());
+  CHECK(counts[0] == 1);
+  CHECK(counts[1] == std::count_if(all.begin(), all.end(), [](const auto& b) { return b.depth == 1; }));
+}
+
 TEST_CASE("a run as data of its page: bodies, steps and events, and nothing said where nothing is left out") {
   const run::Recording r = rocks_that_meet();
   const json scene = json::parse(run::scene_json(run_of(r), {"trace.json", ""}));

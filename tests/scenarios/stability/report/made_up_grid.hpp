@@ -20,8 +20,7 @@ inline Grid made_up_grid() {
       {"cgal", "CGAL 5.5, Rigid_triangle_mesh_collision_detection", "meet or not, and inside", true},
       {"bullet", "Bullet 3.24, GImpact", "meet or not", false},
   };
-  for (const cases::Family& f : cases::all_families())
-    g.families.push_back({f.name, f.what, "gap 1e-1", "gap 1 ulp"});
+  g.families = family_rows();
   g.families[0].what += " <b>&\"quoted\"";
   for (std::size_t f = 0; f < g.families.size(); ++f)
     for (std::size_t m = 0; m < g.methods.size(); ++m) {

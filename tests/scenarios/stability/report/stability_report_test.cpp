@@ -142,12 +142,32 @@ TEST_CASE("the page is whole, and fetches nothing") {
   CHECK(count(html, "<img src=") == 1);
 }
 
+TEST_CASE("dials have their physical values on page and charts") {
+  const Grid grid = made_up_grid();
+  const auto family = [&](const char* name) {
+    return std::find_if(grid.families.begin(), grid.families.end(),
+                        [&](const FamilyRow& f) { return f.name == name; });
+  };
+  REQUIRE(family("shared") != grid.families.end());
+  const std::vector<std::string>& off = family("shared")->values;
+  REQUIRE(off.size() == cases::kDialSettings);
+  CHECK(off[0] == "0.1");  // as slack() has it
+  CHECK(off[3] == "1e-6");
+  CHECK(off[9] == "1e-16");
+  CHECK(off[10] == "0");
+  CHECK(family("far")->values[10] == "1e16");
+  const std::string html = report::page_html(stability_page(grid, ".", {}));
+  CHECK(html.find(">1e-6</i>") != std::string::npos);
+  CHECK(html.find("of 0 to 10 (1e-11)") != std::string::npos);
+  CHECK(profile_chart(grid).script.find("'1e-11' 6") != std::string::npos);
+}
+
 TEST_CASE("the page has every cell, every mark and every worst case") {
   const Grid grid = made_up_grid();
   const std::string html = report::page_html(stability_page(grid, ".", {}));
   const std::size_t families = grid.families.size(), methods = grid.methods.size();
-  CHECK(count(html, "<td ") == (families + 1) * methods);
-  CHECK(count(html, "<td class=\"absent\"") == families + 1);
+  CHECK(count(html, "<td ") == (families + 1) * (methods - 1));  // one is absent, and named
+  CHECK(html.find("1 method is not installed here: Bullet 3.24, GImpact.") != std::string::npos);
   std::size_t worst = 0, crashed = 0, timed_out = 0, refused = 0;
   for (const Cell& c : grid.cells) {
     const CellSummary s = summarise(c);
@@ -162,8 +182,7 @@ TEST_CASE("the page has every cell, every mark and every worst case") {
   CHECK(count(html, "class=\"mark crashed\"") == crashed + 1);
   CHECK(count(html, "class=\"mark timed-out\"") == timed_out + 1);
   CHECK(count(html, "class=\"mark refused\"") == refused + 2);
-  for (const char* what :
-       {"wrong answer", "crashed", "timed out", "refused", "refusals alone", "method absent"})
+  for (const char* what : {"wrong answer", "crashed", "timed out", "refused", "refusals alone"})
     CHECK(html.find(what) != std::string::npos);
   for (std::size_t m = 0; m < methods; ++m)  // the sums too
     if (grid.methods[m].present) {
@@ -235,7 +254,7 @@ TEST_CASE("the charts are drawn, and texts in them are no commands" * doctest::s
     CHECK(svg.find("coplanar") != std::string::npos);
   }
   const std::string svg = io::read_text(folder + "/stability.svg");
-  CHECK(count(svg, "absent") == grid.families.size());
+  CHECK(count(svg, "not installed here: Bullet") == 1);
   // A crash, a time-out and a refusal have their marks.
   for (const char* mark : {"\u2715", "\u25f7", "\u2298"}) CHECK(count(svg, mark) > 1);
   const render::Image png = render::read_png(folder + "/stability.png").image;

@@ -1,0 +1,73 @@
+#!/usr/bin/env bash
+# measure.sh LRBSCOPE [STABILITY_PAGE]: makes a page of each kind, opens it in Chromium at 400, 1,000, 1,400 and 3,000 pixels, light and
+# dark, and measures it (measure.js): text that is cut off, overlaps or is hard to see, and complaints in the console.
+# STABILITY_PAGE: a program that writes one from results that no method gave. Skipped (77) where there is no Chromium.
+# measure.sh --pages PAGE...: measures these pages alone.
+set -euo pipefail
+here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
+source "$here/chromium.sh"
+
+# make_pages LRBSCOPE [STABILITY_PAGE]: writes a page of each kind, and puts their paths into `pages`.
+make_pages() {
+  local lrbscope=$1 out=$work/out
+  cp "$here"/*.json "$work"
+  sed 's/0\.02,/0.021,/' "$work/meet.json" >"$work/later.json"
+  for run in meet later build dent plane; do "$lrbscope" --quiet run "$work/$run.json" -o "$out/$run" >/dev/null; done
+  "$lrbscope" --quiet compare "$out/meet" "$out/later" -o "$out/compare" >/dev/null
+  "$lrbscope" --quiet golden approve --goldens "$work/goldens" --size 320x240 "$work/meet.json" "$work/build.json" >/dev/null
+  sed -i 's/0\.02,/0.021,/' "$work/meet.json"
+  "$lrbscope" --quiet golden report --goldens "$work/goldens" -o "$out/golden" >/dev/null || true # a failure is to be shown
+  "$lrbscope" --quiet levels "$out/dent/a.lrb" --at 0.02 0.1 -o "$out/levels" >/dev/null
+  pages=()
+  for name in meet build dent plane compare golden levels; do pages+=("$out/$name/index.html"); done
+  if [ -x "$(dirname "$lrbscope")/lrbscope-xray-fcl" ]; then
+    printf '1 0 0 %s 0 1 0 0.3 0 0 1 0.2\n' 1.5 9 >"$work/poses.txt"
+    "$lrbscope" --quiet xray "$out/meet/a.lrb" "$out/meet/b.lrb" --poses "$work/poses.txt" -o "$out/xray" >/dev/null
+    pages+=("$out/xray/index.html" "$out/xray/fcl/index.html")
+  else
+    echo "measure.sh: no page of xray: lrbscope-xray-fcl was not built"
+  fi
+  if [ -n "${2:-}" ]; then
+    "$2" "$out/stability" >/dev/null
+    pages+=("$out/stability/index.html")
+  fi
+}
+
+# measure light|dark: opens all pages at all widths, one after the other; prints what is wrong with them.
+measure() {
+  local scheme=1 budget=2000000
+  [ "$1" = dark ] && scheme=0
+  browse --window-size=3200,1000 --blink-settings="preferredColorScheme=$scheme" --virtual-time-budget=$budget \
+    "${webgl[@]}" "file://$work/measure.html" | sed -n '/<pre id="measured">/,/<\/pre>/p' |
+    sed -e 's/.*<pre id="measured">//' -e 's/<\/pre>.*//' -e "s/^/$1, /" | unmarked
+}
+
+if [ "$1" = --pages ]; then
+  shift
+  pages=("$@")
+else
+  make_pages "$@"
+fi
+urls=()
+for page in "${pages[@]}"; do
+  page=$(realpath "$page")
+  with_scripts "$page" measure.js >"${page%.html}.measured.html"
+  urls+=("\"file://${page%.html}.measured.html\"")
+done
+{
+  echo '<!DOCTYPE html><body style="margin: 0"><pre id="measured"></pre><script>'
+  echo "const pages = [$(IFS=,; echo "${urls[*]}")];"
+  cat "$here/measure_all.js"
+  echo '</script></body>'
+} >"$work/measure.html"
+for scheme in light dark; do measure $scheme >"$work/$scheme.txt" & done
+wait
+cat "$work"/light.txt "$work"/dark.txt
+for scheme in light dark; do
+  if grep -q 'FAIL' "$work/$scheme.txt" || ! grep -q "^$scheme, done" "$work/$scheme.txt"; then
+    echo "measure.sh: pages fail, $scheme" >&2
+    tail -3 "$work/browser.log" >&2
+    failed=1
+  fi
+done
+exit "${failed:-0}"

@@ -1,0 +1,27 @@
+// Opens `pages` one after the other in frames of each width, which measure.js measures, and writes down what it says.
+(async function () {
+  const lines = document.getElementById("measured");
+  const opened = (page, width) =>
+    new Promise((then) => {
+      const frame = document.createElement("iframe"), started = Date.now();
+      Object.assign(frame.style, { border: 0, width: `${width}px`, height: "900px", position: "absolute", top: 0, left: 0 });
+      const end = (text) => {
+        clearTimeout(late);
+        removeEventListener("message", hear);
+        frame.remove();
+        then(text);
+      };
+      const hear = (e) => e.data && e.data.measured !== undefined && e.source === frame.contentWindow && end(e.data.measured);
+      const late = setTimeout(() => end(`FAIL not measured after ${Date.now() - started} ms`), 120000);
+      addEventListener("message", hear);
+      frame.src = page;
+      document.body.append(frame);
+    });
+  const shown = [];
+  for (const page of pages)
+    for (const width of [400, 1000, 1400, 3000]) {
+      const text = await opened(page, width), name = page.split("/").slice(-2).join("/").replace(".measured", "");
+      for (const line of text ? text.split("\n") : ["ok"]) shown.push(`${name} at ${width}: ${line}`);
+    }
+  lines.textContent = `${shown.join("\n")}\ndone\n`;
+})();

@@ -1,0 +1,25 @@
+// stability_page FOLDER: writes FOLDER/index.html, the page of a grid that no method made, for measure.sh.
+
+#include <cstdio>
+
+#include "render/palette.hpp"
+#include "render/png.hpp"
+#include "scenarios/io/files.hpp"
+#include "scenarios/stability/report/stability_report.hpp"
+#include "tests/scenarios/stability/report/made_up_grid.hpp"
+
+using namespace lrb;
+using namespace lrb::stability;
+
+int main(int argc, char** argv) {
+  if (argc != 2) return std::fprintf(stderr, "usage: stability_page FOLDER\n"), 2;
+  const std::string folder = argv[1];
+  const Grid grid = made_up_grid();
+  io::make_folder(folder);
+  render::write_png(render::Image(64, 40, render::palette::kBlue), folder + "/worst.png");
+  ReportOptions options;
+  options.pictures.resize(grid.cells.size());
+  options.pictures[1] = "worst.png";
+  options.command = [](const Record& r) { return "lrbscope stability --family " + r.family; };
+  io::write_text(folder + "/index.html", report::page_html(stability_page(grid, folder, options)));
+}
