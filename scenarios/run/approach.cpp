@@ -99,7 +99,7 @@ Approach find_approach(const LrbRep& a, const Pose& pose_a, const LrbRep& b, con
   const bool inside = found.at_begin == Relation::a_inside_b || found.at_begin == Relation::b_inside_a;
   if (!(motion.exact && found.is_contact() && !found.passed) || inside) {
     const auto from = static_cast<std::uint32_t>(found.t0 * whole_way);
-    if (inside || found.outcome != Outcome::never)
+    if (inside || found.outcome != MotionOutcome::never)
       find_step(a, pose_a, b, steps, inside || from == 0 ? 0 : from - 1, out);
   }
   if (!out.met && found.is_contact()) stand_at_contact(steps, found.t1, out);

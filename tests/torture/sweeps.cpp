@@ -163,7 +163,8 @@ class Motions {
     for (int i = 0; i < 40; ++i) {
       const double x = (hits + misses) / 2;
       const Motion m = beside(x);
-      (first_contact(bodies_.a, Motion::still({}), bodies_.b, m, request, context_).outcome == Outcome::never
+      (first_contact(bodies_.a, Motion::still({}), bodies_.b, m, request, context_).outcome ==
+               MotionOutcome::never
            ? misses
            : hits) = x;
     }
@@ -219,8 +220,8 @@ class Checker {
       if (!meets(a, b, 0)) complain(t_.no_contact, "none at the start");
       return;
     }
-    if (r.outcome == Outcome::never) ++t_.never;
-    if (r.outcome == Outcome::undecided) ++t_.undecided;
+    if (r.outcome == MotionOutcome::never) ++t_.never;
+    if (r.outcome == MotionOutcome::undecided) ++t_.undecided;
     look_before(a, b, r.t0);
     if (!r.is_contact()) return;
     ++t_.contacts;

@@ -275,7 +275,7 @@ void FirstContactSearch::contact_at_last(TimeSpan span, SimplexPair pair) {
 
 void FirstContactSearch::contact_in(TimeSpan span, SimplexPair pair) {
   is_done_ = true;
-  result_.outcome = Outcome::contact;
+  result_.outcome = MotionOutcome::contact;
   result_.t0 = span.begin;
   result_.t1 = span.end;
   result_.grazing = span.end - span.begin > request_.tolerance;

@@ -51,7 +51,7 @@ void FirstContactSearch::write_start(SimplexPair pair) {
   const exact::PairContact contact =
       rep_[0]->dim() == 3 ? exact::contact_of_triangles(of_a, of_b) : exact::contact_of_segments(of_a, of_b);
   const exact::ContactCorner& corner = contact.corners[0];
-  result_.outcome = Outcome::contact;
+  result_.outcome = MotionOutcome::contact;
   result_.t0 = result_.t1 = 0;
   result_.at_start = true;
   result_.at_begin = contact.meet == exact::Meet::cross ? Relation::crossing : Relation::touching;
@@ -94,7 +94,7 @@ FirstContactResult FirstContactSearch::finish() {
     result_.finished = free_until_ >= 1;
     if (!result_.finished) doubt({free_until_, 1});
     if (!result_.doubtful.empty()) {
-      result_.outcome = Outcome::undecided;
+      result_.outcome = MotionOutcome::undecided;
       result_.t1 = result_.doubtful.back().end;
     }
   }

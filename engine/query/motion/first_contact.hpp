@@ -39,14 +39,15 @@ struct FirstContactRequest {
   bool history = false;  ///< write FirstContactResult::history
 };
 
-enum class Outcome : std::uint8_t {
+enum class MotionOutcome : std::uint8_t {
   contact,
   never,      ///< proved: they do not meet for any t from 0 to 1
   undecided,  ///< they come too near each other for doubles to tell, or max_steps were reached
 };
-constexpr auto words_of(Outcome) {
-  return std::to_array<EnumWord<Outcome>>(
-      {{Outcome::contact, "contact"}, {Outcome::never, "never"}, {Outcome::undecided, "undecided"}});
+constexpr auto words_of(MotionOutcome) {
+  return std::to_array<EnumWord<MotionOutcome>>({{MotionOutcome::contact, "contact"},
+                                                 {MotionOutcome::never, "never"},
+                                                 {MotionOutcome::undecided, "undecided"}});
 }
 
 /// A span of t.
@@ -65,7 +66,7 @@ struct FirstContactCounters {
 };
 
 struct FirstContactResult {
-  Outcome outcome = Outcome::never;
+  MotionOutcome outcome = MotionOutcome::never;
   /// contact: they do not meet before t0, and meet at t1. undecided: the same, but nobody knows whether they meet from
   /// t0 to t1; after t1 they do not. never: both 1.
   double t0 = 1, t1 = 1;
@@ -102,7 +103,7 @@ struct FirstContactResult {
   std::vector<Event> history;
   FirstContactCounters counters;
 
-  bool is_contact() const { return outcome == Outcome::contact; }
+  bool is_contact() const { return outcome == MotionOutcome::contact; }
 };
 
 /// Returns when bodies `a` and `b` first meet; both must be 3D, or both 2D, and world coordinates finite. Throws

@@ -69,11 +69,11 @@ std::string line_of(std::size_t motion, const FirstContactResult& result, const 
   trace::JsonWriter w(out, trace::JsonWriter::kCompact);
   w.begin_object().member("motion", std::uint64_t{motion});
   w.key("contact");
-  if (result.outcome == Outcome::undecided)
+  if (result.outcome == MotionOutcome::undecided)
     w.value(std::numeric_limits<double>::quiet_NaN());  // null
   else
     w.value(result.is_contact());
-  if (result.outcome != Outcome::never) w.member("t0", result.t0).member("t1", result.t1);
+  if (result.outcome != MotionOutcome::never) w.member("t0", result.t0).member("t1", result.t1);
   if (result.is_contact()) write_contact(w, result, o);
   if (result.grazing) w.member("grazing", true);
   if (!result.finished) w.member("finished", false);

@@ -146,7 +146,7 @@ TEST_CASE("straight motions: the interval holds the rational time of first conta
     REQUIRE((from + way) - from == way);
     const FirstContactResult r = checked(a, kStill, b, motion);
     const auto time = exact_time(a, b, from, way);
-    REQUIRE(r.outcome == (time ? Outcome::contact : Outcome::never));
+    REQUIRE(r.outcome == (time ? MotionOutcome::contact : MotionOutcome::never));
     contacts += time.has_value();
     never += !time.has_value();
     if (!time) continue;
@@ -217,7 +217,7 @@ TEST_CASE("turning bodies: at the time that is known, however many turns there a
   // The other way round, and missed by a little more than the blade is long.
   const LrbRep further = closed(shapes::translated(shapes::tetrahedron(0.5), {0.75, 0.75, 0}));
   CHECK(checked(further, kStill, blade, Motion::turning({}, {0, 0, -2000}, {0, 0, 0}, {0, 0, 0})).outcome ==
-        Outcome::never);
+        MotionOutcome::never);
 }
 
 TEST_CASE("balls meet between the times of the balls inside and outside of them") {
@@ -267,7 +267,7 @@ TEST_CASE("contact at the start is said so, and a body inside another does not m
   CHECK(r.at_begin == Relation::touching);
   const Motion stays = Motion::linear(Pose::translation({0.4, 0.5, 0.5}), {0.6, 0.5, 0.5});
   r = checked(box, kStill, small, stays);
-  CHECK(r.outcome == Outcome::never);
+  CHECK(r.outcome == MotionOutcome::never);
   CHECK(r.at_begin == Relation::b_inside_a);
   r = checked(box, kStill, small, Motion::linear(Pose::translation({0.4, 0.5, 0.5}), {3, 0.5, 0.5}));
   CHECK(r.is_contact());
@@ -287,14 +287,14 @@ TEST_CASE("grazing bodies get an interval that is wider, and said to be") {
   // Above it by less than rounding: nobody knows, from the time on when edges are over each other.
   r = checked(box, kStill, box,
               Motion::linear(Pose::translation({3, 0.25, 1 + 1e-15}), {-1, 0.25, 1 + 1e-15}));
-  CHECK(r.outcome == Outcome::undecided);
+  CHECK(r.outcome == MotionOutcome::undecided);
   CHECK(r.grazing);
   CHECK(r.t0 == doctest::Approx(0.5));
   CHECK(r.t1 == doctest::Approx(1));
   // Above it by a little more: they do not meet.
   r = checked(box, kStill, box,
               Motion::linear(Pose::translation({3, 0.25, 1 + 1e-12}), {-1, 0.25, 1 + 1e-12}));
-  CHECK(r.outcome == Outcome::never);
+  CHECK(r.outcome == MotionOutcome::never);
   // Grazes a corner with a corner, and meets a wall later.
   const LrbRep wall =
       closed(shapes::several({shapes::quad_box(), shapes::quad_box({-10, -5, -5}, {-9, 5, 5})}));
@@ -379,7 +379,7 @@ TEST_CASE("a tolerance only widens the interval; a budget leaves what is proved;
       request.history = true;
       const FirstContactResult r = checked(a, kStill, b, motions[i], request, 10);
       CHECK(r.t0 <= one[i].t1);
-      CHECK((r.finished || r.outcome == Outcome::undecided));
+      CHECK((r.finished || r.outcome == MotionOutcome::undecided));
       if (r.finished) CHECK(r.outcome == one[i].outcome);
       for (std::size_t k = 1; k < r.history.size(); ++k)
         CHECK(r.history[k].free_until >= r.history[k - 1].free_until);
@@ -409,5 +409,5 @@ TEST_CASE("motions and requests that cannot be answered are refused") {
     CHECK_THROWS_AS(first_contact(box, kStill, box, kStill, request), InputError);
   }
   CHECK(first_contact(box, kStill, LrbRep::without_regions(Mesh{}, true, false), kStill).outcome ==
-        Outcome::never);
+        MotionOutcome::never);
 }
