@@ -8,6 +8,7 @@
 #include "engine/core/file_bytes.hpp"
 #include "scenarios/bench/record.hpp"
 #include "scenarios/io/files.hpp"
+#include "scenarios/workers/pairs_json.hpp"
 
 namespace lrb::bench {
 namespace {
@@ -56,7 +57,7 @@ std::string write_data_set(const DataSet& set, const std::string& folder) {
                          {"b", q.b},
                          {"pose_a", pose_json(q.pose_a)},
                          {"pose_b", pose_json(q.pose_b)},
-                         {"expected", flat(q.expected)}});
+                         {"expected", workers::PairsJson::write(q.expected)}});
   const ordered_json value = {{"name", set.name},
                               {"what", set.what},
                               {"diagonal", set.diagonal},
@@ -82,7 +83,7 @@ DataSet read_data_set(const std::string& path) {
       set.questions.push_back({pose_class_from(q.at("class").get<std::string>()),
                                q.at("a").get<std::size_t>(), q.at("b").get<std::size_t>(),
                                pose_from(q.at("pose_a")), pose_from(q.at("pose_b")),
-                               pairs_from(q.at("expected"))});
+                               workers::PairsJson::read(q.at("expected"))});
     return set;
   } catch (const json::exception& e) {
     throw InputError(printable_name(path) + ": not a data set of lrbscope bench or chart (" + e.what() +

@@ -40,7 +40,7 @@ std::vector<Column> columns_of(const Moment& m, const Wanted& wanted) {
     for (const char* name : {"tests", "hits", "misses", "refinements", "contacts"}) out.push_back({name});
   if (has_values(m)) out.push_back({"value", false});
   if (wanted.contacts)
-    out.insert(out.end(), {{"contact"}, {"length", false}, {"area", false}, {"depth", false}});
+    out.insert(out.end(), {{"contact"}, {"length", false}, {"area", false}, {"depth_estimate", false}});
   return out;
 }
 
@@ -205,7 +205,7 @@ void add_contacts(Model& model, const Moment& moment, Shape shape) {
     row[model.column("contact")] = static_cast<double>(i);
     row[model.column("length")] = region.length;
     row[model.column("area")] = region.area;
-    row[model.column("depth")] = region.depth;
+    row[model.column("depth_estimate")] = region.depth_estimate;
     for (const ContactLoop& loop : region.loops) {
       if (loop.points.empty() || (loop.points.size() > 1) != (shape == Shape::lines)) continue;
       const auto first = static_cast<std::uint32_t>(out.vertices.size());

@@ -156,7 +156,7 @@ TEST_CASE("contacts have points in both, and normal and depth of their regions")
     CHECK(c.o1 == box.get());
     CHECK(SimplexId(c.b1) == truth.pairs[i].a);
     CHECK(SimplexId(c.b2) == truth.pairs[i].b);
-    CHECK(c.penetration_depth == truth.regions[0].depth);
+    CHECK(c.penetration_depth == truth.regions[0].depth_estimate);
     CHECK(c.normal == truth.regions[0].normal);
     CHECK(c.pos.x() > 0.9 - 1e-12);
     CHECK(c.pos.x() < 1 + 1e-12);

@@ -7,7 +7,7 @@
 ///
 /// - Contacts name the pairs of triangles that meet, each once, ascending; one if num_max_contacts is 1, whichever
 ///   is found first. With enable_contact, each has a point in the middle of what the two triangles have in common, and
-///   normal and depth of the contact region that it belongs to (ContactRegion).
+///   normal and estimated depth of the contact region that it belongs to (ContactRegion).
 /// - Distances are those of the surfaces, to 1e-12 of the meshes' size, whatever rel_err and abs_err allow; 0 where they
 ///   meet. Nearest points are in the world.
 /// - As with FCL, a mesh in another one whose surface it does not touch does not collide with it.
@@ -222,7 +222,7 @@ void add_contacts(const CollideResult& found, const ::fcl::CollisionGeometry<S>*
     const Eigen::Vector3d normal = region ? region->normal : Eigen::Vector3d(0, 0, 0);
     result.addContact(::fcl::Contact<S>(o1, o2, b1, b2, middle_of(found.contacts[i]).template cast<S>(),
                                         normal.template cast<S>(),
-                                        static_cast<S>(region ? region->depth : 0)));
+                                        static_cast<S>(region ? region->depth_estimate : 0)));
   }
 }
 

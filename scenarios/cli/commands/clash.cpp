@@ -11,6 +11,7 @@
 #include "scenarios/bodies/body.hpp"
 #include "scenarios/cli/command.hpp"
 #include "scenarios/cli/median_time.hpp"
+#include "scenarios/cli/options.hpp"
 #include "scenarios/cli/pose_lines.hpp"
 #include "scenarios/cli/progress.hpp"
 #include "trace/json_out.hpp"
@@ -24,6 +25,7 @@ struct ClashOptions {
   std::vector<double> along;
   std::uint32_t repeat = 0;
   bool table = false;
+  bodies::Corners corners = bodies::Corners::joined;
 };
 
 void write_interval(trace::JsonWriter& w, const char* name, const std::optional<ProvedInterval>& interval) {
@@ -119,7 +121,7 @@ Row headings(const ClashOptions& o) {
 int run_clash(ClashOptions o, const Globals& globals) {
   if (!o.along.empty()) o.request.along = Eigen::Vector3d(o.along[0], o.along[1], o.along[2]);
   const PoseLines list(o.poses);
-  const bodies::LoadedBody a = bodies::load_faces(o.a), b = bodies::load_faces(o.b);
+  const bodies::LoadedBody a = bodies::load_faces(o.a, o.corners), b = bodies::load_faces(o.b, o.corners);
   check_request(a.rep, o.request);
   note(globals, a.notes);
   note(globals, b.notes);
@@ -162,6 +164,7 @@ Command add_clash(CLI::App& root, const Globals& globals) {
                   "Repeat each pose's query N times, and add the median time in microseconds")
       ->check(CLI::Range(1, 1000000))
       ->type_name("N");
+  add_join_option(*app, o->corners);
   return {app, [o, &globals] { return run_clash(*o, globals); }};
 }
 

@@ -7,6 +7,7 @@
 #include "scenarios/bodies/body.hpp"
 #include "scenarios/cli/command.hpp"
 #include "scenarios/cli/median_time.hpp"
+#include "scenarios/cli/options.hpp"
 #include "scenarios/cli/pose_lines.hpp"
 #include "scenarios/cli/progress.hpp"
 #include "trace/json_out.hpp"

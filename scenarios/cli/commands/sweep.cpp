@@ -9,6 +9,7 @@
 #include "scenarios/bodies/body.hpp"
 #include "scenarios/cli/command.hpp"
 #include "scenarios/cli/median_time.hpp"
+#include "scenarios/cli/options.hpp"
 #include "scenarios/cli/progress.hpp"
 #include "scenarios/io/pose_file.hpp"
 #include "trace/json_out.hpp"
@@ -21,6 +22,7 @@ struct SweepOptions {
   FirstContactRequest request;
   std::uint32_t repeat = 0;
   bool features = false;
+  bodies::Corners corners = bodies::Corners::joined;
 };
 
 void write_vector(trace::JsonWriter& w, const char* name, const Eigen::Vector3d& x) {
@@ -105,7 +107,7 @@ std::vector<Motion> motions_of(const std::vector<io::PosePair>& list, const std:
 int run_sweep(const SweepOptions& o, const Globals& globals) {
   const std::vector<io::PosePair> list = io::read_motions(o.motions);
   check_request(o.request);
-  const bodies::LoadedBody a = bodies::load_faces(o.a), b = bodies::load_faces(o.b);
+  const bodies::LoadedBody a = bodies::load_faces(o.a, o.corners), b = bodies::load_faces(o.b, o.corners);
   note(globals, a.notes);
   note(globals, b.notes);
   check_query(a.rep, Pose{}, b.rep, Pose{});
@@ -143,6 +145,7 @@ Command add_sweep(CLI::App& root, const Globals& globals) {
                   "Repeat each motion's query N times, and add the median time in microseconds")
       ->check(CLI::Range(1, 1000000))
       ->type_name("N");
+  add_join_option(*app, o->corners);
   return {app, [o, &globals] { return run_sweep(*o, globals); }};
 }
 

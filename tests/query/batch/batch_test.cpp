@@ -43,7 +43,7 @@ void check_same(const CollideResult& x, const CollideResult& y) {
     CHECK(x.regions[i].length == y.regions[i].length);
     CHECK(x.regions[i].centroid == y.regions[i].centroid);
     CHECK(x.regions[i].normal == y.regions[i].normal);
-    CHECK(x.regions[i].depth == y.regions[i].depth);
+    CHECK(x.regions[i].depth_estimate == y.regions[i].depth_estimate);
   }
 }
 
