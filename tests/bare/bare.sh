@@ -4,7 +4,7 @@
 # and runs ./run and ./check there as root would type them, in a clean environment; then again as a user without root; then
 # the rest of ./check --full, in the end with the engines of others installed. Debian packages are made there, and installed in
 # another bare root, where the program runs and a stranger's project is built. Prints how long every step took.
-# Steps: root clone stranger run check user api browser again python debs site peers sanitizers clang fuzz tidy; --until ends after one of them.
+# Steps: root clone stranger run check user api browser again peers python debs site sanitizers clang fuzz tidy; --until ends after one of them.
 # --minutes: steps after `user` end when M minutes are over, and the table says which were left out.
 # Kept between runs, in ${XDG_CACHE_HOME:-~/.cache}/lrbscope-bare: the bare root and downloaded packages; and this machine's
 # compiler cache is used. --no-cache does without all three, for honest times. --keep leaves the root to be looked at.
@@ -114,7 +114,7 @@ as() {
 
 # ---- steps
 
-all=(root clone stranger run check user api browser again python debs site peers sanitizers clang fuzz tidy)
+all=(root clone stranger run check user api browser again peers python debs site sanitizers clang fuzz tidy)
 names=() seconds=() busy=() failed=() left_out=()
 # step NAME FUNCTION: runs it, with its output, and notes how long it took and whether it failed. Ends here if it was the
 # last wanted.
