@@ -230,8 +230,8 @@ step_debs() {
   [ -s "$root/usr/share/man/man1/lrbscope-run.1.gz" ] || { echo "there is no manual page" && return 1; }
   cp -r "$(dirname "$script")/stranger" "$root/root/stranger"
   inside bash -c 'apt-get install -y -q --no-install-recommends cmake make g++ ./liblrbscope*.deb'
-  inside bash -c 'lrbscope --quiet export collision --step 0 --what body --of a -o a.ply'
-  inside bash -c 'lrbscope --quiet export collision --step 0 --what body --of b -o b.ply'
+  inside bash -c 'lrbscope --quiet export collision --what body --of a -o a.ply'
+  inside bash -c 'lrbscope --quiet export collision --what body --of b -o b.ply'
   inside bash -c 'cmake -S stranger -B built && cmake --build built && built/stranger a.ply b.ply'
   if compgen -G "$made/python3-lrbscope_*.deb" >/dev/null; then
     inside bash -c 'apt-get install -y -q --no-install-recommends ./python3-lrbscope_*.deb'

@@ -6,7 +6,7 @@ import lrbscope
 
 a, b = lrbscope.Body.load(sys.argv[1]), lrbscope.Body.load(sys.argv[2])
 pose = np.eye(4)
-pose[:3, 3] = 0.5, 0.25, 0.125
+pose[:3, 3] = 0.01, 0, 0
 answer = lrbscope.collide(a, b, pose)
 print(answer.relation, len(answer.pairs), "pairs;", lrbscope.distance(a, b, pose).upper, "apart")
 lrbscope.render(a, b, pose, size=(640, 480)).save(sys.argv[3])
