@@ -217,7 +217,7 @@ std::vector<std::string> advice(std::span<const Trial> trials) {
 }
 
 std::string poor_line(const LrbRep& rep, const BuildOptions& build) {
-  constexpr double kLoose = 2, kMany = 2.5, kOpen = 2;  // 1.1 to 1.4, 1.5 to 2, and 1 are usual
+  constexpr double kLoose = 2, kMany = 2.5, kOpen = 2;            // 1.1 to 1.4, 1.5 to 2, and 1 are usual
   if (rep.real_face_count() <= build.max_outer_faces) return {};  // so few faces need no wrapper
   if (rep.region_count() == 0) return rep.name() + ": has no regions: every query starts from its faces";
   const RepFigures f = figures_of(rep);
