@@ -18,7 +18,7 @@ PYTHONPYCACHEPREFIX=$work "$python" -m py_compile "$tree/cmake/recipes/conan/con
 PYTHONDONTWRITEBYTECODE=1 "$python" "$here/recipes.py" "$tree" "$work/vcpkg/options"
 
 # What they ask for needs nothing that they do not name.
-cmake -S "$tree" -B "$work/build" -DCMAKE_BUILD_TYPE=Release -DCMAKE_DISABLE_FIND_PACKAGE_PkgConfig=ON \
+cmake -S "$tree" -B "$work/build" -G Ninja -DCMAKE_BUILD_TYPE=Release -DCMAKE_DISABLE_FIND_PACKAGE_PkgConfig=ON \
   -DCMAKE_DISABLE_FIND_PACKAGE_PNG=ON -DCMAKE_DISABLE_FIND_PACKAGE_ZLIB=ON -DCMAKE_DISABLE_FIND_PACKAGE_nlohmann_json=ON \
   -DCMAKE_DISABLE_FIND_PACKAGE_CLI11=ON $(cat "$work/vcpkg/options") >"$work/configure.log" 2>&1 ||
   { cat "$work/configure.log" && exit 1; }
