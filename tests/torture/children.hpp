@@ -3,6 +3,7 @@
 /// rest goes on.
 
 #include <algorithm>
+#include <chrono>
 #include <cstdint>
 #include <cstdio>
 #include <functional>
@@ -10,6 +11,8 @@
 
 #include <sys/wait.h>
 #include <unistd.h>
+
+#include "scenarios/bodies/shapes/random_pose.hpp"
 
 namespace lrb::torture {
 
@@ -70,6 +73,34 @@ Sum sum_in_children(std::uint64_t count, std::uint64_t batch_size, unsigned jobs
   }
   while (!running.empty()) collect();
   return sum;
+}
+
+/// Has `check(bodies, batch, random)` done for an equal share of `count` cases of each of the bodies, in
+/// children, and returns the sum. Prints a row for each bodies and one for all: print_row(name, sum, seconds).
+template <class Sum, class Bodies, class Check, class Row>
+Sum sum_over_bodies(const std::vector<Bodies>& list, std::uint64_t count, std::uint64_t batch_size,
+                    std::uint64_t seed, unsigned jobs, const Check& check,
+                    const std::function<Sum(Batch, int)>& lost, const Row& print_row) {
+  using Clock = std::chrono::steady_clock;
+  const auto since = [](Clock::time_point start) {
+    return std::chrono::duration<double>(Clock::now() - start).count();
+  };
+  const Clock::time_point begun = Clock::now();
+  Sum total;
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    const Clock::time_point start = Clock::now();
+    const Sum sum =
+        sum_in_children<Sum>((count + list.size() - 1) / list.size(), batch_size, jobs,
+                             [&](Batch b) {
+                               shapes::RandomEngine random(seed * 1'000'003 + i * 10'007 + b.begin);
+                               return check(list[i], b, random);
+                             },
+                             lost);
+    print_row(list[i].name, sum, since(start));
+    total += sum;
+  }
+  print_row("total", total, since(begun));
+  return total;
 }
 
 }  // namespace lrb::torture

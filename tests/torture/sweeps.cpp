@@ -1,6 +1,5 @@
 #include "tests/torture/sweeps.hpp"
 
-#include <chrono>
 #include <cmath>
 #include <cstdio>
 
@@ -273,33 +272,20 @@ void print_row(const char* name, const Tally& t, double seconds) {
 }  // namespace
 
 std::uint64_t torture_sweeps(std::uint64_t count, std::uint64_t seed, unsigned jobs) {
-  const auto since = [](auto start) {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  };
   const std::vector<Bodies> list = all_bodies();
   std::printf("%-14s %9s %9s %9s %9s %9s %9s %9s %9s %10s %8s %10s %8s %8s %7s\n", "bodies", "motions",
               "contact", "at start", "never", "undecided", "grazing", "passed", "steps", "samples", "misses",
               "no contact", "wide", "crashes", "s");
-  const auto begun = std::chrono::steady_clock::now();
-  Tally total;
-  for (std::size_t i = 0; i < list.size(); ++i) {
-    const auto start = std::chrono::steady_clock::now();
-    const Tally t = sum_in_children<Tally>((count + list.size() - 1) / list.size(), kBatch, jobs,
-                                           [&](Batch b) {
-                                             RandomEngine random(seed * 1'000'003 + i * 10'007 + b.begin);
-                                             return Checker(list[i], random).run(b.end - b.begin);
-                                           },
-                                           [](Batch b, int) {
-                                             Tally lost;
-                                             lost.motions = b.end - b.begin;
-                                             lost.crashes = 1;
-                                             return lost;
-                                           });
-    print_row(list[i].name, t, since(start));
-    total += t;
-  }
-  print_row("total", total, since(begun));
-  return total.differences();
+  const auto check = [](const Bodies& bodies, Batch b, RandomEngine& random) {
+    return Checker(bodies, random).run(b.end - b.begin);
+  };
+  const auto lost = [](Batch b, int) {
+    Tally tally;
+    tally.motions = b.end - b.begin;
+    tally.crashes = 1;
+    return tally;
+  };
+  return sum_over_bodies<Tally>(list, count, kBatch, seed, jobs, check, lost, print_row).differences();
 }
 
 }  // namespace lrb::torture

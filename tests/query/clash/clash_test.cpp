@@ -24,7 +24,7 @@ using shapes::RandomEngine;
 
 namespace {
 
-/// How many times as many random cases as usual are asked for: LRB_CLASH_SHARE=100 query_tests -tc="clash*".
+/// Multiplies the number of random cases: LRB_CLASH_SHARE=100 query_tests -tc="clash*".
 int share() {
   const char* const text = std::getenv("LRB_CLASH_SHARE");
   return text == nullptr ? 1 : std::max(1, std::atoi(text));

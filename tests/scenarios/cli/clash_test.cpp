@@ -7,7 +7,7 @@
 #include "engine/mesh/io/mesh_io.hpp"
 #include "scenarios/bodies/shapes/shapes.hpp"
 #include "tests/support/folder.hpp"
-#include "tests/support/program.hpp"
+#include "tests/support/json_lines.hpp"
 
 namespace lrb::test {
 namespace {
@@ -34,12 +34,8 @@ struct ClashingBoxes {
 
 TEST_CASE("clash: a line for each pose, and a table") {
   const ClashingBoxes boxes;
-  const Outcome o = run(boxes.folder, boxes.arguments({"--clearance", "0.5", "--along", "-1,0,0"}));
-  CAPTURE(o.err);
-  REQUIRE(o.code == 0);
-  std::vector<Json> lines;
-  std::istringstream in(o.out);
-  for (std::string line; std::getline(in, line);) lines.push_back(Json::parse(line));
+  const std::vector<Json> lines =
+      lines_of(boxes.folder, boxes.arguments({"--clearance", "0.5", "--along", "-1,0,0"}));
   REQUIRE(lines.size() == 4);
   const char* kinds[] = {"protrudes", "touching_face", "within_clearance", "cuts_through"};
   const double depths[] = {0.25, 0, 0, 0.5}, volumes[] = {0.015625, 0, 0, 0.0625}, ways[] = {0.25, 0, 0, 2};

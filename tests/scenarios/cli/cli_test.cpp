@@ -11,7 +11,7 @@
 #include "engine/query/collide.hpp"
 #include "render/png.hpp"
 #include "scenarios/bodies/shapes/shapes.hpp"
-#include "tests/support/program.hpp"
+#include "tests/support/json_lines.hpp"
 
 namespace fs = std::filesystem;
 using nlohmann::json;
@@ -38,12 +38,8 @@ TEST_CASE("query: a JSON line per pose") {
   folder.write("a.obj", kCube);
   folder.write("p.txt", std::string("# apart, then overlapping, then the same\n") + kApart +
                             "1 0 0 0.5 0 1 0 0.25 0 0 1 0.125\n\n0.1 0 0 0.4 0 0.1 0 0.4 0 0 0.1 0.4\n");
-  const Outcome o = run(folder, {"query", "a.obj", "a.obj", "--poses", "p.txt", "--pairs", "--repeat", "3"});
-  CAPTURE(o.err);
-  REQUIRE(o.code == 0);
-  std::istringstream lines(o.out);
-  std::vector<json> answers;
-  for (std::string line; std::getline(lines, line);) answers.push_back(json::parse(line));
+  const std::vector<json> answers =
+      lines_of(folder, {"query", "a.obj", "a.obj", "--poses", "p.txt", "--pairs", "--repeat", "3"});
   REQUIRE(answers.size() == 3);
   CHECK(answers[0]["pose"] == 0);
   CHECK(answers[0]["relation"] == "separate");

@@ -13,7 +13,7 @@
 #include "engine/query/collide.hpp"
 #include "scenarios/bodies/shapes/shapes.hpp"
 #include "tests/support/dirt.hpp"
-#include "tests/support/program.hpp"
+#include "tests/support/json_lines.hpp"
 #include "tests/support/shared_meshes.hpp"
 #include "trace/hex.hpp"
 
@@ -282,9 +282,7 @@ std::vector<json> answers(const Folder& folder, const std::string& a, const std:
   CAPTURE(o.err);
   REQUIRE(o.code == 0);
   notes = o.err;
-  std::vector<json> out;
-  std::istringstream lines(o.out);
-  for (std::string line; std::getline(lines, line);) out.push_back(json::parse(line));
+  std::vector<json> out = json_lines(o.out);
   REQUIRE(out.size() == poses.size());
   return out;
 }

@@ -7,7 +7,7 @@
 #include "engine/mesh/io/mesh_io.hpp"
 #include "scenarios/bodies/shapes/shapes.hpp"
 #include "tests/support/folder.hpp"
-#include "tests/support/program.hpp"
+#include "tests/support/json_lines.hpp"
 
 namespace lrb::test {
 namespace {
@@ -30,12 +30,7 @@ struct Boxes {
     return args;
   }
   std::vector<Json> lines(std::vector<std::string> more = {}) const {
-    const Outcome o = run(folder, arguments(std::move(more)));
-    CAPTURE(o.err);
-    REQUIRE(o.code == 0);
-    std::vector<Json> out;
-    std::istringstream in(o.out);
-    for (std::string line; std::getline(in, line);) out.push_back(Json::parse(line));
+    std::vector<Json> out = lines_of(folder, arguments(std::move(more)));
     REQUIRE(out.size() == 4);
     return out;
   }

@@ -7,7 +7,7 @@
 #include "engine/mesh/io/mesh_io.hpp"
 #include "scenarios/bodies/shapes/shapes.hpp"
 #include "tests/support/folder.hpp"
-#include "tests/support/program.hpp"
+#include "tests/support/json_lines.hpp"
 
 namespace lrb::test {
 namespace {
@@ -19,9 +19,8 @@ struct MovingBoxes {
   MovingBoxes() {
     folder.write("cube.obj", kCube);
     write_mesh(shapes::box({0.25, 0.25, 0.25}, {0.5, 0.5, 0.5}), folder / "small.obj");
-    // From 2.75 to -1.25 along x, into the face x = 1 after 2 of 4; past it; out of it, from inside; from contact on;
-    // turning
-    // by a quarter meanwhile; as near its upper face as rounding.
+    // From 2.75 to -1.25 along x, into the face x = 1 after 2 of 4; past it; out of it, from inside; from contact
+    // on; turning by a quarter meanwhile; as near its upper face as rounding.
     folder.write(
         "motions.txt",
         "# B's poses at t = 0 and t = 1\n"
@@ -38,12 +37,7 @@ struct MovingBoxes {
     return args;
   }
   std::vector<Json> lines(std::vector<std::string> more = {}) const {
-    const Outcome o = run(folder, arguments(std::move(more)));
-    CAPTURE(o.err);
-    REQUIRE(o.code == 0);
-    std::vector<Json> out;
-    std::istringstream in(o.out);
-    for (std::string line; std::getline(in, line);) out.push_back(Json::parse(line));
+    std::vector<Json> out = lines_of(folder, arguments(std::move(more)));
     REQUIRE(out.size() == 6);
     return out;
   }
