@@ -145,4 +145,16 @@ class JsonWriter {
   std::vector<Level> levels_;
 };
 
+/// Returns what write(writer) writes, with a newline at its end. indent: as JsonWriter has it.
+template <class Write>
+std::string json_text(int indent, const Write& write) {
+  StringSink sink;
+  JsonOut out(sink);
+  JsonWriter writer(out, indent);
+  write(writer);
+  out.raw('\n');
+  out.flush();
+  return std::move(sink.text);
+}
+
 }  // namespace lrb::trace

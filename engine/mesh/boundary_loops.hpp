@@ -18,8 +18,8 @@ struct BoundaryLoop {
   /// disagree on which side is outside.
   bool is_loop = false;
   bool planar = false;      ///< all vertices lie in one plane: exact
-  double length = 0;        ///< of all its edges; mesh's unit
-  Eigen::AlignedBox3d box;  ///< of its vertices
+  double length = 0;        ///< sum over its edges; the mesh's unit
+  Eigen::AlignedBox3d box;  ///< around its vertices
   std::size_t edges() const { return is_loop ? vertices.size() : vertices.size() - 1; }
 };
 

@@ -267,7 +267,7 @@ template <class EachNear>
 std::optional<SceneDistance> Scene::Held::nearest_of(const Party& a, const Party& b,
                                                      const DistanceRequest& request,
                                                      const EachNear& each_near) {
-  // So many are asked about at a time, however many threads there are, because what one finds spares the next ones.
+  // Asks about this many at a time, whatever the number of threads: what they find spares queries about the next.
   constexpr std::size_t kAtATime = 64;
   std::optional<Near> likely;
   double limit = std::numeric_limits<double>::infinity();

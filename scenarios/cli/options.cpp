@@ -98,6 +98,13 @@ void add_coarse_options(CLI::App& app, CollideRequest& request) {
       ->type_name("S");
 }
 
+void add_repeat_option(CLI::App& app, std::uint32_t& repeat, const std::string& what) {
+  app.add_option("--repeat", repeat,
+                 "Repeat each " + what + "'s query N times, and add the median time in microseconds")
+      ->check(CLI::Range(1, 1000000))
+      ->type_name("N");
+}
+
 void add_join_option(CLI::App& app, bodies::Corners& corners) {
   app.add_flag_callback(
       "--no-join", [&corners] { corners = bodies::Corners::apart; },

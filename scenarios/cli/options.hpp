@@ -37,6 +37,8 @@ void add_recursion_option(CLI::App& app, std::optional<Recursion>& recursion);
 void add_events_option(CLI::App& app, std::optional<EventLevel>& level);
 /// Adds --no-join.
 void add_join_option(CLI::App& app, bodies::Corners& corners);
+/// Adds --repeat. what: what a query is asked for, "pose".
+void add_repeat_option(CLI::App& app, std::uint32_t& repeat, const std::string& what);
 /// Adds --patch, --max-outer, --lean, --seed and --threads.
 void add_build_options(CLI::App& app, BuildOptions& options);
 

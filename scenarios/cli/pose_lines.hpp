@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "engine/core/error.hpp"
+#include "engine/lrb/lrb_rep.hpp"
 #include "scenarios/io/json/pose_list.hpp"
 
 namespace lrb::cli {
@@ -23,6 +24,9 @@ struct PoseLines {
       throw InputError(places[i] + ": " + e.what());
     }
   }
+
+  /// Throws InputError unless the bodies can be asked about at every pose: before anything is printed.
+  void check(const LrbRep& a, const LrbRep& b) const;
 
   std::vector<Pose> poses;
   std::vector<std::string> places;

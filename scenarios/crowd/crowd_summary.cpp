@@ -60,17 +60,6 @@ void write_step(JsonWriter& w, const CrowdStep& step, std::size_t index, std::si
   w.end_array().end_object();
 }
 
-template <class Write>
-std::string as_text(const Write& write) {
-  trace::StringSink sink;
-  trace::JsonOut out(sink);
-  JsonWriter w(out, 2);
-  write(w);
-  out.raw('\n');
-  out.flush();
-  return std::move(sink.text);
-}
-
 }  // namespace
 
 void write_kinds(JsonWriter& w, const spec::Crowd& crowd, const CrowdRun& run) {
@@ -110,7 +99,7 @@ Counters sum(const CrowdStep& step) {
 }
 
 std::string crowd_summary(const spec::Crowd& crowd, const CrowdRun& run) {
-  return as_text([&](JsonWriter& w) {
+  return trace::json_text(2, [&](JsonWriter& w) {
     const std::uint64_t n = run.motion.body_count();
     w.begin_object().member("lrbscope", trace::lrbscope_version());
     w.key("crowd").begin_object();
@@ -128,7 +117,7 @@ std::string crowd_summary(const spec::Crowd& crowd, const CrowdRun& run) {
 }
 
 std::string crowd_timing(const CrowdRun& run) {
-  return as_text([&](JsonWriter& w) {
+  return trace::json_text(2, [&](JsonWriter& w) {
     w.begin_object().member("threads", run.threads).member("unit", "ns").key("steps").begin_array();
     for (const CrowdStep& s : run.steps) {
       w.begin_object().member("boxes", s.boxes_ns).member("sort_and_sweep", s.sweep_ns);

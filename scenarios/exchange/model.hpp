@@ -42,7 +42,7 @@ struct Part {
 
 struct Model {
   std::string title;            ///< what it shows, one line
-  std::vector<Column> columns;  ///< of all parts
+  std::vector<Column> columns;  ///< the same for all parts
   std::string_view quality;     ///< the column by which programs are to colour; empty: none
   std::vector<Part> parts;      ///< none is empty
 

@@ -1,6 +1,7 @@
 #include "scenarios/python/answers.hpp"
 
 #include "trace/hex.hpp"
+#include "trace/record_fields.hpp"
 
 namespace lrb::python {
 namespace {
@@ -13,15 +14,7 @@ struct Region {
 
 py::dict counters_of(const Counters& c) {
   py::dict d;
-  d["face_tests"] = c.face_tests;
-  d["real_tests"] = c.real_tests;
-  d["exact_fallbacks"] = c.exact_fallbacks;
-  d["node_pairs"] = c.node_pairs;
-  d["box_tests"] = c.box_tests;
-  d["prefilter_tests"] = c.prefilter_tests;
-  d["refinements"] = c.refinements;
-  d["regions_opened"] = c.regions_opened;
-  d["face_tests_by_level"] = c.face_tests_by_level;
+  for_each_field<Counters>([&](const auto& field) { d[field.name.data()] = c.*field.member; });
   return d;
 }
 

@@ -56,8 +56,8 @@ class SimpleCut {
   bool walk_round();
 
   std::vector<std::array<End, 2>> segments_;
-  std::array<std::vector<BorderEnd>, 3> border_;     ///< of each edge, in order
-  std::array<std::vector<std::uint32_t>, 3> cells_;  ///< at each part of each edge
+  std::array<std::vector<BorderEnd>, 3> border_;     ///< for each edge of the face: what ends on it, in order
+  std::array<std::vector<std::uint32_t>, 3> cells_;  ///< for each edge: the cell beside each of its parts
   std::uint32_t cell_count_ = 1;
 };
 

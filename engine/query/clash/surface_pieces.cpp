@@ -269,7 +269,7 @@ class CutSurface {
 
   SurfacePieces count() {
     SurfacePieces out;
-    std::map<std::uint32_t, std::uint32_t> outside;  // of each component of the surface
+    std::map<std::uint32_t, std::uint32_t> outside;  // component of the surface -> its pieces outside
     std::vector<bool> seen(nodes_.size(), false);
     const auto see = [&](std::uint32_t node, SimplexId s, const auto& where) {
       const std::uint32_t group = nodes_.of(node);

@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "engine/query/clash/clash_impl.hpp"
-#include "engine/query/collide_impl.hpp"
 #include "scenarios/bodies/body.hpp"
 #include "scenarios/cli/command.hpp"
 #include "scenarios/cli/median_time.hpp"
@@ -44,29 +43,25 @@ bool is_apart(const ClashResult& r) {
 }
 
 std::string line_of(std::size_t pose, const ClashResult& result, const ClashOptions& o, double us) {
-  trace::StringSink sink;
-  trace::JsonOut out(sink);
-  trace::JsonWriter w(out, trace::JsonWriter::kCompact);
-  w.begin_object().member("pose", std::uint64_t{pose}).member("kind", to_string(result.kind));
-  if (result.shares_faces) w.member("shares_faces", true);
-  w.key("distance").begin_array().value(result.distance.lower).value(result.distance.upper).end_array();
-  write_interval(w, "depth", result.depth);
-  if (result.depth && std::isfinite(result.depth->upper)) {
-    w.key("translation").begin_array();
-    for (int k = 0; k < 3; ++k) w.value(result.translation[k]);
-    w.end_array();
-  }
-  write_interval(w, "along", result.along);
-  write_interval(w, "volume", result.volume);
-  if (!is_apart(result) && result.kind != ClashKind::undecided) {
-    write_pieces(w, "pieces_a", result.pieces[0]);
-    write_pieces(w, "pieces_b", result.pieces[1]);
-  }
-  if (o.repeat > 0) w.member("us", us);
-  w.end_object();
-  out.raw('\n');
-  out.flush();
-  return std::move(sink.text);
+  return trace::json_text(trace::JsonWriter::kCompact, [&](trace::JsonWriter& w) {
+    w.begin_object().member("pose", std::uint64_t{pose}).member("kind", to_string(result.kind));
+    if (result.shares_faces) w.member("shares_faces", true);
+    w.key("distance").begin_array().value(result.distance.lower).value(result.distance.upper).end_array();
+    write_interval(w, "depth", result.depth);
+    if (result.depth && std::isfinite(result.depth->upper)) {
+      w.key("translation").begin_array();
+      for (int k = 0; k < 3; ++k) w.value(result.translation[k]);
+      w.end_array();
+    }
+    write_interval(w, "along", result.along);
+    write_interval(w, "volume", result.volume);
+    if (!is_apart(result) && result.kind != ClashKind::undecided) {
+      write_pieces(w, "pieces_a", result.pieces[0]);
+      write_pieces(w, "pieces_b", result.pieces[1]);
+    }
+    if (o.repeat > 0) w.member("us", us);
+    w.end_object();
+  });
 }
 
 /// Returns an interval with the digits that both ends have, or both ends.
@@ -125,9 +120,7 @@ int run_clash(ClashOptions o, const Globals& globals) {
   check_request(a.rep, o.request);
   note(globals, a.notes);
   note(globals, b.notes);
-  check_query(a.rep, Pose{}, b.rep, Pose{});
-  for (std::size_t i = 0; i < list.poses.size(); ++i)
-    list.at(i, [&] { check_query(a.rep, Pose{}, b.rep, list.poses[i]); });
+  list.check(a.rep, b.rep);
   ClashContext context;
   std::vector<Row> rows{headings(o)};
   Progress progress("clash", list.poses.size(), globals.quiet);
@@ -151,7 +144,7 @@ Command add_clash(CLI::App& root, const Globals& globals) {
   const auto o = std::make_shared<ClashOptions>();
   app->add_option("A", o->a, "Mesh or .lrb file; does not move")->required();
   app->add_option("B", o->b, "Mesh or .lrb file; the poses are applied to it")->required();
-  app->add_option("--poses", o->poses, "File with poses: lines of 12 numbers (3x4, row by row)")->required();
+  app->add_option("--poses", o->poses, io::kPoseFileHelp)->required();
   app->add_option("--clearance", o->request.clearance,
                   "Distance up to which bodies that do not meet are \"within_clearance\"")
       ->type_name("D");
@@ -160,10 +153,7 @@ Command add_clash(CLI::App& root, const Globals& globals) {
       ->expected(3)
       ->type_name("X,Y,Z");
   app->add_flag("--table", o->table, "Print a table for people instead of JSON");
-  app->add_option("--repeat", o->repeat,
-                  "Repeat each pose's query N times, and add the median time in microseconds")
-      ->check(CLI::Range(1, 1000000))
-      ->type_name("N");
+  add_repeat_option(*app, o->repeat, "pose");
   add_join_option(*app, o->corners);
   return {app, [o, &globals] { return run_clash(*o, globals); }};
 }

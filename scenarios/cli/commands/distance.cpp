@@ -2,10 +2,10 @@
 #include <memory>
 #include <utility>
 
-#include "engine/query/collide_impl.hpp"
 #include "engine/query/distance/distance_impl.hpp"
 #include "scenarios/bodies/body.hpp"
 #include "scenarios/cli/command.hpp"
+#include "scenarios/cli/commands/witness_json.hpp"
 #include "scenarios/cli/median_time.hpp"
 #include "scenarios/cli/options.hpp"
 #include "scenarios/cli/pose_lines.hpp"
@@ -23,44 +23,31 @@ struct DistanceOptions {
   bool features = false;
 };
 
-void write_point(trace::JsonWriter& w, const char* name, const Eigen::Vector3d& x) {
-  w.key(name).begin_array().value(x.x()).value(x.y()).value(x.z()).end_array();
-}
-
-/// Writes the face, and what of it is nearest: the vertices that span it.
 void write_feature(trace::JsonWriter& w, const char* name, const Witness& witness) {
-  static constexpr const char* kNames[] = {"vertex", "edge", "face"};
-  w.key(name).begin_object().member("face", witness.face.value());
-  w.member("simplex", witness.simplex.value()).member("feature", kNames[witness.corner_count - 1]);
-  w.key("vertices").begin_array();
-  for (int k = 0; k < witness.corner_count; ++k)
-    w.value(witness.corners[static_cast<std::size_t>(k)].value());
-  w.end_array().end_object();
+  w.key(name).begin_object().member("face", witness.face.value()).member("simplex", witness.simplex.value());
+  write_feature_of(w, witness);
+  w.end_object();
 }
 
 std::string line_of(std::size_t pose, const DistanceResult& result, const DistanceOptions& o, double us) {
-  trace::StringSink sink;
-  trace::JsonOut out(sink);
-  trace::JsonWriter w(out, trace::JsonWriter::kCompact);
-  w.begin_object().member("pose", std::uint64_t{pose});
-  w.member("lower", result.lower).member("upper", result.upper);
-  write_point(w, "point_a", result.witness[0].point);
-  write_point(w, "point_b", result.witness[1].point);
-  if (result.solids_meet() && result.upper > 0) w.member("solids", 0.0);
-  if (o.request.within) {
-    w.key("within");
-    result.within ? w.value(*result.within) : w.value(std::numeric_limits<double>::quiet_NaN());  // null
-  }
-  if (o.request.max_steps > 0) w.member("finished", result.finished);
-  if (o.features) {
-    write_feature(w, "on_a", result.witness[0]);
-    write_feature(w, "on_b", result.witness[1]);
-  }
-  if (o.repeat > 0) w.member("us", us);
-  w.end_object();
-  out.raw('\n');
-  out.flush();
-  return std::move(sink.text);
+  return trace::json_text(trace::JsonWriter::kCompact, [&](trace::JsonWriter& w) {
+    w.begin_object().member("pose", std::uint64_t{pose});
+    w.member("lower", result.lower).member("upper", result.upper);
+    write_vector(w, "point_a", result.witness[0].point);
+    write_vector(w, "point_b", result.witness[1].point);
+    if (result.solids_meet() && result.upper > 0) w.member("solids", 0.0);
+    if (o.request.within) {
+      w.key("within");
+      result.within ? w.value(*result.within) : w.value(std::numeric_limits<double>::quiet_NaN());  // null
+    }
+    if (o.request.max_steps > 0) w.member("finished", result.finished);
+    if (o.features) {
+      write_feature(w, "on_a", result.witness[0]);
+      write_feature(w, "on_b", result.witness[1]);
+    }
+    if (o.repeat > 0) w.member("us", us);
+    w.end_object();
+  });
 }
 
 int run_distance(const DistanceOptions& o, const Globals& globals) {
@@ -69,9 +56,7 @@ int run_distance(const DistanceOptions& o, const Globals& globals) {
   const bodies::LoadedBody a = bodies::load_faces(o.a, o.corners), b = bodies::load_faces(o.b, o.corners);
   note(globals, a.notes);
   note(globals, b.notes);
-  check_query(a.rep, Pose{}, b.rep, Pose{});
-  for (std::size_t i = 0; i < list.poses.size(); ++i)
-    list.at(i, [&] { check_query(a.rep, Pose{}, b.rep, list.poses[i]); });
+  list.check(a.rep, b.rep);
   DistanceContext context;
   Progress progress("distance", list.poses.size(), globals.quiet);
   for (std::size_t i = 0; i < list.poses.size(); ++i) {
@@ -102,10 +87,7 @@ Command add_distance(CLI::App& root, const Globals& globals) {
       ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1} << 62).description(""))
       ->type_name("N");
   app->add_flag("--features", o->features, "Add the vertex, edge or face of each body that is nearest");
-  app->add_option("--repeat", o->repeat,
-                  "Repeat each pose's query N times, and add the median time in microseconds")
-      ->check(CLI::Range(1, 1000000))
-      ->type_name("N");
+  add_repeat_option(*app, o->repeat, "pose");
   add_join_option(*app, o->corners);
   return {app, [o, &globals] { return run_distance(*o, globals); }};
 }

@@ -76,39 +76,27 @@ std::string line_of(std::size_t pose, const CollideResult& result, const QueryOp
                     const LrbRep& a, const LrbRep& b) {
   using Two = std::pair<std::uint32_t, std::uint32_t>;
   const CollideRequest& request = o.request;
-  trace::StringSink sink;
-  trace::JsonOut out(sink);
-  trace::JsonWriter w(out, trace::JsonWriter::kCompact);
-  w.begin_object().member("pose", std::uint64_t{pose}).member("relation", name_of(result.relation));
-  w.member("pairs", std::uint64_t{result.pairs.size()});
-  w.member("fingerprint", trace::to_hex(fingerprint(result.pairs)));
-  if (tells_overlap(request) && result.relation == Relation::touching)
-    w.member("interiors_overlap", name_of(result.interiors_overlap));
-  if (request.recursion != Recursion::complete) w.member("recursion", name_of(request.recursion));
-  if (request.predicates != Predicates::exact) w.member("predicates", name_of(request.predicates));
-  if (request.is_coarse()) w.member("finished", result.finished).member("error_bound", result.error_bound);
-  if (request.separation && result.separation) {
-    w.key("separation");
-    trace::write_json(w, *result.separation);
-  }
-  if (o.repeat > 0) w.member("us", us);
-  if (o.pairs) write_pairs(w, "list", result.pairs, [](const SimplexPair& p) { return Two(p.a, p.b); });
-  if (o.pairs && request.is_coarse())
-    write_pairs(w, "pseudo", result.pairs, [&](const SimplexPair& p) {
-      return Two(a.is_real_simplex(p.a) ? 0 : 1, b.is_real_simplex(p.b) ? 0 : 1);
-    });
-  w.end_object();
-  out.raw('\n');
-  out.flush();
-  return std::move(sink.text);
-}
-
-/// Throws InputError, before anything is printed, if a query cannot be asked.
-void check_queries(const LrbRep& a, const LrbRep& b, const PoseLines& list, const CollideRequest& request) {
-  check_query(a, Pose{}, b, Pose{});
-  if (request.is_coarse()) check_coarse_request(request);
-  for (std::size_t i = 0; i < list.poses.size(); ++i)
-    list.at(i, [&] { check_query(a, Pose{}, b, list.poses[i]); });
+  return trace::json_text(trace::JsonWriter::kCompact, [&](trace::JsonWriter& w) {
+    w.begin_object().member("pose", std::uint64_t{pose}).member("relation", name_of(result.relation));
+    w.member("pairs", std::uint64_t{result.pairs.size()});
+    w.member("fingerprint", trace::to_hex(fingerprint(result.pairs)));
+    if (tells_overlap(request) && result.relation == Relation::touching)
+      w.member("interiors_overlap", name_of(result.interiors_overlap));
+    if (request.recursion != Recursion::complete) w.member("recursion", name_of(request.recursion));
+    if (request.predicates != Predicates::exact) w.member("predicates", name_of(request.predicates));
+    if (request.is_coarse()) w.member("finished", result.finished).member("error_bound", result.error_bound);
+    if (request.separation && result.separation) {
+      w.key("separation");
+      trace::write_json(w, *result.separation);
+    }
+    if (o.repeat > 0) w.member("us", us);
+    if (o.pairs) write_pairs(w, "list", result.pairs, [](const SimplexPair& p) { return Two(p.a, p.b); });
+    if (o.pairs && request.is_coarse())
+      write_pairs(w, "pseudo", result.pairs, [&](const SimplexPair& p) {
+        return Two(a.is_real_simplex(p.a) ? 0 : 1, b.is_real_simplex(p.b) ? 0 : 1);
+      });
+    w.end_object();
+  });
 }
 
 /// Returns true if an answer depends on more than the bodies' faces, namely on wrappers.
@@ -126,7 +114,8 @@ int run_query(const QueryOptions& o, const Globals& globals) {
   const bodies::LoadedBody a = load(o.a), b = load(o.b);
   note(globals, a.notes);
   note(globals, b.notes);
-  check_queries(a.rep, b.rep, list, o.request);
+  list.check(a.rep, b.rep);
+  if (o.request.is_coarse()) check_coarse_request(o.request);
   if (o.request.is_coarse())
     for (const bodies::LoadedBody* body : {&a, &b}) body->rep.levels(0);
   QueryContext context;
@@ -161,10 +150,7 @@ Command add_query(CLI::App& root, const Globals& globals) {
       ->needs(separation)
       ->type_name("PNG");
   app->add_flag("--pairs", o->pairs, "Add the sorted list of pairs");
-  app->add_option("--repeat", o->repeat,
-                  "Repeat each pose's query N times, and add the median time in microseconds")
-      ->check(CLI::Range(1, 1000000))
-      ->type_name("N");
+  add_repeat_option(*app, o->repeat, "pose");
   add_join_option(*app, o->corners);
   return {app, [o, &globals] { return run_query(*o, globals); }};
 }

@@ -8,6 +8,7 @@
 #include "engine/query/motion/first_contact_impl.hpp"
 #include "scenarios/bodies/body.hpp"
 #include "scenarios/cli/command.hpp"
+#include "scenarios/cli/commands/witness_json.hpp"
 #include "scenarios/cli/median_time.hpp"
 #include "scenarios/cli/options.hpp"
 #include "scenarios/cli/progress.hpp"
@@ -25,20 +26,10 @@ struct SweepOptions {
   bodies::Corners corners = bodies::Corners::joined;
 };
 
-void write_vector(trace::JsonWriter& w, const char* name, const Eigen::Vector3d& x) {
-  w.key(name).begin_array().value(x.x()).value(x.y()).value(x.z()).end_array();
-}
-
-/// Writes the face, and what of it is nearest: the vertices that span it.
 void write_feature(trace::JsonWriter& w, const char* name, const Witness& witness) {
-  static constexpr const char* kNames[] = {"vertex", "edge", "face"};
   if (witness.corner_count == 0) return;
   w.key(name).begin_object().member("face", witness.face.value());
-  w.member("feature", kNames[witness.corner_count - 1]);
-  w.key("vertices").begin_array();
-  for (int k = 0; k < witness.corner_count; ++k)
-    w.value(witness.corners[static_cast<std::size_t>(k)].value());
-  w.end_array();
+  write_feature_of(w, witness);
   write_vector(w, "point", witness.point);
   w.end_object();
 }
@@ -66,27 +57,23 @@ void write_history(trace::JsonWriter& w, const FirstContactResult& result) {
 }
 
 std::string line_of(std::size_t motion, const FirstContactResult& result, const SweepOptions& o, double us) {
-  trace::StringSink sink;
-  trace::JsonOut out(sink);
-  trace::JsonWriter w(out, trace::JsonWriter::kCompact);
-  w.begin_object().member("motion", std::uint64_t{motion});
-  w.key("contact");
-  if (result.outcome == MotionOutcome::undecided)
-    w.value(std::numeric_limits<double>::quiet_NaN());  // null
-  else
-    w.value(result.is_contact());
-  if (result.outcome != MotionOutcome::never) w.member("t0", result.t0).member("t1", result.t1);
-  if (result.is_contact()) write_contact(w, result, o);
-  if (result.grazing) w.member("grazing", true);
-  if (!result.finished) w.member("finished", false);
-  if (result.at_begin == Relation::a_inside_b || result.at_begin == Relation::b_inside_a)
-    w.member("inside", to_string(result.at_begin));
-  if (o.request.history) write_history(w, result);
-  if (o.repeat > 0) w.member("us", us);
-  w.end_object();
-  out.raw('\n');
-  out.flush();
-  return std::move(sink.text);
+  return trace::json_text(trace::JsonWriter::kCompact, [&](trace::JsonWriter& w) {
+    w.begin_object().member("motion", std::uint64_t{motion});
+    w.key("contact");
+    if (result.outcome == MotionOutcome::undecided)
+      w.value(std::numeric_limits<double>::quiet_NaN());  // null
+    else
+      w.value(result.is_contact());
+    if (result.outcome != MotionOutcome::never) w.member("t0", result.t0).member("t1", result.t1);
+    if (result.is_contact()) write_contact(w, result, o);
+    if (result.grazing) w.member("grazing", true);
+    if (!result.finished) w.member("finished", false);
+    if (result.at_begin == Relation::a_inside_b || result.at_begin == Relation::b_inside_a)
+      w.member("inside", to_string(result.at_begin));
+    if (o.request.history) write_history(w, result);
+    if (o.repeat > 0) w.member("us", us);
+    w.end_object();
+  });
 }
 
 /// The motions of B, each checked, so that a mistake is told before the first answer.
@@ -141,10 +128,7 @@ Command add_sweep(CLI::App& root, const Globals& globals) {
   app->add_flag("--features", o->features, "Add the vertex, edge or face of each body that meet first");
   app->add_flag("--history", o->request.history,
                 "Add the spans of t that were looked at, and what was known then");
-  app->add_option("--repeat", o->repeat,
-                  "Repeat each motion's query N times, and add the median time in microseconds")
-      ->check(CLI::Range(1, 1000000))
-      ->type_name("N");
+  add_repeat_option(*app, o->repeat, "motion");
   add_join_option(*app, o->corners);
   return {app, [o, &globals] { return run_sweep(*o, globals); }};
 }
