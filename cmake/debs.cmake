@@ -64,8 +64,8 @@ endif()
 if(python IN_LIST CPACK_COMPONENTS_ALL)
   set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-lrbscope)
   set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
-  math(EXPR lrb_next_python "${Python3_VERSION_MINOR} + 1")
-  set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "python3 (>= 3.${Python3_VERSION_MINOR}~), python3 (<< 3.${lrb_next_python}), \
+  math(EXPR lrb_next_python "${LRB_PYTHON_MINOR} + 1")
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "python3 (>= 3.${LRB_PYTHON_MINOR}~), python3 (<< 3.${lrb_next_python}), \
 python3-numpy, fonts-dejavu-core")
   set(CPACK_COMPONENT_PYTHON_DESCRIPTION "${lrb_about}This package has the Python module, for numpy's arrays.")
 endif()

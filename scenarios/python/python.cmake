@@ -19,6 +19,7 @@ function(lrb_find_python why)
     return()
   endif()
   set(LRB_PYTHON_EXECUTABLE "${Python3_EXECUTABLE}" CACHE INTERNAL "")
+  set(LRB_PYTHON_MINOR ${Python3_VERSION_MINOR} CACHE INTERNAL "Its version's second number, for cmake/debs.cmake")
 endfunction()
 
 set(lrb_no_python "")
