@@ -1,8 +1,9 @@
 #!/usr/bin/env bash
 # readers.sh LRBSCOPE: exports a run and has programs of others open the files: readers.py reads VTP, PLY and GLB as their
 # specifications say, with nothing of ours, and VTK (Debian's python3-vtk9) all of them where it is; assimp (assimp-utils) PLY,
-# OBJ and GLB; Khronos' validator (npm's gltf-validator) GLB. All must find the same faces and numbers. Says which were not
-# there. Skipped (77) without python3. LRB_NODE_MODULES: where gltf-validator is installed, if node does not find it.
+# OBJ and GLB; Khronos' validator (npm's gltf-validator) GLB; speedscope (npm's, in Chromium) the trace. All must find the same
+# faces and numbers. Says which were not there. Skipped (77) without python3. LRB_NODE_MODULES: where npm's packages are
+# installed, if node does not find them.
 set -euo pipefail
 lrbscope=$(realpath "$1")
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
@@ -38,3 +39,7 @@ if command -v node >/dev/null && node -e 'require.resolve("gltf-validator")' 2>/
 else
   echo "gltf-validator is not here (npm install gltf-validator): not asked"
 fi
+
+status=0
+"$here/speedscope.sh" run/trace.json 'lrbscope: stick_through_wall (pid 1), time steps (tid 1)' || status=$?
+[ $status = 0 ] || [ $status = 77 ] || exit 1
