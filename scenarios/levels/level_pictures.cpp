@@ -24,16 +24,16 @@ constexpr double kPieces = 120;  ///< pieces of lids along the largest side: abo
 const render::Lighting kSoft{.ambient = 0.78, .head = 0.1, .key = 0.16, .fill = 0.05};
 
 /// Returns the camera that shows the body and the coarsest of the wrappers.
-render::Camera camera_for(const Sitter& sitter, std::span<const ShownLevel> levels) {
-  const LrbRep& rep = *sitter.rep;
+render::Camera camera_for(const ShownBody& shown, std::span<const ShownLevel> levels) {
+  const LrbRep& rep = *shown.rep;
   double coarsest = 0;
   for (const ShownLevel& l : levels) coarsest = std::max(coarsest, l.figures.tolerance);
   std::vector<Eigen::Vector3d> points;
-  for (const FaceId f : bodies::wrapper_at(rep, coarsest, sitter.threads).boundary())
+  for (const FaceId f : bodies::wrapper_at(rep, coarsest, shown.threads).boundary())
     for (const VertexId v : rep.face(f)) points.push_back(rep.vertices()[v]);
   if (rep.dim() == 2) return render::fit_top(points, kPanelWidth, kPanelHeight);
   render::FitOptions fit;
-  fit.view = sitter.view;
+  fit.view = shown.view;
   return render::fit_camera(points, kPanelWidth, kPanelHeight, fit);
 }
 
@@ -178,9 +178,9 @@ std::string caption_of(const bodies::LevelFigures& level, double size) {
          " faces, " + (level.bound > 0 ? "proved " + upward_text(level.bound / size) : "the body itself");
 }
 
-render::Image draw_wrappers(const Sitter& sitter, std::span<const ShownLevel> levels) {
-  const LrbRep& rep = *sitter.rep;
-  const render::Camera camera = camera_for(sitter, levels);
+render::Image draw_wrappers(const ShownBody& shown, std::span<const ShownLevel> levels) {
+  const LrbRep& rep = *shown.rep;
+  const render::Camera camera = camera_for(shown, levels);
   render::Rasterizer rasterizer;
   std::vector<render::Panel> panels;
   if (levels.front().figures.bound > 0) {  // none of them is the body itself
@@ -191,8 +191,8 @@ render::Image draw_wrappers(const Sitter& sitter, std::span<const ShownLevel> le
   }
   for (const ShownLevel& l : levels)
     panels.push_back(
-        {draw_scene(rasterizer, rep, bodies::wrapper_at(rep, l.figures.tolerance, sitter.threads), camera),
-         caption_of(l.figures, sitter.size)});
+        {draw_scene(rasterizer, rep, bodies::wrapper_at(rep, l.figures.tolerance, shown.threads), camera),
+         caption_of(l.figures, shown.size)});
   render::Overlay overlay;
   overlay.title = rep.name() + ": wrappers at a row of tolerances";
   overlay.event =
@@ -201,9 +201,9 @@ render::Image draw_wrappers(const Sitter& sitter, std::span<const ShownLevel> le
   return with_overlay(render::montage(panels, montage_options()), overlay);
 }
 
-render::Image draw_distances(const Sitter& sitter, std::span<ShownLevel> levels) {
-  const LrbRep& rep = *sitter.rep;
-  const render::Camera camera = camera_for(sitter, levels);
+render::Image draw_distances(const ShownBody& shown, std::span<ShownLevel> levels) {
+  const LrbRep& rep = *shown.rep;
+  const render::Camera camera = camera_for(shown, levels);
   render::Overlay overlay;
   overlay.title = rep.name() + ": how far its wrappers are off";
   overlay.event = "Colours are measured, point by point; numbers are proved.";
@@ -216,14 +216,14 @@ render::Image draw_distances(const Sitter& sitter, std::span<ShownLevel> levels)
   std::vector<render::Panel> panels;
   for (ShownLevel& l : levels) {
     const std::vector<FaceId> boundary =
-        bodies::wrapper_at(rep, l.figures.tolerance, sitter.threads).boundary();
+        bodies::wrapper_at(rep, l.figures.tolerance, shown.threads).boundary();
     std::vector<FaceId> lids;
     for (const FaceId f : boundary)
       if (!rep.is_real(f)) lids.push_back(f);
-    const MeasuredLids measured = measure_lids(rep, lids, sitter.size / kPieces, sitter.threads);
+    const MeasuredLids measured = measure_lids(rep, lids, shown.size / kPieces, shown.threads);
     l.sampled = measured.largest;
-    const render::DrawList list = distance_list(rep, boundary, measured, *overlay.scale, sitter.size);
-    panels.push_back({rasterizer.draw(list, camera, raster), caption_of(l.figures, sitter.size)});
+    const render::DrawList list = distance_list(rep, boundary, measured, *overlay.scale, shown.size);
+    panels.push_back({rasterizer.draw(list, camera, raster), caption_of(l.figures, shown.size)});
   }
   return with_overlay(render::montage(panels, montage_options()), overlay);
 }

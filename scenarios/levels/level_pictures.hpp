@@ -10,8 +10,8 @@
 
 namespace lrb::levels {
 
-/// What the pictures are of.
-struct Sitter {
+/// The body in the pictures, and how it is seen.
+struct ShownBody {
   const LrbRep* rep;
   double size;  ///< largest side of the body's box, which distances are shares of
   render::ViewDirection view;
@@ -25,11 +25,11 @@ struct ShownLevel {
 };
 
 /// Draws the body and its wrappers side by side, each with its faces and what it is proved to be off.
-render::Image draw_wrappers(const Sitter& sitter, std::span<const ShownLevel> levels);
+render::Image draw_wrappers(const ShownBody& shown, std::span<const ShownLevel> levels);
 
 /// Draws how far the lids of each wrapper are from the body, on one scale for all, and notes the largest
 /// distance of each level.
-render::Image draw_distances(const Sitter& sitter, std::span<ShownLevel> levels);
+render::Image draw_distances(const ShownBody& shown, std::span<ShownLevel> levels);
 
 /// Returns what stands below a panel.
 std::string caption_of(const bodies::LevelFigures& level, double size);

@@ -119,13 +119,13 @@ void check_drawable(const LrbRep& rep, std::vector<double>& shares) {
 std::vector<std::string> write_level_report(const LrbRep& rep, const LevelReportOptions& options,
                                             const std::string& folder) {
   std::vector<std::string> notes;
-  const Sitter sitter{&rep, bodies::largest_side(rep), options.view, options.threads};
+  const ShownBody shown{&rep, bodies::largest_side(rep), options.view, options.threads};
   LevelCurve curve{
-      sitter.size, rep.real_face_count(), many_levels(rep, options.shares, options.threads), {}, {}};
+      shown.size, rep.real_face_count(), many_levels(rep, options.shares, options.threads), {}, {}};
   for (const bodies::LevelFigures& l : bodies::level_figures(rep, options.shares, options.threads))
     curve.shown.push_back({l, 0});
-  const render::Image wrappers = draw_wrappers(sitter, curve.shown);
-  const render::Image distances = draw_distances(sitter, curve.shown);
+  const render::Image wrappers = draw_wrappers(shown, curve.shown);
+  const render::Image distances = draw_distances(shown, curve.shown);
   std::vector<std::uint32_t> counts;
   for (const ShownLevel& l : curve.shown)
     if (l.figures.bound > 0 && (counts.empty() || l.figures.faces < counts.back()))

@@ -22,7 +22,7 @@ constexpr double kAside = 0.45;  ///< how far the viewer stands aside from the o
 const render::Lighting kSoft{.ambient = 0.78, .head = 0.1, .key = 0.16, .fill = 0.05};
 
 /// What one panel shows.
-struct Sitter {
+struct PanelView {
   Side side;
   const CloseUp* collision;
   const CollideResult* contact;  ///< of its last time step
@@ -30,12 +30,12 @@ struct Sitter {
   bool near;                     ///< where the bodies meet, else the whole body
 };
 
-std::vector<double> tests_of(const PaperPair& pair, const Sitter& s) {
+std::vector<double> tests_of(const PaperPair& pair, const PanelView& s) {
   const trace::FaceCounts counts = trace::count_faces(pair.rep(s.side), s.side, s.collision->trace.events);
   return {counts.tests.begin(), counts.tests.end()};
 }
 
-Pose pose_of(const Sitter& s) {
+Pose pose_of(const PanelView& s) {
   const ContactStep& last = s.collision->steps.back();
   return s.side == Side::a ? last.pose_a : last.pose_x;
 }
@@ -47,7 +47,7 @@ Eigen::AlignedBox3d box_of(const LrbRep& rep, const Pose& pose) {
 }
 
 /// Returns the direction from the place of the other body, a little aside, onto the faces that it met.
-render::ViewDirection view_of(const PaperPair& pair, const Sitter& s) {
+render::ViewDirection view_of(const PaperPair& pair, const PanelView& s) {
   const ContactStep& last = s.collision->steps.back();
   const Eigen::Vector3d way =
       box_of(pair.x.rep, last.pose_x).center() - box_of(pair.a.rep, last.pose_a).center();
@@ -74,7 +74,7 @@ std::vector<Eigen::Vector3d> largest_contact(const CollideResult& contact) {
   return render::contact_points(std::span(&*largest, 1));
 }
 
-render::Camera camera_of(const PaperPair& pair, const Sitter& s) {
+render::Camera camera_of(const PaperPair& pair, const PanelView& s) {
   const LrbRep& rep = pair.rep(s.side);
   render::FitOptions fit;
   fit.view = view_of(pair, s);
@@ -92,7 +92,7 @@ double share(double tests, double most) {
 
 /// Draws the wrapper as the last time step left it, without anything translucent, so that colours are those
 /// of the scale; and where the bodies meet.
-render::DrawList wrapper_list(const PaperPair& pair, const Sitter& s, double most) {
+render::DrawList wrapper_list(const PaperPair& pair, const PanelView& s, double most) {
   const LrbRep& rep = pair.rep(s.side);
   const std::vector<double> tests = tests_of(pair, s);
   trace::Cursor cursor(s.collision->trace, pair.a.rep, pair.x.rep);
@@ -122,7 +122,7 @@ render::DrawList wrapper_list(const PaperPair& pair, const Sitter& s, double mos
   return list;
 }
 
-render::Panel draw_panel(render::Rasterizer& rasterizer, const PaperPair& pair, const Sitter& s,
+render::Panel draw_panel(render::Rasterizer& rasterizer, const PaperPair& pair, const PanelView& s,
                          double most) {
   render::RasterOptions raster;
   raster.width = kPanelWidth;
@@ -138,20 +138,20 @@ render::Panel draw_panel(render::Rasterizer& rasterizer, const PaperPair& pair, 
 
 render::Image draw_heat_maps(const PaperPair& pair, const CloseUp& easiest, const CloseUp& hardest) {
   const CollideResult contacts[2] = {contact_of(pair, easiest), contact_of(pair, hardest)};
-  std::vector<Sitter> sitters;
+  std::vector<PanelView> sitters;
   for (const bool hard : {false, true})
     for (const Side side : {Side::a, Side::b})
       for (const bool near : {false, true})
         sitters.push_back(
             {side, hard ? &hardest : &easiest, &contacts[hard ? 1 : 0], hard ? "hardest" : "easiest", near});
   double most = 0;
-  for (const Sitter& s : sitters) {
+  for (const PanelView& s : sitters) {
     const std::vector<double> tests = tests_of(pair, s);
     most = std::max(most, *std::max_element(tests.begin(), tests.end()));
   }
   render::Rasterizer rasterizer;
   std::vector<render::Panel> panels;
-  for (const Sitter& s : sitters) panels.push_back(draw_panel(rasterizer, pair, s, most));
+  for (const PanelView& s : sitters) panels.push_back(draw_panel(rasterizer, pair, s, most));
   render::MontageOptions options;
   options.columns = 4;
   options.text_height = 28;

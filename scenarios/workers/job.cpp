@@ -14,7 +14,7 @@ namespace {
 constexpr int kPatience = 3;  // number of cases in a row on which a method may hang
 constexpr int kBadInput = 2;  // an exit code that does not count as a crash
 
-std::string epitaph(int status) {
+std::string how_it_ended(int status) {
   if (status >= 0) return "ended with exit code " + std::to_string(status);
   const char* name = strsignal(-status);
   return "died of signal " + std::to_string(-status) +
@@ -53,11 +53,11 @@ void Job::receive() {
   if (more) return;
   const int status = child_->wait();
   if (status == kBadInput || status == kNoSuchProgram)
-    throw EnvironmentError(task_.command.front() + ": " + epitaph(status) + "; build it again");
+    throw EnvironmentError(task_.command.front() + ": " + how_it_ended(status) + "; build it again");
   if (next_ == task_.end)
     child_.reset();  // whatever became of it after its last line does not matter
   else
-    go_on({false, epitaph(status)});
+    go_on({false, how_it_ended(status)});
 }
 
 void Job::expire() {
