@@ -27,10 +27,6 @@ endforeach()
 
 # Programs that are compiled again go on with a later minor version from 1.0 on; those that are not need the one that they were
 # compiled for, whose number is part of the name by which they find a shared library (docs/compatibility.md).
-set(lrb_compatible SameMajorVersion)
-if(PROJECT_VERSION_MAJOR EQUAL 0)
-  set(lrb_compatible SameMinorVersion)
-endif()
 set(lrb_soversion ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
 
 set(LRB_CMAKE_DIR ${CMAKE_INSTALL_LIBDIR}/cmake/lrbscope)
@@ -116,6 +112,6 @@ if(BUILD_SHARED_LIBS)
 endif()
 configure_package_config_file(${PROJECT_SOURCE_DIR}/cmake/lrbscopeConfig.cmake.in
                               ${CMAKE_CURRENT_BINARY_DIR}/lrbscopeConfig.cmake INSTALL_DESTINATION ${LRB_CMAKE_DIR})
-write_basic_package_version_file(${CMAKE_CURRENT_BINARY_DIR}/lrbscopeConfigVersion.cmake COMPATIBILITY ${lrb_compatible})
+write_basic_package_version_file(${CMAKE_CURRENT_BINARY_DIR}/lrbscopeConfigVersion.cmake COMPATIBILITY SameMajorVersion)
 install(FILES ${CMAKE_CURRENT_BINARY_DIR}/lrbscopeConfig.cmake ${CMAKE_CURRENT_BINARY_DIR}/lrbscopeConfigVersion.cmake
         DESTINATION ${LRB_CMAKE_DIR})

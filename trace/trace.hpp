@@ -31,7 +31,7 @@ inline constexpr std::uint32_t kTraceVersion = 3;
 /// The name of the format in a trace's metadata.
 inline constexpr std::string_view kTraceFormat = "lrbscope trace";
 
-/// Returns the version of lrbscope that this library was built from, e.g. "0.1.0".
+/// Returns the version of lrbscope that this library was built from, e.g. "1.0.0".
 const char* lrbscope_version();
 
 /// Index of an event in Trace::events; kNull: none.

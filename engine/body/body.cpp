@@ -89,7 +89,8 @@ Body Body::made(Mesh mesh, const BodyOptions& options, std::vector<std::string> 
                                   : make_body_of_faces(std::move(checked), options.turn);
   notes.insert(notes.end(), made.notes.begin(), made.notes.end());
   if (!made.rep.closed()) notes.push_back(note_no_solid(made.rep));
-  return Body(std::make_shared<const Held>(Held{std::move(made.rep), std::move(notes), made.turned}));
+  auto rep = std::make_shared<const LrbRep>(std::move(made.rep));
+  return Body(std::make_shared<const Held>(Held{std::move(rep), std::move(notes), made.turned}));
 }
 
 Expected<Body> Body::from_rows(std::span<const double> coordinates, std::size_t each,
@@ -121,8 +122,12 @@ Expected<Body> Body::from(Mesh mesh, const BodyOptions& options) try {
 }
 
 Body Body::from(LrbRep rep) {
+  return from(std::make_shared<const LrbRep>(std::move(rep)));
+}
+
+Body Body::from(std::shared_ptr<const LrbRep> rep) {
   std::vector<std::string> notes;
-  if (!rep.closed()) notes.push_back(note_no_solid(rep));
+  if (!rep->closed()) notes.push_back(note_no_solid(*rep));
   return Body(std::make_shared<const Held>(Held{std::move(rep), std::move(notes), 0}));
 }
 

@@ -52,14 +52,15 @@ class Body {
   /// Does the same for a mesh; its name is used, unless it has none.
   static Expected<Body> from(Mesh mesh, const BodyOptions& options = {});
 
-  /// Takes an LRB-rep that has been made elsewhere.
+  /// Takes an LRB-rep that has been made elsewhere, and that others may have, too.
   static Body from(LrbRep rep);
+  static Body from(std::shared_ptr<const LrbRep> rep);
 
   /// Reads a mesh file as read_mesh() does, or an .lrb file, told apart by content. An .lrb is taken as it is.
   static Expected<Body> load(const std::string& path, const BodyOptions& options = {});
 
-  const LrbRep& rep() const { return held_->rep; }
-  operator const LrbRep&() const { return held_->rep; }
+  const LrbRep& rep() const { return *held_->rep; }
+  operator const LrbRep&() const { return *held_->rep; }
 
   const std::string& name() const { return rep().name(); }
   int dim() const { return rep().dim(); }
@@ -77,7 +78,7 @@ class Body {
 
  private:
   struct Held {
-    LrbRep rep;
+    std::shared_ptr<const LrbRep> rep;
     std::vector<std::string> notes;
     std::uint32_t turned = 0;
   };

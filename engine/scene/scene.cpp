@@ -55,9 +55,43 @@ Near near_of_two(const Party& a, const Party& b, std::uint32_t i, std::uint32_t 
   return {gap, a.standing[i].key, b.standing[j].key, i, j};
 }
 
-PosedPair posed(const Party& a, const Party& b, const Near& near) {
-  const Standing &x = a.standing[near.a], &y = b.standing[near.b];
-  return {x.rep, x.pose, y.rep, y.pose};
+/// Whose pairs are asked about: those of one party, or of two.
+struct Parties {
+  Party a, b;
+  bool is_one = false;
+
+  /// Calls see(near) for the pairs whose boxes are no further apart than `limit`, which see() may lower.
+  template <class See>
+  void each_near(const double& limit, const See& see) const {
+    if (is_one)
+      each_near_pair(a.boxes, limit,
+                     [&](std::uint32_t i, std::uint32_t j, double gap) { see(near_of_one(a, i, j, gap)); });
+    else
+      each_near_pair(a.boxes, b.boxes, limit, [&](std::uint32_t i, std::uint32_t j, double gap) {
+        see(near_of_two(a, b, i, j, gap));
+      });
+  }
+
+  PosedPair posed(const Near& near) const {
+    const Standing &x = a.standing[near.a], &y = b.standing[near.b];
+    return {x.rep, x.pose, y.rep, y.pose};
+  }
+};
+
+/// Returns the pair whose boxes are nearest to each other.
+std::optional<Near> nearest_of(const Parties& parties) {
+  std::optional<Near> nearest;
+  double limit = std::numeric_limits<double>::infinity();
+  parties.each_near(limit, [&](const Near& n) {
+    if (nearest && !(n < *nearest)) return;
+    nearest = n;
+    limit = n.gap;
+  });
+  return nearest;
+}
+
+double distance_of(const DistanceResult& found, Apart apart) {
+  return apart == Apart::solids ? found.solids_upper() : found.upper;
 }
 
 /// Returns true if an answer is one that a scene tells.
@@ -83,12 +117,18 @@ class Scene::Held {
   const Pose& pose(BodyKey key) const { return standing_[place_of_.at(key)].pose; }
   std::vector<BodyKey> keys() const;
 
-  /// Returns all bodies, with boxes as they stand now.
-  Party party();
-  std::span<const SceneAnswer> collide(const CollideRequest& request);
-  std::span<const SceneAnswer> collide(const Party& a, const Party& b, const CollideRequest& request);
-  std::optional<SceneDistance> nearest(const DistanceRequest& request);
-  std::optional<SceneDistance> nearest(const Party& a, const Party& b, const DistanceRequest& request);
+  void reserve(std::size_t bodies);
+
+  /// Return whose pairs are asked about, with boxes as they stand now: those of the scene; of a body from outside and
+  /// one of the scene; of the scene and another.
+  Parties own();
+  Parties with(const Party& outside) { return {outside, party(), false}; }
+  Parties with(Held& other);
+
+  std::span<const ScenePair> near(const Parties& parties, double within);
+  std::optional<ScenePair> nearest_boxes(const Parties& parties) const;
+  std::span<const SceneAnswer> collide(const Parties& parties, const CollideRequest& request);
+  std::optional<SceneDistance> nearest(const Parties& parties, const DistanceRequest& request, Apart apart);
 
   Work work;
 
@@ -102,13 +142,12 @@ class Scene::Held {
   };
 
   std::uint32_t free_place();
+  void add_places(std::size_t more);
   std::shared_ptr<const BodyExtent> extent_of(const LrbRep& rep);
-  std::span<const SceneAnswer> ask(const Party& a, const Party& b, std::vector<Near>& near,
-                                   const CollideRequest& request);
-  void measure(const Party& a, const Party& b, std::span<const Near> near, DistanceRequest request);
-  template <class EachNear>
-  std::optional<SceneDistance> nearest_of(const Party& a, const Party& b, const DistanceRequest& request,
-                                          const EachNear& each_near);
+  Party party();
+  std::vector<Near> find_near(const Parties& parties, double within);
+  std::vector<Near> sweep(const Party& all);
+  void measure(const Parties& parties, std::span<const Near> near, DistanceRequest request);
 
   Workers workers_;
   Batch batch_;
@@ -124,6 +163,7 @@ class Scene::Held {
   std::unordered_map<BodyKey, std::uint32_t> place_of_;
   std::unordered_map<std::uint64_t, std::weak_ptr<const BodyExtent>> extents_;  ///< by LrbRep::serial()
 
+  std::vector<ScenePair> near_;
   std::vector<PosedPair> questions_;
   CollideAnswers answers_;
   DistanceAnswers distances_;
@@ -138,16 +178,22 @@ std::vector<BodyKey> Scene::Held::keys() const {
   return out;
 }
 
-/// Returns a slot where nobody stands. Slots come in numbers, so that the broad phase seldom sees more boxes than
-/// before, which makes it give up its order.
+/// Adds places where nobody stands. The broad phase gives up its order when it sees more boxes than before.
+void Scene::Held::add_places(std::size_t more) {
+  const std::size_t before = slots_.size();
+  for (std::size_t i = before + more; i-- > before;) free_.push_back(static_cast<std::uint32_t>(i));
+  slots_.resize(before + more);
+  standing_.resize(before + more);
+  boxes_.resize(before + more);
+}
+
+void Scene::Held::reserve(std::size_t bodies) {
+  if (bodies > slots_.size()) add_places(bodies - slots_.size());
+}
+
 std::uint32_t Scene::Held::free_place() {
-  if (free_.empty()) {
-    const std::size_t before = slots_.size(), more = std::max<std::size_t>(16, before / 2);
-    for (std::size_t i = before + more; i-- > before;) free_.push_back(static_cast<std::uint32_t>(i));
-    slots_.resize(before + more);
-    standing_.resize(before + more);
-    boxes_.resize(before + more);
-  }
+  constexpr std::size_t kFew = 16;
+  if (free_.empty()) add_places(std::max(kFew, slots_.size() / 2));
   const std::uint32_t place = free_.back();
   free_.pop_back();
   return place;
@@ -211,11 +257,54 @@ Party Scene::Held::party() {
   return {boxes_, standing_};
 }
 
-std::span<const SceneAnswer> Scene::Held::ask(const Party& a, const Party& b, std::vector<Near>& near,
-                                              const CollideRequest& request) {
+Parties Scene::Held::own() {
+  const Party all = party();
+  return {all, all, true};
+}
+
+Parties Scene::Held::with(Held& other) {
+  const Party others = other.party();
+  return {party(), others, false};
+}
+
+/// Finds the pairs of a scene whose boxes meet, by the broad phase.
+std::vector<Near> Scene::Held::sweep(const Party& all) {
+  constexpr std::size_t kShareThatStays = 8;
+  // Each body that comes or goes is carried through the order: of many, sorting is quicker.
+  if (std::exchange(came_and_gone_, 0) > slots_.size() / kShareThatStays) sweep_ = {};
+  std::vector<Near> near;
+  for (const BodyPair& p : sweep_.update(all.boxes)) near.push_back(near_of_one(all, p.i, p.j, 0));
+  work.broad_phase = sweep_.work();
+  return near;
+}
+
+std::vector<Near> Scene::Held::find_near(const Parties& parties, double within) {
+  std::vector<Near> near;
+  if (parties.is_one && !(within > 0))
+    near = sweep(parties.a);
+  else
+    parties.each_near(within, [&](const Near& n) { near.push_back(n); });
   std::sort(near.begin(), near.end());
+  work.near = near.size();
+  return near;
+}
+
+std::span<const ScenePair> Scene::Held::near(const Parties& parties, double within) {
+  near_.clear();
+  for (const Near& n : find_near(parties, within)) near_.push_back({n.key_a, n.key_b, n.gap});
+  return near_;
+}
+
+std::optional<ScenePair> Scene::Held::nearest_boxes(const Parties& parties) const {
+  const std::optional<Near> found = nearest_of(parties);
+  if (!found) return {};
+  return ScenePair{found->key_a, found->key_b, found->gap};
+}
+
+std::span<const SceneAnswer> Scene::Held::collide(const Parties& parties, const CollideRequest& request) {
+  const std::vector<Near> near = find_near(parties, 0);
   questions_.clear();
-  for (const Near& n : near) questions_.push_back(posed(a, b, n));
+  for (const Near& n : near) questions_.push_back(parties.posed(n));
   batch_.collide(questions_, request, answers_);
   std::size_t count = 0;
   for (std::size_t i = 0; i < near.size(); ++i) {
@@ -226,95 +315,39 @@ std::span<const SceneAnswer> Scene::Held::ask(const Party& a, const Party& b, st
     std::swap(told_[count].result, answers_[i]);  // what was told before is memory for the next answers
     ++count;
   }
-  work.near = near.size();
   return std::span<const SceneAnswer>(told_).first(count);
 }
 
-std::span<const SceneAnswer> Scene::Held::collide(const CollideRequest& request) {
-  constexpr std::size_t kShareThatStays = 8;
-  // Each body that comes or goes is carried through the order: of many, sorting is quicker.
-  if (std::exchange(came_and_gone_, 0) > slots_.size() / kShareThatStays) sweep_ = {};
-  const Party all = party();
-  std::vector<Near> near;
-  for (const BodyPair& p : sweep_.update(boxes_)) near.push_back(near_of_one(all, p.i, p.j, 0));
-  work.swaps = sweep_.work().swaps;
-  work.sorted_afresh = sweep_.work().sorted_afresh;
-  return ask(all, all, near, request);
-}
-
-std::span<const SceneAnswer> Scene::Held::collide(const Party& a, const Party& b,
-                                                  const CollideRequest& request) {
-  std::vector<Near> near;
-  const double touching = 0;
-  scene::each_near_pair(a.boxes, b.boxes, touching, [&](std::uint32_t i, std::uint32_t j, double gap) {
-    near.push_back(near_of_two(a, b, i, j, gap));
-  });
-  return ask(a, b, near, request);
-}
-
 /// Asks how far pairs are apart, into distances_.
-void Scene::Held::measure(const Party& a, const Party& b, std::span<const Near> near,
-                          DistanceRequest request) {
+void Scene::Held::measure(const Parties& parties, std::span<const Near> near, DistanceRequest request) {
   request.within.reset();
   questions_.clear();
-  for (const Near& n : near) questions_.push_back(posed(a, b, n));
+  for (const Near& n : near) questions_.push_back(parties.posed(n));
   batch_.distance(questions_, request, distances_);
 }
 
-/// Finds the nearest pair. each_near(limit, see): calls see(near) for the pairs whose boxes are no further apart
-/// than `limit`, which see() may lower.
-template <class EachNear>
-std::optional<SceneDistance> Scene::Held::nearest_of(const Party& a, const Party& b,
-                                                     const DistanceRequest& request,
-                                                     const EachNear& each_near) {
+std::optional<SceneDistance> Scene::Held::nearest(const Parties& parties, const DistanceRequest& request,
+                                                  Apart apart) {
   // Asks about this many at a time, whatever the number of threads: what they find spares queries about the next.
   constexpr std::size_t kAtATime = 64;
-  std::optional<Near> likely;
-  double limit = std::numeric_limits<double>::infinity();
-  each_near(limit, [&](const Near& n) {
-    if (likely && !(n < *likely)) return;
-    likely = n;
-    limit = n.gap;
-  });
+  const std::optional<Near> likely = nearest_of(parties);
   if (!likely) return {};
-  std::vector<Near> near = {*likely};
-  measure(a, b, near, request);
+  measure(parties, std::span(&*likely, 1), request);
   SceneDistance best{likely->key_a, likely->key_b, distances_[0]};
   if (!best.result) return best;
-  near.clear();
-  limit = best.result->upper;
-  each_near(limit, [&](const Near& n) { near.push_back(n); });
-  std::sort(near.begin(), near.end());
+  const std::vector<Near> near = find_near(parties, distance_of(*best.result, apart));
   for (std::size_t asked = 0; asked < near.size(); asked += kAtATime) {
-    const double upper = best.result->upper;
+    const double upper = distance_of(*best.result, apart);
     if (upper == 0 || near[asked].gap > upper) break;
     const auto some = std::span(near).subspan(asked, std::min(kAtATime, near.size() - asked));
-    measure(a, b, some, request);
+    measure(parties, some, request);
     for (std::size_t i = 0; i < some.size(); ++i) {
       const SceneDistance found{some[i].key_a, some[i].key_b, distances_[i]};
       if (!found.result) return found;
-      if (found.result->upper < best.result->upper) best = found;
+      if (distance_of(*found.result, apart) < distance_of(*best.result, apart)) best = found;
     }
   }
   return best;
-}
-
-std::optional<SceneDistance> Scene::Held::nearest(const DistanceRequest& request) {
-  const Party all = party();
-  return nearest_of(all, all, request, [&](const double& limit, const auto& see) {
-    scene::each_near_pair(all.boxes, limit, [&](std::uint32_t i, std::uint32_t j, double gap) {
-      see(near_of_one(all, i, j, gap));
-    });
-  });
-}
-
-std::optional<SceneDistance> Scene::Held::nearest(const Party& a, const Party& b,
-                                                  const DistanceRequest& request) {
-  return nearest_of(a, b, request, [&](const double& limit, const auto& see) {
-    scene::each_near_pair(a.boxes, b.boxes, limit, [&](std::uint32_t i, std::uint32_t j, double gap) {
-      see(near_of_two(a, b, i, j, gap));
-    });
-  });
 }
 
 namespace {
@@ -336,6 +369,9 @@ Scene::~Scene() = default;
 Scene::Scene(Scene&&) noexcept = default;
 Scene& Scene::operator=(Scene&&) noexcept = default;
 
+void Scene::reserve(std::size_t bodies) {
+  held_->reserve(bodies);
+}
 BodyKey Scene::add(Body body, const Pose& pose) {
   return held_->add(std::move(body), pose);
 }
@@ -361,28 +397,50 @@ std::vector<BodyKey> Scene::keys() const {
   return held_->keys();
 }
 
+std::span<const ScenePair> Scene::near(double within) {
+  return held_->near(held_->own(), within);
+}
+std::span<const ScenePair> Scene::near(const Body& body, const Pose& pose, double within) {
+  const Alone alone(body, pose);
+  return held_->near(held_->with(alone), within);
+}
+std::span<const ScenePair> Scene::near(Scene& other, double within) {
+  return held_->near(held_->with(*other.held_), within);
+}
+
+std::optional<ScenePair> Scene::nearest_boxes() {
+  return held_->nearest_boxes(held_->own());
+}
+std::optional<ScenePair> Scene::nearest_boxes(const Body& body, const Pose& pose) {
+  const Alone alone(body, pose);
+  return held_->nearest_boxes(held_->with(alone));
+}
+std::optional<ScenePair> Scene::nearest_boxes(Scene& other) {
+  return held_->nearest_boxes(held_->with(*other.held_));
+}
+
 std::span<const SceneAnswer> Scene::collide(const CollideRequest& request) {
-  return held_->collide(request);
+  return held_->collide(held_->own(), request);
 }
 std::span<const SceneAnswer> Scene::collide(const Body& body, const Pose& pose,
                                             const CollideRequest& request) {
-  return held_->collide(Alone(body, pose), held_->party(), request);
+  const Alone alone(body, pose);
+  return held_->collide(held_->with(alone), request);
 }
 std::span<const SceneAnswer> Scene::collide(Scene& other, const CollideRequest& request) {
-  const Party others = other.held_->party();
-  return held_->collide(held_->party(), others, request);
+  return held_->collide(held_->with(*other.held_), request);
 }
 
-std::optional<SceneDistance> Scene::nearest(const DistanceRequest& request) {
-  return held_->nearest(request);
+std::optional<SceneDistance> Scene::nearest(const DistanceRequest& request, Apart apart) {
+  return held_->nearest(held_->own(), request, apart);
 }
 std::optional<SceneDistance> Scene::nearest(const Body& body, const Pose& pose,
-                                            const DistanceRequest& request) {
-  return held_->nearest(Alone(body, pose), held_->party(), request);
+                                            const DistanceRequest& request, Apart apart) {
+  const Alone alone(body, pose);
+  return held_->nearest(held_->with(alone), request, apart);
 }
-std::optional<SceneDistance> Scene::nearest(Scene& other, const DistanceRequest& request) {
-  const Party others = other.held_->party();
-  return held_->nearest(held_->party(), others, request);
+std::optional<SceneDistance> Scene::nearest(Scene& other, const DistanceRequest& request, Apart apart) {
+  return held_->nearest(held_->with(*other.held_), request, apart);
 }
 
 const Scene::Work& Scene::work() const {

@@ -73,10 +73,6 @@ py::object separation_of(const Answer& answer) {
   return d;
 }
 
-bool in_contact(const CollideResult& r) {
-  return !r.pairs.empty() || r.relation == Relation::a_inside_b || r.relation == Relation::b_inside_a;
-}
-
 std::string shown(const Answer& answer) {
   const CollideResult& r = *answer.result;
   return std::string("<lrbscope.Result ") + to_string(r.relation) + ", " + std::to_string(r.pairs.size()) +
@@ -250,6 +246,10 @@ void bind_region(py::module_& m) {
 }
 
 }  // namespace
+
+bool in_contact(const CollideResult& r) {
+  return !r.pairs.empty() || r.relation == Relation::a_inside_b || r.relation == Relation::b_inside_a;
+}
 
 std::size_t checked_index(py::ssize_t i, std::size_t n) {
   const auto size = static_cast<py::ssize_t>(n);

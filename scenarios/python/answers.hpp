@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <memory>
 #include <vector>
 
@@ -14,13 +15,20 @@ struct Answer {
   std::shared_ptr<const LrbRep> a, b;
 };
 
-/// Answers for many poses, in their order.
+/// Answers in the order of the questions: for many poses of two bodies, or for many pairs.
 struct Answers {
   std::shared_ptr<const std::vector<CollideResult>> all;
   std::shared_ptr<const LrbRep> a, b;
+  /// The bodies of each answer, where these differ; a and b are nothing then.
+  std::vector<std::array<std::shared_ptr<const LrbRep>, 2>> each;
 
-  Answer at(std::size_t i) const { return {{all, &(*all)[i]}, a, b}; }
+  Answer at(std::size_t i) const {
+    return each.empty() ? Answer{{all, &(*all)[i]}, a, b} : Answer{{all, &(*all)[i]}, each[i][0], each[i][1]};
+  }
 };
+
+/// Returns true if bodies are known to have a point in common.
+bool in_contact(const CollideResult& r);
 
 /// Returns an element of a list-like object as Python counts, from the end if negative; throws IndexError.
 std::size_t checked_index(py::ssize_t i, std::size_t n);

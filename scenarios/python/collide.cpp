@@ -44,7 +44,7 @@ py::object collide_many(const Body& a, const Pose& pose_a, const Body& b, const 
   run_batch(poses_b.size(), threads, [&](std::size_t i, unsigned worker) {
     (*results)[i] = ask(a.rep(), pose_a, b.rep(), poses_b[i], request, contexts[worker]);
   });
-  return py::cast(Answers{std::move(results), a.shared(), b.shared()});
+  return py::cast(Answers{std::move(results), a.shared(), b.shared(), {}});
 }
 
 py::object collide(py::handle a, py::handle b, py::handle poses_b, py::handle pose_a, py::handle mode,
@@ -87,11 +87,10 @@ py::list collide_pairs(const py::sequence& bodies_a, py::handle poses_a, const p
   const py::none no;
   const CollideRequest request = request_of({mode, contacts, no, no, no, no, no, max_pairs, no});
   const unsigned n = threads_of(count(threads, "threads"));
-  auto results = std::make_shared<std::vector<CollideResult>>(a.reps.size());
-  std::vector<QueryContext> contexts(n);
-  run_batch(a.reps.size(), n, [&](std::size_t i, unsigned worker) {
-    (*results)[i] = ask(*a.reps[i], a.poses[i], *b.reps[i], b.poses[i], request, contexts[worker]);
-  });
+  std::vector<PosedPair> pairs;
+  for (std::size_t i = 0; i < a.reps.size(); ++i)
+    pairs.push_back({a.reps[i].get(), a.poses[i], b.reps[i].get(), b.poses[i]});
+  const auto results = std::make_shared<std::vector<CollideResult>>(answers_of(pairs, request, n));
   py::list out;
   for (std::size_t i = 0; i < results->size(); ++i)
     out.append(Answer{{results, &(*results)[i]}, a.reps[i], b.reps[i]});
@@ -168,6 +167,18 @@ such lists.
 [1])";
 
 }  // namespace
+
+std::vector<CollideResult> answers_of(std::span<const PosedPair> pairs, const CollideRequest& request,
+                                      unsigned threads) {
+  std::vector<CollideResult> results(pairs.size());
+  std::vector<QueryContext> contexts(threads);
+  const std::vector<std::size_t> order = order_by_bodies(pairs);
+  run_batch(pairs.size(), threads, [&](std::size_t k, unsigned worker) {
+    const PosedPair& p = pairs[order[k]];
+    results[order[k]] = ask(*p.a, p.pose_a, *p.b, p.pose_b, request, contexts[worker]);
+  });
+  return results;
+}
 
 CollideRequest request_of(const RequestArguments& given) {
   CollideRequest r;

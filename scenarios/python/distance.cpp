@@ -169,6 +169,10 @@ void bind_many(py::module_& m) {
 
 }  // namespace
 
+py::object distance_object(DistanceResult result) {
+  return py::cast(Distance{std::make_shared<DistanceResult>(std::move(result))});
+}
+
 void bind_distance(py::module_& m) {
   bind_one(m);
   bind_many(m);

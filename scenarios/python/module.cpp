@@ -2,11 +2,14 @@
 #include "scenarios/python/body.hpp"
 #include "scenarios/python/boxes.hpp"
 #include "scenarios/python/clash.hpp"
+#include "scenarios/python/coherent.hpp"
 #include "scenarios/python/collide.hpp"
 #include "scenarios/python/distance.hpp"
+#include "scenarios/python/explain.hpp"
 #include "scenarios/python/first_contact.hpp"
 #include "scenarios/python/recorded.hpp"
 #include "scenarios/python/scenario.hpp"
+#include "scenarios/python/scene.hpp"
 #include "scenarios/python/wrapper.hpp"
 #include "trace/trace.hpp"
 
@@ -27,6 +30,9 @@ PYBIND11_MODULE(_core, m) {
   bind_distance(m);
   bind_first_contact(m);
   bind_clash(m);
+  bind_scene(m);
+  bind_coherent(m);
+  bind_explain(m);
   bind_wrapper(m);
   bind_boxes(m);
   bind_recorded(m);

@@ -182,7 +182,7 @@ void bind_trace(py::module_& m) {
   c.def_property_readonly(
       "results",
       [](const Recorded& r) {
-        return Answers{r.results, r.bodies[0], r.bodies.back()};
+        return Answers{r.results, r.bodies[0], r.bodies.back(), {}};
       },
       "Results: the answers of the steps.");
   c.def_property_readonly(

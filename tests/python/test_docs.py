@@ -3,6 +3,7 @@
 import ast
 import doctest
 import inspect
+import json
 import os
 import re
 import subprocess
@@ -113,11 +114,14 @@ def blocks(page):
     return [(text[: m.start()].count("\n") + 1, m.group(1)) for m in found]
 
 
-@pytest.mark.parametrize("page", ["docs/python.md", "README.md"])
+@pytest.mark.parametrize("page", ["docs/python.md", "docs/formats.md", "README.md"])
 def test_blocks_of_pages_run(page, tmp_path):
     """All blocks of a page as one script, in a folder with the files that they read."""
     lrbscope.Body(*ball_arrays(4)).save(tmp_path / "cow.obj")
     lrbscope.Body(*cube_arrays(1.3)).save(tmp_path / "man.obj")
+    (tmp_path / "poses.json").write_text(
+        json.dumps([shifted(i, 0, 0)[:3].ravel().tolist() for i in range(2)])
+    )
     found = blocks(page)
     assert found
     script = "\n".join("\n" * 2 + f"# {page}:{line}\n" + text for line, text in found)

@@ -266,3 +266,37 @@ def test_a_callback_ends_the_walk():
     found = []
     m.distance(found, lambda o1, o2, data: (data.append(1) or False, 1.0))
     assert len(found) == 10, "all boxes are nearer than 1"
+
+
+def test_a_mesh_that_is_built_anew_is_asked_anew():
+    triangles = np.array([[0, 2, 1], [0, 3, 2], [0, 1, 3], [1, 2, 3]])
+    corners = np.vstack([np.zeros(3), np.eye(3)])
+    mesh = model(corners, triangles)
+    m = manager(fcl.CollisionObject(mesh), fcl.CollisionObject(fcl.Box(1, 1, 1), at(5)))
+    data = fcl.CollisionData()
+    m.collide(data, fcl.defaultCollisionCallback)
+    assert not data.result.is_collision
+    mesh.beginModel()
+    mesh.addSubModel(corners * 9, triangles)
+    mesh.endModel()
+    m.collide(data, fcl.defaultCollisionCallback)
+    assert data.result.is_collision and m.size() == 2
+
+
+def test_the_nearest_of_many(rng):
+    """A manager's distance is the least of all pairs, and few pairs are asked about."""
+    places = rng.uniform(-20, 20, (40, 3))
+    spheres = [fcl.CollisionObject(fcl.Sphere(0.25), fcl.Transform(p)) for p in places]
+    m, asked = manager(*spheres), []
+
+    def callback(o1, o2, data):
+        asked.append((o1, o2))
+        return fcl.defaultDistanceCallback(o1, o2, data)
+
+    data = fcl.DistanceData()
+    m.distance(data, callback)
+    least = min(fcl.distance(a, b) for i, a in enumerate(spheres) for b in spheres[:i])
+    assert data.result.min_distance == least and len(asked) < 40
+    lone, data = fcl.CollisionObject(fcl.Box(1, 1, 1), at(50)), fcl.DistanceData()
+    m.distance(lone, data, fcl.defaultDistanceCallback)
+    assert data.result.min_distance == min(fcl.distance(s, lone) for s in spheres)

@@ -52,9 +52,9 @@ def test_single(three, box):
     assert hit and names == {"a", "b"}
     hit, data = three.in_collision_single(box, shifted(9.5, 0.1, 0.1), return_data=True)
     assert hit and data and {frozenset(c.names) for c in data} == {frozenset(("far", "__external"))}
-    body = three._objects["far"].body
-    wanted = lrbscope.collide(body, body, shifted(9.5, 0.1, 0.1), shifted(9, 0, 0))
-    assert sorted([c.index("far"), c.index("__external")] for c in data) == wanted.pairs.tolist()
+    body = three.add_object("far", box, shifted(9, 0, 0))
+    wanted = lrbscope.collide(body, body, shifted(9, 0, 0), shifted(9.5, 0.1, 0.1))
+    assert sorted([c.index("__external"), c.index("far")] for c in data) == wanted.pairs.tolist()
     for c in data:
         assert c.point.shape == (3,) and (c.point >= (9.5, 0, 0)).all() and (c.point <= (10, 1.1, 1.1)).all()
         assert np.isclose(np.linalg.norm(c.normal), 1) and c.depth >= 0
@@ -85,7 +85,7 @@ def test_distances(three, box):
     distance, name, data = three.min_distance_single(box, at, return_name=True, return_data=True)
     assert name == "far" and data.names == {"far", "__external"} and data.distance == distance
     assert data.point("far")[0] == 10 and data.point("__external")[0] == 12
-    body = three._objects["far"].body
+    body = three.add_object("far", box, shifted(9, 0, 0))
     assert body.vertices[body.faces[data.index("far")]][:, 0].max() == 1
     assert three.min_distance_internal() == 0
     three.remove_object("b")
@@ -125,7 +125,8 @@ def test_objects_come_and_go(box):
         m.add_object("z", 3)
     with pytest.raises(InputError, match=r"transform: expected shape \(4, 4\)"):
         m.add_object("z", box, np.eye(3))
-    assert "z" not in m._objects
+    with pytest.raises(ValueError, match="z not in collision manager!"):
+        m.remove_object("z")
     changed = Mesh(box.vertices * 2, box.faces)
     assert m.add_object("x", changed) is not body
 
@@ -140,14 +141,21 @@ def test_names_of_any_kind(box):
 def test_many_against_all_pairs(rng):
     m, mesh = CollisionManager(), Mesh(*ball_arrays(1, 0.5))
     poses = random_poses(rng, 60, 3)
-    for i, pose in enumerate(poses):
-        m.add_object(i, mesh, pose)
-    body = m._objects[0].body
+    bodies = [m.add_object(i, mesh, pose) for i, pose in enumerate(poses)]
     pairs = [(i, j) for j in range(60) for i in range(j)]
-    apart = {(i, j): lrbscope.distance(body, body, poses[j], poses[i]).solids[1] for i, j in pairs}
-    assert m.in_collision_internal(return_names=True)[1] == {pair for pair, d in apart.items() if d == 0}
-    for pair in [pair for pair, d in apart.items() if d == 0]:
-        if pair[0] in m._objects:
-            m.remove_object(pair[0])
-    left = {pair: d for pair, d in apart.items() if all(i in m._objects for i in pair)}
+    apart = {(i, j): lrbscope.distance(bodies[i], bodies[j], poses[j], poses[i]).solids[1] for i, j in pairs}
+    meeting = {pair for pair, d in apart.items() if d == 0}
+    assert m.in_collision_internal(return_names=True)[1] == meeting
+    gone = set()
+    for first, _ in meeting:
+        if first not in gone:
+            m.remove_object(first)
+            gone.add(first)
+    left = {pair: d for pair, d in apart.items() if not gone & set(pair)}
     assert m.min_distance_internal(return_names=True) == (min(left.values()), min(left, key=left.get))
+
+
+def test_a_manager_against_itself(three):
+    names = three.in_collision_other(three, return_names=True)[1]
+    assert names == {(n, n) for n in ("a", "b", "far")} | {("a", "b"), ("b", "a")}
+    assert three.min_distance_other(three) == 0

@@ -107,6 +107,31 @@ def check_conda(tree, version):
     return cmake_options(recipe["build"]["script"])
 
 
+def check_pyproject(tree, version):
+    """pip's: pyproject.toml takes the version from CMakeLists.txt, and names a target and a component that there are."""
+    try:
+        import tomllib
+    except ImportError:
+        print("tomllib is not here (Python 3.11): pyproject.toml was not parsed")
+        return
+    with open(tree + "/pyproject.toml", "rb") as file:
+        project = tomllib.load(file)
+    settings = project["tool"]["scikit-build"]
+    found = settings["metadata"]["version"]
+    text = open(os.path.join(tree, found["input"])).read()
+    need(re.search(found["regex"], text).group("value") == version, "pyproject.toml finds another version")
+    need("version" in project["project"]["dynamic"], "pyproject.toml has a version of its own")
+    for key in ("readme", "license"):
+        file = project["project"][key]
+        need(os.path.exists(os.path.join(tree, file if key == "readme" else file["file"])), "pyproject.toml: no " + key)
+    cmake = open(tree + "/scenarios/python/python.cmake").read()
+    for target in settings["build"]["targets"]:
+        need("add_custom_target(%s " % target in cmake, "pyproject.toml builds %s, which is no target" % target)
+    for component in settings["install"]["components"]:
+        need("COMPONENT " + component in cmake, "pyproject.toml installs %s, which is no component" % component)
+    need(settings["cmake"]["build-type"] == "Release", "pyproject.toml builds what is slow")
+
+
 def main():
     tree, options = sys.argv[1:]
     cmake = open(tree + "/CMakeLists.txt").read()
@@ -114,6 +139,7 @@ def main():
     known = set(re.findall(r"option\((LRB_\w+)|set\((LRB_\w+)[^)]*\bCACHE\b", cmake))
     known = {a or b for a, b in known}
     check_vcpkg(tree, version)
+    check_pyproject(tree, version)
     of_vcpkg = cmake_options([open(options).read()])
     of_conan, of_conda = check_conan(tree, version), check_conda(tree, version)
     for who, found in (("vcpkg", of_vcpkg), ("Conan", of_conan), ("conda", of_conda or of_vcpkg)):

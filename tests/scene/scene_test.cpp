@@ -8,6 +8,7 @@
 #include <doctest/doctest.h>
 
 #include "engine/query/brute_force.hpp"
+#include "engine/query/world_box.hpp"
 #include "scenarios/bodies/shapes/random_pose.hpp"
 #include "scenarios/bodies/shapes/shapes.hpp"
 
@@ -232,7 +233,7 @@ TEST_CASE("thousands of bodies: the order is kept while they move by little") {
   any.mode = Mode::any_pair;
   const std::size_t met = scene.collide(any).size();
   CHECK(met > keys.size());
-  CHECK(scene.work().sorted_afresh);
+  CHECK(scene.work().broad_phase.sorted_afresh);
   for (int step = 0; step < 5; ++step) {
     for (const BodyKey key : keys) {
       Pose pose = scene.pose(key);
@@ -241,10 +242,84 @@ TEST_CASE("thousands of bodies: the order is kept while they move by little") {
     }
     CHECK(scene.collide(any).size() == met);
     CHECK(scene.work().moved == keys.size());
-    CHECK(!scene.work().sorted_afresh);
-    CHECK(scene.work().swaps < keys.size());
+    CHECK(!scene.work().broad_phase.sorted_afresh);
+    CHECK(scene.work().broad_phase.swaps < keys.size());
   }
   scene.move(keys[5], Pose{});
   scene.collide(any);
   CHECK(scene.work().moved == 1);
+}
+
+TEST_CASE("pairs whose boxes are near, nearest first, against all pairs of boxes") {
+  RandomEngine random(18);
+  const std::vector<Body> bodies = some_bodies();
+  Scene scene(2);
+  std::map<BodyKey, Eigen::AlignedBox3d> boxes;
+  for (int i = 0; i < 40; ++i) {
+    const Body& body = bodies[random() % bodies.size()];
+    const Pose pose = random_place(random, 9);
+    boxes[scene.add(body, pose)] = world_box(body, pose);
+  }
+  for (const double within : {0.0, 0.3, 2.0, 100.0}) {
+    std::size_t expected = 0;
+    double least = std::numeric_limits<double>::infinity();
+    for (auto i = boxes.begin(); i != boxes.end(); ++i)
+      for (auto j = std::next(i); j != boxes.end(); ++j) {
+        const double gap = i->second.exteriorDistance(j->second);
+        least = std::min(least, gap);
+        if (gap <= within) ++expected;
+      }
+    const auto near = scene.near(within);
+    CHECK(near.size() == expected);
+    CHECK(near[0].gap == doctest::Approx(least));
+    for (std::size_t k = 0; k < near.size(); ++k) {
+      CHECK(near[k].a < near[k].b);
+      CHECK(near[k].gap == doctest::Approx(boxes[near[k].a].exteriorDistance(boxes[near[k].b])));
+      if (k > 0)
+        CHECK(std::tuple(near[k - 1].gap, near[k - 1].a, near[k - 1].b) <
+              std::tuple(near[k].gap, near[k].a, near[k].b));
+    }
+    const auto nearest = scene.nearest_boxes();
+    REQUIRE(nearest.has_value());
+    CHECK(std::pair(nearest->a, nearest->b) == std::pair(near[0].a, near[0].b));
+  }
+  CHECK(!Scene().nearest_boxes());
+  const Pose far = Pose::translation({50, 0, 0});
+  CHECK(scene.near(bodies[0], far).empty());
+  CHECK(scene.near(bodies[0], far, 1e3).size() == boxes.size());
+  CHECK(scene.near(bodies[0], far, 1e3)[0].b == scene.nearest_boxes(bodies[0], far)->b);
+  Scene other;
+  const BodyKey lone = other.add(bodies[0], far);
+  CHECK(scene.nearest_boxes(other)->b == lone);
+  CHECK(other.nearest_boxes(scene)->gap == scene.nearest_boxes(other)->gap);
+}
+
+TEST_CASE("the nearest solids: a body in another one is nearer than any beside it") {
+  Scene scene;
+  const Body big = Body::from(shapes::icosphere(2, 3)).value(),
+             small = Body::from(shapes::tetrahedron(1)).value();
+  const BodyKey outer = scene.add(big), inner = scene.add(small);
+  const BodyKey beside = scene.add(small, Pose::translation({4.5, 0, 0}));
+  const auto surfaces = scene.nearest();
+  const auto solids = scene.nearest({}, Apart::solids);
+  CHECK(std::pair(surfaces->a, surfaces->b) == std::pair(outer, beside));
+  CHECK(std::pair(solids->a, solids->b) == std::pair(outer, inner));
+  CHECK(solids->result->solids_upper() == 0);
+  CHECK(solids->result->upper > surfaces->result->upper);
+}
+
+TEST_CASE("a scene with room for its bodies keeps its order as they come") {
+  Scene scene;
+  scene.reserve(30);
+  const Body ball = Body::from(shapes::icosphere(0, 0.4)).value();
+  for (int i = 0; i < 26; ++i) scene.add(ball, Pose::translation({1.0 * i, 0, 0}));
+  scene.near();
+  for (int i = 26; i < 30; ++i) {
+    scene.add(ball, Pose::translation({1.0 * i, 0, 0}));
+    CHECK(scene.near().empty());
+    CHECK(!scene.work().broad_phase.sorted_afresh);
+  }
+  scene.add(ball);  // one more than there is room for
+  CHECK(scene.near().size() == 1);
+  CHECK(scene.work().broad_phase.sorted_afresh);
 }

@@ -11,7 +11,7 @@ required_conan_version = ">=2.0"
 
 class LrbscopeConan(ConanFile):
     name = "lrbscope"
-    version = "0.1.0"
+    version = "1.0.0"
     package_type = "static-library"
     description = "An exact two-body collision engine that can be watched: the engine, as a library"
     license = "MIT"

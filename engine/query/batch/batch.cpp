@@ -9,6 +9,16 @@
 
 namespace lrb {
 
+std::vector<std::size_t> order_by_bodies(std::span<const PosedPair> pairs) {
+  std::vector<std::size_t> order(pairs.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::sort(order.begin(), order.end(), [&](std::size_t x, std::size_t y) {
+    const auto key = [&](std::size_t i) { return std::tuple(pairs[i].a->serial(), pairs[i].b->serial(), i); };
+    return key(x) < key(y);
+  });
+  return order;
+}
+
 class Batch::Work {
  public:
   explicit Work(unsigned threads) : workers_(threads), workspaces_(workers_.count()) {}
@@ -20,25 +30,16 @@ class Batch::Work {
     workers_.for_each(n, [&](std::size_t i, unsigned worker) { ask(i, workspaces_[worker]); });
   }
 
-  /// Does the same for pairs, those of the same two bodies after one another, because a workspace then keeps more of
-  /// what it has.
+  /// Does the same for pairs, those of the same two bodies after one another.
   template <class Ask>
   void for_each(std::span<const PosedPair> pairs, const Ask& ask) {
-    order_.resize(pairs.size());
-    std::iota(order_.begin(), order_.end(), std::size_t{0});
-    std::sort(order_.begin(), order_.end(), [&](std::size_t x, std::size_t y) {
-      const auto key = [&](std::size_t i) {
-        return std::tuple(pairs[i].a->serial(), pairs[i].b->serial(), i);
-      };
-      return key(x) < key(y);
-    });
-    for_each(pairs.size(), [&](std::size_t k, Workspace& workspace) { ask(order_[k], workspace); });
+    const std::vector<std::size_t> order = order_by_bodies(pairs);
+    for_each(pairs.size(), [&](std::size_t k, Workspace& workspace) { ask(order[k], workspace); });
   }
 
  private:
   Workers workers_;
   std::vector<Workspace> workspaces_;  ///< (threads)
-  std::vector<std::size_t> order_;
 };
 
 Batch::Batch(unsigned threads) : work_(std::make_unique<Work>(threads)) {}

@@ -3,6 +3,7 @@
 /// any number of threads. (Only a limit in seconds, CollideRequest::max_time, depends on the machine.) A question that
 /// is refused has its reason in its place, and the others their answers.
 
+#include <cstddef>
 #include <memory>
 #include <span>
 #include <vector>
@@ -21,6 +22,10 @@ struct PosedPair {
   const LrbRep* b = nullptr;
   Pose pose_b;
 };
+
+/// Returns the numbers of the pairs in an order in which those of the same two bodies follow each other: the memory of
+/// queries then keeps more of what it has.
+std::vector<std::size_t> order_by_bodies(std::span<const PosedPair> pairs);
 
 using CollideAnswers = std::vector<Expected<CollideResult>>;
 using DistanceAnswers = std::vector<Expected<DistanceResult>>;

@@ -13,6 +13,7 @@ _Path = str | bytes | PathLike[str] | PathLike[bytes]
 _Floats = npt.NDArray[np.float64]
 _Ids = npt.NDArray[np.uint32]
 _Flags = npt.NDArray[np.bool_]
+_Keys = npt.NDArray[np.int64]
 _Mode = Literal["all", "first", "any"]
 _Recursion = Literal["complete", "paper", "paper_strict"]
 _Relation = Literal["separate", "crossing", "touching", "a_inside_b", "b_inside_a", "undefined", "unresolved"]
@@ -29,6 +30,28 @@ _Colours = Literal[
     "plane_tests",
 ]
 _Vector = npt.ArrayLike
+# One pose has one answer, many have as many. The number of an array's dimensions is no part of its type: what
+# is asked with an array has an answer of either kind, Any.
+_Rows = Sequence[Sequence[float]]
+_Poses = Sequence[npt.NDArray[Any]] | Sequence[_Rows]
+_Array = npt.NDArray[Any]
+_Meet = Literal["disjoint", "touch", "cross"]
+_DecidedBy = Literal["node_boxes", "needles", "face_boxes", "planes", "floats", "exact"]
+_ClashKind = Literal[
+    "apart",
+    "within_clearance",
+    "touching_point",
+    "touching_edge",
+    "touching_face",
+    "protrudes",
+    "pierces",
+    "cuts_through",
+    "a_inside_b",
+    "b_inside_a",
+    "equal",
+    "undecided",
+]
+_Feature = Literal["corner", "edge", "inside"]
 _Progress = Callable[[str, int, int], object]
 
 class InputError(ValueError): ...
@@ -59,7 +82,7 @@ class Body:
     @property
     def all_vertices(self) -> _Floats: ...
     @property
-    def faces(self) -> Any: ...
+    def faces(self) -> _Ids | list[_Ids]: ...
     @property
     def triangles(self) -> _Ids: ...
     @property
@@ -121,7 +144,7 @@ class Result:
     @property
     def points(self) -> tuple[_Floats, _Ids]: ...
     @property
-    def counters(self) -> dict[str, Any]: ...
+    def counters(self) -> dict[str, int | list[int]]: ...
     @property
     def error_bound(self) -> float: ...
     @property
@@ -149,6 +172,10 @@ class Results:
     @overload
     def __getitem__(self, i: slice) -> list[Result]: ...
 
+class Meetings(Results):
+    @property
+    def keys(self) -> _Keys: ...
+
 class Distance:
     @property
     def lower(self) -> float: ...
@@ -171,7 +198,7 @@ class Distance:
     @property
     def faces(self) -> tuple[int, int]: ...
     @property
-    def features(self) -> tuple[str, str]: ...
+    def features(self) -> tuple[_Feature, _Feature]: ...
     @property
     def corners(self) -> tuple[_Ids, _Ids]: ...
     @property
@@ -188,7 +215,7 @@ class Distances:
 
 class Clash:
     @property
-    def kind(self) -> str: ...
+    def kind(self) -> _ClashKind: ...
     @property
     def interiors_overlap(self) -> bool | None: ...
     @property
@@ -242,6 +269,92 @@ class FirstContacts:
     def t1(self) -> _Floats: ...
     def __len__(self) -> int: ...
     def __getitem__(self, i: int) -> FirstContact: ...
+
+class CoherentQuery:
+    def __init__(
+        self,
+        a: Body,
+        b: Body,
+        *,
+        mode: _Mode | None = None,
+        contacts: bool | None = None,
+        interiors_overlap: bool | None = None,
+        max_pairs: int | None = None,
+        always: bool | None = None,
+    ) -> None: ...
+    def collide(self, pose_b: npt.ArrayLike | None = None, pose_a: npt.ArrayLike | None = None) -> Result: ...
+    @property
+    def statistics(self) -> dict[str, int]: ...
+    @property
+    def a(self) -> Body: ...
+    @property
+    def b(self) -> Body: ...
+
+class PairExplanation:
+    @property
+    def meet(self) -> _Meet: ...
+    @property
+    def decided_by(self) -> _DecidedBy: ...
+    @property
+    def hidden_by(self) -> tuple[_Ids, _Ids]: ...
+    @property
+    def points(self) -> _Floats: ...
+    @property
+    def distance(self) -> float: ...
+    def dict(self) -> dict[str, Any]: ...
+
+class WalkExplanation:
+    @property
+    def result(self) -> Result: ...
+    @property
+    def plane(self) -> tuple[_Floats, float, float] | None: ...
+    @property
+    def near_pairs(self) -> _Ids: ...
+    def dict(self) -> dict[str, Any]: ...
+
+class Scene:
+    def __init__(self, *, threads: int | None = None) -> None: ...
+    def add(self, body: Body, pose: npt.ArrayLike | None = None) -> int: ...
+    def remove(self, key: int) -> None: ...
+    @overload
+    def move(self, key: int, pose: npt.ArrayLike) -> None: ...
+    @overload
+    def move(self, key: Sequence[int] | npt.NDArray[np.integer[Any]], pose: npt.ArrayLike) -> None: ...
+    def body(self, key: int) -> Body: ...
+    def pose(self, key: int) -> _Floats: ...
+    @property
+    def keys(self) -> _Keys: ...
+    def near(
+        self,
+        within: float | None = None,
+        other: Scene | Body | None = None,
+        pose: npt.ArrayLike | None = None,
+    ) -> tuple[_Keys, _Floats]: ...
+    def nearest_boxes(
+        self, other: Scene | Body | None = None, pose: npt.ArrayLike | None = None
+    ) -> tuple[int, int, float] | None: ...
+    def collide(
+        self,
+        other: Scene | Body | None = None,
+        pose: npt.ArrayLike | None = None,
+        *,
+        mode: _Mode | None = None,
+        contacts: bool | None = None,
+        interiors_overlap: bool | None = None,
+        max_pairs: int | None = None,
+    ) -> Meetings: ...
+    def any_meet(self, other: Scene | Body | None = None, pose: npt.ArrayLike | None = None) -> bool: ...
+    def nearest(
+        self,
+        other: Scene | Body | None = None,
+        pose: npt.ArrayLike | None = None,
+        *,
+        solids: bool | None = None,
+        relative_tolerance: float | None = None,
+        tolerance: float | None = None,
+    ) -> tuple[int, int, Distance] | None: ...
+    def __len__(self) -> int: ...
+    def __contains__(self, key: object) -> bool: ...
 
 class Wrapper:
     def __init__(self, body: Body, mode: Literal["regularised", "unregularised"] | None = None) -> None: ...
@@ -324,11 +437,47 @@ class SweepAndPrune:
     def __init__(self) -> None: ...
     def update(self, boxes: npt.ArrayLike) -> _Ids: ...
 
-# A pose of two dimensions has one answer, of three as many; what stubs cannot tell apart is Any.
+@overload
 def collide(
     a: Body,
     b: Body,
-    poses_b: npt.ArrayLike | None = None,
+    poses_b: _Rows | None = None,
+    pose_a: npt.ArrayLike | None = None,
+    *,
+    mode: _Mode | None = None,
+    contacts: bool | None = None,
+    interiors_overlap: bool | None = None,
+    tolerance: float | None = None,
+    max_tests: int | None = None,
+    max_time: float | None = None,
+    separation: bool | None = None,
+    max_pairs: int | None = None,
+    recursion: _Recursion | None = None,
+    threads: int | None = None,
+) -> Result: ...
+@overload
+def collide(
+    a: Body,
+    b: Body,
+    poses_b: _Poses,
+    pose_a: npt.ArrayLike | None = None,
+    *,
+    mode: _Mode | None = None,
+    contacts: bool | None = None,
+    interiors_overlap: bool | None = None,
+    tolerance: float | None = None,
+    max_tests: int | None = None,
+    max_time: float | None = None,
+    separation: bool | None = None,
+    max_pairs: int | None = None,
+    recursion: _Recursion | None = None,
+    threads: int | None = None,
+) -> Results: ...
+@overload
+def collide(
+    a: Body,
+    b: Body,
+    poses_b: _Array,
     pose_a: npt.ArrayLike | None = None,
     *,
     mode: _Mode | None = None,
@@ -353,19 +502,69 @@ def collide_pairs(
     max_pairs: int | None = None,
     threads: int | None = None,
 ) -> list[Result]: ...
+@overload
 def contacts(
     a: Body,
     b: Body,
-    poses_b: npt.ArrayLike | None = None,
+    poses_b: _Rows | None = None,
+    pose_a: npt.ArrayLike | None = None,
+    *,
+    max_pairs: int | None = None,
+    threads: int | None = None,
+) -> list[ContactRegion]: ...
+@overload
+def contacts(
+    a: Body,
+    b: Body,
+    poses_b: _Poses,
+    pose_a: npt.ArrayLike | None = None,
+    *,
+    max_pairs: int | None = None,
+    threads: int | None = None,
+) -> list[list[ContactRegion]]: ...
+@overload
+def contacts(
+    a: Body,
+    b: Body,
+    poses_b: _Array,
     pose_a: npt.ArrayLike | None = None,
     *,
     max_pairs: int | None = None,
     threads: int | None = None,
 ) -> Any: ...
+@overload
 def distance(
     a: Body,
     b: Body,
-    poses_b: npt.ArrayLike | None = None,
+    poses_b: _Rows | None = None,
+    pose_a: npt.ArrayLike | None = None,
+    *,
+    within: float | None = None,
+    tolerance: float | None = None,
+    relative_tolerance: float | None = None,
+    max_steps: int | None = None,
+    relation: bool | None = None,
+    threads: int | None = None,
+) -> Distance: ...
+@overload
+def distance(
+    a: Body,
+    b: Body,
+    poses_b: _Poses,
+    pose_a: npt.ArrayLike | None = None,
+    *,
+    within: float | None = None,
+    tolerance: float | None = None,
+    relative_tolerance: float | None = None,
+    max_steps: int | None = None,
+    relation: bool | None = None,
+    threads: int | None = None,
+) -> Distances: ...
+@overload
+def distance(
+    a: Body,
+    b: Body,
+    poses_b: _Array,
     pose_a: npt.ArrayLike | None = None,
     *,
     within: float | None = None,
@@ -375,10 +574,37 @@ def distance(
     relation: bool | None = None,
     threads: int | None = None,
 ) -> Any: ...
+@overload
 def clash(
     a: Body,
     b: Body,
-    poses_b: npt.ArrayLike | None = None,
+    poses_b: _Rows | None = None,
+    pose_a: npt.ArrayLike | None = None,
+    *,
+    clearance: float | None = None,
+    along: npt.ArrayLike | None = None,
+    depth: bool | None = None,
+    volume: bool | None = None,
+    threads: int | None = None,
+) -> Clash: ...
+@overload
+def clash(
+    a: Body,
+    b: Body,
+    poses_b: _Poses,
+    pose_a: npt.ArrayLike | None = None,
+    *,
+    clearance: float | None = None,
+    along: npt.ArrayLike | None = None,
+    depth: bool | None = None,
+    volume: bool | None = None,
+    threads: int | None = None,
+) -> list[Clash]: ...
+@overload
+def clash(
+    a: Body,
+    b: Body,
+    poses_b: _Array,
     pose_a: npt.ArrayLike | None = None,
     *,
     clearance: float | None = None,
@@ -387,10 +613,23 @@ def clash(
     volume: bool | None = None,
     threads: int | None = None,
 ) -> Any: ...
+@overload
 def first_contact(
     a: Body,
     b: Body,
-    motion_b: npt.ArrayLike,
+    motion_b: _Rows | _Poses,
+    motion_a: npt.ArrayLike | None = None,
+    *,
+    tolerance: float | None = None,
+    max_steps: int | None = None,
+    relation: bool | None = None,
+    threads: int | None = None,
+) -> FirstContact: ...
+@overload
+def first_contact(
+    a: Body,
+    b: Body,
+    motion_b: _Array,
     motion_a: npt.ArrayLike | None = None,
     *,
     tolerance: float | None = None,
@@ -431,3 +670,13 @@ def render(
     transparent: bool | None = None,
 ) -> Picture: ...
 def scenarios() -> list[str]: ...
+def explain_pair(
+    a: Body,
+    b: Body,
+    pair: Sequence[int] | npt.NDArray[np.integer[Any]],
+    pose_b: npt.ArrayLike | None = None,
+    pose_a: npt.ArrayLike | None = None,
+) -> PairExplanation: ...
+def explain_walk(
+    a: Body, b: Body, pose_b: npt.ArrayLike | None = None, pose_a: npt.ArrayLike | None = None
+) -> WalkExplanation: ...

@@ -1,4 +1,4 @@
-"""What managers of many objects share: bodies of meshes, boxes, and which pairs to ask for."""
+"""What managers of many objects share: bodies of meshes."""
 
 import hashlib
 from collections import OrderedDict
@@ -6,9 +6,6 @@ from collections import OrderedDict
 import numpy as np
 
 from . import _core
-
-# Boxes are exact, but the gap between two of them is rounded.
-_ROUNDING = 1 - 1e-12
 
 
 class BodyCache:
@@ -41,27 +38,3 @@ class BodyCache:
                 self._bodies.popitem(last=False)
         self._bodies.move_to_end(key)
         return self._bodies[key]
-
-
-def gaps(box, boxes):
-    """Return how far a box (2, 3) is from each of some boxes (n, 2, 3): (n,), rounded down, 0 where they
-    meet.
-    """
-    apart = np.maximum(boxes[:, 0] - box[1], box[0] - boxes[:, 1])
-    return np.linalg.norm(np.maximum(apart, 0), axis=1) * _ROUNDING
-
-
-def meeting(box, boxes):
-    """Return the numbers of the boxes (n, 2, 3) that a box (2, 3) has a point in common with."""
-    return np.flatnonzero(((boxes[:, 0] <= box[1]) & (box[0] <= boxes[:, 1])).all(axis=1))
-
-
-def by_gap(boxes_a, boxes_b=None):
-    """Yield (gap, i, j) for pairs of boxes, in each row the nearest first; without boxes_b the pairs i <
-    j of boxes_a.
-    """
-    for i, box in enumerate(boxes_a):
-        first = i + 1 if boxes_b is None else 0
-        row = gaps(box, (boxes_a if boxes_b is None else boxes_b)[first:])
-        for j in np.argsort(row, kind="stable"):
-            yield row[j], i, first + int(j)

@@ -20,7 +20,7 @@ import math
 import numpy as np
 
 from . import _core
-from ._objects import BodyCache, by_gap, meeting
+from ._objects import BodyCache
 
 _EXTERNAL = "__external"
 
@@ -83,18 +83,14 @@ class DistanceData:
         return self._points[name]
 
 
-class _Object:
-    """A body at a pose, and its box."""
+class _Standing:
+    """A body at a pose."""
 
     def __init__(self, body, transform):
         self.body = body
-        self.move(transform)
-
-    def move(self, transform):
         self.pose = np.eye(4) if transform is None else np.array(transform, dtype=float)
         if self.pose.shape != (4, 4):
             raise _core.InputError(f"transform: expected shape (4, 4), got {self.pose.shape}")
-        self.box = self.body.box(self.pose)
 
 
 def _face_normal(thing, face):
@@ -104,7 +100,7 @@ def _face_normal(thing, face):
     return normal / length if length > 0 else normal
 
 
-def contacts_of(result, a, b):
+def contacts_of(result, a):
     """Yield (pair's number, point, normal, depth) for each pair of a result with contacts. a: has `body`
     and `pose`.
     """
@@ -119,11 +115,11 @@ def contacts_of(result, a, b):
             yield int(i), middles[i], normal if normal.any() else _face_normal(a, faces[i, 0]), depth
 
 
-def _contact_data(names, result, a, b):
+def _contact_data(names, result, a):
     faces = result.face_pairs
     return [
         ContactData(names, (int(faces[i, 0]), int(faces[i, 1])), point, normal, depth)
-        for i, point, normal, depth in contacts_of(result, a, b)
+        for i, point, normal, depth in contacts_of(result, a)
     ]
 
 
@@ -144,40 +140,42 @@ def _sorted_names(names):
 
 class CollisionManager:
     """Objects by name, and which of them collide or are near. Takes whatever has `vertices` and `faces`,
-    or a Body.
+    or a Body. The objects are bodies of a Scene.
     """
 
-    _CHUNK = 1024  # pairs that are asked for at once where one is enough
-
     def __init__(self):
-        self._objects = {}
         self._cache = BodyCache()
-        self._sweep = _core.SweepAndPrune()
+        self._scene = _core.Scene()
+        self._keys, self._names = {}, {}  # keys by name, names by key
 
     def add_object(self, name, mesh, transform=None):
         """Add an object, or replace the one of this name. transform: (4, 4) float. Returns its Body."""
-        self._objects[name] = _Object(self._cache.body(mesh), transform)
-        return self._objects[name].body
+        thing = _Standing(self._cache.body(mesh), transform)
+        key = self._scene.add(thing.body, thing.pose)
+        if name in self._keys:
+            self.remove_object(name)
+        self._keys[name], self._names[key] = key, name
+        return thing.body
 
     def remove_object(self, name):
         """Take an object out. Raises ValueError if there is none of this name."""
-        del self._objects[self._known(name)]
+        key = self._known(name)
+        self._scene.remove(key)
+        del self._keys[name], self._names[key]
 
     def set_transform(self, name, transform):
         """Move an object. transform: (4, 4) float. Raises ValueError if there is none of this name."""
-        self._objects[self._known(name)].move(transform)
+        self._scene.move(self._known(name), _Standing(None, transform).pose)
 
     def in_collision_single(self, mesh, transform=None, return_names=False, return_data=False):
         """Ask whether a mesh collides with any object.
 
         Returns bool; with return_names also a set of names; with return_data also a list of ContactData, in
-        which the mesh is called '__external'.
+        which the mesh is called '__external' and is the first object.
         """
-        other = _Object(self._cache.body(mesh), transform)
-        mine = [(name, thing) for name, thing in self._objects.items()]
-        pairs = [(mine[i], (_EXTERNAL, other)) for i in meeting(other.box, self._boxes())]
-        hit, names, data = self._collide(pairs, return_names, return_data)
-        return _answer(hit, (return_names, {a for a, _ in names}), (return_data, data))
+        other = _Standing(self._cache.body(mesh), transform)
+        hit, names, data = self._collide(return_names, return_data, outside=other)
+        return _answer(hit, (return_names, {b for _, b in names}), (return_data, data))
 
     def in_collision_internal(self, return_names=False, return_data=False):
         """Ask whether any two objects collide.
@@ -185,9 +183,7 @@ class CollisionManager:
         Returns bool; with return_names also a set of pairs of names, each in alphabetical order; with
         return_data also a list of ContactData.
         """
-        mine = list(self._objects.items())
-        pairs = [(mine[i], mine[j]) for i, j in self._sweep.update(self._boxes())]
-        hit, names, data = self._collide(pairs, return_names, return_data)
+        hit, names, data = self._collide(return_names, return_data)
         return _answer(hit, (return_names, {_sorted_names(n) for n in names}), (return_data, data))
 
     def in_collision_other(self, other_manager, return_names=False, return_data=False):
@@ -196,10 +192,7 @@ class CollisionManager:
         Returns bool; with return_names also a set of pairs of names, this manager's first; with return_data
         also a list of ContactData.
         """
-        mine, theirs = list(self._objects.items()), list(other_manager._objects.items())
-        boxes = other_manager._boxes()
-        pairs = [(one, theirs[j]) for one in mine for j in meeting(one[1].box, boxes)]
-        hit, names, data = self._collide(pairs, return_names, return_data)
+        hit, names, data = self._collide(return_names, return_data, other=other_manager)
         return _answer(hit, (return_names, set(names)), (return_data, data))
 
     def min_distance_single(self, mesh, transform=None, return_name=False, return_data=False):
@@ -208,10 +201,8 @@ class CollisionManager:
         Returns float, inf if there is none; with return_name also its name; with return_data also a
         DistanceData, in which the mesh is called '__external'.
         """
-        other = _Object(self._cache.body(mesh), transform)
-        mine = list(self._objects.items())
-        rows = by_gap(other.box[None], self._boxes())
-        distance, names, data = self._nearest(rows, [(_EXTERNAL, other)], mine)
+        other = _Standing(self._cache.body(mesh), transform)
+        distance, names, data = self._nearest(outside=other)
         return _answer(distance, (return_name, names[1]), (return_data, data))
 
     def min_distance_internal(self, return_names=False, return_data=False):
@@ -220,8 +211,7 @@ class CollisionManager:
         Returns float, inf if there are not two; with return_names also their names in alphabetical order;
         with return_data also a DistanceData.
         """
-        mine = list(self._objects.items())
-        distance, names, data = self._nearest(by_gap(self._boxes()), mine, mine)
+        distance, names, data = self._nearest()
         names = names if data is None else _sorted_names(names)
         return _answer(distance, (return_names, names), (return_data, data))
 
@@ -231,57 +221,63 @@ class CollisionManager:
         Returns float, inf if one has no objects; with return_names also the names, this manager's first; with
         return_data also a DistanceData.
         """
-        rows = by_gap(self._boxes(), other_manager._boxes())
-        found = self._nearest(rows, list(self._objects.items()), list(other_manager._objects.items()))
+        found = self._nearest(other=other_manager)
         return _answer(found[0], (return_names, found[1]), (return_data, found[2]))
 
     def _known(self, name):
-        if name not in self._objects:
+        if name not in self._keys:
             raise ValueError(f"{name} not in collision manager!")
-        return name
+        return self._keys[name]
 
-    def _boxes(self):
-        boxes = [thing.box for thing in self._objects.values()]
-        return np.array(boxes) if boxes else np.empty((0, 2, 3))
-
-    def _collide(self, pairs, want_names, want_data):
-        """Ask for pairs of (name, object). Returns whether any collides, names of those that do, and
-        their contacts.
+    def _others(self, outside, other):
+        """Return the arguments that name the others to a scene's functions, and what gives names to pairs of
+        keys.
         """
-        names, data = [], []
-        for begin in range(0, len(pairs), self._CHUNK):
-            chunk = pairs[begin : begin + self._CHUNK]
-            results = _core.collide_pairs(
-                [a.body for (_, a), _ in chunk],
-                np.array([a.pose for (_, a), _ in chunk]),
-                [b.body for _, (_, b) in chunk],
-                np.array([b.pose for _, (_, b) in chunk]),
-                mode="all" if want_data else "any",
-                contacts=want_data,
-            )
-            for ((name_a, a), (name_b, b)), result in zip(chunk, results):
-                if not result:
-                    continue
-                names.append((name_a, name_b))
-                if want_data:
-                    data += _contact_data(names[-1], result, a, b)
-            if names and not (want_names or want_data):
-                break
+        if outside is not None:
+            return (outside.body, outside.pose), lambda a, b: (_EXTERNAL, self._names[b])
+        if other is self:  # each object meets itself
+            other = self._copy()
+        names = self._names if other is None else other._names
+        scene = None if other is None else other._scene
+        return (scene,), lambda a, b: (self._names[a], names[b])
+
+    def _copy(self):
+        copy = CollisionManager()
+        for name, key in self._keys.items():
+            copy.add_object(name, self._scene.body(key), self._scene.pose(key))
+        return copy
+
+    def _collide(self, want_names, want_data, outside=None, other=None):
+        """Return whether any pair collides, names of those that do, and their contacts."""
+        others, names_of = self._others(outside, other)
+        if not (want_names or want_data):
+            return self._scene.any_meet(*others), [], []
+        met = self._scene.collide(*others, mode="all" if want_data else "any", contacts=want_data)
+        names, data = [names_of(a, b) for a, b in met.keys.tolist()], []
+        if want_data:
+            for pair, (a, _), result in zip(names, met.keys.tolist(), met):
+                first = outside or _Standing(self._scene.body(a), self._scene.pose(a))
+                data += _contact_data(pair, result, first)
         return bool(names), names, data
 
-    @staticmethod
-    def _nearest(rows, mine, theirs):
-        """Return distance, names and data of the nearest of pairs (gap, i, j)."""
-        best, names, data = math.inf, (None, None), None
-        for gap, i, j in rows:
-            if gap >= best:
-                continue
-            (name_a, a), (name_b, b) = mine[i], theirs[j]
-            found = _core.distance(a.body, b.body, b.pose, a.pose)
-            distance = found.solids[1]
-            if distance < best:
-                best, names = distance, (name_a, name_b)
-                data = DistanceData(names, found.faces, found.points, distance)
-            if best == 0:
-                break
-        return best, names, data
+    def _nearest(self, outside=None, other=None):
+        """Return distance, names and data of the nearest pair."""
+        others, names_of = self._others(outside, other)
+        found = self._scene.nearest(*others, solids=True)
+        if found is None:
+            return math.inf, (None, None), None
+        a, b, nearest = found
+        names, distance = names_of(a, b), nearest.solids[1]
+        return distance, names, DistanceData(names, nearest.faces, nearest.points, distance)
+
+
+def scene_to_collision(scene):
+    """Make a CollisionManager of all nodes of a trimesh.Scene that have a geometry.
+
+    Returns the manager, in which objects have their nodes' names, and a dict of the nodes' bodies.
+    """
+    manager, objects = CollisionManager(), {}
+    for node in scene.graph.nodes_geometry:
+        transform, geometry = scene.graph[node]
+        objects[node] = manager.add_object(node, scene.geometry[geometry], transform)
+    return manager, objects

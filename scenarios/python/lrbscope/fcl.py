@@ -23,7 +23,6 @@ import sys
 import numpy as np
 
 from . import _core
-from ._objects import by_gap, meeting
 from .collision import contacts_of
 
 facets = 64
@@ -163,9 +162,25 @@ class CollisionGeometry:
 
     _made = None
 
+    def __setattr__(self, name, value):
+        if not name.startswith("_"):  # a measure, which the body was made to
+            self._made = None
+            if isinstance(value, (list, tuple, np.ndarray)):
+                value = np.array(value, dtype=float)
+                value.flags.writeable = False
+        object.__setattr__(self, name, value)
+
     def getNodeType(self):
         """Return FCL's number of the kind of shape."""
         return self._node_type
+
+    def computeLocalAABB(self):
+        """Do nothing: boxes are found when they are needed."""
+
+    @property
+    def aabb_center(self):
+        """(3,) float: the middle of the box of the geometry."""
+        return self._body().box().mean(axis=0)
 
     def _surface(self):
         """Return vertices and faces."""
@@ -483,9 +498,6 @@ class CollisionObject:
         """(4, 4) float: where it stands."""
         return self._tf._pose()
 
-    def _box(self):
-        return self.body.box(self.pose)
-
 
 class Contact:
     """Where two objects meet. b1, b2: triangles, -1 of shapes; normal: from o1 to o2; pos: world frame."""
@@ -609,7 +621,7 @@ def _contacts(o1, o2, result, full):
 
     Where one object is a shape, for each triangle of the other; of two shapes for each contact region.
     """
-    found = contacts_of(result, o1, o2) if full else ((i, None, None, 0.0) for i in range(len(result.pairs)))
+    found = contacts_of(result, o1) if full else ((i, None, None, 0.0) for i in range(len(result.pairs)))
     of_region = {}
     if full and o1._geom._is_shape and o2._geom._is_shape:
         of_region = {int(i): n for n, region in enumerate(result.regions) for i in region.pairs}
@@ -697,13 +709,17 @@ def defaultDistanceCallback(o1, o2, cdata):
 
 
 class DynamicAABBTreeCollisionManager:
-    """Many objects. Their boxes are looked at when it is asked, so that setup() and update() have nothing
-    to do.
+    """Many objects: the bodies of a Scene. Where they stand is looked at when it is asked, so that setup()
+    and update() have nothing to do, and the measures of FCL's tree have no effect.
     """
 
+    max_tree_nonbalanced_level = tree_incremental_balance_pass = 10
+    tree_topdown_balance_threshold = 2
+    tree_topdown_level = tree_init_level = 0
+    octree_as_geometry_collide, octree_as_geometry_distance = True, False
+
     def __init__(self):
-        self._objects = []
-        self._sweep = _core.SweepAndPrune()
+        self.clear()
 
     def registerObjects(self, other_objs):
         """Add objects."""
@@ -714,11 +730,13 @@ class DynamicAABBTreeCollisionManager:
         """Add an object."""
         if not isinstance(obj, CollisionObject):
             raise TypeError(f"expected a CollisionObject, got {type(obj).__name__}")
-        self._objects.append(obj)
+        self._objects[self._scene.add(obj.body, obj.pose)] = obj
 
     def unregisterObject(self, obj):
         """Take an object out, if it is there."""
-        self._objects = [o for o in self._objects if o is not obj]
+        for key in [key for key, o in self._objects.items() if o is obj]:
+            self._scene.remove(key)
+            del self._objects[key]
 
     def setup(self):
         """Do nothing."""
@@ -728,11 +746,11 @@ class DynamicAABBTreeCollisionManager:
 
     def getObjects(self):
         """Return a list of the objects."""
-        return list(self._objects)
+        return list(self._objects.values())
 
     def clear(self):
         """Take all objects out."""
-        self._objects = []
+        self._scene, self._objects = _core.Scene(), {}  # objects by key
 
     def empty(self):
         """Return whether there are no objects."""
@@ -742,47 +760,62 @@ class DynamicAABBTreeCollisionManager:
         """Return the number of objects."""
         return len(self._objects)
 
-    def _boxes(self):
-        return np.array([o._box() for o in self._objects]) if self._objects else np.empty((0, 2, 3))
+    def _moved(self):
+        """Return the scene with all objects where they stand now, and with the bodies that they have now."""
+        objects = list(self._objects.items())
+        if any(o.body is not self._scene.body(key) for key, o in objects):
+            self.clear()
+            self.registerObjects(o for _, o in objects)
+        elif objects:
+            self._scene.move(list(self._objects), np.array([o.pose for _, o in objects]))
+        return self._scene
 
     def _arguments(self, args):
-        """Return the other objects, None for our own, and data and callback."""
+        """Return the arguments that name the others to the scene's functions, what gives the objects of a
+        pair of keys, and data and callback.
+        """
         if len(args) not in (2, 3) or not callable(args[-1]):
             raise ValueError("expected data and callback, after an object or a manager if there is one")
-        if len(args) == 2:
-            return None, args[0], args[1]
-        others = args[0]._objects if isinstance(args[0], DynamicAABBTreeCollisionManager) else [args[0]]
-        return others, args[1], args[2]
+        if len(args) == 2 or args[0] is self:
+            return (), lambda a, b: (self._objects[a], self._objects[b]), *args[-2:]
+        other = args[0]
+        if isinstance(other, DynamicAABBTreeCollisionManager):
+            scene = other._moved()
+            return (scene,), lambda a, b: (self._objects[a], other._objects[b]), *args[1:]
+        return (other.body, other.pose), lambda a, b: (self._objects[b], other), *args[1:]
 
     def collide(self, *args):
         """collide(data, callback), (object, data, callback) or (manager, data, callback).
 
         Calls callback(o1, o2, data) for objects whose boxes meet, until it returns True.
         """
-        others, data, callback = self._arguments(args)
-        boxes = self._boxes()
-        if others is None:
-            pairs = ((self._objects[i], self._objects[j]) for i, j in self._sweep.update(boxes))
-        else:
-            pairs = ((self._objects[i], o) for o in others for i in meeting(o._box(), boxes))
-        for one, other in pairs:
-            if callback(one, other, data):
+        others, objects_of, data, callback = self._arguments(args)
+        keys, _ = self._moved().near(0, *others)
+        for a, b in keys.tolist():
+            if callback(*objects_of(a, b), data):
                 return
 
     def distance(self, *args):
         """distance(data, callback), (object, data, callback) or (manager, data, callback).
 
         Calls callback(o1, o2, data), which returns whether that is all and the least distance so far, for
-        objects whose boxes are nearer than that.
+        objects whose boxes are nearer than that, nearest first.
         """
-        others, data, callback = self._arguments(args)
-        boxes = self._boxes()
-        theirs = None if others is None else np.array([o._box() for o in others]).reshape(-1, 2, 3)
-        nearest = math.inf
-        for gap, i, j in by_gap(boxes, theirs):
-            if gap > nearest:
+        others, objects_of, data, callback = self._arguments(args)
+        scene = self._moved()
+        likely = scene.nearest_boxes(*others)
+        if likely is None:
+            return
+        done, nearest = callback(*objects_of(*likely[:2]), data)
+        if done:
+            return
+        keys, gaps = scene.near(max(nearest, 0.0), *others)
+        for (a, b), gap in zip(keys.tolist(), gaps):
+            if (a, b) == likely[:2]:
                 continue
-            done, nearest = callback(self._objects[i], (self._objects if others is None else others)[j], data)
+            if gap > nearest:
+                return
+            done, nearest = callback(*objects_of(a, b), data)
             if done:
                 return
 

@@ -1,0 +1,9 @@
+#pragma once
+
+#include "scenarios/python/arguments.hpp"
+
+namespace lrb::python {
+
+void bind_explain(py::module_& m);
+
+}  // namespace lrb::python

@@ -1,0 +1,212 @@
+#include "scenarios/run/explanation_text.hpp"
+
+#include <iomanip>
+#include <sstream>
+
+#include "scenarios/run/explanation_words.hpp"
+
+namespace lrb::run {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json xyz_json(const Eigen::Vector3d& x) {
+  return {x.x(), x.y(), x.z()};
+}
+
+Json box_gap_json(const BoxPair& p) {
+  return {{"a", p.node[0]}, {"b", p.node[1]}, {"gap", p.gap}, {"axis", name_of(p.axis)}};
+}
+
+template <class T>
+Json ordered_pair(const T& of_a, const T& of_b) {
+  return {{"A", of_a}, {"B", of_b}};
+}
+
+Json hiding_json(const LrbRep& rep, const std::vector<RegionId>& regions) {
+  Json out = Json::array();
+  for (const RegionId r : regions)
+    out.push_back({{"region", r.value()}, {"layer", rep.layer(r)}, {"lids", rep.lids(r).size()}});
+  return out;
+}
+
+Json plane_sides_json(const PlaneSides& sides, int corners) {
+  Json out = Json::array();
+  for (int i = 0; i < corners; ++i)
+    out.push_back(
+        {{"exact", sides.exact[i]}, {"in_double", sides.in_double[i]}, {"distance", sides.distance[i]}});
+  return out;
+}
+
+Json contact_points_json(const exact::PairContact& contact) {
+  Json corners = Json::array();
+  for (int i = 0; i < contact.corner_count; ++i) corners.push_back(xyz_json(contact.corners[i].x));
+  return {{"coplanar", contact.coplanar}, {"points", corners}};
+}
+
+constexpr int kShownDigits = 6;
+
+/// Writes one line for each pair of boxes.
+void write_way(std::ostream& out, const PairExplanation& e) {
+  constexpr int kNodeColumn = 10, kGapColumn = 14;
+  out << "the way from the roots, largest gap of the boxes first, negative: they overlap\n";
+  out << std::setw(kNodeColumn) << "A's node" << std::setw(kNodeColumn) << "B's node" << std::setw(kGapColumn)
+      << "gap"
+      << "  along\n";
+  const auto line = [&](const BoxPair& p, const char* what) {
+    out << std::setw(kNodeColumn) << p.node[0] << std::setw(kNodeColumn) << p.node[1] << std::setw(kGapColumn)
+        << p.gap << "  " << name_of(p.axis) << what << "\n";
+  };
+  for (const BoxPair& p : e.nodes) line(p, "");
+  if (e.reaches_faces) line(e.face_boxes, ", the faces' own boxes");
+}
+
+void write_regions(std::ostream& out, const LrbRep& rep, const std::vector<RegionId>& regions,
+                   const char* whose) {
+  out << whose << " face is hidden by " << regions.size() << (regions.size() == 1 ? " region" : " regions");
+  for (std::size_t i = 0; i < regions.size(); ++i)
+    out << (i == 0 ? ", from the outside inward: " : ", ") << regions[i].value() << " (layer "
+        << rep.layer(regions[i]) << ")";
+  out << "\n";
+}
+
+void write_sides(std::ostream& out, const PlaneSides& sides, int corners, const char* whose,
+                 const char* other) {
+  out << whose << " corners by the " << (corners == 3 ? "plane" : "line") << " of " << other << " face: ";
+  for (int i = 0; i < corners; ++i) {
+    const int sign = sides.exact[i];
+    out << (i == 0 ? "" : ", ")
+        << (sign > 0   ? "in front"
+            : sign < 0 ? "behind"
+                       : "in it")
+        << " (" << sides.distance[i] << ")";
+    if (sides.in_double[i] != sign) out << " where double arithmetic has " << sides.in_double[i];
+  }
+  out << "\n";
+}
+
+}  // namespace
+
+Json explanation_json(const PairExplanation& e, const LrbRep& a, const LrbRep& b) {
+  Json j;
+  j["pair"] = {e.pair.a.value(), e.pair.b.value()};
+  j["faces"] = {a.face_of_simplex(e.pair.a).value(), b.face_of_simplex(e.pair.b).value()};
+  j["meet"] = name_of(e.meet);
+  j["decided_by"] = name_of(e.decided_by);
+  j["nodes"] = Json::array();
+  for (const BoxPair& p : e.nodes) j["nodes"].push_back(box_gap_json(p));
+  if (e.reaches_faces) j["face_boxes"] = box_gap_json(e.face_boxes);
+  j["hidden_by"] = ordered_pair(hiding_json(a, e.hidden_by[0]), hiding_json(b, e.hidden_by[1]));
+  const int corners = a.dim();
+  j["corners_by_the_other_plane"] =
+      ordered_pair(plane_sides_json(e.sides[0], corners), plane_sides_json(e.sides[1], corners));
+  if (e.meet != exact::Meet::disjoint) {
+    j["contact"] = contact_points_json(e.contact);
+  } else {
+    j["distance"] = e.distance;
+    j["distance_in_ulps"] = e.distance / e.ulp;
+    j["nearest"] = {xyz_json(e.nearest[0]), xyz_json(e.nearest[1])};
+  }
+  return j;
+}
+
+Json explanation_json(const WalkExplanation& e) {
+  Json j;
+  j["relation"] = name_of(e.result.relation);
+  j["pairs"] = e.result.pairs.size();
+  j["roots"] = box_gap_json(e.roots);
+  j["depths"] = Json::array();
+  for (const WalkDepth& d : e.depths)
+    j["depths"].push_back({{"node_pairs", d.node_pairs}, {"ended", d.ended}});
+  j["leaf_pairs"] = e.leaf_pairs;
+  j["face_pairs"] = e.face_pairs;
+  j["left_by_planes"] = e.left;
+  j["certain"] = e.certain;
+  j["nearest_pairs"] = Json::array();
+  for (const SimplexPair& p : e.near) j["nearest_pairs"].push_back({p.a.value(), p.b.value()});
+  if (e.nearest_boxes) {
+    j["nearest_boxes"] = box_gap_json(e.nearest_boxes->pair);
+    j["nearest_boxes"]["of_faces"] = e.nearest_boxes->of_faces;
+  }
+  if (e.plane) j["plane"] = {{"gap", e.plane->gap()}, {"normal", xyz_json(e.plane->normal)}};
+  if (e.result.separation) {
+    const auto& [refined, faces] = *e.result.separation;
+    j["separation"] = {{"refined", {refined[0].size(), refined[1].size()}}, {"faces", {faces[0], faces[1]}}};
+  }
+  return j;
+}
+
+std::string explanation_text(const PairExplanation& e, const LrbRep& a, const LrbRep& b) {
+  std::ostringstream out;
+  out << std::setprecision(kShownDigits);
+  out << "simplex " << e.pair.a << " of A (face " << a.face_of_simplex(e.pair.a) << " of " << a.name()
+      << ") and " << e.pair.b << " of B (face " << b.face_of_simplex(e.pair.b) << " of " << b.name()
+      << "): " << name_of(e.meet) << "\n";
+  out << "decided by " << words(e.decided_by) << "\n\n";
+  write_way(out, e);
+  out << "\n";
+  write_regions(out, a, e.hidden_by[0], "A's");
+  write_regions(out, b, e.hidden_by[1], "B's");
+  const int corners = a.dim();
+  write_sides(out, e.sides[0], corners, "A's", "B's");
+  write_sides(out, e.sides[1], corners, "B's", "A's");
+  const auto point = [&](const Eigen::Vector3d& x) {
+    out << "(" << x.x() << ", " << x.y() << ", " << x.z() << ")";
+  };
+  if (e.meet == exact::Meet::disjoint) {
+    out << "nearest points: ";
+    point(e.nearest[0]);
+    out << " and ";
+    point(e.nearest[1]);
+    out << "\ndistance " << e.distance << ", " << e.distance / e.ulp
+        << " units in the last place of the largest coordinate\n";
+  } else {
+    constexpr const char* kinds[] = {"nothing", "point", "segment"};
+    out << "contact: " << (e.contact.corner_count < 3 ? kinds[e.contact.corner_count] : "polygon");
+    for (int i = 0; i < e.contact.corner_count; ++i) {
+      out << (i == 0 ? " " : " to ");
+      point(e.contact.corners[i].x);
+    }
+    out << "\n";
+  }
+  return out.str();
+}
+
+std::string explanation_text(const WalkExplanation& e) {
+  constexpr int kColumn = 12;
+  std::ostringstream out;
+  out << std::setprecision(kShownDigits);
+  out << name_of(e.result.relation) << ", " << e.result.pairs.size() << " pairs\n";
+  out << "boxes round the bodies: gap " << e.roots.gap << " along " << name_of(e.roots.axis) << "\n\n";
+  out << std::setw(kColumn) << "depth" << std::setw(kColumn) << "node pairs" << std::setw(kColumn) << "apart"
+      << "\n";
+  for (std::size_t i = 0; i < e.depths.size(); ++i)
+    out << std::setw(kColumn) << i << std::setw(kColumn) << e.depths[i].node_pairs << std::setw(kColumn)
+        << e.depths[i].ended << "\n";
+  out << "\npairs of leaves " << e.leaf_pairs << ", pairs of faces whose boxes meet " << e.face_pairs
+      << "; planes left " << e.left << " of them, about " << e.certain << " of which floats are certain\n";
+  if (!e.near.empty()) {
+    out << "nearest of those left, for --pair:";
+    for (const SimplexPair& p : e.near) out << " " << p.a << "," << p.b;
+    out << "\n";
+  }
+  if (e.result.pairs.empty() && e.left == 0) out << "no two faces come as far as a comparison of their own\n";
+  if (const auto& boxes = e.nearest_boxes)
+    out << "the nearest of the boxes found apart, of "
+        << (boxes->of_faces ? "faces in the leaves " : "nodes ") << boxes->pair.node[0] << " of A and "
+        << boxes->pair.node[1] << " of B: gap " << boxes->pair.gap << " along " << name_of(boxes->pair.axis)
+        << "\n";
+  if (e.plane)
+    out << "a plane across (" << e.plane->normal.x() << ", " << e.plane->normal.y() << ", "
+        << e.plane->normal.z() << ") has all of A on one side and all of B on the other, " << e.plane->gap()
+        << " apart\n";
+  if (e.result.separation) {
+    const auto& [refined, faces] = *e.result.separation;
+    out << "wrappers of " << faces[0] << " and " << faces[1] << " faces, with " << refined[0].size()
+        << " and " << refined[1].size()
+        << " regions refined, prove it too (`query --draw-separation` draws them)\n";
+  }
+  return out.str();
+}
+
+}  // namespace lrb::run

@@ -1,0 +1,218 @@
+"""Scenes against all pairs of their bodies."""
+
+import math
+import multiprocessing
+from concurrent.futures import ThreadPoolExecutor
+
+import numpy as np
+import pytest
+
+import lrbscope
+from lrbscope import Body, InputError, Scene
+from shapes import ball_arrays, cube_arrays, random_poses, shifted
+
+
+def brute(bodies, poses):
+    """Return the results of all pairs that meet, by their keys."""
+    found = {}
+    for j in range(len(bodies)):
+        for i in range(j):
+            r = lrbscope.collide(bodies[i], bodies[j], poses[j], poses[i])
+            if r:
+                found[i, j] = (r.relation, r.fingerprint)
+    return found
+
+
+def told(meetings):
+    return {tuple(k): (r.relation, r.fingerprint) for k, r in zip(meetings.keys.tolist(), meetings)}
+
+
+@pytest.fixture(scope="module")
+def kinds():
+    return [
+        Body(*ball_arrays(1, 0.8)),
+        Body(*cube_arrays(0.2), regions=False),
+        Body(cube_arrays()[0], cube_arrays()[1][:-1]),  # open
+    ]
+
+
+@pytest.fixture()
+def crowd(kinds, rng):
+    bodies = [kinds[i % 3] for i in range(60)]
+    return bodies, random_poses(rng, 60, 2.5)
+
+
+@pytest.mark.parametrize("threads", [0, 1, 3])
+def test_all_pairs(crowd, threads):
+    bodies, poses = crowd
+    s = Scene(threads=threads)
+    assert [s.add(b, p) for b, p in zip(bodies, poses)] == list(range(60))
+    wanted = brute(bodies, poses)
+    found = s.collide()
+    assert len(wanted) > 20 and told(found) == wanted and len(found) == len(wanted)
+    assert found.keys.tolist() == sorted(found.keys.tolist())
+    assert found.relations.tolist() == [r.relation for r in found]
+    assert found.counts.sum() == len(found.all_pairs)
+    assert found.hits.all() and s.any_meet()
+    r = found[-1]
+    assert (r.face_pairs[:, 0] < bodies[found.keys[-1, 0]].real_face_count).all()
+
+
+def test_bodies_come_go_and_move(crowd, rng):
+    bodies, poses = crowd
+    s, place = Scene(), {}
+    for body, pose in zip(bodies, poses):
+        place[s.add(body, pose)] = (body, pose)
+    for step in range(6):
+        for key in rng.choice(list(place), 5, replace=False).tolist():
+            s.remove(key)
+            del place[key]
+        key = s.add(bodies[step], poses[step])
+        place[key] = (bodies[step], poses[step])
+        assert key == 60 + step, "keys are never given again"
+        keys = list(place)[::2]
+        moved = random_poses(rng, len(keys), 2.5)
+        s.move(keys, moved)
+        for k, pose in zip(keys, moved):
+            place[k] = (place[k][0], pose)
+        s.move(key, poses[step + 1])
+        place[key] = (bodies[step], poses[step + 1])
+        assert len(s) == len(place) and s.keys.tolist() == sorted(place)
+        assert key in s and 10**6 not in s and "x" not in s and -1 not in s
+        assert s.body(key) is bodies[step] and np.array_equal(s.pose(key), poses[step + 1])
+        names = sorted(place)
+        by_place = brute([place[k][0] for k in names], [place[k][1] for k in names])
+        assert told(s.collide()) == {(names[i], names[j]): r for (i, j), r in by_place.items()}
+
+
+def test_others(crowd):
+    bodies, poses = crowd
+    one, two = Scene(), Scene()
+    for body, pose in zip(bodies, poses):
+        one.add(body, pose)
+    for body, pose in zip(bodies[:20], poses[:20]):
+        two.add(body, pose @ shifted(0.1, 0.2, 0.3))
+    wanted = {}
+    for i in range(60):
+        for j in range(20):
+            r = lrbscope.collide(bodies[i], bodies[j], two.pose(j), poses[i])
+            if r:
+                wanted[i, j] = (r.relation, r.fingerprint)
+    assert told(one.collide(two)) == wanted and one.any_meet(two)
+    alone = one.collide(bodies[0], two.pose(0), contacts=True)
+    assert (alone.keys[:, 0] == -1).all()
+    for key, r in zip(alone.keys[:, 1].tolist(), alone):
+        assert r.fingerprint == lrbscope.collide(bodies[0], bodies[key], poses[key], two.pose(0)).fingerprint
+        assert r.regions or r.relation.endswith(("inside_a", "inside_b"))
+    assert not one.any_meet(bodies[0], shifted(90, 0, 0)) and len(one.collide(Scene())) == 0
+
+
+def test_nearest(crowd, kinds):
+    bodies, poses = crowd
+    poses = poses.copy()
+    poses[:, :3, 3] *= 5
+    s = Scene()
+    for body, pose in zip(bodies, poses):
+        s.add(body, pose)
+    pairs = [(i, j) for j in range(60) for i in range(j)]
+    apart = {(i, j): lrbscope.distance(bodies[i], bodies[j], poses[j], poses[i]) for i, j in pairs}
+    a, b, d = s.nearest()
+    assert d.upper == min(x.upper for x in apart.values()) == apart[a, b].upper
+    a, b, d = s.nearest(solids=True)
+    assert d.solids[1] == min(x.solids[1] for x in apart.values())
+    key, other, d = s.nearest(kinds[0], shifted(30, 0, 0))
+    assert key == -1
+    least = min(lrbscope.distance(kinds[0], x, p, shifted(30, 0, 0)).upper for x, p in zip(bodies, poses))
+    assert d.upper == least
+    assert Scene().nearest() is None and s.nearest(Scene()) is None and Scene().nearest_boxes() is None
+
+
+def test_near_boxes(crowd):
+    bodies, poses = crowd
+    s = Scene()
+    for body, pose in zip(bodies, poses):
+        s.add(body, pose)
+    boxes = [b.box(p) for b, p in zip(bodies, poses)]
+    gaps = {}
+    for j in range(60):
+        for i in range(j):
+            apart = np.maximum(boxes[j][0] - boxes[i][1], boxes[i][0] - boxes[j][1])
+            gaps[i, j] = np.linalg.norm(np.maximum(apart, 0))
+    for within in (0, 0.5, math.inf):
+        keys, found = s.near(within)
+        assert {tuple(k) for k in keys.tolist()} == {k for k, gap in gaps.items() if gap <= within}
+        assert np.allclose(found, [gaps[tuple(k)] for k in keys.tolist()]) and (np.diff(found) >= 0).all()
+    a, b, gap = s.nearest_boxes()
+    assert gap == min(gaps.values()) == 0 and [a, b] == s.near()[0][0].tolist()
+
+
+def test_thousands(kinds):
+    """A grid of balls of which each meets its neighbours."""
+    side, ball = 12, Body(*ball_arrays(0, 0.55), regions=False)
+    grid = np.stack(np.meshgrid(*[np.arange(side)] * 3, indexing="ij"), axis=-1).reshape(-1, 3)
+    poses = np.tile(np.eye(4), (len(grid), 1, 1))
+    poses[:, :3, 3] = grid
+    s = Scene()
+    keys = [s.add(ball, p) for p in poses]
+    for shift in (0.0, 1e-3):
+        poses[:, 0, 3] += shift
+        s.move(keys, poses)
+        assert len(s.collide(mode="any")) == 3 * side * side * (side - 1)
+
+
+def test_what_is_refused(kinds):
+    s = Scene()
+    key = s.add(kinds[0])
+    for action in (s.remove, s.body, s.pose, lambda k: s.move(k, np.eye(4))):
+        with pytest.raises(InputError, match="key: there is no body 7 in the scene"):
+            action(7)
+    with pytest.raises(InputError, match="pose: expected as many as keys, 1, got 2"):
+        s.move([key], np.tile(np.eye(4), (2, 1, 1)))
+    with pytest.raises(InputError, match="there is no body 9"):
+        s.move([key, 9], np.tile(shifted(1, 0, 0), (2, 1, 1)))
+    assert np.array_equal(s.pose(key), np.eye(4)), "nothing has moved"
+    with pytest.raises(TypeError, match="other: expected a Scene or a Body, got int"):
+        s.collide(3)
+    with pytest.raises(InputError, match="other: is the scene itself"):
+        s.collide(s)
+    with pytest.raises(InputError, match="pose: is that of a body from outside"):
+        s.collide(pose=np.eye(4))
+    with pytest.raises(InputError, match="within: expected a number from 0 on"):
+        s.near(-1)
+    with pytest.raises(TypeError, match="body: expected"):
+        s.add("cow")
+    nowhere = np.eye(4)
+    nowhere[0, 3] = math.nan
+    s.add(kinds[1], nowhere)
+    with pytest.raises(InputError):
+        s.collide()
+
+
+def test_threads_share_a_scene(crowd):
+    bodies, poses = crowd
+    one, two = Scene(), Scene()
+    for body, pose in zip(bodies, poses):
+        one.add(body, pose)
+        two.add(body, pose)
+    wanted, across = told(one.collide()), told(one.collide(two))
+    with ThreadPoolExecutor(4) as pool:
+        found = list(pool.map(lambda i: told(one.collide()) if i % 2 else told(two.collide(one)), range(12)))
+    assert all(f == wanted for f in found[1::2])
+    assert all(f.keys() == across.keys() for f in found[::2])
+
+
+SCENE = None
+
+
+def _asked_in_a_child(_):
+    return told(SCENE.collide())
+
+
+def test_a_scene_goes_on_after_a_fork(crowd):
+    global SCENE
+    SCENE = Scene()
+    for body, pose in zip(*crowd):
+        SCENE.add(body, pose)
+    wanted = told(SCENE.collide())  # threads have been started before the fork
+    with multiprocessing.get_context("fork").Pool(2) as pool:
+        assert pool.map(_asked_in_a_child, range(3)) == [wanted] * 3

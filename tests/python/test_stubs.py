@@ -1,0 +1,211 @@
+"""The stubs say the types that the modules have: of values, by mypy and by stubtest."""
+
+import ast
+import os
+import shutil
+import subprocess
+import sys
+import textwrap
+
+import numpy as np
+import pytest
+
+import lrbscope
+from lrbscope import _core
+from shapes import shifted
+
+PACKAGE = os.path.dirname(lrbscope.__file__)
+NUMBERS = {
+    "np.float64": "f8",
+    "np.uint32": "u4",
+    "np.int64": "i8",
+    "np.bool_": "b1",
+    "np.str_": "U",
+    "np.void": "V",
+}
+
+
+def stub():
+    with open(os.path.join(PACKAGE, "_core.pyi")) as file:
+        return ast.parse(file.read()).body
+
+
+ALIASES = {n.targets[0].id: n.value for n in stub() if isinstance(n, ast.Assign)}
+CLASSES = {n.name: n for n in stub() if isinstance(n, ast.ClassDef)}
+
+
+def fits(value, type_):
+    """Return whether a value is of a type, as the stub writes it."""
+    if isinstance(type_, ast.Constant):
+        return value is None
+    if isinstance(type_, ast.BinOp):
+        return fits(value, type_.left) or fits(value, type_.right)
+    if isinstance(type_, ast.Name):
+        if type_.id in ALIASES:
+            return fits(value, ALIASES[type_.id])
+        plain = {"str": str, "int": int, "float": float, "bool": bool, "object": object}
+        kind = plain.get(type_.id) or getattr(lrbscope, type_.id, None)
+        return True if type_.id == "Any" else type(value) is kind or kind is object
+    outer, inner = ast.unparse(type_.value), type_.slice
+    parts = inner.elts if isinstance(inner, ast.Tuple) else [inner]
+    if outer == "npt.NDArray":
+        return isinstance(value, np.ndarray) and value.dtype.str.lstrip("<|=").startswith(
+            NUMBERS[ast.unparse(inner)]
+        )
+    if outer == "Literal":
+        return value in [p.value for p in parts]
+    if outer == "tuple":
+        return isinstance(value, tuple) and len(value) == len(parts) and all(map(fits, value, parts))
+    if outer == "list":
+        return isinstance(value, list) and all(fits(v, inner) for v in value)
+    if outer == "dict":
+        return isinstance(value, dict) and all(
+            fits(k, parts[0]) and fits(v, parts[1]) for k, v in value.items()
+        )
+    raise AssertionError(f"unknown type: {ast.unparse(type_)}")
+
+
+def members(name):
+    """Yield the properties of a class and their types, those of its base included."""
+    node = CLASSES[name]
+    for base in node.bases:
+        if base.id in CLASSES:
+            yield from members(base.id)
+    for n in node.body:
+        if isinstance(n, ast.FunctionDef) and any(ast.unparse(d) == "property" for d in n.decorator_list):
+            yield n.name, n.returns
+        elif isinstance(n, ast.FunctionDef) and n.name in ("figures", "levels", "dict", "summary", "json"):
+            yield n.name, n.returns
+
+
+@pytest.fixture(scope="module")
+def samples(tmp_path_factory, ball, cube):
+    """Return some objects of every class, made so that what may be None is there once."""
+    near, far = shifted(1.2, 0.3, 0.2), shifted(3, 0, 0)
+    scene = lrbscope.Scene()
+    for pose in (near, far, np.eye(4)):
+        scene.add(ball, pose)
+    poly = lrbscope.Body(
+        cube.vertices,
+        [[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7], [2, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]],
+    )
+    motion = [far, np.eye(4)]
+    full = lrbscope.collide(ball, ball, near, contacts=True, interiors_overlap=True)
+    trace = lrbscope.trace(ball, ball, near)
+    scenario = lrbscope.Scenario(lrbscope.scenarios()[0])
+    outcome = scenario.run(tmp_path_factory.mktemp("out") / "run")
+    clashes = [lrbscope.clash(cube, cube, shifted(x, 0.1, 0.2), along=(1, 0, 0)) for x in (0.5, 3)]
+    walks = [lrbscope.explain_walk(ball, ball, pose) for pose in (near, far)]
+    pairs = [lrbscope.explain_pair(ball, ball, p, near) for p in ([0, 0], full.pairs[0])]
+    return [
+        ball,
+        cube,
+        poly,
+        full,
+        lrbscope.collide(ball, ball, far, separation=True),
+        *full.regions,
+        lrbscope.collide(ball, ball, [near, far]),
+        lrbscope.distance(ball, ball, far),
+        scene,
+        scene.collide(),
+        lrbscope.distance(ball, ball, far, within=1.0),
+        lrbscope.distance(ball, ball, [near, far]),
+        *clashes,
+        lrbscope.first_contact(ball, ball, motion),
+        lrbscope.first_contact(ball, ball, np.array([motion])),
+        lrbscope.CoherentQuery(ball, cube),
+        *walks,
+        *pairs,
+        lrbscope.Wrapper(ball),
+        trace,
+        scenario,
+        outcome,
+    ]
+
+
+def test_values_are_of_the_types_in_the_stub(samples):
+    seen = set()
+    for thing in samples:
+        name = type(thing).__name__
+        for member, type_ in members(name):
+            value = getattr(thing, member)
+            value = value() if callable(value) else value
+            assert fits(value, type_), f"{name}.{member}: {ast.unparse(type_)} is not {value!r}"
+            seen.add(name)
+    without = {"InputError", "EnvironmentError", "SweepAndPrune"}
+    assert seen == set(CLASSES) - without
+
+
+def test_a_wrong_type_would_be_seen():
+    number = ast.parse("float").body[0].value
+    assert fits(1.5, number) and not fits(1, number) and not fits(None, number)
+    array = ast.parse("npt.NDArray[np.uint32] | None").body[0].value
+    assert fits(np.zeros(1, np.uint32), array) and fits(None, array) and not fits(np.zeros(1), array)
+
+
+def test_answers_of_functions(ball):
+    pose, poses = np.eye(4).tolist(), [np.eye(4)] * 2
+    for name, one, many in (
+        ("collide", "Result", "Results"),
+        ("distance", "Distance", "Distances"),
+        ("contacts", "list", "list"),
+        ("clash", "Clash", "list"),
+    ):
+        f = getattr(lrbscope, name)
+        declared = [ast.unparse(n.returns).split("[")[0] for n in stub() if getattr(n, "name", "") == name]
+        assert (
+            [type(f(ball, ball, p)).__name__ for p in (pose, poses)] + ["Any"]
+            == declared
+            == [one, many, "Any"]
+        )
+
+
+USE = """
+    import numpy as np
+    import lrbscope.fcl
+    body = lrbscope.Body(np.eye(3), [[0, 1, 2]])
+    reveal_type(lrbscope.collide(body, body))
+    reveal_type(lrbscope.collide(body, body, [np.eye(4), np.eye(4)]))
+    reveal_type(lrbscope.contacts(body, body))
+    reveal_type(lrbscope.Scene().collide()[0])
+    reveal_type(lrbscope.render(body))
+    manager = lrbscope.CollisionManager()
+    reveal_type(manager.in_collision_internal(return_names=True))
+    reveal_type(lrbscope.fcl.collide(lrbscope.fcl.CollisionObject(), lrbscope.fcl.CollisionObject()))
+    lrbscope.collide(body, 3)
+    lrbscope.Wrapper(body, "quick")
+"""
+
+
+@pytest.mark.skipif(shutil.which("mypy") is None, reason="mypy is not installed")
+def test_what_mypy_makes_of_it(tmp_path):
+    (tmp_path / "use.py").write_text(textwrap.dedent(USE))
+    done = subprocess.run(
+        ["mypy", "--strict", "--no-incremental", "--cache-dir", os.devnull, "use.py"],
+        cwd=tmp_path,
+        env={**os.environ, "MYPYPATH": os.path.dirname(PACKAGE)},
+        capture_output=True,
+        text=True,
+    )
+    said = done.stdout.splitlines()[:-1]
+    assert all(line.startswith("use.py") for line in said), done.stdout
+    shown = [line.split('"')[1].replace("lrbscope._core.", "") for line in said if "Revealed" in line]
+    assert shown[:2] == ["Result", "Results"] and shown[2] == "builtins.list[ContactRegion]", done.stdout
+    assert shown[3] == "Result" and shown[4].startswith("lrbscope._picture.Picture")
+    assert shown[5] == "Tuple[builtins.bool, builtins.set[Tuple[Any, Any]]]" and shown[6] == "builtins.int"
+    errors = [line.split(":")[1] for line in said if ": error:" in line]
+    assert errors == ["13", "14"], done.stdout
+
+
+@pytest.mark.skipif(shutil.which("stubtest") is None, reason="stubtest is not installed")
+def test_what_stubtest_finds():
+    done = subprocess.run(
+        ["stubtest", "--ignore-missing-stub", "--concise", "lrbscope"],
+        env={**os.environ, "MYPYPATH": os.path.dirname(PACKAGE)},
+        capture_output=True,
+        text=True,
+    )
+    # What pybind11 does to all classes: a metaclass of its own, an __init__ that refuses.
+    known = ("metaclass differs", 'stub does not have *args argument "args"')
+    found = [line for line in done.stdout.splitlines() if line.strip() and not line.endswith(known)]
+    assert found == [] and done.stderr == "", done.stdout + done.stderr
