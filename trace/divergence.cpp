@@ -32,6 +32,10 @@ std::string words(const std::optional<Separation>& s) {
                  " faces"
            : "none";
 }
+template <class Measured>
+std::string words(const std::optional<Measured>& m) {
+  return m ? words(*m) : "none";
+}
 std::string words(const std::vector<std::uint32_t>& values) {
   std::string out = "[";
   for (const std::uint32_t value : values)
@@ -237,6 +241,7 @@ std::optional<Divergence> first_divergence(const Trace& expected, const Trace& a
   compare_fields(c, expected.header.request, actual.header.request, "request: ");
   c.same("level of events", expected.header.level, actual.header.level);
   c.same("engine", expected.header.engine, actual.header.engine);
+  c.same("first contact", expected.header.first_contact, actual.header.first_contact);
   if (!c.differs()) compare_steps(c, expected, actual);
   return std::move(c).result();
 }

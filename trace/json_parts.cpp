@@ -27,6 +27,9 @@ void write_value(JsonWriter& w, const T& value, Form form) {
     write_array(w, value);
   else if constexpr (std::is_same_v<T, std::optional<Separation>>)
     write_json(w, value.value());
+  else if constexpr (std::is_same_v<T, std::optional<MeasuredDistance>> ||
+                     std::is_same_v<T, std::optional<MeasuredClash>>)
+    write_json(w, value.value());
   else if constexpr (std::is_same_v<T, Counters>)
     write_json(w, value);
   else
@@ -69,6 +72,55 @@ void write_json(JsonWriter& w, const Separation& separation) {
   w.key("refined").begin_array();
   for (const std::vector<RegionId>& regions : separation.refined) write_array(w, regions);
   w.end_array().end_object();
+}
+
+void write_course(JsonWriter& w, const std::vector<Bounds>& course) {
+  w.key("course").begin_array();
+  for (const Bounds& b : course) w.begin_array().value(b.work).value(b.lower).value(b.upper).end_array();
+  w.end_array();
+}
+
+void write_course(JsonWriter& w, const std::vector<ContactBounds>& course) {
+  w.key("course").begin_array();
+  for (const ContactBounds& b : course) {
+    w.begin_array().value(b.work).value(b.t0).value(b.t1).value(b.lower).value(b.upper);
+    w.end_array();
+  }
+  w.end_array();
+}
+
+void write_json(JsonWriter& w, const MeasuredDistance& m) {
+  w.begin_object().member("lower", m.lower).member("upper", m.upper).member("solids_meet", m.solids_meet);
+  w.key("point_a");
+  write_array(w, m.points[0]);
+  w.key("point_b");
+  write_array(w, m.points[1]);
+  write_course(w, m.course);
+  w.end_object();
+}
+
+void write_json(JsonWriter& w, const MeasuredClash& m) {
+  w.begin_object().member("kind", name_of(m.kind)).member("shares_faces", m.shares_faces);
+  w.key("distance");
+  write_array(w, m.distance);
+  if (m.depth) {
+    w.key("depth");
+    write_array(w, *m.depth);
+    w.key("translation");
+    write_array(w, m.translation);
+  }
+  if (m.volume) {
+    w.key("volume");
+    write_array(w, *m.volume);
+  }
+  write_course(w, m.course);
+  w.end_object();
+}
+
+void write_json(JsonWriter& w, const MeasuredApproach& m) {
+  w.begin_object().member("outcome", name_of(m.outcome)).member("t0", m.t0).member("t1", m.t1);
+  write_course(w, m.course);
+  w.end_object();
 }
 
 void write_json(JsonWriter& w, const Pose& pose) {

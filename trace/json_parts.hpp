@@ -13,6 +13,13 @@ void write_json(JsonWriter& w, const Counters& counters);
 void write_json(JsonWriter& w, const CollideRequest& request);
 /// Writes {"faces", "refined"}, each for A and B.
 void write_json(JsonWriter& w, const Separation& separation);
+/// Writes "course", how bounds tightened: a list of [work, lower, upper], or of [work, t0, t1, lower, upper]; what is
+/// infinite, as null.
+void write_course(JsonWriter& w, const std::vector<Bounds>& course);
+void write_course(JsonWriter& w, const std::vector<ContactBounds>& course);
+void write_json(JsonWriter& w, const MeasuredDistance& m);
+void write_json(JsonWriter& w, const MeasuredClash& m);
+void write_json(JsonWriter& w, const MeasuredApproach& m);
 /// Writes a pose as the 12 numbers of a 3x4 matrix, row by row, as in pose files.
 void write_json(JsonWriter& w, const Pose& pose);
 /// Writes the members of a step's answer to `request`, without brackets.

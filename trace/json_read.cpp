@@ -73,6 +73,53 @@ void read_value(const TraceNode& node, Separation& s) {
   }
 }
 
+/// Reads a number of at least 0 that may be infinite, which is written as null.
+double read_end(const TraceNode& node) {
+  return node.is_null() ? std::numeric_limits<double>::infinity() : node.least(0);
+}
+
+template <std::size_t n>
+void read_ends(const TraceNode& node, std::array<double, n>& ends) {
+  if (node.array_size() != n) node.fail(std::to_string(n) + " numbers");
+  for (std::size_t i = 0; i < n; ++i) ends[i] = read_end(node.at(i));
+}
+
+void read_vector(const TraceNode& node, std::array<double, 3>& vector) {
+  if (node.array_size() != 3) node.fail("3 numbers");
+  for (std::size_t i = 0; i < 3; ++i) vector[i] = node.at(i).number();
+}
+
+void read_course(const TraceNode& node, std::vector<Bounds>& course) {
+  const std::size_t count = node.array_size();
+  for (std::size_t i = 0; i < count; ++i) {
+    const TraceNode item = node.at(i);
+    if (item.array_size() != 3) item.fail("work, lower and upper end");
+    course.push_back({item.at(std::size_t{0}).integer<std::uint64_t>(), item.at(std::size_t{1}).least(0),
+                      read_end(item.at(std::size_t{2}))});
+  }
+}
+
+void read_value(const TraceNode& node, MeasuredDistance& m) {
+  m.lower = read_end(node.at("lower"));
+  m.upper = read_end(node.at("upper"));
+  m.solids_meet = node.at("solids_meet").boolean();
+  read_vector(node.at("point_a"), m.points[0]);
+  read_vector(node.at("point_b"), m.points[1]);
+  read_course(node.at("course"), m.course);
+}
+
+void read_value(const TraceNode& node, MeasuredClash& m) {
+  m.kind = node.at("kind").named<ClashKind>();
+  m.shares_faces = node.at("shares_faces").boolean();
+  read_ends(node.at("distance"), m.distance);
+  if (node.has("depth")) {
+    read_ends(node.at("depth"), m.depth.emplace());
+    read_vector(node.at("translation"), m.translation);
+  }
+  if (node.has("volume")) read_ends(node.at("volume"), m.volume.emplace());
+  read_course(node.at("course"), m.course);
+}
+
 template <class Record>
 void read_record(const TraceNode& node, Record& record, bool coarse = false);
 
@@ -91,7 +138,9 @@ void read_field(const TraceNode& node, const Field<Record, Value>& field, Value&
   else if constexpr (std::is_same_v<Value, double>)
     value = field.form == Form::or_infinite && node.is_null() ? std::numeric_limits<double>::infinity()
                                                               : node.least(0);
-  else if constexpr (std::is_same_v<Value, std::optional<Separation>>)
+  else if constexpr (std::is_same_v<Value, std::optional<Separation>> ||
+                     std::is_same_v<Value, std::optional<MeasuredDistance>> ||
+                     std::is_same_v<Value, std::optional<MeasuredClash>>)
     read_value(node, value.emplace());
   else if constexpr (std::is_same_v<Value, Counters>)
     read_record(node, value);
@@ -133,6 +182,23 @@ StepResult read_answer(const TraceNode& node, const CollideRequest& request) {
   StepResult r;
   read_record(node, r, request.is_coarse());
   return r;
+}
+
+MeasuredApproach read_approach(const TraceNode& node) {
+  MeasuredApproach m;
+  m.outcome = node.at("outcome").named<MotionOutcome>();
+  m.t0 = node.at("t0").least(0);
+  m.t1 = node.at("t1").least(0);
+  const TraceNode course = node.at("course");
+  const std::size_t count = course.array_size();
+  for (std::size_t i = 0; i < count; ++i) {
+    const TraceNode item = course.at(i);
+    if (item.array_size() != 5) item.fail("work, t0, t1, lower and upper end");
+    m.course.push_back({item.at(std::size_t{0}).integer<std::uint64_t>(), item.at(std::size_t{1}).least(0),
+                        read_end(item.at(std::size_t{2})), read_end(item.at(std::size_t{3})),
+                        read_end(item.at(std::size_t{4}))});
+  }
+  return m;
 }
 
 Pose read_pose(const TraceNode& node) {

@@ -108,6 +108,7 @@ BodyInfo read_body(const TraceNode& node);
 CollideRequest read_request(const TraceNode& node);
 /// Reads the answer to `request` that write_answer() wrote.
 StepResult read_answer(const TraceNode& node, const CollideRequest& request);
+MeasuredApproach read_approach(const TraceNode& node);
 Pose read_pose(const TraceNode& node);
 
 }  // namespace lrb::trace

@@ -44,6 +44,8 @@ inline constexpr auto kFields<trace::StepResult> =
                field("error_bound", &trace::StepResult::error_bound, Kept::if_coarse, Form::or_infinite),
                field("finished", &trace::StepResult::finished, Kept::if_coarse),
                field("separation", &trace::StepResult::separation, Kept::if_set),
+               field("distance", &trace::StepResult::distance, Kept::if_set),
+               field("clash", &trace::StepResult::clash, Kept::if_set),
                field("counters", &trace::StepResult::counters)};
 
 template <>

@@ -2,6 +2,7 @@
 
 #include <stdexcept>
 #include <unordered_map>
+#include <utility>
 
 #include "engine/core/error.hpp"
 #include "trace/node_work.hpp"
@@ -103,6 +104,16 @@ void Recorder::begin_step(std::uint32_t index, const Pose& pose_a, const Pose& p
   step.first_event = step_event_;
   trace_.steps.push_back(std::move(step));
   push({.a = index, .kind = EventKind::step});
+}
+
+void Recorder::add(MeasuredDistance distance) {
+  if (trace_.steps.empty()) throw std::logic_error("Recorder::add: no step was begun");
+  trace_.steps.back().result.distance = std::move(distance);
+}
+
+void Recorder::add(MeasuredClash clash) {
+  if (trace_.steps.empty()) throw std::logic_error("Recorder::add: no step was begun");
+  trace_.steps.back().result.clash = std::move(clash);
 }
 
 void Recorder::end_step(const CollideResult& result) {

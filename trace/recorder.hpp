@@ -48,6 +48,9 @@ class Recorder final : public CollideProbe {
   /// Begins a time step: both wrappers are the outermost ones again. `index` must ascend and poses must be
   /// finite, else throws InputError.
   void begin_step(std::uint32_t index, const Pose& pose_a, const Pose& pose_b = {});
+  /// Adds, before a step ends, what was asked about it besides.
+  void add(MeasuredDistance distance);
+  void add(MeasuredClash clash);
   void end_step(const CollideResult& result);
 
   void face_test(SimplexId a, SimplexId b, exact::Meet meet, std::uint32_t depth_a,

@@ -64,7 +64,7 @@ bool equal(const TraceHeader& x, const TraceHeader& y) {
   return x.lrbscope == y.lrbscope && x.scenario == y.scenario && x.scenario_hash == y.scenario_hash &&
          x.bodies == y.bodies && x.request == y.request && x.clock == y.clock && x.event_cap == y.event_cap &&
          x.level == y.level && x.engine == y.engine && x.coherent == y.coherent &&
-         x.construction == y.construction && x.pictures == y.pictures;
+         x.construction == y.construction && x.first_contact == y.first_contact && x.pictures == y.pictures;
 }
 
 /// Checks the parts of one trace; every failure is one line that names the event or step.

@@ -20,6 +20,7 @@
 #include "engine/query/collide.hpp"
 #include "engine/query/node_boxes.hpp"
 #include "engine/query/walk/probe.hpp"
+#include "trace/measured.hpp"
 
 namespace lrb::trace {
 
@@ -145,6 +146,8 @@ struct StepResult {
   double error_bound = 0;  ///< as in CollideResult; kept, like `finished`, for coarse queries only
   bool finished = true;
   std::optional<Separation> separation = {};
+  std::optional<MeasuredDistance> distance = {};  ///< if it was asked for
+  std::optional<MeasuredClash> clash = {};        ///< if it was asked for
 
   friend bool operator==(const StepResult&, const StepResult&) = default;
 };
@@ -173,6 +176,7 @@ struct TraceHeader {
   bool coherent = false;  ///< each step went on from the one before, by a CoherentQuery
   /// The construction of one body: its wrapper, the hull, begins with the body itself, and grows.
   bool construction = false;
+  std::optional<MeasuredApproach> first_contact;  ///< of the motion; none: nobody looked for it
   std::string pictures;  ///< how the run was drawn, as a JSON object that traces only carry; empty: not said
 };
 

@@ -152,6 +152,7 @@ class Reader {
     if (metadata.has("coherent")) h.coherent = metadata.at("coherent").boolean();
     if (metadata.has("construction")) h.construction = metadata.at("construction").boolean();
     if (metadata.has("pictures")) h.pictures = metadata.at("pictures").object_text();
+    if (metadata.has("first_contact")) h.first_contact = read_approach(metadata.at("first_contact"));
     h.request = read_request(metadata.at("request"));
     const TraceNode bodies = metadata.at("bodies");
     const std::size_t count = bodies.array_size();

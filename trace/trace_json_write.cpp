@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <span>
 #include <unordered_map>
 #include <utility>
@@ -247,6 +248,8 @@ class TraceWriter {
     out_.raw("}}");
     write_flows(i);
     count(e, i);
+    if (e.kind == EventKind::result) write_measured(i);
+    if (i == 0 && t_.header.first_contact && !wall()) write_first_contact(*t_.header.first_contact);
   }
 
   /// Steps and passes are named by what they found, phases by what they are, all others by their kind.
@@ -510,6 +513,62 @@ class TraceWriter {
     out_.raw("\",\"cat\":\"counter\",\"ph\":\"C\",\"pid\":1,\"tid\":0,\"ts\":");
     write_time(begin_of(i));
     out_.raw(",\"args\":{");
+  }
+
+  /// Begins a counter within an event's slice: so much of it has passed. An event on the event clock takes 1.
+  void begin_counter_within(std::string_view name, EventId i, double share) {
+    out_.raw(",\n{\"name\":\"");
+    out_.raw(name);
+    out_.raw("\",\"cat\":\"counter\",\"ph\":\"C\",\"pid\":1,\"tid\":0,\"ts\":");
+    if (wall())
+      write_time(begin_of(i) + static_cast<std::uint64_t>(share * static_cast<double>(duration_of(i))));
+    else
+      out_.number(static_cast<double>(i) + share);
+    out_.raw(",\"args\":{");
+  }
+
+  void write_ends(double lower, double upper) {
+    out_.raw("\"lower\":");
+    out_.number(lower);
+    if (std::isfinite(upper)) {
+      out_.raw(",\"upper\":");
+      out_.number(upper);
+    }
+    out_.raw("}}");
+  }
+
+  /// Writes how bounds tightened, spread by the work that it took over the half of an event's slice that begins at
+  /// `begin`.
+  void write_course(std::string_view name, EventId i, double begin, const std::vector<Bounds>& course) {
+    for (const Bounds& b : course) {
+      const double all = static_cast<double>(course.back().work) + 1;
+      begin_counter_within(name, i, begin + 0.5 * static_cast<double>(b.work) / all);
+      write_ends(b.lower, b.upper);
+    }
+  }
+
+  /// Writes what was measured before a step's result, which is its last event.
+  void write_measured(EventId i) {
+    const StepResult& r = t_.steps[t_.step_of(i)].result;
+    if (r.distance) write_course("distance", i, 0, r.distance->course);
+    if (r.clash) write_course("depth", i, 0.5, r.clash->course);
+  }
+
+  /// Writes the search for the first contact, which came before all steps, within the first event.
+  void write_first_contact(const MeasuredApproach& m) {
+    for (const ContactBounds& b : m.course) {
+      const double share = static_cast<double>(b.work) / (static_cast<double>(m.course.back().work) + 1);
+      begin_counter_within("first contact", 0, share);
+      out_.raw("\"t0\":");
+      out_.number(b.t0);
+      if (std::isfinite(b.t1)) {
+        out_.raw(",\"t1\":");
+        out_.number(b.t1);
+      }
+      out_.raw("}}");
+      begin_counter_within("distance at t0", 0, share);
+      write_ends(b.lower, b.upper);
+    }
   }
 
   void write_wrapper_counter(EventId i) {

@@ -55,6 +55,10 @@ void write_metadata(const Trace& trace, JsonOut& out) {
   if (h.coherent) w.member("coherent", true);
   if (h.construction) w.member("construction", true);
   if (!h.pictures.empty()) w.key("pictures").json(h.pictures);
+  if (h.first_contact) {
+    w.key("first_contact");
+    write_json(w, *h.first_contact);
+  }
   w.key("events");
   write_event_counts(w, trace);
   w.key("totals");

@@ -24,6 +24,10 @@ std::string words(const std::optional<Separation>& s) {
                  " faces"
            : "none";
 }
+template <class Measured>
+std::string words(const std::optional<Measured>& m) {
+  return m ? trace::words(*m) : "none";
+}
 std::string words(const std::vector<std::uint32_t>& values) {
   std::string out;
   for (const std::uint32_t value : values) out.append(out.empty() ? "" : ", ").append(std::to_string(value));

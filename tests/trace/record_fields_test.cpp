@@ -3,6 +3,7 @@
 #include "trace/record_fields.hpp"
 
 #include <fstream>
+#include <limits>
 #include <set>
 #include <string>
 #include <type_traits>
@@ -86,6 +87,16 @@ void change(Value& value) {
     value.push_back(7);
   else if constexpr (std::is_same_v<Value, std::optional<Separation>>)
     value = Separation{{{{0}, {}}}, {7, 6}};
+  else if constexpr (std::is_same_v<Value, std::optional<MeasuredDistance>>)
+    value = MeasuredDistance{0.25,
+                             0.5,
+                             true,
+                             {{{1, -2, 3}, {4, 5, 6}}},
+                             {{1, 0, std::numeric_limits<double>::infinity()}, {2, 0.25, 0.5}}};
+  else if constexpr (std::is_same_v<Value, std::optional<MeasuredClash>>)
+    value = MeasuredClash{
+        ClashKind::pierces, true,       {0, 0},         {{0.25, std::numeric_limits<double>::infinity()}},
+        {{0.125, 0.126}},   {0, -1, 2}, {{1, 0.1, 0.5}}};
   else if constexpr (std::is_same_v<Value, Counters>)
     ++value.box_tests;
   else

@@ -17,6 +17,18 @@ namespace {
 
 using parting::UnitBodies;
 
+/// Pass bounds on to a probe, which must not be null when they are told.
+struct GapTeller final : BoundsProbe {
+  explicit GapTeller(ClashProbe* p) : probe(p) {}
+  void bounds(const Bounds& known) override { probe->distance(known); }
+  ClashProbe* probe;
+};
+struct DepthTeller final : BoundsProbe {
+  explicit DepthTeller(ClashProbe* p) : probe(p) {}
+  void bounds(const Bounds& known) override { probe->depth(known); }
+  ClashProbe* probe;
+};
+
 /// Returns the kind of bodies whose interiors share no point but whose surfaces meet: by what of the highest
 /// dimension they share.
 ClashKind touching_kind(QueryContext& query, const CollideResult& found) {
@@ -47,10 +59,12 @@ ClashKind overlapping_kind(const std::array<SurfacePieces, 2>& pieces) {
 
 /// Measures how far solids without a point in common are apart, and compares that with the clearance.
 void measure_gap(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
-                 const ClashRequest& request, ClashContext& context, ClashResult& result) {
+                 const ClashRequest& request, ClashContext& context, ClashProbe* probe, ClashResult& result) {
   DistanceRequest ask;
   ask.relation = false;
-  const DistanceResult d = distance(a, pose_a, b, pose_b, ask, context.distance);
+  GapTeller teller(probe);
+  const DistanceResult d =
+      distance(a, pose_a, b, pose_b, ask, context.distance, nullptr, probe != nullptr ? &teller : nullptr);
   result.distance = {d.lower, d.upper};
   bool within = d.upper <= request.clearance;
   if (!within && d.lower <= request.clearance) {
@@ -93,11 +107,13 @@ ProvedInterval world_volume(const ProvedInterval& unit, int exponent) {
 /// Finds how deep bodies are in each other, and the volume that they share.
 void measure_overlap(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
                      const ClashRequest& request, QueryContext& query, const CollideResult& found,
-                     ClashResult& result) {
+                     ClashProbe* probe, ClashResult& result) {
   const UnitBodies bodies = parting::unit_bodies(query);
   if (request.depth || request.along) {
     parting::Parting parting(a, pose_a, b, pose_b, bodies);
-    parting::DepthFinder finder(query, found, bodies, parting);
+    DepthTeller on_depth(probe);
+    BoundsTeller teller(on_depth);
+    parting::DepthFinder finder(query, found, bodies, parting, probe != nullptr ? &teller : nullptr);
     if (request.depth) {
       const auto depth = finder.depth();
       result.depth = depth.length;
@@ -131,15 +147,15 @@ void check_request(const LrbRep& a, const ClashRequest& request) {
 }
 
 ClashResult clash(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
-                  const ClashRequest& request, ClashContext& context) {
+                  const ClashRequest& request, ClashContext& context, ClashProbe* probe) {
   check_query(a, pose_a, b, pose_b);
   check_request(a, request);
-  NullProbe probe;
-  const CollideResult found = collide(a, pose_a, b, pose_b, {}, context.query, probe);
+  NullProbe unwatched;
+  const CollideResult found = collide(a, pose_a, b, pose_b, {}, context.query, unwatched);
   ClashResult result;
   const bool solids = a.closed() && b.closed();
   if (found.relation == Relation::separate || (found.pairs.empty() && !solids)) {
-    measure_gap(a, pose_a, b, pose_b, request, context, result);
+    measure_gap(a, pose_a, b, pose_b, request, context, probe, result);
     result.interiors_overlap = solids ? Answer::no : Answer::unknown;
     if (solids) write_no_overlap(request, result);
     return result;
@@ -148,7 +164,7 @@ ClashResult clash(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Po
   if (result.interiors_overlap == Answer::no)
     write_no_overlap(request, result);
   else if (solids)
-    measure_overlap(a, pose_a, b, pose_b, request, context.query, found, result);
+    measure_overlap(a, pose_a, b, pose_b, request, context.query, found, probe, result);
   return result;
 }
 
@@ -156,6 +172,12 @@ ClashResult clash(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Po
                   const ClashRequest& request) {
   ClashContext context;
   return clash(a, pose_a, b, pose_b, request, context);
+}
+
+ClashResult clash(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
+                  const ClashRequest& request, ClashProbe& probe) {
+  ClashContext context;
+  return clash(a, pose_a, b, pose_b, request, context, &probe);
 }
 
 }  // namespace lrb

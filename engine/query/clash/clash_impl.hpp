@@ -2,7 +2,7 @@
 /// One clash query, with memory that the next one can use again: for code of ours. Users of the installed
 /// engine have clash.hpp.
 
-#include "engine/query/clash/clash.hpp"
+#include "engine/query/clash/clash_probe.hpp"
 #include "engine/query/distance/distance_impl.hpp"
 
 namespace lrb {
@@ -13,9 +13,9 @@ struct ClashContext {
   DistanceContext distance;
 };
 
-/// Answers as clash() in clash.hpp does.
+/// Answers as clash() in clash.hpp does. probe: null, or told what is known.
 ClashResult clash(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
-                  const ClashRequest& request, ClashContext& context);
+                  const ClashRequest& request, ClashContext& context, ClashProbe* probe = nullptr);
 
 /// Throws InputError if a request cannot be answered.
 void check_request(const LrbRep& a, const ClashRequest& request);

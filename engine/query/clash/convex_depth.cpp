@@ -86,17 +86,19 @@ bool ConvexDifference::grow(std::size_t facet) {
   return width - f.offset > kDepthGain && hull_.add(x);
 }
 
-void ConvexDifference::find_depth(unsigned most_steps) {
-  if (!solid_) return;
-  for (unsigned step = 0; step < most_steps && upper_ > 0; ++step) {
+unsigned ConvexDifference::find_depth(unsigned most_steps) {
+  if (!solid_) return 0;
+  unsigned step = 0;
+  for (; step < most_steps && upper_ > 0; ++step) {
     const std::vector<PointHull::Facet>& facets = hull_.facets();
     std::size_t nearest = facets.size();
     for (std::size_t i = 0; i < facets.size(); ++i)
       if (!facets[i].is_final && (nearest == facets.size() || facets[i].offset < facets[nearest].offset))
         nearest = i;
-    if (nearest == facets.size() || facets[nearest].offset >= upper_ - kDepthGain) return;
+    if (nearest == facets.size() || facets[nearest].offset >= upper_ - kDepthGain) break;
     grow(nearest);
   }
+  return step;
 }
 
 double ConvexDifference::exit_of(const PointHull::Facet& f, const Vector3d& n) {

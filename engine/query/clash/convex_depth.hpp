@@ -17,8 +17,8 @@ class ConvexDifference {
   ConvexDifference(const ConvexPoints& a, const ConvexPoints& b);
 
   /// Grows the hull until the distance of the origin to its boundary is that of all differences, or for so
-  /// many steps.
-  void find_depth(unsigned most_steps);
+  /// many steps; goes on from where it was. Returns how many steps it took.
+  unsigned find_depth(unsigned most_steps);
   /// Grows the hull where the ray from the origin in direction `n` leaves it.
   void follow(const Vector3d& n);
 

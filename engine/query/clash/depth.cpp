@@ -62,8 +62,8 @@ double farthest(const UnitBody& body, const Vector3d& n) {
 }  // namespace
 
 DepthFinder::DepthFinder(QueryContext& query, const CollideResult& result, const UnitBodies& bodies,
-                         Parting& parting)
-    : query_(query), result_(result), bodies_(bodies), parting_(parting) {
+                         Parting& parting, BoundsTeller* teller)
+    : query_(query), result_(result), bodies_(bodies), parting_(parting), teller_(teller) {
   for (const Side side : {Side::a, Side::b}) whole_[static_cast<int>(side)] = shrunken(side);
 }
 
@@ -180,6 +180,32 @@ std::optional<DepthFinder::Common> DepthFinder::common_sets(const Vector3d& shif
   return Common{std::move(*sets[0]), moved(std::move(*sets[1]), shift)};
 }
 
+/// Tells what is known when `least` is the length of the shortest way out that was found, units.
+void DepthFinder::tell(double least) {
+  if (teller_ == nullptr) return;
+  const double upper = least < kInfinity ? bodies_.frame.length_to_world(least) : kInfinity;
+  teller_->tell(parting_.asked() + grown_, told_lower_, upper);
+}
+
+/// Grows a hull, and tells what comes of it: lower ends from that of sets inside the bodies, upper ends from that of
+/// the bodies' hulls.
+void DepthFinder::find_depth(ConvexDifference& difference, unsigned most_steps, bool is_inner) {
+  if (teller_ == nullptr) {
+    difference.find_depth(most_steps);
+    return;
+  }
+  for (unsigned done = 0; done < most_steps;) {
+    const auto look = static_cast<unsigned>(BoundsTeller::next_look(done));
+    const unsigned steps = std::min(look, most_steps) - done;
+    const unsigned grown = difference.find_depth(steps);
+    done += grown;
+    grown_ += grown;
+    if (is_inner) told_lower_ = bodies_.frame.length_to_world(difference.depth_lower());
+    tell(is_inner ? kInfinity : difference.depth_upper());
+    if (grown < steps) return;
+  }
+}
+
 double DepthFinder::hull_width(const Vector3d& n) const {
   return farthest(bodies_.body[0], n) + farthest(bodies_.body[1], -n);
 }
@@ -208,6 +234,7 @@ void DepthFinder::improve(const Vector3d& n, double& best, Vector3d& best_n) {
   if (s >= most && (most < width || !(width < best))) return;
   best = s;
   best_n = n;
+  tell(best);
 }
 
 /// Turns the direction by less and less, as long as that shortens the way.
@@ -223,6 +250,7 @@ void DepthFinder::refine(double& best, Vector3d& best_n) {
       if (!parting_.is_apart(n, s)) continue;
       best = parting_.least_apart(n, s, 1);
       best_n = n;
+      tell(best);
       shorter = true;
       break;
     }
@@ -236,12 +264,12 @@ DepthFinder::Depth DepthFinder::depth() {
   const bool convex = whole_[0] && whole_[1];
   if (const std::optional<Common> sets = common_sets(Vector3d::Zero())) {
     ConvexDifference difference(sets->a, sets->b);
-    difference.find_depth(kMostDepthSteps);
+    find_depth(difference, kMostDepthSteps, true);
     out.length.lower = bodies_.frame.length_to_world(difference.depth_lower());
   }
   const ConvexPoints &a = bodies_.body[0].points, &b = bodies_.body[1].points;
   ConvexDifference hulls(a, b);
-  hulls.find_depth(convex ? kMostDepthSteps : kRoughDepthSteps);
+  find_depth(hulls, convex ? kMostDepthSteps : kRoughDepthSteps, false);
   double best = hulls.depth_upper();
   Vector3d best_n = hulls.direction();
   if (!convex) {
@@ -254,6 +282,7 @@ DepthFinder::Depth DepthFinder::depth() {
   if (!move) return out;
   out.translation = move->translation;
   out.length.upper = move->length;
+  if (teller_ != nullptr) teller_->settle(parting_.asked() + grown_, out.length.lower, out.length.upper);
   return out;
 }
 

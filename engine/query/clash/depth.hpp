@@ -15,8 +15,10 @@ namespace lrb::parting {
 /// the query proves. Between convex bodies both meet.
 class DepthFinder {
  public:
-  /// `query`: begun with the bodies. `result`: all pairs of simplices that meet. Bodies must be closed.
-  DepthFinder(QueryContext& query, const CollideResult& result, const UnitBodies& bodies, Parting& parting);
+  /// `query`: begun with the bodies. `result`: all pairs of simplices that meet. Bodies must be closed. teller: null,
+  /// or told what is known of the depth.
+  DepthFinder(QueryContext& query, const CollideResult& result, const UnitBodies& bodies, Parting& parting,
+              BoundsTeller* teller = nullptr);
 
   struct Depth {
     ProvedInterval length;  ///< world
@@ -41,6 +43,8 @@ class DepthFinder {
   std::vector<Vector3d> directions();
   void improve(const Vector3d& n, double& best, Vector3d& best_n);
   void refine(double& best, Vector3d& best_n);
+  void find_depth(ConvexDifference& difference, unsigned most_steps, bool is_inner);
+  void tell(double least);
   double hull_width(const Vector3d& n) const;
   double along_lower(const Vector3d& n);
 
@@ -48,6 +52,9 @@ class DepthFinder {
   const CollideResult& result_;
   const UnitBodies& bodies_;
   Parting& parting_;
+  BoundsTeller* teller_;
+  double told_lower_ = 0;                 ///< of the depth, world; kept where there is a teller
+  std::uint64_t grown_ = 0;               ///< steps in which hulls grew, where there is a teller
   std::optional<ConvexPoints> whole_[2];  ///< of a body that is convex
 };
 

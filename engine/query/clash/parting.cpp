@@ -26,6 +26,7 @@ Parting::Moved Parting::moved(const Vector3d& n, double s) const {
 bool Parting::is_apart(const Vector3d& n, double s) {
   const Moved m = moved(n, s);
   if (!m.pose.t.allFinite() || !(reach_ + m.by.cwiseAbs().maxCoeff() < kLargestMoved)) return false;
+  ++asked_;
   CollideRequest request;
   request.mode = Mode::any_pair;
   NullProbe probe;
@@ -40,6 +41,7 @@ bool Parting::is_apart(const Vector3d& n, double s) {
 bool Parting::is_proved(const Moved& m, double more) {
   if (!m.pose.t.allFinite() || !(reach_ + m.by.cwiseAbs().maxCoeff() < kLargestMoved)) return false;
   const double rounding = 0x1p-51 * (reach_ + m.by.norm()) + more + kWorldUnderflow;
+  ++asked_;
   DistanceRequest request;
   request.within = rounding;
   const DistanceResult result = distance(a_, pose_a_, b_, m.pose, request, distance_);

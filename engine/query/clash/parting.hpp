@@ -28,6 +28,8 @@ class Parting {
   /// Returns the least of some distances along n, up to `most`, at which the bodies are apart, narrowed down to
   /// where they just met; `most` if it is none of them. Finds the way out that is nearest in general, not always.
   double least_apart(const Vector3d& n, double most, int samples);
+  /// Returns how many queries were asked.
+  std::uint64_t asked() const { return asked_; }
 
  private:
   struct Moved {
@@ -40,7 +42,8 @@ class Parting {
   const LrbRep &a_, &b_;
   const Pose &pose_a_, &pose_b_;
   const UnitFrame& frame_;
-  double reach_ = 0;  ///< the largest world coordinate of B
+  double reach_ = 0;         ///< the largest world coordinate of B
+  std::uint64_t asked_ = 0;  ///< queries
   QueryContext query_;
   DistanceContext distance_;
 };

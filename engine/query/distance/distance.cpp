@@ -37,7 +37,7 @@ void check_request(const DistanceRequest& request) {
 
 DistanceResult distance(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
                         const DistanceRequest& request, DistanceContext& context,
-                        const std::array<SimplexId, 2>* likely) {
+                        const std::array<SimplexId, 2>* likely, BoundsProbe* probe) {
   check_query(a, pose_a, b, pose_b);
   check_request(request);
   if (a.tree().empty() || b.tree().empty()) return of_nothing(request);
@@ -54,19 +54,25 @@ DistanceResult distance(const LrbRep& a, const Pose& pose_a, const LrbRep& b, co
   const TreeKernel tree = set_up_any_kernel(a.tree(), pose_a, b.tree(), pose_b, a.dim(), query.affine);
   bool finished = false;
   double rest = 0;
+  std::optional<BoundsTeller> told;
+  if (probe != nullptr) told.emplace(*probe);
+  BoundsTeller* const teller = told ? &*told : nullptr;
   if (suits_floats(tree)) {
     FloatWalk walk(context, found, request, tree, query_unit(a.tree(), b.tree()), !is_likely);
-    finished = walk.run();
+    finished = walk.run(teller);
     if (!found.known_to_meet()) rest = walk.measure();
     walk.count(result.counters);
   } else {
     WorldWalk walk(query, found);
-    finished = walk.run(request.max_steps);
+    finished = walk.run(request.max_steps, teller);
     rest = walk.rest();
     result.counters.steps = walk.steps();
     result.counters.box_tests = walk.box_tests();
   }
+  if (told && !found.known_to_meet())
+    told->tell(result.counters.steps + found.measured(), found.lower(rest), found.upper());
   found.finish(rest, finished, result);
+  if (told) told->tell(result.counters.steps + found.measured(), result.lower, result.upper);
   return result;
 }
 
@@ -74,6 +80,12 @@ DistanceResult distance(const LrbRep& a, const Pose& pose_a, const LrbRep& b, co
                         const DistanceRequest& request) {
   DistanceContext context;
   return distance(a, pose_a, b, pose_b, request, context);
+}
+
+DistanceResult distance(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
+                        const DistanceRequest& request, BoundsProbe& probe) {
+  DistanceContext context;
+  return distance(a, pose_a, b, pose_b, request, context, nullptr, &probe);
 }
 
 std::vector<DistanceResult> distances(const LrbRep& a, const Pose& pose_a, const LrbRep& b,

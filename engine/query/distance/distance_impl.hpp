@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include "engine/query/distance/bounds_teller.hpp"
 #include "engine/query/distance/distance_kernel.hpp"
 #include "engine/query/distance/nearest_pairs.hpp"
 
@@ -20,10 +21,10 @@ struct DistanceContext {
 };
 
 /// Answers as distance() in distance.hpp does. likely: null, or a simplex of A and one of B that are likely
-/// to be the nearest; kNull: none.
+/// to be the nearest; kNull: none. probe: null, or told how bounds tighten.
 DistanceResult distance(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
                         const DistanceRequest& request, DistanceContext& context,
-                        const std::array<SimplexId, 2>* likely = nullptr);
+                        const std::array<SimplexId, 2>* likely = nullptr, BoundsProbe* probe = nullptr);
 
 /// Throws InputError if a request cannot be answered.
 void check_request(const DistanceRequest& request);
@@ -40,8 +41,8 @@ class FloatWalk {
   FloatWalk(DistanceContext& context, NearestPairs& found, const DistanceRequest& request,
             const TreeKernel& tree, double unit, bool descend);
 
-  /// Returns true if the walk came to its end, or found that the surfaces meet.
-  bool run();
+  /// Returns true if the walk came to its end, or found that the surfaces meet. teller: null, or told what is known.
+  bool run(BoundsTeller* teller);
   /// Measures the pairs that may be the nearest. Returns a bound on the distances of all others.
   double measure();
   void count(DistanceCounters& counters) const;
@@ -49,6 +50,8 @@ class FloatWalk {
  private:
   void begin_ends();
   void give_room();
+  bool descend_alone();
+  void tell(BoundsTeller& teller) const;
   double dropped() const;
   double waiting_lower() const;
 

@@ -88,15 +88,44 @@ void FloatWalk::give_room() {
   k_.near_capacity = static_cast<std::uint32_t>(context_.near.size());
 }
 
-bool FloatWalk::run() {
+/// Goes down to a first pair, as the kernel does before it walks, and stops there. Returns true if there is no more to
+/// be done.
+bool FloatWalk::descend_alone() {
+  give_room();
+  k_.waiting_size = 0;  // nothing is left to walk
+  run_distance_kernel(k_);
+  k_.waiting[0] = {-kNothing, 0, 0};
+  k_.waiting_size = 1;
+  context_.turn = k_.turn;
+  if (k_.stop == KernelStop::doubtful) {
+    if (found_.surfaces_meet()) return true;
+    k_.apart = true;
+  }
+  return k_.stop == KernelStop::enough;
+}
+
+void FloatWalk::tell(BoundsTeller& teller) const {
+  double lower = dropped();
+  for (std::uint32_t i = 0; i < k_.near_size; ++i)
+    lower = std::min(lower, static_cast<double>(k_.near[i].lower) * unit_);
+  teller.tell(k_.tree.node_pairs, lower, std::min(found_.upper(), static_cast<double>(k_.upper) * unit_));
+}
+
+bool FloatWalk::run(BoundsTeller* teller) {
   k_.apart = found_.known_apart();
+  const std::uint64_t most = k_.tree.most_node_pairs;
+  if (teller != nullptr && k_.descend && descend_alone()) return found_.known_to_meet();
   for (;;) {
     give_room();
+    if (teller != nullptr)
+      k_.tree.most_node_pairs = std::min(most, BoundsTeller::next_look(k_.tree.node_pairs));
     run_distance_kernel(k_);
     context_.turn = k_.turn;
     if (k_.stop == KernelStop::doubtful) {
       if (found_.surfaces_meet()) return true;
       k_.apart = true;
+    } else if (k_.stop == KernelStop::limit && k_.tree.node_pairs < most) {
+      tell(*teller);
     } else if (k_.stop != KernelStop::room) {
       return k_.stop == KernelStop::done;
     }

@@ -201,7 +201,7 @@ void NearestPairs::finish(double rest, bool finished, DistanceResult& result) {
     if (request_.within) result.within = true;
   } else {
     result.upper = upper();
-    result.lower = std::min({least_lower(), rest, upper()});
+    result.lower = lower(rest);
     result.finished = request_.within ? result.within.has_value() : finished;
   }
   write_relation(result);

@@ -1,6 +1,7 @@
 #pragma once
 /// The pairs of simplices that a distance query has looked at, and what follows from them.
 
+#include <algorithm>
 #include <limits>
 #include <vector>
 
@@ -26,6 +27,10 @@ class NearestPairs {
   NearestPairs(QueryContext& ctx, const DistanceRequest& request, std::vector<MeasuredPair>& pairs);
 
   double upper() const { return best_.upper; }
+  /// Returns a bound on the distance, given that what was not measured is at least `rest` apart.
+  double lower(double rest) const { return std::min({least_lower(), rest, upper()}); }
+  /// Returns how many pairs were measured.
+  std::uint64_t measured() const { return counters_.pairs_in_doubles + counters_.pairs_exact; }
   /// Returns the way between the points that gave upper(), from A to B; 0 if there are none yet.
   Eigen::Vector3d way() const;
   /// Returns the size of the larger body in the world: a bound on its radius.

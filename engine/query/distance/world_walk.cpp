@@ -151,7 +151,8 @@ void WorldWalk::open(const Waiting& pair) {
     }
 }
 
-bool WorldWalk::run(std::uint64_t max_steps) {
+bool WorldWalk::run(std::uint64_t max_steps, BoundsTeller* teller) {
+  std::uint64_t look = 1;
   const auto later = [](const Waiting& x, const Waiting& y) { return x.bound > y.bound; };
   while (!waiting_.empty()) {
     const double bound = waiting_.front().bound;
@@ -165,6 +166,10 @@ bool WorldWalk::run(std::uint64_t max_steps) {
     open(pair);
     const double upper = found_.upper();
     if (upper < kInfinity) found_.allow_width(upper > kVeryFar * found_.size() ? kFarWidth * upper : 0);
+    if (teller != nullptr && steps_ >= look) {
+      teller->tell(steps_, found_.lower(rest()), upper);
+      look = BoundsTeller::next_look(steps_);
+    }
   }
   return true;
 }

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "engine/query/distance/bounds_teller.hpp"
 #include "engine/query/distance/nearest_pairs.hpp"
 
 namespace lrb {
@@ -15,8 +16,8 @@ class WorldWalk {
   WorldWalk(QueryContext& ctx, NearestPairs& found);
 
   /// Returns true if it came to its end; false after `max_steps` steps (0: no limit), or when it is no longer
-  /// of use.
-  bool run(std::uint64_t max_steps);
+  /// of use. teller: null, or told what is known.
+  bool run(std::uint64_t max_steps, BoundsTeller* teller);
   /// Returns a bound on the distances of all pairs that have not been measured.
   double rest() const;
   std::uint64_t steps() const { return steps_; }

@@ -64,9 +64,11 @@ void FirstContactSearch::search_swept(double end) {
     }
     free_until_ = advance_all(span, kLeastStep * request_.tolerance);
     width = 2 * (span.end - t);
+    tell(free_until_);
     if (free_until_ >= span.end) continue;
     free_until_ = look_closer(free_until_, end);
     width = kHardlyLonger * request_.tolerance;
+    if (!is_done_) tell(free_until_);
   }
 }
 
@@ -88,6 +90,7 @@ void FirstContactSearch::search_by_distance(double end) {
   while (free_until_ < end && !is_over()) {
     const double parted = parted_by_distance(free_until_);
     free_until_ = std::min(end, later(free_until_, parted));
+    tell(free_until_);
     if (parted < kLeastStep * request_.tolerance && free_until_ < end)
       free_until_ = look_closer(free_until_, end);
   }
@@ -260,12 +263,14 @@ bool FirstContactSearch::found_between(TimeSpan span) {
 /// Notes a contact at the end of a span; first looks for an earlier one, by halves.
 void FirstContactSearch::contact_at_last(TimeSpan span, SimplexPair pair) {
   double none = span.begin;
+  tell(span.begin, span.end);
   while (span.end - none > request_.tolerance / 2) {
     const double middle = none + (span.end - none) / 2;
     if (!(middle > none && middle < span.end)) break;
     if (const auto earlier = meets_at(middle)) {
       span.end = middle;
       pair = *earlier;
+      tell(span.begin, span.end);
     } else {
       none = middle;
     }
@@ -281,6 +286,7 @@ void FirstContactSearch::contact_in(TimeSpan span, SimplexPair pair) {
   result_.grazing = span.end - span.begin > request_.tolerance;
   result_.pair = pair;
   write_features(span.begin, pair);
+  tell(span.begin, span.end);
 }
 
 void FirstContactSearch::doubt(TimeSpan span) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
 
 #include "engine/core/error.hpp"
@@ -19,12 +20,33 @@ void check_request(const FirstContactRequest& request) {
 
 FirstContactSearch::FirstContactSearch(const LrbRep& a, const Motion& motion_a, const LrbRep& b,
                                        const Motion& motion_b, const FirstContactRequest& request,
-                                       FirstContactContext& context)
-    : rep_{&a, &b}, motion_{&motion_a, &motion_b}, request_(request), context_(context) {}
+                                       FirstContactContext& context, FirstContactProbe* probe)
+    : rep_{&a, &b}, motion_{&motion_a, &motion_b}, request_(request), context_(context), probe_(probe) {}
+
+std::uint64_t FirstContactSearch::work() const {
+  const FirstContactCounters& c = result_.counters;
+  return c.spans + c.steps + c.exact_queries;
+}
 
 bool FirstContactSearch::is_out_of_steps() const {
-  const FirstContactCounters& c = result_.counters;
-  return request_.max_steps > 0 && c.spans + c.steps + c.exact_queries >= request_.max_steps;
+  return request_.max_steps > 0 && work() >= request_.max_steps;
+}
+
+/// Tells the probe that the bodies do not meet before t0, and have met by t1, if that is news.
+void FirstContactSearch::tell(double t0, double t1) {
+  if (probe_ == nullptr) return;
+  ContactBounds now{work(), std::min(t0, 1.0), t1, 0, 0};
+  if (told_.work > 0 && now.t0 == told_.t0 && now.t1 == told_.t1) return;
+  if (!to_tell_) to_tell_.emplace();
+  DistanceRequest rough;
+  rough.relative_tolerance = 0.01;
+  rough.relation = false;
+  const DistanceResult at =
+      distance(*rep_[0], motion_[0]->at(now.t0), *rep_[1], motion_[1]->at(now.t0), rough, *to_tell_);
+  now.lower = at.lower;
+  now.upper = at.upper;
+  told_ = now;
+  probe_->bounds(now);
 }
 
 /// Asks the exact query, and leaves the bodies of its context at their poses.
@@ -77,7 +99,9 @@ FirstContactResult FirstContactSearch::run() {
   check_request(request_);
   for (const double t : {0.0, 1.0}) check_query(*rep_[0], motion_[0]->at(t), *rep_[1], motion_[1]->at(t));
   if (rep_[0]->tree().empty() || rep_[1]->tree().empty()) return result_;
-  if (meets_at_start()) return result_;
+  const bool at_once = meets_at_start();
+  tell(0, at_once ? 0 : std::numeric_limits<double>::infinity());
+  if (at_once) return result_;
   const std::vector<Motion::Piece>*const of_a = &motion_[0]->pieces(), *const of_b = &motion_[1]->pieces();
   for (std::size_t i = 0, j = 0; i < of_a->size() && j < of_b->size() && !is_over();) {
     const MovingBody a(*rep_[0], (*of_a)[i]), b(*rep_[1], (*of_b)[j]);
@@ -105,14 +129,21 @@ FirstContactResult FirstContactSearch::finish() {
 
 FirstContactResult first_contact(const LrbRep& a, const Motion& motion_a, const LrbRep& b,
                                  const Motion& motion_b, const FirstContactRequest& request,
-                                 FirstContactContext& context) {
-  return FirstContactSearch(a, motion_a, b, motion_b, request, context).run();
+                                 FirstContactContext& context, FirstContactProbe* probe) {
+  return FirstContactSearch(a, motion_a, b, motion_b, request, context, probe).run();
 }
 
 FirstContactResult first_contact(const LrbRep& a, const Motion& motion_a, const LrbRep& b,
                                  const Motion& motion_b, const FirstContactRequest& request) {
   FirstContactContext context;
   return first_contact(a, motion_a, b, motion_b, request, context);
+}
+
+FirstContactResult first_contact(const LrbRep& a, const Motion& motion_a, const LrbRep& b,
+                                 const Motion& motion_b, const FirstContactRequest& request,
+                                 FirstContactProbe& probe) {
+  FirstContactContext context;
+  return first_contact(a, motion_a, b, motion_b, request, context, &probe);
 }
 
 std::vector<FirstContactResult> first_contacts(const LrbRep& a, const Motion& motion_a, const LrbRep& b,

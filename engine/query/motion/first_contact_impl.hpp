@@ -2,11 +2,13 @@
 /// One search for a first contact, with memory that the next one can use again: for code of ours. Users of the
 /// installed engine have first_contact.hpp.
 
+#include <limits>
 #include <optional>
 #include <vector>
 
 #include "engine/query/distance/distance_impl.hpp"
 #include "engine/query/motion/first_contact.hpp"
+#include "engine/query/motion/first_contact_probe.hpp"
 #include "engine/query/motion/pair_motion.hpp"
 #include "engine/query/motion/swept_pairs.hpp"
 
@@ -18,10 +20,10 @@ struct FirstContactContext {
   std::vector<SimplexPair> pairs, stuck;
 };
 
-/// Answers as first_contact() in first_contact.hpp does.
+/// Answers as first_contact() in first_contact.hpp does. probe: null, or told what is known.
 FirstContactResult first_contact(const LrbRep& a, const Motion& motion_a, const LrbRep& b,
                                  const Motion& motion_b, const FirstContactRequest& request,
-                                 FirstContactContext& context);
+                                 FirstContactContext& context, FirstContactProbe* probe = nullptr);
 
 /// Throws InputError if a request cannot be answered.
 void check_request(const FirstContactRequest& request);
@@ -30,7 +32,8 @@ void check_request(const FirstContactRequest& request);
 class FirstContactSearch {
  public:
   FirstContactSearch(const LrbRep& a, const Motion& motion_a, const LrbRep& b, const Motion& motion_b,
-                     const FirstContactRequest& request, FirstContactContext& context);
+                     const FirstContactRequest& request, FirstContactContext& context,
+                     FirstContactProbe* probe);
   FirstContactResult run();
 
  private:
@@ -61,12 +64,17 @@ class FirstContactSearch {
   void contact_in(TimeSpan span, SimplexPair pair);
   void doubt(TimeSpan span);
   void write_features(double t, SimplexPair pair);
+  std::uint64_t work() const;
+  void tell(double t0, double t1 = std::numeric_limits<double>::infinity());
   FirstContactResult finish();
 
   const LrbRep* rep_[2];
   const Motion* motion_[2];
   const FirstContactRequest& request_;
   FirstContactContext& context_;
+  FirstContactProbe* probe_;
+  ContactBounds told_;                      ///< last
+  std::optional<DistanceContext> to_tell_;  ///< memory of the distances that are told
   FirstContactResult result_;
   const MovingBody *a_ = nullptr, *b_ = nullptr;  ///< in the piece that is searched
   double free_until_ = 0;

@@ -1,0 +1,41 @@
+#pragma once
+/// Tells a probe of bounds what is news to it.
+
+#include <algorithm>
+#include <limits>
+
+#include "engine/query/distance/distance_probe.hpp"
+
+namespace lrb {
+
+class BoundsTeller {
+ public:
+  explicit BoundsTeller(BoundsProbe& probe) : probe_(probe) {}
+
+  /// Tells bounds that hold as well as all that were told before.
+  void tell(std::uint64_t work, double lower, double upper) {
+    const Bounds now{std::max(work, known_.work), std::max(lower, known_.lower),
+                     std::min(upper, known_.upper)};
+    if (now.lower == known_.lower && now.upper == known_.upper) return;
+    put(now);
+  }
+  /// Tells the bounds of the answer itself, even if some that were told before were narrower.
+  void settle(std::uint64_t work, double lower, double upper) {
+    if (lower == known_.lower && upper == known_.upper) return;
+    put({std::max(work, known_.work), lower, upper});
+  }
+
+  /// Returns after how much work bounds are worth another look: more and more, so that there are few looks.
+  static std::uint64_t next_look(std::uint64_t work) { return work + 1 + work / 16; }
+
+ private:
+  void put(const Bounds& now) {
+    known_ = now;
+    probe_.bounds(now);
+  }
+
+  BoundsProbe& probe_;
+  Bounds known_{0, 0, std::numeric_limits<double>::infinity()};
+};
+
+}  // namespace lrb

@@ -1,0 +1,135 @@
+// Distances, kinds of contact and searches for a first contact in traces: kept by files, told to viewers as counters.
+#include "trace/measured.hpp"
+
+#include <fstream>
+
+#include <doctest/doctest.h>
+#include <nlohmann/json.hpp>
+
+#include "engine/core/error.hpp"
+#include "engine/query/collide_impl.hpp"
+#include "scenarios/bodies/shapes/shapes.hpp"
+#include "tests/support/json_schema.hpp"
+#include "trace/divergence.hpp"
+#include "trace/recorder.hpp"
+#include "trace/trace_json.hpp"
+
+using namespace lrb;
+using namespace lrb::trace;
+using Json = nlohmann::json;
+
+namespace {
+
+const LrbRep& ball() {
+  static const LrbRep rep = LrbRep::without_regions(shapes::icosphere(2), true, false);
+  return rep;
+}
+
+/// Two balls that come together in three steps: apart, apart, one in the other; each step measured.
+Trace measured_run(Clock clock) {
+  RecorderSettings settings;
+  settings.clock = clock;
+  Recorder recorder(ball(), ball(), settings);
+  QueryContext context;
+  for (std::uint32_t step = 0; step < 3; ++step) {
+    const Pose pose = Pose::translation({3.2 - 0.8 * step, 0.1, 0.2});
+    recorder.begin_step(step, {}, pose);
+    const CollideResult result = collide(ball(), {}, ball(), pose, {}, context, recorder);
+    BoundsCourse gap;
+    const DistanceResult apart = distance(ball(), {}, ball(), pose, {}, gap);
+    recorder.add(measured(apart, gap.course));
+    ClashCourse clashed;
+    const ClashResult kind = clash(ball(), {}, ball(), pose, {}, clashed);
+    recorder.add(measured(kind, clashed.of_depth));
+    recorder.end_step(result);
+  }
+  Trace trace = recorder.take();
+  FirstContactCourse search;
+  const Motion motion = Motion::linear(Pose::translation({3.2, 0.1, 0.2}), {0, 0.1, 0.2});
+  const FirstContactResult found = first_contact(ball(), Motion::still({}), ball(), motion, {}, search);
+  trace.header.first_contact = measured(found, search.course);
+  return trace;
+}
+
+std::vector<Json> counters(const Json& document, const std::string& name) {
+  std::vector<Json> out;
+  for (const Json& e : document["traceEvents"])
+    if (e["ph"] == "C" && e["name"] == name) out.push_back(e);
+  return out;
+}
+
+}  // namespace
+
+TEST_CASE("what was measured comes back from a file, and a change of it is a divergence") {
+  const Trace trace = measured_run(Clock::event);
+  REQUIRE(trace.steps[0].result.distance.has_value());
+  REQUIRE(trace.steps[2].result.clash.has_value());
+  CHECK(trace.steps[0].result.distance->lower > 1);
+  CHECK(trace.steps[2].result.clash->depth->at(0) > 0.1);
+  CHECK(trace.steps[2].result.clash->course.size() > 2);
+  REQUIRE(trace.header.first_contact.has_value());
+  CHECK(trace.header.first_contact->outcome == MotionOutcome::contact);
+  const Trace back = trace_from_json(trace_to_json(trace), "t.json");
+  CHECK(back == trace);
+  CHECK(back.header.first_contact == trace.header.first_contact);
+  Trace other = trace;
+  other.steps[1].result.distance->course.pop_back();
+  REQUIRE(first_divergence(trace, other).has_value());
+  CHECK(first_divergence(trace, other)->message().starts_with("step 1: distance: expected ["));
+  other = trace;
+  other.header.first_contact->course.pop_back();
+  REQUIRE(first_divergence(trace, other).has_value());
+  CHECK(first_divergence(trace, other)->message().starts_with("run: first contact: expected contact ["));
+  CHECK_FALSE(other == trace);
+}
+
+TEST_CASE("bounds are counters within the step's last event, and times do not fall") {
+  for (const Clock clock : {Clock::event, Clock::wall}) {
+    const Trace trace = measured_run(clock);
+    const Json document = Json::parse(trace_to_json(trace));
+    static const Json schema = Json::parse(std::ifstream(LRB_TRACE_SCHEMA));
+    CHECK(test::schema_faults(schema, document) == "");
+    double before = 0;
+    for (const Json& e : document["traceEvents"]) {
+      const auto now = e["ts"].get<double>();
+      if (e["ph"] != "X") CHECK(now >= before);
+      if (e["ph"] == "C") before = now;
+    }
+    std::size_t looks = 0, depths = 0;
+    for (const Step& step : trace.steps) {
+      looks += step.result.distance->course.size();
+      depths += step.result.clash->course.size();
+    }
+    const std::vector<Json> gaps = counters(document, "distance");
+    REQUIRE(gaps.size() == looks);
+    CHECK(counters(document, "depth").size() == depths);
+    CHECK(gaps[0]["args"]["lower"] == trace.steps[0].result.distance->course[0].lower);
+    if (clock == Clock::wall) continue;
+    CHECK(counters(document, "first contact").size() == trace.header.first_contact->course.size());
+    const double last = trace.steps[1].first_event - 1;
+    CHECK(gaps[0]["ts"].get<double>() >= last);
+    CHECK(gaps[0]["ts"].get<double>() < last + 1);
+  }
+}
+
+TEST_CASE("a measured step that is damaged is refused by its place") {
+  const std::string good = trace_to_json(measured_run(Clock::event));
+  const auto complaint = [&](const std::string& part, const std::string& by) {
+    std::string text = good;
+    const std::size_t at = text.find(part);
+    REQUIRE(at != std::string::npos);
+    text.replace(at, part.size(), by);
+    try {
+      trace_from_json(text, "t.json");
+    } catch (const InputError& e) {
+      return std::string(e.what());
+    }
+    return std::string();
+  };
+  CHECK(complaint("\"kind\": \"apart\"", "\"kind\": \"near\"").find("/clash/kind: expected") !=
+        std::string::npos);
+  CHECK(complaint("\"solids_meet\": false", "\"solids_meet\": 0")
+            .find("/distance/solids_meet: expected true") != std::string::npos);
+  CHECK(complaint("\"outcome\": \"contact\"", "\"outcome\": 7").find("/first_contact/outcome: expected") !=
+        std::string::npos);
+}
