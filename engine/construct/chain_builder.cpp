@@ -115,6 +115,7 @@ class ChainBuilder {
     for (const Box& b : boxes_) box.extend(b);
     fit_hulls(
         box.sizes().maxCoeff(), frozen_.size(), kFitDownTo, [&] { return hull_.segment_count(); },
+        [&] { return complex_.face_count() - frozen_.size(); },
         [&](const CapGoal& goal) { pass(BuildStage::fit, goal); });
   }
 

@@ -78,6 +78,7 @@ class PatchBuilder {
     for (Corner v = 0; v < hull_.point_count(); ++v) box.extend(hull_.x(v));
     fit_hulls(
         box.sizes().maxCoeff(), frozen_.size(), kFitDownTo, [&] { return hull_.triangle_count(); },
+        [&] { return complex_.face_count() - frozen_.size(); },
         [&](const CapGoal& goal) { pass(BuildStage::fit, goal); });
   }
 
