@@ -209,10 +209,9 @@ void redraw_crowd(const spec::Crowd& crowd, const CrowdRun& run, const std::stri
 }
 
 std::string crowd_speed(const CrowdRun& run) {
-  std::vector<double> boxes, sweeps, queries;
+  std::vector<double> broad_phases, queries;
   for (const CrowdStep& s : run.steps) {
-    boxes.push_back(static_cast<double>(s.boxes_ns) / 1000);
-    sweeps.push_back(static_cast<double>(s.sweep_ns) / 1000);
+    broad_phases.push_back(static_cast<double>(s.broad_phase_ns) / 1000);
     queries.push_back(static_cast<double>(s.queries_ns) / 1000);
   }
   const auto median = [](std::vector<double>& x) {
@@ -220,9 +219,8 @@ std::string crowd_speed(const CrowdRun& run) {
     std::nth_element(x.begin(), middle, x.end());
     return render::short_number(*middle) + " us";
   };
-  return "a step takes (medians): boxes " + median(boxes) + ", sort and sweep " + median(sweeps) +
-         ", queries " + median(queries) + ", on " + std::to_string(run.threads) +
-         (run.threads == 1 ? " thread" : " threads");
+  return "a step takes (medians): broad phase " + median(broad_phases) + ", queries " + median(queries) +
+         ", on " + std::to_string(run.threads) + (run.threads == 1 ? " thread" : " threads");
 }
 
 }  // namespace lrb::crowd

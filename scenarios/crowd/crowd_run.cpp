@@ -2,14 +2,14 @@
 
 #include <algorithm>
 #include <chrono>
-#include <numeric>
-#include <tuple>
+#include <memory>
 
 #include "engine/core/error.hpp"
 #include "engine/core/parallel.hpp"
+#include "engine/query/batch/batch.hpp"
 #include "engine/query/collide_impl.hpp"
 #include "engine/query/walk/query_context.hpp"
-#include "engine/query/world_box.hpp"
+#include "engine/scene/scene.hpp"
 #include "scenarios/run/moments.hpp"
 
 namespace lrb::crowd {
@@ -43,37 +43,38 @@ class Player {
         run_(run),
         workers_(run.threads),
         contexts_(workers_.count()),
-        poses_(run.motion.body_count()),
-        boxes_(run.motion.body_count()),
-        extremes_(run.motion.body_count()),
+        scene_(run.threads),
         began_(Clock::now()) {
-    for (const bodies::LoadedBody& kind : run.kinds) extents_.emplace_back(kind.rep);
+    std::vector<Body> kinds;  // the run has the LRB-reps, and outlives the player
+    for (const bodies::LoadedBody& kind : run.kinds)
+      kinds.push_back(Body::from(std::shared_ptr<const LrbRep>(std::shared_ptr<void>(), &kind.rep)));
+    scene_.reserve(run.motion.body_count());
+    for (std::uint32_t body = 0; body < run.motion.body_count(); ++body)
+      keys_.push_back(scene_.add(kinds[run.motion.kind(body)]));
   }
 
   /// Runs a step; `moment` gets what a picture of it needs, or is null.
   CrowdStep play(std::uint32_t number, CrowdMoment* moment) {
     CrowdStep step;
     const std::uint64_t begin = now();
-    workers_.for_each(poses_.size(), [&](std::size_t i, unsigned) {
-      const auto body = static_cast<std::uint32_t>(i);
-      poses_[i] = run_.motion.pose(body, number);
-      boxes_[i] = extents_[run_.motion.kind(body)].in_world(poses_[i], &extremes_[i]);
-    });
-    const std::uint64_t boxed = now();
-    const std::vector<BodyPair>& pairs = sweep_.update(boxes_);
-    step.broad_phase = sweep_.work();
+    for (std::uint32_t body = 0; body < keys_.size(); ++body)
+      scene_.move(keys_[body], run_.motion.pose(body, number));
+    const std::vector<BodyPair> pairs = near();
+    step.broad_phase = scene_.work().broad_phase;
     const std::uint64_t swept = now();
+    std::vector<PosedPair> questions;
+    for (const BodyPair& p : pairs)
+      questions.push_back({&run_.rep(p.i), pose(p.i), &run_.rep(p.j), pose(p.j)});
     std::vector<CollideResult> results(moment != nullptr ? pairs.size() : 0);
     step.queries.resize(pairs.size());
-    const std::vector<std::uint32_t> order = by_kinds(pairs);
+    const std::vector<std::size_t> order = order_by_bodies(questions);
     workers_.for_each(pairs.size(), [&](std::size_t k, unsigned thread) {
-      const std::uint32_t at = order[k];
-      CollideResult result = ask(pairs[at], thread, step.queries[at]);
+      const std::size_t at = order[k];
+      CollideResult result = ask(pairs[at], questions[at], thread, step.queries[at]);
       if (moment != nullptr) results[at] = std::move(result);
     });
     step.begin_ns = begin;
-    step.boxes_ns = boxed - begin;
-    step.sweep_ns = swept - boxed;
+    step.broad_phase_ns = swept - begin;
     step.queries_ns = now() - swept;
     if (moment != nullptr) remember(pairs, results, *moment);
     return step;
@@ -85,28 +86,27 @@ class Player {
         std::chrono::duration_cast<std::chrono::nanoseconds>(Clock::now() - began_).count());
   }
 
-  /// Returns an order of the pairs in which queries of the same two LRB-reps follow each other, so that their
-  /// contexts can be kept.
-  std::vector<std::uint32_t> by_kinds(const std::vector<BodyPair>& pairs) const {
-    std::vector<std::uint32_t> order(pairs.size());
-    std::iota(order.begin(), order.end(), 0U);
-    std::sort(order.begin(), order.end(), [&](std::uint32_t x, std::uint32_t y) {
-      const auto key = [&](std::uint32_t p) {
-        return std::tuple(run_.motion.kind(pairs[p].i), run_.motion.kind(pairs[p].j), p);
-      };
-      return key(x) < key(y);
-    });
-    return order;
+  /// Returns the pairs of bodies whose boxes meet, ascending. Keys are in the order of the bodies.
+  std::vector<BodyPair> near() {
+    std::vector<BodyPair> pairs;
+    const auto number = [&](BodyKey key) {
+      return static_cast<std::uint32_t>(std::lower_bound(keys_.begin(), keys_.end(), key) - keys_.begin());
+    };
+    for (const ScenePair& p : scene_.near()) pairs.push_back({number(p.a), number(p.b)});
+    return pairs;
   }
 
-  CollideResult ask(const BodyPair& pair, std::uint32_t thread, CrowdQuery& query) {
+  const Pose& pose(std::uint32_t body) const { return scene_.pose(keys_[body]); }
+
+  CollideResult ask(const BodyPair& pair, const PosedPair& question, std::uint32_t thread,
+                    CrowdQuery& query) {
     NullProbe probe;
     query.bodies = pair;
     query.thread = thread;
     query.begin_ns = now();
     CollideResult r;
     try {
-      r = collide(run_.rep(pair.i), poses_[pair.i], run_.rep(pair.j), poses_[pair.j], crowd_.request,
+      r = collide(*question.a, question.pose_a, *question.b, question.pose_b, crowd_.request,
                   contexts_[thread], probe);
     } catch (const InputError& e) {
       throw InputError("crowd " + crowd_.name + ", " + run_.names[pair.i] + " (A) and " + run_.names[pair.j] +
@@ -120,8 +120,8 @@ class Player {
 
   void remember(const std::vector<BodyPair>& pairs, std::vector<CollideResult>& results,
                 CrowdMoment& moment) const {
-    moment.opened.resize(poses_.size());
-    moment.in_contact.resize(poses_.size());
+    moment.opened.resize(keys_.size());
+    moment.in_contact.resize(keys_.size());
     for (std::size_t k = 0; k < pairs.size(); ++k) {
       const std::uint32_t body[2] = {pairs[k].i, pairs[k].j};
       for (const int side : {0, 1}) {
@@ -145,11 +145,8 @@ class Player {
   CrowdRun& run_;
   Workers workers_;
   std::vector<QueryContext> contexts_;  ///< one for each thread
-  std::vector<Pose> poses_;
-  std::vector<Eigen::AlignedBox3d> boxes_;
-  std::vector<BodyExtent> extents_;  ///< one for each kind
-  std::vector<ExtremeVertices> extremes_;
-  SweepAndPrune sweep_;
+  Scene scene_;
+  std::vector<BodyKey> keys_;  ///< by body, ascending
   Clock::time_point began_;
 };
 

@@ -36,7 +36,7 @@ struct CrowdStep {
   SweepAndPrune::Work broad_phase;
   std::vector<CrowdQuery> queries;  ///< ascending by bodies
   std::uint64_t begin_ns = 0;       ///< since the run began
-  std::uint64_t boxes_ns = 0, sweep_ns = 0, queries_ns = 0;
+  std::uint64_t broad_phase_ns = 0, queries_ns = 0;
 };
 
 /// What a picture of one step needs.

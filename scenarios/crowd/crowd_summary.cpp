@@ -120,8 +120,7 @@ std::string crowd_timing(const CrowdRun& run) {
   return trace::json_text(2, [&](JsonWriter& w) {
     w.begin_object().member("threads", run.threads).member("unit", "ns").key("steps").begin_array();
     for (const CrowdStep& s : run.steps) {
-      w.begin_object().member("boxes", s.boxes_ns).member("sort_and_sweep", s.sweep_ns);
-      w.member("queries", s.queries_ns).end_object();
+      w.begin_object().member("broad_phase", s.broad_phase_ns).member("queries", s.queries_ns).end_object();
     }
     w.end_array().end_object();
   });

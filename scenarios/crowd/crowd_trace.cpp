@@ -79,7 +79,7 @@ class Writer {
     const CrowdStep& s = run_.steps[index];
     index_ = index;
     if (wall_) clock_ = static_cast<double>(s.begin_ns) / 1000;
-    const Span broad{clock_, wall_ ? static_cast<double>(s.boxes_ns + s.sweep_ns) / 1000
+    const Span broad{clock_, wall_ ? static_cast<double>(s.broad_phase_ns) / 1000
                                    : static_cast<double>(s.broad_phase.box_tests) + 1};
     double at = broad.begin + broad.length;
     double length = broad.length;

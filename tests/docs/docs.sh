@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # docs.sh TREE [LRBSCOPE]: checks the pages of the tree: every relative link and anchor of every .md leads somewhere;
 # docs/rooms.svg is what docs/rooms.sh draws; and, given the program, every `lrbscope` line of a shell block names a command
-# and options that its --help has. Their C++ and CMake blocks are built by tests/package.
+# and options that its --help has; and each block of code is run by a test (runner() says which).
 set -euo pipefail
 cd "$1"
 program=${2:-}
@@ -30,6 +30,25 @@ done
 [ "$links" -gt 20 ] || complain "docs.sh: found only $links links"
 
 bash docs/rooms.sh | cmp -s - docs/rooms.svg || complain "docs/rooms.svg is not what tests/layers/rooms.txt says: docs/rooms.sh >docs/rooms.svg"
+
+# Every block is run by a test that names its page, or runs those of all pages.
+runner() { # LANGUAGE: prints the file of the test
+  case "$1" in
+    cpp | cmake) echo tests/package/CMakeLists.txt ;;
+    python) echo tests/python/test_docs.py ;;
+    sh) echo tests/docs/commands.py ;;
+    tex) echo tests/docs/figures.sh ;;
+    console) echo tests/recipes ;; # functions of other package managers, called one by one
+    *) return 1 ;;
+  esac
+}
+for page in README.md docs/*.md; do
+  for language in $(sed -n 's/^```\([a-z]\+\)$/\1/p' "$page" | sort -u); do
+    test=$(runner "$language") || { complain "$page: nobody runs blocks of $language"; continue; }
+    [ -e "$test" ] || complain "$test is not there, which runs blocks of $language"
+    case "$language" in cpp | cmake | python) grep -q "$page" "$test" || complain "$page: its blocks of $language are not run by $test" ;; esac
+  done
+done
 
 commands=0
 if [ -n "$program" ]; then

@@ -1,0 +1,229 @@
+#!/usr/bin/env python3
+"""commands.py TREE LRBSCOPE [PAGE...]: runs the `lrbscope` lines of the shell blocks of README and docs/.
+
+Those of a page run one after the other in a folder with files of the names that they speak of. What is not run
+stands in NOT_RUN with its reason, other programs' lines too: a new line is run or needs a reason.
+"""
+import json
+import math
+import os
+import re
+import shlex
+import subprocess
+import sys
+import tempfile
+
+# (pages, pattern of lines, why they are not run here)
+NOT_RUN = [
+    (
+        "",
+        r"^(\./run|\./check|cmake |ctest |export PYTHONPATH|\(cd build/release && cpack\)|apt-get )",
+        "builds; tests/bare, ./check",
+    ),
+    ("", r"^(build/|tests/bench/)", "programs of tests and benchmarks, named by their tests"),
+    ("", r"^lrbscope (stability|bench|chart)\b", "measures for minutes; measure_tests, stability_tests"),
+    ("", r"^lrbscope (paper|crowd)$", "takes minutes at its full size; cli tests have smaller ones"),
+    (
+        "docs/paper.md",
+        r"^(lrbscope paper|mpirun)",
+        "takes minutes; tests/spread runs it in parts, spec and paper tests its experiments",
+    ),
+    ("", r"^lrbscope xray\b", "needs another engine; xray_tests"),
+    ("docs/meshes.md", r"\b(twin|cow)2?\.(obj|lrb)", "tests/docs/bodies.sh, with what they say"),
+    (
+        "docs/scenarios.md",
+        r"--dpi 300|--format svg|--frames refinement|--events nodes",
+        "draws for a minute or more; tests of cli and render",
+    ),
+    ("docs/figures.md", r"out/mine", "tests/docs/figures.sh, with their widths"),
+    ("docs/packages.md", r"man -l|completion", "tests/words"),
+    (
+        "CONTRIBUTING.md",
+        r"golden (report|approve) --goldens tests/golden",
+        "the approved pictures: golden tests; not to be rewritten",
+    ),
+]
+# Lines that may end with exit code 1: a finding about the mesh.
+FINDS = [r"^lrbscope inspect .*--draw"]
+SECONDS = 300
+
+
+def ball(path, splits, scale=1.0, hole=False):
+    """Writes an octahedron that was split and blown up, as OBJ, OFF or STL; 8 * 4 ** splits triangles."""
+    n = 2**splits
+    index, vertices, faces = {}, [], []
+
+    def vertex(p):
+        if p not in index:
+            index[p] = len(vertices)
+            length = math.sqrt(sum(x * x for x in p)) / scale
+            vertices.append(tuple(x / length for x in p))
+        return index[p]
+
+    for sx in (1, -1):
+        for sy in (1, -1):
+            for sz in (1, -1):
+
+                def corner(i, j):
+                    return vertex((sx * i, sy * j, sz * (n - i - j)))
+
+                for i in range(n):
+                    for j in range(n - i):
+                        up = [(i, j), (i + 1, j), (i, j + 1)]
+                        down = [(i + 1, j), (i + 1, j + 1), (i, j + 1)] if i + j + 2 <= n else None
+                        for t in (up, down):
+                            if t:
+                                t = t if sx * sy * sz > 0 else t[::-1]
+                                faces.append([corner(*c) for c in t])
+    if hole:
+        faces.pop()
+    with open(path, "w") as f:
+        if path.endswith(".off"):
+            f.write("OFF\n%d %d 0\n" % (len(vertices), len(faces)))
+            f.writelines("%r %r %r\n" % v for v in vertices)
+            f.writelines("3 %d %d %d\n" % tuple(t) for t in faces)
+        elif path.endswith(".stl"):
+            f.write("solid ball\n")
+            for t in faces:
+                f.write("facet normal 0 0 0\nouter loop\n")
+                f.writelines("vertex %r %r %r\n" % vertices[v] for v in t)
+                f.write("endloop\nendfacet\n")
+            f.write("endsolid ball\n")
+        else:
+            f.writelines("v %r %r %r\n" % v for v in vertices)
+            f.writelines("f %d %d %d\n" % tuple(v + 1 for v in t) for t in faces)
+
+
+def pose(x, turn=0.0):
+    c, s = math.cos(turn), math.sin(turn)
+    return "%r %r 0 %r %r %r 0 0.1 0 0 1 0.05" % (c, -s, x, s, c)
+
+
+def stand_ins(page, run):
+    """Makes the files that a page's commands speak of, in the working folder."""
+    fine = 5 if page == "docs/queries.md" else 3  # pair 1340,4539
+    for name, scale in (
+        ("a.obj", 1.0),
+        ("b.obj", 0.8),
+        ("cow.obj", 1.0),
+        ("mesh.obj", 1.0),
+        ("twin.obj", 1.0),
+    ):
+        ball(name, fine, scale, hole=name == "mesh.obj" and page == "docs/debugging.md")
+    for name in ("man.stl", "b.off"):
+        ball(name, 3, 0.8)
+    os.mkdir("meshes")
+    ball("meshes/a.obj", 2)
+    ball("meshes/b.obj", 2, 0.5)
+    with open("poses.txt", "w") as f:
+        f.writelines(pose(2.2 - 0.15 * i, 0.1 * i) + "\n" for i in range(9))
+    with open("motions.txt", "w") as f:
+        f.write(pose(4) + " " + pose(0, 0.5) + "\n" + pose(4) + " " + pose(5) + "\n")
+    run("lrbscope export poses.txt --what poses -o poses.csv")
+    if page in ("README.md",):
+        run("lrbscope export a.obj -o a.ply")
+    if page == "docs/formats.md":
+        run("lrbscope build cow.obj -o cow.lrb")
+        run("lrbscope collide cow.obj man.stl --poses poses.csv -o out/cow")
+    if page in ("docs/profiling.md", "docs/queries.md"):
+        run("lrbscope run collision --frames none -o out/collision")
+    if page == "docs/profiling.md":
+        for name in ("before", "after"):
+            run("lrbscope collide a.obj b.obj --poses poses.csv -o out/" + name)
+    if page == "docs/scenarios.md":
+        run("lrbscope run figure2 -o out/figure2")
+
+
+def scenario(tree):
+    """Writes my.scenario.json and my.crowd.json: shipped ones, the crowd made small."""
+    with open(tree + "/scenarios/shipped/ball_in_bowl.scenario.json") as f:
+        given = json.load(f)
+    given["name"] = "my"
+    with open("my.scenario.json", "w") as f:
+        json.dump(given, f)
+    with open(tree + "/scenarios/shipped/crowd.crowd.json") as f:
+        given = json.load(f)
+    given["name"] = "my"
+    given["motion"]["steps"] = 3
+    for body in given["bodies"]:
+        body["count"] = 2
+    with open("my.crowd.json", "w") as f:
+        json.dump(given, f)
+
+
+def lines_of(tree, page):
+    """Yields (number, line) of the shell blocks of a page, without comments, prompts and what is printed."""
+    on = False
+    with open(os.path.join(tree, page)) as f:
+        for number, line in enumerate(f, 1):
+            if line.startswith("```"):
+                on = line.strip() == "```sh" and not on
+                continue
+            line = line.strip()
+            if on and line and not line.startswith(("{", "#")):
+                # A comment begins after two spaces, as all pages write it.
+                yield number, re.sub(r"\s+#.*$", "", line.removeprefix("$ "))
+
+
+def reason_of(page, line):
+    for pages, pattern, why in NOT_RUN:
+        if pages in ("", page) and re.search(pattern, line):
+            return why
+    return None
+
+
+def main():
+    tree, program = os.path.abspath(sys.argv[1]), os.path.abspath(sys.argv[2])
+    pages = sys.argv[3:] or ["README.md", "CONTRIBUTING.md"] + sorted(
+        "docs/" + n for n in os.listdir(tree + "/docs") if n.endswith(".md")
+    )
+    begin = 'lrbscope() { "$PROGRAM" "$@"; }; '
+    ran, left, bad, used = 0, 0, 0, set()
+    for page in pages:
+        lines = list(lines_of(tree, page))
+        to_run = [(n, line) for n, line in lines if reason_of(page, line) is None]
+        left += len(lines) - len(to_run)
+        used |= {reason_of(page, line) for _, line in lines}
+        if not to_run:
+            continue
+        with tempfile.TemporaryDirectory() as folder:
+            os.chdir(folder)
+
+            def run(line, codes=(0,)):
+                try:
+                    done = subprocess.run(
+                        ["bash", "-euo", "pipefail", "-c", begin + line],
+                        env={**os.environ, "PROGRAM": program},
+                        capture_output=True,
+                        text=True,
+                        timeout=SECONDS,
+                    )
+                except subprocess.TimeoutExpired:
+                    return "takes more than %d s" % SECONDS
+                wrong = "exit code %d: %s" % (done.returncode, done.stderr.strip())
+                return None if done.returncode in codes else wrong
+
+            scenario(tree)
+            stand_ins(page, run)
+            for number, line in to_run:
+                if not line.startswith("lrbscope "):
+                    wrong = "is neither run nor has a reason in tests/docs/commands.py"
+                else:
+                    finds = any(re.search(p, line) for p in FINDS)
+                    wrong = run(line, (0, 1) if finds else (0,))
+                ran += 1
+                print("%s:%d: %s" % (page, number, line), flush=True)
+                if wrong:
+                    bad += 1
+                    print("  " + wrong)
+            os.chdir("/")
+    if not sys.argv[3:]:
+        for _, _, why in NOT_RUN:
+            if why not in used:
+                bad += 1
+                print('commands.py: no line is left out because it "%s"' % why)
+    print("%d commands run, %d left to other tests or to people" % (ran, left))
+    sys.exit(1 if bad or ran == 0 else 0)
+
+
+main()
