@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# docs/figures.sh [LRBSCOPE]: makes the pictures of README and docs that show bodies: figure2.png, collision.png, crowd.png and
-# figure.png. (chart.png and xray.png are measurements: docs/measurements.md, docs/profiling.md.)
+# docs/figures.sh [LRBSCOPE]: makes the pictures of README and docs that show bodies: figure2.png, collision.png, crowd.png,
+# figure.png, distance.png, first_contact.png and clash.png. (chart.png and xray.png are measurements: docs/measurements.md, docs/profiling.md.)
 set -euo pipefail
 docs=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 program=${1:-$docs/../build/release/scenarios/lrbscope}
