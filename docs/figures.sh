@@ -11,6 +11,13 @@ run figure figure2 --width 160mm --title --no-legend --font-size 10 --line-width
 run run collision --size 1000x562 -o "$work/collision"
 run crowd -o "$work/crowd"
 run figure figure2_mesh --width 85mm --dpi 300 -o "$work/figure.png"
+answer() { # NAME COMMAND POSES-OPTION NUMBERS SIZE: a picture of one answer about the bodies of `collision`
+  echo "$4" >"$work/poses.txt"
+  run "$2" "$work/collision/a.lrb" "$work/collision/b.lrb" "$3" "$work/poses.txt" --draw "$docs/$1.png" --size "$5"
+}
+answer distance distance --poses "0.8 0 0.6 3.1  0 1 0 0.9  -0.6 0 0.8 0.5" 640x400
+answer clash clash --poses "0.8 0 0.6 1.5  0 1 0 0.2  -0.6 0 0.8 0.3" 760x475
+answer first_contact sweep --motions "1 0 0 7  0 1 0 0.6  0 0 1 0.5   0 0 1 -3  0 1 0 -0.3  -1 0 0 0.1" 760x475
 frames=("$work"/collision/frames/*.png)
 cp "${frames[-1]}" "$docs/collision.png"
 frames=("$work"/crowd/frames/*.png)

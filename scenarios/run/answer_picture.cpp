@@ -23,7 +23,6 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr int kAnswerWidth = 1200, kAnswerHeight = 750;
 /// What is smaller than this share of the bodies is shown from nearby, too.
 constexpr double kSmall = 0.12;
 constexpr int kGhosts = 4;
@@ -90,21 +89,22 @@ void add_ghost(render::Scene& scene, const LrbRep& b, const Pose& pose, std::uin
   scene.list = std::move(list);
 }
 
-render::FitOptions view_of(const AnswerPicture& p) {
+render::FitOptions view_of(const AnswerPicture& p, const AnswerLook& look) {
+  const Vector3d way = p.across.norm() > 0 ? p.across : look.up.unitOrthogonal();
   render::FitOptions fit;
-  if (p.dim == 3 && p.across.norm() > 0) fit.view = render::view_beside(p.across);
+  fit.view = render::view_beside(way, look.up);
   return fit;
 }
 
-render::Camera whole_camera(const AnswerPicture& p, const render::PixelRect& place) {
+render::Camera whole_camera(const AnswerPicture& p, const AnswerLook& look, const render::PixelRect& place) {
   return p.dim == 2 ? render::fit_top(p.whole, place.width, place.height)
-                    : render::fit_camera(p.whole, place.width, place.height, view_of(p));
+                    : render::fit_camera(p.whole, place.width, place.height, view_of(p, look));
 }
 
-render::Camera near_camera(const AnswerPicture& p, const render::PixelRect& place) {
+render::Camera near_camera(const AnswerPicture& p, const AnswerLook& look, const render::PixelRect& place) {
   constexpr double kContext = 4, kLeast = 0.001;
   if (p.dim == 3)
-    return render::fit_contact(p.detail, box_of_points(p.whole), place.width, place.height, view_of(p),
+    return render::fit_contact(p.detail, box_of_points(p.whole), place.width, place.height, view_of(p, look),
                                kContext, kLeast);
   const Eigen::AlignedBox3d box = box_of_points(p.detail);
   const double half =
@@ -115,12 +115,13 @@ render::Camera near_camera(const AnswerPicture& p, const render::PixelRect& plac
 }
 
 /// Draws the whole and, if what it is about is small, that from nearby on its right.
-void write_picture(AnswerPicture& p, const std::string& path) {
+void write_picture(AnswerPicture& p, const AnswerLook& look, const std::string& path) {
   p.overlay.key = p.scene.key;
-  const render::OverlayLayout layout = render::lay_out(p.overlay, kAnswerWidth, kAnswerHeight);
+  const render::OverlayLayout layout = render::lay_out(p.overlay, look.width, look.height);
   const double size = box_of_points(p.whole).diagonal().norm();
   const bool is_small = !p.detail.empty() && box_of_points(p.detail).diagonal().norm() < kSmall * size;
   spec::FrameSpec spec;
+  spec.height = look.height;  // the views' titles follow it
   std::vector<spec::FrameSpec::View> views(is_small ? 2 : 1);
   if (is_small) views[1].title = "from nearby";
   const std::vector<render::PixelRect> places = view_places(layout.picture, views.size(), 1);
@@ -128,10 +129,11 @@ void write_picture(AnswerPicture& p, const std::string& path) {
   render::Rasterizer rasterizer;
   paint_views(
       rasterizer, spec, views, places, [&](const spec::FrameSpec::View&) { return p.scene.list; },
-      [&](std::size_t view) { return view == 0 ? whole_camera(p, places[0]) : near_camera(p, places[1]); },
+      [&](std::size_t view) {
+        return view == 0 ? whole_camera(p, look, places[0]) : near_camera(p, look, places[1]);
+      },
       picture);
-  render::write_png(render::compose_frame(picture, layout.picture, p.overlay, kAnswerWidth, kAnswerHeight),
-                    path);
+  render::write_png(render::compose_frame(picture, layout.picture, p.overlay, look.width, look.height), path);
 }
 
 std::string digits(double value) {
@@ -194,7 +196,7 @@ std::string outcome_words(const FirstContactResult& r) {
 }  // namespace
 
 void draw_distance(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
-                   const DistanceResult& result, const std::string& path) {
+                   const DistanceResult& result, const AnswerLook& look, const std::string& path) {
   AnswerPicture p = begin(a, pose_a, b, pose_b);
   p.scene = scene_of(a, pose_a, b, pose_b);
   const trace::MeasuredDistance m = trace::measured(result, {});
@@ -211,11 +213,11 @@ void draw_distance(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const P
     p.overlay.event = "not told apart";
   }
   count_ends(p.overlay, "distance", result.lower, result.upper);
-  write_picture(p, path);
+  write_picture(p, look, path);
 }
 
 void draw_first_contact(const LrbRep& a, const LrbRep& b, const Motion& motion_b,
-                        const FirstContactResult& result, const std::string& path) {
+                        const FirstContactResult& result, const AnswerLook& look, const std::string& path) {
   const double last = result.is_contact() ? result.t1 : 1;
   const Pose at_last = motion_b.at(last);
   AnswerPicture p = begin(a, {}, b, at_last);
@@ -236,12 +238,13 @@ void draw_first_contact(const LrbRep& a, const LrbRep& b, const Motion& motion_b
   p.overlay.event = outcome_words(result);
   p.overlay.event_colour = render::palette::kContact;
   p.overlay.counters.push_back({"no contact before t", digits(result.t0)});
-  if (result.is_contact()) p.overlay.counters.push_back({"interval", digits(result.t1 - result.t0)});
-  write_picture(p, path);
+  if (result.is_contact())
+    p.overlay.counters.push_back({"interval", render::short_number(result.t1 - result.t0)});
+  write_picture(p, look, path);
 }
 
 void draw_clash(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
-                const ClashResult& result, const std::string& path) {
+                const ClashResult& result, const AnswerLook& look, const std::string& path) {
   AnswerPicture p = begin(a, pose_a, b, pose_b);
   CollideRequest request;
   request.contacts = true;
@@ -253,7 +256,8 @@ void draw_clash(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose
   if (const auto way = way_out_of(m, a, pose_a, b, pose_b, found.regions)) {
     Pose apart = pose_b;
     apart.t += result.translation;
-    make_translucent(p.scene.list, 105);  // or the way out would be hidden
+    make_translucent(p.scene.list, 105);  // so that nothing hides the way out, nor contacts
+    std::erase_if(p.scene.key, [](const render::LegendItem& item) { return item.text.ends_with("hidden"); });
     add_ghost(p.scene, b, apart, 26);
     add_points(p.whole, b, apart);
     add_way_out(p.scene, *way, p.dim);
@@ -271,7 +275,7 @@ void draw_clash(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose
   if (result.volume && result.volume->upper > 0)
     p.overlay.counters.push_back(
         {"volume shared", interval_words(result.volume->lower, result.volume->upper)});
-  write_picture(p, path);
+  write_picture(p, look, path);
 }
 
 }  // namespace lrb::run

@@ -84,9 +84,23 @@ report::Gnuplot contact_chart(const std::vector<ContactBounds>& course) {
   return g;
 }
 
+run::AnswerLook look_of(const DrawOptions& options) {
+  run::AnswerLook look;
+  spec::FrameSpec frame;
+  frame.width = look.width;
+  frame.height = look.height;
+  apply(options.look, frame);
+  look.width = frame.width;
+  look.height = frame.height;
+  if (!frame.views.empty()) look.up = frame.views[0].up;
+  return look;
+}
+
 void add_draw_options(CLI::App& app, DrawOptions& options, const std::string& picture, bool with_course) {
   app.add_option("--draw", options.picture, picture + "; with a number of its own where there are several")
       ->type_name("PNG");
+  app.add_option("--size", options.look.size, "Size of the picture in pixels [1200x750]")->type_name("WxH");
+  add_up_option(app, options.look.camera.up);
   app.add_option("--chart", options.chart,
                  "Chart how the bounds tightened with the work, as .svg, .png or .pdf (needs gnuplot)")
       ->check(CLI::Validator(

@@ -59,6 +59,7 @@ std::string line_of(std::size_t pose, const DistanceResult& result, const std::v
 int run_distance(const DistanceOptions& o, const Globals& globals) {
   const PoseLines list(o.poses);
   check_request(o.request);
+  const run::AnswerLook look = look_of(o.draw);
   const bodies::LoadedBody a = bodies::load_faces(o.a, o.corners), b = bodies::load_faces(o.b, o.corners);
   note(globals, a.notes);
   note(globals, b.notes);
@@ -73,7 +74,7 @@ int run_distance(const DistanceOptions& o, const Globals& globals) {
                                                       : ask();
     print(line_of(i, result, told.course, o, o.repeat > 0 ? median_us(o.repeat, ask) : 0));
     if (!o.draw.picture.empty())
-      run::draw_distance(a.rep, Pose{}, b.rep, list.poses[i], result,
+      run::draw_distance(a.rep, Pose{}, b.rep, list.poses[i], result, look,
                          picture_name(o.draw.picture, i, list.poses.size()));
     if (!o.draw.chart.empty())
       report::draw(bounds_chart(told.course, "distance", "pairs of boxes opened, pairs of faces measured"),

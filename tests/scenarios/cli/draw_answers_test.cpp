@@ -58,6 +58,19 @@ TEST_CASE("draw: bodies in the plane too") {
   CHECK(c.has_png("met.png"));
 }
 
+TEST_CASE("draw: of the size that was asked for, and no picture of another") {
+  const TwoCubes c;
+  const std::vector<std::string> ask = {"-q",      "distance",   "star.obj", "star.obj",
+                                        "--poses", "beside.txt", "--draw"};
+  std::vector<std::string> small = ask, wrong = ask;
+  small.insert(small.end(), {"small.png", "--size", "640x400", "--up", "y"});
+  wrong.insert(wrong.end(), {"wrong.png", "--size", "640"});
+  lines_of(c.folder, small);
+  const std::string bytes = slurp(c.folder / "small.png");
+  CHECK(bytes.substr(16, 8) == std::string("\0\0\x02\x80\0\0\x01\x90", 8));  // 640, 400: the header's size
+  CHECK(check_refused(c.folder, wrong).err.find("--size: expected WIDTHxHEIGHT") != std::string::npos);
+}
+
 TEST_CASE("course: how bounds tightened, in the line") {
   const TwoCubes c;
   const auto gaps =
