@@ -62,12 +62,15 @@ report::PageChart course_chart(const std::vector<Bounds>& course, const std::str
 report::PageChart search_chart(const trace::MeasuredApproach& search) {
   report::PageChart chart;
   chart.title = "How the first contact was found";
-  chart.x_label = "share of the way without a contact, t0";
-  chart.y_label = "distance there, in the meshes' unit";
+  chart.x_label = "percent of the way without a contact";
+  chart.y_label = "distance there";
   chart.note = "Each point is where the search stood: until there the bodies are proved not to meet.";
   Ends distance("distance");
-  for (const ContactBounds& b : search.course)
-    if (distance.lower.x.empty() || b.t0 > distance.lower.x.back()) distance.add(b.t0, b.lower, b.upper);
+  for (const ContactBounds& b : search.course) {
+    const double percent = 100 * b.t0;
+    if (distance.lower.x.empty() || percent > distance.lower.x.back())
+      distance.add(percent, b.lower, b.upper);
+  }
   distance.move_to(chart);
   return chart;
 }
@@ -77,9 +80,17 @@ report::PageChart search_chart(const trace::MeasuredApproach& search) {
 std::vector<report::PageChart> measure_charts(const trace::Trace& trace) {
   std::vector<report::PageChart> out;
   const trace::Step *of_distance = nullptr, *of_depth = nullptr;
+  std::size_t most_distance = 1, most_depth = 1;  // a curve has two points at least
   for (const trace::Step& step : trace.steps) {
-    if (step.result.distance && step.result.distance->course.size() > 1) of_distance = &step;
-    if (step.result.clash && step.result.clash->course.size() > 1) of_depth = &step;
+    const trace::StepResult& r = step.result;
+    if (r.distance && r.distance->course.size() > most_distance) {
+      of_distance = &step;
+      most_distance = r.distance->course.size();
+    }
+    if (r.clash && r.clash->course.size() > most_depth) {
+      of_depth = &step;
+      most_depth = r.clash->course.size();
+    }
   }
   const bool measured =
       was_measured(trace, &trace::StepResult::distance) || was_measured(trace, &trace::StepResult::clash);

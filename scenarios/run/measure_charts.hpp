@@ -17,7 +17,7 @@ bool was_measured(const trace::Trace& trace, Measured trace::StepResult::*what) 
   return false;
 }
 
-/// Returns the charts; none if nothing was measured. Of bounds, those of the last step that has any.
+/// Returns the charts; none if nothing was measured. Of bounds, those of the step that narrowed them most often.
 std::vector<report::PageChart> measure_charts(const trace::Trace& trace);
 
 }  // namespace lrb::run
