@@ -85,7 +85,7 @@ void stand_at_contact(const Steps& steps, double t, Approach& out) {
 }  // namespace
 
 Approach find_approach(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& start,
-                       const spec::Motion& motion) {
+                       const spec::Motion& motion, bool watched) {
   const double length = motion.step_length * (diagonal_of(a) + diagonal_of(b));
   // Beyond twice the distance, B is as far behind the target as it was before it.
   const auto whole_way =
@@ -93,8 +93,12 @@ Approach find_approach(const LrbRep& a, const Pose& pose_a, const LrbRep& b, con
   const Steps steps{motion, start, length, whole_way};
   FirstContactRequest request;
   request.max_steps = 200'000;
-  const FirstContactResult found = first_contact(a, Motion::still(pose_a), b, steps.whole(), request);
+  FirstContactCourse told;
+  const FirstContactResult found =
+      watched ? first_contact(a, Motion::still(pose_a), b, steps.whole(), request, told)
+              : first_contact(a, Motion::still(pose_a), b, steps.whole(), request);
   Approach out;
+  if (watched) out.search = trace::measured(found, std::move(told.course));
   if (found.is_contact()) out.steps_to_contact = TimeSpan{found.t0 * whole_way, found.t1 * whole_way};
   const bool inside = found.at_begin == Relation::a_inside_b || found.at_begin == Relation::b_inside_a;
   if (!(motion.exact && found.is_contact() && !found.passed) || inside) {

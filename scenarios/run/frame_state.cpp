@@ -102,7 +102,7 @@ const Separation* FrameState::proof_here() const {
 const WalkExplanation* FrameState::parting_here() const {
   const CollideRequest& request = trace_.header.request;
   const trace::StepResult* answer = answer_here();
-  if (answer == nullptr || answer->separation || answer->relation != Relation::separate ||
+  if (answer == nullptr || answer->separation || answer->distance || answer->relation != Relation::separate ||
       request.recursion != Recursion::complete || request.is_coarse() || !trace_.header.engine.empty() ||
       spec_.colour_by >= spec::FrameSpec::ColourBy::face_tests)
     return nullptr;
@@ -110,6 +110,34 @@ const WalkExplanation* FrameState::parting_here() const {
     parting_ = {cursor_.step_number(),
                 explain_walk(*reps_[0], cursor_.pose(Side::a), *reps_[1], cursor_.pose(Side::b))};
   return &parting_->walk;
+}
+
+std::optional<MarkedWay> FrameState::gap_here() const {
+  const trace::StepResult* answer = answer_here();
+  return answer != nullptr && answer->distance ? gap_of(*answer->distance) : std::nullopt;
+}
+
+std::optional<MarkedWay> FrameState::way_out_here() const {
+  const trace::StepResult* answer = answer_here();
+  if (answer == nullptr || !answer->clash) return std::nullopt;
+  const CollideResult* result = result_here();
+  return way_out_of(
+      *answer->clash, *reps_[0], cursor_.pose(Side::a), *reps_[1], cursor_.pose(Side::b),
+      result != nullptr ? std::span<const ContactRegion>(result->regions) : std::span<const ContactRegion>());
+}
+
+std::string FrameState::measured_text() const {
+  const trace::StepResult* answer = answer_here();
+  if (answer == nullptr) return {};
+  std::string out;
+  if (const auto gap = gap_here()) out = gap->text + " apart";
+  const auto is_said = [](ClashKind kind) {
+    return kind == ClashKind::apart || kind == ClashKind::undecided;
+  };
+  if (answer->clash && !is_said(answer->clash->kind))
+    out += (out.empty() ? "" : ", ") + kind_words(answer->clash->kind);
+  if (const auto way = way_out_here()) out += ", " + way->text + " deep";
+  return out;
 }
 
 std::span<const WrongPair> FrameState::wrong_here() const {
@@ -217,6 +245,8 @@ render::Scene FrameState::scene(bool wrapper, bool plain) const {
   render::Scene scene = render::build_scene(bodies, highlight, options);
   if (const WalkExplanation* walk = plain ? nullptr : parting_here())
     add_parting(scene.list, *walk, *reps_[0], cursor_.pose(Side::a), *reps_[1], cursor_.pose(Side::b));
+  if (const auto gap = gap_here()) add_gap(scene, *gap);
+  if (const auto way = way_out_here()) add_way_out(scene, *way, reps_[0]->dim());
   if (const std::span<const WrongPair> wrong = wrong_here(); !plain && !wrong.empty()) {
     add_wrong_pairs(scene.list, wrong, *reps_[0], cursor_.pose(Side::a), *reps_[1], cursor_.pose(Side::b));
     scene.key.push_back({render::LegendItem::Mark::line, render::palette::kWrong, "pair got wrong"});
@@ -325,6 +355,13 @@ std::string FrameState::node_pair_text(const trace::Event& e) {
 }
 
 std::string FrameState::result_text() const {
+  const std::string measured = measured_text();
+  if (measured.empty()) return relation_text();
+  const Relation relation = cursor_.step()->result.relation;
+  return (relation == Relation::separate ? "separate: " : relation_text() + "; ") + measured;
+}
+
+std::string FrameState::relation_text() const {
   const trace::StepResult& r = cursor_.step()->result;
   if (const Separation* proof = proof_here())
     return "separate: wrappers of " + render::group_digits(proof->face_count[0]) + " and " +
@@ -345,7 +382,9 @@ render::Overlay FrameState::overlay(const std::string& title) const {
   o.title = title;
   if (reps_.size() > 1) o.title += "  ·  step " + std::to_string(step());
   o.event = event_text();
-  o.event_colour = parting_here() != nullptr ? kPartingColour : render::palette::event(cursor_.event().kind);
+  o.event_colour = parting_here() != nullptr ? kPartingColour
+                   : way_out_here()          ? kWayOutColour
+                                             : render::palette::event(cursor_.event().kind);
   if (trace_.header.construction) {
     add_construction(o);
     return o;

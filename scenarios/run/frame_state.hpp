@@ -10,6 +10,7 @@
 #include "engine/query/collide.hpp"
 #include "engine/query/explain.hpp"
 #include "render/scene.hpp"
+#include "scenarios/run/measure_marks.hpp"
 #include "scenarios/run/recorded_run.hpp"
 #include "scenarios/spec/scenario.hpp"
 #include "trace/counters.hpp"
@@ -65,6 +66,11 @@ class FrameState {
   /// Returns the walk of a step that ends here without contact; null: of another, or where what parts the bodies is not
   /// to be shown: numbers of faces need the picture for themselves.
   const WalkExplanation* parting_here() const;
+  /// Return the way between the nearest points, or B's way out, of a step that ends here; nothing if nobody asked.
+  std::optional<MarkedWay> gap_here() const;
+  std::optional<MarkedWay> way_out_here() const;
+  /// Returns what was measured at the step's end, in words, to follow others; empty if nobody asked.
+  std::string measured_text() const;
   /// Returns the pairs that another engine got wrong in the step, once its last event has come.
   std::span<const WrongPair> wrong_here() const;
   std::uint32_t boundary_size(Side side) const;  ///< Returns the number of faces of the wrapper that is
@@ -92,6 +98,8 @@ class FrameState {
   /// Says why a relation is undefined.
   std::string open_text() const;
   std::string result_text() const;
+  /// Says how the bodies lie, and how that is known.
+  std::string relation_text() const;
   trace::Totals totals() const;  ///< Counts the events of the step so far.
 
   const trace::Trace& trace_;

@@ -32,14 +32,15 @@ trace::RecorderSettings recorder_settings(const spec::Scenario& s) {
   settings.clock = s.clock;
   settings.event_cap = s.event_cap;
   settings.level = std::max(s.events, spec::needed_level(s.frames));
-  settings.coherent = s.coherent;
+  settings.coherent = s.more.coherent;
   return settings;
 }
 
 std::vector<Pose> poses_of_b(const spec::Scenario& s, Recording& r) {
   if (s.motion.kind != spec::Motion::Kind::approach) return spec::poses_of(s.motion, s.bodies[1].pose);
-  Approach approach =
-      find_approach(r.bodies[0].rep, s.bodies[0].pose, r.bodies[1].rep, s.bodies[1].pose, s.motion);
+  Approach approach = find_approach(r.bodies[0].rep, s.bodies[0].pose, r.bodies[1].rep, s.bodies[1].pose,
+                                    s.motion, s.more.distance);
+  r.trace.header.first_contact = std::move(approach.search);
   r.notes.push_back(approach.met ? "first contact at step " + std::to_string(approach.first_contact)
                                  : "the bodies did not meet on the way");
   if (approach.steps_to_contact) {
@@ -60,20 +61,35 @@ class StepQueries {
  public:
   StepQueries(const spec::Scenario& s, const LrbRep& a, const LrbRep& b) : s_(s), a_(a), b_(b) {
     // Caches are made whenever they can be: where they pay is a matter of time, and a trace is to be the same again.
-    if (s.coherent) coherent_.emplace(a, b, s.request, CoherentQuery::CacheUse::always);
+    if (s.more.coherent) coherent_.emplace(a, b, s.request, CoherentQuery::CacheUse::always);
   }
 
   CollideResult ask(std::uint32_t step, const Pose& pose_b, trace::Recorder& recorder) {
     const Pose& pose_a = s_.bodies[0].pose;
     try {
-      if (coherent_) return coherent_->collide(pose_a, pose_b, recorder);
-      return collide(a_, pose_a, b_, pose_b, s_.request, context_, recorder);
+      CollideResult result = coherent_ ? coherent_->collide(pose_a, pose_b, recorder)
+                                       : collide(a_, pose_a, b_, pose_b, s_.request, context_, recorder);
+      ask_more(pose_a, pose_b, recorder);
+      return result;
     } catch (const InputError& e) {
       throw InputError("scenario " + s_.name + ", step " + std::to_string(step) + ": " + e.what());
     }
   }
 
  private:
+  void ask_more(const Pose& pose_a, const Pose& pose_b, trace::Recorder& recorder) const {
+    if (s_.more.distance) {
+      BoundsCourse told;
+      const DistanceResult found = distance(a_, pose_a, b_, pose_b, {}, told);
+      recorder.add(trace::measured(found, std::move(told.course)));
+    }
+    if (s_.more.clash) {
+      ClashCourse told;
+      const ClashResult found = clash(a_, pose_a, b_, pose_b, {}, told);
+      recorder.add(trace::measured(found, std::move(told.of_depth)));
+    }
+  }
+
   const spec::Scenario& s_;
   const LrbRep &a_, &b_;
   std::optional<CoherentQuery> coherent_;
@@ -91,7 +107,9 @@ void record_collision(const spec::Scenario& s, Recording& r, const ProgressRepor
     r.results.push_back(queries.ask(step, poses[step], recorder));
     recorder.end_step(r.results.back());
   }
-  r.trace = recorder.take();
+  trace::Trace recorded = recorder.take();
+  recorded.header.first_contact = std::move(r.trace.header.first_contact);
+  r.trace = std::move(recorded);
 }
 
 /// Returns all regions, those of the builder's last pass (the outermost ones) first: each can then be refined

@@ -8,6 +8,8 @@
 #include "scenarios/run/construct_report.hpp"
 #include "scenarios/run/frame_state.hpp"
 #include "scenarios/run/group_tables.hpp"
+#include "scenarios/run/measure_charts.hpp"
+#include "scenarios/run/measure_marks.hpp"
 #include "scenarios/run/scene_json.hpp"
 #include "scenarios/run/work_tables.hpp"
 #include "trace/counters.hpp"
@@ -52,6 +54,21 @@ std::string sides_of(const RecordedRun& p, Test test) {
   return out;
 }
 
+/// Adds what was measured of a step besides the pairs.
+void add_measured(const trace::StepResult& r, const std::string& at, std::vector<report::PageNumber>& out) {
+  if (r.distance)
+    out.push_back({"Distance", interval_words(r.distance->lower, r.distance->upper),
+                   at + "; of the surfaces, proved" +
+                       (r.distance->solids_meet && r.distance->upper > 0 ? ". The solids meet" : "")});
+  if (!r.clash) return;
+  out.push_back({"Kind of contact", kind_words(r.clash->kind), at});
+  if (r.clash->depth)
+    out.push_back({"Penetration depth", interval_words((*r.clash->depth)[0], (*r.clash->depth)[1]),
+                   at + "; the way that B has to move, proved"});
+  if (r.clash->volume)
+    out.push_back({"Volume shared", interval_words((*r.clash->volume)[0], (*r.clash->volume)[1]), at});
+}
+
 std::vector<report::PageNumber> collision_numbers(const RecordedRun& p, const trace::Step& step) {
   const trace::StepResult& r = step.result;
   const auto at = "at step " + std::to_string(step.index);
@@ -82,6 +99,7 @@ std::vector<report::PageNumber> collision_numbers(const RecordedRun& p, const tr
   } else if (p.results != nullptr && !p.results->empty()) {
     out.push_back({"Contact regions", render::group_digits(p.results->back().regions.size()), at});
   }
+  add_measured(r, at, out);
   if (!p.first_contact.empty())
     out.push_back(
         {"First contact", p.first_contact, "of the way; until then the surfaces are proved not to meet"});
@@ -196,6 +214,10 @@ report::PageTable steps_table(const trace::Trace& trace) {
   const CollideRequest& request = trace.header.request;
   if (request.is_coarse()) t.columns.insert(t.columns.end(), {"error bound", "finished"});
   if (request.separation) t.columns.emplace_back("proved apart by");
+  const bool has_distance = was_measured(trace, &trace::StepResult::distance);
+  const bool has_clash = was_measured(trace, &trace::StepResult::clash);
+  if (has_distance) t.columns.emplace_back("distance");
+  if (has_clash) t.columns.insert(t.columns.end(), {"kind of contact", "depth"});
   for (const trace::Step& s : trace.steps) {
     t.rows.push_back(
         {std::to_string(s.index), words(s.result.relation), render::group_digits(s.result.pair_count),
@@ -206,6 +228,11 @@ report::PageTable steps_table(const trace::Trace& trace) {
       row.insert(row.end(), {s.result.error_bound == 0 ? "0" : error_bound_text(s.result.error_bound),
                              s.result.finished ? "yes" : "no"});
     if (request.separation) row.push_back(s.result.separation ? faces_text(*s.result.separation) : "");
+    if (const auto& d = s.result.distance; has_distance)
+      row.push_back(d ? interval_words(d->lower, d->upper) : "");
+    if (const auto& c = s.result.clash; has_clash)
+      row.insert(row.end(), {c ? kind_words(c->kind) : "",
+                             c && c->depth ? interval_words((*c->depth)[0], (*c->depth)[1]) : ""});
   }
   t.note = "The fingerprint is FNV-1a 64 over the sorted pairs: equal answers, equal fingerprints.";
   if (request.is_coarse()) t.note += " An error bound of 0: the answer is exact.";
@@ -269,6 +296,7 @@ void add_charts(report::Page& page, const RecordedRun& p) {
   // Of one body each event refines one region: there is nothing to count.
   if (!two) by_event.resize(std::min<std::size_t>(by_event.size(), 1));
   for (report::PageChart& c : by_event) page.charts.push_back(std::move(c));
+  for (report::PageChart& c : measure_charts(*p.trace)) page.charts.push_back(std::move(c));
 }
 
 /// Tables of a run of two bodies: contacts of the last step, and all steps unless they are many.

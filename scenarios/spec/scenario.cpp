@@ -72,7 +72,7 @@ Expectation read_expectation(const io::JsonNode& node, const io::JsonText& text)
 
 }  // namespace
 
-CollideRequest read_query(const io::JsonNode& node, bool* coherent) {
+CollideRequest read_query(const io::JsonNode& node, StepQuestions* more) {
   if (node.has("max_time"))
     node.fail_key("max_time",
                   "how far a query comes in a time differs from run to run, and the same file is to give the "
@@ -80,9 +80,16 @@ CollideRequest read_query(const io::JsonNode& node, bool* coherent) {
   std::vector<std::string> keys;
   for_each_field<CollideRequest>([&](const auto& field) { keys.emplace_back(field.name); });
   std::erase(keys, "max_time");
-  if (coherent != nullptr) keys.emplace_back("coherent");
+  if (more != nullptr) keys.insert(keys.end(), {"coherent", "distance", "clash"});
   node.object(keys);
-  if (coherent != nullptr && node.has("coherent")) *coherent = node.at("coherent").boolean();
+  const auto read_flag = [&](const char* key, bool& flag) {
+    if (node.has(key)) flag = node.at(key).boolean();
+  };
+  if (more != nullptr) {
+    read_flag("coherent", more->coherent);
+    read_flag("distance", more->distance);
+    read_flag("clash", more->clash);
+  }
   CollideRequest r;
   for_each_field<CollideRequest>([&](const auto& field) {
     if (const auto n = node.get(std::string(field.name))) read_value(*n, r.*field.member);
@@ -119,7 +126,7 @@ Scenario parse_scenario(const std::string& text, const std::string& file) {
         root.fail_key(key, "a refinement or a construction shows one body and asks nothing: remove it");
   }
   s.request.contacts = true;
-  if (const auto n = root.get("query")) s.request = read_query(*n, &s.coherent);
+  if (const auto n = root.get("query")) s.request = read_query(*n, &s.more);
   if (const auto n = root.get("trace")) read_trace(*n, s);
   s.frames = default_frames(s.show);
   if (const auto n = root.get("frames")) s.frames = read_frames(*n, s.frames);

@@ -187,6 +187,13 @@ constexpr EventLevel needed_level(const FrameSpec& frames) {
   return frames.node_boxes && colours == EventLevel::faces ? EventLevel::nodes : colours;
 }
 
+/// What else is asked at each step, and how steps follow each other.
+struct StepQuestions {
+  bool coherent = false;  ///< each step goes on from the one before: engine/query/coherent
+  bool distance = false;  ///< how far apart the bodies are
+  bool clash = false;     ///< what kind of contact they have, and how deep
+};
+
 struct Expectation {
   std::uint32_t step = 0;
   std::optional<Relation> relation;
@@ -205,7 +212,7 @@ struct Scenario {
   trace::Clock clock = trace::Clock::event;
   std::uint32_t event_cap = 1'000'000;
   EventLevel events = EventLevel::faces;  ///< that are recorded
-  bool coherent = false;                  ///< each step goes on from the one before: engine/query/coherent
+  StepQuestions more;
   bool gzip = false;
   FrameSpec frames;
   std::vector<Expectation> expect;

@@ -9,11 +9,14 @@
 #include "engine/query/clash/clash_impl.hpp"
 #include "scenarios/bodies/body.hpp"
 #include "scenarios/cli/command.hpp"
+#include "scenarios/cli/commands/bounds_chart.hpp"
 #include "scenarios/cli/median_time.hpp"
 #include "scenarios/cli/options.hpp"
 #include "scenarios/cli/pose_lines.hpp"
 #include "scenarios/cli/progress.hpp"
+#include "scenarios/run/answer_picture.hpp"
 #include "trace/json_out.hpp"
+#include "trace/json_parts.hpp"
 
 namespace lrb::cli {
 namespace {
@@ -24,6 +27,7 @@ struct ClashOptions {
   std::vector<double> along;
   std::uint32_t repeat = 0;
   bool table = false;
+  DrawOptions draw;
   bodies::Corners corners = bodies::Corners::joined;
 };
 
@@ -42,7 +46,8 @@ bool is_apart(const ClashResult& r) {
   return r.kind == ClashKind::apart || r.kind == ClashKind::within_clearance;
 }
 
-std::string line_of(std::size_t pose, const ClashResult& result, const ClashOptions& o, double us) {
+std::string line_of(std::size_t pose, const ClashResult& result, const std::vector<Bounds>& course,
+                    const ClashOptions& o, double us) {
   return trace::json_text(trace::JsonWriter::kCompact, [&](trace::JsonWriter& w) {
     w.begin_object().member("pose", std::uint64_t{pose}).member("kind", to_string(result.kind));
     if (result.shares_faces) w.member("shares_faces", true);
@@ -59,6 +64,7 @@ std::string line_of(std::size_t pose, const ClashResult& result, const ClashOpti
       write_pieces(w, "pieces_a", result.pieces[0]);
       write_pieces(w, "pieces_b", result.pieces[1]);
     }
+    if (o.draw.course) trace::write_course(w, course);
     if (o.repeat > 0) w.member("us", us);
     w.end_object();
   });
@@ -116,6 +122,7 @@ Row headings(const ClashOptions& o) {
 int run_clash(ClashOptions o, const Globals& globals) {
   if (!o.along.empty()) o.request.along = Eigen::Vector3d(o.along[0], o.along[1], o.along[2]);
   const PoseLines list(o.poses);
+  const run::AnswerLook look = look_of(o.draw);
   const bodies::LoadedBody a = bodies::load_faces(o.a, o.corners), b = bodies::load_faces(o.b, o.corners);
   check_request(a.rep, o.request);
   note(globals, a.notes);
@@ -126,12 +133,24 @@ int run_clash(ClashOptions o, const Globals& globals) {
   Progress progress("clash", list.poses.size(), globals.quiet);
   for (std::size_t i = 0; i < list.poses.size(); ++i) {
     const auto ask = [&] { return clash(a.rep, Pose{}, b.rep, list.poses[i], o.request, context); };
-    const ClashResult result = ask();
+    ClashCourse told;
+    const ClashResult result =
+        o.draw.is_watched() ? clash(a.rep, Pose{}, b.rep, list.poses[i], o.request, context, &told) : ask();
+    const bool has_depth = !told.of_depth.empty();
+    const std::vector<Bounds>& course = has_depth ? told.of_depth : told.of_distance;
     const double us = o.repeat > 0 ? median_us(o.repeat, ask) : 0;
     if (o.table)
       rows.push_back(row_of(i, result, o));
     else
-      print(line_of(i, result, o, us));
+      print(line_of(i, result, course, o, us));
+    if (!o.draw.picture.empty())
+      run::draw_clash(a.rep, Pose{}, b.rep, list.poses[i], result, look,
+                      picture_name(o.draw.picture, i, list.poses.size()));
+    if (!o.draw.chart.empty() && !course.empty())
+      report::draw(bounds_chart(course, has_depth ? "depth" : "distance",
+                                has_depth ? "queries asked, steps in which hulls grew"
+                                          : "pairs of boxes opened, pairs of faces measured"),
+                   picture_name(o.draw.chart, i, list.poses.size()));
     progress.set(i + 1);
   }
   if (o.table) print(table_text(rows));
@@ -153,6 +172,7 @@ Command add_clash(CLI::App& root, const Globals& globals) {
       ->expected(3)
       ->type_name("X,Y,Z");
   app->add_flag("--table", o->table, "Print a table for people instead of JSON");
+  add_draw_options(*app, o->draw, "Draw the solids with the way on which B leaves A");
   add_repeat_option(*app, o->repeat, "pose");
   add_join_option(*app, o->corners);
   return {app, [o, &globals] { return run_clash(*o, globals); }};

@@ -22,6 +22,7 @@ struct CollideOptions {
   std::string a, b, folder, poses, approach;
   CollideRequest request;
   PictureOptions picture;
+  spec::StepQuestions more;
   std::optional<EventLevel> events;
   bool json = false;
 };
@@ -73,6 +74,7 @@ spec::Scenario make_scenario(const CollideOptions& o, const std::vector<bodies::
   s.bodies[1].file = o.b;
   s.request = o.request;
   s.request.contacts = o.request.mode == Mode::all_pairs;
+  s.more = o.more;
   if (o.events) s.events = *o.events;
   s.frames.montage = 6;
   s.frames.views = whole_and_contact();
@@ -133,6 +135,8 @@ Command add_collide(CLI::App& root, const Globals& globals) {
       ->type_name("X,Y,Z")
       ->excludes(poses);
   add_request_options(*app, o->request);
+  app->add_flag("--distance", o->more.distance, "Bound how far apart the bodies are, too, at each step");
+  app->add_flag("--clash", o->more.clash, "Find what kind of contact they have, and how deep, at each step");
   add_events_option(*app, o->events);
   add_picture_options(*app, o->picture);
   add_animation_option(*app, o->picture);

@@ -5,12 +5,15 @@
 #include "engine/query/distance/distance_impl.hpp"
 #include "scenarios/bodies/body.hpp"
 #include "scenarios/cli/command.hpp"
+#include "scenarios/cli/commands/bounds_chart.hpp"
 #include "scenarios/cli/commands/witness_json.hpp"
 #include "scenarios/cli/median_time.hpp"
 #include "scenarios/cli/options.hpp"
 #include "scenarios/cli/pose_lines.hpp"
 #include "scenarios/cli/progress.hpp"
+#include "scenarios/run/answer_picture.hpp"
 #include "trace/json_out.hpp"
+#include "trace/json_parts.hpp"
 
 namespace lrb::cli {
 namespace {
@@ -21,6 +24,7 @@ struct DistanceOptions {
   DistanceRequest request;
   std::uint32_t repeat = 0;
   bool features = false;
+  DrawOptions draw;
 };
 
 void write_feature(trace::JsonWriter& w, const char* name, const Witness& witness) {
@@ -29,7 +33,8 @@ void write_feature(trace::JsonWriter& w, const char* name, const Witness& witnes
   w.end_object();
 }
 
-std::string line_of(std::size_t pose, const DistanceResult& result, const DistanceOptions& o, double us) {
+std::string line_of(std::size_t pose, const DistanceResult& result, const std::vector<Bounds>& course,
+                    const DistanceOptions& o, double us) {
   return trace::json_text(trace::JsonWriter::kCompact, [&](trace::JsonWriter& w) {
     w.begin_object().member("pose", std::uint64_t{pose});
     w.member("lower", result.lower).member("upper", result.upper);
@@ -45,6 +50,7 @@ std::string line_of(std::size_t pose, const DistanceResult& result, const Distan
       write_feature(w, "on_a", result.witness[0]);
       write_feature(w, "on_b", result.witness[1]);
     }
+    if (o.draw.course) trace::write_course(w, course);
     if (o.repeat > 0) w.member("us", us);
     w.end_object();
   });
@@ -53,6 +59,7 @@ std::string line_of(std::size_t pose, const DistanceResult& result, const Distan
 int run_distance(const DistanceOptions& o, const Globals& globals) {
   const PoseLines list(o.poses);
   check_request(o.request);
+  const run::AnswerLook look = look_of(o.draw);
   const bodies::LoadedBody a = bodies::load_faces(o.a, o.corners), b = bodies::load_faces(o.b, o.corners);
   note(globals, a.notes);
   note(globals, b.notes);
@@ -61,8 +68,17 @@ int run_distance(const DistanceOptions& o, const Globals& globals) {
   Progress progress("distance", list.poses.size(), globals.quiet);
   for (std::size_t i = 0; i < list.poses.size(); ++i) {
     const auto ask = [&] { return distance(a.rep, Pose{}, b.rep, list.poses[i], o.request, context); };
-    const DistanceResult result = ask();
-    print(line_of(i, result, o, o.repeat > 0 ? median_us(o.repeat, ask) : 0));
+    BoundsCourse told;
+    const DistanceResult result = o.draw.is_watched() ? distance(a.rep, Pose{}, b.rep, list.poses[i],
+                                                                 o.request, context, nullptr, &told)
+                                                      : ask();
+    print(line_of(i, result, told.course, o, o.repeat > 0 ? median_us(o.repeat, ask) : 0));
+    if (!o.draw.picture.empty())
+      run::draw_distance(a.rep, Pose{}, b.rep, list.poses[i], result, look,
+                         picture_name(o.draw.picture, i, list.poses.size()));
+    if (!o.draw.chart.empty())
+      report::draw(bounds_chart(told.course, "distance", "pairs of boxes opened, pairs of faces measured"),
+                   picture_name(o.draw.chart, i, list.poses.size()));
     progress.set(i + 1);
   }
   return kOk;
@@ -87,6 +103,7 @@ Command add_distance(CLI::App& root, const Globals& globals) {
       ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1} << 62).description(""))
       ->type_name("N");
   app->add_flag("--features", o->features, "Add the vertex, edge or face of each body that is nearest");
+  add_draw_options(*app, o->draw, "Draw the bodies with the way between their nearest points");
   add_repeat_option(*app, o->repeat, "pose");
   add_join_option(*app, o->corners);
   return {app, [o, &globals] { return run_distance(*o, globals); }};

@@ -1,9 +1,11 @@
-#include <filesystem>
 #include <memory>
+#include <optional>
 #include <utility>
 
+#include "engine/query/clash/clash_impl.hpp"
 #include "engine/query/collide.hpp"
 #include "engine/query/collide_impl.hpp"
+#include "engine/query/distance/distance_impl.hpp"
 #include "scenarios/bodies/body.hpp"
 #include "scenarios/cli/command.hpp"
 #include "scenarios/cli/median_time.hpp"
@@ -22,7 +24,7 @@ struct QueryOptions {
   bodies::Corners corners = bodies::Corners::joined;
   std::string a, b, poses, draw;
   CollideRequest request;
-  bool pairs = false;
+  bool pairs = false, kind = false, distance = false;
   std::uint32_t repeat = 0;
 };
 
@@ -34,14 +36,6 @@ double repeated_us(const LrbRep& a, const LrbRep& b, const Pose& pose, const Que
     const CollideResult result = collide(a, Pose{}, b, pose, o.request, context, probe);
     if (result.mode != o.request.mode) throw std::logic_error("the query changed its mode");
   });
-}
-
-/// Returns PICTURE, or PICTURE with the pose's number if there are several poses.
-std::string picture_name(const std::string& path, std::size_t pose, std::size_t poses) {
-  if (poses == 1) return path;
-  const std::filesystem::path p(path);
-  return (p.parent_path() / (p.stem().string() + "-" + std::to_string(pose) + p.extension().string()))
-      .string();
 }
 
 /// Touching bodies may overlap all the same (see Relation::touching). This is decided for a query that found
@@ -72,8 +66,36 @@ void write_pairs(trace::JsonWriter& w, const char* name, const std::vector<Simpl
   w.end_array();
 }
 
-std::string line_of(std::size_t pose, const CollideResult& result, const QueryOptions& o, double us,
-                    const LrbRep& a, const LrbRep& b) {
+/// What is asked besides, of other queries.
+struct More {
+  std::optional<ClashKind> kind;
+  std::optional<DistanceResult> distance;
+};
+
+/// Memory of what asks them.
+struct MoreContext {
+  ClashContext clash;
+  DistanceContext distance;
+};
+
+More ask_more(const LrbRep& a, const LrbRep& b, const Pose& pose, const QueryOptions& o,
+              MoreContext& context) {
+  More out;
+  if (o.kind) {
+    ClashRequest request;
+    request.depth = request.volume = false;
+    out.kind = clash(a, Pose{}, b, pose, request, context.clash).kind;
+  }
+  if (o.distance) {
+    DistanceRequest request;
+    request.relation = false;
+    out.distance = distance(a, Pose{}, b, pose, request, context.distance);
+  }
+  return out;
+}
+
+std::string line_of(std::size_t pose, const CollideResult& result, const More& more, const QueryOptions& o,
+                    double us, const LrbRep& a, const LrbRep& b) {
   using Two = std::pair<std::uint32_t, std::uint32_t>;
   const CollideRequest& request = o.request;
   return trace::json_text(trace::JsonWriter::kCompact, [&](trace::JsonWriter& w) {
@@ -82,6 +104,11 @@ std::string line_of(std::size_t pose, const CollideResult& result, const QueryOp
     w.member("fingerprint", trace::to_hex(fingerprint(result.pairs)));
     if (tells_overlap(request) && result.relation == Relation::touching)
       w.member("interiors_overlap", name_of(result.interiors_overlap));
+    if (more.kind) w.member("kind", name_of(*more.kind));
+    if (more.distance) {
+      w.key("distance").begin_array().value(more.distance->lower).value(more.distance->upper);
+      w.end_array();
+    }
     if (request.recursion != Recursion::complete) w.member("recursion", name_of(request.recursion));
     if (request.predicates != Predicates::exact) w.member("predicates", name_of(request.predicates));
     if (request.is_coarse()) w.member("finished", result.finished).member("error_bound", result.error_bound);
@@ -115,10 +142,12 @@ int run_query(const QueryOptions& o, const Globals& globals) {
   note(globals, a.notes);
   note(globals, b.notes);
   list.check(a.rep, b.rep);
+  if (o.kind) check_request(a.rep, ClashRequest{});
   if (o.request.is_coarse()) check_coarse_request(o.request);
   if (o.request.is_coarse())
     for (const bodies::LoadedBody* body : {&a, &b}) body->rep.levels(0);
   QueryContext context;
+  MoreContext more;
   NullProbe probe;
   Progress progress("query", poses.size(), globals.quiet);
   for (std::size_t i = 0; i < poses.size(); ++i) {
@@ -126,7 +155,7 @@ int run_query(const QueryOptions& o, const Globals& globals) {
         list.at(i, [&] { return collide(a.rep, Pose{}, b.rep, poses[i], o.request, context, probe); });
     if (tells_overlap(o.request)) decide_overlap(context, o.request, result);
     const double us = o.repeat > 0 ? repeated_us(a.rep, b.rep, poses[i], o, context) : 0;
-    print(line_of(i, result, o, us, a.rep, b.rep));
+    print(line_of(i, result, ask_more(a.rep, b.rep, poses[i], o, more), o, us, a.rep, b.rep));
     if (!o.draw.empty() && result.separation)
       run::draw_separation(a.rep, Pose{}, b.rep, poses[i], *result.separation,
                            picture_name(o.draw, i, poses.size()));
@@ -150,6 +179,8 @@ Command add_query(CLI::App& root, const Globals& globals) {
       ->needs(separation)
       ->type_name("PNG");
   app->add_flag("--pairs", o->pairs, "Add the sorted list of pairs");
+  app->add_flag("--kind", o->kind, "Add what kind of contact the solids have, as `clash` tells it");
+  app->add_flag("--distance", o->distance, "Add the interval that holds the surfaces' distance");
   add_repeat_option(*app, o->repeat, "pose");
   add_join_option(*app, o->corners);
   return {app, [o, &globals] { return run_query(*o, globals); }};

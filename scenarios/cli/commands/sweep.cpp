@@ -8,12 +8,16 @@
 #include "engine/query/motion/first_contact_impl.hpp"
 #include "scenarios/bodies/body.hpp"
 #include "scenarios/cli/command.hpp"
+#include "scenarios/cli/commands/bounds_chart.hpp"
 #include "scenarios/cli/commands/witness_json.hpp"
 #include "scenarios/cli/median_time.hpp"
 #include "scenarios/cli/options.hpp"
+#include "scenarios/cli/pose_lines.hpp"
 #include "scenarios/cli/progress.hpp"
 #include "scenarios/io/pose_file.hpp"
+#include "scenarios/run/answer_picture.hpp"
 #include "trace/json_out.hpp"
+#include "trace/json_parts.hpp"
 
 namespace lrb::cli {
 namespace {
@@ -23,6 +27,7 @@ struct SweepOptions {
   FirstContactRequest request;
   std::uint32_t repeat = 0;
   bool features = false;
+  DrawOptions draw;
   bodies::Corners corners = bodies::Corners::joined;
 };
 
@@ -56,7 +61,8 @@ void write_history(trace::JsonWriter& w, const FirstContactResult& result) {
   w.end_array();
 }
 
-std::string line_of(std::size_t motion, const FirstContactResult& result, const SweepOptions& o, double us) {
+std::string line_of(std::size_t motion, const FirstContactResult& result,
+                    const std::vector<ContactBounds>& course, const SweepOptions& o, double us) {
   return trace::json_text(trace::JsonWriter::kCompact, [&](trace::JsonWriter& w) {
     w.begin_object().member("motion", std::uint64_t{motion});
     w.key("contact");
@@ -71,6 +77,7 @@ std::string line_of(std::size_t motion, const FirstContactResult& result, const 
     if (result.at_begin == Relation::a_inside_b || result.at_begin == Relation::b_inside_a)
       w.member("inside", to_string(result.at_begin));
     if (o.request.history) write_history(w, result);
+    if (o.draw.course) trace::write_course(w, course);
     if (o.repeat > 0) w.member("us", us);
     w.end_object();
   });
@@ -94,6 +101,7 @@ std::vector<Motion> motions_of(const std::vector<io::PosePair>& list, const std:
 int run_sweep(const SweepOptions& o, const Globals& globals) {
   const std::vector<io::PosePair> list = io::read_motions(o.motions);
   check_request(o.request);
+  const run::AnswerLook look = look_of(o.draw);
   const bodies::LoadedBody a = bodies::load_faces(o.a, o.corners), b = bodies::load_faces(o.b, o.corners);
   note(globals, a.notes);
   note(globals, b.notes);
@@ -104,8 +112,16 @@ int run_sweep(const SweepOptions& o, const Globals& globals) {
   Progress progress("sweep", motions.size(), globals.quiet);
   for (std::size_t i = 0; i < motions.size(); ++i) {
     const auto ask = [&] { return first_contact(a.rep, still, b.rep, motions[i], o.request, context); };
-    const FirstContactResult result = ask();
-    print(line_of(i, result, o, o.repeat > 0 ? median_us(o.repeat, ask) : 0));
+    FirstContactCourse told;
+    const FirstContactResult result =
+        o.draw.is_watched() ? first_contact(a.rep, still, b.rep, motions[i], o.request, context, &told)
+                            : ask();
+    print(line_of(i, result, told.course, o, o.repeat > 0 ? median_us(o.repeat, ask) : 0));
+    if (!o.draw.picture.empty())
+      run::draw_first_contact(a.rep, b.rep, motions[i], result, look,
+                              picture_name(o.draw.picture, i, motions.size()));
+    if (!o.draw.chart.empty())
+      report::draw(contact_chart(told.course), picture_name(o.draw.chart, i, motions.size()));
     progress.set(i + 1);
   }
   return kOk;
@@ -128,6 +144,9 @@ Command add_sweep(CLI::App& root, const Globals& globals) {
   app->add_flag("--features", o->features, "Add the vertex, edge or face of each body that meet first");
   app->add_flag("--history", o->request.history,
                 "Add the spans of t that were looked at, and what was known then");
+  app->add_flag("--course", o->draw.course,
+                "Add how the search went: [work, t0, t1, lower and upper end of the distance at t0]");
+  add_draw_options(*app, o->draw, "Draw the bodies at first contact, and B on its way there", false);
   add_repeat_option(*app, o->repeat, "motion");
   add_join_option(*app, o->corners);
   return {app, [o, &globals] { return run_sweep(*o, globals); }};

@@ -82,7 +82,8 @@ TEST_CASE("a scenario's query has the fields of requests, and its words are the 
     using Value = std::remove_cvref_t<decltype(CollideRequest{}.*field.member)>;
     if constexpr (std::is_enum_v<Value>) CHECK(query.at(name).at("enum") == words<Value>());
   });
-  keys["coherent"] = query.at("coherent");  // how steps follow each other, not what is asked
+  // How steps follow each other, and what is asked of other queries.
+  for (const char* key : {"coherent", "distance", "clash"}) keys[key] = query.at(key);
   CHECK(keys == query);
   const auto at = [&](const char* pointer) { return document.at(json::json_pointer(pointer)).at("enum"); };
   CHECK(at("/properties/show") == words<spec::Show>());

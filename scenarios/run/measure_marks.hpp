@@ -1,0 +1,47 @@
+#pragma once
+/// Draws what a distance or a clash found: the way between the nearest points, and the way out of an overlap.
+
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "engine/core/pose.hpp"
+#include "engine/lrb/lrb_rep.hpp"
+#include "engine/query/walk/contact_region.hpp"
+#include "render/palette.hpp"
+#include "render/scene.hpp"
+#include "trace/measured.hpp"
+
+namespace lrb::run {
+
+/// Colours of both, and of the marks before words that say what they are.
+inline constexpr render::Rgba kGapColour = render::palette::kInk;
+inline constexpr render::Rgba kWayOutColour = render::palette::kGreen;
+
+/// A straight way in the world, with what is written beside it.
+struct MarkedWay {
+  Eigen::Vector3d from, to;
+  std::string text;
+};
+
+/// Return the way between the nearest points of bodies that are apart, or the way of B out of A, through the middle of
+/// the contacts; nothing if there is none. contacts: may be empty, and then the middle is that of what the boxes of the
+/// bodies share.
+std::optional<MarkedWay> gap_of(const trace::MeasuredDistance& distance);
+std::optional<MarkedWay> way_out_of(const trace::MeasuredClash& clash, const LrbRep& a, const Pose& pose_a,
+                                    const LrbRep& b, const Pose& pose_b,
+                                    std::span<const ContactRegion> contacts);
+
+/// Add it to a scene, over everything that hides it, with its line in the key.
+void add_gap(render::Scene& scene, const MarkedWay& gap);
+void add_way_out(render::Scene& scene, const MarkedWay& way, int dim);
+
+/// Returns an interval in words: "0.25", or "0.2 to 0.3" where four digits tell its ends apart.
+std::string interval_words(double lower, double upper);
+/// Returns the kind of contact as people say it: "A inside B", "touching in a face".
+std::string kind_words(ClashKind kind);
+
+}  // namespace lrb::run

@@ -1,0 +1,133 @@
+// Scenarios that ask for distances and kinds of contact: what is recorded, said, drawn and charted.
+#include <algorithm>
+
+#include <doctest/doctest.h>
+
+#include "engine/core/error.hpp"
+#include "render/palette.hpp"
+#include "scenarios/run/frame_state.hpp"
+#include "scenarios/run/measure_charts.hpp"
+#include "scenarios/run/run_report.hpp"
+#include "scenarios/run/run_scenario.hpp"
+
+using namespace lrb;
+
+namespace {
+
+const run::ProgressReport kQuiet = [](const std::string&, std::uint64_t, std::uint64_t) {};
+
+std::string balls(const std::string& query) {
+  return R"({"name": "gap", "purpose": "Two balls meet.", "bodies": {
+      "a": {"generator": "ball", "parameters": {"frequency": 4}},
+      "b": {"generator": "ball", "parameters": {"frequency": 4}}},
+    "motion": {"kind": "approach", "from": [3, 0.2, 0.1], "most_steps": 1000, "before": 2, "into": 4,
+               "step_length": 0.05},
+    "query": )" +
+         query + "}";
+}
+
+run::Recording recorded(const std::string& query) {
+  return run::record(spec::parse_scenario(balls(query), "gap.json"), kQuiet);
+}
+
+bool draws_line(const render::DrawList& list, render::Rgba colour) {
+  return std::any_of(list.lines.begin(), list.lines.end(), [&](const render::DrawLine& line) {
+    return line.colour == colour && line.points.size() == 2;
+  });
+}
+
+bool has_column(const report::Page& page, const std::string& name) {
+  return std::any_of(page.tables.begin(), page.tables.end(), [&](const report::PageTable& t) {
+    return std::find(t.columns.begin(), t.columns.end(), name) != t.columns.end();
+  });
+}
+
+bool has_chart(const report::Page& page, const std::string& part) {
+  return std::any_of(page.charts.begin(), page.charts.end(),
+                     [&](const report::PageChart& c) { return c.title.find(part) != std::string::npos; });
+}
+
+std::string number(const report::Page& page, const std::string& label) {
+  for (const report::PageNumber& n : page.numbers)
+    if (n.label == label) return n.value;
+  return {};
+}
+
+/// The state at the end of a step.
+run::FrameState at_end(const run::Recording& r, std::size_t step, const spec::FrameSpec& spec) {
+  run::FrameState state(r.trace, {&r.bodies[0].rep, &r.bodies[1].rep}, r.results, spec, false);
+  state.seek(r.trace.steps[step].first_event + static_cast<trace::EventId>(r.trace.events_of(step).size()) -
+             1);
+  return state;
+}
+
+}  // namespace
+
+TEST_CASE("measured runs: each step has its distance and its clash, and the search for the contact is kept") {
+  const run::Recording r = recorded(R"({"distance": true, "clash": true})");
+  REQUIRE(r.trace.steps.size() == 7);
+  for (const trace::Step& step : r.trace.steps) {
+    REQUIRE(step.result.distance.has_value());
+    REQUIRE(step.result.clash.has_value());
+    CHECK((step.result.distance->lower > 0) == (step.result.relation == Relation::separate));
+    CHECK((step.result.clash->kind == ClashKind::apart) == (step.result.relation == Relation::separate));
+  }
+  CHECK(r.trace.steps.back().result.clash->kind == ClashKind::protrudes);
+  CHECK(r.trace.steps.back().result.clash->depth->at(0) > 0.1);
+  REQUIRE(r.trace.header.first_contact.has_value());
+  CHECK(r.trace.header.first_contact->course.size() > 2);
+  const run::Recording plain = recorded("{}");
+  CHECK_FALSE(plain.trace.steps[0].result.distance.has_value());
+  CHECK_FALSE(plain.trace.steps[0].result.clash.has_value());
+  CHECK_FALSE(plain.trace.header.first_contact.has_value());
+}
+
+TEST_CASE("measured runs: frames show the nearest points, and the way out, and say how long they are") {
+  const run::Recording r = recorded(R"({"distance": true, "clash": true})"), plain = recorded("{}");
+  const spec::FrameSpec spec;
+  const run::FrameState apart = at_end(r, 0, spec), met = at_end(r, 6, spec);
+  CHECK(draws_line(apart.scene().list, run::kGapColour));
+  CHECK_FALSE(draws_line(apart.scene().list, run::kWayOutColour));
+  CHECK(apart.caption().find(" apart") != std::string::npos);
+  CHECK(draws_line(met.scene().list, run::kWayOutColour));
+  CHECK(met.caption().find(" deep") != std::string::npos);
+  CHECK(met.caption().find("protrudes") != std::string::npos);
+  CHECK_FALSE(draws_line(at_end(plain, 0, spec).scene().list, run::kGapColour));
+  CHECK_FALSE(draws_line(at_end(plain, 6, spec).scene().list, run::kWayOutColour));
+}
+
+TEST_CASE("measured runs: the page has the numbers, columns and charts, and others do not") {
+  const auto page_of = [](const run::Recording& r) {
+    return run::run_page(run::recorded_run_of("gap", "", r), {}, ".", {});
+  };
+  const run::Recording r = recorded(R"({"distance": true, "clash": true})");
+  const report::Page page = page_of(r);
+  CHECK(number(page, "Distance") == "0");
+  CHECK(number(page, "Kind of contact") == "one protrudes into the other");
+  CHECK_FALSE(number(page, "Penetration depth").empty());
+  CHECK(has_column(page, "distance"));
+  CHECK(has_column(page, "depth"));
+  CHECK(has_chart(page, "Distance and depth"));
+  CHECK(has_chart(page, "bounds of the distance"));
+  CHECK(has_chart(page, "bounds of the depth"));
+  CHECK(has_chart(page, "first contact"));
+  const report::Page plain = page_of(recorded("{}"));
+  CHECK(number(plain, "Distance").empty());
+  CHECK_FALSE(has_column(plain, "distance"));
+  CHECK_FALSE(has_chart(plain, "Distance"));
+  CHECK_FALSE(has_chart(plain, "first contact"));
+}
+
+TEST_CASE("measured runs: a clash of bodies in the plane is refused by step") {
+  const std::string text = R"({"name": "flat", "purpose": "Two cogs.",
+      "bodies": {"a": {"generator": "cog2d"}, "b": {"generator": "cog2d"}},
+      "motion": {"kind": "poses", "poses": [[1, 0, 0, 0.5, 0, 1, 0, 0, 0, 0, 1, 0]]},
+      "query": {"clash": true}})";
+  try {
+    run::record(spec::parse_scenario(text, "flat.json"), kQuiet);
+    FAIL("no error");
+  } catch (const InputError& e) {
+    CAPTURE(std::string(e.what()));
+    CHECK(std::string(e.what()).find("scenario flat, step 0: the clash query is for bodies in space") == 0);
+  }
+}
