@@ -9,6 +9,8 @@ namespace lrb {
 template <>
 inline constexpr auto kFields<stability::Expected> =
     std::tuple{field("pairs", &stability::Expected::pairs), field("relation", &stability::Expected::relation),
+               field("least", &stability::Expected::least, Kept::if_set),
+               field("most", &stability::Expected::most, Kept::if_set),
                field("refusal", &stability::Expected::refusal, Kept::if_set)};
 static_assert(covers_all_fields<stability::Expected>);
 

@@ -1,6 +1,7 @@
 #pragma once
 /// The right answer to a case, by exact brute force.
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,6 +13,8 @@ namespace lrb::stability {
 struct Expected {
   std::vector<SimplexPair> pairs;
   Relation relation = Relation::separate;
+  /// Where a number is asked for: hold it. A first contact that there is none of is at 2.
+  std::optional<double> least = {}, most = {};
   std::string refusal;  ///< if not empty, the question has no answer, and this says why
 };
 

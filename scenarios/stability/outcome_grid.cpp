@@ -54,6 +54,7 @@ std::uint64_t Cell::sum(const std::array<std::uint64_t, cases::kDialSettings>& c
 Grid present_part(const Grid& grid) {
   Grid out;
   out.families = grid.families;
+  out.quantity = grid.quantity;
   out.command = grid.command;
   out.seconds = grid.seconds;
   for (const workers::MethodColumn& m : grid.methods)

@@ -14,6 +14,7 @@
 #include "engine/core/enum_words.hpp"
 #include "engine/query/collide.hpp"
 #include "scenarios/cases/families.hpp"
+#include "scenarios/stability/quantity.hpp"
 #include "scenarios/workers/workers.hpp"
 
 namespace lrb::stability {
@@ -69,8 +70,9 @@ struct Cell {
 struct Grid {
   std::vector<workers::MethodColumn> methods;
   std::vector<FamilyRow> families;
-  std::vector<Cell> cells;  ///< (|families| x |methods|), row by row
-  std::string command;      ///< the command that made it
+  std::vector<Cell> cells;              ///< (|families| x |methods|), row by row
+  Quantity quantity = Quantity::pairs;  ///< what was asked for
+  std::string command;                  ///< the command that made it
   double seconds = 0;
 
   const Cell& at(std::size_t family, std::size_t method) const {

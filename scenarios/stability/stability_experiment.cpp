@@ -69,9 +69,13 @@ Record record_of_mishap(Record r, const workers::Mishap& mishap) {
   return r;
 }
 
-std::vector<std::string> command_of(const std::string& program, const std::string& family,
+std::vector<std::string> command_of(const std::string& program, Quantity quantity, const std::string& family,
                                     std::uint64_t cases, std::uint64_t seed) {
-  return {program, "--family", family, "--cases", std::to_string(cases), "--seed", std::to_string(seed)};
+  std::vector<std::string> command = {program,  "--family",          family, "--cases", std::to_string(cases),
+                                      "--seed", std::to_string(seed)};
+  if (quantity != Quantity::pairs)
+    command.insert(command.end(), {"--quantity", std::string(name_of(quantity))});
+  return command;
 }
 
 /// What is known about one family while its jobs run.
@@ -134,7 +138,7 @@ class Experiment {
   void start_expected(FamilyWork& family) {
     for (std::uint64_t k = 0; k < begin_; ++k) family.expected.append("\n");  // line k is case k's
     workers::Job::Task task;
-    task.command = command_of(o_.methods.front().program, family.name, o_.cases, o_.seed);
+    task.command = command_of(o_.methods.front().program, o_.quantity, family.name, o_.cases, o_.seed);
     task.begin = begin_;
     task.end = end_;
     task.limit = seconds(kBruteForceTimeout);
@@ -155,7 +159,7 @@ class Experiment {
   void start_method(FamilyWork& family, std::size_t m) {
     const workers::WorkerMethod& method = o_.methods[m];
     workers::Job::Task task;
-    task.command = command_of(method.program, family.name, o_.cases, o_.seed);
+    task.command = command_of(method.program, o_.quantity, family.name, o_.cases, o_.seed);
     task.command.insert(task.command.end(), {"--method", method.column.name, "--expected", kGivenFile});
     task.begin = begin_;
     task.end = end_;
@@ -229,7 +233,7 @@ std::vector<Record> run_experiment(const ExperimentOptions& options, const Progr
 }
 
 Replay replay(const workers::WorkerMethod& method, const std::string& family, int dial,
-              std::uint64_t case_index, std::uint64_t seed, double timeout) {
+              std::uint64_t case_index, std::uint64_t seed, double timeout, Quantity quantity) {
   const std::uint64_t cases = case_index + 1, k = static_cast<std::uint64_t>(dial) * cases + case_index;
   Replay result;
   const auto run = [&](workers::Job::Task task) {
@@ -238,7 +242,7 @@ Replay replay(const workers::WorkerMethod& method, const std::string& family, in
     workers::run_to_end(workers::Job(std::move(task)));
   };
   workers::Job::Task expected;
-  expected.command = command_of(method.program, family, cases, seed);
+  expected.command = command_of(method.program, quantity, family, cases, seed);
   expected.limit = seconds(kBruteForceTimeout);
   NamelessFile right;
   expected.on_line = [&](std::uint64_t, const std::string& line) {
@@ -250,7 +254,7 @@ Replay replay(const workers::WorkerMethod& method, const std::string& family, in
   };
   run(std::move(expected));
   workers::Job::Task asked;
-  asked.command = command_of(method.program, family, cases, seed);
+  asked.command = command_of(method.program, quantity, family, cases, seed);
   asked.command.insert(asked.command.end(),
                        {"--method", method.column.name, "--expected", kGivenFile, "--pairs"});
   asked.given = right.descriptor();

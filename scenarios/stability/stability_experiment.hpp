@@ -12,6 +12,7 @@
 namespace lrb::stability {
 
 struct ExperimentOptions {
+  Quantity quantity = Quantity::pairs;         ///< what is asked for; the methods are of workers that know it
   std::vector<std::string> families;           ///< by name
   std::vector<workers::WorkerMethod> methods;  ///< absent ones are skipped
   std::uint64_t cases = 1;                     ///< for each setting of the dial
@@ -37,6 +38,7 @@ struct Replay {
 };
 
 Replay replay(const workers::WorkerMethod& method, const std::string& family, int dial,
-              std::uint64_t case_index, std::uint64_t seed, double timeout);
+              std::uint64_t case_index, std::uint64_t seed, double timeout,
+              Quantity quantity = Quantity::pairs);
 
 }  // namespace lrb::stability

@@ -7,13 +7,13 @@
 #include <iostream>
 
 #include <CLI/CLI.hpp>
-#include <unistd.h>
 
 #include "engine/core/error.hpp"
 #include "scenarios/bench/bench_runner.hpp"
 #include "scenarios/stability/record_json.hpp"
 #include "scenarios/stability/stability_runner.hpp"
 #include "scenarios/worker_programs/fake_methods.hpp"
+#include "scenarios/worker_programs/lines.hpp"
 #include "scenarios/workers/method_json.hpp"
 #include "scenarios/workers/pairs_json.hpp"
 
@@ -28,23 +28,6 @@ struct WorkerOptions {
   std::optional<double> setting;
   std::uint64_t seed = 1, cases = 1, begin = 0, end = 0;
 };
-
-/// Our lines have a channel of their own, and libraries that print to stdout print to stderr instead.
-class Lines {
- public:
-  Lines() : out_(fdopen(dup(STDOUT_FILENO), "w")) { dup2(STDERR_FILENO, STDOUT_FILENO); }
-  void say(const std::string& line) {
-    if (out_ == nullptr || std::fputs(line.c_str(), out_) < 0 || std::fflush(out_) != 0)
-      std::_Exit(1);  // nobody listens any more
-  }
-
- private:
-  std::FILE* out_;
-};
-
-std::string dump(const ordered_json& value) {
-  return value.dump(-1, ' ', false, ordered_json::error_handler_t::replace) + "\n";
-}
 
 void list_methods(const std::vector<methods::MethodEntry>& entries, Lines& out) {
   for (const methods::MethodEntry& e : entries) out.say(dump(workers::to_json(e.info)));

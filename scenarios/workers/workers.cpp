@@ -43,8 +43,13 @@ std::vector<fs::path> programs_in(const fs::path& folder) {
   return programs;
 }
 
-void add_methods(const std::string& program, std::vector<WorkerMethod>& methods) {
-  const std::vector<std::string> lines = lines_of({program, "--list"}, kListLimit);
+}  // namespace
+
+std::vector<WorkerMethod> methods_of(const std::string& program, const std::vector<std::string>& options) {
+  std::vector<std::string> command = {program, "--list"};
+  command.insert(command.end(), options.begin(), options.end());
+  const std::vector<std::string> lines = lines_of(command, kListLimit);
+  std::vector<WorkerMethod> methods;
   for (const std::string& line : lines) {
     const auto value = nlohmann::json::parse(line, nullptr, false);
     if (!value.is_object()) break;
@@ -56,9 +61,8 @@ void add_methods(const std::string& program, std::vector<WorkerMethod>& methods)
   }
   if (lines.empty())
     throw EnvironmentError(printable_name(program) + ": did not say which methods it has; build it again");
+  return methods;
 }
-
-}  // namespace
 
 std::vector<WorkerMethod> find_methods() {
   std::vector<WorkerMethod> methods = find_all_methods();
@@ -69,7 +73,8 @@ std::vector<WorkerMethod> find_methods() {
 std::vector<WorkerMethod> find_all_methods() {
   const fs::path folder = folder_of_workers();
   std::vector<WorkerMethod> methods;
-  for (const fs::path& program : programs_in(folder)) add_methods(program.string(), methods);
+  for (const fs::path& program : programs_in(folder))
+    for (WorkerMethod& m : methods_of(program.string())) methods.push_back(std::move(m));
   if (methods.empty())
     throw EnvironmentError(
         printable_name((folder / kProgram).string()) +

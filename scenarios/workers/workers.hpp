@@ -27,6 +27,11 @@ std::vector<WorkerMethod> find_all_methods();
 /// Returns those that take part in the stability experiment.
 std::vector<WorkerMethod> find_methods();
 
+/// Returns the methods of one program, in its order, which may be asked for some of them with options. Throws
+/// EnvironmentError if it does not answer.
+std::vector<WorkerMethod> methods_of(const std::string& program,
+                                     const std::vector<std::string>& options = {});
+
 /// Returns the path of another program in that folder; empty if it is not there.
 std::string program_beside(const std::string& name);
 

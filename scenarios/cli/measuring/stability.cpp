@@ -23,7 +23,7 @@ namespace {
 using namespace lrb::stability;
 
 struct StabilityOptions {
-  std::string folder = "out/stability";
+  std::string folder;
   std::vector<std::string> families, methods;
   std::optional<int> dial;
   std::optional<std::uint64_t> only;
@@ -31,6 +31,7 @@ struct StabilityOptions {
   unsigned jobs = 2;
   double timeout = 5;
   bool pairs = false;
+  Quantity quantity = Quantity::pairs;
 };
 
 void print_pairs(std::ostream& out, const char* what, const std::vector<SimplexPair>& pairs) {
@@ -48,20 +49,24 @@ std::vector<SimplexPair> without(const std::vector<SimplexPair>& a, const std::v
   return out;
 }
 
-std::string describe(const Replay& r, bool pairs) {
+std::string describe(const Replay& r, Quantity quantity, bool pairs) {
   std::ostringstream out;
   const Record& record = r.record;
   out << record.family << ", dial " << record.dial << ", case " << record.case_index << ", " << record.method
       << ": " << name_of(record.outcome);
   if (!record.message.empty()) out << " (" << record.message << ")";
-  out << "\n  pairs: " << record.expected << " expected, ";
-  if (r.answered)
-    out << r.answered->size() << " answered, " << record.missed << " missed, " << record.extra
-        << " too many\n";
-  else
-    out << "no list answered\n";
+  out << "\n";
+  if (quantity == Quantity::pairs) {
+    out << "  pairs: " << record.expected << " expected, ";
+    if (r.answered)
+      out << r.answered->size() << " answered, " << record.missed << " missed, " << record.extra
+          << " too many\n";
+    else
+      out << "no list answered\n";
+  }
   if (!record.relation.empty())
-    out << "  relation: " << record.expected_relation << " expected, " << record.relation << " answered\n";
+    out << "  " << (quantity == Quantity::pairs ? "relation" : name_of(quantity)) << ": "
+        << record.expected_relation << " expected, " << record.relation << " answered\n";
   if (pairs && r.answered) {
     print_pairs(out, "missed", without(r.expected, *r.answered));
     print_pairs(out, "extra", without(*r.answered, r.expected));
@@ -81,8 +86,8 @@ int replay_one(const StabilityOptions& o, const std::vector<workers::WorkerMetho
       print(m.column.name + ": absent. " + m.column.remark + "\n");
       continue;
     }
-    const Replay r = replay(m, families[0].name, *o.dial, *o.only, o.seed, o.timeout);
-    print(describe(r, o.pairs));
+    const Replay r = replay(m, families[0].name, *o.dial, *o.only, o.seed, o.timeout, o.quantity);
+    print(describe(r, o.quantity, o.pairs));
     all_right = all_right && (r.record.outcome == Outcome::right || r.record.outcome == Outcome::refused);
   }
   return all_right ? kOk : kMismatch;
@@ -92,6 +97,7 @@ Grid run_grid(const StabilityOptions& o, const std::vector<workers::WorkerMethod
               const std::vector<FamilyRow>& families, const Globals& globals) {
   const auto begin = std::chrono::steady_clock::now();
   ExperimentOptions experiment;
+  experiment.quantity = o.quantity;
   experiment.methods = methods;
   for (const FamilyRow& f : families) experiment.families.push_back(f.name);
   experiment.cases = o.cases;
@@ -110,12 +116,17 @@ Grid run_grid(const StabilityOptions& o, const std::vector<workers::WorkerMethod
   std::vector<workers::MethodColumn> columns;
   for (const workers::WorkerMethod& m : methods) columns.push_back(m.column);
   Grid grid = count_grid(std::move(columns), families, records);
+  grid.quantity = o.quantity;
   grid.command = globals.command_line;
   grid.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return grid;
 }
 
-std::string command_of(const Record& r) {
+std::string command_of(const Record& r, Quantity quantity) {
+  if (quantity != Quantity::pairs)
+    return "lrbscope stability --quantity " + std::string(name_of(quantity)) + " --family " + r.family +
+           " --method " + r.method + " --dial " + std::to_string(r.dial) + " --only " +
+           std::to_string(r.case_index) + " --seed " + std::to_string(r.seed);
   return "lrbscope stability --family " + r.family + " --method " + r.method + " --dial " +
          std::to_string(r.dial) + " --only " + std::to_string(r.case_index) + " --seed " +
          std::to_string(r.seed) + " --pairs";
@@ -132,7 +143,7 @@ void write_report(const StabilityOptions& o, const std::vector<workers::WorkerMe
         const auto method = std::find_if(methods.begin(), methods.end(), [&](const workers::WorkerMethod& m) {
           return m.column.name == r.method;
         });
-        Replay again = replay(*method, r.family, r.dial, r.case_index, r.seed, o.timeout);
+        Replay again = replay(*method, r.family, r.dial, r.case_index, r.seed, o.timeout, o.quantity);
         return AnsweredPairs{std::move(again.expected), std::move(again.answered)};
       },
       [&](std::size_t done, std::size_t total) {
@@ -140,7 +151,7 @@ void write_report(const StabilityOptions& o, const std::vector<workers::WorkerMe
         bar.set(done, "worst cases");
       });
   bar.finish();
-  report.command = command_of;
+  report.command = [&](const Record& r) { return command_of(r, o.quantity); };
   report.links = {{"records.jsonl", "records.jsonl", "every answer of every method, one JSON object a line"}};
   const ReportFiles files = write_stability_report(grid, o.folder, report);
   if (!files.missing.empty()) std::cerr << "lrbscope: " << files.missing << "\n";
@@ -155,10 +166,37 @@ bool ours_failed(const Grid& grid, const std::vector<workers::WorkerMethod>& met
   return false;
 }
 
-int run_stability(const StabilityOptions& o, const Globals& globals) {
-  const auto families =
+/// Returns the methods that answer with what is asked for.
+std::vector<workers::WorkerMethod> methods_for(Quantity quantity) {
+  if (quantity == Quantity::pairs) return workers::find_methods();
+  const std::string program = workers::program_beside("lrbscope-quantities");
+  if (program.empty())
+    throw EnvironmentError(
+        "lrbscope-quantities: not found; it is built beside lrbscope and not installed: run "
+        "lrbscope from its build folder, or name that in LRBSCOPE_METHODS");
+  return workers::methods_of(program, {"--quantity", std::string(name_of(quantity))});
+}
+
+/// Returns the families that are asked about unless others are named: for numbers those of small bodies, as
+/// rational arithmetic is slow.
+std::vector<FamilyRow> families_for(const StabilityOptions& o) {
+  std::vector<FamilyRow> rows =
       chosen(stability::family_rows(), o.families, "family", [](const FamilyRow& f) { return f.name; });
-  const auto methods = chosen(workers::find_methods(), o.methods, "method",
+  if (o.quantity != Quantity::pairs && o.families.empty())
+    std::erase_if(rows, [](const FamilyRow& f) {
+      static constexpr std::string_view kFamilies[] = {"touch",  "shared", "coplanar", "kiss",
+                                                       "sliver", "far",    "scale"};
+      return std::find(std::begin(kFamilies), std::end(kFamilies), f.name) == std::end(kFamilies);
+    });
+  return rows;
+}
+
+int run_stability(StabilityOptions o, const Globals& globals) {
+  if (o.folder.empty())
+    o.folder =
+        o.quantity == Quantity::pairs ? "out/stability" : "out/stability-" + std::string(name_of(o.quantity));
+  const std::vector<FamilyRow> families = families_for(o);
+  const auto methods = chosen(methods_for(o.quantity), o.methods, "method",
                               [](const workers::WorkerMethod& m) { return m.column.name; });
   if (o.only) return replay_one(o, methods, families);
   io::make_folder(o.folder);
@@ -175,7 +213,18 @@ int run_stability(const StabilityOptions& o, const Globals& globals) {
 Command add_stability(CLI::App& root, const Globals& globals) {
   CLI::App* app = add_measuring(root, measuring_word("stability"));
   const auto o = std::make_shared<StabilityOptions>();
-  app->add_option("-o,--output", o->folder, "Folder to write to [out/stability]")->type_name("DIR");
+  app->add_option("-o,--output", o->folder, "Folder to write to [out/stability, or out/stability-QUANTITY]")
+      ->type_name("DIR");
+  app->add_option_function<std::string>(
+         "--quantity",
+         [o](const std::string& word) {
+           const auto quantity = from_name<Quantity>(word);
+           if (!quantity)
+             throw CLI::ValidationError("--quantity", "'" + word + "': use " + all_names<Quantity>());
+           o->quantity = *quantity;
+         },
+         "What to ask for: pairs (the default), distance, first_contact, depth")
+      ->type_name("Q");
   app->add_option("--family", o->families, "Only these families")->type_name("NAME");
   app->add_option("--method", o->methods, "Only these methods")->type_name("NAME");
   app->add_option("--dial", o->dial,

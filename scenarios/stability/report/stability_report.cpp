@@ -70,11 +70,15 @@ std::string plain(const std::string& text) {
   return out;
 }
 
-/// Returns an outcome's name, for people.
+/// Returns a name without underscores, for people.
+std::string plain_words(std::string_view name) {
+  std::string out(name);
+  std::replace(out.begin(), out.end(), '_', ' ');
+  return out;
+}
+
 std::string words(Outcome o) {
-  std::string name(name_of(o));
-  std::replace(name.begin(), name.end(), '_', ' ');
-  return name;
+  return plain_words(name_of(o));
 }
 
 report::PageGridDetail page_detail(const Grid& grid, std::size_t f, std::size_t m,
@@ -89,13 +93,19 @@ report::PageGridDetail page_detail(const Grid& grid, std::size_t f, std::size_t 
   if (cell < options.pictures.size()) d.file = options.pictures[cell];
   const CellSummary s = summarise(grid.at(f, m));
   const bool answered = r.outcome == Outcome::right || r.outcome == Outcome::wrong;
-  d.facts = {{"Outcome", words(r.outcome)}, {"Pairs that meet", render::group_digits(r.expected)}};
-  if (answered) {
-    d.facts.emplace_back("Missed", render::group_digits(r.missed));
-    d.facts.emplace_back("In excess", render::group_digits(r.extra));
+  d.facts = {{"Outcome", words(r.outcome)}};
+  if (grid.quantity == Quantity::pairs) {
+    d.facts.emplace_back("Pairs that meet", render::group_digits(r.expected));
+    if (answered) {
+      d.facts.emplace_back("Missed", render::group_digits(r.missed));
+      d.facts.emplace_back("In excess", render::group_digits(r.extra));
+    }
+    d.facts.emplace_back("Relation", r.expected_relation.empty() ? "\u2013" : r.expected_relation);
+    if (answered) d.facts.emplace_back("Answered", r.relation.empty() ? "no relation" : r.relation);
+  } else {
+    d.facts.emplace_back("Right", r.expected_relation.empty() ? "\u2013" : r.expected_relation);
+    if (answered) d.facts.emplace_back("Answered", r.relation);
   }
-  d.facts.emplace_back("Relation", r.expected_relation.empty() ? "\u2013" : r.expected_relation);
-  if (answered) d.facts.emplace_back("Answered", r.relation.empty() ? "no relation" : r.relation);
   d.facts.emplace_back("Dial", setting_words(family, r.dial));
   d.facts.emplace_back("Case, seed", render::group_digits(r.case_index) + ", " + std::to_string(r.seed));
   if (answered) d.facts.emplace_back("Query", render::short_number(r.microseconds) + " \u00b5s");
@@ -152,6 +162,32 @@ report::PageGrid page_grid(const Grid& grid, const std::string& folder, const Re
   const std::string note = inline_pictures(out.details, folder);
   if (!note.empty()) out.note += " " + note;
   return out;
+}
+
+/// Returns the texts of a page about numbers.
+std::vector<report::PageText> texts_of_numbers(Quantity quantity) {
+  const char* asked =
+      quantity == Quantity::distance ? "Two bodies at two poses: how far are their surfaces apart?"
+      : quantity == Quantity::depth
+          ? "Two convex bodies at two poses: how long is the shortest translation after which their interiors "
+            "share no point?"
+          : "B comes straight to its pose, from the side of A on which it is, and goes on: at which time, from 0 "
+            "to 1, do the surfaces first meet?";
+  return {
+      {"What was asked", std::string(asked) +
+                             " Every method gets the same bodies, in the world's doubles. The families are "
+                             "those of the page on pairs, with the same dials."},
+      {"How answers are judged",
+       "By rational arithmetic on the very doubles: brute force over all pairs of triangles, or over all planes "
+       "that may part convex bodies. An answer is wrong if it says that bodies meet (never meet) and they do "
+       "not (do), or the other way round; if an interval that claims a proof does not hold the number; or if "
+       "another is further off than a millionth of the bodies' size, or a thousandth of the motion. Bodies of "
+       "too many faces for rational arithmetic, in the plane, or, for depths, not convex are not asked about: "
+       "they count as refused."},
+      {"What is not claimed",
+       "The cases are made to be hard, and most methods never promised exact answers. Families are samples: no "
+       "failure among them is no proof."},
+  };
 }
 
 std::vector<report::PageText> texts() {
@@ -213,8 +249,10 @@ report::Page stability_page(const Grid& whole, const std::string& folder, const 
   for (const Cell& c : grid.cells) answers += summarise(c).cases;
   const std::size_t absent = whole.methods.size() - grid.methods.size();
   report::Page page;
-  page.title = "Where collision methods fail";
-  page.texts = texts();
+  page.title = grid.quantity == Quantity::pairs
+                   ? "Where collision methods fail"
+                   : "Where methods fail: " + plain_words(name_of(grid.quantity));
+  page.texts = grid.quantity == Quantity::pairs ? texts() : texts_of_numbers(grid.quantity);
   page.numbers = {
       {"Families", render::group_digits(grid.families.size()),
        std::to_string(kDialSettings) + " settings of the dial each"},

@@ -15,7 +15,7 @@
 #include "engine/query/collide_impl.hpp"
 #include "scenarios/bodies/shapes/random_pose.hpp"
 #include "scenarios/bodies/shapes/shapes.hpp"
-#include "tests/support/distance_oracle.hpp"
+#include "scenarios/stability/quantities/distance_oracle.hpp"
 
 using namespace lrb;
 using Eigen::Vector3d;

@@ -11,8 +11,8 @@
 #include "engine/query/brute_force.hpp"
 #include "scenarios/bodies/shapes/random_pose.hpp"
 #include "scenarios/bodies/shapes/shapes.hpp"
+#include "scenarios/stability/quantities/distance_oracle.hpp"
 #include "tests/support/affine_maps.hpp"
-#include "tests/support/distance_oracle.hpp"
 #include "tests/support/simplex_distance.hpp"
 
 using namespace lrb;

@@ -8,7 +8,7 @@
 #include <doctest/doctest.h>
 
 #include "engine/query/distance/pair_bounds.hpp"
-#include "tests/support/distance_oracle.hpp"
+#include "scenarios/stability/quantities/distance_oracle.hpp"
 #include "tests/support/random_simplices.hpp"
 
 using namespace lrb;

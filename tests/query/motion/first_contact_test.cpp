@@ -12,7 +12,7 @@
 #include "engine/query/collide.hpp"
 #include "scenarios/bodies/shapes/random_pose.hpp"
 #include "scenarios/bodies/shapes/shapes.hpp"
-#include "tests/support/contact_time_oracle.hpp"
+#include "scenarios/stability/quantities/contact_time_oracle.hpp"
 #include "tests/support/simplex_distance.hpp"
 
 using namespace lrb;

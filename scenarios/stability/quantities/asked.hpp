@@ -1,0 +1,28 @@
+#pragma once
+/// A case as it is put to methods that answer with a number: both bodies where they are in the world, so that
+/// all methods get the same doubles.
+
+#include <string>
+
+#include "engine/lrb/lrb_rep.hpp"
+#include "scenarios/cases/families.hpp"
+#include "scenarios/stability/quantity.hpp"
+
+namespace lrb::stability {
+
+struct Asked {
+  LrbRep a, b;
+  /// Where a motion of B has it at t = 0 and t = 1, beside where it is; at t = 3/4 it is there, but for the
+  /// rounding of methods: these are exact.
+  Eigen::Vector3d from{0, 0, 0}, to{0, 0, 0};
+  double size = 0;  ///< of the larger body: its box's diagonal
+};
+
+/// Returns why this is not asked about a case: bodies in the plane, coordinates that are no doubles, too many
+/// faces for rational arithmetic; empty if it is.
+std::string why_not_asked(Quantity quantity, const cases::Case& c);
+
+/// Makes the question. B comes from the side of A on which it is, from far enough to be apart there.
+Asked asked(const cases::Case& c);
+
+}  // namespace lrb::stability

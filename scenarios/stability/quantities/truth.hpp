@@ -1,0 +1,15 @@
+#pragma once
+/// The right answer as an interval of doubles, by rational arithmetic: brute force over all pairs of triangles,
+/// or over all planes that may part convex bodies. Shares no formula with the engine.
+
+#include "scenarios/stability/expected.hpp"
+#include "scenarios/stability/quantities/asked.hpp"
+
+namespace lrb::stability {
+
+/// What is said of a first contact if there is none.
+inline constexpr double kNever = 2;
+
+Expected true_number(Quantity quantity, const cases::Case& c);
+
+}  // namespace lrb::stability

@@ -1,0 +1,24 @@
+#pragma once
+/// What the stability experiment asks for: pairs that meet, or a number.
+
+#include <array>
+#include <cstdint>
+
+#include "engine/core/enum_words.hpp"
+
+namespace lrb::stability {
+
+enum class Quantity : std::uint8_t {
+  pairs,          ///< which pairs meet, and how the bodies lie
+  distance,       ///< of the surfaces
+  first_contact,  ///< the time at which B, which comes straight to its pose and goes on, first meets A
+  depth,          ///< the length of the shortest translation that parts convex bodies
+};
+constexpr auto words_of(Quantity) {
+  return std::to_array<EnumWord<Quantity>>({{Quantity::pairs, "pairs"},
+                                            {Quantity::distance, "distance"},
+                                            {Quantity::first_contact, "first_contact"},
+                                            {Quantity::depth, "depth"}});
+}
+
+}  // namespace lrb::stability
