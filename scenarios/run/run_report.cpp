@@ -71,8 +71,9 @@ std::vector<report::PageNumber> collision_numbers(const RecordedRun& p, const tr
         "; " + open + (open.size() > 1 ? " are" : " is") + " open: nothing tells inside from outside";
   if (const std::string bare = sides_of(p, [](const LrbRep& rep) { return rep.region_count() == 0; });
       !bare.empty())
-    out.push_back(
-        {"Without wrapper", bare, "no region is built on it, and all of its faces are always shown"});
+    out.push_back({"Without wrapper", bare,
+                   (open.empty() ? std::string() : open + (open.size() > 1 ? " are" : " is") + " open; ") +
+                       "no region is built on it, and all of its faces are always shown"});
   if (const CollideRequest& request = p.trace->header.request; request.is_coarse()) {
     out.back().note +=
         "; of wrappers: " + render::group_digits(pseudo_pairs(*p.trace)) + " with a pseudo face";
@@ -298,6 +299,12 @@ void add_frames(report::Page& page, const DrawnFrames& drawn, const std::string&
     page.frames.push_back({std::move(images.uris[i]), f.caption, f.file, static_cast<double>(f.event),
                            static_cast<double>(f.step)});
   }
+}
+
+void add_live_figure(report::Page& page, const std::string& folder, const std::string& title,
+                     const std::string& caption, const std::string& file) {
+  page.figures.push_back({title, caption, {}, file, io::read_text(folder + "/" + file)});
+  page.links.push_back({file, file, title});
 }
 
 void add_figure(report::Page& page, const std::string& folder, const std::string& title,

@@ -559,7 +559,25 @@
     press("i");
   }
 
+  /** A body without regions is never called a wrapper. */
+  async function showsTheOpenBody() {
+    const { events, selection } = run;
+    selection.goTo(events.kind.indexOf(events.STEP));
+    await frame();
+    const says = (id, words) =>
+      check(byId(id).textContent.includes(words), `${id} says "${words}"`, byId(id).textContent);
+    says("view-caption", "A itself, which has no wrapper; B's is the outermost one");
+    says("view-caption", "Wrappers: A 5 (no wrapper) + B ");
+    says("event-facts", "A 5 (no wrapper) + B ");
+    says("legend", "A open, real faces");
+    says("legend", "B rock, pseudo faces");
+    check(!byId("legend").textContent.includes("A open, pseudo faces"), "the legend has no pseudo faces of A");
+    const numbers = document.querySelector(".numbers").textContent;
+    check(numbers.includes("A is open; no region is built on it"), "the page says why", numbers);
+  }
+
   const parts = {
+    open: [opensAtFirstContact, showsTheOpenBody, fitsTheWidth],
     plane: [opensAtFirstContact, replaysAsRecorded, liesFlat, fitsTheWidth],
     build: [opensAtTheBody, replaysAsRecorded, buildsPassByPass, fitsTheWidth],
     all: [
