@@ -102,7 +102,9 @@ TEST_CASE("--style: background and lines of frames, montages, figures and sheets
   folder.write("s.json", scenario("island"));
   const auto corner = [&](const std::string& file) { return render::read_png(folder / file).image.at(0, 0); };
   const render::Rgba dark = render::style_of(render::StyleName::dark).paper;
-  REQUIRE(run(folder, {"run", "s.json", "-o", "run", "--style", "dark", "--most", "1"}).code == 0);
+  REQUIRE(
+      run(folder, {"run", "s.json", "-o", "run", "--style", "dark", "--frames", "refinement", "--most", "1"})
+          .code == 0);
   CHECK(corner("run/frames/frame_0000.png") == dark);
   const std::vector<std::string> again = {"render",  "run/trace.json", "--most", "1",        "--size",
                                           "480x360", "--montage",      "1",      "--format", "svg",
@@ -133,7 +135,8 @@ TEST_CASE("--style: background and lines of frames, montages, figures and sheets
 TEST_CASE("--no-title, --no-legend: what is left out needs no room, so that small frames can be drawn") {
   const Folder folder;
   folder.write("s.json", scenario("island"));
-  const std::vector<std::string> small = {"run", "s.json", "--size", "120x90", "--most", "1", "-o"};
+  const std::vector<std::string> small = {"run",    "s.json", "--frames", "refinement", "--size",
+                                          "120x90", "--most", "1",        "-o"};
   const auto run_small = [&](const std::string& out, std::vector<std::string> more) {
     std::vector<std::string> all = small;
     all.push_back(out);
