@@ -266,18 +266,20 @@ CloseUp close_up(const Mesh& mesh, const MeshReport& report, MeshFault kind,
   return out;
 }
 
-std::vector<LegendItem> legend(const MeshReport& report, int dim) {
+std::vector<LegendItem> legend(const MeshReport& report, int dim, StyleName style_name) {
+  const Style& style = style_of(style_name);
   std::vector<LegendItem> out;
   if (dim == 3) {
-    out.push_back({Mark::solid, palette::kPaleFront, "front of a face"});
-    out.push_back({Mark::solid, palette::kPaleBack, "its back"});
+    out.push_back({Mark::solid, style.front, "front of a face"});
+    out.push_back({Mark::solid, style.back, "its back"});
   }
   for (const MeshFault kind : kinds(report)) {
     out.push_back(key(kind, dim));
+    out.back().colour = style.of(out.back().colour);
     if (kind == MeshFault::self_intersection) {
       out.back().text = dim == 2 ? "segment that meets others" : "face that meets others";
       out.push_back({out.back().mark, palette::kSkyBlue, "one that it meets"});
-      out.push_back({dim == 3 ? Mark::line : Mark::point, palette::kContact, "where they cross"});
+      out.push_back({dim == 3 ? Mark::line : Mark::point, style.contact, "where they cross"});
     }
   }
   return out;

@@ -55,6 +55,7 @@ struct Options {
   double width = 640,
          height = 480;  ///< of the picture, pixels: labels that would overlap at this size are left out
   float scale = 1;      ///< of line widths, points and labels
+  StyleName style = StyleName::screen;
 };
 
 /// Makes the draw list. Front sides of faces are pale, backs are darker. `mesh` must be as to_unit_size()
@@ -62,6 +63,6 @@ struct Options {
 DrawList list(const Mesh& mesh, const MeshReport& report, const Camera& camera, const Options& options = {});
 
 /// Returns the legend for such a list: the sides of faces, then the kinds.
-std::vector<LegendItem> legend(const MeshReport& report, int dim);
+std::vector<LegendItem> legend(const MeshReport& report, int dim, StyleName style = StyleName::screen);
 
 }  // namespace lrb::render::dirt

@@ -11,7 +11,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// How far the neighbour of a face that is turned the wrong way is from its colour towards white.
+/// How far the neighbour of a face that is turned the wrong way fades from its colour.
 constexpr double kNeighbourPale = 0.6;
 /// Alpha of faces in front of what a close-up is about.
 constexpr std::uint8_t kVeil = 50;
@@ -57,7 +57,7 @@ class DirtListBuilder {
   }
 
  private:
-  Rgba colour(MeshFault kind) const { return key(kind, mesh_.dim).colour; }
+  Rgba colour(MeshFault kind) const { return style_.of(key(kind, mesh_.dim).colour); }
 
   bool has_loops(MeshFault kind) const { return kind == MeshFault::open_edge && !o_.loops.empty(); }
 
@@ -104,7 +104,7 @@ class DirtListBuilder {
     if (kind == MeshFault::flipped_face) {
       const FaceId turned = turned_of(e);
       give(turned, colour(kind));
-      give(FaceId(turned == e[0] ? e[1] : e[0]), mix(colour(kind), kWhite, kNeighbourPale));
+      give(FaceId(turned == e[0] ? e[1] : e[0]), style_.pale(colour(kind), kNeighbourPale));
       return;
     }
     for (const FaceId f : parts_of(mesh_, kind, e).faces) give(f, colour(kind));
@@ -142,7 +142,7 @@ class DirtListBuilder {
     for (FaceId f = 0; f < mesh_.face_count(); ++f) {
       const auto c = colours_.find(f);
       DrawTriangle t;
-      t.colour = seen_from_back(f) ? palette::kPaleBack : palette::kPaleFront;
+      t.colour = seen_from_back(f) ? style_.back : style_.front;
       t.edge_style = thin;
       t.edges = 7;
       if (c != colours_.end()) {
@@ -163,18 +163,18 @@ class DirtListBuilder {
       for (FaceId f = 0; f < mesh_.face_count(); ++f) {
         const auto c = colours_.find(f);
         if ((c != colours_.end()) == marked)
-          line(corners(mesh_, f), marked ? c->second : palette::kFaint, marked ? 5.0F : 2.0F, marked);
+          line(corners(mesh_, f), marked ? c->second : style_.faint, marked ? 5.0F : 2.0F, marked);
       }
   }
 
   void line(const std::vector<Vector3d>& points, Rgba colour, float width, bool strong,
-            Rgba halo = palette::kInk) {
+            std::optional<Rgba> halo = std::nullopt) {
     DrawLine l;
     l.points = points;
     l.colour = colour;
     l.width = width * o_.scale;
     if (strong) {
-      l.halo = halo;
+      l.halo = halo.value_or(style_.ink);
       l.halo_width = 1.2F * o_.scale;
       l.layer = Layer::on_top;
     }
@@ -186,7 +186,7 @@ class DirtListBuilder {
     p.x = x;
     p.colour = colour;
     p.radius = radius * o_.scale;
-    p.halo = colour == palette::kInk ? kWhite : palette::kInk;
+    p.halo = colour == style_.ink ? style_.paper : style_.ink;
     p.halo_width = 1.4F * o_.scale;
     p.layer = Layer::on_top;
     out_.points.push_back(p);
@@ -206,8 +206,8 @@ class DirtListBuilder {
     }
     if (kind == MeshFault::self_intersection) {
       const std::vector<Vector3d> x = cut(mesh_, FaceId(e[0]), FaceId(e[1]));
-      if (x.size() == 1) dot(x[0], palette::kContact, 5);
-      if (x.size() == 2) line(x, palette::kContact, 4, true, kWhite);
+      if (x.size() == 1) dot(x[0], style_.contact, 5);
+      if (x.size() == 2) line(x, style_.contact, 4, true, style_.paper);
     }
   }
 
@@ -239,7 +239,8 @@ class DirtListBuilder {
     DrawLabel l;
     l.x = x;
     l.text = text;
-    l.colour = palette::kInk;
+    l.colour = style_.ink;
+    l.halo = style_.paper;
     l.height = 17 * o_.scale;
     const double half = 0.3 * l.height * static_cast<double>(text.size()) + 2, rise = 0.6 * l.height;
     for (const auto& [dx, dy] : {std::pair{sideways, -1}, {1, -1}, {-1, -1}, {1, 1}, {-1, 1}, {0, 1}}) {
@@ -261,6 +262,7 @@ class DirtListBuilder {
   const MeshReport& report_;
   const Camera& camera_;
   const Options& o_;
+  const Style& style_ = style_of(o_.style);
   DrawList out_;
   std::map<FaceId, Rgba> colours_;
   std::set<FaceId> chosen_;

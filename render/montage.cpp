@@ -6,7 +6,6 @@
 #include <numeric>
 
 #include "engine/core/error.hpp"
-#include "render/palette.hpp"
 #include "render/text.hpp"
 
 namespace lrb::render {
@@ -37,11 +36,11 @@ std::string caption_of(const std::vector<Panel>& panels, std::size_t i, const Mo
   return text + panels[i].caption;
 }
 
-TextStyle caption_style(float height) {
+TextStyle caption_style(float height, const Style& look = style_of(StyleName::screen)) {
   TextStyle style;
   style.height = height;
   style.align = Align::centre;
-  style.colour = palette::kInk;
+  style.colour = look.ink;
   return style;
 }
 
@@ -106,11 +105,12 @@ MontageLayout lay_out(const std::vector<Panel>& panels, const MontageOptions& op
 Image montage(const std::vector<Panel>& panels, const MontageOptions& options) {
   const MontageLayout layout = lay_out(panels, options);
   Image out(layout.width, layout.height, options.background);
-  const TextStyle style = caption_style(layout.text_height);
+  const Style& look = style_of(options.style);
+  const TextStyle style = caption_style(layout.text_height, look);
   for (std::size_t i = 0; i < panels.size(); ++i) {
     const PixelRect& r = layout.panels[i];
     out.paste(panels[i].image, r.x, r.y);
-    if (options.frame) out.stroke(r, palette::kRule);
+    if (options.frame) out.stroke(r, look.rule);
     if (layout.lines[i].empty()) continue;
     const PixelRect& c = layout.captions[i];
     const int line = default_font().measure("", style).height;

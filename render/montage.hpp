@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "render/image.hpp"
+#include "render/style.hpp"
 
 namespace lrb::render {
 
@@ -20,6 +21,7 @@ struct MontageOptions {
   bool frame = false;   ///< a thin line round each panel
   float text_height = 0;  ///< pixels; 0: a twentieth of the panels' height, at least 12
   Rgba background = kWhite;
+  StyleName style = StyleName::screen;  ///< of captions and frames
 };
 
 struct MontageLayout {

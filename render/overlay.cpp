@@ -215,16 +215,16 @@ int hairline(float scale) {
   return std::max(1, static_cast<int>(std::lround(scale)));
 }
 
-void draw_mark(Image& image, const PixelRect& r, const LegendItem& item, int thin) {
+void draw_mark(Image& image, const PixelRect& r, const LegendItem& item, int thin, const Style& style) {
   const int thick = std::max(2, r.height / 5);
   switch (item.mark) {
     case LegendItem::Mark::solid:
       image.fill(r, item.colour);
-      image.stroke(r, palette::edge_of(item.colour), thin);
+      image.stroke(r, style.edge_of(item.colour), thin);
       break;
     case LegendItem::Mark::translucent:
       image.fill(r, with_alpha(item.colour, 80));
-      image.stroke(r, mix(item.colour, palette::kInk, 0.3), std::max(thin, thick / 2));
+      image.stroke(r, mix(item.colour, style.ink, 0.3), std::max(thin, thick / 2));
       break;
     case LegendItem::Mark::line:
       image.fill({r.x, r.y + (r.height - thick) / 2, r.width, thick}, item.colour);
@@ -290,12 +290,13 @@ PixelRect common_picture(std::span<const OverlayLayout> layouts) {
 }
 
 void draw_overlay(Image& image, const Overlay& overlay, const OverlayLayout& layout) {
+  const Style& style = style_of(overlay.style);
   if (layout.event_mark.width > 0) {
     image.fill(layout.event_mark, overlay.event_colour);
-    image.stroke(layout.event_mark, palette::edge_of(overlay.event_colour), hairline(layout.scale));
+    image.stroke(layout.event_mark, style.edge_of(overlay.event_colour), hairline(layout.scale));
   }
   for (std::size_t i = 0; i < layout.key_marks.size(); ++i)
-    draw_mark(image, layout.key_marks[i], overlay.key[i], hairline(layout.scale));
+    draw_mark(image, layout.key_marks[i], overlay.key[i], hairline(layout.scale), style);
   for (int x = 0; x < layout.bar.width; ++x) {
     const double t = layout.bar.width > 1 ? static_cast<double>(x) / (layout.bar.width - 1) : 0;
     image.fill({layout.bar.x + x, layout.bar.y, 1, layout.bar.height}, palette::viridis(t));
@@ -303,14 +304,14 @@ void draw_overlay(Image& image, const Overlay& overlay, const OverlayLayout& lay
   const PixelRect& bar = layout.bar;
   for (const int x : layout.ticks)
     image.fill({x - hairline(layout.scale) / 2, bar.bottom(), hairline(layout.scale), bar.height / 3},
-               palette::kInk);
+               style.ink);
   for (const OverlayLayout::Text& t : layout.texts) {
-    TextStyle style;
-    style.height = layout.text_height;
-    style.bold = t.bold;
-    style.colour = t.faint ? palette::kFaint : palette::kInk;
-    const int height = default_font().measure(t.text, style).height;
-    default_font().draw(image, t.text, t.box.x, t.box.y + (t.box.height - height) / 2, style);
+    TextStyle text;
+    text.height = layout.text_height;
+    text.bold = t.bold;
+    text.colour = t.faint ? style.faint : style.ink;
+    const int height = default_font().measure(t.text, text).height;
+    default_font().draw(image, t.text, t.box.x, t.box.y + (t.box.height - height) / 2, text);
   }
 }
 
@@ -318,7 +319,7 @@ Image compose_frame(const Image& picture, const PixelRect& place, const Overlay&
                     int height, Rgba background, float scale) {
   Image frame(width, height, background);
   frame.paste(picture, place.x, place.y);
-  if (runs_over(picture)) frame.stroke(place, palette::kRule, hairline(scale));
+  if (runs_over(picture)) frame.stroke(place, style_of(overlay.style).rule, hairline(scale));
   draw_overlay(frame, overlay, lay_out(overlay, width, height, scale));
   return frame;
 }

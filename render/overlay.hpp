@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "render/image.hpp"
+#include "render/style.hpp"
 
 namespace lrb::render {
 
@@ -40,6 +41,7 @@ struct Overlay {
   std::vector<OverlayCounter> counters;
   std::vector<LegendItem> key;
   std::optional<ScaleBar> scale;
+  StyleName style = StyleName::screen;
   bool empty() const { return title.empty() && event.empty() && counters.empty() && key.empty() && !scale; }
 };
 

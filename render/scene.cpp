@@ -15,7 +15,7 @@ std::string Context::name() const {
 }
 
 Rgba Context::colour() const {
-  return body.colour.value_or(palette::body(side));
+  return body.colour.value_or(style().body(side));
 }
 
 bool Context::isolating() const {
@@ -35,7 +35,7 @@ bool Context::built(RegionId r) const {
 }
 
 Rgba Context::built_colour(RegionId r) const {
-  return options.colour_by == ColourBy::kind ? palette::kRefining : region_colour(r);
+  return options.colour_by == ColourBy::kind ? style().refining : region_colour(r);
 }
 
 std::vector<Eigen::Vector3d> Context::corners(FaceId f, const Eigen::Vector3d& moved) const {
@@ -64,12 +64,12 @@ Rgba Context::region_colour(RegionId r) const {
 
 Rgba Context::colour_of(FaceId f, CellId cell) const {
   if (options.colour_by == ColourBy::value) {
-    if (!has_value(f)) return mix(colour(), kWhite, 0.78);
+    if (!has_value(f)) return style().pale(colour(), 0.78);
     const double range = value_high - value_low;
     return palette::viridis(range > 0 ? (body.face_values[f] - value_low) / range : 0);
   }
   if (is_region(cell)) return region_colour(cell.as_region());
-  return options.colour_by == ColourBy::kind ? colour() : mix(colour(), kWhite, 0.75);
+  return options.colour_by == ColourBy::kind ? colour() : style().pale(colour(), 0.75);
 }
 
 void Context::add_key(LegendItem::Mark mark, Rgba colour, const std::string& text) const {
@@ -158,6 +158,7 @@ std::array<double, 2> value_range(std::span<const SceneBody> bodies, const Scene
 
 void add_pair_under_test(std::span<const SceneBody> bodies, const SceneHighlight& highlight,
                          const SceneOptions& options, Scene& out) {
+  const Style& style = style_of(options.style);
   for (std::size_t i = 0; i < 2; ++i) {
     const SceneBody& body = bodies[i];
     std::array<VertexId, 3> ids{};
@@ -169,30 +170,31 @@ void add_pair_under_test(std::span<const SceneBody> bodies, const SceneHighlight
     const int n = body.rep->simplex_size();
     for (int k = 0; k < n; ++k) outline.points.push_back(corner(k));
     outline.closed = n == 3;
-    outline.colour = palette::edge_of(palette::body(static_cast<Side>(i)));
+    outline.colour = style.edge_of(style.body(static_cast<Side>(i)));
     outline.width = 2.4F * options.scale;
-    outline.halo = palette::kUnderTest;
+    outline.halo = style.under_test;
     outline.halo_width = (n == 2 ? 3.0F : 1.4F) * options.scale;
     outline.layer = Layer::on_top;
     out.list.lines.push_back(outline);
     if (n != 3) continue;
     DrawTriangle t;
     t.x = {corner(0), corner(1), corner(2)};
-    t.colour = with_alpha(palette::kUnderTest, 200);
+    t.colour = with_alpha(style.under_test, 200);
     t.layer = Layer::on_top;
     t.lit = false;
     t.nudge = 2;
     out.list.triangles.push_back(t);
   }
-  out.key.push_back({Mark::solid, palette::kUnderTest, "pair under test"});
+  out.key.push_back({Mark::solid, style.under_test, "pair under test"});
 }
 
 void add_contacts(const SceneHighlight& highlight, const SceneOptions& options, double size, bool flat,
                   Scene& out) {
+  const Style& style = style_of(options.style);
   DrawPoint dot;
-  dot.colour = palette::kContact;
+  dot.colour = style.contact;
   dot.radius = 4.5F * options.scale;
-  dot.halo = kWhite;
+  dot.halo = style.paper;
   dot.halo_width = 1.6F * options.scale;
   dot.layer = Layer::on_top;
   bool lines = false;
@@ -212,9 +214,9 @@ void add_contacts(const SceneHighlight& highlight, const SceneOptions& options, 
       DrawLine line;
       line.points = loop.points;
       line.closed = loop.closed;
-      line.colour = palette::kContact;
+      line.colour = style.contact;
       line.width = 3 * options.scale;
-      line.halo = kWhite;
+      line.halo = style.paper;
       line.halo_width = 1.5F * options.scale;
       line.layer = Layer::on_top;
       out.list.lines.push_back(line);
@@ -226,8 +228,8 @@ void add_contacts(const SceneHighlight& highlight, const SceneOptions& options, 
     }
   }
   if (highlight.contacts.empty()) return;
-  out.key.push_back({lines ? Mark::line : Mark::point, palette::kContact, "contact"});
-  if (lines && !flat) out.key.push_back({Mark::dashed, palette::kContact, "contact, hidden"});
+  out.key.push_back({lines ? Mark::line : Mark::point, style.contact, "contact"});
+  if (lines && !flat) out.key.push_back({Mark::dashed, style.contact, "contact, hidden"});
 }
 
 }  // namespace
@@ -246,8 +248,10 @@ Scene build_scene(std::span<const SceneBody> bodies, const SceneHighlight& highl
     flat ? scene::add_body_2d(context) : scene::add_body_3d(context);
   }
   if (!highlight.refining[0].empty() || !highlight.refining[1].empty()) {
-    out.key.push_back(flat ? LegendItem{Mark::solid, palette::kRefining2d, "region being refined"}
-                           : LegendItem{Mark::translucent, palette::kRefining, "region being refined"});
+    const Style& style = style_of(options.style);
+    out.key.push_back(
+        flat ? LegendItem{Mark::solid, style.pale(style.refining, scene::kRefining2d), "region being refined"}
+             : LegendItem{Mark::translucent, style.refining, "region being refined"});
   }
   const double size = bounds(out.list).isEmpty() ? 0 : bounds(out.list).diagonal().norm();
   if (highlight.under_test) add_pair_under_test(bodies, highlight, options, out);

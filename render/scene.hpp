@@ -20,6 +20,7 @@
 #include "engine/query/walk/contact_region.hpp"
 #include "render/draw_list.hpp"
 #include "render/overlay.hpp"
+#include "render/style.hpp"
 
 namespace lrb::render {
 
@@ -65,6 +66,7 @@ struct SceneOptions {
   bool real_edges = true;
   bool contact_rims = false;  ///< 3D: faces in contact get a rim that is seen through what lies in front
   float scale = 1;            ///< of line widths and points: for large pictures and print
+  StyleName style = StyleName::screen;
 };
 
 struct Scene {

@@ -11,12 +11,12 @@ namespace {
 using Eigen::Vector3d;
 using Mark = LegendItem::Mark;
 
-constexpr double kGhost = 0.82;  ///< how far ghosts are from their colour towards white
+constexpr double kGhost = 0.82;  ///< how far ghosts fade
 
 class Scene2dBuilder {
  public:
   explicit Scene2dBuilder(const Context& c)
-      : c_(c), rep_(*c.body.rep), body_(c.colour()), scale_(c.options.scale) {}
+      : c_(c), rep_(*c.body.rep), style_(c.style()), body_(c.colour()), scale_(c.options.scale) {}
 
   void run() {
     for (RegionId r = 0; r < rep_.region_count(); ++r) region(r);
@@ -24,7 +24,7 @@ class Scene2dBuilder {
     if (c_.isolating() || c_.options.explode > 0) {
       for (RegionId r = 0; r < rep_.region_count(); ++r) {
         if (shown(r))
-          add_lines({rep_.collector(r).begin(), rep_.collector(r).end()}, palette::edge_of(body_), 1.4F, 0,
+          add_lines({rep_.collector(r).begin(), rep_.collector(r).end()}, style_.edge_of(body_), 1.4F, 0,
                     moved(r));
       }
     } else if (c_.body.wrapper != nullptr) {
@@ -49,8 +49,8 @@ class Scene2dBuilder {
     DrawFill fill;
     fill.id = region_id(c_.side, r);
     const bool telling = c_.options.colour_by == ColourBy::layer || c_.options.colour_by == ColourBy::region;
-    fill.colour = telling ? mix(c_.region_colour(r), kWhite, 0.35) : with_alpha(body_, 78);
-    if (c_.refining(r)) fill.colour = palette::kRefining2d;
+    fill.colour = telling ? style_.pale(c_.region_colour(r), 0.35) : with_alpha(body_, 78);
+    if (c_.refining(r)) fill.colour = style_.pale(style_.refining, kRefining2d);
     if (c_.building()) fill.colour = built_colour(r);
     for (const FaceId f : rep_.collector(r)) add_segment(fill, f, moved(r));
     c_.out.list.fills.push_back(std::move(fill));
@@ -61,7 +61,7 @@ class Scene2dBuilder {
   }
 
   /// Returns the colour of a region of a construction: those of earlier passes are pale.
-  Rgba built_colour(RegionId r) const { return mix(c_.built_colour(r), kWhite, c_.built(r) ? 0.15 : 0.78); }
+  Rgba built_colour(RegionId r) const { return style_.pale(c_.built_colour(r), c_.built(r) ? 0.15 : 0.78); }
 
   void built_key(RegionId r) {
     const bool each = c_.options.colour_by == ColourBy::region;
@@ -75,9 +75,9 @@ class Scene2dBuilder {
     DrawFill fill;
     fill.id = region_id(c_.side, 0) | ((1U << 30) - 1);
     const bool ghost = c_.isolating();
-    fill.colour = palette::solid_2d(body_);
+    fill.colour = style_.solid_2d(body_);
     if (ghost && !c_.options.ghost_rest) return;
-    if (ghost) fill.colour = mix(fill.colour, kWhite, kGhost);
+    if (ghost) fill.colour = style_.pale(fill.colour, kGhost);
     for (FaceId f = 0; f < rep_.real_face_count(); ++f) add_segment(fill, f, Vector3d::Zero());
     c_.out.list.fills.push_back(std::move(fill));
     c_.add_key(Mark::solid, c_.out.list.fills.back().colour,
@@ -87,7 +87,7 @@ class Scene2dBuilder {
     if (c_.options.colour_by == ColourBy::value && !c_.body.face_values.empty()) {
       for (const FaceId f : real) add_lines({f}, c_.colour_of(f, kSolid), 4, 0);
     } else {
-      add_lines(real, mix(palette::edge_of(body_), kWhite, ghost ? 0.6 : 0.0), 1.2F, 0);
+      add_lines(real, style_.pale(style_.edge_of(body_), ghost ? 0.6 : 0.0), 1.2F, 0);
     }
   }
 
@@ -96,12 +96,12 @@ class Scene2dBuilder {
     std::vector<FaceId> real;
     for (FaceId f = 0; f < rep_.real_face_count(); ++f)
       if (c_.in_contact(f)) real.push_back(f);
-    add_lines(real, palette::kContact, 3.5F, 0);
-    if (!real.empty()) c_.add_key(Mark::line, palette::kContact, "real faces that meet");
+    add_lines(real, style_.contact, 3.5F, 0);
+    if (!real.empty()) c_.add_key(Mark::line, style_.contact, "real faces that meet");
     if (c_.body.wrapper == nullptr) return;
     const std::vector<FaceId> pseudo = c_.pseudo_in_contact();
-    add_lines(pseudo, palette::kContact, 3.5F, 7);
-    if (!pseudo.empty()) c_.add_key(Mark::dashed, palette::kContact, "pseudo faces that meet");
+    add_lines(pseudo, style_.contact, 3.5F, 7);
+    if (!pseudo.empty()) c_.add_key(Mark::dashed, style_.contact, "pseudo faces that meet");
   }
 
   /// Draws thin lines between regions, dashed between those that have been refined away.
@@ -111,22 +111,22 @@ class Scene2dBuilder {
       const CellId in = rep_.inner_cell(f);
       if (!is_region(in)) continue;
       if (c_.refining(in.as_region())) {
-        add_lines({f}, palette::edge_of(palette::kRefining), 2.4F, 0);
+        add_lines({f}, style_.edge_of(style_.refining), 2.4F, 0);
       } else if (c_.included(in) && !c_.on_boundary(f)) {
         inside.push_back(f);
       } else if (!c_.on_boundary(f)) {
         gone.push_back(f);
       }
     }
-    add_lines(inside, mix(body_, kWhite, 0.15), 1.1F, 0);
-    if (!c_.building()) add_lines(gone, mix(body_, kWhite, 0.45), 1, 5);  // there, they are yet to come
+    add_lines(inside, style_.pale(body_, 0.15), 1.1F, 0);
+    if (!c_.building()) add_lines(gone, style_.pale(body_, 0.45), 1, 5);  // there, they are yet to come
     if (!gone.empty() && !c_.building())
-      c_.add_key(Mark::dashed, mix(body_, kWhite, 0.45), c_.name() + ", refined away");
+      c_.add_key(Mark::dashed, style_.pale(body_, 0.45), c_.name() + ", refined away");
   }
 
   void wrapper_line() {
     const std::vector<FaceId> boundary = c_.body.wrapper->boundary();
-    const Rgba colour = palette::edge_of(body_);
+    const Rgba colour = style_.edge_of(body_);
     if (c_.options.colour_by == ColourBy::value && !c_.body.face_values.empty()) {
       for (const FaceId f : boundary) add_lines({f}, c_.colour_of(f, kSolid), 4, 0);
       return;
@@ -158,6 +158,7 @@ class Scene2dBuilder {
 
   const Context& c_;
   const LrbRep& rep_;
+  const Style& style_;
   Rgba body_;
   float scale_;
 };

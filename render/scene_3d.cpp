@@ -11,35 +11,33 @@ namespace {
 using Eigen::Vector3d;
 using Mark = LegendItem::Mark;
 
-/// Opacity and colour of pseudo faces: a whitish veil, so that what they cover looks paler than what lies
-/// bare.
+/// Opacity of pseudo faces: a veil, so that what they cover looks fainter than what lies bare.
 constexpr std::uint8_t kLidAlpha = 124;
-constexpr double kLidPale = 0.70;  ///< their colour, from the body's towards white
 constexpr std::uint8_t kLidEdgeAlpha = 220;
 /// Edges on the far side are nearly left out: the hundreds of faces of a refined wrapper would make a tangle.
 constexpr float kLidEdgeBack = 0.3F;
 constexpr std::uint8_t kTellingAlpha = 175;  ///< where their colour says something
 constexpr std::uint8_t kRefiningAlpha = 120;
 constexpr std::uint8_t kGhostAlpha = 14;
-/// Of a construction, lids of earlier passes: their colour, from the region's towards white, and its opacity.
+/// Of a construction, lids of earlier passes: how far their colour fades, and its opacity.
 constexpr double kEarlierPale = 0.72;
 constexpr std::uint8_t kEarlierAlpha = 215;
 
 class Scene3dBuilder {
  public:
-  explicit Scene3dBuilder(const Context& c) : c_(c), rep_(*c.body.rep) {
+  explicit Scene3dBuilder(const Context& c) : c_(c), rep_(*c.body.rep), style_(c.style()) {
     const Rgba body = c.colour();
     const auto ink = palette::edge_of(body);
     real_edges_ = c.out.list.edge_style({with_alpha(ink, 150), 0.9F * c.options.scale});
     pale_edges_ = c.out.list.edge_style({with_alpha(ink, 90), 0.8F * c.options.scale});
     cell_edges_ = c.out.list.edge_style({with_alpha(palette::kInk, 150), 0.9F * c.options.scale});
-    lid_edges_ = c.out.list.edge_style(
-        {with_alpha(mix(body, ink, 0.7), kLidEdgeAlpha), 1.5F * c.options.scale, kLidEdgeBack});
+    lid_edges_ = c.out.list.edge_style({with_alpha(mix(body, style_.edge_of(body), 0.7), kLidEdgeAlpha),
+                                        1.5F * c.options.scale, kLidEdgeBack});
   }
 
   void run() {
     if (!c_.refining().empty()) {
-      const Rgba dark = with_alpha(palette::edge_of(palette::kRefining), kLidEdgeAlpha);
+      const Rgba dark = with_alpha(style_.edge_of(style_.refining), kLidEdgeAlpha);
       refining_edges_ = c_.out.list.edge_style({dark, 1.4F * c_.options.scale, 0.5F});
     }
     if (c_.isolating()) {
@@ -97,23 +95,23 @@ class Scene3dBuilder {
       t.edges = 7;
       t.edge_style = cell_edges_;
       for (const FaceId f : lids) add_face(f, t);
-      add_outlines(lids, {mix(t.colour, palette::kInk, 0.6), 2.2F * c_.options.scale}, Edges::rim);
+      add_outlines(lids, {mix(t.colour, style_.ink, 0.6), 2.2F * c_.options.scale}, Edges::rim);
     }
     const bool each = c_.options.colour_by == ColourBy::region;
     if (!c_.highlight.built->empty())
       c_.add_key(Mark::solid, c_.built_colour(c_.highlight.built->front()),
                  each ? "new lids, a colour for each region" : "new lids");
-    const Rgba earlier = each ? mix(palette::category(0), kWhite, kEarlierPale) : c_.colour();
+    const Rgba earlier = each ? style_.pale(palette::category(0), kEarlierPale) : c_.colour();
     if (others) c_.add_key(each ? Mark::solid : Mark::translucent, earlier, "lids of earlier passes");
   }
 
   void lids_in_contact() {
     const std::vector<FaceId> lids = c_.pseudo_in_contact();
-    DrawTriangle t = translucent(with_alpha(palette::kContact, kTellingAlpha), 2);
+    DrawTriangle t = translucent(with_alpha(style_.contact, kTellingAlpha), 2);
     t.edges = 7;
     t.edge_style = lid_edges_;
     for (const FaceId f : lids) add_face(f, t);
-    if (!lids.empty()) c_.add_key(Mark::translucent, palette::kContact, "pseudo faces that meet");
+    if (!lids.empty()) c_.add_key(Mark::translucent, style_.contact, "pseudo faces that meet");
   }
 
   void contact_rims() {
@@ -121,25 +119,25 @@ class Scene3dBuilder {
     if (c_.body.wrapper != nullptr) faces = c_.pseudo_in_contact();
     for (FaceId f = 0; f < rep_.real_face_count(); ++f)
       if (c_.in_contact(f)) faces.push_back(f);
-    add_outlines(faces, {palette::kContact, 2 * c_.options.scale}, Edges::rim_on_top);
+    add_outlines(faces, {style_.contact, 2 * c_.options.scale}, Edges::rim_on_top);
   }
 
   void real_faces() {
     bool any_in_contact = false;
     for (FaceId f = 0; f < rep_.real_face_count(); ++f) {
       DrawTriangle t;
-      t.colour = c_.in_contact(f) ? palette::kContact : c_.colour_of(f, kSolid);
+      t.colour = c_.in_contact(f) ? style_.contact : c_.colour_of(f, kSolid);
       if (is_region(rep_.outer_cell(f)) && c_.refining(rep_.outer_cell(f).as_region())) {
-        t.colour = mix(t.colour, palette::kRefining, 0.6);
+        t.colour = mix(t.colour, style_.refining, 0.6);
       }
       t.edges = c_.options.real_edges ? 7 : 0;
       t.edge_style = c_.body.wrapper != nullptr && !c_.on_boundary(f) ? pale_edges_ : real_edges_;
       any_in_contact |= c_.in_contact(f);
       add_face(f, t);
     }
-    if (any_in_contact) c_.add_key(Mark::solid, palette::kContact, "real faces that meet");
+    if (any_in_contact) c_.add_key(Mark::solid, style_.contact, "real faces that meet");
     if (c_.options.colour_by == ColourBy::value) {
-      c_.add_key(Mark::solid, mix(c_.colour(), kWhite, 0.78),
+      c_.add_key(Mark::solid, style_.pale(c_.colour(), 0.78),
                  c_.name() + (c_.value_low > 0 ? ", faces with fewer " : ", faces without ") +
                      c_.options.value_name);
     } else {
@@ -149,11 +147,11 @@ class Scene3dBuilder {
 
   Rgba lid_colour(FaceId f) const {
     if (c_.building() && c_.options.colour_by == ColourBy::region)
-      return with_alpha(mix(c_.colour_of(f, rep_.inner_cell(f)), kWhite, kEarlierPale), kEarlierAlpha);
+      return with_alpha(style_.pale(c_.colour_of(f, rep_.inner_cell(f)), kEarlierPale), kEarlierAlpha);
     const Rgba colour = c_.colour_of(f, rep_.inner_cell(f));
     switch (c_.options.colour_by) {
       case ColourBy::kind:
-        return with_alpha(mix(colour, kWhite, kLidPale), kLidAlpha);
+        return with_alpha(style_.pale(colour, style_.lid_pale), kLidAlpha);
       case ColourBy::value:
         return with_alpha(colour, c_.has_value(f) ? kTellingAlpha : kLidAlpha);
       default:
@@ -167,14 +165,13 @@ class Scene3dBuilder {
       if (!rep_.is_real(f)) floor.push_back(f);
     }
     // Edges of faces fade where there are many; of a small region only the rim is left, and its colour.
-    DrawTriangle t = translucent(with_alpha(palette::kRefining, kRefiningAlpha), 2);
+    DrawTriangle t = translucent(with_alpha(style_.refining, kRefiningAlpha), 2);
     t.edges = 7;
     t.edge_style = refining_edges_;
     for (const FaceId f : lids) add_face(f, t);
     t.colour = with_alpha(t.colour, 0);
     for (const FaceId f : floor) add_face(f, t);
-    add_outlines(lids, {mix(palette::kRefining, palette::kInk, 0.4), 2 * c_.options.scale},
-                 Edges::rim_on_top);
+    add_outlines(lids, {mix(style_.refining, style_.ink, 0.4), 2 * c_.options.scale}, Edges::rim_on_top);
   }
 
   // ---- regions on their own
@@ -206,7 +203,7 @@ class Scene3dBuilder {
     }
     if (any) {
       const bool each = c_.options.colour_by == ColourBy::region;
-      c_.add_key(Mark::solid, each ? palette::category(0) : mix(c_.colour(), kWhite, 0.5),
+      c_.add_key(Mark::solid, each ? palette::category(0) : style_.pale(c_.colour(), 0.5),
                  each ? "regions, a colour each" : c_.name() + ", regions");
     }
   }
@@ -214,7 +211,7 @@ class Scene3dBuilder {
   /// Draws a region by itself: its floor solid, its lids solid too, or translucent so that the floor shows.
   void region(RegionId r, const Vector3d& moved, bool open) {
     Rgba colour = c_.region_colour(r);
-    if (c_.options.colour_by == ColourBy::kind) colour = mix(colour, kWhite, 0.5);
+    if (c_.options.colour_by == ColourBy::kind) colour = style_.pale(colour, 0.5);
     for (const FaceId f : rep_.collector(r)) {
       const bool lid = rep_.inner_cell(f) == r;
       DrawTriangle t;
@@ -229,7 +226,7 @@ class Scene3dBuilder {
     }
     if (open) {
       const std::vector<FaceId> lids(rep_.lids(r).begin(), rep_.lids(r).end());
-      add_outlines(lids, {palette::edge_of(colour), 1.8F * c_.options.scale});
+      add_outlines(lids, {style_.edge_of(colour), 1.8F * c_.options.scale});
     }
   }
 
@@ -283,6 +280,7 @@ class Scene3dBuilder {
 
   const Context& c_;
   const LrbRep& rep_;
+  const Style& style_;
   std::uint8_t real_edges_ = 0, pale_edges_ = 0, lid_edges_ = 0, cell_edges_ = 0, refining_edges_ = 0;
 };
 

@@ -20,6 +20,7 @@ struct Context {
   Scene& out;
 
   std::string name() const;
+  const Style& style() const { return style_of(options.style); }
   Rgba colour() const;  ///< of the body
   bool in_contact(FaceId f) const { return f < body.in_contact.size() && body.in_contact[f] != 0; }
   std::vector<FaceId> pseudo_in_contact() const;
@@ -43,6 +44,9 @@ struct Context {
   Rgba built_colour(RegionId r) const;
   void add_key(LegendItem::Mark mark, Rgba colour, const std::string& text) const;
 };
+
+/// How far the colour of regions being refined fades in 2D, as a fill under lines.
+inline constexpr double kRefining2d = 0.4;
 
 void add_body_3d(const Context& c);
 void add_body_2d(const Context& c);

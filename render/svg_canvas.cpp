@@ -60,8 +60,10 @@ void SvgCanvas::text(const PaperText& t) {
 
 void SvgCanvas::picture(const Image& image, const Eigen::AlignedBox2d& place) {
   const std::vector<std::uint8_t> png = encode_png(image);
+  // Inkscape 1.2 shows no picture whose href is not of XLink's namespace.
   out_ += "<image" + box_attributes(place) + attribute("preserveAspectRatio", "none") +
-          attribute("href", "data:image/png;base64," + base64(png.data(), png.size())) + "/>\n";
+          attribute("xmlns:xlink", "http://www.w3.org/1999/xlink") +
+          attribute("xlink:href", "data:image/png;base64," + base64(png.data(), png.size())) + "/>\n";
 }
 
 void SvgCanvas::begin_clip(const Eigen::AlignedBox2d& box) {

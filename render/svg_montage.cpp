@@ -2,7 +2,6 @@
 
 #include "engine/core/error.hpp"
 #include "render/markup.hpp"
-#include "render/palette.hpp"
 #include "render/svg_text.hpp"
 
 namespace lrb::render {
@@ -19,10 +18,10 @@ std::string nested(const std::string& panel, const PixelRect& r) {
          panel.substr(start);
 }
 
-std::string centred(const std::string& line, double x, double y, double height) {
+std::string centred(const std::string& line, double x, double y, double height, Rgba ink) {
   return "<text" + attribute("x", number(x)) + attribute("y", number(y)) + font(height) +
-         attribute("text-anchor", "middle") + attribute("dominant-baseline", "central") +
-         paint("fill", palette::kInk) + ">" + escape_markup(line) + "</text>\n";
+         attribute("text-anchor", "middle") + attribute("dominant-baseline", "central") + paint("fill", ink) +
+         ">" + escape_markup(line) + "</text>\n";
 }
 
 }  // namespace
@@ -33,13 +32,13 @@ std::string svg_montage(const std::vector<std::string>& panels, const MontageLay
   if (!options.title.empty()) out += "<title>" + escape_markup(options.title) + "</title>\n";
   if (!options.transparent)
     out += "<rect" + attribute("width", number(layout.width)) + attribute("height", number(layout.height)) +
-           paint("fill", kWhite) + "/>\n";
+           paint("fill", style_of(options.style).paper) + "/>\n";
   for (std::size_t i = 0; i < panels.size(); ++i) {
     out += nested(panels[i], layout.panels.at(i));
     const PixelRect& c = layout.captions[i];
     double y = c.y + 0.75 * layout.text_height;  // as montage(): a quarter of a line above them
     for (const std::string& line : layout.lines[i]) {
-      out += centred(line, c.x + 0.5 * c.width, y, layout.text_height);
+      out += centred(line, c.x + 0.5 * c.width, y, layout.text_height, style_of(options.style).ink);
       y += layout.text_height;
     }
   }

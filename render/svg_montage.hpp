@@ -9,8 +9,9 @@
 namespace lrb::render {
 
 struct SvgMontageOptions {
-  std::string title;           ///< for people who cannot see the picture; empty: none
-  bool transparent = false;    ///< else white
+  std::string title;         ///< for people who cannot see the picture; empty: none
+  bool transparent = false;  ///< else with the style's background
+  StyleName style = StyleName::screen;
   double units_per_pixel = 1;  ///< units of the view box per pixel of a screen: the size on paper
 };
 

@@ -53,13 +53,6 @@ void apply_size(const std::string& size, spec::FrameSpec& spec) {
     throw InputError("--size: expected WIDTHxHEIGHT from 64x64 to 8192x8192, found \"" + size + "\"");
 }
 
-void add_orbit_option(CLI::App& app, CameraOptions& options) {
-  app.add_option("--orbit", options.orbit,
-                 "Turn the camera round the bodies by so many degrees, from the first frame to the last")
-      ->check(CLI::Range(-36000.0, 36000.0))
-      ->type_name("DEGREES");
-}
-
 }  // namespace
 
 void add_recursion_option(CLI::App& app, std::optional<Recursion>& recursion) {
@@ -140,11 +133,23 @@ void add_size_options(CLI::App& app, PictureOptions& options) {
          "For print: keep the size that --size has at 96 dpi, in more pixels; lines and texts grow with them")
       ->check(CLI::Range(spec::kLeastDpi, spec::kMostDpi))
       ->type_name("N");
+  add_style_option(app, options, "screen");
+}
+
+void add_style_option(CLI::App& app, PictureOptions& options, const std::string& usual) {
+  add_choice<spec::FrameSpec::Style>(
+      app, "--style", options.style,
+      "print: black on white, thin lines, kinds that differ in grey; dark: for slides [" + usual + "]");
 }
 
 void add_picture_options(CLI::App& app, PictureOptions& options) {
   add_size_options(app, options);
   app.add_flag("--transparent", options.transparent, "Draw without a background");
+  app.add_flag_callback(
+      "--no-title", [&options] { options.titles = false; },
+      "Leave title, event, counters and titles of views out of the frames");
+  app.add_flag_callback(
+      "--no-legend", [&options] { options.legend = false; }, "Leave legend and colour bar out");
   app.add_option_function<std::string>(
          "--format", [&options](const std::string& word) { options.svg = word == "svg"; },
          "svg: write frames and montage as SVG as well, for 2D bodies")
@@ -180,6 +185,9 @@ void apply(const PictureOptions& options, spec::FrameSpec& spec) {
   if (options.dpi) spec.dpi = *options.dpi;
   if (options.svg) spec.svg = *options.svg;
   spec.transparent |= options.transparent;
+  if (options.style) spec.style = *options.style;
+  spec.titles &= options.titles;
+  spec.legend &= options.legend;
   if (options.at) {
     spec.at = *options.at;
     spec.every = 1;
@@ -206,6 +214,13 @@ void add_camera_options(CLI::App& app, CameraOptions& options) {
       ->check(CLI::IsMember({"perspective", "orthographic"}).description(""))
       ->type_name("perspective|orthographic");
   add_up_option(app, options.up);
+}
+
+void add_orbit_option(CLI::App& app, CameraOptions& options) {
+  app.add_option("--orbit", options.orbit,
+                 "Turn the camera round the bodies by so many degrees, from the first frame to the last")
+      ->check(CLI::Range(-36000.0, 36000.0))
+      ->type_name("DEGREES");
 }
 
 void apply(const CameraOptions& options, std::vector<spec::FrameSpec::View>& views) {

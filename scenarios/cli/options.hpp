@@ -42,7 +42,7 @@ void add_repeat_option(CLI::App& app, std::uint32_t& repeat, const std::string& 
 /// Adds --patch, --max-outer, --lean, --seed and --threads.
 void add_build_options(CLI::App& app, BuildOptions& options);
 
-/// The options --from, --look-at, --zoom, --projection, --orbit and --up: where pictures are seen from. They take precedence over a
+/// The options --from, --look-at, --zoom, --projection and --up, and --orbit where it is added, too: where pictures are seen from. They take precedence over a
 /// scenario.
 struct CameraOptions {
   std::string from, look_at, up;
@@ -51,11 +51,13 @@ struct CameraOptions {
   std::optional<bool> orthographic;
 };
 void add_camera_options(CLI::App& app, CameraOptions& options);
+/// Adds --orbit, which pictures of several moments have.
+void add_orbit_option(CLI::App& app, CameraOptions& options);
 /// Changes all views. --up turns what they have; --from and --look-at are given in the axes of the bodies' files, and are not
 /// turned. Throws InputError for what is no camera.
 void apply(const CameraOptions& options, std::vector<spec::FrameSpec::View>& views);
 
-/// The options of cameras, and --size, --dpi, --transparent, --format, --frames, --every, --most, --colour-by,
+/// The options of cameras, and --size, --dpi, --style, --no-title, --no-legend, --transparent, --format, --frames, --every, --most, --colour-by,
 /// --colour-per and --node-boxes, which take precedence over a scenario.
 struct PictureOptions {
   CameraOptions camera;
@@ -63,6 +65,8 @@ struct PictureOptions {
   std::optional<double> dpi;
   std::optional<bool> svg;
   bool transparent = false;
+  std::optional<spec::FrameSpec::Style> style;
+  bool titles = true, legend = true;
   std::optional<spec::FrameSpec::At> at;
   std::optional<std::uint32_t> every, most;
   std::optional<spec::FrameSpec::ColourBy> colour_by;
@@ -70,8 +74,10 @@ struct PictureOptions {
   std::optional<std::uint32_t> node_boxes;
 };
 void add_picture_options(CLI::App& app, PictureOptions& options);
-/// Adds --size and --dpi alone.
+/// Adds --size, --dpi and --style alone.
 void add_size_options(CLI::App& app, PictureOptions& options);
+/// Adds --style alone; `usual` is taken if it is not given.
+void add_style_option(CLI::App& app, PictureOptions& options, const std::string& usual);
 /// Adds --colour-by and --node-boxes alone.
 void add_colour_options(CLI::App& app, PictureOptions& options);
 void apply(const PictureOptions& options, spec::FrameSpec& spec);

@@ -54,10 +54,11 @@ class FrameState {
     highlight.contacts = m.contacts;
     render::SceneOptions options;
     options.scale = static_cast<float>(spec_.scale());
+    options.style = run::style_name(spec_);
     options.real_edges = false;  // thousands of small faces: one would see nothing but their edges
     render::Scene scene = render::build_scene(bodies, highlight, options);
     for (render::DrawLine& line : scene.list.lines)
-      if (line.colour == render::palette::kContact) thin(line);
+      if (line.colour == style().contact) thin(line);
     add_room(scene.list);
     return std::move(scene.list);
   }
@@ -68,7 +69,8 @@ class FrameState {
     o.title = crowd_.name + "  ·  step " + std::to_string(m.step);
     o.event =
         render::counted(count(step, Relation::crossing), "pair of bodies crosses", "pairs of bodies cross");
-    o.event_colour = render::palette::kContact;
+    o.style = run::style_name(spec_);
+    o.event_colour = style().contact;
     const Counters c = sum(step);
     const std::uint64_t n = run_.motion.body_count();
     o.counters = {{"bodies in contact",
@@ -80,8 +82,8 @@ class FrameState {
     for (std::uint32_t k = 0; k < crowd_.kinds.size(); ++k)
       o.key.push_back(
           {Mark::solid, colour_of(k), std::to_string(crowd_.kinds[k].count) + " x " + crowd_.kinds[k].name});
-    o.key.push_back({Mark::solid, render::palette::kContact, "faces in contact"});
-    if (shows_wrappers()) o.key.push_back({Mark::translucent, render::palette::kFaint, "pseudo faces"});
+    o.key.push_back({Mark::solid, style().contact, "faces in contact"});
+    if (shows_wrappers()) o.key.push_back({Mark::translucent, style().faint, "pseudo faces"});
     return o;
   }
 
@@ -103,6 +105,7 @@ class FrameState {
   }
 
  private:
+  const render::Style& style() const { return run::style_of(spec_); }
   bool shows_wrappers() const {
     return spec_.views.empty() || std::any_of(spec_.views.begin(), spec_.views.end(),
                                               [](const spec::FrameSpec::View& v) { return v.wrapper; });
@@ -139,7 +142,7 @@ class FrameState {
     for (const auto& [p, q] : room()) {
       render::DrawLine line;
       line.points = {p, q};
-      line.colour = render::palette::kRule;
+      line.colour = style().rule;
       line.width = static_cast<float>(1.2 * spec_.scale());
       list.lines.push_back(std::move(line));
     }
@@ -178,6 +181,7 @@ run::DrawnFrames draw_crowd(const spec::Crowd& crowd, const CrowdRun& run, const
   std::vector<render::OverlayLayout> layouts;
   for (const CrowdMoment& m : run.moments) {
     overlays.push_back(state.overlay(m));
+    run::leave_out_texts(overlays.back(), spec);
     layouts.push_back(render::lay_out(overlays.back(), spec.width, spec.height, scale));
   }
   const render::PixelRect place = render::common_picture(layouts);
@@ -204,7 +208,7 @@ run::DrawnFrames draw_crowd(const spec::Crowd& crowd, const CrowdRun& run, const
     png.text.emplace_back("lrbscope:step", std::to_string(m.step));
     writer.push(folder + "/" + run::frame_file(i),
                 render::compose_frame(picture, place, overlays[i], spec.width, spec.height,
-                                      spec.transparent ? render::kTransparent : render::kWhite, scale),
+                                      run::paper_of(spec).value_or(render::kTransparent), scale),
                 png);
     out.frames.push_back({run::frame_file(i), crowd_caption(run, m.step), 0, m.step});
   }

@@ -8,7 +8,6 @@
 #include "render/cairo_canvas.hpp"
 #include "render/montage.hpp"
 #include "render/paint_list.hpp"
-#include "render/palette.hpp"
 #include "render/png.hpp"
 #include "render/svg_canvas.hpp"
 #include "scenarios/figure/figure_layout.hpp"
@@ -39,7 +38,8 @@ std::string shortened(std::string words) {
 
 /// Returns the frames' spec with widths in points: a thin line, of width 1, is as wide as the figure's.
 spec::FrameSpec in_points(spec::FrameSpec frames, const FigureSpec& figure) {
-  frames.dpi = figure.line_width * spec::FrameSpec::kScreenDpi;
+  // The figure says how wide lines are, whatever the style.
+  frames.dpi = figure.line_width * spec::FrameSpec::kScreenDpi / run::style_of(frames).weight;
   if (frames.views.empty()) frames.views.emplace_back();
   return frames;
 }
@@ -64,8 +64,7 @@ class FigureJob {
     layout_ = lay_out(blocks_, figure_.legend ? key_ : std::vector<render::LegendItem>(),
                       figure_.legend ? bar_ : std::nullopt, figure_.caption ? out.caption : "", options());
     const auto paint = [&](render::Canvas& canvas) { paint_all(canvas, progress); };
-    const std::optional<render::Rgba> background =
-        frames_.transparent ? std::nullopt : std::optional(render::kWhite);
+    const std::optional<render::Rgba> background = run::paper_of(frames_);
     const std::string program = "lrbscope " + recorded_.trace->header.lrbscope;
     const render::PaperPage page{figure_.width, layout_.height, background, recorded_.title, program};
     switch (figure_.format) {
@@ -93,6 +92,7 @@ class FigureJob {
  private:
   static constexpr double kPointsPerScreenPixel = 0.75;
 
+  const render::Style& style() const { return run::style_of(frames_); }
   bool flat() const { return framing_.dim == 2; }
   std::size_t moments() const { return events_.size(); }
 
@@ -216,23 +216,23 @@ class FigureJob {
         flat() ? paint_flat(canvas, shown.list, camera(view, moment), place, block.scale)
                : paint_deep(canvas, shown.list, camera(view, moment), place, block.scale);
         if (runs_over(blocks_[v]))
-          canvas.stroke(render::corners(place.box), true, {render::palette::kFaint, kHairline, 0});
+          canvas.stroke(render::corners(place.box), true, {style().faint, kHairline, 0});
         double y = place.box.max().y() + 0.65 * figure_.font_size;
         for (const std::string& line : place.lines) {
           canvas.text({{place.box.center().x(), y},
                        line,
                        layout_.text_height,
                        false,
-                       render::palette::kInk,
+                       style().ink,
                        render::Align::centre});
           y += 1.3 * figure_.font_size;
         }
       }
     }
     paint_key(canvas, layout_, figure_.legend ? key_ : std::vector<render::LegendItem>(),
-              figure_.legend ? bar_ : std::nullopt);
+              figure_.legend ? bar_ : std::nullopt, style());
     for (const auto& [y, line] : layout_.caption)
-      canvas.text({{0, y}, line, layout_.text_height, false, render::palette::kInk});
+      canvas.text({{0, y}, line, layout_.text_height, false, style().ink});
   }
 
   void paint_flat(render::Canvas& canvas, const render::DrawList& list, const render::Camera& camera,
@@ -268,7 +268,7 @@ class FigureJob {
     raster.unit = 1 / pixel;
     raster.labels = false;
     raster.even_edges = true;
-    if (frames_.transparent) raster.background.reset();
+    raster.background = run::paper_of(frames_);
     const render::Image picture = rasterizer_.draw(render::under_lines(list), camera, raster);
     render::Image part(size.x(), size.y(), render::kTransparent);
     part.paste(picture, -from.x(), -from.y());

@@ -180,8 +180,7 @@ class Writer {
     out += rect(x, y, width - rule, kRow - kRule, colour_of(n.state)) + "><title>" +
            render::escape_markup(n.what) + "</title></rect>\n";
     if (width > kRoomForText * kText && !n.name.empty())
-      out += text(x + width / 2, y + kRow / 2, kText * 0.8, n.name, "middle",
-                  n.state == State::refined ? render::kWhite : render::palette::kInk);
+      out += text(x + width / 2, y + kRow / 2, kText * 0.8, n.name, "middle", render::palette::kInk);
     for (const Node& child : n.inside) {
       box(child, x, y + kRow);
       x += child.width * unit_;

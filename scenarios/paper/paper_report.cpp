@@ -40,8 +40,9 @@ report::PageTable table1(const PaperReport& r) {
                  "are ours: the paper says only that they are fractal, with a basic non-convex shape."
                : "Not the paper's objects, or not all of them.";
   for (const PaperObject& o : r.objects)
-    t.rows.push_back({o.name, std::to_string(o.rep.real_face_count()), std::to_string(o.rep.face_count()),
-                      std::to_string(o.rep.outermost_faces().size()) + " faces"});
+    t.rows.push_back({o.name, render::group_digits(o.rep.real_face_count()),
+                      render::group_digits(o.rep.face_count()),
+                      render::counted(o.rep.outermost_faces().size(), "face", "faces")});
   return t;
 }
 
@@ -55,7 +56,7 @@ report::PageTable table2(std::span<const ObjectRow> rows, std::size_t recursion)
   for (const ObjectRow& row : rows) {
     const RecursionRow& x = row.recursions[recursion];
     const PublishedRow* p = published(row.object);
-    std::vector<std::string> cells = {row.object, std::to_string(row.steps), whole(x.comparisons.min),
+    std::vector<std::string> cells = {row.object, render::group_digits(row.steps), whole(x.comparisons.min),
                                       whole(x.comparisons.average), whole(x.comparisons.max)};
     for (const double n : {p ? p->min : 0, p ? p->average : 0, p ? p->max : 0})
       cells.push_back(p ? whole(n) : "–");
@@ -97,8 +98,9 @@ std::vector<std::string> differences(const PaperReport& r, std::span<const Objec
                   "-fold (published: 3.57 to its highest row).");
   std::string missed;
   for (const ObjectRow& row : rows)
-    missed += (missed.empty() ? "" : ", ") + row.object + " " + std::to_string(row.recursions[0].missed) +
-              "/" + std::to_string(row.recursions[1].missed);
+    missed += (missed.empty() ? "" : ", ") + row.object + " " +
+              render::group_digits(row.recursions[0].missed) + "/" +
+              render::group_digits(row.recursions[1].missed);
   out.push_back("Pairs that the paper's recursion misses, in its two readings: " + missed +
                 ". The paper does not count misses.");
   out.push_back(
@@ -108,7 +110,7 @@ std::vector<std::string> differences(const PaperReport& r, std::span<const Objec
 }
 
 std::string protocol_text(const PaperProtocol& p) {
-  return std::to_string(p.collisions) +
+  return render::group_digits(p.collisions) +
          " collisions per object; random rotations of both bodies, equal diagonals; the "
          "other body comes in along a random line through both centres in steps of " +
          fixed(100 * p.step, 2) +

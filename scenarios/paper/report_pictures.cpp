@@ -89,8 +89,8 @@ void draw_close_ups(const PaperReport& r, const std::string& folder, report::Pag
     }
   if (r.experiment.reports(PaperPart::refinement_tree)) {
     io::write_text(folder + "/refinement_tree.svg", icicle_svg(c->pair, c->hardest));
-    run::add_figure(page, folder, "The refinement tree of one collision", tree_caption(c->pair, c->hardest),
-                    "refinement_tree.svg");
+    run::add_live_figure(page, folder, "The refinement tree of one collision",
+                         tree_caption(c->pair, c->hardest), "refinement_tree.svg");
   }
 }
 

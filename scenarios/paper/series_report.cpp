@@ -38,9 +38,10 @@ report::PageTable table(std::span<const SeriesRow> rows, SeriesPartner partner, 
     if (row.partner != partner) continue;
     const RecursionRow& x = row.counts.recursions[recursion];
     const auto all = static_cast<double>(x.pairs + x.missed);
-    t.rows.push_back({row.body, std::to_string(row.counts.real_faces), std::to_string(row.counts.total_faces),
-                      std::to_string(row.outer_faces), std::to_string(row.counts.steps),
-                      whole(x.comparisons.min), whole(x.comparisons.average), whole(x.comparisons.max),
+    t.rows.push_back({row.body, render::group_digits(row.counts.real_faces),
+                      render::group_digits(row.counts.total_faces), render::group_digits(row.outer_faces),
+                      render::group_digits(row.counts.steps), whole(x.comparisons.min),
+                      whole(x.comparisons.average), whole(x.comparisons.max),
                       fixed(x.refinements.average, 1)});
     if (complete) t.rows.back().push_back(whole(x.bound_tests));
     t.rows.back().push_back(all > 0 ? fixed(100 * static_cast<double>(x.missed) / all, 2) + " %" : "–");

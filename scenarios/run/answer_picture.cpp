@@ -202,7 +202,7 @@ void draw_distance(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const P
   const trace::MeasuredDistance m = trace::measured(result, {});
   p.overlay.event_colour = kGapColour;
   if (const auto gap = gap_of(m)) {
-    add_gap(p.scene, *gap);
+    add_gap(p.scene, *gap, render::style_of(render::StyleName::screen));
     p.detail = {gap->from, gap->to};
     p.across = gap->to - gap->from;
     p.overlay.event = gap->text + " apart" + (m.solids_meet ? ", one inside the other" : "");

@@ -25,8 +25,11 @@ void draw_body_sheet(const LrbRep& rep, const std::string& path, const spec::Fra
   render::RasterOptions options;
   options.width = frames.width;
   options.height = frames.height;
+  options.background = style_of(frames).paper;
+  options.even_edges = true;
   render::SceneOptions scene_options;
-  scene_options.scale = static_cast<float>(frames.scale());
+  scene_options.style = style_name(frames);
+  scene_options.scale = static_cast<float>(frames.scale()) * style_of(frames).weight;
   render::Rasterizer rasterizer;
   std::vector<render::Panel> panels;
   // Layers [0, hidden) are included: none is the body itself, all is the outermost wrapper.
@@ -43,7 +46,10 @@ void draw_body_sheet(const LrbRep& rep, const std::string& path, const spec::Fra
          render::group_digits(wrapper.boundary_size()) +
              (rep.region_count() > 0 ? " faces" : " faces: the body itself, which has no wrappers")});
   }
-  render::write_png(render::montage(panels), path, {{}, frames.dpi});
+  render::MontageOptions montage;
+  montage.style = style_name(frames);
+  montage.background = style_of(frames).paper;
+  render::write_png(render::montage(panels, montage), path, {{}, frames.dpi});
 }
 
 }  // namespace lrb::run

@@ -4,7 +4,6 @@
 #include <filesystem>
 
 #include "render/dirt.hpp"
-#include "render/palette.hpp"
 #include "render/png.hpp"
 #include "render/rasterize.hpp"
 #include "render/text.hpp"
@@ -69,11 +68,11 @@ render::Camera camera_of(const DirtyMesh& dirty, const spec::FrameSpec& frames, 
   return render::fit_top(points, panel.width, panel.height, kMargin);
 }
 
-void write_caption(render::Image& panel, const std::string& text, float height) {
+void write_caption(render::Image& panel, const std::string& text, float height, const render::Style& look) {
   render::TextStyle style;
   style.height = height;
-  style.colour = render::palette::kInk;
-  style.halo = render::kWhite;
+  style.colour = look.ink;
+  style.halo = look.paper;
   style.halo_width = 3;
   int y = 6;
   std::vector<std::string> lines = render::default_font().wrap(text, panel.width() - 16, style);
@@ -89,8 +88,10 @@ render::Image draw_panel(render::Rasterizer& rasterizer, const DirtyMesh& dirty,
   render::RasterOptions raster;
   raster.width = panel.width;
   raster.height = panel.height;
+  raster.background = style_of(frames).paper;
   render::dirt::Options options;
   options.loops = dirty.loops;
+  options.style = style_name(frames);
   if (panel.kind != nullptr) {
     options.focus = *panel.kind;
     for (const Eigen::Vector3d& x :
@@ -105,8 +106,8 @@ render::Image draw_panel(render::Rasterizer& rasterizer, const DirtyMesh& dirty,
   const std::string what =
       panel.kind ? render::dirt::caption(*panel.kind, dirty.report[*panel.kind], dirty.mesh.dim, dirty.loops)
                  : "the whole";
-  write_caption(image, "(" + std::string(1, panel.letter) + ") " + what, panel.text);
-  image.stroke(image.rect(), render::palette::kRule);
+  write_caption(image, "(" + std::string(1, panel.letter) + ") " + what, panel.text, style_of(frames));
+  image.stroke(image.rect(), style_of(frames).rule);
   return image;
 }
 
@@ -118,7 +119,7 @@ render::Image draw_panels(const DirtyMesh& dirty, const spec::FrameSpec& frames,
   panel.width = (layout.picture.width - kGap * (across - 1)) / across;
   panel.height = (layout.picture.height - kGap * (down - 1)) / down;
   panel.text = std::max(kUsualText * static_cast<float>(frames.scale()), kTextHeight * layout.text_height);
-  render::Image picture(layout.picture.width, layout.picture.height);
+  render::Image picture(layout.picture.width, layout.picture.height, style_of(frames).paper);
   render::Rasterizer rasterizer;
   for (std::size_t i = 0; i <= kinds.size(); ++i) {
     panel.kind = i == 0 ? nullptr : &kinds[i - 1];
@@ -152,12 +153,13 @@ bool draw_dirt(const DirtyMesh& given, const std::string& path, const spec::Fram
   overlay.title = std::filesystem::path(given.mesh.name).filename().string() + "  ·  " +
                   std::to_string(kinds.size()) + (kinds.size() == 1 ? " finding" : " findings");
   overlay.event = "Offenders by their numbers, counted from 0 in file order";
-  overlay.key = render::dirt::legend(given.report, mesh.dim);
+  overlay.key = render::dirt::legend(given.report, mesh.dim, style_name(frames));
+  overlay.style = style_name(frames);
   const auto scale = static_cast<float>(frames.scale());
   const render::OverlayLayout layout = render::lay_out(overlay, frames.width, frames.height, scale);
   const render::Image picture = draw_panels(dirty, frames, kinds, layout);
   render::write_png(render::compose_frame(picture, layout.picture, overlay, frames.width, frames.height,
-                                          render::kWhite, scale),
+                                          style_of(frames).paper, scale),
                     path, {{}, frames.dpi});
   return true;
 }

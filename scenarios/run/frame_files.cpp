@@ -7,7 +7,6 @@
 #include <sstream>
 #include <system_error>
 
-#include "render/palette.hpp"
 #include "render/text.hpp"
 
 namespace lrb::run {
@@ -17,14 +16,47 @@ void write_title(render::Image& view, const std::string& title, const spec::Fram
   render::TextStyle style;
   const auto scale = static_cast<float>(spec.scale());
   style.height = std::max(13.0F * scale, static_cast<float>(spec.height) / 42);
-  style.colour = render::palette::kFaint;
-  style.halo = render::kWhite;
+  style.colour = style_of(spec).faint;
+  style.halo = style_of(spec).paper;
   style.halo_width = 2 * scale;
   render::default_font().draw(view, title, static_cast<int>(style.height / 2),
                               static_cast<int>(style.height / 3), style);
 }
 
 }  // namespace
+
+render::StyleName style_name(const spec::FrameSpec& spec) {
+  switch (spec.style) {
+    case spec::FrameSpec::Style::print:
+      return render::StyleName::print;
+    case spec::FrameSpec::Style::dark:
+      return render::StyleName::dark;
+    case spec::FrameSpec::Style::screen:
+      break;
+  }
+  return render::StyleName::screen;
+}
+
+const render::Style& style_of(const spec::FrameSpec& spec) {
+  return render::style_of(style_name(spec));
+}
+
+std::optional<render::Rgba> paper_of(const spec::FrameSpec& spec) {
+  return spec.transparent ? std::nullopt : std::optional(style_of(spec).paper);
+}
+
+void leave_out_texts(render::Overlay& overlay, const spec::FrameSpec& spec) {
+  if (!spec.titles) {
+    overlay.title.clear();
+    overlay.event.clear();
+    overlay.event_colour = render::kTransparent;
+    overlay.counters.clear();
+  }
+  if (!spec.legend) {
+    overlay.key.clear();
+    overlay.scale.reset();
+  }
+}
 
 std::string numbered_frame(std::size_t frame) {
   std::ostringstream out;
@@ -72,18 +104,19 @@ void paint_views(render::Rasterizer& rasterizer, const spec::FrameSpec& spec,
                  const std::vector<render::PixelRect>& places,
                  const std::function<render::DrawList(const spec::FrameSpec::View&)>& list_of,
                  const std::function<render::Camera(std::size_t)>& camera_of, render::Image& picture) {
-  const render::Rgba back = spec.transparent ? render::kTransparent : render::kWhite;
-  picture.pixels().assign(picture.pixels().size(),
-                          views.size() > 1 && !spec.transparent ? render::palette::kRule : back);
+  picture.pixels().assign(picture.pixels().size(), views.size() > 1 && !spec.transparent
+                                                       ? style_of(spec).rule
+                                                       : paper_of(spec).value_or(render::kTransparent));
   for (std::size_t i = 0; i < views.size(); ++i) {
     const render::PixelRect& place = places[i];
     render::RasterOptions options;
     options.width = place.width;
     options.height = place.height;
     options.supersample = spec.supersampling;
-    if (spec.transparent) options.background.reset();
+    options.background = paper_of(spec);
+    options.even_edges = true;
     render::Image view = rasterizer.draw(list_of(views[i]), camera_of(i), options);
-    if (!views[i].title.empty()) write_title(view, views[i].title, spec);
+    if (spec.titles && !views[i].title.empty()) write_title(view, views[i].title, spec);
     for (int y = 0; y < place.height; ++y)
       std::copy_n(&view.at(0, y), place.width, &picture.at(place.x, place.y + y));
   }

@@ -3,12 +3,14 @@
 
 #include <cstddef>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "render/image.hpp"
 #include "render/overlay.hpp"
 #include "render/rasterize.hpp"
+#include "render/style.hpp"
 #include "scenarios/spec/scenario.hpp"
 
 namespace lrb::run {
@@ -16,6 +18,14 @@ namespace lrb::run {
 /// Returns "frames/frame_0012", and the same with ".png".
 std::string numbered_frame(std::size_t frame);
 std::string frame_file(std::size_t frame);
+
+/// Return how frames look, and what is behind them; nothing where they are transparent.
+render::StyleName style_name(const spec::FrameSpec& spec);
+const render::Style& style_of(const spec::FrameSpec& spec);
+std::optional<render::Rgba> paper_of(const spec::FrameSpec& spec);
+
+/// Leaves out of a frame's texts what is not asked for.
+void leave_out_texts(render::Overlay& overlay, const spec::FrameSpec& spec);
 
 /// Removes what an earlier run left: frames, montage and its caption, certificate of separation.
 void remove_old_frames(const std::string& folder);

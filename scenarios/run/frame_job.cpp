@@ -26,6 +26,13 @@ struct Script {
   render::PixelRect picture;
 };
 
+render::OverlayLayout lay_out_frame(const render::Overlay& overlay, const spec::FrameSpec& spec) try {
+  return render::lay_out(overlay, spec.width, spec.height, static_cast<float>(spec.scale()));
+} catch (const InputError& e) {
+  throw InputError(std::string(e.what()) +
+                   " (--no-title, --no-legend); `lrbscope figure` lays pictures out for a width on paper");
+}
+
 Script write_script(FrameState& state, const std::vector<trace::EventId>& events, const std::string& title,
                     const spec::FrameSpec& spec) {
   Script script;
@@ -40,7 +47,8 @@ Script write_script(FrameState& state, const std::vector<trace::EventId>& events
   std::vector<render::OverlayLayout> layouts;
   for (render::Overlay& overlay : script.overlays) {
     overlay.key = key;
-    layouts.push_back(render::lay_out(overlay, spec.width, spec.height, static_cast<float>(spec.scale())));
+    leave_out_texts(overlay, spec);
+    layouts.push_back(lay_out_frame(overlay, spec));
   }
   script.picture = render::common_picture(layouts);
   return script;
@@ -80,7 +88,7 @@ class Painter {
       options.height = places_[i].height;
       options.title = title;
       options.units_per_pixel = spec_.scale();
-      if (spec_.transparent) options.background.reset();
+      options.background = paper_of(spec_);
       out.push_back(render::svg(state.scene(views_[i].wrapper, plain).list, camera(i, progress), options));
     }
     return out;
@@ -130,7 +138,7 @@ struct FrameJob {
   }
   /// Draws frame i; `state` must stand at its event.
   render::Image frame(std::size_t i) {
-    const render::Rgba back = spec.transparent ? render::kTransparent : render::kWhite;
+    const render::Rgba back = paper_of(spec).value_or(render::kTransparent);
     return render::compose_frame(painter.paint(state, passed(i)), script.picture, script.overlays[i],
                                  spec.width, spec.height, back, static_cast<float>(spec.scale()));
   }
@@ -150,7 +158,8 @@ struct Montage {
     render::MontageOptions options;
     options.columns = static_cast<int>(spec.montage_columns);
     options.letters = panels.size() > 1;
-    if (spec.transparent) options.background = render::kTransparent;
+    options.background = paper_of(spec).value_or(render::kTransparent);
+    options.style = style_name(spec);
     std::vector<std::string> files = {"montage.png", "caption.txt"};
     writer.push(folder + "/montage.png", render::montage(panels, options), png);
     const std::string words = caption(p.purpose.empty() ? p.title + "." : p.purpose);
@@ -159,6 +168,7 @@ struct Montage {
     render::SvgMontageOptions svg_options;
     svg_options.title = words;
     svg_options.transparent = spec.transparent;
+    svg_options.style = style_name(spec);
     svg_options.units_per_pixel = spec.scale();
     io::write_text(folder + "/montage.svg",
                    render::svg_montage(svgs, render::lay_out(panels, options), svg_options));

@@ -8,6 +8,7 @@
 #include "render/palette.hpp"
 #include "scenarios/run/face_groups.hpp"
 #include "scenarios/run/face_values.hpp"
+#include "scenarios/run/frame_files.hpp"
 #include "scenarios/run/moments.hpp"
 #include "scenarios/run/node_box_lines.hpp"
 #include "scenarios/run/pair_lines.hpp"
@@ -239,21 +240,24 @@ render::Scene FrameState::scene(bool wrapper, bool plain) const {
   }
   options.explode = spec_.explode;
   options.contact_rims = true;
-  options.scale = static_cast<float>(spec_.scale());
+  const render::Style& style = style_of(spec_);
+  options.style = style_name(spec_);
+  options.scale = static_cast<float>(spec_.scale()) * style.weight;
   options.isolate = spec_.isolate;
   options.ghost_rest = spec_.ghost_rest;
   render::Scene scene = render::build_scene(bodies, highlight, options);
   if (const WalkExplanation* walk = plain ? nullptr : parting_here())
-    add_parting(scene.list, *walk, *reps_[0], cursor_.pose(Side::a), *reps_[1], cursor_.pose(Side::b));
-  if (const auto gap = gap_here()) add_gap(scene, *gap);
+    add_parting(scene.list, *walk, *reps_[0], cursor_.pose(Side::a), *reps_[1], cursor_.pose(Side::b), style);
+  if (const auto gap = gap_here()) add_gap(scene, *gap, style);
   if (const auto way = way_out_here()) add_way_out(scene, *way, reps_[0]->dim());
   if (const std::span<const WrongPair> wrong = wrong_here(); !plain && !wrong.empty()) {
-    add_wrong_pairs(scene.list, wrong, *reps_[0], cursor_.pose(Side::a), *reps_[1], cursor_.pose(Side::b));
+    add_wrong_pairs(scene.list, wrong, *reps_[0], cursor_.pose(Side::a), *reps_[1], cursor_.pose(Side::b),
+                    style.paper);
     scene.key.push_back({render::LegendItem::Mark::line, render::palette::kWrong, "pair got wrong"});
   }
   for (const Side side : {Side::a, Side::b})
     if (const trace::TreeShape* tree = tree_of(side); spec_.node_boxes && tree != nullptr)
-      add_node_boxes(scene, *tree, side, cursor_.pose(side), *spec_.node_boxes, events_so_far());
+      add_node_boxes(scene, *tree, side, cursor_.pose(side), *spec_.node_boxes, events_so_far(), style);
   return scene;
 }
 
@@ -384,7 +388,8 @@ render::Overlay FrameState::overlay(const std::string& title) const {
   o.event = event_text();
   o.event_colour = parting_here() != nullptr ? kPartingColour
                    : way_out_here()          ? kWayOutColour
-                                             : render::palette::event(cursor_.event().kind);
+                                    : style_of(spec_).of(render::palette::event(cursor_.event().kind));
+  o.style = style_name(spec_);
   if (trace_.header.construction) {
     add_construction(o);
     return o;

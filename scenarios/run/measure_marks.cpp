@@ -99,20 +99,21 @@ std::optional<MarkedWay> way_out_of(const trace::MeasuredClash& clash, const Lrb
   return MarkedWay{middle - way / 2, middle + way / 2, interval_words((*clash.depth)[0], (*clash.depth)[1])};
 }
 
-void add_gap(render::Scene& scene, const MarkedWay& gap) {
-  outline(scene.list, {gap.from, gap.to}, kGapColour, kWayWidth);
+void add_gap(render::Scene& scene, const MarkedWay& gap, const render::Style& style) {
+  const render::Rgba colour = style.of(kGapColour);
+  outline(scene.list, {gap.from, gap.to}, colour, kWayWidth);
   for (const Vector3d& x : {gap.from, gap.to}) {
     render::DrawPoint point;
     point.x = x;
-    point.colour = kGapColour;
+    point.colour = colour;
     point.radius = 4;
-    point.halo = render::kWhite;
+    point.halo = style.paper;
     point.halo_width = kHalo;
     point.layer = render::Layer::on_top;
     scene.list.points.push_back(point);
   }
-  write_beside(scene.list, (gap.from + gap.to) / 2, -kTextOff, gap.text, kGapColour);
-  scene.key.push_back({render::LegendItem::Mark::line, kGapColour, "nearest points"});
+  write_beside(scene.list, (gap.from + gap.to) / 2, -kTextOff, gap.text, colour);
+  scene.key.push_back({render::LegendItem::Mark::line, colour, "nearest points"});
 }
 
 void add_way_out(render::Scene& scene, const MarkedWay& way, int dim) {

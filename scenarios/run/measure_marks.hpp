@@ -13,11 +13,12 @@
 #include "engine/query/walk/contact_region.hpp"
 #include "render/palette.hpp"
 #include "render/scene.hpp"
+#include "render/style.hpp"
 #include "trace/measured.hpp"
 
 namespace lrb::run {
 
-/// Colours of both, and of the marks before words that say what they are.
+/// Colours of both on a screen, and of the marks before words that say what they are.
 inline constexpr render::Rgba kGapColour = render::palette::kInk;
 inline constexpr render::Rgba kWayOutColour = render::palette::kGreen;
 
@@ -36,7 +37,7 @@ std::optional<MarkedWay> way_out_of(const trace::MeasuredClash& clash, const Lrb
                                     std::span<const ContactRegion> contacts);
 
 /// Add it to a scene, over everything that hides it, with its line in the key.
-void add_gap(render::Scene& scene, const MarkedWay& gap);
+void add_gap(render::Scene& scene, const MarkedWay& gap, const render::Style& style);
 void add_way_out(render::Scene& scene, const MarkedWay& way, int dim);
 
 /// Returns an interval in words: "0.25", or "0.2 to 0.3" where four digits tell its ends apart.

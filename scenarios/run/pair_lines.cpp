@@ -16,24 +16,25 @@ std::vector<Vector3d> corners_of(const LrbRep& rep, const Pose& pose, SimplexId 
 }
 
 /// Draws a segment, or the outline of a polygon, over everything that hides it.
-void outline(render::DrawList& list, const std::vector<Vector3d>& corners, render::Rgba colour, float width) {
+void outline(render::DrawList& list, const std::vector<Vector3d>& corners, render::Rgba colour, float width,
+             render::Rgba halo) {
   render::DrawLine line;
   line.points = corners;
   line.closed = corners.size() > 2;
   line.colour = colour;
   line.width = width;
-  line.halo = render::kWhite;
+  line.halo = halo;
   line.halo_width = kHalo;
   line.layer = render::Layer::on_top;
   list.lines.push_back(line);
 }
 
 void add_wrong_pairs(render::DrawList& list, std::span<const WrongPair> pairs, const LrbRep& a,
-                     const Pose& pose_a, const LrbRep& b, const Pose& pose_b) {
+                     const Pose& pose_a, const LrbRep& b, const Pose& pose_b, render::Rgba halo) {
   constexpr float kWidth = 2.5F;
   for (const WrongPair& wrong : pairs) {
-    outline(list, corners_of(a, pose_a, wrong.pair.a), render::palette::kWrong, kWidth);
-    outline(list, corners_of(b, pose_b, wrong.pair.b), render::palette::kWrong, kWidth);
+    outline(list, corners_of(a, pose_a, wrong.pair.a), render::palette::kWrong, kWidth, halo);
+    outline(list, corners_of(b, pose_b, wrong.pair.b), render::palette::kWrong, kWidth, halo);
   }
 }
 

@@ -11,17 +11,17 @@
 
 namespace lrb::run {
 
-inline constexpr float kHalo = 1.5F;  ///< white round lines and points that lie over others
+inline constexpr float kHalo = 1.5F;  ///< round lines and points that lie over others
 
 /// Returns the corners of a simplex in the world.
 std::vector<Eigen::Vector3d> corners_of(const LrbRep& rep, const Pose& pose, SimplexId s);
 
 /// Draws a segment, or the outline of a polygon, over everything that hides it.
 void outline(render::DrawList& list, const std::vector<Eigen::Vector3d>& corners, render::Rgba colour,
-             float width);
+             float width, render::Rgba halo = render::kWhite);
 
 /// Draws the faces of pairs that another engine got wrong.
 void add_wrong_pairs(render::DrawList& list, std::span<const WrongPair> pairs, const LrbRep& a,
-                     const Pose& pose_a, const LrbRep& b, const Pose& pose_b);
+                     const Pose& pose_a, const LrbRep& b, const Pose& pose_b, render::Rgba halo);
 
 }  // namespace lrb::run

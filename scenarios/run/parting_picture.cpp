@@ -41,7 +41,7 @@ void add_square(render::DrawList& list, const Square& corners, int dim) {
 }  // namespace
 
 void add_parting(render::DrawList& list, const WalkExplanation& walk, const LrbRep& a, const Pose& pose_a,
-                 const LrbRep& b, const Pose& pose_b) {
+                 const LrbRep& b, const Pose& pose_b, const render::Style& style) {
   const auto& boxes = walk.nearest_boxes;
   if (walk.plane) {
     add_square(list, parting_square(*walk.plane, a, pose_a, b, pose_b), a.dim());
@@ -49,7 +49,7 @@ void add_parting(render::DrawList& list, const WalkExplanation& walk, const LrbR
     for (const Side side : {Side::a, Side::b}) {
       const WorldBox& box = boxes->boxes[static_cast<std::size_t>(side)];
       BoxLook look;
-      look.colour = render::palette::edge_of(render::palette::body(side));
+      look.colour = style.edge_of(style.body(side));
       look.width = kLine;
       add_box(list, box.centre, box.half, look);
     }
@@ -73,7 +73,7 @@ void draw_parting(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Po
   bodies[1].pose = pose_b;
   bodies[1].name = "B " + b.name();
   render::Scene scene = render::build_scene(bodies, {});
-  add_parting(scene.list, walk, a, pose_a, b, pose_b);
+  add_parting(scene.list, walk, a, pose_a, b, pose_b, render::style_of(render::StyleName::screen));
   render::Overlay overlay;
   overlay.title = a.name() + "  ·  " + b.name();
   overlay.event = std::string(name_of(walk.result.relation));

@@ -15,7 +15,7 @@ inline constexpr render::Rgba kPartingColour = render::palette::kGreen;
 
 /// Adds it. Adds nothing where neither was found.
 void add_parting(render::DrawList& list, const WalkExplanation& walk, const LrbRep& a, const Pose& pose_a,
-                 const LrbRep& b, const Pose& pose_b);
+                 const LrbRep& b, const Pose& pose_b, const render::Style& style);
 
 /// Returns it in a few words, such as "a plane parts them, gap 0.12"; empty where neither was found.
 std::string parting_words(const WalkExplanation& walk);

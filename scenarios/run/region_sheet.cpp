@@ -22,8 +22,8 @@ constexpr double kAround = 1.25;  // of a region's size: what is shown of its su
 constexpr double kLeast = 0.02;   // of the body's size, however small the region
 constexpr double kTilt = 0.45;    // of the usual direction, added to where the lids look
 
-constexpr render::Rgba kLids = render::palette::kOrange, kReal = render::palette::body(Side::a),
-                       kPseudo = render::mix(kReal, render::kWhite, 0.55);
+constexpr render::Rgba kLids = render::palette::kOrange;
+constexpr double kPseudoPale = 0.55;  // of the body's colour
 constexpr std::uint8_t kLidAlpha = 95, kGhostAlpha = 26;
 
 /// How faces are drawn.
@@ -35,13 +35,15 @@ struct Drawn {
 /// Draws the panels of a sheet.
 class RegionSheet {
  public:
-  RegionSheet(const LrbRep& rep, const spec::FrameSpec& frames) : rep_(rep), frames_(frames) {
+  RegionSheet(const LrbRep& rep, const spec::FrameSpec& frames)
+      : rep_(rep), frames_(frames), style_(style_of(frames)) {
     for (const FaceId f : rep.outermost_faces())
       for (const VertexId v : rep.face(f)) whole_.push_back(rep.vertices()[v]);
     for (const Vector3d& x : whole_) box_.extend(x);
     raster_.width = frames.width;
     raster_.height = frames.height;
-    scale_ = static_cast<float>(frames.scale());
+    raster_.background = style_.paper;
+    scale_ = static_cast<float>(frames.scale()) * style_.weight;
   }
 
   /// Draws the body by values, on the scale of `overlay`.
@@ -67,30 +69,32 @@ class RegionSheet {
   render::Panel close_up(const ShownRegion& shown) {
     render::DrawList list;
     const auto edges = list.edge_style({with_alpha(render::palette::kInk, 150), 0.9F * scale_});
-    const auto rims =
-        list.edge_style({with_alpha(render::palette::edge_of(kLids), 230), 1.5F * scale_, 0.4F});
+    const auto rims = list.edge_style({with_alpha(style_.edge_of(kLids), 230), 1.5F * scale_, 0.4F});
     std::vector<bool> of_region(rep_.face_count(), false);
     for (const FaceId f : rep_.collector(shown.region)) of_region[f] = true;
     for (const FaceId f : rep_.floor(shown.region)) {
       const bool real = rep_.is_real(f);
-      add(list, corners(f), real ? kReal : kPseudo, {.style = edges, .edges = true});
+      add(list, corners(f), real ? real_colour() : pseudo_colour(), {.style = edges, .edges = true});
     }
     for (const FaceId f : rep_.lids(shown.region))
       add(list, corners(f), with_alpha(kLids, kLidAlpha), {.style = rims, .edges = true, .veil = true});
     for (FaceId f = 0; f < rep_.real_face_count(); ++f)
-      if (!of_region[f]) add(list, corners(f), with_alpha(kReal, kGhostAlpha), {.veil = true});
+      if (!of_region[f]) add(list, corners(f), with_alpha(real_colour(), kGhostAlpha), {.veil = true});
     return {rasterizer_.draw(list, camera_of(shown.region), raster_), shown.caption};
   }
 
-  static std::vector<render::LegendItem> key() {
+  std::vector<render::LegendItem> key() const {
     using Mark = render::LegendItem::Mark;
     return {{Mark::translucent, kLids, "lids of the region"},
-            {Mark::solid, kReal, "real faces that it hides"},
-            {Mark::solid, kPseudo, "lids that it hides"},
-            {Mark::translucent, with_alpha(kReal, kGhostAlpha), "the rest of the body"}};
+            {Mark::solid, real_colour(), "real faces that it hides"},
+            {Mark::solid, pseudo_colour(), "lids that it hides"},
+            {Mark::translucent, with_alpha(real_colour(), kGhostAlpha), "the rest of the body"}};
   }
 
  private:
+  render::Rgba real_colour() const { return style_.body(Side::a); }
+  render::Rgba pseudo_colour() const { return style_.pale(real_colour(), kPseudoPale); }
+
   std::vector<Vector3d> corners(FaceId f) const {
     std::vector<Vector3d> x;
     for (const VertexId v : rep_.face(f)) x.push_back(rep_.vertices()[v]);
@@ -140,6 +144,7 @@ class RegionSheet {
 
   const LrbRep& rep_;
   const spec::FrameSpec& frames_;
+  const render::Style& style_;
   std::vector<Vector3d> whole_;
   Eigen::AlignedBox3d box_;
   render::RasterOptions raster_;
@@ -154,7 +159,8 @@ render::Image with_overlay(const render::Image& panels, const render::Overlay& o
   const render::OverlayLayout tentative = render::lay_out(overlay, width, panels.height() + room, scale);
   const int height = 2 * panels.height() + room - tentative.picture.height;
   const render::OverlayLayout layout = render::lay_out(overlay, width, height, scale);
-  return render::compose_frame(panels, layout.picture, overlay, width, height, render::kWhite, scale);
+  return render::compose_frame(panels, layout.picture, overlay, width, height,
+                               render::style_of(overlay.style).paper, scale);
 }
 
 }  // namespace
@@ -194,12 +200,15 @@ void draw_region_sheet(const LrbRep& rep, std::span<const double> values, const 
   overlay.title = rep.name() + ": where its wrappers waste most";
   overlay.event = "(a) the body; then the worst regions, seen from where their lids look";
   overlay.scale = render::ScaleBar{name, most > 0 ? most / kRange : 1e-3, most > 0 ? most : 1, true};
-  overlay.key = RegionSheet::key();
+  overlay.key = sheet.key();
+  overlay.style = style_name(frames);
   std::vector<render::Panel> panels = {sheet.whole(values, name, overlay)};
   for (const ShownRegion& r : regions) panels.push_back(sheet.close_up(r));
   render::MontageOptions options;
   options.columns = panels.size() > 6 ? 4 : 3;
   options.frame = true;
+  options.style = overlay.style;
+  options.background = style_of(frames).paper;
   render::write_png(
       with_overlay(render::montage(panels, options), overlay, static_cast<float>(frames.scale())), path,
       {{}, frames.dpi});

@@ -88,8 +88,9 @@ std::vector<report::PageNumber> collision_numbers(const RecordedRun& p, const tr
         "; " + open + (open.size() > 1 ? " are" : " is") + " open: nothing tells inside from outside";
   if (const std::string bare = sides_of(p, [](const LrbRep& rep) { return rep.region_count() == 0; });
       !bare.empty())
-    out.push_back(
-        {"Without wrapper", bare, "no region is built on it, and all of its faces are always shown"});
+    out.push_back({"Without wrapper", bare,
+                   (open.empty() ? std::string() : open + (open.size() > 1 ? " are" : " is") + " open; ") +
+                       "no region is built on it, and all of its faces are always shown"});
   if (const CollideRequest& request = p.trace->header.request; request.is_coarse()) {
     out.back().note +=
         "; of wrappers: " + render::group_digits(pseudo_pairs(*p.trace)) + " with a pseudo face";
@@ -124,10 +125,14 @@ std::vector<report::PageNumber> wrapper_numbers(const LrbRep& rep) {
 }
 
 /// Returns true if hits and contacts are the same curve, which is then shown once. In the complete query only
-/// real faces are compared, so that every hit is a contact.
+/// real faces are compared, so that every hit is a contact: event by event, the one that follows the hit.
 bool same_as_contacts(const trace::Series& hits, const trace::Chart& chart) {
-  return std::any_of(chart.series.begin(), chart.series.end(),
-                     [&](const trace::Series& s) { return s.name == "contacts" && s.values == hits.values; });
+  const auto same = [&](const trace::Series& s) {
+    return s.name == "contacts" &&
+           std::equal(s.values.begin(), s.values.end(), hits.values.begin(), hits.values.end(),
+                      [](double contacts, double all) { return contacts == all || contacts + 1 == all; });
+  };
+  return std::any_of(chart.series.begin(), chart.series.end(), same);
 }
 
 /// Returns true for the curve of a wrapper that its body does not have.
@@ -326,6 +331,12 @@ void add_frames(report::Page& page, const DrawnFrames& drawn, const std::string&
     page.frames.push_back({std::move(images.uris[i]), f.caption, f.file, static_cast<double>(f.event),
                            static_cast<double>(f.step)});
   }
+}
+
+void add_live_figure(report::Page& page, const std::string& folder, const std::string& title,
+                     const std::string& caption, const std::string& file) {
+  page.figures.push_back({title, caption, {}, file, io::read_text(folder + "/" + file)});
+  page.links.push_back({file, file, title});
 }
 
 void add_figure(report::Page& page, const std::string& folder, const std::string& title,

@@ -15,6 +15,7 @@
 #include "scenarios/run/scene_frame.hpp"
 #include "scenarios/run/thinned_events.hpp"
 #include "scenarios/run/tree_boxes.hpp"
+#include "scenarios/spec/scenario_frames.hpp"
 #include "trace/counters.hpp"
 #include "trace/hex.hpp"
 #include "trace/names.hpp"
@@ -378,6 +379,16 @@ std::string too_large_words(std::size_t faces, const SceneLimits& limits) {
          ". lrbscope render draws them.";
 }
 
+/// Returns from where frames are seen, as their first view has it: the page's view begins so. Null where nobody has said it.
+json view_json(const trace::TraceHeader& header) {
+  const std::vector<spec::FrameSpec::View> views =
+      spec::read_pictures(header.pictures, header.scenario).views;
+  if (views.empty() || views[0].camera == spec::FrameSpec::Camera::fixed) return nullptr;
+  const auto vector = [](const Eigen::Vector3d& v) { return json({v.x(), v.y(), v.z()}); };
+  return {
+      {"from", vector(views[0].from)}, {"up", vector(views[0].up)}, {"orthographic", views[0].orthographic}};
+}
+
 }  // namespace
 
 std::string scene_json(const RecordedRun& p, const SceneSource& source, const SceneLimits& limits) {
@@ -394,6 +405,7 @@ std::string scene_json(const RecordedRun& p, const SceneSource& source, const Sc
   const json out = {{"dim", p.reps[0]->dim()},
                     {"origin", {frame.origin.x(), frame.origin.y(), frame.origin.z()}},
                     {"unit", frame.unit},
+                    {"view", view_json(trace.header)},
                     {"wrapper", name_of(trace.header.request.wrapper)},
                     {"thinned", thinned_words(trace, events, source.trace_file)},
                     {"tooLarge", faces <= limits.faces ? "" : too_large_words(faces, limits)},

@@ -98,6 +98,8 @@ struct FrameSpec {
     box_tests,
     plane_tests,
   };
+  /// How pictures look as a whole (render/style.hpp).
+  enum class Style : std::uint8_t { screen, print, dark };
   /// Whose numbers colour a face: its own, or the sum over the faces of its region or of its level.
   enum class ColourPer : std::uint8_t { face, region, level };
   struct View {
@@ -128,6 +130,9 @@ struct FrameSpec {
   ColourPer colour_per = ColourPer::face;
   std::vector<View> views;  ///< side by side; none: one of the whole scene
   bool transparent = false;
+  Style style = Style::screen;
+  bool titles = true;  ///< above and below a picture: what it is, the event, counters, and titles of views
+  bool legend = true;  ///< what colours mean
   std::array<std::vector<RegionId>, 2> isolate;  ///< regions of A and B to show alone; none: everything
   bool ghost_rest = true;  ///< what becomes of the rest where some are isolated: a ghost, or nothing
   bool svg = false;        ///< writes each view of a frame as SVG as well (2D)
@@ -173,6 +178,11 @@ constexpr auto words_of(FrameSpec::ColourPer) {
   using ColourPer = FrameSpec::ColourPer;
   return std::to_array<EnumWord<ColourPer>>(
       {{ColourPer::face, "face"}, {ColourPer::region, "region"}, {ColourPer::level, "level"}});
+}
+constexpr auto words_of(FrameSpec::Style) {
+  using Style = FrameSpec::Style;
+  return std::to_array<EnumWord<Style>>(
+      {{Style::screen, "screen"}, {Style::print, "print"}, {Style::dark, "dark"}});
 }
 /// Returns the events that colours need.
 constexpr EventLevel needed_level(FrameSpec::ColourBy by) {

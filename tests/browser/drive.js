@@ -559,7 +559,38 @@
     press("i");
   }
 
+  /** A body without regions is never called a wrapper. */
+  async function showsTheOpenBody() {
+    const { events, selection } = run;
+    selection.goTo(events.kind.indexOf(events.STEP));
+    await frame();
+    const says = (id, words) =>
+      check(byId(id).textContent.includes(words), `${id} says "${words}"`, byId(id).textContent);
+    says("view-caption", "A itself, which has no wrapper; B's is the outermost one");
+    says("view-caption", "Wrappers: A 5 (no wrapper) + B ");
+    says("event-facts", "A 5 (no wrapper) + B ");
+    says("legend", "A open, real faces");
+    says("legend", "B rock, pseudo faces");
+    check(!byId("legend").textContent.includes("A open, pseudo faces"), "the legend has no pseudo faces of A");
+    const numbers = document.querySelector(".numbers").textContent;
+    check(numbers.includes("A is open; no region is built on it"), "the page says why", numbers);
+  }
+
+  /** The view begins as the scenario's first one looks, with its axis up, and turns about that. */
+  async function looksAsFramesDo() {
+    const { camera } = run.view,
+      way = () => camera.camera.position.clone().sub(camera.controls.target).normalize();
+    run.view.frameAll(camera.from);
+    await frame();
+    check(way().distanceTo(new THREE.Vector3(0.5, 0.6, 0.6).normalize()) < 1e-6, "looks from where frames do", way().toArray());
+    const height = way().y;
+    camera.turn(0.7, 0);
+    check(Math.abs(way().y - height) < 1e-6, "turns about the axis that is up", way().toArray());
+    equal(JSON.stringify(camera.json().up), "[0,1,0]", "a copied camera says which");
+  }
+
   const parts = {
+    open: [opensAtFirstContact, showsTheOpenBody, looksAsFramesDo, fitsTheWidth],
     plane: [opensAtFirstContact, replaysAsRecorded, liesFlat, fitsTheWidth],
     build: [opensAtTheBody, replaysAsRecorded, buildsPassByPass, fitsTheWidth],
     all: [

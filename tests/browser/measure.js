@@ -227,6 +227,7 @@
         const ratio = contrast(over(colour(set.borderColor), ground), ground);
         if (ratio < 2) fail(`a curve of contrast ${ratio.toFixed(2)}`, set.label);
       }
+      if (chart.chartArea.width < 0.5 * chart.width) fail("a chart squeezed to the side", path(chart.canvas));
       const { legend } = chart;
       for (const item of legend && legend.legendHitBoxes && legend.options.display ? legend.legendHitBoxes : [])
         if (item.left < -1 || item.left + item.width > chart.width + 1 || item.top + item.height > chart.height + 1)

@@ -11,6 +11,7 @@
 #include "engine/core/error.hpp"
 #include "render/image_diff.hpp"
 #include "render/palette.hpp"
+#include "render/style.hpp"
 
 using namespace lrb;
 
@@ -137,19 +138,67 @@ TEST_CASE("kinds differ in lightness, and to people with any common colour visio
       {{{0.152286, 1.052583, -0.204868}, {0.114503, 0.786281, 0.099216}, {-0.003882, -0.048116, 1.051998}}},
       {{{0.367322, 0.860646, -0.227968}, {0.280085, 0.672501, 0.047413}, {-0.011820, 0.042940, 0.968881}}},
       {{{1.255528, -0.076749, -0.178779}, {-0.078411, 0.930809, 0.147602}, {0.004733, 0.691367, 0.303900}}}};
-  namespace palette = render::palette;
-  const std::vector<render::Rgba> kinds = {palette::body(Side::a), palette::body(Side::b), palette::kContact,
-                                           palette::kRefining, palette::kUnderTest};
-  for (std::size_t eye = 0; eye < eyes.size(); ++eye)
-    for (std::size_t i = 0; i < kinds.size(); ++i)
-      for (std::size_t j = 0; j < i; ++j) {
-        CAPTURE(eye);
-        CAPTURE(i);
-        CAPTURE(j);
-        const auto x = lab(kinds[i], eyes[eye]), y = lab(kinds[j], eyes[eye]);
-        CHECK(std::hypot(x[0] - y[0], x[1] - y[1], x[2] - y[2]) > 10);  // 2.3 can just be noticed
-        if (eye == 0) CHECK(std::abs(x[0] - y[0]) > 6);
-      }
+  struct Wanted {
+    render::StyleName name;
+    double lightness;  // between any two kinds
+  };
+  for (const Wanted& wanted : {Wanted{render::StyleName::screen, 6}, Wanted{render::StyleName::print, 11},
+                               Wanted{render::StyleName::dark, 8}}) {
+    const render::Style& style = render::style_of(wanted.name);
+    CAPTURE(static_cast<int>(wanted.name));
+    const std::vector<render::Rgba> kinds = {style.body(Side::a), style.body(Side::b), style.contact,
+                                             style.refining, style.under_test};
+    for (std::size_t eye = 0; eye < eyes.size(); ++eye)
+      for (std::size_t i = 0; i < kinds.size(); ++i)
+        for (std::size_t j = 0; j < i; ++j) {
+          CAPTURE(eye);
+          CAPTURE(i);
+          CAPTURE(j);
+          const auto x = lab(kinds[i], eyes[eye]), y = lab(kinds[j], eyes[eye]);
+          CHECK(std::hypot(x[0] - y[0], x[1] - y[1], x[2] - y[2]) > 10);  // 2.3 can just be noticed
+          if (eye == 0) CHECK(std::abs(x[0] - y[0]) > wanted.lightness);
+        }
+  }
+}
+
+TEST_CASE("texts, lines and bodies stand out from the background of each style") {
+  // Of WCAG 2: 4.5 for text, 3 for what has to be seen; a thin frame may be fainter.
+  const auto luminance = [](render::Rgba c) {
+    const double lightness = lab(c, {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}})[0];
+    return std::pow((lightness + 16) / 116, 3);
+  };
+  for (const render::StyleName name :
+       {render::StyleName::screen, render::StyleName::print, render::StyleName::dark}) {
+    CAPTURE(static_cast<int>(name));
+    const render::Style& style = render::style_of(name);
+    const auto contrast = [&](render::Rgba c) {
+      const double a = luminance(c) + 0.05, b = luminance(style.paper) + 0.05;
+      return std::max(a, b) / std::min(a, b);
+    };
+    CHECK(contrast(style.ink) > 12);
+    CHECK(contrast(style.faint) > 4.5);
+    CHECK(contrast(style.contact) > 4.5);
+    for (const Side side : {Side::a, Side::b}) {
+      CHECK(contrast(style.edge_of(style.body(side))) > 7);
+      CHECK(contrast(style.solid_2d(style.body(side))) > 3);
+      // The solid stands out from the regions around it, whose fill lets the paper through, and contacts from both.
+      const render::Rgba region = render::over(render::with_alpha(style.body(side), 78), style.paper);
+      CHECK(std::abs(luma(style.solid_2d(style.body(side))) - luma(region)) > 40);
+      CHECK(std::abs(lab(style.contact, {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}})[0] -
+                     lab(style.body(side), {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}})[0]) > 8);
+    }
+  }
+}
+
+TEST_CASE("a style has its own colours for the palette's kinds, and leaves others alone") {
+  const render::Style& dark = render::style_of(render::StyleName::dark);
+  CHECK(dark.of(render::palette::kContact) == dark.contact);
+  CHECK(dark.of(render::palette::kInk) == dark.ink);
+  CHECK(dark.of(render::palette::kSkyBlue) == render::palette::kSkyBlue);
+  const render::Style& screen = render::style_of(render::StyleName::screen);
+  for (const render::Rgba c :
+       {render::palette::kContact, render::palette::kFaint, render::palette::kUnderTest})
+    CHECK(screen.of(c) == c);
 }
 
 TEST_CASE("viridis brightens from end to end and is clamped") {

@@ -207,6 +207,9 @@ TEST_CASE("an SVG canvas holds pictures and clips") {
   CHECK(count(svg, "<rect x=\"1\" y=\"2\" width=\"3\" height=\"4\"/></clipPath>") == 1);
   CHECK(count(svg, "clip-path=\"url(#clip1)\"") == 1);
   CHECK(count(svg, "<image x=\"0\" y=\"0\" width=\"8\" height=\"4\"") == 1);
-  CHECK(count(svg, "href=\"data:image/png;base64,iVBORw0KGgo") == 1);
+  CHECK(
+      count(svg,
+            " xmlns:xlink=\"http://www.w3.org/1999/xlink\" xlink:href=\"data:image/png;base64,iVBORw0KGgo") ==
+      1);
   CHECK(count(svg, "<title>&lt;</title>") == 1);
 }

@@ -117,6 +117,7 @@ spec::FrameSpec frame_spec(const FigureOptions& o, const Source& source) {
   if (o.close_up) frames.views = whole_and_contact(frames.views);
   PictureOptions picture = o.picture;
   picture.dpi.reset();  // it is the figure's
+  if (!picture.style) picture.style = spec::FrameSpec::Style::print;
   apply(picture, frames);
   run::check_views(frames.views, source.recording.bodies[0].rep.dim());
   if (source.own_view && picture.camera.from.empty()) {
@@ -193,6 +194,7 @@ void add_paper_options(CLI::App& app, FigureOptions& o) {
                "Leave legend and colour bar out, or have them [they are there]");
   app.add_flag("--caption", o.figure.caption,
                "Set the caption below; it is always written to FIG.caption.txt");
+  add_style_option(app, o.picture, "print");
   app.add_flag("--transparent", o.picture.transparent, "Draw without a background");
 }
 
@@ -212,6 +214,7 @@ Command add_figure(CLI::App& root, const Globals& globals) {
   add_paper_options(*app, *o);
   app->add_flag("--close-up", o->close_up, "Add panels of the contact, bodies alone");
   add_camera_options(*app, o->picture.camera);
+  add_orbit_option(*app, o->picture.camera);
   add_colour_options(*app, o->picture);
   return {app, [o, &globals] { return run_figure(*o, globals); }};
 }

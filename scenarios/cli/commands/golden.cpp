@@ -231,12 +231,33 @@ int run_list(const GoldenOptions& o) {
   return kOk;
 }
 
+/// Throws InputError if a golden is of another scenario, which is still there: two of one name would take turns in one folder.
+void refuse_another(const GoldenOptions& o, const std::string& name, const std::string& kept,
+                    const std::string& reference, const std::string& word) {
+  if (kept == reference) return;
+  golden::GoldenSpec other;
+  other.scenario = kept;
+  try {
+    golden::golden_scenario(o.goldens, name, other);
+  } catch (const InputError&) {
+    return;  // it has gone, or has another name by now
+  }
+  const std::filesystem::path folder = std::filesystem::path(o.goldens) / name;
+  throw InputError(printable_name(word) + ": has the name of another scenario, whose golden is in " +
+                   printable_name(folder.string()) + " (its \"scenario\" is " + kept +
+                   "): rename one of the two, or approve into another folder with --goldens");
+}
+
 golden::GoldenSpec spec_to_approve(const GoldenOptions& o, const std::string& name,
                                    const spec::Scenario& scenario, const std::string& word) {
   golden::GoldenSpec spec;
   if (golden::has_golden(o.goldens, name)) {
     spec = golden::read_golden_spec(o.goldens, name);
-    if (name != word) spec.scenario = golden::scenario_reference(o.goldens, scenario, word);
+    if (name != word) {
+      const std::string reference = golden::scenario_reference(o.goldens, scenario, word);
+      refuse_another(o, name, spec.scenario, reference, word);
+      spec.scenario = reference;
+    }
   } else {
     golden::set_default_size(spec, scenario.frames);
     spec.scenario = golden::scenario_reference(o.goldens, scenario, word);
@@ -297,6 +318,7 @@ void add_comparison(CLI::App& app, const std::shared_ptr<GoldenOptions>& o) {
          },
          "What must be as approved, separated by commas: answers, events, pictures [all, or as the golden says]")
       ->delimiter(',')
+      ->allow_extra_args(false)  // scenarios may follow
       ->check(CLI::IsMember(words).description(""))
       ->type_name(all_names<golden::Level>(",", ","));
   app.add_option("--picture-tolerance", o->large_share,

@@ -190,9 +190,10 @@ std::string figures_html(const Page& page) {
   std::string out;
   for (const PageFigure& f : page.figures)
     out += "<section class=\"figure\"><h2>" + render::escape_markup(f.title) + "</h2>\n<figure><a href=\"" +
-           render::escape_markup(f.file) + "\"><img src=\"" + f.data_uri + "\" alt=\"" +
-           render::escape_markup(f.title) + "\"></a><figcaption>" + render::escape_markup(f.caption) +
-           "</figcaption></figure></section>\n";
+           render::escape_markup(f.file) + "\">" +
+           (f.svg.empty() ? "<img src=\"" + f.data_uri + "\" alt=\"" + render::escape_markup(f.title) + "\">"
+                          : f.svg) +
+           "</a><figcaption>" + render::escape_markup(f.caption) + "</figcaption></figure></section>\n";
   return out;
 }
 

@@ -68,6 +68,8 @@ struct PageFigure {
   std::string title, caption;
   std::string data_uri;  ///< see inline_image.hpp
   std::string file;      ///< link to the full picture, relative to the page; may be empty
+  std::string svg =
+      {};  ///< in place of data_uri: the picture's own markup, so that its parts can say what they are
 };
 
 /// The view in three dimensions of another page, beside this one.

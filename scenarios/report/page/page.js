@@ -93,8 +93,15 @@ const cursorPlugin = {
   },
 };
 
+/** Drops the ticks of a logarithmic axis that lie beyond its ends: room would be left for them. */
+function ticksWithin(axis) {
+  const within = axis.ticks.filter((t) => t.value >= axis.min * (1 - 1e-9) && t.value <= axis.max * (1 + 1e-9));
+  axis.ticks = within.length ? within : [{ value: axis.min }, { value: axis.max }];
+}
+
 function axis(title, log) {
   return {
+    ...(log ? { afterBuildTicks: ticksWithin } : {}),
     type: log ? "logarithmic" : "linear", bounds: "data", title: { display: true, text: title, color: style("--soft") },
     grid: { color: style("--grid"), borderColor: style("--line") }, ticks: { color: style("--soft"), maxRotation: 0, precision: log ? undefined : 0 },
   };
@@ -129,6 +136,30 @@ function seen(colour) {
   }
 }
 
+/** Returns how high a chart's legend is, in pixels, if it is so wide: as Chart.js lays it out. */
+function legendHeight(spec, canvas, width) {
+  const { font } = Chart.defaults, gap = 10, context = canvas.getContext("2d");
+  if (spec.series.length < 2) return 0;
+  context.font = `${font.size}px ${font.family}`;
+  let rows = 1, used = gap;
+  for (const s of spec.series) {
+    const item = 14 + font.size / 2 + context.measureText(s.label).width + gap;
+    if (used > gap && used + item > width - gap) {
+      rows++;
+      used = gap;
+    }
+    used += item;
+  }
+  return Math.ceil(rows * (font.size + gap) + gap);
+}
+
+/** Gives a chart the room that its legend needs where it is narrow, besides that of the chart itself. */
+function makeRoom(spec, canvas, width) {
+  const height = legendHeight(spec, canvas, width), few = 80;
+  canvas.parentElement.style.minHeight = height > few ? `calc(14rem + ${height}px)` : "";
+  return height;
+}
+
 function makeChart(spec, canvas) {
   const colours = spec.series.map((s, i) => seen(s.colour || style(`--s${i % 7}`)));
   const datasets = spec.series.map((s, i) => ({
@@ -137,6 +168,7 @@ function makeChart(spec, canvas) {
     pointRadius: s.line ? 0 : spec.scatter ? 4 : s.data.length > 80 ? 0 : 2.2, pointHitRadius: s.line ? 0 : 8,
     pointStyle: s.shape || "circle", clip: 12,
   }));
+  const room = makeRoom(spec, canvas, canvas.parentElement.clientWidth);
   const chart = new Chart(canvas, {
     type: spec.scatter ? "scatter" : "line", data: { datasets }, plugins: [cursorPlugin],
     options: {
@@ -144,12 +176,15 @@ function makeChart(spec, canvas) {
       interaction: { mode: spec.scatter ? "nearest" : "index", intersect: false },
       scales: { x: { ...axis(spec.x, spec.logX), ...(spec.mostX > spec.leastX ? ends(spec) : {}) }, y: { ...axis(spec.y, spec.logY), bounds: "ticks", beginAtZero: !spec.logY } },
       plugins: {
-        legend: { display: datasets.length > 1, position: "bottom", labels: { color: style("--ink"), boxWidth: 14, boxHeight: spec.series.some((s) => s.shape) ? 6 : 2, usePointStyle: spec.series.some((s) => s.shape) } },
+        legend: { display: datasets.length > 1, position: "bottom", maxHeight: room, labels: { color: style("--ink"), boxWidth: 14, boxHeight: spec.series.some((s) => s.shape) ? 6 : 2, usePointStyle: spec.series.some((s) => s.shape) } },
         decimation: { enabled: !spec.scatter, algorithm: "min-max" },
         tooltip: { callbacks: {
           title: (items) => (!items.length ? "" : items[0].raw.note ? items[0].dataset.label : `${spec.x} ${items[0].parsed.x.toLocaleString()}`),
           label: (item) => (item.raw.note ? item.raw.note.split("\n") : `${item.dataset.label}: ${item.formattedValue}`),
         } },
+      },
+      onResize(chart, size) {
+        chart.options.plugins.legend.maxHeight = makeRoom(spec, canvas, size.width);
       },
       onClick(e) {
         const hit = chart.getElementsAtEventForMode(e, "nearest", { intersect: true }, false);

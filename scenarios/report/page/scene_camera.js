@@ -3,14 +3,17 @@ const FIELD = 0.6; // radians from bottom to top, as render/camera.hpp has it
 const VIEW_FROM = [0.62, -0.68, 0.42]; // and the direction that frames are seen from
 
 class SceneCamera {
-  constructor(canvas, frame, changed) {
-    this.frame = frame; // origin and unit: x_world = origin + unit * x
+  /** `scene` says how the page's unit is the world's (origin and unit: x_world = origin + unit * x), and from where frames are seen
+      (view: from, up, orthographic; null: not said). */
+  constructor(canvas, scene, changed) {
+    this.frame = scene;
     this.perspective = new THREE.PerspectiveCamera((FIELD * 180) / Math.PI, 1, 0.01, 100);
     this.flat = new THREE.OrthographicCamera(-1, 1, 1, -1, -100, 100);
     this.camera = this.perspective;
-    this.plane = frame.dim === 2; // seen from above, without turning
-    this.from = this.plane ? [0, 0, 1] : VIEW_FROM;
-    this.up = this.plane ? new THREE.Vector3(0, 1, 0) : new THREE.Vector3(0, 0, 1);
+    this.plane = scene.dim === 2; // seen from above, without turning
+    const { from, up, orthographic } = scene.view || { from: VIEW_FROM, up: [0, 0, 1], orthographic: false };
+    this.from = this.plane ? [0, 0, 1] : from;
+    this.up = this.plane ? new THREE.Vector3(0, 1, 0) : new THREE.Vector3(...up).normalize();
     this.lamp = new THREE.DirectionalLight(0xffffff, 0.5);
     this.lamp.position.set(-0.4, 0.7, 1);
     for (const camera of [this.perspective, this.flat]) camera.up.copy(this.up);
@@ -22,6 +25,10 @@ class SceneCamera {
       this.controls.mouseButtons.LEFT = THREE.MOUSE.PAN;
       this.controls.touches.ONE = THREE.TOUCH.PAN;
       this.perspective.position.set(0, 0, 1);
+      this.setOrthographic(true);
+    }
+    if (orthographic && !this.plane) {
+      this.perspective.position.set(...this.from);
       this.setOrthographic(true);
     }
     this.controls.enableZoom = false; // until the view has the focus: the wheel scrolls the page
@@ -137,17 +144,15 @@ class SceneCamera {
   /** Turns about the target, in radians. */
   turn(azimuth, elevation) {
     if (this.plane) return;
+    const upright = new THREE.Quaternion().setFromUnitVectors(this.up, new THREE.Vector3(0, 1, 0));
     const s = new THREE.Spherical().setFromVector3(
-      this.camera.position
-        .clone()
-        .sub(this.controls.target)
-        .applyAxisAngle(new THREE.Vector3(1, 0, 0), -Math.PI / 2),
+      this.camera.position.clone().sub(this.controls.target).applyQuaternion(upright),
     );
     s.theta += azimuth;
     s.phi = Math.max(0.01, Math.min(Math.PI - 0.01, s.phi - elevation));
     this.camera.position
       .setFromSpherical(s)
-      .applyAxisAngle(new THREE.Vector3(1, 0, 0), Math.PI / 2)
+      .applyQuaternion(upright.inverse())
       .add(this.controls.target);
     this.controls.update();
   }
@@ -202,7 +207,7 @@ class SceneCamera {
       projection: this.orthographic ? "orthographic" : "perspective",
       eye: world(eye),
       target: world(target),
-      up: [0, 0, 1],
+      up: this.up.toArray(),
     };
   }
 }

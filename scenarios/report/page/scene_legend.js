@@ -43,7 +43,7 @@ class Legend {
         `${name}, real faces${key && COUNTERS.includes(now.by) ? ` without ${now.by}` : ""}`,
         key ? css(colours.edge(b.side)) : "",
       ]);
-      if (!key && now.by === "kind")
+      if (!key && now.by === "kind" && b.regionCount)
         items.push([css(mixed(colour, WHITE, 0.7)), `${name}, pseudo faces`, css(colours.edge(b.side))]);
     });
     if (now.by === "region")

@@ -34,9 +34,7 @@ class Panel {
     if (this.wrappers)
       rows.push([
         events.passes ? "hull" : "wrapper",
-        this.wrappers.sizes
-          .map((n, s) => `${this.bodies.length > 1 ? SIDES[s] + " " : ""}${digits(n)}`)
-          .join(" + ") + " faces",
+        events.passes ? `${digits(this.wrappers.sizes[0])} faces` : sizeWords(this.bodies, this.wrappers.sizes),
       ]);
     const wrong = events.wrong[events.step(i)];
     if (wrong.length) rows.push(["wrong", this.wrongButton(wrong), "Pairs that the engine got wrong in this step"]);

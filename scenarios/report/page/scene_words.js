@@ -13,7 +13,7 @@ function eventWords(events, i) {
     b = events.b[i];
   const side = two ? ` of ${SIDES[events.side[i]]}` : "";
   if (events.passes) return builtWords(events, i);
-  if (kind === events.STEP) return two ? "both wrappers are the outermost ones" : "the outermost wrapper";
+  if (kind === events.STEP) return firstWrapperWords(events.bodies);
   if (kind === events.REFINE) return `region ${digits(a)}${side}: ${plural(b, "face")} under it`;
   if (kind === events.COARSEN) return `region ${digits(a)}${side} added`;
   if (kind === events.RESULT)
@@ -33,6 +33,22 @@ function eventWords(events, i) {
     .filter(([r, n]) => r.sort && n !== NONE)
     .map(([r, n]) => one(r, n))
     .join(", ");
+}
+
+/** Returns what a step begins with. A body without regions, such as an open one, has no wrapper. */
+function firstWrapperWords(bodies) {
+  const bare = bodies.filter((b) => !b.regionCount);
+  if (bodies.length === 1) return bare.length ? "the body itself, which has no wrapper" : "the outermost wrapper";
+  if (bare.length === 2) return "the bodies themselves, which have no wrappers";
+  if (!bare.length) return "both wrappers are the outermost ones";
+  return `${SIDES[bare[0].side]} itself, which has no wrapper; ${SIDES[1 - bare[0].side]}'s is the outermost one`;
+}
+
+/** Returns how many faces are shown of each body: of its wrapper, or of itself where it has none. */
+function sizeWords(bodies, sizes) {
+  const one = (n, side) =>
+    `${bodies.length > 1 ? `${SIDES[side]} ` : ""}${digits(n)}${bodies[side].regionCount ? "" : " (no wrapper)"}`;
+  return `${sizes.map(one).join(" + ")} faces`;
 }
 
 /** Returns what an event of a construction is about. */
@@ -74,7 +90,6 @@ function eventSentence(events, wrappers, i) {
   const result = meet ? ` (${meet})` : "";
   const about = `${eventPlace(events, i)}, ${events.kindOf(i).name}: ${eventWords(events, i)}${result}.`;
   if (!wrappers) return about;
-  const sizes = wrappers.sizes.map(digits).join(" + ");
-  if (events.passes) return `${about} Hull: ${sizes} faces.`;
-  return `${about} ${wrappers.sizes.length > 1 ? "Wrappers" : "Wrapper"}: ${sizes} faces.`;
+  if (events.passes) return `${about} Hull: ${digits(wrappers.sizes[0])} faces.`;
+  return `${about} ${wrappers.sizes.length > 1 ? "Wrappers" : "Wrapper"}: ${sizeWords(events.bodies, wrappers.sizes)}.`;
 }

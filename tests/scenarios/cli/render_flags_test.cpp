@@ -3,6 +3,7 @@
 #include <doctest/doctest.h>
 
 #include "render/png.hpp"
+#include "render/style.hpp"
 #include "tests/support/program.hpp"
 
 namespace lrb::test {
@@ -94,6 +95,71 @@ TEST_CASE("--dpi: the same size on paper in more pixels, said in the file; lines
   const std::string text = slurp(folder / "print/frames/frame_0000.svg");
   CHECK(text.find("width=\"480\"") != std::string::npos);
   CHECK(text.find("viewBox=\"0 0 1440 ") != std::string::npos);
+}
+
+TEST_CASE("--style: background and lines of frames, montages, figures and sheets; a trace keeps it") {
+  const Folder folder;
+  folder.write("s.json", scenario("island"));
+  const auto corner = [&](const std::string& file) { return render::read_png(folder / file).image.at(0, 0); };
+  const render::Rgba dark = render::style_of(render::StyleName::dark).paper;
+  REQUIRE(
+      run(folder, {"run", "s.json", "-o", "run", "--style", "dark", "--frames", "refinement", "--most", "1"})
+          .code == 0);
+  CHECK(corner("run/frames/frame_0000.png") == dark);
+  const std::vector<std::string> again = {"render",  "run/trace.json", "--most", "1",        "--size",
+                                          "480x360", "--montage",      "1",      "--format", "svg",
+                                          "-o"};
+  const auto render_as = [&](const std::string& out, const std::string& style) {
+    std::vector<std::string> all = again;
+    all.push_back(out);
+    if (!style.empty()) all.insert(all.end(), {"--style", style});
+    REQUIRE(run(folder, all).code == 0);
+    return slurp(folder / (out + "/frames/frame_0000.png"));
+  };
+  const std::string kept = render_as("kept", ""), print = render_as("print", "print"),
+                    screen = render_as("screen", "screen");
+  CHECK(corner("kept/montage.png") == dark);
+  CHECK(slurp(folder / "kept/montage.svg").find("fill=\"#14161b\"") != std::string::npos);
+  CHECK(corner("screen/montage.png") == render::kWhite);
+  CHECK(kept != screen);
+  CHECK(print != screen);
+  for (const char* style : {"print", "dark"})
+    REQUIRE(run(folder, {"figure", "run", "-o", std::string(style) + ".svg", "--style", style}).code == 0);
+  REQUIRE(run(folder, {"figure", "run", "-o", "usual.svg"}).code == 0);
+  CHECK(slurp(folder / "usual.svg") == slurp(folder / "print.svg"));
+  CHECK(slurp(folder / "dark.svg").find("fill=\"#14161b\"") != std::string::npos);
+  REQUIRE(run(folder, {"inspect", "run/a.lrb", "--render", "-o", "sheet.png", "--style", "dark"}).code == 0);
+  CHECK(corner("sheet.png") == dark);
+}
+
+TEST_CASE("--no-title, --no-legend: what is left out needs no room, so that small frames can be drawn") {
+  const Folder folder;
+  folder.write("s.json", scenario("island"));
+  const std::vector<std::string> small = {"run",    "s.json", "--frames", "refinement", "--size",
+                                          "120x90", "--most", "1",        "-o"};
+  const auto run_small = [&](const std::string& out, std::vector<std::string> more) {
+    std::vector<std::string> all = small;
+    all.push_back(out);
+    all.insert(all.end(), more.begin(), more.end());
+    return run(folder, all);
+  };
+  const Outcome refused = run_small("a", {});
+  CHECK(refused.code == 2);
+  CHECK(refused.err.find("too small for its title") != std::string::npos);
+  CHECK(refused.err.find("--no-title, --no-legend") != std::string::npos);
+  REQUIRE(run_small("b", {"--no-title", "--no-legend"}).code == 0);
+  const render::Image image = render::read_png(folder / "b/frames/frame_0000.png").image;
+  REQUIRE(image.width() == 120);
+  // The body reaches nearly from the top to the bottom.
+  const auto drawn = [&](int y) {
+    for (int x = 0; x < image.width(); ++x)
+      if (image.at(x, y) != render::kWhite) return true;
+    return false;
+  };
+  int top = 0, bottom = image.height() - 1;
+  while (top < bottom && !drawn(top)) ++top;
+  while (top < bottom && !drawn(bottom)) --bottom;
+  CHECK(bottom - top > 0.8 * image.height());
 }
 
 TEST_CASE("--transparent: no background in PNG and SVG; laid on white, the usual frame") {

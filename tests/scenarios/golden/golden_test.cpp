@@ -367,6 +367,23 @@ TEST_CASE("goldens: what is damaged fails, and the others are tested all the sam
   check_fails("golden.json:1:");
 }
 
+TEST_CASE("goldens: two scenarios of one name are refused; one that has been moved is not") {
+  const Approved folder;
+  const std::string approved = slurp(folder / "goldens/balls/trace.json.gz");
+  folder.write("more/balls.scenario.json", two_balls(", \"most\": 1"));
+  const auto approve = [&](const std::string& file) {
+    return test::run(folder, {"golden", "approve", "--frames", "2", file});
+  };
+  const Outcome refused = approve("more/balls.scenario.json");
+  CHECK(refused.code == 2);
+  CHECK(has(refused.err, "more/balls.scenario.json: has the name of another scenario"));
+  CHECK(slurp(folder / "goldens/balls/trace.json.gz") == approved);
+  CHECK(approve("./balls.scenario.json").code == 0);
+  std::filesystem::rename(folder / "balls.scenario.json", folder / "more/moved.scenario.json");
+  CHECK(approve("more/moved.scenario.json").code == 0);
+  CHECK(folder.test().code == 0);
+}
+
 namespace {
 
 /// A folder with an approved golden of two tetrahedra in files, the first of which has its tip in the other.

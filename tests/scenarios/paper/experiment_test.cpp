@@ -198,7 +198,8 @@ TEST_CASE("paper --experiment: only what is asked for, on bodies of one's own; p
   const auto run = [&](std::vector<std::string> args) { return test::run(folder, std::move(args)); };
   REQUIRE(run({"paper", "--experiment", "table1", "-o", "one"}).code == 0);
   CHECK_FALSE(std::filesystem::exists(folder / "one/records.jsonl"));
-  CHECK(test::slurp(folder / "one/report.md").find("| H | 34474 | 43396 | 7 faces |") != std::string::npos);
+  CHECK(test::slurp(folder / "one/report.md").find("| H | 34\u202f474 | 43\u202f396 | 7 faces |") !=
+        std::string::npos);
   const test::Outcome printed = run({"paper", "--experiment", "close_up", "--print"});
   CHECK(printed.out == paper::shipped_experiment("close_up"));
 
@@ -218,8 +219,11 @@ TEST_CASE("paper --experiment: only what is asked for, on bodies of one's own; p
   for (const char* file : {"heat_maps.png", "refinement_tree.svg"}) {
     CHECK(std::filesystem::exists(folder / (std::string("mine/") + file)));
     CHECK(md.find(std::string("](") + file + ")") != std::string::npos);
-    CHECK(page.find(std::string("href=\"") + file + "\"><img src=\"data:image/") != std::string::npos);
   }
+  CHECK(page.find("href=\"heat_maps.png\"><img src=\"data:image/") != std::string::npos);
+  // In the page itself, where a box says what it is under the pointer.
+  CHECK(page.find("href=\"refinement_tree.svg\"><svg") != std::string::npos);
+  CHECK(page.find("</title></rect>") != std::string::npos);
   const render::Image heat = render::read_png(folder / "mine/heat_maps.png").image;
   CHECK(heat.width() > 2000);
   REQUIRE(run({"paper", "--experiment", "mine.json", "-o", "again", "--jobs", "2"}).code == 0);

@@ -12,6 +12,11 @@
 #include "trace/recorder.hpp"
 
 namespace lrb::run {
+namespace {
+
+const render::Style& kStyle = render::style_of(render::StyleName::screen);
+
+}  // namespace
 
 TEST_CASE("boxes of the nodes of a depth that were visited are drawn, solid where they met") {
   const LrbRep ball = build_lrb(shapes::icosphere(4));
@@ -34,7 +39,7 @@ TEST_CASE("boxes of the nodes of a depth that were visited are drawn, solid wher
       if (counts.visits[n] > 0) ++(counts.ended[n] < counts.visits[n] ? met : parted);
     }
     render::Scene scene;
-    add_node_boxes(scene, tree, Side::b, pose, depth, t.events);
+    add_node_boxes(scene, tree, Side::b, pose, depth, t.events, kStyle);
     constexpr std::size_t kLines = 6;  // two ends, and four edges between them
     const auto dashed = static_cast<std::size_t>(std::count_if(
         scene.list.lines.begin(), scene.list.lines.end(), [](const auto& l) { return l.dash > 0; }));
@@ -45,11 +50,11 @@ TEST_CASE("boxes of the nodes of a depth that were visited are drawn, solid wher
   }
   CHECK(some_left_out);
   render::Scene deeper;
-  add_node_boxes(deeper, tree, Side::b, pose, 60, t.events);
+  add_node_boxes(deeper, tree, Side::b, pose, 60, t.events, kStyle);
   CHECK(deeper.list.lines.empty());
   // The root's box holds the body where it is.
   render::Scene root;
-  add_node_boxes(root, tree, Side::b, pose, 0, t.events);
+  add_node_boxes(root, tree, Side::b, pose, 0, t.events, kStyle);
   Eigen::AlignedBox3d box;
   for (const render::DrawLine& line : root.list.lines)
     for (const Eigen::Vector3d& x : line.points) box.extend(x);
