@@ -18,6 +18,9 @@ using Eigen::Vector3d;
 /// From so many pairs on, shorter spans are looked at, unless they are hardly longer than the tolerance.
 constexpr std::uint64_t kFewPairs = 128;
 constexpr double kHardlyLonger = 64;
+/// In spans shorter than this share of a piece, each that has too many pairs doubles how many may be: where long faces
+/// pass each other, halves have no fewer, however short they are.
+constexpr double kShortShare = 0x1p-10;
 /// A pair stops when it comes no further than this many tolerances in a step, and a pair that is stuck when it comes no
 /// further than that many.
 constexpr double kLeastStep = 0x1p-3, kLeastStuckStep = 0x1p-20;
@@ -53,13 +56,16 @@ bool FirstContactSearch::find_pairs(TimeSpan span, std::uint64_t most) {
 }
 
 void FirstContactSearch::search_swept(double end) {
-  double width = end - free_until_;
+  const double whole = end - free_until_;
+  double width = whole;
+  std::uint64_t few = kFewPairs;
   while (free_until_ < end && !is_over()) {
     const double t = free_until_;
     const TimeSpan span{t, end - t > width ? t + width : end};
     const bool is_short = span.end - t <= kHardlyLonger * request_.tolerance;
-    if (!find_pairs(span, is_short ? kNoLimit : kFewPairs)) {
+    if (!find_pairs(span, is_short ? kNoLimit : few)) {
       width = (span.end - t) / 2;
+      if (width < kShortShare * whole) few *= 2;
       continue;
     }
     free_until_ = advance_all(span, kLeastStep * request_.tolerance);

@@ -112,6 +112,17 @@ TEST_CASE("our numbers are right from benign to degenerate") {
   CHECK(right > 15);
 }
 
+// However short a span of time is, more pairs may stay near than the search looks for at first.
+TEST_CASE("a needle that passes many triangles is decided") {
+  for (const int dial : {2, 5, 10}) {
+    CAPTURE(dial);
+    const cases::Case c = cases::make_case(*cases::find_family("sliver"), 1, dial, 1);
+    Record r;
+    ask_number(ours(Quantity::first_contact), c, true_number(Quantity::first_contact, c), r);
+    CHECK(r.outcome == Outcome::right);
+  }
+}
+
 TEST_CASE("lrbscope stability --quantity: table, records, a case again, a quantity that is none") {
   setenv("LRBSCOPE_METHODS", LRBSCOPE_FOLDER, 1);
   const test::Folder folder;
