@@ -370,6 +370,7 @@ TEST_CASE("goldens: what is damaged fails, and the others are tested all the sam
 TEST_CASE("goldens: two scenarios of one name are refused; one that has been moved is not") {
   const Approved folder;
   const std::string approved = slurp(folder / "goldens/balls/trace.json.gz");
+  fs::create_directory(folder / "more");
   folder.write("more/balls.scenario.json", two_balls(", \"most\": 1"));
   const auto approve = [&](const std::string& file) {
     return test::run(folder, {"golden", "approve", "--frames", "2", file});
