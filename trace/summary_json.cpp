@@ -2,10 +2,14 @@
 
 #include <string_view>
 #include <utility>
+#include <vector>
 
+#include "engine/lrb/validate.hpp"
+#include "engine/tree/tree_quality.hpp"
 #include "trace/counters.hpp"
 #include "trace/json_out.hpp"
 #include "trace/json_parts.hpp"
+#include "trace/node_work.hpp"
 #include "trace/passes.hpp"
 #include "trace/work_shares.hpp"
 
@@ -117,9 +121,49 @@ void write_queries(JsonWriter& w, const Trace& trace) {
   w.end_array();
 }
 
+void write_quality(JsonWriter& w, const LrbRep& rep) {
+  const TreeQuality q = tree_quality(rep.tree());
+  w.begin_object().member("body", rep.name()).key("tree").begin_object();
+  w.member("nodes", q.nodes).member("height", q.height);
+  w.member("inner_nodes_a_line_visits", q.sah_inner).member("leaves_a_line_visits", q.sah_leaves);
+  w.member("child_fill", q.child_fill).member("leaf_fill", q.leaf_fill);
+  w.member("sibling_overlap", q.sibling_overlap).member("bytes_per_simplex", q.bytes_per_simplex);
+  w.end_object().key("lrb").begin_object();
+  w.member("faces_per_real_face", static_cast<double>(rep.face_count()) / rep.real_face_count());
+  w.member("regions", rep.region_count()).member("layers", rep.layer_count());
+  w.member("outer_faces", rep.outermost_faces().size()).member("lid_height", lid_height(rep));
+  w.end_object().end_object();
+}
+
+void write_depths(JsonWriter& w, const std::vector<DepthWork>& depths) {
+  w.begin_array();
+  for (const DepthWork& d : depths) {
+    w.begin_object().member("nodes", d.nodes).member("expected", d.expected);
+    w.member("visited", d.nodes_visited).member("visits", d.visits).member("ended", d.ended);
+    w.member("box_tests", d.box_tests).end_object();
+  }
+  w.end_array();
+}
+
+/// Writes what the bodies say beyond the trace.
+void write_bodies(JsonWriter& w, const Trace& trace, std::span<const SummaryBody> bodies) {
+  if (bodies.empty()) return;
+  w.key("quality").begin_array();
+  for (const SummaryBody& body : bodies) write_quality(w, *body.rep);
+  w.end_array();
+  if (bodies.size() != 2 || bodies[0].walked == nullptr || bodies[1].walked == nullptr) return;
+  w.key("walk_by_depth").begin_object();
+  for (const Side side : {Side::a, Side::b}) {
+    const TreeShape& tree = *bodies[static_cast<std::size_t>(side)].walked;
+    w.key(name_of(side));
+    write_depths(w, work_by_depth(tree, count_nodes(tree, side, trace.events)));
+  }
+  w.end_object();
+}
+
 }  // namespace
 
-std::string summary_json(const Trace& trace) {
+std::string summary_json(const Trace& trace, std::span<const SummaryBody> bodies) {
   StringSink sink;
   JsonOut out(sink);
   JsonWriter w(out, 2);
@@ -136,6 +180,7 @@ std::string summary_json(const Trace& trace) {
     write_construction(w, trace);
   else
     write_queries(w, trace);
+  write_bodies(w, trace, bodies);
   w.end_object();
   out.raw('\n');
   out.flush();

@@ -49,5 +49,8 @@ double enclosed_volume(const LrbRep& rep, std::span<const FaceId> outward,
                        std::span<const FaceId> inward = {});
 /// Returns the volume of a region: behind its lids and in front of its floor.
 double region_volume(const LrbRep& rep, RegionId r);
+/// Returns how tightly lids lie: their mean height above what they hide, which is the volume of all regions over the
+/// area (2D: length) of all lids; mesh's unit, 0 without regions.
+double lid_height(const LrbRep& rep);
 
 }  // namespace lrb

@@ -16,6 +16,18 @@ double cone(const LrbRep& rep, FaceId f, const Eigen::Vector3d& origin) {
   return sum / 6;
 }
 
+/// Returns a face's area (2D: its length).
+double size_of(const LrbRep& rep, FaceId f) {
+  const auto corners = rep.face(f);
+  const auto side = [&](std::size_t i) -> Eigen::Vector3d {
+    return rep.vertices()[corners[i]] - rep.vertices()[corners[0]];
+  };
+  if (rep.dim() == 2) return side(1).norm();
+  Eigen::Vector3d sum(0, 0, 0);
+  for (std::size_t i = 1; i + 1 < corners.size(); ++i) sum += side(i).cross(side(i + 1));
+  return sum.norm() / 2;
+}
+
 }  // namespace
 
 double enclosed_volume(const LrbRep& rep, std::span<const FaceId> outward, std::span<const FaceId> inward) {
@@ -29,6 +41,15 @@ double enclosed_volume(const LrbRep& rep, std::span<const FaceId> outward, std::
 
 double region_volume(const LrbRep& rep, RegionId r) {
   return enclosed_volume(rep, rep.lids(r), rep.floor(r));
+}
+
+double lid_height(const LrbRep& rep) {
+  double volume = 0, area = 0;
+  for (RegionId r = 0; r < rep.region_count(); ++r) {
+    volume += region_volume(rep, r);
+    for (const FaceId lid : rep.lids(r)) area += size_of(rep, lid);
+  }
+  return area > 0 ? volume / area : 0;
 }
 
 }  // namespace lrb

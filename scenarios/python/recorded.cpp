@@ -105,7 +105,10 @@ std::string json_of(const Recorded& r) {
 }
 
 py::object summary_of(const Recorded& r) {
-  return py::module_::import("json").attr("loads")(trace::summary_json(r.trace));
+  std::vector<trace::SummaryBody> bodies;
+  for (std::size_t i = 0; i < r.bodies.size(); ++i)
+    bodies.push_back({r.bodies[i].get(), i < r.trees.size() ? &r.trees[i] : nullptr});
+  return py::module_::import("json").attr("loads")(trace::summary_json(r.trace, bodies));
 }
 
 void save(const Recorded& r, py::handle file) {

@@ -11,7 +11,7 @@ void add_box(render::DrawList& list, const Eigen::Vector3d& centre,
   line.colour = look.colour;
   line.width = look.width;
   line.dash = look.dash;
-  line.layer = render::Layer::translucent;
+  line.layer = look.through ? render::Layer::on_top : render::Layer::translucent;
   for (int z = 0; z < 2; ++z) {
     line.points = {corner(0, 0, z), corner(1, 0, z), corner(1, 1, z), corner(0, 1, z)};
     line.closed = true;

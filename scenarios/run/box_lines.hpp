@@ -12,6 +12,7 @@ namespace lrb::run {
 struct BoxLook {
   render::Rgba colour;
   float width = 1, dash = 0;
+  bool through = false;  ///< seen through what hides it
 };
 
 /// Adds the twelve edges of a box in the world: four round each end, and four between. `half`: from the centre to the

@@ -1,6 +1,7 @@
 #include "scenarios/run/pair_picture.hpp"
 
 #include <array>
+#include <cmath>
 #include <vector>
 
 #include <Eigen/Geometry>
@@ -44,6 +45,21 @@ void add_plane(render::DrawList& list, const std::array<Vector3d, 2>& nearest, d
   like.layer = render::Layer::translucent;
   like.lit = false;
   list.add_polygon({middle + u + v, middle - u + v, middle - u - v, middle + u - v}, like);
+}
+
+/// Returns a direction from which both faces are seen from their fronts; where they look opposite ways, A's from its
+/// front and B's from its back.
+render::ViewDirection onto_both(const std::vector<Vector3d>& a, const std::vector<Vector3d>& b) {
+  constexpr double kOpposite = 0.5;  // of unit normals' sum
+  const Vector3d of_a = (a[1] - a[0]).cross(a[2] - a[0]).stableNormalized(),
+                 of_b = (b[1] - b[0]).cross(b[2] - b[0]).stableNormalized();
+  const Vector3d sum = of_a + of_b;
+  render::ViewDirection out;
+  out.from = sum.norm() > kOpposite ? sum : Vector3d(of_a - of_b);
+  constexpr double kSteep = 0.95;
+  if (out.from.isZero()) return {};  // both are needles without a normal
+  if (std::abs(out.from.normalized().z()) > kSteep) out.up = {0, 1, 0};
+  return out;
 }
 
 render::Overlay overlay_of(const LrbRep& a, const LrbRep& b, const PairExplanation& pair,
@@ -98,7 +114,9 @@ void draw_pair(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose&
   const render::OverlayLayout layout = render::lay_out(overlay, kPairWidth, kPairHeight);
   render::FitOptions fit;
   const Vector3d across = pair.nearest[1] - pair.nearest[0];
-  if (a.dim() == 3 && across.norm() > 0) fit.view = render::view_beside(across);
+  if (a.dim() == 3)
+    fit.view = pair.meet == exact::Meet::disjoint && across.norm() > 0 ? render::view_beside(across)
+                                                                       : onto_both(of_a, of_b);
   const render::Camera camera =
       a.dim() == 2
           ? render::fit_top(both, layout.picture.width, layout.picture.height, 0.3)

@@ -1,19 +1,25 @@
 #include "scenarios/run/parting_picture.hpp"
 
 #include <array>
+#include <optional>
 #include <vector>
+
+#include <Eigen/Geometry>
 
 #include "render/overlay.hpp"
 #include "render/palette.hpp"
 #include "render/png.hpp"
 #include "render/rasterize.hpp"
 #include "scenarios/run/box_lines.hpp"
+#include "scenarios/run/frame_files.hpp"
 #include "scenarios/run/parting_square.hpp"
 
 namespace lrb::run {
 namespace {
 
-constexpr int kPartingWidth = 1200, kPartingHeight = 900;
+using Eigen::Vector3d;
+
+constexpr int kPartingWidth = 1600, kPartingHeight = 900;
 constexpr float kLine = 1.5F, kStrip = 3;
 
 void add_square(render::DrawList& list, const Square& corners, int dim) {
@@ -38,23 +44,73 @@ void add_square(render::DrawList& list, const Square& corners, int dim) {
   list.lines.push_back(rim);
 }
 
+/// Draws the nearest of the boxes that the walk found apart. `through`: as BoxLook has it.
+void add_boxes(render::DrawList& list, const PartedBoxes& boxes, const render::Style& style, bool through) {
+  for (const Side side : {Side::a, Side::b}) {
+    const WorldBox& box = boxes.boxes[static_cast<std::size_t>(side)];
+    BoxLook look;
+    look.colour = style.edge_of(style.body(side));
+    look.width = kLine;
+    look.through = through;
+    add_box(list, box.centre, box.half, look);
+  }
+}
+
+std::vector<Vector3d> corners_of_box(const WorldBox& box) {
+  std::vector<Vector3d> out;
+  for (int i = 0; i < 8; ++i)
+    out.emplace_back(box.centre + (i & 1 ? 1 : -1) * box.half[0] + (i & 2 ? 1 : -1) * box.half[1] +
+                     (i & 4 ? 1 : -1) * box.half[2]);
+  return out;
+}
+
+/// Returns what a close-up has to show: where both bodies reach nearest to the plane, or both boxes.
+std::vector<Vector3d> close_points(const WalkExplanation& walk) {
+  if (walk.plane) return {walk.plane->reach.begin(), walk.plane->reach.end()};
+  std::vector<Vector3d> out;
+  for (const WorldBox& box : walk.nearest_boxes->boxes)
+    for (const Vector3d& x : corners_of_box(box)) out.push_back(x);
+  return out;
+}
+
+/// Returns a camera that looks from near by, and along the plane, so that the gap is seen. `whole`: all that there is.
+render::Camera close_camera(const WalkExplanation& walk, const Square& square, int dim,
+                            const std::vector<Vector3d>& whole, const render::PixelRect& place) {
+  constexpr double kContext = 1.5, kLeast = 0.03;
+  std::vector<Vector3d> points = close_points(walk);
+  Eigen::AlignedBox3d all, part;
+  for (const Vector3d& x : whole) all.extend(x);
+  for (const Vector3d& x : points) part.extend(x);
+  if (dim == 2) {
+    const double room = kLeast * all.diagonal().norm();
+    for (const double way : {-room, room}) points.emplace_back(part.center() + Vector3d(way, way, 0));
+    return render::fit_top(points, place.width, place.height, 0.2);
+  }
+  render::FitOptions fit;
+  fit.view = render::view_beside((square[0] - square[2]).cross(square[1] - square[3]));
+  return render::fit_contact(points, all, place.width, place.height, fit, kContext, kLeast);
+}
+
+std::vector<render::LegendItem> parting_key(const WalkExplanation& walk, int dim) {
+  using Mark = render::LegendItem::Mark;
+  std::vector<render::LegendItem> key;
+  for (const Side side : {Side::a, Side::b})
+    if (!walk.plane && walk.nearest_boxes)
+      key.push_back({Mark::line, render::palette::edge_of(render::palette::body(side)),
+                     "box of " + std::string(name_of(side)) + "'s"});
+  key.push_back({dim == 2 ? Mark::line : Mark::translucent, kPartingColour,
+                 walk.plane ? "plane that parts them" : "between the boxes"});
+  return key;
+}
+
 }  // namespace
 
 void add_parting(render::DrawList& list, const WalkExplanation& walk, const LrbRep& a, const Pose& pose_a,
-                 const LrbRep& b, const Pose& pose_b, const render::Style& style) {
-  const auto& boxes = walk.nearest_boxes;
-  if (walk.plane) {
-    add_square(list, parting_square(*walk.plane, a, pose_a, b, pose_b), a.dim());
-  } else if (boxes) {
-    for (const Side side : {Side::a, Side::b}) {
-      const WorldBox& box = boxes->boxes[static_cast<std::size_t>(side)];
-      BoxLook look;
-      look.colour = style.edge_of(style.body(side));
-      look.width = kLine;
-      add_box(list, box.centre, box.half, look);
-    }
-    add_square(list, parting_square(*boxes, a.dim()), a.dim());
-  }
+                 const LrbRep& b, const Pose& pose_b, const render::Style& style, bool through) {
+  const std::optional<Square> square = parting_square(walk, a, pose_a, b, pose_b);
+  if (!square) return;
+  if (!walk.plane) add_boxes(list, *walk.nearest_boxes, style, through);
+  add_square(list, *square, a.dim());
 }
 
 std::string parting_words(const WalkExplanation& walk) {
@@ -73,25 +129,39 @@ void draw_parting(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Po
   bodies[1].pose = pose_b;
   bodies[1].name = "B " + b.name();
   render::Scene scene = render::build_scene(bodies, {});
-  add_parting(scene.list, walk, a, pose_a, b, pose_b, render::style_of(render::StyleName::screen));
+  const render::Style& style = render::style_of(render::StyleName::screen);
+  add_parting(scene.list, walk, a, pose_a, b, pose_b, style, true);
+  const std::optional<Square> square = parting_square(walk, a, pose_a, b, pose_b);
   render::Overlay overlay;
   overlay.title = a.name() + "  ·  " + b.name();
   overlay.event = std::string(name_of(walk.result.relation));
   if (const std::string words = parting_words(walk); !words.empty()) overlay.event += ": " + words;
   overlay.event_colour = kPartingColour;
   overlay.key = scene.key;
-  const render::OverlayLayout layout = render::lay_out(overlay, kPartingWidth, kPartingHeight);
-  std::vector<Eigen::Vector3d> points = render::body_points(a, pose_a);
-  for (const Eigen::Vector3d& x : render::body_points(b, pose_b)) points.push_back(x);
-  render::RasterOptions options;
-  options.width = layout.picture.width;
-  options.height = layout.picture.height;
-  const render::Camera camera = a.dim() == 2 ? render::fit_top(points, options.width, options.height)
-                                             : render::fit_camera(points, options.width, options.height);
+  spec::FrameSpec spec;
+  spec.views.emplace_back();
+  if (square) {
+    merge_key(overlay.key, parting_key(walk, a.dim()));
+    spec.views.emplace_back();
+    spec.views[0].title = "Whole";
+    spec.views[1].title = "Where they come nearest to what parts them";
+  }
+  const render::PixelRect place = render::lay_out(overlay, kPartingWidth, kPartingHeight).picture;
+  const std::vector<render::PixelRect> places = view_places(place, spec.views.size(), spec.scale());
+  std::vector<Vector3d> points = render::body_points(a, pose_a);
+  for (const Vector3d& x : render::body_points(b, pose_b)) points.push_back(x);
+  const auto camera = [&](std::size_t view) {
+    const render::PixelRect& at = places[view];
+    if (view == 1) return close_camera(walk, *square, a.dim(), points, at);
+    return a.dim() == 2 ? render::fit_top(points, at.width, at.height)
+                        : render::fit_camera(points, at.width, at.height);
+  };
   render::Rasterizer rasterizer;
-  render::write_png(render::compose_frame(rasterizer.draw(scene.list, camera, options), layout.picture,
-                                          overlay, kPartingWidth, kPartingHeight),
-                    path);
+  render::Image picture(place.width, place.height);
+  paint_views(
+      rasterizer, spec, spec.views, places, [&](const spec::FrameSpec::View&) { return scene.list; }, camera,
+      picture);
+  render::write_png(render::compose_frame(picture, place, overlay, kPartingWidth, kPartingHeight), path);
 }
 
 }  // namespace lrb::run

@@ -13,14 +13,14 @@ namespace lrb::run {
 /// The colour of the plane, and of the mark before words that say what it is.
 inline constexpr render::Rgba kPartingColour = render::palette::kGreen;
 
-/// Adds it. Adds nothing where neither was found.
+/// Adds it. Adds nothing where neither was found. `through`: boxes are seen through what hides them.
 void add_parting(render::DrawList& list, const WalkExplanation& walk, const LrbRep& a, const Pose& pose_a,
-                 const LrbRep& b, const Pose& pose_b, const render::Style& style);
+                 const LrbRep& b, const Pose& pose_b, const render::Style& style, bool through = false);
 
 /// Returns it in a few words, such as "a plane parts them, gap 0.12"; empty where neither was found.
 std::string parting_words(const WalkExplanation& walk);
 
-/// Draws both bodies with it into a picture.
+/// Draws both bodies with it into a picture: the whole, and beside it, where something was found, a close-up along it.
 void draw_parting(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
                   const WalkExplanation& walk, const std::string& path);
 

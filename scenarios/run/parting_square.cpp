@@ -48,4 +48,11 @@ Square parting_square(const PartedBoxes& parted, int dim) {
                 dim);
 }
 
+std::optional<Square> parting_square(const WalkExplanation& walk, const LrbRep& a, const Pose& pose_a,
+                                     const LrbRep& b, const Pose& pose_b) {
+  if (walk.plane) return parting_square(*walk.plane, a, pose_a, b, pose_b);
+  if (walk.nearest_boxes) return parting_square(*walk.nearest_boxes, a.dim());
+  return {};
+}
+
 }  // namespace lrb::run

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 
 #include <Eigen/Core>
 
@@ -16,5 +17,9 @@ Square parting_square(const PartingPlane& plane, const LrbRep& a, const Pose& po
 
 /// Returns the same for two boxes, as large as the smaller of them.
 Square parting_square(const PartedBoxes& boxes, int dim);
+
+/// Returns that of the plane that was found, else of the boxes; nothing where neither was.
+std::optional<Square> parting_square(const WalkExplanation& walk, const LrbRep& a, const Pose& pose_a,
+                                     const LrbRep& b, const Pose& pose_b);
 
 }  // namespace lrb::run

@@ -1,6 +1,7 @@
 #include "scenarios/run/run_scenario.hpp"
 
 #include <filesystem>
+#include <vector>
 
 #include "engine/core/error.hpp"
 #include "engine/lrb/lrb_file.hpp"
@@ -23,6 +24,13 @@ void check(const spec::Scenario& scenario, const RecordedRun& recorded) {
   } catch (const InputError& e) {
     throw InputError("scenario " + scenario.name + ": " + e.what());
   }
+}
+
+std::vector<trace::SummaryBody> summary_bodies(const RecordedRun& recorded) {
+  std::vector<trace::SummaryBody> out;
+  for (std::size_t i = 0; i < recorded.reps.size(); ++i)
+    out.push_back({recorded.reps[i], i < recorded.trees->size() ? &(*recorded.trees)[i] : nullptr});
+  return out;
 }
 
 }  // namespace
@@ -60,7 +68,7 @@ RunOutcome write_run(const spec::Scenario& scenario, const Recording& recording,
   RunOutcome out;
   out.notes = recording.notes;
   out.mismatches = mismatches(scenario, recording);
-  out.summary = trace::summary_json(recording.trace);
+  out.summary = trace::summary_json(recording.trace, summary_bodies(recorded));
   io::write_text(folder + "/summary.json", out.summary);
 
   for (std::size_t i = 0; i < recording.bodies.size(); ++i)

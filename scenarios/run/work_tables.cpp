@@ -4,8 +4,10 @@
 #include <functional>
 #include <string>
 
+#include "engine/lrb/validate.hpp"
 #include "engine/tree/tree_quality.hpp"
 #include "render/overlay.hpp"
+#include "scenarios/run/chosen_view.hpp"
 #include "trace/node_work.hpp"
 #include "trace/work_shares.hpp"
 
@@ -99,6 +101,11 @@ const std::vector<Quality>& qualities() {
          return r.region_count() == 0 ? "no wrapper" : group_digits(r.outermost_faces().size());
        },
        "few"},
+      {"LRB-rep: mean height of lids above what they hide, share of the size",
+       [](const LrbRep& r, const TreeQuality&) {
+         return r.region_count() == 0 ? "no lids" : percent(lid_height(r) / box_of(r).diagonal().norm());
+       },
+       "low"},
   };
   return all;
 }

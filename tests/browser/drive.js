@@ -520,6 +520,38 @@
     check(refusals > 3, "and say why caps were refused", refusals);
   }
 
+  /** The fill of A alone has as many pixels as its loops have inside. */
+  function fillsInside(view, camera) {
+    const [a] = view.views,
+      { fan, sheet } = a.fills.solid,
+      others = [...view.stage.children, ...a.group.children].filter(
+        (o) => ![a.group, fan, sheet].includes(o) && !o.isCamera && !o.isLight,
+      ),
+      were = others.map((o) => o.visible),
+      gl = view.renderer.getContext(),
+      { width, height } = view.canvas,
+      pixels = new Uint8Array(4 * width * height);
+    for (const o of others) o.visible = false;
+    view.renderer.render(view.stage, camera);
+    gl.readPixels(0, 0, width, height, gl.RGBA, gl.UNSIGNED_BYTE, pixels);
+    others.forEach((o, i) => (o.visible = were[i]));
+    let inside = 0,
+      area = 0;
+    for (let i = 3; i < pixels.length; i += 4) inside += pixels[i] > 0;
+    for (let face = 0; face < a.body.realCount; face++) {
+      const [p, q] = [...a.body.face(face)].map((v) => {
+        const at = a.toWorld(a.point(v)).project(camera);
+        return [(at.x * width) / 2, (at.y * height) / 2];
+      });
+      area += (p[0] * q[1] - p[1] * q[0]) / 2;
+    }
+    check(
+      Math.abs(inside / Math.abs(area) - 1) < 0.05,
+      "a flat body is filled, inside and nowhere else",
+      `${inside} pixels for ${area}`,
+    );
+  }
+
   /** Bodies of the plane are seen from above, and cannot be turned. */
   async function liesFlat() {
     const { view, events, selection } = run,
@@ -548,6 +580,7 @@
       true,
     );
     check(hit && hit.side === 0 && hit.face === 0, "a click finds the segment under it", JSON.stringify(hit));
+    fillsInside(view, camera.camera);
     const zoom = camera.flat.zoom;
     press("+");
     await frame();

@@ -40,6 +40,17 @@ TEST_CASE("clean LRB-reps pass, with the volumes known by heart") {
   CHECK(pit.volume_outer == doctest::Approx(32.0 / 3));
 }
 
+TEST_CASE("lids stand off by the volume of the regions over the lids' area") {
+  CHECK(lid_height(shapes::dented_box()) == doctest::Approx(1));  // 4 under 4
+  CHECK(lid_height(LrbRep::without_regions(shapes::box(), true, false)) == 0);
+  const LrbRep plate(toy::small_plate());
+  double length = 0;
+  for (RegionId r = 0; r < plate.region_count(); ++r)
+    for (const FaceId lid : plate.lids(r))
+      length += (plate.vertices()[plate.face(lid)[1]] - plate.vertices()[plate.face(lid)[0]]).norm();
+  CHECK(lid_height(plate) * length == doctest::Approx(36 - 25));
+}
+
 TEST_CASE("a region that is open is named") {
   LrbData d = shapes::dented_box().data();
   d.outer_cell[18] = kOutside;  // a face of the dent leaves the region's collector

@@ -23,6 +23,7 @@
 #include "trace/divergence.hpp"
 #include "trace/node_work.hpp"
 #include "trace/recorder.hpp"
+#include "trace/summary_json.hpp"
 #include "trace/trace_json.hpp"
 #include "trace/work_chart.hpp"
 #include "trace/work_shares.hpp"
@@ -505,4 +506,33 @@ TEST_CASE("a probe from outside the engine sees the walk, too") {
   CHECK(probe.planes > 0);
   CHECK(probe.counts[Phase::walk] == result.counters.node_pairs);
   CHECK(probe.counts[Phase::sort] == result.pairs.size());
+}
+
+TEST_CASE("the summary has the walk by depth and the quality of the bodies") {
+  for (const Bodies& bodies : all_bodies()) {
+    const Recorded run = record(bodies, {}, EventLevel::nodes);
+    const std::array<TreeShape, 2> trees = {TreeShape(bodies.a->tree()), TreeShape(bodies.b->tree())};
+    const std::array<SummaryBody, 2> recorded = {SummaryBody{bodies.a, &trees[0]},
+                                                 SummaryBody{bodies.b, &trees[1]}};
+    const Json summary = Json::parse(summary_json(run.trace, recorded));
+    std::uint64_t node_pairs = 0;
+    for (const Step& step : run.trace.steps) node_pairs += step.result.counters.node_pairs;
+    for (const char* side : {"A", "B"}) {
+      const Json& depths = summary["walk_by_depth"][side];
+      CHECK(depths[0]["expected"] == doctest::Approx(1));
+      std::uint64_t visits = 0;
+      for (const Json& d : depths) visits += d["visits"].get<std::uint64_t>();
+      CHECK(visits == node_pairs);
+    }
+    REQUIRE(summary["quality"].size() == 2);
+    const Json& quality = summary["quality"][0];
+    CHECK(quality["tree"]["nodes"] == trees[0].size());
+    CHECK(quality["tree"]["inner_nodes_a_line_visits"] >= 1);
+    CHECK(quality["lrb"]["outer_faces"] == bodies.a->outermost_faces().size());
+    CHECK((quality["lrb"]["lid_height"] > 0) == (bodies.a->region_count() > 0));
+
+    const std::array<SummaryBody, 2> unwalked = {SummaryBody{bodies.a}, SummaryBody{bodies.b}};
+    CHECK_FALSE(Json::parse(summary_json(run.trace, unwalked)).contains("walk_by_depth"));
+    CHECK_FALSE(Json::parse(summary_json(run.trace)).contains("quality"));
+  }
 }

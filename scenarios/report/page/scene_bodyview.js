@@ -25,6 +25,25 @@ class BodyView {
     this.pieces = [];
     this.boxLines = null;
     this.measure();
+    this.fills = body.dim === 2 ? this.makeFills(colours.bodies[body.side]) : null;
+  }
+
+  /** Returns fills of a flat body: of the solid, and under it, paler, of the wrapper. */
+  makeFills(colour) {
+    const { realCount, side } = this.body,
+      fill = (shade, opacity, place) =>
+        new FlatFill(this.body, shade, opacity, 2 * side + place, (0.02 - 0.005 * place) * this.radius);
+    const fills = { wrapper: fill(mixed(colour, WHITE, 0.5), 0.45, 0), solid: fill(colour, 0.6, 1) };
+    fills.solid.show(Array.from({ length: realCount }, (_, face) => face));
+    for (const f of [fills.wrapper, fills.solid]) this.group.add(f.fan, f.sheet);
+    return fills;
+  }
+
+  /** Shows or hides the insides of a flat body and of its wrapper. */
+  lookInside(solid, wrapper) {
+    if (!this.fills) return;
+    this.fills.solid.look(solid);
+    this.fills.wrapper.look(wrapper);
   }
 
   /** Draws the segments of a flat body as strips; `pixel`: how wide a pixel is. */
@@ -152,6 +171,8 @@ class BodyView {
   /** Shows the lids of the wrapper: its pseudo faces. */
   showLids(onBoundary) {
     this.lids.show(onBoundary);
+    if (this.fills)
+      this.fills.wrapper.show([...Array(this.body.faceCount).keys()].filter((face) => onBoundary(face)));
     const shown = [];
     for (let f = this.body.realCount; f < this.body.faceCount; f++) if (onBoundary(f)) shown.push(f);
     const edges = edgesOf(this.body, shown),

@@ -123,6 +123,7 @@ class SceneView {
     this.views.forEach((view, side) => {
       const shown = lids && !isolate && !exploded && !insideOnly;
       view.lids.mesh.visible = view.lidEdges.visible = shown;
+      view.lookInside(!ghost && !isolate && !exploded, shown);
       if (shown)
         this.once(`lids${side}`, this.wrappers.version, () =>
           view.showLids((f) => this.wrappers.onBoundary(side, f)),
