@@ -114,9 +114,10 @@ class ChainBuilder {
     Box box;
     for (const Box& b : boxes_) box.extend(b);
     fit_hulls(
-        box.sizes().maxCoeff(), frozen_.size(), kFitDownTo, [&] { return hull_.segment_count(); },
-        [&] { return complex_.face_count() - frozen_.size(); },
-        [&](const CapGoal& goal) { pass(BuildStage::fit, goal); });
+        box.sizes().maxCoeff(), kFitDownTo, [&] { return hull_.segment_count(); },
+        [&](std::uint32_t before, double off) {
+          pass(BuildStage::fit, {fitting_worth(before, frozen_.size()), off});
+        });
   }
 
   void simplify(double worth) {

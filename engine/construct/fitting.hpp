@@ -26,33 +26,41 @@ inline constexpr int kPassesForOff = 8;
 /// price accepted on the mesh itself; on simpler hulls it is divided by the square root of hull faces / real faces.
 /// Larger: hulls fit better; smaller: fewer faces in all (0.74: 1.7 to 2 per real face on six bodies).
 inline constexpr double kFitBudget = 0.74;
-/// With such prices pseudo faces add up to a total times 1 - sqrt(hull faces / real faces). This is the total, per
-/// real face, that a body may come to: where caps turned out cheaper, dearer ones are accepted, and the other way
-/// round. kFitCorrection: by how much of the price for each pseudo face per real one that is left to be spent. On
-/// nefertiti, which came to 0.81: 838 in place of 898 faces at a hundredth of its size, with 0.85.
-inline constexpr double kFitTotal = 1.17, kFitCorrection = 2;
-inline constexpr double kLeastCorrection = 0.5;
+/// With such prices pseudo faces add up to a total times 1 - sqrt(hull faces / real faces). As long as there are fewer
+/// than this total, per real face, allows, because caps turned out cheap, dearer ones are accepted: by
+/// kFitCorrection of the price for each pseudo face per real one that is left. In space alone. On nefertiti (0.82
+/// pseudo faces per real one without) 766 in place of 898 faces at a hundredth of its size; five smaller bodies come
+/// out as without, or better.
+inline constexpr double kFitTotal = 1.1, kFitCorrection = 2;
 
-/// Returns the largest share of faces that a cap which fits may have, on a hull of so many, after so many pseudo faces.
-inline double fitting_worth(std::size_t hull_faces, std::size_t real_faces, std::size_t pseudo_faces) {
-  const double real = static_cast<double>(real_faces);
-  const double root = std::sqrt(static_cast<double>(hull_faces) / real);
-  const double left = kFitTotal * (1 - root) - static_cast<double>(pseudo_faces) / real;
-  const double ratio = kFitBudget / root * std::max(kLeastCorrection, 1 + kFitCorrection * left);
+/// Returns the share of a hull's faces in those of the body, under a root, as prices have it.
+inline double fitting_root(std::size_t hull_faces, std::size_t real_faces) {
+  return std::sqrt(static_cast<double>(hull_faces) / static_cast<double>(real_faces));
+}
+
+/// Returns by what to multiply the price of caps on a hull of so many faces, after so many pseudo faces.
+inline double fitting_correction(std::size_t hull_faces, std::size_t real_faces, std::size_t pseudo_faces) {
+  const double planned = kFitTotal * (1 - fitting_root(hull_faces, real_faces));
+  const double left = planned - static_cast<double>(pseudo_faces) / static_cast<double>(real_faces);
+  return 1 + kFitCorrection * std::max(0.0, left);
+}
+
+/// Returns the largest share of faces that a cap which fits may have, on a hull of so many.
+inline double fitting_worth(std::size_t hull_faces, std::size_t real_faces, double correction = 1) {
+  const double ratio = kFitBudget / fitting_root(hull_faces, real_faces) * correction;
   return std::min(kLastCapWorth, ratio / (1 + ratio));
 }
 
 /// Makes hulls that fit: what caps may be off grows from pass to pass, slowly enough that each distance gets about
-/// the simplest hull that there is for it. `size`: the body's largest side. Calls pass(goal) for hulls of more
-/// than `least` faces, which faces() counts; pseudo_faces() counts those of all caps made so far.
-template <class Faces, class PseudoFaces, class Pass>
-void fit_hulls(double size, std::size_t real_faces, std::uint32_t least, Faces faces,
-               PseudoFaces pseudo_faces, Pass pass) {
+/// the simplest hull that there is for it. `size`: the body's largest side. Calls pass(hull faces, off) for hulls of
+/// more than `least` faces, which faces() counts.
+template <class Faces, class Pass>
+void fit_hulls(double size, std::uint32_t least, Faces faces, Pass pass) {
   for (double off = kFirstOff * size; off < kLastOff * size; off *= kOffStep) {
     for (int i = 0; i < kPassesForOff; ++i) {
       const std::uint32_t before = faces();
       if (before <= least) return;
-      pass(CapGoal{fitting_worth(before, real_faces, pseudo_faces()), off});
+      pass(before, off);
       if (faces() > kFitGain * before) break;
     }
   }

@@ -77,9 +77,12 @@ class PatchBuilder {
     Eigen::AlignedBox3d box;
     for (Corner v = 0; v < hull_.point_count(); ++v) box.extend(hull_.x(v));
     fit_hulls(
-        box.sizes().maxCoeff(), frozen_.size(), kFitDownTo, [&] { return hull_.triangle_count(); },
-        [&] { return complex_.face_count() - frozen_.size(); },
-        [&](const CapGoal& goal) { pass(BuildStage::fit, goal); });
+        box.sizes().maxCoeff(), kFitDownTo, [&] { return hull_.triangle_count(); },
+        [&](std::uint32_t before, double off) {
+          const std::size_t real = frozen_.size();
+          const double correction = fitting_correction(before, real, complex_.face_count() - real);
+          pass(BuildStage::fit, {fitting_worth(before, real, correction), off});
+        });
   }
 
   /// Makes passes until they no longer help. `worth`: the largest share of triangles that a cap may have.
