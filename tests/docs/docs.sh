@@ -38,6 +38,7 @@ runner() { # LANGUAGE: prints the file of the test
     python) echo tests/python/test_docs.py ;;
     sh) echo tests/docs/commands.py ;;
     tex) echo tests/docs/figures.sh ;;
+    text) echo tests/docs/goldens.sh ;; # what commands print
     console) echo tests/recipes ;; # functions of other package managers, called one by one
     *) return 1 ;;
   esac
@@ -46,7 +47,7 @@ for page in README.md docs/*.md; do
   for language in $(sed -n 's/^```\([a-z]\+\)$/\1/p' "$page" | sort -u); do
     test=$(runner "$language") || { complain "$page: nobody runs blocks of $language"; continue; }
     [ -e "$test" ] || complain "$test is not there, which runs blocks of $language"
-    case "$language" in cpp | cmake | python) grep -q "$page" "$test" || complain "$page: its blocks of $language are not run by $test" ;; esac
+    case "$language" in cpp | cmake | python | text) grep -q "$page" "$test" || complain "$page: its blocks of $language are not run by $test" ;; esac
   done
 done
 
