@@ -266,7 +266,10 @@
   /** A run's page in the states in which most is to be read. */
   const states = {
     "as it opens": () => {},
-    "with a region selected": () => run.selection.pickRegion(0, run.events.bodies[0].regionCount - 1),
+    "with a region selected": () => {
+      const side = run.events.bodies.findIndex((b) => b.regionCount > 0); // an open body has none
+      if (side >= 0) run.selection.pickRegion(side, run.events.bodies[side].regionCount - 1);
+    },
     "at a pair that is explained": () => run.selection.goTo(Math.max(0, run.events.kind.indexOf(run.events.FACE_TEST))),
     "coloured by tests": () => run.controls && run.controls.colourBy("tests"),
     "filtered to nothing": () => {
