@@ -8,6 +8,7 @@
 #include "engine/core/error.hpp"
 #include "engine/lrb/lrb_file.hpp"
 #include "scenarios/methods/body_parts.hpp"
+#include "scenarios/workers/note_failures.hpp"
 
 namespace lrb::bench {
 namespace {
@@ -65,19 +66,13 @@ Record BenchRunner::ask(std::uint64_t question) {
   r.setting = setting_;
   r.question = question;
   r.pose_class = q.pose_class;
-  try {
+  workers::note_failures(r, [&] {
     r.all = ask(q, Mode::all_pairs);
     r.first = ask(q, Mode::first_pair);
     const Built &a = built(q.a, 0), &b = built(q.b, 1);
     r.build_seconds = a.seconds + b.seconds;
     r.bytes = a.bytes + b.bytes;
-  } catch (const InputError& e) {
-    r.outcome = Outcome::refused;
-    r.message = e.what();
-  } catch (const std::exception& e) {
-    r.outcome = Outcome::crashed;
-    r.message = std::string("threw an exception: ") + e.what();
-  }
+  });
   return r;
 }
 

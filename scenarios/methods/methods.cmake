@@ -49,8 +49,10 @@ function(lrb_register_methods target)
   lrb_registry(${target} lrb::methods scenarios/methods/method.hpp MethodEntry methods ${names})
 endfunction()
 
+add_library(lrb_asked_cases STATIC worker_programs/asked_cases.cpp)
+target_link_libraries(lrb_asked_cases PUBLIC lrb::stability CLI11::CLI11 lrb_options)
 add_library(lrb_worker_programs STATIC worker_programs/fake_methods.cpp worker_programs/worker.cpp)
-target_link_libraries(lrb_worker_programs PUBLIC lrb::stability lrb::bench CLI11::CLI11 lrb_options)
+target_link_libraries(lrb_worker_programs PUBLIC lrb_asked_cases lrb::bench)
 
 get_property(LRB_WORKER_PROGRAMS GLOBAL PROPERTY lrb_worker_programs)
 list(APPEND LRB_WORKER_PROGRAMS lrbscope-methods)

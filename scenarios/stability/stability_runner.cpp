@@ -3,6 +3,7 @@
 #include "engine/core/error.hpp"
 #include "scenarios/methods/body_parts.hpp"
 #include "scenarios/stability/judge.hpp"
+#include "scenarios/workers/note_failures.hpp"
 
 namespace lrb::stability {
 
@@ -20,7 +21,7 @@ void StabilityRunner::ask(const cases::Family& family, const cases::Case& c, con
   pairs_.reset();
   const Mode mode = info_.pairs ? Mode::all_pairs : Mode::first_pair;
   record.expected = expected.pairs.size();
-  try {
+  workers::note_failures(record, [&] {
     if (c.a->dim() == 2 && !info_.plane)
       throw InputError("a 2D body: not asked, because it answers for 3D bodies only");
     if (!expected.refusal.empty() && !info_.moves_exactly) throw InputError(expected.refusal + ": not asked");
@@ -34,13 +35,7 @@ void StabilityRunner::ask(const cases::Family& family, const cases::Case& c, con
       judge(record, info_, answer, expected);
     }
     if (info_.pairs) pairs_ = std::move(answer.pairs);
-  } catch (const InputError& e) {
-    record.outcome = Outcome::refused;
-    record.message = e.what();
-  } catch (const std::exception& e) {
-    record.outcome = Outcome::crashed;
-    record.message = std::string("threw an exception: ") + e.what();
-  }
+  });
 }
 
 }  // namespace lrb::stability

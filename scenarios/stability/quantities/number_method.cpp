@@ -1,24 +1,20 @@
 #include "scenarios/stability/quantities/number_method.hpp"
 
 #include <cmath>
-#include <cstdio>
 
 #include "engine/core/error.hpp"
+#include "scenarios/io/number_text.hpp"
+#include "scenarios/workers/note_failures.hpp"
 
 namespace lrb::stability {
 namespace {
 
 constexpr double kMostOffOfSize = 1e-6, kMostOffOfMotion = 1e-3;
-
-std::string digits(double x) {
-  char text[40];
-  std::snprintf(text, sizeof text, "%.9g", x);
-  return text;
-}
+constexpr int kDigits = 9;
 
 std::string words(Quantity quantity, double lower, double upper) {
   if (quantity == Quantity::first_contact && lower >= kNever) return "never";
-  const std::string first = digits(lower), last = digits(upper);
+  const std::string first = io::number_text(lower, kDigits), last = io::number_text(upper, kDigits);
   return first == last ? first : first + " to " + last;
 }
 
@@ -53,19 +49,13 @@ void judge_number(Record& record, const NumberMethod& method, const NumberAnswer
 }
 
 void ask_number(const NumberMethod& method, const cases::Case& c, const Expected& expected, Record& record) {
-  try {
+  workers::note_failures(record, [&] {
     if (!expected.refusal.empty()) throw InputError("not asked: " + expected.refusal);
     const Asked question = asked(c);
     const NumberAnswer answer = method.ask(question);
     record.microseconds = answer.microseconds;
     judge_number(record, method, answer, expected, question.size);
-  } catch (const InputError& e) {
-    record.outcome = Outcome::refused;
-    record.message = e.what();
-  } catch (const std::exception& e) {
-    record.outcome = Outcome::crashed;
-    record.message = std::string("threw an exception: ") + e.what();
-  }
+  });
 }
 
 }  // namespace lrb::stability
