@@ -20,6 +20,7 @@
 #include "tests/support/shared_meshes.hpp"
 
 #ifdef LRB_WITH_FCL
+#include "scenarios/methods/peers/fcl_instantiated.hpp"
 #include "tests/bench/fcl_model.hpp"
 #define extern
 #include <fcl/narrowphase/distance.h>

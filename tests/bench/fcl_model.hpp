@@ -1,20 +1,23 @@
 #pragma once
-/// What benchmarks ask FCL with.
+/// What benchmarks ask FCL with: the packaged code, or, where fcl_instantiated.hpp is included before, that compiled with our
+/// flags.
 
 #include <memory>
 #include <vector>
 
+#include <fcl/geometry/bvh/BVH_model.h>
+
 #include "engine/core/pose.hpp"
 #include "engine/lrb/lrb_rep.hpp"
-#include "scenarios/methods/peers/fcl_instantiated.hpp"
 
 namespace lrb::bench {
 
-/// Returns a body's real simplices as a model with a tree of these volumes.
+/// Returns a body's real simplices, moved, as a model with a tree of these volumes.
 template <class Volume>
-std::shared_ptr<fcl::BVHModel<Volume>> fcl_model(const LrbRep& rep) {
+std::shared_ptr<fcl::BVHModel<Volume>> fcl_model(const LrbRep& rep, const Pose& pose = {}) {
   auto model = std::make_shared<fcl::BVHModel<Volume>>();
-  const std::vector<fcl::Vector3d> points(rep.vertices().begin(), rep.vertices().end());
+  std::vector<fcl::Vector3d> points;
+  for (const Eigen::Vector3d& v : rep.vertices()) points.push_back(pose.apply(v));
   std::vector<fcl::Triangle> triangles;
   for (SimplexId s = 0; s < rep.real_simplex_count(); ++s) {
     VertexId v[3];

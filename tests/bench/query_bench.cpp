@@ -15,6 +15,7 @@
 #include "tests/bench/timing.hpp"
 
 #ifdef LRB_WITH_FCL
+#include "scenarios/methods/peers/fcl_instantiated.hpp"
 #include "tests/bench/fcl_model.hpp"
 #endif
 

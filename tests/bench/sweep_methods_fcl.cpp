@@ -5,40 +5,15 @@
 
 #ifdef LRB_WITH_FCL
 
-#include <fcl/geometry/bvh/BVH_model.h>
 #include <fcl/narrowphase/continuous_collision.h>
 
+#include "tests/bench/fcl_model.hpp"
 #include "tests/bench/timing.hpp"
 
 namespace lrb::bench {
 namespace {
 
 using MotionPointer = std::shared_ptr<fcl::MotionBased>;
-
-fcl::Transform3d fcl_pose(const Pose& p) {
-  fcl::Transform3d t = fcl::Transform3d::Identity();
-  t.linear() = p.r;
-  t.translation() = p.t;
-  return t;
-}
-
-/// Returns a body, its vertices moved.
-template <class Volume>
-std::shared_ptr<fcl::BVHModel<Volume>> fcl_model(const LrbRep& rep, const Pose& pose = {}) {
-  auto model = std::make_shared<fcl::BVHModel<Volume>>();
-  std::vector<fcl::Vector3d> points;
-  for (const Eigen::Vector3d& v : rep.vertices()) points.push_back(pose.apply(v));
-  std::vector<fcl::Triangle> triangles;
-  for (SimplexId s = 0; s < rep.real_simplex_count(); ++s) {
-    VertexId v[3];
-    rep.simplex(s, v);
-    triangles.emplace_back(v[0], v[1], v[2]);
-  }
-  model->beginModel();
-  model->addSubModel(points, triangles);
-  model->endModel();
-  return model;
-}
 
 /// From one pose to another; the reference point of a motion that turns is named, as FCL leaves it undefined.
 MotionPointer fcl_motion(const Pose& from, const Pose& to, bool straight) {
