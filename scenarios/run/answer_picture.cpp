@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <vector>
 
 #include <Eigen/Geometry>
@@ -14,6 +13,7 @@
 #include "render/png.hpp"
 #include "render/rasterize.hpp"
 #include "render/scene.hpp"
+#include "scenarios/io/number_text.hpp"
 #include "scenarios/run/frame_files.hpp"
 #include "scenarios/run/measure_marks.hpp"
 #include "scenarios/run/pair_lines.hpp"
@@ -137,9 +137,7 @@ void write_picture(AnswerPicture& p, const AnswerLook& look, const std::string& 
 }
 
 std::string digits(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.9g", value);
-  return text;
+  return io::number_text(value, 9);
 }
 
 void count_ends(render::Overlay& overlay, const std::string& what, double lower, double upper) {
@@ -161,14 +159,7 @@ AnswerPicture begin(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const 
 }
 
 void mark_point(render::Scene& scene, const Vector3d& x, const std::string& what) {
-  render::DrawPoint point;
-  point.x = x;
-  point.colour = render::palette::kContact;
-  point.radius = 5;
-  point.halo = render::kWhite;
-  point.halo_width = kHalo;
-  point.layer = render::Layer::on_top;
-  scene.list.points.push_back(point);
+  add_mark(scene.list, x, render::palette::kContact, 5);
   scene.key.push_back({render::LegendItem::Mark::point, render::palette::kContact, what});
 }
 

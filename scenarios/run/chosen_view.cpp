@@ -86,10 +86,10 @@ bool close_up_is_whole(const RecordedRun& recorded, const spec::FrameSpec::View&
 
 }  // namespace
 
-Eigen::AlignedBox3d box_of(const LrbRep& rep) {
+Eigen::AlignedBox3d box_of(const LrbRep& rep, const Pose& pose) {
   Eigen::AlignedBox3d box;
   for (FaceId f = 0; f < rep.real_face_count(); ++f)
-    for (const VertexId v : rep.face(f)) box.extend(rep.vertices()[v]);
+    for (const VertexId v : rep.face(f)) box.extend(pose.apply(rep.vertices()[v]));
   return box;
 }
 

@@ -6,6 +6,7 @@
 #include <Eigen/Geometry>
 
 #include "render/overlay.hpp"
+#include "scenarios/run/chosen_view.hpp"
 #include "scenarios/run/pair_lines.hpp"
 
 namespace lrb::run {
@@ -17,13 +18,6 @@ constexpr float kWayWidth = 4, kTextOff = 20, kTextHeight = 19;
 
 Vector3d vector_of(const std::array<double, 3>& v) {
   return {v[0], v[1], v[2]};
-}
-
-Eigen::AlignedBox3d world_box_of(const LrbRep& rep, const Pose& pose) {
-  Eigen::AlignedBox3d box;
-  for (FaceId f = 0; f < rep.real_face_count(); ++f)
-    for (const VertexId v : rep.face(f)) box.extend(pose.apply(rep.vertices()[v]));
-  return box;
 }
 
 void write_beside(render::DrawList& list, const Vector3d& x, float below, const std::string& text,
@@ -90,7 +84,7 @@ std::optional<MarkedWay> way_out_of(const trace::MeasuredClash& clash, const Lrb
                                     std::span<const ContactRegion> contacts) {
   const Vector3d way = vector_of(clash.translation);
   if (!clash.depth || !std::isfinite((*clash.depth)[1]) || way.isZero(0)) return std::nullopt;
-  Eigen::AlignedBox3d shared = world_box_of(a, pose_a).intersection(world_box_of(b, pose_b));
+  Eigen::AlignedBox3d shared = box_of(a, pose_a).intersection(box_of(b, pose_b));
   if (const std::vector<Vector3d> points = render::contact_points(contacts); !points.empty()) {
     shared.setEmpty();
     for (const Vector3d& x : points) shared.extend(x);
@@ -102,16 +96,7 @@ std::optional<MarkedWay> way_out_of(const trace::MeasuredClash& clash, const Lrb
 void add_gap(render::Scene& scene, const MarkedWay& gap, const render::Style& style) {
   const render::Rgba colour = style.of(kGapColour);
   outline(scene.list, {gap.from, gap.to}, colour, kWayWidth);
-  for (const Vector3d& x : {gap.from, gap.to}) {
-    render::DrawPoint point;
-    point.x = x;
-    point.colour = colour;
-    point.radius = 4;
-    point.halo = style.paper;
-    point.halo_width = kHalo;
-    point.layer = render::Layer::on_top;
-    scene.list.points.push_back(point);
-  }
+  for (const Vector3d& x : {gap.from, gap.to}) add_mark(scene.list, x, colour, 4, style.paper);
   write_beside(scene.list, (gap.from + gap.to) / 2, -kTextOff, gap.text, colour);
   scene.key.push_back({render::LegendItem::Mark::line, colour, "nearest points"});
 }

@@ -29,6 +29,18 @@ void outline(render::DrawList& list, const std::vector<Vector3d>& corners, rende
   list.lines.push_back(line);
 }
 
+void add_mark(render::DrawList& list, const Vector3d& x, render::Rgba colour, float radius,
+              render::Rgba halo) {
+  render::DrawPoint point;
+  point.x = x;
+  point.colour = colour;
+  point.radius = radius;
+  point.halo = halo;
+  point.halo_width = kHalo;
+  point.layer = render::Layer::on_top;
+  list.points.push_back(point);
+}
+
 void add_wrong_pairs(render::DrawList& list, std::span<const WrongPair> pairs, const LrbRep& a,
                      const Pose& pose_a, const LrbRep& b, const Pose& pose_b, render::Rgba halo) {
   constexpr float kWidth = 2.5F;

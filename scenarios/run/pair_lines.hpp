@@ -20,6 +20,10 @@ std::vector<Eigen::Vector3d> corners_of(const LrbRep& rep, const Pose& pose, Sim
 void outline(render::DrawList& list, const std::vector<Eigen::Vector3d>& corners, render::Rgba colour,
              float width, render::Rgba halo = render::kWhite);
 
+/// Draws a point over everything that hides it. `radius`: pixels.
+void add_mark(render::DrawList& list, const Eigen::Vector3d& x, render::Rgba colour, float radius,
+              render::Rgba halo = render::kWhite);
+
 /// Draws the faces of pairs that another engine got wrong.
 void add_wrong_pairs(render::DrawList& list, std::span<const WrongPair> pairs, const LrbRep& a,
                      const Pose& pose_a, const LrbRep& b, const Pose& pose_b, render::Rgba halo);

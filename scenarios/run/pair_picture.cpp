@@ -22,16 +22,7 @@ constexpr int kPairWidth = 1200, kPairHeight = 900;
 
 /// Draws the corners of a contact, or the nearest points, and what they span.
 void mark(render::DrawList& list, const std::vector<Vector3d>& points) {
-  for (const Vector3d& x : points) {
-    render::DrawPoint point;
-    point.x = x;
-    point.colour = render::palette::kContact;
-    point.radius = 5;
-    point.halo = render::kWhite;
-    point.halo_width = kHalo;
-    point.layer = render::Layer::on_top;
-    list.points.push_back(point);
-  }
+  for (const Vector3d& x : points) add_mark(list, x, render::palette::kContact, 5);
   if (points.size() > 1) outline(list, points, render::palette::kContact, 4);
 }
 

@@ -1,7 +1,6 @@
 #include "scenarios/run/recorded_run.hpp"
 
 #include <algorithm>
-#include <cstdio>
 #include <numeric>
 #include <optional>
 
@@ -9,6 +8,7 @@
 #include "engine/core/file_bytes.hpp"
 #include "engine/query/coherent/coherent_query.hpp"
 #include "engine/query/collide_impl.hpp"
+#include "scenarios/io/number_text.hpp"
 #include "scenarios/run/approach.hpp"
 #include "scenarios/spec/scenario_frames.hpp"
 #include "scenarios/spec/scenario_motion.hpp"
@@ -44,11 +44,7 @@ std::vector<Pose> poses_of_b(const spec::Scenario& s, Recording& r) {
   r.notes.push_back(approach.met ? "first contact at step " + std::to_string(approach.first_contact)
                                  : "the bodies did not meet on the way");
   if (approach.steps_to_contact) {
-    const auto steps = [](double count) {
-      char text[32];
-      std::snprintf(text, sizeof text, "%.9g", count);
-      return std::string(text);
-    };
+    const auto steps = [](double count) { return io::number_text(count, 9); };
     r.first_contact = steps(approach.steps_to_contact->end) + " steps";
     r.notes.back() += ", after " + r.first_contact + " of the way, and not before " +
                       steps(approach.steps_to_contact->begin);
