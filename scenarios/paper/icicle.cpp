@@ -16,7 +16,8 @@ namespace {
 
 using namespace render::svg_text;
 
-constexpr double kWidth = 1200, kMargin = 16, kRow = 24, kText = 15, kTitle = 18, kGap = 34;  // pixels
+constexpr double kWidth = 1200, kMargin = 16, kRow = 24, kText = 15, kName = 13.5, kTitle = 18,
+                 kGap = 34;                      // pixels
 constexpr double kRule = 0.7, kRuleShare = 0.2;  ///< white between boxes: pixels, and as a share of the box
                                                  ///< at most
 constexpr double kRoomForText = 2.5;  ///< a box gets its number if it is at least this many times as wide as
@@ -180,7 +181,7 @@ class Writer {
     out += rect(x, y, width - rule, kRow - kRule, colour_of(n.state)) + "><title>" +
            render::escape_markup(n.what) + "</title></rect>\n";
     if (width > kRoomForText * kText && !n.name.empty())
-      out += text(x + width / 2, y + kRow / 2, kText * 0.8, n.name, "middle", render::palette::kInk);
+      out += text(x + width / 2, y + kRow / 2, kName, n.name, "middle", render::palette::kInk);
     for (const Node& child : n.inside) {
       box(child, x, y + kRow);
       x += child.width * unit_;
