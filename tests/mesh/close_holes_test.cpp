@@ -11,7 +11,7 @@
 #include "engine/mesh/checked_mesh.hpp"
 #include "engine/mesh/mesh_check.hpp"
 #include "scenarios/bodies/shapes/shapes.hpp"
-#include "tests/support/dirt.hpp"
+#include "tests/support/faulty_meshes.hpp"
 
 namespace lrb::test {
 

@@ -7,7 +7,7 @@
 
 #include "engine/mesh/mesh_check.hpp"
 #include "scenarios/bodies/shapes/shapes.hpp"
-#include "tests/support/dirt.hpp"
+#include "tests/support/faulty_meshes.hpp"
 
 namespace lrb::test {
 

@@ -22,7 +22,7 @@
 #include "scenarios/io/files.hpp"
 #include "scenarios/run/body_sheet.hpp"
 #include "scenarios/run/chosen_view.hpp"
-#include "scenarios/run/dirt_picture.hpp"
+#include "scenarios/run/findings_picture.hpp"
 #include "scenarios/run/frame_job.hpp"
 #include "scenarios/run/region_sheet.hpp"
 
@@ -127,29 +127,30 @@ spec::FrameSpec sheet_frames(const InspectOptions& o, bool drawing) {
     throw InputError(
         "--size, --dpi and where to look from are for --render and --draw: add one, or leave them out");
   spec::FrameSpec frames;
-  frames.width = drawing ? run::kDirtSheetWidth : run::kBodySheetWidth;
+  frames.width = drawing ? run::kFindingsSheetWidth : run::kBodySheetWidth;
   frames.height = drawing ? 0 : run::kBodySheetHeight;
   apply(o.pictures, frames);
   if (frames.height > 0) run::check_frame_size(frames);
   return frames;
 }
 
-void draw_findings(const run::DirtyMesh& dirty, const InspectOptions& o, Json& j,
+void draw_findings(const run::FaultyMesh& faulty, const InspectOptions& o, Json& j,
                    std::vector<std::string>& notes) {
   const std::string& path = o.drawing;
   const std::string folder = std::filesystem::path(path).parent_path().string();
-  const auto& findings = dirty.report.findings;
+  const auto& findings = faulty.report.findings;
   const bool any =
       std::any_of(findings.begin(), findings.end(), [](const MeshFinding& f) { return f.count > 0; });
   const spec::FrameSpec frames = sheet_frames(o, true);
-  run::check_views(frames.views, dirty.mesh.dim);
+  run::check_views(frames.views, faulty.mesh.dim);
   if (any && !folder.empty()) io::make_folder(folder);
-  if (any && run::draw_dirt(dirty, path, frames)) {
+  if (any && run::draw_findings(faulty, path, frames)) {
     j["drawing"] = path;
     return;
   }
   j["drawing"] = nullptr;
-  notes.push_back(dirty.mesh.name + ": nothing to draw: there are no findings; " + path + " was not written");
+  notes.push_back(faulty.mesh.name + ": nothing to draw: there are no findings; " + path +
+                  " was not written");
 }
 
 /// Measures the regions, and draws the worst ten if pictures are asked for (`picture` is not empty).

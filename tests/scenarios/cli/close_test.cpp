@@ -7,7 +7,7 @@
 
 #include "engine/mesh/io/mesh_io.hpp"
 #include "scenarios/bodies/shapes/shapes.hpp"
-#include "tests/support/dirt.hpp"
+#include "tests/support/faulty_meshes.hpp"
 #include "tests/support/program.hpp"
 
 namespace lrb::test {

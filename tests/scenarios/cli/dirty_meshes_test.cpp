@@ -12,7 +12,7 @@
 #include "engine/query/brute_force.hpp"
 #include "engine/query/collide.hpp"
 #include "scenarios/bodies/shapes/shapes.hpp"
-#include "tests/support/dirt.hpp"
+#include "tests/support/faulty_meshes.hpp"
 #include "tests/support/json_lines.hpp"
 #include "tests/support/shared_meshes.hpp"
 #include "trace/hex.hpp"
@@ -373,7 +373,7 @@ void check_row(const Row& row) {
 
 }  // namespace
 
-TEST_CASE("dirt, kind by kind: inspect, build, query") {
+TEST_CASE("faults, kind by kind: inspect, build, query") {
   for (const Row& row : rows_3d()) check_row(row);
 }
 
@@ -400,7 +400,7 @@ TEST_CASE("corners in one place are kept apart if that is asked for") {
   }
 }
 
-TEST_CASE("dirt in the plane, kind by kind: inspect, build, query") {
+TEST_CASE("faults in the plane, kind by kind: inspect, build, query") {
   for (const Row& row : rows_2d()) check_row(row);
 }
 
@@ -442,8 +442,8 @@ TEST_CASE("real models, spoiled: no crash, exact pairs, built or refused in one 
   for (const char* name : {"spot", "cheburashka"}) {
     const Mesh model = read_mesh((meshes / (std::string(name) + ".obj")).string());
     for (const auto& spoiled : spoil(model, 5)) {
-      const auto& [name_of_dirt, mesh] = spoiled;
-      const auto& how = name_of_dirt;  // clang 14 captures no structured binding
+      const auto& [name_of_fault, mesh] = spoiled;
+      const auto& how = name_of_fault;  // clang 14 captures no structured binding
       CAPTURE(std::string(name));
       CAPTURE(std::string(how));
       const Folder folder;

@@ -14,7 +14,7 @@
 #include "scenarios/bodies/region_figures.hpp"
 #include "scenarios/bodies/shapes/shapes.hpp"
 #include "scenarios/run/region_words.hpp"
-#include "tests/support/dirt.hpp"
+#include "tests/support/faulty_meshes.hpp"
 #include "tests/support/program.hpp"
 
 namespace lrb::test {

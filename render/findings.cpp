@@ -1,12 +1,12 @@
-#include "render/dirt.hpp"
+#include "render/findings.hpp"
 
 #include <algorithm>
 #include <set>
 
-#include "render/dirt_parts.hpp"
+#include "render/findings_parts.hpp"
 #include "render/palette.hpp"
 
-namespace lrb::render::dirt {
+namespace lrb::render::findings {
 namespace {
 
 using Eigen::Vector3d;
@@ -285,4 +285,4 @@ std::vector<LegendItem> legend(const MeshReport& report, int dim, StyleName styl
   return out;
 }
 
-}  // namespace lrb::render::dirt
+}  // namespace lrb::render::findings

@@ -5,11 +5,11 @@
 
 #include "engine/mesh/checked_mesh.hpp"
 #include "engine/mesh/io/mesh_io.hpp"
-#include "render/dirt.hpp"
+#include "render/findings.hpp"
 #include "render/palette.hpp"
 #include "render/png.hpp"
 #include "scenarios/bodies/shapes/shapes.hpp"
-#include "tests/support/dirt.hpp"
+#include "tests/support/faulty_meshes.hpp"
 #include "tests/support/program.hpp"
 
 namespace lrb::test {
@@ -40,7 +40,7 @@ struct Drawn {
 
 }  // namespace
 
-TEST_CASE("the picture shows each kind of dirt in its colour") {
+TEST_CASE("the picture shows each kind of fault in its colour") {
   const Mesh ball = icosphere(1);
   const auto n = static_cast<VertexId>(ball.vertices.size());
   Mesh star = circle(5);
@@ -125,7 +125,7 @@ TEST_CASE("open edges are counted by loops") {
   const Mesh m = without_faces(icosphere(1), {7, 40});
   const MeshReport report = check_mesh(m);
   const std::vector<BoundaryLoop> loops = find_boundary_loops(m, examine(m).use);
-  CHECK(render::dirt::caption(MeshFault::open_edge, report[MeshFault::open_edge], 3, loops) ==
+  CHECK(render::findings::caption(MeshFault::open_edge, report[MeshFault::open_edge], 3, loops) ==
         "6 open edges in 2 loops, of 3 and 3");
 }
 
@@ -149,15 +149,15 @@ TEST_CASE("an LRB-rep has no findings to draw") {
 
 TEST_CASE("kinds that say the same are drawn once") {
   const Mesh doubled = with_doubled(icosphere(1), {3, 9});  // they also meet
-  CHECK(render::dirt::kinds(check_mesh(doubled)) ==
+  CHECK(render::findings::kinds(check_mesh(doubled)) ==
         std::vector{MeshFault::duplicate_face, MeshFault::non_manifold_edge});
   const Mesh collapsed = with_face(icosphere(1), {}, {0, 0, 1});
-  CHECK(render::dirt::kinds(check_mesh(collapsed)) == std::vector{MeshFault::zero_area_face});
-  CHECK(render::dirt::kinds(check_mesh(icosphere(1))).empty());
+  CHECK(render::findings::kinds(check_mesh(collapsed)) == std::vector{MeshFault::zero_area_face});
+  CHECK(render::findings::kinds(check_mesh(icosphere(1))).empty());
   const MeshReport open = check_mesh(without_faces(icosphere(1), {7, 40, 77}));
-  CHECK(render::dirt::caption(MeshFault::open_edge, open[MeshFault::open_edge], 3)
+  CHECK(render::findings::caption(MeshFault::open_edge, open[MeshFault::open_edge], 3)
             .starts_with("9 open edges: "));
-  CHECK(render::dirt::caption(MeshFault::open_edge, open[MeshFault::open_edge], 3).ends_with(", …"));
+  CHECK(render::findings::caption(MeshFault::open_edge, open[MeshFault::open_edge], 3).ends_with(", …"));
 }
 
 }  // namespace lrb::test

@@ -13,7 +13,7 @@
 #include "render/draw_list.hpp"
 #include "render/overlay.hpp"
 
-namespace lrb::render::dirt {
+namespace lrb::render::findings {
 
 /// Returns the kinds of faults that the report found and that can be shown at a place, in the order of
 /// MeshFault. A face that names a vertex twice is drawn as one without area if it has no area either.
@@ -65,4 +65,4 @@ DrawList list(const Mesh& mesh, const MeshReport& report, const Camera& camera, 
 /// Returns the legend for such a list: the sides of faces, then the kinds.
 std::vector<LegendItem> legend(const MeshReport& report, int dim, StyleName style = StyleName::screen);
 
-}  // namespace lrb::render::dirt
+}  // namespace lrb::render::findings

@@ -1,9 +1,9 @@
-#include "scenarios/run/dirt_picture.hpp"
+#include "scenarios/run/findings_picture.hpp"
 
 #include <algorithm>
 #include <filesystem>
 
-#include "render/dirt.hpp"
+#include "render/findings.hpp"
 #include "render/png.hpp"
 #include "render/rasterize.hpp"
 #include "render/text.hpp"
@@ -27,38 +27,39 @@ int columns(std::size_t panels) {
 }
 
 /// A panel to draw: the whole, or a kind of findings close up.
-struct DirtPanel {
+struct FindingsPanel {
   const MeshFault* kind = nullptr;  ///< null: the whole
   char letter = 'a';
   int width = 0, height = 0;
   float text = kUsualText;
 };
 
-render::Camera camera_of_whole(const DirtyMesh& dirty, const spec::FrameSpec& frames,
-                               const DirtPanel& panel) {
+render::Camera camera_of_whole(const FaultyMesh& faulty, const spec::FrameSpec& frames,
+                               const FindingsPanel& panel) {
   Framing framing;
-  framing.points = render::dirt::whole(dirty.mesh, dirty.report);
-  framing.dim = dirty.mesh.dim;
+  framing.points = render::findings::whole(faulty.mesh, faulty.report);
+  framing.dim = faulty.mesh.dim;
   constexpr double kCaptionRoom = 0.92;
   spec::FrameSpec::View view = frames.views.empty() ? spec::FrameSpec::View{} : frames.views[0];
   view.zoom *= kCaptionRoom;
   return camera_for(view, framing, panel.width, panel.height, 0);
 }
 
-render::Camera camera_of(const DirtyMesh& dirty, const spec::FrameSpec& frames, const DirtPanel& panel) {
-  if (panel.kind == nullptr) return camera_of_whole(dirty, frames, panel);
+render::Camera camera_of(const FaultyMesh& faulty, const spec::FrameSpec& frames,
+                         const FindingsPanel& panel) {
+  if (panel.kind == nullptr) return camera_of_whole(faulty, frames, panel);
   constexpr double kMargin = 0.1;  // for labels and the caption
-  const render::dirt::CloseUp close =
-      render::dirt::close_up(dirty.mesh, dirty.report, *panel.kind, dirty.loops);
+  const render::findings::CloseUp close =
+      render::findings::close_up(faulty.mesh, faulty.report, *panel.kind, faulty.loops);
   render::FitOptions fit;
   fit.margin = kMargin;
   fit.view = close.view;
   Eigen::AlignedBox3d box, part;
-  for (const Eigen::Vector3d& x : render::dirt::whole(dirty.mesh, dirty.report)) box.extend(x);
+  for (const Eigen::Vector3d& x : render::findings::whole(faulty.mesh, faulty.report)) box.extend(x);
   for (const Eigen::Vector3d& x : close.points) part.extend(x);
   const bool lone = !(part.diagonal().norm() > 0);
-  if (dirty.mesh.dim == 3) {
-    const bool rim = *panel.kind == MeshFault::open_edge && !dirty.loops.empty();
+  if (faulty.mesh.dim == 3) {
+    const bool rim = *panel.kind == MeshFault::open_edge && !faulty.loops.empty();
     return render::fit_contact(close.points, box, panel.width, panel.height, fit,
                                rim ? kRimContext : kContext, lone ? kLonely : kLeast);
   }
@@ -82,40 +83,40 @@ void write_caption(render::Image& panel, const std::string& text, float height, 
   }
 }
 
-render::Image draw_panel(render::Rasterizer& rasterizer, const DirtyMesh& dirty,
-                         const spec::FrameSpec& frames, const DirtPanel& panel) {
-  const render::Camera camera = camera_of(dirty, frames, panel);
+render::Image draw_panel(render::Rasterizer& rasterizer, const FaultyMesh& faulty,
+                         const spec::FrameSpec& frames, const FindingsPanel& panel) {
+  const render::Camera camera = camera_of(faulty, frames, panel);
   render::RasterOptions raster;
   raster.width = panel.width;
   raster.height = panel.height;
   raster.background = style_of(frames).paper;
-  render::dirt::Options options;
-  options.loops = dirty.loops;
+  render::findings::Options options;
+  options.loops = faulty.loops;
   options.style = style_name(frames);
   if (panel.kind != nullptr) {
     options.focus = *panel.kind;
     for (const Eigen::Vector3d& x :
-         render::dirt::close_up(dirty.mesh, dirty.report, *panel.kind, dirty.loops).points)
+         render::findings::close_up(faulty.mesh, faulty.report, *panel.kind, faulty.loops).points)
       options.near.extend(x);
   }
   options.scale = panel.text / kUsualText;
   options.width = panel.width;
   options.height = panel.height;
   render::Image image =
-      rasterizer.draw(render::dirt::list(dirty.mesh, dirty.report, camera, options), camera, raster);
-  const std::string what =
-      panel.kind ? render::dirt::caption(*panel.kind, dirty.report[*panel.kind], dirty.mesh.dim, dirty.loops)
-                 : "the whole";
+      rasterizer.draw(render::findings::list(faulty.mesh, faulty.report, camera, options), camera, raster);
+  const std::string what = panel.kind ? render::findings::caption(*panel.kind, faulty.report[*panel.kind],
+                                                                  faulty.mesh.dim, faulty.loops)
+                                      : "the whole";
   write_caption(image, "(" + std::string(1, panel.letter) + ") " + what, panel.text, style_of(frames));
   image.stroke(image.rect(), style_of(frames).rule);
   return image;
 }
 
 /// Draws the panels row by row into a picture of a size.
-render::Image draw_panels(const DirtyMesh& dirty, const spec::FrameSpec& frames,
+render::Image draw_panels(const FaultyMesh& faulty, const spec::FrameSpec& frames,
                           const std::vector<MeshFault>& kinds, const render::OverlayLayout& layout) {
   const int across = columns(kinds.size() + 1), down = (static_cast<int>(kinds.size()) + across) / across;
-  DirtPanel panel;
+  FindingsPanel panel;
   panel.width = (layout.picture.width - kGap * (across - 1)) / across;
   panel.height = (layout.picture.height - kGap * (down - 1)) / down;
   panel.text = std::max(kUsualText * static_cast<float>(frames.scale()), kTextHeight * layout.text_height);
@@ -124,7 +125,7 @@ render::Image draw_panels(const DirtyMesh& dirty, const spec::FrameSpec& frames,
   for (std::size_t i = 0; i <= kinds.size(); ++i) {
     panel.kind = i == 0 ? nullptr : &kinds[i - 1];
     panel.letter = static_cast<char>('a' + i);
-    picture.paste(draw_panel(rasterizer, dirty, frames, panel),
+    picture.paste(draw_panel(rasterizer, faulty, frames, panel),
                   static_cast<int>(i) % across * (panel.width + kGap),
                   static_cast<int>(i) / across * (panel.height + kGap));
   }
@@ -140,24 +141,24 @@ int height_for(std::size_t kinds, const spec::FrameSpec& frames) {
 
 }  // namespace
 
-bool draw_dirt(const DirtyMesh& given, const std::string& path, const spec::FrameSpec& asked) {
-  const std::vector<MeshFault> kinds = render::dirt::kinds(given.report);
+bool draw_findings(const FaultyMesh& given, const std::string& path, const spec::FrameSpec& asked) {
+  const std::vector<MeshFault> kinds = render::findings::kinds(given.report);
   if (kinds.empty()) return false;
-  const Mesh mesh = render::dirt::to_unit_size(given.mesh);
-  const DirtyMesh dirty{mesh, given.report, given.loops};
+  const Mesh mesh = render::findings::to_unit_size(given.mesh);
+  const FaultyMesh faulty{mesh, given.report, given.loops};
   spec::FrameSpec frames = in_pixels(asked);
   for (spec::FrameSpec::View& view : frames.views)
-    if (view.look_at) view.look_at = render::dirt::to_unit_size(given.mesh, *view.look_at);
+    if (view.look_at) view.look_at = render::findings::to_unit_size(given.mesh, *view.look_at);
   if (frames.height == 0) frames.height = height_for(kinds.size(), frames);
   render::Overlay overlay;
   overlay.title = std::filesystem::path(given.mesh.name).filename().string() + "  ·  " +
                   std::to_string(kinds.size()) + (kinds.size() == 1 ? " finding" : " findings");
   overlay.event = "Offenders by their numbers, counted from 0 in file order";
-  overlay.key = render::dirt::legend(given.report, mesh.dim, style_name(frames));
+  overlay.key = render::findings::legend(given.report, mesh.dim, style_name(frames));
   overlay.style = style_name(frames);
   const auto scale = static_cast<float>(frames.scale());
   const render::OverlayLayout layout = render::lay_out(overlay, frames.width, frames.height, scale);
-  const render::Image picture = draw_panels(dirty, frames, kinds, layout);
+  const render::Image picture = draw_panels(faulty, frames, kinds, layout);
   render::write_png(render::compose_frame(picture, layout.picture, overlay, frames.width, frames.height,
                                           style_of(frames).paper, scale),
                     path, {{}, frames.dpi});

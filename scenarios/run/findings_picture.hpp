@@ -10,7 +10,7 @@
 namespace lrb::run {
 
 /// A mesh and what is wrong with it.
-struct DirtyMesh {
+struct FaultyMesh {
   const Mesh& mesh;
   const MeshReport& report;
   const std::vector<BoundaryLoop>& loops;
@@ -20,9 +20,9 @@ struct DirtyMesh {
 /// each. Of open edges all are drawn, and the longest loop close up. `frames` says how large the whole is to be
 /// (height 0: as it needs) and, by its first view, from where the whole is seen. Returns false, and writes
 /// nothing, if there is nothing to point at.
-bool draw_dirt(const DirtyMesh& dirty, const std::string& path, const spec::FrameSpec& frames);
+bool draw_findings(const FaultyMesh& faulty, const std::string& path, const spec::FrameSpec& frames);
 
 /// The width of the picture unless one is asked for.
-inline constexpr int kDirtSheetWidth = 1600;
+inline constexpr int kFindingsSheetWidth = 1600;
 
 }  // namespace lrb::run

@@ -2,11 +2,11 @@
 #include <map>
 #include <set>
 
-#include "render/dirt.hpp"
-#include "render/dirt_parts.hpp"
+#include "render/findings.hpp"
+#include "render/findings_parts.hpp"
 #include "render/palette.hpp"
 
-namespace lrb::render::dirt {
+namespace lrb::render::findings {
 namespace {
 
 using Eigen::Vector3d;
@@ -18,9 +18,10 @@ constexpr std::uint8_t kVeil = 50;
 /// Faces hide an offender if they lie within this share of the way to it: its own faces do not.
 constexpr double kJustBefore = 0.999;
 
-class DirtListBuilder {
+class FindingsListBuilder {
  public:
-  DirtListBuilder(const Mesh& mesh, const MeshReport& report, const Camera& camera, const Options& options)
+  FindingsListBuilder(const Mesh& mesh, const MeshReport& report, const Camera& camera,
+                      const Options& options)
       : mesh_(mesh), report_(report), camera_(camera), o_(options) {}
 
   DrawList run() {
@@ -274,7 +275,7 @@ class DirtListBuilder {
 }  // namespace
 
 DrawList list(const Mesh& mesh, const MeshReport& report, const Camera& camera, const Options& options) {
-  return DirtListBuilder(mesh, report, camera, options).run();
+  return FindingsListBuilder(mesh, report, camera, options).run();
 }
 
-}  // namespace lrb::render::dirt
+}  // namespace lrb::render::findings

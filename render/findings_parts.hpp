@@ -1,5 +1,5 @@
 #pragma once
-/// What the offenders of a fault are made of: faces, edges and vertices. Private to dirt*.cpp.
+/// What the offenders of a fault are made of: faces, edges and vertices. Private to findings*.cpp.
 
 #include <array>
 #include <string>
@@ -7,7 +7,7 @@
 
 #include "engine/mesh/mesh_check.hpp"
 
-namespace lrb::render::dirt {
+namespace lrb::render::findings {
 
 using Element = std::array<std::uint32_t, 2>;
 
@@ -33,4 +33,4 @@ std::vector<Eigen::Vector3d> cut(const Mesh& mesh, FaceId f, FaceId g);
 /// Returns true if a segment passes through a face, in doubles.
 bool passes_through(const Mesh& mesh, FaceId f, const Eigen::Vector3d& from, const Eigen::Vector3d& to);
 
-}  // namespace lrb::render::dirt
+}  // namespace lrb::render::findings

@@ -1,4 +1,4 @@
-#include "render/dirt_parts.hpp"
+#include "render/findings_parts.hpp"
 
 #include <algorithm>
 #include <optional>
@@ -7,7 +7,7 @@
 
 #include "engine/core/disjoint_sets.hpp"
 
-namespace lrb::render::dirt {
+namespace lrb::render::findings {
 
 using Eigen::Vector3d;
 
@@ -132,4 +132,4 @@ std::vector<Vector3d> cut(const Mesh& mesh, FaceId f, FaceId g) {
   return {one, other};
 }
 
-}  // namespace lrb::render::dirt
+}  // namespace lrb::render::findings
