@@ -3,15 +3,16 @@
 //   batch_bench [--threads N] [--poses N] [--rounds N] [BODY...]
 //
 // BODY: a mesh or an .lrb file, which meets a copy of itself; without any a rock of 20,480 faces and a ring of 3,200. Printed for
-// each kind of batch: the least time that a round took on one thread, and on N (2); how many times as fast that is; and the
-// processor's time on N threads over that on one: what the threads cost, which other programs on the machine change
-// less. N cores that nobody else uses are at most N over that number as fast.
+// each kind of batch: the least time that a round took on one thread, and on N (2); how many times as fast that is; how many times
+// as fast the machine is at N such batches at once, each on a thread of its own with nothing in common but the bodies, which no
+// batch that is shared out can beat; and the processor's time on N threads over that on one.
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <ctime>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "engine/body/body.hpp"
@@ -61,17 +62,32 @@ void spend(Spent& least, const Work& work) {
   least.wall = std::min(least.wall, bench::seconds_since(begin));
 }
 
-/// Runs a kind of batch on one thread and on several, in turn, and prints what they took.
-template <class Ask>
+/// Asks the same batch on as many threads at once, each for itself.
+template <class Answers, class Ask>
+void ask_at_once(std::vector<Batch>& batches, std::vector<Answers>& answers, const Ask& ask) {
+  std::vector<std::thread> threads;
+  for (std::size_t i = 0; i < batches.size(); ++i)
+    threads.emplace_back([&, i] { ask(batches[i], answers[i]); });
+  for (std::thread& t : threads) t.join();
+}
+
+/// Runs a kind of batch on one thread, on several, and once on each of several, in turn, and prints what they took.
+template <class Answers, class Ask>
 void compare(const char* kind, const Options& o, const Ask& ask) {
   Batch one(1), several(o.threads);
-  Spent on_one, on_several;
+  Answers answers;
+  std::vector<Batch> lone(o.threads);
+  for (Batch& b : lone) b = Batch(1);
+  std::vector<Answers> lone_answers(o.threads);
+  Spent on_one, on_several, at_once;
   for (int round = 0; round < o.rounds; ++round) {
-    spend(on_one, [&] { ask(one); });
-    spend(on_several, [&] { ask(several); });
+    spend(on_one, [&] { ask(one, answers); });
+    spend(on_several, [&] { ask(several, answers); });
+    spend(at_once, [&] { ask_at_once(lone, lone_answers, ask); });
   }
-  std::printf("  %-16s %9.2f ms  %9.2f ms  x %.2f   processor's time x %.3f\n", kind, 1e3 * on_one.wall,
-              1e3 * on_several.wall, on_one.wall / on_several.wall, on_several.processor / on_one.processor);
+  std::printf("  %-16s %9.2f ms  %9.2f ms  x %.2f   machine x %.2f   processor's time x %.3f\n", kind,
+              1e3 * on_one.wall, 1e3 * on_several.wall, on_one.wall / on_several.wall,
+              o.threads * on_one.wall / at_once.wall, on_several.processor / on_one.processor);
 }
 
 void compare_all(const Body& a, const Body& b, const Options& o) {
@@ -84,8 +100,6 @@ void compare_all(const Body& a, const Body& b, const Options& o) {
   }
   std::printf("%s and %s: %u and %u faces, %zu poses, 1 and %u threads\n", a.name().c_str(), b.name().c_str(),
               a.rep().real_face_count(), b.rep().real_face_count(), poses.size(), o.threads);
-  CollideAnswers answers;
-  DistanceAnswers distances;
   CollideRequest any, contacts, coarse;
   any.mode = Mode::any_pair;
   contacts.contacts = true;
@@ -93,14 +107,19 @@ void compare_all(const Body& a, const Body& b, const Options& o) {
   a.rep().levels();
   b.rep().levels();
   const auto collides = [&](const CollideRequest& request) {
-    return [&, request](Batch& batch) { batch.collide(a, Pose{}, b, poses, request, answers); };
+    return [&, request](Batch& batch, CollideAnswers& answers) {
+      batch.collide(a, Pose{}, b, poses, request, answers);
+    };
   };
-  compare("any pair", o, collides(any));
-  compare("all pairs", o, collides(CollideRequest{}));
-  compare("contacts", o, collides(contacts));
-  compare("to a tolerance", o, collides(coarse));
-  compare("pairs of bodies", o, [&](Batch& batch) { batch.collide(pairs, {}, answers); });
-  compare("distances", o, [&](Batch& batch) { batch.distance(a, Pose{}, b, poses, {}, distances); });
+  compare<CollideAnswers>("any pair", o, collides(any));
+  compare<CollideAnswers>("all pairs", o, collides(CollideRequest{}));
+  compare<CollideAnswers>("contacts", o, collides(contacts));
+  compare<CollideAnswers>("to a tolerance", o, collides(coarse));
+  compare<CollideAnswers>("pairs of bodies", o,
+                          [&](Batch& batch, CollideAnswers& answers) { batch.collide(pairs, {}, answers); });
+  compare<DistanceAnswers>("distances", o, [&](Batch& batch, DistanceAnswers& answers) {
+    batch.distance(a, Pose{}, b, poses, {}, answers);
+  });
 }
 
 }  // namespace
