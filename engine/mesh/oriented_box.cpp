@@ -1,9 +1,11 @@
 #include "engine/mesh/oriented_box.hpp"
 
 #include <cmath>
-#include <limits>
 
-#include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
+
+#include "engine/core/eigenvectors.hpp"
+#include "engine/core/infinity.hpp"
 
 namespace lrb {
 namespace {
@@ -27,8 +29,7 @@ Eigen::Matrix3d principal_axes(std::span<const Eigen::Vector3d> points) {
   for (const Eigen::Vector3d& p : points) mean += weight * p;
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
   for (const Eigen::Vector3d& p : points) covariance += weight * (p - mean) * (p - mean).transpose();
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(covariance);
-  const Eigen::Matrix3d axes = eigen.eigenvectors().transpose();
+  const Eigen::Matrix3d axes = eigenvectors_of_symmetric(covariance).transpose();
   const double defect = (axes * axes.transpose() - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
   return defect < 0x1p-48 ? axes : Eigen::Matrix3d::Identity();  // not a number: false
 }
@@ -55,7 +56,6 @@ Eigen::Vector3d UnitCube::operator()(const Eigen::Vector3d& x) const {
 OrientedBox OrientedBox::about(std::span<const Eigen::Vector3d> points) {
   OrientedBox box;
   box.axes = principal_axes(points);
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
   Eigen::Vector3d low = Eigen::Vector3d::Constant(kInfinity), high = -low;
   for (const Eigen::Vector3d& p : points) {
     const Eigen::Vector3d along = box.axes * p;

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <numeric>
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 
+#include "engine/core/eigenvectors.hpp"
 #include "engine/core/parallel.hpp"
 #include "engine/core/tolerances.hpp"
 #include "engine/tree/pose_bounds.hpp"
@@ -256,8 +256,7 @@ Frame fit_frame(const Soup& soup, std::uint32_t begin, std::uint32_t end, const 
   }
   mean /= weight;
   const Matrix3d covariance = moment / weight - mean * mean.transpose();
-  const Eigen::SelfAdjointEigenSolver<Matrix3d> eigen(covariance);
-  Frame principal{rounded_to_float(eigen.eigenvectors().transpose()), frame.origin};
+  Frame principal{rounded_to_float(eigenvectors_of_symmetric(covariance).transpose()), frame.origin};
   if (!principal.axes.allFinite() || !is_orthonormal(principal.axes)) return frame;
   const Box turned = box_in_frame(soup, begin, end, principal);
   return half_area(turned) < half_area(bounds) ? principal : frame;

@@ -6,9 +6,9 @@
 #include <cstdio>
 #include <limits>
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 
+#include "engine/core/eigenvectors.hpp"
 #include "engine/lrb/thickness.hpp"
 #include "engine/lrb/validate.hpp"
 #include "scenarios/bodies/hull_figures.hpp"
@@ -100,10 +100,9 @@ Eigen::Vector3d principal_sizes(const LrbRep& rep) {
     const Eigen::Vector3d d = (x - middle) / unit;
     spread += d * d.transpose();
   }
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(spread);
+  const Eigen::Matrix3d axes = eigenvectors_of_symmetric(spread);
   Eigen::AlignedBox3d turned;
-  for (const Eigen::Vector3d& x : points)
-    turned.extend(axes.eigenvectors().transpose() * ((x - middle) / unit));
+  for (const Eigen::Vector3d& x : points) turned.extend(axes.transpose() * ((x - middle) / unit));
   Eigen::Vector3d sizes = turned.sizes() * unit;
   std::sort(sizes.begin(), sizes.end());
   return sizes;

@@ -30,8 +30,7 @@ Mesh knot(const GeneratorValues& v, std::uint64_t) {
   std::vector<Eigen::Vector3d> tangent(n), side(n + 1);
   for (int i = 0; i < n; ++i) tangent[i] = (line((i + 0.5) / n) - line((i - 0.5) / n)).normalized();
   side[0] = tangent[0].unitOrthogonal();
-  for (int i = 0; i < n; ++i)
-    side[i + 1] = Eigen::Quaterniond::FromTwoVectors(tangent[i], tangent[(i + 1) % n]) * side[i];
+  for (int i = 0; i < n; ++i) side[i + 1] = steady::turn_between(tangent[i], tangent[(i + 1) % n]) * side[i];
   const double gap = steady::atan2(side[n].cross(side[0]).dot(tangent[0]), side[n].dot(side[0]));
 
   Mesh mesh;
