@@ -38,24 +38,25 @@ std::vector<FaceId> find_buried(const Mesh& mesh, const HullMesh& hull, const st
   }
   const SideFinder finder(mesh, std::move(component_of));
   const std::vector<int> signs = signs_of(mesh, hull);
-  enum class Sheet : std::uint8_t { unknown, free, buried };
+  enum class SheetKind : std::uint8_t { unknown, free, buried };
   // By how often the space in front of a face is covered by solids; unknown where its first corner lies on another
   // component's surface.
   const auto look_at = [&](Slot s) {
     int solids = signs[hull[s].component] < 0 ? -1 : 0;
     for (const SideFinder::Side& side : finder.sides(hull.x(hull[s].v[0]))) {
       if (side.surface == hull[s].component) continue;
-      if (side.side == PointSide::on_surface) return Sheet::unknown;
+      if (side.side == PointSide::on_surface) return SheetKind::unknown;
       solids += signs[side.surface];
     }
-    return solids > 0 ? Sheet::buried : Sheet::free;
+    return solids > 0 ? SheetKind::buried : SheetKind::free;
   };
-  std::vector<Sheet> known(hull.slot_count(), Sheet::unknown);  // at a sheet's leader
+  std::vector<SheetKind> known(hull.slot_count(), SheetKind::unknown);  // at a sheet's leader
   for (Slot s = 0; s < hull.slot_count(); ++s)
-    if (Sheet& sheet = known[sheets.leader(s)]; !meets(s) && sheet == Sheet::unknown) sheet = look_at(s);
+    if (SheetKind& sheet = known[sheets.leader(s)]; !meets(s) && sheet == SheetKind::unknown)
+      sheet = look_at(s);
   std::vector<FaceId> buried;
   for (Slot s = 0; s < hull.slot_count(); ++s)
-    if (!meets(s) && known[sheets.leader(s)] != Sheet::free) buried.push_back(hull[s].face);
+    if (!meets(s) && known[sheets.leader(s)] != SheetKind::free) buried.push_back(hull[s].face);
   return buried;
 }
 

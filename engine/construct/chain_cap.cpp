@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "engine/core/cross_2d.hpp"
 #include "engine/core/tolerances.hpp"
 #include "engine/exact/locate.hpp"
 #include "engine/exact/predicates.hpp"
@@ -18,10 +19,6 @@ using Vector3 = Eigen::Vector3d;
 
 int turn(const Vector3& a, const Vector3& b, const Vector3& c) {
   return exact::orient2d(a.data(), b.data(), c.data());
-}
-
-double cross_2d(const Vector3& a, const Vector3& b) {
-  return a.x() * b.y() - a.y() * b.x();
 }
 
 /// Returns the half-plane in front (to the right) of the line through a segment by `margin`; relative to

@@ -7,6 +7,7 @@
 
 #include <Eigen/Geometry>
 
+#include "engine/core/cross_2d.hpp"
 #include "engine/exact/predicates.hpp"
 
 namespace lrb::construct {
@@ -14,18 +15,14 @@ namespace {
 
 using Vector3 = Eigen::Vector3d;
 
-double cross_2d(const Vector3& a, const Vector3& b) {
-  return a.x() * b.y() - a.y() * b.x();
-}
-
 /// The point in which two sides p0 -> p1 and q0 -> q1 meet when they are extended, and the area that this
 /// adds beyond p1, q0; the area is infinite if they do not converge.
-struct Corner {
+struct MeetingPoint {
   Vector3 x;
   double area;
 };
 
-Corner meet(const Vector3& p0, const Vector3& p1, const Vector3& q0, const Vector3& q1) {
+MeetingPoint meet(const Vector3& p0, const Vector3& p1, const Vector3& q0, const Vector3& q1) {
   const Vector3 p = p1 - p0, q = q1 - q0;
   const double turn = cross_2d(p, q);
   if (!(turn > 0)) return {p1, std::numeric_limits<double>::infinity()};
@@ -83,9 +80,10 @@ std::vector<Vector3> enclosing_polygon(std::span<const Vector3> points, std::uin
   while (polygon.size() > std::max(max_sides, 4u)) {
     const std::size_t n = polygon.size();
     std::size_t best = 0;
-    Corner least{Eigen::Vector3d::Zero(), std::numeric_limits<double>::infinity()};
+    MeetingPoint least{Eigen::Vector3d::Zero(), std::numeric_limits<double>::infinity()};
     for (std::size_t i = 0; i < n; ++i) {  // the side from i + 1 to i + 2 goes
-      const Corner c = meet(polygon[i], polygon[(i + 1) % n], polygon[(i + 2) % n], polygon[(i + 3) % n]);
+      const MeetingPoint c =
+          meet(polygon[i], polygon[(i + 1) % n], polygon[(i + 2) % n], polygon[(i + 3) % n]);
       if (c.area < least.area) {
         least = c;
         best = i;

@@ -1,12 +1,12 @@
 #include "engine/exact/rational_point.hpp"
 
-#include <limits>
 #include <utility>
+
+#include "engine/core/infinity.hpp"
 
 namespace lrb::exact {
 
 RationalPoint::Coordinates::Coordinates(RationalVec coordinates) : x(std::move(coordinates)) {
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
   for (std::size_t k = 0; k < 3; ++k) {
     low[k] = high[k] = x[k].convert_to<double>();
     while (to_rational(low[k]) > x[k]) low[k] = std::nextafter(low[k], -kInfinity);

@@ -2,19 +2,17 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numeric>
 #include <string>
 
 #include "engine/core/error.hpp"
+#include "engine/core/infinity.hpp"
 #include "engine/core/parallel.hpp"
 #include "engine/lrb/pieces.hpp"
 #include "engine/lrb/thickness.hpp"
 
 namespace lrb {
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// From one level to the next the number of faces grows by this factor at most, where regions are small enough.
 /// Smaller: more levels to make and keep; larger: a tolerance between two levels costs that many faces more.

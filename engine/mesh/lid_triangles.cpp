@@ -6,6 +6,7 @@
 
 #include <Eigen/Geometry>
 
+#include "engine/core/infinity.hpp"
 #include "engine/exact/orient_axes.hpp"
 #include "engine/exact/predicates.hpp"
 
@@ -13,8 +14,6 @@ namespace lrb::lids {
 namespace {
 
 using Eigen::Vector3d;
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// Says on which side of the line from a to b, in a view, c lies.
 int turn(const Mesh& mesh, const LidView& view, VertexId a, VertexId b, VertexId c) {

@@ -93,6 +93,12 @@ Eigen::AlignedBox3d box_of(const LrbRep& rep, const Pose& pose) {
   return box;
 }
 
+Eigen::AlignedBox3d box_with_lids(const LrbRep& rep, const Pose& pose) {
+  Eigen::AlignedBox3d box;
+  for (const Vector3d& v : rep.vertices()) box.extend(pose.apply(v));
+  return box;
+}
+
 Vector3d broadside(const Eigen::AlignedBox3d& box, const Vector3d& up) {
   int vertical = 0;
   up.cwiseAbs().maxCoeff(&vertical);

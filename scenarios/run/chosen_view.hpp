@@ -9,6 +9,8 @@ namespace lrb::run {
 
 /// Returns the box around a body's real faces.
 Eigen::AlignedBox3d box_of(const LrbRep& rep, const Pose& pose = {});
+/// Returns the box around all of its vertices, those of lids among them.
+Eigen::AlignedBox3d box_with_lids(const LrbRep& rep, const Pose& pose = {});
 
 /// Returns a direction from which a box is seen from its longer level side, aslant and slightly from above. `up` is an axis.
 Eigen::Vector3d broadside(const Eigen::AlignedBox3d& box, const Eigen::Vector3d& up);

@@ -13,14 +13,14 @@
 namespace lrb::run {
 namespace {
 
-constexpr int kGap = 4, kStrips = 120;  // pixels of a screen: between panels, for title and legend
-constexpr double kShape = 0.72;         // a panel's height over its width
-constexpr float kTextHeight = 0.8F;     // of panels, over the title's
-constexpr double kLonely = 0.5;         // of the body's size, about a point without faces
-constexpr float kUsualText = 16;        // pixels: lines and points are made for it
-constexpr double kContext = 1.15;       // of the close-ups' sizes
-constexpr double kRimContext = 1.6;     // the same of a rim, which is no use without what it bounds
-constexpr double kLeast = 1e-6;         // of the body's size, in a close-up of what has none
+constexpr int kGap = 4, kStrips = 120;    // pixels of a screen: between panels, for title and legend
+constexpr double kShape = 0.72;           // a panel's height over its width
+constexpr float kPanelText = 0.8F;        // of panels, over the title's
+constexpr double kLonely = 0.5;           // of the body's size, about a point without faces
+constexpr float kUsualText = 16;          // pixels: lines and points are made for it
+constexpr double kCloseUpContext = 1.15;  // of the close-ups' sizes
+constexpr double kRimContext = 1.6;       // the same of a rim, which is no use without what it bounds
+constexpr double kLeastCloseUp = 1e-6;    // of the body's size, in a close-up of what has none
 
 int columns(std::size_t panels) {
   return panels == 2 || panels == 4 ? 2 : 3;
@@ -61,7 +61,7 @@ render::Camera camera_of(const FaultyMesh& faulty, const spec::FrameSpec& frames
   if (faulty.mesh.dim == 3) {
     const bool rim = *panel.kind == MeshFault::open_edge && !faulty.loops.empty();
     return render::fit_contact(close.points, box, panel.width, panel.height, fit,
-                               rim ? kRimContext : kContext, lone ? kLonely : kLeast);
+                               rim ? kRimContext : kCloseUpContext, lone ? kLonely : kLeastCloseUp);
   }
   std::vector<Eigen::Vector3d> points = close.points;
   if (lone)
@@ -119,7 +119,7 @@ render::Image draw_panels(const FaultyMesh& faulty, const spec::FrameSpec& frame
   FindingsPanel panel;
   panel.width = (layout.picture.width - kGap * (across - 1)) / across;
   panel.height = (layout.picture.height - kGap * (down - 1)) / down;
-  panel.text = std::max(kUsualText * static_cast<float>(frames.scale()), kTextHeight * layout.text_height);
+  panel.text = std::max(kUsualText * static_cast<float>(frames.scale()), kPanelText * layout.text_height);
   render::Image picture(layout.picture.width, layout.picture.height, style_of(frames).paper);
   render::Rasterizer rasterizer;
   for (std::size_t i = 0; i <= kinds.size(); ++i) {

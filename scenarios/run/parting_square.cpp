@@ -5,14 +5,10 @@
 
 #include <Eigen/Geometry>
 
+#include "scenarios/run/chosen_view.hpp"
+
 namespace lrb::run {
 namespace {
-
-Eigen::AlignedBox3d box_of(const LrbRep& rep, const Pose& pose) {
-  Eigen::AlignedBox3d box;
-  for (const Eigen::Vector3d& v : rep.vertices()) box.extend(pose.apply(v));
-  return box;
-}
 
 /// Returns a square round a point that is carried into the plane n.x = at.
 Square square(const Eigen::Vector3d& n, double at, Eigen::Vector3d middle, double half, int dim) {
@@ -30,7 +26,7 @@ Square square(const Eigen::Vector3d& n, double at, Eigen::Vector3d middle, doubl
 Square parting_square(const PartingPlane& plane, const LrbRep& a, const Pose& pose_a, const LrbRep& b,
                       const Pose& pose_b) {
   constexpr double kShare = 0.35;  // of the smaller body's diagonal, from the middle to a corner
-  const Eigen::AlignedBox3d of_a = box_of(a, pose_a), of_b = box_of(b, pose_b);
+  const Eigen::AlignedBox3d of_a = box_with_lids(a, pose_a), of_b = box_with_lids(b, pose_b);
   const Eigen::AlignedBox3d& smaller = of_a.diagonal().norm() < of_b.diagonal().norm() ? of_a : of_b;
   return square(plane.normal, (plane.of_a + plane.of_b) / 2, smaller.center(),
                 kShare * smaller.diagonal().norm(), a.dim());

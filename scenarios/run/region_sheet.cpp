@@ -18,9 +18,9 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kAround = 1.25;  // of a region's size: what is shown of its surroundings
-constexpr double kLeast = 0.02;   // of the body's size, however small the region
-constexpr double kTilt = 0.45;    // of the usual direction, added to where the lids look
+constexpr double kAround = 1.25;      // of a region's size: what is shown of its surroundings
+constexpr double kLeastShown = 0.02;  // of the body's size, however small the region
+constexpr double kTilt = 0.45;        // of the usual direction, added to where the lids look
 
 constexpr render::Rgba kLids = render::palette::kOrange;
 constexpr double kPseudoPale = 0.55;  // of the body's colour
@@ -126,7 +126,7 @@ class RegionSheet {
       Eigen::AlignedBox3d around;
       for (const Vector3d& x : points) around.extend(x);
       const Vector3d more =
-          0.5 * (kAround - 1) * around.sizes() + Vector3d(1, 1, 0) * kLeast * box_.sizes().norm();
+          0.5 * (kAround - 1) * around.sizes() + Vector3d(1, 1, 0) * kLeastShown * box_.sizes().norm();
       return render::fit_top(std::vector<Vector3d>{around.min() - more, around.max() + more}, raster_.width,
                              raster_.height);
     }
@@ -139,7 +139,7 @@ class RegionSheet {
     const Vector3d up = fit.view.up.normalized(), usual = fit.view.from.normalized();
     const Vector3d from = out + kTilt * usual;
     if (out.norm() > 0 && from.normalized().cross(up).norm() > 0.1) fit.view.from = from;
-    return render::fit_contact(points, box_, raster_.width, raster_.height, fit, kAround, kLeast);
+    return render::fit_contact(points, box_, raster_.width, raster_.height, fit, kAround, kLeastShown);
   }
 
   const LrbRep& rep_;

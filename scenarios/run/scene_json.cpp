@@ -10,6 +10,7 @@
 #include "render/overlay.hpp"
 #include "render/palette.hpp"
 #include "scenarios/report/page/packed.hpp"
+#include "scenarios/run/chosen_view.hpp"
 #include "scenarios/run/explanations.hpp"
 #include "scenarios/run/pass_words.hpp"
 #include "scenarios/run/scene_frame.hpp"
@@ -67,14 +68,8 @@ json colours() {
 
 // ---- where things are
 
-Eigen::AlignedBox3d box_of(const LrbRep& rep) {
-  Eigen::AlignedBox3d box;
-  for (const Eigen::Vector3d& v : rep.vertices()) box.extend(v);
-  return box;
-}
-
 Eigen::Vector3d middle_of(const LrbRep& rep) {
-  return rep.vertices().empty() ? Eigen::Vector3d(0, 0, 0) : Eigen::Vector3d(box_of(rep).center());
+  return rep.vertices().empty() ? Eigen::Vector3d(0, 0, 0) : Eigen::Vector3d(box_with_lids(rep).center());
 }
 
 const Pose& pose_in(const trace::Step& step, std::size_t body) {

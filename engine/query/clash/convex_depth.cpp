@@ -6,12 +6,11 @@
 #include <Eigen/Geometry>
 
 #include "engine/core/clash_tolerances.hpp"
+#include "engine/core/infinity.hpp"
 #include "engine/query/distance/pair_bounds.hpp"
 
 namespace lrb::parting {
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 const Vector3d& farthest(const ConvexPoints& points, const Vector3d& n) {
   const Vector3d* best = &points[0];

@@ -6,13 +6,12 @@
 #include <Eigen/Geometry>
 
 #include "engine/core/clash_tolerances.hpp"
+#include "engine/core/infinity.hpp"
 #include "engine/exact/pair_contact.hpp"
 #include "engine/query/walk/relation.hpp"
 
 namespace lrb::parting {
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 Vector3d normal_of(const UnitBody& body, std::uint32_t triangle) {
   const auto& t = body.triangles[triangle];

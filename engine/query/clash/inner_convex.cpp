@@ -2,18 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include <Eigen/Geometry>
 
 #include "engine/core/clash_tolerances.hpp"
+#include "engine/core/infinity.hpp"
 #include "engine/mesh/nearest_on_simplex.hpp"
 #include "engine/query/clash/point_hull.hpp"
 
 namespace lrb::parting {
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 Vector3d nearest_point(const Vector3d& x, const Vector3d& a, const Vector3d& b, const Vector3d& c) {
   const SimplexPoint p = nearest_on_triangle(x, a, b, c);

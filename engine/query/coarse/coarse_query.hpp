@@ -24,11 +24,11 @@
 
 #include <algorithm>
 #include <chrono>
-#include <limits>
 #include <optional>
 #include <utility>
 #include <vector>
 
+#include "engine/core/infinity.hpp"
 #include "engine/core/tolerances.hpp"
 #include "engine/lrb/wrapper_level.hpp"
 #include "engine/query/coarse/separating_slab.hpp"
@@ -152,7 +152,6 @@ class CoarseQuery {
   }
 
  private:
-  static constexpr double kInfinity = std::numeric_limits<double>::infinity();
   static constexpr double kLongest = 1e6;  ///< seconds: more does not fit the clock on every machine
 
   /// Keeps contacts from the probe: those of a step are part of the answer only if it is the last.

@@ -20,9 +20,9 @@ namespace {
 /// Number of pairs to find before looking at the clock.
 constexpr std::size_t kAtATime = 256;
 /// The usual step is the longest of recent steps: from one query to the next it shrinks by the factor
-/// kForget. A step more than kJump times as long is a jump, which says nothing about the steps to come,
+/// kForgetStep. A step more than kJump times as long is a jump, which says nothing about the steps to come,
 /// unless another one follows.
-constexpr double kForget = 0.7, kJump = 8;
+constexpr double kForgetStep = 0.7, kJump = 8;
 
 using Clock = std::chrono::steady_clock;
 
@@ -257,7 +257,7 @@ bool CoherentQuery::Work::still_crosses(Probe& probe) {
 
 void CoherentQuery::Work::note_step(double step) {
   const bool jump = !std::isfinite(step) || (usual_step_ > 0 && step > kJump * usual_step_);
-  if (!jump || (jumped_ && std::isfinite(step))) usual_step_ = std::max(step, kForget * usual_step_);
+  if (!jump || (jumped_ && std::isfinite(step))) usual_step_ = std::max(step, kForgetStep * usual_step_);
   if (jump) policy_.forgive();
   jumped_ = jump;
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/core/infinity.hpp"
 #include "engine/core/tolerances.hpp"
 #include "engine/exact/pair_distance.hpp"
 #include "engine/query/collide_impl.hpp"
@@ -10,8 +11,6 @@
 
 namespace lrb {
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 double world_radius(const QueryBody& body) {
   const ObbTree& tree = body.tree();

@@ -19,18 +19,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include <Eigen/Geometry>
 
+#include "engine/core/infinity.hpp"
 #include "engine/core/tolerances.hpp"
 
 namespace lrb {
 namespace {
 
 using Eigen::Vector3d;
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 double clamp_share(double x) {
   return x > 0 ? std::min(x, 1.0) : 0;  // not a number: 0

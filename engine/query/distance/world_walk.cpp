@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/core/infinity.hpp"
 #include "engine/core/tolerances.hpp"
 #include "engine/tree/pose_bounds.hpp"
 
@@ -21,7 +22,6 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 /// Covers the rounding of the axes, 10 u, of squares and of a root, 4 u; u = 2^-53.
 constexpr double kRootDown = 1 - 0x1p-48;
 

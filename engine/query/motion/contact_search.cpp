@@ -86,9 +86,8 @@ double FirstContactSearch::parted_by_distance(double t) {
   ++result_.counters.steps;
   const DistanceResult at =
       distance(*rep_[0], a_->at(t).pose, *rep_[1], b_->at(t).pose, rough, context_.distance);
-  const double gap = at.lower - 2 * (a_->rounding() + b_->rounding()) * (1 + kWorldRounding);
-  const double speed =
-      ((b_->travel() - a_->travel()).norm() + a_->spin() + b_->spin()) * (1 + kWorldRounding);
+  const double gap = at.lower - 2 * (a_->rounding() + b_->rounding()) * kWorldUp;
+  const double speed = ((b_->travel() - a_->travel()).norm() + a_->spin() + b_->spin()) * kWorldUp;
   return gap > 0 ? gap / speed * (1 - kWorldRounding) : 0;
 }
 
@@ -189,7 +188,7 @@ double FirstContactSearch::advance_stuck(TimeSpan span) {
 
 /// Returns true, and notes the contact, if one of the pairs that are stuck is proved to have met in the span.
 bool FirstContactSearch::has_passed(TimeSpan span) {
-  const double time = (span.end - span.begin) * (1 + kWorldRounding);
+  const double time = (span.end - span.begin) * kWorldUp;
   for (const SimplexPair& pair : context_.stuck) {
     PairMotion before(*a_, *b_, pair), now(*a_, *b_, pair);
     before.place(a_->at(span.begin), b_->at(span.begin));

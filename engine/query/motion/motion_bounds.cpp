@@ -13,9 +13,6 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Covers a dozen roundings of numbers that are not negative.
-constexpr double kUp = 1 + kWorldRounding;
-
 /// Calls see(origin, radius), in the body's unit, for balls that together hold the body: two levels of its tree.
 template <class See>
 void for_each_ball(const ObbTree& tree, See&& see) {
@@ -36,19 +33,19 @@ void for_each_ball(const ObbTree& tree, See&& see) {
 }  // namespace
 
 MovingBody::MovingBody(const LrbRep& rep, const Motion::Piece& piece) : rep_(&rep), piece_(&piece) {
-  const double time = piece.end - piece.begin, angle = piece.turn.stableNorm() * kUp;
+  const double time = piece.end - piece.begin, angle = piece.turn.stableNorm() * kWorldUp;
   travel_ = (piece.to - piece.from) / time;
   rate_ = piece.turn / time;
   stretch_ = stretch({piece.r, {0, 0, 0}});
-  turn_rate_ = angle / time * kUp;
-  spin_ = angle > 0 ? stretch_ * farthest_from_axis() * kUp : 0;
+  turn_rate_ = angle / time * kWorldUp;
+  spin_ = angle > 0 ? stretch_ * farthest_from_axis() * kWorldUp : 0;
   const double size = std::sqrt(3.0) * rep.tree().extent();
   const double frobenius = std::sqrt(3.0) * stretch(piece.first);
   const double turned = stretch_ * (frobenius * size + piece.first.t.stableNorm());
   const double path = std::max(piece.from.stableNorm(), piece.to.stableNorm());
   const double share = kMotionRounding * (1 + 0x1p-10 * angle);
-  rounding_ = share * (turned + path) * kUp + kWorldUnderflow;
-  velocity_rounding_ = 4 * share * (angle * turned + 2 * path) / time * kUp + kWorldUnderflow;
+  rounding_ = share * (turned + path) * kWorldUp + kWorldUnderflow;
+  velocity_rounding_ = 4 * share * (angle * turned + 2 * path) / time * kWorldUp + kWorldUnderflow;
 }
 
 /// Returns a bound on |w x z|.
@@ -61,12 +58,12 @@ double MovingBody::farthest_from_axis() const {
         4 * kMotionRounding * (2 * size * rep_->tree().extent() + piece_->first.t.stableNorm());
     most = std::max(most, rate_.cross(z).stableNorm() + turn_rate_ * (size * radius + rounding));
   });
-  return most * kUp;
+  return most * kWorldUp;
 }
 
 double MovingBody::turned_by(double time) const {
   // A chord is no longer than its arc, nor than twice the distance from the axis.
-  return turn_rate_ > 0 ? std::min(spin_ * time, 2 * spin_ / turn_rate_) * kUp : 0;
+  return turn_rate_ > 0 ? std::min(spin_ * time, 2 * spin_ / turn_rate_) * kWorldUp : 0;
 }
 
 MovingBody::Spin MovingBody::spin_of(const Vector3d& x) const {
@@ -74,7 +71,7 @@ MovingBody::Spin MovingBody::spin_of(const Vector3d& x) const {
   const Vector3d z = piece_->first.r * x + piece_->first.t;
   Spin spin{rate_.cross(z), 0};
   const double rounding = 4 * kMotionRounding * turn_rate_ * (z.norm() + piece_->first.t.norm());
-  spin.acceleration = stretch_ * turn_rate_ * (spin.velocity.norm() + rounding) * kUp;
+  spin.acceleration = stretch_ * turn_rate_ * (spin.velocity.norm() + rounding) * kWorldUp;
   return spin;
 }
 

@@ -17,10 +17,14 @@
 /// exceeds V = (|turn| (N X + P) + |from| + |to|) / T; 4 kMotionRounding (1 + 2^-10 |turn|) V, 32 u, covers them and
 /// a product with a direction.
 
+#include "engine/core/tolerances.hpp"
 #include "engine/lrb/lrb_rep.hpp"
 #include "engine/query/motion/piece_state.hpp"
 
 namespace lrb {
+
+/// Covers a dozen roundings of numbers that are not negative.
+inline constexpr double kWorldUp = 1 + kWorldRounding;
 
 /// One body in one piece of its motion. Unit: the world's; times are those of the motion.
 class MovingBody {

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include <Eigen/Geometry>
 
+#include "engine/core/infinity.hpp"
 #include "engine/core/tolerances.hpp"
 
 namespace lrb {
@@ -13,7 +13,6 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 /// Roots are taken back by this share, which covers their rounding: 8 u, u = 2^-53.
 constexpr double kRootDown = 1 - 0x1p-40;
 
@@ -90,11 +89,11 @@ void PairMotion::place(const PieceState& a, const PieceState& b) {
 /// Returns how far a product of n and a difference of two corners may be off, once for now and once for later.
 double PairMotion::places_rounding(const Vector3d& n) const {
   return 0.25 * kPairRounding * reach_ * n.cwiseAbs().sum() +
-         2 * n.norm() * (1 + kWorldRounding) * (body_[0]->rounding() + body_[1]->rounding());
+         2 * n.norm() * kWorldUp * (body_[0]->rounding() + body_[1]->rounding());
 }
 
 double PairMotion::parted_for(const Vector3d& n) const {
-  const double length = n.norm() * (1 + kWorldRounding);
+  const double length = n.norm() * kWorldUp;
   if (!(length > 0) || !(length < kInfinity)) return 0;
   double ahead[2][3], speed[2][3];
   double low[2] = {kInfinity, kInfinity}, high[2] = {-kInfinity, -kInfinity};
@@ -174,9 +173,8 @@ bool PairMotion::has_passed(const PairMotion& before, const Vector3d& n, double 
   const double sure = places_rounding(n), sure_before = before.places_rounding(n);
   const Vector3d travel = body_[1]->travel() - body_[0]->travel();
   const double aside = std::abs(u.dot(travel)) + std::abs(v.dot(travel)) + 4 * kWorldRounding * travel.norm();
-  const double moved =
-      (time * aside + body_[0]->turned_by(time) + body_[1]->turned_by(time)) * (1 + kWorldRounding) +
-      2 * (body_[0]->rounding() + body_[1]->rounding()) + kPairRounding * reach_;
+  const double moved = (time * aside + body_[0]->turned_by(time) + body_[1]->turned_by(time)) * kWorldUp +
+                       2 * (body_[0]->rounding() + body_[1]->rounding()) + kPairRounding * reach_;
   Difference turned[9];
   int count = 0;
   for (int i = 0; i < n_; ++i)

@@ -15,7 +15,6 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-constexpr double kUp = 1 + kWorldRounding;
 /// Largest angle, in radians, by which B may turn from the middle of a span for its turning to be followed straight.
 constexpr double kStraight = 1;
 /// Bodies that are further from rotations than this are not swept by the kernel for rotations.
@@ -45,15 +44,15 @@ Sweep sweep_of(const MovingBody& a, const PieceState& at_a, const MovingBody& b,
     const Matrix3d spin = half / (piece.end - piece.begin) * (to_a * at_b.turned * cross_matrix(piece.turn));
     sweep.dm = spin * piece.first.r;
     sweep.dt += spin * piece.first.t;
-    sweep.turn = sweep.dm.norm() * kUp;
+    sweep.turn = sweep.dm.norm() * kWorldUp;
     turning = half * b.spin();
     sweep.width += 0.5 * half * half * b.acceleration();
   } else {
     sweep.width += b.turned_by(half);
   }
   const double to_a_size = stretch(at_a.pose);
-  sweep.width *= to_a_size * kUp;
-  sweep.length = (half * travel.norm() + turning) * to_a_size * kUp;
+  sweep.width *= to_a_size * kWorldUp;
+  sweep.length = (half * travel.norm() + turning) * to_a_size * kWorldUp;
   return sweep;
 }
 
@@ -67,7 +66,7 @@ bool suits_sweeps(const MovingBody& a, const MovingBody& b) {
 bool find_swept_pairs(QueryContext& ctx, const MovingBody& a, const MovingBody& b, TimeSpan span,
                       std::uint64_t most, std::vector<SimplexPair>& pairs) {
   const double middle = span.begin + (span.end - span.begin) / 2;
-  const double half = std::max(span.end - middle, middle - span.begin) * kUp;
+  const double half = std::max(span.end - middle, middle - span.begin) * kWorldUp;
   const PieceState at_a = a.at(middle), at_b = b.at(middle);
   ctx.body[0].begin(a.rep(), at_a.pose, WrapperMode::regularised);
   ctx.body[1].begin(b.rep(), at_b.pose, WrapperMode::regularised);

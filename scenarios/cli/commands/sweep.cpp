@@ -31,7 +31,7 @@ struct SweepOptions {
   bodies::Corners corners = bodies::Corners::joined;
 };
 
-void write_feature(trace::JsonWriter& w, const char* name, const Witness& witness) {
+void write_feature_and_point(trace::JsonWriter& w, const char* name, const Witness& witness) {
   if (witness.corner_count == 0) return;
   w.key(name).begin_object().member("face", witness.face.value());
   write_feature_of(w, witness);
@@ -48,8 +48,8 @@ void write_contact(trace::JsonWriter& w, const FirstContactResult& result, const
   }
   if (result.passed) w.member("passed", true);
   if (!o.features) return;
-  write_feature(w, "on_a", result.witness[0]);
-  write_feature(w, "on_b", result.witness[1]);
+  write_feature_and_point(w, "on_a", result.witness[0]);
+  write_feature_and_point(w, "on_b", result.witness[1]);
 }
 
 void write_history(trace::JsonWriter& w, const FirstContactResult& result) {
