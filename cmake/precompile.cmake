@@ -1,13 +1,14 @@
 # Precompiled headers, because most of what the compiler reads is Eigen, nlohmann-json and doctest, again in every file.
 # lrb_precompile_all(): precompiles, for every target below the current folder, the headers of the libraries that it links
-# to; targets that are compiled with equal options share the result. No target needs to ask for it, and every file still
-# includes what it uses: -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON builds without.
+# to; targets that are compiled with equal options share the result, unless they are so few that making it takes longer than
+# it saves. No target needs to ask for it, and every file still includes what it uses: -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON
+# builds without.
 set(lrb_precompile_base <algorithm> <array> <chrono> <cmath> <cstdint> <cstdio> <cstdlib> <cstring> <fstream>
     <functional> <limits> <map> <memory> <numbers> <numeric> <optional> <random> <set> <span> <sstream> <string>
     <string_view> <unordered_map> <utility> <vector> <Eigen/Core> <Eigen/Geometry>)
 set(lrb_precompile_nlohmann_json::nlohmann_json <filesystem> <nlohmann/json.hpp>)
-set(lrb_precompile_CLI11::CLI11 <CLI/CLI.hpp>)
 set(lrb_precompile_doctest::doctest <doctest/doctest.h>)
+set(lrb_precompile_least_units 4)
 
 # Packages that are found in one folder are known in all.
 if(PROJECT_IS_TOP_LEVEL)
@@ -64,6 +65,19 @@ function(lrb_precompile_skip target)
   endforeach()
 endfunction()
 
+# Sets the caller's VARIABLE to how many files the compiler is given for a target.
+function(lrb_units target variable)
+  get_target_property(sources ${target} SOURCES)
+  get_target_property(unity ${target} UNITY_BUILD)
+  list(FILTER sources INCLUDE REGEX "\\.cpp$")
+  list(LENGTH sources units)
+  if(unity AND CMAKE_UNITY_BUILD_BATCH_SIZE)
+    math(EXPR units "(${units} + ${CMAKE_UNITY_BUILD_BATCH_SIZE} - 1) / ${CMAKE_UNITY_BUILD_BATCH_SIZE}")
+  endif()
+  set(${variable} ${units} PARENT_SCOPE)
+endfunction()
+
+# With COUNT, only adds up how many files would share what is precompiled for a target; else precompiles it for them.
 function(lrb_precompile target)
   set(linked "")
   lrb_linked(${target} linked)
@@ -72,7 +86,7 @@ function(lrb_precompile target)
   endif()
   set(headers ${lrb_precompile_base})
   set(libraries lrb_options Eigen3::Eigen)
-  foreach(library IN ITEMS nlohmann_json::nlohmann_json CLI11::CLI11 doctest::doctest)
+  foreach(library IN ITEMS nlohmann_json::nlohmann_json doctest::doctest)
     if(library IN_LIST linked)
       list(APPEND headers ${lrb_precompile_${library}})
       list(APPEND libraries ${library})
@@ -91,6 +105,15 @@ function(lrb_precompile target)
   string(MD5 key "${libraries} ${options}")
   string(SUBSTRING ${key} 0 8 key)
   set(shared lrb_precompiled_${key})
+  get_property(units GLOBAL PROPERTY ${shared}_units)
+  if("COUNT" IN_LIST ARGN)
+    lrb_units(${target} more)
+    math(EXPR units "0${units} + ${more}")
+    set_property(GLOBAL PROPERTY ${shared}_units ${units})
+    return()
+  elseif(units LESS lrb_precompile_least_units)
+    return()
+  endif()
   if(NOT TARGET ${shared})
     set(source "${PROJECT_BINARY_DIR}/precompiled/${key}.cpp")
     file(CONFIGURE OUTPUT "${source}" CONTENT "// ${libraries} ${options}\n" @ONLY)
@@ -103,20 +126,21 @@ function(lrb_precompile target)
   lrb_precompile_skip(${target})
 endfunction()
 
-function(lrb_precompile_folder folder)
+function(lrb_precompile_folder folder)  # ARGN: COUNT or nothing
   get_property(targets DIRECTORY "${folder}" PROPERTY BUILDSYSTEM_TARGETS)
   foreach(target IN LISTS targets)
     get_target_property(type ${target} TYPE)
     if(type MATCHES "^(STATIC_LIBRARY|OBJECT_LIBRARY|EXECUTABLE)$" AND NOT target MATCHES "^lrb_precompiled_")
-      lrb_precompile(${target})
+      lrb_precompile(${target} ${ARGN})
     endif()
   endforeach()
   get_property(folders DIRECTORY "${folder}" PROPERTY SUBDIRECTORIES)
   foreach(below IN LISTS folders)
-    lrb_precompile_folder("${below}")
+    lrb_precompile_folder("${below}" ${ARGN})
   endforeach()
 endfunction()
 
 function(lrb_precompile_all)
+  lrb_precompile_folder("${CMAKE_CURRENT_SOURCE_DIR}" COUNT)
   lrb_precompile_folder("${CMAKE_CURRENT_SOURCE_DIR}")
 endfunction()
