@@ -7,21 +7,12 @@
 
 #include "engine/core/error.hpp"
 #include "engine/lrb/lrb_file.hpp"
+#include "scenarios/bench/timed_query.hpp"
 #include "scenarios/methods/body_parts.hpp"
 #include "scenarios/workers/note_failures.hpp"
 
 namespace lrb::bench {
 namespace {
-
-/// Bytes, more than most last-level caches hold: after walking over so many, what a query needs is fetched
-/// from memory again.
-constexpr std::size_t kSweep = std::size_t{64} << 20;
-
-void sweep_caches() {
-  static std::vector<unsigned char> junk(kSweep, 1);
-  constexpr std::size_t kLine = 64;
-  for (std::size_t i = 0; i < junk.size(); i += kLine) ++junk[i];
-}
 
 double heap_bytes() {
   const struct mallinfo2 m = mallinfo2();
@@ -77,20 +68,13 @@ Record BenchRunner::ask(std::uint64_t question) {
 }
 
 Reply BenchRunner::ask(const Question& q, Mode mode) {
-  constexpr int kMost = 25, kLeast = 3;
-  constexpr double kEnough = 20e3, kLong = 300e3;  // microseconds
   const Built &a = built(q.a, 0), &b = built(q.b, 1);
-  const auto query = [&] { return method_->query(*a.body, q.pose_a, *b.body, q.pose_b, mode); };
-  sweep_caches();
-  methods::MethodAnswer answer = query();
+  QueryTimes times;
+  methods::MethodAnswer answer =
+      ask_again_and_again([&] { return method_->query(*a.body, q.pose_a, *b.body, q.pose_b, mode); }, times);
   Reply r;
-  r.cold_us = r.hot_us = answer.microseconds;
-  double spent = 0;
-  for (int i = 0; i < kMost && r.cold_us < kLong && (i < kLeast || spent < kEnough); ++i) {
-    const double us = query().microseconds;
-    r.hot_us = std::min(r.hot_us, us);
-    spent += us;
-  }
+  r.cold_us = times.cold_us;
+  r.hot_us = times.hot_us;
   r.contact = answer.contact;
   r.count = answer.pairs.size();
   r.face_tests = answer.face_tests;

@@ -5,12 +5,15 @@
 #include <cmath>
 #include <filesystem>
 
+#include <Eigen/Geometry>
+
 #include "engine/construct/build.hpp"
 #include "engine/core/error.hpp"
 #include "engine/core/file_bytes.hpp"
 #include "engine/lrb/lrb_file.hpp"
 #include "engine/mesh/io/mesh_io.hpp"
-#include "engine/query/collide_impl.hpp"
+#include "scenarios/bench/approach.hpp"
+#include "scenarios/bench/known_numbers.hpp"
 #include "scenarios/bench/oracle.hpp"
 #include "scenarios/bodies/body.hpp"
 #include "scenarios/bodies/generators/generators.hpp"
@@ -23,47 +26,27 @@ namespace fs = std::filesystem;
 
 /// Returns how far B goes beyond first contact, in diagonals of the larger body; negative: apart.
 double depth_of(PoseClass c) {
-  return c == PoseClass::apart ? -0.005 : c == PoseClass::deep ? 0.1 : 0.01;
+  switch (c) {
+    case PoseClass::apart:
+      return -0.005;
+    case PoseClass::deep:
+    case PoseClass::into:
+      return 0.1;
+    case PoseClass::gap_1000th:
+      return -0.001;
+    case PoseClass::gap_100th:
+    case PoseClass::past:
+      return -0.01;
+    case PoseClass::gap_10th:
+      return -0.1;
+    case PoseClass::gap_whole:
+      return -1;
+    default:
+      return 0.01;
+  }
 }
 
 constexpr double kSmall = 0.1;  // size of B over that of A
-
-/// Finds poses of B: at random rotations, moved along random directions until it first meets A, and on.
-class Approaches {
- public:
-  Approaches(const LrbRep& a, const LrbRep& b, double diagonal, std::uint64_t seed)
-      : a_(a), b_(b), diagonal_(diagonal), random_(seed) {
-    request_.mode = Mode::first_pair;
-  }
-
-  Pose next(double depth) {
-    while (true) {
-      Pose p;
-      p.r = shapes::random_rotation(random_);
-      const Eigen::Vector3d d = shapes::random_direction(random_);
-      const Eigen::Vector3d middle = shapes::box_of(a_).center() - p.r * shapes::box_of(b_).center();
-      const auto meets = [&](double s) {
-        p.t = middle + s * d;
-        NullProbe probe;
-        return !collide(a_, Pose{}, b_, p, request_, context_, probe).pairs.empty();
-      };
-      constexpr int kHalvings = 40;
-      double at = 2 * diagonal_, step = 0.004 * diagonal_;
-      while (at > 0 && !meets(at)) at -= step;
-      if (at <= 0) continue;
-      for (int i = 0; i < kHalvings; ++i) (meets(at + (step /= 2)) ? at += step : at);
-      p.t = middle + (at - depth * diagonal_) * d;
-      return p;
-    }
-  }
-
- private:
-  const LrbRep &a_, &b_;
-  double diagonal_;
-  shapes::RandomEngine random_;
-  QueryContext context_;
-  CollideRequest request_;
-};
 
 std::uint32_t whole_root(double x) {
   return static_cast<std::uint32_t>(std::max(2.0, std::round(std::sqrt(x))));
@@ -76,20 +59,24 @@ class Maker {
     set_.name = pair.name;
     set_.what = pair.what;
     set_.folder = folder;
+    set_.quantity = options.quantity;
     const Mesh a = pair.a(), b = pair.b();
-    Mesh small = b;
     add("a", a);
     add("b", b);
     const double size_a = shapes::box_of(reps_[0]).diagonal().norm();
     const double size_b = shapes::box_of(reps_[1]).diagonal().norm();
     set_.diagonal = std::max(size_a, size_b);
+    if (options.quantity != Quantity::pairs) return;
+    Mesh small = b;
     for (Eigen::Vector3d& v : small.vertices) v *= kSmall * size_a / size_b;
     add("small", small);
   }
 
   DataSet make() {
-    for (const PoseClass c : kPoseClasses) {
-      if (c == PoseClass::identical)
+    for (const PoseClass c : classes_of(o_.quantity)) {
+      if (o_.quantity != Quantity::pairs)
+        add_numbers(c);
+      else if (c == PoseClass::identical)
         add_identical();
       else
         add_approaches(c, c == PoseClass::small ? 2 : 1);
@@ -109,14 +96,43 @@ class Maker {
   }
 
   void ask(PoseClass c, std::size_t a, std::size_t b, const Pose& pose_a, const Pose& pose_b) {
-    set_.questions.push_back({c, a, b, pose_a, pose_b, exact_pairs(reps_[a], pose_a, reps_[b], pose_b)});
+    Question q;
+    q.pose_class = c;
+    q.a = a;
+    q.b = b;
+    q.pose_a = pose_a;
+    q.pose_b = pose_b;
+    q.expected = exact_pairs(reps_[a], pose_a, reps_[b], pose_b);
+    set_.questions.push_back(std::move(q));
+  }
+
+  /// B at one pose, or on a straight motion that is two diagonals long and begins anywhere, so that no method that asks
+  /// at equal times is lucky.
+  void add_numbers(PoseClass c) {
+    Approaches approaches(reps_[0], reps_[1], set_.diagonal, o_.seed);
+    shapes::RandomEngine random(o_.seed);
+    for (int i = 0; i < o_.poses; ++i) {
+      const Approach approach = approaches.next(depth_of(c));
+      Question q;
+      q.pose_class = c;
+      q.b = 1;
+      q.pose_b = approach.pose;
+      if (o_.quantity == Quantity::first_contact) {
+        const bool is_into = c == PoseClass::into;
+        const Eigen::Vector3d back =
+            set_.diagonal * (is_into ? approach.direction : approach.direction.unitOrthogonal());
+        q.from = (is_into ? shapes::uniform(random, 1.2, 1.8) : shapes::uniform(random, 0.8, 1.2)) * back;
+        q.to = q.from - 2 * back;
+      }
+      set_.questions.push_back(std::move(q));
+    }
   }
 
   void add_approaches(PoseClass c, std::size_t b) {
     Approaches approaches(reps_[0], reps_[b], set_.diagonal, o_.seed);
     // If one body is small the depth is 1 % of its own size, because that is all there is to go into.
     const double depth = depth_of(c) * (c == PoseClass::small ? kSmall : 1);
-    for (int i = 0; i < o_.poses; ++i) ask(c, 0, b, Pose{}, approaches.next(depth));
+    for (int i = 0; i < o_.poses; ++i) ask(c, 0, b, Pose{}, approaches.next(depth).pose);
   }
 
   void add_identical() {
@@ -183,14 +199,16 @@ std::vector<BodyPair> pairs_of_models(const std::string& folder) {
 DataSet make_data_set(const BodyPair& pair, const SetOptions& options, const std::string& folder) {
   const std::string mark =
       " (" + std::to_string(options.poses) + " poses a class, seed " + std::to_string(options.seed) + ")";
-  const std::string path = folder + "/" + pair.name + ".set.json";
-  if (fs::exists(path)) {
-    DataSet set = read_data_set(path);
-    if (set.what == pair.what + mark) return set;
-  }
   BodyPair marked = pair;
   marked.what += mark;
+  if (options.quantity != Quantity::pairs) marked.name += "-" + std::string(name_of(options.quantity));
+  const std::string path = folder + "/" + marked.name + ".set.json";
+  if (fs::exists(path)) {
+    DataSet set = read_data_set(path);
+    if (set.what == marked.what && is_complete(set)) return set;
+  }
   DataSet set = Maker(marked, options, folder).make();
+  if (!is_complete(set)) find_numbers(set);
   write_data_set(set, folder);
   return set;
 }

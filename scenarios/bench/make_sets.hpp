@@ -24,10 +24,11 @@ std::vector<BodyPair> pairs_of_models(const std::string& folder);
 struct SetOptions {
   int poses = 12;  ///< number for each class; identical bodies at identical poses: a quarter of it
   std::uint64_t seed = 1;
+  Quantity quantity = Quantity::pairs;  ///< what is asked for
 };
 
 /// Writes the data set and its bodies into a folder and returns the set, or reads what is there if it was
-/// made from the same bodies and options. Throws InputError if a body cannot be an LRB-rep.
+/// made from the same bodies and options. Throws InputError if a body cannot be an LRB-rep, and as find_numbers() does.
 DataSet make_data_set(const BodyPair& pair, const SetOptions& options, const std::string& folder);
 
 }  // namespace lrb::bench

@@ -35,6 +35,8 @@ inline constexpr auto kFields<bench::Reply> =
                field("hot_us", &bench::Reply::hot_us),
                field("face_tests", &bench::Reply::face_tests),
                field("error_bound", &bench::Reply::error_bound, Kept::if_set),
+               field("lower", &bench::Reply::lower, Kept::if_set),
+               field("upper", &bench::Reply::upper, Kept::if_set),
                field("pairs", &bench::Reply::pairs, Kept::if_set),
                field("points", &bench::Reply::points, Kept::if_set)};
 

@@ -30,8 +30,9 @@ struct Reply {
   double cold_us = 0;                   ///< time of the first query, after caches were swept
   double hot_us = 0;                    ///< the best time of a few repeats
   std::uint64_t face_tests = 0;
-  std::optional<double> error_bound;    ///< as in methods::MethodAnswer
-  std::vector<SimplexPair> pairs;       ///< if they are kept
+  std::optional<double> error_bound;   ///< as in methods::MethodAnswer; of a number: how wide its interval is
+  std::optional<double> lower, upper;  ///< the number, if one was asked for; equal: no interval
+  std::vector<SimplexPair> pairs;      ///< if they are kept
   std::vector<Eigen::Vector3d> points;  ///< if they are kept, and the method gives them
   friend bool operator==(const Reply&, const Reply&) = default;
 };

@@ -1,4 +1,5 @@
 // Families in which coordinates are far apart in size: thin, distant, tiny, huge, or moved by odd matrices.
+#include <algorithm>
 #include <cmath>
 
 #include <Eigen/Geometry>
@@ -59,6 +60,32 @@ Case make_sliver(RandomEngine& random, double dial) {
   if (kind == 2) c.pose_b = {grid_turn(random), random_sign_vector(random, 0.5)};
   loosen(random, c, 0.1 * thin);
   if (pick(random, 0, 2) == 0) move_both(c, any_pose(random));
+  return c;
+}
+
+/// Boxes flat against each other, side by side, crossing or turned, all by the scale of their thickness.
+Case make_thin(RandomEngine& random, double dial) {
+  const double thin = steady::pow10(-1 - 11 * dial);
+  const LrbRep cube = *body(shapes::box({-0.5, -0.5, -0.5}, {0.5, 0.5, 0.5}));
+  const Body sheet = stretched(cube, {1, 1, thin}), rod = stretched(cube, {1, thin, thin});
+  const auto shape = [&] { return pick(random, 0, 1) == 0 ? sheet : rod; };
+  Case c{shape(), shape(), {}, {}, {}, {}};
+  const int kind = pick(random, 0, 3);
+  if (kind == 0) c.b = stretched(cube, Vector3d(1, 1, 1));
+  c.pose_b.r = kind == 3 ? shapes::random_rotation(random) : grid_turn(random);
+  for (int k = 0; k < 3; ++k) c.pose_b.t[k] = uniform(random, -0.4, 0.4);
+  if (kind == 1 || kind == 2) {
+    // A few thicknesses apart or into each other: over A's large face, or beside it.
+    const int k = kind == 1 ? 2 : 0;
+    const auto reach = [&] {
+      double most_a = 0, most_b = 0;
+      for (const Vector3d& v : c.a->vertices()) most_a = std::max(most_a, std::abs(v[k]));
+      for (const Vector3d& v : c.b->vertices()) most_b = std::max(most_b, std::abs((c.pose_b.r * v)[k]));
+      return most_a + most_b;
+    };
+    c.pose_b.t[k] = reach() + thin * uniform(random, -0.5, 2);
+  }
+  if (pick(random, 0, 3) == 0) move_both(c, any_pose(random));
   return c;
 }
 
@@ -192,6 +219,9 @@ std::vector<Family> scale_families() {
   return {
       {"sliver", "needles and sheets", make_sliver, "aspect 1", "aspect 1e8", false, 80,
        [](double dial) { return rounded_value(steady::pow10(8 * dial)); }},
+      {"thin", "sheets and rods: flat on each other, side by side, crossing, turned", make_thin,
+       "thickness 0.1", "thickness 1e-12", false, 85,
+       [](double dial) { return rounded_value(steady::pow10(-1 - 11 * dial)); }},
       {"zero-area", "faces that collapse to segments and points", make_zero_area, "corners 0.1 from collapse",
        "no area at all", false, 90, slack_value},
       {"far", "far from the world's or the bodies' own origin", make_far, "1 from the origin",

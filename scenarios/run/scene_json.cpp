@@ -12,6 +12,8 @@
 #include "scenarios/report/page/packed.hpp"
 #include "scenarios/run/chosen_view.hpp"
 #include "scenarios/run/explanations.hpp"
+#include "scenarios/run/measure_marks.hpp"
+#include "scenarios/run/measured_json.hpp"
 #include "scenarios/run/pass_words.hpp"
 #include "scenarios/run/scene_frame.hpp"
 #include "scenarios/run/thinned_events.hpp"
@@ -62,6 +64,7 @@ json colours() {
           {"selected", css(palette::kPurple)},
           {"wrong", css(palette::kWrong)},
           {"ink", css(palette::kInk)},
+          {"wayOut", css(kWayOutColour)},
           {"scale", std::move(scale)},
           {"categories", std::move(categories)}};
 }
@@ -410,6 +413,7 @@ std::string scene_json(const RecordedRun& p, const SceneSource& source, const Sc
                                                                    : std::int64_t{first_contact(trace)})},
                     {"work", work_json(trace, work)},
                     {"wrong", wrong_json(p, steps)},
+                    {"measured", measured_json(p, frame)},
                     {"kinds", kinds_json()},
                     {"phases", words_json<Phase>()},
                     {"engine", trace.header.engine},

@@ -14,12 +14,13 @@
 #include "engine/core/enum_words.hpp"
 #include "engine/query/collide.hpp"
 #include "scenarios/cases/families.hpp"
-#include "scenarios/stability/quantity.hpp"
+#include "scenarios/methods/quantity.hpp"
 #include "scenarios/workers/workers.hpp"
 
 namespace lrb::stability {
 
 using cases::kDialSettings;
+using methods::Quantity;
 
 /// What became of one case that was put to one method.
 enum class Outcome : std::uint8_t {

@@ -1,11 +1,12 @@
 /// lrbscope-quantities: a worker as worker.hpp has it, for methods that answer with a number. --quantity Q says
-/// with which one; without --method it prints the right answers.
+/// with which one, or the data set of --questions does; without --method it prints the right answers.
 #include <optional>
 
 #include "engine/core/error.hpp"
 #include "scenarios/stability/quantities/number_method.hpp"
 #include "scenarios/stability/record_json.hpp"
 #include "scenarios/worker_programs/asked_cases.hpp"
+#include "scenarios/worker_programs/number_questions.hpp"
 #include "scenarios/workers/method_json.hpp"
 
 namespace lrb::worker_programs {
@@ -15,7 +16,8 @@ using namespace lrb::stability;
 
 struct Options {
   AskedCases asked;
-  std::string quantity = "distance";
+  std::string quantity = "distance", questions;
+  std::optional<double> setting;
 };
 
 Quantity quantity_of(const Options& o) {
@@ -24,15 +26,15 @@ Quantity quantity_of(const Options& o) {
   return *q;
 }
 
-NumberMethod method_of(const Options& o) {
+NumberMethod method_of(Quantity quantity, const std::string& name) {
   for (NumberMethod& m : number_methods())
-    if (m.quantity == quantity_of(o) && m.info.name == o.asked.method) return m;
-  throw InputError("there is no method '" + o.asked.method + "' for this quantity");
+    if (m.quantity == quantity && m.info.name == name) return m;
+  throw InputError("there is no method '" + name + "' for this quantity");
 }
 
 void say_records(const Options& o, Lines& out) {
   const cases::Family& family = family_of(o.asked);
-  const NumberMethod method = method_of(o);
+  const NumberMethod method = method_of(quantity_of(o), o.asked.method);
   KnownAnswers known(o.asked);
   for (std::uint64_t k = o.asked.begin; k < o.asked.end; ++k) {
     const cases::Case c = make(family, o.asked, k);
@@ -43,7 +45,17 @@ void say_records(const Options& o, Lines& out) {
   }
 }
 
+/// Answers a data set's questions; without a method, with ours at its finest setting.
+void answer_questions(const Options& o, Lines& out) {
+  const bench::DataSet set = bench::read_data_set(o.questions);
+  const bool judges = o.asked.method.empty();
+  const NumberMethod method = method_of(set.quantity, judges ? "ours" : o.asked.method);
+  for (std::uint64_t k = o.asked.begin; k < o.asked.end; ++k)
+    out.say(dump(judges ? known_number(method, set, k) : to_json(bench_record(method, o.setting, set, k))));
+}
+
 void work(const Options& o, Lines& out) {
+  if (!o.questions.empty()) return answer_questions(o, out);
   if (o.asked.list) {
     for (const NumberMethod& m : number_methods())
       if (m.quantity == quantity_of(o)) out.say(dump(workers::to_json(m.info)));
@@ -61,6 +73,8 @@ int run(int argc, char** argv) {
   CLI::App app("Puts cases to methods that answer with a number, for lrbscope stability.");
   add_options(app, o.asked);
   app.add_option("--quantity", o.quantity);
+  app.add_option("--questions", o.questions);
+  app.add_option("--setting", o.setting);
   app.add_flag("--pairs");  // asked of all workers; there are none here
   CLI11_PARSE(app, argc, argv);
   return run_worker([&](Lines& out) { work(o, out); });

@@ -83,6 +83,19 @@ std::vector<WorkerMethod> find_all_methods() {
   return methods;
 }
 
+std::vector<WorkerMethod> find_number_methods(methods::Quantity quantity) {
+  return methods_of(number_worker(), {"--quantity", std::string(name_of(quantity))});
+}
+
+std::string number_worker() {
+  std::string program = program_beside("lrbscope-quantities");
+  if (program.empty())
+    throw EnvironmentError(
+        "lrbscope-quantities: not found; it is built beside lrbscope and not installed: run "
+        "lrbscope from its build folder, or name that in LRBSCOPE_METHODS");
+  return program;
+}
+
 std::string program_beside(const std::string& name) {
   const std::string path = (folder_of_workers() / name).string();
   return access(path.c_str(), X_OK) == 0 ? path : "";

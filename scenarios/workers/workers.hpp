@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "scenarios/methods/method.hpp"
+#include "scenarios/methods/quantity.hpp"
 
 namespace lrb::workers {
 
@@ -26,6 +27,11 @@ struct WorkerMethod {
 std::vector<WorkerMethod> find_all_methods();
 /// Returns those that take part in the stability experiment.
 std::vector<WorkerMethod> find_methods();
+
+/// Returns those that answer with a number. Throws EnvironmentError if their worker is not there.
+std::vector<WorkerMethod> find_number_methods(methods::Quantity quantity);
+/// Returns the path of that worker. Throws EnvironmentError if it is not there.
+std::string number_worker();
 
 /// Returns the methods of one program, in its order, which may be asked for some of them with options. Throws
 /// EnvironmentError if it does not answer.

@@ -622,7 +622,34 @@
     equal(JSON.stringify(camera.json().up), "[0,1,0]", "a copied camera says which");
   }
 
+  /** How near, and how deep: a line or an arrow in every step that has one, with its length in words. */
+  async function measures() {
+    const { events, selection, view, scene } = run,
+      label = byId("measured"),
+      steps = JSON.parse(byId("trace-data").textContent).metadata.steps,
+      texts = new Set();
+    check(scene.measured !== null, "the page has what was measured");
+    for (const [step, { result }] of steps.entries()) {
+      selection.goTo(events.firstOfStep[step]);
+      await frame();
+      const apart = result.distance.lower > 0,
+        deep = result.clash.depth && result.clash.depth[1] > 0;
+      equal(view.measured.group.children.length, apart || deep ? 2 : 0, `step ${step} has its way`);
+      equal(label.hidden, !(apart || deep), "and its length");
+      if (!apart && !deep) continue;
+      const shown = view.measured.shown,
+        length = shown.to.distanceTo(shown.from) * scene.unit,
+        wanted = apart ? result.distance.upper : result.clash.depth[1];
+      check(Math.abs(length - wanted) < 1e-5 * scene.unit, "as long as the trace says", `${length}, not ${wanted}`);
+      check(label.textContent.endsWith(apart ? " apart" : " deep"), "in words", label.textContent);
+      check(byId("legend").textContent.includes(apart ? "nearest points" : "B leaves A"), "and in the key", byId("legend").textContent);
+      texts.add(label.textContent);
+    }
+    check([...texts].some((t) => t.endsWith("apart")) && [...texts].some((t) => t.endsWith("deep")), "the run comes near and goes in", [...texts]);
+  }
+
   const parts = {
+    measured: [measures, fitsTheWidth],
     open: [opensAtFirstContact, showsTheOpenBody, looksAsFramesDo, fitsTheWidth],
     plane: [opensAtFirstContact, replaysAsRecorded, liesFlat, fitsTheWidth],
     build: [opensAtTheBody, replaysAsRecorded, buildsPassByPass, fitsTheWidth],

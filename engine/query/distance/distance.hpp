@@ -65,7 +65,7 @@ struct DistanceCounters {
 
 struct DistanceResult {
   /// Hold the distance of the surfaces. Both 0 if they meet; else the lower end is more than 0 unless a limit
-  /// was reached. Infinite if a body has no faces.
+  /// was reached or a tolerance leaves room for 0. Infinite if a body has no faces.
   double lower = 0, upper = 0;
   bool meet = false;  ///< the surfaces are proved to have a point in common
   std::optional<bool>

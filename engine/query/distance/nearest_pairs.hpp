@@ -28,7 +28,7 @@ class NearestPairs {
 
   double upper() const { return best_.upper; }
   /// Returns a bound on the distance, given that what was not measured is at least `rest` apart.
-  double lower(double rest) const { return std::min({least_lower(), rest, upper()}); }
+  double lower(double rest) const { return std::max(0.0, std::min({least_lower(), rest, upper()})); }
   /// Returns how many pairs were measured.
   std::uint64_t measured() const { return counters_.pairs_in_doubles + counters_.pairs_exact; }
   /// Returns the way between the points that gave upper(), from A to B; 0 if there are none yet.

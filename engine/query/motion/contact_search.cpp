@@ -15,6 +15,8 @@ namespace {
 
 using Eigen::Vector3d;
 
+/// The search is no coarser for a wider tolerance: where bodies come into each other, long spans hold many pairs.
+constexpr double kWidestStep = 1e-6;
 /// From so many pairs on, shorter spans are looked at, unless they are hardly longer than the tolerance.
 constexpr std::uint64_t kFewPairs = 128;
 constexpr double kHardlyLonger = 64;
@@ -55,6 +57,10 @@ bool FirstContactSearch::find_pairs(TimeSpan span, std::uint64_t most) {
   return found_all;
 }
 
+double FirstContactSearch::step_tolerance() const {
+  return std::min(request_.tolerance, kWidestStep);
+}
+
 void FirstContactSearch::search_swept(double end) {
   const double whole = end - free_until_;
   double width = whole;
@@ -62,18 +68,18 @@ void FirstContactSearch::search_swept(double end) {
   while (free_until_ < end && !is_over()) {
     const double t = free_until_;
     const TimeSpan span{t, end - t > width ? t + width : end};
-    const bool is_short = span.end - t <= kHardlyLonger * request_.tolerance;
+    const bool is_short = span.end - t <= kHardlyLonger * step_tolerance();
     if (!find_pairs(span, is_short ? kNoLimit : few)) {
       width = (span.end - t) / 2;
       if (width < kShortShare * whole) few *= 2;
       continue;
     }
-    free_until_ = advance_all(span, kLeastStep * request_.tolerance);
+    free_until_ = advance_all(span, kLeastStep * step_tolerance());
     width = 2 * (span.end - t);
     tell(free_until_);
     if (free_until_ >= span.end) continue;
     free_until_ = look_closer(free_until_, end);
-    width = kHardlyLonger * request_.tolerance;
+    width = kHardlyLonger * step_tolerance();
     if (!is_done_) tell(free_until_);
   }
 }
@@ -96,7 +102,7 @@ void FirstContactSearch::search_by_distance(double end) {
     const double parted = parted_by_distance(free_until_);
     free_until_ = std::min(end, later(free_until_, parted));
     tell(free_until_);
-    if (parted < kLeastStep * request_.tolerance && free_until_ < end)
+    if (parted < kLeastStep * step_tolerance() && free_until_ < end)
       free_until_ = look_closer(free_until_, end);
   }
 }
@@ -138,7 +144,7 @@ double FirstContactSearch::advance_all(TimeSpan span, double least) {
 /// Looks whether the bodies meet right after t, until when they do not. Returns until when else they are known not to,
 /// but for what is doubtful.
 double FirstContactSearch::look_closer(double t, double end) {
-  const double soon = std::min(end, std::max(t + request_.tolerance / 2, std::nextafter(t, 2)));
+  const double soon = std::min(end, std::max(t + step_tolerance() / 2, std::nextafter(t, 2)));
   if (const auto pair = meets_at(soon)) {
     contact_in({t, soon}, *pair);
     return t;
@@ -152,7 +158,7 @@ double FirstContactSearch::look_closer(double t, double end) {
 /// one: bodies that pass each other in less than the tolerance do.
 bool FirstContactSearch::meets_right_after(TimeSpan span) {
   for (const double share : {0x1p-24, 0x1p-16, 0x1p-8}) {
-    const double t = std::max(span.begin + share * request_.tolerance, std::nextafter(span.begin, 2));
+    const double t = std::max(span.begin + share * step_tolerance(), std::nextafter(span.begin, 2));
     if (t >= span.end) return false;
     if (const auto pair = meets_at(t)) {
       contact_in({span.begin, t}, *pair);
@@ -165,7 +171,7 @@ bool FirstContactSearch::meets_right_after(TimeSpan span) {
 /// Returns until when bodies are proved not to meet, in steps as short as need be. Keeps the pairs that do not come to
 /// the span's end.
 double FirstContactSearch::advance_stuck(TimeSpan span) {
-  const double least = kLeastStuckStep * request_.tolerance;
+  const double least = kLeastStuckStep * step_tolerance();
   context_.stuck.clear();
   double until = span.end;
   if (!is_swept_) {

@@ -64,6 +64,7 @@ class FirstContactSearch {
   void contact_in(TimeSpan span, SimplexPair pair);
   void doubt(TimeSpan span);
   void write_features(double t, SimplexPair pair);
+  double step_tolerance() const;
   std::uint64_t work() const;
   void tell(double t0, double t1 = std::numeric_limits<double>::infinity());
   FirstContactResult finish();

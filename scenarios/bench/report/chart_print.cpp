@@ -1,8 +1,9 @@
 #include "scenarios/bench/report/chart_print.hpp"
 
 #include <algorithm>
-#include <cmath>
+#include <utility>
 
+#include "scenarios/bench/report/chart_words.hpp"
 #include "scenarios/bench/report/series_style.hpp"
 #include "scenarios/io/number_text.hpp"
 
@@ -11,7 +12,6 @@ namespace {
 
 constexpr double kPanelWidth = 50, kPanelHeight = 46, kLeft = 19, kTop = 7, kBottom = 12,
                  kKeyHeight = 16;  // mm
-constexpr int kKeyColumns = 5;
 constexpr const char* kProvedPoint = "pt 1 ps 0.5 lw 0.9 lc rgb '#0072b2'";
 
 std::string style_text(const methods::MethodStyle& s, double size) {
@@ -30,12 +30,13 @@ struct Layout {
 
 /// One panel: faint points, the frontier over them, and crosses where something failed.
 std::string plots_of(report::Gnuplot& chart, const SeriesStyles& styles, const std::string& id,
-                     const std::vector<const Point*>& panel, double slowest) {
+                     const std::vector<const Point*>& panel, Quantity quantity, double slowest) {
   std::vector<std::vector<std::string>> rows(styles.count());
   std::vector<std::string> failed, best, proved;
   std::string last;
   for (const Point* p : panel) {
-    const std::string at = io::number_text(drawn_error(*p)) + " " + io::number_text(drawn_time(*p, slowest));
+    const double error = drawn_error(p->error(), quantity);
+    const std::string at = io::number_text(error) + " " + io::number_text(drawn_time(*p, slowest));
     if (styles.series_of(p->method) == styles.count()) continue;
     std::vector<std::string>& r = rows[styles.series_of(p->method)];
     if (!r.empty() && !(p->setting && p->method == last))
@@ -45,10 +46,10 @@ std::string plots_of(report::Gnuplot& chart, const SeriesStyles& styles, const s
     last = p->method;
     if (p->failed() > 0) failed.push_back(at);
     if (p->proved_off && *p->proved_off > 0)
-      proved.push_back(at + " " + io::number_text(std::max(kNoError, *p->proved_off) - drawn_error(*p)));
+      proved.push_back(at + " " + io::number_text(drawn_error(*p->proved_off, quantity) - error));
   }
   for (const Point* p : frontier(panel))
-    best.push_back(io::number_text(drawn_error(*p)) + " " + io::number_text(p->median));
+    best.push_back(io::number_text(drawn_error(p->error(), quantity)) + " " + io::number_text(p->median));
   std::string plots;
   const auto add = [&](const std::string& name, const std::vector<std::string>& data,
                        const std::string& how) {
@@ -69,14 +70,16 @@ std::string plots_of(report::Gnuplot& chart, const SeriesStyles& styles, const s
   return plots.empty() ? "" : plots + "\n";
 }
 
-std::string key_of(report::Gnuplot& chart, const SeriesStyles& styles, const Layout& layout) {
+std::string key_of(report::Gnuplot& chart, const SeriesStyles& styles, const Layout& layout,
+                   Quantity quantity) {
   const auto n = static_cast<int>(styles.count()) + 3;
-  const int lines = (n + kKeyColumns - 1) / kKeyColumns;
+  const auto columns = static_cast<int>(classes_of(quantity).size());
+  const int lines = (n + columns - 1) / columns;
   std::string out =
       layout.margins(2, layout.width - 2, 1, kKeyHeight - 1) +
       "unset border\nunset tics\nunset title\nunset xlabel\nunset ylabel\nunset logscale\nunset grid\n"
       "set xrange [0:" +
-      std::to_string(kKeyColumns) + "]\nset yrange [0:" + std::to_string(lines) + "]\n";
+      std::to_string(columns) + "]\nset yrange [0:" + std::to_string(lines) + "]\n";
   std::vector<std::string> titles;
   std::string plots;
   for (int i = 0; i < n; ++i) {
@@ -96,11 +99,29 @@ std::string key_of(report::Gnuplot& chart, const SeriesStyles& styles, const Lay
     titles.push_back(io::number_text(x + 0.11) + " " + io::number_text(y) + " " +
                      report::gnuplot_data_text(frontier ? "Pareto frontier"
                                                : failed ? "crash, refusal or time-out: the worst"
-                                               : proved ? "off the bodies by at most this: proved"
+                                               : proved ? chart_words(quantity).proved
                                                         : styles.style(k).title));
   }
   chart.add_data("titles", titles);
   return out + plots + ", $titles using 1:2:3 with labels left\n";
+}
+
+/// Sets the x axis of a panel, which is labelled in the last row.
+std::string x_axis(Quantity quantity, bool labelled) {
+  const std::vector<std::pair<const char*, const char*>> ticks =
+      quantity == Quantity::pairs
+          ? std::vector<std::pair<const char*, const char*>>{{"0", "1e-7"},
+                                                             {"1e-5", "1e-5"},
+                                                             {"1e-3", "1e-3"},
+                                                             {"0.1", "0.1"},
+                                                             {"1", "1"}}
+          : std::vector<std::pair<const char*, const char*>>{
+                {"0", "1e-14"}, {"1e-10", "1e-10"}, {"1e-6", "1e-6"}, {"0.01", "0.01"}, {"1", "1"}};
+  std::string out;
+  for (const auto& [label, at] : ticks)
+    out += (out.empty() ? "set xtics ('" : ", '") + std::string(labelled ? label : "") + "' " + at;
+  const std::string label = report::gnuplot_text(chart_words(quantity).error);
+  return (labelled ? "set xlabel " + label + " offset 0,0.2\n" : "unset xlabel\n") + out + ") nomirror\n";
 }
 
 }  // namespace
@@ -108,8 +129,10 @@ std::string key_of(report::Gnuplot& chart, const SeriesStyles& styles, const Lay
 report::Gnuplot accuracy_chart(const std::vector<DataSet>& sets, const std::vector<Point>& points,
                                const std::vector<methods::MethodInfo>& methods) {
   const SeriesStyles styles(methods);
+  const Quantity quantity = sets.front().quantity;
+  const auto classes = classes_of(quantity);
   const auto rows = static_cast<double>(sets.size());
-  const Layout layout{kLeft + std::size(kPoseClasses) * kPanelWidth + 3,
+  const Layout layout{kLeft + static_cast<double>(classes.size()) * kPanelWidth + 3,
                       kTop + rows * kPanelHeight + kBottom + kKeyHeight};
   report::Gnuplot chart;
   chart.width = layout.width;
@@ -118,30 +141,26 @@ report::Gnuplot accuracy_chart(const std::vector<DataSet>& sets, const std::vect
   std::string plots;
   for (std::size_t row = 0; row < sets.size(); ++row) {
     const double slowest = slowest_of(points, sets[row].name);
-    for (std::size_t column = 0; column < std::size(kPoseClasses); ++column) {
-      const auto here = panel(points, sets[row].name, kPoseClasses[column]);
+    for (std::size_t column = 0; column < classes.size(); ++column) {
+      const auto here = panel(points, sets[row].name, classes[column]);
       const double x0 = kLeft + static_cast<double>(column) * kPanelWidth;
       const double y1 = layout.height - kTop - static_cast<double>(row) * kPanelHeight;
       plots += layout.margins(x0, x0 + kPanelWidth - 2, y1 - kPanelHeight + 3, y1);
-      plots += row == 0
-                   ? "set title " + report::gnuplot_text(title(kPoseClasses[column])) + " offset 0,-0.6\n"
-                   : "unset title\n";
-      plots += row + 1 == sets.size()
-                   ? "set xlabel 'error of the contact region / diagonal' offset 0,0.2\n"
-                     "set xtics ('0' 1e-7, '1e-5' 1e-5, '1e-3' 1e-3, '0.1' 0.1, '1' 1) nomirror\n"
-                   : "unset xlabel\nset xtics ('' 1e-7, '' 1e-5, '' 1e-3, '' 0.1, '' 1) nomirror\n";
+      plots += row == 0 ? "set title " + report::gnuplot_text(title(classes[column])) + " offset 0,-0.6\n"
+                        : "unset title\n";
+      plots += x_axis(quantity, row + 1 == sets.size());
       plots += column == 0 ? "set ylabel " + report::gnuplot_text(sets[row].name + ": median, µs") +
                                  " offset 0.4,0\nset ytics 10 format '%g' nomirror\n"
                            : "unset ylabel\nset ytics 10 format '' nomirror\n";
       plots += "set yrange [0.05:" + io::number_text(6 * slowest) + "]\n";
-      plots +=
-          plots_of(chart, styles, "r" + std::to_string(row) + "c" + std::to_string(column), here, slowest);
+      plots += plots_of(chart, styles, "r" + std::to_string(row) + "c" + std::to_string(column), here,
+                        quantity, slowest);
     }
   }
   chart.script +=
-      "set multiplot\nunset key\nset border 3 lw 0.6 lc rgb '#8a8f95'\nset logscale xy\nset xrange [3e-8:3]\n"
-      "set grid lw 0.4 lc rgb '#e2e4e6' dt 1\n" +
-      plots + key_of(chart, styles, layout) + "unset multiplot\n";
+      "set multiplot\nunset key\nset border 3 lw 0.6 lc rgb '#8a8f95'\nset logscale xy\nset xrange [" +
+      io::number_text(0.3 * no_error(quantity)) + ":3]\nset grid lw 0.4 lc rgb '#e2e4e6' dt 1\n" + plots +
+      key_of(chart, styles, layout, quantity) + "unset multiplot\n";
   return chart;
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <iterator>
 #include <map>
+#include <memory>
 #include <tuple>
 
 #include "engine/lrb/lrb_file.hpp"
@@ -26,11 +27,20 @@ constexpr MetricInfo kInfos[kMetrics] = {
     {"centroid", "distance of the contacts' centroids, over the diagonal", 1},
     {"normal", "angle between the normals of the largest contact, over 180 degrees", 1},
     {"depth", "error of the largest estimated depth, over the diagonal", 1},
+    {"distance", "error of the distance, over the larger body's diagonal", 1},
+    {"time",
+     "error of the time of first contact, in parts of the motion; 1: never, where that is wrong, or not "
+     "never, where that is right",
+     1},
+    {"penetration", "error of the penetration depth, over the larger body's diagonal", 1},
 };
 
-constexpr Metric kAll[kMetrics] = {Metric::contact, Metric::precision, Metric::recall, Metric::hausdorff,
-                                   Metric::off,     Metric::length,    Metric::area,   Metric::centroid,
-                                   Metric::normal,  Metric::depth};
+constexpr Metric kOfNumbers[] = {Metric::distance, Metric::time, Metric::penetration};
+constexpr Metric kAll[kMetrics] = {Metric::contact,    Metric::precision, Metric::recall,   Metric::hausdorff,
+                                   Metric::off,        Metric::length,    Metric::area,     Metric::centroid,
+                                   Metric::normal,     Metric::depth,     Metric::distance, Metric::time,
+                                   Metric::penetration};
+constexpr double kNever = 2;  // a first contact that there is none of
 
 std::optional<double>& at(Errors& e, Metric m) {
   return e[static_cast<std::size_t>(m)];
@@ -43,8 +53,13 @@ bool gives_points(const methods::MethodInfo& m) {
   return m.approximate || m.convex;
 }
 
-/// Returns true if a method answers what a metric is about at all.
+bool is_of_number(Metric m) {
+  return std::find(std::begin(kOfNumbers), std::end(kOfNumbers), m) != std::end(kOfNumbers);
+}
+
+/// Returns true if a method that is asked for pairs answers what a metric is about at all.
 bool applies(const methods::MethodInfo& info, Metric m) {
+  if (is_of_number(m)) return false;
   if (m == Metric::contact) return true;
   if (m == Metric::hausdorff || m == Metric::off || m == Metric::centroid)
     return lists_pairs(info) || gives_points(info);
@@ -68,7 +83,27 @@ double share(std::size_t part, std::size_t whole) {
   return whole == 0 ? 0 : static_cast<double>(part) / static_cast<double>(whole);
 }
 
-/// Judges what all methods answered to one question.
+/// Returns the unit of errors of a number.
+double unit_of(const DataSet& set) {
+  return set.quantity == Quantity::first_contact ? 1 : set.diagonal;
+}
+
+/// Judges a number. An interval stands for its upper end: there is a pair of points so far apart, the bodies are in
+/// contact then, and a translation as long parts them.
+Errors errors_of_number(const DataSet& set, const Question& q, const Record& r) {
+  const Metric metric = chart_metric(set.quantity);
+  Errors e;
+  at(e, metric) = metric_info(metric).worst;
+  if (r.outcome != Outcome::answered || !r.all.upper || !q.number) return e;
+  const double x = *r.all.upper;
+  const bool is_time = set.quantity == Quantity::first_contact;
+  if (is_time && (x >= kNever) != (q.number->least >= kNever)) return e;
+  const double off = std::max({0.0, q.number->least - x, x - q.number->most}) / unit_of(set);
+  at(e, metric) = std::min(metric_info(metric).worst, off);
+  return e;
+}
+
+/// Judges which pairs all methods found for one question.
 class Judge {
  public:
   Judge(const DataSet& set, const Question& q, const LrbRep& a, const LrbRep& b)
@@ -126,7 +161,7 @@ struct Gathered {
   double worst = -1;
 };
 
-void add(Gathered& g, const Record& r, const Errors& e, double diagonal) {
+void add(Gathered& g, const Record& r, const Errors& e, double unit) {
   Point& p = g.point;
   ++p.questions;
   p.refused += r.outcome == Outcome::refused;
@@ -144,7 +179,7 @@ void add(Gathered& g, const Record& r, const Errors& e, double diagonal) {
   if (r.outcome != Outcome::answered || !r.all.error_bound || !g.proved_sum)
     g.proved_sum.reset();
   else
-    *g.proved_sum += std::min(1.0, *r.all.error_bound / diagonal);
+    *g.proved_sum += std::min(1.0, *r.all.error_bound / unit);
   if (r.outcome != Outcome::answered) return;
   g.us.push_back(r.all.hot_us);
   p.build_seconds = std::max(p.build_seconds, r.build_seconds);
@@ -174,7 +209,9 @@ void mark_frontiers(std::vector<Point>& points, const std::vector<methods::Metho
                        [&](const methods::MethodInfo& m) { return m.name == p.method && m.told_more; });
   };
   for (Point& p : points) {
-    const auto takes_part = [&](const Point& x) { return x.median > 0 && x.gives_region() && !told_more(x); };
+    const auto takes_part = [&](const Point& x) {
+      return x.median > 0 && !x.says_only_yes_or_no() && !told_more(x);
+    };
     p.frontier = takes_part(p);
     for (const Point& other : points) {
       if (other.set != p.set || other.pose_class != p.pose_class || !takes_part(other)) continue;
@@ -190,41 +227,90 @@ const MetricInfo& metric_info(Metric m) {
   return kInfos[static_cast<std::size_t>(m)];
 }
 
-double Point::error() const {
-  const auto& region = errors[static_cast<std::size_t>(Metric::hausdorff)];
-  const auto& contact = errors[static_cast<std::size_t>(Metric::contact)];
-  return region ? *region : contact.value_or(metric_info(Metric::contact).worst);
+Metric chart_metric(Quantity quantity) {
+  switch (quantity) {
+    case Quantity::distance:
+      return Metric::distance;
+    case Quantity::first_contact:
+      return Metric::time;
+    case Quantity::depth:
+      return Metric::penetration;
+    case Quantity::pairs:
+      break;
+  }
+  return Metric::hausdorff;
 }
+
+double Point::error() const {
+  for (const Metric m :
+       {Metric::hausdorff, Metric::distance, Metric::time, Metric::penetration, Metric::contact})
+    if (const auto& e = errors[static_cast<std::size_t>(m)]) return *e;
+  return metric_info(Metric::contact).worst;
+}
+
+bool Point::says_only_yes_or_no() const {
+  const auto has = [&](Metric m) { return errors[static_cast<std::size_t>(m)].has_value(); };
+  return !has(Metric::hausdorff) && std::none_of(std::begin(kOfNumbers), std::end(kOfNumbers), has);
+}
+
+namespace {
+
+using RecordsByQuestion = std::map<std::pair<std::string, std::uint64_t>, std::vector<const Record*>>;
+using JudgeFunction = std::function<Errors(const methods::MethodInfo&, const Record&)>;
+
+/// Returns what judges the answers to a question.
+JudgeFunction judge_of(const DataSet& set, const Question& q, const std::vector<LrbRep>& bodies) {
+  if (set.quantity != Quantity::pairs)
+    return [&set, &q](const methods::MethodInfo&, const Record& r) { return errors_of_number(set, q, r); };
+  const auto judge = std::make_shared<Judge>(set, q, bodies.at(q.a), bodies.at(q.b));
+  return [judge](const methods::MethodInfo& info, const Record& r) { return judge->errors(info, r); };
+}
+
+/// Adds a data set's points.
+void add_points(const DataSet& set, const std::vector<methods::MethodInfo>& methods,
+                const RecordsByQuestion& by_question, const std::function<void()>& tell,
+                std::vector<Point>& points) {
+  std::vector<LrbRep> bodies;
+  if (set.quantity == Quantity::pairs)
+    for (const BodyFile& b : set.bodies) bodies.push_back(load_lrb(set.folder + "/" + b.file));
+  std::map<std::tuple<PoseClass, std::string, std::optional<double>>, Gathered> gathered;
+  for (std::uint64_t k = 0; k < set.questions.size(); ++k) {
+    const Question& q = set.questions[k];
+    const auto records = by_question.find({set.name, k});
+    if (records == by_question.end()) continue;
+    const JudgeFunction judge = judge_of(set, q, bodies);
+    for (const Record* r : records->second) {
+      const auto info = std::find_if(methods.begin(), methods.end(),
+                                     [&](const methods::MethodInfo& m) { return m.name == r->method; });
+      if (info == methods.end()) continue;
+      Gathered& g = gathered[{q.pose_class, r->method, r->setting}];
+      g.point.set = set.name;
+      g.point.method = r->method;
+      g.point.setting = r->setting;
+      g.point.pose_class = q.pose_class;
+      add(g, *r, judge(*info, *r), unit_of(set));
+      tell();
+    }
+  }
+  for (auto& [key, g] : gathered) points.push_back(finished(std::move(g)));
+}
+
+}  // namespace
 
 std::vector<Point> measure_points(const std::vector<DataSet>& sets,
                                   const std::vector<methods::MethodInfo>& methods,
                                   const std::vector<Record>& records, const MetricProgress& progress) {
-  std::map<std::pair<std::string, std::uint64_t>, std::vector<const Record*>> by_question;
+  RecordsByQuestion by_question;
   for (const Record& r : records) by_question[{r.set, r.question}].push_back(&r);
   std::vector<Point> points;
   std::size_t done = 0;
-  for (const DataSet& set : sets) {
-    std::vector<LrbRep> bodies;
-    for (const BodyFile& b : set.bodies) bodies.push_back(load_lrb(set.folder + "/" + b.file));
-    std::map<std::tuple<PoseClass, std::string, std::optional<double>>, Gathered> gathered;
-    for (std::uint64_t k = 0; k < set.questions.size(); ++k) {
-      const Question& q = set.questions[k];
-      Judge judge(set, q, bodies.at(q.a), bodies.at(q.b));
-      for (const Record* r : by_question[{set.name, k}]) {
-        const auto info = std::find_if(methods.begin(), methods.end(),
-                                       [&](const methods::MethodInfo& m) { return m.name == r->method; });
-        if (info == methods.end()) continue;
-        Gathered& g = gathered[{q.pose_class, r->method, r->setting}];
-        g.point.set = set.name;
-        g.point.method = r->method;
-        g.point.setting = r->setting;
-        g.point.pose_class = q.pose_class;
-        add(g, *r, judge.errors(*info, *r), set.diagonal);
-        if (progress) progress(++done, records.size());
-      }
-    }
-    for (auto& [key, g] : gathered) points.push_back(finished(std::move(g)));
-  }
+  for (const DataSet& set : sets)
+    add_points(
+        set, methods, by_question,
+        [&] {
+          if (progress) progress(++done, records.size());
+        },
+        points);
   mark_frontiers(points, methods);
   return points;
 }

@@ -24,8 +24,11 @@ enum class Metric : std::uint8_t {
   centroid,
   normal,
   depth,
+  distance,     ///< of a number that was asked for
+  time,         ///< likewise: of first contact
+  penetration,  ///< likewise: the depth
 };
-inline constexpr std::size_t kMetrics = 10;
+inline constexpr std::size_t kMetrics = 13;
 
 struct MetricInfo {
   const char* name;
@@ -33,6 +36,8 @@ struct MetricInfo {
   double worst;
 };
 const MetricInfo& metric_info(Metric m);
+/// Returns how wrong an answer is where this is asked for: the error that the chart shows.
+Metric chart_metric(Quantity quantity);
 
 /// The errors of the answer to one question; nothing where a method does not answer that.
 using Errors = std::array<std::optional<double>, kMetrics>;
@@ -42,8 +47,10 @@ struct Point {
   std::optional<double> setting;
   PoseClass pose_class = PoseClass::apart;
   std::size_t questions = 0, refused = 0, crashed = 0, timed_out = 0;
-  Errors errors;                     ///< means over the questions
-  std::optional<double> proved_off;  ///< what Metric::off is proved to be at most, mean; nothing: not proved
+  Errors errors;  ///< means over the questions
+  /// What is proved, mean: Metric::off is no more; or where a number was asked for, its interval is as wide, in the unit
+  /// of its error. Nothing: not proved.
+  std::optional<double> proved_off;
   double median = 0, p95 = 0, p99 = 0;  ///< microseconds, hot, all pairs, over the questions that were
                                         ///< answered
   double build_seconds = 0, bytes = 0;  ///< of both bodies
@@ -52,10 +59,10 @@ struct Point {
   bool frontier = false;                ///< no other point of its data set is both faster and less wrong
 
   std::size_t failed() const { return refused + crashed + timed_out; }
-  /// Returns the error that the chart shows: that of the contact region if the method gives one, else that of
-  /// its yes or no.
+  /// Returns the error that the chart shows: that of the number or the contact region if the method gives one, else that
+  /// of its yes or no.
   double error() const;
-  bool gives_region() const { return errors[static_cast<std::size_t>(Metric::hausdorff)].has_value(); }
+  bool says_only_yes_or_no() const;
 };
 
 using MetricProgress = std::function<void(std::size_t done, std::size_t total)>;

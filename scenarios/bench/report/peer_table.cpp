@@ -102,7 +102,7 @@ std::string ratios_of(const PeerTable& t, Mode mode) {
     if (m.role != Role::ours && m.present) out += "  " + m.name;
   out += "\n";
   for (const std::string& set : t.sets)
-    for (const PoseClass c : kPoseClasses) {
+    for (const PoseClass c : classes_of(Quantity::pairs)) {
       const PeerCell* ours = t.find(set, name_of(t.methods, Role::ours), c, mode);
       if (ours == nullptr || ours->questions == 0) continue;
       out += padded(set, kSet, true) + padded(title(c), kClass, true) +
@@ -166,7 +166,7 @@ std::string ahead_of(const PeerTable& t) {
   std::string out;
   std::size_t compared = 0, behind = 0;
   for (const std::string& set : t.sets)
-    for (const PoseClass c : kPoseClasses)
+    for (const PoseClass c : classes_of(Quantity::pairs))
       for (const Mode mode : kModes) {
         std::string peers;
         for (const methods::MethodInfo& m : t.methods) {
@@ -240,7 +240,7 @@ PeerTable peer_table(const std::vector<DataSet>& sets, const std::vector<methods
   for (const DataSet& set : sets) {
     t.sets.push_back(set.name);
     for (const methods::MethodInfo& m : methods)
-      for (const PoseClass c : kPoseClasses)
+      for (const PoseClass c : classes_of(Quantity::pairs))
         for (const Mode mode : kModes)
           if (m.present && (m.pairs || mode == Mode::first_pair))  // a method without a list answers less
             t.cells.push_back(cell_of(set, m.name, ours_name, c, mode, by_key));

@@ -1,5 +1,6 @@
 #include "scenarios/bench/report/scenes.hpp"
 
+#include <algorithm>
 #include <filesystem>
 
 #include "scenarios/bench/report/series_style.hpp"
@@ -28,20 +29,38 @@ std::uint64_t question_of(const DataSet& set, const std::vector<const Point*>& p
   return best;
 }
 
+/// Returns the poses of B that a scene shows: that of the question, or some on its way, up to first contact or its end.
+std::vector<Pose> poses_of(const DataSet& set, const Question& q) {
+  if (set.quantity != Quantity::first_contact) return {q.pose_b};
+  const double last = std::min(1.0, q.number ? q.number->most : 1);
+  std::vector<Pose> poses;
+  for (const double share : {0.0, 0.5, 0.75, 0.9, 0.99, 1.0}) {
+    Pose p = q.pose_b;
+    p.t += q.from + share * last * (q.to - q.from);
+    poses.push_back(p);
+  }
+  return poses;
+}
+
 std::string scenario_text(const DataSet& set, std::uint64_t k, const std::string& name) {
   const Question& q = set.questions[k];
   const ordered_json views = {{{"camera", "scene"}, {"title", "Whole, with wrappers"}},
                               {{"camera", "contact"}, {"draw", "body"}, {"title", "Contact, bodies alone"}}};
-  const ordered_json value = {
+  ordered_json poses = ordered_json::array();
+  for (const Pose& pose : poses_of(set, q)) poses.push_back(pose_json(pose));
+  ordered_json value = {
       {"name", name},
       {"purpose", set.what + ": " + title(q.pose_class) + ", question " + std::to_string(k) + "."},
       {"bodies",
        {{"a", {{"file", "../" + set.bodies[q.a].file}, {"pose", pose_json(q.pose_a)}}},
         {"b", {{"file", "../" + set.bodies[q.b].file}}}}},
-      {"motion", {{"kind", "poses"}, {"poses", {pose_json(q.pose_b)}}}},
+      {"motion", {{"kind", "poses"}, {"poses", poses}}},
       {"trace", {{"gzip", true}}},
-      {"frames", {{"at", "step"}, {"size", {960, 540}}, {"views", views}}},
-      {"expect", {{{"step", 0}, {"pairs", q.expected.size()}}}}};
+      {"frames", {{"at", "step"}, {"size", {960, 540}}, {"views", views}}}};
+  if (set.quantity == Quantity::pairs) value["expect"] = {{{"step", 0}, {"pairs", q.expected.size()}}};
+  if (set.quantity == Quantity::depth) value["query"] = {{"clash", true}};
+  if (set.quantity == Quantity::distance || set.quantity == Quantity::first_contact)
+    value["query"] = {{"distance", true}};
   return value.dump(2) + "\n";
 }
 
@@ -53,8 +72,8 @@ std::map<SceneKey, std::string> write_scenes(const std::vector<DataSet>& sets,
   std::map<SceneKey, std::string> pages;
   std::uint64_t done = 0;
   for (const DataSet& set : sets)
-    for (const PoseClass c : kPoseClasses) {
-      progress("scenes", done++, sets.size() * std::size(kPoseClasses));
+    for (const PoseClass c : classes_of(set.quantity)) {
+      progress("scenes", done++, sets.size() * classes_of(set.quantity).size());
       const std::uint64_t k = question_of(set, panel(points, set.name, c), c);
       if (k >= set.questions.size()) continue;
       const std::string name = set.name + "-" + std::string(name_of(c));

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <cmath>
+#include <algorithm>
 #include <map>
 #include <string>
 #include <vector>
@@ -27,10 +27,12 @@ class SeriesStyles {
   std::map<std::string, std::size_t> series_of_;
 };
 
-/// The value at which an error of zero is drawn on a logarithmic axis.
-inline constexpr double kNoError = 1e-7;
-inline double drawn_error(const Point& p) {
-  return p.error() > kNoError ? p.error() : kNoError;
+/// Returns the value at which an error of zero is drawn on a logarithmic axis. Numbers are known to about 1e-12.
+inline double no_error(Quantity quantity) {
+  return quantity == Quantity::pairs ? 1e-7 : 1e-14;
+}
+inline double drawn_error(double error, Quantity quantity) {
+  return std::max(error, no_error(quantity));
 }
 /// Points without a single answer stand above all others of their panel.
 double drawn_time(const Point& p, double slowest);

@@ -19,7 +19,7 @@ using namespace lrb::bench;
 using workers::WorkerMethod;
 
 struct BenchOptions : MeasureOptions {
-  BenchOptions() { folder = "out/bench"; }
+  BenchOptions() { folder = folder_help = "out/bench"; }
   std::vector<std::uint32_t> faces = {20000, 100000};
 };
 

@@ -27,24 +27,25 @@ using workers::WorkerMethod;
 
 struct ChartOptions : MeasureOptions {
   ChartOptions() {
-    folder = "out/chart";
+    folder_help = "out/chart, or out/chart-QUANTITY";
     set.poses = 8;
   }
   std::uint32_t faces = 2000;
   bool scenes = true;
 };
 
-/// Returns the data sets of an earlier `bench`, by name.
-std::vector<bench::DataSet> read_sets(const std::string& folder) {
+/// Returns the data sets of an earlier run that were asked for this, by name.
+std::vector<bench::DataSet> read_sets(const std::string& folder, methods::Quantity quantity) {
   std::vector<std::string> files;
   std::error_code error;
   for (const auto& entry : std::filesystem::directory_iterator(folder, error))
     if (entry.path().string().ends_with(".set.json")) files.push_back(entry.path().string());
-  if (files.empty())
-    throw InputError(printable_name(folder) + ": no data sets there; run `lrbscope chart measure` first");
   std::sort(files.begin(), files.end());
   std::vector<bench::DataSet> sets;
   std::transform(files.begin(), files.end(), std::back_inserter(sets), bench::read_data_set);
+  std::erase_if(sets, [&](const bench::DataSet& s) { return s.quantity != quantity; });
+  if (sets.empty())
+    throw InputError(printable_name(folder) + ": no data sets there; run `lrbscope chart measure` first");
   return sets;
 }
 
@@ -69,7 +70,7 @@ void measure(const ChartOptions& o, const std::vector<workers::WorkerMethod>& me
 }
 
 void draw(const ChartOptions& o, const std::vector<workers::WorkerMethod>& methods, const Globals& globals) {
-  const std::vector<bench::DataSet> sets = read_sets(o.folder);
+  const std::vector<bench::DataSet> sets = read_sets(o.folder, o.set.quantity);
   std::vector<methods::MethodInfo> infos;
   std::transform(methods.begin(), methods.end(), std::back_inserter(infos),
                  [](const workers::WorkerMethod& m) { return m.info; });
@@ -109,10 +110,13 @@ void draw(const ChartOptions& o, const std::vector<workers::WorkerMethod>& metho
   print(o.folder + "/index.html\n");
 }
 
-int run_chart(const ChartOptions& o, bool measures, bool draws, const Globals& globals) {
+int run_chart(ChartOptions o, bool measures, bool draws, const Globals& globals) {
+  const methods::Quantity quantity = o.set.quantity;
+  const bool pairs = quantity == methods::Quantity::pairs;
+  if (o.folder.empty()) o.folder = pairs ? "out/chart" : "out/chart-" + std::string(name_of(quantity));
   const std::vector<workers::WorkerMethod> methods =
-      chosen(workers::find_all_methods(), o.methods, "method",
-             [](const workers::WorkerMethod& m) { return m.info.name; });
+      chosen(pairs ? workers::find_all_methods() : workers::find_number_methods(quantity), o.methods,
+             "method", [](const workers::WorkerMethod& m) { return m.info.name; });
   io::make_folder(o.folder);
   const io::FolderLock lock(o.folder);
   if (measures) measure(o, methods, globals);
@@ -129,6 +133,7 @@ Command add_chart(CLI::App& root, const Globals& globals) {
   CLI::App* draws =
       app->add_subcommand("draw", "Only draw: errors, charts and page from the records")->fallthrough();
   add_measure_options(*app, *o);
+  add_quantity_option(*app, o->set.quantity);
   app->add_option("--faces", o->faces, "Number of faces of the bodies to generate; 0: none [2000]")
       ->check(CLI::Range(0, 200000))
       ->type_name("N");

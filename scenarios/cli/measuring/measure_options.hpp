@@ -1,5 +1,5 @@
 #pragma once
-/// The options that bench and chart share.
+/// The options that commands which measure share.
 
 #include <string>
 #include <vector>
@@ -11,7 +11,7 @@
 namespace lrb::cli {
 
 struct MeasureOptions {
-  std::string folder, models;
+  std::string folder, folder_help, models;
   std::vector<std::string> methods;
   bench::SetOptions set;
   double timeout = 20;
@@ -20,7 +20,7 @@ struct MeasureOptions {
 /// Adds the options; the help names the values in `o` as defaults.
 inline void add_measure_options(CLI::App& app, MeasureOptions& o) {
   app.add_option("-o,--output", o.folder,
-                 "Folder to write to; a survey that it holds is continued [" + o.folder + "]")
+                 "Folder to write to; a survey that it holds is continued [" + o.folder_help + "]")
       ->type_name("DIR");
   app.add_option("--models", o.models, "Folder of meshes to collide as well, each with the next one")
       ->type_name("DIR");
@@ -35,6 +35,21 @@ inline void add_measure_options(CLI::App& app, MeasureOptions& o) {
   app.add_option("--timeout", o.timeout, "Seconds that a method has for a pose [20]")
       ->check(CLI::Range(0.1, 3600.0))
       ->type_name("S");
+}
+
+/// Adds --quantity: what methods are asked for.
+inline void add_quantity_option(CLI::App& app, methods::Quantity& quantity) {
+  app.add_option_function<std::string>(
+         "--quantity",
+         [&quantity](const std::string& word) {
+           const auto known = from_name<methods::Quantity>(word);
+           if (!known)
+             throw CLI::ValidationError("--quantity",
+                                        "'" + word + "': use " + all_names<methods::Quantity>());
+           quantity = *known;
+         },
+         "What to ask for: pairs (the default), distance, first_contact, depth")
+      ->type_name("Q");
 }
 
 }  // namespace lrb::cli

@@ -8,6 +8,7 @@
 #include "engine/core/error.hpp"
 #include "scenarios/cli/choice.hpp"
 #include "scenarios/cli/command.hpp"
+#include "scenarios/cli/measuring/measure_options.hpp"
 #include "scenarios/cli/measuring_words.hpp"
 #include "scenarios/cli/progress.hpp"
 #include "scenarios/io/files.hpp"
@@ -169,12 +170,9 @@ bool ours_failed(const Grid& grid, const std::vector<workers::WorkerMethod>& met
 /// Returns the methods that answer with what is asked for.
 std::vector<workers::WorkerMethod> methods_for(Quantity quantity) {
   if (quantity == Quantity::pairs) return workers::find_methods();
-  const std::string program = workers::program_beside("lrbscope-quantities");
-  if (program.empty())
-    throw EnvironmentError(
-        "lrbscope-quantities: not found; it is built beside lrbscope and not installed: run "
-        "lrbscope from its build folder, or name that in LRBSCOPE_METHODS");
-  return workers::methods_of(program, {"--quantity", std::string(name_of(quantity))});
+  std::vector<workers::WorkerMethod> methods = workers::find_number_methods(quantity);
+  std::erase_if(methods, [](const workers::WorkerMethod& m) { return !m.info.hard_cases; });
+  return methods;
 }
 
 /// Returns the families that are asked about unless others are named: for numbers those of small bodies, as
@@ -185,7 +183,7 @@ std::vector<FamilyRow> families_for(const StabilityOptions& o) {
   if (o.quantity != Quantity::pairs && o.families.empty())
     std::erase_if(rows, [](const FamilyRow& f) {
       static constexpr std::string_view kFamilies[] = {"touch",  "shared", "coplanar", "kiss",
-                                                       "sliver", "far",    "scale"};
+                                                       "sliver", "thin",   "far",      "scale"};
       return std::find(std::begin(kFamilies), std::end(kFamilies), f.name) == std::end(kFamilies);
     });
   return rows;
@@ -215,16 +213,7 @@ Command add_stability(CLI::App& root, const Globals& globals) {
   const auto o = std::make_shared<StabilityOptions>();
   app->add_option("-o,--output", o->folder, "Folder to write to [out/stability, or out/stability-QUANTITY]")
       ->type_name("DIR");
-  app->add_option_function<std::string>(
-         "--quantity",
-         [o](const std::string& word) {
-           const auto quantity = from_name<Quantity>(word);
-           if (!quantity)
-             throw CLI::ValidationError("--quantity", "'" + word + "': use " + all_names<Quantity>());
-           o->quantity = *quantity;
-         },
-         "What to ask for: pairs (the default), distance, first_contact, depth")
-      ->type_name("Q");
+  add_quantity_option(*app, o->quantity);
   app->add_option("--family", o->families, "Only these families")->type_name("NAME");
   app->add_option("--method", o->methods, "Only these methods")->type_name("NAME");
   app->add_option("--dial", o->dial,

@@ -229,14 +229,17 @@ std::string libraries(const Page& page) {
 std::string scene_scripts(const Page& page) {
   std::string out;
   if (page.scene.empty()) return out;
-  for (const char* name :
-       {"packed",          "scene_dom",    "scene_body",      "scene_events",   "scene_explanations",
-        "scene_wrappers",  "scene_words",  "scene_selection", "scene_filter",   "scene_table",
-        "scene_form",      "scene_panel",  "scene_why",       "scene_work",     "scene_counts",
-        "scene_colours",   "scene_meshes", "scene_fill",      "scene_bodyview", "scene_marks",
-        "scene_why_marks", "scene_legend", "scene_camera",    "scene_pick",     "scene_view",
-        "scene_time",      "scene_keys",   "scene_controls",  "scene_together", "scene_rows",
-        "scene_load",      "scene"})
+  for (const char* name : {"packed",         "scene_dom",          "scene_body",
+                           "scene_events",   "scene_explanations", "scene_wrappers",
+                           "scene_words",    "scene_selection",    "scene_filter",
+                           "scene_table",    "scene_form",         "scene_panel",
+                           "scene_why",      "scene_work",         "scene_counts",
+                           "scene_colours",  "scene_meshes",       "scene_fill",
+                           "scene_bodyview", "scene_marks",        "scene_why_marks",
+                           "scene_measured", "scene_legend",       "scene_camera",
+                           "scene_pick",     "scene_view",         "scene_time",
+                           "scene_keys",     "scene_controls",     "scene_together",
+                           "scene_rows",     "scene_load",         "scene"})
     out += io::embedded_file(name + std::string(".js"));
   return out;
 }

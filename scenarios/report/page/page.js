@@ -93,10 +93,12 @@ const cursorPlugin = {
   },
 };
 
-/** Drops the ticks of a logarithmic axis that lie beyond its ends: room would be left for them. */
+/** Drops the ticks of a logarithmic axis that lie beyond its ends, for which room would be left, and where it is long all but
+    powers of ten. */
 function ticksWithin(axis) {
+  const many = 80, isPower = (t) => Math.abs(Math.log10(t.value) - Math.round(Math.log10(t.value))) < 1e-6;
   const within = axis.ticks.filter((t) => t.value >= axis.min * (1 - 1e-9) && t.value <= axis.max * (1 + 1e-9));
-  axis.ticks = within.length ? within : [{ value: axis.min }, { value: axis.max }];
+  axis.ticks = within.length ? within.filter((t) => within.length < many || isPower(t)) : [{ value: axis.min }, { value: axis.max }];
 }
 
 function axis(title, log) {

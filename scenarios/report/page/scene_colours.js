@@ -8,7 +8,7 @@ class Colours {
     this.bodies = json.bodies.map(rgb);
     this.scale = json.scale.map(rgb);
     this.categories = json.categories.map(rgb);
-    for (const name of ["contact", "refining", "underTest", "selected", "ink", "wrong"]) this[name] = rgb(json[name]);
+    for (const name of ["contact", "refining", "underTest", "selected", "ink", "wrong", "wayOut"]) this[name] = rgb(json[name]);
     this.stops = json.scale;
   }
 

@@ -3,12 +3,12 @@ class Legend {
   constructor(view) {
     this.view = view;
     this.items = [];
-    this.more = [];
+    this.more = {};
   }
 
-  /** Adds what is pointed out at the moment: [[colour, words]]. */
-  also(items) {
-    this.more = items.map(([colour, text]) => [Legend.css(colour), text, ""]);
+  /** Adds what is pointed out at the moment, in place of what the same `who` had: [[colour, words]]. */
+  also(items, who) {
+    this.more[who] = items.map(([colour, text]) => [Legend.css(colour), text, ""]);
     this.write();
   }
 
@@ -18,7 +18,7 @@ class Legend {
 
   write() {
     byId("legend").replaceChildren(
-      ...[...this.items, ...this.more].map(([colour, text, rim]) => {
+      ...[...this.items, ...Object.values(this.more).flat()].map(([colour, text, rim]) => {
         const item = document.createElement("span"),
           dot = document.createElement("i");
         dot.style.background = colour;

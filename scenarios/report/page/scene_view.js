@@ -28,6 +28,7 @@ class SceneView {
     this.marks = new Marks(this.views, this.colours, this.size);
     this.legend = new Legend(this);
     this.whyMarks = new WhyMarks(this, why);
+    this.measured = new MeasuredMarks(this, scene.measured);
     this.keys = {};
     selection.listeners.push(() => this.redraw());
     new ResizeObserver(() => this.resize()).observe(this.canvas.parentElement);
@@ -76,6 +77,7 @@ class SceneView {
     this.paint(); // what shape() has made
     this.mark();
     this.whyMarks.draw();
+    this.measured.draw();
     if (this.camera.plane) {
       const pixel = (2 * this.camera.halfHeight) / this.size.y;
       for (const view of this.views) view.widen(pixel);
@@ -84,6 +86,7 @@ class SceneView {
     this.camera.prepare(this.reach().radius);
     this.renderer.render(this.stage, this.camera.camera);
     this.circle();
+    this.measured.write();
   }
 
   /** Puts a ring around the faces that the event compares, where they are too small to be noticed. */

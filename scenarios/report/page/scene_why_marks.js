@@ -32,6 +32,7 @@ class WhyMarks {
             [colours.refining, "plane that parts the faces"],
           ]
         : [[colours.underTest, "where they meet"]],
+      "why",
     );
   }
 
@@ -45,12 +46,15 @@ class WhyMarks {
     }
     const square = unpack((plane || boxes || { square: "f4:" }).square);
     if (square.length) this.addSquare([0, 3, 6, 9].map((i) => [...square.subarray(i, i + 3)]));
-    this.view.legend.also([
-      ...(boxes ? [[mixed(colours.bodies[0], colours.ink, 0.3), "nearest of the boxes found apart"]] : []),
-      ...(square.length
-        ? [[colours.refining, plane ? "plane that parts the bodies" : "plane that parts these boxes"]]
-        : []),
-    ]);
+    this.view.legend.also(
+      [
+        ...(boxes ? [[mixed(colours.bodies[0], colours.ink, 0.3), "nearest of the boxes found apart"]] : []),
+        ...(square.length
+          ? [[colours.refining, plane ? "plane that parts the bodies" : "plane that parts these boxes"]]
+          : []),
+      ],
+      "why",
+    );
   }
 
   /** Joins points in their order. */
@@ -89,7 +93,7 @@ class WhyMarks {
   }
 
   clear() {
-    this.view.legend.also([]);
+    this.view.legend.also([], "why");
     for (const object of this.group.children.slice()) {
       this.group.remove(object);
       object.geometry.dispose();

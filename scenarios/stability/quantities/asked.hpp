@@ -6,9 +6,11 @@
 
 #include "engine/lrb/lrb_rep.hpp"
 #include "scenarios/cases/families.hpp"
-#include "scenarios/stability/quantity.hpp"
+#include "scenarios/methods/quantity.hpp"
 
 namespace lrb::stability {
+
+using methods::Quantity;
 
 struct Asked {
   LrbRep a, b;

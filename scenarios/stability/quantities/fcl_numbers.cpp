@@ -17,6 +17,7 @@ namespace lrb::stability {
 namespace {
 
 using methods::Stopwatch;
+using Setting = std::optional<double>;
 
 template <class Volume>
 fcl::BVHModel<Volume> model_of(const LrbRep& rep, const Eigen::Vector3d& by = {0, 0, 0}) {
@@ -38,12 +39,16 @@ fcl::Transform3d moved(const Eigen::Vector3d& by) {
   return t;
 }
 
+/// FCL drops a pair only where it is within both of its errors, the relative of which is at most 1.
 template <class Volume>
-NumberAnswer fcl_distance(const Asked& q) {
+NumberAnswer fcl_distance(const Asked& q, Setting tolerance) {
   const auto a = model_of<Volume>(q.a), b = model_of<Volume>(q.b);
+  fcl::DistanceRequestd request;
+  request.abs_err = tolerance.value_or(0) * q.size;
+  request.rel_err = request.abs_err > 0 ? 1 : 0;
   fcl::DistanceResultd result;
   const Stopwatch watch;
-  const double d = fcl::distance(&a, moved({0, 0, 0}), &b, moved({0, 0, 0}), fcl::DistanceRequestd(), result);
+  const double d = fcl::distance(&a, moved({0, 0, 0}), &b, moved({0, 0, 0}), request, result);
   const double us = watch.microseconds(), least = std::max(0.0, d);  // -1: they meet
   return {least, least, us};
 }
@@ -66,7 +71,7 @@ NumberAnswer fcl_first_contact(const Asked& q, fcl::CCDSolverType solver, std::s
   return {t, t, watch.microseconds()};
 }
 
-NumberAnswer fcl_depth(const Asked& q) {
+NumberAnswer fcl_depth(const Asked& q, Setting) {
   const auto a = model_of<fcl::OBBRSSd>(q.a), b = model_of<fcl::OBBRSSd>(q.b);
   const fcl::CollisionRequestd request(std::size_t{1} << 20, true);
   fcl::CollisionResultd result;
@@ -79,37 +84,60 @@ NumberAnswer fcl_depth(const Asked& q) {
 }
 
 NumberMethod fcl_method(const char* name, const char* what, const char* remark, Quantity quantity,
-                        std::function<NumberAnswer(const Asked&)> ask) {
+                        std::function<NumberAnswer(const Asked&, Setting)> ask, methods::MethodStyle style) {
   NumberMethod m;
   m.info.name = name;
   m.info.title = std::string("FCL " FCL_VERSION ", ") + what;
   m.info.remark = remark;
+  m.info.style = std::move(style);
   m.quantity = quantity;
   m.ask = std::move(ask);
   return m;
 }
 
 NumberMethod fcl_sweep(const char* name, const char* what, const char* remark, fcl::CCDSolverType solver,
-                       std::size_t iterations) {
-  return fcl_method(name, what, remark, Quantity::first_contact,
-                    [=](const Asked& q) { return fcl_first_contact<fcl::OBBRSSd>(q, solver, iterations); });
+                       std::size_t iterations, methods::MethodStyle style) {
+  return fcl_method(
+      name, what, remark, Quantity::first_contact,
+      [=](const Asked& q, Setting steps) {
+        return fcl_first_contact<fcl::OBBRSSd>(q, solver,
+                                               steps ? static_cast<std::size_t>(*steps) : iterations);
+      },
+      std::move(style));
+}
+
+NumberMethod with_knob(NumberMethod m, const char* knob, std::vector<double> settings) {
+  m.info.knob = knob;
+  m.info.settings = std::move(settings);
+  return m;
 }
 
 }  // namespace
 
 std::vector<NumberMethod> fcl_number_methods() {
-  return {fcl_method("fcl-rss", "distance, RSS", "distance() of two BVHModel<RSS>.", Quantity::distance,
-                     fcl_distance<fcl::RSSd>),
-          fcl_method("fcl-obbrss", "distance, OBBRSS", "distance() of two BVHModel<OBBRSS>.",
-                     Quantity::distance, fcl_distance<fcl::OBBRSSd>),
-          fcl_sweep("fcl-naive", "continuousCollide, naive", "Its default solver, at 1000 times.",
-                    fcl::CCDC_NAIVE, 1000),
-          fcl_sweep("fcl-advancement", "continuousCollide, advancement", "Conservative advancement.",
-                    fcl::CCDC_CONSERVATIVE_ADVANCEMENT, 10),
-          fcl_sweep("fcl-polynomials", "continuousCollide, polynomials", "Its solver of polynomials.",
-                    fcl::CCDC_POLYNOMIAL_SOLVER, 10),
-          fcl_method("fcl-contacts", "collide, contacts", "The largest penetration depth of its contacts.",
-                     Quantity::depth, fcl_depth)};
+  const methods::MethodStyle rss = {"FCL, RSS", "#d55e00", "rect", 5},
+                             obbrss = {"FCL, OBBRSS", "#a3132f", "triangle", 9};
+  const std::vector<double> tolerances = {0.1, 0.01, 1e-3, 0};
+  return {
+      with_knob(fcl_method("fcl-rss", "distance, RSS", "distance() of two BVHModel<RSS>.", Quantity::distance,
+                           fcl_distance<fcl::RSSd>, rss),
+                "tolerance", tolerances),
+      with_knob(fcl_method("fcl-obbrss", "distance, OBBRSS", "distance() of two BVHModel<OBBRSS>.",
+                           Quantity::distance, fcl_distance<fcl::OBBRSSd>, obbrss),
+                "tolerance", tolerances),
+      with_knob(
+          fcl_sweep(
+              "fcl-naive", "continuousCollide, naive",
+              "Its default solver: the first of so many equal times at which bodies meet; 1000 unless said.",
+              fcl::CCDC_NAIVE, 1000, {"FCL, naive", "#d55e00", "rect", 5}),
+          "times", {10, 100, 1000}),
+      fcl_sweep("fcl-advancement", "continuousCollide, advancement", "Conservative advancement.",
+                fcl::CCDC_CONSERVATIVE_ADVANCEMENT, 10,
+                {"FCL, conservative advancement", "#a3132f", "triangle", 9}),
+      fcl_sweep("fcl-polynomials", "continuousCollide, polynomials", "Its solver of polynomials.",
+                fcl::CCDC_POLYNOMIAL_SOLVER, 10, {"FCL, polynomials", "#8a5a2b", "star", 3}),
+      fcl_method("fcl-contacts", "collide, contacts", "The largest penetration depth of its contacts.",
+                 Quantity::depth, fcl_depth, {"FCL, contacts", "#d55e00", "rect", 5})};
 }
 
 }  // namespace lrb::stability

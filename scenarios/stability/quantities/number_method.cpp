@@ -52,7 +52,7 @@ void ask_number(const NumberMethod& method, const cases::Case& c, const Expected
   workers::note_failures(record, [&] {
     if (!expected.refusal.empty()) throw InputError("not asked: " + expected.refusal);
     const Asked question = asked(c);
-    const NumberAnswer answer = method.ask(question);
+    const NumberAnswer answer = method.ask(question, std::nullopt);
     record.microseconds = answer.microseconds;
     judge_number(record, method, answer, expected, question.size);
   });

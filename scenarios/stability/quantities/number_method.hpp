@@ -2,6 +2,7 @@
 /// Methods that answer with a number: ours, and engines of others.
 
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include "scenarios/methods/method.hpp"
@@ -20,8 +21,9 @@ struct NumberMethod {
   methods::MethodInfo info;
   Quantity quantity = Quantity::distance;
   bool proves = false;  ///< its interval is to hold the number
-  /// Throws InputError if it has no answer, which counts as a refusal.
-  std::function<NumberAnswer(const Asked&)> ask;
+  /// `setting`: of the method's knob; none: as it is asked where methods must be right. Throws InputError if it has no
+  /// answer, which counts as a refusal.
+  std::function<NumberAnswer(const Asked&, std::optional<double> setting)> ask;
 };
 
 /// Returns ours, exact queries at equal times, and those of the engines that were there at build time.

@@ -267,12 +267,13 @@ TEST_CASE("a tolerance and a budget only widen the interval, and more steps only
     if (i % 3 == 0) pose.r *= 1.5;  // the walk in doubles
     const DistanceResult exact = distance(a, Pose{}, b, pose);
     if (exact.meet) continue;
-    for (const double share : {0.5, 0.1, 1e-3}) {
+    for (const double share : {2.0, 0.5, 0.1, 1e-3}) {
       DistanceRequest request;
       (i % 2 == 0 ? request.tolerance : request.relative_tolerance) =
           i % 2 == 0 ? share * exact.upper : share;
       const DistanceResult d = distance(a, Pose{}, b, pose, request);
       CHECK(d.finished);
+      CHECK(d.lower >= 0);
       CHECK(d.counters.steps <= exact.counters.steps);
       if (share == 0.5) CHECK(2 * d.counters.steps < exact.counters.steps);
       CHECK(d.lower <= exact.upper);

@@ -11,6 +11,7 @@
 #include "scenarios/bench/data_set.hpp"
 #include "scenarios/bench/make_sets.hpp"
 #include "scenarios/bench/oracle.hpp"
+#include "scenarios/bench/record.hpp"
 #include "scenarios/bench/report/metrics.hpp"
 #include "scenarios/bench/report/peer_table.hpp"
 #include "scenarios/bench/report/region_error.hpp"
@@ -285,7 +286,7 @@ TEST_CASE("points: what fails scores the worst, and the frontier is what nothing
     }
     ++seen;
   }
-  CHECK(seen == 5 * std::size(bench::kPoseClasses));
+  CHECK(seen == 5 * bench::classes_of(bench::Quantity::pairs).size());
 }
 
 TEST_CASE("a sphere tree misses nothing, and is closer to the truth at deeper levels") {
@@ -330,4 +331,82 @@ TEST_CASE("the commands: records, table, charts; what is there is not asked agai
   CHECK(std::count(points.begin(), points.end(), '\n') == 3 * 5 * 7);
   CHECK(run(folder, {"chart", "draw", "-o", "nothing"}).code == 2);
   CHECK(run(folder, {"bench", "--method", "nobody", "-o", "b"}).code == 2);
+}
+
+TEST_CASE("numbers are judged by how far they are off what is known, in diagonals or parts of the motion") {
+  const auto error = [](Quantity quantity, double known, const bench::Record& r) {
+    bench::DataSet set;
+    set.name = r.set;
+    set.quantity = quantity;
+    set.diagonal = 2;
+    set.questions.resize(1);
+    set.questions[0].number = {known, known};
+    return bench::measure_points({set}, {info("some")}, {r}).at(0);
+  };
+  const auto said = [](double lower, double upper) {
+    bench::Record r = answer("some", 0, bench::PoseClass::apart, 3);
+    r.all.lower = lower;
+    r.all.upper = upper;
+    if (upper > lower) r.all.error_bound = upper - lower;
+    return r;
+  };
+  CHECK(error(Quantity::distance, 1, said(1, 1)).error() == 0);
+  CHECK(error(Quantity::distance, 1, said(0.5, 1.5)).error() == 0.25);
+  CHECK(*error(Quantity::distance, 1, said(0.5, 1.5)).proved_off == 0.5);
+  CHECK_FALSE(error(Quantity::distance, 1, said(0.5, 0.5)).proved_off);
+  CHECK(error(Quantity::distance, 1, said(0, 1e300)).error() == 1);
+  CHECK(error(Quantity::first_contact, 0.5, said(0.25, 0.25)).error() == 0.25);
+  CHECK(error(Quantity::first_contact, 0.5, said(2, 2)).error() == 1);
+  CHECK(error(Quantity::first_contact, 2, said(0.9, 0.9)).error() == 1);
+  CHECK(error(Quantity::first_contact, 2, said(2, 2)).error() == 0);
+  bench::Record dead = said(1, 1);
+  dead.outcome = bench::Outcome::crashed;
+  CHECK(error(Quantity::depth, 1, dead).error() == 1);
+  const bench::Point p = error(Quantity::depth, 1, said(1, 1));
+  CHECK(p.frontier);
+  CHECK(p.errors[static_cast<std::size_t>(Metric::penetration)].has_value());
+}
+
+TEST_CASE(
+    "a data set of numbers is the same when it is read again, and is whole when all numbers are known") {
+  const Folder folder;
+  bench::DataSet set = made_up_set(2);
+  set.quantity = Quantity::first_contact;
+  set.questions[1].from = {1, 2, 0.1};
+  set.questions[1].to = {-1, -2, 0.3};
+  set.questions[1].number = {0.25, 0.5};
+  const bench::DataSet again = bench::read_data_set(bench::write_data_set(set, folder.path.string()));
+  CHECK(again.quantity == set.quantity);
+  CHECK(again.questions[1].from == set.questions[1].from);
+  CHECK(again.questions[1].to == set.questions[1].to);
+  CHECK(again.questions[1].number->most == 0.5);
+  CHECK_FALSE(again.questions[0].number);
+  CHECK_FALSE(bench::is_complete(again));
+  set.questions[0].number = {2, 2};
+  CHECK(bench::is_complete(set));
+}
+
+TEST_CASE("chart --quantity: the right answers, records, points and a page for each number") {
+  const Folder folder;
+  const auto chart = [&](const std::string& quantity, std::vector<std::string> more = {}) {
+    std::vector<std::string> words = {"chart", "--quantity", quantity, "--faces", "80", "--poses", "1"};
+    words.insert(words.end(), more.begin(), more.end());
+    return run(folder, words);
+  };
+  const auto lines = [&](const std::string& file) {
+    const std::string text = slurp(folder / file);
+    return std::count(text.begin(), text.end(), '\n');
+  };
+  CHECK(chart("distance", {"--no-scenes", "--method", "ours", "--method", "ours-within"}).code == 0);
+  CHECK(lines("out/chart-distance/points.jsonl") == 3 * 4 * (5 + 1));
+  CHECK(slurp(folder / "out/chart-distance/index.html").find("error of the distance / diagonal") !=
+        std::string::npos);
+  CHECK(chart("first_contact", {"--no-scenes", "--method", "sampled-10"}).code == 0);
+  CHECK(lines("out/chart-first_contact/points.jsonl") == 3 * 3);
+  CHECK(chart("depth", {"--method", "ours"}).code == 0);
+  for (const bench::Record& r : bench::read_records(folder / "out/chart-depth/records.jsonl"))
+    CHECK(*r.all.lower <= *r.all.upper);
+  CHECK(slurp(folder / "out/chart-depth/index.html").find("scenes/rocks-80-depth-deep/index.html") !=
+        std::string::npos);
+  CHECK(chart("length").code == 2);
 }

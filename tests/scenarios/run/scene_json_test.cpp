@@ -18,7 +18,7 @@ using nlohmann::json;
 namespace {
 
 run::Recording rocks_that_meet(WrapperMode mode = WrapperMode::regularised,
-                               EventLevel level = EventLevel::faces) {
+                               EventLevel level = EventLevel::faces, bool measured = false) {
   spec::Scenario s;
   s.events = level;
   s.name = "rocks";
@@ -29,6 +29,7 @@ run::Recording rocks_that_meet(WrapperMode mode = WrapperMode::regularised,
   }
   s.request.wrapper = mode;
   if (mode == WrapperMode::unregularised) s.request.recursion = Recursion::paper;
+  s.more.distance = s.more.clash = measured;
   s.motion.kind = spec::Motion::Kind::approach;
   s.motion.from = {3, 0.2, 0.1};
   s.motion.steps = 1000;
@@ -260,4 +261,24 @@ TEST_CASE("a run as data of its page says how many pairs it explains where it le
 TEST_CASE("a run as data of its page explains nothing that the complete query does not answer") {
   const run::Recording r = rocks_that_meet(WrapperMode::unregularised);
   CHECK(json::parse(run::scene_json(run_of(r), {"trace.json", ""}))["why"].is_null());
+}
+
+TEST_CASE(
+    "a run as data of its page has a way for each step in which bodies are apart or overlap, if that was asked") {
+  const auto scene_of = [](const run::Recording& r) {
+    return json::parse(run::scene_json(run_of(r), {"trace.json", ""}));
+  };
+  CHECK(scene_of(rocks_that_meet())["measured"].is_null());
+  const run::Recording r = rocks_that_meet(WrapperMode::regularised, EventLevel::faces, true);
+  const json measured = scene_of(r)["measured"];
+  std::vector<std::string> wanted;
+  for (const trace::Step& s : r.trace.steps) {
+    if (s.result.distance->lower > 0) wanted.emplace_back(" apart");
+    if ((*s.result.clash->depth)[1] > 0) wanted.emplace_back(" deep");
+  }
+  CHECK(std::count(wanted.begin(), wanted.end(), " apart") == 3);
+  CHECK(std::count(wanted.begin(), wanted.end(), " deep") == 5);
+  REQUIRE(measured["words"].size() == wanted.size());
+  for (std::size_t i = 0; i < wanted.size(); ++i)
+    CHECK(measured["words"][i].get<std::string>().ends_with(wanted[i]));
 }

@@ -1,18 +1,18 @@
 #pragma once
-/// What the stability experiment asks for: pairs that meet, or a number.
+/// What methods are asked for where they are compared: pairs that meet, or a number.
 
 #include <array>
 #include <cstdint>
 
 #include "engine/core/enum_words.hpp"
 
-namespace lrb::stability {
+namespace lrb::methods {
 
 enum class Quantity : std::uint8_t {
   pairs,          ///< which pairs meet, and how the bodies lie
   distance,       ///< of the surfaces
-  first_contact,  ///< the time at which B, which comes straight to its pose and goes on, first meets A
-  depth,          ///< the length of the shortest translation that parts convex bodies
+  first_contact,  ///< the time at which B, which moves straight, first meets A
+  depth,          ///< the length of the shortest translation that parts the bodies
 };
 constexpr auto words_of(Quantity) {
   return std::to_array<EnumWord<Quantity>>({{Quantity::pairs, "pairs"},
@@ -21,4 +21,4 @@ constexpr auto words_of(Quantity) {
                                             {Quantity::depth, "depth"}});
 }
 
-}  // namespace lrb::stability
+}  // namespace lrb::methods
