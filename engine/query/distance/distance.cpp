@@ -47,10 +47,14 @@ DistanceResult distance(const LrbRep& a, const Pose& pose_a, const LrbRep& b, co
   NearestPairs found(query, request, context.pairs);
   DistanceResult result;
   const bool is_likely = likely != nullptr && (*likely)[0] != kNull;
-  if (is_likely)
-    found.measure((*likely)[0], (*likely)[1], 0);
-  else if (request.max_steps > 0 || request.within)  // there must be an upper end, however early it stops
+  if (is_likely) {
+    if (!found.measure((*likely)[0], (*likely)[1], 0) && found.pair_meets(*likely)) {
+      found.finish(0, true, result);
+      return result;
+    }
+  } else if (request.max_steps > 0 || request.within) {  // there must be an upper end, however early it stops
     found.measure(a.tree().blocks()[0].simplex[0], b.tree().blocks()[0].simplex[0], 0);
+  }
   const TreeKernel tree = set_up_any_kernel(a.tree(), pose_a, b.tree(), pose_b, a.dim(), query.affine);
   bool finished = false;
   double rest = 0;

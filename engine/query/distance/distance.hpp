@@ -100,8 +100,9 @@ std::vector<DistanceResult> distances(const LrbRep& a, const Pose& pose_a, const
                                       unsigned threads = 0);
 
 /// Asks for two bodies again and again as they move by little: begins with the pair of simplices that was
-/// nearest before. Intervals are proved as those of distance() are, and as narrow; where pairs are equally
-/// near, the witness may be another.
+/// nearest before, or met, and keeps how they lie where they cannot have met in between. Intervals are proved as
+/// those of distance() are, and as narrow; where pairs are equally near, or several meet, the witness may be another,
+/// and the relation of surfaces that meet is what that pair shows.
 class CoherentDistance {
  public:
   /// Keeps references to the bodies, which must outlive it.

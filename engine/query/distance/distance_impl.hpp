@@ -21,7 +21,7 @@ struct DistanceContext {
 };
 
 /// Answers as distance() in distance.hpp does. likely: null, or a simplex of A and one of B that are likely
-/// to be the nearest; kNull: none. probe: null, or told how bounds tighten.
+/// to be the nearest, or to meet; kNull: none. probe: null, or told how bounds tighten.
 DistanceResult distance(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
                         const DistanceRequest& request, DistanceContext& context,
                         const std::array<SimplexId, 2>* likely = nullptr, BoundsProbe* probe = nullptr);

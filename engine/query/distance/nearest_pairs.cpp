@@ -89,17 +89,24 @@ bool NearestPairs::surfaces_meet() {
   CollideResult found;
   NullProbe probe;
   TreeQuery<NullProbe>(ctx_, any, found, probe).run();
-  meet_ = !found.pairs.empty();
-  if (!meet_) return false;
-  best_simplex_[0] = found.pairs[0].a;
-  best_simplex_[1] = found.pairs[0].b;
-  met_ = found.meets[0] == exact::Meet::cross ? Relation::crossing : Relation::touching;
-  write_contact();
+  if (!found.pairs.empty()) take_contact(found.pairs[0].a, found.pairs[0].b, found.meets[0]);
+  return meet_;
+}
+
+bool NearestPairs::pair_meets(const std::array<SimplexId, 2>& pair) {
+  const exact::Meet meet = test_simplices(ctx_, pair[0], pair[1]);
+  if (meet == exact::Meet::disjoint) return false;
+  asked_ = true;
+  take_contact(pair[0], pair[1], meet);
   return true;
 }
 
-/// Sets the witness to a point of the pair that meets.
-void NearestPairs::write_contact() {
+/// Takes in a pair that meets, with one of the points that it shares as the witness.
+void NearestPairs::take_contact(SimplexId a, SimplexId b, exact::Meet meet) {
+  meet_ = true;
+  met_ = meet == exact::Meet::cross ? Relation::crossing : Relation::touching;
+  best_simplex_[0] = a;
+  best_simplex_[1] = b;
   const double *of_a[3], *of_b[3];
   corners(best_simplex_[0], best_simplex_[1], of_a, of_b);
   const exact::PairContact contact =

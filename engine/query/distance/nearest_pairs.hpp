@@ -45,6 +45,8 @@ class NearestPairs {
   /// Returns true if the request is answered: within, yes.
   bool is_near_enough() const { return request_.within && upper() <= *request_.within; }
 
+  /// Returns true if the simplices meet, exactly: then the surfaces do.
+  bool pair_meets(const std::array<SimplexId, 2>& pair);
   /// Finds out whether the surfaces meet, exactly, the first time it is asked.
   bool surfaces_meet();
   bool known_apart() const { return asked_ && !meet_; }
@@ -63,7 +65,7 @@ class NearestPairs {
   void see(const MeasuredPair& pair, const PairBounds& bounds);
   void corners(SimplexId a, SimplexId b, const double** of_a, const double** of_b);
   void write_witness(int side, DistanceResult& result) const;
-  void write_contact();
+  void take_contact(SimplexId a, SimplexId b, exact::Meet meet);
   void write_relation(DistanceResult& result);
 
   QueryContext& ctx_;
