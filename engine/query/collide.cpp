@@ -24,6 +24,10 @@ void check_world(const LrbRep& rep, const Pose& pose, char name) {
   }
 }
 
+bool is_flat(const Pose& p) {
+  return p.r(0, 2) == 0 && p.r(1, 2) == 0 && p.r(2, 0) == 0 && p.r(2, 1) == 0 && p.t.z() == 0;
+}
+
 }  // namespace
 
 void check_query(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b) {
@@ -33,9 +37,7 @@ void check_query(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pos
   for (const Pose* p : {&pose_a, &pose_b}) {
     if (!p->r.allFinite() || !p->t.allFinite())
       throw InputError("a pose has a number that is not finite; give twelve finite numbers");
-    const bool flat =
-        p->r(0, 2) == 0 && p->r(1, 2) == 0 && p->r(2, 0) == 0 && p->r(2, 1) == 0 && p->t.z() == 0;
-    if (a.dim() == 2 && !flat)
+    if (a.dim() == 2 && !is_flat(*p))
       throw InputError(
           "the pose of a 2D body leaves the plane z = 0; rotate about z and translate in x and y only");
   }
