@@ -12,14 +12,14 @@ make_pages() {
   local lrbscope=$1 out=$work/out
   cp "$here"/*.json "$here"/open.obj "$work"
   sed 's/0\.02,/0.021,/' "$work/meet.json" >"$work/later.json"
-  for run in meet later build dent plane open; do "$lrbscope" --quiet run "$work/$run.json" -o "$out/$run" >/dev/null; done
+  for run in meet later build dent plane open near; do "$lrbscope" --quiet run "$work/$run.json" -o "$out/$run" >/dev/null; done
   "$lrbscope" --quiet compare "$out/meet" "$out/later" -o "$out/compare" >/dev/null
   "$lrbscope" --quiet golden approve --goldens "$work/goldens" --size 320x240 "$work/meet.json" "$work/build.json" >/dev/null
   sed -i 's/0\.02,/0.021,/' "$work/meet.json"
   "$lrbscope" --quiet golden report --goldens "$work/goldens" -o "$out/golden" >/dev/null || true # a failure is to be shown
   "$lrbscope" --quiet levels "$out/dent/a.lrb" --at 0.02 0.1 -o "$out/levels" >/dev/null
   pages=()
-  for name in meet build dent plane open compare golden levels; do pages+=("$out/$name/index.html"); done
+  for name in meet build dent plane open near compare golden levels; do pages+=("$out/$name/index.html"); done
   if [ -x "$(dirname "$lrbscope")/lrbscope-xray-fcl" ]; then
     printf '1 0 0 %s 0 1 0 0.3 0 0 1 0.2\n' 1.5 9 >"$work/poses.txt"
     "$lrbscope" --quiet xray "$out/meet/a.lrb" "$out/meet/b.lrb" --poses "$work/poses.txt" -o "$out/xray" >/dev/null

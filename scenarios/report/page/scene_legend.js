@@ -6,9 +6,10 @@ class Legend {
     this.more = {};
   }
 
-  /** Adds what is pointed out at the moment, in place of what the same `who` had: [[colour, words]]. */
+  /** Adds what is pointed out at the moment, in place of what the same `who` had: [[colour, words, colour of the rim]]; a rim
+      where the colour alone is not seen on a dark card. */
   also(items, who) {
-    this.more[who] = items.map(([colour, text]) => [Legend.css(colour), text, ""]);
+    this.more[who] = items.map(([colour, text, rim]) => [Legend.css(colour), text, rim ? Legend.css(rim) : ""]);
     this.write();
   }
 

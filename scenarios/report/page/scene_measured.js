@@ -30,10 +30,9 @@ class MeasuredMarks {
       const colour = now.wayOut ? colours.wayOut : colours.ink;
       this.addLines(now.wayOut ? arrowOf(now.from, now.to, events.dim) : [now.from, now.to], colour);
     }
-    legend.also(
-      now ? [now.wayOut ? [colours.wayOut, "B leaves A this way"] : [colours.ink, "between the nearest points of the bodies"]] : [],
-      "measured",
-    );
+    const wayOut = [colours.wayOut, "B leaves A this way"],
+      gap = [colours.ink, "between the nearest points of the bodies", WHITE];
+    legend.also(now ? [now.wayOut ? wayOut : gap] : [], "measured");
   }
 
   /** A pale line under each, so that they are seen on bodies of any colour. */
