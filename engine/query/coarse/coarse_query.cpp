@@ -50,11 +50,11 @@ CoarseStep step_of(const LrbRep& a, const LrbRep& b, double tolerance, const Col
                                                                                                 : step;
 }
 
+}  // namespace
+
 bool is_limited(const CollideRequest& request) {
   return request.max_tests > 0 || request.max_time > 0;
 }
-
-}  // namespace
 
 CoarseStep first_step(const LrbRep& a, const LrbRep& b, const CollideRequest& request) {
   // A surface that bounds nothing hides nothing: both bodies have to be queried as they are.

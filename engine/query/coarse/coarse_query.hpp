@@ -3,11 +3,15 @@
 ///
 /// How. The exact query is asked first, until a pair crosses: bodies that are apart it tells apart faster than
 /// wrappers could, and of bodies that cross it finds a pair at once, since it looks where boxes overlap most. So
-/// the relation is exact, and so is an answer of one pair. Only the list of all pairs of bodies that cross is then
-/// left to wrappers, whose faces are fewer: to the level that the tolerance allows or, within limits, to one level
-/// after another, coarsest first. Where surfaces of wrappers do not meet though the bodies do, one wrapper being
-/// in the other, and where no level is much smaller than the bodies, the exact query finds the pairs. The first
-/// question may take half of a limit; should it end without an answer, levels tell what they can.
+/// the relation is exact, and so is an answer of one pair. If little is left to do then (TrialRules), as where
+/// bodies hardly more than touch, it goes on to the end: wrappers meet in more pairs than such bodies. Else the
+/// list of all pairs is left to wrappers, whose faces are fewer: to the level that the tolerance allows or, within
+/// limits, to one level after another, coarsest first. Where surfaces of wrappers do not meet though the bodies do,
+/// one wrapper being in the other, and where no level is much smaller than the bodies, the exact query finds the
+/// pairs. The first question may take half of a limit; should it end without an answer, levels tell what they can.
+///
+/// Whether the exact query goes on depends on the bodies and poses alone, not on the tolerance: so a finer tolerance
+/// never gives a larger error bound.
 ///
 /// Why levels never call bodies separate that meet. Each wrapper encloses its body (wrapper_level.hpp), so bodies
 /// whose wrappers share no point share none. Two wrappers share no point if no two of their faces meet and no
@@ -47,6 +51,9 @@ struct CoarseStep {
   bool exact() const { return a == nullptr && b == nullptr; }
 };
 
+/// Returns whether there is a limit of tests or time.
+bool is_limited(const CollideRequest& request);
+
 /// Returns the first step to be tried: the only one, or within limits the coarsest. Exact where no level is worth it.
 CoarseStep first_step(const LrbRep& a, const LrbRep& b, const CollideRequest& request);
 
@@ -81,14 +88,13 @@ constexpr unsigned kUncertainTests = 8;   ///< about a microsecond; twenty where
 /// Rules of an exact query within limits. Clock: std::chrono::steady_clock, or one that a test turns.
 template <class Clock = std::chrono::steady_clock>
 struct LimitedRules {
-  static constexpr bool kLimited = true, kWrappers = false;
+  static constexpr bool kLimited = true, kWrappers = false, kTrial = false;
   /// What is left to do with each pair when all are found: to sort it.
   static constexpr std::chrono::nanoseconds kAfterwards{20};
 
   std::uint64_t max_tests = 0;
   bool has_deadline = false;
   typename Clock::time_point deadline;
-  bool keeps_touching = false;
   bool stopped = false;  ///< a limit was reached
   unsigned done = 0;     ///< since the last look at the clock, in certain tests
 
@@ -108,6 +114,53 @@ struct LimitedRules {
   std::uint64_t most_node_pairs(std::uint64_t pairs) const {
     return has_deadline ? pairs + between_looks::kNodePairs : kNoLimit;
   }
+};
+
+/// Rules of the exact query that comes first, for all pairs: it gives up once a pair crosses, unless little is left
+/// to do. What is left is judged by the pairs of nodes that wait. There are few where bodies barely cross; more may
+/// wait where it took long to find a pair that crosses, since those lie deep in the trees.
+template <class Clock = std::chrono::steady_clock>
+class TrialRules : public LimitedRules<Clock> {
+ public:
+  static constexpr bool kTrial = true;
+  /// How few pairs of nodes may wait, for a query to a tolerance, and within limits, where levels come one after
+  /// another and the exact query last. More: bodies that cross deeply pay for work that is given up; fewer: bodies
+  /// that barely cross pay for levels.
+  static constexpr std::uint32_t kFewToTolerance = 12, kFewWithinLimits = 24;
+
+  std::uint32_t few_waiting = kFewToTolerance;
+
+  /// Told where the walk is, before what it found there is tested.
+  void came_to(std::uint64_t node_pairs, std::uint32_t waiting) {
+    node_pairs_ = node_pairs;
+    waiting_ = waiting;
+  }
+  /// Told of a pair that crosses. Returns true if the walk should end at once.
+  bool crossed() {
+    if (crossed_at_ == kNoLimit) crossed_at_ = node_pairs_;
+    return gives_up(false);
+  }
+  /// Returns true if a pair crosses and the answer should be left to levels. too_many: of pairs that were found.
+  bool gives_up(bool too_many) {
+    if (crossed_at_ == kNoLimit) return false;
+    const bool much = waiting_ > few_waiting + crossed_at_ / 4 || node_pairs_ >= crossed_at_ + kMostMore;
+    gave_up_ = too_many || (waiting_ > 0 && much);
+    return gave_up_;
+  }
+  bool gave_up() const { return gave_up_; }
+
+  std::uint64_t most_node_pairs(std::uint64_t pairs) const {
+    const std::uint64_t limit = LimitedRules<Clock>::most_node_pairs(pairs);
+    return crossed_at_ == kNoLimit ? limit : std::min(limit, pairs + kBetween);
+  }
+
+ private:
+  /// Pairs of nodes after the first pair that crosses, and those between two looks at how many wait.
+  static constexpr std::uint64_t kMostMore = 192, kBetween = 16;
+
+  std::uint64_t node_pairs_ = 0, crossed_at_ = kNoLimit;
+  std::uint32_t waiting_ = 0;
+  bool gave_up_ = false;
 };
 
 /// Rules of a query between wrappers, within limits.
@@ -144,7 +197,7 @@ class CoarseQuery {
     const LrbRep &a = ctx_[Side::a].rep(), &b = ctx_[Side::b].rep();
     if (first_step(a, b, request_).exact())
       ask_exactly(0);
-    else if (!first_pair_decides())
+    else if (!first_walk_decides())
       climb(coarse_steps(a, b, request_));
     if constexpr (Probe::kEnabled)
       for (std::size_t i = 0; i < result_.pairs.size(); ++i)
@@ -228,27 +281,32 @@ class CoarseQuery {
     if (decide_relation_watched(ctx_, found, probe_, in_time(rules))) answer(found, error_bound, true);
   }
 
-  /// Asks the bodies as they are until a pair crosses. Returns true if that is the whole answer: they do not
-  /// cross, and then all pairs that touch are known, or one pair is all that was asked for.
-  bool first_pair_decides() {
-    CollideRequest request = request_;
-    if (request.mode == Mode::all_pairs) request.mode = Mode::first_pair;
-    LimitedRules<Clock> rules;
-    rules.keeps_touching = request_.mode == Mode::all_pairs;
-    limit(rules, true);
+  /// Asks the bodies as they are, until it has an answer of one pair, or one pair of many crosses. Returns true if
+  /// that is the whole answer: also where they do not cross, or little was left to do.
+  bool first_walk_decides() {
     CollideResult found;
-    const bool walked = walk(request, found, rules);
-    if (walked) {
-      const bool all =
-          request_.mode != Mode::all_pairs || found.meets.empty() || found.meets[0] != exact::Meet::cross;
+    TrialRules<Clock> rules;
+    limit(rules, true);
+    if (is_limited(request_)) rules.few_waiting = TrialRules<Clock>::kFewWithinLimits;
+    const bool whole = walk(request_, found, rules) && !rules.gave_up();
+    if (!whole) keep_one_crossing(found);
+    if (whole || !found.pairs.empty()) {
       sort(found);
       const bool known = decide_relation_watched(ctx_, found, probe_, in_time(rules));
-      if (known) answer(found, all ? 0 : kInfinity, all);
-      if (known && all) return true;
+      if (known) answer(found, whole ? 0 : kInfinity, whole);
+      if (known && whole) return true;
     }
     take_back(Side::a);
     take_back(Side::b);
     return false;
+  }
+
+  /// Leaves of what was found the first pair that crosses; nothing if none does.
+  static void keep_one_crossing(CollideResult& found) {
+    const auto crossing = std::find(found.meets.begin(), found.meets.end(), exact::Meet::cross);
+    const auto kept = static_cast<std::size_t>(crossing - found.meets.begin());
+    found.pairs = crossing == found.meets.end() ? std::vector<SimplexPair>{} : std::vector{found.pairs[kept]};
+    found.meets.assign(found.pairs.size(), exact::Meet::cross);
   }
 
   /// Takes back all regions: those that were refined show real faces.

@@ -61,6 +61,7 @@ inline std::uint32_t show_face(QueryContext& ctx, Side side, FaceId f, CollideRe
 struct ExactRules {
   static constexpr bool kLimited = false;   ///< may stop before the answer is complete
   static constexpr bool kWrappers = false;  ///< what is walked stands for bodies that lie within it
+  static constexpr bool kTrial = false;     ///< may give up once a pair crosses
 };
 
 template <class Probe, class Rules = ExactRules>
@@ -92,8 +93,9 @@ class TreeQuery {
   /// Returns the number of pairs of nodes.
   std::uint64_t walk() {
     // A small buffer where one pair may be enough, so that little is searched beyond it.
-    TreeKernel k = start_kernel(ctx_, mode_ == Mode::all_pairs ? 1024 : 64);
-    k.nearest_first = mode_ != Mode::all_pairs;
+    const bool one_may_do = Rules::kTrial || mode_ != Mode::all_pairs;
+    TreeKernel k = start_kernel(ctx_, one_may_do ? 64 : 1024);
+    k.nearest_first = one_may_do;
     if constexpr (Rules::kWrappers) allow_for_wrappers(k);
     bool done = false;
     while (k.stack_size != 0 && !done) {
@@ -101,8 +103,12 @@ class TreeQuery {
       if constexpr (Rules::kLimited) k.most_node_pairs = rules_.most_node_pairs(k.node_pairs);
       is_told_more(probe_) ? NodeWatch<Probe>(ctx_, probe_).run(k) : run_tree_kernel(k);
       if constexpr (Rules::kLimited) done = rules_.time_is_up(result_.pairs.size());
+      if constexpr (Rules::kTrial) rules_.came_to(k.node_pairs, k.stack_size);
       for (std::uint32_t i = 0; i < k.out_size && !done; ++i) done = test(k.out[i]);
-      if (result_.pairs.size() > pair_limit_) refuse_pairs(pair_limit_);
+      const bool too_many = result_.pairs.size() > pair_limit_;
+      if constexpr (Rules::kTrial)
+        if (rules_.gives_up(too_many)) break;
+      if (too_many) refuse_pairs(pair_limit_);
     }
     result_.counters.node_pairs += k.node_pairs;
     result_.counters.box_tests += k.box_tests;
@@ -134,23 +140,16 @@ class TreeQuery {
     }
     if (meet == exact::Meet::disjoint) return false;
     if (mode_ == Mode::first_pair && !result_.pairs.empty()) {
-      if (meet == exact::Meet::cross) {
-        result_.pairs.clear();
-        result_.meets.clear();
-      } else if (!keeps_touching()) {
-        return false;
-      }
+      if (meet != exact::Meet::cross) return false;
+      result_.pairs.clear();
+      result_.meets.clear();
     }
     record_pair(result_, probe_, c.a, c.b, meet);
     if constexpr (Rules::kWrappers)
       if (mode_ != Mode::all_pairs) return true;
+    if constexpr (Rules::kTrial)
+      if (mode_ == Mode::all_pairs && meet == exact::Meet::cross && rules_.crossed()) return true;
     return mode_ == Mode::any_pair || (mode_ == Mode::first_pair && meet == exact::Meet::cross);
-  }
-
-  /// Returns true if all pairs that touch are kept in first_pair mode, as long as none crosses.
-  bool keeps_touching() const {
-    if constexpr (Rules::kLimited) return rules_.keeps_touching;
-    return false;
   }
 
   /// Returns how a candidate meets. Most are certain: then no corner needs to be moved to the world.

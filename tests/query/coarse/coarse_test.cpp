@@ -236,6 +236,46 @@ TEST_CASE("an answer of one pair is exact, whatever the tolerance") {
   }
 }
 
+TEST_CASE("bodies that hardly touch are answered exactly, at what the exact query costs") {
+  const LrbRep a = build_lrb(shapes::bumpy_sphere(4, 7, 0.3)), b = build_lrb(shapes::bumpy_sphere(4, 8, 0.3));
+  const Bodies pair{"bumps", a, b};
+  RandomEngine random(48);
+  QueryContext context;
+  CollideRequest to_tolerance, within_tests, few_pairs;
+  to_tolerance.tolerance = few_pairs.tolerance = 0.05;
+  within_tests.max_tests = 1'000'000;
+  int to_the_end[2] = {0, 0}, coarse = 0, given_up = 0;
+  for (int i = 0; i < 40; ++i) {
+    CAPTURE(i);
+    Pose p = shapes::random_pose(random, a, b, 1.2);
+    const Eigen::Vector3d way = p.t.normalized();
+    double far = p.t.norm(), near = 0;
+    const auto meets = [&](double s) {
+      p.t = s * way;
+      return !ask(pair, p, {}, context).pairs.empty();
+    };
+    for (int k = 0; k < 40; ++k) (meets((far + near) / 2) ? near : far) = (far + near) / 2;
+    p.t = (near - 1e-4) * way;
+    const CollideResult exact = ask(pair, p, {}, context);
+    for (const int limited : {0, 1}) {
+      const CollideResult r = ask(pair, p, limited ? within_tests : to_tolerance, context);
+      REQUIRE(r.relation == exact.relation);
+      const bool all = r.error_bound == 0 && r.pairs == exact.pairs;
+      to_the_end[limited] += all && r.counters.node_pairs <= exact.counters.node_pairs;
+    }
+    p.t = (near - 0.2) * way;
+    const CollideResult deep = ask(pair, p, to_tolerance, context);
+    coarse += deep.error_bound > 0;
+    // More pairs than are wanted, of the bodies themselves, leave the list to the level.
+    few_pairs.max_pairs = deep.pairs.size();
+    given_up += ask(pair, p, few_pairs, context).pairs == deep.pairs;
+  }
+  CHECK(to_the_end[0] >= 12);
+  CHECK(to_the_end[1] >= 24);
+  CHECK(coarse >= 36);
+  CHECK(given_up == 40);
+}
+
 TEST_CASE("a finer tolerance never says less") {
   RandomEngine random(44);
   int finer = 0;
