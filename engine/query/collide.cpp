@@ -24,6 +24,11 @@ void check_world(const LrbRep& rep, const Pose& pose, char name) {
   }
 }
 
+/// A number that is not finite, less itself, is no number, nor is any sum with it.
+bool is_finite(const Pose& p) {
+  return (p.r - p.r).sum() + (p.t - p.t).sum() == 0;
+}
+
 bool is_flat(const Pose& p) {
   return p.r(0, 2) == 0 && p.r(1, 2) == 0 && p.r(2, 0) == 0 && p.r(2, 1) == 0 && p.t.z() == 0;
 }
@@ -35,7 +40,7 @@ void check_query(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pos
     throw InputError("a " + std::to_string(a.dim()) + "D body cannot meet a " + std::to_string(b.dim()) +
                      "D body; give two of the same dimension");
   for (const Pose* p : {&pose_a, &pose_b}) {
-    if (!p->r.allFinite() || !p->t.allFinite())
+    if (!is_finite(*p))
       throw InputError("a pose has a number that is not finite; give twelve finite numbers");
     if (a.dim() == 2 && !is_flat(*p))
       throw InputError(
