@@ -139,7 +139,7 @@ std::vector<NumberMethod> own_number_methods() {
                          {"lrbscope, yes or no: that near?", "#0072b2", "rectRounded", 15}, within),
                     "within", {0.05}),
           with_knob(ours(Quantity::first_contact, "lrbscope, first contact", our_first_contact), "tolerance",
-                    {0.01, 1e-3, 1e-6, 1e-9, 1e-12}),
+                    {1e-6, 1e-9, 1e-12}),
           ours(Quantity::depth, "lrbscope, clash", our_depth),
           sampled_method(10),
           sampled_method(100),
