@@ -48,18 +48,34 @@ inline constexpr double kPartingMargin = 0x1p-42, kMostPartingMargin = 0x1p-6;
 /// Largest world coordinate up to which translations are tried: beyond it they could overflow.
 inline constexpr double kLargestMoved = 0x1p1020;
 /// Where to look for the shortest way out of bodies that are not convex. Nothing is proved by these, they only say how long
-/// it is looked for: directions nearer than 0.6 degrees count as one (kSameDirection: the cosine), at most so many are
-/// told apart, and so many tried; in each, so many lengths; the best one is turned by ever less.
-inline constexpr double kSameDirection = 0.99995;
-inline constexpr unsigned kMostDirections = 2000, kDirectionsInContact = 32, kDirectionsOfFaces = 16;
+/// it is looked for: directions whose coordinates round to the same multiples of 1 / kDirectionGrid, about 0.6 degrees,
+/// count as one, and so many are tried; in each, so many lengths; the best one is turned by ever less.
+inline constexpr double kDirectionGrid = 100;
+inline constexpr unsigned kDirectionsInContact = 32, kDirectionsOfFaces = 16;
 inline constexpr int kDirectionSamples = 16, kWaySamples = 128;
 inline constexpr double kDirectionGain = 0x1p-20;
 inline constexpr double kFirstTurn = 0.2, kLeastTurn = 1e-5, kTurnGain = 0x1p-6;
 inline constexpr unsigned kMostSteps = 200;
-/// Where to look for the point that lies deepest in both bodies: points of a grid, so many each way; then steps, until they
-/// are this share of its clearance. A point counts as deeper if it is so by more than rounding (kClearlyMore).
-inline constexpr int kStartGrid = 6;
+/// Where to look for the point that lies deepest in both bodies: points of a grid, so many each way, or twice and four
+/// times as many if none of them lies in both; then steps, until they are this share of its clearance. A point counts as
+/// deeper if it is so by more than rounding (kClearlyMore).
+inline constexpr int kStartGrid = 6, kFinestStartGrid = 24;
 inline constexpr double kStartStep = 0x1p-6, kClearlyMore = 1e-9;
+/// What clearances are less than distances, in units: 10 u for the product that bounds them, kUnitRounding in each
+/// coordinate of the triangle; and what room two balls must have beyond the translation that they stand for, for the
+/// rounding of their middles. Smaller than 2^-49: unproved.
+inline constexpr double kClearanceMargin = 0x1p-46, kRoomMargin = 0x1p-46;
+/// How long it is tried to prove that bodies overlap after short translations: until the lower end is this share of the
+/// upper one, or so many points have been looked at, in so many parts. Larger: narrower depths.
+inline constexpr double kNarrowDepth = 0.99;
+inline constexpr unsigned kMostRoomPoints = 12000, kRoomLooks = 24;
+/// Where to look for a point with room enough for a cube of translations; nothing is proved by these. Points of that many
+/// cubes nearby that were proved are begun with. Where that gives less than kNearlyEnough of the room needed, the cube is
+/// rather divided than looked at more closely; but not a cube that is smaller than kSmallCube of what is missing to the
+/// upper end: for it, points of 2 kOtherSeeds others are tried, too. Steps to more room are not tried below
+/// kLeastClimb of the room needed, nor cubes below kLeastCube.
+inline constexpr unsigned kSeeds = 3, kOtherSeeds = 8;
+inline constexpr double kNearlyEnough = 0.5, kSmallCube = 0x1p-3, kLeastClimb = 0x1p-4, kLeastCube = 0x1p-30;
 /// How often the proof of a way out goes on from another common point, and where along the way it went before.
 inline constexpr unsigned kMostWaySteps = 40;
 inline constexpr double kWayShare = 0.9;

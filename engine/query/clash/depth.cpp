@@ -1,13 +1,16 @@
 #include "engine/query/clash/depth.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <map>
 
 #include <Eigen/Geometry>
 
 #include "engine/core/clash_tolerances.hpp"
 #include "engine/core/infinity.hpp"
 #include "engine/exact/pair_contact.hpp"
+#include "engine/query/clash/overlap_proof.hpp"
 #include "engine/query/walk/relation.hpp"
 
 namespace lrb::parting {
@@ -26,12 +29,12 @@ class Directions {
     const double area = normal.stableNorm();
     if (!(area > 0)) return;
     const Vector3d n = normal / area;
-    for (auto& [known, sum] : list_)
-      if (known.dot(n) > kSameDirection) {
-        sum += area;
-        return;
-      }
-    if (list_.size() < kMostDirections) list_.push_back({n, area});
+    std::array<int, 3> cell;
+    for (int k = 0; k < 3; ++k)
+      cell[static_cast<std::size_t>(k)] = static_cast<int>(std::lround(n[k] * kDirectionGrid));
+    const auto [known, is_new] = of_cell_.try_emplace(cell, list_.size());
+    if (is_new) list_.push_back({n, 0});
+    list_[known->second].second += area;
   }
   /// Returns those of the largest areas.
   std::vector<Vector3d> largest(std::size_t count) {
@@ -44,6 +47,7 @@ class Directions {
   }
 
  private:
+  std::map<std::array<int, 3>, std::size_t> of_cell_;
   std::vector<std::pair<Vector3d, double>> list_;
 };
 
@@ -94,7 +98,7 @@ double DepthFinder::common_clearance(const Vector3d& x, const Vector3d& shift) {
   for (const Side side : {Side::a, Side::b}) {
     const std::optional<Vector3d> inside = inside_point(side, x, shift);
     if (!inside) return 0;
-    least = std::min(least, rough_clearance(bodies_.body[static_cast<int>(side)], *inside));
+    least = std::min(least, surface(side).at(*inside));
   }
   return least;
 }
@@ -124,14 +128,12 @@ Eigen::AlignedBox3d DepthFinder::common_box(const Vector3d& shift) {
 }
 
 /// Returns points from which to look for a deep one: of a grid in the box of what the bodies share.
-std::vector<Vector3d> DepthFinder::starts(const Vector3d& shift) {
+std::vector<Vector3d> DepthFinder::starts(const Eigen::AlignedBox3d& box, int grid) {
   std::vector<Vector3d> out;
-  const Eigen::AlignedBox3d box = common_box(shift);
   if (box.isEmpty()) return out;
-  for (int i = 0; i < kStartGrid * kStartGrid * kStartGrid; ++i) {
-    const Vector3d share((i % kStartGrid + 0.5) / kStartGrid,
-                         (i / kStartGrid % kStartGrid + 0.5) / kStartGrid,
-                         (i / (kStartGrid * kStartGrid) + 0.5) / kStartGrid);
+  for (int i = 0; i < grid * grid * grid; ++i) {
+    const Vector3d share((i % grid + 0.5) / grid, (i / grid % grid + 0.5) / grid,
+                         (i / (grid * grid) + 0.5) / grid);
     out.push_back(box.min() + share.cwiseProduct(box.sizes()));
   }
   return out;
@@ -140,13 +142,16 @@ std::vector<Vector3d> DepthFinder::starts(const Vector3d& shift) {
 std::optional<Vector3d> DepthFinder::deepest_common(const Vector3d& shift) {
   Vector3d best = Vector3d::Zero();
   double most = 0;
-  for (const Vector3d& x : starts(shift)) {
-    const double clearance = common_clearance(x, shift);
-    if (clearance > most * (1 + kClearlyMore)) {
-      most = clearance;
-      best = x;
+  const Eigen::AlignedBox3d box = common_box(shift);
+  for (int grid = kStartGrid; grid <= kFinestStartGrid && !(most > 0); grid *= 2)
+    for (const Vector3d& x : starts(box, grid)) {
+      const double clearance = common_clearance(x, shift);
+      if (clearance > 0 && shift.isZero(0)) common_.push_back(x);
+      if (clearance > most * (1 + kClearlyMore)) {
+        most = clearance;
+        best = x;
+      }
     }
-  }
   if (!(most > 0)) return std::nullopt;
   unsigned tries = 0;
   for (double step = most; step > kStartStep * most && tries < kMostSteps;) {
@@ -166,14 +171,21 @@ std::optional<Vector3d> DepthFinder::deepest_common(const Vector3d& shift) {
   return best;
 }
 
-std::optional<DepthFinder::Common> DepthFinder::common_sets(const Vector3d& shift) {
+const SurfaceDistance& DepthFinder::surface(Side side) {
+  const int i = static_cast<int>(side);
+  if (!surface_[i]) surface_[i].emplace(bodies_.body[i]);
+  return *surface_[i];
+}
+
+std::optional<DepthFinder::Common> DepthFinder::common_sets(const Vector3d& shift, WholeTriangles whole) {
   if (whole_[0] && whole_[1]) return Common{*whole_[0], moved(*whole_[1], shift)};
   const std::optional<Vector3d> x = deepest_common(shift);
+  if (shift.isZero(0) && x) common_.insert(common_.begin(), *x);
   if (!x) return std::nullopt;
   std::optional<ConvexPoints> sets[2];
   for (const Side side : {Side::a, Side::b}) {
     const int i = static_cast<int>(side);
-    sets[i] = whole_[i] ? whole_[i] : convex_about(bodies_.body[i], *inside_point(side, *x, shift));
+    sets[i] = whole_[i] ? whole_[i] : convex_about(bodies_.body[i], *inside_point(side, *x, shift), whole);
     if (!sets[i]) return std::nullopt;
   }
   return Common{std::move(*sets[0]), moved(std::move(*sets[1]), shift)};
@@ -257,14 +269,36 @@ void DepthFinder::refine(double& best, Vector3d& best_n) {
   }
 }
 
+/// Proves a lower end of the depth, units, of bodies that are not both convex, unless one is `known` that is nearly as
+/// long as the way out, and looks for a shorter way out where it cannot.
+double DepthFinder::raise_lower(double known, double& best, Vector3d& best_n) {
+  OverlapProof proof(surface(Side::a), surface(Side::b), [this](Side side, const Vector3d& x) {
+    return inside_point(side, x, Vector3d::Zero()).has_value();
+  });
+  if (known >= kNarrowDepth * best || !proof.begin(common_, std::min(best, kUnitReach * 0.5))) return known;
+  constexpr unsigned kPart = kMostRoomPoints / kRoomLooks;
+  for (unsigned part = 0; part < kRoomLooks && proof.lower() < kNarrowDepth * best; ++part) {
+    const unsigned looked = proof.grow(kPart);
+    grown_ += looked;
+    told_lower_ = std::max(told_lower_, bodies_.frame.length_to_world(proof.lower()));
+    const double before = best;
+    if (proof.doubtful().norm() > 0) improve(proof.doubtful().normalized(), best, best_n);
+    if (best < before) refine(best, best_n);
+    tell(best);
+    if (looked < kPart) break;
+  }
+  return std::max(known, proof.lower());
+}
+
 DepthFinder::Depth DepthFinder::depth() {
   Depth out;
   out.length.upper = kInfinity;
   const bool convex = whole_[0] && whole_[1];
-  if (const std::optional<Common> sets = common_sets(Vector3d::Zero())) {
+  double lower = 0;
+  if (const std::optional<Common> sets = common_sets(Vector3d::Zero(), WholeTriangles::no)) {
     ConvexDifference difference(sets->a, sets->b);
     find_depth(difference, kMostDepthSteps, true);
-    out.length.lower = bodies_.frame.length_to_world(difference.depth_lower());
+    lower = difference.depth_lower();
   }
   const ConvexPoints &a = bodies_.body[0].points, &b = bodies_.body[1].points;
   ConvexDifference hulls(a, b);
@@ -274,7 +308,9 @@ DepthFinder::Depth DepthFinder::depth() {
   if (!convex) {
     for (const Vector3d& n : directions()) improve(n, best, best_n);
     if (best < kInfinity) refine(best, best_n);
+    lower = raise_lower(lower, best, best_n);
   }
+  out.length.lower = bodies_.frame.length_to_world(lower);
   if (!(best < kInfinity)) return out;
   std::optional<PartingMove> move = parting_.prove(best_n, best);
   if (!move) move = parting_.prove(hulls.direction(), hulls.depth_upper());
@@ -289,7 +325,7 @@ DepthFinder::Depth DepthFinder::depth() {
 double DepthFinder::along_lower(const Vector3d& n) {
   double from = 0, lower = 0;
   for (unsigned step = 0; step < kMostWaySteps; ++step) {
-    const std::optional<Common> sets = common_sets(from * n);
+    const std::optional<Common> sets = common_sets(from * n, WholeTriangles::yes);
     if (!sets) break;
     ConvexDifference difference(sets->a, sets->b);
     difference.find_depth(kRoughDepthSteps);

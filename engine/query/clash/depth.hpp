@@ -8,6 +8,7 @@
 #include "engine/query/clash/clash.hpp"
 #include "engine/query/clash/convex_depth.hpp"
 #include "engine/query/clash/parting.hpp"
+#include "engine/query/clash/surface_distance.hpp"
 
 namespace lrb::parting {
 
@@ -36,10 +37,12 @@ class DepthFinder {
   std::optional<Vector3d> inside_point(Side side, const Vector3d& unit, const Vector3d& shift);
   std::optional<ConvexPoints> shrunken(Side side);
   Eigen::AlignedBox3d common_box(const Vector3d& shift);
-  std::vector<Vector3d> starts(const Vector3d& shift);
+  static std::vector<Vector3d> starts(const Eigen::AlignedBox3d& box, int grid);
   std::optional<Vector3d> deepest_common(const Vector3d& shift);
   double common_clearance(const Vector3d& x, const Vector3d& shift);
-  std::optional<Common> common_sets(const Vector3d& shift);
+  std::optional<Common> common_sets(const Vector3d& shift, WholeTriangles whole);
+  const SurfaceDistance& surface(Side side);
+  double raise_lower(double known, double& best, Vector3d& best_n);
   std::vector<Vector3d> directions();
   void improve(const Vector3d& n, double& best, Vector3d& best_n);
   void refine(double& best, Vector3d& best_n);
@@ -53,9 +56,11 @@ class DepthFinder {
   const UnitBodies& bodies_;
   Parting& parting_;
   BoundsTeller* teller_;
-  double told_lower_ = 0;                 ///< of the depth, world; kept where there is a teller
-  std::uint64_t grown_ = 0;               ///< steps in which hulls grew, where there is a teller
-  std::optional<ConvexPoints> whole_[2];  ///< of a body that is convex
+  double told_lower_ = 0;                      ///< of the depth, world; kept where there is a teller
+  std::uint64_t grown_ = 0;                    ///< steps in which hulls grew, where there is a teller
+  std::optional<ConvexPoints> whole_[2];       ///< of a body that is convex
+  std::optional<SurfaceDistance> surface_[2];  ///< made when first asked for
+  std::vector<Vector3d> common_;               ///< points of both bodies where they are, the deepest first
 };
 
 }  // namespace lrb::parting

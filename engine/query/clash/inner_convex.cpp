@@ -164,9 +164,10 @@ class Inflation {
       parts_.push_back({body.points[t[0]] - seed, body.points[t[1]] - seed, body.points[t[2]] - seed});
   }
 
-  std::optional<ConvexPoints> run() {
+  std::optional<ConvexPoints> run(WholeTriangles whole) {
     if (bound_by_points())
       if (std::optional<ConvexPoints> set = proved_set()) return set;
+    if (whole == WholeTriangles::no) return std::nullopt;
     half_spaces_.clear();
     return bound_by_triangles() ? proved_set() : std::nullopt;
   }
@@ -338,16 +339,8 @@ std::optional<ConvexPoints> shrunken_body(const UnitBody& body, const Vector3d& 
   return std::nullopt;
 }
 
-std::optional<ConvexPoints> convex_about(const UnitBody& body, const Vector3d& inside) {
-  return Inflation(body, inside).run();
-}
-
-double rough_clearance(const UnitBody& body, const Vector3d& x) {
-  double least = kInfinity;
-  for (const auto& t : body.triangles)
-    least = std::min(
-        least, (nearest_point(x, body.points[t[0]], body.points[t[1]], body.points[t[2]]) - x).squaredNorm());
-  return std::sqrt(least);
+std::optional<ConvexPoints> convex_about(const UnitBody& body, const Vector3d& inside, WholeTriangles whole) {
+  return Inflation(body, inside).run(whole);
 }
 
 }  // namespace lrb::parting

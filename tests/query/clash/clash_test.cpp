@@ -581,6 +581,27 @@ TEST_CASE("clash: the same solid in more faces gives the same intervals") {
   compare(shapes::l_shape(), shapes::comb(2, 2), 1e-9);
 }
 
+TEST_CASE("clash: round solids have narrow depths, the same in more faces") {
+  const Pose turned = Pose::rotation({1, 2, 3}, 0.7, {0.9, 0.5, 0.3});
+  const auto compare = [&](const Mesh& a, const Mesh& b, double least_share) {
+    const ClashResult first = ask(a, b, turned);
+    REQUIRE((first.depth && first.depth->upper > 0));
+    CHECK(first.depth->lower >= least_share * first.depth->upper);
+    Mesh fine_a = a, fine_b = b;
+    for (int level = 0; level < 2; ++level) {
+      fine_a = finer(fine_a);
+      fine_b = finer(fine_b);
+      const ClashResult r = ask(fine_a, fine_b, turned);
+      REQUIRE(r.depth);
+      CHECK(std::abs(r.depth->lower - first.depth->lower) <= 1e-9);
+      CHECK(std::abs(r.depth->upper - first.depth->upper) <= 1e-9);
+    }
+  };
+  compare(shapes::bumpy_sphere(1, 7, 0.3), shapes::bumpy_sphere(1, 8, 0.3), 0.95);
+  compare(shapes::torus(12, 8), shapes::bumpy_sphere(1, 7, 0.3), 0.9);
+  compare(shapes::torus(12, 8), shapes::torus(10, 6), 0.9);
+}
+
 TEST_CASE("clash: anywhere, at any size") {
   const LrbRep a = closed(shapes::box()), b = closed(shapes::box({0, 0, 0}, {1, 1, 1}));
   for (const double scale : {1e-100, 1e-3, 1.0, 1e60, 1e100}) {

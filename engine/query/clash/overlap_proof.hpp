@@ -1,0 +1,69 @@
+#pragma once
+/// Proves that two bodies overlap after all translations that are short enough.
+///
+/// If the open ball of radius r about x lies in A, and that of radius s about x - v in B, the interiors overlap after
+/// all translations of B that differ from v by less than r + s: B's ball then reaches into A's. Translations are divided
+/// into cubes, and those nearest to none come first: for each, a point x is looked for whose two balls are large enough
+/// for all of the cube; if none is found, it is divided into eight. All translations shorter than the nearest cube that
+/// is left have been dealt with. The less is missing to the depth, the smaller the cubes about the ways out become; their
+/// number grows as the inverse of what is missing.
+
+#include <functional>
+#include <vector>
+
+#include "engine/core/clash_tolerances.hpp"
+#include "engine/query/clash/surface_distance.hpp"
+
+namespace lrb::parting {
+
+class OverlapProof {
+ public:
+  /// Tells whether a point (units; of B where it is before any translation) lies in a body.
+  using IsInside = std::function<bool(Side, const Vector3d&)>;
+  /// Keeps references to the surfaces.
+  OverlapProof(const SurfaceDistance& a, const SurfaceDistance& b, IsInside is_inside);
+
+  /// Begins with points of both bodies, the best first, and with all translations that are shorter than `most`, which
+  /// must be less than 2 and is best little more than the depth. Returns false if no point is in both.
+  bool begin(const std::vector<Vector3d>& common, double most);
+  /// Goes on until about so many points more have been looked at, or no more can be proved. Returns how many were.
+  unsigned grow(unsigned most_points);
+  /// Returns a length: after all shorter translations of B the interiors overlap. Proved.
+  double lower() const { return lower_; }
+  /// Returns a translation near the shortest for which nothing is proved yet: there may be a way out. 0: there is none.
+  Vector3d doubtful() const { return cubes_.empty() ? Vector3d(Vector3d::Zero()) : cubes_.front().middle; }
+
+ private:
+  /// A point of both bodies, for a translation.
+  struct Common {
+    Vector3d x{0, 0, 0}, of_b{0, 0, 0}, shift{0, 0, 0};  ///< x, x - v and v
+    double clear_a = 0, clear_b = 0;                     ///< of x from A's surface, of x - v from B's
+    double room() const { return clear_a + clear_b; }
+  };
+  struct Cube {
+    double least;  ///< the length of the shortest translation in it, rounded down
+    Vector3d middle;
+    double half;
+    Common near;  ///< of a translation nearby
+  };
+  void push(const Vector3d& middle, double half, const Common& near);
+  bool look(const Vector3d& x, const Vector3d& v, const Common& near, Common& out);
+  bool is_in(Side side, const Vector3d& x, double radius, const Vector3d& known, double known_radius);
+  std::vector<Common> seeds(const Cube& cube) const;
+  bool find_room(const Cube& cube, double needed, const Common& seed, Common& best);
+  bool prove(const Cube& cube, Common& best);
+  void climb(double needed, bool thorough, Common& best);
+  static bool has_more(const Common& x, const Common& y) { return x.room() > y.room() * (1 + kClearlyMore); }
+  bool is_small(const Cube& cube) const { return cube.half < kSmallCube * (most_ - cube.least); }
+
+  const SurfaceDistance &a_, &b_;
+  IsInside is_inside_;
+  std::vector<Common>
+      found_;              ///< those to begin with, then those for the middles of the cubes that were proved
+  std::size_t first_ = 0;  ///< how many there were to begin with
+  std::vector<Cube> cubes_;  ///< a heap, the least first
+  double most_ = 0, lower_ = 0;
+  unsigned points_ = 0;
+};
+
+}  // namespace lrb::parting
