@@ -116,16 +116,21 @@ std::vector<Points> lids_of(const LrbRep& rep, RegionId r) {
   return out;
 }
 
-/// The largest distance among points in a pattern of `parts` to a side.
+/// Returns the largest distance from the surface that is found on a region's lids, at points no further apart than a `parts`th of
+/// a lid's side, nor than a hundredth of the body's.
 double sampled_thickness(const LrbRep& rep, RegionId r, const Surface& surface, int parts) {
   double most = 0;
-  for (const Points& t : lids_of(rep, r))
-    for (int i = 0; i <= parts; ++i)
-      for (int j = 0; j <= (t.size() == 3 ? parts - i : 0); ++j) {
-        Vector3d p = t[0] + (t[1] - t[0]) * i / parts;
-        if (t.size() == 3) p += (t[2] - t[0]) * j / parts;
+  for (const Points& t : lids_of(rep, r)) {
+    double side = 0;
+    for (std::size_t k = 0; k < t.size(); ++k) side = std::max(side, (t[(k + 1) % t.size()] - t[k]).norm());
+    const int n = std::max(parts, static_cast<int>(100 * side / surface.size()));
+    for (int i = 0; i <= n; ++i)
+      for (int j = 0; j <= (t.size() == 3 ? n - i : 0); ++j) {
+        Vector3d p = t[0] + (t[1] - t[0]) * i / n;
+        if (t.size() == 3) p += (t[2] - t[0]) * j / n;
         most = std::max(most, surface.distance(p));
       }
+  }
   return most;
 }
 
