@@ -4,6 +4,8 @@
 #include <array>
 #include <limits>
 
+#include <Eigen/Geometry>
+
 #include "engine/construct/aabb_tree.hpp"
 #include "engine/construct/chain_cap.hpp"
 #include "engine/construct/complex_builder.hpp"

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include <Eigen/Geometry>
+
 #include "engine/core/cross_2d.hpp"
 #include "engine/core/tolerances.hpp"
 #include "engine/exact/locate.hpp"

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include <Eigen/Geometry>
+
 #include "engine/exact/predicates.hpp"
 #include "engine/exact/simplex_test.hpp"
 #include "engine/mesh/point_inside.hpp"

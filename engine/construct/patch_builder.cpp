@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <optional>
 
+#include <Eigen/Geometry>
+
 #include "engine/construct/aabb_tree.hpp"
 #include "engine/construct/body_bounds.hpp"
 #include "engine/construct/bridging.hpp"

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include <Eigen/Geometry>
+
 #include "engine/core/tolerances.hpp"
 
 namespace lrb::construct {

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <map>
 
+#include <Eigen/Geometry>
+
 #include "engine/exact/locate.hpp"
 
 namespace lrb {

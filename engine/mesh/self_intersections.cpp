@@ -6,6 +6,8 @@
 #include <map>
 #include <optional>
 
+#include <Eigen/Geometry>
+
 #include "engine/exact/orient_axes.hpp"
 #include "engine/exact/predicates.hpp"
 #include "engine/exact/simplex_test.hpp"

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numeric>
 
+#include <Eigen/Geometry>
+
 namespace lrb {
 namespace {
 

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include <Eigen/Geometry>
+
 #include "engine/core/infinity.hpp"
 #include "engine/core/tolerances.hpp"
 #include "engine/tree/pose_bounds.hpp"

@@ -5,6 +5,8 @@
 #include <limits>
 #include <numeric>
 
+#include <Eigen/Geometry>
+
 #include "engine/core/clash_tolerances.hpp"
 #include "engine/mesh/nearest_on_simplex.hpp"
 

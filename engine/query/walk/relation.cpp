@@ -5,6 +5,8 @@
 #include <limits>
 #include <type_traits>
 
+#include <Eigen/Geometry>
+
 #include "engine/core/tolerances.hpp"
 #include "engine/exact/locate.hpp"
 #include "engine/tree/pose_bounds.hpp"
