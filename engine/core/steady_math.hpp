@@ -50,11 +50,10 @@ inline Eigen::Matrix3d rotation(const Eigen::Vector3d& axis, double angle) {
 /// Returns the smallest turn that brings the direction of one vector to that of another; neither may be 0. The same as
 /// Eigen's FromTwoVectors() unless they are opposite, without the singular values for which the compiler takes seconds.
 inline Eigen::Quaterniond turn_between(const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
-  constexpr double kOpposite = 1e-12;
   const Eigen::Vector3d a = from.normalized(), b = to.normalized();
   const double c = b.dot(a);
   Eigen::Quaterniond q;
-  if (c < -1 + kOpposite) {
+  if (c < -1 + Eigen::NumTraits<double>::dummy_precision()) {
     q.vec() = a.unitOrthogonal();
     q.w() = 0;
     return q;

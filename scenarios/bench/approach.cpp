@@ -1,6 +1,7 @@
 #include "scenarios/bench/approach.hpp"
 
 #include "engine/query/collide_impl.hpp"
+#include "scenarios/bench/first_meeting.hpp"
 
 namespace lrb::bench {
 
@@ -24,12 +25,9 @@ Approach Approaches::next(double depth) {
       out.pose.t = middle + s * out.direction;
       return meets(out.pose);
     };
-    constexpr int kHalvings = 40;
-    double at = 2 * diagonal_, step = 0.004 * diagonal_;
-    while (at > 0 && !meets_at(at)) at -= step;
-    if (at <= 0) continue;
-    for (int i = 0; i < kHalvings; ++i) (meets_at(at + (step /= 2)) ? at += step : at);
-    out.pose.t = middle + (at - depth * diagonal_) * out.direction;
+    const auto at = first_meeting(2 * diagonal_, 0, 0.004 * diagonal_, meets_at);
+    if (!at) continue;
+    out.pose.t = middle + (*at - depth * diagonal_) * out.direction;
     return out;
   }
 }

@@ -60,7 +60,7 @@ struct BodyFile {
   double build_seconds = 0;
 };
 
-/// Doubles that hold a number; a first contact that there is none of is at 2.
+/// Doubles that hold a number; a first contact that there is none of is at kNever.
 struct KnownNumber {
   double least = 0, most = 0;
 };

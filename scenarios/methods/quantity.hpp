@@ -21,4 +21,7 @@ constexpr auto words_of(Quantity) {
                                             {Quantity::depth, "depth"}});
 }
 
+/// What is said of a first contact if there is none: motions end at 1.
+inline constexpr double kNever = 2;
+
 }  // namespace lrb::methods

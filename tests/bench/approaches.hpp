@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "engine/query/collide_impl.hpp"
+#include "scenarios/bench/first_meeting.hpp"
 #include "scenarios/bodies/shapes/random_pose.hpp"
 
 namespace lrb::bench {
@@ -34,11 +35,9 @@ inline std::vector<Approach> approaches(const LrbRep& a, const LrbRep& b, double
       p.t = s * d;
       return !collide(a, Pose{}, b, p, first, context, probe).pairs.empty();
     };
-    double near = 2 * diagonal, step = 0.005 * diagonal;
-    while (near > -2 * diagonal && !meets(near)) near -= step;
-    if (near <= -2 * diagonal) continue;
-    for (int i = 0; i < 40; ++i) (meets(near + (step /= 2)) ? near += step : near);
-    p.t = near * d;
+    const auto at = first_meeting(2 * diagonal, -2 * diagonal, 0.005 * diagonal, meets);
+    if (!at) continue;
+    p.t = *at * d;
     list.push_back({p, d});
   }
   return list;

@@ -58,9 +58,9 @@ class OverlapProof {
 
   const SurfaceDistance &a_, &b_;
   IsInside is_inside_;
-  std::vector<Common>
-      found_;              ///< those to begin with, then those for the middles of the cubes that were proved
-  std::size_t first_ = 0;  ///< how many there were to begin with
+  /// Those to begin with, then those for the middles of the cubes that were proved.
+  std::vector<Common> found_;
+  std::size_t first_ = 0;    ///< the number of those to begin with
   std::vector<Cube> cubes_;  ///< a heap, the least first
   double most_ = 0, lower_ = 0;
   unsigned points_ = 0;

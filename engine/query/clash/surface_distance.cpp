@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numeric>
 
 #include <Eigen/Geometry>
 
 #include "engine/core/clash_tolerances.hpp"
+#include "engine/core/infinity.hpp"
 #include "engine/mesh/nearest_on_simplex.hpp"
 
 namespace lrb::parting {
@@ -63,7 +63,7 @@ double SurfaceDistance::bound(std::uint32_t triangle, const Vector3d& x) const {
 }
 
 double SurfaceDistance::at(const Vector3d& x) const {
-  double least = std::numeric_limits<double>::infinity();
+  double least = kInfinity;
   struct Waiting {
     std::uint32_t node;
     double distance;

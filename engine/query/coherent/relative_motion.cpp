@@ -8,6 +8,7 @@
 
 #include "engine/core/tolerances.hpp"
 #include "engine/tree/pose_bounds.hpp"
+#include "engine/tree/turn_bound.hpp"
 
 namespace lrb {
 namespace {
@@ -22,8 +23,6 @@ constexpr double kDeviation = 0.25;
 /// For a sweep, in steps: how much longer it is than its steps at either end, and how wide it is at least;
 /// and how many times as wide it is as B is off it now, because the motion bends as much at the other end.
 constexpr double kBeyondEnd = 0.125, kLeastWidth = 1.0 / 16, kSpareWidth = 1.25;
-/// The factor on defects for going from matrices to the rotations near them; at least 1 + sqrt(3 / 2).
-constexpr double kToRotations = 2.3;
 
 /// Returns the motion that takes B from one pose to the other, on A's axes: x -> m x + t.
 RelativePose motion_between(const RelativePose& from, const RelativePose& to) {
@@ -67,8 +66,7 @@ double RelativeMotion::farthest(const Matrix3d& dm, const Vector3d& dt, double t
 
 double RelativeMotion::motion(const RelativePose& from, const RelativePose& to) const {
   const Matrix3d dm = to.m - from.m;
-  const double turn = std::sqrt(dm.squaredNorm() / 2) + kToRotations * (from.defect + to.defect);
-  return farthest(dm, to.t - from.t, turn);
+  return farthest(dm, to.t - from.t, turn_bound(dm, from.defect + to.defect));
 }
 
 double RelativeMotion::step() const {

@@ -3,10 +3,7 @@
 /// point of B has moved, and where B will be if it goes on like this.
 ///
 /// With (m, t) as in set_up_kernel(), the points of B on A's axes are m x + t. From one pose to another they
-/// move by at most |dm c + dt| + |dm| R, where c and R are the middle and the radius of B. Between rotations,
-/// |dm|^2 is half the sum of the squares of dm's entries. An m with |m^T m - 1| <= D is within D of a
-/// rotation: between two such matrices, |dm| is at most what it would be between rotations, computed from dm
-/// itself, plus 2.3 times the sum of both D.
+/// move by at most |dm c + dt| + |dm| R, where c and R are the middle and the radius of B; turn_bound() bounds |dm|.
 ///
 /// For parts of a motion, which are not between rotations, the same holds with the root of the sum of all
 /// squares.

@@ -2,28 +2,22 @@
 /// in the world, and w' the same at the next pose,
 ///     w' - Q w = (R_B' - Q R_B) y + (t_B' - t_A') - Q (t_B - t_A) + (Q R_A - R_A') x,
 /// and the last term is at most |R_A'| |R_A^T R_A - 1| |x|. With D = R_B' - Q R_B, c the middle of B and r its radius,
-/// the others are at most |D c + d| + |D| r. Between rotations |D|^2 is half the sum of the squares of its entries; how
-/// much more it may be where they are not quite rotations, relative_motion.hpp says. |Q w| is |w| but for
+/// the others are at most |D c + d| + |D| r; turn_bound() bounds |D|. |Q w| is |w| but for
 /// |Q^T Q - 1| |w|. All that is computed is rounded by a few u = 2^-53 times the sizes of world coordinates, and these
 /// by 4 u at either pose: 128 u of the sum of all sizes is more.
 
 #include "engine/query/distance/nearer_by.hpp"
 
 #include <cmath>
-#include <limits>
 
 #include <Eigen/LU>
 
+#include "engine/core/infinity.hpp"
 #include "engine/core/tolerances.hpp"
 #include "engine/tree/pose_bounds.hpp"
+#include "engine/tree/turn_bound.hpp"
 
 namespace lrb {
-namespace {
-
-/// At least 1 + sqrt(3 / 2): see relative_motion.hpp.
-constexpr double kToRotations = 2.3;
-
-}  // namespace
 
 double nearer_by(const LrbRep& a, const LrbRep& b, const PosePair& from, const PosePair& to, double reach) {
   const Eigen::Matrix3d turn = to.a.r * from.a.r.transpose();
@@ -31,19 +25,19 @@ double nearer_by(const LrbRep& a, const LrbRep& b, const PosePair& from, const P
   const double defect_a = rotation_defect(from.a.r) + rotation_defect(to.a.r);
   const double defect_b = rotation_defect(was) + rotation_defect(to.b.r);
   if (!(defect_a <= kRigid && defect_b <= kRigid) || !(was.determinant() * to.b.r.determinant() > 0))
-    return std::numeric_limits<double>::infinity();
+    return kInfinity;
   const TreeNode& root = b.tree().nodes()[0];
   const double unit = b.tree().unit();
   const Eigen::Vector3d middle = Eigen::Vector3d(root.origin[0], root.origin[1], root.origin[2]) * unit;
   const Eigen::Vector3d shift = (to.b.t - to.a.t) - turn * (from.b.t - from.a.t);
-  const double turned = std::sqrt(d.squaredNorm() / 2) + kToRotations * defect_b;
+  const double turned = turn_bound(d, defect_b);
   const double moved = (d * middle + shift).norm() + turned * static_cast<double>(root.radius) * unit;
   const double of_a = 2 * defect_a * std::sqrt(3.0) * a.tree().extent();
   const double stretched = 2 * (defect_a + kWorldRounding) * reach;
   const double sizes = world_size(from.a, a.tree()) + world_size(to.a, a.tree()) +
                        world_size(from.b, b.tree()) + world_size(to.b, b.tree()) + kWorldUnderflow;
   const double by = (moved + of_a + stretched) * (1 + kWorldRounding) + 4 * kWorldRounding * sizes;
-  return std::isfinite(by) ? by : std::numeric_limits<double>::infinity();
+  return std::isfinite(by) ? by : kInfinity;
 }
 
 }  // namespace lrb

@@ -40,7 +40,6 @@ constexpr Metric kAll[kMetrics] = {Metric::contact,    Metric::precision, Metric
                                    Metric::off,        Metric::length,    Metric::area,     Metric::centroid,
                                    Metric::normal,     Metric::depth,     Metric::distance, Metric::time,
                                    Metric::penetration};
-constexpr double kNever = 2;  // a first contact that there is none of
 
 std::optional<double>& at(Errors& e, Metric m) {
   return e[static_cast<std::size_t>(m)];
@@ -97,7 +96,7 @@ Errors errors_of_number(const DataSet& set, const Question& q, const Record& r) 
   if (r.outcome != Outcome::answered || !r.all.upper || !q.number) return e;
   const double x = *r.all.upper;
   const bool is_time = set.quantity == Quantity::first_contact;
-  if (is_time && (x >= kNever) != (q.number->least >= kNever)) return e;
+  if (is_time && (x >= methods::kNever) != (q.number->least >= methods::kNever)) return e;
   const double off = std::max({0.0, q.number->least - x, x - q.number->most}) / unit_of(set);
   at(e, metric) = std::min(metric_info(metric).worst, off);
   return e;

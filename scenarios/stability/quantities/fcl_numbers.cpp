@@ -17,7 +17,6 @@ namespace lrb::stability {
 namespace {
 
 using methods::Stopwatch;
-using Setting = std::optional<double>;
 
 template <class Volume>
 fcl::BVHModel<Volume> model_of(const LrbRep& rep, const Eigen::Vector3d& by = {0, 0, 0}) {
@@ -104,12 +103,6 @@ NumberMethod fcl_sweep(const char* name, const char* what, const char* remark, f
                                                steps ? static_cast<std::size_t>(*steps) : iterations);
       },
       std::move(style));
-}
-
-NumberMethod with_knob(NumberMethod m, const char* knob, std::vector<double> settings) {
-  m.info.knob = knob;
-  m.info.settings = std::move(settings);
-  return m;
 }
 
 }  // namespace

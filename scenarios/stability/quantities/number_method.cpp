@@ -25,6 +25,12 @@ bool is_special(Quantity quantity, double least, double most) {
 
 }  // namespace
 
+NumberMethod with_knob(NumberMethod m, const char* knob, std::vector<double> settings) {
+  m.info.knob = knob;
+  m.info.settings = std::move(settings);
+  return m;
+}
+
 std::vector<NumberMethod> number_methods() {
   std::vector<NumberMethod> all = own_number_methods();
   for (NumberMethod& m : fcl_number_methods()) all.push_back(std::move(m));

@@ -16,15 +16,20 @@ struct NumberAnswer {
   double microseconds = 0;      ///< the time of the query alone
 };
 
+/// Of a method's knob; none: as it is asked where methods must be right.
+using Setting = std::optional<double>;
+
 /// A method for one quantity.
 struct NumberMethod {
   methods::MethodInfo info;
   Quantity quantity = Quantity::distance;
   bool proves = false;  ///< its interval is to hold the number
-  /// `setting`: of the method's knob; none: as it is asked where methods must be right. Throws InputError if it has no
-  /// answer, which counts as a refusal.
-  std::function<NumberAnswer(const Asked&, std::optional<double> setting)> ask;
+  /// Throws InputError if it has no answer, which counts as a refusal.
+  std::function<NumberAnswer(const Asked&, Setting)> ask;
 };
+
+/// Returns a method with a knob, and its settings from coarse to fine.
+NumberMethod with_knob(NumberMethod m, const char* knob, std::vector<double> settings);
 
 /// Returns ours, exact queries at equal times, and those of the engines that were there at build time.
 std::vector<NumberMethod> number_methods();

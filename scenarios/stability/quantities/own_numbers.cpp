@@ -12,7 +12,6 @@ namespace lrb::stability {
 namespace {
 
 using methods::Stopwatch;
-using Setting = std::optional<double>;
 
 Motion motion_of(const Asked& q) {
   return Motion::linear(Pose::translation(q.from), q.to);
@@ -90,13 +89,6 @@ NumberMethod ours(Quantity quantity, const char* title, NumberAnswer (*ask)(cons
   m.quantity = quantity;
   m.proves = true;
   m.ask = ask;
-  return m;
-}
-
-/// Gives a method a knob, with settings from coarse to fine.
-NumberMethod with_knob(NumberMethod m, const char* knob, std::vector<double> settings) {
-  m.info.knob = knob;
-  m.info.settings = std::move(settings);
   return m;
 }
 

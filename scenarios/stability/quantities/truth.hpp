@@ -7,8 +7,7 @@
 
 namespace lrb::stability {
 
-/// What is said of a first contact if there is none.
-inline constexpr double kNever = 2;
+using methods::kNever;
 
 Expected true_number(Quantity quantity, const cases::Case& c);
 
