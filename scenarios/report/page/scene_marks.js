@@ -76,11 +76,7 @@ class Marks {
   }
 
   clear(name) {
-    for (const { group, object } of (this.shown.get(name) || { parts: [] }).parts) {
-      group.remove(object);
-      object.geometry.dispose();
-      object.material.dispose();
-    }
+    for (const { group, object } of (this.shown.get(name) || { parts: [] }).parts) discard(group, object);
     this.shown.delete(name);
   }
 }

@@ -21,11 +21,7 @@ class MeasuredMarks {
       now = this.ofStep.get(events.stepNumber(selection.event)) || null;
     if (now === this.shown) return;
     this.shown = now;
-    for (const object of this.group.children.slice()) {
-      this.group.remove(object);
-      object.geometry.dispose();
-      object.material.dispose();
-    }
+    for (const object of this.group.children.slice()) discard(this.group, object);
     if (now) {
       const colour = now.wayOut ? colours.wayOut : colours.ink;
       this.addLines(now.wayOut ? arrowOf(now.from, now.to, events.dim) : [now.from, now.to], colour);

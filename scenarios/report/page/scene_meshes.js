@@ -127,6 +127,13 @@ function edgesOf(body, faces, rim = false) {
   return out;
 }
 
+/** Takes an object out of its group, and frees what the graphics card holds of it. */
+function discard(group, object) {
+  group.remove(object);
+  object.geometry.dispose();
+  object.material.dispose();
+}
+
 /** Returns lines one pixel wide along edges. */
 function thinLines(body, edges, material) {
   const geometry = new THREE.BufferGeometry();

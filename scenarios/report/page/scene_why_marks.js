@@ -94,11 +94,7 @@ class WhyMarks {
 
   clear() {
     this.view.legend.also([], "why");
-    for (const object of this.group.children.slice()) {
-      this.group.remove(object);
-      object.geometry.dispose();
-      object.material.dispose();
-    }
+    for (const object of this.group.children.slice()) discard(this.group, object);
   }
 }
 
