@@ -26,7 +26,8 @@ void check(cairo_status_t status) {
     throw EnvironmentError(std::string("cairo cannot paint this picture: ") + cairo_status_to_string(status));
 }
 
-/// A font's file as cairo takes it. FreeType's handles live as long as the process: cairo caches what it makes of them.
+/// A font's file as cairo takes it. FreeType's handles live as long as the process: cairo caches what it
+/// makes of them.
 cairo_font_face_t* load_font(bool bold) {
   static const FT_Library library = [] {
     FT_Library made = nullptr;

@@ -1,5 +1,6 @@
 #pragma once
-/// Canvases that become PDF or pixels, by cairo. Text is written with the fonts of text.hpp, which a PDF holds.
+/// Canvases that become PDF or pixels, by cairo. Text is written with the fonts of text.hpp, which a PDF
+/// holds.
 
 #include <functional>
 #include <optional>
@@ -18,8 +19,8 @@ struct PaperPage {
   std::string creator;                      ///< the same: the program
 };
 
-/// Returns what `paint` paints, in points, as the bytes of a PDF. They do not tell when they were made, so that they are the
-/// same each time. Throws EnvironmentError.
+/// Returns what `paint` paints, in points, as the bytes of a PDF. They do not tell when they were made, so
+/// that they are the same each time. Throws EnvironmentError.
 std::string paint_pdf(const PaperPage& page, const std::function<void(Canvas&)>& paint);
 
 /// Returns the same in pixels, `dpi` of them to an inch; sizes are rounded up to whole ones.

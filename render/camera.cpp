@@ -92,8 +92,8 @@ Camera fit_camera(std::span<const Vector3d> points, double width, double height,
   check_points(points);
   if (!(options.view.from.squaredNorm() > 0)) throw InputError("a camera's direction must not be zero");
   const Matrix3d axes = axes_of(-options.view.from, options.view.up);
-  Vector3d origin = Vector3d::
-      Zero();  // points are measured from their middle, to keep digits when they are far from the origin
+  Vector3d origin = Vector3d::Zero();  // points are measured from their middle, to keep digits when they are
+                                       // far from the origin
   Eigen::AlignedBox3d box;
   for (const Vector3d& p : points) box.extend(p);
   origin = box.center();

@@ -1,6 +1,6 @@
 #pragma once
-/// Paper to paint on, whatever file it becomes: SVG (svg_canvas.hpp), PDF or pixels (cairo_canvas.hpp). Whoever paints
-/// does not know which. Lengths are in the paper's own units, x to the right, y down.
+/// Paper to paint on, whatever file it becomes: SVG (svg_canvas.hpp), PDF or pixels (cairo_canvas.hpp).
+/// Whoever paints does not know which. Lengths are in the paper's own units, x to the right, y down.
 
 #include <string>
 #include <vector>

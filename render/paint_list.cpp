@@ -17,8 +17,9 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-/// How Rasterizer::draw() shows the hidden part of lines and points on top (shaders.hpp): this share of the width, dashes as
-/// long as so many half widths, rings with this share of the radius to their middle and with such a width.
+/// How Rasterizer::draw() shows the hidden part of lines and points on top (shaders.hpp): this share of the
+/// width, dashes as long as so many half widths, rings with this share of the radius to their middle and with
+/// such a width.
 constexpr double kGhostWidth = 0.6, kGhostDash = 5, kRingRadius = 0.8, kRingWidth = 0.4;
 /// What is hidden or seen for less than so many pixels of depths is not told from what is around it.
 constexpr double kLeastRun = 1.5;

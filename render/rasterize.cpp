@@ -284,7 +284,8 @@ struct Rasterizer::State {
     return downsample(samples, options.width, options.height, n);
   }
 
-  /// Begins a pass in which each pixel is that of one face, for its id or its depth. The target must live as long.
+  /// Begins a pass in which each pixel is that of one face, for its id or its depth. The target must live as
+  /// long.
   std::pair<ScreenMesh, Target> begin_faces(const DrawList& list, const Camera& camera, int w, int h) {
     check_size(w, h);
     context.make_current();

@@ -31,7 +31,8 @@ struct IdImage {
   std::uint32_t at(int x, int y) const { return ids[static_cast<std::size_t>(y) * width + x]; }
 };
 
-/// The depth of what is seen at each pixel, row by row from the top, in [-1, 1] as Projection::to_screen() has it.
+/// The depth of what is seen at each pixel, row by row from the top, in [-1, 1] as Projection::to_screen()
+/// has it.
 struct DepthImage {
   int width = 0, height = 0;
   std::vector<float> depths;  ///< 1 where there is nothing

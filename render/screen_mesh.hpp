@@ -73,8 +73,8 @@ struct Lighting {
 Rgba shade(Rgba colour, const Eigen::Vector3d& normal, const Eigen::Matrix3d& axes, const Lighting& lighting);
 
 /// Makes the screen mesh. `scale` is the number of device pixels per pixel of the final image
-/// (supersampling); `projection` is in device pixels. `even_edges`: edges fade where faces are small by style, not place by
-/// place.
+/// (supersampling); `projection` is in device pixels. `even_edges`: edges fade where faces are small by
+/// style, not place by place.
 ScreenMesh make_screen_mesh(const DrawList& list, const Projection& projection, double scale,
                             const Lighting& lighting = {}, bool even_edges = false);
 

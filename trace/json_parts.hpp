@@ -13,8 +13,8 @@ void write_json(JsonWriter& w, const Counters& counters);
 void write_json(JsonWriter& w, const CollideRequest& request);
 /// Writes {"faces", "refined"}, each for A and B.
 void write_json(JsonWriter& w, const Separation& separation);
-/// Writes "course", how bounds tightened: a list of [work, lower, upper], or of [work, t0, t1, lower, upper]; what is
-/// infinite, as null.
+/// Writes "course", how bounds tightened: a list of [work, lower, upper], or of [work, t0, t1, lower, upper];
+/// what is infinite, as null.
 void write_course(JsonWriter& w, const std::vector<Bounds>& course);
 void write_course(JsonWriter& w, const std::vector<ContactBounds>& course);
 void write_json(JsonWriter& w, const MeasuredDistance& m);

@@ -1,6 +1,7 @@
 #pragma once
-/// What is kept of further questions about a step: how far apart the bodies are, what kind of contact they have, and how
-/// the bounds tightened while that was found out; and of the search for the first contact of a whole motion.
+/// What is kept of further questions about a step: how far apart the bodies are, what kind of contact they
+/// have, and how the bounds tightened while that was found out; and of the search for the first contact of a
+/// whole motion.
 
 #include <array>
 #include <optional>

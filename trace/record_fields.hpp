@@ -1,7 +1,7 @@
 #pragma once
 /// The tables of fields of the records that traces, scenarios and golden runs hold. From them come
-/// first_divergence(), the JSON of traces and summaries in both directions, the keys of a scenario's query and
-/// the options of the same names; a test compares them with the published schemas.
+/// first_divergence(), the JSON of traces and summaries in both directions, the keys of a scenario's query
+/// and the options of the same names; a test compares them with the published schemas.
 
 #include "engine/core/fields.hpp"
 #include "engine/query/collide.hpp"

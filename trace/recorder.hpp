@@ -137,9 +137,9 @@ class Recorder final : public CollideProbe {
   std::uint64_t events_seen() const { return seen_; }
   std::uint64_t events_stored() const { return trace_.events.size(); }
 
-  /// Replays what was recorded to fill in Event::boundary and where pairs of nodes ended, and hands the trace over. The recorder is then
-  /// empty and can begin another run with the same settings. Throws std::logic_error if there were events
-  /// before the first step.
+  /// Replays what was recorded to fill in Event::boundary and where pairs of nodes ended, and hands the trace
+  /// over. The recorder is then empty and can begin another run with the same settings. Throws
+  /// std::logic_error if there were events before the first step.
   Trace take();
 
  private:

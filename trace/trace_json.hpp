@@ -5,14 +5,15 @@
 ///
 /// A trace of queries looks so there: one process with the threads "time steps", "face tests", "wrapper A",
 /// "wrapper B" and "answer", and from EventLevel::nodes on "phases" and "tree walk".
-/// - Every event is a slice (ph X): a step, named by what it found, spans its events, and so does a phase; the others
-///   lie side by side. On the event clock, event i is [i, i + 1); on the wall clock (microseconds) it reaches from the
-///   event before to this one, that is, over the time it took.
+/// - Every event is a slice (ph X): a step, named by what it found, spans its events, and so does a phase;
+///   the others lie side by side. On the event clock, event i is [i, i + 1); on the wall clock (microseconds)
+///   it reaches from the event before to this one, that is, over the time it took.
 /// - Counters (ph C) hold numbers of the step so far: "wrapper" at each change (faces of A and B,
-///   refinements), at every 16th event "work" (face tests, contacts) and, from EventLevel::nodes on, "pending" (node
-///   pairs and face tests that are known and not done).
-/// - Flows (ph s, f; their id is the number of the event that they lead to) lead from the refinement that showed a
-///   face to each of its tests, and in the paper's recursions from the face test that caused a refinement to that.
+///   refinements), at every 16th event "work" (face tests, contacts) and, from EventLevel::nodes on,
+///   "pending" (node pairs and face tests that are known and not done).
+/// - Flows (ph s, f; their id is the number of the event that they lead to) lead from the refinement that
+///   showed a face to each of its tests, and in the paper's recursions from the face test that caused a
+///   refinement to that.
 ///
 /// A construction has the threads "construction", "passes", named by what they made, "patches and caps" and
 /// "hull", and the counter "hull" (faces, regions).

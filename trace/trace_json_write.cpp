@@ -416,8 +416,8 @@ class TraceWriter {
     out_.raw(",\"args\":{}}");
   }
 
-  /// Returns true if an arrow leads to an event from its cause: to each face test from the refinement that showed its
-  /// face, and to a refinement from the test that caused it.
+  /// Returns true if an arrow leads to an event from its cause: to each face test from the refinement that
+  /// showed its face, and to a refinement from the test that caused it.
   bool has_arrow(const Event& e) const {
     if (e.cause == kNull) return false;
     const EventKind cause = t_.events[e.cause].kind;
@@ -537,8 +537,8 @@ class TraceWriter {
     out_.raw("}}");
   }
 
-  /// Writes how bounds tightened, spread by the work that it took over the half of an event's slice that begins at
-  /// `begin`.
+  /// Writes how bounds tightened, spread by the work that it took over the half of an event's slice that
+  /// begins at `begin`.
   void write_course(std::string_view name, EventId i, double begin, const std::vector<Bounds>& course) {
     for (const Bounds& b : course) {
       const double all = static_cast<double>(course.back().work) + 1;

@@ -1,5 +1,6 @@
 #pragma once
-/// The shape of a tree over a body's simplices, ours or another engine's: all that is needed to say where work went.
+/// The shape of a tree over a body's simplices, ours or another engine's: all that is needed to say where
+/// work went.
 
 #include <array>
 #include <cstdint>
@@ -26,11 +27,12 @@ class TreeShape {
   /// The shape of one of our trees.
   explicit TreeShape(const ObbTree& tree);
 
-  /// Adds a node, the root first; its number is that of nodes before it. Leaves have simplices, all others children,
-  /// which may be added later.
+  /// Adds a node, the root first; its number is that of nodes before it. Leaves have simplices, all others
+  /// children, which may be added later.
   void add(std::span<const std::uint32_t> children, std::span<const SimplexId> simplices,
            const ShapeBox& box);
-  /// Finds depths and what lies beneath, when all nodes are there. Throws std::invalid_argument if they are no tree.
+  /// Finds depths and what lies beneath, when all nodes are there. Throws std::invalid_argument if they are
+  /// no tree.
   void finish();
 
   std::size_t size() const { return boxes_.size(); }

@@ -1,6 +1,6 @@
 #pragma once
-/// The work of a run's queries as a chart of nested parts shows it: query, phase, what decided. From a trace's events from
-/// EventLevel::nodes on.
+/// The work of a run's queries as a chart of nested parts shows it: query, phase, what decided. From a
+/// trace's events from EventLevel::nodes on.
 
 #include <cstddef>
 #include <cstdint>
@@ -17,8 +17,8 @@ struct WorkOutcome {
   std::string_view phase;    ///< such as "walk of the bodies"
   std::string_view outcome;  ///< such as "boxes of nodes"; empty: the phase is not divided
   std::uint64_t events = 0;
-  /// Tests of boxes, of planes (one for each pair of faces whose boxes meet) and of faces; regions refined or taken back,
-  /// pairs sorted, points located, faces of separating wrappers, contact regions.
+  /// Tests of boxes, of planes (one for each pair of faces whose boxes meet) and of faces; regions refined or
+  /// taken back, pairs sorted, points located, faces of separating wrappers, contact regions.
   std::uint64_t operations = 0;
   double seconds = 0;  ///< as WorkShare::seconds
 };

@@ -19,10 +19,10 @@ struct WorkShare {
   double seconds = 0;  ///< from the event before to each of them, recording included; 0 on the event clock
 };
 
-/// Returns the parts of the queries of a run, in the order of a query: traversal (pairs of inner nodes), leaves (pairs of
-/// leaves), float_tests, shared_corner_tests, filter_tests and expansion_tests (face tests by what decided them),
-/// other_tests (those of the paper's recursions), wrappers (refinements), sorting, relation, separation, contact_geometry
-/// and cache_making (coherent queries).
+/// Returns the parts of the queries of a run, in the order of a query: traversal (pairs of inner nodes),
+/// leaves (pairs of leaves), float_tests, shared_corner_tests, filter_tests and expansion_tests (face tests
+/// by what decided them), other_tests (those of the paper's recursions), wrappers (refinements), sorting,
+/// relation, separation, contact_geometry and cache_making (coherent queries).
 std::vector<WorkShare> work_shares(const Trace& trace);
 
 /// Returns which of these parts an event belongs to; nothing: none, it takes no work of its own.

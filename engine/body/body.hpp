@@ -1,6 +1,6 @@
 #pragma once
-/// A body for queries, made in one call of whatever the user has: matrices, arrays, a mesh, a file. What is wrong
-/// with it comes back as a reason that names the element, not as an exception.
+/// A body for queries, made in one call of whatever the user has: matrices, arrays, a mesh, a file. What is
+/// wrong with it comes back as a reason that names the element, not as an exception.
 
 #include <cstdint>
 #include <memory>
@@ -26,17 +26,17 @@ struct BodyOptions {
   std::string name = "body";  ///< for messages, of bodies that come from no file
 };
 
-/// A body that can be queried. Const once made, and shared by its copies, which cost nothing: give each thread one.
-/// Stands wherever a `const LrbRep&` is asked for; must then outlive what refers to it.
+/// A body that can be queried. Const once made, and shared by its copies, which cost nothing: give each
+/// thread one. Stands wherever a `const LrbRep&` is asked for; must then outlive what refers to it.
 ///
-/// What bounds no solid (holes, edges of three faces, faces that disagree on which side is outside) is a body, too:
-/// pairs, contacts and distances are exact as of any other. It has no wrappers, and nothing lies inside it:
-/// CollideResult::relation is `undefined` where its surface meets nothing. notes() says why.
+/// What bounds no solid (holes, edges of three faces, faces that disagree on which side is outside) is a
+/// body, too: pairs, contacts and distances are exact as of any other. It has no wrappers, and nothing lies
+/// inside it: CollideResult::relation is `undefined` where its surface meets nothing. notes() says why.
 class Body {
  public:
   /// Makes a body of a matrix of vertices (n x 3, or n x 2 in the plane; any scalar) and one of faces (m x 3
-  /// triangles, m x k polygons of k corners, or m x 2 segments of a body in the plane; any integer). Refuses, by
-  /// index, what is not finite and corners that do not exist, and as Mesh does.
+  /// triangles, m x k polygons of k corners, or m x 2 segments of a body in the plane; any integer). Refuses,
+  /// by index, what is not finite and corners that do not exist, and as Mesh does.
   template <class V, class F>
   static Expected<Body> from(const Eigen::MatrixBase<V>& vertices, const Eigen::MatrixBase<F>& faces,
                              const BodyOptions& options = {});
@@ -56,7 +56,8 @@ class Body {
   static Body from(LrbRep rep);
   static Body from(std::shared_ptr<const LrbRep> rep);
 
-  /// Reads a mesh file as read_mesh() does, or an .lrb file, told apart by content. An .lrb is taken as it is.
+  /// Reads a mesh file as read_mesh() does, or an .lrb file, told apart by content. An .lrb is taken as it
+  /// is.
   static Expected<Body> load(const std::string& path, const BodyOptions& options = {});
 
   const LrbRep& rep() const { return *held_->rep; }
@@ -64,7 +65,8 @@ class Body {
 
   const std::string& name() const { return rep().name(); }
   int dim() const { return rep().dim(); }
-  /// Returns true if its surface bounds a solid, so that relations other than touching and crossing have a meaning.
+  /// Returns true if its surface bounds a solid, so that relations other than touching and crossing have a
+  /// meaning.
   bool is_solid() const { return rep().closed(); }
   /// Returns true if it has wrappers beyond its own surface. Bodies of few faces may need none.
   bool has_regions() const { return rep().region_count() > 0; }

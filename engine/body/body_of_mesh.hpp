@@ -19,12 +19,13 @@ struct MadeBody {
   std::uint32_t turned = 0;        ///< number of components that were inside out
 };
 
-/// Turns what is inside out, if `turn`, and builds; what cannot be an LRB-rep becomes a body without regions, and
-/// a note says why. Throws InputError if it cannot be queried at all.
+/// Turns what is inside out, if `turn`, and builds; what cannot be an LRB-rep becomes a body without regions,
+/// and a note says why. Throws InputError if it cannot be queried at all.
 MadeBody make_body(CheckedMesh mesh, const BuildOptions& options, bool turn = true);
 
-/// Does the same without regions, for callers that ask only for pairs of faces, distances and the relation: builds
-/// no LRB-rep, and proves nothing about the mesh that these answers do not need. Faces have the same numbers.
+/// Does the same without regions, for callers that ask only for pairs of faces, distances and the relation:
+/// builds no LRB-rep, and proves nothing about the mesh that these answers do not need. Faces have the same
+/// numbers.
 MadeBody make_body_of_faces(CheckedMesh mesh, bool turn = true);
 
 /// Turns what is inside out and returns the number of components. Adds a note if there were any.
@@ -33,8 +34,8 @@ std::uint32_t turn_outward(CheckedMesh& mesh, std::vector<std::string>& notes);
 /// Says why there can be no LRB-rep of a mesh, even if it were turned.
 std::string obstacles_to_build(const CheckedMesh& mesh);
 
-/// Joins corners in exactly the same place where the surface is open there (join_corners.hpp). Returns a note that says
-/// so; empty if there were none.
+/// Joins corners in exactly the same place where the surface is open there (join_corners.hpp). Returns a note
+/// that says so; empty if there were none.
 std::string join_corners_of_mesh(Mesh& mesh);
 
 /// Returns true if a file says that it is an LRB-rep (by its first bytes, not its name).

@@ -11,8 +11,8 @@
 
 namespace lrb::construct {
 
-/// Built anew when fits() says so. In between, a slot that gets a new triangle keeps its place in the tree, and the
-/// boxes above it grow as far as needed: caps lie close to the patches whose slots they take over.
+/// Built anew when fits() says so. In between, a slot that gets a new triangle keeps its place in the tree,
+/// and the boxes above it grow as far as needed: caps lie close to the patches whose slots they take over.
 class AabbTree {
  public:
   using Slot = HullMesh::Slot;
@@ -22,8 +22,8 @@ class AabbTree {
   /// Builds a tree over any slots; reads `boxes` (slot count) for those only.
   AabbTree(std::vector<Slot> slots, std::span<const Box> boxes);
 
-  /// Returns true if the tree knows all of the hull's slots, and most of those that it was built over are in use
-  /// still.
+  /// Returns true if the tree knows all of the hull's slots, and most of those that it was built over are in
+  /// use still.
   bool fits(const HullMesh& hull) const {
     return place_.size() == hull.slot_count() && 2 * std::size_t{hull.triangle_count()} > slots_.size();
   }

@@ -39,8 +39,8 @@ std::vector<FaceId> find_buried(const Mesh& mesh, const HullMesh& hull, const st
   const SideFinder finder(mesh, std::move(component_of));
   const std::vector<int> signs = signs_of(mesh, hull);
   enum class SheetKind : std::uint8_t { unknown, free, buried };
-  // By how often the space in front of a face is covered by solids; unknown where its first corner lies on another
-  // component's surface.
+  // By how often the space in front of a face is covered by solids; unknown where its first corner lies on
+  // another component's surface.
   const auto look_at = [&](Slot s) {
     int solids = signs[hull[s].component] < 0 ? -1 : 0;
     for (const SideFinder::Side& side : finder.sides(hull.x(hull[s].v[0]))) {

@@ -49,7 +49,8 @@ bool CapGauge::flatten(const CapSurface& cap, const CapSurface::Star& star) {
   return true;
 }
 
-/// Returns the rim edge whose triangle with `centre` holds q; if none does, the one that is nearest to doing so.
+/// Returns the rim edge whose triangle with `centre` holds q; if none does, the one that is nearest to doing
+/// so.
 std::size_t CapGauge::sector(const Flat& q, const Flat& centre) const {
   std::size_t best = 0;
   double most = -std::numeric_limits<double>::infinity();

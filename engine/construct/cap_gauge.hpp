@@ -11,16 +11,16 @@
 
 namespace lrb::construct {
 
-/// Tells which collapses keep a cap within a limit, and keeps what the cap's vertices and triangles are off up
-/// to date. It looks at the new vertex, at the patch's vertices that the new triangles cover, and at a few
+/// Tells which collapses keep a cap within a limit, and keeps what the cap's vertices and triangles are off
+/// up to date. It looks at the new vertex, at the patch's vertices that the new triangles cover, and at a few
 /// points of each new triangle: estimates, in floating point, to choose by; see PatchFloor.
 class CapGauge {
  public:
   /// Starts with a cap that is the patch itself. `most`: the largest distance from the body; mesh's unit.
   void load(const HullMesh& hull, const Patch& patch, const CapSurface& cap, double most);
 
-  /// Returns true if the fan from w over the star's rim is within the limit at w and over the patch's vertices
-  /// that it covers.
+  /// Returns true if the fan from w over the star's rim is within the limit at w and over the patch's
+  /// vertices that it covers.
   bool may_stand(const CapSurface& cap, const CapSurface::Star& star, const Eigen::Vector3d& w);
   /// Returns true if it is at points in between, too.
   bool is_near(const CapSurface& cap, const CapSurface::Star& star, const Eigen::Vector3d& w);
@@ -29,8 +29,8 @@ class CapGauge {
   /// Notes that vertex w now stands over the star that was prepared last.
   void settle(CapSurface& cap, const CapSurface::Star& star, int w);
 
-  /// Measures all new triangles anew: for caps that were changed by something else than collapses. Returns false
-  /// if one is beyond the limit.
+  /// Measures all new triangles anew: for caps that were changed by something else than collapses. Returns
+  /// false if one is beyond the limit.
   bool measure_again(CapSurface& cap) const;
 
  private:

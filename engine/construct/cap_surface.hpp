@@ -95,7 +95,8 @@ class CapSurface {
   void forget_refused() {
     for (Face& f : faces_) f.refused = {};
   }
-  /// Returns true if v, a neighbour of u, lies behind the plane of a triangle at u that it is not a corner of.
+  /// Returns true if v, a neighbour of u, lies behind the plane of a triangle at u that it is not a corner
+  /// of.
   bool is_behind_a_face_at(int u, int v) const;
   /// Collapses u and v into a new vertex at x. Returns its number.
   int collapse_to_new(const Star& star, const Eigen::Vector3d& x);

@@ -82,8 +82,8 @@ double off_by_chain(const HullLoops& hull, const std::vector<Slot>& chain, const
   return least;
 }
 
-/// Measures a segment over a chain at points in between its ends, whose `off` is known. Returns false if one is
-/// off by more than `most`.
+/// Measures a segment over a chain at points in between its ends, whose `off` is known. Returns false if one
+/// is off by more than `most`.
 bool extra_of_segment(const HullLoops& hull, const std::vector<Slot>& chain, const Vector3& a, double off_a,
                       const Vector3& b, double off_b, double most, double& extra) {
   constexpr int kParts = 8;

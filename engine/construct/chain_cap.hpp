@@ -37,8 +37,8 @@ std::vector<HullLoops::Slot> chain_of(const HullLoops& hull, HullLoops::Slot fir
 std::optional<ChainCap> find_cap(const HullLoops& hull, HullLoops::Slot first, std::uint32_t length,
                                  std::span<const HalfSpace> bounds, double area_limit, CapVerdict& why);
 
-/// Measures how far the cap is off the body, at a few points of each segment, by what is known of the chain: an
-/// estimate. Returns false if that is more than `most`.
+/// Measures how far the cap is off the body, at a few points of each segment, by what is known of the chain:
+/// an estimate. Returns false if that is more than `most`.
 bool measure_cap(const HullLoops& hull, ChainCap& cap, double most);
 
 /// Returns how far the cap stands off the body by what measure_cap() found: at its ends or between.

@@ -129,8 +129,8 @@ class ConstructProbe {
   virtual void cap(const TriedCap&) {}
   /// A region was made: by the cap that was told last, if that stands; a cap can make several.
   virtual void region(RegionId) {}
-  /// `pieces` pieces of the space under the cap became part of the region `into`, which was told just before: each is an
-  /// inner shell of it.
+  /// `pieces` pieces of the space under the cap became part of the region `into`, which was told just before:
+  /// each is an inner shell of it.
   virtual void merged(RegionId /*into*/, std::uint32_t /*pieces*/) {}
   virtual void end_pass(const PassEnd&) {}
   /// The body is built. `faces`: of its outermost wrapper, as triangles or segments.

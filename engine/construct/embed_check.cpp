@@ -114,8 +114,8 @@ void EmbedCheck::add_patch(const Patch& patch) {
   }
 }
 
-/// Looks at what the new triangles may meet only: the box of a cap that spans a good part of a component holds all
-/// that is nested in it.
+/// Looks at what the new triangles may meet only: the box of a cap that spans a good part of a component
+/// holds all that is nested in it.
 void EmbedCheck::gather_hull(const Patch& patch, const CapSurface& cap, const Box& box) {
   seen_.extend(box);
   reach_.clear();

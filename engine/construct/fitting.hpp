@@ -15,22 +15,23 @@ struct CapGoal {
   double off = 0;  ///< how far a cap may stand off the body, mesh's unit; 0: as far as it likes
 };
 
-/// Limits on a cap's distance from the body, as shares of its largest side: the first, the last, and the factor from
-/// one to the next. Measured on six bodies: a start at 0.0003 takes three times as long and gains nothing from
-/// 0.005 on; a step of 2 in place of 1.25 costs a sixth more faces.
+/// Limits on a cap's distance from the body, as shares of its largest side: the first, the last, and the
+/// factor from one to the next. Measured on six bodies: a start at 0.0003 takes three times as long and gains
+/// nothing from 0.005 on; a step of 2 in place of 1.25 costs a sixth more faces.
 inline constexpr double kFirstOff = 0.001, kLastOff = 0.1, kOffStep = 1.25;
 /// A pass that leaves a larger share of the hull's faces is the last for its distance.
 inline constexpr double kFitGain = 0.8;
 inline constexpr int kPassesForOff = 8;
-/// A cap that leaves x of the faces it covers costs x / (1 - x) faces for each that it saves. This is the largest
-/// price accepted on the mesh itself; on simpler hulls it is divided by the square root of hull faces / real faces.
-/// Larger: hulls fit better; smaller: fewer faces in all (0.74: 1.7 to 2 per real face on six bodies).
+/// A cap that leaves x of the faces it covers costs x / (1 - x) faces for each that it saves. This is the
+/// largest price accepted on the mesh itself; on simpler hulls it is divided by the square root of hull faces
+/// / real faces. Larger: hulls fit better; smaller: fewer faces in all (0.74: 1.7 to 2 per real face on six
+/// bodies).
 inline constexpr double kFitBudget = 0.74;
-/// With such prices pseudo faces add up to a total times 1 - sqrt(hull faces / real faces). As long as there are fewer
-/// than this total, per real face, allows, because caps turned out cheap, dearer ones are accepted: by
-/// kFitCorrection of the price for each pseudo face per real one that is left. In space alone. On nefertiti (0.82
-/// pseudo faces per real one without) 766 in place of 898 faces at a hundredth of its size; five smaller bodies come
-/// out as without, or better.
+/// With such prices pseudo faces add up to a total times 1 - sqrt(hull faces / real faces). As long as there
+/// are fewer than this total, per real face, allows, because caps turned out cheap, dearer ones are accepted:
+/// by kFitCorrection of the price for each pseudo face per real one that is left. In space alone. On
+/// nefertiti (0.82 pseudo faces per real one without) 766 in place of 898 faces at a hundredth of its size;
+/// five smaller bodies come out as without, or better.
 inline constexpr double kFitTotal = 1.1, kFitCorrection = 2;
 
 /// Returns the share of a hull's faces in those of the body, under a root, as prices have it.
@@ -51,9 +52,9 @@ inline double fitting_worth(std::size_t hull_faces, std::size_t real_faces, doub
   return std::min(kLastCapWorth, ratio / (1 + ratio));
 }
 
-/// Makes hulls that fit: what caps may be off grows from pass to pass, slowly enough that each distance gets about
-/// the simplest hull that there is for it. `size`: the body's largest side. Calls pass(hull faces, off) for hulls of
-/// more than `least` faces, which faces() counts.
+/// Makes hulls that fit: what caps may be off grows from pass to pass, slowly enough that each distance gets
+/// about the simplest hull that there is for it. `size`: the body's largest side. Calls pass(hull faces, off)
+/// for hulls of more than `least` faces, which faces() counts.
 template <class Faces, class Pass>
 void fit_hulls(double size, std::uint32_t least, Faces faces, Pass pass) {
   for (double off = kFirstOff * size; off < kLastOff * size; off *= kOffStep) {

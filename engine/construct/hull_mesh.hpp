@@ -83,8 +83,9 @@ class HullMesh {
                ? SlotRange{unit_first_[s], unit_first_[s] + unit_size_[s]}
                : SlotRange{s, s + 1};
   }
-  /// Returns true for a triangle that no patch may contain: one of a polygon with very many corners, or at a vertex with
-  /// very many triangles. A patch would have to take all of these, and costs the square of its triangles.
+  /// Returns true for a triangle that no patch may contain: one of a polygon with very many corners, or at a
+  /// vertex with very many triangles. A patch would have to take all of these, and costs the square of its
+  /// triangles.
   bool is_crowded(Slot s) const {
     constexpr std::uint32_t kMost = 512;
     const SlotRange polygon = unit(s);

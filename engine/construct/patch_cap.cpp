@@ -61,8 +61,8 @@ void PatchCap::collapse(const Candidate& c) {
   for (std::size_t k = 0; k < rim_.size(); ++k) {
     if (cap_.is_ring(rim_[k].a)) continue;
     propose(rim_[k].a, w);
-    // Lean bodies are built as they always were, which is by going on with the rim that was looked at last: the
-    // edges that are passed over wait for the next round.
+    // Lean bodies are built as they always were, which is by going on with the rim that was looked at last:
+    // the edges that are passed over wait for the next round.
     if (!fits()) std::copy_n(star_.rim.begin(), std::min(rim_.size(), star_.rim.size()), rim_.begin());
   }
 }
@@ -106,8 +106,8 @@ std::optional<PatchCap::Candidate> PatchCap::evaluate_again(const Candidate& c) 
   return c.version < star_.since ? evaluate_star(c.u, c.v) : c;
 }
 
-/// Evaluates the collapse of the edge whose star is in star_; it rests on the star and on the triangles across its
-/// rim alone, so that a refusal holds until one of these changes.
+/// Evaluates the collapse of the edge whose star is in star_; it rests on the star and on the triangles
+/// across its rim alone, so that a refusal holds until one of these changes.
 std::optional<PatchCap::Candidate> PatchCap::evaluate_star(int u, int v) {
   auto c = measure_star(u, v);
   if (!c) cap_.refuse(star_);

@@ -23,8 +23,8 @@ class PatchFloor {
 
   /// Returns how far q is off, as the triangles of the patch show it.
   double off(const Eigen::Vector3d& q) const;
-  /// Returns true if q is off by no more than the limit. Looks at the patch's triangle number `first` first, and
-  /// sets it to the one that shows it.
+  /// Returns true if q is off by no more than the limit. Looks at the patch's triangle number `first` first,
+  /// and sets it to the one that shows it.
   bool is_within(const Eigen::Vector3d& q, int& first) const;
 
  private:

@@ -8,7 +8,8 @@ namespace {
 using Slot = HullMesh::Slot;
 using Corner = HullMesh::Corner;
 
-/// The number of new triangles that a candidate one reach away from the seed counts as on top: keeps patches round.
+/// The number of new triangles that a candidate one reach away from the seed counts as on top: keeps patches
+/// round.
 constexpr double kDistancePenalty = 1.0;
 
 }  // namespace
@@ -112,7 +113,8 @@ void PatchGrower::unmark_star() {
   for (const Slot s : added_) slot_stamp_[s] = 0;
 }
 
-/// Counts the new triangles in at their corners. Returns how many of these are new; they are at the end of rim_.
+/// Counts the new triangles in at their corners. Returns how many of these are new; they are at the end of
+/// rim_.
 std::size_t PatchGrower::add_corners() {
   const std::size_t before = rim_.size();
   for (const Slot s : added_) {

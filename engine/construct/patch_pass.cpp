@@ -20,11 +20,11 @@ constexpr std::size_t kBatchPerThread = 32;
 /// See PatchCap::Limits::depth; where caps are to fit.
 constexpr double kFittingDepth = 10;
 
-/// Where no cap was found, none is tried before it may be this many times as far off, at least. Smaller: more time,
-/// most of it in vain.
+/// Where no cap was found, none is tried before it may be this many times as far off, at least. Smaller: more
+/// time, most of it in vain.
 constexpr double kPatience = 1.2;
-/// A pass of caps that fit ends when after this many patches fewer than one in kLeastCaps got a cap: the distance
-/// is too small for most of the hull.
+/// A pass of caps that fit ends when after this many patches fewer than one in kLeastCaps got a cap: the
+/// distance is too small for most of the hull.
 constexpr std::size_t kTries = 32, kLeastCaps = 24;
 
 }  // namespace
@@ -189,9 +189,10 @@ void PatchPass::tell(const Job& job) const {
   for (std::size_t i = 0; i < job.tries; ++i) probe_->cap(job.tried[i]);
 }
 
-/// Returns how many times as far off a cap must be allowed to be before there may be one where there is none now.
-/// The faces that are needed fall about in proportion to the distance, so that is by how much those of the cap that
-/// was not worth it are too many. (Trying at each distance takes a third more time for the same hulls.)
+/// Returns how many times as far off a cap must be allowed to be before there may be one where there is none
+/// now. The faces that are needed fall about in proportion to the distance, so that is by how much those of
+/// the cap that was not worth it are too many. (Trying at each distance takes a third more time for the same
+/// hulls.)
 double PatchPass::patience(const Patch& patch, const CapSurface& cap, double worth) {
   return std::max(kPatience, cap.alive_faces() / (worth * static_cast<double>(patch.slots.size())));
 }

@@ -25,8 +25,8 @@ struct HalfSpace {
 std::optional<Eigen::Vector3d> nearest_point(const Eigen::Vector3d& target,
                                              std::span<const HalfSpace> half_spaces, double slack);
 
-/// Does the same: adds the half-space that is violated most, solves again, and repeats until none is violated. Of a
-/// dozen planes about four decide, and the others are only compared. Reorders them.
+/// Does the same: adds the half-space that is violated most, solves again, and repeats until none is
+/// violated. Of a dozen planes about four decide, and the others are only compared. Reorders them.
 std::optional<Eigen::Vector3d> nearest_point_worst_first(const Eigen::Vector3d& target,
                                                          std::span<HalfSpace> half_spaces, double slack);
 

@@ -1,6 +1,6 @@
 #pragma once
-/// An answer, or the reason why there is none: for whatever a caller can foresee to fail, such as a file that is
-/// damaged or a pose that is not finite. (std::expected is of C++23; the names are its.)
+/// An answer, or the reason why there is none: for whatever a caller can foresee to fail, such as a file that
+/// is damaged or a pose that is not finite. (std::expected is of C++23; the names are its.)
 
 #include <functional>
 #include <string>
@@ -12,7 +12,8 @@
 
 namespace lrb {
 
-/// Why something was refused: one line that names the file, the line or element, what was expected and what to do.
+/// Why something was refused: one line that names the file, the line or element, what was expected and what
+/// to do.
 struct Refusal {
   std::string reason;
   friend bool operator==(const Refusal&, const Refusal&) = default;

@@ -7,8 +7,8 @@
 
 namespace lrb {
 
-/// Returns all bytes of a file. Throws InputError if it is missing or unreadable, if it is a directory or the like
-/// (what_is_no_file()), or has more than `most` bytes, which are then not read.
+/// Returns all bytes of a file. Throws InputError if it is missing or unreadable, if it is a directory or the
+/// like (what_is_no_file()), or has more than `most` bytes, which are then not read.
 std::string read_file(const std::string& path,
                       std::uint64_t most = std::numeric_limits<std::uint64_t>::max());
 

@@ -1,6 +1,6 @@
 #pragma once
-/// Makes poses of what others keep them in, and the reverse. Numbers are taken as they are, to the bit; whether they
-/// are finite is for the query to say.
+/// Makes poses of what others keep them in, and the reverse. Numbers are taken as they are, to the bit;
+/// whether they are finite is for the query to say.
 
 #include <span>
 #include <vector>
@@ -24,18 +24,19 @@ inline Pose pose_of(const Eigen::Quaterniond& rotation, const Eigen::Vector3d& t
   return {rotation.toRotationMatrix(), translation};
 }
 
-/// Returns the pose of a 3 x 4 or 4 x 4 matrix that columns are multiplied by. Refuses other shapes, and a last row
-/// other than 0 0 0 1.
+/// Returns the pose of a 3 x 4 or 4 x 4 matrix that columns are multiplied by. Refuses other shapes, and a
+/// last row other than 0 0 0 1.
 Expected<Pose> pose_of(const Eigen::MatrixXd& matrix);
 
 /// Does the same for the matrix's numbers row by row, as C arrays and numpy have them: 12 or 16.
 Expected<Pose> pose_of_rows(std::span<const double> numbers);
 
-/// Does the same for `count` matrices, one after another: (count, 3, 4) or (count, 4, 4) numbers. A refusal names the
-/// pose.
+/// Does the same for `count` matrices, one after another: (count, 3, 4) or (count, 4, 4) numbers. A refusal
+/// names the pose.
 Expected<std::vector<Pose>> poses_of_rows(std::span<const double> numbers, std::size_t count);
 
-/// Returns the matrix (4 x 4) of a pose. (Inline, because how Eigen aligns it depends on the compiler's flags.)
+/// Returns the matrix (4 x 4) of a pose. (Inline, because how Eigen aligns it depends on the compiler's
+/// flags.)
 inline Eigen::Matrix4d matrix_of(const Pose& pose) {
   Eigen::Matrix4d m = Eigen::Matrix4d::Identity();
   m.topLeftCorner<3, 3>() = pose.r;

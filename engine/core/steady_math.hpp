@@ -47,8 +47,9 @@ inline Eigen::Matrix3d rotation(const Eigen::Vector3d& axis, double angle) {
   return Turn(angle, axis.cast<long double>()).toRotationMatrix().cast<double>();
 }
 
-/// Returns the smallest turn that brings the direction of one vector to that of another; neither may be 0. The same as
-/// Eigen's FromTwoVectors() unless they are opposite, without the singular values for which the compiler takes seconds.
+/// Returns the smallest turn that brings the direction of one vector to that of another; neither may be 0.
+/// The same as Eigen's FromTwoVectors() unless they are opposite, without the singular values for which the
+/// compiler takes seconds.
 inline Eigen::Quaterniond turn_between(const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
   const Eigen::Vector3d a = from.normalized(), b = to.normalized();
   const double c = b.dot(a);

@@ -54,9 +54,9 @@ inline constexpr float kKernelTiny = 0x1p-120f;
 /// Bound on the rounding of world coordinates and of the relative pose, relative to the largest term that
 /// occurs: 4 u for each body's coordinates and 16 u for the relative pose, u = 2^-53.
 inline constexpr double kWorldRounding = 0x1p-48;
-/// Bound on the error of a product of a unit vector and a point, relative to the sum of the point's coordinates: three
-/// products and two sums, 3 u, u = 2^-53, and as much for the vector's length. Smaller: a plane could be said to part
-/// bodies that it cuts by a rounding error.
+/// Bound on the error of a product of a unit vector and a point, relative to the sum of the point's
+/// coordinates: three products and two sums, 3 u, u = 2^-53, and as much for the vector's length. Smaller: a
+/// plane could be said to part bodies that it cuts by a rounding error.
 inline constexpr double kPlaneRounding = 0x1p-50;
 /// World coordinates below this size are treated as if they were this large when their rounding is bounded:
 /// it is the least normal double. Unit: the mesh's. Smaller: contacts of bodies made of denormals could be
@@ -70,8 +70,8 @@ inline constexpr double kPoseSafety = 4;
 /// smaller: rotations that have been multiplied and rounded thousands of times take the slower way of other
 /// maps.
 inline constexpr double kNearRotation = 0x1p-30;
-/// Largest world coordinate, in sizes of the bodies, at which poses are treated as rotations: floats of the kernel must
-/// not overflow.
+/// Largest world coordinate, in sizes of the bodies, at which poses are treated as rotations: floats of the
+/// kernel must not overflow.
 inline constexpr double kNearEnough = 0x1p100;
 /// Least singular value of a map, relative to its largest, at which boxes are compared on the body's own axes
 /// as they are; flatter bodies are looked at as if they were as thick as this. Smaller: the kernel's
@@ -79,11 +79,12 @@ inline constexpr double kNearEnough = 0x1p100;
 /// flat ones.
 inline constexpr double kFlatness = 0x1p-8;
 
-/// Added to distances that bound a region's thickness, in units (coordinates are at most about 1). Covers, with
-/// u = 2^-53: a distance is the length of the difference between a point and a weighted sum of corners, a dozen
-/// operations on numbers below 4, together under 2^-46; a lid is cut in pieces, and a new corner lies beside its
-/// edge by three operations on each coordinate, under 2^-50, at most kMostCuts = 2^8 times over (thickness.cpp):
-/// under 2^-42. Smaller: an error bound could be exceeded by a rounding error; larger: it is that much looser.
+/// Added to distances that bound a region's thickness, in units (coordinates are at most about 1). Covers,
+/// with u = 2^-53: a distance is the length of the difference between a point and a weighted sum of corners,
+/// a dozen operations on numbers below 4, together under 2^-46; a lid is cut in pieces, and a new corner lies
+/// beside its edge by three operations on each coordinate, under 2^-50, at most kMostCuts = 2^8 times over
+/// (thickness.cpp): under 2^-42. Smaller: an error bound could be exceeded by a rounding error; larger: it is
+/// that much looser.
 inline constexpr double kThicknessRounding = 0x1p-40;
 /// Distance that faces of two wrappers must keep to count as apart, relative to the largest term of any world
 /// coordinate. What is hidden may stand out of its lid by the rounding of world coordinates (under 2^-50 for
@@ -91,13 +92,14 @@ inline constexpr double kThicknessRounding = 0x1p-40;
 /// lid could be missed; larger: bodies this close are refined further, or not proved apart.
 inline constexpr double kWrapperMargin = 0x1p-44;
 
-/// Factor on the kernel's slack where it walks wrappers. What it then drops or calls certain, a crossing as well as
-/// two faces that are apart, is so however the vertices are shifted by what rounding does to the wrappers and to the
-/// bodies in them. With S the sum of the largest terms of both bodies' world coordinates: a vertex is rounded by at
-/// most sqrt(3) 2^-51 of its own body's, so that in the deformation of coarse_query.hpp two vertices shift against
-/// each other by less than 2 sqrt(3) 2^-51 S < 2^-49 S; the kernel's own slack is at least 2^-46 S (kPoseSafety
-/// kWorldRounding S, and twice that for rotations), and so is what this factor adds. Smaller, but above 1 + 2^-3:
-/// enough, too; larger: more pairs are left to exact tests.
+/// Factor on the kernel's slack where it walks wrappers. What it then drops or calls certain, a crossing as
+/// well as two faces that are apart, is so however the vertices are shifted by what rounding does to the
+/// wrappers and to the bodies in them. With S the sum of the largest terms of both bodies' world coordinates:
+/// a vertex is rounded by at most sqrt(3) 2^-51 of its own body's, so that in the deformation of
+/// coarse_query.hpp two vertices shift against each other by less than 2 sqrt(3) 2^-51 S < 2^-49 S; the
+/// kernel's own slack is at least 2^-46 S (kPoseSafety kWorldRounding S, and twice that for rotations), and
+/// so is what this factor adds. Smaller, but above 1 + 2^-3: enough, too; larger: more pairs are left to
+/// exact tests.
 inline constexpr float kWrapperSlack = 2;
 
 /// Largest deviation from a rotation (largest row sum of r^T r - 1) at which coherent queries still use
@@ -108,32 +110,38 @@ inline constexpr double kRigid = 0x1p-24;
 
 /// The distance query.
 
-/// Share by which a length that the distance kernel computes may be off, beside the errors of coordinates: node's axes are
-/// orthonormal to kFrameDefect, which changes lengths by half of that; poses are rotations to kNearRotation; squares, sums
-/// and roots take a few 2^-24. Smaller than 2^-21: a nearer pair could be dropped; larger: more pairs are kept.
+/// Share by which a length that the distance kernel computes may be off, beside the errors of coordinates:
+/// node's axes are orthonormal to kFrameDefect, which changes lengths by half of that; poses are rotations to
+/// kNearRotation; squares, sums and roots take a few 2^-24. Smaller than 2^-21: a nearer pair could be
+/// dropped; larger: more pairs are kept.
 inline constexpr float kDistanceRounding = 0x1p-18f;
-/// Bound on the error of a distance of two simplices in doubles, relative to the largest difference of any coordinates:
-/// 64 u, u = 2^-53 (pair_bounds.cpp). Smaller: an interval could miss the distance; larger: wider intervals.
+/// Bound on the error of a distance of two simplices in doubles, relative to the largest difference of any
+/// coordinates: 64 u, u = 2^-53 (pair_bounds.cpp). Smaller: an interval could miss the distance; larger:
+/// wider intervals.
 inline constexpr double kPairRounding = 0x1p-47;
-/// Width to which an interval is narrowed unless the request asks for less, relative to the larger body's size; but not
-/// below a few units in the last place of the distance (kDistanceWidthUlps, relative to it).
+/// Width to which an interval is narrowed unless the request asks for less, relative to the larger body's
+/// size; but not below a few units in the last place of the distance (kDistanceWidthUlps, relative to it).
 inline constexpr double kDistanceWidth = 1e-12;
 inline constexpr double kDistanceWidthUlps = 0x1p-50;
-/// Bodies whose origins are further apart than this many of the larger one's units are walked in doubles: floats could
-/// not tell their near sides from their far ones. Larger: more pairs are kept, in floats; smaller: doubles are slower.
+/// Bodies whose origins are further apart than this many of the larger one's units are walked in doubles:
+/// floats could not tell their near sides from their far ones. Larger: more pairs are kept, in floats;
+/// smaller: doubles are slower.
 inline constexpr double kFarForFloats = 32;
-/// From this many of their sizes on, two bodies' intervals are kFarWidth of the distance wide, because their world
-/// coordinates have hardly a digit for their shapes. Larger: such bodies' faces are all compared with each other.
+/// From this many of their sizes on, two bodies' intervals are kFarWidth of the distance wide, because their
+/// world coordinates have hardly a digit for their shapes. Larger: such bodies' faces are all compared with
+/// each other.
 inline constexpr double kVeryFar = 0x1p36;
 inline constexpr double kFarWidth = 0x1p-42;
 
 /// First contact.
 
-/// Largest deviation from a rotation (largest row sum of r^T r - 1) of the poses that a screw leads between: as of matrices
-/// written with three digits. Larger: the logarithm is that of a matrix that is not nearly a rotation.
+/// Largest deviation from a rotation (largest row sum of r^T r - 1) of the poses that a screw leads between:
+/// as of matrices written with three digits. Larger: the logarithm is that of a matrix that is not nearly a
+/// rotation.
 inline constexpr double kMotionDefect = 4e-3;
-/// Bound on the error of a moving vertex, relative to the largest terms of its place: 8 u, u = 2^-53; derived in
-/// motion_bounds.hpp. Smaller: a contact could be missed by a rounding error; larger: wider intervals where bodies graze.
+/// Bound on the error of a moving vertex, relative to the largest terms of its place: 8 u, u = 2^-53; derived
+/// in motion_bounds.hpp. Smaller: a contact could be missed by a rounding error; larger: wider intervals
+/// where bodies graze.
 inline constexpr double kMotionRounding = 0x1p-50;
 
 /// The builders. None of these constants decides whether an LRB-rep is right: what the builders propose is

@@ -78,8 +78,8 @@ class CutFace {
 
   /// Returns one point strictly inside each cell.
   const std::vector<RationalPoint>& samples() const { return samples_; }
-  /// Returns the cell that borders on the edge from corner `edge` to the next, at a point of the edge that is on
-  /// no cut.
+  /// Returns the cell that borders on the edge from corner `edge` to the next, at a point of the edge that is
+  /// on no cut.
   std::size_t cell_beside(int edge, const RationalPoint& p) const;
 
  private:
@@ -89,8 +89,8 @@ class CutFace {
 };
 
 /// Returns a point of each part into which a segment is cut by the planes of some triangles or, where it lies
-/// in such a plane, by the lines through the triangle's edges. Nothing if the segment is a point, or a triangle in
-/// whose plane it would lie has no area.
+/// in such a plane, by the lines through the triangle's edges. Nothing if the segment is a point, or a
+/// triangle in whose plane it would lie has no area.
 std::optional<std::vector<RationalPoint>> sample_edge(
     const double* from, const double* to, std::span<const std::array<const double*, 3>> triangles);
 

@@ -184,9 +184,9 @@ class Slabs {
 
   bool whole() const { return whole_; }
 
-  /// Returns the first gap of the cell that borders on the cut `edge`, one of the triangle's, at a point of it
-  /// that is on no other cut. Near such a point there is but one cell, and every slab that reaches the point has a
-  /// gap of it along the edge; a vertical edge ends the first slab or the last.
+  /// Returns the first gap of the cell that borders on the cut `edge`, one of the triangle's, at a point of
+  /// it that is on no other cut. Near such a point there is but one cell, and every slab that reaches the
+  /// point has a gap of it along the edge; a vertical edge ends the first slab or the last.
   std::size_t gap_beside(std::size_t edge, const Planar& p) const {
     const bool vertical = cuts_[edge].is_vertical();
     for (std::size_t e = 0; e + 1 < events_.size(); ++e) {
@@ -330,8 +330,8 @@ std::size_t CutFace::cell_beside(int edge, const RationalPoint& p) const {
 
 namespace {
 
-/// Adds the shares of the segment p, q at which its line meets the edges of a triangle in whose plane it lies.
-/// Returns false if the triangle has no area.
+/// Adds the shares of the segment p, q at which its line meets the edges of a triangle in whose plane it
+/// lies. Returns false if the triangle has no area.
 bool add_shares_in_plane(const RationalVec& p, const RationalVec& q, const double* const t[3],
                          std::vector<Rational>& shares) {
   const Axes axes = axes_for(t[0], t[1], t[2]);

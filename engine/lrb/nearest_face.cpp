@@ -77,7 +77,8 @@ NearFace NearestFace::walk(const Eigen::Vector3d& p, SimplexId from,
   return {from, std::sqrt(nearest.distance_sq)};
 }
 
-/// Goes down to the nearest boxes first. On a stack of its own: a tree from a file may be as high as it likes.
+/// Goes down to the nearest boxes first. On a stack of its own: a tree from a file may be as high as it
+/// likes.
 NearFace NearestFace::find(const Eigen::Vector3d& p, NearFace known) {
   const ObbTree& tree = rep_.tree();
   NearFace best = known;

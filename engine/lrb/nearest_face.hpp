@@ -26,12 +26,13 @@ class NearestFace {
   /// `vertices`: those of the LRB-rep, in units; must outlive this.
   NearestFace(const LrbRep& rep, const std::vector<Eigen::Vector3d>& vertices) : rep_(rep), x_(vertices) {}
 
-  /// Returns the nearest real simplex but for the rounding of floats, or `known` if nothing is nearer. Searches the
-  /// tree.
+  /// Returns the nearest real simplex but for the rounding of floats, or `known` if nothing is nearer.
+  /// Searches the tree.
   NearFace find(const Eigen::Vector3d& p, NearFace known = {});
 
-  /// Returns a real simplex that is no further than `from`: goes from each simplex to a neighbour that is nearer, as
-  /// long as there is one. Takes a tenth of find()'s time where `from` is near. `neighbours`: real_neighbours().
+  /// Returns a real simplex that is no further than `from`: goes from each simplex to a neighbour that is
+  /// nearer, as long as there is one. Takes a tenth of find()'s time where `from` is near. `neighbours`:
+  /// real_neighbours().
   NearFace walk(const Eigen::Vector3d& p, SimplexId from, const std::vector<Across>& neighbours) const;
 
   /// Returns the distance from p to a simplex: never less than the true one but for rounding, which

@@ -1,20 +1,21 @@
 // The distance from a point to one real face is convex, so over a piece of a lid it is largest at one of the
-// piece's corners; and the distance to all real faces is no more than that to any one of them. So a lid is cut
-// into pieces, each of which has a real face near it, and the lid's bound is the largest distance from a
+// piece's corners; and the distance to all real faces is no more than that to any one of them. So a lid is
+// cut into pieces, each of which has a real face near it, and the lid's bound is the largest distance from a
 // piece's corner to the piece's face. Which face a piece has and where it is cut decides only how tight the
 // bound is, so a search in floats may choose them; the distances are computed in double.
 //
 // Pieces are cut, worst first, until the bound is within kTight of a distance that some point of the lids
-// really has. Which face is near is found by walking from the face that the piece has to its neighbours, and in the
-// tree only where the walk ends further off than anything found so far, that is, where it would raise what the bound
-// is compared with: on 100,000 faces one walk in 28, and a quarter of the time that the tree took for each piece.
-// A piece that hangs over the border of its face is cut there: its other part is nearer another
-// face. So a flat lid over a floor of many coplanar faces takes as many pieces as there are faces under it.
+// really has. Which face is near is found by walking from the face that the piece has to its neighbours, and
+// in the tree only where the walk ends further off than anything found so far, that is, where it would raise
+// what the bound is compared with: on 100,000 faces one walk in 28, and a quarter of the time that the tree
+// took for each piece. A piece that hangs over the border of its face is cut there: its other part is nearer
+// another face. So a flat lid over a floor of many coplanar faces takes as many pieces as there are faces
+// under it.
 //
 // Rounding. A cut puts a new corner on an edge, up to 2^-50 beside it (in units, in which coordinates are
 // about 1 at most): a point of the piece is then that far from a point of the two new ones, at the same place
-// by their corners' weights. A piece is the outcome of at most kMostCuts cuts, so it stands for points at most
-// 2^-42 away; kThicknessRounding covers that and the rounding of distances.
+// by their corners' weights. A piece is the outcome of at most kMostCuts cuts, so it stands for points at
+// most 2^-42 away; kThicknessRounding covers that and the rounding of distances.
 #include "engine/lrb/thickness.hpp"
 
 #include <algorithm>
@@ -34,8 +35,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// The bound may be this many times a distance that was found. 1.05: 2 to 7 % more faces for a tolerance (six real
-/// meshes), in about the same time, for most cuts are those at the borders of faces.
+/// The bound may be this many times a distance that was found. 1.05: 2 to 7 % more faces for a tolerance (six
+/// real meshes), in about the same time, for most cuts are those at the borders of faces.
 constexpr double kTight = 1.01;
 /// Distances below this share of the unit count as this: bounds so small need not be tight.
 constexpr double kSmall = 1e-6;
@@ -87,8 +88,8 @@ Vector3d border_normal(const Simplex& t, int corners, int e) {
   return square > 0 ? Vector3d(edge * (edge.dot(other) / square) - other) : Vector3d(0, 0, 0);
 }
 
-/// Returns the cut by the border of a face beyond which the piece's corner `worst` lies, if another corner is on
-/// the near side of it; else a cut whose share is 0.
+/// Returns the cut by the border of a face beyond which the piece's corner `worst` lies, if another corner is
+/// on the near side of it; else a cut whose share is 0.
 Cut cut_at_border(const Simplex& piece, int worst, const Simplex& face, int corners) {
   Cut best{0, 1, 0};
   double furthest = 0;
@@ -166,7 +167,8 @@ class RegionMeter {
     return middle / corners_;
   }
 
-  /// Looks for a better face for a piece that has one already. Returns true if the piece is within the limit then.
+  /// Looks for a better face for a piece that has one already. Returns true if the piece is within the limit
+  /// then.
   bool is_settled(Piece& piece) {
     if (piece.most > limit()) {
       const Vector3d middle = middle_of(piece);

@@ -39,8 +39,8 @@ struct ValidateReport {
 /// complex meet except in shared vertices and edges (this is the proof of embedding; a face that touches a
 /// lid which hides it, and stays behind it, is counted separately); every random wrapper state is closed, has
 /// the volume of its cells, and holds strictly inside the real vertices that it does not touch. Also checks
-/// what a file stores to save time: the hash, the bounds of the query's tree, and of the levels, if there are any,
-/// the trees' bounds and how thick regions are said to be.
+/// what a file stores to save time: the hash, the bounds of the query's tree, and of the levels, if there are
+/// any, the trees' bounds and how thick regions are said to be.
 ValidateReport validate(const LrbRep& rep, const ValidateOptions& options = {});
 
 /// Returns the signed volume (2D: area) behind a closed set of faces: those of `outward` taken with their
@@ -49,8 +49,8 @@ double enclosed_volume(const LrbRep& rep, std::span<const FaceId> outward,
                        std::span<const FaceId> inward = {});
 /// Returns the volume of a region: behind its lids and in front of its floor.
 double region_volume(const LrbRep& rep, RegionId r);
-/// Returns how tightly lids lie: their mean height above what they hide, which is the volume of all regions over the
-/// area (2D: length) of all lids; mesh's unit, 0 without regions.
+/// Returns how tightly lids lie: their mean height above what they hide, which is the volume of all regions
+/// over the area (2D: length) of all lids; mesh's unit, 0 without regions.
 double lid_height(const LrbRep& rep);
 
 }  // namespace lrb

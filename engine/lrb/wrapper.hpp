@@ -47,8 +47,9 @@ class Wrapper {
     if (mode_ == WrapperMode::unregularised) discard_lids(r);
     return true;
   }
-  /// Excludes a cell if it is a region, and those between it and the outside along parents, up to the first that is
-  /// excluded already. Counts as if the outermost had been refined first. Returns how many there were.
+  /// Excludes a cell if it is a region, and those between it and the outside along parents, up to the first
+  /// that is excluded already. Counts as if the outermost had been refined first. Returns how many there
+  /// were.
   std::size_t refine_path(CellId innermost) {
     const std::size_t before = order_.size();
     for (CellId c = innermost; is_region(c) && included(c); c = rep_->parent(c.as_region()))

@@ -14,10 +14,12 @@
 namespace lrb {
 namespace {
 
-/// From one level to the next the number of faces grows by this factor at most, where regions are small enough.
-/// Smaller: more levels to make and keep; larger: a tolerance between two levels costs that many faces more.
+/// From one level to the next the number of faces grows by this factor at most, where regions are small
+/// enough. Smaller: more levels to make and keep; larger: a tolerance between two levels costs that many
+/// faces more.
 constexpr double kLevelStep = 4.0 / 3;
-/// The same for levels with at most kFewFaces of the body's own: these take little memory, even if there are many.
+/// The same for levels with at most kFewFaces of the body's own: these take little memory, even if there are
+/// many.
 constexpr double kFewFaces = 1.0 / 16, kSmallStep = 1.1;
 /// A wrapper with a larger share of the body's own faces is no level: the exact query costs hardly more. Also
 /// limits what all levels take together: between two and three times as many faces as the body has.
@@ -69,7 +71,8 @@ void check_needed(const LrbRep& rep, const std::vector<double>& needed) {
 }
 
 /// Tells which faces bound the wrapper of a tolerance. Regions need no more than what hides them, so that the
-/// wrapper of each tolerance shows a face from where the cell behind it is included until the one before it is.
+/// wrapper of each tolerance shows a face from where the cell behind it is included until the one before it
+/// is.
 class Boundaries {
  public:
   Boundaries(const LrbRep& rep, std::span<const double> needed) : rep_(rep), needed_(needed) {}

@@ -12,17 +12,18 @@
 namespace lrb {
 
 struct WrapperLevel {
-  /// No point of its lids is further than this from a real face; mesh's unit. Every region that is no thicker,
-  /// and hides none that is, is included.
+  /// No point of its lids is further than this from a real face; mesh's unit. Every region that is no
+  /// thicker, and hides none that is, is included.
   double bound = 0;
   ObbTree tree;  ///< over the simplices of its boundary, numbered as in the LRB-rep
   std::vector<VertexId> component_vertices;  ///< one vertex of each connected piece of the boundary
   std::uint32_t face_count = 0, pseudo_count = 0;
 };
 
-/// The levels of one body: a row of wrappers from the outermost one inward, up to half the body's faces. Each has
-/// about a third more faces than the one before, or a tenth where there are few. LrbRep::levels() makes and keeps
-/// them. An LRB-rep without regions, or of a body that is not closed or intersects itself, has none.
+/// The levels of one body: a row of wrappers from the outermost one inward, up to half the body's faces. Each
+/// has about a third more faces than the one before, or a tenth where there are few. LrbRep::levels() makes
+/// and keeps them. An LRB-rep without regions, or of a body that is not closed or intersects itself, has
+/// none.
 ///
 /// A region is included only together with everything that it hides, so that the wrapper encloses the body.
 /// That it does so rests on the LRB-rep being embedded (validate.hpp), as those that the builders make are. A
@@ -38,11 +39,12 @@ class WrapperLevels {
 
   explicit WrapperLevels(const LrbRep& rep, unsigned threads = 1);
   /// Takes levels as they were stored. Throws InputError unless every wrapper encloses the body as far as the
-  /// LRB-rep is embedded, and its tree can be walked safely and holds the faces of the wrapper once each. That
-  /// `needed` is not too small, and that the trees' bounds are right, is assumed: validate() tells.
+  /// LRB-rep is embedded, and its tree can be walked safely and holds the faces of the wrapper once each.
+  /// That `needed` is not too small, and that the trees' bounds are right, is assumed: validate() tells.
   WrapperLevels(const LrbRep& rep, std::vector<double> needed, std::vector<StoredLevel> stored);
 
-  /// Returns the coarsest level that is off by no more than a tolerance (mesh's unit); null: only the body is.
+  /// Returns the coarsest level that is off by no more than a tolerance (mesh's unit); null: only the body
+  /// is.
   const WrapperLevel* within(double tolerance) const;
   std::span<const WrapperLevel> all() const { return levels_; }  ///< coarsest first; bounds fall, faces rise
   /// Returns, for each region, the tolerance from which on it is included: the largest thickness among the

@@ -152,8 +152,8 @@ class HoleCloser {
     std::vector<std::size_t> lids;
   };
 
-  /// Puts the lids of all attempts on at once, sees what they meet, and keeps those that stand: an earlier one
-  /// before a later one that it meets.
+  /// Puts the lids of all attempts on at once, sees what they meet, and keeps those that stand: an earlier
+  /// one before a later one that it meets.
   void try_round(std::vector<Attempt>& attempts) {
     Mesh trial = out_.mesh;
     std::vector<std::size_t> owner;  // of new faces: the attempt

@@ -36,14 +36,14 @@ struct ClosedHoles {
   std::uint32_t new_vertices = 0, new_faces = 0;
 };
 
-/// Puts lids of triangles on the holes of a mesh in space. Vertices and faces that were there stay as they are
-/// and keep their numbers.
+/// Puts lids of triangles on the holes of a mesh in space. Vertices and faces that were there stay as they
+/// are and keep their numbers.
 ///
-/// Lids that are tried, in turn: for a flat hole its polygon, without those of the flat holes in it whose rims
-/// run the other way round (the end of a tube with a thick wall is a ring); for others the triangulation with
-/// the least area, then one made by cutting off corners in the plane of the mean normal, then a fan about the
-/// middle of the rim, which adds a vertex. A lid stands if the exact tests prove that its triangles meet
-/// neither a face that was there nor another lid nor each other in more than corners and edges that they
+/// Lids that are tried, in turn: for a flat hole its polygon, without those of the flat holes in it whose
+/// rims run the other way round (the end of a tube with a thick wall is a ring); for others the triangulation
+/// with the least area, then one made by cutting off corners in the plane of the mean normal, then a fan
+/// about the middle of the rim, which adds a vertex. A lid stands if the exact tests prove that its triangles
+/// meet neither a face that was there nor another lid nor each other in more than corners and edges that they
 /// share, and no new edge joins two vertices that an edge joins already. (Faces without area are not tested;
 /// they are findings of their own.)
 ClosedHoles close_holes(const CheckedMesh& mesh);

@@ -97,8 +97,8 @@ class CornerJoiner {
     return static_cast<std::uint32_t>(count);
   }
 
-  /// Joins the open sides of each place: only where there are two in opposite directions, or all. Returns true
-  /// if any were joined.
+  /// Joins the open sides of each place: only where there are two in opposite directions, or all. Returns
+  /// true if any were joined.
   bool join_groups(bool only_pairs) {
     bool any = false;
     for_each_place([&](const std::vector<const PlacedSide*>& open) {

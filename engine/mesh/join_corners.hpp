@@ -13,9 +13,9 @@ struct JoinedCorners {
   bool any() const { return after < before; }
 };
 
-/// Joins vertices in exactly the same place (0 and -0 count as the same) where the surface is open: many files
-/// give each face vertices of its own, so that every edge is open although nothing gapes. Faces keep their
-/// numbers, and vertices theirs; those that no face uses any more are listed in Mesh::joined.
+/// Joins vertices in exactly the same place (0 and -0 count as the same) where the surface is open: many
+/// files give each face vertices of its own, so that every edge is open although nothing gapes. Faces keep
+/// their numbers, and vertices theirs; those that no face uses any more are listed in Mesh::joined.
 ///
 /// Only the ends of open edges (2D: loose ends) are joined, and only with those of open edges in the same
 /// place. So a piece that is closed is never touched: two bodies that are kept apart though they touch in a

@@ -11,8 +11,9 @@ struct SimplexPoint {
   double distance_sq;  ///< from the point that it was looked for from
 };
 
-/// Returns the point of the segment a, b nearest to p, up to rounding. The distance is that of a point of the segment,
-/// so it is never less than the true one (up to rounding of the result). The same holds for triangles.
+/// Returns the point of the segment a, b nearest to p, up to rounding. The distance is that of a point of the
+/// segment, so it is never less than the true one (up to rounding of the result). The same holds for
+/// triangles.
 inline SimplexPoint nearest_on_segment(const Eigen::Vector3d& p, const Eigen::Vector3d& a,
                                        const Eigen::Vector3d& b) {
   const Eigen::Vector3d ab = b - a, ap = p - a;
@@ -23,8 +24,8 @@ inline SimplexPoint nearest_on_segment(const Eigen::Vector3d& p, const Eigen::Ve
   return {{1 - t, t, 0}, (ap - t * ab).squaredNorm()};
 }
 
-/// Returns the nearest point of a triangle (Ericson, "Real-Time Collision Detection", 5.1.5), which may be one
-/// without area.
+/// Returns the nearest point of a triangle (Ericson, "Real-Time Collision Detection", 5.1.5), which may be
+/// one without area.
 inline SimplexPoint nearest_on_triangle(const Eigen::Vector3d& p, const Eigen::Vector3d& a,
                                         const Eigen::Vector3d& b, const Eigen::Vector3d& c) {
   const Eigen::Vector3d ab = b - a, ac = c - a, ap = p - a;

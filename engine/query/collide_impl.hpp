@@ -22,8 +22,8 @@ namespace lrb {
 void check_query(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b);
 
 /// Asks for body `a` at pose_a against body `b` at pose_b, as collide() in collide.hpp does. `context`:
-/// memory that a query needs and the next one can use again, one per thread. `probe`: see NullProbe. `result`: new,
-/// or emptied by clear().
+/// memory that a query needs and the next one can use again, one per thread. `probe`: see NullProbe.
+/// `result`: new, or emptied by clear().
 template <class Probe>
 void collide_into(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
                   const CollideRequest& request, QueryContext& context, Probe& probe, CollideResult& result) {

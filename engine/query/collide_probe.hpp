@@ -19,7 +19,8 @@ class CollideProbe {
   /// A region of a body's wrapper was refined, which brought in as many faces. After a face test that hit,
   /// that test is the cause.
   virtual void refine(Side side, RegionId region, std::uint32_t faces_added);
-  /// A region was taken back in: a coarse query has asked the bodies for a first pair and goes on with wrappers.
+  /// A region was taken back in: a coarse query has asked the bodies for a first pair and goes on with
+  /// wrappers.
   virtual void coarsen(Side side, RegionId region, std::uint32_t faces_removed);
   /// Two simplices meet: part of the answer. They are real, but for coarse queries.
   virtual void contact(SimplexId a, SimplexId b, exact::Meet meet);
@@ -27,7 +28,8 @@ class CollideProbe {
   /// Returns how much is to be told, which must not change during a query. What follows is told only from
   /// EventLevel::nodes on.
   virtual EventLevel level() const;
-  /// The walk came to a pair of nodes. Returns what is to stand for it as NodeVisit::parent of pairs beneath it.
+  /// The walk came to a pair of nodes. Returns what is to stand for it as NodeVisit::parent of pairs beneath
+  /// it.
   virtual std::uint32_t node_pair(const NodeVisit& visit);
   /// Told at EventLevel::all: the plane of the simplex of `whose` body parts two simplices.
   virtual void plane_test(SimplexId a, SimplexId b, Side whose);

@@ -91,8 +91,8 @@ class Way {
     return at_[s] + 1 < path_[s].nodes.size() ? path_[s].nodes[at_[s] + 1] : node(s);
   }
 
-  /// Adds the pair of nodes that the way has come to. `child`: which box of its parent was compared; kWhole: the
-  /// node's own, because only the other one was descended.
+  /// Adds the pair of nodes that the way has come to. `child`: which box of its parent was compared; kWhole:
+  /// the node's own, because only the other one was descended.
   void add_nodes(const std::array<int, 2>& child) {
     BoxPair pair;
     std::array<WorldBox, 2> box;
@@ -106,7 +106,8 @@ class Way {
     out_.nodes.push_back(pair);
   }
 
-  /// Tells which of the two nodes the query descends here, and whether it goes on to the next pair of the way.
+  /// Tells which of the two nodes the query descends here, and whether it goes on to the next pair of the
+  /// way.
   std::array<bool, 2> moves_to(const Stepper::Outcome& outcome) {
     goes_on_ = false;
     std::optional<std::array<bool, 2>> kind;  // of any pair of children: they all descend the same nodes

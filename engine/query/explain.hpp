@@ -1,7 +1,7 @@
 #pragma once
-/// Explains answers of the complete query: how it comes from the roots of both trees to two faces and what decides
-/// between these, and what proves two bodies apart. Everything is asked of the query's own kernel, one pair of tree
-/// nodes at a time, so that what is told is what happens.
+/// Explains answers of the complete query: how it comes from the roots of both trees to two faces and what
+/// decides between these, and what proves two bodies apart. Everything is asked of the query's own kernel,
+/// one pair of tree nodes at a time, so that what is told is what happens.
 
 #include <array>
 #include <cstdint>
@@ -37,7 +37,8 @@ constexpr auto words_of(DecidedBy) {
                                              {DecidedBy::exact, "exact"}});
 }
 
-/// On which sides of a face's plane (2D: line) the corners of the other face lie: 1 in front, -1 behind, 0 in it.
+/// On which sides of a face's plane (2D: line) the corners of the other face lie: 1 in front, -1 behind, 0 in
+/// it.
 struct PlaneSides {
   std::array<int, 3> exact = {0, 0, 0};
   std::array<int, 3> in_double = {0, 0, 0};    ///< as plain double arithmetic has it, right or wrong
@@ -117,17 +118,18 @@ struct WalkExplanation {
   std::uint64_t face_pairs = 0;   ///< pairs of faces whose boxes meet
   std::uint64_t left = 0;         ///< those of them that planes do not part; these are compared one by one
   std::uint64_t certain = 0;      ///< those of them about which floats are certain
-  /// Of bodies that do not meet: the two boxes among those found apart that are nearest to each other. All others have a
-  /// larger gap: the walk's proof has no weaker link.
+  /// Of bodies that do not meet: the two boxes among those found apart that are nearest to each other. All
+  /// others have a larger gap: the walk's proof has no weaker link.
   std::optional<PartedBoxes> nearest_boxes;
   std::optional<PartingPlane> plane;  ///< of separate bodies: the best that was found; often none exists
-  /// The pairs among those left that are nearest to each other, of bodies that do not meet: nearest first, at most
-  /// kMostNear.
+  /// The pairs among those left that are nearest to each other, of bodies that do not meet: nearest first, at
+  /// most kMostNear.
   std::vector<SimplexPair> near;
   static constexpr std::size_t kMostNear = 5;
 };
 
-/// Walks both trees as the complete query for all pairs does, and tells what it did. Throws as collide() does.
+/// Walks both trees as the complete query for all pairs does, and tells what it did. Throws as collide()
+/// does.
 WalkExplanation explain_walk(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b);
 
 }  // namespace lrb

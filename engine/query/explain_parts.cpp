@@ -32,8 +32,8 @@ void NearPoints::see(const Vector3d& of_a, const Vector3d& of_b) {
 
 namespace {
 
-/// Sees the nearest points of the lines through two segments, if they are on the segments. (Else a corner of one is
-/// nearest to the other.)
+/// Sees the nearest points of the lines through two segments, if they are on the segments. (Else a corner of
+/// one is nearest to the other.)
 void see_edges(const Vector3d& p, const Vector3d& q, const Vector3d& r, const Vector3d& s, NearPoints& out) {
   const Vector3d d = q - p, e = s - r, w = p - r;
   const double dd = d.dot(d), ee = e.dot(e), de = d.dot(e), dw = d.dot(w), ew = e.dot(w);

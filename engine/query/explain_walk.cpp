@@ -146,8 +146,8 @@ class PlaneFinder {
   std::optional<PartingPlane> best_;
 };
 
-/// Tries the axes of the boxes round the bodies, the line between their middles, and the lines between the faces, and
-/// across the boxes, that are nearest to each other.
+/// Tries the axes of the boxes round the bodies, the line between their middles, and the lines between the
+/// faces, and across the boxes, that are nearest to each other.
 std::optional<PartingPlane> find_plane(QueryContext& ctx, const WalkExplanation& walk) {
   PlaneFinder finder(ctx);
   const WorldBox a = box_of(ctx[Side::a].tree(), 0, kWhole, ctx[Side::a].world.pose()),

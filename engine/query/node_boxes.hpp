@@ -1,6 +1,6 @@
 #pragma once
-/// The boxes of tree nodes as they lie in the world, in double arithmetic: to be shown, and to tell how far they are
-/// apart. The query compares them in floats and allows for all errors; these allow for none.
+/// The boxes of tree nodes as they lie in the world, in double arithmetic: to be shown, and to tell how far
+/// they are apart. The query compares them in floats and allows for all errors; these allow for none.
 
 #include <array>
 #include <cstdint>
@@ -26,10 +26,11 @@ constexpr auto words_of(BoxAxis) {
 
 /// Two boxes that the query compared, as they lie in the world.
 struct BoxPair {
-  /// Of A's tree and of B's: the nodes whose boxes they are; of the boxes of faces, the leaves that hold them.
+  /// Of A's tree and of B's: the nodes whose boxes they are; of the boxes of faces, the leaves that hold
+  /// them.
   std::array<std::uint32_t, 2> node = {0, 0};
-  /// The distance of the boxes along the axis on which they are furthest apart, mesh's unit; negative where they
-  /// overlap on all axes.
+  /// The distance of the boxes along the axis on which they are furthest apart, mesh's unit; negative where
+  /// they overlap on all axes.
   double gap = 0;
   BoxAxis axis = BoxAxis::a1;  ///< that axis
 };
@@ -43,8 +44,8 @@ struct WorldBox {
 
 constexpr int kWhole = -1;
 
-/// Returns the box of a node's child or simplex, number 0 to 7 there, or with kWhole that of the whole node. `pose`:
-/// body to world.
+/// Returns the box of a node's child or simplex, number 0 to 7 there, or with kWhole that of the whole node.
+/// `pose`: body to world.
 WorldBox box_of(const ObbTree& tree, std::uint32_t node, int child, const Pose& pose);
 
 /// Sets the gap and the axis of two boxes.

@@ -11,8 +11,8 @@ namespace lrb::scene {
 
 using Box = Eigen::AlignedBox3d;
 
-/// Returns a lower bound on the distance of two boxes that are not empty, which is off by rounding alone; 0 exactly
-/// if they have a point in common.
+/// Returns a lower bound on the distance of two boxes that are not empty, which is off by rounding alone; 0
+/// exactly if they have a point in common.
 double gap(const Box& a, const Box& b);
 
 /// The boxes that are not empty, in the order of their lower ends on an axis. The boxes must outlive it.
@@ -25,7 +25,8 @@ class SortedBoxes {
   double low(std::uint32_t box) const { return boxes_[box].min()[axis_]; }
   /// Returns true if no box from `low` on can be as near to this one as `limit`.
   bool is_beyond(double low, std::uint32_t box, double limit) const;
-  /// Returns the place in the order of the first box whose lower end is no less than `low` (or more, if `above`).
+  /// Returns the place in the order of the first box whose lower end is no less than `low` (or more, if
+  /// `above`).
   std::size_t first_from(double low, bool above) const;
 
  private:

@@ -119,8 +119,8 @@ class Scene::Held {
 
   void reserve(std::size_t bodies);
 
-  /// Return whose pairs are asked about, with boxes as they stand now: those of the scene; of a body from outside and
-  /// one of the scene; of the scene and another.
+  /// Return whose pairs are asked about, with boxes as they stand now: those of the scene; of a body from
+  /// outside and one of the scene; of the scene and another.
   Parties own();
   Parties with(const Party& outside) { return {outside, party(), false}; }
   Parties with(Held& other);
@@ -328,7 +328,8 @@ void Scene::Held::measure(const Parties& parties, std::span<const Near> near, Di
 
 std::optional<SceneDistance> Scene::Held::nearest(const Parties& parties, const DistanceRequest& request,
                                                   Apart apart) {
-  // Asks about this many at a time, whatever the number of threads: what they find spares queries about the next.
+  // Asks about this many at a time, whatever the number of threads: what they find spares queries about the
+  // next.
   constexpr std::size_t kAtATime = 64;
   const std::optional<Near> likely = nearest_of(parties);
   if (!likely) return {};

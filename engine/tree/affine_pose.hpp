@@ -17,7 +17,8 @@
 ///   the largest. Then own is nearly a projection, and X's own boxes are turned by it, too.
 ///
 /// Errors. If points of both bodies are equal in the world, with all rounding, so are their x(w), and
-///     |own p - (other q + origin)| <= |own - G_X R_X| |p| + |G_X| (rounding of the world, own, other, origin),
+///     |own p - (other q + origin)| <= |own - G_X R_X| |p|
+///         + |G_X| (rounding of the world, own, other, origin),
 /// because each of these is a sum of products of G_X and of terms of a world coordinate. Let u = 2^-53 and S
 /// the size of both bodies' world coordinates in units of L. World coordinates take 4 u S, own and other 3 u
 /// each, the origin 4 u, the offset of two nodes 5 u, for each coordinate. With sqrt 3 for the length of such

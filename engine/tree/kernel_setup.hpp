@@ -23,7 +23,8 @@ TreeKernel set_up_kernel(const ObbTree& a, const Pose& pose_a, const ObbTree& b,
 TreeKernel set_up_any_kernel(const ObbTree& a, const Pose& pose_a, const ObbTree& b, const Pose& pose_b,
                              int dim, AffineTerms& terms);
 
-/// Makes the kernel of two wrappers allow for what rounding does to the bodies in them, too: see kWrapperSlack.
+/// Makes the kernel of two wrappers allow for what rounding does to the bodies in them, too: see
+/// kWrapperSlack.
 void allow_for_wrappers(TreeKernel& k);
 
 }  // namespace lrb

@@ -44,7 +44,8 @@ inline Float8 gaps_of(const Row& row, const Boxes& own_b, const Turned& bt) {
 }
 
 /// Finds which of A's boxes may meet which of B's: mask[k] has a bit for each of B's boxes that A's box k may
-/// meet. Most pairs of nodes are apart, and most of these show it in the first test. kGaps: finds the gaps, too.
+/// meet. Most pairs of nodes are apart, and most of these show it in the first test. kGaps: finds the gaps,
+/// too.
 template <bool kMargin, bool kGaps, class Lie>
 inline std::uint32_t pair_masks(TreeKernel& k, const TreeNode& na, const TreeNode& nb, const Lie& w,
                                 std::uint32_t mask[8], Gaps* gaps = nullptr) {
@@ -261,8 +262,8 @@ inline void leaf_pair(TreeKernel& k, const TreeNode& na, const TreeNode& nb) {
   }
 }
 
-/// The nearest pair of boxes is looked for in the first so many pairs of nodes: bodies that meet mostly show it in
-/// these, and for bodies that do not meet any order is as good.
+/// The nearest pair of boxes is looked for in the first so many pairs of nodes: bodies that meet mostly show
+/// it in these, and for bodies that do not meet any order is as good.
 constexpr std::uint64_t kNearestPairs = 24;
 
 template <class Walk, bool kNearest>

@@ -69,8 +69,9 @@ struct BinaryNode {
   bool is_leaf() const { return left == kNull; }
 };
 
-/// Which splits the surface area heuristic chooses from. If from all, trees of wrappers, whose faces are few and
-/// long, take up to a tenth fewer node pairs; those of bodies 0 to 4 %, for three times the time to build.
+/// Which splits the surface area heuristic chooses from. If from all, trees of wrappers, whose faces are few
+/// and long, take up to a tenth fewer node pairs; those of bodies 0 to 4 %, for three times the time to
+/// build.
 enum class Splits { binned, all };
 
 /// Builds the binary tree top-down. Every split leaves a multiple of eight simplices on its left, so that all

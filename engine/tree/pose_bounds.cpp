@@ -23,8 +23,8 @@ double wrapper_margin(const Pose& pose_a, const ObbTree& a, const Pose& pose_b, 
   return kWrapperMargin * (world_size(pose_a, a) + world_size(pose_b, b) + kWorldUnderflow);
 }
 
-/// Scales by a power of two, which is exact, so that squares fit into doubles, and back; mostly by a product, which
-/// is faster.
+/// Scales by a power of two, which is exact, so that squares fit into doubles, and back; mostly by a product,
+/// which is faster.
 double stretch(const Pose& pose) {
   int exponent = 0;
   std::frexp(pose.r.cwiseAbs().maxCoeff(), &exponent);

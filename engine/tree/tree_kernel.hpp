@@ -105,10 +105,10 @@ struct TreeKernel {
   std::uint64_t most_node_pairs;  ///< where to stop; may be raised to go on
 };
 
-/// Traverses until the stack is empty, fewer than 64 places are left in `out`, or most_node_pairs are reached.
-/// Uses the newest instruction set that the processor has; the environment variable LRB_SIMD, read at the first
-/// call, limits it to AVX2 ("avx2") or to what every processor has ("baseline"). The outcome is the same, counters
-/// included (tests/repeat/repeat.sh).
+/// Traverses until the stack is empty, fewer than 64 places are left in `out`, or most_node_pairs are
+/// reached. Uses the newest instruction set that the processor has; the environment variable LRB_SIMD, read
+/// at the first call, limits it to AVX2 ("avx2") or to what every processor has ("baseline"). The outcome is
+/// the same, counters included (tests/repeat/repeat.sh).
 void run_tree_kernel(TreeKernel& k);
 
 }  // namespace lrb

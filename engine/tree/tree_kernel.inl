@@ -18,7 +18,8 @@ struct RigidWalk {
   static Between between(const TreeKernel& k, const TreeNode& a, const TreeNode& b) {
     return lrb::between<kMargin>(k, a, b);
   }
-  /// Returns true if there are more directions that may part two nodes: they are tried for trees full of needles.
+  /// Returns true if there are more directions that may part two nodes: they are tried for trees full of
+  /// needles.
   static bool has_more_directions(const TreeKernel& k) { return !kMargin && k.needles; }
   static bool more_parts(const TreeKernel& k, const TreeNode& a, const TreeNode& b) {
     return needles_apart(k, a, b);

@@ -18,8 +18,8 @@ struct TreeQuality {
   double sibling_overlap = 0;
   double bytes_per_simplex = 0;
 };
-/// Returns the figures of a tree; all 0 for an empty one. Source of the cost: Goldsmith and Salmon, Automatic Creation
-/// of Object Hierarchies for Ray Tracing, 1987.
+/// Returns the figures of a tree; all 0 for an empty one. Source of the cost: Goldsmith and Salmon, Automatic
+/// Creation of Object Hierarchies for Ray Tracing, 1987.
 TreeQuality tree_quality(const ObbTree& tree);
 
 }  // namespace lrb

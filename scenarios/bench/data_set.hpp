@@ -1,6 +1,7 @@
 #pragma once
-/// What methods are asked when they are measured: for the pairs of two bodies, or a number, at poses of several
-/// classes, with the right answers. A data set is a file of its own, so that worker programs can read it.
+/// What methods are asked when they are measured: for the pairs of two bodies, or a number, at poses of
+/// several classes, with the right answers. A data set is a file of its own, so that worker programs can read
+/// it.
 
 #include <cstdint>
 #include <optional>

@@ -4,8 +4,8 @@
 
 namespace lrb::bench {
 
-/// Returns how far out along a way two bodies first meet, coming in from `far`: tries one place every `step` as long as it is
-/// beyond `near`, then halves. None: they meet nowhere there. meets(s): at s.
+/// Returns how far out along a way two bodies first meet, coming in from `far`: tries one place every `step`
+/// as long as it is beyond `near`, then halves. None: they meet nowhere there. meets(s): at s.
 template <class Meets>
 std::optional<double> first_meeting(double far, double near, double step, const Meets& meets) {
   constexpr int kHalvings = 40;

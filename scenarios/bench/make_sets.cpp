@@ -106,8 +106,8 @@ class Maker {
     set_.questions.push_back(std::move(q));
   }
 
-  /// B at one pose, or on a straight motion that is two diagonals long and begins anywhere, so that no method that asks
-  /// at equal times is lucky.
+  /// B at one pose, or on a straight motion that is two diagonals long and begins anywhere, so that no method
+  /// that asks at equal times is lucky.
   void add_numbers(PoseClass c) {
     Approaches approaches(reps_[0], reps_[1], set_.diagonal, o_.seed);
     shapes::RandomEngine random(o_.seed);

@@ -28,7 +28,8 @@ struct SetOptions {
 };
 
 /// Writes the data set and its bodies into a folder and returns the set, or reads what is there if it was
-/// made from the same bodies and options. Throws InputError if a body cannot be an LRB-rep, and as find_numbers() does.
+/// made from the same bodies and options. Throws InputError if a body cannot be an LRB-rep, and as
+/// find_numbers() does.
 DataSet make_data_set(const BodyPair& pair, const SetOptions& options, const std::string& folder);
 
 }  // namespace lrb::bench

@@ -37,7 +37,8 @@ struct Family {
   const char* degenerate = "";  ///< what dial 1 means: "exactly in contact"
   bool both_ways = false;       ///< the question is whether the answer to (B, A) is that to (A, B) transposed
   int rank = 1000;              ///< the families' order in tables: by rank, then by file
-  /// Returns what a setting of the dial means, in a few characters such as "1e-6"; null: it has no one number.
+  /// Returns what a setting of the dial means, in a few characters such as "1e-6"; null: it has no one
+  /// number.
   std::string (*value)(double dial) = nullptr;
 };
 inline int rank_of(const Family& f) {

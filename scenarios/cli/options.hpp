@@ -42,8 +42,8 @@ void add_repeat_option(CLI::App& app, std::uint32_t& repeat, const std::string& 
 /// Adds --patch, --max-outer, --lean, --seed and --threads.
 void add_build_options(CLI::App& app, BuildOptions& options);
 
-/// The options --from, --look-at, --zoom, --projection and --up, and --orbit where it is added, too: where pictures are seen from. They take precedence over a
-/// scenario.
+/// The options --from, --look-at, --zoom, --projection and --up, and --orbit where it is added, too: where
+/// pictures are seen from. They take precedence over a scenario.
 struct CameraOptions {
   std::string from, look_at, up;
   std::optional<double> orbit;
@@ -53,11 +53,12 @@ struct CameraOptions {
 void add_camera_options(CLI::App& app, CameraOptions& options);
 /// Adds --orbit, which pictures of several moments have.
 void add_orbit_option(CLI::App& app, CameraOptions& options);
-/// Changes all views. --up turns what they have; --from and --look-at are given in the axes of the bodies' files, and are not
-/// turned. Throws InputError for what is no camera.
+/// Changes all views. --up turns what they have; --from and --look-at are given in the axes of the bodies'
+/// files, and are not turned. Throws InputError for what is no camera.
 void apply(const CameraOptions& options, std::vector<spec::FrameSpec::View>& views);
 
-/// The options of cameras, and --size, --dpi, --style, --no-title, --no-legend, --transparent, --format, --frames, --every, --most, --colour-by,
+/// The options of cameras, and --size, --dpi, --style, --no-title, --no-legend, --transparent, --format,
+/// --frames, --every, --most, --colour-by,
 /// --colour-per and --node-boxes, which take precedence over a scenario.
 struct PictureOptions {
   CameraOptions camera;
@@ -84,7 +85,8 @@ void apply(const PictureOptions& options, spec::FrameSpec& spec);
 
 /// Adds --animate, for commands that call animate_frames().
 void add_animation_option(CLI::App& app, PictureOptions& options);
-/// Makes the moving picture that was asked for of the frames in a folder; where there is no ffmpeg, tells the line that would.
+/// Makes the moving picture that was asked for of the frames in a folder; where there is no ffmpeg, tells the
+/// line that would.
 void animate_frames(const PictureOptions& options, const std::string& folder, const Globals& globals);
 
 /// Adds --up, which takes x, y or z.

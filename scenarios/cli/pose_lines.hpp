@@ -32,7 +32,8 @@ struct PoseLines {
   std::vector<std::string> places;
 };
 
-/// Returns a picture's file: `path`, or with the number of the pose before its ending if there are several poses.
+/// Returns a picture's file: `path`, or with the number of the pose before its ending if there are several
+/// poses.
 std::string picture_name(const std::string& path, std::size_t pose, std::size_t poses);
 
 }  // namespace lrb::cli

@@ -23,7 +23,8 @@ struct Runs {
 std::size_t step_count(const Runs& runs);
 /// Returns true if all events of a step were stored.
 bool is_whole(const run::Recording& run, std::size_t step);
-/// Returns the step at which both together test most boxes, of those that are whole in both. Throws InputError if none is.
+/// Returns the step at which both together test most boxes, of those that are whole in both. Throws
+/// InputError if none is.
 std::size_t busiest_step(const Runs& runs);
 /// Says which of the runs were cut, in a sentence; empty if none was.
 std::string cut_words(const Runs& runs);
@@ -33,8 +34,9 @@ void refuse_folder_of_run(const std::string& folder);
 /// What colours mean: box tests where both runs have recorded pairs of nodes, else face tests.
 spec::FrameSpec::ColourBy common_colours(const Runs& runs);
 
-/// Draws the bodies of both runs at the end of a step, coloured by common_colours() on one scale, and where the bodies
-/// have as many faces in both and these differ, a third picture: how much more each face has in one of the runs than in the other.
+/// Draws the bodies of both runs at the end of a step, coloured by common_colours() on one scale, and where
+/// the bodies have as many faces in both and these differ, a third picture: how much more each face has in
+/// one of the runs than in the other.
 render::Image draw(const Runs& runs, std::size_t step, const run::ProgressReport& progress);
 
 /// Returns a chart of a counter over the steps of both.

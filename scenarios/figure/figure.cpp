@@ -108,7 +108,8 @@ class FigureJob {
     return o;
   }
 
-  /// Returns the ends of the scale of colours over all panels: a bar for the whole figure means the same in each.
+  /// Returns the ends of the scale of colours over all panels: a bar for the whole figure means the same in
+  /// each.
   std::optional<std::array<double, 2>> common_range() {
     if (recorded_.value_range) return recorded_.value_range;
     std::optional<std::array<double, 2>> range;
@@ -245,7 +246,8 @@ class FigureJob {
     canvas.end_clip();
   }
 
-  /// Draws the faces as pixels, of which the panel's box holds a whole number, and paints lines and texts over them.
+  /// Draws the faces as pixels, of which the panel's box holds a whole number, and paints lines and texts
+  /// over them.
   void paint_deep(render::Canvas& canvas, const render::DrawList& list, const render::Camera& whole,
                   const PanelPlace& place, double scale) {
     const double pixel = render::kPointsPerInch / dpi_, margin = options().margin,

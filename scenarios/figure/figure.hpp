@@ -36,8 +36,8 @@ struct Figure {
   std::size_t panels = 0;
 };
 
-/// Draws the figure. `frames` says what colours mean, which regions are shown, and from where. Throws InputError for what a
-/// figure cannot show.
+/// Draws the figure. `frames` says what colours mean, which regions are shown, and from where. Throws
+/// InputError for what a figure cannot show.
 Figure draw_figure(const run::RecordedRun& recorded, const spec::FrameSpec& frames, const FigureSpec& figure,
                    const run::ProgressReport& progress);
 

@@ -149,7 +149,8 @@ void place(BlockLayout& block, double top, double grid) {
   }
 }
 
-/// Places entries one after the other in as many rows as they need, each row in the middle. Returns the bottom.
+/// Places entries one after the other in as many rows as they need, each row in the middle. Returns the
+/// bottom.
 double place_legend(const std::vector<render::LegendItem>& legend, const LayoutOptions& o, double top,
                     FigureLayout& out) {
   const double em = o.font_size, row = kLine * em,

@@ -11,7 +11,8 @@
 
 namespace lrb::figure {
 
-/// Panels of one view: they have one scale, and stand in rows and columns so that what did not move stays in its place.
+/// Panels of one view: they have one scale, and stand in rows and columns so that what did not move stays in
+/// its place.
 struct Block {
   std::vector<Eigen::AlignedBox2d> seen;  ///< (panels) the box around what is drawn, in the view's own units
   std::vector<std::string> texts;         ///< below each: letter and title; empty: no room is left for them
@@ -51,8 +52,8 @@ struct FigureLayout {
   std::vector<std::pair<double, std::string>> caption;  ///< middle of each line, from the top, and the line
 };
 
-/// Lays a figure out. What is left empty takes no room. Throws InputError where the width is too small for the columns or for an
-/// entry of the legend.
+/// Lays a figure out. What is left empty takes no room. Throws InputError where the width is too small for
+/// the columns or for an entry of the legend.
 FigureLayout lay_out(const std::vector<Block>& blocks, const std::vector<render::LegendItem>& legend,
                      const std::optional<render::ScaleBar>& scale, const std::string& caption,
                      const LayoutOptions& options);

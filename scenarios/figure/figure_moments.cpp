@@ -18,8 +18,8 @@ struct State {
   double faces = 0;
 };
 
-/// Returns the events after which a figure may show a state: of one body those that change its wrapper (or end a pass of its
-/// construction), of two the ends of time steps.
+/// Returns the events after which a figure may show a state: of one body those that change its wrapper (or
+/// end a pass of its construction), of two the ends of time steps.
 std::vector<EventId> candidates(const run::RecordedRun& recorded) {
   const trace::Trace& trace = *recorded.trace;
   if (trace.header.construction) {

@@ -39,7 +39,8 @@ void paint_bar(render::Canvas& canvas, const FigureLayout& layout, const render:
                render::Rgba ink) {
   constexpr int kSteps = 128;
   const AlignedBox2d& bar = *layout.bar;
-  // Each step reaches to the right end, under those that follow: between two that only touch, paper would show.
+  // Each step reaches to the right end, under those that follow: between two that only touch, paper would
+  // show.
   for (int i = 0; i < kSteps; ++i) {
     const Vector2d from(bar.min().x() + bar.sizes().x() * i / kSteps, bar.min().y());
     canvas.fill({render::corners({from, bar.max()})}, palette::viridis(i / (kSteps - 1.0)));

@@ -1,6 +1,6 @@
 #pragma once
-/// Compares a run with what was approved, on the levels that the golden asks for: answers, events and counters
-/// exactly; pictures by hash and, if that differs, within a tolerance: what processors differ by.
+/// Compares a run with what was approved, on the levels that the golden asks for: answers, events and
+/// counters exactly; pictures by hash and, if that differs, within a tolerance: what processors differ by.
 
 #include <optional>
 #include <string>

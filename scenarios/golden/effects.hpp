@@ -19,8 +19,8 @@ struct Effect {
   Kind kind = Kind::answer;
 };
 
-/// Returns all of them: answers, then what is measured of them, then the work that led to them, each in the order
-/// of the steps.
+/// Returns all of them: answers, then what is measured of them, then the work that led to them, each in the
+/// order of the steps.
 std::vector<Effect> find_effects(const Golden& golden, const GoldenRun& run);
 
 /// Returns the total length of the contact curves of each step, in the scenario's unit; nothing where the

@@ -17,8 +17,8 @@ struct GoldenRun {
   std::vector<run::PaintedFrame> frames;
 };
 
-/// Runs a scenario, always on the event clock, whatever the scenario says, and draws nothing. Several threads may
-/// do this at once.
+/// Runs a scenario, always on the event clock, whatever the scenario says, and draws nothing. Several threads
+/// may do this at once.
 GoldenRun record_golden(spec::Scenario scenario, const GoldenSpec& spec, const run::ProgressReport& progress);
 /// Draws its pictures, if these are compared.
 void paint_golden(GoldenRun& run, const GoldenSpec& spec, const run::ProgressReport& progress);

@@ -14,8 +14,8 @@
 namespace lrb::python {
 namespace {
 
-/// A scene as Python has it. Its broad phase runs on one thread, which a fork does not take away; queries run on all
-/// those of run_batch().
+/// A scene as Python has it. Its broad phase runs on one thread, which a fork does not take away; queries run
+/// on all those of run_batch().
 struct HeldScene {
   explicit HeldScene(std::size_t asked_threads) : threads(asked_threads), scene(1) {}
 

@@ -27,7 +27,8 @@ std::string program() {
 }
 
 std::vector<std::string> codec(const std::string& ending) {
-  // Colours of their own for a GIF, which has 256; sizes that are even for H.264, in colours that every player has.
+  // Colours of their own for a GIF, which has 256; sizes that are even for H.264, in colours that every
+  // player has.
   if (ending == ".gif") return {"-filter_complex", "split[a][b];[a]palettegen[p];[b][p]paletteuse"};
   if (ending == ".webp") return {"-c:v", "libwebp", "-lossless", "1", "-loop", "0"};
   return {"-vf",    "pad=ceil(iw/2)*2:ceil(ih/2)*2:color=white", "-c:v", "libx264", "-crf", "16", "-pix_fmt",

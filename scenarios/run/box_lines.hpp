@@ -15,8 +15,8 @@ struct BoxLook {
   bool through = false;  ///< seen through what hides it
 };
 
-/// Adds the twelve edges of a box in the world: four round each end, and four between. `half`: from the centre to the
-/// middles of three sides.
+/// Adds the twelve edges of a box in the world: four round each end, and four between. `half`: from the
+/// centre to the middles of three sides.
 void add_box(render::DrawList& list, const Eigen::Vector3d& centre,
              const std::array<Eigen::Vector3d, 3>& half, const BoxLook& look);
 

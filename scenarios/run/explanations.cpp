@@ -35,7 +35,8 @@ bool is_answered(const RecordedRun& p) {
   return p.reps.size() == 2 && request.recursion == Recursion::complete && !request.is_coarse();
 }
 
-/// Returns the different pairs of real faces that events compare, and those that another engine got wrong, by step.
+/// Returns the different pairs of real faces that events compare, and those that another engine got wrong, by
+/// step.
 std::vector<Asked> pairs_of(const RecordedRun& p, const Explained& what) {
   std::vector<Asked> out;
   std::size_t step = 0;

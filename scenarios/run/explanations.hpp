@@ -25,11 +25,11 @@ struct Explained {
   const std::vector<std::uint32_t>& steps;
 };
 
-/// Returns what explain_pair() tells of the pairs of real faces that these events compare, or that another engine got
-/// wrong, each pair of a step once, and
-/// what explain_walk() tells of the steps that found none. Of too many pairs, contacts come first; others are evenly
-/// chosen. `command` explains other pairs, see ReportText::why. Returns null for a run of one body, and for requests
-/// that the complete query does not answer.
+/// Returns what explain_pair() tells of the pairs of real faces that these events compare, or that another
+/// engine got wrong, each pair of a step once, and what explain_walk() tells of the steps that found none. Of
+/// too many pairs, contacts come first; others are evenly chosen. `command` explains other pairs, see
+/// ReportText::why. Returns null for a run of one body, and for requests that the complete query does not
+/// answer.
 nlohmann::json explanations_json(const RecordedRun& recorded, const Explained& what, const SceneFrame& frame,
                                  const std::string& command, const ExplainLimits& limits = {});
 

@@ -8,13 +8,15 @@
 
 namespace lrb::run {
 
-/// Returns the region that a face belongs to, one that covers a real face or that a pseudo face hides; kNull: none.
+/// Returns the region that a face belongs to, one that covers a real face or that a pseudo face hides; kNull:
+/// none.
 std::uint32_t region_of(const LrbRep& rep, FaceId face);
 
 /// Returns a face's level, the number of regions between it and the outside.
 std::uint32_t level_of(const LrbRep& rep, FaceId face);
 
-/// Returns, for each face (|F|), the sum of the values over its region or its level; a face without a region keeps its own.
+/// Returns, for each face (|F|), the sum of the values over its region or its level; a face without a region
+/// keeps its own.
 std::vector<double> grouped(std::vector<double> values, spec::FrameSpec::ColourPer per, const LrbRep& rep);
 
 }  // namespace lrb::run

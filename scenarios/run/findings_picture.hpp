@@ -17,8 +17,8 @@ struct FaultyMesh {
 };
 
 /// Draws a mesh's findings: the whole mesh in panel (a), the first offender of each kind close up in a panel
-/// each. Of open edges all are drawn, and the longest loop close up. `frames` says how large the whole is to be
-/// (height 0: as it needs) and, by its first view, from where the whole is seen. Returns false, and writes
+/// each. Of open edges all are drawn, and the longest loop close up. `frames` says how large the whole is to
+/// be (height 0: as it needs) and, by its first view, from where the whole is seen. Returns false, and writes
 /// nothing, if there is nothing to point at.
 bool draw_findings(const FaultyMesh& faulty, const std::string& path, const spec::FrameSpec& frames);
 

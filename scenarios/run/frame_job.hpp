@@ -24,8 +24,8 @@ struct RecordedRun {
   const std::vector<std::vector<WrongPair>>* wrong = nullptr;  ///< as Recording::wrong, or null
   /// Ends of the scale of colours that mean numbers; nothing: as the frame has them.
   std::optional<std::array<double, 2>> value_range = {};
-  /// Values to colour A's and B's faces by, in place of those that FrameSpec::colour_by computes, and their name; null:
-  /// compute them.
+  /// Values to colour A's and B's faces by, in place of those that FrameSpec::colour_by computes, and their
+  /// name; null: compute them.
   const std::array<std::vector<double>, 2>* face_values = nullptr;
   std::string value_name = {};
   std::string first_contact = {};  ///< as Recording::first_contact

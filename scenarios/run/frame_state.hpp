@@ -63,10 +63,11 @@ class FrameState {
   const trace::StepResult* answer_here() const;  ///< Returns the same, as the trace has it.
   const Separation* proof_here() const;  ///< Returns the answer's certificate of separation, whose wrappers
                                          ///< are then shown.
-  /// Returns the walk of a step that ends here without contact; null: of another, or where what parts the bodies is not
-  /// to be shown: numbers of faces need the picture for themselves.
+  /// Returns the walk of a step that ends here without contact; null: of another, or where what parts the
+  /// bodies is not to be shown: numbers of faces need the picture for themselves.
   const WalkExplanation* parting_here() const;
-  /// Return the way between the nearest points, or B's way out, of a step that ends here; nothing if nobody asked.
+  /// Return the way between the nearest points, or B's way out, of a step that ends here; nothing if nobody
+  /// asked.
   std::optional<MarkedWay> gap_here() const;
   std::optional<MarkedWay> way_out_here() const;
   /// Returns what was measured at the step's end, in words, to follow others; empty if nobody asked.

@@ -8,7 +8,8 @@
 
 namespace lrb::run {
 
-/// Returns the counters by level, and those of the regions with the most tests, for each body; none for a run of one body.
+/// Returns the counters by level, and those of the regions with the most tests, for each body; none for a run
+/// of one body.
 std::vector<report::PageTable> group_tables(const RecordedRun& run);
 
 }  // namespace lrb::run

@@ -1,6 +1,6 @@
 #pragma once
-/// Charts of what was measured in a run besides the pairs of faces: distances and depths step by step, and how their
-/// bounds tightened with the work.
+/// Charts of what was measured in a run besides the pairs of faces: distances and depths step by step, and
+/// how their bounds tightened with the work.
 
 #include <vector>
 
@@ -17,7 +17,8 @@ bool was_measured(const trace::Trace& trace, Measured trace::StepResult::*what) 
   return false;
 }
 
-/// Returns the charts; none if nothing was measured. Of bounds, those of the step that narrowed them most often.
+/// Returns the charts; none if nothing was measured. Of bounds, those of the step that narrowed them most
+/// often.
 std::vector<report::PageChart> measure_charts(const trace::Trace& trace);
 
 }  // namespace lrb::run

@@ -28,9 +28,9 @@ struct MarkedWay {
   std::string text;
 };
 
-/// Return the way between the nearest points of bodies that are apart, or the way of B out of A, through the middle of
-/// the contacts; nothing if there is none. contacts: may be empty, and then the middle is that of what the boxes of the
-/// bodies share.
+/// Return the way between the nearest points of bodies that are apart, or the way of B out of A, through the
+/// middle of the contacts; nothing if there is none. contacts: may be empty, and then the middle is that of
+/// what the boxes of the bodies share.
 std::optional<MarkedWay> gap_of(const trace::MeasuredDistance& distance);
 std::optional<MarkedWay> way_out_of(const trace::MeasuredClash& clash, const LrbRep& a, const Pose& pose_a,
                                     const LrbRep& b, const Pose& pose_b,

@@ -7,8 +7,8 @@
 
 namespace lrb::run {
 
-/// Returns what distances and clashes of a run found, for the page's view: for each step that has one, the way between
-/// the nearest points, or the way of B out of A; null if there is none.
+/// Returns what distances and clashes of a run found, for the page's view: for each step that has one, the
+/// way between the nearest points, or the way of B out of A; null if there is none.
 nlohmann::json measured_json(const RecordedRun& p, const SceneFrame& frame);
 
 }  // namespace lrb::run

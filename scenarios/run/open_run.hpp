@@ -10,14 +10,15 @@
 
 namespace lrb::run {
 
-/// Loads the bodies that were recorded: those named by `given`, or if it is empty those of these names beside the trace.
+/// Loads the bodies that were recorded: those named by `given`, or if it is empty those of these names beside
+/// the trace.
 std::vector<bodies::LoadedBody> find_bodies(const std::string& trace_path,
                                             const std::vector<std::string>& given,
                                             const std::vector<std::string>& names);
 
-/// Returns the run whose trace has been read, with its bodies (see find_bodies()). Computes the contact regions of each
-/// step anew, because a trace holds pairs but not where they meet. Throws InputError if the trace cannot have come from
-/// these bodies.
+/// Returns the run whose trace has been read, with its bodies (see find_bodies()). Computes the contact
+/// regions of each step anew, because a trace holds pairs but not where they meet. Throws InputError if the
+/// trace cannot have come from these bodies.
 Recording open_run(trace::Trace trace, const std::string& trace_path,
                    const std::vector<std::string>& bodies = {});
 
@@ -33,8 +34,8 @@ struct OpenStep {
   trace::Step step;
 };
 
-/// Opens one step of a run, by its number; without a number the last. `run`: its folder, or its trace with the bodies
-/// beside it. Throws InputError if there is no such step, or only one body.
+/// Opens one step of a run, by its number; without a number the last. `run`: its folder, or its trace with
+/// the bodies beside it. Throws InputError if there is no such step, or only one body.
 OpenStep open_step(const std::string& run, std::optional<std::uint32_t> number);
 
 }  // namespace lrb::run

@@ -38,8 +38,8 @@ void add_plane(render::DrawList& list, const std::array<Vector3d, 2>& nearest, d
   list.add_polygon({middle + u + v, middle - u + v, middle - u - v, middle + u - v}, like);
 }
 
-/// Returns a direction from which both faces are seen from their fronts; where they look opposite ways, A's from its
-/// front and B's from its back.
+/// Returns a direction from which both faces are seen from their fronts; where they look opposite ways, A's
+/// from its front and B's from its back.
 render::ViewDirection onto_both(const std::vector<Vector3d>& a, const std::vector<Vector3d>& b) {
   constexpr double kOpposite = 0.5;  // of unit normals' sum
   const Vector3d of_a = (a[1] - a[0]).cross(a[2] - a[0]).stableNormalized(),

@@ -73,7 +73,8 @@ std::vector<Vector3d> close_points(const WalkExplanation& walk) {
   return out;
 }
 
-/// Returns a camera that looks from near by, and along the plane, so that the gap is seen. `whole`: all that there is.
+/// Returns a camera that looks from near by, and along the plane, so that the gap is seen. `whole`: all that
+/// there is.
 render::Camera close_camera(const WalkExplanation& walk, const Square& square, int dim,
                             const std::vector<Vector3d>& whole, const render::PixelRect& place) {
   constexpr double kContext = 1.5, kLeast = 0.03;

@@ -1,6 +1,6 @@
 #pragma once
-/// Draws what parts two bodies that are apart: a plane between them, else the nearest of the boxes that the walk found
-/// apart.
+/// Draws what parts two bodies that are apart: a plane between them, else the nearest of the boxes that the
+/// walk found apart.
 
 #include <string>
 
@@ -20,7 +20,8 @@ void add_parting(render::DrawList& list, const WalkExplanation& walk, const LrbR
 /// Returns it in a few words, such as "a plane parts them, gap 0.12"; empty where neither was found.
 std::string parting_words(const WalkExplanation& walk);
 
-/// Draws both bodies with it into a picture: the whole, and beside it, where something was found, a close-up along it.
+/// Draws both bodies with it into a picture: the whole, and beside it, where something was found, a close-up
+/// along it.
 void draw_parting(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
                   const WalkExplanation& walk, const std::string& path);
 

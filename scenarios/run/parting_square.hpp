@@ -9,8 +9,8 @@
 
 namespace lrb::run {
 
-/// Returns the corners of a square in the middle of the gap that a plane parts, as large as the smaller of the two
-/// bodies, before its middle. World. In the plane (2D) it is a strip: corners 0 and 1 end its line.
+/// Returns the corners of a square in the middle of the gap that a plane parts, as large as the smaller of
+/// the two bodies, before its middle. World. In the plane (2D) it is a strip: corners 0 and 1 end its line.
 using Square = std::array<Eigen::Vector3d, 4>;
 Square parting_square(const PartingPlane& plane, const LrbRep& a, const Pose& pose_a, const LrbRep& b,
                       const Pose& pose_b);

@@ -56,7 +56,8 @@ std::vector<Pose> poses_of_b(const spec::Scenario& s, Recording& r) {
 class StepQueries {
  public:
   StepQueries(const spec::Scenario& s, const LrbRep& a, const LrbRep& b) : s_(s), a_(a), b_(b) {
-    // Caches are made whenever they can be: where they pay is a matter of time, and a trace is to be the same again.
+    // Caches are made whenever they can be: where they pay is a matter of time, and a trace is to be the same
+    // again.
     if (s.more.coherent) coherent_.emplace(a, b, s.request, CoherentQuery::CacheUse::always);
   }
 
@@ -153,7 +154,8 @@ void record_construction(const spec::Scenario& s, Recording& r) {
   r.trace = recorder.take(r.bodies[0].rep, body.pose);
 }
 
-/// Adds what follows from a run that has been recorded: how it is to be drawn, its trees, what people should know of it.
+/// Adds what follows from a run that has been recorded: how it is to be drawn, its trees, what people should
+/// know of it.
 void finish(const spec::Scenario& s, Recording& r) {
   r.trace.header.pictures = spec::pictures_text(s.frames);
   r.trees = trees_of(r.trace, r.bodies);

@@ -25,7 +25,8 @@ void add_frames(report::Page& page, const DrawnFrames& drawn, const std::string&
 /// Puts a picture that is in the folder already, .svg or .png, into a page.
 void add_figure(report::Page& page, const std::string& folder, const std::string& title,
                 const std::string& caption, const std::string& file);
-/// Puts an .svg that is in the folder already into a page as markup: its parts say what they are under the pointer.
+/// Puts an .svg that is in the folder already into a page as markup: its parts say what they are under the
+/// pointer.
 void add_live_figure(report::Page& page, const std::string& folder, const std::string& title,
                      const std::string& caption, const std::string& file);
 

@@ -377,7 +377,8 @@ std::string too_large_words(std::size_t faces, const SceneLimits& limits) {
          ". lrbscope render draws them.";
 }
 
-/// Returns from where frames are seen, as their first view has it: the page's view begins so. Null where nobody has said it.
+/// Returns from where frames are seen, as their first view has it: the page's view begins so. Null where
+/// nobody has said it.
 json view_json(const trace::TraceHeader& header) {
   const std::vector<spec::FrameSpec::View> views =
       spec::read_pictures(header.pictures, header.scenario).views;

@@ -44,8 +44,8 @@ std::vector<StepEvents> events_of_steps(const trace::Trace& trace) {
   return out;
 }
 
-/// Takes steps out, until what changes wrappers in the others fits. Keeps every n-th from the one of the first
-/// contact on, and before it. Returns how many are left.
+/// Takes steps out, until what changes wrappers in the others fits. Keeps every n-th from the one of the
+/// first contact on, and before it. Returns how many are left.
 std::size_t drop_steps(const trace::Trace& trace, const std::vector<StepEvents>& steps, std::size_t most,
                        std::vector<std::uint8_t>& rank) {
   const trace::EventId first = first_contact(trace);

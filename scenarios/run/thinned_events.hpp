@@ -10,8 +10,8 @@ namespace lrb::run {
 
 struct ThinnedEvents {
   std::vector<trace::EventId> kept;  ///< ascending
-  /// Number of steps kept. For each of them `kept` has all events that change a wrapper, so that it can be replayed;
-  /// the other steps have no events.
+  /// Number of steps kept. For each of them `kept` has all events that change a wrapper, so that it can be
+  /// replayed; the other steps have no events.
   std::size_t steps = 0;
   /// The one step that is left has more such events than there is room for: the first of them are kept, and
   /// nothing else.

@@ -24,8 +24,8 @@ std::vector<TreeBox> tree_boxes(const ObbTree& tree, std::size_t most);
 /// Returns how many nodes there are at each depth, from the root's on.
 std::vector<std::uint32_t> nodes_by_depth(const ObbTree& tree);
 
-/// Returns the boxes of nodes below a depth that lie on the ways from the root to some simplices, in the order of these, no
-/// more than `most`.
+/// Returns the boxes of nodes below a depth that lie on the ways from the root to some simplices, in the
+/// order of these, no more than `most`.
 std::vector<TreeBox> boxes_on_ways(const ObbTree& tree, std::uint32_t below, const std::vector<SimplexId>& to,
                                    std::size_t most);
 

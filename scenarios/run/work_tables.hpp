@@ -1,5 +1,6 @@
 #pragma once
-/// Tables of a run's page: where the work of its queries went, and how good the bodies' trees and LRB-reps are.
+/// Tables of a run's page: where the work of its queries went, and how good the bodies' trees and LRB-reps
+/// are.
 
 #include <vector>
 
@@ -8,8 +9,8 @@
 
 namespace lrb::run {
 
-/// Returns the parts of the queries with what each cost, and the walk by depth of each body's tree beside what the
-/// surface area heuristic expects; none for a trace without these events.
+/// Returns the parts of the queries with what each cost, and the walk by depth of each body's tree beside
+/// what the surface area heuristic expects; none for a trace without these events.
 std::vector<report::PageTable> work_tables(const RecordedRun& run);
 
 /// Returns the quality sheet of the bodies.

@@ -84,8 +84,8 @@ struct FrameSpec {
     events  ///< given as a list, so the file has no word for it
   };
   enum class Camera : std::uint8_t { scene, contact, fixed, orbit };
-  /// What the colours of faces mean. From face_tests on: numbers of the time step so far (trace/counters.hpp); some
-  /// need more events than face tests: needed_level().
+  /// What the colours of faces mean. From face_tests on: numbers of the time step so far
+  /// (trace/counters.hpp); some need more events than face tests: needed_level().
   enum class ColourBy : std::uint8_t {
     kind,
     layer,

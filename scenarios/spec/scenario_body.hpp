@@ -15,8 +15,8 @@ inline constexpr std::uint64_t kAnySeed = std::numeric_limits<std::int64_t>::max
 /// name one.
 BodySpec read_body(const io::JsonNode& node, const std::filesystem::path& folder, std::uint64_t seed);
 
-/// Reads the "query" part of a scenario, with what else is asked of steps where there is a place for it. Refuses what
-/// the engine cannot give together.
+/// Reads the "query" part of a scenario, with what else is asked of steps where there is a place for it.
+/// Refuses what the engine cannot give together.
 CollideRequest read_query(const io::JsonNode& node, StepQuestions* more = nullptr);
 
 /// Reads a name that a folder can have.

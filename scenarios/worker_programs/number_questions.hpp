@@ -8,8 +8,8 @@
 
 namespace lrb::worker_programs {
 
-/// Puts a question to a method at a setting of its knob. A refusal is an outcome, too. Throws InputError if there is no
-/// such question.
+/// Puts a question to a method at a setting of its knob. A refusal is an outcome, too. Throws InputError if
+/// there is no such question.
 bench::Record bench_record(const stability::NumberMethod& method, std::optional<double> setting,
                            const bench::DataSet& set, std::uint64_t question);
 

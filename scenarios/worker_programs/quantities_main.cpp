@@ -1,5 +1,5 @@
-/// lrbscope-quantities: a worker as worker.hpp has it, for methods that answer with a number. --quantity Q says
-/// with which one, or the data set of --questions does; without --method it prints the right answers.
+/// lrbscope-quantities: a worker as worker.hpp has it, for methods that answer with a number. --quantity Q
+/// says with which one, or the data set of --questions does; without --method it prints the right answers.
 #include <optional>
 
 #include "engine/core/error.hpp"

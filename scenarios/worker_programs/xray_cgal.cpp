@@ -1,6 +1,7 @@
-/// lrbscope-xray-cgal: as lrbscope-xray-fcl, for CGAL's AABB_tree (xray_form.hpp: input and output): asks the tree over B's triangles for those that meet, with one triangle of A after another, moved into B's frame, by traits
-/// that do what CGAL's own do and tell it. A's tree is a root with a leaf for each triangle. A program of its own, because
-/// CGAL's licence is the GPL.
+/// lrbscope-xray-cgal: as lrbscope-xray-fcl, for CGAL's AABB_tree (xray_form.hpp: input and output): asks the
+/// tree over B's triangles for those that meet, with one triangle of A after another, moved into B's frame,
+/// by traits that do what CGAL's own do and tell it. A's tree is a root with a leaf for each triangle. A
+/// program of its own, because CGAL's licence is the GPL.
 #include <cstdio>
 #include <map>
 #include <vector>
@@ -42,8 +43,8 @@ void print_box(const CGAL::Bbox_3& box) {
                        [&](int axis, int k) { return k == axis ? (box.max(k) - box.min(k)) / 2 : 0.0; });
 }
 
-/// Numbers of a tree's nodes; leaves for single triangles, which CGAL has no nodes for, follow them. CGAL's traversal shows
-/// what is beneath the root; the root itself it neither shows nor tests.
+/// Numbers of a tree's nodes; leaves for single triangles, which CGAL has no nodes for, follow them. CGAL's
+/// traversal shows what is beneath the root; the root itself it neither shows nor tests.
 class Numbers {
  public:
   Numbers(const Tree& tree, const Triangles& triangles) : triangles_(triangles), root_box_(tree.bbox()) {

@@ -8,8 +8,8 @@
 
 namespace lrb::workers {
 
-/// Calls ask(). Notes an InputError in the record as a refusal, and any other exception as a crash, with what it says.
-/// Record: has a `message`, and an `outcome` that may be refused or crashed.
+/// Calls ask(). Notes an InputError in the record as a refusal, and any other exception as a crash, with what
+/// it says. Record: has a `message`, and an `outcome` that may be refused or crashed.
 template <class Record, class Ask>
 void note_failures(Record& record, Ask ask) {
   using Outcome = decltype(record.outcome);

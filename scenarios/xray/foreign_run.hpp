@@ -9,9 +9,10 @@
 
 namespace lrb::xray {
 
-/// Returns a recording of the walk at the steps of `ours`, with its bodies. The results are those of `ours`, so that
-/// pictures show where the bodies really meet; what the other engine answered stands in the trace. A pair of bounding
-/// volumes is a node pair with one test, `met` is the number of pairs that the engine goes on to.
+/// Returns a recording of the walk at the steps of `ours`, with its bodies. The results are those of `ours`,
+/// so that pictures show where the bodies really meet; what the other engine answered stands in the trace. A
+/// pair of bounding volumes is a node pair with one test, `met` is the number of pairs that the engine goes
+/// on to.
 run::Recording recording_of(const ForeignWalk& walk, const run::Recording& ours,
                             const spec::Scenario& scenario);
 

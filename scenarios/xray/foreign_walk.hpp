@@ -1,6 +1,6 @@
 #pragma once
-/// What another engine does when it is asked for the collisions of two bodies: recorded inside that engine, by a program
-/// of its own (worker_programs/xray_*.cpp).
+/// What another engine does when it is asked for the collisions of two bodies: recorded inside that engine,
+/// by a program of its own (worker_programs/xray_*.cpp).
 
 #include <array>
 #include <cstdint>
@@ -37,8 +37,8 @@ struct PosePair {
   Pose a, b;
 };
 
-/// Lets an engine ("fcl", "cgal") run on the real triangles of two 3D bodies. Throws InputError for bodies and poses that
-/// it does not take, and EnvironmentError if its program is not there or fails.
+/// Lets an engine ("fcl", "cgal") run on the real triangles of two 3D bodies. Throws InputError for bodies
+/// and poses that it does not take, and EnvironmentError if its program is not there or fails.
 ForeignWalk walk_of(const std::string& engine, const LrbRep& a, const LrbRep& b,
                     std::span<const PosePair> poses);
 

@@ -19,8 +19,8 @@ struct Xray {
   std::string why;      ///< the command that explains a pair, but for --pose and --pair
 };
 
-/// Writes folder/index.html with folder/heat.png, and each run with its own page, trace and frames in a folder beneath.
-/// Returns notes for people.
+/// Writes folder/index.html with folder/heat.png, and each run with its own page, trace and frames in a
+/// folder beneath. Returns notes for people.
 std::vector<std::string> write_xray(const Xray& xray, const std::string& folder,
                                     const run::ProgressReport& progress);
 

@@ -2,10 +2,11 @@
 //
 //   batch_bench [--threads N] [--poses N] [--rounds N] [BODY...]
 //
-// BODY: a mesh or an .lrb file, which meets a copy of itself; without any a rock of 20,480 faces and a ring of 3,200. Printed for
-// each kind of batch: the least time that a round took on one thread, and on N (2); how many times as fast that is; how many times
-// as fast the machine is at N such batches at once, each on a thread of its own with nothing in common but the bodies, which no
-// batch that is shared out can beat; and the processor's time on N threads over that on one.
+// BODY: a mesh or an .lrb file, which meets a copy of itself; without any a rock of 20,480 faces and a ring
+// of 3,200. Printed for each kind of batch: the least time that a round took on one thread, and on N (2); how
+// many times as fast that is; how many times as fast the machine is at N such batches at once, each on a
+// thread of its own with nothing in common but the bodies, which no batch that is shared out can beat; and
+// the processor's time on N threads over that on one.
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
@@ -71,7 +72,8 @@ void ask_at_once(std::vector<Batch>& batches, std::vector<Answers>& answers, con
   for (std::thread& t : threads) t.join();
 }
 
-/// Runs a kind of batch on one thread, on several, and once on each of several, in turn, and prints what they took.
+/// Runs a kind of batch on one thread, on several, and once on each of several, in turn, and prints what they
+/// took.
 template <class Answers, class Ask>
 void compare(const char* kind, const Options& o, const Ask& ask) {
   Batch one(1), several(o.threads);

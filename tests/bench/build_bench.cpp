@@ -1,5 +1,5 @@
-// Prints, for each mesh given (or all of LRB_MESHES), what its LRB-rep costs, built lean and to fit, and how many faces its
-// wrappers have at tolerances, as shares of its largest side:
+// Prints, for each mesh given (or all of LRB_MESHES), what its LRB-rep costs, built lean and to fit, and how
+// many faces its wrappers have at tolerances, as shares of its largest side:
 //   build_bench [-k INTERIOR] [-r REPEATS] [--threads N] [--validate] MESH...
 // or how building and loading grow with size, on each mesh (or the generated rock) at resolutions of it:
 //   build_bench --growth [-r REPEATS] [--threads N] [--validate] [--subdivide N] [--resolutions N]

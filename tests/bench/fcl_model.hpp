@@ -1,6 +1,6 @@
 #pragma once
-/// What benchmarks ask FCL with: the packaged code, or, where fcl_instantiated.hpp is included before, that compiled with our
-/// flags.
+/// What benchmarks ask FCL with: the packaged code, or, where fcl_instantiated.hpp is included before, that
+/// compiled with our flags.
 
 #include <memory>
 #include <vector>

@@ -1,5 +1,5 @@
-// What a body's pose costs when it is no rotation: the query of spot (or what is named) and a sphere, with a map in
-// the pose, as a ratio to the query of the mesh that has the map in its vertices, under a rotation.
+// What a body's pose costs when it is no rotation: the query of spot (or what is named) and a sphere, with a
+// map in the pose, as a ratio to the query of the mesh that has the map in its vertices, under a rotation.
 //   pose_bench [MESH]      MESH: [spot.obj of the shared meshes]; without one a bumpy sphere takes its place
 #include <algorithm>
 #include <chrono>

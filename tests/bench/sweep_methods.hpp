@@ -1,5 +1,6 @@
 #pragma once
-/// Ways to find out when moving bodies first meet, for sweep_bench: ours, exact queries at equal times, FCL's.
+/// Ways to find out when moving bodies first meet, for sweep_bench: ours, exact queries at equal times,
+/// FCL's.
 
 #include <functional>
 #include <memory>

@@ -1,6 +1,6 @@
-// The packaged FCL's continuousCollide() of two BVHModels. Motions that turn by more than FCL's can are put to
-// it piece by piece, until one meets. The body that moves is FCL's first: of a second body that comes nearer its
-// advancement sees nothing. Its ray shooting takes no meshes.
+// The packaged FCL's continuousCollide() of two BVHModels. Motions that turn by more than FCL's can are put
+// to it piece by piece, until one meets. The body that moves is FCL's first: of a second body that comes
+// nearer its advancement sees nothing. Its ray shooting takes no meshes.
 #include "tests/bench/sweep_methods.hpp"
 
 #ifdef LRB_WITH_FCL

@@ -156,8 +156,8 @@ void record(benchmark::State& state) {
 }
 BENCHMARK(record)->ArgName("wall")->Arg(0)->Arg(1);
 
-/// A query of two bodies that cross, alone (-1) or recorded at a level of events. An event costs what a query takes longer
-/// than alone, divided by its events.
+/// A query of two bodies that cross, alone (-1) or recorded at a level of events. An event costs what a query
+/// takes longer than alone, divided by its events.
 void watched_query(benchmark::State& state) {
   static const LrbRep rock = build_lrb(shapes::bumpy_sphere(5, 7, 0.3));
   const Pose pose = Pose::translation({0.9, 0.3, 0.2});

@@ -1,7 +1,8 @@
 // Measures how CPU time and memory grow with the size of the input (and of the answer), family by family, as
 // fitted powers, and exits with 1 if one grows faster than it may:
 //   cliffs [--share] [--only TEXT]...
-// --share: the small sizes alone, and 0.35 more allowed for a busy machine, as the test suite runs it. --only: families whose line has this text.
+// --share: the small sizes alone, and 0.35 more allowed for a busy machine, as the test suite runs it.
+// --only: families whose line has this text.
 
 #include "tests/cliffs/cliffs.hpp"
 
@@ -72,7 +73,8 @@ Growth fit(const std::vector<Cost>& costs) {
 /// True if nothing grows faster than it may.
 bool run(const Family& family, bool share) {
   std::vector<std::uint32_t> sizes = family.share;
-  // Small sizes on a busy machine: what is quadratic shows, what is a little over n log n only in the whole run.
+  // Small sizes on a busy machine: what is quadratic shows, what is a little over n log n only in the whole
+  // run.
   constexpr double kShareSlack = 0.35;
   const double most_time = family.most_time + (share ? kShareSlack : 0);
   if (!share) sizes.insert(sizes.end(), family.more.begin(), family.more.end());

@@ -17,7 +17,8 @@ namespace {
 using construct::convex_hull;
 using construct::volume_of;
 
-/// Faces of the wrapper that keeps closed what is proved to be off by no more than a share of the largest side.
+/// Faces of the wrapper that keeps closed what is proved to be off by no more than a share of the largest
+/// side.
 std::uint32_t faces_within(const LrbRep& rep, std::vector<double> needed, double tolerance) {
   for (bool grown = true; grown;) {
     grown = false;

@@ -1,5 +1,5 @@
-/// Ids of two kinds cannot be mixed up, and cost what their numbers cost. Nearly all of it is decided when this file is
-/// compiled.
+/// Ids of two kinds cannot be mixed up, and cost what their numbers cost. Nearly all of it is decided when
+/// this file is compiled.
 
 #include "engine/core/ids.hpp"
 

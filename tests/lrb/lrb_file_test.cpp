@@ -314,8 +314,8 @@ TEST_CASE(
   CHECK_THROWS_AS(make([&](Needed& n, Levels&) { n[over] = 0; }), InputError);
   const auto found = [&](auto change) { return !validate(make(change)).valid; };
   CHECK(found([](Needed&, Levels& l) { l[1].nodes[0].hi[1][0] = l[1].nodes[0].lo[1][0]; }));
-  // All regions half as thick as they are, and the levels, too: wrappers that enclose the body, and bounds that are
-  // not proved.
+  // All regions half as thick as they are, and the levels, too: wrappers that enclose the body, and bounds
+  // that are not proved.
   CHECK(found([](Needed& n, Levels& l) {
     for (double& x : n) x /= 2;
     for (auto& level : l) level.bound /= 2;

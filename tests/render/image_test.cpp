@@ -112,7 +112,8 @@ std::array<double, 3> times(const Matrix& m, const std::array<double, 3>& v) {
   return out;
 }
 
-/// Lightness and the two hues of CIE 1976 of a colour of sRGB, as somebody sees it whose linear RGB is `seen` times ours.
+/// Lightness and the two hues of CIE 1976 of a colour of sRGB, as somebody sees it whose linear RGB is `seen`
+/// times ours.
 std::array<double, 3> lab(render::Rgba c, const Matrix& seen) {
   const auto linear = [](std::uint8_t byte) {
     const double x = byte / 255.0;
@@ -131,8 +132,8 @@ std::array<double, 3> lab(render::Rgba c, const Matrix& seen) {
 }  // namespace
 
 TEST_CASE("kinds differ in lightness, and to people with any common colour vision") {
-  // Severity 1 of G. Machado, M. Oliveira, L. Fernandes, "A physiologically-based model for simulation of color vision
-  // deficiency", 2009: nobody's, protanopes', deuteranopes', tritanopes'.
+  // Severity 1 of G. Machado, M. Oliveira, L. Fernandes, "A physiologically-based model for simulation of
+  // color vision deficiency", 2009: nobody's, protanopes', deuteranopes', tritanopes'.
   const std::vector<Matrix> eyes = {
       {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}},
       {{{0.152286, 1.052583, -0.204868}, {0.114503, 0.786281, 0.099216}, {-0.003882, -0.048116, 1.051998}}},
@@ -181,7 +182,8 @@ TEST_CASE("texts, lines and bodies stand out from the background of each style")
     for (const Side side : {Side::a, Side::b}) {
       CHECK(contrast(style.edge_of(style.body(side))) > 7);
       CHECK(contrast(style.solid_2d(style.body(side))) > 3);
-      // The solid stands out from the regions around it, whose fill lets the paper through, and contacts from both.
+      // The solid stands out from the regions around it, whose fill lets the paper through, and contacts from
+      // both.
       const render::Rgba region = render::over(render::with_alpha(style.body(side), 78), style.paper);
       CHECK(std::abs(luma(style.solid_2d(style.body(side))) - luma(region)) > 40);
       CHECK(std::abs(lab(style.contact, {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}})[0] -

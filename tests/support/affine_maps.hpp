@@ -26,7 +26,8 @@ enum class MapKind {
 
 inline constexpr int kMapKinds = static_cast<int>(MapKind::last);
 
-/// A random map of a kind, turned at random; of a plane body where dim is 2. Its size is about 1 but for `scaled`.
+/// A random map of a kind, turned at random; of a plane body where dim is 2. Its size is about 1 but for
+/// `scaled`.
 inline Eigen::Matrix3d random_map(shapes::RandomEngine& random, MapKind kind, int dim = 3) {
   using shapes::uniform;
   Eigen::Matrix3d turn = shapes::random_rotation(random, dim);

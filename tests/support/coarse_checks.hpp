@@ -12,8 +12,8 @@
 
 namespace lrb::test {
 
-/// Whether the wrappers of a tolerance are told apart, with nothing asked about the bodies themselves. True must
-/// mean that the bodies are separate.
+/// Whether the wrappers of a tolerance are told apart, with nothing asked about the bodies themselves. True
+/// must mean that the bodies are separate.
 inline bool wrappers_are_apart(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
                                double tolerance, QueryContext& context) {
   NullProbe probe;
@@ -41,8 +41,8 @@ class RealSurfaces {
   RealSurfaces(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b)
       : a_(a), pose_a_(pose_a), b_(b), pose_b_(pose_b), of_{simplices(a, pose_a), simplices(b, pose_b)} {}
 
-  /// Returns how far a pair of an answer is off the bodies, both together: the most over the corners of where its
-  /// simplices meet. 0 where they only come within rounding of each other.
+  /// Returns how far a pair of an answer is off the bodies, both together: the most over the corners of where
+  /// its simplices meet. 0 where they only come within rounding of each other.
   double off(const SimplexPair& pair) const {
     const Points p = simplex_points(a_, pose_a_, pair.a), q = simplex_points(b_, pose_b_, pair.b);
     const double *pp[3], *qq[3];

@@ -1,6 +1,6 @@
 #pragma once
-/// Boxes of two nodes, as a kernel turns them to a set of axes, against what they must hold in exact arithmetic.
-/// To be included after a kernel.
+/// Boxes of two nodes, as a kernel turns them to a set of axes, against what they must hold in exact
+/// arithmetic. To be included after a kernel.
 
 #include <cmath>
 #include <set>
@@ -198,8 +198,8 @@ std::vector<Candidate> candidates_of(const Scene& s, TreeKernel& k, void (*run)(
   return out;
 }
 
-/// Pairs that boxes or planes have dropped do not meet, says the rational oracle, and what is certain of the others
-/// is true. `found`: all that were not dropped.
+/// Pairs that boxes or planes have dropped do not meet, says the rational oracle, and what is certain of the
+/// others is true. `found`: all that were not dropped.
 void check_outcome(const Scene& s, std::span<const Candidate> found, RandomEngine& random, int most,
                    Asked& asked) {
   std::set<std::pair<SimplexId, SimplexId>> kept;
@@ -216,8 +216,8 @@ void check_outcome(const Scene& s, std::span<const Candidate> found, RandomEngin
   check_certain(s, found, random, 5 * most, asked);
 }
 
-/// Checks that more than `boxes` pairs were compared, and more than the share `culled` of them culled: else nothing was
-/// tested.
+/// Checks that more than `boxes` pairs were compared, and more than the share `culled` of them culled: else
+/// nothing was tested.
 void check_extent(const Share& share, const Asked& asked, std::uint64_t boxes, double culled) {
   CHECK(share.boxes > boxes);
   CHECK(static_cast<double>(share.culled) > culled * static_cast<double>(share.boxes));

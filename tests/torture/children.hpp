@@ -76,7 +76,8 @@ Sum sum_in_children(std::uint64_t count, std::uint64_t batch_size, unsigned jobs
 }
 
 /// Has `check(bodies, batch, random)` done for an equal share of `count` cases of each of the bodies, in
-/// children, and returns the sum. Prints a row for each bodies and one for all: print_row(name, sum, seconds).
+/// children, and returns the sum. Prints a row for each bodies and one for all: print_row(name, sum,
+/// seconds).
 template <class Sum, class Bodies, class Check, class Row>
 Sum sum_over_bodies(const std::vector<Bodies>& list, std::uint64_t count, std::uint64_t batch_size,
                     std::uint64_t seed, unsigned jobs, const Check& check,

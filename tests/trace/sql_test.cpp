@@ -1,5 +1,5 @@
-/// The SQL in trace/sql, run by SQLite on the tables that Perfetto's trace processor makes of a trace, against what the
-/// summary says.
+/// The SQL in trace/sql, run by SQLite on the tables that Perfetto's trace processor makes of a trace,
+/// against what the summary says.
 
 #include <cmath>
 #include <filesystem>

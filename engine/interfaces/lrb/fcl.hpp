@@ -1,23 +1,24 @@
 #pragma once
-/// FCL's interface on this engine: for programs written for FCL 0.7 that want exact answers without being rewritten.
-/// Needs FCL's headers and library (Debian: libfcl-dev), which go on answering for all that is no mesh.
+/// FCL's interface on this engine: for programs written for FCL 0.7 that want exact answers without being
+/// rewritten. Needs FCL's headers and library (Debian: libfcl-dev), which go on answering for all that is no
+/// mesh.
 ///
-/// Include this header and write lrb::fcl:: where fcl:: stood; collide() and distance() of two meshes (BVHModel of any
-/// bounding volume) are then this engine's, and every other name of FCL is FCL's own:
+/// Include this header and write lrb::fcl:: where fcl:: stood; collide() and distance() of two meshes
+/// (BVHModel of any bounding volume) are then this engine's, and every other name of FCL is FCL's own:
 ///
-/// - Contacts name the pairs of triangles that meet, each once, ascending; one if num_max_contacts is 1, whichever
-///   is found first. With enable_contact, each has a point in the middle of what the two triangles have in common, and
-///   normal and estimated depth of the contact region that it belongs to (ContactRegion).
-/// - Distances are those of the surfaces, to 1e-12 of the meshes' size, whatever rel_err and abs_err allow; 0 where they
-///   meet. Nearest points are in the world.
+/// - Contacts name the pairs of triangles that meet, each once, ascending; one if num_max_contacts is 1,
+///   whichever is found first. With enable_contact, each has a point in the middle of what the two triangles
+///   have in common, and normal and estimated depth of the contact region that it belongs to (ContactRegion).
+/// - Distances are those of the surfaces, to 1e-12 of the meshes' size, whatever rel_err and abs_err allow; 0
+///   where they meet. Nearest points are in the world.
 /// - As with FCL, a mesh in another one whose surface it does not touch does not collide with it.
 /// - Costs, and geometry that is not occupied, are left to FCL.
 ///
 /// What a mesh cannot be asked about (coordinates that are not finite) throws lrb::InputError.
 ///
-/// A mesh becomes a body, without regions, the first time that it is asked about, and is kept. Each call compares it
-/// with what was kept, number by number, because programs change their meshes: about 1 ns a vertex. Where that is too
-/// much, ask lrb::collide() about body_of() the mesh.
+/// A mesh becomes a body, without regions, the first time that it is asked about, and is kept. Each call
+/// compares it with what was kept, number by number, because programs change their meshes: about 1 ns a
+/// vertex. Where that is too much, ask lrb::collide() about body_of() the mesh.
 
 #include <algorithm>
 #include <cstddef>
@@ -91,7 +92,8 @@ Pose pose_of(const ::fcl::Transform3<S>& transform) {
   return {transform.linear().template cast<double>(), transform.translation().template cast<double>()};
 }
 
-/// Makes a body of a mesh's arrays, with its faces as they are; `options`: of what is to be built beside them.
+/// Makes a body of a mesh's arrays, with its faces as they are; `options`: of what is to be built beside
+/// them.
 template <class S>
 Expected<Body> body_of(const MeshArrays<S>& arrays, const BodyOptions& options) {
   Mesh mesh;
@@ -112,15 +114,15 @@ inline BodyOptions faces_alone() {
   return options;
 }
 
-/// Makes a body of a mesh of FCL's: faces have the numbers of its triangles. By default without regions, and nothing
-/// is turned.
+/// Makes a body of a mesh of FCL's: faces have the numbers of its triangles. By default without regions, and
+/// nothing is turned.
 template <class BV>
 Expected<Body> body_of(const ::fcl::BVHModel<BV>& model, const BodyOptions& options = faces_alone()) {
   return body_of(arrays_of(model), options);
 }
 
-/// The bodies that were made of meshes, by the meshes' addresses; for all threads. Keeps the last 256 that were asked
-/// about.
+/// The bodies that were made of meshes, by the meshes' addresses; for all threads. Keeps the last 256 that
+/// were asked about.
 class KnownBodies {
  public:
   /// Returns the body of a mesh as it is now. Throws InputError if it cannot be one.
@@ -226,8 +228,8 @@ void add_contacts(const CollideResult& found, const ::fcl::CollisionGeometry<S>*
   }
 }
 
-/// Finds the contacts of two geometries; those that are no meshes, costs, and what is not occupied are FCL's. Returns
-/// the number of contacts in the result, to which those of calls before belong.
+/// Finds the contacts of two geometries; those that are no meshes, costs, and what is not occupied are FCL's.
+/// Returns the number of contacts in the result, to which those of calls before belong.
 template <class S>
 std::size_t collide(const ::fcl::CollisionGeometry<S>* o1, const ::fcl::Transform3<S>& tf1,
                     const ::fcl::CollisionGeometry<S>* o2, const ::fcl::Transform3<S>& tf2,
@@ -254,8 +256,8 @@ std::size_t collide(const ::fcl::CollisionObject<S>* o1, const ::fcl::CollisionO
                       o2->getTransform(), request, result);
 }
 
-/// Finds the distance of two geometries; of those that are no meshes it is FCL's. Returns the least distance in the
-/// result, to which those of calls before belong.
+/// Finds the distance of two geometries; of those that are no meshes it is FCL's. Returns the least distance
+/// in the result, to which those of calls before belong.
 template <class S>
 S distance(const ::fcl::CollisionGeometry<S>* o1, const ::fcl::Transform3<S>& tf1,
            const ::fcl::CollisionGeometry<S>* o2, const ::fcl::Transform3<S>& tf2,

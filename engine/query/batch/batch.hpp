@@ -1,7 +1,7 @@
 #pragma once
-/// Many queries at once, on all cores: answers stand in the order of the questions and are the same, to the bit, for
-/// any number of threads. (Only a limit in seconds, CollideRequest::max_time, depends on the machine.) A question that
-/// is refused has its reason in its place, and the others their answers.
+/// Many queries at once, on all cores: answers stand in the order of the questions and are the same, to the
+/// bit, for any number of threads. (Only a limit in seconds, CollideRequest::max_time, depends on the
+/// machine.) A question that is refused has its reason in its place, and the others their answers.
 
 #include <cstddef>
 #include <memory>
@@ -23,8 +23,8 @@ struct PosedPair {
   Pose pose_b;
 };
 
-/// Returns the numbers of the pairs in an order in which those of the same two bodies follow each other: the memory of
-/// queries then keeps more of what it has.
+/// Returns the numbers of the pairs in an order in which those of the same two bodies follow each other: the
+/// memory of queries then keeps more of what it has.
 std::vector<std::size_t> order_by_bodies(std::span<const PosedPair> pairs);
 
 using CollideAnswers = std::vector<Expected<CollideResult>>;
@@ -41,8 +41,8 @@ class Batch {
 
   unsigned threads() const;
 
-  /// Answer as collide() does, for each pose of B, or for each pair, into `answers`, whose memory is used again:
-  /// contacts, coarse answers and single pairs as the request says.
+  /// Answer as collide() does, for each pose of B, or for each pair, into `answers`, whose memory is used
+  /// again: contacts, coarse answers and single pairs as the request says.
   void collide(const LrbRep& a, const Pose& pose_a, const LrbRep& b, std::span<const Pose> poses_b,
                const CollideRequest& request, CollideAnswers& answers);
   void collide(std::span<const PosedPair> pairs, const CollideRequest& request, CollideAnswers& answers);

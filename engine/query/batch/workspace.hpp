@@ -10,8 +10,8 @@
 
 namespace lrb {
 
-/// The memory that queries use, and the last answer: one for each thread. It serves any bodies; those that follow
-/// each other with the same two bodies are quickest.
+/// The memory that queries use, and the last answer: one for each thread. It serves any bodies; those that
+/// follow each other with the same two bodies are quickest.
 class Workspace {
  public:
   Workspace();
@@ -26,9 +26,10 @@ class Workspace {
   std::unique_ptr<Memory> memory_;
 };
 
-/// Does what collide() in collide.hpp does. The answer stays in the workspace until its next query, and is the
-/// caller's to move from. Refuses what collide() throws InputError for: bodies of different dimensions, poses and
-/// world coordinates that are not finite, requests that contradict themselves, more pairs than may be kept.
+/// Does what collide() in collide.hpp does. The answer stays in the workspace until its next query, and is
+/// the caller's to move from. Refuses what collide() throws InputError for: bodies of different dimensions,
+/// poses and world coordinates that are not finite, requests that contradict themselves, more pairs than may
+/// be kept.
 ///
 /// Asks for no memory if the request is a plain one (complete; no contacts, interiors_overlap, separation or
 /// limits) and a query of these bodies with no fewer pairs has been answered before.

@@ -1,6 +1,6 @@
 #pragma once
-/// Watching a clash query, from outside the engine: derive from ClashProbe and give it to clash(). The answer is the
-/// same as without.
+/// Watching a clash query, from outside the engine: derive from ClashProbe and give it to clash(). The answer
+/// is the same as without.
 
 #include <vector>
 
@@ -14,9 +14,9 @@ class ClashProbe {
   virtual ~ClashProbe() = default;
   /// Bounds of the distance of bodies without a point in common became narrower; work as for a distance.
   virtual void distance(const Bounds& known) = 0;
-  /// Bounds of the depth of bodies whose interiors overlap: the lower end is proved, the upper one is the shortest way
-  /// out that was found so far, infinite at first, which only the last bounds, those of the answer, have proved. Work
-  /// is counted in queries that were asked and steps in which hulls grew.
+  /// Bounds of the depth of bodies whose interiors overlap: the lower end is proved, the upper one is the
+  /// shortest way out that was found so far, infinite at first, which only the last bounds, those of the
+  /// answer, have proved. Work is counted in queries that were asked and steps in which hulls grew.
   virtual void depth(const Bounds& known) = 0;
 };
 

@@ -29,8 +29,8 @@ class ConvexDifference {
   /// most 1 long; 0 if they need not overlap now. `way_out`: where the hull is about left.
   double along_lower(const Vector3d& n) const;
 
-  /// Return the direction in which B leaves A after the least translation that was found, and the length of that,
-  /// rounded; infinite if there is none.
+  /// Return the direction in which B leaves A after the least translation that was found, and the length of
+  /// that, rounded; infinite if there is none.
   const Vector3d& direction() const { return direction_; }
   double depth_upper() const { return upper_; }
   /// Returns about how far B must move along a direction of length 1 until a plane parts the two.

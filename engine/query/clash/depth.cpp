@@ -103,8 +103,8 @@ double DepthFinder::common_clearance(const Vector3d& x, const Vector3d& shift) {
   return least;
 }
 
-/// Returns the box of what the bodies share, about, or one that holds it. Its corners are points where faces of
-/// the two meet, and corners of one in the other.
+/// Returns the box of what the bodies share, about, or one that holds it. Its corners are points where faces
+/// of the two meet, and corners of one in the other.
 Eigen::AlignedBox3d DepthFinder::common_box(const Vector3d& shift) {
   Eigen::AlignedBox3d boxes[2], out;
   for (int side = 0; side < 2; ++side)
@@ -198,8 +198,8 @@ void DepthFinder::tell(double least) {
   teller_->tell(parting_.asked() + grown_, told_lower_, upper);
 }
 
-/// Grows a hull, and tells what comes of it: lower ends from that of sets inside the bodies, upper ends from that of
-/// the bodies' hulls.
+/// Grows a hull, and tells what comes of it: lower ends from that of sets inside the bodies, upper ends from
+/// that of the bodies' hulls.
 void DepthFinder::find_depth(ConvexDifference& difference, unsigned most_steps, bool is_inner) {
   if (teller_ == nullptr) {
     difference.find_depth(most_steps);
@@ -269,8 +269,8 @@ void DepthFinder::refine(double& best, Vector3d& best_n) {
   }
 }
 
-/// Proves a lower end of the depth, units, of bodies that are not both convex, unless one is `known` that is nearly as
-/// long as the way out, and looks for a shorter way out where it cannot.
+/// Proves a lower end of the depth, units, of bodies that are not both convex, unless one is `known` that is
+/// nearly as long as the way out, and looks for a shorter way out where it cannot.
 double DepthFinder::raise_lower(double known, double& best, Vector3d& best_n) {
   OverlapProof proof(surface(Side::a), surface(Side::b), [this](Side side, const Vector3d& x) {
     return inside_point(side, x, Vector3d::Zero()).has_value();

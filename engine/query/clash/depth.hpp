@@ -12,12 +12,12 @@
 
 namespace lrb::parting {
 
-/// Bounds depths. Lower ends are those of convex sets inside the bodies, upper ends those of translations that
-/// the query proves. Between convex bodies both meet.
+/// Bounds depths. Lower ends are those of convex sets inside the bodies, upper ends those of translations
+/// that the query proves. Between convex bodies both meet.
 class DepthFinder {
  public:
-  /// `query`: begun with the bodies. `result`: all pairs of simplices that meet. Bodies must be closed. teller: null,
-  /// or told what is known of the depth.
+  /// `query`: begun with the bodies. `result`: all pairs of simplices that meet. Bodies must be closed.
+  /// teller: null, or told what is known of the depth.
   DepthFinder(QueryContext& query, const CollideResult& result, const UnitBodies& bodies, Parting& parting,
               BoundsTeller* teller = nullptr);
 

@@ -35,8 +35,8 @@ class Planes {
     return std::any_of(planes_.begin(), planes_.end(),
                        [&](const Plane& p) { return beyond(p, triangle) > 0; });
   }
-  /// Does the same for a triangle that may be divided. The middles of edges are rounded, by half of u each time;
-  /// kConvexMargin has room for that.
+  /// Does the same for a triangle that may be divided. The middles of edges are rounded, by half of u each
+  /// time; kConvexMargin has room for that.
   bool part_split(const Corners& x, unsigned depth) const {
     if (part(x) || part_by_two(x)) return true;
     if (depth == kMostSplits || is_entered(x)) return false;
@@ -58,8 +58,8 @@ class Planes {
     return {normal, most + kConvexMargin * normal.cwiseAbs().sum()};
   }
 
-  /// Tries planes between two of the planes, through the edge in which they meet: where the triangle lies beyond
-  /// that edge, it may lie partly before either of them.
+  /// Tries planes between two of the planes, through the edge in which they meet: where the triangle lies
+  /// beyond that edge, it may lie partly before either of them.
   bool part_by_two(const Corners& x) const {
     for (std::size_t i = 0; i < planes_.size(); ++i)
       for (std::size_t j = 0; j < i; ++j) {
@@ -155,8 +155,8 @@ Part clipped(const Part& in, const Vector3d& n, double most) {
   return out;
 }
 
-/// Puts a plane before what of the surface is nearest to the seed and not yet behind a plane, again and again.
-/// Where the planes lie depends on the surface alone, not on how it is divided into triangles.
+/// Puts a plane before what of the surface is nearest to the seed and not yet behind a plane, again and
+/// again. Where the planes lie depends on the surface alone, not on how it is divided into triangles.
 class Inflation {
  public:
   Inflation(const UnitBody& body, const Vector3d& seed) : body_(body), seed_(seed) {

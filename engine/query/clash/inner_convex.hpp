@@ -18,13 +18,13 @@ using ConvexPoints = std::vector<Vector3d>;
 /// the body, but for kUnitRounding.
 std::optional<ConvexPoints> shrunken_body(const UnitBody& body, const Vector3d& inside);
 
-/// Whether planes may be put before whole triangles where planes before the nearest points lead to no proof. The sets are
-/// smaller then, and depend on how the surface is divided.
+/// Whether planes may be put before whole triangles where planes before the nearest points lead to no proof.
+/// The sets are smaller then, and depend on how the surface is divided.
 enum class WholeTriangles : std::uint8_t { no, yes };
 
-/// Returns a large convex set about a point inside: planes between it and the nearest points of the surface, one after
-/// the other, bound it (as in Deits and Tedrake, "Computing Large Convex Regions of Obstacle-Free Space", 2015,
-/// without their ellipsoids). None if the surface is too near for proofs, or none was found.
+/// Returns a large convex set about a point inside: planes between it and the nearest points of the surface,
+/// one after the other, bound it (as in Deits and Tedrake, "Computing Large Convex Regions of Obstacle-Free
+/// Space", 2015, without their ellipsoids). None if the surface is too near for proofs, or none was found.
 std::optional<ConvexPoints> convex_about(const UnitBody& body, const Vector3d& inside, WholeTriangles whole);
 
 }  // namespace lrb::parting

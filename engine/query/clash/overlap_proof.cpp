@@ -1,6 +1,6 @@
-/// Rounding. Clearances are proved for the doubles x and x - v as they are computed (the last is rounded by less than
-/// kDifferenceRounding), and the bodies' points are within kUnitRounding of the exact ones; kRoomMargin covers both.
-/// Middles of cubes, and their halves, are multiples of a power of two: exact.
+/// Rounding. Clearances are proved for the doubles x and x - v as they are computed (the last is rounded by
+/// less than kDifferenceRounding), and the bodies' points are within kUnitRounding of the exact ones;
+/// kRoomMargin covers both. Middles of cubes, and their halves, are multiples of a power of two: exact.
 
 #include "engine/query/clash/overlap_proof.hpp"
 
@@ -53,7 +53,8 @@ bool OverlapProof::begin(const std::vector<Vector3d>& common, double most) {
   return first_ > 0;
 }
 
-/// Two balls without a point of the surface, one of which holds the middle of the other, lie on the same side of it.
+/// Two balls without a point of the surface, one of which holds the middle of the other, lie on the same side
+/// of it.
 bool OverlapProof::is_in(Side side, const Vector3d& x, double radius, const Vector3d& known,
                          double known_radius) {
   if (!(radius > kRoomMargin)) return false;
@@ -71,8 +72,8 @@ bool OverlapProof::look(const Vector3d& x, const Vector3d& v, const Common& near
          is_in(Side::b, out.of_b, out.clear_b, near.of_b, near.clear_b);
 }
 
-/// Moves a point along the axes to where there is more room. It is not moved away from the nearest points of the
-/// surfaces, because which of several that are equally near is found depends on how these are divided.
+/// Moves a point along the axes to where there is more room. It is not moved away from the nearest points of
+/// the surfaces, because which of several that are equally near is found depends on how these are divided.
 void OverlapProof::climb(double needed, bool thorough, Common& best) {
   for (double step = needed / 2; step > needed * kLeastClimb && !(best.room() > needed); step /= 2) {
     if (!thorough && !(best.room() > needed * kNearlyEnough)) return;
@@ -87,8 +88,8 @@ void OverlapProof::climb(double needed, bool thorough, Common& best) {
   }
 }
 
-/// Returns points from which to look for one for a cube: that of the cube that it is a part of, those of the nearest
-/// cubes that were proved, and, for a small one, some of all and some of the first.
+/// Returns points from which to look for one for a cube: that of the cube that it is a part of, those of the
+/// nearest cubes that were proved, and, for a small one, some of all and some of the first.
 std::vector<OverlapProof::Common> OverlapProof::seeds(const Cube& cube) const {
   std::array<std::pair<double, const Common*>, kSeeds> nearest;
   nearest.fill({kUnitReach * kUnitReach, nullptr});
@@ -128,7 +129,8 @@ bool OverlapProof::find_room(const Cube& cube, double needed, const Common& seed
   return start.room() > needed;
 }
 
-/// Proves that the bodies overlap for a cube of translations. best: the point with the most room that was found, if any.
+/// Proves that the bodies overlap for a cube of translations. best: the point with the most room that was
+/// found, if any.
 bool OverlapProof::prove(const Cube& cube, Common& best) {
   const double needed = cube.half * kDiagonal + kRoomMargin;
   for (const Common& seed : seeds(cube)) {

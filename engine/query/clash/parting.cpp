@@ -33,11 +33,11 @@ bool Parting::is_apart(const Vector3d& n, double s) {
   return collide(a_, pose_a_, b_, m.pose, request, query_, probe).relation == Relation::separate;
 }
 
-/// The query's corners of B are fl(q + t'), those of the contract fl(q + t), with the same q: they differ from
-/// a translation by t' - t by a rounding of each, u times coordinates of at most reach_ and reach_ + |by|; and
-/// m.by is t' - t rounded: in each coordinate u |by| off. In length together less than 2 u (2 reach_ + 2 |by|),
-/// u = 2^-53, plus what denormals lose. Bodies that are further apart than this are apart after the exact
-/// translation, too: on the way between the two surfaces do not meet.
+/// The query's corners of B are fl(q + t'), those of the contract fl(q + t), with the same q: they differ
+/// from a translation by t' - t by a rounding of each, u times coordinates of at most reach_ and reach_ +
+/// |by|; and m.by is t' - t rounded: in each coordinate u |by| off. In length together less than 2 u (2
+/// reach_ + 2 |by|), u = 2^-53, plus what denormals lose. Bodies that are further apart than this are apart
+/// after the exact translation, too: on the way between the two surfaces do not meet.
 bool Parting::is_proved(const Moved& m, double more) {
   if (!m.pose.t.allFinite() || !(reach_ + m.by.cwiseAbs().maxCoeff() < kLargestMoved)) return false;
   const double rounding = 0x1p-51 * (reach_ + m.by.norm()) + more + kWorldUnderflow;

@@ -18,15 +18,16 @@ class Parting {
  public:
   Parting(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b, const UnitBodies& bodies);
 
-  /// Returns true if the bodies are apart, as the exact query sees them, once B's pose is moved by `s` times `n`
-  /// (units).
+  /// Returns true if the bodies are apart, as the exact query sees them, once B's pose is moved by `s` times
+  /// `n` (units).
   bool is_apart(const Vector3d& n, double s);
   /// Proves that B moved along n by `s` or little more is apart from A. Returns nothing if it cannot.
   std::optional<PartingMove> prove(const Vector3d& n, double s);
   /// Proves that B moved along n by exactly `s` n is apart from A, or by little more: returns that s (units).
   std::optional<double> prove_along(const Vector3d& n, double s);
-  /// Returns the least of some distances along n, up to `most`, at which the bodies are apart, narrowed down to
-  /// where they just met; `most` if it is none of them. Finds the way out that is nearest in general, not always.
+  /// Returns the least of some distances along n, up to `most`, at which the bodies are apart, narrowed down
+  /// to where they just met; `most` if it is none of them. Finds the way out that is nearest in general, not
+  /// always.
   double least_apart(const Vector3d& n, double most, int samples);
   /// Returns how many queries were asked.
   std::uint64_t asked() const { return asked_; }

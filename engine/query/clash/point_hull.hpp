@@ -22,10 +22,10 @@ class PointHull {
 
   /// Begins with a tetrahedron. Returns false if its corners lie in one plane.
   bool begin(const std::array<Vector3d, 4>& corners);
-  /// Adds a point: each facet that it lies strictly in front of is replaced. A point on a facet's plane counts
-  /// as behind it; no new facet then is without area, because an edge between a facet seen and one not seen
-  /// is on no line with the point: else the point would lie on the plane of the one seen. Returns false if no
-  /// facet sees the point.
+  /// Adds a point: each facet that it lies strictly in front of is replaced. A point on a facet's plane
+  /// counts as behind it; no new facet then is without area, because an edge between a facet seen and one not
+  /// seen is on no line with the point: else the point would lie on the plane of the one seen. Returns false
+  /// if no facet sees the point.
   bool add(const Vector3d& point);
   /// Returns true if the point lies strictly inside, exactly.
   bool holds_inside(const Vector3d& point) const;

@@ -2,25 +2,25 @@
 /// diameter of the triangle that is clipped, seen along x, and E that of the one that clips it.
 ///
 /// Clipping. The distance of a point p from the line through a and b is a product of two differences, each
-/// within u of itself, less another, divided by the length of b - a: off by at most 8 u |p - a| <= 8 u (D + E).
-/// A point where an edge is cut lies within 4 u D + u of the edge (the share is off by 4 u, the sum is rounded),
-/// and that much further from the line, because the distance is linear on the edge. So the computed polygon
-/// differs from the exact one by strips along the line, 8 u (D + E) + 4 u D + u wide and at most D long, and
-/// along the edges, 4 u D + u wide and at most 6 D long: in area by less than u D (7 + 36 D + 8 E). Three times,
-/// and once more along the edges where one triangle passes through the other: less than
-/// u D (27 + 132 D + 24 E). Its height over the base is at most 1.
+/// within u of itself, less another, divided by the length of b - a: off by at most 8 u |p - a| <= 8 u (D +
+/// E). A point where an edge is cut lies within 4 u D + u of the edge (the share is off by 4 u, the sum is
+/// rounded), and that much further from the line, because the distance is linear on the edge. So the computed
+/// polygon differs from the exact one by strips along the line, 8 u (D + E) + 4 u D + u wide and at most D
+/// long, and along the edges, 4 u D + u wide and at most 6 D long: in area by less than u D (7 + 36 D + 8 E).
+/// Three times, and once more along the edges where one triangle passes through the other: less than u D (27
+/// + 132 D + 24 E). Its height over the base is at most 1.
 ///
-/// Heights. Over the triangle a, b, c with doubled area F seen along x, the height is that of the lowest corner
-/// and the others' over it, weighted by areas over F. Each area, and F, is off by 8 u E^2, so the height by
-/// 32 u E^2 / F times the range of heights; the area over which this counts is at most F / 2 and at most that of
-/// the polygon. Where it is not known which of two triangles is lower, they differ by no more than these
-/// errors: they count twice.
+/// Heights. Over the triangle a, b, c with doubled area F seen along x, the height is that of the lowest
+/// corner and the others' over it, weighted by areas over F. Each area, and F, is off by 8 u E^2, so the
+/// height by 32 u E^2 / F times the range of heights; the area over which this counts is at most F / 2 and at
+/// most that of the polygon. Where it is not known which of two triangles is lower, they differ by no more
+/// than these errors: they count twice.
 ///
 /// Sums. A polygon's integral is a sum of less than 16 triangles of area at most D^2 / 2, each with a few
 /// roundings: less than 100 u D^2.
 ///
-/// A triangle seen so much from the side that the sign of F is in doubt (F < 16 u D^2) counts with error only:
-/// the area is less than 16 u D^2.
+/// A triangle seen so much from the side that the sign of F is in doubt (F < 16 u D^2) counts with error
+/// only: the area is less than 16 u D^2.
 ///
 /// The corners themselves are off by u in each coordinate, by 2 u in length: what a triangle sweeps when its
 /// corners move by 2 u is at most 2 u times its area, and a perimeter's 2 u more.
@@ -182,7 +182,8 @@ void add_pair(const Seen& a, const Seen& b, Sum& sum) {
   for (const Seen* s : {&a, &b})
     error += kHeightError * s->diameter * s->diameter * s->range() * std::min(0.5, area / s->area2) *
              (1 + 0x1p-20);
-  // Where b is lower, its height counts in place of that of a. Where both are equally high, this adds nothing.
+  // Where b is lower, its height counts in place of that of a. Where both are equally high, this adds
+  // nothing.
   const Polygon under = clipped(polygon, [&](const Vector2d& x) { return a.height_at(x) - b.height_at(x); });
   const double value = integral(polygon, a) + (integral(under, b) - integral(under, a));
   sum.add(a.sign * b.sign * value, error);

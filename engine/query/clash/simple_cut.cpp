@@ -30,8 +30,8 @@ bool SimpleCut::close() {
   return walk_round();
 }
 
-/// Numbers the points, and gives all points of a chain the same number of a chain. Points inside must have two
-/// segments, points on the border one; then a chain is closed unless it has an end on the border.
+/// Numbers the points, and gives all points of a chain the same number of a chain. Points inside must have
+/// two segments, points on the border one; then a chain is closed unless it has an end on the border.
 bool SimpleCut::follow_chains(std::map<Key, std::uint32_t>& number, std::vector<std::uint32_t>& chain) {
   std::vector<std::array<std::uint32_t, 2>> links;
   std::vector<std::uint32_t> uses;

@@ -50,8 +50,8 @@ std::uint32_t SurfaceDistance::build(std::uint32_t begin, std::uint32_t end,
   return index;
 }
 
-/// Along any direction n a triangle is at least as far as its nearest corner: the least n . (c - x) / |n|. In the
-/// direction of the nearest point that is the distance, and if rounding has spoilt n, it still holds.
+/// Along any direction n a triangle is at least as far as its nearest corner: the least n . (c - x) / |n|. In
+/// the direction of the nearest point that is the distance, and if rounding has spoilt n, it still holds.
 double SurfaceDistance::bound(std::uint32_t triangle, const Vector3d& x) const {
   const auto& t = body_.triangles[triangle];
   const Vector3d a = body_.points[t[0]] - x, b = body_.points[t[1]] - x, c = body_.points[t[2]] - x;

@@ -15,9 +15,9 @@ class SurfaceDistance {
   /// Keeps a reference to the body.
   explicit SurfaceDistance(const UnitBody& body);
 
-  /// Returns the clearance of a point whose coordinates are at most 2: the open ball of that radius about it has nothing
-  /// of the surface in it; proved. It is less than the distance by kClearanceMargin and roundings, whatever the triangles
-  /// are into which the surface is divided.
+  /// Returns the clearance of a point whose coordinates are at most 2: the open ball of that radius about it
+  /// has nothing of the surface in it; proved. It is less than the distance by kClearanceMargin and
+  /// roundings, whatever the triangles are into which the surface is divided.
   double at(const Vector3d& x) const;
 
  private:

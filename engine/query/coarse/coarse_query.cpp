@@ -33,7 +33,8 @@ void check_coarse_request(const CollideRequest& request) {
 
 namespace {
 
-/// Returns the level of a body for a tolerance; null: the body itself. A limit in time leaves none to make levels.
+/// Returns the level of a body for a tolerance; null: the body itself. A limit in time leaves none to make
+/// levels.
 const WrapperLevel* level_of(const LrbRep& rep, double tolerance, const CollideRequest& request) {
   return request.max_time > 0 && !rep.has_levels() ? nullptr : rep.levels().within(tolerance);
 }

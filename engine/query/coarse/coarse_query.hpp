@@ -1,28 +1,29 @@
 #pragma once
 /// Queries that do no more than a scene needs: to a tolerance, or as far as a limit of tests or time allows.
 ///
-/// How. The exact query is asked first, until a pair crosses: bodies that are apart it tells apart faster than
-/// wrappers could, and of bodies that cross it finds a pair at once, since it looks where boxes overlap most. So
-/// the relation is exact, and so is an answer of one pair. If little is left to do then (TrialRules), as where
-/// bodies hardly more than touch, it goes on to the end: wrappers meet in more pairs than such bodies. Else the
-/// list of all pairs is left to wrappers, whose faces are fewer: to the level that the tolerance allows or, within
-/// limits, to one level after another, coarsest first. Where surfaces of wrappers do not meet though the bodies do,
-/// one wrapper being in the other, and where no level is much smaller than the bodies, the exact query finds the
-/// pairs. The first question may take half of a limit; should it end without an answer, levels tell what they can.
+/// How. The exact query is asked first, until a pair crosses: bodies that are apart it tells apart faster
+/// than wrappers could, and of bodies that cross it finds a pair at once, since it looks where boxes overlap
+/// most. So the relation is exact, and so is an answer of one pair. If little is left to do then
+/// (TrialRules), as where bodies hardly more than touch, it goes on to the end: wrappers meet in more pairs
+/// than such bodies. Else the list of all pairs is left to wrappers, whose faces are fewer: to the level that
+/// the tolerance allows or, within limits, to one level after another, coarsest first. Where surfaces of
+/// wrappers do not meet though the bodies do, one wrapper being in the other, and where no level is much
+/// smaller than the bodies, the exact query finds the pairs. The first question may take half of a limit;
+/// should it end without an answer, levels tell what they can.
 ///
-/// Whether the exact query goes on depends on the bodies and poses alone, not on the tolerance: so a finer tolerance
-/// never gives a larger error bound.
+/// Whether the exact query goes on depends on the bodies and poses alone, not on the tolerance: so a finer
+/// tolerance never gives a larger error bound.
 ///
-/// Why levels never call bodies separate that meet. Each wrapper encloses its body (wrapper_level.hpp), so bodies
-/// whose wrappers share no point share none. Two wrappers share no point if no two of their faces meet and no
-/// connected piece of either one's boundary has a point in the other: pairs of faces are found as the complete
-/// query finds them, and pieces are located exactly. But in the world, rounding moves hidden vertices and lids
-/// separately. Let x be a point in which the bodies meet as rounded. There are points p and q of the bodies as
-/// they would be without rounding, no further from x than a vertex of each is rounded. Move every vertex of the
-/// wrappers from its rounded place to its true one, and then wrapper B by p - q: now both wrappers hold p. If no
-/// two faces meet all the way, then a piece of one boundary lies in the other wrapper now, and did at the
-/// beginning, where it was looked for. So it is enough that faces which count as apart stay apart when vertices
-/// shift against each other by twice what both bodies are rounded:
+/// Why levels never call bodies separate that meet. Each wrapper encloses its body (wrapper_level.hpp), so
+/// bodies whose wrappers share no point share none. Two wrappers share no point if no two of their faces meet
+/// and no connected piece of either one's boundary has a point in the other: pairs of faces are found as the
+/// complete query finds them, and pieces are located exactly. But in the world, rounding moves hidden
+/// vertices and lids separately. Let x be a point in which the bodies meet as rounded. There are points p and
+/// q of the bodies as they would be without rounding, no further from x than a vertex of each is rounded.
+/// Move every vertex of the wrappers from its rounded place to its true one, and then wrapper B by p - q: now
+/// both wrappers hold p. If no two faces meet all the way, then a piece of one boundary lies in the other
+/// wrapper now, and did at the beginning, where it was looked for. So it is enough that faces which count as
+/// apart stay apart when vertices shift against each other by twice what both bodies are rounded:
 /// - the kernel vouches for this in all that it drops and in all that it calls certain (kWrapperSlack);
 /// - what it leaves open is tested exactly, and counts as apart only with wrapper_margin() between.
 
@@ -54,15 +55,16 @@ struct CoarseStep {
 /// Returns whether there is a limit of tests or time.
 bool is_limited(const CollideRequest& request);
 
-/// Returns the first step to be tried: the only one, or within limits the coarsest. Exact where no level is worth it.
+/// Returns the first step to be tried: the only one, or within limits the coarsest. Exact where no level is
+/// worth it.
 CoarseStep first_step(const LrbRep& a, const LrbRep& b, const CollideRequest& request);
 
 /// Returns the steps to be tried, coarsest first; the last is as fine as was asked for.
 std::vector<CoarseStep> coarse_steps(const LrbRep& a, const LrbRep& b, const CollideRequest& request);
 
-/// Returns whether the boundary of either wrapper has a piece in the other; nothing if `in_time()`, which is asked
-/// before each point is located, returns false. For wrappers whose faces do not meet. Calls see(side, vertex, where)
-/// for each point.
+/// Returns whether the boundary of either wrapper has a piece in the other; nothing if `in_time()`, which is
+/// asked before each point is located, returns false. For wrappers whose faces do not meet. Calls see(side,
+/// vertex, where) for each point.
 template <class InTime, class See>
 std::optional<bool> wrappers_nested(QueryContext& ctx, InTime&& in_time, See&& see) {
   for (const Side side : {Side::a, Side::b}) {
@@ -77,8 +79,9 @@ std::optional<bool> wrappers_nested(QueryContext& ctx, InTime&& in_time, See&& s
   return false;
 }
 
-/// Work of a query with a limit in time between two readings of the clock, each of which takes as long as one to three
-/// tests. Less: queries with a limit in time do less; more: they miss it by more, on old processors above all.
+/// Work of a query with a limit in time between two readings of the clock, each of which takes as long as one
+/// to three tests. Less: queries with a limit in time do less; more: they miss it by more, on old processors
+/// above all.
 namespace between_looks {
 constexpr std::uint64_t kNodePairs = 16;  ///< one or two microseconds; four without AVX2
 constexpr unsigned kTests = 32;           ///< that are certain: less than a microsecond
@@ -116,16 +119,16 @@ struct LimitedRules {
   }
 };
 
-/// Rules of the exact query that comes first, for all pairs: it gives up once a pair crosses, unless little is left
-/// to do. What is left is judged by the pairs of nodes that wait. There are few where bodies barely cross; more may
-/// wait where it took long to find a pair that crosses, since those lie deep in the trees.
+/// Rules of the exact query that comes first, for all pairs: it gives up once a pair crosses, unless little
+/// is left to do. What is left is judged by the pairs of nodes that wait. There are few where bodies barely
+/// cross; more may wait where it took long to find a pair that crosses, since those lie deep in the trees.
 template <class Clock = std::chrono::steady_clock>
 class TrialRules : public LimitedRules<Clock> {
  public:
   static constexpr bool kTrial = true;
-  /// How few pairs of nodes may wait, for a query to a tolerance, and within limits, where levels come one after
-  /// another and the exact query last. More: bodies that cross deeply pay for work that is given up; fewer: bodies
-  /// that barely cross pay for levels.
+  /// How few pairs of nodes may wait, for a query to a tolerance, and within limits, where levels come one
+  /// after another and the exact query last. More: bodies that cross deeply pay for work that is given up;
+  /// fewer: bodies that barely cross pay for levels.
   static constexpr std::uint32_t kFewToTolerance = 12, kFewWithinLimits = 24;
 
   std::uint32_t few_waiting = kFewToTolerance;
@@ -140,7 +143,8 @@ class TrialRules : public LimitedRules<Clock> {
     if (crossed_at_ == kNoLimit) crossed_at_ = node_pairs_;
     return gives_up(false);
   }
-  /// Returns true if a pair crosses and the answer should be left to levels. too_many: of pairs that were found.
+  /// Returns true if a pair crosses and the answer should be left to levels. too_many: of pairs that were
+  /// found.
   bool gives_up(bool too_many) {
     if (crossed_at_ == kNoLimit) return false;
     const bool much = waiting_ > few_waiting + crossed_at_ / 4 || node_pairs_ >= crossed_at_ + kMostMore;
@@ -269,8 +273,8 @@ class CoarseQuery {
     result_.finished = finished;
   }
 
-  /// Queries the bodies themselves. The answer is exact if the limits allow it; `error_bound` is reported as for a
-  /// level.
+  /// Queries the bodies themselves. The answer is exact if the limits allow it; `error_bound` is reported as
+  /// for a level.
   void ask_exactly(double error_bound) {
     for (const Side side : {Side::a, Side::b}) ctx_[side].query_body();
     CollideResult found;
@@ -281,8 +285,8 @@ class CoarseQuery {
     if (decide_relation_watched(ctx_, found, probe_, in_time(rules))) answer(found, error_bound, true);
   }
 
-  /// Asks the bodies as they are, until it has an answer of one pair, or one pair of many crosses. Returns true if
-  /// that is the whole answer: also where they do not cross, or little was left to do.
+  /// Asks the bodies as they are, until it has an answer of one pair, or one pair of many crosses. Returns
+  /// true if that is the whole answer: also where they do not cross, or little was left to do.
   bool first_walk_decides() {
     CollideResult found;
     TrialRules<Clock> rules;
@@ -341,13 +345,14 @@ class CoarseQuery {
     return true;
   }
 
-  /// Returns how far a level is off its body in the world at most. Not a product where it would be 0 times infinity.
+  /// Returns how far a level is off its body in the world at most. Not a product where it would be 0 times
+  /// infinity.
   static double off_body(const WrapperLevel* level, const Pose& pose) {
     return level == nullptr || level->bound == 0 ? 0 : level->bound * stretch(pose);
   }
 
-  /// Finds the pairs of a level, of bodies that cross. Returns false if a limit was reached before its end: the
-  /// answer then stays that of the level before.
+  /// Finds the pairs of a level, of bodies that cross. Returns false if a limit was reached before its end:
+  /// the answer then stays that of the level before.
   bool add_level(const CoarseStep& step, bool last) {
     CollideResult found;
     WrapperRules<Clock> rules;
@@ -362,8 +367,8 @@ class CoarseQuery {
     return true;
   }
 
-  /// Finds out what a level tells of bodies of which nothing is known. Returns false if a limit was reached before
-  /// its end, or if there is no more to be found out.
+  /// Finds out what a level tells of bodies of which nothing is known. Returns false if a limit was reached
+  /// before its end, or if there is no more to be found out.
   bool try_level(const CoarseStep& step, bool last) {
     CollideResult found;
     WrapperRules<Clock> rules;

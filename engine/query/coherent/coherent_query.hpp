@@ -2,12 +2,12 @@
 /// Queries two bodies again and again as they move by little from one query to the next (the paper's future
 /// work).
 ///
-/// Keeps the wrappers and a candidate cache: all pairs of simplices that may meet while B stays within a sweep
-/// of its motion relative to A. If that motion is not steady, the cache is for the surroundings of one fixed
-/// pose. A query tests only the cached pairs that may meet at its pose: eight at a time in floats, exactly
-/// where floats are not certain. relative_motion.hpp says what a sweep holds and which errors it allows for.
-/// Poses further from rotations than kRigid, scaled or sheared ones, are queried from scratch: as fast as
-/// collide(), and the answers the same.
+/// Keeps the wrappers and a candidate cache: all pairs of simplices that may meet while B stays within a
+/// sweep of its motion relative to A. If that motion is not steady, the cache is for the surroundings of one
+/// fixed pose. A query tests only the cached pairs that may meet at its pose: eight at a time in floats,
+/// exactly where floats are not certain. relative_motion.hpp says what a sweep holds and which errors it
+/// allows for. Poses further from rotations than kRigid, scaled or sheared ones, are queried from scratch: as
+/// fast as collide(), and the answers the same.
 ///
 /// The answers are those of collide(): pairs, meets and relation always; what was opened, and the counters,
 /// describe this query's own work. In first_pair mode the pair may be another one; in any_pair mode too, and

@@ -3,7 +3,8 @@
 /// point of B has moved, and where B will be if it goes on like this.
 ///
 /// With (m, t) as in set_up_kernel(), the points of B on A's axes are m x + t. From one pose to another they
-/// move by at most |dm c + dt| + |dm| R, where c and R are the middle and the radius of B; turn_bound() bounds |dm|.
+/// move by at most |dm c + dt| + |dm| R, where c and R are the middle and the radius of B; turn_bound()
+/// bounds |dm|.
 ///
 /// For parts of a motion, which are not between rotations, the same holds with the root of the sum of all
 /// squares.

@@ -1,6 +1,6 @@
 #pragma once
-/// Watching how the bounds of a distance tighten, from outside the engine: derive from BoundsProbe and give it to
-/// distance(). The answer is the same as without; what is told costs a look at all pairs that wait.
+/// Watching how the bounds of a distance tighten, from outside the engine: derive from BoundsProbe and give
+/// it to distance(). The answer is the same as without; what is told costs a look at all pairs that wait.
 
 #include <cstdint>
 #include <vector>
@@ -30,9 +30,9 @@ class BoundsCourse final : public BoundsProbe {
   std::vector<Bounds> course;
 };
 
-/// Does what distance() in distance.hpp does, and tells the probe what is known, after more and more work: the last
-/// bounds lie within those of the answer, and are the answer's but for DistanceRequest::within. Work is counted in
-/// pairs of nodes opened and pairs of simplices measured in doubles or exactly.
+/// Does what distance() in distance.hpp does, and tells the probe what is known, after more and more work:
+/// the last bounds lie within those of the answer, and are the answer's but for DistanceRequest::within. Work
+/// is counted in pairs of nodes opened and pairs of simplices measured in doubles or exactly.
 DistanceResult distance(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
                         const DistanceRequest& request, BoundsProbe& probe);
 

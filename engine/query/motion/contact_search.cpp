@@ -1,6 +1,7 @@
 /// The search in one piece of both motions. What is free was proved free, by find_swept_pairs(), by
-/// PairMotion::parted_for() or by a distance; what is in contact, by the exact query or PairMotion::has_passed(); all
-/// else is doubtful, and said to be. Everything else here decides only how much work that takes.
+/// PairMotion::parted_for() or by a distance; what is in contact, by the exact query or
+/// PairMotion::has_passed(); all else is doubtful, and said to be. Everything else here decides only how much
+/// work that takes.
 
 #include <algorithm>
 #include <cmath>
@@ -15,20 +16,21 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// The search is no coarser for a wider tolerance: where bodies come into each other, long spans hold many pairs.
+/// The search is no coarser for a wider tolerance: where bodies come into each other, long spans hold many
+/// pairs.
 constexpr double kWidestStep = 1e-6;
 /// From so many pairs on, shorter spans are looked at, unless they are hardly longer than the tolerance.
 constexpr std::uint64_t kFewPairs = 128;
 constexpr double kHardlyLonger = 64;
-/// In spans shorter than this share of a piece, each that has too many pairs doubles how many may be: where long faces
-/// pass each other, halves have no fewer, however short they are.
+/// In spans shorter than this share of a piece, each that has too many pairs doubles how many may be: where
+/// long faces pass each other, halves have no fewer, however short they are.
 constexpr double kShortShare = 0x1p-10;
-/// A pair stops when it comes no further than this many tolerances in a step, and a pair that is stuck when it comes no
-/// further than that many.
+/// A pair stops when it comes no further than this many tolerances in a step, and a pair that is stuck when
+/// it comes no further than that many.
 constexpr double kLeastStep = 0x1p-3, kLeastStuckStep = 0x1p-20;
 constexpr int kMostStepsOfPair = 256;
-/// How much longer each span is in which a way out of a doubtful place is looked for; and which share of it bodies must
-/// be sure to go on for.
+/// How much longer each span is in which a way out of a doubtful place is looked for; and which share of it
+/// bodies must be sure to go on for.
 constexpr double kLonger = 4, kGoesOn = 0.25;
 /// To which share of its length the end of a doubtful span is found.
 constexpr double kNarrow = 0x1p-10;
@@ -107,7 +109,8 @@ void FirstContactSearch::search_by_distance(double end) {
   }
 }
 
-/// Moves a pair on from the states at the span's begin for as long as it is parted, and steps are at least this long.
+/// Moves a pair on from the states at the span's begin for as long as it is parted, and steps are at least
+/// this long.
 double FirstContactSearch::advance(SimplexPair pair, const PieceState& at_a, const PieceState& at_b,
                                    TimeSpan span, double least) {
   PairMotion moving(*a_, *b_, pair);
@@ -141,8 +144,8 @@ double FirstContactSearch::advance_all(TimeSpan span, double least) {
   return until;
 }
 
-/// Looks whether the bodies meet right after t, until when they do not. Returns until when else they are known not to,
-/// but for what is doubtful.
+/// Looks whether the bodies meet right after t, until when they do not. Returns until when else they are
+/// known not to, but for what is doubtful.
 double FirstContactSearch::look_closer(double t, double end) {
   const double soon = std::min(end, std::max(t + step_tolerance() / 2, std::nextafter(t, 2)));
   if (const auto pair = meets_at(soon)) {
@@ -154,8 +157,8 @@ double FirstContactSearch::look_closer(double t, double end) {
   return look_further(until, end);
 }
 
-/// Asks the exact query at a few times right after the span's begin. Returns true, and notes the contact, if it finds
-/// one: bodies that pass each other in less than the tolerance do.
+/// Asks the exact query at a few times right after the span's begin. Returns true, and notes the contact, if
+/// it finds one: bodies that pass each other in less than the tolerance do.
 bool FirstContactSearch::meets_right_after(TimeSpan span) {
   for (const double share : {0x1p-24, 0x1p-16, 0x1p-8}) {
     const double t = std::max(span.begin + share * step_tolerance(), std::nextafter(span.begin, 2));
@@ -168,8 +171,8 @@ bool FirstContactSearch::meets_right_after(TimeSpan span) {
   return false;
 }
 
-/// Returns until when bodies are proved not to meet, in steps as short as need be. Keeps the pairs that do not come to
-/// the span's end.
+/// Returns until when bodies are proved not to meet, in steps as short as need be. Keeps the pairs that do
+/// not come to the span's end.
 double FirstContactSearch::advance_stuck(TimeSpan span) {
   const double least = kLeastStuckStep * step_tolerance();
   context_.stuck.clear();
@@ -231,8 +234,8 @@ double FirstContactSearch::look_further(double t, double end) {
   return t;
 }
 
-/// Returns the shortest span, by halves, after which bodies are sure to go on, given one after which they are, or
-/// nothing remains, and a length of spans after which they are not.
+/// Returns the shortest span, by halves, after which bodies are sure to go on, given one after which they
+/// are, or nothing remains, and a length of spans after which they are not.
 TimeSpan FirstContactSearch::shortened(TimeSpan span, double too_short) {
   double doubtful = std::min(span.begin + too_short, span.end);
   while (span.end - doubtful > std::max(request_.tolerance, kNarrow * (span.end - span.begin)) &&
@@ -256,7 +259,8 @@ bool FirstContactSearch::goes_on_from(TimeSpan span) {
   });
 }
 
-/// Asks the exact query at a few times within a doubtful span. Returns true, and notes the contact, if it finds one.
+/// Asks the exact query at a few times within a doubtful span. Returns true, and notes the contact, if it
+/// finds one.
 bool FirstContactSearch::found_between(TimeSpan span) {
   double before = span.begin;
   for (int i = 1; i < kProbes; ++i) {

@@ -1,18 +1,19 @@
 #pragma once
 /// When two moving bodies first meet: an interval of t that is proved to hold the first contact.
 ///
-/// Bodies meet where their surfaces have a point in common, as for collide(): a body that is inside another without
-/// touching it does not meet it. What holds is said of two things at once:
+/// Bodies meet where their surfaces have a point in common, as for collide(): a body that is inside another
+/// without touching it does not meet it. What holds is said of two things at once:
 /// - the exact motions, functions of real numbers (motion.hpp): for no real t before t0 do the surfaces meet;
 /// - their doubles: for no double t before t0 does collide() find a contact at Motion::at(t).
 /// At t1 collide() finds one.
 ///
-/// Spans of time in which no pair of simplices can meet are passed in one walk of the trees (swept_pairs.hpp). Where
-/// there are pairs that may meet, each advances by conservative steps: as long as the slab that parts the two is proved
-/// to do so for a bound on their motion along its normal (pair_motion.hpp; Mirtich, "Impulse-based Dynamic Simulation",
-/// 1996, has conservative advancement; Tang, Kim and Manocha, "C2A", 2009, bounds along the direction between two
-/// parts). Steps towards a contact shrink as Newton's do. The least of the times that pairs come to is t0; the exact
-/// query decides what is there.
+/// Spans of time in which no pair of simplices can meet are passed in one walk of the trees
+/// (swept_pairs.hpp). Where there are pairs that may meet, each advances by conservative steps: as long as
+/// the slab that parts the two is proved to do so for a bound on their motion along its normal
+/// (pair_motion.hpp; Mirtich, "Impulse-based Dynamic Simulation", 1996, has conservative advancement; Tang,
+/// Kim and Manocha, "C2A", 2009, bounds along the direction between two parts). Steps towards a contact
+/// shrink as Newton's do. The least of the times that pairs come to is t0; the exact query decides what is
+/// there.
 
 #include <array>
 #include <cstdint>
@@ -29,11 +30,11 @@
 namespace lrb {
 
 struct FirstContactRequest {
-  /// The widest interval, in t. More than 0, at most 1. Below about 1e-14 of the bodies' sizes divided by their speed
-  /// rounding keeps the interval wider.
+  /// The widest interval, in t. More than 0, at most 1. Below about 1e-14 of the bodies' sizes divided by
+  /// their speed rounding keeps the interval wider.
   double tolerance = 1e-9;
-  /// The largest number of steps; 0: no limit. A step looks for the pairs of a span, moves a pair, or asks the exact
-  /// query.
+  /// The largest number of steps; 0: no limit. A step looks for the pairs of a span, moves a pair, or asks
+  /// the exact query.
   std::uint64_t max_steps = 10'000'000;
   bool relation = true;  ///< find out how bodies lie at the start that do not meet there
   bool history = false;  ///< write FirstContactResult::history
@@ -67,15 +68,15 @@ struct FirstContactCounters {
 
 struct FirstContactResult {
   MotionOutcome outcome = MotionOutcome::never;
-  /// contact: they do not meet before t0, and meet at t1. undecided: the same, but nobody knows whether they meet from
-  /// t0 to t1; after t1 they do not. never: both 1.
+  /// contact: they do not meet before t0, and meet at t1. undecided: the same, but nobody knows whether they
+  /// meet from t0 to t1; after t1 they do not. never: both 1.
   double t0 = 1, t1 = 1;
   bool at_start = false;  ///< they meet at t = 0, and t0 = t1 = 0
-  /// The interval is wider than asked, because before t1 there are spans (`doubtful`) in which bodies are as near each
-  /// other as rounding, and no contact was found: they graze.
+  /// The interval is wider than asked, because before t1 there are spans (`doubtful`) in which bodies are as
+  /// near each other as rounding, and no contact was found: they graze.
   bool grazing = false;
-  /// They have met by t1, which is proved by an argument of continuity, though not at t1: for surfaces that pass
-  /// through each other in less time than there is between two doubles, as parallel sheets do.
+  /// They have met by t1, which is proved by an argument of continuity, though not at t1: for surfaces that
+  /// pass through each other in less time than there is between two doubles, as parallel sheets do.
   bool passed = false;
   bool finished = true;  ///< false: max_steps were reached
   /// How the bodies lie at the start; of bodies that meet there, what the first pair found shows, as for
@@ -106,13 +107,13 @@ struct FirstContactResult {
   bool is_contact() const { return outcome == MotionOutcome::contact; }
 };
 
-/// Returns when bodies `a` and `b` first meet; both must be 3D, or both 2D, and world coordinates finite. Throws
-/// InputError for these, and for a request that cannot be answered.
+/// Returns when bodies `a` and `b` first meet; both must be 3D, or both 2D, and world coordinates finite.
+/// Throws InputError for these, and for a request that cannot be answered.
 FirstContactResult first_contact(const LrbRep& a, const Motion& motion_a, const LrbRep& b,
                                  const Motion& motion_b, const FirstContactRequest& request = {});
 
-/// Returns the first contacts for some motions of B, in their order; the same for any number of threads (0: all
-/// cores).
+/// Returns the first contacts for some motions of B, in their order; the same for any number of threads (0:
+/// all cores).
 std::vector<FirstContactResult> first_contacts(const LrbRep& a, const Motion& motion_a, const LrbRep& b,
                                                std::span<const Motion> motions_b,
                                                const FirstContactRequest& request = {}, unsigned threads = 0);

@@ -1,6 +1,6 @@
 #pragma once
-/// One search for a first contact, with memory that the next one can use again: for code of ours. Users of the
-/// installed engine have first_contact.hpp.
+/// One search for a first contact, with memory that the next one can use again: for code of ours. Users of
+/// the installed engine have first_contact.hpp.
 
 #include <limits>
 #include <optional>

@@ -1,7 +1,7 @@
 #pragma once
-/// Watching a search for a first contact, from outside the engine: derive from FirstContactProbe and give it to
-/// first_contact(). The answer is the same as without; each time something is told the distance of the bodies is
-/// measured once more.
+/// Watching a search for a first contact, from outside the engine: derive from FirstContactProbe and give it
+/// to first_contact(). The answer is the same as without; each time something is told the distance of the
+/// bodies is measured once more.
 
 #include <cstdint>
 #include <limits>
@@ -36,7 +36,8 @@ class FirstContactCourse final : public FirstContactProbe {
   std::vector<ContactBounds> course;
 };
 
-/// Does what first_contact() in first_contact.hpp does, and tells the probe what is known, after more and more work.
+/// Does what first_contact() in first_contact.hpp does, and tells the probe what is known, after more and
+/// more work.
 FirstContactResult first_contact(const LrbRep& a, const Motion& motion_a, const LrbRep& b,
                                  const Motion& motion_b, const FirstContactRequest& request,
                                  FirstContactProbe& probe);

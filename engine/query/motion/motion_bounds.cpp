@@ -13,7 +13,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Calls see(origin, radius), in the body's unit, for balls that together hold the body: two levels of its tree.
+/// Calls see(origin, radius), in the body's unit, for balls that together hold the body: two levels of its
+/// tree.
 template <class See>
 void for_each_ball(const ObbTree& tree, See&& see) {
   const auto nodes = tree.nodes().data();

@@ -1,21 +1,21 @@
 #pragma once
 /// Bounds on how a body moves in a piece of its motion, each rounded upward.
 ///
-/// With z = first.r x + first.t for a point x of the body, T = end - begin, w = turn / T and E(t) = exp(s [turn]),
-/// its place, velocity and acceleration are
+/// With z = first.r x + first.t for a point x of the body, T = end - begin, w = turn / T and E(t) = exp(s
+/// [turn]), its place, velocity and acceleration are
 ///     r E z + (1 - s) from + s to,    r E (w x z) + (to - from) / T,    r E (w x (w x z)),
-/// because [w] commutes with E. E keeps lengths, so that the parts of velocity and acceleration that come from
-/// turning are no longer than |r| |w x z| and |r| |w| |w x z|, whatever t is.
+/// because [w] commutes with E. E keeps lengths, so that the parts of velocity and acceleration that come
+/// from turning are no longer than |r| |w x z| and |r| |w| |w x z|, whatever t is.
 ///
 /// Rounding. Let N = |r| |first.r|, in Euclidean and Frobenius norms, X bound |x|, P = |r| |first.t|, Q = the
-/// larger of |from| and |to|, u = 2^-53, and S = N X + P + Q. Pose::apply() adds four terms, which rounds by at
-/// most 4 u S. Entries of the pose are rounded to double, which makes u S. What is computed in long double,
-/// u' = 2^-64, has relative errors of at most 4 u' in s and in s turn's direction, and the angle, at most |turn|, is
-/// off by 5 u' of itself; sines, cosines and the products that make up the rotation add 24 u'. Together that is
-/// (60 + 10 |turn|) u' S < (2^-5 + 2^-7 |turn|) u S. The sum is below (5.1 + 2^-7 |turn|) u S <= 8 u S (1 + 2^-10
-/// |turn|): kMotionRounding is 8 u. A velocity is computed in doubles with a dozen roundings of terms of which none
-/// exceeds V = (|turn| (N X + P) + |from| + |to|) / T; 4 kMotionRounding (1 + 2^-10 |turn|) V, 32 u, covers them and
-/// a product with a direction.
+/// larger of |from| and |to|, u = 2^-53, and S = N X + P + Q. Pose::apply() adds four terms, which rounds by
+/// at most 4 u S. Entries of the pose are rounded to double, which makes u S. What is computed in long
+/// double, u' = 2^-64, has relative errors of at most 4 u' in s and in s turn's direction, and the angle, at
+/// most |turn|, is off by 5 u' of itself; sines, cosines and the products that make up the rotation add 24
+/// u'. Together that is (60 + 10 |turn|) u' S < (2^-5 + 2^-7 |turn|) u S. The sum is below (5.1 + 2^-7
+/// |turn|) u S <= 8 u S (1 + 2^-10 |turn|): kMotionRounding is 8 u. A velocity is computed in doubles with a
+/// dozen roundings of terms of which none exceeds V = (|turn| (N X + P) + |from| + |to|) / T; 4
+/// kMotionRounding (1 + 2^-10 |turn|) V, 32 u, covers them and a product with a direction.
 
 #include "engine/core/tolerances.hpp"
 #include "engine/lrb/lrb_rep.hpp"

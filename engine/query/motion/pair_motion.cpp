@@ -86,7 +86,8 @@ void PairMotion::place(const PieceState& a, const PieceState& b) {
   }
 }
 
-/// Returns how far a product of n and a difference of two corners may be off, once for now and once for later.
+/// Returns how far a product of n and a difference of two corners may be off, once for now and once for
+/// later.
 double PairMotion::places_rounding(const Vector3d& n) const {
   return 0.25 * kPairRounding * reach_ * n.cwiseAbs().sum() +
          2 * n.norm() * kWorldUp * (body_[0]->rounding() + body_[1]->rounding());
@@ -153,20 +154,20 @@ double PairMotion::approach_speed(const PairBounds& at, const Vector3d& n) const
   return -n.dot(velocity_at(1, at.on[1], at.point[1]) - velocity_at(0, at.on[0], at.point[0]));
 }
 
-/// Returns the direction along which differences are looked at in has_passed(), of length 1: that of the motion, across
-/// which there is least of it, unless it goes along the slab.
+/// Returns the direction along which differences are looked at in has_passed(), of length 1: that of the
+/// motion, across which there is least of it, unless it goes along the slab.
 Vector3d PairMotion::look_along(const Vector3d& n) const {
   constexpr double kLeastCosine = 1e-3;
   const Vector3d way = body_[1]->travel() - body_[0]->travel();
   return std::abs(way.dot(n)) > kLeastCosine * way.norm() * n.norm() ? way.normalized() : n.normalized();
 }
 
-/// Simplices meet where the origin is in the set of all differences b - a of their points: the convex hull of the
-/// differences of their corners, nine or (2D) four points. Let three of these (2D: two) be ahead along n before, and
-/// behind now, and let the triangle (segment) between them, seen along some direction d that is not across n, hold the
-/// origin before and however its corners move meanwhile. Then it holds the origin all the while, seen along d, and the
-/// point of the triangle that hides the origin, or is hidden by it, moves continuously along that line from ahead to
-/// behind: at some time it is the origin.
+/// Simplices meet where the origin is in the set of all differences b - a of their points: the convex hull of
+/// the differences of their corners, nine or (2D) four points. Let three of these (2D: two) be ahead along n
+/// before, and behind now, and let the triangle (segment) between them, seen along some direction d that is
+/// not across n, hold the origin before and however its corners move meanwhile. Then it holds the origin all
+/// the while, seen along d, and the point of the triangle that hides the origin, or is hidden by it, moves
+/// continuously along that line from ahead to behind: at some time it is the origin.
 bool PairMotion::has_passed(const PairMotion& before, const Vector3d& n, double time) const {
   const Vector3d d = look_along(n);
   const Vector3d u = n_ == 3 ? across(d) : Vector3d(-d.y(), d.x(), 0), v = d.cross(u);

@@ -1,18 +1,18 @@
 #pragma once
 /// Two simplices that move: for how long a slab is proved to part them.
 ///
-/// Along a direction n, a corner b of B is ahead of a corner a of A by n . (b - a). At a time d later, in the same
-/// piece of both motions, by Taylor's theorem it is so by at least
+/// Along a direction n, a corner b of B is ahead of a corner a of A by n . (b - a). At a time d later, in the
+/// same piece of both motions, by Taylor's theorem it is so by at least
 ///     q(d) = c + v d - k d^2 / 2,
-/// c: what it is ahead now, v: n . (velocity of b - velocity of a), k: |n| times the bounds of both accelerations.
-/// c and v are rounded downward by all that may be off: places and velocities (motion_bounds.hpp), products
-/// (pair_bounds.cpp). q is concave: where it is more than 0 at both ends of a span of d, it is so all the while.
-/// If that holds for every corner of B against every corner of A, n . x parts the simplices, which are no more
-/// than averages of their corners with weights that do not change.
+/// c: what it is ahead now, v: n . (velocity of b - velocity of a), k: |n| times the bounds of both
+/// accelerations. c and v are rounded downward by all that may be off: places and velocities
+/// (motion_bounds.hpp), products (pair_bounds.cpp). q is concave: where it is more than 0 at both ends of a
+/// span of d, it is so all the while. If that holds for every corner of B against every corner of A, n . x
+/// parts the simplices, which are no more than averages of their corners with weights that do not change.
 ///
-/// "Apart" is meant both for the exact motions and for the doubles of Motion::at() and Pose::apply() at any double
-/// t: the latter are off the former by MovingBody::rounding() at most, for which c makes room twice, once for now,
-/// when the doubles are looked at, and once for later.
+/// "Apart" is meant both for the exact motions and for the doubles of Motion::at() and Pose::apply() at any
+/// double t: the latter are off the former by MovingBody::rounding() at most, for which c makes room twice,
+/// once for now, when the doubles are looked at, and once for later.
 
 #include "engine/query/distance/pair_bounds.hpp"
 #include "engine/query/motion/motion_bounds.hpp"
@@ -27,8 +27,8 @@ class PairMotion {
   /// Moves the corners to where they are at the time of these states.
   void place(const PieceState& a, const PieceState& b);
 
-  /// Returns for how long from now on the slab across n (any length, either sign) is proved to part the simplices; 0:
-  /// it does not, or not for long.
+  /// Returns for how long from now on the slab across n (any length, either sign) is proved to part the
+  /// simplices; 0: it does not, or not for long.
   double parted_for(const Eigen::Vector3d& n) const;
   PairBounds bounds() const;
   /// Returns about where the second simplex is, seen from the first.
@@ -36,8 +36,8 @@ class PairMotion {
   /// Returns how fast the point of the first simplex comes nearer to that of the second along n, of length 1.
   double approach_speed(const PairBounds& at, const Eigen::Vector3d& n) const;
 
-  /// Returns true if the simplices are proved to have met between an earlier placement and this one, by an argument
-  /// of continuity. n: parted them then, seen from A. time: how much earlier it was, or more.
+  /// Returns true if the simplices are proved to have met between an earlier placement and this one, by an
+  /// argument of continuity. n: parted them then, seen from A. time: how much earlier it was, or more.
   bool has_passed(const PairMotion& before, const Eigen::Vector3d& n, double time) const;
 
  private:

@@ -15,7 +15,8 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-/// Largest angle, in radians, by which B may turn from the middle of a span for its turning to be followed straight.
+/// Largest angle, in radians, by which B may turn from the middle of a span for its turning to be followed
+/// straight.
 constexpr double kStraight = 1;
 /// Bodies that are further from rotations than this are not swept by the kernel for rotations.
 constexpr double kNearlyRigid = 0x1p-6;
@@ -28,8 +29,9 @@ Matrix3d cross_matrix(const Vector3d& w) {
   return m;
 }
 
-/// Returns the sweep of B over `half` a span to either side of its middle, on A's axes. What A and B are displaced by
-/// at a contact, seen from the middle, is the difference of their displacements in the world, turned to A's axes.
+/// Returns the sweep of B over `half` a span to either side of its middle, on A's axes. What A and B are
+/// displaced by at a contact, seen from the middle, is the difference of their displacements in the world,
+/// turned to A's axes.
 Sweep sweep_of(const MovingBody& a, const PieceState& at_a, const MovingBody& b, const PieceState& at_b,
                double half) {
   Sweep sweep;

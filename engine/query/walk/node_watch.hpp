@@ -1,6 +1,6 @@
 #pragma once
-/// Runs the tree kernel one pair of nodes at a time and tells a probe what came of each. The kernel, the order of pairs
-/// and the outcome are those of a query that nobody watches.
+/// Runs the tree kernel one pair of nodes at a time and tells a probe what came of each. The kernel, the
+/// order of pairs and the outcome are those of a query that nobody watches.
 
 #include <algorithm>
 #include <cstdint>

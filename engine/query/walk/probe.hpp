@@ -61,8 +61,8 @@ struct NullProbe {
 
   /// The walk came to a pair of nodes. Returns what stands for it as NodeVisit::parent of pairs beneath it.
   std::uint32_t node_pair(const NodeVisit&) { return kNull; }
-  /// Told at EventLevel::all: a plane parts two simplices, that of the one of `whose`. They are of the leaves of the
-  /// pair of nodes that was told last.
+  /// Told at EventLevel::all: a plane parts two simplices, that of the one of `whose`. They are of the leaves
+  /// of the pair of nodes that was told last.
   void plane_test(SimplexId, SimplexId, Side /*whose*/) {}
   /// What decided the face test that was told last.
   void tested_by(TestedBy) {}

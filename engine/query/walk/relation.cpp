@@ -17,13 +17,14 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-/// The direction of a ray: along an axis of the world, or against it. The parity of crossings is the same in each.
+/// The direction of a ray: along an axis of the world, or against it. The parity of crossings is the same in
+/// each.
 struct Direction {
   int axis = 0;
   bool backward = false;
 
-  /// Writes a point's coordinates as they are seen where the ray runs in direction +x. Exact: nothing but swapped
-  /// and negated.
+  /// Writes a point's coordinates as they are seen where the ray runs in direction +x. Exact: nothing but
+  /// swapped and negated.
   void see(const double* x, int dim, double* out) const {
     for (int k = 0; k < dim; ++k) {
       const double value = x[(axis + k) % dim];
@@ -32,8 +33,8 @@ struct Direction {
   }
 };
 
-/// Walks the tree along the ray from a point (doubles, or exact::RationalPoint) and counts the simplices that it
-/// crosses. `near` is the point rounded to doubles, for the boxes.
+/// Walks the tree along the ray from a point (doubles, or exact::RationalPoint) and counts the simplices that
+/// it crosses. `near` is the point rounded to doubles, for the boxes.
 template <class Point>
 class RayWalk {
  public:
@@ -83,7 +84,8 @@ class RayWalk {
     return f;
   }
 
-  /// Returns what holds a box whose quantized ends are `lo` and `hi`. Conservative, as the kernel's boxes are.
+  /// Returns what holds a box whose quantized ends are `lo` and `hi`. Conservative, as the kernel's boxes
+  /// are.
   template <class Lo, class Hi>
   static Bounds bounds_of(const TreeNode& n, const Frame& f, const Lo& lo, const Hi& hi) {
     Vector3d centre, half;
@@ -102,8 +104,9 @@ class RayWalk {
     return beside;
   }
 
-  /// Returns true if the point certainly lies beyond a side of a node's whole box. A plane along a side proves that,
-  /// however its direction came about: the box may reach across it by what its half axes and `grow` allow.
+  /// Returns true if the point certainly lies beyond a side of a node's whole box. A plane along a side
+  /// proves that, however its direction came about: the box may reach across it by what its half axes and
+  /// `grow` allow.
   bool is_beside_oriented(const TreeNode& n, const Frame& f) const {
     Vector3d centre = f.origin, half[3];
     for (int i = 0; i < 3; ++i) {

@@ -57,16 +57,18 @@ struct CollideRequest {
   bool interiors_overlap =
       false;  ///< decide CollideResult::interiors_overlap for bodies that meet (all_pairs)
 
-  /// Limits on the effort: coarse queries (docs/queries.md says when to use which). Only for `complete`, without
-  /// contacts, interiors_overlap or unregularised wrappers (else InputError). Bodies that meet are never called
-  /// separate. The levels that they walk are made when they are first asked for, unless LrbRep::levels() was
-  /// called before or a file had them; a query with max_time does without rather than make them.
+  /// Limits on the effort: coarse queries (docs/queries.md says when to use which). Only for `complete`,
+  /// without contacts, interiors_overlap or unregularised wrappers (else InputError). Bodies that meet are
+  /// never called separate. The levels that they walk are made when they are first asked for, unless
+  /// LrbRep::levels() was called before or a file had them; a query with max_time does without rather than
+  /// make them.
   ///
-  /// tolerance: the relation is exact, and so is an answer of one pair; the list of all pairs of bodies that cross
-  /// may be that of wrappers no further off than this, each. Unit: the meshes'.
+  /// tolerance: the relation is exact, and so is an answer of one pair; the list of all pairs of bodies that
+  /// cross may be that of wrappers no further off than this, each. Unit: the meshes'.
   double tolerance = 0;
-  /// Limits on tests (face tests; 0: no limit) and time (seconds; 0: no limit). Where a limit is reached the best
-  /// answer so far is given: nothing, the relation with one pair, or that of a level, coarser ones first.
+  /// Limits on tests (face tests; 0: no limit) and time (seconds; 0: no limit). Where a limit is reached the
+  /// best answer so far is given: nothing, the relation with one pair, or that of a level, coarser ones
+  /// first.
   std::uint64_t max_tests = 0;
   double max_time = 0;
   /// For separate bodies: finds CollideResult::separation. Takes longer than the query, and no limit ends it.

@@ -85,16 +85,17 @@ struct CollideResult {
   Recursion recursion = Recursion::complete;  ///< the recursion that was used
   Mode mode = Mode::all_pairs;
   /// Ascending; at most one pair unless all_pairs. Coarse queries: with pseudo simplices
-  /// (LrbRep::is_real_simplex()) where lids were not refined; those meet or come within rounding of it. Contacts
-  /// that a lid hides from the other body are not among them.
+  /// (LrbRep::is_real_simplex()) where lids were not refined; those meet or come within rounding of it.
+  /// Contacts that a lid hides from the other body are not among them.
   std::vector<SimplexPair> pairs;
   std::vector<exact::Meet> meets;               ///< (|pairs|) touch or cross
   std::vector<PairContactRecord> contacts;      ///< (|pairs|) if requested
   std::vector<ContactRegion> regions;           ///< connected groups of contacts, if requested
   std::array<std::vector<RegionId>, 2> opened;  ///< regions refined, A's and B's, in order
-  /// 0 if the answer is exact. Else the pairs are those of wrappers, and where two of their faces meet, both bodies
-  /// are no further away than this together, in the world. Bodies that are unresolved are no further apart than
-  /// this. Infinite: no level was reached, and the pair that there may be is one of those that cross.
+  /// 0 if the answer is exact. Else the pairs are those of wrappers, and where two of their faces meet, both
+  /// bodies are no further away than this together, in the world. Bodies that are unresolved are no further
+  /// apart than this. Infinite: no level was reached, and the pair that there may be is one of those that
+  /// cross.
   double error_bound = 0;
   bool finished = true;  ///< false: a limit was reached before the tolerance (or the exact answer) was
   std::optional<Separation> separation;  ///< if requested, separate, and not nearer than rounding

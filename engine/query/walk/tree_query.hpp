@@ -168,8 +168,8 @@ class TreeQuery {
     return shares ? TestedBy::shared_corners : TestedBy::filter;
   }
 
-  /// Returns true if the candidate's corners are corners of the other simplex too. Compares each with all three
-  /// without branches, because which one it is cannot be predicted.
+  /// Returns true if the candidate's corners are corners of the other simplex too. Compares each with all
+  /// three without branches, because which one it is cannot be predicted.
   bool shares_corners(const Candidate& c) {
     const double *own[3], *others[3];
     ctx_[Side::a].world.corners(c.a, c.side == Side::a ? own : others);
@@ -183,8 +183,8 @@ class TreeQuery {
     return shared != 0;
   }
 
-  /// Returns 1 if two points are equal bit by bit, else 0. Points that only differ in the sign of a zero are left
-  /// to the exact test.
+  /// Returns 1 if two points are equal bit by bit, else 0. Points that only differ in the sign of a zero are
+  /// left to the exact test.
   static unsigned has_bits_of(const double* x, const double* y) {
     std::uint64_t difference = 0;
     for (int i = 0; i < 3; ++i)

@@ -87,8 +87,8 @@ double unit_of(const DataSet& set) {
   return set.quantity == Quantity::first_contact ? 1 : set.diagonal;
 }
 
-/// Judges a number. An interval stands for its upper end: there is a pair of points so far apart, the bodies are in
-/// contact then, and a translation as long parts them.
+/// Judges a number. An interval stands for its upper end: there is a pair of points so far apart, the bodies
+/// are in contact then, and a translation as long parts them.
 Errors errors_of_number(const DataSet& set, const Question& q, const Record& r) {
   const Metric metric = chart_metric(set.quantity);
   Errors e;

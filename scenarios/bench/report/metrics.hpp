@@ -48,8 +48,8 @@ struct Point {
   PoseClass pose_class = PoseClass::apart;
   std::size_t questions = 0, refused = 0, crashed = 0, timed_out = 0;
   Errors errors;  ///< means over the questions
-  /// What is proved, mean: Metric::off is no more; or where a number was asked for, its interval is as wide, in the unit
-  /// of its error. Nothing: not proved.
+  /// What is proved, mean: Metric::off is no more; or where a number was asked for, its interval is as wide,
+  /// in the unit of its error. Nothing: not proved.
   std::optional<double> proved_off;
   double median = 0, p95 = 0, p99 = 0;  ///< microseconds, hot, all pairs, over the questions that were
                                         ///< answered
@@ -59,8 +59,8 @@ struct Point {
   bool frontier = false;                ///< no other point of its data set is both faster and less wrong
 
   std::size_t failed() const { return refused + crashed + timed_out; }
-  /// Returns the error that the chart shows: that of the number or the contact region if the method gives one, else that
-  /// of its yes or no.
+  /// Returns the error that the chart shows: that of the number or the contact region if the method gives
+  /// one, else that of its yes or no.
   double error() const;
   bool says_only_yes_or_no() const;
 };

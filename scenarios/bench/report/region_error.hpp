@@ -1,6 +1,6 @@
 #pragma once
-/// Measures the distance between the contact region that a method reports, by a list of pairs or by points, and the
-/// exact one of the two posed bodies.
+/// Measures the distance between the contact region that a method reports, by a list of pairs or by points,
+/// and the exact one of the two posed bodies.
 
 #include <memory>
 #include <optional>

@@ -29,7 +29,8 @@ std::uint64_t question_of(const DataSet& set, const std::vector<const Point*>& p
   return best;
 }
 
-/// Returns the poses of B that a scene shows: that of the question, or some on its way, up to first contact or its end.
+/// Returns the poses of B that a scene shows: that of the question, or some on its way, up to first contact
+/// or its end.
 std::vector<Pose> poses_of(const DataSet& set, const Question& q) {
   if (set.quantity != Quantity::first_contact) return {q.pose_b};
   const double last = std::min(1.0, q.number ? q.number->most : 1);

@@ -27,7 +27,8 @@ class SeriesStyles {
   std::map<std::string, std::size_t> series_of_;
 };
 
-/// Returns the value at which an error of zero is drawn on a logarithmic axis. Numbers are known to about 1e-12.
+/// Returns the value at which an error of zero is drawn on a logarithmic axis. Numbers are known to about
+/// 1e-12.
 inline double no_error(Quantity quantity) {
   return quantity == Quantity::pairs ? 1e-7 : 1e-14;
 }

@@ -13,7 +13,8 @@
 
 namespace lrb::cli {
 
-/// Returns the chart of lower and upper ends against work; `what` names the number, `work` the unit of the work.
+/// Returns the chart of lower and upper ends against work; `what` names the number, `work` the unit of the
+/// work.
 report::Gnuplot bounds_chart(const std::vector<Bounds>& course, const std::string& what,
                              const std::string& work);
 /// Returns the chart of t0 and t1, and of the distance at t0, against work.
@@ -29,7 +30,8 @@ struct DrawOptions {
 };
 /// Returns how pictures are to look. Throws InputError for a size that they cannot have.
 run::AnswerLook look_of(const DrawOptions& options);
-/// Adds --draw, --size, --up, --chart and, unless there is another option for it, --course. `picture`: what --draw draws.
+/// Adds --draw, --size, --up, --chart and, unless there is another option for it, --course. `picture`: what
+/// --draw draws.
 void add_draw_options(CLI::App& app, DrawOptions& options, const std::string& picture,
                       bool with_course = true);
 

@@ -44,8 +44,8 @@ spec::Motion approach_from(const Eigen::Vector3d& direction, const LrbRep& a, co
   return m;
 }
 
-/// Returns a direction beside the path on which B comes, a little on B's side and above, so that the gap between the bodies
-/// is seen; for bodies that do not come, `otherwise`.
+/// Returns a direction beside the path on which B comes, a little on B's side and above, so that the gap
+/// between the bodies is seen; for bodies that do not come, `otherwise`.
 Eigen::Vector3d beside(const spec::Motion& motion, const Eigen::Vector3d& up,
                        const Eigen::Vector3d& otherwise) {
   const Eigen::Vector3d side = motion.from.cross(up.normalized());

@@ -100,8 +100,8 @@ double seconds_since(Clock::time_point began) {
   return std::chrono::duration<double>(Clock::now() - began).count();
 }
 
-/// Reads a golden and runs its scenario. One that is damaged or refused fails by itself; the others are tested
-/// all the same.
+/// Reads a golden and runs its scenario. One that is damaged or refused fails by itself; the others are
+/// tested all the same.
 Tried try_one(const GoldenOptions& o, const NamedGolden& g, const run::ProgressReport& progress) {
   const auto began = Clock::now();
   Tried out;
@@ -231,7 +231,8 @@ int run_list(const GoldenOptions& o) {
   return kOk;
 }
 
-/// Throws InputError if a golden is of another scenario, which is still there: two of one name would take turns in one folder.
+/// Throws InputError if a golden is of another scenario, which is still there: two of one name would take
+/// turns in one folder.
 void refuse_another(const GoldenOptions& o, const std::string& name, const std::string& kept,
                     const std::string& reference, const std::string& word) {
   if (kept == reference) return;

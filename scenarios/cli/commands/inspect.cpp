@@ -118,7 +118,8 @@ Json layers_json(const LrbRep& rep) {
   return out;
 }
 
-/// Returns how pictures are to be drawn; of findings (`drawing`), as high as they need unless a size is given.
+/// Returns how pictures are to be drawn; of findings (`drawing`), as high as they need unless a size is
+/// given.
 spec::FrameSpec sheet_frames(const InspectOptions& o, bool drawing) {
   const CameraOptions& camera = o.pictures.camera;
   const bool any = !o.pictures.size.empty() || o.pictures.dpi || !camera.from.empty() ||

@@ -64,7 +64,8 @@ OfBody read_of_body(const std::string& option, const std::string& what, const st
   return out;
 }
 
-/// Shows the regions alone that are asked for, and says of each what it is: once, unless frames are asked for.
+/// Shows the regions alone that are asked for, and says of each what it is: once, unless frames are asked
+/// for.
 void isolate(const RenderOptions& o, const std::vector<bodies::LoadedBody>& bodies, spec::FrameSpec& spec) {
   std::vector<std::uint32_t> regions, layers;
   for (const bodies::LoadedBody& body : bodies) {

@@ -18,8 +18,8 @@ nlohmann::ordered_json record_to_json(const Record& record);
 template <class Record>
 Record record_from_json(const nlohmann::json& value);
 
-/// How a value of a field stands in JSON: numbers, strings and lists of them as they are, enumerators by their
-/// words, records as objects. Specialise it for other types.
+/// How a value of a field stands in JSON: numbers, strings and lists of them as they are, enumerators by
+/// their words, records as objects. Specialise it for other types.
 template <class Value>
 struct JsonOf {
   static nlohmann::ordered_json write(const Value& value) {

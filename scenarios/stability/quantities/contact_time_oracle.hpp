@@ -1,8 +1,8 @@
 #pragma once
-/// When two sets of triangles first meet as one of them moves straight, in rational arithmetic. Triangles first meet
-/// where a corner comes into the plane of the other's face, or two edges come into one plane: each such time is a
-/// rational number, and whether they meet then is decided by rational distances. Triangles must not move within the
-/// plane of a face that they meet. Shares no code with the engine.
+/// When two sets of triangles first meet as one of them moves straight, in rational arithmetic. Triangles
+/// first meet where a corner comes into the plane of the other's face, or two edges come into one plane: each
+/// such time is a rational number, and whether they meet then is decided by rational distances. Triangles
+/// must not move within the plane of a face that they meet. Shares no code with the engine.
 
 #include <algorithm>
 #include <cmath>
@@ -45,8 +45,9 @@ inline bool triangles_meet(const RationalPoints& a, const RationalPoints& b) {
   return false;
 }
 
-/// Returns true if doubles show that two triangles are apart: by more than a billionth of their sizes and distance, along
-/// a normal or a product of two edges. Seen from a corner, so that nothing is lost where the world's origin is far.
+/// Returns true if doubles show that two triangles are apart: by more than a billionth of their sizes and
+/// distance, along a normal or a product of two edges. Seen from a corner, so that nothing is lost where the
+/// world's origin is far.
 inline bool clearly_apart(const RationalPoints& a, const RationalPoints& b) {
   using Point = std::array<double, 3>;
   std::array<Point, 3> x[2];
@@ -86,8 +87,8 @@ inline bool clearly_apart(const RationalPoints& a, const RationalPoints& b) {
   return false;
 }
 
-/// Returns the first t from 0 to 1, no later than `before`, at which triangle b, moved by t times `by`, meets triangle
-/// a; none if there is none.
+/// Returns the first t from 0 to 1, no later than `before`, at which triangle b, moved by t times `by`, meets
+/// triangle a; none if there is none.
 inline std::optional<Rational> first_time(const RationalPoints& of_a, const RationalPoints& of_b,
                                           const RationalPoint& by, const Rational& before = 1) {
   std::vector<Rational> times = {0};

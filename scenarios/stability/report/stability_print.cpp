@@ -202,8 +202,8 @@ std::string tick_text(std::string text) {
   return report::gnuplot_text(text);
 }
 
-/// Returns the commands that name a family, say under its axis what every third setting means, and below that the ends,
-/// each on a line of its own: together they are wider than a panel.
+/// Returns the commands that name a family, say under its axis what every third setting means, and below that
+/// the ends, each on a line of its own: together they are wider than a panel.
 std::string panel_heading(const FamilyRow& family, bool first) {
   constexpr int kEvery = 3;
   std::string out =

@@ -1,4 +1,5 @@
-// Batches: answers in the order of the questions, those that each question gets alone, for any number of threads.
+// Batches: answers in the order of the questions, those that each question gets alone, for any number of
+// threads.
 #include "engine/query/batch/batch.hpp"
 
 #include <limits>

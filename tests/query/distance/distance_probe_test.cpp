@@ -1,4 +1,5 @@
-// What a distance tells a probe: bounds that hold, tighten, and end at the answer, which is the same as without.
+// What a distance tells a probe: bounds that hold, tighten, and end at the answer, which is the same as
+// without.
 #include "engine/query/distance/distance_probe.hpp"
 
 #include <limits>

@@ -1,4 +1,5 @@
-/// Which regions are bad, and what helps: inspect --regions, what build warns of, render --region and --layer.
+/// Which regions are bad, and what helps: inspect --regions, what build warns of, render --region and
+/// --layer.
 
 #include <numeric>
 #include <set>

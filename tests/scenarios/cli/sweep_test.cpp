@@ -19,8 +19,8 @@ struct MovingBoxes {
   MovingBoxes() {
     folder.write("cube.obj", kCube);
     write_mesh(shapes::box({0.25, 0.25, 0.25}, {0.5, 0.5, 0.5}), folder / "small.obj");
-    // From 2.75 to -1.25 along x, into the face x = 1 after 2 of 4; past it; out of it, from inside; from contact
-    // on; turning by a quarter meanwhile; as near its upper face as rounding.
+    // From 2.75 to -1.25 along x, into the face x = 1 after 2 of 4; past it; out of it, from inside; from
+    // contact on; turning by a quarter meanwhile; as near its upper face as rounding.
     folder.write(
         "motions.txt",
         "# B's poses at t = 0 and t = 1\n"

@@ -8,8 +8,8 @@
 
 using namespace lrb;
 
-// Events hold simplices; what is said of them is said of faces. The two have the same numbers until a face has more
-// than three corners: "face 11" of a cube of six was shown for its last triangle.
+// Events hold simplices; what is said of them is said of faces. The two have the same numbers until a face
+// has more than three corners: "face 11" of a cube of six was shown for its last triangle.
 TEST_CASE("captions name faces, of bodies of polygons too") {
   const LrbRep a = LrbRep::without_regions(shapes::quad_box(), true, false);
   const LrbRep b = LrbRep::without_regions(shapes::quad_box({0, 0, 0}, {0.5, 0.5, 0.5}), true, false);

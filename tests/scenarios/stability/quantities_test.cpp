@@ -1,4 +1,5 @@
-// Numbers in the stability experiment: what rational arithmetic says is right, how answers are judged, and that ours are.
+// Numbers in the stability experiment: what rational arithmetic says is right, how answers are judged, and
+// that ours are.
 #include <cmath>
 
 #include <doctest/doctest.h>

@@ -1,4 +1,5 @@
-/// Other engines under the same lamp: walks as recordings, and the programs that record them, where these were built.
+/// Other engines under the same lamp: walks as recordings, and the programs that record them, where these
+/// were built.
 
 #include <algorithm>
 
