@@ -11,6 +11,8 @@ if ! command -v dpkg-query >/dev/null || ! command -v apt-get >/dev/null; then
   exit 0 # CMake names whatever is missing
 fi
 
+# A package may be there under another name: NodeSource's nodejs provides npm, and refuses Debian's.
+installed=$(dpkg-query -W -f '${db:Status-Status} ${Package} ${Provides}\n' | sed -n 's/^installed //p' | sed 's/([^)]*)//g' | tr -s ', ' '\n')
 missing=()
 part=""
 while IFS= read -r line; do
@@ -19,7 +21,7 @@ while IFS= read -r line; do
     "["*"]") part="${line:1:-1}" ;;
     *)
       for wanted in "$@"; do
-        if [ "$part" = "$wanted" ] && ! dpkg-query -W -f '${db:Status-Status}' "$line" 2>/dev/null | grep -qx installed; then
+        if [ "$part" = "$wanted" ] && ! grep -Fqx -- "$line" <<<"$installed"; then
           missing+=("$line")
         fi
       done
