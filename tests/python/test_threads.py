@@ -30,23 +30,31 @@ def test_threads_share_bodies(ball, rng):
     assert nearest == lrbscope.distance(ball, ball, poses).upper.tolist()
 
 
+class TenTurns(Exception):
+    """Raised in the main thread by the signal of a thread that had its turns."""
+
+
 def test_a_batch_lets_other_threads_run(ball, rng):
-    poses = random_poses(rng, 5000, 1.0)
-    turns, done = [0], threading.Event()
+    """A thread that gets its turns while a batch runs ends the batch; otherwise the batch would end by itself."""
+    poses = np.tile(random_poses(rng, 1000, 0.3), (300, 1, 1))
 
-    def turn():
-        while not done.is_set():
-            turns[0] += 1
-            time.sleep(0)
+    def stop(*_):
+        raise TenTurns
 
-    thread = threading.Thread(target=turn)
-    thread.start()
-    before = turns[0]
-    collide(ball, ball, poses, mode="any")
-    during = turns[0] - before
-    done.set()
-    thread.join()
-    assert during > 10
+    def ten_turns():
+        for _ in range(10):
+            time.sleep(0.001)
+        signal.pthread_kill(threading.main_thread().ident, signal.SIGUSR1)
+
+    kept = signal.signal(signal.SIGUSR1, stop)
+    thread = threading.Thread(target=ten_turns)
+    try:
+        with pytest.raises(TenTurns):
+            thread.start()
+            collide(ball, ball, poses)
+    finally:
+        thread.join()
+        signal.signal(signal.SIGUSR1, kept)
 
 
 def _asked_in_a_child(pose):
