@@ -105,12 +105,8 @@ inline float sweep(const TreeKernel& k, const TreeNode& b, const Columns& a_colu
   return __builtin_fabsf(parts[0]) + __builtin_fabsf(parts[1]) + __builtin_fabsf(parts[2]);
 }
 
-/// Finds how two nodes lie to each other. kMargin: allow for k.margin. If simplices meet at a point after a
-/// motion, they now have two points that the motion brings together. A slab between the simplices that is
-/// wider than the motion is long across it therefore proves that they do not meet.
-template <bool kMargin = false>
-inline Between between(const TreeKernel& k, const TreeNode& a, const TreeNode& b) {
-  Between w;
+/// Returns how far the origin of B's node is from that of A's, on A's axes.
+inline Float4 offset_between(const TreeKernel& k, const TreeNode& a, const TreeNode& b) {
   const Double4* m = reinterpret_cast<const Double4*>(k.m);
   const Double4 origin_a{a.origin[0], a.origin[1], a.origin[2], 0};
   const Double4 d =
@@ -118,7 +114,16 @@ inline Between between(const TreeKernel& k, const TreeNode& a, const TreeNode& b
            splat4d(k.ratio_b) +
        *reinterpret_cast<const Double4*>(k.t)) -
       origin_a * splat4d(k.ratio_a);
-  const Float4 offset = __builtin_convertvector(d, Float4);
+  return __builtin_convertvector(d, Float4);
+}
+
+/// Finds how two nodes lie to each other. kMargin: allow for k.margin. If simplices meet at a point after a
+/// motion, they now have two points that the motion brings together. A slab between the simplices that is
+/// wider than the motion is long across it therefore proves that they do not meet.
+template <bool kMargin = false>
+inline Between between(const TreeKernel& k, const TreeNode& a, const TreeNode& b) {
+  Between w;
+  const Float4 offset = offset_between(k, a, b);
   const float df[3] = {offset[0], offset[1], offset[2]};
   const Columns b_columns = columns_of(frame_row(b, 0), frame_row(b, 1), frame_row(b, 2));
   const Columns a_columns = columns_of(frame_row(a, 0), frame_row(a, 1), frame_row(a, 2));

@@ -1,9 +1,12 @@
 /// What is kept from the last step:
-/// - the pair of simplices that was nearest. Measured where the bodies are now, it gives an upper end, and the
-///   direction for slabs, before the walk begins. If the surfaces met in it and still do, there is no walk.
-/// - how the bodies lie. If the surfaces did not meet, and nothing can have come as much nearer since as they were
-///   apart, they do not meet on the way from there to here either: then one holds the other now if it did before.
-/// That no pair is nearer is proved anew.
+/// - the pair of simplices that was nearest. Measured where the bodies are now, it gives an upper end, and
+///   the direction for slabs, before the walk begins. If the surfaces met in it and still do, there is no
+///   walk.
+/// - how the bodies lie. If the surfaces did not meet, and nothing can have come as much nearer since as they
+///   were apart, they do not meet on the way from there to here either: then one holds the other now if it
+///   did before.
+/// - planes that hold pairs of nodes apart: as long as they do, what lies under the nodes is not looked at.
+/// That no other pair is nearer is proved anew.
 
 #include <cmath>
 #include <limits>
@@ -23,10 +26,10 @@ class CoherentDistance::Work {
     const bool lies_as_before = request_.relation && is_relation_kept(now);
     DistanceRequest ask = request_;
     ask.relation = request_.relation && !lies_as_before;
-    DistanceResult result = lrb::distance(a_, pose_a, b_, pose_b, ask, context_, &last_);
+    DistanceResult result = lrb::distance(a_, pose_a, b_, pose_b, ask, context_, &before_);
     // What is proved apart is apart; only a walk that stopped early has not found that out.
     if (lies_as_before) result.relation = result.lower > 0 ? relation_ : Relation::unresolved;
-    last_ = {result.witness[0].simplex, result.witness[1].simplex};
+    before_.likely = {result.witness[0].simplex, result.witness[1].simplex};
     apart_ = result.lower;
     relation_ = result.relation;
     poses_ = now;
@@ -42,8 +45,8 @@ class CoherentDistance::Work {
   const DistanceRequest request_;
   DistanceContext context_;
   // Of the last answer:
-  std::array<SimplexId, 2> last_ = {kNull, kNull};  ///< the witness
-  double apart_ = 0;                                ///< the lower end
+  KnownFromBefore before_;
+  double apart_ = 0;  ///< the lower end
   Relation relation_ = Relation::undefined;
   PosePair poses_;
 };

@@ -36,8 +36,8 @@ void check_request(const DistanceRequest& request) {
 }
 
 DistanceResult distance(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
-                        const DistanceRequest& request, DistanceContext& context,
-                        const std::array<SimplexId, 2>* likely, BoundsProbe* probe) {
+                        const DistanceRequest& request, DistanceContext& context, KnownFromBefore* before,
+                        BoundsProbe* probe) {
   check_query(a, pose_a, b, pose_b);
   check_request(request);
   if (a.tree().empty() || b.tree().empty()) return of_nothing(request);
@@ -45,10 +45,12 @@ DistanceResult distance(const LrbRep& a, const Pose& pose_a, const LrbRep& b, co
   query.body[0].begin(a, pose_a, WrapperMode::regularised);
   query.body[1].begin(b, pose_b, WrapperMode::regularised);
   NearestPairs found(query, request, context.pairs);
+  if (before != nullptr) found.spare_equal_pairs();
   DistanceResult result;
-  const bool is_likely = likely != nullptr && (*likely)[0] != kNull;
+  const bool is_likely = before != nullptr && before->likely[0] != kNull;
   if (is_likely) {
-    if (!found.measure((*likely)[0], (*likely)[1], 0) && found.pair_meets(*likely)) {
+    const std::array<SimplexId, 2>& likely = before->likely;
+    if (!found.measure(likely[0], likely[1], 0) && found.pair_meets(likely)) {
       found.finish(0, true, result);
       return result;
     }
@@ -62,7 +64,8 @@ DistanceResult distance(const LrbRep& a, const Pose& pose_a, const LrbRep& b, co
   if (probe != nullptr) told.emplace(*probe);
   BoundsTeller* const teller = told ? &*told : nullptr;
   if (suits_floats(tree)) {
-    FloatWalk walk(context, found, request, tree, query_unit(a.tree(), b.tree()), !is_likely);
+    FloatWalk walk(context, found, request, tree, query_unit(a.tree(), b.tree()), !is_likely,
+                   before != nullptr ? &before->far : nullptr);
     finished = walk.run(teller);
     if (!found.known_to_meet()) rest = walk.measure();
     walk.count(result.counters);

@@ -100,9 +100,10 @@ std::vector<DistanceResult> distances(const LrbRep& a, const Pose& pose_a, const
                                       unsigned threads = 0);
 
 /// Asks for two bodies again and again as they move by little: begins with the pair of simplices that was
-/// nearest before, or met, and keeps how they lie where they cannot have met in between. Intervals are proved as
-/// those of distance() are, and as narrow; where pairs are equally near, or several meet, the witness may be another,
-/// and the relation of surfaces that meet is what that pair shows.
+/// nearest before, or met, keeps how they lie where they cannot have met in between, and planes that hold
+/// parts of them apart. Intervals are proved as those of distance() are, and as narrow; where pairs are
+/// equally near, or several meet, the witness may be another, and the relation of surfaces that meet is what
+/// that pair shows.
 class CoherentDistance {
  public:
   /// Keeps references to the bodies, which must outlive it.

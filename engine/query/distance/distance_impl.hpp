@@ -6,6 +6,7 @@
 
 #include "engine/query/distance/bounds_teller.hpp"
 #include "engine/query/distance/distance_kernel.hpp"
+#include "engine/query/distance/far_pairs.hpp"
 #include "engine/query/distance/nearest_pairs.hpp"
 
 namespace lrb {
@@ -20,11 +21,18 @@ struct DistanceContext {
   std::uint32_t turn = 0;  ///< the last that was used in `ends`
 };
 
-/// Answers as distance() in distance.hpp does. likely: null, or a simplex of A and one of B that are likely
-/// to be the nearest, or to meet; kNull: none. probe: null, or told how bounds tighten.
+/// What is known from earlier steps of a motion.
+struct KnownFromBefore {
+  std::array<SimplexId, 2> likely = {kNull,
+                                     kNull};  ///< to be the nearest, or to meet: of A and of B; kNull: none
+  FarPairs far;                               ///< of the same bodies
+};
+
+/// Answers as distance() in distance.hpp does. before: null, or what earlier steps found, to which this one
+/// adds. probe: null, or told how bounds tighten.
 DistanceResult distance(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
                         const DistanceRequest& request, DistanceContext& context,
-                        const std::array<SimplexId, 2>* likely = nullptr, BoundsProbe* probe = nullptr);
+                        KnownFromBefore* before = nullptr, BoundsProbe* probe = nullptr);
 
 /// Throws InputError if a request cannot be answered.
 void check_request(const DistanceRequest& request);
@@ -37,11 +45,12 @@ bool suits_floats(const TreeKernel& tree);
 class FloatWalk {
  public:
   /// `tree`: as suits_floats() wants it. unit: query_unit(). descend: no pair is known that is likely to be
-  /// the nearest.
+  /// the nearest. far: null, or what earlier steps of a motion found.
   FloatWalk(DistanceContext& context, NearestPairs& found, const DistanceRequest& request,
-            const TreeKernel& tree, double unit, bool descend);
+            const TreeKernel& tree, double unit, bool descend, FarPairs* far);
 
-  /// Returns true if the walk came to its end, or found that the surfaces meet. teller: null, or told what is known.
+  /// Returns true if the walk came to its end, or found that the surfaces meet. teller: null, or told what is
+  /// known.
   bool run(BoundsTeller* teller);
   /// Measures the pairs that may be the nearest. Returns a bound on the distances of all others.
   double measure();

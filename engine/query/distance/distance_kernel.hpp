@@ -30,6 +30,16 @@ struct NearPair {
   float lower;  ///< a bound on its distance, query units
 };
 
+/// A pair of nodes that a plane held apart at an earlier step of a motion, by more than the bodies were
+/// apart.
+struct FarNodes {
+  std::uint32_t a, b;
+  float direction[3];  ///< across the plane, on A's axes; of length 1
+  /// How wide the slab between what lies under them was, less how far B's node's origin was ahead of A's.
+  float width;
+  float turned;  ///< DistanceKernel::least_turned of then
+};
+
 enum class KernelStop : std::uint8_t {
   done,      ///< no pair of nodes that waits can be nearer than the bound allows
   room,      ///< the buffers must grow
@@ -58,6 +68,13 @@ struct DistanceKernel {
   NodeEnd* ends[2];
   std::uint32_t turn;  ///< NodeEnd::turn of this direction
 
+  /// What earlier steps found far apart, in slots by far_slot(); null: there are none, and nothing is kept.
+  FarNodes* far;
+  std::uint32_t far_slots;  ///< a power of two
+  /// How much B has turned on A's axes since the first step, as the norms of what TreeKernel::m changed by
+  /// add up to: not more, and not less.
+  float turned, least_turned;
+
   WaitingNodes* waiting;  ///< a heap, the least bound first
   std::uint32_t waiting_size, waiting_capacity;
   NearPair* near;
@@ -70,6 +87,12 @@ struct DistanceKernel {
 
 /// Room that both buffers need before a step, and twice that before the first.
 inline constexpr std::uint32_t kRoomForStep = 64;
+
+/// Returns where a pair of nodes is kept, or what was kept there last.
+inline FarNodes& far_slot(const DistanceKernel& k, std::uint32_t a, std::uint32_t b) {
+  const std::uint32_t mixed = a * 0x9e3779b1U + b * 0x85ebca77U;
+  return k.far[(mixed ^ mixed >> 15) & (k.far_slots - 1)];
+}
 
 /// Returns the distance from which on pairs are dropped: rounded so that a pair that is dropped is no nearer.
 inline float dropped_from(const DistanceKernel& k) {

@@ -52,6 +52,17 @@ inline float dot3(const float* x, const float* y) {
   return x[0] * y[0] + x[1] * y[1] + x[2] * y[2];
 }
 
+/// Writes the direction of a way, given on a node's axes, on its body's axes, with a length of 1. Returns
+/// false if it has none.
+inline bool direction_of(const TreeNode& n, const float* way, float* direction) {
+  constexpr float kLeast = 0x1p-60F;
+  const float length = __builtin_sqrtf(dot3(way, way));
+  if (!(length > kLeast)) return false;
+  for (int i = 0; i < 3; ++i)
+    direction[i] = (n.frame[0][i] * way[0] + n.frame[1][i] * way[1] + n.frame[2][i] * way[2]) / length;
+  return true;
+}
+
 inline float largest_of(Float8 x) {
   x = larger(x, __builtin_shufflevector(x, x, 4, 5, 6, 7, 0, 1, 2, 3));
   x = larger(x, __builtin_shufflevector(x, x, 2, 3, 0, 1, 6, 7, 4, 5));
@@ -97,16 +108,16 @@ inline Float8 bounds_of(const Row& row, const Boxes& own_b, const Turned& bt, Fl
   return gaps.bound(other);
 }
 
-/// The direction of a kernel, on the axes of two nodes; no longer than 1 but for kDistanceRounding.
+/// A direction, given on A's axes, on the axes of two nodes; no longer than 1 but for kDistanceRounding.
 struct Ahead {
   float on_a[3], on_b[3];
   float errors;   ///< of a difference along it
   float between;  ///< how far ahead B's node is, less the errors
 
-  Ahead(const DistanceKernel& k, const TreeNode& na, const Between& w) {
+  Ahead(const TreeNode& na, const Between& w, const float* direction) {
     float sizes = 0;
     for (int i = 0; i < 3; ++i) {
-      on_a[i] = dot3(na.frame[i], k.direction[0]);
+      on_a[i] = dot3(na.frame[i], direction);
       sizes += __builtin_fabsf(on_a[i]);
     }
     for (int j = 0; j < 3; ++j) on_b[j] = w.r[0][j] * on_a[0] + w.r[1][j] * on_a[1] + w.r[2][j] * on_a[2];
@@ -215,25 +226,71 @@ inline float end_of(DistanceKernel& k, std::uint32_t node) {
   return known.end;
 }
 
-/// Lets a pair of nodes wait, unless their ends show that they are not near enough.
-inline void wait_for(DistanceKernel& k, std::uint32_t a, std::uint32_t b, float bound, float most) {
-  const float slab = (end_of<Side::b>(k, b) - end_of<Side::a>(k, a) + k.ahead) * (1 - 2 * kDistanceRounding);
-  if (slab > 0 && slab * slab > bound) bound = slab * slab;
-  if (!(bound > most)) push_waiting(k, {bound, a, b});
+/// Returns whether the slab that was between two nodes still is wide enough to drop them. Along its direction
+/// n, what lies under A's node reaches from its origin as far as it did, and what lies under B's as far but
+/// for the turn since: from M y to M' y, which is no more than |M' - M| |y|. How far the origins are apart
+/// now is computed anew, with errors as in turn_to().
+inline bool is_known_far(const DistanceKernel& k, std::uint32_t a, std::uint32_t b, float least) {
+  const FarNodes& far = far_slot(k, a, b);
+  if (far.a != a || far.b != b) return false;
+  const TreeNode &na = k.tree.nodes_a[a], &nb = k.tree.nodes_b[b];
+  const Float4 apart = offset_between(k.tree, na, nb);
+  const float *n = far.direction, x[3] = {apart[0], apart[1], apart[2]};
+  const float radius_b = nb.radius * k.tree.ratio_b;
+  float sizes = 0, whole = na.radius * k.tree.ratio_a + radius_b;
+  for (int i = 0; i < 3; ++i) {
+    sizes += __builtin_fabsf(n[i]);
+    whole += __builtin_fabsf(x[i]);
+  }
+  const float errors = 2 * (k.tree.slack + kKernelRounding * (k.tree.m_size * whole)) * sizes + kKernelTiny;
+  const float turn = (k.turned - far.turned) * radius_b * kFloatUp;
+  return (dot3(n, x) + far.width - turn - errors) * (1 - 2 * kDistanceRounding) > least;
 }
 
-inline void distance_both(DistanceKernel& k, const TreeNode& na, const TreeNode& nb, float parent) {
+/// Keeps for the next steps a plane that holds all under two nodes apart, if there is one across a way, given
+/// on the axes of A's node, that is far enough from them.
+template <class Of>
+inline void keep_far(DistanceKernel& k, const WaitingNodes& pair, const TreeNode& na, const TreeNode& nb,
+                     const Of& a, const Of& b, const Between& w, const float* way) {
+  float direction[3];
+  if (!direction_of(na, way, direction)) return;
+  const Ends ends = ends_of(a, b, Ahead(na, w, direction));
+  const float width = -largest_of(-ends.of_b) - largest_of(ends.of_a);
+  if (!(width * (1 - 4 * kDistanceRounding) > dropped_from(k))) return;
+  const Float4 apart = offset_between(k.tree, na, nb);
+  const float x[3] = {apart[0], apart[1], apart[2]};
+  FarNodes& far = far_slot(k, pair.a, pair.b);
+  far.a = pair.a, far.b = pair.b;
+  for (int i = 0; i < 3; ++i) far.direction[i] = direction[i];
+  far.width = width - dot3(direction, x);
+  far.turned = k.least_turned;
+}
+
+/// Lets a pair of nodes wait, unless their ends show that they are not near enough.
+inline void wait_for(DistanceKernel& k, std::uint32_t a, std::uint32_t b, float bound,
+                     const Dropping& dropping) {
+  const float slab = (end_of<Side::b>(k, b) - end_of<Side::a>(k, a) + k.ahead) * (1 - 2 * kDistanceRounding);
+  if (slab > 0 && slab * slab > bound) bound = slab * slab;
+  if (bound > dropping.square || (k.far != nullptr && is_known_far(k, a, b, dropping.length))) return;
+  push_waiting(k, {bound, a, b});
+}
+
+inline void distance_both(DistanceKernel& k, const TreeNode& na, const TreeNode& nb,
+                          const WaitingNodes& pair) {
   const Between w = between<false>(k.tree, na, nb);
   const Boxes a = decode(na, k.tree.ratio_a), b = decode(nb, k.tree.ratio_b);
-  const Ends ends = ends_of(a, b, Ahead(k, na, w));
-  const float most = Dropping(k).square;
-  compare_boxes(k, na, a, nb, b, w, ends, parent, [&](int i, std::uint32_t lanes, Float8 bound) {
+  const Ends ends = ends_of(a, b, Ahead(na, w, k.direction[0]));
+  const Dropping dropping(k);
+  const std::uint32_t waited = k.waiting_size;
+  compare_boxes(k, na, a, nb, b, w, ends, pair.bound, [&](int i, std::uint32_t lanes, Float8 bound) {
     for (; lanes != 0; lanes &= lanes - 1) {
       const int j = __builtin_ctz(lanes);
       wait_for(k, na.first + static_cast<std::uint32_t>(i), nb.first + static_cast<std::uint32_t>(j),
-               bound[j], most);
+               bound[j], dropping);
     }
   });
+  if (k.far == nullptr || k.waiting_size != waited) return;
+  keep_far(k, pair, na, nb, a, b, w, w.t);
 }
 
 /// Descends one node only: its boxes against the whole box of the other.
@@ -258,12 +315,12 @@ inline void distance_one(DistanceKernel& k, const TreeNode& na, const TreeNode& 
   const TreeNode& opened = kDescendA ? na : nb;
   const Float8 bound = gaps.bound(splat(pair.bound));
   k.tree.box_tests += opened.count;
-  const float most = Dropping(k).square;
-  std::uint32_t lanes = ~bits(greater(bound, splat(most))) & present(opened);
+  const Dropping dropping(k);
+  std::uint32_t lanes = ~bits(greater(bound, splat(dropping.square))) & present(opened);
   for (; lanes != 0; lanes &= lanes - 1) {
     const int c = __builtin_ctz(lanes);
     const std::uint32_t child = opened.first + static_cast<std::uint32_t>(c);
-    wait_for(k, kDescendA ? child : pair.a, kDescendA ? pair.b : child, bound[c], most);
+    wait_for(k, kDescendA ? child : pair.a, kDescendA ? pair.b : child, bound[c], dropping);
   }
 }
 
@@ -325,13 +382,8 @@ inline void turn_to(DistanceKernel& k, const float* direction) {
 
 /// Takes over which way the nearest points lie to each other. way: on the axes of A's node.
 inline void look_ahead(DistanceKernel& k, const TreeNode& na, const float* way) {
-  const float length = __builtin_sqrtf(way[0] * way[0] + way[1] * way[1] + way[2] * way[2]);
-  constexpr float kLeast = 0x1p-60F;
-  if (!(length > kLeast)) return;
   float direction[3];
-  for (int i = 0; i < 3; ++i)
-    direction[i] = (na.frame[0][i] * way[0] + na.frame[1][i] * way[1] + na.frame[2][i] * way[2]) / length;
-  turn_to(k, direction);
+  if (direction_of(na, way, direction)) turn_to(k, direction);
 }
 
 /// Takes over what floats say of some pairs.
@@ -358,31 +410,40 @@ inline void take_over(DistanceKernel& k, const Distances& d, const BoundedList& 
   }
 }
 
-inline void distance_leaves(DistanceKernel& k, const TreeNode& na, const TreeNode& nb, float parent) {
+inline void distance_leaves(DistanceKernel& k, const TreeNode& na, const TreeNode& nb,
+                            const WaitingNodes& pair) {
   const Between w = between<false>(k.tree, na, nb);
   Corners a, b;
   corners_of(k.tree, na, nb, w, a, b);
   BoundedList list;
   const Boxes boxes_a = decode(na, k.tree.ratio_a), boxes_b = decode(nb, k.tree.ratio_b);
-  const Ends ends = ends_of(a, b, Ahead(k, na, w));
-  compare_boxes(k, na, boxes_a, nb, boxes_b, w, ends, parent, [&](int i, std::uint32_t lanes, Float8 bound) {
-    for (; lanes != 0; lanes &= lanes - 1) {
-      const int j = __builtin_ctz(lanes);
-      list.a[list.size] = static_cast<std::uint8_t>(i);
-      list.b[list.size] = static_cast<std::uint8_t>(j);
-      list.bound[list.size++] = bound[j];
-    }
-  });
-  if (list.size == 0) return;
-  for (std::uint32_t begin = 0;; begin += 8) {
+  const Ends ends = ends_of(a, b, Ahead(na, w, k.direction[0]));
+  compare_boxes(k, na, boxes_a, nb, boxes_b, w, ends, pair.bound,
+                [&](int i, std::uint32_t lanes, Float8 bound) {
+                  for (; lanes != 0; lanes &= lanes - 1) {
+                    const int j = __builtin_ctz(lanes);
+                    list.a[list.size] = static_cast<std::uint8_t>(i);
+                    list.b[list.size] = static_cast<std::uint8_t>(j);
+                    list.bound[list.size++] = bound[j];
+                  }
+                });
+  float nearest = __builtin_inff(), way[3] = {w.t[0], w.t[1], w.t[2]};
+  for (std::uint32_t begin = 0, count = 8; list.size > 0 && count == 8; begin += 8) {
     list.select_eight(begin, Dropping(k).square);
-    if (begin >= list.size) return;
-    const std::uint32_t count = list.size - begin < 8 ? list.size - begin : 8;
+    if (begin >= list.size) break;
+    count = list.size - begin < 8 ? list.size - begin : 8;
     k.triangle_pairs += count;
     const Distances d(pick(a, list.a + begin), pick(b, list.b + begin), w);
     take_over(k, d, list, begin, count, na, nb);
-    if (count < 8) return;
+    if (k.far == nullptr) continue;
+    for (std::uint32_t lane = 0; lane < count; ++lane)
+      if (d.upper[lane] < nearest) {
+        nearest = d.upper[lane];
+        for (int i = 0; i < 3; ++i) way[i] = d.way[i][lane];
+      }
   }
+  if (k.far == nullptr || !(nearest > k.upper)) return;
+  keep_far(k, pair, na, nb, a, b, w, way);
 }
 
 /// Which of a pair's nodes are opened: both of a pair of leaves.
@@ -402,13 +463,13 @@ inline void distance_step(DistanceKernel& k, const WaitingNodes& pair) {
   const TreeNode& b = k.tree.nodes_b[pair.b];
   const Opening opening(k, a, b);
   if (opening.leaves)
-    distance_leaves(k, a, b, pair.bound);
+    distance_leaves(k, a, b, pair);
   else if (!opening.b)
     distance_one<true>(k, a, b, pair);
   else if (!opening.a)
     distance_one<false>(k, a, b, pair);
   else
-    distance_both(k, a, b, pair.bound);
+    distance_both(k, a, b, pair);
 }
 
 /// Follows the nearest boxes down to a first pair of leaves, so that the walk has an upper end to begin with.
@@ -420,7 +481,7 @@ inline void descend_to_first_pair(DistanceKernel& k) {
     const TreeNode& b = k.tree.nodes_b[at.b];
     ++k.tree.node_pairs;
     if (Opening(k, a, b).leaves) {
-      distance_leaves(k, a, b, at.bound);
+      distance_leaves(k, a, b, at);
       // Boxes that overlap all the way down: the exact query is likely to find that the bodies meet.
       if (!(at.bound > 0) && !k.apart) k.stop = KernelStop::doubtful;
       return;

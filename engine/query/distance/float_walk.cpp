@@ -4,18 +4,12 @@
 
 #include "engine/core/tolerances.hpp"
 #include "engine/query/distance/distance_impl.hpp"
+#include "engine/query/distance/kernel_lengths.hpp"
 
 namespace lrb {
 namespace {
 
 constexpr float kNothing = std::numeric_limits<float>::infinity();
-
-float rounded_up(double x) {
-  return static_cast<float>(x) * kFloatUp + kKernelTiny;
-}
-float rounded_down(double x) {
-  return std::max(0.0F, static_cast<float>(x) * (2 - kFloatUp) - kKernelTiny);
-}
 
 /// Returns about where B is, seen from A's frame.
 Eigen::Vector3d direction_of(const DistanceContext& context, const NearestPairs& found,
@@ -42,20 +36,21 @@ bool suits_floats(const TreeKernel& tree) {
 }
 
 FloatWalk::FloatWalk(DistanceContext& context, NearestPairs& found, const DistanceRequest& request,
-                     const TreeKernel& tree, double unit, bool descend)
+                     const TreeKernel& tree, double unit, bool descend, FarPairs* far)
     : context_(context), found_(found), unit_(unit), k_{} {
   k_.tree = tree;
   k_.tree.most_node_pairs = request.max_steps > 0 ? request.max_steps : kNoLimit;
-  k_.upper = rounded_up(found.upper() / unit);
-  k_.spare = rounded_down(request.tolerance / unit);
-  k_.share = std::min(1.0F, rounded_down(request.relative_tolerance));
-  k_.widest = request.within ? rounded_up(*request.within / unit) : kNothing;
-  k_.enough = request.within ? rounded_down(*request.within / unit) : -1;
+  k_.upper = length_up(found.upper() / unit);
+  k_.spare = length_down(request.tolerance / unit);
+  k_.share = std::min(1.0F, length_down(request.relative_tolerance));
+  k_.widest = request.within ? length_up(*request.within / unit) : kNothing;
+  k_.enough = request.within ? length_down(*request.within / unit) : -1;
   k_.best_a = k_.best_b = kNull;
   const Eigen::Vector3d direction = direction_of(context, found, tree);
   for (int i = 0; i < 3; ++i) k_.direction[0][i] = static_cast<float>(direction[i]);
   k_.descend = descend;
   begin_ends();
+  if (far != nullptr) far->lend(k_);
   if (context.waiting.size() < 4 * kRoomForStep) context.waiting.resize(16 * kRoomForStep);
   if (context.near.size() < 4 * kRoomForStep) context.near.resize(16 * kRoomForStep);
   context.waiting[0] = {-kNothing, 0, 0};
@@ -88,8 +83,8 @@ void FloatWalk::give_room() {
   k_.near_capacity = static_cast<std::uint32_t>(context_.near.size());
 }
 
-/// Goes down to a first pair, as the kernel does before it walks, and stops there. Returns true if there is no more to
-/// be done.
+/// Goes down to a first pair, as the kernel does before it walks, and stops there. Returns true if there is
+/// no more to be done.
 bool FloatWalk::descend_alone() {
   give_room();
   k_.waiting_size = 0;  // nothing is left to walk

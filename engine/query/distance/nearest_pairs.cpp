@@ -67,10 +67,17 @@ PairBounds NearestPairs::measured_exactly(const double* const* of_a, const doubl
 }
 
 bool NearestPairs::measure(SimplexId a, SimplexId b, double lower) {
+  if (spares_ && a == best_simplex_[0] && b == best_simplex_[1] && best_.lower > 0) return true;
   const double *of_a[3], *of_b[3];
   corners(a, b, of_a, of_b);
-  PairBounds bounds = bound_distance(of_a, of_b, dim_);
   ++counters_.pairs_in_doubles;
+  // Pairs that share the nearest corner or edge are as far apart along its direction.
+  const double apart = spares_ ? distance_along(best_.direction, best_.upper, of_a, of_b, dim_) : 0;
+  if (apart > 0) {
+    pairs_.push_back({a, b, std::max(apart, lower), kInfinity});
+    return true;
+  }
+  PairBounds bounds = bound_distance(of_a, of_b, dim_);
   if (!std::isfinite(bounds.upper)) {  // too large, or too small, for doubles
     if (!(lower > 0) && surfaces_meet()) return false;
     corners(a, b, of_a, of_b);

@@ -36,6 +36,9 @@ class NearestPairs {
   /// Returns the size of the larger body in the world: a bound on its radius.
   double size() const { return size_; }
 
+  /// Lets a slab do where a pair is as far apart as the nearest one, but for rounding. The last digits of
+  /// upper() then depend on the order in which pairs are measured: more steps need not narrow it by them.
+  void spare_equal_pairs() { spares_ = true; }
   /// Says that intervals may be this wide, because the walk cannot tell more.
   void allow_width(double width) { allowed_ = width; }
   /// Returns the distance from which on pairs need not be measured.
@@ -75,7 +78,7 @@ class NearestPairs {
   double size_ = 0, allowed_ = 0;
   SimplexId best_simplex_[2] = {kNull, kNull};
   PairBounds best_;  ///< of the pair that has the least upper end
-  bool asked_ = false, meet_ = false;
+  bool spares_ = false, asked_ = false, meet_ = false;
   Relation met_ = Relation::touching;
   DistanceCounters counters_;
 };

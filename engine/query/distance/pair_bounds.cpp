@@ -8,9 +8,9 @@
 /// face, across the edge.
 ///
 /// Errors. Let R be the largest coordinate of any corner, seen from A's first, and u = 2^-53. Coordinates are
-/// off by at most u R each (one subtraction). A product n . x is off by u R |n|_1 for that, and by 3 u R |n|_1
-/// for its three products and two sums; the difference of two is off by twice that, and by rounding: less than
-/// 16 u R |n|_1. The way between two points at given shares of their edges is off by 20 u R in each
+/// off by at most u R each (one subtraction). A product n . x is off by u R |n|_1 for that, and by 3 u R
+/// |n|_1 for its three products and two sums; the difference of two is off by twice that, and by rounding:
+/// less than 16 u R |n|_1. The way between two points at given shares of their edges is off by 20 u R in each
 /// coordinate: 4 u R for the way between corners, 6 u R for each of two edges times a share, 4 u R for two
 /// sums; by 35 u R in length. A face's two shares may add up to 1 + u, which makes 4 u R more. kPairRounding
 /// is 64 u.
@@ -42,6 +42,13 @@ struct Nearest {
   double share[2][2] = {};
 };
 
+constexpr double kPairUp = 1 + 0x1p-51, kPairDown = 1 - 0x1p-50;
+
+/// Returns true if squares of lengths, and squares of their products, neither overflow nor vanish.
+bool is_in_range(double length) {
+  return length > 0x1p-200 && length < 0x1p200;
+}
+
 class Pair {
  public:
   Pair(const double* const* a, const double* const* b, int n) : n_(n) {
@@ -55,8 +62,7 @@ class Pair {
       for (int k = 0; k < n; ++k) edge_[side][k] = x_[side][(k + 1) % n] - x_[side][k];
   }
 
-  /// Returns true if squares, and squares of products, neither overflow nor vanish.
-  bool is_in_range() const { return reach_ > 0x1p-200 && reach_ < 0x1p200; }
+  bool is_in_range() const { return lrb::is_in_range(reach_); }
 
   void find() {
     for (int i = 0; i < edges(); ++i)
@@ -66,7 +72,7 @@ class Pair {
   }
 
   const Nearest& nearest() const { return nearest_; }
-  double upper() const { return (std::sqrt(nearest_.square) + kPairRounding * reach_) * kRootUp; }
+  double upper() const { return (std::sqrt(nearest_.square) + kPairRounding * reach_) * kPairUp; }
 
   /// Returns the lower end, and writes the direction that gave it.
   double lower(Vector3d& direction) const {
@@ -86,8 +92,6 @@ class Pair {
   }
 
  private:
-  static constexpr double kRootUp = 1 + 0x1p-51, kRootDown = 1 - 0x1p-50;
-
   int edges() const { return n_ == 3 ? 3 : 1; }
 
   void edge_to_edge(int i, int j) {
@@ -161,7 +165,7 @@ class Pair {
       }
     const double gap = std::max(low[1] - high[0], low[0] - high[1]);
     const double sure = gap - 0.25 * kPairRounding * reach_ * n.cwiseAbs().sum();
-    return sure > 0 ? sure / n.norm() * kRootDown : 0;
+    return sure > 0 ? sure / n.norm() * kPairDown : 0;
   }
 
   int n_;
@@ -202,6 +206,28 @@ PairBounds bound_distance(const double* const* a, const double* const* b, int n)
     out.point[side] = place(nearest.on[side], nearest.share[side], side == 0 ? a : b, n);
   }
   return out;
+}
+
+/// As Pair::width(), without what only Pair::find() needs.
+double distance_along(const Vector3d& direction, double least, const double* const* a, const double* const* b,
+                      int n) {
+  double low[2] = {kInfinity, kInfinity}, high[2] = {-kInfinity, -kInfinity}, reach = 0;
+  for (int side = 0; side < 2; ++side)
+    for (int k = 0; k < n; ++k) {
+      double ahead = 0;
+      for (int axis = 0; axis < n; ++axis) {
+        const double x = (side == 0 ? a : b)[k][axis] - a[0][axis];
+        reach = std::max(reach, std::abs(x));
+        ahead += direction[axis] * x;
+      }
+      low[side] = std::min(low[side], ahead);
+      high[side] = std::max(high[side], ahead);
+    }
+  if (!is_in_range(reach) || !is_in_range(direction.cwiseAbs().maxCoeff())) return 0;
+  const double gap = std::max(low[1] - high[0], low[0] - high[1]);
+  const double sure = gap - 0.25 * kPairRounding * reach * direction.cwiseAbs().sum();
+  const double width = sure > 0 ? sure / direction.norm() * kPairDown : 0;
+  return width < least - 2 * kPairRounding * reach ? 0 : width;
 }
 
 }  // namespace lrb

@@ -22,4 +22,10 @@ struct PairBounds {
 /// inside.
 PairBounds bound_distance(const double* const* a, const double* const* b, int n);
 
+/// Returns the width of the slab between two simplices along a direction of any length: they are no nearer to
+/// each other. Returns 0 if it is less than `least` by more than doubles round: then bound_distance() may say
+/// more.
+double distance_along(const Eigen::Vector3d& direction, double least, const double* const* a,
+                      const double* const* b, int n);
+
 }  // namespace lrb

@@ -1,6 +1,6 @@
 #pragma once
-/// What a query can tell of its work beside face tests and refinements: pairs of tree nodes, tests by planes, points
-/// that are located, and where its phases begin and end.
+/// What a query can tell of its work beside face tests and refinements: pairs of tree nodes, tests by planes,
+/// points that are located, and where its phases begin and end.
 
 #include <cstdint>
 
@@ -29,7 +29,8 @@ enum class Phase : std::uint8_t {
   contacts,    ///< computes the geometry of contact: contact regions
   kept,        ///< coherent: shows again the regions that earlier queries opened: regions
   cache,       ///< coherent: walks both trees for pairs that may meet on the way ahead: pairs kept
-  cached,  ///< coherent: tests the pairs of the cache that may meet here: pairs of the cache that need no test
+  cached,      ///< coherent: tests the pairs of the cache that may meet here: pairs of the cache that need no
+               ///< test
 };
 constexpr auto words_of(Phase) {
   return std::to_array<EnumWord<Phase>>({{Phase::walk, "tree walk"},
