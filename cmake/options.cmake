@@ -23,6 +23,11 @@ target_compile_options(lrb_own_options INTERFACE -Wall -Wextra -Wpedantic -Wshad
 # The same objects go into programs, shared libraries and the Python module. Nobody replaces our functions when a program starts, so that
 # the compiler may inline them as it would without -fPIC.
 target_compile_options(lrb_own_options INTERFACE -fPIC -fno-semantic-interposition)
+# Files of a room that are compiled together take gcc about 1 GB: without collecting garbage below 600 MB it takes 5 to 10 %
+# less time, and 0.2 GB more.
+if(CMAKE_UNITY_BUILD)
+  target_compile_options(lrb_own_options INTERFACE $<$<CXX_COMPILER_ID:GNU>:--param=ggc-min-heapsize=600000>)
+endif()
 if(LRB_WARNINGS_AS_ERRORS)
   target_compile_options(lrb_own_options INTERFACE -Werror)
 endif()

@@ -32,8 +32,8 @@ Mesh to_unit_size(const Mesh& mesh);
 /// Returns where a point is moved with the mesh.
 Eigen::Vector3d to_unit_size(const Mesh& mesh, const Eigen::Vector3d& x);
 
-/// What to show of the first offender of a kind, and from where: it and the faces around it. Of open edges that
-/// make loops, the longest loop.
+/// What to show of the first offender of a kind, and from where: it and the faces around it. Of open edges
+/// that make loops, the longest loop.
 struct CloseUp {
   std::vector<Eigen::Vector3d> points;
   ViewDirection view;
@@ -46,10 +46,10 @@ CloseUp close_up(const Mesh& mesh, const MeshReport& report, MeshFault kind,
 std::vector<Eigen::Vector3d> whole(const Mesh& mesh, const MeshReport& report);
 
 struct Options {
-  std::optional<MeshFault>
-      focus;  ///< the kind whose offenders are marked with their numbers; none: each kind is marked with its
-              ///< letter, from b
-  /// Those of the mesh: all open edges are drawn, and loops get their numbers. Empty: the first open edges are.
+  std::optional<MeshFault> focus;  ///< the kind whose offenders are marked with their numbers; none: each
+                                   ///< kind is marked with its letter, from b
+  /// Those of the mesh: all open edges are drawn, and loops get their numbers. Empty: the first open edges
+  /// are.
   std::span<const BoundaryLoop> loops;
   Eigen::AlignedBox3d near;  ///< only offenders in this box are marked with their numbers; empty: all
   double width = 640,

@@ -60,9 +60,8 @@ struct SceneOptions {
   std::array<std::vector<RegionId>, 2>
       isolate;  ///< regions of A and B; if there are any, only these are shown, and the rest as ghosts
   bool ghost_rest = true;  ///< false: the rest is left out
-  double explode =
-      0;  ///< included regions move outward by this share of their distance from the body's centre; 0: they
-          ///< stay in place, as lids
+  double explode = 0;      ///< included regions move outward by this share of their distance from the body's
+                           ///< centre; 0: they stay in place, as lids
   bool real_edges = true;
   bool contact_rims = false;  ///< 3D: faces in contact get a rim that is seen through what lies in front
   float scale = 1;            ///< of line widths and points: for large pictures and print

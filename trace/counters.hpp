@@ -77,9 +77,8 @@ struct FaceCounts {
   std::vector<std::uint32_t>
       plane_tests;                      ///< number of faces that a plane parted it from; at EventLevel::all
   std::vector<std::uint32_t> contacts;  ///< number of contacts; real faces only
-  std::vector<std::uint32_t>
-      refinements;  ///< number of refinements of the region behind a pseudo face, or of the one that covers a
-                    ///< real face
+  std::vector<std::uint32_t> refinements;  ///< number of refinements of the region behind a pseudo face, or
+                                           ///< of the one that covers a real face
 };
 /// Counts what happened to each face in `events`. `rep` is the body that was recorded as `side`; its faces
 /// must include all that the events name.

@@ -64,14 +64,14 @@ struct NodeEnd {
 struct Event {
   std::uint32_t a = 0;
   std::uint32_t b = 0;
-  /// An earlier event. Contact: the face test that found it. Refine: the face test that hit just before (kNull in the
-  /// complete query, which opens regions before it tests). Face test: the later of the refinements that brought in its
-  /// faces. Node pair: the pair above. Plane test: the pair of leaves. End: the beginning of the phase.
-  /// Patch, pass end: the pass. Cap: the patch. Region, merged: the cap, or the pass if it has none.
+  /// An earlier event. Contact: the face test that found it. Refine: the face test that hit just before
+  /// (kNull in the complete query, which opens regions before it tests). Face test: the later of the
+  /// refinements that brought in its faces. Node pair: the pair above. Plane test: the pair of leaves. End:
+  /// the beginning of the phase. Patch, pass end: the pass. Cap: the patch. Region, merged: the cap, or the
+  /// pass if it has none.
   EventId cause = kNull;
-  std::uint32_t boundary =
-      kNull;  ///< refine, coarsen, region, pass end: number of faces of that wrapper afterwards; kNull: not known.
-              ///< Node pair: work(). Pass, cap: off()
+  std::uint32_t boundary = kNull;  ///< refine, coarsen, region, pass end: number of faces of that wrapper
+                                   ///< afterwards; kNull: not known. Node pair: work(). Pass, cap: off()
   std::uint16_t depth_a =
       0;  ///< face test: number of regions between A's face and the outside (65535: that or
           ///< more). Node pair: number of pairs above. Begin: what is walked of A, see NullProbe. Patch:
@@ -80,9 +80,8 @@ struct Event {
   EventKind kind = EventKind::step;
   Side side = Side::a;  ///< refine, coarsen: whose wrapper; plane test: whose plane; point: whose vertex
   exact::Meet meet = exact::Meet::disjoint;  ///< face test, contact
-  std::uint8_t detail =
-      0;  ///< face test: tested_by(); node pair: node_end(); point: where(); pass: stage(); cap:
-          ///< verdict()
+  std::uint8_t detail = 0;  ///< face test: tested_by(); node pair: node_end(); point: where(); pass: stage();
+                            ///< cap: verdict()
 
   /// Return what the numbers `a` and `b` stand for: in a face test or a contact the simplex of a body, in a
   /// refinement or a coarsening the region.

@@ -1,6 +1,7 @@
 #pragma once
-/// The commands that measure. They make up a program of their own, lrbscope-measure, that lrbscope starts for
-/// them: it takes as long to compile as all the rest, and most users never need it.
+/// The commands that measure bodies, methods and the paper's experiment. They make up a program of
+/// their own, lrbscope-measure, that lrbscope starts for them: it takes longer to compile than all the rest,
+/// and nobody needs it at first.
 
 #include <array>
 #include <string>
@@ -24,6 +25,7 @@ inline constexpr std::array kMeasuringWords = {
     MeasuringWord{
         "chart", "Chart speed against accuracy: every method at every setting, exact ones and approximations",
         140},
+    MeasuringWord{"levels", "How many faces a body needs at a row of tolerances, and the proof", 65},
     MeasuringWord{
         "paper",
         "Repeat the paper's experiment: its tables and figures, close-ups of single collisions, and the same "
@@ -31,6 +33,7 @@ inline constexpr std::array kMeasuringWords = {
         80},
     MeasuringWord{"stability",
                   "Put families of hard cases to our query and to other engines: who fails where", 100},
+    MeasuringWord{"xray", "Record another engine's walk, and show it beside ours", 68},
 };
 
 /// Returns the line of a command in the table; a word that is not there fails to compile.

@@ -43,10 +43,10 @@ void add_mark(render::DrawList& list, const Vector3d& x, render::Rgba colour, fl
 
 void add_wrong_pairs(render::DrawList& list, std::span<const WrongPair> pairs, const LrbRep& a,
                      const Pose& pose_a, const LrbRep& b, const Pose& pose_b, render::Rgba halo) {
-  constexpr float kWidth = 2.5F;
+  constexpr float kLineWidth = 2.5F;
   for (const WrongPair& wrong : pairs) {
-    outline(list, corners_of(a, pose_a, wrong.pair.a), render::palette::kWrong, kWidth, halo);
-    outline(list, corners_of(b, pose_b, wrong.pair.b), render::palette::kWrong, kWidth, halo);
+    outline(list, corners_of(a, pose_a, wrong.pair.a), render::palette::kWrong, kLineWidth, halo);
+    outline(list, corners_of(b, pose_b, wrong.pair.b), render::palette::kWrong, kLineWidth, halo);
   }
 }
 

@@ -27,7 +27,8 @@ struct Recording {
   std::vector<CollideResult> results;  ///< one for each step; none for one body
   std::vector<trace::TreeShape>
       trees;  ///< A's and B's, that were walked, if pairs of their nodes were recorded
-  /// Of each step, if another engine was recorded: what it got wrong, first those that it reported, then those that it missed.
+  /// Of each step, if another engine was recorded: the pairs that it got wrong, first those that it reported,
+  /// then those that it missed.
   std::vector<std::vector<WrongPair>> wrong;
   std::string first_contact;       ///< when an approach first meets, in words; empty: it does not, or is none
   std::vector<std::string> notes;  ///< for people

@@ -1,8 +1,10 @@
-// Depths of bodies that are not convex: how narrow, and how long they take. Each body against itself, B turned at random
-// and moved towards A until it is as deep as the row says, in shares of the diagonal beyond first contact. Times are of
-// the processor.
+// Depths of bodies that are not convex: how narrow, and how long they take. Each body against itself, B
+// turned at random and moved towards A until it is as deep as the row says, in shares of the diagonal beyond
+// first contact. Times are of the processor.
 //
-//   clash_bench [--poses N] [MESH...]     without meshes: spot, homer and cheburashka of LRB_MESHES, and shapes of ours
+//   clash_bench [--poses N] [MESH...]
+//
+// Without meshes: spot, homer and cheburashka of LRB_MESHES, and shapes of ours.
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>

@@ -3,7 +3,7 @@
 ///
 /// A file that adds families says so in a variable of its own; no list elsewhere needs to know:
 ///
-///     const bool added = add({"drum", "check", "corners", {1000, 2000, 4000}, {16000, 32000}, [](std::uint32_t n) {
+///     const bool added = add({"drum", "check", "corners", kShare, kMore, [](std::uint32_t n) {
 ///       auto mesh = std::make_shared<Mesh>(drum(n));
 ///       return Task{double(n), [mesh] { check_mesh(*mesh); }};
 ///     }});
@@ -14,6 +14,11 @@
 #include <vector>
 
 namespace lrb::cliffs {
+
+using Sizes = std::vector<std::uint32_t>;
+
+/// The sizes that most families are measured at.
+inline const Sizes kShare = {1000, 2000, 4000, 8000}, kMore = {16000, 32000, 64000};
 
 /// One input, and what is measured with it.
 struct Task {

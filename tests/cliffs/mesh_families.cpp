@@ -31,8 +31,6 @@ Task proof_task(const Mesh& made) {
   return {static_cast<double>(made.face_vertices.size()), [rep] { validate(*rep); }};
 }
 
-using Sizes = std::vector<std::uint32_t>;
-
 bool add_check(const std::string& name, const Sizes& share, const Sizes& more, const MakeMesh& make) {
   return add({name, "check", "corners", share, more, [=](std::uint32_t n) { return check_task(make(n)); }});
 }
@@ -42,10 +40,6 @@ bool add_build(const std::string& name, const Sizes& share, const Sizes& more, c
 bool add_all(const std::string& name, const Sizes& share, const Sizes& more, const MakeMesh& make) {
   add({name, "proof", "corners", share, more, [=](std::uint32_t n) { return proof_task(make(n)); }});
   return add_check(name, share, more, make) && add_build(name, share, more, make);
-}
-
-Mesh rock(std::uint32_t level) {
-  return shapes::bumpy_sphere(static_cast<int>(level), 1, 0.2);
 }
 
 // Two families go without the proof, which counts the pairs of triangles that meet: at the common end of two
@@ -68,18 +62,16 @@ bool add_nested() {
   return add({"nested balls", "proof", "corners", share, more, task(proof_task), kMostTime, kMostMemory});
 }
 
-const Sizes kShare = {1000, 2000, 4000, 8000}, kMore = {16000, 32000, 64000};
-
-/// A concave face is the fan from its first corner, which goes beyond its rim: of n quads at its sides each meets
-/// a share of n triangles of the fan, so that what meets grows as n^2. That a pair of faces needs one of them alone
-/// leaves n^1.7.
+/// A concave face is the fan from its first corner, which goes beyond its rim: of n quads at its sides each
+/// meets a share of n triangles of the fan, so that what meets grows as n^2. That a pair of faces needs one
+/// of them alone leaves n^1.7.
 bool add_concave() {
   constexpr double kMostTime = 1.8;
   return add({"drum with concave ends", "check", "corners", kShare, kMore,
               [](std::uint32_t n) { return check_task(cog(n)); }, kMostTime});
 }
 
-const bool added =
+const bool meshes_added =
     add_all("rock", {2, 3, 4}, {5, 6}, rock) && add_all("drum", kShare, kMore, drum) && add_concave() &&
     add_check("box of many corners", kShare, kMore, fine_box) &&
     add_build("box of many corners", kShare, kMore, fine_box) && add_all("cone", kShare, kMore, cone) &&

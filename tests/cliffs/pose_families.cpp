@@ -1,5 +1,5 @@
-// One query of two bodies under poses that are no rotations: it grows with the answer and with what is near, as under
-// a rotation. Where boxes culled nothing it would grow with the product of both bodies' faces.
+// One query of two bodies under poses that are no rotations: it grows with the answer and with what is near,
+// as under a rotation. Where boxes culled nothing it would grow with the product of both bodies' faces.
 
 #include <cmath>
 #include <memory>
@@ -57,7 +57,7 @@ Eigen::Matrix3d shear() {
 
 const Eigen::Matrix3d kOne = Eigen::Matrix3d::Identity();
 
-const bool added[] = {
+const bool poses_added[] = {
     add_pose("scaled by 1.01", kOne, 1.01 * kOne),
     add_pose("scaled by 1.5", kOne, 1.5 * kOne),
     add_pose("both scaled by 1e-150", 1e-150 * kOne, 1e-150 * kOne),

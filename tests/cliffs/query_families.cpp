@@ -1,5 +1,5 @@
-// One query of two bodies from their faces alone, as `query` asks it. What grows is the input (the query's tree
-// is made, too) and the answer: time is fitted against the larger of the two.
+// One query of two bodies from their faces alone, as `query` asks it. What grows is the input (the query's
+// tree is made, too) and the answer: time is fitted against the larger of the two.
 
 #include <algorithm>
 #include <memory>
@@ -18,7 +18,6 @@ namespace {
 
 using namespace hard;
 
-using Sizes = std::vector<std::uint32_t>;
 using MakeMesh = std::function<Mesh(std::uint32_t)>;
 
 LrbRep bare(Mesh mesh) {
@@ -58,8 +57,6 @@ Pose aslant() {
 /// step, which looks like a power.
 constexpr double kMostOfNested = 1.5;
 
-const Sizes kShare = {1000, 2000, 4000, 8000}, kMore = {16000, 32000, 64000};
-
 bool add_query(const std::string& name, const Sizes& share, const Sizes& more, const MakeMesh& make) {
   return add({name, "query", "corners", share, more,
               [=](std::uint32_t n) { return whole_query(make(n), aslant()); }});
@@ -86,11 +83,7 @@ bool add_answer(const std::string& name, const Sizes& share, const Sizes& more, 
       {name, "contacts", "pairs", share, more, [=](std::uint32_t n) { return answer(make(n), pose, true); }});
 }
 
-Mesh rock(std::uint32_t level) {
-  return shapes::bumpy_sphere(static_cast<int>(level), 1, 0.2);
-}
-
-const bool added =
+const bool queries_added =
     add_query("rock", {2, 3, 4}, {5, 6}, rock) && add_query("drum", kShare, kMore, drum) &&
     add_query("drum with concave ends", kShare, {16000}, cog) &&  // beyond, it has more pairs than are kept
     add_query("box of many corners", kShare, kMore, fine_box) && add_query("cone", kShare, kMore, cone) &&

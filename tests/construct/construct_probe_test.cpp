@@ -178,7 +178,8 @@ std::size_t count(const std::vector<Told>& told, CapVerdict verdict) {
   return n;
 }
 
-TEST_CASE("what is told adds up to the body, which is the same without; 1, 2 and 4 threads tell the same") {
+TEST_CASE("what is told adds up to the body, which is the same without; 1, 2 and 4 threads tell the same" *
+          doctest::test_suite("long")) {
   std::array<std::size_t, kWords<CapVerdict>.size()> verdicts{};
   std::size_t merged = 0;
   for (const Mesh& mesh : bodies()) {

@@ -116,8 +116,8 @@ std::vector<Points> lids_of(const LrbRep& rep, RegionId r) {
   return out;
 }
 
-/// Returns the largest distance from the surface that is found on a region's lids, at points no further apart than a `parts`th of
-/// a lid's side, nor than a hundredth of the body's.
+/// Returns the largest distance from the surface that is found on a region's lids, at points no further apart
+/// than a `parts`th of a lid's side, nor than a hundredth of the body's.
 double sampled_thickness(const LrbRep& rep, RegionId r, const Surface& surface, int parts) {
   double most = 0;
   for (const Points& t : lids_of(rep, r)) {
@@ -148,8 +148,8 @@ std::vector<double> with_hidden(const LrbRep& rep, std::vector<double> value) {
   return value;
 }
 
-/// Bounds against samples: none is below, nine in ten are within `kNear`, and so is every wrapper that keeps closed
-/// what a tolerance allows.
+/// Bounds against samples: none is below, nine in ten are within `kNear`, and so is every wrapper that keeps
+/// closed what a tolerance allows.
 void check_bounds(const LrbRep& rep, int parts) {
   constexpr double kNear = 1.25;
   const Surface surface(rep);
@@ -220,8 +220,8 @@ cpp_rational square_to(const Rational3& p, const Points& s) {
   return std::min({square_to_segment(p, a, b), square_to_segment(p, b, c), square_to_segment(p, c, a)});
 }
 
-/// Points of lids that are exact combinations of their corners, and exact distances from the nearest real face. (If
-/// rounding names another one, its distance is larger, which asks for more.)
+/// Points of lids that are exact combinations of their corners, and exact distances from the nearest real
+/// face. (If rounding names another one, its distance is larger, which asks for more.)
 void check_exactly(const LrbRep& rep, RandomEngine& random) {
   const Surface surface(rep);
   const std::vector<double> proved = region_thickness(rep);
@@ -264,7 +264,8 @@ std::vector<Mesh> all_kinds() {
           several({circle(40, 3), turned_inside_out(circle(30, 2)), star(5)})};
 }
 
-TEST_CASE("no lid is further off than is proved of its region, and hardly nearer") {
+TEST_CASE("no lid is further off than is proved of its region, and hardly nearer" *
+          doctest::test_suite("long")) {
   for (const Mesh& mesh : all_kinds()) {
     for (const bool lean : {false, true}) {
       CAPTURE(mesh.name);
@@ -302,8 +303,8 @@ TEST_CASE("no point of a lid is further from the real faces, exactly, than is pr
 }
 
 TEST_CASE("a flat lid over coplanar faces is off by nothing") {
-  // A board with a thousand faces on each side: lids over them lie in their plane but for the builder's margin. The
-  // other regions go round its edges.
+  // A board with a thousand faces on each side: lids over them lie in their plane but for the builder's
+  // margin. The other regions go round its edges.
   const Mesh board = voxels(24, 24, 1, [](int, int, int) { return true; });
   const LrbRep rep = build_lrb(board);
   const std::vector<double> proved = region_thickness(rep);

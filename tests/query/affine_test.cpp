@@ -1,5 +1,5 @@
-// Bodies under maps that are no rotations: the answers are those of brute force, in every mode, and the work is that
-// of the same bodies with the map in their vertices.
+// Bodies under maps that are no rotations: the answers are those of brute force, in every mode, and the work
+// is that of the same bodies with the map in their vertices.
 #include <algorithm>
 #include <cmath>
 
@@ -10,6 +10,7 @@
 #include "engine/query/collide_impl.hpp"
 #include "scenarios/bodies/shapes/shapes.hpp"
 #include "tests/support/affine_maps.hpp"
+#include "tests/support/closed_body.hpp"
 
 using namespace lrb;
 using shapes::RandomEngine;
@@ -18,11 +19,9 @@ using test::MapKind;
 
 namespace {
 
-LrbRep closed(const Mesh& mesh, double size = 1) {
-  return LrbRep::without_regions(shapes::scaled(mesh, size), true, false);
-}
+using test::closed;
 
-struct Scene {
+struct PosedScene {
   LrbRep a, b;
   Pose pose_a, pose_b;
 };
@@ -32,7 +31,7 @@ Pose sized(const Eigen::Matrix3d& map, const Eigen::Vector3d& at, double body, d
   return {map * (world / body), at * world};
 }
 
-Scene random_scene(RandomEngine& random, int dim, int i) {
+PosedScene random_scene(RandomEngine& random, int dim, int i) {
   const double sizes[] = {1, 1, 1, 1e-150, 1e150, 1e-12, 1e9};
   const double size_a = sizes[random() % 7], size_b = sizes[random() % 7], world = sizes[random() % 7];
   const auto kind = [&] { return static_cast<MapKind>(random() % test::kMapKinds); };
@@ -42,9 +41,9 @@ Scene random_scene(RandomEngine& random, int dim, int i) {
   Eigen::Vector3d at = uniform(random, 0, 2) * shapes::random_direction(random);
   if (dim == 2) at.z() = 0;
   // Often vertex upon vertex, in what the poses make of them.
-  Scene s{closed(dim == 2 ? shapes::gear(12) : shapes::icosphere(1), size_a),
-          closed(dim == 2 ? shapes::comb_2d(3, 1) : shapes::bumpy_sphere(1, 2), size_b),
-          sized(map_a, {0, 0, 0}, size_a, world), sized(map_b, at, size_b, world)};
+  PosedScene s{closed(dim == 2 ? shapes::gear(12) : shapes::icosphere(1), size_a),
+               closed(dim == 2 ? shapes::comb_2d(3, 1) : shapes::bumpy_sphere(1, 2), size_b),
+               sized(map_a, {0, 0, 0}, size_a, world), sized(map_b, at, size_b, world)};
   if (i % 7 == 0) {
     const auto vertex = [&](const LrbRep& rep) { return rep.vertices()[random() % rep.vertices().size()]; };
     s.pose_b.t = s.pose_a.r * vertex(s.a) - s.pose_b.r * vertex(s.b);
@@ -53,14 +52,14 @@ Scene random_scene(RandomEngine& random, int dim, int i) {
   return s;
 }
 
-CollideResult ask(const Scene& s, Mode mode, QueryContext& context) {
+CollideResult ask(const PosedScene& s, Mode mode, QueryContext& context) {
   CollideRequest request;
   request.mode = mode;
   NullProbe probe;
   return collide(s.a, s.pose_a, s.b, s.pose_b, request, context, probe);
 }
 
-void check_modes(const Scene& s, const BruteForceResult& truth, QueryContext& context) {
+void check_modes(const PosedScene& s, const BruteForceResult& truth, QueryContext& context) {
   const CollideResult all = ask(s, Mode::all_pairs, context);
   REQUIRE(all.pairs == truth.pairs);
   REQUIRE(all.meets == truth.meets);
@@ -75,7 +74,7 @@ void check_modes(const Scene& s, const BruteForceResult& truth, QueryContext& co
 }
 
 /// What a tolerance may leave open, against the truth.
-void check_coarse(const Scene& s, const BruteForceResult& truth, QueryContext& context) {
+void check_coarse(const PosedScene& s, const BruteForceResult& truth, QueryContext& context) {
   CollideRequest request;
   request.tolerance = 0.05 * s.a.tree().extent();
   NullProbe probe;
@@ -100,7 +99,7 @@ TEST_CASE("any affine maps: answers are those of brute force, in all modes") {
     for (int i = 0; i < 600; ++i) {
       CAPTURE(dim);
       CAPTURE(i);
-      const Scene s = random_scene(random, dim, i);
+      const PosedScene s = random_scene(random, dim, i);
       const BruteForceResult truth = brute_force(s.a, s.pose_a, s.b, s.pose_b);
       check_modes(s, truth, context);
       check_coarse(s, truth, context);
@@ -119,7 +118,7 @@ TEST_CASE("any affine maps: coherent queries while the bodies move") {
   int in_contact = 0;
   for (int i = 0; i < 200; ++i) {
     const int dim = i % 4 == 3 ? 2 : 3;
-    Scene s = random_scene(random, dim, i);
+    PosedScene s = random_scene(random, dim, i);
     CAPTURE(i);
     CoherentQuery coherent(s.a, s.b, {}, CoherentQuery::CacheUse::always);
     const Eigen::Vector3d step = 0.01 * s.pose_b.t;

@@ -6,18 +6,19 @@
 #include "scenarios/bodies/shapes/hand_made.hpp"
 #include "scenarios/bodies/shapes/random_pose.hpp"
 #include "scenarios/bodies/shapes/shapes.hpp"
+#include "tests/support/closed_body.hpp"
 
 using namespace lrb;
 using shapes::RandomEngine;
 
 namespace {
 
-struct Tally {
+struct RelationTally {
   int poses = 0, in_contact = 0, inside = 0, apart = 0, touching = 0;
 };
 
 void compare(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b, QueryContext& context,
-             Tally& t) {
+             RelationTally& t) {
   const BruteForceResult expected = brute_force(a, pose_a, b, pose_b);
   NullProbe probe;
   const CollideResult all = collide(a, pose_a, b, pose_b, {}, context, probe);
@@ -45,17 +46,15 @@ void compare(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& p
   t.inside += expected.relation == Relation::a_inside_b || expected.relation == Relation::b_inside_a;
 }
 
-struct Bodies {
+struct AnyBodies {
   const char* name;
   LrbRep a, b;
 };
 
-LrbRep closed(const Mesh& mesh) {
-  return LrbRep::without_regions(mesh, true, false);
-}
+using test::closed;
 
-std::vector<Bodies> bodies() {
-  std::vector<Bodies> list;
+std::vector<AnyBodies> any_bodies() {
+  std::vector<AnyBodies> list;
   list.push_back({"spheres", closed(shapes::icosphere(1)), closed(shapes::icosphere(1, 0.7))});
   list.push_back({"bumps", closed(shapes::bumpy_sphere(2, 7, 0.3)), closed(shapes::bumpy_sphere(1, 8, 0.3))});
   list.push_back({"ball in bowl", closed(shapes::bowl(12, 6)), closed(shapes::icosphere(1, 0.5))});
@@ -79,8 +78,8 @@ std::vector<Bodies> bodies() {
 TEST_CASE("complete equals brute force on random poses, from deep inside to near misses") {
   RandomEngine random(20240607);
   QueryContext context;
-  Tally total;
-  for (const Bodies& pair : bodies()) {
+  RelationTally total;
+  for (const AnyBodies& pair : any_bodies()) {
     CAPTURE(pair.name);
     for (int i = 0; i < 800; ++i) {
       CAPTURE(i);
@@ -99,7 +98,7 @@ TEST_CASE("complete equals brute force on random poses, from deep inside to near
 TEST_CASE("complete equals brute force when both bodies move") {
   RandomEngine random(5);
   QueryContext context;
-  Tally total;
+  RelationTally total;
   const LrbRep a = closed(shapes::bumpy_sphere(1, 3)), b = closed(shapes::torus(9, 6));
   for (int i = 0; i < 200; ++i) {
     Pose frame;
@@ -115,7 +114,7 @@ TEST_CASE("complete equals brute force when both bodies move") {
 TEST_CASE("complete equals brute force on identical bodies and grid-aligned contact") {
   RandomEngine random(6);
   QueryContext context;
-  Tally total;
+  RelationTally total;
   const std::vector<LrbRep> list = {closed(shapes::box()),          closed(shapes::comb(4)),
                                     closed(shapes::l_shape()),      closed(shapes::icosphere(1)),
                                     closed(shapes::quad_box()),     closed(shapes::box_with_void()),
@@ -137,7 +136,7 @@ TEST_CASE("complete equals brute force on identical bodies and grid-aligned cont
 TEST_CASE("any matrix is answered exactly, rotation or not") {
   RandomEngine random(8);
   QueryContext context;
-  Tally total;
+  RelationTally total;
   const LrbRep a = closed(shapes::icosphere(1)), b = closed(shapes::box({-0.5, -0.5, -0.5}, {0.5, 0.5, 0.5}));
   for (int i = 0; i < 100; ++i) {
     Pose p = shapes::random_pose(random, a, b, shapes::uniform(random, 0, 1));

@@ -20,15 +20,15 @@ namespace {
 
 using namespace shapes;
 
-struct Scene {
+struct ExplainedScene {
   LrbRep a, b;
   Pose pose;
 };
 
 /// Bodies in contact or near it, under rotations and other maps, in the plane too.
-std::vector<Scene> scenes() {
+std::vector<ExplainedScene> scenes() {
   RandomEngine random(11);
-  std::vector<Scene> out;
+  std::vector<ExplainedScene> out;
   for (int i = 0; i < 24; ++i) {
     const int dim = i % 4 == 3 ? 2 : 3;
     const LrbRep a = build_lrb(dim == 3 ? bumpy_sphere(2, 5, 0.2) : gear(24));
@@ -48,7 +48,7 @@ Points corners(const LrbRep& rep, const Pose& pose, SimplexId s) {
 }
 
 /// What must be so for any explanation.
-void check(const Scene& s, const SimplexPair& pair, exact::Meet meet) {
+void check(const ExplainedScene& s, const SimplexPair& pair, exact::Meet meet) {
   CAPTURE(pair.a);
   CAPTURE(pair.b);
   const PairExplanation e = explain_pair(s.a, {}, s.b, s.pose, pair);
@@ -81,7 +81,7 @@ void check(const Scene& s, const SimplexPair& pair, exact::Meet meet) {
 
 TEST_CASE("pairs of the answer and beside it are explained as they are") {
   RandomEngine random(3);
-  for (const Scene& s : scenes()) {
+  for (const ExplainedScene& s : scenes()) {
     const BruteForceResult truth = brute_force(s.a, {}, s.b, s.pose);
     for (std::size_t i = 0; i < truth.pairs.size(); i += 1 + truth.pairs.size() / 8)
       check(s, truth.pairs[i], truth.meets[i]);
@@ -97,7 +97,7 @@ TEST_CASE("pairs of the answer and beside it are explained as they are") {
 }
 
 TEST_CASE("the walk that is told is the one that the query does") {
-  for (const Scene& s : scenes()) {
+  for (const ExplainedScene& s : scenes()) {
     const CollideResult result = collide(s.a, {}, s.b, s.pose);
     const WalkExplanation e = explain_walk(s.a, {}, s.b, s.pose);
     CHECK(e.result.pairs == result.pairs);
@@ -118,7 +118,7 @@ TEST_CASE("the walk that is told is the one that the query does") {
 }
 
 TEST_CASE("pairs are explained one after the other, and at other poses, as they are alone") {
-  for (const Scene& s : scenes()) {
+  for (const ExplainedScene& s : scenes()) {
     PairExplainer explainer(s.a, s.b);
     for (const Pose& pose : {s.pose, Pose{}}) {
       explainer.place({}, pose);
@@ -147,7 +147,7 @@ double reach(const LrbRep& rep, const Pose& pose, const Eigen::Vector3d& n) {
 
 TEST_CASE("what parts bodies: the nearest of the boxes found apart, and a plane where one was found") {
   int planes = 0, boxes = 0;
-  for (const Scene& s : scenes())
+  for (const ExplainedScene& s : scenes())
     for (const double factor : {1.0, 1.5, 4.0}) {
       Pose pose = s.pose;
       pose.t *= factor;
@@ -207,8 +207,8 @@ LrbRep segment(const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
 }
 
 TEST_CASE("what plain doubles get wrong is told apart from the exact sign") {
-  // Points within 2^-49 of the line x = y, about which doubles are known to err (L. Kettner et al., "Classroom examples
-  // of robustness problems in geometric computations", 2008).
+  // Points within 2^-49 of the line x = y, about which doubles are known to err (L. Kettner et al.,
+  // "Classroom examples of robustness problems in geometric computations", 2008).
   const LrbRep line = segment({12, 12, 0}, {24, 24, 0});
   int wrong = 0;
   for (int i = 0; i < 16; ++i)

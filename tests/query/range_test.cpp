@@ -8,15 +8,14 @@
 #include "engine/query/collide.hpp"
 #include "scenarios/bodies/shapes/random_pose.hpp"
 #include "scenarios/bodies/shapes/shapes.hpp"
+#include "tests/support/closed_body.hpp"
 
 using namespace lrb;
 using shapes::RandomEngine;
 
 namespace {
 
-LrbRep closed(const Mesh& mesh) {
-  return LrbRep::without_regions(mesh, true, false);
-}
+using test::closed;
 
 std::string complaint(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b) {
   try {

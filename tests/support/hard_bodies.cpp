@@ -66,6 +66,10 @@ Mesh ring(std::uint32_t n) {
 
 }  // namespace
 
+Mesh rock(std::uint32_t level) {
+  return shapes::bumpy_sphere(static_cast<int>(level), 1, 0.2);
+}
+
 Mesh drum(std::uint32_t n) {
   return upright_prism(ring(n).vertices);
 }

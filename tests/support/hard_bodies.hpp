@@ -7,6 +7,9 @@
 
 namespace lrb::hard {
 
+/// An uneven ball of 20 * 4^level triangles: what is not hard, beside the others.
+Mesh rock(std::uint32_t level);
+
 /// A prism over a regular polygon: two faces of n corners, at z = 0 and 1, and n quads.
 Mesh drum(std::uint32_t n);
 /// The same over a star of n corners, every other one nearer to the middle: its two large faces are concave.

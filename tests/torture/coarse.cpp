@@ -14,16 +14,16 @@ namespace {
 using shapes::RandomEngine;
 using shapes::uniform;
 
-constexpr std::uint64_t kBatch = 2000;
+constexpr std::uint64_t kCoarseBatch = 2000;
 constexpr std::uint64_t kPosesOfOneContact = 20;
 /// Measuring takes longer than all else: one query in so many.
 constexpr std::uint64_t kMeasuredEvery = 16;
 
-struct Tally {
+struct CoarseTally {
   std::uint64_t queries = 0, meeting = 0, alone_apart = 0, unresolved = 0, with_lids = 0, measured = 0;
   std::uint64_t wrong_relations = 0, wrong_separate = 0, wrong_bounds = 0, crashes = 0;
 
-  Tally& operator+=(const Tally& t) {
+  CoarseTally& operator+=(const CoarseTally& t) {
     queries += t.queries;
     meeting += t.meeting;
     alone_apart += t.alone_apart;
@@ -39,13 +39,13 @@ struct Tally {
   std::uint64_t differences() const { return wrong_relations + wrong_separate + wrong_bounds + crashes; }
 };
 
-struct Bodies {
+struct CoarseBodies {
   const char* name;
   LrbRep a, b;
 };
 
-std::vector<Bodies> all_bodies() {
-  std::vector<Bodies> list;
+std::vector<CoarseBodies> coarse_bodies() {
+  std::vector<CoarseBodies> list;
   const auto add = [&](const char* name, const Mesh& a, const Mesh& b) {
     list.push_back({name, build_lrb(a), build_lrb(b)});
   };
@@ -58,10 +58,11 @@ std::vector<Bodies> all_bodies() {
   return list;
 }
 
-/// Poses of B around a first contact: at it, and off it by 10^-17 to 10^-1 of the body, or flush along A's axes.
+/// Poses of B around a first contact: at it, and off it by 10^-17 to 10^-1 of the body, or flush along A's
+/// axes.
 class Poses {
  public:
-  Poses(const Bodies& bodies, RandomEngine& random) : bodies_(bodies), random_(random) {
+  Poses(const CoarseBodies& bodies, RandomEngine& random) : bodies_(bodies), random_(random) {
     size_ = shapes::box_of(bodies.a).diagonal().norm();
   }
 
@@ -111,7 +112,7 @@ class Poses {
   }
   Pose in_frame(const Pose& p) const { return {frame_.r * p.r, frame_.r * p.t + frame_.t}; }
 
-  const Bodies& bodies_;
+  const CoarseBodies& bodies_;
   RandomEngine& random_;
   double size_;
   Pose frame_, touch_;
@@ -119,11 +120,11 @@ class Poses {
   bool flush_ = false;
 };
 
-class Checker {
+class CoarseChecker {
  public:
-  Checker(const Bodies& bodies, RandomEngine& random) : bodies_(bodies), random_(random) {}
+  CoarseChecker(const CoarseBodies& bodies, RandomEngine& random) : bodies_(bodies), random_(random) {}
 
-  Tally run(std::uint64_t count) {
+  CoarseTally run(std::uint64_t count) {
     Poses poses(bodies_, random_);
     const double size = shapes::box_of(bodies_.a).diagonal().norm();
     for (std::uint64_t i = 0; i < count; ++i) {
@@ -180,13 +181,13 @@ class Checker {
                    static_cast<unsigned long long>(t_.queries), what);
   }
 
-  const Bodies& bodies_;
+  const CoarseBodies& bodies_;
   RandomEngine& random_;
   QueryContext context_;
-  Tally t_;
+  CoarseTally t_;
 };
 
-void print_row(const char* name, const Tally& t, double seconds) {
+void print_coarse_row(const char* name, const CoarseTally& t, double seconds) {
   const auto n = [](std::uint64_t x) { return static_cast<unsigned long long>(x); };
   std::printf("%-14s %9llu %9llu %9llu %10llu %9llu %9llu %9llu %9llu %9llu %8llu %7.1f\n", name,
               n(t.queries), n(t.meeting), n(t.alone_apart), n(t.unresolved), n(t.with_lids), n(t.measured),
@@ -197,24 +198,25 @@ void print_row(const char* name, const Tally& t, double seconds) {
 }  // namespace
 
 std::uint64_t torture_coarse(std::uint64_t count, std::uint64_t seed, unsigned jobs) {
-  const std::vector<Bodies> list = all_bodies();
-  for (const Bodies& bodies : list) {
+  const std::vector<CoarseBodies> list = coarse_bodies();
+  for (const CoarseBodies& bodies : list) {
     bodies.a.levels();
     bodies.b.levels();
   }
   std::printf("%-14s %9s %9s %9s %10s %9s %9s %9s %9s %9s %8s %7s\n", "bodies", "queries", "meeting",
               "apart by", "unresolved", "with lids", "measured", "relation", "separate", "bound", "crashes",
               "s");
-  const auto check = [](const Bodies& bodies, Batch b, RandomEngine& random) {
-    return Checker(bodies, random).run(b.end - b.begin);
+  const auto check = [](const CoarseBodies& bodies, Batch b, RandomEngine& random) {
+    return CoarseChecker(bodies, random).run(b.end - b.begin);
   };
   const auto lost = [](Batch b, int) {
-    Tally tally;
+    CoarseTally tally;
     tally.queries = b.end - b.begin;
     tally.crashes = 1;
     return tally;
   };
-  return sum_over_bodies<Tally>(list, count, kBatch, seed, jobs, check, lost, print_row).differences();
+  return sum_over_bodies<CoarseTally>(list, count, kCoarseBatch, seed, jobs, check, lost, print_coarse_row)
+      .differences();
 }
 
 }  // namespace lrb::torture

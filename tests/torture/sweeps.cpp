@@ -15,15 +15,15 @@ namespace {
 using shapes::RandomEngine;
 using shapes::uniform;
 
-constexpr std::uint64_t kBatch = 1000;
+constexpr std::uint64_t kSweepBatch = 1000;
 constexpr int kSamples = 40, kCloseSamples = 24;
 
-struct Tally {
+struct SweepTally {
   std::uint64_t motions = 0, contacts = 0, at_start = 0, never = 0, undecided = 0, grazing = 0, passed = 0,
                 samples = 0;
   std::uint64_t misses = 0, no_contact = 0, wide = 0, crashes = 0, steps = 0;
 
-  Tally& operator+=(const Tally& t) {
+  SweepTally& operator+=(const SweepTally& t) {
     motions += t.motions;
     contacts += t.contacts;
     at_start += t.at_start;
@@ -42,12 +42,12 @@ struct Tally {
   std::uint64_t differences() const { return misses + no_contact + wide + crashes; }
 };
 
-struct Bodies {
+struct SweepBodies {
   const char* name;
   LrbRep a, b;
   double size;  ///< of both
 
-  Bodies(const char* name_, const Mesh& mesh_a, const Mesh& mesh_b, bool closed_a = true)
+  SweepBodies(const char* name_, const Mesh& mesh_a, const Mesh& mesh_b, bool closed_a = true)
       : name(name_),
         a(LrbRep::without_regions(mesh_a, closed_a, false)),
         b(LrbRep::without_regions(mesh_b, mesh_b.face_count() > 2, false)),
@@ -64,8 +64,8 @@ Mesh sheet(double half) {
   return m;
 }
 
-std::vector<Bodies> all_bodies() {
-  std::vector<Bodies> list;
+std::vector<SweepBodies> sweep_bodies() {
+  std::vector<SweepBodies> list;
   list.emplace_back("bumps", shapes::bumpy_sphere(3, 7, 0.3), shapes::bumpy_sphere(3, 8, 0.3));
   list.emplace_back("ball in bowl", shapes::bowl(24, 12), shapes::icosphere(3, 0.5));
   list.emplace_back("tori", shapes::torus(24, 14), shapes::torus(20, 12, 1, 0.25));
@@ -82,7 +82,7 @@ std::vector<Bodies> all_bodies() {
 /// Draws motions of all kinds.
 class Motions {
  public:
-  Motions(const Bodies& bodies, RandomEngine& random)
+  Motions(const SweepBodies& bodies, RandomEngine& random)
       : bodies_(bodies), random_(random), dim_(bodies.a.dim()) {}
 
   Motion motion_a() {
@@ -170,17 +170,17 @@ class Motions {
     return beside(misses + (random_() % 2 ? -1 : 1) * std::pow(10, uniform(random_, -17, -1)) * size);
   }
 
-  const Bodies& bodies_;
+  const SweepBodies& bodies_;
   RandomEngine& random_;
   FirstContactContext context_;
   int dim_;
 };
 
-class Checker {
+class SweepChecker {
  public:
-  Checker(const Bodies& bodies, RandomEngine& random) : bodies_(bodies), random_(random) {}
+  SweepChecker(const SweepBodies& bodies, RandomEngine& random) : bodies_(bodies), random_(random) {}
 
-  Tally run(std::uint64_t count) {
+  SweepTally run(std::uint64_t count) {
     Motions motions(bodies_, random_);
     for (std::uint64_t i = 0; i < count; ++i) {
       const Motion a = motions.motion_a();
@@ -252,15 +252,15 @@ class Checker {
                    static_cast<unsigned long long>(t_.motions), what);
   }
 
-  const Bodies& bodies_;
+  const SweepBodies& bodies_;
   RandomEngine& random_;
   const FirstContactRequest request_;
   FirstContactContext context_;
   QueryContext query_;
-  Tally t_;
+  SweepTally t_;
 };
 
-void print_row(const char* name, const Tally& t, double seconds) {
+void print_sweep_row(const char* name, const SweepTally& t, double seconds) {
   const auto n = [](std::uint64_t x) { return static_cast<unsigned long long>(x); };
   std::printf("%-14s %9llu %9llu %9llu %9llu %9llu %9llu %9llu %9llu %10llu %8llu %10llu %8llu %8llu %7.1f\n",
               name, n(t.motions), n(t.contacts), n(t.at_start), n(t.never), n(t.undecided), n(t.grazing),
@@ -272,20 +272,21 @@ void print_row(const char* name, const Tally& t, double seconds) {
 }  // namespace
 
 std::uint64_t torture_sweeps(std::uint64_t count, std::uint64_t seed, unsigned jobs) {
-  const std::vector<Bodies> list = all_bodies();
+  const std::vector<SweepBodies> list = sweep_bodies();
   std::printf("%-14s %9s %9s %9s %9s %9s %9s %9s %9s %10s %8s %10s %8s %8s %7s\n", "bodies", "motions",
               "contact", "at start", "never", "undecided", "grazing", "passed", "steps", "samples", "misses",
               "no contact", "wide", "crashes", "s");
-  const auto check = [](const Bodies& bodies, Batch b, RandomEngine& random) {
-    return Checker(bodies, random).run(b.end - b.begin);
+  const auto check = [](const SweepBodies& bodies, Batch b, RandomEngine& random) {
+    return SweepChecker(bodies, random).run(b.end - b.begin);
   };
   const auto lost = [](Batch b, int) {
-    Tally tally;
+    SweepTally tally;
     tally.motions = b.end - b.begin;
     tally.crashes = 1;
     return tally;
   };
-  return sum_over_bodies<Tally>(list, count, kBatch, seed, jobs, check, lost, print_row).differences();
+  return sum_over_bodies<SweepTally>(list, count, kSweepBatch, seed, jobs, check, lost, print_sweep_row)
+      .differences();
 }
 
 }  // namespace lrb::torture

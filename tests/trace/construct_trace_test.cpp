@@ -2,7 +2,6 @@
 
 #include <array>
 #include <bit>
-#include <fstream>
 #include <string>
 #include <vector>
 
@@ -12,7 +11,7 @@
 #include "engine/construct/build.hpp"
 #include "engine/core/error.hpp"
 #include "scenarios/bodies/shapes/shapes.hpp"
-#include "tests/support/json_schema.hpp"
+#include "tests/support/trace_schema.hpp"
 #include "trace/construct_recorder.hpp"
 #include "trace/counters.hpp"
 #include "trace/cursor.hpp"
@@ -62,8 +61,7 @@ EventId find(const Trace& t, EventKind kind) {
 }
 
 std::string complaint(const Trace& trace) {
-  static const Json schema = Json::parse(std::ifstream(LRB_TRACE_SCHEMA));
-  return test::schema_faults(schema, Json::parse(trace_to_json(trace)));
+  return test::trace_faults(Json::parse(trace_to_json(trace)));
 }
 
 /// Checks that each pass begins where the one before ended, and that its numbers add up.
@@ -237,7 +235,7 @@ TEST_CASE("damaged constructions are refused") {
 }
 
 TEST_CASE("stages and verdicts are those of the schema") {
-  const Json schema = Json::parse(std::ifstream(LRB_TRACE_SCHEMA));
+  const Json& schema = test::trace_schema();
   Json stages = Json::array(), verdicts = Json::array();
   for (const auto& entry : kWords<BuildStage>) stages.push_back(entry.word);
   for (const auto& entry : kWords<CapVerdict>) verdicts.push_back(entry.word);

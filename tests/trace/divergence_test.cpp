@@ -11,7 +11,7 @@ using namespace lrb::trace;
 
 namespace {
 
-Trace box_run(const std::vector<Eigen::Vector3d>& poses = runs::kBoxPoses, Clock clock = Clock::event) {
+Trace diverging_run(const std::vector<Eigen::Vector3d>& poses = runs::kBoxPoses, Clock clock = Clock::event) {
   static const LrbRep box(toy::dented_box());
   RecorderSettings settings;
   settings.clock = clock;
@@ -33,16 +33,16 @@ std::string difference(const Trace& x, const Trace& y) {
 }  // namespace
 
 TEST_CASE("equal runs do not diverge, whatever the clock or the names") {
-  CHECK(difference(box_run(), box_run()) == "none");
-  Trace other = box_run(runs::kBoxPoses, Clock::wall);
+  CHECK(difference(diverging_run(), diverging_run()) == "none");
+  Trace other = diverging_run(runs::kBoxPoses, Clock::wall);
   other.header.scenario = "renamed";
   other.header.bodies[0].source = "elsewhere.obj";
   other.header.lrbscope = "9.9";
-  CHECK(difference(box_run(), other) == "none");
+  CHECK(difference(diverging_run(), other) == "none");
 }
 
 TEST_CASE("the first divergent event is named, with the field and both values") {
-  const Trace x = box_run();
+  const Trace x = diverging_run();
   Trace y = x;
   const EventId contact = first_of(x, EventKind::contact);
   y.events[contact].meet = exact::Meet::disjoint;
@@ -66,7 +66,7 @@ TEST_CASE("the first divergent event is named, with the field and both values") 
 }
 
 TEST_CASE("two events swapped, one lost, one too many") {
-  const Trace x = box_run();
+  const Trace x = diverging_run();
   const EventId contact = first_of(x, EventKind::contact);
   Trace y = x;
   std::swap(y.events[contact], y.events[contact - 1]);
@@ -94,7 +94,7 @@ TEST_CASE("two events swapped, one lost, one too many") {
 }
 
 TEST_CASE("what is around the events is compared too") {
-  const Trace x = box_run();
+  const Trace x = diverging_run();
   Trace y = x;
   y.header.bodies[1].hash ^= 1;
   CHECK(difference(x, y).starts_with("run: hash of body B: expected "));
@@ -125,5 +125,5 @@ TEST_CASE("what is around the events is compared too") {
   y = x;
   y.steps[0].result.separation = Separation{{{{1}, {}}}, {7, 6}};
   CHECK(difference(x, y) == "step 0: separation: expected none, found wrappers of 7 and 6 faces");
-  CHECK(difference(x, box_run({runs::kBoxPoses[0]})) == "run: number of steps: expected 3, found 1");
+  CHECK(difference(x, diverging_run({runs::kBoxPoses[0]})) == "run: number of steps: expected 3, found 1");
 }

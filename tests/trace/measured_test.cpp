@@ -1,7 +1,6 @@
-// Distances, kinds of contact and searches for a first contact in traces: kept by files, told to viewers as counters.
+// Distances, kinds of contact and searches for a first contact in traces: kept by files, told to viewers as
+// counters.
 #include "trace/measured.hpp"
-
-#include <fstream>
 
 #include <doctest/doctest.h>
 #include <nlohmann/json.hpp>
@@ -9,7 +8,7 @@
 #include "engine/core/error.hpp"
 #include "engine/query/collide_impl.hpp"
 #include "scenarios/bodies/shapes/shapes.hpp"
-#include "tests/support/json_schema.hpp"
+#include "tests/support/trace_schema.hpp"
 #include "trace/divergence.hpp"
 #include "trace/recorder.hpp"
 #include "trace/trace_json.hpp"
@@ -87,8 +86,7 @@ TEST_CASE("bounds are counters within the step's last event, and times do not fa
   for (const Clock clock : {Clock::event, Clock::wall}) {
     const Trace trace = measured_run(clock);
     const Json document = Json::parse(trace_to_json(trace));
-    static const Json schema = Json::parse(std::ifstream(LRB_TRACE_SCHEMA));
-    CHECK(test::schema_faults(schema, document) == "");
+    CHECK(test::trace_faults(document) == "");
     double before = 0;
     for (const Json& e : document["traceEvents"]) {
       const auto now = e["ts"].get<double>();

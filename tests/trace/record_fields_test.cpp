@@ -2,7 +2,6 @@
 
 #include "trace/record_fields.hpp"
 
-#include <fstream>
 #include <limits>
 #include <set>
 #include <string>
@@ -11,6 +10,7 @@
 #include <doctest/doctest.h>
 #include <nlohmann/json.hpp>
 
+#include "tests/support/trace_schema.hpp"
 #include "tests/trace/runs.hpp"
 #include "trace/divergence.hpp"
 #include "trace/names.hpp"
@@ -22,14 +22,9 @@ using Json = nlohmann::json;
 
 namespace {
 
-const Json& schema() {
-  static const Json json = Json::parse(std::ifstream(LRB_TRACE_SCHEMA));
-  return json;
-}
-
 Json resolved(const Json& node) {
   if (!node.contains("$ref")) return node;
-  return schema().at(Json::json_pointer(node.at("$ref").get<std::string>().substr(1)));
+  return test::trace_schema().at(Json::json_pointer(node.at("$ref").get<std::string>().substr(1)));
 }
 
 template <class Enum>
@@ -57,7 +52,7 @@ void check_type(const Json& field, Form form) {
 template <class Record>
 void check_schema(const std::string& pointer) {
   CAPTURE(pointer);
-  const Json& object = schema().at(Json::json_pointer(pointer));
+  const Json& object = test::trace_schema().at(Json::json_pointer(pointer));
   std::set<std::string> fields, required;
   for_each_field<Record>([&](const auto& f) {
     const std::string name(f.name);
@@ -119,7 +114,7 @@ void check_words() {
   CHECK(name_of(static_cast<Enum>(kWords<Enum>.size())) == "?");
 }
 
-Trace box_run() {
+Trace plain_box_run() {
   const LrbRep box(toy::dented_box());
   return runs::record(box, box, runs::kBoxPoses).trace;
 }
@@ -131,16 +126,17 @@ TEST_CASE("the tables have the fields and words of the published schema") {
   check_schema<Counters>("/definitions/counters");
   check_schema<BodyInfo>("/definitions/body");
   check_schema<StepResult>("/definitions/time_step/properties/result");
-  CHECK(schema().at("/definitions/relation/enum"_json_pointer) == words<Relation>());
-  CHECK(schema().at("/definitions/meet/enum"_json_pointer) == words<exact::Meet>());
-  CHECK(schema().at("/definitions/side/enum"_json_pointer) == words<Side>());
-  CHECK(schema().at("/definitions/metadata/properties/clock/enum"_json_pointer) == words<Clock>());
+  CHECK(test::trace_schema().at("/definitions/relation/enum"_json_pointer) == words<Relation>());
+  CHECK(test::trace_schema().at("/definitions/meet/enum"_json_pointer) == words<exact::Meet>());
+  CHECK(test::trace_schema().at("/definitions/side/enum"_json_pointer) == words<Side>());
+  CHECK(test::trace_schema().at("/definitions/metadata/properties/clock/enum"_json_pointer) ==
+        words<Clock>());
   std::vector<std::string> of_faces = words<EventKind>();
   of_faces.resize(static_cast<std::size_t>(EventKind::result) +
                   1);  // the others are there from EventLevel::nodes on
-  CHECK(schema().at("/definitions/metadata/properties/totals/required"_json_pointer) == of_faces);
-  CHECK(schema().at("/definitions/phase/enum"_json_pointer) == words<Phase>());
-  CHECK(schema().at("/definitions/box_axis/enum"_json_pointer) == words<BoxAxis>());
+  CHECK(test::trace_schema().at("/definitions/metadata/properties/totals/required"_json_pointer) == of_faces);
+  CHECK(test::trace_schema().at("/definitions/phase/enum"_json_pointer) == words<Phase>());
+  CHECK(test::trace_schema().at("/definitions/box_axis/enum"_json_pointer) == words<BoxAxis>());
 }
 
 TEST_CASE("words lead to their enumerators and back; the engine's are those of files") {
@@ -160,7 +156,7 @@ TEST_CASE("words lead to their enumerators and back; the engine's are those of f
 }
 
 TEST_CASE("no field of a request changes unnoticed, and each survives a file") {
-  const Trace x = box_run();
+  const Trace x = plain_box_run();
   for_each_field<CollideRequest>([&](const auto& field) {
     CAPTURE(field.name);
     Trace y = x;
@@ -174,7 +170,7 @@ TEST_CASE("no field of a request changes unnoticed, and each survives a file") {
 }
 
 TEST_CASE("no field of an answer changes unnoticed, and each survives a file") {
-  Trace x = box_run();
+  Trace x = plain_box_run();
   x.header.request.tolerance = 1;  // or error bounds are not kept
   for_each_field<StepResult>([&](const auto& field) {
     CAPTURE(field.name);

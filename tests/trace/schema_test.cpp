@@ -1,6 +1,5 @@
 /// The schema in the repository against traces and broken traces, by an independent validator.
 
-#include <fstream>
 #include <functional>
 
 #include <doctest/doctest.h>
@@ -9,7 +8,7 @@
 #include "engine/construct/build.hpp"
 #include "engine/query/collide_impl.hpp"
 #include "scenarios/bodies/shapes/shapes.hpp"
-#include "tests/support/json_schema.hpp"
+#include "tests/support/trace_schema.hpp"
 #include "tests/trace/runs.hpp"
 #include "trace/trace_json.hpp"
 
@@ -18,11 +17,6 @@ using namespace lrb::trace;
 using Json = nlohmann::json;
 
 namespace {
-
-std::string complaint(const Json& document) {
-  static const Json schema = Json::parse(std::ifstream(LRB_TRACE_SCHEMA));
-  return test::schema_faults(schema, document);
-}
 
 Json box_run(Clock clock) {
   static const LrbRep box(toy::dented_box());
@@ -34,19 +28,19 @@ Json box_run(Clock clock) {
 }  // namespace
 
 TEST_CASE("traces fulfil the schema") {
-  CHECK(complaint(box_run(Clock::event)) == "");
-  CHECK(complaint(box_run(Clock::wall)) == "");
+  CHECK(test::trace_faults(box_run(Clock::event)) == "");
+  CHECK(test::trace_faults(box_run(Clock::wall)) == "");
   const LrbRep plate(toy::notched_plate());
   RecorderSettings settings;
   settings.event_cap = 30;
-  CHECK(complaint(
+  CHECK(test::trace_faults(
             Json::parse(trace_to_json(runs::record(plate, plate, runs::kPlatePoses, settings).trace))) == "");
   Recorder alone(plate, RecorderSettings{});
-  CHECK(complaint(Json::parse(trace_to_json(alone.take()))) == "");
+  CHECK(test::trace_faults(Json::parse(trace_to_json(alone.take()))) == "");
   alone.begin_step(0, {});
   alone.refine(Side::a, 2, 3);
   alone.coarsen(Side::a, 2, 3);
-  CHECK(complaint(Json::parse(trace_to_json(alone.take()))) == "");
+  CHECK(test::trace_faults(Json::parse(trace_to_json(alone.take()))) == "");
 }
 
 TEST_CASE("traces of coarse queries and certificates do, too") {
@@ -65,7 +59,7 @@ TEST_CASE("traces of coarse queries and certificates do, too") {
       recorder.end_step(collide(rock, {}, rock, pose, request, context, recorder));
     }
     const std::string text = trace_to_json(recorder.take());
-    CHECK(complaint(Json::parse(text)) == "");
+    CHECK(test::trace_faults(Json::parse(text)) == "");
     all += text;
   }
   for (const char* part :
@@ -128,11 +122,11 @@ TEST_CASE("broken traces do not fulfil the schema") {
       {"no counters", [](Json& d) { d["metadata"]["steps"][0]["result"].erase("counters"); }},
       {"an unknown clock", [](Json& d) { d["metadata"]["clock"] = "sun"; }},
   };
-  REQUIRE(complaint(good) == "");
+  REQUIRE(test::trace_faults(good) == "");
   for (const auto& broken : breaks) {
     CAPTURE(broken.first);
     Json bad = good;
     broken.second(bad);
-    CHECK(complaint(bad) != "");
+    CHECK(test::trace_faults(bad) != "");
   }
 }

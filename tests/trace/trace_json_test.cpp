@@ -21,7 +21,7 @@
 
 using namespace lrb;
 using namespace lrb::trace;
-using Json = nlohmann::ordered_json;
+using OrderedJson = nlohmann::ordered_json;
 using namespace std::string_literals;
 namespace fs = std::filesystem;
 using runs::box;
@@ -29,7 +29,7 @@ using runs::plate;
 
 namespace {
 
-Trace box_run(Clock clock = Clock::event, WrapperMode mode = WrapperMode::regularised) {
+Trace ordered_box_run(Clock clock = Clock::event, WrapperMode mode = WrapperMode::regularised) {
   RecorderSettings settings;
   settings.clock = clock;
   settings.request.wrapper = mode;
@@ -65,7 +65,7 @@ std::string replaced(std::string text, const std::string& what, const std::strin
 TEST_CASE("what is written reads back equal") {
   for (const Clock clock : {Clock::event, Clock::wall})
     for (const WrapperMode mode : {WrapperMode::regularised, WrapperMode::unregularised}) {
-      const Trace t = box_run(clock, mode);
+      const Trace t = ordered_box_run(clock, mode);
       CHECK(trace_from_json(trace_to_json(t), "t") == t);
     }
   RecorderSettings settings;
@@ -111,17 +111,17 @@ TEST_CASE("poses, counters and names survive to the last bit") {
 }
 
 TEST_CASE("the same run on the event clock gives the same bytes, plain and compressed") {
-  const std::string once = trace_to_json(box_run()), again = trace_to_json(box_run());
+  const std::string once = trace_to_json(ordered_box_run()), again = trace_to_json(ordered_box_run());
   CHECK(once == again);
   const TempFolder folder;
-  save_trace(box_run(), folder.file("1.json.gz"));
-  save_trace(box_run(), folder.file("2.json.gz"));
+  save_trace(ordered_box_run(), folder.file("1.json.gz"));
+  save_trace(ordered_box_run(), folder.file("2.json.gz"));
   CHECK(bytes_of(folder.file("1.json.gz")) == bytes_of(folder.file("2.json.gz")));
 }
 
 TEST_CASE("files: plain, compressed, replaced whole, or not at all") {
   const TempFolder folder;
-  const Trace t = box_run();
+  const Trace t = ordered_box_run();
   const std::string plain = folder.file("t.json"), gz = folder.file("t.json.gz");
   save_trace(t, plain);
   save_trace(t, gz);
@@ -141,7 +141,7 @@ TEST_CASE("a write that fails leaves what was there and nothing else") {
   struct Full : ByteSink {
     void write(std::string_view) override { throw EnvironmentError("full"); }
   } full;
-  CHECK_THROWS_AS(write_trace(box_run(), full), EnvironmentError);
+  CHECK_THROWS_AS(write_trace(ordered_box_run(), full), EnvironmentError);
   const TempFolder folder;
   const std::string path = folder.file("t.json");
   { std::ofstream(path) << "old"; }
@@ -157,8 +157,8 @@ TEST_CASE("a write that fails leaves what was there and nothing else") {
 
 TEST_CASE("the file keeps the rules by which Perfetto and chrome://tracing show everything") {
   for (const Clock clock : {Clock::event, Clock::wall}) {
-    const Trace t = box_run(clock);
-    const Json document = Json::parse(trace_to_json(t));
+    const Trace t = ordered_box_run(clock);
+    const OrderedJson document = OrderedJson::parse(trace_to_json(t));
     REQUIRE(document.size() == 2);
     CHECK(document.begin().key() == "traceEvents");  // what is ours comes last
     CHECK_FALSE(document.contains("displayTimeUnit"));
@@ -173,7 +173,7 @@ TEST_CASE("the file keeps the rules by which Perfetto and chrome://tracing show 
     std::map<std::uint64_t, std::vector<Point>> flows;
     std::map<int, std::set<double>> begins;
     std::set<std::string> counters, threads;
-    for (const Json& e : document["traceEvents"]) {
+    for (const OrderedJson& e : document["traceEvents"]) {
       for (const char* key : {"name", "cat", "ph", "ts", "pid", "tid", "args"}) REQUIRE(e.contains(key));
       REQUIRE(e["args"].is_object());
       const double ts = e["ts"];
@@ -229,9 +229,9 @@ TEST_CASE("flows follow causes") {
   recorder.face_test(10, 0, exact::Meet::cross, 1, 0);    // 4: A's face came with 2
   recorder.refine(Side::a, 1, 3);                         // 5
   recorder.face_test(2, 0, exact::Meet::disjoint, 1, 0);  // 6: again 2
-  const Json document = Json::parse(trace_to_json(recorder.take()));
+  const OrderedJson document = OrderedJson::parse(trace_to_json(recorder.take()));
   std::vector<std::string> found;
-  for (const Json& e : document["traceEvents"])
+  for (const OrderedJson& e : document["traceEvents"])
     if (e["cat"] == "flow")
       found.push_back(e["ph"].get<std::string>() + e["id"].dump() + "@" + e["ts"].dump());
   std::sort(found.begin(), found.end());
@@ -240,10 +240,10 @@ TEST_CASE("flows follow causes") {
 }
 
 TEST_CASE("counters show the wrappers of the step") {
-  const Trace t = box_run();
-  const Json document = Json::parse(trace_to_json(t));
-  std::map<double, Json> wrapper;
-  for (const Json& e : document["traceEvents"])
+  const Trace t = ordered_box_run();
+  const OrderedJson document = OrderedJson::parse(trace_to_json(t));
+  std::map<double, OrderedJson> wrapper;
+  for (const OrderedJson& e : document["traceEvents"])
     if (e["name"] == "wrapper" && e["ph"] == "C") wrapper[e["ts"]] = e["args"];
   for (EventId i = 0; i < t.events.size(); ++i) {
     const Event& e = t.events[i];
@@ -254,7 +254,7 @@ TEST_CASE("counters show the wrappers of the step") {
 }
 
 TEST_CASE("bad files are refused with one line that says where and what") {
-  const std::string good = trace_to_json(box_run());
+  const std::string good = trace_to_json(ordered_box_run());
   const auto complaint = [](const std::string& text) -> std::string {
     try {
       trace_from_json(text, "t.json");
@@ -366,7 +366,7 @@ TEST_CASE("files that cannot be read are named") {
                        InputError);
   CHECK_THROWS_WITH_AS(load_trace(folder.path.string()), doctest::Contains("it is a directory"), InputError);
   const std::string path = folder.file("t.json.gz");
-  save_trace(box_run(), path);
+  save_trace(ordered_box_run(), path);
   const std::string whole = bytes_of(path);
   CHECK_THROWS_WITH_AS(load_trace(path, {.max_bytes = 1000}), doctest::Contains("more than 1000 bytes"),
                        InputError);
@@ -379,7 +379,7 @@ TEST_CASE("files that cannot be read are named") {
 }
 
 TEST_CASE("traces of older formats are read: their steps are named \"step\"") {
-  const Trace t = box_run();
+  const Trace t = ordered_box_run();
   std::string old = replaced(trace_to_json(t), "\"version\": 3", "\"version\": 1");
   old = std::regex_replace(old, std::regex("\"name\":\"step [^\"]*\""), "\"name\":\"step\"");
   CHECK(trace_from_json(old, "old.json") == t);
@@ -398,9 +398,9 @@ TEST_CASE("steps are named by what they found") {
   recorder.begin_step(8, {}, {});
   recorder.end_step(result);
   recorder.begin_step(9, {}, {});
-  const Json document = Json::parse(trace_to_json(recorder.take()));
+  const OrderedJson document = OrderedJson::parse(trace_to_json(recorder.take()));
   std::vector<std::string> names;
-  for (const Json& e : document["traceEvents"])
+  for (const OrderedJson& e : document["traceEvents"])
     if (e["cat"] == "step" && e["name"] != "result") names.push_back(e["name"]);
   CHECK(names == std::vector<std::string>{"step 3: separate", "step 7: crossing, 1 pair",
                                           "step 8: crossing, 2 pairs", "step 9"});

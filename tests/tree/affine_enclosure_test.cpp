@@ -1,5 +1,6 @@
-// Whatever the affine kernel leaves out is exactly apart: boxes of every pair of tree nodes, on the axes of either
-// body, against exact arithmetic on the world coordinates that the answer is about; and what it is certain of.
+// Whatever the affine kernel leaves out is exactly apart: boxes of every pair of tree nodes, on the axes of
+// either body, against exact arithmetic on the world coordinates that the answer is about; and what it is
+// certain of.
 #include <cmath>
 
 #include <doctest/doctest.h>
@@ -15,6 +16,7 @@ namespace lrb {
 void run_affine_kernel_under_test(TreeKernel& k);
 }
 #include "engine/tree/affine_kernel.inl"
+#include "tests/support/closed_body.hpp"
 #include "tests/support/exact_boxes.hpp"
 
 using namespace lrb;
@@ -108,9 +110,7 @@ void check_verdicts(AffineScene scene, RandomEngine& random, Asked& asked) {
   check_outcome(s, candidates_of(s, k, run_affine_kernel_under_test), random, 20, asked);
 }
 
-LrbRep closed(const Mesh& mesh, double size) {
-  return LrbRep::without_regions(shapes::scaled(mesh, size), true, false);
-}
+using test::closed;
 
 Pose sized(Pose pose, double r, double t) {
   pose.r *= r;

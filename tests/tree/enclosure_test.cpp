@@ -14,6 +14,7 @@ namespace lrb {
 void run_tree_kernel_for_enclosure(TreeKernel& k);
 }
 #include "engine/tree/tree_kernel.inl"
+#include "tests/support/closed_body.hpp"
 #include "tests/support/exact_boxes.hpp"
 
 using namespace lrb;
@@ -107,9 +108,7 @@ void check_dropped(const Scene& s, RandomEngine& random, int most, Asked& asked)
   check_outcome(s, candidates_of(s, k, run_tree_kernel_for_enclosure), random, most, asked);
 }
 
-LrbRep closed(const Mesh& mesh, double size = 1) {
-  return LrbRep::without_regions(shapes::scaled(mesh, size), true, false);
-}
+using test::closed;
 
 /// Moves that strain the error terms: far off, an ulp from each other, no rotations.
 void spoil(Scene& s, RandomEngine& random, int kind) {

@@ -39,12 +39,12 @@ Eigen::Vector3d on(const Triangle& t, RandomEngine& random) {
   return t[0] + u * (t[1] - t[0]) + v * (t[2] - t[0]);
 }
 
-struct Bodies {
+struct LargeAndSmall {
   LrbRep large, small;
   Pose pose_large, pose_small;
 };
 
-Bodies small_on_large(RandomEngine& random, double size, double offset) {
+LargeAndSmall small_on_large(RandomEngine& random, double size, double offset) {
   std::vector<Triangle> large, small;
   Pose pose_large{shapes::random_rotation(random), offset * shapes::random_direction(random)};
   Pose pose_small{shapes::random_rotation(random), pose_large.t + in_ball(random)};
@@ -73,7 +73,7 @@ TEST_CASE("small triangles on large ones: the answer is that of brute force") {
   for (int i = 0; i < 3000; ++i) {
     const double size = std::pow(10, shapes::uniform(random, -7, -0.5));
     const double offset = i % 3 ? 0 : std::pow(10, shapes::uniform(random, -1, 6));
-    const Bodies x = small_on_large(random, size, offset);
+    const LargeAndSmall x = small_on_large(random, size, offset);
     CAPTURE(i);
     CAPTURE(size);
     CAPTURE(offset);
@@ -91,7 +91,7 @@ TEST_CASE("small triangles on large ones: coherent queries while they quiver") {
   std::size_t meeting = 0, from_cache = 0, changes = 0;
   for (int i = 0; i < 300; ++i) {
     const double size = std::pow(10, shapes::uniform(random, -6, -0.5));
-    Bodies x = small_on_large(random, size, i % 3 ? 0 : std::pow(10, shapes::uniform(random, -1, 5)));
+    LargeAndSmall x = small_on_large(random, size, i % 3 ? 0 : std::pow(10, shapes::uniform(random, -1, 5)));
     CAPTURE(i);
     CAPTURE(size);
     CoherentQuery coherent(x.large, x.small, {}, CoherentQuery::CacheUse::always);

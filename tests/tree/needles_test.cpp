@@ -1,5 +1,5 @@
-// Bodies made of fans: their long narrow triangles are told apart on directions of their own, and the answer is
-// that of brute force.
+// Bodies made of fans: their long narrow triangles are told apart on directions of their own, and the answer
+// is that of brute force.
 
 #include <Eigen/Geometry>
 #include <doctest/doctest.h>
@@ -8,14 +8,13 @@
 #include "engine/query/collide.hpp"
 #include "scenarios/bodies/shapes/random_pose.hpp"
 #include "scenarios/bodies/shapes/shapes.hpp"
+#include "tests/support/closed_body.hpp"
 #include "tests/support/hard_bodies.hpp"
 
 namespace lrb::test {
 namespace {
 
-LrbRep closed(const Mesh& mesh) {
-  return LrbRep::without_regions(mesh, true, false);
-}
+using test::closed;
 
 TEST_CASE("queries of bodies full of needles answer as brute force does") {
   constexpr std::uint32_t kMany = 700;
@@ -56,7 +55,7 @@ TEST_CASE("trees full of needles try more directions, and answer as brute force 
   CHECK((collide(cone, Pose{}, cone, at, {}).pairs == expected.pairs));
 }
 
-TEST_CASE("needles that meet in one point are not lost") {
+TEST_CASE("needles that meet in one point are not lost" * doctest::test_suite("long")) {
   const LrbRep cone = closed(hard::cone(2000)), other = closed(hard::bipyramid(2000));
   for (const VertexId v : std::initializer_list<VertexId>{
            0, 17, 1000, 2000}) {  // corners of the ring, and the apex, on each other

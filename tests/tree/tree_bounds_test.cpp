@@ -16,6 +16,7 @@ namespace lrb {
 void run_tree_kernel_under_test(TreeKernel& k);
 }
 #include "engine/tree/tree_kernel.inl"
+#include "tests/support/closed_body.hpp"
 #include "tests/support/tree_content.hpp"
 
 using namespace lrb;
@@ -93,7 +94,7 @@ Real3 functional(const Pose& pose, const TreeNode& n, double own_unit, double un
   return y;
 }
 
-struct Scene {
+struct BoundsScene {
   LrbRep a, b;
   Pose pose_a, pose_b;
   bool rotations = true;  ///< then the kernel's way back to B's axes is r_b^T too, and can be compared
@@ -119,7 +120,7 @@ double share_of_edges(const Real3* true_a, const float (*got_a)[3], const Real3*
 
 /// Greatest deviation of the corners that a leaf pair computes with from the functionals, over the error that
 /// the kernel reckons with; and of edges.
-Shares worst_shares(const Scene& s, RandomEngine& random, int pairs) {
+Shares worst_shares(const BoundsScene& s, RandomEngine& random, int pairs) {
   const TreeKernel k = set_up_kernel(s.a, s.pose_a, s.b, s.pose_b);
   const double unit = std::max(s.a.tree().unit(), s.b.tree().unit());
   Shares worst;
@@ -167,14 +168,8 @@ Shares worst_shares(const Scene& s, RandomEngine& random, int pairs) {
   return worst;
 }
 
-LrbRep closed(const Mesh& mesh) {
-  return LrbRep::without_regions(mesh, true, false);
-}
-
-Mesh stretched(Mesh m, const Eigen::Vector3d& by) {
-  for (auto& v : m.vertices) v = v.cwiseProduct(by);
-  return m;
-}
+using test::closed;
+using test::stretched;
 
 }  // namespace
 
@@ -201,7 +196,7 @@ TEST_CASE("the kernel's error covers rotation, translation, rounding and odd mat
     const double kSizes[] = {1, 1, 1e-12, 1e12, 1e-60};
     const Mesh m = shapes::bumpy_sphere(1, static_cast<std::uint64_t>(i % 5));
     const double size = kSizes[i % 5];
-    Scene s{closed(m), closed(shapes::scaled(shapes::comb(3), size)), {}, {}, i % 7 != 0};
+    BoundsScene s{closed(m), closed(shapes::scaled(shapes::comb(3), size)), {}, {}, i % 7 != 0};
     s.pose_a.r = shapes::random_rotation(random);
     s.pose_b.r = shapes::random_rotation(random);
     const double far = std::pow(10, shapes::uniform(random, -2, 16));

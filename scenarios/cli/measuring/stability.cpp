@@ -52,7 +52,7 @@ std::vector<SimplexPair> without(const std::vector<SimplexPair>& a, const std::v
 
 std::string describe(const Replay& r, Quantity quantity, bool pairs) {
   std::ostringstream out;
-  const Record& record = r.record;
+  const stability::Record& record = r.record;
   out << record.family << ", dial " << record.dial << ", case " << record.case_index << ", " << record.method
       << ": " << name_of(record.outcome);
   if (!record.message.empty()) out << " (" << record.message << ")";
@@ -89,7 +89,8 @@ int replay_one(const StabilityOptions& o, const std::vector<workers::WorkerMetho
     }
     const Replay r = replay(m, families[0].name, *o.dial, *o.only, o.seed, o.timeout, o.quantity);
     print(describe(r, o.quantity, o.pairs));
-    all_right = all_right && (r.record.outcome == Outcome::right || r.record.outcome == Outcome::refused);
+    all_right = all_right && (r.record.outcome == stability::Outcome::right ||
+                              r.record.outcome == stability::Outcome::refused);
   }
   return all_right ? kOk : kMismatch;
 }
@@ -107,7 +108,7 @@ Grid run_grid(const StabilityOptions& o, const std::vector<workers::WorkerMethod
   experiment.jobs = o.jobs;
   experiment.timeout = o.timeout;
   Progress bar("stability", 0, globals.quiet);
-  const std::vector<Record> records =
+  const std::vector<stability::Record> records =
       run_experiment(experiment, [&](std::uint64_t done, std::uint64_t total, const std::string& what) {
         bar.set_total(total);
         bar.set(done, what);
@@ -123,7 +124,7 @@ Grid run_grid(const StabilityOptions& o, const std::vector<workers::WorkerMethod
   return grid;
 }
 
-std::string command_of(const Record& r, Quantity quantity) {
+std::string command_of(const stability::Record& r, Quantity quantity) {
   if (quantity != Quantity::pairs)
     return "lrbscope stability --quantity " + std::string(name_of(quantity)) + " --family " + r.family +
            " --method " + r.method + " --dial " + std::to_string(r.dial) + " --only " +
@@ -140,7 +141,7 @@ void write_report(const StabilityOptions& o, const std::vector<workers::WorkerMe
   ReportOptions report;
   report.pictures = draw_worst_cases(
       grid, o.folder,
-      [&](const Record& r) {
+      [&](const stability::Record& r) {
         const auto method = std::find_if(methods.begin(), methods.end(), [&](const workers::WorkerMethod& m) {
           return m.column.name == r.method;
         });
@@ -152,7 +153,7 @@ void write_report(const StabilityOptions& o, const std::vector<workers::WorkerMe
         bar.set(done, "worst cases");
       });
   bar.finish();
-  report.command = [&](const Record& r) { return command_of(r, o.quantity); };
+  report.command = [&](const stability::Record& r) { return command_of(r, o.quantity); };
   report.links = {{"records.jsonl", "records.jsonl", "every answer of every method, one JSON object a line"}};
   const ReportFiles files = write_stability_report(grid, o.folder, report);
   if (!files.missing.empty()) std::cerr << "lrbscope: " << files.missing << "\n";

@@ -6,14 +6,13 @@
 #include <doctest/doctest.h>
 
 #include "scenarios/bodies/shapes/shapes.hpp"
+#include "tests/support/closed_body.hpp"
 
 using namespace lrb;
 
 namespace {
 
-LrbRep closed(const Mesh& mesh) {
-  return LrbRep::without_regions(mesh, true, false);
-}
+using test::closed;
 
 ClashResult watched(const LrbRep& a, const LrbRep& b, const Pose& pose_b, ClashCourse& told) {
   const ClashResult result = clash(a, {}, b, pose_b, {}, told);
@@ -29,7 +28,8 @@ ClashResult watched(const LrbRep& a, const LrbRep& b, const Pose& pose_b, ClashC
   return result;
 }
 
-/// The ends of a depth tighten but for the proof of the last upper end, which is a little more than what was found.
+/// The ends of a depth tighten but for the proof of the last upper end, which is a little more than what was
+/// found.
 void check_depth(const ClashCourse& told, const ClashResult& result) {
   REQUIRE(told.of_depth.size() >= 2);
   CHECK(told.of_distance.empty());

@@ -1,5 +1,5 @@
-// What kind of contact, and how deep: against bodies whose answers are known, rational brute force over convex
-// pairs, and exact arithmetic over bodies of cells.
+// What kind of contact, and how deep: against bodies whose answers are known, rational brute force over
+// convex pairs, and exact arithmetic over bodies of cells.
 #include "engine/query/clash/clash.hpp"
 
 #include <cmath>
@@ -16,6 +16,7 @@
 #include "scenarios/bodies/shapes/random_pose.hpp"
 #include "scenarios/bodies/shapes/shapes.hpp"
 #include "scenarios/stability/quantities/distance_oracle.hpp"
+#include "tests/support/closed_body.hpp"
 
 using namespace lrb;
 using Eigen::Vector3d;
@@ -30,9 +31,7 @@ int share() {
   return text == nullptr ? 1 : std::max(1, std::atoi(text));
 }
 
-LrbRep closed(const Mesh& mesh) {
-  return LrbRep::without_regions(mesh, true, false);
-}
+using test::closed;
 
 ClashResult ask(const LrbRep& a, const LrbRep& b, const Pose& pose_b = {}, const ClashRequest& request = {}) {
   return clash(a, Pose{}, b, pose_b, request);
@@ -52,8 +51,8 @@ void check_holds(const std::optional<ProvedInterval>& interval, double value, do
   CHECK(interval->upper - interval->lower <= width);
 }
 
-/// The bodies are apart, as the exact query sees them, once B has moved by the translation, which is as long as
-/// the upper end of the depth.
+/// The bodies are apart, as the exact query sees them, once B has moved by the translation, which is as long
+/// as the upper end of the depth.
 void check_translation(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
                        const ClashResult& result) {
   REQUIRE(result.depth.has_value());
@@ -230,7 +229,7 @@ std::vector<Vec> facet_normals(const LrbRep& a, const std::vector<Vec>& of_a, co
     const LrbRep& rep = side == 0 ? a : b;
     const std::vector<Vec>& x = side == 0 ? of_a : of_b;
     for (SimplexId s = 0; s < rep.real_simplex_count(); ++s) {
-      VertexId v[3];
+      VertexId v[3] = {};
       rep.simplex(s, v);
       add(cross(oracle::minus(x[v[1]], x[v[0]]), oracle::minus(x[v[2]], x[v[0]])));
       for (int k = 0; k < 3; ++k)
@@ -344,8 +343,9 @@ Cells random_cells(RandomEngine& random) {
   return cells;
 }
 
-/// The depth of bodies of cells, exactly but for a root: B's translations after which no two cells overlap are
-/// those outside a union of open boxes; the nearest of them is nearest in a cell of the grid of their sides.
+/// The depth of bodies of cells, exactly but for a root: B's translations after which no two cells overlap
+/// are those outside a union of open boxes; the nearest of them is nearest in a cell of the grid of their
+/// sides.
 double cells_depth(const Cells& a, const Cells& b, const Vector3d& at) {
   std::vector<double> sides[3];
   std::vector<std::array<double, 3>> lows;  // boxes, 2 wide

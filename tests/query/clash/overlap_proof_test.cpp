@@ -11,6 +11,7 @@
 #include "engine/query/walk/relation.hpp"
 #include "scenarios/bodies/shapes/random_pose.hpp"
 #include "scenarios/bodies/shapes/shapes.hpp"
+#include "tests/support/closed_body.hpp"
 
 using namespace lrb;
 using namespace lrb::parting;
@@ -18,9 +19,7 @@ using shapes::RandomEngine;
 
 namespace {
 
-LrbRep closed(const Mesh& mesh) {
-  return LrbRep::without_regions(mesh, true, false);
-}
+using test::closed;
 
 double distance_to(const UnitBody& body, const Vector3d& x) {
   double least = INFINITY;

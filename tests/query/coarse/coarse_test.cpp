@@ -24,13 +24,13 @@ using shapes::RandomEngine;
 
 namespace {
 
-struct Bodies {
+struct CoarseBodies {
   const char* name;
   LrbRep a, b;
 };
 
-std::vector<Bodies> bodies() {
-  std::vector<Bodies> list;
+std::vector<CoarseBodies> coarse_bodies() {
+  std::vector<CoarseBodies> list;
   list.push_back(
       {"bumps", build_lrb(shapes::bumpy_sphere(2, 7, 0.3)), build_lrb(shapes::bumpy_sphere(2, 8, 0.3))});
   list.push_back({"ball in bowl", build_lrb(shapes::bowl(16, 8)), build_lrb(shapes::icosphere(2, 0.5))});
@@ -48,28 +48,29 @@ std::vector<std::vector<Eigen::Vector3d>> real_simplices(const LrbRep& rep, cons
   return out;
 }
 
-double distance(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b) {
+double surfaces_apart(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b) {
   return test::surface_distance(real_simplices(a, pose_a), real_simplices(b, pose_b));
 }
 
-Pose pose_around(RandomEngine& random, const Bodies& pair) {
+Pose pose_around(RandomEngine& random, const CoarseBodies& pair) {
   const double share = shapes::uniform(random, 0, 1.1);
   return shapes::random_pose(random, pair.a, pair.b, share);
 }
 
-CollideResult ask(const Bodies& pair, const Pose& p, const CollideRequest& request, QueryContext& context) {
+CollideResult ask(const CoarseBodies& pair, const Pose& p, const CollideRequest& request,
+                  QueryContext& context) {
   NullProbe probe;
   return collide(pair.a, Pose{}, pair.b, p, request, context, probe);
 }
 
 /// What a coarse answer claims, against the truth.
-void check_claims(const Bodies& pair, const Pose& p, const CollideResult& coarse,
+void check_claims(const CoarseBodies& pair, const Pose& p, const CollideResult& coarse,
                   const BruteForceResult& truth) {
   if (coarse.relation == Relation::unresolved) {
     REQUIRE(!coarse.finished);
     REQUIRE(coarse.error_bound > 0);
     if (truth.relation == Relation::separate && std::isfinite(coarse.error_bound))
-      REQUIRE(distance(pair.a, Pose{}, pair.b, p) <= coarse.error_bound);
+      REQUIRE(surfaces_apart(pair.a, Pose{}, pair.b, p) <= coarse.error_bound);
     return;
   }
   REQUIRE(std::string(to_string(coarse.relation)) == to_string(truth.relation));
@@ -94,7 +95,7 @@ double median(std::vector<double> x) {
 TEST_CASE("no point of a region's lids is further from the real faces than its thickness") {
   RandomEngine random(3);
   double tightest = 0;
-  for (const Bodies& pair : bodies()) {
+  for (const CoarseBodies& pair : coarse_bodies()) {
     CAPTURE(pair.name);
     const LrbRep& rep = pair.a;
     const auto real = real_simplices(rep, Pose{});
@@ -123,7 +124,7 @@ TEST_CASE("a query with a tolerance gives the exact relation, and keeps its erro
   RandomEngine random(41);
   int crossing = 0, with_pseudo = 0, exact = 0;
   std::vector<double> ratios;
-  for (const Bodies& pair : bodies()) {
+  for (const CoarseBodies& pair : coarse_bodies()) {
     CAPTURE(pair.name);
     QueryContext context;
     for (int i = 0; i < 30; ++i) {
@@ -153,10 +154,10 @@ TEST_CASE("a query with a tolerance gives the exact relation, and keeps its erro
   CHECK(with_pseudo > 50);
 }
 
-/// Returns the error bounds of answers about two bodies, each divided by the most that one of its pairs is off.
-/// Leaves out exact answers. Tolerances are shares of the larger body's size.
-std::vector<double> bounds_over_truth(const Bodies& pair, int poses, std::initializer_list<double> tolerances,
-                                      RandomEngine& random) {
+/// Returns the error bounds of answers about two bodies, each divided by the most that one of its pairs is
+/// off. Leaves out exact answers. Tolerances are shares of the larger body's size.
+std::vector<double> bounds_over_truth(const CoarseBodies& pair, int poses,
+                                      std::initializer_list<double> tolerances, RandomEngine& random) {
   const auto size_of = [](const LrbRep& rep) { return shapes::box_of(rep).sizes().maxCoeff(); };
   const double size = std::max(size_of(pair.a), size_of(pair.b));
   std::vector<double> ratios;
@@ -180,13 +181,13 @@ std::vector<double> bounds_over_truth(const Bodies& pair, int poses, std::initia
 
 TEST_CASE("the error bound is at most three times what pairs are off, in the middle of all poses") {
   RandomEngine random(46);
-  std::vector<Bodies> fine;
+  std::vector<CoarseBodies> fine;
   fine.push_back(
       {"bumps", build_lrb(shapes::bumpy_sphere(4, 7, 0.3)), build_lrb(shapes::bumpy_sphere(4, 8, 0.3))});
   fine.push_back({"tori", build_lrb(shapes::torus(50, 40)), build_lrb(shapes::torus(44, 30, 1, 0.25))});
   fine.push_back({"gears 2D", build_lrb(shapes::gear(200)), build_lrb(shapes::gear(150, 0.9, 0.6))});
   std::vector<double> all;
-  for (const Bodies& pair : fine) {
+  for (const CoarseBodies& pair : fine) {
     CAPTURE(pair.name);
     const std::vector<double> ratios = bounds_over_truth(pair, 12, {0.01, 0.02, 0.05, 0.1}, random);
     REQUIRE(ratios.size() > 20);
@@ -214,7 +215,7 @@ TEST_CASE("the error bound of real models is at most three times what pairs are 
 
 TEST_CASE("an answer of one pair is exact, whatever the tolerance") {
   RandomEngine random(42);
-  for (const Bodies& pair : bodies()) {
+  for (const CoarseBodies& pair : coarse_bodies()) {
     CAPTURE(pair.name);
     QueryContext context;
     for (int i = 0; i < 30; ++i) {
@@ -238,7 +239,7 @@ TEST_CASE("an answer of one pair is exact, whatever the tolerance") {
 
 TEST_CASE("bodies that hardly touch are answered exactly, at what the exact query costs") {
   const LrbRep a = build_lrb(shapes::bumpy_sphere(4, 7, 0.3)), b = build_lrb(shapes::bumpy_sphere(4, 8, 0.3));
-  const Bodies pair{"bumps", a, b};
+  const CoarseBodies pair{"bumps", a, b};
   RandomEngine random(48);
   QueryContext context;
   CollideRequest to_tolerance, within_tests, few_pairs;
@@ -279,7 +280,7 @@ TEST_CASE("bodies that hardly touch are answered exactly, at what the exact quer
 TEST_CASE("a finer tolerance never says less") {
   RandomEngine random(44);
   int finer = 0;
-  for (const Bodies& pair : bodies()) {
+  for (const CoarseBodies& pair : coarse_bodies()) {
     CAPTURE(pair.name);
     QueryContext context;
     for (int i = 0; i < 30; ++i) {
@@ -304,7 +305,7 @@ TEST_CASE(
     "wrappers alone never call bodies apart that meet: near first contact, and by what rounding leaves") {
   RandomEngine random(45);
   int apart = 0, meeting = 0;
-  for (const Bodies& pair : bodies()) {
+  for (const CoarseBodies& pair : coarse_bodies()) {
     CAPTURE(pair.name);
     QueryContext context;
     NullProbe probe;
@@ -338,7 +339,7 @@ TEST_CASE(
 TEST_CASE("a query with a tolerance keeps its claims under affine maps of both bodies") {
   RandomEngine random(43);
   int with_lids = 0, separate = 0, alone = 0;
-  for (const Bodies& pair : bodies()) {
+  for (const CoarseBodies& pair : coarse_bodies()) {
     CAPTURE(pair.name);
     QueryContext context;
     NullProbe probe;
@@ -378,7 +379,7 @@ TEST_CASE("a query with a tolerance keeps its claims under affine maps of both b
 TEST_CASE("bodies that touch under flat lids are never called separate") {
   // Boxes against boxes and combs: lids lie in the planes of faces, and rounding moves both.
   RandomEngine random(77);
-  const Bodies pair{"combs", build_lrb(shapes::comb(4)), build_lrb(shapes::comb(3))};
+  const CoarseBodies pair{"combs", build_lrb(shapes::comb(4)), build_lrb(shapes::comb(3))};
   QueryContext context;
   int meeting = 0;
   for (int i = 0; i < 150; ++i) {
@@ -402,7 +403,7 @@ TEST_CASE("bodies that touch under flat lids are never called separate") {
 TEST_CASE("an answer at any time: within the limit, true as far as it goes, and exact in the end") {
   RandomEngine random(13);
   int unfinished = 0, narrowed = 0;
-  for (const Bodies& pair : bodies()) {
+  for (const CoarseBodies& pair : coarse_bodies()) {
     CAPTURE(pair.name);
     QueryContext context;
     for (int i = 0; i < 12; ++i) {
@@ -443,7 +444,7 @@ struct CountedClock {
 };
 
 /// Asks with a limit of that many looks at the clock.
-CollideResult ask_counted(const Bodies& pair, const Pose& p, double looks, QueryContext& context) {
+CollideResult ask_counted(const CoarseBodies& pair, const Pose& p, double looks, QueryContext& context) {
   NullProbe probe;
   CollideRequest request;
   request.max_time = looks * 1e-9;
@@ -456,13 +457,13 @@ CollideResult ask_counted(const Bodies& pair, const Pose& p, double looks, Query
 }
 
 TEST_CASE("a query with a limit in time looks at the clock often enough, and ends when it is time") {
-  std::vector<Bodies> list = bodies();
+  std::vector<CoarseBodies> list = coarse_bodies();
   list.push_back(
       {"bumps", build_lrb(shapes::bumpy_sphere(5, 7, 0.3)), build_lrb(shapes::bumpy_sphere(5, 8, 0.3))});
   RandomEngine random(14);
   QueryContext context;
   int unfinished = 0;
-  for (const Bodies& pair : list) {
+  for (const CoarseBodies& pair : list) {
     CAPTURE(pair.name);
     pair.a.levels();
     pair.b.levels();
@@ -487,7 +488,7 @@ TEST_CASE("a query with a limit in time looks at the clock often enough, and end
 TEST_CASE("more time never makes the error bound larger") {
   RandomEngine random(15);
   int narrowed = 0;
-  for (const Bodies& pair : bodies()) {
+  for (const CoarseBodies& pair : coarse_bodies()) {
     CAPTURE(pair.name);
     pair.a.levels();
     pair.b.levels();
@@ -524,7 +525,7 @@ TEST_CASE("a limit in time leaves none to make levels") {
 }
 
 TEST_CASE("levels are made once, whoever asks, and fall from the outermost wrapper towards the body") {
-  for (const Bodies& pair : bodies()) {
+  for (const CoarseBodies& pair : coarse_bodies()) {
     CAPTURE(pair.name);
     const LrbRep copy = pair.a;
     const WrapperLevels& levels = pair.a.levels();

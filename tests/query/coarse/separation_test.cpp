@@ -87,14 +87,14 @@ bool are_apart(const Wrapped& a, const Wrapped& b, RandomEngine& random) {
   return !has_corner_in(a, b) && !has_corner_in(b, a);
 }
 
-struct Bodies {
+struct SeparateBodies {
   const char* name;
   LrbRep a, b;
   double share;  ///< of random_pose(): how near
 };
 
-std::vector<Bodies> bodies() {
-  std::vector<Bodies> list;
+std::vector<SeparateBodies> separate_bodies() {
+  std::vector<SeparateBodies> list;
   list.push_back(
       {"bumps", build_lrb(shapes::bumpy_sphere(3, 7, 0.3)), build_lrb(shapes::bumpy_sphere(2, 8, 0.3)), 0.6});
   list.push_back({"ball in bowl", build_lrb(shapes::bowl(16, 8)), build_lrb(shapes::icosphere(2, 0.3)), 0.3});
@@ -109,7 +109,7 @@ std::vector<Bodies> bodies() {
 
 TEST_CASE("certificates of separation hold, and hold no region too many open") {
   RandomEngine random(99);
-  for (const Bodies& pair : bodies()) {
+  for (const SeparateBodies& pair : separate_bodies()) {
     CAPTURE(pair.name);
     int certified = 0, trials = 0, refined = 0, minimal = 0;
     for (int i = 0; i < 400 && certified < 5; ++i) {
@@ -145,7 +145,7 @@ TEST_CASE("certificates of separation hold, and hold no region too many open") {
 
 TEST_CASE("certificates of separation hold under affine maps") {
   RandomEngine random(101);
-  for (const Bodies& pair : bodies()) {
+  for (const SeparateBodies& pair : separate_bodies()) {
     CAPTURE(pair.name);
     int certified = 0;
     for (int i = 0; i < 400 && certified < 4; ++i) {

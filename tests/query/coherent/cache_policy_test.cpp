@@ -4,12 +4,11 @@
 #include <doctest/doctest.h>
 
 using namespace lrb;
-using Kind = CachePolicy::Kind;
 
 namespace {
 
 /// Queries of a body that keeps its course or wanders, at what costs.
-struct Scene {
+struct PolicyScene {
   double scratch, stretch_list, place_list, step;  ///< microseconds
   int stretch_serves, place_serves;                ///< steps
   bool on_course = true;
@@ -23,7 +22,7 @@ struct Count {
 
 class Player {
  public:
-  Count play(const Scene& scene, int queries) {
+  Count play(const PolicyScene& scene, int queries) {
     Count count;
     for (int i = 0; i < queries; ++i) {
       const bool jump = scene.jump_every > 0 && i % scene.jump_every == 0;
@@ -33,7 +32,7 @@ class Player {
   }
 
  private:
-  double query(const Scene& s, Count& count) {
+  double query(const PolicyScene& s, Count& count) {
     if (policy_.rests()) return from_scratch(s, count, false);
     if (policy_.must_wait()) return from_scratch(s, count, true);
     if (left_ > 0) {
@@ -44,19 +43,19 @@ class Player {
     }
     const auto list = policy_.next(s.on_course, 0.001, 0.5);
     if (!list) return from_scratch(s, count, true);
-    const bool stretch = list->kind == Kind::swept;
+    const bool stretch = list->kind == CachePolicy::Kind::swept;
     const double time = stretch ? s.stretch_list : s.place_list;
     left_ = stretch ? s.stretch_serves : s.place_serves;
     ++count.lists[static_cast<int>(list->kind)];
     policy_.build_took(list->kind, 1e-6 * time);
     return time;
   }
-  double jump_query(const Scene& s, Count& count) {
+  double jump_query(const PolicyScene& s, Count& count) {
     if (policy_.rests()) return from_scratch(s, count, false);
     policy_.forgive();
     return from_scratch(s, count, true);
   }
-  double from_scratch(const Scene& s, Count& count, bool timed) {
+  double from_scratch(const PolicyScene& s, Count& count, bool timed) {
     left_ = 0;
     ++count.scratch;
     if (timed) policy_.scratch_took(1e-6 * s.scratch);
@@ -114,7 +113,7 @@ TEST_CASE("lists that do not pay are rarely tried") {
 }
 
 TEST_CASE("lists are rarely tried where jumps end each of them too early") {
-  Scene scene{10, 30, 30, 5, 8, 8};
+  PolicyScene scene{10, 30, 30, 5, 8, 8};
   CHECK(Player().play(scene, 2000).time < 2000 * 10);  // they would pay
   scene.jump_every = 4;
   const Count c = Player().play(scene, 2000);
@@ -131,22 +130,22 @@ TEST_CASE("where queries from scratch take next to nothing there are no lists") 
 
 TEST_CASE("what did not pay is tried again when the scene changes") {
   Player player;
-  const Scene dear{10, 40, 40, 9, 3, 3}, cheap{10, 15, 60, 2, 8, 8};
+  const PolicyScene dear{10, 40, 40, 9, 3, 3}, cheap{10, 15, 60, 2, 8, 8};
   player.play(dear, 1000);
   player.play(cheap, 300);
   CHECK(player.play(cheap, 1000).from_cache > 800);
   // Queries from scratch take longer by now, and so do lists: that is no failure.
-  const Scene deeper{100, 150, 600, 20, 8, 8};
+  const PolicyScene deeper{100, 150, 600, 20, 8, 8};
   CHECK(player.play(deeper, 1000).from_cache > 800);
   // A body that wanders, for which no list paid, finds its course.
-  Scene lost = dear;
+  PolicyScene lost = dear;
   lost.on_course = false;
   player.play(lost, 1000);
   player.play(cheap, 300);
   CHECK(player.play(cheap, 1000).from_cache > 800);
   // It wanders on, but less far.
   player.play(lost, 1000);
-  Scene near = lost;
+  PolicyScene near = lost;
   near.place_list = 15;
   near.place_serves = 20;
   near.step = 2;

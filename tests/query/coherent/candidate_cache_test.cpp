@@ -1,5 +1,5 @@
-// CacheUse of near pairs against brute force: all along a stretch, and all about a place, for motions that are
-// none of rigid bodies.
+// CacheUse of near pairs against brute force: all along a stretch, and all about a place, for motions that
+// are none of rigid bodies.
 #include "engine/query/coherent/candidate_cache.hpp"
 
 #include <algorithm>
@@ -74,11 +74,12 @@ Pose pose_in(RandomEngine& random, const Sweep& s, const SweepPoint& where) {
   return {s.middle.m + where.at * s.dm + scale * dm, s.middle.t + where.at * s.dt + scale * dt};
 }
 
-struct Tally {
+struct CandidateTally {
   std::size_t meeting = 0, chosen = 0, listed = 0, all = 0;
 };
 
-void compare(RandomEngine& random, const LrbRep& a, const LrbRep& b, const Sweep& stretch, Tally& tally) {
+void compare(RandomEngine& random, const LrbRep& a, const LrbRep& b, const Sweep& stretch,
+             CandidateTally& tally) {
   const double rounding =
       4 * wrapper_margin(Pose{}, a.tree(), {stretch.middle.m, stretch.middle.t}, b.tree());
   QueryContext context;
@@ -115,7 +116,7 @@ void compare(RandomEngine& random, const LrbRep& a, const LrbRep& b, const Sweep
 /// Stretches, or places: of what is listed, the share that is tested.
 double share_tested(std::uint64_t seed, bool places) {
   RandomEngine random(seed);
-  Tally tally;
+  CandidateTally tally;
   for (int i = 0; i < 400; ++i) {
     CAPTURE(i);
     const double size_a = std::pow(10, shapes::uniform(random, -1.5, 0)),

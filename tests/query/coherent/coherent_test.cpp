@@ -15,7 +15,7 @@ using shapes::RandomEngine;
 
 namespace {
 
-struct Bodies {
+struct CoherentBodies {
   const char* name;
   LrbRep a, b;
 };
@@ -24,8 +24,8 @@ LrbRep bare(const Mesh& mesh, bool closed = true) {
   return LrbRep::without_regions(mesh, closed, false);
 }
 
-std::vector<Bodies> bodies() {
-  std::vector<Bodies> list;
+std::vector<CoherentBodies> coherent_bodies() {
+  std::vector<CoherentBodies> list;
   list.push_back(
       {"bumps", build_lrb(shapes::bumpy_sphere(3, 7, 0.3)), build_lrb(shapes::bumpy_sphere(2, 8, 0.3))});
   list.push_back({"ball in bowl", build_lrb(shapes::bowl(24, 12)), bare(shapes::icosphere(2, 0.5))});
@@ -60,11 +60,11 @@ Pose straightened(Pose p) {
   return p;
 }
 
-struct Tally {
+struct CoherentTally {
   int queries = 0, contact = 0, apart = 0, inside = 0, changes = 0;
 };
 
-void compare(const CollideResult& coherent, const CollideResult& scratch, Mode mode, Tally& tally) {
+void compare(const CollideResult& coherent, const CollideResult& scratch, Mode mode, CoherentTally& tally) {
   REQUIRE(std::string(to_string(coherent.relation)) == to_string(scratch.relation));
   REQUIRE(coherent.interiors_overlap == scratch.interiors_overlap);
   if (mode == Mode::all_pairs) {
@@ -93,9 +93,9 @@ void add(CoherentQuery::Statistics& sum, const CoherentQuery::Statistics& s) {
 
 TEST_CASE("coherent queries answer as queries from scratch do, for motions of all sizes") {
   RandomEngine random(4711);
-  Tally tally;
+  CoherentTally tally;
   CoherentQuery::Statistics sum;
-  for (const Bodies& pair : bodies()) {
+  for (const CoherentBodies& pair : coherent_bodies()) {
     CAPTURE(pair.name);
     const Eigen::Vector3d off = shapes::box_of(pair.a).center();
     for (int walk = 0; walk < 14; ++walk) {
@@ -155,9 +155,9 @@ TEST_CASE("coherent queries answer as queries from scratch do, for motions of al
 
 TEST_CASE("coherent queries of bodies on courses: they screw, speed up, bend, and turn back") {
   RandomEngine random(815);
-  Tally tally;
+  CoherentTally tally;
   CoherentQuery::Statistics sum;
-  for (const Bodies& pair : bodies()) {
+  for (const CoherentBodies& pair : coherent_bodies()) {
     CAPTURE(pair.name);
     const int dim = pair.a.dim();
     const Eigen::Vector3d off = shapes::box_of(pair.a).center();
@@ -205,7 +205,7 @@ TEST_CASE("coherent queries notice a small body that goes through a surface in o
   const LrbRep a = build_lrb(shapes::bumpy_sphere(3, 5, 0.2)), b = bare(shapes::icosphere(0, 0.01));
   QueryContext context;
   NullProbe probe;
-  Tally tally;
+  CoherentTally tally;
   Relation before = Relation::separate;
   int through = 0;
   for (const double step : {0.03, 0.05, 0.07, 0.11, 0.13}) {
@@ -228,7 +228,7 @@ TEST_CASE("coherent queries notice a body that slides through a contact in steps
   const LrbRep a = build_lrb(shapes::bumpy_sphere(3, 5, 0.2)), b = build_lrb(shapes::bumpy_sphere(2, 6, 0.2));
   QueryContext context;
   NullProbe probe;
-  Tally tally;
+  CoherentTally tally;
   for (const double step : {0.0002, 0.002, 0.02, 0.2}) {
     CoherentQuery coherent(a, b, {}, CoherentQuery::CacheUse::always);
     const Eigen::Vector3d way = shapes::random_direction(random);
@@ -250,7 +250,7 @@ TEST_CASE("coherent queries of bodies of any size") {
     const LrbRep a = bare(shapes::scaled(shapes::icosphere(2), size)),
                  b = bare(shapes::scaled(shapes::bumpy_sphere(2, 6, 0.2), size));
     CoherentQuery coherent(a, b, {}, CoherentQuery::CacheUse::always);
-    Tally tally;
+    CoherentTally tally;
     for (double s = 2.3; s > 1.7; s -= 0.01) {
       const Pose p = Pose::translation(size * Eigen::Vector3d(s, 0.1, 0));
       compare(coherent.collide(Pose{}, p), collide(a, Pose{}, b, p, {}, context, probe), Mode::all_pairs,
@@ -265,7 +265,7 @@ TEST_CASE("coherent queries of bodies that stand still, creep, or go on after a 
   const LrbRep a = build_lrb(shapes::bumpy_sphere(3, 5, 0.2)), b = build_lrb(shapes::bumpy_sphere(2, 6, 0.2));
   QueryContext context;
   NullProbe probe;
-  Tally tally;
+  CoherentTally tally;
   CoherentQuery coherent(a, b, {}, CoherentQuery::CacheUse::always);
   Pose p = Pose::translation({2.2, 0.1, 0});
   for (const double step : {0.0, 0.01, 0.0, 1e-15, 0.003, 0.0, 1e-12, 0.001, 0.0})
@@ -292,7 +292,7 @@ TEST_CASE("coherent queries of bodies that go on to where no numbers are") {
   NullProbe probe;
   for (const auto& way : {on_course, on_none}) {
     CoherentQuery coherent(a, b, {}, CoherentQuery::CacheUse::always);
-    Tally tally;
+    CoherentTally tally;
     for (const Vector3d& t : way) {
       const Pose p = Pose::translation(t);
       compare(coherent.collide(Pose{}, p), collide(a, Pose{}, b, p, {}, context, probe), Mode::all_pairs,

@@ -7,14 +7,13 @@
 #include "engine/query/collide.hpp"
 #include "scenarios/bodies/shapes/random_pose.hpp"
 #include "scenarios/bodies/shapes/shapes.hpp"
+#include "tests/support/closed_body.hpp"
 
 using namespace lrb;
 
 namespace {
 
-LrbRep closed(const Mesh& mesh) {
-  return LrbRep::without_regions(mesh, true, false);
-}
+using test::closed;
 
 CollideResult contact(const LrbRep& a, const LrbRep& b, const Pose& pose_b) {
   CollideRequest request;

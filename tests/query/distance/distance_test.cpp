@@ -13,6 +13,7 @@
 #include "scenarios/bodies/shapes/shapes.hpp"
 #include "scenarios/stability/quantities/distance_oracle.hpp"
 #include "tests/support/affine_maps.hpp"
+#include "tests/support/closed_body.hpp"
 #include "tests/support/simplex_distance.hpp"
 
 using namespace lrb;
@@ -21,9 +22,7 @@ using shapes::RandomEngine;
 
 namespace {
 
-LrbRep closed(const Mesh& mesh) {
-  return LrbRep::without_regions(mesh, true, false);
-}
+using test::closed;
 
 oracle::Corners corners_of(const test::Points& points) {
   oracle::Corners out;
@@ -72,7 +71,7 @@ double size_of(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose&
   return std::max(of(a, pose_a), of(b, pose_b));
 }
 
-struct Tally {
+struct DistanceTally {
   int poses = 0, meet = 0, inside = 0, apart = 0;
 };
 
@@ -90,7 +89,7 @@ void check_witness(const LrbRep& rep, const Pose& pose, const Witness& w, double
   REQUIRE(test::simplex_distance({w.point}, feature) <= tolerance);
 }
 
-void check(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b, Tally& t) {
+void check(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b, DistanceTally& t) {
   ++t.poses;
   const DistanceResult d = distance(a, pose_a, b, pose_b);
   REQUIRE(d.finished);
@@ -134,13 +133,13 @@ void check(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pos
   }
 }
 
-struct Bodies {
+struct DistantBodies {
   const char* name;
   LrbRep a, b;
 };
 
-std::vector<Bodies> bodies() {
-  std::vector<Bodies> list;
+std::vector<DistantBodies> distant_bodies() {
+  std::vector<DistantBodies> list;
   list.push_back({"spheres", closed(shapes::icosphere(1)), closed(shapes::icosphere(1, 0.7))});
   list.push_back({"bumps", closed(shapes::bumpy_sphere(1, 7, 0.3)), closed(shapes::bumpy_sphere(1, 8, 0.3))});
   list.push_back({"ball in bowl", closed(shapes::bowl(8, 4)), closed(shapes::icosphere(0, 0.4))});
@@ -157,8 +156,8 @@ std::vector<Bodies> bodies() {
 
 TEST_CASE("the interval holds the rational distance, from inside to far apart") {
   RandomEngine random(17);
-  Tally t;
-  for (const Bodies& pair : bodies()) {
+  DistanceTally t;
+  for (const DistantBodies& pair : distant_bodies()) {
     CAPTURE(pair.name);
     for (int i = 0; i < 15; ++i) {
       CAPTURE(i);
@@ -173,7 +172,7 @@ TEST_CASE("the interval holds the rational distance, from inside to far apart") 
 
 TEST_CASE("the interval holds the rational distance where both bodies stand far from the origin") {
   RandomEngine random(18);
-  Tally t;
+  DistanceTally t;
   const LrbRep a = closed(shapes::bumpy_sphere(1, 3)), b = closed(shapes::torus(7, 5));
   for (int i = 0; i < 16; ++i) {
     CAPTURE(i);
@@ -188,7 +187,7 @@ TEST_CASE("the interval holds the rational distance where both bodies stand far 
 
 TEST_CASE("the interval holds the rational distance for any affine maps") {
   RandomEngine random(19);
-  Tally t;
+  DistanceTally t;
   const LrbRep a = closed(shapes::icosphere(1)), b = closed(shapes::torus(6, 5));
   const LrbRep flat_a = closed(shapes::gear(7)), flat_b = closed(shapes::star(5));
   for (int kind = 0; kind < test::kMapKinds; ++kind)
@@ -208,7 +207,7 @@ TEST_CASE("the interval holds the rational distance for any affine maps") {
 }
 
 TEST_CASE("bodies that touch are 0 apart, and those that miss by the least are not") {
-  Tally t;
+  DistanceTally t;
   const LrbRep box = closed(shapes::box()), quads = closed(shapes::quad_box()),
                ball = closed(shapes::icosphere(1));
   for (const LrbRep* b : {&box, &quads})
@@ -223,7 +222,7 @@ TEST_CASE("bodies that touch are 0 apart, and those that miss by the least are n
 
 TEST_CASE("bodies 1e12 of their sizes away, and of extreme sizes") {
   RandomEngine random(21);
-  Tally t;
+  DistanceTally t;
   const LrbRep a = closed(shapes::icosphere(1)), b = closed(shapes::bumpy_sphere(1, 4, 0.2)),
                few = closed(shapes::tetrahedron());
   for (const double far : {1e2, 1e4, 1e6, 1e9, 1e12, 1e15, 1e20})

@@ -25,7 +25,7 @@ oracle::Corners corners_of(const double* const* x, int n) {
   return out;
 }
 
-struct Tally {
+struct PairTally {
   int pairs = 0, meet = 0, proved_apart = 0, narrow = 0;
 };
 
@@ -37,7 +37,7 @@ void check_comparison(const double* const* a, const double* const* b, int n, dou
   CHECK(exact::compare_distance(a, b, n, distance) == (sq > given) - (sq < given));
 }
 
-void check_pair(const test::SimplexPair& pair, int n, Tally& t) {
+void check_pair(const test::SimplexPair& pair, int n, PairTally& t) {
   const auto a3 = pair.a(), b3 = pair.b();
   const double *const *a = a3.data(), *const *b = b3.data();
   const Rational sq = oracle::distance_sq(corners_of(a, n), corners_of(b, n));
@@ -71,7 +71,7 @@ TEST_CASE(
     const Kind kind = static_cast<Kind>(k);
     CAPTURE(test::name_of(kind));
     Rng rng(700 + static_cast<std::uint64_t>(k));
-    Tally t;
+    PairTally t;
     const int rounds = test::rounds_for(kind, 30);
     for (int i = 0; i < rounds; ++i) {
       CAPTURE(i);
@@ -89,7 +89,7 @@ TEST_CASE(
 
 TEST_CASE("distances of pairs that are parallel, coplanar, 1e-12 apart or 1e12 away") {
   Rng rng(31);
-  Tally t;
+  PairTally t;
   for (int i = 0; i < test::effort(240); ++i) {
     CAPTURE(i);
     test::SimplexPair pair = test::random_pair(rng, i % 2 == 0 ? Kind::real : Kind::grid);

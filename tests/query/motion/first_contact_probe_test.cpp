@@ -13,14 +13,12 @@ using Eigen::Vector3d;
 
 namespace {
 
-const Motion kStill = Motion::still({});
-
 /// Asks with a probe, and checks what holds for whatever it is told.
 std::vector<ContactBounds> course_of(const LrbRep& a, const LrbRep& b, const Motion& motion,
                                      FirstContactResult& watched, const FirstContactRequest& request = {}) {
   FirstContactCourse told;
-  watched = first_contact(a, kStill, b, motion, request, told);
-  const FirstContactResult plain = first_contact(a, kStill, b, motion, request);
+  watched = first_contact(a, Motion::still({}), b, motion, request, told);
+  const FirstContactResult plain = first_contact(a, Motion::still({}), b, motion, request);
   CHECK(watched.outcome == plain.outcome);
   CHECK(watched.t0 == plain.t0);
   CHECK(watched.t1 == plain.t1);

@@ -1,4 +1,5 @@
-// First contacts against rational arithmetic, against what is known in closed form, and against fine sampling.
+// First contacts against rational arithmetic, against what is known in closed form, and against fine
+// sampling.
 #include "engine/query/motion/first_contact.hpp"
 
 #include <algorithm>
@@ -13,6 +14,7 @@
 #include "scenarios/bodies/shapes/random_pose.hpp"
 #include "scenarios/bodies/shapes/shapes.hpp"
 #include "scenarios/stability/quantities/contact_time_oracle.hpp"
+#include "tests/support/closed_body.hpp"
 #include "tests/support/simplex_distance.hpp"
 
 using namespace lrb;
@@ -24,9 +26,7 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 
-LrbRep closed(const Mesh& mesh) {
-  return LrbRep::without_regions(mesh, true, false);
-}
+using test::closed;
 
 LrbRep sheet(double half, double z = 0) {
   Mesh m;
@@ -43,7 +43,8 @@ bool meet(const LrbRep& a, const Motion& motion_a, const LrbRep& b, const Motion
 
 const Motion kStill = Motion::still({});
 
-/// Checks what any result promises, with the exact query at many times; an interval as narrow as asked, unless it grazes.
+/// Checks what any result promises, with the exact query at many times; an interval as narrow as asked,
+/// unless it grazes.
 FirstContactResult checked(const LrbRep& a, const Motion& motion_a, const LrbRep& b, const Motion& motion_b,
                            const FirstContactRequest& request = {}, int samples = 60) {
   const FirstContactResult r = first_contact(a, motion_a, b, motion_b, request);
@@ -70,8 +71,8 @@ oracle::Corners corners_of(const LrbRep& rep, const Pose& pose, SimplexId s) {
   return out;
 }
 
-/// The exact time of first contact of B that moves straight from a pose whose matrix is the identity and whose way are
-/// doubles; none if they do not meet.
+/// The exact time of first contact of B that moves straight from a pose whose matrix is the identity and
+/// whose way are doubles; none if they do not meet.
 std::optional<Rational> exact_time(const LrbRep& a, const LrbRep& b, const Vector3d& from,
                                    const Vector3d& way) {
   std::optional<Rational> first;
@@ -186,7 +187,8 @@ TEST_CASE("boxes: face to face, edge to edge, corner to face, at the time that i
   CHECK(r.speed == doctest::Approx(4));
   CHECK(r.witness[0].feature.dim == 2);
   CHECK(r.witness[1].feature.dim == 0);
-  // Two bars on their edges, across each other: the upper edge of one is at z = 1 / sqrt(2), as is the lower of the other.
+  // Two bars on their edges, across each other: the upper edge of one is at z = 1 / sqrt(2), as is the lower
+  // of the other.
   const LrbRep bar = closed(shapes::quad_box({-0.5, -5, -0.5}, {0.5, 5, 0.5}));
   const Eigen::Matrix3d on_edge = steady::rotation({0, 1, 0}, kPi / 4);
   const Pose lies{on_edge, {0, 0, 0}}, crosses{steady::rotation({0, 0, 1}, 1) * on_edge, {0, 0, 4}};
@@ -200,7 +202,8 @@ TEST_CASE("boxes: face to face, edge to edge, corner to face, at the time that i
 }
 
 TEST_CASE("turning bodies: at the time that is known, however many turns there are in the motion") {
-  // The blade's end goes round, from (1, 0), and meets the knife, none of which is lower, at y = 0.5: after pi / 6.
+  // The blade's end goes round, from (1, 0), and meets the knife, none of which is lower, at y = 0.5: after
+  // pi / 6.
   const LrbRep blade = closed(shapes::quad_box({0, -0.25, -1}, {1, 0, 1}));
   const LrbRep knife = closed(shapes::translated(shapes::tetrahedron(0.5), {0.5, 0.5, 0}));
   for (const double turns : {0.25, 1.0, 100.25, 1000.0}) {
@@ -412,7 +415,8 @@ TEST_CASE("motions and requests that cannot be answered are refused") {
         MotionOutcome::never);
 }
 
-// The search was as coarse as the tolerance, and found all pairs of long spans in which the bodies are in each other.
+// The search was as coarse as the tolerance, and found all pairs of long spans in which the bodies are in
+// each other.
 TEST_CASE("a wide tolerance costs no more pairs than a narrow one") {
   const LrbRep a = closed(shapes::bumpy_sphere(3, 1)), b = closed(shapes::bumpy_sphere(3, 2));
   const Motion motion = Motion::linear(Pose::translation({4, 0.3, 0.2}), {0, 0.1, 0});

@@ -12,6 +12,7 @@
 #include "scenarios/golden/approve.hpp"
 #include "scenarios/golden/golden_report.hpp"
 #include "tests/support/program.hpp"
+#include "tests/support/silent.hpp"
 #include "trace/trace_json.hpp"
 
 namespace fs = std::filesystem;
@@ -19,8 +20,6 @@ using namespace lrb;
 using namespace lrb::test;
 
 namespace {
-
-const run::ProgressReport kSilent = [](const std::string&, std::uint64_t, std::uint64_t) {};
 
 /// Two balls that meet; `frames` goes into the scenario's "frames".
 std::string two_balls(const std::string& frames = {}) {
@@ -62,7 +61,8 @@ golden::GoldenSpec small_spec() {
 }
 
 golden::GoldenRun play() {
-  return golden::play_golden(spec::parse_scenario(two_balls(), "balls.scenario.json"), small_spec(), kSilent);
+  return golden::play_golden(spec::parse_scenario(two_balls(), "balls.scenario.json"), small_spec(),
+                             test::kSilent);
 }
 
 /// The golden of a run, without going through files.

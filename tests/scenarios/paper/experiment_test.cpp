@@ -26,13 +26,13 @@ using nlohmann::json;
 
 namespace {
 
-bool schema_accepts(const std::string& text) {
+bool schema_accepts_experiment(const std::string& text) {
   const json document = json::parse(io::embedded_file("experiment.schema.json"));
   const json scenario = json::parse(io::embedded_file("scenario.schema.json"));
   return test::schema_faults(document, json::parse(text), scenario).empty();
 }
 
-std::string error_of(const std::string& text) {
+std::string experiment_error(const std::string& text) {
   try {
     paper::parse_experiment(text, "dir/e.json");
   } catch (const InputError& e) {
@@ -41,14 +41,14 @@ std::string error_of(const std::string& text) {
   return {};
 }
 
-json good() {
+json good_experiment() {
   return json::parse(R"({"name": "n", "purpose": "p", "protocol": {"collisions": 3},
     "objects": [{"name": "A", "body": {"generator": "fractal", "parameters": {"real_faces": 144, "total_faces": 168}}},
                 {"name": "rock", "body": {"generator": "rock", "parameters": {"frequency": 4}}}]})");
 }
 
-std::string with(const std::string& pointer, const json& value) {
-  json e = good();
+std::string experiment_with(const std::string& pointer, const json& value) {
+  json e = good_experiment();
   e[json::json_pointer(pointer)] = value;
   return e.dump(1);
 }
@@ -69,7 +69,7 @@ TEST_CASE(
   CHECK(names.size() == 5);
   for (const std::string& name : names) {
     CAPTURE(name);
-    CHECK(schema_accepts(paper::shipped_experiment(name)));
+    CHECK(schema_accepts_experiment(paper::shipped_experiment(name)));
     const paper::PaperExperiment e = paper::open_experiment(name);
     CHECK(e.name == name);
     CHECK(e.protocol.collisions == paper::PaperProtocol{}.collisions);
@@ -91,54 +91,57 @@ TEST_CASE(
 }
 
 TEST_CASE("experiments: schema and reader agree on good and bad files") {
-  json lone = good();
+  json lone = good_experiment();
   lone["objects"].erase(1);
   lone["report"] = {"table1"};
   const std::string experiments[] = {
-      good().dump(),
+      good_experiment().dump(),
       lone.dump(),
-      with("/name", "../n"),
-      with("/protocl", 1),
-      with("/protocol", json{{"collisions", 0}}),
-      with("/protocol", json{{"collisions", 2.5}}),
-      with("/protocol", json{{"step", 0}}),
-      with("/protocol", json{{"steps_after", -1}}),
-      with("/protocol", json{{"steps", 1}}),
-      with("/protocol", json{{"seed", 7}, {"step", 0.01}, {"steps_after", 0}}),
-      with("/report", json::array()),
-      with("/report", json{"table2", "heat_maps"}),
-      with("/report", json{"table3"}),
-      with("/report", json{"table1", "table1"}),
-      with("/close_up", "rock"),
-      with("/objects", json::array()),
-      with("/objects/0/name", "A-B"),
-      with("/objects/0/name", ""),
-      with("/objects/0/body", json{{"file", "x.obj"}}),
-      with("/objects/0/body", json{{"generator", "rok"}}),
-      with("/objects/0/body", json{{"generator", "rock"}, {"pose", {{"degrees", 3}}}}),
-      with("/objects/0/pose", json::object()),
+      experiment_with("/name", "../n"),
+      experiment_with("/protocl", 1),
+      experiment_with("/protocol", json{{"collisions", 0}}),
+      experiment_with("/protocol", json{{"collisions", 2.5}}),
+      experiment_with("/protocol", json{{"step", 0}}),
+      experiment_with("/protocol", json{{"steps_after", -1}}),
+      experiment_with("/protocol", json{{"steps", 1}}),
+      experiment_with("/protocol", json{{"seed", 7}, {"step", 0.01}, {"steps_after", 0}}),
+      experiment_with("/report", json::array()),
+      experiment_with("/report", json{"table2", "heat_maps"}),
+      experiment_with("/report", json{"table3"}),
+      experiment_with("/report", json{"table1", "table1"}),
+      experiment_with("/close_up", "rock"),
+      experiment_with("/objects", json::array()),
+      experiment_with("/objects/0/name", "A-B"),
+      experiment_with("/objects/0/name", ""),
+      experiment_with("/objects/0/body", json{{"file", "x.obj"}}),
+      experiment_with("/objects/0/body", json{{"generator", "rok"}}),
+      experiment_with("/objects/0/body", json{{"generator", "rock"}, {"pose", {{"degrees", 3}}}}),
+      experiment_with("/objects/0/pose", json::object()),
   };
   for (const std::string& text : experiments) {
     CAPTURE(text);
-    CAPTURE(error_of(text));
-    CHECK(schema_accepts(text) == error_of(text).empty());
+    CAPTURE(experiment_error(text));
+    CHECK(schema_accepts_experiment(text) == experiment_error(text).empty());
   }
 }
 
 TEST_CASE("experiments: errors name file, line, column and the nearest word") {
-  CHECK(error_of("{\n \"name\": \"n\",\n \"purpos\": \"p\"}")
+  CHECK(experiment_error("{\n \"name\": \"n\",\n \"purpos\": \"p\"}")
             .rfind("dir/e.json:3:2: /purpos: unknown key; did you mean \"purpose\"?", 0) == 0);
-  CHECK(error_of(with("/close_up", "rok")).find("did you mean \"rock\"?") != std::string::npos);
-  CHECK(error_of(with("/objects/1/name", "A")).find("another object is called A") != std::string::npos);
-  json lone = good();
+  CHECK(experiment_error(experiment_with("/close_up", "rok")).find("did you mean \"rock\"?") !=
+        std::string::npos);
+  CHECK(experiment_error(experiment_with("/objects/1/name", "A")).find("another object is called A") !=
+        std::string::npos);
+  json lone = good_experiment();
   lone["objects"].erase(1);
-  CHECK(error_of(lone.dump()).find("expected a second object") != std::string::npos);
+  CHECK(experiment_error(lone.dump()).find("expected a second object") != std::string::npos);
   CHECK_THROWS_WITH_AS(paper::open_experiment("tabel1"), doctest::Contains("did you mean \"table1\"?"),
                        InputError);
   std::vector<std::string> notes;
   CHECK_THROWS_WITH_AS(
       paper::make_objects(
-          paper::parse_experiment(with("/objects/1/body", json{{"generator", "island"}}), "e"), notes),
+          paper::parse_experiment(experiment_with("/objects/1/body", json{{"generator", "island"}}), "e"),
+          notes),
       doctest::Contains("is a 2D body"), InputError);
 }
 
@@ -204,7 +207,7 @@ TEST_CASE("paper --experiment: only what is asked for, on bodies of one's own; p
   CHECK(printed.out == paper::shipped_experiment("close_up"));
 
   folder.write("cube.obj", test::kCube);
-  json mine = good();
+  json mine = good_experiment();
   mine["objects"].push_back({{"name", "cube"}, {"body", {{"file", "cube.obj"}}}});
   mine["report"] = {"table2", "heat_maps", "refinement_tree"};
   mine["close_up"] = "rock";

@@ -214,7 +214,7 @@ TEST_CASE("the series: rows and powers from records; records of other bodies are
   CHECK_THROWS_AS(paper::series_rows(a, objects, steps), InputError);
 }
 
-TEST_CASE("paper: meshes at several resolutions, in shards and as a whole") {
+TEST_CASE("paper: meshes at several resolutions, in shards and as a whole" * doctest::test_suite("long")) {
   const test::Folder folder;
   const auto paper = [&](const std::string& meshes, std::vector<std::string> more) {
     std::vector<std::string> args = {"paper", "--meshes", meshes};

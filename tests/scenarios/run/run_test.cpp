@@ -16,12 +16,11 @@
 #include "scenarios/run/run_scenario.hpp"
 #include "scenarios/spec/scenario_frames.hpp"
 #include "scenarios/spec/shipped.hpp"
+#include "tests/support/silent.hpp"
 
 using namespace lrb;
 
 namespace {
-
-const run::ProgressReport kSilent = [](const std::string&, std::uint64_t, std::uint64_t) {};
 
 spec::Scenario two_balls() {
   spec::Scenario s;
@@ -42,7 +41,7 @@ spec::Scenario two_balls() {
 }  // namespace
 
 TEST_CASE("an approach ends in contact: apart before, together from then on") {
-  const run::Recording r = run::record(two_balls(), kSilent);
+  const run::Recording r = run::record(two_balls(), test::kSilent);
   REQUIRE(r.results.size() == 8);
   for (std::size_t step = 0; step < 3; ++step) CHECK(r.results[step].relation == Relation::separate);
   for (std::size_t step = 3; step < 8; ++step) CHECK(r.results[step].relation == Relation::crossing);
@@ -52,7 +51,7 @@ TEST_CASE("an approach ends in contact: apart before, together from then on") {
 TEST_CASE("an approach that misses says so and still shows the way") {
   spec::Scenario s = two_balls();
   s.motion.target = {0, 5, 0};
-  const run::Recording r = run::record(s, kSilent);
+  const run::Recording r = run::record(s, test::kSilent);
   CHECK(r.results.size() >= 2);
   for (const CollideResult& result : r.results) CHECK(result.relation == Relation::separate);
   REQUIRE(r.notes.size() == 1);
@@ -61,7 +60,7 @@ TEST_CASE("an approach that misses says so and still shows the way") {
 
 TEST_CASE("expectations that are not met are named, those that are met are not") {
   spec::Scenario s = two_balls();
-  const run::Recording r = run::record(s, kSilent);
+  const run::Recording r = run::record(s, test::kSilent);
   spec::Expectation e;
   e.step = 3;
   e.relation = Relation::crossing;
@@ -90,13 +89,13 @@ spec::Scenario one_rock(spec::Show show) {
 
 TEST_CASE(
     "refinement goes from the outermost wrapper to the body, construction from the body to the wrapper") {
-  const run::Recording down = run::record(one_rock(spec::Show::refinement), kSilent);
+  const run::Recording down = run::record(one_rock(spec::Show::refinement), test::kSilent);
   const LrbRep& rep = down.bodies[0].rep;
   CHECK(down.trace.events.size() == 1 + rep.region_count());
   CHECK(down.trace.events.back().boundary == rep.real_face_count());
 
   const spec::Scenario s = one_rock(spec::Show::construction);
-  const run::Recording up = run::record(s, kSilent);
+  const run::Recording up = run::record(s, test::kSilent);
   CHECK(up.bodies[0].rep.hash() == rep.hash());
   const std::vector<trace::EventId> frames = run::moments(s.frames, up.trace);
   REQUIRE(frames.size() == rep.layer_count() + 1);
@@ -108,7 +107,7 @@ TEST_CASE(
 
 TEST_CASE("a construction's frames say what each pass made and refused, and nothing of refinements") {
   const spec::Scenario s = one_rock(spec::Show::construction);
-  const run::Recording r = run::record(s, kSilent);
+  const run::Recording r = run::record(s, test::kSilent);
   const run::RecordedRun p = run::recorded_run_of(s, r);
   run::FrameState state(r.trace, p.reps, r.results, s.frames, false);
   std::string all;
@@ -137,7 +136,7 @@ TEST_CASE("a body that comes with its regions is shown layer by layer") {
   spec::Scenario s = one_rock(spec::Show::construction);
   s.bodies[0].generator = "fractal";
   s.bodies[0].parameters = {};
-  const run::Recording r = run::record(s, kSilent);
+  const run::Recording r = run::record(s, test::kSilent);
   const LrbRep& rep = r.bodies[0].rep;
   CHECK(r.trace.header.construction);
   CHECK(r.notes.size() == 1);
@@ -147,7 +146,7 @@ TEST_CASE("a body that comes with its regions is shown layer by layer") {
 }
 
 TEST_CASE("moments: first and last are always there, never too many") {
-  const run::Recording r = run::record(two_balls(), kSilent);
+  const run::Recording r = run::record(two_balls(), test::kSilent);
   spec::FrameSpec spec;
   CHECK(run::moments(spec, r.trace).size() == 8);
   spec.most = 3;
@@ -188,7 +187,7 @@ TEST_CASE("the shipped collisions come out as they promise, and as brute force h
     if (s.show != spec::Show::collision) continue;
     CAPTURE(s.name);
     CHECK_FALSE(s.expect.empty());
-    const run::Recording r = run::record(s, kSilent);
+    const run::Recording r = run::record(s, test::kSilent);
     for (const std::string& line : run::mismatches(s, r)) FAIL_CHECK(line);
     const trace::Step& last = r.trace.steps.back();
     const BruteForceResult truth = brute_force(r.bodies[0].rep, last.pose_a, r.bodies[1].rep, last.pose_b);

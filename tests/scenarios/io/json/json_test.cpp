@@ -11,9 +11,9 @@ using namespace lrb;
 
 namespace {
 
-std::string error_of(const std::string& text) {
+std::string json_error(const std::string& text) {
   try {
-    const io::JsonText json(text, "file.json");
+    const io::JsonText parsed(text, "file.json");
   } catch (const InputError& e) {
     return e.what();
   }
@@ -23,39 +23,39 @@ std::string error_of(const std::string& text) {
 }  // namespace
 
 TEST_CASE("values are found again by their pointers") {
-  const io::JsonText json("{\n  \"a\": [1,\n    {\"b/c\": \"x\\\"y\"}],\n \"~\": true }", "f");
-  CHECK(json.where("") == "f:1:1");
-  CHECK(json.where("/a") == "f:2:8");
-  CHECK(json.where("/a#") == "f:2:3");
-  CHECK(json.where("/a/0") == "f:2:9");
-  CHECK(json.where("/a/1/b~1c") == "f:3:13");
-  CHECK(json.where("/~0") == "f:4:7");
+  const io::JsonText parsed("{\n  \"a\": [1,\n    {\"b/c\": \"x\\\"y\"}],\n \"~\": true }", "f");
+  CHECK(parsed.where("") == "f:1:1");
+  CHECK(parsed.where("/a") == "f:2:8");
+  CHECK(parsed.where("/a#") == "f:2:3");
+  CHECK(parsed.where("/a/0") == "f:2:9");
+  CHECK(parsed.where("/a/1/b~1c") == "f:3:13");
+  CHECK(parsed.where("/~0") == "f:4:7");
 }
 
 TEST_CASE("columns count characters, not bytes") {
-  const io::JsonText json("{\"\xc3\xa4\xc3\xb6\": 1}", "f");
-  CHECK(json.where("/\xc3\xa4\xc3\xb6") == "f:1:8");
+  const io::JsonText parsed("{\"\xc3\xa4\xc3\xb6\": 1}", "f");
+  CHECK(parsed.where("/\xc3\xa4\xc3\xb6") == "f:1:8");
 }
 
 TEST_CASE("bad syntax names line and column in one line") {
   for (const char* text : {"{\n  \"a\": 1,,\n}", "{\"a\" 1}", "[1, 2", "", "{\"a\": nul}", "\xff\xfe",
                            "<!DOCTYPE html>", "{} {}"}) {
     CAPTURE(text);
-    const std::string error = error_of(text);
+    const std::string error = json_error(text);
     CHECK(error.rfind("file.json:", 0) == 0);
     CHECK(error.find('\n') == std::string::npos);
   }
-  CHECK(error_of("{\n  \"a\": 1,,\n}").rfind("file.json:2:10:", 0) == 0);
-  CHECK(error_of("[1e999]").rfind("file.json:", 0) == 0);
+  CHECK(json_error("{\n  \"a\": 1,,\n}").rfind("file.json:2:10:", 0) == 0);
+  CHECK(json_error("[1e999]").rfind("file.json:", 0) == 0);
 }
 
 TEST_CASE("a repeated key is an error at its second place") {
-  CHECK(error_of("{\"a\": 1,\n \"a\": 2}").find("occurs twice") != std::string::npos);
+  CHECK(json_error("{\"a\": 1,\n \"a\": 2}").find("occurs twice") != std::string::npos);
 }
 
 TEST_CASE("absurd nesting is refused, not crashed on") {
   const std::string deep(100'000, '[');
-  CHECK(error_of(deep + std::string(100'000, ']')).find("levels") != std::string::npos);
+  CHECK(json_error(deep + std::string(100'000, ']')).find("levels") != std::string::npos);
 }
 
 TEST_CASE("near words are suggested, far ones are not") {
@@ -69,8 +69,8 @@ TEST_CASE("near words are suggested, far ones are not") {
 }
 
 TEST_CASE("readers say what they expected and where") {
-  const io::JsonText json("{\"n\": -1, \"s\": \"x\", \"v\": [1, 2], \"big\": 1e300, \"f\": 1.5}", "f");
-  const io::JsonNode root(json);
+  const io::JsonText parsed("{\"n\": -1, \"s\": \"x\", \"v\": [1, 2], \"big\": 1e300, \"f\": 1.5}", "f");
+  const io::JsonNode root(parsed);
   CHECK_THROWS_WITH_AS(root.at("n").integer(0, 9), "f:1:7: /n: expected a whole number from 0 to 9, found -1",
                        InputError);
   CHECK_THROWS_WITH_AS(root.at("f").integer(0, 9),
@@ -82,13 +82,13 @@ TEST_CASE("readers say what they expected and where") {
 }
 
 TEST_CASE("a byte order mark moves no place, and nothing may follow a NUL byte") {
-  CHECK(error_of("\xef\xbb\xbf{\"a\": 1,\n \"a\": 2}").find("file.json:2:2: ") == 0);
-  CHECK(error_of(std::string("{}\0{", 4)).find("file.json:1:3: not JSON: found a NUL byte") == 0);
+  CHECK(json_error("\xef\xbb\xbf{\"a\": 1,\n \"a\": 2}").find("file.json:2:2: ") == 0);
+  CHECK(json_error(std::string("{}\0{", 4)).find("file.json:1:3: not JSON: found a NUL byte") == 0);
 }
 
 TEST_CASE("messages stay one line, whatever stands in the file") {
-  const io::JsonText json("{\"a\\nb\": 1, \"c\": \"\\u001b[2J\\n\"}", "f");
-  const io::JsonNode root(json);
+  const io::JsonText parsed("{\"a\\nb\": 1, \"c\": \"\\u001b[2J\\n\"}", "f");
+  const io::JsonNode root(parsed);
   CHECK_THROWS_WITH_AS(root.object({"c"}), doctest::Contains("/a\\x0ab: unknown key"), InputError);
   CHECK_THROWS_WITH_AS(root.at("c").choice<int>({{"x", 1}}), doctest::Contains("\\x1b[2J\\x0a"), InputError);
 }

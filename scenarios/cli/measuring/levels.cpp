@@ -8,6 +8,7 @@
 #include "scenarios/bodies/level_figures.hpp"
 #include "scenarios/bodies/level_json.hpp"
 #include "scenarios/cli/command.hpp"
+#include "scenarios/cli/measuring_words.hpp"
 #include "scenarios/cli/options.hpp"
 #include "scenarios/levels/level_report.hpp"
 
@@ -58,8 +59,7 @@ int run_levels(const LevelsOptions& o, const Globals& globals) {
 }
 
 Command add_levels(CLI::App& root, const Globals& globals) {
-  CLI::App* app =
-      root.add_subcommand("levels", "How many faces a body needs at a row of tolerances, and the proof");
+  CLI::App* app = add_measuring(root, measuring_word("levels"));
   const auto o = std::make_shared<LevelsOptions>();
   o->shares.assign(std::begin(bodies::kLevelShares), std::end(bodies::kLevelShares));
   app->add_option("BODY", o->body, "Mesh or .lrb file")->required();
@@ -82,7 +82,7 @@ Command add_levels(CLI::App& root, const Globals& globals) {
 }  // namespace
 
 std::vector<CommandEntry> levels_commands() {
-  return {{add_levels, 65}};
+  return {{add_levels, measuring_word("levels").rank}};
 }
 
 }  // namespace lrb::cli

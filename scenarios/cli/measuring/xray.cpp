@@ -6,6 +6,7 @@
 #include "engine/core/fnv.hpp"
 #include "scenarios/bodies/body.hpp"
 #include "scenarios/cli/command.hpp"
+#include "scenarios/cli/measuring_words.hpp"
 #include "scenarios/cli/options.hpp"
 #include "scenarios/cli/progress.hpp"
 #include "scenarios/io/json/pose_list.hpp"
@@ -89,7 +90,7 @@ int run_xray(const XrayOptions& o, const Globals& globals) {
 }
 
 Command add_xray(CLI::App& root, const Globals& globals) {
-  CLI::App* app = root.add_subcommand("xray", "Record another engine's walk, and show it beside ours");
+  CLI::App* app = add_measuring(root, measuring_word("xray"));
   const auto o = std::make_shared<XrayOptions>();
   app->add_option("A", o->a, "Mesh or .lrb file, 3D; does not move")->required();
   app->add_option("B", o->b, "Mesh or .lrb file, 3D; moves")->required();
@@ -109,7 +110,7 @@ Command add_xray(CLI::App& root, const Globals& globals) {
 }  // namespace
 
 std::vector<CommandEntry> xray_commands() {
-  return {{add_xray, 68}};
+  return {{add_xray, measuring_word("xray").rank}};
 }
 
 }  // namespace lrb::cli
