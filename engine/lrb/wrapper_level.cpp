@@ -18,11 +18,12 @@ namespace {
 /// enough. Smaller: more levels to make and keep; larger: a tolerance between two levels costs that many
 /// faces more.
 constexpr double kLevelStep = 4.0 / 3;
-/// The same for levels with at most kFewFaces of the body's own: these take little memory, even if there are
-/// many.
-constexpr double kFewFaces = 1.0 / 16, kSmallStep = 1.1;
+/// The same for levels with at most kFewFaces, or kSmallShare of the body's own: these take little memory,
+/// even if there are many.
+constexpr double kFewFaces = 2048, kSmallShare = 1.0 / 16, kSmallStep = 1.1;
 /// A wrapper with a larger share of the body's own faces is no level: the exact query costs hardly more. Also
-/// limits what all levels take together: between two and three times as many faces as the body has.
+/// limits what all levels take together: between two and three times as many faces as a large body has, five
+/// times as many as a small one.
 constexpr double kMostFaces = 0.5;
 /// More levels than kLevelStep makes of the largest body: a file with more is not one of ours.
 constexpr std::size_t kMostLevels = 256;
@@ -127,8 +128,9 @@ std::vector<double> choose_bounds(const LrbRep& rep, std::span<const double> nee
     while (!chosen.empty() && faces[chosen.back()] >= faces[i]) chosen.pop_back();  // finer for no more faces
     chosen.push_back(i);
   };
+  const double few = std::max(kFewFaces, kSmallShare * rep.real_face_count());
   const auto is_beyond = [&](std::size_t i) {
-    const double step = faces[i] <= kFewFaces * rep.real_face_count() ? kSmallStep : kLevelStep;
+    const double step = faces[i] <= few ? kSmallStep : kLevelStep;
     return chosen.empty() || faces[i] > step * faces[chosen.back()];
   };
   std::size_t i = bounds.size();

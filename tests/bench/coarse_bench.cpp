@@ -5,13 +5,12 @@
 // speed: how long answers to a tolerance take, against exact ones, and within limits that are large enough
 //        for the exact answer; what the first coarse query costs, and the second.
 // bound: the error bound against the distance that pairs really are off the bodies.
-// time:  what is known after which time, and by how much limits in time are missed; drawn with --draw by
-// gnuplot.
+// time:  what is known after which time, and by how much limits in time are missed; gnuplot draws it with
+//        --draw.
 //
 // BODY: a mesh or an .lrb file, which meets a copy of itself; without any those of ../shared/meshes, and a
 // rock of a million faces made here. Tolerances are shares of the largest side of its box. Times are the
-// least of some runs
-// (`time`: of single runs), medians over poses.
+// least of some runs (`time`: of single runs), medians over poses.
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
