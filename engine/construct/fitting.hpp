@@ -23,9 +23,9 @@ inline constexpr double kFirstOff = 0.001, kLastOff = 0.1, kOffStep = 1.25;
 inline constexpr double kFitGain = 0.8;
 inline constexpr int kPassesForOff = 8;
 /// A cap that leaves x of the faces it covers costs x / (1 - x) faces for each that it saves. This is the
-/// largest price accepted on the mesh itself; on simpler hulls it is divided by the square root of hull faces
-/// / real faces. Larger: hulls fit better; smaller: fewer faces in all (0.74: 1.7 to 2 per real face on six
-/// bodies).
+/// largest price accepted on the mesh itself; on simpler hulls it is divided by the square root of
+/// hull faces / real faces. Larger: hulls fit better; smaller: fewer faces in all (0.74: 1.7 to 2 per real
+/// face on six bodies).
 inline constexpr double kFitBudget = 0.74;
 /// With such prices pseudo faces add up to a total times 1 - sqrt(hull faces / real faces). As long as there
 /// are fewer than this total, per real face, allows, because caps turned out cheap, dearer ones are accepted:

@@ -1,7 +1,7 @@
 #pragma once
-/// The commands that measure bodies, methods and the paper's experiment. They make up a program of
-/// their own, lrbscope-measure, that lrbscope starts for them: it takes longer to compile than all the rest,
-/// and nobody needs it at first.
+/// The commands that measure bodies, methods and the paper's experiment. They make up a program of their own,
+/// lrbscope-measure, that lrbscope starts for them: it takes longer to compile than all the rest, and nobody
+/// needs it at first.
 
 #include <array>
 #include <string>

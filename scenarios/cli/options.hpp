@@ -58,8 +58,8 @@ void add_orbit_option(CLI::App& app, CameraOptions& options);
 void apply(const CameraOptions& options, std::vector<spec::FrameSpec::View>& views);
 
 /// The options of cameras, and --size, --dpi, --style, --no-title, --no-legend, --transparent, --format,
-/// --frames, --every, --most, --colour-by,
-/// --colour-per and --node-boxes, which take precedence over a scenario.
+/// --frames, --every, --most, --colour-by, --colour-per and --node-boxes, which take precedence over a
+/// scenario.
 struct PictureOptions {
   CameraOptions camera;
   std::string size, animation;

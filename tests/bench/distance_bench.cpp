@@ -164,8 +164,8 @@ void coherent(const LrbRep& rep, const std::vector<Pose>& starts, double diagona
     const double scratch_us = best_microseconds(3, [&] {
       for (std::size_t i = 0; i < path.size(); ++i) one[i] = distance(rep, Pose{}, rep, path[i], {}, context);
     });
-    CoherentDistance follows(rep, rep);
     const double coherent_us = best_microseconds(3, [&] {
+      CoherentDistance follows(rep, rep);  // a new one: it must not know the path
       for (std::size_t i = 0; i < path.size(); ++i) other[i] = follows.distance(Pose{}, path[i]);
     });
     for (std::size_t i = 0; i < path.size(); ++i) {

@@ -7,8 +7,8 @@
 /// rounded), and that much further from the line, because the distance is linear on the edge. So the computed
 /// polygon differs from the exact one by strips along the line, 8 u (D + E) + 4 u D + u wide and at most D
 /// long, and along the edges, 4 u D + u wide and at most 6 D long: in area by less than u D (7 + 36 D + 8 E).
-/// Three times, and once more along the edges where one triangle passes through the other: less than u D (27
-/// + 132 D + 24 E). Its height over the base is at most 1.
+/// Three times, and once more along the edges where one triangle passes through the other: less than
+/// u D (27 + 132 D + 24 E). Its height over the base is at most 1.
 ///
 /// Heights. Over the triangle a, b, c with doubled area F seen along x, the height is that of the lowest
 /// corner and the others' over it, weighted by areas over F. Each area, and F, is off by 8 u E^2, so the

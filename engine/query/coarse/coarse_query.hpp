@@ -195,7 +195,8 @@ class CoarseQuery {
       : ctx_(ctx), request_(request), result_(result), probe_{probe} {}
 
   void run() {
-    if (request_.max_time > 0) began_ = Clock::now();  // looking at the clock takes as long as a pair of nodes
+    // Looking at the clock takes as long as a pair of nodes.
+    if (request_.max_time > 0) began_ = Clock::now();
     result_.relation = Relation::unresolved;
     result_.error_bound = kInfinity;
     result_.finished = false;

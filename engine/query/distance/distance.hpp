@@ -106,7 +106,7 @@ std::vector<DistanceResult> distances(const LrbRep& a, const Pose& pose_a, const
 /// that pair shows.
 class CoherentDistance {
  public:
-  /// Keeps references to the bodies, which must outlive it.
+  /// Keeps references to the bodies, which must outlive it. Do not assign to them.
   CoherentDistance(const LrbRep& a, const LrbRep& b, const DistanceRequest& request = {});
 
   /// Returns the answer for these poses. Throws InputError as distance() does.

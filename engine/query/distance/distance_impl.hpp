@@ -23,9 +23,9 @@ struct DistanceContext {
 
 /// What is known from earlier steps of a motion.
 struct KnownFromBefore {
-  std::array<SimplexId, 2> likely = {kNull,
-                                     kNull};  ///< to be the nearest, or to meet: of A and of B; kNull: none
-  FarPairs far;                               ///< of the same bodies
+  /// A simplex of A and one of B that are likely to be the nearest, or to meet; kNull: none.
+  std::array<SimplexId, 2> likely = {kNull, kNull};
+  FarPairs far;
 };
 
 /// Answers as distance() in distance.hpp does. before: null, or what earlier steps found, to which this one

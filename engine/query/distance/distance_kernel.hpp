@@ -68,11 +68,10 @@ struct DistanceKernel {
   NodeEnd* ends[2];
   std::uint32_t turn;  ///< NodeEnd::turn of this direction
 
-  /// What earlier steps found far apart, in slots by far_slot(); null: there are none, and nothing is kept.
+  /// What earlier steps found far apart, by far_slot(); null: there is nothing, and nothing is kept.
   FarNodes* far;
   std::uint32_t far_slots;  ///< a power of two
-  /// How much B has turned on A's axes since the first step, as the norms of what TreeKernel::m changed by
-  /// add up to: not more, and not less.
+  /// The norms of TreeKernel::m's changes since planes were last forgotten, added up: rounded up, and down.
   float turned, least_turned;
 
   WaitingNodes* waiting;  ///< a heap, the least bound first
@@ -87,12 +86,6 @@ struct DistanceKernel {
 
 /// Room that both buffers need before a step, and twice that before the first.
 inline constexpr std::uint32_t kRoomForStep = 64;
-
-/// Returns where a pair of nodes is kept, or what was kept there last.
-inline FarNodes& far_slot(const DistanceKernel& k, std::uint32_t a, std::uint32_t b) {
-  const std::uint32_t mixed = a * 0x9e3779b1U + b * 0x85ebca77U;
-  return k.far[(mixed ^ mixed >> 15) & (k.far_slots - 1)];
-}
 
 /// Returns the distance from which on pairs are dropped: rounded so that a pair that is dropped is no nearer.
 inline float dropped_from(const DistanceKernel& k) {

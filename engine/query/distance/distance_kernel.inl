@@ -226,6 +226,12 @@ inline float end_of(DistanceKernel& k, std::uint32_t node) {
   return known.end;
 }
 
+/// Returns where a pair of nodes is kept; what is there may be of another pair.
+inline FarNodes& far_slot(const DistanceKernel& k, std::uint32_t a, std::uint32_t b) {
+  const std::uint32_t mixed = a * 0x9e3779b1U + b * 0x85ebca77U;
+  return k.far[(mixed ^ mixed >> 15) & (k.far_slots - 1)];
+}
+
 /// Returns whether the slab that was between two nodes still is wide enough to drop them. Along its direction
 /// n, what lies under A's node reaches from its origin as far as it did, and what lies under B's as far but
 /// for the turn since: from M y to M' y, which is no more than |M' - M| |y|. How far the origins are apart

@@ -4,7 +4,7 @@
 
 #include "engine/core/tolerances.hpp"
 #include "engine/query/distance/distance_impl.hpp"
-#include "engine/query/distance/kernel_lengths.hpp"
+#include "engine/query/distance/kernel_floats.hpp"
 
 namespace lrb {
 namespace {
@@ -40,17 +40,18 @@ FloatWalk::FloatWalk(DistanceContext& context, NearestPairs& found, const Distan
     : context_(context), found_(found), unit_(unit), k_{} {
   k_.tree = tree;
   k_.tree.most_node_pairs = request.max_steps > 0 ? request.max_steps : kNoLimit;
-  k_.upper = length_up(found.upper() / unit);
-  k_.spare = length_down(request.tolerance / unit);
-  k_.share = std::min(1.0F, length_down(request.relative_tolerance));
-  k_.widest = request.within ? length_up(*request.within / unit) : kNothing;
-  k_.enough = request.within ? length_down(*request.within / unit) : -1;
+  k_.upper = rounded_up(found.upper() / unit);
+  k_.spare = rounded_down(request.tolerance / unit);
+  k_.share = std::min(1.0F, rounded_down(request.relative_tolerance));
+  k_.widest = request.within ? rounded_up(*request.within / unit) : kNothing;
+  k_.enough = request.within ? rounded_down(*request.within / unit) : -1;
   k_.best_a = k_.best_b = kNull;
   const Eigen::Vector3d direction = direction_of(context, found, tree);
   for (int i = 0; i < 3; ++i) k_.direction[0][i] = static_cast<float>(direction[i]);
   k_.descend = descend;
   begin_ends();
-  if (far != nullptr) far->lend(k_);
+  if (far != nullptr)
+    far->lend(k_, context.query.body[0].tree().nodes().size() * context.query.body[1].tree().nodes().size());
   if (context.waiting.size() < 4 * kRoomForStep) context.waiting.resize(16 * kRoomForStep);
   if (context.near.size() < 4 * kRoomForStep) context.near.resize(16 * kRoomForStep);
   context.waiting[0] = {-kNothing, 0, 0};

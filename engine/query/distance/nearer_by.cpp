@@ -2,9 +2,9 @@
 /// point y of B in the world, and w' the same at the next pose,
 ///     w' - Q w = (R_B' - Q R_B) y + (t_B' - t_A') - Q (t_B - t_A) + (Q R_A - R_A') x,
 /// and the last term is at most |R_A'| |R_A^T R_A - 1| |x|. With D = R_B' - Q R_B, c the middle of B and r
-/// its radius, the others are at most |D c + d| + |D| r; turn_bound() bounds |D|. |Q w| is |w| but for |Q^T Q
-/// - 1| |w|. All that is computed is rounded by a few u = 2^-53 times the sizes of world coordinates, and
-/// these by 4 u at either pose: 128 u of the sum of all sizes is more.
+/// its radius, the others are at most |D c + d| + |D| r; turn_bound() bounds |D|. |Q w| is |w| but for
+/// |Q^T Q - 1| |w|. All that is computed is rounded by a few u = 2^-53 times the sizes of world coordinates,
+/// and these by 4 u at either pose: 128 u of the sum of all sizes is more.
 
 #include "engine/query/distance/nearer_by.hpp"
 

@@ -74,7 +74,7 @@ bool NearestPairs::measure(SimplexId a, SimplexId b, double lower) {
   // Pairs that share the nearest corner or edge are as far apart along its direction.
   const double apart = spares_ ? distance_along(best_.direction, best_.upper, of_a, of_b, dim_) : 0;
   if (apart > 0) {
-    pairs_.push_back({a, b, std::max(apart, lower), kInfinity});
+    pairs_.push_back({a, b, std::max(apart, lower)});
     return true;
   }
   PairBounds bounds = bound_distance(of_a, of_b, dim_);
@@ -83,7 +83,7 @@ bool NearestPairs::measure(SimplexId a, SimplexId b, double lower) {
     corners(a, b, of_a, of_b);
     bounds = measured_exactly(of_a, of_b);
   }
-  pairs_.push_back({a, b, std::min(std::max(bounds.lower, lower), bounds.upper), bounds.upper});
+  pairs_.push_back({a, b, std::min(std::max(bounds.lower, lower), bounds.upper)});
   see(pairs_.back(), bounds);
   return pairs_.back().lower > 0;
 }
@@ -145,7 +145,6 @@ void NearestPairs::narrow(double rest) {
     corners(pair.a, pair.b, of_a, of_b);
     const PairBounds exact = measured_exactly(of_a, of_b);
     pair.lower = exact.lower;
-    pair.upper = exact.upper;
     see(pair, exact);
   }
 }

@@ -11,10 +11,10 @@
 
 namespace lrb {
 
-/// A pair of simplices and the interval that holds its distance, world.
+/// A pair of simplices and a bound on its distance, world.
 struct MeasuredPair {
   SimplexId a, b;
-  double lower, upper;
+  double lower;
 };
 
 /// Returns a point of a body's simplex as a witness. on: where it lies on the simplex.
@@ -36,8 +36,9 @@ class NearestPairs {
   /// Returns the size of the larger body in the world: a bound on its radius.
   double size() const { return size_; }
 
-  /// Lets a slab do where a pair is as far apart as the nearest one, but for rounding. The last digits of
-  /// upper() then depend on the order in which pairs are measured: more steps need not narrow it by them.
+  /// Lets a slab do where a pair is as far apart as the nearest one, but for rounding. upper() may then be
+  /// too large by its last digits, depending on the order in which pairs are measured, so that more steps
+  /// need not give less, as distance() promises.
   void spare_equal_pairs() { spares_ = true; }
   /// Says that intervals may be this wide, because the walk cannot tell more.
   void allow_width(double width) { allowed_ = width; }

@@ -49,6 +49,15 @@ bool is_in_range(double length) {
   return length > 0x1p-200 && length < 0x1p200;
 }
 
+/// Returns the width of the slab between two simplices across a direction of any length, rounded down; at
+/// least 0. low, high: how far they reach along it, in doubles. reach: the largest of the coordinates that
+/// this was computed from.
+double slab_width(const Vector3d& direction, const double (&low)[2], const double (&high)[2], double reach) {
+  const double gap = std::max(low[1] - high[0], low[0] - high[1]);
+  const double sure = gap - 0.25 * kPairRounding * reach * direction.cwiseAbs().sum();
+  return sure > 0 ? sure / direction.norm() * kPairDown : 0;
+}
+
 class Pair {
  public:
   Pair(const double* const* a, const double* const* b, int n) : n_(n) {
@@ -163,9 +172,7 @@ class Pair {
         low[side] = std::min(low[side], x);
         high[side] = std::max(high[side], x);
       }
-    const double gap = std::max(low[1] - high[0], low[0] - high[1]);
-    const double sure = gap - 0.25 * kPairRounding * reach_ * n.cwiseAbs().sum();
-    return sure > 0 ? sure / n.norm() * kPairDown : 0;
+    return slab_width(n, low, high, reach_);
   }
 
   int n_;
@@ -224,9 +231,7 @@ double distance_along(const Vector3d& direction, double least, const double* con
       high[side] = std::max(high[side], ahead);
     }
   if (!is_in_range(reach) || !is_in_range(direction.cwiseAbs().maxCoeff())) return 0;
-  const double gap = std::max(low[1] - high[0], low[0] - high[1]);
-  const double sure = gap - 0.25 * kPairRounding * reach * direction.cwiseAbs().sum();
-  const double width = sure > 0 ? sure / direction.norm() * kPairDown : 0;
+  const double width = slab_width(direction, low, high, reach);
   return width < least - 2 * kPairRounding * reach ? 0 : width;
 }
 
