@@ -92,8 +92,7 @@ run::PaintedFrame paint(const GoldenRun& run, const SideShown& side, spec::Frame
   p.title = run.scenario.name + ", " + title;
   p.trace = &side.trace;
   spec.events = {side.event};
-  const run::ProgressReport silent = [](const std::string&, std::uint64_t, std::uint64_t) {};
-  return run::paint_frames(p, spec, silent, &framing).at(0);
+  return run::paint_frames(p, spec, run::kSilent, &framing).at(0);
 }
 
 bool same_bodies(const trace::Trace& x, const trace::Trace& y) {

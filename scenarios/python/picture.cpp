@@ -68,8 +68,7 @@ run::PaintedFrame paint(const Recorded& recorded, std::size_t step, Wanted wante
   if (!wanted.from_given && recorded.bodies.size() == 2 && !recorded.results->empty())
     view.from = run::least_hidden(shown, view.up, view.from);
   run::check_frames(shown, wanted.frames);
-  const auto nobody = [](const std::string&, std::uint64_t, std::uint64_t) {};
-  return run::paint_frames(shown, wanted.frames, nobody).at(0);
+  return run::paint_frames(shown, wanted.frames, run::kSilent).at(0);
 }
 
 py::array_t<std::uint8_t> pixels_of(const render::Image& image, bool alpha) {

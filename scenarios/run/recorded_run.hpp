@@ -14,6 +14,8 @@ namespace lrb::run {
 
 /// Called with the progress of a long job: what it is doing, how much is done, how much there is.
 using ProgressReport = std::function<void(const std::string& what, std::uint64_t done, std::uint64_t total)>;
+/// A report that nobody reads.
+inline const ProgressReport kSilent = [](const std::string&, std::uint64_t, std::uint64_t) {};
 
 /// A pair that another engine got wrong: it reported faces that do not meet, or missed faces that do.
 struct WrongPair {

@@ -43,8 +43,7 @@ int main(int argc, char** argv) {
     if (std::strcmp(argv[i], "--frames") == 0) frames = std::max(2, std::atoi(argv[i + 1]));
   }
   const spec::Scenario scenario = turning_rock(frames);
-  const run::ProgressReport quiet = [](const std::string&, std::uint64_t, std::uint64_t) {};
-  const run::Recording recording = run::record(scenario, quiet);
+  const run::Recording recording = run::record(scenario, run::kSilent);
   run::RecordedRun performance;
   performance.title = scenario.name;
   for (const bodies::LoadedBody& body : recording.bodies) performance.reps.push_back(&body.rep);
@@ -55,10 +54,10 @@ int main(int argc, char** argv) {
   std::vector<double> alone, whole;
   for (int i = 0; i < repeats; ++i) {
     auto start = std::chrono::steady_clock::now();
-    run::paint_frames(performance, scenario.frames, quiet, nullptr);
+    run::paint_frames(performance, scenario.frames, run::kSilent, nullptr);
     alone.push_back(seconds_since(start) / frames);
     start = std::chrono::steady_clock::now();
-    run::draw_frames(performance, scenario.frames, directory / "sequence", {}, quiet);
+    run::draw_frames(performance, scenario.frames, directory / "sequence", {}, run::kSilent);
     whole.push_back(seconds_since(start) / frames);
   }
   const double rate = median(alone) / median(whole);

@@ -85,7 +85,7 @@ std::map<SceneKey, std::string> write_scenes(const std::vector<DataSet>& sets,
       if (fs::exists(folder + "/" + page) && fs::exists(file) && io::read_text(file) == text) continue;
       io::write_text(file, text);
       run::run_scenario(spec::parse_scenario(text, file), folder + "/scenes/" + name, "lrbscope run " + file,
-                        [](const std::string&, std::uint64_t, std::uint64_t) {});
+                        run::kSilent);
     }
   return pages;
 }

@@ -133,9 +133,7 @@ class Trials {
   }
 
  private:
-  static run::ProgressReport silent() {
-    return [](const std::string&, std::uint64_t, std::uint64_t) {};
-  }
+  static run::ProgressReport silent() { return run::kSilent; }
   const GoldenOptions& o_;
   const std::vector<NamedGolden>& todo_;
   run::ProgressReport progress_;

@@ -19,7 +19,6 @@
 #include "scenarios/io/files.hpp"
 #include "tests/support/folder.hpp"
 #include "tests/support/json_schema.hpp"
-#include "tests/support/silent.hpp"
 #include "tests/support/trace_schema.hpp"
 
 using namespace lrb;
@@ -114,7 +113,7 @@ void check_against_brute_force(const crowd::CrowdRun& run, std::set<Relation>& s
 
 TEST_CASE("all pairs of a crowd, asked or not, are answered as brute force answers them") {
   std::set<Relation> seen;
-  const crowd::CrowdRun run = crowd::run_crowd(crowd_of(good()), 2, test::kSilent);
+  const crowd::CrowdRun run = crowd::run_crowd(crowd_of(good()), 2, run::kSilent);
   check_against_brute_force(run, seen);
   CHECK(seen.contains(Relation::crossing));
   CHECK(seen.contains(Relation::b_inside_a));  // or the test shows little
@@ -125,7 +124,7 @@ TEST_CASE("all pairs of a crowd, asked or not, are answered as brute force answe
 
 TEST_CASE("a crowd of 2D bodies, too") {
   std::set<Relation> seen;
-  const crowd::CrowdRun run = crowd::run_crowd(crowd_of(good_2d()), 2, test::kSilent);
+  const crowd::CrowdRun run = crowd::run_crowd(crowd_of(good_2d()), 2, run::kSilent);
   check_against_brute_force(run, seen);
   CHECK(seen.contains(Relation::crossing));
 }
@@ -138,9 +137,9 @@ TEST_CASE("the number of threads does not show in trace, numbers or pictures") {
     std::string trace, summary;
     std::vector<std::string> frames;
     for (const std::uint32_t threads : {1U, 2U, 5U}) {
-      const crowd::CrowdRun run = crowd::run_crowd(crowd, threads, test::kSilent);
+      const crowd::CrowdRun run = crowd::run_crowd(crowd, threads, run::kSilent);
       const std::string out = (folder / std::to_string(threads)).string();
-      const std::string text = crowd::write_crowd(crowd, run, out, "lrbscope crowd", test::kSilent);
+      const std::string text = crowd::write_crowd(crowd, run, out, "lrbscope crowd", run::kSilent);
       std::vector<std::string> files;
       for (const char* f : {"frame_0000.png", "frame_0001.png"})
         files.push_back(io::read_text(out + "/frames/" + f));
@@ -164,24 +163,23 @@ TEST_CASE("a crowd's trace is enough to draw it again, pixel by pixel") {
     for (const trace::Clock clock : {trace::Clock::event, trace::Clock::wall}) {
       spec::Crowd crowd = crowd_of(j);
       crowd.clock = clock;
-      const crowd::CrowdRun run = crowd::run_crowd(crowd, 2, test::kSilent);
+      const crowd::CrowdRun run = crowd::run_crowd(crowd, 2, run::kSilent);
       const std::string first = (folder / "run").string(), again = (folder / "again").string();
-      crowd::write_crowd(crowd, run, first, "lrbscope crowd", test::kSilent);
+      crowd::write_crowd(crowd, run, first, "lrbscope crowd", run::kSilent);
       const std::string text = io::read_text(first + "/trace.json");
       REQUIRE(crowd::is_crowd_trace(text));
       crowd::CrowdTrace trace = crowd::read_crowd_trace(text, "t.json");
       CHECK(trace.steps == crowd.steps);
       CHECK(trace.crowd.steps == crowd.steps);
       trace.crowd.frames = crowd.frames;
-      const crowd::CrowdRun replayed =
-          crowd::replay_crowd(trace, saved_kinds(crowd, first), 1, test::kSilent);
+      const crowd::CrowdRun replayed = crowd::replay_crowd(trace, saved_kinds(crowd, first), 1, run::kSilent);
       CHECK(replayed.notes.empty());
       CHECK(crowd::crowd_summary(trace.crowd, replayed).size() > 1000);
       for (std::uint32_t step = 0; step < crowd.steps; ++step)
         for (std::uint32_t i = 0; i < run.motion.body_count(); ++i)
           REQUIRE(trace::equal(replayed.motion.pose(i, step), run.motion.pose(i, step)));
       crowd::redraw_crowd(trace.crowd, replayed, again, "lrbscope render", first + "/trace.json",
-                          test::kSilent);
+                          run::kSilent);
       for (const char* f : {"/frames/frame_0000.png", "/frames/frame_0001.png"})
         CHECK((io::read_text(again + f) == io::read_text(first + f)));
       const std::string page = io::read_text(again + "/index.html");
@@ -193,7 +191,7 @@ TEST_CASE("a crowd's trace is enough to draw it again, pixel by pixel") {
 TEST_CASE("traces of crowds that are cut, damaged, old or of other bodies") {
   spec::Crowd crowd = crowd_of(good());
   crowd.frames.at = spec::FrameSpec::At::none;
-  const crowd::CrowdRun run = crowd::run_crowd(crowd, 1, test::kSilent);
+  const crowd::CrowdRun run = crowd::run_crowd(crowd, 1, run::kSilent);
   const std::string text = trace_of(crowd, run);
   const auto kinds = [&] {
     std::vector<bodies::LoadedBody> out;
@@ -203,7 +201,7 @@ TEST_CASE("traces of crowds that are cut, damaged, old or of other bodies") {
   const auto error = [&](const std::string& damaged, std::vector<bodies::LoadedBody> bodies) -> std::string {
     try {
       static_cast<void>(crowd::replay_crowd(crowd::read_crowd_trace(damaged, "t.json"), std::move(bodies), 1,
-                                            test::kSilent));
+                                            run::kSilent));
     } catch (const InputError& e) {
       CHECK(std::string(e.what()).find('\n') == std::string::npos);
       return e.what();
@@ -216,7 +214,7 @@ TEST_CASE("traces of crowds that are cut, damaged, old or of other bodies") {
   CHECK(cut.steps == 5);
   CHECK(cut.crowd.steps > 0);
   CHECK(cut.crowd.steps < 5);
-  const crowd::CrowdRun part = crowd::replay_crowd(cut, kinds(), 1, test::kSilent);
+  const crowd::CrowdRun part = crowd::replay_crowd(cut, kinds(), 1, run::kSilent);
   CHECK(part.steps.size() == cut.crowd.steps);
   CHECK(part.notes.at(0).find(" of 5 steps (trace.max_events)") != std::string::npos);
   crowd.max_events = 3;
@@ -261,7 +259,7 @@ TEST_CASE("traces of crowds fulfil the schema of traces, on either clock; broken
     for (const char* clock : {"event", "wall"}) {
       text["trace"] = {{"clock", clock}};
       const spec::Crowd c = crowd_of(text);
-      const json trace = json::parse(trace_of(c, crowd::run_crowd(c, 2, test::kSilent)));
+      const json trace = json::parse(trace_of(c, crowd::run_crowd(c, 2, run::kSilent)));
       CHECK(test::trace_faults(trace) == "");
       const auto broken = [&](const char* pointer, const json& value) {
         json bad = trace;
@@ -292,7 +290,7 @@ TEST_CASE("slices of a track lie one after the other, and say what was asked and
   spec::Crowd crowd = crowd_of(good());
   for (const trace::Clock clock : {trace::Clock::event, trace::Clock::wall}) {
     crowd.clock = clock;
-    const crowd::CrowdRun run = crowd::run_crowd(crowd, 2, test::kSilent);
+    const crowd::CrowdRun run = crowd::run_crowd(crowd, 2, run::kSilent);
     const json trace = json::parse(trace_of(crowd, run));
     std::size_t queries = 0, slices = 0;
     for (const crowd::CrowdStep& s : run.steps) queries += s.queries.size();
@@ -311,7 +309,7 @@ TEST_CASE("slices of a track lie one after the other, and say what was asked and
     CHECK(trace["metadata"]["query_slices"]["truncated"] == false);
   }
   crowd.max_events = 3;
-  const json cut = json::parse(trace_of(crowd, crowd::run_crowd(crowd, 1, test::kSilent)));
+  const json cut = json::parse(trace_of(crowd, crowd::run_crowd(crowd, 1, run::kSilent)));
   CHECK(cut["metadata"]["query_slices"]["truncated"] == true);
   CHECK(cut["metadata"]["query_slices"]["stored"] == 3);
 }
@@ -322,7 +320,7 @@ TEST_CASE("bodies stay in the room as far as they fit") {
     crowd.speed = {0.5, 2};
     crowd.frames.at = spec::FrameSpec::At::none;
     crowd.steps = 1;
-    const crowd::CrowdRun run = crowd::run_crowd(crowd, 1, test::kSilent);
+    const crowd::CrowdRun run = crowd::run_crowd(crowd, 1, run::kSilent);
     for (std::uint32_t step = 0; step < 40; ++step)
       for (std::uint32_t i = 0; i < run.motion.body_count(); ++i)
         for (FaceId f = 0; f < run.rep(i).real_face_count(); ++f)
@@ -381,7 +379,7 @@ TEST_CASE("what is wrong with a crowd is said with its place") {
         std::string::npos);
   json mixed = good();
   mixed["bodies"].push_back({{"name", "flat"}, {"body", {{"generator", "island"}}}});
-  CHECK_THROWS_WITH_AS(static_cast<void>(crowd::run_crowd(crowd_of(mixed), 1, test::kSilent)),
+  CHECK_THROWS_WITH_AS(static_cast<void>(crowd::run_crowd(crowd_of(mixed), 1, run::kSilent)),
                        "crowd few: flat is 2D and ball is 3D; give bodies of one dimension", InputError);
   CHECK_THROWS_WITH_AS(static_cast<void>(spec::open_crowd("crowds")),
                        "crowds: neither a shipped crowd nor a file; did you mean \"crowd\"? known: crowd",

@@ -62,7 +62,7 @@ struct ShippedRun {
   Model model;
   trace::Totals totals;
   explicit ShippedRun(const char* name, const Wanted& wanted)
-      : run(run::record(spec::open_scenario(name), [](const std::string&, std::uint64_t, std::uint64_t) {})) {
+      : run(run::record(spec::open_scenario(name), run::kSilent)) {
     const std::size_t step = run.trace.steps.size() - 1;
     const trace::EventId last = run::last_event(run.trace, step), first = run.trace.steps[step].first_event;
     const bool two = run.bodies.size() == 2;

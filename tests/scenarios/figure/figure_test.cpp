@@ -10,7 +10,6 @@
 #include "scenarios/run/run_scenario.hpp"
 #include "scenarios/spec/shipped.hpp"
 #include "tests/support/program.hpp"
-#include "tests/support/silent.hpp"
 #include "tests/support/text.hpp"
 
 using namespace lrb;
@@ -28,7 +27,7 @@ struct Shipped {
   run::RecordedRun run;
   explicit Shipped(const std::string& name)
       : scenario(spec::open_scenario(name)),
-        recording(run::record(scenario, test::kSilent)),
+        recording(run::record(scenario, run::kSilent)),
         run(run::recorded_run_of(scenario, recording)) {}
 };
 
@@ -153,21 +152,21 @@ TEST_CASE("a figure of a 2D body is lines and text, and no pixels") {
   const Shipped s("figure2");
   FigureSpec spec;
   spec.format = FigureSpec::Format::svg;
-  const Figure svg = draw_figure(s.run, {}, spec, test::kSilent);
+  const Figure svg = draw_figure(s.run, {}, spec, run::kSilent);
   CHECK(svg.panels == 6);
   CHECK(count(svg.bytes, "<image") == 0);
   CHECK(count(svg.bytes, ">(f)</text>") == 1);
   CHECK(count(svg.bytes, ">island, wrapper</text>") == 1);
   CHECK(svg.caption.find("(a) outermost wrapper, 8 faces; (b)") != std::string::npos);
   spec.legend = false;
-  const Figure bare = draw_figure(s.run, {}, spec, test::kSilent);
+  const Figure bare = draw_figure(s.run, {}, spec, run::kSilent);
   CHECK(count(bare.bytes, ">island, wrapper</text>") == 0);
   spec.titles = true;
-  CHECK(count(draw_figure(s.run, {}, spec, test::kSilent).bytes, "(a) outermost") == 1);
+  CHECK(count(draw_figure(s.run, {}, spec, run::kSilent).bytes, "(a) outermost") == 1);
   spec.format = FigureSpec::Format::pdf;
-  const Figure pdf = draw_figure(s.run, {}, spec, test::kSilent);
+  const Figure pdf = draw_figure(s.run, {}, spec, run::kSilent);
   CHECK(count(pdf.bytes, "/Subtype /Image") == 0);
-  CHECK(pdf.bytes == draw_figure(s.run, {}, spec, test::kSilent).bytes);
+  CHECK(pdf.bytes == draw_figure(s.run, {}, spec, run::kSilent).bytes);
 }
 
 TEST_CASE("a figure of 3D bodies: faces as pixels, contacts and texts as lines and text") {
@@ -176,12 +175,12 @@ TEST_CASE("a figure of 3D bodies: faces as pixels, contacts and texts as lines a
   spec.format = FigureSpec::Format::svg;
   spec.dpi = 150;
   spec.choice.panels = 2;
-  const Figure svg = draw_figure(s.run, {}, spec, test::kSilent);
+  const Figure svg = draw_figure(s.run, {}, spec, run::kSilent);
   CHECK(count(svg.bytes, "<image") == svg.panels);
   CHECK(count(svg.bytes, "stroke=\"#c41230\"") > 0);  // palette::kContact
   CHECK(count(svg.bytes, ">(a)</text>") == 1);
   spec.format = FigureSpec::Format::png;
-  const Figure png = draw_figure(s.run, {}, spec, test::kSilent);
+  const Figure png = draw_figure(s.run, {}, spec, run::kSilent);
   const auto bytes = std::vector<std::uint8_t>(png.bytes.begin(), png.bytes.end());
   const render::DecodedPng read = render::decode_png(bytes);
   CHECK(read.image.width() == static_cast<int>(std::ceil(85 / 25.4 * 150)));
@@ -195,7 +194,7 @@ TEST_CASE("colours that mean numbers mean the same in all panels") {
   spec.dpi = 40;
   spec::FrameSpec frames;
   frames.colour_by = spec::FrameSpec::ColourBy::face_tests;
-  const Figure all = draw_figure(s.run, frames, spec, test::kSilent);
+  const Figure all = draw_figure(s.run, frames, spec, run::kSilent);
   CHECK(count(all.bytes, ">face tests</text>") == 1);
 }
 

@@ -12,7 +12,6 @@
 #include "scenarios/golden/approve.hpp"
 #include "scenarios/golden/golden_report.hpp"
 #include "tests/support/program.hpp"
-#include "tests/support/silent.hpp"
 #include "trace/trace_json.hpp"
 
 namespace fs = std::filesystem;
@@ -62,7 +61,7 @@ golden::GoldenSpec small_spec() {
 
 golden::GoldenRun play() {
   return golden::play_golden(spec::parse_scenario(two_balls(), "balls.scenario.json"), small_spec(),
-                             test::kSilent);
+                             run::kSilent);
 }
 
 /// The golden of a run, without going through files.

@@ -34,7 +34,7 @@ spec::Scenario rocks() {
 }
 
 run::Recording recorded(const spec::Scenario& s) {
-  return run::record(s, [](const std::string&, std::uint64_t, std::uint64_t) {});
+  return run::record(s, run::kSilent);
 }
 
 /// Returns the number in a cell, whose digits may be in groups.

@@ -14,8 +14,6 @@ using namespace lrb;
 
 namespace {
 
-const run::ProgressReport kQuiet = [](const std::string&, std::uint64_t, std::uint64_t) {};
-
 std::string balls(const std::string& query) {
   return R"({"name": "gap", "purpose": "Two balls meet.", "bodies": {
       "a": {"generator": "ball", "parameters": {"frequency": 4}},
@@ -27,7 +25,7 @@ std::string balls(const std::string& query) {
 }
 
 run::Recording recorded(const std::string& query) {
-  return run::record(spec::parse_scenario(balls(query), "gap.json"), kQuiet);
+  return run::record(spec::parse_scenario(balls(query), "gap.json"), run::kSilent);
 }
 
 bool draws_line(const render::DrawList& list, render::Rgba colour) {
@@ -124,7 +122,7 @@ TEST_CASE("measured runs: a clash of bodies in the plane is refused by step") {
       "motion": {"kind": "poses", "poses": [[1, 0, 0, 0.5, 0, 1, 0, 0, 0, 0, 1, 0]]},
       "query": {"clash": true}})";
   try {
-    run::record(spec::parse_scenario(text, "flat.json"), kQuiet);
+    run::record(spec::parse_scenario(text, "flat.json"), run::kSilent);
     FAIL("no error");
   } catch (const InputError& e) {
     CAPTURE(std::string(e.what()));

@@ -18,7 +18,7 @@ TEST_CASE("a run whose trace names a vertex that the body does not have is refus
   s.events = EventLevel::nodes;
   s.motion.kind = spec::Motion::Kind::poses;
   s.motion.poses = {Pose::translation({0.1, 0, 5})};
-  run::Recording r = run::record(s, [](const std::string&, std::uint64_t, std::uint64_t) {});
+  run::Recording r = run::record(s, run::kSilent);
   const test::Folder folder;
   save_lrb(r.bodies[0].rep, folder / "a.lrb");
   save_lrb(r.bodies[1].rep, folder / "b.lrb");

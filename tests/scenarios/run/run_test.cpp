@@ -16,7 +16,6 @@
 #include "scenarios/run/run_scenario.hpp"
 #include "scenarios/spec/scenario_frames.hpp"
 #include "scenarios/spec/shipped.hpp"
-#include "tests/support/silent.hpp"
 
 using namespace lrb;
 
@@ -41,7 +40,7 @@ spec::Scenario two_balls() {
 }  // namespace
 
 TEST_CASE("an approach ends in contact: apart before, together from then on") {
-  const run::Recording r = run::record(two_balls(), test::kSilent);
+  const run::Recording r = run::record(two_balls(), run::kSilent);
   REQUIRE(r.results.size() == 8);
   for (std::size_t step = 0; step < 3; ++step) CHECK(r.results[step].relation == Relation::separate);
   for (std::size_t step = 3; step < 8; ++step) CHECK(r.results[step].relation == Relation::crossing);
@@ -51,7 +50,7 @@ TEST_CASE("an approach ends in contact: apart before, together from then on") {
 TEST_CASE("an approach that misses says so and still shows the way") {
   spec::Scenario s = two_balls();
   s.motion.target = {0, 5, 0};
-  const run::Recording r = run::record(s, test::kSilent);
+  const run::Recording r = run::record(s, run::kSilent);
   CHECK(r.results.size() >= 2);
   for (const CollideResult& result : r.results) CHECK(result.relation == Relation::separate);
   REQUIRE(r.notes.size() == 1);
@@ -60,7 +59,7 @@ TEST_CASE("an approach that misses says so and still shows the way") {
 
 TEST_CASE("expectations that are not met are named, those that are met are not") {
   spec::Scenario s = two_balls();
-  const run::Recording r = run::record(s, test::kSilent);
+  const run::Recording r = run::record(s, run::kSilent);
   spec::Expectation e;
   e.step = 3;
   e.relation = Relation::crossing;
@@ -89,13 +88,13 @@ spec::Scenario one_rock(spec::Show show) {
 
 TEST_CASE(
     "refinement goes from the outermost wrapper to the body, construction from the body to the wrapper") {
-  const run::Recording down = run::record(one_rock(spec::Show::refinement), test::kSilent);
+  const run::Recording down = run::record(one_rock(spec::Show::refinement), run::kSilent);
   const LrbRep& rep = down.bodies[0].rep;
   CHECK(down.trace.events.size() == 1 + rep.region_count());
   CHECK(down.trace.events.back().boundary == rep.real_face_count());
 
   const spec::Scenario s = one_rock(spec::Show::construction);
-  const run::Recording up = run::record(s, test::kSilent);
+  const run::Recording up = run::record(s, run::kSilent);
   CHECK(up.bodies[0].rep.hash() == rep.hash());
   const std::vector<trace::EventId> frames = run::moments(s.frames, up.trace);
   REQUIRE(frames.size() == rep.layer_count() + 1);
@@ -107,7 +106,7 @@ TEST_CASE(
 
 TEST_CASE("a construction's frames say what each pass made and refused, and nothing of refinements") {
   const spec::Scenario s = one_rock(spec::Show::construction);
-  const run::Recording r = run::record(s, test::kSilent);
+  const run::Recording r = run::record(s, run::kSilent);
   const run::RecordedRun p = run::recorded_run_of(s, r);
   run::FrameState state(r.trace, p.reps, r.results, s.frames, false);
   std::string all;
@@ -136,7 +135,7 @@ TEST_CASE("a body that comes with its regions is shown layer by layer") {
   spec::Scenario s = one_rock(spec::Show::construction);
   s.bodies[0].generator = "fractal";
   s.bodies[0].parameters = {};
-  const run::Recording r = run::record(s, test::kSilent);
+  const run::Recording r = run::record(s, run::kSilent);
   const LrbRep& rep = r.bodies[0].rep;
   CHECK(r.trace.header.construction);
   CHECK(r.notes.size() == 1);
@@ -146,7 +145,7 @@ TEST_CASE("a body that comes with its regions is shown layer by layer") {
 }
 
 TEST_CASE("moments: first and last are always there, never too many") {
-  const run::Recording r = run::record(two_balls(), test::kSilent);
+  const run::Recording r = run::record(two_balls(), run::kSilent);
   spec::FrameSpec spec;
   CHECK(run::moments(spec, r.trace).size() == 8);
   spec.most = 3;
@@ -187,7 +186,7 @@ TEST_CASE("the shipped collisions come out as they promise, and as brute force h
     if (s.show != spec::Show::collision) continue;
     CAPTURE(s.name);
     CHECK_FALSE(s.expect.empty());
-    const run::Recording r = run::record(s, test::kSilent);
+    const run::Recording r = run::record(s, run::kSilent);
     for (const std::string& line : run::mismatches(s, r)) FAIL_CHECK(line);
     const trace::Step& last = r.trace.steps.back();
     const BruteForceResult truth = brute_force(r.bodies[0].rep, last.pose_a, r.bodies[1].rep, last.pose_b);

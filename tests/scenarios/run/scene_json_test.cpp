@@ -35,7 +35,7 @@ run::Recording rocks_that_meet(WrapperMode mode = WrapperMode::regularised,
   s.motion.steps = 1000;
   s.motion.before = 3;
   s.motion.into = 4;
-  return run::record(s, [](const std::string&, std::uint64_t, std::uint64_t) {});
+  return run::record(s, run::kSilent);
 }
 
 run::RecordedRun run_of(const run::Recording& r) {

@@ -44,7 +44,7 @@ run::Recording tetrahedra(spec::Scenario& scenario) {
   scenario.bodies = {{}, {}};
   scenario.events = EventLevel::nodes;
   std::vector<bodies::LoadedBody> bodies(2, bodies::body_of_mesh(shapes::tetrahedron()));
-  return run::record(scenario, std::move(bodies), [](const std::string&, std::uint64_t, std::uint64_t) {});
+  return run::record(scenario, std::move(bodies), run::kSilent);
 }
 
 std::vector<xray::PosePair> some_poses() {
