@@ -22,8 +22,8 @@ constexpr double kLevelStep = 4.0 / 3;
 /// even if there are many.
 constexpr double kFewFaces = 2048, kSmallShare = 1.0 / 16, kSmallStep = 1.1;
 /// A wrapper with a larger share of the body's own faces is no level: the exact query costs hardly more. Also
-/// limits what all levels take together: between two and three times as many faces as a large body has, five
-/// times as many as a small one.
+/// limits what all levels take together: between two and three times as many faces as a large body has, up
+/// to six times as many as a small one.
 constexpr double kMostFaces = 0.5;
 /// More levels than kLevelStep makes of the largest body: a file with more is not one of ours.
 constexpr std::size_t kMostLevels = 256;

@@ -27,10 +27,10 @@ struct Recording {
   std::vector<bodies::LoadedBody> bodies;  ///< A and B, or A alone
   trace::Trace trace;
   std::vector<CollideResult> results;  ///< one for each step; none for one body
-  std::vector<trace::TreeShape>
-      trees;  ///< A's and B's, that were walked, if pairs of their nodes were recorded
-  /// Of each step, if another engine was recorded: the pairs that it got wrong, first those that it reported,
-  /// then those that it missed.
+  /// A's tree and B's, if pairs of their nodes were recorded.
+  std::vector<trace::TreeShape> trees;
+  /// The pairs that another engine got wrong, for each step: first those that it reported, then those that it
+  /// missed. Empty if none was recorded.
   std::vector<std::vector<WrongPair>> wrong;
   std::string first_contact;       ///< when an approach first meets, in words; empty: it does not, or is none
   std::vector<std::string> notes;  ///< for people

@@ -122,7 +122,7 @@ Tried try_one(const GoldenOptions& o, const NamedGolden& g, const run::ProgressR
 class Trials {
  public:
   Trials(const GoldenOptions& o, const Globals& globals, const std::vector<NamedGolden>& todo)
-      : o_(o), todo_(todo), progress_(o.jobs > 1 ? silent() : progress_report(globals.quiet)) {}
+      : o_(o), todo_(todo), progress_(o.jobs > 1 ? run::kSilent : progress_report(globals.quiet)) {}
 
   Tried take(std::size_t i) {
     if (o_.jobs <= 1) return try_one(o_, todo_[i], progress_);
@@ -133,7 +133,6 @@ class Trials {
   }
 
  private:
-  static run::ProgressReport silent() { return run::kSilent; }
   const GoldenOptions& o_;
   const std::vector<NamedGolden>& todo_;
   run::ProgressReport progress_;
