@@ -30,7 +30,8 @@ EventKind kind_of(const TraceNode& node) {
 void read_node_pair(const TraceNode& args, Event& e) {
   NodeEnd end;
   NodeWork work;
-  end.step = args.at("step").named<NodeStep>();
+  const TraceNode& step = args.at("step");
+  end.step = step.string() == "needles" ? NodeStep::whole : step.named<NodeStep>();
   work.box_tests = args.at("box tests").integer<std::uint8_t>();
   work.met = args.at("boxes that meet").integer<std::uint8_t>();
   if (end.step == NodeStep::leaves) {

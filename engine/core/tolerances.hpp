@@ -28,6 +28,9 @@ inline constexpr double kTreeRoundingUnits = 0x1p-50;
 /// transposition; the offset is rounded to float and rotated once or twice, 8 u; boxes are decoded with 3 u;
 /// products and sums of three terms add 4 u. Together this is under 48 u < 2^-18.
 inline constexpr float kKernelRounding = 0x1p-18f;
+/// Bound on the error of a coordinate that is turned to the other node's axes and back, relative to the sum
+/// of the sizes involved. Derivation in kernel_whole.inl: 48 + 112 + 84 + 10 u.
+inline constexpr float kWholeRounding = 0x1p-16f;
 /// Bounds on the error of the difference of two corners of one body, in which the error of the offset between
 /// the nodes cancels. "Reach" is what kKernelRounding is relative to.
 /// - kOwnEdgeRounding, for the body in whose frame the kernel works, relative to its node's radius: corners

@@ -72,19 +72,24 @@ class Way {
     for (;;) {
       const std::array<std::uint32_t, 2> here = {node(0), node(1)};
       const Stepper::Outcome outcome = stepper_.step({here[0], here[1]});
+      if (outcome.parts_whole) {
+        add_nodes({kWhole, kWhole});
+        return end_at_nodes();
+      }
       if (stepper_.is_leaf(Side::a, here[0]) && stepper_.is_leaf(Side::b, here[1]))
         return compare_faces(outcome);
       const std::array<bool, 2> moves = moves_to(outcome);
       for (int s = 0; s < 2; ++s) at_[s] += moves[s];
       add_nodes({moves[0] ? path_[0].child[at_[0]] : kWhole, moves[1] ? path_[1].child[at_[1]] : kWhole});
-      if (!goes_on_) {
-        out_.decided_by = out_.nodes.back().gap > 0 ? DecidedBy::node_boxes : DecidedBy::needles;
-        return;
-      }
+      if (!goes_on_) return end_at_nodes();
     }
   }
 
  private:
+  void end_at_nodes() {
+    out_.decided_by = out_.nodes.back().gap > 0 ? DecidedBy::node_boxes : DecidedBy::node_edges;
+  }
+
   const ObbTree& tree(Side side) const { return ctx_[side].tree(); }
   std::uint32_t node(int s) const { return path_[s].nodes[at_[s]]; }
   std::uint32_t next(int s) const {

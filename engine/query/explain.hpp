@@ -22,7 +22,7 @@ namespace lrb {
 /// What decided about two faces.
 enum class DecidedBy : std::uint8_t {
   node_boxes,  ///< boxes of nodes above them are apart
-  needles,     ///< so are these, along directions that are tried for trees full of needles
+  node_edges,  ///< so are these, along a direction across an axis of each
   face_boxes,  ///< the boxes of the faces themselves are apart
   planes,      ///< the plane of one has all of the other on one side, in floats with bounded errors
   floats,      ///< other tests in floats with bounded errors
@@ -30,7 +30,7 @@ enum class DecidedBy : std::uint8_t {
 };
 constexpr auto words_of(DecidedBy) {
   return std::to_array<EnumWord<DecidedBy>>({{DecidedBy::node_boxes, "node_boxes"},
-                                             {DecidedBy::needles, "needles"},
+                                             {DecidedBy::node_edges, "node_edges"},
                                              {DecidedBy::face_boxes, "face_boxes"},
                                              {DecidedBy::planes, "planes"},
                                              {DecidedBy::floats, "floats"},
@@ -114,7 +114,7 @@ struct WalkExplanation {
   CollideResult result;           ///< as collide() gives it, with a separation where there is one
   BoxPair roots;                  ///< the boxes round both bodies
   std::vector<WalkDepth> depths;  ///< by the number of steps from the roots
-  std::uint64_t leaf_pairs = 0;   ///< pairs of leaves compared
+  std::uint64_t leaf_pairs = 0;   ///< pairs of leaves whose faces were compared
   std::uint64_t face_pairs = 0;   ///< pairs of faces whose boxes meet
   std::uint64_t left = 0;         ///< those of them that planes do not part; these are compared one by one
   std::uint64_t certain = 0;      ///< those of them about which floats are certain

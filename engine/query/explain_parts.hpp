@@ -26,6 +26,7 @@ class Stepper {
     std::vector<NodePair> children;
     std::vector<Candidate> candidates;
     std::uint64_t face_pairs;  ///< whose boxes meet
+    bool parts_whole;          ///< the nodes' own boxes are apart: nothing in them was compared
   };
 
   Outcome step(const NodePair& pair);
@@ -38,6 +39,7 @@ class Stepper {
 
   QueryContext& ctx_;
   TreeKernel k_;
+  std::array<NodePair, 1> parted_nodes_;
 };
 
 using Corners = std::array<const double*, 3>;

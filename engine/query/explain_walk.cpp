@@ -52,6 +52,10 @@ class NearestBoxes {
   NearestBoxes(QueryContext& ctx, const Stepper& stepper) : ctx_(ctx), stepper_(stepper) {}
 
   void see(const NodePair& pair, const Stepper::Outcome& outcome) {
+    if (outcome.parts_whole) {
+      const auto whole = [&](Side side, std::uint32_t node) { return boxes(side, node, false).front(); };
+      return see(whole(Side::a, pair.a), whole(Side::b, pair.b), false);
+    }
     const bool leaf_a = stepper_.is_leaf(Side::a, pair.a), leaf_b = stepper_.is_leaf(Side::b, pair.b);
     // Which nodes were descended shows in the pairs that met; where none did, in what there was to descend.
     bool down_a = !leaf_a, down_b = !leaf_b;
@@ -191,7 +195,8 @@ WalkExplanation explain_walk(const LrbRep& a, const Pose& pose_a, const LrbRep& 
       const Stepper::Outcome outcome = stepper.step(pair);
       ++depth.node_pairs;
       depth.ended += outcome.children.empty() && outcome.face_pairs == 0;
-      out.leaf_pairs += stepper.is_leaf(Side::a, pair.a) && stepper.is_leaf(Side::b, pair.b);
+      out.leaf_pairs +=
+          !outcome.parts_whole && stepper.is_leaf(Side::a, pair.a) && stepper.is_leaf(Side::b, pair.b);
       out.face_pairs += outcome.face_pairs;
       if (out.result.pairs.empty()) nearest_boxes.see(pair, outcome);
       out.left += outcome.candidates.size();

@@ -14,8 +14,6 @@ struct AffineWalk {
   static Skewed between(const TreeKernel& k, const TreeNode& a, const TreeNode& b) {
     return between_skewed(k, a, b);
   }
-  static bool has_more_directions(const TreeKernel&) { return false; }
-  static bool more_parts(const TreeKernel&, const TreeNode&, const TreeNode&) { return false; }
   static float size(const TreeKernel& k, const TreeNode& n, Side side) {
     return n.radius * k.affine->span[static_cast<int>(side)];
   }
@@ -24,7 +22,8 @@ struct AffineWalk {
 }  // namespace
 
 void LRB_AFFINE_KERNEL_NAME(TreeKernel& k) {
-  k.nearest_first ? run<AffineWalk, true>(k) : run<AffineWalk, false>(k);
+  if (k.nearest_first) run_nearest<AffineWalk>(k);
+  run<AffineWalk, false>(k, k.most_node_pairs);
 }
 
 }  // namespace lrb

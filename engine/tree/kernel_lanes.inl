@@ -130,5 +130,23 @@ inline Float8 load8(const float* x) {
   return *reinterpret_cast<const Float8*>(x);
 }
 
+inline Float8 join(Float4 low, Float4 high) {
+  return __builtin_shufflevector(low, high, 0, 1, 2, 3, 4, 5, 6, 7);
+}
+
+/// Transposes eight rows of four.
+inline void transpose(const Float4* row, Float8* column) {
+  Float8 pair[4];  // rows 0 and 4, 1 and 5, 2 and 6, 3 and 7
+  for (int i = 0; i < 4; ++i) pair[i] = join(row[i], row[4 + i]);
+  const Float8 low01 = __builtin_shufflevector(pair[0], pair[1], 0, 8, 1, 9, 4, 12, 5, 13);
+  const Float8 low23 = __builtin_shufflevector(pair[2], pair[3], 0, 8, 1, 9, 4, 12, 5, 13);
+  const Float8 high01 = __builtin_shufflevector(pair[0], pair[1], 2, 10, 3, 11, 6, 14, 7, 15);
+  const Float8 high23 = __builtin_shufflevector(pair[2], pair[3], 2, 10, 3, 11, 6, 14, 7, 15);
+  column[0] = __builtin_shufflevector(low01, low23, 0, 1, 8, 9, 4, 5, 12, 13);
+  column[1] = __builtin_shufflevector(low01, low23, 2, 3, 10, 11, 6, 7, 14, 15);
+  column[2] = __builtin_shufflevector(high01, high23, 0, 1, 8, 9, 4, 5, 12, 13);
+  column[3] = __builtin_shufflevector(high01, high23, 2, 3, 10, 11, 6, 7, 14, 15);
+}
+
 }  // namespace
 }  // namespace lrb

@@ -60,7 +60,6 @@ TreeKernel kernel_of(const RelativeTurn& turn, const ObbTree& a, const Pose& pos
   const double on_b = turn.defect_m * (b.extent() / unit) + turn_m * on_a;
   k.slack = static_cast<float>(kPoseSafety * (on_a + on_b)) * kFloatUp + kKernelTiny;
   k.m_size = static_cast<float>(turn_m) * kFloatUp;
-  k.needles = a.has_needles() && b.has_needles();
   k.most_node_pairs = kNoLimit;
   return k;
 }
@@ -82,6 +81,14 @@ TreeKernel set_up_any_kernel(const ObbTree& a, const Pose& pose_a, const ObbTree
   return turn.is_near_rotation() && is_near(a, pose_a, b, pose_b)
              ? kernel_of(turn, a, pose_a, b, pose_b)
              : set_up_affine_kernel(a, pose_a, b, pose_b, dim, terms);
+}
+
+void start_at_roots(TreeKernel& k, const ObbTree& a, const ObbTree& b, std::vector<NodePair>& room) {
+  const std::size_t each = stack_room(a.height(), b.height());
+  if (room.size() < 2 * each) room.resize(2 * each);
+  k.stack = room.data();
+  k.tested = k.stack + each;
+  start_at(k, {0, 0});
 }
 
 void allow_for_wrappers(TreeKernel& k) {

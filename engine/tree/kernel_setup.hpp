@@ -3,6 +3,7 @@
 /// on all errors that come with it.
 
 #include <algorithm>
+#include <vector>
 
 #include "engine/core/pose.hpp"
 #include "engine/tree/tree_kernel.hpp"
@@ -14,7 +15,7 @@ inline double query_unit(const ObbTree& a, const ObbTree& b) {
   return std::max(a.unit(), b.unit());
 }
 
-/// Returns a kernel with everything filled in but its buffers (stack and out). Meant for poses that are
+/// Returns a kernel with everything filled in but its buffers (stacks and out). Meant for poses that are
 /// nearly rotations; for others it is right, too, but culls little.
 TreeKernel set_up_kernel(const ObbTree& a, const Pose& pose_a, const ObbTree& b, const Pose& pose_b);
 
@@ -22,6 +23,9 @@ TreeKernel set_up_kernel(const ObbTree& a, const Pose& pose_a, const ObbTree& b,
 /// must live as long as the kernel. dim: that of both bodies.
 TreeKernel set_up_any_kernel(const ObbTree& a, const Pose& pose_a, const ObbTree& b, const Pose& pose_b,
                              int dim, AffineTerms& terms);
+
+/// Puts the pair of roots on the kernel's stacks, which are in `room`; that grows if it has to.
+void start_at_roots(TreeKernel& k, const ObbTree& a, const ObbTree& b, std::vector<NodePair>& room);
 
 /// Makes the kernel of two wrappers allow for what rounding does to the bodies in them, too: see
 /// kWrapperSlack.

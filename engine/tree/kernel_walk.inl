@@ -3,6 +3,7 @@
 // to each other.
 
 #include "engine/tree/kernel_triangles.inl"
+#include "engine/tree/kernel_whole.inl"
 
 namespace lrb {
 namespace {
@@ -47,8 +48,8 @@ inline Float8 gaps_of(const Row& row, const Boxes& own_b, const Turned& bt) {
 /// meet. Most pairs of nodes are apart, and most of these show it in the first test. kGaps: finds the gaps,
 /// too.
 template <bool kMargin, bool kGaps, class Lie>
-inline std::uint32_t pair_masks(TreeKernel& k, const TreeNode& na, const TreeNode& nb, const Lie& w,
-                                std::uint32_t mask[8], Gaps* gaps = nullptr) {
+inline std::uint64_t pair_masks(TreeKernel& k, const TreeNode& na, const TreeNode& nb, const Lie& w,
+                                Gaps* gaps = nullptr) {
   k.box_tests += na.count + nb.count;
   const Whole whole_a = whole_on_own(whole_of(na, k.ratio_a), Side::a, w);
   const Boxes b = decode(nb, k.ratio_b);
@@ -61,7 +62,7 @@ inline std::uint32_t pair_masks(TreeKernel& k, const TreeNode& na, const TreeNod
   const std::uint32_t mask_a = ~bits(apart(at.centre, at.half, whole_b.centre, whole_b.half)) & present(na);
   const Boxes &own_a = boxes_on_own(a, Side::a, w), &own_b = boxes_on_own(b, Side::b, w);
   const auto in_mask_b = static_cast<unsigned>(__builtin_popcount(mask_b));
-  std::uint32_t rows = 0;
+  std::uint64_t all = 0;
   int alone =
       -1;  // the only row so far, if it has one pair: its gap is not needed unless there is another row
   for (std::uint32_t todo = mask_a; todo != 0; todo &= todo - 1) {
@@ -69,11 +70,11 @@ inline std::uint32_t pair_masks(TreeKernel& k, const TreeNode& na, const TreeNod
     const Row row = row_of(own_a, at, i);
     const Lanes gap = either(apart(bt.centre, bt.half, row.own_centre, row.own_half),
                              apart(own_b.centre, own_b.half, row.turned_centre, row.turned_half));
-    mask[i] = ~bits(gap) & mask_b;
+    const std::uint32_t mask = ~bits(gap) & mask_b;
     k.box_tests += in_mask_b;
     if constexpr (kGaps) {
-      if (mask[i] == 0) continue;
-      if (rows == 0 && (mask[i] & (mask[i] - 1)) == 0) {
+      if (mask == 0) continue;
+      if (all == 0 && (mask & (mask - 1)) == 0) {
         alone = i;
       } else {
         if (alone >= 0) gaps->of[alone] = gaps_of(row_of(own_a, at, alone), own_b, bt);
@@ -81,9 +82,9 @@ inline std::uint32_t pair_masks(TreeKernel& k, const TreeNode& na, const TreeNod
         gaps->of[i] = gaps_of(row, own_b, bt);
       }
     }
-    rows |= static_cast<std::uint32_t>(mask[i] != 0) << i;
+    all |= static_cast<std::uint64_t>(mask) << (8 * i);
   }
-  return rows;
+  return all;
 }
 
 /// Writes the corners of two leaves' simplices to `a` and `b`, in the frame of A's leaf and query units, and
@@ -148,20 +149,14 @@ inline void nearest_last(NodePair* pairs, float* gaps, std::uint32_t size) {
 /// is enough, it is likely to be there.
 template <class Walk, bool kNearest>
 inline void descend_both(TreeKernel& k, const TreeNode& na, const TreeNode& nb) {
-  std::uint32_t mask[8];
   Gaps gaps;
-  const std::uint32_t rows =
-      pair_masks<Walk::kMargin, kNearest>(k, na, nb, Walk::between(k, na, nb), mask, &gaps);
-  if (rows == 0) return;
+  const std::uint64_t pairs = pair_masks<Walk::kMargin, kNearest>(k, na, nb, Walk::between(k, na, nb), &gaps);
   float gap_of[64];
   const std::uint32_t bottom = k.stack_size;
-  for (std::uint32_t r = rows; r != 0; r &= r - 1) {
-    const std::uint32_t i = static_cast<std::uint32_t>(__builtin_ctz(r));
-    for (std::uint32_t c = mask[i]; c != 0; c &= c - 1) {
-      const int j = __builtin_ctz(c);
-      if constexpr (kNearest) gap_of[k.stack_size - bottom] = gaps.of[i][j];
-      push(k, na.first + i, nb.first + static_cast<std::uint32_t>(j));
-    }
+  for (std::uint64_t c = pairs; c != 0; c &= c - 1) {
+    const std::uint32_t at = static_cast<std::uint32_t>(__builtin_ctzll(c)), i = at / 8, j = at % 8;
+    if constexpr (kNearest) gap_of[k.stack_size - bottom] = gaps.of[i][j];
+    push(k, na.first + i, nb.first + j);
   }
   if constexpr (kNearest) nearest_last(k.stack + bottom, gap_of, k.stack_size - bottom);
 }
@@ -204,13 +199,11 @@ struct PairList {
   std::uint32_t size = 0;
 };
 
-inline void list_pairs(std::uint32_t rows, const std::uint32_t mask[8], PairList& list) {
-  for (; rows != 0; rows &= rows - 1) {
-    const int i = __builtin_ctz(rows);
-    for (std::uint32_t c = mask[i]; c != 0; c &= c - 1) {
-      list.a[list.size] = static_cast<std::uint8_t>(i);
-      list.b[list.size++] = static_cast<std::uint8_t>(__builtin_ctz(c));
-    }
+inline void list_pairs(std::uint64_t pairs, PairList& list) {
+  for (; pairs != 0; pairs &= pairs - 1) {
+    const int at = __builtin_ctzll(pairs);
+    list.a[list.size] = static_cast<std::uint8_t>(at / 8);
+    list.b[list.size++] = static_cast<std::uint8_t>(at % 8);
   }
   __builtin_memset(list.a + list.size, 0, 8);
   __builtin_memset(list.b + list.size, 0, 8);
@@ -231,13 +224,12 @@ template <class Walk>
 inline void leaf_pair(TreeKernel& k, const TreeNode& na, const TreeNode& nb) {
   constexpr bool kMargin = Walk::kMargin;
   const auto w = Walk::between(k, na, nb);
-  std::uint32_t mask[8];
-  const std::uint32_t rows = pair_masks<kMargin, false>(k, na, nb, w, mask);
-  if (rows == 0) return;
+  const std::uint64_t pairs = pair_masks<kMargin, false>(k, na, nb, w);
+  if (pairs == 0) return;
   const LeafBlock& block_a = k.blocks_a[na.first];
   const LeafBlock& block_b = k.blocks_b[nb.first];
   PairList list;
-  list_pairs(rows, mask, list);
+  list_pairs(pairs, list);
   k.prefilter_tests += list.size;
   Corners a, b;
   const Between& errors = corners_of(k, na, nb, w, a, b);
@@ -262,34 +254,103 @@ inline void leaf_pair(TreeKernel& k, const TreeNode& na, const TreeNode& nb) {
   }
 }
 
-/// The nearest pair of boxes is looked for in the first so many pairs of nodes: bodies that meet mostly show
-/// it in these, and for bodies that do not meet any order is as good.
-constexpr std::uint64_t kNearestPairs = 24;
+/// Compares what is in two nodes. Puts pairs of their children that may meet on the stack.
+template <class Walk, bool kNearest>
+inline void open(TreeKernel& k, const NodePair& pair) {
+  const TreeNode& a = k.nodes_a[pair.a];
+  const TreeNode& b = k.nodes_b[pair.b];
+  ++k.node_pairs;
+  k.opened = pair;
+  k.opened_at = k.stack_size;
+  const float size_a = Walk::size(k, a, Side::a), size_b = Walk::size(k, b, Side::b);
+  const bool hold_a = a.is_leaf || size_b > kMuchLarger * size_a;
+  const bool hold_b = b.is_leaf || size_a > kMuchLarger * size_b;
+  if (a.is_leaf && b.is_leaf)
+    leaf_pair<Walk>(k, a, b);
+  else if (!a.is_leaf && hold_b)
+    descend_a<Walk>(k, a, b, pair.b);
+  else if (!b.is_leaf && hold_a)
+    descend_b<Walk>(k, a, b, pair.a);
+  else
+    descend_both<Walk, kNearest>(k, a, b);
+}
+
+/// Returns true if there is room for what may come of a pair of leaves, and not yet `end` pairs of nodes.
+inline bool may_go_on(const TreeKernel& k, std::uint64_t end) {
+  return k.out_capacity - k.out_size >= 64 && k.node_pairs < end;
+}
 
 template <class Walk, bool kNearest>
-void run(TreeKernel& k) {
-  const std::uint64_t end = kNearest && kNearestPairs < k.most_node_pairs ? kNearestPairs : k.most_node_pairs;
-  const bool has_more_directions = Walk::has_more_directions(k);
-  while (k.stack_size != 0 && k.out_capacity - k.out_size >= 64 && k.node_pairs < end) {
-    const NodePair p = k.stack[--k.stack_size];
-    const TreeNode& a = k.nodes_a[p.a];
-    const TreeNode& b = k.nodes_b[p.b];
-    ++k.node_pairs;
-    if (has_more_directions && Walk::more_parts(k, a, b)) continue;
-    const float size_a = Walk::size(k, a, Side::a), size_b = Walk::size(k, b, Side::b);
-    const bool hold_a = a.is_leaf || size_b > kMuchLarger * size_a;
-    const bool hold_b = b.is_leaf || size_a > kMuchLarger * size_b;
-    if (a.is_leaf && b.is_leaf)
-      leaf_pair<Walk>(k, a, b);
-    else if (!a.is_leaf && hold_b)
-      descend_a<Walk>(k, a, b, p.b);
-    else if (!b.is_leaf && hold_a)
-      descend_b<Walk>(k, a, b, p.a);
-    else
-      descend_both<Walk, kNearest>(k, a, b);
+void run(TreeKernel& k, std::uint64_t end) {
+  while (k.stack_size != 0 && may_go_on(k, end)) {
+    const NodePair pair = k.stack[--k.stack_size];
+    open<Walk, kNearest>(k, pair);
+    k.base = k.stack_size;
   }
-  if constexpr (kNearest)
-    if (k.node_pairs >= kNearestPairs) run<Walk, false>(k);
+}
+
+/// Notes the pairs of nodes that are parted as wholes.
+[[gnu::noinline]] inline void note_parted_nodes(TreeKernel& k, const NodePair* pairs, std::uint32_t apart) {
+  for (; apart != 0; apart &= apart - 1) k.parted_nodes[k.parted_nodes_size++] = pairs[__builtin_ctz(apart)];
+}
+
+/// Compares whole nodes, the first pairs on the stack, and moves those that may meet to `tested`. `count`: at
+/// most 8.
+inline void test_wholes(TreeKernel& k, const NodePair* pairs, std::uint32_t count) {
+  const std::uint32_t apart = pairs_apart(k, pairs, count);
+  const auto parted = static_cast<unsigned>(__builtin_popcount(apart));
+  k.node_pairs += parted;
+  k.box_tests += parted;
+  if (k.parted_nodes != nullptr && apart != 0) [[unlikely]]
+    note_parted_nodes(k, pairs, apart);
+  for (std::uint32_t c = ~apart & ((1u << count) - 1); c != 0; c &= c - 1)
+    k.tested[k.tested_size++] = pairs[__builtin_ctz(c)];
+}
+
+/// Does so for all full eights that have come onto the stack, and if nothing else is to be done for the rest
+/// of them, too, or for the last ones of those that waited before.
+inline void test_stack(TreeKernel& k) {
+  const std::uint32_t came = k.stack_size - k.base, over = came % 8;
+  NodePair* const pairs = k.stack + k.base;
+  for (std::uint32_t at = 0; at + 8 <= came; at += 8) test_wholes(k, pairs + at, 8);
+  if (k.tested_size == 0 && came == 0) {
+    const std::uint32_t last = k.base < 8 ? k.base : 8;
+    k.base -= last;
+    test_wholes(k, pairs - last, last);
+  } else if (k.tested_size == 0) {
+    test_wholes(k, pairs + (came - over), over);
+  } else {
+    for (std::uint32_t i = 0; i < over; ++i) pairs[i] = pairs[came - over + i];
+    k.stack_size = k.base + over;
+    return;
+  }
+  k.stack_size = k.base;
+}
+
+/// Does what run() does, but compares whole nodes before what is in them: half of the pairs end there, for a
+/// fraction of the work, if eight are compared at a time. So that there are eight, pairs wait for others.
+template <class Walk>
+void run_tested(TreeKernel& k, std::uint64_t end) {
+  while (!is_done(k) && may_go_on(k, end)) {
+    if (k.stack_size - k.base >= 8 || k.tested_size == 0) {
+      test_stack(k);
+    } else {
+      const NodePair pair = k.tested[--k.tested_size];
+      ++k.box_tests;  // of the whole nodes
+      open<Walk, false>(k, pair);
+    }
+  }
+}
+
+/// The nearest pair of boxes is looked for in the first so many pairs of nodes: bodies that meet mostly show
+/// it in these, and for bodies that do not meet any order is as good.
+constexpr std::uint64_t kNearestPairs = 16;
+
+/// Begins with the nearest boxes, where one pair of simplices is enough.
+template <class Walk>
+void run_nearest(TreeKernel& k) {
+  const std::uint64_t most = k.most_node_pairs;
+  run<Walk, true>(k, kNearestPairs < most ? kNearestPairs : most);
 }
 
 }  // namespace

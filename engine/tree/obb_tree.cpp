@@ -279,7 +279,6 @@ class ObbTreeBuilder {
     ObbTreeBuilder(tree, soup, workers, splits);
     tree.nodes_.shrink_to_fit();
     tree.blocks_.shrink_to_fit();
-    tree.look_for_needles();
   }
 
  private:
@@ -433,19 +432,6 @@ void ObbTree::measure(const SimplexView& body, std::span<const SimplexId> simpli
 
 ObbTree::ObbTree(const SimplexView& body, unsigned threads) {
   ObbTreeBuilder::build(*this, body, body.real_simplices(), Splits::binned, threads);
-}
-
-void ObbTree::look_for_needles() {
-  constexpr float kSlim = 64;  // times as long as wide
-  constexpr std::size_t kMany = 8;
-  std::size_t needles = 0;
-  for (const TreeNode& n : nodes_) {
-    if (!n.is_leaf) continue;
-    std::array<float, 3> size = {n.scale[0], n.scale[1], n.scale[2]};
-    std::sort(size.begin(), size.end());
-    needles += size[2] > kSlim * size[1];
-  }
-  has_needles_ = blocks_.size() >= kMany && needles * kMany >= blocks_.size();
 }
 
 ObbTree::ObbTree(const SimplexView& body, std::span<const SimplexId> simplices, unsigned threads) {

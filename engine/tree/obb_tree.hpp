@@ -73,8 +73,6 @@ class ObbTree {
   double unit() const { return unit_; }      ///< a power of two; coordinates / unit are in units
   double extent() const { return extent_; }  ///< largest absolute coordinate of a corner, mesh's unit
   std::uint32_t height() const { return height_; }
-  /// Returns true if many blocks are far longer than wide, as those of fans with thousands of triangles are.
-  bool has_needles() const { return has_needles_; }
   std::size_t memory_bytes() const {
     return nodes_.capacity() * sizeof(TreeNode) + blocks_.capacity() * sizeof(LeafBlock);
   }
@@ -82,14 +80,12 @@ class ObbTree {
  private:
   friend class ObbTreeBuilder;
   void measure(const SimplexView& body, std::span<const SimplexId> simplices);  ///< sets unit and extent
-  void look_for_needles();
 
   std::vector<TreeNode> nodes_;
   std::vector<LeafBlock> blocks_;
   double unit_ = 1;
   double extent_ = 0;
   std::uint32_t height_ = 0;
-  bool has_needles_ = false;
 };
 
 }  // namespace lrb

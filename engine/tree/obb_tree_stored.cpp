@@ -113,7 +113,6 @@ ObbTree::ObbTree(const SimplexView& body, std::span<const SimplexId> simplices, 
     for (std::uint32_t k = 0; nodes_[i].is_leaf == 0 && k < nodes_[i].count; ++k)
       height[nodes_[i].first + k] = height[i] + 1;
   }
-  look_for_needles();
 }
 
 bool ObbTree::bounds_hold(const SimplexView& body) const {

@@ -34,21 +34,10 @@ struct EightSimplices {
   EightSimplices(const CachedSimplex* table, const std::uint32_t* which) {  // every second entry of `which`
     Float8 column[3][4];
     for (int part = 0; part < 3; ++part) {
-      Float8 row[4];
-      for (int i = 0; i < 4; ++i) {
-        Float4 low, high;
-        __builtin_memcpy(&low, part_of(table[which[2 * i]], part), sizeof low);
-        __builtin_memcpy(&high, part_of(table[which[2 * (i + 4)]], part), sizeof high);
-        row[i] = __builtin_shufflevector(low, high, 0, 1, 2, 3, 4, 5, 6, 7);
-      }
-      const Float8 low01 = __builtin_shufflevector(row[0], row[1], 0, 8, 1, 9, 4, 12, 5, 13);
-      const Float8 low23 = __builtin_shufflevector(row[2], row[3], 0, 8, 1, 9, 4, 12, 5, 13);
-      const Float8 high01 = __builtin_shufflevector(row[0], row[1], 2, 10, 3, 11, 6, 14, 7, 15);
-      const Float8 high23 = __builtin_shufflevector(row[2], row[3], 2, 10, 3, 11, 6, 14, 7, 15);
-      column[part][0] = __builtin_shufflevector(low01, low23, 0, 1, 8, 9, 4, 5, 12, 13);
-      column[part][1] = __builtin_shufflevector(low01, low23, 2, 3, 10, 11, 6, 7, 14, 15);
-      column[part][2] = __builtin_shufflevector(high01, high23, 0, 1, 8, 9, 4, 5, 12, 13);
-      column[part][3] = __builtin_shufflevector(high01, high23, 2, 3, 10, 11, 6, 7, 14, 15);
+      Float4 row[8];
+      for (int k = 0; k < 8; ++k)
+        __builtin_memcpy(&row[k], part_of(table[which[2 * k]], part), sizeof row[k]);
+      transpose(row, column[part]);
     }
     for (int x = 0; x < 3; ++x) {
       corner[x] = column[x / 4][x % 4];

@@ -7,14 +7,12 @@ namespace lrb {
 void for_each_self_pair(const ObbTree& tree, const std::function<void(SimplexId, SimplexId)>& visit) {
   if (tree.empty()) return;
   TreeKernel k = set_up_kernel(tree, Pose{}, tree, Pose{});
-  std::vector<NodePair> stack(128 * tree.height() + 64);
+  std::vector<NodePair> pairs;
   std::vector<Candidate> candidates(4096);
-  k.stack = stack.data();
-  k.stack[0] = {0, 0};
-  k.stack_size = 1;
+  start_at_roots(k, tree, tree, pairs);
   k.out = candidates.data();
   k.out_capacity = static_cast<std::uint32_t>(candidates.size());
-  while (k.stack_size != 0) {
+  while (!is_done(k)) {
     k.out_size = 0;
     run_tree_kernel(k);
     for (std::uint32_t i = 0; i < k.out_size; ++i)

@@ -4,6 +4,7 @@
 ///
 /// Contains only plain structures: this header is compiled once per instruction set (tree_kernel_*.cpp).
 
+#include <cstddef>
 #include <cstdint>
 
 #include "engine/tree/obb_tree.hpp"
@@ -89,10 +90,11 @@ struct TreeKernel {
   bool nearest_first;   ///< without a margin: descend first where boxes overlap most, at the beginning
   AffineTerms* affine;  ///< null, or these maps take the place of m, t and slack (without a margin)
 
-  bool needles;  ///< both trees are full of needles: try more directions (see kernel_needles.inl)
-
-  NodePair* stack;  ///< room for 64 * (height of A + height of B) + 64 pairs
-  std::uint32_t stack_size;
+  /// Pairs of nodes to be visited, for which there must be room: see stack_room(). Where whole nodes are
+  /// compared first, pairs that this does not part are moved from `stack` to `tested`.
+  NodePair *stack, *tested;
+  std::uint32_t stack_size, tested_size;
+  std::uint32_t base;  ///< so many on the stack have waited since before whole nodes were compared
   Candidate* out;
   std::uint32_t out_capacity;  ///< at least 64
   std::uint32_t out_size;
@@ -101,11 +103,39 @@ struct TreeKernel {
       parted;  ///< null, or room for 64 pairs: those that planes part; only for one pair of nodes at a time
   std::uint32_t parted_size;
 
+  // For whoever watches one step after another; a step ends with the first pair of nodes that it adds to
+  // node_pairs:
+  NodePair* parted_nodes;  ///< null, or as much room as in `stack`: those that were parted as wholes
+  std::uint32_t parted_nodes_size;
+  NodePair opened;          ///< the last pair whose boxes inside were compared
+  std::uint32_t opened_at;  ///< stack_size without the pairs that came of it
+
   std::uint64_t node_pairs, box_tests, prefilter_tests;
   std::uint64_t most_node_pairs;  ///< where to stop; may be raised to go on
 };
 
-/// Traverses until the stack is empty, fewer than 64 places are left in `out`, or most_node_pairs are
+/// Returns how many pairs `stack` needs room for, and `tested` too.
+///
+/// A pair that is visited leaves at most 64 others. If they are visited depth first, 63 wait for each step
+/// down. Of pairs in eights at most 7 are left over until as many as that have come of others, so that a pair
+/// is put on `tested` with at most 78 that would not be there depth first.
+inline std::size_t stack_room(std::uint32_t height_a, std::uint32_t height_b) {
+  return 160 * (std::size_t{height_a} + height_b) + 160;
+}
+
+/// Returns true if no pair of nodes waits to be visited.
+inline bool is_done(const TreeKernel& k) {
+  return k.stack_size + k.tested_size == 0;
+}
+
+/// Makes one pair of nodes all there is to be visited.
+inline void start_at(TreeKernel& k, NodePair pair) {
+  k.stack[0] = pair;
+  k.stack_size = 1;
+  k.tested_size = k.base = 0;
+}
+
+/// Traverses until no pair waits, fewer than 64 places are left in `out`, or most_node_pairs are
 /// reached. Uses the newest instruction set that the processor has; the environment variable LRB_SIMD, read
 /// at the first call, limits it to AVX2 ("avx2") or to what every processor has ("baseline"). The outcome is
 /// the same, counters included (tests/repeat/repeat.sh).

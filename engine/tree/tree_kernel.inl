@@ -5,7 +5,6 @@
 // The floating-point operations are the same for every instruction set and are not contracted, so that
 // counters and traces do not depend on the processor.
 
-#include "engine/tree/kernel_needles.inl"
 #include "engine/tree/kernel_walk.inl"
 
 namespace lrb {
@@ -18,12 +17,6 @@ struct RigidWalk {
   static Between between(const TreeKernel& k, const TreeNode& a, const TreeNode& b) {
     return lrb::between<kMargin>(k, a, b);
   }
-  /// Returns true if there are more directions that may part two nodes: they are tried for trees full of
-  /// needles.
-  static bool has_more_directions(const TreeKernel& k) { return !kMargin && k.needles; }
-  static bool more_parts(const TreeKernel& k, const TreeNode& a, const TreeNode& b) {
-    return needles_apart(k, a, b);
-  }
   static float size(const TreeKernel& k, const TreeNode& n, Side side) {
     return n.radius * (side == Side::a ? k.ratio_a : k.ratio_b);
   }
@@ -32,10 +25,9 @@ struct RigidWalk {
 }  // namespace
 
 void LRB_KERNEL_NAME(TreeKernel& k) {
-  if (k.margin > 0)
-    run<RigidWalk<true>, false>(k);
-  else
-    k.nearest_first ? run<RigidWalk<false>, true>(k) : run<RigidWalk<false>, false>(k);
+  if (k.margin > 0) return run<RigidWalk<true>, false>(k, k.most_node_pairs);
+  if (k.nearest_first) run_nearest<RigidWalk<false>>(k);
+  run_tested<RigidWalk<false>>(k, k.most_node_pairs);
 }
 
 }  // namespace lrb

@@ -83,7 +83,7 @@ void bind_pair(py::module_& m) {
       "str: 'disjoint', 'touch' or 'cross'.");
   c.def_property_readonly(
       "decided_by", [](const OfPair& e) { return py::str(std::string(name_of(e.told.decided_by))); },
-      "str: 'node_boxes', 'needles', 'face_boxes', 'planes', 'floats' or 'exact'.");
+      "str: 'node_boxes', 'node_edges', 'face_boxes', 'planes', 'floats' or 'exact'.");
   c.def_property_readonly(
       "hidden_by", &hidden_by,
       "((i,) uint32, (j,) uint32): the regions that hide the face of A and of B in the outermost "

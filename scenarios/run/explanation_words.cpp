@@ -6,8 +6,8 @@ std::string_view words(DecidedBy by) {
   switch (by) {
     case DecidedBy::node_boxes:
       return "boxes of the trees' nodes, which are apart";
-    case DecidedBy::needles:
-      return "a direction across the boxes of two nodes full of needles";
+    case DecidedBy::node_edges:
+      return "a direction across the edges of two nodes' boxes, which are apart along it";
     case DecidedBy::face_boxes:
       return "the faces' own boxes, which are apart";
     case DecidedBy::planes:

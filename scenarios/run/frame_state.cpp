@@ -349,9 +349,10 @@ std::string FrameState::node_pair_text(const trace::Event& e) {
   const trace::NodeWork work = e.work();
   const trace::NodeEnd end = e.node_end();
   std::string out = "nodes " + std::to_string(e.a) + " of A and " + std::to_string(e.b) + " of B: ";
-  if (end.step == NodeStep::needles) return out + "apart across needles";
   if (work.met == 0)
-    return out + (end.apart ? "apart along " + std::string(name_of(end.axis)) : "no boxes in them meet");
+    return out + (end.apart                     ? "apart along " + std::string(name_of(end.axis))
+                  : end.step == NodeStep::whole ? "apart across an edge of each"
+                                                : "no boxes in them meet");
   if (end.step != NodeStep::leaves)
     return out + render::counted(work.met, "pair of boxes meets", "pairs of boxes meet");
   return out + render::counted(work.met, "pair of faces", "pairs of faces") + ", " +

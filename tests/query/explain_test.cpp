@@ -55,7 +55,7 @@ void check(const ExplainedScene& s, const SimplexPair& pair, exact::Meet meet) {
   REQUIRE(e.meet == meet);
   REQUIRE(!e.nodes.empty());
   CHECK((e.nodes.front().node[0] == 0 && e.nodes.front().node[1] == 0));
-  const bool by_boxes = e.decided_by == DecidedBy::node_boxes || e.decided_by == DecidedBy::needles;
+  const bool by_boxes = e.decided_by == DecidedBy::node_boxes || e.decided_by == DecidedBy::node_edges;
   CHECK(by_boxes == !e.reaches_faces);
   if (meet != exact::Meet::disjoint) {
     // Boxes of faces that meet never part, and nothing but the last two tests says that they do.

@@ -185,15 +185,13 @@ void check_certain(const Scene& s, std::span<const Candidate> found, RandomEngin
 
 /// Returns the pairs that a kernel, made ready for the scene, does not drop.
 std::vector<Candidate> candidates_of(const Scene& s, TreeKernel& k, void (*run)(TreeKernel&)) {
-  std::vector<NodePair> stack(64 * (s.a->tree().height() + s.b->tree().height()) + 64);
+  std::vector<NodePair> pairs;
   std::vector<Candidate> out(64 + std::size_t{s.a->real_simplex_count()} * s.b->real_simplex_count());
-  k.stack = stack.data();
-  k.stack[0] = {0, 0};
-  k.stack_size = 1;
+  start_at_roots(k, s.a->tree(), s.b->tree(), pairs);
   k.out = out.data();
   k.out_capacity = static_cast<std::uint32_t>(out.size());
   run(k);
-  REQUIRE(k.stack_size == 0);
+  REQUIRE(is_done(k));
   out.resize(k.out_size);
   return out;
 }

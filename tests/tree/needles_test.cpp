@@ -43,9 +43,8 @@ TEST_CASE("queries of bodies full of needles answer as brute force does") {
   CHECK(in_contact > 10);
 }
 
-TEST_CASE("trees full of needles try more directions, and answer as brute force does") {
+TEST_CASE("queries of a fan of thousands of needles answer as brute force does") {
   const LrbRep cone = closed(hard::cone(3400));
-  REQUIRE(cone.tree().has_needles());
   shapes::RandomEngine random(12);
   Pose at;
   at.r = shapes::random_rotation(random);
@@ -77,7 +76,6 @@ TEST_CASE("the work grows with the number of needles, not with that of their pai
     return static_cast<double>(collide(body, Pose{}, body, at, {}).counters.face_tests);
   };
   CHECK(tests(16000) < 5 * tests(4000));
-  CHECK_FALSE(closed(shapes::bumpy_sphere(3, 1)).tree().has_needles());
 }
 
 }  // namespace

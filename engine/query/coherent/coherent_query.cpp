@@ -311,7 +311,7 @@ template <class Probe>
 bool CoherentQuery::Work::find_candidates(TreeKernel& k, Probe& probe) {
   const auto began = Clock::now();
   cache_.clear();
-  while (k.stack_size != 0) {
+  while (!is_done(k)) {
     k.out_size = 0;
     is_told_more(probe) ? NodeWatch<Probe>(context_, probe).run(k) : run_tree_kernel(k);
     for (std::uint32_t i = 0; i < k.out_size; ++i) cache_.add({k.out[i].a, k.out[i].b});

@@ -81,11 +81,11 @@ bool find_swept_pairs(QueryContext& ctx, const MovingBody& a, const MovingBody& 
   aim_at(sweep, rounding, query_unit(a.rep().tree(), b.rep().tree()), k);
   if (most != kNoLimit) k.most_node_pairs = kPatience * most;
   pairs.clear();
-  while (k.stack_size != 0) {
+  while (!is_done(k)) {
     k.out_size = 0;
     run_tree_kernel(k);
     for (std::uint32_t i = 0; i < k.out_size; ++i) pairs.push_back({k.out[i].a, k.out[i].b});
-    if (k.stack_size != 0 && (pairs.size() > most || k.node_pairs >= k.most_node_pairs)) return false;
+    if (!is_done(k) && (pairs.size() > most || k.node_pairs >= k.most_node_pairs)) return false;
   }
   return pairs.size() <= most;
 }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <unordered_map>
 #include <vector>
 
 #include "engine/query/walk/probe.hpp"
@@ -11,7 +12,7 @@
 
 namespace lrb {
 
-/// Returns what the kernel does with a pair of nodes that needles' directions do not part.
+/// Returns what the kernel does with a pair of nodes whose own boxes are not apart.
 inline NodeStep step_of(const TreeKernel& k, const NodePair& pair) {
   const TreeNode &a = k.nodes_a[pair.a], &b = k.nodes_b[pair.b];
   const auto size = [&](const TreeNode& n, int side) {
@@ -28,17 +29,22 @@ template <class Probe>
 class NodeWatch {
  public:
   NodeWatch(QueryContext& ctx, Probe& probe)
-      : probe_(probe), parents_(ctx.parents), parted_(ctx.parted), all_(probe.level() == EventLevel::all) {
-    if (parents_.size() < ctx.stack.size()) parents_.resize(ctx.stack.size());
+      : probe_(probe),
+        parents_(ctx.parents),
+        parted_(ctx.parted),
+        parted_nodes_(ctx.parted_nodes),
+        all_(probe.level() == EventLevel::all) {
     parted_.resize(kMostPairs);
+    parted_nodes_.resize(ctx.stack.size());
   }
 
   /// Does what run_tree_kernel() does. May be called again, of another watch too, to go on.
   void run(TreeKernel& k) {
     const std::uint64_t most = k.most_node_pairs;
-    if (k.node_pairs == 0) parents_[0] = kNull;
+    if (k.node_pairs == 0) parents_.clear();
     k.parted = all_ ? parted_.data() : nullptr;
-    while (k.stack_size != 0 && k.out_capacity - k.out_size >= kMostPairs && k.node_pairs < most) {
+    k.parted_nodes = parted_nodes_.data();
+    while (!is_done(k) && k.out_capacity - k.out_size >= kMostPairs && k.node_pairs < most) {
       k.most_node_pairs = k.node_pairs + 1;
       step(k);
     }
@@ -49,15 +55,16 @@ class NodeWatch {
   static constexpr std::uint32_t kMostPairs = kTreeWidth * kTreeWidth;
 
   void step(TreeKernel& k) {
-    const std::uint32_t top = k.stack_size - 1, out_before = k.out_size;
-    const NodePair pair = k.stack[top];
+    const std::uint32_t out_before = k.out_size;
     const std::uint64_t boxes_before = k.box_tests, pairs_before = k.prefilter_tests;
-    k.parted_size = 0;
+    k.parted_size = k.parted_nodes_size = 0;
     run_tree_kernel(k);
-    NodeVisit visit{.a = pair.a, .b = pair.b, .parent = parents_[top]};
+    for (std::uint32_t i = 0; i < k.parted_nodes_size; ++i) tell_parted(k.parted_nodes[i]);
+    if (k.parted_nodes_size != 0) return;
+    const NodePair& pair = k.opened;
+    NodeVisit visit{.a = pair.a, .b = pair.b, .parent = take_parent(pair), .step = step_of(k, pair)};
     visit.box_tests = static_cast<std::uint8_t>(k.box_tests - boxes_before);
-    visit.step = visit.box_tests == 0 ? NodeStep::needles : step_of(k, pair);
-    visit.met = static_cast<std::uint8_t>(k.stack_size - top);
+    visit.met = static_cast<std::uint8_t>(k.stack_size - k.opened_at);
     if (visit.step == NodeStep::leaves) {
       const std::uint32_t left = k.out_size - out_before;
       visit.met = static_cast<std::uint8_t>(k.prefilter_tests - pairs_before);
@@ -68,14 +75,28 @@ class NodeWatch {
           }));
     }
     const std::uint32_t told = probe_.node_pair(visit);
-    std::fill(parents_.begin() + top, parents_.begin() + k.stack_size, told);
+    for (std::uint32_t i = k.opened_at; i < k.stack_size; ++i) parents_.emplace(key_of(k.stack[i]), told);
     for (std::uint32_t i = 0; i < k.parted_size; ++i)
       probe_.plane_test(k.parted[i].a, k.parted[i].b, k.parted[i].whose);
   }
 
+  void tell_parted(const NodePair& pair) {
+    probe_.node_pair(
+        {.a = pair.a, .b = pair.b, .parent = take_parent(pair), .step = NodeStep::whole, .box_tests = 1});
+  }
+
+  static std::uint64_t key_of(const NodePair& pair) { return std::uint64_t{pair.a} << 32 | pair.b; }
+
+  /// Returns what the probe returned for the pair above, and forgets it: each pair is visited once.
+  std::uint32_t take_parent(const NodePair& pair) {
+    const auto found = parents_.extract(key_of(pair));
+    return found.empty() ? kNull : found.mapped();
+  }
+
   Probe& probe_;
-  std::vector<std::uint32_t>& parents_;  ///< (stack) what the probe returned for the pair above
+  std::unordered_map<std::uint64_t, std::uint32_t>& parents_;  ///< of pairs that wait: see take_parent()
   std::vector<PartedPair>& parted_;
+  std::vector<NodePair>& parted_nodes_;
   bool all_;
 };
 

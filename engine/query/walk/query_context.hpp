@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <unordered_map>
 #include <unordered_set>
 #include <vector>
 
@@ -82,10 +83,12 @@ struct QueryBody {
 class QueryContext {
  public:
   QueryBody body[2];
-  std::vector<NodePair> stack;
+  std::vector<NodePair> stack;  ///< of the kernel that runs: its stack, and after it those that were tested
   std::vector<Candidate> candidates;
-  std::vector<std::uint32_t> parents;  ///< of the pairs on the stack, in queries that are watched
+  // In queries that are watched; NodeWatch knows what these are.
+  std::unordered_map<std::uint64_t, std::uint32_t> parents;
   std::vector<PartedPair> parted;
+  std::vector<NodePair> parted_nodes;
   AffineTerms affine;  ///< of the kernel that runs, if it has any
   PairOrder pair_order;
   std::unordered_set<std::uint64_t> visited[3];  ///< paper: region x region, face x region, region x face

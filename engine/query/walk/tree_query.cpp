@@ -5,13 +5,8 @@ namespace lrb {
 namespace {
 
 void give_buffers(QueryContext& ctx, std::size_t capacity, TreeKernel& k) {
-  const ObbTree &a = ctx[Side::a].tree(), &b = ctx[Side::b].tree();
-  const std::size_t deepest = 64 * (a.height() + b.height()) + 64;
-  if (ctx.stack.size() < deepest) ctx.stack.resize(deepest);
+  start_at_roots(k, ctx[Side::a].tree(), ctx[Side::b].tree(), ctx.stack);
   if (ctx.candidates.size() < capacity) ctx.candidates.resize(capacity);
-  k.stack = ctx.stack.data();
-  k.stack[0] = {0, 0};
-  k.stack_size = 1;
   k.out = ctx.candidates.data();
   k.out_capacity = static_cast<std::uint32_t>(capacity);
 }

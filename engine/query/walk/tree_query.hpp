@@ -98,12 +98,12 @@ class TreeQuery {
     k.nearest_first = one_may_do;
     if constexpr (Rules::kWrappers) allow_for_wrappers(k);
     bool done = false;
-    while (k.stack_size != 0 && !done) {
+    while (!is_done(k) && !done) {
       k.out_size = 0;
       if constexpr (Rules::kLimited) k.most_node_pairs = rules_.most_node_pairs(k.node_pairs);
       is_told_more(probe_) ? NodeWatch<Probe>(ctx_, probe_).run(k) : run_tree_kernel(k);
       if constexpr (Rules::kLimited) done = rules_.time_is_up(result_.pairs.size());
-      if constexpr (Rules::kTrial) rules_.came_to(k.node_pairs, k.stack_size);
+      if constexpr (Rules::kTrial) rules_.came_to(k.node_pairs, k.stack_size + k.tested_size);
       for (std::uint32_t i = 0; i < k.out_size && !done; ++i) done = test(k.out[i]);
       const bool too_many = result_.pairs.size() > pair_limit_;
       if constexpr (Rules::kTrial)

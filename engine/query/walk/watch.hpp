@@ -53,14 +53,14 @@ enum class NodeStep : std::uint8_t {
   descend_a,     ///< compares the boxes of A's children with B's whole box
   descend_b,     ///< compares the boxes of B's children with A's whole box
   leaves,        ///< compares the simplices of two leaves: first their boxes, then by their planes
-  needles,       ///< found them apart along a direction that is only tried for trees full of needles
+  whole,         ///< compares the nodes' own boxes, which are apart
 };
 constexpr auto words_of(NodeStep) {
   return std::to_array<EnumWord<NodeStep>>({{NodeStep::descend_both, "both"},
                                             {NodeStep::descend_a, "A"},
                                             {NodeStep::descend_b, "B"},
                                             {NodeStep::leaves, "leaves"},
-                                            {NodeStep::needles, "needles"}});
+                                            {NodeStep::whole, "whole"}});
 }
 
 /// A pair of tree nodes that the query came to.

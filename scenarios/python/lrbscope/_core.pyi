@@ -36,7 +36,7 @@ _Rows = Sequence[Sequence[float]]
 _Poses = Sequence[npt.NDArray[Any]] | Sequence[_Rows]
 _Array = npt.NDArray[Any]
 _Meet = Literal["disjoint", "touch", "cross"]
-_DecidedBy = Literal["node_boxes", "needles", "face_boxes", "planes", "floats", "exact"]
+_DecidedBy = Literal["node_boxes", "node_edges", "face_boxes", "planes", "floats", "exact"]
 _ClashKind = Literal[
     "apart",
     "within_clearance",

@@ -88,7 +88,7 @@ void compare(RandomEngine& random, const LrbRep& a, const LrbRep& b, const Sweep
   TreeKernel k = start_rigid_kernel(context, Pose{}, {stretch.middle.m, stretch.middle.t}, 1 << 16);
   aim_at(stretch, rounding, query_unit(a.tree(), b.tree()), k);
   run_tree_kernel(k);
-  REQUIRE(k.stack_size == 0);
+  REQUIRE(is_done(k));
   CandidateCache near;
   near.clear();
   for (std::uint32_t i = 0; i < k.out_size; ++i) near.add({k.out[i].a, k.out[i].b});
