@@ -73,7 +73,7 @@ class Way {
       const std::array<std::uint32_t, 2> here = {node(0), node(1)};
       const Stepper::Outcome outcome = stepper_.step({here[0], here[1]});
       if (outcome.parts_whole) {
-        add_nodes({kWhole, kWhole});
+        if (at_[0] + at_[1] > 0) add_nodes({kWhole, kWhole});  // the roots' own are there already
         return end_at_nodes();
       }
       if (stepper_.is_leaf(Side::a, here[0]) && stepper_.is_leaf(Side::b, here[1]))

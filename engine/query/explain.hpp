@@ -49,7 +49,8 @@ struct PairExplanation {
   SimplexPair pair;
   exact::Meet meet = exact::Meet::disjoint;
   DecidedBy decided_by = DecidedBy::exact;
-  /// From the roots down. The last ones are the leaves of both faces, or the boxes that are apart.
+  /// From the roots down: boxes as their parents have them. The last ones are the leaves of both faces, or
+  /// the boxes that are apart; where these are the nodes' own, their nodes come twice.
   std::vector<BoxPair> nodes;
   bool reaches_faces = false;  ///< the query came to the boxes of the faces
   BoxPair face_boxes;          ///< valid if it did
@@ -118,8 +119,9 @@ struct WalkExplanation {
   std::uint64_t face_pairs = 0;   ///< pairs of faces whose boxes meet
   std::uint64_t left = 0;         ///< those of them that planes do not part; these are compared one by one
   std::uint64_t certain = 0;      ///< those of them about which floats are certain
-  /// Of bodies that do not meet: the two boxes among those found apart that are nearest to each other. All
-  /// others have a larger gap: the walk's proof has no weaker link.
+  /// Of bodies that do not meet: the two boxes that are nearest to each other among those found apart along
+  /// an axis across their sides. Nodes that are apart only along a direction across an edge of each are left
+  /// out.
   std::optional<PartedBoxes> nearest_boxes;
   std::optional<PartingPlane> plane;  ///< of separate bodies: the best that was found; often none exists
   /// The pairs among those left that are nearest to each other, of bodies that do not meet: nearest first, at

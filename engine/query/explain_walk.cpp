@@ -150,14 +150,16 @@ class PlaneFinder {
   std::optional<PartingPlane> best_;
 };
 
-/// Tries the axes of the boxes round the bodies, the line between their middles, and the lines between the
-/// faces, and across the boxes, that are nearest to each other.
+/// Tries the axes of the boxes round the bodies, the directions across an axis of each, the line between
+/// their middles, and the lines between the faces that are nearest to each other and across such boxes.
 std::optional<PartingPlane> find_plane(QueryContext& ctx, const WalkExplanation& walk) {
   PlaneFinder finder(ctx);
   const WorldBox a = box_of(ctx[Side::a].tree(), 0, kWhole, ctx[Side::a].world.pose()),
                  b = box_of(ctx[Side::b].tree(), 0, kWhole, ctx[Side::b].world.pose());
   for (const WorldBox& box : {a, b})
     for (const Vector3d& axis : box.across) finder.try_direction(axis);
+  for (const Vector3d& x : a.across)
+    for (const Vector3d& y : b.across) finder.try_direction(x.cross(y));
   finder.try_direction(b.centre - a.centre);
   if (walk.nearest_boxes)
     for (const WorldBox& box : walk.nearest_boxes->boxes)

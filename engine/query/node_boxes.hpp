@@ -13,7 +13,8 @@
 
 namespace lrb {
 
-/// The axes across the sides of two boxes, along which the query compares them.
+/// The axes across the sides of two boxes. The query compares boxes along these, and those of whole nodes
+/// also along directions across an edge of each.
 enum class BoxAxis : std::uint8_t { a1, a2, a3, b1, b2, b3 };
 constexpr auto words_of(BoxAxis) {
   return std::to_array<EnumWord<BoxAxis>>({{BoxAxis::a1, "axis 1 of A's box"},

@@ -318,7 +318,7 @@ inline void test_stack(TreeKernel& k) {
     k.base -= last;
     test_wholes(k, pairs - last, last);
   } else if (k.tested_size == 0) {
-    test_wholes(k, pairs + (came - over), over);
+    if (over != 0) test_wholes(k, pairs + (came - over), over);
   } else {
     for (std::uint32_t i = 0; i < over; ++i) pairs[i] = pairs[came - over + i];
     k.stack_size = k.base + over;
@@ -344,7 +344,7 @@ void run_tested(TreeKernel& k, std::uint64_t end) {
 
 /// The nearest pair of boxes is looked for in the first so many pairs of nodes: bodies that meet mostly show
 /// it in these, and for bodies that do not meet any order is as good.
-constexpr std::uint64_t kNearestPairs = 16;
+constexpr std::uint64_t kNearestPairs = 8;
 
 /// Begins with the nearest boxes, where one pair of simplices is enough.
 template <class Walk>

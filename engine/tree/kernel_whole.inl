@@ -1,5 +1,5 @@
 #pragma once
-// Part of tree_kernel.inl: the boxes of whole nodes, on their own axes and across their edges, for eight
+// Part of kernel_walk.inl: the boxes of whole nodes, on their own axes and across their edges, for eight
 // pairs of nodes at a time or for one.
 
 #include "engine/tree/kernel_boxes.inl"
@@ -103,7 +103,9 @@ inline std::uint32_t is_greater(float x, float y) {
 /// Across the i-th axis of A's node and the m-th of B's the direction is e_i x r_m, whose entries are those
 /// of r; its length is at most 1, the sum of its entries 1.5. So where the point is makes 1.5 `error`. Along
 /// B's other axes the direction has the entries of r on e_i, as if r were a rotation: that is off by 150 u at
-/// most, less than `error`. The rest of four times `error` is for rounding.
+/// most, less than `error`. The rest of four times `error` is for rounding. If r is no rotation, with r^T r
+/// off the identity by D, its cofactors are off its entries by 2 D at most, which makes 6 D times B's extent;
+/// the slack in four times `error` has 16 of that.
 template <class V>
 inline std::uint32_t wholes_apart(const TreeKernel& k, const TreeNode* const* nodes_a,
                                   const TreeNode* const* nodes_b) {

@@ -111,14 +111,15 @@ struct TreeKernel {
   std::uint32_t opened_at;  ///< stack_size without the pairs that came of it
 
   std::uint64_t node_pairs, box_tests, prefilter_tests;
-  std::uint64_t most_node_pairs;  ///< where to stop; may be raised to go on
+  std::uint64_t most_node_pairs;  ///< where to stop, or up to 71 later; may be raised to go on
 };
 
 /// Returns how many pairs `stack` needs room for, and `tested` too.
 ///
-/// A pair that is visited leaves at most 64 others. If they are visited depth first, 63 wait for each step
-/// down. Of pairs in eights at most 7 are left over until as many as that have come of others, so that a pair
-/// is put on `tested` with at most 78 that would not be there depth first.
+/// A pair that is visited leaves at most 64 others: depth first, 63 wait for each step down. Of pairs in
+/// eights at most 7 are left over, and the next ones take them along. What is put on `tested` at one time is
+/// therefore at least one step below the least deep of what two times before put there, so that at most two
+/// such lots wait for each step down.
 inline std::size_t stack_room(std::uint32_t height_a, std::uint32_t height_b) {
   return 160 * (std::size_t{height_a} + height_b) + 160;
 }

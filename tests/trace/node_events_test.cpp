@@ -227,7 +227,7 @@ TEST_CASE("the events of a step add up to its counters") {
         planes += plane_tests;
       }
     }
-  for (const NodeStep step : {NodeStep::descend_both, NodeStep::descend_a, NodeStep::leaves})
+  for (const NodeStep step : {NodeStep::descend_both, NodeStep::descend_a, NodeStep::leaves, NodeStep::whole})
     CHECK(seen.count(step) == 1);
   CHECK(apart > 100);
   CHECK(inside_apart > 100);

@@ -85,8 +85,9 @@ Pose near_pose(shapes::RandomEngine& random, const Met& m) {
 
 TEST_CASE("nodes that are parted as wholes are apart, and those that are clearly apart are parted so") {
   shapes::RandomEngine random(21);
-  std::size_t parted = 0, across = 0, opened = 0;
+  std::size_t parted = 0, across = 0, opened = 0, flat = 0;
   for (const Met& m : bodies()) {
+    flat += m.a.dim() == 2;
     const double size = std::max(m.a.tree().extent(), m.b.tree().extent());
     for (int i = 0; i < 12; ++i) {
       const Pose pose = near_pose(random, m);
@@ -110,6 +111,7 @@ TEST_CASE("nodes that are parted as wholes are apart, and those that are clearly
       }
     }
   }
+  CHECK(flat == 1);
   CHECK(parted > 1000);
   CHECK(across > 100);
   CHECK(opened > 1000);

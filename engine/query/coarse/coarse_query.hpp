@@ -129,7 +129,7 @@ class TrialRules : public LimitedRules<Clock> {
   /// How few pairs of nodes may wait, for a query to a tolerance, and within limits, where levels come one
   /// after another and the exact query last. More: bodies that cross deeply pay for work that is given up;
   /// fewer: bodies that barely cross pay for levels.
-  static constexpr std::uint32_t kFewToTolerance = 6, kFewWithinLimits = 24;
+  static constexpr std::uint32_t kFewToTolerance = 8, kFewWithinLimits = 24;
 
   std::uint32_t few_waiting = kFewToTolerance;
 

@@ -64,7 +64,7 @@ struct Counters {
   std::uint64_t face_tests = 0;  ///< exact comparisons of two simplices, pseudo or real (best: pairs found)
   std::uint64_t real_tests = 0;  ///< those of them in which both are real
   std::uint64_t exact_fallbacks = 0;  ///< predicates that the floating-point filter could not decide
-  std::uint64_t node_pairs = 0;       ///< complete: pairs of tree nodes expanded
+  std::uint64_t node_pairs = 0;       ///< complete: pairs of tree nodes visited
   std::uint64_t box_tests = 0;        ///< complete: box against box
   std::uint64_t prefilter_tests =
       0;  ///< complete: pairs of simplices that reached the box and plane tests of a pair of leaves

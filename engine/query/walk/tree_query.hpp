@@ -8,8 +8,8 @@
 /// to separate the two; what is left is decided within proved bounds on float errors, or exactly. The proof
 /// uses neither the nesting of regions nor embedding: a poor LRB-rep can cost time, never a contact.
 ///
-/// What "proved apart" has to cover is in set_up_kernel() for rotations, in affine_pose.hpp for all other
-/// maps.
+/// What "proved apart" has to cover is in set_up_kernel() for rotations (of whole nodes in kernel_whole.inl),
+/// in affine_pose.hpp for all other maps.
 
 #include <algorithm>
 #include <bit>
