@@ -3,6 +3,7 @@
 /// on all errors that come with it.
 
 #include <algorithm>
+#include <cstddef>
 #include <vector>
 
 #include "engine/core/pose.hpp"
@@ -23,6 +24,28 @@ TreeKernel set_up_kernel(const ObbTree& a, const Pose& pose_a, const ObbTree& b,
 /// must live as long as the kernel. dim: that of both bodies.
 TreeKernel set_up_any_kernel(const ObbTree& a, const Pose& pose_a, const ObbTree& b, const Pose& pose_b,
                              int dim, AffineTerms& terms);
+
+/// Returns how many pairs `stack` needs room for, and `tested` too.
+///
+/// A pair that is visited leaves at most 64 others: depth first, 63 wait for each step down. Of pairs in
+/// eights at most 7 are left over, and the next ones take them along. What is put on `tested` at one time is
+/// therefore at least one step below the least deep of what two times before put there, so that at most two
+/// such lots wait for each step down.
+inline std::size_t stack_room(std::uint32_t height_a, std::uint32_t height_b) {
+  return 160 * (std::size_t{height_a} + height_b) + 160;
+}
+
+/// Returns true if no pair of nodes waits to be visited.
+inline bool is_done(const TreeKernel& k) {
+  return k.stack_size + k.tested_size == 0;
+}
+
+/// Makes one pair of nodes all there is to be visited.
+inline void start_at(TreeKernel& k, NodePair pair) {
+  k.stack[0] = pair;
+  k.stack_size = 1;
+  k.tested_size = k.base = 0;
+}
 
 /// Puts the pair of roots on the kernel's stacks, which are in `room`; that grows if it has to.
 void start_at_roots(TreeKernel& k, const ObbTree& a, const ObbTree& b, std::vector<NodePair>& room);

@@ -285,7 +285,6 @@ void run(TreeKernel& k, std::uint64_t end) {
   while (k.stack_size != 0 && may_go_on(k, end)) {
     const NodePair pair = k.stack[--k.stack_size];
     open<Walk, kNearest>(k, pair);
-    k.base = k.stack_size;
   }
 }
 
@@ -310,28 +309,28 @@ inline void test_wholes(TreeKernel& k, const NodePair* pairs, std::uint32_t coun
 /// Does so for all full eights that have come onto the stack, and if nothing else is to be done for the rest
 /// of them, too, or for the last ones of those that waited before.
 inline void test_stack(TreeKernel& k) {
-  const std::uint32_t came = k.stack_size - k.base, over = came % 8;
+  const std::uint32_t came = k.stack_size - k.base, eights = came - came % 8;
   NodePair* const pairs = k.stack + k.base;
-  for (std::uint32_t at = 0; at + 8 <= came; at += 8) test_wholes(k, pairs + at, 8);
-  if (k.tested_size == 0 && came == 0) {
-    const std::uint32_t last = k.base < 8 ? k.base : 8;
-    k.base -= last;
-    test_wholes(k, pairs - last, last);
-  } else if (k.tested_size == 0) {
-    if (over != 0) test_wholes(k, pairs + (came - over), over);
-  } else {
-    for (std::uint32_t i = 0; i < over; ++i) pairs[i] = pairs[came - over + i];
-    k.stack_size = k.base + over;
+  for (std::uint32_t at = 0; at < eights; at += 8) test_wholes(k, pairs + at, 8);
+  std::uint32_t left = came - eights;
+  if (k.tested_size != 0) {
+    for (std::uint32_t i = 0; i < left; ++i) pairs[i] = pairs[eights + i];
+    k.stack_size = k.base + left;
     return;
   }
+  if (came == 0) {
+    left = k.base < 8 ? k.base : 8;
+    k.base -= left;
+  }
   k.stack_size = k.base;
+  if (left != 0) test_wholes(k, k.stack + (k.base + eights), left);
 }
 
 /// Does what run() does, but compares whole nodes before what is in them: half of the pairs end there, for a
 /// fraction of the work, if eight are compared at a time. So that there are eight, pairs wait for others.
 template <class Walk>
 void run_tested(TreeKernel& k, std::uint64_t end) {
-  while (!is_done(k) && may_go_on(k, end)) {
+  while (k.stack_size + k.tested_size != 0 && may_go_on(k, end)) {
     if (k.stack_size - k.base >= 8 || k.tested_size == 0) {
       test_stack(k);
     } else {
@@ -349,8 +348,10 @@ constexpr std::uint64_t kNearestPairs = 8;
 /// Begins with the nearest boxes, where one pair of simplices is enough.
 template <class Walk>
 void run_nearest(TreeKernel& k) {
+  if (k.node_pairs >= kNearestPairs) return;
   const std::uint64_t most = k.most_node_pairs;
   run<Walk, true>(k, kNearestPairs < most ? kNearestPairs : most);
+  k.base = k.stack_size;
 }
 
 }  // namespace

@@ -4,7 +4,6 @@
 ///
 /// Contains only plain structures: this header is compiled once per instruction set (tree_kernel_*.cpp).
 
-#include <cstddef>
 #include <cstdint>
 
 #include "engine/tree/obb_tree.hpp"
@@ -94,7 +93,7 @@ struct TreeKernel {
   /// compared first, pairs that this does not part are moved from `stack` to `tested`.
   NodePair *stack, *tested;
   std::uint32_t stack_size, tested_size;
-  std::uint32_t base;  ///< so many on the stack have waited since before whole nodes were compared
+  std::uint32_t base;  ///< number of pairs on the stack that the search for the nearest boxes left there
   Candidate* out;
   std::uint32_t out_capacity;  ///< at least 64
   std::uint32_t out_size;
@@ -113,28 +112,6 @@ struct TreeKernel {
   std::uint64_t node_pairs, box_tests, prefilter_tests;
   std::uint64_t most_node_pairs;  ///< where to stop, or up to 71 later; may be raised to go on
 };
-
-/// Returns how many pairs `stack` needs room for, and `tested` too.
-///
-/// A pair that is visited leaves at most 64 others: depth first, 63 wait for each step down. Of pairs in
-/// eights at most 7 are left over, and the next ones take them along. What is put on `tested` at one time is
-/// therefore at least one step below the least deep of what two times before put there, so that at most two
-/// such lots wait for each step down.
-inline std::size_t stack_room(std::uint32_t height_a, std::uint32_t height_b) {
-  return 160 * (std::size_t{height_a} + height_b) + 160;
-}
-
-/// Returns true if no pair of nodes waits to be visited.
-inline bool is_done(const TreeKernel& k) {
-  return k.stack_size + k.tested_size == 0;
-}
-
-/// Makes one pair of nodes all there is to be visited.
-inline void start_at(TreeKernel& k, NodePair pair) {
-  k.stack[0] = pair;
-  k.stack_size = 1;
-  k.tested_size = k.base = 0;
-}
 
 /// Traverses until no pair waits, fewer than 64 places are left in `out`, or most_node_pairs are
 /// reached. Uses the newest instruction set that the processor has; the environment variable LRB_SIMD, read

@@ -9,6 +9,7 @@
 
 #include "engine/query/walk/probe.hpp"
 #include "engine/query/walk/query_context.hpp"
+#include "engine/tree/kernel_setup.hpp"
 
 namespace lrb {
 
