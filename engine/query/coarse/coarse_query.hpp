@@ -211,7 +211,8 @@ class CoarseQuery {
   }
 
  private:
-  static constexpr double kLongest = 1e6;  ///< seconds: more does not fit the clock on every machine
+  static constexpr double kLongest = 1e6;           ///< seconds: more does not fit the clock on every machine
+  static constexpr std::size_t kLikelyPairs = 128;  ///< most answers need no more memory than for so many
 
   /// Keeps contacts from the probe: those of a step are part of the answer only if it is the last.
   struct WithoutContacts {
@@ -253,6 +254,8 @@ class CoarseQuery {
   template <class Rules>
   bool walk(const CollideRequest& request, CollideResult& found, Rules& rules) {
     found.counters = std::move(result_.counters);
+    found.pairs.reserve(kLikelyPairs);
+    found.meets.reserve(kLikelyPairs);
     TreeQuery<WithoutContacts, Rules> query(ctx_, request, found, probe_, rules);
     query.run();
     result_.counters = std::move(found.counters);

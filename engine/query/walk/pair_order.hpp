@@ -15,8 +15,8 @@ class PairOrder {
   void sort(std::vector<SimplexPair>& pairs);
 
  private:
-  void sort_keys(unsigned bits);
-  void sort_by_digits(unsigned bits);
+  void sort_keys(unsigned bits_b, unsigned bits);
+  void sort_by_digits(unsigned first, unsigned end);
 
   std::vector<std::uint64_t> keys_, moved_;  ///< packed pairs, so that as little as possible is moved
   /// (digits x values of a digit) where the next key with that value goes.

@@ -7,6 +7,22 @@
 
 using namespace lrb;
 
+TEST_CASE("pairs are put in order where half of them have the same simplex of A") {
+  std::mt19937_64 random(2);
+  PairOrder order;
+  for (const std::size_t size : {std::size_t{33}, std::size_t{100}, std::size_t{4'000}, std::size_t{5'000}}) {
+    std::vector<SimplexPair> pairs;
+    for (std::size_t i = 0; i < size; ++i)
+      pairs.push_back({static_cast<SimplexId>(i % 2 == 0 ? 77'777 : random() % 200'000),
+                       static_cast<SimplexId>(random() % 300'000)});
+    std::vector<SimplexPair> expected = pairs;
+    std::sort(expected.begin(), expected.end());
+    expected.erase(std::unique(expected.begin(), expected.end()), expected.end());
+    order.sort(pairs);
+    CHECK(pairs == expected);
+  }
+}
+
 TEST_CASE("pairs are put in order with what belongs to them, by comparing and by digits") {
   std::mt19937_64 random(1);
   PairOrder order;
