@@ -31,8 +31,8 @@ class BoundsCourse final : public BoundsProbe {
 };
 
 /// Does what distance() in distance.hpp does, and tells the probe what is known, after more and more work:
-/// the last bounds lie within those of the answer, and are the answer's but for DistanceRequest::within. Work
-/// is counted in pairs of nodes opened and pairs of simplices measured in doubles or exactly.
+/// the last bounds lie within those of the answer, and are the answer's unless `within` or a tolerance asks
+/// for less. Work is counted in pairs of nodes opened and pairs of simplices measured in doubles or exactly.
 DistanceResult distance(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
                         const DistanceRequest& request, BoundsProbe& probe);
 

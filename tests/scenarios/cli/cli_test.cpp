@@ -360,7 +360,7 @@ TEST_CASE("run and render: a tolerance, a limit, certificates; answers as query 
         {"bodies", {{"a", rock}, {"b", rock}}},
         {"motion", {{"kind", "sweep"}, {"from", {3.2, 0.1, 0.2}}, {"to", {1.2, 0, 0}}, {"steps", 6}}},
         {"query", query},
-        {"frames", {{"size", {320, 240}}}}};
+        {"frames", {{"size", {400, 300}}}}};
     folder.write("s.json", s.dump(1));
     const Outcome ran = run(folder, {"run", "s.json", "-o", "one"});
     CAPTURE(ran.err);
@@ -401,7 +401,7 @@ TEST_CASE("run and render: a tolerance, a limit, certificates; answers as query 
     CHECK((page.find("Error bound") != std::string::npos) ==
           (query.contains("tolerance") || query.contains("max_tests")));
     CHECK((page.find("Proof that the bodies are apart") != std::string::npos) == proved);
-    REQUIRE(run(folder, {"render", "one/trace.json", "-o", "two", "--size", "320x240"}).code == 0);
+    REQUIRE(run(folder, {"render", "one/trace.json", "-o", "two", "--size", "400x300"}).code == 0);
     for (std::size_t i = 0; i < steps.size(); ++i) {
       const std::string frame = "/frames/frame_000" + std::to_string(i) + ".png";
       CHECK(lrb::render::read_png(folder / ("two" + frame)).image ==

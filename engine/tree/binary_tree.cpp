@@ -1,0 +1,162 @@
+#include "engine/tree/binary_tree.hpp"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include "engine/core/infinity.hpp"
+#include "engine/tree/obb_tree.hpp"
+
+namespace lrb {
+namespace {
+
+using Box = Eigen::AlignedBox3d;
+
+class BinaryBuilder {
+ public:
+  BinaryBuilder(Soup& soup, Workers& workers, Splits splits)
+      : soup_(soup), workers_(workers), splits_(splits) {
+    const auto n = static_cast<std::uint32_t>(soup.order.size());
+    nodes_.resize(nodes_for(n));
+    build(0, 0, n);
+  }
+
+  std::vector<BinaryNode> take() { return std::move(nodes_); }
+
+ private:
+  static constexpr int kBins = 32;
+  static constexpr std::uint32_t kWorthSharing = 2048;  ///< simplices
+
+  /// Returns the number of nodes for some simplices: every leaf but the last is full.
+  static std::uint32_t nodes_for(std::uint32_t simplices) {
+    return 2 * ((simplices + kTreeWidth - 1) / kTreeWidth) - 1;
+  }
+
+  /// Builds a subtree; parents come before children, left before right.
+  void build(std::uint32_t self, std::uint32_t begin, std::uint32_t end) {
+    BinaryNode& node = nodes_[self];
+    node = {begin, end, kNull, kNull, {}};
+    for (std::uint32_t i = begin; i < end; ++i) node.box.extend(soup_.box[soup_.order[i]]);
+    if (end - begin <= kTreeWidth) return;
+    const std::uint32_t middle = split(begin, end);
+    node.left = self + 1;
+    node.right = node.left + nodes_for(middle - begin);
+    if (end - begin < kWorthSharing) {
+      build(node.left, begin, middle);
+      build(node.right, middle, end);
+    } else {
+      workers_.both([&] { build(node.left, begin, middle); }, [&] { build(node.right, middle, end); });
+    }
+  }
+
+  /// Where to split a range: how many simplices go to the left, in the order of their centres on an axis.
+  struct Split {
+    double cost = kInfinity;
+    int axis = 0;
+    std::uint32_t left = 0;
+  };
+
+  /// Returns a function that tells which of two simplices comes first on an axis.
+  auto order_on(int axis) const {
+    return [this, axis](std::uint32_t s, std::uint32_t t) {
+      const double x = soup_.centre[s][axis], y = soup_.centre[t][axis];
+      return x != y ? x < y : s < t;
+    };
+  }
+
+  std::uint32_t split(std::uint32_t begin, std::uint32_t end) {
+    if (end - begin <= splits_.fitted) {
+      const auto range = std::span(soup_.order).subspan(begin, end - begin);
+      if (const std::uint32_t left = cut_by_fitted_boxes(soup_, range, splits_.effort)) return begin + left;
+    }
+    const Split best = splits_.all_cuts ? best_of_all(begin, end) : best_binned(begin, end);
+    const auto first = soup_.order.begin() + begin;
+    std::nth_element(first, first + best.left, first + (end - begin), order_on(best.axis));
+    return begin + best.left;
+  }
+
+  Split best_binned(std::uint32_t begin, std::uint32_t end) const {
+    Box centres;
+    for (std::uint32_t i = begin; i < end; ++i) centres.extend(soup_.centre[soup_.order[i]]);
+    Split best;
+    for (int axis = 0; axis < 3; ++axis) try_axis(begin, end, centres, axis, best.cost, best.axis, best.left);
+    const std::uint32_t n = end - begin;
+    if (best.left == 0) best.left = n / 2;  // all centres coincide: any half will do
+    best.left = (best.left + kTreeWidth / 2) / kTreeWidth * kTreeWidth;
+    best.left = std::clamp(best.left, kTreeWidth, (n - 1) / kTreeWidth * kTreeWidth);
+    return best;
+  }
+
+  Split best_of_all(std::uint32_t begin, std::uint32_t end) const {
+    std::vector<std::uint32_t> order(soup_.order.begin() + begin, soup_.order.begin() + end);
+    const auto n = static_cast<std::uint32_t>(order.size());
+    std::vector<double> right_cost(n);
+    Split best;
+    best.left = kTreeWidth;
+    for (int axis = 0; axis < 3; ++axis) {
+      std::sort(order.begin(), order.end(), order_on(axis));
+      Box right, left;
+      for (std::uint32_t i = n; i-- > 0;) {
+        right.extend(soup_.box[order[i]]);
+        right_cost[i] = half_area(right) * blocks_for(n - i);
+      }
+      for (std::uint32_t i = 1; i < n; ++i) {
+        left.extend(soup_.box[order[i - 1]]);
+        if (i % kTreeWidth != 0) continue;
+        const double cost = half_area(left) * blocks_for(i) + right_cost[i];
+        if (cost < best.cost) best = {cost, axis, i};
+      }
+    }
+    return best;
+  }
+
+  void try_axis(std::uint32_t begin, std::uint32_t end, const Box& centres, int axis, double& best_cost,
+                int& best_axis, std::uint32_t& best_left) const {
+    const double from = centres.min()[axis], width = centres.sizes()[axis];
+    if (!(width > 0)) return;
+    std::array<Box, kBins> bin_box;
+    std::array<std::uint32_t, kBins> bin_count{};
+    for (std::uint32_t i = begin; i < end; ++i) {
+      const std::uint32_t s = soup_.order[i];
+      const int b = std::min(kBins - 1, static_cast<int>(kBins * ((soup_.centre[s][axis] - from) / width)));
+      bin_box[b].extend(soup_.box[s]);
+      ++bin_count[b];
+    }
+    std::array<double, kBins> right_cost{};
+    Box right;
+    std::uint32_t right_count = 0;
+    for (int b = kBins - 1; b > 0; --b) {
+      right.extend(bin_box[b]);
+      right_count += bin_count[b];
+      right_cost[b] = right_count ? half_area(right) * blocks_for(right_count) : 0;
+    }
+    Box left;
+    std::uint32_t left_count = 0;
+    for (int b = 1; b < kBins; ++b) {
+      left.extend(bin_box[b - 1]);
+      left_count += bin_count[b - 1];
+      if (left_count == 0 || left_count == end - begin) continue;
+      const double cost = half_area(left) * blocks_for(left_count) + right_cost[b];
+      if (cost < best_cost) {
+        best_cost = cost;
+        best_axis = axis;
+        best_left = left_count;
+      }
+    }
+  }
+
+  static double blocks_for(std::uint32_t simplices) { return (simplices + kTreeWidth - 1) / kTreeWidth; }
+
+  Soup& soup_;
+  Workers& workers_;
+  const Splits splits_;
+  std::vector<BinaryNode> nodes_;
+};
+
+}  // namespace
+
+std::vector<BinaryNode> build_binary_tree(Soup& soup, Workers& workers, Splits splits) {
+  return BinaryBuilder(soup, workers, splits).take();
+}
+
+}  // namespace lrb
