@@ -262,8 +262,7 @@ TEST_CASE("bodies that hardly touch are answered exactly, at what the exact quer
       const CollideResult r = ask(pair, p, limited ? within_tests : to_tolerance, context);
       REQUIRE(r.relation == exact.relation);
       const bool all = r.error_bound == 0 && r.pairs == exact.pairs;
-      // At the beginning, which looks for the nearest boxes, nodes are not compared as wholes.
-      to_the_end[limited] += all && r.counters.node_pairs <= exact.counters.node_pairs + 8;
+      to_the_end[limited] += all && r.counters.node_pairs <= exact.counters.node_pairs;
     }
     p.t = (near - 0.2) * way;
     const CollideResult deep = ask(pair, p, to_tolerance, context);
