@@ -23,8 +23,8 @@ double leaves_for(std::size_t simplices) {
 }
 
 /// Returns about how large a box is that fits, up to a factor: the root of the sum of the squares of the
-/// three products of two standard deviations along principal axes. That is had without these axes: it is the
-/// sum of the principal minors of the covariance.
+/// three products of two standard deviations along principal axes. It takes no such axes: what is under the
+/// root is the sum of the principal minors of the covariance.
 double area_of(const Spread& spread) {
   const double whole = 1 / spread.weight;
   const Vector3d mean = spread.first * whole;
@@ -33,7 +33,7 @@ double area_of(const Spread& spread) {
       spread.products * whole - Vector3d(mean.y() * mean.z(), mean.z() * mean.x(), mean.x() * mean.y());
   const double minors =
       square.y() * square.z() + square.z() * square.x() + square.x() * square.y() - product.squaredNorm();
-  return std::sqrt(std::max(0.0, minors));
+  return std::sqrt(std::max(0.0, minors));  // in this order: 0 if rounding has made it NaN
 }
 
 /// A simplex by its place along a direction, as one number that is sorted fast: in front, bits that grow with

@@ -35,13 +35,14 @@ inline double half_area(const Eigen::AlignedBox3d& b) {
   return e.x() * e.y() + e.y() * e.z() + e.z() * e.x();
 }
 
+/// Axes of length 1 about an origin: a point x has the coordinates axes * (x - origin).
 struct Frame {
   Eigen::Matrix3d axes;  ///< rows
   Eigen::Vector3d origin;
 };
 
 /// How the points of simplices are spread: the sums over all points of 1, of the point, and of its product
-/// with itself. A simplex weighs as much as its area, and a little more, so that segments and points count.
+/// with itself. A simplex weighs twice its area, and a little more, so that segments and points count.
 struct Spread {
   double weight = 0;
   Eigen::Vector3d first = Eigen::Vector3d::Zero();
@@ -49,7 +50,7 @@ struct Spread {
   Eigen::Vector3d products = Eigen::Vector3d::Zero();  ///< yz, zx, xy
 
   Spread() = default;
-  /// Of one simplex, seen from `origin`, in units of `size`.
+  /// Measures one simplex, seen from `origin`, in units of `size`.
   Spread(const std::array<Eigen::Vector3d, 3>& corners, const Eigen::Vector3d& origin, double size);
 
   void operator+=(const Spread& more) {
@@ -67,6 +68,7 @@ struct Spread {
     return rest;
   }
 
+  /// Returns the covariance of the points.
   Eigen::Matrix3d covariance() const;
 };
 

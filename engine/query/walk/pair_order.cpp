@@ -15,7 +15,7 @@ namespace {
 constexpr std::size_t kWorthDigits = 32;
 constexpr unsigned kLeastDigitBits = 6, kMostDigitBits = 11;
 constexpr unsigned kMeetBits = 1;
-/// Up to so many pairs are sorted by digits of A's simplices alone: that is half as many, and few pairs have
+/// Up to so many pairs are sorted by the digits of A's simplices alone, which are half of all: few pairs have
 /// the same simplex of A. Of more pairs, more have: 266,180 at identical poses, about 13 for each simplex,
 /// are sorted faster by all digits.
 constexpr std::size_t kFewPairs = 4096;
