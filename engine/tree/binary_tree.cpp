@@ -27,10 +27,8 @@ class BinaryBuilder {
   static constexpr int kBins = 32;
   static constexpr std::uint32_t kWorthSharing = 2048;  ///< simplices
 
-  /// Returns the number of nodes for some simplices: every leaf but the last is full.
-  static std::uint32_t nodes_for(std::uint32_t simplices) {
-    return 2 * ((simplices + kTreeWidth - 1) / kTreeWidth) - 1;
-  }
+  /// Returns the number of nodes for some simplices.
+  static std::uint32_t nodes_for(std::uint32_t simplices) { return 2 * leaves_for(simplices) - 1; }
 
   /// Builds a subtree; parents come before children, left before right.
   void build(std::uint32_t self, std::uint32_t begin, std::uint32_t end) {
@@ -98,12 +96,12 @@ class BinaryBuilder {
       Box right, left;
       for (std::uint32_t i = n; i-- > 0;) {
         right.extend(soup_.box[order[i]]);
-        right_cost[i] = half_area(right) * blocks_for(n - i);
+        right_cost[i] = half_area(right) * leaves_for(n - i);
       }
       for (std::uint32_t i = 1; i < n; ++i) {
         left.extend(soup_.box[order[i - 1]]);
         if (i % kTreeWidth != 0) continue;
-        const double cost = half_area(left) * blocks_for(i) + right_cost[i];
+        const double cost = half_area(left) * leaves_for(i) + right_cost[i];
         if (cost < best.cost) best = {cost, axis, i};
       }
     }
@@ -128,7 +126,7 @@ class BinaryBuilder {
     for (int b = kBins - 1; b > 0; --b) {
       right.extend(bin_box[b]);
       right_count += bin_count[b];
-      right_cost[b] = right_count ? half_area(right) * blocks_for(right_count) : 0;
+      right_cost[b] = right_count ? half_area(right) * leaves_for(right_count) : 0;
     }
     Box left;
     std::uint32_t left_count = 0;
@@ -136,7 +134,7 @@ class BinaryBuilder {
       left.extend(bin_box[b - 1]);
       left_count += bin_count[b - 1];
       if (left_count == 0 || left_count == end - begin) continue;
-      const double cost = half_area(left) * blocks_for(left_count) + right_cost[b];
+      const double cost = half_area(left) * leaves_for(left_count) + right_cost[b];
       if (cost < best_cost) {
         best_cost = cost;
         best_axis = axis;
@@ -144,8 +142,6 @@ class BinaryBuilder {
       }
     }
   }
-
-  static double blocks_for(std::uint32_t simplices) { return (simplices + kTreeWidth - 1) / kTreeWidth; }
 
   Soup& soup_;
   Workers& workers_;

@@ -9,7 +9,6 @@
 
 #include "engine/core/eigenvectors.hpp"
 #include "engine/core/infinity.hpp"
-#include "engine/tree/obb_tree.hpp"
 
 namespace lrb {
 namespace {
@@ -17,10 +16,6 @@ namespace {
 using Box = Eigen::AlignedBox3d;
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
-
-double leaves_for(std::size_t simplices) {
-  return static_cast<double>((simplices + kTreeWidth - 1) / kTreeWidth);
-}
 
 /// Returns about how large a box is that fits, up to a factor: the root of the sum of the squares of the
 /// three products of two standard deviations along principal axes. It takes no such axes: what is under the
@@ -53,7 +48,7 @@ std::uint32_t number_at(Place place) {
 struct Cut {
   double cost;
   int way;             ///< the direction it is across
-  std::uint32_t left;  ///< how many simplices are on the left
+  std::uint32_t left;  ///< number of simplices on its left
 };
 
 bool is_cheaper(const Cut& x, const Cut& y) {
@@ -109,11 +104,12 @@ class CutSearch {
       order.push_back(place_at(static_cast<float>(along.dot(soup_.centre[range_[i]] - origin_)), i));
     std::sort(order.begin(), order.end());
     Spread left;
-    for (std::uint32_t i = 1; i < order.size(); ++i) {
+    const auto size = static_cast<std::uint32_t>(order.size());
+    for (std::uint32_t i = 1; i < size; ++i) {
       left += spread_[number_at(order[i - 1])];
       if (i % kTreeWidth == 0)
         cuts_.push_back(
-            {area_of(left) * leaves_for(i) + area_of(all_ - left) * leaves_for(order.size() - i), way, i});
+            {area_of(left) * leaves_for(i) + area_of(all_ - left) * leaves_for(size - i), way, i});
     }
   }
 
@@ -121,8 +117,9 @@ class CutSearch {
   double cost_of(const Cut& cut, double most) const {
     const std::span<const Place> order = order_[cut.way], left = order.first(cut.left),
                                  right = order.subspan(cut.left);
-    const double cost = fitted_area(left) * leaves_for(left.size());
-    return cost < most ? cost + fitted_area(right) * leaves_for(right.size()) : most;
+    const double cost = fitted_area(left) * leaves_for(cut.left);
+    const auto on_right = static_cast<std::uint32_t>(right.size());
+    return cost < most ? cost + fitted_area(right) * leaves_for(on_right) : most;
   }
 
   /// Returns half the surface of the box that fits some of the simplices.
@@ -142,7 +139,7 @@ class CutSearch {
   const Soup& soup_;
   const std::span<std::uint32_t> range_;
   Vector3d origin_;
-  std::vector<Spread> spread_;  ///< of each simplex of the range
+  std::vector<Spread> spread_;  ///< one for each simplex of the range
   Spread all_;
   Matrix3d principal_;                               ///< columns, that of the least extent first
   std::array<std::vector<Place>, kMostWays> order_;  ///< of the whole range, along each direction

@@ -4,11 +4,17 @@
 #include <cstdint>
 #include <span>
 
+#include "engine/tree/obb_tree.hpp"
 #include "engine/tree/soup.hpp"
 
 namespace lrb {
 
-/// How many cuts are looked at.
+/// Returns the number of leaves that hold some simplices: all but the last are full.
+inline std::uint32_t leaves_for(std::uint32_t simplices) {
+  return (simplices + kTreeWidth - 1) / kTreeWidth;
+}
+
+/// How many cuts to look at.
 struct CutEffort {
   int principal;        ///< across how many of the range's principal axes, the longest first; 0 to 3
   std::uint32_t tried;  ///< number of cuts for which the boxes are found, at least; more in large ranges

@@ -211,8 +211,9 @@ class CoarseQuery {
   }
 
  private:
-  static constexpr double kLongest = 1e6;           ///< seconds: more does not fit the clock on every machine
-  static constexpr std::size_t kLikelyPairs = 128;  ///< most answers need no more memory than for so many
+  static constexpr double kLongest = 1e6;  ///< seconds: more does not fit the clock on every machine
+  static constexpr std::size_t kLikelyPairs =
+      128;  ///< of a level: most have no more, so that their memory need not grow
 
   /// Keeps contacts from the probe: those of a step are part of the answer only if it is the last.
   struct WithoutContacts {
@@ -254,8 +255,6 @@ class CoarseQuery {
   template <class Rules>
   bool walk(const CollideRequest& request, CollideResult& found, Rules& rules) {
     found.counters = std::move(result_.counters);
-    found.pairs.reserve(kLikelyPairs);
-    found.meets.reserve(kLikelyPairs);
     TreeQuery<WithoutContacts, Rules> query(ctx_, request, found, probe_, rules);
     query.run();
     result_.counters = std::move(found.counters);
@@ -343,6 +342,8 @@ class CoarseQuery {
     step.b == nullptr ? b.query_body() : b.query_level(*step.b);
     rules.margin = wrapper_margin(a.world.pose(), a.tree(), b.world.pose(), b.tree());
     limit(rules, false);
+    found.pairs.reserve(kLikelyPairs);
+    found.meets.reserve(kLikelyPairs);
     if (!walk(request_, found, rules)) return false;
     sort(found);
     const double off = off_body(step.a, a.world.pose()) + off_body(step.b, b.world.pose());

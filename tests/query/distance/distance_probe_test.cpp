@@ -55,7 +55,11 @@ void check_watched(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const P
   check_course(told.course, distance(a, pose_a, b, pose_b));
   CHECK(told.course.back().lower >= watched.lower);
   CHECK(told.course.back().upper <= watched.upper);
-  if (request.within || request.relative_tolerance > 0) return;  // what was known on the way may be narrower
+  if (request.within) return;
+  if (request.relative_tolerance > 0) {  // what was known on the way may be narrower than what was asked for
+    CHECK(watched.upper - watched.lower <= request.relative_tolerance * watched.upper);
+    return;
+  }
   CHECK(told.course.back().lower == watched.lower);
   CHECK(told.course.back().upper == watched.upper);
 }
