@@ -10,8 +10,9 @@ namespace {
 
 /// Radix sort is worth its passes for more pairs than this. A digit has about as many values as there are
 /// pairs: this takes fewer passes than shorter digits, and its tables are no longer than what is sorted, so
-/// that they fit the first cache. Boost's spreadsort, measured beside it on keys of 29 and 35 bits in random
-/// order and in runs, takes 0.6 to 0.8 times as long for 33 pairs, and 1.1 to 2.5 times for 100 to 100,000.
+/// that they fit the first cache. Boost's spreadsort, measured beside a sort by all digits on keys of 29 and
+/// 35 bits in random order and in runs, takes 0.6 to 0.8 times as long for 33 pairs, and 1.1 to 2.5 times for
+/// 100 to 100,000.
 constexpr std::size_t kWorthDigits = 32;
 constexpr unsigned kLeastDigitBits = 6, kMostDigitBits = 11;
 constexpr unsigned kMeetBits = 1;
@@ -19,6 +20,8 @@ constexpr unsigned kMeetBits = 1;
 /// the same simplex of A. Of more pairs, more have: 266,180 at identical poses, about 13 for each simplex,
 /// are sorted faster by all digits.
 constexpr std::size_t kFewPairs = 4096;
+/// ... if so few of them have the same simplex of A on average, were all those that its digits can name met.
+constexpr std::size_t kAlikeOnAverage = 8;
 /// Pairs with the same simplex of A are put in order one by one; by comparing if they are more than this.
 constexpr std::ptrdiff_t kFewAlike = 16;
 
@@ -125,7 +128,7 @@ void PairOrder::sort_keys(unsigned bits_b, unsigned bits) {
     std::sort(keys_.begin(), keys_.end());
   } else {
     const unsigned of_b = kMeetBits + bits_b;
-    const bool few_alike = keys_.size() <= kFewPairs && keys_.size() >> (bits - of_b) <= kFewAlike / 2;
+    const bool few_alike = keys_.size() <= kFewPairs && keys_.size() >> (bits - of_b) <= kAlikeOnAverage;
     sort_by_digits(few_alike ? of_b : kMeetBits, bits);
     if (few_alike) sort_alike(keys_, of_b);
   }

@@ -7,7 +7,8 @@
 
 namespace lrb {
 
-/// Sorts pairs in ascending order and removes repetitions. Keeps its memory from one call to the next.
+/// Sorts pairs in ascending order and removes repetitions; each time a pair occurs, it must meet in the same
+/// way. Keeps its memory from one call to the next.
 class PairOrder {
  public:
   /// Sorts the pairs of an answer, and with them how they meet.

@@ -23,6 +23,40 @@ TEST_CASE("pairs are put in order where half of them have the same simplex of A"
   }
 }
 
+TEST_CASE(
+    "pairs are put in order with how they meet, in groups with the same simplex of A as short and long") {
+  std::mt19937_64 random(3);
+  PairOrder order;
+  // To either side of where the way to sort changes: pairs in all, and pairs with the same simplex of A.
+  for (const std::size_t size : {32, 33, 4096, 4097})
+    for (const std::size_t alike : {1, 2, 8, 9, 16, 17, 30}) {
+      CollideResult result;
+      std::vector<std::pair<SimplexPair, exact::Meet>> expected;
+      const std::size_t repeated = size / 10;
+      for (std::size_t i = 0; i < size - repeated; ++i) {
+        const SimplexPair p{static_cast<SimplexId>(i / alike), static_cast<SimplexId>(37 * i % 100'003)};
+        expected.emplace_back(p, random() % 2 ? exact::Meet::cross : exact::Meet::touch);
+      }
+      std::ranges::sort(expected);
+      std::vector<std::pair<SimplexPair, exact::Meet>> given = expected;
+      given.insert(given.end(), expected.begin(), expected.begin() + static_cast<std::ptrdiff_t>(repeated));
+      std::ranges::shuffle(given, random);
+      for (const auto& [pair, meet] : given) {
+        result.pairs.push_back(pair);
+        result.meets.push_back(meet);
+      }
+      order.sort(result);
+      CAPTURE(size);
+      CAPTURE(alike);
+      REQUIRE(result.pairs.size() == expected.size());
+      REQUIRE(result.meets.size() == expected.size());
+      bool same = true;
+      for (std::size_t i = 0; i < expected.size(); ++i)
+        same &= result.pairs[i] == expected[i].first && result.meets[i] == expected[i].second;
+      CHECK(same);
+    }
+}
+
 TEST_CASE("pairs are put in order with what belongs to them, by comparing and by digits") {
   std::mt19937_64 random(1);
   PairOrder order;
