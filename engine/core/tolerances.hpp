@@ -4,9 +4,9 @@
 
 namespace lrb {
 
-/// Weight of a simplex's corners when the principal axes of a tree node are found, relative to the squared
-/// area of the node's box. Keeps segments and points (area 0) from having no axes at all. Larger: frames
-/// follow the tessellation.
+/// Weight of a simplex's corners when the principal axes of some simplices are found, relative to the squared
+/// diagonal of their box, or of the box of a range that they are part of. Keeps segments and points (area 0)
+/// from having no axes at all. Larger: frames follow the tessellation.
 inline constexpr double kFrameCornerWeight = 1e-12;
 
 /// Largest defect allowed in the orthonormality of a node's axes once they are rounded to float (largest row

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <utility>
 
 #include "engine/core/infinity.hpp"
@@ -19,6 +20,7 @@ class BinaryBuilder {
     const auto n = static_cast<std::uint32_t>(soup.order.size());
     nodes_.resize(nodes_for(n));
     build(0, 0, n);
+    measure();
   }
 
   std::vector<BinaryNode> take() { return std::move(nodes_); }
@@ -30,20 +32,53 @@ class BinaryBuilder {
   /// Returns the number of nodes for some simplices.
   static std::uint32_t nodes_for(std::uint32_t simplices) { return 2 * leaves_for(simplices) - 1; }
 
-  /// Builds a subtree; parents come before children, left before right.
+  /// Builds a subtree, but for boxes.
   void build(std::uint32_t self, std::uint32_t begin, std::uint32_t end) {
-    BinaryNode& node = nodes_[self];
-    node = {begin, end, kNull, kNull, {}};
-    for (std::uint32_t i = begin; i < end; ++i) node.box.extend(soup_.box[soup_.order[i]]);
-    if (end - begin <= kTreeWidth) return;
+    if (end - begin <= splits_.fitted) {
+      FittedCuts cuts(soup_, soup_.listed(begin, end), splits_.effort);
+      build_fitted(self, begin, end, cuts, begin);
+      std::ranges::copy(cuts.order(), soup_.order.begin() + begin);
+      return;
+    }
     const std::uint32_t middle = split(begin, end);
-    node.left = self + 1;
-    node.right = node.left + nodes_for(middle - begin);
+    const auto [left, right] = fork(self, begin, middle, end);
+    const auto build_left = [&, left = left] { build(left, begin, middle); };
+    const auto build_right = [&, right = right] { build(right, middle, end); };
     if (end - begin < kWorthSharing) {
-      build(node.left, begin, middle);
-      build(node.right, middle, end);
+      build_left();
+      build_right();
     } else {
-      workers_.both([&] { build(node.left, begin, middle); }, [&] { build(node.right, middle, end); });
+      workers_.both(build_left, build_right);
+    }
+  }
+
+  /// Builds part of a subtree that `cuts` cuts. first: where its simplices begin.
+  void build_fitted(std::uint32_t self, std::uint32_t begin, std::uint32_t end, FittedCuts& cuts,
+                    std::uint32_t first) {
+    nodes_[self] = {begin, end, kNull, kNull, {}};
+    if (end - begin <= kTreeWidth) return;
+    const std::uint32_t middle = first + cuts.cut(begin - first, end - first);
+    const auto [left, right] = fork(self, begin, middle, end);
+    build_fitted(left, begin, middle, cuts, first);
+    build_fitted(right, middle, end, cuts, first);
+  }
+
+  /// Makes a node whose subtrees hold the simplices before `middle` and the rest. Returns the subtrees'
+  /// roots.
+  std::pair<std::uint32_t, std::uint32_t> fork(std::uint32_t self, std::uint32_t begin, std::uint32_t middle,
+                                               std::uint32_t end) {
+    const std::uint32_t left = self + 1, right = left + nodes_for(middle - begin);
+    nodes_[self] = {begin, end, left, right, {}};
+    return {left, right};
+  }
+
+  /// Finds all nodes' boxes, children's first.
+  void measure() {
+    for (auto node = nodes_.rbegin(); node != nodes_.rend(); ++node) {
+      if (node->is_leaf())
+        for (const std::uint32_t s : soup_.listed(node->begin, node->end)) node->box.extend(soup_.box[s]);
+      else
+        node->box = nodes_[node->left].box.merged(nodes_[node->right].box);
     }
   }
 
@@ -63,10 +98,6 @@ class BinaryBuilder {
   }
 
   std::uint32_t split(std::uint32_t begin, std::uint32_t end) {
-    if (end - begin <= splits_.fitted) {
-      const auto range = std::span(soup_.order).subspan(begin, end - begin);
-      if (const std::uint32_t left = cut_by_fitted_boxes(soup_, range, splits_.effort)) return begin + left;
-    }
     const Split best = splits_.all_cuts ? best_of_all(begin, end) : best_binned(begin, end);
     const auto first = soup_.order.begin() + begin;
     std::nth_element(first, first + best.left, first + (end - begin), order_on(best.axis));
@@ -111,12 +142,13 @@ class BinaryBuilder {
   void try_axis(std::uint32_t begin, std::uint32_t end, const Box& centres, int axis, double& best_cost,
                 int& best_axis, std::uint32_t& best_left) const {
     const double from = centres.min()[axis], width = centres.sizes()[axis];
-    if (!(width > 0)) return;
+    const double bins = kBins / width;  // for a unit of length
+    if (!std::isfinite(bins)) return;
     std::array<Box, kBins> bin_box;
     std::array<std::uint32_t, kBins> bin_count{};
     for (std::uint32_t i = begin; i < end; ++i) {
       const std::uint32_t s = soup_.order[i];
-      const int b = std::min(kBins - 1, static_cast<int>(kBins * ((soup_.centre[s][axis] - from) / width)));
+      const int b = std::min(kBins - 1, static_cast<int>((soup_.centre[s][axis] - from) * bins));
       bin_box[b].extend(soup_.box[s]);
       ++bin_count[b];
     }

@@ -1,11 +1,10 @@
 #include "engine/tree/fitted_cut.hpp"
 
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <cmath>
+#include <numeric>
 #include <tuple>
-#include <vector>
 
 #include "engine/core/eigenvectors.hpp"
 #include "engine/core/infinity.hpp"
@@ -17,10 +16,14 @@ using Box = Eigen::AlignedBox3d;
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-/// Returns about how large a box is that fits, up to a factor: the root of the sum of the squares of the
-/// three products of two standard deviations along principal axes. It takes no such axes: what is under the
-/// root is the sum of the principal minors of the covariance.
-double area_of(const Spread& spread) {
+/// What a box costs for its length, as a share of its squared diagonal: among boxes without a surface, like
+/// those of the parts of a straight line, the short ones are better.
+constexpr double kLengthCost = 1e-3;
+
+/// Returns about what the box that fits costs, up to a factor. Half its surface is about the root of the sum
+/// of the squares of the three products of two standard deviations along principal axes. It takes no such
+/// axes: what is under the root is the sum of the principal minors of the covariance.
+double cost_by(const Spread& spread) {
   const double whole = 1 / spread.weight;
   const Vector3d mean = spread.first * whole;
   const Vector3d square = spread.squares * whole - mean.cwiseProduct(mean);
@@ -28,128 +31,154 @@ double area_of(const Spread& spread) {
       spread.products * whole - Vector3d(mean.y() * mean.z(), mean.z() * mean.x(), mean.x() * mean.y());
   const double minors =
       square.y() * square.z() + square.z() * square.x() + square.x() * square.y() - product.squaredNorm();
-  return std::sqrt(std::max(0.0, minors));  // in this order: 0 if rounding has made it NaN
+  // In this order, each is 0 if rounding has made it NaN.
+  return std::sqrt(std::max(0.0, minors)) + kLengthCost * std::max(0.0, square.sum());
+}
+
+double cost_of_box(const Box& box) {
+  return half_area(box) + kLengthCost * box.sizes().squaredNorm();
 }
 
 /// A simplex by its place along a direction, as one number that is sorted fast: in front, bits that grow with
-/// the place, then the simplex's number in the range.
-using Place = std::uint64_t;
-
-Place place_at(float x, std::uint32_t number) {
-  const auto bits = std::bit_cast<std::uint32_t>(x);
+/// the place, then the simplex's number.
+std::uint64_t place_at(float x, std::uint32_t number) {
+  const auto bits = std::bit_cast<std::uint32_t>(x + 0.0f);  // -0 is in the same place as 0
   const std::uint32_t growing = bits >> 31 != 0 ? ~bits : bits | 0x80000000u;
   return std::uint64_t{growing} << 32 | number;
 }
 
-std::uint32_t number_at(Place place) {
+std::uint32_t number_at(std::uint64_t place) {
   return static_cast<std::uint32_t>(place);
 }
 
-struct Cut {
-  double cost;
-  int way;             ///< the direction it is across
-  std::uint32_t left;  ///< number of simplices on its left
-};
-
-bool is_cheaper(const Cut& x, const Cut& y) {
-  return std::tie(x.cost, x.way, x.left) < std::tie(y.cost, y.way, y.left);
-}
-
-class CutSearch {
- public:
-  CutSearch(const Soup& soup, std::span<std::uint32_t> range) : soup_(soup), range_(range) {}
-
-  std::uint32_t run(CutEffort effort) {
-    if (!measure()) return 0;
-    for (int way = 0; way < 3 + effort.principal; ++way) rank(way);
-    constexpr std::size_t kPerCut = 128;  // ranks are less sure where there are more simplices
-    const std::size_t few =
-        std::min(std::max<std::size_t>(effort.tried, range_.size() / kPerCut), cuts_.size());
-    std::partial_sort(cuts_.begin(), cuts_.begin() + static_cast<std::ptrdiff_t>(few), cuts_.end(),
-                      is_cheaper);
-    Cut best{kInfinity, 0, kTreeWidth};
-    for (const Cut& cut : std::span(cuts_).first(few)) {
-      const double cost = cost_of(cut, best.cost);
-      if (cost < best.cost) best = {cost, cut.way, cut.left};
-    }
-    std::vector<std::uint32_t> sorted;
-    sorted.reserve(range_.size());
-    for (const Place place : order_[best.way]) sorted.push_back(range_[number_at(place)]);
-    std::copy(sorted.begin(), sorted.end(), range_.begin());
-    return best.left;
-  }
-
- private:
-  static constexpr int kMostWays = 6;
-
-  /// Finds how the simplices are spread. Returns false if they are at one point.
-  bool measure() {
-    Box bounds;
-    for (const std::uint32_t s : range_) bounds.extend(soup_.box[s]);
-    origin_ = bounds.center();
-    const double size = bounds.sizes().norm();
-    if (!(size > 0)) return false;
-    spread_.reserve(range_.size());
-    for (const std::uint32_t s : range_) all_ += spread_.emplace_back(soup_.corners[s], origin_, size);
-    principal_ = eigenvectors_of_symmetric(all_.covariance());
-    return true;
-  }
-
-  /// Orders the simplices along one direction and adds all cuts across it.
-  void rank(int way) {
-    const Vector3d along = way < 3 ? Vector3d(Vector3d::Unit(way)) : Vector3d(principal_.col(5 - way));
-    std::vector<Place>& order = order_[way];
-    order.reserve(range_.size());
-    for (std::uint32_t i = 0; i < range_.size(); ++i)
-      order.push_back(place_at(static_cast<float>(along.dot(soup_.centre[range_[i]] - origin_)), i));
-    std::sort(order.begin(), order.end());
-    Spread left;
-    const auto size = static_cast<std::uint32_t>(order.size());
-    for (std::uint32_t i = 1; i < size; ++i) {
-      left += spread_[number_at(order[i - 1])];
-      if (i % kTreeWidth == 0)
-        cuts_.push_back(
-            {area_of(left) * leaves_for(i) + area_of(all_ - left) * leaves_for(size - i), way, i});
-    }
-  }
-
-  /// Returns what a cut costs, or `most` if it costs no less.
-  double cost_of(const Cut& cut, double most) const {
-    const std::span<const Place> order = order_[cut.way], left = order.first(cut.left),
-                                 right = order.subspan(cut.left);
-    const double cost = fitted_area(left) * leaves_for(cut.left);
-    const auto on_right = static_cast<std::uint32_t>(right.size());
-    return cost < most ? cost + fitted_area(right) * leaves_for(on_right) : most;
-  }
-
-  /// Returns half the surface of the box that fits some of the simplices.
-  double fitted_area(std::span<const Place> some) const {
-    Spread spread;
-    Box straight, turned;
-    for (const Place place : some) {
-      spread += spread_[number_at(place)];
-      straight.extend(soup_.box[range_[number_at(place)]]);
-    }
-    const Matrix3d axes = eigenvectors_of_symmetric(spread.covariance()).transpose();
-    for (const Place place : some)
-      for (const Vector3d& x : soup_.corners[range_[number_at(place)]]) turned.extend(axes * (x - origin_));
-    return half_area(turned) < half_area(straight) ? half_area(turned) : half_area(straight);
-  }
-
-  const Soup& soup_;
-  const std::span<std::uint32_t> range_;
-  Vector3d origin_;
-  std::vector<Spread> spread_;  ///< one for each simplex of the range
-  Spread all_;
-  Matrix3d principal_;                               ///< columns, that of the least extent first
-  std::array<std::vector<Place>, kMostWays> order_;  ///< of the whole range, along each direction
-  std::vector<Cut> cuts_;
-};
-
 }  // namespace
 
-std::uint32_t cut_by_fitted_boxes(const Soup& soup, std::span<std::uint32_t> range, CutEffort effort) {
-  return CutSearch(soup, range).run(effort);
+bool FittedCuts::Cut::operator<(const Cut& y) const {
+  return std::tie(cost, uneven, way, left) < std::tie(y.cost, y.uneven, y.way, y.left);
+}
+
+FittedCuts::FittedCuts(const Soup& soup, std::span<const std::uint32_t> simplices, CutEffort effort)
+    : soup_(soup), effort_(effort), simplices_(simplices.begin(), simplices.end()) {
+  std::sort(simplices_.begin(), simplices_.end());
+  const std::size_t n = simplices_.size();
+  Box bounds;
+  for (const std::uint32_t s : simplices_) bounds.extend(soup.box[s]);
+  origin_ = bounds.center();
+  scale_ = 1 / bounds.sizes().norm();
+  if (!std::isfinite(scale_)) scale_ = 1;
+  spread_.reserve(n);
+  for (const std::uint32_t s : simplices_) spread_.emplace_back(soup.corners[s], origin_, scale_);
+  for (int axis = 0; axis < 3; ++axis) {
+    std::vector<std::uint32_t>& order = coordinate_[axis];
+    order.resize(n);
+    std::iota(order.begin(), order.end(), 0u);
+    std::sort(order.begin(), order.end(), [&](std::uint32_t i, std::uint32_t j) {
+      const double x = soup.centre[simplices_[i]][axis], y = soup.centre[simplices_[j]][axis];
+      return x != y ? x < y : i < j;
+    });
+  }
+  is_left_.resize(n);
+}
+
+std::uint32_t FittedCuts::cut(std::uint32_t begin, std::uint32_t end) {
+  begin_ = begin;
+  size_ = end - begin;
+  all_ = {};
+  for (const std::uint32_t i : along(0)) all_ += spread_[i];
+  if (effort_.principal > 0) {
+    const Matrix3d axes = eigenvectors_of_symmetric(all_.covariance());
+    for (int k = 0; k < effort_.principal; ++k) order_along_principal(k, axes.col(2 - k));
+  }
+  cuts_.clear();
+  for (int way = 0; way < 3 + effort_.principal; ++way) rank(way);
+  constexpr std::size_t kPerCut = 128;  // ranks are less sure where there are more simplices
+  const std::size_t few = std::min(std::max<std::size_t>(effort_.tried, size_ / kPerCut), cuts_.size());
+  std::partial_sort(cuts_.begin(), cuts_.begin() + static_cast<std::ptrdiff_t>(few), cuts_.end());
+  Cut best = cuts_.front();
+  best.cost = kInfinity;
+  for (Cut cut : std::span(cuts_).first(few)) {
+    cut.cost = cost_of(cut, best.cost);
+    if (cut < best) best = cut;
+  }
+  part(best);
+  return begin + best.left;
+}
+
+std::vector<std::uint32_t> FittedCuts::order() const {
+  std::vector<std::uint32_t> order;
+  order.reserve(simplices_.size());
+  for (const std::uint32_t i : coordinate_[0]) order.push_back(simplices_[i]);
+  return order;
+}
+
+/// Returns the range, ordered along a direction.
+std::span<const std::uint32_t> FittedCuts::along(int way) const {
+  return way < 3 ? std::span(coordinate_[way]).subspan(begin_, size_) : principal_[way - 3];
+}
+
+/// Orders the range along its principal axis number k.
+void FittedCuts::order_along_principal(int k, const Vector3d& direction) {
+  const Vector3d middle = origin_ + all_.first / (all_.weight * scale_);
+  places_.clear();
+  for (const std::uint32_t i : along(0)) {
+    const Vector3d seen = soup_.centre[simplices_[i]] - middle;
+    places_.push_back(place_at(static_cast<float>(direction.dot(seen)), i));
+  }
+  std::sort(places_.begin(), places_.end());
+  principal_[k].clear();
+  for (const std::uint64_t place : places_) principal_[k].push_back(number_at(place));
+}
+
+/// Adds all cuts across one direction.
+void FittedCuts::rank(int way) {
+  const std::span<const std::uint32_t> order = along(way);
+  Spread left;
+  for (std::uint32_t i = 1; i < size_; ++i) {
+    left += spread_[order[i - 1]];
+    if (i % kTreeWidth != 0) continue;
+    const std::uint32_t right = size_ - i;
+    const double cost = cost_by(left) * leaves_for(i) + cost_by(all_ - left) * leaves_for(right);
+    cuts_.push_back({static_cast<float>(cost), i > right ? i - right : right - i, way, i});
+  }
+}
+
+/// Returns what a cut costs, or infinity if it costs more than `most`.
+float FittedCuts::cost_of(const Cut& cut, float most) const {
+  const std::span<const std::uint32_t> order = along(cut.way), left = order.first(cut.left),
+                                       right = order.subspan(cut.left);
+  const double cost = fitted_cost(left) * leaves_for(cut.left);
+  if (static_cast<float>(cost) > most) return kInfinity;
+  return static_cast<float>(cost + fitted_cost(right) * leaves_for(size_ - cut.left));
+}
+
+/// Returns what the box costs that fits some of the simplices.
+double FittedCuts::fitted_cost(std::span<const std::uint32_t> some) const {
+  Spread spread;
+  Box straight, turned;
+  for (const std::uint32_t i : some) {
+    spread += spread_[i];
+    straight.extend(soup_.box[simplices_[i]]);
+  }
+  const Matrix3d axes = eigenvectors_of_symmetric(spread.covariance()).transpose();
+  for (const std::uint32_t i : some)
+    for (const Vector3d& x : soup_.corners[simplices_[i]]) turned.extend(axes * (x - origin_));
+  return std::min(cost_of_box(straight), cost_of_box(turned));
+}
+
+/// Cuts the range: puts the simplices on the left first along each axis, and keeps both sides in order.
+void FittedCuts::part(const Cut& cut) {
+  const std::span<const std::uint32_t> order = along(cut.way);
+  for (std::uint32_t k = 0; k < size_; ++k) is_left_[order[k]] = k < cut.left;
+  for (std::vector<std::uint32_t>& all : coordinate_) {
+    right_.clear();
+    auto to = all.begin() + begin_;
+    for (auto from = to, end = to + size_; from != end; ++from)
+      if (is_left_[*from])
+        *to++ = *from;
+      else
+        right_.push_back(*from);
+    std::copy(right_.begin(), right_.end(), to);
+  }
 }
 
 }  // namespace lrb

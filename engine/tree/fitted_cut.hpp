@@ -1,8 +1,10 @@
 #pragma once
-/// Where to cut a range of simplices in two so that the boxes that fit the halves are small.
+/// Where to cut ranges of simplices in two so that the boxes that fit the halves are small.
 
+#include <array>
 #include <cstdint>
 #include <span>
+#include <vector>
 
 #include "engine/tree/obb_tree.hpp"
 #include "engine/tree/soup.hpp"
@@ -20,13 +22,58 @@ struct CutEffort {
   std::uint32_t tried;  ///< number of cuts for which the boxes are found, at least; more in large ranges
 };
 
-/// Orders a range of more than kTreeWidth simplices, and returns how many of them to put on the left: a
-/// multiple of kTreeWidth; 0 if all are at one point, so that no cut is better than another.
+/// Some simplices, ordered along the coordinate axes, that are cut into ranges and those again, down to
+/// leaves.
 ///
-/// All cuts across the coordinate axes and some principal axes are ranked by how the points of the halves are
-/// spread. Of the first ones that one is taken whose halves have the smallest boxes, each on its own axes as
-/// in fit_frame(): the sum of their surfaces, each times the number of leaves in it (the surface area
-/// heuristic, of boxes as the query will see them).
-std::uint32_t cut_by_fitted_boxes(const Soup& soup, std::span<std::uint32_t> range, CutEffort effort);
+/// All cuts of a range across the coordinate axes and some principal axes are ranked by how the points of the
+/// halves are spread. Of the first ones that one is taken whose halves have the smallest boxes, each on its
+/// own axes as in fit_frame(): the sum of their surfaces, each times the number of leaves in it (the surface
+/// area heuristic, of boxes as the query will see them). Of cuts that cost the same, it is the most even one,
+/// so that simplices at one point are halved.
+class FittedCuts {
+ public:
+  /// Nothing is cut yet: the one range is [0, simplices.size()). `soup` must outlive this.
+  FittedCuts(const Soup& soup, std::span<const std::uint32_t> simplices, CutEffort effort);
+
+  /// Cuts a range of more than kTreeWidth simplices that nothing has cut yet, in two ranges. Returns where:
+  /// a multiple of kTreeWidth after `begin`.
+  std::uint32_t cut(std::uint32_t begin, std::uint32_t end);
+
+  /// Returns the simplices, range by range.
+  std::vector<std::uint32_t> order() const;
+
+ private:
+  struct Cut {
+    float cost;            ///< rounded, so that what differs by rounding errors alone costs the same
+    std::uint32_t uneven;  ///< how many simplices more one side has
+    int way;               ///< the direction it is across
+    std::uint32_t left;    ///< number of simplices on its left
+    bool operator<(const Cut& y) const;
+  };
+
+  std::span<const std::uint32_t> along(int way) const;
+  void order_along_principal(int k, const Eigen::Vector3d& direction);
+  void rank(int way);
+  float cost_of(const Cut& cut, float most) const;
+  double fitted_cost(std::span<const std::uint32_t> some) const;
+  void part(const Cut& cut);
+
+  const Soup& soup_;
+  const CutEffort effort_;
+  std::vector<std::uint32_t> simplices_;  ///< in order; below, simplices go by their place here
+  Eigen::Vector3d origin_;                ///< middle of all
+  double scale_;                          ///< 1 / diagonal of all
+  std::vector<Spread> spread_;            ///< of each simplex, from origin_, times scale_
+  std::array<std::vector<std::uint32_t>, 3> coordinate_;  ///< range by range, ordered along an axis in each
+
+  // The range that is being cut.
+  std::uint32_t begin_ = 0, size_ = 0;
+  Spread all_;
+  std::array<std::vector<std::uint32_t>, 3> principal_;  ///< ordered along its principal axes
+  std::vector<Cut> cuts_;
+  std::vector<std::uint64_t> places_;
+  std::vector<std::uint32_t> right_;
+  std::vector<std::uint8_t> is_left_;  ///< for each simplex
+};
 
 }  // namespace lrb

@@ -16,7 +16,7 @@ using Eigen::Vector3d;
 
 /// Splits of trees of bodies. Twice as many tries save 1 to 2 % of a query and take 5 % longer to build
 /// (docs/measurements.md).
-constexpr Splits kBodySplits{.fitted = 2048, .effort = {.principal = 1, .tried = 4}, .all_cuts = false};
+constexpr Splits kBodySplits{.fitted = 2048, .effort = {.principal = 1, .tried = 3}, .all_cuts = false};
 /// Splits of trees of wrappers, whose faces are few and long: these are worth more tries.
 constexpr Splits kWrapperSplits{.fitted = 512, .effort = {.principal = 3, .tried = 32}, .all_cuts = true};
 

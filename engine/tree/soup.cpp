@@ -46,9 +46,9 @@ Soup::Soup(const SimplexView& body, std::span<const SimplexId> simplices_, doubl
   }
 }
 
-Spread::Spread(const std::array<Vector3d, 3>& corners, const Vector3d& origin, double size) {
-  const Vector3d p = (corners[0] - origin) / size, q = (corners[1] - origin) / size,
-                 r = (corners[2] - origin) / size;
+Spread::Spread(const std::array<Vector3d, 3>& corners, const Vector3d& origin, double scale) {
+  const Vector3d p = scale * (corners[0] - origin), q = scale * (corners[1] - origin),
+                 r = scale * (corners[2] - origin);
   weight = (q - p).cross(r - p).norm() + kFrameCornerWeight;
   const Vector3d sum = p + q + r;
   first = weight / 3 * sum;
@@ -79,10 +79,10 @@ Box box_in_frame(const Soup& soup, std::span<const std::uint32_t> which, const F
 
 Frame fit_frame(const Soup& soup, std::span<const std::uint32_t> which, const Box& bounds) {
   const Frame straight{Matrix3d::Identity(), 0.5 * (bounds.min() + bounds.max())};
-  const double size = bounds.sizes().norm();
-  if (!(size > 0)) return straight;
+  const double scale = 1 / bounds.sizes().norm();
+  if (!std::isfinite(scale)) return straight;
   Spread spread;
-  for (const std::uint32_t s : which) spread += Spread(soup.corners[s], straight.origin, size);
+  for (const std::uint32_t s : which) spread += Spread(soup.corners[s], straight.origin, scale);
   const Matrix3d axes = eigenvectors_of_symmetric(spread.covariance()).transpose();
   const Frame principal{axes.cast<float>().cast<double>(), straight.origin};
   if (!principal.axes.allFinite() || !is_orthonormal(principal.axes)) return straight;

@@ -50,8 +50,8 @@ struct Spread {
   Eigen::Vector3d products = Eigen::Vector3d::Zero();  ///< yz, zx, xy
 
   Spread() = default;
-  /// Measures one simplex, seen from `origin`, in units of `size`.
-  Spread(const std::array<Eigen::Vector3d, 3>& corners, const Eigen::Vector3d& origin, double size);
+  /// Measures one simplex, seen from `origin`, its lengths times `scale`.
+  Spread(const std::array<Eigen::Vector3d, 3>& corners, const Eigen::Vector3d& origin, double scale);
 
   void operator+=(const Spread& more) {
     weight += more.weight;

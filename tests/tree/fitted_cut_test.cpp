@@ -2,7 +2,9 @@
 #include "engine/tree/fitted_cut.hpp"
 
 #include <algorithm>
-#include <numeric>
+#include <cmath>
+#include <numbers>
+#include <vector>
 
 #include <doctest/doctest.h>
 
@@ -50,56 +52,130 @@ double cost(const Soup& soup, std::span<const std::uint32_t> order, std::size_t 
          fitted_area(soup, order.last(right)) * leaves(right);
 }
 
-/// Returns the least cost of all cuts across the coordinate axes.
-double least_cost(const Soup& soup) {
+/// Returns the least cost of all cuts of some simplices across the coordinate axes.
+double least_cost(const Soup& soup, std::vector<std::uint32_t> some) {
   double least = kInfinity;
   for (int axis = 0; axis < 3; ++axis) {
-    std::vector<std::uint32_t> order = soup.order;
-    std::sort(order.begin(), order.end(),
+    std::sort(some.begin(), some.end(),
               [&](std::uint32_t s, std::uint32_t t) { return soup.centre[s][axis] < soup.centre[t][axis]; });
-    for (std::size_t left = kTreeWidth; left < order.size(); left += kTreeWidth)
-      least = std::min(least, cost(soup, order, left));
+    for (std::size_t left = kTreeWidth; left < some.size(); left += kTreeWidth)
+      least = std::min(least, cost(soup, some, left));
   }
   return least;
 }
 
-bool holds_all(std::vector<std::uint32_t> order) {
-  std::sort(order.begin(), order.end());
-  for (std::uint32_t i = 0; i < order.size(); ++i)
-    if (order[i] != i) return false;
-  return true;
+/// A cut of all of some triangles.
+struct FirstCut {
+  Soup soup;
+  std::vector<std::uint32_t> order;
+  std::uint32_t left;
+
+  FirstCut(const Triangles& triangles, CutEffort effort) : soup(triangles.soup()) {
+    FittedCuts cuts(soup, soup.order, effort);
+    left = cuts.cut(0, static_cast<std::uint32_t>(soup.order.size()));
+    order = cuts.order();
+  }
+
+  double cost() const { return ::cost(soup, order, left); }
+
+  /// Returns true if one side holds exactly the first `count` triangles or the others.
+  bool parts_first(std::uint32_t count) const {
+    const auto is_first = [&](std::uint32_t s) { return s < count; };
+    const auto on_left = std::span(order).first(left), on_right = std::span(order).subspan(left);
+    return (std::ranges::all_of(on_left, is_first) && std::ranges::none_of(on_right, is_first)) ||
+           (std::ranges::none_of(on_left, is_first) && std::ranges::all_of(on_right, is_first));
+  }
+};
+
+bool same_set(std::span<const std::uint32_t> x, std::span<const std::uint32_t> y) {
+  std::vector<std::uint32_t> a(x.begin(), x.end()), b(y.begin(), y.end());
+  std::ranges::sort(a);
+  std::ranges::sort(b);
+  return a == b;
 }
+
+/// Small triangles along a bent strip in a pose of its own, so that boxes on the coordinate axes fit its
+/// parts badly; the more of them in one place, the larger `crowding` is.
+Triangles bent_strip(RandomEngine& random, int count, double crowding, double thickness) {
+  Triangles triangles;
+  const Eigen::Matrix3d turn = shapes::random_rotation(random);
+  for (int i = 0; i < count; ++i) {
+    const double x = 0.9 * std::pow(1.0 * i / count, crowding),
+                 size = shapes::uniform(random, 0.1, 1) * thickness;
+    const Vector3d middle = turn * Vector3d(x, x * x, shapes::uniform(random, 0, 0.1));
+    Vector3d corner[3];
+    for (Vector3d& c : corner) c = middle + size * shapes::random_direction(random);
+    triangles.add(corner[0], corner[1], corner[2]);
+  }
+  return triangles;
+}
+
+/// Adds triangles on a disc.
+void add_disc(Triangles& triangles, int count, const Vector3d& middle, const Vector3d& normal,
+              double radius) {
+  const Vector3d u = normal.unitOrthogonal(), v = normal.cross(u);
+  for (int i = 0; i < count; ++i) {  // a spiral of points that are about as far from each other
+    const double r = radius * std::sqrt((i + 0.5) / count),
+                 angle = std::numbers::pi * (3 - std::sqrt(5.0)) * i;
+    const Vector3d at = middle + r * (std::cos(angle) * u + std::sin(angle) * v);
+    triangles.add(at, at + 0.1 * radius * u, at + 0.1 * radius * v);
+  }
+}
+
+/// Looks at so many cuts that none is left out.
+constexpr std::uint32_t kAll = 10'000;
 
 }  // namespace
 
 TEST_CASE("of all cuts across the coordinate axes that one is found whose halves have the smallest boxes") {
   RandomEngine random(5);
   for (const int count : {9, 16, 17, 40, 200}) {
-    Triangles triangles;
-    // A bent strip in a pose of its own, so that boxes on the coordinate axes fit its parts badly.
-    const Eigen::Matrix3d turn = shapes::random_rotation(random);
-    for (int i = 0; i < count; ++i) {
-      const double x = 0.9 * i / count, size = shapes::uniform(random, 0.01, 0.1);
-      const Vector3d middle = turn * Vector3d(x, x * x, shapes::uniform(random, 0, 0.1));
-      Vector3d corner[3];
-      for (Vector3d& c : corner) c = middle + size * shapes::random_direction(random);
-      triangles.add(corner[0], corner[1], corner[2]);
-    }
+    const Triangles triangles = bent_strip(random, count, 1, 0.1);
     Soup soup = triangles.soup();
-    const double least = least_cost(soup);
-    const CutEffort everything{.principal = 0, .tried = 10'000};
-    const std::uint32_t left = cut_by_fitted_boxes(soup, soup.order, everything);
-    CAPTURE(count);
-    REQUIRE(left % kTreeWidth == 0);
-    REQUIRE(left > 0);
-    REQUIRE(left < soup.order.size());
-    CHECK(holds_all(soup.order));
-    CHECK(cost(soup, soup.order, left) == doctest::Approx(least).epsilon(1e-5));
-    // More directions and fewer trials: no worse than twice that here, and mostly better.
-    Soup again = triangles.soup();
-    const std::uint32_t guessed = cut_by_fitted_boxes(again, again.order, {.principal = 3, .tried = 4});
-    CHECK(holds_all(again.order));
-    CHECK(cost(again, again.order, guessed) < 2 * least);
+    FittedCuts cuts(soup, soup.order, {.principal = 0, .tried = kAll});
+    // Cuts the whole, and what comes of it, down to leaves.
+    struct Range {
+      std::uint32_t begin, end;
+    };
+    std::vector<Range> ranges = {{0, static_cast<std::uint32_t>(count)}};
+    for (std::size_t k = 0; k < ranges.size(); ++k) {
+      const auto [begin, end] = ranges[k];
+      if (end - begin <= kTreeWidth) continue;
+      const auto listed = [&, b = begin, e = end](const std::vector<std::uint32_t>& order) {
+        return std::vector(order.begin() + b, order.begin() + e);
+      };
+      const std::vector<std::uint32_t> before = listed(cuts.order());
+      const std::uint32_t middle = cuts.cut(begin, end);
+      const std::vector<std::uint32_t> after = listed(cuts.order());
+      CAPTURE(count);
+      CAPTURE(begin);
+      CAPTURE(end);
+      REQUIRE((middle - begin) % kTreeWidth == 0);
+      REQUIRE(middle > begin);
+      REQUIRE(middle < end);
+      REQUIRE(same_set(before, after));
+      CHECK(cost(soup, after, middle - begin) == doctest::Approx(least_cost(soup, before)).epsilon(1e-2));
+      ranges.push_back({begin, middle});
+      ranges.push_back({middle, end});
+    }
+    CHECK(same_set(cuts.order(), soup.order));
+  }
+}
+
+TEST_CASE("the cut that is ranked first costs little more than the best one") {
+  struct Strips {
+    double crowding, most;
+  };
+  RandomEngine random(7);
+  for (const auto [crowding, most] : {Strips{1, 1.05}, Strips{3, 1.09}}) {
+    constexpr int kRounds = 20;
+    double more = 0;
+    for (int round = 0; round < kRounds; ++round) {
+      const FirstCut first(bent_strip(random, 200, crowding, 0.02), {.principal = 0, .tried = 1});
+      more += std::log(first.cost() / least_cost(first.soup, first.soup.order)) / kRounds;
+    }
+    CAPTURE(crowding);
+    CHECK(std::exp(more) < most);  // in geometric mean
   }
 }
 
@@ -108,36 +184,44 @@ TEST_CASE("two plates side by side are parted, however they lie") {
   for (int round = 0; round < 20; ++round) {
     const Eigen::Matrix3d turn = shapes::random_rotation(random);
     Triangles triangles;
-    for (int i = 0; i < 64; ++i) {  // even ones on one plate, odd ones on the other
-      const Vector3d at(0.1 * (i / 2 % 8), 0.1 * (i / 16), i % 2 * 0.5);
+    for (int i = 0; i < 64; ++i) {
+      const Vector3d at(0.1 * (i % 8), 0.1 * (i % 32 / 8), i / 32 * 0.5);
       triangles.add(turn * at, turn * (at + Vector3d(0.1, 0, 0)), turn * (at + Vector3d(0, 0.1, 0)));
     }
-    Soup soup = triangles.soup();
-    const std::uint32_t left = cut_by_fitted_boxes(soup, soup.order, {.principal = 3, .tried = 32});
-    CHECK(left == 32);
-    const auto plate = [&](std::uint32_t i) { return soup.order[i] % 2; };
-    bool parted = true;
-    for (std::uint32_t i = 0; i < 64; ++i) parted &= plate(i) == (i < 32 ? plate(0) : 1 - plate(0));
-    CHECK(parted);
+    const FirstCut cut(triangles, {.principal = 3, .tried = 32});
+    CHECK(cut.left == 32);
+    CHECK(cut.parts_first(32));
   }
 }
 
-TEST_CASE(
-    "simplices at one point, in one line or all alike can be cut, or it is said that nothing tells how") {
-  const CutEffort effort{.principal = 3, .tried = 4};
-  Triangles point, line, alike;
-  for (int i = 0; i < 20; ++i) {
-    const Vector3d a(0.5, 0.25, 0.125), b(0.5 + 0.01 * i, 0.25, 0.125);
-    point.add(a, a, a);
-    line.add(a, b, b);
-    alike.add({0, 0, 0}, {1, 0, 0}, {0, 1, 0});
+TEST_CASE("a long body is cut across its longest principal axis, where no coordinate axis parts it") {
+  // Two discs that face each other along a diagonal, so wide that they overlap as seen along any coordinate
+  // axis, but less wide than they are apart; one holds three times as many triangles.
+  const Vector3d along = Vector3d(1, 1, 1).normalized();
+  Triangles triangles;
+  add_disc(triangles, 24, along, along, 1.2);
+  add_disc(triangles, 72, -along, along, 1.2);
+  for (const std::uint32_t tried : {1u, 4u}) {
+    CHECK(FirstCut(triangles, {.principal = 1, .tried = tried}).parts_first(24));
+    CHECK_FALSE(FirstCut(triangles, {.principal = 0, .tried = tried}).parts_first(24));
   }
-  Soup soup = point.soup();
-  CHECK(cut_by_fitted_boxes(soup, soup.order, effort) == 0);
-  for (const Triangles* some : {&line, &alike}) {
-    Soup other = some->soup();
-    const std::uint32_t left = cut_by_fitted_boxes(other, other.order, effort);
-    CHECK((left == 8 || left == 16));
-    CHECK(holds_all(other.order));
+}
+
+TEST_CASE("straight lines and simplices at one point are halved, not peeled leaf by leaf") {
+  RandomEngine random(8);
+  for (const Vector3d& along : {Vector3d(1, 0, 0), Vector3d(0, 0, 1), shapes::random_direction(random)}) {
+    Triangles line, point, alike;
+    for (int i = 0; i < 128; ++i) {
+      const Vector3d a = i * 0.01 * along, b = (i + 1) * 0.01 * along;
+      line.add(a, b, b);
+      point.add(along, along, along);
+      alike.add({0, 0, 0}, along, along.unitOrthogonal());
+    }
+    for (const Triangles* some : {&line, &point, &alike})
+      for (const CutEffort effort : {CutEffort{0, 1}, CutEffort{1, 3}, CutEffort{3, 32}}) {
+        const FirstCut cut(*some, effort);
+        CHECK(cut.left == 64);
+        CHECK(same_set(cut.order, cut.soup.order));
+      }
   }
 }
