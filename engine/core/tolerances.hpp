@@ -9,6 +9,16 @@ namespace lrb {
 /// from having no axes at all. Larger: frames follow the tessellation.
 inline constexpr double kFrameCornerWeight = 1e-12;
 
+/// What a box costs for its length where trees are cut, as a share of its squared diagonal, beside half its
+/// surface. Among boxes without a surface, like those of the parts of a straight line, it makes the short
+/// ones the better ones; without it, a line is peeled off leaf by leaf. Larger: parts that are small beside
+/// what lies between them are not told apart from it.
+inline constexpr double kLengthCost = 1e-5;
+
+/// Ranges of simplices whose variance is so small a share of that of all simplices they were measured with
+/// are measured again: from far away, rounding errors would hide how they are spread.
+inline constexpr double kMeasureAgain = 1e-6;
+
 /// Largest defect allowed in the orthonormality of a node's axes once they are rounded to float (largest row
 /// sum; without unit): 8 u, u = 2^-24, of which rounding uses 5.2 u. Larger: kKernelRounding does not hold;
 /// smaller: nodes lose their own axes.

@@ -34,7 +34,7 @@ class BinaryBuilder {
 
   /// Builds a subtree, but for boxes.
   void build(std::uint32_t self, std::uint32_t begin, std::uint32_t end) {
-    if (end - begin <= splits_.fitted) {
+    if (end - begin <= std::max(splits_.fitted, kTreeWidth)) {
       FittedCuts cuts(soup_, soup_.listed(begin, end), splits_.effort);
       build_fitted(self, begin, end, cuts, begin);
       std::ranges::copy(cuts.order(), soup_.order.begin() + begin);
@@ -127,13 +127,14 @@ class BinaryBuilder {
       Box right, left;
       for (std::uint32_t i = n; i-- > 0;) {
         right.extend(soup_.box[order[i]]);
-        right_cost[i] = half_area(right) * leaves_for(n - i);
+        right_cost[i] = box_cost(right) * leaves_for(n - i);
       }
       for (std::uint32_t i = 1; i < n; ++i) {
         left.extend(soup_.box[order[i - 1]]);
         if (i % kTreeWidth != 0) continue;
-        const double cost = half_area(left) * leaves_for(i) + right_cost[i];
-        if (cost < best.cost) best = {cost, axis, i};
+        const double cost = box_cost(left) * leaves_for(i) + right_cost[i];
+        const auto uneven = [n](std::uint32_t count) { return std::max(count, n - count); };
+        if (cost < best.cost || (cost == best.cost && uneven(i) < uneven(best.left))) best = {cost, axis, i};
       }
     }
     return best;
@@ -158,7 +159,7 @@ class BinaryBuilder {
     for (int b = kBins - 1; b > 0; --b) {
       right.extend(bin_box[b]);
       right_count += bin_count[b];
-      right_cost[b] = right_count ? half_area(right) * leaves_for(right_count) : 0;
+      right_cost[b] = right_count ? box_cost(right) * leaves_for(right_count) : 0;
     }
     Box left;
     std::uint32_t left_count = 0;
@@ -166,7 +167,7 @@ class BinaryBuilder {
       left.extend(bin_box[b - 1]);
       left_count += bin_count[b - 1];
       if (left_count == 0 || left_count == end - begin) continue;
-      const double cost = half_area(left) * leaves_for(left_count) + right_cost[b];
+      const double cost = box_cost(left) * leaves_for(left_count) + right_cost[b];
       if (cost < best_cost) {
         best_cost = cost;
         best_axis = axis;

@@ -8,6 +8,7 @@
 
 #include "engine/core/eigenvectors.hpp"
 #include "engine/core/infinity.hpp"
+#include "engine/core/tolerances.hpp"
 
 namespace lrb {
 namespace {
@@ -16,14 +17,10 @@ using Box = Eigen::AlignedBox3d;
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-/// What a box costs for its length, as a share of its squared diagonal: among boxes without a surface, like
-/// those of the parts of a straight line, the short ones are better.
-constexpr double kLengthCost = 1e-3;
-
 /// Returns about what the box that fits costs, up to a factor. Half its surface is about the root of the sum
 /// of the squares of the three products of two standard deviations along principal axes. It takes no such
 /// axes: what is under the root is the sum of the principal minors of the covariance.
-double cost_by(const Spread& spread) {
+double ranked_cost(const Spread& spread) {
   const double whole = 1 / spread.weight;
   const Vector3d mean = spread.first * whole;
   const Vector3d square = spread.squares * whole - mean.cwiseProduct(mean);
@@ -33,10 +30,6 @@ double cost_by(const Spread& spread) {
       square.y() * square.z() + square.z() * square.x() + square.x() * square.y() - product.squaredNorm();
   // In this order, each is 0 if rounding has made it NaN.
   return std::sqrt(std::max(0.0, minors)) + kLengthCost * std::max(0.0, square.sum());
-}
-
-double cost_of_box(const Box& box) {
-  return half_area(box) + kLengthCost * box.sizes().squaredNorm();
 }
 
 /// A simplex by its place along a direction, as one number that is sorted fast: in front, bits that grow with
@@ -61,13 +54,6 @@ FittedCuts::FittedCuts(const Soup& soup, std::span<const std::uint32_t> simplice
     : soup_(soup), effort_(effort), simplices_(simplices.begin(), simplices.end()) {
   std::sort(simplices_.begin(), simplices_.end());
   const std::size_t n = simplices_.size();
-  Box bounds;
-  for (const std::uint32_t s : simplices_) bounds.extend(soup.box[s]);
-  origin_ = bounds.center();
-  scale_ = 1 / bounds.sizes().norm();
-  if (!std::isfinite(scale_)) scale_ = 1;
-  spread_.reserve(n);
-  for (const std::uint32_t s : simplices_) spread_.emplace_back(soup.corners[s], origin_, scale_);
   for (int axis = 0; axis < 3; ++axis) {
     std::vector<std::uint32_t>& order = coordinate_[axis];
     order.resize(n);
@@ -78,13 +64,24 @@ FittedCuts::FittedCuts(const Soup& soup, std::span<const std::uint32_t> simplice
     });
   }
   is_left_.resize(n);
+  spread_.resize(n);
+  size_ = static_cast<std::uint32_t>(n);
+  measure();
 }
 
 std::uint32_t FittedCuts::cut(std::uint32_t begin, std::uint32_t end) {
   begin_ = begin;
   size_ = end - begin;
-  all_ = {};
-  for (const std::uint32_t i : along(0)) all_ += spread_[i];
+  const auto sum = [&] {
+    Spread all;
+    for (const std::uint32_t i : along(0)) all += spread_[i];
+    return all;
+  };
+  all_ = sum();
+  if (all_.variance() < kMeasureAgain) {
+    measure();
+    all_ = sum();
+  }
   if (effort_.principal > 0) {
     const Matrix3d axes = eigenvectors_of_symmetric(all_.covariance());
     for (int k = 0; k < effort_.principal; ++k) order_along_principal(k, axes.col(2 - k));
@@ -97,7 +94,7 @@ std::uint32_t FittedCuts::cut(std::uint32_t begin, std::uint32_t end) {
   Cut best = cuts_.front();
   best.cost = kInfinity;
   for (Cut cut : std::span(cuts_).first(few)) {
-    cut.cost = cost_of(cut, best.cost);
+    cut.cost = measured_cost(cut, best.cost);
     if (cut < best) best = cut;
   }
   part(best);
@@ -116,12 +113,22 @@ std::span<const std::uint32_t> FittedCuts::along(int way) const {
   return way < 3 ? std::span(coordinate_[way]).subspan(begin_, size_) : principal_[way - 3];
 }
 
+/// Measures how the simplices of the range are spread.
+void FittedCuts::measure() {
+  Box bounds;
+  for (const std::uint32_t i : along(0)) bounds.extend(soup_.box[simplices_[i]]);
+  const Vector3d origin = bounds.center();
+  double scale = 1 / bounds.sizes().norm();
+  if (!std::isfinite(scale)) scale = 1;
+  for (const std::uint32_t i : along(0)) spread_[i] = Spread(soup_.corners[simplices_[i]], origin, scale);
+}
+
 /// Orders the range along its principal axis number k.
 void FittedCuts::order_along_principal(int k, const Vector3d& direction) {
-  const Vector3d middle = origin_ + all_.first / (all_.weight * scale_);
+  const Vector3d& near = soup_.centre[simplices_[along(0)[size_ / 2]]];  // places are rounded to float
   places_.clear();
   for (const std::uint32_t i : along(0)) {
-    const Vector3d seen = soup_.centre[simplices_[i]] - middle;
+    const Vector3d seen = soup_.centre[simplices_[i]] - near;
     places_.push_back(place_at(static_cast<float>(direction.dot(seen)), i));
   }
   std::sort(places_.begin(), places_.end());
@@ -137,22 +144,22 @@ void FittedCuts::rank(int way) {
     left += spread_[order[i - 1]];
     if (i % kTreeWidth != 0) continue;
     const std::uint32_t right = size_ - i;
-    const double cost = cost_by(left) * leaves_for(i) + cost_by(all_ - left) * leaves_for(right);
+    const double cost = ranked_cost(left) * leaves_for(i) + ranked_cost(all_ - left) * leaves_for(right);
     cuts_.push_back({static_cast<float>(cost), i > right ? i - right : right - i, way, i});
   }
 }
 
 /// Returns what a cut costs, or infinity if it costs more than `most`.
-float FittedCuts::cost_of(const Cut& cut, float most) const {
+float FittedCuts::measured_cost(const Cut& cut, float most) const {
   const std::span<const std::uint32_t> order = along(cut.way), left = order.first(cut.left),
                                        right = order.subspan(cut.left);
-  const double cost = fitted_cost(left) * leaves_for(cut.left);
+  const double cost = fitted_box_cost(left) * leaves_for(cut.left);
   if (static_cast<float>(cost) > most) return kInfinity;
-  return static_cast<float>(cost + fitted_cost(right) * leaves_for(size_ - cut.left));
+  return static_cast<float>(cost + fitted_box_cost(right) * leaves_for(size_ - cut.left));
 }
 
 /// Returns what the box costs that fits some of the simplices.
-double FittedCuts::fitted_cost(std::span<const std::uint32_t> some) const {
+double FittedCuts::fitted_box_cost(std::span<const std::uint32_t> some) const {
   Spread spread;
   Box straight, turned;
   for (const std::uint32_t i : some) {
@@ -160,9 +167,10 @@ double FittedCuts::fitted_cost(std::span<const std::uint32_t> some) const {
     straight.extend(soup_.box[simplices_[i]]);
   }
   const Matrix3d axes = eigenvectors_of_symmetric(spread.covariance()).transpose();
+  const Vector3d& near = soup_.centre[simplices_[some.front()]];
   for (const std::uint32_t i : some)
-    for (const Vector3d& x : soup_.corners[simplices_[i]]) turned.extend(axes * (x - origin_));
-  return std::min(cost_of_box(straight), cost_of_box(turned));
+    for (const Vector3d& x : soup_.corners[simplices_[i]]) turned.extend(axes * (x - near));
+  return std::min(box_cost(straight), box_cost(turned));
 }
 
 /// Cuts the range: puts the simplices on the left first along each axis, and keeps both sides in order.

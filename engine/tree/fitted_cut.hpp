@@ -19,7 +19,7 @@ inline std::uint32_t leaves_for(std::uint32_t simplices) {
 /// How many cuts to look at.
 struct CutEffort {
   int principal;        ///< across how many of the range's principal axes, the longest first; 0 to 3
-  std::uint32_t tried;  ///< number of cuts for which the boxes are found, at least; more in large ranges
+  std::uint32_t tried;  ///< number of cuts for which the boxes are found, at least 1; more in large ranges
 };
 
 /// Some simplices, ordered along the coordinate axes, that are cut into ranges and those again, down to
@@ -27,9 +27,9 @@ struct CutEffort {
 ///
 /// All cuts of a range across the coordinate axes and some principal axes are ranked by how the points of the
 /// halves are spread. Of the first ones that one is taken whose halves have the smallest boxes, each on its
-/// own axes as in fit_frame(): the sum of their surfaces, each times the number of leaves in it (the surface
-/// area heuristic, of boxes as the query will see them). Of cuts that cost the same, it is the most even one,
-/// so that simplices at one point are halved.
+/// own axes as in fit_frame(): the sum of box_cost(), each times the number of leaves in it (the surface area
+/// heuristic, of boxes as the query will see them). Of cuts that rank or cost the same, the most even one
+/// comes first, so that simplices at one point are halved.
 class FittedCuts {
  public:
   /// Nothing is cut yet: the one range is [0, simplices.size()). `soup` must outlive this.
@@ -44,7 +44,7 @@ class FittedCuts {
 
  private:
   struct Cut {
-    float cost;            ///< rounded, so that what differs by rounding errors alone costs the same
+    float cost;            ///< rounded: what differs by rounding errors alone mostly costs the same
     std::uint32_t uneven;  ///< how many simplices more one side has
     int way;               ///< the direction it is across
     std::uint32_t left;    ///< number of simplices on its left
@@ -52,18 +52,17 @@ class FittedCuts {
   };
 
   std::span<const std::uint32_t> along(int way) const;
+  void measure();
   void order_along_principal(int k, const Eigen::Vector3d& direction);
   void rank(int way);
-  float cost_of(const Cut& cut, float most) const;
-  double fitted_cost(std::span<const std::uint32_t> some) const;
+  float measured_cost(const Cut& cut, float most) const;
+  double fitted_box_cost(std::span<const std::uint32_t> some) const;
   void part(const Cut& cut);
 
   const Soup& soup_;
   const CutEffort effort_;
   std::vector<std::uint32_t> simplices_;  ///< in order; below, simplices go by their place here
-  Eigen::Vector3d origin_;                ///< middle of all
-  double scale_;                          ///< 1 / diagonal of all
-  std::vector<Spread> spread_;            ///< of each simplex, from origin_, times scale_
+  std::vector<Spread> spread_;  ///< of each simplex: in all of a range seen from one place, on one scale
   std::array<std::vector<std::uint32_t>, 3> coordinate_;  ///< range by range, ordered along an axis in each
 
   // The range that is being cut.
@@ -71,9 +70,11 @@ class FittedCuts {
   Spread all_;
   std::array<std::vector<std::uint32_t>, 3> principal_;  ///< ordered along its principal axes
   std::vector<Cut> cuts_;
+  std::vector<std::uint8_t> is_left_;  ///< for each simplex
+
+  // Memory that is kept from one use to the next.
   std::vector<std::uint64_t> places_;
   std::vector<std::uint32_t> right_;
-  std::vector<std::uint8_t> is_left_;  ///< for each simplex
 };
 
 }  // namespace lrb

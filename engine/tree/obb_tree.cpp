@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "engine/core/parallel.hpp"
 #include "engine/core/tolerances.hpp"
@@ -14,8 +15,7 @@ namespace {
 using Box = Eigen::AlignedBox3d;
 using Eigen::Vector3d;
 
-/// Splits of trees of bodies. Twice as many tries save 1 to 2 % of a query and take 5 % longer to build
-/// (docs/measurements.md).
+/// Splits of trees of bodies. More tries save nothing, fewer cost 2 % of a query (docs/measurements.md).
 constexpr Splits kBodySplits{.fitted = 2048, .effort = {.principal = 1, .tried = 3}, .all_cuts = false};
 /// Splits of trees of wrappers, whose faces are few and long: these are worth more tries.
 constexpr Splits kWrapperSplits{.fitted = 512, .effort = {.principal = 3, .tried = 32}, .all_cuts = true};
@@ -94,11 +94,12 @@ class ObbTreeBuilder {
     std::vector<std::uint32_t> children = {binary_[binary].left, binary_[binary].right};
     while (children.size() < kTreeWidth) {
       std::size_t largest = children.size();
-      double largest_area = -1;
+      std::pair<double, std::uint32_t> most{-1, 0};  // of boxes as large, that with the most simplices
       for (std::size_t k = 0; k < children.size(); ++k) {
         const BinaryNode& c = binary_[children[k]];
-        if (!c.is_leaf() && half_area(c.box) > largest_area) {
-          largest_area = half_area(c.box);
+        const std::pair size{box_cost(c.box), c.end - c.begin};
+        if (!c.is_leaf() && size > most) {
+          most = size;
           largest = k;
         }
       }

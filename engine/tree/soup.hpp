@@ -10,6 +10,7 @@
 #include <Eigen/Geometry>
 
 #include "engine/core/ids.hpp"
+#include "engine/core/tolerances.hpp"
 #include "engine/tree/simplex_view.hpp"
 
 namespace lrb {
@@ -33,6 +34,12 @@ struct Soup {
 inline double half_area(const Eigen::AlignedBox3d& b) {
   const Eigen::Vector3d e = b.sizes();
   return e.x() * e.y() + e.y() * e.z() + e.z() * e.x();
+}
+
+/// Returns what a box costs a query, by the surface area heuristic: half its surface, and a little for its
+/// length.
+inline double box_cost(const Eigen::AlignedBox3d& b) {
+  return half_area(b) + kLengthCost * b.sizes().squaredNorm();
 }
 
 /// Axes of length 1 about an origin: a point x has the coordinates axes * (x - origin).
@@ -70,6 +77,8 @@ struct Spread {
 
   /// Returns the covariance of the points.
   Eigen::Matrix3d covariance() const;
+  /// Returns the mean square of the points' distances from their middle.
+  double variance() const { return squares.sum() / weight - (first / weight).squaredNorm(); }
 };
 
 /// Returns the box of some simplices in a frame.

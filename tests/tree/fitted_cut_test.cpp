@@ -9,6 +9,7 @@
 #include <doctest/doctest.h>
 
 #include "engine/core/infinity.hpp"
+#include "engine/tree/binary_tree.hpp"
 #include "engine/tree/obb_tree.hpp"
 #include "scenarios/bodies/shapes/random_pose.hpp"
 
@@ -28,15 +29,18 @@ struct Triangles {
     ids.push_back(static_cast<SimplexId>(ids.size()));
   }
 
-  Soup soup() const {
+  /// Refers to these.
+  SimplexView view() const {
     SimplexView view;
     view.vertices = points;
     view.real_count = static_cast<std::uint32_t>(ids.size());
     view.corners_of = [](const void*, SimplexId s, VertexId* v) {
       for (std::uint32_t k = 0; k < 3; ++k) v[k] = static_cast<VertexId>(3 * s.value() + k);
     };
-    return {view, ids, 1};
+    return view;
   }
+
+  Soup soup() const { return {view(), ids, 1}; }
 };
 
 double fitted_area(const Soup& soup, std::span<const std::uint32_t> some) {
@@ -46,10 +50,9 @@ double fitted_area(const Soup& soup, std::span<const std::uint32_t> some) {
 }
 
 double cost(const Soup& soup, std::span<const std::uint32_t> order, std::size_t left) {
-  const auto leaves = [](std::size_t n) { return static_cast<double>((n + kTreeWidth - 1) / kTreeWidth); };
-  const std::size_t right = order.size() - left;
-  return fitted_area(soup, order.first(left)) * leaves(left) +
-         fitted_area(soup, order.last(right)) * leaves(right);
+  const auto right = static_cast<std::uint32_t>(order.size() - left);
+  return fitted_area(soup, order.first(left)) * leaves_for(static_cast<std::uint32_t>(left)) +
+         fitted_area(soup, order.last(right)) * leaves_for(right);
 }
 
 /// Returns the least cost of all cuts of some simplices across the coordinate axes.
@@ -129,7 +132,7 @@ constexpr std::uint32_t kAll = 10'000;
 
 TEST_CASE("of all cuts across the coordinate axes that one is found whose halves have the smallest boxes") {
   RandomEngine random(5);
-  for (const int count : {9, 16, 17, 40, 200}) {
+  for (const int count : {9, 16, 17, 40, 61, 203}) {
     const Triangles triangles = bent_strip(random, count, 1, 0.1);
     Soup soup = triangles.soup();
     FittedCuts cuts(soup, soup.order, {.principal = 0, .tried = kAll});
@@ -139,10 +142,10 @@ TEST_CASE("of all cuts across the coordinate axes that one is found whose halves
     };
     std::vector<Range> ranges = {{0, static_cast<std::uint32_t>(count)}};
     for (std::size_t k = 0; k < ranges.size(); ++k) {
-      const auto [begin, end] = ranges[k];
+      const std::uint32_t begin = ranges[k].begin, end = ranges[k].end;
       if (end - begin <= kTreeWidth) continue;
-      const auto listed = [&, b = begin, e = end](const std::vector<std::uint32_t>& order) {
-        return std::vector(order.begin() + b, order.begin() + e);
+      const auto listed = [&](const std::vector<std::uint32_t>& order) {
+        return std::vector(order.begin() + begin, order.begin() + end);
       };
       const std::vector<std::uint32_t> before = listed(cuts.order());
       const std::uint32_t middle = cuts.cut(begin, end);
@@ -167,15 +170,15 @@ TEST_CASE("the cut that is ranked first costs little more than the best one") {
     double crowding, most;
   };
   RandomEngine random(7);
-  for (const auto [crowding, most] : {Strips{1, 1.05}, Strips{3, 1.09}}) {
+  for (const Strips& strips : {Strips{1, 1.05}, Strips{3, 1.09}}) {
     constexpr int kRounds = 20;
     double more = 0;
     for (int round = 0; round < kRounds; ++round) {
-      const FirstCut first(bent_strip(random, 200, crowding, 0.02), {.principal = 0, .tried = 1});
+      const FirstCut first(bent_strip(random, 200, strips.crowding, 0.02), {.principal = 0, .tried = 1});
       more += std::log(first.cost() / least_cost(first.soup, first.soup.order)) / kRounds;
     }
-    CAPTURE(crowding);
-    CHECK(std::exp(more) < most);  // in geometric mean
+    CAPTURE(strips.crowding);
+    CHECK(std::exp(more) < strips.most);  // in geometric mean
   }
 }
 
@@ -204,6 +207,99 @@ TEST_CASE("a long body is cut across its longest principal axis, where no coordi
   for (const std::uint32_t tried : {1u, 4u}) {
     CHECK(FirstCut(triangles, {.principal = 1, .tried = tried}).parts_first(24));
     CHECK_FALSE(FirstCut(triangles, {.principal = 0, .tried = tried}).parts_first(24));
+  }
+}
+
+TEST_CASE("a body is cut across the principal axis that parts it, be it the second or the last") {
+  const Vector3d u = Vector3d(1, 1, 1).normalized(), v = u.unitOrthogonal(), w = u.cross(v);
+  // Two strips side by side along u, and two plates that face each other: all overlap as seen along any
+  // coordinate axis and along the other principal axes.
+  Triangles strips, plates;
+  for (const double side : {-0.5, 0.5})
+    for (int i = 0; i < 64; ++i) {
+      const Vector3d at = side * v + 0.0625 * (i - 32) * u;
+      strips.add(at, at + 0.06 * u, at + 0.06 * w);
+    }
+  for (const double side : {-0.45, 0.45}) add_disc(plates, 64, side * u, u, 1);
+  CHECK(FirstCut(strips, {.principal = 2, .tried = 1}).parts_first(64));
+  CHECK(FirstCut(plates, {.principal = 3, .tried = 1}).parts_first(64));
+  CHECK_FALSE(FirstCut(plates, {.principal = 2, .tried = 1}).parts_first(64));
+}
+
+TEST_CASE("what is cut does not depend on the order in which simplices are given, nor on the others") {
+  RandomEngine random(9);
+  const Triangles strip = bent_strip(random, 300, 1, 0.1);
+  const Soup soup = strip.soup();
+  std::vector<std::uint32_t> some;
+  for (std::uint32_t i = 0; i < 300; i += 3) some.push_back(i);
+  std::vector<std::uint32_t> shuffled = some;
+  std::ranges::shuffle(shuffled, random);
+  std::vector<std::uint32_t> orders[2];
+  for (const int round : {0, 1}) {
+    FittedCuts cuts(soup, round == 0 ? some : shuffled, {.principal = 3, .tried = 2});
+    double ratio = 0;
+    int ranges = 0;
+    const auto cut_down = [&](const auto& again, std::uint32_t begin, std::uint32_t end) -> void {
+      if (end - begin <= kTreeWidth) return;
+      const std::uint32_t middle = cuts.cut(begin, end);
+      const std::vector<std::uint32_t> order = cuts.order();
+      const auto range = std::span(order).subspan(begin, end - begin);
+      ratio += std::log(cost(soup, range, middle - begin) / least_cost(soup, {range.begin(), range.end()}));
+      ++ranges;
+      again(again, begin, middle);
+      again(again, middle, end);
+    };
+    cut_down(cut_down, 0, static_cast<std::uint32_t>(some.size()));
+    orders[round] = cuts.order();
+    CHECK(same_set(orders[round], some));
+    CHECK(std::exp(ratio / ranges) < 1.05);  // against the best cuts across coordinate axes
+  }
+  CHECK(orders[0] == orders[1]);
+}
+
+/// Returns the height of the binary tree.
+std::uint32_t height_of(const Triangles& triangles) {
+  Soup soup = triangles.soup();
+  Workers workers(1);
+  const std::vector<BinaryNode> nodes = build_binary_tree(
+      soup, workers, {.fitted = 2048, .effort = {.principal = 1, .tried = 3}, .all_cuts = false});
+  std::vector<std::uint32_t> heights(nodes.size(), 1);
+  for (std::size_t i = nodes.size(); i-- > 0;)
+    if (!nodes[i].is_leaf()) heights[i] = 1 + std::max(heights[nodes[i].left], heights[nodes[i].right]);
+  return heights[0];
+}
+
+TEST_CASE("a small part of a large body is cut as it is when it is alone") {
+  RandomEngine random(10);
+  for (const double size : {1e-3, 1e-6, 1e-9, 1e-12}) {
+    Triangles alone;
+    for (int i = 0; i < 1800; ++i) {
+      const Vector3d at = size * shapes::random_direction(random);
+      alone.add(at, at + 0.05 * size * shapes::random_direction(random),
+                at + 0.05 * size * shapes::random_direction(random));
+    }
+    Triangles with_others = alone;
+    for (int i = 0; i < 8; ++i) with_others.add({1, 0.1 * i, 0.3}, {0.7, 0.2 * i, 0.4}, {0.5, 0.9, 0.05 * i});
+    CAPTURE(size);
+    CHECK(height_of(with_others) <= height_of(alone) + 3);
+  }
+}
+
+TEST_CASE("trees over straight lines and over one point are no lists") {
+  for (const int count : {2'000, 20'000}) {
+    Triangles line, point;
+    for (int i = 0; i < count; ++i) {
+      const Vector3d a(0.5 * i / count, 0, 0.25), b(0.5 * (i + 1) / count, 0, 0.25);
+      line.add(a, b, b);
+      point.add({0.5, 0.1, 0.2}, {0.5, 0.1, 0.2}, {0.5, 0.1, 0.2});
+    }
+    const auto even = static_cast<std::uint32_t>(std::ceil(std::log2(count / 8)) + 1);
+    CAPTURE(count);
+    CHECK(height_of(line) <= even + 2);
+    CHECK(height_of(point) <= even + 2);
+    const SimplexView view = line.view();
+    CHECK(ObbTree(view, 1u).height() <= 7);
+    CHECK(ObbTree(view, view.real_simplices(), 1u).height() <= 7);
   }
 }
 
