@@ -15,8 +15,8 @@ inline constexpr double kFrameCornerWeight = 1e-12;
 /// what lies between them are not told apart from it.
 inline constexpr double kLengthCost = 1e-5;
 
-/// Ranges of simplices whose variance is so small a share of that of all simplices they were measured with
-/// are measured again: from far away, rounding errors would hide how they are spread.
+/// A range of simplices is measured anew if its variance is less than this share of the squared diagonal of
+/// the range it was measured with. Smaller: rounding errors hide how the simplices of small parts are spread.
 inline constexpr double kMeasureAgain = 1e-6;
 
 /// Largest defect allowed in the orthonormality of a node's axes once they are rounded to float (largest row

@@ -27,7 +27,6 @@ class BinaryBuilder {
 
  private:
   static constexpr int kBins = 32;
-  static constexpr std::uint32_t kWorthSharing = 2048;  ///< simplices
 
   /// Returns the number of nodes for some simplices.
   static std::uint32_t nodes_for(std::uint32_t simplices) { return 2 * leaves_for(simplices) - 1; }
@@ -42,21 +41,17 @@ class BinaryBuilder {
     }
     const std::uint32_t middle = split(begin, end);
     const auto [left, right] = fork(self, begin, middle, end);
-    const auto build_left = [&, left = left] { build(left, begin, middle); };
-    const auto build_right = [&, right = right] { build(right, middle, end); };
-    if (end - begin < kWorthSharing) {
-      build_left();
-      build_right();
-    } else {
-      workers_.both(build_left, build_right);
-    }
+    workers_.both([&, left = left] { build(left, begin, middle); },
+                  [&, right = right] { build(right, middle, end); });
   }
 
   /// Builds part of a subtree that `cuts` cuts. first: where its simplices begin.
   void build_fitted(std::uint32_t self, std::uint32_t begin, std::uint32_t end, FittedCuts& cuts,
                     std::uint32_t first) {
-    nodes_[self] = {begin, end, kNull, kNull, {}};
-    if (end - begin <= kTreeWidth) return;
+    if (end - begin <= kTreeWidth) {
+      nodes_[self] = {begin, end, kNull, kNull, {}};
+      return;
+    }
     const std::uint32_t middle = first + cuts.cut(begin - first, end - first);
     const auto [left, right] = fork(self, begin, middle, end);
     build_fitted(left, begin, middle, cuts, first);
@@ -89,18 +84,10 @@ class BinaryBuilder {
     std::uint32_t left = 0;
   };
 
-  /// Returns a function that tells which of two simplices comes first on an axis.
-  auto order_on(int axis) const {
-    return [this, axis](std::uint32_t s, std::uint32_t t) {
-      const double x = soup_.centre[s][axis], y = soup_.centre[t][axis];
-      return x != y ? x < y : s < t;
-    };
-  }
-
   std::uint32_t split(std::uint32_t begin, std::uint32_t end) {
     const Split best = splits_.all_cuts ? best_of_all(begin, end) : best_binned(begin, end);
     const auto first = soup_.order.begin() + begin;
-    std::nth_element(first, first + best.left, first + (end - begin), order_on(best.axis));
+    std::nth_element(first, first + best.left, first + (end - begin), soup_.order_on(best.axis));
     return begin + best.left;
   }
 
@@ -122,8 +109,9 @@ class BinaryBuilder {
     std::vector<double> right_cost(n);
     Split best;
     best.left = kTreeWidth;
+    const auto uneven = [n](std::uint32_t count) { return std::max(count, n - count); };
     for (int axis = 0; axis < 3; ++axis) {
-      std::sort(order.begin(), order.end(), order_on(axis));
+      std::sort(order.begin(), order.end(), soup_.order_on(axis));
       Box right, left;
       for (std::uint32_t i = n; i-- > 0;) {
         right.extend(soup_.box[order[i]]);
@@ -133,7 +121,6 @@ class BinaryBuilder {
         left.extend(soup_.box[order[i - 1]]);
         if (i % kTreeWidth != 0) continue;
         const double cost = box_cost(left) * leaves_for(i) + right_cost[i];
-        const auto uneven = [n](std::uint32_t count) { return std::max(count, n - count); };
         if (cost < best.cost || (cost == best.cost && uneven(i) < uneven(best.left))) best = {cost, axis, i};
       }
     }

@@ -58,10 +58,7 @@ FittedCuts::FittedCuts(const Soup& soup, std::span<const std::uint32_t> simplice
     std::vector<std::uint32_t>& order = coordinate_[axis];
     order.resize(n);
     std::iota(order.begin(), order.end(), 0u);
-    std::sort(order.begin(), order.end(), [&](std::uint32_t i, std::uint32_t j) {
-      const double x = soup.centre[simplices_[i]][axis], y = soup.centre[simplices_[j]][axis];
-      return x != y ? x < y : i < j;
-    });
+    std::ranges::sort(order, soup.order_on(axis), [&](std::uint32_t i) { return simplices_[i]; });
   }
   is_left_.resize(n);
   spread_.resize(n);

@@ -16,7 +16,7 @@ inline std::uint32_t leaves_for(std::uint32_t simplices) {
   return (simplices + kTreeWidth - 1) / kTreeWidth;
 }
 
-/// How many cuts to look at.
+/// How many cuts of a range are compared.
 struct CutEffort {
   int principal;        ///< across how many of the range's principal axes, the longest first; 0 to 3
   std::uint32_t tried;  ///< number of cuts for which the boxes are found, at least 1; more in large ranges
@@ -45,7 +45,7 @@ class FittedCuts {
  private:
   struct Cut {
     float cost;            ///< rounded: what differs by rounding errors alone mostly costs the same
-    std::uint32_t uneven;  ///< how many simplices more one side has
+    std::uint32_t uneven;  ///< the larger number of simplices on a side less the smaller
     int way;               ///< the direction it is across
     std::uint32_t left;    ///< number of simplices on its left
     bool operator<(const Cut& y) const;
@@ -62,7 +62,7 @@ class FittedCuts {
   const Soup& soup_;
   const CutEffort effort_;
   std::vector<std::uint32_t> simplices_;  ///< in order; below, simplices go by their place here
-  std::vector<Spread> spread_;  ///< of each simplex: in all of a range seen from one place, on one scale
+  std::vector<Spread> spread_;            ///< of each simplex; a range has one origin and scale
   std::array<std::vector<std::uint32_t>, 3> coordinate_;  ///< range by range, ordered along an axis in each
 
   // The range that is being cut.

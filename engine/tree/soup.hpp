@@ -25,6 +25,14 @@ struct Soup {
 
   Soup(const SimplexView& body, std::span<const SimplexId> simplices, double unit);
 
+  /// Returns a function that tells which of two simplices comes first on an axis: by centre, then by number.
+  auto order_on(int axis) const {
+    return [this, axis](std::uint32_t s, std::uint32_t t) {
+      const double x = centre[s][axis], y = centre[t][axis];
+      return x != y ? x < y : s < t;
+    };
+  }
+
   std::span<const std::uint32_t> listed(std::uint32_t begin, std::uint32_t end) const {
     return std::span(order).subspan(begin, end - begin);
   }

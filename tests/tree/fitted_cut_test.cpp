@@ -43,16 +43,16 @@ struct Triangles {
   Soup soup() const { return {view(), ids, 1}; }
 };
 
-double fitted_area(const Soup& soup, std::span<const std::uint32_t> some) {
+double fitted_cost(const Soup& soup, std::span<const std::uint32_t> some) {
   Eigen::AlignedBox3d box;
   for (const std::uint32_t s : some) box.extend(soup.box[s]);
-  return half_area(box_in_frame(soup, some, fit_frame(soup, some, box)));
+  return box_cost(box_in_frame(soup, some, fit_frame(soup, some, box)));
 }
 
 double cost(const Soup& soup, std::span<const std::uint32_t> order, std::size_t left) {
   const auto right = static_cast<std::uint32_t>(order.size() - left);
-  return fitted_area(soup, order.first(left)) * leaves_for(static_cast<std::uint32_t>(left)) +
-         fitted_area(soup, order.last(right)) * leaves_for(right);
+  return fitted_cost(soup, order.first(left)) * leaves_for(static_cast<std::uint32_t>(left)) +
+         fitted_cost(soup, order.last(right)) * leaves_for(right);
 }
 
 /// Returns the least cost of all cuts of some simplices across the coordinate axes.
@@ -157,7 +157,7 @@ TEST_CASE("of all cuts across the coordinate axes that one is found whose halves
       REQUIRE(middle > begin);
       REQUIRE(middle < end);
       REQUIRE(same_set(before, after));
-      CHECK(cost(soup, after, middle - begin) == doctest::Approx(least_cost(soup, before)).epsilon(1e-2));
+      CHECK(cost(soup, after, middle - begin) == doctest::Approx(least_cost(soup, before)).epsilon(1e-5));
       ranges.push_back({begin, middle});
       ranges.push_back({middle, end});
     }

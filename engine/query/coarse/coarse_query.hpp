@@ -212,8 +212,8 @@ class CoarseQuery {
 
  private:
   static constexpr double kLongest = 1e6;  ///< seconds: more does not fit the clock on every machine
-  static constexpr std::size_t kLikelyPairs =
-      128;  ///< of a level: most have no more, so that their memory need not grow
+  /// Room is made for so many pairs where a level is walked: most answers have no more.
+  static constexpr std::size_t kLikelyPairs = 128;
 
   /// Keeps contacts from the probe: those of a step are part of the answer only if it is the last.
   struct WithoutContacts {

@@ -20,7 +20,8 @@ constexpr unsigned kMeetBits = 1;
 /// the same simplex of A. Of more pairs, more have: 266,180 at identical poses, about 13 for each simplex,
 /// are sorted faster by all digits.
 constexpr std::size_t kFewPairs = 4096;
-/// ... if so few of them have the same simplex of A on average, were all those that its digits can name met.
+/// This is done only if at most so many pairs have the same simplex of A, on average over all numbers that
+/// A's digits can name.
 constexpr std::size_t kAlikeOnAverage = 8;
 /// Pairs with the same simplex of A are put in order one by one; by comparing if they are more than this.
 constexpr std::ptrdiff_t kFewAlike = 16;

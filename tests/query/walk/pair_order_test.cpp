@@ -7,6 +7,21 @@
 
 using namespace lrb;
 
+namespace {
+
+using PairAndMeet = std::pair<SimplexPair, exact::Meet>;
+
+void check_same(const CollideResult& result, const std::vector<PairAndMeet>& expected) {
+  REQUIRE(result.pairs.size() == expected.size());
+  REQUIRE(result.meets.size() == expected.size());
+  bool same = true;
+  for (std::size_t i = 0; i < expected.size(); ++i)
+    same &= result.pairs[i] == expected[i].first && result.meets[i] == expected[i].second;
+  CHECK(same);
+}
+
+}  // namespace
+
 TEST_CASE("pairs are put in order where half of them have the same simplex of A") {
   std::mt19937_64 random(2);
   PairOrder order;
@@ -31,14 +46,14 @@ TEST_CASE(
   for (const std::size_t size : {32, 33, 4096, 4097})
     for (const std::size_t alike : {1, 2, 8, 9, 16, 17, 30}) {
       CollideResult result;
-      std::vector<std::pair<SimplexPair, exact::Meet>> expected;
+      std::vector<PairAndMeet> expected;
       const std::size_t repeated = size / 10;
       for (std::size_t i = 0; i < size - repeated; ++i) {
         const SimplexPair p{static_cast<SimplexId>(i / alike), static_cast<SimplexId>(37 * i % 100'003)};
         expected.emplace_back(p, random() % 2 ? exact::Meet::cross : exact::Meet::touch);
       }
       std::ranges::sort(expected);
-      std::vector<std::pair<SimplexPair, exact::Meet>> given = expected;
+      std::vector<PairAndMeet> given = expected;
       given.insert(given.end(), expected.begin(), expected.begin() + static_cast<std::ptrdiff_t>(repeated));
       std::ranges::shuffle(given, random);
       for (const auto& [pair, meet] : given) {
@@ -48,12 +63,7 @@ TEST_CASE(
       order.sort(result);
       CAPTURE(size);
       CAPTURE(alike);
-      REQUIRE(result.pairs.size() == expected.size());
-      REQUIRE(result.meets.size() == expected.size());
-      bool same = true;
-      for (std::size_t i = 0; i < expected.size(); ++i)
-        same &= result.pairs[i] == expected[i].first && result.meets[i] == expected[i].second;
-      CHECK(same);
+      check_same(result, expected);
     }
 }
 
@@ -64,7 +74,7 @@ TEST_CASE("pairs are put in order with what belongs to them, by comparing and by
                                  std::size_t{2048}, std::size_t{2049}, std::size_t{50'000}})
     for (const std::uint32_t most : {1u, 300u, 5'000'000u, kMaxId}) {
       CollideResult result;
-      std::vector<std::pair<SimplexPair, exact::Meet>> expected;
+      std::vector<PairAndMeet> expected;
       for (std::size_t i = 0; i < size; ++i) {
         SimplexPair p{};
         p.a = static_cast<SimplexId>(random() % (std::uint64_t{most} + 1));
@@ -79,11 +89,6 @@ TEST_CASE("pairs are put in order with what belongs to them, by comparing and by
       expected.erase(std::unique(expected.begin(), expected.end()), expected.end());
       CAPTURE(size);
       CAPTURE(most);
-      REQUIRE(result.pairs.size() == expected.size());
-      REQUIRE(result.meets.size() == expected.size());
-      bool same = true;
-      for (std::size_t i = 0; i < expected.size(); ++i)
-        same &= result.pairs[i] == expected[i].first && result.meets[i] == expected[i].second;
-      CHECK(same);
+      check_same(result, expected);
     }
 }
