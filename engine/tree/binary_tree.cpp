@@ -35,7 +35,7 @@ class BinaryBuilder {
   void build(std::uint32_t self, std::uint32_t begin, std::uint32_t end) {
     if (end - begin <= std::max(splits_.fitted, kTreeWidth)) {
       FittedCuts cuts(soup_, soup_.listed(begin, end), splits_.effort);
-      build_fitted(self, begin, end, cuts, begin);
+      build_fitted(self, begin, end, cuts.whole_cost(), cuts, begin);
       std::ranges::copy(cuts.order(), soup_.order.begin() + begin);
       return;
     }
@@ -45,17 +45,20 @@ class BinaryBuilder {
                   [&, right = right] { build(right, middle, end); });
   }
 
-  /// Builds part of a subtree that `cuts` cuts. first: where its simplices begin.
-  void build_fitted(std::uint32_t self, std::uint32_t begin, std::uint32_t end, FittedCuts& cuts,
+  /// Builds part of a subtree that `cuts` cuts. cost: of its root; first: where the simplices of `cuts`
+  /// begin.
+  void build_fitted(std::uint32_t self, std::uint32_t begin, std::uint32_t end, double cost, FittedCuts& cuts,
                     std::uint32_t first) {
     if (end - begin <= kTreeWidth) {
-      nodes_[self] = {begin, end, kNull, kNull, {}};
+      nodes_[self] = {begin, end, kNull, kNull, {}, cost};
       return;
     }
-    const std::uint32_t middle = first + cuts.cut(begin - first, end - first);
+    const FittedCuts::Halves halves = cuts.cut(begin - first, end - first);
+    const std::uint32_t middle = first + halves.middle;
     const auto [left, right] = fork(self, begin, middle, end);
-    build_fitted(left, begin, middle, cuts, first);
-    build_fitted(right, middle, end, cuts, first);
+    nodes_[self].cost = cost;
+    build_fitted(left, begin, middle, halves.left_cost, cuts, first);
+    build_fitted(right, middle, end, halves.right_cost, cuts, first);
   }
 
   /// Makes a node whose subtrees hold the simplices before `middle` and the rest. Returns the subtrees'
@@ -63,17 +66,18 @@ class BinaryBuilder {
   std::pair<std::uint32_t, std::uint32_t> fork(std::uint32_t self, std::uint32_t begin, std::uint32_t middle,
                                                std::uint32_t end) {
     const std::uint32_t left = self + 1, right = left + nodes_for(middle - begin);
-    nodes_[self] = {begin, end, left, right, {}};
+    nodes_[self] = {begin, end, left, right, {}, 0};
     return {left, right};
   }
 
-  /// Finds all nodes' boxes, children's first.
+  /// Finds all nodes' boxes, children's first, and the costs of those that are not fitted.
   void measure() {
     for (auto node = nodes_.rbegin(); node != nodes_.rend(); ++node) {
       if (node->is_leaf())
         for (const std::uint32_t s : soup_.listed(node->begin, node->end)) node->box.extend(soup_.box[s]);
       else
         node->box = nodes_[node->left].box.merged(nodes_[node->right].box);
+      if (node->end - node->begin > splits_.fitted) node->cost = box_cost(node->box);
     }
   }
 

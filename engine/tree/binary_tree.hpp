@@ -17,6 +17,7 @@ struct BinaryNode {
   std::uint32_t begin, end;  ///< range in Soup::order
   std::uint32_t left = kNull, right = kNull;
   Eigen::AlignedBox3d box;  ///< on the coordinate axes
+  double cost = 0;          ///< box_cost() of the box that fits, or of `box` where cuts are not fitted
   bool is_leaf() const { return left == kNull; }
 };
 

@@ -44,6 +44,11 @@ std::uint32_t number_at(std::uint64_t place) {
   return static_cast<std::uint32_t>(place);
 }
 
+/// Returns what a cut costs with some simplices on its left and right.
+float sum_of_costs(const FittedCuts::Halves& halves, std::uint32_t left, std::uint32_t right) {
+  return static_cast<float>(halves.left_cost * leaves_for(left) + halves.right_cost * leaves_for(right));
+}
+
 }  // namespace
 
 bool FittedCuts::Cut::operator<(const Cut& y) const {
@@ -66,7 +71,7 @@ FittedCuts::FittedCuts(const Soup& soup, std::span<const std::uint32_t> simplice
   measure();
 }
 
-std::uint32_t FittedCuts::cut(std::uint32_t begin, std::uint32_t end) {
+FittedCuts::Halves FittedCuts::cut(std::uint32_t begin, std::uint32_t end) {
   begin_ = begin;
   size_ = end - begin;
   const auto sum = [&] {
@@ -90,12 +95,17 @@ std::uint32_t FittedCuts::cut(std::uint32_t begin, std::uint32_t end) {
   std::partial_sort(cuts_.begin(), cuts_.begin() + static_cast<std::ptrdiff_t>(few), cuts_.end());
   Cut best = cuts_.front();
   best.cost = kInfinity;
+  Halves halves{};
   for (Cut cut : std::span(cuts_).first(few)) {
-    cut.cost = measured_cost(cut, best.cost);
-    if (cut < best) best = cut;
+    const Halves tried = measured(cut, best.cost);
+    cut.cost = sum_of_costs(tried, cut.left, size_ - cut.left);
+    if (!(cut < best)) continue;
+    best = cut;
+    halves = tried;
   }
   part(best);
-  return begin + best.left;
+  halves.middle = begin + best.left;
+  return halves;
 }
 
 std::vector<std::uint32_t> FittedCuts::order() const {
@@ -146,13 +156,19 @@ void FittedCuts::rank(int way) {
   }
 }
 
-/// Returns what a cut costs, or infinity if it costs more than `most`.
-float FittedCuts::measured_cost(const Cut& cut, float most) const {
-  const std::span<const std::uint32_t> order = along(cut.way), left = order.first(cut.left),
-                                       right = order.subspan(cut.left);
-  const double cost = fitted_box_cost(left) * leaves_for(cut.left);
-  if (static_cast<float>(cost) > most) return kInfinity;
-  return static_cast<float>(cost + fitted_box_cost(right) * leaves_for(size_ - cut.left));
+/// Finds what the halves of a cut cost; the right one infinity if the cut costs more than `most` without it.
+FittedCuts::Halves FittedCuts::measured(const Cut& cut, float most) const {
+  const std::span<const std::uint32_t> order = along(cut.way);
+  Halves halves{0, fitted_box_cost(order.first(cut.left)), 0};
+  const bool too_much = sum_of_costs(halves, cut.left, 0) > most;
+  halves.right_cost = too_much ? kInfinity : fitted_box_cost(order.subspan(cut.left));
+  return halves;
+}
+
+double FittedCuts::whole_cost() const {
+  std::vector<std::uint32_t> all(simplices_.size());
+  std::iota(all.begin(), all.end(), 0u);
+  return fitted_box_cost(all);
 }
 
 /// Returns what the box costs that fits some of the simplices.

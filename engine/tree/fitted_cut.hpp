@@ -35,9 +35,15 @@ class FittedCuts {
   /// Nothing is cut yet: the one range is [0, simplices.size()). `soup` must outlive this.
   FittedCuts(const Soup& soup, std::span<const std::uint32_t> simplices, CutEffort effort);
 
-  /// Cuts a range of more than kTreeWidth simplices that nothing has cut yet, in two ranges. Returns where:
-  /// a multiple of kTreeWidth after `begin`.
-  std::uint32_t cut(std::uint32_t begin, std::uint32_t end);
+  struct Halves {
+    std::uint32_t middle;          ///< where the range is cut: a multiple of kTreeWidth after its beginning
+    double left_cost, right_cost;  ///< box_cost() of the boxes that fit
+  };
+  /// Cuts a range of more than kTreeWidth simplices that nothing has cut yet, in two ranges.
+  Halves cut(std::uint32_t begin, std::uint32_t end);
+
+  /// Returns box_cost() of the box that fits all simplices.
+  double whole_cost() const;
 
   /// Returns the simplices, range by range.
   std::vector<std::uint32_t> order() const;
@@ -55,7 +61,7 @@ class FittedCuts {
   void measure();
   void order_along_principal(int k, const Eigen::Vector3d& direction);
   void rank(int way);
-  float measured_cost(const Cut& cut, float most) const;
+  Halves measured(const Cut& cut, float most) const;
   double fitted_box_cost(std::span<const std::uint32_t> some) const;
   void part(const Cut& cut);
 

@@ -7,6 +7,7 @@
 #include "engine/core/parallel.hpp"
 #include "engine/core/tolerances.hpp"
 #include "engine/tree/binary_tree.hpp"
+#include "engine/tree/collapse.hpp"
 #include "engine/tree/soup.hpp"
 
 namespace lrb {
@@ -43,7 +44,7 @@ class ObbTreeBuilder {
       : tree_(tree), soup_(soup), binary_(build_binary_tree(soup, workers, splits)) {
     tree_.nodes_.resize(1);
     binary_of_.resize(1);
-    lay_out(0, 0, 1);
+    lay_out(Collapse(binary_), 0, 0, 1);
     tree_.blocks_.resize(block_count_);
     // Nodes per task: a few of them hold enough simplices to be worth sharing.
     constexpr std::size_t kShare = 32;
@@ -54,20 +55,20 @@ class ObbTreeBuilder {
   }
 
   /// Decides where children and blocks go: depth first.
-  void lay_out(std::uint32_t wide, std::uint32_t binary, std::uint32_t height) {
+  void lay_out(const Collapse& collapse, std::uint32_t wide, std::uint32_t binary, std::uint32_t height) {
     tree_.height_ = std::max(tree_.height_, height);
     binary_of_[wide] = binary;
     if (binary_[binary].is_leaf()) {
       tree_.nodes_[wide].first = block_count_++;
       return;
     }
-    const std::vector<std::uint32_t> children = widest_children(binary);
+    const std::vector<std::uint32_t> children = collapse.children(binary);
     const auto first = static_cast<std::uint32_t>(tree_.nodes_.size());
     tree_.nodes_.resize(first + children.size());
     binary_of_.resize(tree_.nodes_.size());
     tree_.nodes_[wide].first = first;
     tree_.nodes_[wide].count = static_cast<std::uint8_t>(children.size());
-    for (std::uint32_t k = 0; k < children.size(); ++k) lay_out(first + k, children[k], height + 1);
+    for (std::uint32_t k = 0; k < children.size(); ++k) lay_out(collapse, first + k, children[k], height + 1);
   }
 
   void fill(std::uint32_t wide) {
@@ -87,28 +88,6 @@ class ObbTreeBuilder {
     quantize(node, frame, boxes);
     node.first = first;
     node.is_leaf = b.is_leaf();
-  }
-
-  /// Returns a wide node's children: opens the child with the largest box until there are eight.
-  std::vector<std::uint32_t> widest_children(std::uint32_t binary) const {
-    std::vector<std::uint32_t> children = {binary_[binary].left, binary_[binary].right};
-    while (children.size() < kTreeWidth) {
-      std::size_t largest = children.size();
-      std::pair<double, std::uint32_t> most{-1, 0};  // of boxes as large, that with the most simplices
-      for (std::size_t k = 0; k < children.size(); ++k) {
-        const BinaryNode& c = binary_[children[k]];
-        const std::pair size{box_cost(c.box), c.end - c.begin};
-        if (!c.is_leaf() && size > most) {
-          most = size;
-          largest = k;
-        }
-      }
-      if (largest == children.size()) break;
-      const BinaryNode& opened = binary_[children[largest]];
-      children[largest] = opened.left;
-      children.insert(children.begin() + static_cast<std::ptrdiff_t>(largest) + 1, opened.right);
-    }
-    return children;
   }
 
   std::vector<Box> fill_block(LeafBlock& block, const BinaryNode& b, const Frame& frame) const {

@@ -75,7 +75,7 @@ struct FirstCut {
 
   FirstCut(const Triangles& triangles, CutEffort effort) : soup(triangles.soup()) {
     FittedCuts cuts(soup, soup.order, effort);
-    left = cuts.cut(0, static_cast<std::uint32_t>(soup.order.size()));
+    left = cuts.cut(0, static_cast<std::uint32_t>(soup.order.size())).middle;
     order = cuts.order();
   }
 
@@ -148,7 +148,8 @@ TEST_CASE("of all cuts across the coordinate axes that one is found whose halves
         return std::vector(order.begin() + begin, order.begin() + end);
       };
       const std::vector<std::uint32_t> before = listed(cuts.order());
-      const std::uint32_t middle = cuts.cut(begin, end);
+      const FittedCuts::Halves halves = cuts.cut(begin, end);
+      const std::uint32_t middle = halves.middle;
       const std::vector<std::uint32_t> after = listed(cuts.order());
       CAPTURE(count);
       CAPTURE(begin);
@@ -158,6 +159,10 @@ TEST_CASE("of all cuts across the coordinate axes that one is found whose halves
       REQUIRE(middle < end);
       REQUIRE(same_set(before, after));
       CHECK(cost(soup, after, middle - begin) == doctest::Approx(least_cost(soup, before)).epsilon(1e-5));
+      const auto of_left = std::span(after).first(middle - begin),
+                 of_right = std::span(after).subspan(middle - begin);
+      CHECK(halves.left_cost == doctest::Approx(fitted_cost(soup, of_left)).epsilon(1e-5));
+      CHECK(halves.right_cost == doctest::Approx(fitted_cost(soup, of_right)).epsilon(1e-5));
       ranges.push_back({begin, middle});
       ranges.push_back({middle, end});
     }
@@ -241,7 +246,7 @@ TEST_CASE("what is cut does not depend on the order in which simplices are given
     int ranges = 0;
     const auto cut_down = [&](const auto& again, std::uint32_t begin, std::uint32_t end) -> void {
       if (end - begin <= kTreeWidth) return;
-      const std::uint32_t middle = cuts.cut(begin, end);
+      const std::uint32_t middle = cuts.cut(begin, end).middle;
       const std::vector<std::uint32_t> order = cuts.order();
       const auto range = std::span(order).subspan(begin, end - begin);
       ratio += std::log(cost(soup, range, middle - begin) / least_cost(soup, {range.begin(), range.end()}));
@@ -267,6 +272,24 @@ std::uint32_t height_of(const Triangles& triangles) {
   for (std::size_t i = nodes.size(); i-- > 0;)
     if (!nodes[i].is_leaf()) heights[i] = 1 + std::max(heights[nodes[i].left], heights[nodes[i].right]);
   return heights[0];
+}
+
+TEST_CASE("a node of the binary tree has the cost of the box that fits, or of that on the coordinate axes") {
+  RandomEngine random(12);
+  const Triangles strip = bent_strip(random, 500, 1, 0.1);
+  for (const std::uint32_t fitted : {64u, 2048u}) {
+    Soup soup = strip.soup();
+    Workers workers(1);
+    const std::vector<BinaryNode> nodes = build_binary_tree(
+        soup, workers, {.fitted = fitted, .effort = {.principal = 1, .tried = 3}, .all_cuts = true});
+    for (const BinaryNode& n : nodes) {
+      const std::uint32_t count = n.end - n.begin;
+      CAPTURE(count);
+      const double expected =
+          count <= fitted ? fitted_cost(soup, soup.listed(n.begin, n.end)) : box_cost(n.box);
+      CHECK(n.cost == doctest::Approx(expected).epsilon(1e-5));
+    }
+  }
 }
 
 TEST_CASE("a small part of a large body is cut as it is when it is alone") {

@@ -1,0 +1,58 @@
+#include "engine/tree/collapse.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace lrb {
+namespace {
+
+/// What a node costs beside what its box does. It decides where boxes are small or flat beyond measure: there
+/// few nodes are best.
+constexpr double kNodeCost = 0x1p-40;
+
+/// Returns what a wide node costs. The power is measured (docs/measurements.md).
+double wide_cost(const BinaryNode& n) {
+  return n.cost * std::sqrt(n.cost) + kNodeCost;
+}
+
+}  // namespace
+
+Collapse::Collapse(std::span<const BinaryNode> tree) : tree_(tree), best_(tree.size()) {
+  for (std::size_t node = tree.size(); node-- > 0;) {
+    if (tree[node].is_leaf()) continue;
+    Best& best = best_[node];
+    const Best &left = best_[tree[node].left], &right = best_[tree[node].right];
+    for (std::uint32_t places = 2; places <= kTreeWidth; ++places) {
+      // The most even share comes first: it is taken where others cost the same.
+      std::uint32_t to_left = places / 2;
+      const auto cost = [&](std::uint32_t k) { return left.cost[k - 1] + right.cost[places - k - 1]; };
+      for (std::uint32_t k = 1; k < places; ++k)
+        if (cost(k) < cost(to_left)) to_left = k;
+      best.to_left[places - 1] = static_cast<std::uint8_t>(to_left);
+      best.cost[places - 1] = cost(to_left);
+    }
+    best.cost[0] = wide_cost(tree[node]) + best.cost[kTreeWidth - 1];
+    for (std::uint32_t places = 2; places <= kTreeWidth; ++places)
+      best.cost[places - 1] = std::min(best.cost[places - 1], best.cost[places - 2]);
+  }
+}
+
+std::vector<std::uint32_t> Collapse::children(std::uint32_t node) const {
+  std::vector<std::uint32_t> children;
+  share(node, kTreeWidth, children);
+  return children;
+}
+
+/// Shares places among the children of a node that does not become a wide one by itself.
+void Collapse::share(std::uint32_t node, std::uint32_t places, std::vector<std::uint32_t>& children) const {
+  const std::uint32_t to_left = best_[node].to_left[places - 1];
+  const auto give = [&](std::uint32_t child, std::uint32_t given) {
+    const auto& cost = best_[child].cost;
+    while (given > 1 && cost[given - 1] == cost[given - 2]) --given;
+    given == 1 ? children.push_back(child) : share(child, given, children);
+  };
+  give(tree_[node].left, to_left);
+  give(tree_[node].right, places - to_left);
+}
+
+}  // namespace lrb
