@@ -102,8 +102,13 @@ inline Lanes select(Lanes which, Lanes x, Lanes y) {
   return static_cast<Lanes>((x & which) | (y & ~which));
 }
 
+/// Returns x where it is greater than y, else y: also where either is NaN.
 inline Float8 larger(Float8 x, Float8 y) {
+#if defined(__AVX__)
+  return reinterpret_cast<Float8>(_mm256_max_ps(reinterpret_cast<__m256>(x), reinterpret_cast<__m256>(y)));
+#else
   return select(greater(x, y), x, y);
+#endif
 }
 
 inline Int8 bytes_to_int(const std::uint8_t* q) {
