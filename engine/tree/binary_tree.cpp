@@ -31,9 +31,12 @@ class BinaryBuilder {
   /// Returns the number of nodes for some simplices.
   static std::uint32_t nodes_for(std::uint32_t simplices) { return 2 * leaves_for(simplices) - 1; }
 
+  /// Returns true if so many simplices are split so that boxes fit.
+  bool is_fitted(std::uint32_t simplices) const { return simplices <= std::max(splits_.fitted, kTreeWidth); }
+
   /// Builds a subtree, but for boxes.
   void build(std::uint32_t self, std::uint32_t begin, std::uint32_t end) {
-    if (end - begin <= std::max(splits_.fitted, kTreeWidth)) {
+    if (is_fitted(end - begin)) {
       FittedCuts cuts(soup_, soup_.listed(begin, end), splits_.effort);
       build_fitted(self, begin, end, cuts.whole_cost(), cuts, begin);
       std::ranges::copy(cuts.order(), soup_.order.begin() + begin);
@@ -77,7 +80,7 @@ class BinaryBuilder {
         for (const std::uint32_t s : soup_.listed(node->begin, node->end)) node->box.extend(soup_.box[s]);
       else
         node->box = nodes_[node->left].box.merged(nodes_[node->right].box);
-      if (node->end - node->begin > splits_.fitted) node->cost = box_cost(node->box);
+      if (!is_fitted(node->end - node->begin)) node->cost = box_cost(node->box);
     }
   }
 

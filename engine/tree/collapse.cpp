@@ -6,13 +6,13 @@
 namespace lrb {
 namespace {
 
-/// What a node costs beside what its box does. It decides where boxes are small or flat beyond measure: there
-/// few nodes are best.
-constexpr double kNodeCost = 0x1p-40;
+/// What each simplex beneath a node adds to its cost. It decides between boxes that are no larger than about
+/// a ten thousandth of the body, or have no surface: there the tree becomes as low as it can on average.
+constexpr double kSimplexCost = 0x1p-40;
 
 /// Returns what a wide node costs. The power is measured (docs/measurements.md).
 double wide_cost(const BinaryNode& n) {
-  return n.cost * std::sqrt(n.cost) + kNodeCost;
+  return n.cost * std::sqrt(n.cost) + kSimplexCost * (n.end - n.begin);
 }
 
 }  // namespace
@@ -23,10 +23,9 @@ Collapse::Collapse(std::span<const BinaryNode> tree) : tree_(tree), best_(tree.s
     Best& best = best_[node];
     const Best &left = best_[tree[node].left], &right = best_[tree[node].right];
     for (std::uint32_t places = 2; places <= kTreeWidth; ++places) {
-      // The most even share comes first: it is taken where others cost the same.
-      std::uint32_t to_left = places / 2;
+      std::uint32_t to_left = 1;
       const auto cost = [&](std::uint32_t k) { return left.cost[k - 1] + right.cost[places - k - 1]; };
-      for (std::uint32_t k = 1; k < places; ++k)
+      for (std::uint32_t k = 2; k < places; ++k)
         if (cost(k) < cost(to_left)) to_left = k;
       best.to_left[places - 1] = static_cast<std::uint8_t>(to_left);
       best.cost[places - 1] = cost(to_left);

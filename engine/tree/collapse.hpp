@@ -12,10 +12,10 @@
 namespace lrb {
 
 /// Collapses a binary tree to nodes of up to kTreeWidth children so that the sum of all wide nodes' costs is
-/// least: what a node costs is about how often it is visited.
+/// least. What a node costs is about how often it is visited: BinaryNode::cost to the power of 1.5.
 ///
 /// Source: Ylitie, Karras and Laine, "Efficient Incoherent Ray Traversal on GPUs Through Compressed Wide
-/// BVHs", 2017, section 3.1 (dynamic programming, from the leaves upward), with other costs.
+/// BVHs", 2017, section 3.1 (dynamic programming, from the leaves upward), where it is the surface itself.
 class Collapse {
  public:
   /// `tree` must outlive this.
@@ -34,7 +34,7 @@ class Collapse {
   void share(std::uint32_t node, std::uint32_t places, std::vector<std::uint32_t>& children) const;
 
   std::span<const BinaryNode> tree_;
-  std::vector<Best> best_;  ///< of each node; of leaves, which cost the same in any tree, all 0
+  std::vector<Best> best_;  ///< of each node; all 0 for leaves, which cost the same in any tree
 };
 
 }  // namespace lrb

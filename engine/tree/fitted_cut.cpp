@@ -69,6 +69,7 @@ FittedCuts::FittedCuts(const Soup& soup, std::span<const std::uint32_t> simplice
   spread_.resize(n);
   size_ = static_cast<std::uint32_t>(n);
   measure();
+  whole_cost_ = fitted_box_cost(along(0));
 }
 
 FittedCuts::Halves FittedCuts::cut(std::uint32_t begin, std::uint32_t end) {
@@ -163,12 +164,6 @@ FittedCuts::Halves FittedCuts::measured(const Cut& cut, float most) const {
   const bool too_much = sum_of_costs(halves, cut.left, 0) > most;
   halves.right_cost = too_much ? kInfinity : fitted_box_cost(order.subspan(cut.left));
   return halves;
-}
-
-double FittedCuts::whole_cost() const {
-  std::vector<std::uint32_t> all(simplices_.size());
-  std::iota(all.begin(), all.end(), 0u);
-  return fitted_box_cost(all);
 }
 
 /// Returns what the box costs that fits some of the simplices.

@@ -43,7 +43,7 @@ class FittedCuts {
   Halves cut(std::uint32_t begin, std::uint32_t end);
 
   /// Returns box_cost() of the box that fits all simplices.
-  double whole_cost() const;
+  double whole_cost() const { return whole_cost_; }
 
   /// Returns the simplices, range by range.
   std::vector<std::uint32_t> order() const;
@@ -67,6 +67,7 @@ class FittedCuts {
 
   const Soup& soup_;
   const CutEffort effort_;
+  double whole_cost_ = 0;
   std::vector<std::uint32_t> simplices_;  ///< in order; below, simplices go by their place here
   std::vector<Spread> spread_;            ///< of each simplex; a range has one origin and scale
   std::array<std::vector<std::uint32_t>, 3> coordinate_;  ///< range by range, ordered along an axis in each

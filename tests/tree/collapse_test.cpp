@@ -19,51 +19,58 @@ using shapes::RandomEngine;
 
 namespace {
 
-/// Appends a random binary tree with so many leaves, whose nodes cost what `cost` returns. Returns its root.
-std::uint32_t add_tree(std::vector<BinaryNode>& tree, std::uint32_t leaves, RandomEngine& random,
-                       const std::function<double()>& cost) {
+/// Appends a binary tree with so many leaves of eight simplices each. split: returns how many of some leaves
+/// go to the left; cost: what the next node costs.
+void add_tree(std::vector<BinaryNode>& tree, std::uint32_t leaves,
+              const std::function<std::uint32_t(std::uint32_t)>& split, const std::function<double()>& cost,
+              std::uint32_t first = 0) {
   const auto self = static_cast<std::uint32_t>(tree.size());
   tree.emplace_back().cost = cost();
-  if (leaves == 1) return self;
-  const auto of_left =
-      static_cast<std::uint32_t>(shapes::uniform(random, 1, std::nextafter(1.0 * leaves, 0.0)));
-  const std::uint32_t left = add_tree(tree, of_left, random, cost);
-  const std::uint32_t right = add_tree(tree, leaves - of_left, random, cost);
-  tree[self].left = left;
-  tree[self].right = right;
-  return self;
+  tree[self].begin = first * kTreeWidth;
+  tree[self].end = (first + leaves) * kTreeWidth;
+  if (leaves == 1) return;
+  const std::uint32_t of_left = split(leaves);
+  tree[self].left = self + 1;
+  add_tree(tree, of_left, split, cost, first);
+  tree[self].right = static_cast<std::uint32_t>(tree.size());
+  add_tree(tree, leaves - of_left, split, cost, first + of_left);
 }
 
 double wide_cost(const BinaryNode& n) {
   return std::pow(n.cost, 1.5);
 }
 
-/// What a set of children costs: of all sets with the same number of them, the least.
-using LeastCosts = std::map<std::uint32_t, double>;
+/// The least cost of all wide nodes in subtrees, found by looking at all ways to choose children.
+class LeastCosts {
+ public:
+  explicit LeastCosts(const std::vector<BinaryNode>& tree) : tree_(tree), of_(tree.size()) {
+    for (std::size_t n = tree.size(); n-- > 0;) find(static_cast<std::uint32_t>(n));
+  }
+  double of_root() const { return of_[0].at(1); }
 
-/// Returns the least cost of all wide nodes in a subtree that has its place as one child, by looking at all
-/// ways to choose children.
-double least_cost(const std::vector<BinaryNode>& tree, std::uint32_t node) {
-  // All sets of subtrees that a node can be replaced by.
-  const std::function<LeastCosts(std::uint32_t)> open = [&](std::uint32_t n) {
-    LeastCosts all;
-    all[1] = least_cost(tree, n);
-    if (tree[n].is_leaf()) return all;
-    for (const auto& [x, cost_x] : open(tree[n].left))
-      for (const auto& [y, cost_y] : open(tree[n].right)) {
+ private:
+  /// For each number of children that can take a subtree's place: what these cost.
+  using ByNumber = std::map<std::uint32_t, double>;
+
+  void find(std::uint32_t n) {
+    of_[n][1] = 0;
+    if (tree_[n].is_leaf()) return;
+    double least = kInfinity;
+    ByNumber replaced;
+    for (const auto& [x, cost_x] : of_[tree_[n].left])
+      for (const auto& [y, cost_y] : of_[tree_[n].right]) {
         if (x + y > kTreeWidth) continue;
-        const auto known = all.try_emplace(x + y, kInfinity).first;
+        least = std::min(least, cost_x + cost_y);
+        const auto known = replaced.try_emplace(x + y, kInfinity).first;
         known->second = std::min(known->second, cost_x + cost_y);
       }
-    return all;
-  };
-  if (tree[node].is_leaf()) return 0;
-  double least = kInfinity;
-  for (const auto& [x, cost_x] : open(tree[node].left))
-    for (const auto& [y, cost_y] : open(tree[node].right))
-      if (x + y <= kTreeWidth) least = std::min(least, cost_x + cost_y);
-  return wide_cost(tree[node]) + least;
-}
+    of_[n] = replaced;
+    of_[n][1] = wide_cost(tree_[n]) + least;
+  }
+
+  const std::vector<BinaryNode>& tree_;
+  std::vector<ByNumber> of_;
+};
 
 struct WideTree {
   double cost = 0;
@@ -103,38 +110,42 @@ std::vector<std::uint32_t> leaves_of(const std::vector<BinaryNode>& tree) {
 
 TEST_CASE("a binary tree is collapsed to the wide nodes that cost least in all") {
   RandomEngine random(1);
-  for (int round = 0; round < 60; ++round) {
-    const auto leaves = static_cast<std::uint32_t>(2 + round % 20);
+  const auto anywhere = [&](std::uint32_t leaves) {
+    return static_cast<std::uint32_t>(shapes::uniform(random, 1, std::nextafter(1.0 * leaves, 0.0)));
+  };
+  for (int round = 0; round < 300; ++round) {
+    const auto leaves = static_cast<std::uint32_t>(2 + round % 99);
     std::vector<BinaryNode> tree;
     // Costs of different sizes, some of them alike.
-    add_tree(tree, leaves, random, [&] {
+    add_tree(tree, leaves, anywhere, [&] {
       return round % 3 == 0 ? 1 : std::round(8 * std::pow(10, shapes::uniform(random, 0, 2))) / 8;
     });
-    const Collapse collapse(tree);
-    const WideTree wide = wide_tree(tree, collapse, 0);
     CAPTURE(leaves);
-    CHECK(wide.cost == doctest::Approx(least_cost(tree, 0)).epsilon(1e-9));
-    CHECK(wide.leaves == leaves_of(tree));
+    for (const double size : {1.0, 1e-3}) {  // boxes of the body's size, and small ones
+      for (BinaryNode& n : tree) n.cost *= size;
+      const Collapse collapse(tree);
+      const WideTree wide = wide_tree(tree, collapse, 0);
+      CHECK(wide.cost == doctest::Approx(LeastCosts(tree).of_root()).epsilon(1e-5));
+      CHECK(wide.leaves == leaves_of(tree));
+    }
   }
 }
 
-TEST_CASE("nodes without any size are collapsed to few wide ones, evenly") {
-  RandomEngine random(2);
-  for (const std::uint32_t leaves : {8u, 64u, 512u}) {
+TEST_CASE("trees of nodes without any size become low") {
+  const auto halve = [](std::uint32_t leaves) { return leaves / 2; };
+  const auto nothing = [] { return 0.0; };
+  for (const auto& [leaves, height] : {std::pair{8u, 2u},
+                                       {9u, 3u},
+                                       {64u, 3u},
+                                       {65u, 4u},
+                                       {100u, 4u},
+                                       {512u, 4u},
+                                       {625u, 5u},
+                                       {1000u, 5u},
+                                       {4096u, 5u},
+                                       {5000u, 6u}}) {
     std::vector<BinaryNode> tree;
-    const std::function<std::uint32_t(std::uint32_t)> halve = [&](std::uint32_t n) {
-      const auto self = static_cast<std::uint32_t>(tree.size());
-      tree.emplace_back();
-      if (n == 1) return self;
-      const std::uint32_t left = halve(n / 2), right = halve(n - n / 2);
-      tree[self].left = left;
-      tree[self].right = right;
-      return self;
-    };
-    halve(leaves);
-    const WideTree wide = wide_tree(tree, Collapse(tree), 0);
-    CAPTURE(leaves);
-    CHECK(wide.nodes == (leaves - 1) / 7);
-    CHECK(wide.height == (leaves == 8 ? 2 : leaves == 64 ? 3 : 4));
+    add_tree(tree, leaves, halve, nothing);
+    CHECK(wide_tree(tree, Collapse(tree), 0).height == height);
   }
 }

@@ -277,7 +277,7 @@ std::uint32_t height_of(const Triangles& triangles) {
 TEST_CASE("a node of the binary tree has the cost of the box that fits, or of that on the coordinate axes") {
   RandomEngine random(12);
   const Triangles strip = bent_strip(random, 500, 1, 0.1);
-  for (const std::uint32_t fitted : {64u, 2048u}) {
+  for (const std::uint32_t fitted : {64u, 500u, 2048u}) {
     Soup soup = strip.soup();
     Workers workers(1);
     const std::vector<BinaryNode> nodes = build_binary_tree(
