@@ -15,6 +15,11 @@ inline constexpr double kFrameCornerWeight = 1e-12;
 /// what lies between them are not told apart from it.
 inline constexpr double kLengthCost = 1e-5;
 
+/// What each simplex beneath a node of a tree adds to the node's cost where it is decided which nodes become
+/// wide ones. It decides between boxes that are no larger than about a ten thousandth of the body, or have no
+/// surface: there the tree becomes as low as it can on average. Larger: it also decides between larger boxes.
+inline constexpr double kSimplexCost = 0x1p-40;
+
 /// A range of simplices is measured anew if its variance is less than this share of the squared diagonal of
 /// the range it was measured with. Smaller: rounding errors hide how the simplices of small parts are spread.
 inline constexpr double kMeasureAgain = 1e-6;

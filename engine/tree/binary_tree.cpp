@@ -43,7 +43,7 @@ class BinaryBuilder {
       return;
     }
     const std::uint32_t middle = split(begin, end);
-    const auto [left, right] = fork(self, begin, middle, end);
+    const auto [left, right] = fork(self, begin, middle, end, 0);
     workers_.both([&, left = left] { build(left, begin, middle); },
                   [&, right = right] { build(right, middle, end); });
   }
@@ -58,18 +58,17 @@ class BinaryBuilder {
     }
     const FittedCuts::Halves halves = cuts.cut(begin - first, end - first);
     const std::uint32_t middle = first + halves.middle;
-    const auto [left, right] = fork(self, begin, middle, end);
-    nodes_[self].cost = cost;
+    const auto [left, right] = fork(self, begin, middle, end, cost);
     build_fitted(left, begin, middle, halves.left_cost, cuts, first);
     build_fitted(right, middle, end, halves.right_cost, cuts, first);
   }
 
-  /// Makes a node whose subtrees hold the simplices before `middle` and the rest. Returns the subtrees'
-  /// roots.
+  /// Makes a node whose subtrees hold the simplices before `middle` and the rest. cost: 0 if measure() is to
+  /// find it. Returns the subtrees' roots.
   std::pair<std::uint32_t, std::uint32_t> fork(std::uint32_t self, std::uint32_t begin, std::uint32_t middle,
-                                               std::uint32_t end) {
+                                               std::uint32_t end, double cost) {
     const std::uint32_t left = self + 1, right = left + nodes_for(middle - begin);
-    nodes_[self] = {begin, end, left, right, {}, 0};
+    nodes_[self] = {begin, end, left, right, {}, cost};
     return {left, right};
   }
 
@@ -116,7 +115,6 @@ class BinaryBuilder {
     std::vector<double> right_cost(n);
     Split best;
     best.left = kTreeWidth;
-    const auto uneven = [n](std::uint32_t count) { return std::max(count, n - count); };
     for (int axis = 0; axis < 3; ++axis) {
       std::sort(order.begin(), order.end(), soup_.order_on(axis));
       Box right, left;
@@ -128,7 +126,8 @@ class BinaryBuilder {
         left.extend(soup_.box[order[i - 1]]);
         if (i % kTreeWidth != 0) continue;
         const double cost = box_cost(left) * leaves_for(i) + right_cost[i];
-        if (cost < best.cost || (cost == best.cost && uneven(i) < uneven(best.left))) best = {cost, axis, i};
+        if (cost < best.cost || (cost == best.cost && larger_side(i, n) < larger_side(best.left, n)))
+          best = {cost, axis, i};
       }
     }
     return best;

@@ -3,12 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/core/tolerances.hpp"
+
 namespace lrb {
 namespace {
-
-/// What each simplex beneath a node adds to its cost. It decides between boxes that are no larger than about
-/// a ten thousandth of the body, or have no surface: there the tree becomes as low as it can on average.
-constexpr double kSimplexCost = 0x1p-40;
 
 /// Returns what a wide node costs. The power is measured (docs/measurements.md).
 double wide_cost(const BinaryNode& n) {

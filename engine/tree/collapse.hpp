@@ -34,7 +34,7 @@ class Collapse {
   void share(std::uint32_t node, std::uint32_t places, std::vector<std::uint32_t>& children) const;
 
   std::span<const BinaryNode> tree_;
-  std::vector<Best> best_;  ///< of each node; all 0 for leaves, which cost the same in any tree
+  std::vector<Best> best_;  ///< for each node; 0 for a leaf, which costs the same in every tree
 };
 
 }  // namespace lrb

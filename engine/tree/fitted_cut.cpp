@@ -52,7 +52,7 @@ float sum_of_costs(const FittedCuts::Halves& halves, std::uint32_t left, std::ui
 }  // namespace
 
 bool FittedCuts::Cut::operator<(const Cut& y) const {
-  return std::tie(cost, uneven, way, left) < std::tie(y.cost, y.uneven, y.way, y.left);
+  return std::tie(cost, larger, way, left) < std::tie(y.cost, y.larger, y.way, y.left);
 }
 
 FittedCuts::FittedCuts(const Soup& soup, std::span<const std::uint32_t> simplices, CutEffort effort)
@@ -153,7 +153,7 @@ void FittedCuts::rank(int way) {
     if (i % kTreeWidth != 0) continue;
     const std::uint32_t right = size_ - i;
     const double cost = ranked_cost(left) * leaves_for(i) + ranked_cost(all_ - left) * leaves_for(right);
-    cuts_.push_back({static_cast<float>(cost), i > right ? i - right : right - i, way, i});
+    cuts_.push_back({static_cast<float>(cost), larger_side(i, size_), way, i});
   }
 }
 

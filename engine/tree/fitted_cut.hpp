@@ -1,6 +1,7 @@
 #pragma once
 /// Where to cut ranges of simplices in two so that the boxes that fit the halves are small.
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <span>
@@ -16,7 +17,12 @@ inline std::uint32_t leaves_for(std::uint32_t simplices) {
   return (simplices + kTreeWidth - 1) / kTreeWidth;
 }
 
-/// How many cuts of a range are compared.
+/// Returns how many of some simplices are on the larger side of a cut: the fewer, the more even it is.
+inline std::uint32_t larger_side(std::uint32_t left, std::uint32_t all) {
+  return std::max(left, all - left);
+}
+
+/// How many cuts of a range to compare.
 struct CutEffort {
   int principal;        ///< across how many of the range's principal axes, the longest first; 0 to 3
   std::uint32_t tried;  ///< number of cuts for which the boxes are found, at least 1; more in large ranges
@@ -51,7 +57,7 @@ class FittedCuts {
  private:
   struct Cut {
     float cost;            ///< rounded: what differs by rounding errors alone mostly costs the same
-    std::uint32_t uneven;  ///< the larger number of simplices on a side less the smaller
+    std::uint32_t larger;  ///< larger_side()
     int way;               ///< the direction it is across
     std::uint32_t left;    ///< number of simplices on its left
     bool operator<(const Cut& y) const;
@@ -69,7 +75,7 @@ class FittedCuts {
   const CutEffort effort_;
   double whole_cost_ = 0;
   std::vector<std::uint32_t> simplices_;  ///< in order; below, simplices go by their place here
-  std::vector<Spread> spread_;            ///< of each simplex; a range has one origin and scale
+  std::vector<Spread> spread_;            ///< of each simplex; in a range, from one origin and at one scale
   std::array<std::vector<std::uint32_t>, 3> coordinate_;  ///< range by range, ordered along an axis in each
 
   // The range that is being cut.

@@ -74,7 +74,7 @@ class LeastCosts {
 
 struct WideTree {
   double cost = 0;
-  std::uint32_t nodes = 0, height = 1;
+  std::uint32_t height = 1;
   std::vector<std::uint32_t> leaves;  ///< from left to right
 };
 
@@ -85,14 +85,12 @@ WideTree wide_tree(const std::vector<BinaryNode>& tree, const Collapse& collapse
     return wide;
   }
   wide.cost = wide_cost(tree[node]);
-  wide.nodes = 1;
   const std::vector<std::uint32_t> children = collapse.children(node);
   CHECK(children.size() >= 2);
   CHECK(children.size() <= kTreeWidth);
   for (const std::uint32_t child : children) {
     const WideTree below = wide_tree(tree, collapse, child);
     wide.cost += below.cost;
-    wide.nodes += below.nodes;
     wide.height = std::max(wide.height, 1 + below.height);
     wide.leaves.insert(wide.leaves.end(), below.leaves.begin(), below.leaves.end());
   }
