@@ -22,10 +22,15 @@ BoundarySum::BoundarySum(const LrbRep& rep) : rep_(rep) {
       direction_[c] = rep.dim() == 2 ? (i == 0 ? 1 : -1) : (v < w ? 1 : -1);
     }
   }
-  std::vector<std::uint32_t> order(corners);
-  std::iota(order.begin(), order.end(), 0u);
-  std::sort(order.begin(), order.end(),
-            [&](auto x, auto y) { return ends[x] != ends[y] ? ends[x] < ends[y] : x < y; });
+  // Sort the corners by the first end of their edge (counting sort), then those of one vertex by the second
+  // end.
+  std::vector<std::uint32_t> offsets(rep.vertices().size() + 1, 0), order(corners);
+  for (const auto& end : ends) ++offsets[end.first];
+  std::exclusive_scan(offsets.begin(), offsets.end(), offsets.begin(), 0u);
+  for (std::uint32_t c = 0; c < corners; ++c) order[offsets[ends[c].first]++] = c;
+  for (std::size_t v = 0, begin = 0; v + 1 < offsets.size(); begin = offsets[v++])
+    std::sort(order.begin() + begin, order.begin() + offsets[v],
+              [&](auto x, auto y) { return std::pair(ends[x].second, x) < std::pair(ends[y].second, y); });
   for (std::size_t k = 0; k < corners; ++k) {
     if (k == 0 || ends[order[k]] != ends[order[k - 1]]) corner_of_edge_.push_back(order[k]);
     edge_of_corner_[order[k]] = static_cast<std::uint32_t>(corner_of_edge_.size() - 1);

@@ -147,6 +147,16 @@ LrbRep LrbRep::without_regions(const Mesh& mesh, bool closed, bool self_intersec
   return LrbRep(std::move(d));
 }
 
+LrbRep LrbRep::without_regions(const LrbRep& rep) {
+  LrbData d = rep.d_;
+  d.face_offsets.resize(d.real_face_count + 1);
+  d.face_vertices.resize(d.face_offsets.back());
+  d.inner_cell.assign(d.real_face_count, kSolid);
+  d.outer_cell.assign(d.real_face_count, kOutside);
+  d.region_layer.clear();
+  return LrbRep(std::move(d));
+}
+
 void LrbRep::link_faces_to_regions() {
   const std::uint32_t regions = region_count();
   std::vector<std::uint32_t> floor_count(regions, 0);

@@ -70,6 +70,8 @@ class LrbRep {
   /// Makes a body without regions: its outermost wrapper is the body itself. `closed` is as check_mesh()
   /// finds it.
   static LrbRep without_regions(const Mesh& mesh, bool closed, bool self_intersecting);
+  /// Makes a body of the real faces of another one, without regions. Faces and vertices keep their numbers.
+  static LrbRep without_regions(const LrbRep& rep);
 
   int dim() const { return d_.dim; }
   bool closed() const { return d_.closed; }

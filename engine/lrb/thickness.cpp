@@ -126,7 +126,8 @@ class RegionMeter {
     most_ = found_ = 0;
     for (const FaceId f : rep_.lids(r))
       for (const VertexId v : rep_.face(f)) found_ = std::max(found_, near_[v].distance);
-    for (const FaceId f : rep_.lids(r)) add_lid(f);
+    for (const FaceId f : rep_.lids(r))
+      if (!add_lid(f)) return std::numeric_limits<double>::infinity();
     cut_worst();
     return most_ + kThicknessRounding;
   }
@@ -136,16 +137,21 @@ class RegionMeter {
 
   Simplex corners_of(const VertexId v[3]) const { return {x_[v[0]], x_[v[1]], x_[v[2]]}; }
 
-  void add_lid(FaceId f) {
+  /// Cuts a lid into pieces. Returns false if no real face is at a finite distance from it, as in a damaged
+  /// file.
+  bool add_lid(FaceId f) {
     const std::size_t count = Mesh::simplices_of(rep_.face(f).size(), rep_.dim());
     for (std::size_t i = 0; i < count; ++i) {
       VertexId v[3] = {};
       rep_.simplex(SimplexId(rep_.first_simplex(f) + i), v);
       Piece piece;
       piece.x = corners_of(v);
-      for (int k = 0; k < corners_; ++k) try_face(piece, near_[v[k]].simplex);
+      for (int k = 0; k < corners_; ++k)
+        if (near_[v[k]].simplex != kNull) try_face(piece, near_[v[k]].simplex);
+      if (piece.face == kNull) return false;
       add(piece);
     }
+    return true;
   }
 
   /// Gives the piece this face if it is better than the one it has.
@@ -155,8 +161,8 @@ class RegionMeter {
     double most = 0;
     for (int k = 0; k < corners_; ++k) {
       off[k] = nearest_.distance(piece.x[k], s);
+      if (!(off[k] < piece.most)) return;  // also if it overflows
       most = std::max(most, off[k]);
-      if (most >= piece.most) return;
     }
     piece.face = s, piece.off = off, piece.most = most;
   }

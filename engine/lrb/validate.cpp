@@ -24,6 +24,11 @@ class Validator {
   Validator(const LrbRep& rep, const ValidateOptions& options, Workers& workers)
       : rep_(rep), options_(options), workers_(workers), sum_(rep) {}
 
+  ValidateReport run_cells() {
+    check_cells();
+    return std::move(report_);
+  }
+
   ValidateReport run() {
     check_cells();
     check_derived();
@@ -53,10 +58,11 @@ class Validator {
 
   /// Checks what a file stores beside the complex.
   void check_derived() {
-    if (!rep_.tree().bounds_hold(rep_.simplices()))
-      violation("the query's tree has bounds that do not hold its faces");
+    const bool tree_holds = rep_.tree().bounds_hold(rep_.simplices());
+    if (!tree_holds) violation("the query's tree has bounds that do not hold its faces");
     if (hash_of(rep_.data()) != rep_.hash()) violation("the stored hash is not that of the complex");
-    if (rep_.has_levels()) check_levels(rep_.levels());
+    // The thickness of regions is measured with the tree: with wrong bounds it would be wrong, too.
+    if (tree_holds && rep_.has_levels()) check_levels(rep_.levels());
   }
 
   /// Checks what is taken on trust of levels from a file; the rest was checked when they were read.
@@ -326,6 +332,12 @@ class Validator {
 ValidateReport validate(const LrbRep& rep, const ValidateOptions& options) {
   Workers workers(options.threads);
   return Validator(rep, options, workers).run();
+}
+
+ValidateReport validate_cells(const LrbRep& rep) {
+  const ValidateOptions options;
+  Workers workers;
+  return Validator(rep, options, workers).run_cells();
 }
 
 }  // namespace lrb

@@ -43,6 +43,10 @@ struct ValidateReport {
 /// any, the trees' bounds and how thick regions are said to be.
 ValidateReport validate(const LrbRep& rep, const ValidateOptions& options = {});
 
+/// Checks the first two of these invariants only: closed cells, and volumes that add up. Takes a time of the
+/// order of reading the LRB-rep; Body runs it on every LRB-rep that it takes.
+ValidateReport validate_cells(const LrbRep& rep);
+
 /// Returns the signed volume (2D: area) behind a closed set of faces: those of `outward` taken with their
 /// normal outward, those of `inward` seen from their other side; unit cubed (2D: squared).
 double enclosed_volume(const LrbRep& rep, std::span<const FaceId> outward,

@@ -32,8 +32,8 @@ constexpr std::size_t kMostLevels = 256;
   throw InputError("the levels of the LRB-rep " + what + "; build it again from its mesh");
 }
 
-bool has_levels(const LrbRep& rep) {
-  return rep.region_count() > 0 && rep.closed() && !rep.self_intersecting();
+bool can_have_levels(const LrbRep& rep) {
+  return rep.region_count() > 0 && why_no_levels(rep).empty();
 }
 
 /// Returns, for each region, the largest thickness among the region and all that it hides. Passes values
@@ -57,7 +57,7 @@ std::vector<double> needed_tolerances(const LrbRep& rep, unsigned threads) {
 
 /// Throws InputError if a region could be included without something that it hides.
 void check_needed(const LrbRep& rep, const std::vector<double>& needed) {
-  if (needed.size() != (has_levels(rep) ? rep.region_count() : 0)) refuse("are not for its regions");
+  if (needed.size() != (can_have_levels(rep) ? rep.region_count() : 0)) refuse("are not for its regions");
   for (RegionId r = 0; r < needed.size(); ++r) {
     if (!(needed[r] >= 0)) refuse("need a tolerance that is none for region " + std::to_string(r));
     if (rep.lids(r).empty() && needed[r] != kInfinity)
@@ -163,8 +163,21 @@ std::vector<SimplexId> outline(const LrbRep& rep, double bound, std::span<const 
 
 }  // namespace
 
+std::string why_no_levels(const LrbRep& rep) {
+  if (!rep.closed()) return "its surface bounds no solid";
+  if (rep.self_intersecting()) return "its surface intersects itself";
+  return {};
+}
+
+std::string note_no_levels(const LrbRep& rep) {
+  const std::string why = why_no_levels(rep);
+  if (why.empty()) return {};
+  return rep.name() + ": has no approximate answers, because " + why +
+         ": queries with a tolerance or limit are answered exactly";
+}
+
 WrapperLevels::WrapperLevels(const LrbRep& rep, unsigned threads) {
-  if (!has_levels(rep)) return;
+  if (!can_have_levels(rep)) return;
   needed_ = needed_tolerances(rep, threads);
   const std::vector<double> bounds = choose_bounds(rep, needed_);
   const std::vector<std::vector<FaceId>> faces = Boundaries(rep, needed_).faces(bounds);
@@ -180,6 +193,7 @@ WrapperLevels::WrapperLevels(const LrbRep& rep, std::vector<double> needed, std:
     : needed_(std::move(needed)) {
   check_needed(rep, needed_);
   if (stored.size() > (needed_.empty() ? 0 : kMostLevels)) refuse("are too many");
+  if (needed_.empty()) return;  // a body without levels, whose file has an empty list of them
   std::vector<double> bounds;
   for (const StoredLevel& from : stored) {
     if (!(from.bound >= 0 && from.bound < (bounds.empty() ? kInfinity : bounds.back())))

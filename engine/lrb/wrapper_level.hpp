@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "engine/lrb/lrb_rep.hpp"
@@ -19,6 +20,12 @@ struct WrapperLevel {
   std::vector<VertexId> component_vertices;  ///< one vertex of each connected piece of the boundary
   std::uint32_t face_count = 0, pseudo_count = 0;
 };
+
+/// Returns why a body can have no levels, as a clause, or an empty text if it can. (A body without regions,
+/// of few faces, has none either, and needs none.)
+std::string why_no_levels(const LrbRep& rep);
+/// Returns the same as one line that names the body and the effect on queries; empty if it can have levels.
+std::string note_no_levels(const LrbRep& rep);
 
 /// The levels of one body: a row of wrappers from the outermost one inward, up to half the body's faces. Each
 /// has about a third more faces than the one before, or a tenth where there are few. LrbRep::levels() makes

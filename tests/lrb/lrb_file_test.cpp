@@ -11,6 +11,7 @@
 #include "engine/core/error.hpp"
 #include "engine/lrb/validate.hpp"
 #include "engine/lrb/wrapper_level.hpp"
+#include "engine/query/brute_force.hpp"
 #include "engine/query/collide.hpp"
 #include "scenarios/bodies/shapes/hand_made.hpp"
 #include "scenarios/bodies/shapes/random_pose.hpp"
@@ -243,6 +244,29 @@ TEST_CASE("files of version 2 are read, and have no levels") {
   const LrbRep back = load_lrb(std::string_view(old), "body.lrb");
   CHECK(!back.has_levels());
   CHECK(bytes_of(back) == bytes_of(rep));
+}
+
+TEST_CASE("a saved body that intersects itself has no levels, loads, and answers as its mesh does") {
+  const Mesh rock = shapes::bumpy_sphere(2, 1);
+  const Mesh twice = shapes::several({rock, shapes::translated(rock, {0.3, 0.1, 0.05})});
+  const LrbRep rep = build_lrb(twice);
+  REQUIRE(rep.self_intersecting());
+  REQUIRE(rep.region_count() > 0);
+  CHECK(why_no_levels(rep) == "its surface intersects itself");
+  rep.levels();
+  const LrbRep back =
+      load_lrb(std::string_view(bytes_of(rep)), "body.lrb");  // the file has an empty list of levels
+  CHECK(back.levels().all().empty());
+  CHECK(bytes_of(back) == bytes_of(rep));
+  CHECK(validate(back).valid);
+  CollideRequest request;
+  for (const double tolerance : {0.0, 0.05}) {
+    request.tolerance = tolerance;
+    for (const double x : {0.2, 1.5, 3.0}) {
+      const Pose pose = Pose::translation({x, 0.1, 0});
+      CHECK(collide(back, Pose{}, back, pose, request).pairs == brute_force(rep, Pose{}, rep, pose).pairs);
+    }
+  }
 }
 
 TEST_CASE("levels that were made are in the file, and come back as they were") {

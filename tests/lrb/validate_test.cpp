@@ -1,7 +1,13 @@
 #include "engine/lrb/validate.hpp"
 
+#include <cmath>
+#include <limits>
+
 #include <doctest/doctest.h>
 
+#include "engine/construct/build.hpp"
+#include "engine/lrb/thickness.hpp"
+#include "engine/lrb/wrapper_level.hpp"
 #include "scenarios/bodies/shapes/hand_made.hpp"
 #include "scenarios/bodies/shapes/shapes.hpp"
 #include "tests/support/lrb_shapes.hpp"
@@ -94,4 +100,39 @@ TEST_CASE("a negative region is refused") {
   const ValidateReport report = validate(LrbRep(d));
   CHECK_FALSE(report.valid);
   CHECK(names(report, "negative"));
+}
+
+TEST_CASE("a tree whose bounds are no numbers is reported, with levels too") {
+  const LrbRep sound = build_lrb(shapes::bumpy_sphere(3, 1));
+  const WrapperLevels& levels = sound.levels();
+  std::vector<TreeNode> nodes = sound.tree().nodes();
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  for (TreeNode& node : nodes)
+    for (int i = 0; i < 3; ++i) node.base[i] = node.scale[i] = nan;
+  LrbRep damaged(sound.data(), nodes, sound.tree().blocks(), sound.hash());
+  std::vector<WrapperLevels::StoredLevel> stored;
+  for (const WrapperLevel& level : levels.all())
+    stored.push_back({level.bound, level.tree.nodes(), level.tree.blocks()});
+  damaged.keep_levels(WrapperLevels(damaged, {levels.needed().begin(), levels.needed().end()}, stored));
+  CHECK(names(validate(damaged), "tree has bounds that do not hold its faces"));
+  // Nothing is at a finite distance in such a tree: the bound says so.
+  CHECK(region_thickness(damaged)[0] >= 0);
+}
+
+TEST_CASE("the thickness of a region whose lids are too far away for doubles is infinite") {
+  LrbData data = shapes::dented_box().data();
+  for (const VertexId v : data.face(FaceId(data.face_count() - 1)))
+    if (v >= 8) data.vertices[v].z() = 1e300;
+  for (Eigen::Vector3d& x : data.vertices)
+    if (std::abs(x.z()) < 1e299) x *= 1e-20;
+  const LrbRep rep(data);
+  for (const double t : region_thickness(rep)) CHECK(t > 1e200);
+}
+
+TEST_CASE("cells are proven by validate_cells() as by validate()") {
+  CHECK(validate_cells(build_lrb(shapes::bumpy_sphere(2, 1))).valid);
+  CHECK(validate_cells(shapes::stairs_2d()).valid);
+  LrbData data = shapes::dented_box().data();
+  data.outer_cell[0] = data.outer_cell[0] == kOutside ? CellId(RegionId(0)) : kOutside;
+  CHECK(names(validate_cells(LrbRep(data)), "is open at edge"));
 }
