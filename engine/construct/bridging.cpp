@@ -75,11 +75,24 @@ Bridge find_bridge(const HullMesh& hull, const std::vector<Slot>& slots, std::ve
   return bridge;
 }
 
+/// Returns true if the bridge covers some triangles of a polygon, but not all of them. In the complex a
+/// polygon is one face, which has one cell in front of it.
+bool splits_polygon(const HullMesh& hull, const Bridge& bridge) {
+  std::vector<bool> removed(hull.slot_count(), false);
+  for (const Slot s : bridge.removed) removed[s] = true;
+  return std::any_of(bridge.removed.begin(), bridge.removed.end(), [&](Slot s) {
+    const auto [first, last] = hull.unit(s);
+    return !std::all_of(removed.begin() + first, removed.begin() + last, [](bool r) { return r; });
+  });
+}
+
 CapVerdict judge(const HullMesh& hull, const std::vector<Slot>& slots, std::size_t convex_faces,
                  const Bridge& bridge) {
   if (convex_faces == 0) return CapVerdict::flat;
   const bool worth = static_cast<double>(convex_faces) <= kLastCapWorth * static_cast<double>(slots.size());
   if (!worth || bridge.removed.empty()) return CapVerdict::too_many_faces;
+  // A polygon that is not planar can have one triangle on the convex hull and another below it.
+  if (splits_polygon(hull, bridge)) return CapVerdict::splits_polygon;
   return judge(hull, bridge.added);
 }
 

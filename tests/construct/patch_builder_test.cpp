@@ -1,7 +1,11 @@
+#include <algorithm>
+#include <array>
+
 #include <doctest/doctest.h>
 
 #include "engine/core/error.hpp"
 #include "engine/mesh/mesh_check.hpp"
+#include "scenarios/bodies/shapes/random_pose.hpp"
 #include "scenarios/bodies/shapes/shapes.hpp"
 #include "tests/construct/build_checks.hpp"
 
@@ -37,6 +41,45 @@ TEST_CASE("small bodies: valid, embedded by brute force, few outer faces") {
     CHECK(rep.closed());
     CHECK_FALSE(rep.self_intersecting());
   }
+}
+
+/// A sphere of quads, some cut into triangles, whose vertices are moved along the radius: quads fold.
+Mesh folded_sphere(std::uint64_t seed) {
+  RandomEngine random(seed);
+  const auto fraction = [&] { return uniform(random); };
+  Mesh mesh = uv_sphere(3 + static_cast<int>(random() % 8), 3 + static_cast<int>(random() % 6));
+  const double noise = 0.02 + 0.38 * fraction();
+  for (Point3& x : mesh.vertices) x *= 1 + noise * (2 * fraction() - 1);
+  Mesh out;
+  out.name = "folded sphere " + std::to_string(seed);
+  out.vertices = mesh.vertices;
+  for (FaceId f = 0; f < mesh.face_count(); ++f) {
+    std::vector<VertexId> corners(mesh.face(f).begin(), mesh.face(f).end());
+    std::rotate(corners.begin(), corners.begin() + static_cast<std::ptrdiff_t>(random() % corners.size()),
+                corners.end());
+    if (corners.size() == 4 && random() % 3 == 0) {
+      out.add_face(std::array{corners[0], corners[1], corners[2]});
+      out.add_face(std::array{corners[0], corners[2], corners[3]});
+    } else {
+      out.add_face(corners);
+    }
+  }
+  return out;
+}
+
+TEST_CASE("folded quads: bridging does not split polygons that are not planar") {
+  std::uint32_t built = 0;
+  for (std::uint64_t seed = 1; seed <= 60; ++seed) {
+    const Mesh mesh = folded_sphere(seed);
+    if (!check_mesh(mesh).buildable()) continue;
+    BuildOptions options;
+    options.lean = seed % 4 == 0;
+    const LrbRep rep = build_lrb(mesh, options);
+    check_valid(rep);
+    check_keeps_mesh(rep, mesh);
+    ++built;
+  }
+  CHECK(built > 20);
 }
 
 TEST_CASE("a body that is simple enough stays as it is") {
