@@ -5,6 +5,7 @@
 #include "engine/body/body_of_mesh.hpp"
 #include "engine/core/file_bytes.hpp"
 #include "engine/lrb/lrb_file.hpp"
+#include "engine/lrb/wrapper_level.hpp"
 #include "engine/mesh/io/mesh_io.hpp"
 
 namespace lrb {
@@ -81,6 +82,14 @@ std::string note_no_solid(const LrbRep& rep) {
          "meets nothing the relation is `undefined`";
 }
 
+/// Adds what cannot be asked of a body.
+void add_notes_on(const LrbRep& rep, std::vector<std::string>& notes) {
+  if (!rep.closed())
+    notes.push_back(note_no_solid(rep));
+  else if (std::string note = note_no_levels(rep); !note.empty())
+    notes.push_back(std::move(note));
+}
+
 }  // namespace
 
 Body Body::made(Mesh mesh, const BodyOptions& options, std::vector<std::string> notes) {
@@ -88,7 +97,7 @@ Body Body::made(Mesh mesh, const BodyOptions& options, std::vector<std::string> 
   MadeBody made = options.regions ? make_body(std::move(checked), options.build, options.turn)
                                   : make_body_of_faces(std::move(checked), options.turn);
   notes.insert(notes.end(), made.notes.begin(), made.notes.end());
-  if (!made.rep.closed()) notes.push_back(note_no_solid(made.rep));
+  add_notes_on(made.rep, notes);
   auto rep = std::make_shared<const LrbRep>(std::move(made.rep));
   return Body(std::make_shared<const Held>(Held{std::move(rep), std::move(notes), made.turned}));
 }
@@ -127,7 +136,11 @@ Body Body::from(LrbRep rep) {
 
 Body Body::from(std::shared_ptr<const LrbRep> rep) {
   std::vector<std::string> notes;
-  if (!rep->closed()) notes.push_back(note_no_solid(*rep));
+  if (std::string fault = note_unproven(*rep); !fault.empty()) {
+    notes.push_back(std::move(fault));
+    rep = std::make_shared<const LrbRep>(LrbRep::without_regions(*rep));
+  }
+  add_notes_on(*rep, notes);
   return Body(std::make_shared<const Held>(Held{std::move(rep), std::move(notes), 0}));
 }
 

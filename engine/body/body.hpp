@@ -32,6 +32,9 @@ struct BodyOptions {
 /// What bounds no solid (holes, edges of three faces, faces that disagree on which side is outside) is a
 /// body, too: pairs, contacts and distances are exact as of any other. It has no wrappers, and nothing lies
 /// inside it: CollideResult::relation is `undefined` where its surface meets nothing. notes() says why.
+///
+/// A body with regions has cells that are proven closed (validate_cells()). If that proof fails, of a mesh or
+/// of an .lrb file, the body has its faces only, and notes() says what failed and where.
 class Body {
  public:
   /// Makes a body of a matrix of vertices (n x 3, or n x 2 in the plane; any scalar) and one of faces (m x 3
@@ -56,8 +59,7 @@ class Body {
   static Body from(LrbRep rep);
   static Body from(std::shared_ptr<const LrbRep> rep);
 
-  /// Reads a mesh file as read_mesh() does, or an .lrb file, told apart by content. An .lrb is taken as it
-  /// is.
+  /// Reads a mesh file as read_mesh() does, or an .lrb file, told apart by content.
   static Expected<Body> load(const std::string& path, const BodyOptions& options = {});
 
   const LrbRep& rep() const { return *held_->rep; }

@@ -6,6 +6,7 @@
 
 #include "engine/core/error.hpp"
 #include "engine/lrb/lrb_file.hpp"
+#include "engine/lrb/validate.hpp"
 #include "engine/mesh/join_corners.hpp"
 
 namespace lrb {
@@ -60,6 +61,14 @@ std::string obstacles_to_build(const CheckedMesh& mesh) {
   return joined(mesh.mesh(), mesh.report().when_turned().obstacles(mesh.mesh()));
 }
 
+std::string note_unproven(const LrbRep& rep) {
+  if (rep.region_count() == 0) return {};
+  const ValidateReport report = validate_cells(rep);
+  if (report.valid) return {};
+  return rep.name() +
+         ": queried without regions, because the proof of its LRB-rep failed: " + report.violations.front();
+}
+
 std::uint32_t turn_outward(CheckedMesh& mesh, std::vector<std::string>& notes) {
   const std::uint32_t turned = mesh.turn_outward();
   if (turned > 0)
@@ -76,6 +85,10 @@ MadeBody make_body(CheckedMesh mesh, const BuildOptions& options, bool turn) {
     const std::uint32_t turned = turn ? turn_outward(mesh, notes) : 0;
     const auto begin = Clock::now();
     LrbRep rep = build_lrb(mesh, options);
+    if (std::string fault = note_unproven(rep); !fault.empty()) {
+      notes.push_back(std::move(fault));
+      rep = LrbRep::without_regions(rep);
+    }
     const double seconds = std::chrono::duration<double>(Clock::now() - begin).count();
     return {std::move(rep), std::move(notes), seconds, turned};
   }

@@ -19,14 +19,18 @@ struct MadeBody {
   std::uint32_t turned = 0;        ///< number of components that were inside out
 };
 
-/// Turns what is inside out, if `turn`, and builds; what cannot be an LRB-rep becomes a body without regions,
-/// and a note says why. Throws InputError if it cannot be queried at all.
+/// Turns what is inside out, if `turn`, and builds; what cannot be an LRB-rep, or has one whose proof fails,
+/// becomes a body without regions, and a note says why. Throws InputError if it cannot be queried at all.
 MadeBody make_body(CheckedMesh mesh, const BuildOptions& options, bool turn = true);
 
 /// Does the same without regions, for callers that ask only for pairs of faces, distances and the relation:
 /// builds no LRB-rep, and proves nothing about the mesh that these answers do not need. Faces have the same
 /// numbers.
 MadeBody make_body_of_faces(CheckedMesh mesh, bool turn = true);
+
+/// Returns a note with the first violation if the proof of an LRB-rep's cells fails (validate_cells()), or an
+/// empty text if they are proven. What has the fault is queried without regions (LrbRep::without_regions()).
+std::string note_unproven(const LrbRep& rep);
 
 /// Turns what is inside out and returns the number of components. Adds a note if there were any.
 std::uint32_t turn_outward(CheckedMesh& mesh, std::vector<std::string>& notes);

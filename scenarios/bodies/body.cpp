@@ -11,6 +11,15 @@ LoadedBody loaded(MadeBody made) {
   return {std::move(made.rep), std::move(made.notes), made.build_seconds};
 }
 
+LoadedBody saved_body(const std::string& path) {
+  LoadedBody body{load_lrb(path), {}, 0};
+  if (std::string fault = note_unproven(body.rep); !fault.empty()) {
+    body.notes.push_back(std::move(fault));
+    body.rep = LrbRep::without_regions(body.rep);
+  }
+  return body;
+}
+
 }  // namespace
 
 LrbRep build_from_mesh(CheckedMesh mesh, const BuildOptions& options, std::vector<std::string>& notes) {
@@ -38,7 +47,7 @@ Mesh read_body(const std::string& path, Corners corners, std::vector<std::string
 }
 
 LoadedBody load_body(const std::string& path, const BuildOptions& options, Corners corners) {
-  if (is_lrb_file(path)) return {load_lrb(path), {}, 0};
+  if (is_lrb_file(path)) return saved_body(path);
   std::vector<std::string> notes;
   Mesh mesh = read_body(path, corners, notes);
   LoadedBody body = body_of_mesh(std::move(mesh), options);
@@ -47,7 +56,7 @@ LoadedBody load_body(const std::string& path, const BuildOptions& options, Corne
 }
 
 LoadedBody load_faces(const std::string& path, Corners corners) {
-  if (is_lrb_file(path)) return {load_lrb(path), {}, 0};
+  if (is_lrb_file(path)) return saved_body(path);
   std::vector<std::string> notes;
   Mesh mesh = read_body(path, corners, notes);
   LoadedBody body = faces_of_mesh(std::move(mesh));

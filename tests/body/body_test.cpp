@@ -194,3 +194,34 @@ TEST_CASE("what cannot be a body is refused with a reason that names the element
   CHECK_THROWS_WITH_AS((void)Body::load("/nowhere/at.obj").value(),
                        "/nowhere/at.obj: no such file; check the path", InputError);
 }
+
+TEST_CASE(
+    "an LRB-rep whose cells are not closed is queried from its faces, and a note says where it is open") {
+  const Mesh rock = shapes::bumpy_sphere(3, 1);
+  const Body sound = Body::from(rock).value();
+  REQUIRE(sound.has_regions());
+  LrbData data = sound.rep().data();
+  data.outer_cell[0] = data.outer_cell[0] == kOutside ? CellId(RegionId(0)) : kOutside;
+  const test::Folder folder;
+  save_lrb(LrbRep(data), folder / "open.lrb");
+  for (const Body& body : {Body::from(LrbRep(data)), Body::from(std::make_shared<const LrbRep>(data)),
+                           Body::load(folder / "open.lrb").value()}) {
+    CHECK(body.is_solid());
+    CHECK_FALSE(body.has_regions());
+    REQUIRE(body.notes().size() == 1);
+    CHECK(body.notes()[0].starts_with(
+        body.name() + ": queried without regions, because the proof of its LRB-rep failed: "));
+    CHECK(body.notes()[0].find("is open at edge (") != std::string::npos);
+    const Pose pose = Pose::translation({0.7, 0.2, 0.1});
+    CHECK(collide(body, Pose{}, sound, pose).pairs == collide(sound, Pose{}, sound, pose).pairs);
+    CHECK(collide(body, Pose{}, sound, pose).relation == Relation::crossing);
+  }
+}
+
+TEST_CASE("a body that intersects itself says that it has no approximate answers") {
+  const Mesh rock = shapes::bumpy_sphere(2, 1);
+  const Body body = Body::from(shapes::several({rock, shapes::translated(rock, {0.3, 0.1, 0.05})})).value();
+  REQUIRE(body.notes().size() == 1);
+  CHECK(body.notes()[0].find("has no approximate answers, because its surface intersects itself") !=
+        std::string::npos);
+}
