@@ -127,10 +127,18 @@ std::string crowded_region(const LrbRep& rep) {
     if (rep.floor(r).size() > rep.floor(worst).size()) worst = r;
   const std::size_t faces = rep.floor(worst).size();
   if (faces < kFew || faces * kPart < rep.real_face_count()) return {};
-  return "region " + std::to_string(worst) + " opens " + std::to_string(faces) + " faces at once" +
-         (rep.self_intersecting()
-              ? ": its pieces overlap, and faces that meet others cannot be covered; unite them first"
-              : "");
+  return "region " + std::to_string(worst) + " opens " + std::to_string(faces) + " faces at once";
+}
+
+/// Returns why an LRB-rep is poor although its options are not to blame, and a remedy; empty if no cause is
+/// known.
+std::string cause_of_waste(const LrbRep& rep) {
+  if (rep.self_intersecting())
+    return "its surface intersects itself, and faces that intersect others cannot be covered; repair it or unite "
+           "its parts first: lrbscope inspect lists these faces, and --draw shows them";
+  if (const std::size_t pieces = rep.component_vertices().size(); pieces > 1)
+    return "it is in " + std::to_string(pieces) + " pieces, each of which has wrappers of its own first";
+  return {};
 }
 
 }  // namespace
@@ -186,7 +194,7 @@ std::vector<Trial> try_settings(const LrbRep& rep, unsigned threads) {
   return out;
 }
 
-std::vector<std::string> advice(std::span<const Trial> trials) {
+std::vector<std::string> advice(const LrbRep& rep, std::span<const Trial> trials) {
   constexpr double kWorth = 0.95;  // of what it is: smaller gains come and go with the seed
   const RepFigures& now = trials[0].figures;
   const auto least = [&](auto number) -> const Trial& {
@@ -197,6 +205,11 @@ std::vector<std::string> advice(std::span<const Trial> trials) {
   const auto change = [](double from, double to) { return rounded(to) + " in place of " + rounded(from); };
   std::vector<std::string> out;
   const Trial& tight = least([](const RepFigures& f) { return f.waste; });
+  if (now.waste > kPoorWaste && tight.figures.waste >= kWorth * now.waste) {
+    const std::string cause = cause_of_waste(rep);
+    return {"no setting lowers the waste of " + rounded(now.waste) + " (" + kUsualWaste +
+            ") by more than 5 %" + (cause.empty() ? "" : ": " + cause)};
+  }
   if (tight.figures.waste < kWorth * now.waste)
     out.push_back(tight.setting + " wastes least: " + change(now.waste, tight.figures.waste) +
                   " faces a point, with " + change(now.total_per_real, tight.figures.total_per_real) +
@@ -221,6 +234,9 @@ std::string poor_line(const LrbRep& rep, const BuildOptions& build) {
   if (rep.region_count() == 0) return rep.name() + ": has no regions: every query starts from its faces";
   const RepFigures f = figures_of(rep);
   std::vector<std::string> faults;
+  if (f.waste > kPoorWaste)
+    faults.push_back("a point in its outermost wrapper needlessly opens " + rounded(f.waste) +
+                     " faces on average (" + kUsualWaste + ")");
   if (f.outer_per_hull > kLoose)
     faults.push_back("its outermost wrapper has " + rounded(f.outer_per_hull) + " times the hull's " +
                      (rep.dim() == 2 ? "area: " : "volume: ") + why_loose(rep));
@@ -234,9 +250,9 @@ std::string poor_line(const LrbRep& rep, const BuildOptions& build) {
   if (faults.empty()) return {};
   std::string line = rep.name() + ": the LRB-rep is poor: ";
   for (std::size_t i = 0; i < faults.size(); ++i) line += (i > 0 ? "; " : "") + faults[i];
-  if (const std::size_t pieces = rep.component_vertices().size(); pieces > 1)
-    line += "; it is in " + std::to_string(pieces) + " pieces, each of which has wrappers of its own first";
-  return line + "; lrbscope inspect --regions --try shows where, and what helps";
+  if (const std::string cause = cause_of_waste(rep); !cause.empty()) line += "; " + cause;
+  if (!rep.self_intersecting()) line += "; lrbscope inspect --regions --try shows where, and what helps";
+  return line;
 }
 
 }  // namespace lrb::bodies

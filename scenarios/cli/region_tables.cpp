@@ -47,7 +47,8 @@ std::string regions_text(const Json& regions) {
     out << "  and " << regions.size() - kMostRows << " more: --json lists all\n";
   return out.str() +
          "(distance: no point of its lids is further from the body. waste: floor faces that it opens for nothing, "
-         "for each point thrown into the outermost wrapper: its share of the wrapper's volume times its floor.)\n";
+         "for each point thrown into the outermost wrapper: its share of the wrapper's volume times its floor; over all regions " +
+         bodies::kUsualWaste + ".)\n";
 }
 
 Json trials_json(std::span<const bodies::Trial> trials) {

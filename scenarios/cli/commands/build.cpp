@@ -9,6 +9,7 @@
 #include "engine/core/error.hpp"
 #include "engine/lrb/lrb_file.hpp"
 #include "engine/lrb/validate.hpp"
+#include "engine/lrb/wrapper_level.hpp"
 #include "engine/mesh/io/mesh_io.hpp"
 #include "scenarios/bodies/body.hpp"
 #include "scenarios/bodies/hull_figures.hpp"
@@ -69,7 +70,8 @@ int run_build(const BuildCommandOptions& o, const Globals& globals) {
   const LrbRep rep = bodies::build_from_mesh(check(std::move(mesh)), options, notes);
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   progress.finish();
-  if (const std::string poor = bodies::poor_line(rep, o.build); !poor.empty()) notes.push_back(poor);
+  for (std::string line : {bodies::poor_line(rep, o.build), note_no_levels(rep)})
+    if (!line.empty()) notes.push_back(std::move(line));
   note(globals, notes);
 
   nlohmann::ordered_json j = bodies::body_figures(rep);

@@ -173,7 +173,7 @@ void tell_regions(const LrbRep& rep, const InspectOptions& o, const spec::FrameS
   if (!o.tried) return;
   const std::vector<bodies::Trial> trials = bodies::try_settings(rep, o.threads);
   j["trials"] = trials_json(trials);
-  j["advice"] = bodies::advice(trials);
+  j["advice"] = bodies::advice(rep, trials);
 }
 
 void look_broadside(const LrbRep& rep, spec::FrameSpec& frames) {
@@ -200,7 +200,8 @@ std::string as_text(const Json& j) {
             << " faces\n";
     } else {
       constexpr int kDigits = 6;  // of coordinates
-      out << key << ": " << for_people(value, kDigits) << "\n";
+      out << key << ": " << for_people(value, kDigits)
+          << (key == "total_waste" ? std::string(" (") + bodies::kUsualWaste + ")" : "") << "\n";
     }
   }
   return out.str();

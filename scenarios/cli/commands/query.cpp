@@ -2,6 +2,7 @@
 #include <optional>
 #include <utility>
 
+#include "engine/lrb/wrapper_level.hpp"
 #include "engine/query/clash/clash_impl.hpp"
 #include "engine/query/collide.hpp"
 #include "engine/query/collide_impl.hpp"
@@ -145,7 +146,10 @@ int run_query(const QueryOptions& o, const Globals& globals) {
   if (o.kind) check_request(a.rep, ClashRequest{});
   if (o.request.is_coarse()) check_coarse_request(o.request);
   if (o.request.is_coarse())
-    for (const bodies::LoadedBody* body : {&a, &b}) body->rep.levels(0);
+    for (const bodies::LoadedBody* body : {&a, &b}) {
+      if (const std::string why = note_no_levels(body->rep); !why.empty()) note(globals, {why});
+      body->rep.levels(0);
+    }
   QueryContext context;
   MoreContext more;
   NullProbe probe;

@@ -4,6 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "engine/lrb/wrapper_level.hpp"
 #include "scenarios/bodies/body.hpp"
 #include "scenarios/bodies/level_figures.hpp"
 #include "scenarios/bodies/level_json.hpp"
@@ -42,6 +43,7 @@ int run_levels(const LevelsOptions& o, const Globals& globals) {
   if (!o.up.empty()) report.view = turned_up(report.view, o.up[0] - 'x');
   if (!o.folder.empty()) levels::check_drawable(body.rep, report.shares);
   note(globals, body.notes);
+  if (const std::string why = note_no_levels(body.rep); !why.empty()) note(globals, {why});
   if (!o.folder.empty()) note(globals, levels::write_level_report(body.rep, report, o.folder));
   const std::string page = o.folder.empty() ? "" : o.folder + "/index.html";
   const auto levels = bodies::level_figures(body.rep, o.shares, o.build.threads);

@@ -13,6 +13,7 @@
 #include "engine/mesh/io/mesh_io.hpp"
 #include "render/png.hpp"
 #include "scenarios/bodies/region_figures.hpp"
+#include "scenarios/bodies/shapes/random_pose.hpp"
 #include "scenarios/bodies/shapes/shapes.hpp"
 #include "scenarios/run/region_words.hpp"
 #include "tests/support/faulty_meshes.hpp"
@@ -136,6 +137,7 @@ TEST_CASE("regions of a body in the plane are listed and drawn, too") {
 TEST_CASE("what is said to help was tried") {
   const Folder folder;
   write_mesh(thin_disc(), folder / "disc.obj");
+  const LrbRep disc = build_lrb(thin_disc());
   const json j = run_json(folder, {"inspect", "disc.obj", "--regions", "--try"});
   REQUIRE(j["trials"].size() == 7);
   CHECK(j["trials"][0]["setting"] == "as it is");
@@ -153,13 +155,13 @@ TEST_CASE("what is said to help was tried") {
   REQUIRE_FALSE(j["advice"].empty());
   // A setting is only recommended if its numbers are better.
   const std::vector<bodies::Trial> worse = {{"", {1.5, 20, 1.2, 3, 0}}, {"--patch 8", {1.6, 20, 1.3, 4, 1}}};
-  CHECK(bodies::advice(worse) ==
+  CHECK(bodies::advice(disc, worse) ==
         std::vector<std::string>{"none of the settings tried is better by more than 5 %"});
   const std::vector<bodies::Trial> better = {{"", {1.59, 20, 1.2, 3, 0}},
                                              {"--patch 40", {1.42, 20, 1.2, 2, 1}}};
-  REQUIRE(bodies::advice(better).size() == 2);
+  REQUIRE(bodies::advice(disc, better).size() == 2);
   CHECK(
-      bodies::advice(better)[0] ==
+      bodies::advice(disc, better)[0] ==
       "--patch 40 wastes least: 2 in place of 3 faces a point, with 1.42 in place of 1.59 faces per real face");
 }
 
@@ -174,6 +176,33 @@ TEST_CASE("build warns on one line where the LRB-rep is poor, and says why") {
   CHECK(poor.err.find("times as long as it is thick") != std::string::npos);
   CHECK(run_json(folder, {"build", "disc.obj", "--no-validate"})["notes"].size() == 1);
   CHECK(run(folder, {"build", "fine.obj", "--no-validate"}).err.empty());
+}
+
+TEST_CASE("build warns of a noisy scan by its waste, and names the cause") {
+  const Folder folder;
+  Mesh scan = bumpy_sphere(5, 1);
+  RandomEngine random(1);
+  for (Point3& x : scan.vertices) x *= 1 + 0.02 * uniform(random);
+  write_mesh(scan, folder / "scan.obj");
+  const Outcome poor = run(folder, {"build", "scan.obj", "--no-validate", "-o", "scan.lrb"});
+  CHECK(poor.code == 0);
+  CHECK(poor.err.find("faces on average (clean meshes have 20 to 120)") != std::string::npos);
+  CHECK(poor.err.find("its surface intersects itself, and faces that intersect others cannot be covered") !=
+        std::string::npos);
+  CHECK(poor.err.find("has no approximate answers, because its surface intersects itself") !=
+        std::string::npos);
+  CHECK(run(folder, {"levels", "scan.lrb"}).err.find("has no approximate answers") != std::string::npos);
+  folder.write("p.txt", "0.1 0 0\n");
+  CHECK(run(folder, {"query", "scan.lrb", "scan.lrb", "--poses", "p.txt", "--tolerance", "0.1"})
+            .err.find("has no approximate answers") != std::string::npos);
+  CHECK(run(folder, {"inspect", "scan.lrb", "--regions"}).out.find("(clean meshes have 20 to 120)") !=
+        std::string::npos);
+  const LrbRep rep = build_lrb(scan);
+  const bodies::Trial poor_trial{"", {1.5, 20, 1.2, 5000, 0}};
+  const auto lines =
+      bodies::advice(rep, std::vector{poor_trial, {"--max-outer 80", {1.5, 80, 1.0, 4990, 1}}});
+  REQUIRE(lines.size() == 1);
+  CHECK(lines[0].starts_with("no setting lowers the waste of 5e+03 (clean meshes have 20 to 120)"));
 }
 
 TEST_CASE("an isolated region is drawn once, close up, and said to be what it is") {
