@@ -143,6 +143,7 @@ int run_figure(const FigureOptions& o, const Globals& globals) {
   if (o.close_up) run::widen_close_ups(recorded, frames.views);
   const figure::Figure drawn = figure::draw_figure(recorded, frames, spec, progress);
   note(globals, source.recording.notes);
+  if (!drawn.left_out.empty()) note(globals, {drawn.left_out});
   std::filesystem::path caption(file);
   caption.replace_extension(".caption.txt");
   io::write_text(file, drawn.bytes);
@@ -154,7 +155,7 @@ int run_figure(const FigureOptions& o, const Globals& globals) {
 void add_panel_options(CLI::App& app, FigureOptions& o) {
   auto* panels = app.add_option("--panels", o.figure.choice.panels,
                                 "Most panels, where the picture changes [6; of two bodies 4]")
-                     ->check(CLI::Range(1, 26))
+                     ->check(CLI::Range(std::size_t{1}, figure::kMostPanels))
                      ->type_name("N");
   const auto add = [&](const char* name, std::vector<std::uint32_t>& numbers, const char* what) {
     return app.add_option(name, numbers, what)->delimiter(',')->type_name("N,N,...")->excludes(panels);
@@ -164,7 +165,7 @@ void add_panel_options(CLI::App& app, FigureOptions& o) {
   auto* steps = add("--steps", o.steps, "Panels after these time steps");
   auto* layers =
       app.add_flag("--layers", o.layers,
-                   "A panel for each layer of regions of one body")
+                   "A panel for each layer of regions of one body, 26 of them at most, evenly chosen")
           ->excludes(panels);
   faces->excludes(events)->excludes(steps)->excludes(layers);
   events->excludes(steps)->excludes(layers);
