@@ -113,7 +113,7 @@ void thin_layers(Chosen& chosen) {
   chosen.events.clear();
   for (const std::size_t i : run::evenly(all.size(), kMostPanels)) chosen.events.push_back(all[i]);
   chosen.left_out = std::to_string(kMostPanels) + " of " + std::to_string(all.size()) +
-                    " layers are shown, evenly chosen; --events shows others";
+                    " panels are shown, evenly chosen; --events shows others";
 }
 
 std::vector<EventId> by_steps(const trace::Trace& trace, const std::vector<std::uint32_t>& numbers) {

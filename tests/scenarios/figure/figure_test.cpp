@@ -85,6 +85,36 @@ TEST_CASE("panels of one body: from the outermost wrapper to the body, in equal 
   CHECK(layers.back() + 1 == s.recording.trace.events.size());
 }
 
+TEST_CASE("panels of layers: 26 at most, evenly chosen, and what is left out is said") {
+  const Shipped few("figure2"), many("figure2_mesh");
+  CHECK(choose(few.run, {Choice::By::layers, {}}).left_out.empty());
+  const std::uint32_t layers = many.recording.trace.header.bodies[0].layers;
+  REQUIRE(layers >= kMostPanels);
+  const Chosen chosen = choose(many.run, {Choice::By::layers, {}});
+  CHECK(chosen.events.size() == kMostPanels);
+  CHECK(chosen.events.front() == 0);
+  CHECK(chosen.events.back() + 1 == many.recording.trace.events.size());
+  CHECK(chosen.left_out ==
+        "26 of " + std::to_string(layers + 1) + " panels are shown, evenly chosen; --events shows others");
+}
+
+TEST_CASE("titles of panels name the view, where there are several") {
+  const Shipped s("stick_through_wall");
+  FigureSpec spec;
+  spec.format = FigureSpec::Format::svg;
+  spec.dpi = 40;
+  spec.choice.panels = 1;
+  spec.titles = true;
+  spec::FrameSpec frames;
+  frames.views.resize(2);
+  frames.views[0].title = "First";
+  frames.views[1].title = "Second";
+  const Figure figure = draw_figure(s.run, frames, spec, run::kSilent);
+  CHECK(figure.panels == 2);
+  CHECK(count(figure.bytes, ">(a) First, step ") == 1);
+  CHECK(count(figure.bytes, ">(b) Second, step ") == 1);
+}
+
 TEST_CASE("panels of two bodies: time steps, the first contact among them") {
   const Shipped s("islands");
   std::uint32_t first = 0;
