@@ -5,8 +5,10 @@
 #include <cstdlib>
 #include <cstring>
 #include <string_view>
+#include <thread>
 
 #include <GL/osmesa.h>
+#include <sys/mman.h>
 
 #include "engine/core/error.hpp"
 #include "render/text.hpp"
@@ -48,10 +50,41 @@ struct Offscreen::Context {
   Context& operator=(const Context&) = delete;
 };
 
+namespace {
+
+/// Returns how much address space, in bytes, Mesa takes until it has drawn its first picture: two threads for
+/// each of llvmpipe's and two more, each with a stack and an arena of glibc's; and what LLVM compiles.
+std::size_t mesas_address_space() {
+  constexpr std::size_t kMiB = std::size_t{1} << 20, kStack = 8 * kMiB, kArena = 64 * kMiB,
+                        kRest = 100 * kMiB;
+  constexpr std::size_t kMostRasterThreads = 32, kArenasPerCore = 8;
+  const std::size_t cores = std::max(1U, std::thread::hardware_concurrency());
+  const char* given = std::getenv("LP_NUM_THREADS");
+  const std::size_t raster =
+      given != nullptr ? static_cast<std::size_t>(std::max(0L, std::strtol(given, nullptr, 10))) : cores;
+  const std::size_t threads = 2 * std::min(raster, kMostRasterThreads) + 2;
+  return threads * kStack + std::min(threads, kArenasPerCore * cores) * kArena + kRest;
+}
+
+/// Throws EnvironmentError unless a limit leaves so much address space: where LLVM's allocations fail, it
+/// crashes.
+void require_address_space() {
+  const std::size_t needed = mesas_address_space();
+  void* const room = mmap(nullptr, needed, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+  if (room == MAP_FAILED)
+    throw EnvironmentError("drawing needs " + std::to_string(needed >> 20) +
+                           " MiB of address space, and there is less: raise the limit (ulimit -v), or set "
+                           "LP_NUM_THREADS=1, which needs less");
+  munmap(room, needed);
+}
+
+}  // namespace
+
 Offscreen::Offscreen() {
   for (const Finding& f : check_gl_environment()) {
     if (f.level == Finding::Level::error) throw EnvironmentError(f.what + ": " + f.detail);
   }
+  require_address_space();
   suppress_mesa_leaks();
   context_ = std::make_unique<Context>();
   make_current();

@@ -41,7 +41,7 @@ bool has_name(const char* fifo) {
 
 [[noreturn]] void too_large(const std::string& path, std::uint64_t most) {
   cannot_read(path, "found more than " + std::to_string(most) +
-                        " bytes, which no file of this kind needs; is it the right one?");
+                        " bytes, which is the most for a file of this kind; is it the right one?");
 }
 
 }  // namespace

@@ -51,6 +51,12 @@ class LoopFinder {
 
   VertexId start(std::uint32_t side) const { return mesh_.face_vertices[side]; }
 
+  FaceId face_of(std::uint32_t side) const {
+    const auto& offsets = mesh_.face_offsets;
+    const auto behind = std::upper_bound(offsets.begin(), offsets.end(), side);
+    return FaceId(static_cast<std::uint32_t>(behind - offsets.begin() - 1));
+  }
+
   void add_sides(FaceId f) {
     const auto corners = mesh_.face(f);
     const std::uint32_t first = mesh_.face_offsets[f];
@@ -93,8 +99,10 @@ class LoopFinder {
   void follow(std::uint32_t first) {
     std::vector<VertexId> row = {start(first)};
     place_[row[0]] = 0;
+    std::uint32_t last = first;
     for (std::uint32_t side = first; side != kNull && !seen_[side]; side = successor_[side]) {
       seen_[side] = true;
+      last = side;
       const VertexId end = start(next_[side]);
       if (place_[end] == kNull) {
         place_[end] = static_cast<std::uint32_t>(row.size());
@@ -103,12 +111,16 @@ class LoopFinder {
       }
       BoundaryLoop& loop = loops_.emplace_back();
       loop.is_loop = true;
+      loop.face = face_of(side);
       loop.vertices.assign(row.begin() + place_[end], row.end());
       for (std::size_t i = place_[end] + std::size_t{1}; i < row.size(); ++i) place_[row[i]] = kNull;
       row.resize(place_[end] + std::size_t{1}, VertexId(0));
     }
     for (const VertexId v : row) place_[v] = kNull;
-    if (row.size() > 1) loops_.emplace_back().vertices = std::move(row);
+    if (row.size() < 2) return;
+    BoundaryLoop& rest = loops_.emplace_back();
+    rest.vertices = std::move(row);
+    rest.face = face_of(last);
   }
 
   void measure(BoundaryLoop& loop) const {

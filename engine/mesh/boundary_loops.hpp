@@ -17,6 +17,7 @@ struct BoundaryLoop {
   /// It comes back to where it began. If not, it ends at edges with more than two faces, or at faces that
   /// disagree on which side is outside.
   bool is_loop = false;
+  FaceId face = kNull;      ///< one of the faces along the rim
   bool planar = false;      ///< all vertices lie in one plane: exact
   double length = 0;        ///< sum over its edges; the mesh's unit
   Eigen::AlignedBox3d box;  ///< around its vertices

@@ -6,10 +6,11 @@
 
 namespace lrb {
 
-CheckedMesh::CheckedMesh(Mesh mesh) : mesh_(std::move(mesh)), found_(examine(mesh_)) {}
+CheckedMesh::CheckedMesh(Mesh mesh, std::size_t kept)
+    : mesh_(std::move(mesh)), found_(examine(mesh_, kept)) {}
 
-CheckedMesh check(Mesh mesh) {
-  return CheckedMesh(std::move(mesh));
+CheckedMesh check(Mesh mesh, std::size_t kept) {
+  return {std::move(mesh), kept};
 }
 
 /// Neither uses nor topology change: a face has the same corners as before, its fan the same triangles, and
@@ -29,6 +30,7 @@ void CheckedMesh::find_self_intersections() {
     note(found_.report, MeshFault::self_intersection, f, g);
     meets[f] = meets[g] = true;
   });
+  sort_offenders(found_.report);
   found_.report.self_intersections_checked = true;
   meeting_.emplace();
   for (FaceId f = 0; f < meets.size(); ++f)

@@ -32,7 +32,7 @@ struct Attempt {
 
 class HoleCloser {
  public:
-  explicit HoleCloser(const CheckedMesh& mesh) : mesh_(mesh.mesh()), use_(mesh.use()) {
+  explicit HoleCloser(const CheckedMesh& mesh) : checked_(mesh), mesh_(mesh.mesh()), use_(mesh.use()) {
     for (BoundaryLoop& loop : find_boundary_loops(mesh_, use_)) out_.holes.push_back({std::move(loop)});
     for (FaceId f = 0; f < mesh_.face_count(); ++f) {
       const auto corners = mesh_.face(f);
@@ -50,6 +50,11 @@ class HoleCloser {
     for (std::size_t i = 0; i < out_.holes.size(); ++i)
       if (views_[i] && !is_closed(i)) alone.push_back(attempt_for(i));
     try_all(std::move(alone));
+    for (std::size_t i = 0; i < out_.holes.size(); ++i) {
+      Hole& hole = out_.holes[i];
+      if (!is_closed(i) && checked_.is_of_sheet(hole.loop.face))
+        hole = {std::move(hole.loop), HoleState::of_sheet};
+    }
     out_.new_faces = static_cast<std::uint32_t>(out_.mesh.face_count() - mesh_.face_count());
     out_.new_vertices = static_cast<std::uint32_t>(out_.mesh.vertices.size() - mesh_.vertices.size());
     return std::move(out_);
@@ -237,6 +242,7 @@ class HoleCloser {
     add(a.lid(), out_.mesh);
   }
 
+  const CheckedMesh& checked_;
   const Mesh& mesh_;
   const std::vector<FaceUse>& use_;
   Edges edges_;                                      ///< those that faces have

@@ -19,6 +19,7 @@ enum class HoleState : std::uint8_t {
   meets_surface,   ///< each lid that was tried would meet a face that was there
   meets_lid,       ///< ... or the lid of another hole
   meets_itself,    ///< ... or itself, or have an edge that faces have already
+  of_sheet,        ///< none stood, and it is the rim of a sheet, which bounds nothing
 };
 
 struct Hole {

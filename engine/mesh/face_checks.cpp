@@ -12,9 +12,6 @@
 namespace lrb {
 namespace {
 
-/// Number of offenders kept per fault: enough to find the place, few enough to read.
-constexpr std::size_t kKept = 8;
-
 /// Returns a vertex that a face names twice, kNull if there is none.
 VertexId repeated_corner(std::span<const VertexId> corners, std::vector<VertexId>& sorted) {
   if (corners.size() == 3) {  // nearly every face is a triangle
@@ -94,6 +91,11 @@ class CornerSets {
   std::vector<FaceId> order_;
 };
 
+void sort_offenders(MeshFinding& finding, std::size_t most) {
+  std::sort(finding.first.begin(), finding.first.end());
+  finding.first.resize(std::min(finding.first.size(), most));
+}
+
 }  // namespace
 
 void note(MeshReport& report, MeshFault fault, std::uint32_t first, std::uint32_t second) {
@@ -101,9 +103,15 @@ void note(MeshReport& report, MeshFault fault, std::uint32_t first, std::uint32_
   ++finding.count;
   const std::array<std::uint32_t, 2> element = {first, second};
   auto& kept = finding.first;
-  if (kept.size() == kKept && !(element < kept.back())) return;
-  kept.insert(std::upper_bound(kept.begin(), kept.end(), element), element);
-  if (kept.size() > kKept) kept.pop_back();
+  // The first `most` are sorted as soon as there are so many; smaller ones gather behind them.
+  const std::size_t most = report.kept;
+  if (kept.size() >= most && !(element < kept[most - 1])) return;
+  kept.push_back(element);
+  if (kept.size() == most || kept.size() == 2 * most) sort_offenders(finding, most);
+}
+
+void sort_offenders(MeshReport& report) {
+  for (MeshFinding& finding : report.findings) sort_offenders(finding, report.kept);
 }
 
 std::vector<FaceUse> check_faces(const Mesh& mesh, MeshReport& report) {

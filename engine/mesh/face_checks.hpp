@@ -28,7 +28,10 @@ void check_duplicates(const Mesh& mesh, const std::vector<FaceUse>& use, MeshRep
 /// Notes vertices that no face names, and those with the coordinates of an earlier one.
 void check_vertices(const Mesh& mesh, MeshReport& report);
 
-/// Counts a finding, and keeps the element(s) if it is among the first few.
+/// Counts a finding, and keeps the element(s) if it is among the first, of which MeshReport::kept are kept.
 void note(MeshReport& report, MeshFault fault, std::uint32_t first, std::uint32_t second = kNull);
+
+/// Puts what was kept in order. Call it after the last note().
+void sort_offenders(MeshReport& report);
 
 }  // namespace lrb

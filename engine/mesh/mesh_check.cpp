@@ -7,6 +7,7 @@
 #include "engine/mesh/checked_mesh.hpp"
 #include "engine/mesh/face_checks.hpp"
 #include "engine/mesh/nesting.hpp"
+#include "engine/mesh/polygon_shape.hpp"
 #include "engine/mesh/self_intersections.hpp"
 #include "engine/mesh/surface_topology.hpp"
 
@@ -46,11 +47,33 @@ bool is_cycle(const Mesh& mesh, const std::vector<FaceUse>& use) {
          std::all_of(sum.begin(), sum.end(), [](const auto& edge) { return edge.second == 0; });
 }
 
+/// Returns for each component whether it is a sheet: has an open edge, and lies in one plane. Exact.
+std::vector<bool> find_sheets(const Mesh& mesh, const MeshFindings& found) {
+  std::vector<bool> sheet = found.topology.component_open;
+  if (mesh.dim == 2) sheet.assign(sheet.size(), false);
+  if (std::find(sheet.begin(), sheet.end(), true) == sheet.end()) return sheet;
+  std::vector<std::vector<VertexId>> corners(sheet.size());
+  for (FaceId f = 0; f < mesh.face_count(); ++f) {
+    const std::uint32_t component = found.topology.component_of_face[f];
+    if (component == kNull || !sheet[component]) continue;
+    if (found.use[f] < FaceUse::points)
+      sheet[component] = false;  // a corner is not finite
+    else
+      corners[component].insert(corners[component].end(), mesh.face(f).begin(), mesh.face(f).end());
+  }
+  for (std::size_t i = 0; i < sheet.size(); ++i) {
+    const auto plane = sheet[i] ? spanning_corners(mesh, corners[i]) : std::nullopt;
+    sheet[i] = plane && is_planar(mesh, corners[i], *plane);
+  }
+  return sheet;
+}
+
 }  // namespace
 
-MeshFindings examine(const Mesh& mesh) {
+MeshFindings examine(const Mesh& mesh, std::size_t kept) {
   MeshFindings found;
   MeshReport& report = found.report;
+  report.kept = kept;
   if (mesh.face_count() == 0) ++report.findings[static_cast<std::size_t>(MeshFault::no_faces)].count;
   found.use = check_faces(mesh, report);
   check_duplicates(mesh, found.use, report);
@@ -62,6 +85,11 @@ MeshFindings examine(const Mesh& mesh) {
   report.genus = found.topology.genus;
   found.inside_out = wrongly_facing_components(mesh, found.use, found.topology);
   for (const auto& faces : found.inside_out) note(report, MeshFault::inside_out, faces.front());
+  found.sheet = find_sheets(mesh, found);
+  const auto& open = found.topology.component_open;
+  report.open_components = static_cast<std::uint32_t>(std::count(open.begin(), open.end(), true));
+  report.sheets = static_cast<std::uint32_t>(std::count(found.sheet.begin(), found.sheet.end(), true));
+  sort_offenders(report);
   return found;
 }
 
@@ -70,6 +98,7 @@ MeshReport check_mesh(const Mesh& mesh, bool self_intersections) {
   if (self_intersections) {
     find_self_intersections(
         mesh, found.use, [&](FaceId f, FaceId g) { note(found.report, MeshFault::self_intersection, f, g); });
+    sort_offenders(found.report);
     found.report.self_intersections_checked = true;
   }
   return std::move(found.report);

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "engine/mesh/mesh.hpp"
@@ -38,18 +39,26 @@ enum class MeshFault : std::uint8_t {
 };
 inline constexpr std::size_t kMeshFaultCount = static_cast<std::size_t>(MeshFault::count_);
 
+/// Returns the enumerator's own name: "open_edge".
+std::string_view name_of(MeshFault fault);
+
 struct MeshFinding {
+  static constexpr std::size_t kShown = 8;  ///< enough to find the place, few enough to read
   std::uint64_t count = 0;
-  /// The first few offenders, ascending: a vertex, face or component (by its first face) and kNull; two faces
-  /// or vertices; a face and its vertex; an edge by its vertices (2D: the vertex and kNull).
+  /// The first offenders, ascending, as many as MeshReport::kept: a vertex, face or component (by its first
+  /// face) and kNull; two faces or vertices; a face and its vertex; an edge by its vertices (2D: the vertex
+  /// and kNull).
   std::vector<std::array<std::uint32_t, 2>> first;
 };
 
 struct MeshReport {
   std::array<MeshFinding, kMeshFaultCount> findings;
-  std::uint32_t components = 0;  ///< edge-connected pieces of the surface
-  int genus = -1;                ///< sum over the closed components; -1 if not closed and manifold
-  bool closed = false;           ///< every edge has exactly two faces, in opposite directions
+  std::size_t kept = MeshFinding::kShown;  ///< the most offenders that are kept of each finding
+  std::uint32_t components = 0;            ///< edge-connected pieces of the surface
+  std::uint32_t open_components = 0;       ///< those with an open edge
+  std::uint32_t sheets = 0;                ///< those of them that lie in one plane, and so bound nothing
+  int genus = -1;                          ///< sum over the closed components; -1 if not closed and manifold
+  bool closed = false;                     ///< every edge has exactly two faces, in opposite directions
   bool bounds_solid =
       /// Every edge is passed as often one way as the other: weaker than closed (bodies may share edges), and
       /// enough for "inside" to have a meaning, by parity.
@@ -62,6 +71,10 @@ struct MeshReport {
   /// Returns the report as it is once orient_outward() has turned what is inside out: that finding is gone,
   /// no other has changed.
   MeshReport when_turned() const;
+  /// Returns the report with kShown offenders of each finding at most.
+  MeshReport shortened() const;
+  /// Returns one line for a fault that was found, with its first offenders.
+  std::string line(MeshFault fault, const Mesh& mesh) const;
   /// Returns one line for each fault found, with its first offenders.
   std::vector<std::string> lines(const Mesh& mesh) const;
   /// Returns those lines that forbid an LRB-rep.

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <array>
 #include <string>
 #include <string_view>
@@ -134,22 +135,42 @@ std::string_view text_of(MeshFault fault, int dim) {
   return kFaults[static_cast<std::size_t>(fault)].text;
 }
 
-std::string line_for(const Mesh& mesh, MeshFault fault, const MeshFinding& finding) {
+/// Returns what to do about open edges, which depends on whether there is a hole at all.
+std::string advice_on_openings(const MeshReport& report) {
+  const std::uint32_t sheets = report.sheets, open = report.open_components;
+  if (sheets > 0 && sheets == open)
+    return sheets == 1 ? "this is a sheet: it bounds nothing"
+                       : "these are " + std::to_string(sheets) + " sheets: they bound nothing";
+  const std::string close(help_for(MeshFault::open_edge).advice);
+  if (sheets == 0) return close;
+  return close + ", but " + std::to_string(sheets) + " of the " + std::to_string(open) + " open components " +
+         (sheets == 1 ? "is a sheet: it bounds" : "are sheets: they bound") + " nothing";
+}
+
+std::string line_for(const Mesh& mesh, MeshFault fault, const MeshReport& report) {
+  const MeshFinding& finding = report[fault];
   const Help help = help_for(fault);
   std::string line = mesh.name.empty() ? "mesh" : mesh.name;
   line.append(": ").append(text_of(fault, mesh.dim));
   if (help.offender != Offender::none) {
     line.append(" (").append(std::to_string(finding.count)).append(finding.count == 1 ? " time" : " times");
     line.append("): ").append(noun(help.offender, mesh.dim)).append(" ");
-    for (std::size_t i = 0; i < finding.first.size(); ++i)
+    const std::size_t some = std::min(finding.first.size(), MeshFinding::kShown);
+    for (std::size_t i = 0; i < some; ++i)
       line.append(i == 0 ? "" : ", ").append(shown(help.offender, finding.first[i]));
-    if (finding.count > finding.first.size()) line.append(", ...");
+    if (finding.count > some) line.append(", ...");
     line.append(", counted from 0 in file order");
   }
-  return line.append("; ").append(help.advice);
+  line.append("; ");
+  return fault == MeshFault::open_edge && mesh.dim == 3 ? line + advice_on_openings(report)
+                                                        : line.append(help.advice);
 }
 
 }  // namespace
+
+std::string_view name_of(MeshFault fault) {
+  return kFaults[static_cast<std::size_t>(fault)].name;
+}
 
 bool MeshReport::buildable() const {
   for (std::size_t i = 0; i < kMeshFaultCount; ++i)
@@ -169,18 +190,27 @@ MeshReport MeshReport::when_turned() const {
   return turned;
 }
 
+MeshReport MeshReport::shortened() const {
+  MeshReport few = *this;
+  for (MeshFinding& f : few.findings) f.first.resize(std::min(f.first.size(), MeshFinding::kShown));
+  return few;
+}
+
+std::string MeshReport::line(MeshFault fault, const Mesh& mesh) const {
+  return line_for(mesh, fault, *this);
+}
+
 std::vector<std::string> MeshReport::lines(const Mesh& mesh) const {
   std::vector<std::string> out;
   for (std::size_t i = 0; i < kMeshFaultCount; ++i)
-    if (findings[i].count > 0) out.push_back(line_for(mesh, static_cast<MeshFault>(i), findings[i]));
+    if (findings[i].count > 0) out.push_back(line(static_cast<MeshFault>(i), mesh));
   return out;
 }
 
 std::vector<std::string> MeshReport::obstacles(const Mesh& mesh) const {
   std::vector<std::string> out;
   for (std::size_t i = 0; i < kMeshFaultCount; ++i)
-    if (findings[i].count > 0 && !kFaults[i].build)
-      out.push_back(line_for(mesh, static_cast<MeshFault>(i), findings[i]));
+    if (findings[i].count > 0 && !kFaults[i].build) out.push_back(line(static_cast<MeshFault>(i), mesh));
   return out;
 }
 

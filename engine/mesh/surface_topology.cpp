@@ -109,6 +109,7 @@ class Analysis {
       number = leader == f ? out_.components++ : out_.component_of_face[leader];
     }
     out_.component_closed.assign(out_.components, true);
+    out_.component_open.assign(out_.components, false);
   }
 
   void judge(std::span<const SideUse> edge) {
@@ -116,6 +117,7 @@ class Analysis {
     if (opposite) return;
     out_.component_closed[out_.component_of_face[edge[0].face]] = false;
     if (edge.size() == 2) return note(report_, MeshFault::flipped_face, edge[0].face, edge[1].face);
+    if (edge.size() == 1) out_.component_open[out_.component_of_face[edge[0].face]] = true;
     const MeshFault fault = edge.size() == 1 ? MeshFault::open_edge : MeshFault::non_manifold_edge;
     if (mesh_.dim == 2) return note(report_, fault, static_cast<VertexId>(edge[0].key));
     note(report_, fault, static_cast<VertexId>(edge[0].key >> 32), static_cast<VertexId>(edge[0].key));

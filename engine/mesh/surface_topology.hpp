@@ -14,6 +14,7 @@ struct SurfaceTopology {
   std::uint32_t components = 0;
   std::vector<std::uint32_t> component_of_face;  ///< (|F|) numbered by first face; kNull: face cannot be used
   std::vector<bool> component_closed;            ///< every edge has exactly two faces, in opposite directions
+  std::vector<bool> component_open;              ///< some edge has a face on one side only
   bool closed = false;                           ///< all faces can be used and all components are closed
   int genus = -1;  ///< sum over the components; -1 unless closed and every vertex has one fan. 2D: 0
 };

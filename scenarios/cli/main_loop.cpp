@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cerrno>
 #include <cmath>
 #include <cstdio>
@@ -16,6 +17,7 @@
 #include "scenarios/cli/measuring_program.hpp"
 #include "scenarios/cli/signals.hpp"
 #include "scenarios/cli/words/words.hpp"
+#include "scenarios/io/json/suggest.hpp"
 #include "trace/trace.hpp"
 
 namespace lrb::cli {
@@ -118,6 +120,45 @@ Command add_words(CLI::App& root) {
           }};
 }
 
+/// Returns the command that was named, down to its own: that of `lrbscope golden test` is test.
+const CLI::App& named_command(const CLI::App& app) {
+  const std::vector<CLI::App*> below = app.get_subcommands();
+  return below.empty() ? app : named_command(*below.front());
+}
+
+/// Returns "lrbscope golden test".
+std::string call_of(const CLI::App& app) {
+  return app.get_parent() == nullptr ? app.get_name() : call_of(*app.get_parent()) + " " + app.get_name();
+}
+
+/// Returns what is wrong with a command line that CLI11 refused.
+std::string usage_error(const CLI::App& root, const CLI::ParseError& error) {
+  const CLI::App& app = named_command(root);
+  const std::string help = " (see " + call_of(app) + " --help)";
+  std::vector<std::string> known;
+  for (const CLI::App* command :
+       app.get_subcommands([](const CLI::App* a) { return !a->get_group().empty(); }))
+    known.push_back(command->get_name());
+  const std::vector<std::string> words = root.remaining(true);
+  const auto word = std::find_if(words.begin(), words.end(),
+                                 [](const std::string& w) { return !w.empty() && w[0] != '-'; });
+  if (known.empty() || word == words.end()) return error.what() + help;
+  const std::string near = io::nearest_word(*word, known);
+  return in_quotes(*word) + " is no command of " + call_of(app) +
+         (near.empty() ? "" : "; did you mean \"" + near + "\"?") + help;
+}
+
+/// Throws InputError for an option or argument that is given as an empty text: mostly a variable of the
+/// shell that is not set.
+void refuse_empty_values(const CLI::App& app) {
+  for (const CLI::Option* option : app.get_options())
+    for (const std::string& value : option->results())
+      if (value.empty())
+        throw InputError(option->get_name() +
+                         ": expected a value, found an empty text; is a variable unset?");
+  for (const CLI::App* below : app.get_subcommands()) refuse_empty_values(*below);
+}
+
 int parse_and_run(int argc, char** argv) {
   CLI::App app("An exact two-body collision engine that can be watched.", "lrbscope");
   app.set_version_flag("--version", std::string("lrbscope ") + trace::lrbscope_version());
@@ -139,8 +180,9 @@ int parse_and_run(int argc, char** argv) {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {
     if (e.get_exit_code() == 0) return print_help(app, e);
-    return complain("", std::string(e.what()) + " (see lrbscope --help)", kBadInput);
+    return complain("", usage_error(app, e), kBadInput);
   }
+  refuse_empty_values(app);
   for (const Command& command : commands)
     if (command.app->parsed()) return command.run();
   return kBadInput;

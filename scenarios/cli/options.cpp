@@ -278,13 +278,8 @@ void add_animation_option(CLI::App& app, PictureOptions& options) {
       ->type_name("OUT.mp4|gif|webp");
 }
 
-void animate_frames(const PictureOptions& options, const std::string& folder, const Globals& globals) {
-  if (options.animation.empty()) return;
-  if (run::animate(folder, options.animation)) return;
-  std::string line;
-  for (const std::string& word : run::animation_command(folder, options.animation))
-    line += (line.empty() ? "" : " ") + shell_word(word);
-  note(globals, {"there is no ffmpeg to make " + options.animation + "; where there is one: " + line});
+void animate_frames(const PictureOptions& options, const std::string& folder) {
+  if (!options.animation.empty()) run::animate(folder, options.animation);
 }
 
 std::uint32_t all_cores() {

@@ -85,9 +85,8 @@ void apply(const PictureOptions& options, spec::FrameSpec& spec);
 
 /// Adds --animate, for commands that call animate_frames().
 void add_animation_option(CLI::App& app, PictureOptions& options);
-/// Makes the moving picture that was asked for of the frames in a folder; where there is no ffmpeg, tells the
-/// line that would.
-void animate_frames(const PictureOptions& options, const std::string& folder, const Globals& globals);
+/// Makes the moving picture, if one was asked for, of the frames in a folder.
+void animate_frames(const PictureOptions& options, const std::string& folder);
 
 /// Adds --up, which takes x, y or z.
 void add_up_option(CLI::App& app, std::string& up);

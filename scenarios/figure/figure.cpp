@@ -24,11 +24,6 @@ using Eigen::AlignedBox2d;
 using Eigen::Vector2d;
 using View = spec::FrameSpec::View;
 
-/// What a panel shows, in words.
-struct PanelWords {
-  std::string title, caption;
-};
-
 /// Returns a caption without what goes without saying.
 std::string shortened(std::string words) {
   const std::string none = ": 0 pairs of faces meet";
@@ -51,7 +46,8 @@ class FigureJob {
         figure_(figure),
         frames_(in_points(frames, figure)),
         dpi_(figure.dpi > 0 ? figure.dpi : default_dpi(figure.format)),
-        events_(choose(recorded, figure.choice)),
+        chosen_(choose(recorded, figure.choice)),
+        events_(chosen_.events),
         framing_(run::frame_sequence(recorded.reps, *recorded.trace, results_of(recorded), frames_)),
         extras_{recorded.trees, recorded.wrong, common_range(), recorded.face_values, recorded.value_name},
         state_(*recorded.trace, recorded.reps, results_of(recorded), frames_, false, extras_) {}
@@ -60,6 +56,7 @@ class FigureJob {
     survey();
     Figure out;
     out.panels = words_.size();
+    out.left_out = chosen_.left_out;
     out.caption = caption();
     layout_ = lay_out(blocks_, figure_.legend ? key_ : std::vector<render::LegendItem>(),
                       figure_.legend ? bar_ : std::nullopt, figure_.caption ? out.caption : "", options());
@@ -168,7 +165,7 @@ class FigureJob {
         if (shown.scale) bar_ = shown.scale;
         block.seen.push_back(seen_box(shown.list, camera(view, i)));
         const std::string words = shortened(state_.short_caption());
-        words_.push_back({words, view.title.empty() ? words : view.title + ", " + words});
+        words_.push_back(view.title.empty() ? words : view.title + ", " + words);
         shown_moments.push_back(i);
       }
       if (block.seen.empty()) continue;
@@ -192,15 +189,13 @@ class FigureJob {
     for (Block& block : blocks_)
       for (std::size_t i = 0; i < block.seen.size(); ++i, ++panel)
         block.texts.push_back((letters ? render::panel_letter(panel) : "") +
-                              (letters && figure_.titles ? " " : "") +
-                              (figure_.titles ? words_[panel].title : ""));
+                              (letters && figure_.titles ? " " : "") + (figure_.titles ? words_[panel] : ""));
   }
 
   std::string caption() const {
     std::string text = recorded_.purpose.empty() ? recorded_.title + "." : recorded_.purpose;
     for (std::size_t i = 0; i < words_.size(); ++i)
-      text += (i == 0 ? " " : "; ") + (words_.size() > 1 ? render::panel_letter(i) + " " : "") +
-              words_[i].caption;
+      text += (i == 0 ? " " : "; ") + (words_.size() > 1 ? render::panel_letter(i) + " " : "") + words_[i];
     return text + ".";
   }
 
@@ -286,7 +281,8 @@ class FigureJob {
   const FigureSpec& figure_;
   spec::FrameSpec frames_;
   double dpi_;
-  std::vector<trace::EventId> events_;
+  Chosen chosen_;
+  const std::vector<trace::EventId>& events_;
   run::Framing framing_;
   run::FrameExtras extras_;
   run::FrameState state_;
@@ -295,9 +291,9 @@ class FigureJob {
     const View* view;
     std::vector<std::size_t> moments;
   };
-  std::vector<ViewPanels> views_;  ///< those that show something, with the moments at which they do
-  std::vector<Block> blocks_;      ///< one for each of them
-  std::vector<PanelWords> words_;
+  std::vector<ViewPanels> views_;   ///< those that show something, with the moments at which they do
+  std::vector<Block> blocks_;       ///< one for each of them
+  std::vector<std::string> words_;  ///< of each panel, what it shows
   std::vector<render::LegendItem> key_;
   std::optional<render::ScaleBar> bar_;
   FigureLayout layout_;

@@ -34,6 +34,7 @@ struct Figure {
   std::string bytes;    ///< of the file
   std::string caption;  ///< the text to print below it
   std::size_t panels = 0;
+  std::string left_out;  ///< what was asked for and is not shown, for people; empty: nothing
 };
 
 /// Draws the figure. `frames` says what colours mean, which regions are shown, and from where. Throws

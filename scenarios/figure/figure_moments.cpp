@@ -106,6 +106,16 @@ std::vector<EventId> by_layer(const run::RecordedRun& recorded) {
   return last;
 }
 
+/// Takes kMostPanels states evenly, if there are more.
+void thin_layers(Chosen& chosen) {
+  const std::vector<EventId> all = chosen.events;
+  if (all.size() <= kMostPanels) return;
+  chosen.events.clear();
+  for (const std::size_t i : run::evenly(all.size(), kMostPanels)) chosen.events.push_back(all[i]);
+  chosen.left_out = std::to_string(kMostPanels) + " of " + std::to_string(all.size()) +
+                    " panels are shown, evenly chosen; --events shows others";
+}
+
 std::vector<EventId> by_steps(const trace::Trace& trace, const std::vector<std::uint32_t>& numbers) {
   std::vector<EventId> out;
   for (const std::uint32_t number : numbers) {
@@ -130,11 +140,12 @@ std::vector<EventId> by_events(const trace::Trace& trace, const std::vector<std:
 
 }  // namespace
 
-std::vector<EventId> choose(const run::RecordedRun& recorded, const Choice& choice) {
+Chosen choose(const run::RecordedRun& recorded, const Choice& choice) {
   const trace::Trace& trace = *recorded.trace;
   if (trace.events.empty()) throw InputError("a figure needs a run with events, and this one has none");
   const std::size_t panels = choice.panels > 0 ? choice.panels : recorded.reps.size() == 1 ? 6 : 4;
-  std::vector<EventId> out;
+  Chosen chosen;
+  std::vector<EventId>& out = chosen.events;
   switch (choice.by) {
     case Choice::By::changes: {
       const std::vector<State> all = states(recorded);
@@ -158,7 +169,8 @@ std::vector<EventId> choose(const run::RecordedRun& recorded, const Choice& choi
   }
   std::sort(out.begin(), out.end());
   out.erase(std::unique(out.begin(), out.end()), out.end());
-  return out;
+  if (choice.by == Choice::By::layers) thin_layers(chosen);
+  return chosen;
 }
 
 }  // namespace lrb::figure

@@ -2,6 +2,7 @@
 /// Which states of a run a figure shows.
 
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "scenarios/run/frame_job.hpp"
@@ -17,8 +18,16 @@ struct Choice {
   std::size_t panels = 0;  ///< the most for `changes`; 0: six of one body, four of two
 };
 
-/// Returns the events after which the states stand, ascending, each once. Throws InputError for numbers that
-/// the run does not have, and for choices that it cannot offer.
-std::vector<trace::EventId> choose(const run::RecordedRun& recorded, const Choice& choice);
+/// The largest number of panels of a figure that chooses them itself.
+inline constexpr std::size_t kMostPanels = 26;
+
+struct Chosen {
+  std::vector<trace::EventId> events;  ///< after which the states stand, ascending, each once
+  std::string left_out;                ///< what was asked for and is not among them; empty: nothing
+};
+
+/// Chooses the states. Of more than kMostPanels layers it takes so many evenly, the first and the last among
+/// them. Throws InputError for numbers that the run does not have, and for choices that it cannot offer.
+Chosen choose(const run::RecordedRun& recorded, const Choice& choice);
 
 }  // namespace lrb::figure

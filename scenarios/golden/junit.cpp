@@ -13,9 +13,13 @@ std::string case_xml(const GoldenResult& r) {
                     "\" time=\"" + io::fixed_text(r.seconds, kDecimals) + "\"";
   if (r.verdict.passed()) return out + "/>\n";
   const char* kind = r.verdict.refusal.empty() ? "failure" : "error";
-  const std::string text = result_text(r);
-  return out + ">\n    <" + kind + " message=\"" + render::escape_markup(text.substr(0, text.find('\n'))) +
-         "\">" + render::escape_markup(text) + "</" + kind + ">\n  </testcase>\n";
+  // The case has the name, and the element the verdict: the message is the rest of the first line, and what
+  // follows is the element's text.
+  const std::string text = result_text(r), head = "FAIL  " + r.name + ": ";
+  const std::size_t end = text.find('\n');
+  return out + ">\n    <" + kind + " message=\"" +
+         render::escape_markup(text.substr(head.size(), end - head.size())) + "\">" +
+         render::escape_markup(text.substr(end + 1)) + "</" + kind + ">\n  </testcase>\n";
 }
 
 }  // namespace

@@ -36,8 +36,8 @@ void refuse_links_in(const fs::path& folder) {
 
 }  // namespace
 
-std::string read_text(const std::string& path) {
-  return read_file(path);
+std::string read_text(const std::string& path, std::uint64_t most) {
+  return read_file(path, most);
 }
 
 std::string read_small_text(const std::string& path) {
@@ -54,8 +54,12 @@ void make_folder(const std::string& path) {
                            (error ? error.message() : "a file is in the way") + ")");
 }
 
+void make_folder_of(const std::string& file) {
+  make_folder(fs::path(file).parent_path().string());
+}
+
 void write_text(const std::string& path, const std::string& text) {
-  make_folder(fs::path(path).parent_path().string());
+  make_folder_of(path);
   write_file(path, text);
 }
 

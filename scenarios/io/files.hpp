@@ -1,12 +1,15 @@
 #pragma once
 
+#include <cstdint>
+#include <limits>
 #include <string>
 
 namespace lrb::io {
 
-/// Returns the contents of a file. Throws InputError that names the file if it cannot be read or is not a
-/// file.
-std::string read_text(const std::string& path);
+/// Returns the contents of a file. Throws InputError that names the file if it cannot be read, is not a
+/// file, or has more than `most` bytes, which are then not read.
+std::string read_text(const std::string& path,
+                      std::uint64_t most = std::numeric_limits<std::uint64_t>::max());
 
 /// Returns the contents of a file that people write: a scenario, a crowd, an experiment. More than 8 MiB (a
 /// scenario of 35,000 poses) are refused before they are read, because parsing takes 50 times as much memory.
@@ -18,6 +21,10 @@ void write_text(const std::string& path, const std::string& text);
 
 /// Makes a folder and those above it. Throws EnvironmentError if that fails or a file is in the way.
 void make_folder(const std::string& path);
+
+/// Makes the folder of a file that is about to be written, as make_folder() does. All commands do that for
+/// the files that they are told to write.
+void make_folder_of(const std::string& file);
 
 /// Makes sure that what is written into an output folder stays in it: throws EnvironmentError that names a
 /// symbolic link in the folder, or in its frames folder, under a name that a run writes (a page, numbers, a

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <charconv>
+#include <cmath>
 
 namespace lrb::io {
 
@@ -9,6 +10,15 @@ std::string number_text(double x, int digits) {
   std::array<char, 64> text{};
   return {text.data(),
           std::to_chars(text.data(), text.data() + text.size(), x, std::chars_format::general, digits).ptr};
+}
+
+std::string lower_text(double x, int digits) {
+  std::string text = number_text(x, digits);
+  double shown = 0;
+  std::from_chars(text.data(), text.data() + text.size(), shown);
+  if (!(shown > x)) return text;
+  const double unit = std::pow(10.0, std::floor(std::log10(x)) - digits + 1);  // of the last digit
+  return number_text(x - unit / 2, digits);
 }
 
 std::string fixed_text(double x, int decimals) {

@@ -8,6 +8,10 @@ namespace lrb::io {
 /// Returns a number with `digits` significant digits at most, as printf's %g writes it.
 std::string number_text(double x, int digits = 7);
 
+/// Returns a positive number as number_text() does, but rounded down: where it is a lower bound, what is
+/// printed is one, too.
+std::string lower_text(double x, int digits = 3);
+
 /// Returns a number with `decimals` decimals at most: no exponent, no zeros at the end.
 std::string fixed_text(double x, int decimals = 6);
 

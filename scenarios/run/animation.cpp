@@ -4,6 +4,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
+#include <sstream>
 
 #include <fcntl.h>
 #include <spawn.h>
@@ -11,6 +12,7 @@
 #include <unistd.h>
 
 #include "engine/core/error.hpp"
+#include "scenarios/io/files.hpp"
 
 extern char** environ;
 
@@ -35,7 +37,17 @@ std::vector<std::string> codec(const std::string& ending) {
           "yuv420p"};
 }
 
-/// Runs a program without input or output but its errors. Returns its exit code; -1: it is not installed.
+/// Returns true if there is such a program, by its path, or by its name in one of the folders of PATH.
+bool is_installed(const std::string& name) {
+  if (name.find('/') != std::string::npos) return access(name.c_str(), X_OK) == 0;
+  const char* path = std::getenv("PATH");
+  std::istringstream folders(path != nullptr ? path : "");
+  for (std::string folder; std::getline(folders, folder, ':');)
+    if (access(((folder.empty() ? "." : folder) + "/" + name).c_str(), X_OK) == 0) return true;
+  return false;
+}
+
+/// Runs a program without input or output but its errors. Returns its exit code.
 int run_program(const std::vector<std::string>& words) {
   std::vector<char*> arguments;
   for (const std::string& word : words) arguments.push_back(const_cast<char*>(word.c_str()));
@@ -47,7 +59,6 @@ int run_program(const std::vector<std::string>& words) {
   pid_t child = 0;
   const int error = posix_spawnp(&child, arguments[0], &files, nullptr, arguments.data(), environ);
   posix_spawn_file_actions_destroy(&files);
-  if (error == ENOENT) return -1;
   if (error != 0) throw EnvironmentError(words[0] + ": cannot be started: " + std::strerror(error));
   int status = 0;
   while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
@@ -55,14 +66,8 @@ int run_program(const std::vector<std::string>& words) {
   return WIFEXITED(status) ? WEXITSTATUS(status) : 1;
 }
 
-}  // namespace
-
-void check_animation(const std::string& file) {
-  const std::string ending = ending_of(file);
-  if (ending != ".mp4" && ending != ".gif" && ending != ".webp")
-    throw InputError("--animate: expected a .mp4, .gif or .webp file, found \"" + file + "\"");
-}
-
+/// Returns the command, word by word, that makes a moving picture of the frames in folder/frames: 12 a
+/// second.
 std::vector<std::string> animation_command(const std::string& folder, const std::string& file) {
   std::vector<std::string> out = {program(),
                                   "-y",
@@ -80,7 +85,19 @@ std::vector<std::string> animation_command(const std::string& folder, const std:
   return out;
 }
 
-bool animate(const std::string& folder, const std::string& file) {
+}  // namespace
+
+void check_animation(const std::string& file) {
+  const std::string ending = ending_of(file);
+  if (ending != ".mp4" && ending != ".gif" && ending != ".webp")
+    throw InputError("--animate: expected a .mp4, .gif or .webp file, found \"" + file + "\"");
+  if (!is_installed(program()))
+    throw EnvironmentError("--animate: there is no program " + program() +
+                           ": install ffmpeg, name it in LRB_FFMPEG, or leave --animate out");
+}
+
+void animate(const std::string& folder, const std::string& file) {
+  io::make_folder_of(file);
   const std::filesystem::path path(file);
   // Beside its place, under another name, so that a file that is half written is never seen under its own.
   const std::string part =
@@ -88,12 +105,10 @@ bool animate(const std::string& folder, const std::string& file) {
   const int code = run_program(animation_command(folder, part));
   std::error_code error;
   if (code != 0) std::filesystem::remove(part, error);
-  if (code == -1) return false;
   if (code != 0)
     throw EnvironmentError(file + ": ffmpeg could not write it (exit code " + std::to_string(code) + ")");
   std::filesystem::rename(part, path, error);
   if (error) throw EnvironmentError(file + ": cannot be written: " + error.message());
-  return true;
 }
 
 }  // namespace lrb::run

@@ -13,6 +13,7 @@
 #include "render/png.hpp"
 #include "render/rasterize.hpp"
 #include "render/scene.hpp"
+#include "scenarios/io/files.hpp"
 #include "scenarios/io/number_text.hpp"
 #include "scenarios/run/frame_files.hpp"
 #include "scenarios/run/measure_marks.hpp"
@@ -133,6 +134,7 @@ void write_picture(AnswerPicture& p, const AnswerLook& look, const std::string& 
         return view == 0 ? whole_camera(p, look, places[0]) : near_camera(p, look, places[1]);
       },
       picture);
+  io::make_folder_of(path);
   render::write_png(render::compose_frame(picture, layout.picture, p.overlay, look.width, look.height), path);
 }
 

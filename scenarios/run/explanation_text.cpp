@@ -1,8 +1,10 @@
 #include "scenarios/run/explanation_text.hpp"
 
+#include <algorithm>
 #include <iomanip>
 #include <sstream>
 
+#include "scenarios/io/number_text.hpp"
 #include "scenarios/run/explanation_words.hpp"
 
 namespace lrb::run {
@@ -45,6 +47,23 @@ Json contact_points_json(const exact::PairContact& contact) {
 }
 
 constexpr int kShownDigits = 6;
+/// Distances of more units in the last place are printed without them: doubles decide these easily.
+constexpr double kMostUlps = 1e6;
+
+std::string point_text(const Eigen::Vector3d& x) {
+  const auto text = [](double value) { return io::number_text(value, kShownDigits); };
+  return "(" + text(x.x()) + ", " + text(x.y()) + ", " + text(x.z()) + ")";
+}
+
+/// Returns the corners of a contact as they are printed: those that look alike, once.
+std::vector<std::string> contact_points(const exact::PairContact& contact) {
+  std::vector<std::string> out;
+  for (int i = 0; i < contact.corner_count; ++i) {
+    std::string text = point_text(contact.corners[i].x);
+    if (std::find(out.begin(), out.end(), text) == out.end()) out.push_back(std::move(text));
+  }
+  return out;
+}
 
 /// Writes one line for each pair of boxes.
 void write_way(std::ostream& out, const PairExplanation& e) {
@@ -150,23 +169,17 @@ std::string explanation_text(const PairExplanation& e, const LrbRep& a, const Lr
   const int corners = a.dim();
   write_sides(out, e.sides[0], corners, "A's", "B's");
   write_sides(out, e.sides[1], corners, "B's", "A's");
-  const auto point = [&](const Eigen::Vector3d& x) {
-    out << "(" << x.x() << ", " << x.y() << ", " << x.z() << ")";
-  };
   if (e.meet == exact::Meet::disjoint) {
-    out << "nearest points: ";
-    point(e.nearest[0]);
-    out << " and ";
-    point(e.nearest[1]);
-    out << "\ndistance " << e.distance << ", " << e.distance / e.ulp
-        << " units in the last place of the largest coordinate\n";
+    out << "nearest points: " << point_text(e.nearest[0]) << " and " << point_text(e.nearest[1])
+        << "\ndistance " << e.distance;
+    if (const double ulps = e.distance / e.ulp; ulps < kMostUlps)
+      out << ", " << ulps << " units in the last place of the largest coordinate";
+    out << "\n";
   } else {
     constexpr const char* kinds[] = {"nothing", "point", "segment"};
-    out << "contact: " << (e.contact.corner_count < 3 ? kinds[e.contact.corner_count] : "polygon");
-    for (int i = 0; i < e.contact.corner_count; ++i) {
-      out << (i == 0 ? " " : " to ");
-      point(e.contact.corners[i].x);
-    }
+    const std::vector<std::string> points = contact_points(e.contact);
+    out << "contact: " << (points.size() < 3 ? kinds[points.size()] : "polygon");
+    for (std::size_t i = 0; i < points.size(); ++i) out << (i == 0 ? " " : " to ") << points[i];
     out << "\n";
   }
   return out.str();
@@ -177,7 +190,10 @@ std::string explanation_text(const WalkExplanation& e) {
   std::ostringstream out;
   out << std::setprecision(kShownDigits);
   out << name_of(e.result.relation) << ", " << e.result.pairs.size() << " pairs\n";
-  out << "boxes round the bodies: gap " << e.roots.gap << " along " << name_of(e.roots.axis) << "\n\n";
+  out << "boxes round the bodies: "
+      << (e.roots.gap > 0 ? "gap >= " + io::lower_text(e.roots.gap, kShownDigits)
+                          : "overlap by " + io::number_text(-e.roots.gap, kShownDigits))
+      << " along " << name_of(e.roots.axis) << "\n\n";
   out << std::setw(kColumn) << "depth" << std::setw(kColumn) << "node pairs" << std::setw(kColumn) << "apart"
       << "\n";
   for (std::size_t i = 0; i < e.depths.size(); ++i)
@@ -194,12 +210,12 @@ std::string explanation_text(const WalkExplanation& e) {
   if (const auto& boxes = e.nearest_boxes)
     out << "the nearest of the boxes found apart, of "
         << (boxes->of_faces ? "faces in the leaves " : "nodes ") << boxes->pair.node[0] << " of A and "
-        << boxes->pair.node[1] << " of B: gap " << boxes->pair.gap << " along " << name_of(boxes->pair.axis)
+        << boxes->pair.node[1] << " of B: " << boxes->pair.gap << " apart along " << name_of(boxes->pair.axis)
         << "\n";
   if (e.plane)
     out << "a plane across (" << e.plane->normal.x() << ", " << e.plane->normal.y() << ", "
-        << e.plane->normal.z() << ") has all of A on one side and all of B on the other, " << e.plane->gap()
-        << " apart\n";
+        << e.plane->normal.z() << ") has all of A on one side and all of B on the other, gap >= "
+        << io::lower_text(e.plane->gap(), kShownDigits) << "\n";
   if (e.result.separation) {
     const auto& [refined, faces] = *e.result.separation;
     out << "wrappers of " << faces[0] << " and " << faces[1] << " faces, with " << refined[0].size()

@@ -375,8 +375,11 @@ std::string FrameState::relation_text() const {
     return std::isfinite(r.error_bound)
                ? "unresolved: in contact, or no further apart than " + render::short_number(r.error_bound)
                : "unresolved: the limit came before the coarsest wrappers were compared";
-  if (const WalkExplanation* walk = parting_here())
-    if (const std::string words = parting_words(*walk); !words.empty()) return "separate: " + words;
+  if (const WalkExplanation* walk = parting_here()) {
+    const trace::Step& step = *cursor_.step();
+    const std::string words = parting_words(*walk, *reps_[0], step.pose_a, *reps_[1], step.pose_b);
+    if (!words.empty()) return "separate: " + words;
+  }
   const bool open = !reps_[0]->closed() || !reps_[1]->closed();
   return (r.relation == Relation::undefined && open ? open_text() : relation_words(r.relation)) + ": " +
          render::counted(r.pair_count, "pair of faces meets", "pairs of faces meet");

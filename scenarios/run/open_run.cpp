@@ -90,25 +90,25 @@ Recording open_run(trace::Trace trace, const std::string& trace_path,
   return out;
 }
 
-std::string trace_in(const std::string& folder) {
-  std::string path = folder + "/trace.json";
+std::string trace_of(const std::string& run) {
   std::error_code error;
+  if (!std::filesystem::is_directory(run, error)) return run;
+  std::string path = (std::filesystem::path(run) / "trace.json").string();
   if (!std::filesystem::exists(path, error)) path += ".gz";
   if (!std::filesystem::exists(path, error))
     throw InputError(
-        printable_name(folder) +
+        printable_name(run) +
         ": there is no trace.json or trace.json.gz: give the folder of a run, as `lrbscope run -o` writes it");
   return path;
 }
 
-Recording open_run(const std::string& folder) {
-  const std::string path = trace_in(folder);
+Recording open_run(const std::string& run) {
+  const std::string path = trace_of(run);
   return open_run(trace::load_trace(path), path);
 }
 
 OpenStep open_step(const std::string& run, std::optional<std::uint32_t> number) {
-  std::error_code error;
-  const std::string path = std::filesystem::is_directory(run, error) ? trace_in(run) : run;
+  const std::string path = trace_of(run);
   const trace::Trace trace = trace::load_trace(path);
   if (trace.header.bodies.size() != 2)
     throw InputError(printable_name(path) + ": is of one body, and pairs are of two");

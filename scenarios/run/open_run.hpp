@@ -22,11 +22,12 @@ std::vector<bodies::LoadedBody> find_bodies(const std::string& trace_path,
 Recording open_run(trace::Trace trace, const std::string& trace_path,
                    const std::vector<std::string>& bodies = {});
 
-/// Returns the path of a run's trace in its folder. Throws InputError if there is none.
-std::string trace_in(const std::string& folder);
+/// Returns the path of a run's trace, whether `run` is the run's folder or the trace itself. All commands
+/// that take a recorded run take both. Throws InputError for a folder that has none.
+std::string trace_of(const std::string& run);
 
-/// Returns the run in a folder: its trace.json or trace.json.gz, with a.lrb and b.lrb beside it.
-Recording open_run(const std::string& folder);
+/// Returns a run, given as trace_of() takes it, with a.lrb and b.lrb beside the trace.
+Recording open_run(const std::string& run);
 
 /// Two bodies as they stood at a step of a run.
 struct OpenStep {
@@ -34,8 +35,8 @@ struct OpenStep {
   trace::Step step;
 };
 
-/// Opens one step of a run, by its number; without a number the last. `run`: its folder, or its trace with
-/// the bodies beside it. Throws InputError if there is no such step, or only one body.
+/// Opens one step of a run, by its number; without a number the last. `run`: as trace_of() takes it.
+/// Throws InputError if there is no such step, or only one body.
 OpenStep open_step(const std::string& run, std::optional<std::uint32_t> number);
 
 }  // namespace lrb::run

@@ -6,10 +6,12 @@
 
 #include <Eigen/Geometry>
 
+#include "engine/query/distance/distance.hpp"
 #include "render/overlay.hpp"
 #include "render/palette.hpp"
 #include "render/png.hpp"
 #include "render/rasterize.hpp"
+#include "scenarios/io/number_text.hpp"
 #include "scenarios/run/box_lines.hpp"
 #include "scenarios/run/frame_files.hpp"
 #include "scenarios/run/parting_square.hpp"
@@ -114,10 +116,15 @@ void add_parting(render::DrawList& list, const WalkExplanation& walk, const LrbR
   add_square(list, *square, a.dim());
 }
 
-std::string parting_words(const WalkExplanation& walk) {
-  if (walk.plane) return "a plane parts them, gap " + render::short_number(walk.plane->gap());
-  if (walk.nearest_boxes) return "boxes part them, gap " + render::short_number(walk.nearest_boxes->pair.gap);
-  return {};
+std::string parting_words(const WalkExplanation& walk, const LrbRep& a, const Pose& pose_a, const LrbRep& b,
+                          const Pose& pose_b) {
+  if (!walk.plane && !walk.nearest_boxes) return {};
+  // Not the gap of the plane or of the boxes: it can grow while the bodies approach.
+  DistanceRequest request;
+  request.relation = false;
+  const double gap = distance(a, pose_a, b, pose_b, request).lower;
+  return std::string(walk.plane ? "a plane parts them" : "boxes part them") +
+         (gap > 0 ? ", gap >= " + io::lower_text(gap) : "");
 }
 
 void draw_parting(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
@@ -136,7 +143,8 @@ void draw_parting(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Po
   render::Overlay overlay;
   overlay.title = a.name() + "  ·  " + b.name();
   overlay.event = std::string(name_of(walk.result.relation));
-  if (const std::string words = parting_words(walk); !words.empty()) overlay.event += ": " + words;
+  if (const std::string words = parting_words(walk, a, pose_a, b, pose_b); !words.empty())
+    overlay.event += ": " + words;
   overlay.event_colour = kPartingColour;
   overlay.key = scene.key;
   spec::FrameSpec spec;

@@ -17,8 +17,10 @@ inline constexpr render::Rgba kPartingColour = render::palette::kGreen;
 void add_parting(render::DrawList& list, const WalkExplanation& walk, const LrbRep& a, const Pose& pose_a,
                  const LrbRep& b, const Pose& pose_b, const render::Style& style, bool through = false);
 
-/// Returns it in a few words, such as "a plane parts them, gap 0.12"; empty where neither was found.
-std::string parting_words(const WalkExplanation& walk);
+/// Returns it in a few words, with a lower bound of the distance of the bodies' surfaces: "a plane parts
+/// them, gap >= 0.12"; empty where neither was found.
+std::string parting_words(const WalkExplanation& walk, const LrbRep& a, const Pose& pose_a, const LrbRep& b,
+                          const Pose& pose_b);
 
 /// Draws both bodies with it into a picture: the whole, and beside it, where something was found, a close-up
 /// along it.

@@ -9,6 +9,7 @@ import math
 import os
 import re
 import shlex
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -173,6 +174,18 @@ def reason_of(page, line):
     return None
 
 
+def ffmpeg(folder):
+    """A program in the place of ffmpeg, where that is missing: it writes a file of the last word's name."""
+    if shutil.which("ffmpeg"):
+        return {}
+    path = folder + "/.ffmpeg"
+    if not os.path.exists(path):
+        with open(path, "w") as out:
+            out.write('#!/bin/sh\nfor last; do :; done\n: >"$last"\n')
+        os.chmod(path, 0o755)
+    return {"LRB_FFMPEG": path}
+
+
 def main():
     tree, program = os.path.abspath(sys.argv[1]), os.path.abspath(sys.argv[2])
     pages = sys.argv[3:] or ["README.md", "CONTRIBUTING.md"] + sorted(
@@ -194,7 +207,7 @@ def main():
                 try:
                     done = subprocess.run(
                         ["bash", "-euo", "pipefail", "-c", begin + line],
-                        env={**os.environ, "PROGRAM": program},
+                        env={**os.environ, "PROGRAM": program, **ffmpeg(folder)},
                         capture_output=True,
                         text=True,
                         timeout=SECONDS,

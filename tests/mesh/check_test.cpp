@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -5,6 +6,7 @@
 
 #include <doctest/doctest.h>
 
+#include "engine/mesh/checked_mesh.hpp"
 #include "engine/mesh/mesh_check.hpp"
 #include "scenarios/bodies/shapes/shapes.hpp"
 
@@ -312,6 +314,14 @@ TEST_CASE("findings say what, how often and where, in one line each") {
   CHECK(report[MeshFault::open_edge].first.size() == 8);
   CHECK(line.find("(100 times)") != std::string::npos);
   CHECK(line.find(", ..., counted from 0") != std::string::npos);
+  const MeshReport all = check(many, 60).report(), whole = check(many, 1000).report();
+  const auto& edges = whole[MeshFault::open_edge].first;
+  CHECK(edges.size() == 100);
+  CHECK(std::is_sorted(edges.begin(), edges.end()));
+  CHECK(all[MeshFault::open_edge].first == std::vector(edges.begin(), edges.begin() + 60));
+  CHECK(all.shortened()[MeshFault::open_edge].first == report[MeshFault::open_edge].first);
+  CHECK(all.lines(many) == report.lines(many));
+  CHECK(name_of(MeshFault::open_edge) == "open_edge");
   for (const Mesh& bad :
        {mesh_of({{0, 0, 0}}, {}), mesh_of({{0, 0, 0}, {0, 0, 0}}, {{0, 1}, {0, 0}, {0, 7}}, 2),
         turned_inside_out(box()), mesh_of({{0, 0, 0}}, {{0, 0, 0}, {0, 0, 9}, {0, 0, 0}})})

@@ -22,6 +22,9 @@ Mesh read_mesh(const std::string& bytes, const std::string& name);
 
 using FaceColour = std::array<std::uint8_t, 3>;  ///< red, green, blue
 
+/// Throws InputError unless write_mesh() writes a mesh of this dimension to a file of this name.
+void check_mesh_name(const std::string& path, int dim);
+
 /// Writes PLY (binary little-endian, uchar/int face lists, optional colours per face) or OBJ, by extension;
 /// OBJ has no place for colours, and 2D bodies are written as OBJ only. The file appears whole or not at all.
 /// Throws InputError (wrong extension, bad path, a number of colours other than that of the faces or none) or

@@ -78,19 +78,23 @@ void write_obj(const Mesh& mesh, AtomicFile& out) {
 
 }  // namespace
 
-void write_mesh(const Mesh& mesh, const std::string& path, std::span<const FaceColour> face_colours) {
+void check_mesh_name(const std::string& path, int dim) {
   const std::string extension = extension_of(path);
   if (extension != "ply" && extension != "obj")
     throw InputError(printable_name(path) + ": found the extension " + in_quotes(extension) +
                      ", expected ply or obj; choose one of them");
-  if (mesh.dim == 2 && extension == "ply")
+  if (dim == 2 && extension == "ply")
     throw InputError(printable_name(path) + ": found a 2D body, expected a 3D one for PLY; write it as OBJ");
+}
+
+void write_mesh(const Mesh& mesh, const std::string& path, std::span<const FaceColour> face_colours) {
+  check_mesh_name(path, mesh.dim);
   if (!face_colours.empty() && face_colours.size() != mesh.face_count())
     throw InputError(printable_name(path) + ": found " + std::to_string(face_colours.size()) +
                      " colours, expected " + std::to_string(mesh.face_count()) +
                      ", the number of faces; give one for each or none");
   AtomicFile out(path);
-  extension == "ply" ? write_ply(mesh, face_colours, out) : write_obj(mesh, out);
+  extension_of(path) == "ply" ? write_ply(mesh, face_colours, out) : write_obj(mesh, out);
   out.commit();
 }
 

@@ -12,6 +12,7 @@
 #include "scenarios/bodies/body.hpp"
 #include "scenarios/cli/command.hpp"
 #include "scenarios/cli/options.hpp"
+#include "scenarios/io/files.hpp"
 
 namespace lrb::cli {
 namespace {
@@ -43,6 +44,8 @@ std::string state_text(const Hole& hole) {
       return "left: all of its rim lies on one line";
     case HoleState::meets_surface:
       return "left: a lid would meet face " + std::to_string(hole.obstacle);
+    case HoleState::of_sheet:
+      return "left: its surface is a sheet: it bounds nothing";
     case HoleState::meets_lid:
       return "left: a lid would meet that of " + std::to_string(hole.obstacle);
     default:
@@ -89,8 +92,12 @@ int run_close(const CloseOptions& o, const Globals& globals) {
   if (!mesh.report().queryable())
     throw InputError(mesh.mesh().name +
                      ": has faults that have to be mended first: lrbscope inspect names them");
+  if (const MeshReport& report = mesh.report(); report.sheets > 0 && report.sheets == report.open_components)
+    throw InputError(report.line(MeshFault::open_edge, mesh.mesh()));
+  check_mesh_name(o.out, mesh.mesh().dim);
   const ClosedHoles result = close_holes(mesh);
   const MeshReport after = check(result.mesh).report();
+  io::make_folder_of(o.out);
   write_mesh(result.mesh, o.out);
   const auto closed =
       static_cast<std::size_t>(std::count_if(result.holes.begin(), result.holes.end(), is_closed));

@@ -10,6 +10,7 @@
 #include "scenarios/cli/progress.hpp"
 #include "scenarios/io/json/pose_list.hpp"
 #include "scenarios/io/pose_file.hpp"
+#include "scenarios/run/animation.hpp"
 #include "scenarios/run/chosen_view.hpp"
 #include "scenarios/run/run_scenario.hpp"
 #include "scenarios/spec/scenario_frames.hpp"
@@ -104,6 +105,7 @@ spec::Scenario make_scenario(const CollideOptions& o, const std::vector<bodies::
 
 int run_collide(const CollideOptions& o, const Globals& globals) {
   if (!o.poses.empty()) io::open_poses(o.poses);  // a typing error in this file should not cost a build
+  if (!o.picture.animation.empty()) run::check_animation(o.picture.animation);
   const run::ProgressReport progress = progress_report(globals.quiet);
   std::vector<bodies::LoadedBody> bodies;
   for (const std::string& path : {o.a, o.b}) {
@@ -117,7 +119,7 @@ int run_collide(const CollideOptions& o, const Globals& globals) {
   run::Recording recording = run::record(scenario, std::move(bodies), progress);
   choose_views(o, scenario, recording);
   const run::RunOutcome outcome = run::write_run(scenario, recording, folder, globals.command_line, progress);
-  animate_frames(o.picture, folder, globals);
+  animate_frames(o.picture, folder);
   return report_outcome(outcome, folder, o.json, globals);
 }
 

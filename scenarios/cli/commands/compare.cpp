@@ -61,8 +61,8 @@ Command add_compare(CLI::App& root, const Globals& globals) {
   CLI::App* app =
       root.add_subcommand("compare", "Show two recorded runs side by side, and what differs first");
   const auto o = std::make_shared<CompareOptions>();
-  app->add_option("RUN1", o->first, "Folder of a run, as run, collide and xray write it")->required();
-  app->add_option("RUN2", o->second, "Folder of the run to compare it with")->required();
+  app->add_option("RUN1", o->first, "A run's folder or trace, as run, collide and xray write it")->required();
+  app->add_option("RUN2", o->second, "Folder or trace of the run to compare it with")->required();
   app->add_option("-o,--output", o->folder, "Folder to write to [out/compare]")->type_name("DIR");
   add_up_option(*app, o->up);
   return {app, [o, &globals] { return run_compare(*o, globals); }};

@@ -71,8 +71,7 @@ run::Recording open_recording(const ExportOptions& o, Input kind, const Globals&
         scenario.events, o.picture.colour_by ? spec::needed_level(*o.picture.colour_by) : EventLevel::faces);
     return run::record(scenario, progress_report(globals.quiet));
   }
-  std::error_code error;
-  const std::string path = std::filesystem::is_directory(o.input, error) ? run::trace_in(o.input) : o.input;
+  const std::string path = run::trace_of(o.input);
   return run::open_run(trace::load_trace(path), path, o.bodies);
 }
 

@@ -3,7 +3,6 @@
 #include <filesystem>
 #include <memory>
 
-#include "engine/core/atomic_file.hpp"
 #include "engine/core/error.hpp"
 #include "engine/core/file_bytes.hpp"
 #include "engine/core/fnv.hpp"
@@ -79,8 +78,8 @@ bool is_trace_name(const std::string& path) {
 
 Source open_source(const FigureOptions& o, const run::ProgressReport& progress) {
   std::error_code error;
-  if (std::filesystem::is_directory(o.source, error)) return open_trace(run::trace_in(o.source), o.bodies);
-  if (is_trace_name(o.source)) return open_trace(o.source, o.bodies);
+  if (std::filesystem::is_directory(o.source, error) || is_trace_name(o.source))
+    return open_trace(run::trace_of(o.source), o.bodies);
   if (!o.bodies.empty())
     throw InputError("--bodies: is for a trace, and " + printable_name(o.source) + " is none");
   return is_mesh_name(o.source) ? refine_body(o.source, progress) : run_of_scenario(o.source, progress);
@@ -144,11 +143,10 @@ int run_figure(const FigureOptions& o, const Globals& globals) {
   if (o.close_up) run::widen_close_ups(recorded, frames.views);
   const figure::Figure drawn = figure::draw_figure(recorded, frames, spec, progress);
   note(globals, source.recording.notes);
-  const std::filesystem::path path(file);
-  if (path.has_parent_path()) io::make_folder(path.parent_path().string());
-  std::filesystem::path caption = path;
+  if (!drawn.left_out.empty()) note(globals, {drawn.left_out});
+  std::filesystem::path caption(file);
   caption.replace_extension(".caption.txt");
-  write_file(file, drawn.bytes);
+  io::write_text(file, drawn.bytes);
   io::write_text(caption.string(), drawn.caption + "\n");
   print(file + "\n");
   return kOk;
@@ -157,7 +155,7 @@ int run_figure(const FigureOptions& o, const Globals& globals) {
 void add_panel_options(CLI::App& app, FigureOptions& o) {
   auto* panels = app.add_option("--panels", o.figure.choice.panels,
                                 "Most panels, where the picture changes [6; of two bodies 4]")
-                     ->check(CLI::Range(1, 26))
+                     ->check(CLI::Range(std::size_t{1}, figure::kMostPanels))
                      ->type_name("N");
   const auto add = [&](const char* name, std::vector<std::uint32_t>& numbers, const char* what) {
     return app.add_option(name, numbers, what)->delimiter(',')->type_name("N,N,...")->excludes(panels);
@@ -166,7 +164,9 @@ void add_panel_options(CLI::App& app, FigureOptions& o) {
   auto* events = add("--events", o.events, "Panels after these events");
   auto* steps = add("--steps", o.steps, "Panels after these time steps");
   auto* layers =
-      app.add_flag("--layers", o.layers, "A panel for each layer of regions of one body")->excludes(panels);
+      app.add_flag("--layers", o.layers,
+                   "A panel for each layer of regions of one body, 26 of them at most, evenly chosen")
+          ->excludes(panels);
   faces->excludes(events)->excludes(steps)->excludes(layers);
   events->excludes(steps)->excludes(layers);
   steps->excludes(layers);

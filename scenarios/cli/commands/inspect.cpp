@@ -85,6 +85,24 @@ std::string loops_text(const Json& loops) {
   return out.str();
 }
 
+/// Returns the findings: of each its kind, how often it occurs, the elements, and a line for people. An
+/// element is a number, or an array of two.
+Json findings_json(const Mesh& mesh, const MeshReport& report) {
+  Json out = Json::array();
+  for (std::size_t i = 0; i < kMeshFaultCount; ++i) {
+    const auto fault = static_cast<MeshFault>(i);
+    if (report[fault].count == 0) continue;
+    Json elements = Json::array();
+    for (const auto& [first, second] : report[fault].first)
+      elements.push_back(second == kNull ? Json(first) : Json{first, second});
+    out.push_back({{"kind", name_of(fault)},
+                   {"count", report[fault].count},
+                   {"elements", std::move(elements)},
+                   {"text", report.line(fault, mesh)}});
+  }
+  return out;
+}
+
 Json mesh_json(const CheckedMesh& checked, const std::vector<BoundaryLoop>& loops) {
   const Mesh& mesh = checked.mesh();
   const MeshReport& report = checked.report();
@@ -101,7 +119,7 @@ Json mesh_json(const CheckedMesh& checked, const std::vector<BoundaryLoop>& loop
   j["bounds_solid"] = report.bounds_solid;
   j["buildable"] = report.when_turned().buildable();  // because `build` turns it
   j["queryable"] = report.queryable();
-  j["findings"] = report.lines(mesh);
+  j["findings"] = findings_json(mesh, report);
   j["boundary_loops"] = loops_json(loops);
   return j;
 }
@@ -121,12 +139,21 @@ Json layers_json(const LrbRep& rep) {
 /// Returns how pictures are to be drawn; of findings (`drawing`), as high as they need unless a size is
 /// given.
 spec::FrameSpec sheet_frames(const InspectOptions& o, bool drawing) {
-  const CameraOptions& camera = o.pictures.camera;
-  const bool any = !o.pictures.size.empty() || o.pictures.dpi || !camera.from.empty() ||
-                   !camera.look_at.empty() || !camera.up.empty() || camera.zoom || camera.orthographic;
-  if (any && !o.render && o.drawing.empty())
-    throw InputError(
-        "--size, --dpi and where to look from are for --render and --draw: add one, or leave them out");
+  if (!o.render && o.drawing.empty()) {
+    const CameraOptions& camera = o.pictures.camera;
+    const std::pair<bool, const char*> of_pictures[] = {{!o.pictures.size.empty(), "--size"},
+                                                        {o.pictures.dpi.has_value(), "--dpi"},
+                                                        {o.pictures.style.has_value(), "--style"},
+                                                        {!camera.from.empty(), "--from"},
+                                                        {!camera.look_at.empty(), "--look-at"},
+                                                        {camera.zoom.has_value(), "--zoom"},
+                                                        {camera.orthographic.has_value(), "--projection"},
+                                                        {!camera.up.empty(), "--up"}};
+    for (const auto& [given, name] : of_pictures)
+      if (given)
+        throw InputError(std::string(name) + ": is for pictures; add --render or --draw, or leave " + name +
+                         " out");
+  }
   spec::FrameSpec frames;
   frames.width = drawing ? run::kFindingsSheetWidth : run::kBodySheetWidth;
   frames.height = drawing ? 0 : run::kBodySheetHeight;
@@ -138,13 +165,12 @@ spec::FrameSpec sheet_frames(const InspectOptions& o, bool drawing) {
 void draw_findings(const run::FaultyMesh& faulty, const InspectOptions& o, Json& j,
                    std::vector<std::string>& notes) {
   const std::string& path = o.drawing;
-  const std::string folder = std::filesystem::path(path).parent_path().string();
   const auto& findings = faulty.report.findings;
   const bool any =
       std::any_of(findings.begin(), findings.end(), [](const MeshFinding& f) { return f.count > 0; });
   const spec::FrameSpec frames = sheet_frames(o, true);
   run::check_views(frames.views, faulty.mesh.dim);
-  if (any && !folder.empty()) io::make_folder(folder);
+  if (any) io::make_folder_of(path);
   if (any && run::draw_findings(faulty, path, frames)) {
     j["drawing"] = path;
     return;
@@ -184,7 +210,10 @@ void look_broadside(const LrbRep& rep, spec::FrameSpec& frames) {
 std::string as_text(const Json& j) {
   std::ostringstream out;
   for (const auto& [key, value] : j.items()) {
-    if (value.is_array() && (key == "findings" || key == "violations" || key == "advice")) {
+    if (key == "findings") {
+      out << key << (value.empty() ? ": none\n" : ":\n");
+      for (const auto& finding : value) out << "  " << finding["text"].get<std::string>() << "\n";
+    } else if (value.is_array() && (key == "violations" || key == "advice")) {
       out << key << (value.empty() ? ": none\n" : ":\n");
       for (const auto& line : value) out << "  " << line.get<std::string>() << "\n";
     } else if (key == "boundary_loops") {
@@ -223,11 +252,15 @@ int run_inspect(const InspectOptions& o, const Globals& globals) {
     j.update(bodies::body_figures(*rep));
     j["layers_from_the_solid"] = layers_json(*rep);
   } else {
-    CheckedMesh mesh = check(bodies::read_body(o.file, o.corners, notes));
+    constexpr std::size_t kMostElements =
+        1'000'000;  // of a kind, so that the answer is no larger than a mesh
+    CheckedMesh mesh =
+        check(bodies::read_body(o.file, o.corners, notes), o.json ? kMostElements : MeshFinding::kShown);
     mesh.find_self_intersections();
     const std::vector<BoundaryLoop> loops = find_boundary_loops(mesh.mesh(), mesh.use());
     j = mesh_json(mesh, loops);
-    if (!o.drawing.empty()) draw_findings({mesh.mesh(), mesh.report(), loops}, o, j, notes);
+    const MeshReport shown = mesh.report().shortened();
+    if (!o.drawing.empty()) draw_findings({mesh.mesh(), shown, loops}, o, j, notes);
     if (o.validate)
       rep = std::make_unique<LrbRep>(bodies::build_from_mesh(std::move(mesh), {}, notes));
     else if (o.render || o.regions)
@@ -249,7 +282,7 @@ int run_inspect(const InspectOptions& o, const Globals& globals) {
     picture = o.picture.empty() ? "out/" + std::filesystem::path(o.file).stem().string() +
                                       (o.regions ? "-regions.png" : ".png")
                                 : o.picture;
-    io::make_folder(std::filesystem::path(picture).parent_path().string());
+    io::make_folder_of(picture);
     if (o.pictures.camera.from.empty()) look_broadside(*rep, frames);
     if (!o.regions) run::draw_body_sheet(*rep, picture, frames);
     j["picture"] = picture;

@@ -149,12 +149,14 @@ int render_crowd(const RenderOptions& o, const Globals& globals, const std::stri
   note(globals, run.notes);
   const std::string folder = output_folder(o);
   crowd::redraw_crowd(trace.crowd, run, folder, globals.command_line, o.trace, progress);
-  animate_frames(o.picture, folder, globals);
+  animate_frames(o.picture, folder);
   print(folder + "/index.html\n");
   return kOk;
 }
 
-int run_render(const RenderOptions& o, const Globals& globals) {
+int run_render(const RenderOptions& given, const Globals& globals) {
+  RenderOptions o = given;
+  o.trace = run::trace_of(given.trace);
   std::string json = trace::load_trace_text(o.trace);
   if (crowd::is_crowd_trace(json)) return render_crowd(o, globals, json);
   trace::Trace read = trace::trace_from_json(json, printable_name(o.trace));
@@ -190,7 +192,7 @@ int run_render(const RenderOptions& o, const Globals& globals) {
   report::Page page = run::run_page(p, drawn, folder, report);
   std::erase_if(page.links, [](const report::PageLink& l) { return l.target == "summary.json"; });
   io::write_text(folder + "/index.html", report::page_html(page));
-  animate_frames(o.picture, folder, globals);
+  animate_frames(o.picture, folder);
   print(folder + "/index.html\n");
   return kOk;
 }
@@ -198,7 +200,7 @@ int run_render(const RenderOptions& o, const Globals& globals) {
 Command add_render(CLI::App& root, const Globals& globals) {
   CLI::App* app = root.add_subcommand("render", "Draw pictures of a recorded run, without running it again");
   const auto o = std::make_shared<RenderOptions>();
-  app->add_option("TRACE", o->trace, "trace.json or trace.json.gz")->required();
+  app->add_option("TRACE", o->trace, "A run's folder, or its trace.json or trace.json.gz")->required();
   app->add_option("-o,--output", o->folder, "Folder to write to")->type_name("DIR");
   app->add_option(
          "--bodies", o->bodies,

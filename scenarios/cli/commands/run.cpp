@@ -29,7 +29,7 @@ int run_run(const RunCommandOptions& o, const Globals& globals) {
   run::RunOutcome outcome =
       run::run_scenario(scenario, folder, globals.command_line, progress_report(globals.quiet));
   if (o.folder.empty()) io::mark_run(folder, o.scenario);
-  animate_frames(o.picture, folder, globals);
+  animate_frames(o.picture, folder);
   return report_outcome(outcome, folder, o.json, globals);
 }
 

@@ -46,13 +46,12 @@ Pose pose_of(const WhyOptions& o) {
 }
 
 int explain(const WhyOptions& o, const Scene& scene) {
-  const auto make_folder = [&] { io::make_folder(std::filesystem::path(o.picture).parent_path().string()); };
   if (o.pair.empty()) {
     const WalkExplanation e = explain_walk(scene.a, scene.pose_a, scene.b, scene.pose_b);
     if (!o.picture.empty() && !e.result.pairs.empty())
       throw InputError(
           "-o: the bodies meet, so that nothing parts them; draw two of their faces with --pair");
-    if (!o.picture.empty()) make_folder();
+    if (!o.picture.empty()) io::make_folder_of(o.picture);
     if (!o.picture.empty()) run::draw_parting(scene.a, scene.pose_a, scene.b, scene.pose_b, e, o.picture);
     print(o.json ? one_line(run::explanation_json(e)) : run::explanation_text(e));
     return kOk;
@@ -60,7 +59,7 @@ int explain(const WhyOptions& o, const Scene& scene) {
   const PairExplanation e = explain_pair(scene.a, scene.pose_a, scene.b, scene.pose_b,
                                          {SimplexId(o.pair[0]), SimplexId(o.pair[1])});
   if (!o.picture.empty()) {
-    make_folder();
+    io::make_folder_of(o.picture);
     run::draw_pair(scene.a, scene.pose_a, scene.b, scene.pose_b, e, o.picture);
   }
   print(o.json ? one_line(run::explanation_json(e, scene.a, scene.b))

@@ -24,8 +24,6 @@ class Walker {
 
  private:
   void value(const std::string& pointer) {
-    constexpr int kDeepest = 64;  // levels: this walks by recursion, and none of our files needs ten
-    if (++depth_ > kDeepest) throw InputError("nested more than 64 levels deep");
     skip_space();
     offsets_.emplace(pointer, at_);
     if (text_[at_] == '{')
@@ -37,7 +35,6 @@ class Walker {
     else
       while (at_ < text_.size() && std::string_view(",]} \t\r\n").find(text_[at_]) == std::string_view::npos)
         ++at_;
-    --depth_;
   }
 
   void object(const std::string& pointer) {
@@ -89,7 +86,6 @@ class Walker {
   std::unordered_map<std::string, std::size_t>& offsets_;
   std::string& duplicate_;
   std::size_t at_ = 0;
-  int depth_ = 0;
 };
 
 /// Returns nlohmann's message without its own name, number and position.
@@ -108,9 +104,44 @@ std::string plain_reason(const std::string& what) {
   return printable_name(reason);  // on one line, whatever it quotes
 }
 
-}  // namespace
+/// Looks a text over before any value of it is kept: a text that is refused costs no memory.
+class Check : public nlohmann::json_sax<nlohmann::json> {
+ public:
+  Check(const std::string& text, const std::string& file) : text_(text), file_(file) {}
 
-namespace {
+  bool null() override { return true; }
+  bool boolean(bool) override { return true; }
+  bool number_integer(number_integer_t) override { return true; }
+  bool number_unsigned(number_unsigned_t) override { return true; }
+  bool number_float(number_float_t, const string_t&) override { return true; }
+  bool string(string_t&) override { return true; }
+  bool binary(binary_t&) override { return true; }
+  bool start_object(std::size_t) override { return enter(); }
+  bool key(string_t&) override { return true; }
+  bool end_object() override { return leave(); }
+  bool start_array(std::size_t) override { return enter(); }
+  bool end_array() override { return leave(); }
+  bool parse_error(std::size_t position, const std::string& token,
+                   const nlohmann::json::exception& error) override {
+    fail_json(text_, file_, position, token, error);
+  }
+
+ private:
+  bool enter() {
+    constexpr int kDeepest = 64;  // levels: Walker recurses, and none of our files needs ten
+    if (++depth_ > kDeepest) throw InputError(file_ + ": nested more than 64 levels deep");
+    return true;
+  }
+  bool leave() {
+    --depth_;
+    return true;
+  }
+
+  const std::string &text_, &file_;
+  int depth_ = 0;
+};
+
+}  // namespace
 
 void advance(TextPosition& p, const std::string& text, std::size_t from, std::size_t to) {
   for (std::size_t i = from; i < std::min(to, text.size()); ++i) {
@@ -122,39 +153,6 @@ void advance(TextPosition& p, const std::string& text, std::size_t from, std::si
     }
   }
 }
-
-/// Accepts everything and remembers where the parser gave up. Its exceptions tell that for errors of syntax
-/// only, not for numbers beyond a double's range.
-class ErrorFinder : public nlohmann::json_sax<nlohmann::json> {
- public:
-  std::size_t offset = 0;
-
-  bool null() override { return true; }
-  bool boolean(bool) override { return true; }
-  bool number_integer(number_integer_t) override { return true; }
-  bool number_unsigned(number_unsigned_t) override { return true; }
-  bool number_float(number_float_t, const string_t&) override { return true; }
-  bool string(string_t&) override { return true; }
-  bool binary(binary_t&) override { return true; }
-  bool start_object(std::size_t) override { return true; }
-  bool key(string_t&) override { return true; }
-  bool end_object() override { return true; }
-  bool start_array(std::size_t) override { return true; }
-  bool end_array() override { return true; }
-  bool parse_error(std::size_t position, const std::string& token,
-                   const nlohmann::json::exception&) override {
-    offset = position - std::min(position, token.size());
-    return false;
-  }
-};
-
-std::size_t offset_of_error(const std::string& text) {
-  ErrorFinder finder;
-  nlohmann::json::sax_parse(text, &finder);
-  return finder.offset;
-}
-
-}  // namespace
 
 TextPosition position_in(const std::string& text, std::size_t offset) {
   TextPosition p;
@@ -175,6 +173,30 @@ std::string pointer_part(const std::string& key) {
   return out;
 }
 
+namespace {
+
+std::string place(const std::string& text, const std::string& file, std::size_t offset) {
+  const TextPosition p = position_in(text, offset);
+  return file + ":" + std::to_string(p.line) + ":" + std::to_string(p.column) + ": ";
+}
+
+}  // namespace
+
+void refuse_nul(const std::string& text, const std::string& file) {
+  const std::size_t nul = text.find('\0');
+  if (nul != std::string::npos)
+    throw InputError(place(text, file, nul) + "not JSON: found a NUL byte, expected text (UTF-8)");
+}
+
+void fail_json(const std::string& text, const std::string& file, std::size_t position,
+               const std::string& token, const nlohmann::json::exception& error) {
+  const bool syntax = dynamic_cast<const nlohmann::json::parse_error*>(&error) != nullptr;
+  // Of a number beyond a double's range, the position is its end.
+  const std::size_t back = syntax ? 1 : token.size();
+  throw InputError(place(text, file, position - std::min(position, back)) +
+                   (syntax ? "not JSON: " : "not usable JSON: ") + plain_reason(error.what()));
+}
+
 JsonIndex::JsonIndex(const std::string& text) {
   Walker(text, offsets_, duplicate_).document();
 }
@@ -185,26 +207,11 @@ std::size_t JsonIndex::offset(const std::string& pointer) const {
 }
 
 JsonText::JsonText(std::string text, std::string file) : text_(std::move(text)), file_(std::move(file)) {
-  const auto at = [&](std::size_t offset) {
-    const TextPosition p = position_in(text_, offset);
-    return file_ + ":" + std::to_string(p.line) + ":" + std::to_string(p.column) + ": ";
-  };
-  // nlohmann-json takes a NUL for the end of the text and would not look at what follows.
-  const std::size_t nul = text_.find('\0');
-  if (nul != std::string::npos)
-    throw InputError(at(nul) + "not JSON: found a NUL byte, expected text (UTF-8)");
-  try {
-    root_ = nlohmann::json::parse(text_);
-  } catch (const nlohmann::json::parse_error& e) {
-    throw InputError(at(e.byte > 0 ? e.byte - 1 : 0) + "not JSON: " + plain_reason(e.what()));
-  } catch (const nlohmann::json::exception& e) {
-    throw InputError(at(offset_of_error(text_)) + "not usable JSON: " + plain_reason(e.what()));
-  }
-  try {
-    index_ = std::make_unique<JsonIndex>(text_);
-  } catch (const InputError& e) {
-    throw InputError(file_ + ": " + e.what());
-  }
+  refuse_nul(text_, file_);
+  Check check(text_, file_);
+  nlohmann::json::sax_parse(text_, &check);
+  root_ = nlohmann::json::parse(text_);
+  index_ = std::make_unique<JsonIndex>(text_);
   if (!index_->duplicate().empty())
     throw InputError(where(index_->duplicate() + "#") + ": the key " + printable_name(index_->duplicate()) +
                      " occurs twice: keep one");

@@ -15,9 +15,11 @@ struct TextPosition {
   std::size_t line = 1, column = 1;
 };
 TextPosition position_in(const std::string& text, std::size_t offset);
+/// Moves a position from one byte of a text to a later one.
+void advance(TextPosition& position, const std::string& text, std::size_t from, std::size_t to);
 
 /// Finds the offset of each value of a JSON text by its JSON pointer (RFC 6901), and of each member's key by
-/// the pointer followed by '#'. The text must be one that a parser has accepted.
+/// the pointer followed by '#'. The text must be one that a parser has accepted, and not nested deeply.
 class JsonIndex {
  public:
   explicit JsonIndex(const std::string& text);
@@ -32,7 +34,8 @@ class JsonIndex {
 
 class JsonText {
  public:
-  /// Parses a text; throws InputError "file:line:column: ..." for bad syntax and for repeated keys.
+  /// Parses a text; throws InputError "file:line:column: ..." for bad syntax and for repeated keys, and for
+  /// more than 64 levels.
   JsonText(std::string text, std::string file);
 
   const nlohmann::json& root() const { return root_; }
@@ -47,6 +50,14 @@ class JsonText {
   nlohmann::json root_;
   std::unique_ptr<JsonIndex> index_;
 };
+
+/// Throws InputError if a text has a NUL byte: nlohmann-json takes one for the end of the text, and would not
+/// look at what follows.
+void refuse_nul(const std::string& text, const std::string& file);
+/// Throws the InputError "file:line:column: ..." of a text that nlohmann-json gave up on; the arguments are
+/// those of nlohmann::json_sax::parse_error().
+[[noreturn]] void fail_json(const std::string& text, const std::string& file, std::size_t position,
+                            const std::string& token, const nlohmann::json::exception& error);
 
 /// Returns a member's name or an index as a part of a JSON pointer.
 std::string pointer_part(const std::string& key);

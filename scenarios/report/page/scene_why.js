@@ -6,6 +6,14 @@ const short = (x) => {
   return text.replace("e+", "e").replace("-", "\u2212");
 };
 
+/** Returns a positive number rounded down to four digits: of a lower bound, one. */
+const least = (x) => {
+  const near = Number(x.toPrecision(4));
+  return short(near > x ? x - 0.5 * 10 ** (Math.floor(Math.log10(x)) - 3) : x);
+};
+/** Distances of more ulps are shown without them: doubles decide these easily. */
+const MOST_ULPS = 1e6;
+
 class WhyPanel {
   constructor(explanations, events, selection) {
     Object.assign(this, { explanations, events, selection });
@@ -96,13 +104,19 @@ class WhyPanel {
       `On which side of the other face\u2019s ${this.events.dim === 3 ? "plane" : "line"}, exactly, and how far off`,
     ]);
     if (e.meet === 0)
-      rows.push(["distance", `${short(e.distance)}, ${short(e.ulps)} ulps`, "Of the largest coordinate"]);
-    else
+      rows.push(
+        e.ulps < MOST_ULPS
+          ? ["distance", `${short(e.distance)}, ${short(e.ulps)} ulps`, "Of the largest coordinate"]
+          : ["distance", short(e.distance)],
+      );
+    else {
+      // Those that look alike, once.
+      const points = [...new Set(e.points.map((p) => `(${this.world(p).map(short).join(", ")})`))];
       rows.push([
         "contact",
-        `${["nothing", "a point", "a segment"][e.points.length] || "a polygon"}, ` +
-          e.points.map((p) => `(${this.world(p).map(short).join(", ")})`).join(" to "),
+        `${["nothing", "a point", "a segment"][points.length] || "a polygon"}, ${points.join(" to ")}`,
       ]);
+    }
     return rows;
   }
 
@@ -155,7 +169,7 @@ class WhyPanel {
       ],
       ...(e.boxes ? [["nearest boxes", this.boxWords(e.boxes)]] : []),
       ...(e.plane
-        ? [["plane", `across (${e.plane.normal.map(short).join(", ")}), gap ${short(e.plane.gap)}`]]
+        ? [["plane", `across (${e.plane.normal.map(short).join(", ")}), gap >= ${least(e.plane.gap)}`]]
         : []),
       ...(e.near ? [["nearest faces", this.nearButton(e.near)]] : []),
     ]);
@@ -164,7 +178,7 @@ class WhyPanel {
   stepWords(e) {
     const inside = e.relation !== "separate";
     if (e.plane)
-      return `Apart: a plane has all of A on one side and all of B on the other, ${short(e.plane.gap)} between them.`;
+      return `Apart: a plane has all of A on one side and all of B on the other, gap >= ${least(e.plane.gap)}.`;
     const what = inside
       ? "No two faces meet, though one body is inside the other"
       : "Apart, though no plane was found that has one body on each side";

@@ -30,7 +30,7 @@ TEST_CASE("inspect lists every loop, and close closes them") {
   }
   const std::size_t holes = before["boundary_loops"].size();
   REQUIRE(holes > 20);  // more than the text has lines for
-  CHECK(before["findings"][0].get<std::string>().find("(" + std::to_string(edges) + " times)") !=
+  CHECK(before["findings"][0]["text"].get<std::string>().find("(" + std::to_string(edges) + " times)") !=
         std::string::npos);
   const Outcome text = run(folder, {"inspect", "m.ply"});
   CHECK(text.out.find("boundary: " + std::to_string(edges) + " open edges in " + std::to_string(holes) +
@@ -51,6 +51,31 @@ TEST_CASE("inspect lists every loop, and close closes them") {
   const Mesh was = read_mesh(folder / "m.ply"), is = read_mesh(folder / "whole.ply");
   CHECK(std::equal(was.face_vertices.begin(), was.face_vertices.end(), is.face_vertices.begin()));
   CHECK(is.vertices == was.vertices);
+}
+
+TEST_CASE("a sheet is told from a body with a hole, by inspect and by close") {
+  const Folder folder;
+  const std::string vertices = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0.5 0.5 0\n",
+                    faces = "f 1 2 5\nf 2 3 5\nf 3 4 5\nf 4 1 5\n";
+  folder.write("sheet.obj", vertices + faces);
+  const std::string what = "this is a sheet: it bounds nothing";
+  CHECK(run(folder, {"inspect", "sheet.obj"}).out.find("; " + what + "\n") != std::string::npos);
+  CHECK(check_refused(folder, {"close", "sheet.obj", "-o", "closed.obj"}).err.find(what) !=
+        std::string::npos);
+  // Beside a body with a hole, it is named and left.
+  folder.write("both.obj", vertices + faces +
+                               "v 5 0 0\nv 6 0 0\nv 5 1 0\nv 5 0 1\n"
+                               "f 6 8 7\nf 6 7 9\nf 6 9 8\n");
+  CHECK(run(folder, {"inspect", "both.obj"})
+            .out.find("close the hole (lrbscope close), but 1 of the 2 open components is a sheet: it bounds "
+                      "nothing") != std::string::npos);
+  const Outcome o = run(folder, {"close", "both.obj", "-o", "closed.obj"});
+  CHECK(o.code == 1);
+  CHECK(o.out.find("1 of 2 holes closed") != std::string::npos);
+  CHECK(o.out.find("left: its surface is a sheet: it bounds nothing") != std::string::npos);
+  // A bend of one unit in the last place is no plane any more.
+  folder.write("bent.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0.5 0.5 1e-300\n" + faces);
+  CHECK(run(folder, {"inspect", "bent.obj"}).out.find("close the hole") != std::string::npos);
 }
 
 TEST_CASE("close says what it leaves, with exit code 1, and refuses what it cannot take") {

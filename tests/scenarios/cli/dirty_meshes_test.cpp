@@ -1,5 +1,6 @@
 /// Meshes that are not clean, given to the program: what inspect says, what build does, what query answers.
 
+#include <algorithm>
 #include <numbers>
 #include <random>
 #include <sstream>
@@ -309,7 +310,7 @@ void check_inspect(const Folder& folder, const Row& row) {
   CAPTURE(j["findings"].dump(1));
   CHECK(j["findings"].size() == row.findings.size());
   for (std::size_t i = 0; i < std::min(row.findings.size(), j["findings"].size()); ++i)
-    CHECK(j["findings"][i].get<std::string>().starts_with("m.obj: " + row.findings[i]));
+    CHECK(j["findings"][i]["text"].get<std::string>().starts_with("m.obj: " + row.findings[i]));
   CHECK(j["buildable"] == (row.build == Build::done));
   CHECK(j["queryable"] == true);
   CHECK(j["bounds_solid"] == (row.held != kNone));
@@ -384,8 +385,17 @@ TEST_CASE("corners in one place are kept apart if that is asked for") {
   CHECK(o.err.empty());
   const json findings = json::parse(o.out)["findings"];
   REQUIRE(findings.size() == 3);
-  CHECK(findings[0].get<std::string>().starts_with("m.obj: an edge has a face on one side only (240 times)"));
-  CHECK(findings[2].get<std::string>().starts_with("m.obj: two vertices lie in one place (198 times)"));
+  CHECK(findings[0]["text"].get<std::string>().starts_with(
+      "m.obj: an edge has a face on one side only (240 times)"));
+  CHECK(
+      findings[2]["text"].get<std::string>().starts_with("m.obj: two vertices lie in one place (198 times)"));
+  CHECK(findings[0]["kind"] == "open_edge");
+  CHECK(findings[0]["count"] == 240);
+  CHECK(findings[0]["elements"].size() == 240);  // all, not the few that the text names
+  CHECK(findings[0]["elements"][239][1] == 239);
+  CHECK(std::is_sorted(findings[0]["elements"].begin(), findings[0]["elements"].end()));
+  CHECK(findings[2]["kind"] == "duplicate_vertex");
+  CHECK(findings[2]["elements"].size() == 198);
   check_refused(folder, {"build", "m.obj", "--no-join"});
   std::string notes;
   folder.write("pose.txt", pose_line(Pose::translation({0, 0, 0.4})));

@@ -52,7 +52,7 @@ TEST_CASE("why: bodies that are apart") {
   const Bodies bodies;
   const Outcome text = bodies.why({"--pose", "1"});
   CHECK(text.code == 0);
-  CHECK(text.out.rfind("separate, 0 pairs\nboxes round the bodies: gap ", 0) == 0);
+  CHECK(text.out.rfind("separate, 0 pairs\nboxes round the bodies: gap >= ", 0) == 0);
   CHECK(text.out.find("prove it too") != std::string::npos);
   const auto j = nlohmann::json::parse(bodies.why({"--pose", "1", "--json"}).out);
   CHECK(j["roots"]["gap"] > 5);
@@ -62,13 +62,33 @@ TEST_CASE("why: bodies that are apart") {
   CHECK(pair["meet"] == "disjoint");
   CHECK(pair["decided_by"] == "node_boxes");
   CHECK(pair["distance"] > 5);
+  const std::string far = bodies.why({"--pose", "1", "--pair", "0,0"}).out;
+  CHECK(far.find("\ndistance ") != std::string::npos);
+  CHECK(far.find("units in the last place") == std::string::npos);
   CHECK(render::read_png(bodies.folder / "apart.png").image.width() == 1200);
+}
+
+TEST_CASE(
+    "why: faces that nearly touch, in units in the last place; a contact too short to print is a point") {
+  const Folder folder;
+  const std::string foot = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 -1\nf 1 2 3\nf 1 3 4\nf 1 4 2\nf 2 4 3\n";
+  const auto text = [&](const std::string& z) {
+    folder.write("foot.obj", foot);
+    // Its edge from vertex 1 to 2 is 1e-9 long in the plane of the foot's first face.
+    folder.write("tip.obj", "v 0.25 0.25 " + z + "\nv 0.2500000001 0.25 " + z +
+                                "\nv 0.25 0.3 1\nv 0.2 0.2 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n");
+    return run(folder, {"-q", "why", "foot.obj", "tip.obj", "--pair", "0,0"}).out;
+  };
+  const std::string touching = text("0");
+  CAPTURE(touching);
+  CHECK(touching.find("contact: point (0.25, 0.25, 0)\n") != std::string::npos);
+  CHECK(text("1e-15").find("units in the last place") != std::string::npos);
 }
 
 TEST_CASE("why: what parts bodies that are apart") {
   const Bodies bodies;
-  CHECK(bodies.why({"--pose", "1", "-o", "plane.png"}).out.find("has all of A on one side") !=
-        std::string::npos);
+  CHECK(bodies.why({"--pose", "1", "-o", "plane.png"})
+            .out.find("has all of A on one side and all of B on the other, gap >= ") != std::string::npos);
   const auto j = nlohmann::json::parse(bodies.why({"--pose", "1", "--json"}).out);
   CHECK(j["plane"]["gap"] > 5);
   // Beside the whole is a close-up that looks along the plane: a line in the middle of the gap.

@@ -82,7 +82,7 @@ TEST_CASE("--up turns what a scenario gives; --from is in the axes of the files"
   test::check_refused(folder, {"inspect", "cube.obj", "--render", "--size", "5x5", "-o", "no.png"});
 }
 
-TEST_CASE("--animate: by ffmpeg, or the line that would") {
+TEST_CASE("--animate: by ffmpeg; without it, refused before anything is drawn") {
   const test::Folder folder;
   folder.write("s.json",
                R"({"name": "x", "purpose": "y", "show": "refinement", "bodies": {"a": {"generator": "gear"}},
@@ -95,11 +95,24 @@ TEST_CASE("--animate: by ffmpeg, or the line that would") {
   CAPTURE(o.err);
   CHECK(o.code == 0);
   CHECK(test::slurp(folder / "x.gif") == "frame_0000.png\nframe_0001.png\nframe_0002.png\n");
+  folder.write("cube.obj", test::kCube);
   ::setenv("LRB_FFMPEG", "/no such program", 1);
-  o = test::run(folder, {"run", "s.json", "-o", "run", "--animate", "y.mp4"});
-  CHECK(o.code == 0);
-  CHECK(o.err.find("there is no ffmpeg") != std::string::npos);
-  CHECK(o.err.find("y.mp4") != std::string::npos);
+  for (const std::vector<std::string>& command : std::vector<std::vector<std::string>>{
+           {"run", "s.json"}, {"render", "run"}, {"collide", "cube.obj", "cube.obj"}}) {
+    std::vector<std::string> arguments = command;
+    arguments.insert(arguments.end(), {"-o", "other", "--animate", "y.mp4"});
+    o = test::run(folder, arguments);
+    CAPTURE(o.err);
+    CHECK(o.code == 3);
+    CHECK(o.error_lines() == 1);
+    CHECK(o.err.find("--animate: there is no program /no such program") != std::string::npos);
+    CHECK_FALSE(std::filesystem::exists(folder / "other"));
+  }
+  ::unsetenv("LRB_FFMPEG");
+  const std::string path = ::getenv("PATH");
+  ::setenv("PATH", "/nowhere", 1);  // of the shell, too, which knows how to find /bin/sh
+  CHECK(test::run(folder, {"run", "s.json", "-o", "other", "--animate", "y.mp4"}).code == 3);
+  ::setenv("PATH", path.c_str(), 1);
   ::setenv("LRB_FFMPEG", "/bin/false", 1);
   CHECK(test::run(folder, {"run", "s.json", "-o", "run", "--animate", "z.webp"}).code == 3);
   ::unsetenv("LRB_FFMPEG");

@@ -66,7 +66,7 @@ TEST_CASE("lengths on paper") {
 
 TEST_CASE("panels of one body: from the outermost wrapper to the body, in equal ratios of faces") {
   const Shipped s("figure2");
-  const std::vector<std::uint32_t> faces = faces_after(s, choose(s.run, {}));
+  const std::vector<std::uint32_t> faces = faces_after(s, choose(s.run, {}).events);
   REQUIRE(faces.size() == 6);
   CHECK(faces.front() == s.recording.trace.header.bodies[0].outer_faces);
   CHECK(faces.back() == s.recording.trace.header.bodies[0].real_faces);
@@ -75,13 +75,44 @@ TEST_CASE("panels of one body: from the outermost wrapper to the body, in equal 
     CAPTURE(i);
     CHECK(std::log(static_cast<double>(faces[i]) / faces[i - 1]) == doctest::Approx(whole / 5).epsilon(0.35));
   }
-  const std::vector<std::uint32_t> asked = faces_after(s, choose(s.run, {Choice::By::faces, {9, 40, 1000}}));
+  const std::vector<std::uint32_t> asked =
+      faces_after(s, choose(s.run, {Choice::By::faces, {9, 40, 1000}}).events);
   REQUIRE(asked.size() == 3);
   CHECK(std::abs(static_cast<int>(asked[1]) - 40) <= 3);
   CHECK(asked[2] == faces.back());
-  const auto layers = choose(s.run, {Choice::By::layers, {}});
+  const auto layers = choose(s.run, {Choice::By::layers, {}}).events;
   CHECK(layers.size() == s.recording.trace.header.bodies[0].layers + 1);
   CHECK(layers.back() + 1 == s.recording.trace.events.size());
+}
+
+TEST_CASE("panels of layers: 26 at most, evenly chosen, and what is left out is said") {
+  const Shipped few("figure2"), many("figure2_mesh");
+  CHECK(choose(few.run, {Choice::By::layers, {}}).left_out.empty());
+  const std::uint32_t layers = many.recording.trace.header.bodies[0].layers;
+  REQUIRE(layers >= kMostPanels);
+  const Chosen chosen = choose(many.run, {Choice::By::layers, {}});
+  CHECK(chosen.events.size() == kMostPanels);
+  CHECK(chosen.events.front() == 0);
+  CHECK(chosen.events.back() + 1 == many.recording.trace.events.size());
+  CHECK(chosen.left_out ==
+        "26 of " + std::to_string(layers + 1) + " panels are shown, evenly chosen; --events shows others");
+}
+
+TEST_CASE("titles of panels name the view, where there are several") {
+  const Shipped s("stick_through_wall");
+  FigureSpec spec;
+  spec.format = FigureSpec::Format::svg;
+  spec.dpi = 40;
+  spec.choice.panels = 1;
+  spec.titles = true;
+  spec::FrameSpec frames;
+  frames.views.resize(2);
+  frames.views[0].title = "First";
+  frames.views[1].title = "Second";
+  const Figure figure = draw_figure(s.run, frames, spec, run::kSilent);
+  CHECK(figure.panels == 2);
+  CHECK(count(figure.bytes, ">(a) First, step ") == 1);
+  CHECK(count(figure.bytes, ">(b) Second, step ") == 1);
 }
 
 TEST_CASE("panels of two bodies: time steps, the first contact among them") {
@@ -89,10 +120,10 @@ TEST_CASE("panels of two bodies: time steps, the first contact among them") {
   std::uint32_t first = 0;
   while (s.recording.trace.steps[first].result.pair_count == 0) ++first;
   bool found = false;
-  for (const trace::EventId e : choose(s.run, {}))
+  for (const trace::EventId e : choose(s.run, {}).events)
     found |= s.recording.trace.steps[s.recording.trace.step_of(e)].index == first;
   CHECK(found);
-  const auto asked = choose(s.run, {Choice::By::steps, {2, 0}});
+  const auto asked = choose(s.run, {Choice::By::steps, {2, 0}}).events;
   REQUIRE(asked.size() == 2);
   CHECK(s.recording.trace.step_of(asked[0]) == 0);
   CHECK(s.recording.trace.step_of(asked[1]) == 2);

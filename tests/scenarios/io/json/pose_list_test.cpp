@@ -84,6 +84,44 @@ TEST_CASE("poses in JSON: what is wrong is said with file, line and column") {
   fails("[[1,2,3,4,5,6,7,8,9,10,11,12,0,0,1,1]]",
         "p.json:1:2: /0: the last row of the 4x4 pose is not 0, 0, 0, 1");
   fails("[[1,2,3,4,5,6,7,8,9,10,11,\"x\"]]", "p.json:1:27: /0/11: expected a number, found string");
+  fails("[[1,2,3,4,[5,6,7,[8]]]]", "p.json:1:18: /0/4/3: expected a number, found array");
+  fails("[[1,{\"x\": 2}]]", "p.json:1:5: /0/1: expected a number, found object");
+  fails("[1, 2]", "p.json:1:2: /0: expected an array, found number");
+  fails("[ null]", "p.json:1:3: /0: expected an array, found null");
+  fails("7", "p.json:1:1: expected an array of poses, or an object with such an array as \"poses\"");
+  fails("{\"poses\": 7}", "p.json:1:11: /poses: expected an array, found number");
+  fails("{\"poses\": []}", "p.json:1:11: /poses: expected at least 1 items, found 0");
+  fails("{\"poses\": [[1, true]]}", "p.json:1:16: /poses/0/1: expected a number, found boolean");
+  fails("{\"poses\":\n[[1,2,3,4,5,6,7,8,9,10,11,12]], \"poses\": []}",
+        "p.json:2:33: the key /poses occurs twice: keep one");
+  fails("[[1,2,3,4,5,6,7,8,9,10,11,12]] 5",
+        "p.json:1:32: not JSON: value - unexpected number literal; expected end of input");
+}
+
+TEST_CASE("poses in JSON: other members are skipped, whatever they hold") {
+  const io::PoseList list = io::parse_pose_json(
+      "\xef\xbb\xbf{\"meta\": {\"poses\": [1, {\"poses\": null}], \"x\": [[], 1.5, \"y\"]},\n \"poses\": "
+      "[[1,2,3,4,5,6,7,8,9,10,11,12],\n[1 , 2,3,4,\t[5,6,7,8],9,10,11,12]], \"after\": [{}]}",
+      "p.json");
+  REQUIRE(list.poses.size() == 2);
+  CHECK(same(list.poses[0], kPose));
+  CHECK(same(list.poses[1], kPose));
+  CHECK(list.places == std::vector<std::string>{"p.json:2:12", "p.json:3:1"});
+}
+
+TEST_CASE("poses in JSON: refused at the first mistake, before the rest is read; large files not at all") {
+  std::string text = "[";
+  for (int i = 0; i < 1'000'000; ++i) text += "[],";
+  CHECK_THROWS_WITH_AS(io::parse_pose_json(text + "no JSON", "p.json"),
+                       "p.json:1:2: /0: expected a pose of 12 numbers (3x4, row by row) or 16 (4x4), found 0",
+                       InputError);
+  CHECK_THROWS_WITH_AS(io::parse_pose_json(std::string(1'000'000, '['), "p.json"),
+                       "p.json:1:4: /0/0/0: expected a number, found array", InputError);
+  const test::Folder folder;
+  folder.write("p.json", "[]");
+  std::filesystem::resize_file(folder / "p.json", (std::uintmax_t{64} << 20) + 1);
+  CHECK_THROWS_WITH_AS(io::open_poses(folder / "p.json"), doctest::Contains("found more than 67108864 bytes"),
+                       InputError);
 }
 
 TEST_CASE("poses: each form is read back as the same numbers, to the last bit") {

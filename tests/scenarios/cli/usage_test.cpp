@@ -1,0 +1,121 @@
+/// What the program says of a command line that it cannot take, and of limits that the machine sets.
+
+#include <doctest/doctest.h>
+
+#include "tests/support/program.hpp"
+
+namespace lrb::test {
+namespace {
+
+bool says(const Outcome& o, const std::string& what) {
+  return o.err.find(what) != std::string::npos;
+}
+
+TEST_CASE("usage: a misspelt command is named, with the nearest one") {
+  const Folder folder;
+  const auto refused = [&](const std::vector<std::string>& arguments, const std::string& message) {
+    CHECK(check_refused(folder, arguments).err == "lrbscope: " + message + "\n");
+  };
+  refused({"figre"}, "'figre' is no command of lrbscope; did you mean \"figure\"? (see lrbscope --help)");
+  refused({"figre", "run", "--width", "85mm"},
+          "'figre' is no command of lrbscope; did you mean \"figure\"? (see lrbscope --help)");
+  refused({"xyzzyplugh"}, "'xyzzyplugh' is no command of lrbscope (see lrbscope --help)");
+  refused({"golden", "tst"},
+          "'tst' is no command of lrbscope golden; did you mean \"test\"? (see lrbscope golden --help)");
+  refused({}, "A subcommand is required (see lrbscope --help)");
+}
+
+TEST_CASE("usage: errors name the help of their own command") {
+  const Folder folder;
+  for (const auto& [arguments, help] : std::vector<std::pair<std::vector<std::string>, std::string>>{
+           {{"figure"}, "(see lrbscope figure --help)"},
+           {{"figure", "figure2", "--wdth", "85mm"}, "(see lrbscope figure --help)"},
+           {{"golden", "test", "--jobs", "0"}, "(see lrbscope golden test --help)"},
+           {{"levels"}, "(see lrbscope levels --help)"},
+           {{"--nonsense"}, "(see lrbscope --help)"}}) {
+    const Outcome o = check_refused(folder, arguments);
+    CHECK(says(o, help));
+  }
+}
+
+TEST_CASE("usage: an empty text is no value of any option") {
+  const Folder folder;
+  folder.write("cube.obj", kCube);
+  folder.write("apart.txt", kApart);
+  for (const std::vector<std::string>& arguments : std::vector<std::vector<std::string>>{
+           {"build", "cube.obj", "-o", ""},
+           {"run", "figure2", "-o", ""},
+           {"collide", "cube.obj", "cube.obj", "-o", ""},
+           {"figure", "cube.obj", "--output", ""},
+           {"export", "cube.obj", "-o", ""},
+           {"close", "cube.obj", "-o", ""},
+           {"inspect", "cube.obj", "--render", "-o", ""},
+           {"inspect", "cube.obj", "--draw", ""},
+           {"distance", "cube.obj", "cube.obj", "--poses", "apart.txt", "--draw", ""},
+           {"query", "cube.obj", "cube.obj", "--poses", ""},
+           {"golden", "test", "--goldens", ".", "--junit", ""},
+           {"golden", "test", "--goldens", ".", "-o", ""},
+           {"levels", "cube.obj", "-o", ""},
+           {"inspect", ""}}) {
+    CAPTURE(arguments[0]);
+    const Outcome o = check_refused(folder, arguments);
+    CHECK(says(o, ": expected a value, found an empty text; is a variable unset?"));
+  }
+}
+
+TEST_CASE("files are written into folders that are made for them, by every command") {
+  const Folder folder;
+  folder.write("cube.obj", kCube);
+  folder.write("apart.txt", kApart);
+  folder.write("open.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\n");
+  const auto writes = [&](std::vector<std::string> arguments, const std::string& file) {
+    CAPTURE(file);
+    arguments.push_back(file);
+    const Outcome o = run(folder, arguments);
+    CAPTURE(o.err);
+    CHECK(o.code == 0);
+    CHECK(std::filesystem::exists(folder / file));
+  };
+  writes({"export", "cube.obj", "-o"}, "a/b/x.ply");
+  writes({"build", "cube.obj", "-o"}, "c/d/x.lrb");
+  writes({"close", "open.obj", "-o"}, "e/f/x.obj");
+  writes({"distance", "cube.obj", "cube.obj", "--poses", "apart.txt", "--draw"}, "g/h/x.png");
+  writes({"figure", "cube.obj", "--panels", "1", "-o"}, "i/j/x.pdf");
+  check_refused(folder, {"close", "open.obj", "-o", "k/x.stl"});
+}
+
+TEST_CASE("commands that take a recorded run take its folder, and its trace") {
+  const Folder folder;
+  folder.write("cube.obj", kCube);
+  folder.write("apart.txt", kApart);
+  REQUIRE(run(folder, {"-q", "collide", "cube.obj", "cube.obj", "--poses", "apart.txt", "--frames", "none",
+                       "-o", "run"})
+              .code == 0);
+  const auto both = [&](std::vector<std::string> before, const std::vector<std::string>& after) {
+    for (const char* given : {"run", "run/trace.json"}) {
+      std::vector<std::string> arguments = before;
+      arguments.emplace_back(given);
+      arguments.insert(arguments.end(), after.begin(), after.end());
+      const Outcome o = run(folder, arguments);
+      CAPTURE(o.err);
+      CHECK(o.code == 0);
+    }
+  };
+  both({"render"}, {"--most", "1", "-o", "drawn"});
+  CHECK(std::filesystem::exists(folder / "drawn/frames/frame_0000.png"));
+  both({"export"}, {"-o", "run.ply"});
+  both({"figure"}, {"--panels", "1", "-o", "run.pdf"});
+  both({"why", "--run"}, {});
+  both({"compare", "run"}, {"-o", "compared"});
+  CHECK(says(check_refused(folder, {"render", ".", "-o", "none"}), "there is no trace.json"));
+}
+
+TEST_CASE("inspect names the option of pictures that has no picture") {
+  const Folder folder;
+  folder.write("cube.obj", kCube);
+  CHECK(check_refused(folder, {"inspect", "cube.obj", "--regions", "--up", "y"}).err ==
+        "lrbscope: --up: is for pictures; add --render or --draw, or leave --up out\n");
+}
+
+}  // namespace
+}  // namespace lrb::test
