@@ -206,7 +206,11 @@ add_compiler_cache() {
     { cat "$work/ccache.log"; return 1; }
   rm -rf "$root"/var/lib/apt/lists/* # a bare machine has none
 }
-step_check() { inside ./check; }
+step_check() {
+  inside ./check
+  # Nothing may be skipped where the formatter can be had.
+  [ "$suite" != bookworm ] || inside bash -c 'command -v clang-format-14'
+}
 # The tests that write files and start programs.
 user_tests='^(mesh_tests|lrb_tests|trace_tests|render_tests|scenarios_tests|crowd_tests|golden_tests|stability.*|measure_tests|package|faults)$'
 # Without root, with the packages: the same clone, given away, so that only what depends on the user is done again.
