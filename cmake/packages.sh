@@ -15,13 +15,14 @@ fi
 installed=$(dpkg-query -W -f '${db:Status-Status} ${Package} ${Provides}\n' | sed -n 's/^installed //p' | sed 's/([^)]*)//g' | tr -s ', ' '\n')
 missing=()
 part=""
-while IFS= read -r line; do
+here=$(. /etc/os-release && echo "${VERSION_CODENAME:-}")
+while read -r line release; do
   case "$line" in
     "" | "#"*) ;;
     "["*"]") part="${line:1:-1}" ;;
     *)
       for wanted in "$@"; do
-        if [ "$part" = "$wanted" ] && ! grep -Fqx -- "$line" <<<"$installed"; then
+        if [ "$part" = "$wanted" ] && [ "${release:-$here}" = "$here" ] && ! grep -Fqx -- "$line" <<<"$installed"; then
           missing+=("$line")
         fi
       done

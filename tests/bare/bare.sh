@@ -1,12 +1,13 @@
 #!/usr/bin/env bash
-# tests/bare/bare.sh [--commit C] [--until STEP] [--minutes M] [--no-cache] [--keep]: proves the README's two commands on a
-# bare Debian 12. Makes a root with debootstrap, from the package sources of this machine, clones commit C (HEAD) into it,
-# and runs ./run and ./check there as root would type them, in a clean environment; then again as a user without root; then
-# the rest of ./check --full, in the end with the engines of others installed. Debian packages are made there, and installed in
-# another bare root, where the program runs and a stranger's project is built. Prints how long every step took.
+# tests/bare/bare.sh [--suite S] [--commit C] [--until STEP] [--minutes M] [--no-cache] [--keep]: proves the README's two
+# commands on a bare Debian: bookworm (12, the default of S) or trixie (13). Makes a root with debootstrap, from the package
+# sources of this machine, clones commit C (HEAD) into it, and runs ./run and ./check there as root would type them, in a clean
+# environment; then again as a user without root; then the rest of ./check --full, in the end with the engines of others
+# installed. Debian packages are made there, and installed in another bare root, where the program runs and a stranger's project
+# is built. Prints how long every step took.
 # Steps: root clone stranger run check user api browser again peers python debs site sanitizers clang fuzz tidy; --until ends after one of them.
 # --minutes: steps after `user` end when M minutes are over, and the table says which were left out.
-# Kept between runs, in ${XDG_CACHE_HOME:-~/.cache}/lrbscope-bare: the bare root and downloaded packages; and this machine's
+# Kept between runs, in ${XDG_CACHE_HOME:-~/.cache}/lrbscope-bare/S: the bare root and downloaded packages; and this machine's
 # compiler cache is used. --no-cache does without all three, for honest times. --keep leaves the root to be looked at.
 # Exits with 1 if a step failed, 2 for words that it does not know, 3 where it may not run or can make no root.
 # Needs root and debootstrap. Everything runs in a mount namespace of its own, so that no mount can stay behind.
@@ -14,25 +15,26 @@ set -euo pipefail
 script=$(readlink -f "${BASH_SOURCE[0]}")
 here=$(dirname "$script")
 repository=$(cd "$here/../.." && pwd)
-suite=bookworm
 home=/root/lrbscope # the clone, inside the root
 
-usage() { sed -n '2,12s/^# //p' "$script" >&2 && exit 2; }
+usage() { sed -n '2,13s/^# //p' "$script" >&2 && exit 2; }
 refuse() { echo "bare.sh: $1" >&2 && exit 3; }
 
 # ---- the package sources of this machine
 
-# Prints this machine's sources of Debian's own packages, one "URI RELEASE" a line; Debian's servers where it has none.
+# Prints this machine's sources of Debian's own packages, one "URI RELEASE" a line; Debian's servers where it has none. On a
+# machine with another release of Debian, the sources of the suite have the same addresses.
 debian_sources() {
-  local found
-  found=$(apt-get indextargets --format '$(REPO_URI)|$(RELEASE)|$(COMPONENT)|$(ORIGIN)' 'Created-By: Packages' 2>/dev/null |
-    awk -F'|' -v s="$suite" '($2 == s || $2 == s "-updates" || $2 == s "-security") && $3 == "main" &&
-                             ($4 == "" || $4 == "Debian" || $4 ~ /^\$/) { print $1, $2 }' | sort -u || true)
-  if ! grep -q " $suite$" <<<"$found"; then
+  local release found
+  for release in "$suite" "$(. /etc/os-release && echo "${VERSION_CODENAME:-none}")"; do
+    found=$(apt-get indextargets --format '$(REPO_URI)|$(RELEASE)|$(COMPONENT)|$(ORIGIN)' 'Created-By: Packages' 2>/dev/null |
+      awk -F'|' -v r="$release" -v s="$suite" '($2 == r || $2 == r "-updates" || $2 == r "-security") && $3 == "main" &&
+                               ($4 == "" || $4 == "Debian" || $4 ~ /^\$/) { sub(r, s, $2); print $1, $2 }' | sort -u || true)
+    ! grep -q " $suite$" <<<"$found" || break
     found="http://deb.debian.org/debian $suite
 http://deb.debian.org/debian $suite-updates
 http://deb.debian.org/debian-security $suite-security"
-  fi
+  done
   echo "$found"
 }
 
@@ -145,7 +147,7 @@ table() {
   done
   printf '%-12s %8d %18d\n' all $all $all_busy
   [ ${#left_out[@]} = 0 ] || echo "no time was left for, or to end: ${left_out[*]}"
-  echo "on $(nproc) processors, load $(cut -d' ' -f1-3 /proc/loadavg), caches $([ "$cached" = 1 ] && echo kept || echo off)"
+  echo "$suite, on $(nproc) processors, load $(cut -d' ' -f1-3 /proc/loadavg), caches $([ "$cached" = 1 ] && echo kept || echo off)"
 }
 finish() {
   table
@@ -204,7 +206,11 @@ add_compiler_cache() {
     { cat "$work/ccache.log"; return 1; }
   rm -rf "$root"/var/lib/apt/lists/* # a bare machine has none
 }
-step_check() { inside ./check; }
+step_check() {
+  inside ./check
+  # Nothing may be skipped where the formatter can be had.
+  [ "$suite" != bookworm ] || inside bash -c 'command -v clang-format-14'
+}
 # The tests that write files and start programs.
 user_tests='^(mesh_tests|lrb_tests|trace_tests|render_tests|scenarios_tests|crowd_tests|golden_tests|stability.*|measure_tests|package|faults)$'
 # Without root, with the packages: the same clone, given away, so that only what depends on the user is done again.
@@ -266,10 +272,11 @@ all_steps() {
 
 # ---- from here on: this machine
 
-commit=HEAD until=tidy minutes=0 cached=1 keep=0
+suite=bookworm commit=HEAD until=tidy minutes=0 cached=1 keep=0
 if [ "${1:-}" != --inside ]; then
   while [ $# -gt 0 ]; do
     case "$1" in
+      --suite) suite=${2:?bookworm or trixie} && shift ;;
       --commit) commit=${2:?a commit} && shift ;;
       --until) until=${2:?a step} && shift ;;
       --minutes) minutes=${2:?a number of minutes} && shift ;;
@@ -279,12 +286,13 @@ if [ "${1:-}" != --inside ]; then
     esac
     shift
   done
+  case $suite in bookworm | trixie) ;; *) usage ;; esac
   case " ${all[*]} " in *" $until "*) ;; *) usage ;; esac
   [[ $minutes =~ ^[0-9]+$ ]] || usage
   [ "$(id -u)" = 0 ] || refuse "needs root, to make a root of its own"
   command -v debootstrap >/dev/null || refuse "needs debootstrap (apt-get install debootstrap)"
   commit=$(git -C "$repository" rev-parse --verify -q "$commit^{commit}") || { echo "bare.sh: no such commit" >&2 && exit 2; }
-  cache=${XDG_CACHE_HOME:-$HOME/.cache}/lrbscope-bare
+  cache=${XDG_CACHE_HOME:-$HOME/.cache}/lrbscope-bare/$suite
   mkdir -p "$cache"
   for old in "$cache"/work-*; do # of runs that were killed
     [ ! -d "$old" ] || [ -d "/proc/${old##*-}" ] || rm -rf --one-file-system "$old"
@@ -306,14 +314,14 @@ if [ "${1:-}" != --inside ]; then
   if [ $mounts = 0 ]; then
     mknod "$work/null" c 1 3 2>/dev/null && : >"$work/null" || refuse "may neither mount nor make devices here"
   fi
-  "${apart[@]}" bash "$script" --inside "$commit" "$until" "$minutes" "$cached" "$mounts" "$cache" "$work" &
+  "${apart[@]}" bash "$script" --inside "$commit" "$until" "$minutes" "$cached" "$mounts" "$cache" "$work" "$suite" &
   child=$!
   code=0
   wait "$child" || code=$?
   child=""
   exit $code
 fi
-commit=$2 until=$3 minutes=$4 cached=$5 mounts=$6 cache=$7 work=$8
+commit=$2 until=$3 minutes=$4 cached=$5 mounts=$6 cache=$7 work=$8 suite=$9
 objects=${CCACHE_DIR:-${XDG_CACHE_HOME:-$HOME/.cache}/ccache} # this machine's: an object is what it is wherever it was made
 root=$work/root
 all_steps

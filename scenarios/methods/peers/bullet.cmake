@@ -3,6 +3,7 @@ find_path(LRB_BULLET_INCLUDE btBulletCollisionCommon.h PATH_SUFFIXES bullet DOC 
 function(lrb_add_bullet name precision program)
   find_library(LRB_BULLET_COLLISION${precision} BulletCollision${precision} DOC "Bullet's collision detection")
   find_library(LRB_BULLET_MATH${precision} LinearMath${precision} DOC "Bullet's linear algebra")
+  lrb_need("other engines" libbullet-dev LRB_BULLET_INCLUDE LRB_BULLET_COLLISION${precision} LRB_BULLET_MATH${precision})
   set(libraries "")
   if(LRB_BULLET_INCLUDE AND LRB_BULLET_COLLISION${precision} AND LRB_BULLET_MATH${precision})
     set(libraries ${LRB_BULLET_COLLISION${precision}} ${LRB_BULLET_MATH${precision}})

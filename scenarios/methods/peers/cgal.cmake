@@ -1,4 +1,5 @@
 find_package(CGAL 5.4 QUIET)
+lrb_need("other engines" "libcgal-dev (>= 5.4)" CGAL_FOUND)
 set(cgal_library "")
 if(CGAL_FOUND)
   set(cgal_library CGAL::CGAL)

@@ -1,5 +1,6 @@
 # FCL as packaged: meshes; and, with its other forms of bodies, an octree and convex hulls.
 find_package(fcl 0.7 CONFIG QUIET)
+lrb_need("other engines" "libfcl-dev (>= 0.7)" fcl_FOUND)
 set(fcl_library "")
 if(fcl_FOUND)
   set(fcl_library fcl)
