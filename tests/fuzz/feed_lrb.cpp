@@ -6,13 +6,9 @@
 #include "tests/fuzz/feed.hpp"
 
 namespace lrb::fuzz {
-namespace {
 
-constexpr std::size_t kChecksum = sizeof(std::uint64_t);
-
-/// Without it the checksum would stop nearly every mutation, and what is behind it would never be tried.
 void put_checksum_right(std::string& file) {
-  constexpr std::size_t kVersionAt = 8;
+  constexpr std::size_t kVersionAt = 8, kChecksum = sizeof(std::uint64_t);
   std::uint32_t version = 0;
   if (file.size() < kVersionAt + sizeof version + kChecksum) return;
   std::memcpy(&version, file.data() + kVersionAt, sizeof version);
@@ -20,6 +16,8 @@ void put_checksum_right(std::string& file) {
       lrb_checksum(std::string_view(file).substr(0, file.size() - kChecksum), version);
   file.replace(file.size() - kChecksum, kChecksum, reinterpret_cast<const char*>(&value), kChecksum);
 }
+
+namespace {
 
 /// A file that is accepted may be nonsense as a body, but using it must be safe. One use for each input, of a
 /// small body: using costs more than reading does. For the same reason all pairs are decided in floating

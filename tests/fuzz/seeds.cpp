@@ -51,6 +51,24 @@ std::vector<std::string> lrb_files() {
   return out;
 }
 
+/// No edit at all of each file of feed_fields.cpp, and some edits.
+std::vector<std::string> field_edits() {
+  std::vector<std::string> out;
+  for (char file = 0; file < 12; ++file) out.push_back({file});
+  return out;
+}
+
+/// Bodies of each family, as they are and with their polygons folded.
+std::vector<std::string> folded_bodies() {
+  std::vector<std::string> out = {"0v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n"};
+  for (char family = 0; family < 4; ++family) {
+    out.push_back({'1', family, 5, 0, 3});
+    out.push_back({'2', family, 5, 40, 3});
+    for (int i = 0; i < 40; ++i) out.back() += static_cast<char>(37 * i * i + family);
+  }
+  return out;
+}
+
 std::vector<std::string> poses() {
   return {"1 0 0 3 0 1 0 0 0 0 1 0\n",
           "# note\r\n1,0,0,+3,0,1,0,-0,0,0,1,1e-300\n\n.5 0 0 1e3 0 1 0 0 0 0 1 0 # end",
@@ -141,6 +159,8 @@ std::vector<std::string> crowd_traces() {
 std::vector<Format> formats() {
   return {{"mesh", feed_mesh, meshes()},
           {"lrb", feed_lrb, lrb_files()},
+          {"fields", feed_fields, field_edits()},
+          {"body", feed_body, folded_bodies()},
           {"poses", feed_poses, poses()},
           {"scenario", feed_scenario, scenarios()},
           {"crowd", feed_crowd, shipped(".crowd.json")},
