@@ -31,7 +31,8 @@ struct BodyOptions {
 ///
 /// What bounds no solid (holes, edges of three faces, faces that disagree on which side is outside) is a
 /// body, too: pairs, contacts and distances are exact as of any other. It has no wrappers, and nothing lies
-/// inside it: CollideResult::relation is `undefined` where its surface meets nothing. notes() says why.
+/// inside it: where its surface meets nothing, CollideResult::relation is `separate` if the bodies' boxes in
+/// the world are apart, else `undefined`. notes() says why.
 ///
 /// A body with regions has cells that are proven closed (validate_cells()). If that proof fails, of a mesh or
 /// of an .lrb file, the body has its faces only, and notes() says what failed and where.

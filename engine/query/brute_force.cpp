@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include <Eigen/Geometry>
+
 #include "engine/exact/locate.hpp"
 
 namespace lrb {
@@ -27,9 +29,19 @@ struct WorldBody {
     }
     return crossings % 2 != 0;
   }
+  Eigen::AlignedBox3d box() const {
+    Eigen::AlignedBox3d out;
+    for (FaceId f = 0; f < rep.real_face_count(); ++f)
+      for (const VertexId v : rep.face(f)) out.extend(x[v]);
+    return out;
+  }
   const LrbRep& rep;
   std::vector<Eigen::Vector3d> x;
 };
+
+bool are_apart(const Eigen::AlignedBox3d& a, const Eigen::AlignedBox3d& b) {
+  return (a.max().array() < b.min().array()).any() || (b.max().array() < a.min().array()).any();
+}
 
 /// Returns how many of the components of `inner` lie in `outer`.
 std::size_t held(const WorldBody& inner, const WorldBody& outer) {
@@ -39,7 +51,8 @@ std::size_t held(const WorldBody& inner, const WorldBody& outer) {
 }
 
 Relation relation_without_contact(const WorldBody& a, const WorldBody& b) {
-  if (!a.rep.closed() || !b.rep.closed()) return Relation::undefined;
+  if (!a.rep.closed() || !b.rep.closed())
+    return are_apart(a.box(), b.box()) ? Relation::separate : Relation::undefined;
   const std::size_t a_in_b = held(a, b), b_in_a = held(b, a);
   if (a_in_b > 0 &&
       (a_in_b == a.rep.component_vertices().size() || b_in_a != b.rep.component_vertices().size()))

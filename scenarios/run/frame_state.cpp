@@ -132,11 +132,8 @@ std::string FrameState::measured_text() const {
   if (answer == nullptr) return {};
   std::string out;
   if (const auto gap = gap_here()) out = gap->text + " apart";
-  const auto is_said = [](ClashKind kind) {
-    return kind == ClashKind::apart || kind == ClashKind::undecided;
-  };
-  if (answer->clash && !is_said(answer->clash->kind))
-    out += (out.empty() ? "" : ", ") + kind_words(answer->clash->kind);
+  if (answer->clash && answer->clash->kind != ClashKind::apart)
+    out += (out.empty() ? "" : ", ") + kind_words(answer->clash->kind, answer->clash->reason);
   if (const auto way = way_out_here()) out += ", " + way->text + " deep";
   return out;
 }

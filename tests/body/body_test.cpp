@@ -119,7 +119,9 @@ TEST_CASE("what bounds no solid is a body that says what cannot be asked of it")
   REQUIRE(tube.notes().size() == 2);
   CHECK(tube.notes()[0].find("an edge has a face on one side only") != std::string::npos);
   CHECK(tube.notes()[1].find("bounds no solid") != std::string::npos);
-  CHECK(collide(tube, Pose{}, box, Pose::translation({5, 5, 5})).relation == Relation::undefined);
+  CHECK(collide(tube, Pose{}, box, Pose::translation({5, 5, 5})).relation == Relation::separate);
+  CHECK(collide(tube, Pose{}, Body::from(shapes::box({-0.1, -0.1, 0.4}, {0.1, 0.1, 0.6})).value(), Pose{})
+            .relation == Relation::undefined);
   CHECK(collide(tube, Pose{}, box, Pose::translation({0.5, 0, 0})).relation == Relation::crossing);
   CHECK(Body::from(LrbRep::without_regions(shapes::open_cylinder(12), false, false)).notes().size() == 1);
 }

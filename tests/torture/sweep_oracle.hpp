@@ -65,6 +65,10 @@ class SweptBody {
     return all;
   }
 
+  bool is_apart_from(const SweptBody& other) const {
+    return !whole(*this, all()).meets(whole(other, other.all()));
+  }
+
   bool holds(const double* point) const {
     int crossings = 0;
     const double* c[3];
@@ -81,6 +85,12 @@ class SweptBody {
   }
 
  private:
+  std::vector<SimplexId> all() const {
+    std::vector<SimplexId> out(boxes_.size());
+    std::iota(out.begin(), out.end(), SimplexId{0});
+    return out;
+  }
+
   const LrbRep& rep_;
   std::vector<Eigen::Vector3d> x_;
   std::vector<Box> boxes_;
@@ -144,7 +154,7 @@ inline BruteForceResult swept_brute_force(const LrbRep& rep_a, const Pose& pose_
     if (meet == exact::Meet::cross) r.relation = Relation::crossing;
   }
   if (!found.empty()) return r;
-  r.relation = Relation::undefined;
+  r.relation = a.is_apart_from(b) ? Relation::separate : Relation::undefined;
   if (!rep_a.closed() || !rep_b.closed()) return r;
   const auto held = [](const SweptBody& inner, const SweptBody& outer) {
     const auto vertices = inner.rep().component_vertices();

@@ -360,7 +360,10 @@ void CoherentQuery::Work::answer_from_cache(const SweepPoint& where, Probe& prob
   result_.counters.face_tests += tested;
   statistics_.tests_saved += cache_.pairs().size() - tested;
   if (changed || !has_answer) collect_answer();
-  if (!has_answer || tested > 0 || !cache_.none_between(before, where))
+  // Solids lie as before where no surface met another in between; boxes, which decide for others, move with
+  // each pose.
+  const bool solids = a_.closed() && b_.closed();
+  if (!has_answer || tested > 0 || !cache_.none_between(before, where) || !solids)
     decide_relation_watched(context_, result_, probe, [] { return true; });
   result_.contacts.clear();
   result_.regions.clear();

@@ -38,7 +38,9 @@ class CoherentDistance::Work {
 
  private:
   bool is_relation_kept(const PosePair& now) const {
-    return apart_ > 0 && std::isfinite(apart_) && nearer_by(a_, b_, poses_, now, apart_) < apart_;
+    // Boxes, which decide where a body is no solid, move with each pose.
+    return a_.closed() && b_.closed() && apart_ > 0 && std::isfinite(apart_) &&
+           nearer_by(a_, b_, poses_, now, apart_) < apart_;
   }
 
   const LrbRep &a_, &b_;

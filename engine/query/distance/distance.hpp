@@ -37,8 +37,8 @@ struct DistanceRequest {
   /// The largest number of steps; 0: no limit. A step opens a pair of nodes of the trees. With more steps the
   /// interval only becomes narrower.
   std::uint64_t max_steps = 0;
-  /// Decide how bodies lie whose surfaces do not meet. Without it, DistanceResult::relation is `undefined`
-  /// for them.
+  /// Decide how bodies lie whose surfaces do not meet. Without it, DistanceResult::relation is always
+  /// `undefined` for them.
   bool relation = true;
 };
 

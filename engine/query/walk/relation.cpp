@@ -9,6 +9,7 @@
 
 #include "engine/core/tolerances.hpp"
 #include "engine/exact/locate.hpp"
+#include "engine/query/walk/world_box.hpp"
 #include "engine/tree/pose_bounds.hpp"
 
 namespace lrb {
@@ -212,8 +213,10 @@ bool decide_without_points(QueryContext& ctx, CollideResult& result) {
   const bool solids = ctx[Side::a].rep().closed() && ctx[Side::b].rep().closed();
   if (result.pairs.empty() && solids) return false;
   if (result.pairs.empty()) {
-    result.relation = Relation::undefined;
-    result.interiors_overlap = Answer::unknown;
+    const QueryBody &a = ctx[Side::a], &b = ctx[Side::b];
+    const bool apart = world_boxes_are_apart(a.rep(), a.world.pose(), b.rep(), b.world.pose());
+    result.relation = apart ? Relation::separate : Relation::undefined;
+    result.interiors_overlap = apart ? Answer::no : Answer::unknown;
     return true;
   }
   const bool crosses =

@@ -20,7 +20,8 @@ struct Enclosed {
   bool some() const { return inside > 0; }
 };
 
-/// Decides the relation where pairs were found, or where inside has no meaning. Returns false elsewhere.
+/// Decides the relation where pairs were found, or where inside has no meaning: there only boxes that are
+/// apart prove bodies separate. Returns false elsewhere.
 bool decide_without_points(QueryContext& ctx, CollideResult& result);
 /// Decides the relation of closed bodies whose surfaces do not meet.
 void decide_by_enclosure(const Enclosed& a_in_b, const Enclosed& b_in_a, CollideResult& result);

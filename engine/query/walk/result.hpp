@@ -21,7 +21,8 @@ enum class Relation : std::uint8_t {
                ///< through another. CollideResult::interiors_overlap tells, where it is asked for
   a_inside_b,  ///< no surface contact; B holds A
   b_inside_a,
-  undefined,  ///< no surface contact, and a body that is not closed: inside has no meaning
+  undefined,  ///< no surface contact, boxes in the world that meet, and a body that is not closed: inside has
+              ///< no meaning
   /// A query within limits did not find out; the bodies meet, or are no further apart than the error bound.
   unresolved,
 };

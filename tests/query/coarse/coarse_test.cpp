@@ -559,10 +559,12 @@ TEST_CASE("open bodies are queried as they are") {
   CollideRequest request;
   request.tolerance = 1;
   request.separation = true;
-  const CollideResult r = collide(open, Pose{}, ball, Pose::translation({50, 0, 0}), request);
-  CHECK(r.relation == Relation::undefined);
-  CHECK(r.error_bound == 0);
-  CHECK(!r.separation);
+  for (const auto& [x, relation] : {std::pair{0.0, Relation::undefined}, {50.0, Relation::separate}}) {
+    const CollideResult r = collide(open, Pose{}, ball, Pose::translation({x, 0, 0}), request);
+    CHECK(r.relation == relation);
+    CHECK(r.error_bound == 0);
+    CHECK(!r.separation);
+  }
 }
 
 TEST_CASE("what a coarse query cannot give is refused") {

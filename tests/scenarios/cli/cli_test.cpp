@@ -155,11 +155,13 @@ TEST_CASE("query: an open mesh is queried all the same, and inside has no meanin
   const Folder folder;
   folder.write("a.obj", kCube);
   folder.write("b.obj", kTriangle);
-  folder.write("p.txt", std::string("1 0 0 0 0 1 0 0 0 0 1 0\n") + kApart);
+  folder.write("p.txt",
+               std::string("1 0 0 0 0 1 0 0 0 0 1 0\n0.1 0 0 0.5 0 0.1 0 0.5 0 0 0.1 0.5\n") + kApart);
   const Outcome o = run(folder, {"query", "a.obj", "b.obj", "--poses", "p.txt"});
   CHECK(o.code == 0);
   CHECK(o.err.find("without regions") != std::string::npos);
   CHECK(o.out.find("\"crossing\"") != std::string::npos);
+  CHECK(o.out.find("\"separate\"") != std::string::npos);
   CHECK(o.out.find("\"undefined\"") != std::string::npos);
   CHECK(run(folder, {"--quiet", "query", "a.obj", "b.obj", "--poses", "p.txt"}).err.empty());
 }

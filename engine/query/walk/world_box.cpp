@@ -1,4 +1,4 @@
-#include "engine/query/world_box.hpp"
+#include "engine/query/walk/world_box.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -39,6 +39,12 @@ class Search {
     if (first != kNull) look_at(first);
     visit(0);
   }
+  /// Returns false if a corner is as far out as `limit`, times the sign, as soon as one is found.
+  bool stays_below(double limit, VertexId first) {
+    enough_ = limit;
+    run(first);
+    return best_ < limit;
+  }
   VertexId vertex() const { return vertex_; }
   double coordinate() const { return sign_ * best_; }
 
@@ -63,7 +69,7 @@ class Search {
     for (std::uint32_t turn = 0; turn < node.count; ++turn) {
       const auto k = static_cast<std::uint32_t>(std::max_element(bound.begin(), bound.begin() + node.count) -
                                                 bound.begin());
-      if (!(bound[k] > best_)) return;
+      if (!(bound[k] > best_) || best_ >= enough_) return;
       bound[k] = -kInfinity;
       if (node.is_leaf)
         look_at_simplex(rep_.tree().blocks()[node.first].simplex[k]);
@@ -92,7 +98,7 @@ class Search {
   double sign_;
   Eigen::Vector3d d_;  ///< from units to the mesh's unit
   double t_, slack_;
-  double best_ = -kInfinity;
+  double best_ = -kInfinity, enough_ = kInfinity;
   VertexId vertex_ = kNull;
 };
 
@@ -105,7 +111,43 @@ Eigen::AlignedBox3d everything() {
   return {Eigen::Vector3d::Constant(-kInfinity), Eigen::Vector3d::Constant(kInfinity)};
 }
 
+/// Returns the world box of a body whose corners are known to be finite in the world, by looking at all of
+/// them.
+Eigen::AlignedBox3d box_of_corners(const LrbRep& rep, const Pose& pose) {
+  Eigen::AlignedBox3d box;
+  for (FaceId f = 0; f < rep.real_face_count(); ++f)
+    for (const VertexId v : rep.face(f)) box.extend(pose.apply(rep.vertices()[v]));
+  return box;
+}
+
 }  // namespace
+
+/// Of two boxes that are apart along an axis, one lies before the other there as any two of their corners do.
+bool world_boxes_are_apart(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b) {
+  if (a.tree().empty() || b.tree().empty()) return true;
+  const bool in_range = stays_finite(a, pose_a) && stays_finite(b, pose_b);
+  Eigen::AlignedBox3d box_a, box_b;
+  if (!in_range) {
+    box_a = box_of_corners(a, pose_a);
+    box_b = box_of_corners(b, pose_b);
+  }
+  const VertexId first_a = a.face(0)[0], first_b = b.face(0)[0];
+  const Eigen::Vector3d of_a = pose_a.apply(a.vertices()[first_a]),
+                        of_b = pose_b.apply(b.vertices()[first_b]);
+  for (int axis = 0; axis < a.dim(); ++axis) {
+    if (!in_range) {
+      if (box_a.max()[axis] < box_b.min()[axis] || box_b.max()[axis] < box_a.min()[axis]) return true;
+      continue;
+    }
+    if (of_a[axis] == of_b[axis]) continue;
+    const double sign = of_a[axis] < of_b[axis] ? 1 : -1;
+    Search top_of_a(a, pose_a, axis, sign), bottom_of_b(b, pose_b, axis, -sign);
+    if (top_of_a.stays_below(sign * of_b[axis], first_a) &&
+        bottom_of_b.stays_below(-sign * top_of_a.coordinate(), first_b))
+      return true;
+  }
+  return false;
+}
 
 Eigen::AlignedBox3d world_box(const LrbRep& rep, const Pose& pose, ExtremeVertices* last) {
   Eigen::AlignedBox3d box;
