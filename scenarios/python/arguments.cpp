@@ -123,6 +123,17 @@ std::string described(py::handle given) {
   return given.is_none() ? "None" : name.substr(name.rfind('.') + 1);
 }
 
+py::str printable(std::string_view text) {
+  return py::reinterpret_steal<py::str>(
+      PyUnicode_DecodeUTF8(text.data(), static_cast<py::ssize_t>(text.size()), "backslashreplace"));
+}
+
+py::list printable(const std::vector<std::string>& texts) {
+  py::list out;
+  for (const std::string& text : texts) out.append(printable(text));
+  return out;
+}
+
 bool flag(py::handle given, const char* what, bool fallback) {
   if (given.is_none()) return fallback;
   if (given.ptr() == Py_True) return true;
@@ -168,7 +179,13 @@ std::string text(py::handle given, const char* what, const std::string& fallback
   if (given.is_none()) return fallback;
   if (!py::isinstance<py::str>(given))
     throw py::type_error(std::string(what) + ": expected a str, got " + described(given));
-  return given.cast<std::string>();
+  py::ssize_t size = 0;
+  const char* const utf8 = PyUnicode_AsUTF8AndSize(given.ptr(), &size);
+  if (utf8 == nullptr) {
+    PyErr_Clear();
+    throw InputError(std::string(what) + ": expected characters that UTF-8 has, got a lone surrogate");
+  }
+  return {utf8, static_cast<std::size_t>(size)};
 }
 
 std::string path(py::handle given, const char* what) {
@@ -180,6 +197,11 @@ std::string path(py::handle given, const char* what) {
   PyObject* bytes = nullptr;
   if (PyUnicode_FSConverter(found.ptr(), &bytes) == 0) throw py::error_already_set();
   return std::string(py::reinterpret_steal<py::bytes>(bytes));
+}
+
+py::str path_of(std::string_view path) {
+  return py::reinterpret_steal<py::str>(
+      PyUnicode_DecodeFSDefaultAndSize(path.data(), static_cast<py::ssize_t>(path.size())));
 }
 
 Eigen::Vector3d vector(py::handle given, const char* what) {

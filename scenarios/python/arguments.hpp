@@ -25,6 +25,10 @@ namespace py = pybind11;
 /// Returns what an error says of an object's type or, of an array, of its shape and type.
 std::string described(py::handle given);
 
+/// Returns a text for people, with \xff for a byte that is not UTF-8, as names of files may have.
+py::str printable(std::string_view text);
+py::list printable(const std::vector<std::string>& texts);
+
 /// Return an argument as a number or a flag; `fallback` for None. `what` is the argument's name.
 bool flag(py::handle given, const char* what, bool fallback = false);
 double number(py::handle given, const char* what, double fallback = 0);
@@ -33,6 +37,8 @@ std::uint64_t count(py::handle given, const char* what, std::uint64_t fallback =
 std::string text(py::handle given, const char* what, const std::string& fallback = {});
 /// Returns a path, given as str, bytes or os.PathLike.
 std::string path(py::handle given, const char* what);
+/// Returns a path as Python has it, so that it can be opened.
+py::str path_of(std::string_view path);
 /// Returns three numbers as a vector.
 Eigen::Vector3d vector(py::handle given, const char* what);
 

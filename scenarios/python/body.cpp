@@ -119,7 +119,7 @@ py::object figures(const Body& body) {
     j = bodies::body_figures(body.rep());
     j["build_seconds"] = body.build_seconds();
   }
-  return parsed_json(j.dump());
+  return parsed_json(j.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
 }
 
 py::object levels(const Body& body, py::handle threads) {
@@ -165,10 +165,12 @@ constexpr std::size_t kPickled = 15;  ///< members of the tuple
 
 py::tuple pickled(const Body& body) {
   const LrbData& d = body.rep().data();
+  py::list notes;  // bytes, as names of files that are in them may not be UTF-8
+  for (const std::string& note : body.notes()) notes.append(py::bytes(note));
   return py::make_tuple(kPickleVersion, d.dim, bytes_of(d.vertices), bytes_of(d.face_offsets),
                         bytes_of(d.face_vertices), d.real_face_count, bytes_of(d.inner_cell),
                         bytes_of(d.outer_cell), bytes_of(d.region_layer), d.closed, d.self_intersecting,
-                        d.name, body.notes(), body.build_seconds(), body.vertex_count());
+                        py::bytes(d.name), notes, body.build_seconds(), body.vertex_count());
 }
 
 BodyPtr unpickled(const py::tuple& t) {
@@ -193,11 +195,17 @@ BodyPtr unpickled(const py::tuple& t) {
   return std::make_shared<Body>(std::move(loaded), n);
 }
 
-std::string shown(const Body& body) {
+py::str shown(const Body& body) {
   const LrbRep& rep = body.rep();
-  return "<lrbscope.Body '" + rep.name() + "': " + std::to_string(rep.real_face_count()) +
-         (rep.dim() == 2 ? " segments, " : " faces, ") + std::to_string(rep.region_count()) + " regions, " +
-         (rep.closed() ? "solid>" : "not closed>");
+  return printable("<lrbscope.Body '" + rep.name() + "': " + std::to_string(rep.real_face_count()) +
+                   (rep.dim() == 2 ? " segments, " : " faces, ") + std::to_string(rep.region_count()) +
+                   " regions, " + (rep.closed() ? "solid>" : "not closed>"));
+}
+
+/// Returns a body as its own copy, for it does not change.
+py::object itself(const py::object& self) {
+  body(self, "self");
+  return self;
 }
 
 using BodyClass = py::class_<Body, BodyPtr>;
@@ -227,8 +235,8 @@ Reads a body from a mesh (OBJ, STL, PLY, OFF) or an .lrb file. See Body for the 
   c.def("save", &save, py::arg("path"),
         "save(path)\n\nWrites the body: .lrb with its regions, .ply or .obj its faces alone.");
   c.def(py::pickle(&pickled, &unpickled));
-  c.def("__copy__", [](const py::object& self) { return self; });
-  c.def("__deepcopy__", [](const py::object& self, const py::handle&) { return self; });
+  c.def("__copy__", &itself);
+  c.def("__deepcopy__", [](const py::object& self, const py::handle&) { return itself(self); });
   c.def("__repr__", &shown);
 }
 
@@ -269,7 +277,7 @@ void bind_geometry(BodyClass& c) {
 
 void bind_numbers(BodyClass& c) {
   c.def_property_readonly(
-      "name", [](const Body& b) { return b.rep().name(); }, "str: for messages.");
+      "name", [](const Body& b) { return printable(b.rep().name()); }, "str: for messages.");
   c.def_property_readonly(
       "dim", [](const Body& b) { return b.rep().dim(); }, "int: 3, or 2 in the plane.");
   c.def_property_readonly(
@@ -290,7 +298,7 @@ void bind_numbers(BodyClass& c) {
       "hash", [](const Body& b) { return trace::to_hex(b.rep().hash()); },
       "str: 16 hexadecimal digits, the same for the same LRB-rep.");
   c.def_property_readonly(
-      "notes", [](const Body& b) { return b.notes(); },
+      "notes", [](const Body& b) { return printable(b.notes()); },
       "list of str: what was done to the mesh or could not be, for people.");
   c.def_property_readonly("build_seconds", &Body::build_seconds,
                           "float: that the build took; 0 if there was none.");

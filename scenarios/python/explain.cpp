@@ -99,7 +99,7 @@ void bind_pair(py::module_& m) {
   c.def(
       "dict", [](const OfPair& e) { return parsed(e.json()); },
       "dict()\n\nReturns all of it: a dict with the keys of `lrbscope why --pair --json`.");
-  c.def("__str__", &OfPair::text);
+  c.def("__str__", [](const OfPair& e) { return printable(e.text()); });
 }
 
 void bind_walk(py::module_& m) {
@@ -136,7 +136,7 @@ void bind_walk(py::module_& m) {
   c.def(
       "dict", [](const OfWalk& e) { return parsed(e.json()); },
       "dict()\n\nReturns all of it: a dict with the keys of `lrbscope why --json`.");
-  c.def("__str__", &OfWalk::text);
+  c.def("__str__", [](const OfWalk& e) { return printable(e.text()); });
 }
 
 }  // namespace

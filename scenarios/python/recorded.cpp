@@ -189,18 +189,20 @@ void bind_trace(py::module_& m) {
       },
       "Results: the answers of the steps.");
   c.def_property_readonly(
-      "notes", [](const Recorded& r) { return r.notes; }, "list of str: for people.");
+      "notes", [](const Recorded& r) { return printable(r.notes); }, "list of str: for people.");
   c.def("json", &json_of,
         "json()\n\nReturns the trace as text that ui.perfetto.dev opens (trace/schema/trace.schema.json).");
   c.def("summary", &summary_of,
         "summary()\n\nReturns the run in numbers, a dict with the keys of summary.json.");
   c.def("save", &save, py::arg("path"), "save(path)\n\nWrites json(), compressed if the path ends in .gz.");
-  c.def("html", &html_of, "html()\n\nReturns the run's page: one file that opens in any browser.");
-  c.def("_repr_html_", &notebook_html);
+  c.def(
+      "html", [](const Recorded& r) { return printable(html_of(r)); },
+      "html()\n\nReturns the run's page: one file that opens in any browser.");
+  c.def("_repr_html_", [](const Recorded& r) { return printable(notebook_html(r)); });
   c.def("__len__", [](const Recorded& r) { return r.trace.events.size(); });
   c.def("__repr__", [](const Recorded& r) {
-    return "<lrbscope.Trace of " + r.title + ": " + std::to_string(r.trace.steps.size()) + " steps, " +
-           std::to_string(r.trace.events.size()) + " events>";
+    return printable("<lrbscope.Trace of " + r.title + ": " + std::to_string(r.trace.steps.size()) +
+                     " steps, " + std::to_string(r.trace.events.size()) + " events>");
   });
   with_picture_arguments([&](auto&&... names) {
     c.def(

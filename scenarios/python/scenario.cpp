@@ -55,21 +55,21 @@ py::list shipped() {
 void bind_outcome(py::module_& m) {
   py::class_<Outcome> c(m, "Outcome", "What Scenario.run() wrote.");
   c.def_property_readonly(
-      "folder", [](const Outcome& o) { return o.folder; }, "str");
+      "folder", [](const Outcome& o) { return path_of(o.folder); }, "str");
   c.def_property_readonly(
-      "page", [](const Outcome& o) { return o.folder + "/index.html"; },
+      "page", [](const Outcome& o) { return path_of(o.folder + "/index.html"); },
       "str: the run's page, for a browser.");
   c.def_property_readonly(
       "frames", [](const Outcome& o) { return o.run.frames; }, "int: the number of pictures in frames/.");
   c.def_property_readonly(
-      "mismatches", [](const Outcome& o) { return o.run.mismatches; },
+      "mismatches", [](const Outcome& o) { return printable(o.run.mismatches); },
       "list of str: expectations that were not met.");
   c.def_property_readonly(
-      "notes", [](const Outcome& o) { return o.run.notes; }, "list of str: for people.");
+      "notes", [](const Outcome& o) { return printable(o.run.notes); }, "list of str: for people.");
   c.def_property_readonly(
       "summary", [](const Outcome& o) { return py::module_::import("json").attr("loads")(o.run.summary); },
       "dict: the run in numbers, summary.json.");
-  c.def("__repr__", [](const Outcome& o) { return "<lrbscope.Outcome in '" + o.folder + "'>"; });
+  c.def("__repr__", [](const Outcome& o) { return printable("<lrbscope.Outcome in '" + o.folder + "'>"); });
 }
 
 }  // namespace

@@ -36,8 +36,9 @@ struct Others {
 Others others_of(const HeldScene& self, py::handle given, py::handle pose_of_body) {
   Others out;
   if (py::isinstance<HeldScene>(given)) {
+    const auto& scene = given.cast<const HeldScene&>();
     out.scene = given.cast<ScenePtr>();
-    if (out.scene.get() == &self) throw InputError("other: is the scene itself; leave it out");
+    if (&scene == &self) throw InputError("other: is the scene itself; leave it out");
   } else if (!given.is_none()) {
     if (!py::isinstance<Body>(given))
       throw py::type_error("other: expected a Scene or a Body, got " + described(given));

@@ -137,8 +137,8 @@ True)");
       "(r,) uint32: the excluded regions, in the order in which they were refined.");
   c.def("__len__", [](const BodyWrapper& w) { return w.wrapper.boundary_size(); });
   c.def("__repr__", [](const BodyWrapper& w) {
-    return "<lrbscope.Wrapper of '" + w.body->rep().name() +
-           "': " + std::to_string(w.wrapper.boundary_size()) + " faces>";
+    return printable("<lrbscope.Wrapper of '" + w.body->rep().name() +
+                     "': " + std::to_string(w.wrapper.boundary_size()) + " faces>");
   });
 }
 

@@ -80,7 +80,9 @@ def test_an_open_surface_is_a_body_but_no_solid():
     body = Body(vertices, faces[:-1])
     assert not body.is_solid and body.region_count == 0 and body.notes
     assert lrbscope.collide(body, body, shifted(0.5, 0.25, 0.125)).relation == "crossing"
-    assert lrbscope.collide(body, body, shifted(5, 0, 0)).relation == "undefined"
+    assert lrbscope.collide(body, body, shifted(5, 0, 0)).relation == "separate"
+    small = Body(vertices * 0.25 + 0.25, faces)
+    assert lrbscope.collide(body, small).relation == "undefined"
 
 
 def test_answers_do_not_depend_on_regions(ball):
