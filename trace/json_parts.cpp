@@ -100,7 +100,9 @@ void write_json(JsonWriter& w, const MeasuredDistance& m) {
 }
 
 void write_json(JsonWriter& w, const MeasuredClash& m) {
-  w.begin_object().member("kind", name_of(m.kind)).member("shares_faces", m.shares_faces);
+  w.begin_object().member("kind", name_of(m.kind));
+  if (m.reason != ClashReason::none) w.member("reason", name_of(m.reason));
+  w.member("shares_faces", m.shares_faces);
   w.key("distance");
   write_array(w, m.distance);
   if (m.depth) {

@@ -110,6 +110,7 @@ void read_value(const TraceNode& node, MeasuredDistance& m) {
 
 void read_value(const TraceNode& node, MeasuredClash& m) {
   m.kind = node.at("kind").named<ClashKind>();
+  if (node.has("reason")) m.reason = node.at("reason").named<ClashReason>();
   m.shares_faces = node.at("shares_faces").boolean();
   read_ends(node.at("distance"), m.distance);
   if (node.has("depth")) {

@@ -36,8 +36,13 @@ MeasuredDistance measured(const DistanceResult& result, std::vector<Bounds> cour
 }
 
 MeasuredClash measured(const ClashResult& result, std::vector<Bounds> course) {
-  return {result.kind,           result.shares_faces,    {result.distance.lower, result.distance.upper},
-          ends_of(result.depth), ends_of(result.volume), array_of(result.translation),
+  return {result.kind,
+          result.reason,
+          result.shares_faces,
+          {result.distance.lower, result.distance.upper},
+          ends_of(result.depth),
+          ends_of(result.volume),
+          array_of(result.translation),
           std::move(course)};
 }
 
@@ -51,6 +56,7 @@ std::string words(const MeasuredDistance& m) {
 
 std::string words(const MeasuredClash& m) {
   std::string out(name_of(m.kind));
+  if (m.reason != ClashReason::none) out += ": " + std::string(name_of(m.reason));
   if (m.depth) out += ", depth " + interval_words((*m.depth)[0], (*m.depth)[1], m.course.size());
   return out;
 }

@@ -26,6 +26,7 @@ struct MeasuredDistance {
 /// A ClashResult without the pieces of the surfaces.
 struct MeasuredClash {
   ClashKind kind = ClashKind::undecided;
+  ClashReason reason = ClashReason::none;
   bool shares_faces = false;
   std::array<double, 2> distance{};                    ///< of the solids
   std::optional<std::array<double, 2>> depth, volume;  ///< intervals; none: not known

@@ -13,6 +13,8 @@
 #include "engine/core/fnv.hpp"
 #include "engine/lrb/pieces.hpp"
 #include "engine/lrb/wrapper_level.hpp"
+#include "engine/mesh/face_checks.hpp"
+#include "engine/mesh/self_intersections.hpp"
 
 namespace lrb {
 namespace {
@@ -83,6 +85,12 @@ struct LrbRep::MadeLevels {
   }
 };
 
+/// Whether a body without regions overlaps itself, once that has been found out.
+struct LrbRep::FoundOverlap {
+  std::once_flag once;
+  bool value = false;
+};
+
 LrbRep::LrbRep(LrbData data, unsigned threads) : d_(std::move(data)) {
   derive();
   hash_ = hash_of(d_);
@@ -115,6 +123,21 @@ void LrbRep::derive() {
   static std::atomic<std::uint64_t> next_serial{1};
   serial_ = next_serial++;
   levels_ = std::make_shared<MadeLevels>();
+  overlap_ = std::make_shared<FoundOverlap>();
+}
+
+bool LrbRep::overlaps_itself() const {
+  if (region_count() > 0) return d_.self_intersecting;
+  std::call_once(overlap_->once, [this] {
+    Mesh mesh;
+    mesh.dim = d_.dim;
+    mesh.vertices = d_.vertices;
+    mesh.face_offsets = d_.face_offsets;
+    mesh.face_vertices = d_.face_vertices;
+    MeshReport unused;
+    overlap_->value = lrb::overlaps_itself(mesh, check_faces(mesh, unused));
+  });
+  return overlap_->value;
 }
 
 const WrapperLevels& LrbRep::levels(unsigned threads) const {

@@ -75,7 +75,13 @@ class LrbRep {
 
   int dim() const { return d_.dim; }
   bool closed() const { return d_.closed; }
+  /// Returns what the data says. The build of regions finds it; of a body without regions it need not be
+  /// known.
   bool self_intersecting() const { return d_.self_intersecting; }
+  /// Returns true if faces cross, or cover each other in one plane and face the same way (find_overlaps() in
+  /// engine/mesh/self_intersections.hpp), whoever made the body. Of one without regions, the first call finds
+  /// it out; other threads that call wait for it.
+  bool overlaps_itself() const;
   const std::string& name() const { return d_.name; }
   const LrbData& data() const { return d_; }
 
@@ -162,6 +168,7 @@ class LrbRep {
 
  private:
   struct MadeLevels;
+  struct FoundOverlap;
 
   void derive();
   void link_faces_to_regions();
@@ -183,6 +190,7 @@ class LrbRep {
   std::uint64_t serial_ = 0;
   ObbTree tree_;
   std::shared_ptr<MadeLevels> levels_;
+  std::shared_ptr<FoundOverlap> overlap_;
 };
 
 }  // namespace lrb

@@ -291,6 +291,13 @@ void find_crossings(const Mesh& mesh, const std::vector<FaceUse>& use,
   find_pairs(mesh, use, test, found);
 }
 
+bool overlaps_itself(const Mesh& mesh, const std::vector<FaceUse>& use) {
+  bool found = false;
+  find_overlaps(
+      mesh, use, [&](FaceId, FaceId) { return !found; }, [&](FaceId, FaceId) { found = true; });
+  return found;
+}
+
 void find_overlaps(const Mesh& mesh, const std::vector<FaceUse>& use,
                    const std::function<bool(FaceId, FaceId)>& wanted,
                    const std::function<void(FaceId, FaceId)>& found) {

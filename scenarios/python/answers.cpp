@@ -85,7 +85,7 @@ void bind_result(py::module_& m) {
   c.def_property_readonly(
       "relation", [](const Answer& a) { return py::str(to_string(a.result->relation)); },
       "str: 'separate', 'crossing', 'touching', 'a_inside_b', 'b_inside_a', 'undefined' (the surfaces do\n"
-      "not meet and a body is not closed), 'unresolved' (within limits only).");
+      "not meet, the bodies' boxes do, and a body is not closed), 'unresolved' (within limits only).");
   c.def_property_readonly(
       "pairs", &pairs_of,
       "(p, 2) uint32: the triangles of A and of B that meet, ascending. One pair at most unless "

@@ -48,7 +48,14 @@ void bind_result(py::module_& m) {
       "kind", [](const ClashResult& r) { return py::str(to_string(r.kind)); },
       "str: 'apart', 'within_clearance', 'touching_point', 'touching_edge', 'touching_face', 'protrudes',\n"
       "'pierces' (A goes through B), 'cuts_through' (A parts B), 'a_inside_b', 'b_inside_a', 'equal',\n"
-      "'undecided'.");
+      "'undecided' (see `reason`).");
+  c.def_property_readonly(
+      "reason",
+      [](const ClashResult& r) -> py::object {
+        if (r.reason == ClashReason::none) return py::none();
+        return py::str(std::string(name_of(r.reason)));
+      },
+      "str or None: why the kind is 'undecided', as 'A intersects itself'; None if it is decided.");
   c.def_property_readonly("interiors_overlap", &overlap_of,
                           "bool or None: whether the solids share a volume; None where that is not known.");
   c.def_readonly("shares_faces", &ClashResult::shares_faces,

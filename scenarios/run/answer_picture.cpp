@@ -243,7 +243,7 @@ void draw_clash(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose
   request.contacts = true;
   const CollideResult found = collide(a, pose_a, b, pose_b, request);
   p.scene = scene_of(a, pose_a, b, pose_b, found.regions);
-  p.overlay.title = kind_words(result.kind) + "  ·  " + p.overlay.title;
+  p.overlay.title = kind_words(result.kind, result.reason) + "  ·  " + p.overlay.title;
   p.overlay.event_colour = kWayOutColour;
   const trace::MeasuredClash m = trace::measured(result, {});
   if (const auto way = way_out_of(m, a, pose_a, b, pose_b, found.regions)) {

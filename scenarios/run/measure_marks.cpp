@@ -73,6 +73,10 @@ std::string kind_words(ClashKind kind) {
   }
 }
 
+std::string kind_words(ClashKind kind, ClashReason reason) {
+  return kind_words(kind) + (reason == ClashReason::none ? "" : ": ") + std::string(name_of(reason));
+}
+
 std::optional<MarkedWay> gap_of(const trace::MeasuredDistance& distance) {
   if (!(distance.lower > 0) || !std::isfinite(distance.upper)) return std::nullopt;
   return MarkedWay{vector_of(distance.points[0]), vector_of(distance.points[1]),

@@ -44,5 +44,7 @@ void add_way_out(render::Scene& scene, const MarkedWay& way, int dim);
 std::string interval_words(double lower, double upper);
 /// Returns the kind of contact as people say it: "A inside B", "touching in a face".
 std::string kind_words(ClashKind kind);
+/// Adds the reason of a kind that is undecided: "undecided: A intersects itself".
+std::string kind_words(ClashKind kind, ClashReason reason);
 
 }  // namespace lrb::run

@@ -61,7 +61,8 @@ void add_measured(const trace::StepResult& r, const std::string& at, std::vector
                    at + "; of the surfaces, proved" +
                        (r.distance->solids_meet && r.distance->upper > 0 ? ". The solids meet" : "")});
   if (!r.clash) return;
-  out.push_back({"Kind of contact", kind_words(r.clash->kind), at});
+  const std::string reason(name_of(r.clash->reason));
+  out.push_back({"Kind of contact", kind_words(r.clash->kind), reason.empty() ? at : at + "; " + reason});
   if (r.clash->depth)
     out.push_back({"Penetration depth", interval_words((*r.clash->depth)[0], (*r.clash->depth)[1]),
                    at + "; the way that B has to move, proved"});
@@ -236,7 +237,7 @@ report::PageTable steps_table(const trace::Trace& trace) {
     if (const auto& d = s.result.distance; has_distance)
       row.push_back(d ? interval_words(d->lower, d->upper) : "");
     if (const auto& c = s.result.clash; has_clash)
-      row.insert(row.end(), {c ? kind_words(c->kind) : "",
+      row.insert(row.end(), {c ? kind_words(c->kind, c->reason) : "",
                              c && c->depth ? interval_words((*c->depth)[0], (*c->depth)[1]) : ""});
   }
   t.note = "The fingerprint is FNV-1a 64 over the sorted pairs: equal answers, equal fingerprints.";

@@ -89,9 +89,14 @@ void change(Value& value) {
                              {{{1, -2, 3}, {4, 5, 6}}},
                              {{1, 0, std::numeric_limits<double>::infinity()}, {2, 0.25, 0.5}}};
   else if constexpr (std::is_same_v<Value, std::optional<MeasuredClash>>)
-    value = MeasuredClash{
-        ClashKind::pierces, true,       {0, 0},         {{0.25, std::numeric_limits<double>::infinity()}},
-        {{0.125, 0.126}},   {0, -1, 2}, {{1, 0.1, 0.5}}};
+    value = MeasuredClash{ClashKind::undecided,
+                          ClashReason::b_overlaps,
+                          true,
+                          {0, 0},
+                          {{0.25, std::numeric_limits<double>::infinity()}},
+                          {{0.125, 0.126}},
+                          {0, -1, 2},
+                          {{1, 0.1, 0.5}}};
   else if constexpr (std::is_same_v<Value, Counters>)
     ++value.box_tests;
   else

@@ -76,7 +76,7 @@ void measure_gap(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pos
 
 /// Decides the kind of bodies that have a point in common.
 void decide_kind(QueryContext& query, const CollideResult& found, ClashResult& result) {
-  const auto pieces = parting::surface_pieces(query, found);
+  const auto pieces = parting::surface_pieces(query, found, false, &result.reason);
   if (!pieces) return;
   result.pieces = *pieces;
   const bool enters = (*pieces)[0].inside + (*pieces)[1].inside > 0;
@@ -87,6 +87,7 @@ void decide_kind(QueryContext& query, const CollideResult& found, ClashResult& r
   result.shares_faces = (*pieces)[0].on_same && result.interiors_overlap == Answer::yes;
   if (result.interiors_overlap == Answer::yes) result.kind = overlapping_kind(*pieces);
   if (result.interiors_overlap == Answer::no) result.kind = touching_kind(query, found);
+  if (result.interiors_overlap == Answer::unknown) result.reason = ClashReason::faces_coincide;
 }
 
 double to_world_cube(double volume, int exponent) {
@@ -121,7 +122,7 @@ void measure_overlap(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const
     }
     if (request.along) result.along = finder.along(request.along->stableNormalized());
   }
-  if (request.volume && !a.self_intersecting() && !b.self_intersecting())
+  if (request.volume && !a.overlaps_itself() && !b.overlaps_itself())
     result.volume = world_volume(parting::shared_volume(bodies), bodies.frame.exponent);
 }
 
@@ -156,7 +157,7 @@ ClashResult clash(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Po
   const bool solids = a.closed() && b.closed();
   if (found.relation == Relation::separate || (found.pairs.empty() && !solids)) {
     measure_gap(a, pose_a, b, pose_b, request, context, probe, result);
-    result.interiors_overlap = solids ? Answer::no : Answer::unknown;
+    result.interiors_overlap = found.interiors_overlap;
     if (solids) write_no_overlap(request, result);
     return result;
   }

@@ -33,8 +33,8 @@ enum class ClashKind : std::uint8_t {
   a_inside_b,        ///< B holds all of A, whether or not surfaces touch
   b_inside_a,
   equal,      ///< the same solid
-  undecided,  ///< surfaces meet, but a body is not closed or intersects itself, so that inside has no
-              ///< meaning; or faces are cut by more of the other's than kInteriorCellsPerFace
+  undecided,  ///< the bodies are not apart, but it is not clear what solids they are, or the work is too
+              ///< much: ClashResult::reason
 };
 constexpr auto words_of(ClashKind) {
   return std::to_array<EnumWord<ClashKind>>({{ClashKind::apart, "apart"},
@@ -51,6 +51,30 @@ constexpr auto words_of(ClashKind) {
                                              {ClashKind::undecided, "undecided"}});
 }
 const char* to_string(ClashKind k);
+
+/// Why a kind is undecided: the first of these that holds.
+enum class ClashReason : std::uint8_t {
+  none,    ///< it is decided
+  a_open,  ///< LrbRep::closed() does not hold
+  b_open,
+  a_overlaps,  ///< LrbRep::overlaps_itself() holds, so that there is no one solid that the faces bound
+  b_overlaps,
+  flat_face,       ///< rounding in the world took its area from a face that meets the other body
+  many_cells,      ///< a face is cut into more cells than kInteriorCellsPerFace, or into some that do not fit
+  faces_coincide,  ///< faces coincide, and no point beside them was proved to be inside both
+};
+constexpr auto words_of(ClashReason) {
+  return std::to_array<EnumWord<ClashReason>>(
+      {{ClashReason::none, ""},
+       {ClashReason::a_open, "A bounds no solid"},
+       {ClashReason::b_open, "B bounds no solid"},
+       {ClashReason::a_overlaps, "A intersects itself"},
+       {ClashReason::b_overlaps, "B intersects itself"},
+       {ClashReason::flat_face, "a face that meets the other body has no area in the world"},
+       {ClashReason::many_cells, "the other body cuts a face into too many cells"},
+       {ClashReason::faces_coincide,
+        "faces coincide, and no point beside them is proved to be inside both"}});
+}
 
 struct ClashRequest {
   /// The distance up to which solids without a point in common are `within_clearance`. Finite, at least 0;
@@ -77,22 +101,24 @@ struct SurfacePieces {
 
 struct ClashResult {
   ClashKind kind = ClashKind::undecided;
+  ClashReason reason = ClashReason::none;  ///< of a kind that is undecided, and of no other
   bool shares_faces = false;  ///< surfaces coincide over an area, with both solids on the same side of it
   Answer interiors_overlap = Answer::unknown;
   std::array<SurfacePieces, 2> pieces;  ///< of A's surface and of B's; counted where surfaces meet
   /// The distance of the solids.
   ProvedInterval distance;
   /// The penetration depth: the length of the shortest translation of B after which the interiors share no
-  /// point. None for solids that are not closed. If interiors do not overlap: 0. The upper end is the length
-  /// of `translation`; infinite if none was found.
+  /// point. None for bodies that are not closed. If interiors do not overlap: 0. The upper end is the length
+  /// of `translation`; infinite if none was found. Of bodies that intersect themselves, points that an odd
+  /// number of faces hide count as interior, as for CollideResult::relation.
   std::optional<ProvedInterval> depth;
   /// Moved by this, B is proved to share no interior point with A: the solids are apart.
   Eigen::Vector3d translation{0, 0, 0};
   /// ClashRequest::along: how far B has to move in that direction until the interiors share no point for the
   /// first time: for all that is less than the lower end they do, and at the upper end they do not.
   std::optional<ProvedInterval> along;
-  /// The volume that the solids share, unit cubed. None for solids that are not closed or intersect
-  /// themselves.
+  /// The volume that the solids share, unit cubed. None for bodies that are not closed or intersect
+  /// themselves, unless they are apart.
   std::optional<ProvedInterval> volume;
 };
 

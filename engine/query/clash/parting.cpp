@@ -12,8 +12,10 @@ namespace lrb::parting {
 Parting::Parting(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
                  const UnitBodies& bodies)
     : a_(a), b_(b), pose_a_(pose_a), pose_b_(pose_b), frame_(bodies.frame) {
-  for (const VertexId v : b.data().face_vertices)
-    reach_ = std::max(reach_, pose_b.apply(b.vertices()[v]).cwiseAbs().maxCoeff());
+  // Real faces alone, so that regions change nothing.
+  for (FaceId f = 0; f < b.real_face_count(); ++f)
+    for (const VertexId v : b.face(f))
+      reach_ = std::max(reach_, pose_b.apply(b.vertices()[v]).cwiseAbs().maxCoeff());
 }
 
 Parting::Moved Parting::moved(const Vector3d& n, double s) const {

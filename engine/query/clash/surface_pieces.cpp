@@ -9,6 +9,7 @@
 #include "engine/core/tolerances.hpp"
 #include "engine/exact/locate.hpp"
 #include "engine/exact/pair_contact.hpp"
+#include "engine/exact/predicates.hpp"
 #include "engine/query/clash/simple_cut.hpp"
 #include "engine/query/contact/face_cutters.hpp"
 #include "engine/query/contact/reflection.hpp"
@@ -87,7 +88,15 @@ class CutSurface {
         nodes_(body_.rep().real_simplex_count()),
         surface_(body_.rep().real_simplex_count()) {}
 
-  std::optional<SurfacePieces> run() {
+  /// Sets `why` if it returns nothing.
+  std::optional<SurfacePieces> run(ClashReason& why) {
+    const auto pieces = count_pieces();
+    if (!pieces) why = touches_flat_face() ? ClashReason::flat_face : ClashReason::many_cells;
+    return pieces;
+  }
+
+ private:
+  std::optional<SurfacePieces> count_pieces() {
     if (!cut_faces()) return std::nullopt;
     const std::vector<EdgeUse> uses = edge_uses();
     for (std::size_t i = 0; i < uses.size();) {
@@ -99,7 +108,15 @@ class CutSurface {
     return count();
   }
 
- private:
+  bool touches_flat_face() {
+    return std::any_of(result_.pairs.begin(), result_.pairs.end(), [&](const SimplexPair& pair) {
+      const double *x[3], *y[3];
+      body_.world.corners(own(pair), x);
+      holder_.world.corners(others(pair), y);
+      return exact::collinear3d(x[0], x[1], x[2]) || exact::collinear3d(y[0], y[1], y[2]);
+    });
+  }
+
   SimplexId own(const SimplexPair& p) const { return side_ == Side::a ? p.a : p.b; }
   SimplexId others(const SimplexPair& p) const { return side_ == Side::a ? p.b : p.a; }
 
@@ -319,12 +336,23 @@ class CutSurface {
   Groups surface_;  ///< simplices
 };
 
+/// Returns why two bodies are no two solids; none if they are.
+ClashReason reason_of_bodies(const LrbRep& a, const LrbRep& b) {
+  return !a.closed()           ? ClashReason::a_open
+         : !b.closed()         ? ClashReason::b_open
+         : a.overlaps_itself() ? ClashReason::a_overlaps
+         : b.overlaps_itself() ? ClashReason::b_overlaps
+                               : ClashReason::none;
+}
+
 }  // namespace
 
 std::optional<std::array<SurfacePieces, 2>> surface_pieces(QueryContext& context, const CollideResult& result,
-                                                           bool only_rational) {
-  for (const Side side : {Side::a, Side::b})
-    if (!context[side].rep().closed() || context[side].rep().self_intersecting()) return std::nullopt;
+                                                           bool only_rational, ClashReason* reason) {
+  ClashReason unused = ClashReason::none;
+  ClashReason& why = reason != nullptr ? *reason : unused;
+  why = reason_of_bodies(context[Side::a].rep(), context[Side::b].rep());
+  if (why != ClashReason::none) return std::nullopt;
   std::vector<exact::PairContact> contacts;
   bool on_same = false, on_opposite = false;
   const bool mirrored =
@@ -340,7 +368,7 @@ std::optional<std::array<SurfacePieces, 2>> surface_pieces(QueryContext& context
   std::array<SurfacePieces, 2> out;
   for (const Side side : {Side::a, Side::b}) {
     const std::optional<SurfacePieces> pieces =
-        CutSurface(context, side, result, contacts, only_rational).run();
+        CutSurface(context, side, result, contacts, only_rational).run(why);
     if (!pieces) return std::nullopt;
     out[static_cast<std::size_t>(side)] = *pieces;
     out[static_cast<std::size_t>(side)].on_same = on_same;

@@ -32,7 +32,7 @@ class Decider {
   Answer run() {
     for (const Side side : {Side::a, Side::b}) {
       const LrbRep& rep = ctx_[side].rep();
-      if (!rep.closed() || rep.self_intersecting()) return Answer::unknown;
+      if (!rep.closed() || rep.overlaps_itself()) return Answer::unknown;
     }
     const Answer between = between_coinciding_faces();
     if (between == Answer::yes) return between;

@@ -50,6 +50,7 @@ std::string line_of(std::size_t pose, const ClashResult& result, const std::vect
                     const ClashOptions& o, double us) {
   return trace::json_text(trace::JsonWriter::kCompact, [&](trace::JsonWriter& w) {
     w.begin_object().member("pose", std::uint64_t{pose}).member("kind", to_string(result.kind));
+    if (result.reason != ClashReason::none) w.member("reason", name_of(result.reason));
     if (result.shares_faces) w.member("shares_faces", true);
     w.key("distance").begin_array().value(result.distance.lower).value(result.distance.upper).end_array();
     write_interval(w, "depth", result.depth);
@@ -86,8 +87,9 @@ std::string interval_text(const std::optional<ProvedInterval>& interval) {
 using Row = std::vector<std::string>;
 
 Row row_of(std::size_t pose, const ClashResult& r, const ClashOptions& o) {
-  Row row{std::to_string(pose), to_string(r.kind), r.shares_faces ? "yes" : "no", interval_text(r.distance),
-          interval_text(r.depth)};
+  const std::string reason(name_of(r.reason));
+  Row row{std::to_string(pose), to_string(r.kind) + (reason.empty() ? "" : ": " + reason),
+          r.shares_faces ? "yes" : "no", interval_text(r.distance), interval_text(r.depth)};
   std::ostringstream move;
   move << std::setprecision(6) << r.translation.x() << " " << r.translation.y() << " " << r.translation.z();
   row.push_back(r.depth && std::isfinite(r.depth->upper) ? move.str() : "-");

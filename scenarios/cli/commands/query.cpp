@@ -69,7 +69,7 @@ void write_pairs(trace::JsonWriter& w, const char* name, const std::vector<Simpl
 
 /// What is asked besides, of other queries.
 struct More {
-  std::optional<ClashKind> kind;
+  std::optional<ClashResult> kind;
   std::optional<DistanceResult> distance;
 };
 
@@ -85,7 +85,7 @@ More ask_more(const LrbRep& a, const LrbRep& b, const Pose& pose, const QueryOpt
   if (o.kind) {
     ClashRequest request;
     request.depth = request.volume = false;
-    out.kind = clash(a, Pose{}, b, pose, request, context.clash).kind;
+    out.kind = clash(a, Pose{}, b, pose, request, context.clash);
   }
   if (o.distance) {
     DistanceRequest request;
@@ -105,7 +105,8 @@ std::string line_of(std::size_t pose, const CollideResult& result, const More& m
     w.member("fingerprint", trace::to_hex(fingerprint(result.pairs)));
     if (tells_overlap(request) && result.relation == Relation::touching)
       w.member("interiors_overlap", name_of(result.interiors_overlap));
-    if (more.kind) w.member("kind", name_of(*more.kind));
+    if (more.kind) w.member("kind", name_of(more.kind->kind));
+    if (more.kind && more.kind->reason != ClashReason::none) w.member("reason", name_of(more.kind->reason));
     if (more.distance) {
       w.key("distance").begin_array().value(more.distance->lower).value(more.distance->upper);
       w.end_array();

@@ -61,6 +61,35 @@ TEST_CASE("clash: a line for each pose, and a table") {
   CHECK(table.out.find("0.015625") != std::string::npos);
 }
 
+TEST_CASE("B2: clash says why a kind is undecided, of a mesh and of its .lrb alike") {
+  ClashingBoxes boxes;
+  write_mesh(shapes::several({shapes::box(), shapes::box({0.5, 0.25, 0.25}, {2, 0.75, 0.75})}),
+             boxes.folder / "b.obj");
+  boxes.folder.write("poses.txt", "1 0 0 0.75  0 1 0 0.125  0 0 1 0\n1 0 0 9  0 1 0 0  0 0 1 0\n");
+  REQUIRE(run(boxes.folder, {"--quiet", "build", "b.obj", "-o", "b.lrb"}).code == 0);
+  std::vector<Json> first;
+  for (const char* const b : {"b.obj", "b.lrb"}) {
+    const std::vector<Json> lines =
+        lines_of(boxes.folder, {"--quiet", "clash", "a.obj", b, "--poses", "poses.txt"});
+    REQUIRE(lines.size() == 2);
+    CHECK(lines[0]["kind"] == "undecided");
+    CHECK(lines[0]["reason"] == "B intersects itself");
+    CHECK(lines[0].contains("depth"));
+    CHECK_FALSE(lines[0].contains("volume"));
+    CHECK_FALSE(lines[0].contains("pieces_a"));
+    CHECK(lines[1]["kind"] == "apart");
+    CHECK_FALSE(lines[1].contains("reason"));
+    if (first.empty()) first = lines;
+    CHECK(lines == first);
+    const std::vector<Json> asked =
+        lines_of(boxes.folder, {"--quiet", "query", "a.obj", b, "--poses", "poses.txt", "--kind"});
+    CHECK(asked[0]["kind"] == "undecided");
+    CHECK(asked[0]["reason"] == "B intersects itself");
+  }
+  const Outcome table = run(boxes.folder, boxes.arguments({"--table"}));
+  CHECK(table.out.find("undecided: B intersects itself") != std::string::npos);
+}
+
 TEST_CASE("clash: what cannot be asked is refused in one line") {
   const ClashingBoxes boxes;
   check_refused(boxes.folder, boxes.arguments({"--clearance", "-1"}));

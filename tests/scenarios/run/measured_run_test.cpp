@@ -116,6 +116,24 @@ TEST_CASE("measured runs: the page has the numbers, columns and charts, and othe
   CHECK_FALSE(has_chart(plain, "first contact"));
 }
 
+TEST_CASE("B2: frames and page say why a kind of contact is undecided") {
+  run::Recording r = recorded(R"({"clash": true})");
+  trace::MeasuredClash& last = *r.trace.steps.back().result.clash;
+  last.kind = ClashKind::undecided;
+  last.reason = ClashReason::b_overlaps;
+  last.volume.reset();
+  CHECK(at_end(r, 6, {}).caption().find("undecided: B intersects itself, ") != std::string::npos);
+  const report::Page page = run::run_page(run::recorded_run_of("gap", "", r), {}, ".", {});
+  CHECK(number(page, "Kind of contact") == "undecided");
+  CHECK(std::any_of(page.numbers.begin(), page.numbers.end(), [](const report::PageNumber& n) {
+    return n.label == "Kind of contact" && n.note.ends_with("; B intersects itself");
+  }));
+  CHECK(std::any_of(page.tables.begin(), page.tables.end(), [](const report::PageTable& t) {
+    return !t.rows.empty() &&
+           std::count(t.rows.back().begin(), t.rows.back().end(), "undecided: B intersects itself");
+  }));
+}
+
 TEST_CASE("measured runs: a clash of bodies in the plane is refused by step") {
   const std::string text = R"({"name": "flat", "purpose": "Two cogs.",
       "bodies": {"a": {"generator": "cog2d"}, "b": {"generator": "cog2d"}},
