@@ -119,8 +119,18 @@ void write_json(JsonWriter& w, const MeasuredClash& m) {
   w.end_object();
 }
 
+void write_answer(JsonWriter& w, const MeasuredApproach& m) {
+  w.member("outcome", name_of(m.outcome)).member("t0", m.t0).member("t1", m.t1);
+  if (!m.step || !m.length) return;
+  w.key("step");
+  write_array(w, *m.step);
+  w.key("length");
+  write_array(w, *m.length);
+}
+
 void write_json(JsonWriter& w, const MeasuredApproach& m) {
-  w.begin_object().member("outcome", name_of(m.outcome)).member("t0", m.t0).member("t1", m.t1);
+  w.begin_object();
+  write_answer(w, m);
   write_course(w, m.course);
   w.end_object();
 }

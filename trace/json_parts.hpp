@@ -19,6 +19,8 @@ void write_course(JsonWriter& w, const std::vector<Bounds>& course);
 void write_course(JsonWriter& w, const std::vector<ContactBounds>& course);
 void write_json(JsonWriter& w, const MeasuredDistance& m);
 void write_json(JsonWriter& w, const MeasuredClash& m);
+/// Writes the members of a first contact but its course, without brackets.
+void write_answer(JsonWriter& w, const MeasuredApproach& m);
 void write_json(JsonWriter& w, const MeasuredApproach& m);
 /// Writes a pose as the 12 numbers of a 3x4 matrix, row by row, as in pose files.
 void write_json(JsonWriter& w, const Pose& pose);

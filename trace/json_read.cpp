@@ -84,9 +84,10 @@ void read_ends(const TraceNode& node, std::array<double, n>& ends) {
   for (std::size_t i = 0; i < n; ++i) ends[i] = read_end(node.at(i));
 }
 
-void read_vector(const TraceNode& node, std::array<double, 3>& vector) {
-  if (node.array_size() != 3) node.fail("3 numbers");
-  for (std::size_t i = 0; i < 3; ++i) vector[i] = node.at(i).number();
+template <std::size_t n>
+void read_vector(const TraceNode& node, std::array<double, n>& vector) {
+  if (node.array_size() != n) node.fail(std::to_string(n) + " numbers");
+  for (std::size_t i = 0; i < n; ++i) vector[i] = node.at(i).number();
 }
 
 void read_course(const TraceNode& node, std::vector<Bounds>& course) {
@@ -190,6 +191,10 @@ MeasuredApproach read_approach(const TraceNode& node) {
   m.outcome = node.at("outcome").named<MotionOutcome>();
   m.t0 = node.at("t0").least(0);
   m.t1 = node.at("t1").least(0);
+  if (node.has("step")) {
+    read_vector(node.at("step"), m.step.emplace());
+    read_vector(node.at("length"), m.length.emplace());
+  }
   const TraceNode course = node.at("course");
   const std::size_t count = course.array_size();
   for (std::size_t i = 0; i < count; ++i) {

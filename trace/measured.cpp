@@ -47,7 +47,7 @@ MeasuredClash measured(const ClashResult& result, std::vector<Bounds> course) {
 }
 
 MeasuredApproach measured(const FirstContactResult& result, std::vector<ContactBounds> course) {
-  return {result.outcome, result.t0, result.t1, std::move(course)};
+  return {result.outcome, result.t0, result.t1, std::nullopt, std::nullopt, std::move(course)};
 }
 
 std::string words(const MeasuredDistance& m) {
@@ -62,7 +62,9 @@ std::string words(const MeasuredClash& m) {
 }
 
 std::string words(const MeasuredApproach& m) {
-  return std::string(name_of(m.outcome)) + " " + interval_words(m.t0, m.t1, m.course.size());
+  std::string out = std::string(name_of(m.outcome)) + " " + interval_words(m.t0, m.t1, m.course.size());
+  if (m.step) out += ", step " + digits((*m.step)[1]);
+  return out;
 }
 
 }  // namespace lrb::trace

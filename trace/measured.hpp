@@ -40,13 +40,18 @@ struct MeasuredClash {
 struct MeasuredApproach {
   MotionOutcome outcome = MotionOutcome::undecided;
   double t0 = 0, t1 = 0;  ///< as FirstContactResult has them
-  std::vector<ContactBounds> course;
+  /// The same two times as steps of the trace: 11.36 is after step 11 and before step 12. Below 0 if the
+  /// contact comes before step 0. None: no contact.
+  std::optional<std::array<double, 2>> step;
+  std::optional<std::array<double, 2>> length;  ///< the way that B's origin has moved from step 0 by then
+  std::vector<ContactBounds> course;            ///< empty unless the search was watched
 
   friend bool operator==(const MeasuredApproach&, const MeasuredApproach&) = default;
 };
 
 MeasuredDistance measured(const DistanceResult& result, std::vector<Bounds> course);
 MeasuredClash measured(const ClashResult& result, std::vector<Bounds> course);
+/// Leaves step and length out, which the steps of the trace decide.
 MeasuredApproach measured(const FirstContactResult& result, std::vector<ContactBounds> course);
 
 /// Return it in a few words: "[0.25, 0.25] in 31 looks".

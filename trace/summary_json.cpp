@@ -176,6 +176,11 @@ std::string summary_json(const Trace& trace, std::span<const SummaryBody> bodies
   for (const BodyInfo& body : trace.header.bodies) write_json(w, body);
   w.end_array().key("events");
   write_event_counts(w, trace);
+  if (trace.header.first_contact) {
+    w.key("first_contact").begin_object();
+    write_answer(w, *trace.header.first_contact);
+    w.end_object();
+  }
   if (trace.header.construction)
     write_construction(w, trace);
   else

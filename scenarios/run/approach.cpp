@@ -7,6 +7,7 @@
 #include <Eigen/Geometry>
 
 #include "engine/query/collide_impl.hpp"
+#include "scenarios/io/number_text.hpp"
 #include "scenarios/spec/scenario_motion.hpp"
 
 namespace lrb::run {
@@ -53,6 +54,15 @@ struct Steps {
   }
 };
 
+/// Writes when the surfaces first meet in steps of the poses, of which the one numbered `at` is so many steps
+/// after the motion's start.
+void number_contact(const Steps& steps, double at, double after, trace::MeasuredApproach& search) {
+  if (search.outcome != MotionOutcome::contact) return;
+  const auto step_of = [&](double t) { return at + (t * steps.count - after); };
+  search.step = {step_of(search.t0), step_of(search.t1)};
+  search.length = {(*search.step)[0] * steps.length, (*search.step)[1] * steps.length};
+}
+
 /// Sets the poses at whole steps, given from which step on there may be contacts.
 void find_step(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Steps& steps, std::uint32_t from,
                Approach& out) {
@@ -66,6 +76,7 @@ void find_step(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Steps
     out.met = true;
     const std::uint32_t first = step - std::min(step, steps.motion.before);
     out.first_contact = step - first;
+    number_contact(steps, 0, first, out.search);
     for (std::uint32_t s = first; s <= step + steps.motion.into; ++s) out.poses.push_back(steps.pose(s));
   }
 }
@@ -76,6 +87,7 @@ void stand_at_contact(const Steps& steps, double t, Approach& out) {
   const Motion whole = steps.whole();
   const auto before = std::min(steps.motion.before, static_cast<std::uint32_t>(t * steps.count));
   out.first_contact = before;
+  number_contact(steps, before, t * steps.count, out.search);
   for (std::uint32_t i = 0; i <= before + steps.motion.into; ++i) {
     const double step = static_cast<double>(i) - before;
     out.poses.push_back(whole.at(step == 0 ? t : std::max(0.0, t + step / steps.count)));
@@ -98,8 +110,7 @@ Approach find_approach(const LrbRep& a, const Pose& pose_a, const LrbRep& b, con
       watched ? first_contact(a, Motion::still(pose_a), b, steps.whole(), request, told)
               : first_contact(a, Motion::still(pose_a), b, steps.whole(), request);
   Approach out;
-  if (watched) out.search = trace::measured(found, std::move(told.course));
-  if (found.is_contact()) out.steps_to_contact = TimeSpan{found.t0 * whole_way, found.t1 * whole_way};
+  out.search = trace::measured(found, std::move(told.course));
   const bool inside = found.at_begin == Relation::a_inside_b || found.at_begin == Relation::b_inside_a;
   if (!(motion.exact && found.is_contact() && !found.passed) || inside) {
     const auto from = static_cast<std::uint32_t>(found.t0 * whole_way);
@@ -113,6 +124,21 @@ Approach find_approach(const LrbRep& a, const Pose& pose_a, const LrbRep& b, con
     for (std::uint32_t s = 0; s <= whole_way; s += stride) out.poses.push_back(steps.pose(s));
   }
   return out;
+}
+
+std::string contact_step(const trace::MeasuredApproach& search) {
+  if (!search.step) return {};
+  const double step = (*search.step)[1];
+  constexpr int kDecimals = 2;
+  return step < 0 ? io::fixed_text(-step, kDecimals) + " steps before step 0"
+                  : "step " + io::fixed_text(step, kDecimals);
+}
+
+std::string contact_way(const trace::MeasuredApproach& search) {
+  if (!search.length) return {};
+  const double length = (*search.length)[1];
+  return length < 0 ? "B moves " + io::number_text(-length) + " from there to step 0"
+                    : "after B has moved " + io::number_text(length) + " from step 0";
 }
 
 }  // namespace lrb::run

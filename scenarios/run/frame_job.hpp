@@ -28,7 +28,6 @@ struct RecordedRun {
   /// name; null: compute them.
   const std::array<std::vector<double>, 2>* face_values = nullptr;
   std::string value_name = {};
-  std::string first_contact = {};  ///< as Recording::first_contact
 };
 
 /// Returns the results of a run's steps; none if they are not known.

@@ -8,7 +8,6 @@
 #include "engine/core/file_bytes.hpp"
 #include "engine/query/coherent/coherent_query.hpp"
 #include "engine/query/collide_impl.hpp"
-#include "scenarios/io/number_text.hpp"
 #include "scenarios/run/approach.hpp"
 #include "scenarios/spec/scenario_frames.hpp"
 #include "scenarios/spec/scenario_motion.hpp"
@@ -36,19 +35,21 @@ trace::RecorderSettings recorder_settings(const spec::Scenario& s) {
   return settings;
 }
 
+std::string note_of(const Approach& approach) {
+  const std::string step = contact_step(approach.search);
+  if (!step.empty())
+    return "first contact at " + step + ", " + contact_way(approach.search) +
+           "; the first step in contact is step " + std::to_string(approach.first_contact);
+  return approach.met ? "first contact at step " + std::to_string(approach.first_contact)
+                      : "the bodies did not meet on the way";
+}
+
 std::vector<Pose> poses_of_b(const spec::Scenario& s, Recording& r) {
   if (s.motion.kind != spec::Motion::Kind::approach) return spec::poses_of(s.motion, s.bodies[1].pose);
   Approach approach = find_approach(r.bodies[0].rep, s.bodies[0].pose, r.bodies[1].rep, s.bodies[1].pose,
                                     s.motion, s.more.distance);
+  r.notes.push_back(note_of(approach));
   r.trace.header.first_contact = std::move(approach.search);
-  r.notes.push_back(approach.met ? "first contact at step " + std::to_string(approach.first_contact)
-                                 : "the bodies did not meet on the way");
-  if (approach.steps_to_contact) {
-    const auto steps = [](double count) { return io::number_text(count, 9); };
-    r.first_contact = steps(approach.steps_to_contact->end) + " steps";
-    r.notes.back() += ", after " + r.first_contact + " of the way, and not before " +
-                      steps(approach.steps_to_contact->begin);
-  }
   return std::move(approach.poses);
 }
 

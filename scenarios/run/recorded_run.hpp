@@ -32,7 +32,6 @@ struct Recording {
   /// The pairs that another engine got wrong, for each step: first those that it reported, then those that it
   /// missed. Empty if none was recorded.
   std::vector<std::vector<WrongPair>> wrong;
-  std::string first_contact;       ///< when an approach first meets, in words; empty: it does not, or is none
   std::vector<std::string> notes;  ///< for people
 };
 

@@ -5,6 +5,7 @@
 #include "render/overlay.hpp"
 #include "scenarios/io/files.hpp"
 #include "scenarios/report/page/inline_image.hpp"
+#include "scenarios/run/approach.hpp"
 #include "scenarios/run/construct_report.hpp"
 #include "scenarios/run/frame_state.hpp"
 #include "scenarios/run/group_tables.hpp"
@@ -102,9 +103,9 @@ std::vector<report::PageNumber> collision_numbers(const RecordedRun& p, const tr
     out.push_back({"Contact regions", render::group_digits(p.results->back().regions.size()), at});
   }
   add_measured(r, at, out);
-  if (!p.first_contact.empty())
-    out.push_back(
-        {"First contact", p.first_contact, "of the way; until then the surfaces are proved not to meet"});
+  if (const auto& search = p.trace->header.first_contact; search && search->step)
+    out.push_back({"First contact", contact_step(*search),
+                   contact_way(*search) + "; until then the surfaces are proved not to meet"});
   out.push_back({"Face tests", render::group_digits(r.counters.face_tests),
                  at + "; all pairs would be " +
                      render::group_digits(std::uint64_t{p.reps[0]->real_simplex_count()} *

@@ -48,7 +48,6 @@ RecordedRun recorded_run_of(const std::string& title, const std::string& purpose
   p.results = &recording.results;
   p.trees = &recording.trees;
   p.wrong = &recording.wrong;
-  p.first_contact = recording.first_contact;
   for (const bodies::LoadedBody& body : recording.bodies) p.reps.push_back(&body.rep);
   return p;
 }

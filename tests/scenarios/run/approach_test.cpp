@@ -39,12 +39,13 @@ TEST_CASE("approach: whole steps, the first that meets") {
   CHECK(found.first_contact == 3);
   CHECK(relation_at(box(), found.poses[2]) == Relation::separate);
   CHECK(relation_at(box(), found.poses[3]) != Relation::separate);
-  // Boxes of 1 meet after a way of 2.3, in steps of 0.05 of both diagonals.
-  REQUIRE(found.steps_to_contact.has_value());
-  const double steps = 2.3 / (0.05 * 2 * std::sqrt(3.0));
-  CHECK(found.steps_to_contact->begin <= steps);
-  CHECK(found.steps_to_contact->end >= steps);
-  CHECK(found.steps_to_contact->end - found.steps_to_contact->begin < 1e-7);
+  // Boxes of 1 meet at z = 1.
+  REQUIRE(found.search.step.has_value());
+  const double moved = found.poses[0].t.z() - 1, steps = moved / (0.05 * 2 * std::sqrt(3.0));
+  CHECK(found.search.step->at(0) <= steps + 1e-12);
+  CHECK(found.search.step->at(1) >= steps - 1e-12);
+  CHECK(found.search.step->at(1) - found.search.step->at(0) < 1e-7);
+  CHECK(found.search.length->at(1) == doctest::Approx(moved));
 }
 
 TEST_CASE("approach: a step at the first contact itself") {
@@ -60,6 +61,8 @@ TEST_CASE("approach: a step at the first contact itself") {
   CHECK(found.poses[3].t.z() == doctest::Approx(1));
   CHECK(found.poses[3].t.z() <= 1);
   CHECK((found.poses[3].t - found.poses[2].t).norm() == doctest::Approx(0.05 * 2 * std::sqrt(3.0)));
+  CHECK(found.search.step->at(1) == 3);
+  CHECK(found.search.length->at(1) == doctest::Approx(found.poses[0].t.z() - 1));
 }
 
 TEST_CASE("approach: a sheet that is passed between two steps is met all the same") {
@@ -84,6 +87,22 @@ TEST_CASE("approach: bodies inside each other meet at once; bodies that miss do 
   past.target = {5, 0, 0};
   const run::Approach missed = run::find_approach(box(), {}, box(), {}, past);
   CHECK(!missed.met);
-  CHECK(!missed.steps_to_contact.has_value());
+  CHECK(!missed.search.step.has_value());
   CHECK(missed.poses.size() > 5);
+}
+
+// It was counted from the start of the approach, of which a run records the end alone.
+TEST_CASE("approach: the first contact is a step of those that are recorded") {
+  const run::Approach found = run::find_approach(box(), {}, box(), {}, coming(0.05));
+  REQUIRE(found.search.step.has_value());
+  CHECK(found.search.step->at(0) > found.first_contact - 1);
+  CHECK(found.search.step->at(1) <= found.first_contact);
+  CHECK(run::contact_step(found.search) == "step 2.28");
+  CHECK(run::contact_way(found.search) == "after B has moved 0.3947441 from step 0");
+  spec::Motion late = coming(0.05);
+  late.before = 0;
+  const run::Approach after = run::find_approach(box(), {}, box(), {}, late);
+  CHECK(after.search.step->at(1) == doctest::Approx(found.search.step->at(1) - 3));
+  CHECK(run::contact_step(after.search) == "0.72 steps before step 0");
+  CHECK(run::contact_way(after.search) == "B moves 0.1248711 from there to step 0");
 }

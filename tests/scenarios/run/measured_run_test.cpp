@@ -77,7 +77,9 @@ TEST_CASE("measured runs: each step has its distance and its clash, and the sear
   const run::Recording plain = recorded("{}");
   CHECK_FALSE(plain.trace.steps[0].result.distance.has_value());
   CHECK_FALSE(plain.trace.steps[0].result.clash.has_value());
-  CHECK_FALSE(plain.trace.header.first_contact.has_value());
+  REQUIRE(plain.trace.header.first_contact.has_value());
+  CHECK(plain.trace.header.first_contact->step == r.trace.header.first_contact->step);
+  CHECK(plain.trace.header.first_contact->course.empty());
 }
 
 TEST_CASE("measured runs: frames show the nearest points, and the way out, and say how long they are") {
