@@ -50,11 +50,7 @@ class HoleCloser {
     for (std::size_t i = 0; i < out_.holes.size(); ++i)
       if (views_[i] && !is_closed(i)) alone.push_back(attempt_for(i));
     try_all(std::move(alone));
-    for (std::size_t i = 0; i < out_.holes.size(); ++i) {
-      Hole& hole = out_.holes[i];
-      if (!is_closed(i) && checked_.is_of_sheet(hole.loop.face))
-        hole = {std::move(hole.loop), HoleState::of_sheet};
-    }
+    for (Hole& hole : out_.holes) hole.of_sheet = checked_.is_of_sheet(hole.loop.face);
     out_.new_faces = static_cast<std::uint32_t>(out_.mesh.face_count() - mesh_.face_count());
     out_.new_vertices = static_cast<std::uint32_t>(out_.mesh.vertices.size() - mesh_.vertices.size());
     return std::move(out_);

@@ -19,12 +19,12 @@ enum class HoleState : std::uint8_t {
   meets_surface,   ///< each lid that was tried would meet a face that was there
   meets_lid,       ///< ... or the lid of another hole
   meets_itself,    ///< ... or itself, or have an edge that faces have already
-  of_sheet,        ///< none stood, and it is the rim of a sheet, which bounds nothing
 };
 
 struct Hole {
   BoundaryLoop loop;
   HoleState state = HoleState::not_a_loop;
+  bool of_sheet = false;             ///< the rim of a component that lies in one plane, and so bounds nothing
   std::uint32_t first_face = kNull;  ///< of its lid, if it is closed
   std::uint32_t faces = 0;           ///< of its lid
   std::uint32_t obstacle =

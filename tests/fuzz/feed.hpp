@@ -14,11 +14,11 @@ bool feed_mesh(std::string_view bytes);
 /// The first byte says whether the checksum is put right (its lowest bit) and what is then done with the body
 /// (the next two), the rest are the file.
 bool feed_lrb(std::string_view bytes);
-/// Four edits of five bytes each say which fields of a good file are damaged; the first byte chooses the file. Its
-/// checksum is put right, and what is accepted goes through every reader.
+/// Four edits of five bytes each say which fields of a good file are damaged; the first byte chooses the
+/// file. Its checksum is put right, and what is accepted goes through every reader.
 bool feed_fields(std::string_view bytes);
-/// The first byte: '0', and the rest is an OBJ, or '1' or '2', and the rest says how a body's polygons fold. It is built,
-/// proved, saved, loaded and queried.
+/// The first byte: '0', and the rest is an OBJ, or '1' or '2', and the rest says how a body's polygons fold.
+/// It is built, proved, saved, loaded and queried.
 bool feed_body(std::string_view bytes);
 bool feed_poses(std::string_view bytes);
 bool feed_scenario(std::string_view bytes);
@@ -27,7 +27,8 @@ bool feed_experiment(std::string_view bytes);
 bool feed_crowd_trace(std::string_view bytes);
 bool feed_trace(std::string_view bytes);
 
-/// Without it the checksum of a .lrb would stop nearly every mutation, and what is behind it would never be tried.
+/// Without it the checksum of a .lrb would stop nearly every mutation, and what is behind it would never be
+/// tried.
 void put_checksum_right(std::string& file);
 
 /// Throws std::logic_error unless an InputError's message is one line that begins with `name` and a colon.

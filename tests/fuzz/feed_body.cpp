@@ -35,8 +35,8 @@ class Numbers {
   std::size_t at_ = 0;
 };
 
-/// A closed body of polygons whose vertices have been moved, so that its faces fold; some of them perhaps gone,
-/// double or turned.
+/// A closed body of polygons whose vertices have been moved, so that its faces fold; some of them perhaps
+/// gone, double or turned.
 Mesh folded(Numbers& numbers) {
   const std::uint32_t family = numbers.below(4), size = numbers.below(8);
   const double reach = numbers.below(128) / 128.0;
@@ -46,7 +46,8 @@ Mesh folded(Numbers& numbers) {
     mesh = test::quad_ball(3 + size, rings, [&] { return 1 + reach * numbers.signed_unit(); });
   } else if (family == 1) {
     const std::uint32_t cells = 1 + numbers.below(255);
-    mesh = shapes::voxels(2, 2, 2, [=](int x, int y, int z) { return (cells >> (4 * x + 2 * y + z) & 1) != 0; }, true);
+    mesh = shapes::voxels(
+        2, 2, 2, [=](int x, int y, int z) { return (cells >> (4 * x + 2 * y + z) & 1) != 0; }, true);
   } else {
     mesh = family == 2 ? hard::drum(3 + size) : shapes::quad_torus(static_cast<int>(3 + size), 3);
   }
@@ -103,7 +104,8 @@ bool feed_body(std::string_view bytes) {
       if (levels) body.rep().levels();
       const std::string file = test::lrb_bytes(body);
       const LrbRep again = load_lrb(file, "m.lrb");
-      promise(again.hash() == body.rep().hash() && test::lrb_bytes(again) == file, "another body once saved and loaded");
+      promise(again.hash() == body.rep().hash() && test::lrb_bytes(again) == file,
+              "another body once saved and loaded");
       query(body, again);
     }
   });

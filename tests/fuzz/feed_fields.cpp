@@ -75,10 +75,22 @@ std::vector<Section> sections_of(const std::string& file) {
   return out;
 }
 
-constexpr std::uint32_t kWords[] = {0,          1,          2,          7,          255,        256,       65535,     1u << 30,
-                                    0x7f800000, 0x7fc00000, 0x7fffffff, 0x80000000, 0xfffffffc, 0xfffffffd, 0xfffffffe, 0xffffffff};
-constexpr double kNumbers[] = {0, -0.0, 1, -1, 5e-324, 1e-160, -1e-160, 1e160, -1e160, 1.7e308, -1.7e308,
-                               std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity(),
+constexpr std::uint32_t kWords[] = {0,          1,          2,          7,          255,        256,
+                                    65535,      1u << 30,   0x7f800000, 0x7fc00000, 0x7fffffff, 0x80000000,
+                                    0xfffffffc, 0xfffffffd, 0xfffffffe, 0xffffffff};
+constexpr double kNumbers[] = {0,
+                               -0.0,
+                               1,
+                               -1,
+                               5e-324,
+                               1e-160,
+                               -1e-160,
+                               1e160,
+                               -1e160,
+                               1.7e308,
+                               -1.7e308,
+                               std::numeric_limits<double>::infinity(),
+                               -std::numeric_limits<double>::infinity(),
                                std::numeric_limits<double>::quiet_NaN()};
 
 /// Changes one field. Five bytes say which and how.
@@ -129,7 +141,8 @@ void damage(std::string& file, std::string_view how) {
     default: {  // a number a little larger or smaller
       if (in_words == 0) break;
       const std::size_t at = s.at + place % in_words * 4;
-      const std::uint32_t moved = number_at<std::uint32_t>(file, at) + static_cast<std::uint32_t>(static_cast<std::int8_t>(value));
+      const std::uint32_t moved =
+          number_at<std::uint32_t>(file, at) + static_cast<std::uint32_t>(static_cast<std::int8_t>(value));
       set(at, &moved, sizeof moved);
     }
   }
@@ -145,7 +158,8 @@ void ask(const Ask& question) {
   }
 }
 
-/// Every reader of the body, here beside a good one. The answers may be nonsense, as the body is; they must come.
+/// Every reader of the body, here beside a good one. The answers may be nonsense, as the body is; they must
+/// come.
 void read_all(const LrbRep& rep, const LrbRep& good) {
   const Pose pose = Pose::rotation({0, 0, 1}, 0.5, {0.5, 0.25, 0});
   ask([&] {
@@ -176,7 +190,8 @@ void read_all(const LrbRep& rep, const LrbRep& good) {
   FirstContactRequest request;
   request.max_steps = 2000;
   ask([&] {
-    static_cast<void>(first_contact(rep, Motion::still({}), good, Motion::linear(Pose::translation({9, 1, 0}), {-9, 0, 0}), request));
+    static_cast<void>(first_contact(rep, Motion::still({}), good,
+                                    Motion::linear(Pose::translation({9, 1, 0}), {-9, 0, 0}), request));
   });
 }
 

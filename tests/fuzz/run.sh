@@ -1,18 +1,19 @@
 #!/usr/bin/env bash
 # tests/fuzz/run.sh [--runs N | --seconds N] [FORMAT...]: builds the fuzzers (clang, address and undefined-behaviour
 # sanitizers: the preset asan-ubsan) and runs each for 20 seconds, or as long as it is told; --runs 1000000 is the full
-# run. Formats: mesh (OBJ, STL, PLY and OFF) lrb poses scenario crowd crowd_trace experiment trace. What runs learn stays
-# in build/asan-ubsan/fuzz/corpus; an input that crashes, or takes over 10 s, is left in .../found and ends the script.
+# run. Formats: mesh (OBJ, STL, PLY and OFF) lrb fields (an .lrb, damaged field by field) body (folded polygons, built)
+# poses scenario crowd crowd_trace experiment trace. What runs learn stays in build/asan-ubsan/fuzz/corpus; an input that
+# crashes, or takes over 10 s, is left in .../found and ends the script; those of before are in tests/fuzz/corpus.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
 bound=-max_total_time=20
 case "${1:-}" in
   --runs) bound=-runs=${2:?a number of inputs} && shift 2 ;;
   --seconds) bound=-max_total_time=${2:?a number of seconds} && shift 2 ;;
-  -*) sed -n '2,5s/^# //p' "${BASH_SOURCE[0]}" >&2 && exit 2 ;;
+  -*) sed -n '2,6s/^# //p' "${BASH_SOURCE[0]}" >&2 && exit 2 ;;
 esac
 formats=("$@")
-[ ${#formats[@]} -gt 0 ] || formats=(mesh lrb poses scenario crowd crowd_trace experiment trace)
+[ ${#formats[@]} -gt 0 ] || formats=(mesh lrb fields body poses scenario crowd crowd_trace experiment trace)
 build=build/asan-ubsan
 dir=$build/fuzz
 cmake --preset asan-ubsan -DLRB_BUILD_TESTS=ON >/dev/null
@@ -31,9 +32,11 @@ for format in "${formats[@]}"; do
   dictionary=tests/fuzz/$format.dict
   case "$format" in crowd | experiment) dictionary=tests/fuzz/scenario.dict ;; esac
   [ -f "$dictionary" ] && options+=(-dict="$dictionary")
+  folders=("$dir/corpus/$format" "$dir/seeds/$format")
+  [ -d "tests/fuzz/corpus/$format" ] && folders+=("tests/fuzz/corpus/$format")
   begin=$SECONDS
-  if ! "$build/tests/fuzz_$format" "${options[@]}" -artifact_prefix="$dir/found/$format-" "$dir/corpus/$format" \
-    "$dir/seeds/$format" >"$dir/$format.log" 2>&1; then
+  if ! "$build/tests/fuzz_$format" "${options[@]}" -artifact_prefix="$dir/found/$format-" "${folders[@]}" \
+    >"$dir/$format.log" 2>&1; then
     cat "$dir/$format.log"
     exit 1
   fi

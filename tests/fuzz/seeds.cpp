@@ -60,7 +60,8 @@ std::vector<std::string> field_edits() {
 
 /// Bodies of each family, as they are and with their polygons folded.
 std::vector<std::string> folded_bodies() {
-  std::vector<std::string> out = {"0v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n"};
+  std::vector<std::string> out = {
+      "0v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n"};
   for (char family = 0; family < 4; ++family) {
     out.push_back({'1', family, 5, 0, 3});
     out.push_back({'2', family, 5, 40, 3});

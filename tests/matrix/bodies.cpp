@@ -52,8 +52,8 @@ Mesh lone(const Vector3d& third) {
   return test::with_face({}, {{0, 0, 0}, {1, 0, 0}, third}, {VertexId(0), VertexId(1), VertexId(2)});
 }
 
-/// A cube with a vertex in the middle of an edge of its first face: that face is two, and what is left between
-/// them and the neighbour is a face without area.
+/// A cube with a vertex in the middle of an edge of its first face: that face is two, and what is left
+/// between them and the neighbour is a face without area.
 Mesh with_flat_face() {
   const Mesh cube = shapes::box();
   const VertexId a = cube.face(0)[0], b = cube.face(0)[1], c = cube.face(0)[2];
@@ -87,15 +87,17 @@ std::vector<Kind> make_kinds(int noisy) {
   const auto add = [&](std::string name, Mesh mesh, bool solid = true, std::optional<bool> builds = true,
                        bool simple = true, const char* format = "ply") {
     mesh.name = name;
+    if (mesh.dim == 2) format = "obj";
     kinds.push_back({std::move(name), std::move(mesh), solid, builds, simple, format});
   };
   const Mesh ball = icosphere(0), rock = bumpy_sphere(1, 1, 0.3);
   add("clean", bumpy_sphere(2, 1, 0.3), true, true, true, "stl");
-  add("quads", voxels(3, 2, 2, [](int x, int y, int z) { return x == 0 || y + z == 0; }, true));
+  add("quads", voxels(
+                   3, 2, 2, [](int x, int y, int z) { return x == 0 || y + z == 0; }, true));
   add("bent-quads", quad_torus(12, 8), true, true, true, "off");
   for (int i = 0; i < noisy; ++i)
-    add("folded-" + std::to_string(i), noisy_quads(8, 2 + i % 3, 0.02 + 0.38 * ((i + 3) % 4) / 3.0, 100 + i), true, {},
-        false);
+    add("folded-" + std::to_string(i), noisy_quads(8, 2 + i % 3, 0.02 + 0.38 * ((i + 3) % 4) / 3.0, 100 + i),
+        true, {}, false);
   add("open", test::without_faces(rock, {FaceId(0), FaceId(1), FaceId(9)}), false, false, true, "stl");
   add("sheet", sheet(5), false, false);
   add("triangle", lone({0, 1, 0}), false, false, true, "off");
@@ -115,7 +117,9 @@ std::vector<Kind> make_kinds(int noisy) {
   add("needles", test::stretched(rock, {1, 1e-5, 1e-3}));
   add("frustum", hard::frustum(24));
   add("flat-face", with_flat_face(), true, false, false);
-  add("collapsed", test::with_merged(rock, VertexId(0), rock.face(0)[0] == VertexId(0) ? rock.face(0)[1] : rock.face(0)[0]),
+  add("collapsed",
+      test::with_merged(rock, VertexId(0),
+                        rock.face(0)[0] == VertexId(0) ? rock.face(0)[1] : rock.face(0)[0]),
       true, false, false);
   add("hub", hard::bipyramid(60));
   add("drum", hard::drum(40));
@@ -177,7 +181,8 @@ std::vector<Pose> poses_of(const Kind& a, const LrbRep& rep, bool itself) {
   const Vector3d size = box.diagonal(), middle = box.center();
   const Vector3d off = Vector3d(1.7, 0.1, flat ? 0 : 0.05) * size.norm();
   Vector3d on_face = Vector3d::Zero();
-  for (const VertexId v : rep.face(FaceId(0))) on_face += rep.vertices()[v] / static_cast<double>(rep.face(FaceId(0)).size());
+  for (const VertexId v : rep.face(FaceId(0)))
+    on_face += rep.vertices()[v] / static_cast<double>(rep.face(FaceId(0)).size());
   const Pose turn = Pose::rotation(flat ? Vector3d::UnitZ() : Vector3d(1, 2, 3), 0.7);
   if (!itself) return {Pose::translation(middle + off), {turn.r, on_face}, Pose::translation(middle)};
   const Vector3d aside = Vector3d(0.16, 0.09, flat ? 0 : 0.02) * size.norm();
@@ -222,8 +227,11 @@ Matrix make_matrix(int noisy) {
   const std::size_t rows = out.kinds.size() - kProbes;
   for (std::size_t a = 0; a < rows; ++a) {
     const int exponent = exponent_of(out.kinds[a]);
-    const std::size_t probe =
-        rows + (exponent == 0 ? 0 : exponent < 0 ? 2 : 4) + (out.kinds[a].mesh.dim == 2 ? 1 : 0);
+    const std::size_t probe = rows +
+                              (exponent == 0  ? 0
+                               : exponent < 0 ? 2
+                                              : 4) +
+                              (out.kinds[a].mesh.dim == 2 ? 1 : 0);
     for (const std::size_t b : {probe, a}) out.cells.push_back(make_cell(out.kinds, a, b));
   }
   return out;

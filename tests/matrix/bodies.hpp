@@ -1,6 +1,6 @@
 #pragma once
-/// The matrix of tests: kinds of bodies, and for each what brute force says of it beside others. Every door to the
-/// engine is asked about the same cells (README.md).
+/// The matrix of tests: kinds of bodies, and for each what brute force says of it beside others. Every door
+/// to the engine is asked about the same cells (README.md).
 
 #include <optional>
 #include <string>
@@ -19,8 +19,9 @@ struct Kind {
   bool solid = true;  ///< bounds a solid, if need be by parity
   /// `build` takes it; nothing: what noise has made of its polygons decides.
   std::optional<bool> builds = true;
-  bool simple = true;  ///< neither intersects itself nor has faces without area, so that every clash is decided
-  const char* format = "ply";  ///< of its second file
+  bool simple =
+      true;  ///< neither intersects itself nor has faces without area, so that every clash is decided
+  const char* format = "ply";  ///< of its second file; in the plane "obj"
 };
 
 /// What is true of two bodies at a pose of B.
@@ -35,8 +36,8 @@ struct Cell {
   std::size_t a = 0, b = 0;  ///< kinds
   std::vector<Step> steps;
   Pose start, end;  ///< of a motion of B past or through A
-  /// Of some times, one after the other, the first at which B meets A, and the last before it at which it does
-  /// not.
+  /// Of some times, one after the other, the first at which B meets A, and the last before it at which it
+  /// does not.
   std::optional<double> meets;
   double free = 0;
   double size = 0;  ///< of A

@@ -2,6 +2,7 @@
 /// Work in a process of its own, so that a crash or a hang is a finding like others.
 
 #include <csignal>
+#include <exception>
 #include <functional>
 #include <string>
 
@@ -35,16 +36,22 @@ inline std::string in_child(const std::function<void(Report&)>& work) {
   if (pipe(ends) != 0) return "no pipe";
   const pid_t child = fork();
   if (child == 0) {
-    for (const int number : {SIGSEGV, SIGABRT, SIGBUS, SIGFPE, SIGILL}) std::signal(number, SIG_DFL);  // not doctest's
+    for (const int number : {SIGSEGV, SIGABRT, SIGBUS, SIGFPE, SIGILL})
+      std::signal(number, SIG_DFL);  // not doctest's
     alarm(kChildSeconds);
     Report report(ends[1]);
-    work(report);
+    try {
+      work(report);
+    } catch (const std::exception& e) {
+      report.wrong(std::string("exception: ") + e.what());
+    }
     _exit(0);
   }
   close(ends[1]);
   std::string all, wrong, last;
   char bytes[4096];
-  for (ssize_t n = 0; (n = read(ends[0], bytes, sizeof bytes)) > 0;) all.append(bytes, static_cast<std::size_t>(n));
+  for (ssize_t n = 0; (n = read(ends[0], bytes, sizeof bytes)) > 0;)
+    all.append(bytes, static_cast<std::size_t>(n));
   close(ends[0]);
   int status = 0;
   waitpid(child, &status, 0);

@@ -1,8 +1,7 @@
 /// matrix_bodies DIR [NOISY]: writes the bodies of the matrix with what is true of them, for doors.py:
-/// DIR/matrix.json, and of each kind NAME.obj and a file of another format; for each cell poses, a motion and a
-/// scenario.
-/// matrix_bodies --save MESH FILE.lrb: saves a body without levels, as a program in C++ may; which `lrbscope build`
-/// does not.
+/// DIR/matrix.json, and of each kind NAME.obj and a file of another format; for each cell poses, a motion and
+/// a scenario. matrix_bodies --save MESH FILE.lrb: saves a body without levels, as a program in C++ may;
+/// which `lrbscope build` does not.
 
 #include <cstdio>
 #include <cstdlib>
@@ -66,30 +65,33 @@ Json scenario_of(const Matrix& m, const Cell& cell, const std::string& name) {
                       {"pairs", steps[i]["pairs"].size()},
                       {"fingerprint", steps[i]["fingerprint"]}});
   }
-  return {{"name", name},
-          {"purpose", "A cell of the matrix."},
-          {"bodies",
-           {{"a", {{"file", m.kinds[cell.a].name + ".obj"}}}, {"b", {{"file", m.kinds[cell.b].name + ".obj"}}}}},
-          {"motion", {{"kind", "poses"}, {"poses", poses}}},
-          {"query", {{"contacts", true}, {"distance", true}, {"clash", m.kinds[cell.a].mesh.dim == 3}}},
-          {"frames", {{"at", "step"}, {"size", {320, 240}}, {"supersampling", 1}}},
-          {"expect", expect}};
+  return {
+      {"name", name},
+      {"purpose", "A cell of the matrix."},
+      {"bodies",
+       {{"a", {{"file", m.kinds[cell.a].name + ".obj"}}}, {"b", {{"file", m.kinds[cell.b].name + ".obj"}}}}},
+      {"motion", {{"kind", "poses"}, {"poses", poses}}},
+      {"query", {{"contacts", true}, {"distance", true}, {"clash", m.kinds[cell.a].mesh.dim == 3}}},
+      {"frames", {{"at", "step"}, {"size", {320, 240}}, {"supersampling", 1}}},
+      {"expect", expect}};
 }
 
 void write_matrix(const std::filesystem::path& folder, int noisy) {
   std::filesystem::create_directories(folder);
-  const auto save = [&](const std::string& name, const std::string& bytes) { test::save(folder / name, bytes); };
+  const auto save = [&](const std::string& name, const std::string& bytes) {
+    test::save(folder / name, bytes);
+  };
   const Matrix m = make_matrix(noisy);
   Json kinds = Json::array(), cells = Json::array();
   for (const Kind& k : m.kinds) {
     save(k.name + ".obj", file_of(k.mesh, "obj"));
-    if (k.mesh.dim == 3) save(k.name + "." + k.format, file_of(k.mesh, k.format));
+    save(k.name + "." + k.format, file_of(k.mesh, k.format));
     kinds.push_back({{"name", k.name},
                      {"dim", k.mesh.dim},
                      {"solid", k.solid},
                      {"builds", k.builds ? Json(*k.builds) : Json()},
                      {"simple", k.simple},
-                     {"files", k.mesh.dim == 3 ? Json{"obj", k.format} : Json{"obj"}}});
+                     {"files", {"obj", k.format}}});
   }
   for (const Cell& c : m.cells) {
     const std::string name = m.kinds[c.a].name + (c.a == c.b ? "--itself" : "--probe");

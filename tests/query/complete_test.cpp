@@ -160,11 +160,13 @@ TEST_CASE("any_pair ends at the first pair that meets, where first_pair looks fo
   CHECK(any.counters.face_tests < 100);
 }
 
-TEST_CASE("an open body has no inside: without contact the relation is undefined") {
+TEST_CASE(
+    "an open body has no inside: without contact the relation is undefined, unless boxes are disjoint") {
   const LrbRep open = LrbRep::without_regions(shapes::open_cylinder(12), false, false);
   const LrbRep ball = closed(shapes::icosphere(0, 0.1));
   CHECK(collide(open, Pose{}, ball, Pose{}).relation == Relation::undefined);
-  CHECK(collide(ball, Pose{}, open, Pose::translation({0, 0, 0.2})).relation == Relation::undefined);
+  CHECK(collide(ball, Pose{}, open, Pose::translation({0, 0, -0.2})).relation == Relation::undefined);
+  CHECK(collide(ball, Pose{}, open, Pose::translation({0, 0, 0.2})).relation == Relation::separate);
   const CollideResult through = collide(open, Pose{}, ball, Pose::translation({1, 0, 0.5}));
   CHECK(through.relation == Relation::crossing);
   CHECK(through.interiors_overlap == Answer::unknown);

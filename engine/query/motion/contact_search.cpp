@@ -36,6 +36,8 @@ constexpr double kLonger = 4, kGoesOn = 0.25;
 constexpr double kNarrow = 0x1p-10;
 constexpr std::uint64_t kMostStuckPairs = 1 << 20;
 constexpr int kProbes = 8;
+/// After so many distances in a piece of the motions, pairs are looked at if there are not too many.
+constexpr std::uint64_t kMostDistances = 512;
 
 /// Returns t + step, rounded down.
 double later(double t, double step) {
@@ -51,16 +53,19 @@ void FirstContactSearch::search_piece(const MovingBody& a, const MovingBody& b, 
   is_swept_ ? search_swept(end) : search_by_distance(end);
 }
 
+/// Returns false if there are more pairs than that, or than steps that are left; these are spent then.
 bool FirstContactSearch::find_pairs(TimeSpan span, std::uint64_t most) {
   ++result_.counters.spans;
-  const bool found_all = find_swept_pairs(query(), *a_, *b_, span, most, context_.pairs);
+  const std::uint64_t left = most_ - std::min(most_, spent_);
+  const bool found_all = find_swept_pairs(query(), *a_, *b_, span, std::min(most, left), context_.pairs);
+  spent_ = !found_all && left < most ? most_ : spent_ + 1 + context_.pairs.size();
   result_.counters.pairs += context_.pairs.size();
   if (request_.history) result_.history.push_back({span, context_.pairs.size(), free_until_});
   return found_all;
 }
 
 double FirstContactSearch::step_tolerance() const {
-  return std::min(request_.tolerance, kWidestStep);
+  return std::min(tolerance_, kWidestStep);
 }
 
 void FirstContactSearch::search_swept(double end) {
@@ -69,8 +74,9 @@ void FirstContactSearch::search_swept(double end) {
   std::uint64_t few = kFewPairs;
   while (free_until_ < end && !is_over()) {
     const double t = free_until_;
-    const TimeSpan span{t, end - t > width ? t + width : end};
-    const bool is_short = span.end - t <= kHardlyLonger * step_tolerance();
+    const TimeSpan span{t, end - t > width ? std::max(t + width, std::nextafter(t, 2)) : end};
+    const bool is_short =
+        span.end - t <= kHardlyLonger * step_tolerance() || span.end <= std::nextafter(t, 2);
     if (!find_pairs(span, is_short ? kNoLimit : few)) {
       width = (span.end - t) / 2;
       if (width < kShortShare * whole) few *= 2;
@@ -94,13 +100,27 @@ double FirstContactSearch::parted_by_distance(double t) {
   ++result_.counters.steps;
   const DistanceResult at =
       distance(*rep_[0], a_->at(t).pose, *rep_[1], b_->at(t).pose, rough, context_.distance);
+  const DistanceCounters& work = at.counters;
+  spent_ += 1 + work.pairs_in_doubles + kStepsOfExact * work.pairs_exact + work.steps / kNodePairsOfStep;
   const double gap = at.lower - 2 * (a_->rounding() + b_->rounding()) * kWorldUp;
   const double speed = ((b_->travel() - a_->travel()).norm() + a_->spin() + b_->spin()) * kWorldUp;
   return gap > 0 ? gap / speed * (1 - kWorldRounding) : 0;
 }
 
+/// Returns true if each simplex of one body can be compared with each of the other.
+bool FirstContactSearch::suits_all_pairs() const {
+  const std::uint64_t pairs = std::uint64_t{rep_[0]->real_simplex_count()} * rep_[1]->real_simplex_count();
+  return pairs <= kMostStuckPairs && pairs <= (most_ - std::min(most_, spent_)) / 4;
+}
+
+/// A distance does not say which way a gap lies: bodies that slide along each other go on by no more than
+/// their gap at a time. If that takes long, all pairs of small bodies are looked at, which need not.
 void FirstContactSearch::search_by_distance(double end) {
-  while (free_until_ < end && !is_over()) {
+  for (std::uint64_t steps = 0; free_until_ < end && !is_over(); ++steps) {
+    if (steps == kMostDistances && suits_all_pairs()) {
+      is_swept_ = true;
+      return search_swept(end);
+    }
     const double parted = parted_by_distance(free_until_);
     free_until_ = std::min(end, later(free_until_, parted));
     tell(free_until_);
@@ -115,10 +135,12 @@ double FirstContactSearch::advance(SimplexPair pair, const PieceState& at_a, con
                                    TimeSpan span, double least) {
   PairMotion moving(*a_, *b_, pair);
   moving.place(at_a, at_b);
+  if (is_long()) moving.look_at_axes();
   double t = span.begin;
   Vector3d n = hint_;
   for (int i = 0;; ++i) {
     ++result_.counters.steps;
+    ++spent_;
     double parted = moving.parted_for(n);
     if (later(t, parted) < span.end) {
       const Vector3d across = moving.bounds().direction;
@@ -131,6 +153,7 @@ double FirstContactSearch::advance(SimplexPair pair, const PieceState& at_a, con
     t = std::min(span.end, later(t, parted));
     if (t >= span.end) hint_ = n;
     if (t >= span.end || parted < least || i >= kMostStepsOfPair) return t;
+    if (is_spent()) return t;
     moving.place(a_->at(t), b_->at(t));
   }
 }
@@ -139,8 +162,10 @@ double FirstContactSearch::advance(SimplexPair pair, const PieceState& at_a, con
 double FirstContactSearch::advance_all(TimeSpan span, double least) {
   const PieceState at_a = a_->at(span.begin), at_b = b_->at(span.begin);
   double until = span.end;
-  for (const SimplexPair& pair : context_.pairs)
+  for (const SimplexPair& pair : context_.pairs) {
+    if (is_spent()) return span.begin;
     until = advance(pair, at_a, at_b, {span.begin, until}, least);
+  }
   return until;
 }
 
@@ -185,9 +210,10 @@ double FirstContactSearch::advance_stuck(TimeSpan span) {
     }
     return t;
   }
-  find_pairs(span, kNoLimit);
+  if (!find_pairs(span, kNoLimit)) return span.begin;
   const PieceState at_a = a_->at(span.begin), at_b = b_->at(span.begin);
   for (const SimplexPair& pair : context_.pairs) {
+    if (is_spent()) return span.begin;
     const double gone = advance(pair, at_a, at_b, span, least);
     if (gone < span.end) context_.stuck.push_back(pair);
     until = std::min(until, gone);
@@ -214,7 +240,7 @@ bool FirstContactSearch::has_passed(TimeSpan span) {
 
 /// Looks for the end of the time after t in which the bodies are as near each other as rounding.
 double FirstContactSearch::look_further(double t, double end) {
-  for (double width = request_.tolerance; !is_over(); width *= kLonger) {
+  for (double width = tolerance_; !is_over(); width *= kLonger) {
     const TimeSpan span{t, end - t > width ? std::max(t + width, std::nextafter(t, 2)) : end};
     if (auto pair = meets_at(span.end)) {
       contact_at_last(span, *pair);
@@ -222,9 +248,10 @@ double FirstContactSearch::look_further(double t, double end) {
     }
     if (is_swept_) {
       const bool found_all = find_pairs(span, kMostStuckPairs);
+      if (is_spent()) return t;
       context_.stuck = context_.pairs;
       if (has_passed(span)) return t;
-      if (!found_all) continue;
+      if (!found_all && span.end < end) continue;
     }
     if (span.end < end && !goes_on_from(span)) continue;
     const TimeSpan shortest = shortened(span, width / kLonger);
@@ -238,9 +265,9 @@ double FirstContactSearch::look_further(double t, double end) {
 /// are, or nothing remains, and a length of spans after which they are not.
 TimeSpan FirstContactSearch::shortened(TimeSpan span, double too_short) {
   double doubtful = std::min(span.begin + too_short, span.end);
-  while (span.end - doubtful > std::max(request_.tolerance, kNarrow * (span.end - span.begin)) &&
-         !is_over()) {
+  while (span.end - doubtful > std::max(tolerance_, kNarrow * (span.end - span.begin)) && !is_over()) {
     const double middle = doubtful + (span.end - doubtful) / 2;
+    if (!(middle > doubtful && middle < span.end)) break;
     if (is_swept_ && !find_pairs({span.begin, middle}, kMostStuckPairs)) break;
     (goes_on_from({span.begin, middle}) ? span.end : doubtful) = middle;
   }
@@ -255,6 +282,7 @@ bool FirstContactSearch::goes_on_from(TimeSpan span) {
   return std::all_of(context_.pairs.begin(), context_.pairs.end(), [&](const SimplexPair& pair) {
     PairMotion moving(*a_, *b_, pair);
     moving.place(at_a, at_b);
+    if (is_long()) moving.look_at_axes();
     return moving.parted_for(hint_) >= wanted || moving.parted_for(moving.bounds().direction) >= wanted;
   });
 }
@@ -279,7 +307,7 @@ bool FirstContactSearch::found_between(TimeSpan span) {
 void FirstContactSearch::contact_at_last(TimeSpan span, SimplexPair pair) {
   double none = span.begin;
   tell(span.begin, span.end);
-  while (span.end - none > request_.tolerance / 2) {
+  while (span.end - none > tolerance_ / 2 && !is_spent()) {
     const double middle = none + (span.end - none) / 2;
     if (!(middle > none && middle < span.end)) break;
     if (const auto earlier = meets_at(middle)) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <string>
 
 #include "engine/core/error.hpp"
@@ -11,6 +12,33 @@
 #include "engine/query/motion/first_contact_impl.hpp"
 
 namespace lrb {
+
+namespace {
+
+/// Returns how many steps a search may take: first_contact.hpp. Far more than any search takes that comes to
+/// an end at all but those along clearances that are small beside the way.
+std::uint64_t most_steps(const LrbRep& a, const Motion& motion_a, const LrbRep& b, const Motion& motion_b) {
+  constexpr double kSteps = 8192, kStepsOfSimplex = 512, kMostParts = 0x1p20, kMost = 0x1p40;
+  double parts = 0;
+  for (const Motion* motion : {&motion_a, &motion_b})
+    for (const Motion::Piece& piece : motion->pieces())
+      parts += 0.5 + std::min(piece.turn.stableNorm() / (2 * std::numbers::pi), kMostParts);
+  const double simplices = 1.0 * a.real_simplex_count() + b.real_simplex_count();
+  return static_cast<std::uint64_t>(std::min((kSteps + kStepsOfSimplex * simplices) * parts, kMost));
+}
+
+/// Returns an interval of t below which rounding hides all motion. With S as motion_bounds.hpp has it, places
+/// are off by 8 u (1 + 2^-10 |turn|) S or more, u = 2^-53, and move by no more than 2 (1 + |turn|) S in a
+/// piece: by as much as that in 2^-61 of the piece or more.
+double least_tolerance(const Motion& motion_a, const Motion& motion_b) {
+  double shortest = 1;
+  for (const Motion* motion : {&motion_a, &motion_b})
+    for (const Motion::Piece& piece : motion->pieces())
+      shortest = std::min(shortest, piece.end - piece.begin);
+  return 0x1p-61 * shortest;
+}
+
+}  // namespace
 
 void check_request(const FirstContactRequest& request) {
   if (!(request.tolerance > 0 && request.tolerance <= 1))
@@ -21,7 +49,13 @@ void check_request(const FirstContactRequest& request) {
 FirstContactSearch::FirstContactSearch(const LrbRep& a, const Motion& motion_a, const LrbRep& b,
                                        const Motion& motion_b, const FirstContactRequest& request,
                                        FirstContactContext& context, FirstContactProbe* probe)
-    : rep_{&a, &b}, motion_{&motion_a, &motion_b}, request_(request), context_(context), probe_(probe) {}
+    : rep_{&a, &b},
+      motion_{&motion_a, &motion_b},
+      request_(request),
+      context_(context),
+      probe_(probe),
+      tolerance_(std::max(request.tolerance, least_tolerance(motion_a, motion_b))),
+      most_(most_steps(a, motion_a, b, motion_b)) {}
 
 std::uint64_t FirstContactSearch::work() const {
   const FirstContactCounters& c = result_.counters;
@@ -61,6 +95,8 @@ std::optional<SimplexPair> FirstContactSearch::meets_at(double t) {
   CollideResult found;
   NullProbe probe;
   TreeQuery<NullProbe>(query(), any, found, probe).run();
+  spent_ += 1 + found.counters.face_tests + kStepsOfExact * found.counters.exact_fallbacks +
+            found.counters.node_pairs / kNodePairsOfStep;
   if (found.pairs.empty()) return std::nullopt;
   return found.pairs[0];
 }
@@ -117,6 +153,7 @@ FirstContactResult FirstContactSearch::finish() {
   if (!is_done_) {
     result_.finished = free_until_ >= 1;
     if (!result_.finished) doubt({free_until_, 1});
+    if (!result_.finished) result_.unresolved = Unresolved::steps;
     if (!result_.doubtful.empty()) {
       result_.outcome = MotionOutcome::undecided;
       result_.t1 = result_.doubtful.back().end;
@@ -124,6 +161,7 @@ FirstContactResult FirstContactSearch::finish() {
   }
   if (!result_.doubtful.empty()) result_.t0 = result_.doubtful[0].begin;
   result_.grazing = result_.grazing || (result_.finished && !result_.doubtful.empty());
+  if (result_.grazing && result_.unresolved == Unresolved::nothing) result_.unresolved = Unresolved::rounding;
   return std::move(result_);
 }
 

@@ -14,6 +14,9 @@
 
 namespace lrb {
 
+/// So many pairs of nodes count as a step; what is compared in integers counts as so many.
+inline constexpr std::uint64_t kNodePairsOfStep = 16, kStepsOfExact = 16;
+
 /// Memory of a search; one for each thread.
 struct FirstContactContext {
   DistanceContext distance;
@@ -38,7 +41,10 @@ class FirstContactSearch {
 
  private:
   QueryContext& query() { return context_.distance.query; }
-  bool is_over() const { return is_done_ || is_out_of_steps(); }
+  bool is_over() const { return is_done_ || is_spent() || is_out_of_steps(); }
+  bool is_spent() const { return spent_ >= most_; }
+  /// Returns true if so many steps were taken that longer ones are worth their while.
+  bool is_long() const { return result_.counters.steps > most_ / 8; }
   bool is_out_of_steps() const;
   std::optional<SimplexPair> meets_at(double t);
   bool meets_at_start();
@@ -49,6 +55,7 @@ class FirstContactSearch {
   void search_swept(double end);
   void search_by_distance(double end);
   double parted_by_distance(double t);
+  bool suits_all_pairs() const;
   double advance(SimplexPair pair, const PieceState& at_a, const PieceState& at_b, TimeSpan span,
                  double least);
   double advance_all(TimeSpan span, double least);
@@ -82,6 +89,8 @@ class FirstContactSearch {
   Eigen::Vector3d hint_{0, 0, 0};  ///< the direction that parted a pair last
   bool is_swept_ = true;           ///< sweeps find the pairs; else distances tell how long there are none
   bool is_done_ = false;
+  double tolerance_;                    ///< the request's, but no less than doubles can resolve
+  std::uint64_t spent_ = 0, most_ = 0;  ///< steps as first_contact.hpp counts them, and the most there may be
 };
 
 }  // namespace lrb

@@ -76,4 +76,12 @@ MovingBody::Spin MovingBody::spin_of(const Vector3d& x) const {
   return spin;
 }
 
+double MovingBody::share_along(const Vector3d& n) const {
+  if (!(turn_rate_ > 0)) return 1;
+  const Vector3d across = (piece_->r.transpose() * n).cross(piece_->turn.stableNormalized());
+  // Products, and the axis, are off by less than 16 u |r| |n|.
+  const double share = across.norm() / (stretch_ * n.norm()) * kWorldUp + kWorldRounding;
+  return share < 1 ? share : 1;  // not a number: 1
+}
+
 }  // namespace lrb

@@ -57,6 +57,10 @@ class MovingBody {
     double acceleration;       ///< a bound on the acceleration, with r
   };
   Spin spin_of(const Eigen::Vector3d& x) const;
+  /// Returns a bound on how much of Spin::acceleration there is along a direction n, as a share of |n| times
+  /// it, at all times. n . r E (w x (w x z)) is a product of E^T r^T n and a vector across w, of which only
+  /// the part of r^T n across w counts: E turns about w.
+  double share_along(const Eigen::Vector3d& n) const;
 
  private:
   double farthest_from_axis() const;

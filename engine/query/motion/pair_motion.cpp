@@ -109,14 +109,16 @@ double PairMotion::parted_for(const Vector3d& n) const {
   const double sign = low[1] - high[0] >= low[0] - high[1] ? 1 : -1;
   const double rounding = places_rounding(n);
   const double speed_rounding = length * (body_[0]->velocity_rounding() + body_[1]->velocity_rounding());
+  const double share_a = looks_at_axes_ ? body_[0]->share_along(n) : 1;
+  const double share_b = looks_at_axes_ ? body_[1]->share_along(n) : 1;
   double least = kInfinity;
   for (int i = 0; i < n_; ++i)
     for (int j = 0; j < n_; ++j) {
       const double c = sign * (ahead[1][j] - ahead[0][i]) - rounding;
       if (!(c > 0)) return 0;
       const double v = sign * (speed[1][j] - speed[0][i]) - speed_rounding;
-      least = std::min(least,
-                       first_root(c, v, length * (corner_[0][i].acceleration + corner_[1][j].acceleration)));
+      const double k = share_a * corner_[0][i].acceleration + share_b * corner_[1][j].acceleration;
+      least = std::min(least, first_root(c, v, length * k * (looks_at_axes_ ? kWorldUp : 1)));
     }
   return least > 0 ? least : 0;  // not a number: 0
 }

@@ -27,6 +27,9 @@ class PairMotion {
   /// Moves the corners to where they are at the time of these states.
   void place(const PieceState& a, const PieceState& b);
 
+  /// From now on, parted_for() takes in how accelerations lie to the direction. It takes longer, and its
+  /// times are longer where the direction is near a body's axis.
+  void look_at_axes() { looks_at_axes_ = true; }
   /// Returns for how long from now on the slab across n (any length, either sign) is proved to part the
   /// simplices; 0: it does not, or not for long.
   double parted_for(const Eigen::Vector3d& n) const;
@@ -55,6 +58,7 @@ class PairMotion {
   const MovingBody* body_[2];
   int n_;
   Corner corner_[2][3];
+  bool looks_at_axes_ = false;
   double reach_ = 0;  ///< largest coordinate of a corner, seen from A's first
 };
 

@@ -31,6 +31,7 @@ bool is_closed(const Hole& hole) {
 
 /// Returns what became of a hole, for people.
 std::string state_text(const Hole& hole) {
+  if (hole.of_sheet && !is_closed(hole)) return "left: its surface is a sheet: it bounds nothing";
   switch (hole.state) {
     case HoleState::closed:
       return "closed with " + std::to_string(hole.faces) + (hole.faces == 1 ? " face" : " faces");
@@ -44,8 +45,6 @@ std::string state_text(const Hole& hole) {
       return "left: all of its rim lies on one line";
     case HoleState::meets_surface:
       return "left: a lid would meet face " + std::to_string(hole.obstacle);
-    case HoleState::of_sheet:
-      return "left: its surface is a sheet: it bounds nothing";
     case HoleState::meets_lid:
       return "left: a lid would meet that of " + std::to_string(hole.obstacle);
     default:
