@@ -131,20 +131,24 @@ std::string call_of(const CLI::App& app) {
   return app.get_parent() == nullptr ? app.get_name() : call_of(*app.get_parent()) + " " + app.get_name();
 }
 
-/// Returns what is wrong with a command line that CLI11 refused.
-std::string usage_error(const CLI::App& root, const CLI::ParseError& error) {
-  const CLI::App& app = named_command(root);
-  const std::string help = " (see " + call_of(app) + " --help)";
+/// Returns what is wrong with a command line that CLI11 refused. `word`: the first that is no option.
+std::string usage_error(const CLI::App& root, const CLI::ParseError& error, std::string word) {
+  const CLI::App* app = &root;
+  const auto is_named = [&](const CLI::App* a) { return a->get_name() == word; };
+  if (word.empty() || !root.get_subcommands(is_named).empty()) {
+    app = &named_command(root);
+    const std::vector<std::string> words = root.remaining(true);
+    const auto other = std::find_if(words.begin(), words.end(),
+                                    [](const std::string& w) { return !w.empty() && w[0] != '-'; });
+    word = other == words.end() ? "" : *other;
+  }
+  const std::string help = " (see " + call_of(*app) + " --help)";
   std::vector<std::string> known;
-  for (const CLI::App* command :
-       app.get_subcommands([](const CLI::App* a) { return !a->get_group().empty(); }))
-    known.push_back(command->get_name());
-  const std::vector<std::string> words = root.remaining(true);
-  const auto word = std::find_if(words.begin(), words.end(),
-                                 [](const std::string& w) { return !w.empty() && w[0] != '-'; });
-  if (known.empty() || word == words.end()) return error.what() + help;
-  const std::string near = io::nearest_word(*word, known);
-  return in_quotes(*word) + " is no command of " + call_of(app) +
+  for (const CLI::App* c : app->get_subcommands([](const CLI::App* a) { return !a->get_group().empty(); }))
+    known.push_back(c->get_name());
+  if (known.empty() || word.empty()) return error.what() + help;
+  const std::string near = io::nearest_word(word, known);
+  return in_quotes(word) + " is no command of " + call_of(*app) +
          (near.empty() ? "" : "; did you mean \"" + near + "\"?") + help;
 }
 
@@ -180,7 +184,7 @@ int parse_and_run(int argc, char** argv) {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {
     if (e.get_exit_code() == 0) return print_help(app, e);
-    return complain("", usage_error(app, e), kBadInput);
+    return complain("", usage_error(app, e, std::string(command_word(argc, argv))), kBadInput);
   }
   refuse_empty_values(app);
   for (const Command& command : commands)

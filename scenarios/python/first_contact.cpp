@@ -115,7 +115,15 @@ void bind_one(py::module_& m) {
   get("grazing", &FirstContactResult::grazing,
       "bool: the interval is wider than asked, because the bodies graze before.");
   get("passed", &FirstContactResult::passed, "bool: they have met by t1, though not at t1 itself.");
-  get("finished", &FirstContactResult::finished, "bool: max_steps were not reached.");
+  get("finished", &FirstContactResult::finished, "bool: no limit on steps was reached.");
+  c.def_property_readonly(
+      "unresolved",
+      [](const FirstContact& f) -> py::object {
+        if (f.result->unresolved == Unresolved::nothing) return py::none();
+        return word_of(f.result->unresolved);
+      },
+      "str or None: why the interval is wider than asked, or nobody knows whether they meet in it: "
+      "'rounding':\nas near each other as rounding; 'steps': a limit on steps was reached.");
   get("speed", &FirstContactResult::speed,
       "float: at which the points come nearer to each other along the normal; world's unit per unit of t.");
   c.def_property_readonly(
@@ -179,7 +187,8 @@ motion_b: (m, 4, 4) float, m >= 2: poses at equal times from t = 0 to t = 1, rot
     turns by the shortest arc and its origin moves straight. (4, 4): at rest. (k, m, 4, 4): k motions, on all
     cores.
 motion_a: (m, 4, 4) or (4, 4); None: at rest at the identity.
-tolerance: the widest interval, in t. max_steps: of the search; 0: no limit.
+tolerance: the widest interval, in t. max_steps: of the search, which has a limit of its own, too; 0: that
+    alone.
 relation: find out how bodies lie at the start that do not meet there.
 
 Returns a FirstContact, or for (k, m, 4, 4) a FirstContacts.

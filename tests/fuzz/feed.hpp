@@ -26,6 +26,9 @@ bool feed_crowd(std::string_view bytes);
 bool feed_experiment(std::string_view bytes);
 bool feed_crowd_trace(std::string_view bytes);
 bool feed_trace(std::string_view bytes);
+/// The first byte chooses the query: two in four a first contact, one a distance, one a clash; with 64 in the
+/// plane; with 128 of a body and itself. The rest choose bodies, poses, motions and tolerances.
+bool feed_motion(std::string_view bytes);
 
 /// Without it the checksum of a .lrb would stop nearly every mutation, and what is behind it would never be
 /// tried.

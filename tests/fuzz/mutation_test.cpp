@@ -106,5 +106,8 @@ TEST_CASE("damaged crowds and experiments are refused or read") {
 TEST_CASE("damaged traces are refused or read") {
   mutate("trace", 250);
 }
+TEST_CASE("queries of any bodies, poses, motions and tolerances end, and keep their promises") {
+  mutate("motion", 40);
+}
 
 }  // namespace lrb::fuzz

@@ -143,6 +143,20 @@ std::vector<std::string> traces() {
   return out;
 }
 
+/// Bytes that choose each query, for each kind of body; mutations do the rest.
+std::vector<std::string> motions() {
+  std::vector<std::string> out;
+  for (const int query : {0, 2, 3, 64, 66, 128})
+    for (const int a : {0, 3, 4, 8})
+      for (const int b : {1, 2, 5}) {
+        std::string bytes = {static_cast<char>(query), static_cast<char>(a), static_cast<char>(b)};
+        for (int i = 0; i < 48; ++i)
+          bytes.push_back(static_cast<char>(i % 2 == 0 ? 5 : 124 + (i * 7 + a + b) % 11));
+        out.push_back(bytes);
+      }
+  return out;
+}
+
 std::vector<std::string> crowd_traces() {
   return {R"({"traceEvents": [
 {"name":"step","cat":"step","ph":"X","ts":0,"dur":3,"pid":1,"tid":1,"args":{"time step":0,"bodies":2,"bodies in contact":0,"queries":1}},
@@ -167,6 +181,7 @@ std::vector<Format> formats() {
           {"crowd", feed_crowd, shipped(".crowd.json")},
           {"experiment", feed_experiment, shipped(".experiment.json")},
           {"trace", feed_trace, traces()},
+          {"motion", feed_motion, motions()},
           {"crowd_trace", feed_crowd_trace, crowd_traces()}};
 }
 

@@ -101,7 +101,7 @@ double FirstContactSearch::parted_by_distance(double t) {
   const DistanceResult at =
       distance(*rep_[0], a_->at(t).pose, *rep_[1], b_->at(t).pose, rough, context_.distance);
   const DistanceCounters& work = at.counters;
-  spent_ += 1 + work.pairs_in_doubles + kStepsOfExact * work.pairs_exact + work.steps / kNodePairsOfStep;
+  spent_ += 1 + work.pairs_in_doubles / 8 + kStepsOfExact * work.pairs_exact + work.steps / kNodePairsOfStep;
   const double gap = at.lower - 2 * (a_->rounding() + b_->rounding()) * kWorldUp;
   const double speed = ((b_->travel() - a_->travel()).norm() + a_->spin() + b_->spin()) * kWorldUp;
   return gap > 0 ? gap / speed * (1 - kWorldRounding) : 0;

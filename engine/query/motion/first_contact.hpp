@@ -16,9 +16,9 @@
 /// there.
 ///
 /// Every search ends. Its steps are counted: a span, a pair that is found in it, a pair that moves, an exact
-/// query or distance and each pair of simplices, or 16 pairs of nodes, that it compares; 16 for two simplices
-/// that are compared in integers. With n simplices in both bodies, p pieces of their motions (the mean of
-/// A's and B's) and r turns in these, there are no more than
+/// query and each pair of simplices that it compares, a distance and every 8 pairs that it measures, every 16
+/// pairs of nodes of either; 16 for two simplices that are compared in integers. With n simplices in both
+/// bodies, p pieces of their motions (the mean of A's and B's) and r turns in these, there are no more than
 ///     (8192 + 512 n) (p + r)
 /// steps, and what one exact query or distance takes. Where they end, the interval is said to be unresolved.
 

@@ -43,8 +43,12 @@ class FirstContactSearch {
   QueryContext& query() { return context_.distance.query; }
   bool is_over() const { return is_done_ || is_spent() || is_out_of_steps(); }
   bool is_spent() const { return spent_ >= most_; }
-  /// Returns true if so many steps were taken that longer ones are worth their while.
-  bool is_long() const { return result_.counters.steps > most_ / 8; }
+  /// Returns true if so many steps were taken, and so many of each pair, that longer ones are worth their
+  /// while.
+  bool is_long() const {
+    const FirstContactCounters& c = result_.counters;
+    return c.steps > most_ / 8 && c.steps > 8 * c.pairs;
+  }
   bool is_out_of_steps() const;
   std::optional<SimplexPair> meets_at(double t);
   bool meets_at_start();

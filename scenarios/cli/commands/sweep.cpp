@@ -74,6 +74,7 @@ std::string line_of(std::size_t motion, const FirstContactResult& result,
     if (result.is_contact()) write_contact(w, result, o);
     if (result.grazing) w.member("grazing", true);
     if (!result.finished) w.member("finished", false);
+    if (result.unresolved != Unresolved::nothing) w.member("unresolved", name_of(result.unresolved));
     if (result.at_begin == Relation::a_inside_b || result.at_begin == Relation::b_inside_a)
       w.member("inside", to_string(result.at_begin));
     if (o.request.history) write_history(w, result);

@@ -1,6 +1,7 @@
 #include "scenarios/io/json/json_text.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <set>
 #include <vector>
 
@@ -104,10 +105,39 @@ std::string plain_reason(const std::string& what) {
   return printable_name(reason);  // on one line, whatever it quotes
 }
 
-/// Looks a text over before any value of it is kept: a text that is refused costs no memory.
-class Check : public nlohmann::json_sax<nlohmann::json> {
+/// An iterator over a text. The parser reads by a copy of it; `seen` is how far that has come.
+class Reading {
  public:
-  Check(const std::string& text, const std::string& file) : text_(text), file_(file) {}
+  using iterator_category = std::input_iterator_tag;
+  using value_type = char;
+  using difference_type = std::ptrdiff_t;
+  using pointer = const char*;
+  using reference = const char&;
+
+  Reading(const char* at, const char*& seen) : at_(at), seen_(&seen) {}
+  reference operator*() const { return *at_; }
+  Reading& operator++() {
+    *seen_ = ++at_;
+    return *this;
+  }
+  bool operator==(const Reading& other) const { return at_ == other.at_; }
+
+ private:
+  const char* at_;
+  const char** seen_;
+};
+
+std::string place(const std::string& text, const std::string& file, std::size_t offset) {
+  const TextPosition p = position_in(text, offset);
+  return file + ":" + std::to_string(p.line) + ":" + std::to_string(p.column) + ": ";
+}
+
+/// Looks a text over before any value of it is kept: a text that is refused costs no memory.
+class Check final : public nlohmann::json_sax<nlohmann::json> {
+ public:
+  Check(const std::string& text, const std::string& file) : text_(text), file_(file) {
+    parse_with(text_, seen_, *this);
+  }
 
   bool null() override { return true; }
   bool boolean(bool) override { return true; }
@@ -129,7 +159,9 @@ class Check : public nlohmann::json_sax<nlohmann::json> {
  private:
   bool enter() {
     constexpr int kDeepest = 64;  // levels: Walker recurses, and none of our files needs ten
-    if (++depth_ > kDeepest) throw InputError(file_ + ": nested more than 64 levels deep");
+    if (++depth_ > kDeepest)
+      throw InputError(place(text_, file_, static_cast<std::size_t>(seen_ - text_.data()) - 1) +
+                       "nested more than 64 levels deep");
     return true;
   }
   bool leave() {
@@ -138,6 +170,7 @@ class Check : public nlohmann::json_sax<nlohmann::json> {
   }
 
   const std::string &text_, &file_;
+  const char* seen_ = text_.data();
   int depth_ = 0;
 };
 
@@ -173,14 +206,9 @@ std::string pointer_part(const std::string& key) {
   return out;
 }
 
-namespace {
-
-std::string place(const std::string& text, const std::string& file, std::size_t offset) {
-  const TextPosition p = position_in(text, offset);
-  return file + ":" + std::to_string(p.line) + ":" + std::to_string(p.column) + ": ";
+void parse_with(const std::string& text, const char*& seen, nlohmann::json_sax<nlohmann::json>& handler) {
+  nlohmann::json::sax_parse(Reading(text.data(), seen), Reading(text.data() + text.size(), seen), &handler);
 }
-
-}  // namespace
 
 void refuse_nul(const std::string& text, const std::string& file) {
   const std::size_t nul = text.find('\0');
@@ -208,8 +236,7 @@ std::size_t JsonIndex::offset(const std::string& pointer) const {
 
 JsonText::JsonText(std::string text, std::string file) : text_(std::move(text)), file_(std::move(file)) {
   refuse_nul(text_, file_);
-  Check check(text_, file_);
-  nlohmann::json::sax_parse(text_, &check);
+  const Check check(text_, file_);
   root_ = nlohmann::json::parse(text_);
   index_ = std::make_unique<JsonIndex>(text_);
   if (!index_->duplicate().empty())

@@ -59,6 +59,9 @@ void refuse_nul(const std::string& text, const std::string& file);
 [[noreturn]] void fail_json(const std::string& text, const std::string& file, std::size_t position,
                             const std::string& token, const nlohmann::json::exception& error);
 
+/// Parses a text; `seen` is where the parser has come to whenever it calls `handler`.
+void parse_with(const std::string& text, const char*& seen, nlohmann::json_sax<nlohmann::json>& handler);
+
 /// Returns a member's name or an index as a part of a JSON pointer.
 std::string pointer_part(const std::string& key);
 

@@ -5,7 +5,6 @@
 #include <cctype>
 #include <cmath>
 #include <cstdint>
-#include <iterator>
 #include <string_view>
 #include <utility>
 
@@ -25,28 +24,6 @@ bool ends_like(const std::string& path, std::string_view ending) {
                     [](char x, char y) { return x == std::tolower(static_cast<unsigned char>(y)); });
 }
 
-/// Walks a text, and tells how far a parser has come that reads by a copy of it.
-class Reading {
- public:
-  using iterator_category = std::input_iterator_tag;
-  using value_type = char;
-  using difference_type = std::ptrdiff_t;
-  using pointer = const char*;
-  using reference = const char&;
-
-  Reading(const char* at, const char*& seen) : at_(at), seen_(&seen) {}
-  reference operator*() const { return *at_; }
-  Reading& operator++() {
-    *seen_ = ++at_;
-    return *this;
-  }
-  bool operator==(const Reading& other) const { return at_ == other.at_; }
-
- private:
-  const char* at_;
-  const char** seen_;
-};
-
 /// Takes poses from a parser, and stops it at the first value that is none.
 class PoseParser : public nlohmann::json_sax<nlohmann::json> {
  public:
@@ -54,8 +31,7 @@ class PoseParser : public nlohmann::json_sax<nlohmann::json> {
 
   PoseList parse() {
     refuse_nul(text_, name_);
-    nlohmann::json::sax_parse(Reading(text_.data(), seen_), Reading(text_.data() + text_.size(), seen_),
-                              this);
+    parse_with(text_, seen_, *this);
     return std::move(out_);
   }
 
