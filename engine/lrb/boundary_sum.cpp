@@ -19,7 +19,7 @@ BoundarySum::BoundarySum(const LrbRep& rep) : rep_(rep) {
       const std::size_t c = d.face_offsets[f] + i;
       const VertexId v = face[i], w = face[(i + 1) % face.size()];
       ends[c] = rep.dim() == 2 ? std::pair{v, v} : std::pair{std::min(v, w), std::max(v, w)};
-      direction_[c] = rep.dim() == 2 ? (i == 0 ? 1 : -1) : (v < w ? 1 : -1);
+      direction_[c] = rep.dim() == 2 ? (i == 0 ? 1 : -1) : v == w ? 0 : v < w ? 1 : -1;
     }
   }
   // Sort the corners by the first end of their edge (counting sort), then those of one vertex by the second

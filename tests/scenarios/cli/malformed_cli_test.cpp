@@ -252,7 +252,7 @@ TEST_CASE("malformed scenarios") {
              {scenario("\"y\"", "\"\xff\xfe\""), "2:"},
              {"\xef\xbb\xbf" + scenario("\"steps\": 3", "\"stops\": 3"), "4:"},
              {std::string(100000, '['), "1:"},
-             {std::string(1000, '[') + std::string(1000, ']'), " nested"},
+             {std::string(1000, '[') + std::string(1000, ']'), "1:65: nested"},
              {utf16("{}"), "1:4: "},
              {kHtml, "1:1: "},
              {"", "1:1: "},

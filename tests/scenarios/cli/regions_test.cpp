@@ -182,7 +182,7 @@ TEST_CASE("build warns of a noisy scan by its waste, and names the cause") {
   const Folder folder;
   Mesh scan = bumpy_sphere(5, 1);
   RandomEngine random(1);
-  for (Point3& x : scan.vertices) x *= 1 + 0.02 * uniform(random);
+  for (Point3& x : scan.vertices) x += 0.05 * random_direction(random);
   write_mesh(scan, folder / "scan.obj");
   const Outcome poor = run(folder, {"build", "scan.obj", "--no-validate", "-o", "scan.lrb"});
   CHECK(poor.code == 0);
@@ -192,7 +192,7 @@ TEST_CASE("build warns of a noisy scan by its waste, and names the cause") {
   CHECK(poor.err.find("has no approximate answers, because its surface intersects itself") !=
         std::string::npos);
   CHECK(run(folder, {"levels", "scan.lrb"}).err.find("has no approximate answers") != std::string::npos);
-  folder.write("p.txt", "0.1 0 0\n");
+  folder.write("p.txt", "1 0 0 0.1  0 1 0 0  0 0 1 0\n");
   CHECK(run(folder, {"query", "scan.lrb", "scan.lrb", "--poses", "p.txt", "--tolerance", "0.1"})
             .err.find("has no approximate answers") != std::string::npos);
   CHECK(run(folder, {"inspect", "scan.lrb", "--regions"}).out.find("(clean meshes have 20 to 120)") !=
