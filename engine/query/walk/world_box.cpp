@@ -39,13 +39,6 @@ class Search {
     if (first != kNull) look_at(first);
     visit(0);
   }
-  /// Returns a bound, times the sign, from the root's boxes alone.
-  double reach() const {
-    const TreeNode& root = rep_.tree().nodes()[0];
-    std::array<double, kTreeWidth> bound{};
-    bounds(root, bound);
-    return *std::max_element(bound.begin(), bound.begin() + root.count);
-  }
   /// Returns false if a corner is as far out as `limit`, times the sign, as soon as one is found.
   bool stays_below(double limit, VertexId first) {
     enough_ = limit;
@@ -130,26 +123,29 @@ Eigen::AlignedBox3d box_of_corners(const LrbRep& rep, const Pose& pose) {
 }  // namespace
 
 /// Of two boxes that are apart along an axis, one lies before the other there as any two of their corners do.
-/// The bounds of the trees' roots are enough for bodies that are far apart.
 bool world_boxes_are_apart(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b) {
   if (a.tree().empty() || b.tree().empty()) return true;
-  if (!stays_finite(a, pose_a) || !stays_finite(b, pose_b)) {
-    const Eigen::AlignedBox3d of_a = box_of_corners(a, pose_a), of_b = box_of_corners(b, pose_b);
-    return (of_a.max().array() < of_b.min().array()).any() || (of_b.max().array() < of_a.min().array()).any();
+  const bool in_range = stays_finite(a, pose_a) && stays_finite(b, pose_b);
+  Eigen::AlignedBox3d box_a, box_b;
+  if (!in_range) {
+    box_a = box_of_corners(a, pose_a);
+    box_b = box_of_corners(b, pose_b);
   }
-  const VertexId first_a = a.face(FaceId{0})[0], first_b = b.face(FaceId{0})[0];
-  const Eigen::Vector3d of_b = pose_b.apply(b.vertices()[first_b]),
-                        way = of_b - pose_a.apply(a.vertices()[first_a]);
-  for (const bool exactly : {false, true})
-    for (int axis = 0; axis < a.dim(); ++axis) {
-      if (way[axis] == 0) continue;
-      const double sign = way[axis] > 0 ? 1 : -1;
-      Search end_of_a(a, pose_a, axis, sign), begin_of_b(b, pose_b, axis, -sign);
-      if (exactly ? end_of_a.stays_below(sign * of_b[axis], first_a) &&
-                        begin_of_b.stays_below(-sign * end_of_a.coordinate(), first_b)
-                  : end_of_a.reach() < -begin_of_b.reach())
-        return true;
+  const VertexId first_a = a.face(0)[0], first_b = b.face(0)[0];
+  const Eigen::Vector3d of_a = pose_a.apply(a.vertices()[first_a]),
+                        of_b = pose_b.apply(b.vertices()[first_b]);
+  for (int axis = 0; axis < a.dim(); ++axis) {
+    if (!in_range) {
+      if (box_a.max()[axis] < box_b.min()[axis] || box_b.max()[axis] < box_a.min()[axis]) return true;
+      continue;
     }
+    if (of_a[axis] == of_b[axis]) continue;
+    const double sign = of_a[axis] < of_b[axis] ? 1 : -1;
+    Search top_of_a(a, pose_a, axis, sign), bottom_of_b(b, pose_b, axis, -sign);
+    if (top_of_a.stays_below(sign * of_b[axis], first_a) &&
+        bottom_of_b.stays_below(-sign * top_of_a.coordinate(), first_b))
+      return true;
+  }
   return false;
 }
 
