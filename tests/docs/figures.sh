@@ -1,9 +1,10 @@
 #!/usr/bin/env bash
-# figures.sh TREE LRBSCOPE: runs the commands of docs/figures.md under "A figure of your own two meshes at 85 mm" with two cubes,
+# figures.sh TREE LRBSCOPE PDF_TEXT: runs the commands of docs/figures.md under "A figure of your own two meshes at 85 mm" with two cubes,
 # looks whether each figure has the width that it was asked for, and includes one in the page's LaTeX document where that is installed.
 set -euo pipefail
 page=$1/docs/figures.md
 program=$2
+pdf_text=$3
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 cd "$work"
@@ -25,7 +26,7 @@ while IFS= read -r line; do
   eval "$line" || { echo "$page: failed: $line"; exit 1; }
 done <<<"$commands"
 for file in fig.pdf titled.pdf; do # 85 mm are 240.945 points
-  grep -aqE '/MediaBox \[ 0 0 240\.94[0-9]* ' "$file" || { echo "$file: is not 85 mm wide"; exit 1; }
+  "$pdf_text" <"$file" | grep -aE '/MediaBox \[ 0 0 240\.94[0-9]* ' >/dev/null || { echo "$file: is not 85 mm wide"; exit 1; }
 done
 grep -q 'width="321.26"' tests.svg || { echo "tests.svg: is not 85 mm wide"; exit 1; }
 [ -s fig.caption.txt ] || { echo "fig.caption.txt: is empty"; exit 1; }

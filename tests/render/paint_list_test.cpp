@@ -10,6 +10,7 @@
 #include "render/cairo_canvas.hpp"
 #include "render/svg_canvas.hpp"
 #include "tests/render/font_guard.hpp"
+#include "tests/support/pdf_text.hpp"
 #include "tests/support/text.hpp"
 
 using namespace lrb;
@@ -163,11 +164,12 @@ TEST_CASE("a PDF has its size, its fonts, no date, and the same bytes each time"
   const render::PaperPage page{100, 50, render::kWhite, "a title", "a program"};
   const std::string pdf = render::paint_pdf(page, paint);
   CHECK(pdf.starts_with("%PDF-1.5"));
-  CHECK(count(pdf, "/MediaBox [ 0 0 100 50 ]") == 1);
-  CHECK(count(pdf, "/FontFile") == 1);
-  CHECK(count(pdf, "CreationDate") == 0);
-  CHECK(count(pdf, "ModDate") == 0);
-  CHECK(count(pdf, "a title") == 1);
+  const std::string text = test::pdf_text(pdf);
+  CHECK(count(text, "/MediaBox [ 0 0 100 50 ]") == 1);
+  CHECK(count(text, "/FontFile") == 1);
+  CHECK(count(text, "CreationDate") == 0);
+  CHECK(count(text, "ModDate") == 0);
+  CHECK(count(text, "a title") == 1);
   CHECK(pdf == render::paint_pdf(page, paint));
 }
 
