@@ -83,10 +83,10 @@ TEST_CASE("what fuzzers found is refused, or read and answered") {
 }
 
 TEST_CASE(".lrb files damaged field by field are refused or safe to read") {
-  draw("fields", std::string("\0\1\2\3\4\5\6\7\10\11\12\13", 12), {5, 5, 10, 15}, 600);
+  draw("fields", std::string("\0\1\2\3\4\5\6\7\10\11\12\13", 12), {5, 5, 10, 15}, 250);
 }
 TEST_CASE("bodies of folded polygons are built, proved, saved, loaded and queried") {
-  draw("body", "12", {20, 40, 100}, 150);
+  draw("body", "12", {20, 40, 100}, 1000);
 }
 
 // Meshes are damaged in tests/mesh/io/malformed_test.cpp.

@@ -10,6 +10,7 @@
 #include "engine/lrb/wrapper_level.hpp"
 #include "scenarios/bodies/shapes/hand_made.hpp"
 #include "scenarios/bodies/shapes/shapes.hpp"
+#include "tests/support/faulty_meshes.hpp"
 #include "tests/support/lrb_shapes.hpp"
 
 using namespace lrb;
@@ -63,6 +64,12 @@ TEST_CASE("a region that is open is named") {
   const ValidateReport report = validate(LrbRep(d));
   CHECK_FALSE(report.valid);
   CHECK(names(report, "region 0 is open"));
+}
+
+TEST_CASE("a closed body with a face that names a vertex twice is closed") {
+  const Mesh ball = shapes::icosphere(0);
+  const Mesh collapsed = test::with_merged(ball, ball.face(FaceId(0))[0], ball.face(FaceId(0))[1]);
+  CHECK(validate(LrbRep::without_regions(collapsed, true, false)).valid);
 }
 
 TEST_CASE("faces that cross are found, and told apart by whose fault they are") {

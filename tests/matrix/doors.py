@@ -70,7 +70,7 @@ KINDS = {"separate": ("apart",), "undefined": ("apart",), "crossing": OVERLAP, "
 
 def check_clash(line, step, cell):
     kinds = KINDS.get(step["relation"], OVERLAP + INSIDE)
-    if step["pairs"] and not cell["simple"]:
+    if kinds != ("apart",) and not cell["simple"]:
         kinds = TOUCH + OVERLAP + INSIDE + ("undecided",)
     expect(line["kind"] in kinds, f"{line['kind']}, by the relation one of {' '.join(kinds)}")
     first = cell.setdefault("kinds", {}).setdefault(str(step["pose"]), line["kind"])
@@ -191,8 +191,8 @@ class Matrix:
         in_space = cell["dim"] == 3
         poses = [a, b, "--poses", f"{name}.txt"]
         more = ["--distance", "--events", "all"] + (["--clash"] if in_space else [])
-        self.run(["collide", a, b, "-o", f"{out}-1", "--size", "320x240"], made=f"{out}-1/index.html")
-        self.run(["collide"] + poses + more + ["-o", f"{out}-2", "--size", "320x240"], made=f"{out}-2/index.html")
+        self.run(["collide", a, b, "-o", f"{out}-1", "--size", "640x480"], made=f"{out}-1/index.html")
+        self.run(["collide"] + poses + more + ["-o", f"{out}-2", "--size", "640x480"], made=f"{out}-2/index.html")
         self.run(["figure", f"{out}-2", "-o", f"{out}.pdf", "--dpi", "100"], made=f"{out}.pdf")
         self.run(["export", f"{out}-2", "-o", f"{out}.glb"], made=f"{out}.glb")
         self.run(["distance"] + poses + ["--draw", f"{out}-d.png"], made=f"{out}-d-0.png")

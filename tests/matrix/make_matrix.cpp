@@ -72,7 +72,7 @@ Json scenario_of(const Matrix& m, const Cell& cell, const std::string& name) {
        {{"a", {{"file", m.kinds[cell.a].name + ".obj"}}}, {"b", {{"file", m.kinds[cell.b].name + ".obj"}}}}},
       {"motion", {{"kind", "poses"}, {"poses", poses}}},
       {"query", {{"contacts", true}, {"distance", true}, {"clash", m.kinds[cell.a].mesh.dim == 3}}},
-      {"frames", {{"at", "step"}, {"size", {320, 240}}, {"supersampling", 1}}},
+      {"frames", {{"at", "step"}, {"size", {640, 480}}, {"supersampling", 1}}},
       {"expect", expect}};
 }
 

@@ -218,6 +218,7 @@ class Questions {
           return !parted;  // perhaps undecided; equal bodies that cross themselves cross
         return step_->truth.relation == Relation::crossing ? overlap : !parted && found != undecided;
       default:
+        if (!simple_ && found == undecided) return true;
         return overlap || found == a_inside_b || found == b_inside_a;
     }
   }
@@ -343,15 +344,14 @@ void check_kind(std::size_t index, bool all, Report& report) {
   check_build(report, kind);
   std::map<std::size_t, std::vector<ClashKind>> clashes;  // by B
   for (const Door& door : kDoors) {
-    const bool first = &door == std::begin(kDoors);
-    if (!all && !first && &door + 1 != std::end(kDoors)) continue;
+    if (!all && &door != std::begin(kDoors) && &door + 1 != std::end(kDoors)) continue;
     report.through(door.name);
     report.doing("open");
     const Body body = door.open(kind, folder);
     for (const Cell& cell : matrix().cells) {
       if (cell.a != index) continue;
       const Body other = cell.b == index ? body : of_mesh(matrix().kinds[cell.b], true);
-      Questions(report, body, other, cell, all || first).ask(clashes[cell.b]);
+      Questions(report, body, other, cell, all).ask(clashes[cell.b]);
     }
   }
 #ifdef LRB_MATRIX_FCL

@@ -18,7 +18,6 @@
 #include "scenarios/cli/command.hpp"
 #include "scenarios/cli/options.hpp"
 #include "scenarios/cli/progress.hpp"
-#include "scenarios/io/files.hpp"
 
 namespace lrb::cli {
 namespace {
@@ -94,7 +93,6 @@ int run_build(const BuildCommandOptions& o, const Globals& globals) {
   }
   if (!o.out.empty()) {
     rep.levels(o.build.threads);
-    io::make_folder_of(o.out);
     save_lrb(rep, o.out);
     j["file"] = o.out;
     note(globals, {"wrote " + o.out});

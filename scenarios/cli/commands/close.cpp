@@ -12,7 +12,6 @@
 #include "scenarios/bodies/body.hpp"
 #include "scenarios/cli/command.hpp"
 #include "scenarios/cli/options.hpp"
-#include "scenarios/io/files.hpp"
 
 namespace lrb::cli {
 namespace {
@@ -96,7 +95,6 @@ int run_close(const CloseOptions& o, const Globals& globals) {
   check_mesh_name(o.out, mesh.mesh().dim);
   const ClosedHoles result = close_holes(mesh);
   const MeshReport after = check(result.mesh).report();
-  io::make_folder_of(o.out);
   write_mesh(result.mesh, o.out);
   const auto closed =
       static_cast<std::size_t>(std::count_if(result.holes.begin(), result.holes.end(), is_closed));

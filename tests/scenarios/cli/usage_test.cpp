@@ -63,7 +63,7 @@ TEST_CASE("usage: an empty text is no value of any option") {
   }
 }
 
-TEST_CASE("files are written into folders that are made for them, by every command") {
+TEST_CASE("folders are made for exports and pictures, not for bodies") {
   const Folder folder;
   folder.write("cube.obj", kCube);
   folder.write("apart.txt", kApart);
@@ -77,8 +77,8 @@ TEST_CASE("files are written into folders that are made for them, by every comma
     CHECK(std::filesystem::exists(folder / file));
   };
   writes({"export", "cube.obj", "-o"}, "a/b/x.ply");
-  writes({"build", "cube.obj", "-o"}, "c/d/x.lrb");
-  writes({"close", "open.obj", "-o"}, "e/f/x.obj");
+  check_refused(folder, {"build", "cube.obj", "-o", "c/d/x.lrb"});
+  check_refused(folder, {"close", "open.obj", "-o", "e/f/x.obj"});
   writes({"distance", "cube.obj", "cube.obj", "--poses", "apart.txt", "--draw"}, "g/h/x.png");
   writes({"figure", "cube.obj", "--panels", "1", "-o"}, "i/j/x.pdf");
   check_refused(folder, {"close", "open.obj", "-o", "k/x.stl"});
