@@ -79,7 +79,7 @@ Expected<Body> body_of(const Rows<double>& vertices, const Rows<Number>& faces, 
 std::string note_no_solid(const LrbRep& rep) {
   return rep.name() +
          ": bounds no solid: pairs, contacts and distances are exact; nothing is inside it, and where its surface "
-         "meets nothing and its box does the relation is `undefined`";
+         "meets no other although their boxes do, the relation is `undefined`";
 }
 
 /// Adds what cannot be asked of a body.

@@ -69,6 +69,13 @@ std::string note_unproven(const LrbRep& rep) {
          ": queried without regions, because the proof of its LRB-rep failed: " + report.violations.front();
 }
 
+LrbRep proven(LrbRep rep, std::vector<std::string>& notes) {
+  std::string fault = note_unproven(rep);
+  if (fault.empty()) return rep;
+  notes.push_back(std::move(fault));
+  return LrbRep::without_regions(rep);
+}
+
 std::uint32_t turn_outward(CheckedMesh& mesh, std::vector<std::string>& notes) {
   const std::uint32_t turned = mesh.turn_outward();
   if (turned > 0)
@@ -84,11 +91,7 @@ MadeBody make_body(CheckedMesh mesh, const BuildOptions& options, bool turn) {
   if (can_be_built(mesh, turn)) {
     const std::uint32_t turned = turn ? turn_outward(mesh, notes) : 0;
     const auto begin = Clock::now();
-    LrbRep rep = build_lrb(mesh, options);
-    if (std::string fault = note_unproven(rep); !fault.empty()) {
-      notes.push_back(std::move(fault));
-      rep = LrbRep::without_regions(rep);
-    }
+    LrbRep rep = proven(build_lrb(mesh, options), notes);
     const double seconds = std::chrono::duration<double>(Clock::now() - begin).count();
     return {std::move(rep), std::move(notes), seconds, turned};
   }

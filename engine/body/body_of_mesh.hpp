@@ -29,8 +29,10 @@ MadeBody make_body(CheckedMesh mesh, const BuildOptions& options, bool turn = tr
 MadeBody make_body_of_faces(CheckedMesh mesh, bool turn = true);
 
 /// Returns a note with the first violation if the proof of an LRB-rep's cells fails (validate_cells()), or an
-/// empty text if they are proven. What has the fault is queried without regions (LrbRep::without_regions()).
+/// empty text if they are proven.
 std::string note_unproven(const LrbRep& rep);
+/// Returns the LRB-rep if its cells are proven; if not, its real faces without regions, and adds that note.
+LrbRep proven(LrbRep rep, std::vector<std::string>& notes);
 
 /// Turns what is inside out and returns the number of components. Adds a note if there were any.
 std::uint32_t turn_outward(CheckedMesh& mesh, std::vector<std::string>& notes);

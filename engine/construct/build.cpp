@@ -20,13 +20,10 @@ std::string refusal(const Mesh& mesh, const MeshReport& report) {
 /// `meeting`: the faces that meet others in more than they share.
 LrbRep build(const Mesh& mesh, const std::vector<FaceUse>& use, const std::vector<FaceId>& meeting,
              const BuildOptions& options) {
-  bool overlapping = false;
-  if (!meeting.empty()) {
-    const auto meets = [&](FaceId f) { return std::binary_search(meeting.begin(), meeting.end(), f); };
-    find_overlaps(
-        mesh, use, [&](FaceId f, FaceId g) { return !overlapping && meets(f) && meets(g); },
-        [&](FaceId, FaceId) { overlapping = true; });
-  }
+  const auto meets = [&](FaceId f) { return std::binary_search(meeting.begin(), meeting.end(), f); };
+  const bool overlapping = !meeting.empty() && overlaps_itself(mesh, use, [&](FaceId f, FaceId g) {
+    return meets(f) && meets(g);
+  });
   LrbData data = mesh.dim == 2 ? construct::build_by_chains(mesh, meeting, options)
                                : construct::build_by_patches(mesh, meeting, options);
   data.self_intersecting = overlapping;

@@ -291,10 +291,12 @@ void find_crossings(const Mesh& mesh, const std::vector<FaceUse>& use,
   find_pairs(mesh, use, test, found);
 }
 
-bool overlaps_itself(const Mesh& mesh, const std::vector<FaceUse>& use) {
+bool overlaps_itself(const Mesh& mesh, const std::vector<FaceUse>& use,
+                     const std::function<bool(FaceId, FaceId)>& wanted) {
   bool found = false;
   find_overlaps(
-      mesh, use, [&](FaceId, FaceId) { return !found; }, [&](FaceId, FaceId) { found = true; });
+      mesh, use, [&](FaceId f, FaceId g) { return !found && (!wanted || wanted(f, g)); },
+      [&](FaceId, FaceId) { found = true; });
   return found;
 }
 

@@ -40,7 +40,8 @@ void find_overlaps(const Mesh& mesh, const std::vector<FaceUse>& use,
                    const std::function<bool(FaceId, FaceId)>& wanted,
                    const std::function<void(FaceId, FaceId)>& found);
 
-/// Returns true if find_overlaps() would find a pair of any faces; ends at the first.
-bool overlaps_itself(const Mesh& mesh, const std::vector<FaceUse>& use);
+/// Returns true if find_overlaps() would find a pair; ends at the first. `wanted`: null for any faces.
+bool overlaps_itself(const Mesh& mesh, const std::vector<FaceUse>& use,
+                     const std::function<bool(FaceId, FaceId)>& wanted = {});
 
 }  // namespace lrb

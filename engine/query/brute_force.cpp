@@ -39,10 +39,6 @@ struct WorldBody {
   std::vector<Eigen::Vector3d> x;
 };
 
-bool are_apart(const Eigen::AlignedBox3d& a, const Eigen::AlignedBox3d& b) {
-  return (a.max().array() < b.min().array()).any() || (b.max().array() < a.min().array()).any();
-}
-
 /// Returns how many of the components of `inner` lie in `outer`.
 std::size_t held(const WorldBody& inner, const WorldBody& outer) {
   const auto vertices = inner.rep.component_vertices();
@@ -52,7 +48,7 @@ std::size_t held(const WorldBody& inner, const WorldBody& outer) {
 
 Relation relation_without_contact(const WorldBody& a, const WorldBody& b) {
   if (!a.rep.closed() || !b.rep.closed())
-    return are_apart(a.box(), b.box()) ? Relation::separate : Relation::undefined;
+    return a.box().intersects(b.box()) ? Relation::undefined : Relation::separate;
   const std::size_t a_in_b = held(a, b), b_in_a = held(b, a);
   if (a_in_b > 0 &&
       (a_in_b == a.rep.component_vertices().size() || b_in_a != b.rep.component_vertices().size()))

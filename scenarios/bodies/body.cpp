@@ -12,12 +12,9 @@ LoadedBody loaded(MadeBody made) {
 }
 
 LoadedBody saved_body(const std::string& path) {
-  LoadedBody body{load_lrb(path), {}, 0};
-  if (std::string fault = note_unproven(body.rep); !fault.empty()) {
-    body.notes.push_back(std::move(fault));
-    body.rep = LrbRep::without_regions(body.rep);
-  }
-  return body;
+  std::vector<std::string> notes;
+  LrbRep rep = proven(load_lrb(path), notes);
+  return {std::move(rep), std::move(notes), 0};
 }
 
 }  // namespace

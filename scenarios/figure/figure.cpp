@@ -293,7 +293,7 @@ class FigureJob {
   };
   std::vector<ViewPanels> views_;   ///< those that show something, with the moments at which they do
   std::vector<Block> blocks_;       ///< one for each of them
-  std::vector<std::string> words_;  ///< of each panel, what it shows
+  std::vector<std::string> words_;  ///< (panels) what each shows
   std::vector<render::LegendItem> key_;
   std::optional<render::ScaleBar> bar_;
   FigureLayout layout_;

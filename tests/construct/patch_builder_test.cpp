@@ -8,6 +8,7 @@
 #include "scenarios/bodies/shapes/random_pose.hpp"
 #include "scenarios/bodies/shapes/shapes.hpp"
 #include "tests/construct/build_checks.hpp"
+#include "tests/support/noisy_quads.hpp"
 
 namespace lrb::test {
 
@@ -43,13 +44,13 @@ TEST_CASE("small bodies: valid, embedded by brute force, few outer faces") {
   }
 }
 
-/// A sphere of quads, some cut into triangles, whose vertices are moved along the radius: quads fold.
+/// A ball of quads, some cut into triangles, whose vertices are moved along the radius: quads fold.
 Mesh folded_sphere(std::uint64_t seed) {
   RandomEngine random(seed);
-  const auto fraction = [&] { return uniform(random); };
-  Mesh mesh = uv_sphere(3 + static_cast<int>(random() % 8), 3 + static_cast<int>(random() % 6));
-  const double noise = 0.02 + 0.38 * fraction();
-  for (Point3& x : mesh.vertices) x *= 1 + noise * (2 * fraction() - 1);
+  const double noise = uniform(random, 0.02, 0.4);
+  const auto slices = static_cast<std::uint32_t>(3 + random() % 8),
+             rings = static_cast<std::uint32_t>(2 + random() % 5);
+  const Mesh mesh = quad_ball(slices, rings, [&] { return 1 + noise * uniform(random, -1, 1); });
   Mesh out;
   out.name = "folded sphere " + std::to_string(seed);
   out.vertices = mesh.vertices;

@@ -14,7 +14,7 @@
 
 namespace lrb {
 
-/// So many pairs of nodes count as a step; what is compared in integers counts as so many.
+/// Pairs of nodes that count as one step, and steps that one comparison in integers counts as.
 inline constexpr std::uint64_t kNodePairsOfStep = 16, kStepsOfExact = 16;
 
 /// Memory of a search; one for each thread.

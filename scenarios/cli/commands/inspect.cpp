@@ -210,12 +210,10 @@ void look_broadside(const LrbRep& rep, spec::FrameSpec& frames) {
 std::string as_text(const Json& j) {
   std::ostringstream out;
   for (const auto& [key, value] : j.items()) {
-    if (key == "findings") {
+    if (value.is_array() && (key == "findings" || key == "violations" || key == "advice")) {
       out << key << (value.empty() ? ": none\n" : ":\n");
-      for (const auto& finding : value) out << "  " << finding["text"].get<std::string>() << "\n";
-    } else if (value.is_array() && (key == "violations" || key == "advice")) {
-      out << key << (value.empty() ? ": none\n" : ":\n");
-      for (const auto& line : value) out << "  " << line.get<std::string>() << "\n";
+      for (const auto& line : value)
+        out << "  " << (line.is_object() ? line["text"] : line).get<std::string>() << "\n";
     } else if (key == "boundary_loops") {
       if (!value.empty()) out << loops_text(value);
     } else if (key == "region_figures") {
