@@ -89,7 +89,8 @@ class Row {
 #endif
   }
 
-  void run(const std::vector<Pose>& poses, double gap, const char* name, double share, Ratios& all) {
+  void run(const std::vector<Pose>& poses, double gap, const char* name, double share,
+           [[maybe_unused]] Ratios& all) {
     Mean ours, rss, obbrss, within;
     DistanceCounters work;
     for (const Pose& pose : poses) {
@@ -102,7 +103,7 @@ class Row {
       work.pairs_in_doubles += result.counters.pairs_in_doubles;
       work.pairs_exact += result.counters.pairs_exact;
       // Half asked for a little more than there is, half for a little less.
-      const double upper = result.upper;
+      [[maybe_unused]] const double upper = result.upper;
       DistanceRequest is_near;
       is_near.within = gap * (ours.count % 2 == 0 ? 1.05 : 0.95);
       const double within_us =
