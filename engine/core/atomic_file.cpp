@@ -140,4 +140,17 @@ void write_file(const std::string& path, std::string_view bytes) {
   file.commit();
 }
 
+void make_folder(const std::string& path) {
+  if (path.empty()) return;
+  std::error_code error;
+  std::filesystem::create_directories(path, error);
+  if (error || !std::filesystem::is_directory(path, error))
+    throw EnvironmentError(path + ": cannot be made a folder (" +
+                           (error ? error.message() : "a file is in the way") + ")");
+}
+
+void make_folder_of(const std::string& file) {
+  make_folder(std::filesystem::path(file).parent_path().string());
+}
+
 }  // namespace lrb

@@ -44,4 +44,11 @@ void abandon_atomic_files();
 /// Writes a whole file at once, as AtomicFile does.
 void write_file(const std::string& path, std::string_view bytes);
 
+/// Makes a folder and those above it. Throws EnvironmentError if that fails or a file is in the way.
+void make_folder(const std::string& path);
+
+/// Makes the folder of a file that is about to be written, as make_folder() does. (`build` and `close` do
+/// not: they refuse a file in a folder that does not exist.)
+void make_folder_of(const std::string& file);
+
 }  // namespace lrb

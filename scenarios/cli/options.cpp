@@ -40,7 +40,7 @@ void add_count(CLI::App& app, const std::string& name, std::uint64_t& count, con
 }
 
 /// Reads --size.
-void apply_size(const std::string& size, spec::FrameSpec& spec) {
+void apply_size(const std::string& size, render::FrameSpec& spec) {
   if (size.empty()) return;
   const char* end = size.data() + size.size();
   const auto [x, e1] = std::from_chars(size.data(), end, spec.width);
@@ -137,7 +137,7 @@ void add_size_options(CLI::App& app, PictureOptions& options) {
 }
 
 void add_style_option(CLI::App& app, PictureOptions& options, const std::string& usual) {
-  add_choice<spec::FrameSpec::Style>(
+  add_choice<render::FrameSpec::Style>(
       app, "--style", options.style,
       "print: black on white, thin lines, kinds that differ in grey; dark: for slides [" + usual + "]");
 }
@@ -155,7 +155,7 @@ void add_picture_options(CLI::App& app, PictureOptions& options) {
          "svg: write frames and montage as SVG as well, for 2D bodies")
       ->check(CLI::IsMember({"png", "svg"}).description(""))
       ->type_name("png|svg");
-  add_choice<spec::FrameSpec::At>(app, "--frames", options.at, "When to draw a frame");
+  add_choice<render::FrameSpec::At>(app, "--frames", options.at, "When to draw a frame");
   app.add_option("--every", options.every, "Draw every N-th of these")
       ->check(CLI::Range(1, 1000000000))
       ->type_name("N");
@@ -168,8 +168,8 @@ void add_picture_options(CLI::App& app, PictureOptions& options) {
 }
 
 void add_colour_options(CLI::App& app, PictureOptions& options) {
-  add_choice<spec::FrameSpec::ColourBy>(app, "--colour-by", options.colour_by, "What the colours mean");
-  add_choice<spec::FrameSpec::ColourPer>(
+  add_choice<render::FrameSpec::ColourBy>(app, "--colour-by", options.colour_by, "What the colours mean");
+  add_choice<render::FrameSpec::ColourPer>(
       app, "--colour-per", options.colour_per,
       "Whose number colours a face: its own, or its region's or level's sum");
   app.add_option(
@@ -179,7 +179,7 @@ void add_colour_options(CLI::App& app, PictureOptions& options) {
       ->type_name("DEPTH");
 }
 
-void apply(const PictureOptions& options, spec::FrameSpec& spec) {
+void apply(const PictureOptions& options, render::FrameSpec& spec) {
   if (!options.animation.empty()) run::check_animation(options.animation);
   apply_size(options.size, spec);
   if (options.dpi) spec.dpi = *options.dpi;
@@ -223,12 +223,12 @@ void add_orbit_option(CLI::App& app, CameraOptions& options) {
       ->type_name("DEGREES");
 }
 
-void apply(const CameraOptions& options, std::vector<spec::FrameSpec::View>& views) {
+void apply(const CameraOptions& options, std::vector<render::FrameSpec::View>& views) {
   const bool any = !options.from.empty() || !options.look_at.empty() || !options.up.empty() || options.zoom ||
                    options.orthographic || options.orbit;
   if (!any) return;
   if (views.empty()) views.emplace_back();
-  for (spec::FrameSpec::View& view : views) {
+  for (render::FrameSpec::View& view : views) {
     view.directed = !options.from.empty() || !options.up.empty() || options.orthographic.has_value() ||
                     options.orbit.has_value();
     if (!options.up.empty()) {
@@ -242,7 +242,7 @@ void apply(const CameraOptions& options, std::vector<spec::FrameSpec::View>& vie
     }
     if (!options.from.empty()) {
       view.from = io::parse_vector(options.from, "--from");
-      if (view.camera == spec::FrameSpec::Camera::fixed) view.camera = spec::FrameSpec::Camera::scene;
+      if (view.camera == render::FrameSpec::Camera::fixed) view.camera = render::FrameSpec::Camera::scene;
     }
     if (!(view.from.cross(view.up).squaredNorm() > 0))
       throw InputError(
@@ -252,7 +252,7 @@ void apply(const CameraOptions& options, std::vector<spec::FrameSpec::View>& vie
     if (options.zoom) view.zoom = *options.zoom;
     if (options.orthographic) view.orthographic = *options.orthographic;
     if (options.orbit) {
-      view.camera = spec::FrameSpec::Camera::orbit;
+      view.camera = render::FrameSpec::Camera::orbit;
       view.turn_degrees = *options.orbit;
     }
   }
@@ -286,16 +286,16 @@ std::uint32_t all_cores() {
   return std::max(1U, std::thread::hardware_concurrency());
 }
 
-std::vector<spec::FrameSpec::View> whole_and_contact(const std::vector<spec::FrameSpec::View>& as) {
-  spec::FrameSpec::View whole, contact;
-  if (!as.empty() && as[0].camera != spec::FrameSpec::Camera::fixed) {
+std::vector<render::FrameSpec::View> whole_and_contact(const std::vector<render::FrameSpec::View>& as) {
+  render::FrameSpec::View whole, contact;
+  if (!as.empty() && as[0].camera != render::FrameSpec::Camera::fixed) {
     whole.from = contact.from = as[0].from;
     whole.up = contact.up = as[0].up;
     whole.orthographic = contact.orthographic = as[0].orthographic;
   }
   whole.title = "Whole, with wrappers";
   contact.title = "Contact, bodies alone";
-  contact.camera = spec::FrameSpec::Camera::contact;
+  contact.camera = render::FrameSpec::Camera::contact;
   contact.wrapper = false;
   return {whole, contact};
 }

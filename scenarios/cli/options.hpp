@@ -55,7 +55,7 @@ void add_camera_options(CLI::App& app, CameraOptions& options);
 void add_orbit_option(CLI::App& app, CameraOptions& options);
 /// Changes all views. --up turns what they have; --from and --look-at are given in the axes of the bodies'
 /// files, and are not turned. Throws InputError for what is no camera.
-void apply(const CameraOptions& options, std::vector<spec::FrameSpec::View>& views);
+void apply(const CameraOptions& options, std::vector<render::FrameSpec::View>& views);
 
 /// The options of cameras, and --size, --dpi, --style, --no-title, --no-legend, --transparent, --format,
 /// --frames, --every, --most, --colour-by, --colour-per and --node-boxes, which take precedence over a
@@ -66,12 +66,12 @@ struct PictureOptions {
   std::optional<double> dpi;
   std::optional<bool> svg;
   bool transparent = false;
-  std::optional<spec::FrameSpec::Style> style;
+  std::optional<render::FrameSpec::Style> style;
   bool titles = true, legend = true;
-  std::optional<spec::FrameSpec::At> at;
+  std::optional<render::FrameSpec::At> at;
   std::optional<std::uint32_t> every, most;
-  std::optional<spec::FrameSpec::ColourBy> colour_by;
-  std::optional<spec::FrameSpec::ColourPer> colour_per;
+  std::optional<render::FrameSpec::ColourBy> colour_by;
+  std::optional<render::FrameSpec::ColourPer> colour_per;
   std::optional<std::uint32_t> node_boxes;
 };
 void add_picture_options(CLI::App& app, PictureOptions& options);
@@ -81,7 +81,7 @@ void add_size_options(CLI::App& app, PictureOptions& options);
 void add_style_option(CLI::App& app, PictureOptions& options, const std::string& usual);
 /// Adds --colour-by and --node-boxes alone.
 void add_colour_options(CLI::App& app, PictureOptions& options);
-void apply(const PictureOptions& options, spec::FrameSpec& spec);
+void apply(const PictureOptions& options, render::FrameSpec& spec);
 
 /// Adds --animate, for commands that call animate_frames().
 void add_animation_option(CLI::App& app, PictureOptions& options);
@@ -95,7 +95,7 @@ render::ViewDirection turned_up(const render::ViewDirection& view, int axis);
 
 /// Returns two views side by side: the whole scene with the wrappers, and the contact with the bodies alone.
 /// They look from where the first of the views given does.
-std::vector<spec::FrameSpec::View> whole_and_contact(const std::vector<spec::FrameSpec::View>& as = {});
+std::vector<render::FrameSpec::View> whole_and_contact(const std::vector<render::FrameSpec::View>& as = {});
 
 /// Returns the number of threads of the machine; at least 1.
 std::uint32_t all_cores();

@@ -5,6 +5,7 @@
 #include "render/montage.hpp"
 #include "render/overlay.hpp"
 #include "scenarios/run/run_scenario.hpp"
+#include "scenarios/run/view_camera.hpp"
 #include "trace/counters.hpp"
 #include "trace/passes.hpp"
 
@@ -95,9 +96,9 @@ render::Image draw_bodies(const Runs& runs, const run::ProgressReport& progress)
   for (std::size_t i = 0; i < 2; ++i) {
     const run::Recording& recording = *runs.of[i];
     const run::RecordedRun recorded = run::recorded_run_of(*runs.scenarios[i], recording);
-    spec::FrameSpec frame = runs.scenarios[i]->frames;
-    frame.colour_by = spec::FrameSpec::ColourBy::region;
-    frame.at = spec::FrameSpec::At::events;
+    render::FrameSpec frame = runs.scenarios[i]->frames;
+    frame.colour_by = render::FrameSpec::ColourBy::region;
+    frame.at = render::FrameSpec::At::events;
     frame.events = {static_cast<trace::EventId>(recording.trace.events.size() - 1)};
     frame.width = 900;
     frame.height = 700;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "engine/core/atomic_file.hpp"
 #include "engine/core/error.hpp"
 #include "render/overlay.hpp"
 #include "render/png.hpp"
@@ -129,7 +130,7 @@ std::optional<std::string> write_comparison(const Runs& runs, const std::string&
     add_steps(page, runs);
   page.views = views_of(runs, folder);
   page.footer = report::footer(runs.of[0]->trace.header.lrbscope);
-  io::make_folder(folder);
+  make_folder(folder);
   const io::FolderLock lock(folder);
   io::refuse_links(folder);
   render::write_png(picture, folder + "/" + kPicture);

@@ -12,12 +12,13 @@
 #include "scenarios/run/face_values.hpp"
 #include "scenarios/run/moments.hpp"
 #include "scenarios/run/run_scenario.hpp"
+#include "scenarios/run/view_camera.hpp"
 
 namespace lrb::compare {
 namespace {
 
 using render::group_digits;
-using ColourBy = spec::FrameSpec::ColourBy;
+using ColourBy = render::FrameSpec::ColourBy;
 using FaceValues = std::array<std::vector<double>, 2>;  ///< of A and of B
 
 /// Returns the numbers of faces that colours mean, in a step.
@@ -67,9 +68,9 @@ struct Panels {
     const run::Recording& recording = *runs.of[which];
     run::RecordedRun recorded = run::recorded_run_of(*runs.scenarios[which], recording);
     if (framing.points.empty()) framing = framing_of(recorded, step);
-    spec::FrameSpec frame = runs.scenarios[which]->frames;
+    render::FrameSpec frame = runs.scenarios[which]->frames;
     frame.colour_by = by;
-    frame.at = spec::FrameSpec::At::events;
+    frame.at = render::FrameSpec::At::events;
     frame.events = {run::last_event(recording.trace, step)};
     frame.width = 900;
     frame.height = 700;

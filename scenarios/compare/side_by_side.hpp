@@ -32,7 +32,7 @@ std::string cut_words(const Runs& runs);
 void refuse_folder_of_run(const std::string& folder);
 
 /// What colours mean: box tests where both runs have recorded pairs of nodes, else face tests.
-spec::FrameSpec::ColourBy common_colours(const Runs& runs);
+render::FrameSpec::ColourBy common_colours(const Runs& runs);
 
 /// Draws the bodies of both runs at the end of a step, coloured by common_colours() on one scale, and where
 /// the bodies have as many faces in both and these differ, a third picture: how much more each face has in

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <memory>
 
+#include "engine/core/atomic_file.hpp"
 #include "engine/lrb/wrapper.hpp"
 #include "engine/query/world_box.hpp"
 #include "render/frame_writer.hpp"
@@ -11,6 +12,8 @@
 #include "scenarios/crowd/crowd_json.hpp"
 #include "scenarios/io/files.hpp"
 #include "scenarios/run/frame_files.hpp"
+#include "scenarios/run/frame_names.hpp"
+#include "scenarios/run/view_camera.hpp"
 
 namespace lrb::crowd {
 namespace {
@@ -30,7 +33,7 @@ render::Rgba colour_of(std::uint32_t kind) {
 
 class FrameState {
  public:
-  FrameState(const spec::Crowd& crowd, const CrowdRun& run, const spec::FrameSpec& spec)
+  FrameState(const spec::Crowd& crowd, const CrowdRun& run, const render::FrameSpec& spec)
       : crowd_(crowd), run_(run), spec_(spec) {}
 
   /// Returns the picture of a moment. `wrappers`: with the lids that are left of them.
@@ -108,7 +111,7 @@ class FrameState {
   const render::Style& style() const { return run::style_of(spec_); }
   bool shows_wrappers() const {
     return spec_.views.empty() || std::any_of(spec_.views.begin(), spec_.views.end(),
-                                              [](const spec::FrameSpec::View& v) { return v.wrapper; });
+                                              [](const render::FrameSpec::View& v) { return v.wrapper; });
   }
 
   /// Makes a contact's curve thin, and hidden by what lies in front of it: in a crowd, curves that show
@@ -150,7 +153,7 @@ class FrameState {
 
   const spec::Crowd& crowd_;
   const CrowdRun& run_;
-  const spec::FrameSpec& spec_;
+  const render::FrameSpec& spec_;
 };
 
 }  // namespace
@@ -170,8 +173,8 @@ std::string crowd_caption(const CrowdRun& run, std::uint32_t step) {
 run::DrawnFrames draw_crowd(const spec::Crowd& crowd, const CrowdRun& run, const std::string& folder,
                             const std::vector<std::pair<std::string, std::string>>& text,
                             const run::ProgressReport& progress) {
-  const spec::FrameSpec spec = run::in_pixels(crowd.frames);
-  io::make_folder(folder + "/frames");
+  const render::FrameSpec spec = run::in_pixels(crowd.frames);
+  make_folder(folder + "/frames");
   run::remove_old_frames(folder);
   run::DrawnFrames out;
   if (run.moments.empty()) return out;
@@ -185,7 +188,7 @@ run::DrawnFrames draw_crowd(const spec::Crowd& crowd, const CrowdRun& run, const
     layouts.push_back(render::lay_out(overlays.back(), spec.width, spec.height, scale));
   }
   const render::PixelRect place = render::common_picture(layouts);
-  std::vector<spec::FrameSpec::View> views = spec.views;
+  std::vector<render::FrameSpec::View> views = spec.views;
   if (views.empty()) views.emplace_back();
   const std::vector<render::PixelRect> places = run::view_places(place, views.size(), spec.scale());
   const run::Framing framing = state.framing();
@@ -199,7 +202,7 @@ run::DrawnFrames draw_crowd(const spec::Crowd& crowd, const CrowdRun& run, const
         run.moments.size() > 1 ? static_cast<double>(i) / static_cast<double>(run.moments.size() - 1) : 0;
     run::paint_views(
         rasterizer, spec, views, places,
-        [&](const spec::FrameSpec::View& v) { return state.list(m, v.wrapper); },
+        [&](const render::FrameSpec::View& v) { return state.list(m, v.wrapper); },
         [&](std::size_t v) {
           return run::camera_for(views[v], framing, places[v].width, places[v].height, passed);
         },

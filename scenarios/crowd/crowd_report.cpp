@@ -179,7 +179,7 @@ void write_pictures_and_page(const spec::Crowd& crowd, const CrowdRun& run, cons
 std::string write_crowd(const spec::Crowd& crowd, const CrowdRun& run, const std::string& folder,
                         const std::string& command, const run::ProgressReport& progress) {
   run::check_frame_size(crowd.frames);
-  io::make_folder(folder);
+  make_folder(folder);
   const io::FolderLock lock(folder);
   io::refuse_links(folder);
   FileSink sink(folder + "/trace.json");
@@ -201,7 +201,7 @@ std::string write_crowd(const spec::Crowd& crowd, const CrowdRun& run, const std
 void redraw_crowd(const spec::Crowd& crowd, const CrowdRun& run, const std::string& folder,
                   const std::string& command, const std::string& trace_file,
                   const run::ProgressReport& progress) {
-  io::make_folder(folder);
+  make_folder(folder);
   const io::FolderLock lock(folder);
   io::refuse_links(folder);
   const std::string file = std::filesystem::relative(trace_file, folder).generic_string();

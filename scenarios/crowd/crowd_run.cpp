@@ -10,6 +10,7 @@
 #include "engine/query/collide_impl.hpp"
 #include "engine/query/walk/query_context.hpp"
 #include "engine/scene/scene.hpp"
+#include "scenarios/run/frame_files.hpp"
 #include "scenarios/run/moments.hpp"
 
 namespace lrb::crowd {
@@ -152,9 +153,9 @@ class Player {
 
 }  // namespace
 
-std::vector<std::uint32_t> drawn_steps(const spec::FrameSpec& spec, std::uint32_t steps) {
+std::vector<std::uint32_t> drawn_steps(const render::FrameSpec& spec, std::uint32_t steps) {
   std::vector<std::uint32_t> all;
-  if (spec.at == spec::FrameSpec::At::none) return all;
+  if (spec.at == render::FrameSpec::At::none) return all;
   for (std::uint32_t s = 0; s < steps; ++s)
     if (s % spec.every == 0 || s + 1 == steps) all.push_back(s);
   std::vector<std::uint32_t> out;

@@ -61,7 +61,7 @@ struct CrowdRun {
 };
 
 /// Returns the steps that `spec` wants drawn.
-std::vector<std::uint32_t> drawn_steps(const spec::FrameSpec& spec, std::uint32_t steps);
+std::vector<std::uint32_t> drawn_steps(const render::FrameSpec& spec, std::uint32_t steps);
 
 /// Builds the bodies and runs the crowd. Everything but threads and times is the same for any number of
 /// threads (at least 1). Throws InputError for bodies of different dimensions and for what collide() refuses.

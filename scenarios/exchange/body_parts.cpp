@@ -18,7 +18,7 @@
 namespace lrb::exchange {
 namespace {
 
-using ColourBy = spec::FrameSpec::ColourBy;
+using ColourBy = render::FrameSpec::ColourBy;
 using render::Rgba;
 
 constexpr double kNone = -1;

@@ -31,8 +31,8 @@ struct Moment {
   /// The events of the time step so far, which the counters count; nothing: there are none, nor the columns.
   std::optional<std::span<const trace::Event>> events;
   std::span<const ContactRegion> contacts;
-  spec::FrameSpec::ColourBy colour_by = spec::FrameSpec::ColourBy::kind;
-  spec::FrameSpec::ColourPer colour_per = spec::FrameSpec::ColourPer::face;
+  render::FrameSpec::ColourBy colour_by = render::FrameSpec::ColourBy::kind;
+  render::FrameSpec::ColourPer colour_per = render::FrameSpec::ColourPer::face;
 };
 
 struct Wanted {

@@ -16,13 +16,14 @@
 #include "scenarios/run/frame_files.hpp"
 #include "scenarios/run/frame_state.hpp"
 #include "scenarios/run/framing.hpp"
+#include "scenarios/run/view_camera.hpp"
 
 namespace lrb::figure {
 namespace {
 
 using Eigen::AlignedBox2d;
 using Eigen::Vector2d;
-using View = spec::FrameSpec::View;
+using View = render::FrameSpec::View;
 
 /// Returns a caption without what goes without saying.
 std::string shortened(std::string words) {
@@ -32,16 +33,16 @@ std::string shortened(std::string words) {
 }
 
 /// Returns the frames' spec with widths in points: a thin line, of width 1, is as wide as the figure's.
-spec::FrameSpec in_points(spec::FrameSpec frames, const FigureSpec& figure) {
+render::FrameSpec in_points(render::FrameSpec frames, const FigureSpec& figure) {
   // The figure says how wide lines are, whatever the style.
-  frames.dpi = figure.line_width * spec::FrameSpec::kScreenDpi / run::style_of(frames).weight;
+  frames.dpi = figure.line_width * render::FrameSpec::kScreenDpi / run::style_of(frames).weight;
   if (frames.views.empty()) frames.views.emplace_back();
   return frames;
 }
 
 class FigureJob {
  public:
-  FigureJob(const run::RecordedRun& recorded, const spec::FrameSpec& frames, const FigureSpec& figure)
+  FigureJob(const run::RecordedRun& recorded, const render::FrameSpec& frames, const FigureSpec& figure)
       : recorded_(recorded),
         figure_(figure),
         frames_(in_points(frames, figure)),
@@ -125,7 +126,7 @@ class FigureJob {
   }
 
   bool shows_values() const {
-    using ColourBy = spec::FrameSpec::ColourBy;
+    using ColourBy = render::FrameSpec::ColourBy;
     const ColourBy by = frames_.colour_by;
     return by != ColourBy::kind && by != ColourBy::layer && by != ColourBy::region;
   }
@@ -178,7 +179,7 @@ class FigureJob {
 
   /// Returns false for a close-up of a contact where there is none, beside other views.
   bool shows_anything(const View& view) const {
-    return view.camera != spec::FrameSpec::Camera::contact || frames_.views.size() == 1 ||
+    return view.camera != render::FrameSpec::Camera::contact || frames_.views.size() == 1 ||
            state_.in_contact();
   }
 
@@ -279,7 +280,7 @@ class FigureJob {
 
   const run::RecordedRun& recorded_;
   const FigureSpec& figure_;
-  spec::FrameSpec frames_;
+  render::FrameSpec frames_;
   double dpi_;
   Chosen chosen_;
   const std::vector<trace::EventId>& events_;
@@ -313,8 +314,8 @@ double default_dpi(FigureSpec::Format format) {
   return format == FigureSpec::Format::png ? 300 : 600;
 }
 
-Figure draw_figure(const run::RecordedRun& recorded, const spec::FrameSpec& frames, const FigureSpec& figure,
-                   const run::ProgressReport& progress) {
+Figure draw_figure(const run::RecordedRun& recorded, const render::FrameSpec& frames,
+                   const FigureSpec& figure, const run::ProgressReport& progress) {
   return FigureJob(recorded, frames, figure).draw(progress);
 }
 

@@ -39,7 +39,7 @@ struct Figure {
 
 /// Draws the figure. `frames` says what colours mean, which regions are shown, and from where. Throws
 /// InputError for what a figure cannot show.
-Figure draw_figure(const run::RecordedRun& recorded, const spec::FrameSpec& frames, const FigureSpec& figure,
-                   const run::ProgressReport& progress);
+Figure draw_figure(const run::RecordedRun& recorded, const render::FrameSpec& frames,
+                   const FigureSpec& figure, const run::ProgressReport& progress);
 
 }  // namespace lrb::figure

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "engine/core/error.hpp"
+#include "scenarios/run/frame_files.hpp"
 #include "scenarios/run/moments.hpp"
 #include "trace/cursor.hpp"
 
@@ -23,8 +24,8 @@ struct State {
 std::vector<EventId> candidates(const run::RecordedRun& recorded) {
   const trace::Trace& trace = *recorded.trace;
   if (trace.header.construction) {
-    spec::FrameSpec passes;
-    passes.at = spec::FrameSpec::At::pass;
+    render::FrameSpec passes;
+    passes.at = render::FrameSpec::At::pass;
     return run::moments(passes, trace);
   }
   std::vector<EventId> out;

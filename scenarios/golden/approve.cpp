@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <optional>
 
+#include "engine/core/atomic_file.hpp"
 #include "engine/core/error.hpp"
 #include "engine/mesh/io/mesh_io.hpp"
 #include "scenarios/golden/check.hpp"
@@ -109,7 +110,7 @@ std::vector<std::string> approve_golden(const std::string& goldens, const Golden
   const bool known = has_golden(goldens, name);
   if (!known && !variant.empty())
     throw InputError(name + ": has no golden yet; approve it first, without --variant");
-  io::make_folder(folder);
+  make_folder(folder);
   const io::FolderLock lock(folder);
   const GoldenFacts facts = facts_of(run);
   const std::optional<Golden> old = known ? load_if_sound(goldens, name, variant.empty()) : std::nullopt;

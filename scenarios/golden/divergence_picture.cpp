@@ -6,6 +6,7 @@
 #include "engine/core/error.hpp"
 #include "render/scene.hpp"
 #include "scenarios/run/moments.hpp"
+#include "scenarios/run/view_camera.hpp"
 #include "trace/cursor.hpp"
 
 namespace lrb::golden {
@@ -65,12 +66,12 @@ std::vector<Eigen::Vector3d> subject_of(const SideShown& side, const std::vector
   return out;
 }
 
-spec::FrameSpec spec_for(const GoldenRun& run, bool close_up) {
-  spec::FrameSpec spec;
-  spec.at = spec::FrameSpec::At::events;
+render::FrameSpec spec_for(const GoldenRun& run, bool close_up) {
+  render::FrameSpec spec;
+  spec.at = render::FrameSpec::At::events;
   spec.width = kWidth;
   spec.height = kHeight;
-  spec::FrameSpec::View whole;
+  render::FrameSpec::View whole;
   if (!run.scenario.frames.views.empty()) {  // look from where the scenario looks
     whole.from = run.scenario.frames.views[0].from;
     whole.up = run.scenario.frames.views[0].up;
@@ -78,15 +79,15 @@ spec::FrameSpec spec_for(const GoldenRun& run, bool close_up) {
   whole.title = "Whole, with wrappers";
   spec.views = {whole};
   if (close_up) {
-    spec::FrameSpec::View close = whole;
-    close.camera = spec::FrameSpec::Camera::contact;
+    render::FrameSpec::View close = whole;
+    close.camera = render::FrameSpec::Camera::contact;
     close.title = "Close up, with wrappers";
     spec.views.push_back(close);
   }
   return spec;
 }
 
-run::PaintedFrame paint(const GoldenRun& run, const SideShown& side, spec::FrameSpec spec,
+run::PaintedFrame paint(const GoldenRun& run, const SideShown& side, render::FrameSpec spec,
                         const run::Framing& framing, const std::string& title) {
   run::RecordedRun p = recorded_run_of(run);
   p.title = run.scenario.name + ", " + title;
@@ -128,7 +129,7 @@ DivergencePictures draw_divergence(const Golden& golden, const GoldenRun& run,
       for (const Eigen::Vector3d& p : subject_of(side, reps)) framing.contacts.push_back(p);
     if (const CollideResult* result = find_result(run, *step); framing.contacts.empty() && result != nullptr)
       framing.contacts = render::contact_points(result->regions);
-    const spec::FrameSpec spec = spec_for(run, !framing.contacts.empty());
+    const render::FrameSpec spec = spec_for(run, !framing.contacts.empty());
     run::PaintedFrame pictures[2] = {paint(run, sides[0], spec, framing, "approved"),
                                      paint(run, sides[1], spec, framing, "found")};
     out.expected = std::move(pictures[0].image);

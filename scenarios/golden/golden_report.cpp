@@ -165,7 +165,7 @@ void clear_golden_report(const std::string& folder, const std::vector<std::strin
 
 void write_failures(const GoldenResult& result, const GoldenRun& run, const std::string& folder) {
   if (result.verdict.passed()) return;
-  io::make_folder(folder + "/" + result.name);
+  make_folder(folder + "/" + result.name);
   if (result.verdict.divergence)
     trace::save_trace(run.recording.trace, folder + "/" + result.name + "/" + kActualTrace);
   for (std::size_t i = 0; i < result.comparisons.size(); ++i) {

@@ -36,7 +36,7 @@ std::string words(const render::Camera& c) {
 
 }  // namespace
 
-void set_default_size(GoldenSpec& spec, const spec::FrameSpec& frames) {
+void set_default_size(GoldenSpec& spec, const render::FrameSpec& frames) {
   spec.width = kDefaultWidth;
   spec.height =
       std::clamp(static_cast<int>(std::lround(double{kDefaultWidth} * frames.height / frames.width)),
@@ -48,7 +48,7 @@ GoldenRun record_golden(spec::Scenario scenario, const GoldenSpec& spec,
   GoldenRun run;
   run.scenario = std::move(scenario);
   run.scenario.clock = trace::Clock::event;
-  spec::FrameSpec& frames = run.scenario.frames;
+  render::FrameSpec& frames = run.scenario.frames;
   frames.width = spec.width;
   frames.height = spec.height;
   frames.dpi = 0;

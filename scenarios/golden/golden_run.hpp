@@ -40,6 +40,6 @@ std::string camera_words(const std::vector<render::Camera>& cameras);
 
 /// Sets the size of a golden's pictures unless one is asked for: of the scenario's shape, small enough to be
 /// kept and large enough for their text.
-void set_default_size(GoldenSpec& spec, const spec::FrameSpec& frames);
+void set_default_size(GoldenSpec& spec, const render::FrameSpec& frames);
 
 }  // namespace lrb::golden

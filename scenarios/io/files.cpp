@@ -45,19 +45,6 @@ std::string read_small_text(const std::string& path) {
   return read_file(path, kMost);
 }
 
-void make_folder(const std::string& path) {
-  if (path.empty()) return;
-  std::error_code error;
-  fs::create_directories(path, error);
-  if (error || !fs::is_directory(path, error))
-    throw EnvironmentError(path + ": cannot be made a folder (" +
-                           (error ? error.message() : "a file is in the way") + ")");
-}
-
-void make_folder_of(const std::string& file) {
-  make_folder(fs::path(file).parent_path().string());
-}
-
 void write_text(const std::string& path, const std::string& text) {
   make_folder_of(path);
   write_file(path, text);

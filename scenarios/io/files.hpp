@@ -19,13 +19,6 @@ std::string read_small_text(const std::string& path);
 /// Throws EnvironmentError.
 void write_text(const std::string& path, const std::string& text);
 
-/// Makes a folder and those above it. Throws EnvironmentError if that fails or a file is in the way.
-void make_folder(const std::string& path);
-
-/// Makes the folder of a file that is about to be written, as make_folder() does. (`build` and `close` do
-/// not: they refuse a file in a folder that does not exist.)
-void make_folder_of(const std::string& file);
-
 /// Makes sure that what is written into an output folder stays in it: throws EnvironmentError that names a
 /// symbolic link in the folder, or in its frames folder, under a name that a run writes (a page, numbers, a
 /// trace, an LRB-rep, a picture, or frames itself). The folder's own path may lead through links, because

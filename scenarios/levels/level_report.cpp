@@ -4,6 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "engine/core/atomic_file.hpp"
 #include "engine/core/error.hpp"
 #include "engine/core/file_bytes.hpp"
 #include "engine/lrb/wrapper_level.hpp"
@@ -135,7 +136,7 @@ std::vector<std::string> write_level_report(const LrbRep& rep, const LevelReport
     notes.emplace_back(
         "no free simplification to compare with: it needs libcgal-dev, and the target lrbscope-simplify");
 
-  io::make_folder(folder);
+  make_folder(folder);
   const io::FolderLock lock(folder);
   io::refuse_links(folder);
   report::Page page = page_of(rep, curve, options.command);

@@ -9,7 +9,7 @@
 namespace lrb::python {
 namespace {
 
-using View = spec::FrameSpec::View;
+using View = render::FrameSpec::View;
 
 int side(const py::handle& given) {
   const std::uint64_t n = count(given, "size");
@@ -20,13 +20,13 @@ int side(const py::handle& given) {
 
 /// What to draw, as the run's own spec has it; whether the direction was given.
 struct Wanted {
-  spec::FrameSpec frames;
+  render::FrameSpec frames;
   bool from_given = false;
 };
 
 Wanted wanted(const PictureArguments& given) {
   Wanted out;
-  spec::FrameSpec& f = out.frames;
+  render::FrameSpec& f = out.frames;
   f.width = 960;
   f.height = 720;
   if (!given.size.is_none()) {
@@ -49,11 +49,11 @@ Wanted wanted(const PictureArguments& given) {
   if (!(view.zoom > 0 && view.zoom < 1e6)) throw InputError("zoom: expected a number above 0");
   view.orthographic = flag(given.orthographic, "orthographic");
   view.wrapper = flag(given.wrappers, "wrappers");
-  if (flag(given.close_up, "close_up")) view.camera = spec::FrameSpec::Camera::contact;
+  if (flag(given.close_up, "close_up")) view.camera = render::FrameSpec::Camera::contact;
   f.views = {view};
   f.colour_by = word(given.colour_by, "colour_by", f.colour_by);
   f.transparent = flag(given.transparent, "transparent");
-  f.at = spec::FrameSpec::At::events;
+  f.at = render::FrameSpec::At::events;
   return out;
 }
 

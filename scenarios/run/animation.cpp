@@ -11,6 +11,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "engine/core/atomic_file.hpp"
 #include "engine/core/error.hpp"
 #include "scenarios/io/files.hpp"
 
@@ -97,7 +98,7 @@ void check_animation(const std::string& file) {
 }
 
 void animate(const std::string& folder, const std::string& file) {
-  io::make_folder_of(file);
+  make_folder_of(file);
   const std::filesystem::path path(file);
   // Beside its place, under another name, so that a file that is half written is never seen under its own.
   const std::string part =

@@ -7,13 +7,13 @@
 
 #include <Eigen/Geometry>
 
+#include "engine/core/atomic_file.hpp"
 #include "engine/query/collide.hpp"
 #include "render/overlay.hpp"
 #include "render/palette.hpp"
 #include "render/png.hpp"
 #include "render/rasterize.hpp"
 #include "render/scene.hpp"
-#include "scenarios/io/files.hpp"
 #include "scenarios/io/number_text.hpp"
 #include "scenarios/run/frame_files.hpp"
 #include "scenarios/run/measure_marks.hpp"
@@ -121,20 +121,20 @@ void write_picture(AnswerPicture& p, const AnswerLook& look, const std::string& 
   const render::OverlayLayout layout = render::lay_out(p.overlay, look.width, look.height);
   const double size = box_of_points(p.whole).diagonal().norm();
   const bool is_small = !p.detail.empty() && box_of_points(p.detail).diagonal().norm() < kSmall * size;
-  spec::FrameSpec spec;
+  render::FrameSpec spec;
   spec.height = look.height;  // the views' titles follow it
-  std::vector<spec::FrameSpec::View> views(is_small ? 2 : 1);
+  std::vector<render::FrameSpec::View> views(is_small ? 2 : 1);
   if (is_small) views[1].title = "from nearby";
   const std::vector<render::PixelRect> places = view_places(layout.picture, views.size(), 1);
   render::Image picture(layout.picture.width, layout.picture.height);
   render::Rasterizer rasterizer;
   paint_views(
-      rasterizer, spec, views, places, [&](const spec::FrameSpec::View&) { return p.scene.list; },
+      rasterizer, spec, views, places, [&](const render::FrameSpec::View&) { return p.scene.list; },
       [&](std::size_t view) {
         return view == 0 ? whole_camera(p, look, places[0]) : near_camera(p, look, places[1]);
       },
       picture);
-  io::make_folder_of(path);
+  make_folder_of(path);
   render::write_png(render::compose_frame(picture, layout.picture, p.overlay, look.width, look.height), path);
 }
 
@@ -192,13 +192,13 @@ void draw_distance(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const P
                    const DistanceResult& result, const AnswerLook& look, const std::string& path) {
   AnswerPicture p = begin(a, pose_a, b, pose_b);
   p.scene = scene_of(a, pose_a, b, pose_b);
-  const trace::MeasuredDistance m = trace::measured(result, {});
   p.overlay.event_colour = kGapColour;
-  if (const auto gap = gap_of(m)) {
+  if (const auto gap =
+          gap_of({result.lower, result.upper}, result.witness[0].point, result.witness[1].point)) {
     add_gap(p.scene, *gap, render::style_of(render::StyleName::screen));
     p.detail = {gap->from, gap->to};
     p.across = gap->to - gap->from;
-    p.overlay.event = gap->text + " apart" + (m.solids_meet ? ", one inside the other" : "");
+    p.overlay.event = gap->text + " apart" + (result.solids_meet() ? ", one inside the other" : "");
   } else if (result.meet) {
     mark_point(p.scene, result.witness[0].point, "a point of both");
     p.overlay.event = "the surfaces meet";
@@ -245,8 +245,7 @@ void draw_clash(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose
   p.scene = scene_of(a, pose_a, b, pose_b, found.regions);
   p.overlay.title = kind_words(result.kind, result.reason) + "  ·  " + p.overlay.title;
   p.overlay.event_colour = kWayOutColour;
-  const trace::MeasuredClash m = trace::measured(result, {});
-  if (const auto way = way_out_of(m, a, pose_a, b, pose_b, found.regions)) {
+  if (const auto way = way_out_of(result.depth, result.translation, a, pose_a, b, pose_b, found.regions)) {
     Pose apart = pose_b;
     apart.t += result.translation;
     make_translucent(p.scene.list, 105);  // so that nothing hides the way out, nor contacts

@@ -9,18 +9,17 @@
 #include "render/rasterize.hpp"
 #include "render/scene.hpp"
 #include "scenarios/run/frame_files.hpp"
-#include "scenarios/run/framing.hpp"
-#include "scenarios/run/moments.hpp"
+#include "scenarios/run/view_camera.hpp"
 
 namespace lrb::run {
 
-void draw_body_sheet(const LrbRep& rep, const std::string& path, const spec::FrameSpec& given) {
+void draw_body_sheet(const LrbRep& rep, const std::string& path, const render::FrameSpec& given) {
   constexpr std::size_t kMostPanels = 6;
-  const spec::FrameSpec frames = in_pixels(given);
+  const render::FrameSpec frames = in_pixels(given);
   Framing framing;
   framing.points = render::body_points(rep, Pose{});
   framing.dim = rep.dim();
-  const spec::FrameSpec::View view = frames.views.empty() ? spec::FrameSpec::View{} : frames.views[0];
+  const render::FrameSpec::View view = frames.views.empty() ? render::FrameSpec::View{} : frames.views[0];
   const render::Camera camera = camera_for(view, framing, frames.width, frames.height, 0);
   render::RasterOptions options;
   options.width = frames.width;

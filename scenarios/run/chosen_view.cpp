@@ -6,7 +6,6 @@
 
 #include "render/rasterize.hpp"
 #include "render/scene.hpp"
-#include "scenarios/run/framing.hpp"
 
 namespace lrb::run {
 namespace {
@@ -65,7 +64,7 @@ std::vector<Vector3d> directions(const Vector3d& up) {
 }
 
 /// Returns true if a close-up of the contacts would show hardly less than both bodies.
-bool close_up_is_whole(const RecordedRun& recorded, const spec::FrameSpec::View& close_up) {
+bool close_up_is_whole(const RecordedRun& recorded, const render::FrameSpec::View& close_up) {
   const std::size_t step = last_contact(recorded);
   if (step >= recorded.trace->steps.size() || recorded.reps[0]->dim() != 3) return false;
   constexpr double kCloser = 1.8;  // a close-up is to show things so many times as large
@@ -73,11 +72,11 @@ bool close_up_is_whole(const RecordedRun& recorded, const spec::FrameSpec::View&
   framing.points = points_at(recorded, step);
   for (const CollideResult& result : *recorded.results)
     for (const Vector3d& p : render::contact_points(result.regions)) framing.contacts.push_back(p);
-  spec::FrameSpec::View whole = close_up;
-  whole.camera = spec::FrameSpec::Camera::scene;
+  render::FrameSpec::View whole = close_up;
+  whole.camera = render::FrameSpec::Camera::scene;
   Eigen::AlignedBox3d box;
   for (const Vector3d& p : framing.points) box.extend(p);
-  const auto unit = [&](const spec::FrameSpec::View& view) {
+  const auto unit = [&](const render::FrameSpec::View& view) {
     const render::Camera camera = camera_for(view, framing, kWidth, kHeight, 0);
     return render::Projection(camera, kWidth, kHeight, box).unit_per_pixel(camera.target);
   };
@@ -85,36 +84,6 @@ bool close_up_is_whole(const RecordedRun& recorded, const spec::FrameSpec::View&
 }
 
 }  // namespace
-
-Eigen::AlignedBox3d box_of(const LrbRep& rep, const Pose& pose) {
-  Eigen::AlignedBox3d box;
-  for (FaceId f = 0; f < rep.real_face_count(); ++f)
-    for (const VertexId v : rep.face(f)) box.extend(pose.apply(rep.vertices()[v]));
-  return box;
-}
-
-Eigen::AlignedBox3d box_with_lids(const LrbRep& rep, const Pose& pose) {
-  Eigen::AlignedBox3d box;
-  for (const Vector3d& v : rep.vertices()) box.extend(pose.apply(v));
-  return box;
-}
-
-Vector3d broadside(const Eigen::AlignedBox3d& box, const Vector3d& up) {
-  int vertical = 0;
-  up.cwiseAbs().maxCoeff(&vertical);
-  const int first = (vertical + 1) % 3, second = (vertical + 2) % 3;
-  const Vector3d size = box.sizes();
-  constexpr double kClearly = 1.15;
-  Vector3d out = 0.42 * up.normalized();
-  // Two level sides of about one length are both seen; else most of the longer one.
-  out[first] = size[first] > kClearly * size[second]   ? 0.38
-               : size[second] > kClearly * size[first] ? 0.84
-                                                       : 0.62;
-  out[second] = size[first] > kClearly * size[second]   ? -0.84
-                : size[second] > kClearly * size[first] ? -0.38
-                                                        : -0.68;
-  return out;
-}
 
 Vector3d least_hidden(const RecordedRun& recorded, const Vector3d& up, const Vector3d& like) {
   const std::size_t step = last_contact(recorded);
@@ -143,10 +112,10 @@ Vector3d least_hidden(const RecordedRun& recorded, const Vector3d& up, const Vec
   return best;
 }
 
-void widen_close_ups(const RecordedRun& recorded, std::vector<spec::FrameSpec::View>& views) {
-  for (spec::FrameSpec::View& view : views) {
-    if (view.camera != spec::FrameSpec::Camera::contact || !close_up_is_whole(recorded, view)) continue;
-    view.camera = spec::FrameSpec::Camera::scene;
+void widen_close_ups(const RecordedRun& recorded, std::vector<render::FrameSpec::View>& views) {
+  for (render::FrameSpec::View& view : views) {
+    if (view.camera != render::FrameSpec::Camera::contact || !close_up_is_whole(recorded, view)) continue;
+    view.camera = render::FrameSpec::Camera::scene;
     if (!view.wrapper) view.title = "Bodies alone";
   }
 }

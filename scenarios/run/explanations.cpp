@@ -10,6 +10,7 @@
 #include "scenarios/io/number_text.hpp"
 #include "scenarios/report/page/packed.hpp"
 #include "scenarios/run/explanation_words.hpp"
+#include "scenarios/run/frame_files.hpp"
 #include "scenarios/run/moments.hpp"
 #include "scenarios/run/parting_square.hpp"
 #include "trace/names.hpp"

@@ -14,8 +14,8 @@ std::uint32_t level_of(const LrbRep& rep, FaceId face) {
   return is_region(cell) ? rep.depth(cell.as_region()) : 0;
 }
 
-std::vector<double> grouped(std::vector<double> values, spec::FrameSpec::ColourPer per, const LrbRep& rep) {
-  using ColourPer = spec::FrameSpec::ColourPer;
+std::vector<double> grouped(std::vector<double> values, render::FrameSpec::ColourPer per, const LrbRep& rep) {
+  using ColourPer = render::FrameSpec::ColourPer;
   if (per == ColourPer::face || values.empty()) return values;
   const auto group = [&](FaceId f) {
     return per == ColourPer::region ? region_of(rep, f) : level_of(rep, f);

@@ -17,6 +17,6 @@ std::uint32_t level_of(const LrbRep& rep, FaceId face);
 
 /// Returns, for each face (|F|), the sum of the values over its region or its level; a face without a region
 /// keeps its own.
-std::vector<double> grouped(std::vector<double> values, spec::FrameSpec::ColourPer per, const LrbRep& rep);
+std::vector<double> grouped(std::vector<double> values, render::FrameSpec::ColourPer per, const LrbRep& rep);
 
 }  // namespace lrb::run

@@ -8,7 +8,7 @@
 namespace lrb::run {
 namespace {
 
-using ColourBy = spec::FrameSpec::ColourBy;
+using ColourBy = render::FrameSpec::ColourBy;
 
 const std::vector<std::uint32_t>& chosen(const trace::FaceCounts& counts, ColourBy by) {
   switch (by) {

@@ -14,7 +14,7 @@ namespace lrb::run {
 /// Returns the value of each face (|F|), counted over `events`; empty if `by` does not colour by value.
 /// `tree`: the one that was walked of the body, null if pairs of its nodes were not recorded: then there are
 /// no box tests.
-std::vector<double> face_values(spec::FrameSpec::ColourBy by, const LrbRep& rep, Side side,
+std::vector<double> face_values(render::FrameSpec::ColourBy by, const LrbRep& rep, Side side,
                                 std::span<const trace::Event> events, const trace::TreeShape* tree);
 
 /// Returns {largest / 50, largest} of the values of A's and B's faces: the range of a scale on which smaller

@@ -8,7 +8,7 @@
 #include "render/rasterize.hpp"
 #include "render/text.hpp"
 #include "scenarios/run/frame_files.hpp"
-#include "scenarios/run/framing.hpp"
+#include "scenarios/run/view_camera.hpp"
 
 namespace lrb::run {
 namespace {
@@ -34,18 +34,18 @@ struct FindingsPanel {
   float text = kUsualText;
 };
 
-render::Camera camera_of_whole(const FaultyMesh& faulty, const spec::FrameSpec& frames,
+render::Camera camera_of_whole(const FaultyMesh& faulty, const render::FrameSpec& frames,
                                const FindingsPanel& panel) {
   Framing framing;
   framing.points = render::findings::whole(faulty.mesh, faulty.report);
   framing.dim = faulty.mesh.dim;
   constexpr double kCaptionRoom = 0.92;
-  spec::FrameSpec::View view = frames.views.empty() ? spec::FrameSpec::View{} : frames.views[0];
+  render::FrameSpec::View view = frames.views.empty() ? render::FrameSpec::View{} : frames.views[0];
   view.zoom *= kCaptionRoom;
   return camera_for(view, framing, panel.width, panel.height, 0);
 }
 
-render::Camera camera_of(const FaultyMesh& faulty, const spec::FrameSpec& frames,
+render::Camera camera_of(const FaultyMesh& faulty, const render::FrameSpec& frames,
                          const FindingsPanel& panel) {
   if (panel.kind == nullptr) return camera_of_whole(faulty, frames, panel);
   constexpr double kMargin = 0.1;  // for labels and the caption
@@ -84,7 +84,7 @@ void write_caption(render::Image& panel, const std::string& text, float height, 
 }
 
 render::Image draw_panel(render::Rasterizer& rasterizer, const FaultyMesh& faulty,
-                         const spec::FrameSpec& frames, const FindingsPanel& panel) {
+                         const render::FrameSpec& frames, const FindingsPanel& panel) {
   const render::Camera camera = camera_of(faulty, frames, panel);
   render::RasterOptions raster;
   raster.width = panel.width;
@@ -113,7 +113,7 @@ render::Image draw_panel(render::Rasterizer& rasterizer, const FaultyMesh& fault
 }
 
 /// Draws the panels row by row into a picture of a size.
-render::Image draw_panels(const FaultyMesh& faulty, const spec::FrameSpec& frames,
+render::Image draw_panels(const FaultyMesh& faulty, const render::FrameSpec& frames,
                           const std::vector<MeshFault>& kinds, const render::OverlayLayout& layout) {
   const int across = columns(kinds.size() + 1), down = (static_cast<int>(kinds.size()) + across) / across;
   FindingsPanel panel;
@@ -133,7 +133,7 @@ render::Image draw_panels(const FaultyMesh& faulty, const spec::FrameSpec& frame
 }
 
 /// Returns the height that the whole needs.
-int height_for(std::size_t kinds, const spec::FrameSpec& frames) {
+int height_for(std::size_t kinds, const render::FrameSpec& frames) {
   const int across = columns(kinds + 1), down = (static_cast<int>(kinds) + across) / across;
   const int cell = (frames.width - kGap * (across - 1)) / across;
   return static_cast<int>(kStrips * frames.scale()) + down * static_cast<int>(kShape * cell);
@@ -141,13 +141,13 @@ int height_for(std::size_t kinds, const spec::FrameSpec& frames) {
 
 }  // namespace
 
-bool draw_findings(const FaultyMesh& given, const std::string& path, const spec::FrameSpec& asked) {
+bool draw_findings(const FaultyMesh& given, const std::string& path, const render::FrameSpec& asked) {
   const std::vector<MeshFault> kinds = render::findings::kinds(given.report);
   if (kinds.empty()) return false;
   const Mesh mesh = render::findings::to_unit_size(given.mesh);
   const FaultyMesh faulty{mesh, given.report, given.loops};
-  spec::FrameSpec frames = in_pixels(asked);
-  for (spec::FrameSpec::View& view : frames.views)
+  render::FrameSpec frames = in_pixels(asked);
+  for (render::FrameSpec::View& view : frames.views)
     if (view.look_at) view.look_at = render::findings::to_unit_size(given.mesh, *view.look_at);
   if (frames.height == 0) frames.height = height_for(kinds.size(), frames);
   render::Overlay overlay;

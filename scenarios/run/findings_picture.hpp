@@ -5,7 +5,7 @@
 
 #include "engine/mesh/boundary_loops.hpp"
 #include "engine/mesh/mesh_check.hpp"
-#include "scenarios/spec/scenario.hpp"
+#include "scenarios/run/frame_spec.hpp"
 
 namespace lrb::run {
 
@@ -20,7 +20,7 @@ struct FaultyMesh {
 /// each. Of open edges all are drawn, and the longest loop close up. `frames` says how large the whole is to
 /// be (height 0: as it needs) and, by its first view, from where the whole is seen. Returns false, and writes
 /// nothing, if there is nothing to point at.
-bool draw_findings(const FaultyMesh& faulty, const std::string& path, const spec::FrameSpec& frames);
+bool draw_findings(const FaultyMesh& faulty, const std::string& path, const render::FrameSpec& frames);
 
 /// The width of the picture unless one is asked for.
 inline constexpr int kFindingsSheetWidth = 1600;

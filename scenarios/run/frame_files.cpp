@@ -2,17 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
-#include <iomanip>
-#include <sstream>
-#include <system_error>
 
 #include "render/text.hpp"
 
 namespace lrb::run {
 namespace {
 
-void write_title(render::Image& view, const std::string& title, const spec::FrameSpec& spec) {
+void write_title(render::Image& view, const std::string& title, const render::FrameSpec& spec) {
   render::TextStyle style;
   const auto scale = static_cast<float>(spec.scale());
   style.height = std::max(13.0F * scale, static_cast<float>(spec.height) / 42);
@@ -25,27 +21,27 @@ void write_title(render::Image& view, const std::string& title, const spec::Fram
 
 }  // namespace
 
-render::StyleName style_name(const spec::FrameSpec& spec) {
+render::StyleName style_name(const render::FrameSpec& spec) {
   switch (spec.style) {
-    case spec::FrameSpec::Style::print:
+    case render::FrameSpec::Style::print:
       return render::StyleName::print;
-    case spec::FrameSpec::Style::dark:
+    case render::FrameSpec::Style::dark:
       return render::StyleName::dark;
-    case spec::FrameSpec::Style::screen:
+    case render::FrameSpec::Style::screen:
       break;
   }
   return render::StyleName::screen;
 }
 
-const render::Style& style_of(const spec::FrameSpec& spec) {
+const render::Style& style_of(const render::FrameSpec& spec) {
   return render::style_of(style_name(spec));
 }
 
-std::optional<render::Rgba> paper_of(const spec::FrameSpec& spec) {
+std::optional<render::Rgba> paper_of(const render::FrameSpec& spec) {
   return spec.transparent ? std::nullopt : std::optional(style_of(spec).paper);
 }
 
-void leave_out_texts(render::Overlay& overlay, const spec::FrameSpec& spec) {
+void leave_out_texts(render::Overlay& overlay, const render::FrameSpec& spec) {
   if (!spec.titles) {
     overlay.title.clear();
     overlay.event.clear();
@@ -58,28 +54,7 @@ void leave_out_texts(render::Overlay& overlay, const spec::FrameSpec& spec) {
   }
 }
 
-std::string numbered_frame(std::size_t frame) {
-  std::ostringstream out;
-  out << "frames/frame_" << std::setw(4) << std::setfill('0') << frame;
-  return out.str();
-}
-
-std::string frame_file(std::size_t frame) {
-  return numbered_frame(frame) + ".png";
-}
-
-void remove_old_frames(const std::string& folder) {
-  std::error_code error;
-  for (const auto& entry : std::filesystem::directory_iterator(folder + "/frames", error)) {
-    const std::string name = entry.path().filename().string();
-    if (name.starts_with("frame_") && (name.ends_with(".png") || name.ends_with(".svg")))
-      std::filesystem::remove(entry.path(), error);
-  }
-  for (const char* file : {"/montage.png", "/montage.svg", "/caption.txt", "/separation.png"})
-    std::filesystem::remove(folder + file, error);
-}
-
-spec::FrameSpec in_pixels(spec::FrameSpec spec) {
+render::FrameSpec in_pixels(render::FrameSpec spec) {
   spec.width = static_cast<int>(std::lround(spec.width * spec.scale()));
   spec.height = static_cast<int>(std::lround(spec.height * spec.scale()));
   return spec;
@@ -99,10 +74,10 @@ std::vector<render::PixelRect> view_places(const render::PixelRect& picture, std
   return out;
 }
 
-void paint_views(render::Rasterizer& rasterizer, const spec::FrameSpec& spec,
-                 const std::vector<spec::FrameSpec::View>& views,
+void paint_views(render::Rasterizer& rasterizer, const render::FrameSpec& spec,
+                 const std::vector<render::FrameSpec::View>& views,
                  const std::vector<render::PixelRect>& places,
-                 const std::function<render::DrawList(const spec::FrameSpec::View&)>& list_of,
+                 const std::function<render::DrawList(const render::FrameSpec::View&)>& list_of,
                  const std::function<render::Camera(std::size_t)>& camera_of, render::Image& picture) {
   picture.pixels().assign(picture.pixels().size(), views.size() > 1 && !spec.transparent
                                                        ? style_of(spec).rule
@@ -127,6 +102,14 @@ void merge_key(std::vector<render::LegendItem>& all, const std::vector<render::L
     if (std::none_of(all.begin(), all.end(),
                      [&](const render::LegendItem& known) { return known.text == item.text; }))
       all.push_back(item);
+}
+
+std::vector<std::size_t> evenly(std::size_t count, std::size_t wanted) {
+  std::vector<std::size_t> out;
+  wanted = std::min(count, wanted);
+  for (std::size_t i = 0; i < wanted; ++i)
+    out.push_back(wanted == 1 ? count - 1 : i * (count - 1) / (wanted - 1));
+  return out;
 }
 
 }  // namespace lrb::run

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/core/atomic_file.hpp"
 #include "engine/core/error.hpp"
 #include "render/frame_writer.hpp"
 #include "render/montage.hpp"
@@ -11,10 +12,12 @@
 #include "render/svg_montage.hpp"
 #include "scenarios/io/files.hpp"
 #include "scenarios/run/frame_files.hpp"
+#include "scenarios/run/frame_names.hpp"
 #include "scenarios/run/frame_state.hpp"
 #include "scenarios/run/framing.hpp"
 #include "scenarios/run/moments.hpp"
 #include "scenarios/run/separation_picture.hpp"
+#include "scenarios/run/view_camera.hpp"
 
 namespace lrb::run {
 namespace {
@@ -26,7 +29,7 @@ struct Script {
   render::PixelRect picture;
 };
 
-render::OverlayLayout lay_out_frame(const render::Overlay& overlay, const spec::FrameSpec& spec) try {
+render::OverlayLayout lay_out_frame(const render::Overlay& overlay, const render::FrameSpec& spec) try {
   return render::lay_out(overlay, spec.width, spec.height, static_cast<float>(spec.scale()));
 } catch (const InputError& e) {
   throw InputError(std::string(e.what()) +
@@ -34,7 +37,7 @@ render::OverlayLayout lay_out_frame(const render::Overlay& overlay, const spec::
 }
 
 Script write_script(FrameState& state, const std::vector<trace::EventId>& events, const std::string& title,
-                    const spec::FrameSpec& spec) {
+                    const render::FrameSpec& spec) {
   Script script;
   std::vector<render::LegendItem> key;
   for (const trace::EventId event : events) {
@@ -56,7 +59,7 @@ Script write_script(FrameState& state, const std::vector<trace::EventId>& events
 
 class Painter {
  public:
-  Painter(const spec::FrameSpec& spec, const render::PixelRect& picture, Framing framing)
+  Painter(const render::FrameSpec& spec, const render::PixelRect& picture, Framing framing)
       : spec_(spec), views_(spec.views), framing_(std::move(framing)) {
     if (views_.empty()) views_.emplace_back();
     places_ = view_places(picture, views_.size(), spec.scale());
@@ -67,7 +70,7 @@ class Painter {
   const render::Image& paint(const FrameState& state, double progress, bool plain = false) {
     paint_views(
         rasterizer_, spec_, views_, places_,
-        [&](const spec::FrameSpec::View& view) { return state.scene(view.wrapper, plain).list; },
+        [&](const render::FrameSpec::View& view) { return state.scene(view.wrapper, plain).list; },
         [&](std::size_t view) { return camera(view, progress); }, picture_);
     return picture_;
   }
@@ -108,8 +111,8 @@ class Painter {
     return camera_for(views_[view], framing_, place.width, place.height, progress);
   }
 
-  const spec::FrameSpec& spec_;
-  std::vector<spec::FrameSpec::View> views_;
+  const render::FrameSpec& spec_;
+  std::vector<render::FrameSpec::View> views_;
   std::vector<render::PixelRect> places_;
   Framing framing_;
   render::Rasterizer rasterizer_;
@@ -118,16 +121,16 @@ class Painter {
 
 /// What all frames of a run have in common. There must be at least one event.
 struct FrameJob {
-  const spec::FrameSpec& spec;
+  const render::FrameSpec& spec;
   std::vector<trace::EventId> events;
   FrameState state;
   Script script;
   Painter painter;
 
-  FrameJob(const RecordedRun& p, const spec::FrameSpec& s, std::vector<trace::EventId> at, Framing framing)
+  FrameJob(const RecordedRun& p, const render::FrameSpec& s, std::vector<trace::EventId> at, Framing framing)
       : spec(s),
         events(std::move(at)),
-        state(*p.trace, p.reps, results_of(p), s, s.at != spec::FrameSpec::At::step,
+        state(*p.trace, p.reps, results_of(p), s, s.at != render::FrameSpec::At::step,
               {p.trees, p.wrong, p.value_range, p.face_values, p.value_name}),
         script(write_script(state, events, p.title, s)),
         painter(s, script.picture, std::move(framing)) {}
@@ -144,7 +147,7 @@ struct FrameJob {
   }
 };
 
-Framing framing_of(const RecordedRun& p, const spec::FrameSpec& spec) {
+Framing framing_of(const RecordedRun& p, const render::FrameSpec& spec) {
   return frame_sequence(p.reps, *p.trace, results_of(p), spec);
 }
 
@@ -153,8 +156,9 @@ struct Montage {
   std::vector<render::Panel> panels;
   std::vector<std::string> svgs;  ///< of panels with one view; else none
 
-  std::vector<std::string> write(const RecordedRun& p, const spec::FrameSpec& spec, const std::string& folder,
-                                 const render::PngOptions& png, render::FrameWriter& writer) const {
+  std::vector<std::string> write(const RecordedRun& p, const render::FrameSpec& spec,
+                                 const std::string& folder, const render::PngOptions& png,
+                                 render::FrameWriter& writer) const {
     render::MontageOptions options;
     options.columns = static_cast<int>(spec.montage_columns);
     options.letters = panels.size() > 1;
@@ -187,9 +191,9 @@ struct Montage {
 };
 
 /// Throws InputError for colours or boxes that come from a walk of trees, where none is recorded.
-void check_colours(const RecordedRun& recorded, const spec::FrameSpec& spec) {
-  if (spec::needed_level(spec) == EventLevel::faces) return;
-  const std::string what = spec::needed_level(spec.colour_by) == EventLevel::faces
+void check_colours(const RecordedRun& recorded, const render::FrameSpec& spec) {
+  if (render::needed_level(spec) == EventLevel::faces) return;
+  const std::string what = render::needed_level(spec.colour_by) == EventLevel::faces
                                ? std::string("boxes of tree nodes")
                                : "colours by " + std::string(name_of(spec.colour_by));
   if (recorded.reps.size() != 2)
@@ -206,14 +210,14 @@ const std::vector<CollideResult>& results_of(const RecordedRun& recorded) {
   return recorded.results != nullptr ? *recorded.results : none;
 }
 
-void check_views(const std::vector<spec::FrameSpec::View>& views, int dim) {
+void check_views(const std::vector<render::FrameSpec::View>& views, int dim) {
   if (dim == 2 && std::any_of(views.begin(), views.end(), [](const auto& view) { return view.directed; }))
     throw InputError(
         "--from, --up, --projection and --orbit: bodies in the plane are seen from above: leave them out; --look-at "
         "and --zoom are for them too");
 }
 
-void check_frames(const RecordedRun& recorded, const spec::FrameSpec& spec) {
+void check_frames(const RecordedRun& recorded, const render::FrameSpec& spec) {
   check_views(spec.views, recorded.reps[0]->dim());
   static_cast<void>(moments(spec, *recorded.trace));
   if (spec.svg && recorded.reps[0]->dim() != 2)
@@ -223,18 +227,18 @@ void check_frames(const RecordedRun& recorded, const spec::FrameSpec& spec) {
   check_frame_size(spec);
 }
 
-void check_frame_size(const spec::FrameSpec& spec) {
+void check_frame_size(const render::FrameSpec& spec) {
   constexpr int kMost = 8192;
-  const spec::FrameSpec in_file = in_pixels(spec);
+  const render::FrameSpec in_file = in_pixels(spec);
   if (in_file.width > kMost || in_file.height > kMost)
     throw InputError("frames of " + std::to_string(spec.width) + "x" + std::to_string(spec.height) +
                      " would have " + std::to_string(in_file.width) + "x" + std::to_string(in_file.height) +
                      " pixels at this dpi, and 8192 a side is the most: lower --dpi or --size");
 }
 
-std::vector<PaintedFrame> paint_frames(const RecordedRun& recorded, const spec::FrameSpec& given,
+std::vector<PaintedFrame> paint_frames(const RecordedRun& recorded, const render::FrameSpec& given,
                                        const ProgressReport& progress, const Framing* framing) {
-  const spec::FrameSpec spec = in_pixels(given);
+  const render::FrameSpec spec = in_pixels(given);
   std::vector<PaintedFrame> out;
   const std::vector<trace::EventId> events = moments(spec, *recorded.trace);
   if (events.empty()) return out;
@@ -247,12 +251,13 @@ std::vector<PaintedFrame> paint_frames(const RecordedRun& recorded, const spec::
   return out;
 }
 
-DrawnFrames draw_frames(const RecordedRun& recorded, const spec::FrameSpec& given, const std::string& folder,
+DrawnFrames draw_frames(const RecordedRun& recorded, const render::FrameSpec& given,
+                        const std::string& folder,
                         const std::vector<std::pair<std::string, std::string>>& text,
                         const ProgressReport& progress) {
-  const spec::FrameSpec spec = in_pixels(given);
+  const render::FrameSpec spec = in_pixels(given);
   DrawnFrames out;
-  io::make_folder(folder + "/frames");
+  make_folder(folder + "/frames");
   remove_old_frames(folder);
   const std::vector<trace::EventId> events = moments(spec, *recorded.trace);
   if (events.empty()) return out;

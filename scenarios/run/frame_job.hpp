@@ -58,22 +58,22 @@ struct PaintedFrame {
 };
 
 /// Throws InputError for frames of more pixels than can be drawn.
-void check_frame_size(const spec::FrameSpec& spec);
+void check_frame_size(const render::FrameSpec& spec);
 /// Throws InputError for views that bodies of this dimension cannot have.
-void check_views(const std::vector<spec::FrameSpec::View>& views, int dim);
+void check_views(const std::vector<render::FrameSpec::View>& views, int dim);
 /// Throws InputError for frames that cannot be drawn: of events that do not exist, as SVG in 3D, or too
 /// large.
-void check_frames(const RecordedRun& recorded, const spec::FrameSpec& spec);
+void check_frames(const RecordedRun& recorded, const render::FrameSpec& spec);
 
 /// Draws the frames that draw_frames() makes, but in memory, and no montage or SVG. `framing` is what the
 /// cameras show, instead of what the run itself shows.
-std::vector<PaintedFrame> paint_frames(const RecordedRun& recorded, const spec::FrameSpec& spec,
+std::vector<PaintedFrame> paint_frames(const RecordedRun& recorded, const render::FrameSpec& spec,
                                        const ProgressReport& progress, const Framing* framing = nullptr);
 
 /// Draws frames into folder/frames/ and, if asked, folder/montage.png with folder/caption.txt; where there
 /// are certificates of separation, the last one into folder/separation.png. Writes `text` into every frame's
 /// file.
-DrawnFrames draw_frames(const RecordedRun& recorded, const spec::FrameSpec& spec, const std::string& folder,
+DrawnFrames draw_frames(const RecordedRun& recorded, const render::FrameSpec& spec, const std::string& folder,
                         const std::vector<std::pair<std::string, std::string>>& text,
                         const ProgressReport& progress);
 

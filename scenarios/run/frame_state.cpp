@@ -9,6 +9,7 @@
 #include "scenarios/run/face_groups.hpp"
 #include "scenarios/run/face_values.hpp"
 #include "scenarios/run/frame_files.hpp"
+#include "scenarios/run/measured_marks.hpp"
 #include "scenarios/run/moments.hpp"
 #include "scenarios/run/node_box_lines.hpp"
 #include "scenarios/run/pair_lines.hpp"
@@ -47,7 +48,7 @@ std::string error_bound_text(double bound) {
 }
 
 FrameState::FrameState(const trace::Trace& trace, std::vector<const LrbRep*> reps,
-                       const std::vector<CollideResult>& results, const spec::FrameSpec& spec,
+                       const std::vector<CollideResult>& results, const render::FrameSpec& spec,
                        bool point_out_refined, const FrameExtras& extras)
     : trace_(trace),
       reps_(std::move(reps)),
@@ -105,7 +106,7 @@ const WalkExplanation* FrameState::parting_here() const {
   const trace::StepResult* answer = answer_here();
   if (answer == nullptr || answer->separation || answer->distance || answer->relation != Relation::separate ||
       request.recursion != Recursion::complete || request.is_coarse() || !trace_.header.engine.empty() ||
-      spec_.colour_by >= spec::FrameSpec::ColourBy::face_tests)
+      spec_.colour_by >= render::FrameSpec::ColourBy::face_tests)
     return nullptr;
   if (!parting_ || parting_->step != cursor_.step_number())
     parting_ = {cursor_.step_number(),
@@ -215,21 +216,21 @@ render::Scene FrameState::scene(bool wrapper, bool plain) const {
   if (wrapper && trace_.header.construction) highlight.built = built_here();
   render::SceneOptions options;
   switch (spec_.colour_by) {
-    case spec::FrameSpec::ColourBy::kind:
+    case render::FrameSpec::ColourBy::kind:
       break;
-    case spec::FrameSpec::ColourBy::layer:
+    case render::FrameSpec::ColourBy::layer:
       options.colour_by = render::ColourBy::layer;
       break;
-    case spec::FrameSpec::ColourBy::region:
+    case render::FrameSpec::ColourBy::region:
       options.colour_by = render::ColourBy::region;
       break;
     default:
       options.colour_by = render::ColourBy::value;
       options.value_name = std::string(name_of(spec_.colour_by));
       std::replace(options.value_name.begin(), options.value_name.end(), '_', ' ');
-      if (spec_.colour_per != spec::FrameSpec::ColourPer::face)
+      if (spec_.colour_per != render::FrameSpec::ColourPer::face)
         options.value_name += " in the " + std::string(name_of(spec_.colour_per));
-      else if (spec_.colour_by == spec::FrameSpec::ColourBy::box_tests)
+      else if (spec_.colour_by == render::FrameSpec::ColourBy::box_tests)
         options.value_range = scale_without_the_smallest(values);
       if (!extras_.value_name.empty()) options.value_name = extras_.value_name;
       if (extras_.value_range) options.value_range = extras_.value_range;

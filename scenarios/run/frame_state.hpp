@@ -36,7 +36,7 @@ class FrameState {
  public:
   /// `results`: one for each step, for contact regions; may be empty. All arguments must outlive this object.
   FrameState(const trace::Trace& trace, std::vector<const LrbRep*> reps,
-             const std::vector<CollideResult>& results, const spec::FrameSpec& spec, bool point_out_refined,
+             const std::vector<CollideResult>& results, const render::FrameSpec& spec, bool point_out_refined,
              const FrameExtras& extras = {});
 
   void seek(trace::EventId event);
@@ -106,7 +106,7 @@ class FrameState {
   const trace::Trace& trace_;
   std::vector<const LrbRep*> reps_;
   const std::vector<CollideResult>& results_;
-  const spec::FrameSpec& spec_;
+  const render::FrameSpec& spec_;
   FrameExtras extras_;
   bool point_out_refined_;  ///< frames follow refinements, so that the last one is what is new
   trace::Cursor cursor_;

@@ -1,6 +1,7 @@
 #include "scenarios/run/framing.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <numbers>
 
 #include "render/scene.hpp"
@@ -42,7 +43,7 @@ void add_contacts(const std::vector<const LrbRep*>& reps, const trace::Trace& tr
 /// Returns what a body shows: all its wrappers, with regions moved apart where they are; or the isolated
 /// regions, with some room round them where the rest is there too.
 std::vector<Eigen::Vector3d> shown_points(const LrbRep& rep, const std::vector<RegionId>& isolated,
-                                          bool alone, const spec::FrameSpec& spec) {
+                                          bool alone, const render::FrameSpec& spec) {
   std::vector<Eigen::Vector3d> out;
   if (alone) {
     for (const RegionId r : isolated)
@@ -68,7 +69,7 @@ std::vector<Eigen::Vector3d> shown_points(const LrbRep& rep, const std::vector<R
 }  // namespace
 
 Framing frame_sequence(const std::vector<const LrbRep*>& reps, const trace::Trace& trace,
-                       const std::vector<CollideResult>& results, const spec::FrameSpec& spec) {
+                       const std::vector<CollideResult>& results, const render::FrameSpec& spec) {
   const bool regions_alone = !(spec.isolate[0].empty() && spec.isolate[1].empty());
   Framing f;
   f.dim = reps[0]->dim();
@@ -84,40 +85,6 @@ Framing frame_sequence(const std::vector<const LrbRep*>& reps, const trace::Trac
   for (const CollideResult& result : results)
     for (const Eigen::Vector3d& p : render::contact_points(result.regions)) f.contacts.push_back(p);
   return f;
-}
-
-render::Camera camera_for(const spec::FrameSpec::View& view, const Framing& framing, double width,
-                          double height, double progress) {
-  using Kind = spec::FrameSpec::Camera;
-  const bool close = view.camera == Kind::contact && !framing.contacts.empty();
-  render::Camera camera;
-  if (view.camera == Kind::fixed) {
-    camera.eye = view.eye;
-    camera.target = view.target;
-    camera.up = view.up;
-    camera.orthographic = view.orthographic;
-    camera.half_height = (view.eye - view.target).norm() * std::tan(camera.fov_y / 2);
-  } else if (framing.dim == 2) {
-    camera = render::fit_top(close ? framing.contacts : framing.points, width, height);
-  } else {
-    render::FitOptions options;
-    options.view = {view.from, view.up};
-    options.orthographic = view.orthographic;
-    Eigen::AlignedBox3d box;
-    for (const Eigen::Vector3d& p : framing.points) box.extend(p);
-    constexpr double kRoomAround = 1.6;  // in sizes of the contacts
-    camera = close ? render::fit_contact(framing.contacts, box, width, height, options, kRoomAround)
-                   : render::fit_camera(framing.points, width, height, options);
-    if (view.camera == Kind::orbit)
-      camera = render::orbit(camera, view.turn_degrees * progress * std::numbers::pi / 180);
-  }
-  if (view.look_at) {
-    camera.eye += *view.look_at - camera.target;
-    camera.target = *view.look_at;
-  }
-  camera.half_height /= view.zoom;
-  if (!camera.orthographic) camera.eye = camera.target + (camera.eye - camera.target) / view.zoom;
-  return camera;
 }
 
 }  // namespace lrb::run

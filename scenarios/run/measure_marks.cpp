@@ -6,8 +6,8 @@
 #include <Eigen/Geometry>
 
 #include "render/overlay.hpp"
-#include "scenarios/run/chosen_view.hpp"
 #include "scenarios/run/pair_lines.hpp"
+#include "scenarios/run/view_camera.hpp"
 
 namespace lrb::run {
 namespace {
@@ -15,10 +15,6 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr float kWayWidth = 4, kTextOff = 20, kTextHeight = 19;
-
-Vector3d vector_of(const std::array<double, 3>& v) {
-  return {v[0], v[1], v[2]};
-}
 
 void write_beside(render::DrawList& list, const Vector3d& x, float below, const std::string& text,
                   render::Rgba colour) {
@@ -77,24 +73,24 @@ std::string kind_words(ClashKind kind, ClashReason reason) {
   return kind_words(kind) + (reason == ClashReason::none ? "" : ": ") + std::string(name_of(reason));
 }
 
-std::optional<MarkedWay> gap_of(const trace::MeasuredDistance& distance) {
+std::optional<MarkedWay> gap_of(const ProvedInterval& distance, const Vector3d& point_a,
+                                const Vector3d& point_b) {
   if (!(distance.lower > 0) || !std::isfinite(distance.upper)) return std::nullopt;
-  return MarkedWay{vector_of(distance.points[0]), vector_of(distance.points[1]),
-                   interval_words(distance.lower, distance.upper)};
+  return MarkedWay{point_a, point_b, interval_words(distance.lower, distance.upper)};
 }
 
-std::optional<MarkedWay> way_out_of(const trace::MeasuredClash& clash, const LrbRep& a, const Pose& pose_a,
-                                    const LrbRep& b, const Pose& pose_b,
+std::optional<MarkedWay> way_out_of(const std::optional<ProvedInterval>& depth, const Vector3d& translation,
+                                    const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
                                     std::span<const ContactRegion> contacts) {
-  const Vector3d way = vector_of(clash.translation);
-  if (!clash.depth || !std::isfinite((*clash.depth)[1]) || way.isZero(0)) return std::nullopt;
+  if (!depth || !std::isfinite(depth->upper) || translation.isZero(0)) return std::nullopt;
   Eigen::AlignedBox3d shared = box_of(a, pose_a).intersection(box_of(b, pose_b));
   if (const std::vector<Vector3d> points = render::contact_points(contacts); !points.empty()) {
     shared.setEmpty();
     for (const Vector3d& x : points) shared.extend(x);
   }
   const Vector3d middle = shared.center();
-  return MarkedWay{middle - way / 2, middle + way / 2, interval_words((*clash.depth)[0], (*clash.depth)[1])};
+  return MarkedWay{middle - translation / 2, middle + translation / 2,
+                   interval_words(depth->lower, depth->upper)};
 }
 
 void add_gap(render::Scene& scene, const MarkedWay& gap, const render::Style& style) {

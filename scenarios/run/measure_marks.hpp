@@ -10,11 +10,11 @@
 
 #include "engine/core/pose.hpp"
 #include "engine/lrb/lrb_rep.hpp"
+#include "engine/query/clash/clash.hpp"
 #include "engine/query/walk/contact_region.hpp"
 #include "render/palette.hpp"
 #include "render/scene.hpp"
 #include "render/style.hpp"
-#include "trace/measured.hpp"
 
 namespace lrb::run {
 
@@ -31,8 +31,10 @@ struct MarkedWay {
 /// Return the way between the nearest points of bodies that are apart, or the way of B out of A, through the
 /// middle of the contacts; nothing if there is none. contacts: may be empty, and then the middle is that of
 /// what the boxes of the bodies share.
-std::optional<MarkedWay> gap_of(const trace::MeasuredDistance& distance);
-std::optional<MarkedWay> way_out_of(const trace::MeasuredClash& clash, const LrbRep& a, const Pose& pose_a,
+std::optional<MarkedWay> gap_of(const ProvedInterval& distance, const Eigen::Vector3d& point_a,
+                                const Eigen::Vector3d& point_b);
+std::optional<MarkedWay> way_out_of(const std::optional<ProvedInterval>& depth,
+                                    const Eigen::Vector3d& translation, const LrbRep& a, const Pose& pose_a,
                                     const LrbRep& b, const Pose& pose_b,
                                     std::span<const ContactRegion> contacts);
 

@@ -3,7 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "scenarios/report/page/packed.hpp"
-#include "scenarios/run/measure_marks.hpp"
+#include "scenarios/run/measured_marks.hpp"
 
 namespace lrb::run {
 namespace {

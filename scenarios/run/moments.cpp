@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "engine/core/error.hpp"
+#include "scenarios/run/frame_files.hpp"
 #include "trace/passes.hpp"
 
 namespace lrb::run {
@@ -44,7 +45,7 @@ std::vector<EventId> pass_ends(const trace::Trace& trace) {
   return out;
 }
 
-std::vector<EventId> listed(const spec::FrameSpec& spec, const trace::Trace& trace) {
+std::vector<EventId> listed(const render::FrameSpec& spec, const trace::Trace& trace) {
   std::vector<EventId> out = spec.events;
   std::sort(out.begin(), out.end());
   out.erase(std::unique(out.begin(), out.end()), out.end());
@@ -63,36 +64,28 @@ EventId last_event(const trace::Trace& trace, std::size_t step) {
   return static_cast<EventId>(end - 1);
 }
 
-std::vector<std::size_t> evenly(std::size_t count, std::size_t wanted) {
-  std::vector<std::size_t> out;
-  wanted = std::min(count, wanted);
-  for (std::size_t i = 0; i < wanted; ++i)
-    out.push_back(wanted == 1 ? count - 1 : i * (count - 1) / (wanted - 1));
-  return out;
-}
-
-std::vector<EventId> moments(const spec::FrameSpec& spec, const trace::Trace& trace) {
+std::vector<EventId> moments(const render::FrameSpec& spec, const trace::Trace& trace) {
   if (trace.events.empty()) return {};
   std::vector<EventId> all;
   switch (spec.at) {
-    case spec::FrameSpec::At::none:
+    case render::FrameSpec::At::none:
       return {};
-    case spec::FrameSpec::At::step:
+    case render::FrameSpec::At::step:
       all = every(step_ends(trace), spec.every);
       break;
-    case spec::FrameSpec::At::refinement:
+    case render::FrameSpec::At::refinement:
       all = every(wrapper_changes(trace), spec.every);
       break;
-    case spec::FrameSpec::At::pass:
+    case render::FrameSpec::At::pass:
       all = every(pass_ends(trace), spec.every);
       break;
-    case spec::FrameSpec::At::every: {
+    case render::FrameSpec::At::every: {
       std::vector<EventId> events(trace.events.size());
       for (EventId e = 0; e < events.size(); ++e) events[e] = e;
       all = every(events, spec.every);
       break;
     }
-    case spec::FrameSpec::At::events:
+    case render::FrameSpec::At::events:
       all = listed(spec, trace);
       break;
   }

@@ -10,10 +10,7 @@ namespace lrb::run {
 
 /// Returns the events after which pictures are taken, ascending, at most spec.most of them. Throws InputError
 /// for events that the trace does not have, and for passes of what is no construction.
-std::vector<trace::EventId> moments(const spec::FrameSpec& spec, const trace::Trace& trace);
-
-/// Returns `wanted` indices below `count`, as evenly spaced as can be, first and last among them.
-std::vector<std::size_t> evenly(std::size_t count, std::size_t wanted);
+std::vector<trace::EventId> moments(const render::FrameSpec& spec, const trace::Trace& trace);
 
 /// Returns the last stored event of a step.
 trace::EventId last_event(const trace::Trace& trace, std::size_t step);

@@ -6,8 +6,10 @@
 
 #include <Eigen/Core>
 
+#include "engine/core/ids.hpp"
+#include "engine/core/pose.hpp"
+#include "engine/lrb/lrb_rep.hpp"
 #include "render/draw_list.hpp"
-#include "scenarios/run/recorded_run.hpp"
 
 namespace lrb::run {
 
@@ -23,6 +25,12 @@ void outline(render::DrawList& list, const std::vector<Eigen::Vector3d>& corners
 /// Draws a point over everything that hides it. `radius`: pixels.
 void add_mark(render::DrawList& list, const Eigen::Vector3d& x, render::Rgba colour, float radius,
               render::Rgba halo = render::kWhite);
+
+/// A pair that another engine got wrong: it reported faces that do not meet, or missed faces that do.
+struct WrongPair {
+  SimplexPair pair;
+  bool missed = false;
+};
 
 /// Draws the faces of pairs that another engine got wrong.
 void add_wrong_pairs(render::DrawList& list, std::span<const WrongPair> pairs, const LrbRep& a,

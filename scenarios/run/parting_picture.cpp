@@ -147,7 +147,7 @@ void draw_parting(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Po
     overlay.event += ": " + words;
   overlay.event_colour = kPartingColour;
   overlay.key = scene.key;
-  spec::FrameSpec spec;
+  render::FrameSpec spec;
   spec.views.emplace_back();
   if (square) {
     merge_key(overlay.key, parting_key(walk, a.dim()));
@@ -168,8 +168,8 @@ void draw_parting(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Po
   render::Rasterizer rasterizer;
   render::Image picture(place.width, place.height);
   paint_views(
-      rasterizer, spec, spec.views, places, [&](const spec::FrameSpec::View&) { return scene.list; }, camera,
-      picture);
+      rasterizer, spec, spec.views, places, [&](const render::FrameSpec::View&) { return scene.list; },
+      camera, picture);
   render::write_png(render::compose_frame(picture, place, overlay, kPartingWidth, kPartingHeight), path);
 }
 

@@ -5,7 +5,7 @@
 
 #include <Eigen/Geometry>
 
-#include "scenarios/run/chosen_view.hpp"
+#include "scenarios/run/view_camera.hpp"
 
 namespace lrb::run {
 namespace {

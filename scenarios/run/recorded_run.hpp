@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "scenarios/bodies/body.hpp"
+#include "scenarios/run/pair_lines.hpp"
 #include "scenarios/spec/scenario.hpp"
 #include "trace/trace.hpp"
 #include "trace/tree_shape.hpp"
@@ -16,12 +17,6 @@ namespace lrb::run {
 using ProgressReport = std::function<void(const std::string& what, std::uint64_t done, std::uint64_t total)>;
 /// A report that nobody reads.
 inline const ProgressReport kSilent = [](const std::string&, std::uint64_t, std::uint64_t) {};
-
-/// A pair that another engine got wrong: it reported faces that do not meet, or missed faces that do.
-struct WrongPair {
-  SimplexPair pair;
-  bool missed = false;
-};
 
 struct Recording {
   std::vector<bodies::LoadedBody> bodies;  ///< A and B, or A alone

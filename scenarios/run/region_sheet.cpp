@@ -11,7 +11,7 @@
 #include "render/png.hpp"
 #include "render/rasterize.hpp"
 #include "scenarios/run/frame_files.hpp"
-#include "scenarios/run/framing.hpp"
+#include "scenarios/run/view_camera.hpp"
 
 namespace lrb::run {
 namespace {
@@ -35,7 +35,7 @@ struct Drawn {
 /// Draws the panels of a sheet.
 class RegionSheet {
  public:
-  RegionSheet(const LrbRep& rep, const spec::FrameSpec& frames)
+  RegionSheet(const LrbRep& rep, const render::FrameSpec& frames)
       : rep_(rep), frames_(frames), style_(style_of(frames)) {
     for (const FaceId f : rep.outermost_faces())
       for (const VertexId v : rep.face(f)) whole_.push_back(rep.vertices()[v]);
@@ -61,8 +61,8 @@ class RegionSheet {
     raster.lighting = {
         .ambient = 0.78, .head = 0.1, .key = 0.16, .fill = 0.05};  // colours stay those of the scale
     const render::Camera camera =
-        camera_for(frames_.views.empty() ? spec::FrameSpec::View{} : frames_.views[0], framing, raster_.width,
-                   raster_.height, 0);
+        camera_for(frames_.views.empty() ? render::FrameSpec::View{} : frames_.views[0], framing,
+                   raster_.width, raster_.height, 0);
     return {rasterizer_.draw(list, camera, raster), name};
   }
 
@@ -143,7 +143,7 @@ class RegionSheet {
   }
 
   const LrbRep& rep_;
-  const spec::FrameSpec& frames_;
+  const render::FrameSpec& frames_;
   const render::Style& style_;
   std::vector<Vector3d> whole_;
   Eigen::AlignedBox3d box_;
@@ -191,8 +191,8 @@ std::vector<Vector3d> points_of(const LrbRep& rep, RegionId r) {
 
 void draw_region_sheet(const LrbRep& rep, std::span<const double> values, const std::string& name,
                        std::span<const ShownRegion> regions, const std::string& path,
-                       const spec::FrameSpec& given) {
-  const spec::FrameSpec frames = in_pixels(given);
+                       const render::FrameSpec& given) {
+  const render::FrameSpec frames = in_pixels(given);
   RegionSheet sheet(rep, frames);
   constexpr double kRange = 1000;  // from the least colour to the last one
   const double most = values.empty() ? 0 : *std::max_element(values.begin(), values.end());

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "engine/lrb/lrb_rep.hpp"
-#include "scenarios/spec/scenario.hpp"
+#include "scenarios/run/frame_spec.hpp"
 
 namespace lrb::run {
 
@@ -20,7 +20,7 @@ struct ShownRegion {
 /// have a view. `values` (|real faces|) are called `name`.
 void draw_region_sheet(const LrbRep& rep, std::span<const double> values, const std::string& name,
                        std::span<const ShownRegion> regions, const std::string& path,
-                       const spec::FrameSpec& frames);
+                       const render::FrameSpec& frames);
 
 /// Returns the mean direction in which a region's lids look; zero if they look all ways alike, and in 2D.
 Eigen::Vector3d outlook(const LrbRep& rep, RegionId r);

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <vector>
 
+#include "engine/core/atomic_file.hpp"
 #include "engine/core/error.hpp"
 #include "engine/lrb/lrb_file.hpp"
 #include "scenarios/io/files.hpp"
@@ -56,7 +57,7 @@ RunOutcome write_run(const spec::Scenario& scenario, const Recording& recording,
                      const std::string& command, const ProgressReport& progress) {
   const RecordedRun recorded = recorded_run_of(scenario, recording);
   check(scenario, recorded);
-  io::make_folder(folder);
+  make_folder(folder);
   const io::FolderLock lock(folder);
   io::refuse_links(folder);
   const std::string trace_file = scenario.gzip ? "trace.json.gz" : "trace.json";

@@ -18,6 +18,7 @@
 #include "scenarios/run/scene_frame.hpp"
 #include "scenarios/run/thinned_events.hpp"
 #include "scenarios/run/tree_boxes.hpp"
+#include "scenarios/run/view_camera.hpp"
 #include "scenarios/spec/scenario_frames.hpp"
 #include "trace/counters.hpp"
 #include "trace/hex.hpp"
@@ -380,9 +381,9 @@ std::string too_large_words(std::size_t faces, const SceneLimits& limits) {
 /// Returns from where frames are seen, as their first view has it: the page's view begins so. Null where
 /// nobody has said it.
 json view_json(const trace::TraceHeader& header) {
-  const std::vector<spec::FrameSpec::View> views =
+  const std::vector<render::FrameSpec::View> views =
       spec::read_pictures(header.pictures, header.scenario).views;
-  if (views.empty() || views[0].camera == spec::FrameSpec::Camera::fixed) return nullptr;
+  if (views.empty() || views[0].camera == render::FrameSpec::Camera::fixed) return nullptr;
   const auto vector = [](const Eigen::Vector3d& v) { return json({v.x(), v.y(), v.z()}); };
   return {
       {"from", vector(views[0].from)}, {"up", vector(views[0].up)}, {"orthographic", views[0].orthographic}};

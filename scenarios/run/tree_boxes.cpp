@@ -1,6 +1,7 @@
 #include "scenarios/run/tree_boxes.hpp"
 
 #include "engine/query/node_boxes.hpp"
+#include "scenarios/run/view_camera.hpp"
 
 namespace lrb::run {
 namespace {

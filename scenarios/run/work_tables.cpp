@@ -8,6 +8,7 @@
 #include "engine/tree/tree_quality.hpp"
 #include "render/overlay.hpp"
 #include "scenarios/run/chosen_view.hpp"
+#include "scenarios/run/view_camera.hpp"
 #include "trace/node_work.hpp"
 #include "trace/work_shares.hpp"
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "engine/core/atomic_file.hpp"
 #include "render/overlay.hpp"
 #include "render/png.hpp"
 #include "scenarios/compare/side_by_side.hpp"
@@ -53,7 +54,7 @@ std::vector<std::string> write_xray(const Xray& x, const std::string& folder,
   const std::size_t step = compare::busiest_step(runs);
   std::vector<std::string> notes;
   compare::refuse_folder_of_run(folder);
-  io::make_folder(folder);
+  make_folder(folder);
   const io::FolderLock lock(folder);
   io::refuse_links(folder);
   for (const auto& [recording, name] : {std::pair{&x.theirs, x.method}, {&x.ours, std::string("ours")}}) {

@@ -2,6 +2,7 @@
 
 #include <cstdio>
 
+#include "engine/core/atomic_file.hpp"
 #include "render/palette.hpp"
 #include "render/png.hpp"
 #include "scenarios/io/files.hpp"
@@ -15,7 +16,7 @@ int main(int argc, char** argv) {
   if (argc != 2) return std::fprintf(stderr, "usage: stability_page FOLDER\n"), 2;
   const std::string folder = argv[1];
   const Grid grid = made_up_grid();
-  io::make_folder(folder);
+  make_folder(folder);
   render::write_png(render::Image(64, 40, render::palette::kBlue), folder + "/worst.png");
   ReportOptions options;
   options.pictures.resize(grid.cells.size());

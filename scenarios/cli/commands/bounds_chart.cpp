@@ -86,7 +86,7 @@ report::Gnuplot contact_chart(const std::vector<ContactBounds>& course) {
 
 run::AnswerLook look_of(const DrawOptions& options) {
   run::AnswerLook look;
-  spec::FrameSpec frame;
+  render::FrameSpec frame;
   frame.width = look.width;
   frame.height = look.height;
   apply(options.look, frame);

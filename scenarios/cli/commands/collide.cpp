@@ -13,6 +13,7 @@
 #include "scenarios/run/animation.hpp"
 #include "scenarios/run/chosen_view.hpp"
 #include "scenarios/run/run_scenario.hpp"
+#include "scenarios/run/view_camera.hpp"
 #include "scenarios/spec/scenario_frames.hpp"
 
 namespace lrb::cli {
@@ -57,11 +58,11 @@ Eigen::Vector3d beside(const spec::Motion& motion, const Eigen::Vector3d& up,
 /// Looks from where least of the contacts is hidden, and makes no close-up of what is nearly the whole.
 void choose_views(const CollideOptions& o, spec::Scenario& scenario, run::Recording& recording) {
   const run::RecordedRun recorded = run::recorded_run_of(scenario, recording);
-  std::vector<spec::FrameSpec::View>& views = scenario.frames.views;
+  std::vector<render::FrameSpec::View>& views = scenario.frames.views;
   const Eigen::Vector3d up = views[0].up;
   if (o.picture.camera.from.empty()) {
     const Eigen::Vector3d from = run::least_hidden(recorded, up, beside(scenario.motion, up, views[0].from));
-    for (spec::FrameSpec::View& view : views) view.from = from;
+    for (render::FrameSpec::View& view : views) view.from = from;
   }
   run::widen_close_ups(recorded, views);
   recording.trace.header.pictures = spec::pictures_text(scenario.frames);

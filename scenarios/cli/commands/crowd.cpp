@@ -21,7 +21,7 @@ int run_crowd_command(const CrowdOptions& o, const Globals& globals) {
   spec::Crowd crowd = spec::open_crowd(o.crowd);
   if (o.steps) crowd.steps = *o.steps;
   if (o.clock) crowd.clock = *o.clock;
-  if (o.no_frames) crowd.frames.at = spec::FrameSpec::At::none;
+  if (o.no_frames) crowd.frames.at = render::FrameSpec::At::none;
   const std::string folder = o.folder.empty() ? "out/" + crowd.name : o.folder;
   if (o.folder.empty()) io::refuse_run_of_another(folder, o.crowd);
   const std::uint32_t jobs = o.jobs > 0 ? o.jobs : all_cores();

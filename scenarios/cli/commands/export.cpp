@@ -67,8 +67,9 @@ Input kind_of(const ExportOptions& o) {
 run::Recording open_recording(const ExportOptions& o, Input kind, const Globals& globals) {
   if (kind == Input::scenario) {
     spec::Scenario scenario = spec::open_scenario(o.input);
-    scenario.events = std::max(
-        scenario.events, o.picture.colour_by ? spec::needed_level(*o.picture.colour_by) : EventLevel::faces);
+    scenario.events =
+        std::max(scenario.events,
+                 o.picture.colour_by ? render::needed_level(*o.picture.colour_by) : EventLevel::faces);
     return run::record(scenario, progress_report(globals.quiet));
   }
   const std::string path = run::trace_of(o.input);
@@ -145,7 +146,7 @@ int export_body(const ExportOptions& given, const Globals& globals) {
   refuse(o.asks_for("contacts"), "--what contacts", kNoRun);
   refuse(o.asks_for("poses"), "--what poses", kNoRun);
   refuse(!o.of.empty(), "--of", kNoRun);
-  using ColourBy = spec::FrameSpec::ColourBy;
+  using ColourBy = render::FrameSpec::ColourBy;
   refuse(o.picture.colour_by.value_or(ColourBy::kind) >= ColourBy::face_tests, "--colour-by",
          "kind, layer and region are for bodies; counts are for runs");
   if (o.what.empty()) o.what = {o.chooses_wrapper() ? "wrapper" : "body"};
@@ -196,7 +197,7 @@ int export_run(const ExportOptions& given, Input kind, const Globals& globals) {
   const trace::EventId first = cursor.step()->first_event;
   moment.events = std::span(run.trace.events).subspan(first, event + std::size_t{1} - first);
   set_colours(o, moment);
-  if (const EventLevel needed = spec::needed_level(moment.colour_by); needed > run.trace.header.level)
+  if (const EventLevel needed = render::needed_level(moment.colour_by); needed > run.trace.header.level)
     throw InputError("--colour-by " + std::string(name_of(moment.colour_by)) + ": " +
                      printable_name(o.input) + " does not hold the events; record the run with --events " +
                      std::string(name_of(needed)));
@@ -276,8 +277,8 @@ Command add_export(CLI::App& root, const Globals& globals) {
       ->check(CLI::IsMember({"x", "y", "z"}).description(""))
       ->capture_default_str()
       ->type_name("x|y|z");
-  add_choice<spec::FrameSpec::ColourBy>(*app, "--colour-by", o->picture.colour_by, "What the colours mean");
-  add_choice<spec::FrameSpec::ColourPer>(
+  add_choice<render::FrameSpec::ColourBy>(*app, "--colour-by", o->picture.colour_by, "What the colours mean");
+  add_choice<render::FrameSpec::ColourPer>(
       *app, "--colour-per", o->picture.colour_per,
       "Whose number colours a face: its own, or its region's or level's sum");
   return {app, [o, &globals] { return run_export(*o, globals); }};

@@ -15,6 +15,7 @@
 #include "scenarios/run/chosen_view.hpp"
 #include "scenarios/run/open_run.hpp"
 #include "scenarios/run/run_scenario.hpp"
+#include "scenarios/run/view_camera.hpp"
 #include "scenarios/spec/scenario_frames.hpp"
 #include "scenarios/spec/shipped.hpp"
 #include "trace/trace_json.hpp"
@@ -35,7 +36,7 @@ struct FigureOptions {
 struct Source {
   std::string name, purpose;
   run::Recording recording;
-  spec::FrameSpec frames;
+  render::FrameSpec frames;
   bool own_view = false;  ///< nobody has said where it is to be seen from
 };
 
@@ -111,21 +112,21 @@ figure::FigureSpec figure_spec(const FigureOptions& o, const std::string& file) 
   return spec;
 }
 
-spec::FrameSpec frame_spec(const FigureOptions& o, const Source& source) {
-  spec::FrameSpec frames = source.frames;
+render::FrameSpec frame_spec(const FigureOptions& o, const Source& source) {
+  render::FrameSpec frames = source.frames;
   if (o.close_up) frames.views = whole_and_contact(frames.views);
   PictureOptions picture = o.picture;
   picture.dpi.reset();  // it is the figure's
-  if (!picture.style) picture.style = spec::FrameSpec::Style::print;
+  if (!picture.style) picture.style = render::FrameSpec::Style::print;
   apply(picture, frames);
   run::check_views(frames.views, source.recording.bodies[0].rep.dim());
   if (source.own_view && picture.camera.from.empty()) {
     if (frames.views.empty()) frames.views.emplace_back();
-    for (spec::FrameSpec::View& view : frames.views)
+    for (render::FrameSpec::View& view : frames.views)
       view.from = run::broadside(run::box_of(source.recording.bodies[0].rep), view.up);
   }
   const trace::TraceHeader& header = source.recording.trace.header;
-  if (const EventLevel needed = spec::needed_level(frames); needed > header.level)
+  if (const EventLevel needed = render::needed_level(frames); needed > header.level)
     throw InputError(
         "--colour-by or --node-boxes: the run does not hold the events for it; record it with --events " +
         std::string(name_of(needed)));
@@ -138,7 +139,7 @@ int run_figure(const FigureOptions& o, const Globals& globals) {
   const Source source = open_source(o, progress);
   const std::string file = o.file.empty() ? "out/" + source.name + ".pdf" : o.file;
   const figure::FigureSpec spec = figure_spec(o, file);
-  spec::FrameSpec frames = frame_spec(o, source);
+  render::FrameSpec frames = frame_spec(o, source);
   const run::RecordedRun recorded = run::recorded_run_of(source.name, source.purpose, source.recording);
   if (o.close_up) run::widen_close_ups(recorded, frames.views);
   const figure::Figure drawn = figure::draw_figure(recorded, frames, spec, progress);

@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 
+#include "engine/core/atomic_file.hpp"
 #include "engine/core/error.hpp"
 #include "scenarios/cli/command.hpp"
 #include "scenarios/cli/options.hpp"
@@ -165,7 +166,7 @@ int run_test(const GoldenOptions& o, const Globals& globals, bool report) {
   for (const NamedGolden& g : todo) names.push_back(g.name);
   std::optional<io::FolderLock> lock;
   const auto lock_folder = [&] {
-    io::make_folder(o.folder);
+    make_folder(o.folder);
     if (!lock) lock.emplace(o.folder);
   };
   if (report || std::filesystem::exists(o.folder)) lock_folder();
@@ -263,7 +264,7 @@ golden::GoldenSpec spec_to_approve(const GoldenOptions& o, const std::string& na
   if (!o.size.empty()) {
     PictureOptions picture;
     picture.size = o.size;
-    spec::FrameSpec frames;
+    render::FrameSpec frames;
     apply(picture, frames);
     spec.width = frames.width;
     spec.height = frames.height;

@@ -6,6 +6,7 @@
 #include <Eigen/Geometry>
 #include <nlohmann/json.hpp>
 
+#include "engine/core/atomic_file.hpp"
 #include "engine/core/error.hpp"
 #include "engine/core/file_bytes.hpp"
 #include "engine/lrb/lrb_file.hpp"
@@ -25,6 +26,7 @@
 #include "scenarios/run/findings_picture.hpp"
 #include "scenarios/run/frame_job.hpp"
 #include "scenarios/run/region_sheet.hpp"
+#include "scenarios/run/view_camera.hpp"
 
 namespace lrb::cli {
 namespace {
@@ -138,7 +140,7 @@ Json layers_json(const LrbRep& rep) {
 
 /// Returns how pictures are to be drawn; of findings (`drawing`), as high as they need unless a size is
 /// given.
-spec::FrameSpec sheet_frames(const InspectOptions& o, bool drawing) {
+render::FrameSpec sheet_frames(const InspectOptions& o, bool drawing) {
   if (!o.render && o.drawing.empty()) {
     const CameraOptions& camera = o.pictures.camera;
     const std::pair<bool, const char*> of_pictures[] = {{!o.pictures.size.empty(), "--size"},
@@ -154,7 +156,7 @@ spec::FrameSpec sheet_frames(const InspectOptions& o, bool drawing) {
         throw InputError(std::string(name) + ": is for pictures; add --render or --draw, or leave " + name +
                          " out");
   }
-  spec::FrameSpec frames;
+  render::FrameSpec frames;
   frames.width = drawing ? run::kFindingsSheetWidth : run::kBodySheetWidth;
   frames.height = drawing ? 0 : run::kBodySheetHeight;
   apply(o.pictures, frames);
@@ -168,9 +170,9 @@ void draw_findings(const run::FaultyMesh& faulty, const InspectOptions& o, Json&
   const auto& findings = faulty.report.findings;
   const bool any =
       std::any_of(findings.begin(), findings.end(), [](const MeshFinding& f) { return f.count > 0; });
-  const spec::FrameSpec frames = sheet_frames(o, true);
+  const render::FrameSpec frames = sheet_frames(o, true);
   run::check_views(frames.views, faulty.mesh.dim);
-  if (any) io::make_folder_of(path);
+  if (any) make_folder_of(path);
   if (any && run::draw_findings(faulty, path, frames)) {
     j["drawing"] = path;
     return;
@@ -181,7 +183,7 @@ void draw_findings(const run::FaultyMesh& faulty, const InspectOptions& o, Json&
 }
 
 /// Measures the regions, and draws the worst ten if pictures are asked for (`picture` is not empty).
-void tell_regions(const LrbRep& rep, const InspectOptions& o, const spec::FrameSpec& frames,
+void tell_regions(const LrbRep& rep, const InspectOptions& o, const render::FrameSpec& frames,
                   const std::string& picture, Json& j) {
   if (rep.region_count() == 0)
     throw InputError(rep.name() + ": has no regions to list: it is open, or no LRB-rep can be made of it");
@@ -202,7 +204,7 @@ void tell_regions(const LrbRep& rep, const InspectOptions& o, const spec::FrameS
   j["advice"] = bodies::advice(rep, trials);
 }
 
-void look_broadside(const LrbRep& rep, spec::FrameSpec& frames) {
+void look_broadside(const LrbRep& rep, render::FrameSpec& frames) {
   if (frames.views.empty()) frames.views.emplace_back();
   frames.views[0].from = run::broadside(run::box_of(rep), frames.views[0].up);
 }
@@ -235,7 +237,7 @@ std::string as_text(const Json& j) {
 }
 
 int run_inspect(const InspectOptions& o, const Globals& globals) {
-  spec::FrameSpec frames = sheet_frames(o, false);
+  render::FrameSpec frames = sheet_frames(o, false);
   Json j;
   std::unique_ptr<LrbRep> rep;
   std::vector<std::string> notes;
@@ -280,7 +282,7 @@ int run_inspect(const InspectOptions& o, const Globals& globals) {
     picture = o.picture.empty() ? "out/" + std::filesystem::path(o.file).stem().string() +
                                       (o.regions ? "-regions.png" : ".png")
                                 : o.picture;
-    io::make_folder_of(picture);
+    make_folder_of(picture);
     if (o.pictures.camera.from.empty()) look_broadside(*rep, frames);
     if (!o.regions) run::draw_body_sheet(*rep, picture, frames);
     j["picture"] = picture;

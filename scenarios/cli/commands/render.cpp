@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <memory>
 
+#include "engine/core/atomic_file.hpp"
 #include "engine/core/error.hpp"
 #include "engine/core/file_bytes.hpp"
 #include "scenarios/bodies/body.hpp"
@@ -66,7 +67,7 @@ OfBody read_of_body(const std::string& option, const std::string& what, const st
 
 /// Shows the regions alone that are asked for, and says of each what it is: once, unless frames are asked
 /// for.
-void isolate(const RenderOptions& o, const std::vector<bodies::LoadedBody>& bodies, spec::FrameSpec& spec) {
+void isolate(const RenderOptions& o, const std::vector<bodies::LoadedBody>& bodies, render::FrameSpec& spec) {
   std::vector<std::uint32_t> regions, layers;
   for (const bodies::LoadedBody& body : bodies) {
     regions.push_back(body.rep.region_count());
@@ -88,7 +89,7 @@ void isolate(const RenderOptions& o, const std::vector<bodies::LoadedBody>& bodi
     of_body.erase(std::unique(of_body.begin(), of_body.end()), of_body.end());
   }
   if (o.events.empty() && !o.picture.at) {
-    spec.at = spec::FrameSpec::At::events;
+    spec.at = render::FrameSpec::At::events;
     spec.events = {0};
     if (o.montage == 0) spec.montage = 0;
   }
@@ -96,12 +97,12 @@ void isolate(const RenderOptions& o, const std::vector<bodies::LoadedBody>& bodi
 }
 
 /// Returns how to draw: as the run was drawn, `pictures`, but for what the call says.
-spec::FrameSpec frame_spec(const RenderOptions& o, spec::Show show, const std::string& pictures = "") {
-  spec::FrameSpec spec = spec::read_pictures(pictures, printable_name(o.trace), spec::default_frames(show));
+render::FrameSpec frame_spec(const RenderOptions& o, spec::Show show, const std::string& pictures = "") {
+  render::FrameSpec spec = spec::read_pictures(pictures, printable_name(o.trace), spec::default_frames(show));
   if (o.close_up) spec.views = whole_and_contact(spec.views);
   apply(o.picture, spec);
   if (!o.events.empty()) {
-    spec.at = spec::FrameSpec::At::events;
+    spec.at = render::FrameSpec::At::events;
     spec.events = o.events;
   }
   if (o.montage > 0) spec.montage = o.montage;
@@ -117,7 +118,7 @@ spec::Show show_of(const trace::Trace& trace, std::size_t bodies) {
 
 /// Throws for options that frames of a crowd do not have.
 void refuse_for_crowd(const RenderOptions& o) {
-  using At = spec::FrameSpec::At;
+  using At = render::FrameSpec::At;
   const auto& at = o.picture.at;
   const std::pair<bool, const char*> none[] = {
       {!o.events.empty(), "--events"},
@@ -166,23 +167,23 @@ int run_render(const RenderOptions& given, const Globals& globals) {
   const std::vector<bodies::LoadedBody>& bodies = recording.bodies;
   const run::RecordedRun p = run::recorded_run_of(trace.header.scenario, {}, recording);
   const std::string folder = output_folder(o);
-  spec::FrameSpec spec = frame_spec(o, show_of(trace, bodies.size()), trace.header.pictures);
+  render::FrameSpec spec = frame_spec(o, show_of(trace, bodies.size()), trace.header.pictures);
   isolate(o, bodies, spec);
   const std::vector<std::pair<std::string, std::string>> text = {
       {"Software", "lrbscope " + trace.header.lrbscope},
       {"lrbscope:scenario", trace.header.scenario},
       {"lrbscope:scenario_hash", trace::to_hex(trace.header.scenario_hash)},
   };
-  if (const EventLevel needed = spec::needed_level(spec); needed > trace.header.level)
+  if (const EventLevel needed = render::needed_level(spec); needed > trace.header.level)
     throw InputError(
         printable_name(o.trace) +
         " does not hold the events for --colour-by or --node-boxes; record the run with --events " +
         std::string(name_of(needed)));
-  if (spec::needed_level(spec) == EventLevel::nodes && recording.trees.empty())
+  if (render::needed_level(spec) == EventLevel::nodes && recording.trees.empty())
     throw InputError("--colour-by or --node-boxes: " + printable_name(o.trace) + " is of " +
                      trace.header.engine + ", whose trees are not in it; `lrbscope xray` draws them");
   run::check_frames(p, spec);  // throws before anything is written
-  io::make_folder(folder);
+  make_folder(folder);
   const io::FolderLock lock(folder);
   io::refuse_links(folder);
   const run::DrawnFrames drawn = run::draw_frames(p, spec, folder, text, progress_report(globals.quiet));

@@ -4,6 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "engine/core/atomic_file.hpp"
 #include "engine/core/error.hpp"
 #include "engine/core/file_bytes.hpp"
 #include "engine/query/explain.hpp"
@@ -51,7 +52,7 @@ int explain(const WhyOptions& o, const Scene& scene) {
     if (!o.picture.empty() && !e.result.pairs.empty())
       throw InputError(
           "-o: the bodies meet, so that nothing parts them; draw two of their faces with --pair");
-    if (!o.picture.empty()) io::make_folder_of(o.picture);
+    if (!o.picture.empty()) make_folder_of(o.picture);
     if (!o.picture.empty()) run::draw_parting(scene.a, scene.pose_a, scene.b, scene.pose_b, e, o.picture);
     print(o.json ? one_line(run::explanation_json(e)) : run::explanation_text(e));
     return kOk;
@@ -59,7 +60,7 @@ int explain(const WhyOptions& o, const Scene& scene) {
   const PairExplanation e = explain_pair(scene.a, scene.pose_a, scene.b, scene.pose_b,
                                          {SimplexId(o.pair[0]), SimplexId(o.pair[1])});
   if (!o.picture.empty()) {
-    io::make_folder_of(o.picture);
+    make_folder_of(o.picture);
     run::draw_pair(scene.a, scene.pose_a, scene.b, scene.pose_b, e, o.picture);
   }
   print(o.json ? one_line(run::explanation_json(e, scene.a, scene.b))

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <memory>
 
+#include "engine/core/atomic_file.hpp"
 #include "engine/core/error.hpp"
 #include "scenarios/bench/report/machine.hpp"
 #include "scenarios/bench/report/peer_table.hpp"
@@ -32,7 +33,7 @@ int run_bench(const BenchOptions& o, const Globals& globals) {
   std::vector<workers::WorkerMethod> methods = workers::find_all_methods();
   std::erase_if(methods, [](const workers::WorkerMethod& m) { return !is_peer(m); });
   methods = chosen(methods, o.methods, "method", [](const workers::WorkerMethod& m) { return m.info.name; });
-  io::make_folder(o.folder);
+  make_folder(o.folder);
   const io::FolderLock lock(o.folder);
   std::vector<bench::BodyPair> pairs;
   if (!o.models.empty()) pairs = bench::pairs_of_models(o.models);

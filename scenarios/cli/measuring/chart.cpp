@@ -4,6 +4,7 @@
 #include <iterator>
 #include <memory>
 
+#include "engine/core/atomic_file.hpp"
 #include "engine/core/error.hpp"
 #include "engine/core/file_bytes.hpp"
 #include "scenarios/bench/report/chart_page.hpp"
@@ -117,7 +118,7 @@ int run_chart(ChartOptions o, bool measures, bool draws, const Globals& globals)
   const std::vector<workers::WorkerMethod> methods =
       chosen(pairs ? workers::find_all_methods() : workers::find_number_methods(quantity), o.methods,
              "method", [](const workers::WorkerMethod& m) { return m.info.name; });
-  io::make_folder(o.folder);
+  make_folder(o.folder);
   const io::FolderLock lock(o.folder);
   if (measures) measure(o, methods, globals);
   if (draws) draw(o, methods, globals);

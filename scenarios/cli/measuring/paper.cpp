@@ -2,6 +2,7 @@
 #include <cstdio>
 #include <memory>
 
+#include "engine/core/atomic_file.hpp"
 #include "engine/core/error.hpp"
 #include "scenarios/cli/command.hpp"
 #include "scenarios/cli/measuring/paper_series.hpp"
@@ -119,7 +120,7 @@ int run_paper(PaperOptions o, const Globals& globals) {
       clock.run("the paper's objects", [&] { return paper::make_objects(experiment, notes); });
   note(globals, notes);
   if (merging) paper::check_records({objects, steps, experiment, globals.command_line});
-  io::make_folder(o.folder);
+  make_folder(o.folder);
   const io::FolderLock lock(o.folder);
   const LrbRep& a = objects[0].rep;
   if (!merging && experiment.collides())

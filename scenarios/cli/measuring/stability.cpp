@@ -5,6 +5,7 @@
 #include <memory>
 #include <sstream>
 
+#include "engine/core/atomic_file.hpp"
 #include "engine/core/error.hpp"
 #include "scenarios/cli/choice.hpp"
 #include "scenarios/cli/command.hpp"
@@ -198,7 +199,7 @@ int run_stability(StabilityOptions o, const Globals& globals) {
   const auto methods = chosen(methods_for(o.quantity), o.methods, "method",
                               [](const workers::WorkerMethod& m) { return m.column.name; });
   if (o.only) return replay_one(o, methods, families);
-  io::make_folder(o.folder);
+  make_folder(o.folder);
   const io::FolderLock lock(o.folder);
   const Grid grid = run_grid(o, methods, families, globals);
   print(table(grid));

@@ -39,7 +39,7 @@ spec::Scenario scenario_of(const XrayOptions& o, const std::vector<bodies::Loade
   s.frames.views[0].wrapper = false;
   s.frames.views[0].title = "Whole";
   s.frames.most = 12;
-  s.frames.colour_by = spec::FrameSpec::ColourBy::box_tests;
+  s.frames.colour_by = render::FrameSpec::ColourBy::box_tests;
   Fnv64 hash;
   for (const bodies::LoadedBody& body : bodies) hash.add_value(body.rep.hash());
   for (const Pose& pose : s.motion.poses) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cctype>
 
+#include "engine/core/atomic_file.hpp"
 #include "engine/core/error.hpp"
 #include "render/overlay.hpp"
 #include "scenarios/io/files.hpp"
@@ -271,7 +272,7 @@ report::Page stability_page(const Grid& whole, const std::string& folder, const 
 ReportFiles write_stability_report(const Grid& grid, const std::string& folder,
                                    const ReportOptions& options) {
   check(grid);
-  io::make_folder(folder);
+  make_folder(folder);
   ReportFiles out;
   ReportOptions with_files = options;
   try {

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 
+#include "engine/core/atomic_file.hpp"
 #include "engine/core/error.hpp"
 #include "scenarios/io/files.hpp"
 #include "scenarios/stability/report/stability_report.hpp"
@@ -39,7 +40,7 @@ std::vector<std::string> draw_worst_cases(
   for (const Cell& c : grid.cells) total += c.worst ? 1 : 0;
   remove_old_pictures(folder + "/" + kFolder);
   if (total == 0) return pictures;
-  io::make_folder(folder + "/" + kFolder);
+  make_folder(folder + "/" + kFolder);
   render::Rasterizer rasterizer;
   for (std::size_t i = 0; i < grid.cells.size(); ++i) {
     if (!grid.cells[i].worst) continue;

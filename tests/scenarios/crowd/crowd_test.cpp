@@ -190,7 +190,7 @@ TEST_CASE("a crowd's trace is enough to draw it again, pixel by pixel") {
 
 TEST_CASE("traces of crowds that are cut, damaged, old or of other bodies") {
   spec::Crowd crowd = crowd_of(good());
-  crowd.frames.at = spec::FrameSpec::At::none;
+  crowd.frames.at = render::FrameSpec::At::none;
   const crowd::CrowdRun run = crowd::run_crowd(crowd, 1, run::kSilent);
   const std::string text = trace_of(crowd, run);
   const auto kinds = [&] {
@@ -318,7 +318,7 @@ TEST_CASE("bodies stay in the room as far as they fit") {
   for (const json& j : {good(), good_2d()}) {
     spec::Crowd crowd = crowd_of(j);
     crowd.speed = {0.5, 2};
-    crowd.frames.at = spec::FrameSpec::At::none;
+    crowd.frames.at = render::FrameSpec::At::none;
     crowd.steps = 1;
     const crowd::CrowdRun run = crowd::run_crowd(crowd, 1, run::kSilent);
     for (std::uint32_t step = 0; step < 40; ++step)

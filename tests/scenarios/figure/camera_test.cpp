@@ -5,6 +5,7 @@
 #include "engine/core/error.hpp"
 #include "render/png.hpp"
 #include "scenarios/run/chosen_view.hpp"
+#include "scenarios/run/view_camera.hpp"
 #include "scenarios/spec/scenario_frames.hpp"
 #include "tests/support/program.hpp"
 
@@ -12,17 +13,17 @@ using namespace lrb;
 using Eigen::Vector3d;
 
 TEST_CASE("what a trace keeps of pictures is read back as it was") {
-  spec::FrameSpec frames;
+  render::FrameSpec frames;
   frames.width = 300, frames.height = 200, frames.dpi = 150;
   frames.montage = 6, frames.montage_columns = 3;
-  spec::FrameSpec::View view;
-  view.camera = spec::FrameSpec::Camera::fixed;
+  render::FrameSpec::View view;
+  view.camera = render::FrameSpec::Camera::fixed;
   view.eye = {1, 2, 3}, view.target = {0.1, 0.2, 1.0 / 3};
   view.orthographic = true, view.zoom = 1.5, view.wrapper = false;
   view.title = "a \"title\"";
   view.look_at = Vector3d(0, 0.5, 0);
   frames.views = {view, {}};
-  const spec::FrameSpec read = spec::read_pictures(spec::pictures_text(frames), "x");
+  const render::FrameSpec read = spec::read_pictures(spec::pictures_text(frames), "x");
   CHECK(spec::pictures_text(read) == spec::pictures_text(frames));
   REQUIRE(read.views.size() == 2);
   CHECK(read.views[0].target == view.target);

@@ -105,7 +105,7 @@ TEST_CASE("titles of panels name the view, where there are several") {
   spec.dpi = 40;
   spec.choice.panels = 1;
   spec.titles = true;
-  spec::FrameSpec frames;
+  render::FrameSpec frames;
   frames.views.resize(2);
   frames.views[0].title = "First";
   frames.views[1].title = "Second";
@@ -223,8 +223,8 @@ TEST_CASE("colours that mean numbers mean the same in all panels") {
   FigureSpec spec;
   spec.format = FigureSpec::Format::svg;
   spec.dpi = 40;
-  spec::FrameSpec frames;
-  frames.colour_by = spec::FrameSpec::ColourBy::face_tests;
+  render::FrameSpec frames;
+  frames.colour_by = render::FrameSpec::ColourBy::face_tests;
   const Figure all = draw_figure(s.run, frames, spec, run::kSilent);
   CHECK(count(all.bytes, ">face tests</text>") == 1);
 }

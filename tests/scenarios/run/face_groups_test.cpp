@@ -15,7 +15,7 @@ using namespace lrb;
 
 namespace {
 
-using ColourPer = spec::FrameSpec::ColourPer;
+using ColourPer = render::FrameSpec::ColourPer;
 
 spec::Scenario rocks() {
   spec::Scenario s;

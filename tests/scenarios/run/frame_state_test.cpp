@@ -21,7 +21,7 @@ TEST_CASE("captions name faces, of bodies of polygons too") {
   std::vector<CollideResult> results = {collide(a, {}, b, pose_b, {}, context, recorder)};
   recorder.end_step(results[0]);
   const trace::Trace trace = recorder.take();
-  const spec::FrameSpec spec;
+  const render::FrameSpec spec;
   run::FrameState state(trace, {&a, &b}, results, spec, true);
 
   std::size_t contacts = 0, beyond = 0;

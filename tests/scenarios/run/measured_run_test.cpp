@@ -52,7 +52,7 @@ std::string number(const report::Page& page, const std::string& label) {
 }
 
 /// The state at the end of a step.
-run::FrameState at_end(const run::Recording& r, std::size_t step, const spec::FrameSpec& spec) {
+run::FrameState at_end(const run::Recording& r, std::size_t step, const render::FrameSpec& spec) {
   run::FrameState state(r.trace, {&r.bodies[0].rep, &r.bodies[1].rep}, r.results, spec, false);
   state.seek(r.trace.steps[step].first_event + static_cast<trace::EventId>(r.trace.events_of(step).size()) -
              1);
@@ -84,7 +84,7 @@ TEST_CASE("measured runs: each step has its distance and its clash, and the sear
 
 TEST_CASE("measured runs: frames show the nearest points, and the way out, and say how long they are") {
   const run::Recording r = recorded(R"({"distance": true, "clash": true})"), plain = recorded("{}");
-  const spec::FrameSpec spec;
+  const render::FrameSpec spec;
   const run::FrameState apart = at_end(r, 0, spec), met = at_end(r, 6, spec);
   CHECK(draws_line(apart.scene().list, run::kGapColour));
   CHECK_FALSE(draws_line(apart.scene().list, run::kWayOutColour));

@@ -10,6 +10,7 @@
 #include "scenarios/bodies/generators/generators.hpp"
 #include "scenarios/bodies/hull_volume.hpp"
 #include "scenarios/run/approach.hpp"
+#include "scenarios/run/frame_files.hpp"
 #include "scenarios/run/frame_state.hpp"
 #include "scenarios/run/moments.hpp"
 #include "scenarios/run/recorded_run.hpp"
@@ -146,16 +147,16 @@ TEST_CASE("a body that comes with its regions is shown layer by layer") {
 
 TEST_CASE("moments: first and last are always there, never too many") {
   const run::Recording r = run::record(two_balls(), run::kSilent);
-  spec::FrameSpec spec;
+  render::FrameSpec spec;
   CHECK(run::moments(spec, r.trace).size() == 8);
   spec.most = 3;
   const std::vector<trace::EventId> three = run::moments(spec, r.trace);
   REQUIRE(three.size() == 3);
   CHECK(three.front() == run::last_event(r.trace, 0));
   CHECK(three.back() == r.trace.events.size() - 1);
-  spec.at = spec::FrameSpec::At::none;
+  spec.at = render::FrameSpec::At::none;
   CHECK(run::moments(spec, r.trace).empty());
-  spec.at = spec::FrameSpec::At::refinement;
+  spec.at = render::FrameSpec::At::refinement;
   spec.most = 100'000;
   for (const trace::EventId e : run::moments(spec, r.trace))
     CHECK((r.trace.events[e].kind == EventKind::refine || r.trace.events[e].kind == EventKind::step));

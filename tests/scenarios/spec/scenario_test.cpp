@@ -89,10 +89,10 @@ TEST_CASE("a scenario's query has the fields of requests, and its words are the 
   CHECK(at("/properties/show") == words<spec::Show>());
   CHECK(at("/properties/trace/properties/clock") == words<trace::Clock>());
   CHECK(at("/properties/expect/items/properties/relation") == words<Relation>());
-  CHECK(at("/definitions/frames/properties/at") == words<spec::FrameSpec::At>());
-  CHECK(at("/definitions/frames/properties/colour_by") == words<spec::FrameSpec::ColourBy>());
-  CHECK(at("/definitions/frames/properties/colour_per") == words<spec::FrameSpec::ColourPer>());
-  CHECK(at("/definitions/view/properties/camera") == words<spec::FrameSpec::Camera>());
+  CHECK(at("/definitions/frames/properties/at") == words<render::FrameSpec::At>());
+  CHECK(at("/definitions/frames/properties/colour_by") == words<render::FrameSpec::ColourBy>());
+  CHECK(at("/definitions/frames/properties/colour_per") == words<render::FrameSpec::ColourPer>());
+  CHECK(at("/definitions/view/properties/camera") == words<render::FrameSpec::Camera>());
   json kinds = json::array();
   for (const json& kind : document["definitions"]["motion"]["oneOf"])
     kinds.push_back(kind["properties"]["kind"]["const"]);

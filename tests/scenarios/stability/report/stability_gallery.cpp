@@ -3,6 +3,7 @@
 
 #include <cstdio>
 
+#include "engine/core/atomic_file.hpp"
 #include "engine/query/brute_force.hpp"
 #include "render/montage.hpp"
 #include "render/png.hpp"
@@ -32,7 +33,7 @@ std::vector<SimplexPair> spoilt(const std::vector<SimplexPair>& pairs, const cas
 int main(int argc, char** argv) {
   if (argc < 2) return std::fprintf(stderr, "usage: stability_gallery FOLDER\n"), 2;
   const std::string folder = argv[1];
-  io::make_folder(folder + "/worst");
+  make_folder(folder + "/worst");
   const Grid grid = made_up_grid();
   render::Rasterizer rasterizer;
   ReportOptions options;
