@@ -1,6 +1,6 @@
 # Debian packages: `cmake --build --preset release --target package`, or `cd build/release && cpack`, writes them to
 # build/release/debs. A package for each component that something is installed for:
-#   program   lrbscope           the programs, their manual pages and completions
+#   program   lrbscope           the program, its manual pages and completions
 #   library   liblrbscopeN       the shared library, if it is built (install(... COMPONENT library); N: its soname's version)
 #   dev       liblrbscope-dev    headers, the static library, CMake's and pkg-config's files: what has no component
 #   python    python3-lrbscope   the Python module, if it is built (install(... COMPONENT python))

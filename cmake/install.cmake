@@ -43,14 +43,12 @@ endif()
 
 # What is installed without a component is for those who build with the libraries: the parts of packages (cmake/debs.cmake).
 set(CMAKE_INSTALL_DEFAULT_COMPONENT_NAME dev)
-# Installed programs find shared libraries beside them, wherever both are.
+# The installed program finds shared libraries beside it, wherever both are.
 file(RELATIVE_PATH lrb_bin_to_lib /${CMAKE_INSTALL_BINDIR} /${CMAKE_INSTALL_LIBDIR})
 if(BUILD_SHARED_LIBS)
-  foreach(target IN ITEMS lrbscope lrbscope-measure)
-    if(TARGET ${target})
-      set_target_properties(${target} PROPERTIES INSTALL_RPATH "$ORIGIN/${lrb_bin_to_lib}")
-    endif()
-  endforeach()
+  if(TARGET lrbscope)
+    set_target_properties(lrbscope PROPERTIES INSTALL_RPATH "$ORIGIN/${lrb_bin_to_lib}")
+  endif()
   foreach(target IN ITEMS lrb_trace lrb_render)
     if(TARGET ${target})
       set_target_properties(${target} PROPERTIES INSTALL_RPATH "$ORIGIN")
@@ -58,7 +56,7 @@ if(BUILD_SHARED_LIBS)
   endforeach()
 endif()
 if(LRB_BUILD_PROGRAM)
-  install(TARGETS lrbscope lrbscope-measure RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT program)
+  install(TARGETS lrbscope RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT program)
 endif()
 
 # pkg-config: what a static library needs, programs must link; of a shared one, only what its headers include.

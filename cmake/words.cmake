@@ -2,21 +2,18 @@
 set(words ${PROJECT_BINARY_DIR}/words)
 find_program(LRB_GZIP gzip DOC "gzip, for the manual pages")
 set(compress "")
-set(page_ending .1)
 if(LRB_GZIP)
-  set(page_ending .1.gz)
   set(compress COMMAND sh -c "exec \"$0\" -9nf \"$1\"/*.1" "${LRB_GZIP}" "${words}/man1")
 endif()
 add_custom_command(OUTPUT ${words}/made
   COMMAND ${CMAKE_COMMAND} -E rm -rf ${words}
   COMMAND lrbscope --quiet manual -o ${words}/man1
   ${compress}
-  COMMAND ${CMAKE_COMMAND} -E create_symlink lrbscope${page_ending} ${words}/man1/lrbscope-measure${page_ending}
   COMMAND lrbscope --quiet completion bash -o ${words}/bash/lrbscope
   COMMAND lrbscope --quiet completion zsh -o ${words}/zsh/_lrbscope
   COMMAND lrbscope --quiet completion fish -o ${words}/fish/lrbscope.fish
   COMMAND ${CMAKE_COMMAND} -E touch ${words}/made
-  DEPENDS lrbscope lrbscope-measure
+  DEPENDS lrbscope
   COMMENT "Writing manual pages and completions" VERBATIM)
 add_custom_target(lrb_words_files ALL DEPENDS ${words}/made)
 

@@ -17,30 +17,17 @@ inline constexpr int kOk = 0, kMismatch = 1, kBadInput = 2, kEnvironment = 3;
 
 /// What applies to every command.
 struct Globals {
-  bool quiet = false;          ///< nothing on stderr but errors
-  std::string command_line;    ///< as it was given, quoted for a shell
-  char** arguments = nullptr;  ///< as main() got them
+  bool quiet = false;        ///< nothing on stderr but errors
+  std::string command_line;  ///< as it was given, quoted for a shell
 };
 
 struct Command {
   CLI::App* app;
   std::function<int()> run;
-  bool parses_itself = false;  ///< run() is called before any of its options is parsed
 };
 
-/// Adds a command to the program. A file NAME.cpp in commands/ defines `std::vector<CommandEntry>
-/// NAME_commands()`, and lrbscope has them: they need no other list (cmake/registry.cmake). Those in
-/// measuring/ are lrbscope-measure's, and stand in measuring_words.hpp, too.
-struct CommandEntry {
-  Command (*add)(CLI::App& root, const Globals& globals) = nullptr;
-  int rank = 1000;  ///< the commands' order in --help: by rank, then by file
-};
-inline int rank_of(const CommandEntry& c) {
-  return c.rank;
-}
-
-/// Returns all commands, in their order.
-std::vector<CommandEntry> registered_commands();
+/// Adds all commands to the program, in their order in --help. They are listed in commands.cpp.
+std::vector<Command> add_commands(CLI::App& root, const Globals& globals);
 
 /// Parses the command line and runs the command; turns exceptions into one line on stderr and an exit code.
 int main(int argc, char** argv);

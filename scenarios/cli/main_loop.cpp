@@ -14,9 +14,7 @@
 #include "engine/core/error.hpp"
 #include "engine/core/file_bytes.hpp"
 #include "scenarios/cli/command.hpp"
-#include "scenarios/cli/measuring_program.hpp"
 #include "scenarios/cli/signals.hpp"
-#include "scenarios/cli/words/words.hpp"
 #include "scenarios/io/json/suggest.hpp"
 #include "trace/trace.hpp"
 
@@ -110,16 +108,6 @@ std::string_view command_word(int argc, char** argv) {
   return "";
 }
 
-/// Adds the hidden command by which one program tells the other, and tests, what it understands.
-Command add_words(CLI::App& root) {
-  CLI::App* app = root.add_subcommand(std::string(kWordsCommand), "Print all commands and options as JSON");
-  app->group("");
-  return {app, [&root] {
-            print(one_line(words::to_json(words::words_of(root))));
-            return kOk;
-          }};
-}
-
 /// Returns the command that was named, down to its own: that of `lrbscope golden test` is test.
 const CLI::App& named_command(const CLI::App& app) {
   const std::vector<CLI::App*> below = app.get_subcommands();
@@ -173,13 +161,8 @@ int parse_and_run(int argc, char** argv) {
       "more.");
   Globals globals;
   globals.command_line = command_line(argc, argv);
-  globals.arguments = argv;
   app.add_flag("-q,--quiet", globals.quiet, "Print nothing to stderr but errors");
-  std::vector<Command> commands;
-  for (const CommandEntry& entry : registered_commands()) commands.push_back(entry.add(app, globals));
-  commands.push_back(add_words(app));
-  for (const Command& command : commands)
-    if (command.parses_itself && command.app->get_name() == command_word(argc, argv)) return command.run();
+  const std::vector<Command> commands = add_commands(app, globals);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {

@@ -43,6 +43,13 @@ std::vector<fs::path> programs_in(const fs::path& folder) {
   return programs;
 }
 
+[[noreturn]] void throw_not_found(const std::string& program) {
+  throw EnvironmentError(printable_name(program) +
+                         ": not found; it is built beside lrbscope and not installed: build it (cmake "
+                         "--build --preset release --target lrbscope-workers) and run lrbscope from its "
+                         "build folder, or name that in LRBSCOPE_METHODS");
+}
+
 }  // namespace
 
 std::vector<WorkerMethod> methods_of(const std::string& program, const std::vector<std::string>& options) {
@@ -75,11 +82,7 @@ std::vector<WorkerMethod> find_all_methods() {
   std::vector<WorkerMethod> methods;
   for (const fs::path& program : programs_in(folder))
     for (WorkerMethod& m : methods_of(program.string())) methods.push_back(std::move(m));
-  if (methods.empty())
-    throw EnvironmentError(
-        printable_name((folder / kProgram).string()) +
-        ": not found; it is built beside lrbscope and not installed: run lrbscope from its "
-        "build folder, or name that in LRBSCOPE_METHODS");
+  if (methods.empty()) throw_not_found((folder / kProgram).string());
   return methods;
 }
 
@@ -89,10 +92,7 @@ std::vector<WorkerMethod> find_number_methods(methods::Quantity quantity) {
 
 std::string number_worker() {
   std::string program = program_beside("lrbscope-quantities");
-  if (program.empty())
-    throw EnvironmentError(
-        "lrbscope-quantities: not found; it is built beside lrbscope and not installed: run "
-        "lrbscope from its build folder, or name that in LRBSCOPE_METHODS");
+  if (program.empty()) throw_not_found("lrbscope-quantities");
   return program;
 }
 

@@ -158,7 +158,8 @@ ForeignWalk walk_of(const std::string& engine, const LrbRep& a, const LrbRep& b,
   const std::string program = workers::program_beside("lrbscope-xray-" + engine);
   if (program.empty())
     throw EnvironmentError("--method " + engine + ": there is no program lrbscope-xray-" + engine +
-                           " beside lrbscope; it is built where lib" + engine + "-dev is installed");
+                           " beside lrbscope; install lib" + engine +
+                           "-dev and build it: cmake --build --preset release --target lrbscope-workers");
   for (const LrbRep* rep : {&a, &b})
     if (rep->real_simplex_count() < 2)
       throw InputError(printable_name(rep->name()) + ": has one triangle; give a body with two or more");

@@ -101,6 +101,8 @@ int run_build(const BuildCommandOptions& o, const Globals& globals) {
   return o.no_validate || report.valid ? kOk : kMismatch;
 }
 
+}  // namespace
+
 Command add_build(CLI::App& root, const Globals& globals) {
   CLI::App* app = root.add_subcommand("build", "Build a mesh's LRB-rep, prove that it is right, save it");
   const auto o = std::make_shared<BuildCommandOptions>();
@@ -112,12 +114,6 @@ Command add_build(CLI::App& root, const Globals& globals) {
   app->add_flag("--no-validate", o->no_validate, "Skip the proof that the LRB-rep keeps its promises");
   add_join_option(*app, o->corners);
   return {app, [o, &globals] { return run_build(*o, globals); }};
-}
-
-}  // namespace
-
-std::vector<CommandEntry> build_commands() {
-  return {{add_build, 50}};
 }
 
 }  // namespace lrb::cli

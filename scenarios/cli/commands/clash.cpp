@@ -159,6 +159,8 @@ int run_clash(ClashOptions o, const Globals& globals) {
   return kOk;
 }
 
+}  // namespace
+
 Command add_clash(CLI::App& root, const Globals& globals) {
   CLI::App* app = root.add_subcommand(
       "clash", "Tell what kind of contact two solids have, and how deep, for each pose of B in a list");
@@ -178,12 +180,6 @@ Command add_clash(CLI::App& root, const Globals& globals) {
   add_repeat_option(*app, o->repeat, "pose");
   add_join_option(*app, o->corners);
   return {app, [o, &globals] { return run_clash(*o, globals); }};
-}
-
-}  // namespace
-
-std::vector<CommandEntry> clash_commands() {
-  return {{add_clash, 46}};
 }
 
 }  // namespace lrb::cli

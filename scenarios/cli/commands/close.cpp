@@ -116,6 +116,8 @@ int run_close(const CloseOptions& o, const Globals& globals) {
   return closed == result.holes.size() ? kOk : kMismatch;
 }
 
+}  // namespace
+
 Command add_close(CLI::App& root, const Globals& globals) {
   CLI::App* app = root.add_subcommand(
       "close",
@@ -128,12 +130,6 @@ Command add_close(CLI::App& root, const Globals& globals) {
   app->add_flag("--json", o->json, "Print one JSON object");
   add_join_option(*app, o->corners);
   return {app, [o, &globals] { return run_close(*o, globals); }};
-}
-
-}  // namespace
-
-std::vector<CommandEntry> close_commands() {
-  return {{add_close, 62}};
 }
 
 }  // namespace lrb::cli

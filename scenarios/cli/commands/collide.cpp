@@ -124,6 +124,8 @@ int run_collide(const CollideOptions& o, const Globals& globals) {
   return report_outcome(outcome, folder, o.json, globals);
 }
 
+}  // namespace
+
 Command add_collide(CLI::App& root, const Globals& globals) {
   CLI::App* app = root.add_subcommand(
       "collide", "Let two bodies of yours approach each other until they touch, drawn and explained");
@@ -146,12 +148,6 @@ Command add_collide(CLI::App& root, const Globals& globals) {
   app->add_flag("--json", o->json, "Print the summary instead of the page's path");
   add_join_option(*app, o->corners);
   return {app, [o, &globals] { return run_collide(*o, globals); }};
-}
-
-}  // namespace
-
-std::vector<CommandEntry> collide_commands() {
-  return {{add_collide, 20}};
 }
 
 }  // namespace lrb::cli

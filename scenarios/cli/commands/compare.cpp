@@ -57,6 +57,8 @@ int run_compare(const CompareOptions& o, const Globals& globals) {
   return kOk;
 }
 
+}  // namespace
+
 Command add_compare(CLI::App& root, const Globals& globals) {
   CLI::App* app =
       root.add_subcommand("compare", "Show two recorded runs side by side, and what differs first");
@@ -66,12 +68,6 @@ Command add_compare(CLI::App& root, const Globals& globals) {
   app->add_option("-o,--output", o->folder, "Folder to write to [out/compare]")->type_name("DIR");
   add_up_option(*app, o->up);
   return {app, [o, &globals] { return run_compare(*o, globals); }};
-}
-
-}  // namespace
-
-std::vector<CommandEntry> compare_commands() {
-  return {{add_compare, 69}};
 }
 
 }  // namespace lrb::cli

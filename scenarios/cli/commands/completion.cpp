@@ -1,19 +1,12 @@
 /// What is made of the program's own words: completions of shells, and manual pages.
 #include "scenarios/cli/words/completion.hpp"
 
-#include <array>
-#include <cstdio>
-#include <filesystem>
 #include <memory>
-#include <optional>
 #include <string>
-
-#include <nlohmann/json.hpp>
 
 #include "engine/core/error.hpp"
 #include "engine/core/file_bytes.hpp"
 #include "scenarios/cli/command.hpp"
-#include "scenarios/cli/measuring_program.hpp"
 #include "scenarios/cli/words/manual.hpp"
 #include "scenarios/io/files.hpp"
 #include "scenarios/spec/shipped.hpp"
@@ -22,38 +15,12 @@
 namespace lrb::cli {
 namespace {
 
-/// Returns the words of lrbscope-measure, as it prints them; nothing if it cannot be started.
-std::optional<words::Command> measuring_words() {
-  const std::string line =
-      shell_word(measuring_program()) + " " + std::string(kWordsCommand) + " 2>/dev/null";
-  const std::unique_ptr<FILE, int (*)(FILE*)> pipe(popen(line.c_str(), "r"), pclose);
-  if (pipe == nullptr) return std::nullopt;
-  std::string text;
-  std::array<char, 1 << 14> part{};
-  while (const std::size_t size = std::fread(part.data(), 1, part.size(), pipe.get()))
-    text.append(part.data(), size);
-  const auto json = nlohmann::ordered_json::parse(text, nullptr, false);
-  if (json.is_discarded()) return std::nullopt;
-  return words::from_json(json);
-}
-
-/// Returns the words of both programs.
-words::Command all_words(const CLI::App& root, const Globals& globals) {
-  words::Command out = words::words_of(root);
-  if (const std::optional<words::Command> more = measuring_words())
-    words::merge(out, *more);
-  else
-    note(globals,
-         {std::string(kMeasuringProgram) + " is not here: the options of its commands are left out"});
-  return out;
-}
-
 struct CompletionOptions {
   std::string shell, file;
 };
 
-int print_completion(const CLI::App& root, const CompletionOptions& o, const Globals& globals) {
-  const words::Command all = all_words(root, globals);
+int print_completion(const CLI::App& root, const CompletionOptions& o) {
+  const words::Command all = words::words_of(root);
   const words::ShippedNames names = {spec::shipped_names(spec::kScenarioEnding),
                                      spec::shipped_names(spec::kCrowdEnding),
                                      spec::shipped_names(spec::kExperimentEnding)};
@@ -65,24 +32,12 @@ int print_completion(const CLI::App& root, const CompletionOptions& o, const Glo
   return kOk;
 }
 
-Command add_completion(CLI::App& root, const Globals& globals) {
-  CLI::App* app =
-      root.add_subcommand("completion", "Print the script by which a shell completes lrbscope's words");
-  const auto o = std::make_shared<CompletionOptions>();
-  app->add_option("SHELL", o->shell, "bash, zsh or fish")
-      ->required()
-      ->check(CLI::IsMember({"bash", "zsh", "fish"}).description(""))
-      ->type_name("bash|zsh|fish");
-  app->add_option("-o,--output", o->file, "Write it to this file")->type_name("FILE");
-  return {app, [&root, o, &globals] { return print_completion(root, *o, globals); }};
-}
-
 struct ManualOptions {
   std::string command, folder;
 };
 
-int print_manual(const CLI::App& root, const ManualOptions& o, const Globals& globals) {
-  const words::Command all = all_words(root, globals);
+int print_manual(const CLI::App& root, const ManualOptions& o) {
+  const words::Command all = words::words_of(root);
   const std::string version = trace::lrbscope_version();
   bool known = o.command.empty();
   std::string page = known ? words::program_page(all, version) : std::string();
@@ -99,7 +54,21 @@ int print_manual(const CLI::App& root, const ManualOptions& o, const Globals& gl
   return kOk;
 }
 
-Command add_manual(CLI::App& root, const Globals& globals) {
+}  // namespace
+
+Command add_completion(CLI::App& root, const Globals&) {
+  CLI::App* app =
+      root.add_subcommand("completion", "Print the script by which a shell completes lrbscope's words");
+  const auto o = std::make_shared<CompletionOptions>();
+  app->add_option("SHELL", o->shell, "bash, zsh or fish")
+      ->required()
+      ->check(CLI::IsMember({"bash", "zsh", "fish"}).description(""))
+      ->type_name("bash|zsh|fish");
+  app->add_option("-o,--output", o->file, "Write it to this file")->type_name("FILE");
+  return {app, [&root, o] { return print_completion(root, *o); }};
+}
+
+Command add_manual(CLI::App& root, const Globals&) {
   CLI::App* app = root.add_subcommand("manual", "Print a manual page, for man -l -");
   const auto o = std::make_shared<ManualOptions>();
   auto* command =
@@ -107,13 +76,7 @@ Command add_manual(CLI::App& root, const Globals& globals) {
   app->add_option("-o,--output", o->folder, "Write all pages to this folder")
       ->excludes(command)
       ->type_name("DIR");
-  return {app, [&root, o, &globals] { return print_manual(root, *o, globals); }};
-}
-
-}  // namespace
-
-std::vector<CommandEntry> completion_commands() {
-  return {{add_completion, 160}, {add_manual, 170}};
+  return {app, [&root, o] { return print_manual(root, *o); }};
 }
 
 }  // namespace lrb::cli

@@ -35,6 +35,8 @@ int run_crowd_command(const CrowdOptions& o, const Globals& globals) {
   return kOk;
 }
 
+}  // namespace
+
 Command add_crowd(CLI::App& root, const Globals& globals) {
   CLI::App* app = root.add_subcommand(
       "crowd", "Move many bodies: at each step a query for each pair whose boxes meet, on all cores");
@@ -56,12 +58,6 @@ Command add_crowd(CLI::App& root, const Globals& globals) {
   app->add_flag("--no-frames", o->no_frames, "Draw nothing");
   app->add_flag("--json", o->json, "Print the summary instead of the page's path");
   return {app, [o, &globals] { return run_crowd_command(*o, globals); }};
-}
-
-}  // namespace
-
-std::vector<CommandEntry> crowd_commands() {
-  return {{add_crowd, 30}};
 }
 
 }  // namespace lrb::cli

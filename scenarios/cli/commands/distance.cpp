@@ -84,6 +84,8 @@ int run_distance(const DistanceOptions& o, const Globals& globals) {
   return kOk;
 }
 
+}  // namespace
+
 Command add_distance(CLI::App& root, const Globals& globals) {
   CLI::App* app = root.add_subcommand(
       "distance", "Bound the distance of two bodies for each pose of B in a list, one line of JSON each");
@@ -107,12 +109,6 @@ Command add_distance(CLI::App& root, const Globals& globals) {
   add_repeat_option(*app, o->repeat, "pose");
   add_join_option(*app, o->corners);
   return {app, [o, &globals] { return run_distance(*o, globals); }};
-}
-
-}  // namespace
-
-std::vector<CommandEntry> distance_commands() {
-  return {{add_distance, 45}};
 }
 
 }  // namespace lrb::cli

@@ -94,18 +94,14 @@ int run_doctor(bool json) {
   return well ? kOk : kEnvironment;
 }
 
+}  // namespace
+
 Command add_doctor(CLI::App& root, const Globals&) {
   CLI::App* app =
       root.add_subcommand("doctor", "Check that this machine has what lrbscope needs; exit code 3 if not");
   const auto json = std::make_shared<bool>(false);
   app->add_flag("--json", *json, "Print one JSON object");
   return {app, [json] { return run_doctor(*json); }};
-}
-
-}  // namespace
-
-std::vector<CommandEntry> doctor_commands() {
-  return {{add_doctor, 110}};
 }
 
 }  // namespace lrb::cli

@@ -233,6 +233,8 @@ int run_export(const ExportOptions& given, const Globals& globals) {
   return kind == Input::body ? export_body(o, globals) : export_run(o, kind, globals);
 }
 
+}  // namespace
+
 Command add_export(CLI::App& root, const Globals& globals) {
   CLI::App* app = root.add_subcommand(
       "export", "Write bodies, wrappers, contacts or poses to files that other programs open");
@@ -282,12 +284,6 @@ Command add_export(CLI::App& root, const Globals& globals) {
       *app, "--colour-per", o->picture.colour_per,
       "Whose number colours a face: its own, or its region's or level's sum");
   return {app, [o, &globals] { return run_export(*o, globals); }};
-}
-
-}  // namespace
-
-std::vector<CommandEntry> export_commands() {
-  return {{add_export, 75}};
 }
 
 }  // namespace lrb::cli

@@ -199,6 +199,8 @@ void add_paper_options(CLI::App& app, FigureOptions& o) {
   app.add_flag("--transparent", o.picture.transparent, "Draw without a background");
 }
 
+}  // namespace
+
 Command add_figure(CLI::App& root, const Globals& globals) {
   CLI::App* app =
       root.add_subcommand("figure", "Lay out panels of a run for a width on paper, as PDF, SVG or PNG");
@@ -218,12 +220,6 @@ Command add_figure(CLI::App& root, const Globals& globals) {
   add_orbit_option(*app, o->picture.camera);
   add_colour_options(*app, o->picture);
   return {app, [o, &globals] { return run_figure(*o, globals); }};
-}
-
-}  // namespace
-
-std::vector<CommandEntry> figure_commands() {
-  return {{add_figure, 75}};
 }
 
 }  // namespace lrb::cli

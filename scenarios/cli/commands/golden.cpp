@@ -340,6 +340,8 @@ void add_output(CLI::App& app, const std::shared_ptr<GoldenOptions>& o) {
   app.add_flag("--json", o->json, "Print a line of JSON for each scenario");
 }
 
+}  // namespace
+
 Command add_golden(CLI::App& root, const Globals& globals) {
   CLI::App* app = root.add_subcommand("golden", "Compare runs with approved traces and pictures");
   const auto o = std::make_shared<GoldenOptions>();
@@ -373,12 +375,6 @@ Command add_golden(CLI::App& root, const Globals& globals) {
             if (report->parsed()) return run_test(*o, globals, true);
             return run_approve(*o, globals);
           }};
-}
-
-}  // namespace
-
-std::vector<CommandEntry> golden_commands() {
-  return {{add_golden, 90}};
 }
 
 }  // namespace lrb::cli

@@ -293,6 +293,8 @@ int run_inspect(const InspectOptions& o, const Globals& globals) {
   return valid ? kOk : kMismatch;
 }
 
+}  // namespace
+
 Command add_inspect(CLI::App& root, const Globals& globals) {
   CLI::App* app =
       root.add_subcommand("inspect", "Tell what a mesh or an LRB-rep is, and what is wrong with it");
@@ -319,12 +321,6 @@ Command add_inspect(CLI::App& root, const Globals& globals) {
   app->add_flag("--json", o->json, "Print one JSON object");
   add_join_option(*app, o->corners);
   return {app, [o, &globals] { return run_inspect(*o, globals); }};
-}
-
-}  // namespace
-
-std::vector<CommandEntry> inspect_commands() {
-  return {{add_inspect, 60}};
 }
 
 }  // namespace lrb::cli

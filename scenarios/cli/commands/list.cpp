@@ -80,6 +80,8 @@ int run_list(const ListOptions& o) {
   return kOk;
 }
 
+}  // namespace
+
 Command add_list(CLI::App& root, const Globals&) {
   CLI::App* app = root.add_subcommand(
       "list", "List the shipped scenarios, crowds and experiments, or the generators and their parameters");
@@ -87,12 +89,6 @@ Command add_list(CLI::App& root, const Globals&) {
   app->add_flag("--generators", o->generators, "List the generators of bodies instead");
   app->add_flag("--json", o->json, "Print JSON");
   return {app, [o] { return run_list(*o); }};
-}
-
-}  // namespace
-
-std::vector<CommandEntry> list_commands() {
-  return {{add_list, 120}};
 }
 
 }  // namespace lrb::cli

@@ -169,6 +169,8 @@ int run_query(const QueryOptions& o, const Globals& globals) {
   return kOk;
 }
 
+}  // namespace
+
 Command add_query(CLI::App& root, const Globals& globals) {
   CLI::App* app =
       root.add_subcommand("query", "Answer exactly for each pose of B in a list, one line of JSON each");
@@ -189,12 +191,6 @@ Command add_query(CLI::App& root, const Globals& globals) {
   add_repeat_option(*app, o->repeat, "pose");
   add_join_option(*app, o->corners);
   return {app, [o, &globals] { return run_query(*o, globals); }};
-}
-
-}  // namespace
-
-std::vector<CommandEntry> query_commands() {
-  return {{add_query, 40}};
 }
 
 }  // namespace lrb::cli

@@ -198,6 +198,8 @@ int run_render(const RenderOptions& given, const Globals& globals) {
   return kOk;
 }
 
+}  // namespace
+
 Command add_render(CLI::App& root, const Globals& globals) {
   CLI::App* app = root.add_subcommand("render", "Draw pictures of a recorded run, without running it again");
   const auto o = std::make_shared<RenderOptions>();
@@ -228,12 +230,6 @@ Command add_render(CLI::App& root, const Globals& globals) {
   add_picture_options(*app, o->picture);
   add_animation_option(*app, o->picture);
   return {app, [o, &globals] { return run_render(*o, globals); }};
-}
-
-}  // namespace
-
-std::vector<CommandEntry> render_commands() {
-  return {{add_render, 70}};
 }
 
 }  // namespace lrb::cli

@@ -43,8 +43,6 @@ int report_outcome(const run::RunOutcome& outcome, const std::string& folder, bo
   return outcome.mismatches.empty() ? kOk : kMismatch;
 }
 
-namespace {
-
 Command add_run(CLI::App& root, const Globals& globals) {
   CLI::App* app = root.add_subcommand("run", "Run a scenario: frames, trace, numbers and a page");
   const auto o = std::make_shared<RunCommandOptions>();
@@ -57,12 +55,6 @@ Command add_run(CLI::App& root, const Globals& globals) {
   add_animation_option(*app, o->picture);
   app->add_flag("--json", o->json, "Print the summary instead of the page's path");
   return {app, [o, &globals] { return run_run(*o, globals); }};
-}
-
-}  // namespace
-
-std::vector<CommandEntry> run_commands() {
-  return {{add_run, 10}};
 }
 
 }  // namespace lrb::cli

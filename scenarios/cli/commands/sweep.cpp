@@ -128,6 +128,8 @@ int run_sweep(const SweepOptions& o, const Globals& globals) {
   return kOk;
 }
 
+}  // namespace
+
 Command add_sweep(CLI::App& root, const Globals& globals) {
   CLI::App* app = root.add_subcommand(
       "sweep", "Find when B first meets A for each motion of B in a list, one line of JSON each");
@@ -151,12 +153,6 @@ Command add_sweep(CLI::App& root, const Globals& globals) {
   add_repeat_option(*app, o->repeat, "motion");
   add_join_option(*app, o->corners);
   return {app, [o, &globals] { return run_sweep(*o, globals); }};
-}
-
-}  // namespace
-
-std::vector<CommandEntry> sweep_commands() {
-  return {{add_sweep, 46}};
 }
 
 }  // namespace lrb::cli

@@ -82,6 +82,8 @@ int run_why(const WhyOptions& o, const Globals& globals) {
   return explain(o, {a.rep, b.rep, {}, pose});
 }
 
+}  // namespace
+
 Command add_why(CLI::App& root, const Globals& globals) {
   CLI::App* app =
       root.add_subcommand("why", "Tell why two faces are in an answer, or are not, or why bodies are apart");
@@ -107,12 +109,6 @@ Command add_why(CLI::App& root, const Globals& globals) {
   app->add_flag("--json", o->json, "Print one JSON object");
   add_join_option(*app, o->corners);
   return {app, [o, &globals] { return run_why(*o, globals); }};
-}
-
-}  // namespace
-
-std::vector<CommandEntry> why_commands() {
-  return {{add_why, 45}};
 }
 
 }  // namespace lrb::cli

@@ -9,7 +9,6 @@
 #include "scenarios/cli/choice.hpp"
 #include "scenarios/cli/command.hpp"
 #include "scenarios/cli/measuring/measure_options.hpp"
-#include "scenarios/cli/measuring_words.hpp"
 #include "scenarios/cli/progress.hpp"
 #include "scenarios/io/files.hpp"
 
@@ -71,8 +70,12 @@ int run_bench(const BenchOptions& o, const Globals& globals) {
   return kOk;
 }
 
+}  // namespace
+
 Command add_bench(CLI::App& root, const Globals& globals) {
-  CLI::App* app = add_measuring(root, measuring_word("bench"));
+  CLI::App* app = root.add_subcommand(
+      "bench",
+      "Compare our query with other engines on the same bodies and poses: how many times as long they take");
   const auto o = std::make_shared<BenchOptions>();
   add_measure_options(*app, *o);
   app->add_option("--faces", o->faces,
@@ -81,12 +84,6 @@ Command add_bench(CLI::App& root, const Globals& globals) {
       ->check(CLI::Range(0, 2000000))
       ->type_name("N");
   return {app, [o, &globals] { return run_bench(*o, globals); }};
-}
-
-}  // namespace
-
-std::vector<CommandEntry> bench_commands() {
-  return {{add_bench, measuring_word("bench").rank}};
 }
 
 }  // namespace lrb::cli

@@ -15,7 +15,6 @@
 #include "scenarios/cli/choice.hpp"
 #include "scenarios/cli/command.hpp"
 #include "scenarios/cli/measuring/measure_options.hpp"
-#include "scenarios/cli/measuring_words.hpp"
 #include "scenarios/cli/progress.hpp"
 #include "scenarios/io/files.hpp"
 #include "scenarios/report/charts/gnuplot.hpp"
@@ -125,8 +124,11 @@ int run_chart(ChartOptions o, bool measures, bool draws, const Globals& globals)
   return kOk;
 }
 
+}  // namespace
+
 Command add_chart(CLI::App& root, const Globals& globals) {
-  CLI::App* app = add_measuring(root, measuring_word("chart"));
+  CLI::App* app = root.add_subcommand(
+      "chart", "Chart speed against accuracy: every method at every setting, exact ones and approximations");
   const auto o = std::make_shared<ChartOptions>();
   app->require_subcommand(0, 1);
   CLI::App* measures =
@@ -142,12 +144,6 @@ Command add_chart(CLI::App& root, const Globals& globals) {
   return {app, [o, &globals, measures, draws] {
             return run_chart(*o, !draws->parsed(), !measures->parsed(), globals);
           }};
-}
-
-}  // namespace
-
-std::vector<CommandEntry> chart_commands() {
-  return {{add_chart, measuring_word("chart").rank}};
 }
 
 }  // namespace lrb::cli

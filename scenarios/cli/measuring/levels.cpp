@@ -9,7 +9,6 @@
 #include "scenarios/bodies/level_figures.hpp"
 #include "scenarios/bodies/level_json.hpp"
 #include "scenarios/cli/command.hpp"
-#include "scenarios/cli/measuring_words.hpp"
 #include "scenarios/cli/options.hpp"
 #include "scenarios/levels/level_report.hpp"
 
@@ -60,8 +59,11 @@ int run_levels(const LevelsOptions& o, const Globals& globals) {
   return kOk;
 }
 
+}  // namespace
+
 Command add_levels(CLI::App& root, const Globals& globals) {
-  CLI::App* app = add_measuring(root, measuring_word("levels"));
+  CLI::App* app =
+      root.add_subcommand("levels", "How many faces a body needs at a row of tolerances, and the proof");
   const auto o = std::make_shared<LevelsOptions>();
   o->shares.assign(std::begin(bodies::kLevelShares), std::end(bodies::kLevelShares));
   app->add_option("BODY", o->body, "Mesh or .lrb file")->required();
@@ -79,12 +81,6 @@ Command add_levels(CLI::App& root, const Globals& globals) {
   app->add_flag("--json", o->json, "As one JSON object");
   add_join_option(*app, o->corners);
   return {app, [o, &globals] { return run_levels(*o, globals); }};
-}
-
-}  // namespace
-
-std::vector<CommandEntry> levels_commands() {
-  return {{add_levels, measuring_word("levels").rank}};
 }
 
 }  // namespace lrb::cli

@@ -6,7 +6,6 @@
 #include "engine/core/error.hpp"
 #include "scenarios/cli/command.hpp"
 #include "scenarios/cli/measuring/paper_series.hpp"
-#include "scenarios/cli/measuring_words.hpp"
 #include "scenarios/cli/progress.hpp"
 #include "scenarios/io/files.hpp"
 #include "scenarios/paper/experiment.hpp"
@@ -55,7 +54,7 @@ std::vector<paper::ContactStep> read_shards(const std::vector<std::string>& file
 }
 
 /// Runs a part of the command, and notes the time it took.
-class Clock {
+class PartTimes {
  public:
   template <class Part>
   auto run(const std::string& name, const Part& part) {
@@ -114,7 +113,7 @@ int run_paper(PaperOptions o, const Globals& globals) {
   const bool with_series = o.series.resolutions.most > 0;
   std::vector<paper::ContactStep> steps = read_shards(o.merge), series_steps;
   if (merging && with_series) series_steps = read_series_shards(o.merge);
-  Clock clock;
+  PartTimes clock;
   std::vector<std::string> notes;
   const std::vector<paper::PaperObject> objects =
       clock.run("the paper's objects", [&] { return paper::make_objects(experiment, notes); });
@@ -141,8 +140,12 @@ int run_paper(PaperOptions o, const Globals& globals) {
   return kOk;
 }
 
+}  // namespace
+
 Command add_paper(CLI::App& root, const Globals& globals) {
-  CLI::App* app = add_measuring(root, measuring_word("paper"));
+  CLI::App* app = root.add_subcommand(
+      "paper",
+      "Repeat the paper's experiment: its tables and figures, close-ups of single collisions, and the same on meshes");
   const auto o = std::make_shared<PaperOptions>();
   app->add_option("-o,--output", o->folder, "Folder to write to")->type_name("DIR")->capture_default_str();
   app->add_option("--experiment", o->experiment,
@@ -180,12 +183,6 @@ Command add_paper(CLI::App& root, const Globals& globals) {
     merge->excludes(app->get_option(of_shards));
   app->add_flag("--json", o->json, "Print the tables instead of the page's path");
   return {app, [o, &globals] { return run_paper(*o, globals); }};
-}
-
-}  // namespace
-
-std::vector<CommandEntry> paper_commands() {
-  return {{add_paper, measuring_word("paper").rank}};
 }
 
 }  // namespace lrb::cli

@@ -10,7 +10,6 @@
 #include "scenarios/cli/choice.hpp"
 #include "scenarios/cli/command.hpp"
 #include "scenarios/cli/measuring/measure_options.hpp"
-#include "scenarios/cli/measuring_words.hpp"
 #include "scenarios/cli/progress.hpp"
 #include "scenarios/io/files.hpp"
 #include "scenarios/stability/record_json.hpp"
@@ -210,8 +209,11 @@ int run_stability(StabilityOptions o, const Globals& globals) {
   return kMismatch;
 }
 
+}  // namespace
+
 Command add_stability(CLI::App& root, const Globals& globals) {
-  CLI::App* app = add_measuring(root, measuring_word("stability"));
+  CLI::App* app = root.add_subcommand(
+      "stability", "Put families of hard cases to our query and to other engines: who fails where");
   const auto o = std::make_shared<StabilityOptions>();
   app->add_option("-o,--output", o->folder, "Folder to write to [out/stability, or out/stability-QUANTITY]")
       ->type_name("DIR");
@@ -237,12 +239,6 @@ Command add_stability(CLI::App& root, const Globals& globals) {
       ->type_name("CASE");
   app->add_flag("--pairs", o->pairs, "With --only: print the pairs expected and answered");
   return {app, [o, &globals] { return run_stability(*o, globals); }};
-}
-
-}  // namespace
-
-std::vector<CommandEntry> stability_commands() {
-  return {{add_stability, measuring_word("stability").rank}};
 }
 
 }  // namespace lrb::cli

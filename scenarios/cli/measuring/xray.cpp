@@ -6,7 +6,6 @@
 #include "engine/core/fnv.hpp"
 #include "scenarios/bodies/body.hpp"
 #include "scenarios/cli/command.hpp"
-#include "scenarios/cli/measuring_words.hpp"
 #include "scenarios/cli/options.hpp"
 #include "scenarios/cli/progress.hpp"
 #include "scenarios/io/json/pose_list.hpp"
@@ -89,8 +88,10 @@ int run_xray(const XrayOptions& o, const Globals& globals) {
   return kOk;
 }
 
+}  // namespace
+
 Command add_xray(CLI::App& root, const Globals& globals) {
-  CLI::App* app = add_measuring(root, measuring_word("xray"));
+  CLI::App* app = root.add_subcommand("xray", "Record another engine's walk, and show it beside ours");
   const auto o = std::make_shared<XrayOptions>();
   app->add_option("A", o->a, "Mesh or .lrb file, 3D; does not move")->required();
   app->add_option("B", o->b, "Mesh or .lrb file, 3D; moves")->required();
@@ -105,12 +106,6 @@ Command add_xray(CLI::App& root, const Globals& globals) {
   add_picture_options(*app, o->picture);
   add_join_option(*app, o->corners);
   return {app, [o, &globals] { return run_xray(*o, globals); }};
-}
-
-}  // namespace
-
-std::vector<CommandEntry> xray_commands() {
-  return {{add_xray, measuring_word("xray").rank}};
 }
 
 }  // namespace lrb::cli

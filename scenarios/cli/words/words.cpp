@@ -1,26 +1,10 @@
 #include "scenarios/cli/words/words.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cctype>
 #include <string_view>
 
-#include <nlohmann/json.hpp>
-
-#include "engine/core/enum_words.hpp"
-
 namespace lrb::words {
-
-constexpr auto words_of(Value) {
-  return std::to_array<EnumWord<Value>>({{Value::none, "none"},
-                                         {Value::choice, "choice"},
-                                         {Value::file, "file"},
-                                         {Value::folder, "folder"},
-                                         {Value::scenario, "scenario"},
-                                         {Value::crowd, "crowd"},
-                                         {Value::experiment, "experiment"}});
-}
-
 namespace {
 
 /// Returns the words of a type such as "png|svg" or "answers,events"; none for another type.
@@ -83,50 +67,6 @@ Command words_of(const CLI::App& app) {
        app.get_subcommands([](const CLI::App* a) { return !a->get_group().empty(); }))
     out.commands.push_back(words_of(*command));
   return out;
-}
-
-nlohmann::ordered_json to_json(const Command& command) {
-  nlohmann::ordered_json out = {{"name", command.name}, {"purpose", command.purpose}};
-  out["options"] = nlohmann::ordered_json::array();
-  for (const Option& o : command.options) {
-    nlohmann::ordered_json j = {
-        {"names", o.names}, {"type", o.type}, {"help", o.help}, {"default", o.fallback}};
-    j.update({{"positional", o.positional}, {"required", o.required}, {"many", o.many}});
-    j.update({{"value", name_of(o.value)}, {"choices", o.choices}});
-    out["options"].push_back(std::move(j));
-  }
-  out["commands"] = nlohmann::ordered_json::array();
-  for (const Command& below : command.commands) out["commands"].push_back(to_json(below));
-  return out;
-}
-
-Command from_json(const nlohmann::ordered_json& json) {
-  Command out;
-  out.name = json.at("name");
-  out.purpose = json.at("purpose");
-  for (const nlohmann::ordered_json& j : json.at("options")) {
-    Option o;
-    j.at("names").get_to(o.names);
-    j.at("type").get_to(o.type);
-    j.at("help").get_to(o.help);
-    j.at("default").get_to(o.fallback);
-    j.at("positional").get_to(o.positional);
-    j.at("required").get_to(o.required);
-    j.at("many").get_to(o.many);
-    j.at("choices").get_to(o.choices);
-    o.value = from_name<Value>(j.at("value").get<std::string>()).value();
-    out.options.push_back(std::move(o));
-  }
-  for (const nlohmann::ordered_json& below : json.at("commands")) out.commands.push_back(from_json(below));
-  return out;
-}
-
-void merge(Command& program, const Command& other) {
-  for (const Command& from : other.commands) {
-    const auto to = std::find_if(program.commands.begin(), program.commands.end(),
-                                 [&](const Command& c) { return c.name == from.name; });
-    if (to != program.commands.end()) *to = from;
-  }
 }
 
 }  // namespace lrb::words

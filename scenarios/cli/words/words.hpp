@@ -2,11 +2,11 @@
 /// The commands and options of a program as data, taken from the definitions by which it parses them: for
 /// manual pages and for the completions of shells.
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
 #include <CLI/CLI.hpp>
-#include <nlohmann/json_fwd.hpp>
 
 namespace lrb::words {
 
@@ -34,12 +34,5 @@ struct Command {
 
 /// Returns the words of a program or command, without what it hides.
 Command words_of(const CLI::App& app);
-
-/// Return words as JSON, and read what the program wrote.
-nlohmann::ordered_json to_json(const Command& command);
-Command from_json(const nlohmann::ordered_json& json);
-
-/// Puts the options and subcommands of `other` in the place of those of the command of the same name.
-void merge(Command& program, const Command& other);
 
 }  // namespace lrb::words

@@ -165,6 +165,7 @@ TEST_CASE("a worker that is not there, or is no worker") {
   CHECK(o.out.empty());
   CHECK(o.error_lines() == 1);
   CHECK(o.err.find("lrbscope-methods: not found; it is built beside lrbscope") != std::string::npos);
+  CHECK(o.err.find("cmake --build --preset release --target lrbscope-workers)") != std::string::npos);
   CHECK(folder.tree().empty());
   std::filesystem::permissions(folder.write("lrbscope-methods", "#!/bin/sh\nexit 9\n"),
                                std::filesystem::perms::owner_all);
