@@ -30,7 +30,7 @@ HeldQueryPtr make(py::handle a, py::handle b, py::handle mode, py::handle contac
   return std::make_shared<HeldQuery>(shared_body(a, "a"), shared_body(b, "b"), request, use);
 }
 
-Answer collide(HeldQuery& self, py::handle pose_b, py::handle pose_a) {
+Answer collide_next(HeldQuery& self, py::handle pose_b, py::handle pose_a) {
   const Pose at_a = pose(pose_a, "pose_a"), at_b = pose(pose_b, "pose_b");
   auto result = std::make_shared<CollideResult>();
   {
@@ -78,7 +78,7 @@ void bind_coherent(py::module_& m) {
         py::arg("contacts") = no, py::arg("interiors_overlap") = no, py::arg("max_pairs") = no,
         py::arg("always") = no, kCoherentText);
   c.def(
-      "collide", &collide, py::arg("pose_b") = no, py::arg("pose_a") = no,
+      "collide", &collide_next, py::arg("pose_b") = no, py::arg("pose_a") = no,
       "collide(pose_b=None, pose_a=None)\n\nReturns the Result for these poses, (4, 4); None: the identity.");
   c.def_property_readonly(
       "statistics", &statistics,

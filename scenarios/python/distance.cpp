@@ -89,7 +89,7 @@ std::string shown(const Distance& d) {
   return "<lrbscope.Distance in [" + lower + ", " + upper + "]>";
 }
 
-void bind_one(py::module_& m) {
+void bind_single_distance(py::module_& m) {
   py::class_<Distance> c(
       m, "Distance",
       "How far two surfaces are apart: an interval that is proved to hold the distance. Made by distance().");
@@ -155,7 +155,7 @@ py::array_t<double> ends_of(const Distances& d, double DistanceResult::*end) {
   return out;
 }
 
-void bind_many(py::module_& m) {
+void bind_distances(py::module_& m) {
   py::class_<Distances> c(m, "Distances",
                           "Distances for k poses: a sequence of Distance, in the order of the poses.");
   c.def("__len__", [](const Distances& d) { return d.all->size(); });
@@ -174,8 +174,8 @@ py::object distance_object(DistanceResult result) {
 }
 
 void bind_distance(py::module_& m) {
-  bind_one(m);
-  bind_many(m);
+  bind_single_distance(m);
+  bind_distances(m);
   const py::none no;
   m.def("distance", &distance, py::arg("a"), py::arg("b"), py::arg("poses_b") = no, py::arg("pose_a") = no,
         py::kw_only(), py::arg("within") = no, py::arg("tolerance") = no, py::arg("relative_tolerance") = no,

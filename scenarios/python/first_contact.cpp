@@ -66,7 +66,7 @@ py::object first_contact(py::handle a, py::handle b, py::handle motion_b, py::ha
   return of_b.one ? py::cast(found.at(0)) : py::cast(found);
 }
 
-py::array_t<double> points_of(const FirstContact& f) {
+py::array_t<double> contact_points_of(const FirstContact& f) {
   const std::array<Eigen::Vector3d, 2> points{f.result->witness[0].point, f.result->witness[1].point};
   return array_of(points);
 }
@@ -97,7 +97,7 @@ py::str word_of(Value value) {
   return py::str(std::string(name_of(value)));
 }
 
-void bind_one(py::module_& m) {
+void bind_single_contact(py::module_& m) {
   py::class_<FirstContact> c(
       m, "FirstContact",
       "When two moving bodies first meet, as a proved interval of the time t from 0 to 1. "
@@ -131,7 +131,7 @@ void bind_one(py::module_& m) {
       "str: how the bodies lie at the start, as Result.relation.");
   c.def_property_readonly("doubtful", &doubtful_of, "(d, 2) float64: spans of t in which nothing is known.");
   c.def_property_readonly("pair", &pair_of, "(int, int) or None: triangles of A and of B that meet at t1.");
-  c.def_property_readonly("points", &points_of,
+  c.def_property_readonly("points", &contact_points_of,
                           "(2, 3) float64: the nearest points of A and of B at t0, world frame.");
   c.def_property_readonly(
       "normal", [](const FirstContact& f) { return array_of(f.result->normal); },
@@ -149,7 +149,7 @@ void bind_one(py::module_& m) {
   });
 }
 
-void bind_many(py::module_& m) {
+void bind_first_contacts(py::module_& m) {
   py::class_<FirstContacts> c(m, "FirstContacts",
                               "First contacts for k motions: a sequence of FirstContact, in their order.");
   c.def("__len__", [](const FirstContacts& f) { return f.all->size(); });
@@ -172,8 +172,8 @@ void bind_many(py::module_& m) {
 }  // namespace
 
 void bind_first_contact(py::module_& m) {
-  bind_one(m);
-  bind_many(m);
+  bind_single_contact(m);
+  bind_first_contacts(m);
   const py::none no;
   m.def("first_contact", &first_contact, py::arg("a"), py::arg("b"), py::arg("motion_b"),
         py::arg("motion_a") = no, py::kw_only(), py::arg("tolerance") = no, py::arg("max_steps") = no,

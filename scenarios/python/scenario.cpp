@@ -32,7 +32,7 @@ run::ProgressReport report_to(const py::object& progress) {
   };
 }
 
-std::shared_ptr<Recorded> record(const spec::Scenario& scenario, const py::object& progress) {
+std::shared_ptr<Recorded> record_scenario(const spec::Scenario& scenario, const py::object& progress) {
   const run::ProgressReport report = report_to(progress);
   const py::gil_scoped_release unlocked;
   return recorded_of(run::record(scenario, report), scenario);
@@ -94,7 +94,7 @@ void bind_scenario(py::module_& m) {
       "name", [](const spec::Scenario& s) { return s.name; }, "str");
   c.def_property_readonly(
       "purpose", [](const spec::Scenario& s) { return s.purpose; }, "str: what the pictures should show.");
-  c.def("record", &record, py::kw_only(), py::arg("progress") = py::none(),
+  c.def("record", &record_scenario, py::kw_only(), py::arg("progress") = py::none(),
         "record(*, progress=None)\n\nRuns the scenario and draws nothing. progress(what, done, "
         "total): is called now and then. Returns a Trace.");
   c.def("run", &run_into, py::arg("out"), py::kw_only(), py::arg("progress") = py::none(),

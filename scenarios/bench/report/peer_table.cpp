@@ -32,7 +32,7 @@ bool is_peer(const methods::MethodInfo& m) {
 }
 
 /// Returns the name of the method that plays a part; "" if there is none.
-std::string name_of(const std::vector<methods::MethodInfo>& methods, Role role) {
+std::string method_in(const std::vector<methods::MethodInfo>& methods, Role role) {
   for (const methods::MethodInfo& m : methods)
     if (m.role == role) return m.name;
   return "";
@@ -103,7 +103,7 @@ std::string ratios_of(const PeerTable& t, Mode mode) {
   out += "\n";
   for (const std::string& set : t.sets)
     for (const PoseClass c : classes_of(Quantity::pairs)) {
-      const PeerCell* ours = t.find(set, name_of(t.methods, Role::ours), c, mode);
+      const PeerCell* ours = t.find(set, method_in(t.methods, Role::ours), c, mode);
       if (ours == nullptr || ours->questions == 0) continue;
       out += padded(set, kSet, true) + padded(title(c), kClass, true) +
              padded(text("%.0f", ours->pairs), kNumber) + padded(text("%.1f", ours->hot), kNumber) +
@@ -190,7 +190,7 @@ std::string ahead_of(const PeerTable& t) {
 }
 
 std::string targets_of(const PeerTable& t) {
-  const std::string fcl = name_of(t.methods, Role::aim);
+  const std::string fcl = method_in(t.methods, Role::aim);
   std::string out = "AIMED AT, against FCL compiled with our flags, hot\n";
   const auto line = [&](const char* what, double reached, double aim) {
     out += reached <= 0 ? text("  %-42s not measured: FCL is absent\n", what)
@@ -206,7 +206,7 @@ std::string targets_of(const PeerTable& t) {
 std::string price_of(const PeerTable& t) {
   std::vector<double> ordinary;
   std::string identical;
-  const std::string in_doubles = name_of(t.methods, Role::ours_double);
+  const std::string in_doubles = method_in(t.methods, Role::ours_double);
   for (const PeerCell& c : t.cells) {
     if (c.method != in_doubles || c.ratio <= 0) continue;
     if (c.pose_class != PoseClass::identical)
@@ -234,7 +234,7 @@ PeerTable peer_table(const std::vector<DataSet>& sets, const std::vector<methods
                      const std::vector<Record>& records) {
   std::map<Key, const Record*> by_key;
   for (const Record& r : records) by_key[{r.set, name_of(r), r.question}] = &r;
-  const std::string ours_name = name_of(methods, Role::ours);
+  const std::string ours_name = method_in(methods, Role::ours);
   PeerTable t;
   t.methods = methods;
   for (const DataSet& set : sets) {
